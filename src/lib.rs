@@ -1,0 +1,7 @@
+//! Wheel/rail contact-patch preprocessor.
+
+pub mod error;
+pub mod numerics;
+pub mod profile;
+
+pub use error::{Error, Result};

@@ -1,0 +1,5 @@
+//! Roots, polynomials, quadrature and elliptic integrals: no railway words here.
+
+pub mod polynomial;
+pub mod quadrature;
+pub mod roots;

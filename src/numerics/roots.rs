@@ -1,0 +1,67 @@
+//! Bracketed roots of functions of one variable.
+
+/// The root of a continuous `f` between `a` and `b`, where `f(a)` and `f(b)` have opposite signs or one is zero.
+///
+/// Method: Illinois-free ITP-like bisection with secant steps (Brent's safeguards without his case
+/// analysis): every second step at least halves the bracket, so at most about 120 evaluations.
+/// Accuracy: the bracket shrinks until its ends are neighbouring numbers or `f` vanishes exactly;
+/// of the last two ends the one with the smaller |f| is returned.
+/// Degenerate: `None` when the signs are equal or a value is NaN.
+pub fn bracketed(mut f: impl FnMut(f64) -> f64, a: f64, b: f64) -> Option<f64> {
+    let (mut low, mut high) = (a, b);
+    let (mut f_low, mut f_high) = (f(low), f(high));
+    if f_low == 0.0 {
+        return Some(low);
+    }
+    if f_high == 0.0 {
+        return Some(high);
+    }
+    if f_low.is_nan() || f_high.is_nan() || (f_low > 0.0) == (f_high > 0.0) {
+        return None;
+    }
+    let mut halve = false;
+    loop {
+        let middle = low + (high - low) / 2.0;
+        if middle == low || middle == high {
+            return Some(if f_low.abs() <= f_high.abs() { low } else { high });
+        }
+        let secant = low - f_low * ((high - low) / (f_high - f_low));
+        let inside = (secant - low) * (secant - high) < 0.0;
+        let x = if halve || !inside { middle } else { secant };
+        let width = (high - low).abs();
+        let value = f(x);
+        if value == 0.0 {
+            return Some(x);
+        }
+        if value.is_nan() {
+            return None;
+        }
+        if (value > 0.0) == (f_low > 0.0) {
+            (low, f_low) = (x, value);
+        } else {
+            (high, f_high) = (x, value);
+        }
+        halve = (high - low).abs() > 0.5 * width;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finds_simple_roots_to_the_last_bit() {
+        let root = bracketed(|x| x * x - 2.0, 0.0, 2.0);
+        assert!(root.is_some_and(|x| (x - 2f64.sqrt()).abs() <= f64::EPSILON * 2.0));
+        let flat = bracketed(|x| (x - 0.3).powi(5), -1.0, 1.0);
+        assert!(flat.is_some_and(|x| (x - 0.3).abs() < 1e-10), "{flat:?}");
+    }
+
+    #[test]
+    fn ends_that_are_roots_count_and_equal_signs_do_not() {
+        assert_eq!(bracketed(|x| x, 0.0, 1.0), Some(0.0));
+        assert_eq!(bracketed(|x| x - 1.0, 0.0, 1.0), Some(1.0));
+        assert_eq!(bracketed(|x| x * x + 1.0, -1.0, 1.0), None);
+        assert_eq!(bracketed(|_| f64::NAN, -1.0, 1.0), None);
+    }
+}

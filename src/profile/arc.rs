@@ -1,0 +1,191 @@
+//! Lines and circular arcs in curvature form: Report (3.2), with a signed radius (erratum 2).
+
+use twofloat::TwoFloat;
+
+use super::Station;
+use crate::error::{Error, Result, finite};
+
+/// A drawing's arc may end where its tangent is vertical; its rounded coordinates may then lie this many
+/// roundings of the radius beyond. More is a drawing that does not close.
+const VERTICAL_END_ROUNDINGS: f64 = 64.0;
+
+/// Which half of its circle an arc is on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Half {
+    /// z = b + √(r² − (x − a)²): bulges up.
+    Upper,
+    /// z = b − √(r² − (x − a)²): bulges down.
+    Lower,
+}
+
+/// A line (infinite radius) or a circular arc of at most half a turn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Arc {
+    /// Where it begins.
+    pub start: Station,
+    /// Where it ends.
+    pub end: Station,
+    /// Signed radius \[mm\]: positive where it turns counter-clockwise (lower half), ∞ for a line. Kept rather
+    /// than the curvature, since differences of nearly equal radii are then exact.
+    pub radius: f64,
+}
+
+impl Arc {
+    /// The line between two points \[mm\].
+    ///
+    /// # Errors
+    /// Points that are not finite or coincide.
+    pub fn line(from: [f64; 2], to: [f64; 2]) -> Result<Self> {
+        for v in from.into_iter().chain(to) {
+            finite("line", v)?;
+        }
+        let (dx, dz) = (to[0] - from[0], to[1] - from[1]);
+        let length = dx.hypot(dz);
+        if length == 0.0 {
+            return Err(Error::new("line", "two equal points", "two different points", "drop the segment"));
+        }
+        let (cos, sin) = (dx / length, dz / length);
+        let at = |[x, z]: [f64; 2]| Station { x, z, cos, sin };
+        Ok(Self { start: at(from), end: at(to), radius: f64::INFINITY })
+    }
+
+    /// The arc about `centre` (a, b) between two abscissae, (3.2-a).
+    ///
+    /// # Errors
+    /// Values that are not finite, a radius that is not positive, abscissae out of order or off the circle.
+    pub fn about(centre: [f64; 2], radius: f64, half: Half, x: [f64; 2]) -> Result<Self> {
+        for v in centre.into_iter().chain(x).chain([radius]) {
+            finite("arc", v)?;
+        }
+        if radius <= 0.0 {
+            let advice = "give the half of the circle by `half`";
+            return Err(Error::new("arc: radius", radius.to_string(), "a positive number", advice));
+        }
+        if x[0] >= x[1] {
+            let found = format!("[{}, {}]", x[0], x[1]);
+            return Err(Error::new("arc: x", found, "two abscissae in ascending order", "swap them"));
+        }
+        let signed = if half == Half::Upper { -radius } else { radius };
+        let at = |x: f64| station_on_circle(centre, signed, x);
+        Ok(Self { start: at(x[0])?, end: at(x[1])?, radius: signed })
+    }
+
+    /// The arc or line that leaves `start` along its tangent and goes on to abscissa `to_x`
+    /// (Appendix A: smooth transitions); `radius` signed, ∞ for a line.
+    ///
+    /// # Errors
+    /// `to_x` not beyond the start, or not reached before the tangent is vertical.
+    pub fn tangent_at(start: Station, radius: f64, to_x: f64) -> Result<Self> {
+        let run = finite("to_x", to_x)? - start.x;
+        if run <= 0.0 {
+            let expected = format!("an abscissa beyond {}", start.x);
+            return Err(Error::new("to_x", to_x.to_string(), expected, "give segments in order of x"));
+        }
+        let sin = start.sin + run / radius;
+        let rounding = VERTICAL_END_ROUNDINGS * f64::EPSILON * (1.0 + (start.x / radius).abs());
+        if sin.abs() > 1.0 + rounding || start.cos <= 0.0 {
+            let farthest = start.x + (1f64.copysign(radius) - start.sin) * radius;
+            let expected = format!("an abscissa the arc reaches, {farthest} at most");
+            return Err(Error::new("to_x", to_x.to_string(), expected, "correct the radius or the abscissa"));
+        }
+        let sin = sin.clamp(-1.0, 1.0);
+        let cos = cosine(sin);
+        let z = start.z + run * (start.sin + sin) / (start.cos + cos);
+        Ok(Self { start, end: Station { x: to_x, z, cos, sin }, radius })
+    }
+
+    /// Signed curvature \[1/mm\], 0 for a line.
+    pub fn curvature(&self) -> f64 {
+        self.radius.recip()
+    }
+
+    /// Centre (a, b) of (3.2-a) \[mm\], or `None` for a line.
+    pub fn centre(&self) -> Option<[f64; 2]> {
+        let Station { x, z, cos, sin } = self.start;
+        self.radius.is_finite().then(|| [x - self.radius * sin, z + self.radius * cos])
+    }
+
+    /// Turning angle from start to end \[rad\], signed; 0 for a line.
+    pub fn turn(&self) -> f64 {
+        let relative = self.end.seen_from(&self.start);
+        let turn = relative.sin.atan2(relative.cos);
+        // Half a turn comes out with either sign.
+        if self.radius.is_finite() { turn.abs().copysign(self.radius) } else { 0.0 }
+    }
+
+    /// Length along the arc \[mm\].
+    pub fn length(&self) -> f64 {
+        let chord = (self.end.x - self.start.x).hypot(self.end.z - self.start.z);
+        if self.radius.is_finite() { (self.turn() * self.radius).abs() } else { chord }
+    }
+
+    pub(super) fn mirrored(&self) -> Self {
+        Self { start: self.end.mirrored(), end: self.start.mirrored(), radius: self.radius }
+    }
+
+    pub(super) fn placed_by(&self, frame: &Station) -> Self {
+        Self { start: self.start.placed_by(frame), end: self.end.placed_by(frame), radius: self.radius }
+    }
+}
+
+/// √(1 − sin²) without cancellation, 0 where rounding has carried |sin| past 1.
+pub(super) fn cosine(sin: f64) -> f64 {
+    ((1.0 - sin) * (1.0 + sin)).max(0.0).sqrt()
+}
+
+/// The point of a circle at abscissa x; `radius` negative for the upper half. The height is rounded once
+/// only: b and r may be thousands of times larger than their sum.
+fn station_on_circle([a, b]: [f64; 2], radius: f64, x: f64) -> Result<Station> {
+    let beyond = (x - a).abs() - radius.abs();
+    if beyond > VERTICAL_END_ROUNDINGS * f64::EPSILON * (radius.abs() + a.abs()) {
+        let expected = format!("abscissae within [{}, {}]", a - radius.abs(), a + radius.abs());
+        return Err(Error::new("arc: x", x.to_string(), expected, "correct the centre, radius or end"));
+    }
+    let offset = TwoFloat::new_sub(x, a);
+    let square = (TwoFloat::from(radius) - offset) * (TwoFloat::from(radius) + offset);
+    let leg = if f64::from(square) > 0.0 { square.sqrt() } else { TwoFloat::from(0.0) };
+    let height = if radius < 0.0 { leg + b } else { -leg + b };
+    let sin = f64::from(offset / radius).clamp(-1.0, 1.0);
+    Ok(Station { x, z: f64::from(height), cos: f64::from(leg) / radius.abs(), sin })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_arc_about_a_centre_has_its_ends_and_centre() -> Result<()> {
+        let arc = Arc::about([3.0, -80.0], 80.0, Half::Upper, [-10.0, 20.0])?;
+        assert_eq!(arc.start.x, -10.0);
+        assert!((arc.start.z - (-80.0 + (6400.0f64 - 169.0).sqrt())).abs() < 1e-13);
+        assert!((arc.start.sin - 13.0 / 80.0).abs() < 1e-16);
+        let [a, b] = arc.centre().unwrap_or_default();
+        assert!((a - 3.0).abs() < 1e-14 && (b + 80.0).abs() < 1e-13);
+        Ok(())
+    }
+
+    #[test]
+    fn a_radius_of_ten_metres_costs_no_digits() -> Result<()> {
+        let arc = Arc::about([0.0, -1e4], 1e4, Half::Upper, [-1e-3, 1.0])?;
+        assert!((arc.end.z + 5.000_000_012_500_000_06e-5).abs() < 1e-20, "{:e}", arc.end.z);
+        Ok(())
+    }
+
+    #[test]
+    fn tangent_arcs_reach_their_end_or_say_why_not() -> Result<()> {
+        let start = Station::AXES;
+        let arc = Arc::tangent_at(start, -13.0, 12.0)?;
+        assert!((arc.end.z - (-13.0 + 5.0)).abs() < 1e-14);
+        assert!(Arc::tangent_at(start, -13.0, 13.5).is_err());
+        assert!(Arc::tangent_at(start, f64::INFINITY, -1.0).is_err());
+        Ok(())
+    }
+
+    #[test]
+    fn ends_off_the_circle_are_rejected_but_a_rounded_vertical_end_is_not() -> Result<()> {
+        assert!(Arc::about([0.0, 0.0], 1.0, Half::Lower, [0.0, 1.0001]).is_err());
+        let end = Arc::about([94.45752, 35.58032], 15.875, Half::Lower, [95.25, 110.33252])?.end;
+        assert!(end.cos < 1e-6 && end.sin == 1.0, "{end:?}");
+        Ok(())
+    }
+}

@@ -1,0 +1,152 @@
+//! Appendix A of the Report: smooth chains from drawing data.
+//!
+//! A segment is given by its slope or radius and the abscissa where it ends; it leaves the one before along
+//! its tangent. Equations –(A-13) are one rule in the form used here: the new centre lies on the normal of
+//! the joint.
+
+use super::{Arc, Half, Segment, Station};
+use crate::error::{Error, Result};
+
+/// A chain under construction.
+#[derive(Debug, Clone, Default)]
+pub struct Builder {
+    point: Option<[f64; 2]>,
+    segments: Vec<Segment>,
+}
+
+impl Builder {
+    /// An empty chain.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// An empty chain whose first segment, a line, starts at this point \[mm\].
+    pub fn starting_at(point: [f64; 2]) -> Self {
+        Self { point: Some(point), segments: Vec::new() }
+    }
+
+    /// Appends a segment that is fully given.
+    pub fn push(&mut self, segment: Segment) {
+        self.segments.push(segment);
+    }
+
+    /// A line to abscissa `to_x`: of the given slope, or along the tangent of the segment before, (A-12).
+    ///
+    /// # Errors
+    /// No beginning or no slope to go on from; `to_x` not beyond the beginning.
+    pub fn line_to(&mut self, slope: Option<f64>, to_x: f64) -> Result<()> {
+        let last = self.segments.last().map(Segment::end);
+        let start = match (slope, last, self.point) {
+            (None, Some(end), _) => end,
+            (Some(slope), Some(end), _) => along(slope, [end.x, end.z]),
+            (Some(slope), None, Some(point)) => along(slope, point),
+            (_, None, None) => return Err(nothing_before("a line given by its slope")),
+            (None, None, Some(_)) => {
+                return Err(Error::new("line", "no slope", "`slope`, for the first segment", "give it"));
+            }
+        };
+        self.segments.push(Segment::arc(Arc::tangent_at(start, f64::INFINITY, to_x)?));
+        Ok(())
+    }
+
+    /// An arc to abscissa `to_x`, smooth with the segment before, (A-4) after a line, (A-8), (A-9) after
+    /// an arc.
+    ///
+    /// # Errors
+    /// No segment to go on from; a radius that is not positive; `to_x` that the arc does not reach.
+    pub fn arc_to(&mut self, radius: f64, half: Half, to_x: f64) -> Result<()> {
+        let Some(start) = self.segments.last().map(Segment::end) else {
+            return Err(nothing_before("an arc given by its radius and end"));
+        };
+        if radius.is_nan() || radius <= 0.0 || radius.is_infinite() {
+            let advice = "give the half of the circle by `half`";
+            return Err(Error::new("arc: radius", radius.to_string(), "a positive number", advice));
+        }
+        let signed = if half == Half::Upper { -radius } else { radius };
+        self.segments.push(Segment::arc(Arc::tangent_at(start, signed, to_x)?));
+        Ok(())
+    }
+
+    /// The chain.
+    pub fn finish(self) -> Vec<Segment> {
+        self.segments
+    }
+}
+
+fn along(slope: f64, [x, z]: [f64; 2]) -> Station {
+    let norm = slope.hypot(1.0);
+    Station { x, z, cos: norm.recip(), sin: slope / norm }
+}
+
+fn nothing_before(found: &str) -> Error {
+    let expected = "a segment before it, or `start = [x, z]` and a line with its `slope`";
+    Error::new("first segment", found, expected, "give the first segment in full")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn centre_of_last(builder: &Builder) -> [f64; 2] {
+        match builder.segments.last().map(|s| &s.shape) {
+            Some(super::super::Shape::Arc(arc)) => arc.centre().unwrap_or([f64::NAN; 2]),
+            _ => [f64::NAN; 2],
+        }
+    }
+
+    fn assert_near(found: [f64; 2], expected: [f64; 2]) {
+        for k in 0..2 {
+            assert!((found[k] - expected[k]).abs() < 2e-13, "{found:?} is not {expected:?}");
+        }
+    }
+
+    #[test]
+    fn line_to_arc_follows_a3_and_a4() -> Result<()> {
+        let (slope, x, radius) = (0.35, 12.0, 80.0);
+        let mut builder = Builder::starting_at([-3.0, 1.0]);
+        builder.line_to(Some(slope), x)?;
+        builder.arc_to(radius, Half::Upper, 30.0)?;
+        let z = 1.0 + slope * (x + 3.0);
+        let root = (1.0 + slope * slope).sqrt();
+        assert_near(centre_of_last(&builder), [x + slope / root * radius, z - radius / root]);
+        Ok(())
+    }
+
+    #[test]
+    fn arc_to_arc_follows_a8_to_a10() -> Result<()> {
+        let (centre, before, after, x): ([f64; 2], f64, f64, f64) = ([1.0, -300.0], 300.0, 80.0, 10.0);
+        let mut builder = Builder::new();
+        builder.push(Segment::arc(Arc::about(centre, before, Half::Upper, [-10.0, x])?));
+        builder.arc_to(after, Half::Upper, 26.0)?;
+        let z = centre[1] + (before * before - (x - centre[0]).powi(2)).sqrt();
+        let share = 1.0 - after / before;
+        let expected = [centre[0] + share * (x - centre[0]), centre[1] - share * (centre[1] - z)];
+        assert_near(centre_of_last(&builder), expected);
+        Ok(())
+    }
+
+    #[test]
+    fn arc_to_line_follows_a11_to_a13() -> Result<()> {
+        let (centre, radius, x): ([f64; 2], f64, f64) = ([0.0, -13.0], 13.0, 9.0);
+        let mut builder = Builder::new();
+        builder.push(Segment::arc(Arc::about(centre, radius, Half::Upper, [0.0, x])?));
+        builder.line_to(None, 12.0)?;
+        let z = centre[1] + (radius * radius - (x - centre[0]).powi(2)).sqrt();
+        let slope = -(x - centre[0]) / (z - centre[1]);
+        let end = builder.finish().last().map(Segment::end);
+        let expected = z - slope * x + slope * 12.0;
+        assert!(
+            end.is_some_and(
+                |end| (end.z - expected).abs() < 1e-13 && (end.sin / end.cos - slope).abs() < 1e-14
+            )
+        );
+        Ok(())
+    }
+
+    #[test]
+    fn nothing_to_go_on_from_is_an_error() {
+        assert!(Builder::new().line_to(Some(0.0), 1.0).is_err());
+        assert!(Builder::new().arc_to(1.0, Half::Upper, 1.0).is_err());
+        assert!(Builder::starting_at([0.0, 0.0]).line_to(None, 1.0).is_err());
+    }
+}

@@ -1,0 +1,156 @@
+//! Segments as scenes and data files write them.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::builder::Builder;
+use super::{Arc, Half, Polynomial, Profile, Segment, Shape};
+use crate::error::{Error, Result};
+
+/// One segment of a chain: exactly one of `line`, `arc`, `polynomial`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SegmentData {
+    /// The drawing's name for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub label: Option<String>,
+    /// A straight line.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub line: Option<LineData>,
+    /// A circular arc.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub arc: Option<ArcData>,
+    /// A polynomial z(x).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub polynomial: Option<PolynomialData>,
+}
+
+/// A line: `from` and `to`, or `to_x` with `slope` (Appendix A).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LineData {
+    /// First point [x, z], mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<[f64; 2]>,
+    /// Last point [x, z], mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub to: Option<[f64; 2]>,
+    /// dz/dx; without it the line leaves the segment before along its tangent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub slope: Option<f64>,
+    /// Abscissa of the end, mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub to_x: Option<f64>,
+}
+
+/// An arc: `center` and `x`, or `to_x` (Appendix A).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ArcData {
+    /// Centre [a, b], mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub center: Option<[f64; 2]>,
+    /// Radius, mm, positive.
+    pub radius: f64,
+    /// Which half of the circle.
+    pub half: HalfData,
+    /// Abscissae [x0, x1] of the ends, mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub x: Option<[f64; 2]>,
+    /// Abscissa of the end, mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub to_x: Option<f64>,
+}
+
+/// Half of a circle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum HalfData {
+    /// Bulges up.
+    Upper,
+    /// Bulges down.
+    Lower,
+}
+
+/// z = Σ c_k x^k over [x0, x1], mm.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PolynomialData {
+    /// Abscissae [x0, x1] of the ends, mm.
+    pub x: [f64; 2],
+    /// c0, c1, …
+    pub coefficients: Vec<f64>,
+}
+
+/// The chain of segments; `start` is the first point of a chain that begins in the form of Appendix A.
+///
+/// # Errors
+/// Names the segment and what is wrong with it; steps between segments as in [`Profile::new`].
+pub fn chain(name: &str, source: &str, start: Option<[f64; 2]>, data: &[SegmentData]) -> Result<Profile> {
+    let mut builder = start.map_or_else(Builder::new, Builder::starting_at);
+    let mut labels = Vec::with_capacity(data.len());
+    for (index, segment) in data.iter().enumerate() {
+        let label = segment.label.clone().unwrap_or_default();
+        append(&mut builder, segment).map_err(|error| {
+            let name = if label.is_empty() { String::new() } else { format!(" ({label})") };
+            error.within(format!("segment {}{name}", index + 1))
+        })?;
+        labels.push(label);
+    }
+    let mut segments = builder.finish();
+    for (segment, label) in segments.iter_mut().zip(labels) {
+        segment.label = label;
+    }
+    Profile::new(name, source, segments)
+}
+
+fn append(builder: &mut Builder, data: &SegmentData) -> Result<()> {
+    let plain = |shape| Segment { label: String::new(), shape };
+    match (&data.line, &data.arc, &data.polynomial) {
+        (Some(LineData { from: Some(from), to: Some(to), slope: None, to_x: None }), None, None) => {
+            let line = Arc::line(*from, *to)?;
+            if from[0] > to[0] {
+                let found = format!("from x = {} to x = {}", from[0], to[0]);
+                return Err(Error::new("line", found, "points in order of x", "swap them"));
+            }
+            builder.push(plain(Shape::Arc(line)));
+            Ok(())
+        }
+        (Some(LineData { from: None, to: None, slope, to_x: Some(to_x) }), None, None) => {
+            builder.line_to(*slope, *to_x)
+        }
+        (Some(_), None, None) => {
+            let expected = "either `from` and `to`, or `to_x` and perhaps `slope`";
+            Err(Error::new("line", "another set of keys", expected, "give one of the two forms"))
+        }
+        (None, Some(ArcData { center: Some(center), radius, half, x: Some(x), to_x: None }), None) => {
+            builder.push(plain(Shape::Arc(Arc::about(*center, *radius, (*half).into(), *x)?)));
+            Ok(())
+        }
+        (None, Some(ArcData { center: None, radius, half, x: None, to_x: Some(to_x) }), None) => {
+            builder.arc_to(*radius, (*half).into(), *to_x)
+        }
+        (None, Some(_), None) => {
+            let expected = "either `center` and `x`, or `to_x`, with `radius` and `half`";
+            Err(Error::new("arc", "another set of keys", expected, "give one of the two forms"))
+        }
+        (None, None, Some(polynomial)) => {
+            let graph = Polynomial::graph(&polynomial.coefficients, polynomial.x)?;
+            builder.push(plain(Shape::Polynomial(graph)));
+            Ok(())
+        }
+        _ => {
+            let expected = "exactly one of `line`, `arc`, `polynomial`";
+            Err(Error::new("", "none or several shapes", expected, "split the segment"))
+        }
+    }
+}
+
+impl From<HalfData> for Half {
+    fn from(half: HalfData) -> Self {
+        match half {
+            HalfData::Upper => Self::Upper,
+            HalfData::Lower => Self::Lower,
+        }
+    }
+}

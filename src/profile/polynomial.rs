@@ -1,0 +1,140 @@
+//! Polynomial segments: the zones of a standard such as S1002, and the spans of a parametric spline.
+
+use twofloat::TwoFloat;
+
+use super::Station;
+use crate::error::{Error, Result, finite};
+use crate::numerics::polynomial::{recentred, slope_twofloat, value_twofloat};
+
+/// A curve (x(t), z(t)) with polynomial coordinates, kept in twice the working precision about a point of
+/// its own: a standard's power form about x = 0 cancels from thousands of mm.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Polynomial {
+    /// Parameter range, ascending \[mm or the spline's unit\].
+    pub t: [f64; 2],
+    /// Coefficients of x(t) \[mm\].
+    pub x: Vec<TwoFloat>,
+    /// Coefficients of z(t) \[mm\].
+    pub z: Vec<TwoFloat>,
+}
+
+impl Polynomial {
+    /// z = Σ c_k x^k between two abscissae, as standards print it.
+    ///
+    /// # Errors
+    /// No coefficient, values that are not finite, abscissae out of order.
+    pub fn graph(c: &[f64], x: [f64; 2]) -> Result<Self> {
+        for &v in c.iter().chain(&x) {
+            finite("polynomial", v)?;
+        }
+        if c.is_empty() || x[0] >= x[1] {
+            let found = format!("{} coefficients over [{}, {}]", c.len(), x[0], x[1]);
+            let expected = "coefficients [c0, c1, …] and x = [x0, x1] with x0 < x1";
+            return Err(Error::new("polynomial", found, expected, "correct the segment"));
+        }
+        let middle = x[0] + (x[1] - x[0]) / 2.0;
+        let exact: Vec<TwoFloat> = c.iter().map(|&c| c.into()).collect();
+        Ok(Self {
+            t: x.map(|x| x - middle),
+            x: vec![middle.into(), 1.0.into()],
+            z: recentred(&exact, middle.into()),
+        })
+    }
+
+    /// One span of a parametric spline: x = Σ x_k t^k, z = Σ z_k t^k over `t`.
+    ///
+    /// # Errors
+    /// Values that are not finite, a parameter range out of order, or x falling anywhere at the ends.
+    pub fn span(x: &[f64], z: &[f64], t: [f64; 2]) -> Result<Self> {
+        for &v in x.iter().chain(z).chain(&t) {
+            finite("spline span", v)?;
+        }
+        if x.len() < 2 || z.is_empty() || t[0] >= t[1] {
+            return Err(Error::new("spline span", "too few coefficients", "x, z and t0 < t1", "refit"));
+        }
+        let exact = |c: &[f64]| c.iter().map(|&c| c.into()).collect();
+        Ok(Self { t, x: exact(x), z: exact(z) })
+    }
+
+    /// The station at parameter t.
+    pub fn station(&self, t: f64) -> Station {
+        let t = TwoFloat::from(t);
+        let (dx, dz) = (f64::from(slope_twofloat(&self.x, t)), f64::from(slope_twofloat(&self.z, t)));
+        let norm = dx.hypot(dz);
+        Station {
+            x: value_twofloat(&self.x, t).into(),
+            z: value_twofloat(&self.z, t).into(),
+            cos: dx / norm,
+            sin: dz / norm,
+        }
+    }
+
+    /// Curvature \[1/mm\] at t, positive where the curve turns counter-clockwise.
+    pub fn curvature(&self, t: f64) -> f64 {
+        let about = |c: &[TwoFloat]| {
+            let c = recentred(c, t.into());
+            [1, 2].map(|k| c.get(k).map_or(0.0, |&c| f64::from(c)))
+        };
+        let ([dx, hx], [dz, hz]) = (about(&self.x), about(&self.z));
+        2.0 * (dx * hz - dz * hx) / dx.hypot(dz).powi(3)
+    }
+
+    pub(super) fn mirrored(&self) -> Self {
+        let flip = |c: &[TwoFloat], sign: f64| {
+            c.iter().enumerate().map(|(k, &c)| c * if k % 2 == 1 { -sign } else { sign }).collect()
+        };
+        Self { t: [-self.t[1], -self.t[0]], x: flip(&self.x, -1.0), z: flip(&self.z, 1.0) }
+    }
+
+    pub(super) fn placed_by(&self, frame: &Station) -> Self {
+        let n = self.x.len().max(self.z.len());
+        let get = |c: &[TwoFloat], k: usize| c.get(k).copied().unwrap_or(TwoFloat::from(0.0));
+        let turn = |along: f64, across: f64, x: bool| {
+            let mut c: Vec<TwoFloat> = (0..n)
+                .map(|k| {
+                    if x {
+                        get(&self.x, k) * along - get(&self.z, k) * across
+                    } else {
+                        get(&self.x, k) * across + get(&self.z, k) * along
+                    }
+                })
+                .collect();
+            c[0] = c[0] + if x { frame.x } else { frame.z };
+            c
+        };
+        Self { t: self.t, x: turn(frame.cos, frame.sin, true), z: turn(frame.cos, frame.sin, false) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_s1002_throat_keeps_its_digits() -> Result<()> {
+        let c = [
+            4320.221063,
+            1038.384026,
+            106.5501873,
+            6.051367875,
+            0.2054332446,
+            0.004169739389,
+            4.687195829e-05,
+            2.25275554e-07,
+        ];
+        let throat = Polynomial::graph(&c, [-35.0, -26.0])?;
+        // 60-digit value of the same binary coefficients at x = −35.
+        assert_eq!(throat.station(throat.t[0]).z, -6.867_385_429_697_391);
+        Ok(())
+    }
+
+    #[test]
+    fn curvature_of_a_parabola() -> Result<()> {
+        let parabola = Polynomial::graph(&[0.0, 0.0, 0.5], [-1.0, 3.0])?;
+        assert!((parabola.curvature(-1.0) - 1.0).abs() < 1e-15);
+        let turned = parabola.placed_by(&Station { x: 5.0, z: 1.0, cos: 0.6, sin: 0.8 });
+        assert!((turned.curvature(-1.0) - 1.0).abs() < 1e-15);
+        assert!((parabola.mirrored().curvature(1.0) - 1.0).abs() < 1e-15);
+        Ok(())
+    }
+}

@@ -1,0 +1,421 @@
+//! One segment, or the part of it that faces the other body, as a function ζ(ξ).
+
+use twofloat::TwoFloat;
+
+use super::super::arc::cosine;
+use super::super::{Arc, Polynomial, Station};
+use crate::numerics::polynomial::{
+    derivative, derivatives, divided_difference, range, recentred, slope_twofloat, value, value_twofloat,
+};
+use crate::numerics::roots::bracketed;
+
+/// A branch ζ(ξ) over a closed interval of ξ.
+#[derive(Debug, Clone)]
+pub struct Branch {
+    /// Its interval of ξ \[mm\].
+    pub xi: [f64; 2],
+    /// Index of the segment it belongs to; of the right neighbour for a bridged step.
+    pub segment: usize,
+    /// Its shape.
+    pub shape: BranchShape,
+    pub(super) begins_segment: bool,
+    pub(super) ends_segment: bool,
+    kind: Kind,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Contact,
+    Plain,
+    Bridge,
+}
+
+/// The two shapes of [`super::super::Shape`], transformed.
+#[derive(Debug, Clone)]
+pub enum BranchShape {
+    /// Line or arc.
+    Arc(ArcBranch),
+    /// Polynomial.
+    Polynomial(Box<PolynomialBranch>),
+}
+
+/// ζ = ζ_a + Δξ (S_a + S)/(C_a + C) with S = S_a + κΔξ, C = √(1 − S²): the slope of a chord is the tangent
+/// of its mean angle. Nothing cancels, for any radius, lines included.
+#[derive(Debug, Clone, Copy)]
+pub struct ArcBranch {
+    /// Anchor (ξ_a, ζ_a): the contact point, or where the branch is flattest.
+    pub anchor: [f64; 2],
+    /// S_a, sine of the tangent angle at the anchor.
+    pub sin: f64,
+    /// C_a, its cosine.
+    pub cos: f64,
+    /// Signed radius \[mm\].
+    pub radius: f64,
+    /// κ = 1/radius \[1/mm\].
+    pub curvature: f64,
+}
+
+/// (ξ(t), ζ(t)) with t = 0 at the contact point where there is one: ζ then has neither constant nor linear
+/// term, and keeps its relative accuracy down to C.
+#[derive(Debug, Clone)]
+pub struct PolynomialBranch {
+    /// Coefficients of ξ(t).
+    pub xi: Vec<f64>,
+    /// Coefficients of ζ(t).
+    pub zeta: Vec<f64>,
+    /// Parameter range, ξ ascending with t.
+    pub t: [f64; 2],
+    ends: [f64; 2],
+    exact: [Vec<TwoFloat>; 2],
+}
+
+impl ArcBranch {
+    /// (S, C) at ξ.
+    #[inline]
+    pub fn sine_cosine(&self, xi: f64) -> (f64, f64) {
+        let sin = self.sin + self.curvature * (xi - self.anchor[0]);
+        (sin, cosine(sin))
+    }
+
+    /// ζ(ξ).
+    #[inline]
+    pub fn height(&self, xi: f64) -> f64 {
+        let run = xi - self.anchor[0];
+        let (sin, cos) = self.sine_cosine(xi);
+        self.anchor[1] + run * ((self.sin + sin) / (self.cos + cos))
+    }
+
+    /// Slope of the chord between two abscissae; the tangent's where they are equal.
+    #[inline]
+    pub fn chord_slope(&self, a: f64, b: f64) -> f64 {
+        let ((sin_a, cos_a), (sin_b, cos_b)) = (self.sine_cosine(a), self.sine_cosine(b));
+        (sin_a + sin_b) / (cos_a + cos_b)
+    }
+}
+
+impl PolynomialBranch {
+    /// t with ξ(t) = ξ, by Newton steps inside a shrinking bracket.
+    pub fn parameter(&self, xi: f64) -> f64 {
+        let [mut low, mut high] = self.t;
+        let share = (xi - self.ends[0]) / (self.ends[1] - self.ends[0]);
+        let mut t = low + (high - low) * share.clamp(0.0, 1.0);
+        // Newton's steps fall below rounding within 6 on any branch that is not vertical.
+        for _ in 0..60 {
+            let [p, slope, _] = derivatives(&self.xi, t);
+            let miss = p - xi;
+            if miss == 0.0 {
+                return t;
+            }
+            if miss > 0.0 {
+                high = t
+            } else {
+                low = t
+            }
+            let newton = t - miss / slope;
+            let next = if newton >= low && newton <= high { newton } else { low + (high - low) / 2.0 };
+            let step = (next - t).abs();
+            t = next;
+            if step <= 2.0 * f64::EPSILON * t.abs() {
+                break;
+            }
+        }
+        t
+    }
+
+    /// The parameter in twice the working precision.
+    pub(super) fn exact_parameter(&self, xi: f64) -> TwoFloat {
+        let mut t = TwoFloat::from(self.parameter(xi));
+        for _ in 0..2 {
+            t = t - (value_twofloat(&self.exact[0], t) - xi) / slope_twofloat(&self.exact[0], t);
+        }
+        t
+    }
+
+    /// ζ(ξ) in twice the working precision.
+    pub fn exact_height(&self, xi: f64) -> TwoFloat {
+        value_twofloat(&self.exact[1], self.exact_parameter(xi))
+    }
+}
+
+impl Branch {
+    /// The part of an arc that faces the other body: where the tangent points to larger ξ.
+    pub(super) fn of_arc(segment: usize, arc: &Arc, frame: &Station, contact: bool) -> Option<Self> {
+        let (start, end) = (arc.start.seen_from(frame), arc.end.seen_from(frame));
+        let (begins, ends) = (start.cos >= 0.0, end.cos >= 0.0);
+        if !begins && !ends {
+            return None;
+        }
+        let quarter = 1f64.copysign(arc.radius);
+        let sines = [if begins { start.sin } else { -quarter }, if ends { end.sin } else { quarter }];
+        let known = if begins { start } else { end };
+        let abscissa = |sin: f64| known.x + (sin - known.sin) * arc.radius;
+        let xi = [
+            if begins { start.x } else { abscissa(sines[0]) },
+            if ends { end.x } else { abscissa(sines[1]) },
+        ];
+        if xi[0] >= xi[1] {
+            return None;
+        }
+        let curvature = arc.curvature();
+        let shape = if contact {
+            ArcBranch { anchor: [0.0; 2], sin: 0.0, cos: 1.0, radius: arc.radius, curvature }
+        } else {
+            let sin = flattest(sines);
+            let cos = if sin == start.sin {
+                start.cos
+            } else if sin == end.sin {
+                end.cos
+            } else {
+                cosine(sin)
+            };
+            let run = if curvature == 0.0 || sin == known.sin { 0.0 } else { (sin - known.sin) * arc.radius };
+            let rise = run * ((known.sin + sin) / (known.cos + cos));
+            ArcBranch { anchor: [known.x + run, known.z + rise], sin, cos, radius: arc.radius, curvature }
+        };
+        let kind = if contact { Kind::Contact } else { Kind::Plain };
+        let shape = BranchShape::Arc(shape);
+        Some(Self { xi, segment, shape, begins_segment: begins, ends_segment: ends, kind })
+    }
+
+    /// The straight line over the step of a drawing.
+    pub(super) fn bridge(segment: usize, from: &Station, to: &Station) -> Option<Self> {
+        let line = super::step(from, to)?;
+        let branch = Self::of_arc(segment, &line, &Station::AXES, false)?;
+        Some(Self { kind: Kind::Bridge, begins_segment: false, ends_segment: false, ..branch })
+    }
+
+    /// The parts of a polynomial segment that face the other body; `contact` is the contact point's parameter.
+    pub(super) fn of_polynomial(
+        segment: usize,
+        polynomial: &Polynomial,
+        frame: &Station,
+        contact: Option<TwoFloat>,
+    ) -> Vec<Self> {
+        let [xi, zeta, t] = match contact {
+            Some(origin) => polynomial.seen_from_own_point(origin),
+            None => polynomial.seen_from(frame),
+        };
+        let range_t = [f64::from(t[0]), f64::from(t[1])];
+        let plain = |c: &[TwoFloat]| -> Vec<f64> { c.iter().map(|&c| c.into()).collect() };
+        let (xi_plain, zeta_plain) = (plain(&xi), plain(&zeta));
+        let kind = if contact.is_some() { Kind::Contact } else { Kind::Plain };
+        rising_intervals(&derivative(&xi_plain), range_t)
+            .into_iter()
+            .filter(|[a, b]| kind == Kind::Plain || (*a <= 0.0 && *b >= 0.0))
+            .map(|part| {
+                let ends = part.map(|t| value(&xi_plain, t));
+                let shape = PolynomialBranch {
+                    xi: xi_plain.clone(),
+                    zeta: zeta_plain.clone(),
+                    t: part,
+                    ends,
+                    exact: [xi.clone(), zeta.clone()],
+                };
+                let shape = BranchShape::Polynomial(Box::new(shape));
+                let (begins_segment, ends_segment) = (part[0] == range_t[0], part[1] == range_t[1]);
+                Self { xi: ends, segment, shape, begins_segment, ends_segment, kind }
+            })
+            .collect()
+    }
+
+    pub(super) fn is_contact(&self, segment: usize) -> bool {
+        self.kind == Kind::Contact && self.segment == segment
+    }
+
+    /// Whether it stands for the step of a drawing.
+    pub fn is_bridge(&self) -> bool {
+        self.kind == Kind::Bridge
+    }
+
+    /// ζ(ξ) \[mm\].
+    #[inline]
+    pub fn height(&self, xi: f64) -> f64 {
+        match &self.shape {
+            BranchShape::Arc(arc) => arc.height(xi),
+            BranchShape::Polynomial(p) => value(&p.zeta, p.parameter(xi)),
+        }
+    }
+
+    /// (ζ(b) − ζ(a))/(b − a), the slope ζ′(a) for a = b; nothing cancels.
+    #[inline]
+    pub fn chord_slope(&self, a: f64, b: f64) -> f64 {
+        match &self.shape {
+            BranchShape::Arc(arc) => arc.chord_slope(a, b),
+            BranchShape::Polynomial(p) => {
+                let (a, b) = (p.parameter(a), p.parameter(b));
+                divided_difference(&p.zeta, a, b) / divided_difference(&p.xi, a, b)
+            }
+        }
+    }
+
+    /// The point at ξ with its unit tangent, in the frame.
+    pub fn station(&self, xi: f64) -> Station {
+        match &self.shape {
+            BranchShape::Arc(arc) => {
+                let (sin, cos) = arc.sine_cosine(xi);
+                Station { x: xi, z: arc.height(xi), cos, sin }
+            }
+            BranchShape::Polynomial(p) => {
+                let t = p.parameter(xi);
+                let ([_, dx, _], [z, dz, _]) = (derivatives(&p.xi, t), derivatives(&p.zeta, t));
+                let norm = dx.hypot(dz);
+                Station { x: xi, z, cos: dx / norm, sin: dz / norm }
+            }
+        }
+    }
+
+    /// Curvature \[1/mm\] at ξ, positive where hollow side up.
+    pub fn curvature(&self, xi: f64) -> f64 {
+        match &self.shape {
+            BranchShape::Arc(arc) => arc.curvature,
+            BranchShape::Polynomial(p) => {
+                let t = p.parameter(xi);
+                let ([_, dx, hx], [_, dz, hz]) = (derivatives(&p.xi, t), derivatives(&p.zeta, t));
+                (dx * hz - dz * hx) / dx.hypot(dz).powi(3)
+            }
+        }
+    }
+
+    /// Bounds of ζ′ and ζ″ over \[a, b\], for searches that must not miss a minimum. Infinite where the branch
+    /// is vertical.
+    pub fn derivative_bounds(&self, a: f64, b: f64) -> [[f64; 2]; 2] {
+        match &self.shape {
+            BranchShape::Arc(arc) => {
+                let ((sin_a, cos_a), (sin_b, cos_b)) = (arc.sine_cosine(a), arc.sine_cosine(b));
+                // The flattest point bounds ζ″ = κ/C³ from one side, the steeper end from the other.
+                let flat = cosine(flattest([sin_a, sin_b]));
+                let steep = cos_a.min(cos_b);
+                let second = [arc.curvature / flat.powi(3), arc.curvature / steep.powi(3)];
+                [ordered(sin_a / cos_a, sin_b / cos_b), ordered(second[0], second[1])]
+            }
+            BranchShape::Polynomial(p) => p.derivative_bounds(a, b),
+        }
+    }
+}
+
+impl PolynomialBranch {
+    fn derivative_bounds(&self, a: f64, b: f64) -> [[f64; 2]; 2] {
+        let (a, b) = (self.parameter(a), self.parameter(b));
+        let (dx, dz) = (derivative(&self.xi), derivative(&self.zeta));
+        let run = range(&dx, a, b);
+        if run[0] <= 0.0 {
+            return [[f64::NEG_INFINITY, f64::INFINITY]; 2];
+        }
+        let rise = range(&dz, a, b);
+        let slope = quotient(rise, run);
+        let turn = add(
+            product(range(&derivative(&dz), a, b), run),
+            product(range(&derivative(&dx), a, b), rise).map(|v| -v),
+        );
+        [slope, quotient(turn, [run[0].powi(3), run[1].powi(3)])]
+    }
+}
+
+fn ordered(a: f64, b: f64) -> [f64; 2] {
+    if a <= b { [a, b] } else { [b, a] }
+}
+
+fn product(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    let all = [a[0] * b[0], a[0] * b[1], a[1] * b[0], a[1] * b[1]];
+    [all.into_iter().fold(f64::INFINITY, f64::min), all.into_iter().fold(f64::NEG_INFINITY, f64::max)]
+}
+
+/// Quotient by a positive interval.
+fn quotient(a: [f64; 2], positive: [f64; 2]) -> [f64; 2] {
+    product(a, [positive[1].recip(), positive[0].recip()])
+}
+
+/// a + b, where b may come with its ends swapped by a change of sign.
+fn add(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    let b = ordered(b[0], b[1]);
+    [a[0] + b[0], a[1] + b[1]]
+}
+
+/// The sine of smallest size between two.
+fn flattest([a, b]: [f64; 2]) -> f64 {
+    if a * b <= 0.0 {
+        0.0
+    } else if a.abs() <= b.abs() {
+        a
+    } else {
+        b
+    }
+}
+
+/// The parts of \[t0, t1\] where the polynomial `slope` is positive, by bisection down to 2⁻⁴⁰ of the range.
+fn rising_intervals(slope: &[f64], [t0, t1]: [f64; 2]) -> Vec<[f64; 2]> {
+    let mut parts = Vec::new();
+    let mut cuts = vec![t0];
+    sign_changes(slope, t0, t1, 40, &mut cuts);
+    cuts.push(t1);
+    for pair in cuts.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
+        if b > a && value(slope, a + (b - a) / 2.0) > 0.0 {
+            parts.push([a, b]);
+        }
+    }
+    parts
+}
+
+fn sign_changes(c: &[f64], a: f64, b: f64, depth: u32, out: &mut Vec<f64>) {
+    let [low, high] = range(c, a, b);
+    if low > 0.0 || high < 0.0 || depth == 0 {
+        return;
+    }
+    let monotone = range(&derivative(c), a, b);
+    if monotone[0] > 0.0 || monotone[1] < 0.0 {
+        out.extend(bracketed(|t| value(c, t), a, b).filter(|&t| t > a && t < b));
+        return;
+    }
+    let middle = a + (b - a) / 2.0;
+    sign_changes(c, a, middle, depth - 1, out);
+    if value(c, middle) == 0.0 {
+        out.push(middle);
+    }
+    sign_changes(c, middle, b, depth - 1, out);
+}
+
+impl Polynomial {
+    /// Coefficients of ξ and ζ and the parameter range, seen from a frame.
+    fn seen_from(&self, frame: &Station) -> [Vec<TwoFloat>; 3] {
+        let (mut x, mut z) = (self.x.clone(), self.z.clone());
+        (x[0], z[0]) = (x[0] - frame.x, z[0] - frame.z);
+        let [xi, zeta] = turned(&x, &z, frame.cos.into(), frame.sin.into());
+        [xi, zeta, self.t.map(TwoFloat::from).to_vec()]
+    }
+
+    /// The same seen from the contact frame of its own point t = `origin`, which becomes t = 0; ζ has neither
+    /// constant nor linear term, exactly.
+    fn seen_from_own_point(&self, origin: TwoFloat) -> [Vec<TwoFloat>; 3] {
+        let zero = TwoFloat::from(0.0);
+        let (mut x, mut z) = (recentred(&self.x, origin), recentred(&self.z, origin));
+        z.resize(z.len().max(2), zero);
+        (x[0], z[0]) = (zero, zero);
+        let norm = (x[1] * x[1] + z[1] * z[1]).sqrt();
+        let [xi, mut zeta] = turned(&x, &z, x[1] / norm, z[1] / norm);
+        zeta[1] = zero;
+        [xi, zeta, self.t.map(|t| TwoFloat::from(t) - origin).to_vec()]
+    }
+
+    /// The station at a parameter in twice the working precision.
+    pub(super) fn station_at(&self, t: TwoFloat) -> Station {
+        let (dx, dz) = (slope_twofloat(&self.x, t), slope_twofloat(&self.z, t));
+        let norm = (dx * dx + dz * dz).sqrt();
+        Station {
+            x: value_twofloat(&self.x, t).into(),
+            z: value_twofloat(&self.z, t).into(),
+            cos: (dx / norm).into(),
+            sin: (dz / norm).into(),
+        }
+    }
+}
+
+/// (x, z) → (x cos + z sin, z cos − x sin), coefficient by coefficient.
+fn turned(x: &[TwoFloat], z: &[TwoFloat], cos: TwoFloat, sin: TwoFloat) -> [Vec<TwoFloat>; 2] {
+    let get = |c: &[TwoFloat], k: usize| c.get(k).copied().unwrap_or(TwoFloat::from(0.0));
+    let n = x.len().max(z.len());
+    [
+        (0..n).map(|k| get(x, k) * cos + get(z, k) * sin).collect(),
+        (0..n).map(|k| get(z, k) * cos - get(x, k) * sin).collect(),
+    ]
+}

@@ -1,0 +1,66 @@
+//! Which branch is the outer one at each ξ.
+
+use super::{Branch, Side};
+use crate::numerics::roots::bracketed;
+
+/// A closed interval of ξ over which one branch is the outer one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Piece {
+    /// The interval \[mm\].
+    pub xi: [f64; 2],
+    /// Index of the branch.
+    pub branch: usize,
+}
+
+/// The outer envelope of all branches, in order of ξ.
+pub(super) fn pieces(branches: &[Branch], side: Side) -> Vec<Piece> {
+    let mut ends: Vec<f64> = branches.iter().flat_map(|b| b.xi).collect();
+    ends.sort_by(f64::total_cmp);
+    ends.dedup();
+    let mut order: Vec<usize> = (0..branches.len()).collect();
+    order.sort_by(|&a, &b| branches[a].xi[0].total_cmp(&branches[b].xi[0]));
+    let mut waiting = order.into_iter().peekable();
+    let mut active: Vec<usize> = Vec::new();
+    let mut out: Vec<Piece> = Vec::new();
+    for pair in ends.windows(2) {
+        let interval = [pair[0], pair[1]];
+        while let Some(&next) = waiting.peek().filter(|&&b| branches[b].xi[0] <= interval[0]) {
+            active.push(next);
+            waiting.next();
+        }
+        active.retain(|&b| branches[b].xi[1] >= interval[1]);
+        outermost(branches, &active, interval, side, &mut out);
+    }
+    out
+}
+
+/// Splits one interval, which every active branch spans, where the outer branch changes.
+fn outermost(branches: &[Branch], active: &[usize], [a, b]: [f64; 2], side: Side, out: &mut Vec<Piece>) {
+    let outer = |xi: f64| {
+        active.iter().copied().min_by(|&i, &j| {
+            let order = branches[i].height(xi).total_cmp(&branches[j].height(xi));
+            if side == Side::Wheel { order } else { order.reverse() }
+        })
+    };
+    let (Some(first), Some(last)) = (outer(a), outer(b)) else { return };
+    let middle = a + (b - a) / 2.0;
+    if active.len() == 1 || middle <= a || middle >= b {
+        return push(out, [a, b], first);
+    }
+    if first == last {
+        return push(out, [a, b], outer(middle).unwrap_or(first));
+    }
+    let difference = |xi: f64| branches[first].height(xi) - branches[last].height(xi);
+    let cut = bracketed(difference, a, b).unwrap_or(middle);
+    push(out, [a, cut], first);
+    push(out, [cut, b], last);
+}
+
+/// Appends an interval, or extends the last piece by it.
+fn push(out: &mut Vec<Piece>, xi: [f64; 2], branch: usize) {
+    match out.last_mut() {
+        Some(last) if last.branch == branch && last.xi[1] == xi[0] => last.xi[1] = xi[1],
+        _ if xi[0] < xi[1] => out.push(Piece { xi, branch }),
+        _ => {}
+    }
+}

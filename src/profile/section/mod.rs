@@ -1,0 +1,132 @@
+//! A profile seen from a frame: the transformed profile ζ(ξ) of Report (4.4)–(4.8).
+
+mod branch;
+mod envelope;
+
+pub use branch::{ArcBranch, Branch, BranchShape, PolynomialBranch};
+pub use envelope::Piece;
+
+use super::{Arc, Profile, Shape, Station};
+use twofloat::TwoFloat;
+
+/// Which body a profile bounds, and so which of several heights at one ξ is the outer one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Material below: the highest branch counts.
+    Rail,
+    /// Material above: the lowest branch counts.
+    Wheel,
+}
+
+/// The origin of a frame on a profile: eqs. (4.9)–(4.12).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ProfilePoint {
+    /// Where it is, with the unit tangent there.
+    pub station: Station,
+    /// Index of its segment. A joint belongs to both neighbours; here to the left one.
+    pub segment: usize,
+    /// Its parameter on a polynomial segment, 0 on an arc.
+    parameter: TwoFloat,
+}
+
+/// Part of the profile that faces the other body, as a function ζ(ξ) of the frame.
+///
+/// Everything is in the frame's axes: ξ along its tangent, ζ along its normal \[mm\]. Where the profile
+/// overhangs in ξ, the outer of the sheets that face the other body counts; where there is none the height is
+/// undefined. A step of a drawing at a joint is bridged by the straight line between the two ends.
+#[derive(Debug, Clone)]
+pub struct Section {
+    /// The frame in profile axes.
+    pub frame: Station,
+    /// All branches, in the order of the chain.
+    pub branches: Vec<Branch>,
+    /// Which branch is the outer one, over disjoint closed intervals of ascending ξ.
+    pub pieces: Vec<Piece>,
+    /// Index of the branch through the frame's origin, when the frame is that of a contact point.
+    pub contact: Option<usize>,
+}
+
+impl Section {
+    /// The profile in its own axes.
+    pub fn own_axes(profile: &Profile, side: Side) -> Self {
+        Self::build(profile, Station::AXES, None, side)
+    }
+
+    /// The profile in the contact frame of one of its points: origin there, ξ along the tangent.
+    pub fn at_contact(profile: &Profile, point: &ProfilePoint, side: Side) -> Self {
+        Self::build(profile, point.station, Some(point), side)
+    }
+
+    fn build(profile: &Profile, frame: Station, contact: Option<&ProfilePoint>, side: Side) -> Self {
+        let mut branches: Vec<Branch> = Vec::with_capacity(profile.segments().len());
+        // Ends closer than this are one joint, moved apart by rounding.
+        let rounding = 16.0 * f64::EPSILON * (profile.extent() + frame.x.abs() + frame.z.abs());
+        let mut last: Option<Station> = None;
+        for (index, segment) in profile.segments().iter().enumerate() {
+            let here = contact.filter(|point| point.segment == index);
+            let seen = match &segment.shape {
+                Shape::Arc(arc) => Branch::of_arc(index, arc, &frame, here.is_some()).into_iter().collect(),
+                Shape::Polynomial(p) => Branch::of_polynomial(index, p, &frame, here.map(|c| c.parameter)),
+            };
+            let start = segment.start().seen_from(&frame);
+            for mut branch in seen {
+                if let (Some(end), true) = (last, branch.begins_segment) {
+                    let gap = start.x - end.x;
+                    if gap > rounding {
+                        branches.extend(Branch::bridge(index, &end, &start));
+                    } else if gap > 0.0 {
+                        branch.xi[0] = end.x;
+                    }
+                }
+                last = None;
+                branches.push(branch);
+            }
+            if branches.last().is_some_and(|b| b.segment == index && b.ends_segment) {
+                last = Some(segment.end().seen_from(&frame));
+            }
+        }
+        let contact = contact.and_then(|point| branches.iter().position(|b| b.is_contact(point.segment)));
+        let pieces = envelope::pieces(&branches, side);
+        Self { frame, branches, pieces, contact }
+    }
+
+    /// The outer branch at ξ, or `None` where the body has no surface. At a joint the left one.
+    pub fn branch_at(&self, xi: f64) -> Option<&Branch> {
+        self.piece_at(xi).map(|piece| &self.branches[piece.branch])
+    }
+
+    /// The piece of the envelope that holds ξ.
+    pub fn piece_at(&self, xi: f64) -> Option<&Piece> {
+        let index = self.pieces.partition_point(|piece| piece.xi[1] < xi);
+        self.pieces.get(index).filter(|piece| piece.xi[0] <= xi)
+    }
+
+    /// ζ(ξ) of (4.5), or NaN where the body has no surface. Accurate to rounding at the size of ζ near the
+    /// origin of a contact frame, of the profile's extent elsewhere.
+    pub fn height(&self, xi: f64) -> f64 {
+        self.branch_at(xi).map_or(f64::NAN, |branch| branch.height(xi))
+    }
+
+    /// Smallest and largest ξ with a surface.
+    pub fn reach(&self) -> Option<[f64; 2]> {
+        Some([self.pieces.first()?.xi[0], self.pieces.last()?.xi[1]])
+    }
+
+    /// The point of the profile at abscissa x, for a section in the profile's own axes: (4.9)–(4.12).
+    pub fn point(&self, profile: &Profile, x: f64) -> Option<ProfilePoint> {
+        let branch = self.branch_at(x)?;
+        let (station, parameter) = match (&branch.shape, &profile.segments()[branch.segment].shape) {
+            (BranchShape::Polynomial(shape), Shape::Polynomial(polynomial)) => {
+                let t = shape.exact_parameter(x);
+                (polynomial.station_at(t), t)
+            }
+            _ => (branch.station(x), TwoFloat::from(0.0)),
+        };
+        Some(ProfilePoint { station: Station { x, ..station }, segment: branch.segment, parameter })
+    }
+}
+
+/// The arc of a straight step between two stations.
+fn step(from: &Station, to: &Station) -> Option<Arc> {
+    Arc::line([from.x, from.z], [to.x, to.z]).ok()
+}

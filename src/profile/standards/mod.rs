@@ -1,0 +1,191 @@
+//! Built-in rails and wheels, from the published numbers in `rails.json` and `wheels.json`.
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+use serde::Deserialize;
+
+use super::drawing::{self, SegmentData};
+use super::{Arc, Half, Profile, Segment};
+use crate::error::{Error, Result};
+
+#[derive(Debug, Deserialize)]
+struct RailFile {
+    rails: BTreeMap<String, RailData>,
+}
+
+#[derive(Debug, Deserialize)]
+struct WheelFile {
+    wheels: BTreeMap<String, WheelData>,
+}
+
+/// A rail head as EN 13674 draws it, from crown to corner and symmetric.
+#[derive(Debug, Clone, Deserialize)]
+pub struct RailData {
+    /// Radii from the crown outwards \[mm\].
+    pub crown_to_corner_radii: Vec<f64>,
+    /// |x| of the joints between them \[mm\].
+    pub tangent_x: Vec<f64>,
+    /// Flank inclination, 0 for vertical.
+    pub flank_dx_per_dz: f64,
+    /// Radius between flank and underside \[mm\].
+    pub lower_fillet_radius: f64,
+    /// The underside is z = `underside_apex_z` + |x|/this.
+    pub underside_1_to: f64,
+    /// Where the two undersides meet \[mm\].
+    pub underside_apex_z: f64,
+    /// Published numbers that the chain must reproduce.
+    pub check: RailCheck,
+    /// The standard.
+    pub source: String,
+}
+
+/// Published check values of a rail.
+#[derive(Debug, Clone, Deserialize)]
+pub struct RailCheck {
+    /// |x| where the corner arc meets the flank \[mm\].
+    pub half_width_at_flank_tangent: f64,
+    /// z there \[mm\].
+    pub z_at_flank_tangent: Option<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+struct WheelData {
+    source: String,
+    origin: String,
+    segments: Vec<SegmentData>,
+}
+
+// The two files are part of the program: the tests read every entry.
+static RAILS: LazyLock<BTreeMap<String, RailData>> = LazyLock::new(|| {
+    serde_json::from_str::<RailFile>(include_str!("rails.json")).map(|file| file.rails).unwrap_or_default()
+});
+static WHEELS: LazyLock<BTreeMap<String, WheelData>> = LazyLock::new(|| {
+    serde_json::from_str::<WheelFile>(include_str!("wheels.json")).map(|file| file.wheels).unwrap_or_default()
+});
+
+/// Names of the built-in rails, in alphabetical order.
+pub fn rail_names() -> impl Iterator<Item = &'static str> {
+    RAILS.keys().map(String::as_str)
+}
+
+/// Names of the built-in wheels, in alphabetical order.
+pub fn wheel_names() -> impl Iterator<Item = &'static str> {
+    WHEELS.keys().map(String::as_str)
+}
+
+/// The drawing data of a built-in rail.
+pub fn rail_data(name: &str) -> Option<&'static RailData> {
+    RAILS.get(name)
+}
+
+/// A built-in rail head: upright, symmetric, origin at the crown apex; with the flanks where they are inclined.
+///
+/// # Errors
+/// An unknown name, with the nearest known one.
+pub fn rail(name: &str) -> Result<Profile> {
+    let data = RAILS.get(name).ok_or_else(|| unknown(name, "rail", rail_names()))?;
+    head(name, data)
+}
+
+/// A built-in wheel: right-hand, flange at negative x, origin as its source says.
+///
+/// # Errors
+/// An unknown name, with the nearest known one.
+pub fn wheel(name: &str) -> Result<Profile> {
+    let data = WHEELS.get(name).ok_or_else(|| unknown(name, "wheel", wheel_names()))?;
+    drawing::chain(name, &format!("{}; origin: {}", data.source, data.origin), None, &data.segments)
+}
+
+/// Crown, then arcs smooth with each other down to the flank tangent, then the flank to the lower fillet.
+fn head(name: &str, data: &RailData) -> Result<Profile> {
+    let crown = data.crown_to_corner_radii[0];
+    let first = data.tangent_x[0];
+    let crown = Arc::about([0.0, -crown], crown, Half::Upper, [-first, first])?;
+    let mut right = Vec::new();
+    let mut end = crown.end;
+    // Sine of the corner arc's last tangent: that of the flank, dz/dx = −1/flank_dx_per_dz.
+    let flank = -data.flank_dx_per_dz.hypot(1.0).recip();
+    for (k, &radius) in data.crown_to_corner_radii.iter().enumerate().skip(1) {
+        let to_x = data.tangent_x.get(k).copied().unwrap_or(end.x + (end.sin - flank) * radius);
+        let arc = Arc::tangent_at(end, -radius, to_x)?;
+        end = arc.end;
+        right.push(Segment::arc(arc));
+    }
+    if data.flank_dx_per_dz > 0.0 {
+        let line = Arc::tangent_at(end, f64::INFINITY, end.x + flank_run(data, end.x, end.z))?;
+        right.push(Segment::arc(line));
+    }
+    let half = Profile::new(name, &data.source, right.clone())?;
+    let mut segments = half.mirrored().segments().to_vec();
+    segments.push(Segment::arc(crown));
+    segments.extend(right);
+    Profile::new(name, &data.source, segments)
+}
+
+/// Run in x \[mm\] of the flank from (x, z) to where the fillet to the underside begins.
+fn flank_run(data: &RailData, x: f64, z: f64) -> f64 {
+    let inclination = data.flank_dx_per_dz;
+    // Drop to the underside: z − d = apex + (x + inclination·d)/n.
+    let n = data.underside_1_to;
+    let drop = (z - data.underside_apex_z - x / n) / (1.0 + inclination / n);
+    // The flank turns into the underside by this angle; the fillet takes r·tan(half of it) of each.
+    let turn = std::f64::consts::FRAC_PI_2 + inclination.atan() - n.recip().atan();
+    let taken = data.lower_fillet_radius * (turn / 2.0).tan() / inclination.hypot(1.0);
+    inclination * (drop - taken)
+}
+
+fn unknown(name: &str, body: &str, known: impl Iterator<Item = &'static str>) -> Error {
+    let nearest = known.max_by(|a, b| {
+        let likeness = |s: &str| strsim::jaro_winkler(&s.to_lowercase(), &name.to_lowercase());
+        likeness(a).total_cmp(&likeness(b))
+    });
+    let expected = nearest.map_or_else(String::new, |n| format!("a built-in {body} profile such as \"{n}\""));
+    let advice = "see `wheelrail profile list`, or give `file` or `segments`";
+    Error::new("profile", format!("\"{name}\""), expected, advice)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Published check values have six or seven decimals of a mm.
+    const PUBLISHED: f64 = 1e-6;
+
+    #[test]
+    fn every_rail_has_its_published_width_and_height() -> Result<()> {
+        assert_eq!(rail_names().count(), 25);
+        for name in rail_names() {
+            let data = &RAILS[name];
+            let profile = rail(name)?;
+            let corner = 2 * data.crown_to_corner_radii.len() - 2;
+            let flanks = usize::from(data.flank_dx_per_dz > 0.0);
+            let end = profile.segments()[corner + flanks].end();
+            assert!((end.x - data.check.half_width_at_flank_tangent).abs() < PUBLISHED, "{name}: {end:?}");
+            if let Some(z) = data.check.z_at_flank_tangent {
+                assert!((end.z - z).abs() < PUBLISHED, "{name}: {end:?}");
+            }
+            for joint in profile.continuity() {
+                assert!(joint.gap < 1e-12 && joint.kink.abs() < 1e-13, "{name}: {joint:?}");
+            }
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn every_wheel_closes_to_its_drawing() -> Result<()> {
+        assert_eq!(wheel_names().count(), 14);
+        for name in wheel_names() {
+            let worst = wheel(name)?.continuity().iter().map(|joint| joint.step).fold(0.0, f64::max);
+            // Coordinates in 1e-3 mm (EN) and 1e-4 inch (APTA).
+            assert!(worst < if name.starts_with("APTA") { 2.1e-3 } else { 1.2e-3 }, "{name}: {worst}");
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn an_unknown_name_is_answered_with_the_nearest() {
+        let error = rail("60e1").err().map(|e| e.expected);
+        assert_eq!(error.as_deref(), Some("a built-in rail profile such as \"60E1\""));
+    }
+}
