@@ -1,7 +1,11 @@
 //! Wheel/rail contact-patch preprocessor.
 
+pub mod contact;
 pub mod error;
+pub mod interpenetration;
 pub mod numerics;
+pub mod placement;
 pub mod profile;
+pub mod separation;
 
 pub use error::{Error, Result};

@@ -10,7 +10,9 @@ pub mod standards;
 
 pub use arc::{Arc, Half};
 pub use polynomial::Polynomial;
-pub use section::{ArcBranch, Branch, BranchShape, Piece, PolynomialBranch, ProfilePoint, Section, Side};
+pub use section::{
+    ArcBranch, Branch, BranchShape, Piece, PolynomialBranch, ProfilePoint, Section, Side, stationary_points,
+};
 pub mod drawing;
 
 use crate::error::{Error, Result};

@@ -85,6 +85,16 @@ impl ArcBranch {
         self.anchor[1] + run * ((self.sin + sin) / (self.cos + cos))
     }
 
+    fn exact_height(&self, xi: f64) -> TwoFloat {
+        let one = TwoFloat::from(1.0);
+        let run = TwoFloat::new_sub(xi, self.anchor[0]);
+        let turn = if self.radius.is_finite() { run / self.radius } else { TwoFloat::from(0.0) };
+        let sin = turn + self.sin;
+        let square = (one - sin) * (one + sin);
+        let cos = if f64::from(square) > 0.0 { square.sqrt() } else { TwoFloat::from(0.0) };
+        run * (sin + self.sin) / (cos + self.cos) + self.anchor[1]
+    }
+
     /// Slope of the chord between two abscissae; the tangent's where they are equal.
     #[inline]
     pub fn chord_slope(&self, a: f64, b: f64) -> f64 {
@@ -131,8 +141,7 @@ impl PolynomialBranch {
         t
     }
 
-    /// ζ(ξ) in twice the working precision.
-    pub fn exact_height(&self, xi: f64) -> TwoFloat {
+    fn exact_height(&self, xi: f64) -> TwoFloat {
         value_twofloat(&self.exact[1], self.exact_parameter(xi))
     }
 }
@@ -233,6 +242,14 @@ impl Branch {
         match &self.shape {
             BranchShape::Arc(arc) => arc.height(xi),
             BranchShape::Polynomial(p) => value(&p.zeta, p.parameter(xi)),
+        }
+    }
+
+    /// ζ(ξ) in twice the working precision, for differences between closely conforming branches through C.
+    pub fn exact_height(&self, xi: f64) -> TwoFloat {
+        match &self.shape {
+            BranchShape::Arc(arc) => arc.exact_height(xi),
+            BranchShape::Polynomial(p) => p.exact_height(xi),
         }
     }
 

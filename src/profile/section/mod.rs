@@ -1,8 +1,10 @@
 //! A profile seen from a frame: the transformed profile ζ(ξ) of Report (4.4)–(4.8).
 
+mod between;
 mod branch;
 mod envelope;
 
+pub use between::stationary_points;
 pub use branch::{ArcBranch, Branch, BranchShape, PolynomialBranch};
 pub use envelope::Piece;
 

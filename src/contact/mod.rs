@@ -1,0 +1,3 @@
+//! The contact point: is it feasible, and what does Hertz say of it.
+
+pub mod feasibility;

@@ -1,0 +1,105 @@
+//! MIDSEP (Report Sec. 5): transformed parameters α, β, ξ_i and the midplane separation at equal steps of ξ.
+
+use std::fmt::Write;
+
+use super::{Body, Placement};
+use crate::profile::{Shape, Station};
+use crate::separation::gap::midplane_gap;
+
+/// α, β and the end abscissa of one segment in the contact frame, (4.6)–(4.8).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Transformed {
+    /// The drawing's name.
+    pub label: String,
+    /// "line", "arc" or "polynomial".
+    pub kind: &'static str,
+    /// α and β: centre of an arc \[mm\], slope and intercept \[1, mm\] of a line; none for a polynomial.
+    pub alpha_beta: Option<[f64; 2]>,
+    /// Signed radius \[mm\] of an arc, positive where hollow side up.
+    pub radius: Option<f64>,
+    /// ξ of its two ends \[mm\].
+    pub xi: [f64; 2],
+}
+
+/// One row of the midplane table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Row {
+    /// ξ \[mm\].
+    pub xi: f64,
+    /// ζ^R \[mm\], NaN off the rail.
+    pub rail: f64,
+    /// ζ^W \[mm\] at η = 0, NaN off the wheel.
+    pub wheel: f64,
+    /// Δζ = ζ^W − ζ^R \[mm\].
+    pub gap: f64,
+}
+
+/// RAIL0 and WHEEL0 of the Report: the transformed parameters of every segment.
+pub fn transformed_parameters(body: &Body) -> Vec<Transformed> {
+    let frame = &body.section.frame;
+    body.profile
+        .segments()
+        .iter()
+        .map(|segment| {
+            let (start, end) = (segment.start().seen_from(frame), segment.end().seen_from(frame));
+            let (kind, alpha_beta, radius) = match &segment.shape {
+                Shape::Arc(arc) => match arc.centre() {
+                    Some([x, z]) => {
+                        let centre = Station { x, z, cos: 1.0, sin: 0.0 }.seen_from(frame);
+                        ("arc", Some([centre.x, centre.z]), Some(arc.radius))
+                    }
+                    None => {
+                        let slope = start.sin / start.cos;
+                        ("line", Some([slope, start.z - slope * start.x]), None)
+                    }
+                },
+                Shape::Polynomial(_) => ("polynomial", None, None),
+            };
+            Transformed { label: segment.label.clone(), kind, alpha_beta, radius, xi: [start.x, end.x] }
+        })
+        .collect()
+}
+
+/// The midplane table at the given ξ.
+pub fn rows(placement: &Placement, xi: &[f64]) -> Vec<Row> {
+    let row = |&xi: &f64| Row {
+        xi,
+        rail: placement.rail.section.height(xi),
+        wheel: placement.wheel.section.height(xi),
+        gap: midplane_gap(placement, xi),
+    };
+    xi.iter().map(row).collect()
+}
+
+/// What MIDSEP printed, as a table that a person can read.
+pub fn table(placement: &Placement, xi: &[f64]) -> String {
+    let mut out = String::from("# MIDSEP: midplane separation, Report FRA/ORD-78/41, Sec. 5\n");
+    out += "# Lengths in mm, angles in rad; contact frame: origin C, xi along the tangent, zeta from rail to wheel.\n";
+    for (name, body) in [("rail", &placement.rail), ("wheel", &placement.wheel)] {
+        parameters(&mut out, name, body);
+    }
+    out += "\n# midplane, eta = 0\n";
+    let _ = writeln!(out, "# {:>22} {:>24} {:>24} {:>24}", "xi", "zeta_rail", "zeta_wheel", "separation");
+    for row in rows(placement, xi) {
+        let _ =
+            writeln!(out, "{:24.16e} {:24.16e} {:24.16e} {:24.16e}", row.xi, row.rail, row.wheel, row.gap);
+    }
+    out
+}
+
+fn parameters(out: &mut String, name: &str, body: &Body) {
+    let (point, angle) = (&body.point.station, body.contact_angle());
+    let _ = writeln!(out, "\n# {name}: {}", body.profile.name);
+    let _ = writeln!(out, "# C: x = {} z = {} theta_C = {angle}", point.x, point.z);
+    let header =
+        format!("{:>24} {:>24} {:>24} {:>24} {:>24}", "alpha", "beta", "radius", "xi_start", "xi_end");
+    let _ = writeln!(out, "# {:<10} {:<10} {header}", "segment", "kind");
+    for (index, t) in transformed_parameters(body).iter().enumerate() {
+        let label = if t.label.is_empty() { (index + 1).to_string() } else { t.label.replace(' ', "_") };
+        let field =
+            |value: Option<f64>| value.map_or_else(|| format!("{:>24}", "-"), |v| format!("{v:24.16e}"));
+        let [alpha, beta] = [0, 1].map(|k| field(t.alpha_beta.map(|ab| ab[k])));
+        let (radius, start, end) = (field(t.radius), field(Some(t.xi[0])), field(Some(t.xi[1])));
+        let _ = writeln!(out, "{label:<12} {:<10} {alpha} {beta} {radius} {start} {end}", t.kind);
+    }
+}

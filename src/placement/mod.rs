@@ -1,0 +1,126 @@
+//! A placed pair: contact frame ξηζ and both profiles in it (Report Sec. 4).
+
+pub mod midsep;
+
+use crate::error::{Error, Result, finite};
+use crate::profile::{Profile, ProfilePoint, Section, Side};
+
+/// One body of a placed pair.
+#[derive(Debug, Clone)]
+pub struct Body {
+    /// The profile in its own axes.
+    pub profile: Profile,
+    /// The contact point C on it; its tangent gives θ_C.
+    pub point: ProfilePoint,
+    /// The profile in the contact frame.
+    pub section: Section,
+}
+
+/// A rail and a wheel that share the contact point C and the common normal there.
+///
+/// The contact frame has its origin at C, ξ along the rail profile's tangent, η = y along the rail, ζ along
+/// the common normal from rail to wheel. The wheel's meridian through C may be turned about ζ by the skew χ
+/// (yaw); then the wheel's own coordinates in the tangent plane are ξ′ = ξ cos χ + η sin χ,
+/// η′ = η cos χ − ξ sin χ.
+#[derive(Debug, Clone)]
+pub struct Placement {
+    /// The extruded body, below.
+    pub rail: Body,
+    /// The revolved body, above.
+    pub wheel: Body,
+    /// R, nominal rolling radius: distance from the axle to the wheel profile's origin \[mm\].
+    pub wheel_radius: f64,
+    /// χ \[rad\], 0 without yaw.
+    pub skew: f64,
+}
+
+/// The input of a placement by a chosen pair of points.
+#[derive(Debug, Clone)]
+pub struct Pair {
+    /// Rail profile, right-hand.
+    pub rail: Profile,
+    /// Wheel profile, right-hand.
+    pub wheel: Profile,
+    /// R \[mm\].
+    pub wheel_radius: f64,
+}
+
+impl Pair {
+    /// Two profiles and the nominal rolling radius.
+    ///
+    /// # Errors
+    /// A radius that is not positive and finite; a wheel profile that reaches its own axle.
+    pub fn new(rail: Profile, wheel: Profile, wheel_radius: f64) -> Result<Self> {
+        if finite("wheel: radius", wheel_radius)? <= 0.0 {
+            let found = wheel_radius.to_string();
+            return Err(Error::new(
+                "wheel: radius",
+                found,
+                "a positive length in mm",
+                "give the rolling radius",
+            ));
+        }
+        let highest = wheel.segments().iter().flat_map(|s| [s.start().z, s.end().z]).fold(f64::MIN, f64::max);
+        if highest >= wheel_radius {
+            let found = format!("a profile up to z = {highest} mm");
+            let expected = format!("all of it below the axle at z = R = {wheel_radius} mm");
+            return Err(Error::new("wheel: profile", found, expected, "check unit, sign of z and radius"));
+        }
+        Ok(Self { rail, wheel, wheel_radius })
+    }
+
+    /// The pair in contact at chosen abscissae of the two profiles, the Report's way: (4.9)–(4.12). Each body
+    /// is turned so that its own tangent at C lies along ξ.
+    ///
+    /// # Errors
+    /// An abscissa off its profile, or where the profile is vertical.
+    pub fn placed(&self, rail_x: f64, wheel_x: f64, skew: f64) -> Result<Placement> {
+        let rail = Body::at(&self.rail, rail_x, Side::Rail).map_err(|e| e.within("contact: rail_x"))?;
+        let wheel = Body::at(&self.wheel, wheel_x, Side::Wheel).map_err(|e| e.within("contact: wheel_x"))?;
+        Ok(Placement { rail, wheel, wheel_radius: self.wheel_radius, skew })
+    }
+}
+
+impl Body {
+    fn at(profile: &Profile, x: f64, side: Side) -> Result<Self> {
+        finite("", x)?;
+        let own = Section::own_axes(profile, side);
+        let Some(point) = own.point(profile, x).filter(|point| point.station.cos > 0.0) else {
+            let reach = own.reach().unwrap_or([f64::NAN; 2]);
+            let expected =
+                format!("a point of {}, which lies over [{}, {}]", profile.name, reach[0], reach[1]);
+            return Err(Error::new("", x.to_string(), expected, "choose a point on the profile"));
+        };
+        Ok(Self { section: Section::at_contact(profile, &point, side), profile: profile.clone(), point })
+    }
+
+    /// θ_C \[rad\] of (4.12): the profile's angle at C, positive counter-clockwise from x to z.
+    pub fn contact_angle(&self) -> f64 {
+        self.point.station.angle()
+    }
+}
+
+impl Placement {
+    /// R − z_C \[mm\]: distance from the axle to C.
+    pub fn rolling_radius(&self) -> f64 {
+        self.wheel_radius - self.wheel.point.station.z
+    }
+
+    /// The ξ where both bodies have a surface in the midplane, outermost ends.
+    pub fn overlap(&self) -> Option<[f64; 2]> {
+        let (rail, wheel) = (self.rail.section.reach()?, self.wheel.section.reach()?);
+        let both = [rail[0].max(wheel[0]), rail[1].min(wheel[1])];
+        (both[0] < both[1]).then_some(both)
+    }
+
+    /// All ξ inside (a, b) where either body changes its branch, ascending.
+    pub fn joints(&self, a: f64, b: f64) -> Vec<f64> {
+        let ends = |section: &Section| section.pieces.iter().flat_map(|p| p.xi).collect::<Vec<_>>();
+        let mut all = ends(&self.rail.section);
+        all.extend(ends(&self.wheel.section));
+        all.retain(|&xi| xi > a && xi < b);
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        all
+    }
+}

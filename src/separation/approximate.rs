@@ -1,0 +1,88 @@
+//! The three cheap methods: quadratic, constant radius, parabolic.
+
+use super::axis::EtaAxis;
+use super::grid::Kernel;
+use super::{Evaluator, gap};
+use crate::placement::Placement;
+
+/// Hertz: s ≈ ½ κ_W ξ′² + ½ κ_η η′² − ½ κ_R ξ², with κ_η = cosθ/(R − z_C).
+#[derive(Debug)]
+pub struct Quadratic<'a> {
+    axis: &'a EtaAxis,
+    /// Coefficients of ξ², ξη, η².
+    form: [f64; 3],
+}
+
+impl<'a> Quadratic<'a> {
+    /// The quadratic form of a placed pair.
+    pub fn new(placement: &Placement, axis: &'a EtaAxis) -> Self {
+        Self { axis, form: quadratic_form(placement) }
+    }
+}
+
+/// Coefficients of ξ², ξη and η² \[1/mm\] in the second-order expansion of s at C.
+///
+/// At a joint the curvatures are those of the contact segments.
+pub fn quadratic_form(placement: &Placement) -> [f64; 3] {
+    let curvature =
+        |section: &crate::profile::Section| section.branch_at(0.0).map_or(f64::NAN, |b| b.curvature(0.0));
+    let (k_r, k_w) = (curvature(&placement.rail.section), curvature(&placement.wheel.section));
+    let around = placement.wheel.section.frame.cos / placement.rolling_radius();
+    let (sin, cos) = placement.skew.sin_cos();
+    let along = if sin == 0.0 {
+        gap::relative_curvature(placement).unwrap_or(k_w - k_r)
+    } else {
+        k_w * cos * cos + around * sin * sin - k_r
+    };
+    [along / 2.0, (k_w - around) * sin * cos, (k_w * sin * sin + around * cos * cos) / 2.0]
+}
+
+impl Kernel for Quadratic<'_> {
+    fn column(&mut self, xi: f64, out: &mut [f64]) {
+        let [along, mixed, across] = self.form;
+        let (constant, linear) = (along * xi * xi, mixed * xi);
+        for (s, eta) in out.iter_mut().zip(&self.axis.eta) {
+            *s = constant + eta * (linear + across * eta);
+        }
+    }
+}
+
+/// s ≈ g(ξ) + η²/2R, or with `q` g(ξ) + q(ξ, 0) η²; with skew g and η are the wheel's own.
+#[derive(Debug)]
+pub struct Parabolic<'a> {
+    evaluator: Evaluator<'a>,
+    axis: &'a EtaAxis,
+    /// 1/2R \[1/mm\], or `None` for the local q(ξ, 0).
+    constant: Option<f64>,
+}
+
+impl<'a> Parabolic<'a> {
+    /// With the constant coefficient 1/2R of a cylinder of the nominal radius.
+    pub fn constant_radius(placement: &'a Placement, axis: &'a EtaAxis) -> Self {
+        let constant = Some(0.5 / placement.wheel_radius);
+        Self { evaluator: Evaluator::new(placement), axis, constant }
+    }
+
+    /// With the exact coefficient q(ξ, 0) at every ξ.
+    pub fn local(placement: &'a Placement, axis: &'a EtaAxis) -> Self {
+        Self { evaluator: Evaluator::new(placement), axis, constant: None }
+    }
+}
+
+impl Kernel for Parabolic<'_> {
+    fn column(&mut self, xi: f64, out: &mut [f64]) {
+        if self.evaluator.placement.skew == 0.0 {
+            let [gap, local] = self.evaluator.parabola(xi, xi);
+            let q = self.constant.unwrap_or(local);
+            for (s, u) in out.iter_mut().zip(&self.axis.u) {
+                *s = gap + q * u;
+            }
+            return;
+        }
+        for (s, &eta) in out.iter_mut().zip(&self.axis.eta) {
+            let (xi_w, eta_w) = self.evaluator.wheel_coordinates(xi, eta);
+            let [gap, local] = self.evaluator.parabola(xi, xi_w);
+            *s = gap + self.constant.unwrap_or(local) * (eta_w * eta_w);
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! The revolved wheel along one ξ-column, in sagitta form.
+//!
+//! A point at axle distance w = R − z and lateral offset η has the sagitta e = √(w² + η²) − w, and is on the
+//! wheel exactly when (x, z − e) is on the profile. In the contact frame, with h(ξ) the midplane height,
+//!
+//! ```text
+//! ζ = h(ξ − e sinθ) + e cosθ,   w = R − z_C − ξ sinθ − ζ cosθ,   u = η² = e (2w + e).
+//! ```
+//!
+//! Given e, ζ and u follow with no iteration; given u, the step e ← u/(w + √(w² + u)) contracts by about e/w.
+//! The profile abscissa ξ − e sinθ moves along the column, so that one column can cross joints (erratum 6).
+
+use crate::numerics::roots::bracketed;
+use crate::placement::Placement;
+use crate::profile::{Branch, Section};
+
+/// Contractions by e/w, at most 1e-2 away from vertical tangents, reach rounding in 8; a branch that needs more
+/// is steep there and is left to the bracketed root.
+const CONTRACTIONS: usize = 12;
+
+/// The wheel as a surface over the contact frame of its own meridian.
+#[derive(Debug, Clone, Copy)]
+pub struct WheelSurface<'a> {
+    /// The wheel profile in the contact frame.
+    pub section: &'a Section,
+    /// R − z_C \[mm\].
+    axle: f64,
+    cos: f64,
+    sin: f64,
+}
+
+/// The part of a column that lies over one branch of the wheel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Span {
+    /// Range of e \[mm\]; the end may be infinite.
+    pub e: [f64; 2],
+    /// Range of u = η² \[mm²\].
+    pub u: [f64; 2],
+    /// Index of the branch.
+    pub branch: usize,
+    /// ζ of the wheel at the beginning \[mm\].
+    pub height: f64,
+}
+
+/// A point on the wheel above (ξ, u).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Foot {
+    /// Sagitta e \[mm\].
+    pub e: f64,
+    /// ζ − ζ(begin of span) \[mm\].
+    pub rise: f64,
+    /// Axle distance w \[mm\].
+    pub w: f64,
+    /// u = η² \[mm²\].
+    pub u: f64,
+}
+
+impl<'a> WheelSurface<'a> {
+    /// The wheel of a placed pair.
+    pub fn new(placement: &'a Placement) -> Self {
+        let station = placement.wheel.section.frame;
+        let axle = placement.rolling_radius();
+        Self { section: &placement.wheel.section, axle, cos: station.cos, sin: station.sin }
+    }
+
+    fn branch(&self, span: &Span) -> &'a Branch {
+        &self.section.branches[span.branch]
+    }
+
+    /// The spans of the column at ξ from η = 0 until u reaches `u_max`, in order of u; `spans` is overwritten.
+    /// Empty where the wheel has no surface.
+    pub fn spans(&self, xi: f64, u_max: f64, spans: &mut Vec<Span>) {
+        spans.clear();
+        let pieces = &self.section.pieces;
+        let falling = self.sin > 0.0;
+        let first = if falling {
+            pieces
+                .partition_point(|p| p.xi[0] < xi)
+                .checked_sub(1)
+                .or((self.at_end(xi) == Some(0)).then_some(0))
+        } else {
+            let index = pieces.partition_point(|p| p.xi[1] <= xi);
+            Some(index).filter(|&i| i < pieces.len()).or(self.at_end(xi))
+        };
+        let Some(mut index) = first else { return };
+        loop {
+            let piece = &pieces[index];
+            let [near, far] = if falling { [piece.xi[1], piece.xi[0]] } else { piece.xi };
+            let begin = if self.sin == 0.0 { 0.0 } else { ((xi - near) / self.sin).max(0.0) };
+            let end = if self.sin == 0.0 { f64::INFINITY } else { (xi - far) / self.sin };
+            if self.sin == 0.0 && !(piece.xi[0] <= xi && xi <= piece.xi[1]) {
+                return;
+            }
+            let mut span = self.span(xi, piece.branch, [begin, end]);
+            if let Some(last) = spans.last().filter(|last| last.e[1] == begin) {
+                // One joint: the ranges meet, whatever rounding or a drawing's step makes of them.
+                span.u[0] = last.u[1];
+            }
+            let done = span.u[1] >= u_max || self.sin == 0.0;
+            if span.u[0] <= u_max {
+                spans.push(span);
+            }
+            let next =
+                if falling { index.checked_sub(1) } else { Some(index + 1).filter(|&i| i < pieces.len()) };
+            match next {
+                Some(next) if !done => index = next,
+                _ => return,
+            }
+        }
+    }
+
+    /// The end piece that has ξ for its outer end.
+    fn at_end(&self, xi: f64) -> Option<usize> {
+        let pieces = &self.section.pieces;
+        let last = pieces.len().checked_sub(1)?;
+        if pieces[0].xi[0] == xi { Some(0) } else { (pieces[last].xi[1] == xi).then_some(last) }
+    }
+
+    fn span(&self, xi: f64, branch: usize, e: [f64; 2]) -> Span {
+        let begin = xi - e[0] * self.sin;
+        let height = self.section.branches[branch].height(begin) + e[0] * self.cos;
+        let mut span = Span { e, u: [0.0, f64::INFINITY], branch, height };
+        span.u[0] = if e[0] == 0.0 { 0.0 } else { self.foot(xi, &span, e[0]).u };
+        if e[1].is_finite() {
+            let end = self.foot(xi, &span, e[1]);
+            // Beyond the axle's height the profile's end cannot be met: the ring of the column closes before.
+            (span.e[1], span.u[1]) = if end.w > 0.0 { (e[1], end.u) } else { (f64::INFINITY, f64::INFINITY) };
+        }
+        span
+    }
+
+    /// The point with sagitta e over a span: no iteration.
+    #[inline]
+    pub fn foot(&self, xi: f64, span: &Span, e: f64) -> Foot {
+        let (from, to) = (xi - span.e[0] * self.sin, xi - e * self.sin);
+        let slope = self.branch(span).chord_slope(from, to);
+        let rise = (e - span.e[0]) * (self.cos - self.sin * slope);
+        let w = self.axle - xi * self.sin - (span.height + rise) * self.cos;
+        Foot { e, rise, w, u: e * (2.0 * w + e) }
+    }
+
+    /// The point at u = η² over a span, or `None` where η is beyond the ring.
+    pub fn foot_at(&self, xi: f64, span: &Span, u: f64) -> Option<Foot> {
+        let mut foot = self.foot(xi, span, span.e[0]);
+        for _ in 0..CONTRACTIONS {
+            let e = u / (foot.w + (foot.w * foot.w + u).sqrt());
+            let change = (e - foot.e).abs();
+            foot = self.foot(xi, span, e);
+            if change <= f64::EPSILON * e {
+                return Some(foot).filter(|foot| foot.w > 0.0);
+            }
+        }
+        let end = if span.e[1].is_finite() { span.e[1] } else { self.axle };
+        let root = bracketed(|e| self.foot(xi, span, e).u - u, span.e[0], end)?;
+        Some(self.foot(xi, span, root)).filter(|foot| foot.w > 0.0)
+    }
+
+    /// The point that lies `rise` above the span's beginning: e = e_0 + rise/(cosθ − sinθ × chord slope), a
+    /// contraction by e × curvature.
+    pub fn foot_with_rise(&self, xi: f64, span: &Span, rise: f64, contractions: usize) -> Foot {
+        let mut foot = self.foot(xi, span, span.e[0]);
+        for _ in 0..contractions {
+            let (from, to) = (self.abscissa(xi, span.e[0]), self.abscissa(xi, foot.e));
+            let slope = self.branch(span).chord_slope(from, to);
+            let e = (span.e[0] + rise / (self.cos - self.sin * slope)).min(span.e[1]);
+            let change = (e - foot.e).abs();
+            foot = self.foot(xi, span, e);
+            if change <= f64::EPSILON * e {
+                return foot;
+            }
+        }
+        let end = if span.e[1].is_finite() { span.e[1] } else { self.axle };
+        let root = bracketed(|e| self.foot(xi, span, e).rise - rise, span.e[0], end);
+        root.map_or(foot, |e| self.foot(xi, span, e))
+    }
+
+    /// Profile abscissa ξ − e sinθ under the point with sagitta e.
+    pub fn abscissa(&self, xi: f64, e: f64) -> f64 {
+        xi - e * self.sin
+    }
+
+    /// q(ξ, 0) = (cosθ − h′(ξ) sinθ)/2w: how fast the wheel opens with η² \[1/mm\], for a span from η = 0.
+    pub fn opening(&self, xi: f64, span: &Span) -> f64 {
+        let foot = self.foot(xi, span, span.e[0]);
+        let slope = self.branch(span).chord_slope(xi, xi);
+        (self.cos - self.sin * slope) / (2.0 * foot.w)
+    }
+
+    /// The span of a column that holds u, for ascending spans.
+    pub fn span_at(spans: &[Span], u: f64) -> Option<&Span> {
+        spans.iter().find(|span| u <= span.u[1]).filter(|span| u >= span.u[0])
+    }
+
+    /// Outward unit normal (towards the rail) in (ξ, η, ζ) at the point with sagitta e and offset η.
+    pub fn normal(&self, xi: f64, eta: f64, span: &Span, foot: &Foot) -> [f64; 3] {
+        let tangent = self.branch(span).station(xi - foot.e * self.sin);
+        // Profile angle φ = ψ + θ in the wheel's own axes; the meridian plane is turned by atan(η/w).
+        let (sin, cos) = (
+            tangent.sin * self.cos + tangent.cos * self.sin,
+            tangent.cos * self.cos - tangent.sin * self.sin,
+        );
+        let rho = foot.w.hypot(eta);
+        let (x, y, z) = (sin, cos * eta / rho, -cos * foot.w / rho);
+        [x * self.cos + z * self.sin, y, z * self.cos - x * self.sin]
+    }
+}

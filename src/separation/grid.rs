@@ -1,0 +1,103 @@
+//! The ladder of methods behind one interface, and the grid they fill.
+
+use rayon::prelude::*;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::approximate::{Parabolic, Quadratic};
+use super::axis::EtaAxis;
+use super::pointwise::Pointwise;
+use super::report_newton::ReportNewton;
+use super::spectral::{Demand, Spectral};
+use crate::placement::Placement;
+
+/// Columns of one block: the unit of work of a thread. Long enough that setting up a kernel does not count.
+const BLOCK: usize = 16;
+
+/// A way to evaluate s over columns of constant ξ.
+pub trait Kernel {
+    /// Writes s(ξ, η_j) for all η_j of the axis \[mm\]; NaN where a body has no surface.
+    fn column(&mut self, xi: f64, out: &mut [f64]);
+}
+
+/// The accuracy ladder, cheapest first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// Second-order expansion at C (Hertz).
+    Quadratic,
+    /// g(ξ) + η²/2R.
+    ConstantRadius,
+    /// g(ξ) + q(ξ, 0) η².
+    Parabolic,
+    /// Polynomial columns to the tolerance.
+    Spectral,
+    /// Sagitta iteration at every point.
+    Pointwise,
+    /// The Report's Newton iteration on (6.13), as printed.
+    ReportNewton,
+}
+
+impl Method {
+    /// All of them, in order of the ladder.
+    pub const ALL: [Self; 6] = [
+        Self::Quadratic,
+        Self::ConstantRadius,
+        Self::Parabolic,
+        Self::Spectral,
+        Self::Pointwise,
+        Self::ReportNewton,
+    ];
+
+    /// Its name in scenes and reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Quadratic => "quadratic",
+            Self::ConstantRadius => "constant-radius",
+            Self::Parabolic => "parabolic",
+            Self::Spectral => "spectral",
+            Self::Pointwise => "pointwise",
+            Self::ReportNewton => "report-newton",
+        }
+    }
+}
+
+/// A method ready to run to a tolerance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Choice {
+    /// The method.
+    pub method: Method,
+    /// What spectral columns are held to.
+    pub demand: Demand,
+    /// Coefficients that spectral columns start with.
+    pub coefficients: usize,
+}
+
+impl Choice {
+    /// A kernel of this choice.
+    fn kernel<'a>(&self, placement: &'a Placement, axis: &'a EtaAxis) -> Box<dyn Kernel + 'a> {
+        match self.method {
+            Method::Quadratic => Box::new(Quadratic::new(placement, axis)),
+            Method::ConstantRadius => Box::new(Parabolic::constant_radius(placement, axis)),
+            Method::Parabolic => Box::new(Parabolic::local(placement, axis)),
+            Method::Spectral => Box::new(Spectral::new(placement, axis, self.demand, self.coefficients)),
+            Method::Pointwise => Box::new(Pointwise::new(placement, axis)),
+            Method::ReportNewton => Box::new(ReportNewton::new(placement, axis, self.demand.absolute)),
+        }
+    }
+
+    /// s over the grid, index i_ξ · n_η + i_η, on the threads of the current rayon pool. The same bits come
+    /// out for any number of threads.
+    pub fn fill(&self, placement: &Placement, xi: &[f64], axis: &EtaAxis, out: &mut [f64]) {
+        let n = axis.eta.len();
+        if n == 0 {
+            return;
+        }
+        out.par_chunks_mut(BLOCK * n).zip(xi.par_chunks(BLOCK)).for_each(|(out, xi)| {
+            let mut kernel = self.kernel(placement, axis);
+            for (&xi, out) in xi.iter().zip(out.chunks_mut(n)) {
+                kernel.column(xi, out);
+            }
+        });
+    }
+}

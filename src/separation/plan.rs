@@ -1,0 +1,161 @@
+//! Choosing the cheapest method that meets a tolerance, with an estimate of its error.
+
+use super::Evaluator;
+use super::axis::EtaAxis;
+use super::grid::{Choice, Method};
+use super::spectral::{Demand, Spectral};
+use crate::placement::Placement;
+
+/// At this tolerance \[mm\] and below, the relative accuracy near C is kept as well.
+///
+/// s falls below any absolute tolerance near C; someone who asks for 1e-12 mm asks for all digits.
+pub const FULL_PRECISION: f64 = 1e-12;
+
+/// Relative truncation allowed at full precision: a tenth of the promised 1e-13.
+const FULL_RELATIVE: f64 = 1e-14;
+
+/// Columns and values of η at which an approximate method is compared with the point-wise one. Its error is
+/// smooth, and largest at edges and joints, which are always among them.
+const SAMPLED_COLUMNS: usize = 65;
+const SAMPLED_ETA: usize = 9;
+
+/// Share by which the sampled maximum is raised, for what lies between the samples.
+const BETWEEN_SAMPLES: f64 = 1.25;
+
+/// A choice, why it was made, and the error to expect.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// What to run.
+    pub choice: Choice,
+    /// Estimated largest error of s over the grid \[mm\], truncation and rounding.
+    pub error: f64,
+    /// One sentence for the summary.
+    pub reason: String,
+}
+
+/// The demand on spectral columns for a tolerance on s \[mm\].
+pub fn demand(tolerance: f64) -> Demand {
+    let relative = if tolerance <= FULL_PRECISION { FULL_RELATIVE } else { f64::INFINITY };
+    Demand { absolute: tolerance, relative }
+}
+
+/// The cheapest method whose estimated error over the grid is below `tolerance` \[mm\], or the `forced` one.
+///
+/// At [`FULL_PRECISION`] and below only methods with full relative accuracy are candidates.
+pub fn plan(
+    placement: &Placement,
+    xi: &[f64],
+    axis: &EtaAxis,
+    tolerance: f64,
+    forced: Option<Method>,
+) -> Plan {
+    let samples = Samples::new(placement, xi, axis);
+    let demand = demand(tolerance);
+    let choice = |method| Choice { method, demand, coefficients: samples.coefficients(demand) };
+    if let Some(method) = forced {
+        let choice = choice(method);
+        let error = samples.error(&choice);
+        return Plan { choice, error, reason: "asked for by the scene".into() };
+    }
+    let mut rejected = Vec::new();
+    for method in [Method::Quadratic, Method::ConstantRadius, Method::Parabolic] {
+        let choice = choice(method);
+        let error = samples.error(&choice);
+        let exact = error <= samples.rounding;
+        if error <= tolerance && (tolerance > FULL_PRECISION || exact) {
+            let reason = format!("cheapest of the ladder within {tolerance:e} mm");
+            return Plan { choice, error, reason };
+        }
+        rejected.push(format!("{} is off by {error:.1e} mm", method.name()));
+    }
+    let choice = choice(Method::Spectral);
+    let error = samples.error(&choice);
+    let reason = format!("cheapest of the ladder within {tolerance:e} mm; {}", rejected.join(", "));
+    Plan { choice, error, reason }
+}
+
+/// Point-wise values at a few columns.
+struct Samples<'a> {
+    placement: &'a Placement,
+    xi: Vec<f64>,
+    axis: EtaAxis,
+    exact: Vec<f64>,
+    rounding: f64,
+}
+
+impl<'a> Samples<'a> {
+    fn new(placement: &'a Placement, xi: &[f64], axis: &EtaAxis) -> Self {
+        let xi = thinned(xi, SAMPLED_COLUMNS);
+        let axis = EtaAxis::new(&thinned(&axis.eta, SAMPLED_ETA));
+        let mut evaluator = Evaluator::new(placement);
+        let mut exact = vec![f64::NAN; xi.len() * axis.eta.len()];
+        for (&xi, out) in xi.iter().zip(exact.chunks_mut(axis.eta.len().max(1))) {
+            evaluator.column(xi, &axis.eta, out);
+        }
+        let rounding = rounding(placement, &xi, &exact);
+        Self { placement, xi, axis, exact, rounding }
+    }
+
+    /// Raised largest difference from the point-wise values, plus rounding.
+    fn error(&self, choice: &Choice) -> f64 {
+        let mut values = vec![f64::NAN; self.exact.len()];
+        choice.fill(self.placement, &self.xi, &self.axis, &mut values);
+        let differences = values.iter().zip(&self.exact).filter(|(_, exact)| !exact.is_nan());
+        let largest = differences.map(|(s, exact)| (s - exact).abs()).fold(0.0, nan_max);
+        let truncation =
+            if choice.method == Method::Spectral { self.spectral_truncation(choice) } else { 0.0 };
+        BETWEEN_SAMPLES * largest.max(truncation) + self.rounding
+    }
+
+    /// Coefficients with which most columns are done: the least that the first, middle and last need.
+    fn coefficients(&self, demand: Demand) -> usize {
+        self.polynomials(demand, 1).map(|(n, _)| n).min().unwrap_or(1)
+    }
+
+    fn spectral_truncation(&self, choice: &Choice) -> f64 {
+        self.polynomials(choice.demand, choice.coefficients).map(|(_, error)| error).fold(0.0, f64::max)
+    }
+
+    /// Degree and truncation error of every span of the sampled columns.
+    fn polynomials(&self, demand: Demand, coefficients: usize) -> impl Iterator<Item = (usize, f64)> {
+        let spectral = Spectral::new(self.placement, &self.axis, demand, coefficients);
+        let u_max = self.axis.reach * self.axis.reach;
+        let wheel = super::column::WheelSurface::new(self.placement);
+        let mut all = Vec::new();
+        let mut spans = Vec::new();
+        for &xi in &self.xi {
+            wheel.spans(xi, u_max, &mut spans);
+            let fits = spans.iter().filter_map(|span| spectral.polynomial(xi, span, u_max));
+            all.extend(fits.map(|fit| (fit.n, fit.error)));
+        }
+        all.into_iter()
+    }
+}
+
+/// Rounding error of s: a few units of its own last place over the contact segments, of the abscissae that
+/// joints are reached by elsewhere.
+fn rounding(placement: &Placement, xi: &[f64], exact: &[f64]) -> f64 {
+    let largest =
+        |values: &[f64]| values.iter().filter(|s| !s.is_nan()).fold(0.0, |m: f64, s| m.max(s.abs()));
+    let inside = |section: &crate::profile::Section, xi: f64| {
+        section.piece_at(xi).is_none_or(|piece| section.contact == Some(piece.branch))
+    };
+    let contact =
+        xi.iter().all(|&xi| inside(&placement.rail.section, xi) && inside(&placement.wheel.section, xi));
+    let joints =
+        placement.rail.section.frame.x.abs().max(placement.wheel.section.frame.x.abs()) + largest(xi);
+    2.0 * f64::EPSILON * largest(exact).max(if contact { 0.0 } else { joints })
+}
+
+/// The larger of two, NaN if either is.
+fn nan_max(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
+}
+
+/// At most `n` of the values, evenly spread, ends included.
+fn thinned(values: &[f64], n: usize) -> Vec<f64> {
+    if values.len() <= n {
+        return values.to_vec();
+    }
+    (0..n).map(|k| values[k * (values.len() - 1) / (n - 1)]).collect()
+}

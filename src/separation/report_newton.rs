@@ -1,0 +1,144 @@
+//! The Report's own INSEP: Newton–Raphson on (6.13), kept as the historical baseline.
+//!
+//! Written as printed, in centre form, with its cancellation: F = (z − R)² − (ρ² − η²) leaves an absolute error
+//! of about 1e-13 mm whatever the size of s (erratum 7). Profiles are searched by x anew at every iterate
+//! (erratum 6); an iterate that leaves the profile, or an arc, gives NaN.
+
+use super::axis::EtaAxis;
+use super::grid::Kernel;
+use crate::numerics::polynomial::derivatives;
+use crate::placement::{Body, Placement};
+use crate::profile::{Shape, Station};
+
+/// Iterations after which the Report's method is taken not to converge; it needs 2 to 5 where it does.
+const MOST_ITERATIONS: usize = 50;
+
+/// One segment as (3.2) writes it.
+#[derive(Debug, Clone)]
+enum Printed {
+    /// z = b ± √(R² − (x − a)²), the sign carried for erratum 2.
+    Arc { a: f64, b: f64, radius: f64, sign: f64 },
+    /// z = a x + b.
+    Line { a: f64, b: f64 },
+    /// z = Σ c_k (x − x_m)^k, which the Report does not have.
+    Polynomial { middle: f64, c: Vec<f64> },
+}
+
+/// Newton on (6.13) at every point.
+#[derive(Debug)]
+pub struct ReportNewton<'a> {
+    placement: &'a Placement,
+    axis: &'a EtaAxis,
+    rail: Vec<([f64; 2], Printed)>,
+    wheel: Vec<([f64; 2], Printed)>,
+    tolerance: f64,
+    last: usize,
+}
+
+impl Printed {
+    fn of(shape: &Shape, frame: &Station) -> Option<Self> {
+        match shape {
+            Shape::Arc(arc) => {
+                let Some([x, z]) = arc.centre() else {
+                    let start = arc.start.seen_from(frame);
+                    let a = start.sin / start.cos;
+                    return Some(Self::Line { a, b: start.z - a * start.x });
+                };
+                let centre = Station { x, z, ..Station::AXES }.seen_from(frame);
+                let sign = if arc.radius < 0.0 { 1.0 } else { -1.0 };
+                Some(Self::Arc { a: centre.x, b: centre.z, radius: arc.radius.abs(), sign })
+            }
+            Shape::Polynomial(p) if *frame == Station::AXES && p.x.len() == 2 => {
+                let c = p.z.iter().map(|&c| c.into()).collect();
+                Some(Self::Polynomial { middle: p.x[0].into(), c })
+            }
+            Shape::Polynomial(_) => None,
+        }
+    }
+
+    /// (z, dz/dx) at x.
+    fn profile(&self, x: f64) -> (f64, f64) {
+        match self {
+            Self::Arc { a, b, radius, sign } => {
+                let root = (radius * radius - (x - a) * (x - a)).sqrt();
+                (b + sign * root, -sign * (x - a) / root)
+            }
+            Self::Line { a, b } => (a * x + b, *a),
+            Self::Polynomial { middle, c } => {
+                let [z, slope, _] = derivatives(c, x - middle);
+                (z, slope)
+            }
+        }
+    }
+}
+
+impl<'a> ReportNewton<'a> {
+    /// Over a placed pair without skew, which the Report does not have; iterates until |Δζ| is below
+    /// `tolerance` \[mm\].
+    pub fn new(placement: &'a Placement, axis: &'a EtaAxis, tolerance: f64) -> Self {
+        let printed = |body: &Body, frame: &Station| {
+            let segments = body.profile.segments().iter();
+            segments
+                .filter_map(|s| {
+                    let ends = [s.start().seen_from(frame).x, s.end().seen_from(frame).x];
+                    Some((ends, Printed::of(&s.shape, frame)?))
+                })
+                .collect()
+        };
+        Self {
+            rail: printed(&placement.rail, &placement.rail.section.frame),
+            wheel: printed(&placement.wheel, &Station::AXES),
+            placement,
+            axis,
+            tolerance,
+            last: 0,
+        }
+    }
+
+    fn wheel_profile(&mut self, x: f64) -> Option<(f64, f64)> {
+        let holds = |([x0, x1], _): &([f64; 2], Printed)| *x0 <= x && x <= *x1;
+        if !self.wheel.get(self.last).is_some_and(holds) {
+            self.last = self.wheel.iter().position(holds)?;
+        }
+        Some(self.wheel[self.last].1.profile(x))
+    }
+
+    /// Steps a to h of Sec. 6.2.
+    fn wheel_height(&mut self, xi: f64, eta: f64, guess: f64) -> f64 {
+        let Station { x: x_c, z: z_c, cos, sin } = self.placement.wheel.section.frame;
+        let radius = self.placement.wheel_radius;
+        let mut zeta = guess;
+        for _ in 0..MOST_ITERATIONS {
+            let x = x_c + xi * cos - zeta * sin;
+            let z = z_c + xi * sin + zeta * cos;
+            let Some((profile, slope)) = self.wheel_profile(x) else { return f64::NAN };
+            let rho = radius - profile;
+            let f = (z - radius) * (z - radius) - (rho * rho - eta * eta);
+            // (6.16): ∂F/∂z ∂z/∂ζ + ∂F/∂ρ ∂ρ/∂x ∂x/∂ζ, with ∂ρ/∂x = −slope.
+            let df = 2.0 * (z - radius) * cos + (-2.0 * rho) * -slope * -sin;
+            let step = -f / df;
+            zeta += step;
+            if step.abs() <= self.tolerance {
+                return zeta;
+            }
+            if step.is_nan() {
+                break;
+            }
+        }
+        f64::NAN
+    }
+}
+
+impl Kernel for ReportNewton<'_> {
+    fn column(&mut self, xi: f64, out: &mut [f64]) {
+        let holds = |([x0, x1], _): &&([f64; 2], Printed)| *x0 <= xi && xi <= *x1;
+        let rail = self.rail.iter().find(holds).map_or_else(
+            || self.placement.rail.section.height(xi), // a polynomial, which (6.2) does not cover
+            |(_, printed)| printed.profile(xi).0,
+        );
+        let guess = self.placement.wheel.section.height(xi);
+        for (s, &eta) in out.iter_mut().zip(&self.axis.eta) {
+            *s = self.wheel_height(xi, eta, guess) - rail;
+        }
+    }
+}
