@@ -6,6 +6,7 @@ pub mod interpenetration;
 pub mod numerics;
 pub mod placement;
 pub mod profile;
+pub mod scene;
 pub mod separation;
 
 pub use error::{Error, Result};

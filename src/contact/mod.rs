@@ -1,3 +1,4 @@
 //! The contact point: is it feasible, and what does Hertz say of it.
 
 pub mod feasibility;
+pub mod hertz;

@@ -23,7 +23,7 @@ const KRONROD: [f64; 8] = [
 ];
 /// Weights of the Gauss rule at the odd nodes above.
 const GAUSS: [f64; 4] =
-    [0.129_484_966_168_869_7, 0.279_705_391_489_276_64, 0.381_830_050_505_118_93, 0.417_959_183_673_469_4];
+    [0.129_484_966_168_869_7, 0.279_705_391_489_276_64, 0.381_830_050_505_118_9, 0.417_959_183_673_469_4];
 
 /// Halvings after which an interval is accepted as it is: 2^-40 of the range is below any kink's effect.
 const DEEPEST: u32 = 40;

@@ -102,7 +102,7 @@ impl Arc {
     /// Centre (a, b) of (3.2-a) \[mm\], or `None` for a line.
     pub fn centre(&self) -> Option<[f64; 2]> {
         let Station { x, z, cos, sin } = self.start;
-        self.radius.is_finite().then(|| [x - self.radius * sin, z + self.radius * cos])
+        self.radius.is_finite().then_some([x - self.radius * sin, z + self.radius * cos])
     }
 
     /// Turning angle from start to end \[rad\], signed; 0 for a line.

@@ -99,7 +99,7 @@ impl Polynomial {
                     }
                 })
                 .collect();
-            c[0] = c[0] + if x { frame.x } else { frame.z };
+            c[0] += if x { frame.x } else { frame.z };
             c
         };
         Self { t: self.t, x: turn(frame.cos, frame.sin, true), z: turn(frame.cos, frame.sin, false) }

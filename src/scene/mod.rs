@@ -1,0 +1,16 @@
+//! Scenes: what the user writes, read and checked once, in mm and rad from here on.
+
+mod data;
+mod read;
+mod resolve;
+
+pub use data::{
+    AxisData, ContactData, Format, GridData, GridMethod, MaterialData, OutputData, PatchData, ProfileData,
+    Rotation, Scene, Spacing,
+};
+pub use read::{hash, load, parse};
+
+/// The JSON Schema of a scene.
+pub fn schema() -> schemars::Schema {
+    schemars::schema_for!(Scene)
+}

@@ -1,0 +1,226 @@
+//! Scene → domain: profiles, axes, approach.
+
+use std::path::Path;
+
+use super::data::{AxisData, ProfileData, Rotation, Scene, Spacing};
+use super::read::parse;
+use crate::error::{Error, Result, finite};
+use crate::placement::Pair;
+use crate::profile::drawing::{SegmentData, chain};
+use crate::profile::{Profile, standards};
+
+/// Grid points beyond which s alone takes more than a GiB, its files five.
+const MOST_POINTS: f64 = 1.2e8;
+
+/// A profile file: the same keys as inline.
+#[derive(Debug, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ProfileFile {
+    #[serde(default)]
+    name: Option<String>,
+    #[serde(default)]
+    source: Option<String>,
+    #[serde(default)]
+    start: Option<[f64; 2]>,
+    segments: Vec<SegmentData>,
+}
+
+impl Scene {
+    /// The rail and wheel of the scene, turned and shifted as it says; files are relative to `folder`.
+    ///
+    /// # Errors
+    /// Whatever is wrong with a profile, by key.
+    pub fn pair(&self, folder: &Path) -> Result<Pair> {
+        let rail = self.rail.resolve(folder, standards::rail).map_err(|e| e.within("rail"))?;
+        if let Some(radius) = self.rail.radius {
+            let expected = "a radius only for the wheel";
+            return Err(Error::new("rail: radius", radius.to_string(), expected, "remove it"));
+        }
+        let wheel = self.wheel.resolve(folder, standards::wheel).map_err(|e| e.within("wheel"))?;
+        let radius = self.wheel.radius.ok_or_else(|| {
+            Error::new("wheel", "no `radius`", "the nominal rolling radius in mm", "add it")
+        })?;
+        Pair::new(rail, wheel, radius)
+    }
+
+    /// The two abscissae of `[contact]`.
+    ///
+    /// # Errors
+    /// One of them is missing.
+    pub fn contact_points(&self) -> Result<[f64; 2]> {
+        match (self.contact.rail_x, self.contact.wheel_x) {
+            (Some(rail), Some(wheel)) => Ok([rail, wheel]),
+            _ => {
+                let expected = "both `rail_x` and `wheel_x`";
+                Err(Error::new("contact", "one abscissa or none", expected, "give the pair of points"))
+            }
+        }
+    }
+
+    /// The approach δ \[mm\] when it is given directly.
+    ///
+    /// # Errors
+    /// Both or neither of `approach` and `load`; a negative or non-finite value.
+    pub fn check_patch(&self) -> Result<()> {
+        let Some(patch) = &self.patch else { return Ok(()) };
+        let expected = "exactly one of `approach` and `load`";
+        let (key, value) = match (patch.approach, patch.load) {
+            (Some(approach), None) => ("patch: approach", approach),
+            (None, Some(load)) => ("patch: load", load),
+            (Some(_), Some(_)) => return Err(Error::new("patch", "both", expected, "remove one")),
+            (None, None) => return Err(Error::new("patch", "neither", expected, "give one")),
+        };
+        if finite(key, value)? < 0.0 {
+            return Err(Error::new(key, value.to_string(), "a value ≥ 0", "correct the sign"));
+        }
+        Ok(())
+    }
+
+    /// The tolerance on s \[mm\].
+    ///
+    /// # Errors
+    /// Not a positive number.
+    pub fn tolerance(&self) -> Result<f64> {
+        let tolerance = self.grid.tolerance;
+        if tolerance > 0.0 && tolerance.is_finite() {
+            return Ok(tolerance);
+        }
+        let expected = "a positive length in mm";
+        Err(Error::new("grid: tolerance", tolerance.to_string(), expected, "1e-12 gives all digits"))
+    }
+
+    /// The explicit values of an axis, or `None` for "auto".
+    ///
+    /// # Errors
+    /// Values that are not finite, not ascending or too many.
+    pub fn axis(&self, name: &str) -> Result<Option<Vec<f64>>> {
+        let axis = if name == "xi" { &self.grid.xi } else { &self.grid.eta };
+        let place = format!("grid: {name}");
+        let values = match axis {
+            AxisData::Word(_) => return Ok(None),
+            AxisData::Values(list) => list.values.clone(),
+            AxisData::Steps(steps) => {
+                let (from, to) = (finite(&place, steps.from)?, finite(&place, steps.to)?);
+                if from >= to || steps.n < 2 {
+                    let found = format!("from {from} to {to} with n = {}", steps.n);
+                    return Err(Error::new(place, found, "from < to and n ≥ 2", "correct the axis"));
+                }
+                check_points(&place, steps.n as f64)?;
+                equal_steps(from, to, steps.n as usize)
+            }
+        };
+        if values.is_empty() || !values.windows(2).all(|pair| pair[0] < pair[1]) {
+            let expected = "at least one value, each larger than the one before";
+            return Err(Error::new(place, "another order", expected, "sort the values"));
+        }
+        for &value in &values {
+            finite(&place, value)?;
+        }
+        Ok(Some(values))
+    }
+
+    /// \[Δξ, Δη\] of automatic axes.
+    ///
+    /// # Errors
+    /// A step that is not positive.
+    pub fn spacing(&self) -> Result<Option<[f64; 2]>> {
+        let Some(spacing) = self.grid.spacing else { return Ok(None) };
+        let steps = match spacing {
+            Spacing::Both(step) => [step; 2],
+            Spacing::Each(steps) => steps,
+        };
+        for step in steps {
+            if finite("grid: spacing", step)? <= 0.0 {
+                return Err(Error::new(
+                    "grid: spacing",
+                    step.to_string(),
+                    "a positive step in mm",
+                    "correct it",
+                ));
+            }
+        }
+        Ok(Some(steps))
+    }
+}
+
+/// Rejects grids that would not fit into memory.
+///
+/// # Errors
+/// More than [`MOST_POINTS`] points.
+pub(crate) fn check_points(place: &str, points: f64) -> Result<()> {
+    if points <= MOST_POINTS {
+        return Ok(());
+    }
+    let expected = format!("at most {MOST_POINTS:e} points");
+    Err(Error::new(place, format!("{points:e} points"), expected, "take a coarser grid or a smaller window"))
+}
+
+/// n values from a to b, symmetric to the last bit where a = −b.
+pub(crate) fn equal_steps(a: f64, b: f64, n: usize) -> Vec<f64> {
+    let last = (n - 1) as f64;
+    (0..n).map(|k| (a * (last - k as f64) + b * k as f64) / last).collect()
+}
+
+impl ProfileData {
+    fn resolve(&self, folder: &Path, built_in: fn(&str) -> Result<Profile>) -> Result<Profile> {
+        let mut profile = match (&self.profile, &self.file, &self.segments) {
+            (Some(name), None, None) => built_in(name)?,
+            (None, Some(file), None) => from_file(&folder.join(file))?,
+            (None, None, Some(segments)) => chain("inline", "scene", self.start, segments)?,
+            _ => {
+                let expected = "exactly one of `profile`, `file`, `segments`";
+                return Err(Error::new("", "none or several", expected, "give one source"));
+            }
+        };
+        if self.start.is_some() && self.segments.is_none() {
+            let expected = "`start` only with `segments`";
+            return Err(Error::new("start", "a first point", expected, "remove it"));
+        }
+        if self.mirror {
+            profile = profile.mirrored();
+        }
+        if let Some(rotation) = &self.rotate {
+            let (cos, sin) = rotation.cosine_sine().map_err(|e| e.within("rotate"))?;
+            profile = profile.rotated(cos, sin);
+        }
+        if let Some([x, z]) = self.shift {
+            profile = profile.shifted(finite("shift", x)?, finite("shift", z)?);
+        }
+        Ok(profile)
+    }
+}
+
+impl Rotation {
+    /// (cos, sin) of the angle.
+    fn cosine_sine(&self) -> Result<(f64, f64)> {
+        let bad = |found: String| Error::new("", found, "rad, or \"1:n\" with n ≠ 0", "correct it");
+        match self {
+            Self::Radians(angle) => {
+                let (sin, cos) = finite("", *angle)?.sin_cos();
+                Ok((cos, sin))
+            }
+            Self::Ratio(text) => {
+                let (one, n) = text.split_once(':').ok_or_else(|| bad(format!("\"{text}\"")))?;
+                let number = |s: &str| s.trim().parse::<f64>().ok().filter(|v| v.is_finite());
+                match (number(one), number(n)) {
+                    (Some(rise), Some(run)) if run != 0.0 => {
+                        let run_length = rise.hypot(run).copysign(run);
+                        Ok((run / run_length, rise / run_length))
+                    }
+                    _ => Err(bad(format!("\"{text}\""))),
+                }
+            }
+        }
+    }
+}
+
+fn from_file(path: &Path) -> Result<Profile> {
+    let place = path.display().to_string();
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| Error::new(&place, error.to_string(), "a readable file", "check the path"))?;
+    let json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
+    let file: ProfileFile = parse(&text, json).map_err(|e| e.within(&place))?;
+    let name = file.name.unwrap_or_else(|| place.clone());
+    let source = file.source.unwrap_or_else(|| place.clone());
+    chain(&name, &source, file.start, &file.segments).map_err(|e| e.within(&place))
+}
