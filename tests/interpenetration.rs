@@ -183,7 +183,6 @@ fn areas_agree_with_rows_of_constant_eta() {
             // Kinks of the boundary at joints slow the rows down, not the area.
             let allowed = if component.corners.len() == 2 { 1e-9 } else { 1e-4 };
             let error = (component.area / rows - 1.0).abs();
-            println!("{name}: {error:.1e}");
             assert!(error < allowed, "{name}: area {} by columns, {rows} by rows", component.area);
         }
     }
