@@ -1,6 +1,7 @@
 //! Wheel/rail contact-patch preprocessor.
 
 pub mod error;
+pub mod export;
 pub mod numerics;
 pub mod profile;
 
