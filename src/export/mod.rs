@@ -5,6 +5,7 @@
 //! [`Header::statements`] is the one place where frame, signs, order and mask are put into words.
 
 mod block;
+pub mod deck;
 pub mod folder;
 mod model;
 pub mod npy;

@@ -171,7 +171,8 @@ fn even_step(format: &str, axis: &str, values: &[f64]) -> Result<f64> {
     }
     let step = (last - first) / (values.len() - 1) as f64;
     let slack = STEP_ROUNDING * first.abs().max(last.abs());
-    match values.windows(2).find(|pair| !((pair[1] - pair[0] - step).abs() <= slack)) {
+    let even = |pair: &[f64]| (pair[1] - pair[0] - step).abs() <= slack;
+    match values.windows(2).find(|pair| !even(pair)) {
         None => Ok(step),
         Some(pair) => Err(Error::new(
             format!("grid.{axis}"),

@@ -14,14 +14,16 @@ use std::io::{self, Write};
 /// VTK's flag for a point that is not to be shown (`vtkDataSetAttributes::HIDDENPOINT`).
 const HIDDEN: u8 = 2;
 
+/// Fills the bytes of column i.
+type FillColumn<'a> = Box<dyn Fn(usize, &mut [u8]) + 'a>;
+
 /// One array of a grid, given column by column (a column: constant ξ).
 struct Array<'a> {
     name: &'a str,
     kind: &'a str,
     components: usize,
     bytes_per_point: usize,
-    /// Fills the bytes of column i.
-    column: Box<dyn Fn(usize, &mut [u8]) + 'a>,
+    column: FillColumn<'a>,
 }
 
 impl<'a> Array<'a> {
