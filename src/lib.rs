@@ -2,6 +2,7 @@
 
 pub mod contact;
 pub mod error;
+pub mod export;
 pub mod interpenetration;
 pub mod numerics;
 pub mod placement;
