@@ -1,5 +1,7 @@
 //! Wheel/rail contact-patch preprocessor.
 
+pub mod analysis;
+pub mod cli;
 pub mod contact;
 pub mod error;
 pub mod export;
