@@ -5,10 +5,13 @@
 //! [`Header::statements`] is the one place where frame, signs, order and mask are put into words.
 
 mod block;
+pub mod csv;
 pub mod deck;
 pub mod folder;
 mod model;
+pub mod netcdf;
 pub mod npy;
+pub mod vtk;
 pub mod vts;
 
 pub use folder::{Folder, Names};
