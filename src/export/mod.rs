@@ -17,6 +17,9 @@ pub mod vts;
 pub use folder::{Folder, Names};
 pub use model::{Frame, GridFields, Header, Interval, Loop, QuadMesh, SurfaceMesh};
 
+/// The ParaView script that opens the folder it lies in: separation coloured, boundary overlaid, gap vectors.
+pub const VIEW_SCRIPT: &str = include_str!("view.py");
+
 /// By what a folder of `wheelrail run` is known, and all that one may contain.
 pub const RUN_FOLDER: Names = Names {
     marker: "summary.json",
