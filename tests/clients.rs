@@ -200,6 +200,67 @@ fn every_reader_gives_back_what_was_written() {
     }
 }
 
+/// ParaView is too large to be installed for this; where it is there, `view.py` is run by it.
+#[test]
+fn the_view_script_draws_where_paraview_is() {
+    let dir = folder("viewed");
+    Scene { separation: lopsided, approach: 0.05, n: [61, 40] }.write(&dir);
+    let compiled = Command::new(python()).args(["-m", "py_compile"]).arg(dir.join("view.py")).status();
+    assert!(compiled.unwrap().success());
+    let picture = folder("view.png");
+    drop(std::fs::remove_file(&picture));
+    let mut paraview = Command::new("xvfb-run");
+    paraview.args(["-a", "pvbatch"]).arg(dir.join("view.py")).arg(&picture);
+    match paraview.output() {
+        Ok(output) => assert!(picture.exists(), "{}", String::from_utf8_lossy(&output.stderr)),
+        Err(_) => eprintln!("NOT RUN: view.py, as ParaView (pvbatch) and xvfb-run are not installed here"),
+    }
+}
+
+/// Rates of the grid's files against a plain write of as many bytes:
+/// `cargo test --release --test clients rate -- --ignored --nocapture`.
+#[test]
+#[ignore = "a measurement"]
+fn rate_of_writing() {
+    let scene = Scene { separation: hertz, approach: APPROACH, n: [2000, 2000] };
+    let [xi, eta] = scene.axes();
+    let separation: Vec<f64> = xi.iter().flat_map(|&x| eta.iter().map(move |&y| hertz(x, y))).collect();
+    let (heights, normals) = (vec![0.0; xi.len()], vec![[0.0, 1.0]; xi.len()]);
+    let grid = GridFields::new(&xi, &eta, &separation, &heights, &normals).unwrap();
+    let frame = Frame::at(0.0, 0.0, 1.0, 0.0);
+    let (title, version, scene_hash) = (String::new(), String::new(), String::new());
+    let header = Header { title, version, scene_hash, approach: APPROACH, frame };
+    let netcdf = NetCdf::new(&header, &grid).unwrap();
+    type Writer<'a> = Box<dyn Fn(&mut dyn std::io::Write) -> std::io::Result<()> + 'a>;
+    let writers: [(&str, Writer); 3] = [
+        ("separation.npy", Box::new(|sink| npy::array(sink, &[2000, 2000], grid.separation()))),
+        ("separation.vts", Box::new(|sink| vts::separation(sink, &header, &grid))),
+        ("separation.nc", Box::new(|sink| netcdf.write(sink))),
+    ];
+    for (name, writer) in &writers {
+        for _ in 0..4 {
+            let out = Folder::create(&folder("rate"), RUN_FOLDER).unwrap();
+            let begun = std::time::Instant::now();
+            out.stream(name, |sink| writer(sink)).unwrap();
+            let ours = begun.elapsed().as_secs_f64();
+            drop(out);
+            let mut bytes = Vec::new();
+            writer(&mut bytes).unwrap();
+            let out = Folder::create(&folder("rate"), RUN_FOLDER).unwrap();
+            let begun = std::time::Instant::now();
+            out.write(name, &bytes).unwrap();
+            let plain = begun.elapsed().as_secs_f64();
+            let rate = bytes.len() as f64 / 1e9;
+            eprintln!(
+                "{name}: {:.2} GB/s, plain write {:.2} GB/s: {:.2}",
+                rate / ours,
+                rate / plain,
+                plain / ours
+            );
+        }
+    }
+}
+
 #[test]
 fn tamaas_and_contact_mechanics_solve_hertz() {
     let dir = folder("hertz");

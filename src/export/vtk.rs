@@ -2,9 +2,9 @@
 //! [`vts`](super::vts).
 //!
 //! Its traps, and what is done about them here, in one place: partial writes pass as success (encode to memory),
-//! array lengths are not checked (checked here), an empty PolyData is unreadable (written by hand), FieldData is
-//! dropped from XML (inserted as text), legacy little-endian and blanks in array names break readers (neither is
-//! offered). Only versions and cell kinds are used that meshio reads too: XML 1.0, legacy 4.2.
+//! array lengths are not checked (checked here), counts of zero are left out, which makes empty files
+//! unreadable (put in), FieldData is dropped from XML (inserted as text), legacy little-endian and blanks in array
+//! names break readers (neither is offered). Only versions and cell kinds are used that meshio reads too: XML 1.0, legacy 4.2.
 
 use super::model::{GridFields, Header, Loop, QuadMesh, SurfaceMesh, plain, same_length};
 use super::vts::{comment, field_data};
@@ -14,10 +14,12 @@ use vtkio::model::{
     PolyDataPiece, StructuredGridPiece, UnstructuredGridPiece, Version, VertexNumbers, Vtk,
 };
 
-/// A PolyData without points as VTK itself reads it.
-const EMPTY_POLYDATA: &str = "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" \
-    header_type=\"UInt64\"><PolyData><Piece NumberOfPoints=\"0\" NumberOfVerts=\"0\" NumberOfLines=\"0\" \
-    NumberOfStrips=\"0\" NumberOfPolys=\"0\"></Piece></PolyData></VTKFile>";
+/// The counts that `vtkio` leaves out when they are zero, without which no reader takes a file.
+const EMPTY_POLYDATA: &str = "<Piece NumberOfPoints=\"0\" NumberOfVerts=\"0\" NumberOfLines=\"0\" \
+    NumberOfStrips=\"0\" NumberOfPolys=\"0\">";
+
+/// The same for an unstructured grid.
+const EMPTY_UNSTRUCTURED: &str = "<Piece NumberOfPoints=\"0\" NumberOfCells=\"0\">";
 
 /// `boundary.vtp`: each loop as one closed polyline on the rail's surface, with the cell array `component`.
 ///
@@ -25,9 +27,6 @@ const EMPTY_POLYDATA: &str = "<VTKFile type=\"PolyData\" version=\"1.0\" byte_or
 /// What `vtkio` refuses, which would be a fault of this program.
 pub fn boundary(header: &Header, loops: &[Loop]) -> Result<Vec<u8>> {
     let loops: Vec<_> = loops.iter().filter(|ring| !ring.points.is_empty()).collect();
-    if loops.is_empty() {
-        return Ok(annotate(EMPTY_POLYDATA.into(), header));
-    }
     let (mut connectivity, mut offsets, mut first) = (Vec::new(), Vec::new(), 0);
     for ring in &loops {
         let count = ring.points.len() as u64;
@@ -44,7 +43,7 @@ pub fn boundary(header: &Header, loops: &[Loop]) -> Result<Vec<u8>> {
         data: Attributes { point: Vec::new(), cell },
         ..PolyDataPiece::default()
     };
-    xml(header, DataSet::inline(piece))
+    xml(header, DataSet::inline(piece), EMPTY_POLYDATA)
 }
 
 /// `patch.vtu`: the boundary-fitted cells on the rail's surface, with the cell arrays `area` \[mm²\] and
@@ -101,9 +100,8 @@ pub fn legacy_grid(header: &Header, grid: &GridFields) -> Result<Vec<u8>> {
         header.version, header.scene_hash, header.approach
     ));
     let mut bytes = Vec::new();
-    vtk(Version::new_legacy(4, 2), title, DataSet::inline(piece))
-        .write_legacy(&mut bytes)
-        .map_err(refused)?;
+    let file = vtk(Version::new_legacy(4, 2), title, DataSet::inline(piece));
+    Vtk { byte_order: ByteOrder::BigEndian, ..file }.write_legacy(&mut bytes).map_err(refused)?;
     Ok(bytes)
 }
 
@@ -142,7 +140,7 @@ fn unstructured(
         cells: Cells { cell_verts: VertexNumbers::XML { connectivity, offsets }, types },
         data: Attributes { point: Vec::new(), cell },
     };
-    xml(header, DataSet::inline(piece))
+    xml(header, DataSet::inline(piece), EMPTY_UNSTRUCTURED)
 }
 
 /// The nodes of a cell without neighbours that are equal.
@@ -161,11 +159,11 @@ fn scalars(name: &str, data: IOBuffer, expected: usize) -> Result<Attribute> {
     Ok(Attribute::DataArray(DataArray { name: name.into(), elem, data }))
 }
 
-fn xml(header: &Header, data: DataSet) -> Result<Vec<u8>> {
+fn xml(header: &Header, data: DataSet, empty_piece: &str) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     vtk(Version::new_xml(1, 0), String::new(), data).write_xml(&mut bytes).map_err(refused)?;
     let text = String::from_utf8(bytes).map_err(refused)?;
-    Ok(annotate(text, header))
+    Ok(annotate(text.replacen("<Piece>", empty_piece, 1), header))
 }
 
 fn vtk(version: Version, title: String, data: DataSet) -> Vtk {
@@ -235,8 +233,12 @@ mod tests {
     #[test]
     fn the_legacy_grid_says_its_version() {
         let sample = Sample::new(3, 4);
-        let text = text(&legacy_grid(&header(), &sample.fields()).unwrap());
+        let bytes = legacy_grid(&header(), &sample.fields()).unwrap();
+        let text = text(&bytes);
         assert!(text.starts_with("# vtk DataFile Version 4.2\nwheelrail 0.0.0, 0123abcd"), "{text}");
         assert!(text.contains("DIMENSIONS 4 3 1"), "{text}");
+        // Readers take big-endian for granted.
+        let first = sample.xi[0].to_be_bytes();
+        assert!(bytes.windows(8).any(|window| window == first));
     }
 }
