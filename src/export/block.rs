@@ -60,3 +60,10 @@ pub(super) fn put_vectors(room: &mut [u8], vectors: impl Iterator<Item = [f64; 3
         place[16..].copy_from_slice(&z.to_le_bytes());
     }
 }
+
+/// As [`put_f64`], big-endian.
+pub(super) fn put_f64_be(room: &mut [u8], values: impl Iterator<Item = f64>) {
+    for (place, value) in room.chunks_exact_mut(8).zip(values) {
+        place.copy_from_slice(&value.to_be_bytes());
+    }
+}

@@ -5,14 +5,20 @@
 //! [`Header::statements`] is the one place where frame, signs, order and mask are put into words.
 
 mod block;
+pub mod csv;
 pub mod deck;
 pub mod folder;
 mod model;
+pub mod netcdf;
 pub mod npy;
+pub mod vtk;
 pub mod vts;
 
 pub use folder::{Folder, Names};
 pub use model::{Frame, GridFields, Header, Interval, Loop, QuadMesh, SurfaceMesh};
+
+/// The ParaView script that opens the folder it lies in: separation coloured, boundary overlaid, gap vectors.
+pub const VIEW_SCRIPT: &str = include_str!("view.py");
 
 /// By what a folder of `wheelrail run` is known, and all that one may contain.
 pub const RUN_FOLDER: Names = Names {
