@@ -1,6 +1,5 @@
 //! Wheel/rail contact-patch preprocessor.
 
-pub mod analysis;
 pub mod cli;
 pub mod contact;
 pub mod error;
@@ -9,6 +8,7 @@ pub mod interpenetration;
 pub mod numerics;
 pub mod placement;
 pub mod profile;
+pub mod run;
 pub mod scene;
 pub mod separation;
 

@@ -61,6 +61,14 @@ pub struct Folder {
     _lock: File,
 }
 
+/// A folder being written, or one of its subfolders.
+#[derive(Debug)]
+pub struct FolderPart<'a> {
+    temporary: PathBuf,
+    target: PathBuf,
+    _whole: &'a Folder,
+}
+
 impl Folder {
     /// A temporary folder beside `dir`, after stale ones of killed runs have been removed. Missing parents are
     /// created; a symbolic link to a folder is followed.
@@ -82,38 +90,30 @@ impl Folder {
         Ok(Self { target, temporary, names, _lock: lock })
     }
 
+    /// A subfolder with files of the same names, made at once; an empty `name` is the folder itself.
+    ///
+    /// # Errors
+    /// Whatever the disk says.
+    pub fn part(&self, name: &str) -> Result<FolderPart<'_>> {
+        let (temporary, target) = (self.temporary.join(name), self.target.join(name));
+        fs::create_dir_all(&temporary).map_err(|e| unwritable(&target, &e))?;
+        Ok(FolderPart { temporary, target, _whole: self })
+    }
+
     /// Writes one file of the folder.
     ///
     /// # Errors
-    /// Whatever the disk says (full, quota, …); a name that was written already.
+    /// As [`FolderPart::write`].
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<()> {
-        self.stream(name, |sink| sink.write_all(bytes))
+        self.part("")?.write(name, bytes)
     }
 
-    /// Writes one file of the folder piece by piece, for large ones. The sink is not buffered: hand it blocks
-    /// of at least some ten kilobytes.
+    /// Writes one file of the folder piece by piece.
     ///
     /// # Errors
-    /// As [`Folder::write`].
+    /// As [`FolderPart::write`].
     pub fn stream(&self, name: &str, content: impl FnOnce(&mut File) -> io::Result<()>) -> Result<()> {
-        let path = self.temporary.join(name);
-        let file = File::options().write(true).create_new(true).open(&path);
-        file.and_then(|mut file| {
-            content(&mut file)?;
-            file.flush()
-        })
-        .map_err(|e| {
-            let advice = match e.kind() {
-                ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "free some space or give another --out",
-                _ => "check the folder, or give another --out",
-            };
-            Error::new(
-                self.target.join(name).display().to_string(),
-                e.to_string(),
-                "a file written whole",
-                advice,
-            )
-        })
+        self.part("")?.stream(name, content)
     }
 
     /// Puts the folder in DIR's place and deletes the old one. An old folder that cannot be deleted is left,
@@ -161,6 +161,42 @@ impl Folder {
             }
         }
         Ok(())
+    }
+}
+
+impl FolderPart<'_> {
+    /// Writes one file.
+    ///
+    /// # Errors
+    /// Whatever the disk says (full, quota, …); a name that was written already.
+    pub fn write(&self, name: &str, bytes: &[u8]) -> Result<()> {
+        self.stream(name, |sink| sink.write_all(bytes))
+    }
+
+    /// Writes one file piece by piece, for large ones. The sink is not buffered: hand it blocks of at least some
+    /// ten kilobytes.
+    ///
+    /// # Errors
+    /// As [`FolderPart::write`].
+    pub fn stream(&self, name: &str, content: impl FnOnce(&mut File) -> io::Result<()>) -> Result<()> {
+        let path = self.temporary.join(name);
+        let file = File::options().write(true).create_new(true).open(&path);
+        file.and_then(|mut file| {
+            content(&mut file)?;
+            file.flush()
+        })
+        .map_err(|e| {
+            let advice = match e.kind() {
+                ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "free some space or give another --out",
+                _ => "check the folder, or give another --out",
+            };
+            Error::new(
+                self.target.join(name).display().to_string(),
+                e.to_string(),
+                "a file written whole",
+                advice,
+            )
+        })
     }
 }
 
@@ -239,7 +275,13 @@ fn foreign_files(target: &Path, names: Names) -> Result<Vec<PathBuf>> {
     }
     let is_foreign = |entry: &fs::DirEntry| !names.files.iter().any(|name| entry.file_name() == **name);
     let foreign: Vec<_> = entries.iter().filter(|entry| is_foreign(entry)).collect();
-    if let Some(folder) = foreign.iter().find(|entry| entry.file_type().is_ok_and(|t| t.is_dir())) {
+    // Subfolders are ours when they are folders of the same kind and hold nothing else.
+    let is_folder = |entry: &fs::DirEntry| entry.file_type().is_ok_and(|kind| kind.is_dir());
+    let is_part = |entry: &fs::DirEntry| {
+        is_folder(entry) && foreign_files(&entry.path(), names).is_ok_and(|files| files.is_empty())
+    };
+    let foreign: Vec<_> = foreign.into_iter().filter(|entry| !is_part(entry)).collect();
+    if let Some(folder) = foreign.iter().find(|entry| is_folder(entry)) {
         let found = format!("a folder {} that this program did not write", folder.file_name().display());
         return Err(bad(target, &found, "files only", "move it elsewhere or give another --out"));
     }

@@ -14,7 +14,7 @@ pub mod npy;
 pub mod vtk;
 pub mod vts;
 
-pub use folder::{Folder, Names};
+pub use folder::{Folder, FolderPart, Names};
 pub use model::{Frame, GridFields, Header, Interval, Loop, QuadMesh, SurfaceMesh};
 
 /// The ParaView script that opens the folder it lies in: separation coloured, boundary overlaid, gap vectors.

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::Run;
+use super::{Part, Run};
 use crate::interpenetration::{Component, Patch};
 use crate::placement::Body;
 use crate::profile::continuity::Joint;
@@ -25,8 +25,8 @@ struct BodySummary<'a> {
 const PERFECT_JOINT: f64 = 1e-9;
 
 /// The summary as JSON text.
-pub(super) fn summary(run: &Run, files: &[String], skipped: &[String]) -> Vec<u8> {
-    let (contact, analysis) = (&run.contact, &run.analysis);
+pub(super) fn summary(run: &Run, part: &Part, files: &[String], skipped: &[String]) -> Vec<u8> {
+    let (contact, analysis) = (&part.contact, &part.analysis);
     let placement = &contact.placement;
     let value = json!({
         "program": "wheelrail",
@@ -55,8 +55,9 @@ pub(super) fn summary(run: &Run, files: &[String], skipped: &[String]) -> Vec<u8
             "estimated_error_mm": analysis.plan.error,
             "reason": analysis.plan.reason,
         },
-        "refusals": run.refusals(),
-        "warnings": run.warnings(),
+        "refusals": part.refusals(),
+        "warnings": part.warnings(),
+        "other_parts": run.parts.iter().map(|p| &p.folder).filter(|f| **f != part.folder).collect::<Vec<_>>(),
         "files": files,
         "files_skipped": skipped,
         "timings": analysis.timings,

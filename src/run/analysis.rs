@@ -1,4 +1,4 @@
-//! One placed pair from scene to numbers: everything that [`crate::export`] writes, computed and nothing written.
+//! One placed pair from question to numbers.
 
 use std::time::Instant;
 
