@@ -1,0 +1,4 @@
+//! Where wheel and rail touch, and how.
+
+pub mod search;
+pub mod sweep;

@@ -1,0 +1,3 @@
+//! Where the bodies are: contact frames, track and wheelset.
+
+pub mod track;
