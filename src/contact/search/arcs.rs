@@ -2,9 +2,9 @@
 //! or, for a yawed torus, from roots that are known to be bracketed.
 
 use super::element::ArcElement;
+use super::isolate::monotone;
 use super::locus::Attitude;
 use super::walk::{Placed, Walk};
-use crate::numerics::roots::bracketed;
 use crate::profile::Station;
 
 /// Slack of a sine against the ends of an element: a root on a joint may come out this far beyond either
@@ -57,7 +57,7 @@ fn yawed(walk: &mut Walk, arc: &ArcElement, rail: &ArcElement, [low, high]: [f64
         }
     }
     cuts[count] = high;
-    let apart = |sin: f64| {
+    let mut apart = |sin: f64| {
         let cos = cosine(sin);
         let point = wheel_point(&attitude, arc, sin, cos);
         attitude.outline(&point).x - rail.at(sin, cos).x
@@ -67,12 +67,7 @@ fn yawed(walk: &mut Walk, arc: &ArcElement, rail: &ArcElement, [low, high]: [f64
         values[k] = apart(cuts[k]);
     }
     for k in 0..count {
-        let root = if (values[k] > 0.0) == (values[k + 1] > 0.0) {
-            let nearer = if values[k].abs() < values[k + 1].abs() { k } else { k + 1 };
-            (values[nearer].abs() <= rounding).then_some(cuts[nearer])
-        } else {
-            bracketed(apart, cuts[k], cuts[k + 1])
-        };
+        let root = monotone(&mut apart, [cuts[k], cuts[k + 1]], [values[k], values[k + 1]], rounding);
         if let Some(sin) = root {
             offer(walk, arc, rail, sin);
         }

@@ -21,6 +21,8 @@ pub(super) struct Element {
     pub x: [f64; 2],
     /// Sines of the tangent angles it has, ascending.
     pub sine: [f64; 2],
+    /// Its points with the extreme tangents of `sine`; of a polynomial the two ends.
+    pub ends: [Station; 2],
 }
 
 /// The shapes the search tells apart.
@@ -157,23 +159,26 @@ fn fan(point: &Station, from: f64, to: f64, side: Side) -> Option<Element> {
         _ => return None,
     };
     let (low, high) = (low.max(-FRAC_PI_2), high.min(FRAC_PI_2));
+    let ends = [low, high].map(|angle| Station { sin: angle.sin(), cos: angle.cos().max(0.0), ..*point });
     (low < high).then(|| Element {
         shape: Shape::Arc(ArcElement::fan(point, side)),
         x: [point.x; 2],
-        sine: [low.sin(), high.sin()],
+        sine: ends.map(|end| end.sin),
+        ends,
     })
 }
 
-fn smooth(branch: &Branch, index: usize, ends: [Station; 2], out: &mut Vec<Element>) {
+fn smooth(branch: &Branch, index: usize, mut ends: [Station; 2], out: &mut Vec<Element>) {
     let x = ends.map(|end| end.x);
     let shape = match &branch.shape {
         BranchShape::Arc(arc) if arc.curvature == 0.0 => Shape::Line(ends),
         BranchShape::Arc(arc) => Shape::Arc(ArcElement::of(arc)),
         BranchShape::Polynomial(_) => return cut(branch, index, x, DEEPEST_CUT, out),
     };
-    let mut sine = ends.map(|end| end.sin);
-    sine.sort_by(f64::total_cmp);
-    out.push(Element { shape, x, sine });
+    if ends[0].sin > ends[1].sin {
+        ends.swap(0, 1);
+    }
+    out.push(Element { shape, x, sine: ends.map(|end| end.sin), ends });
 }
 
 /// Cuts a polynomial until its second derivative is nearly constant.
@@ -186,7 +191,8 @@ fn cut(branch: &Branch, index: usize, [a, b]: [f64; 2], depth: u32, out: &mut Ve
     }
     let stretch = Stretch { branch: index, middle: branch.station(middle), bounds };
     let sine = bounds.slope.map(sine_of_slope);
-    out.push(Element { shape: Shape::Polynomial(stretch), x: [a, b], sine });
+    let ends = [a, b].map(|x| branch.station(x));
+    out.push(Element { shape: Shape::Polynomial(stretch), x: [a, b], sine, ends });
 }
 
 fn sine_of_slope(slope: f64) -> f64 {
@@ -203,8 +209,11 @@ mod tests {
     fn fans_stand_at_ends_and_at_outward_kinks_only() -> Result<()> {
         let profile = standards::wheel("EN15302-A")?;
         let section = Section::own_axes(&profile, Side::Wheel);
-        let fans: Vec<f64> =
-            elements(&profile, &section, Side::Wheel).iter().filter(|e| e.x[0] == e.x[1]).map(|e| e.x[0]).collect();
+        let fans: Vec<f64> = elements(&profile, &section, Side::Wheel)
+            .iter()
+            .filter(|e| e.x[0] == e.x[1])
+            .map(|e| e.x[0])
+            .collect();
         // The flange back, the kinks to 1:15 and to the chamfer, and the outer face; beside them only steps and
         // kinks of the drawing's rounding.
         for x in [30.0, 60.0, 65.0] {

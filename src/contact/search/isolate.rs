@@ -51,11 +51,7 @@ fn refine(
         return found(middle);
     }
     if slope[0] > 0.0 || slope[1] < 0.0 {
-        let ends = [f.value(a), f.value(b)];
-        let root = bracketed(|x| f.value(x), a, b).or_else(|| {
-            let nearer = usize::from(ends[1].abs() < ends[0].abs());
-            (ends[nearer].abs() <= rounding).then_some([a, b][nearer])
-        });
+        let root = monotone(&mut |x| f.value(x), [a, b], [f.value(a), f.value(b)], rounding);
         root.into_iter().for_each(found);
         return;
     }
@@ -68,6 +64,46 @@ fn refine(
     refine(f, [a, middle], f.slope(a, middle), rounding, depth - 1, found);
     refine(f, [middle, b], f.slope(middle, b), rounding, depth - 1, found);
 }
+
+/// The root of a monotone function with known values at the ends; an end whose value is within `rounding` counts.
+///
+/// Method: false position with Anderson and Björck's factors, three to five steps on nearly straight functions; ends
+/// when the value is a sixteenth of `rounding` or the bracket is; bisection where that fails.
+pub(super) fn monotone(
+    f: &mut impl FnMut(f64) -> f64,
+    [mut a, mut b]: [f64; 2],
+    [mut at_a, mut at_b]: [f64; 2],
+    rounding: f64,
+) -> Option<f64> {
+    if at_a.is_nan() || at_b.is_nan() {
+        return None;
+    }
+    if (at_a > 0.0) == (at_b > 0.0) {
+        let (end, value) = if at_a.abs() < at_b.abs() { (a, at_a) } else { (b, at_b) };
+        return (value.abs() <= rounding).then_some(end);
+    }
+    for _ in 0..FALSE_POSITIONS {
+        let x = a + (b - a) * (at_a / (at_a - at_b));
+        let value = f(x);
+        if value.abs() <= rounding / 16.0 {
+            return Some(x);
+        }
+        if (value > 0.0) == (at_b > 0.0) {
+            let factor = 1.0 - value / at_b;
+            at_a *= if factor > 0.0 { factor } else { 0.5 };
+        } else {
+            (a, at_a) = (b, at_b);
+        }
+        (b, at_b) = (x, value);
+        if (b - a).abs() <= f64::EPSILON * b.abs() {
+            return Some(b);
+        }
+    }
+    bracketed(f, a.min(b), a.max(b))
+}
+
+/// Steps after which false position has met a function it is not made for.
+const FALSE_POSITIONS: u32 = 16;
 
 #[cfg(test)]
 mod tests {

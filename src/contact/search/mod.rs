@@ -236,7 +236,10 @@ impl ContactSearch<'_> {
         let pair = self.pair;
         self.placed.clear();
         self.placed.extend(
-            pair.wheel.iter().enumerate().filter_map(|(index, element)| walk::place(attitude, index, element)),
+            pair.wheel
+                .iter()
+                .enumerate()
+                .filter_map(|(index, element)| walk::place(attitude, index, element)),
         );
         self.candidates.clear();
         let candidates = &mut self.candidates;

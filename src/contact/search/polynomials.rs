@@ -19,11 +19,8 @@ type Interval = [f64; 2];
 const ANYTHING: Interval = [f64::NEG_INFINITY, f64::INFINITY];
 
 /// A polynomial stretch of the wheel over any element of the rail.
-pub(super) fn over_rail(walk: &mut Walk, wheel: (&Stretch, &Placed, Interval), rail: &Element) {
-    let (stretch, placed, x) = wheel;
-    if placed.sine[0] > rail.sine[1] + SINE_ROUNDING || placed.sine[1] < rail.sine[0] - SINE_ROUNDING {
-        return;
-    }
+pub(super) fn over_rail(walk: &mut Walk, wheel: (&Stretch, Interval), rail: &Element) {
+    let (stretch, x) = wheel;
     let pair = walk.pair;
     let branch = &pair.wheel_section.branches[stretch.branch];
     let below = match &rail.shape {
@@ -131,10 +128,6 @@ impl Bounded for OverRail<'_> {
 /// An arc, fan or line of the wheel over a polynomial stretch of the rail.
 pub(super) fn under_wheel(walk: &mut Walk, wheel: &Element, placed: &Placed, rail: (&Stretch, Interval)) {
     let (stretch, x) = rail;
-    let sine = stretch.bounds.slope.map(|m| if m.is_infinite() { m.signum() } else { m / m.hypot(1.0) });
-    if placed.sine[0] > sine[1] + SINE_ROUNDING || placed.sine[1] < sine[0] - SINE_ROUNDING {
-        return;
-    }
     let pair = walk.pair;
     let branch = &pair.rail_section.branches[stretch.branch];
     let above = match &wheel.shape {
@@ -234,13 +227,13 @@ struct View {
 
 /// Bounds of f and V, or `None` where part of the stretch has no outline or is turned over by the roll.
 fn view(attitude: &Attitude, bounds: &Bounds, middle: &Station, width: f64) -> Option<View> {
-    let steepness = bounds.slope.map(|m| m * attitude.sin_yaw / attitude.cos_yaw);
-    if steepness.iter().any(|s| !(s.abs() < 1.0)) && attitude.sin_yaw != 0.0 {
-        return None;
-    }
     let mut tangents = bounds.slope;
     let mut seen = [1.0; 2];
     if attitude.sin_yaw != 0.0 {
+        let steepness = bounds.slope.map(|m| m * attitude.sin_yaw / attitude.cos_yaw);
+        if steepness.iter().any(|s| !(s.abs() < 1.0)) {
+            return None;
+        }
         for (tangent, s) in tangents.iter_mut().zip(steepness) {
             *tangent /= attitude.cos_yaw * cosine(s);
         }
@@ -261,16 +254,17 @@ fn view(attitude: &Attitude, bounds: &Bounds, middle: &Station, width: f64) -> O
     (turn[0] > 0.0).then_some(View { turn, seen })
 }
 
-/// Abscissae between which the outline of a stretch lies; anything where it may turn back.
-pub(super) fn range(attitude: &Attitude, stretch: &Stretch, x: Interval) -> Interval {
-    let width = x[1] - x[0];
-    let Some(View { turn, seen }) = view(attitude, &stretch.bounds, &stretch.middle, width) else {
-        return ANYTHING;
-    };
-    let reach = product(turn, seen).map(|v| v.abs() * width / (2.0 * attitude.cos_yaw));
-    let reach = reach[0].max(reach[1]);
-    let middle = attitude.outline(&stretch.middle).x;
-    [middle - reach, middle + reach]
+/// Abscissae between which the outline of a stretch lies, in any order; anything where it may turn back.
+///
+/// An outline that exists and is nowhere turned over by the roll runs to larger x as long as V > 0.
+pub(super) fn range(attitude: &Attitude, stretch: &Stretch, element: &Element) -> Interval {
+    if attitude.sin_yaw != 0.0 || attitude.sin_roll != 0.0 {
+        let width = element.x[1] - element.x[0];
+        if !view(attitude, &stretch.bounds, &stretch.middle, width).is_some_and(|view| view.seen[0] > 0.0) {
+            return ANYTHING;
+        }
+    }
+    element.ends.map(|end| attitude.outline(&end).x)
 }
 
 fn product(a: Interval, b: Interval) -> Interval {

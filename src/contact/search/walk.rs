@@ -1,10 +1,10 @@
 //! One walk over all pairs of elements at one attitude.
 
-use super::arcs::{arc_on_arc, arc_on_line, line_on_arc, line_on_line};
+use super::ProfilePair;
+use super::arcs::{SINE_ROUNDING, arc_on_arc, arc_on_line, cosine, line_on_arc, line_on_line};
 use super::element::{ArcElement, Element, Shape};
 use super::locus::Attitude;
 use super::polynomials;
-use super::ProfilePair;
 use crate::profile::Station;
 
 /// A wheel element as it stands over the rail.
@@ -53,14 +53,18 @@ impl Walk<'_> {
     /// Looks at every pair.
     pub fn all(&mut self, placed: &[Placed]) {
         let pair = self.pair;
+        let slack = self.rounding(0.0);
         for wheel in placed {
             let element = &pair.wheel[wheel.element];
-            let slack = self.rounding(0.0);
-            for rail in &pair.rail {
-                if rail.x[0] > wheel.x[1] + slack || rail.x[1] < wheel.x[0] - slack {
-                    continue;
+            let [low, high] = [wheel.x[0] - slack, wheel.x[1] + slack];
+            // The rail's elements are in order of x, both ends.
+            let first = pair.rail.partition_point(|rail| rail.x[1] < low);
+            for rail in pair.rail[first..].iter().take_while(|rail| rail.x[0] <= high) {
+                if rail.sine[0] <= wheel.sine[1] + SINE_ROUNDING
+                    && rail.sine[1] >= wheel.sine[0] - SINE_ROUNDING
+                {
+                    self.meet(element, wheel, rail);
                 }
-                self.meet(element, wheel, rail);
             }
         }
     }
@@ -71,8 +75,10 @@ impl Walk<'_> {
             (Shape::Line(ends), Shape::Arc(below)) => line_on_arc(self, ends, (below, rail.sine)),
             (Shape::Arc(arc), Shape::Line(below)) => arc_on_line(self, (arc, placed), below),
             (Shape::Line(ends), Shape::Line(below)) => line_on_line(self, ends, below),
-            (Shape::Polynomial(stretch), _) => polynomials::over_rail(self, (stretch, placed, wheel.x), rail),
-            (_, Shape::Polynomial(stretch)) => polynomials::under_wheel(self, wheel, placed, (stretch, rail.x)),
+            (Shape::Polynomial(stretch), _) => polynomials::over_rail(self, (stretch, wheel.x), rail),
+            (_, Shape::Polynomial(stretch)) => {
+                polynomials::under_wheel(self, wheel, placed, (stretch, rail.x))
+            }
         }
     }
 
@@ -105,53 +111,70 @@ impl Walk<'_> {
 ///
 /// An arc with its hollow side down has an outline only where ϱ_c < 0, else the rings beside it hide it.
 pub(super) fn place(attitude: &Attitude, index: usize, element: &Element) -> Option<Placed> {
-    let [mut low, mut high] = element.sine;
-    if low >= attitude.cos_yaw || high <= -attitude.cos_yaw {
-        return None;
-    }
-    let mut centre = 0.0;
-    let x = match &element.shape {
-        Shape::Arc(arc) => {
-            if let Some(steepest) = steepest_seen(attitude, arc) {
-                (low, high) = (low.max(-steepest), high.min(steepest));
-                if low > high {
-                    return None;
-                }
-            }
-            let [a, b] = arc.centre;
-            centre = attitude.offset + a * attitude.cos_roll + b * attitude.sin_roll;
-            arc_range(attitude, arc, centre, [low, high])
+    let (sine, mut x) = match &element.shape {
+        Shape::Polynomial(stretch) => {
+            let sine = element.sine.map(|sin| attitude.outline_sine(sin));
+            (sine, polynomials::range(attitude, stretch, element))
         }
-        Shape::Line(ends) => ends.map(|end| attitude.outline(&end).x),
-        Shape::Polynomial(stretch) => polynomials::range(attitude, stretch, element.x),
-    };
-    let sine = [low, high].map(|sin| attitude.outline_sine(sin));
-    (sine[0] <= sine[1]).then_some(Placed { element: index, x, sine, centre })
-}
-
-/// Sine of the steepest profile tangent of an arc with an outline: cos³φ = (R − b) sin²ψ/|r|.
-fn steepest_seen(attitude: &Attitude, arc: &ArcElement) -> Option<f64> {
-    if arc.radius >= 0.0 || attitude.sin_yaw == 0.0 {
-        return None;
-    }
-    let cube = (attitude.radius - arc.centre[1]) * attitude.sin_yaw_squared() / -arc.radius;
-    let cos = cube.cbrt();
-    Some(if cos < 1.0 { ((1.0 - cos) * (1.0 + cos)).sqrt() } else { -1.0 })
-}
-
-/// Abscissae of the ends of an arc's outline, ascending.
-fn arc_range(attitude: &Attitude, arc: &ArcElement, centre: f64, sine: [f64; 2]) -> [f64; 2] {
-    let mut x = if attitude.sin_yaw == 0.0 {
-        sine.map(|sin| centre + arc.radius * attitude.outline_sine(sin))
-    } else {
-        sine.map(|sin| {
-            let sin = sin.clamp(-attitude.cos_yaw, attitude.cos_yaw);
-            let cos = ((1.0 - sin) * (1.0 + sin)).sqrt();
-            attitude.outline(&arc.at(sin, cos)).x
-        })
+        Shape::Line(ends) => {
+            let outline = ends.map(|end| attitude.outline(&end));
+            if !(outline[0].cos > 0.0) {
+                return None;
+            }
+            ([outline[0].sin; 2], outline.map(|p| p.x))
+        }
+        Shape::Arc(arc) => {
+            let ends = arc_ends(attitude, arc, element)?;
+            (ends.map(|end| end.sin), ends.map(|end| end.x))
+        }
     };
     if x[0] > x[1] {
         x.swap(0, 1);
     }
-    x
+    let centre = if let Shape::Arc(arc) = &element.shape {
+        attitude.offset + arc.centre[0] * attitude.cos_roll + arc.centre[1] * attitude.sin_roll
+    } else {
+        0.0
+    };
+    (sine[0] <= sine[1]).then_some(Placed { element: index, x, sine, centre })
+}
+
+/// The outline's points at the ends of what is seen of an arc or fan.
+fn arc_ends(attitude: &Attitude, arc: &ArcElement, element: &Element) -> Option<[Station; 2]> {
+    let mut ends = element.ends;
+    if attitude.sin_yaw != 0.0 {
+        let steepest = steepest_seen(attitude, arc)?;
+        if ends[0].sin >= steepest || ends[1].sin <= -steepest {
+            return None;
+        }
+        for end in &mut ends {
+            if end.sin.abs() > steepest {
+                let sin = steepest.copysign(end.sin);
+                *end = arc.at(sin, cosine(sin));
+            }
+        }
+    }
+    let mut outline = ends.map(|end| attitude.outline(&end));
+    if outline[0].cos < 0.0 && outline[1].cos < 0.0 {
+        return None;
+    }
+    for end in &mut outline {
+        if end.cos < 0.0 {
+            // Turned beyond the vertical by the roll: seen up to there.
+            let tangent = 1f64.copysign(end.sin);
+            let (sin, cos) = attitude.profile_tangent(tangent, 0.0);
+            *end = Station { sin: tangent, cos: 0.0, ..attitude.outline(&arc.at(sin, cos)) };
+        }
+    }
+    Some(outline)
+}
+
+/// Sine of the steepest profile tangent of an arc with an outline: cosψ, and where the hollow side is down
+/// cos³φ = (R − b) sin²ψ/|r|.
+fn steepest_seen(attitude: &Attitude, arc: &ArcElement) -> Option<f64> {
+    if arc.radius >= 0.0 {
+        return Some(attitude.cos_yaw);
+    }
+    let cube = (attitude.radius - arc.centre[1]) * attitude.sin_yaw_squared() / -arc.radius;
+    (cube < 1.0).then(|| cosine(cube.cbrt()).min(attitude.cos_yaw))
 }

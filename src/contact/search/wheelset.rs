@@ -151,7 +151,11 @@ impl WheelsetSearch<'_> {
             if difference.abs() <= rounding {
                 return Some(if newton.is_finite() { newton } else { roll });
             }
-            if difference < 0.0 { below = Some(roll) } else { above = Some(roll) }
+            if difference < 0.0 {
+                below = Some(roll)
+            } else {
+                above = Some(roll)
+            }
             let inside = match (below, above) {
                 (Some(a), Some(b)) => (newton - a) * (newton - b) < 0.0,
                 _ => newton.abs() <= LARGEST_ROLL,

@@ -63,9 +63,8 @@ type Cell = (f64, [f64; 2], [f64; 2]);
 /// The twelve lowest local minima of a grid, each with the interval of its neighbours.
 fn best_cells(gap: &impl Fn(f64, f64) -> f64, x: [f64; 2], omega: [f64; 2], n: [usize; 2]) -> Vec<Cell> {
     let at = |range: [f64; 2], k: usize, n: usize| range[0] + (range[1] - range[0]) * k as f64 / n as f64;
-    let values: Vec<Vec<f64>> = (0..=n[0])
-        .map(|i| (0..=n[1]).map(|j| gap(at(x, i, n[0]), at(omega, j, n[1]))).collect())
-        .collect();
+    let values: Vec<Vec<f64>> =
+        (0..=n[0]).map(|i| (0..=n[1]).map(|j| gap(at(x, i, n[0]), at(omega, j, n[1]))).collect()).collect();
     let mut cells = Vec::new();
     for i in 0..=n[0] {
         for j in 0..=n[1] {
@@ -119,10 +118,8 @@ pub(super) fn random_chain(random: &mut Random, n: usize, polynomials: bool) -> 
             let radius = chord * random.between(1.2, 12.0);
             let lever = (radius * radius - chord * chord / 4.0).sqrt();
             let middle = [x + width / 2.0, z + slope * width / 2.0];
-            let centre = [
-                middle[0] - sign * lever * slope * width / chord,
-                middle[1] + sign * lever * width / chord,
-            ];
+            let centre =
+                [middle[0] - sign * lever * slope * width / chord, middle[1] + sign * lever * width / chord];
             (Shape::Arc(Arc::about(centre, radius, half, [x, x + width])?), slope * width)
         } else {
             let [b, c] = [random.between(-0.02, 0.02), random.between(-0.001, 0.001)];
