@@ -204,11 +204,12 @@ impl ContactSearch<'_> {
     /// Degenerate: bodies that touch along a stretch (parallel lines, equal arcs) give its middle.
     pub fn touch(&mut self, pose: &Pose, selection: &Selection) -> Option<Touch<'_>> {
         let attitude = Attitude::new(pose.offset, pose.yaw, pose.roll, self.pair.radius);
-        self.touch_at(&attitude, selection)
+        let height = self.lower(&attitude, selection.within)?;
+        Some(self.collect(&attitude, height, selection))
     }
 
-    fn touch_at(&mut self, attitude: &Attitude, selection: &Selection) -> Option<Touch<'_>> {
-        let height = self.lower(attitude, selection.within)?;
+    /// The contacts of `selection` among the candidates that [`Self::lower`] left, at the height that it gave.
+    fn collect(&mut self, attitude: &Attitude, height: f64, selection: &Selection) -> Touch<'_> {
         self.candidates.retain(|c| c.gap + height <= selection.within);
         self.candidates.sort_unstable_by(|a, b| a.gap.total_cmp(&b.gap));
         let apart = selection.apart.max(SAME_POINT * self.pair.extent);
@@ -228,7 +229,7 @@ impl ContactSearch<'_> {
                 Some(_) => {}
             }
         }
-        Some(Touch { height, contacts: &self.contacts })
+        Touch { height, contacts: &self.contacts }
     }
 
     /// Height of first touch, with all candidates up to `within` above it left in the buffer.
@@ -249,7 +250,7 @@ impl ContactSearch<'_> {
         lowest.is_finite().then_some(-lowest)
     }
 
-    /// The rail's point (x, z, tangent) of the lowest candidate of the last search.
+    /// The lowest candidate of the last search.
     fn lowest(&self) -> Option<&Candidate> {
         self.candidates.iter().min_by(|a, b| a.gap.total_cmp(&b.gap))
     }

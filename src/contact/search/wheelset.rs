@@ -85,11 +85,17 @@ const FIRST_STEP: f64 = 1e-4;
 /// See [`FIRST_STEP`].
 const STEP_GROWTH: f64 = 1.25;
 
-/// Height and its derivative with the side's own roll.
+/// Both sides lowered at one roll, left and right.
 #[derive(Debug, Clone, Copy)]
 struct Level {
-    z: f64,
-    per_roll: f64,
+    roll: f64,
+    attitudes: [Attitude; 2],
+    /// Of the wheel's profile origin over the rail's.
+    heights: [f64; 2],
+    /// Of the axle's middle above R over the top of rail.
+    z: [f64; 2],
+    /// Derivative of the difference of `z` with the roll.
+    slope: f64,
 }
 
 impl WheelsetOnTrack {
@@ -128,28 +134,32 @@ impl WheelsetSearch<'_> {
     pub fn touch(&mut self, position: &Position, selection: &Selection) -> Result<Option<WheelsetTouch<'_>>> {
         finite("wheelset: lateral", position.lateral)?;
         small_angle("wheelset: yaw", position.yaw)?;
-        let roll = match position.roll {
-            Roll::Neglect => Some(0.0),
-            Roll::Fixed(roll) => Some(small_angle("wheelset: roll", roll)?),
-            Roll::Solve => self.solve_roll(position),
+        let reach = selection.within;
+        let level = match position.roll {
+            Roll::Neglect => self.level(position, 0.0, reach),
+            Roll::Fixed(roll) => self.level(position, small_angle("wheelset: roll", roll)?, reach),
+            Roll::Solve => self.solve_roll(position, reach),
         };
-        let Some(roll) = roll else { return Ok(None) };
+        let Some(Level { roll, z, heights, attitudes, .. }) = level else { return Ok(None) };
         let [left, right] = &mut self.sides;
-        let left = lowered(self.system, left, position, roll, SIGNS[0], selection);
-        let right = lowered(self.system, right, position, roll, SIGNS[1], selection);
-        Ok(left.zip(right).map(|(left, right)| WheelsetTouch { roll, sides: [left, right] }))
+        let sides = [
+            SideTouch { z: z[0], touch: left.collect(&attitudes[0], heights[0], selection) },
+            SideTouch { z: z[1], touch: right.collect(&attitudes[1], heights[1], selection) },
+        ];
+        Ok(Some(WheelsetTouch { roll, sides }))
     }
 
-    /// The roll at which both wheels touch.
-    fn solve_roll(&mut self, position: &Position) -> Option<f64> {
-        let rounding = 4.0 * f64::EPSILON * (self.system.wheelset.wheel_x + self.system.wheelset.radius);
+    /// Both sides lowered at the roll at which both wheels touch.
+    fn solve_roll(&mut self, position: &Position, within: f64) -> Option<Level> {
+        let rounding = 2.0 * f64::EPSILON * (self.system.wheelset.wheel_x + self.system.wheelset.radius);
         let (mut below, mut above) = (None, None);
         let mut roll = 0.0;
         for _ in 0..NEWTON_STEPS {
-            let [difference, slope] = self.difference(position, roll)?;
-            let newton = roll - difference / slope;
-            if difference.abs() <= rounding {
-                return Some(if newton.is_finite() { newton } else { roll });
+            let level = self.level(position, roll, within)?;
+            let difference = level.difference();
+            let newton = roll - difference / level.slope;
+            if difference.abs() <= rounding || newton == roll {
+                return Some(level);
             }
             if difference < 0.0 {
                 below = Some(roll)
@@ -163,18 +173,17 @@ impl WheelsetSearch<'_> {
             if !inside {
                 break;
             }
-            if newton == roll {
-                return Some(roll);
-            }
             roll = newton;
         }
         let (a, b) = below.zip(above).or_else(|| self.nearest_change(position))?;
-        bracketed(|roll| self.difference(position, roll).map_or(f64::NAN, |[d, _]| d), a, b)
+        let apart = |roll: f64| self.level(position, roll, 0.0).map_or(f64::NAN, |level| level.difference());
+        let roll = bracketed(apart, a, b)?;
+        self.level(position, roll, within)
     }
 
     /// A bracket of the roll, looked for outwards from zero in growing steps.
     fn nearest_change(&mut self, position: &Position) -> Option<(f64, f64)> {
-        let mut sign = |roll: f64| self.difference(position, roll).map(|[d, _]| d > 0.0);
+        let mut sign = |roll: f64| self.level(position, roll, 0.0).map(|level| level.difference() > 0.0);
         let start = sign(0.0)?;
         let (mut inner, mut outer) = (0.0, FIRST_STEP);
         while inner < LARGEST_ROLL {
@@ -188,44 +197,28 @@ impl WheelsetSearch<'_> {
         None
     }
 
-    /// Right height less left height at a roll, and its derivative.
-    fn difference(&mut self, position: &Position, roll: f64) -> Option<[f64; 2]> {
-        let [left, right] = &mut self.sides;
-        let left = level(self.system, left, position, roll, SIGNS[0])?;
-        let right = level(self.system, right, position, roll, SIGNS[1])?;
-        // The left side's own roll is the negative.
-        Some([right.z - left.z, right.per_roll + left.per_roll])
+    /// Lowers both sides at a given roll, leaving candidates up to `within` above first touch in their buffers.
+    fn level(&mut self, position: &Position, roll: f64, within: f64) -> Option<Level> {
+        let attitudes = SIGNS.map(|sign| self.system.attitude(position, roll, sign));
+        let mut level =
+            Level { roll, attitudes: attitudes.map(|a| a.0), heights: [0.0; 2], z: [0.0; 2], slope: 0.0 };
+        for (k, (attitude, datum)) in attitudes.into_iter().enumerate() {
+            level.heights[k] = self.sides[k].lower(&attitude, within)?;
+            level.z[k] = datum + level.heights[k];
+            // Turning by dα about c moves the point of contact, at (p_x, p_z) from c, by (p_z, −p_x) dα; the wheel then
+            // has to rise by (p_x + p_z tanθ) dα. The left side's own roll is the negative: the slopes add.
+            let rail = self.sides[k].lowest()?.rail;
+            let x = rail.x + self.system.track.rail_x - SIGNS[k] * position.lateral;
+            let down = rail.z + self.system.track.rail_z - level.z[k] - self.system.wheelset.radius;
+            level.slope += x + down * rail.sin / rail.cos;
+        }
+        Some(level)
     }
 }
 
-/// The height of the axle's middle when one side touches.
-///
-/// Its derivative: turning by dα about c moves the point of contact, at (p_x, p_z) from c, by (p_z, −p_x) dα; the wheel
-/// then has to rise by p_x + p_z tanθ.
-fn level(
-    system: &WheelsetOnTrack,
-    search: &mut ContactSearch,
-    position: &Position,
-    roll: f64,
-    sign: f64,
-) -> Option<Level> {
-    let (attitude, level) = system.attitude(position, roll, sign);
-    let z = level + search.lower(&attitude, 0.0)?;
-    let rail = search.lowest()?.rail;
-    let x = rail.x + system.track.rail_x - sign * position.lateral;
-    let down = rail.z + system.track.rail_z - z - system.wheelset.radius;
-    Some(Level { z, per_roll: x + down * rail.sin / rail.cos })
-}
-
-fn lowered<'s>(
-    system: &WheelsetOnTrack,
-    search: &'s mut ContactSearch<'_>,
-    position: &Position,
-    roll: f64,
-    sign: f64,
-    selection: &Selection,
-) -> Option<SideTouch<'s>> {
-    let (attitude, level) = system.attitude(position, roll, sign);
-    let touch = search.touch_at(&attitude, selection)?;
-    Some(SideTouch { z: level + touch.height, touch })
+impl Level {
+    /// Right height less left height \[mm\].
+    fn difference(&self) -> f64 {
+        self.z[1] - self.z[0]
+    }
 }
