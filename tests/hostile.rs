@@ -67,12 +67,44 @@ method = "spectral"
 ];
 
 const NUMBERS: [&str; 24] = [
-    "0", "-0.0", "1", "-1", "1e-300", "5e-324", "1e300", "1.8e308", "nan", "-inf", "inf", "1e12", "9007199254740993",
-    "1e-12", "-1e-12", "0.5", "12.99999999999999", "-70", "35.99981082207864", "1e6", "1e-6", "3", "200", "-0.3",
+    "0",
+    "-0.0",
+    "1",
+    "-1",
+    "1e-300",
+    "5e-324",
+    "1e300",
+    "1.8e308",
+    "nan",
+    "-inf",
+    "inf",
+    "1e12",
+    "9007199254740993",
+    "1e-12",
+    "-1e-12",
+    "0.5",
+    "12.99999999999999",
+    "-70",
+    "35.99981082207864",
+    "1e6",
+    "1e-6",
+    "3",
+    "200",
+    "-0.3",
 ];
 
 const WORDS: [&str; 12] = [
-    "60E1", "S1002", "APTA-120", "upper", "lower", "auto", "quadratic", "pointwise", "report-newton", "1:40", "1:0",
+    "60E1",
+    "S1002",
+    "APTA-120",
+    "upper",
+    "lower",
+    "auto",
+    "quadratic",
+    "pointwise",
+    "report-newton",
+    "1:40",
+    "1:0",
     "\u{3be}",
 ];
 
@@ -137,7 +169,12 @@ fn mutated(dice: &mut Dice, base: &str) -> String {
             4 => {
                 let lines: Vec<&str> = text.lines().collect();
                 let drop = dice.below(lines.len());
-                text = lines.iter().enumerate().filter(|(i, _)| *i != drop).map(|(_, l)| format!("{l}\n")).collect();
+                text = lines
+                    .iter()
+                    .enumerate()
+                    .filter(|(i, _)| *i != drop)
+                    .map(|(_, l)| format!("{l}\n"))
+                    .collect();
             }
             5 => {
                 let quotes: Vec<usize> = text.match_indices('"').map(|(i, _)| i).collect();
@@ -152,7 +189,9 @@ fn mutated(dice: &mut Dice, base: &str) -> String {
                     text.insert(at, dice.pick(&['[', ']', '{', '"', '=', '\n', '9', '.', '\u{0}', 'é']));
                 }
             }
-            _ => text.truncate((0..=dice.below(text.len())).rev().find(|&i| text.is_char_boundary(i)).unwrap_or(0)),
+            _ => text.truncate(
+                (0..=dice.below(text.len())).rev().find(|&i| text.is_char_boundary(i)).unwrap_or(0),
+            ),
         }
     }
     text
@@ -173,7 +212,11 @@ fn attempt(text: &str, json: bool) -> Result<bool, String> {
     for part in &run.parts {
         let analysis = &part.analysis;
         let numbers = analysis.patch.iter().flat_map(|p| &p.components).flat_map(|c| {
-            c.boundary.iter().flatten().chain(&c.xi).chain(&c.eta).chain([&c.area, &c.perimeter, &c.deepest[0]])
+            c.boundary.iter().flatten().chain(&c.xi).chain(&c.eta).chain([
+                &c.area,
+                &c.perimeter,
+                &c.deepest[0],
+            ])
         });
         if let Some(bad) = numbers.copied().find(|v| !v.is_finite()) {
             return Err(format!("{bad} in the patch"));
@@ -191,7 +234,8 @@ fn attempt(text: &str, json: bool) -> Result<bool, String> {
 
 #[test]
 fn mutated_scenes_end_in_a_result_or_an_error() {
-    let wanted = std::env::var("WHEELRAIL_HOSTILE_SCENES").ok().and_then(|n| n.parse().ok()).unwrap_or(SCENES);
+    let wanted =
+        std::env::var("WHEELRAIL_HOSTILE_SCENES").ok().and_then(|n| n.parse().ok()).unwrap_or(SCENES);
     let mut results = 0u64;
     for number in 0..wanted {
         let mut dice = Dice(SEED ^ number.wrapping_mul(0xD134_2543_DE82_EF95));
@@ -225,7 +269,8 @@ fn scratch(name: &str) -> PathBuf {
 
 fn scene_file(folder: &Path, approach: f64) -> PathBuf {
     let path = folder.join("scene.toml");
-    let text = BASES[1].replace("approach = 0.05", &format!("approach = {approach}")).replace("n = 33", "n = 201");
+    let text =
+        BASES[1].replace("approach = 0.05", &format!("approach = {approach}")).replace("n = 33", "n = 201");
     std::fs::write(&path, text).expect("a scene file");
     path
 }
@@ -270,7 +315,8 @@ fn a_kill_at_any_moment_leaves_the_old_or_the_new_folder_whole() {
     assert!(killed > 10, "only {killed} runs were caught alive");
     // The next run clears what the killed ones left.
     assert!(run(0.01).status().is_ok_and(|s| s.success()));
-    let left: Vec<_> = std::fs::read_dir(&folder).expect("the folder").flatten().map(|e| e.file_name()).collect();
+    let left: Vec<_> =
+        std::fs::read_dir(&folder).expect("the folder").flatten().map(|e| e.file_name()).collect();
     assert_eq!(left.len(), 2, "{left:?}");
 }
 
@@ -315,6 +361,7 @@ fn a_full_disk_is_an_error_and_leaves_nothing() {
     );
     let status = Command::new("bash").arg("-c").arg(command).stderr(Stdio::piped()).output().expect("bash");
     assert_eq!(status.status.code(), Some(2), "{}", String::from_utf8_lossy(&status.stderr));
-    let left: Vec<_> = std::fs::read_dir(&folder).expect("the folder").flatten().map(|e| e.file_name()).collect();
+    let left: Vec<_> =
+        std::fs::read_dir(&folder).expect("the folder").flatten().map(|e| e.file_name()).collect();
     assert_eq!(left, ["scene.toml"], "{left:?}");
 }

@@ -40,6 +40,7 @@ pub(super) fn summary(run: &Run, part: &Part, files: &[String], skipped: &[Strin
         "wheel_radius_mm": placement.wheel_radius,
         "rolling_radius_mm": placement.rolling_radius(),
         "skew_rad": placement.skew,
+        "found": part.found,
         "feasibility": contact.feasibility,
         "curvatures": contact.curvatures,
         "approach_mm": contact.approach.map(|(approach, _)| approach),

@@ -44,20 +44,6 @@ impl Scene {
         Pair::new(rail, wheel, radius)
     }
 
-    /// The two abscissae of `[contact]`.
-    ///
-    /// # Errors
-    /// One of them is missing.
-    pub fn contact_points(&self) -> Result<[f64; 2]> {
-        match (self.contact.rail_x, self.contact.wheel_x) {
-            (Some(rail), Some(wheel)) => Ok([rail, wheel]),
-            _ => {
-                let expected = "both `rail_x` and `wheel_x`";
-                Err(Error::new("contact", "one abscissa or none", expected, "give the pair of points"))
-            }
-        }
-    }
-
     /// The approach δ \[mm\] when it is given directly.
     ///
     /// # Errors

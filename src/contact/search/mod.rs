@@ -184,6 +184,11 @@ impl Pose {
         finite("offset", offset)?;
         Ok(Self { offset, yaw: small_angle("yaw", yaw)?, roll: small_angle("roll", roll)? })
     }
+
+    /// Roll \[rad\].
+    pub fn roll(&self) -> f64 {
+        self.roll
+    }
 }
 
 /// Rejects angles that no wheel has.
