@@ -21,10 +21,18 @@ const THIN: Pen = Pen::new(GREY, 0.6);
 
 /// Contours are drawn from at most this many rows and columns: more cannot be seen on a page, and would make
 /// the file large.
-const DRAWN: usize = 200;
+const DRAWN: usize = 120;
 
 /// Lines of equal separation aimed at.
 const LEVELS: f64 = 10.0;
+
+/// The lines of one level.
+struct Level {
+    name: String,
+    pen: Pen,
+    /// (ξ, η) \[mm\]
+    lines: Vec<Vec<[f64; 2]>>,
+}
 
 /// What the picture shows.
 #[derive(Debug, Clone, Copy)]
@@ -90,7 +98,7 @@ impl Picture<'_> {
         let origin = panel.point([0.0, 0.0]);
         let [x, y] = origin;
         page.lines(vec![vec![[x, y - 38.0], origin, [x + 38.0, y]]], Pen::new(BOUNDARY.colour, 1.0));
-        page.text([x + 42.0, y + 4.0], "ξ", SMALL, Anchor::Start, BOUNDARY.colour);
+        page.text([x + 34.0, y + 16.0], "ξ", SMALL, Anchor::Start, BOUNDARY.colour);
         page.text([x, y - 42.0], "ζ", SMALL, Anchor::Middle, BOUNDARY.colour);
         let foot = room[1] + room[3] + 28.0;
         legend(page, [room[0], foot], RAIL, "rail");
@@ -109,8 +117,9 @@ impl Picture<'_> {
         let wheel: Vec<_> = (0..rail.len()).map(|i| lifted(i, grid.column(i)[j])).collect();
         let raised: Vec<_> = (0..rail.len()).map(|i| lifted(i, self.header.approach)).collect();
         let heights = || rail.iter().chain(&wheel).chain(&raised).map(|p| p[1]).filter(|z| z.is_finite());
-        let (u, v) = (range(grid.xi().iter().copied()), range(heights()));
-        let panel = Panel { place: room, u, v };
+        let (u, [low, high]) = (range(grid.xi().iter().copied()), range(heights()));
+        let air = 0.05 * (high - low);
+        let panel = Panel { place: room, u, v: [low - air, high + air] };
         let [a, b] = panel.scale();
         let stretch = b / a;
         heading(
@@ -144,11 +153,10 @@ impl Picture<'_> {
         let side = room[0] + room[2] + 40.0;
         let mut row = room[1] + 20.0;
         page.text([side, row], "s [mm]", SMALL + 1.0, Anchor::Start, INK);
-        for (level, name, pen, lines) in self.levels() {
+        for Level { name, pen, lines } in self.levels() {
             page.lines(lines.iter().flat_map(|line| panel.curve(line)).collect(), pen);
             row += 20.0;
             legend(page, [side, row], pen, &name);
-            debug_assert!(level.is_finite());
         }
         page.lines(rings, BOUNDARY);
         row += 32.0;
@@ -166,26 +174,23 @@ impl Picture<'_> {
         panel.scale_bar(page, [side + 130.0, room[1] + room[3]], 130.0);
     }
 
-    /// The levels with their names, pens and lines in (ξ, η).
-    fn levels(&self) -> Vec<(f64, String, Pen, Vec<Vec<[f64; 2]>>)> {
+    fn levels(&self) -> Vec<Level> {
         let (xi, eta, values) = self.thinned();
         let nodes = Nodes { xi: &xi, eta: &eta, values: &values };
-        let known = || values.iter().copied().filter(|s| s.is_finite());
-        let [low, high] = known().fold([f64::INFINITY, f64::NEG_INFINITY], |r, s| [r[0].min(s), r[1].max(s)]);
-        if !(high > low) {
+        let [low, high] = extremes(values.iter().copied().filter(|s| s.is_finite()));
+        if low >= high {
             return Vec::new();
         }
         let step = round_below(1.5 * (high - low) / LEVELS);
-        let (first, last) = ((low / step).ceil() as i64, (high / step).floor() as i64);
-        (first..=last)
-            .map(|k| {
-                let level = k as f64 * step;
-                let pen = Pen::new(shade((level - low) / (high - low)), 1.2);
-                let pen = if k < 0 { pen.dashed([4.0, 3.0]) } else { pen };
-                (level, number(level, step), pen, nodes.lines(level))
-            })
-            .filter(|(.., lines)| !lines.is_empty())
-            .collect()
+        // The lowest value itself is no line: it would be a point.
+        let (first, last) = ((low / step).floor() as i64 + 1, (high / step).floor() as i64);
+        let level = |k: i64| {
+            let value = k as f64 * step;
+            let pen = Pen::new(shade((value - low) / (high - low)), 1.2);
+            let pen = if k < 0 { pen.dashed([4.0, 3.0]) } else { pen };
+            Level { name: number(value, step), pen, lines: nodes.lines(value) }
+        };
+        (first..=last).map(level).filter(|level| !level.lines.is_empty()).collect()
     }
 
     /// The grid with so many rows and columns left out that at most [`DRAWN`] remain, the last always among them.
@@ -230,12 +235,16 @@ fn legend(page: &mut Canvas, [x, y]: [f64; 2], pen: Pen, name: &str) {
 
 /// The smallest range that holds all values, widened to a length if they are one.
 fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |r, x| [r[0].min(x), r[1].max(x)]);
-    match high > low {
-        true => [low, high],
-        false if low.is_finite() => [low - 0.5, low + 0.5],
-        false => [0.0, 1.0],
+    match extremes(values) {
+        [low, high] if high > low => [low, high],
+        [low, _] if low.is_finite() => [low - 0.5, low + 0.5],
+        _ => [0.0, 1.0],
     }
+}
+
+/// The smallest and the largest value; of none, +∞ and −∞.
+fn extremes(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
 }
 
 /// Two significant digits.
