@@ -11,6 +11,7 @@ pub mod folder;
 mod model;
 pub mod netcdf;
 pub mod npy;
+pub mod picture;
 pub mod vtk;
 pub mod vts;
 
