@@ -6,6 +6,7 @@
 mod midsep;
 mod profile;
 mod run;
+mod sweep;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -40,6 +41,8 @@ enum Command {
         /// Scene file, TOML or JSON.
         scene: PathBuf,
     },
+    /// Sweep a wheelset over its track and print a row per position, side and contact.
+    Sweep(sweep::SweepArguments),
     /// Look at profiles.
     #[command(subcommand)]
     Profile(profile::ProfileCommand),
@@ -76,6 +79,7 @@ fn on_threads(arguments: Arguments) -> Result<Outcome> {
     pool.install(|| match arguments.command {
         Command::Run { scene, out } => run::run(&scene, out.as_deref()),
         Command::Midsep { scene } => midsep::midsep(&scene),
+        Command::Sweep(arguments) => sweep::sweep(&arguments),
         Command::Profile(command) => profile::profile(&command),
         Command::Schema => schema(),
     })
