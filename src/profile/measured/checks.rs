@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::loops;
 use super::options::Unit;
 use super::points::Point;
-use super::shape::{has_flange_back, side_depths, width};
+use super::shape::{flange_side, has_flange_back, head_up, side_depths, width};
 use crate::error::{Error, Result};
 use crate::profile::Side;
 
@@ -40,6 +40,8 @@ pub enum Check {
     OutOfOrder,
     /// A stretch that runs back over the one before, as sections stitched together do.
     ZigZag,
+    /// The path turns back and does not return: a point added or left at an end.
+    TurnsBack,
     /// A single point off the curve.
     Spike,
     /// The curve crosses itself.
@@ -48,6 +50,8 @@ pub enum Check {
     Gap,
     /// The gauge face of a rail or the flange back of a wheel was not measured.
     MissingSideFace,
+    /// An option turned the profile against what its shape shows.
+    Orientation,
 }
 
 /// Something found.
@@ -65,7 +69,7 @@ pub struct Finding {
 
 impl Finding {
     fn new(check: Check, point: &Point, found: impl Into<String>) -> Self {
-        let fatal = !matches!(check, Check::Gap | Check::MissingSideFace);
+        let fatal = !matches!(check, Check::Gap | Check::MissingSideFace | Check::Orientation);
         Self { check, fatal, place: point.place(), found: found.into() }
     }
 
@@ -77,7 +81,9 @@ impl Finding {
             }
             Check::Spike => ("points near the curve", "delete it, or allow repair = [\"remove-spikes\"]"),
             Check::Loop => ("a curve that does not cross itself", "allow repair = [\"cut-loops\"]"),
+            Check::TurnsBack => ("a path that ends where the profile does", "delete the points after it"),
             Check::Gap | Check::MissingSideFace => ("a complete profile", "measure it"),
+            Check::Orientation => ("an upright right-hand profile", "correct `mirror` or `flip_z`"),
         }
     }
 }
@@ -120,6 +126,7 @@ pub fn findings(points: &[Point], side: Side, gauge_height: f64) -> Vec<Finding>
     }
     out.extend(gaps(points));
     out.extend(missing_side_face(points, side, gauge_height));
+    out.extend(orientation(points, side));
     out
 }
 
@@ -171,7 +178,7 @@ impl Fold {
     fn finding(&self, points: &[Point]) -> Finding {
         let (first, last) = (&points[self.from], &points[self.to]);
         match self.to - self.from {
-            0 => Finding::new(Check::ZigZag, first, "a path that turns back and does not return"),
+            0 => Finding::new(Check::TurnsBack, first, "a path that turns back and does not return"),
             1 if self.overrun(points) == 0 => {
                 Finding::new(Check::OutOfOrder, first, format!("the wrong order with {}", last.place()))
             }
@@ -290,4 +297,15 @@ fn missing_side_face(points: &[Point], side: Side, gauge_height: f64) -> Option<
         }
     };
     Some(Finding::new(Check::MissingSideFace, first, found))
+}
+
+fn orientation(points: &[Point], side: Side) -> Option<Finding> {
+    let upside_down = head_up(points, side).filter(|(up, _)| !up);
+    let left_hand = if side == Side::Wheel { flange_side(points).filter(|(left, _)| !left) } else { None };
+    let (_, why) = upside_down.or(left_hand)?;
+    Some(Finding::new(
+        Check::Orientation,
+        points.first()?,
+        format!("not an upright right-hand profile: {why}"),
+    ))
 }

@@ -1,6 +1,7 @@
 //! Corners: where the tangent before and the tangent after a point differ by more than a curve explains.
 
 use super::checks::distance;
+use super::parabola::Parabola;
 use super::points::Point;
 
 /// Steps of a window that are used, evenly picked: more do not sharpen a tangent, and windows over dense points
@@ -59,41 +60,17 @@ fn tangent(points: &[Point], path: &[f64], at: usize, forward: bool, window: f64
         within.min(at + 1 - LEAST_IN_WINDOW)
     };
     let stride = far.abs_diff(at).div_ceil(MOST_IN_WINDOW);
-    let sample = |j: usize| {
-        let s = (path[j] - path[at]).abs();
-        [s, points[j].x - points[at].x, points[j].z - points[at].z]
-    };
-    let picked: Vec<[f64; 3]> = if forward {
-        (at..=far).step_by(stride).map(sample).collect()
+    let picked: Vec<usize> = if forward {
+        (at..=far).step_by(stride).collect()
     } else {
-        (far..=at).rev().step_by(stride).map(sample).collect()
+        (far..=at).rev().step_by(stride).collect()
+    };
+    let slope = |of: fn(&Point) -> f64| {
+        let sample = |&j: &usize| ((path[j] - path[at]).abs(), of(&points[j]) - of(&points[at]));
+        Parabola::fit(picked.iter().map(sample)).slope()
     };
     let sign = if forward { 1.0 } else { -1.0 };
-    [1, 2].map(|axis| sign * parabola_slope(&picked, axis))
-}
-
-/// p′(0) of the least-squares parabola p through (s, value) of some samples, s ≥ 0.
-fn parabola_slope(samples: &[[f64; 3]], axis: usize) -> f64 {
-    let scale = samples.last().map_or(1.0, |last| last[0]);
-    let (mut m, mut r) = ([0.0; 5], [0.0; 3]);
-    for sample in samples {
-        let s = sample[0] / scale;
-        let powers = [1.0, s, s * s, s * s * s, s * s * s * s];
-        for (k, power) in powers.iter().enumerate() {
-            m[k] += power;
-            if k < 3 {
-                r[k] += power * sample[axis];
-            }
-        }
-    }
-    // Cramer's rule for the middle unknown.
-    let det = |c: [[f64; 3]; 3]| {
-        c[0][0] * (c[1][1] * c[2][2] - c[1][2] * c[2][1]) - c[0][1] * (c[1][0] * c[2][2] - c[1][2] * c[2][0])
-            + c[0][2] * (c[1][0] * c[2][1] - c[1][1] * c[2][0])
-    };
-    let whole = det([[m[0], m[1], m[2]], [m[1], m[2], m[3]], [m[2], m[3], m[4]]]);
-    let middle = det([[m[0], r[0], m[2]], [m[1], r[1], m[3]], [m[2], r[2], m[4]]]);
-    middle / whole / scale
+    [sign * slope(|p| p.x), sign * slope(|p| p.z)]
 }
 
 #[cfg(test)]

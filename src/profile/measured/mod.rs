@@ -18,6 +18,7 @@ mod kinks;
 mod loops;
 mod miniprof;
 mod options;
+mod parabola;
 mod place;
 mod points;
 mod repairs;
@@ -84,7 +85,7 @@ pub struct Measured {
 
 /// The profile that a file of measured points describes; `file` is its name, for the format and for messages.
 ///
-/// Cost: about 10 µs a point, most of it the spline.
+/// Cost: about 5 µs a point of usual files, 20 µs of a million, most of it the spline.
 ///
 /// # Errors
 /// Whatever is wrong with the options, the file or its points, with the place: see [`Options`], [`Format::read`],

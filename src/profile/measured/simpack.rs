@@ -24,6 +24,26 @@ use super::scan::{Line, last_place, lines};
 use crate::error::{Error, Result};
 use crate::profile::Side;
 
+/// Keys of the spline that are read; all but the first act.
+const APPLIED: [&str; 17] = [
+    "approx.smooth",
+    "point.dist.min",
+    "shift.y",
+    "shift.z",
+    "rotate",
+    "bound.y.min",
+    "bound.y.max",
+    "bound.z.min",
+    "bound.z.max",
+    "mirror.y",
+    "mirror.z",
+    "inversion",
+    "units.len",
+    "units.ang",
+    "units.len.f",
+    "units.ang.f",
+    "type",
+];
 /// Keys that do not change the points.
 const SILENT: [&str; 5] = ["version", "file", "file.mtime", "comment", "type"];
 /// Keys of the header about measuring positions on the wheel; they do not change the points either.
@@ -70,8 +90,11 @@ pub(super) fn read(text: &str) -> Result<Points> {
     points.finish(text)
 }
 
-/// Up to the first `!` outside quotes.
+/// Up to the first `!` outside quotes; files of CONTACT also have lines that begin with `%`, `#` or `"`.
 fn without_comment(line: Line) -> Line {
+    if line.text.starts_with(['%', '#', '"']) {
+        return Line { text: "", ..line };
+    }
     let mut quoted = false;
     let end = line.text.find(|c| {
         quoted ^= c == '\'';
@@ -116,25 +139,6 @@ impl<'a> Keys<'a> {
         value: &'a str,
         points: &mut Points,
     ) -> Result<()> {
-        const APPLIED: [&str; 17] = [
-            "approx.smooth",
-            "point.dist.min",
-            "shift.y",
-            "shift.z",
-            "rotate",
-            "bound.y.min",
-            "bound.y.max",
-            "bound.z.min",
-            "bound.z.max",
-            "mirror.y",
-            "mirror.z",
-            "inversion",
-            "units.len",
-            "units.ang",
-            "units.len.f",
-            "units.ang.f",
-            "type",
-        ];
         let Some(section) = section.filter(|&section| section != "point") else {
             let expected = "keys inside header or spline only";
             return Err(line.error(line.text, expected, "move or delete the line"));

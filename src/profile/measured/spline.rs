@@ -1,15 +1,17 @@
 //! Parametric cubic splines through or near points, in pieces between corners.
 
 use super::checks::distance;
+use super::parabola::Parabola;
 use super::points::Point;
 use super::smoothing::{Fit, Smoother, penalty};
 use crate::error::Result;
 use crate::profile::{Polynomial, Segment, Shape, Station};
 
-/// One piece: C², natural ends, over its own arc length.
+/// One piece: C² over its own arc length.
 ///
-/// The natural end (curvature 0) costs about κ (λ_c/2π)² there, 2 µm on a 300 mm radius at λ_c = 5 mm, and fades
-/// over λ_c: a profile should reach that far beyond what carries load.
+/// An interpolation has natural ends (curvature 0). A natural end of a smoothing spline would be off by about
+/// κ (λ_c/2π)², 30 µm on a 20 mm radius at λ_c = 5 mm; so it is fitted beyond its ends to points on the parabolas
+/// that fit its last λ_c best, and cut off there.
 #[derive(Debug, Clone)]
 pub(super) struct Piece {
     /// Index of its first point among all.
@@ -46,6 +48,42 @@ pub(super) fn pieces(points: &[Point], corners: &[usize], cutoff: Option<f64>) -
     ranges.iter().enumerate().map(pinned).collect()
 }
 
+fn chords(at: impl Iterator<Item = [f64; 2]>) -> Vec<f64> {
+    let at: Vec<[f64; 2]> = at.collect();
+    at.windows(2).map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1])).collect()
+}
+
+/// Points beyond the first of some points, nearest first: on the parabola that fits their first `reach` \[mm\]
+/// best, as far apart and over as long a path as they are. None where too few points tell a curvature.
+fn beyond(points: impl Iterator<Item = Point>, reach: f64) -> Vec<Point> {
+    /// A parabola has three unknowns; twice as many points keep noise out of its curvature.
+    const LEAST: usize = 6;
+    let mut near: Vec<Point> = Vec::new();
+    let mut path: Vec<f64> = Vec::new();
+    for point in points {
+        let walked = match (near.last(), path.last()) {
+            (Some(last), Some(walked)) => walked + distance(last, &point),
+            _ => 0.0,
+        };
+        if walked > reach {
+            break;
+        }
+        near.push(point);
+        path.push(walked);
+    }
+    let (Some(&walked), true) = (path.last(), near.len() >= LEAST) else {
+        return Vec::new();
+    };
+    let parabolas = [|p: &Point| p.x, |p: &Point| p.z]
+        .map(|of| Parabola::fit(path.iter().copied().zip(near.iter().map(of))));
+    let step = walked / (near.len() - 1) as f64;
+    let at = |k: usize| {
+        let [x, z] = [0, 1].map(|axis| parabolas[axis].value(-step * k as f64));
+        Point { x, z, weight: near[0].weight, ..near[0] }
+    };
+    (1..near.len()).map(at).collect()
+}
+
 impl Piece {
     /// Two passes: over the chords of the points, whose noise makes them too long, then over those of the first
     /// pass.
@@ -55,25 +93,33 @@ impl Piece {
         cutoff: Option<f64>,
         pins: [Option<[f64; 2]>; 2],
     ) -> Self {
-        let points = &points[from..=to];
-        let chords = points.windows(2).map(|pair| distance(&pair[0], &pair[1])).collect();
-        let first = Self::over(points, from, chords, cutoff, pins);
-        if cutoff.is_none() {
-            return first;
-        }
-        let smooth: Vec<[f64; 2]> = (0..points.len())
-            .map(|k| {
-                let station = first.station(k);
-                [station.x, station.z]
-            })
-            .collect();
-        let steps: Vec<f64> =
-            smooth.windows(2).map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1])).collect();
+        let own = &points[from..=to];
+        let Some(cutoff_wavelength) = cutoff else {
+            return Self::over(own, from, chords(own.iter().map(Point::xz)), cutoff, pins, [0; 2]);
+        };
+        let before = beyond(own.iter().copied(), cutoff_wavelength);
+        let after = beyond(own.iter().rev().copied(), cutoff_wavelength);
+        let extra = [before.len(), after.len()];
+        let all: Vec<Point> = before.into_iter().rev().chain(own.iter().copied()).chain(after).collect();
+        let first = Self::over(&all, from, chords(all.iter().map(Point::xz)), cutoff, pins, extra);
+        let smooth = (0..all.len()).map(|k| [f64::from(first.x.value[k]), f64::from(first.z.value[k])]);
+        let steps = chords(smooth);
         // Smoothing that closes a step has nothing left to measure by.
-        if steps.iter().zip(&first.steps).all(|(new, old)| *new > 0.1 * old) {
-            Self::over(points, from, steps, cutoff, pins)
-        } else {
-            first
+        let open = steps.iter().zip(&first.steps).all(|(new, old)| *new > 0.1 * old);
+        let mut piece = if open { Self::over(&all, from, steps, cutoff, pins, extra) } else { first };
+        piece.cut(extra);
+        piece
+    }
+
+    /// Drops this many knots at the beginning and at the end.
+    fn cut(&mut self, [before, after]: [usize; 2]) {
+        self.steps.drain(..before);
+        self.steps.truncate(self.steps.len() - after);
+        for fit in [&mut self.x, &mut self.z] {
+            for values in [&mut fit.value, &mut fit.second] {
+                values.drain(..before);
+                values.truncate(values.len() - after);
+            }
         }
     }
 
@@ -83,6 +129,7 @@ impl Piece {
         steps: Vec<f64>,
         cutoff: Option<f64>,
         pins: [Option<[f64; 2]>; 2],
+        extra: [usize; 2],
     ) -> Self {
         let n = points.len();
         let [mut x, mut z]: [Vec<f64>; 2] =
@@ -92,7 +139,7 @@ impl Piece {
             0.5 * (before + after)
         };
         let mut slack: Vec<f64> = (0..n).map(|k| (spacing(k) * points[k].weight).recip()).collect();
-        for (k, pin) in [(0, pins[0]), (n - 1, pins[1])] {
+        for (k, pin) in [(extra[0], pins[0]), (n - 1 - extra[1], pins[1])] {
             if let Some(pin) = pin {
                 (x[k], z[k], slack[k]) = (pin[0], pin[1], 0.0);
             }

@@ -305,10 +305,14 @@ fn segments_written_are_segments_read() -> Result<()> {
     let options = Options { curve: Some(CurveKind::Arcs), ..Options::default() };
     let arcs = profile("s1002.csv", text.as_bytes(), Side::Wheel, &options)?.profile;
     for (profile, bound) in [(&wheel, 0.0), (&arcs, 1e-11)] {
-        let scene: Scene = toml::from_str(&write::segments(profile)?)
-            .map_err(|e| Error::new("toml", e.to_string(), "", ""))?;
+        let written = write::segments(profile)?;
+        // The fit turns the vertical back of the flange by a rounding of its tangent.
+        assert!(written.cut.len() <= 1, "{:?}", written.cut);
+        let scene: Scene =
+            toml::from_str(&written.toml).map_err(|e| Error::new("toml", e.to_string(), "", ""))?;
         let back = crate::profile::drawing::chain("back", "", None, &scene.segments)?;
-        assert!(difference(profile, &back, Side::Wheel, [-69.9, 59.9]) <= bound);
+        let worst = difference(profile, &back, Side::Wheel, [-69.9, 59.9]);
+        assert!(worst <= bound, "{worst}");
     }
     let spline = profile("s1002.csv", text.as_bytes(), Side::Wheel, &Options::default())?.profile;
     assert!(write::segments(&spline).is_err_and(|e| e.place == "segment 1"));

@@ -140,27 +140,50 @@ fn along_polynomial(polynomial: &Polynomial, step: f64) -> Vec<[f64; 2]> {
     (0..=n).map(|k| at(k as f64 / n as f64)).collect()
 }
 
-/// The profile as `[[segments]]` of a scene.
+/// Segments as a scene has them.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Segments {
+    /// `[[segments]]` in TOML.
+    pub toml: String,
+    /// What was left out at the two ends: side faces beyond the vertical, which a graph z(x) cannot hold.
+    pub cut: Vec<String>,
+}
+
+/// The profile as `[[segments]]` of a scene, up to where its side faces are vertical.
 ///
 /// # Errors
-/// Segments that are no graph z(x), with their place: undercut side faces, and the spans of a spline, which are
+/// Segments between that are no graph z(x), with their place: undercuts, and the spans of a spline, which are
 /// parametric; `curve = "arcs"` gives segments that can be written.
-pub fn segments(profile: &Profile) -> Result<String> {
+pub fn segments(profile: &Profile) -> Result<Segments> {
     #[derive(Serialize)]
     struct Scene {
         segments: Vec<SegmentData>,
     }
-    let data = profile.segments().iter().enumerate().map(|(k, segment)| {
+    let all = profile.segments();
+    let first = all.iter().position(|segment| segment.end().cos >= 0.0).unwrap_or(all.len());
+    let last = all.iter().rposition(|segment| segment.start().cos >= 0.0).map_or(0, |k| k + 1);
+    let mut scene = Scene { segments: Vec::with_capacity(all.len()) };
+    let mut cut = Vec::new();
+    for (k, segment) in all.iter().enumerate() {
+        let ends = [k == first, k + 1 == last];
+        let clipped = [segment.start(), segment.end()].map(|station| station.cos < 0.0);
+        if k < first || k >= last {
+            cut.push(format!("{}: beyond the vertical", segment.place(k)));
+            continue;
+        }
+        if (0..2).any(|end| ends[end] && clipped[end]) {
+            cut.push(format!("{}: the part beyond the vertical", segment.place(k)));
+        }
         let data = match &segment.shape {
-            Shape::Arc(arc) => arc_data(arc),
+            Shape::Arc(arc) => arc_data(arc, ends),
             Shape::Polynomial(polynomial) => polynomial_data(polynomial),
         };
-        data.map(|data| labelled(segment, data)).map_err(|error| error.within(segment.place(k)))
-    });
-    let scene = Scene { segments: data.collect::<Result<_>>()? };
-    toml::to_string(&scene).map_err(|error| {
+        scene.segments.push(labelled(segment, data.map_err(|error| error.within(segment.place(k)))?));
+    }
+    let toml = toml::to_string(&scene).map_err(|error| {
         Error::new("segments", error.to_string(), "segments that TOML can hold", "report this")
-    })
+    })?;
+    Ok(Segments { toml, cut })
 }
 
 fn labelled(segment: &Segment, data: SegmentData) -> SegmentData {
@@ -169,9 +192,14 @@ fn labelled(segment: &Segment, data: SegmentData) -> SegmentData {
 
 const NOTHING: SegmentData = SegmentData { label: None, line: None, arc: None, polynomial: None };
 
-fn arc_data(arc: &Arc) -> Result<SegmentData> {
+/// An arc; at an end where `clip` allows it only up to its vertical tangent.
+fn arc_data(arc: &Arc, clip: [bool; 2]) -> Result<SegmentData> {
     let (start, end) = (arc.start, arc.end);
-    if start.cos < 0.0 || end.cos < 0.0 || start.x >= end.x {
+    let vertical = |side: f64| arc.centre().map_or(f64::NAN, |[a, _]| a + side * arc.radius.abs());
+    let x0 = if clip[0] && start.cos < 0.0 { vertical(-1.0) } else { start.x };
+    let x1 = if clip[1] && end.cos < 0.0 { vertical(1.0) } else { end.x };
+    let graph = |station: &Station, clip: bool| clip || station.cos >= 0.0;
+    if !(graph(&start, clip[0]) && graph(&end, clip[1]) && x0 < x1) {
         let found = format!("an arc that goes back at x = {}", end.x);
         return Err(Error::new("", found, "a graph z(x)", "cut the side faces off the points"));
     }
@@ -181,7 +209,7 @@ fn arc_data(arc: &Arc) -> Result<SegmentData> {
         // About a centre so far away the height has fewer digits than the arc is high.
         Some(center) if sagitta > 4.0 * f64::EPSILON * arc.radius.abs() => {
             let half = if arc.radius < 0.0 { HalfData::Upper } else { HalfData::Lower };
-            let x = Some([start.x, end.x]);
+            let x = Some([x0, x1]);
             let data = ArcData { center: Some(center), radius: arc.radius.abs(), half, x, to_x: None };
             SegmentData { arc: Some(data), ..NOTHING }
         }
