@@ -2,6 +2,7 @@
 
 mod components;
 mod corners;
+pub mod load;
 pub(crate) mod measure;
 mod outline;
 mod slice;

@@ -4,6 +4,7 @@
 mod arc;
 pub mod builder;
 pub mod continuity;
+pub mod measured;
 mod polynomial;
 mod section;
 pub mod standards;
@@ -11,7 +12,8 @@ pub mod standards;
 pub use arc::{Arc, Half};
 pub use polynomial::Polynomial;
 pub use section::{
-    ArcBranch, Branch, BranchShape, Piece, PolynomialBranch, ProfilePoint, Section, Side, stationary_points,
+    ArcBranch, Branch, BranchPoint, BranchShape, Piece, PolynomialBranch, ProfilePoint, Section, Side,
+    stationary_points,
 };
 pub mod drawing;
 

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::profile::drawing::SegmentData;
 use crate::separation::grid::Method;
 
-/// A scene: one wheel on one rail, what is asked of it, and what is to be written.
+/// A scene: a wheel on a rail or a wheelset on a track, what is asked of it, and what is to be written.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
@@ -19,8 +19,15 @@ pub struct Scene {
     pub rail: ProfileData,
     /// The wheel profile and its rolling radius.
     pub wheel: ProfileData,
-    /// Where the two touch.
-    pub contact: ContactData,
+    /// Where the two touch, for one wheel on one rail.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<ContactData>,
+    /// The track, for a wheelset.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub track: Option<TrackData>,
+    /// The wheelset on it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wheelset: Option<WheelsetData>,
     /// How far they approach.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub patch: Option<PatchData>,
@@ -75,7 +82,7 @@ pub enum Rotation {
     Ratio(String),
 }
 
-/// A chosen pair of points.
+/// A chosen pair of points, or a placed single wheel that is lowered until it touches.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactData {
@@ -85,6 +92,86 @@ pub struct ContactData {
     /// Abscissa of C on the wheel profile, mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wheel_x: Option<f64>,
+    /// Lateral offset of the wheel profile's origin from the rail's, mm, + to the field side.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub offset: Option<f64>,
+    /// Roll of the wheel about the track's y axis, rad, right-handed, applied second.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub roll: Option<f64>,
+    /// Yaw of the wheel about z, rad, right-handed, applied first.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub yaw: Option<f64>,
+    /// Near misses up to this vertical gap, mm, are reported.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub within: Option<f64>,
+}
+
+/// Two rails: the right one as described, the left one its mirror image.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TrackData {
+    /// Distance between the rails' inner faces, mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gauge: Option<f64>,
+    /// Depth below the top of rail down to which the gauge is measured, mm; 14 by default.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gauge_height: Option<f64>,
+    /// Instead of the gauge: distance between the rail profiles' origins, mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spacing: Option<f64>,
+}
+
+/// Two wheels on an axle: the right one as described, the left one its mirror image.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WheelsetData {
+    /// Distance between the flange backs, mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub back_to_back: Option<f64>,
+    /// Abscissa of the flange back on the wheel profile, mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flange_back_x: Option<f64>,
+    /// Instead of both: distance between the wheel profiles' origins, mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spacing: Option<f64>,
+    /// Lateral displacement, mm, + to the right.
+    #[serde(default)]
+    pub lateral: f64,
+    /// Yaw about z, rad, applied first; > 0 moves the right-hand wheel forward.
+    #[serde(default)]
+    pub yaw: f64,
+    /// "solve": both wheels touch; "neglect": 0; or rad about the track's y axis, > 0 lowers the right-hand wheel.
+    #[serde(default)]
+    pub roll: RollData,
+    /// Near misses up to this vertical gap, mm, are reported.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub within: Option<f64>,
+}
+
+/// How the roll of a wheelset is found.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "\"solve\", \"neglect\" or an angle in rad")]
+pub enum RollData {
+    /// A word.
+    Word(RollWord),
+    /// rad.
+    Radians(f64),
+}
+
+impl Default for RollData {
+    fn default() -> Self {
+        Self::Word(RollWord::Solve)
+    }
+}
+
+/// The words for a roll.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum RollWord {
+    /// Both wheels touch.
+    Solve,
+    /// 0, each side lowered on its own.
+    Neglect,
 }
 
 /// The approach δ, or the load that it is estimated from.
@@ -234,17 +321,19 @@ impl GridMethod {
 }
 
 /// What is written besides summary.json, the tables and the picture.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputData {
-    /// Formats.
-    pub formats: Vec<Format>,
+    /// Formats; all but "png" by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub formats: Option<Vec<Format>>,
 }
 
-impl Default for OutputData {
-    fn default() -> Self {
+impl OutputData {
+    /// The formats to write.
+    pub fn wanted(&self) -> &[Format] {
         use Format::{Conform, Contact, Countact, Netcdf, Npy, Text, Vtk};
-        Self { formats: vec![Vtk, Npy, Netcdf, Text, Conform, Countact, Contact] }
+        self.formats.as_deref().unwrap_or(&[Vtk, Npy, Netcdf, Text, Conform, Countact, Contact])
     }
 }
 

@@ -5,7 +5,7 @@ mod branch;
 mod envelope;
 
 pub use between::stationary_points;
-pub use branch::{ArcBranch, Branch, BranchShape, PolynomialBranch};
+pub use branch::{ArcBranch, Branch, BranchPoint, BranchShape, PolynomialBranch};
 pub use envelope::Piece;
 
 use super::{Arc, Profile, Shape, Station};
@@ -57,6 +57,11 @@ impl Section {
     /// The profile in the contact frame of one of its points: origin there, ξ along the tangent.
     pub fn at_contact(profile: &Profile, point: &ProfilePoint, side: Side) -> Self {
         Self::build(profile, point.station, Some(point), side)
+    }
+
+    /// The profile in any frame: at a kink, where the common normal is not that of a tangent.
+    pub fn in_frame(profile: &Profile, frame: Station, side: Side) -> Self {
+        Self::build(profile, frame, None, side)
     }
 
     fn build(profile: &Profile, frame: Station, contact: Option<&ProfilePoint>, side: Side) -> Self {

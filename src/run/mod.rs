@@ -1,0 +1,187 @@
+//! The whole pipeline: scene → profiles → placement → separation → patch → files.
+
+mod analysis;
+mod files;
+mod places;
+mod summary;
+
+use std::path::Path;
+
+pub use analysis::{Analysis, ApproachBy, Contact, Question, Timings};
+pub use places::Found;
+
+use crate::error::{Error, Result};
+use crate::export::Folder;
+use crate::interpenetration::Patch;
+use crate::mesh::axes;
+use crate::placement::{Pair, Placement};
+use crate::scene::{self, Scene, check_points};
+
+/// A scene and everything computed from it.
+#[derive(Debug, Clone)]
+pub struct Run {
+    /// The scene as read.
+    pub scene: Scene,
+    /// SHA-256 of it.
+    pub hash: String,
+    /// Its title, or its name.
+    pub title: String,
+    /// What it asks of every contact.
+    pub question: Question,
+    /// One part for every grid; the first contact's first.
+    pub parts: Vec<Part>,
+}
+
+/// One contact with one grid, and the folder of its files.
+#[derive(Debug, Clone)]
+pub struct Part {
+    /// Folder below the run's own, or empty for that itself.
+    pub folder: String,
+    /// How the contact was found, unless it was chosen.
+    pub found: Option<Found>,
+    /// The placed pair.
+    pub contact: Contact,
+    /// Its grid and patch.
+    pub analysis: Analysis,
+}
+
+impl Run {
+    /// Computes a scene; its own files are relative to `folder`, `name` is the title of a scene without one.
+    ///
+    /// # Errors
+    /// Bad input, by key. An infeasible contact or an empty patch is a result: [`Run::refusals`].
+    pub fn new(scene: Scene, folder: &Path, name: &str) -> Result<Self> {
+        let question = question(&scene)?;
+        let pair = scene.pair(folder)?;
+        let places = places::find(&scene.standing()?, &pair, &question)?;
+        let mut parts: Vec<Part> = Vec::new();
+        for place in places {
+            for (number, [xi, eta]) in grids(&scene, &place)?.into_iter().enumerate() {
+                let analysis = Analysis::new(&place.contact, xi, eta, &question);
+                let folder = match (parts.is_empty(), number) {
+                    (true, _) => String::new(),
+                    (false, 0) => place.folder.clone(),
+                    (false, _) => format!("{}patch-{}", prefix(&place.folder), number + 1),
+                };
+                let (found, contact) = (place.found.clone(), place.contact.clone());
+                parts.push(Part { folder, found, contact, analysis });
+            }
+        }
+        let title = scene.title.clone().unwrap_or_else(|| name.to_string());
+        Ok(Self { hash: scene::hash(&scene), scene, title, question, parts })
+    }
+
+    /// Writes all files that the scene asks for.
+    ///
+    /// # Errors
+    /// The disk's; a format that cannot hold the grid.
+    pub fn write(&self, folder: &Folder) -> Result<()> {
+        self.parts.iter().try_for_each(|part| files::write(folder, self, part))
+    }
+
+    /// Geometric "no"s.
+    pub fn refusals(&self) -> Vec<String> {
+        self.parts.iter().flat_map(Part::refusals).collect()
+    }
+
+    /// What a user should know before using the files.
+    pub fn warnings(&self) -> Vec<String> {
+        self.parts.iter().flat_map(Part::warnings).collect()
+    }
+}
+
+impl Part {
+    fn refusals(&self) -> Vec<String> {
+        let mut out = Vec::new();
+        let feasibility = &self.contact.feasibility;
+        if !feasibility.feasible {
+            out.push(format!(
+                "infeasible contact: the bodies overlap by {:.6e} mm at xi = {:.6} mm; expected s >= 0 everywhere \
+                 (4.1); choose another pair of points",
+                -feasibility.least_separation_mm, feasibility.at_xi_mm
+            ));
+        }
+        if self.analysis.patch.as_ref().is_some_and(|patch| patch.components.is_empty()) {
+            out.push("empty patch: s is nowhere below the approach in the window of the grid".into());
+        }
+        out
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        let mut out = Vec::new();
+        if self.analysis.patch.as_ref().is_some_and(Patch::cut_by_window) {
+            out.push("the window of the grid cuts the patch: solvers would overestimate the pressure".into());
+        }
+        out
+    }
+}
+
+/// The placed pair of a scene's first contact, without grid or patch.
+///
+/// # Errors
+/// Bad input, by key.
+pub fn first_contact(scene: &Scene, pair: &Pair) -> Result<Placement> {
+    let question = Question { approach: None, ..question(scene)? };
+    let placed = places::find(&scene.standing()?, pair, &question)?.into_iter().next();
+    placed
+        .map(|place| place.contact.placement)
+        .ok_or_else(|| Error::new("contact", "none", "a wheel over its rail", "check offsets and signs"))
+}
+
+fn prefix(folder: &str) -> String {
+    if folder.is_empty() { String::new() } else { format!("{folder}-") }
+}
+
+/// The grids of one contact: the scene's own axes, or one over every part of the patch.
+///
+/// A contact that was found has one grid, over the part of the patch that holds it: the others are contacts of
+/// their own.
+fn grids(scene: &Scene, place: &places::Placed) -> Result<Vec<[Vec<f64>; 2]>> {
+    let (xi, eta) = (scene.axis("xi")?, scene.axis("eta")?);
+    let spacing = scene.spacing()?;
+    if let (Some(xi), Some(eta)) = (&xi, &eta) {
+        if spacing.is_some() {
+            let expected = "`spacing` only with automatic axes";
+            return Err(Error::new("grid: spacing", "a step beside given axes", expected, "remove it"));
+        }
+        check_points("grid", xi.len() as f64 * eta.len() as f64)?;
+        return Ok(vec![[xi.clone(), eta.clone()]]);
+    }
+    let mut boxes = match place.contact.approach {
+        Some((approach, _)) => axes::boxes(&place.contact.placement, approach, 0.0),
+        None => Vec::new(),
+    };
+    if boxes.is_empty() {
+        let expected = "values, or a patch that the axes can be sized by";
+        return Err(Error::new(
+            "grid",
+            "auto, and no patch",
+            expected,
+            "give from, to and n, or a larger approach",
+        ));
+    }
+    if place.found.is_some() {
+        boxes.truncate(1);
+    }
+    let grid = |window| {
+        let automatic = axes::over(window, spacing)?;
+        let both = [xi.clone().unwrap_or(automatic.xi), eta.clone().unwrap_or(automatic.eta)];
+        check_points("grid", both[0].len() as f64 * both[1].len() as f64)?;
+        Ok(both)
+    };
+    boxes.iter().map(grid).collect()
+}
+
+/// The numerical question that a scene asks.
+fn question(scene: &Scene) -> Result<Question> {
+    scene.check_patch()?;
+    let patch = scene.patch.as_ref();
+    let approach = patch
+        .and_then(|patch| patch.approach.map(ApproachBy::Given).or_else(|| patch.load.map(ApproachBy::Load)));
+    Ok(Question {
+        approach,
+        material: scene.elastic()?,
+        tolerance: scene.tolerance()?,
+        method: scene.grid.method.forced(),
+    })
+}
