@@ -99,6 +99,11 @@ impl<'a> Outline<'a> {
         }
     }
 
+    /// s(ξ, η) \[mm\].
+    pub fn separation(&mut self, xi: f64, eta: f64) -> f64 {
+        self.slicer.separation(xi, eta)
+    }
+
     /// Whether the least s is on the midplane, where its stationary points have a closed form.
     fn plain(&self) -> bool {
         self.slicer.placement().skew == 0.0 && self.window.eta[0] <= 0.0 && self.window.eta[1] >= 0.0

@@ -1,20 +1,20 @@
 //! The rectangular solver grid: cell centres over the potential contact area, sized from the interpenetration box.
+//!
+//! Centres lie on the lattice (i Δξ, j Δη) about C: C itself is a centre, the η axis is symmetric to the last bit
+//! over a symmetric patch, and grids of one spacing for several parts or approaches share their centres.
 
-use crate::error::{Error, Result};
-use crate::interpenetration::{Patch, Window};
+use crate::error::{Error, Result, finite};
+use crate::interpenetration::{Component, Patch, Window};
 use crate::placement::Placement;
 
 /// Cells over the short side of the box when no spacing is given: peak pressures are then good to 0.02 %.
 const CELLS_ACROSS: f64 = 16.0;
 
-/// Empty cells on each side of the box, which boundary-element solvers want.
+/// Empty rows and columns on each side of the box, which boundary-element solvers want.
 const MARGIN_CELLS: f64 = 2.0;
 
 /// Cells beyond which a grid does not fit into memory.
-const MOST_CELLS: f64 = 1.2e8;
-
-/// Widest |η| that is looked at, as a share of the rolling radius: the ring is closed well beyond.
-const WIDEST: f64 = 0.5;
+const MOST_CELLS: f64 = 1e8;
 
 /// The axes of one grid of cell centres.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,52 +23,204 @@ pub struct Axes {
     pub xi: Vec<f64>,
     /// η of the cell centres \[mm\], ascending, equal steps; symmetric to the last bit without skew.
     pub eta: Vec<f64>,
+    /// \[Δξ, Δη\] \[mm\].
+    pub spacing: [f64; 2],
+}
+
+impl Axes {
+    /// The rectangle that the cells cover: half a step beyond the outermost centres.
+    pub fn window(&self) -> Window {
+        let edges = |values: &[f64], step: f64| match values {
+            [first, .., last] => [first - step / 2.0, last + step / 2.0],
+            _ => [f64::NAN; 2],
+        };
+        Window { xi: edges(&self.xi, self.spacing[0]), eta: edges(&self.eta, self.spacing[1]) }
+    }
+}
+
+/// Components of a patch that share a grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Group {
+    /// Their indices in the patch, ascending.
+    pub components: Vec<usize>,
+    /// The box around them.
+    pub extent: Window,
+    /// Smallest s on them \[mm\].
+    pub least: f64,
+    /// The shorter side of the box around the largest of them \[mm\].
+    pub short_side: f64,
+}
+
+/// The grid of one group.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grid {
+    /// What it is for.
+    pub group: Group,
+    /// Its cell centres.
+    pub axes: Axes,
+}
+
+/// One grid for every component, or for every group of components closer than `merge` \[mm\], and the patch over the
+/// whole overlap of the two profiles from which they are sized. The group that holds C comes first, then the
+/// deepest; none for an empty patch.
+///
+/// `spacing` = \[Δξ, Δη\] \[mm\]; by default square cells, 16 over the short side of the group's largest component.
+/// A group that is cut by the end of a profile has cells without a separation beyond it.
+///
+/// # Errors
+/// A spacing that is not positive; a merge distance that is not a length; more than 10⁸ cells in a grid.
+pub fn grids(
+    placement: &Placement,
+    approach: f64,
+    spacing: Option<[f64; 2]>,
+    merge: f64,
+) -> Result<(Patch, Vec<Grid>)> {
+    if finite("grid: merge distance", merge)? < 0.0 {
+        let advice = "give 0 to keep all parts apart";
+        return Err(Error::new(
+            "grid: merge distance",
+            merge.to_string(),
+            "a length in mm, 0 or more",
+            advice,
+        ));
+    }
+    let patch = Patch::new(placement, approach, &Window::UNBOUNDED);
+    let grid = |group: Group| {
+        let steps = spacing.unwrap_or([group.short_side / CELLS_ACROSS; 2]);
+        Ok(Grid { axes: lattice(&group.extent, steps)?, group })
+    };
+    let grids = groups(&patch, merge).into_iter().map(grid).collect::<Result<_>>()?;
+    Ok((patch, grids))
 }
 
 /// Boxes of the patch over the whole overlap of the two profiles, one for every component or group of components
-/// closer in ξ than `merge` \[mm\]; the group that holds C first, else the deepest first.
+/// closer than `merge` \[mm\]; the group that holds C first, else the deepest first.
 pub fn boxes(placement: &Placement, approach: f64, merge: f64) -> Vec<Window> {
-    let Some(xi) = placement.overlap() else { return Vec::new() };
-    let widest = WIDEST * placement.rolling_radius();
-    let patch = Patch::new(placement, approach, &Window { xi, eta: [-widest, widest] });
-    let mut groups: Vec<(Window, f64)> = Vec::new();
-    for component in &patch.components {
-        let depth = component.deepest[0];
-        match groups.last_mut() {
-            Some((window, least)) if component.xi[0] - window.xi[1] < merge => {
-                window.xi[1] = component.xi[1];
-                window.eta = [window.eta[0].min(component.eta[0]), window.eta[1].max(component.eta[1])];
-                *least = least.min(depth);
-            }
-            _ => groups.push((Window { xi: component.xi, eta: component.eta }, depth)),
-        }
-    }
-    let away = |window: &Window| !(window.xi[0] <= 0.0 && window.xi[1] >= 0.0);
-    groups.sort_by(|(a, p), (b, q)| away(a).cmp(&away(b)).then(p.total_cmp(q)));
-    groups.into_iter().map(|(window, _)| window).collect()
+    let patch = Patch::new(placement, approach, &Window::UNBOUNDED);
+    groups(&patch, merge).into_iter().map(|group| group.extent).collect()
 }
 
-/// Cell centres over a box with a margin; `spacing` = \[Δξ, Δη\] \[mm\], by default square cells, 16 across.
+/// The components of a patch in groups whose boxes are closer to each other than `merge` \[mm\], in the order of
+/// [`grids`].
+pub fn groups(patch: &Patch, merge: f64) -> Vec<Group> {
+    let mut groups: Vec<Group> = Vec::new();
+    for (index, component) in patch.components.iter().enumerate() {
+        let mut group = Group::of(index, component);
+        // A new part may link groups that were apart: all that are near are joined.
+        while let Some(near) = groups.iter().position(|other| distance(&group.extent, &other.extent) < merge)
+        {
+            group = groups.swap_remove(near).joined(group, patch);
+        }
+        groups.push(group);
+    }
+    let away = |group: &Group| !group.components.iter().any(|&k| holds_contact(&patch.components[k]));
+    groups.sort_by(|a, b| away(a).cmp(&away(b)).then(a.least.total_cmp(&b.least)));
+    groups
+}
+
+impl Group {
+    fn of(index: usize, component: &Component) -> Self {
+        let extent = Window { xi: component.xi, eta: component.eta };
+        Self {
+            components: vec![index],
+            extent,
+            least: component.deepest[0],
+            short_side: short_side(component),
+        }
+    }
+
+    fn joined(mut self, other: Self, patch: &Patch) -> Self {
+        self.components.extend(other.components);
+        self.components.sort_unstable();
+        let join = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+        let components = self.components.iter().map(|&k| &patch.components[k]);
+        let largest = components.max_by(|a, b| a.area.total_cmp(&b.area));
+        Self {
+            extent: Window {
+                xi: join(self.extent.xi, other.extent.xi),
+                eta: join(self.extent.eta, other.extent.eta),
+            },
+            least: self.least.min(other.least),
+            short_side: largest.map_or(self.short_side, short_side),
+            components: self.components,
+        }
+    }
+}
+
+fn holds_contact(component: &Component) -> bool {
+    component.xi[0] <= 0.0 && component.xi[1] >= 0.0
+}
+
+fn short_side(component: &Component) -> f64 {
+    (component.xi[1] - component.xi[0]).min(component.eta[1] - component.eta[0])
+}
+
+/// Distance of two boxes \[mm\], 0 where they meet.
+fn distance(a: &Window, b: &Window) -> f64 {
+    let gap = |a: [f64; 2], b: [f64; 2]| (a[0] - b[1]).max(b[0] - a[1]).max(0.0);
+    gap(a.xi, b.xi).hypot(gap(a.eta, b.eta))
+}
+
+/// Cell centres over a box with a margin of two cells on each side; `spacing` = \[Δξ, Δη\] \[mm\], by default
+/// square cells, 16 over its short side.
 ///
 /// # Errors
-/// A spacing for which the grid would not fit into memory.
+/// A spacing that is not positive, or for which the grid would not fit into memory.
 pub fn over(window: &Window, spacing: Option<[f64; 2]>) -> Result<Axes> {
-    let sides = [window.xi, window.eta].map(|[a, b]| b - a);
-    let short = sides[0].min(sides[1]) / CELLS_ACROSS;
-    let steps = spacing.unwrap_or([short; 2]);
-    let cells = [0, 1].map(|k| (sides[k] / steps[k]).ceil() + 2.0 * MARGIN_CELLS);
-    if !(cells[0] * cells[1] <= MOST_CELLS) {
-        let found = format!("{:e} cells over the patch", cells[0] * cells[1]);
-        return Err(Error::new(
-            "grid: spacing",
-            found,
-            format!("at most {MOST_CELLS:e}"),
-            "take a larger step",
-        ));
+    let short = (window.xi[1] - window.xi[0]).min(window.eta[1] - window.eta[0]);
+    lattice(window, spacing.unwrap_or([short / CELLS_ACROSS; 2]))
+}
+
+fn lattice(window: &Window, spacing: [f64; 2]) -> Result<Axes> {
+    for step in spacing {
+        if finite("grid: spacing", step)? <= 0.0 {
+            let advice = "give a step, or let the patch decide";
+            return Err(Error::new("grid: spacing", step.to_string(), "a positive length in mm", advice));
+        }
     }
-    let centres = |[a, b]: [f64; 2], step: f64, n: f64| {
-        let middle = a + (b - a) / 2.0;
-        (0..n as usize).map(|k| middle + (k as f64 - (n - 1.0) / 2.0) * step).collect()
+    // Cell i covers [(i − ½) Δ, (i + ½) Δ].
+    let range = |[a, b]: [f64; 2], step: f64| {
+        [(a / step + 0.5).floor() - MARGIN_CELLS, (b / step - 0.5).ceil() + MARGIN_CELLS]
     };
-    Ok(Axes { xi: centres(window.xi, steps[0], cells[0]), eta: centres(window.eta, steps[1], cells[1]) })
+    let (xi, eta) = (range(window.xi, spacing[0]), range(window.eta, spacing[1]));
+    let cells = (xi[1] - xi[0] + 1.0) * (eta[1] - eta[0] + 1.0);
+    if cells.is_nan() || cells > MOST_CELLS {
+        let found = format!("{cells:e} cells over the patch");
+        let expected = format!("at most {MOST_CELLS:e}");
+        return Err(Error::new("grid: spacing", found, expected, "take a larger step"));
+    }
+    let centres = |[first, last]: [f64; 2], step: f64| {
+        (first as i64..=last as i64).map(|i| i as f64 * step).collect::<Vec<f64>>()
+    };
+    Ok(Axes { xi: centres(xi, spacing[0]), eta: centres(eta, spacing[1]), spacing })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_lattice_covers_the_box_with_its_margin_and_no_more() -> Result<()> {
+        for [a, b] in [[-1.0, 1.0], [-0.3, 0.7], [5.0, 9.1], [-7.2, -3.0]] {
+            for step in [0.1, 0.07, 0.5] {
+                let axes = over(&Window { xi: [a, b], eta: [-2.0, 2.0] }, Some([step, 0.25]))?;
+                let n = axes.xi.len();
+                let edges = |k: usize| [axes.xi[k] - step / 2.0, axes.xi[k] + step / 2.0];
+                assert!(edges(1)[1] <= a + 1e-12 && edges(2)[1] >= a - 1e-12, "[{a}, {b}] {step}");
+                assert!(edges(n - 2)[0] >= b - 1e-12 && edges(n - 3)[0] <= b + 1e-12, "[{a}, {b}] {step}");
+                assert!(axes.eta.iter().zip(axes.eta.iter().rev()).all(|(p, q)| *p == -*q));
+                assert!(axes.eta.contains(&0.0));
+            }
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn bad_steps_and_too_many_cells_are_refused() {
+        let window = Window { xi: [-1.0, 1.0], eta: [-1.0, 1.0] };
+        for spacing in [[0.0, 1.0], [1.0, f64::NAN], [-1.0, 1.0], [1e-5, 1e-5], [1e-300, 1.0]] {
+            assert!(over(&window, Some(spacing)).is_err(), "{spacing:?}");
+        }
+        assert!(over(&Window::UNBOUNDED, None).is_err());
+    }
 }

@@ -1,3 +1,7 @@
-//! Solver meshes over the patch.
+//! Solver meshes over the patch, surfaces around it, and how good they are.
 
 pub mod axes;
+pub mod quality;
+pub mod strips;
+pub mod surfaces;
+mod trace;

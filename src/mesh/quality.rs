@@ -1,0 +1,144 @@
+//! How well shaped the cells of a mesh are: what mesh generators report, for summary.json.
+
+use serde::Serialize;
+
+use super::strips::StripMesh;
+use super::surfaces::Surface;
+
+/// Least, largest and mean value over all cells.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Spread {
+    /// Least.
+    pub min: f64,
+    /// Largest.
+    pub max: f64,
+    /// Mean over the cells.
+    pub mean: f64,
+}
+
+/// Shape of the straight-sided cells of a mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Quality {
+    /// Cells, triangles included.
+    pub cells: usize,
+    /// Cells with three corners.
+    pub triangles: usize,
+    /// Cells with a corner that turns the wrong way or not at all; 0 in a sound mesh.
+    pub inverted: usize,
+    /// Longest over shortest side, from 1.
+    pub aspect_ratio: Spread,
+    /// Equiangle skew, 0 (square, equilateral) to 1 (flat): the larger of (θ_max − θ_e)/(π − θ_e) and
+    /// (θ_e − θ_min)/θ_e, with θ_e = π/2 or π/3.
+    pub skewness: Spread,
+    /// Smallest angle of a cell \[rad\], up to π/2.
+    pub smallest_angle_rad: Spread,
+}
+
+impl Quality {
+    /// The cells of a strip mesh, in the ξ–η plane; `None` without cells.
+    pub fn of_strips(mesh: &StripMesh) -> Option<Self> {
+        let flat = |&k: &usize| [mesh.points[k][0], mesh.points[k][1], 0.0];
+        let shape = |corners: &[usize]| {
+            let corners: Vec<[f64; 3]> = corners.iter().map(flat).collect();
+            Shape::new(&corners, [0.0, 0.0, 1.0])
+        };
+        Self::of(mesh.cells.iter().map(|cell| shape(cell.vertices())))
+    }
+
+    /// The facets of a surface; `None` without facets.
+    pub fn of_surface(surface: &Surface) -> Option<Self> {
+        let shape = |quad: [usize; 4]| {
+            let corners = quad.map(|k| surface.points[k]);
+            let [a, b, c, d] = corners;
+            Shape::new(&corners, cross(between(a, c), between(b, d)))
+        };
+        Self::of(surface.quads().into_iter().map(shape))
+    }
+
+    fn of(shapes: impl Iterator<Item = Shape>) -> Option<Self> {
+        let shapes: Vec<Shape> = shapes.collect();
+        let spread = |value: fn(&Shape) -> f64| Spread {
+            min: shapes.iter().map(value).fold(f64::INFINITY, f64::min),
+            max: shapes.iter().map(value).fold(f64::NEG_INFINITY, f64::max),
+            mean: shapes.iter().map(value).sum::<f64>() / shapes.len() as f64,
+        };
+        (!shapes.is_empty()).then(|| Self {
+            cells: shapes.len(),
+            triangles: shapes.iter().filter(|shape| shape.triangle).count(),
+            inverted: shapes.iter().filter(|shape| shape.inverted).count(),
+            aspect_ratio: spread(|shape| shape.aspect_ratio),
+            skewness: spread(|shape| shape.skewness),
+            smallest_angle_rad: spread(|shape| shape.smallest_angle),
+        })
+    }
+}
+
+/// One cell.
+struct Shape {
+    triangle: bool,
+    inverted: bool,
+    aspect_ratio: f64,
+    skewness: f64,
+    smallest_angle: f64,
+}
+
+impl Shape {
+    /// From its corners, counter-clockwise about `normal`.
+    fn new(corners: &[[f64; 3]], normal: [f64; 3]) -> Self {
+        let n = corners.len();
+        let sides: Vec<[f64; 3]> = (0..n).map(|k| between(corners[k], corners[(k + 1) % n])).collect();
+        let lengths = sides.iter().map(|side| dot(*side, *side).sqrt());
+        let (shortest, longest) =
+            lengths.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), l| (low.min(l), high.max(l)));
+        let (mut inverted, mut smallest, mut largest) = (false, f64::INFINITY, 0.0f64);
+        for k in 0..n {
+            let (back, on) = (sides[(k + n - 1) % n].map(|v| -v), sides[k]);
+            let turn = dot(cross(on, back), normal);
+            // A NaN counts as inverted too.
+            inverted |= turn.is_nan() || turn <= 0.0;
+            let area = cross(on, back);
+            let angle = dot(area, area).sqrt().atan2(dot(on, back));
+            (smallest, largest) = (smallest.min(angle), largest.max(angle));
+        }
+        let even = std::f64::consts::PI * (n as f64 - 2.0) / n as f64;
+        let skewness = ((largest - even) / (std::f64::consts::PI - even)).max((even - smallest) / even);
+        let triangle = n == 3;
+        Self { triangle, inverted, aspect_ratio: longest / shortest, skewness, smallest_angle: smallest }
+    }
+}
+
+fn between(p: [f64; 3], q: [f64; 3]) -> [f64; 3] {
+    [q[0] - p[0], q[1] - p[1], q[2] - p[2]]
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
+    const UP: [f64; 3] = [0.0, 0.0, 1.0];
+
+    #[test]
+    fn a_square_a_triangle_and_a_bow_tie() {
+        let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        let shape = Shape::new(&square, UP);
+        assert!(!shape.inverted && !shape.triangle);
+        assert_eq!([shape.aspect_ratio, shape.skewness, shape.smallest_angle], [1.0, 0.0, FRAC_PI_2]);
+        let half = Shape::new(&square[..3], UP);
+        assert!(half.triangle && !half.inverted);
+        assert!((half.smallest_angle - FRAC_PI_4).abs() < 1e-15 && (half.skewness - 0.25).abs() < 1e-15);
+        let bow_tie = [square[0], square[1], square[3], square[2]];
+        assert!(Shape::new(&bow_tie, UP).inverted);
+        let mut reversed = square;
+        reversed.reverse();
+        assert!(Shape::new(&reversed, UP).inverted);
+    }
+}

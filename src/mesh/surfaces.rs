@@ -1,0 +1,183 @@
+//! The two bodies' surfaces around the patch, for inspection and finite elements.
+//!
+//! Both are structured: index i along the profile, j along the rolling direction. They use the bodies' own
+//! parameters – profile × extrusion, profile × rotation about the axle – and so show walls and overhangs that
+//! s(ξ, η) cannot.
+
+use crate::error::{Error, Result, finite};
+use crate::interpenetration::Window;
+use crate::placement::Placement;
+use crate::profile::{Side, Station};
+
+use super::trace::{arc_step, trace};
+
+/// Points beyond which a surface is a mistake: a gigabyte of file.
+const MOST_POINTS: f64 = 3e7;
+
+/// A structured surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surface {
+    /// Whose it is.
+    pub side: Side,
+    /// Points \[along the profile, along the rolling direction\].
+    pub n: [usize; 2],
+    /// Points \[mm\], index i · n\[1\] + j; (ξ, η, ζ) of the contact frame unless moved.
+    pub points: Vec<[f64; 3]>,
+}
+
+impl Surface {
+    /// The rail over a window of the contact frame, widened to hold C, as far as its profile goes; C is one of the
+    /// points. Along η,
+    /// where it is straight, it is divided as the wheel is.
+    ///
+    /// `tolerance` \[mm\]: largest distance of the surface from the facets between its points.
+    ///
+    /// # Errors
+    /// A window that is not finite or wider than the wheel; a tolerance that is not positive, or takes too many points.
+    pub fn rail(placement: &Placement, window: &Window, tolerance: f64) -> Result<Self> {
+        check(placement, window, tolerance)?;
+        let stations = trace(&placement.rail, window.xi, tolerance)?;
+        let radius = placement.rolling_radius();
+        let along: Vec<f64> = angles(window.eta, radius, radius, tolerance / 2.0)
+            .into_iter()
+            .map(|psi| radius * psi.sin())
+            .collect();
+        let frame = placement.rail.section.frame;
+        let points = |station: &Station| {
+            let here = station.seen_from(&frame);
+            along.iter().map(|&eta| [here.x, eta, here.z]).collect::<Vec<_>>()
+        };
+        Self::of(Side::Rail, &stations, along.len(), points)
+    }
+
+    /// The wheel over the same window, before any approach, as far as its profile goes; C is one of the points.
+    /// Half of the tolerance goes to the profile, half to the rotation.
+    ///
+    /// # Errors
+    /// As [`Surface::rail`].
+    pub fn wheel(placement: &Placement, window: &Window, tolerance: f64) -> Result<Self> {
+        check(placement, window, tolerance)?;
+        let own = in_wheel_directions(placement, window);
+        let stations = trace(&placement.wheel, own.xi, tolerance / 2.0)?;
+        let largest = stations.iter().map(|s| placement.wheel_radius - s.z).fold(0.0, f64::max);
+        let psi = angles(own.eta, placement.rolling_radius(), largest, tolerance / 2.0);
+        let points =
+            |station: &Station| psi.iter().map(|&psi| wheel_point(placement, station, psi)).collect();
+        Self::of(Side::Wheel, &stations, psi.len(), points)
+    }
+
+    fn of(
+        side: Side,
+        stations: &[Station],
+        along: usize,
+        points: impl Fn(&Station) -> Vec<[f64; 3]>,
+    ) -> Result<Self> {
+        let n = [stations.len(), along];
+        let count = n[0] as f64 * n[1] as f64;
+        if count > MOST_POINTS {
+            let expected = format!("at most {MOST_POINTS:e}");
+            return Err(Error::new(
+                "surface",
+                format!("{count:e} points"),
+                expected,
+                "take a coarser tolerance",
+            ));
+        }
+        Ok(Self { side, n, points: stations.iter().flat_map(points).collect() })
+    }
+
+    /// The same points in the rail profile's axes (x, y, z), y = η.
+    #[must_use]
+    pub fn in_rail_axes(&self, placement: &Placement) -> Self {
+        let frame = placement.rail.section.frame;
+        let moved = |&[xi, eta, zeta]: &[f64; 3]| {
+            let there = Station { x: xi, z: zeta, ..Station::AXES }.placed_by(&frame);
+            [there.x, eta, there.z]
+        };
+        Self { points: self.points.iter().map(moved).collect(), ..self.clone() }
+    }
+
+    /// Corners of the facets, counter-clockwise seen from outside the body.
+    pub fn quads(&self) -> Vec<[usize; 4]> {
+        let [n_i, n_j] = self.n;
+        let quad = |i: usize, j: usize| {
+            let [a, b, c, d] = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(|[i, j]| i * n_j + j);
+            // i × j points up: out of the rail, into the wheel.
+            if self.side == Side::Rail { [a, b, c, d] } else { [a, d, c, b] }
+        };
+        (1..n_i).flat_map(|i| (1..n_j).map(move |j| quad(i - 1, j - 1))).collect()
+    }
+
+    /// Every facet as two triangles along its shorter diagonal, counter-clockwise seen from outside the body.
+    pub fn triangles(&self) -> Vec<[usize; 3]> {
+        let length = |p: usize, q: usize| {
+            let [dx, dy, dz] = [0, 1, 2].map(|k| self.points[q][k] - self.points[p][k]);
+            dx * dx + dy * dy + dz * dz
+        };
+        let split = |[a, b, c, d]: [usize; 4]| {
+            if length(a, c) <= length(b, d) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
+        };
+        self.quads().into_iter().flat_map(split).collect()
+    }
+}
+
+fn check(placement: &Placement, window: &Window, tolerance: f64) -> Result<()> {
+    for v in window.xi.into_iter().chain(window.eta) {
+        finite("surface: window", v)?;
+    }
+    let wide = window.eta.into_iter().any(|eta| eta.abs() >= placement.rolling_radius());
+    if wide || window.xi[0] >= window.xi[1] || window.eta[0] >= window.eta[1] {
+        let found = format!("{window:?}");
+        let expected = format!("ascending ends, |η| below {} mm", placement.rolling_radius());
+        return Err(Error::new("surface: window", found, expected, "take the grid's window"));
+    }
+    if finite("surface: tolerance", tolerance)? <= 0.0 {
+        let found = tolerance.to_string();
+        return Err(Error::new("surface: tolerance", found, "a positive length in mm", "1e-3 is usual"));
+    }
+    Ok(())
+}
+
+/// The window in the wheel's own ξ′ and η′, widened in ξ′ by what the profile moves sideways as it turns: e sinθ.
+fn in_wheel_directions(placement: &Placement, window: &Window) -> Window {
+    let (sin, cos) = placement.skew.sin_cos();
+    let corners = window.xi.into_iter().flat_map(|xi| window.eta.map(|eta| [xi, eta]));
+    let own: Vec<[f64; 2]> = corners.map(|[xi, eta]| [xi * cos + eta * sin, eta * cos - xi * sin]).collect();
+    let range = |k: usize| {
+        own.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p[k]), high.max(p[k])])
+    };
+    let (xi, eta) = (range(0), range(1));
+    let (axle, widest) = (placement.rolling_radius(), eta[0].abs().max(eta[1].abs()));
+    let aside = widest * widest / (axle + axle.hypot(widest)) * placement.wheel.section.frame.sin;
+    Window { xi: [xi[0] - aside.max(0.0), xi[1] - aside.min(0.0)], eta }
+}
+
+/// Angles about the axle at which C reaches from `eta[0]` to `eta[1]`, 0 among them if it is between, in equal steps
+/// whose chords on the largest radius keep the tolerance.
+fn angles(eta: [f64; 2], radius: f64, largest: f64, tolerance: f64) -> Vec<f64> {
+    let [from, to] = eta.map(|eta| (eta / radius).clamp(-1.0, 1.0).asin());
+    let step = arc_step(largest, tolerance);
+    let spread = |from: f64, to: f64| {
+        let n = ((to - from) / step).ceil().max(1.0);
+        (1..=n as usize).map(move |k| if k as f64 == n { to } else { from + (to - from) * k as f64 / n })
+    };
+    let mut angles = vec![from];
+    if from < 0.0 && to > 0.0 {
+        angles.extend(spread(from, 0.0));
+        angles.extend(spread(0.0, to));
+    } else {
+        angles.extend(spread(from, to));
+    }
+    angles
+}
+
+/// (ξ, η, ζ) of a profile point turned about the axle by ψ.
+fn wheel_point(placement: &Placement, station: &Station, psi: f64) -> [f64; 3] {
+    let w = placement.wheel_radius - station.z;
+    // R − w cosψ without cancellation.
+    let turned = Station { z: station.z + 2.0 * w * (psi / 2.0).sin().powi(2), ..*station };
+    let here = turned.seen_from(&placement.wheel.section.frame);
+    let (sin, cos) = placement.skew.sin_cos();
+    let (xi, eta) = (here.x, w * psi.sin());
+    [xi * cos - eta * sin, xi * sin + eta * cos, here.z]
+}

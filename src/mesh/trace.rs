@@ -1,0 +1,185 @@
+//! A profile as a polygon through its contact point, within a chordal tolerance, in the profile's own parameters:
+//! walls and overhangs, which are no function of ξ, are traced like the rest.
+
+use crate::error::{Error, Result};
+use crate::numerics::roots::bracketed;
+use crate::placement::Body;
+use crate::profile::{Arc, Polynomial, Segment, Shape, Station};
+
+/// Points beyond which a polygon is a mistake: 1e5 on a 100 mm profile are a micrometre apart.
+const MOST_POINTS: usize = 100_000;
+
+/// Intervals of a segment in which the contact point is looked for; a segment that faces the other body passes
+/// its ξ once, a wavy polynomial a few times.
+const SEARCHED_INTERVALS: usize = 64;
+
+/// Halvings of a polynomial's parameter: with them all it has [`MOST_POINTS`] by far.
+const DEEPEST: u32 = 20;
+
+/// Stations in profile axes, ascending along the chain: from C in both directions until ξ leaves the interval `xi` of
+/// the contact frame, which is widened to hold C; C is one of them. The chord between two neighbours is within
+/// `tolerance` \[mm\] of the profile. Joints with steps below the tolerance are drawn as one point.
+///
+/// # Errors
+/// More than 10⁵ points.
+pub(super) fn trace(body: &Body, xi: [f64; 2], tolerance: f64) -> Result<Vec<Station>> {
+    let tracer = Tracer { body, tolerance };
+    let contact = tracer.contact_share();
+    let mut stations = Vec::new();
+    if xi[0] < 0.0 {
+        stations.extend(tracer.walk(contact, xi[0], false)?.into_iter().rev());
+    }
+    stations.push(body.point.station);
+    if xi[1] > 0.0 {
+        stations.extend(tracer.walk(contact, xi[1], true)?);
+    }
+    Ok(stations)
+}
+
+struct Tracer<'a> {
+    body: &'a Body,
+    tolerance: f64,
+}
+
+impl Tracer<'_> {
+    fn segment(&self, index: usize) -> &Segment {
+        &self.body.profile.segments()[index]
+    }
+
+    /// ξ of a station.
+    fn xi(&self, station: &Station) -> f64 {
+        station.seen_from(&self.body.section.frame).x
+    }
+
+    /// Where on its segment the contact point is: of all places with ξ = 0 the one nearest to ζ = 0.
+    fn contact_share(&self) -> f64 {
+        let segment = self.segment(self.body.point.segment);
+        let xi = |share: f64| self.xi(&at(segment, share));
+        let step = |k: usize| k as f64 / SEARCHED_INTERVALS as f64;
+        let roots = (0..SEARCHED_INTERVALS).filter_map(|k| bracketed(xi, step(k), step(k + 1)));
+        let height = |share: f64| at(segment, share).seen_from(&self.body.section.frame).z.abs();
+        let nearest = roots.min_by(|a, b| height(*a).total_cmp(&height(*b)));
+        // C at an end, moved off the segment by rounding.
+        nearest.unwrap_or(if xi(0.0).abs() <= xi(1.0).abs() { 0.0 } else { 1.0 })
+    }
+
+    /// Stations beyond C, C not included, until ξ passes `limit` or the chain ends.
+    fn walk(&self, contact: f64, limit: f64, forward: bool) -> Result<Vec<Station>> {
+        let (index, n) = (self.body.point.segment, self.body.profile.segments().len());
+        let order: Vec<usize> = if forward { (index..n).collect() } else { (0..=index).rev().collect() };
+        let mut stations: Vec<Station> = Vec::new();
+        for k in order {
+            let far = if forward { 1.0 } else { 0.0 };
+            let from = if k == index { contact } else { 1.0 - far };
+            let segment = self.segment(k);
+            let near = stations.last().map_or(self.body.point.station, |last| *last);
+            let begin = at(segment, from);
+            if (begin.x - near.x).hypot(begin.z - near.z) > self.tolerance {
+                stations.push(begin);
+            }
+            let mut last = from;
+            for share in self.subdivided(segment, from, far)? {
+                let station = at(segment, share);
+                if (self.xi(&station) > limit) == forward && self.xi(&station) != limit {
+                    let beyond = |share: f64| self.xi(&at(segment, share)) - limit;
+                    stations.extend(bracketed(beyond, last, share).map(|share| at(segment, share)));
+                    return Ok(stations);
+                }
+                stations.push(station);
+                last = share;
+            }
+            if stations.len() > MOST_POINTS {
+                return Err(too_many(self.tolerance));
+            }
+        }
+        Ok(stations)
+    }
+
+    /// Shares after `from` up to `to` whose chords keep the tolerance; none where the two are equal.
+    fn subdivided(&self, segment: &Segment, from: f64, to: f64) -> Result<Vec<f64>> {
+        if from == to {
+            return Ok(Vec::new());
+        }
+        let mut shares = Vec::new();
+        match &segment.shape {
+            Shape::Arc(arc) => {
+                let turn = arc.turn().abs() * (to - from).abs();
+                let n = (turn / arc_step(arc.radius.abs(), self.tolerance)).ceil().max(1.0);
+                if n > MOST_POINTS as f64 {
+                    return Err(too_many(self.tolerance));
+                }
+                shares.extend((1..n as usize).map(|k| from + (to - from) * k as f64 / n));
+                shares.push(to);
+            }
+            Shape::Polynomial(polynomial) => self.halved(polynomial, from, to, DEEPEST, &mut shares)?,
+        }
+        Ok(shares)
+    }
+
+    fn halved(&self, p: &Polynomial, from: f64, to: f64, depth: u32, shares: &mut Vec<f64>) -> Result<()> {
+        let inner = [0.25, 0.5, 0.75].map(|part| on_polynomial(p, from + (to - from) * part));
+        let (a, b) = (on_polynomial(p, from), on_polynomial(p, to));
+        let (dx, dz) = (b.x - a.x, b.z - a.z);
+        let length = dx.hypot(dz);
+        let off = |s: &Station| ((s.x - a.x) * dz - (s.z - a.z) * dx).abs() > self.tolerance * length;
+        if depth == 0 || !inner.iter().any(off) {
+            shares.push(to);
+            return Ok(());
+        }
+        if shares.len() > MOST_POINTS {
+            return Err(too_many(self.tolerance));
+        }
+        let middle = from + (to - from) / 2.0;
+        self.halved(p, from, middle, depth - 1, shares)?;
+        self.halved(p, middle, to, depth - 1, shares)
+    }
+}
+
+fn too_many(tolerance: f64) -> Error {
+    let found = format!("{tolerance} mm, for which a profile takes more than {MOST_POINTS} points");
+    Error::new(
+        "surface: tolerance",
+        found,
+        "a coarser one",
+        "1e-3 mm draws a profile with some hundred points",
+    )
+}
+
+/// The angle \[rad\] over which an arc of this radius departs from its chord by the tolerance:
+/// r (1 − cos(Δ/2)) = t.
+pub(super) fn arc_step(radius: f64, tolerance: f64) -> f64 {
+    if radius.is_finite() { 4.0 * (tolerance / (2.0 * radius)).sqrt().min(1.0).asin() } else { f64::INFINITY }
+}
+
+/// The station at a share of a segment: of the angle on an arc, of the length on a line, of the parameter on a
+/// polynomial.
+fn at(segment: &Segment, share: f64) -> Station {
+    match &segment.shape {
+        Shape::Arc(arc) => on_arc(arc, share),
+        Shape::Polynomial(polynomial) => on_polynomial(polynomial, share),
+    }
+}
+
+fn on_arc(arc: &Arc, share: f64) -> Station {
+    let (start, end) = (arc.start, arc.end);
+    if share == 1.0 {
+        return end;
+    }
+    if !arc.radius.is_finite() {
+        return Station {
+            x: start.x + (end.x - start.x) * share,
+            z: start.z + (end.z - start.z) * share,
+            ..start
+        };
+    }
+    let turn = arc.turn() * share;
+    let (sin, cos) = (turn / 2.0).sin_cos();
+    let chord = 2.0 * arc.radius * sin;
+    let relative = Station { x: chord * cos, z: chord * sin, cos: turn.cos(), sin: turn.sin() };
+    relative.placed_by(&start)
+}
+
+fn on_polynomial(polynomial: &Polynomial, share: f64) -> Station {
+    let [from, to] = polynomial.t;
+    polynomial.station(if share == 1.0 { to } else { from + (to - from) * share })
+}
