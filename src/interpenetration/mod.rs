@@ -2,7 +2,11 @@
 
 mod components;
 pub mod load;
+mod corners;
+pub(crate) mod measure;
+mod outline;
 mod slice;
 
-pub use components::{Component, End, Patch, Window};
+pub use components::{Component, Patch};
+pub use outline::{End, Outline, Window};
 pub use slice::{Slice, Slicer};
