@@ -1,5 +1,6 @@
 //! Wheel/rail contact-patch preprocessor.
 
+pub mod check;
 pub mod contact;
 pub mod error;
 pub mod interpenetration;
