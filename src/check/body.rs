@@ -8,7 +8,7 @@ use super::sampler::Surface;
 /// Cells of the coarse mesh per local scale, least per curve, and around.
 const CELLS_PER_SCALE: f64 = 8.0;
 const LEAST_CELLS: usize = 2;
-const CELLS_AROUND: usize = 24;
+const CELLS_AROUND: usize = 12;
 
 /// Within this share of the body's size from a segment's end the neighbour counts as well: rounding of the
 /// foot's position, which grows with the slope.
@@ -177,16 +177,12 @@ impl Solid {
             || (place.curve == last && place.t >= self.surface.curves[last].length - slack)
     }
 
-    /// Both sides of all joints between two places.
+    /// Both sides of all joints between two places, at the v of each of the two.
     pub fn joints_between(&self, a: &Place, b: &Place) -> Vec<Place> {
         let (first, last) = if a.curve <= b.curve { (a, b) } else { (b, a) };
-        let v = b.v;
-        (first.curve..last.curve)
-            .flat_map(|k| {
-                let length = self.surface.curves[k].length;
-                [Place { curve: k, t: length, v }, Place { curve: k + 1, t: 0.0, v }]
-            })
-            .collect()
+        let sides =
+            (first.curve..last.curve).flat_map(|k| [(k, self.surface.curves[k].length), (k + 1, 0.0)]);
+        sides.flat_map(|(curve, t)| [a.v, b.v].map(|v| Place { curve, t, v })).collect()
     }
 
     /// Where on the coarse mesh `point` is closest to, and the curves around.

@@ -10,7 +10,7 @@ use super::sampler::Surface;
 const FIRST_CELL: f64 = 1.0 / 16.0;
 const LAST_CELL: f64 = 1e-6;
 const CELLS: usize = 4;
-const CLOSER: f64 = 0.25;
+const CLOSER: f64 = 0.125;
 
 /// Most meshes on the way in, moves sideways included.
 const MOST_MESHES: usize = 200;

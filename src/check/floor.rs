@@ -33,7 +33,7 @@ const OFFSET: f64 = 0.3125;
 const WIDTH: f64 = 0.9;
 
 /// Rays on each form are n × n over this share of the radius to either side.
-const RAYS: i32 = 5;
+const RAYS: i32 = 4;
 const REACH: f64 = 0.4;
 
 /// Floors on the four forms, of the scene's own size: radius r of the arcs, R of the wheel \[mm\].
