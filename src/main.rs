@@ -1,2 +1,7 @@
-//! x
-fn main() {}
+//! Parse, run, print the error, exit code.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    wheelrail::cli::main()
+}

@@ -2,13 +2,16 @@
 
 use super::Request;
 use super::sampler::Surface;
-use crate::interpenetration::Patch;
+use crate::contact::feasibility::critical_points;
+use crate::interpenetration::Slicer;
+use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
 
 /// Lines of the regular grid in ξ and η, edges of the window included.
 const GRID: [usize; 2] = [9, 7];
 
-/// Points taken of each boundary loop.
+/// Columns in which the boundary is looked for, and about how many of them give points.
+const SLICES: usize = 48;
 const LOOP_POINTS: usize = 8;
 
 /// All (ξ, η) \[mm\] at which rays are cast.
@@ -27,16 +30,46 @@ pub(super) fn spread_points(
         .collect();
     all.extend(joints(rail, window.eta));
     all.extend(joints(wheel, window.eta));
-    for component in Patch::new(placement, request.approach, window).components {
-        let [_, xi, eta] = component.deepest;
-        all.push([xi, eta]);
-        let n = component.boundary.len();
-        // The first point is one tip, the middle one the other.
-        all.extend((0..LOOP_POINTS).map(|k| component.boundary[k * n / LOOP_POINTS]));
+    all.extend(boundary(placement, request));
+    let inside = |p: &[f64; 2]| within(p[0], window.xi) && within(p[1], window.eta);
+    all.retain(inside);
+    all
+}
+
+fn within(value: f64, [low, high]: [f64; 2]) -> bool {
+    value >= low && value <= high
+}
+
+/// The deepest midplane point, tips, and points of the boundary s = δ as the program has them.
+///
+/// Slices suffice: loops with their areas cost far more than the check itself when the wheel is yawed.
+fn boundary(placement: &Placement, request: &Request) -> Vec<[f64; 2]> {
+    let Some([first, last]) = placement.overlap() else { return Vec::new() };
+    let [from, to] = request.window.xi;
+    let (from, to) = (from.max(first), to.min(last));
+    if from >= to {
+        return Vec::new();
     }
-    all.retain(|p| {
-        (0..2).all(|k| p[k] >= [window.xi, window.eta][k][0] && p[k] <= [window.xi, window.eta][k][1])
-    });
+    let mut slicer = Slicer::new(placement, request.approach);
+    let deepest = critical_points(placement, from, to)
+        .into_iter()
+        .map(|xi| (slicer.separation(xi, 0.0), xi))
+        .filter(|(s, _)| !s.is_nan())
+        .min_by(|a, b| a.0.total_cmp(&b.0));
+    let mut all: Vec<[f64; 2]> = deepest.iter().map(|&(_, xi)| [xi, 0.0]).collect();
+    let columns: Vec<f64> = (0..=SLICES)
+        .map(|k| from + (to - from) * k as f64 / SLICES as f64)
+        .chain(deepest.map(|d| d.1))
+        .collect();
+    let mut depths: Vec<(f64, f64)> = columns.iter().map(|&xi| (xi, slicer.depth(xi))).collect();
+    depths.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for pair in depths.windows(2).filter(|pair| (pair[0].1 < 0.0) != (pair[1].1 < 0.0)) {
+        let tip = bracketed(|xi| slicer.depth(xi), pair[0].0, pair[1].0);
+        all.extend(tip.and_then(|xi| slicer.slice(xi).map(|slice| [xi, slice.eta[0]])));
+    }
+    for (xi, _) in depths.iter().filter(|(_, depth)| *depth < 0.0).step_by(SLICES / LOOP_POINTS) {
+        all.extend(slicer.slice(*xi).iter().flat_map(|slice| slice.eta.map(|eta| [*xi, eta])));
+    }
     all
 }
 

@@ -2,3 +2,5 @@
 
 pub mod feasibility;
 pub mod hertz;
+pub mod search;
+pub mod sweep;

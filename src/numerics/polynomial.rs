@@ -7,6 +7,12 @@ pub fn value(c: &[f64], t: f64) -> f64 {
     c.iter().rev().fold(0.0, |sum, &c| sum * t + c)
 }
 
+/// The value and the first derivative at t.
+#[inline]
+pub fn value_and_slope(c: &[f64], t: f64) -> [f64; 2] {
+    c.iter().rev().fold([0.0; 2], |[p, d], &c| [p * t + c, d * t + p])
+}
+
 /// The value and the first two derivatives at t.
 pub fn derivatives(c: &[f64], t: f64) -> [f64; 3] {
     c.iter().rev().fold([0.0; 3], |[p, d, h], &c| [p * t + c, d * t + p, h * t + 2.0 * d])

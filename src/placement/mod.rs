@@ -1,6 +1,7 @@
 //! A placed pair: contact frame ξηζ and both profiles in it (Report Sec. 4).
 
 pub mod midsep;
+pub mod track;
 
 use crate::error::{Error, Result, finite};
 use crate::profile::{Profile, ProfilePoint, Section, Side};

@@ -11,7 +11,8 @@ pub mod standards;
 pub use arc::{Arc, Half};
 pub use polynomial::Polynomial;
 pub use section::{
-    ArcBranch, Branch, BranchShape, Piece, PolynomialBranch, ProfilePoint, Section, Side, stationary_points,
+    ArcBranch, Branch, BranchPoint, BranchShape, Piece, PolynomialBranch, ProfilePoint, Section, Side,
+    stationary_points,
 };
 pub mod drawing;
 

@@ -234,17 +234,19 @@ impl GridMethod {
 }
 
 /// What is written besides summary.json, the tables and the picture.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputData {
-    /// Formats.
-    pub formats: Vec<Format>,
+    /// Formats; all but "png" by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub formats: Option<Vec<Format>>,
 }
 
-impl Default for OutputData {
-    fn default() -> Self {
+impl OutputData {
+    /// The formats to write.
+    pub fn wanted(&self) -> &[Format] {
         use Format::{Conform, Contact, Countact, Netcdf, Npy, Text, Vtk};
-        Self { formats: vec![Vtk, Npy, Netcdf, Text, Conform, Countact, Contact] }
+        self.formats.as_deref().unwrap_or(&[Vtk, Npy, Netcdf, Text, Conform, Countact, Contact])
     }
 }
 

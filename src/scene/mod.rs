@@ -9,6 +9,7 @@ pub use data::{
     Rotation, Scene, Spacing,
 };
 pub use read::{hash, load, parse};
+pub use resolve::{check_points, equal_steps, profile_from_file};
 
 /// The JSON Schema of a scene.
 pub fn schema() -> schemars::Schema {

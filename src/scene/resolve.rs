@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::data::{AxisData, ProfileData, Rotation, Scene, Spacing};
 use super::read::parse;
+use crate::contact::hertz::Elastic;
 use crate::error::{Error, Result, finite};
 use crate::placement::Pair;
 use crate::profile::drawing::{SegmentData, chain};
@@ -74,6 +75,30 @@ impl Scene {
             return Err(Error::new(key, value.to_string(), "a value ≥ 0", "correct the sign"));
         }
         Ok(())
+    }
+
+    /// Elastic constants of rail and wheel.
+    ///
+    /// # Errors
+    /// A modulus that is not positive, a Poisson's ratio outside (−1, 0.5\].
+    pub fn elastic(&self) -> Result<[Elastic; 2]> {
+        let material = &self.material;
+        let body = |name: &str, youngs_modulus: f64, poissons_ratio: f64| {
+            let place = |key: &str| format!("material: {name}_{key}");
+            if !(youngs_modulus > 0.0 && youngs_modulus.is_finite()) {
+                let (place, found) = (place("youngs_modulus"), youngs_modulus.to_string());
+                return Err(Error::new(place, found, "a positive modulus in N/mm²", "steel has 2.1e5"));
+            }
+            if !(poissons_ratio > -1.0 && poissons_ratio <= 0.5) {
+                let (place, found) = (place("poissons_ratio"), poissons_ratio.to_string());
+                return Err(Error::new(place, found, "a ratio in (-1, 0.5]", "steel has 0.28"));
+            }
+            Ok(Elastic { youngs_modulus, poissons_ratio })
+        };
+        Ok([
+            body("rail", material.rail_youngs_modulus, material.rail_poissons_ratio)?,
+            body("wheel", material.wheel_youngs_modulus, material.wheel_poissons_ratio)?,
+        ])
     }
 
     /// The tolerance on s \[mm\].
@@ -147,7 +172,7 @@ impl Scene {
 ///
 /// # Errors
 /// More than [`MOST_POINTS`] points.
-pub(crate) fn check_points(place: &str, points: f64) -> Result<()> {
+pub fn check_points(place: &str, points: f64) -> Result<()> {
     if points <= MOST_POINTS {
         return Ok(());
     }
@@ -156,7 +181,7 @@ pub(crate) fn check_points(place: &str, points: f64) -> Result<()> {
 }
 
 /// n values from a to b, symmetric to the last bit where a = −b.
-pub(crate) fn equal_steps(a: f64, b: f64, n: usize) -> Vec<f64> {
+pub fn equal_steps(a: f64, b: f64, n: usize) -> Vec<f64> {
     let last = (n - 1) as f64;
     (0..n).map(|k| (a * (last - k as f64) + b * k as f64) / last).collect()
 }
@@ -165,7 +190,7 @@ impl ProfileData {
     fn resolve(&self, folder: &Path, built_in: fn(&str) -> Result<Profile>) -> Result<Profile> {
         let mut profile = match (&self.profile, &self.file, &self.segments) {
             (Some(name), None, None) => built_in(name)?,
-            (None, Some(file), None) => from_file(&folder.join(file))?,
+            (None, Some(file), None) => profile_from_file(&folder.join(file))?,
             (None, None, Some(segments)) => chain("inline", "scene", self.start, segments)?,
             _ => {
                 let expected = "exactly one of `profile`, `file`, `segments`";
@@ -214,7 +239,11 @@ impl Rotation {
     }
 }
 
-fn from_file(path: &Path) -> Result<Profile> {
+/// A profile file with `segments` and perhaps `name`, `source`, `start`.
+///
+/// # Errors
+/// An unreadable file; whatever is wrong with its segments.
+pub fn profile_from_file(path: &Path) -> Result<Profile> {
     let place = path.display().to_string();
     let text = std::fs::read_to_string(path)
         .map_err(|error| Error::new(&place, error.to_string(), "a readable file", "check the path"))?;

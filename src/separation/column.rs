@@ -12,11 +12,15 @@
 
 use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
-use crate::profile::{Branch, Section};
+use crate::profile::{Branch, BranchPoint, Section};
 
 /// Contractions by e/w, at most 1e-2 away from vertical tangents, reach rounding in 8; a branch that needs more
 /// is steep there and is left to the bracketed root.
 const CONTRACTIONS: usize = 12;
+
+/// A branch that goes on to this many times the sagitta that the window needs is taken to cover it: between
+/// there and the end only a profile that falls towards the axle could bring u back.
+const FAR_END: f64 = 4.0;
 
 /// The wheel as a surface over the contact frame of its own meridian.
 #[derive(Debug, Clone, Copy)]
@@ -40,6 +44,10 @@ pub struct Span {
     pub branch: usize,
     /// ζ of the wheel at the beginning \[mm\].
     pub height: f64,
+    /// Axle distance w there \[mm\].
+    pub w: f64,
+    /// The profile point there.
+    begin: BranchPoint,
 }
 
 /// A point on the wheel above (ξ, u).
@@ -91,7 +99,7 @@ impl<'a> WheelSurface<'a> {
             if self.sin == 0.0 && !(piece.xi[0] <= xi && xi <= piece.xi[1]) {
                 return;
             }
-            let mut span = self.span(xi, piece.branch, [begin, end]);
+            let mut span = self.span(xi, piece.branch, [begin, end], u_max);
             if let Some(last) = spans.last().filter(|last| last.e[1] == begin) {
                 // One joint: the ranges meet, whatever rounding or a drawing's step makes of them.
                 span.u[0] = last.u[1];
@@ -116,34 +124,44 @@ impl<'a> WheelSurface<'a> {
         if pieces[0].xi[0] == xi { Some(0) } else { (pieces[last].xi[1] == xi).then_some(last) }
     }
 
-    fn span(&self, xi: f64, branch: usize, e: [f64; 2]) -> Span {
-        let begin = xi - e[0] * self.sin;
-        let height = self.section.branches[branch].height(begin) + e[0] * self.cos;
-        let mut span = Span { e, u: [0.0, f64::INFINITY], branch, height };
-        span.u[0] = if e[0] == 0.0 { 0.0 } else { self.foot(xi, &span, e[0]).u };
-        if e[1].is_finite() {
-            let end = self.foot(xi, &span, e[1]);
-            // Beyond the axle's height the profile's end cannot be met: the ring of the column closes before.
-            (span.e[1], span.u[1]) = if end.w > 0.0 { (e[1], end.u) } else { (f64::INFINITY, f64::INFINITY) };
+    fn span(&self, xi: f64, branch: usize, e: [f64; 2], u_max: f64) -> Span {
+        let begin = self.abscissa(xi, e[0]);
+        let shape = &self.section.branches[branch];
+        let height = shape.height(begin) + e[0] * self.cos;
+        let w = self.axle - xi * self.sin - height * self.cos;
+        let mut span = Span { e, u: [0.0, f64::INFINITY], branch, height, w, begin: shape.point(begin) };
+        if e[0] > 0.0 {
+            span.u[0] = self.foot(xi, &span, e[0]).u;
         }
+        if e[1] > FAR_END * u_max / (2.0 * w) && w > 0.0 {
+            return span;
+        }
+        let end = self.foot(xi, &span, e[1]);
+        // Beyond the axle's height the profile's end cannot be met: the ring of the column closes before.
+        (span.e[1], span.u[1]) = if end.w > 0.0 { (e[1], end.u) } else { (f64::INFINITY, f64::INFINITY) };
         span
     }
 
     /// The point with sagitta e over a span: no iteration.
     #[inline]
     pub fn foot(&self, xi: f64, span: &Span, e: f64) -> Foot {
-        let (from, to) = (xi - span.e[0] * self.sin, xi - e * self.sin);
-        let slope = self.branch(span).chord_slope(from, to);
+        let slope = self.branch(span).chord_from(&span.begin, self.abscissa(xi, e));
         let rise = (e - span.e[0]) * (self.cos - self.sin * slope);
-        let w = self.axle - xi * self.sin - (span.height + rise) * self.cos;
+        let w = span.w - rise * self.cos;
         Foot { e, rise, w, u: e * (2.0 * w + e) }
+    }
+
+    /// A point near u: two contractions of the sagitta step.
+    pub fn foot_near(&self, xi: f64, span: &Span, u: f64) -> Foot {
+        let first = self.foot(xi, span, sagitta(span.w, u).clamp(span.e[0], span.e[1]));
+        self.foot(xi, span, sagitta(first.w, u).clamp(span.e[0], span.e[1]))
     }
 
     /// The point at u = η² over a span, or `None` where η is beyond the ring.
     pub fn foot_at(&self, xi: f64, span: &Span, u: f64) -> Option<Foot> {
         let mut foot = self.foot(xi, span, span.e[0]);
         for _ in 0..CONTRACTIONS {
-            let e = u / (foot.w + (foot.w * foot.w + u).sqrt());
+            let e = sagitta(foot.w, u);
             let change = (e - foot.e).abs();
             foot = self.foot(xi, span, e);
             if change <= f64::EPSILON * e {
@@ -160,8 +178,7 @@ impl<'a> WheelSurface<'a> {
     pub fn foot_with_rise(&self, xi: f64, span: &Span, rise: f64, contractions: usize) -> Foot {
         let mut foot = self.foot(xi, span, span.e[0]);
         for _ in 0..contractions {
-            let (from, to) = (self.abscissa(xi, span.e[0]), self.abscissa(xi, foot.e));
-            let slope = self.branch(span).chord_slope(from, to);
+            let slope = self.branch(span).chord_from(&span.begin, self.abscissa(xi, foot.e));
             let e = (span.e[0] + rise / (self.cos - self.sin * slope)).min(span.e[1]);
             let change = (e - foot.e).abs();
             foot = self.foot(xi, span, e);
@@ -181,9 +198,8 @@ impl<'a> WheelSurface<'a> {
 
     /// q(ξ, 0) = (cosθ − h′(ξ) sinθ)/2w: how fast the wheel opens with η² \[1/mm\], for a span from η = 0.
     pub fn opening(&self, xi: f64, span: &Span) -> f64 {
-        let foot = self.foot(xi, span, span.e[0]);
-        let slope = self.branch(span).chord_slope(xi, xi);
-        (self.cos - self.sin * slope) / (2.0 * foot.w)
+        let slope = self.branch(span).chord_from(&span.begin, xi);
+        (self.cos - self.sin * slope) / (2.0 * span.w)
     }
 
     /// The span of a column that holds u, for ascending spans.
@@ -203,4 +219,10 @@ impl<'a> WheelSurface<'a> {
         let (x, y, z) = (sin, cos * eta / rho, -cos * foot.w / rho);
         [x * self.cos + z * self.sin, y, z * self.cos - x * self.sin]
     }
+}
+
+/// e = √(w² + u) − w without cancellation.
+#[inline]
+fn sagitta(w: f64, u: f64) -> f64 {
+    u / (w + (w * w + u).sqrt())
 }

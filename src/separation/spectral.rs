@@ -17,6 +17,9 @@ pub const MOST_COEFFICIENTS: usize = 12;
 /// Relative error of q that counts as rounding: more coefficients would not lower it.
 const ROUNDING_LEVEL: f64 = 4.0 * f64::EPSILON;
 
+/// Share of the window's u that the nodes must cover; beyond them the polynomial is continued that little.
+const NEARLY_COVERED: f64 = 0.99;
+
 /// The demand on a column: |error of s| ≤ `absolute`, and ≤ `relative` × |(u − u_0) q|.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Demand {
@@ -49,18 +52,23 @@ pub struct Spectral<'a> {
     demand: Demand,
     coefficients: usize,
     spans: Vec<Span>,
+    arch: pulp::Arch,
 }
 
 impl<'a> Spectral<'a> {
     /// Over a placed pair; every column starts with `coefficients` and takes more where it needs them.
     pub fn new(placement: &'a Placement, axis: &'a EtaAxis, demand: Demand, coefficients: usize) -> Self {
         let evaluator = Evaluator::new(placement);
-        Self { evaluator, axis, demand, coefficients, spans: Vec::with_capacity(8) }
+        let arch = pulp::Arch::new();
+        Self { evaluator, axis, demand, coefficients, spans: Vec::with_capacity(8), arch }
     }
 
     /// The polynomial over one span up to `u_max`, or `None` where no degree reaches the demand.
     pub fn polynomial(&self, xi: f64, span: &Span, u_max: f64) -> Option<ColumnPolynomial> {
-        let end = self.evaluator.wheel.foot_at(xi, span, span.u[1].min(u_max))?;
+        let end = self.evaluator.wheel.foot_near(xi, span, span.u[1].min(u_max));
+        if !(end.u >= NEARLY_COVERED * span.u[1].min(u_max)) || end.w <= 0.0 {
+            return None;
+        }
         let base = self.evaluator.base(xi, xi, span);
         let allowed = self.demand.absolute.min(self.demand.relative * end.rise.abs());
         let rounding = ROUNDING_LEVEL * end.rise.abs();
@@ -132,7 +140,7 @@ impl Kernel for Spectral<'_> {
         for span in &spans {
             let fit = self.polynomial(xi, span, u_max);
             self.axis.ranges(span.u, |range| match &fit {
-                Some(fit) => evaluate(fit, &self.axis.u[range.clone()], &mut out[range]),
+                Some(fit) => evaluate(self.arch, fit, &self.axis.u[range.clone()], &mut out[range]),
                 None => self.evaluator.over_span(xi, span, &self.axis.u[range.clone()], &mut out[range]),
             });
         }
@@ -141,24 +149,26 @@ impl Kernel for Spectral<'_> {
     }
 }
 
-/// Horner's rule over a run of u, unrolled for the degree so that it vectorises.
-fn evaluate(fit: &ColumnPolynomial, u: &[f64], out: &mut [f64]) {
+/// Horner's rule over a run of u, with the widest vectors that the machine has; unrolled for the degree so
+/// that it vectorises. No fused multiply-add: the same bits on every machine.
+fn evaluate(arch: pulp::Arch, fit: &ColumnPolynomial, u: &[f64], out: &mut [f64]) {
     match fit.n {
-        1 => horner::<1>(fit, u, out),
-        2 => horner::<2>(fit, u, out),
-        3 => horner::<3>(fit, u, out),
-        4 => horner::<4>(fit, u, out),
-        5 => horner::<5>(fit, u, out),
-        6 => horner::<6>(fit, u, out),
-        7 => horner::<7>(fit, u, out),
-        8 => horner::<8>(fit, u, out),
-        9 => horner::<9>(fit, u, out),
-        10 => horner::<10>(fit, u, out),
-        11 => horner::<11>(fit, u, out),
-        _ => horner::<MOST_COEFFICIENTS>(fit, u, out),
+        1 => arch.dispatch(|| horner::<1>(fit, u, out)),
+        2 => arch.dispatch(|| horner::<2>(fit, u, out)),
+        3 => arch.dispatch(|| horner::<3>(fit, u, out)),
+        4 => arch.dispatch(|| horner::<4>(fit, u, out)),
+        5 => arch.dispatch(|| horner::<5>(fit, u, out)),
+        6 => arch.dispatch(|| horner::<6>(fit, u, out)),
+        7 => arch.dispatch(|| horner::<7>(fit, u, out)),
+        8 => arch.dispatch(|| horner::<8>(fit, u, out)),
+        9 => arch.dispatch(|| horner::<9>(fit, u, out)),
+        10 => arch.dispatch(|| horner::<10>(fit, u, out)),
+        11 => arch.dispatch(|| horner::<11>(fit, u, out)),
+        _ => arch.dispatch(|| horner::<MOST_COEFFICIENTS>(fit, u, out)),
     }
 }
 
+#[inline(always)]
 fn horner<const N: usize>(fit: &ColumnPolynomial, u: &[f64], out: &mut [f64]) {
     let mut c = [0.0; N];
     c.copy_from_slice(&fit.c[..N]);

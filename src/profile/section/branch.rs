@@ -5,7 +5,8 @@ use twofloat::TwoFloat;
 use super::super::arc::cosine;
 use super::super::{Arc, Polynomial, Station};
 use crate::numerics::polynomial::{
-    derivative, derivatives, divided_difference, range, recentred, slope_twofloat, value, value_twofloat,
+    derivative, derivatives, divided_difference, range, recentred, slope_twofloat, value, value_and_slope,
+    value_twofloat,
 };
 use crate::numerics::roots::bracketed;
 
@@ -37,6 +38,25 @@ pub enum BranchShape {
     Arc(ArcBranch),
     /// Polynomial.
     Polynomial(Box<PolynomialBranch>),
+}
+
+/// A point of a branch, from which chords are drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum BranchPoint {
+    /// On an arc: sine and cosine of the tangent angle.
+    Arc {
+        /// S.
+        sin: f64,
+        /// C.
+        cos: f64,
+    },
+    /// On a polynomial: abscissa and parameter.
+    Polynomial {
+        /// ξ \[mm\].
+        xi: f64,
+        /// t.
+        t: f64,
+    },
 }
 
 /// ζ = ζ_a + Δξ (S_a + S)/(C_a + C) with S = S_a + κΔξ, C = √(1 − S²): the slope of a chord is the tangent
@@ -94,32 +114,31 @@ impl ArcBranch {
         let cos = if f64::from(square) > 0.0 { square.sqrt() } else { TwoFloat::from(0.0) };
         run * (sin + self.sin) / (cos + self.cos) + self.anchor[1]
     }
-
-    /// Slope of the chord between two abscissae; the tangent's where they are equal.
-    #[inline]
-    pub fn chord_slope(&self, a: f64, b: f64) -> f64 {
-        let ((sin_a, cos_a), (sin_b, cos_b)) = (self.sine_cosine(a), self.sine_cosine(b));
-        (sin_a + sin_b) / (cos_a + cos_b)
-    }
 }
 
 impl PolynomialBranch {
-    /// t with ξ(t) = ξ, by Newton steps inside a shrinking bracket.
+    /// t with ξ(t) = ξ.
     pub fn parameter(&self, xi: f64) -> f64 {
-        let [mut low, mut high] = self.t;
+        let [low, high] = self.t;
         let share = (xi - self.ends[0]) / (self.ends[1] - self.ends[0]);
-        let mut t = low + (high - low) * share.clamp(0.0, 1.0);
+        self.parameter_near(xi, low + (high - low) * share)
+    }
+
+    /// t with ξ(t) = ξ, by Newton steps from a guess inside a shrinking bracket.
+    fn parameter_near(&self, xi: f64, guess: f64) -> f64 {
+        let [mut low, mut high] = self.t;
+        let mut t = guess.clamp(low, high);
         // Newton's steps fall below rounding within 6 on any branch that is not vertical.
         for _ in 0..60 {
-            let [p, slope, _] = derivatives(&self.xi, t);
+            let [p, slope] = value_and_slope(&self.xi, t);
             let miss = p - xi;
             if miss == 0.0 {
                 return t;
             }
             if miss > 0.0 {
-                high = t
+                high = t;
             } else {
-                low = t
+                low = t;
             }
             let newton = t - miss / slope;
             let next = if newton >= low && newton <= high { newton } else { low + (high - low) / 2.0 };
@@ -253,16 +272,39 @@ impl Branch {
         }
     }
 
-    /// (ζ(b) − ζ(a))/(b − a), the slope ζ′(a) for a = b; nothing cancels.
+    /// The point at ξ, from which chords are drawn.
     #[inline]
-    pub fn chord_slope(&self, a: f64, b: f64) -> f64 {
+    pub fn point(&self, xi: f64) -> BranchPoint {
         match &self.shape {
-            BranchShape::Arc(arc) => arc.chord_slope(a, b),
-            BranchShape::Polynomial(p) => {
-                let (a, b) = (p.parameter(a), p.parameter(b));
-                divided_difference(&p.zeta, a, b) / divided_difference(&p.xi, a, b)
+            BranchShape::Arc(arc) => {
+                let (sin, cos) = arc.sine_cosine(xi);
+                BranchPoint::Arc { sin, cos }
             }
+            BranchShape::Polynomial(p) => BranchPoint::Polynomial { xi, t: p.parameter(xi) },
         }
+    }
+
+    /// (ζ(to) − ζ(from))/(to − from), the tangent's slope where they are equal; nothing cancels.
+    #[inline]
+    pub fn chord_from(&self, from: &BranchPoint, to: f64) -> f64 {
+        match (&self.shape, from) {
+            (BranchShape::Arc(arc), BranchPoint::Arc { sin, cos }) => {
+                let (sin_to, cos_to) = arc.sine_cosine(to);
+                (sin + sin_to) / (cos + cos_to)
+            }
+            (BranchShape::Polynomial(p), BranchPoint::Polynomial { xi, t }) => {
+                let slope = value_and_slope(&p.xi, *t)[1];
+                let t_to = p.parameter_near(to, t + (to - xi) / slope);
+                divided_difference(&p.zeta, *t, t_to) / divided_difference(&p.xi, *t, t_to)
+            }
+            // A point of another branch has no chord on this one.
+            _ => f64::NAN,
+        }
+    }
+
+    /// (ζ(b) − ζ(a))/(b − a), the slope ζ′(a) for a = b; nothing cancels.
+    pub fn chord_slope(&self, a: f64, b: f64) -> f64 {
+        self.chord_from(&self.point(a), b)
     }
 
     /// The point at ξ with its unit tangent, in the frame.

@@ -5,7 +5,7 @@ mod branch;
 mod envelope;
 
 pub use between::stationary_points;
-pub use branch::{ArcBranch, Branch, BranchShape, PolynomialBranch};
+pub use branch::{ArcBranch, Branch, BranchPoint, BranchShape, PolynomialBranch};
 pub use envelope::Piece;
 
 use super::{Arc, Profile, Shape, Station};

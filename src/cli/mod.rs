@@ -1,0 +1,109 @@
+//! The command line: one file per command.
+//!
+//! Exit codes: 0 done, 1 a geometric "no" (infeasible contact, empty patch, failed check), 2 bad input. Data goes
+//! to stdout, progress and complaints to stderr.
+
+mod midsep;
+mod profile;
+mod run;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use crate::error::{Error, Result};
+
+/// Wheel/rail contact-patch preprocessor.
+#[derive(Debug, Parser)]
+#[command(version, about)]
+struct Arguments {
+    /// Threads to compute on; 0 takes all cores.
+    #[arg(long, global = true, default_value_t = 0)]
+    threads: usize,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run the whole pipeline and write a folder of files.
+    Run {
+        /// Scene file, TOML or JSON.
+        scene: PathBuf,
+        /// Folder to write; by default output/<scene name>.
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
+    /// Print the midplane table and the transformed parameters.
+    Midsep {
+        /// Scene file, TOML or JSON.
+        scene: PathBuf,
+    },
+    /// Look at profiles.
+    #[command(subcommand)]
+    Profile(profile::ProfileCommand),
+    /// Print the JSON Schema of a scene.
+    Schema,
+}
+
+/// What a command that ran to its end found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Outcome {
+    /// What was asked for.
+    Done,
+    /// A geometric "no".
+    No,
+}
+
+/// The program.
+pub fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    match on_threads(arguments) {
+        Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::No) => ExitCode::from(1),
+        Err(error) => {
+            complain(&format!("error: {error}"));
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn on_threads(arguments: Arguments) -> Result<Outcome> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads).build().map_err(|error| {
+        Error::new("--threads", error.to_string(), "a number of threads the system grants", "take fewer")
+    })?;
+    pool.install(|| match arguments.command {
+        Command::Run { scene, out } => run::run(&scene, out.as_deref()),
+        Command::Midsep { scene } => midsep::midsep(&scene),
+        Command::Profile(command) => profile::profile(&command),
+        Command::Schema => schema(),
+    })
+}
+
+fn schema() -> Result<Outcome> {
+    let text = serde_json::to_string_pretty(&crate::scene::schema()).unwrap_or_default();
+    print(&format!("{text}\n"))
+}
+
+/// Writes data to stdout; a reader that went away early (`| head`) is not an error.
+fn print(text: &str) -> Result<Outcome> {
+    use std::io::Write;
+    match std::io::stdout().lock().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Error::new("stdout", error.to_string(), "a stream that takes the data", "check the disk"))
+        }
+        _ => Ok(Outcome::Done),
+    }
+}
+
+/// A line to stderr; there is nobody to tell when that fails.
+fn complain(text: &str) {
+    use std::io::Write;
+    let _ = writeln!(std::io::stderr().lock(), "{text}");
+}
+
+/// The folder that a scene's own files are relative to.
+fn folder_of(scene: &Path) -> &Path {
+    scene.parent().unwrap_or(Path::new("."))
+}

@@ -1,0 +1,29 @@
+//! `wheelrail run`: the whole pipeline, and the folder it writes.
+
+use std::path::{Path, PathBuf};
+
+use super::{Outcome, complain, folder_of, print};
+use crate::error::Result;
+use crate::export::{Folder, RUN_FOLDER};
+use crate::run::Run;
+use crate::scene;
+
+/// Runs a scene; exit code 1 for an infeasible contact or an empty patch, whose files are written all the same.
+pub(super) fn run(path: &Path, out: Option<&Path>) -> Result<Outcome> {
+    let scene = scene::load(path)?;
+    let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
+    let run = Run::new(scene, folder_of(path), &name).map_err(|error| error.within(path.display()))?;
+    let target = out.map_or_else(|| PathBuf::from("output").join(&*name), Path::to_path_buf);
+    let folder = Folder::create(&target, RUN_FOLDER)?;
+    run.write(&folder)?;
+    folder.commit()?;
+    for warning in run.warnings() {
+        complain(&format!("warning: {warning}"));
+    }
+    let refusals = run.refusals();
+    for refusal in &refusals {
+        complain(&format!("no: {refusal}"));
+    }
+    print(&format!("{}\n", target.display()))?;
+    Ok(if refusals.is_empty() { Outcome::Done } else { Outcome::No })
+}

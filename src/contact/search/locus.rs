@@ -1,0 +1,116 @@
+//! The contact locus: the outline of a yawed and rolled wheel seen along the rail, in closed form.
+//!
+//! A rail is the same at every y, so a wheel meets it where the wheel's *outline* in the xz plane does. The
+//! outline is the set of surface points whose normal has no y component. For a point (x, z) of the wheel's
+//! profile with tangent angle φ, at the radius ϱ = R − z, that picks one angle ω about the axle (from the lowest
+//! meridian, forward positive), and with yaw ψ and no roll
+//!
+//! ```text
+//! sin ω = −tan φ tan ψ        X = x cosψ − ϱ sinω sinψ        sin Θ = sin φ / cosψ
+//! cos ω = cos Θ / cos φ       Z = R − ϱ cosω                  tan Θ: slope of the outline
+//! ```
+//!
+//! Z counts from the level R below the axle. The roll then turns (X, Z) and Θ rigidly about the y axis.
+//! Where |sin φ| > cosψ a wheel has no outline: that ring is nowhere seen edge on.
+//!
+//! An arc of radius r about (a, b), r > 0 for the lower half, is the outline parallel to the ellipse of its
+//! centre ring: X = a cosψ + r sinΘ + …; its radius of curvature is
+//!
+//! ```text
+//! ϱ_c = r (1 − sin²ψ/cos²φ) + ϱ sin²ψ/cos³φ = r + (R − b) sin²ψ/cos³φ
+//! ```
+//!
+//! which is monotone in |Θ|: that is what makes the search over arcs complete. r = 0 is a kink's or end's ring
+//! under its fan of normals, r = ∞ a cone.
+
+use crate::profile::Station;
+
+/// How a wheel stands over its rail, but for the height: the trigonometry of one position, done once.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Attitude {
+    /// Abscissa of the wheel's profile origin in the rail's axes \[mm\].
+    pub offset: f64,
+    /// Nominal rolling radius R \[mm\].
+    pub radius: f64,
+    /// sin ψ.
+    pub sin_yaw: f64,
+    /// cos ψ, positive.
+    pub cos_yaw: f64,
+    /// sin of the roll, positive clockwise as seen along y.
+    pub sin_roll: f64,
+    /// Its cosine, positive.
+    pub cos_roll: f64,
+}
+
+impl Attitude {
+    /// The attitude of a pose.
+    pub fn new(offset: f64, yaw: f64, roll: f64, radius: f64) -> Self {
+        let ((sin_yaw, cos_yaw), (sin_roll, cos_roll)) = (yaw.sin_cos(), roll.sin_cos());
+        Self { offset, radius, sin_yaw, cos_yaw, sin_roll, cos_roll }
+    }
+
+    /// sin² ψ.
+    pub fn sin_yaw_squared(&self) -> f64 {
+        self.sin_yaw * self.sin_yaw
+    }
+
+    /// The outline point of a point of the wheel profile, with the tangent of the outline: x in the rail's axes,
+    /// z above the (still unknown) height of the wheel's profile origin. NaN where there is no outline.
+    ///
+    /// Accuracy: a few roundings of the profile's coordinates; R enters only through the small ϱ(1 − cosω).
+    #[inline]
+    pub fn outline(&self, point: &Station) -> Station {
+        if self.sin_yaw == 0.0 {
+            return self.rolled(point);
+        }
+        let sin = point.sin / self.cos_yaw;
+        let cos = ((1.0 - sin) * (1.0 + sin)).sqrt();
+        let sin_omega = -sin * self.sin_yaw / point.cos;
+        let cos_omega = cos / point.cos;
+        let rolling = self.radius - point.z;
+        let x = point.x * self.cos_yaw - rolling * sin_omega * self.sin_yaw;
+        let z = point.z + rolling * sin_omega * sin_omega / (1.0 + cos_omega);
+        self.rolled(&Station { x, z, cos, sin })
+    }
+
+    /// A point of the unrolled outline in the rail's axes.
+    #[inline]
+    fn rolled(&self, p: &Station) -> Station {
+        let (cos, sin) = (self.cos_roll, self.sin_roll);
+        Station {
+            x: self.offset + p.x * cos + p.z * sin,
+            z: p.z * cos - p.x * sin,
+            cos: p.cos * cos + p.sin * sin,
+            sin: p.sin * cos - p.cos * sin,
+        }
+    }
+
+    /// (sin φ, cos φ) of the wheel's profile where its outline has the tangent (sin, cos) in the rail's axes.
+    #[inline]
+    pub fn profile_tangent(&self, sin: f64, cos: f64) -> (f64, f64) {
+        let unrolled = sin * self.cos_roll + cos * self.sin_roll;
+        let sine = unrolled * self.cos_yaw;
+        (sine, ((1.0 - sine) * (1.0 + sine)).max(0.0).sqrt())
+    }
+
+    /// The sine of the outline's tangent in the rail's axes for a sine of the profile's; ∓1 where that lies
+    /// beyond the vertical.
+    #[inline]
+    pub fn outline_sine(&self, profile_sine: f64) -> f64 {
+        let sin = (profile_sine / self.cos_yaw).clamp(-1.0, 1.0);
+        let cos = ((1.0 - sin) * (1.0 + sin)).sqrt();
+        if cos * self.cos_roll + sin * self.sin_roll < 0.0 {
+            return 1f64.copysign(sin);
+        }
+        sin * self.cos_roll - cos * self.sin_roll
+    }
+
+    /// ϱ_c \[mm\], the outline's signed radius of curvature at a profile point of signed radius `radius`.
+    pub fn outline_radius(&self, point: &Station, radius: f64) -> f64 {
+        let tilt = self.sin_yaw_squared() / (point.cos * point.cos);
+        if tilt == 0.0 {
+            return radius;
+        }
+        radius * (1.0 - tilt) + (self.radius - point.z) * tilt / point.cos
+    }
+}

@@ -1,0 +1,97 @@
+//! Sweeps: the contact geometry of a wheelset at many positions, one row per side and contact.
+
+mod conicity;
+
+pub use conicity::Conicity;
+
+use super::search::wheelset::{Position, Roll, WheelsetOnTrack, WheelsetSearch};
+use super::search::{Contact, Selection};
+use crate::error::Result;
+
+/// A side of the wheelset.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TrackSide {
+    /// At negative x of the track.
+    Left,
+    /// At positive x.
+    Right,
+}
+
+/// One row of a sweep: a contact of one side at one position.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Row {
+    /// Lateral displacement of the axle's middle \[mm\], + to the right.
+    pub lateral: f64,
+    /// Yaw \[rad\], + moves the right-hand wheel forward.
+    pub yaw: f64,
+    /// Roll \[rad\], solved or given, + lowers the right-hand wheel.
+    pub roll: f64,
+    /// Which wheel.
+    pub side: TrackSide,
+    /// Number of the contact on its side, from 0, the lowest gap first.
+    pub number: usize,
+    /// Height \[mm\] of the axle's middle above R over the top of rail when this side touches, + up.
+    pub z: f64,
+    /// The contact, in the side's own axes.
+    pub contact: Contact,
+    /// Right less left rolling radius of the two sides' lowest contacts \[mm\]; positive when the wheelset is to the right.
+    pub delta_r: f64,
+    /// Equivalent conicity tan γ_e at the amplitude |lateral|; NaN where it is not defined.
+    pub conicity: f64,
+}
+
+/// A sweep over positions; keeps its buffers.
+#[derive(Debug, Clone)]
+pub struct Sweep<'a> {
+    search: WheelsetSearch<'a>,
+    selection: Selection,
+    conicity: Option<Conicity>,
+}
+
+impl<'a> Sweep<'a> {
+    /// A sweep that reports the contacts of `selection`, with the equivalent conicity from `conicity` where given.
+    pub fn new(system: &'a WheelsetOnTrack, selection: Selection, conicity: Option<Conicity>) -> Self {
+        Self { search: system.search(), selection, conicity }
+    }
+
+    /// Appends the rows of one position to `rows`, left side first. A position without contact has none.
+    ///
+    /// # Errors
+    /// Values that are not finite; angles beyond ±0.5 rad.
+    pub fn position(&mut self, position: &Position, rows: &mut Vec<Row>) -> Result<()> {
+        let Some(touch) = self.search.touch(position, &self.selection)? else { return Ok(()) };
+        let [left, right] = touch.sides.map(|side| side.touch.contacts[0].rolling_radius);
+        let conicity = self.conicity.as_ref().and_then(|c| c.at(position.lateral));
+        for (side, found) in [TrackSide::Left, TrackSide::Right].into_iter().zip(touch.sides) {
+            rows.extend(found.touch.contacts.iter().enumerate().map(|(number, contact)| Row {
+                lateral: position.lateral,
+                yaw: position.yaw,
+                roll: touch.roll,
+                side,
+                number,
+                z: found.z,
+                contact: *contact,
+                delta_r: right - left,
+                conicity: conicity.unwrap_or(f64::NAN),
+            }));
+        }
+        Ok(())
+    }
+}
+
+/// The rolling radius difference Δr \[mm\] at a lateral displacement \[mm\] without yaw: right less left.
+///
+/// # Errors
+/// A displacement or roll that is not finite.
+pub fn rolling_radius_difference(
+    search: &mut WheelsetSearch,
+    lateral: f64,
+    roll: Roll,
+) -> Result<Option<f64>> {
+    let selection = Selection { within: 0.0, apart: 0.0 };
+    let touch = search.touch(&Position { lateral, yaw: 0.0, roll }, &selection)?;
+    Ok(touch.map(|touch| {
+        let [left, right] = touch.sides.map(|side| side.touch.contacts[0].rolling_radius);
+        right - left
+    }))
+}

@@ -1,0 +1,16 @@
+//! Background: conventions, the numerics with their derivation, the Report's errata, clients, references.
+
+#[doc = include_str!("conventions.md")]
+pub mod conventions {}
+
+#[doc = include_str!("numerics.md")]
+pub mod numerics {}
+
+#[doc = include_str!("errata.md")]
+pub mod errata {}
+
+#[doc = include_str!("clients.md")]
+pub mod clients {}
+
+#[doc = include_str!("references.md")]
+pub mod references {}

@@ -1,0 +1,42 @@
+//! `boundary.csv` and `interpen.csv`: one head line, then numbers in mm, shortest form that reads back the same.
+
+use super::model::{Interval, Loop};
+use std::fmt::Write;
+
+/// `boundary.csv`: component, xi, eta. Loop after loop, each closed by its first point, counter-clockwise around a
+/// component and clockwise around its holes.
+pub fn boundary(loops: &[Loop]) -> String {
+    let mut text = String::from("component,xi,eta\n");
+    for ring in loops {
+        for [xi, eta, _] in ring.points.iter().chain(ring.points.first()) {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "{},{xi:?},{eta:?}", ring.component);
+        }
+    }
+    text
+}
+
+/// `interpen.csv`, INTERPEN's own table: for each grid ξ inside the patch, xi, component, eta_min, eta_max.
+pub fn interpen(intervals: &[Interval]) -> String {
+    let mut text = String::from("xi,component,eta_min,eta_max\n");
+    for Interval { xi, component, eta: [low, high] } in intervals {
+        let _ = writeln!(text, "{xi:?},{component},{low:?},{high:?}");
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::export::sample::square;
+
+    #[test]
+    fn loops_are_closed_and_numbers_read_back() {
+        let text = boundary(&[square()]);
+        let lines: Vec<_> = text.lines().collect();
+        assert_eq!((lines.len(), lines[1], lines[5]), (6, "0,-1.0,-1.0", "0,-1.0,-1.0"));
+        let row = Interval { xi: 0.1 + 0.2, component: 1, eta: [-1e-9, 2.0] };
+        assert_eq!(interpen(&[row]), "xi,component,eta_min,eta_max\n0.30000000000000004,1,-1e-9,2.0\n");
+        assert_eq!(boundary(&[]), "component,xi,eta\n");
+    }
+}

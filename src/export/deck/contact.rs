@@ -1,0 +1,174 @@
+//! `contact.inp`: a deck for Vollebregt's CONTACT, module 3 (one point of contact), with the undeformed distance
+//! given point by point (IBASE = 9).
+//!
+//! CONTACT's axes are x rolling, y lateral, z down: (x, y, z) = ours (η, ξ, −ζ). Its elements are our cells, its
+//! distances belong to their centres, x fastest: the same order as ours. The program exits with 0 even when it
+//! rejects its input, so read its output.
+
+use super::super::block::Block;
+use super::{Deck, WIDTH, line};
+use std::fmt::Write as _;
+use std::io::{self, Write};
+
+/// CONTACT's own limit of elements (NPOT_MAX), beyond which it coarsens the grid.
+pub const ELEMENT_LIMIT: usize = 20_000;
+
+/// Numbers on a line: CONTACT takes lines of up to 256 characters and 50 items; three keep these under 80.
+const PER_LINE: usize = 3;
+
+/// What is prescribed along the normal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Normal {
+    /// Total normal force \[N\], > 0.
+    Force(f64),
+    /// Approach δ \[mm\], > 0.
+    Approach(f64),
+}
+
+/// What CONTACT needs beside the geometry.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Force or approach.
+    pub normal: Normal,
+    /// Poisson's ratios of rail and wheel, typically 0.28.
+    pub poisson: [f64; 2],
+    /// Shear moduli of rail and wheel \[N/mm²\], typically 82,000.
+    pub shear_modulus: [f64; 2],
+    /// Coefficient of friction, static and kinetic, typically 0.3; it does not enter the normal problem.
+    pub friction: f64,
+}
+
+impl Settings {
+    /// Steel on steel: E = 210,000 N/mm², ν = 0.28, friction 0.3.
+    pub fn steel(normal: Normal) -> Self {
+        let shear = 210_000.0 / (2.0 * (1.0 + 0.28));
+        Self { normal, poisson: [0.28; 2], shear_modulus: [shear; 2], friction: 0.3 }
+    }
+}
+
+impl Deck<'_> {
+    /// `contact.inp`. Undefined distances are 10 × the largest |s|.
+    ///
+    /// # Errors
+    /// Those of the sink.
+    pub fn contact(&self, settings: &Settings, sink: &mut dyn Write) -> io::Result<()> {
+        let mut block = Block::new(sink);
+        block.bytes(self.comments().as_bytes())?;
+        block.bytes(self.control(settings).as_bytes())?;
+        for i in 0..self.xi.len() {
+            for run in self.column(i).chunks(PER_LINE) {
+                let room = block.room(run.len() * WIDTH + 1)?;
+                for (place, number) in room.chunks_exact_mut(WIDTH).zip(run) {
+                    place.copy_from_slice(number);
+                }
+                room[run.len() * WIDTH] = b'\n';
+            }
+        }
+        block.bytes(b" 0  MODULE\n")?;
+        block.finish()
+    }
+
+    fn comments(&self) -> String {
+        let mut lines = self.header.statements();
+        lines.push("CONTACT's axes: x = eta (rolling), y = xi (lateral), z = -zeta (down)".into());
+        lines.push("h(1) ... h(MX*MY) = s at element centres, ix (eta) fastest, then iy (xi)".into());
+        let undefined = self.grid.separation().iter().filter(|s| s.is_nan()).count();
+        lines.push(format!("undefined elements, filled with 10 x the largest |s|: {undefined}"));
+        let count = self.separation.len();
+        if count > ELEMENT_LIMIT {
+            lines.push(format!("{count} elements: above CONTACT's default NPOT_MAX = {ELEMENT_LIMIT},"));
+            lines.push("beyond which it coarsens the grid; use a coarser one or raise NPOT_MAX".into());
+        }
+        lines.iter().map(|line| format!("% {line}\n")).collect()
+    }
+
+    fn control(&self, settings: &Settings) -> String {
+        let (force, normal) = match settings.normal {
+            Normal::Force(force) => (1, force),
+            Normal::Approach(approach) => (0, approach),
+        };
+        let ([nu_r, nu_w], [g_r, g_w]) = (settings.poisson, settings.shear_modulus);
+        let mut text = format!(
+            " 3  MODULE\n  200{force}00       P-B-T-N-F-S     % N = {force}: {} prescribed\n",
+            if force == 1 { "normal force [N]" } else { "approach [mm]" }
+        );
+        text += "  022020       L-D-C-M-Z-E\n 0002221       H-G-I-A-O-W-R\n";
+        text += "   999 100 30 1 1.0e-8           MAXGS MAXIN MAXNR MAXOUT EPS\n";
+        // `{:?}` writes every f64 with a point or an exponent, shortest that reads back the same.
+        let _ = writeln!(text, "   {normal:?} 0.0 0.0 0.0           {}", ["PEN", "FN"][force]);
+        let _ = writeln!(text, "   {0:?} {0:?}           FSTAT FKIN", settings.friction);
+        let _ = writeln!(text, "   {nu_r:?} {nu_w:?} {g_r:?} {g_w:?}           POISS 1,2  GG 1,2");
+        text += "   3           IPOTCN\n";
+        let _ = write!(text, "   {} {} ", self.eta.len(), self.xi.len());
+        text += line(&[self.grid.eta()[0], self.grid.xi()[0], self.steps[1], self.steps[0]]).trim_end();
+        text += "  MX MY XC1 YC1 DX DY\n";
+        text + "   9 1           IBASE IPLAN\n"
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::export::sample::{Sample, header};
+
+    fn deck(sample: &Sample, normal: Normal) -> String {
+        let (header, grid) = (header(), sample.fields());
+        let mut bytes = Vec::new();
+        Deck::new(&header, &grid).unwrap().contact(&Settings::steel(normal), &mut bytes).unwrap();
+        String::from_utf8(bytes).unwrap()
+    }
+
+    #[test]
+    fn lines_stand_in_contacts_order() {
+        let sample = Sample::new(3, 4);
+        let text = deck(&sample, Normal::Approach(0.05));
+        let lines: Vec<_> = text.lines().filter(|line| !line.starts_with('%')).collect();
+        let begins = |k: usize, words: &str| {
+            assert!(lines[k].trim_start().starts_with(words), "line {k}: {}", lines[k]);
+        };
+        begins(0, "3 ");
+        begins(1, "200000");
+        begins(5, "0.05 0.0 0.0 0.0");
+        begins(7, "0.28 0.28 82031.25 82031.25");
+        begins(8, "3 ");
+        begins(9, "4 3 ");
+        begins(10, "9 1");
+        let h: Vec<f64> = lines[11..lines.len() - 1]
+            .iter()
+            .flat_map(|line| line.split_whitespace())
+            .map(|word| word.parse().unwrap())
+            .collect();
+        assert_eq!(h[1..], sample.separation[1..]);
+        assert_eq!(h[0], sample.fields().fill_value());
+        assert_eq!(lines[lines.len() - 1], " 0  MODULE");
+        assert!(text.lines().all(|line| line.len() <= 256), "{text}");
+    }
+
+    #[test]
+    fn force_and_size_are_said() {
+        assert!(deck(&Sample::new(2, 2), Normal::Force(8e4)).contains("200100"));
+        assert!(deck(&Sample::new(201, 101), Normal::Force(8e4)).contains("above CONTACT's default"));
+        assert!(!deck(&Sample::new(20, 10), Normal::Force(8e4)).contains("above CONTACT's default"));
+    }
+
+    /// Rate of all decks of 200 × 200 points together: `cargo test --release all_decks -- --ignored --nocapture`.
+    #[test]
+    #[ignore = "a measurement"]
+    fn speed_of_all_decks() {
+        let sample = Sample::new(200, 200);
+        let (header, grid) = (header(), sample.fields());
+        let mesh = crate::export::sample::mesh();
+        for _ in 0..8 {
+            let begun = std::time::Instant::now();
+            let deck = Deck::new(&header, &grid).unwrap();
+            let formatted = begun.elapsed();
+            let mut files = [const { Vec::new() }; 4];
+            deck.separation(&mut files[0]).unwrap();
+            deck.conform(&mut files[1]).unwrap();
+            deck.countact(&mesh, &mut files[2]).unwrap();
+            deck.contact(&Settings::steel(Normal::Force(8e4)), &mut files[3]).unwrap();
+            let bytes: usize = files.iter().map(Vec::len).sum();
+            eprintln!("numbers {formatted:?}, all {:?}, {bytes} bytes", begun.elapsed());
+        }
+    }
+}

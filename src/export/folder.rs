@@ -1,0 +1,395 @@
+//! The output folder: the only place of the library that touches the disk.
+//!
+//! A run writes into a temporary folder beside DIR and puts it in DIR's place in one step at the end, so that
+//! whoever looks at DIR, and whenever the run is killed, finds the old folder or the new one, each whole.
+//!
+//! - **The step.** A plain `rename` where DIR is missing or empty; elsewhere the kernel's exchange of two names
+//!   (`renameat2` with `RENAME_EXCHANGE`), after which the old folder bears the temporary name and is deleted.
+//!   File systems without the exchange (NFS, some FUSE) get two renames: between them DIR is missing for an
+//!   instant, and the old folder waits beside it under a name that the next run puts back.
+//! - **Killed runs.** The temporary folder is locked (`flock`) as long as its run lives, and the kernel drops the
+//!   lock with the process. An unlocked temporary folder is therefore stale, and the next run into the same
+//!   parent removes it.
+//! - **No fsync.** Twenty of them cost more than the whole run. What is promised holds for a kill of the process,
+//!   not for a power cut: a folder cut off by one is recognised by the END lines and the sizes in the headers.
+//! - **Foreign files.** A folder is replaced only if it is empty or carries our own summary. Files in it that
+//!   are not ours (notes, pictures) are hard-linked into the new folder; foreign subfolders are refused.
+
+use crate::error::{Error, Result};
+use std::fs::{self, File, TryLockError};
+use std::io::{self, ErrorKind, Write};
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+use std::process;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Every temporary folder's name begins so; what follows is `NAME.PID.NUMBER`.
+const TEMPORARY: &str = ".wheelrail-tmp.";
+
+/// Where the old folder waits while a file system without the exchange of names swaps two folders.
+const ASIDE: &str = ".wheelrail-old.";
+
+/// Names tried for a temporary folder before giving up: each is lost only to a run that cleans up at that
+/// very instant, or to a process that had the same number and was killed.
+const NAMES_TRIED: u32 = 100;
+
+/// Numbers the temporary folders of this process. None is used twice: the owner of a name deletes it after its
+/// folder has moved on, and must not meet another thread's folder there.
+static NUMBER: AtomicU64 = AtomicU64::new(0);
+
+/// Attempts to put the new folder in place, each lost only to another run that does the same just then.
+const SWAPS_TRIED: u32 = 100;
+
+/// The files by which one command's output folder is known.
+#[derive(Debug, Clone, Copy)]
+pub struct Names {
+    /// The file without which a non-empty folder is not ours; it has to contain the word `wheelrail`.
+    pub marker: &'static str,
+    /// All files that the command may write. Those of an earlier run vanish with the old folder; every other
+    /// file is the user's and is kept.
+    pub files: &'static [&'static str],
+}
+
+/// A folder being written: nothing is seen of it in DIR before [`Folder::commit`], and nothing remains of it
+/// when it is dropped without.
+#[derive(Debug)]
+pub struct Folder {
+    target: PathBuf,
+    temporary: PathBuf,
+    names: Names,
+    /// The open temporary folder, locked; the lock goes with it.
+    _lock: File,
+}
+
+/// A folder being written, or one of its subfolders.
+#[derive(Debug)]
+pub struct FolderPart<'a> {
+    temporary: PathBuf,
+    target: PathBuf,
+    _whole: &'a Folder,
+}
+
+impl Folder {
+    /// A temporary folder beside `dir`, after stale ones of killed runs have been removed. Missing parents are
+    /// created; a symbolic link to a folder is followed.
+    ///
+    /// # Errors
+    /// `dir` is a file, a mount point, the working folder or above it, or a folder that is neither empty nor
+    /// ours; the parent cannot be written.
+    pub fn create(dir: &Path, names: Names) -> Result<Self> {
+        let target = resolve(dir)?;
+        let parent = parent_of(&target);
+        fs::create_dir_all(parent).map_err(|e| unwritable(parent, &e))?;
+        put_back(&target);
+        remove_stale(parent);
+        if target.exists() {
+            reject_unsafe(&target)?;
+            foreign_files(&target, names)?;
+        }
+        let (temporary, lock) = locked_temporary(&target)?;
+        Ok(Self { target, temporary, names, _lock: lock })
+    }
+
+    /// A subfolder with files of the same names, made at once; an empty `name` is the folder itself.
+    ///
+    /// # Errors
+    /// Whatever the disk says.
+    pub fn part(&self, name: &str) -> Result<FolderPart<'_>> {
+        let (temporary, target) = (self.temporary.join(name), self.target.join(name));
+        fs::create_dir_all(&temporary).map_err(|e| unwritable(&target, &e))?;
+        Ok(FolderPart { temporary, target, _whole: self })
+    }
+
+    /// Writes one file of the folder.
+    ///
+    /// # Errors
+    /// As [`FolderPart::write`].
+    pub fn write(&self, name: &str, bytes: &[u8]) -> Result<()> {
+        self.part("")?.write(name, bytes)
+    }
+
+    /// Writes one file of the folder piece by piece.
+    ///
+    /// # Errors
+    /// As [`FolderPart::write`].
+    pub fn stream(&self, name: &str, content: impl FnOnce(&mut File) -> io::Result<()>) -> Result<()> {
+        self.part("")?.stream(name, content)
+    }
+
+    /// Puts the folder in DIR's place and deletes the old one. An old folder that cannot be deleted is left,
+    /// under its temporary name, to the next run.
+    ///
+    /// # Errors
+    /// Meanwhile DIR has become something that may not be replaced; the disk refuses. DIR is then as it was.
+    pub fn commit(self) -> Result<()> {
+        for _ in 0..SWAPS_TRIED {
+            // Replaces an empty folder too.
+            match fs::rename(&self.temporary, &self.target) {
+                Ok(()) => return Ok(()),
+                Err(e) if matches!(e.kind(), ErrorKind::DirectoryNotEmpty | ErrorKind::AlreadyExists) => {}
+                Err(e) => return Err(unwritable(&self.target, &e)),
+            }
+            self.keep(&foreign_files(&self.target, self.names)?)?;
+            match exchange(&self.temporary, &self.target) {
+                // Dropping self deletes what now has the temporary name: the old folder.
+                Ok(()) => return Ok(()),
+                // Another run has just moved DIR.
+                Err(e) if e.kind() == ErrorKind::NotFound => {}
+                Err(e) => return Err(unwritable(&self.target, &e)),
+            }
+        }
+        Err(Error::new(
+            self.target.display().to_string(),
+            "other runs that keep replacing it",
+            "one run at a time",
+            "give each run its own --out",
+        ))
+    }
+
+    /// Gives the user's own files a second name in the new folder, so that they are never in one place only
+    /// where a kill or another run could take them.
+    fn keep(&self, foreign: &[PathBuf]) -> Result<()> {
+        for path in foreign {
+            let Some(name) = path.file_name() else { continue };
+            let kept = self.temporary.join(name);
+            match fs::hard_link(path, &kept) {
+                Ok(()) => {}
+                Err(e) if matches!(e.kind(), ErrorKind::NotFound | ErrorKind::AlreadyExists) => {}
+                Err(_) => {
+                    fs::copy(path, &kept).map_err(|e| unwritable(path, &e))?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl FolderPart<'_> {
+    /// Writes one file.
+    ///
+    /// # Errors
+    /// Whatever the disk says (full, quota, …); a name that was written already.
+    pub fn write(&self, name: &str, bytes: &[u8]) -> Result<()> {
+        self.stream(name, |sink| sink.write_all(bytes))
+    }
+
+    /// Writes one file piece by piece, for large ones. The sink is not buffered: hand it blocks of at least some
+    /// ten kilobytes.
+    ///
+    /// # Errors
+    /// As [`FolderPart::write`].
+    pub fn stream(&self, name: &str, content: impl FnOnce(&mut File) -> io::Result<()>) -> Result<()> {
+        let path = self.temporary.join(name);
+        let file = File::options().write(true).create_new(true).open(&path);
+        file.and_then(|mut file| {
+            content(&mut file)?;
+            file.flush()
+        })
+        .map_err(|e| {
+            let advice = match e.kind() {
+                ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "free some space or give another --out",
+                _ => "check the folder, or give another --out",
+            };
+            Error::new(
+                self.target.join(name).display().to_string(),
+                e.to_string(),
+                "a file written whole",
+                advice,
+            )
+        })
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        // A failure leaves a stale folder, which the next run removes. After a plain rename there is none.
+        drop(fs::remove_dir_all(&self.temporary));
+    }
+}
+
+/// `dir` without symbolic links, absolute; its last part may be missing.
+fn resolve(dir: &Path) -> Result<PathBuf> {
+    if let Ok(real) = dir.canonicalize() {
+        return Ok(real);
+    }
+    if dir.symlink_metadata().is_ok() {
+        return Err(bad(
+            dir,
+            "a broken symbolic link",
+            "a folder, or nothing yet",
+            "remove it or give another --out",
+        ));
+    }
+    if dir.file_name().is_none() {
+        return Err(bad(dir, "a path without a name at its end", "a folder's name", "give --out NAME"));
+    }
+    std::path::absolute(dir).map_err(|e| unwritable(dir, &e))
+}
+
+fn parent_of(target: &Path) -> &Path {
+    target.parent().unwrap_or(target)
+}
+
+/// Refuses what cannot or must not be replaced whatever it contains.
+fn reject_unsafe(target: &Path) -> Result<()> {
+    let here = target.metadata().map_err(|e| unwritable(target, &e))?;
+    if !here.is_dir() {
+        return Err(bad(target, "a file", "a folder, or nothing yet", "remove it or give another --out"));
+    }
+    if std::env::current_dir().is_ok_and(|cwd| cwd.starts_with(target)) {
+        // The shell that started us would be left inside a deleted folder.
+        return Err(bad(
+            target,
+            "the working folder or one above it",
+            "a folder inside it",
+            "give --out ./NAME",
+        ));
+    }
+    if parent_of(target).metadata().is_ok_and(|parent| parent.dev() != here.dev()) {
+        return Err(bad(
+            target,
+            "a mount point",
+            "a folder that can be replaced",
+            "give a folder inside it as --out",
+        ));
+    }
+    Ok(())
+}
+
+/// The files in `target` that are the user's own.
+fn foreign_files(target: &Path, names: Names) -> Result<Vec<PathBuf>> {
+    let entries = fs::read_dir(target).and_then(|list| list.collect::<io::Result<Vec<_>>>());
+    let entries = entries.map_err(|e| unwritable(target, &e))?;
+    if entries.is_empty() {
+        return Ok(Vec::new());
+    }
+    let marker = fs::read(target.join(names.marker)).unwrap_or_default();
+    if !marker.windows(9).any(|word| word == b"wheelrail") {
+        let found = format!("a folder with {} entries and no {} of ours", entries.len(), names.marker);
+        return Err(bad(
+            target,
+            &found,
+            "an empty or missing folder, or one of an earlier run",
+            "give another --out: the folder would be replaced",
+        ));
+    }
+    let is_foreign = |entry: &fs::DirEntry| !names.files.iter().any(|name| entry.file_name() == **name);
+    let foreign: Vec<_> = entries.iter().filter(|entry| is_foreign(entry)).collect();
+    // Subfolders are ours when they are folders of the same kind and hold nothing else.
+    let is_folder = |entry: &fs::DirEntry| entry.file_type().is_ok_and(|kind| kind.is_dir());
+    let is_part = |entry: &fs::DirEntry| {
+        is_folder(entry) && foreign_files(&entry.path(), names).is_ok_and(|files| files.is_empty())
+    };
+    let foreign: Vec<_> = foreign.into_iter().filter(|entry| !is_part(entry)).collect();
+    if let Some(folder) = foreign.iter().find(|entry| is_folder(entry)) {
+        let found = format!("a folder {} that this program did not write", folder.file_name().display());
+        return Err(bad(target, &found, "files only", "move it elsewhere or give another --out"));
+    }
+    Ok(foreign.into_iter().map(fs::DirEntry::path).collect())
+}
+
+/// Makes and locks a temporary folder. The lock comes a moment after the folder; whoever cleans up in between
+/// takes it for stale, which shows in a lost lock or a name that is gone, and the next name is tried.
+fn locked_temporary(target: &Path) -> Result<(PathBuf, File)> {
+    let parent = parent_of(target);
+    let name = target.file_name().unwrap_or_default().to_string_lossy();
+    for _ in 0..NAMES_TRIED {
+        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+        let path = parent.join(format!("{TEMPORARY}{name}.{}.{number}", process::id()));
+        match fs::create_dir(&path) {
+            Ok(()) => {}
+            Err(e) if e.kind() == ErrorKind::AlreadyExists => continue,
+            Err(e) => return Err(unwritable(parent, &e)),
+        }
+        let Ok(lock) = File::open(&path) else { continue };
+        // A file system without locks (Error) has no cleaning either.
+        let lost = matches!(lock.try_lock(), Err(TryLockError::WouldBlock));
+        if !lost && same_folder(&lock, &path) {
+            return Ok((path, lock));
+        }
+    }
+    Err(bad(
+        parent,
+        &format!("{NAMES_TRIED} temporary folders in use"),
+        "a free name",
+        "wait for the other runs or give another --out",
+    ))
+}
+
+fn same_folder(open: &File, path: &Path) -> bool {
+    match (open.metadata(), path.metadata()) {
+        (Ok(a), Ok(b)) => (a.dev(), a.ino()) == (b.dev(), b.ino()),
+        _ => false,
+    }
+}
+
+/// Removes the temporary folders of runs that are dead. Whatever fails is somebody else's or is tried again.
+fn remove_stale(parent: &Path) {
+    for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
+        let ours = entry.file_name().to_string_lossy().starts_with(TEMPORARY);
+        if !ours || !entry.file_type().is_ok_and(|kind| kind.is_dir()) {
+            continue;
+        }
+        let Ok(lock) = File::open(entry.path()) else { continue };
+        // The lock is held until all is gone, so that nobody writes into what is being removed.
+        if lock.try_lock().is_ok() {
+            drop(fs::remove_dir_all(entry.path()));
+        }
+    }
+}
+
+/// Exchanges two folders' names.
+fn exchange(new: &Path, old: &Path) -> io::Result<()> {
+    use rustix::fs::{CWD, RenameFlags, renameat_with};
+    use rustix::io::Errno;
+    match renameat_with(CWD, new, CWD, old, RenameFlags::EXCHANGE) {
+        Ok(()) => Ok(()),
+        Err(Errno::INVAL | Errno::NOSYS | Errno::OPNOTSUPP) => exchange_in_two(new, old),
+        Err(e) => Err(e.into()),
+    }
+}
+
+/// The same for file systems that cannot do it in one step.
+fn exchange_in_two(new: &Path, old: &Path) -> io::Result<()> {
+    let aside = aside_of(old);
+    fs::rename(old, &aside)?;
+    match fs::rename(new, old) {
+        // The old folder takes the temporary name, to be deleted under it.
+        Ok(()) => fs::rename(&aside, new),
+        Err(e) => fs::rename(&aside, old).and(Err(e)),
+    }
+}
+
+/// Undoes an [`exchange_in_two`] that was killed half-way.
+fn put_back(target: &Path) {
+    let aside = aside_of(target);
+    if !aside.is_dir() {
+        return;
+    }
+    if target.exists() {
+        drop(fs::remove_dir_all(aside));
+    } else {
+        drop(fs::rename(aside, target));
+    }
+}
+
+fn aside_of(target: &Path) -> PathBuf {
+    let name = target.file_name().unwrap_or_default().to_string_lossy();
+    parent_of(target).join(format!("{ASIDE}{name}"))
+}
+
+fn bad(path: &Path, found: &str, expected: &str, advice: &str) -> Error {
+    Error::new(path.display().to_string(), found, expected, advice)
+}
+
+fn unwritable(path: &Path, error: &io::Error) -> Error {
+    bad(
+        path,
+        &error.to_string(),
+        "a folder that can be written",
+        "check its permissions or give another --out",
+    )
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,316 @@
+//! What the writers are given: slices of numbers and a few statements about them.
+
+use crate::error::{Error, Result};
+
+/// Steps of an evenly spaced grid may differ by this × the largest |coordinate|: two roundings of `from + i·step`
+/// at each end. A smaller factor would refuse grids that are even as far as f64 can say; a larger one would let
+/// values of which a solver sees the spacing only move off their points.
+const STEP_ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// The contact frame ξηζ in the rail profile's axes (x lateral, y rolling direction, z up) \[mm\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frame {
+    /// The initial contact point C.
+    pub origin: [f64; 3],
+    /// Unit vector of ξ, along the common tangent.
+    pub xi: [f64; 3],
+    /// Unit vector of η, along the rail.
+    pub eta: [f64; 3],
+    /// Unit vector of ζ, along the common normal from rail to wheel.
+    pub zeta: [f64; 3],
+}
+
+impl Frame {
+    /// The frame at the rail's contact point (x, z) \[mm\] with contact angle θ_C given by its cosine and sine:
+    /// eqs. (4.2). ξ × η = ζ.
+    pub fn at(x: f64, z: f64, cos: f64, sin: f64) -> Self {
+        Self { origin: [x, 0.0, z], xi: [cos, 0.0, sin], eta: [0.0, 1.0, 0.0], zeta: [-sin, 0.0, cos] }
+    }
+}
+
+/// What every file says about itself.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Header {
+    /// The scene's title.
+    pub title: String,
+    /// Version of this program, e.g. `0.1.0`.
+    pub version: String,
+    /// Hash of the scene that was run.
+    pub scene_hash: String,
+    /// Approach δ \[mm\], ≥ 0, typically 0.01 to 0.2.
+    pub approach: f64,
+    /// The frame of all coordinates.
+    pub frame: Frame,
+}
+
+impl Header {
+    /// The lines that explain a file: ASCII, at most 76 columns, none empty.
+    pub fn statements(&self) -> Vec<String> {
+        let lines = [
+            format!("title: {}", self.title),
+            format!("written by wheelrail {}, scene {}", self.version, self.scene_hash),
+            "lengths in mm; contact frame, right-handed, origin C on the rail:".into(),
+            "xi along the common tangent, eta along the rail (rolling direction),".into(),
+            "zeta along the common normal from rail to wheel".into(),
+            "separation s = zeta(wheel) - zeta(rail) at equal xi, eta, before any".into(),
+            "approach: s > 0 apart, s < 0 overlapping".into(),
+            format!("approach delta = {:?} mm; patch where s < delta", self.approach),
+            "values at grid points = centres of the cells d_xi x d_eta (not corners)".into(),
+            "order [i_xi][i_eta]: eta fastest, both ascending".into(),
+            "undefined where a body has no surface: NaN in arrays, mask m = 0 in text".into(),
+        ];
+        lines.iter().map(|line| plain(line)).collect()
+    }
+}
+
+/// One printable ASCII line of at most 76 characters, fit for every format's comments: `--` would end XML's.
+pub(super) fn plain(line: &str) -> String {
+    let printable = |c: char| if c.is_ascii_graphic() || c == ' ' { c } else { '?' };
+    let line: String = line.chars().map(printable).take(76).collect();
+    line.replace("--", "==")
+}
+
+/// The separation over the grid, and the rail below it.
+#[derive(Debug, Clone, Copy)]
+pub struct GridFields<'a> {
+    xi: &'a [f64],
+    eta: &'a [f64],
+    separation: &'a [f64],
+    rail_height: &'a [f64],
+    rail_normal: &'a [[f64; 2]],
+}
+
+impl<'a> GridFields<'a> {
+    /// Fields whose lengths fit each other.
+    ///
+    /// `xi`, `eta`: ascending grid coordinates \[mm\]. `separation`: s \[mm\] at `i_xi * n_eta + i_eta`, NaN where
+    /// undefined. `rail_height`: ζ^R(ξ) \[mm\], per ξ, NaN where the rail has no surface. `rail_normal`: per ξ, the
+    /// rail's outward (upward) unit normal (n_ξ, n_ζ).
+    ///
+    /// # Errors
+    /// An empty axis, or lengths that do not fit.
+    pub fn new(
+        xi: &'a [f64],
+        eta: &'a [f64],
+        separation: &'a [f64],
+        rail_height: &'a [f64],
+        rail_normal: &'a [[f64; 2]],
+    ) -> Result<Self> {
+        let lengths = [
+            ("separation", separation.len(), xi.len() * eta.len()),
+            ("rail heights", rail_height.len(), xi.len()),
+            ("rail normals", rail_normal.len(), xi.len()),
+        ];
+        for (what, found, expected) in lengths {
+            same_length(what, found, expected)?;
+        }
+        if separation.is_empty() {
+            return Err(Error::new("grid", "no points", "at least one", "give xi and eta values"));
+        }
+        Ok(Self { xi, eta, separation, rail_height, rail_normal })
+    }
+
+    /// Grid coordinates ξ \[mm\], ascending.
+    pub fn xi(&self) -> &'a [f64] {
+        self.xi
+    }
+
+    /// Grid coordinates η \[mm\], ascending.
+    pub fn eta(&self) -> &'a [f64] {
+        self.eta
+    }
+
+    /// s \[mm\] at `i_xi * n_eta + i_eta`, NaN where undefined.
+    pub fn separation(&self) -> &'a [f64] {
+        self.separation
+    }
+
+    /// s \[mm\] along the column of ξ number `i`.
+    pub fn column(&self, i: usize) -> &'a [f64] {
+        &self.separation[i * self.eta.len()..(i + 1) * self.eta.len()]
+    }
+
+    /// ζ^R(ξ) \[mm\], NaN where the rail has no surface.
+    pub fn rail_height(&self) -> &'a [f64] {
+        self.rail_height
+    }
+
+    /// The rail's outward unit normal (n_ξ, n_ζ) per ξ.
+    pub fn rail_normal(&self) -> &'a [[f64; 2]] {
+        self.rail_normal
+    }
+
+    /// The steps \[d_ξ, d_η\] \[mm\] of a grid of equal steps.
+    ///
+    /// # Errors
+    /// Unequal steps, or an axis of one point: `format` then has no way to say where the points are.
+    pub fn steps(&self, format: &str) -> Result<[f64; 2]> {
+        Ok([even_step(format, "xi", self.xi)?, even_step(format, "eta", self.eta)?])
+    }
+
+    /// What stands for s where a format needs a number at undefined points: 10 × the largest |s|. Much larger
+    /// values spoil a solver's result without a word.
+    pub fn fill_value(&self) -> f64 {
+        // `max` passes over NaN.
+        10.0 * self.separation.iter().fold(0.0, |largest: f64, s| largest.max(s.abs()))
+    }
+}
+
+fn even_step(format: &str, axis: &str, values: &[f64]) -> Result<f64> {
+    let advice = format!("give grid.{axis} as from, to, n, or leave {format} out of output.formats");
+    let (&[first, ..], &[.., last]) = (values, values) else {
+        return Err(Error::new(format!("grid.{axis}"), "no points", "at least two", advice));
+    };
+    if values.len() < 2 {
+        return Err(Error::new(
+            format!("grid.{axis}"),
+            "one point",
+            format!("two or more for {format}"),
+            advice,
+        ));
+    }
+    let step = (last - first) / (values.len() - 1) as f64;
+    let slack = STEP_ROUNDING * first.abs().max(last.abs());
+    let even = |pair: &[f64]| (pair[1] - pair[0] - step).abs() <= slack;
+    match values.windows(2).find(|pair| !even(pair)) {
+        None => Ok(step),
+        Some(pair) => Err(Error::new(
+            format!("grid.{axis}"),
+            format!("a step of {} mm from {} among steps of {step} mm", pair[1] - pair[0], pair[0]),
+            format!("equal steps for {format}"),
+            advice,
+        )),
+    }
+}
+
+/// One closed loop of the interpenetration boundary s = δ.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Loop {
+    /// Number of the patch's component that it bounds, from 0.
+    pub component: usize,
+    /// Its points \[ξ, η, ζ^R\] \[mm\] on the rail's surface; counter-clockwise in (ξ, η) around the component,
+    /// clockwise around a hole. The first is not repeated at the end.
+    pub points: Vec<[f64; 3]>,
+}
+
+/// One row of INTERPEN's table: where a line of constant ξ runs inside the patch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// ξ of a grid column \[mm\].
+    pub xi: f64,
+    /// Number of the patch's component, from 0.
+    pub component: usize,
+    /// Smallest and largest η \[mm\] with s ≤ δ.
+    pub eta: [f64; 2],
+}
+
+/// The boundary-fitted solver mesh of the patch.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct QuadMesh {
+    /// Nodes \[ξ, η, ζ^R\] \[mm\] on the rail's surface.
+    pub points: Vec<[f64; 3]>,
+    /// Cells: indices of four nodes, counter-clockwise in (ξ, η). A cell at a tip may repeat a node.
+    pub quads: Vec<[usize; 4]>,
+    /// Exact area of each cell in the ξ–η plane \[mm²\], curved boundary edge included.
+    pub area: Vec<f64>,
+    /// Number of the patch's component that each cell belongs to, from 0.
+    pub component: Vec<usize>,
+}
+
+impl QuadMesh {
+    /// Checks what every writer relies on.
+    ///
+    /// # Errors
+    /// Lengths that do not fit; a node number beyond the nodes.
+    pub fn validate(&self) -> Result<()> {
+        same_length("cell areas", self.area.len(), self.quads.len())?;
+        same_length("cell components", self.component.len(), self.quads.len())?;
+        nodes_exist(self.quads.iter().flatten(), self.points.len())
+    }
+}
+
+/// A triangulated surface of one body around the patch.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct SurfaceMesh {
+    /// Nodes \[ξ, η, ζ\] \[mm\].
+    pub points: Vec<[f64; 3]>,
+    /// Triangles: indices of three nodes, counter-clockwise seen from outside the body.
+    pub triangles: Vec<[usize; 3]>,
+}
+
+impl SurfaceMesh {
+    /// Checks what every writer relies on.
+    ///
+    /// # Errors
+    /// A node number beyond the nodes.
+    pub fn validate(&self) -> Result<()> {
+        nodes_exist(self.triangles.iter().flatten(), self.points.len())
+    }
+}
+
+/// # Errors
+/// When `found` values stand where `expected` should.
+pub(super) fn same_length(what: &str, found: usize, expected: usize) -> Result<()> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(Error::new(what, format!("{found} values"), expected.to_string(), "pass arrays of one grid or mesh"))
+}
+
+fn nodes_exist<'a>(mut nodes: impl Iterator<Item = &'a usize>, count: usize) -> Result<()> {
+    match nodes.find(|&&node| node >= count) {
+        None => Ok(()),
+        Some(node) => Err(Error::new(
+            "mesh cells",
+            format!("node {node}"),
+            format!("less than {count}, the number of nodes"),
+            "pass the mesh with all of its nodes",
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_frame_is_right_handed() {
+        let frame = Frame::at(1.0, 2.0, 0.8, 0.6);
+        let [a, b] = [frame.xi, frame.eta];
+        let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+        assert_eq!(cross, frame.zeta);
+    }
+
+    #[test]
+    fn statements_are_plain_whatever_the_title() {
+        let title = format!("Weiche <7> -- \u{3be}\n{}", "x".repeat(200));
+        let header = Header { title, ..crate::export::sample::header() };
+        for line in header.statements() {
+            assert!(
+                line.is_ascii() && line.len() <= 76 && !line.contains("--") && !line.is_empty(),
+                "{line}"
+            );
+        }
+    }
+
+    #[test]
+    fn even_steps_are_told_from_uneven_ones() {
+        let even: Vec<f64> = (0..241).map(|i| -12.0 + f64::from(i) * (24.0 / 240.0)).collect();
+        assert_eq!(even_step("netcdf", "xi", &even), Ok(0.1));
+        let mut uneven = even;
+        uneven[100] += 1e-12;
+        let error = even_step("netcdf", "xi", &uneven).unwrap_err();
+        assert!(error.place == "grid.xi" && error.advice.contains("netcdf"), "{error}");
+        assert!(even_step("netcdf", "xi", &[1.0]).is_err());
+        assert!(even_step("netcdf", "xi", &[0.0, f64::NAN]).is_err());
+    }
+
+    #[test]
+    fn fields_that_do_not_fit_are_refused() {
+        let (xi, eta) = ([0.0, 1.0], [0.0]);
+        assert!(GridFields::new(&xi, &eta, &[0.0; 3], &[0.0; 2], &[[0.0, 1.0]; 2]).is_err());
+        assert!(GridFields::new(&xi, &[], &[], &[0.0; 2], &[[0.0, 1.0]; 2]).is_err());
+        let grid = GridFields::new(&xi, &eta, &[f64::NAN, -2.0], &[0.0; 2], &[[0.0, 1.0]; 2]).unwrap();
+        assert_eq!(grid.fill_value(), 20.0);
+    }
+}

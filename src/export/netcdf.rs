@@ -1,0 +1,248 @@
+//! `separation.nc`: NetCDF-3 classic, the one format that carries sizes, units and mask to SurfaceTopography and
+//! ContactMechanics.
+//!
+//! Dimensions x (= ξ) and y (= η); variables `x`, `y` \[mm\] (cell centres), `heights(x, y)` = −s \[mm\], and
+//! `mask(x, y)` (1 = undefined) where a body has no surface somewhere. −s, as those programs press a rigid flat
+//! down onto `heights`. Own writer: a small format, and the crates for it write only to paths.
+
+use super::block::{Block, put_f64_be};
+use super::model::{GridFields, Header};
+use crate::error::Result;
+use serde_json::json;
+use std::io::{self, Write};
+
+const DIMENSION: u32 = 10;
+const VARIABLE: u32 = 11;
+const ATTRIBUTE: u32 = 12;
+
+const BYTE: u32 = 1;
+const CHAR: u32 = 2;
+const INT: u32 = 4;
+const DOUBLE: u32 = 6;
+
+/// The longest file whose offsets fit the first version's signed 32 bits; longer ones take 64-bit offsets.
+const CLASSIC_LIMIT: u64 = (1 << 31) - 1;
+
+/// One variable: its head entry and how long its data are.
+struct Variable {
+    name: &'static str,
+    /// Numbers of its dimensions.
+    dimensions: &'static [u32],
+    attributes: Vec<u8>,
+    attribute_count: u32,
+    kind: u32,
+    /// Bytes, before padding to four.
+    size: u64,
+}
+
+/// A file ready to be written: everything but the large arrays.
+pub struct NetCdf<'a> {
+    grid: &'a GridFields<'a>,
+    head: Vec<u8>,
+    masked: bool,
+}
+
+impl<'a> NetCdf<'a> {
+    /// Prepares the file.
+    ///
+    /// # Errors
+    /// A grid of unequal steps, or of one row or column: the format gives sizes, not places.
+    pub fn new(header: &Header, grid: &'a GridFields<'a>) -> Result<Self> {
+        let steps = grid.steps("netcdf")?;
+        let masked = grid.separation().iter().any(|s| s.is_nan());
+        Ok(Self { grid, head: head(header, grid, steps, masked), masked })
+    }
+
+    /// Writes it.
+    ///
+    /// # Errors
+    /// Those of the sink.
+    pub fn write(&self, sink: &mut dyn Write) -> io::Result<()> {
+        let mut block = Block::new(sink);
+        block.bytes(&self.head)?;
+        let (xi, eta) = (self.grid.xi(), self.grid.eta());
+        for axis in [xi, eta] {
+            put_f64_be(block.room(8 * axis.len())?, axis.iter().copied());
+        }
+        for i in 0..xi.len() {
+            put_f64_be(block.room(8 * eta.len())?, self.grid.column(i).iter().map(|s| -s));
+        }
+        if self.masked {
+            for i in 0..xi.len() {
+                let room = block.room(eta.len())?;
+                room.iter_mut().zip(self.grid.column(i)).for_each(|(m, s)| *m = u8::from(s.is_nan()));
+            }
+            block.bytes(&[0; 3][..padding(self.grid.separation().len() as u64) as usize])?;
+        }
+        block.finish()
+    }
+}
+
+fn padding(size: u64) -> u64 {
+    size.wrapping_neg() % 4
+}
+
+fn head(header: &Header, grid: &GridFields, steps: [f64; 2], masked: bool) -> Vec<u8> {
+    let variables = variables(grid, steps, masked);
+    let total: u64 = variables.iter().map(|v| v.size + padding(v.size)).sum();
+    let mut bytes = first_part(header, grid);
+    let entries = |wide: bool, begin: u64| entries(&variables, wide, begin);
+    // The offsets' width decides the head's length and the head's length the offsets.
+    let narrow = bytes.len() as u64 + entries(false, 0).len() as u64;
+    let wide = narrow + total > CLASSIC_LIMIT;
+    let begin = bytes.len() as u64 + entries(wide, 0).len() as u64;
+    bytes[3] = if wide { 2 } else { 1 };
+    bytes.extend(entries(wide, begin));
+    bytes
+}
+
+/// Magic, record count, dimensions and global attributes.
+fn first_part(header: &Header, grid: &GridFields) -> Vec<u8> {
+    let mut bytes = b"CDF\x01".to_vec();
+    put(&mut bytes, 0);
+    put(&mut bytes, DIMENSION);
+    put(&mut bytes, 2);
+    for (name, axis) in [("x", grid.xi()), ("y", grid.eta())] {
+        put_name(&mut bytes, name);
+        put(&mut bytes, axis.len() as u32);
+    }
+    put(&mut bytes, ATTRIBUTE);
+    put(&mut bytes, 1);
+    put_text(&mut bytes, "json", &information(header));
+    bytes
+}
+
+/// What the format has no field for, as the readers' `info` dictionary.
+fn information(header: &Header) -> String {
+    let frame = &header.frame;
+    json!({
+        "title": header.title,
+        "program": format!("wheelrail {}", header.version),
+        "scene": header.scene_hash,
+        "approach_mm": header.approach,
+        "frame": {"origin_mm": frame.origin, "xi": frame.xi, "eta": frame.eta, "zeta": frame.zeta},
+        "heights": "minus the separation s; x = xi, y = eta",
+        "statements": header.statements(),
+    })
+    .to_string()
+}
+
+fn variables(grid: &GridFields, steps: [f64; 2], masked: bool) -> Vec<Variable> {
+    let axis = |name, dimensions, values: &[f64], step: f64| {
+        let mut attributes = Vec::new();
+        // The size of a grid of cells, not the distance of its outer points.
+        put_double(&mut attributes, "length", values.len() as f64 * step);
+        put_text(&mut attributes, "unit", "mm");
+        put_int(&mut attributes, "periodic", 0);
+        let size = 8 * values.len() as u64;
+        Variable { name, dimensions, attributes, attribute_count: 3, kind: DOUBLE, size }
+    };
+    let points = grid.separation().len() as u64;
+    let mut unit = Vec::new();
+    put_text(&mut unit, "unit", "mm");
+    let plane = |name, attributes, attribute_count, kind, size| Variable {
+        name,
+        dimensions: &[0, 1],
+        attributes,
+        attribute_count,
+        kind,
+        size,
+    };
+    let mut variables = vec![
+        axis("x", &[0], grid.xi(), steps[0]),
+        axis("y", &[1], grid.eta(), steps[1]),
+        plane("heights", unit, 1, DOUBLE, 8 * points),
+    ];
+    if masked {
+        variables.push(plane("mask", Vec::new(), 0, BYTE, points));
+    }
+    variables
+}
+
+/// The list of variables, with the data of the first at `begin`.
+fn entries(variables: &[Variable], wide: bool, mut begin: u64) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    put(&mut bytes, VARIABLE);
+    put(&mut bytes, variables.len() as u32);
+    for variable in variables {
+        put_name(&mut bytes, variable.name);
+        put(&mut bytes, variable.dimensions.len() as u32);
+        variable.dimensions.iter().for_each(|&dimension| put(&mut bytes, dimension));
+        put(&mut bytes, if variable.attribute_count == 0 { 0 } else { ATTRIBUTE });
+        put(&mut bytes, variable.attribute_count);
+        bytes.extend(&variable.attributes);
+        put(&mut bytes, variable.kind);
+        let padded = variable.size + padding(variable.size);
+        // The format's own way to say "too long for this field": readers take the dimensions.
+        put(&mut bytes, u32::try_from(padded).unwrap_or(u32::MAX));
+        if wide {
+            bytes.extend(begin.to_be_bytes());
+        } else {
+            put(&mut bytes, begin as u32);
+        }
+        begin += padded;
+    }
+    bytes
+}
+
+fn put(bytes: &mut Vec<u8>, value: u32) {
+    bytes.extend(value.to_be_bytes());
+}
+
+fn put_name(bytes: &mut Vec<u8>, name: &str) {
+    put(bytes, name.len() as u32);
+    bytes.extend(name.as_bytes());
+    bytes.resize(bytes.len().next_multiple_of(4), 0);
+}
+
+fn put_text(bytes: &mut Vec<u8>, name: &str, text: &str) {
+    put_name(bytes, name);
+    put(bytes, CHAR);
+    put_name(bytes, text);
+}
+
+fn put_double(bytes: &mut Vec<u8>, name: &str, value: f64) {
+    put_name(bytes, name);
+    put(bytes, DOUBLE);
+    put(bytes, 1);
+    bytes.extend(value.to_be_bytes());
+}
+
+fn put_int(bytes: &mut Vec<u8>, name: &str, value: i32) {
+    put_name(bytes, name);
+    put(bytes, INT);
+    put(bytes, 1);
+    bytes.extend(value.to_be_bytes());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::export::sample::{Sample, header};
+
+    #[test]
+    fn data_lie_where_the_head_says() {
+        let sample = Sample::new(3, 3);
+        let grid = sample.fields();
+        let file = NetCdf::new(&header(), &grid).unwrap();
+        let mut bytes = Vec::new();
+        file.write(&mut bytes).unwrap();
+        assert_eq!(&bytes[..4], b"CDF\x01");
+        let begin = file.head.len();
+        assert_eq!(begin % 4, 0);
+        let value = |at: usize| f64::from_be_bytes(bytes[at..at + 8].try_into().unwrap());
+        assert_eq!(value(begin), sample.xi[0]);
+        assert_eq!(value(begin + 48 + 8), -sample.separation[1]);
+        // The offset of the last variable stands at the head's end.
+        let mask = u32::from_be_bytes(bytes[begin - 4..begin].try_into().unwrap()) as usize;
+        assert_eq!(mask, begin + 48 + 72);
+        assert_eq!(&bytes[mask..], [1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
+    }
+
+    #[test]
+    fn uneven_grids_are_refused() {
+        let mut sample = Sample::new(3, 3);
+        sample.xi[1] += 0.01;
+        assert!(NetCdf::new(&header(), &sample.fields()).is_err());
+    }
+}

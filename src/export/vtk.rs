@@ -1,0 +1,244 @@
+//! VTK files through `vtkio` 0.7.0-rc2, which serves for boundaries, patches and surfaces; grids go through
+//! [`vts`](super::vts).
+//!
+//! Its traps, and what is done about them here, in one place: partial writes pass as success (encode to memory),
+//! array lengths are not checked (checked here), counts of zero are left out, which makes empty files
+//! unreadable (put in), FieldData is dropped from XML (inserted as text), legacy little-endian and blanks in array
+//! names break readers (neither is offered). Only versions and cell kinds are used that meshio reads too: XML 1.0, legacy 4.2.
+
+use super::model::{GridFields, Header, Loop, QuadMesh, SurfaceMesh, plain, same_length};
+use super::vts::{comment, field_data};
+use crate::error::{Error, Result};
+use vtkio::model::{
+    Attribute, Attributes, ByteOrder, CellType, Cells, DataArray, DataSet, ElementType, Extent, IOBuffer,
+    PolyDataPiece, StructuredGridPiece, UnstructuredGridPiece, Version, VertexNumbers, Vtk,
+};
+
+/// The counts that `vtkio` leaves out when they are zero, without which no reader takes a file.
+const EMPTY_POLYDATA: &str = "<Piece NumberOfPoints=\"0\" NumberOfVerts=\"0\" NumberOfLines=\"0\" \
+    NumberOfStrips=\"0\" NumberOfPolys=\"0\">";
+
+/// The same for an unstructured grid.
+const EMPTY_UNSTRUCTURED: &str = "<Piece NumberOfPoints=\"0\" NumberOfCells=\"0\">";
+
+/// `boundary.vtp`: each loop as one closed polyline on the rail's surface, with the cell array `component`.
+///
+/// # Errors
+/// What `vtkio` refuses, which would be a fault of this program.
+pub fn boundary(header: &Header, loops: &[Loop]) -> Result<Vec<u8>> {
+    let loops: Vec<_> = loops.iter().filter(|ring| !ring.points.is_empty()).collect();
+    let (mut connectivity, mut offsets, mut first) = (Vec::new(), Vec::new(), 0);
+    for ring in &loops {
+        let count = ring.points.len() as u64;
+        connectivity.extend((first..first + count).chain([first]));
+        offsets.push(connectivity.len() as u64);
+        first += count;
+    }
+    let points: Vec<_> = loops.iter().flat_map(|ring| &ring.points).copied().collect();
+    let components = loops.iter().map(|ring| ring.component as i32).collect::<Vec<_>>();
+    let cell = vec![scalars("component", components.into(), loops.len())?];
+    let piece = PolyDataPiece {
+        points: points.into_flattened().into(),
+        lines: Some(VertexNumbers::XML { connectivity, offsets }),
+        data: Attributes { point: Vec::new(), cell },
+        ..PolyDataPiece::default()
+    };
+    xml(header, DataSet::inline(piece), EMPTY_POLYDATA)
+}
+
+/// `patch.vtu`: the boundary-fitted cells on the rail's surface, with the cell arrays `area` \[mm²\] and
+/// `component`. A cell with a repeated node is written as a triangle.
+///
+/// # Errors
+/// A mesh that contradicts itself.
+pub fn patch(header: &Header, mesh: &QuadMesh) -> Result<Vec<u8>> {
+    mesh.validate()?;
+    let components: Vec<i32> = mesh.component.iter().map(|&c| c as i32).collect();
+    let cell = vec![
+        scalars("area", mesh.area.clone().into(), mesh.quads.len())?,
+        scalars("component", components.into(), mesh.quads.len())?,
+    ];
+    let cells: Vec<Vec<usize>> = mesh.quads.iter().map(distinct).collect();
+    unstructured(header, &mesh.points, &cells, cell)
+}
+
+/// A triangulated surface as `.vtu`.
+///
+/// # Errors
+/// A mesh that contradicts itself.
+pub fn surface(header: &Header, mesh: &SurfaceMesh) -> Result<Vec<u8>> {
+    mesh.validate()?;
+    let cells: Vec<Vec<usize>> = mesh.triangles.iter().map(|triangle| triangle.to_vec()).collect();
+    unstructured(header, &mesh.points, &cells, Vec::new())
+}
+
+/// `separation.vtk`: the grid in the legacy format, version 4.2, binary (big-endian, the only order that it
+/// has), for readers without `.vts` such as meshio: separation \[mm\] (NaN where undefined) and mask. Copies the grid.
+///
+/// # Errors
+/// What `vtkio` refuses, which would be a fault of this program.
+pub fn legacy_grid(header: &Header, grid: &GridFields) -> Result<Vec<u8>> {
+    let count = grid.separation().len();
+    let mut points = Vec::with_capacity(3 * count);
+    for (xi, height) in grid.xi().iter().zip(grid.rail_height()) {
+        let zeta = if height.is_nan() { 0.0 } else { *height };
+        points.extend(grid.eta().iter().flat_map(|eta| [*xi, *eta, zeta]));
+    }
+    let mask: Vec<u8> = grid.separation().iter().map(|s| u8::from(!s.is_nan())).collect();
+    let point = vec![
+        scalars("separation", grid.separation().to_vec().into(), count)?,
+        scalars("mask", mask.into(), count)?,
+    ];
+    let piece = StructuredGridPiece {
+        extent: Extent::Dims([grid.eta().len() as u32, grid.xi().len() as u32, 1]),
+        points: points.into(),
+        data: Attributes { point, cell: Vec::new() },
+    };
+    // The format has one line for remarks.
+    let title = plain(&format!(
+        "wheelrail {}, {}; mm; s > 0 apart; delta {:?}",
+        header.version, header.scene_hash, header.approach
+    ));
+    let mut bytes = Vec::new();
+    let file = vtk(Version::new_legacy(4, 2), title, DataSet::inline(piece));
+    Vtk { byte_order: ByteOrder::BigEndian, ..file }.write_legacy(&mut bytes).map_err(refused)?;
+    Ok(bytes)
+}
+
+/// `surface.pvd`: files of a sweep on one time axis, which ParaView plays; `steps` are (time, path).
+pub fn collection(steps: &[(f64, String)]) -> String {
+    let sets: String = steps
+        .iter()
+        .map(|(time, path)| {
+            let path = path.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
+            format!("    <DataSet timestep=\"{time:?}\" group=\"\" part=\"0\" file=\"{path}\"/>\n")
+        })
+        .collect();
+    format!(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  \
+         <Collection>\n{sets}  </Collection>\n</VTKFile>\n"
+    )
+}
+
+fn unstructured(
+    header: &Header,
+    points: &[[f64; 3]],
+    cells: &[Vec<usize>],
+    cell: Vec<Attribute>,
+) -> Result<Vec<u8>> {
+    let mut end = 0;
+    let offsets = cells.iter().map(|nodes| {
+        end += nodes.len() as u64;
+        end
+    });
+    let offsets = offsets.collect();
+    let types = cells.iter().map(|nodes| if nodes.len() == 3 { CellType::Triangle } else { CellType::Quad });
+    let types = types.collect();
+    let connectivity = cells.iter().flatten().map(|&node| node as u64).collect();
+    let piece = UnstructuredGridPiece {
+        points: points.as_flattened().to_vec().into(),
+        cells: Cells { cell_verts: VertexNumbers::XML { connectivity, offsets }, types },
+        data: Attributes { point: Vec::new(), cell },
+    };
+    xml(header, DataSet::inline(piece), EMPTY_UNSTRUCTURED)
+}
+
+/// The nodes of a cell without neighbours that are equal.
+fn distinct(quad: &[usize; 4]) -> Vec<usize> {
+    let mut nodes = quad.to_vec();
+    nodes.dedup();
+    if nodes.len() == 4 && nodes[0] == nodes[3] {
+        nodes.pop();
+    }
+    nodes
+}
+
+fn scalars(name: &str, data: IOBuffer, expected: usize) -> Result<Attribute> {
+    same_length(name, data.len(), expected)?;
+    let elem = ElementType::Scalars { num_comp: 1, lookup_table: None };
+    Ok(Attribute::DataArray(DataArray { name: name.into(), elem, data }))
+}
+
+fn xml(header: &Header, data: DataSet, empty_piece: &str) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    vtk(Version::new_xml(1, 0), String::new(), data).write_xml(&mut bytes).map_err(refused)?;
+    let text = String::from_utf8(bytes).map_err(refused)?;
+    Ok(annotate(text.replacen("<Piece>", empty_piece, 1), header))
+}
+
+fn vtk(version: Version, title: String, data: DataSet) -> Vtk {
+    let byte_order = ByteOrder::LittleEndian;
+    Vtk { version, title, byte_order, file_path: None, data }
+}
+
+/// Puts δ and the frame into field data, and the header's statements into a comment.
+fn annotate(text: String, header: &Header) -> Vec<u8> {
+    let text = text.replacen("<Piece", &format!("{}{}<Piece", comment(header), field_data(header)), 1);
+    text.into_bytes()
+}
+
+fn refused(error: impl std::fmt::Display) -> Error {
+    Error::new("VTK file", error.to_string(), "data that vtkio takes", "report this as a fault of wheelrail")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::export::sample::{Sample, header, mesh, square};
+
+    fn text(bytes: &[u8]) -> String {
+        String::from_utf8_lossy(bytes).into_owned()
+    }
+
+    #[test]
+    fn xml_files_carry_frame_and_statements() {
+        for file in [
+            boundary(&header(), &[square()]).unwrap(),
+            boundary(&header(), &[]).unwrap(),
+            patch(&header(), &mesh()).unwrap(),
+            patch(&header(), &QuadMesh::default()).unwrap(),
+        ] {
+            let text = text(&file);
+            assert!(text.contains("approach_mm") && text.contains("scene 0123abcd"), "{text}");
+            assert!(text.contains("version=\"1.0\"") && text.trim_end().ends_with("</VTKFile>"), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_written_reads_back() {
+        let file = Vtk::parse_xml(&patch(&header(), &mesh()).unwrap()[..]).unwrap();
+        let DataSet::UnstructuredGrid { pieces, .. } = file.data else { panic!("{file:?}") };
+        let piece = pieces[0].clone().into_loaded_piece_data(None).unwrap();
+        let points: Vec<f64> = piece.points.cast_into().unwrap();
+        assert_eq!(points, mesh().points.into_flattened());
+        assert_eq!((piece.cells.num_cells(), piece.cells.num_verts()), (4, 16));
+    }
+
+    #[test]
+    fn a_repeated_node_makes_a_triangle() {
+        assert_eq!(distinct(&[1, 2, 2, 3]), [1, 2, 3]);
+        assert_eq!(distinct(&[1, 2, 3, 1]), [1, 2, 3]);
+        assert_eq!(distinct(&[1, 2, 3, 4]), [1, 2, 3, 4]);
+    }
+
+    #[test]
+    fn arrays_and_meshes_that_do_not_fit_are_refused() {
+        let mut broken = mesh();
+        broken.area.pop();
+        assert!(patch(&header(), &broken).unwrap_err().place.contains("areas"));
+        let surface_mesh = SurfaceMesh { points: vec![[0.0; 3]; 3], triangles: vec![[0, 1, 3]] };
+        assert!(surface(&header(), &surface_mesh).is_err());
+    }
+
+    #[test]
+    fn the_legacy_grid_says_its_version() {
+        let sample = Sample::new(3, 4);
+        let bytes = legacy_grid(&header(), &sample.fields()).unwrap();
+        let text = text(&bytes);
+        assert!(text.starts_with("# vtk DataFile Version 4.2\nwheelrail 0.0.0, 0123abcd"), "{text}");
+        assert!(text.contains("DIMENSIONS 4 3 1"), "{text}");
+        // Readers take big-endian for granted.
+        let first = sample.xi[0].to_be_bytes();
+        assert!(bytes.windows(8).any(|window| window == first));
+    }
+}

@@ -1,0 +1,228 @@
+//! Track and wheelset: where the four profiles' origins are.
+//!
+//! Track axes: x to the right, y forward, z up, right-handed; x = 0 in the middle of the track, z = 0 at the top of
+//! rail. The right side is described; the left side is its mirror image under x → −x.
+//!
+//! ```text
+//!             z ↑                        axle                yaw ψ about z, applied first:  > 0 moves the right-hand
+//!               │   ┌──────────────────────┼─────────────────────────┐     wheel forward
+//!               │   │                      c                         │   roll about y, applied second: > 0 lowers
+//!        y ⊙────┼───┼──────── spacing / 2 ─┼──────── spacing / 2 ────┤     the right-hand wheel
+//!               x → │ left wheel           │             right wheel │
+//!                   ╨                      │                         ╨ ← profile origin: R below the axle
+//!                 ▁▂█▂▁                    │                       ▁▂█▂▁
+//!                      │←───────────── gauge ─────────────→│ at most gauge_height below the top of rail
+//! ```
+
+use crate::error::{Error, Result, finite};
+use crate::profile::{Branch, Profile, Section, Side};
+
+/// Where the rails are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum RailDistance {
+    /// Distance \[mm\] between the rails' inner faces, measured at most `height` \[mm\] below the top of rail: between the
+    /// innermost points of the heads down to there. Typically 1435 and 14.
+    Gauge {
+        /// The gauge \[mm\].
+        gauge: f64,
+        /// Depth below the top of rail \[mm\].
+        height: f64,
+    },
+    /// Distance \[mm\] between the two rail profiles' origins. Typically 1500.
+    Spacing(f64),
+}
+
+/// Where the wheels are on their axle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum WheelDistance {
+    /// Distance \[mm\] between the flange backs, which lie at `flange_back_x` \[mm\] on the wheel profile. Typically 1360
+    /// and −70.
+    BackToBack {
+        /// The back-to-back distance \[mm\].
+        distance: f64,
+        /// Abscissa of the flange back on the wheel profile \[mm\].
+        flange_back_x: f64,
+    },
+    /// Distance \[mm\] between the two wheel profiles' origins. Typically 1500.
+    Spacing(f64),
+}
+
+/// A track: where the right-hand rail's profile origin is in track axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Track {
+    /// Abscissa of the origin \[mm\], positive; the left-hand one has the negative.
+    pub rail_x: f64,
+    /// Height of the origin \[mm\], relative to the top of rail, + up: minus the profile's highest z.
+    pub rail_z: f64,
+}
+
+/// A wheelset: its two wheels on a rigid axle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wheelset {
+    /// Distance \[mm\] of the right-hand wheel's profile origin from the middle of the axle, along the axle.
+    pub wheel_x: f64,
+    /// Nominal rolling radius R \[mm\] of both wheels.
+    pub radius: f64,
+}
+
+impl Track {
+    /// The track of a right-hand rail profile as placed (inclined), and its mirror image.
+    ///
+    /// # Errors
+    /// Distances that are not positive; a gauge height within which the head has no inner face.
+    pub fn new(rail: &Profile, distance: RailDistance) -> Result<Self> {
+        let section = Section::own_axes(rail, Side::Rail);
+        let top = highest(&section);
+        if !top.is_finite() {
+            return Err(Error::new(&rail.name, "no surface", "a rail head", "reverse or mirror the profile"));
+        }
+        let rail_x = match distance {
+            RailDistance::Spacing(spacing) => positive("track: spacing", spacing)? / 2.0,
+            RailDistance::Gauge { gauge, height } => {
+                positive("track: gauge", gauge)?;
+                if finite("track: gauge_height", height)? < 0.0 {
+                    let advice = "give the depth below the top of rail as a positive number";
+                    return Err(Error::new("track: gauge_height", height.to_string(), "0 or more", advice));
+                }
+                gauge / 2.0 - innermost(&section, top - height).unwrap_or(0.0)
+            }
+        };
+        Ok(Self { rail_x, rail_z: -top })
+    }
+}
+
+impl Wheelset {
+    /// A wheelset of two equal wheels.
+    ///
+    /// # Errors
+    /// Distances or a radius that are not positive numbers.
+    pub fn new(distance: WheelDistance, radius: f64) -> Result<Self> {
+        let wheel_x = match distance {
+            WheelDistance::Spacing(spacing) => positive("wheelset: spacing", spacing)? / 2.0,
+            WheelDistance::BackToBack { distance, flange_back_x } => {
+                positive("wheelset: back_to_back", distance)? / 2.0
+                    - finite("wheelset: flange_back_x", flange_back_x)?
+            }
+        };
+        positive("wheelset: distance of the wheels' profile origins", wheel_x)?;
+        Ok(Self { wheel_x, radius: positive("wheel: radius", radius)? })
+    }
+}
+
+fn positive(place: &str, value: f64) -> Result<f64> {
+    if finite(place, value)? > 0.0 {
+        return Ok(value);
+    }
+    Err(Error::new(place, value.to_string(), "a positive number", "give it in mm"))
+}
+
+/// Halvings after which an undecided stretch is taken as it is: 2⁻⁵⁰ of it is below rounding.
+const DEEPEST: u32 = 50;
+
+/// Greatest height of a section.
+fn highest(section: &Section) -> f64 {
+    let heights = section.pieces.iter().map(|piece| {
+        let branch = &section.branches[piece.branch];
+        summit(branch, piece.xi, DEEPEST)
+    });
+    heights.fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// Greatest height of a branch over \[a, b\].
+fn summit(branch: &Branch, [a, b]: [f64; 2], depth: u32) -> f64 {
+    let ends = branch.height(a).max(branch.height(b));
+    let [slope, second] = branch.derivative_bounds(a, b);
+    if slope[0] >= 0.0 || slope[1] <= 0.0 || second[0] >= 0.0 {
+        return ends;
+    }
+    let middle = a + (b - a) / 2.0;
+    if depth == 0 || middle <= a || middle >= b {
+        return ends;
+    }
+    // A height inside exceeds the ends by no more than half the width times the steepest slope.
+    summit(branch, [a, middle], depth - 1).max(summit(branch, [middle, b], depth - 1))
+}
+
+/// Least abscissa where the section is at least `level` high.
+fn innermost(section: &Section, level: f64) -> Option<f64> {
+    section
+        .pieces
+        .iter()
+        .find_map(|piece| first_at_level(&section.branches[piece.branch], piece.xi, level, DEEPEST))
+}
+
+/// Least abscissa of \[a, b\] where a branch is at least `level` high.
+fn first_at_level(branch: &Branch, [a, b]: [f64; 2], level: f64, depth: u32) -> Option<f64> {
+    if branch.height(a) >= level {
+        return Some(a);
+    }
+    let [slope, _] = branch.derivative_bounds(a, b);
+    let middle = a + (b - a) / 2.0;
+    if depth == 0 || middle <= a || middle >= b {
+        return (branch.height(b) >= level).then_some(b);
+    }
+    if slope[1] <= 0.0 || branch.height(a) + slope[1] * (b - a) < level {
+        return None;
+    }
+    if slope[0] >= 0.0 && branch.height(b) < level {
+        return None;
+    }
+    first_at_level(branch, [a, middle], level, depth - 1)
+        .or_else(|| first_at_level(branch, [middle, b], level, depth - 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::profile::standards;
+
+    fn inclined(name: &str, n: f64) -> Result<Profile> {
+        let norm = n.hypot(1.0);
+        Ok(standards::rail(name)?.rotated(n / norm, norm.recip()))
+    }
+
+    #[test]
+    fn an_upright_rail_has_its_half_width_at_the_gauge_face() -> Result<()> {
+        let distance = RailDistance::Gauge { gauge: 1435.0, height: 14.0 };
+        let track = Track::new(&standards::rail("46E1")?, distance)?;
+        // The corner arc of radius 13 about (−19.5, −14.30) is at −14 a little inside of its vertical tangent.
+        assert!((track.rail_x - 717.5 - 32.4967).abs() < 1e-3, "{}", track.rail_x);
+        assert_eq!(track.rail_z, 0.0);
+        let deep = RailDistance::Gauge { gauge: 1435.0, height: 20.0 };
+        let track = Track::new(&standards::rail("46E1")?, deep)?;
+        assert!((track.rail_x - 717.5 - 32.500_161_5).abs() < 1e-6, "{}", track.rail_x);
+        Ok(())
+    }
+
+    #[test]
+    fn the_top_of_an_inclined_rail_is_its_crown_s_highest_point() -> Result<()> {
+        let track = Track::new(&inclined("60E1", 40.0)?, RailDistance::Spacing(1500.0))?;
+        let tilt = 40f64.recip().atan();
+        assert!((track.rail_z + 300.0 * (1.0 - tilt.cos())).abs() < 1e-12, "{}", track.rail_z);
+        assert_eq!(track.rail_x, 750.0);
+        Ok(())
+    }
+
+    #[test]
+    fn gauge_faces_are_found_on_polynomials() -> Result<()> {
+        // z = −x²/10 is 14 deep at x = −√140.
+        let polynomial = crate::profile::Polynomial::graph(&[0.0, 0.0, -0.1], [-20.0, 20.0])?;
+        let shape = crate::profile::Shape::Polynomial(polynomial);
+        let rail =
+            Profile::new("parabola", "", vec![crate::profile::Segment { label: String::new(), shape }])?;
+        let track = Track::new(&rail, RailDistance::Gauge { gauge: 1435.0, height: 14.0 })?;
+        assert!((track.rail_x - 717.5 - 140f64.sqrt()).abs() < 1e-12, "{}", track.rail_x);
+        assert!(track.rail_z.abs() < 1e-13, "{}", track.rail_z);
+        Ok(())
+    }
+
+    #[test]
+    fn back_to_back_and_spacing_give_the_same_wheelset() -> Result<()> {
+        let by_backs =
+            Wheelset::new(WheelDistance::BackToBack { distance: 1360.0, flange_back_x: -70.0 }, 460.0)?;
+        assert_eq!(by_backs, Wheelset::new(WheelDistance::Spacing(1500.0), 460.0)?);
+        assert!(Wheelset::new(WheelDistance::Spacing(-1.0), 460.0).is_err());
+        assert!(Wheelset::new(WheelDistance::Spacing(1500.0), f64::NAN).is_err());
+        Ok(())
+    }
+}

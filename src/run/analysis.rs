@@ -1,0 +1,137 @@
+//! One placed pair from question to numbers.
+
+use std::time::Instant;
+
+use serde::Serialize;
+
+use crate::contact::feasibility::{Feasibility, feasibility};
+use crate::contact::hertz::{Curvatures, Elastic, Ellipse, curvatures, effective_modulus};
+use crate::error::{Error, Result};
+use crate::interpenetration::load::{Estimate, approach_under_load};
+use crate::interpenetration::{Patch, Window};
+use crate::placement::Placement;
+use crate::separation::axis::EtaAxis;
+use crate::separation::grid::Method;
+use crate::separation::plan::{Plan, plan};
+
+/// How far the bodies approach, and how that is known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ApproachBy {
+    /// δ is given \[mm\].
+    Given(f64),
+    /// δ is estimated from a normal load \[N\].
+    Load(f64),
+}
+
+/// What is asked of a placed pair.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Question {
+    /// The approach, or `None` for geometry only.
+    pub approach: Option<ApproachBy>,
+    /// Elastic constants of rail and wheel.
+    pub material: [Elastic; 2],
+    /// Absolute tolerance on s \[mm\].
+    pub tolerance: f64,
+    /// A method of the ladder, or `None` for the cheapest within the tolerance.
+    pub method: Option<Method>,
+}
+
+/// Seconds spent in the parts of an analysis.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Timings {
+    /// Choosing the method.
+    pub plan_s: f64,
+    /// Filling the grid.
+    pub grid_s: f64,
+    /// Boundary, area, perimeter.
+    pub patch_s: f64,
+}
+
+/// The contact point and what follows from it without a grid.
+#[derive(Debug, Clone)]
+pub struct Contact {
+    /// The placed pair.
+    pub placement: Placement,
+    /// (4.1), or `None` where the bodies nowhere lie over each other.
+    pub feasibility: Feasibility,
+    /// Principal curvatures of s at C.
+    pub curvatures: Curvatures,
+    /// δ \[mm\], and the method of its estimate.
+    pub approach: Option<(f64, Option<Estimate>)>,
+    /// Hertz's ellipse at that approach, where s is convex at C.
+    pub ellipse: Option<Ellipse>,
+}
+
+impl Contact {
+    /// Feasibility, curvatures and approach of a placed pair.
+    ///
+    /// # Errors
+    /// Bodies that nowhere lie over each other; a load that no approach carries.
+    pub fn new(placement: Placement, question: &Question) -> Result<Self> {
+        let Some(feasibility) = feasibility(&placement) else {
+            let expected = "two profiles that lie over each other in the contact frame";
+            return Err(Error::new("contact", "no common ξ", expected, "choose other contact points"));
+        };
+        let curvatures = curvatures(&placement);
+        let [rail, wheel] = &question.material;
+        let modulus = effective_modulus(rail, wheel);
+        let approach = match question.approach {
+            None => None,
+            Some(ApproachBy::Given(approach)) => Some((approach, None)),
+            Some(ApproachBy::Load(load)) => {
+                let (approach, estimate) = approach_under_load(&placement, load, modulus)?;
+                Some((approach, Some(estimate)))
+            }
+        };
+        let ellipse = approach.and_then(|(approach, _)| curvatures.under_approach(approach, modulus));
+        Ok(Self { placement, feasibility, curvatures, approach, ellipse })
+    }
+}
+
+/// The separation over a grid and the patch in its window.
+#[derive(Debug, Clone)]
+pub struct Analysis {
+    /// ξ \[mm\], ascending.
+    pub xi: Vec<f64>,
+    /// η \[mm\], ascending.
+    pub eta: Vec<f64>,
+    /// s \[mm\] at i_ξ · n_η + i_η; NaN where a body has no surface.
+    pub separation: Vec<f64>,
+    /// Method, error estimate and reason.
+    pub plan: Plan,
+    /// The patch in the window of the grid, when there is an approach.
+    pub patch: Option<Patch>,
+    /// Where the time went.
+    pub timings: Timings,
+}
+
+impl Analysis {
+    /// Fills the grid and cuts the patch out of its window; runs on the threads of the current rayon pool.
+    pub fn new(contact: &Contact, xi: Vec<f64>, eta: Vec<f64>, question: &Question) -> Self {
+        let placement = &contact.placement;
+        let start = Instant::now();
+        let axis = EtaAxis::new(&eta);
+        let plan = plan(placement, &xi, &axis, question.tolerance, question.method);
+        let planned = Instant::now();
+        let mut separation = vec![0.0; xi.len() * eta.len()];
+        plan.choice.fill(placement, &xi, &axis, &mut separation);
+        let filled = Instant::now();
+        let window = Window { xi: ends(&xi), eta: ends(&eta) };
+        let patch = contact.approach.map(|(approach, _)| Patch::new(placement, approach, &window));
+        let timings = Timings {
+            plan_s: (planned - start).as_secs_f64(),
+            grid_s: (filled - planned).as_secs_f64(),
+            patch_s: filled.elapsed().as_secs_f64(),
+        };
+        Self { xi, eta, separation, plan, patch, timings }
+    }
+}
+
+/// First and last value.
+fn ends(values: &[f64]) -> [f64; 2] {
+    match values {
+        [first, .., last] => [*first, *last],
+        [only] => [*only; 2],
+        [] => [0.0; 2],
+    }
+}

@@ -1,0 +1,217 @@
+//! Which files a run writes, and from what.
+
+use std::fs::File;
+
+use rayon::prelude::*;
+
+use super::{Part, Run, summary};
+use crate::error::{Error, Result};
+use crate::export::deck::Deck;
+use crate::export::deck::contact::{Normal, Settings};
+use crate::export::netcdf::NetCdf;
+use crate::export::{
+    Folder, FolderPart, Frame, GridFields, Header, Interval, Loop, VIEW_SCRIPT, csv, npy, vtk, vts,
+};
+use crate::interpenetration::Slicer;
+use crate::placement::midsep;
+use crate::scene::Format;
+
+/// A file and the writer of its content.
+type Job<'a> = (&'static str, Box<dyn Fn(&FolderPart<'_>) -> Result<()> + Sync + Send + 'a>);
+
+/// Writes all files that the scene asks for, side by side; summary.json last.
+pub(super) fn write(folder: &Folder, run: &Run, part: &Part) -> Result<()> {
+    let header = header(run, part);
+    let rail = RailColumns::new(part);
+    let analysis = &part.analysis;
+    let grid =
+        GridFields::new(&analysis.xi, &analysis.eta, &analysis.separation, &rail.height, &rail.normal)?;
+    let mut skipped = Vec::new();
+    let deck = if run.wants_any(&[Format::Text, Format::Conform, Format::Countact, Format::Contact]) {
+        run.needing_equal_steps(Deck::new(&header, &grid), &mut skipped)?
+    } else {
+        None
+    };
+    let netcdf = if run.wants_any(&[Format::Netcdf]) {
+        run.needing_equal_steps(NetCdf::new(&header, &grid), &mut skipped)?
+    } else {
+        None
+    };
+    let loops = loops(part);
+    let mut jobs: Vec<Job<'_>> = Vec::new();
+    tables(&mut jobs, part, &loops);
+    arrays(&mut jobs, run, part);
+    surfaces(&mut jobs, run, &header, &grid, &loops);
+    if let Some(netcdf) = &netcdf {
+        stream(&mut jobs, "separation.nc", move |file| netcdf.write(file));
+    }
+    if let Some(deck) = &deck {
+        decks(&mut jobs, run, part, deck);
+    }
+    let folder = folder.part(&part.folder)?;
+    jobs.par_iter().try_for_each(|(name, job)| job(&folder).map_err(|error| error.within(name)))?;
+    let mut names: Vec<String> = jobs.iter().map(|(name, _)| (*name).to_string()).collect();
+    names.sort();
+    folder.write("summary.json", &summary::summary(run, part, &names, &skipped))
+}
+
+/// ζ^R and the rail's normal at every ξ of the grid.
+struct RailColumns {
+    height: Vec<f64>,
+    normal: Vec<[f64; 2]>,
+}
+
+impl RailColumns {
+    fn new(part: &Part) -> Self {
+        let section = &part.contact.placement.rail.section;
+        let station = |&xi: &f64| section.branch_at(xi).map(|branch| branch.station(xi));
+        let column = |s: crate::profile::Station| (s.z, [-s.sin, s.cos]);
+        let columns = part.analysis.xi.iter().map(|xi| station(xi).map_or((f64::NAN, [f64::NAN; 2]), column));
+        let (height, normal) = columns.unzip();
+        Self { height, normal }
+    }
+}
+
+fn header(run: &Run, part: &Part) -> Header {
+    let rail = part.contact.placement.rail.point.station;
+    Header {
+        title: run.title.clone(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        scene_hash: run.hash.clone(),
+        approach: part.contact.approach.map_or(0.0, |(approach, _)| approach),
+        frame: Frame::at(rail.x, rail.z, rail.cos, rail.sin),
+    }
+}
+
+/// The boundary loops, lifted onto the rail.
+fn loops(part: &Part) -> Vec<Loop> {
+    let section = &part.contact.placement.rail.section;
+    let components = part.analysis.patch.iter().flat_map(|patch| &patch.components);
+    components
+        .enumerate()
+        .map(|(component, patch)| {
+            let points = patch.boundary.iter().map(|&[xi, eta]| [xi, eta, section.height(xi)]).collect();
+            Loop { component, points }
+        })
+        .collect()
+}
+
+/// INTERPEN's own table: the interval of η at every ξ of the grid that lies in the patch.
+fn intervals(part: &Part) -> Vec<Interval> {
+    let Some(patch) = &part.analysis.patch else { return Vec::new() };
+    let mut slicer = Slicer::new(&part.contact.placement, patch.approach);
+    let mut rows = Vec::new();
+    for &xi in &part.analysis.xi {
+        for (component, patch) in patch.components.iter().enumerate() {
+            if patch.xi[0] <= xi && xi <= patch.xi[1] {
+                rows.extend(slicer.slice(xi).map(|slice| Interval { xi, component, eta: slice.eta }));
+            }
+        }
+    }
+    rows
+}
+
+fn tables<'a>(jobs: &mut Vec<Job<'a>>, part: &'a Part, loops: &'a [Loop]) {
+    bytes(jobs, "boundary.csv", move || Ok(csv::boundary(loops).into_bytes()));
+    bytes(jobs, "interpen.csv", move || Ok(csv::interpen(&intervals(part)).into_bytes()));
+    bytes(jobs, "midsep.txt", move || {
+        Ok(midsep::table(&part.contact.placement, &part.analysis.xi).into_bytes())
+    });
+}
+
+fn arrays<'a>(jobs: &mut Vec<Job<'a>>, run: &Run, part: &'a Part) {
+    if !run.wants_any(&[Format::Npy]) {
+        return;
+    }
+    let analysis = &part.analysis;
+    let (n, m) = (analysis.xi.len() as u64, analysis.eta.len() as u64);
+    let mut add = |name: &'static str, shape: Vec<u64>, values: &'a [f64]| {
+        stream(jobs, name, move |file| npy::array(file, &shape, values));
+    };
+    add("xi.npy", vec![n], &analysis.xi);
+    add("eta.npy", vec![m], &analysis.eta);
+    add("separation.npy", vec![n, m], &analysis.separation);
+}
+
+fn surfaces<'a>(
+    jobs: &mut Vec<Job<'a>>,
+    run: &Run,
+    header: &'a Header,
+    grid: &'a GridFields<'a>,
+    loops: &'a [Loop],
+) {
+    if !run.wants_any(&[Format::Vtk]) {
+        return;
+    }
+    type Writer = fn(&mut dyn std::io::Write, &Header, &GridFields<'_>) -> std::io::Result<()>;
+    let writers: [(&'static str, Writer); 3] =
+        [("separation.vts", vts::separation), ("rail.vts", vts::rail), ("wheel.vts", vts::wheel)];
+    for (name, writer) in writers {
+        stream(jobs, name, move |file| writer(file, header, grid));
+    }
+    bytes(jobs, "boundary.vtp", move || vtk::boundary(header, loops));
+    bytes(jobs, "view.py", || Ok(VIEW_SCRIPT.as_bytes().to_vec()));
+}
+
+/// A small file, made in memory.
+fn bytes<'a>(
+    jobs: &mut Vec<Job<'a>>,
+    name: &'static str,
+    content: impl Fn() -> Result<Vec<u8>> + Sync + Send + 'a,
+) {
+    jobs.push((name, Box::new(move |folder: &FolderPart<'_>| folder.write(name, &content()?))));
+}
+
+/// A large file, written piece by piece.
+fn stream<'a>(
+    jobs: &mut Vec<Job<'a>>,
+    name: &'static str,
+    content: impl Fn(&mut File) -> std::io::Result<()> + Sync + Send + 'a,
+) {
+    jobs.push((name, Box::new(move |folder: &FolderPart<'_>| folder.stream(name, &content))));
+}
+
+fn decks<'a>(jobs: &mut Vec<Job<'a>>, run: &Run, part: &Part, deck: &'a Deck<'a>) {
+    if run.wants_any(&[Format::Text]) {
+        stream(jobs, "separation.wrp", move |file| deck.separation(file));
+    }
+    if run.wants_any(&[Format::Conform]) {
+        stream(jobs, "conform.wrp", move |file| deck.conform(file));
+    }
+    if let (true, Some(settings)) = (run.wants_any(&[Format::Contact]), contact_settings(run, part)) {
+        stream(jobs, "contact.inp", move |file| deck.contact(&settings, file));
+    }
+}
+
+/// CONTACT's control numbers; none without an approach.
+fn contact_settings(run: &Run, part: &Part) -> Option<Settings> {
+    let (approach, _) = part.contact.approach.filter(|(approach, _)| *approach > 0.0)?;
+    let load = run.scene.patch.as_ref().and_then(|patch| patch.load);
+    let bodies = run.question.material;
+    Some(Settings {
+        normal: load.map_or(Normal::Approach(approach), Normal::Force),
+        poisson: bodies.map(|body| body.poissons_ratio),
+        shear_modulus: bodies.map(|body| body.youngs_modulus / (2.0 * (1.0 + body.poissons_ratio))),
+        ..Settings::steel(Normal::Approach(approach))
+    })
+}
+
+impl Run {
+    /// Whether any of the formats is asked for.
+    fn wants_any(&self, formats: &[Format]) -> bool {
+        self.scene.output.wanted().iter().any(|format| formats.contains(format))
+    }
+
+    /// A writer's refusal of unequal steps is an error where the scene names the formats, and a remark in the
+    /// summary where they are the default ones.
+    fn needing_equal_steps<T>(&self, writer: Result<T>, skipped: &mut Vec<String>) -> Result<Option<T>> {
+        match writer {
+            Ok(writer) => Ok(Some(writer)),
+            Err(Error { place, found, .. }) if self.scene.output.formats.is_none() => {
+                skipped.push(format!("files for solvers: {place} has {found}"));
+                Ok(None)
+            }
+            Err(error) => Err(error),
+        }
+    }
+}

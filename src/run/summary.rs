@@ -1,0 +1,110 @@
+//! summary.json: what was computed, from what, how and how well.
+
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use super::{Part, Run};
+use crate::interpenetration::{Component, Patch};
+use crate::placement::Body;
+use crate::profile::continuity::Joint;
+
+/// One body in the summary.
+#[derive(Debug, Serialize)]
+struct BodySummary<'a> {
+    profile: &'a str,
+    source: &'a str,
+    contact_x_mm: f64,
+    contact_z_mm: f64,
+    contact_angle_rad: f64,
+    contact_segment: String,
+    /// Joints of the chain that do not close to 1e-9 mm or 1e-9 rad.
+    imperfect_joints: Vec<Joint>,
+}
+
+/// Joints better than this are not worth a reader's time \[mm, rad\].
+const PERFECT_JOINT: f64 = 1e-9;
+
+/// The summary as JSON text.
+pub(super) fn summary(run: &Run, part: &Part, files: &[String], skipped: &[String]) -> Vec<u8> {
+    let (contact, analysis) = (&part.contact, &part.analysis);
+    let placement = &contact.placement;
+    let value = json!({
+        "program": "wheelrail",
+        "version": env!("CARGO_PKG_VERSION"),
+        "title": run.title,
+        "scene": run.scene,
+        "scene_sha256": run.hash,
+        "conventions": "mm, rad; s > 0 apart; contact frame: origin C, xi along the common tangent, eta along the rail, zeta from rail to wheel; grids [i_xi][i_eta]",
+        "rail": body(&placement.rail),
+        "wheel": body(&placement.wheel),
+        "wheel_radius_mm": placement.wheel_radius,
+        "rolling_radius_mm": placement.rolling_radius(),
+        "skew_rad": placement.skew,
+        "feasibility": contact.feasibility,
+        "curvatures": contact.curvatures,
+        "approach_mm": contact.approach.map(|(approach, _)| approach),
+        "approach_estimated_by": contact.approach.and_then(|(_, estimate)| estimate),
+        "hertz_ellipse": contact.ellipse,
+        "patch": analysis.patch.as_ref().map(patch),
+        "grid": {
+            "n_xi": analysis.xi.len(),
+            "n_eta": analysis.eta.len(),
+            "undefined_points": analysis.separation.iter().filter(|s| s.is_nan()).count(),
+            "method": analysis.plan.choice.method,
+            "coefficients": analysis.plan.choice.coefficients,
+            "estimated_error_mm": analysis.plan.error,
+            "reason": analysis.plan.reason,
+        },
+        "refusals": part.refusals(),
+        "warnings": part.warnings(),
+        "other_parts": run.parts.iter().map(|p| &p.folder).filter(|f| **f != part.folder).collect::<Vec<_>>(),
+        "files": files,
+        "files_skipped": skipped,
+        "timings": analysis.timings,
+    });
+    let mut text = serde_json::to_vec_pretty(&value).unwrap_or_default();
+    text.push(b'\n');
+    text
+}
+
+fn body(body: &Body) -> BodySummary<'_> {
+    let segment = body.point.segment;
+    let joints = body.profile.continuity();
+    BodySummary {
+        profile: &body.profile.name,
+        source: &body.profile.source,
+        contact_x_mm: body.point.station.x,
+        contact_z_mm: body.point.station.z,
+        contact_angle_rad: body.contact_angle(),
+        contact_segment: body.profile.segments()[segment].place(segment),
+        imperfect_joints: joints
+            .into_iter()
+            .filter(|joint| joint.gap > PERFECT_JOINT || joint.kink.abs() > PERFECT_JOINT)
+            .collect(),
+    }
+}
+
+fn patch(patch: &Patch) -> Value {
+    let extent = patch.extent();
+    json!({
+        "area_mm2": patch.area(),
+        "perimeter_mm": patch.components.iter().map(|c| c.perimeter).sum::<f64>(),
+        "xi_extent_mm": extent.map(|e| e.xi),
+        "eta_extent_mm": extent.map(|e| e.eta),
+        "cut_by_window": patch.cut_by_window(),
+        "components": patch.components.iter().map(component).collect::<Vec<_>>(),
+    })
+}
+
+fn component(component: &Component) -> Value {
+    json!({
+        "xi_extent_mm": component.xi,
+        "eta_extent_mm": component.eta,
+        "ends": component.ends,
+        "cut_by_window": component.cut_by_window,
+        "area_mm2": component.area,
+        "perimeter_mm": component.perimeter,
+        "least_separation_mm": component.deepest[0],
+        "least_separation_at_mm": [component.deepest[1], component.deepest[2]],
+    })
+}

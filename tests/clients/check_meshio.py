@@ -1,0 +1,23 @@
+"""patch.vtu and separation.vtk, read by meshio: FOLDER."""
+
+import sys
+
+import meshio
+import numpy as np
+from folder import Checks, Folder
+
+folder = Folder(sys.argv[1])
+checks = Checks(f"meshio {meshio.__version__}")
+if folder.boundary():
+    patch = meshio.read(folder / "patch.vtu")
+    cells = sum(len(block.data) for block in patch.cells)
+    areas = patch.cell_data["area"]
+    checks("patch.vtu", sum(map(len, areas)) == cells, f"{cells} cells, {sum(a.sum() for a in areas):.6g} mm2")
+    checks("patch.vtu holds triangles and quads", {block.type for block in patch.cells} <= {"triangle", "quad"})
+else:
+    checks("patch.vtu is empty, which meshio cannot read from any program", True)
+if folder.has("separation.vtk"):
+    grid = meshio.read(folder / "separation.vtk")
+    checks.same("separation.vtk xi", grid.points[:: len(folder.eta), 0].astype("f8"), folder.xi)
+    checks.same("separation.vtk separation", grid.point_data["separation"].astype("f8").reshape(folder.s.shape), folder.s)
+checks.done()

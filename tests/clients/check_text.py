@@ -1,0 +1,98 @@
+"""The text decks, read by the compiled Fortran reader and by a reader of CONTACT's grammar: FOLDER READ_WRP."""
+
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+from folder import Checks, Folder
+
+folder = Folder(sys.argv[1])
+defined = ~np.isnan(folder.s)
+filled = np.where(defined, folder.s, folder.fill)
+
+
+def read_wrp(name):
+    """Runs the Fortran reader and returns what it has read."""
+    with tempfile.NamedTemporaryFile() as out:
+        subprocess.run([sys.argv[2], folder / name, out.name], check=True)
+        data = out.read()
+    at = 0
+
+    def take(count, kind):
+        nonlocal at
+        values = np.frombuffer(data, kind, count, at)
+        at += values.nbytes
+        return values
+
+    n_xi, n_eta, n_points, n_cells = take(4, "<i4")
+    read = {"approach": take(1, "<f8")[0], "frame": take(12, "<f8").reshape(4, 3)}
+    read |= {"xi": take(n_xi, "<f8"), "eta": take(n_eta, "<f8")}
+    read["mask"] = take(n_xi * n_eta, "<i4").reshape(n_xi, n_eta)
+    read["s"] = take(n_xi * n_eta, "<f8").reshape(n_xi, n_eta)
+    if name == "conform.wrp":
+        read["normal"] = take(2 * n_xi * n_eta, "<f8").reshape(n_xi, n_eta, 2)
+    read["points"] = take(3 * n_points, "<f8").reshape(-1, 3)
+    read["cells"] = take(5 * n_cells, "<i4").reshape(-1, 5)
+    read["area"] = take(n_cells, "<f8")
+    assert at == len(data)
+    return read
+
+
+checks = Checks("gfortran")
+for name in ("separation.wrp", "conform.wrp", "countact.wrp"):
+    text = open(folder / name, "rb").read()
+    checks(f"{name} ASCII, under 80 columns, with its end",
+           text.isascii() and max(map(len, text.split(b"\n"))) < 80 and text.endswith(b"\nEND\n"))
+    read = read_wrp(name)
+    for key, expected in (("xi", folder.xi), ("eta", folder.eta), ("mask", defined.astype("i4")), ("s", filled)):
+        checks.same(f"{name} {key}", read[key], expected)
+    checks(f"{name} frame right-handed and orthonormal",
+           np.allclose(np.cross(read["frame"][1], read["frame"][2]), read["frame"][3], atol=1e-15, rtol=0)
+           and np.allclose(read["frame"][1:] @ read["frame"][1:].T, np.eye(3), atol=1e-15, rtol=0))
+    if name == "conform.wrp":
+        norm = np.linalg.norm(read["normal"][defined], axis=-1)
+        checks("conform.wrp normals are unit vectors that point up",
+               np.allclose(norm, 1, atol=1e-15, rtol=0) and np.all(read["normal"][defined][:, 1] > 0))
+    if name == "countact.wrp":
+        checks("countact.wrp cells know their nodes",
+               np.all(read["cells"][:, 1:] >= 1) and np.all(read["cells"][:, 1:] <= len(read["points"])),
+               f"{len(read['cells'])} cells, {read['area'].sum():.6g} mm2")
+
+
+def read_contact(path):
+    """A reader of the grammar of CONTACT's module 3 with IBASE = 9: words up to % on lines up to 256 characters."""
+    lines = []
+    for line in open(path, encoding="ascii"):
+        assert len(line.rstrip("\n")) <= 256, "line too long"
+        words = line.split("%")[0].split()
+        assert len(words) <= 50, "too many items"
+        if words:
+            lines.append(words)
+    take = iter(lines).__next__
+    assert int(take()[0]) == 3
+    digits = take()[0]
+    assert len(digits) == 6 and digits[3] in "01"
+    assert take()[0] == "022020" and take()[0] == "0002221"
+    [int(word) for word in take()[:4]]
+    deck = {"force": digits[3] == "1", "normal": float(take()[0])}
+    take(), [float(word) for word in take()[:4]]
+    assert int(take()[0]) == 3
+    grid = take()
+    deck |= {"n": (int(grid[0]), int(grid[1])), "first": [float(w) for w in grid[2:4]], "step": [float(w) for w in grid[4:6]]}
+    assert take()[:2] == ["9", "1"]
+    h = []
+    while len(h) < deck["n"][0] * deck["n"][1]:
+        h += [float(word) for word in take()]
+    deck["h"] = np.array(h).reshape(deck["n"][1], deck["n"][0])
+    assert take()[0] == "0" and next(iter(lines[len(lines):]), None) is None
+    return deck
+
+
+checks.client = "CONTACT grammar"
+deck = read_contact(folder / "contact.inp")
+checks("contact.inp grid", deck["n"] == folder.s.shape[::-1] and deck["first"] == [folder.eta[0], folder.xi[0]]
+       and deck["step"] == folder.steps[::-1])
+checks.same("contact.inp distances", deck["h"], filled)
+checks("contact.inp prescribes a force or an approach", deck["normal"] > 0, f"{deck['normal']}")
+checks.done()
