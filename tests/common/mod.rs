@@ -9,7 +9,7 @@ use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Half, Polynomial, Profile, Segment, Shape};
 
 /// One file of `tests/reference`.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 pub struct Reference {
     pub scene: ReferenceScene,
     pub separation: Vec<(f64, f64, Option<String>)>,
@@ -18,7 +18,7 @@ pub struct Reference {
     pub name: String,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 pub struct ReferenceScene {
     pub rail: Vec<ReferenceSegment>,
     pub wheel: Vec<ReferenceSegment>,
@@ -32,7 +32,7 @@ pub struct ReferenceScene {
     pub delta: Vec<f64>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum ReferenceSegment {
     Line { x0: f64, z0: f64, x1: f64, z1: f64 },
