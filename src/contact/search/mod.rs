@@ -15,10 +15,10 @@
 //!
 //! # Method
 //!
-//! [`locus`]: the outline of the yawed wheel along the rail reduces the search to two plane curves. A local minimum of
+//! `locus`: the outline of the yawed wheel along the rail reduces the search to two plane curves. A local minimum of
 //! the vertical gap has a common tangent (at kinks, steps and ends: a common normal within the fan). All such places
 //! are found pair by pair of segments: in closed form or from guaranteed brackets for arcs and lines
-//! ([`arcs`]), by interval bounds for polynomials ([`polynomials`]). So the lowest cannot be missed.
+//! (`arcs`), by interval bounds for polynomials (`polynomials`). So the lowest cannot be missed.
 //!
 //! What counts is the part of each profile that faces the other body in its own axes ([`Section`]): parts of a
 //! wheel that face down only by virtue of the roll (a flange back beyond the vertical) do not take part.

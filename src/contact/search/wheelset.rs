@@ -153,27 +153,24 @@ impl WheelsetSearch<'_> {
     fn solve_roll(&mut self, position: &Position, within: f64) -> Option<Level> {
         let rounding = 2.0 * f64::EPSILON * (self.system.wheelset.wheel_x + self.system.wheelset.radius);
         let (mut below, mut above) = (None, None);
-        let mut roll = 0.0;
+        let mut level = self.level(position, 0.0, within)?;
+        let mut last = None;
         for _ in 0..NEWTON_STEPS {
-            let level = self.level(position, roll, within)?;
-            let difference = level.difference();
-            let newton = roll - difference / level.slope;
-            if difference.abs() <= rounding || newton == roll {
+            let next = level.next(last.as_ref());
+            if level.difference().abs() <= rounding || next == level.roll {
                 return Some(level);
             }
-            if difference < 0.0 {
-                below = Some(roll)
-            } else {
-                above = Some(roll)
-            }
+            let bound = if level.difference() < 0.0 { &mut below } else { &mut above };
+            *bound = Some(level.roll);
             let inside = match (below, above) {
-                (Some(a), Some(b)) => (newton - a) * (newton - b) < 0.0,
-                _ => newton.abs() <= LARGEST_ROLL,
+                (Some(a), Some(b)) => (next - a) * (next - b) < 0.0,
+                _ => next.abs() <= LARGEST_ROLL,
             };
             if !inside {
                 break;
             }
-            roll = newton;
+            last = Some(level);
+            level = self.level(position, next, within)?;
         }
         let (a, b) = below.zip(above).or_else(|| self.nearest_change(position))?;
         let apart = |roll: f64| self.level(position, roll, 0.0).map_or(f64::NAN, |level| level.difference());
