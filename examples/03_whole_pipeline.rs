@@ -12,7 +12,11 @@ fn main() -> wheelrail::Result<()> {
     let path = Path::new("examples/scenes/60e1_s1002.toml");
     let run = Run::new(scene::load(path)?, Path::new("examples/scenes"), "60e1_s1002")?;
     for part in &run.parts {
-        println!("method {}, error below {:e} mm", part.analysis.plan.choice.method.name(), part.analysis.plan.error);
+        println!(
+            "method {}, error below {:e} mm",
+            part.analysis.plan.choice.method.name(),
+            part.analysis.plan.error
+        );
     }
     let folder = Folder::create(Path::new("output/from_library"), RUN_FOLDER)?;
     run.write(&folder)?;

@@ -1,8 +1,8 @@
 //! INTERPEN (Report Sec. 7): the curve s(ξ, η) = δ and the patch it bounds.
 
 mod components;
-pub mod load;
 mod corners;
+pub mod load;
 pub(crate) mod measure;
 mod outline;
 mod slice;
