@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use super::Slicer;
+use super::measure::settled;
 use crate::contact::hertz::{Curvatures, curvatures};
 use crate::error::{Error, Result};
 use crate::numerics::elliptic::complete;
-use crate::numerics::quadrature::integral;
 use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
 use crate::separation::gap::midplane_gap;
@@ -74,7 +74,7 @@ pub fn virtual_load(placement: &Placement, approach: f64, modulus: f64) -> Optio
     for end in ends {
         // ξ = end (1 − (1 − t)²) t-graded at both ends: a square root at the tip, a logarithm at C.
         let graded = |t: f64| (end * t * t * (3.0 - 2.0 * t), end.abs() * 6.0 * t * (1.0 - t));
-        first_integral += integral(
+        first_integral += settled(
             &mut |t| {
                 let (xi, step) = graded(t);
                 std::f64::consts::FRAC_PI_2 * half_width(xi).powi(2) * step
@@ -82,8 +82,8 @@ pub fn virtual_load(placement: &Placement, approach: f64, modulus: f64) -> Optio
             0.0,
             1.0,
             QUADRATURE,
-        )[0];
-        second_integral += integral(
+        );
+        second_integral += settled(
             &mut |t| {
                 let (xi, step) = graded(t);
                 let l = half_width(xi);
@@ -97,7 +97,7 @@ pub fn virtual_load(placement: &Placement, approach: f64, modulus: f64) -> Optio
             0.0,
             1.0,
             QUADRATURE,
-        )[0];
+        );
     }
     Some(std::f64::consts::PI * modulus * approach * first_integral / second_integral)
 }
