@@ -1,5 +1,6 @@
 //! Wheel/rail contact-patch preprocessor.
 
+pub mod accuracy;
 pub mod analysis;
 pub mod cli;
 pub mod contact;

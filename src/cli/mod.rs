@@ -5,6 +5,7 @@
 
 mod midsep;
 mod profile;
+mod report;
 mod run;
 
 use std::path::{Path, PathBuf};
@@ -39,6 +40,15 @@ enum Command {
     Midsep {
         /// Scene file, TOML or JSON.
         scene: PathBuf,
+    },
+    /// Measure speed against error and run the hard cases; takes about two minutes.
+    Report {
+        /// Folder to write; by default output/report.
+        #[arg(long)]
+        out: Option<PathBuf>,
+        /// Markdown file whose text between `<!-- report:begin -->` and `<!-- report:end -->` becomes the table.
+        #[arg(long)]
+        splice: Option<PathBuf>,
     },
     /// Look at profiles.
     #[command(subcommand)]
@@ -76,6 +86,7 @@ fn on_threads(arguments: Arguments) -> Result<Outcome> {
     pool.install(|| match arguments.command {
         Command::Run { scene, out } => run::run(&scene, out.as_deref()),
         Command::Midsep { scene } => midsep::midsep(&scene),
+        Command::Report { out, splice } => report::report(out.as_deref(), splice.as_deref()),
         Command::Profile(command) => profile::profile(&command),
         Command::Schema => schema(),
     })
