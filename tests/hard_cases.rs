@@ -1,4 +1,5 @@
 //! Every file of `tests/hard_cases` against its 60-digit values and its status.
+#![allow(clippy::expect_used, clippy::print_stdout, reason = "a test")]
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,5 +1,7 @@
 //! Everything that the report measures.
 
+use std::time::Instant;
+
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::errors::{Errors, compare};
@@ -31,7 +33,7 @@ pub struct Effort {
 impl Effort {
     /// What `wheelrail report` does: 4 × 10^4 and 4 × 10^6 points, growth up to 10^8; about two minutes, 0.8 GB.
     pub fn full() -> Self {
-        Self { sides: vec![200, 2000], seconds: 0.1, growth: vec![100, 316, 1000, 3162, 10_000] }
+        Self { sides: vec![200, 2000], seconds: 0.25, growth: vec![100, 316, 1000, 3162, 10_000] }
     }
 }
 
@@ -46,7 +48,7 @@ pub struct Row {
     pub tolerance: Option<f64>,
     /// n of the n × n grid.
     pub side: usize,
-    /// Best time for the whole grid on one thread \[s\].
+    /// Best processor time for the whole grid on one thread.
     pub timing: Timing,
     /// Errors at the 60-digit points; none for the store.
     pub errors: Option<Errors>,
@@ -82,7 +84,7 @@ pub struct Threads {
     pub method: Method,
     /// Points of the grid.
     pub points: usize,
-    /// Best time on one and on two threads \[s\].
+    /// Best time on the wall on one and on two threads \[s\].
     pub seconds: [f64; 2],
     /// Whether the same bits came out.
     pub same_bits: bool,
@@ -185,7 +187,7 @@ fn scene(reference: &Reference, side: usize, seconds: f64, planning: &mut Vec<f6
         works.push(Work::Fill(choice));
         errors.push(Some(Errors::of(&compare(reference, &placement, &choice))));
     }
-    let start = std::time::Instant::now();
+    let start = Instant::now();
     plan(&placement, track.xi(), track.axis(), FULL_PRECISION, None);
     planning.push(start.elapsed().as_secs_f64());
     let timings = track.race(&works, seconds);
@@ -220,7 +222,11 @@ fn threads(reference: &Reference, effort: &Effort) -> Result<Vec<Threads>> {
     let mut track = track(reference, &placement, side);
     let rows = [Method::Spectral, Method::Pointwise].map(|method| {
         let choice = plan(&placement, track.xi(), track.axis(), FULL_PRECISION, Some(method)).choice;
-        let timings = race(2, effort.seconds, |k| pools[k].install(|| track.run(Work::Fill(choice))));
+        let timings = race(2, effort.seconds, |k| {
+            let start = Instant::now();
+            pools[k].install(|| track.run(Work::Fill(choice)));
+            start.elapsed().as_secs_f64()
+        });
         let [one, two] = [0, 1].map(|k| {
             pools[k].install(|| track.run(Work::Fill(choice)));
             track.values().iter().map(|s| s.to_bits()).collect::<Vec<_>>()
@@ -230,4 +236,11 @@ fn threads(reference: &Reference, effort: &Effort) -> Result<Vec<Threads>> {
         Threads { method, points: side * side, seconds, same_bits }
     });
     Ok(rows.to_vec())
+}
+
+/// The median; NaN of nothing.
+pub(super) fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }

@@ -2,7 +2,7 @@
 
 use super::chart::{Chart, Series, svg};
 use super::hard_case::Outcome;
-use super::measurements::{Growth, Measurements, Row};
+use super::measurements::{Growth, Measurements, Row, median};
 use super::requirements;
 use super::table::{accuracy_csv, growth_csv, hard_cases_csv, markdown};
 
@@ -20,14 +20,18 @@ pub struct Section {
 /// Where, with what and how the numbers were made: (name, value) for the head of the page.
 pub type Origin = Vec<(&'static str, String)>;
 
-/// All files but report.md.
-pub const FILES: [&str; 6] = [
+/// The page's own file.
+pub const PAGE: &str = "report.md";
+
+/// All files of a report.
+pub const FILES: [&str; 7] = [
+    PAGE,
     "accuracy.csv",
     "hard_cases.csv",
     "scaling.csv",
-    "work_error_200.svg",
-    "work_error_2000.svg",
     "scaling.svg",
+    "work_error_small.svg",
+    "work_error_large.svg",
 ];
 
 /// The sections of the report, in order.
@@ -105,13 +109,6 @@ fn of<'m>(m: &'m Measurements, kind: (&str, Option<f64>), side: usize) -> impl I
     m.rows.iter().filter(move |row| (row.method, row.tolerance, row.side) == (kind.0, kind.1, side))
 }
 
-/// The median; NaN of nothing.
-pub(super) fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
-}
-
 /// Method by method: rates, ratios, worst errors.
 fn summary(m: &Measurements) -> String {
     let sides = sides(m);
@@ -154,7 +151,7 @@ fn speed_and_error(m: &Measurements) -> Section {
         summary(m)
     );
     let mut files = vec![("accuracy.csv", accuracy_csv(&m.rows).into_bytes())];
-    for (side, name) in sides(m).into_iter().zip(["work_error_200.svg", "work_error_2000.svg"]) {
+    for (side, name) in sides(m).into_iter().zip(["work_error_small.svg", "work_error_large.svg"]) {
         body += &format!("\n![error against speed, {side} × {side} points]({name})\n");
         files.push((name, svg(&work_error(m, side)).into_bytes()));
     }
@@ -238,7 +235,7 @@ fn growth(m: &Measurements) -> Section {
     let head = ["points", "spectral, s", "spectral, ns a point", "store, ns a point"];
     let body = format!(
         "Spectral columns at 1e-12 mm, one thread, square grids of one scene.\n\n{}\n\
-         ![time over number of points](scaling.svg)\n",
+         ![time over number of points](scaling.svg)\n\nAs numbers: [scaling.csv](scaling.csv).\n",
         markdown(&head, 0, &rows)
     );
     let files = vec![
@@ -321,11 +318,13 @@ fn method(m: &Measurements) -> Section {
              60-digit values; on the timed grids spectral columns are the same polynomials, since they reach as \
              far. There are 15 to 50 points a scene, so that a 99 % quantile is close to the largest. \
              Relative errors leave out C itself.\n\
-             - Time: the shortest of at least three runs; all contestants of one scene run in turn, so that a \
-             ratio's two sides met the same disturbances. Single times depend on the machine and on what else it did \
-             (load above); the shortest run is what the code can do, not what a user will see on a busy machine.\n\
+             - Time: processor time of the one thread, which leaves out what other processes took but not what \
+             they did to caches and memory; the shortest of at least three runs (of one, where a run takes seconds). \
+             All contestants of one scene run in turn, so that a ratio's two sides met the same disturbances. With \
+             two threads it is time on the wall, and means nothing on a busy machine (load above).\n\
              - `store` writes one value to the same array; like every method it finds the array's pages already \
-             touched. Arrays of up to some MB stay in cache, which favours the store most.\n\
+             touched, which a program that fills a fresh array once does not. Arrays of up to some MB stay in cache. \
+             Both favour the store most.\n\
              - Choosing method and degree is not in the times: {least:.0} µs at least, {middle:.0} µs in the middle, \
              {most:.0} µs at most per scene and grid, which counts on small grids. `[grid] method` skips no more than \
              part of it.\n\

@@ -1,7 +1,6 @@
 //! The ratios that the project asks of itself, and whether a run met them.
 
-use super::measurements::{Measurements, Row};
-use super::page::median;
+use super::measurements::{Growth, Measurements, Row, median};
 use crate::separation::grid::Method;
 use crate::separation::plan::FULL_PRECISION;
 
@@ -11,8 +10,9 @@ const OVER_REPORT: f64 = 20.0;
 const OVER_STORE: f64 = 0.5;
 /// Rate on two threads over that on one.
 const TWO_THREADS: f64 = 1.6;
-/// |d log time/d log points − 1| up to which growth counts as linear: a factor of 1.6 over four decades.
-const LINEAR: f64 = 0.05;
+/// d log time/d log points up to which growth counts as linear: a factor of 1.6 over four decades. Less than 1 is
+/// the set-up of columns, which weighs on small grids.
+const LINEAR: f64 = 1.05;
 
 /// One requirement.
 #[derive(Debug, Clone, PartialEq)]
@@ -93,11 +93,12 @@ fn linear(m: &Measurements) -> Option<Requirement> {
     let moment = |k: usize| points.iter().map(|p| (p[0] - mean[0]) * (p[k] - mean[k])).sum::<f64>();
     let exponent = moment(1) / moment(0);
     let (first, last) = (m.growth.first()?, m.growth.last()?);
+    let per_point = |row: &Growth| row.spectral / row.points as f64 * 1e9;
     Some(Requirement {
         what: format!("cost over points, {:.0e} to {:.0e}", first.points as f64, last.points as f64),
-        least: format!("exponent 1 ± {LINEAR}"),
+        least: format!("exponent at most {LINEAR}"),
         found: format!("{exponent:.3}"),
-        remark: "least squares over the table below".into(),
-        met: (exponent - 1.0).abs() <= LINEAR,
+        remark: format!("{:.2} ns a point at first, {:.2} at last", per_point(first), per_point(last)),
+        met: exponent <= LINEAR,
     })
 }

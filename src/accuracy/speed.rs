@@ -1,7 +1,8 @@
 //! Races: several methods and a plain store fill the same array in turn.
 
 use std::hint::black_box;
-use std::time::Instant;
+
+use rustix::time::{ClockId, clock_gettime};
 
 use crate::placement::Placement;
 use crate::separation::axis::EtaAxis;
@@ -9,6 +10,9 @@ use crate::separation::grid::Choice;
 
 /// Least and most runs of one contestant: three show a disturbed one; two hundred say all there is to say.
 const REPEATS: [usize; 2] = [3, 200];
+
+/// A run that takes this many times its contestant's share of time is not repeated.
+const TOO_LONG: f64 = 10.0;
 
 /// The value that is stored: no pattern of equal bytes, which a compiler could hand to `memset`.
 const STORED: f64 = 0.1;
@@ -25,7 +29,7 @@ pub enum Work {
 /// The time of one contestant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Timing {
-    /// Shortest run \[s\].
+    /// Shortest run \[s\]: processor time on one thread, time on the wall on several.
     pub best: f64,
     /// How often it ran.
     pub repeats: usize,
@@ -65,9 +69,8 @@ impl<'a> Track<'a> {
         &self.out
     }
 
-    /// One run on the threads of the current rayon pool \[s\].
-    pub fn run(&mut self, work: Work) -> f64 {
-        let start = Instant::now();
+    /// One run on the threads of the current rayon pool.
+    pub fn run(&mut self, work: Work) {
         match work {
             Work::Store => {
                 let value = black_box(STORED);
@@ -78,13 +81,23 @@ impl<'a> Track<'a> {
             Work::Fill(choice) => choice.fill(self.placement, &self.xi, &self.axis, &mut self.out),
         }
         black_box(&mut self.out);
-        start.elapsed().as_secs_f64()
     }
 
-    /// Runs all in turn, round by round, each until it has had `seconds` of time, on the current rayon pool.
+    /// Runs all in turn, round by round, each until it has had `seconds` of time. To be called on a rayon pool of
+    /// one thread, whose processor time is measured.
     pub fn race(&mut self, works: &[Work], seconds: f64) -> Vec<Timing> {
-        race(works.len(), seconds, |k| self.run(works[k]))
+        race(works.len(), seconds, |k| {
+            let start = processor_time();
+            self.run(works[k]);
+            processor_time() - start
+        })
     }
+}
+
+/// Processor time of this thread \[s\]: unlike the time on the wall it leaves out what other processes took.
+fn processor_time() -> f64 {
+    let time = clock_gettime(ClockId::ThreadCPUTime);
+    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
 
 /// Rounds in which every contestant that has not had its time yet runs once; `run` gives the seconds of one run.
@@ -98,7 +111,8 @@ pub fn race(contestants: usize, seconds: f64, mut run: impl FnMut(usize) -> f64)
         let mut ran = false;
         for k in 0..contestants {
             let Timing { best, repeats } = timings[k];
-            if repeats >= most || (repeats >= least && spent[k] >= seconds) {
+            let long = repeats > 0 && best > TOO_LONG * seconds;
+            if repeats >= most || long || (repeats >= least && spent[k] >= seconds) {
                 continue;
             }
             let time = run(k);

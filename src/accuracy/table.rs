@@ -36,7 +36,7 @@ pub fn accuracy_csv(rows: &[Row]) -> String {
 pub fn hard_cases_csv(outcomes: &[Outcome]) -> String {
     let mut out = String::from(
         "case,title,status,as_stated,method,points,wrongly_masked,max_abs_error_mm,max_rel_error,failed_checks,\
-         report_newton_remark\n",
+         report_newton_remark,provenance\n",
     );
     for outcome in outcomes {
         let case = &outcome.case;
@@ -44,7 +44,7 @@ pub fn hard_cases_csv(outcomes: &[Outcome]) -> String {
         for (method, e) in METHODS.iter().zip(&outcome.errors) {
             let _ = writeln!(
                 out,
-                "{},{},{},{},{},{},{},{:.4e},{:.4e},{},{}",
+                "{},{},{},{},{},{},{},{:.4e},{:.4e},{},{},{}",
                 case.reference.name,
                 quoted(&case.title),
                 case.status.name(),
@@ -56,6 +56,7 @@ pub fn hard_cases_csv(outcomes: &[Outcome]) -> String {
                 e.max_rel,
                 quoted(&failed.join("; ")),
                 quoted(&case.report_newton.remark),
+                quoted(&case.provenance),
             );
         }
     }

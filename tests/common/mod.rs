@@ -1,5 +1,5 @@
 //! The 60-digit reference values, shared by the integration tests.
-#![allow(dead_code, unused_imports, reason = "each integration test uses its own part")]
+#![allow(dead_code, unused_imports, clippy::expect_used, reason = "each integration test uses its own part")]
 
 pub use wheelrail::accuracy::reference::{Reference, ReferenceScene, ReferenceSegment, chain};
 

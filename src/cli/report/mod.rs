@@ -7,23 +7,12 @@ use std::path::Path;
 
 use super::{Outcome, complain, print};
 use crate::accuracy::measurements::{Effort, measure};
-use crate::accuracy::page::{excerpt, page, sections};
+use crate::accuracy::page::{FILES, PAGE, excerpt, page, sections};
 use crate::error::Result;
 use crate::export::{Folder, Names};
 
 /// By what a folder of `wheelrail report` is known, and all that it may contain.
-const REPORT_FOLDER: Names = Names {
-    marker: "report.md",
-    files: &[
-        "report.md",
-        "accuracy.csv",
-        "hard_cases.csv",
-        "scaling.csv",
-        "scaling.svg",
-        "work_error_200.svg",
-        "work_error_2000.svg",
-    ],
-};
+const REPORT_FOLDER: Names = Names { marker: PAGE, files: &FILES };
 
 /// Measures, writes the folder, and puts the table into `splice` when there is one; exit code 1 when a hard case is
 /// not as its file states. The ratios decide nothing here: they depend on the machine.
@@ -38,7 +27,7 @@ pub(super) fn report(out: Option<&Path>, splice: Option<&Path>) -> Result<Outcom
     for (name, content) in sections.iter().flat_map(|section| &section.files) {
         folder.write(name, content)?;
     }
-    folder.write("report.md", page(&origin, &sections).as_bytes())?;
+    folder.write(PAGE, page(&origin, &sections).as_bytes())?;
     folder.commit()?;
     if let Some(target) = splice {
         target.replace(&excerpt(&measurements, &origin))?;

@@ -6,6 +6,9 @@ use std::thread::available_parallelism;
 
 use crate::accuracy::page::Origin;
 
+/// Load from which other processes disturb what is measured: one of two cores taken half of the time.
+const QUIET: f64 = 0.5;
+
 /// Machine, compiler, commit and command.
 pub(super) fn origin() -> Origin {
     vec![
@@ -16,7 +19,7 @@ pub(super) fn origin() -> Origin {
         ("system", system()),
         ("processor", processor()),
         ("memory", field("/proc/meminfo", "MemTotal")),
-        ("load at the start", first_words("/proc/loadavg", 3)),
+        ("load at the start", load()),
     ]
 }
 
@@ -45,6 +48,14 @@ fn commit() -> String {
         Ok(output) if output.status.success() => String::from_utf8_lossy(&output.stdout).trim().into(),
         _ => "unknown: git does not answer".into(),
     }
+}
+
+/// Processes that were running already, over the last minute, 5 and 15 minutes.
+fn load() -> String {
+    let text = first_words("/proc/loadavg", 3);
+    let last_minute = text.split(' ').next().and_then(|word| word.parse::<f64>().ok());
+    let busy = last_minute.is_some_and(|load| load > QUIET);
+    if busy { format!("{text}: **busy**; measure again on a quiet machine") } else { text }
 }
 
 fn system() -> String {
