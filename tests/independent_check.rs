@@ -56,7 +56,7 @@ fn assert_agrees(name: &str, report: &Report) {
 
 #[test]
 fn every_reference_scene_agrees_with_and_without_skew() {
-    for reference in references("reference") {
+    for reference in references() {
         let mut placement = reference.placement().expect("a placement");
         for skew in [0.0, 0.01, -0.06] {
             placement.skew = skew;
@@ -86,14 +86,14 @@ fn every_built_in_pair_agrees() {
 /// Scenes whose bodies are one arc or line each.
 fn simple_references() -> Vec<Reference> {
     let simple = |r: &Reference| r.scene.rail.len() == 1 && r.scene.wheel.len() == 1;
-    let all: Vec<_> = references("reference").into_iter().filter(simple).collect();
+    let all: Vec<_> = references().into_iter().filter(simple).collect();
     assert!(all.len() >= 5);
     all
 }
 
 #[test]
 fn a_wrong_separation_is_caught() {
-    for reference in references("reference") {
+    for reference in references() {
         let placement = reference.placement().expect("a placement");
         let request = request(&reference);
         for wrong in [1e-6, -1e-6, 1e-10] {
@@ -141,7 +141,7 @@ fn a_wrong_radius_is_caught() {
 
 #[test]
 fn a_wrong_normal_is_caught() {
-    for reference in references("reference") {
+    for reference in references() {
         let placement = reference.placement().expect("a placement");
         let request = request(&reference);
         let flip = |n: &mut [f64; 3]| n.iter_mut().for_each(|c| *c = -*c);
@@ -157,7 +157,7 @@ fn a_wrong_normal_is_caught() {
 
 #[test]
 fn a_skew_left_out_is_caught() {
-    for reference in references("reference") {
+    for reference in references() {
         let own = reference.placement().expect("a placement");
         let placement = Placement { skew: 1e-3, ..own.clone() };
         let report = checked(&placement, &own, &request(&reference), |_, _, _| {});

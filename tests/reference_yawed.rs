@@ -25,10 +25,12 @@ struct Yawed {
 const NAMES: [&str; 3] = ["yawed_crown_on_cone", "yawed_60E1_S1002_tread", "yawed_flange"];
 
 fn load(name: &str) -> (Yawed, Placement) {
-    let text = std::fs::read_to_string(folder("reference_yawed").join(name).with_extension("json")).expect("values");
+    let text =
+        std::fs::read_to_string(folder("reference_yawed").join(name).with_extension("json")).expect("values");
     let yawed: Yawed = serde_json::from_str(&text).expect("a file of values");
     let scene = &yawed.scene;
-    let profiles = (chain("rail", &scene.rail).expect("a rail"), chain("wheel", &scene.wheel).expect("a wheel"));
+    let profiles =
+        (chain("rail", &scene.rail).expect("a rail"), chain("wheel", &scene.wheel).expect("a wheel"));
     let pair = Pair::new(profiles.0, profiles.1, scene.wheel_radius).expect("a pair");
     let placement = pair.placed(scene.contact_rail_x, scene.contact_wheel_x, scene.chi).expect("a placement");
     (yawed, placement)

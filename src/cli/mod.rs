@@ -5,6 +5,7 @@
 
 mod midsep;
 mod profile;
+mod report;
 mod run;
 mod sweep;
 
@@ -43,6 +44,15 @@ enum Command {
     },
     /// Sweep a wheelset over its track and print a row per position, side and contact.
     Sweep(sweep::SweepArguments),
+    /// Measure speed against error and run the hard cases; takes about two minutes.
+    Report {
+        /// Folder to write; by default output/report.
+        #[arg(long)]
+        out: Option<PathBuf>,
+        /// Markdown file whose text between `<!-- report:begin -->` and `<!-- report:end -->` becomes the table.
+        #[arg(long)]
+        splice: Option<PathBuf>,
+    },
     /// Look at profiles.
     #[command(subcommand)]
     Profile(profile::ProfileCommand),
@@ -80,6 +90,7 @@ fn on_threads(arguments: Arguments) -> Result<Outcome> {
         Command::Run { scene, out } => run::run(&scene, out.as_deref()),
         Command::Midsep { scene } => midsep::midsep(&scene),
         Command::Sweep(arguments) => sweep::sweep(&arguments),
+        Command::Report { out, splice } => report::report(out.as_deref(), splice.as_deref()),
         Command::Profile(command) => profile::profile(&command),
         Command::Schema => schema(),
     })
