@@ -3,6 +3,7 @@
 //! Exit codes: 0 done, 1 a geometric "no" (infeasible contact, empty patch, failed check), 2 bad input. Data goes
 //! to stdout, progress and complaints to stderr.
 
+mod check;
 mod midsep;
 mod profile;
 mod report;
@@ -39,6 +40,11 @@ enum Command {
     },
     /// Print the midplane table and the transformed parameters.
     Midsep {
+        /// Scene file, TOML or JSON.
+        scene: PathBuf,
+    },
+    /// Check every contact of a scene against triangle meshes measured by parry3d; exit code 1 if they disagree.
+    Check {
         /// Scene file, TOML or JSON.
         scene: PathBuf,
     },
@@ -89,6 +95,7 @@ fn on_threads(arguments: Arguments) -> Result<Outcome> {
     pool.install(|| match arguments.command {
         Command::Run { scene, out } => run::run(&scene, out.as_deref()),
         Command::Midsep { scene } => midsep::midsep(&scene),
+        Command::Check { scene } => check::check(&scene),
         Command::Sweep(arguments) => sweep::sweep(&arguments),
         Command::Report { out, splice } => report::report(out.as_deref(), splice.as_deref()),
         Command::Profile(command) => profile::profile(&command),
