@@ -14,7 +14,7 @@
 //! |---|---|---|
 //! | Sec. 3, App. A | segment equations, smooth chains from drawing data | [`profile`], [`profile::builder`] |
 //! | Sec. 4 | contact frame, transformed parameters, feasibility | [`placement`], [`contact::feasibility`] |
-//! | MIDSEP, Sec. 5 | transformed parameters and Δζ on the midplane | [`placement::midsep`] |
+//! | MIDSEP, Sec. 5 | transformed parameters and Δζ on the midplane | [`separation::midsep`] |
 //! | INSEP, Sec. 6 | s(ξ, η) and unit normals over the grid | [`separation`] |
 //! | INTERPEN, Sec. 7 | η(ξ) with s = δ | [`interpenetration`] |
 //! | CONFORM, COUNTACT | the solvers that read all this | [`mod@export`] (decks), [`mesh`] |
@@ -44,6 +44,8 @@
 //! guaranteed: anything elastic. See [`docs::numerics`] for the formulas and [`docs::errata`] for what differs from
 //! the Report.
 
+pub mod accuracy;
+pub mod check;
 pub mod cli;
 pub mod contact;
 pub mod docs;

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use super::{Outcome, folder_of, print};
 use crate::error::Result;
-use crate::placement::midsep::table;
 use crate::run::first_contact;
 use crate::scene::{self, equal_steps};
+use crate::separation::midsep::table;
 
 /// Values of ξ when the scene leaves the axis to the program.
 const DEFAULT_ROWS: usize = 101;

@@ -49,6 +49,8 @@ pub const RUN_FOLDER: Names = Names {
         "countact.wrp",
         "contact.inp",
         "view.py",
+        // Left by a Python that imports or compiles view.py.
+        "__pycache__",
     ],
 };
 

@@ -1,6 +1,5 @@
 //! A placed pair: contact frame ξηζ and both profiles in it (Report Sec. 4).
 
-pub mod midsep;
 pub mod track;
 
 use crate::error::{Error, Result, finite};

@@ -14,9 +14,9 @@ use crate::export::{
     Folder, FolderPart, Frame, GridFields, Header, Interval, Loop, VIEW_SCRIPT, csv, npy, vtk, vts,
 };
 use crate::interpenetration::Slicer;
-use crate::placement::midsep;
 use crate::profile::Section;
 use crate::scene::{Format, equal_steps};
+use crate::separation::midsep;
 
 /// A file and the writer of its content.
 type Job<'a> = (&'static str, Box<dyn Fn(&FolderPart<'_>) -> Result<()> + Sync + Send + 'a>);

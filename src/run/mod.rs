@@ -15,6 +15,7 @@ use crate::export::Folder;
 use crate::interpenetration::Patch;
 use crate::mesh::axes;
 use crate::placement::{Pair, Placement};
+use crate::profile::measured::Record;
 use crate::scene::{self, Scene, check_points};
 
 /// A scene and everything computed from it.
@@ -28,6 +29,8 @@ pub struct Run {
     pub title: String,
     /// What it asks of every contact.
     pub question: Question,
+    /// What was done to measured profiles of rail and wheel.
+    pub measured: [Option<Record>; 2],
     /// One part for every grid; the first contact's first.
     pub parts: Vec<Part>,
 }
@@ -52,7 +55,7 @@ impl Run {
     /// Bad input, by key. An infeasible contact or an empty patch is a result: [`Run::refusals`].
     pub fn new(scene: Scene, folder: &Path, name: &str) -> Result<Self> {
         let question = question(&scene)?;
-        let pair = scene.pair(folder)?;
+        let (pair, measured) = scene.pair_and_records(folder)?;
         let places = places::find(&scene.standing()?, &pair, &question)?;
         let mut parts: Vec<Part> = Vec::new();
         for place in places {
@@ -68,7 +71,7 @@ impl Run {
             }
         }
         let title = scene.title.clone().unwrap_or_else(|| name.to_string());
-        Ok(Self { hash: scene::hash(&scene), scene, title, question, parts })
+        Ok(Self { hash: scene::hash(&scene), scene, title, question, measured, parts })
     }
 
     /// Writes all files that the scene asks for.
@@ -86,7 +89,11 @@ impl Run {
 
     /// What a user should know before using the files.
     pub fn warnings(&self) -> Vec<String> {
-        self.parts.iter().flat_map(Part::warnings).collect()
+        let findings = self.measured.iter().flatten().flat_map(|record| &record.warnings);
+        let mut out: Vec<String> =
+            findings.map(|finding| format!("{}: {}", finding.place, finding.found)).collect();
+        out.extend(self.parts.iter().flat_map(Part::warnings));
+        out
     }
 }
 

@@ -37,6 +37,8 @@ pub(super) fn summary(run: &Run, part: &Part, files: &[String], skipped: &[Strin
         "conventions": "mm, rad; s > 0 apart; contact frame: origin C, xi along the common tangent, eta along the rail, zeta from rail to wheel; grids [i_xi][i_eta]",
         "rail": body(&placement.rail),
         "wheel": body(&placement.wheel),
+        "measured_rail": run.measured[0],
+        "measured_wheel": run.measured[1],
         "wheel_radius_mm": placement.wheel_radius,
         "rolling_radius_mm": placement.rolling_radius(),
         "skew_rad": placement.skew,

@@ -5,6 +5,7 @@ pub mod axis;
 pub mod column;
 pub mod gap;
 pub mod grid;
+pub mod midsep;
 pub mod plan;
 pub mod pointwise;
 pub mod report_newton;

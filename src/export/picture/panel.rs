@@ -82,12 +82,12 @@ impl Panel {
     pub(super) fn axes(&self, canvas: &mut Canvas, names: [&str; 2]) {
         let [x, y, w, h] = self.place;
         let mut ticks = Vec::new();
-        for (value, label) in ticks_of(self.u, w) {
+        for (value, label) in ticks_of(self.u, w / 45.0) {
             let [px, _] = self.point([value, self.v[0]]);
             ticks.push(vec![[px, y + h], [px, y + h + 5.0]]);
             canvas.text([px, y + h + 18.0], label, SMALL, Anchor::Middle, INK);
         }
-        for (value, label) in ticks_of(self.v, h) {
+        for (value, label) in ticks_of(self.v, h / 28.0) {
             let [_, py] = self.point([self.u[0], value]);
             ticks.push(vec![[x, py], [x - 5.0, py]]);
             canvas.text([x - 8.0, py + 4.0], label, SMALL, Anchor::End, INK);
@@ -126,9 +126,10 @@ pub(super) fn number(x: f64, step: f64) -> String {
     if zero { "0".into() } else { text.replace('-', "\u{2212}") }
 }
 
-/// Round values inside a range that takes `length` page units, with their labels, at least 45 units apart.
-fn ticks_of([low, high]: [f64; 2], length: f64) -> Vec<(f64, String)> {
-    let step = 2.5 * (high - low) * 45.0 / length;
+/// Round values inside a range with their labels, at most `most` of them.
+fn ticks_of([low, high]: [f64; 2], most: f64) -> Vec<(f64, String)> {
+    // Rounding takes off up to a factor of 2.5.
+    let step = 2.5 * (high - low) / most;
     let step = round_below(step);
     let first = (low / step).ceil();
     let count = (high / step).floor() - first;

@@ -1,13 +1,13 @@
-//! The search against `tests/reference/yawed_*.json`.
+//! The search against `tests/reference_yawed/yawed_*.json`.
 
 use serde_json::Value;
 
 use super::*;
 
 const SCENES: [&str; 3] = [
-    include_str!("../../../../tests/reference/yawed_crown_on_cone.json"),
-    include_str!("../../../../tests/reference/yawed_60E1_S1002_tread.json"),
-    include_str!("../../../../tests/reference/yawed_flange.json"),
+    include_str!("../../../../tests/reference_yawed/yawed_crown_on_cone.json"),
+    include_str!("../../../../tests/reference_yawed/yawed_60E1_S1002_tread.json"),
+    include_str!("../../../../tests/reference_yawed/yawed_flange.json"),
 ];
 
 fn number(value: &Value, key: &str) -> f64 {

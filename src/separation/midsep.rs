@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Body, Placement};
+use crate::placement::{Body, Placement};
 use crate::profile::{Shape, Station};
 use crate::separation::gap::midplane_gap;
 

@@ -1,0 +1,128 @@
+//! Closest points: of a point and a body, and of the two bodies, by parry on meshes that close in.
+
+use super::body::{Solid, spread};
+use super::meshes::Vector;
+use super::patch::{Patch, Place};
+use super::sampler::Surface;
+
+/// First and last cell as shares of the local scale, cells a side, and the factor from one mesh to the next:
+/// the place found on one mesh then lies well inside the next.
+const FIRST_CELL: f64 = 1.0 / 16.0;
+const LAST_CELL: f64 = 1e-6;
+const CELLS: usize = 4;
+const CLOSER: f64 = 0.125;
+
+/// Most meshes on the way in, moves sideways included.
+const MOST_MESHES: usize = 200;
+
+/// Last cell of the pair search: pairs of triangles are left to GJK, whose own tolerance shows below that.
+const LAST_PAIR_CELL: f64 = 1e-5;
+
+/// Times the feet of a pair are found anew from each other.
+const ALTERNATIONS: usize = 4;
+
+/// A closest point.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Closest {
+    /// Where on the body.
+    pub place: Place,
+    /// The point.
+    pub point: Vector,
+    /// Its distance \[mm\].
+    pub distance: f64,
+    /// Rigorous bound of the distance's error from the last mesh's chords \[mm\].
+    pub error: f64,
+}
+
+/// The point of a body closest to `point`, over all curves around the coarse answer.
+pub(super) fn to_point(solid: &Solid, point: Vector) -> Option<Closest> {
+    let near = solid.near(point).into_iter();
+    near.filter_map(|start| on_curve(&solid.surface, start, point))
+        .min_by(|a, b| a.distance.total_cmp(&b.distance))
+}
+
+fn on_curve(surface: &Surface, start: Place, point: Vector) -> Option<Closest> {
+    let mut window = Closing::new(start, FIRST_CELL);
+    for _ in 0..MOST_MESHES {
+        let patch = window.patch(surface)?;
+        let hit = patch.mesh.closest_to(point);
+        let (last, cells) = (window.cell <= LAST_CELL, window.cells(surface));
+        if window.move_to(surface, &patch, patch.place(&hit)) && last {
+            let place = window.place;
+            let [error, _] = surface.chordal_bound(place.curve, place.t, cells);
+            return Some(Closest { place, point: hit.point, distance: hit.point.distance(point), error });
+        }
+    }
+    None
+}
+
+/// The closest points of the two bodies near a pair of places: \[on the rail, on the wheel\].
+pub(super) fn of_bodies(rail: &Solid, wheel: &Solid, start: [Place; 2]) -> Option<[Closest; 2]> {
+    let mut windows = start.map(|place| Closing::new(place, FIRST_CELL));
+    let surfaces = [&rail.surface, &wheel.surface];
+    for _ in 0..MOST_MESHES {
+        let patches = [windows[0].patch(surfaces[0])?, windows[1].patch(surfaces[1])?];
+        let Some(pair) = patches[0].mesh.closest_pair(&patches[1].mesh) else {
+            // Chords of coarse cells may cross where the bodies are apart.
+            windows.iter_mut().for_each(|w| w.cell *= CLOSER);
+            continue;
+        };
+        let mut settled = true;
+        for k in 0..2 {
+            let place = patches[k].place(&patches[k].mesh.closest_to(pair[k]));
+            settled &= windows[k].move_to(surfaces[k], &patches[k], place);
+        }
+        if !settled {
+            continue;
+        }
+        if windows[0].cell <= LAST_PAIR_CELL {
+            break;
+        }
+    }
+    let mut feet = None;
+    let mut on_wheel = surfaces[1].point(windows[1].place.curve, windows[1].place.t, windows[1].place.v);
+    for _ in 0..ALTERNATIONS {
+        let below = to_point(rail, on_wheel)?;
+        let above = to_point(wheel, below.point)?;
+        on_wheel = above.point;
+        feet = Some([below, above]);
+    }
+    feet
+}
+
+/// A window of cells around a place that closes in on it.
+struct Closing {
+    place: Place,
+    cell: f64,
+}
+
+impl Closing {
+    fn new(place: Place, cell: f64) -> Self {
+        Self { place, cell }
+    }
+
+    /// Cell sizes in t and v.
+    fn cells(&self, surface: &Surface) -> [f64; 2] {
+        let h = self.cell * surface.curves[self.place.curve].scale;
+        [h, surface.v_cell(self.place.curve, self.place.t, h)]
+    }
+
+    fn patch(&self, surface: &Surface) -> Option<Patch> {
+        let [h, k] = self.cells(surface);
+        let (Place { curve, t, v }, half) = (self.place, CELLS as f64 / 2.0);
+        let length = surface.curves[curve].length;
+        let t = spread((t - half * h).max(0.0), (t + half * h).min(length), CELLS);
+        Patch::new(surface, curve, t, spread(v - half * k, v + half * k, CELLS))
+    }
+
+    /// Moves to a place of the patch; closes in when it is inside, and tells so.
+    fn move_to(&mut self, surface: &Surface, patch: &Patch, place: Place) -> bool {
+        let length = surface.curves[place.curve].length;
+        let inside = !patch.at_border(&place, length);
+        self.place = Place { t: place.t.clamp(0.0, length), ..place };
+        if inside {
+            self.cell *= CLOSER;
+        }
+        inside
+    }
+}

@@ -1,0 +1,97 @@
+//! The one place that speaks to parry3d: triangle meshes, rays along ζ, closest points.
+//!
+//! The f64 build is used because f32 carries 5e-5 mm of noise at the axle's distance, and because its
+//! triangle–triangle distance was found to return a false 0. parry answers nonsense for meshes with NaN
+//! (distance 0), so none is ever built.
+
+use parry3d_f64::math::Pose;
+use parry3d_f64::query::details::local_ray_intersection_with_triangle;
+use parry3d_f64::query::{ClosestPoints, PointQueryWithLocation, Ray, RayCast, closest_points};
+use parry3d_f64::shape::TriMesh;
+
+/// A point or direction (ξ, η, ζ) of the contact frame \[mm\]; glam's type, as parry takes it.
+pub(super) type Vector = parry3d_f64::math::Vector;
+
+/// A triangle mesh.
+pub(super) struct Mesh(TriMesh);
+
+/// Where a query met a mesh.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Hit {
+    /// Index of the triangle.
+    pub triangle: usize,
+    /// Barycentric weights of its three corners.
+    pub weights: [f64; 3],
+    /// The point.
+    pub point: Vector,
+}
+
+/// Where along ζ a ray starts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Origin {
+    /// Below everything, going up: meets the lowest sheet.
+    Below,
+    /// Above everything, going down: meets the highest sheet.
+    Above,
+}
+
+impl Mesh {
+    /// A mesh, or `None` where there is no triangle or a vertex is not finite.
+    pub fn new(vertices: Vec<Vector>, triangles: Vec<[u32; 3]>) -> Option<Self> {
+        if vertices.iter().any(|v| !v.is_finite()) {
+            return None;
+        }
+        TriMesh::new(vertices, triangles).ok().map(Self)
+    }
+
+    /// The first triangle that the line (ξ, η) meets from the origin; `None` beside the mesh.
+    ///
+    /// The ray starts right outside the mesh's box, so that its length costs no digits.
+    pub fn along_zeta(&self, xi: f64, eta: f64, origin: Origin) -> Option<Hit> {
+        let bounds = self.0.local_aabb();
+        let margin = bounds.extents().max_element();
+        let (start, direction) = match origin {
+            Origin::Below => (bounds.mins.z - margin, Vector::Z),
+            Origin::Above => (bounds.maxs.z + margin, -Vector::Z),
+        };
+        let ray = Ray::new(Vector::new(xi, eta, start), direction);
+        let triangle = self.0.cast_local_ray_and_get_normal(&ray, f64::MAX, false)?.subshape as usize;
+        let [a, b, c] = self.corners(triangle);
+        let (_, weights) = local_ray_intersection_with_triangle(a, b, c, &ray)?;
+        let zeta = a.z + (b.z - a.z) * weights.y + (c.z - a.z) * weights.z;
+        Some(Hit { triangle, weights: weights.to_array(), point: Vector::new(xi, eta, zeta) })
+    }
+
+    /// The point of the mesh that is closest to `point`.
+    pub fn closest_to(&self, point: Vector) -> Hit {
+        let (projection, (triangle, location)) = self.0.project_local_point_and_get_location(point, false);
+        let weights = location.barycentric_coordinates().unwrap_or([f64::NAN; 3]);
+        Hit { triangle: triangle as usize, weights, point: projection.point }
+    }
+
+    /// The closest points of two meshes, or `None` where they touch or overlap.
+    pub fn closest_pair(&self, other: &Self) -> Option<[Vector; 2]> {
+        let here = Pose::IDENTITY;
+        match closest_points(&here, &self.0, &here, &other.0, f64::MAX) {
+            Ok(ClosestPoints::WithinMargin(own, others)) => Some([own, others]),
+            _ => None,
+        }
+    }
+
+    /// Number of triangles.
+    pub fn len(&self) -> usize {
+        self.0.num_triangles()
+    }
+
+    /// The corners of a triangle.
+    pub fn corners(&self, triangle: usize) -> [Vector; 3] {
+        let t = self.0.triangle(triangle as u32);
+        [t.a, t.b, t.c]
+    }
+
+    /// Unit normal of a triangle, in the sense of its corners' order.
+    pub fn normal(&self, triangle: usize) -> Vector {
+        let [a, b, c] = self.corners(triangle);
+        (b - a).cross(c - a).normalize()
+    }
+}

@@ -1,0 +1,67 @@
+//! Meshes over the parameter plane of one curve: rectangles of cells, two triangles each.
+
+use super::meshes::{Hit, Mesh, Vector};
+use super::sampler::Surface;
+
+/// A mesh over the product of ascending parameter values.
+pub(super) struct Patch {
+    /// The triangles.
+    pub mesh: Mesh,
+    curve: usize,
+    t: Vec<f64>,
+    v: Vec<f64>,
+}
+
+/// A point of a surface with its parameters.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    /// Index of the curve.
+    pub curve: usize,
+    /// Parameter along it.
+    pub t: f64,
+    /// Length around \[mm\].
+    pub v: f64,
+}
+
+impl Patch {
+    /// The patch over t × v; `None` where a point is not finite.
+    pub fn new(surface: &Surface, curve: usize, t: Vec<f64>, v: Vec<f64>) -> Option<Self> {
+        let vertices: Vec<Vector> =
+            t.iter().flat_map(|&t| v.iter().map(move |&v| surface.point(curve, t, v))).collect();
+        let triangles = cells(t.len(), v.len());
+        Some(Self { mesh: Mesh::new(vertices, triangles)?, curve, t, v })
+    }
+
+    /// The parameters of a hit.
+    pub fn place(&self, hit: &Hit) -> Place {
+        let columns = self.v.len() - 1;
+        let (cell, second) = (hit.triangle / 2, hit.triangle % 2);
+        let (i, j) = (cell / columns, cell % columns);
+        let [_, b, c] = hit.weights;
+        // Corners (0,0), (1,0), (1,1) or (0,0), (1,1), (0,1).
+        let (a, across) = if second == 0 { (b + c, c) } else { (b, b + c) };
+        let between = |x: &[f64], k: usize, share: f64| x[k] + (x[k + 1] - x[k]) * share;
+        Place { curve: self.curve, t: between(&self.t, i, a), v: between(&self.v, j, across) }
+    }
+
+    /// Whether a place is in the outer ring of cells, so that the true one may lie outside; ends of the curve
+    /// (0 and `length`) are no border.
+    pub fn at_border(&self, place: &Place, length: f64) -> bool {
+        let outer = |x: &[f64], value: f64, ends: [f64; 2]| {
+            let last = x.len() - 1;
+            (value < x[1] && x[0] > ends[0]) || (value > x[last - 1] && x[last] < ends[1])
+        };
+        outer(&self.t, place.t, [0.0, length]) || outer(&self.v, place.v, [f64::NEG_INFINITY, f64::INFINITY])
+    }
+}
+
+/// Triangles of an n × m array of vertices, counter-clockwise in (t, v).
+pub(super) fn cells(n: usize, m: usize) -> Vec<[u32; 3]> {
+    let at = |i: usize, j: usize| (i * m + j) as u32;
+    (0..n.saturating_sub(1))
+        .flat_map(|i| (0..m.saturating_sub(1)).map(move |j| (i, j)))
+        .flat_map(|(i, j)| {
+            [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]]
+        })
+        .collect()
+}

@@ -1,0 +1,203 @@
+//! The height of a surface over (ξ, η), measured by rays on meshes.
+//!
+//! A coarse mesh of the whole body says which segment is met, and about where. The foot is then meshed anew
+//! with cells that halve from level to level while the ray keeps its relative position inside the cell: the
+//! chordal error is then a power series c₂h² + c₃h³ + … and Richardson's table takes it out. One last mesh of
+//! very small cells gives a rigorous bracket.
+
+use super::meshes::{Origin, Vector};
+use super::patch::{Patch, Place};
+use super::sampler::Surface;
+
+/// Cells of the first level as a share of the local scale (radius or length), and levels, each half of the
+/// one before. Larger cells leave terms of high order, smaller ones rounding.
+pub(super) const FIRST_CELL: f64 = 1.0 / 32.0;
+const LEVELS: usize = 5;
+
+/// Times the first cell is divided by four while the table has not converged.
+const REFINEMENTS: i32 = 3;
+
+/// Cell of the bracket's mesh as a share of the local scale: its chordal bound, about a quarter of the square,
+/// is then near rounding, and the cell itself still holds seven digits of its own.
+const BRACKET_CELL: f64 = 1e-6;
+
+/// Where inside its cell the ray passes: off the diagonal and off every symmetry, where the error has no h².
+const INSIDE: [f64; 2] = [0.375, 0.25];
+
+/// Newton steps for the foot's parameters; five do on any sheet that is not vertical.
+const NEWTON: usize = 40;
+
+/// One measured height.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Height {
+    /// Where on the surface.
+    pub place: Place,
+    /// ζ \[mm\], extrapolated.
+    pub zeta: f64,
+    /// Estimated error of the extrapolation \[mm\].
+    pub error: f64,
+    /// Rigorous bounds of ζ \[mm\].
+    pub bracket: [f64; 2],
+    /// log₂ of the ratio of successive differences, where they stand clear of rounding.
+    pub order: Option<f64>,
+    /// Unit normal, up where the surface faces the other body, extrapolated.
+    pub normal: Vector,
+    /// Estimated error of the normal.
+    pub normal_error: f64,
+}
+
+/// The foot on one curve or its continuation, from a guess: (ξ, η) of X(t, v) by Newton steps.
+pub(super) fn foot(surface: &Surface, guess: Place, xi: f64, eta: f64) -> Option<Place> {
+    let mut place = guess;
+    let curve = &surface.curves[place.curve];
+    let mut last = f64::INFINITY;
+    for _ in 0..NEWTON {
+        let point = surface.point(place.curve, place.t, place.v);
+        let [along, around] = surface.tangents(place.curve, place.t, place.v);
+        let (dx, dy) = (xi - point.x, eta - point.y);
+        let determinant = along.x * around.y - along.y * around.x;
+        let dt = (dx * around.y - dy * around.x) / determinant;
+        let dv = (dy * along.x - dx * along.y) / determinant;
+        // A sheet turns by about one over its scale: longer steps leave it.
+        let limit = 0.5 * curve.scale;
+        let step = dt.clamp(-limit, limit);
+        (place.t, place.v) = (place.t + step, place.v + dv);
+        let size = (step / curve.scale).abs() + (dv / surface.round_scale()).abs();
+        if !size.is_finite() {
+            return None;
+        }
+        // Below this, steps are rounding and no longer shrink.
+        if size < 1e3 * f64::EPSILON && size >= 0.5 * last || size == 0.0 {
+            return Some(place);
+        }
+        last = size;
+    }
+    (last < 1e6 * f64::EPSILON).then_some(place)
+}
+
+/// The height at a foot; `None` where the sheet is vertical there.
+pub(super) fn height(surface: &Surface, place: Place, xi: f64, eta: f64) -> Option<Height> {
+    let bracket = bracket(surface, place, xi, eta)?;
+    let rounding = rounding(surface, bracket.1);
+    let mut best: Option<Table> = None;
+    for refinement in 0..=REFINEMENTS {
+        let first = FIRST_CELL / 4f64.powi(refinement);
+        let Some(table) = heights(surface, place, xi, eta, first).map(|z| Table::new(&z, rounding)) else {
+            continue;
+        };
+        if best.as_ref().is_none_or(|b| table.error < b.error) {
+            best = Some(table);
+        }
+        if best.as_ref().is_some_and(|b| b.error <= 4.0 * rounding) {
+            break;
+        }
+    }
+    let table = best?;
+    let (normal, normal_error) = normal(surface, place);
+    Some(Height {
+        place,
+        zeta: table.value,
+        error: table.error,
+        bracket: bracket.0,
+        order: table.order,
+        normal,
+        normal_error,
+    })
+}
+
+/// Rounding of a height \[mm\]: of coordinates as large as the profile, over a slope.
+fn rounding(surface: &Surface, normal_zeta: f64) -> f64 {
+    f64::EPSILON * surface.size / normal_zeta
+}
+
+/// Heights on meshes of 3 × 3 cells, the foot at the same relative position in the middle one.
+fn heights(surface: &Surface, place: Place, xi: f64, eta: f64, first: f64) -> Option<[f64; LEVELS]> {
+    let h = first * surface.curves[place.curve].scale;
+    let k = surface.v_cell(place.curve, place.t, h);
+    let mut out = [f64::NAN; LEVELS];
+    for (level, zeta) in out.iter_mut().enumerate() {
+        let share = 0.5f64.powi(level as i32);
+        let patch = around(surface, place, [h * share, k * share])?;
+        *zeta = patch.mesh.along_zeta(xi, eta, Origin::Below)?.point.z;
+    }
+    Some(out)
+}
+
+/// 3 × 3 cells with the place inside the middle one.
+fn around(surface: &Surface, place: Place, [h, k]: [f64; 2]) -> Option<Patch> {
+    let nodes = |x: f64, cell: f64, inside: f64| {
+        [-1.0, 0.0, 1.0, 2.0].iter().map(|i| x + (i - inside) * cell).collect()
+    };
+    Patch::new(surface, place.curve, nodes(place.t, h, INSIDE[0]), nodes(place.v, k, INSIDE[1]))
+}
+
+/// A rigorous bracket of ζ, and the least ζ component of the normal around the foot.
+fn bracket(surface: &Surface, place: Place, xi: f64, eta: f64) -> Option<([f64; 2], f64)> {
+    let h = BRACKET_CELL * surface.curves[place.curve].scale;
+    let k = surface.v_cell(place.curve, place.t, h);
+    let patch = around(surface, place, [h, k])?;
+    let hit = patch.mesh.along_zeta(xi, eta, Origin::Below)?;
+    let [apart, turn] = surface.chordal_bound(place.curve, place.t, [h, k]);
+    // The normal turns by less than three cells' worth over the patch.
+    let least = patch.mesh.normal(hit.triangle).z - 3.0 * turn;
+    if least.is_nan() || least <= 0.0 {
+        return None;
+    }
+    let half = apart / least + 4.0 * rounding(surface, least);
+    Some(([hit.point.z - half, hit.point.z + half], least))
+}
+
+/// Normal of the cell centred on the place, its diagonals' cross product: even in h, so that h², h⁴, … go.
+pub(super) fn normal(surface: &Surface, place: Place) -> (Vector, f64) {
+    let h = FIRST_CELL * surface.curves[place.curve].scale;
+    let k = surface.v_cell(place.curve, place.t, h);
+    let of_cell = |share: f64| {
+        let corner =
+            |a: f64, b: f64| surface.point(place.curve, place.t + a * share * h, place.v + b * share * k);
+        (corner(0.5, 0.5) - corner(-0.5, -0.5)).cross(corner(-0.5, 0.5) - corner(0.5, -0.5)).normalize()
+    };
+    extrapolated(of_cell)
+}
+
+/// The limit of a direction whose error is even in the share of the first cell, and the last change.
+pub(super) fn extrapolated(direction: impl Fn(f64) -> Vector) -> (Vector, f64) {
+    let mut row: Vec<Vector> = (0..LEVELS).map(|level| direction(0.5f64.powi(level as i32))).collect();
+    let mut before = row[LEVELS - 1];
+    let mut power = 4.0;
+    while row.len() > 1 {
+        before = row[row.len() - 1];
+        row = row.windows(2).map(|pair| pair[1] + (pair[1] - pair[0]) / (power - 1.0)).collect();
+        power *= 4.0;
+    }
+    let limit = row[0].normalize();
+    (limit, limit.distance(before))
+}
+
+/// Richardson's table for errors c₂h² + c₃h³ + … at halved cells.
+struct Table {
+    value: f64,
+    error: f64,
+    order: Option<f64>,
+}
+
+impl Table {
+    fn new(values: &[f64; LEVELS], rounding: f64) -> Self {
+        let mut row = values.to_vec();
+        let order = observed_order(values, rounding);
+        let mut before = row[LEVELS - 1];
+        let mut power = 4.0;
+        while row.len() > 1 {
+            before = row[row.len() - 1];
+            row = row.windows(2).map(|pair| pair[1] + (pair[1] - pair[0]) / (power - 1.0)).collect();
+            power *= 2.0;
+        }
+        Self { value: row[0], error: (row[0] - before).abs() + rounding, order }
+    }
+}
+
+/// log₂ of the ratio of the last two differences that stand a thousand roundings clear.
+fn observed_order(values: &[f64; LEVELS], rounding: f64) -> Option<f64> {
+    let differences: Vec<f64> = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
+    let clear = differences.windows(2).rev().find(|pair| pair[1] > 1e3 * rounding)?;
+    Some((clear[0] / clear[1]).log2())
+}
