@@ -1,4 +1,4 @@
-"""patch.vtu and separation.vtk, read by meshio: FOLDER."""
+"""patch.vtu, rail.vtu, wheel.vtu and separation.vtk, those that are there, read by meshio: FOLDER."""
 
 import sys
 
@@ -8,14 +8,18 @@ from folder import Checks, Folder
 
 folder = Folder(sys.argv[1])
 checks = Checks(f"meshio {meshio.__version__}")
-if folder.boundary():
+if folder.has("patch.vtu") and folder.boundary():
     patch = meshio.read(folder / "patch.vtu")
     cells = sum(len(block.data) for block in patch.cells)
     areas = patch.cell_data["area"]
     checks("patch.vtu", sum(map(len, areas)) == cells, f"{cells} cells, {sum(a.sum() for a in areas):.6g} mm2")
     checks("patch.vtu holds triangles and quads", {block.type for block in patch.cells} <= {"triangle", "quad"})
-else:
+elif folder.has("patch.vtu"):
     checks("patch.vtu is empty, which meshio cannot read from any program", True)
+for name in filter(folder.has, ("rail.vtu", "wheel.vtu")):
+    surface = meshio.read(folder / name)
+    cells = sum(len(block.data) for block in surface.cells)
+    checks(f"{name} holds triangles", {block.type for block in surface.cells} == {"triangle"}, f"{cells} cells")
 if folder.has("separation.vtk"):
     grid = meshio.read(folder / "separation.vtk")
     checks.same("separation.vtk xi", grid.points[:: len(folder.eta), 0].astype("f8"), folder.xi)

@@ -40,13 +40,15 @@ def read_wrp(name):
 
 
 checks = Checks("gfortran")
-for name in ("separation.wrp", "conform.wrp", "countact.wrp"):
+for name in filter(folder.has, ("separation.wrp", "conform.wrp", "countact.wrp")):
     text = open(folder / name, "rb").read()
     checks(f"{name} ASCII, under 80 columns, with its end",
            text.isascii() and max(map(len, text.split(b"\n"))) < 80 and text.endswith(b"\nEND\n"))
     read = read_wrp(name)
     for key, expected in (("xi", folder.xi), ("eta", folder.eta), ("mask", defined.astype("i4")), ("s", filled)):
         checks.same(f"{name} {key}", read[key], expected)
+    if "approach_mm" in folder.summary:
+        checks(f"{name} approach", read["approach"] == folder.summary["approach_mm"], f"{read['approach']:.6g} mm")
     checks(f"{name} frame right-handed and orthonormal",
            np.allclose(np.cross(read["frame"][1], read["frame"][2]), read["frame"][3], atol=1e-15, rtol=0)
            and np.allclose(read["frame"][1:] @ read["frame"][1:].T, np.eye(3), atol=1e-15, rtol=0))

@@ -51,15 +51,28 @@ if loops:
         cell = boundary.get_cell(number)
         checks.same(f"boundary.vtp loop {number}", cell.points[:-1, :2], points)
         checks(f"boundary.vtp loop {number} is closed", cell.point_ids[0] == cell.point_ids[-1])
-patch = pyvista.read(folder / "patch.vtu")
-checks("patch.vtu", patch.n_cells == 0 or set(patch.celltypes) <= {5, 9}, f"{patch.n_cells} cells")
-if patch.n_cells:
-    patch.points[:, 2] = 0
-    polygons = patch.compute_cell_sizes()["Area"].sum()
-    area = patch.cell_data["area"].sum()
-    checks("patch.vtu areas are near those of its polygons", abs(area / polygons - 1) < 0.05, f"{area:.6g} mm2")
+if folder.has("patch.vtu"):
+    patch = pyvista.read(folder / "patch.vtu")
+    checks("patch.vtu", patch.n_cells == 0 or set(patch.celltypes) <= {5, 9}, f"{patch.n_cells} cells")
+    if patch.n_cells:
+        patch.points[:, 2] = 0
+        polygons = patch.compute_cell_sizes()["Area"].sum()
+        area = patch.cell_data["area"].sum()
+        checks.near("patch.vtu areas are near those of its polygons", area, polygons, 0.05)
+for name in filter(folder.has, ("rail.vtu", "wheel.vtu")):
+    surface = pyvista.read(folder / name)
+    flat = surface.extract_surface(algorithm="geometry")
+    checks(f"{name} holds triangles", surface.n_cells > 0 and set(surface.celltypes) == {5}, f"{surface.n_cells} cells")
+    outward = (1 if name == "rail.vtu" else -1) * flat.face_normals[:, 2]
+    checks(f"{name} is finite and faces the other body", bool(np.isfinite(surface.points).all() and (outward > 0).all()))
 if folder.has("separation.vtk"):
     checks.same("separation.vtk", on_grid(pyvista.read(folder / "separation.vtk")["separation"]), folder.s)
+if folder.has("surface.pvd"):
+    steps = pyvista.get_reader(folder / "surface.pvd")
+    for time in steps.time_values:
+        steps.set_active_time_value(time)
+        checks(f"surface.pvd at {time:g}", steps.read().combine().n_points > 0)
+    checks("surface.pvd has steps in ascending order", sorted(set(steps.time_values)) == list(steps.time_values) != [])
 
 plotter = pyvista.Plotter(window_size=(640, 480))
 plotter.add_mesh(grid, scalars="separation", nan_opacity=0)

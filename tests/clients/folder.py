@@ -1,6 +1,7 @@
 """What all client checks share: the folder's arrays, one line per check, the exit code."""
 
 import csv
+import json
 import pathlib
 import sys
 
@@ -14,6 +15,7 @@ class Folder:
         self.path = pathlib.Path(path)
         self.xi, self.eta, self.s = (np.load(self.path / f"{n}.npy") for n in ("xi", "eta", "separation"))
         assert self.s.shape == (len(self.xi), len(self.eta)) and self.s.dtype == np.float64
+        self.summary = json.loads((self.path / "summary.json").read_text())
 
     def __truediv__(self, name):
         return self.path / name
@@ -74,6 +76,11 @@ class Checks:
         else:
             equal = found == expected
         return self(what, bool(np.all(equal)), f"{equal.size} values" if np.all(equal) else f"{np.sum(~equal)} differ")
+
+    def near(self, what, found, expected, within):
+        """Equal to a relative `within`."""
+        off = abs(found / expected - 1)
+        self(what, off <= within, f"{found:.7g}, off by {100 * off:.4f} % of {expected:.7g}")
 
     def done(self):
         sys.exit(1 if self.failed else 0)

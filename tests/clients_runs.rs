@@ -1,0 +1,193 @@
+//! Folders of `wheelrail run` itself, read and solved by the programs that they are for.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+#[path = "clients/programs.rs"]
+mod programs;
+
+use programs::{check, check_all, folder, output_of};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use wheelrail::contact::hertz::effective_modulus;
+use wheelrail::interpenetration::Slicer;
+use wheelrail::interpenetration::load::virtual_load;
+use wheelrail::run::Run;
+use wheelrail::scene;
+
+/// The Hertz case of a 460 mm wheel on a 300 mm crown under 80 kN: E* \[N/mm²\], p₀ \[N/mm²\], δ \[mm\].
+const HERTZ: [&str; 3] = ["113932", "1139.19", "0.0904879"];
+
+/// What every run writes with the default formats.
+const FILES: [&str; 17] = [
+    "summary.json",
+    "xi.npy",
+    "eta.npy",
+    "separation.npy",
+    "boundary.csv",
+    "interpen.csv",
+    "midsep.txt",
+    "separation.vts",
+    "rail.vts",
+    "wheel.vts",
+    "boundary.vtp",
+    "view.py",
+    "patch.svg",
+    "separation.nc",
+    "separation.wrp",
+    "conform.wrp",
+    "contact.inp",
+];
+
+/// A scene of one standard rail, inclined 1:40, under one standard wheel.
+fn standard(rail: &str, wheel: &str, offset: f64, rest: &str) -> String {
+    format!(
+        "[rail]\nprofile = \"{rail}\"\nrotate = \"1:40\"\n[wheel]\nprofile = \"{wheel}\"\nradius = 460.0\n\
+         [contact]\noffset = {offset:?}\n{rest}"
+    )
+}
+
+/// A 300 mm crown under a wheel of one line with this slope, touching at the rail's `x`.
+fn crown(slope: f64, x: f64, rest: &str) -> String {
+    let z = 40.0 * slope;
+    format!(
+        "[rail]\nsegments = [{{ arc = {{ center = [0.0, -300.0], radius = 300.0, half = \"upper\", x = [-40.0, 40.0] \
+         }} }}]\n[wheel]\nsegments = [{{ line = {{ from = [-40.0, {:?}], to = [40.0, {z:?}] }} }}]\nradius = 460.0\n\
+         [contact]\nrail_x = {x:?}\nwheel_x = 0.0\n{rest}",
+        -z
+    )
+}
+
+/// Runs a scene with the real program and returns its folder, in which every file is.
+fn run(name: &str, scene: &str) -> PathBuf {
+    let (path, dir) = (folder(&format!("{name}.toml")), folder(name));
+    std::fs::write(&path, scene).unwrap();
+    let mut program = Command::new(env!("CARGO_BIN_EXE_wheelrail"));
+    let output = program.arg("run").arg(&path).arg("--out").arg(&dir).output().unwrap();
+    assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+    assert_complete(&dir);
+    dir
+}
+
+/// The default files are all there, and so is everything that the summary lists.
+fn assert_complete(dir: &Path) {
+    let summary = std::fs::read_to_string(dir.join("summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    let listed = summary["files"].as_array().unwrap().iter().map(|name| name.as_str().unwrap());
+    for name in FILES.into_iter().chain(listed) {
+        assert!(dir.join(name).is_file(), "{} without {name}", dir.display());
+    }
+}
+
+#[test]
+fn every_reader_reads_what_runs_write() {
+    check_all(&run("tread", include_str!("../examples/scenes/60e1_s1002.toml")));
+    check_all(&run("flange", &standard("60E1", "S1002", 6.0, "[patch]\nload = 60000.0\n")));
+    // Beyond the ends of both profiles, where cells are undefined.
+    let wide = "[patch]\napproach = 0.08\n[grid]\nxi = { from = -60.0, to = 90.0, n = 76 }\n\
+                eta = { from = -9.0, to = 9.0, n = 19 }\n";
+    let wide = run("wide", &standard("60E1", "S1002", 0.0, wide));
+    check_all(&wide);
+    check("check_undefined.py", &wide, &[]);
+}
+
+#[test]
+fn every_reader_reads_each_contact_of_a_wheelset() {
+    let scene = include_str!("../examples/scenes/wheelset.toml");
+    // An approach, as the load of a yawed wheelset takes long to turn into one.
+    let dir = run("wheelset", &scene.replace("load = 60000.0", "approach = 0.08"));
+    check_all(&dir);
+    let parts = std::fs::read_dir(&dir).unwrap().map(|entry| entry.unwrap().path());
+    let parts: Vec<_> = parts.filter(|path| path.is_dir()).collect();
+    assert!(parts.iter().any(|part| part.ends_with("left")), "{parts:?}");
+    for part in parts {
+        assert_complete(&part);
+        check_all(&part);
+    }
+}
+
+#[test]
+fn tamaas_and_contact_mechanics_solve_hertz_from_a_run() {
+    let dir = run("hertz_run", &crown(0.0, 0.0, "[patch]\nload = 80000.0\n[grid]\nspacing = 0.12\n"));
+    check_all(&dir);
+    let [modulus, peak, approach] = HERTZ;
+    let expected = ["--peak", peak, "--approach", approach, "--within", "0.001"];
+    check("solve.py", &dir, &[&["--modulus", modulus, "--load", "80000"][..], &expected].concat());
+}
+
+#[test]
+fn tamaas_and_contact_mechanics_agree_on_60e1_under_s1002() {
+    let dir = run("tread60", &standard("60E1", "S1002", 0.0, "[patch]\nload = 60000.0\n"));
+    check_all(&dir);
+    check("solve.py", &dir, &["--modulus", HERTZ[0], "--load", "60000", "--within", "0.005"]);
+}
+
+/// A case of the table: what it is called, its scene up to `[patch]`, its load \[N\].
+type Case = (&'static str, String, f64);
+
+fn cases() -> Vec<Case> {
+    let tread = || standard("60E1", "S1002", 0.0, "");
+    vec![
+        ("cylinder 460 mm on crown 300 mm", crown(0.0, 0.0, ""), 80e3),
+        ("crown 300 mm under a 1:20 cone", crown(0.05, -300.0 * 0.05f64.atan().sin(), ""), 60e3),
+        ("60E1/S1002 tread", tread(), 40e3),
+        ("60E1/S1002 tread", tread(), 60e3),
+        ("60E1/S1002 tread", tread(), 100e3),
+        ("UIC60/EN15302-A tread", standard("UIC60", "EN15302-A", 0.0, ""), 60e3),
+        ("60E1/S1002 flange root", standard("60E1", "S1002", FLANGE_ROOT, ""), 60e3),
+        ("60E1/S1002 flange", standard("60E1", "S1002", 6.0, ""), 60e3),
+    ]
+}
+
+/// Offset \[mm\] at which S1002 touches the gauge corner of 60E1 with the root of its flange.
+const FLANGE_ROOT: f64 = 3.5;
+
+/// The estimates of δ and p₀ by Hertz and by virtual interpenetration, and the load, as `load_table.py` takes them.
+fn estimates(path: &Path, load: f64) -> (Vec<String>, f64) {
+    let run = Run::new(scene::load(path).unwrap(), Path::new("."), "case").unwrap();
+    let part = &run.parts[0];
+    let [rail, wheel] = &run.question.material;
+    let modulus = effective_modulus(rail, wheel);
+    let hertz = part.contact.curvatures.under_load(load, modulus).unwrap();
+    let placement = &part.contact.placement;
+    // The load grows with δ.
+    let (mut low, mut high) = (1e-4f64, 1.0);
+    while high - low > 1e-7 {
+        let middle = f64::midpoint(low, high);
+        let carries = virtual_load(placement, middle, modulus).is_some_and(|carried| carried < load);
+        (low, high) = if carries { (middle, high) } else { (low, middle) };
+    }
+    // p = p₀ √(l² − η²)/l(0), so that P = p₀ (π/2) ∫ l² dξ / l(0): here by the midpoint rule.
+    let mut slicer = Slicer::new(placement, 0.55 * low);
+    let mut half_width = |xi: f64| slicer.slice(xi).map_or(0.0, |slice| (slice.eta[1] - slice.eta[0]) / 2.0);
+    let window = [part.analysis.xi[0], part.analysis.xi[part.analysis.xi.len() - 1]];
+    let step = (window[1] - window[0]) / 2000.0;
+    let squares: f64 = (0..2000).map(|k| half_width(window[0] + (f64::from(k) + 0.5) * step).powi(2)).sum();
+    let peak = load * half_width(0.0) / (std::f64::consts::FRAC_PI_2 * squares * step);
+    let numbers = [load, modulus, hertz.approach_mm, hertz.pressure_n_per_mm2, low, peak];
+    let angle = placement.rail.contact_angle().to_degrees();
+    let chosen = format!("{:?}", part.contact.approach.unwrap().1.unwrap());
+    let mut arguments: Vec<String> = numbers.iter().map(|number| format!("{number:?}")).collect();
+    arguments.extend([format!("{angle:.1}"), chosen]);
+    (arguments, part.analysis.xi[1] - part.analysis.xi[0])
+}
+
+/// The table of `src/docs/clients.md` is what the program and Tamaas give today.
+#[test]
+fn the_load_table_in_the_docs_is_current() {
+    let mut table = String::new();
+    for (number, (name, scene, load)) in cases().into_iter().enumerate() {
+        let scene = format!("{scene}[patch]\nload = {load:?}\n");
+        let path = folder(&format!("load{number}.toml"));
+        std::fs::write(&path, &scene).unwrap();
+        let (arguments, step) = estimates(&path, load);
+        // Three times as fine as the automatic grid: 48 cells over the box's short side.
+        let fine = format!("{scene}[grid]\nspacing = {:?}\n", step / 3.0);
+        let dir = run(&format!("load{number}"), &fine);
+        let arguments: Vec<&str> =
+            std::iter::once(name).chain(arguments.iter().map(String::as_str)).collect();
+        let _ = write!(table, "{}", output_of("load_table.py", &dir, &arguments));
+    }
+    println!("{table}");
+    let docs = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/src/docs/clients.md")).unwrap();
+    assert!(docs.contains(&table), "src/docs/clients.md has another table; put this one there:\n{table}");
+}
