@@ -17,7 +17,7 @@
 //! | MIDSEP, Sec. 5 | transformed parameters and Δζ on the midplane | [`placement::midsep`] |
 //! | INSEP, Sec. 6 | s(ξ, η) and unit normals over the grid | [`separation`] |
 //! | INTERPEN, Sec. 7 | η(ξ) with s = δ | [`interpenetration`] |
-//! | CONFORM, COUNTACT | the solvers that read all this | [`mod@export`] (decks) |
+//! | CONFORM, COUNTACT | the solvers that read all this | [`mod@export`] (decks), [`mesh`] |
 //!
 //! # In a few lines
 //!
@@ -44,6 +44,7 @@
 //! guaranteed: anything elastic. See [`docs::numerics`] for the formulas and [`docs::errata`] for what differs from
 //! the Report.
 
+pub mod accuracy;
 pub mod check;
 pub mod cli;
 pub mod contact;
@@ -51,6 +52,7 @@ pub mod docs;
 pub mod error;
 pub mod export;
 pub mod interpenetration;
+pub mod mesh;
 pub mod numerics;
 pub mod placement;
 pub mod profile;

@@ -8,6 +8,7 @@ use std::sync::OnceLock;
 use wheelrail::export::deck::Deck;
 use wheelrail::export::deck::contact::{Normal, Settings};
 use wheelrail::export::netcdf::NetCdf;
+use wheelrail::export::picture::Picture;
 use wheelrail::export::{
     Folder, Frame, GridFields, Header, Interval, Loop, QuadMesh, RUN_FOLDER, VIEW_SCRIPT, csv, npy, vtk, vts,
 };
@@ -123,10 +124,17 @@ impl Scene {
         folder.write("interpen.csv", csv::interpen(&[row]).as_bytes()).unwrap();
         folder.write("boundary.vtp", &vtk::boundary(&header, &loops).unwrap()).unwrap();
         folder.write("patch.vtu", &vtk::patch(&header, &self.mesh()).unwrap()).unwrap();
+        folder.write("patch.svg", picture(&header, &grid, &loops).as_bytes()).unwrap();
         folder.write("view.py", VIEW_SCRIPT.as_bytes()).unwrap();
         folder.write("summary.json", b"{\"program\": \"wheelrail\"}\n").unwrap();
         folder.commit().unwrap();
     }
+}
+
+fn picture(header: &Header, grid: &GridFields, loops: &[Loop]) -> String {
+    let profile = |f: fn(f64) -> f64| (-40..=40).map(|x| [f64::from(x), f(f64::from(x))]).collect::<Vec<_>>();
+    let (rail, wheel) = (profile(rail_height), profile(|x| 1e-3 * x * x));
+    Picture { header, grid, loops, rail: &rail, wheel: &wheel }.svg()
 }
 
 fn rail_height(xi: f64) -> f64 {
@@ -222,6 +230,12 @@ fn the_view_script_draws_where_paraview_is() {
 #[test]
 #[ignore = "a measurement"]
 fn rate_of_writing() {
+    let small = Scene { separation: hertz, approach: APPROACH, n: [201, 201] };
+    for _ in 0..5 {
+        let begun = std::time::Instant::now();
+        small.write(&folder("rate201"));
+        eprintln!("a folder of 201 x 201: {:?}", begun.elapsed());
+    }
     let scene = Scene { separation: hertz, approach: APPROACH, n: [2000, 2000] };
     let [xi, eta] = scene.axes();
     let separation: Vec<f64> = xi.iter().flat_map(|&x| eta.iter().map(move |&y| hertz(x, y))).collect();
@@ -238,26 +252,28 @@ fn rate_of_writing() {
         ("separation.nc", Box::new(|sink| netcdf.write(sink))),
     ];
     for (name, writer) in &writers {
-        for _ in 0..4 {
+        let mut bytes = Vec::new();
+        writer(&mut bytes).unwrap();
+        let timed = |write: &dyn Fn(&Folder)| {
             let out = Folder::create(&folder("rate"), RUN_FOLDER).unwrap();
             let begun = std::time::Instant::now();
-            out.stream(name, |sink| writer(sink)).unwrap();
-            let ours = begun.elapsed().as_secs_f64();
-            drop(out);
-            let mut bytes = Vec::new();
-            writer(&mut bytes).unwrap();
-            let out = Folder::create(&folder("rate"), RUN_FOLDER).unwrap();
-            let begun = std::time::Instant::now();
-            out.write(name, &bytes).unwrap();
-            let plain = begun.elapsed().as_secs_f64();
-            let rate = bytes.len() as f64 / 1e9;
-            eprintln!(
-                "{name}: {:.2} GB/s, plain write {:.2} GB/s: {:.2}",
-                rate / ours,
-                rate / plain,
-                plain / ours
-            );
+            write(&out);
+            begun.elapsed().as_secs_f64()
+        };
+        // The best of several in turn: the disk's own writing back disturbs single ones.
+        let mut best = [f64::INFINITY; 2];
+        for _ in 0..8 {
+            best[0] = best[0].min(timed(&|out| out.stream(name, |sink| writer(sink)).unwrap()));
+            best[1] = best[1].min(timed(&|out| out.write(name, &bytes).unwrap()));
         }
+        let begun = std::time::Instant::now();
+        writer(&mut std::io::sink()).unwrap();
+        let encoding = bytes.len() as f64 / 1e9 / begun.elapsed().as_secs_f64();
+        let [ours, plain] = best.map(|seconds| bytes.len() as f64 / 1e9 / seconds);
+        eprintln!(
+            "{name}: {ours:.2} GB/s, plain write {plain:.2} GB/s, ratio {:.2}, encoding alone {encoding:.2}",
+            ours / plain
+        );
     }
 }
 

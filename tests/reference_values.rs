@@ -88,7 +88,7 @@ fn errors(reference: &Reference, method: Option<Method>, estimate: &mut f64) -> 
 
 #[test]
 fn separation_keeps_its_digits() {
-    let references = references("reference");
+    let references = references();
     for bound in &BOUNDS {
         let method = bound.method;
         assert!(method == Method::ReportNewton || bound.relative <= PROMISED_RELATIVE);
@@ -109,7 +109,7 @@ fn separation_keeps_its_digits() {
 
 #[test]
 fn the_estimate_bounds_the_error_and_is_not_idle() {
-    for reference in references("reference") {
+    for reference in references() {
         let mut estimate = 0.0;
         let (.., error) = errors(&reference, None, &mut estimate);
         println!("{:24} estimate {estimate:8.1e} error {error:8.1e}", reference.name);
@@ -121,7 +121,7 @@ fn the_estimate_bounds_the_error_and_is_not_idle() {
 #[test]
 fn the_boundary_is_as_good_as_the_separation() {
     let mut worst = 0f64;
-    for reference in references("reference") {
+    for reference in references() {
         let placement = reference.placement().expect("a placement");
         let scale = (reference.largest_radius() / 300.0).max(1.0);
         for (delta, xi, value) in &reference.boundary {

@@ -3,9 +3,12 @@
 //! Exit codes: 0 done, 1 a geometric "no" (infeasible contact, empty patch, failed check), 2 bad input. Data goes
 //! to stdout, progress and complaints to stderr.
 
+mod check;
 mod midsep;
 mod profile;
+mod report;
 mod run;
+mod sweep;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -39,6 +42,22 @@ enum Command {
     Midsep {
         /// Scene file, TOML or JSON.
         scene: PathBuf,
+    },
+    /// Check every contact of a scene against triangle meshes measured by parry3d; exit code 1 if they disagree.
+    Check {
+        /// Scene file, TOML or JSON.
+        scene: PathBuf,
+    },
+    /// Sweep a wheelset over its track and print a row per position, side and contact.
+    Sweep(sweep::SweepArguments),
+    /// Measure speed against error and run the hard cases; takes about two minutes.
+    Report {
+        /// Folder to write; by default output/report.
+        #[arg(long)]
+        out: Option<PathBuf>,
+        /// Markdown file whose text between `<!-- report:begin -->` and `<!-- report:end -->` becomes the table.
+        #[arg(long)]
+        splice: Option<PathBuf>,
     },
     /// Look at profiles.
     #[command(subcommand)]
@@ -76,6 +95,9 @@ fn on_threads(arguments: Arguments) -> Result<Outcome> {
     pool.install(|| match arguments.command {
         Command::Run { scene, out } => run::run(&scene, out.as_deref()),
         Command::Midsep { scene } => midsep::midsep(&scene),
+        Command::Check { scene } => check::check(&scene),
+        Command::Sweep(arguments) => sweep::sweep(&arguments),
+        Command::Report { out, splice } => report::report(out.as_deref(), splice.as_deref()),
         Command::Profile(command) => profile::profile(&command),
         Command::Schema => schema(),
     })

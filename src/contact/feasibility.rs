@@ -29,7 +29,8 @@ pub struct Feasibility {
 /// of the rail is what is searched.
 pub fn feasibility(placement: &Placement) -> Option<Feasibility> {
     let [a, b] = placement.overlap()?;
-    let mut least: Option<(f64, f64)> = None;
+    // C itself first: rounding may put a stationary point next to it.
+    let mut least = (a <= 0.0 && b >= 0.0).then(|| (0.0, midplane_gap(placement, 0.0)));
     for xi in critical_points(placement, a, b) {
         let gap = midplane_gap(placement, xi);
         if least.is_none_or(|(_, smallest)| gap < smallest) {

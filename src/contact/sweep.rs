@@ -95,3 +95,37 @@ pub fn rolling_radius_difference(
         right - left
     }))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::search::ProfilePair;
+    use crate::placement::track::{RailDistance, Track, WheelDistance, Wheelset};
+    use crate::profile::standards;
+
+    #[test]
+    fn a_position_has_a_row_for_each_side_and_contact() -> Result<()> {
+        let rail = standards::rail("60E1")?;
+        let system = WheelsetOnTrack {
+            pair: ProfilePair::new(&rail, &standards::wheel("cone-1:20")?, 460.0)?,
+            track: Track::new(&rail, RailDistance::Spacing(1500.0))?,
+            wheelset: Wheelset::new(WheelDistance::Spacing(1500.0), 460.0)?,
+        };
+        let conicity = Conicity::new(&system, 5.0, Roll::Neglect)?;
+        let mut sweep = Sweep::new(&system, Selection { within: 0.0, apart: 0.0 }, Some(conicity));
+        let mut rows = Vec::new();
+        sweep.position(&Position { lateral: 3.0, yaw: 0.0, roll: Roll::Neglect }, &mut rows)?;
+        assert_eq!(rows.iter().map(|row| row.side).collect::<Vec<_>>(), [TrackSide::Left, TrackSide::Right]);
+        for row in &rows {
+            assert!((row.delta_r - 0.3).abs() < 1e-12, "{row:?}");
+            assert!((row.conicity - 0.05).abs() < 1e-9, "{row:?}");
+            assert_eq!((row.number, row.lateral, row.roll), (0, 3.0, 0.0));
+        }
+        // A cone moved to the right rises on the right.
+        assert!((rows[1].z - rows[0].z - 0.3).abs() < 1e-12, "{rows:?}");
+        // A wheelset off its track has no rows.
+        sweep.position(&Position { lateral: 300.0, yaw: 0.0, roll: Roll::Solve }, &mut rows)?;
+        assert_eq!(rows.len(), 2);
+        Ok(())
+    }
+}

@@ -11,6 +11,7 @@ pub mod folder;
 mod model;
 pub mod netcdf;
 pub mod npy;
+pub mod picture;
 pub mod vtk;
 pub mod vts;
 
@@ -48,6 +49,8 @@ pub const RUN_FOLDER: Names = Names {
         "countact.wrp",
         "contact.inp",
         "view.py",
+        // Left by a Python that imports or compiles view.py.
+        "__pycache__",
     ],
 };
 

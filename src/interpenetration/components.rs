@@ -1,11 +1,8 @@
 //! The connected parts of the patch {s < δ} inside a window, each with its closed boundary loop.
 
-use serde::Serialize;
-
-use super::slice::{Slice, Slicer};
-use crate::contact::feasibility::critical_points;
-use crate::numerics::quadrature::integral;
-use crate::numerics::roots::bracketed;
+use super::measure::Stretch;
+use super::outline::{End, Outline, Part, Window};
+use super::slice::{Edge, Slice};
 use crate::placement::Placement;
 
 /// Points of a loop along each of its two sides: the polygon is then within 1e-4 of the patch's width of the
@@ -13,33 +10,15 @@ use crate::placement::Placement;
 const POINTS_PER_SIDE: usize = 128;
 const LEAST_POINTS: usize = 4;
 
-/// Intervals in which the patch is looked for with skew, where the depth has no closed-form stationary
-/// points: a part of the patch narrower than this share of the window can be missed.
-const SEARCHED_INTERVALS: usize = 512;
+/// A step of the boundary at a joint is drawn with both its ends if it is larger than this share of the component:
+/// below, the loop's points are no better than that anyway.
+const DRAWN_STEP: f64 = 1e-6;
 
-/// Demand on the quadrature of area and perimeter, relative.
-const QUADRATURE: f64 = 1e-13;
+/// Demand on the quadrature of the area, relative.
+pub(crate) const AREA_DEMAND: f64 = 1e-13;
 
-/// The rectangle of the ξ–η plane that is looked at \[mm\].
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Window {
-    /// Range of ξ.
-    pub xi: [f64; 2],
-    /// Range of η.
-    pub eta: [f64; 2],
-}
-
-/// What bounds a component at one of its ends in ξ.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum End {
-    /// The two branches meet where s(ξ, η) = δ in a single point.
-    Tip,
-    /// The window cuts it.
-    Window,
-    /// One of the bodies ends.
-    ProfileEnd,
-}
+/// Demand on the quadrature of the perimeter, relative.
+const PERIMETER_DEMAND: f64 = 1e-11;
 
 /// One connected part of the patch.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,13 +29,16 @@ pub struct Component {
     pub ends: [End; 2],
     /// Extent in η \[mm\].
     pub eta: [f64; 2],
+    /// Both ends in ξ and, between them, every ξ where the boundary may have a corner \[mm\], ascending.
+    pub corners: Vec<f64>,
     /// Whether the window cuts it anywhere.
     pub cut_by_window: bool,
     /// Closed loop of \[ξ, η\], counter-clockwise seen from +ζ, the first point not repeated; tips exact.
     pub boundary: Vec<[f64; 2]>,
-    /// Area \[mm²\], to about 1e-12 relative.
+    /// Area \[mm²\], to about 1e-12 relative, or to the rounding of s over δ where that is more.
     pub area: f64,
-    /// Length of the loop \[mm\], to about 1e-10 relative.
+    /// Length of the loop, steps at joints included \[mm\], to about 1e-10 relative; 1e-7 where the end of a tilted
+    /// wheel profile rounds it.
     pub perimeter: f64,
     /// Smallest s on it \[mm\] and where (ξ, η).
     pub deepest: [f64; 3],
@@ -67,6 +49,8 @@ pub struct Component {
 pub struct Patch {
     /// δ \[mm\].
     pub approach: f64,
+    /// The window that was looked at.
+    pub window: Window,
     /// Its parts, by ascending ξ.
     pub components: Vec<Component>,
 }
@@ -74,12 +58,15 @@ pub struct Patch {
 impl Patch {
     /// All components inside the window. Along every ξ the patch is one interval of η, so that no component
     /// has a hole and each is an interval of ξ.
+    ///
+    /// Degenerate: empty for a δ that the pair nowhere undercuts, δ = 0 at a mere touch included, and for NaN.
+    /// With skew, or a window off the midplane, a part that begins and ends within 1/512 of the window
+    /// beside another minimum of s can be missed.
     pub fn new(placement: &Placement, approach: f64, window: &Window) -> Self {
-        let mut slicer = Slicer::new(placement, approach);
-        let mut cut = Clipped { slicer: &mut slicer, window: *window };
-        let intervals = cut.intervals();
-        let components = intervals.into_iter().map(|(xi, ends)| cut.component(xi, ends)).collect();
-        Self { approach, components }
+        let mut outline = Outline::new(placement, approach, window);
+        let parts = outline.parts();
+        let components = parts.iter().map(|part| outline.component(part)).collect();
+        Self { approach, window: *window, components }
     }
 
     /// Whether any component is cut by the window.
@@ -104,201 +91,118 @@ impl Patch {
     }
 }
 
-/// A slicer whose slices end at the window.
-struct Clipped<'s, 'a> {
-    slicer: &'s mut Slicer<'a>,
-    window: Window,
-}
-
-impl Clipped<'_, '_> {
-    /// min over the window's η of s − δ.
-    fn depth(&mut self, xi: f64) -> f64 {
-        let [from, to] = self.window.eta;
-        if from <= 0.0 && to >= 0.0 && self.slicer.placement().skew == 0.0 {
-            return self.slicer.depth(xi);
-        }
-        let Some(Slice { eta: [a, b] }) = self.slicer.slice(xi) else { return self.slicer.depth(xi) };
-        // Overlap of [a, b] with the window, as a length: negative where there is some.
-        if a.max(from) <= b.min(to) { self.slicer.depth(xi).min(0.0) } else { (a - to).max(from - b) }
-    }
-
-    /// The clipped interval of η.
-    fn slice(&mut self, xi: f64) -> Option<Slice> {
-        let Slice { eta: [a, b] } = self.slicer.slice(xi)?;
-        let eta = [a.max(self.window.eta[0]), b.min(self.window.eta[1])];
-        (eta[0] <= eta[1]).then_some(Slice { eta })
-    }
-
-    /// The intervals of ξ that the components cover.
-    fn intervals(&mut self) -> Vec<([f64; 2], [End; 2])> {
-        let placement = self.slicer.placement();
-        let Some([first, last]) = placement.overlap() else { return Vec::new() };
-        let [a, b] = [first.max(self.window.xi[0]), last.min(self.window.xi[1])];
-        if a >= b {
-            return Vec::new();
-        }
-        let kind = |xi: f64, profile: f64| if xi == profile { End::ProfileEnd } else { End::Window };
-        let mut points = critical_points(placement, a, b);
-        let plain = placement.skew == 0.0 && self.window.eta[0] <= 0.0 && self.window.eta[1] >= 0.0;
-        if !plain {
-            points
-                .extend((1..SEARCHED_INTERVALS).map(|k| a + (b - a) * k as f64 / SEARCHED_INTERVALS as f64));
-            points.sort_by(f64::total_cmp);
-        }
-        let mut out = Vec::new();
-        let mut begun = (self.depth(a) < 0.0).then_some((a, kind(a, first)));
-        for pair in points.windows(2) {
-            let (here, next) = (self.depth(pair[0]), self.depth(pair[1]));
-            if (here < 0.0) == (next < 0.0) {
-                continue;
-            }
-            let tip = bracketed(|xi| self.depth(xi), pair[0], pair[1]);
-            let (tip, end) =
-                tip.map_or((pair[usize::from(here < 0.0)], End::ProfileEnd), |tip| (tip, End::Tip));
-            match begun.take() {
-                None => begun = Some((tip, end)),
-                Some((from, start)) => out.push(([from, tip], [start, end])),
-            }
-        }
-        if let Some((from, start)) = begun {
-            out.push(([from, b], [start, kind(b, last)]));
-        }
-        out
-    }
-
-    fn component(&mut self, xi: [f64; 2], ends: [End; 2]) -> Component {
-        let corners = self.corners(xi);
-        let nodes = graded(&corners, ends);
-        let slices: Vec<(f64, Slice)> = nodes
-            .iter()
-            .map(|&x| {
-                let tip = (x == xi[0] && ends[0] == End::Tip) || (x == xi[1] && ends[1] == End::Tip);
-                (x, if tip { self.tip(x) } else { self.slice(x).unwrap_or_else(|| self.tip(x)) })
-            })
-            .collect();
-        let mut boundary: Vec<[f64; 2]> = slices.iter().map(|(x, slice)| [*x, slice.eta[0]]).collect();
-        let upper = slices.iter().rev().filter(|(_, slice)| slice.eta[0] < slice.eta[1]);
-        boundary.extend(upper.map(|(x, slice)| [*x, slice.eta[1]]));
-        let eta = slices.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (_, slice)| {
+impl Outline<'_> {
+    fn component(&mut self, part: &Part) -> Component {
+        let Part { xi, ends } = *part;
+        let joints = self.slicer.placement().joints(xi[0], xi[1]);
+        let joined = [&xi[..1], &joints, &xi[1..]].concat();
+        let corners = self.corners(part, &graded(part, &joined));
+        let (nodes, slices) = self.nodes(part, &corners);
+        let mut boundary: Vec<[f64; 2]> =
+            nodes.iter().zip(&slices).map(|(&x, slice)| [x, slice.eta[0]]).collect();
+        let upper = nodes.iter().zip(&slices).rev().filter(|(_, slice)| slice.eta[0] < slice.eta[1]);
+        boundary.extend(upper.map(|(&x, slice)| [x, slice.eta[1]]));
+        let eta = slices.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], slice| {
             [low.min(slice.eta[0]), high.max(slice.eta[1])]
         });
-        let window_eta =
-            slices.iter().any(|(_, s)| s.eta[0] == self.window.eta[0] || s.eta[1] == self.window.eta[1]);
-        let (area, perimeter) = self.measures(&corners, ends);
+        let cut_by_window = ends.contains(&End::Window)
+            || slices.iter().any(|s| s.eta[0] == self.window.eta[0] || s.eta[1] == self.window.eta[1]);
+        let (area, perimeter) = self.measures(part, &corners);
         let deepest = self.deepest(&nodes);
-        let cut_by_window = window_eta || ends.contains(&End::Window);
-        Component { xi, ends, eta, cut_by_window, boundary, area, perimeter, deepest }
+        Component { xi, ends, eta, corners, cut_by_window, boundary, area, perimeter, deepest }
     }
 
-    /// A slice of no width at the η of the tip.
-    fn tip(&mut self, xi: f64) -> Slice {
-        let eta = if self.slicer.placement().skew == 0.0 {
-            0.0
-        } else {
-            self.slicer.slice(xi).map_or(0.0, |s| (s.eta[0] + s.eta[1]) / 2.0)
-        };
-        let eta = eta.clamp(self.window.eta[0], self.window.eta[1]);
-        Slice { eta: [eta, eta] }
-    }
-
-    /// Both ends and all ξ between where the boundary may have a corner: joints, and where it meets the window.
-    fn corners(&mut self, [a, b]: [f64; 2]) -> Vec<f64> {
-        let mut corners = vec![a];
-        corners.extend(self.slicer.placement().joints(a, b));
-        corners.push(b);
-        let mut crossings = Vec::new();
-        for pair in corners.windows(2) {
-            let n = points_between(pair[0], pair[1], b - a);
-            let steps: Vec<f64> =
-                (0..=n).map(|k| pair[0] + (pair[1] - pair[0]) * k as f64 / n as f64).collect();
-            for edge in self.window.eta {
-                let mut beyond = |xi: f64| self.slicer.separation(xi, edge) - self.slicer.approach;
-                crossings.extend(steps.windows(2).filter_map(|s| {
-                    let (p, q) = (beyond(s[0]), beyond(s[1]));
-                    ((p < 0.0) != (q < 0.0)).then(|| bracketed(&mut beyond, s[0], s[1])).flatten()
-                }));
-            }
+    /// ξ of the loop's points and the slices there: every corner, between two of them points that crowd towards
+    /// round ends, and where each branch is farthest out in η.
+    fn nodes(&mut self, part: &Part, corners: &[f64]) -> (Vec<f64>, Vec<Slice>) {
+        let mut nodes = graded(part, corners);
+        let slices: Vec<Slice> = nodes.iter().map(|&x| self.slice_of(part.xi, part.ends, x)).collect();
+        let mut turns = Vec::new();
+        for (branch, sign) in [(0, -1.0), (1, 1.0)] {
+            let outward = |k: &usize| sign * slices[*k].eta[branch];
+            let farthest =
+                (1..nodes.len().saturating_sub(1)).max_by(|p, q| outward(p).total_cmp(&outward(q)));
+            turns.extend(farthest.and_then(|k| self.turn_of_branch(branch, nodes[k - 1], nodes[k + 1])));
         }
-        corners.extend(crossings);
-        corners.sort_by(f64::total_cmp);
-        corners.dedup();
-        corners
+        nodes.extend(turns);
+        nodes.extend(
+            inner(corners)
+                .iter()
+                .filter(|&&x| self.step(x) > DRAWN_STEP * (part.xi[1] - part.xi[0]))
+                .map(|x| x.next_up()),
+        );
+        nodes.sort_by(f64::total_cmp);
+        nodes.dedup();
+        let slices = nodes.iter().map(|&x| self.slice_of(part.xi, part.ends, x)).collect();
+        (nodes, slices)
     }
 
     /// Area and perimeter over the pieces between corners.
-    fn measures(&mut self, corners: &[f64], ends: [End; 2]) -> (f64, f64) {
+    fn measures(&mut self, part: &Part, corners: &[f64]) -> (f64, f64) {
         let (mut area, mut perimeter) = (0.0, 0.0);
-        for piece in pieces(corners, ends) {
-            let width = |cut: &mut Self, xi: f64| cut.slice(xi).map_or(0.0, |s| s.eta[1] - s.eta[0]);
-            area += integral(&mut |t| width(self, piece.xi(t)) * piece.dxi(t), 0.0, 1.0, QUADRATURE)[0];
-            perimeter +=
-                integral(&mut |t| self.speed(piece.xi(t)) * piece.dxi(t), 0.0, 1.0, QUADRATURE.sqrt())[0];
+        for piece in pieces(part, corners) {
+            area += piece.integral(&mut |xi| self.width(xi), AREA_DEMAND);
+            perimeter += piece.integral(&mut |xi| self.speed(xi), PERIMETER_DEMAND);
         }
-        for (xi, end) in [corners[0], corners[corners.len() - 1]].into_iter().zip(ends) {
+        perimeter += inner(corners).iter().map(|&xi| self.step(xi)).sum::<f64>();
+        for (xi, end) in part.xi.into_iter().zip(part.ends) {
             if end != End::Tip {
-                perimeter += self.slice(xi).map_or(0.0, |s| s.eta[1] - s.eta[0]);
+                perimeter += self.width(xi);
             }
         }
         (area, perimeter)
     }
 
+    /// How far both branches jump at a corner \[mm\]: a drawing's rounded coordinates leave such steps.
+    fn step(&mut self, xi: f64) -> f64 {
+        let (Some(left), Some(right)) = (self.slice(xi), self.slice(xi.next_up())) else { return 0.0 };
+        left.eta.into_iter().zip(right.eta).map(|(a, b)| (a - b).abs()).sum()
+    }
+
+    /// Width of the slice at ξ \[mm\], 0 outside.
+    pub(crate) fn width(&mut self, xi: f64) -> f64 {
+        self.slice(xi).map_or(0.0, |slice| slice.eta[1] - slice.eta[0])
+    }
+
     /// Length of both branches per unit of ξ.
     fn speed(&mut self, xi: f64) -> f64 {
-        let Some(Slice { eta }) = self.slice(xi) else { return 0.0 };
+        let Some(edges) = self.edges(xi) else { return 0.0 };
         let window = self.window.eta;
-        let mut branch = |eta: f64, edge: f64| {
-            if eta == edge { 1.0 } else { 1f64.hypot(self.slicer.boundary_slope(xi, eta)) }
-        };
-        branch(eta[0], window[0]) + branch(eta[1], window[1])
+        (0..2).map(|k| if edges[k].eta == window[k] { 1.0 } else { self.branch_speed(xi, edges[k]) }).sum()
     }
 
-    /// \[s, ξ, η\] of the smallest s among the nodes and the gap's own stationary points.
+    fn branch_speed(&mut self, xi: f64, Edge { eta, ledge }: Edge) -> f64 {
+        let slicer = &mut self.slicer;
+        let slope = if ledge { slicer.ledge_slope(xi, eta) } else { slicer.boundary_slope(xi, eta) };
+        // Infinite only where ξ has been rounded onto a round end itself, which has no measure.
+        if slope.is_finite() { 1f64.hypot(slope) } else { 0.0 }
+    }
+
+    /// \[s, ξ, η\] of the smallest s among the nodes and where the depth turns between them.
     fn deepest(&mut self, nodes: &[f64]) -> [f64; 3] {
-        let (a, b) = (nodes[0], nodes[nodes.len() - 1]);
-        let mut candidates = critical_points(self.slicer.placement(), a, b);
+        let mut candidates = self.turning_points_among(nodes);
         candidates.extend(nodes);
-        let eta = 0f64.clamp(self.window.eta[0], self.window.eta[1]);
-        let values = candidates.into_iter().map(|xi| [self.slicer.separation(xi, eta), xi, eta]);
-        values.filter(|v| !v[0].is_nan()).min_by(|p, q| p[0].total_cmp(&q[0])).unwrap_or([f64::NAN, a, eta])
+        let values = candidates.into_iter().map(|xi| {
+            let floor = self.floor(xi);
+            [self.slicer.separation(xi, floor), xi, floor]
+        });
+        let least = values.filter(|v| !v[0].is_nan()).min_by(|p, q| p[0].total_cmp(&q[0]));
+        least.unwrap_or([f64::NAN, nodes[0], 0.0])
     }
 }
 
-/// A piece of a component between two corners, with the square-root behaviour at tips taken out:
-/// ξ(t) = a + (b − a) φ(t), φ′ = 0 at tips.
-struct PieceMap {
-    a: f64,
-    b: f64,
-    tips: [bool; 2],
+/// All corners but the two ends.
+fn inner(corners: &[f64]) -> &[f64] {
+    &corners[1..corners.len() - 1]
 }
 
-impl PieceMap {
-    fn xi(&self, t: f64) -> f64 {
-        let share = match self.tips {
-            [false, false] => t,
-            [true, false] => t * t,
-            [false, true] => t * (2.0 - t),
-            [true, true] => t * t * (3.0 - 2.0 * t),
-        };
-        self.a + (self.b - self.a) * share
-    }
-
-    fn dxi(&self, t: f64) -> f64 {
-        let slope = match self.tips {
-            [false, false] => 1.0,
-            [true, false] => 2.0 * t,
-            [false, true] => 2.0 - 2.0 * t,
-            [true, true] => 6.0 * t * (1.0 - t),
-        };
-        (self.b - self.a) * slope
-    }
-}
-
-fn pieces(corners: &[f64], ends: [End; 2]) -> impl Iterator<Item = PieceMap> {
+/// The pieces of a part between corners.
+fn pieces(part: &Part, corners: &[f64]) -> impl Iterator<Item = Stretch> {
+    let ends = part.ends;
     let last = corners.len().saturating_sub(2);
-    corners.windows(2).enumerate().map(move |(k, pair)| PieceMap {
-        a: pair[0],
-        b: pair[1],
-        tips: [k == 0 && ends[0] == End::Tip, k == last && ends[1] == End::Tip],
+    corners.windows(2).enumerate().map(move |(k, pair)| Stretch {
+        xi: [pair[0], pair[1]],
+        round: [k == 0 && ends[0] != End::Window, k == last && ends[1] != End::Window],
     })
 }
 
@@ -307,14 +211,14 @@ fn points_between(a: f64, b: f64, whole: f64) -> usize {
     LEAST_POINTS.max((POINTS_PER_SIDE as f64 * (b - a) / whole) as usize)
 }
 
-/// ξ of the loop's points: every corner, and between two of them points that crowd towards tips.
-fn graded(corners: &[f64], ends: [End; 2]) -> Vec<f64> {
+/// Every corner, and between two of them ξ that crowd towards round ends.
+fn graded(part: &Part, corners: &[f64]) -> Vec<f64> {
     let mut nodes = vec![corners[0]];
-    let whole = corners[corners.len() - 1] - corners[0];
-    for piece in pieces(corners, ends) {
-        let n = points_between(piece.a, piece.b, whole);
+    let whole = part.xi[1] - part.xi[0];
+    for piece in pieces(part, corners) {
+        let n = points_between(piece.xi[0], piece.xi[1], whole);
         nodes.extend((1..n).map(|k| piece.xi(k as f64 / n as f64)));
-        nodes.push(piece.b);
+        nodes.push(piece.xi[1]);
     }
     nodes.dedup();
     nodes

@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use super::Slicer;
+use super::measure::settled;
 use crate::contact::hertz::{Curvatures, curvatures};
 use crate::error::{Error, Result};
 use crate::numerics::elliptic::complete;
-use crate::numerics::quadrature::integral;
 use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
 use crate::separation::gap::midplane_gap;
@@ -18,8 +18,8 @@ const VIRTUAL_SHARE: f64 = 0.55;
 /// Hertz's assumption of constant curvature is taken to hold: the load then errs by less.
 const CONSTANT_CURVATURE: f64 = 0.05;
 
-/// Demand on the two integrals, far below the error of the model.
-const QUADRATURE: f64 = 1e-9;
+/// Demand on the two integrals and on δ, relative: far below the error of the model.
+const FINE_ENOUGH: f64 = 1e-7;
 
 /// How δ was estimated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -64,7 +64,10 @@ pub fn approach_under_load(placement: &Placement, load: f64, modulus: f64) -> Re
 
 /// The load \[N\] that virtual interpenetration gives for δ \[mm\]: N = π E* δ I₁/I₂ with I₁ = ∬ √(l² − η²),
 /// I₂ = ∬ √(l² − η²)/√(ξ² + η²) over the overlap at 0.55 δ, half width l(ξ). `None` where C does not overlap.
+///
+/// The skew is left out: it turns the overlap about C, and changes the load by its square.
 pub fn virtual_load(placement: &Placement, approach: f64, modulus: f64) -> Option<f64> {
+    let placement = &Placement { skew: 0.0, ..placement.clone() };
     let mut slicer = Slicer::new(placement, VIRTUAL_SHARE * approach);
     slicer.slice(0.0)?;
     let [first, last] = placement.overlap()?;
@@ -74,16 +77,16 @@ pub fn virtual_load(placement: &Placement, approach: f64, modulus: f64) -> Optio
     for end in ends {
         // ξ = end (1 − (1 − t)²) t-graded at both ends: a square root at the tip, a logarithm at C.
         let graded = |t: f64| (end * t * t * (3.0 - 2.0 * t), end.abs() * 6.0 * t * (1.0 - t));
-        first_integral += integral(
+        first_integral += settled(
             &mut |t| {
                 let (xi, step) = graded(t);
                 std::f64::consts::FRAC_PI_2 * half_width(xi).powi(2) * step
             },
             0.0,
             1.0,
-            QUADRATURE,
-        )[0];
-        second_integral += integral(
+            FINE_ENOUGH,
+        );
+        second_integral += settled(
             &mut |t| {
                 let (xi, step) = graded(t);
                 let l = half_width(xi);
@@ -96,8 +99,8 @@ pub fn virtual_load(placement: &Placement, approach: f64, modulus: f64) -> Optio
             },
             0.0,
             1.0,
-            QUADRATURE,
-        )[0];
+            FINE_ENOUGH,
+        );
     }
     Some(std::f64::consts::PI * modulus * approach * first_integral / second_integral)
 }
@@ -135,7 +138,7 @@ fn bracketed_coarsely(mut f: impl FnMut(f64) -> f64, [mut low, mut high]: [f64; 
     if !(f_low < 0.0 && f_high > 0.0) {
         return None;
     }
-    while high - low > 1e-10 {
+    while high - low > FINE_ENOUGH {
         let middle = low + (high - low) / 2.0;
         let value = f(middle);
         if value < 0.0 {

@@ -1,8 +1,12 @@
 //! INTERPEN (Report Sec. 7): the curve s(ξ, η) = δ and the patch it bounds.
 
 mod components;
+mod corners;
 pub mod load;
+pub(crate) mod measure;
+mod outline;
 mod slice;
 
-pub use components::{Component, End, Patch, Window};
+pub use components::{Component, Patch};
+pub use outline::{End, Outline, Window};
 pub use slice::{Slice, Slicer};

@@ -12,11 +12,36 @@ use crate::separation::gap::midplane_gap;
 /// Contractions of the sagitta step; each gains at least three digits away from vertical tangents.
 const CONTRACTIONS: usize = 24;
 
+/// A step of the wheel along a column counts as one beyond this many roundings of its height; less is a smooth
+/// joint whose two sides round differently.
+const STEP_ROUNDINGS: f64 = 64.0;
+
+/// Newton's steps to s = δ with skew, from outside; five reach rounding on a smooth column.
+const NEWTON_STEPS: usize = 6;
+
+/// Half the interval, in roundings of η, in which Newton's result is confirmed by a change of sign.
+const NEWTON_ROUNDINGS: f64 = 64.0;
+
+/// Secant steps to the lowest point of a column with skew.
+const SECANT_STEPS: usize = 8;
+
+/// A lowest point off by this share of R raises s by the square of it, far below rounding of any approach.
+const LOWEST_SHARE: f64 = 1e-14;
+
 /// The interval of η at one ξ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slice {
     /// Lower and upper end \[mm\].
     pub eta: [f64; 2],
+}
+
+/// One end of a slice.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Edge {
+    /// η \[mm\].
+    pub(super) eta: f64,
+    /// Whether the wheel's surface ends or steps there, so that s jumps past δ.
+    pub(super) ledge: bool,
 }
 
 /// Slices of a placed pair at one approach.
@@ -51,72 +76,187 @@ impl<'a> Slicer<'a> {
         self.evaluator.separation(xi, lowest) - self.approach
     }
 
-    /// The interval of η at ξ, or `None` outside the patch. A tip gives an interval of no width.
+    /// The interval of η at ξ, or `None` outside the patch. A tip gives an interval of no width; where the wheel's
+    /// surface ends along η before s reaches δ, so does the interval.
     ///
     /// Accuracy: |Δη| ≤ (R/η) × the accuracy of s.
     pub fn slice(&mut self, xi: f64) -> Option<Slice> {
+        self.edges(xi).map(|[low, high]| Slice { eta: [low.eta, high.eta] })
+    }
+
+    /// Both ends of the slice.
+    pub(super) fn edges(&mut self, xi: f64) -> Option<[Edge; 2]> {
         if self.placement.skew == 0.0 {
             let half = self.half_width(xi)?;
-            return Some(Slice { eta: [-half, half] });
+            return Some([Edge { eta: -half.eta, ..half }, half]);
         }
         let lowest = self.lowest(xi);
-        let inside = self.evaluator.separation(xi, lowest) - self.approach;
-        if inside.is_nan() || inside > 0.0 {
+        let depth = self.approach - self.evaluator.separation(xi, lowest);
+        if depth.is_nan() || depth < 0.0 {
             return None;
         }
-        // The wheel rises by about η²/2R: a bracket of four times the width that lifts it by δ.
-        let reach = 4.0 * (2.0 * self.placement.rolling_radius() * (self.approach + inside.abs())).sqrt();
+        // The wheel rises by about η²/2R: twice that width is enough but for steep profiles.
+        let reach = 2.0 * (2.0 * self.placement.rolling_radius() * depth).sqrt();
+        Some([-reach, reach].map(|reach| self.edge(xi, lowest, reach)))
+    }
+
+    /// The end of the slice on one side of its lowest point, with skew.
+    fn edge(&mut self, xi: f64, lowest: f64, mut reach: f64) -> Edge {
         let approach = self.approach;
-        let mut side = |end: f64| {
-            let beyond = self.evaluator.separation(xi, lowest + end);
-            if beyond.is_nan() || beyond < approach {
-                return None;
+        // Ends at the latest where the column leaves the wheel's own ring.
+        while self.evaluator.separation(xi, lowest + reach) < approach {
+            reach *= 2.0;
+        }
+        let mut far = lowest + reach;
+        if self.evaluator.separation(xi, far).is_nan() {
+            far = self.surface_end(xi, lowest, far);
+            if self.evaluator.separation(xi, far) < approach {
+                return Edge { eta: far, ledge: true };
             }
-            bracketed(|eta| self.evaluator.separation(xi, eta) - approach, lowest, lowest + end)
-        };
-        Some(Slice { eta: [side(-reach)?, side(reach)?] })
+        }
+        let eta = self.level(xi, lowest, far).unwrap_or(lowest);
+        let step = STEP_ROUNDINGS * f64::EPSILON * self.placement.wheel.profile.extent();
+        Edge { eta, ledge: (self.evaluator.separation(xi, eta) - approach).abs() > step }
+    }
+
+    /// η with s(ξ, η) = δ between `lowest` and `far`, on whose two sides s − δ has different signs.
+    ///
+    /// Method: Newton's steps come from outside, where s is convex, and are exact to rounding within five; the
+    /// bracketed root then decides the last bits, over all of the interval where a joint has misled them.
+    fn level(&mut self, xi: f64, lowest: f64, far: f64) -> Option<f64> {
+        let approach = self.approach;
+        let mut eta = far;
+        for _ in 0..NEWTON_STEPS {
+            let miss = self.evaluator.separation(xi, eta) - approach;
+            eta -= miss / self.evaluator.wheel_slopes(xi, eta)[1];
+        }
+        let near = NEWTON_ROUNDINGS * f64::EPSILON * eta.abs().max((eta - lowest).abs());
+        let ends = if far > lowest { [eta - near, eta + near] } else { [eta + near, eta - near] };
+        let mut depth = |eta: f64| self.evaluator.separation(xi, eta) - approach;
+        bracketed(&mut depth, ends[0], ends[1]).or_else(|| bracketed(depth, lowest, far))
+    }
+
+    /// The last η with a surface between `on`, which has one, and `off`, which has none.
+    fn surface_end(&mut self, xi: f64, mut on: f64, mut off: f64) -> f64 {
+        loop {
+            let middle = on + (off - on) / 2.0;
+            if middle == on || middle == off {
+                return on;
+            }
+            if self.evaluator.separation(xi, middle).is_nan() { off = middle } else { on = middle }
+        }
     }
 
     /// η > 0 with s(ξ, η) = δ without skew.
-    fn half_width(&mut self, xi: f64) -> Option<f64> {
+    fn half_width(&mut self, xi: f64) -> Option<Edge> {
         let depth = self.approach - midplane_gap(self.placement, xi);
         if depth.is_nan() || depth < 0.0 {
             return None;
         }
         // Enough for slopes up to 80°; steeper ones take the whole profile.
         let likely = 16.0 * self.placement.rolling_radius() * depth;
-        let foot =
+        let (foot, ledge) =
             self.foot_lifted(xi, depth, likely).or_else(|| self.foot_lifted(xi, depth, f64::INFINITY))?;
-        Some(foot.u.max(0.0).sqrt())
+        Some(Edge { eta: foot.u.max(0.0).sqrt(), ledge })
     }
 
-    /// The wheel point that lies `depth` above the midplane point at ξ.
-    fn foot_lifted(&mut self, xi: f64, depth: f64, u_max: f64) -> Option<Foot> {
+    /// The wheel point that lies `depth` above the midplane point at ξ, and whether the surface ends or steps
+    /// there; `None` where it is beyond `u_max`.
+    fn foot_lifted(&mut self, xi: f64, depth: f64, u_max: f64) -> Option<(Foot, bool)> {
         self.wheel.spans(xi, u_max, &mut self.spans);
         let floor = self.spans.first().filter(|span| span.e[0] == 0.0)?.height;
         for span in &self.spans {
             let rise = depth - (span.height - floor);
             let end = span.e[1].is_finite().then(|| self.wheel.foot(xi, span, span.e[1]));
             if end.is_none_or(|end| end.rise >= rise) {
-                return Some(self.wheel.foot_with_rise(xi, span, rise.max(0.0), CONTRACTIONS));
+                let step = rise < -STEP_ROUNDINGS * f64::EPSILON * (span.height.abs() + floor.abs());
+                return Some((self.wheel.foot_with_rise(xi, span, rise.max(0.0), CONTRACTIONS), step));
             }
+        }
+        let last = self.spans.last().filter(|span| span.u[1] < u_max)?;
+        Some((self.wheel.foot(xi, last, last.e[1]), true))
+    }
+
+    /// η of the least s at ξ \[mm\]: 0 without skew, else where the wheel is parallel to η, or the end of its
+    /// surface nearest to that; NaN where there is none at η = 0.
+    pub fn lowest(&mut self, xi: f64) -> f64 {
+        if self.placement.skew == 0.0 {
+            return 0.0;
+        }
+        self.lowest_by_secants(xi).unwrap_or_else(|| self.lowest_by_bracket(xi))
+    }
+
+    /// The slope across is about η/R + χ (slope along): secants settle at once but for joints.
+    fn lowest_by_secants(&mut self, xi: f64) -> Option<f64> {
+        let radius = self.placement.rolling_radius();
+        let mut last = [0.0, self.evaluator.wheel_slopes(xi, 0.0)[1]];
+        let mut eta = -last[1] * radius;
+        for _ in 0..SECANT_STEPS {
+            let slope = self.evaluator.wheel_slopes(xi, eta)[1];
+            let step = slope * (eta - last[0]) / (slope - last[1]);
+            if slope == 0.0 || step.abs() <= LOWEST_SHARE * radius {
+                return Some(eta);
+            }
+            (last, eta) = ([eta, slope], eta - step);
         }
         None
     }
 
-    /// η of the lowest wheel point at ξ, with skew.
-    fn lowest(&mut self, xi: f64) -> f64 {
-        // The slope across is about η/R + χ (slope along): its root is near χ R × slope, well inside R/4.
+    fn lowest_by_bracket(&mut self, xi: f64) -> f64 {
+        if self.evaluator.separation(xi, 0.0).is_nan() {
+            return f64::NAN;
+        }
         let reach = 0.25 * self.placement.rolling_radius();
-        let root = bracketed(|eta| self.evaluator.wheel_slopes(xi, eta)[1], -reach, reach);
-        root.unwrap_or(f64::NAN)
+        let [low, high] = [-reach, reach].map(|far| {
+            let there = self.evaluator.separation(xi, far);
+            if there.is_nan() { self.surface_end(xi, 0.0, far) } else { far }
+        });
+        let mut slope = |eta: f64| self.evaluator.wheel_slopes(xi, eta)[1];
+        if slope(low) > 0.0 {
+            low
+        } else if slope(high) < 0.0 {
+            high
+        } else {
+            bracketed(slope, low, high).unwrap_or(f64::NAN)
+        }
     }
 
     /// dη/dξ of the boundary at a point of it: −s_ξ/s_η, infinite at a tip.
     pub fn boundary_slope(&mut self, xi: f64, eta: f64) -> f64 {
+        let [along, across] = self.gradient(xi, eta);
+        -along / across
+    }
+
+    /// (∂s/∂ξ, ∂s/∂η).
+    pub(super) fn gradient(&mut self, xi: f64, eta: f64) -> [f64; 2] {
         let rail = self.evaluator.rail_slope(xi);
         let [along, across] = self.evaluator.wheel_slopes(xi, eta);
-        -(along - rail) / across
+        [along - rail, across]
+    }
+
+    /// dη/dξ of a ledge: the circle of one profile point about the axle, along which dξ′ : dη′ = η′ sinθ : w.
+    pub(super) fn ledge_slope(&mut self, xi: f64, eta: f64) -> f64 {
+        // A rounding inside: the ledge itself may count as off the surface.
+        let Some((foot, _, eta_w)) = self.foot(xi, eta * (1.0 - 4.0 * f64::EPSILON)) else { return f64::NAN };
+        let (sin, cos) = self.placement.skew.sin_cos();
+        let along = eta_w * self.placement.wheel.section.frame.sin;
+        (along * sin + foot.w * cos) / (along * cos - foot.w * sin)
+    }
+
+    /// Abscissa in the wheel's section of the profile point under (ξ, η) \[mm\]; NaN off the wheel.
+    pub(super) fn foot_abscissa(&mut self, xi: f64, eta: f64) -> f64 {
+        let foot = self.foot(xi, eta);
+        foot.map_or(f64::NAN, |(foot, xi_w, _)| self.wheel.abscissa(xi_w, foot.e))
+    }
+
+    /// The wheel point over (ξ, η) and the wheel's own ξ′, η′.
+    fn foot(&mut self, xi: f64, eta: f64) -> Option<(Foot, f64, f64)> {
+        let (sin, cos) = self.placement.skew.sin_cos();
+        let (xi_w, eta_w) = if sin == 0.0 { (xi, eta) } else { (xi * cos + eta * sin, eta * cos - xi * sin) };
+        let u = eta_w * eta_w;
+        self.wheel.spans(xi_w, u, &mut self.spans);
+        let span = WheelSurface::span_at(&self.spans, u)?;
+        Some((self.wheel.foot_at(xi_w, span, u)?, xi_w, eta_w))
     }
 
     /// s(ξ, η) \[mm\].

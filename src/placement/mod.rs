@@ -80,7 +80,22 @@ impl Pair {
         let wheel = Body::at(&self.wheel, wheel_x, Side::Wheel).map_err(|e| e.within("contact: wheel_x"))?;
         Ok(Placement { rail, wheel, wheel_radius: self.wheel_radius, skew })
     }
+
+    /// The pair in contact where a search found it: abscissa and angle \[rad\] of the common normal's frame on each
+    /// body. At a kink the angle is not that of a tangent; s then has no second-order expansion at C.
+    ///
+    /// # Errors
+    /// An abscissa off its profile.
+    pub fn placed_along(&self, rail: [f64; 2], wheel: [f64; 2], skew: f64) -> Result<Placement> {
+        let rail = Body::along(&self.rail, rail, Side::Rail).map_err(|e| e.within("contact: rail"))?;
+        let wheel = Body::along(&self.wheel, wheel, Side::Wheel).map_err(|e| e.within("contact: wheel"))?;
+        Ok(Placement { rail, wheel, wheel_radius: self.wheel_radius, skew })
+    }
 }
+
+/// Angles closer than this \[rad\] are those of one tangent: what a search leaves by rounding, far below the kinks of
+/// drawings.
+const SAME_TANGENT: f64 = 1e-9;
 
 impl Body {
     fn at(profile: &Profile, x: f64, side: Side) -> Result<Self> {
@@ -93,6 +108,22 @@ impl Body {
             return Err(Error::new("", x.to_string(), expected, "choose a point on the profile"));
         };
         Ok(Self { section: Section::at_contact(profile, &point, side), profile: profile.clone(), point })
+    }
+
+    fn along(profile: &Profile, [x, angle]: [f64; 2], side: Side) -> Result<Self> {
+        let smooth = Self::at(profile, x, side)?;
+        if (smooth.contact_angle() - angle).abs() <= SAME_TANGENT {
+            return Ok(smooth);
+        }
+        let (sin, cos) = angle.sin_cos();
+        let mut point = smooth.point;
+        (point.station.cos, point.station.sin) = (cos, sin);
+        Ok(Self { section: Section::in_frame(profile, point.station, side), profile: profile.clone(), point })
+    }
+
+    /// Whether the contact frame's ξ is the tangent of the profile at C: not so at kinks and ends.
+    pub fn is_smooth(&self) -> bool {
+        self.section.contact.is_some()
     }
 
     /// θ_C \[rad\] of (4.12): the profile's angle at C, positive counter-clockwise from x to z.

@@ -4,6 +4,7 @@
 mod arc;
 pub mod builder;
 pub mod continuity;
+pub mod measured;
 mod polynomial;
 mod section;
 pub mod standards;

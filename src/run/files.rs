@@ -9,12 +9,14 @@ use crate::error::{Error, Result};
 use crate::export::deck::Deck;
 use crate::export::deck::contact::{Normal, Settings};
 use crate::export::netcdf::NetCdf;
+use crate::export::picture::Picture;
 use crate::export::{
     Folder, FolderPart, Frame, GridFields, Header, Interval, Loop, VIEW_SCRIPT, csv, npy, vtk, vts,
 };
 use crate::interpenetration::Slicer;
 use crate::placement::midsep;
-use crate::scene::Format;
+use crate::profile::Section;
+use crate::scene::{Format, equal_steps};
 
 /// A file and the writer of its content.
 type Job<'a> = (&'static str, Box<dyn Fn(&FolderPart<'_>) -> Result<()> + Sync + Send + 'a>);
@@ -38,9 +40,16 @@ pub(super) fn write(folder: &Folder, run: &Run, part: &Part) -> Result<()> {
         None
     };
     let loops = loops(part);
+    let outlines = [&part.contact.placement.rail.section, &part.contact.placement.wheel.section].map(outline);
+    let picture =
+        Picture { header: &header, grid: &grid, loops: &loops, rail: &outlines[0], wheel: &outlines[1] };
     let mut jobs: Vec<Job<'_>> = Vec::new();
     tables(&mut jobs, part, &loops);
     arrays(&mut jobs, run, part);
+    bytes(&mut jobs, "patch.svg", || Ok(picture.svg().into_bytes()));
+    if run.wants_any(&[Format::Png]) {
+        bytes(&mut jobs, "patch.png", || picture.png());
+    }
     surfaces(&mut jobs, run, &header, &grid, &loops);
     if let Some(netcdf) = &netcdf {
         stream(&mut jobs, "separation.nc", move |file| netcdf.write(file));
@@ -81,6 +90,23 @@ fn header(run: &Run, part: &Part) -> Header {
         approach: part.contact.approach.map_or(0.0, |(approach, _)| approach),
         frame: Frame::at(rail.x, rail.z, rail.cos, rail.sin),
     }
+}
+
+/// Points of a picture's profile along one piece of it.
+const OUTLINE_POINTS: usize = 32;
+
+/// A body's profile in the contact frame, for pictures; NaN between pieces that do not join.
+fn outline(section: &Section) -> Vec<[f64; 2]> {
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    for piece in &section.pieces {
+        if points.last().is_some_and(|last| last[0] != piece.xi[0]) {
+            points.push([f64::NAN; 2]);
+        }
+        let branch = &section.branches[piece.branch];
+        let xi = equal_steps(piece.xi[0], piece.xi[1], OUTLINE_POINTS);
+        points.extend(xi.into_iter().map(|xi| [xi, branch.height(xi)]));
+    }
+    points
 }
 
 /// The boundary loops, lifted onto the rail.

@@ -2,15 +2,20 @@
 
 mod analysis;
 mod files;
+mod places;
 mod summary;
 
 use std::path::Path;
 
 pub use analysis::{Analysis, ApproachBy, Contact, Question, Timings};
+pub use places::Found;
 
 use crate::error::{Error, Result};
 use crate::export::Folder;
 use crate::interpenetration::Patch;
+use crate::mesh::axes;
+use crate::placement::{Pair, Placement};
+use crate::profile::measured::Record;
 use crate::scene::{self, Scene, check_points};
 
 /// A scene and everything computed from it.
@@ -24,6 +29,8 @@ pub struct Run {
     pub title: String,
     /// What it asks of every contact.
     pub question: Question,
+    /// What was done to measured profiles of rail and wheel.
+    pub measured: [Option<Record>; 2],
     /// One part for every grid; the first contact's first.
     pub parts: Vec<Part>,
 }
@@ -33,6 +40,8 @@ pub struct Run {
 pub struct Part {
     /// Folder below the run's own, or empty for that itself.
     pub folder: String,
+    /// How the contact was found, unless it was chosen.
+    pub found: Option<Found>,
     /// The placed pair.
     pub contact: Contact,
     /// Its grid and patch.
@@ -46,15 +55,23 @@ impl Run {
     /// Bad input, by key. An infeasible contact or an empty patch is a result: [`Run::refusals`].
     pub fn new(scene: Scene, folder: &Path, name: &str) -> Result<Self> {
         let question = question(&scene)?;
-        let pair = scene.pair(folder)?;
-        let [rail_x, wheel_x] = scene.contact_points()?;
-        let contact = Contact::new(pair.placed(rail_x, wheel_x, 0.0)?, &question)?;
-        let (xi, eta) = (axis(&scene, "xi")?, axis(&scene, "eta")?);
-        check_points("grid", xi.len() as f64 * eta.len() as f64)?;
-        let analysis = Analysis::new(&contact, xi, eta, &question);
-        let parts = vec![Part { folder: String::new(), contact, analysis }];
+        let (pair, measured) = scene.pair_and_records(folder)?;
+        let places = places::find(&scene.standing()?, &pair, &question)?;
+        let mut parts: Vec<Part> = Vec::new();
+        for place in places {
+            for (number, [xi, eta]) in grids(&scene, &place)?.into_iter().enumerate() {
+                let analysis = Analysis::new(&place.contact, xi, eta, &question);
+                let folder = match (parts.is_empty(), number) {
+                    (true, _) => String::new(),
+                    (false, 0) => place.folder.clone(),
+                    (false, _) => format!("{}patch-{}", prefix(&place.folder), number + 1),
+                };
+                let (found, contact) = (place.found.clone(), place.contact.clone());
+                parts.push(Part { folder, found, contact, analysis });
+            }
+        }
         let title = scene.title.clone().unwrap_or_else(|| name.to_string());
-        Ok(Self { hash: scene::hash(&scene), scene, title, question, parts })
+        Ok(Self { hash: scene::hash(&scene), scene, title, question, measured, parts })
     }
 
     /// Writes all files that the scene asks for.
@@ -72,7 +89,11 @@ impl Run {
 
     /// What a user should know before using the files.
     pub fn warnings(&self) -> Vec<String> {
-        self.parts.iter().flat_map(Part::warnings).collect()
+        let findings = self.measured.iter().flatten().flat_map(|record| &record.warnings);
+        let mut out: Vec<String> =
+            findings.map(|finding| format!("{}: {}", finding.place, finding.found)).collect();
+        out.extend(self.parts.iter().flat_map(Part::warnings));
+        out
     }
 }
 
@@ -102,10 +123,60 @@ impl Part {
     }
 }
 
-fn axis(scene: &Scene, name: &str) -> Result<Vec<f64>> {
-    scene
-        .axis(name)?
-        .ok_or_else(|| Error::new(format!("grid: {name}"), "auto", "values", "give from, to and n"))
+/// The placed pair of a scene's first contact, without grid or patch.
+///
+/// # Errors
+/// Bad input, by key.
+pub fn first_contact(scene: &Scene, pair: &Pair) -> Result<Placement> {
+    let question = Question { approach: None, ..question(scene)? };
+    let placed = places::find(&scene.standing()?, pair, &question)?.into_iter().next();
+    placed
+        .map(|place| place.contact.placement)
+        .ok_or_else(|| Error::new("contact", "none", "a wheel over its rail", "check offsets and signs"))
+}
+
+fn prefix(folder: &str) -> String {
+    if folder.is_empty() { String::new() } else { format!("{folder}-") }
+}
+
+/// The grids of one contact: the scene's own axes, or one over every part of the patch.
+///
+/// A contact that was found has one grid, over the part of the patch that holds it: the others are contacts of
+/// their own.
+fn grids(scene: &Scene, place: &places::Placed) -> Result<Vec<[Vec<f64>; 2]>> {
+    let (xi, eta) = (scene.axis("xi")?, scene.axis("eta")?);
+    let spacing = scene.spacing()?;
+    if let (Some(xi), Some(eta)) = (&xi, &eta) {
+        if spacing.is_some() {
+            let expected = "`spacing` only with automatic axes";
+            return Err(Error::new("grid: spacing", "a step beside given axes", expected, "remove it"));
+        }
+        check_points("grid", xi.len() as f64 * eta.len() as f64)?;
+        return Ok(vec![[xi.clone(), eta.clone()]]);
+    }
+    let mut boxes = match place.contact.approach {
+        Some((approach, _)) => axes::boxes(&place.contact.placement, approach, 0.0),
+        None => Vec::new(),
+    };
+    if boxes.is_empty() {
+        let expected = "values, or a patch that the axes can be sized by";
+        return Err(Error::new(
+            "grid",
+            "auto, and no patch",
+            expected,
+            "give from, to and n, or a larger approach",
+        ));
+    }
+    if place.found.is_some() {
+        boxes.truncate(1);
+    }
+    let grid = |window| {
+        let automatic = axes::over(window, spacing)?;
+        let both = [xi.clone().unwrap_or(automatic.xi), eta.clone().unwrap_or(automatic.eta)];
+        check_points("grid", both[0].len() as f64 * both[1].len() as f64)?;
+        Ok(both)
+    };
+    boxes.iter().map(grid).collect()
 }
 
 /// The numerical question that a scene asks.

@@ -6,9 +6,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::profile::drawing::SegmentData;
+use crate::profile::measured;
 use crate::separation::grid::Method;
 
-/// A scene: one wheel on one rail, what is asked of it, and what is to be written.
+/// A scene: a wheel on a rail or a wheelset on a track, what is asked of it, and what is to be written.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
@@ -19,8 +20,15 @@ pub struct Scene {
     pub rail: ProfileData,
     /// The wheel profile and its rolling radius.
     pub wheel: ProfileData,
-    /// Where the two touch.
-    pub contact: ContactData,
+    /// Where the two touch, for one wheel on one rail.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<ContactData>,
+    /// The track, for a wheelset.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub track: Option<TrackData>,
+    /// The wheelset on it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wheelset: Option<WheelsetData>,
     /// How far they approach.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub patch: Option<PatchData>,
@@ -45,7 +53,7 @@ pub struct ProfileData {
     /// Name of a built-in profile (`wheelrail profile list`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub profile: Option<String>,
-    /// File with `segments` (TOML or JSON), relative to the scene.
+    /// File relative to the scene: `segments` (TOML or JSON), or a measured profile.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<PathBuf>,
     /// Segments in order of x.
@@ -54,15 +62,81 @@ pub struct ProfileData {
     /// First point [x, z], mm, of segments in the drawing form of Appendix A.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<[f64; 2]>,
-    /// Mirror image under x → −x, before anything else.
-    #[serde(default)]
-    pub mirror: bool,
+    /// Mirror image under x → −x, before anything else; of a measured profile: its first axis points to the centre
+    /// of the track.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mirror: Option<bool>,
     /// Turn about the profile's origin, counter-clockwise seen with x to the right and z up: rad, or "1:n".
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rotate: Option<Rotation>,
     /// Shift [x, z], mm, after the turn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shift: Option<[f64; 2]>,
+    /// Of a measured file: its format; by the extension if not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub format: Option<measured::Format>,
+    /// Of a text or CSV file: the columns of x and z, by number from 1 or by name.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub columns: Option<[measured::Column; 2]>,
+    /// Of an .mpt file: which section, from 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub section: Option<usize>,
+    /// Of a measured file: whether its second axis points down.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flip_z: Option<bool>,
+    /// Of a measured file: unit of its coordinates.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<measured::Unit>,
+    /// Of a measured file: where the origin goes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub origin: Option<measured::Origin>,
+    /// Of a measured rail: depth of the gauge point under the top of rail, mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gauge_height: Option<f64>,
+    /// Of a measured wheel: distance of the taping line from the flange back, mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tape_distance: Option<f64>,
+    /// Of a measured rail: its inclination is in the points already.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub already_inclined: bool,
+    /// Of a measured file: repairs that may be made.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub repair: Vec<measured::Repair>,
+    /// Of a measured file: the curve through its points.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curve: Option<measured::CurveKind>,
+    /// Of a measured file: wavelength that smoothing halves, mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cutoff_wavelength: Option<f64>,
+    /// Of a measured file: kinks above this angle stay corners, rad.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kink_angle: Option<f64>,
+    /// Of a measured file: largest distance of a point from an arc chain, mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub arc_tolerance: Option<f64>,
+}
+
+impl ProfileData {
+    /// The keys of a measured file.
+    pub fn measured(&self) -> measured::Options {
+        measured::Options {
+            format: self.format,
+            columns: self.columns.clone(),
+            section: self.section,
+            mirror: self.mirror,
+            flip_z: self.flip_z,
+            unit: self.unit,
+            origin: self.origin,
+            gauge_height: self.gauge_height,
+            tape_distance: self.tape_distance,
+            already_inclined: self.already_inclined,
+            repair: self.repair.clone(),
+            curve: self.curve,
+            cutoff_wavelength: self.cutoff_wavelength,
+            kink_angle: self.kink_angle,
+            arc_tolerance: self.arc_tolerance,
+        }
+    }
 }
 
 /// An angle.
@@ -75,7 +149,7 @@ pub enum Rotation {
     Ratio(String),
 }
 
-/// A chosen pair of points.
+/// A chosen pair of points, or a placed single wheel that is lowered until it touches.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactData {
@@ -85,6 +159,86 @@ pub struct ContactData {
     /// Abscissa of C on the wheel profile, mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wheel_x: Option<f64>,
+    /// Lateral offset of the wheel profile's origin from the rail's, mm, + to the field side.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub offset: Option<f64>,
+    /// Roll of the wheel about the track's y axis, rad, right-handed, applied second.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub roll: Option<f64>,
+    /// Yaw of the wheel about z, rad, right-handed, applied first.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub yaw: Option<f64>,
+    /// Near misses up to this vertical gap, mm, are reported.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub within: Option<f64>,
+}
+
+/// Two rails: the right one as described, the left one its mirror image.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TrackData {
+    /// Distance between the rails' inner faces, mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gauge: Option<f64>,
+    /// Depth below the top of rail down to which the gauge is measured, mm; 14 by default.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gauge_height: Option<f64>,
+    /// Instead of the gauge: distance between the rail profiles' origins, mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spacing: Option<f64>,
+}
+
+/// Two wheels on an axle: the right one as described, the left one its mirror image.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WheelsetData {
+    /// Distance between the flange backs, mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub back_to_back: Option<f64>,
+    /// Abscissa of the flange back on the wheel profile, mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flange_back_x: Option<f64>,
+    /// Instead of both: distance between the wheel profiles' origins, mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spacing: Option<f64>,
+    /// Lateral displacement, mm, + to the right.
+    #[serde(default)]
+    pub lateral: f64,
+    /// Yaw about z, rad, applied first; > 0 moves the right-hand wheel forward.
+    #[serde(default)]
+    pub yaw: f64,
+    /// "solve": both wheels touch; "neglect": 0; or rad about the track's y axis, > 0 lowers the right-hand wheel.
+    #[serde(default)]
+    pub roll: RollData,
+    /// Near misses up to this vertical gap, mm, are reported.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub within: Option<f64>,
+}
+
+/// How the roll of a wheelset is found.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "\"solve\", \"neglect\" or an angle in rad")]
+pub enum RollData {
+    /// A word.
+    Word(RollWord),
+    /// rad.
+    Radians(f64),
+}
+
+impl Default for RollData {
+    fn default() -> Self {
+        Self::Word(RollWord::Solve)
+    }
+}
+
+/// The words for a roll.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum RollWord {
+    /// Both wheels touch.
+    Solve,
+    /// 0, each side lowered on its own.
+    Neglect,
 }
 
 /// The approach δ, or the load that it is estimated from.

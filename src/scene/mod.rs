@@ -1,13 +1,15 @@
 //! Scenes: what the user writes, read and checked once, in mm and rad from here on.
 
 mod data;
+mod position;
 mod read;
 mod resolve;
 
 pub use data::{
     AxisData, ContactData, Format, GridData, GridMethod, MaterialData, OutputData, PatchData, ProfileData,
-    Rotation, Scene, Spacing,
+    RollData, RollWord, Rotation, Scene, Spacing, TrackData, WheelsetData,
 };
+pub use position::{Place, Standing};
 pub use read::{hash, load, parse};
 pub use resolve::{check_points, equal_steps, profile_from_file};
 

@@ -8,7 +8,8 @@ use crate::contact::hertz::Elastic;
 use crate::error::{Error, Result, finite};
 use crate::placement::Pair;
 use crate::profile::drawing::{SegmentData, chain};
-use crate::profile::{Profile, standards};
+use crate::profile::measured::{self, Measured, Options, Record};
+use crate::profile::{Profile, Side, standards};
 
 /// Grid points beyond which s alone takes more than a GiB, its files five.
 const MOST_POINTS: f64 = 1.2e8;
@@ -32,30 +33,24 @@ impl Scene {
     /// # Errors
     /// Whatever is wrong with a profile, by key.
     pub fn pair(&self, folder: &Path) -> Result<Pair> {
-        let rail = self.rail.resolve(folder, standards::rail).map_err(|e| e.within("rail"))?;
+        self.pair_and_records(folder).map(|(pair, _)| pair)
+    }
+
+    /// The same, with what was done to measured profiles of rail and wheel.
+    ///
+    /// # Errors
+    /// Those of [`Scene::pair`].
+    pub fn pair_and_records(&self, folder: &Path) -> Result<(Pair, [Option<Record>; 2])> {
+        let rail = self.rail.resolve(folder, Side::Rail).map_err(|e| e.within("rail"))?;
         if let Some(radius) = self.rail.radius {
             let expected = "a radius only for the wheel";
             return Err(Error::new("rail: radius", radius.to_string(), expected, "remove it"));
         }
-        let wheel = self.wheel.resolve(folder, standards::wheel).map_err(|e| e.within("wheel"))?;
+        let wheel = self.wheel.resolve(folder, Side::Wheel).map_err(|e| e.within("wheel"))?;
         let radius = self.wheel.radius.ok_or_else(|| {
             Error::new("wheel", "no `radius`", "the nominal rolling radius in mm", "add it")
         })?;
-        Pair::new(rail, wheel, radius)
-    }
-
-    /// The two abscissae of `[contact]`.
-    ///
-    /// # Errors
-    /// One of them is missing.
-    pub fn contact_points(&self) -> Result<[f64; 2]> {
-        match (self.contact.rail_x, self.contact.wheel_x) {
-            (Some(rail), Some(wheel)) => Ok([rail, wheel]),
-            _ => {
-                let expected = "both `rail_x` and `wheel_x`";
-                Err(Error::new("contact", "one abscissa or none", expected, "give the pair of points"))
-            }
-        }
+        Ok((Pair::new(rail.profile, wheel.profile, radius)?, [rail.measured, wheel.measured]))
     }
 
     /// The approach δ \[mm\] when it is given directly.
@@ -187,11 +182,12 @@ pub fn equal_steps(a: f64, b: f64, n: usize) -> Vec<f64> {
 }
 
 impl ProfileData {
-    fn resolve(&self, folder: &Path, built_in: fn(&str) -> Result<Profile>) -> Result<Profile> {
-        let mut profile = match (&self.profile, &self.file, &self.segments) {
-            (Some(name), None, None) => built_in(name)?,
-            (None, Some(file), None) => profile_from_file(&folder.join(file))?,
-            (None, None, Some(segments)) => chain("inline", "scene", self.start, segments)?,
+    /// The profile as placed by the scene, and what was done to a measured one.
+    fn resolve(&self, folder: &Path, side: Side) -> Result<Resolved> {
+        let Resolved { mut profile, measured } = match (&self.profile, &self.file, &self.segments) {
+            (Some(name), None, None) => Resolved::drawn(built_in(name, side)?),
+            (None, Some(file), None) => self.from_file(&folder.join(file), side)?,
+            (None, None, Some(segments)) => Resolved::drawn(chain("inline", "scene", self.start, segments)?),
             _ => {
                 let expected = "exactly one of `profile`, `file`, `segments`";
                 return Err(Error::new("", "none or several", expected, "give one source"));
@@ -201,18 +197,82 @@ impl ProfileData {
             let expected = "`start` only with `segments`";
             return Err(Error::new("start", "a first point", expected, "remove it"));
         }
-        if self.mirror {
-            profile = profile.mirrored();
+        if measured.is_none() {
+            self.reject_measured_keys()?;
+            if self.mirror == Some(true) {
+                profile = profile.mirrored();
+            }
         }
         if let Some(rotation) = &self.rotate {
+            if self.already_inclined {
+                let expected = "no `rotate` for a profile that is `already_inclined`";
+                return Err(Error::new("rotate", "an inclination", expected, "remove one of the two"));
+            }
             let (cos, sin) = rotation.cosine_sine().map_err(|e| e.within("rotate"))?;
             profile = profile.rotated(cos, sin);
         }
         if let Some([x, z]) = self.shift {
             profile = profile.shifted(finite("shift", x)?, finite("shift", z)?);
         }
-        Ok(profile)
+        Ok(Resolved { profile, measured })
     }
+
+    fn from_file(&self, path: &Path, side: Side) -> Result<Resolved> {
+        if self.format.is_none() && is_chain_file(path) {
+            return profile_from_file(path).map(Resolved::drawn);
+        }
+        let place = path.display().to_string();
+        let bytes = read(path, measured::LARGEST_FILE)?;
+        let Measured { profile, record, .. } = measured::profile(&place, &bytes, side, &self.measured())?;
+        Ok(Resolved { profile, measured: Some(record) })
+    }
+
+    /// Keys that mean nothing for a drawn profile are mistakes.
+    fn reject_measured_keys(&self) -> Result<()> {
+        let given = Options { mirror: None, ..self.measured() };
+        if given == Options::default() {
+            return Ok(());
+        }
+        let expected = "keys of measured files only beside a measured `file`";
+        Err(Error::new("", "a key of measured files", expected, "remove it, or give `file` and `format`"))
+    }
+}
+
+/// A profile, and the record of a measured one.
+struct Resolved {
+    profile: Profile,
+    measured: Option<Record>,
+}
+
+impl Resolved {
+    fn drawn(profile: Profile) -> Self {
+        Self { profile, measured: None }
+    }
+}
+
+/// A profile of the right body by name.
+fn built_in(name: &str, side: Side) -> Result<Profile> {
+    match side {
+        Side::Rail => standards::rail(name),
+        Side::Wheel => standards::wheel(name),
+    }
+}
+
+/// Whether a file's extension is that of a chain of segments.
+fn is_chain_file(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml") || e.eq_ignore_ascii_case("json"))
+}
+
+/// The bytes of a file of at most `largest` bytes.
+fn read(path: &Path, largest: usize) -> Result<Vec<u8>> {
+    let place = path.display().to_string();
+    let broken = |e: std::io::Error| Error::new(&place, e.to_string(), "a readable file", "check the path");
+    let length = path.metadata().map_err(broken)?.len();
+    if length > largest as u64 {
+        let expected = format!("at most {largest} bytes");
+        return Err(Error::new(place, format!("{length} bytes"), expected, "is this the right file?"));
+    }
+    std::fs::read(path).map_err(broken)
 }
 
 impl Rotation {

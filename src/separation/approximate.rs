@@ -22,8 +22,11 @@ impl<'a> Quadratic<'a> {
 
 /// Coefficients of ξ², ξη and η² \[1/mm\] in the second-order expansion of s at C.
 ///
-/// At a joint the curvatures are those of the contact segments.
+/// At a joint the curvatures are those of the contact segments; NaN where a body touches with a kink.
 pub fn quadratic_form(placement: &Placement) -> [f64; 3] {
+    if !(placement.rail.is_smooth() && placement.wheel.is_smooth()) {
+        return [f64::NAN; 3];
+    }
     let curvature =
         |section: &crate::profile::Section| section.branch_at(0.0).map_or(f64::NAN, |b| b.curvature(0.0));
     let (k_r, k_w) = (curvature(&placement.rail.section), curvature(&placement.wheel.section));

@@ -1,7 +1,6 @@
 """What all client checks share: the folder's arrays, one line per check, the exit code."""
 
 import csv
-import json
 import pathlib
 import sys
 
@@ -84,6 +83,3 @@ def depth(s, approach):
     """Interpenetration, NaN where s is."""
     return np.where(s > approach, 0.0, approach - s)
 
-
-def load_json(text):
-    return json.loads(text)

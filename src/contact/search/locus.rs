@@ -88,7 +88,8 @@ impl Attitude {
     /// (sin φ, cos φ) of the wheel's profile where its outline has the tangent (sin, cos) in the rail's axes.
     #[inline]
     pub fn profile_tangent(&self, sin: f64, cos: f64) -> (f64, f64) {
-        let unrolled = sin * self.cos_roll + cos * self.sin_roll;
+        // Past 1 by a rounding there would be no outline to come back to.
+        let unrolled = (sin * self.cos_roll + cos * self.sin_roll).clamp(-1.0, 1.0);
         let sine = unrolled * self.cos_yaw;
         (sine, ((1.0 - sine) * (1.0 + sine)).max(0.0).sqrt())
     }

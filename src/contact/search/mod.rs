@@ -15,10 +15,10 @@
 //!
 //! # Method
 //!
-//! [`locus`]: the outline of the yawed wheel along the rail reduces the search to two plane curves. A local minimum of
+//! `locus`: the outline of the yawed wheel along the rail reduces the search to two plane curves. A local minimum of
 //! the vertical gap has a common tangent (at kinks, steps and ends: a common normal within the fan). All such places
 //! are found pair by pair of segments: in closed form or from guaranteed brackets for arcs and lines
-//! ([`arcs`]), by interval bounds for polynomials ([`polynomials`]). So the lowest cannot be missed.
+//! (`arcs`), by interval bounds for polynomials (`polynomials`). So the lowest cannot be missed.
 //!
 //! What counts is the part of each profile that faces the other body in its own axes ([`Section`]): parts of a
 //! wheel that face down only by virtue of the roll (a flange back beyond the vertical) do not take part.
@@ -184,6 +184,11 @@ impl Pose {
         finite("offset", offset)?;
         Ok(Self { offset, yaw: small_angle("yaw", yaw)?, roll: small_angle("roll", roll)? })
     }
+
+    /// Roll \[rad\].
+    pub fn roll(&self) -> f64 {
+        self.roll
+    }
 }
 
 /// Rejects angles that no wheel has.
@@ -200,7 +205,7 @@ impl ContactSearch<'_> {
     ///
     /// Accuracy: heights and gaps to a few roundings of the profiles' extents, whatever R; abscissae to that over
     /// √(difference of curvatures), from the common tangent, not from a flat minimum.
-    /// Cost: about a microsecond for arcs, ten with polynomials; yaw doubles it.
+    /// Cost: about a microsecond for arcs, four with polynomials; yaw doubles or triples it.
     /// Degenerate: bodies that touch along a stretch (parallel lines, equal arcs) give its middle.
     pub fn touch(&mut self, pose: &Pose, selection: &Selection) -> Option<Touch<'_>> {
         let attitude = Attitude::new(pose.offset, pose.yaw, pose.roll, self.pair.radius);
@@ -284,10 +289,11 @@ fn contact(attitude: &Attitude, c: &Candidate, height: f64) -> Contact {
         wheel_x: c.wheel.x,
         rail_z: c.rail.z,
         wheel_z: c.wheel.z,
-        y: attitude.sin_yaw * (c.wheel.x - rolling_radius * c.wheel.sin / c.wheel.cos),
+        // Without yaw 0, not −0.
+        y: attitude.sin_yaw * (c.wheel.x - rolling_radius * c.wheel.sin / c.wheel.cos) + 0.0,
         contact_angle: c.rail.angle(),
         wheel_angle: c.wheel.angle(),
-        skew: attitude.sin_yaw.atan2(attitude.cos_yaw * unrolled_cos),
+        skew: attitude.sin_yaw.atan2(attitude.cos_yaw * unrolled_cos) + 0.0,
         gap: c.gap + height,
         rolling_radius,
         rail_curvature: c.rail_radius.recip(),

@@ -231,7 +231,7 @@ fn view(attitude: &Attitude, bounds: &Bounds, middle: &Station, width: f64) -> O
     let mut seen = [1.0; 2];
     if attitude.sin_yaw != 0.0 {
         let steepness = bounds.slope.map(|m| m * attitude.sin_yaw / attitude.cos_yaw);
-        if steepness.iter().any(|s| !(s.abs() < 1.0)) {
+        if !steepness.iter().all(|s| s.abs() < 1.0) {
             return None;
         }
         for (tangent, s) in tangents.iter_mut().zip(steepness) {

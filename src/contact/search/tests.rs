@@ -1,9 +1,12 @@
+#![allow(clippy::panic)]
+
 use super::wheelset::{Position, Roll, WheelsetOnTrack};
 use super::*;
 use crate::placement::track::{RailDistance, Track, WheelDistance, Wheelset};
 use crate::profile::{Arc, Half, Polynomial, Segment, Shape, standards};
 
 mod brute;
+mod reference;
 
 const ALL: Selection = Selection { within: 0.0, apart: 0.0 };
 

@@ -93,7 +93,7 @@ impl Walk<'_> {
     pub fn offer(&mut self, wheel: &Station, wheel_radius: f64, rail: &Station, rail_radius: f64) {
         let outline = self.attitude.outline(wheel);
         let gap = (outline.z - rail.z) - rail.sin / rail.cos * (outline.x - rail.x);
-        if !(gap <= self.lowest + self.within) {
+        if gap.is_nan() || gap > self.lowest + self.within {
             return;
         }
         let [above, below] = [self.attitude.outline_radius(wheel, wheel_radius), rail_radius].map(f64::recip);
@@ -118,7 +118,7 @@ pub(super) fn place(attitude: &Attitude, index: usize, element: &Element) -> Opt
         }
         Shape::Line(ends) => {
             let outline = ends.map(|end| attitude.outline(&end));
-            if !(outline[0].cos > 0.0) {
+            if outline[0].cos.is_nan() || outline[0].cos <= 0.0 {
                 return None;
             }
             ([outline[0].sin; 2], outline.map(|p| p.x))

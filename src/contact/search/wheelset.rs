@@ -153,27 +153,24 @@ impl WheelsetSearch<'_> {
     fn solve_roll(&mut self, position: &Position, within: f64) -> Option<Level> {
         let rounding = 2.0 * f64::EPSILON * (self.system.wheelset.wheel_x + self.system.wheelset.radius);
         let (mut below, mut above) = (None, None);
-        let mut roll = 0.0;
+        let mut level = self.level(position, 0.0, within)?;
+        let mut last = None;
         for _ in 0..NEWTON_STEPS {
-            let level = self.level(position, roll, within)?;
-            let difference = level.difference();
-            let newton = roll - difference / level.slope;
-            if difference.abs() <= rounding || newton == roll {
+            let next = level.next(last.as_ref());
+            if level.difference().abs() <= rounding || next == level.roll {
                 return Some(level);
             }
-            if difference < 0.0 {
-                below = Some(roll)
-            } else {
-                above = Some(roll)
-            }
+            let bound = if level.difference() < 0.0 { &mut below } else { &mut above };
+            *bound = Some(level.roll);
             let inside = match (below, above) {
-                (Some(a), Some(b)) => (newton - a) * (newton - b) < 0.0,
-                _ => newton.abs() <= LARGEST_ROLL,
+                (Some(a), Some(b)) => (next - a) * (next - b) < 0.0,
+                _ => next.abs() <= LARGEST_ROLL,
             };
             if !inside {
                 break;
             }
-            roll = newton;
+            last = Some(level);
+            level = self.level(position, next, within)?;
         }
         let (a, b) = below.zip(above).or_else(|| self.nearest_change(position))?;
         let apart = |roll: f64| self.level(position, roll, 0.0).map_or(f64::NAN, |level| level.difference());
@@ -221,4 +218,21 @@ impl Level {
     fn difference(&self) -> f64 {
         self.z[1] - self.z[0]
     }
+
+    /// The next roll to try: Newton's, or where there was a step before the zero of the inverse cubic with both values
+    /// and slopes, as long as it only refines Newton's; across a change of contact it would not.
+    fn next(&self, last: Option<&Self>) -> f64 {
+        let step = -self.difference() / self.slope;
+        let Some(last) = last else { return self.roll + step };
+        let span = self.difference() - last.difference();
+        let t = -last.difference() / span;
+        let back = (1.0 - t) * (1.0 - t);
+        let refined = back * (1.0 + 2.0 * t) * (last.roll - self.roll)
+            + span * (t * back / last.slope + t * t * (t - 1.0) / self.slope);
+        self.roll + if (refined - step).abs() <= REFINEMENT * step.abs() { refined } else { step }
+    }
 }
+
+/// Share of Newton's step by which the cubic may differ from it; it does so by its own small error only where the
+/// contact stays on the same pair of segments.
+const REFINEMENT: f64 = 0.1;

@@ -107,7 +107,7 @@ impl Conicity {
         let (mut outer, mut force, mut speed, mut time) = (amplitude, value, 0.0, 0.0);
         for k in (0..=below).rev() {
             let left = total - self.energy[k];
-            if !(left > 0.0) {
+            if left <= 0.0 {
                 return None;
             }
             let inner = left.sqrt();

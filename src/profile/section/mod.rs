@@ -59,6 +59,11 @@ impl Section {
         Self::build(profile, point.station, Some(point), side)
     }
 
+    /// The profile in any frame: at a kink, where the common normal is not that of a tangent.
+    pub fn in_frame(profile: &Profile, frame: Station, side: Side) -> Self {
+        Self::build(profile, frame, None, side)
+    }
+
     fn build(profile: &Profile, frame: Station, contact: Option<&ProfilePoint>, side: Side) -> Self {
         let mut branches: Vec<Branch> = Vec::with_capacity(profile.segments().len());
         // Ends closer than this are one joint, moved apart by rounding.

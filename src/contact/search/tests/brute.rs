@@ -13,7 +13,11 @@ struct Scene {
 impl Scene {
     /// The wheel's point at profile abscissa x and angle ω about the axle, profile origin at height 0.
     fn point(&self, section: &Section, x: f64, omega: f64) -> [f64; 3] {
-        let rolling = self.radius - section.height(x);
+        self.point_at(x, section.height(x), omega)
+    }
+
+    fn point_at(&self, x: f64, z: f64, omega: f64) -> [f64; 3] {
+        let rolling = self.radius - z;
         let body = [x, rolling * omega.sin(), self.radius - rolling * omega.cos()];
         let [offset, yaw, roll] = self.pose;
         let yawed =
@@ -145,30 +149,34 @@ fn compare(seed: u64, polynomials: bool, yaw: f64, roll: f64) -> Result<()> {
     let rail = random_chain(&mut random, 4, polynomials)?;
     let wheel = random_chain(&mut random, 5, polynomials)?;
     let pose = [random.between(-8.0, 8.0), random.between(-yaw, yaw), random.between(-roll, roll)];
-    let radius = 300.0;
-    let pair = ProfilePair::new(&rail, &wheel, radius)?;
-    let scene = Scene { rail, wheel, radius, pose };
+    compare_scene(&format!("seed {seed}"), Scene { rail, wheel, radius: 300.0, pose })
+}
+
+fn compare_scene(name: &str, scene: Scene) -> Result<()> {
+    let pose = scene.pose;
+    let pair = ProfilePair::new(&scene.rail, &scene.wheel, scene.radius)?;
     let [sampled, x, omega] = scene.lowest_gap();
     let mut search = pair.search();
     let touch = search.touch(&Pose::new(pose[0], pose[1], pose[2])?, &ALL);
-    let Some(touch) = touch else { panic!("seed {seed}: no touch, sampled {sampled}") };
+    let Some(touch) = touch else { panic!("{name}: no touch, sampled {sampled}") };
     let first = touch.contacts[0];
     let difference = touch.height + sampled;
     // Not later than any sample; not too early, since the place of contact below is on both surfaces. Samples get stuck
     // in the sharp valley over a kink of the rail.
     assert!(
         (-1e-9..1e-3).contains(&difference),
-        "seed {seed}: touch at {}, samples at {}, x {x}, ω {omega}, {difference:e}, {first:?}",
+        "{name}: touch at {}, samples at {}, x {x}, ω {omega}, {difference:e}, {first:?}",
         touch.height,
         -sampled
     );
-    // The place of contact in space, independently of the outline.
+    // The place of contact in space, independently of the outline. At a step both heights are the surface's.
     let tilt = -(first.wheel_angle.tan() * pose[1].tan()).asin();
     let section = Section::own_axes(&scene.wheel, Side::Wheel);
-    let place = scene.point(&section, first.wheel_x, tilt);
-    assert!((place[0] - first.rail_x).abs() < 1e-9, "seed {seed}: {place:?} {first:?}");
-    assert!((place[1] - first.y).abs() < 1e-9, "seed {seed}: {place:?} {first:?}");
-    assert!((place[2] + touch.height - first.rail_z).abs() < 1e-9, "seed {seed}: {place:?} {first:?}");
+    assert!((section.height(first.wheel_x) - first.wheel_z).abs() < 2e-3, "{name}: {first:?}");
+    let place = scene.point_at(first.wheel_x, first.wheel_z, tilt);
+    assert!((place[0] - first.rail_x).abs() < 1e-9, "{name}: {place:?} {first:?}");
+    assert!((place[1] - first.y).abs() < 1e-9, "{name}: {place:?} {first:?}");
+    assert!((place[2] + touch.height - first.rail_z).abs() < 1e-9, "{name}: {place:?} {first:?}");
     Ok(())
 }
 
@@ -178,6 +186,64 @@ fn first_touch_agrees_with_dense_samples_of_random_scenes() -> Result<()> {
         let polynomials = seed % 2 == 1;
         let (yaw, roll) = [(0.0, 0.0), (0.0, 0.05), (0.05, 0.0), (0.08, 0.05)][seed as usize / 2 % 4];
         compare(seed, polynomials, yaw, roll)?;
+    }
+    Ok(())
+}
+
+#[test]
+fn first_touch_agrees_with_dense_samples_of_standard_profiles() -> Result<()> {
+    let mut random = Random(7);
+    let rails: Vec<&str> = standards::rail_names().collect();
+    for name in standards::wheel_names() {
+        for _ in 0..3 {
+            let rail = rails[random.between(0.0, rails.len() as f64) as usize];
+            let (sin, cos) = random.between(0.0, 0.06).sin_cos();
+            let pose = [random.between(-14.0, 8.0), random.between(-0.04, 0.04), random.between(-0.02, 0.02)];
+            let (rail_profile, wheel) = (standards::rail(rail)?.rotated(cos, sin), standards::wheel(name)?);
+            let scene = Scene { rail: rail_profile, wheel, radius: 460.0, pose };
+            compare_scene(&format!("{name} on {rail} at {pose:?}"), scene)?;
+        }
+    }
+    Ok(())
+}
+
+/// Without yaw and roll the gap is a function of x: its local minima on a fine grid are the contacts.
+#[test]
+fn every_local_minimum_of_the_gap_is_reported() -> Result<()> {
+    let (step, within) = (2e-3, 30.0);
+    for seed in 0..60 {
+        let mut random = Random(1000 + seed);
+        let rail = random_chain(&mut random, 4, seed % 2 == 0)?;
+        let wheel = random_chain(&mut random, 5, seed % 2 == 0)?;
+        let offset = random.between(-8.0, 8.0);
+        let pair = ProfilePair::new(&rail, &wheel, 300.0)?;
+        let mut search = pair.search();
+        let touch = search.touch(&Pose::new(offset, 0.0, 0.0)?, &Selection { within, apart: 0.0 });
+        let contacts = touch.map_or(Vec::new(), |t| t.contacts.to_vec());
+        let gap = |x: f64| {
+            let gap = pair.wheel_section.height(x - offset) - pair.rail_section.height(x);
+            if gap.is_nan() { f64::INFINITY } else { gap }
+        };
+        let values: Vec<f64> = (0..70_000).map(|k| gap(-60.0 + step * f64::from(k))).collect();
+        let mut minima = Vec::new();
+        for k in 1..values.len() - 1 {
+            if values[k].is_finite() && values[k] < values[k - 1] && values[k] <= values[k + 1] {
+                minima.push(-60.0 + step * k as f64);
+            }
+        }
+        // The grid may be too coarse for a contact, but each is a minimum closer by.
+        for c in &contacts {
+            // An end may be a rounding outside.
+            let here =
+                [-1e-12, 0.0, 1e-12].map(|h| gap(c.rail_x + h)).into_iter().fold(f64::INFINITY, f64::min);
+            let [left, right] = [-1e-5, 1e-5].map(|h| gap(c.rail_x + h) - here);
+            assert!(left > -1e-11 && right > -1e-11, "seed {seed}: {left:e} {right:e} {c:?}");
+        }
+        assert!(contacts.len() < minima.len() + 2, "seed {seed}: {minima:?} {contacts:?}");
+        for x in minima {
+            let near = contacts.iter().any(|c| (c.rail_x - x).abs() < 1.5 * step);
+            assert!(near, "seed {seed}: nothing at {x} among {contacts:?}");
+        }
     }
     Ok(())
 }

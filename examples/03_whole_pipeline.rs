@@ -1,0 +1,24 @@
+//! How do I run a scene and write its files from my own program?
+//!
+//!     cargo run --release --example 03_whole_pipeline
+
+use std::path::Path;
+
+use wheelrail::export::{Folder, RUN_FOLDER};
+use wheelrail::run::Run;
+use wheelrail::scene;
+
+fn main() -> wheelrail::Result<()> {
+    let path = Path::new("examples/scenes/60e1_s1002.toml");
+    let run = Run::new(scene::load(path)?, Path::new("examples/scenes"), "60e1_s1002")?;
+    for part in &run.parts {
+        println!(
+            "method {}, error below {:e} mm",
+            part.analysis.plan.choice.method.name(),
+            part.analysis.plan.error
+        );
+    }
+    let folder = Folder::create(Path::new("output/from_library"), RUN_FOLDER)?;
+    run.write(&folder)?;
+    folder.commit()
+}

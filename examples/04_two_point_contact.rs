@@ -1,0 +1,40 @@
+//! At which lateral displacement does a wheelset touch with tread and flange at once?
+//!
+//!     cargo run --release --example 04_two_point_contact
+
+use wheelrail::contact::search::wheelset::{Position, Roll, WheelsetOnTrack};
+use wheelrail::contact::search::{ProfilePair, Selection};
+use wheelrail::placement::track::{RailDistance, Track, WheelDistance, Wheelset};
+use wheelrail::profile::standards;
+
+fn main() -> wheelrail::Result<()> {
+    let norm = 40f64.hypot(1.0);
+    let rail = standards::rail("60E1")?.rotated(40.0 / norm, 1.0 / norm);
+    let wheel = standards::wheel("S1002")?;
+    let system = WheelsetOnTrack {
+        pair: ProfilePair::new(&rail, &wheel, 460.0)?,
+        track: Track::new(&rail, RailDistance::Gauge { gauge: 1435.0, height: 14.0 })?,
+        wheelset: Wheelset::new(WheelDistance::BackToBack { distance: 1360.0, flange_back_x: -70.0 }, 460.0)?,
+    };
+    let mut search = system.search();
+    let selection = Selection { within: 0.02, apart: 2.0 };
+    for step in 0..=80 {
+        let lateral = 0.1 * f64::from(step);
+        let position = Position { lateral, yaw: 0.0, roll: Roll::Solve };
+        let Some(touch) = search.touch(&position, &selection)? else { continue };
+        let right = touch.sides[1].touch.contacts;
+        if right.len() > 1 {
+            println!("y = {lateral:.1} mm:");
+            for contact in right {
+                println!(
+                    "  rail x = {:8.3}, wheel x = {:8.3} mm, angle {:5.1} deg, gap {:.4} mm",
+                    contact.rail_x,
+                    contact.wheel_x,
+                    contact.contact_angle.to_degrees(),
+                    contact.gap
+                );
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,246 @@
+//! Everything that the report measures.
+
+use std::time::Instant;
+
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use super::errors::{Errors, compare};
+use super::hard_case::{Outcome, hard_cases};
+use super::reference::{Reference, references};
+use super::speed::{Timing, Track, Work, race};
+use crate::error::{Error, Result};
+use crate::placement::Placement;
+use crate::separation::grid::Method;
+use crate::separation::plan::{FULL_PRECISION, plan};
+
+/// Tolerances \[mm\] that spectral columns are measured at.
+pub const TOLERANCES: [f64; 4] = [1e-3, 1e-6, 1e-9, FULL_PRECISION];
+
+/// The scene that growth and threads are measured on: a plain tread contact, arcs on both bodies.
+const EXAMPLE: &str = "hollow_tread";
+
+/// How much to measure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Effort {
+    /// n of the n × n grids that every method is timed on.
+    pub sides: Vec<usize>,
+    /// Time each contestant of a race gets at least \[s\].
+    pub seconds: f64,
+    /// n of the n × n grids of the growth of cost.
+    pub growth: Vec<usize>,
+}
+
+impl Effort {
+    /// What `wheelrail report` does: 4 × 10^4 and 4 × 10^6 points, growth up to 10^8; about two minutes, 0.8 GB.
+    pub fn full() -> Self {
+        Self { sides: vec![200, 2000], seconds: 0.25, growth: vec![100, 316, 1000, 3162, 10_000] }
+    }
+}
+
+/// One row of accuracy.csv.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// Name of the reference scene.
+    pub scene: String,
+    /// Name of the method, or "store".
+    pub method: &'static str,
+    /// Tolerance \[mm\] of a method that has one.
+    pub tolerance: Option<f64>,
+    /// n of the n × n grid.
+    pub side: usize,
+    /// Best processor time for the whole grid on one thread.
+    pub timing: Timing,
+    /// Errors at the 60-digit points; none for the store.
+    pub errors: Option<Errors>,
+}
+
+impl Row {
+    /// Points of the grid.
+    pub fn points(&self) -> usize {
+        self.side * self.side
+    }
+
+    /// Millions of points a second.
+    pub fn rate(&self) -> f64 {
+        self.points() as f64 / self.timing.best / 1e6
+    }
+}
+
+/// Cost over the number of points, one thread.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Growth {
+    /// Points of the grid.
+    pub points: usize,
+    /// Spectral columns at full precision \[s\].
+    pub spectral: f64,
+    /// Plain store \[s\].
+    pub store: f64,
+}
+
+/// One thread against two.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Threads {
+    /// The method.
+    pub method: Method,
+    /// Points of the grid.
+    pub points: usize,
+    /// Best time on the wall on one and on two threads \[s\].
+    pub seconds: [f64; 2],
+    /// Whether the same bits came out.
+    pub same_bits: bool,
+}
+
+/// All numbers of a report.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measurements {
+    /// Every scene × method × tolerance × grid.
+    pub rows: Vec<Row>,
+    /// Least, median and largest time for choosing a method to full precision \[s\], over the rows' scenes and grids.
+    pub planning: [f64; 3],
+    /// Growth of cost.
+    pub growth: Vec<Growth>,
+    /// Threads.
+    pub threads: Vec<Threads>,
+    /// Hard cases.
+    pub hard_cases: Vec<Outcome>,
+}
+
+/// Measures; `progress` is told what begins.
+///
+/// # Errors
+/// Embedded files that are not in their format; a system that grants no thread.
+pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measurements> {
+    let one = pool(1)?;
+    let references = references()?;
+    let (mut rows, mut planning) = (Vec::new(), Vec::new());
+    for &side in &effort.sides {
+        for (k, reference) in references.iter().enumerate() {
+            progress(&format!(
+                "grid {side} x {side}, scene {} of {}: {}",
+                k + 1,
+                references.len(),
+                reference.name
+            ));
+            rows.extend(one.install(|| scene(reference, side, effort.seconds, &mut planning))?);
+        }
+    }
+    let example = example(&references)?;
+    progress("growth of cost with the number of points");
+    let growth = one.install(|| growth(example, effort))?;
+    progress("one thread against two");
+    let threads = threads(example, effort)?;
+    progress("hard cases");
+    let cases = hard_cases()?;
+    let hard_cases = cases.iter().map(|case| case.run(&cases)).collect::<Result<_>>()?;
+    planning.sort_by(f64::total_cmp);
+    let planning = [0, planning.len() / 2, planning.len().saturating_sub(1)]
+        .map(|k| planning.get(k).copied().unwrap_or(f64::NAN));
+    Ok(Measurements { rows, planning, growth, threads, hard_cases })
+}
+
+fn pool(threads: usize) -> Result<ThreadPool> {
+    ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| {
+        Error::new("threads", error.to_string(), format!("{threads} threads"), "free some memory")
+    })
+}
+
+fn example(references: &[Reference]) -> Result<&Reference> {
+    references.iter().find(|reference| reference.name == EXAMPLE).ok_or_else(|| {
+        Error::new("reference scenes", "no example", EXAMPLE, "restore src/accuracy/reference")
+    })
+}
+
+/// The window of the scene's own points, so that spectral columns are the same polynomials as at these.
+fn track<'a>(reference: &Reference, placement: &'a Placement, side: usize) -> Track<'a> {
+    let [xi, eta] = reference.scene.axes();
+    let reach = eta.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    let ends = [xi.first(), xi.last()].map(|v| v.copied().unwrap_or(0.0));
+    Track::new(placement, ends, reach, side)
+}
+
+/// Every method and tolerance, as (name, tolerance, method); the store first.
+fn contestants() -> Vec<(&'static str, Option<f64>, Option<Method>)> {
+    let mut all = vec![("store", None, None)];
+    for method in Method::ALL {
+        match method {
+            Method::Spectral => all.extend(TOLERANCES.map(|t| (method.name(), Some(t), Some(method)))),
+            Method::ReportNewton => all.push((method.name(), Some(FULL_PRECISION), Some(method))),
+            _ => all.push((method.name(), None, Some(method))),
+        }
+    }
+    all
+}
+
+fn scene(reference: &Reference, side: usize, seconds: f64, planning: &mut Vec<f64>) -> Result<Vec<Row>> {
+    let placement = reference.placement()?;
+    let mut track = track(reference, &placement, side);
+    let contestants = contestants();
+    let (mut works, mut errors) = (Vec::new(), Vec::new());
+    for &(_, tolerance, method) in &contestants {
+        let Some(method) = method else {
+            works.push(Work::Store);
+            errors.push(None);
+            continue;
+        };
+        let tolerance = tolerance.unwrap_or(FULL_PRECISION);
+        let choice = plan(&placement, track.xi(), track.axis(), tolerance, Some(method)).choice;
+        works.push(Work::Fill(choice));
+        errors.push(Some(Errors::of(&compare(reference, &placement, &choice))));
+    }
+    let start = Instant::now();
+    plan(&placement, track.xi(), track.axis(), FULL_PRECISION, None);
+    planning.push(start.elapsed().as_secs_f64());
+    let timings = track.race(&works, seconds);
+    let rows = contestants.into_iter().zip(timings).zip(errors);
+    Ok(rows
+        .map(|(((method, tolerance, _), timing), errors)| Row {
+            scene: reference.name.clone(),
+            method,
+            tolerance,
+            side,
+            timing,
+            errors,
+        })
+        .collect())
+}
+
+fn growth(reference: &Reference, effort: &Effort) -> Result<Vec<Growth>> {
+    let placement = reference.placement()?;
+    let rows = effort.growth.iter().map(|&side| {
+        let mut track = track(reference, &placement, side);
+        let plan = plan(&placement, track.xi(), track.axis(), FULL_PRECISION, Some(Method::Spectral));
+        let timings = track.race(&[Work::Store, Work::Fill(plan.choice)], effort.seconds);
+        Growth { points: side * side, store: timings[0].best, spectral: timings[1].best }
+    });
+    Ok(rows.collect())
+}
+
+fn threads(reference: &Reference, effort: &Effort) -> Result<Vec<Threads>> {
+    let placement = reference.placement()?;
+    let pools = [pool(1)?, pool(2)?];
+    let side = effort.sides.iter().copied().max().unwrap_or(2);
+    let mut track = track(reference, &placement, side);
+    let rows = [Method::Spectral, Method::Pointwise].map(|method| {
+        let choice = plan(&placement, track.xi(), track.axis(), FULL_PRECISION, Some(method)).choice;
+        let timings = race(2, effort.seconds, |k| {
+            let start = Instant::now();
+            pools[k].install(|| track.run(Work::Fill(choice)));
+            start.elapsed().as_secs_f64()
+        });
+        let [one, two] = [0, 1].map(|k| {
+            pools[k].install(|| track.run(Work::Fill(choice)));
+            track.values().iter().map(|s| s.to_bits()).collect::<Vec<_>>()
+        });
+        let same_bits = one == two;
+        let seconds = [timings[0].best, timings[1].best];
+        Threads { method, points: side * side, seconds, same_bits }
+    });
+    Ok(rows.to_vec())
+}
+
+/// The median; NaN of nothing.
+pub(super) fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+}

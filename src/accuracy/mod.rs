@@ -1,0 +1,19 @@
+//! Speed against error: every method of the ladder timed and held to 60-digit values, and the hard cases.
+//!
+//! [`reference`] reads the 60-digit files, which are part of the program; [`errors`] compares a method with them;
+//! [`speed`] races methods against a plain store of the same array; [`hard_case`] runs the cases of
+//! `tests/hard_cases`; [`measurements`] does all of it to a given effort; [`requirements`] judges the ratios;
+//! [`page`], [`table`] and [`chart`] turn the numbers into Markdown, CSV and SVG. Nothing here touches the disk.
+
+pub mod chart;
+pub mod errors;
+pub mod hard_case;
+mod hard_checks;
+pub mod measurements;
+pub mod page;
+pub mod reference;
+pub mod requirements;
+pub mod speed;
+pub mod table;
+
+pub use hard_checks::{BOUNDS, Check};

@@ -1,0 +1,339 @@
+//! The report as a page: a list of sections, each built by one function, and the files beside it.
+
+use super::chart::{Chart, Series, svg};
+use super::hard_case::Outcome;
+use super::measurements::{Growth, Measurements, Row, median};
+use super::requirements;
+use super::table::{accuracy_csv, growth_csv, hard_cases_csv, markdown};
+
+/// One section of the page. A new one is a new function in [`sections`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Section {
+    /// Heading.
+    pub title: &'static str,
+    /// Markdown.
+    pub body: String,
+    /// Files that belong to it: name in the report's folder, content.
+    pub files: Vec<(&'static str, Vec<u8>)>,
+}
+
+/// Where, with what and how the numbers were made: (name, value) for the head of the page.
+pub type Origin = Vec<(&'static str, String)>;
+
+/// The page's own file.
+pub const PAGE: &str = "report.md";
+
+/// All files of a report.
+pub const FILES: [&str; 7] = [
+    PAGE,
+    "accuracy.csv",
+    "hard_cases.csv",
+    "scaling.csv",
+    "scaling.svg",
+    "work_error_small.svg",
+    "work_error_large.svg",
+];
+
+/// The sections of the report, in order.
+pub fn sections(m: &Measurements) -> Vec<Section> {
+    vec![
+        requirements_section(m),
+        speed_and_error(m),
+        scenes(m),
+        growth(m),
+        threads(m),
+        hard_cases(m),
+        method(m),
+    ]
+}
+
+/// The page: head, origin, sections.
+pub fn page(origin: &Origin, sections: &[Section]) -> String {
+    let mut out = String::from("# wheelrail: speed against error\n\n");
+    let rows: Vec<Vec<String>> =
+        origin.iter().map(|(name, value)| vec![(*name).into(), value.clone()]).collect();
+    out += &markdown(&["made", "by"], 2, &rows);
+    for section in sections {
+        out += &format!("\n## {}\n\n{}", section.title, section.body);
+    }
+    out
+}
+
+/// The table for a README, with the command that made it.
+pub fn excerpt(m: &Measurements, origin: &Origin) -> String {
+    let value = |name: &str| origin.iter().find(|(n, _)| *n == name).map_or("unknown", |(_, v)| v.as_str());
+    format!(
+        "{}\nMade by `{}` on {}; {}. One thread; errors over all reference scenes against 60-digit values.\n",
+        summary(m),
+        value("command"),
+        value("processor"),
+        value("compiler"),
+    )
+}
+
+fn plain(title: &'static str, body: String) -> Section {
+    Section { title, body, files: Vec::new() }
+}
+
+fn requirements_section(m: &Measurements) -> Section {
+    let rows: Vec<Vec<String>> = requirements::all(m)
+        .into_iter()
+        .map(|r| vec![r.what, r.least, r.found, r.remark, if r.met { "pass" } else { "**miss**" }.into()])
+        .collect();
+    let table = markdown(&["requirement", "asked for", "found", "where", "verdict"], 5, &rows);
+    plain(
+        "Ratios asked for",
+        format!("Ratios of best times within one run, spectral at 1e-12 mm.\n\n{table}"),
+    )
+}
+
+/// (method, tolerance) in the order of the rows.
+fn kinds(m: &Measurements) -> Vec<(&'static str, Option<f64>)> {
+    let mut all = Vec::new();
+    for row in &m.rows {
+        if !all.contains(&(row.method, row.tolerance)) {
+            all.push((row.method, row.tolerance));
+        }
+    }
+    all
+}
+
+fn sides(m: &Measurements) -> Vec<usize> {
+    let mut sides: Vec<usize> = m.rows.iter().map(|row| row.side).collect();
+    sides.sort_unstable();
+    sides.dedup();
+    sides
+}
+
+fn of<'m>(m: &'m Measurements, kind: (&str, Option<f64>), side: usize) -> impl Iterator<Item = &'m Row> {
+    m.rows.iter().filter(move |row| (row.method, row.tolerance, row.side) == (kind.0, kind.1, side))
+}
+
+/// Method by method: rates, ratios, worst errors.
+fn summary(m: &Measurements) -> String {
+    let sides = sides(m);
+    let last = sides.last().copied().unwrap_or(0);
+    let mut head = vec!["method".to_string(), "tolerance, mm".into()];
+    head.extend(sides.iter().map(|side| format!("Mpoints/s at {side}²")));
+    head.extend(["× store".into(), "× report-newton".into(), "largest error, mm".into()]);
+    head.extend(["median scene's, mm".into(), "largest relative error".into()]);
+    let rows: Vec<Vec<String>> = kinds(m)
+        .into_iter()
+        .map(|kind| {
+            let mut cells = vec![kind.0.to_string(), kind.1.map_or_else(|| "–".into(), |t| format!("{t:e}"))];
+            cells
+                .extend(sides.iter().map(|&side| format!("{:.0}", median(of(m, kind, side).map(Row::rate)))));
+            for other in ["store", "report-newton"] {
+                cells.push(format!(
+                    "{:.2}",
+                    median(requirements::ratios(m, kind, other, last).map(|(_, r)| r))
+                ));
+            }
+            let errors = || of(m, kind, last).filter_map(|row| row.errors);
+            if errors().next().is_none() {
+                cells.extend(["–", "–", "–"].map(String::from));
+                return cells;
+            }
+            let largest = |a: f64, b: f64| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) };
+            cells.push(format!("{:.1e}", errors().map(|e| e.max_abs).fold(0.0, largest)));
+            cells.push(format!("{:.1e}", median(errors().map(|e| e.max_abs))));
+            cells.push(format!("{:.1e}", errors().map(|e| e.max_rel).fold(0.0, largest)));
+            cells
+        })
+        .collect();
+    markdown(&head.iter().map(String::as_str).collect::<Vec<_>>(), 2, &rows)
+}
+
+fn speed_and_error(m: &Measurements) -> Section {
+    let mut body = format!(
+        "Median over the reference scenes; one thread; ratios at the largest grid.\n\n{}\n\
+         All rows: [accuracy.csv](accuracy.csv).\n",
+        summary(m)
+    );
+    let mut files = vec![("accuracy.csv", accuracy_csv(&m.rows).into_bytes())];
+    for (side, name) in sides(m).into_iter().zip(["work_error_small.svg", "work_error_large.svg"]) {
+        body += &format!("\n![error against speed, {side} × {side} points]({name})\n");
+        files.push((name, svg(&work_error(m, side)).into_bytes()));
+    }
+    Section { title: "Speed against error", body, files }
+}
+
+/// Error over rate: a faint mark per scene, strong ones for the medians, tolerances joined.
+fn work_error(m: &Measurements, side: usize) -> Chart {
+    let mut series: Vec<Series> = Vec::new();
+    for kind in kinds(m).into_iter().filter(|(name, _)| *name != "store") {
+        let points = || of(m, kind, side).filter_map(|row| Some([row.rate(), row.errors?.max_abs]));
+        let middle = [0, 1].map(|k| median(points().map(|p| p[k])));
+        if series.last().is_none_or(|last| last.name != kind.0) {
+            series.push(Series { name: kind.0.into(), marks: Vec::new(), line: Vec::new() });
+        }
+        if let Some(last) = series.last_mut() {
+            last.marks.extend(points());
+            last.line.push(middle);
+        }
+    }
+    let store = median(of(m, ("store", None), side).map(Row::rate));
+    Chart {
+        title: format!("Largest error of s over speed, {side} × {side} points, one thread"),
+        labels: ["Mpoints/s".into(), "largest error of s, mm".into()],
+        series,
+        limit: store.is_finite().then(|| (store, "plain store".into())),
+    }
+}
+
+fn scenes(m: &Measurements) -> Section {
+    let side = sides(m).last().copied().unwrap_or(0);
+    let full = Some(crate::separation::plan::FULL_PRECISION);
+    let kinds = [("store", None), ("spectral", full), ("pointwise", None), ("report-newton", full)];
+    let mut names: Vec<&str> = m.rows.iter().map(|row| row.scene.as_str()).collect();
+    names.dedup();
+    names.sort_unstable();
+    names.dedup();
+    let rows: Vec<Vec<String>> = names
+        .into_iter()
+        .map(|scene| {
+            let row = |kind| of(m, kind, side).find(|row| row.scene == scene);
+            let mut cells = vec![scene.to_string()];
+            cells.extend(
+                kinds.iter().map(|&kind| row(kind).map_or("–".into(), |r| format!("{:.0}", r.rate()))),
+            );
+            cells.extend(kinds[1..].iter().map(|&kind| {
+                let errors = row(kind).and_then(|row| row.errors);
+                errors.map_or("–".into(), |e| format!("{:.1e}", e.max_rel))
+            }));
+            cells
+        })
+        .collect();
+    let head = [
+        "scene",
+        "store, Mpoints/s",
+        "spectral",
+        "pointwise",
+        "report-newton",
+        "spectral, relative error",
+        "pointwise",
+        "report-newton",
+    ];
+    let note = "Relative errors over all points but C itself; beyond the contact segments only absolute digits are \
+                promised.";
+    plain(
+        "Scene by scene",
+        format!("{side} × {side} points, full precision. {note}\n\n{}", markdown(&head, 1, &rows)),
+    )
+}
+
+fn growth(m: &Measurements) -> Section {
+    let rows: Vec<Vec<String>> = m
+        .growth
+        .iter()
+        .map(|row| {
+            let per_point = |seconds: f64| format!("{:.2}", seconds / row.points as f64 * 1e9);
+            let seconds = format!("{:.3e}", row.spectral);
+            vec![row.points.to_string(), seconds, per_point(row.spectral), per_point(row.store)]
+        })
+        .collect();
+    let head = ["points", "spectral, s", "spectral, ns a point", "store, ns a point"];
+    let body = format!(
+        "Spectral columns at 1e-12 mm, one thread, square grids of one scene.\n\n{}\n\
+         ![time over number of points](scaling.svg)\n\nAs numbers: [scaling.csv](scaling.csv).\n",
+        markdown(&head, 0, &rows)
+    );
+    let files = vec![
+        ("scaling.csv", growth_csv(&m.growth).into_bytes()),
+        ("scaling.svg", svg(&growth_chart(&m.growth)).into_bytes()),
+    ];
+    Section { title: "Growth of cost", body, files }
+}
+
+fn growth_chart(rows: &[Growth]) -> Chart {
+    let series = |name: &str, seconds: fn(&Growth) -> f64| Series {
+        name: name.into(),
+        marks: Vec::new(),
+        line: rows.iter().map(|row| [row.points as f64, seconds(row)]).collect(),
+    };
+    Chart {
+        title: "Time over number of points, one thread".into(),
+        labels: ["points".into(), "s".into()],
+        series: vec![series("spectral, 1e-12 mm", |r| r.spectral), series("plain store", |r| r.store)],
+        limit: None,
+    }
+}
+
+fn threads(m: &Measurements) -> Section {
+    let rows: Vec<Vec<String>> = m
+        .threads
+        .iter()
+        .map(|row| {
+            let [one, two] = row.seconds;
+            let bits = if row.same_bits { "yes" } else { "**no**" };
+            let times = [one, two].map(|t| format!("{t:.3e}"));
+            let [one_text, two_text] = times;
+            vec![
+                row.method.name().into(),
+                row.points.to_string(),
+                one_text,
+                two_text,
+                format!("{:.2}", one / two),
+                bits.into(),
+            ]
+        })
+        .collect();
+    let head = ["method", "points", "1 thread, s", "2 threads, s", "ratio", "same bits"];
+    plain("Threads", markdown(&head, 1, &rows))
+}
+
+fn hard_cases(m: &Measurements) -> Section {
+    let rows: Vec<Vec<String>> = m.hard_cases.iter().map(hard_case).collect();
+    let head = ["case", "status", "as stated", "spectral, mm", "pointwise, mm", "report-newton, mm", "why"];
+    let body = format!(
+        "Files of `tests/hard_cases`: largest error where there is a value, and in brackets the number of points \
+         where there wrongly is one or none. The last column is about the Report's method.\n\n{}\n\
+         All figures: [hard_cases.csv](hard_cases.csv).\n",
+        markdown(&head, 7, &rows)
+    );
+    let files = vec![("hard_cases.csv", hard_cases_csv(&m.hard_cases).into_bytes())];
+    Section { title: "Hard cases", body, files }
+}
+
+fn hard_case(outcome: &Outcome) -> Vec<String> {
+    let case = &outcome.case;
+    let errors = outcome.errors.map(|e| match e.wrongly_masked {
+        0 => format!("{:.1e}", e.max_abs),
+        n => format!("{:.1e} ({n})", e.max_abs),
+    });
+    let verdict = if outcome.as_stated() { "yes" } else { "**no**" };
+    let mut cells = vec![case.title.clone(), case.status.name().into(), verdict.into()];
+    cells.extend(errors);
+    cells.push(case.report_newton.remark.replace('|', "\\|"));
+    cells
+}
+
+fn method(m: &Measurements) -> Section {
+    let [least, middle, most] = m.planning.map(|seconds| seconds * 1e6);
+    let scenes = m.rows.iter().filter(|row| row.method == "store").count() / sides(m).len().max(1);
+    plain(
+        "How it was measured, and what favours whom",
+        format!(
+            "- Error: the method's values at the points of {scenes} reference scenes against `reference.py`'s \
+             60-digit values; on the timed grids spectral columns are the same polynomials, since they reach as \
+             far. There are 15 to 50 points a scene, so that a 99 % quantile is close to the largest. \
+             Relative errors leave out C itself.\n\
+             - Time: processor time of the one thread, which leaves out what other processes took but not what \
+             they did to caches and memory; the shortest of at least three runs (of one, where a run takes seconds). \
+             All contestants of one scene run in turn, so that a ratio's two sides met the same disturbances. With \
+             two threads it is time on the wall, and means nothing on a busy machine (load above).\n\
+             - `store` writes one value to the same array; like every method it finds the array's pages already \
+             touched, which a program that fills a fresh array once does not. Arrays of up to some MB stay in cache. \
+             Both favour the store most.\n\
+             - Choosing method and degree is not in the times: {least:.0} µs at least, {middle:.0} µs in the middle, \
+             {most:.0} µs at most per scene and grid, which counts on small grids. `[grid] method` skips no more than \
+             part of it.\n\
+             - η axes are symmetric, so that methods that use it compute half of each column; `pointwise` and \
+             `report-newton` do not use it, which favours the others by up to two.\n\
+             - `report-newton` is the Report's iteration as printed, compiled by today's compiler; it looks its wheel \
+             segment up at every iterate, from the last one found. Its tolerance is on the step.\n\
+             - `quadratic`, `constant-radius` and `parabolic` have an error of model, not of arithmetic: over windows \
+             smaller than the scenes' they are far better.\n",
+        ),
+    )
+}

@@ -1,0 +1,3 @@
+//! Solver meshes over the patch.
+
+pub mod axes;

@@ -1,0 +1,292 @@
+//! What a scene may say about a measured file.
+
+use std::fmt;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Format;
+use crate::error::{Error, Result, finite};
+
+/// Default cut-off wavelength \[mm\] of smoothing: below the shortest features that carry load (a 13 mm gauge
+/// corner turns a right angle over 20 mm), above the waves of measuring noise.
+pub const CUTOFF_WAVELENGTH: f64 = 5.0;
+/// Cut-off wavelengths \[mm\] tried under a chain of arcs, the first whose residual leaves room in the tolerance;
+/// after them interpolation.
+pub(super) const ARC_CUTOFFS: [f64; 4] = [5.0, 2.5, 1.25, 0.625];
+/// Default kink angle \[rad\], 30°: worn fillets turn less within half a cut-off wavelength, edges of plastic
+/// flow and of drawings more.
+pub const KINK_ANGLE: f64 = std::f64::consts::FRAC_PI_6;
+/// Default tolerance of an arc chain \[mm\]: the accuracy of hand-held instruments.
+pub const ARC_TOLERANCE: f64 = 0.01;
+/// Default depth of the gauge point under the top of rail \[mm\] (EN 13848: 14).
+pub const GAUGE_HEIGHT: f64 = 14.0;
+/// Default distance of the taping line from the flange back \[mm\] (EN 13715: 70).
+pub const TAPE_DISTANCE: f64 = 70.0;
+
+/// How a measured file becomes a profile. Everything is optional; what is not given is taken from the file's
+/// format, or from its shape where that proves it, and is an error where neither says.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Options {
+    /// Format; by the file's extension if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub format: Option<Format>,
+    /// The columns of x and z in a text or CSV file: numbers from 1, or names in its first row.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub columns: Option<[Column; 2]>,
+    /// Which section of an .mpt file, from 1; all of them in a row if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub section: Option<usize>,
+    /// true: the file's first axis points to the centre of the track (x = −first). Profiles are right-hand:
+    /// flange and gauge corner at negative x.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mirror: Option<bool>,
+    /// true: the file's second axis points down (z = −second).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flip_z: Option<bool>,
+    /// Unit of the file's coordinates; mm if neither given nor stated by the file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unit: Option<Unit>,
+    /// Where the origin goes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub origin: Option<Origin>,
+    /// Depth of the gauge point under the top of rail, mm; 14 if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gauge_height: Option<f64>,
+    /// Distance of the taping line from the flange back, mm; 70 if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tape_distance: Option<f64>,
+    /// The rail was measured as it lies: its inclination is in the points, and must not be applied again.
+    pub already_inclined: bool,
+    /// Repairs that may be made; each that was made is listed in the summary.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub repair: Vec<Repair>,
+    /// The curve through the points: "smoothing", or "elements" for a file of design elements alone, if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub curve: Option<CurveKind>,
+    /// Wavelength that smoothing halves, mm; 5 if not given. For arcs: of the tangents' smoothing; by the
+    /// tolerance if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cutoff_wavelength: Option<f64>,
+    /// Kinks above this angle stay corners, rad; π/6 if not given; π for none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub kink_angle: Option<f64>,
+    /// Largest distance of a point from the arc chain, mm; 0.01 if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub arc_tolerance: Option<f64>,
+}
+
+/// A column of a table.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "a column's number, from 1, or its name in the first row")]
+pub enum Column {
+    /// Its number, from 1.
+    Number(usize),
+    /// Its name in the first row, in upper or lower case.
+    Name(String),
+}
+
+impl fmt::Display for Column {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Number(n) => write!(f, "{n}"),
+            Self::Name(name) => write!(f, "\"{name}\""),
+        }
+    }
+}
+
+/// A unit of length.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub enum Unit {
+    /// Metres.
+    #[serde(rename = "m")]
+    Metre,
+    /// Centimetres.
+    #[serde(rename = "cm")]
+    Centimetre,
+    /// Millimetres.
+    #[serde(rename = "mm")]
+    Millimetre,
+    /// Micrometres.
+    #[serde(rename = "um")]
+    Micrometre,
+    /// Inches of 25.4 mm.
+    #[serde(rename = "in")]
+    Inch,
+    /// Feet of 304.8 mm.
+    #[serde(rename = "ft")]
+    Foot,
+}
+
+impl Unit {
+    /// All units.
+    pub const ALL: [Self; 6] =
+        [Self::Metre, Self::Centimetre, Self::Millimetre, Self::Micrometre, Self::Inch, Self::Foot];
+
+    /// The unit of this name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|unit| unit.name() == name)
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Metre => "m",
+            Self::Centimetre => "cm",
+            Self::Millimetre => "mm",
+            Self::Micrometre => "um",
+            Self::Inch => "in",
+            Self::Foot => "ft",
+        }
+    }
+
+    /// Its length \[mm\].
+    pub fn millimetres(self) -> f64 {
+        match self {
+            Self::Metre => 1e3,
+            Self::Centimetre => 10.0,
+            Self::Millimetre => 1.0,
+            Self::Micrometre => 1e-3,
+            Self::Inch => 25.4,
+            Self::Foot => 304.8,
+        }
+    }
+}
+
+/// Where the origin of the profile goes.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "\"as-is\", \"gauge-point\", \"tape-line\" or a point [x, z]")]
+pub enum Origin {
+    /// By name.
+    Named(NamedOrigin),
+    /// At this point [x, z], mm, of the file after its axes are turned into the profile's.
+    At([f64; 2]),
+}
+
+/// An origin by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum NamedOrigin {
+    /// The file's own.
+    AsIs,
+    /// Of a rail: x of its innermost point down to the gauge height, z of its top.
+    GaugePoint,
+    /// Of a wheel: the tread at the taping distance from the flange back.
+    TapeLine,
+}
+
+/// A repair that may be made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Repair {
+    /// Of points that coincide one is kept.
+    DropDuplicates,
+    /// Points between two reversals are sorted along the direction across them.
+    Sort,
+    /// Points that stick out are dropped.
+    RemoveSpikes,
+    /// Points inside a loop are dropped.
+    CutLoops,
+}
+
+/// The curve through the points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum CurveKind {
+    /// A cubic smoothing spline, C² between corners.
+    Smoothing,
+    /// A cubic spline through every point, C² between corners.
+    Interpolation,
+    /// A chain of arcs, G¹ between corners.
+    Arcs,
+    /// The design elements of the file itself.
+    Elements,
+}
+
+impl Options {
+    /// Depth of the gauge point \[mm\].
+    pub fn gauge_height(&self) -> f64 {
+        self.gauge_height.unwrap_or(GAUGE_HEIGHT)
+    }
+
+    /// Distance of the taping line from the flange back \[mm\].
+    pub fn tape_distance(&self) -> f64 {
+        self.tape_distance.unwrap_or(TAPE_DISTANCE)
+    }
+
+    /// Kink angle \[rad\].
+    pub fn kink_angle(&self) -> f64 {
+        self.kink_angle.unwrap_or(KINK_ANGLE)
+    }
+
+    /// Tolerance of an arc chain \[mm\].
+    pub fn arc_tolerance(&self) -> f64 {
+        self.arc_tolerance.unwrap_or(ARC_TOLERANCE)
+    }
+
+    /// Rejects numbers that mean nothing and options that contradict each other.
+    ///
+    /// # Errors
+    /// Names the option.
+    pub fn validate(&self) -> Result<()> {
+        let lengths = [
+            ("gauge_height", self.gauge_height),
+            ("tape_distance", self.tape_distance),
+            ("cutoff_wavelength", self.cutoff_wavelength),
+            ("arc_tolerance", self.arc_tolerance),
+            ("kink_angle", self.kink_angle),
+        ];
+        for (name, value) in lengths {
+            if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {
+                return Err(Error::new(name, value.to_string(), "a positive number", "correct it"));
+            }
+        }
+        if let Some(Origin::At(point)) = self.origin {
+            finite("origin", point[0])?;
+            finite("origin", point[1])?;
+        }
+        let unused = |name: &str, with: &str| {
+            Err(Error::new(name, "an option without effect", with, "delete one of the two"))
+        };
+        let smooth = matches!(self.curve, None | Some(CurveKind::Smoothing | CurveKind::Arcs));
+        if self.cutoff_wavelength.is_some() && !smooth {
+            return unused("cutoff_wavelength", "curve = \"smoothing\" or \"arcs\"");
+        }
+        if self.arc_tolerance.is_some() && self.curve != Some(CurveKind::Arcs) {
+            return unused("arc_tolerance", "curve = \"arcs\"");
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_read_as_scenes_write_them() -> std::result::Result<(), toml::de::Error> {
+        let options: Options = toml::from_str(
+            "unit = 'in'\norigin = 'gauge-point'\nrepair = ['drop-duplicates', 'sort']\ncurve = 'arcs'\n\
+             columns = [2, 'z']",
+        )?;
+        assert_eq!(options.unit, Some(Unit::Inch));
+        assert_eq!(options.origin, Some(Origin::Named(NamedOrigin::GaugePoint)));
+        assert_eq!(options.columns, Some([Column::Number(2), Column::Name("z".into())]));
+        assert_eq!(toml::from_str::<Options>("origin = [1.0, 2]")?.origin, Some(Origin::At([1.0, 2.0])));
+        assert!(toml::from_str::<Options>("orgin = 'as-is'").is_err());
+        assert!(toml::from_str::<Options>("origin = 'tape'").is_err());
+        Ok(())
+    }
+
+    #[test]
+    fn numbers_and_contradictions_are_checked() {
+        let base = Options::default();
+        assert!(base.validate().is_ok());
+        assert!(Options { kink_angle: Some(f64::NAN), ..base.clone() }.validate().is_err());
+        assert!(Options { cutoff_wavelength: Some(-1.0), ..base.clone() }.validate().is_err());
+        assert!(Options { arc_tolerance: Some(0.1), ..base.clone() }.validate().is_err());
+        let interpolation = Some(CurveKind::Interpolation);
+        assert!(Options { curve: interpolation, cutoff_wavelength: Some(3.0), ..base }.validate().is_err());
+    }
+}

@@ -1,0 +1,207 @@
+//! The contacts of a scene: the chosen one, or those that a search finds.
+
+use serde::Serialize;
+
+use super::analysis::{ApproachBy, Contact, Question};
+use crate::contact::search::wheelset::WheelsetOnTrack;
+use crate::contact::search::{self, ProfilePair, Selection, Touch};
+use crate::error::{Error, Result};
+use crate::placement::Pair;
+use crate::placement::track::{Track, Wheelset};
+use crate::scene::{Place, Standing};
+
+/// Vertical gap \[mm\] up to which places of contact are looked for: any approach that a rail survives.
+const SEARCHED_GAP: f64 = 1.0;
+
+/// Places closer than this \[mm\] are one contact: drawings' steps and kinks make groups within 0.1 mm.
+const ONE_CONTACT: f64 = 0.5;
+
+/// One contact to analyse.
+pub(super) struct Placed {
+    /// Subfolder of its files.
+    pub folder: String,
+    pub found: Option<Found>,
+    pub contact: Contact,
+}
+
+/// How a contact was found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Found {
+    /// "left" or "right" of a wheelset, "single" otherwise. The left side's axes are mirrored.
+    pub side: &'static str,
+    /// Height at first touch \[mm\], + up: of a wheelset's centre above R over the top of rail, of a single wheel's
+    /// profile origin over the rail's.
+    pub height_mm: f64,
+    /// Roll \[rad\], solved or given.
+    pub roll_rad: f64,
+    /// Number on its side, from 1.
+    pub contact: usize,
+    /// This contact.
+    pub place: PlaceOfContact,
+    /// Other places on this side within `within`, or within the approach, that are no contact of their own.
+    pub near_misses: Vec<PlaceOfContact>,
+}
+
+/// A place of contact or near miss.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct PlaceOfContact {
+    /// Abscissa on the rail profile \[mm\].
+    pub rail_x_mm: f64,
+    /// Abscissa on the wheel profile \[mm\].
+    pub wheel_x_mm: f64,
+    /// Along the rail from the wheel's centre \[mm\].
+    pub y_mm: f64,
+    /// Contact angle in the rail profile's axes \[rad\].
+    pub contact_angle_rad: f64,
+    /// Rolling radius \[mm\].
+    pub rolling_radius_mm: f64,
+    /// Vertical gap at first touch \[mm\].
+    pub gap_mm: f64,
+    /// Whether a body touches with a kink, step or end.
+    pub kink: bool,
+}
+
+impl From<&search::Contact> for PlaceOfContact {
+    fn from(c: &search::Contact) -> Self {
+        Self {
+            rail_x_mm: c.rail_x,
+            wheel_x_mm: c.wheel_x,
+            y_mm: c.y,
+            contact_angle_rad: c.contact_angle,
+            rolling_radius_mm: c.rolling_radius,
+            gap_mm: c.gap,
+            kink: c.kink(),
+        }
+    }
+}
+
+/// One side of a search, as it is turned into contacts.
+struct Side<'a> {
+    name: &'static str,
+    height: f64,
+    roll: f64,
+    touch: Touch<'a>,
+    within: f64,
+}
+
+/// All contacts of a scene, the first one first.
+pub(super) fn find(standing: &Standing, pair: &Pair, question: &Question) -> Result<Vec<Placed>> {
+    let selection = Selection { within: SEARCHED_GAP.max(standing.within), apart: ONE_CONTACT };
+    let profiles = || ProfilePair::new(&pair.rail, &pair.wheel, pair.wheel_radius);
+    match standing.place {
+        Place::Points { rail_x, wheel_x } => {
+            let contact = Contact::new(pair.placed(rail_x, wheel_x, 0.0)?, question)?;
+            Ok(vec![Placed { folder: String::new(), found: None, contact }])
+        }
+        Place::Wheel(pose) => {
+            let profiles = profiles()?;
+            let mut search = profiles.search();
+            let Some(touch) = search.touch(&pose, &selection) else {
+                return Err(no_touch("contact: offset"));
+            };
+            let side = Side {
+                name: "single",
+                height: touch.height,
+                roll: pose.roll(),
+                touch,
+                within: standing.within,
+            };
+            side.contacts(pair, question)
+        }
+        Place::Wheelset { rails, wheels, position } => {
+            let system = WheelsetOnTrack {
+                pair: profiles()?,
+                track: Track::new(&pair.rail, rails)?,
+                wheelset: Wheelset::new(wheels, pair.wheel_radius)?,
+            };
+            let mut search = system.search();
+            let Some(touch) = search.touch(&position, &selection)? else {
+                return Err(no_touch("wheelset: lateral"));
+            };
+            let mut all = Vec::new();
+            // The right-hand side is the one that a scene describes.
+            for (name, side) in [("left", touch.sides[0]), ("right", touch.sides[1])].into_iter().rev() {
+                let (height, touch_of_side) = (side.z, side.touch);
+                let side =
+                    Side { name, height, roll: touch.roll, touch: touch_of_side, within: standing.within };
+                all.extend(side.contacts(pair, question)?);
+            }
+            Ok(all)
+        }
+    }
+}
+
+fn no_touch(place: &str) -> Error {
+    let expected = "a wheel over its rail, and a roll within ±0.1 rad at which both sides touch";
+    Error::new(place, "no contact", expected, "check offsets, gauge and signs")
+}
+
+impl Side<'_> {
+    /// First touch, and every other place that the approach closes and that is not in the patch of one before.
+    fn contacts(&self, pair: &Pair, question: &Question) -> Result<Vec<Placed>> {
+        let mut placed: Vec<Placed> = Vec::new();
+        let mut missed = Vec::new();
+        for place in self.touch.contacts {
+            let placement = pair.placed_along(
+                [place.rail_x, place.contact_angle],
+                [place.wheel_x, place.wheel_angle],
+                place.skew,
+            )?;
+            let asked = match placed.first() {
+                None => question.clone(),
+                Some(first) => {
+                    let approach = approach_left(first, place);
+                    if approach.is_some_and(|approach| approach <= 0.0)
+                        || placed.iter().any(|p| p.holds(place))
+                    {
+                        missed.push(PlaceOfContact::from(place));
+                        continue;
+                    }
+                    Question { approach: approach.map(ApproachBy::Given), ..question.clone() }
+                }
+            };
+            if question.approach.is_none() && place.gap > self.within {
+                continue;
+            }
+            let number = placed.len() + 1;
+            let found = Found {
+                side: self.name,
+                height_mm: self.height,
+                roll_rad: self.roll,
+                contact: number,
+                place: place.into(),
+                near_misses: Vec::new(),
+            };
+            let folder =
+                if number == 1 { self.name.to_string() } else { format!("{}-contact-{number}", self.name) };
+            placed.push(Placed { folder, found: Some(found), contact: Contact::new(placement, &asked)? });
+        }
+        missed.retain(|place| place.gap_mm <= self.within);
+        for place in &mut placed {
+            if let Some(found) = &mut place.found {
+                found.near_misses.clone_from(&missed);
+            }
+        }
+        Ok(placed)
+    }
+}
+
+/// δ at another place of a side when the first contact approaches by its own along its normal: the wheel sinks by
+/// δ₁/cosθ₁, closes the gap there, and the rest counts along that place's normal.
+fn approach_left(first: &Placed, place: &search::Contact) -> Option<f64> {
+    let (approach, _) = first.contact.approach?;
+    let sunk = approach / first.contact.placement.rail.point.station.cos;
+    Some((sunk - place.gap) * place.contact_angle.cos())
+}
+
+impl Placed {
+    /// Whether the part of this contact's patch around C holds another place.
+    fn holds(&self, place: &search::Contact) -> bool {
+        let Some((approach, _)) = self.contact.approach else { return false };
+        let placement = &self.contact.placement;
+        let frame = placement.rail.section.frame;
+        let xi = (place.rail_x - frame.x) * frame.cos + (place.rail_z - frame.z) * frame.sin;
+        let boxes = crate::mesh::axes::boxes(placement, approach, 0.0);
+        boxes.first().is_some_and(|window| window.xi[0] <= xi && xi <= window.xi[1])
+    }
+}

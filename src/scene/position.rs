@@ -1,0 +1,131 @@
+//! `[contact]`, `[track]` and `[wheelset]`: where the bodies stand.
+
+use super::data::{ContactData, RollData, RollWord, Scene, TrackData, WheelsetData};
+use crate::contact::search::Pose;
+use crate::contact::search::wheelset::{Position, Roll};
+use crate::error::{Error, Result, finite};
+use crate::placement::track::{RailDistance, WheelDistance};
+
+/// Depth below the top of rail at which gauge is measured unless the scene says otherwise \[mm\].
+const GAUGE_HEIGHT: f64 = 14.0;
+
+/// Where the bodies of a scene stand, and how far near misses are looked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Standing {
+    /// What is placed, and where.
+    pub place: Place,
+    /// Largest vertical gap \[mm\] of a near miss that is to be reported.
+    pub within: f64,
+}
+
+/// The three ways to place bodies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Place {
+    /// In contact at chosen abscissae \[mm\] of rail and wheel, the Report's way.
+    Points {
+        /// On the rail profile.
+        rail_x: f64,
+        /// On the wheel profile.
+        wheel_x: f64,
+    },
+    /// A single wheel, lowered until it touches.
+    Wheel(Pose),
+    /// A wheelset on a track.
+    Wheelset {
+        /// Between the rails.
+        rails: RailDistance,
+        /// Between the wheels.
+        wheels: WheelDistance,
+        /// Displacement, yaw and roll.
+        position: Position,
+    },
+}
+
+impl Scene {
+    /// Where the bodies stand.
+    ///
+    /// # Errors
+    /// None or several of the ways to say so; missing or contradictory keys.
+    pub fn standing(&self) -> Result<Standing> {
+        match (&self.contact, &self.track, &self.wheelset) {
+            (Some(contact), None, None) => single(contact).map_err(|e| e.within("contact")),
+            (None, Some(track), Some(wheelset)) => {
+                let position = Position {
+                    lateral: finite("wheelset: lateral", wheelset.lateral)?,
+                    yaw: finite("wheelset: yaw", wheelset.yaw)?,
+                    roll: roll(wheelset.roll)?,
+                };
+                let place = Place::Wheelset { rails: rails(track)?, wheels: wheels(wheelset)?, position };
+                Ok(Standing { place, within: within(wheelset.within)? })
+            }
+            (None, None, None) => {
+                let expected = "[contact], or [track] and [wheelset]";
+                Err(Error::new("", "no placement", expected, "say where the bodies stand"))
+            }
+            _ => {
+                let expected = "either [contact], or both [track] and [wheelset]";
+                Err(Error::new("", "another set of tables", expected, "keep one placement"))
+            }
+        }
+    }
+}
+
+fn single(contact: &ContactData) -> Result<Standing> {
+    let within = within(contact.within)?;
+    let place = match (contact.rail_x, contact.wheel_x, contact.offset) {
+        (Some(rail_x), Some(wheel_x), None) if contact.roll.is_none() && contact.yaw.is_none() => {
+            Place::Points { rail_x: finite("rail_x", rail_x)?, wheel_x: finite("wheel_x", wheel_x)? }
+        }
+        (None, None, Some(offset)) => {
+            Place::Wheel(Pose::new(offset, contact.yaw.unwrap_or(0.0), contact.roll.unwrap_or(0.0))?)
+        }
+        _ => {
+            let expected = "either `rail_x` and `wheel_x`, or `offset` with perhaps `roll` and `yaw`";
+            return Err(Error::new("", "another set of keys", expected, "keep one of the two forms"));
+        }
+    };
+    Ok(Standing { place, within })
+}
+
+fn within(within: Option<f64>) -> Result<f64> {
+    match within {
+        Some(gap) if finite("within", gap)? < 0.0 => {
+            Err(Error::new("within", gap.to_string(), "a gap of 0 mm or more", "correct the sign"))
+        }
+        gap => Ok(gap.unwrap_or(0.0)),
+    }
+}
+
+fn rails(track: &TrackData) -> Result<RailDistance> {
+    match (track.gauge, track.spacing) {
+        (Some(gauge), None) => {
+            Ok(RailDistance::Gauge { gauge, height: track.gauge_height.unwrap_or(GAUGE_HEIGHT) })
+        }
+        (None, Some(spacing)) if track.gauge_height.is_none() => Ok(RailDistance::Spacing(spacing)),
+        _ => {
+            let expected = "either `gauge` with perhaps `gauge_height`, or `spacing`";
+            Err(Error::new("track", "another set of keys", expected, "keep one of the two forms"))
+        }
+    }
+}
+
+fn wheels(wheelset: &WheelsetData) -> Result<WheelDistance> {
+    match (wheelset.back_to_back, wheelset.flange_back_x, wheelset.spacing) {
+        (Some(distance), Some(flange_back_x), None) => {
+            Ok(WheelDistance::BackToBack { distance, flange_back_x })
+        }
+        (None, None, Some(spacing)) => Ok(WheelDistance::Spacing(spacing)),
+        _ => {
+            let expected = "either `back_to_back` and `flange_back_x`, or `spacing`";
+            Err(Error::new("wheelset", "another set of keys", expected, "keep one of the two forms"))
+        }
+    }
+}
+
+fn roll(roll: RollData) -> Result<Roll> {
+    Ok(match roll {
+        RollData::Word(RollWord::Solve) => Roll::Solve,
+        RollData::Word(RollWord::Neglect) => Roll::Neglect,
+        RollData::Radians(angle) => Roll::Fixed(finite("wheelset: roll", angle)?),
+    })
+}
