@@ -9,6 +9,7 @@ use crate::contact::hertz::{Curvatures, Elastic, Ellipse, curvatures, effective_
 use crate::error::{Error, Result};
 use crate::interpenetration::load::{Estimate, approach_under_load};
 use crate::interpenetration::{Patch, Window};
+use crate::mesh::strips::{Counts, StripMesh};
 use crate::placement::Placement;
 use crate::separation::axis::EtaAxis;
 use crate::separation::grid::Method;
@@ -45,6 +46,8 @@ pub struct Timings {
     pub grid_s: f64,
     /// Boundary, area, perimeter.
     pub patch_s: f64,
+    /// Boundary-fitted mesh.
+    pub mesh_s: f64,
 }
 
 /// The contact point and what follows from it without a grid.
@@ -101,14 +104,28 @@ pub struct Analysis {
     pub plan: Plan,
     /// The patch in the window of the grid, when there is an approach.
     pub patch: Option<Patch>,
+    /// The boundary-fitted mesh over the patch.
+    pub strips: Option<StripMesh>,
     /// Where the time went.
     pub timings: Timings,
 }
 
 impl Analysis {
     /// Fills the grid and cuts the patch out of its window; runs on the threads of the current rayon pool.
-    pub fn new(contact: &Contact, xi: Vec<f64>, eta: Vec<f64>, question: &Question) -> Self {
+    ///
+    /// # Errors
+    /// The Report's method with yaw; a patch that cannot be meshed.
+    pub fn new(contact: &Contact, xi: Vec<f64>, eta: Vec<f64>, question: &Question) -> Result<Self> {
         let placement = &contact.placement;
+        if placement.skew != 0.0 && question.method == Some(Method::ReportNewton) {
+            let expected = "another method: the Report has no yaw";
+            return Err(Error::new(
+                "grid: method",
+                "report-newton with yaw",
+                expected,
+                "leave the method to \"auto\"",
+            ));
+        }
         let start = Instant::now();
         let axis = EtaAxis::new(&eta);
         let plan = plan(placement, &xi, &axis, question.tolerance, question.method);
@@ -118,12 +135,16 @@ impl Analysis {
         let filled = Instant::now();
         let window = Window { xi: ends(&xi), eta: ends(&eta) };
         let patch = contact.approach.map(|(approach, _)| Patch::new(placement, approach, &window));
+        let cut = Instant::now();
+        let mesh = |patch: &Patch| StripMesh::new(placement, patch, Counts::default());
+        let strips = patch.as_ref().map(mesh).transpose()?;
         let timings = Timings {
             plan_s: (planned - start).as_secs_f64(),
             grid_s: (filled - planned).as_secs_f64(),
-            patch_s: filled.elapsed().as_secs_f64(),
+            patch_s: (cut - filled).as_secs_f64(),
+            mesh_s: cut.elapsed().as_secs_f64(),
         };
-        Self { xi, eta, separation, plan, patch, timings }
+        Ok(Self { xi, eta, separation, plan, patch, strips, timings })
     }
 }
 

@@ -11,9 +11,10 @@ use crate::export::deck::contact::{Normal, Settings};
 use crate::export::netcdf::NetCdf;
 use crate::export::picture::Picture;
 use crate::export::{
-    Folder, FolderPart, Frame, GridFields, Header, Interval, Loop, VIEW_SCRIPT, csv, npy, vtk, vts,
+    Folder, FolderPart, Frame, GridFields, Header, Interval, Loop, QuadMesh, VIEW_SCRIPT, csv, npy, vtk, vts,
 };
 use crate::interpenetration::Slicer;
+use crate::mesh::strips::StripMesh;
 use crate::profile::Section;
 use crate::scene::{Format, equal_steps};
 use crate::separation::midsep;
@@ -40,6 +41,7 @@ pub(super) fn write(folder: &Folder, run: &Run, part: &Part) -> Result<()> {
         None
     };
     let loops = loops(part);
+    let strips = part.analysis.strips.as_ref().map(quads);
     let outlines = [&part.contact.placement.rail.section, &part.contact.placement.wheel.section].map(outline);
     let picture =
         Picture { header: &header, grid: &grid, loops: &loops, rail: &outlines[0], wheel: &outlines[1] };
@@ -55,7 +57,10 @@ pub(super) fn write(folder: &Folder, run: &Run, part: &Part) -> Result<()> {
         stream(&mut jobs, "separation.nc", move |file| netcdf.write(file));
     }
     if let Some(deck) = &deck {
-        decks(&mut jobs, run, part, deck);
+        decks(&mut jobs, run, part, deck, strips.as_ref());
+    }
+    if let (Some(strips), true) = (&strips, run.wants_any(&[Format::Vtk])) {
+        bytes(&mut jobs, "patch.vtu", || vtk::patch(&header, strips));
     }
     let folder = folder.part(&part.folder)?;
     jobs.par_iter().try_for_each(|(name, job)| job(&folder).map_err(|error| error.within(name)))?;
@@ -107,6 +112,16 @@ fn outline(section: &Section) -> Vec<[f64; 2]> {
         points.extend(xi.into_iter().map(|xi| [xi, branch.height(xi)]));
     }
     points
+}
+
+/// The boundary-fitted mesh as writers take it.
+fn quads(strips: &StripMesh) -> QuadMesh {
+    QuadMesh {
+        points: strips.points.clone(),
+        quads: strips.cells.iter().map(|cell| cell.corners).collect(),
+        area: strips.cells.iter().map(|cell| cell.area).collect(),
+        component: strips.cells.iter().map(|cell| cell.component).collect(),
+    }
 }
 
 /// The boundary loops, lifted onto the rail.
@@ -197,12 +212,25 @@ fn stream<'a>(
     jobs.push((name, Box::new(move |folder: &FolderPart<'_>| folder.stream(name, &content))));
 }
 
-fn decks<'a>(jobs: &mut Vec<Job<'a>>, run: &Run, part: &Part, deck: &'a Deck<'a>) {
+fn decks<'a>(
+    jobs: &mut Vec<Job<'a>>,
+    run: &Run,
+    part: &Part,
+    deck: &'a Deck<'a>,
+    strips: Option<&'a QuadMesh>,
+) {
     if run.wants_any(&[Format::Text]) {
         stream(jobs, "separation.wrp", move |file| deck.separation(file));
     }
     if run.wants_any(&[Format::Conform]) {
         stream(jobs, "conform.wrp", move |file| deck.conform(file));
+    }
+    if let (true, Some(strips)) = (run.wants_any(&[Format::Countact]), strips) {
+        bytes(jobs, "countact.wrp", move || {
+            let mut text = Vec::new();
+            deck.countact(strips, &mut text)?;
+            Ok(text)
+        });
     }
     if let (true, Some(settings)) = (run.wants_any(&[Format::Contact]), contact_settings(run, part)) {
         stream(jobs, "contact.inp", move |file| deck.contact(&settings, file));

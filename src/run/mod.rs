@@ -60,7 +60,7 @@ impl Run {
         let mut parts: Vec<Part> = Vec::new();
         for place in places {
             for (number, [xi, eta]) in grids(&scene, &place)?.into_iter().enumerate() {
-                let analysis = Analysis::new(&place.contact, xi, eta, &question);
+                let analysis = Analysis::new(&place.contact, xi, eta, &question)?;
                 let folder = match (parts.is_empty(), number) {
                     (true, _) => String::new(),
                     (false, 0) => place.folder.clone(),

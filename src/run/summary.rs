@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 
 use super::{Part, Run};
 use crate::interpenetration::{Component, Patch};
+use crate::mesh::quality::Quality;
 use crate::placement::Body;
 use crate::profile::continuity::Joint;
 
@@ -49,6 +50,7 @@ pub(super) fn summary(run: &Run, part: &Part, files: &[String], skipped: &[Strin
         "approach_estimated_by": contact.approach.and_then(|(_, estimate)| estimate),
         "hertz_ellipse": contact.ellipse,
         "patch": analysis.patch.as_ref().map(patch),
+        "mesh_quality": analysis.strips.as_ref().and_then(Quality::of_strips),
         "grid": {
             "n_xi": analysis.xi.len(),
             "n_eta": analysis.eta.len(),
