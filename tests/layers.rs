@@ -1,4 +1,5 @@
 //! Imports run one way: from the command line down to the geometry.
+#![allow(clippy::expect_used, clippy::panic, clippy::print_stdout)]
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,5 @@
 //! Every scene of `tests/reference` against its 60-digit values: the one table of accuracy bounds.
+#![allow(clippy::expect_used, clippy::panic, clippy::print_stdout)]
 
 mod common;
 

@@ -1,4 +1,5 @@
 //! Yawed wheels against the 60-digit values of `tests/reference_yawed`, to the bounds of the unyawed ones.
+#![allow(clippy::expect_used, clippy::panic, clippy::print_stdout)]
 
 mod common;
 

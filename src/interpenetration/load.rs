@@ -42,10 +42,10 @@ pub fn approach_under_load(placement: &Placement, load: f64, modulus: f64) -> Re
         return Ok((0.0, Estimate::Hertz));
     }
     let curvatures = curvatures(placement);
-    if let Some(ellipse) = curvatures.under_load(load, modulus) {
-        if constant_curvature(placement, &curvatures, ellipse.a_mm, ellipse.b_mm) {
-            return Ok((ellipse.approach_mm, Estimate::Hertz));
-        }
+    if let Some(ellipse) = curvatures.under_load(load, modulus)
+        && constant_curvature(placement, &curvatures, ellipse.a_mm, ellipse.b_mm)
+    {
+        return Ok((ellipse.approach_mm, Estimate::Hertz));
     }
     // ln δ over all lengths that matter: from an atom to the wheel.
     let range = [1e-7f64, placement.rolling_radius().min(10.0)].map(f64::ln);

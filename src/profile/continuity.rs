@@ -55,7 +55,8 @@ pub(super) fn joints(segments: &[Segment]) -> Vec<Joint> {
 
 pub(super) fn reject_jumps(profile: &Profile) -> Result<()> {
     let limit = LARGEST_STEP * profile.extent();
-    let Some(jump) = profile.continuity().into_iter().find(|joint| !(joint.step <= limit)) else {
+    let Some(jump) = profile.continuity().into_iter().find(|joint| joint.step.is_nan() || joint.step > limit)
+    else {
         return Ok(());
     };
     let place = profile.segments()[jump.left + 1].place(jump.left + 1);

@@ -186,7 +186,7 @@ impl ProfileData {
     fn resolve(&self, folder: &Path, side: Side) -> Result<Resolved> {
         let Resolved { mut profile, measured } = match (&self.profile, &self.file, &self.segments) {
             (Some(name), None, None) => Resolved::drawn(built_in(name, side)?),
-            (None, Some(file), None) => self.from_file(&folder.join(file), side)?,
+            (None, Some(file), None) => self.in_file(&folder.join(file), side)?,
             (None, None, Some(segments)) => Resolved::drawn(chain("inline", "scene", self.start, segments)?),
             _ => {
                 let expected = "exactly one of `profile`, `file`, `segments`";
@@ -217,7 +217,7 @@ impl ProfileData {
         Ok(Resolved { profile, measured })
     }
 
-    fn from_file(&self, path: &Path, side: Side) -> Result<Resolved> {
+    fn in_file(&self, path: &Path, side: Side) -> Result<Resolved> {
         if self.format.is_none() && is_chain_file(path) {
             return profile_from_file(path).map(Resolved::drawn);
         }

@@ -66,7 +66,8 @@ impl<'a> Spectral<'a> {
     /// The polynomial over one span up to `u_max`, or `None` where no degree reaches the demand.
     pub fn polynomial(&self, xi: f64, span: &Span, u_max: f64) -> Option<ColumnPolynomial> {
         let end = self.evaluator.wheel.foot_near(xi, span, span.u[1].min(u_max));
-        if !(end.u >= NEARLY_COVERED * span.u[1].min(u_max)) || end.w <= 0.0 {
+        let covered = end.u >= NEARLY_COVERED * span.u[1].min(u_max);
+        if !covered || end.w <= 0.0 {
             return None;
         }
         let base = self.evaluator.base(xi, xi, span);
