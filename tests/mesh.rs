@@ -31,7 +31,7 @@ fn two_crowns() -> Placement {
 /// Every reference scene at each of its approaches, plain and turned; two components; a built-in pair.
 fn cases() -> Vec<(String, Placement, f64)> {
     let mut all = Vec::new();
-    for reference in references("reference") {
+    for reference in references() {
         for skew in [0.0, 0.01] {
             let mut placement = reference.placement().expect("a placement");
             placement.skew = skew;
