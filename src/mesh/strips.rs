@@ -39,7 +39,8 @@ pub struct Counts {
 }
 
 impl Default for Counts {
-    /// 32 strips of 16 cells: areas of boundary cells are then below 1 % of the largest.
+    /// 32 strips of 16 cells: cells along the boundary are then a tenth as wide as in the middle, strips at the tips a
+    /// twentieth.
     fn default() -> Self {
         Self { strips: 32, across: 16 }
     }
@@ -129,12 +130,8 @@ impl Builder<'_> {
     fn component(&mut self, index: usize, component: &Component, strips: usize) {
         let edges = strip_edges(component, strips);
         let rows: Vec<Vec<usize>> = edges.iter().map(|&xi| self.row(component, xi)).collect();
-        let last = edges.len() - 2;
         for (i, (xi, rows)) in edges.windows(2).zip(rows.windows(2)).enumerate() {
-            let round = [i == 0, i == last].into_iter().zip(component.ends);
-            let round: Vec<bool> = round.map(|(outer, end)| outer && end != End::Window).collect();
-            let stretch = Stretch { xi: [xi[0], xi[1]], round: [round[0], round[1]] };
-            let moments = self.moments(component, &stretch);
+            let moments = self.moments(component, [xi[0], xi[1]]);
             for j in 0..self.shares.len() - 1 {
                 let quad = [rows[0][j], rows[1][j], rows[1][j + 1], rows[0][j + 1]];
                 if let Some(corners) = tip_first(quad) {
@@ -170,21 +167,23 @@ impl Builder<'_> {
         (first..=first + last).collect()
     }
 
-    /// Area of a strip, mean ξ, mean of the middle line and of half the width, all weighted by the width.
-    fn moments(&mut self, component: &Component, stretch: &Stretch) -> Moments {
-        let area = stretch.integral(&mut |xi| self.outline.width(xi), AREA_DEMAND);
+    /// Moments of a strip's width, over its pieces between all corners: also those that have no edge.
+    fn moments(&mut self, component: &Component, xi: [f64; 2]) -> Moments {
+        let pieces = pieces(component, xi);
+        let outline = &mut self.outline;
+        let area = pieces.iter().map(|piece| piece.integral(&mut |xi| outline.width(xi), AREA_DEMAND)).sum();
         // Means of quantities that change sign are taken from an offset, to whose size the demand then refers.
         let offset = component.eta[0].abs().max(component.eta[1].abs());
         let mut mean = |value: &dyn Fn(f64, Slice) -> f64| {
             let mut weighted = |xi: f64| {
-                let slice = self.outline.slice(xi);
+                let slice = outline.slice(xi);
                 slice.map_or(0.0, |slice| value(xi, slice) * (slice.eta[1] - slice.eta[0]))
             };
-            stretch.integral(&mut weighted, CENTROID_DEMAND) / area
+            pieces.iter().map(|piece| piece.integral(&mut weighted, CENTROID_DEMAND)).sum::<f64>() / area
         };
         Moments {
             area,
-            xi: stretch.xi[0] + mean(&|xi, _| xi - stretch.xi[0]),
+            xi: xi[0] + mean(&|x, _| x - xi[0]),
             middle: mean(&|_, slice| offset + (slice.eta[0] + slice.eta[1]) / 2.0) - offset,
             half: mean(&|_, slice| (slice.eta[1] - slice.eta[0]) / 2.0),
         }
@@ -205,11 +204,26 @@ impl Builder<'_> {
     }
 }
 
+/// What the cells of a strip share: means are weighted by the width.
 struct Moments {
+    /// Area of the strip \[mm²\].
     area: f64,
+    /// Mean ξ.
     xi: f64,
+    /// Mean η of the middle between the branches.
     middle: f64,
+    /// Mean of half the width.
     half: f64,
+}
+
+/// The parts of a strip between the corners of the boundary inside it.
+fn pieces(component: &Component, [a, b]: [f64; 2]) -> Vec<Stretch> {
+    let inside = component.corners.iter().copied().filter(|&corner| corner > a && corner < b);
+    let cuts: Vec<f64> = std::iter::once(a).chain(inside).chain([b]).collect();
+    let round = |xi: f64| (0..2).any(|k| xi == component.xi[k] && component.ends[k] != End::Window);
+    cuts.windows(2)
+        .map(|pair| Stretch { xi: [pair[0], pair[1]], round: [round(pair[0]), round(pair[1])] })
+        .collect()
 }
 
 /// A quad with a side of no length as a triangle that begins and ends there; `None` with two such sides.
