@@ -17,7 +17,7 @@ const BRACKET: f64 = 1e-9;
 /// Time for one scene \[s\]: 2 s are promised in release, on an idle machine.
 const SECONDS: f64 = 2.0;
 
-/// One scene of `tests/reference`; its 60-digit values are not needed here.
+/// One scene of `src/accuracy/reference`; its 60-digit values are not needed here.
 struct Scene {
     name: String,
     text: String,
@@ -50,9 +50,10 @@ impl Clone for Scene {
     }
 }
 
-/// All files of `tests/reference` with a scene in them.
+/// All files of `src/accuracy/reference` with a scene in them.
 fn references() -> Vec<Scene> {
-    let files = std::fs::read_dir(folder("reference")).expect("the folder of reference values");
+    let files =
+        std::fs::read_dir(folder("../src/accuracy/reference")).expect("the folder of reference values");
     let paths = files.map(|entry| entry.expect("a file").path());
     let mut all: Vec<Scene> = paths
         .filter(|path| path.extension().is_some_and(|e| e == "json"))
