@@ -203,7 +203,7 @@ fn the_view_script_draws_in_paraview() {
     drop(std::fs::remove_file(&picture));
     let mut paraview = Command::new("xvfb-run");
     paraview.args(["-a", "pvbatch"]).arg(dir.join("view.py")).arg(&picture);
-    let output = paraview.output().expect("xvfb-run and pvbatch");
+    let output = paraview.output().unwrap();
     assert!(picture.exists(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 

@@ -38,6 +38,9 @@ const FILES: [&str; 17] = [
     "contact.inp",
 ];
 
+/// The page that holds the table of estimates, and programs in Python.
+const DOCS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/src/docs/clients.md");
+
 /// A scene of one standard rail, inclined 1:40, under one standard wheel.
 fn standard(rail: &str, wheel: &str, offset: f64, rest: &str) -> String {
     format!(
@@ -119,6 +122,7 @@ fn tamaas_and_contact_mechanics_agree_on_60e1_under_s1002() {
     let dir = run("tread60", &standard("60E1", "S1002", 0.0, "[patch]\nload = 60000.0\n"));
     check_all(&dir);
     check("solve.py", &dir, &["--modulus", HERTZ[0], "--load", "60000", "--within", "0.005"]);
+    check("check_docs.py", &dir, &[DOCS]);
 }
 
 /// A case of the table: what it is called, its scene up to `[patch]`, its load \[N\].
@@ -187,7 +191,6 @@ fn the_load_table_in_the_docs_is_current() {
             std::iter::once(name).chain(arguments.iter().map(String::as_str)).collect();
         let _ = write!(table, "{}", output_of("load_table.py", &dir, &arguments));
     }
-    println!("{table}");
-    let docs = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/src/docs/clients.md")).unwrap();
+    let docs = std::fs::read_to_string(DOCS).unwrap();
     assert!(docs.contains(&table), "src/docs/clients.md has another table; put this one there:\n{table}");
 }

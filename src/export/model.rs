@@ -48,7 +48,8 @@ impl Header {
     pub fn statements(&self) -> Vec<String> {
         let lines = [
             format!("title: {}", self.title),
-            format!("written by wheelrail {}, scene {}", self.version, self.scene_hash),
+            format!("written by wheelrail {}", self.version),
+            format!("scene {}", self.scene_hash),
             "lengths in mm; contact frame, right-handed, origin C on the rail:".into(),
             "xi along the common tangent, eta along the rail (rolling direction),".into(),
             "zeta along the common normal from rail to wheel".into(),

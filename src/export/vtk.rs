@@ -96,8 +96,8 @@ pub fn legacy_grid(header: &Header, grid: &GridFields) -> Result<Vec<u8>> {
     };
     // The format has one line for remarks.
     let title = plain(&format!(
-        "wheelrail {}, {}; mm; s > 0 apart; delta {:?}",
-        header.version, header.scene_hash, header.approach
+        "wheelrail {}; mm; s > 0 apart; delta {:?}; scene {}",
+        header.version, header.approach, header.scene_hash
     ));
     let mut bytes = Vec::new();
     let file = vtk(Version::new_legacy(4, 2), title, DataSet::inline(piece));
