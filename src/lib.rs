@@ -44,6 +44,7 @@
 //! guaranteed: anything elastic. See [`docs::numerics`] for the formulas and [`docs::errata`] for what differs from
 //! the Report.
 
+pub mod accuracy;
 pub mod check;
 pub mod cli;
 pub mod contact;

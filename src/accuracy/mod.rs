@@ -1,0 +1,3 @@
+//! How accurate the program is, measured by itself.
+
+pub mod measured;
