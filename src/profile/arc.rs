@@ -119,6 +119,16 @@ impl Arc {
         if self.radius.is_finite() { (self.turn() * self.radius).abs() } else { chord }
     }
 
+    /// The station at a share (0 to 1) of the length.
+    pub fn station_at(&self, share: f64) -> Station {
+        // Chord of the part: its direction is the mean tangent, its length that of the arc times sinc.
+        let turn = share * self.turn();
+        let half = 0.5 * turn;
+        let chord = share * self.length() * if half == 0.0 { 1.0 } else { half.sin() / half };
+        Station { x: chord * half.cos(), z: chord * half.sin(), cos: turn.cos(), sin: turn.sin() }
+            .placed_by(&self.start)
+    }
+
     pub(super) fn mirrored(&self) -> Self {
         Self { start: self.end.mirrored(), end: self.start.mirrored(), radius: self.radius }
     }

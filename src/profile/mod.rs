@@ -8,6 +8,7 @@ pub mod measured;
 mod polynomial;
 mod section;
 pub mod standards;
+pub mod trace;
 
 pub use arc::{Arc, Half};
 pub use polynomial::Polynomial;

@@ -11,7 +11,7 @@ pub use data::{
 };
 pub use position::{Place, Standing};
 pub use read::{hash, load, parse};
-pub use resolve::{check_points, equal_steps, profile_from_file};
+pub use resolve::{check_points, equal_steps, profile_from_file, read_bytes};
 
 /// The JSON Schema of a scene.
 pub fn schema() -> schemars::Schema {

@@ -222,7 +222,7 @@ impl ProfileData {
             return profile_from_file(path).map(Resolved::drawn);
         }
         let place = path.display().to_string();
-        let bytes = read(path, measured::LARGEST_FILE)?;
+        let bytes = read_bytes(path, measured::LARGEST_FILE)?;
         let Measured { profile, record, .. } = measured::profile(&place, &bytes, side, &self.measured())?;
         Ok(Resolved { profile, measured: Some(record) })
     }
@@ -264,7 +264,10 @@ fn is_chain_file(path: &Path) -> bool {
 }
 
 /// The bytes of a file of at most `largest` bytes.
-fn read(path: &Path, largest: usize) -> Result<Vec<u8>> {
+///
+/// # Errors
+/// An unreadable or larger file.
+pub fn read_bytes(path: &Path, largest: usize) -> Result<Vec<u8>> {
     let place = path.display().to_string();
     let broken = |e: std::io::Error| Error::new(&place, e.to_string(), "a readable file", "check the path");
     let length = path.metadata().map_err(broken)?.len();

@@ -5,6 +5,7 @@ mod canvas;
 mod contour;
 mod panel;
 mod png;
+pub mod profile;
 mod svg;
 
 use super::model::{GridFields, Header, Loop};

@@ -112,14 +112,8 @@ const MOST_SAMPLES: f64 = 1e5;
 
 fn along_arc(arc: &Arc, step: f64) -> Vec<[f64; 2]> {
     let n = (arc.length() / step).ceil().clamp(1.0, MOST_SAMPLES);
-    let (length, turn) = (arc.length(), arc.turn());
     let inner = (1..n as usize).map(|k| {
-        let share = k as f64 / n;
-        // Chord of the part: its direction is the mean tangent, its length that of the arc times sinc.
-        let half = 0.5 * share * turn;
-        let chord = share * length * if half == 0.0 { 1.0 } else { half.sin() / half };
-        let at =
-            Station { x: chord * half.cos(), z: chord * half.sin(), ..Station::AXES }.placed_by(&arc.start);
+        let at = arc.station_at(k as f64 / n);
         [at.x, at.z]
     });
     let ends = [arc.start, arc.end].map(|s| [s.x, s.z]);

@@ -78,12 +78,7 @@ impl Section {
             let start = segment.start().seen_from(&frame);
             for mut branch in seen {
                 if let (Some(end), true) = (last, branch.begins_segment) {
-                    let gap = start.x - end.x;
-                    if gap > rounding {
-                        branches.extend(Branch::bridge(index, &end, &start));
-                    } else if gap > 0.0 {
-                        branch.xi[0] = end.x;
-                    }
+                    branches.extend(joined(branches.last(), &mut branch, [&end, &start], rounding));
                 }
                 last = None;
                 branches.push(branch);
@@ -131,6 +126,29 @@ impl Section {
         };
         Some(ProfilePoint { station: Station { x, ..station }, segment: branch.segment, parameter })
     }
+}
+
+/// Makes a branch begin where the one before it ends; returns the bridge over a drawing's step, if there is one.
+///
+/// The branches' own ends count, not the stations: a polynomial's are rounded in another way, and the smallest
+/// gap between two pieces would be an end of the profile.
+fn joined(
+    before: Option<&Branch>,
+    branch: &mut Branch,
+    [end, start]: [&Station; 2],
+    rounding: f64,
+) -> Option<Branch> {
+    let joint = before.map_or(end.x, |before| before.xi[1]);
+    let step = start.x - end.x;
+    if step > rounding {
+        let mut bridge = Branch::bridge(branch.segment, end, start)?;
+        bridge.xi = [joint, branch.xi[0]];
+        return Some(bridge);
+    }
+    if step >= -rounding && joint < branch.xi[1] {
+        branch.xi[0] = joint;
+    }
+    None
 }
 
 /// The arc of a straight step between two stations.

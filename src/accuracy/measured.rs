@@ -1,0 +1,393 @@
+//! What sampling, noise and the choice of curve do to measured profiles: 60E1 (1:40) and S1002, sampled from their
+//! drawings, read back as files, and compared with the drawings.
+
+use std::fmt::Write as _;
+
+use crate::contact::hertz::{Elastic, curvatures, effective_modulus};
+use crate::contact::search::{Pose, ProfilePair, Selection};
+use crate::error::{Error, Result};
+use crate::interpenetration::{Patch, Window};
+use crate::placement::{Body, Pair, Placement};
+use crate::profile::measured::{self, CUTOFF_WAVELENGTH, CurveKind, Format, Options, write};
+use crate::profile::trace::{Mark, beside, trace};
+use crate::profile::{Profile, Section, Side, standards};
+use crate::separation::Evaluator;
+
+/// Distances of the points \[mm\].
+pub const SPACINGS: [f64; 4] = [0.1, 0.5, 1.0, 2.0];
+/// Standard deviations of the noise across the profile \[µm\], normal and independent from point to point.
+pub const NOISES: [f64; 4] = [0.0, 0.1, 1.0, 10.0];
+/// Seed of the noise: the same for every row of one body, so that rows differ by their curves.
+const SEED: u64 = 0x60E1_51002;
+
+/// R \[mm\], δ \[mm\] and load \[N\] of the comparison.
+const RADIUS: f64 = 460.0;
+const APPROACH: f64 = 0.08;
+const LOAD: f64 = 1e5;
+const STEEL: Elastic = Elastic { youngs_modulus: 2.1e5, poissons_ratio: 0.28 };
+
+/// Where profiles are compared \[mm\]: the running surface. Below the gauge corner and on the flange no patch
+/// of a tread lies.
+const RAIL_ZONE: [f64; 2] = [-33.0, 33.0];
+const WHEEL_ZONE: [f64; 2] = [-38.0, 50.0];
+/// Distance of the marks that are compared \[mm\]; no multiple of a spacing.
+const MARKS: f64 = 0.071;
+/// Curvatures below this \[1/mm\] are compared with it, the crown's: a tread has places without any.
+const LEAST_CURVATURE: f64 = 1.0 / 300.0;
+/// Share of the places with errors below the one reported: at a joint of a drawing curvature jumps, and every
+/// smooth curve is wrong there.
+const QUANTILE: f64 = 0.95;
+/// Half the number of columns and rows at which s is compared.
+const GRID: i32 = 20;
+
+/// A curve through the points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Curve {
+    /// Through every point.
+    Interpolation,
+    /// With this cut-off wavelength \[mm\].
+    Smoothing(f64),
+    /// Within the default tolerance, or three times the noise if that is more.
+    Arcs,
+}
+
+/// Curves that are compared.
+pub const CURVES: [Curve; 5] =
+    [Curve::Interpolation, Curve::Smoothing(3.0), Curve::Smoothing(5.0), Curve::Smoothing(10.0), Curve::Arcs];
+
+/// One row of the table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// Distance of the points \[mm\].
+    pub spacing: f64,
+    /// Standard deviation of the noise \[µm\].
+    pub noise: f64,
+    /// The curve.
+    pub curve: Curve,
+    /// The errors, or why there is no curve.
+    pub errors: std::result::Result<Errors, String>,
+}
+
+/// How far a pair of fitted profiles is from the drawn one; of the first three the larger of rail and wheel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Errors {
+    /// 95 % quantile of the distance across \[mm\].
+    pub profile: f64,
+    /// 95 % quantile of the tangent's angle \[rad\].
+    pub slope: f64,
+    /// 95 % quantile of the curvature, relative to it or to 1/300 mm.
+    pub curvature: f64,
+    /// Largest error of s over the patch \[mm\], after lowering to first touch.
+    pub separation: f64,
+    /// Relative error of the patch's area.
+    pub area: f64,
+    /// Relative error of Hertz's pressure at the drawn contact point, or `None` where s is not convex there.
+    pub pressure: Option<f64>,
+}
+
+impl Curve {
+    fn options(self, noise: f64) -> Options {
+        let base = Options { mirror: Some(false), flip_z: Some(false), ..Options::default() };
+        match self {
+            Self::Interpolation => Options { curve: Some(CurveKind::Interpolation), ..base },
+            Self::Smoothing(cutoff) => Options { cutoff_wavelength: Some(cutoff), ..base },
+            Self::Arcs => {
+                // Of some hundred points the farthest lies three deviations off, some four.
+                let tolerance = measured::ARC_TOLERANCE.max(4.5e-3 * noise);
+                Options { curve: Some(CurveKind::Arcs), arc_tolerance: Some(tolerance), ..base }
+            }
+        }
+    }
+
+    fn name(self) -> String {
+        match self {
+            Self::Interpolation => "interpolation".into(),
+            Self::Smoothing(cutoff) => format!("smoothing {cutoff} mm"),
+            Self::Arcs => "arcs".into(),
+        }
+    }
+}
+
+/// One drawn body and what is known of it.
+struct Drawn {
+    profile: Profile,
+    side: Side,
+    marks: Vec<Mark>,
+    fine: Vec<Mark>,
+}
+
+impl Drawn {
+    fn new(profile: Profile, side: Side) -> Self {
+        let zone = if side == Side::Rail { RAIL_ZONE } else { WHEEL_ZONE };
+        let inside = |mark: &Mark| (zone[0]..=zone[1]).contains(&mark.station.x) && mark.station.cos > 0.2;
+        let marks = trace(&profile, MARKS).into_iter().filter(inside).collect();
+        let fine = trace(&profile, 0.01);
+        Self { profile, side, marks, fine }
+    }
+
+    /// Points every `spacing` mm of arc length with noise \[µm\] across.
+    fn points(&self, spacing: f64, noise: f64) -> Vec<[f64; 2]> {
+        let mut random = Normal(SEED ^ self.profile.name.len() as u64);
+        let mut next = 0.0;
+        let mut out = Vec::new();
+        for Mark { s, station, .. } in &self.fine {
+            if *s >= next {
+                next += spacing;
+                let off = 1e-3 * noise * random.next();
+                out.push([station.x - off * station.sin, station.z + off * station.cos]);
+            }
+        }
+        out
+    }
+
+    /// The profile that the program makes of these points, written as a file and read back.
+    fn fitted(&self, points: &[[f64; 2]], options: &Options) -> Result<Profile> {
+        let text = write::points(points, Format::Csv, self.side, "sample");
+        measured::profile("sample.csv", text.as_bytes(), self.side, options).map(|m| m.profile)
+    }
+
+    /// Quantiles of the errors of distance \[mm\], angle \[rad\] and relative curvature.
+    fn compare(&self, fitted: &Profile) -> [f64; 3] {
+        let marks = trace(fitted, MARKS / 2.0);
+        let mut hint = 0;
+        let mut errors: [Vec<f64>; 3] = Default::default();
+        for exact in &self.marks {
+            let found = beside(&marks, [exact.station.x, exact.station.z], hint);
+            hint = found.mark;
+            let near = &marks[found.mark];
+            // The nearest mark is up to half a step away from the foot.
+            let turn = near.station.seen_from(&exact.station).angle() + (found.s - near.s) * near.curvature;
+            errors[0].push(found.across.abs());
+            errors[1].push(turn.abs());
+            let scale = exact.curvature.abs().max(LEAST_CURVATURE);
+            errors[2].push((near.curvature - exact.curvature).abs() / scale);
+        }
+        errors.map(|mut values| {
+            values.sort_by(f64::total_cmp);
+            values[(QUANTILE * (values.len() - 1) as f64) as usize]
+        })
+    }
+}
+
+/// The drawn pair in contact, with everything that fitted pairs are compared with.
+struct Reference {
+    bodies: [Drawn; 2],
+    placement: Placement,
+    window: Window,
+    points: Vec<[f64; 3]>,
+    area: f64,
+    pressure: f64,
+}
+
+impl Reference {
+    fn new() -> Result<Self> {
+        let rail = standards::rail("60E1")?;
+        let bodies = [Drawn::new(rail, Side::Rail), Drawn::new(standards::wheel("S1002")?, Side::Wheel)];
+        let pair = pair(&bodies[0].profile, &bodies[1].profile)?;
+        let search = ProfilePair::new(&pair.rail, &pair.wheel, RADIUS)?;
+        let mut search = search.search();
+        let touch = search.touch(&Pose::new(0.0, 0.0, 0.0)?, &Selection { within: 0.0, apart: 0.5 });
+        let missing = |what: &str| Error::new("60E1 on S1002", what, "a tread contact", "report this");
+        let contact = touch.and_then(|t| t.contacts.first().copied()).ok_or_else(|| missing("no contact"))?;
+        let placement = pair.placed(contact.rail_x, contact.wheel_x, 0.0)?;
+        let window = Window { xi: [-20.0, 20.0], eta: [-20.0, 20.0] };
+        let patch = Patch::new(&placement, APPROACH, &window);
+        let extent = patch.extent().ok_or_else(|| missing("no patch"))?;
+        let pressure = pressure(&placement).ok_or_else(|| missing("no ellipse"))?;
+        let points = inside(&placement, &extent);
+        Ok(Self { bodies, placement, window, points, area: patch.area(), pressure })
+    }
+
+    fn errors(&self, spacing: f64, noise: f64, curve: Curve) -> Result<Errors> {
+        let options = curve.options(noise);
+        let [rail, wheel] = &self.bodies;
+        let fit = |body: &Drawn| body.fitted(&body.points(spacing, noise), &options);
+        let (fitted_rail, fitted_wheel) = (fit(rail)?, fit(wheel)?);
+        let (a, b) = (rail.compare(&fitted_rail), wheel.compare(&fitted_wheel));
+        let pair = pair(&fitted_rail, &fitted_wheel)?;
+        let placed = self.in_the_same_frame(&pair);
+        let mut evaluator = Evaluator::new(&placed);
+        let found: Vec<f64> =
+            self.points.iter().map(|[xi, eta, _]| evaluator.separation(*xi, *eta)).collect();
+        let lowest = found.iter().copied().fold(f64::INFINITY, f64::min);
+        let off = found.iter().zip(&self.points).map(|(s, [.., exact])| (s - lowest - exact).abs());
+        let separation = off.fold(0.0, f64::max);
+        let area = Patch::new(&placed, APPROACH + lowest, &self.window).area() / self.area - 1.0;
+        let at_contact = |body: &Body| body.point.station.x;
+        let own = pair.placed(at_contact(&self.placement.rail), at_contact(&self.placement.wheel), 0.0)?;
+        let pressure = pressure(&own).map(|pressure| pressure / self.pressure - 1.0);
+        let [profile, slope, curvature] = [0, 1, 2].map(|k: usize| a[k].max(b[k]));
+        Ok(Errors { profile, slope, curvature, separation, area, pressure })
+    }
+
+    /// A fitted pair in the drawn pair's contact frame: s is then comparable point by point.
+    fn in_the_same_frame(&self, pair: &Pair) -> Placement {
+        let body = |drawn: &Body, profile: &Profile, side| Body {
+            section: Section::in_frame(profile, drawn.point.station, side),
+            profile: profile.clone(),
+            point: drawn.point,
+        };
+        Placement {
+            rail: body(&self.placement.rail, &pair.rail, Side::Rail),
+            wheel: body(&self.placement.wheel, &pair.wheel, Side::Wheel),
+            ..self.placement.clone()
+        }
+    }
+}
+
+/// The rail inclined 1:40, under the wheel.
+fn pair(rail: &Profile, wheel: &Profile) -> Result<Pair> {
+    let run = 40f64.hypot(1.0);
+    Pair::new(rail.rotated(40.0 / run, 1.0 / run), wheel.clone(), RADIUS)
+}
+
+/// \[ξ, η, s\] at the points of a grid over the box that lie in the patch; C among them.
+fn inside(placement: &Placement, extent: &Window) -> Vec<[f64; 3]> {
+    let mut evaluator = Evaluator::new(placement);
+    let steps = || (-GRID..=GRID).map(|k| f64::from(k) / f64::from(GRID));
+    let along = |share: f64, [low, high]: [f64; 2]| if share < 0.0 { -share * low } else { share * high };
+    let mut points = Vec::new();
+    for [a, b] in steps().flat_map(|a| steps().map(move |b| [a, b])) {
+        let [xi, eta] = [along(a, extent.xi), along(b, extent.eta)];
+        let s = evaluator.separation(xi, eta);
+        if s <= APPROACH {
+            points.push([xi, eta, s]);
+        }
+    }
+    points
+}
+
+/// Hertz's largest pressure \[N/mm²\] under the load.
+fn pressure(placement: &Placement) -> Option<f64> {
+    let modulus = effective_modulus(&STEEL, &STEEL);
+    curvatures(placement).under_load(LOAD, modulus).map(|ellipse| ellipse.pressure_n_per_mm2)
+}
+
+/// Normal deviates: SplitMix64 and Box–Muller.
+struct Normal(u64);
+
+impl Normal {
+    fn uniform(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        // In (0, 1]: the logarithm of 0 is none.
+        (((z ^ (z >> 31)) >> 11) as f64 + 1.0) / (1u64 << 53) as f64
+    }
+
+    fn next(&mut self) -> f64 {
+        let (radius, turn) = ((-2.0 * self.uniform().ln()).sqrt(), std::f64::consts::TAU * self.uniform());
+        radius * turn.cos()
+    }
+}
+
+/// All rows: 4 spacings × 4 noises × 5 curves.
+///
+/// # Errors
+/// Built-in profiles that do not touch: a fault of this program.
+pub fn rows() -> Result<Vec<Row>> {
+    let reference = Reference::new()?;
+    let mut rows = Vec::new();
+    for spacing in SPACINGS {
+        for noise in NOISES {
+            for curve in CURVES {
+                let errors = reference.errors(spacing, noise, curve).map_err(|error| error.to_string());
+                rows.push(Row { spacing, noise, curve, errors });
+            }
+        }
+    }
+    Ok(rows)
+}
+
+/// The section of the report.
+pub fn section(rows: &[Row]) -> String {
+    let mut out = format!(
+        "## Measured profiles\n\n\
+         60E1 (1:40) under S1002, R = {RADIUS} mm, sampled from the drawings at equal arc lengths, with normal noise \
+         across the profile (fixed seed), read back as files and compared with the drawings. Profile, slope and \
+         curvature: 95 % quantile over the running surface, the larger of rail and wheel; curvature relative to \
+         itself or to 1/300 mm. s: largest error over the patch at δ = {APPROACH} mm after lowering to first touch. \
+         Pressure: Hertz, at the drawn contact point under {LOAD:e} N; \"none\" where the fitted surfaces are not \
+         convex there.\n\n\
+         | points every \\[mm\\] | noise \\[µm\\] | curve | profile \\[µm\\] | slope \\[mrad\\] | curvature \\[%\\] | \
+         s \\[µm\\] | area \\[%\\] | pressure \\[%\\] |\n|---|---|---|---|---|---|---|---|---|\n"
+    );
+    for row in rows {
+        let _ = write!(out, "| {} | {} | {} | ", row.spacing, row.noise, row.curve.name());
+        let _ = match &row.errors {
+            Ok(e) => {
+                let pressure = e.pressure.map_or("none".into(), |p| format!("{:+.2}", 1e2 * p));
+                let [profile, slope, curvature] = [1e3 * e.profile, 1e3 * e.slope, 1e2 * e.curvature];
+                let [s, area] = [1e3 * e.separation, 1e2 * e.area];
+                writeln!(
+                    out,
+                    "{profile:.3} | {slope:.3} | {curvature:.2} | {s:.3} | {area:+.2} | {pressure} |"
+                )
+            }
+            Err(why) => writeln!(out, "{} | | | | | |", why.replace('|', "/")),
+        };
+    }
+    out + &recommendation(rows)
+}
+
+/// Share of a row's pressure error that a patch without ellipse counts as.
+const NO_ELLIPSE: f64 = 1.0;
+
+/// The largest error of pressure that a curve makes on rows with up to `spacing` mm and `noise` µm.
+pub fn worst_pressure(rows: &[Row], curve: Curve, spacing: f64, noise: f64) -> f64 {
+    let counted = rows.iter().filter(|r| r.curve == curve && r.spacing <= spacing && r.noise <= noise);
+    let error =
+        |row: &Row| row.errors.as_ref().map_or(NO_ELLIPSE, |e| e.pressure.map_or(NO_ELLIPSE, f64::abs));
+    counted.map(error).fold(0.0, f64::max)
+}
+
+fn recommendation(rows: &[Row]) -> String {
+    let mut out =
+        String::from("\nLargest error of pressure \\[%\\] with points up to 1 mm apart:\n\n| curve |");
+    for noise in NOISES {
+        let _ = write!(out, " noise ≤ {noise} µm |");
+    }
+    out += "\n|---|---|---|---|---|\n";
+    for curve in CURVES {
+        let _ = write!(out, "| {} |", curve.name());
+        for noise in NOISES {
+            let _ = write!(out, " {:.1} |", 1e2 * worst_pressure(rows, curve, 1.0, noise));
+        }
+        out.push('\n');
+    }
+    let _ = writeln!(
+        out,
+        "\nDefault: smoothing with a cut-off wavelength of {CUTOFF_WAVELENGTH} mm. Take 10 mm for hand-held instruments \
+         whose noise is 10 µm, interpolation only for points computed from a drawing."
+    );
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `cargo test --release --lib evidence -- --ignored --nocapture` prints the section.
+    #[test]
+    #[ignore = "the whole table, about half a minute"]
+    fn evidence() -> Result<()> {
+        let begun = std::time::Instant::now();
+        let rows = rows()?;
+        println!("{}\n{:.1} s", section(&rows), begun.elapsed().as_secs_f64());
+        Ok(())
+    }
+
+    #[test]
+    fn noise_ruins_interpolation_and_not_the_default() -> Result<()> {
+        let reference = Reference::new()?;
+        let pressure = |curve| -> Result<f64> {
+            Ok(reference.errors(0.5, 1.0, curve)?.pressure.map_or(NO_ELLIPSE, f64::abs))
+        };
+        let (interpolated, smoothed) =
+            (pressure(Curve::Interpolation)?, pressure(Curve::Smoothing(CUTOFF_WAVELENGTH))?);
+        println!("pressure off by {interpolated} and {smoothed}");
+        assert!(smoothed < 0.1 && interpolated > 3.0 * smoothed);
+        Ok(())
+    }
+}

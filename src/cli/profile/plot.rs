@@ -1,0 +1,57 @@
+//! `wheelrail profile plot`: what the picture shows.
+
+use super::source::Source;
+use crate::export::picture::profile::ProfilePicture;
+use crate::profile::measured::{CurveRecord, Measured};
+use crate::profile::trace::{Mark, beside, trace};
+
+/// Distance of the curve's marks \[mm\]: 1500 over a profile, finer than a page shows.
+const STEP: f64 = 0.1;
+
+/// The picture as SVG.
+pub(super) fn plot(source: &Source) -> String {
+    let profile = source.profile();
+    let marks = trace(profile, STEP);
+    let points: Vec<[f64; 2]> =
+        source.measured().map_or_else(Vec::new, |measured| measured.points.iter().map(|p| p.xz()).collect());
+    ProfilePicture {
+        title: &profile.name,
+        about: &about(source),
+        points: &points,
+        curve: &marks.iter().map(|mark| [mark.station.x, mark.station.z]).collect::<Vec<_>>(),
+        residual: &residual(&marks, &points),
+        curvature: &marks.iter().map(|mark| [mark.s, mark.curvature]).collect::<Vec<_>>(),
+    }
+    .svg()
+}
+
+fn about(source: &Source) -> String {
+    let segments = source.profile().segments().len();
+    let Some(Measured { record, .. }) = source.measured() else {
+        return format!("{}    {segments} segments", source.profile().source);
+    };
+    let CurveRecord { residual, cutoff_wavelength, tolerance, .. } = &record.curve;
+    let mut out = format!("{} points", record.points_used);
+    if let Some(cutoff) = cutoff_wavelength {
+        out += &format!("    cut-off wavelength {cutoff} mm");
+    }
+    if let Some(tolerance) = tolerance {
+        out += &format!("    tolerance {tolerance} mm");
+    }
+    if let Some(residual) = residual {
+        let (largest, rms) = (1e3 * residual.largest, 1e3 * residual.rms);
+        out += &format!("    residual: largest {largest:.2} µm, rms {rms:.2} µm");
+    }
+    out + &format!("    {segments} segments")
+}
+
+/// \[s, distance of the point to the left of the curve\] \[mm\] for every point.
+fn residual(marks: &[Mark], points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mut hint = 0;
+    let residual = |point: &[f64; 2]| {
+        let found = beside(marks, *point, hint);
+        hint = found.mark;
+        [found.s, found.across]
+    };
+    points.iter().map(residual).collect()
+}
