@@ -18,7 +18,7 @@ use wheelrail::separation::grid::{Choice, Method};
 use wheelrail::separation::spectral::Demand;
 
 const SEED: [u8; 32] = *b"wheelrail invariances, fixed run";
-const CASES: u32 = 256;
+const CASES: u32 = 128;
 
 /// Half the window in ξ and η \[mm\].
 const REACH: [f64; 2] = [20.0, 15.0];
@@ -213,6 +213,13 @@ impl Case {
         [self.rail.abscissa(self.contact[0]), self.wheel.abscissa(self.contact[1])]
     }
 
+    /// Whether rounding cannot carry a contact point from one segment to the next.
+    fn contacts_off_joints(&self) -> bool {
+        let [rail_x, wheel_x] = self.abscissae();
+        let off = |chain: &Chain, x: f64| chain.segments(1.0).iter().all(|s| (s.end().x - x).abs() > 1e-8);
+        off(&self.rail, rail_x) && off(&self.wheel, wheel_x)
+    }
+
     fn placed(&self, rail: Profile, wheel: Profile, scale: f64, skew: f64) -> Placement {
         let [rail_x, wheel_x] = self.abscissae();
         let pair = Pair::new(rail, wheel, self.wheel_radius * scale).expect("a pair");
@@ -392,11 +399,7 @@ fn a_mirrored_pair_has_the_mirrored_separation() {
         let [rail_x, wheel_x] = case.abscissae();
         let other = pair.and_then(|pair| pair.placed(-rail_x, -wheel_x, -skew)).expect("the mirrored pair");
         // At a joint the left neighbour counts, whose tangent may differ: then it is another contact.
-        prop_assume!(
-            [&case.contact[0], &case.contact[1]]
-                .iter()
-                .all(|at| !matches!(at, At::Joint(_, d) if d.abs() < 1e-6))
-        );
+        prop_assume!(case.contacts_off_joints());
         compare(&one, &other, &case.points(&one), |[xi, eta]| [-xi, eta], case.allowed())
     });
 }
@@ -446,11 +449,7 @@ fn a_rigid_motion_of_the_profiles_changes_nothing() {
         let turned = c.placed_by(&Station { x, z, cos, sin });
         prop_assume!(turned.cos > STEEP);
         // A point next to a joint may come to lie on its other side.
-        prop_assume!(
-            [&case.contact[0], &case.contact[1]]
-                .iter()
-                .all(|at| !matches!(at, At::Joint(_, d) if d.abs() < 1e-6))
-        );
+        prop_assume!(case.contacts_off_joints());
         let pair = Pair::new(rail, wheel, one.wheel_radius + wheel_z).expect("a pair");
         let placed = pair.placed(turned.x, one.wheel.point.station.x + wheel_x, 0.0);
         let other = placed.expect("the same contact");

@@ -5,11 +5,11 @@
 //! `tests/hard_cases`; [`measurements`] does all of it to a given effort; [`requirements`] judges the ratios;
 //! [`page`], [`table`] and [`chart`] turn the numbers into Markdown, CSV and SVG. Nothing here touches the disk.
 
-pub mod measured;
 pub mod chart;
 pub mod errors;
 pub mod hard_case;
 mod hard_checks;
+pub mod measured;
 pub mod measurements;
 pub mod page;
 pub mod reference;

@@ -1,5 +1,6 @@
 //! The programs that our files are for, and the scripts that run them: shared by the tests of the clients.
 #![allow(dead_code, reason = "each test file uses its own part")]
+#![allow(clippy::unwrap_used, clippy::print_stderr)]
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
