@@ -1,6 +1,7 @@
 //! How far apart are rail and wheel around a contact point?
 //!
 //!     cargo run --release --example 01_separation
+#![allow(clippy::print_stdout)]
 
 use wheelrail::placement::Pair;
 use wheelrail::profile::standards;

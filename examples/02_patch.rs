@@ -1,6 +1,7 @@
 //! Which patch does an approach of 0.05 mm cut out, and how large is it?
 //!
 //!     cargo run --release --example 02_patch
+#![allow(clippy::print_stdout)]
 
 use wheelrail::contact::feasibility::feasibility;
 use wheelrail::interpenetration::{Patch, Window};

@@ -1,6 +1,7 @@
 //! How do I run a scene and write its files from my own program?
 //!
 //!     cargo run --release --example 03_whole_pipeline
+#![allow(clippy::print_stdout)]
 
 use std::path::Path;
 

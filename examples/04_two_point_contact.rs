@@ -1,6 +1,7 @@
 //! At which lateral displacement does a wheelset touch with tread and flange at once?
 //!
 //!     cargo run --release --example 04_two_point_contact
+#![allow(clippy::print_stdout)]
 
 use wheelrail::contact::search::wheelset::{Position, Roll, WheelsetOnTrack};
 use wheelrail::contact::search::{ProfilePair, Selection};

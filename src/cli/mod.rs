@@ -61,7 +61,7 @@ enum Command {
     },
     /// Look at profiles.
     #[command(subcommand)]
-    Profile(profile::ProfileCommand),
+    Profile(Box<profile::ProfileCommand>),
     /// Print the JSON Schema of a scene.
     Schema,
 }
