@@ -38,6 +38,7 @@ pub enum ReferenceSegment {
     Line { x0: f64, z0: f64, x1: f64, z1: f64 },
     Arc { x0: f64, x1: f64, a: f64, b: f64, r: f64, sigma: f64 },
     Poly { x0: f64, x1: f64, c: Vec<f64> },
+    Spline { t1: f64, cx: Vec<f64>, cz: Vec<f64> },
 }
 
 impl ReferenceSegment {
@@ -48,6 +49,7 @@ impl ReferenceSegment {
                 let half = if *sigma > 0.0 { Half::Upper } else { Half::Lower };
                 Shape::Arc(Arc::about([*a, *b], *r, half, [*x0, *x1])?)
             }
+            Self::Spline { t1, cx, cz } => Shape::Polynomial(Polynomial::span(cx, cz, [0.0, *t1])?),
             Self::Poly { x0, x1, c } => Shape::Polynomial(Polynomial::graph(c, [*x0, *x1])?),
         };
         Ok(Segment { label: String::new(), shape })
