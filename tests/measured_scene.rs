@@ -1,5 +1,5 @@
 //! `examples/scenes/measured.toml`: two measured files from end to end, against the drawings they were sampled from.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::Path;
 
