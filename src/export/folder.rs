@@ -278,7 +278,8 @@ fn foreign_files(target: &Path, names: Names) -> Result<Vec<PathBuf>> {
     // Subfolders are ours when they are folders of the same kind and hold nothing else.
     let is_folder = |entry: &fs::DirEntry| entry.file_type().is_ok_and(|kind| kind.is_dir());
     let is_part = |entry: &fs::DirEntry| {
-        is_folder(entry) && foreign_files(&entry.path(), names).is_ok_and(|files| files.is_empty())
+        let marked = is_folder(entry) && entry.path().join(names.marker).exists();
+        marked && foreign_files(&entry.path(), names).is_ok_and(|files| files.is_empty())
     };
     let foreign: Vec<_> = foreign.into_iter().filter(|entry| !is_part(entry)).collect();
     if let Some(folder) = foreign.iter().find(|entry| is_folder(entry)) {
