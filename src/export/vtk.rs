@@ -235,7 +235,12 @@ mod tests {
         let sample = Sample::new(3, 4);
         let bytes = legacy_grid(&header(), &sample.fields()).unwrap();
         let text = text(&bytes);
-        assert!(text.starts_with("# vtk DataFile Version 4.2\nwheelrail 0.0.0, 0123abcd"), "{text}");
+        assert!(
+            text.starts_with(
+                "# vtk DataFile Version 4.2\nwheelrail 0.0.0; mm; s > 0 apart; delta 0.05; scene 0123abcd"
+            ),
+            "{text}"
+        );
         assert!(text.contains("DIMENSIONS 4 3 1"), "{text}");
         // Readers take big-endian for granted.
         let first = sample.xi[0].to_be_bytes();
