@@ -2,7 +2,7 @@
 //!
 //! Random chains come from generators that make near-tangent, near-equal and near-joint cases on purpose. The
 //! seed is fixed and printed; a failure prints the shrunk case.
-#![allow(clippy::expect_used, clippy::panic, reason = "tests")]
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 use std::fmt::Debug;
 

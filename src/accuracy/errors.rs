@@ -59,12 +59,15 @@ pub fn compare(reference: &Reference, placement: &Placement, choice: &Choice) ->
     points.collect()
 }
 
-/// Whether (ξ, η) and the wheel's foot below it, at ξ − e sinθ with e ≈ η²/2R, lie on both contact segments.
+/// Whether (ξ, η) and the wheel's foot below it, at ξ − e sinθ with e ≈ η²/2R, lie inside both contact segments. Their
+/// ends belong to the neighbours as well, by which a drawing's step may be measured.
 pub fn over_contact(placement: &Placement, xi: f64, eta: f64) -> bool {
     let (rail, wheel) = (&placement.rail.section, &placement.wheel.section);
     let e = eta * eta / (2.0 * placement.rolling_radius());
     let inside = |section: &Section, xi: f64| {
-        section.piece_at(xi).is_some_and(|piece| section.contact == Some(piece.branch))
+        section.piece_at(xi).is_some_and(|piece| {
+            section.contact == Some(piece.branch) && piece.xi[0] < xi && xi < piece.xi[1]
+        })
     };
     inside(rail, xi) && inside(wheel, xi) && inside(wheel, xi - e * wheel.frame.sin)
 }
