@@ -59,14 +59,18 @@ pub fn compare(reference: &Reference, placement: &Placement, choice: &Choice) ->
     points.collect()
 }
 
+/// Ends of segments in the contact frame are known to this share of the profiles' extent: rounding of their abscissae.
+const END_ROUNDING: f64 = 64.0 * f64::EPSILON;
+
 /// Whether (ξ, η) and the wheel's foot below it, at ξ − e sinθ with e ≈ η²/2R, lie inside both contact segments. Their
 /// ends belong to the neighbours as well, by which a drawing's step may be measured.
 pub fn over_contact(placement: &Placement, xi: f64, eta: f64) -> bool {
     let (rail, wheel) = (&placement.rail.section, &placement.wheel.section);
     let e = eta * eta / (2.0 * placement.rolling_radius());
+    let end = END_ROUNDING * placement.rail.profile.extent().max(placement.wheel.profile.extent());
     let inside = |section: &Section, xi: f64| {
         section.piece_at(xi).is_some_and(|piece| {
-            section.contact == Some(piece.branch) && piece.xi[0] < xi && xi < piece.xi[1]
+            section.contact == Some(piece.branch) && piece.xi[0] + end < xi && xi < piece.xi[1] - end
         })
     };
     inside(rail, xi) && inside(wheel, xi) && inside(wheel, xi - e * wheel.frame.sin)
