@@ -6,7 +6,13 @@ use wheelrail::accuracy::page::{FILES, PAGE, excerpt, page, sections};
 use wheelrail::accuracy::reference::{FILES as SCENES, references};
 
 fn small() -> Measurements {
-    let effort = Effort { sides: vec![8, 20], seconds: 0.0, growth: vec![10, 20] };
+    let effort = Effort {
+        sides: vec![8, 20],
+        seconds: 0.0,
+        growth: vec![10, 20],
+        every_pair: 50,
+        spacings: vec![2.0],
+    };
     measure(&effort, &mut |_| {}).expect("a measurement")
 }
 

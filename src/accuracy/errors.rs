@@ -19,6 +19,8 @@ pub struct Point {
     pub expected: Option<f64>,
     /// Whether the point lies over both contact segments, where full relative accuracy is promised.
     pub over_contact: bool,
+    /// … and not within rounding of an end of theirs.
+    pub inside_contact: bool,
 }
 
 impl Point {
@@ -55,25 +57,37 @@ pub fn compare(reference: &Reference, placement: &Placement, choice: &Choice) ->
         found: values[index(&xi, *x) * eta.len() + index(&eta, *y)],
         expected: value.as_deref().map(exact),
         over_contact: over_contact(placement, *x, *y),
+        inside_contact: inside_contact(placement, *x, *y),
     });
     points.collect()
+}
+
+/// Whether (ξ, η) and the wheel's foot below it, at ξ′ − e sinθ with e ≈ η′²/2R, lie over both contact segments.
+pub fn over_contact(placement: &Placement, xi: f64, eta: f64) -> bool {
+    on_contact(placement, xi, eta, 0.0)
 }
 
 /// Ends of segments in the contact frame are known to this share of the profiles' extent: rounding of their abscissae.
 const END_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// Whether (ξ, η) and the wheel's foot below it, at ξ − e sinθ with e ≈ η²/2R, lie inside both contact segments. Their
-/// ends belong to the neighbours as well, by which a drawing's step may be measured.
-pub fn over_contact(placement: &Placement, xi: f64, eta: f64) -> bool {
+/// Like [`over_contact`], but not within rounding of an end: that belongs to the neighbour as well, by which a
+/// drawing's step may be measured.
+pub fn inside_contact(placement: &Placement, xi: f64, eta: f64) -> bool {
+    let extent = placement.rail.profile.extent().max(placement.wheel.profile.extent());
+    on_contact(placement, xi, eta, END_ROUNDING * extent)
+}
+
+fn on_contact(placement: &Placement, xi: f64, eta: f64, end: f64) -> bool {
     let (rail, wheel) = (&placement.rail.section, &placement.wheel.section);
-    let e = eta * eta / (2.0 * placement.rolling_radius());
-    let end = END_ROUNDING * placement.rail.profile.extent().max(placement.wheel.profile.extent());
+    let (sin, cos) = placement.skew.sin_cos();
+    let (xi_w, eta_w) = (xi * cos + eta * sin, eta * cos - xi * sin);
+    let e = eta_w * eta_w / (2.0 * placement.rolling_radius());
     let inside = |section: &Section, xi: f64| {
         section.piece_at(xi).is_some_and(|piece| {
-            section.contact == Some(piece.branch) && piece.xi[0] + end < xi && xi < piece.xi[1] - end
+            section.contact == Some(piece.branch) && piece.xi[0] + end <= xi && xi <= piece.xi[1] - end
         })
     };
-    inside(rail, xi) && inside(wheel, xi) && inside(wheel, xi - e * wheel.frame.sin)
+    inside(rail, xi) && inside(wheel, xi_w) && inside(wheel, xi_w - e * wheel.frame.sin)
 }
 
 /// The figures of one row of accuracy.csv. A method that misses a surface, or finds one where there is none, has

@@ -1,6 +1,6 @@
 //! What every hard case is checked for.
 
-use super::errors::{Point, compare, over_contact};
+use super::errors::{Point, compare, inside_contact};
 use super::hard_case::{HardCase, METHODS, RelationKind, StatedComponent, StatedPatch};
 use super::reference::exact;
 use crate::error::{Error, Result};
@@ -96,8 +96,8 @@ impl Bench<'_> {
             masked.map_or("so".into(), |p| format!("{:?}", p.expected)),
             masked.is_none(),
         )];
-        let over = worst(&|p| p.relative().filter(|e| p.over_contact && !e.is_nan()));
-        let elsewhere = |p: &Point| (!p.over_contact || p.expected == Some(0.0)).then(|| p.error());
+        let over = worst(&|p| p.relative().filter(|e| p.inside_contact && !e.is_nan()));
+        let elsewhere = |p: &Point| (!p.inside_contact || p.expected == Some(0.0)).then(|| p.error());
         let beside = worst(&|p| elsewhere(p).filter(|e| !e.is_nan()));
         let rows = [
             ("relative error over the contact segments", over, relative),
@@ -170,7 +170,7 @@ impl Bench<'_> {
 
     /// The bound on s at a point.
     fn bound(&self, xi: f64, eta: f64, s: f64) -> f64 {
-        if over_contact(self.placement, xi, eta) {
+        if inside_contact(self.placement, xi, eta) {
             PROMISED_RELATIVE * s
         } else {
             PROMISED_ABSOLUTE * self.scale

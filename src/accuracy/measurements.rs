@@ -6,8 +6,10 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::errors::{Errors, compare};
 use super::hard_case::{Outcome, hard_cases};
+use super::measured;
 use super::reference::{Reference, references};
 use super::speed::{Timing, Track, Work, race};
+use super::verification::{Subject, Verified, built_in_pairs, verify};
 use crate::error::{Error, Result};
 use crate::placement::Placement;
 use crate::separation::grid::Method;
@@ -28,12 +30,22 @@ pub struct Effort {
     pub seconds: f64,
     /// n of the n × n grids of the growth of cost.
     pub growth: Vec<usize>,
+    /// Every n-th of the built-in pairs is checked by parry3d's meshes.
+    pub every_pair: usize,
+    /// Distances of the points of the measured profiles \[mm\].
+    pub spacings: Vec<f64>,
 }
 
 impl Effort {
     /// What `wheelrail report` does: 4 × 10^4 and 4 × 10^6 points, growth up to 10^8; about two minutes, 0.8 GB.
     pub fn full() -> Self {
-        Self { sides: vec![200, 2000], seconds: 0.25, growth: vec![100, 316, 1000, 3162, 10_000] }
+        Self {
+            sides: vec![200, 2000],
+            seconds: 0.25,
+            growth: vec![100, 316, 1000, 3162, 10_000],
+            every_pair: 1,
+            spacings: measured::SPACINGS.to_vec(),
+        }
     }
 }
 
@@ -103,6 +115,10 @@ pub struct Measurements {
     pub threads: Vec<Threads>,
     /// Hard cases.
     pub hard_cases: Vec<Outcome>,
+    /// The check by parry3d's meshes: of the reference scenes, with and without skew, and of the built-in pairs.
+    pub verified: [Vec<Verified>; 2],
+    /// What sampling, noise and the choice of curve do to measured profiles.
+    pub evidence: Vec<measured::Row>,
 }
 
 /// Measures; `progress` is told what begins.
@@ -132,10 +148,25 @@ pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measur
     progress("hard cases");
     let cases = hard_cases()?;
     let hard_cases = cases.iter().map(|case| case.run(&cases)).collect::<Result<_>>()?;
+    progress("the check by parry3d's meshes");
+    let verified = verified(&references, effort.every_pair)?;
+    progress("measured profiles");
+    let evidence = measured::rows(&effort.spacings)?;
     planning.sort_by(f64::total_cmp);
     let planning = [0, planning.len() / 2, planning.len().saturating_sub(1)]
         .map(|k| planning.get(k).copied().unwrap_or(f64::NAN));
-    Ok(Measurements { rows, planning, growth, threads, hard_cases })
+    Ok(Measurements { rows, planning, growth, threads, hard_cases, verified, evidence })
+}
+
+fn verified(references: &[Reference], every_pair: usize) -> Result<[Vec<Verified>; 2]> {
+    let mut scenes = Vec::new();
+    for reference in references {
+        let subject = Subject::of_reference(reference)?;
+        scenes.extend(subject.skewed());
+        scenes.push(subject);
+    }
+    let pairs: Vec<Subject> = built_in_pairs()?.into_iter().step_by(every_pair).collect();
+    Ok([verify(&scenes)?, verify(&pairs)?])
 }
 
 fn pool(threads: usize) -> Result<ThreadPool> {

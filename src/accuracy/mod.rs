@@ -2,7 +2,8 @@
 //!
 //! [`reference`] reads the 60-digit files, which are part of the program; [`errors`] compares a method with them;
 //! [`speed`] races methods against a plain store of the same array; [`hard_case`] runs the cases of
-//! `tests/hard_cases`; [`measurements`] does all of it to a given effort; [`requirements`] judges the ratios;
+//! `tests/hard_cases`; [`verification`] has parry3d's meshes check them; [`measured`] compares curves through points
+//! with the drawing that the points are from; [`measurements`] does all of it to a given effort; [`requirements`] judges the ratios;
 //! [`page`], [`table`] and [`chart`] turn the numbers into Markdown, CSV and SVG. Nothing here touches the disk.
 
 pub mod chart;
@@ -16,5 +17,6 @@ pub mod reference;
 pub mod requirements;
 pub mod speed;
 pub mod table;
+pub mod verification;
 
 pub use hard_checks::{BOUNDS, Check};

@@ -2,9 +2,12 @@
 
 use super::chart::{Chart, Series, svg};
 use super::hard_case::Outcome;
+use super::measured;
 use super::measurements::{Growth, Measurements, Row, median};
 use super::requirements;
-use super::table::{accuracy_csv, growth_csv, hard_cases_csv, markdown};
+use super::table::{accuracy_csv, growth_csv, hard_cases_csv, markdown, verification_csv};
+use super::verification::{Verified, floors};
+use crate::check::{RELATION, Report};
 
 /// One section of the page. A new one is a new function in [`sections`].
 #[derive(Debug, Clone, PartialEq)]
@@ -24,10 +27,11 @@ pub type Origin = Vec<(&'static str, String)>;
 pub const PAGE: &str = "report.md";
 
 /// All files of a report.
-pub const FILES: [&str; 7] = [
+pub const FILES: [&str; 8] = [
     PAGE,
     "accuracy.csv",
     "hard_cases.csv",
+    "verification.csv",
     "scaling.csv",
     "scaling.svg",
     "work_error_small.svg",
@@ -43,6 +47,8 @@ pub fn sections(m: &Measurements) -> Vec<Section> {
         growth(m),
         threads(m),
         hard_cases(m),
+        verification(m),
+        plain("Measured profiles", measured::section(&m.evidence)),
         method(m),
     ]
 }
@@ -306,6 +312,66 @@ fn hard_case(outcome: &Outcome) -> Vec<String> {
     cells.extend(errors);
     cells.push(case.report_newton.remark.replace('|', "\\|"));
     cells
+}
+
+fn verification(m: &Measurements) -> Section {
+    let floors: Vec<Vec<String>> = floors(m.verified.iter().flatten())
+        .into_iter()
+        .map(|floor| {
+            let figures = [floor.ray_mm, floor.closest_mm, floor.normal];
+            [vec![floor.form.to_string()], figures.map(|v| format!("{v:.1e}")).to_vec()].concat()
+        })
+        .collect();
+    let floors = markdown(&["closed form", "rays, mm", "closest points, mm", "unit normals"], 1, &floors);
+    let [scenes, pairs] = &m.verified;
+    let rows =
+        [agreement("reference scenes, with and without skew", scenes), agreement("built-in pairs", pairs)];
+    let head = [
+        "checked",
+        "agree",
+        "points",
+        "s − rays, mm",
+        "99 %",
+        "median",
+        "bracket of s, mm",
+        "unit normals",
+        "relation, mm",
+        "order",
+    ];
+    let mut body = format!(
+        "`wheelrail check`: both bodies as triangle meshes, measured by parry3d; no formula of the separation code is \
+         on that path. The checker's own errors, measured first on closed forms of every scene's size, the largest:\n\n\
+         {floors}\n\
+         What the program says against what the meshes say: the largest difference of all, the worst scene's 99 % \
+         quantile, the median scene's median; the widest rigorous bracket, in which every s lies; by how much the \
+         closest distance d leaves its relation to s, {RELATION}; the median order of the meshes' convergence.\n\n{}\n\
+         All rows: [verification.csv](verification.csv).\n",
+        markdown(&head, 1, &rows)
+    );
+    for verified in m.verified.iter().flatten().filter(|v| !v.report.agrees) {
+        body += &format!("\n**{}**: {}\n", verified.name, verified.report.objections.join("; "));
+    }
+    let files = vec![("verification.csv", verification_csv(&m.verified).into_bytes())];
+    Section { title: "Checked by triangle meshes", body, files }
+}
+
+/// One row: how many agree, and the figures of all of them together.
+fn agreement(name: &str, all: &[Verified]) -> Vec<String> {
+    let of = |figure: fn(&Report) -> f64| all.iter().map(move |v| figure(&v.report));
+    let largest = |figure: fn(&Report) -> f64| format!("{:.1e}", of(figure).fold(0.0, f64::max));
+    let agreeing = all.iter().filter(|v| v.report.agrees).count();
+    vec![
+        name.into(),
+        format!("{agreeing} of {}", all.len()),
+        all.iter().map(|v| v.report.counts.compared).sum::<usize>().to_string(),
+        largest(|r| r.separation.max),
+        largest(|r| r.separation.p99),
+        format!("{:.1e}", median(of(|r| r.separation.median))),
+        largest(|r| r.bracket_mm),
+        largest(|r| r.normals.max),
+        largest(|r| r.distances.violation.max),
+        format!("{:.2}", median(of(|r| r.orders.median))),
+    ]
 }
 
 fn method(m: &Measurements) -> Section {

@@ -59,6 +59,8 @@ pub enum ReferenceSegment {
     Arc { x0: f64, x1: f64, a: f64, b: f64, r: f64, sigma: f64 },
     /// z = Σ c_k x^k over \[x0, x1\] \[mm\].
     Poly { x0: f64, x1: f64, c: Vec<f64> },
+    /// (Σ cx_k t^k, Σ cz_k t^k) over 0 ≤ t ≤ t1 \[mm\].
+    Spline { t1: f64, cx: Vec<f64>, cz: Vec<f64> },
 }
 
 impl ReferenceSegment {
@@ -73,6 +75,7 @@ impl ReferenceSegment {
                 let half = if *sigma > 0.0 { Half::Upper } else { Half::Lower };
                 Shape::Arc(Arc::about([*a, *b], *r, half, [*x0, *x1])?)
             }
+            Self::Spline { t1, cx, cz } => Shape::Polynomial(Polynomial::span(cx, cz, [0.0, *t1])?),
             Self::Poly { x0, x1, c } => Shape::Polynomial(Polynomial::graph(c, [*x0, *x1])?),
         };
         Ok(Segment { label: String::new(), shape })

@@ -4,6 +4,8 @@ use std::fmt::Write;
 
 use super::hard_case::{METHODS, Outcome};
 use super::measurements::{Growth, Row};
+use super::verification::Verified;
+use crate::check::Floor;
 
 /// accuracy.csv. Lengths in mm, times in s; a method that misses a surface, or finds one where there is none, has
 /// NaN for its largest errors.
@@ -59,6 +61,38 @@ pub fn hard_cases_csv(outcomes: &[Outcome]) -> String {
                 quoted(&case.provenance),
             );
         }
+    }
+    out
+}
+
+/// verification.csv: what parry3d's meshes say, one row per placed pair; lengths in mm.
+pub fn verification_csv(groups: &[Vec<Verified>]) -> String {
+    let mut out = String::from(
+        "pair,agrees,points,compared,max_mm,q99_mm,median_mm,worst_xi,worst_eta,bracket_mm,outside_bracket,\
+         max_normal,relation_mm,order,floor_rays_mm,floor_closest_mm\n",
+    );
+    for Verified { name, report } in groups.iter().flatten() {
+        let s = &report.separation;
+        let [xi, eta] = s.worst_at_mm;
+        let floor = |figure: fn(&Floor) -> f64| report.floors.iter().map(figure).fold(0.0, f64::max);
+        let _ = writeln!(
+            out,
+            "{},{},{},{},{:.2e},{:.2e},{:.2e},{xi},{eta},{:.2e},{},{:.2e},{:.2e},{:.3},{:.2e},{:.2e}",
+            quoted(name),
+            report.agrees,
+            report.counts.points,
+            report.counts.compared,
+            s.max,
+            s.p99,
+            s.median,
+            report.bracket_mm,
+            report.outside_bracket,
+            report.normals.max,
+            report.distances.violation.max,
+            report.orders.median,
+            floor(|f| f.ray_mm),
+            floor(|f| f.closest_mm),
+        );
     }
     out
 }

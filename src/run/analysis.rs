@@ -14,6 +14,7 @@ use crate::placement::Placement;
 use crate::separation::axis::EtaAxis;
 use crate::separation::grid::Method;
 use crate::separation::plan::{Plan, plan};
+use crate::separation::report_newton;
 
 /// How far the bodies approach, and how that is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -114,17 +115,15 @@ impl Analysis {
     /// Fills the grid and cuts the patch out of its window; runs on the threads of the current rayon pool.
     ///
     /// # Errors
-    /// The Report's method with yaw; a patch that cannot be meshed.
+    /// The Report's method where it has no formula; a patch that cannot be meshed.
     pub fn new(contact: &Contact, xi: Vec<f64>, eta: Vec<f64>, question: &Question) -> Result<Self> {
         let placement = &contact.placement;
-        if placement.skew != 0.0 && question.method == Some(Method::ReportNewton) {
-            let expected = "another method: the Report has no yaw";
-            return Err(Error::new(
-                "grid: method",
-                "report-newton with yaw",
-                expected,
-                "leave the method to \"auto\"",
-            ));
+        if let (Some(Method::ReportNewton), Some(missing)) =
+            (question.method, report_newton::missing(placement))
+        {
+            let found = format!("report-newton with {missing}");
+            let expected = "another method: the Report has no formula for it";
+            return Err(Error::new("grid: method", found, expected, "leave the method to \"auto\""));
         }
         let start = Instant::now();
         let axis = EtaAxis::new(&eta);

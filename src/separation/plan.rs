@@ -5,6 +5,7 @@ use super::axis::EtaAxis;
 use super::grid::{Choice, Method};
 use super::spectral::{Demand, Spectral};
 use crate::placement::Placement;
+use crate::profile::Section;
 
 /// At this tolerance \[mm\] and below, the relative accuracy near C is kept as well.
 ///
@@ -132,19 +133,26 @@ impl<'a> Samples<'a> {
     }
 }
 
-/// Rounding error of s: a few units of its own last place over the contact segments, of the abscissae that
-/// joints are reached by elsewhere.
+/// Rounding error of s: a few units of its own last place over the contact segments; elsewhere, of the heights by
+/// which joints are placed in the frame, ζ = Δz cosθ − Δx sinθ, with z_C rounded in Δz.
 fn rounding(placement: &Placement, xi: &[f64], exact: &[f64]) -> f64 {
-    let largest =
-        |values: &[f64]| values.iter().filter(|s| !s.is_nan()).fold(0.0, |m: f64, s| m.max(s.abs()));
-    let inside = |section: &crate::profile::Section, xi: f64| {
+    let largest = |values: &mut dyn Iterator<Item = f64>| {
+        values.filter(|v| !v.is_nan()).fold(0.0, |m: f64, v| m.max(v.abs()))
+    };
+    let sections = [&placement.rail.section, &placement.wheel.section];
+    let contact = |section: &Section, xi: f64| {
         section.piece_at(xi).is_none_or(|piece| section.contact == Some(piece.branch))
     };
-    let contact =
-        xi.iter().all(|&xi| inside(&placement.rail.section, xi) && inside(&placement.wheel.section, xi));
-    let joints =
-        placement.rail.section.frame.x.abs().max(placement.wheel.section.frame.x.abs()) + largest(xi);
-    2.0 * f64::EPSILON * largest(exact).max(if contact { 0.0 } else { joints })
+    let s = largest(&mut exact.iter().copied());
+    if xi.iter().all(|&xi| sections.into_iter().all(|section| contact(section, xi))) {
+        return 2.0 * f64::EPSILON * s;
+    }
+    let joints = sections.map(|section| {
+        let heights = largest(&mut xi.iter().map(|&xi| section.height(xi)));
+        section.frame.z.abs() + heights + section.frame.sin.abs() * largest(&mut xi.iter().copied())
+    });
+    // Both bodies' joints are off at once.
+    2.0 * f64::EPSILON * s.max(joints[0] + joints[1])
 }
 
 /// The larger of two, NaN if either is.

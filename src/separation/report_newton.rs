@@ -24,6 +24,16 @@ enum Printed {
     Polynomial { middle: f64, c: Vec<f64> },
 }
 
+/// What of a placed pair the Report's method has no formula for, if there is such a thing; its values are NaN there.
+pub fn missing(placement: &Placement) -> Option<&'static str> {
+    if placement.skew != 0.0 {
+        return Some("yaw");
+    }
+    let segments = placement.wheel.profile.segments().iter();
+    let unknown = |shape| Printed::of(shape, &Station::AXES).is_none();
+    segments.map(|segment| &segment.shape).any(unknown).then_some("a wheel of parametric curves")
+}
+
 /// Newton on (6.13) at every point.
 #[derive(Debug)]
 pub struct ReportNewton<'a> {
