@@ -44,7 +44,7 @@ fn yawed_separation_keeps_its_digits() {
             scene.eta.extend((0..extra).map(|k| -11.3 + 0.21 * f64::from(k)));
             let [xi, eta] = scene.axes();
             let plan = plan(&placement, &xi, &EtaAxis::new(&eta), FULL_PRECISION, Some(method));
-            let worst = Worst::of(name, &compare(&yawed.reference, &placement, &plan.choice));
+            let worst = Worst::of(name, &compare(&yawed.reference, &placement, &plan.choice, 0));
             println!("{name} {}: {worst:?}", method.name());
             assert!(worst.relative <= RELATIVE, "{name} {}: {worst:?}", method.name());
             assert!(worst.elsewhere <= ABSOLUTE, "{name} {}: {worst:?}", method.name());

@@ -1,6 +1,7 @@
 //! A method held to the 60-digit values of a scene.
 
 use super::reference::{Reference, exact};
+use super::speed::steps;
 use crate::placement::Placement;
 use crate::profile::Section;
 use crate::separation::axis::EtaAxis;
@@ -41,12 +42,18 @@ impl Point {
     }
 }
 
-/// A choice evaluated at all points of a scene's file, in the file's order.
+/// A choice evaluated at all points of a scene's file, in the file's order, on a grid with `columns` equally spaced
+/// columns between them.
 ///
 /// The η values are those of the file, so that spectral columns reach as far, and are the same polynomials, as
-/// on any grid with the same largest |η|.
-pub fn compare(reference: &Reference, placement: &Placement, choice: &Choice) -> Vec<Point> {
-    let [xi, eta] = reference.scene.axes();
+/// on any grid with the same largest |η|. Strips are made where there are many columns: with as many as a grid has,
+/// its own strips are compared.
+pub fn compare(reference: &Reference, placement: &Placement, choice: &Choice, columns: usize) -> Vec<Point> {
+    let [mut xi, eta] = reference.scene.axes();
+    if let (Some(&first), Some(&last)) = (xi.first(), xi.last()) {
+        xi.extend(steps(first, last, columns));
+        xi.sort_by(f64::total_cmp);
+    }
     let axis = EtaAxis::new(&eta);
     let mut values = vec![0.0; xi.len() * eta.len()];
     choice.fill(placement, &xi, &axis, &mut values);

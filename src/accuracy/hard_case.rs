@@ -16,6 +16,9 @@ use crate::separation::plan::{FULL_PRECISION, plan};
 /// The methods that a case is run with, in the order of [`Outcome::errors`].
 pub const METHODS: [Method; 3] = [Method::Spectral, Method::Pointwise, Method::ReportNewton];
 
+/// Columns between those of a case: none, and as many as make strips.
+pub(super) const COLUMNS: [usize; 2] = [0, 200];
+
 /// Whether the program is known to master a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -157,15 +160,18 @@ impl HardCase {
     /// A scene that cannot be placed; a relation to no case.
     pub fn run(&self, all: &[Self]) -> Result<Outcome> {
         let placement = self.reference.placement()?;
-        let points =
-            METHODS.map(|method| compare(&self.reference, &placement, &self.choice(&placement, method)));
+        let points: [Vec<Point>; 3] = METHODS.map(|method| {
+            let choice = self.choice(&placement, method);
+            let columns = if method == Method::Spectral { &COLUMNS[..] } else { &COLUMNS[..1] };
+            columns.iter().flat_map(|&n| compare(&self.reference, &placement, &choice, n)).collect()
+        });
         let checks = hard_checks::all(self, &placement, &points, all)?;
         let errors = points.each_ref().map(|points| {
             let defined: Vec<Point> = points.iter().filter(|p| !p.error().is_nan()).copied().collect();
             let wrongly_masked = points.len() - defined.len();
             Errors { wrongly_masked, ..Errors::of(&defined) }
         });
-        Ok(Outcome { case: self.clone(), points: points[0].len(), errors, checks })
+        Ok(Outcome { case: self.clone(), points: self.reference.separation.len(), errors, checks })
     }
 }
 

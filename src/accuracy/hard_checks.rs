@@ -1,7 +1,7 @@
 //! What every hard case is checked for.
 
 use super::errors::{Point, compare, inside_contact};
-use super::hard_case::{HardCase, METHODS, RelationKind, StatedComponent, StatedPatch};
+use super::hard_case::{COLUMNS, HardCase, METHODS, RelationKind, StatedComponent, StatedPatch};
 use super::reference::exact;
 use crate::error::{Error, Result};
 use crate::interpenetration::{Component, End, Patch, Slicer, Window};
@@ -12,7 +12,7 @@ use crate::separation::grid::{Choice, Method};
 /// The bounds of the methods that promise digits: relative over the contact segments, absolute \[mm\] elsewhere,
 /// the latter × unit × max(1, R_max/300 mm). Measured over all cases; less than a quarter used fails the suite.
 pub const BOUNDS: [(Method, f64, f64); 2] =
-    [(Method::Spectral, 1e-14, 2e-14), (Method::Pointwise, 2e-15, 2e-14)];
+    [(Method::Spectral, 5e-15, 2e-14), (Method::Pointwise, 2e-15, 2e-14)];
 
 /// What is promised to users for the boundary and the tips, through the accuracy of s.
 const PROMISED_RELATIVE: f64 = 1e-13;
@@ -262,11 +262,14 @@ impl Bench<'_> {
                 coefficients: 1,
                 ..case.choice(placement, *method)
             };
-            let mine = compare(&self.case.reference, self.placement, &choice(self.case, self.placement));
-            let other = compare(&base.reference, &placement, &choice(base, &placement));
-            self.agreement(*method, relation.kind, &mine, &other, 2.0 * absolute * self.scale)
+            let (my_choice, other_choice) = (choice(self.case, self.placement), choice(base, &placement));
+            COLUMNS.map(|columns| {
+                let mine = compare(&self.case.reference, self.placement, &my_choice, columns);
+                let other = compare(&base.reference, &placement, &other_choice, columns);
+                self.agreement(*method, relation.kind, &mine, &other, 2.0 * absolute * self.scale)
+            })
         });
-        Ok(checks.collect())
+        Ok(checks.flatten().collect())
     }
 
     fn agreement(

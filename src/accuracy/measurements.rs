@@ -216,7 +216,7 @@ fn scene(reference: &Reference, side: usize, seconds: f64, planning: &mut Vec<f6
         let tolerance = tolerance.unwrap_or(FULL_PRECISION);
         let choice = plan(&placement, track.xi(), track.axis(), tolerance, Some(method)).choice;
         works.push(Work::Fill(choice));
-        errors.push(Some(Errors::of(&compare(reference, &placement, &choice))));
+        errors.push(Some(Errors::of(&compare(reference, &placement, &choice, side))));
     }
     let start = Instant::now();
     plan(&placement, track.xi(), track.axis(), FULL_PRECISION, None);

@@ -126,9 +126,9 @@ pub fn race(contestants: usize, seconds: f64, mut run: impl FnMut(usize) -> f64)
     }
 }
 
-/// n ≥ 2 equal steps, symmetric to the last bit where a = −b.
-fn steps(a: f64, b: f64, n: usize) -> Vec<f64> {
-    let last = (n - 1) as f64;
+/// The ends of n − 1 equal steps, symmetric to the last bit where a = −b.
+pub(super) fn steps(a: f64, b: f64, n: usize) -> Vec<f64> {
+    let last = n as f64 - 1.0;
     (0..n).map(|k| (a * (last - k as f64) + b * k as f64) / last).collect()
 }
 

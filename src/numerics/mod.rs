@@ -1,5 +1,6 @@
-//! Roots, polynomials, quadrature and elliptic integrals: no railway words here.
+//! Roots, polynomials, Chebyshev series, quadrature and elliptic integrals: no railway words here.
 
+pub mod chebyshev;
 pub mod elliptic;
 pub mod polynomial;
 pub mod quadrature;

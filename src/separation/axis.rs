@@ -1,5 +1,8 @@
 //! The η values of a grid, prepared once for all columns.
 
+/// Values that are mirrored at a time: a vector.
+const RUN: usize = 8;
+
 /// η and u = η² of every column, and whether half of it is the mirror image of the other.
 #[derive(Debug, Clone)]
 pub struct EtaAxis {
@@ -28,30 +31,37 @@ impl EtaAxis {
         }
     }
 
-    /// Calls `fill` with the index ranges whose u lies in (u0, u1], or in \[u0, u1\] for u0 = 0; only the half
-    /// η ≥ 0 of a symmetric axis.
-    pub fn ranges(&self, [u0, u1]: [f64; 2], mut fill: impl FnMut(std::ops::Range<usize>)) {
+    /// The index ranges whose u lies in (u0, u1], or in \[u0, u1\] for u0 = 0: η ≥ 0, and η < 0 where that is not the
+    /// mirror image.
+    #[inline]
+    pub fn ranges(&self, [u0, u1]: [f64; 2]) -> [std::ops::Range<usize>; 2] {
         let middle = self.first_positive;
         let right = &self.u[middle..];
         let begin = if u0 == 0.0 { 0 } else { right.partition_point(|&u| u <= u0) };
-        fill(middle + begin..middle + right.partition_point(|&u| u <= u1));
-        if !self.symmetric {
-            let left = &self.u[..middle];
-            let end = if u0 == 0.0 { middle } else { left.partition_point(|&u| u > u0) };
-            fill(left.partition_point(|&u| u > u1)..end);
+        let positive = middle + begin..middle + right.partition_point(|&u| u <= u1);
+        if self.symmetric {
+            return [positive, 0..0];
         }
+        let left = &self.u[..middle];
+        let end = if u0 == 0.0 { middle } else { left.partition_point(|&u| u > u0) };
+        [positive, left.partition_point(|&u| u > u1)..end]
     }
 
     /// Copies the half η ≥ 0 of a column onto the other, where the axis is symmetric.
+    #[inline(always)]
     pub fn mirror(&self, column: &mut [f64]) {
         if self.symmetric {
             let n = column.len();
             let (left, right) = column.split_at_mut(self.first_positive);
             // An odd number of values has η = 0 in the middle, at the start of the right part.
             let skip = n - 2 * left.len();
-            for (l, r) in left.iter_mut().rev().zip(&right[skip..]) {
-                *l = *r;
+            let (right, rest) = right[skip..skip + left.len()].as_chunks::<RUN>();
+            let (left_rest, left) = left.as_rchunks_mut::<RUN>();
+            for (l, r) in left.iter_mut().rev().zip(right) {
+                *l = std::array::from_fn(|k| r[RUN - 1 - k]);
             }
+            left_rest.copy_from_slice(rest);
+            left_rest.reverse();
         }
     }
 }
@@ -68,12 +78,10 @@ mod tests {
             let axis = EtaAxis::new(&eta);
             let mut column = vec![f64::NAN; eta.len()];
             for interval in [[0.0, 1.0], [1.0, 4.0], [4.0, f64::INFINITY]] {
-                axis.ranges(interval, |range| {
-                    for i in range {
-                        assert!(column[i].is_nan() && axis.u[i] <= interval[1], "{eta:?} {i}");
-                        column[i] = axis.u[i];
-                    }
-                });
+                for i in axis.ranges(interval).into_iter().flatten() {
+                    assert!(column[i].is_nan() && axis.u[i] <= interval[1], "{eta:?} {i}");
+                    column[i] = axis.u[i];
+                }
             }
             axis.mirror(&mut column);
             assert_eq!(column, axis.u);

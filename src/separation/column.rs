@@ -12,7 +12,7 @@
 
 use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
-use crate::profile::{Branch, BranchPoint, Section};
+use crate::profile::{Branch, BranchPoint, Piece, Section};
 
 /// Contractions by e/w, at most 1e-2 away from vertical tangents, reach rounding in 8; a branch that needs more
 /// is steep there and is left to the bracketed root.
@@ -93,13 +93,14 @@ impl<'a> WheelSurface<'a> {
         let Some(mut index) = first else { return };
         loop {
             let piece = &pieces[index];
-            let [near, far] = if falling { [piece.xi[1], piece.xi[0]] } else { piece.xi };
+            let sides = if falling { [1, 0] } else { [0, 1] };
+            let [near, far] = sides.map(|side| piece.xi[side]);
             let begin = if self.sin == 0.0 { 0.0 } else { ((xi - near) / self.sin).max(0.0) };
             let end = if self.sin == 0.0 { f64::INFINITY } else { (xi - far) / self.sin };
             if self.sin == 0.0 && !(piece.xi[0] <= xi && xi <= piece.xi[1]) {
                 return;
             }
-            let mut span = self.span(xi, piece.branch, [begin, end], u_max);
+            let mut span = self.span(xi, piece, [begin, end], sides, u_max);
             if let Some(last) = spans.last().filter(|last| last.e[1] == begin) {
                 // One joint: the ranges meet, whatever rounding or a drawing's step makes of them.
                 span.u[0] = last.u[1];
@@ -124,22 +125,25 @@ impl<'a> WheelSurface<'a> {
         if pieces[0].xi[0] == xi { Some(0) } else { (pieces[last].xi[1] == xi).then_some(last) }
     }
 
-    fn span(&self, xi: f64, branch: usize, e: [f64; 2], u_max: f64) -> Span {
-        let begin = self.abscissa(xi, e[0]);
-        let shape = &self.section.branches[branch];
-        let height = shape.height(begin) + e[0] * self.cos;
+    /// The span over one piece between two sagittae; `near` and `far` are the ends of the piece that they belong to.
+    fn span(&self, xi: f64, piece: &Piece, e: [f64; 2], [near, far]: [usize; 2], u_max: f64) -> Span {
+        let (begin, on_profile) =
+            if e[0] > 0.0 { piece.ends[near] } else { self.section.branches[piece.branch].point(xi) };
+        let height = on_profile + e[0] * self.cos;
         let w = self.axle - xi * self.sin - height * self.cos;
-        let mut span = Span { e, u: [0.0, f64::INFINITY], branch, height, w, begin: shape.point(begin) };
-        if e[0] > 0.0 {
-            span.u[0] = self.foot(xi, &span, e[0]).u;
-        }
+        let u0 = e[0] * (2.0 * w + e[0]);
+        let span = Span { e, u: [u0, f64::INFINITY], branch: piece.branch, height, w, begin };
         if e[1] > FAR_END * u_max / (2.0 * w) && w > 0.0 {
             return span;
         }
-        let end = self.foot(xi, &span, e[1]);
+        let (_, at_end) = piece.ends[far];
+        let w = self.axle - xi * self.sin - (at_end + e[1] * self.cos) * self.cos;
         // Beyond the axle's height the profile's end cannot be met: the ring of the column closes before.
-        (span.e[1], span.u[1]) = if end.w > 0.0 { (e[1], end.u) } else { (f64::INFINITY, f64::INFINITY) };
-        span
+        if w > 0.0 {
+            Span { u: [u0, e[1] * (2.0 * w + e[1])], ..span }
+        } else {
+            Span { e: [e[0], f64::INFINITY], ..span }
+        }
     }
 
     /// The point with sagitta e over a span: no iteration.
@@ -151,10 +155,11 @@ impl<'a> WheelSurface<'a> {
         Foot { e, rise, w, u: e * (2.0 * w + e) }
     }
 
-    /// A point near u: two contractions of the sagitta step.
-    pub fn foot_near(&self, xi: f64, span: &Span, u: f64) -> Foot {
-        let first = self.foot(xi, span, sagitta(span.w, u).clamp(span.e[0], span.e[1]));
-        self.foot(xi, span, sagitta(first.w, u).clamp(span.e[0], span.e[1]))
+    /// A point near u, no nearer than `share` of it: contractions of the sagitta step.
+    pub fn foot_near(&self, xi: f64, span: &Span, u: f64, share: f64) -> Foot {
+        let step = |w: f64| self.foot(xi, span, sagitta(w, u).clamp(span.e[0], span.e[1]));
+        let first = step(span.w);
+        if (first.u - u).abs() <= (1.0 - share) * u { first } else { step(first.w) }
     }
 
     /// The point at u = η² over a span, or `None` where η is beyond the ring.

@@ -13,19 +13,19 @@ pub fn midplane_gap(placement: &Placement, xi: f64) -> f64 {
         (Some(r), Some(w)) => {
             let contact = rail.contact == Some(r.branch) && wheel.contact == Some(w.branch);
             let (r, w) = (&rail.branches[r.branch], &wheel.branches[w.branch]);
-            if contact { contact_gap(r, w, xi) } else { w.height(xi) - r.height(xi) }
+            let height = w.height(xi);
+            if contact { contact_gap(r, w, xi, height) } else { height - r.height(xi) }
         }
         _ => f64::NAN,
     }
 }
 
-/// The gap between two branches through C that share their tangent there.
-pub(super) fn contact_gap(rail: &Branch, wheel: &Branch, xi: f64) -> f64 {
+/// The gap between two branches through C that share their tangent there; `zeta_w` is ζ^W(ξ).
+pub(super) fn contact_gap(rail: &Branch, wheel: &Branch, xi: f64, zeta_w: f64) -> f64 {
     if let (BranchShape::Arc(rail), BranchShape::Arc(wheel)) = (&rail.shape, &wheel.shape) {
         return arc_gap(rail, wheel, xi);
     }
-    let (zeta_w, zeta_r) = (wheel.height(xi), rail.height(xi));
-    let gap = zeta_w - zeta_r;
+    let gap = zeta_w - rail.height(xi);
     // Three bits lost are within the promise; beyond that the difference is taken in 32 digits.
     if gap.abs() >= 0.125 * zeta_w.abs() {
         return gap;
@@ -66,7 +66,7 @@ pub(super) fn skewed_gap(rail: &Branch, wheel: &Branch, xi: f64, xi_w: f64) -> f
     if !inside(xi) {
         return wheel.height(xi_w) - rail.height(xi);
     }
-    contact_gap(rail, wheel, xi) + (xi_w - xi) * wheel.chord_slope(xi, xi_w)
+    contact_gap(rail, wheel, xi, wheel.height(xi)) + (xi_w - xi) * wheel.chord_slope(xi, xi_w)
 }
 
 /// κ_W − κ_R \[1/mm\] of two contact arcs, or `None` when a polynomial is among them.

@@ -9,15 +9,24 @@ use super::axis::EtaAxis;
 use super::pointwise::Pointwise;
 use super::report_newton::ReportNewton;
 use super::spectral::{Demand, Spectral};
+use super::strips::{Strip, strips};
 use crate::placement::Placement;
 
-/// Columns of one block: the unit of work of a thread. Long enough that setting up a kernel does not count.
-const BLOCK: usize = 16;
+/// Columns of one block: the unit of work of a thread.
+pub(super) const BLOCK: usize = 16;
 
 /// A way to evaluate s over columns of constant ξ.
 pub trait Kernel {
     /// Writes s(ξ, η_j) for all η_j of the axis \[mm\]; NaN where a body has no surface.
     fn column(&mut self, xi: f64, out: &mut [f64]);
+
+    /// Writes neighbouring columns, one after the other.
+    fn columns(&mut self, xi: &[f64], out: &mut [f64]) {
+        let length = out.len() / xi.len().max(1);
+        for (&xi, out) in xi.iter().zip(out.chunks_exact_mut(length)) {
+            self.column(xi, out);
+        }
+    }
 }
 
 /// The accuracy ladder, cheapest first.
@@ -75,15 +84,24 @@ pub struct Choice {
 
 impl Choice {
     /// A kernel of this choice.
-    fn kernel<'a>(&self, placement: &'a Placement, axis: &'a EtaAxis) -> Box<dyn Kernel + 'a> {
+    fn kernel<'a>(
+        &self,
+        placement: &'a Placement,
+        axis: &'a EtaAxis,
+        strips: &'a [Strip],
+    ) -> Box<dyn Kernel + 'a> {
         match self.method {
             Method::Quadratic => Box::new(Quadratic::new(placement, axis)),
             Method::ConstantRadius => Box::new(Parabolic::constant_radius(placement, axis)),
             Method::Parabolic => Box::new(Parabolic::local(placement, axis)),
-            Method::Spectral => Box::new(Spectral::new(placement, axis, self.demand, self.coefficients)),
+            Method::Spectral => Box::new(self.spectral(placement, axis).with_strips(strips)),
             Method::Pointwise => Box::new(Pointwise::new(placement, axis)),
             Method::ReportNewton => Box::new(ReportNewton::new(placement, axis, self.demand.absolute)),
         }
+    }
+
+    fn spectral<'a>(&self, placement: &'a Placement, axis: &'a EtaAxis) -> Spectral<'a> {
+        Spectral::new(placement, axis, self.demand, self.coefficients)
     }
 
     /// s over the grid, index i_ξ · n_η + i_η, on the threads of the current rayon pool. The same bits come
@@ -93,11 +111,16 @@ impl Choice {
         if n == 0 {
             return;
         }
-        out.par_chunks_mut(BLOCK * n).zip(xi.par_chunks(BLOCK)).for_each(|(out, xi)| {
-            let mut kernel = self.kernel(placement, axis);
-            for (&xi, out) in xi.iter().zip(out.chunks_mut(n)) {
-                kernel.column(xi, out);
+        let strips = match self.method {
+            Method::Spectral => {
+                strips(&mut self.spectral(placement, axis), placement, xi, axis.reach * axis.reach)
             }
-        });
+            _ => Vec::new(),
+        };
+        let blocks = out.par_chunks_mut(BLOCK * n).zip(xi.par_chunks(BLOCK));
+        blocks.for_each_init(
+            || self.kernel(placement, axis, &strips),
+            |kernel, (out, xi)| kernel.columns(xi, out),
+        );
     }
 }

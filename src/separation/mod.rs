@@ -11,6 +11,7 @@ pub mod pointwise;
 pub mod report_newton;
 mod skewed;
 pub mod spectral;
+pub mod strips;
 
 use crate::placement::Placement;
 use column::{Span, WheelSurface};
@@ -142,19 +143,32 @@ impl<'a> Evaluator<'a> {
         if sin == 0.0 { (xi, eta) } else { (xi * cos + eta * sin, eta * cos - xi * sin) }
     }
 
+    /// Whether a span begins in the midplane, over both contact segments.
+    fn over_contact(&self, xi: f64, span: &Span) -> bool {
+        let (rail, wheel) = (&self.placement.rail.section, &self.placement.wheel.section);
+        let contact = rail.piece_at(xi).is_some_and(|piece| rail.contact == Some(piece.branch));
+        contact && wheel.contact == Some(span.branch) && span.e[0] == 0.0
+    }
+
+    /// Size of the coordinates from which both bodies' heights at the beginning of a span are computed \[mm\].
+    fn heights(&self, xi: f64, span: &Span) -> f64 {
+        let frames = [&self.placement.rail.section.frame, &self.placement.wheel.section.frame];
+        let coordinates = frames.map(|frame| frame.z.abs() + (frame.sin * xi).abs());
+        span.height.abs() + coordinates[0].max(coordinates[1])
+    }
+
     /// s at the beginning of a span: the wheel's height there less the rail's.
     fn base(&self, xi: f64, xi_w: f64, span: &Span) -> f64 {
         let (rail, wheel) = (&self.placement.rail.section, &self.placement.wheel.section);
         let Some(piece) = rail.piece_at(xi) else { return f64::NAN };
-        let both =
-            rail.contact == Some(piece.branch) && wheel.contact == Some(span.branch) && span.e[0] == 0.0;
+        let both = self.over_contact(xi, span);
         let rail = &rail.branches[piece.branch];
         if !both {
             return span.height - rail.height(xi);
         }
         let branch = &wheel.branches[span.branch];
         if xi == xi_w {
-            return gap::contact_gap(rail, branch, xi);
+            return gap::contact_gap(rail, branch, xi, span.height);
         }
         gap::skewed_gap(rail, branch, xi, xi_w)
     }

@@ -12,8 +12,8 @@ use crate::profile::Section;
 /// s falls below any absolute tolerance near C; someone who asks for 1e-12 mm asks for all digits.
 pub const FULL_PRECISION: f64 = 1e-12;
 
-/// Relative truncation allowed at full precision: a tenth of the promised 1e-13.
-const FULL_RELATIVE: f64 = 1e-14;
+/// Relative truncation allowed at full precision: a fiftieth of the promised 1e-13, some roundings.
+const FULL_RELATIVE: f64 = 2e-15;
 
 /// Columns and values of η at which an approximate method is compared with the point-wise one. Its error is
 /// smooth, and largest at edges and joints, which are always among them.
@@ -108,9 +108,11 @@ impl<'a> Samples<'a> {
         BETWEEN_SAMPLES * largest.max(truncation) + self.rounding
     }
 
-    /// Coefficients with which most columns are done: the least that the first, middle and last need.
+    /// Coefficients with which most spans are done.
     fn coefficients(&self, demand: Demand) -> usize {
-        self.polynomials(demand, 1).map(|(n, _)| n).min().unwrap_or(1)
+        let mut needed: Vec<usize> = self.polynomials(demand, 1).map(|(n, _)| n).collect();
+        needed.sort_unstable();
+        needed.get(needed.len() / 2).copied().unwrap_or(1)
     }
 
     fn spectral_truncation(&self, choice: &Choice) -> f64 {
@@ -126,12 +128,15 @@ impl<'a> Samples<'a> {
         let mut spans = Vec::new();
         for &xi in &self.xi {
             wheel.spans(xi, u_max, &mut spans);
-            let fits = spans.iter().filter_map(|span| spectral.polynomial(xi, span, u_max));
+            let fits = spans.iter().filter_map(|span| spectral.polynomial(xi, span, u_max, coefficients));
             all.extend(fits.map(|fit| (fit.n, fit.error)));
         }
         all.into_iter()
     }
 }
+
+/// Roundings of s over the contact segments: gap, rise, and their interpolation over ξ.
+const CONTACT_ROUNDINGS: f64 = 8.0;
 
 /// Rounding error of s: a few units of its own last place over the contact segments; elsewhere, of the heights by
 /// which joints are placed in the frame, ζ = Δz cosθ − Δx sinθ, with z_C rounded in Δz.
@@ -145,7 +150,7 @@ fn rounding(placement: &Placement, xi: &[f64], exact: &[f64]) -> f64 {
     };
     let s = largest(&mut exact.iter().copied());
     if xi.iter().all(|&xi| sections.into_iter().all(|section| contact(section, xi))) {
-        return 2.0 * f64::EPSILON * s;
+        return CONTACT_ROUNDINGS * f64::EPSILON * s;
     }
     let joints = sections.map(|section| {
         let heights = largest(&mut xi.iter().map(|&xi| section.height(xi)));

@@ -7,10 +7,11 @@
 use super::Evaluator;
 use super::axis::EtaAxis;
 use super::spectral::Demand;
+use crate::numerics::chebyshev;
 use crate::numerics::roots::bracketed;
 
 /// Most nodes of a span.
-const MOST_NODES: usize = 24;
+const MOST_NODES: usize = chebyshev::MOST_POINTS;
 
 /// Below this share of the span's largest |s| a point is evaluated on its own: interpolation there would
 /// cost more than the promised thirteen relative digits.
@@ -82,13 +83,13 @@ fn interpolate(
     let mut n = 6;
     let scale = loop {
         let values: [f64; MOST_NODES] = std::array::from_fn(|j| {
-            if j < n { evaluator.separation(xi, centre + half * node(j, n)) } else { 0.0 }
+            if j < n { evaluator.separation(xi, centre + half * chebyshev::point(j, n)) } else { 0.0 }
         });
         let scale = values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
         if values.iter().any(|v| v.is_nan()) {
             return false;
         }
-        coefficients(&values[..n], &mut c);
+        chebyshev::coefficients(&values[..n], 1, &mut c[..n]);
         // Two last coefficients, since one parity may vanish.
         let tail = c[n - 1].abs() + c[n - 2].abs();
         let allowed = demand.absolute.min(demand.relative * scale).max(4.0 * f64::EPSILON * scale);
@@ -101,33 +102,10 @@ fn interpolate(
         }
     };
     for (s, &eta) in out.iter_mut().zip(eta) {
-        let t = (eta - centre) / half;
-        // Clenshaw.
-        let [b1, b2] = c[1..n].iter().rev().fold([0.0, 0.0], |[b1, b2], c| [2.0 * t * b1 - b2 + c, b1]);
-        *s = t * b1 - b2 + c[0];
+        *s = chebyshev::value(&c[..n], (eta - centre) / half);
         if s.abs() < SMALL_SHARE * scale {
             *s = evaluator.separation(xi, eta);
         }
     }
     true
-}
-
-/// The j-th of n Chebyshev points of the first kind.
-fn node(j: usize, n: usize) -> f64 {
-    ((2.0 * j as f64 + 1.0) * std::f64::consts::FRAC_PI_2 / n as f64).cos()
-}
-
-/// Chebyshev coefficients of the interpolant through the values at the nodes.
-fn coefficients(values: &[f64], c: &mut [f64]) {
-    let n = values.len();
-    for (k, c) in c.iter_mut().enumerate().take(n) {
-        let sum: f64 = values
-            .iter()
-            .enumerate()
-            .map(|(j, v)| {
-                v * (k as f64 * (2.0 * j as f64 + 1.0) * std::f64::consts::FRAC_PI_2 / n as f64).cos()
-            })
-            .sum();
-        *c = sum * if k == 0 { 1.0 } else { 2.0 } / n as f64;
-    }
 }

@@ -6,7 +6,8 @@
 
 use super::axis::EtaAxis;
 use super::column::{Span, WheelSurface};
-use super::grid::Kernel;
+use super::grid::{BLOCK, Kernel};
+use super::strips::{self, Strip};
 use super::{Evaluator, skewed};
 use crate::placement::Placement;
 
@@ -44,6 +45,19 @@ pub struct ColumnPolynomial {
     pub error: f64,
 }
 
+/// The polynomial over one span of a whole column.
+#[derive(Debug, Clone, Copy)]
+pub struct Fit {
+    /// The polynomial.
+    pub polynomial: ColumnPolynomial,
+    /// Length of the span in u, up to the window's end \[mm²\].
+    pub width: f64,
+    /// Whether it begins over both contact segments.
+    pub contact: bool,
+    /// Size of the coordinates that the base is computed from \[mm\].
+    pub height: f64,
+}
+
 /// Columns by interpolation to a demand.
 #[derive(Debug)]
 pub struct Spectral<'a> {
@@ -51,6 +65,7 @@ pub struct Spectral<'a> {
     axis: &'a EtaAxis,
     demand: Demand,
     coefficients: usize,
+    strips: &'a [Strip],
     spans: Vec<Span>,
     arch: pulp::Arch,
 }
@@ -60,20 +75,52 @@ impl<'a> Spectral<'a> {
     pub fn new(placement: &'a Placement, axis: &'a EtaAxis, demand: Demand, coefficients: usize) -> Self {
         let evaluator = Evaluator::new(placement);
         let arch = pulp::Arch::new();
-        Self { evaluator, axis, demand, coefficients, spans: Vec::with_capacity(8), arch }
+        Self { evaluator, axis, demand, coefficients, strips: &[], spans: Vec::with_capacity(8), arch }
     }
 
-    /// The polynomial over one span up to `u_max`, or `None` where no degree reaches the demand.
-    pub fn polynomial(&self, xi: f64, span: &Span, u_max: f64) -> Option<ColumnPolynomial> {
-        let end = self.evaluator.wheel.foot_near(xi, span, span.u[1].min(u_max));
-        let covered = end.u >= NEARLY_COVERED * span.u[1].min(u_max);
+    /// The same with strips for some of the columns.
+    pub fn with_strips(self, strips: &'a [Strip]) -> Self {
+        Self { strips, ..self }
+    }
+
+    /// The polynomials of the column at ξ, span by span, with at least so many coefficients; `None` where not all of
+    /// the column has a surface or a polynomial. `fits` is overwritten.
+    pub fn whole_column(&mut self, xi: f64, least: &[usize], fits: &mut Vec<Fit>) -> Option<()> {
+        fits.clear();
+        let u_max = self.axis.reach * self.axis.reach;
+        let mut spans = std::mem::take(&mut self.spans);
+        self.evaluator.wheel.spans(xi, u_max, &mut spans);
+        if is_whole(&spans, u_max) {
+            fits.extend(spans.iter().enumerate().map_while(|(k, span)| {
+                let least = least.get(k).copied().unwrap_or(0).max(self.coefficients);
+                let polynomial = self.polynomial(xi, span, u_max, least)?;
+                Some(Fit {
+                    polynomial,
+                    width: span.u[1].min(u_max) - span.u[0],
+                    contact: self.evaluator.over_contact(xi, span),
+                    height: self.evaluator.heights(xi, span),
+                })
+            }));
+        }
+        let whole = !fits.is_empty() && fits.len() == spans.len();
+        self.spans = spans;
+        whole.then_some(())
+    }
+
+    /// The polynomial over one span up to `u_max` with at least so many coefficients, or `None` where no degree reaches
+    /// the demand.
+    pub fn polynomial(&self, xi: f64, span: &Span, u_max: f64, least: usize) -> Option<ColumnPolynomial> {
+        let u_end = span.u[1].min(u_max);
+        let end = self.evaluator.wheel.foot_near(xi, span, u_end, NEARLY_COVERED);
+        let covered = end.u >= NEARLY_COVERED * u_end;
         if !covered || end.w <= 0.0 {
             return None;
         }
         let base = self.evaluator.base(xi, xi, span);
         let allowed = self.demand.absolute.min(self.demand.relative * end.rise.abs());
-        let rounding = ROUNDING_LEVEL * end.rise.abs();
-        for n in self.coefficients..=MOST_COEFFICIENTS {
+        // A short span's rise is the difference of sagittae that are larger.
+        let rounding = ROUNDING_LEVEL * (end.rise.abs() + span.e[0]);
+        for n in least..=MOST_COEFFICIENTS {
             let c = interpolate(&self.evaluator.wheel, xi, span, end.e, n);
             let fit = ColumnPolynomial { base: 0.0, u0: span.u[0], c, n, error: 0.0 };
             // The end is where the error of an interpolant at Chebyshev points is largest.
@@ -124,60 +171,170 @@ fn interpolate(
     c
 }
 
+/// Whether the spans are all of the column up to `u_max`.
+fn is_whole(spans: &[Span], u_max: f64) -> bool {
+    spans.first().is_some_and(|span| span.e[0] == 0.0)
+        && spans.last().is_some_and(|span| span.u[1] >= u_max)
+        && spans.windows(2).all(|pair| pair[0].u[1] == pair[1].u[0])
+}
+
 impl Kernel for Spectral<'_> {
     fn column(&mut self, xi: f64, out: &mut [f64]) {
         if self.evaluator.placement.skew != 0.0 {
             return skewed::column(&mut self.evaluator, self.axis, self.demand, xi, out);
         }
-        let u_max = self.axis.reach * self.axis.reach;
-        let mut spans = std::mem::take(&mut self.spans);
-        self.evaluator.wheel.spans(xi, u_max, &mut spans);
-        let whole = spans.first().is_some_and(|span| span.e[0] == 0.0)
-            && spans.last().is_some_and(|span| span.u[1] >= u_max)
-            && spans.windows(2).all(|pair| pair[0].u[1] == pair[1].u[0]);
-        if !whole {
-            out.fill(f64::NAN);
-        }
-        for span in &spans {
-            let fit = self.polynomial(xi, span, u_max);
-            self.axis.ranges(span.u, |range| match &fit {
-                Some(fit) => evaluate(self.arch, fit, &self.axis.u[range.clone()], &mut out[range]),
-                None => self.evaluator.over_span(xi, span, &self.axis.u[range.clone()], &mut out[range]),
-            });
-        }
-        self.spans = spans;
+        self.single_column(xi, self.axis.reach * self.axis.reach, out);
         self.axis.mirror(out);
+    }
+
+    fn columns(&mut self, xi: &[f64], out: &mut [f64]) {
+        let length = self.axis.eta.len();
+        let mut done = 0;
+        while let Some(&first) = xi.get(done) {
+            let rest = &xi[done..];
+            let beyond = self.strips.partition_point(|strip| strip.xi[1] < first);
+            let strip = self.strips.get(beyond).filter(|strip| strip.xi[0] <= first);
+            let count = match strip {
+                Some(strip) => rest.partition_point(|&xi| xi <= strip.xi[1]).min(BLOCK),
+                None => 1,
+            };
+            let (xi, out) = (&rest[..count], &mut out[done * length..(done + count) * length]);
+            match strip {
+                Some(strip) => self.arch.dispatch(StripColumns { strip, xi, axis: self.axis, out }),
+                None => self.column(first, out),
+            }
+            done += count;
+        }
     }
 }
 
-/// Horner's rule over a run of u, with the widest vectors that the machine has; unrolled for the degree so
-/// that it vectorises. No fused multiply-add: the same bits on every machine.
-fn evaluate(arch: pulp::Arch, fit: &ColumnPolynomial, u: &[f64], out: &mut [f64]) {
-    match fit.n {
-        1 => arch.dispatch(|| horner::<1>(fit, u, out)),
-        2 => arch.dispatch(|| horner::<2>(fit, u, out)),
-        3 => arch.dispatch(|| horner::<3>(fit, u, out)),
-        4 => arch.dispatch(|| horner::<4>(fit, u, out)),
-        5 => arch.dispatch(|| horner::<5>(fit, u, out)),
-        6 => arch.dispatch(|| horner::<6>(fit, u, out)),
-        7 => arch.dispatch(|| horner::<7>(fit, u, out)),
-        8 => arch.dispatch(|| horner::<8>(fit, u, out)),
-        9 => arch.dispatch(|| horner::<9>(fit, u, out)),
-        10 => arch.dispatch(|| horner::<10>(fit, u, out)),
-        11 => arch.dispatch(|| horner::<11>(fit, u, out)),
-        _ => arch.dispatch(|| horner::<MOST_COEFFICIENTS>(fit, u, out)),
+/// Neighbouring columns of one strip, compiled for each kind of machine. A struct, since closures may be left out of
+/// line, and so without the machine's widest vectors.
+struct StripColumns<'a> {
+    strip: &'a Strip,
+    /// At most [`BLOCK`].
+    xi: &'a [f64],
+    axis: &'a EtaAxis,
+    out: &'a mut [f64],
+}
+
+impl pulp::WithSimd for StripColumns<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, simd: S) {
+        let Self { strip, xi, axis, out } = self;
+        let u_max = axis.reach * axis.reach;
+        // All values first: the processor then works at several columns at once.
+        let mut values = [strips::Values::default(); BLOCK];
+        for (values, &xi) in values.iter_mut().zip(xi) {
+            strip.values(xi, values);
+        }
+        for ((out, values), &xi) in out.chunks_exact_mut(axis.eta.len()).zip(&mut values).zip(xi) {
+            for span in 0..strip.spans() {
+                let (u, base, c) = strip.span(values, span, xi, u_max);
+                for range in axis.ranges(u) {
+                    evaluate(simd, [base, u[0]], c, &axis.u[range.clone()], &mut out[range]);
+                }
+            }
+            axis.mirror(out);
+        }
+    }
+}
+
+impl Spectral<'_> {
+    /// A column that is in no strip; the half η ≥ 0 of a symmetric axis.
+    fn single_column(&mut self, xi: f64, u_max: f64, out: &mut [f64]) {
+        let mut spans = std::mem::take(&mut self.spans);
+        self.evaluator.wheel.spans(xi, u_max, &mut spans);
+        if !is_whole(&spans, u_max) {
+            out.fill(f64::NAN);
+        }
+        for span in &spans {
+            let fit = self.polynomial(xi, span, u_max, self.coefficients);
+            for range in self.axis.ranges(span.u) {
+                let (u, out) = (&self.axis.u[range.clone()], &mut out[range]);
+                match &fit {
+                    Some(fit) => self.arch.dispatch(Run { fit, u, out }),
+                    None => self.evaluator.over_span(xi, span, u, out),
+                }
+            }
+        }
+        self.spans = spans;
+    }
+}
+
+/// One run of a column's u.
+struct Run<'a> {
+    fit: &'a ColumnPolynomial,
+    u: &'a [f64],
+    out: &'a mut [f64],
+}
+
+impl pulp::WithSimd for Run<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, simd: S) {
+        let Self { fit, u, out } = self;
+        evaluate(simd, [fit.base, fit.u0], &fit.c[..fit.n], u, out);
+    }
+}
+
+/// base + (u − u_0) Σ c_k (u − u_0)^k by Horner's rule over a run of u, unrolled for the degree, with the widest vectors of the machine. No fused multiply-add:
+/// the same bits on every machine.
+#[inline(always)]
+fn evaluate<S: pulp::Simd>(simd: S, begin: [f64; 2], c: &[f64], u: &[f64], out: &mut [f64]) {
+    match c.len() {
+        1 => horner::<S, 1>(simd, begin, c, u, out),
+        2 => horner::<S, 2>(simd, begin, c, u, out),
+        3 => horner::<S, 3>(simd, begin, c, u, out),
+        4 => horner::<S, 4>(simd, begin, c, u, out),
+        5 => horner::<S, 5>(simd, begin, c, u, out),
+        6 => horner::<S, 6>(simd, begin, c, u, out),
+        7 => horner::<S, 7>(simd, begin, c, u, out),
+        8 => horner::<S, 8>(simd, begin, c, u, out),
+        9 => horner::<S, 9>(simd, begin, c, u, out),
+        10 => horner::<S, 10>(simd, begin, c, u, out),
+        11 => horner::<S, 11>(simd, begin, c, u, out),
+        _ => horner::<S, MOST_COEFFICIENTS>(simd, begin, c, u, out),
     }
 }
 
 #[inline(always)]
-fn horner<const N: usize>(fit: &ColumnPolynomial, u: &[f64], out: &mut [f64]) {
-    let mut c = [0.0; N];
-    c.copy_from_slice(&fit.c[..N]);
-    for (s, u) in out.iter_mut().zip(u) {
-        let v = u - fit.u0;
-        let q = c.iter().rev().fold(0.0, |q, c| q * v + c);
-        *s = fit.base + v * q;
+fn horner<S: pulp::Simd, const N: usize>(
+    simd: S,
+    [base, u0]: [f64; 2],
+    c: &[f64],
+    u: &[f64],
+    out: &mut [f64],
+) {
+    let c: [S::f64s; N] = std::array::from_fn(|k| simd.splat_f64s(c[k]));
+    let begin = [base, u0].map(|value| simd.splat_f64s(value));
+    let (u, u_rest) = S::as_simd_f64s(u);
+    let (out, out_rest) = S::as_mut_simd_f64s(out);
+    for (s, &u) in out.iter_mut().zip(u) {
+        *s = value(simd, begin, &c, u);
     }
+    if !u_rest.is_empty() {
+        simd.partial_store_f64s(out_rest, value(simd, begin, &c, simd.partial_load_f64s(u_rest)));
+    }
+}
+
+/// One vector of [`horner`]. A function, since closures may be left out of line.
+#[inline(always)]
+fn value<S: pulp::Simd, const N: usize>(
+    simd: S,
+    [base, u0]: [S::f64s; 2],
+    c: &[S::f64s; N],
+    u: S::f64s,
+) -> S::f64s {
+    let v = simd.sub_f64s(u, u0);
+    let mut q = c[N - 1];
+    for &c in c[..N - 1].iter().rev() {
+        q = simd.add_f64s(simd.mul_f64s(q, v), c);
+    }
+    simd.add_f64s(base, simd.mul_f64s(v, q))
 }
 
 /// Chebyshev points (1 − cos((2j + 1)π/2n))/2 of (0, 1) for n = 1 … [`MOST_COEFFICIENTS`], ascending.

@@ -10,6 +10,9 @@ use crate::numerics::polynomial::{
 };
 use crate::numerics::roots::bracketed;
 
+/// A Newton step below this share of the range, and of the step before, leaves an error of about its square: none.
+const QUADRATIC: f64 = 1e-4 * 1e-4;
+
 /// A branch ζ(ξ) over a closed interval of ξ.
 #[derive(Debug, Clone)]
 pub struct Branch {
@@ -100,9 +103,13 @@ impl ArcBranch {
     /// ζ(ξ).
     #[inline]
     pub fn height(&self, xi: f64) -> f64 {
-        let run = xi - self.anchor[0];
         let (sin, cos) = self.sine_cosine(xi);
-        self.anchor[1] + run * ((self.sin + sin) / (self.cos + cos))
+        self.height_of(xi, sin, cos)
+    }
+
+    #[inline]
+    fn height_of(&self, xi: f64, sin: f64, cos: f64) -> f64 {
+        self.anchor[1] + (xi - self.anchor[0]) * ((self.sin + sin) / (self.cos + cos))
     }
 
     fn exact_height(&self, xi: f64) -> TwoFloat {
@@ -128,6 +135,7 @@ impl PolynomialBranch {
     fn parameter_near(&self, xi: f64, guess: f64) -> f64 {
         let [mut low, mut high] = self.t;
         let mut t = guess.clamp(low, high);
+        let (done, mut last) = (QUADRATIC * (high - low), f64::INFINITY);
         // Newton's steps fall below rounding within 6 on any branch that is not vertical.
         for _ in 0..60 {
             let [p, slope] = value_and_slope(&self.xi, t);
@@ -144,9 +152,10 @@ impl PolynomialBranch {
             let next = if newton >= low && newton <= high { newton } else { low + (high - low) / 2.0 };
             let step = (next - t).abs();
             t = next;
-            if step <= 2.0 * f64::EPSILON * t.abs() {
+            if step <= 2.0 * f64::EPSILON * t.abs() || (step <= done && step <= QUADRATIC * last) {
                 break;
             }
+            last = step;
         }
         t
     }
@@ -272,15 +281,18 @@ impl Branch {
         }
     }
 
-    /// The point at ξ, from which chords are drawn.
+    /// The point at ξ, from which chords are drawn, and ζ(ξ) \[mm\].
     #[inline]
-    pub fn point(&self, xi: f64) -> BranchPoint {
+    pub fn point(&self, xi: f64) -> (BranchPoint, f64) {
         match &self.shape {
             BranchShape::Arc(arc) => {
                 let (sin, cos) = arc.sine_cosine(xi);
-                BranchPoint::Arc { sin, cos }
+                (BranchPoint::Arc { sin, cos }, arc.height_of(xi, sin, cos))
             }
-            BranchShape::Polynomial(p) => BranchPoint::Polynomial { xi, t: p.parameter(xi) },
+            BranchShape::Polynomial(p) => {
+                let t = p.parameter(xi);
+                (BranchPoint::Polynomial { xi, t }, value(&p.zeta, t))
+            }
         }
     }
 
@@ -304,7 +316,7 @@ impl Branch {
 
     /// (ζ(b) − ζ(a))/(b − a), the slope ζ′(a) for a = b; nothing cancels.
     pub fn chord_slope(&self, a: f64, b: f64) -> f64 {
-        self.chord_from(&self.point(a), b)
+        self.chord_from(&self.point(a).0, b)
     }
 
     /// The point at ξ with its unit tangent, in the frame.

@@ -1,6 +1,6 @@
 //! Which branch is the outer one at each ξ.
 
-use super::{Branch, Side};
+use super::{Branch, BranchPoint, Side};
 use crate::numerics::roots::bracketed;
 
 /// A closed interval of ξ over which one branch is the outer one.
@@ -10,10 +10,19 @@ pub struct Piece {
     pub xi: [f64; 2],
     /// Index of the branch.
     pub branch: usize,
+    /// Its two ends on the branch, with their ζ \[mm\].
+    pub ends: [(BranchPoint, f64); 2],
 }
 
 /// The outer envelope of all branches, in order of ξ.
 pub(super) fn pieces(branches: &[Branch], side: Side) -> Vec<Piece> {
+    let with_ends =
+        |(xi, branch): ([f64; 2], usize)| Piece { xi, branch, ends: xi.map(|xi| branches[branch].point(xi)) };
+    intervals(branches, side).into_iter().map(with_ends).collect()
+}
+
+/// Intervals and the index of the outer branch over each.
+fn intervals(branches: &[Branch], side: Side) -> Vec<([f64; 2], usize)> {
     let mut ends: Vec<f64> = branches.iter().flat_map(|b| b.xi).collect();
     ends.sort_by(f64::total_cmp);
     ends.dedup();
@@ -21,7 +30,7 @@ pub(super) fn pieces(branches: &[Branch], side: Side) -> Vec<Piece> {
     order.sort_by(|&a, &b| branches[a].xi[0].total_cmp(&branches[b].xi[0]));
     let mut waiting = order.into_iter().peekable();
     let mut active: Vec<usize> = Vec::new();
-    let mut out: Vec<Piece> = Vec::new();
+    let mut out = Vec::new();
     for pair in ends.windows(2) {
         let interval = [pair[0], pair[1]];
         while let Some(&next) = waiting.peek().filter(|&&b| branches[b].xi[0] <= interval[0]) {
@@ -35,7 +44,13 @@ pub(super) fn pieces(branches: &[Branch], side: Side) -> Vec<Piece> {
 }
 
 /// Splits one interval, which every active branch spans, where the outer branch changes.
-fn outermost(branches: &[Branch], active: &[usize], [a, b]: [f64; 2], side: Side, out: &mut Vec<Piece>) {
+fn outermost(
+    branches: &[Branch],
+    active: &[usize],
+    [a, b]: [f64; 2],
+    side: Side,
+    out: &mut Vec<([f64; 2], usize)>,
+) {
     let outer = |xi: f64| {
         active.iter().copied().min_by(|&i, &j| {
             let order = branches[i].height(xi).total_cmp(&branches[j].height(xi));
@@ -57,10 +72,10 @@ fn outermost(branches: &[Branch], active: &[usize], [a, b]: [f64; 2], side: Side
 }
 
 /// Appends an interval, or extends the last piece by it.
-fn push(out: &mut Vec<Piece>, xi: [f64; 2], branch: usize) {
+fn push(out: &mut Vec<([f64; 2], usize)>, xi: [f64; 2], branch: usize) {
     match out.last_mut() {
-        Some(last) if last.branch == branch && last.xi[1] == xi[0] => last.xi[1] = xi[1],
-        _ if xi[0] < xi[1] => out.push(Piece { xi, branch }),
+        Some((before, last)) if *last == branch && before[1] == xi[0] => before[1] = xi[1],
+        _ if xi[0] < xi[1] => out.push((xi, branch)),
         _ => {}
     }
 }
