@@ -255,7 +255,7 @@ impl<'a> Slicer<'a> {
         let (xi_w, eta_w) = if sin == 0.0 { (xi, eta) } else { (xi * cos + eta * sin, eta * cos - xi * sin) };
         let u = eta_w * eta_w;
         self.wheel.spans(xi_w, u, &mut self.spans);
-        let span = WheelSurface::span_at(&self.spans, u)?;
+        let span = &self.spans[WheelSurface::span_at(&self.spans, u)?];
         Some((self.wheel.foot_at(xi_w, span, u)?, xi_w, eta_w))
     }
 

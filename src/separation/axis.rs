@@ -1,6 +1,6 @@
 //! The η values of a grid, prepared once for all columns.
 
-/// Values that are mirrored at a time: a vector.
+/// Values of the widest vector, and of a line of the cache.
 const RUN: usize = 8;
 
 /// η and u = η² of every column, and whether half of it is the mirror image of the other.
@@ -55,15 +55,26 @@ impl EtaAxis {
             let (left, right) = column.split_at_mut(self.first_positive);
             // An odd number of values has η = 0 in the middle, at the start of the right part.
             let skip = n - 2 * left.len();
-            let (right, rest) = right[skip..skip + left.len()].as_chunks::<RUN>();
-            let (left_rest, left) = left.as_rchunks_mut::<RUN>();
-            for (l, r) in left.iter_mut().rev().zip(right) {
+            let right = &right[skip..skip + left.len()];
+            let (left_head, left) = left.split_at_mut(lead(left));
+            let (right, right_head) = right.split_at(left.len());
+            let (left, left_tail) = left.as_chunks_mut::<RUN>();
+            let (right_tail, right) = right.as_rchunks::<RUN>();
+            for (l, r) in left.iter_mut().zip(right.iter().rev()) {
                 *l = std::array::from_fn(|k| r[RUN - 1 - k]);
             }
-            left_rest.copy_from_slice(rest);
-            left_rest.reverse();
+            for (left, right) in [(left_head, right_head), (left_tail, right_tail)] {
+                left.copy_from_slice(right);
+                left.reverse();
+            }
         }
     }
+}
+
+/// Number of values before the first one that begins a line of the cache; all of them where there is none.
+#[inline(always)]
+pub(super) fn lead(values: &[f64]) -> usize {
+    values.as_ptr().align_offset(RUN * size_of::<f64>()).min(values.len())
 }
 
 #[cfg(test)]

@@ -14,9 +14,9 @@ use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
 use crate::profile::{Branch, BranchPoint, Piece, Section};
 
-/// Contractions by e/w, at most 1e-2 away from vertical tangents, reach rounding in 8; a branch that needs more
-/// is steep there and is left to the bracketed root.
-const CONTRACTIONS: usize = 12;
+/// Steps by which a point is found; each gains some six digits. A branch that needs more is steep there and is left to
+/// the bracketed root.
+const STEPS: usize = 8;
 
 /// A branch that goes on to this many times the sagitta that the window needs is taken to cover it: between
 /// there and the end only a profile that falls towards the axle could bring u back.
@@ -163,15 +163,22 @@ impl<'a> WheelSurface<'a> {
     }
 
     /// The point at u = η² over a span, or `None` where η is beyond the ring.
+    ///
+    /// Newton's step on u(e) = e (2w + e) with the chord's slope for the tangent's, which it differs from by e × curvature.
     pub fn foot_at(&self, xi: f64, span: &Span, u: f64) -> Option<Foot> {
-        let mut foot = self.foot(xi, span, span.e[0]);
-        for _ in 0..CONTRACTIONS {
-            let e = sagitta(foot.w, u);
+        let mut foot = self.foot(xi, span, sagitta(span.w, u));
+        let mut last = foot.e;
+        for _ in 0..STEPS {
+            let run = foot.e - span.e[0];
+            let fall = if run == 0.0 { 0.0 } else { self.cos * foot.rise / run };
+            let e = foot.e - (foot.u - u) / (2.0 * (foot.w + foot.e * (1.0 - fall)));
             let change = (e - foot.e).abs();
             foot = self.foot(xi, span, e);
-            if change <= f64::EPSILON * e {
+            // The steps fall in geometric progression, or faster: the next one would be below rounding.
+            if change * change <= f64::EPSILON * e * last {
                 return Some(foot).filter(|foot| foot.w > 0.0);
             }
+            last = change;
         }
         let end = if span.e[1].is_finite() { span.e[1] } else { self.axle };
         let root = bracketed(|e| self.foot(xi, span, e).u - u, span.e[0], end)?;
@@ -207,9 +214,10 @@ impl<'a> WheelSurface<'a> {
         (self.cos - self.sin * slope) / (2.0 * span.w)
     }
 
-    /// The span of a column that holds u, for ascending spans.
-    pub fn span_at(spans: &[Span], u: f64) -> Option<&Span> {
-        spans.iter().find(|span| u <= span.u[1]).filter(|span| u >= span.u[0])
+    /// Index of the span of a column that holds u, for ascending spans.
+    pub fn span_at(spans: &[Span], u: f64) -> Option<usize> {
+        let k = spans.iter().position(|span| u <= span.u[1])?;
+        (u >= spans[k].u[0]).then_some(k)
     }
 
     /// Outward unit normal (towards the rail) in (ξ, η, ζ) at the point with sagitta e and offset η.

@@ -15,6 +15,9 @@ use crate::placement::Placement;
 /// Columns of one block: the unit of work of a thread.
 pub(super) const BLOCK: usize = 16;
 
+/// Up to so many points are not worth waking another thread, some 50 µs.
+const FEW_POINTS: usize = 4096;
+
 /// A way to evaluate s over columns of constant ξ.
 pub trait Kernel {
     /// Writes s(ξ, η_j) for all η_j of the axis \[mm\]; NaN where a body has no surface.
@@ -117,6 +120,9 @@ impl Choice {
             }
             _ => Vec::new(),
         };
+        if out.len() <= FEW_POINTS {
+            return self.kernel(placement, axis, &strips).columns(xi, out);
+        }
         let blocks = out.par_chunks_mut(BLOCK * n).zip(xi.par_chunks(BLOCK));
         blocks.for_each_init(
             || self.kernel(placement, axis, &strips),

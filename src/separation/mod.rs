@@ -49,9 +49,9 @@ impl<'a> Evaluator<'a> {
         let (xi_w, eta_w) = self.wheel_coordinates(xi, eta);
         let u = eta_w * eta_w;
         self.wheel.spans(xi_w, u, &mut self.spans);
-        let Some(span) = WheelSurface::span_at(&self.spans, u) else { return f64::NAN };
-        let rise = self.wheel.foot_at(xi_w, span, u).map_or(f64::NAN, |foot| foot.rise);
-        self.base(xi, xi_w, span) + rise
+        let Some(k) = WheelSurface::span_at(&self.spans, u) else { return f64::NAN };
+        let span = &self.spans[k];
+        self.base(xi, xi_w, span) + self.rise(xi_w, span, u)
     }
 
     /// Both normals at (ξ, η).
@@ -63,7 +63,7 @@ impl<'a> Evaluator<'a> {
         });
         let u = eta_w * eta_w;
         self.wheel.spans(xi_w, u, &mut self.spans);
-        let span = WheelSurface::span_at(&self.spans, u);
+        let span = WheelSurface::span_at(&self.spans, u).map(|k| &self.spans[k]);
         let wheel = span.and_then(|span| {
             let foot = self.wheel.foot_at(xi_w, span, u)?;
             let [x, y, z] = self.wheel.normal(xi_w, eta_w, span, &foot);
@@ -90,11 +90,15 @@ impl<'a> Evaluator<'a> {
             let u_max = eta.iter().fold(0.0, |m: f64, eta| m.max(eta * eta));
             let mut spans = std::mem::take(&mut self.spans);
             self.wheel.spans(xi, u_max, &mut spans);
+            // s at the beginning of the span that the last η lay over.
+            let (mut known, mut base) = (None, f64::NAN);
             for (s, &eta) in out.iter_mut().zip(eta) {
-                *s = match WheelSurface::span_at(&spans, eta * eta) {
-                    Some(span) => self.over(xi, span, eta * eta),
-                    None => f64::NAN,
-                };
+                let u = eta * eta;
+                let found = WheelSurface::span_at(&spans, u);
+                if found != known {
+                    (known, base) = (found, found.map_or(f64::NAN, |k| self.base(xi, xi, &spans[k])));
+                }
+                *s = base + found.map_or(f64::NAN, |k| self.rise(xi, &spans[k], u));
             }
             self.spans = spans;
             return;
@@ -106,13 +110,15 @@ impl<'a> Evaluator<'a> {
 
     /// s at the given u = η² of one span, without skew.
     fn over_span(&self, xi: f64, span: &Span, u: &[f64], out: &mut [f64]) {
+        let base = self.base(xi, xi, span);
         for (s, &u) in out.iter_mut().zip(u) {
-            *s = self.over(xi, span, u);
+            *s = base + self.rise(xi, span, u);
         }
     }
 
-    fn over(&self, xi: f64, span: &Span, u: f64) -> f64 {
-        self.base(xi, xi, span) + self.wheel.foot_at(xi, span, u).map_or(f64::NAN, |foot| foot.rise)
+    /// ζ of the wheel above the beginning of a span; NaN beyond the ring.
+    fn rise(&self, xi_w: f64, span: &Span, u: f64) -> f64 {
+        self.wheel.foot_at(xi_w, span, u).map_or(f64::NAN, |foot| foot.rise)
     }
 
     /// \[s at η′ = 0, coefficient of η′²\] with the wheel at its own abscissa ξ′.
@@ -127,7 +133,8 @@ impl<'a> Evaluator<'a> {
         let (xi_w, eta_w) = self.wheel_coordinates(xi, eta);
         let u = eta_w * eta_w;
         self.wheel.spans(xi_w, u, &mut self.spans);
-        let foot = WheelSurface::span_at(&self.spans, u).and_then(|span| self.wheel.foot_at(xi_w, span, u));
+        let span = WheelSurface::span_at(&self.spans, u).map(|k| &self.spans[k]);
+        let foot = span.and_then(|span| self.wheel.foot_at(xi_w, span, u));
         foot.map_or(f64::NAN, |foot| self.wheel.abscissa(xi_w, foot.e))
     }
 

@@ -2,6 +2,7 @@
 
 use super::Evaluator;
 use super::axis::EtaAxis;
+use super::column::WheelSurface;
 use super::grid::{Choice, Method};
 use super::spectral::{Demand, Spectral};
 use crate::placement::Placement;
@@ -19,6 +20,9 @@ const FULL_RELATIVE: f64 = 2e-15;
 /// smooth, and largest at edges and joints, which are always among them.
 const SAMPLED_COLUMNS: usize = 65;
 const SAMPLED_ETA: usize = 9;
+
+/// Columns at which the degree of spectral ones is looked for: it hardly changes over a window.
+const FITTED_COLUMNS: usize = 17;
 
 /// Share by which the sampled maximum is raised, for what lies between the samples.
 const BETWEEN_SAMPLES: f64 = 1.25;
@@ -52,16 +56,19 @@ pub fn plan(
 ) -> Plan {
     let samples = Samples::new(placement, xi, axis);
     let demand = demand(tolerance);
-    let choice = |method| Choice { method, demand, coefficients: samples.coefficients(demand) };
+    let tried = |method| {
+        let (coefficients, truncation) =
+            if method == Method::Spectral { samples.polynomials(demand) } else { (1, 0.0) };
+        let choice = Choice { method, demand, coefficients };
+        (choice, samples.error(&choice, truncation))
+    };
     if let Some(method) = forced {
-        let choice = choice(method);
-        let error = samples.error(&choice);
+        let (choice, error) = tried(method);
         return Plan { choice, error, reason: "asked for by the scene".into() };
     }
     let mut rejected = Vec::new();
     for method in [Method::Quadratic, Method::ConstantRadius, Method::Parabolic] {
-        let choice = choice(method);
-        let error = samples.error(&choice);
+        let (choice, error) = tried(method);
         let exact = error <= samples.rounding;
         if error <= tolerance && (tolerance > FULL_PRECISION || exact) {
             let reason = format!("cheapest of the ladder within {tolerance:e} mm");
@@ -69,8 +76,7 @@ pub fn plan(
         }
         rejected.push(format!("{} is off by {error:.1e} mm", method.name()));
     }
-    let choice = choice(Method::Spectral);
-    let error = samples.error(&choice);
+    let (choice, error) = tried(Method::Spectral);
     let reason = format!("cheapest of the ladder within {tolerance:e} mm; {}", rejected.join(", "));
     Plan { choice, error, reason }
 }
@@ -97,41 +103,30 @@ impl<'a> Samples<'a> {
         Self { placement, xi, axis, exact, rounding }
     }
 
-    /// Raised largest difference from the point-wise values, plus rounding.
-    fn error(&self, choice: &Choice) -> f64 {
+    /// Raised largest difference from the point-wise values, or truncation where that is larger, plus rounding.
+    fn error(&self, choice: &Choice, truncation: f64) -> f64 {
         let mut values = vec![f64::NAN; self.exact.len()];
         choice.fill(self.placement, &self.xi, &self.axis, &mut values);
         let differences = values.iter().zip(&self.exact).filter(|(_, exact)| !exact.is_nan());
         let largest = differences.map(|(s, exact)| (s - exact).abs()).fold(0.0, nan_max);
-        let truncation =
-            if choice.method == Method::Spectral { self.spectral_truncation(choice) } else { 0.0 };
         BETWEEN_SAMPLES * largest.max(truncation) + self.rounding
     }
 
-    /// Coefficients with which most spans are done.
-    fn coefficients(&self, demand: Demand) -> usize {
-        let mut needed: Vec<usize> = self.polynomials(demand, 1).map(|(n, _)| n).collect();
-        needed.sort_unstable();
-        needed.get(needed.len() / 2).copied().unwrap_or(1)
-    }
-
-    fn spectral_truncation(&self, choice: &Choice) -> f64 {
-        self.polynomials(choice.demand, choice.coefficients).map(|(_, error)| error).fold(0.0, f64::max)
-    }
-
-    /// Degree and truncation error of every span of the sampled columns.
-    fn polynomials(&self, demand: Demand, coefficients: usize) -> impl Iterator<Item = (usize, f64)> {
-        let spectral = Spectral::new(self.placement, &self.axis, demand, coefficients);
+    /// Coefficients with which most spans of spectral columns are done, and their largest truncation error \[mm\].
+    fn polynomials(&self, demand: Demand) -> (usize, f64) {
+        let spectral = Spectral::new(self.placement, &self.axis, demand, 1);
         let u_max = self.axis.reach * self.axis.reach;
-        let wheel = super::column::WheelSurface::new(self.placement);
-        let mut all = Vec::new();
-        let mut spans = Vec::new();
-        for &xi in &self.xi {
+        let wheel = WheelSurface::new(self.placement);
+        let (mut needed, mut truncation, mut spans) = (Vec::new(), 0f64, Vec::new());
+        for xi in thinned(&self.xi, FITTED_COLUMNS) {
             wheel.spans(xi, u_max, &mut spans);
-            let fits = spans.iter().filter_map(|span| spectral.polynomial(xi, span, u_max, coefficients));
-            all.extend(fits.map(|fit| (fit.n, fit.error)));
+            for fit in spans.iter().filter_map(|span| spectral.polynomial(xi, span, u_max, 1)) {
+                needed.push(fit.n);
+                truncation = truncation.max(fit.error);
+            }
         }
-        all.into_iter()
+        needed.sort_unstable();
+        (needed.get(needed.len() / 2).copied().unwrap_or(1), truncation)
     }
 }
 

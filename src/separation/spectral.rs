@@ -4,8 +4,9 @@
 //! and q analytic. q is interpolated, not s: the relative accuracy of both terms survives. The nodes are
 //! Chebyshev points in the sagitta e, of which u is nearly a multiple: ζ and u follow from e with no iteration.
 
-use super::axis::EtaAxis;
+use super::axis::{EtaAxis, lead};
 use super::column::{Span, WheelSurface};
+use super::gap::midplane_gap;
 use super::grid::{BLOCK, Kernel};
 use super::strips::{self, Strip};
 use super::{Evaluator, skewed};
@@ -200,7 +201,10 @@ impl Kernel for Spectral<'_> {
             };
             let (xi, out) = (&rest[..count], &mut out[done * length..(done + count) * length]);
             match strip {
-                Some(strip) => self.arch.dispatch(StripColumns { strip, xi, axis: self.axis, out }),
+                Some(strip) => {
+                    let (placement, axis) = (self.evaluator.placement, self.axis);
+                    self.arch.dispatch(StripColumns { placement, strip, xi, axis, out });
+                }
                 None => self.column(first, out),
             }
             done += count;
@@ -211,6 +215,7 @@ impl Kernel for Spectral<'_> {
 /// Neighbouring columns of one strip, compiled for each kind of machine. A struct, since closures may be left out of
 /// line, and so without the machine's widest vectors.
 struct StripColumns<'a> {
+    placement: &'a Placement,
     strip: &'a Strip,
     /// At most [`BLOCK`].
     xi: &'a [f64],
@@ -223,12 +228,12 @@ impl pulp::WithSimd for StripColumns<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) {
-        let Self { strip, xi, axis, out } = self;
+        let Self { placement, strip, xi, axis, out } = self;
         let u_max = axis.reach * axis.reach;
         // All values first: the processor then works at several columns at once.
         let mut values = [strips::Values::default(); BLOCK];
         for (values, &xi) in values.iter_mut().zip(xi) {
-            strip.values(xi, values);
+            strip.values(xi, values, |xi| midplane_gap(placement, xi));
         }
         for ((out, values), &xi) in out.chunks_exact_mut(axis.eta.len()).zip(&mut values).zip(xi) {
             for span in 0..strip.spans() {
@@ -311,13 +316,18 @@ fn horner<S: pulp::Simd, const N: usize>(
 ) {
     let c: [S::f64s; N] = std::array::from_fn(|k| simd.splat_f64s(c[k]));
     let begin = [base, u0].map(|value| simd.splat_f64s(value));
-    let (u, u_rest) = S::as_simd_f64s(u);
-    let (out, out_rest) = S::as_mut_simd_f64s(out);
+    // Whole vectors are stored where they do not cross lines of the cache, which takes twice as long on large grids.
+    let (u_head, u) = u.split_at(lead(out));
+    let (head, out) = out.split_at_mut(u_head.len());
+    let (u, u_tail) = S::as_simd_f64s(u);
+    let (out, tail) = S::as_mut_simd_f64s(out);
+    for (out, u) in [(head, u_head), (tail, u_tail)] {
+        for (out, u) in out.chunks_mut(S::F64_LANES).zip(u.chunks(S::F64_LANES)) {
+            simd.partial_store_f64s(out, value(simd, begin, &c, simd.partial_load_f64s(u)));
+        }
+    }
     for (s, &u) in out.iter_mut().zip(u) {
         *s = value(simd, begin, &c, u);
-    }
-    if !u_rest.is_empty() {
-        simd.partial_store_f64s(out_rest, value(simd, begin, &c, simd.partial_load_f64s(u_rest)));
     }
 }
 

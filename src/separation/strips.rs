@@ -40,13 +40,24 @@ pub type Values = [[f64; LANES]; MOST_LANES];
 pub struct Strip {
     /// Its interval \[mm\].
     pub xi: [f64; 2],
-    /// Whether its columns begin over both contact segments.
-    contact: bool,
+    /// How s at the beginning of the columns is known.
+    gap: Gap,
     /// Of every span the index of its first quantity, at the beginning of a lane, and the number of coefficients of q.
     spans: Vec<(usize, usize)>,
     /// Coefficients of t^(kept−1), …, t⁰ of the first lanes, then of the next; t from −1 to 1 over the interval.
     powers: Vec<[f64; LANES]>,
     kept: usize,
+}
+
+/// s at the beginning of a strip's columns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Gap {
+    /// Interpolated as it is.
+    Plain,
+    /// Interpolated as g/ξ².
+    Relative,
+    /// Computed for every column: where g/ξ² varies too much for its smallest values to keep their digits.
+    Computed,
 }
 
 /// The columns of one strip at the Chebyshev points, all of one shape.
@@ -125,18 +136,21 @@ impl Strip {
         let mut series = vec![0.0; n * width];
         chebyshev::coefficients(&samples.values, width, &mut series);
         let size = &series[..width];
-        let mut rows = series.chunks_exact(width).enumerate().rev();
-        let kept = rows.find(|(_, row)| !samples.is_rounding(row, size)).map_or(1, |(k, _)| k + 1);
-        if kept + PROOF > n {
-            return None;
-        }
+        let kept = |gap: Gap| {
+            let mut rows = series.chunks_exact(width).enumerate().rev();
+            let last = rows.find(|(_, row)| !samples.is_rounding(row, size, gap)).map_or(1, |(k, _)| k + 1);
+            (last + PROOF <= n).then_some((gap, last))
+        };
+        let own = if samples.contact { Gap::Relative } else { Gap::Plain };
+        let computed = || if n == POINTS[POINTS.len() - 1] { kept(Gap::Computed) } else { None };
+        let (gap, kept) = kept(own).or_else(computed)?;
         let kept = kept.next_multiple_of(2);
         series.truncate(kept * width);
         chebyshev::to_powers(&mut series, width);
         let lanes = (0..width / LANES)
             .flat_map(|lane| series.chunks_exact(width).rev().map(move |row| row.as_chunks().0[lane]));
         let powers = lanes.collect();
-        Some(Self { xi: [a, b], contact: samples.contact, spans: samples.spans, powers, kept })
+        Some(Self { xi: [a, b], gap, spans: samples.spans, powers, kept })
     }
 
     /// Number of spans of every column.
@@ -158,7 +172,7 @@ impl Strip {
         let (at, n) = self.spans[span];
         let (s, u0) = (values[at + n], values[at + n + 1]);
         let u1 = self.spans.get(span + 1).map_or(u_max, |&(next, n)| values[next + n + 1]);
-        let base = if self.contact && span == 0 { s * (xi * xi) } else { s };
+        let base = if self.gap == Gap::Relative && span == 0 { s * (xi * xi) } else { s };
         let c = &mut values[at..at + n];
         if self.spans.len() > 1 {
             let (shrink, mut power) = (1.0 / (u1 - u0), 1.0);
@@ -170,9 +184,9 @@ impl Strip {
         ([u0, u1], base, c)
     }
 
-    /// All quantities at ξ by Horner's rule.
+    /// All quantities at ξ by Horner's rule, and by `compute` the gap that is not interpolated.
     #[inline(always)]
-    pub fn values(&self, xi: f64, values: &mut Values) {
+    pub fn values(&self, xi: f64, values: &mut Values, compute: impl Fn(f64) -> f64) {
         let [a, b] = self.xi;
         let t = ((xi - a) - (b - xi)) / (b - a);
         let square = t * t;
@@ -185,6 +199,9 @@ impl Strip {
                 }
             }
             *values = std::array::from_fn(|k| sums[0][k] * t + sums[1][k]);
+        }
+        if self.gap == Gap::Computed {
+            values.as_flattened_mut()[self.spans[0].1] = compute(xi);
         }
     }
 }
@@ -268,9 +285,10 @@ impl Samples {
     }
 
     /// Whether a row of Chebyshev coefficients is no more than rounding; `size` is the first row.
-    fn is_rounding(&self, row: &[f64], size: &[f64]) -> bool {
+    fn is_rounding(&self, row: &[f64], size: &[f64], gap: Gap) -> bool {
         self.spans.iter().zip(&self.rounding).enumerate().all(|(k, (&(at, n), rounding))| {
-            let small = (0..2).all(|j| row[at + n + j].abs() <= rounding[j]);
+            let [s, u0] = [0, 1].map(|j| row[at + n + j].abs() <= rounding[j]);
+            let small = (s || gap == Gap::Computed && k == 0) && u0;
             let q = &row[at..at + n];
             let change = |tau: f64| q.iter().rev().fold(0.0, |sum, c| sum * (tau * self.end) + c);
             let relative = ROUNDING_LEVEL * size[at].abs();

@@ -162,11 +162,11 @@ impl PolynomialBranch {
 
     /// The parameter in twice the working precision.
     pub(super) fn exact_parameter(&self, xi: f64) -> TwoFloat {
-        let mut t = TwoFloat::from(self.parameter(xi));
-        for _ in 0..2 {
-            t = t - (value_twofloat(&self.exact[0], t) - xi) / slope_twofloat(&self.exact[0], t);
-        }
-        t
+        let t = self.parameter(xi);
+        let [_, slope] = value_and_slope(&self.xi, t);
+        // One step more, which doubles the digits whatever the rounding of its slope.
+        let t = TwoFloat::from(t);
+        t - (value_twofloat(&self.exact[0], t) - xi) / slope
     }
 
     fn exact_height(&self, xi: f64) -> TwoFloat {
