@@ -9,6 +9,7 @@ use super::hard_case::{Outcome, hard_cases};
 use super::measured;
 use super::reference::{Reference, references};
 use super::speed::{Timing, Track, Work, race};
+use super::spline_cost::{SplineCost, spline_costs};
 use super::verification::{Subject, Verified, built_in_pairs, verify};
 use crate::error::{Error, Result};
 use crate::placement::Placement;
@@ -113,6 +114,8 @@ pub struct Measurements {
     pub growth: Vec<Growth>,
     /// Threads.
     pub threads: Vec<Threads>,
+    /// Grids over splines against grids over arcs, one thread.
+    pub splines: Vec<SplineCost>,
     /// Hard cases.
     pub hard_cases: Vec<Outcome>,
     /// The check by parry3d's meshes: of the reference scenes, with and without skew, and of the built-in pairs.
@@ -145,6 +148,8 @@ pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measur
     let growth = one.install(|| growth(example, effort))?;
     progress("one thread against two");
     let threads = threads(example, effort)?;
+    progress("splines against arcs");
+    let splines = one.install(|| spline_costs(&effort.sides, effort.seconds))?;
     progress("hard cases");
     let cases = hard_cases()?;
     let hard_cases = cases.iter().map(|case| case.run(&cases)).collect::<Result<_>>()?;
@@ -155,7 +160,7 @@ pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measur
     planning.sort_by(f64::total_cmp);
     let planning = [0, planning.len() / 2, planning.len().saturating_sub(1)]
         .map(|k| planning.get(k).copied().unwrap_or(f64::NAN));
-    Ok(Measurements { rows, planning, growth, threads, hard_cases, verified, evidence })
+    Ok(Measurements { rows, planning, growth, threads, splines, hard_cases, verified, evidence })
 }
 
 fn verified(references: &[Reference], every_pair: usize) -> Result<[Vec<Verified>; 2]> {

@@ -1,7 +1,7 @@
 //! Speed against error: every method of the ladder timed and held to 60-digit values, and the hard cases.
 //!
 //! [`reference`] reads the 60-digit files, which are part of the program; [`errors`] compares a method with them;
-//! [`speed`] races methods against a plain store of the same array; [`hard_case`] runs the cases of
+//! [`speed`] races methods against a plain store of the same array, [`spline_cost`] splines against arcs; [`hard_case`] runs the cases of
 //! `tests/hard_cases`; [`verification`] has parry3d's meshes check them; [`measured`] compares curves through points
 //! with the drawing that the points are from; [`measurements`] does all of it to a given effort; [`requirements`] judges the ratios;
 //! [`page`], [`table`] and [`chart`] turn the numbers into Markdown, CSV and SVG. Nothing here touches the disk.
@@ -16,6 +16,7 @@ pub mod page;
 pub mod reference;
 pub mod requirements;
 pub mod speed;
+pub mod spline_cost;
 pub mod table;
 pub mod verification;
 

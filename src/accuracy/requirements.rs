@@ -1,6 +1,7 @@
 //! The ratios that the project asks of itself, and whether a run met them.
 
 use super::measurements::{Growth, Measurements, Row, median};
+use super::spline_cost::SplineCost;
 use crate::separation::grid::Method;
 use crate::separation::plan::FULL_PRECISION;
 
@@ -10,6 +11,8 @@ const OVER_REPORT: f64 = 20.0;
 const OVER_STORE: f64 = 0.5;
 /// Rate on two threads over that on one.
 const TWO_THREADS: f64 = 1.6;
+/// Time of a grid over measured profiles over that over chains of arcs.
+const SPLINES_OVER_ARCS: f64 = 2.0;
 /// d log time/d log points up to which growth counts as linear: a factor of 1.6 over four decades. Less than 1 is
 /// the set-up of columns, which weighs on small grids.
 const LINEAR: f64 = 1.05;
@@ -51,7 +54,21 @@ pub fn all(m: &Measurements) -> Vec<Requirement> {
             met: ratio >= TWO_THREADS && row.same_bits,
         }
     }));
+    out.extend(splines(m));
     out
+}
+
+/// The dearest grid decides.
+fn splines(m: &Measurements) -> Option<Requirement> {
+    let ratio = |cost: &SplineCost| cost.seconds[0] / cost.seconds[1];
+    let worst = m.splines.iter().max_by(|a, b| ratio(a).total_cmp(&ratio(b)))?;
+    Some(Requirement {
+        what: "time of a grid over splines, over that over arcs".into(),
+        least: format!("at most {SPLINES_OVER_ARCS}"),
+        found: format!("{:.2}", ratio(worst)),
+        remark: format!("points every {} mm, {1} × {1}", worst.spacing, worst.side),
+        met: ratio(worst) <= SPLINES_OVER_ARCS,
+    })
 }
 
 /// Rate of a method over that of another, scene by scene.

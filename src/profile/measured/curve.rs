@@ -79,7 +79,7 @@ pub(super) fn curve(
             let pieces = pieces(points, &corners, cutoff);
             let mut segments = Vec::with_capacity(points.len());
             for piece in &pieces {
-                segments.extend(piece.segments()?);
+                segments.extend(piece.segments(cutoff)?);
             }
             (segments, spline_residuals(&pieces, points), cutoff)
         }

@@ -81,14 +81,26 @@ impl<'a> Smoother<'a> {
         [d, l1, l2]
     }
 
-    /// The spline of these values.
+    /// The spline of these values, natural at its ends.
     pub fn fit(&self, y: &[f64]) -> Fit {
+        self.fit_between(y, [ZERO; 2])
+    }
+
+    /// The spline of these values with given second derivatives at its ends; an interpolation, where they are not 0.
+    pub fn fit_between(&self, y: &[f64], ends: [TwoFloat; 2]) -> Fit {
         let n = y.len();
         let mut second = vec![ZERO; n];
+        (second[0], second[n - 1]) = (ends[0], ends[1]);
         let inner = self.factor.len();
         for j in 0..inner {
             let rise = |k: usize| TwoFloat::new_sub(y[k + 1], y[k]) / self.steps[k];
             let mut r = rise(j + 1) - rise(j);
+            if j == 0 {
+                r -= ends[0] * self.steps[0] / 6.0;
+            }
+            if j + 1 == inner {
+                r -= ends[1] * self.steps[inner] / 6.0;
+            }
             if j >= 1 {
                 r -= self.factor[j][1] * second[j];
             }
@@ -189,6 +201,20 @@ mod tests {
             for (end, next) in end.iter().zip(next) {
                 assert!((end - next).abs() < 1e-12 * (1.0 + next.abs()), "{k}: {end} {next}");
             }
+        }
+    }
+
+    #[test]
+    fn a_cubic_between_its_own_second_derivatives_comes_back() {
+        let cubic = |s: f64| 1.0 + s * (0.5 + s * (-0.2 + 0.03 * s));
+        let steps = [0.5, 1.0, 0.25, 2.0];
+        let at: Vec<f64> = [0.0, 0.5, 1.5, 1.75, 3.75].to_vec();
+        let y: Vec<f64> = at.iter().map(|&s| cubic(s)).collect();
+        let second = |s: f64| -0.4 + 0.18 * s;
+        let fit =
+            Smoother::new(&steps, &[0.0; 5], 0.0).fit_between(&y, [0.0, 3.75].map(|s| second(s).into()));
+        for (g, &s) in fit.second.iter().zip(&at) {
+            assert!((f64::from(*g) - second(s)).abs() < 1e-14, "{s}");
         }
     }
 
