@@ -4,11 +4,13 @@
 #[path = "clients/programs.rs"]
 mod programs;
 
-use programs::{check, check_all, folder, output_of};
+use programs::{check, check_run, folder, output_of};
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use wheelrail::contact::hertz::effective_modulus;
+use wheelrail::export::RUN_FOLDER;
 use wheelrail::interpenetration::Slicer;
 use wheelrail::interpenetration::load::virtual_load;
 use wheelrail::run::Run;
@@ -17,26 +19,11 @@ use wheelrail::scene;
 /// The Hertz case of a 460 mm wheel on a 300 mm crown under 80 kN: E* \[N/mm²\], p₀ \[N/mm²\], δ \[mm\].
 const HERTZ: [&str; 3] = ["113932", "1139.19", "0.0904879"];
 
-/// What every run writes with the default formats.
-const FILES: [&str; 17] = [
-    "summary.json",
-    "xi.npy",
-    "eta.npy",
-    "separation.npy",
-    "boundary.csv",
-    "interpen.csv",
-    "midsep.txt",
-    "separation.vts",
-    "rail.vts",
-    "wheel.vts",
-    "boundary.vtp",
-    "view.py",
-    "patch.svg",
-    "separation.nc",
-    "separation.wrp",
-    "conform.wrp",
-    "contact.inp",
-];
+/// Every format that a scene may ask for.
+const ALL_FORMATS: &str = "[output]\nformats = [\"vtk\", \"npy\", \"netcdf\", \"text\", \"conform\", \"countact\", \"contact\", \"png\"]\n";
+
+/// What may lie in a run's folder and is not of the run: `vtk::collection` is the library's, the other one is Python's.
+const NOT_OF_A_RUN: [&str; 2] = ["surface.pvd", "__pycache__"];
 
 /// The page that holds the table of estimates, and programs in Python.
 const DOCS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/src/docs/clients.md");
@@ -60,10 +47,10 @@ fn crown(slope: f64, x: f64, rest: &str) -> String {
     )
 }
 
-/// Runs a scene with the real program and returns its folder, in which every file is.
+/// Runs a scene with the real program and all formats and returns its folder, in which every file is.
 fn run(name: &str, scene: &str) -> PathBuf {
     let (path, dir) = (folder(&format!("{name}.toml")), folder(name));
-    std::fs::write(&path, scene).unwrap();
+    std::fs::write(&path, format!("{scene}{ALL_FORMATS}")).unwrap();
     let mut program = Command::new(env!("CARGO_BIN_EXE_wheelrail"));
     let output = program.arg("run").arg(&path).arg("--out").arg(&dir).output().unwrap();
     assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
@@ -71,47 +58,59 @@ fn run(name: &str, scene: &str) -> PathBuf {
     dir
 }
 
-/// The default files are all there, and so is everything that the summary lists.
+/// The folder holds the files of [`RUN_FOLDER`], no other ones, and the summary lists the same.
 fn assert_complete(dir: &Path) {
     let summary = std::fs::read_to_string(dir.join("summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
-    let listed = summary["files"].as_array().unwrap().iter().map(|name| name.as_str().unwrap());
-    for name in FILES.into_iter().chain(listed) {
-        assert!(dir.join(name).is_file(), "{} without {name}", dir.display());
+    let listed = summary["files"].as_array().unwrap().iter().map(|name| name.as_str().unwrap().to_owned());
+    let listed: BTreeSet<String> = listed.chain(["summary.json".to_owned()]).collect();
+    let entries = std::fs::read_dir(dir).unwrap().map(|entry| entry.unwrap());
+    let files = entries.filter(|entry| entry.file_type().unwrap().is_file());
+    let written: BTreeSet<String> = files.map(|entry| entry.file_name().into_string().unwrap()).collect();
+    let of_a_run = RUN_FOLDER.files.iter().filter(|name| !NOT_OF_A_RUN.contains(name));
+    let expected: BTreeSet<String> = of_a_run.map(|name| (*name).to_owned()).collect();
+    assert_eq!(written, expected, "{}", dir.display());
+    assert_eq!(listed, expected, "{}", dir.display());
+}
+
+/// The page that explains the folder names each of its files.
+#[test]
+fn the_page_about_the_folder_is_complete() {
+    let page = include_str!("../output/README.md");
+    for name in RUN_FOLDER.files.iter().filter(|name| !NOT_OF_A_RUN.contains(name)) {
+        assert!(page.contains(&format!("`{name}`")), "output/README.md does not name {name}");
     }
 }
 
 #[test]
 fn every_reader_reads_what_runs_write() {
-    check_all(&run("tread", include_str!("../examples/scenes/60e1_s1002.toml")));
-    check_all(&run("flange", &standard("60E1", "S1002", 6.0, "[patch]\nload = 60000.0\n")));
+    check_run(&run("tread", include_str!("../examples/scenes/60e1_s1002.toml")));
+    check_run(&run("flange", &standard("60E1", "S1002", 6.0, "[patch]\nload = 60000.0\n")));
     // Beyond the ends of both profiles, where cells are undefined.
     let wide = "[patch]\napproach = 0.08\n[grid]\nxi = { from = -60.0, to = 90.0, n = 76 }\n\
                 eta = { from = -9.0, to = 9.0, n = 19 }\n";
     let wide = run("wide", &standard("60E1", "S1002", 0.0, wide));
-    check_all(&wide);
+    check_run(&wide);
     check("check_undefined.py", &wide, &[]);
 }
 
 #[test]
 fn every_reader_reads_each_contact_of_a_wheelset() {
-    let scene = include_str!("../examples/scenes/wheelset.toml");
-    // An approach, as the load of a yawed wheelset takes long to turn into one.
-    let dir = run("wheelset", &scene.replace("load = 60000.0", "approach = 0.08"));
-    check_all(&dir);
+    let dir = run("wheelset", include_str!("../examples/scenes/wheelset.toml"));
+    check_run(&dir);
     let parts = std::fs::read_dir(&dir).unwrap().map(|entry| entry.unwrap().path());
     let parts: Vec<_> = parts.filter(|path| path.is_dir()).collect();
     assert!(parts.iter().any(|part| part.ends_with("left")), "{parts:?}");
     for part in parts {
         assert_complete(&part);
-        check_all(&part);
+        check_run(&part);
     }
 }
 
 #[test]
 fn tamaas_and_contact_mechanics_solve_hertz_from_a_run() {
     let dir = run("hertz_run", &crown(0.0, 0.0, "[patch]\nload = 80000.0\n[grid]\nspacing = 0.12\n"));
-    check_all(&dir);
+    check_run(&dir);
     let [modulus, peak, approach] = HERTZ;
     let expected = ["--peak", peak, "--approach", approach, "--within", "0.001"];
     check("solve.py", &dir, &[&["--modulus", modulus, "--load", "80000"][..], &expected].concat());
@@ -120,7 +119,7 @@ fn tamaas_and_contact_mechanics_solve_hertz_from_a_run() {
 #[test]
 fn tamaas_and_contact_mechanics_agree_on_60e1_under_s1002() {
     let dir = run("tread60", &standard("60E1", "S1002", 0.0, "[patch]\nload = 60000.0\n"));
-    check_all(&dir);
+    check_run(&dir);
     check("solve.py", &dir, &["--modulus", HERTZ[0], "--load", "60000", "--within", "0.005"]);
     check("check_docs.py", &dir, &[DOCS]);
 }

@@ -133,7 +133,7 @@ impl Analysis {
         let mut separation = vec![0.0; xi.len() * eta.len()];
         plan.choice.fill(placement, &xi, &axis, &mut separation);
         let filled = Instant::now();
-        let window = Window { xi: ends(&xi), eta: ends(&eta) };
+        let window = window(&xi, &eta);
         let patch = contact.approach.map(|(approach, _)| Patch::new(placement, approach, &window));
         let cut = Instant::now();
         let mesh = |patch: &Patch| StripMesh::new(placement, patch, Counts::default());
@@ -146,6 +146,15 @@ impl Analysis {
         };
         Ok(Self { xi, eta, separation, plan, patch, strips, timings })
     }
+
+    /// The rectangle between the outermost points of the grid.
+    pub fn window(&self) -> Window {
+        window(&self.xi, &self.eta)
+    }
+}
+
+fn window(xi: &[f64], eta: &[f64]) -> Window {
+    Window { xi: ends(xi), eta: ends(eta) }
 }
 
 /// First and last value.

@@ -408,7 +408,7 @@ impl OutputData {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Format {
-    /// .vts, .vtp, .vtu and view.py.
+    /// .vts, .vtp, .vtu, .vtk and view.py.
     Vtk,
     /// xi.npy, eta.npy, separation.npy.
     Npy,

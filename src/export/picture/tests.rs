@@ -42,19 +42,3 @@ fn the_png_is_one() {
     let png = picture.png().unwrap();
     assert!(png.starts_with(b"\x89PNG\r\n\x1a\n"));
 }
-
-/// Leaves a picture to be looked at, and says how long it took.
-#[test]
-#[ignore = "to be looked at: target/picture.svg, .png"]
-fn picture_to_look_at() {
-    let [rail, wheel] = profiles();
-    let (header, sample, loops) = (header(), Sample::new(201, 201), [ellipse(0.05)]);
-    let grid = sample.fields();
-    let picture = Picture { header: &header, grid: &grid, loops: &loops, rail: &rail, wheel: &wheel };
-    let begun = std::time::Instant::now();
-    std::fs::write("target/picture.svg", picture.svg()).unwrap();
-    eprintln!("svg {:?}", begun.elapsed());
-    let begun = std::time::Instant::now();
-    std::fs::write("target/picture.png", picture.png().unwrap()).unwrap();
-    eprintln!("png {:?}", begun.elapsed());
-}
