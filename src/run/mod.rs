@@ -7,7 +7,7 @@ mod summary;
 
 use std::path::Path;
 
-pub use analysis::{Analysis, ApproachBy, Contact, Question, Timings};
+pub use analysis::{Analysis, ApproachBy, Contact, EllipseUnder, Question, Timings};
 pub use places::Found;
 
 use crate::error::{Error, Result};

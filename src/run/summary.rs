@@ -56,6 +56,7 @@ pub(super) fn summary(
         "approach_mm": contact.approach.map(|(approach, _)| approach),
         "approach_estimated_by": contact.approach.and_then(|(_, estimate)| estimate),
         "hertz_ellipse": contact.ellipse,
+        "hertz_ellipse_under": contact.ellipse_under,
         "patch": analysis.patch.as_ref().map(patch),
         "mesh_quality": analysis.strips.as_ref().and_then(Quality::of_strips),
         "surface_quality": surfaces.map(|[rail, wheel]| json!({
