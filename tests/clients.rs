@@ -10,7 +10,7 @@ use std::path::Path;
 use wheelrail::export::deck::Deck;
 use wheelrail::export::deck::contact::{Normal, Settings};
 use wheelrail::export::netcdf::NetCdf;
-use wheelrail::export::picture::Picture;
+use wheelrail::export::picture::{Nodes, Picture};
 use wheelrail::export::{
     Folder, Frame, GridFields, Header, Interval, Loop, QuadMesh, RUN_FOLDER, VIEW_SCRIPT, csv, legacy, npy,
     vtk, vts,
@@ -134,7 +134,10 @@ impl Scene {
 fn picture(header: &Header, grid: &GridFields, loops: &[Loop]) -> String {
     let profile = |f: fn(f64) -> f64| (-40..=40).map(|x| [f64::from(x), f(f64::from(x))]).collect::<Vec<_>>();
     let (rail, wheel) = (profile(rail_height), profile(|x| 1e-3 * x * x));
-    Picture { header, grid, loops, rail: &rail, wheel: &wheel }.svg()
+    let midplane: Vec<[f64; 2]> = grid.xi().iter().map(|&x| [x, hertz(x, 0.0)]).collect();
+    let separation = Nodes { xi: grid.xi(), eta: grid.eta(), values: grid.separation() };
+    let cells = [grid.xi(), grid.eta()];
+    Picture { header, cells, separation, midplane: &midplane, loops, rail: &rail, wheel: &wheel }.svg()
 }
 
 fn rail_height(xi: f64) -> f64 {

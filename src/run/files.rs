@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::export::deck::Deck;
 use crate::export::deck::contact::{Normal, Settings};
 use crate::export::netcdf::NetCdf;
-use crate::export::picture::Picture;
+use crate::export::picture::{Nodes, Picture};
 use crate::export::{
     Folder, FolderPart, Frame, GridFields, Header, Interval, Loop, QuadMesh, SurfaceMesh, VIEW_SCRIPT, csv,
     legacy, npy, vtk, vts,
@@ -19,7 +19,8 @@ use crate::mesh::strips::StripMesh;
 use crate::mesh::surfaces::Surface;
 use crate::profile::Section;
 use crate::scene::{Format, equal_steps};
-use crate::separation::midsep;
+use crate::separation::axis::EtaAxis;
+use crate::separation::{Evaluator, midsep};
 
 /// A file and the writer of its content.
 type Job<'a> = (&'static str, Box<dyn Fn(&FolderPart<'_>) -> Result<()> + Sync + Send + 'a>);
@@ -40,8 +41,16 @@ pub(super) fn write(folder: &Folder, run: &Run, part: &Part) -> Result<()> {
     let loops = loops(part);
     let strips = part.analysis.strips.as_ref().map(quads);
     let outlines = [&part.contact.placement.rail.section, &part.contact.placement.wheel.section].map(outline);
-    let picture =
-        Picture { header: &header, grid: &grid, loops: &loops, rail: &outlines[0], wheel: &outlines[1] };
+    let drawn = Drawn::new(part);
+    let picture = Picture {
+        header: &header,
+        cells: [&analysis.xi, &analysis.eta],
+        separation: Nodes { xi: &drawn.xi, eta: &drawn.eta.eta, values: &drawn.separation },
+        midplane: &drawn.midplane,
+        loops: &loops,
+        rail: &outlines[0],
+        wheel: &outlines[1],
+    };
     let mut jobs: Vec<Job<'_>> = Vec::new();
     tables(&mut jobs, part, &loops);
     arrays(&mut jobs, run, part);
@@ -90,6 +99,33 @@ fn header(run: &Run, part: &Part) -> Header {
         scene_hash: run.hash.clone(),
         approach: part.contact.approach.map_or(0.0, |(approach, _)| approach),
         frame: Frame::at(rail.x, rail.z, rail.cos, rail.sin),
+    }
+}
+
+/// Points of a picture along ξ and along η: a line of equal separation is smooth to the eye, and C is among them where
+/// the grid is symmetric about it.
+const DRAWN: usize = 121;
+
+/// s over the window of the grid as a picture takes it, whatever the spacing of the solver's cells.
+struct Drawn {
+    xi: Vec<f64>,
+    eta: EtaAxis,
+    separation: Vec<f64>,
+    /// (ξ, s(ξ, 0))
+    midplane: Vec<[f64; 2]>,
+}
+
+impl Drawn {
+    fn new(part: &Part) -> Self {
+        let (analysis, placement) = (&part.analysis, &part.contact.placement);
+        let window = analysis.window();
+        let axis = |[from, to]: [f64; 2]| if from < to { equal_steps(from, to, DRAWN) } else { vec![from] };
+        let (xi, eta) = (axis(window.xi), EtaAxis::new(&axis(window.eta)));
+        let mut separation = vec![f64::NAN; xi.len() * eta.eta.len()];
+        analysis.plan.choice.fill(placement, &xi, &eta, &mut separation);
+        let mut evaluator = Evaluator::new(placement);
+        let midplane = xi.iter().map(|&xi| [xi, evaluator.separation(xi, 0.0)]).collect();
+        Self { xi, eta, separation, midplane }
     }
 }
 
