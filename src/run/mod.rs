@@ -189,6 +189,6 @@ fn question(scene: &Scene) -> Result<Question> {
         approach,
         material: scene.elastic()?,
         tolerance: scene.tolerance()?,
-        method: scene.grid.method.forced(),
+        method: scene.grid.method,
     })
 }
