@@ -1,20 +1,19 @@
 //! Our files, read and solved by the programs that they are for: `tests/clients/setup.sh` installs those,
 //! pinned, and the scripts beside it print one line per check.
-#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 #[path = "clients/programs.rs"]
 mod programs;
 
 use programs::{check, check_all, folder};
 use std::path::Path;
-use std::process::Command;
 use wheelrail::export::deck::Deck;
 use wheelrail::export::deck::contact::{Normal, Settings};
 use wheelrail::export::netcdf::NetCdf;
-use wheelrail::export::picture::Picture;
+use wheelrail::export::picture::{Nodes, Picture};
 use wheelrail::export::{
-    Folder, Frame, GridFields, Header, Interval, Loop, QuadMesh, RUN_FOLDER, SurfaceMesh, VIEW_SCRIPT, csv,
-    npy, vtk, vts,
+    Folder, Frame, GridFields, Header, Interval, Loop, QuadMesh, RUN_FOLDER, VIEW_SCRIPT, csv, legacy, npy,
+    vtk, vts,
 };
 
 /// Hertz: a wheel of 460 mm on a rail of 300 mm, 80 kN, E* of steel; closed form with elliptic integrals.
@@ -100,20 +99,6 @@ impl Scene {
         mesh
     }
 
-    /// Two triangles for each cell of the grid, on the paraboloid's rail or on the wheel above it.
-    fn surface(&self, wheel: bool) -> SurfaceMesh {
-        let [xi, eta] = self.axes();
-        let gap = |x, y| if wheel { hertz(x, y) } else { 0.0 };
-        let lifted = |x: f64| eta.iter().map(move |&y| [x, y, rail_height(x) + gap(x, y)]);
-        let mut mesh =
-            SurfaceMesh { points: xi.iter().flat_map(|&x| lifted(x)).collect(), triangles: Vec::new() };
-        for node in (0..(xi.len() - 1) * eta.len()).filter(|node| node % eta.len() + 1 < eta.len()) {
-            let [a, b, c, d] = [node, node + eta.len(), node + eta.len() + 1, node + 1];
-            mesh.triangles.extend(if wheel { [[a, c, b], [a, d, c]] } else { [[a, b, c], [a, c, d]] });
-        }
-        mesh
-    }
-
     fn write(&self, dir: &Path) {
         let [xi, eta] = self.axes();
         let separation: Vec<f64> =
@@ -137,9 +122,6 @@ impl Scene {
         folder.write("interpen.csv", csv::interpen(&[row]).as_bytes()).unwrap();
         folder.write("boundary.vtp", &vtk::boundary(&header, &loops).unwrap()).unwrap();
         folder.write("patch.vtu", &vtk::patch(&header, &self.mesh()).unwrap()).unwrap();
-        for (name, mesh) in [("rail.vtu", self.surface(false)), ("wheel.vtu", self.surface(true))] {
-            folder.write(name, &vtk::surface(&header, &mesh).unwrap()).unwrap();
-        }
         let steps = [(0.0, "rail.vts".into()), (0.5, "wheel.vts".into())];
         folder.write("surface.pvd", vtk::collection(&steps).as_bytes()).unwrap();
         folder.write("patch.svg", picture(&header, &grid, &loops).as_bytes()).unwrap();
@@ -152,7 +134,10 @@ impl Scene {
 fn picture(header: &Header, grid: &GridFields, loops: &[Loop]) -> String {
     let profile = |f: fn(f64) -> f64| (-40..=40).map(|x| [f64::from(x), f(f64::from(x))]).collect::<Vec<_>>();
     let (rail, wheel) = (profile(rail_height), profile(|x| 1e-3 * x * x));
-    Picture { header, grid, loops, rail: &rail, wheel: &wheel }.svg()
+    let midplane: Vec<[f64; 2]> = grid.xi().iter().map(|&x| [x, hertz(x, 0.0)]).collect();
+    let separation = Nodes { xi: grid.xi(), eta: grid.eta(), values: grid.separation() };
+    let cells = [grid.xi(), grid.eta()];
+    Picture { header, cells, separation, midplane: &midplane, loops, rail: &rail, wheel: &wheel }.svg()
 }
 
 fn rail_height(xi: f64) -> f64 {
@@ -168,7 +153,7 @@ fn write_grid(folder: &Folder, header: &Header, grid: &GridFields) {
     folder.stream("separation.vts", |sink| vts::separation(sink, header, grid)).unwrap();
     folder.stream("rail.vts", |sink| vts::rail(sink, header, grid)).unwrap();
     folder.stream("wheel.vts", |sink| vts::wheel(sink, header, grid)).unwrap();
-    folder.write("separation.vtk", &vtk::legacy_grid(header, grid).unwrap()).unwrap();
+    folder.stream("separation.vtk", |sink| legacy::separation(sink, header, grid)).unwrap();
     let netcdf = NetCdf::new(header, grid).unwrap();
     folder.stream("separation.nc", |sink| netcdf.write(sink)).unwrap();
 }
@@ -190,72 +175,6 @@ fn every_reader_gives_back_what_was_written() {
         let dir = folder(name);
         Scene { separation: lopsided, approach, n }.write(&dir);
         check_all(&dir);
-    }
-}
-
-/// What needs no ParaView of it is checked on every folder, by `check_view.py`.
-#[test]
-#[ignore = "needs ParaView: apt-get install paraview xvfb; cargo test --test clients view_script -- --ignored"]
-fn the_view_script_draws_in_paraview() {
-    let dir = folder("viewed");
-    Scene { separation: lopsided, approach: 0.05, n: [61, 40] }.write(&dir);
-    let picture = folder("view.png");
-    drop(std::fs::remove_file(&picture));
-    let mut paraview = Command::new("xvfb-run");
-    paraview.args(["-a", "pvbatch"]).arg(dir.join("view.py")).arg(&picture);
-    let output = paraview.output().unwrap();
-    assert!(picture.exists(), "{}", String::from_utf8_lossy(&output.stderr));
-}
-
-/// Rates of the grid's files against a plain write of as many bytes:
-/// `cargo test --release --test clients rate -- --ignored --nocapture`.
-#[test]
-#[ignore = "a measurement"]
-fn rate_of_writing() {
-    let small = Scene { separation: hertz, approach: APPROACH, n: [201, 201] };
-    for _ in 0..5 {
-        let begun = std::time::Instant::now();
-        small.write(&folder("rate201"));
-        eprintln!("a folder of 201 x 201: {:?}", begun.elapsed());
-    }
-    let scene = Scene { separation: hertz, approach: APPROACH, n: [2000, 2000] };
-    let [xi, eta] = scene.axes();
-    let separation: Vec<f64> = xi.iter().flat_map(|&x| eta.iter().map(move |&y| hertz(x, y))).collect();
-    let (heights, normals) = (vec![0.0; xi.len()], vec![[0.0, 1.0]; xi.len()]);
-    let grid = GridFields::new(&xi, &eta, &separation, &heights, &normals).unwrap();
-    let frame = Frame::at(0.0, 0.0, 1.0, 0.0);
-    let (title, version, scene_hash) = (String::new(), String::new(), String::new());
-    let header = Header { title, version, scene_hash, approach: APPROACH, frame };
-    let netcdf = NetCdf::new(&header, &grid).unwrap();
-    type Writer<'a> = Box<dyn Fn(&mut dyn std::io::Write) -> std::io::Result<()> + 'a>;
-    let writers: [(&str, Writer); 3] = [
-        ("separation.npy", Box::new(|sink| npy::array(sink, &[2000, 2000], grid.separation()))),
-        ("separation.vts", Box::new(|sink| vts::separation(sink, &header, &grid))),
-        ("separation.nc", Box::new(|sink| netcdf.write(sink))),
-    ];
-    for (name, writer) in &writers {
-        let mut bytes = Vec::new();
-        writer(&mut bytes).unwrap();
-        let timed = |write: &dyn Fn(&Folder)| {
-            let out = Folder::create(&folder("rate"), RUN_FOLDER).unwrap();
-            let begun = std::time::Instant::now();
-            write(&out);
-            begun.elapsed().as_secs_f64()
-        };
-        // The best of several in turn: the disk's own writing back disturbs single ones.
-        let mut best = [f64::INFINITY; 2];
-        for _ in 0..8 {
-            best[0] = best[0].min(timed(&|out| out.stream(name, |sink| writer(sink)).unwrap()));
-            best[1] = best[1].min(timed(&|out| out.write(name, &bytes).unwrap()));
-        }
-        let begun = std::time::Instant::now();
-        writer(&mut std::io::sink()).unwrap();
-        let encoding = bytes.len() as f64 / 1e9 / begun.elapsed().as_secs_f64();
-        let [ours, plain] = best.map(|seconds| bytes.len() as f64 / 1e9 / seconds);
-        eprintln!(
-            "{name}: {ours:.2} GB/s, plain write {plain:.2} GB/s, ratio {:.2}, encoding alone {encoding:.2}",
-            ours / plain
-        );
     }
 }
 

@@ -6,20 +6,13 @@ mod common;
 
 use std::f64::consts::PI;
 
-use common::references;
+use common::{approached_references, profile, references, two_crowns};
 use wheelrail::Result;
 use wheelrail::interpenetration::{Component, End, Patch, Slicer, Window};
 use wheelrail::numerics::roots::bracketed;
 use wheelrail::placement::{Pair, Placement};
-use wheelrail::profile::{Arc, Half, Polynomial, Profile, Segment, Shape, standards};
+use wheelrail::profile::{Arc, Half, Profile, standards};
 use wheelrail::separation::Evaluator;
-
-const WHOLE: Window =
-    Window { xi: [f64::NEG_INFINITY, f64::INFINITY], eta: [f64::NEG_INFINITY, f64::INFINITY] };
-
-fn profile(arc: Arc) -> Result<Profile> {
-    Profile::new("one segment", "test", vec![Segment::arc(arc)])
-}
 
 fn crown(radius: f64) -> Result<Profile> {
     profile(Arc::about([0.0, -radius], radius, Half::Upper, [-30.0, 30.0])?)
@@ -30,36 +23,13 @@ fn crossed(skew: f64) -> Result<Placement> {
     Pair::new(crown(300.0)?, profile(Arc::line([-40.0, 0.0], [40.0, 0.0])?)?, 460.0)?.placed(0.0, 0.0, skew)
 }
 
-/// A rail with two crowns of 250 mm, 40 mm apart and 0.16 mm above the valley between them, under a cone.
-fn two_crowns(slope: f64, skew: f64) -> Result<Placement> {
-    let curve = Polynomial::graph(&[-0.16, 0.0, 8e-4, 0.0, -1e-6], [-35.0, 35.0])?;
-    let rail = Profile::new(
-        "two crowns",
-        "test",
-        vec![Segment { label: String::new(), shape: Shape::Polynomial(curve) }],
-    )?;
-    let wheel = profile(Arc::line([-60.0, -60.0 * slope], [60.0, 60.0 * slope])?)?;
-    let touching = bracketed(|x| x * (1.6e-3 - 4e-6 * x * x) - slope, 15.0, 25.0).unwrap_or(f64::NAN);
-    Pair::new(rail, wheel, 460.0)?.placed(touching, 20.0, skew)
-}
-
 fn standard(rail_x: f64, wheel_x: f64, skew: f64) -> Result<Placement> {
     Pair::new(standards::rail("60E1")?, standards::wheel("S1002")?, 460.0)?.placed(rail_x, wheel_x, skew)
 }
 
 /// Every reference scene at each of its approaches, plain and turned, and some pairs of this file.
 fn cases() -> Vec<(String, Placement, f64)> {
-    let mut all = Vec::new();
-    for reference in references() {
-        for skew in [0.0, 0.01] {
-            let mut placement = reference.placement().expect("a placement");
-            placement.skew = skew;
-            let cases = reference.scene.delta.iter();
-            all.extend(
-                cases.map(|&d| (format!("{} δ = {d} χ = {skew}", reference.name), placement.clone(), d)),
-            );
-        }
-    }
+    let mut all = approached_references();
     for skew in [0.0, 0.02] {
         for delta in [1e-9, 0.02, 0.1] {
             let placement = two_crowns(-1e-3, skew).expect("a placement");
@@ -122,7 +92,7 @@ fn shoelace(loop_: &[[f64; 2]]) -> f64 {
 #[test]
 fn crossed_cylinders_give_their_ellipse() -> Result<()> {
     for delta in [1e-9, 1e-6, 1e-3, 0.05] {
-        let patch = Patch::new(&crossed(0.0)?, delta, &WHOLE);
+        let patch = Patch::new(&crossed(0.0)?, delta, &Window::UNBOUNDED);
         let [c] = patch.components.as_slice() else { panic!("{} components", patch.components.len()) };
         let (a, b) = ((delta * (600.0 - delta)).sqrt(), (delta * (920.0 - delta)).sqrt());
         // Rounding of s − δ moves a tip by ε δ × dξ/ds = ε ξ/2.
@@ -142,7 +112,7 @@ fn crossed_cylinders_give_their_ellipse() -> Result<()> {
 fn the_turned_ellipse_keeps_its_area_and_extents() -> Result<()> {
     // A turned cylinder on a cylinder: s = ξ²/600 + η′²/920 with η′ = η cos χ − ξ sin χ.
     for (skew, delta) in [(0.1f64, 1e-9), (-0.03, 1e-4), (0.02, 1e-2)] {
-        let patch = Patch::new(&crossed(skew)?, delta, &WHOLE);
+        let patch = Patch::new(&crossed(skew)?, delta, &Window::UNBOUNDED);
         let [c] = patch.components.as_slice() else { panic!("{} components", patch.components.len()) };
         let (sin, cos) = skew.sin_cos();
         let area = PI * delta * (600f64 * 920.0).sqrt() / cos;
@@ -163,7 +133,7 @@ fn a_cone_on_a_cylinder_has_its_closed_form() -> Result<()> {
     let sin = slope / 1f64.hypot(slope);
     let cos = sin / slope;
     let placement = Pair::new(crown(radius)?, wheel, 460.0)?.placed(-radius * sin, 0.0, 0.0)?;
-    let patch = Patch::new(&placement, delta, &WHOLE);
+    let patch = Patch::new(&placement, delta, &Window::UNBOUNDED);
     let [c] = patch.components.as_slice() else { panic!("{} components", patch.components.len()) };
     for &[xi, eta] in &c.boundary {
         let zeta = delta - xi * xi / (radius + (radius * radius - xi * xi).sqrt());
@@ -177,7 +147,7 @@ fn a_cone_on_a_cylinder_has_its_closed_form() -> Result<()> {
 #[test]
 fn areas_agree_with_rows_of_constant_eta() {
     for (name, placement, delta) in cases() {
-        let patch = Patch::new(&placement, delta, &WHOLE);
+        let patch = Patch::new(&placement, delta, &Window::UNBOUNDED);
         for component in patch.components.iter().filter(|c| c.ends == [End::Tip; 2]) {
             let rows = area_by_rows(&placement, delta, component, 240);
             // Kinks of the boundary at joints slow the rows down, not the area.
@@ -191,7 +161,7 @@ fn areas_agree_with_rows_of_constant_eta() {
 #[test]
 fn loops_run_counter_clockwise_along_s_equal_delta() {
     for (name, placement, delta) in cases() {
-        let patch = Patch::new(&placement, delta, &WHOLE);
+        let patch = Patch::new(&placement, delta, &Window::UNBOUNDED);
         assert!(!patch.components.is_empty(), "{name}: empty");
         let mut evaluator = Evaluator::new(&placement);
         for c in &patch.components {
@@ -234,7 +204,7 @@ fn loops_run_counter_clockwise_along_s_equal_delta() {
 #[test]
 fn the_perimeter_is_the_loop_s_length() {
     for (name, placement, delta) in cases() {
-        for c in Patch::new(&placement, delta, &WHOLE).components {
+        for c in Patch::new(&placement, delta, &Window::UNBOUNDED).components {
             let sides = c.boundary.iter().zip(c.boundary.iter().cycle().skip(1));
             let polygon: f64 = sides.map(|(p, q)| (q[0] - p[0]).hypot(q[1] - p[1])).sum();
             let excess = c.perimeter / polygon - 1.0;
@@ -247,8 +217,8 @@ fn the_perimeter_is_the_loop_s_length() {
 #[test]
 fn a_larger_approach_contains_the_smaller_patch() {
     for (name, placement, delta) in cases() {
-        let small = Patch::new(&placement, delta, &WHOLE);
-        let large = Patch::new(&placement, 1.5 * delta, &WHOLE);
+        let small = Patch::new(&placement, delta, &Window::UNBOUNDED);
+        let large = Patch::new(&placement, 1.5 * delta, &Window::UNBOUNDED);
         assert!(large.area() > small.area(), "{name}");
         let mut slicer = Slicer::new(&placement, 1.5 * delta);
         for &[xi, eta] in small.components.iter().flat_map(|c| &c.boundary) {
@@ -266,12 +236,12 @@ fn a_larger_approach_contains_the_smaller_patch() {
 #[test]
 fn no_approach_gives_no_patch() {
     for (name, placement, _) in cases() {
-        let patch = Patch::new(&placement, 0.0, &WHOLE);
+        let patch = Patch::new(&placement, 0.0, &Window::UNBOUNDED);
         // Scenes whose chosen points overlap elsewhere have a patch at δ = 0, but none at C.
         for c in &patch.components {
             assert!(c.deepest[0] < -1e-12, "{name}: {c:?}");
         }
-        assert!(Patch::new(&placement, f64::NAN, &WHOLE).components.is_empty());
+        assert!(Patch::new(&placement, f64::NAN, &Window::UNBOUNDED).components.is_empty());
     }
 }
 
@@ -281,11 +251,11 @@ fn a_tiny_approach_finds_the_tiny_patch_at_c() {
         for (skew, delta) in [(0.0, 1e-9), (0.0, 1e-15), (0.015, 1e-9), (0.015, 1e-12)] {
             let mut placement = reference.placement().expect("a placement");
             placement.skew = skew;
-            let patch = Patch::new(&placement, delta, &WHOLE);
+            let patch = Patch::new(&placement, delta, &Window::UNBOUNDED);
             let at_c = patch.components.iter().find(|c| c.xi[0] < 0.0 && c.xi[1] > 0.0);
             let Some(c) = at_c else { panic!("{} δ = {delta} χ = {skew}: no patch at C", reference.name) };
             assert!(c.area > 0.0 && c.eta[0] < 0.0 && c.eta[1] > 0.0, "{}: {c:?}", reference.name);
-            let scaled = Patch::new(&placement, delta / 4.0, &WHOLE);
+            let scaled = Patch::new(&placement, delta / 4.0, &Window::UNBOUNDED);
             let quarter = scaled.components.iter().find(|c| c.xi[0] < 0.0 && c.xi[1] > 0.0).map(|c| c.area);
             // Far inside both contact segments the patch is an ellipse, whose area goes with δ.
             let ratio = quarter.map(|q| c.area / q);
@@ -303,13 +273,13 @@ fn a_tiny_approach_finds_the_tiny_patch_at_c() {
 fn two_crowns_give_two_components_that_merge() -> Result<()> {
     for skew in [0.0, 0.01] {
         let placement = two_crowns(-1e-3, skew)?;
-        let two = Patch::new(&placement, 0.08, &WHOLE);
+        let two = Patch::new(&placement, 0.08, &Window::UNBOUNDED);
         assert_eq!(two.components.len(), 2, "χ = {skew}");
         let [left, right] = [&two.components[0], &two.components[1]];
         assert!(left.xi[1] < right.xi[0] && right.xi[0] < 0.0 && right.xi[1] > 0.0);
         assert!(right.deepest[0].abs() < 1e-15, "{:?}", right.deepest);
-        assert_eq!(Patch::new(&placement, 0.3, &WHOLE).components.len(), 1, "χ = {skew}");
-        assert_eq!(Patch::new(&placement, 0.01, &WHOLE).components.len(), 1, "χ = {skew}");
+        assert_eq!(Patch::new(&placement, 0.3, &Window::UNBOUNDED).components.len(), 1, "χ = {skew}");
+        assert_eq!(Patch::new(&placement, 0.01, &Window::UNBOUNDED).components.len(), 1, "χ = {skew}");
     }
     Ok(())
 }
@@ -319,7 +289,7 @@ fn windows_cut_and_say_so() -> Result<()> {
     let delta = 0.05;
     for skew in [0.0, 0.02] {
         let placement = crossed(skew)?;
-        let whole = Patch::new(&placement, delta, &WHOLE);
+        let whole = Patch::new(&placement, delta, &Window::UNBOUNDED);
         let [a, b] = [whole.components[0].xi[1], whole.components[0].eta[1]];
         let parts = |xi: [f64; 2], eta: [f64; 2]| Patch::new(&placement, delta, &Window { xi, eta });
         let infinity = f64::INFINITY;
@@ -372,7 +342,7 @@ fn the_end_of_a_profile_cuts_the_patch() -> Result<()> {
     for skew in [0.0, 0.02] {
         let wheel = profile(Arc::line([-40.0, 0.0], [40.0, 0.0])?)?;
         let placement = Pair::new(rail.clone(), wheel, 460.0)?.placed(0.0, 0.0, skew)?;
-        let patch = Patch::new(&placement, 0.05, &WHOLE);
+        let patch = Patch::new(&placement, 0.05, &Window::UNBOUNDED);
         let [c] = patch.components.as_slice() else { panic!("{} components", patch.components.len()) };
         assert_eq!((c.ends, c.xi[1]), ([End::Tip, End::ProfileEnd], 2.0));
         assert!(!c.cut_by_window);
@@ -392,7 +362,7 @@ fn the_end_of_a_wheel_profile_cuts_the_patch_along_eta() -> Result<()> {
     for skew in [0.0, 1e-3] {
         let mut placement = placement.clone();
         placement.skew = skew;
-        let patch = Patch::new(&placement, delta, &WHOLE);
+        let patch = Patch::new(&placement, delta, &Window::UNBOUNDED);
         let [c] = patch.components.as_slice() else { panic!("{} components", patch.components.len()) };
         let mut evaluator = Evaluator::new(&placement);
         assert!((shoelace(&c.boundary) / c.area - 1.0).abs() < 2e-3, "{} {}", shoelace(&c.boundary), c.area);

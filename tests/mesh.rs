@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::references;
+use common::{approached_references, two_crowns};
 use wheelrail::Result;
 use wheelrail::interpenetration::{Patch, Window};
 use wheelrail::mesh::axes::{self, Grid};
@@ -11,37 +11,14 @@ use wheelrail::mesh::quality::Quality;
 use wheelrail::mesh::strips::{Counts, StripMesh};
 use wheelrail::mesh::surfaces::Surface;
 use wheelrail::placement::{Pair, Placement};
-use wheelrail::profile::{Arc, Half, Polynomial, Profile, Segment, Shape, standards};
+use wheelrail::profile::{Arc, Half, Profile, Segment, standards};
 use wheelrail::separation::Evaluator;
-
-fn segment(shape: Shape) -> Segment {
-    Segment { label: String::new(), shape }
-}
-
-/// Crowns of 250 mm at x = ±20, the right one in contact with a slightly tilted cone.
-fn two_crowns() -> Placement {
-    let curve = Polynomial::graph(&[-0.16, 0.0, 8e-4, 0.0, -1e-6], [-35.0, 35.0]).expect("a rail");
-    let rail = Profile::new("rail", "test", vec![segment(Shape::Polynomial(curve))]).expect("a rail");
-    let line = Arc::line([-60.0, 0.06], [60.0, -0.06]).expect("a wheel");
-    let wheel = Profile::new("wheel", "test", vec![segment(Shape::Arc(line))]).expect("a wheel");
-    // Where 1.6e-3 x − 4e-6 x³ = −1e-3.
-    Pair::new(rail, wheel, 460.0).and_then(|pair| pair.placed(20.305_3, 20.0, 0.0)).expect("a placement")
-}
 
 /// Every reference scene at each of its approaches, plain and turned; two components; a built-in pair.
 fn cases() -> Vec<(String, Placement, f64)> {
-    let mut all = Vec::new();
-    for reference in references() {
-        for skew in [0.0, 0.01] {
-            let mut placement = reference.placement().expect("a placement");
-            placement.skew = skew;
-            let deltas = reference.scene.delta.iter();
-            all.extend(
-                deltas.map(|&d| (format!("{} δ = {d} χ = {skew}", reference.name), placement.clone(), d)),
-            );
-        }
-    }
-    all.extend([0.02, 0.1, 0.3].map(|d| (format!("two crowns δ = {d}"), two_crowns(), d)));
+    let mut all = approached_references();
+    let crowns = two_crowns(-1e-3, 0.0).expect("a placement");
+    all.extend([0.02, 0.1, 0.3].map(|d| (format!("two crowns δ = {d}"), crowns.clone(), d)));
     let pair = Pair::new(
         standards::rail("60E1").expect("a rail"),
         standards::wheel("S1002").expect("a wheel"),
@@ -226,7 +203,7 @@ fn grids_never_cut_the_patch() {
 
 #[test]
 fn parts_are_merged_by_a_stated_distance_and_c_comes_first() -> Result<()> {
-    let placement = two_crowns();
+    let placement = two_crowns(-1e-3, 0.0)?;
     let (patch, apart) = axes::grids(&placement, 0.08, None, 0.0)?;
     assert_eq!(patch.components.len(), 2);
     assert_eq!(apart.iter().map(|g| g.group.components.clone()).collect::<Vec<_>>(), [vec![1], vec![0]]);
@@ -320,7 +297,7 @@ fn surfaces_face_outwards_and_move_into_rail_axes() {
 
 #[test]
 fn bad_requests_for_surfaces_are_refused() {
-    let placement = two_crowns();
+    let placement = two_crowns(-1e-3, 0.0).expect("a placement");
     let good = Window { xi: [-3.0, 3.0], eta: [-3.0, 3.0] };
     for (window, tolerance) in [
         (Window::UNBOUNDED, 1e-3),

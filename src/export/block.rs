@@ -61,6 +61,11 @@ pub(super) fn put_vectors(room: &mut [u8], vectors: impl Iterator<Item = [f64; 3
     }
 }
 
+/// Puts bytes into `room`.
+pub(super) fn put_bytes(room: &mut [u8], values: impl Iterator<Item = u8>) {
+    room.iter_mut().zip(values).for_each(|(place, value)| *place = value);
+}
+
 /// As [`put_f64`], big-endian.
 pub(super) fn put_f64_be(room: &mut [u8], values: impl Iterator<Item = f64>) {
     for (place, value) in room.chunks_exact_mut(8).zip(values) {

@@ -8,6 +8,7 @@ mod block;
 pub mod csv;
 pub mod deck;
 pub mod folder;
+pub mod legacy;
 mod model;
 pub mod netcdf;
 pub mod npy;

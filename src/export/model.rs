@@ -136,6 +136,18 @@ impl<'a> GridFields<'a> {
         self.rail_height
     }
 
+    /// The rail's surface \[ξ, η, ζ^R\] \[mm\] under the column of ξ number `i`; on ζ = 0 where it has none, as a point
+    /// needs coordinates nevertheless.
+    pub(super) fn rail_points(&self, i: usize) -> impl Iterator<Item = [f64; 3]> + 'a {
+        let (xi, zeta) = (self.xi[i], known(self.rail_height[i]));
+        self.eta.iter().map(move |&eta| [xi, eta, zeta])
+    }
+
+    /// 1 where s is defined, 0 elsewhere, along the column of ξ number `i`.
+    pub(super) fn mask(&self, i: usize) -> impl Iterator<Item = u8> + 'a {
+        self.column(i).iter().map(|s| u8::from(!s.is_nan()))
+    }
+
     /// The rail's outward unit normal (n_ξ, n_ζ) per ξ.
     pub fn rail_normal(&self) -> &'a [[f64; 2]] {
         self.rail_normal
@@ -155,6 +167,11 @@ impl<'a> GridFields<'a> {
         // `max` passes over NaN.
         10.0 * self.separation.iter().fold(0.0, |largest: f64, s| largest.max(s.abs()))
     }
+}
+
+/// The value, or 0 for an undefined one.
+pub(super) fn known(value: f64) -> f64 {
+    if value.is_nan() { 0.0 } else { value }
 }
 
 fn even_step(format: &str, axis: &str, values: &[f64]) -> Result<f64> {

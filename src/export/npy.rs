@@ -57,18 +57,4 @@ mod tests {
             self.into_iter().map(f64::to_bits).collect()
         }
     }
-
-    #[test]
-    #[ignore = "a measurement"]
-    fn speed() {
-        let values = vec![1.5; 4_000_000];
-        for _ in 0..5 {
-            let mut out = Vec::with_capacity(33_000_000);
-            out.resize(33_000_000, 1);
-            out.clear();
-            let begun = std::time::Instant::now();
-            array(&mut out, &[2000, 2000], &values).unwrap();
-            eprintln!("{:.2} GB/s", 32e-3 / begun.elapsed().as_secs_f64());
-        }
-    }
 }

@@ -1,17 +1,17 @@
 //! VTK files through `vtkio` 0.7.0-rc2, which serves for boundaries, patches and surfaces; grids go through
-//! [`vts`](super::vts).
+//! [`vts`](super::vts) and [`legacy`](super::legacy).
 //!
 //! Its traps, and what is done about them here, in one place: partial writes pass as success (encode to memory),
 //! array lengths are not checked (checked here), counts of zero are left out, which makes empty files
-//! unreadable (put in), FieldData is dropped from XML (inserted as text), legacy little-endian and blanks in array
-//! names break readers (neither is offered). Only versions and cell kinds are used that meshio reads too: XML 1.0, legacy 4.2.
+//! unreadable (put in), FieldData is dropped from XML (inserted as text), blanks in array names break readers (none has).
+//! Only the version and the cell kinds are used that meshio reads too: XML 1.0.
 
-use super::model::{GridFields, Header, Loop, QuadMesh, SurfaceMesh, plain, same_length};
+use super::model::{Header, Loop, QuadMesh, SurfaceMesh, same_length};
 use super::vts::{comment, field_data};
 use crate::error::{Error, Result};
 use vtkio::model::{
-    Attribute, Attributes, ByteOrder, CellType, Cells, DataArray, DataSet, ElementType, Extent, IOBuffer,
-    PolyDataPiece, StructuredGridPiece, UnstructuredGridPiece, Version, VertexNumbers, Vtk,
+    Attribute, Attributes, ByteOrder, CellType, Cells, DataArray, DataSet, ElementType, IOBuffer,
+    PolyDataPiece, UnstructuredGridPiece, Version, VertexNumbers, Vtk,
 };
 
 /// The counts that `vtkio` leaves out when they are zero, without which no reader takes a file.
@@ -72,39 +72,6 @@ pub fn surface(header: &Header, mesh: &SurfaceMesh) -> Result<Vec<u8>> {
     unstructured(header, &mesh.points, &cells, Vec::new())
 }
 
-/// `separation.vtk`: the grid in the legacy format, version 4.2, binary (big-endian, the only order that it
-/// has), for readers without `.vts` such as meshio: separation \[mm\] (NaN where undefined) and mask. Copies the grid.
-///
-/// # Errors
-/// What `vtkio` refuses, which would be a fault of this program.
-pub fn legacy_grid(header: &Header, grid: &GridFields) -> Result<Vec<u8>> {
-    let count = grid.separation().len();
-    let mut points = Vec::with_capacity(3 * count);
-    for (xi, height) in grid.xi().iter().zip(grid.rail_height()) {
-        let zeta = if height.is_nan() { 0.0 } else { *height };
-        points.extend(grid.eta().iter().flat_map(|eta| [*xi, *eta, zeta]));
-    }
-    let mask: Vec<u8> = grid.separation().iter().map(|s| u8::from(!s.is_nan())).collect();
-    let point = vec![
-        scalars("separation", grid.separation().to_vec().into(), count)?,
-        scalars("mask", mask.into(), count)?,
-    ];
-    let piece = StructuredGridPiece {
-        extent: Extent::Dims([grid.eta().len() as u32, grid.xi().len() as u32, 1]),
-        points: points.into(),
-        data: Attributes { point, cell: Vec::new() },
-    };
-    // The format has one line for remarks.
-    let title = plain(&format!(
-        "wheelrail {}; mm; s > 0 apart; delta {:?}; scene {}",
-        header.version, header.approach, header.scene_hash
-    ));
-    let mut bytes = Vec::new();
-    let file = vtk(Version::new_legacy(4, 2), title, DataSet::inline(piece));
-    Vtk { byte_order: ByteOrder::BigEndian, ..file }.write_legacy(&mut bytes).map_err(refused)?;
-    Ok(bytes)
-}
-
 /// `surface.pvd`: files of a sweep on one time axis, which ParaView plays; `steps` are (time, path).
 pub fn collection(steps: &[(f64, String)]) -> String {
     let sets: String = steps
@@ -161,14 +128,11 @@ fn scalars(name: &str, data: IOBuffer, expected: usize) -> Result<Attribute> {
 
 fn xml(header: &Header, data: DataSet, empty_piece: &str) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    vtk(Version::new_xml(1, 0), String::new(), data).write_xml(&mut bytes).map_err(refused)?;
+    let (version, byte_order) = (Version::new_xml(1, 0), ByteOrder::LittleEndian);
+    let file = Vtk { version, title: String::new(), byte_order, file_path: None, data };
+    file.write_xml(&mut bytes).map_err(refused)?;
     let text = String::from_utf8(bytes).map_err(refused)?;
     Ok(annotate(text.replacen("<Piece>", empty_piece, 1), header))
-}
-
-fn vtk(version: Version, title: String, data: DataSet) -> Vtk {
-    let byte_order = ByteOrder::LittleEndian;
-    Vtk { version, title, byte_order, file_path: None, data }
 }
 
 /// Puts δ and the frame into field data, and the header's statements into a comment.
@@ -184,7 +148,7 @@ fn refused(error: impl std::fmt::Display) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::export::sample::{Sample, header, mesh, square};
+    use crate::export::sample::{header, mesh, square};
 
     fn text(bytes: &[u8]) -> String {
         String::from_utf8_lossy(bytes).into_owned()
@@ -228,22 +192,5 @@ mod tests {
         assert!(patch(&header(), &broken).unwrap_err().place.contains("areas"));
         let surface_mesh = SurfaceMesh { points: vec![[0.0; 3]; 3], triangles: vec![[0, 1, 3]] };
         assert!(surface(&header(), &surface_mesh).is_err());
-    }
-
-    #[test]
-    fn the_legacy_grid_says_its_version() {
-        let sample = Sample::new(3, 4);
-        let bytes = legacy_grid(&header(), &sample.fields()).unwrap();
-        let text = text(&bytes);
-        assert!(
-            text.starts_with(
-                "# vtk DataFile Version 4.2\nwheelrail 0.0.0; mm; s > 0 apart; delta 0.05; scene 0123abcd"
-            ),
-            "{text}"
-        );
-        assert!(text.contains("DIMENSIONS 4 3 1"), "{text}");
-        // Readers take big-endian for granted.
-        let first = sample.xi[0].to_be_bytes();
-        assert!(bytes.windows(8).any(|window| window == first));
     }
 }

@@ -6,8 +6,8 @@
 //! Where a body has no surface a point needs coordinates nevertheless: it lies on ζ = 0 and is hidden by VTK's
 //! own array `vtkGhostType`, which is written only where there are such points.
 
-use super::block::{Block, put_f64, put_vectors};
-use super::model::{GridFields, Header};
+use super::block::{Block, put_bytes, put_f64, put_vectors};
+use super::model::{GridFields, Header, known};
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
@@ -39,7 +39,7 @@ impl<'a> Array<'a> {
 
     fn byte<I: Iterator<Item = u8>>(name: &'a str, column: impl Fn(usize) -> I + 'a) -> Self {
         let column = Box::new(move |i, room: &mut [u8]| {
-            room.iter_mut().zip(column(i)).for_each(|(place, value)| *place = value);
+            put_bytes(room, column(i));
         });
         Self { name, kind: "UInt8", components: 1, bytes_per_point: 1, column }
     }
@@ -62,7 +62,7 @@ pub fn separation(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> i
             let [n_xi, n_zeta] = grid.rail_normal()[i];
             grid.eta().iter().map(move |_| [n_xi, 0.0, n_zeta])
         }),
-        Array::byte("mask", |i| grid.column(i).iter().map(|s| u8::from(!s.is_nan()))),
+        Array::byte("mask", |i| grid.mask(i)),
     ];
     structured_grid(sink, header, grid, rail_points(grid), arrays)
 }
@@ -88,18 +88,11 @@ pub fn wheel(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io::Re
 }
 
 fn rail_points<'a>(grid: &'a GridFields) -> Array<'a> {
-    Array::vector("Points", |i| {
-        let (xi, zeta) = (grid.xi()[i], known(grid.rail_height()[i]));
-        grid.eta().iter().map(move |&eta| [xi, eta, zeta])
-    })
+    Array::vector("Points", |i| grid.rail_points(i))
 }
 
 fn separation_array<'a>(grid: &'a GridFields) -> Array<'a> {
     Array::scalar("separation", |i| grid.column(i).iter().copied())
-}
-
-fn known(value: f64) -> f64 {
-    if value.is_nan() { 0.0 } else { value }
 }
 
 fn hidden<'a>(grid: &'a GridFields) -> Option<Array<'a>> {

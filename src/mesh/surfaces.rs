@@ -14,6 +14,17 @@ use super::trace::{arc_step, trace};
 /// Points beyond which a surface is a mistake: a gigabyte of file.
 const MOST_POINTS: f64 = 3e7;
 
+/// Facets around a patch depart from the surfaces by at most this share of the approach, so that the gap between two of
+/// them is seen …
+const FACET_SHARE: f64 = 0.01;
+
+/// … but by no less than the first of these shares of the window's longer side, below which a file has a million
+/// facets, and by no more than the second, above which they are seen as such.
+const FACET_LIMITS: [f64; 2] = [1e-6, 1e-4];
+
+/// A wheel is shown to at most this share of its rolling radius before and behind C: its sides stand upright.
+const WIDEST: f64 = 0.5;
+
 /// A structured surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
@@ -26,9 +37,24 @@ pub struct Surface {
 }
 
 impl Surface {
+    /// Rail and wheel over the window of a grid, as fine as the approach \[mm\] asks for if there is one; along η at most
+    /// half a rolling radius to either side.
+    ///
+    /// # Errors
+    /// As [`Surface::rail`].
+    pub fn around(placement: &Placement, window: &Window, approach: Option<f64>) -> Result<[Self; 2]> {
+        let reach = WIDEST * placement.rolling_radius();
+        let window = Window { eta: window.eta.map(|eta| eta.clamp(-reach, reach)), ..*window };
+        let side = (window.xi[1] - window.xi[0]).max(window.eta[1] - window.eta[0]);
+        let [finest, coarsest] = FACET_LIMITS.map(|share| share * side);
+        let wanted =
+            approach.filter(|approach| *approach > 0.0).map_or(coarsest, |approach| FACET_SHARE * approach);
+        let tolerance = wanted.clamp(finest, coarsest);
+        Ok([Self::rail(placement, &window, tolerance)?, Self::wheel(placement, &window, tolerance)?])
+    }
+
     /// The rail over a window of the contact frame, widened to hold C, as far as its profile goes; C is one of the
-    /// points. Along η,
-    /// where it is straight, it is divided as the wheel is.
+    /// points. Along η, where it is straight, it is divided as the wheel is.
     ///
     /// `tolerance` \[mm\]: largest distance of the surface from the facets between its points.
     ///
@@ -50,7 +76,8 @@ impl Surface {
         Self::of(Side::Rail, &stations, along.len(), points)
     }
 
-    /// The wheel over the same window, before any approach, as far as its profile goes; C is one of the points.
+    /// The wheel over the same window, before any approach, as far as its profile goes; C is one of the points. All of the
+    /// profile is turned by the angle at which the smallest circle spans the window.
     /// Half of the tolerance goes to the profile, half to the rotation.
     ///
     /// # Errors
@@ -59,8 +86,9 @@ impl Surface {
         check(placement, window, tolerance)?;
         let own = in_wheel_directions(placement, window);
         let stations = trace(&placement.wheel, own.xi, tolerance / 2.0)?;
-        let largest = stations.iter().map(|s| placement.wheel_radius - s.z).fold(0.0, f64::max);
-        let psi = angles(own.eta, placement.rolling_radius(), largest, tolerance / 2.0);
+        let radii = || stations.iter().map(|s| placement.wheel_radius - s.z);
+        let [smallest, largest] = [radii().fold(f64::INFINITY, f64::min), radii().fold(0.0, f64::max)];
+        let psi = angles(own.eta, smallest, largest, tolerance / 2.0);
         let points =
             |station: &Station| psi.iter().map(|&psi| wheel_point(placement, station, psi)).collect();
         Self::of(Side::Wheel, &stations, psi.len(), points)
@@ -152,8 +180,8 @@ fn in_wheel_directions(placement: &Placement, window: &Window) -> Window {
     Window { xi: [xi[0] - aside.max(0.0), xi[1] - aside.min(0.0)], eta }
 }
 
-/// Angles about the axle at which C reaches from `eta[0]` to `eta[1]`, 0 among them if it is between, in equal steps
-/// whose chords on the largest radius keep the tolerance.
+/// Angles about the axle at which a point at this radius reaches from `eta[0]` to `eta[1]`, 0 among them if it is
+/// between, in equal steps whose chords on the largest radius keep the tolerance.
 fn angles(eta: [f64; 2], radius: f64, largest: f64, tolerance: f64) -> Vec<f64> {
     let [from, to] = eta.map(|eta| (eta / radius).clamp(-1.0, 1.0).asin());
     let step = arc_step(largest, tolerance);

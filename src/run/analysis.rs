@@ -41,6 +41,8 @@ pub struct Question {
 /// Seconds spent in the parts of an analysis.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Timings {
+    /// Estimating the approach from the load; 0 for a given approach.
+    pub load_s: f64,
     /// Choosing the method.
     pub plan_s: f64,
     /// Filling the grid.
@@ -49,6 +51,16 @@ pub struct Timings {
     pub patch_s: f64,
     /// Boundary-fitted mesh.
     pub mesh_s: f64,
+}
+
+/// What Hertz's ellipse belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum EllipseUnder {
+    /// The load of the scene: its δ differs from an estimate by virtual interpenetration.
+    Load,
+    /// The approach of the scene.
+    Approach,
 }
 
 /// The contact point and what follows from it without a grid.
@@ -62,8 +74,12 @@ pub struct Contact {
     pub curvatures: Curvatures,
     /// δ \[mm\], and the method of its estimate.
     pub approach: Option<(f64, Option<Estimate>)>,
-    /// Hertz's ellipse at that approach, where s is convex at C.
+    /// Hertz's ellipse under what was asked for, where s is convex at C.
     pub ellipse: Option<Ellipse>,
+    /// Whether that is the load or the approach.
+    pub ellipse_under: Option<EllipseUnder>,
+    /// Seconds spent on estimating the approach.
+    pub load_s: f64,
 }
 
 impl Contact {
@@ -79,16 +95,22 @@ impl Contact {
         let curvatures = curvatures(&placement);
         let [rail, wheel] = &question.material;
         let modulus = effective_modulus(rail, wheel);
-        let approach = match question.approach {
-            None => None,
-            Some(ApproachBy::Given(approach)) => Some((approach, None)),
+        let start = Instant::now();
+        let (approach, ellipse, under) = match question.approach {
+            None => (None, None, None),
+            Some(ApproachBy::Given(approach)) => {
+                let ellipse = curvatures.under_approach(approach, modulus);
+                (Some((approach, None)), ellipse, Some(EllipseUnder::Approach))
+            }
             Some(ApproachBy::Load(load)) => {
                 let (approach, estimate) = approach_under_load(&placement, load, modulus)?;
-                Some((approach, Some(estimate)))
+                let ellipse = curvatures.under_load(load, modulus);
+                (Some((approach, Some(estimate))), ellipse, Some(EllipseUnder::Load))
             }
         };
-        let ellipse = approach.and_then(|(approach, _)| curvatures.under_approach(approach, modulus));
-        Ok(Self { placement, feasibility, curvatures, approach, ellipse })
+        let load_s = if under == Some(EllipseUnder::Load) { start.elapsed().as_secs_f64() } else { 0.0 };
+        let ellipse_under = under.filter(|_| ellipse.is_some());
+        Ok(Self { placement, feasibility, curvatures, approach, ellipse, ellipse_under, load_s })
     }
 }
 
@@ -132,12 +154,13 @@ impl Analysis {
         let mut separation = vec![0.0; xi.len() * eta.len()];
         plan.choice.fill(placement, &xi, &axis, &mut separation);
         let filled = Instant::now();
-        let window = Window { xi: ends(&xi), eta: ends(&eta) };
+        let window = window(&xi, &eta);
         let patch = contact.approach.map(|(approach, _)| Patch::new(placement, approach, &window));
         let cut = Instant::now();
         let mesh = |patch: &Patch| StripMesh::new(placement, patch, Counts::default());
         let strips = patch.as_ref().map(mesh).transpose()?;
         let timings = Timings {
+            load_s: contact.load_s,
             plan_s: (planned - start).as_secs_f64(),
             grid_s: (filled - planned).as_secs_f64(),
             patch_s: (cut - filled).as_secs_f64(),
@@ -145,6 +168,15 @@ impl Analysis {
         };
         Ok(Self { xi, eta, separation, plan, patch, strips, timings })
     }
+
+    /// The rectangle between the outermost points of the grid.
+    pub fn window(&self) -> Window {
+        window(&self.xi, &self.eta)
+    }
+}
+
+fn window(xi: &[f64], eta: &[f64]) -> Window {
+    Window { xi: ends(xi), eta: ends(eta) }
 }
 
 /// First and last value.

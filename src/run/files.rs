@@ -9,15 +9,18 @@ use crate::error::{Error, Result};
 use crate::export::deck::Deck;
 use crate::export::deck::contact::{Normal, Settings};
 use crate::export::netcdf::NetCdf;
-use crate::export::picture::Picture;
+use crate::export::picture::{Nodes, Picture};
 use crate::export::{
-    Folder, FolderPart, Frame, GridFields, Header, Interval, Loop, QuadMesh, VIEW_SCRIPT, csv, npy, vtk, vts,
+    Folder, FolderPart, Frame, GridFields, Header, Interval, Loop, QuadMesh, SurfaceMesh, VIEW_SCRIPT, csv,
+    legacy, npy, vtk, vts,
 };
 use crate::interpenetration::Slicer;
 use crate::mesh::strips::StripMesh;
+use crate::mesh::surfaces::Surface;
 use crate::profile::Section;
 use crate::scene::{Format, equal_steps};
-use crate::separation::midsep;
+use crate::separation::axis::EtaAxis;
+use crate::separation::{Evaluator, midsep};
 
 /// A file and the writer of its content.
 type Job<'a> = (&'static str, Box<dyn Fn(&FolderPart<'_>) -> Result<()> + Sync + Send + 'a>);
@@ -30,21 +33,24 @@ pub(super) fn write(folder: &Folder, run: &Run, part: &Part) -> Result<()> {
     let grid =
         GridFields::new(&analysis.xi, &analysis.eta, &analysis.separation, &rail.height, &rail.normal)?;
     let mut skipped = Vec::new();
-    let deck = if run.wants_any(&[Format::Text, Format::Conform, Format::Countact, Format::Contact]) {
-        run.needing_equal_steps(Deck::new(&header, &grid), &mut skipped)?
-    } else {
-        None
-    };
-    let netcdf = if run.wants_any(&[Format::Netcdf]) {
-        run.needing_equal_steps(NetCdf::new(&header, &grid), &mut skipped)?
-    } else {
-        None
-    };
+    let decks_of = [Format::Text, Format::Conform, Format::Countact, Format::Contact];
+    let deck = run.possible("decks", &decks_of, || Deck::new(&header, &grid), &mut skipped)?;
+    let netcdf =
+        run.possible("separation.nc", &[Format::Netcdf], || NetCdf::new(&header, &grid), &mut skipped)?;
+    let bodies = surfaces_around(run, part, &mut skipped)?;
     let loops = loops(part);
     let strips = part.analysis.strips.as_ref().map(quads);
     let outlines = [&part.contact.placement.rail.section, &part.contact.placement.wheel.section].map(outline);
-    let picture =
-        Picture { header: &header, grid: &grid, loops: &loops, rail: &outlines[0], wheel: &outlines[1] };
+    let drawn = Drawn::new(part);
+    let picture = Picture {
+        header: &header,
+        cells: [&analysis.xi, &analysis.eta],
+        separation: Nodes { xi: &drawn.xi, eta: &drawn.eta.eta, values: &drawn.separation },
+        midplane: &drawn.midplane,
+        loops: &loops,
+        rail: &outlines[0],
+        wheel: &outlines[1],
+    };
     let mut jobs: Vec<Job<'_>> = Vec::new();
     tables(&mut jobs, part, &loops);
     arrays(&mut jobs, run, part);
@@ -52,21 +58,20 @@ pub(super) fn write(folder: &Folder, run: &Run, part: &Part) -> Result<()> {
     if run.wants_any(&[Format::Png]) {
         bytes(&mut jobs, "patch.png", || picture.png());
     }
-    surfaces(&mut jobs, run, &header, &grid, &loops);
+    if run.wants_any(&[Format::Vtk]) {
+        surfaces(&mut jobs, &header, &grid, &loops, strips.as_ref(), bodies.as_ref());
+    }
     if let Some(netcdf) = &netcdf {
         stream(&mut jobs, "separation.nc", move |file| netcdf.write(file));
     }
     if let Some(deck) = &deck {
         decks(&mut jobs, run, part, deck, strips.as_ref());
     }
-    if let (Some(strips), true) = (&strips, run.wants_any(&[Format::Vtk])) {
-        bytes(&mut jobs, "patch.vtu", || vtk::patch(&header, strips));
-    }
     let folder = folder.part(&part.folder)?;
     jobs.par_iter().try_for_each(|(name, job)| job(&folder).map_err(|error| error.within(name)))?;
     let mut names: Vec<String> = jobs.iter().map(|(name, _)| (*name).to_string()).collect();
     names.sort();
-    folder.write("summary.json", &summary::summary(run, part, &names, &skipped))
+    folder.write("summary.json", &summary::summary(run, part, bodies.as_ref(), &names, &skipped))
 }
 
 /// ζ^R and the rail's normal at every ξ of the grid.
@@ -94,6 +99,33 @@ fn header(run: &Run, part: &Part) -> Header {
         scene_hash: run.hash.clone(),
         approach: part.contact.approach.map_or(0.0, |(approach, _)| approach),
         frame: Frame::at(rail.x, rail.z, rail.cos, rail.sin),
+    }
+}
+
+/// Points of a picture along ξ and along η: a line of equal separation is smooth to the eye, and C is among them where
+/// the grid is symmetric about it.
+const DRAWN: usize = 121;
+
+/// s over the window of the grid as a picture takes it, whatever the spacing of the solver's cells.
+struct Drawn {
+    xi: Vec<f64>,
+    eta: EtaAxis,
+    separation: Vec<f64>,
+    /// (ξ, s(ξ, 0))
+    midplane: Vec<[f64; 2]>,
+}
+
+impl Drawn {
+    fn new(part: &Part) -> Self {
+        let (analysis, placement) = (&part.analysis, &part.contact.placement);
+        let window = analysis.window();
+        let axis = |[from, to]: [f64; 2]| if from < to { equal_steps(from, to, DRAWN) } else { vec![from] };
+        let (xi, eta) = (axis(window.xi), EtaAxis::new(&axis(window.eta)));
+        let mut separation = vec![f64::NAN; xi.len() * eta.eta.len()];
+        analysis.plan.choice.fill(placement, &xi, &eta, &mut separation);
+        let mut evaluator = Evaluator::new(placement);
+        let midplane = xi.iter().map(|&xi| [xi, evaluator.separation(xi, 0.0)]).collect();
+        Self { xi, eta, separation, midplane }
     }
 }
 
@@ -174,21 +206,45 @@ fn arrays<'a>(jobs: &mut Vec<Job<'a>>, run: &Run, part: &'a Part) {
     add("separation.npy", vec![n, m], &analysis.separation);
 }
 
+/// Both bodies around the patch, if VTK's files are asked for; a grid of one row or column has none.
+fn surfaces_around(run: &Run, part: &Part, skipped: &mut Vec<String>) -> Result<Option<[Surface; 2]>> {
+    let window = part.analysis.window();
+    let names = "rail.vtu, wheel.vtu";
+    if window.xi[0] >= window.xi[1] || window.eta[0] >= window.eta[1] {
+        skipped.push(format!("{names}: the grid has no extent"));
+        return Ok(None);
+    }
+    let approach = part.contact.approach.map(|(approach, _)| approach);
+    let surfaces = || Surface::around(&part.contact.placement, &window, approach);
+    run.possible(names, &[Format::Vtk], surfaces, skipped)
+}
+
 fn surfaces<'a>(
     jobs: &mut Vec<Job<'a>>,
-    run: &Run,
     header: &'a Header,
     grid: &'a GridFields<'a>,
     loops: &'a [Loop],
+    strips: Option<&'a QuadMesh>,
+    bodies: Option<&'a [Surface; 2]>,
 ) {
-    if !run.wants_any(&[Format::Vtk]) {
-        return;
-    }
     type Writer = fn(&mut dyn std::io::Write, &Header, &GridFields<'_>) -> std::io::Result<()>;
-    let writers: [(&'static str, Writer); 3] =
-        [("separation.vts", vts::separation), ("rail.vts", vts::rail), ("wheel.vts", vts::wheel)];
+    let writers: [(&'static str, Writer); 4] = [
+        ("separation.vts", vts::separation),
+        ("rail.vts", vts::rail),
+        ("wheel.vts", vts::wheel),
+        ("separation.vtk", legacy::separation),
+    ];
     for (name, writer) in writers {
         stream(jobs, name, move |file| writer(file, header, grid));
+    }
+    for (name, body) in ["rail.vtu", "wheel.vtu"].into_iter().zip(bodies.into_iter().flatten()) {
+        bytes(jobs, name, move || {
+            let mesh = SurfaceMesh { points: body.points.clone(), triangles: body.triangles() };
+            vtk::surface(header, &mesh)
+        });
+    }
+    if let Some(strips) = strips {
+        bytes(jobs, "patch.vtu", move || vtk::patch(header, strips));
     }
     bytes(jobs, "boundary.vtp", move || vtk::boundary(header, loops));
     bytes(jobs, "view.py", || Ok(VIEW_SCRIPT.as_bytes().to_vec()));
@@ -256,13 +312,23 @@ impl Run {
         self.scene.output.wanted().iter().any(|format| formats.contains(format))
     }
 
-    /// A writer's refusal of unequal steps is an error where the scene names the formats, and a remark in the
-    /// summary where they are the default ones.
-    fn needing_equal_steps<T>(&self, writer: Result<T>, skipped: &mut Vec<String>) -> Result<Option<T>> {
-        match writer {
-            Ok(writer) => Ok(Some(writer)),
+    /// What files of these formats are made from, if any of them is asked for. That it cannot be made (decks need
+    /// equal steps) is an error where the scene names the formats, and a remark in the summary where they are the
+    /// default ones.
+    fn possible<T>(
+        &self,
+        files: &str,
+        formats: &[Format],
+        content: impl FnOnce() -> Result<T>,
+        skipped: &mut Vec<String>,
+    ) -> Result<Option<T>> {
+        if !self.wants_any(formats) {
+            return Ok(None);
+        }
+        match content() {
+            Ok(content) => Ok(Some(content)),
             Err(Error { place, found, .. }) if self.scene.output.formats.is_none() => {
-                skipped.push(format!("files for solvers: {place} has {found}"));
+                skipped.push(format!("{files}: {place} has {found}"));
                 Ok(None)
             }
             Err(error) => Err(error),

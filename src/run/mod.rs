@@ -7,7 +7,7 @@ mod summary;
 
 use std::path::Path;
 
-pub use analysis::{Analysis, ApproachBy, Contact, Question, Timings};
+pub use analysis::{Analysis, ApproachBy, Contact, EllipseUnder, Question, Timings};
 pub use places::Found;
 
 use crate::error::{Error, Result};
@@ -189,6 +189,6 @@ fn question(scene: &Scene) -> Result<Question> {
         approach,
         material: scene.elastic()?,
         tolerance: scene.tolerance()?,
-        method: scene.grid.method.forced(),
+        method: scene.grid.method,
     })
 }

@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 use super::{Part, Run};
 use crate::interpenetration::{Component, Patch};
 use crate::mesh::quality::Quality;
+use crate::mesh::surfaces::Surface;
 use crate::placement::Body;
 use crate::profile::continuity::Joint;
 
@@ -25,8 +26,14 @@ struct BodySummary<'a> {
 /// Joints better than this are not worth a reader's time \[mm, rad\].
 const PERFECT_JOINT: f64 = 1e-9;
 
-/// The summary as JSON text.
-pub(super) fn summary(run: &Run, part: &Part, files: &[String], skipped: &[String]) -> Vec<u8> {
+/// The summary as JSON text; `surfaces` are the written ones of rail and wheel.
+pub(super) fn summary(
+    run: &Run,
+    part: &Part,
+    surfaces: Option<&[Surface; 2]>,
+    files: &[String],
+    skipped: &[String],
+) -> Vec<u8> {
     let (contact, analysis) = (&part.contact, &part.analysis);
     let placement = &contact.placement;
     let value = json!({
@@ -49,8 +56,13 @@ pub(super) fn summary(run: &Run, part: &Part, files: &[String], skipped: &[Strin
         "approach_mm": contact.approach.map(|(approach, _)| approach),
         "approach_estimated_by": contact.approach.and_then(|(_, estimate)| estimate),
         "hertz_ellipse": contact.ellipse,
+        "hertz_ellipse_under": contact.ellipse_under,
         "patch": analysis.patch.as_ref().map(patch),
         "mesh_quality": analysis.strips.as_ref().and_then(Quality::of_strips),
+        "surface_quality": surfaces.map(|[rail, wheel]| json!({
+            "rail": Quality::of_surface(rail),
+            "wheel": Quality::of_surface(wheel),
+        })),
         "grid": {
             "n_xi": analysis.xi.len(),
             "n_eta": analysis.eta.len(),

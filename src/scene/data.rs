@@ -292,7 +292,9 @@ pub struct GridData {
     /// Absolute tolerance on s, mm.
     pub tolerance: f64,
     /// A method of the accuracy ladder; "auto" takes the cheapest within the tolerance.
-    pub method: GridMethod,
+    #[serde(with = "method_or_auto")]
+    #[schemars(schema_with = "method_or_auto::schema")]
+    pub method: Option<Method>,
 }
 
 impl Default for GridData {
@@ -302,7 +304,7 @@ impl Default for GridData {
             eta: AxisData::Word(Auto::Auto),
             spacing: None,
             tolerance: 1e-12,
-            method: GridMethod::Auto,
+            method: None,
         }
     }
 }
@@ -357,33 +359,37 @@ pub enum Spacing {
     Each([f64; 2]),
 }
 
-/// The `method` of a grid.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs, reason = "the variants are those of `Method`")]
-pub enum GridMethod {
-    #[default]
-    Auto,
-    Quadratic,
-    ConstantRadius,
-    Parabolic,
-    Spectral,
-    Pointwise,
-    ReportNewton,
-}
+/// The method of a grid in a scene: its name, or "auto" for `None`.
+mod method_or_auto {
+    use schemars::{Schema, SchemaGenerator, json_schema};
+    use serde::de::Error;
+    use serde::{Deserialize, Deserializer, Serializer};
 
-impl GridMethod {
-    /// The forced method, or `None` for "auto".
-    pub fn forced(self) -> Option<Method> {
-        match self {
-            Self::Auto => None,
-            Self::Quadratic => Some(Method::Quadratic),
-            Self::ConstantRadius => Some(Method::ConstantRadius),
-            Self::Parabolic => Some(Method::Parabolic),
-            Self::Spectral => Some(Method::Spectral),
-            Self::Pointwise => Some(Method::Pointwise),
-            Self::ReportNewton => Some(Method::ReportNewton),
+    use super::Method;
+
+    const AUTO: &str = "auto";
+
+    fn words() -> Vec<&'static str> {
+        std::iter::once(AUTO).chain(Method::ALL.map(Method::name)).collect()
+    }
+
+    // The signature is serde's.
+    pub(super) fn serialize<S: Serializer>(method: &Option<Method>, to: S) -> Result<S::Ok, S::Error> {
+        to.serialize_str(method.map_or(AUTO, Method::name))
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Method>, D::Error> {
+        let word = String::deserialize(from)?;
+        let named = Method::ALL.into_iter().find(|method| method.name() == word);
+        if named.is_some() || word == AUTO {
+            return Ok(named);
         }
+        let known = words().join("`, `");
+        Err(D::Error::custom(format!("unknown variant `{word}`, expected one of `{known}`")))
+    }
+
+    pub(super) fn schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "string", "enum": words() })
     }
 }
 
@@ -408,7 +414,7 @@ impl OutputData {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Format {
-    /// .vts, .vtp, .vtu and view.py.
+    /// .vts, .vtp, .vtu, .vtk and view.py.
     Vtk,
     /// xi.npy, eta.npy, separation.npy.
     Npy,

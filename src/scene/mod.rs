@@ -6,8 +6,8 @@ mod read;
 mod resolve;
 
 pub use data::{
-    AxisData, ContactData, Format, GridData, GridMethod, MaterialData, OutputData, PatchData, ProfileData,
-    RollData, RollWord, Rotation, Scene, Spacing, TrackData, WheelsetData,
+    AxisData, ContactData, Format, GridData, MaterialData, OutputData, PatchData, ProfileData, RollData,
+    RollWord, Rotation, Scene, Spacing, TrackData, WheelsetData,
 };
 pub use position::{Place, Standing};
 pub use read::{hash, load, parse};

@@ -73,6 +73,7 @@ fn house_form(place: String, message: &str) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::separation::grid::Method;
 
     const SCENE: &str = "[rail]\nprofile = \"60E1\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n\
                          [contact]\nrail_x = 0.0\nwheel_x = 0.0\n";
@@ -91,6 +92,21 @@ mod tests {
         let json = serde_json::to_string(&scene).unwrap_or_default();
         assert_eq!(parse::<Scene>(&json, true)?, scene);
         assert_eq!(hash(&scene).len(), 64);
+        Ok(())
+    }
+
+    #[test]
+    fn a_method_is_one_of_the_ladder_or_auto() -> Result<()> {
+        for (word, method) in [("auto", None), ("report-newton", Some(Method::ReportNewton))] {
+            let scene: Scene = parse(&format!("{SCENE}[grid]\nmethod = \"{word}\"\n"), false)?;
+            assert_eq!(scene.grid.method, method);
+            assert_eq!(
+                serde_json::to_value(&scene).map_or_else(|_| "".into(), |s| s["grid"]["method"].clone()),
+                word
+            );
+        }
+        let error = parse::<Scene>(&format!("{SCENE}[grid]\nmethod = \"spectrl\"\n"), false).err();
+        assert_eq!(error.map(|e| e.advice).as_deref(), Some("perhaps `spectral` is meant"));
         Ok(())
     }
 

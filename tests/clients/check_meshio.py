@@ -1,4 +1,4 @@
-"""patch.vtu, rail.vtu, wheel.vtu and separation.vtk, those that are there, read by meshio: FOLDER."""
+"""The .vtu files, as far as they are there, and separation.vtk, read by meshio: FOLDER."""
 
 import sys
 
@@ -23,5 +23,7 @@ for name in filter(folder.has, ("rail.vtu", "wheel.vtu")):
 if folder.has("separation.vtk"):
     grid = meshio.read(folder / "separation.vtk")
     checks.same("separation.vtk xi", grid.points[:: len(folder.eta), 0].astype("f8"), folder.xi)
+    checks.same("separation.vtk eta", grid.points[: len(folder.eta), 1].astype("f8"), folder.eta)
+    checks.same("separation.vtk mask", grid.point_data["mask"].reshape(folder.s.shape) == 1, ~np.isnan(folder.s))
     checks.same("separation.vtk separation", grid.point_data["separation"].astype("f8").reshape(folder.s.shape), folder.s)
 checks.done()

@@ -1,50 +1,20 @@
 """The text decks, read by the compiled Fortran reader and by a reader of CONTACT's grammar: FOLDER READ_WRP."""
 
-import subprocess
 import sys
-import tempfile
 
 import numpy as np
 from folder import Checks, Folder
+from wrp import read_wrp
 
 folder = Folder(sys.argv[1])
 defined = ~np.isnan(folder.s)
 filled = np.where(defined, folder.s, folder.fill)
-
-
-def read_wrp(name):
-    """Runs the Fortran reader and returns what it has read."""
-    with tempfile.NamedTemporaryFile() as out:
-        subprocess.run([sys.argv[2], folder / name, out.name], check=True)
-        data = out.read()
-    at = 0
-
-    def take(count, kind):
-        nonlocal at
-        values = np.frombuffer(data, kind, count, at)
-        at += values.nbytes
-        return values
-
-    n_xi, n_eta, n_points, n_cells = take(4, "<i4")
-    read = {"approach": take(1, "<f8")[0], "frame": take(12, "<f8").reshape(4, 3)}
-    read |= {"xi": take(n_xi, "<f8"), "eta": take(n_eta, "<f8")}
-    read["mask"] = take(n_xi * n_eta, "<i4").reshape(n_xi, n_eta)
-    read["s"] = take(n_xi * n_eta, "<f8").reshape(n_xi, n_eta)
-    if name == "conform.wrp":
-        read["normal"] = take(2 * n_xi * n_eta, "<f8").reshape(n_xi, n_eta, 2)
-    read["points"] = take(3 * n_points, "<f8").reshape(-1, 3)
-    read["cells"] = take(5 * n_cells, "<i4").reshape(-1, 5)
-    read["area"] = take(n_cells, "<f8")
-    assert at == len(data)
-    return read
-
-
 checks = Checks("gfortran")
 for name in filter(folder.has, ("separation.wrp", "conform.wrp", "countact.wrp")):
     text = open(folder / name, "rb").read()
     checks(f"{name} ASCII, under 80 columns, with its end",
            text.isascii() and max(map(len, text.split(b"\n"))) < 80 and text.endswith(b"\nEND\n"))
-    read = read_wrp(name)
+    read = read_wrp(folder / name, sys.argv[2])
     for key, expected in (("xi", folder.xi), ("eta", folder.eta), ("mask", defined.astype("i4")), ("s", filled)):
         checks.same(f"{name} {key}", read[key], expected)
     if "approach_mm" in folder.summary:

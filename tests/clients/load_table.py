@@ -6,7 +6,7 @@ from folder import Folder
 from solve import tamaas_solution
 
 path, name, *numbers, angle, chosen = sys.argv[1:]
-load, modulus, hertz_approach, hertz_peak, virtual_approach, virtual_peak = map(float, numbers)
+load, modulus, hertz_peak, *estimates = map(float, numbers)
 peak, approach = tamaas_solution(Folder(path), modulus, load)
 
 
@@ -15,6 +15,5 @@ def against(estimate, solved, digits):
 
 
 letter = {"Hertz": "H", "VirtualInterpenetration": "V"}[chosen]
-print(f"| {name} | {angle}° | {load / 1e3:g} | {approach:.4f} | {against(hertz_approach, approach, 4)} "
-      f"| {against(virtual_approach, approach, 4)} | {letter} | {peak:.0f} | {against(hertz_peak, peak, 0)} "
-      f"| {against(virtual_peak, peak, 0)} |")
+columns = [name, f"{angle}°", f"{load / 1e3:g}", f"{approach:.4f}", *(against(e, approach, 4) for e in estimates), letter]
+print("|", " | ".join([*columns, f"{peak:.0f}", against(hertz_peak, peak, 0)]), "|")

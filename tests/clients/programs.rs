@@ -42,6 +42,12 @@ fn reader() -> String {
     target.join("read_wrp").to_str().unwrap().to_owned()
 }
 
+/// Every reader on a folder of `wheelrail run` with all formats.
+pub fn check_run(dir: &Path) {
+    check_all(dir);
+    check("check_run.py", dir, &[&reader()]);
+}
+
 /// Every reader on one folder.
 pub fn check_all(dir: &Path) {
     check("check_text.py", dir, &[&reader()]);

@@ -1,8 +1,12 @@
-//! The 60-digit reference values, shared by the integration tests.
+//! The 60-digit reference values and a few placed pairs, shared by the integration tests.
 #![allow(dead_code, unused_imports, clippy::expect_used, reason = "each integration test uses its own part")]
 
+use wheelrail::Result;
 use wheelrail::accuracy::errors::Point;
 pub use wheelrail::accuracy::reference::{Reference, ReferenceScene, ReferenceSegment, chain};
+use wheelrail::numerics::roots::bracketed;
+use wheelrail::placement::{Pair, Placement};
+use wheelrail::profile::{Arc, Polynomial, Profile, Segment, Shape};
 
 /// All reference scenes; they are part of the program, in `src/accuracy/reference`.
 pub fn references() -> Vec<Reference> {
@@ -55,4 +59,36 @@ impl Worst {
         }
         worst
     }
+}
+
+/// Every reference scene at each of its approaches, plain and turned: name, pair, δ \[mm\].
+pub fn approached_references() -> Vec<(String, Placement, f64)> {
+    let mut all = Vec::new();
+    for reference in references() {
+        for skew in [0.0, 0.01] {
+            let mut placement = reference.placement().expect("a placement");
+            placement.skew = skew;
+            let deltas = reference.scene.delta.iter();
+            all.extend(
+                deltas.map(|&d| (format!("{} δ = {d} χ = {skew}", reference.name), placement.clone(), d)),
+            );
+        }
+    }
+    all
+}
+
+/// A profile of one arc or line.
+pub fn profile(arc: Arc) -> Result<Profile> {
+    Profile::new("one segment", "test", vec![Segment::arc(arc)])
+}
+
+/// A rail with two crowns of 250 mm, 40 mm apart and 0.16 mm above the valley between them, the right one in contact
+/// with a cone.
+pub fn two_crowns(slope: f64, skew: f64) -> Result<Placement> {
+    let curve = Polynomial::graph(&[-0.16, 0.0, 8e-4, 0.0, -1e-6], [-35.0, 35.0])?;
+    let crowns = Segment { label: String::new(), shape: Shape::Polynomial(curve) };
+    let rail = Profile::new("two crowns", "test", vec![crowns])?;
+    let wheel = profile(Arc::line([-60.0, -60.0 * slope], [60.0, 60.0 * slope])?)?;
+    let touching = bracketed(|x| x * (1.6e-3 - 4e-6 * x * x) - slope, 15.0, 25.0).unwrap_or(f64::NAN);
+    Pair::new(rail, wheel, 460.0)?.placed(touching, 20.0, skew)
 }

@@ -150,25 +150,4 @@ mod tests {
         assert!(deck(&Sample::new(201, 101), Normal::Force(8e4)).contains("above CONTACT's default"));
         assert!(!deck(&Sample::new(20, 10), Normal::Force(8e4)).contains("above CONTACT's default"));
     }
-
-    /// Rate of all decks of 200 × 200 points together: `cargo test --release all_decks -- --ignored --nocapture`.
-    #[test]
-    #[ignore = "a measurement"]
-    fn speed_of_all_decks() {
-        let sample = Sample::new(200, 200);
-        let (header, grid) = (header(), sample.fields());
-        let mesh = crate::export::sample::mesh();
-        for _ in 0..8 {
-            let begun = std::time::Instant::now();
-            let deck = Deck::new(&header, &grid).unwrap();
-            let formatted = begun.elapsed();
-            let mut files = [const { Vec::new() }; 4];
-            deck.separation(&mut files[0]).unwrap();
-            deck.conform(&mut files[1]).unwrap();
-            deck.countact(&mesh, &mut files[2]).unwrap();
-            deck.contact(&Settings::steel(Normal::Force(8e4)), &mut files[3]).unwrap();
-            let bytes: usize = files.iter().map(Vec::len).sum();
-            eprintln!("numbers {formatted:?}, all {:?}, {bytes} bytes", begun.elapsed());
-        }
-    }
 }

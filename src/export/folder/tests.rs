@@ -125,24 +125,29 @@ fn runs_into_one_folder_at_once_leave_one_of_them_whole() {
     assert_eq!(listing(root.path()), ["out"]);
 }
 
-/// Not a test of its own: the run that the next test kills.
-#[test]
-#[ignore = "started by the test below, to be killed"]
-fn run_to_be_killed() {
-    let Some(dir) = std::env::var_os("WHEELRAIL_TEST_FOLDER") else { return };
-    let folder = Folder::create(Path::new(&dir), NAMES).unwrap();
+/// The environment variable that turns the next test into the run that it kills.
+const TO_BE_KILLED: &str = "WHEELRAIL_TEST_FOLDER";
+
+fn run_to_be_killed(dir: &Path) {
+    let folder = Folder::create(dir, NAMES).unwrap();
     folder.write("a.npy", b"half").unwrap();
     std::thread::sleep(Duration::from_secs(60));
 }
 
 #[test]
 fn a_killed_run_is_swept_up_by_the_next_one_and_a_living_one_is_not() {
+    if let Some(dir) = std::env::var_os(TO_BE_KILLED) {
+        return run_to_be_killed(Path::new(&dir));
+    }
     let root = tempfile::tempdir().unwrap();
     let dir = root.path().join("out");
     written(&dir, "b.npy").unwrap();
     let mut child = process::Command::new(std::env::current_exe().unwrap())
-        .args(["--ignored", "--exact", "export::folder::tests::run_to_be_killed"])
-        .env("WHEELRAIL_TEST_FOLDER", &dir)
+        .args([
+            "--exact",
+            "export::folder::tests::a_killed_run_is_swept_up_by_the_next_one_and_a_living_one_is_not",
+        ])
+        .env(TO_BE_KILLED, &dir)
         .stdout(process::Stdio::null())
         .spawn()
         .unwrap();

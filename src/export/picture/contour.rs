@@ -6,10 +6,14 @@ use std::collections::HashMap;
 type Edge = (usize, bool);
 
 /// A function on the nodes of a rectangular grid, at `i * eta.len() + j`.
-pub(super) struct Nodes<'a> {
-    pub(super) xi: &'a [f64],
-    pub(super) eta: &'a [f64],
-    pub(super) values: &'a [f64],
+#[derive(Debug, Clone, Copy)]
+pub struct Nodes<'a> {
+    /// ξ \[mm\], ascending.
+    pub xi: &'a [f64],
+    /// η \[mm\], ascending.
+    pub eta: &'a [f64],
+    /// One value for every node; NaN where it is undefined.
+    pub values: &'a [f64],
 }
 
 impl Nodes<'_> {

@@ -1,47 +1,49 @@
 //! `patch.svg` and, on request, `patch.png`: the picture for a report. Both profiles at true scale, the gap
-//! exaggerated, and the lines of equal separation with the boundary, to scale, with units and a legend.
+//! exaggerated, and the lines of equal separation with the boundary over the solver's cells, to scale, with units and a
+//! legend.
 
 mod canvas;
 mod contour;
+mod levels;
 mod panel;
 mod png;
 pub mod profile;
 mod svg;
 
-use super::model::{GridFields, Header, Loop};
+use super::model::{Header, Loop};
 use crate::error::Result;
 use canvas::{Anchor, Canvas, Colour, Pen};
-use contour::Nodes;
-use panel::{GREY, INK, Panel, SMALL, number, round_below};
+pub use contour::Nodes;
+use panel::{GREY, INK, Panel, SMALL, number};
 
 const RAIL: Pen = Pen::new([70, 70, 70], 1.8);
 const WHEEL: Pen = Pen::new([31, 98, 168], 1.8);
 const BOUNDARY: Pen = Pen::new([200, 30, 30], 2.2);
-const INSIDE: Colour = [253, 232, 226];
+const APPROACH: Pen = Pen::new(BOUNDARY.colour, 1.0).dashed([5.0, 3.0]);
+const CELL: Pen = Pen::new([226, 220, 218], 0.6);
 const THIN: Pen = Pen::new(GREY, 0.6);
+const INSIDE: Colour = [253, 232, 226];
+const WINDOW: Colour = [240, 240, 240];
 
-/// Contours are drawn from at most this many rows and columns: more cannot be seen on a page, and would make
-/// the file large.
-const DRAWN: usize = 120;
+/// Cells with sides shorter than this \[page units\] are shown by ticks at the frame: their borders would be a tint.
+const SMALLEST_CELL: f64 = 5.0;
 
-/// Lines of equal separation aimed at.
-const LEVELS: f64 = 10.0;
-
-/// The lines of one level.
-struct Level {
-    name: String,
-    pen: Pen,
-    /// (ξ, η) \[mm\]
-    lines: Vec<Vec<[f64; 2]>>,
-}
+/// The gap is shown up to this multiple of the approach, the contours up to that: beyond, nothing is of interest to
+/// the patch, and near a flange s grows to many times as much.
+const SHOWN_GAP: f64 = 3.0;
+const SHOWN_LEVELS: f64 = 5.0;
 
 /// What the picture shows.
 #[derive(Debug, Clone, Copy)]
 pub struct Picture<'a> {
     /// Title, approach, version.
     pub header: &'a Header,
-    /// The separation.
-    pub grid: &'a GridFields<'a>,
+    /// Centres ξ and η of the solver's cells \[mm\], ascending.
+    pub cells: [&'a [f64]; 2],
+    /// s \[mm\] over the same window, on as many points as a smooth line takes.
+    pub separation: Nodes<'a>,
+    /// (ξ, s(ξ, 0)) \[mm\] over the same window.
+    pub midplane: &'a [[f64; 2]],
     /// The boundary.
     pub loops: &'a [Loop],
     /// The rail's profile (ξ, ζ) \[mm\]; NaN points part its pieces.
@@ -68,9 +70,13 @@ impl Picture<'_> {
         let mut page = Canvas { size: [900.0, 1040.0], marks: Vec::new() };
         let header = self.header;
         let angle = header.frame.xi[2].atan2(header.frame.xi[0]).to_degrees();
+        let approach = if header.approach > 0.0 {
+            format!("approach δ = {} mm    ", significant(header.approach, 4))
+        } else {
+            String::new()
+        };
         let about = format!(
-            "approach δ = {:?} mm    contact angle θ = {}°    rail point ({}, {}) mm",
-            header.approach,
+            "{approach}contact angle θ = {}°    rail point ({}, {}) mm",
             number(angle, 0.001),
             number(header.frame.origin[0], 0.001),
             number(header.frame.origin[2], 0.001),
@@ -85,7 +91,7 @@ impl Picture<'_> {
         page
     }
 
-    /// Both profiles at true scale.
+    /// Both profiles at true scale, and which part of them the other panels show.
     fn profiles(&self, page: &mut Canvas, room: [f64; 4]) {
         heading(page, room, "Profiles in the contact frame, true scale");
         let points = || self.rail.iter().chain(self.wheel).filter(|p| p[0].is_finite() && p[1].is_finite());
@@ -93,6 +99,12 @@ impl Picture<'_> {
             return;
         }
         let panel = Panel::true_scale(room, range(points().map(|p| p[0])), range(points().map(|p| p[1])));
+        let [from, to] = range(self.cells[0].iter().copied()).map(|xi| xi.clamp(panel.u[0], panel.u[1]));
+        let half = (to - from) / 2.0;
+        let corners =
+            [[from, -half], [to, -half], [to, half], [from, half]].map(|corner| panel.point(corner));
+        let window = corners.map(|[x, y]| [x, y.clamp(room[1], room[1] + room[3])]);
+        page.area(vec![window.to_vec()], WINDOW);
         page.lines(panel.curve(self.rail), RAIL);
         page.lines(panel.curve(self.wheel), WHEEL);
         // The frame's axes at C.
@@ -104,125 +116,133 @@ impl Picture<'_> {
         let foot = room[1] + room[3] + 28.0;
         legend(page, [room[0], foot], RAIL, "rail");
         legend(page, [room[0] + 80.0, foot], WHEEL, "wheel");
+        legend(page, [room[0] + 170.0, foot], Pen::new(WINDOW, 9.0), "grid");
         panel.scale_bar(page, [room[0] + room[2], foot], room[2] / 4.0);
     }
 
-    /// The gap over ξ with the heights stretched.
+    /// The gap in the midplane over a straightened rail, with the heights stretched.
     fn gap(&self, page: &mut Canvas, room: [f64; 4]) {
-        let grid = self.grid;
-        // The column nearest the midplane.
-        let near = |a: &f64, b: &f64| a.abs().total_cmp(&b.abs());
-        let (j, eta) = grid.eta().iter().enumerate().min_by(|a, b| near(a.1, b.1)).unwrap_or((0, &0.0));
-        let rail: Vec<[f64; 2]> = grid.xi().iter().zip(grid.rail_height()).map(|(&x, &z)| [x, z]).collect();
-        let lifted = |i: usize, by: f64| [rail[i][0], rail[i][1] + by];
-        let wheel: Vec<_> = (0..rail.len()).map(|i| lifted(i, grid.column(i)[j])).collect();
-        let raised: Vec<_> = (0..rail.len()).map(|i| lifted(i, self.header.approach)).collect();
-        let heights = || rail.iter().chain(&wheel).chain(&raised).map(|p| p[1]).filter(|z| z.is_finite());
-        let (u, [low, high]) = (range(grid.xi().iter().copied()), range(heights()));
-        let air = 0.05 * (high - low);
+        let approach = self.header.approach;
+        let known = self.midplane.iter().map(|p| p[1]).filter(|s| s.is_finite());
+        let [low, high] = range(known.chain([0.0, approach]));
+        let high = if approach > 0.0 { high.min(SHOWN_GAP * approach) } else { high };
+        let air = 0.08 * (high - low);
+        let u = range(self.cells[0].iter().copied());
         let panel = Panel { place: room, u, v: [low - air, high + air] };
         let [a, b] = panel.scale();
-        let stretch = b / a;
-        heading(
-            page,
-            room,
-            &format!("Gap at η = {} mm, heights × {}", number(*eta, 0.01), two_digits(stretch)),
-        );
-        page.lines(panel.curve(&raised), Pen { width: 1.0, ..RAIL }.dashed([5.0, 3.0]));
-        page.lines(panel.curve(&rail), RAIL);
-        page.lines(panel.curve(&wheel), WHEEL);
+        heading(page, room, &format!("Gap at η = 0 over the rail, heights × {}", significant(b / a, 2)));
+        page.area(self.overlap(&panel), INSIDE);
+        page.lines(panel.curve(&[[u[0], 0.0], [u[1], 0.0]]), RAIL);
+        page.lines(panel.curve(self.midplane), WHEEL);
         panel.frame(page);
-        panel.axes(page, ["ξ [mm]", "ζ [mm]"]);
-        let foot = room[1] + room[3] + 52.0;
-        legend(page, [room[0], foot], Pen { width: 1.0, ..RAIL }.dashed([5.0, 3.0]), "rail raised by δ");
+        panel.axes(page, ["ξ [mm]", "s [mm]"]);
+        if approach > 0.0 {
+            page.lines(panel.curve(&[[u[0], approach], [u[1], approach]]), APPROACH);
+            legend(page, [room[0], room[1] + room[3] + 52.0], APPROACH, "approach δ");
+        }
+    }
+
+    /// What lies between the wheel and the approach, stretch by stretch of the midplane.
+    fn overlap(&self, panel: &Panel) -> Vec<Vec<[f64; 2]>> {
+        let approach = self.header.approach;
+        let quad = |pair: &[[f64; 2]]| {
+            let ([[a, s], [b, t]], over) = ([pair[0], pair[1]], |s: f64| s <= approach);
+            let at = a + (b - a) * ((approach - s) / (t - s));
+            let corners = match (over(s), over(t)) {
+                (true, true) => vec![[a, s], [b, t], [b, approach], [a, approach]],
+                (true, false) => vec![[a, s], [at, approach], [a, approach]],
+                (false, true) => vec![[at, approach], [b, t], [b, approach]],
+                (false, false) => Vec::new(),
+            };
+            let drawn = corners.iter().flatten().all(|x| x.is_finite());
+            (drawn && !corners.is_empty()).then(|| corners.into_iter().map(|p| panel.point(p)).collect())
+        };
+        self.midplane.windows(2).filter_map(quad).collect()
     }
 
     /// Lines of equal separation over ξ–η, at one scale.
     fn contours(&self, page: &mut Canvas, room: [f64; 4]) {
         heading(page, room, "Separation s(ξ, η) before approach, true scale");
-        let grid = self.grid;
-        let (u, v) = (range(grid.xi().iter().copied()), range(grid.eta().iter().copied()));
+        let [u, v] = self.cells.map(|values| range(values.iter().copied()));
         let panel = Panel::true_scale(room, u, v);
-        let rings: Vec<Vec<[f64; 2]>> = self
-            .loops
-            .iter()
-            .map(|ring| {
-                ring.points.iter().chain(ring.points.first()).map(|p| panel.point([p[0], p[1]])).collect()
-            })
-            .collect();
+        let ring = |ring: &Loop| {
+            let closed = ring.points.iter().chain(ring.points.first());
+            closed.map(|p| panel.point([p[0], p[1]])).collect::<Vec<_>>()
+        };
+        let rings: Vec<Vec<[f64; 2]>> = self.loops.iter().map(ring).collect();
         page.area(rings.clone(), INSIDE);
-        let side = room[0] + room[2] + 40.0;
-        let mut row = room[1] + 20.0;
-        page.text([side, row], "s [mm]", SMALL + 1.0, Anchor::Start, INK);
-        for Level { name, pen, lines } in self.levels() {
-            page.lines(lines.iter().flat_map(|line| panel.curve(line)).collect(), pen);
-            row += 20.0;
-            legend(page, [side, row], pen, &name);
+        self.cells(page, &panel);
+        let levels = levels::levels(&self.separation, self.header.approach, &panel);
+        for level in &levels {
+            page.lines(level.lines.clone(), level.pen);
         }
+        levels::label(page, &levels, &rings, &panel, self.header.approach);
         page.lines(rings, BOUNDARY);
-        row += 32.0;
-        legend(page, [side, row], BOUNDARY, "boundary s = δ");
-        self.grid_ticks(page, &panel);
         panel.frame(page);
         panel.axes(page, ["ξ [mm]", "η [mm]  (rolling direction)"]);
-        page.text(
-            [side, row + 32.0],
-            format!("grid {} × {}", grid.xi().len(), grid.eta().len()),
-            SMALL,
-            Anchor::Start,
-            INK,
-        );
+        let side = room[0] + room[2] + 40.0;
+        self.key(page, [side, room[1] + 20.0], &levels);
         panel.scale_bar(page, [side + 130.0, room[1] + room[3]], 130.0);
     }
 
-    fn levels(&self) -> Vec<Level> {
-        let (xi, eta, values) = self.thinned();
-        let nodes = Nodes { xi: &xi, eta: &eta, values: &values };
-        let [low, high] = extremes(values.iter().copied().filter(|s| s.is_finite()));
-        if low >= high {
-            return Vec::new();
+    /// What the lines mean, beside them.
+    fn key(&self, page: &mut Canvas, [side, top]: [f64; 2], levels: &[levels::Level]) {
+        let mut row = top;
+        page.text([side, row], "s [mm]", SMALL + 1.0, Anchor::Start, INK);
+        for level in levels {
+            row += 20.0;
+            legend(page, [side, row], level.pen, &level.name);
         }
-        let step = round_below(1.5 * (high - low) / LEVELS);
-        // The lowest value itself is no line: it would be a point.
-        let (first, last) = ((low / step).floor() as i64 + 1, (high / step).floor() as i64);
-        let level = |k: i64| {
-            let value = k as f64 * step;
-            let pen = Pen::new(shade((value - low) / (high - low)), 1.2);
-            let pen = if k < 0 { pen.dashed([4.0, 3.0]) } else { pen };
-            Level { name: number(value, step), pen, lines: nodes.lines(value) }
-        };
-        (first..=last).map(level).filter(|level| !level.lines.is_empty()).collect()
+        row += 32.0;
+        if !self.loops.is_empty() {
+            legend(page, [side, row], BOUNDARY, "boundary s = δ");
+            row += 32.0;
+        }
+        let [xi, eta] = self.cells;
+        page.text([side, row], format!("grid {} × {} cells", xi.len(), eta.len()), SMALL, Anchor::Start, INK);
+        for (name, step) in ["Δξ", "Δη"].into_iter().zip(self.cells.map(even_step)) {
+            let Some(step) = step else { continue };
+            row += 18.0;
+            page.text(
+                [side, row],
+                format!("{name} = {} mm", significant(step, 3)),
+                SMALL,
+                Anchor::Start,
+                INK,
+            );
+        }
     }
 
-    /// The grid with so many rows and columns left out that at most [`DRAWN`] remain, the last always among them.
-    fn thinned(&self) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
-        let grid = self.grid;
-        let kept = |count: usize| {
-            let stride = count.div_ceil(DRAWN).max(1);
-            let last = (!(count - 1).is_multiple_of(stride)).then_some(count - 1);
-            (0..count).step_by(stride).chain(last).collect::<Vec<_>>()
-        };
-        let (rows, columns) = (kept(grid.xi().len()), kept(grid.eta().len()));
-        let values = rows.iter().flat_map(|&i| columns.iter().map(move |&j| grid.column(i)[j])).collect();
-        let pick = |values: &[f64], kept: &[usize]| kept.iter().map(|&k| values[k]).collect();
-        (pick(grid.xi(), &rows), pick(grid.eta(), &columns), values)
-    }
-
-    /// The grid's rows and columns as ticks inside the frame, every so many that they stay apart.
-    fn grid_ticks(&self, page: &mut Canvas, panel: &Panel) {
+    /// The borders of the solver's cells, half-way between their centres; of small ones the centres, as ticks inside
+    /// the frame, every so many that they stay apart.
+    fn cells(&self, page: &mut Canvas, panel: &Panel) {
         let [x, y, w, h] = panel.place;
-        let every = |count: usize, length: f64| (4.0 * count as f64 / length).ceil().max(1.0) as usize;
-        let (xi, eta) = (self.grid.xi(), self.grid.eta());
-        let columns = xi.iter().step_by(every(xi.len(), w)).map(|&xi| {
-            let px = panel.point([xi, 0.0])[0];
-            vec![[px, y + h], [px, y + h - 4.0]]
-        });
-        let rows = eta.iter().step_by(every(eta.len(), h)).map(|&eta| {
-            let py = panel.point([0.0, eta])[1];
-            vec![[x, py], [x + 4.0, py]]
-        });
-        page.lines(columns.chain(rows).collect(), THIN);
+        let [xi, eta] = self.cells;
+        let on_page = |xi: f64, eta: f64| panel.point([xi, eta]);
+        let sides = [w / xi.len() as f64, h / eta.len() as f64];
+        if sides.into_iter().all(|side| side >= SMALLEST_CELL) {
+            let between = |pair: &[f64]| f64::midpoint(pair[0], pair[1]);
+            let columns = xi.windows(2).map(|pair| on_page(between(pair), panel.v[0])[0]);
+            let rows = eta.windows(2).map(|pair| on_page(panel.u[0], between(pair))[1]);
+            let borders = columns.map(|px| vec![[px, y], [px, y + h]]);
+            page.lines(borders.chain(rows.map(|py| vec![[x, py], [x + w, py]])).collect(), CELL);
+            return;
+        }
+        let every = |side: f64| (4.0 / side).ceil().max(1.0) as usize;
+        let columns = xi.iter().step_by(every(sides[0])).map(|&xi| on_page(xi, panel.v[0])[0]);
+        let rows = eta.iter().step_by(every(sides[1])).map(|&eta| on_page(panel.u[0], eta)[1]);
+        let ticks = columns.map(|px| vec![[px, y + h], [px, y + h - 4.0]]);
+        page.lines(ticks.chain(rows.map(|py| vec![[x, py], [x + 4.0, py]])).collect(), THIN);
     }
+}
+
+/// The step of equally spaced values, as far as three digits show.
+fn even_step(values: &[f64]) -> Option<f64> {
+    if values.len() < 2 {
+        return None;
+    }
+    let [low, high] = extremes(values.windows(2).map(|pair| pair[1] - pair[0]));
+    (low > 0.0 && high - low <= 1e-4 * high).then_some(low)
 }
 
 fn heading(page: &mut Canvas, room: [f64; 4], text: &str) {
@@ -248,25 +268,11 @@ fn extremes(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
 }
 
-/// Two significant digits.
-fn two_digits(x: f64) -> String {
-    let step = 10f64.powf(x.log10().floor() - 1.0);
-    number((x / step).round() * step, step)
-}
-
-/// Colours of the contours, dark to light with t from 0 to 1 (five colours of viridis, without its palest).
-fn shade(t: f64) -> Colour {
-    const STOPS: [[f64; 3]; 5] = [
-        [68.0, 1.0, 84.0],
-        [59.0, 82.0, 139.0],
-        [33.0, 145.0, 140.0],
-        [94.0, 201.0, 98.0],
-        [190.0, 200.0, 40.0],
-    ];
-    let at = t.clamp(0.0, 1.0) * 4.0;
-    let k = (at as usize).min(3);
-    let mix = at - k as f64;
-    [0, 1, 2].map(|c| (STOPS[k][c] + mix * (STOPS[k + 1][c] - STOPS[k][c])).round() as u8)
+/// A positive number with so many significant digits, without zeros at its end.
+fn significant(x: f64, digits: i32) -> String {
+    let step = 10f64.powi(x.log10().floor() as i32 + 1 - digits);
+    let text = number((x / step).round() * step, step);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
 }
 
 fn cut(text: &str, longest: usize) -> String {

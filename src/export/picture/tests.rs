@@ -15,46 +15,79 @@ fn profiles() -> [Vec<[f64; 2]>; 2] {
     [arc(-36, 37, |x| -x * x / 600.0), arc(-60, 70, |x| x * x / 2000.0)]
 }
 
+/// A picture of a sample, with its own points for the contours.
+fn picture<'a>(
+    sample: &'a Sample,
+    header: &'a Header,
+    loops: &'a [Loop],
+    midplane: &'a [[f64; 2]],
+    profiles: &'a [Vec<[f64; 2]>; 2],
+) -> Picture<'a> {
+    Picture {
+        header,
+        cells: [&sample.xi, &sample.eta],
+        separation: Nodes { xi: &sample.xi, eta: &sample.eta, values: &sample.separation },
+        midplane,
+        loops,
+        rail: &profiles[0],
+        wheel: &profiles[1],
+    }
+}
+
+fn midplane(sample: &Sample) -> Vec<[f64; 2]> {
+    sample.xi.iter().map(|x| [*x, x * x / 600.0]).collect()
+}
+
 #[test]
 fn pictures_of_good_and_of_odd_data_are_drawn() {
-    let [rail, wheel] = profiles();
-    let header = Header { title: "a <b> & c".into(), ..header() };
-    for n in [[1, 1], [1, 5], [2, 2], [130, 170], [401, 301]] {
-        let sample = Sample::new(n[0], n[1]);
-        let grid = sample.fields();
-        for loops in [vec![], vec![ellipse(0.05)]] {
-            let picture = Picture { header: &header, grid: &grid, loops: &loops, rail: &rail, wheel: &wheel };
-            let svg = picture.svg();
-            assert!(svg.contains("a &lt;b&gt; &amp; c") && svg.ends_with("</svg>\n"));
-            assert!(!svg.contains("NaN") && !svg.contains("inf"), "{n:?}");
-            let bare = Picture { rail: &[], wheel: &[], ..picture }.svg();
-            assert!(!bare.contains("NaN") && !bare.contains("inf"));
+    let (profiles, none) = (profiles(), [Vec::new(), Vec::new()]);
+    for approach in [0.05, 0.0] {
+        let header = Header { title: "a <b> & c".into(), approach, ..header() };
+        for n in [[1, 1], [1, 5], [2, 2], [130, 170]] {
+            let sample = Sample::new(n[0], n[1]);
+            for loops in [vec![], vec![ellipse(0.05)]] {
+                for (profiles, midplane) in
+                    [(&profiles, midplane(&sample)), (&none, vec![[0.0, f64::NAN]; 3])]
+                {
+                    let svg = picture(&sample, &header, &loops, &midplane, profiles).svg();
+                    assert!(svg.contains("a &lt;b&gt; &amp; c") && svg.ends_with("</svg>\n"));
+                    assert!(!svg.contains("NaN") && !svg.contains("inf"), "{n:?}");
+                }
+            }
         }
     }
 }
 
 #[test]
 fn the_png_is_one() {
-    let [rail, wheel] = profiles();
-    let (header, sample, loops) = (header(), Sample::new(61, 81), [ellipse(0.005)]);
-    let grid = sample.fields();
-    let picture = Picture { header: &header, grid: &grid, loops: &loops, rail: &rail, wheel: &wheel };
-    let png = picture.png().unwrap();
+    let (header, sample, loops, profiles) = (header(), Sample::new(61, 81), [ellipse(0.005)], profiles());
+    let png = picture(&sample, &header, &loops, &midplane(&sample), &profiles).png().unwrap();
     assert!(png.starts_with(b"\x89PNG\r\n\x1a\n"));
 }
 
-/// Leaves a picture to be looked at, and says how long it took.
+/// The numbers in a picture's text elements of the size of contour labels.
+fn labels(svg: &str) -> Vec<String> {
+    let marked = svg.lines().filter(|line| line.contains("font-size=\"9.5\""));
+    marked.map(|line| line.split(['>', '<']).nth(2).unwrap().to_owned()).collect()
+}
+
 #[test]
-#[ignore = "to be looked at: target/picture.svg, .png"]
-fn picture_to_look_at() {
-    let [rail, wheel] = profiles();
-    let (header, sample, loops) = (header(), Sample::new(201, 201), [ellipse(0.05)]);
-    let grid = sample.fields();
-    let picture = Picture { header: &header, grid: &grid, loops: &loops, rail: &rail, wheel: &wheel };
-    let begun = std::time::Instant::now();
-    std::fs::write("target/picture.svg", picture.svg()).unwrap();
-    eprintln!("svg {:?}", begun.elapsed());
-    let begun = std::time::Instant::now();
-    std::fs::write("target/picture.png", picture.png().unwrap()).unwrap();
-    eprintln!("png {:?}", begun.elapsed());
+fn levels_follow_the_approach_and_have_their_numbers_on_the_lines() {
+    let (sample, profiles) = (Sample::new(121, 161), profiles());
+    let drawn = |approach: f64| {
+        let header = Header { approach, ..header() };
+        labels(&picture(&sample, &header, &[ellipse(approach)], &midplane(&sample), &profiles).svg())
+    };
+    // s reaches 0.13 mm at the corners.
+    assert!(drawn(0.05).iter().any(|label| label == "0.04"), "{:?}", drawn(0.05));
+    let fine = drawn(0.005);
+    assert!(fine.iter().all(|label| label.parse::<f64>().unwrap() <= 0.025), "{fine:?}");
+    assert!(!fine.is_empty());
+}
+
+#[test]
+fn numbers_have_their_digits() {
+    let found = [0.076_974_259_6, 0.05, 110.4, 63.0, 1e-9].map(|x| significant(x, 4));
+    assert_eq!(found, ["0.07697", "0.05", "110.4", "63", "0.000000001"]);
+    assert_eq!(significant(1234.5, 2), "1200");
 }

@@ -1,0 +1,113 @@
+//! Which lines of equal separation are drawn, and where their numbers stand.
+
+use super::canvas::{Anchor, Canvas, Colour, Pen};
+use super::contour::Nodes;
+use super::panel::{INK, Panel, number, round_below};
+use super::{INSIDE, SHOWN_LEVELS, extremes};
+
+/// Lines of equal separation aimed at.
+const LEVELS: f64 = 10.0;
+
+/// Size of the numbers on the lines \[page units\], and the part of it that a digit is wide.
+const SIZE: f64 = 9.5;
+const DIGIT: f64 = 0.64;
+
+/// Places on one level that are tried for its number.
+const TRIED: usize = 48;
+
+/// A number stands so far \[page units\] from other lines, or not at all: the key has it too.
+const CLEAR: f64 = 9.0;
+
+/// Numbers farther apart than this \[page units\] are not better for it.
+const APART: f64 = 60.0;
+
+/// The lines of one level.
+pub(super) struct Level {
+    pub(super) value: f64,
+    pub(super) name: String,
+    pub(super) pen: Pen,
+    /// On the page.
+    pub(super) lines: Vec<Vec<[f64; 2]>>,
+}
+
+/// Round levels up to a multiple of the approach, or up to the largest value without one.
+pub(super) fn levels(nodes: &Nodes<'_>, approach: f64, panel: &Panel) -> Vec<Level> {
+    let [low, high] = extremes(nodes.values.iter().copied().filter(|s| s.is_finite()));
+    let shown = SHOWN_LEVELS * approach;
+    let high = if approach > 0.0 && shown > low { high.min(shown) } else { high };
+    if low >= high {
+        return Vec::new();
+    }
+    let step = round_below(1.5 * (high - low) / LEVELS);
+    // The lowest value itself is no line: it would be a point.
+    let (first, last) = ((low / step).floor() as i64 + 1, (high / step).floor() as i64);
+    let level = |k: i64| {
+        let value = k as f64 * step;
+        let pen = Pen::new(shade((value - low) / (high - low)), 1.2);
+        let pen = if k < 0 { pen.dashed([4.0, 3.0]) } else { pen };
+        let lines = nodes.lines(value).iter().flat_map(|line| panel.curve(line)).collect();
+        Level { value, name: number(value, step), pen, lines }
+    };
+    (first..=last).map(level).filter(|level| !level.lines.is_empty()).collect()
+}
+
+/// Writes each level's number where its line is farthest from all others and from the numbers before.
+pub(super) fn label(
+    page: &mut Canvas,
+    levels: &[Level],
+    rings: &[Vec<[f64; 2]>],
+    panel: &Panel,
+    approach: f64,
+) {
+    let mut placed: Vec<[f64; 2]> = Vec::new();
+    for (number, level) in levels.iter().enumerate() {
+        let size = [SIZE * DIGIT * level.name.chars().count() as f64 + 3.0, SIZE + 1.0];
+        let neighbours = levels.iter().enumerate().filter(|(k, _)| k.abs_diff(number) == 1);
+        let others = neighbours.flat_map(|(_, other)| &other.lines).chain(rings);
+        let others: Vec<[f64; 2]> = others.flatten().copied().collect();
+        let points: Vec<[f64; 2]> = level.lines.iter().flatten().copied().collect();
+        let free = |at: [f64; 2]| {
+            let (clear, apart) = (nearest(at, &others), nearest(at, &placed));
+            (clear >= CLEAR && apart >= CLEAR + size[0])
+                .then(|| clear.min(3.0 * CLEAR) / CLEAR + apart.min(APART) / APART)
+        };
+        let tried =
+            points.iter().step_by(points.len().div_ceil(TRIED).max(1)).filter(|at| inside(panel, **at, size));
+        let rated = tried.filter_map(|at| Some((free(*at)?, *at)));
+        let Some((_, [x, y])) = rated.max_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
+        let ground = if level.value < approach { INSIDE } else { [255; 3] };
+        let corners = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]];
+        page.area(vec![corners.map(|[i, j]| [x + i * size[0], y + j * size[1]]).to_vec()], ground);
+        page.text([x, y + 0.36 * SIZE], level.name.clone(), SIZE, Anchor::Middle, INK);
+        placed.push([x, y]);
+    }
+}
+
+/// Whether a number of this size has its place in the panel.
+fn inside(panel: &Panel, at: [f64; 2], size: [f64; 2]) -> bool {
+    (0..2).all(|k| {
+        let (from, length) = (panel.place[k], panel.place[k + 2]);
+        at[k] - size[k] > from && at[k] + size[k] < from + length
+    })
+}
+
+/// Distance of the nearest of some points, +∞ without any.
+fn nearest([x, y]: [f64; 2], points: &[[f64; 2]]) -> f64 {
+    let squares = points.iter().map(|[u, v]| (u - x) * (u - x) + (v - y) * (v - y));
+    squares.fold(f64::INFINITY, f64::min).sqrt()
+}
+
+/// Colours of the contours, dark to light with t from 0 to 1 (five colours of viridis, without its palest).
+fn shade(t: f64) -> Colour {
+    const STOPS: [[f64; 3]; 5] = [
+        [68.0, 1.0, 84.0],
+        [59.0, 82.0, 139.0],
+        [33.0, 145.0, 140.0],
+        [94.0, 201.0, 98.0],
+        [190.0, 200.0, 40.0],
+    ];
+    let at = t.clamp(0.0, 1.0) * 4.0;
+    let k = (at as usize).min(3);
+    let mix = at - k as f64;
+    [0, 1, 2].map(|c| (STOPS[k][c] + mix * (STOPS[k + 1][c] - STOPS[k][c])).round() as u8)
+}
