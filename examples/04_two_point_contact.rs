@@ -3,20 +3,18 @@
 //!     cargo run --release --example 04_two_point_contact
 #![allow(clippy::print_stdout)]
 
+use wheelrail::contact::search::Selection;
 use wheelrail::contact::search::wheelset::{Position, Roll, WheelsetOnTrack};
-use wheelrail::contact::search::{ProfilePair, Selection};
-use wheelrail::placement::track::{RailDistance, Track, WheelDistance, Wheelset};
+use wheelrail::placement::Pair;
+use wheelrail::placement::track::{RailDistance, WheelDistance};
 use wheelrail::profile::standards;
 
 fn main() -> wheelrail::Result<()> {
     let norm = 40f64.hypot(1.0);
     let rail = standards::rail("60E1")?.rotated(40.0 / norm, 1.0 / norm);
-    let wheel = standards::wheel("S1002")?;
-    let system = WheelsetOnTrack {
-        pair: ProfilePair::new(&rail, &wheel, 460.0)?,
-        track: Track::new(&rail, RailDistance::Gauge { gauge: 1435.0, height: 14.0 })?,
-        wheelset: Wheelset::new(WheelDistance::BackToBack { distance: 1360.0, flange_back_x: -70.0 }, 460.0)?,
-    };
+    let pair = Pair::new(rail, standards::wheel("S1002")?, 460.0)?;
+    let backs = WheelDistance::BackToBack { distance: 1360.0, flange_back_x: -70.0 };
+    let system = WheelsetOnTrack::new(&pair, RailDistance::Gauge { gauge: 1435.0, height: 14.0 }, backs)?;
     let mut search = system.search();
     let selection = Selection { within: 0.02, apart: 2.0 };
     for step in 0..=80 {

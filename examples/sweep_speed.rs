@@ -4,10 +4,11 @@
 use std::time::Instant;
 
 use wheelrail::Result;
+use wheelrail::contact::search::Selection;
 use wheelrail::contact::search::wheelset::{Position, Roll, WheelsetOnTrack};
-use wheelrail::contact::search::{ProfilePair, Selection};
 use wheelrail::contact::sweep::{Conicity, Sweep};
-use wheelrail::placement::track::{RailDistance, Track, WheelDistance, Wheelset};
+use wheelrail::placement::Pair;
+use wheelrail::placement::track::{RailDistance, WheelDistance};
 use wheelrail::profile::standards;
 
 const POSITIONS: u32 = 20_000;
@@ -16,11 +17,8 @@ fn system(wheel: &str) -> Result<WheelsetOnTrack> {
     let norm = 40f64.hypot(1.0);
     let rail = standards::rail("60E1")?.rotated(40.0 / norm, norm.recip());
     let backs = WheelDistance::BackToBack { distance: 1360.0, flange_back_x: -70.0 };
-    Ok(WheelsetOnTrack {
-        pair: ProfilePair::new(&rail, &standards::wheel(wheel)?, 460.0)?,
-        track: Track::new(&rail, RailDistance::Gauge { gauge: 1435.0, height: 14.0 })?,
-        wheelset: Wheelset::new(backs, 460.0)?,
-    })
+    let pair = Pair::new(rail, standards::wheel(wheel)?, 460.0)?;
+    WheelsetOnTrack::new(&pair, RailDistance::Gauge { gauge: 1435.0, height: 14.0 }, backs)
 }
 
 /// Time on the processor where the system tells it, else on the wall: other work on the machine then does not count.

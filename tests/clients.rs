@@ -122,7 +122,7 @@ impl Scene {
         folder.write("interpen.csv", csv::interpen(&[row]).as_bytes()).unwrap();
         folder.write("boundary.vtp", &vtk::boundary(&header, &loops).unwrap()).unwrap();
         folder.write("patch.vtu", &vtk::patch(&header, &self.mesh()).unwrap()).unwrap();
-        let steps = [(0.0, "rail.vts".into()), (0.5, "wheel.vts".into())];
+        let steps = [(0.0, 0, "rail.vts".into()), (0.5, 0, "wheel.vts".into())];
         folder.write("surface.pvd", vtk::collection(&steps).as_bytes()).unwrap();
         folder.write("patch.svg", picture(&header, &grid, &loops).as_bytes()).unwrap();
         folder.write("view.py", VIEW_SCRIPT.as_bytes()).unwrap();

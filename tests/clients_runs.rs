@@ -21,7 +21,7 @@ const HERTZ: [&str; 3] = ["113932", "1139.19", "0.0904879"];
 /// Every format that a scene may ask for.
 const ALL_FORMATS: &str = "[output]\nformats = [\"vtk\", \"npy\", \"netcdf\", \"text\", \"conform\", \"countact\", \"contact\", \"png\"]\n";
 
-/// What may lie in a run's folder and is not of the run: `vtk::collection` is the library's, the other one is Python's.
+/// What may lie in a run's folder and is not of the run: the collection is a sweep's, the other one is Python's.
 const NOT_OF_A_RUN: [&str; 2] = ["surface.pvd", "__pycache__"];
 
 /// The page that holds the table of estimates, and programs in Python.
@@ -104,6 +104,27 @@ fn every_reader_reads_each_contact_of_a_wheelset() {
         assert_complete(&part);
         check_run(&part);
     }
+}
+
+#[test]
+fn pyvista_plays_the_patches_of_a_sweep() {
+    let dir = folder("swept");
+    let text = include_str!("../examples/scenes/wheelset.toml");
+    let run = run("swept_run", text);
+    let (scene, table) = (folder("swept.toml"), folder("swept.csv"));
+    std::fs::write(&scene, text).unwrap();
+    // The second one is the scene's own; the last one is off the track.
+    std::fs::write(&table, "lateral_mm,yaw_rad,roll_rad\n4,0.001,\n5,0.002,\n300,0,\n").unwrap();
+    let mut program = Command::new(env!("CARGO_BIN_EXE_wheelrail"));
+    program.arg("sweep").arg(&scene).arg("--positions").arg(&table).arg("--patches").arg(&dir);
+    let output = program.output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && said.contains("1 position without contact"), "{said}");
+    assert_eq!(
+        String::from_utf8_lossy(&output.stdout).lines().filter(|row| row.starts_with("5,")).count(),
+        2
+    );
+    check("check_sweep.py", &dir, &[run.to_str().unwrap(), "5"]);
 }
 
 #[test]

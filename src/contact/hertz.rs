@@ -2,10 +2,11 @@
 
 use serde::Serialize;
 
+use super::search::Contact;
 use crate::numerics::elliptic::complete;
 use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
-use crate::separation::approximate::quadratic_form;
+use crate::separation::approximate::{form, quadratic_form};
 
 /// Elastic constants of one body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,7 +51,17 @@ pub struct Ellipse {
 
 /// The principal curvatures of s at C.
 pub fn curvatures(placement: &Placement) -> Curvatures {
-    let [xx, xy, yy] = quadratic_form(placement);
+    principal(quadratic_form(placement))
+}
+
+/// The principal curvatures of s at a place that a search found; not numbers at a kink.
+pub fn curvatures_at(contact: &Contact) -> Curvatures {
+    let around = contact.wheel_angle.cos() / contact.rolling_radius;
+    principal(form([contact.rail_curvature, contact.wheel_curvature], around, contact.skew))
+}
+
+/// Of s = xx ξ² + xy ξη + yy η².
+fn principal([xx, xy, yy]: [f64; 3]) -> Curvatures {
     let (mean, half) = ((xx + yy) / 2.0, (xx - yy) / 2.0);
     let spread = half.hypot(xy / 2.0);
     // The smaller eigenvalue from the determinant, where the plain difference would cancel.
@@ -70,6 +81,12 @@ pub fn curvatures(placement: &Placement) -> Curvatures {
 }
 
 impl Curvatures {
+    /// The semi-axes \[mm\] of an ellipse of these curvatures nearest to ξ and to η.
+    pub fn along(&self, ellipse: &Ellipse) -> [f64; 2] {
+        let Ellipse { a_mm, b_mm, .. } = *ellipse;
+        if self.long_axis_rad.abs() < std::f64::consts::FRAC_PI_4 { [a_mm, b_mm] } else { [b_mm, a_mm] }
+    }
+
     /// k = b/a of the contact ellipse: A/B = k² D/(K − D), monotone in k. `None` where s is not convex at C
     /// (A ≤ 0), where Hertz has no ellipse.
     fn axis_ratio(&self) -> Option<f64> {

@@ -99,18 +99,15 @@ pub fn rolling_radius_difference(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::search::ProfilePair;
-    use crate::placement::track::{RailDistance, Track, WheelDistance, Wheelset};
+    use crate::placement::Pair;
+    use crate::placement::track::{RailDistance, WheelDistance};
     use crate::profile::standards;
 
     #[test]
     fn a_position_has_a_row_for_each_side_and_contact() -> Result<()> {
-        let rail = standards::rail("60E1")?;
-        let system = WheelsetOnTrack {
-            pair: ProfilePair::new(&rail, &standards::wheel("cone-1:20")?, 460.0)?,
-            track: Track::new(&rail, RailDistance::Spacing(1500.0))?,
-            wheelset: Wheelset::new(WheelDistance::Spacing(1500.0), 460.0)?,
-        };
+        let pair = Pair::new(standards::rail("60E1")?, standards::wheel("cone-1:20")?, 460.0)?;
+        let (rails, wheels) = (RailDistance::Spacing(1500.0), WheelDistance::Spacing(1500.0));
+        let system = WheelsetOnTrack::new(&pair, rails, wheels)?;
         let conicity = Conicity::new(&system, 5.0, Roll::Neglect)?;
         let mut sweep = Sweep::new(&system, Selection { within: 0.0, apart: 0.0 }, Some(conicity));
         let mut rows = Vec::new();

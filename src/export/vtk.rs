@@ -72,15 +72,13 @@ pub fn surface(header: &Header, mesh: &SurfaceMesh) -> Result<Vec<u8>> {
     unstructured(header, &mesh.points, &cells, Vec::new())
 }
 
-/// `surface.pvd`: files of a sweep on one time axis, which ParaView plays; `steps` are (time, path).
-pub fn collection(steps: &[(f64, String)]) -> String {
-    let sets: String = steps
-        .iter()
-        .map(|(time, path)| {
-            let path = path.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
-            format!("    <DataSet timestep=\"{time:?}\" group=\"\" part=\"0\" file=\"{path}\"/>\n")
-        })
-        .collect();
+/// `surface.pvd`: files of a sweep on one time axis, which ParaView plays; `steps` are (time, part, path), paths as
+/// the program makes them.
+pub fn collection(steps: &[(f64, usize, String)]) -> String {
+    let set = |(time, part, path): &(f64, usize, String)| {
+        format!("    <DataSet timestep=\"{time:?}\" group=\"\" part=\"{part}\" file=\"{path}\"/>\n")
+    };
+    let sets: String = steps.iter().map(set).collect();
     format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  \
          <Collection>\n{sets}  </Collection>\n</VTKFile>\n"

@@ -74,6 +74,16 @@ impl Run {
         Ok(Self { hash: scene::hash(&scene), scene, title, question, measured, parts })
     }
 
+    /// Puts all parts below a folder of many runs: the first as `name`, the others as `name-…`.
+    #[must_use]
+    pub fn filed_under(mut self, name: &str) -> Self {
+        for part in &mut self.parts {
+            part.folder =
+                if part.folder.is_empty() { name.to_string() } else { format!("{name}-{}", part.folder) };
+        }
+        self
+    }
+
     /// Writes all files that the scene asks for.
     ///
     /// # Errors
@@ -180,7 +190,10 @@ fn grids(scene: &Scene, place: &places::Placed) -> Result<Vec<[Vec<f64>; 2]>> {
 }
 
 /// The numerical question that a scene asks.
-fn question(scene: &Scene) -> Result<Question> {
+///
+/// # Errors
+/// Contradictory or impossible values, by key.
+pub fn question(scene: &Scene) -> Result<Question> {
     scene.check_patch()?;
     let patch = scene.patch.as_ref();
     let approach = patch

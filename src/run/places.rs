@@ -4,17 +4,13 @@ use serde::Serialize;
 
 use super::analysis::{ApproachBy, Contact, Question};
 use crate::contact::search::wheelset::WheelsetOnTrack;
-use crate::contact::search::{self, ProfilePair, Selection, Touch};
+use crate::contact::search::{self, ONE_CONTACT, ProfilePair, Selection, Touch};
 use crate::error::{Error, Result};
 use crate::placement::Pair;
-use crate::placement::track::{Track, Wheelset};
 use crate::scene::{Place, Standing};
 
 /// Vertical gap \[mm\] up to which places of contact are looked for: any approach that a rail survives.
 const SEARCHED_GAP: f64 = 1.0;
-
-/// Places closer than this \[mm\] are one contact: drawings' steps and kinks make groups within 0.1 mm.
-const ONE_CONTACT: f64 = 0.5;
 
 /// One contact to analyse.
 pub(super) struct Placed {
@@ -87,14 +83,13 @@ struct Side<'a> {
 /// All contacts of a scene, the first one first.
 pub(super) fn find(standing: &Standing, pair: &Pair, question: &Question) -> Result<Vec<Placed>> {
     let selection = Selection { within: SEARCHED_GAP.max(standing.within), apart: ONE_CONTACT };
-    let profiles = || ProfilePair::new(&pair.rail, &pair.wheel, pair.wheel_radius);
     match standing.place {
         Place::Points { rail_x, wheel_x } => {
             let contact = Contact::new(pair.placed(rail_x, wheel_x, 0.0)?, question)?;
             Ok(vec![Placed { folder: String::new(), found: None, contact }])
         }
         Place::Wheel(pose) => {
-            let profiles = profiles()?;
+            let profiles = ProfilePair::new(&pair.rail, &pair.wheel, pair.wheel_radius)?;
             let mut search = profiles.search();
             let Some(touch) = search.touch(&pose, &selection) else {
                 return Err(no_touch("contact: offset"));
@@ -109,11 +104,7 @@ pub(super) fn find(standing: &Standing, pair: &Pair, question: &Question) -> Res
             side.contacts(pair, question)
         }
         Place::Wheelset { rails, wheels, position } => {
-            let system = WheelsetOnTrack {
-                pair: profiles()?,
-                track: Track::new(&pair.rail, rails)?,
-                wheelset: Wheelset::new(wheels, pair.wheel_radius)?,
-            };
+            let system = WheelsetOnTrack::new(pair, rails, wheels)?;
             let mut search = system.search();
             let Some(touch) = search.touch(&position, &selection)? else {
                 return Err(no_touch("wheelset: lateral"));

@@ -70,6 +70,20 @@ impl Scene {
     }
 }
 
+impl Scene {
+    /// The same scene with its wheelset at another position; without a wheelset, the scene itself.
+    pub fn at(&self, position: &Position) -> Self {
+        let roll = match position.roll {
+            Roll::Solve => RollData::Word(RollWord::Solve),
+            Roll::Neglect => RollData::Word(RollWord::Neglect),
+            Roll::Fixed(angle) => RollData::Radians(angle),
+        };
+        let (lateral, yaw) = (position.lateral, position.yaw);
+        let moved = |wheelset: &WheelsetData| WheelsetData { lateral, yaw, roll, ..wheelset.clone() };
+        Self { wheelset: self.wheelset.as_ref().map(moved), ..self.clone() }
+    }
+}
+
 fn single(contact: &ContactData) -> Result<Standing> {
     let within = within(contact.within)?;
     let place = match (contact.rail_x, contact.wheel_x, contact.offset) {

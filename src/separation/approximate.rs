@@ -29,14 +29,19 @@ pub fn quadratic_form(placement: &Placement) -> [f64; 3] {
     }
     let curvature =
         |section: &crate::profile::Section| section.branch_at(0.0).map_or(f64::NAN, |b| b.curvature(0.0));
-    let (k_r, k_w) = (curvature(&placement.rail.section), curvature(&placement.wheel.section));
+    let curvatures = [curvature(&placement.rail.section), curvature(&placement.wheel.section)];
     let around = placement.wheel.section.frame.cos / placement.rolling_radius();
-    let (sin, cos) = placement.skew.sin_cos();
-    let along = if sin == 0.0 {
-        gap::relative_curvature(placement).unwrap_or(k_w - k_r)
-    } else {
-        k_w * cos * cos + around * sin * sin - k_r
-    };
+    let [along, mixed, across] = form(curvatures, around, placement.skew);
+    match gap::relative_curvature(placement) {
+        Some(relative) if placement.skew == 0.0 => [relative / 2.0, mixed, across],
+        _ => [along, mixed, across],
+    }
+}
+
+/// The same from the curvatures of rail and wheel profile, cosθ_W/ϱ \[1/mm\] and the skew χ \[rad\].
+pub fn form([k_r, k_w]: [f64; 2], around: f64, skew: f64) -> [f64; 3] {
+    let (sin, cos) = skew.sin_cos();
+    let along = k_w * cos * cos + around * sin * sin - k_r;
     [along / 2.0, (k_w - around) * sin * cos, (k_w * sin * sin + around * cos * cos) / 2.0]
 }
 

@@ -65,14 +65,17 @@ pub struct Pose {
     roll: f64,
 }
 
+/// Places closer than this \[mm\] are one contact: drawings' steps and kinks make groups within 0.1 mm.
+pub const ONE_CONTACT: f64 = 0.5;
+
 /// Which of the places of contact to report.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Selection {
     /// Vertical gap \[mm\] above first touch up to which near misses are reported; 0 for touching ones only. Typically
     /// 0.1.
     pub within: f64,
-    /// Of two places closer than this on both profiles \[mm along x\] only the lower is reported; 0 for all. Steps
-    /// and kinks of rounded drawings make groups of places within 0.1 mm.
+    /// Of two places closer than this on both profiles \[mm along x\] only the lower is reported; 0 for all. Usually
+    /// [`ONE_CONTACT`].
     pub apart: f64,
 }
 

@@ -2,6 +2,7 @@
 
 use super::wheelset::{Position, Roll, WheelsetOnTrack};
 use super::*;
+use crate::placement::Pair;
 use crate::placement::track::{RailDistance, Track, WheelDistance, Wheelset};
 use crate::profile::{Arc, Half, Polynomial, Segment, Shape, standards};
 
@@ -14,11 +15,9 @@ const ALL: Selection = Selection { within: 0.0, apart: 0.0 };
 fn manchester() -> Result<WheelsetOnTrack> {
     let norm = 40f64.hypot(1.0);
     let rail = standards::rail("UIC60")?.rotated(40.0 / norm, norm.recip());
-    Ok(WheelsetOnTrack {
-        pair: ProfilePair::new(&rail, &standards::wheel("S1002")?, 460.0)?,
-        track: Track::new(&rail, RailDistance::Gauge { gauge: 1435.0, height: 14.0 })?,
-        wheelset: Wheelset::new(WheelDistance::BackToBack { distance: 1360.0, flange_back_x: -70.0 }, 460.0)?,
-    })
+    let backs = WheelDistance::BackToBack { distance: 1360.0, flange_back_x: -70.0 };
+    let pair = Pair::new(rail, standards::wheel("S1002")?, 460.0)?;
+    WheelsetOnTrack::new(&pair, RailDistance::Gauge { gauge: 1435.0, height: 14.0 }, backs)
 }
 
 /// EN 15302 wheel A over rail A, inclined by 0.05 rad.

@@ -8,7 +8,8 @@ use super::locus::Attitude;
 use super::{ContactSearch, ProfilePair, Selection, Touch, small_angle};
 use crate::error::{Result, finite};
 use crate::numerics::roots::bracketed;
-use crate::placement::track::{Track, Wheelset};
+use crate::placement::Pair;
+use crate::placement::track::{RailDistance, Track, WheelDistance, Wheelset};
 
 /// How the roll of a wheelset is found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,6 +42,20 @@ pub struct WheelsetOnTrack {
     pub track: Track,
     /// Where the wheels are.
     pub wheelset: Wheelset,
+}
+
+impl WheelsetOnTrack {
+    /// A pair on both sides of a track.
+    ///
+    /// # Errors
+    /// As [`ProfilePair::new`], [`Track::new`] and [`Wheelset::new`].
+    pub fn new(pair: &Pair, rails: RailDistance, wheels: WheelDistance) -> Result<Self> {
+        Ok(Self {
+            pair: ProfilePair::new(&pair.rail, &pair.wheel, pair.wheel_radius)?,
+            track: Track::new(&pair.rail, rails)?,
+            wheelset: Wheelset::new(wheels, pair.wheel_radius)?,
+        })
+    }
 }
 
 /// Searches both sides; keeps its buffers, so that searching allocates nothing.

@@ -136,16 +136,13 @@ fn crossing(y: [f64; 2], force: [f64; 2], speed: [f64; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::search::ProfilePair;
-    use crate::placement::track::{RailDistance, Track, WheelDistance, Wheelset};
+    use crate::placement::Pair;
+    use crate::placement::track::{RailDistance, WheelDistance};
     use crate::profile::{Profile, standards};
 
     fn system(rail: &Profile, wheel: &str) -> Result<WheelsetOnTrack> {
-        Ok(WheelsetOnTrack {
-            pair: ProfilePair::new(rail, &standards::wheel(wheel)?, 460.0)?,
-            track: Track::new(rail, RailDistance::Spacing(1500.0))?,
-            wheelset: Wheelset::new(WheelDistance::Spacing(1500.0), 460.0)?,
-        })
+        let pair = Pair::new(rail.clone(), standards::wheel(wheel)?, 460.0)?;
+        WheelsetOnTrack::new(&pair, RailDistance::Spacing(1500.0), WheelDistance::Spacing(1500.0))
     }
 
     #[test]

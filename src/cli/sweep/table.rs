@@ -1,0 +1,182 @@
+//! The table of a sweep, block by block, resumable.
+
+use std::fmt::Write as _;
+use std::fs::File;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use rayon::prelude::*;
+
+use super::super::{Outcome, complain};
+use super::PATIENCE;
+use crate::contact::hertz::curvatures_at;
+use crate::contact::search::wheelset::{Position, WheelsetOnTrack};
+use crate::contact::search::{Contact, Selection};
+use crate::contact::sweep::{Conicity, Row, Sweep, TrackSide};
+use crate::error::{Error, Result};
+use crate::run::ApproachBy;
+
+/// Columns of the table: those of the design, then curvatures and Hertz's semi-axes.
+const HEADER: &str = "lateral_mm,yaw_rad,roll_rad,side,contact,z_mm,rail_x_mm,wheel_x_mm,y_mm,contact_angle_rad,\
+                      rolling_radius_mm,delta_r_mm,conicity,gap_mm,skew_rad,rail_curvature_per_mm,\
+                      wheel_curvature_per_mm,kink,hertz_xi_mm,hertz_eta_mm\n";
+
+/// Positions of one block: enough work for all threads, and little lost when a run is stopped.
+const BLOCK: usize = 8192;
+
+/// Positions that one thread takes at a time.
+const CHUNK: usize = 256;
+
+/// A sweep ready to run.
+pub(super) struct Table {
+    pub system: WheelsetOnTrack,
+    pub conicity: Option<Conicity>,
+    pub selection: Selection,
+    pub positions: Vec<Position>,
+    /// Approach or load, and E*, of the ellipses.
+    pub ellipses: Option<(ApproachBy, f64)>,
+}
+
+impl Table {
+    /// Hands the text of every block from position `first` on to `sink`, with the number of positions done.
+    pub(super) fn blocks(
+        &self,
+        first: usize,
+        mut sink: impl FnMut(usize, &str) -> Result<()>,
+    ) -> Result<Outcome> {
+        let (start, mut told) = (Instant::now(), Instant::now());
+        if first == 0 {
+            sink(0, HEADER)?;
+        }
+        let mut done = first;
+        for block in self.positions[first.min(self.positions.len())..].chunks(BLOCK) {
+            let texts = block.par_chunks(CHUNK).map(|chunk| self.rows(chunk)).collect::<Result<Vec<_>>>()?;
+            done += block.len();
+            sink(done, &texts.concat())?;
+            if told.elapsed() > PATIENCE {
+                told = Instant::now();
+                let rate = (done - first) as f64 / start.elapsed().as_secs_f64();
+                complain(&format!("sweep: {done} of {} positions, {rate:.0} a second", self.positions.len()));
+            }
+        }
+        Ok(Outcome::Done)
+    }
+
+    /// The rows of a few positions as text.
+    fn rows(&self, positions: &[Position]) -> Result<String> {
+        let mut sweep = Sweep::new(&self.system, self.selection, self.conicity.clone());
+        let (mut rows, mut text) = (Vec::new(), String::new());
+        for position in positions {
+            rows.clear();
+            sweep.position(position, &mut rows)?;
+            for row in &rows {
+                append(&mut text, row, self.ellipses);
+            }
+        }
+        Ok(text)
+    }
+
+    /// Writes a file block by block, going on where a stopped sweep of the same input left off; the file has its
+    /// name only when it is complete.
+    pub(super) fn write(&self, out: &Path) -> Result<Outcome> {
+        let partial = beside(out, "partial");
+        let journal = beside(out, "progress");
+        let broken = |error: std::io::Error| {
+            Error::new(out.display().to_string(), error.to_string(), "a file written whole", "check the disk")
+        };
+        let key = self.key();
+        let resumed = resume(&journal, &partial, &key);
+        let (done, length) = resumed.unwrap_or((0, 0));
+        if done > 0 {
+            complain(&format!("sweep: going on after {done} positions of an earlier run"));
+        }
+        let mut file =
+            File::options().create(true).write(true).truncate(false).open(&partial).map_err(broken)?;
+        file.set_len(length).map_err(broken)?;
+        let mut length = length;
+        std::io::Seek::seek(&mut file, std::io::SeekFrom::Start(length)).map_err(broken)?;
+        let outcome = self.blocks(done, |done, text| {
+            file.write_all(text.as_bytes()).map_err(broken)?;
+            length += text.len() as u64;
+            std::fs::write(&journal, format!("{key} {done} {length}")).map_err(broken)
+        })?;
+        std::fs::rename(&partial, out).map_err(broken)?;
+        std::fs::remove_file(&journal).map_err(broken)?;
+        Ok(outcome)
+    }
+
+    /// What a partial file has to have been made from.
+    fn key(&self) -> String {
+        use sha2::{Digest, Sha256};
+        let input = format!(
+            "{} {:?} {:?} {:?} {:?}",
+            env!("CARGO_PKG_VERSION"),
+            self.system,
+            self.selection,
+            self.positions,
+            self.ellipses
+        );
+        Sha256::digest(input).iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+}
+
+/// `.NAME.suffix` in the same folder.
+fn beside(out: &Path, suffix: &str) -> PathBuf {
+    let name = out.file_name().unwrap_or_default().to_string_lossy();
+    out.with_file_name(format!(".{name}.{suffix}"))
+}
+
+/// Positions and bytes that an earlier run of the same input has safely written.
+fn resume(journal: &Path, partial: &Path, key: &str) -> Option<(usize, u64)> {
+    let text = std::fs::read_to_string(journal).ok()?;
+    let mut words = text.split(' ');
+    let (same, done, length) =
+        (words.next()? == key, words.next()?.parse().ok()?, words.next()?.parse().ok()?);
+    let there = partial.metadata().ok()?.len();
+    (same && done > 0 && there >= length).then_some((done, length))
+}
+
+fn append(out: &mut String, row: &Row, ellipses: Option<(ApproachBy, f64)>) {
+    let c = &row.contact;
+    let side = match row.side {
+        TrackSide::Left => "left",
+        TrackSide::Right => "right",
+    };
+    let conicity = if row.conicity.is_nan() { String::new() } else { row.conicity.to_string() };
+    let _ = writeln!(
+        out,
+        "{},{},{},{side},{},{},{},{},{},{},{},{},{conicity},{},{},{},{},{},{}",
+        row.lateral,
+        row.yaw,
+        row.roll,
+        row.number + 1,
+        row.z,
+        c.rail_x,
+        c.wheel_x,
+        c.y,
+        c.contact_angle,
+        c.rolling_radius,
+        row.delta_r,
+        c.gap,
+        c.skew,
+        c.rail_curvature,
+        c.wheel_curvature,
+        u8::from(c.kink()),
+        semi_axes(c, ellipses)
+    );
+}
+
+/// The two last cells: empty without approach or load, at kinks, and where s is not convex.
+fn semi_axes(contact: &Contact, ellipses: Option<(ApproachBy, f64)>) -> String {
+    let ellipse = |(by, modulus)| {
+        let curvatures = curvatures_at(contact);
+        let ellipse = match by {
+            ApproachBy::Given(approach) => curvatures.under_approach(approach, modulus),
+            ApproachBy::Load(load) => curvatures.under_load(load, modulus),
+        };
+        let [xi, eta] = curvatures.along(&ellipse?);
+        Some(format!("{xi},{eta}"))
+    };
+    ellipses.and_then(ellipse).unwrap_or_else(|| ",".into())
+}
