@@ -21,7 +21,7 @@ for position in touching:
     checks(f"{position['lateral_mm']} mm: a part for every folder", len(parts) == len(position["folders"]))
     for name, part in zip(position["folders"], parts):
         values = numpy.load(folder / name / "separation.npy")
-        found = part.point_data["separation"].reshape(values.shape[::-1]).T
+        found = numpy.asarray(part.point_data["separation"]).reshape(values.shape)
         checks(f"{name}: the array's separation", numpy.array_equal(found, values, equal_nan=True))
 there = next(position for position in touching if position["lateral_mm"] == time)
 for name, part in zip(there["folders"], ["", "left"]):
