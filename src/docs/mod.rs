@@ -1,4 +1,4 @@
-//! Background: conventions, the numerics with their derivation, the Report's errata, clients, references.
+//! Background: conventions, the numerics with their derivation, the Report's errata, sweeps, clients, references.
 
 #[doc = include_str!("conventions.md")]
 pub mod conventions {}
@@ -8,6 +8,9 @@ pub mod numerics {}
 
 #[doc = include_str!("errata.md")]
 pub mod errata {}
+
+#[doc = include_str!("sweeps.md")]
+pub mod sweeps {}
 
 #[doc = include_str!("clients.md")]
 pub mod clients {}
