@@ -212,7 +212,8 @@ fn resolve(dir: &Path) -> Result<PathBuf> {
     if let Ok(real) = dir.canonicalize() {
         return Ok(real);
     }
-    if dir.symlink_metadata().is_ok() {
+    // What another run has put there since is no link.
+    if dir.symlink_metadata().is_ok_and(|found| found.is_symlink()) {
         return Err(bad(
             dir,
             "a broken symbolic link",

@@ -1,4 +1,4 @@
-//! Writers: plain arrays in, bytes out. Nothing here computes geometry, and only [`folder`] touches the disk.
+//! Writers: plain arrays in, bytes out. Nothing here computes geometry, and only [`folder`] and [`write_file`] touch the disk.
 //!
 //! Large files (grids) are written to any [`std::io::Write`] in one pass and in blocks, so that a grid is never
 //! held twice; small ones are returned as bytes. Every file is in the contact frame of Report Sec. 4 in mm;
@@ -7,6 +7,7 @@
 mod block;
 pub mod csv;
 pub mod deck;
+mod file;
 pub mod folder;
 pub mod legacy;
 mod model;
@@ -16,6 +17,7 @@ pub mod picture;
 pub mod vtk;
 pub mod vts;
 
+pub use file::write_file;
 pub use folder::{Folder, FolderPart, Names};
 pub use model::{Frame, GridFields, Header, Interval, Loop, QuadMesh, SurfaceMesh};
 

@@ -36,6 +36,8 @@ pub struct Question {
     pub tolerance: f64,
     /// A method of the ladder, or `None` for the cheapest within the tolerance.
     pub method: Option<Method>,
+    /// Parts of the patch closer than this are one \[mm\].
+    pub merge: f64,
 }
 
 /// Seconds spent in the parts of an analysis.

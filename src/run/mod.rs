@@ -155,17 +155,23 @@ fn prefix(folder: &str) -> String {
 /// their own.
 fn grids(scene: &Scene, place: &places::Placed) -> Result<Vec<[Vec<f64>; 2]>> {
     let (xi, eta) = (scene.axis("xi")?, scene.axis("eta")?);
-    let spacing = scene.spacing()?;
+    let (spacing, merge) = (scene.spacing()?, scene.merge()?);
     if let (Some(xi), Some(eta)) = (&xi, &eta) {
-        if spacing.is_some() {
-            let expected = "`spacing` only with automatic axes";
-            return Err(Error::new("grid: spacing", "a step beside given axes", expected, "remove it"));
+        let set = [("spacing", spacing.is_some()), ("merge", scene.grid.merge.is_some())];
+        if let Some((key, _)) = set.into_iter().find(|(_, set)| *set) {
+            let expected = format!("`{key}` only with automatic axes");
+            return Err(Error::new(
+                format!("grid: {key}"),
+                "a value beside given axes",
+                expected,
+                "remove it",
+            ));
         }
         check_points("grid", xi.len() as f64 * eta.len() as f64)?;
         return Ok(vec![[xi.clone(), eta.clone()]]);
     }
     let mut boxes = match place.contact.approach {
-        Some((approach, _)) => axes::boxes(&place.contact.placement, approach, 0.0),
+        Some((approach, _)) => axes::boxes(&place.contact.placement, approach, merge),
         None => Vec::new(),
     };
     if boxes.is_empty() {
@@ -203,5 +209,6 @@ pub fn question(scene: &Scene) -> Result<Question> {
         material: scene.elastic()?,
         tolerance: scene.tolerance()?,
         method: scene.grid.method,
+        merge: scene.merge()?,
     })
 }

@@ -143,7 +143,7 @@ impl Side<'_> {
                 Some(first) => {
                     let approach = approach_left(first, place);
                     if approach.is_some_and(|approach| approach <= 0.0)
-                        || placed.iter().any(|p| p.holds(place))
+                        || placed.iter().any(|p| p.holds(place, question.merge))
                     {
                         missed.push(PlaceOfContact::from(place));
                         continue;
@@ -186,13 +186,13 @@ fn approach_left(first: &Placed, place: &search::Contact) -> Option<f64> {
 }
 
 impl Placed {
-    /// Whether the part of this contact's patch around C holds another place.
-    fn holds(&self, place: &search::Contact) -> bool {
+    /// Whether the part of this contact's patch around C, with what is merged into it, holds another place.
+    fn holds(&self, place: &search::Contact, merge: f64) -> bool {
         let Some((approach, _)) = self.contact.approach else { return false };
         let placement = &self.contact.placement;
         let frame = placement.rail.section.frame;
         let xi = (place.rail_x - frame.x) * frame.cos + (place.rail_z - frame.z) * frame.sin;
-        let boxes = crate::mesh::axes::boxes(placement, approach, 0.0);
+        let boxes = crate::mesh::axes::boxes(placement, approach, merge);
         boxes.first().is_some_and(|window| window.xi[0] <= xi && xi <= window.xi[1])
     }
 }

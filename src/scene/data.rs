@@ -289,6 +289,9 @@ pub struct GridData {
     /// Step of automatic axes, mm: one for both, or [Δξ, Δη]. Without it 16 cells over the patch's short axis.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spacing: Option<Spacing>,
+    /// Parts of the patch closer than this, mm, share one automatic grid; without it each has its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub merge: Option<f64>,
     /// Absolute tolerance on s, mm.
     pub tolerance: f64,
     /// A method of the accuracy ladder; "auto" takes the cheapest within the tolerance.
@@ -303,6 +306,7 @@ impl Default for GridData {
             xi: AxisData::Word(Auto::Auto),
             eta: AxisData::Word(Auto::Auto),
             spacing: None,
+            merge: None,
             tolerance: 1e-12,
             method: None,
         }

@@ -139,6 +139,19 @@ impl Scene {
         Ok(Some(values))
     }
 
+    /// Distance below which parts of the patch share a grid \[mm\]; 0, which merges none, without the key.
+    ///
+    /// # Errors
+    /// A negative distance.
+    pub fn merge(&self) -> Result<f64> {
+        let merge = finite("grid: merge", self.grid.merge.unwrap_or(0.0))?;
+        if merge < 0.0 {
+            let expected = "a distance of 0 mm or more";
+            return Err(Error::new("grid: merge", merge.to_string(), expected, "correct the sign"));
+        }
+        Ok(merge)
+    }
+
     /// \[Δξ, Δη\] of automatic axes.
     ///
     /// # Errors

@@ -12,7 +12,8 @@ use std::path::{Path, PathBuf};
 use clap::Subcommand;
 
 use super::{Outcome, print};
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::export::write_file;
 use crate::profile::standards;
 use source::SourceArguments;
 
@@ -62,9 +63,6 @@ fn list() -> Result<String> {
 /// Writes text to a file, or to stdout.
 fn put(text: &str, out: Option<&Path>) -> Result<Outcome> {
     let Some(path) = out else { return print(text) };
-    std::fs::write(path, text).map_err(|error| {
-        let place = path.display().to_string();
-        Error::new(place, error.to_string(), "a file that can be written", "check the path")
-    })?;
+    write_file(path, text.as_bytes())?;
     Ok(Outcome::Done)
 }

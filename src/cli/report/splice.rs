@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
+use crate::export::write_file;
 
 /// Lines between which everything is generated.
 const BEGIN: &str = "<!-- report:begin -->";
@@ -29,14 +30,7 @@ impl Target {
     /// # Errors
     /// As [`Target::open`]; the folder cannot be written.
     pub(super) fn replace(&self, generated: &str) -> Result<()> {
-        let text = self.spliced(generated)?;
-        let mut name = self.path.file_name().unwrap_or_default().to_os_string();
-        name.push(".wheelrail-tmp");
-        let temporary = self.path.with_file_name(name);
-        std::fs::write(&temporary, text).and_then(|()| std::fs::rename(&temporary, &self.path)).map_err(|e| {
-            let expected = "a file that can be replaced";
-            Error::new(self.path.display().to_string(), e.to_string(), expected, "check its permissions")
-        })
+        write_file(&self.path, self.spliced(generated)?.as_bytes())
     }
 
     fn spliced(&self, generated: &str) -> Result<String> {

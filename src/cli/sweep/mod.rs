@@ -1,6 +1,7 @@
 //! `wheelrail sweep`: the contact geometry of a wheelset at many positions, as CSV, and with files of
 //! every patch.
 
+mod curves;
 mod patches;
 mod positions;
 mod table;
@@ -14,6 +15,7 @@ use crate::contact::search::wheelset::{Position, Roll, WheelsetOnTrack};
 use crate::contact::search::{ONE_CONTACT, Selection};
 use crate::contact::sweep::Conicity;
 use crate::error::{Error, Result};
+use crate::export::write_file;
 use crate::run::question;
 use crate::scene::{self, Place, Scene};
 use positions::{lateral_range, read_positions};
@@ -39,6 +41,9 @@ pub(super) struct SweepArguments {
     /// Besides, for every position the files that `run` writes, as subfolders, and `surface.pvd` over all of them.
     #[arg(long, value_name = "DIR")]
     patches: Option<PathBuf>,
+    /// Besides, the usual curves over the lateral displacement, as SVG, or as PNG where the name ends so.
+    #[arg(long, value_name = "FILE.svg")]
+    picture: Option<PathBuf>,
 }
 
 /// Runs the sweep.
@@ -70,6 +75,13 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     let table = Table { system, conicity, selection, positions, ellipses };
     if let Some(dir) = &arguments.patches {
         patches::write(dir, &scene, &arguments.scene, &table)?;
+    }
+    if let Some(file) = &arguments.picture {
+        let name = arguments.scene.file_stem().unwrap_or_default().to_string_lossy();
+        let title = scene.title.as_deref().unwrap_or(&name);
+        let picture = curves::picture(&table, title)?;
+        let png = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
+        write_file(file, &if png { picture.png()? } else { picture.svg().into_bytes() })?;
     }
     match &arguments.out {
         None => table.blocks(0, |_, text| print(text).map(|_| ())),

@@ -4,6 +4,7 @@
 
 mod canvas;
 mod contour;
+pub mod curves;
 mod levels;
 mod panel;
 mod png;

@@ -1,0 +1,73 @@
+//! The usual curves of a sweep as a picture.
+
+use super::table::Table;
+use crate::contact::search::wheelset::Position;
+use crate::contact::sweep::{Row, Sweep, TrackSide};
+use crate::error::{Error, Result};
+use crate::export::picture::curves::{Curve, CurvesPicture, Quantity};
+
+/// At most so many positions are drawn, evenly chosen: more than a page has pixels.
+const MOST_DRAWN: usize = 2000;
+
+/// A quantity of a row.
+type Value = fn(&Row) -> f64;
+
+/// Quantities of a position, as its first row has them.
+const OF_POSITION: [(&str, &str, Value); 3] = [
+    ("Rolling radius difference, right less left", "Δr [mm]", |row| row.delta_r),
+    ("Equivalent conicity at this amplitude", "tan γ [1]", |row| row.conicity),
+    ("Roll", "roll [mrad]", |row| 1e3 * row.roll),
+];
+
+/// Quantities of each side's lowest contact.
+const OF_SIDE: [(&str, &str, Value); 3] = [
+    ("Contact angle", "θ [°]", |row| row.contact.contact_angle.to_degrees()),
+    ("Contact on the rail", "x on the rail [mm]", |row| row.contact.rail_x),
+    ("Contact on the wheel", "x on the wheel [mm]", |row| row.contact.wheel_x),
+];
+
+/// The picture of a table's positions, whose lateral displacements have to ascend.
+pub(super) fn picture(table: &Table, title: &str) -> Result<CurvesPicture> {
+    let all = &table.positions;
+    if !all.windows(2).all(|pair| pair[0].lateral < pair[1].lateral) {
+        let expected = "lateral displacements that grow from position to position";
+        return Err(Error::new(
+            "--picture",
+            "another order",
+            expected,
+            "sort the positions, or use --lateral",
+        ));
+    }
+    let stride = all.len().div_ceil(MOST_DRAWN).max(1);
+    let drawn: Vec<&Position> = all.iter().step_by(stride).collect();
+    let mut sweep = Sweep::new(&table.system, table.selection, table.conicity.clone());
+    let mut found: Vec<(f64, Vec<Row>)> = Vec::with_capacity(drawn.len());
+    for position in drawn {
+        let mut rows = Vec::new();
+        sweep.position(position, &mut rows)?;
+        rows.retain(|row| row.number == 0);
+        found.push((position.lateral, rows));
+    }
+    let curve = |name: &str, side: TrackSide, value: Value| {
+        let of = |rows: &[Row]| rows.iter().find(|row| row.side == side).map_or(f64::NAN, value);
+        Curve {
+            name: name.into(),
+            points: found.iter().map(|(lateral, rows)| [*lateral, of(rows)]).collect(),
+        }
+    };
+    let quantity =
+        |(title, axis): (&str, &str), curves| Quantity { title: title.into(), axis: axis.into(), curves };
+    let of_position = OF_POSITION
+        .map(|(title, axis, value)| quantity((title, axis), vec![curve("", TrackSide::Right, value)]));
+    let of_side = OF_SIDE.map(|(title, axis, value)| {
+        let sides = [("left", TrackSide::Left), ("right", TrackSide::Right)];
+        quantity((title, axis), sides.map(|(name, side)| curve(name, side, value)).to_vec())
+    });
+    let count = |n: usize| format!("{n} position{}", if n == 1 { "" } else { "s" });
+    Ok(CurvesPicture {
+        title: title.into(),
+        about: format!("{}; lowest contact of each side, in its own profile axes", count(all.len())),
+        abscissa: "lateral displacement [mm]".into(),
+        quantities: of_position.into_iter().chain(of_side).collect(),
+    })
+}

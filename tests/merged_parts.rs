@@ -1,0 +1,39 @@
+//! `[grid] merge`: parts of a patch with a grid each, or with one together.
+#![allow(clippy::expect_used, reason = "a test")]
+
+use std::path::Path;
+use wheelrail::run::Run;
+use wheelrail::scene;
+
+/// Two crowns 40 mm apart under a cylinder: z = −0.16 + 8e-4 x² − 1e-6 x⁴ is largest at x = ±20.
+fn run(grid: &str) -> wheelrail::Result<Run> {
+    let text = format!(
+        "[rail]\nsegments = [{{ polynomial = {{ x = [-35.0, 35.0], coefficients = [-0.16, 0.0, 8e-4, 0.0, -1e-6] }} }}]\n\
+         [wheel]\nsegments = [{{ line = {{ from = [-60.0, 0.0], to = [60.0, 0.0] }} }}]\nradius = 460.0\n\
+         [contact]\nrail_x = 20.0\nwheel_x = 20.0\n[patch]\napproach = 0.02\n[grid]\n{grid}\n"
+    );
+    Run::new(scene::parse(&text, false)?, Path::new("."), "crowns")
+}
+
+#[test]
+fn parts_have_a_grid_each_unless_they_are_merged() {
+    for (grid, folders) in
+        [("", vec!["", "patch-2"]), ("merge = 5.0", vec!["", "patch-2"]), ("merge = 60.0", vec![""])]
+    {
+        let run = run(grid).expect("a patch");
+        assert_eq!(run.parts.iter().map(|part| part.folder.as_str()).collect::<Vec<_>>(), folders, "{grid}");
+        let components =
+            run.parts.iter().map(|part| part.analysis.patch.as_ref().map_or(0, |p| p.components.len()));
+        assert_eq!(components.sum::<usize>(), 2, "{grid}");
+        assert!(run.warnings().is_empty(), "{:?}", run.warnings());
+    }
+}
+
+#[test]
+fn a_distance_that_means_nothing_is_refused() {
+    let axes = "xi = { from = -1.0, to = 1.0, n = 3 }\neta = { from = -1.0, to = 1.0, n = 3 }\n";
+    for grid in ["merge = -1.0".to_string(), format!("{axes}merge = 1.0")] {
+        let error = run(&grid).expect_err("bad input").to_string();
+        assert!(error.contains("grid: merge"), "{error}");
+    }
+}
