@@ -27,6 +27,9 @@ struct ProfileFile {
     segments: Vec<SegmentData>,
 }
 
+/// Largest ξ and η \[mm\]: a thousand kilometres, whose squares are far from overflowing.
+const FARTHEST: f64 = 1e9;
+
 impl Scene {
     /// The rail and wheel of the scene, turned and shifted as it says; files are relative to `folder`.
     ///
@@ -134,7 +137,10 @@ impl Scene {
             return Err(Error::new(place, "another order", expected, "sort the values"));
         }
         for &value in &values {
-            finite(&place, value)?;
+            if finite(&place, value)?.abs() > FARTHEST {
+                let expected = format!("values within ±{FARTHEST:e} mm");
+                return Err(Error::new(place, value.to_string(), expected, "check the unit"));
+            }
         }
         Ok(Some(values))
     }

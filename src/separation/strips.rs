@@ -215,23 +215,25 @@ impl Samples {
         let mut least = [0; MOST_SPANS];
         // Every column is to have as many coefficients as the one that needs most: a second round, at times a third.
         loop {
-            spectral.whole_column(xi(0), &least, &mut column)?;
-            let mut samples = Self::shaped(&column, n)?;
-            let mut needed = least;
+            let (mut samples, mut needed): (Option<Self>, _) = (None, least);
+            let mut uniform = true;
             for k in 0..n {
                 spectral.whole_column(xi(k), &least, &mut column)?;
-                let alike = column.len() == samples.spans.len() && column[0].contact == samples.contact;
-                if !alike {
+                let samples = match &mut samples {
+                    Some(samples) => samples,
+                    none => none.insert(Self::shaped(&column, n)?),
+                };
+                if column.len() != samples.spans.len() || column[0].contact != samples.contact {
                     return None;
                 }
-                for (needed, fit) in needed.iter_mut().zip(&column) {
+                for ((needed, fit), (_, n)) in needed.iter_mut().zip(&column).zip(&samples.spans) {
                     *needed = fit.polynomial.n.max(*needed);
+                    uniform &= fit.polynomial.n == *n;
                 }
                 samples.append(xi(k), &column);
             }
-            let same = samples.spans.iter().zip(&needed).all(|((_, n), needed)| n == needed);
-            if same {
-                return samples.values.iter().all(|v| v.is_finite()).then_some(samples);
+            if uniform {
+                return samples.filter(|samples| samples.values.iter().all(|v| v.is_finite()));
             }
             least = needed;
         }
