@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use wheelrail::run::Run;
 use wheelrail::scene::{self, Scene};
 
-/// Scenes of one ordinary test run; `WHEELRAIL_HOSTILE_SCENES=1000000` is the long one (about 10 minutes).
+/// Scenes of one ordinary test run; `WHEELRAIL_HOSTILE_SCENES=1000000` is the long one (five minutes).
 const SCENES: u64 = 20_000;
 
 /// Seed of the mutations, printed with every failure.

@@ -401,8 +401,8 @@ fn method(m: &Measurements) -> Section {
         "How it was measured, and what favours whom",
         format!(
             "- Error: the method's values at the points of {scenes} reference scenes against `reference.py`'s \
-             60-digit values; on the timed grids spectral columns are the same polynomials, since they reach as \
-             far. There are 15 to 50 points a scene, so that a 99 % quantile is close to the largest. \
+             60-digit values, on grids that reach as far and have as many columns as the timed ones, so that spectral \
+             columns are the same polynomials. There are 15 to 50 points a scene, so that a 99 % quantile is close to the largest. \
              Relative errors leave out C itself.\n\
              - Time: processor time of the one thread, which leaves out what other processes took but not what \
              they did to caches and memory; the shortest of at least three runs (of one, where a run takes seconds). \
