@@ -2,17 +2,9 @@
 //!
 //! Track axes: x to the right, y forward, z up, right-handed; x = 0 in the middle of the track, z = 0 at the top of
 //! rail. The right side is described; the left side is its mirror image under x → −x.
-//!
-//! ```text
-//!             z ↑                        axle                yaw ψ about z, applied first:  > 0 moves the right-hand
-//!               │   ┌──────────────────────┼─────────────────────────┐     wheel forward
-//!               │   │                      c                         │   roll about y, applied second: > 0 lowers
-//!        y ⊙────┼───┼──────── spacing / 2 ─┼──────── spacing / 2 ────┤     the right-hand wheel
-//!               x → │ left wheel           │             right wheel │
-//!                   ╨                      │                         ╨ ← profile origin: R below the axle
-//!                 ▁▂█▂▁                    │                       ▁▂█▂▁
-//!                      │←───────────── gauge ─────────────→│ at most gauge_height below the top of rail
-//! ```
+//! Yaw ψ about z is applied first: > 0 moves the right-hand wheel forward. Roll about y is applied second: > 0 lowers
+//! the right-hand wheel. The drawing of every axis, distance and sign is `src/docs/axes.svg`, shown in the crate's
+//! `docs::conventions`.
 
 use crate::error::{Error, Result, finite};
 use crate::profile::{Branch, Profile, Section, Side};
