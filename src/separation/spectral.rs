@@ -193,10 +193,10 @@ impl Kernel for Spectral<'_> {
         let mut done = 0;
         while let Some(&first) = xi.get(done) {
             let rest = &xi[done..];
-            let beyond = self.strips.partition_point(|strip| strip.xi[1] < first);
-            let strip = self.strips.get(beyond).filter(|strip| strip.xi[0] <= first);
+            let beyond = self.strips.partition_point(|strip| strip.xi[1] <= first);
+            let strip = self.strips.get(beyond).filter(|strip| strip.xi[0] < first);
             let count = match strip {
-                Some(strip) => rest.partition_point(|&xi| xi <= strip.xi[1]).min(BLOCK),
+                Some(strip) => rest.partition_point(|&xi| xi < strip.xi[1]).min(BLOCK),
                 None => 1,
             };
             let (xi, out) = (&rest[..count], &mut out[done * length..(done + count) * length]);

@@ -38,7 +38,7 @@ pub type Values = [[f64; LANES]; MOST_LANES];
 /// Columns over an interval of ξ.
 #[derive(Debug, Clone)]
 pub struct Strip {
-    /// Its interval \[mm\].
+    /// Its open interval \[mm\]: at its ends may be a drawing's step, which has a value of its own.
     pub xi: [f64; 2],
     /// How s at the beginning of the columns is known.
     gap: Gap,
@@ -113,7 +113,7 @@ fn breaks(placement: &Placement, u_max: f64) -> Vec<f64> {
 
 /// Appends strips over an interval without breaks.
 fn divide(spectral: &mut Spectral<'_>, xi: &[f64], [a, b]: [f64; 2], strips: &mut Vec<Strip>) {
-    let columns = xi.partition_point(|&x| x <= b) - xi.partition_point(|&x| x < a);
+    let columns = xi.partition_point(|&x| x < b).saturating_sub(xi.partition_point(|&x| x <= a));
     for points in POINTS {
         if columns < COLUMNS_PER_POINT * points {
             return;
