@@ -1,6 +1,6 @@
 //! Speed against error: every method of the ladder timed and held to 60-digit values, and the hard cases.
 //!
-//! [`reference`] reads the 60-digit files, which are part of the program; [`errors`] compares a method with them;
+//! [`mod@reference`] reads the 60-digit files, which are part of the program; [`errors`] compares a method with them;
 //! [`speed`] races methods against a plain store of the same array, [`spline_cost`] splines against arcs; [`hard_case`] runs the cases of
 //! `tests/hard_cases`; [`verification`] has parry3d's meshes check them; [`measured`] compares curves through points
 //! with the drawing that the points are from; [`measurements`] does all of it to a given effort; [`requirements`] judges the ratios;

@@ -185,7 +185,7 @@ impl Scene {
 /// Rejects grids that would not fit into memory.
 ///
 /// # Errors
-/// More than [`MOST_POINTS`] points.
+/// More than `MOST_POINTS` points.
 pub fn check_points(place: &str, points: f64) -> Result<()> {
     if points <= MOST_POINTS {
         return Ok(());
