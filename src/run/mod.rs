@@ -111,7 +111,9 @@ impl Part {
     fn refusals(&self) -> Vec<String> {
         let mut out = Vec::new();
         let feasibility = &self.contact.feasibility;
-        if !feasibility.feasible {
+        // A further contact of the same side is closed by the approach only, by which the first one overlaps.
+        let first = self.found.as_ref().is_none_or(|found| found.contact == 1);
+        if first && !feasibility.feasible {
             out.push(format!(
                 "infeasible contact: the bodies overlap by {:.6e} mm at xi = {:.6} mm; expected s >= 0 everywhere \
                  (4.1); choose another pair of points",

@@ -1,4 +1,4 @@
-//! `[grid] merge`: parts of a patch with a grid each, or with one together.
+//! The parts of a run: contacts of one wheel, and parts of a patch with a grid each or, by `[grid] merge`, together.
 #![allow(clippy::expect_used, reason = "a test")]
 
 use std::path::Path;
@@ -36,4 +36,16 @@ fn a_distance_that_means_nothing_is_refused() {
         let error = run(&grid).expect_err("bad input").to_string();
         assert!(error.contains("grid: merge"), "{error}");
     }
+}
+
+#[test]
+fn a_contact_that_only_the_approach_closes_is_no_refusal() {
+    let text = "[rail]\nprofile = \"49E1\"\nrotate = \"1:20\"\n\
+                [wheel]\nprofile = \"EN13715-1:40-h28-e32.5\"\nradius = 425.0\n\
+                [contact]\noffset = 5.5\nyaw = 0.008\n[patch]\nload = 75000.0\n";
+    let scene = scene::parse(text, false).expect("a scene");
+    let run = Run::new(scene, Path::new("."), "two contacts").expect("a contact");
+    let feasible: Vec<bool> = run.parts.iter().map(|part| part.contact.feasibility.feasible).collect();
+    assert_eq!(feasible, [true, false]);
+    assert!(run.refusals().is_empty(), "{:?}", run.refusals());
 }
