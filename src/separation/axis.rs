@@ -1,5 +1,7 @@
 //! The η values of a grid, prepared once for all columns.
 
+use std::ops::Range;
+
 /// Values of the widest vector, and of a line of the cache.
 const RUN: usize = 8;
 
@@ -33,41 +35,49 @@ impl EtaAxis {
 
     /// The index ranges whose u lies in (u0, u1], or in \[u0, u1\] for u0 = 0: η ≥ 0, and η < 0 where that is not the
     /// mirror image.
-    #[inline]
-    pub fn ranges(&self, [u0, u1]: [f64; 2]) -> [std::ops::Range<usize>; 2] {
+    pub fn ranges(&self, u: [f64; 2]) -> [Range<usize>; 2] {
+        let [positive, negative] = self.sides(u);
+        [positive, if self.symmetric { 0..0 } else { negative }]
+    }
+
+    /// The same over the whole axis, without a gap in one range where u0 = 0.
+    #[inline(always)]
+    pub fn runs(&self, u: [f64; 2]) -> [Range<usize>; 2] {
+        let [positive, negative] = self.sides(u);
+        if u[0] == 0.0 { [negative.start..positive.end, 0..0] } else { [negative, positive] }
+    }
+
+    #[inline(always)]
+    fn sides(&self, [u0, u1]: [f64; 2]) -> [Range<usize>; 2] {
         let middle = self.first_positive;
-        let right = &self.u[middle..];
-        let begin = if u0 == 0.0 { 0 } else { right.partition_point(|&u| u <= u0) };
-        let positive = middle + begin..middle + right.partition_point(|&u| u <= u1);
+        let (left, right) = self.u.split_at(middle);
+        let begin = if u0 == 0.0 { 0 } else { up_to(right, u0) };
+        let positive = middle + begin..middle + up_to(right, u1);
         if self.symmetric {
-            return [positive, 0..0];
+            let n = self.u.len();
+            return [positive.clone(), n - positive.end..n - positive.start];
         }
-        let left = &self.u[..middle];
         let end = if u0 == 0.0 { middle } else { left.partition_point(|&u| u > u0) };
         [positive, left.partition_point(|&u| u > u1)..end]
     }
 
     /// Copies the half η ≥ 0 of a column onto the other, where the axis is symmetric.
-    #[inline(always)]
     pub fn mirror(&self, column: &mut [f64]) {
         if self.symmetric {
-            let n = column.len();
             let (left, right) = column.split_at_mut(self.first_positive);
-            // An odd number of values has η = 0 in the middle, at the start of the right part.
-            let skip = n - 2 * left.len();
-            let right = &right[skip..skip + left.len()];
-            let (left_head, left) = left.split_at_mut(lead(left));
-            let (right, right_head) = right.split_at(left.len());
-            let (left, left_tail) = left.as_chunks_mut::<RUN>();
-            let (right_tail, right) = right.as_rchunks::<RUN>();
-            for (l, r) in left.iter_mut().zip(right.iter().rev()) {
-                *l = std::array::from_fn(|k| r[RUN - 1 - k]);
-            }
-            for (left, right) in [(left_head, right_head), (left_tail, right_tail)] {
-                left.copy_from_slice(right);
-                left.reverse();
+            for (left, right) in left.iter_mut().zip(right.iter().rev()) {
+                *left = *right;
             }
         }
+    }
+}
+
+/// Number of ascending values up to a bound, which is often beyond all of them.
+#[inline(always)]
+fn up_to(values: &[f64], bound: f64) -> usize {
+    match values.last() {
+        Some(&last) if last > bound => values.partition_point(|&value| value <= bound),
+        _ => values.len(),
     }
 }
 

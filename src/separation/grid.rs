@@ -15,8 +15,8 @@ use crate::placement::Placement;
 /// Columns of one block: the unit of work of a thread.
 pub(super) const BLOCK: usize = 16;
 
-/// Up to so many points are not worth waking another thread, some 50 µs.
-const FEW_POINTS: usize = 4096;
+/// Up to so many points are not worth waking another thread, some 50 µs: of whole columns, and of points one by one.
+const FEW_POINTS: [usize; 2] = [65536, 4096];
 
 /// A way to evaluate s over columns of constant ξ.
 pub trait Kernel {
@@ -120,7 +120,8 @@ impl Choice {
             }
             _ => Vec::new(),
         };
-        if out.len() <= FEW_POINTS {
+        let by_columns = self.method < Method::Pointwise;
+        if out.len() <= FEW_POINTS[usize::from(!by_columns)] {
             return self.kernel(placement, axis, &strips).columns(xi, out);
         }
         let blocks = out.par_chunks_mut(BLOCK * n).zip(xi.par_chunks(BLOCK));

@@ -68,6 +68,7 @@ pub struct Spectral<'a> {
     coefficients: usize,
     strips: &'a [Strip],
     spans: Vec<Span>,
+    values: Vec<strips::Values>,
     arch: pulp::Arch,
 }
 
@@ -75,13 +76,14 @@ impl<'a> Spectral<'a> {
     /// Over a placed pair; every column starts with `coefficients` and takes more where it needs them.
     pub fn new(placement: &'a Placement, axis: &'a EtaAxis, demand: Demand, coefficients: usize) -> Self {
         let evaluator = Evaluator::new(placement);
+        let (spans, values) = (Vec::with_capacity(8), Vec::new());
         let arch = pulp::Arch::new();
-        Self { evaluator, axis, demand, coefficients, strips: &[], spans: Vec::with_capacity(8), arch }
+        Self { evaluator, axis, demand, coefficients, strips: &[], spans, values, arch }
     }
 
     /// The same with strips for some of the columns.
     pub fn with_strips(self, strips: &'a [Strip]) -> Self {
-        Self { strips, ..self }
+        Self { strips, values: vec![Default::default(); BLOCK], ..self }
     }
 
     /// The polynomials of the column at ξ, span by span, with at least so many coefficients; `None` where not all of
@@ -203,7 +205,8 @@ impl Kernel for Spectral<'_> {
             match strip {
                 Some(strip) => {
                     let (placement, axis) = (self.evaluator.placement, self.axis);
-                    self.arch.dispatch(StripColumns { placement, strip, xi, axis, out });
+                    let values = &mut self.values;
+                    self.arch.dispatch(StripColumns { placement, strip, xi, axis, values, out });
                 }
                 None => self.column(first, out),
             }
@@ -220,6 +223,8 @@ struct StripColumns<'a> {
     /// At most [`BLOCK`].
     xi: &'a [f64],
     axis: &'a EtaAxis,
+    /// Scratch space.
+    values: &'a mut [strips::Values],
     out: &'a mut [f64],
 }
 
@@ -228,21 +233,20 @@ impl pulp::WithSimd for StripColumns<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) {
-        let Self { placement, strip, xi, axis, out } = self;
+        let Self { placement, strip, xi, axis, values, out } = self;
         let u_max = axis.reach * axis.reach;
         // All values first: the processor then works at several columns at once.
-        let mut values = [strips::Values::default(); BLOCK];
         for (values, &xi) in values.iter_mut().zip(xi) {
             strip.values(xi, values, |xi| midplane_gap(placement, xi));
         }
-        for ((out, values), &xi) in out.chunks_exact_mut(axis.eta.len()).zip(&mut values).zip(xi) {
+        for ((out, values), &xi) in out.chunks_exact_mut(axis.eta.len()).zip(values).zip(xi) {
             for span in 0..strip.spans() {
                 let (u, base, c) = strip.span(values, span, xi, u_max);
-                for range in axis.ranges(u) {
-                    evaluate(simd, [base, u[0]], c, &axis.u[range.clone()], &mut out[range]);
+                // Both halves of a symmetric axis: copying one takes longer than evaluating it.
+                for run in axis.runs(u) {
+                    evaluate(simd, [base, u[0]], c, &axis.u[run.clone()], &mut out[run]);
                 }
             }
-            axis.mirror(out);
         }
     }
 }
@@ -286,8 +290,8 @@ impl pulp::WithSimd for Run<'_> {
     }
 }
 
-/// base + (u − u_0) Σ c_k (u − u_0)^k by Horner's rule over a run of u, unrolled for the degree, with the widest vectors of the machine. No fused multiply-add:
-/// the same bits on every machine.
+/// base + (u − u_0) Σ c_k (u − u_0)^k by Horner's rule over a run of u, unrolled for the degree, with the widest vectors
+/// of the machine. Multiply-adds are fused on every machine, be it in software: the same bits everywhere.
 #[inline(always)]
 fn evaluate<S: pulp::Simd>(simd: S, begin: [f64; 2], c: &[f64], u: &[f64], out: &mut [f64]) {
     match c.len() {
@@ -316,18 +320,17 @@ fn horner<S: pulp::Simd, const N: usize>(
 ) {
     let c: [S::f64s; N] = std::array::from_fn(|k| simd.splat_f64s(c[k]));
     let begin = [base, u0].map(|value| simd.splat_f64s(value));
-    // Whole vectors are stored where they do not cross lines of the cache, which takes twice as long on large grids.
-    let (u_head, u) = u.split_at(lead(out));
-    let (head, out) = out.split_at_mut(u_head.len());
-    let (u, u_tail) = S::as_simd_f64s(u);
-    let (out, tail) = S::as_mut_simd_f64s(out);
-    for (out, u) in [(head, u_head), (tail, u_tail)] {
-        for (out, u) in out.chunks_mut(S::F64_LANES).zip(u.chunks(S::F64_LANES)) {
-            simd.partial_store_f64s(out, value(simd, begin, &c, simd.partial_load_f64s(u)));
+    let Some(last) = u.len().checked_sub(S::F64_LANES) else {
+        return simd.partial_store_f64s(out, value(simd, begin, &c, simd.partial_load_f64s(u)));
+    };
+    // Whole vectors are stored where they do not cross lines of the cache, which takes twice as long on large grids;
+    // the first and the last may overlap them.
+    let end = u.len();
+    for part in [0..S::F64_LANES, last..end, lead(out)..end] {
+        let (u, out) = (S::as_simd_f64s(&u[part.clone()]).0, S::as_mut_simd_f64s(&mut out[part]).0);
+        for (s, &u) in out.iter_mut().zip(u) {
+            *s = value(simd, begin, &c, u);
         }
-    }
-    for (s, &u) in out.iter_mut().zip(u) {
-        *s = value(simd, begin, &c, u);
     }
 }
 
@@ -342,9 +345,9 @@ fn value<S: pulp::Simd, const N: usize>(
     let v = simd.sub_f64s(u, u0);
     let mut q = c[N - 1];
     for &c in c[..N - 1].iter().rev() {
-        q = simd.add_f64s(simd.mul_f64s(q, v), c);
+        q = simd.mul_add_f64s(q, v, c);
     }
-    simd.add_f64s(base, simd.mul_f64s(v, q))
+    simd.mul_add_f64s(q, v, base)
 }
 
 /// Chebyshev points (1 − cos((2j + 1)π/2n))/2 of (0, 1) for n = 1 … [`MOST_COEFFICIENTS`], ascending.

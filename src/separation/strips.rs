@@ -33,7 +33,20 @@ const LANES: usize = 8;
 const MOST_LANES: usize = MOST_SPANS * (2 + MOST_COEFFICIENTS).div_ceil(LANES);
 
 /// The quantities of one column.
-pub type Values = [[f64; LANES]; MOST_LANES];
+#[derive(Debug, Clone)]
+#[repr(align(64))]
+pub struct Values([f64; LANES * MOST_LANES]);
+
+impl Default for Values {
+    fn default() -> Self {
+        Self([0.0; LANES * MOST_LANES])
+    }
+}
+
+/// What fills a line of the cache and the widest vector.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
+struct Lanes([f64; LANES]);
 
 /// Columns over an interval of ξ.
 #[derive(Debug, Clone)]
@@ -45,7 +58,7 @@ pub struct Strip {
     /// Of every span the index of its first quantity, at the beginning of a lane, and the number of coefficients of q.
     spans: Vec<(usize, usize)>,
     /// Coefficients of t^(kept−1), …, t⁰ of the first lanes, then of the next; t from −1 to 1 over the interval.
-    powers: Vec<[f64; LANES]>,
+    powers: Vec<Lanes>,
     kept: usize,
 }
 
@@ -86,8 +99,9 @@ pub fn strips(spectral: &mut Spectral<'_>, placement: &Placement, xi: &[f64], u_
         return strips;
     }
     let mut ends = breaks(placement, u_max);
-    ends.retain(|&end| end > first && end < last);
-    ends.extend([first, last]);
+    ends.retain(|&end| end >= first && end <= last);
+    // What is no break belongs to the strip.
+    ends.extend([first.next_down(), last.next_up()]);
     ends.sort_by(f64::total_cmp);
     for pair in ends.windows(2) {
         divide(spectral, xi, [pair[0], pair[1]], &mut strips);
@@ -148,7 +162,7 @@ impl Strip {
         series.truncate(kept * width);
         chebyshev::to_powers(&mut series, width);
         let lanes = (0..width / LANES)
-            .flat_map(|lane| series.chunks_exact(width).rev().map(move |row| row.as_chunks().0[lane]));
+            .flat_map(|lane| series.chunks_exact(width).rev().map(move |row| Lanes(row.as_chunks().0[lane])));
         let powers = lanes.collect();
         Some(Self { xi: [a, b], gap, spans: samples.spans, powers, kept })
     }
@@ -168,7 +182,7 @@ impl Strip {
         xi: f64,
         u_max: f64,
     ) -> ([f64; 2], f64, &'v [f64]) {
-        let values = values.as_flattened_mut();
+        let values = &mut values.0;
         let (at, n) = self.spans[span];
         let (s, u0) = (values[at + n], values[at + n + 1]);
         let u1 = self.spans.get(span + 1).map_or(u_max, |&(next, n)| values[next + n + 1]);
@@ -190,18 +204,20 @@ impl Strip {
         let [a, b] = self.xi;
         let t = ((xi - a) - (b - xi)) / (b - a);
         let square = t * t;
-        for (values, powers) in values.iter_mut().zip(self.powers.chunks_exact(self.kept)) {
+        for (values, powers) in
+            values.0.as_chunks_mut::<LANES>().0.iter_mut().zip(self.powers.chunks_exact(self.kept))
+        {
             // Two chains, of even and of odd powers: one would be as long as the rest of the column.
-            let mut sums = [[0.0; LANES]; 2];
+            let mut sums = [[0f64; LANES]; 2];
             for pair in powers.as_chunks::<2>().0 {
                 for (sum, c) in sums.iter_mut().zip(pair) {
-                    *sum = std::array::from_fn(|k| sum[k] * square + c[k]);
+                    *sum = std::array::from_fn(|k| sum[k].mul_add(square, c.0[k]));
                 }
             }
-            *values = std::array::from_fn(|k| sums[0][k] * t + sums[1][k]);
+            *values = std::array::from_fn(|k| sums[0][k].mul_add(t, sums[1][k]));
         }
         if self.gap == Gap::Computed {
-            values.as_flattened_mut()[self.spans[0].1] = compute(xi);
+            values.0[self.spans[0].1] = compute(xi);
         }
     }
 }
