@@ -12,11 +12,14 @@
 
 use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
-use crate::profile::{Branch, BranchPoint, Piece, Section};
+use crate::profile::{Branch, BranchPoint, Section};
 
 /// Steps by which a point is found; each gains some six digits. A branch that needs more is steep there and is left to
 /// the bracketed root.
 const STEPS: usize = 8;
+
+/// Share of the window's u that a polynomial's nodes must cover; beyond them it is continued that little.
+pub(super) const NEARLY_COVERED: f64 = 0.99;
 
 /// A branch that goes on to this many times the sagitta that the window needs is taken to cover it: between
 /// there and the end only a profile that falls towards the axle could bring u back.
@@ -28,9 +31,9 @@ pub struct WheelSurface<'a> {
     /// The wheel profile in the contact frame.
     pub section: &'a Section,
     /// R − z_C \[mm\].
-    axle: f64,
-    cos: f64,
-    sin: f64,
+    pub(super) axle: f64,
+    pub(super) cos: f64,
+    pub(super) sin: f64,
 }
 
 /// The part of a column that lies over one branch of the wheel.
@@ -40,8 +43,9 @@ pub struct Span {
     pub e: [f64; 2],
     /// Range of u = η² \[mm²\].
     pub u: [f64; 2],
-    /// Index of the branch.
+    /// Index of the branch, and of its piece of the envelope.
     pub branch: usize,
+    pub(super) piece: usize,
     /// ζ of the wheel at the beginning \[mm\].
     pub height: f64,
     /// Axle distance w there \[mm\].
@@ -93,14 +97,13 @@ impl<'a> WheelSurface<'a> {
         let Some(mut index) = first else { return };
         loop {
             let piece = &pieces[index];
-            let sides = if falling { [1, 0] } else { [0, 1] };
-            let [near, far] = sides.map(|side| piece.xi[side]);
+            let [near, far] = self.sides().map(|side| piece.xi[side]);
             let begin = if self.sin == 0.0 { 0.0 } else { ((xi - near) / self.sin).max(0.0) };
             let end = if self.sin == 0.0 { f64::INFINITY } else { (xi - far) / self.sin };
             if self.sin == 0.0 && !(piece.xi[0] <= xi && xi <= piece.xi[1]) {
                 return;
             }
-            let mut span = self.span(xi, piece, [begin, end], sides, u_max);
+            let mut span = self.span(xi, index, [begin, end], u_max);
             if let Some(last) = spans.last().filter(|last| last.e[1] == begin) {
                 // One joint: the ranges meet, whatever rounding or a drawing's step makes of them.
                 span.u[0] = last.u[1];
@@ -125,14 +128,20 @@ impl<'a> WheelSurface<'a> {
         if pieces[0].xi[0] == xi { Some(0) } else { (pieces[last].xi[1] == xi).then_some(last) }
     }
 
-    /// The span over one piece between two sagittae; `near` and `far` are the ends of the piece that they belong to.
-    fn span(&self, xi: f64, piece: &Piece, e: [f64; 2], [near, far]: [usize; 2], u_max: f64) -> Span {
+    /// The ends of a piece by which a column enters and leaves it.
+    pub(super) fn sides(&self) -> [usize; 2] {
+        if self.sin > 0.0 { [1, 0] } else { [0, 1] }
+    }
+
+    /// The span over one piece between two sagittae.
+    fn span(&self, xi: f64, index: usize, e: [f64; 2], u_max: f64) -> Span {
+        let (piece, [near, far]) = (&self.section.pieces[index], self.sides());
         let (begin, on_profile) =
             if e[0] > 0.0 { piece.ends[near] } else { self.section.branches[piece.branch].point(xi) };
         let height = on_profile + e[0] * self.cos;
         let w = self.axle - xi * self.sin - height * self.cos;
         let u0 = e[0] * (2.0 * w + e[0]);
-        let span = Span { e, u: [u0, f64::INFINITY], branch: piece.branch, height, w, begin };
+        let span = Span { e, u: [u0, f64::INFINITY], branch: piece.branch, piece: index, height, w, begin };
         if e[1] > FAR_END * u_max / (2.0 * w) && w > 0.0 {
             return span;
         }
@@ -155,11 +164,11 @@ impl<'a> WheelSurface<'a> {
         Foot { e, rise, w, u: e * (2.0 * w + e) }
     }
 
-    /// A point near u, no nearer than `share` of it: contractions of the sagitta step.
-    pub fn foot_near(&self, xi: f64, span: &Span, u: f64, share: f64) -> Foot {
+    /// A point near u, by one contraction of the sagitta step or two.
+    pub fn foot_near(&self, xi: f64, span: &Span, u: f64) -> Foot {
         let step = |w: f64| self.foot(xi, span, sagitta(w, u).clamp(span.e[0], span.e[1]));
         let first = step(span.w);
-        if (first.u - u).abs() <= (1.0 - share) * u { first } else { step(first.w) }
+        if (first.u - u).abs() <= (1.0 - NEARLY_COVERED) * u { first } else { step(first.w) }
     }
 
     /// The point at u = η² over a span, or `None` where η is beyond the ring.
@@ -236,6 +245,6 @@ impl<'a> WheelSurface<'a> {
 
 /// e = √(w² + u) − w without cancellation.
 #[inline]
-fn sagitta(w: f64, u: f64) -> f64 {
+pub(super) fn sagitta(w: f64, u: f64) -> f64 {
     u / (w + (w * w + u).sqrt())
 }

@@ -3,6 +3,7 @@
 pub mod approximate;
 pub mod axis;
 pub mod column;
+mod columns;
 pub mod gap;
 pub mod grid;
 pub mod midsep;
@@ -157,11 +158,11 @@ impl<'a> Evaluator<'a> {
         contact && wheel.contact == Some(span.branch) && span.e[0] == 0.0
     }
 
-    /// Size of the coordinates from which both bodies' heights at the beginning of a span are computed \[mm\].
-    fn heights(&self, xi: f64, span: &Span) -> f64 {
+    /// Size of the coordinates from which both bodies' heights are computed, the wheel's being as given \[mm\].
+    fn size(&self, xi: f64, height: f64) -> f64 {
         let frames = [&self.placement.rail.section.frame, &self.placement.wheel.section.frame];
         let coordinates = frames.map(|frame| frame.z.abs() + (frame.sin * xi).abs());
-        span.height.abs() + coordinates[0].max(coordinates[1])
+        height.abs() + coordinates[0].max(coordinates[1])
     }
 
     /// s at the beginning of a span: the wheel's height there less the rail's.

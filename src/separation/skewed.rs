@@ -89,7 +89,7 @@ fn interpolate(
         if values.iter().any(|v| v.is_nan()) {
             return false;
         }
-        chebyshev::coefficients(&values[..n], 1, &mut c[..n]);
+        chebyshev::coefficients(&values[..n], &mut c[..n]);
         // Two last coefficients, since one parity may vanish.
         let tail = c[n - 1].abs() + c[n - 2].abs();
         let allowed = demand.absolute.min(demand.relative * scale).max(4.0 * f64::EPSILON * scale);

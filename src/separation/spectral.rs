@@ -4,8 +4,11 @@
 //! and q analytic. q is interpolated, not s: the relative accuracy of both terms survives. The nodes are
 //! Chebyshev points in the sagitta e, of which u is nearly a multiple: ζ and u follow from e with no iteration.
 
+use std::array::from_fn;
+
 use super::axis::{EtaAxis, lead};
-use super::column::{Span, WheelSurface};
+use super::column::{NEARLY_COVERED, Span, WheelSurface};
+use super::columns::{Columns, Row};
 use super::gap::midplane_gap;
 use super::grid::{BLOCK, Kernel};
 use super::strips::{self, Strip};
@@ -17,10 +20,7 @@ use crate::placement::Placement;
 pub const MOST_COEFFICIENTS: usize = 12;
 
 /// Relative error of q that counts as rounding: more coefficients would not lower it.
-const ROUNDING_LEVEL: f64 = 4.0 * f64::EPSILON;
-
-/// Share of the window's u that the nodes must cover; beyond them the polynomial is continued that little.
-const NEARLY_COVERED: f64 = 0.99;
+pub(super) const ROUNDING_LEVEL: f64 = 4.0 * f64::EPSILON;
 
 /// The demand on a column: |error of s| ≤ `absolute`, and ≤ `relative` × |(u − u_0) q|.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,19 +44,6 @@ pub struct ColumnPolynomial {
     pub n: usize,
     /// Measured error of s \[mm\] at the end of the span, where it is largest.
     pub error: f64,
-}
-
-/// The polynomial over one span of a whole column.
-#[derive(Debug, Clone, Copy)]
-pub struct Fit {
-    /// The polynomial.
-    pub polynomial: ColumnPolynomial,
-    /// Length of the span in u, up to the window's end \[mm²\].
-    pub width: f64,
-    /// Whether it begins over both contact segments.
-    pub contact: bool,
-    /// Size of the coordinates that the base is computed from \[mm\].
-    pub height: f64,
 }
 
 /// Columns by interpolation to a demand.
@@ -86,35 +73,16 @@ impl<'a> Spectral<'a> {
         Self { strips, values: vec![Default::default(); BLOCK], ..self }
     }
 
-    /// The polynomials of the column at ξ, span by span, with at least so many coefficients; `None` where not all of
-    /// the column has a surface or a polynomial. `fits` is overwritten.
-    pub fn whole_column(&mut self, xi: f64, least: &[usize], fits: &mut Vec<Fit>) -> Option<()> {
-        fits.clear();
-        let u_max = self.axis.reach * self.axis.reach;
-        let mut spans = std::mem::take(&mut self.spans);
-        self.evaluator.wheel.spans(xi, u_max, &mut spans);
-        if is_whole(&spans, u_max) {
-            fits.extend(spans.iter().enumerate().map_while(|(k, span)| {
-                let least = least.get(k).copied().unwrap_or(0).max(self.coefficients);
-                let polynomial = self.polynomial(xi, span, u_max, least)?;
-                Some(Fit {
-                    polynomial,
-                    width: span.u[1].min(u_max) - span.u[0],
-                    contact: self.evaluator.over_contact(xi, span),
-                    height: self.evaluator.heights(xi, span),
-                })
-            }));
-        }
-        let whole = !fits.is_empty() && fits.len() == spans.len();
-        self.spans = spans;
-        whole.then_some(())
+    /// Columns at many ξ, if all are as the one in the middle; `None` where one is not, or is no polynomial.
+    pub(super) fn columns_at(&self, xi: Row, u_max: f64) -> Option<Columns> {
+        Columns::new(&self.evaluator, self.demand, self.coefficients, u_max, xi)
     }
 
     /// The polynomial over one span up to `u_max` with at least so many coefficients, or `None` where no degree reaches
     /// the demand.
     pub fn polynomial(&self, xi: f64, span: &Span, u_max: f64, least: usize) -> Option<ColumnPolynomial> {
         let u_end = span.u[1].min(u_max);
-        let end = self.evaluator.wheel.foot_near(xi, span, u_end, NEARLY_COVERED);
+        let end = self.evaluator.wheel.foot_near(xi, span, u_end);
         let covered = end.u >= NEARLY_COVERED * u_end;
         if !covered || end.w <= 0.0 {
             return None;
@@ -143,7 +111,7 @@ impl ColumnPolynomial {
     }
 }
 
-/// q at n nodes between the span's beginning and sagitta `e_end`, by divided differences, in powers of v.
+/// q at n nodes between the span's beginning and sagitta `e_end`, in powers of v.
 fn interpolate(
     wheel: &WheelSurface<'_>,
     xi: f64,
@@ -151,31 +119,37 @@ fn interpolate(
     e_end: f64,
     n: usize,
 ) -> [f64; MOST_COEFFICIENTS] {
-    let (mut v, mut d) = ([0.0; MOST_COEFFICIENTS], [0.0; MOST_COEFFICIENTS]);
+    let (mut v, mut d) = ([[0.0]; MOST_COEFFICIENTS], [[0.0]; MOST_COEFFICIENTS]);
     let width = e_end - span.e[0];
-    for (j, node) in NODES[n - 1].iter().take(n).enumerate() {
+    for ((v, d), node) in v.iter_mut().zip(&mut d).zip(nodes(n)) {
         let foot = wheel.foot(xi, span, span.e[0] + width * node);
-        v[j] = foot.u - span.u[0];
-        d[j] = foot.rise / v[j];
+        *v = [foot.u - span.u[0]];
+        *d = [foot.rise / v[0]];
     }
+    powers(&v[..n], &mut d[..n]).map(|[c]| c)
+}
+
+/// The coefficients of the polynomials that take the values d at the places v, by divided differences; for N at once.
+pub(super) fn powers<const N: usize>(v: &[[f64; N]], d: &mut [[f64; N]]) -> [[f64; N]; MOST_COEFFICIENTS] {
+    let n = v.len();
     for order in 1..n {
         for j in (order..n).rev() {
-            d[j] = (d[j] - d[j - 1]) / (v[j] - v[j - order]);
+            d[j] = from_fn(|k| (d[j][k] - d[j - 1][k]) / (v[j][k] - v[j - order][k]));
         }
     }
-    let mut c = [0.0; MOST_COEFFICIENTS];
+    let mut c = [[0.0; N]; MOST_COEFFICIENTS];
     for j in (0..n).rev() {
         // c ← c·(v − v_j) + d_j
-        for k in (1..n - j).rev() {
-            c[k] = c[k - 1] - v[j] * c[k];
+        for i in (1..n - j).rev() {
+            c[i] = from_fn(|k| c[i - 1][k] - v[j][k] * c[i][k]);
         }
-        c[0] = d[j] - v[j] * c[0];
+        c[0] = from_fn(|k| d[j][k] - v[j][k] * c[0][k]);
     }
     c
 }
 
 /// Whether the spans are all of the column up to `u_max`.
-fn is_whole(spans: &[Span], u_max: f64) -> bool {
+pub(super) fn is_whole(spans: &[Span], u_max: f64) -> bool {
     spans.first().is_some_and(|span| span.e[0] == 0.0)
         && spans.last().is_some_and(|span| span.u[1] >= u_max)
         && spans.windows(2).all(|pair| pair[0].u[1] == pair[1].u[0])
@@ -318,7 +292,7 @@ fn horner<S: pulp::Simd, const N: usize>(
     u: &[f64],
     out: &mut [f64],
 ) {
-    let c: [S::f64s; N] = std::array::from_fn(|k| simd.splat_f64s(c[k]));
+    let c: [S::f64s; N] = from_fn(|k| simd.splat_f64s(c[k]));
     let begin = [base, u0].map(|value| simd.splat_f64s(value));
     let Some(last) = u.len().checked_sub(S::F64_LANES) else {
         return simd.partial_store_f64s(out, value(simd, begin, &c, simd.partial_load_f64s(u)));
@@ -350,12 +324,17 @@ fn value<S: pulp::Simd, const N: usize>(
     simd.mul_add_f64s(q, v, base)
 }
 
+/// The n Chebyshev points of (0, 1), ascending.
+pub(super) fn nodes(n: usize) -> &'static [f64] {
+    &NODES[n - 1][..n]
+}
+
 /// Chebyshev points (1 − cos((2j + 1)π/2n))/2 of (0, 1) for n = 1 … [`MOST_COEFFICIENTS`], ascending.
 static NODES: std::sync::LazyLock<[[f64; MOST_COEFFICIENTS]; MOST_COEFFICIENTS]> =
     std::sync::LazyLock::new(|| {
-        std::array::from_fn(|row| {
+        from_fn(|row| {
             let n = row as f64 + 1.0;
-            std::array::from_fn(|j| {
+            from_fn(|j| {
                 let half = (2.0 * j as f64 + 1.0) * std::f64::consts::FRAC_PI_4 / n;
                 half.sin().powi(2)
             })

@@ -3,18 +3,19 @@
 //! Between the ξ at which a joint of either body enters or leaves the window, all that makes up a spectral column
 //! is analytic in ξ: of every span s at its beginning (over both contact segments as g/ξ², which keeps its relative
 //! accuracy down to C), u_0, and the coefficients of q in powers of τ = (u − u_0)/(u_1 − u_0). They are interpolated
-//! from columns at Chebyshev points in ξ, to rounding; a strip where that fails is halved, one with few columns is
+//! from columns at 16 Chebyshev points in ξ, to rounding; a strip where that fails is halved, one with few columns is
 //! left to its columns.
 
-use super::spectral::{ColumnPolynomial, Fit, MOST_COEFFICIENTS, Spectral};
+use super::columns::{Columns, MANY, Row, row};
+use super::spectral::{MOST_COEFFICIENTS, Spectral};
 use crate::numerics::chebyshev;
 use crate::placement::Placement;
 
-/// Numbers of Chebyshev points in ξ that are tried.
-const POINTS: [usize; 2] = [8, 16];
+/// Columns that a strip must have: those it is made from take as long as about so many singly.
+const LEAST_COLUMNS: usize = 8;
 
-/// Columns that a strip must have for every column it is made from.
-const COLUMNS_PER_POINT: usize = 2;
+/// From so many columns on, a strip whose gap alone cannot be interpolated is halved; else the gap is computed.
+const MANY_GAPS: usize = 64;
 
 /// A quantity's last coefficients below this share of it are rounding of the columns that it is made from.
 const ROUNDING_LEVEL: f64 = 4.0 * f64::EPSILON;
@@ -73,26 +74,21 @@ enum Gap {
     Computed,
 }
 
-/// The columns of one strip at the Chebyshev points, all of one shape.
+/// The columns of one strip, by Chebyshev series in ξ.
 #[derive(Debug)]
-struct Samples {
-    contact: bool,
-    /// As in [`Strip`].
-    spans: Vec<(usize, usize)>,
-    /// Point by point the quantities: of every span the coefficients of q in powers of τ, s at its beginning and u_0,
-    /// padded to whole lanes.
-    values: Vec<f64>,
-    width: usize,
+struct Series {
+    /// As they were sampled.
+    columns: Columns,
+    /// Coefficients of T_0, T_1, … of the quantities, those of q in powers of τ.
+    rows: Vec<Row>,
     /// Rounding of each span's s and u_0.
     rounding: [[f64; 2]; MOST_SPANS],
-    /// Largest width of each span \[mm²\].
-    widest: [f64; MOST_SPANS],
     /// u at τ = 1 where there is one span and its q is left in powers of u; 1 else.
     end: f64,
 }
 
 /// The strips of a grid up to u = `u_max` \[mm²\], in order of ξ; none for a skewed wheel or few columns.
-pub fn strips(spectral: &mut Spectral<'_>, placement: &Placement, xi: &[f64], u_max: f64) -> Vec<Strip> {
+pub fn strips(spectral: &Spectral<'_>, placement: &Placement, xi: &[f64], u_max: f64) -> Vec<Strip> {
     let mut strips = Vec::new();
     let (Some(&first), Some(&last)) = (xi.first(), xi.last()) else { return strips };
     if placement.skew != 0.0 || u_max == 0.0 {
@@ -104,7 +100,7 @@ pub fn strips(spectral: &mut Spectral<'_>, placement: &Placement, xi: &[f64], u_
     ends.extend([first.next_down(), last.next_up()]);
     ends.sort_by(f64::total_cmp);
     for pair in ends.windows(2) {
-        divide(spectral, xi, [pair[0], pair[1]], &mut strips);
+        divide(spectral, xi, [pair[0], pair[1]], u_max, &mut strips);
     }
     strips
 }
@@ -126,45 +122,46 @@ fn breaks(placement: &Placement, u_max: f64) -> Vec<f64> {
 }
 
 /// Appends strips over an interval without breaks.
-fn divide(spectral: &mut Spectral<'_>, xi: &[f64], [a, b]: [f64; 2], strips: &mut Vec<Strip>) {
+fn divide(spectral: &Spectral<'_>, xi: &[f64], [a, b]: [f64; 2], u_max: f64, strips: &mut Vec<Strip>) {
     let columns = xi.partition_point(|&x| x < b).saturating_sub(xi.partition_point(|&x| x <= a));
-    for points in POINTS {
-        if columns < COLUMNS_PER_POINT * points {
-            return;
-        }
-        if let Some(strip) = Strip::new(spectral, [a, b], points) {
-            strips.push(strip);
-            return;
-        }
+    if columns < LEAST_COLUMNS {
+        return;
     }
     let middle = a + (b - a) / 2.0;
-    divide(spectral, xi, [a, middle], strips);
-    divide(spectral, xi, [middle, b], strips);
+    let points = std::array::from_fn(|k| middle + (b - a) / 2.0 * chebyshev::point(k, MANY));
+    if let Some(series) = spectral.columns_at(points, u_max).and_then(Series::new) {
+        let own = if series.columns.contact { Gap::Relative } else { Gap::Plain };
+        let gaps = [own, Gap::Computed];
+        let tried = if columns < MANY_GAPS { &gaps[..] } else { &gaps[..1] };
+        if let Some((gap, kept)) = tried.iter().find_map(|&gap| Some((gap, series.kept(gap)?))) {
+            return strips.push(Strip::new(&series, [a, b], gap, kept));
+        }
+    }
+    divide(spectral, xi, [a, middle], u_max, strips);
+    divide(spectral, xi, [middle, b], u_max, strips);
 }
 
 impl Strip {
-    /// The strip through columns at n Chebyshev points, or `None` where these are not enough.
-    fn new(spectral: &mut Spectral<'_>, [a, b]: [f64; 2], n: usize) -> Option<Self> {
-        let samples = Samples::new(spectral, [a, b], n)?;
-        let width = samples.width;
-        let mut series = vec![0.0; n * width];
-        chebyshev::coefficients(&samples.values, width, &mut series);
-        let size = &series[..width];
-        let kept = |gap: Gap| {
-            let mut rows = series.chunks_exact(width).enumerate().rev();
-            let last = rows.find(|(_, row)| !samples.is_rounding(row, size, gap)).map_or(1, |(k, _)| k + 1);
-            (last + PROOF <= n).then_some((gap, last))
-        };
-        let own = if samples.contact { Gap::Relative } else { Gap::Plain };
-        let computed = || if n == POINTS[POINTS.len() - 1] { kept(Gap::Computed) } else { None };
-        let (gap, kept) = kept(own).or_else(computed)?;
+    /// The strip by so many coefficients of its series.
+    fn new(series: &Series, xi: [f64; 2], gap: Gap, kept: usize) -> Self {
         let kept = kept.next_multiple_of(2);
-        series.truncate(kept * width);
-        chebyshev::to_powers(&mut series, width);
-        let lanes = (0..width / LANES)
-            .flat_map(|lane| series.chunks_exact(width).rev().map(move |row| Lanes(row.as_chunks().0[lane])));
-        let powers = lanes.collect();
-        Some(Self { xi: [a, b], gap, spans: samples.spans, powers, kept })
+        let (mut width, mut spans) = (0, Vec::with_capacity(MOST_SPANS));
+        for span in &series.columns.spans {
+            spans.push((width, span.n));
+            width += (span.n + 2).next_multiple_of(LANES);
+        }
+        let mut powers = vec![Lanes([0.0; LANES]); width / LANES * kept];
+        for (&(first, n), span) in spans.iter().zip(&series.columns.spans) {
+            for (at, row) in (first..).zip(&series.rows[span.at..span.at + n + 2]) {
+                let mut ascending = [0.0; MANY];
+                chebyshev::to_powers(&row[..kept], &mut ascending);
+                let lanes = &mut powers[at / LANES * kept..][..kept];
+                for (lanes, power) in lanes.iter_mut().rev().zip(ascending) {
+                    lanes.0[at % LANES] = power;
+                }
+            }
+        }
+        Self { xi, gap, spans, powers, kept }
     }
 
     /// Number of spans of every column.
@@ -222,98 +219,76 @@ impl Strip {
     }
 }
 
-impl Samples {
-    /// Columns at n points, or `None` where they are not of one shape, or not whole.
-    fn new(spectral: &mut Spectral<'_>, [a, b]: [f64; 2], n: usize) -> Option<Self> {
-        let (centre, half) = (a + (b - a) / 2.0, (b - a) / 2.0);
-        let xi = |k: usize| centre + half * chebyshev::point(k, n);
-        let mut column = Vec::with_capacity(MOST_SPANS);
-        let mut least = [0; MOST_SPANS];
-        // Every column is to have as many coefficients as the one that needs most: a second round, at times a third.
-        loop {
-            let (mut samples, mut needed): (Option<Self>, _) = (None, least);
-            let mut uniform = true;
-            for k in 0..n {
-                spectral.whole_column(xi(k), &least, &mut column)?;
-                let samples = match &mut samples {
-                    Some(samples) => samples,
-                    none => none.insert(Self::shaped(&column, n)?),
-                };
-                if column.len() != samples.spans.len() || column[0].contact != samples.contact {
-                    return None;
-                }
-                for ((needed, fit), (_, n)) in needed.iter_mut().zip(&column).zip(&samples.spans) {
-                    *needed = fit.polynomial.n.max(*needed);
-                    uniform &= fit.polynomial.n == *n;
-                }
-                samples.append(xi(k), &column);
-            }
-            if uniform {
-                return samples.filter(|samples| samples.values.iter().all(|v| v.is_finite()));
-            }
-            least = needed;
-        }
-    }
-
-    /// No columns yet, of the shape of the first one.
-    fn shaped(column: &[Fit], n: usize) -> Option<Self> {
-        let mut at = 0;
-        let mut spans = Vec::with_capacity(column.len());
-        for fit in column {
-            spans.push((at, fit.polynomial.n));
-            at += (fit.polynomial.n + 2).next_multiple_of(LANES);
-        }
-        let end = if column.len() == 1 { column[0].width } else { 1.0 };
-        let contact = column.first()?.contact;
-        let values = Vec::with_capacity(n * at);
+impl Series {
+    /// `None` where there are too many spans, or something is not finite.
+    fn new(mut columns: Columns) -> Option<Self> {
+        let single = columns.spans.len() == 1;
         let mut rounding = [[0.0; 2]; MOST_SPANS];
-        if contact {
-            rounding[0][0] = f64::INFINITY;
+        if columns.spans.len() > MOST_SPANS {
+            return None;
         }
-        (column.len() <= MOST_SPANS).then_some(Self {
-            contact,
-            spans,
-            values,
-            width: at,
-            rounding,
-            widest: [0.0; MOST_SPANS],
-            end,
-        })
-    }
-
-    fn append(&mut self, xi: f64, column: &[Fit]) {
-        for (k, fit) in column.iter().enumerate() {
-            let ColumnPolynomial { base, u0, c, .. } = &fit.polynomial;
-            let relative = self.contact && k == 0;
-            let base = if relative { base / (xi * xi) } else { *base };
-            let [s, u] = &mut self.rounding[k];
-            // What is relatively accurate must stay so where it is smallest.
-            *s = if relative { s.min(ROUNDING_LEVEL * base.abs()) } else { s.max(f64::EPSILON * fit.height) };
-            *u = u.max(ROUNDING_LEVEL * (u0 + fit.width));
-            self.widest[k] = self.widest[k].max(fit.width);
-            let per = if column.len() == 1 { 1.0 } else { fit.width };
-            let mut power = 1.0;
-            for c in &c[..self.spans[k].1] {
-                self.values.push(c * power);
-                power *= per;
+        for (k, span) in columns.spans.iter().enumerate() {
+            let [q @ .., base, u0] = &mut columns.quantities[span.at..span.at + span.n + 2] else {
+                return None;
+            };
+            if !single {
+                let mut power = span.width;
+                for c in &mut q[1..] {
+                    *c = row(|k| c[k] * power[k]);
+                    power = row(|k| power[k] * span.width[k]);
+                }
             }
-            self.values.extend([base, *u0]);
-            self.values.resize(self.values.len().next_multiple_of(LANES), 0.0);
+            let s = if columns.contact && k == 0 {
+                *base = row(|k| base[k] / (columns.xi[k] * columns.xi[k]));
+                // What is relatively accurate must stay so where it is smallest.
+                ROUNDING_LEVEL * base.iter().fold(f64::INFINITY, |least, s| s.abs().min(least))
+            } else {
+                f64::EPSILON * largest(&span.height)
+            };
+            rounding[k] = [s, ROUNDING_LEVEL * largest(&row(|k| u0[k] + span.width[k]))];
         }
+        if !columns.quantities.as_flattened().iter().all(|v| v.is_finite()) {
+            return None;
+        }
+        let mut rows = vec![[0.0; MANY]; columns.quantities.len()];
+        for (values, row) in columns.quantities.iter().zip(&mut rows) {
+            chebyshev::coefficients(values, row);
+        }
+        let end = if single { columns.spans[0].width[0] } else { 1.0 };
+        Some(Self { columns, rows, rounding, end })
     }
 
-    /// Whether a row of Chebyshev coefficients is no more than rounding; `size` is the first row.
-    fn is_rounding(&self, row: &[f64], size: &[f64], gap: Gap) -> bool {
-        self.spans.iter().zip(&self.rounding).enumerate().all(|(k, (&(at, n), rounding))| {
-            let [s, u0] = [0, 1].map(|j| row[at + n + j].abs() <= rounding[j]);
-            let small = (s || gap == Gap::Computed && k == 0) && u0;
-            let q = &row[at..at + n];
-            let change = |tau: f64| q.iter().rev().fold(0.0, |sum, c| sum * (tau * self.end) + c);
-            let relative = ROUNDING_LEVEL * size[at].abs();
-            // Elsewhere q need not be better than s at the beginning, over the span's width.
-            let allowed =
-                if self.contact && k == 0 { relative } else { relative.max(rounding[0] / self.widest[k]) };
-            small && JUDGED.iter().all(|&tau| change(tau).abs() <= allowed)
-        })
+    /// Number of coefficients of which the last is more than rounding; `None` where too few are rounding.
+    fn kept(&self, gap: Gap) -> Option<usize> {
+        let mut more = [false; MANY];
+        let mut judge = |row: &Row, allowed: f64| {
+            for (more, c) in more.iter_mut().zip(row) {
+                *more |= c.abs() > allowed;
+            }
+        };
+        for (k, (span, rounding)) in self.columns.spans.iter().zip(self.rounding).enumerate() {
+            let (q, rest) = self.rows[span.at..].split_at(span.n);
+            if k > 0 || gap != Gap::Computed {
+                judge(&rest[0], rounding[0]);
+            }
+            judge(&rest[1], rounding[1]);
+            let relative = ROUNDING_LEVEL * q[0][0].abs();
+            // Beyond the contact segments q need not be better than s at the beginning, over the span's width.
+            let contact = self.columns.contact && k == 0;
+            let allowed = if contact { relative } else { relative.max(rounding[0] / largest(&span.width)) };
+            for tau in JUDGED {
+                let mut change = [0.0; MANY];
+                for c in q.iter().rev() {
+                    change = row(|k| change[k] * (tau * self.end) + c[k]);
+                }
+                judge(&change, allowed);
+            }
+        }
+        let kept = more.iter().rposition(|&more| more).map_or(1, |last| last + 1);
+        (kept + PROOF <= MANY).then_some(kept)
     }
+}
+
+fn largest(row: &Row) -> f64 {
+    row.iter().fold(0.0, |most, v| v.max(most))
 }

@@ -11,7 +11,7 @@ use crate::numerics::polynomial::{
 use crate::numerics::roots::bracketed;
 
 /// A Newton step below this share of the range, and of the step before, leaves an error of about its square: none.
-const QUADRATIC: f64 = 1e-4 * 1e-4;
+pub(super) const QUADRATIC: f64 = 1e-4 * 1e-4;
 
 /// A branch ζ(ξ) over a closed interval of ξ.
 #[derive(Debug, Clone)]
@@ -108,7 +108,7 @@ impl ArcBranch {
     }
 
     #[inline]
-    fn height_of(&self, xi: f64, sin: f64, cos: f64) -> f64 {
+    pub(super) fn height_of(&self, xi: f64, sin: f64, cos: f64) -> f64 {
         self.anchor[1] + (xi - self.anchor[0]) * ((self.sin + sin) / (self.cos + cos))
     }
 
@@ -126,9 +126,14 @@ impl ArcBranch {
 impl PolynomialBranch {
     /// t with ξ(t) = ξ.
     pub fn parameter(&self, xi: f64) -> f64 {
+        self.parameter_near(xi, self.guess(xi))
+    }
+
+    /// t where ξ is on the line through the ends.
+    pub(super) fn guess(&self, xi: f64) -> f64 {
         let [low, high] = self.t;
         let share = (xi - self.ends[0]) / (self.ends[1] - self.ends[0]);
-        self.parameter_near(xi, low + (high - low) * share)
+        low + (high - low) * share
     }
 
     /// t with ξ(t) = ξ, by Newton steps from a guess inside a shrinking bracket.

@@ -3,10 +3,12 @@
 mod between;
 mod branch;
 mod envelope;
+mod many;
 
 pub use between::stationary_points;
 pub use branch::{ArcBranch, Branch, BranchPoint, BranchShape, PolynomialBranch};
 pub use envelope::Piece;
+pub use many::BranchPoints;
 
 use super::{Arc, Profile, Shape, Station};
 use twofloat::TwoFloat;
