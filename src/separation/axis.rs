@@ -36,29 +36,46 @@ impl EtaAxis {
     /// The index ranges whose u lies in (u0, u1], or in \[u0, u1\] for u0 = 0: η ≥ 0, and η < 0 where that is not the
     /// mirror image.
     pub fn ranges(&self, u: [f64; 2]) -> [Range<usize>; 2] {
-        let [positive, negative] = self.sides(u);
-        [positive, if self.symmetric { 0..0 } else { negative }]
+        let right = &self.u[self.first_positive..];
+        let ends = u.map(|end| right.partition_point(|&u| u <= end));
+        let begin = if u[0] == 0.0 { 0 } else { ends[0] };
+        let positive = self.first_positive + begin..self.first_positive + ends[1];
+        [positive, if self.symmetric { 0..0 } else { self.negative(u) }]
     }
 
-    /// The same over the whole axis, without a gap in one range where u0 = 0.
+    /// The same over the whole axis, without a gap in one range where u0 = 0. `end` is the number of η ≥ 0 up to u0, and
+    /// becomes that up to u1.
     #[inline(always)]
-    pub fn runs(&self, u: [f64; 2]) -> [Range<usize>; 2] {
-        let [positive, negative] = self.sides(u);
+    pub fn runs(&self, u: [f64; 2], begin: usize, end: usize) -> [Range<usize>; 2] {
+        let n = self.u.len();
+        let begin = if u[0] == 0.0 { 0 } else { begin };
+        let positive = self.first_positive + begin..self.first_positive + end;
+        let negative = if self.symmetric { n - positive.end..n - positive.start } else { self.negative(u) };
         if u[0] == 0.0 { [negative.start..positive.end, 0..0] } else { [negative, positive] }
     }
 
+    /// The number of η ≥ 0 up to u, found from the number for another u nearby.
     #[inline(always)]
-    fn sides(&self, [u0, u1]: [f64; 2]) -> [Range<usize>; 2] {
-        let middle = self.first_positive;
-        let (left, right) = self.u.split_at(middle);
-        let begin = if u0 == 0.0 { 0 } else { up_to(right, u0) };
-        let positive = middle + begin..middle + up_to(right, u1);
-        if self.symmetric {
-            let n = self.u.len();
-            return [positive.clone(), n - positive.end..n - positive.start];
+    pub fn count(&self, u: f64, near: usize) -> usize {
+        let right = &self.u[self.first_positive..];
+        if right.last().is_none_or(|&last| last <= u) {
+            return right.len();
         }
-        let end = if u0 == 0.0 { middle } else { left.partition_point(|&u| u > u0) };
-        [positive, left.partition_point(|&u| u > u1)..end]
+        let mut count = near;
+        while count < right.len() && right[count] <= u {
+            count += 1;
+        }
+        while count > 0 && right[count - 1] > u {
+            count -= 1;
+        }
+        count
+    }
+
+    /// The indices of η < 0 of [`Self::ranges`].
+    fn negative(&self, [u0, u1]: [f64; 2]) -> Range<usize> {
+        let left = &self.u[..self.first_positive];
+        let end = if u0 == 0.0 { left.len() } else { left.partition_point(|&u| u > u0) };
+        left.partition_point(|&u| u > u1)..end
     }
 
     /// Copies the half η ≥ 0 of a column onto the other, where the axis is symmetric.
@@ -69,15 +86,6 @@ impl EtaAxis {
                 *left = *right;
             }
         }
-    }
-}
-
-/// Number of ascending values up to a bound, which is often beyond all of them.
-#[inline(always)]
-fn up_to(values: &[f64], bound: f64) -> usize {
-    match values.last() {
-        Some(&last) if last > bound => values.partition_point(|&value| value <= bound),
-        _ => values.len(),
     }
 }
 

@@ -11,7 +11,7 @@ use super::column::{NEARLY_COVERED, Span, WheelSurface};
 use super::columns::{Columns, Row};
 use super::gap::midplane_gap;
 use super::grid::{BLOCK, Kernel};
-use super::strips::{self, Strip};
+use super::strips::{self, MOST_SPANS, Strip};
 use super::{Evaluator, skewed};
 use crate::placement::Placement;
 
@@ -213,13 +213,17 @@ impl pulp::WithSimd for StripColumns<'_> {
         for (values, &xi) in values.iter_mut().zip(xi) {
             strip.values(xi, values, |xi| midplane_gap(placement, xi));
         }
+        let mut counts = [0; MOST_SPANS];
         for ((out, values), &xi) in out.chunks_exact_mut(axis.eta.len()).zip(values).zip(xi) {
-            for span in 0..strip.spans() {
+            let mut begin = 0;
+            for (span, count) in counts[..strip.spans()].iter_mut().enumerate() {
                 let (u, base, c) = strip.span(values, span, xi, u_max);
+                *count = axis.count(u[1], *count);
                 // Both halves of a symmetric axis: copying one takes longer than evaluating it.
-                for run in axis.runs(u) {
+                for run in axis.runs(u, begin, *count) {
                     evaluate(simd, [base, u[0]], c, &axis.u[run.clone()], &mut out[run]);
                 }
+                begin = *count;
             }
         }
     }
@@ -268,55 +272,75 @@ impl pulp::WithSimd for Run<'_> {
 /// of the machine. Multiply-adds are fused on every machine, be it in software: the same bits everywhere.
 #[inline(always)]
 fn evaluate<S: pulp::Simd>(simd: S, begin: [f64; 2], c: &[f64], u: &[f64], out: &mut [f64]) {
+    if begin[1] == 0.0 {
+        of_degree::<S, true>(simd, begin, c, u, out)
+    } else {
+        of_degree::<S, false>(simd, begin, c, u, out)
+    }
+}
+
+/// [`evaluate`] where u_0 is zero, and where it is not.
+#[inline(always)]
+fn of_degree<S: pulp::Simd, const FIRST: bool>(
+    simd: S,
+    begin: [f64; 2],
+    c: &[f64],
+    u: &[f64],
+    out: &mut [f64],
+) {
     match c.len() {
-        1 => horner::<S, 1>(simd, begin, c, u, out),
-        2 => horner::<S, 2>(simd, begin, c, u, out),
-        3 => horner::<S, 3>(simd, begin, c, u, out),
-        4 => horner::<S, 4>(simd, begin, c, u, out),
-        5 => horner::<S, 5>(simd, begin, c, u, out),
-        6 => horner::<S, 6>(simd, begin, c, u, out),
-        7 => horner::<S, 7>(simd, begin, c, u, out),
-        8 => horner::<S, 8>(simd, begin, c, u, out),
-        9 => horner::<S, 9>(simd, begin, c, u, out),
-        10 => horner::<S, 10>(simd, begin, c, u, out),
-        11 => horner::<S, 11>(simd, begin, c, u, out),
-        _ => horner::<S, MOST_COEFFICIENTS>(simd, begin, c, u, out),
+        1 => horner::<S, 1, FIRST>(simd, begin, c, u, out),
+        2 => horner::<S, 2, FIRST>(simd, begin, c, u, out),
+        3 => horner::<S, 3, FIRST>(simd, begin, c, u, out),
+        4 => horner::<S, 4, FIRST>(simd, begin, c, u, out),
+        5 => horner::<S, 5, FIRST>(simd, begin, c, u, out),
+        6 => horner::<S, 6, FIRST>(simd, begin, c, u, out),
+        7 => horner::<S, 7, FIRST>(simd, begin, c, u, out),
+        8 => horner::<S, 8, FIRST>(simd, begin, c, u, out),
+        9 => horner::<S, 9, FIRST>(simd, begin, c, u, out),
+        10 => horner::<S, 10, FIRST>(simd, begin, c, u, out),
+        11 => horner::<S, 11, FIRST>(simd, begin, c, u, out),
+        _ => horner::<S, MOST_COEFFICIENTS, FIRST>(simd, begin, c, u, out),
     }
 }
 
 #[inline(always)]
-fn horner<S: pulp::Simd, const N: usize>(
+fn horner<S: pulp::Simd, const N: usize, const FIRST: bool>(
     simd: S,
     [base, u0]: [f64; 2],
     c: &[f64],
     u: &[f64],
     out: &mut [f64],
 ) {
+    let Some(last) = u.len().checked_sub(S::F64_LANES) else {
+        for (s, u) in out.iter_mut().zip(u) {
+            let v = u - u0;
+            *s = c[..N].iter().rev().fold(0.0, |q: f64, c| q.mul_add(v, *c)).mul_add(v, base);
+        }
+        return;
+    };
     let c: [S::f64s; N] = from_fn(|k| simd.splat_f64s(c[k]));
     let begin = [base, u0].map(|value| simd.splat_f64s(value));
-    let Some(last) = u.len().checked_sub(S::F64_LANES) else {
-        return simd.partial_store_f64s(out, value(simd, begin, &c, simd.partial_load_f64s(u)));
-    };
     // Whole vectors are stored where they do not cross lines of the cache, which takes twice as long on large grids;
     // the first and the last may overlap them.
     let end = u.len();
     for part in [0..S::F64_LANES, last..end, lead(out)..end] {
         let (u, out) = (S::as_simd_f64s(&u[part.clone()]).0, S::as_mut_simd_f64s(&mut out[part]).0);
         for (s, &u) in out.iter_mut().zip(u) {
-            *s = value(simd, begin, &c, u);
+            *s = value::<S, N, FIRST>(simd, begin, &c, u);
         }
     }
 }
 
 /// One vector of [`horner`]. A function, since closures may be left out of line.
 #[inline(always)]
-fn value<S: pulp::Simd, const N: usize>(
+fn value<S: pulp::Simd, const N: usize, const FIRST: bool>(
     simd: S,
     [base, u0]: [S::f64s; 2],
     c: &[S::f64s; N],
     u: S::f64s,
 ) -> S::f64s {
-    let v = simd.sub_f64s(u, u0);
+    let v = if FIRST { u } else { simd.sub_f64s(u, u0) };
     let mut q = c[N - 1];
     for &c in c[..N - 1].iter().rev() {
         q = simd.mul_add_f64s(q, v, c);
