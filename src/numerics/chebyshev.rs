@@ -32,6 +32,7 @@ pub fn point(j: usize, n: usize) -> f64 {
 }
 
 /// The coefficients of T_0 … T_{n−1} of the interpolant through values at the n points.
+#[inline(always)]
 pub fn coefficients(values: &[f64], c: &mut [f64]) {
     let n = values.len();
     c.fill(0.0);
@@ -63,6 +64,7 @@ pub fn value(c: &[f64], t: f64) -> f64 {
 }
 
 /// The coefficients of t^k from those of T_k. Loses digits where they fall by less than about 0.4 a step.
+#[inline(always)]
 pub fn to_powers(c: &[f64], powers: &mut [f64]) {
     powers.fill(0.0);
     for (c, row) in c.iter().zip(POWERS.iter()) {

@@ -139,6 +139,7 @@ impl Arc {
 }
 
 /// √(1 − sin²) without cancellation, 0 where rounding has carried |sin| past 1.
+#[inline(always)]
 pub(super) fn cosine(sin: f64) -> f64 {
     ((1.0 - sin) * (1.0 + sin)).max(0.0).sqrt()
 }

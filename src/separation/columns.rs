@@ -3,7 +3,7 @@
 
 use super::Evaluator;
 use super::column::{NEARLY_COVERED, Span, WheelSurface, sagitta};
-use super::gap::contact_gap;
+use super::gap::contact_gaps;
 use super::spectral::{Demand, MOST_COEFFICIENTS, ROUNDING_LEVEL, is_whole, nodes, powers};
 use crate::profile::{Branch, BranchPoints};
 
@@ -74,6 +74,7 @@ struct Feet {
 impl Columns {
     /// The columns at ξ up to u = `u_max`, with at least so many coefficients, if they are as the one in the middle;
     /// `None` where a column is not whole or no polynomial reaches the demand.
+    #[inline(always)]
     pub fn new(evaluator: &Evaluator<'_>, demand: Demand, least: usize, u_max: f64, xi: Row) -> Option<Self> {
         let (wheel, middle) = (&evaluator.wheel, xi[MANY / 2]);
         let mut shape = Vec::with_capacity(4);
@@ -99,7 +100,7 @@ impl Columns {
             let at = quantities.len();
             let n = wheel.polynomials(&begin, &u1, demand, least, &mut quantities)?;
             quantities.push(if contact && k == 0 {
-                row(|k| contact_gap(rail, begin.branch, xi[k], begin.height[k]))
+                contact_gaps(rail, begin.branch, &xi, &begin.height)
             } else {
                 row(|k| begin.height[k] - rail_height[k])
             });
@@ -113,6 +114,7 @@ impl Columns {
 }
 
 impl<'a> WheelSurface<'a> {
+    #[inline(always)]
     fn begin(&self, xi: &Row, span: &Span, u: Row) -> Option<Begin<'a>> {
         let branch = &self.section.branches[span.branch];
         let piece = &self.section.pieces[span.piece];
@@ -135,6 +137,7 @@ impl<'a> WheelSurface<'a> {
     }
 
     /// u where the columns leave a span.
+    #[inline(always)]
     fn ends(&self, begin: &Begin<'_>, span: &Span) -> Row {
         let (_, height) = self.section.pieces[span.piece].ends[self.sides()[1]];
         row(|k| {
@@ -145,6 +148,7 @@ impl<'a> WheelSurface<'a> {
         })
     }
 
+    #[inline(always)]
     fn feet(&self, begin: &Begin<'_>, e: Row) -> Option<Feet> {
         let slope = begin.branch.chords_from(&begin.points, &row(|k| self.abscissa(begin.xi[k], e[k])))?;
         let rise = row(|k| (e[k] - begin.e[k]) * (self.cos - self.sin * slope[k]));
@@ -154,6 +158,7 @@ impl<'a> WheelSurface<'a> {
     }
 
     /// Points near u, as [`Self::foot_near`]; `None` where one is not.
+    #[inline(always)]
     fn feet_near(&self, begin: &Begin<'_>, u: &Row) -> Option<Feet> {
         let step = |w: &Row| self.feet(begin, row(|k| sagitta(w[k], u[k]).max(begin.e[k]).min(begin.far[k])));
         let near = |feet: &Feet| {
@@ -164,6 +169,7 @@ impl<'a> WheelSurface<'a> {
     }
 
     /// Appends the coefficients of q, as [`super::spectral::Spectral::polynomial`]; how many.
+    #[inline(always)]
     fn polynomials(
         &self,
         begin: &Begin<'_>,

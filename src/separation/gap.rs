@@ -1,5 +1,6 @@
 //! The midplane gap g(ξ) = ζ^W(ξ, 0) − ζ^R(ξ), to full relative accuracy over the contact segments.
 
+use super::columns::{Row, row};
 use crate::placement::Placement;
 use crate::profile::{ArcBranch, Branch, BranchShape};
 
@@ -25,6 +26,19 @@ pub(super) fn contact_gap(rail: &Branch, wheel: &Branch, xi: f64, zeta_w: f64) -
     if let (BranchShape::Arc(rail), BranchShape::Arc(wheel)) = (&rail.shape, &wheel.shape) {
         return arc_gap(rail, wheel, xi);
     }
+    polynomial_gap(rail, wheel, xi, zeta_w)
+}
+
+/// [`contact_gap`] at many ξ.
+#[inline(always)]
+pub(super) fn contact_gaps(rail: &Branch, wheel: &Branch, xi: &Row, zeta_w: &Row) -> Row {
+    match (&rail.shape, &wheel.shape) {
+        (BranchShape::Arc(rail), BranchShape::Arc(wheel)) => row(|k| arc_gap(rail, wheel, xi[k])),
+        _ => row(|k| polynomial_gap(rail, wheel, xi[k], zeta_w[k])),
+    }
+}
+
+fn polynomial_gap(rail: &Branch, wheel: &Branch, xi: f64, zeta_w: f64) -> f64 {
     let gap = zeta_w - rail.height(xi);
     // Three bits lost are within the promise; beyond that the difference is taken in 32 digits.
     if gap.abs() >= 0.125 * zeta_w.abs() {
@@ -35,7 +49,7 @@ pub(super) fn contact_gap(rail: &Branch, wheel: &Branch, xi: f64, zeta_w: f64) -
 
 /// g = ξ² (κ_W − κ_R) [1 + (κ_W + κ_R)/(κ_W C_R + κ_R C_W)] / ((1 + C_W)(1 + C_R)) for curvatures of one sign;
 /// the plain difference, which then does not cancel, for opposite ones.
-#[inline]
+#[inline(always)]
 pub(super) fn arc_gap(rail: &ArcBranch, wheel: &ArcBranch, xi: f64) -> f64 {
     let (k_r, k_w) = (rail.curvature, wheel.curvature);
     let (c_r, c_w) = (rail.sine_cosine(xi).1, wheel.sine_cosine(xi).1);

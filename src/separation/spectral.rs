@@ -22,6 +22,9 @@ pub const MOST_COEFFICIENTS: usize = 12;
 /// Relative error of q that counts as rounding: more coefficients would not lower it.
 pub(super) const ROUNDING_LEVEL: f64 = 4.0 * f64::EPSILON;
 
+/// Runs from this length on are stored line by line of the cache.
+const LONG_RUN: usize = 64;
+
 /// The demand on a column: |error of s| ≤ `absolute`, and ≤ `relative` × |(u − u_0) q|.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Demand {
@@ -56,7 +59,7 @@ pub struct Spectral<'a> {
     strips: &'a [Strip],
     spans: Vec<Span>,
     values: Vec<strips::Values>,
-    arch: pulp::Arch,
+    pub(super) arch: pulp::Arch,
 }
 
 impl<'a> Spectral<'a> {
@@ -74,6 +77,7 @@ impl<'a> Spectral<'a> {
     }
 
     /// Columns at many ξ, if all are as the one in the middle; `None` where one is not, or is no polynomial.
+    #[inline(always)]
     pub(super) fn columns_at(&self, xi: Row, u_max: f64) -> Option<Columns> {
         Columns::new(&self.evaluator, self.demand, self.coefficients, u_max, xi)
     }
@@ -130,20 +134,27 @@ fn interpolate(
 }
 
 /// The coefficients of the polynomials that take the values d at the places v, by divided differences; for N at once.
+#[inline(always)]
 pub(super) fn powers<const N: usize>(v: &[[f64; N]], d: &mut [[f64; N]]) -> [[f64; N]; MOST_COEFFICIENTS] {
     let n = v.len();
     for order in 1..n {
         for j in (order..n).rev() {
-            d[j] = from_fn(|k| (d[j][k] - d[j - 1][k]) / (v[j][k] - v[j - order][k]));
+            for k in 0..N {
+                d[j][k] = (d[j][k] - d[j - 1][k]) / (v[j][k] - v[j - order][k]);
+            }
         }
     }
     let mut c = [[0.0; N]; MOST_COEFFICIENTS];
     for j in (0..n).rev() {
         // c ← c·(v − v_j) + d_j
         for i in (1..n - j).rev() {
-            c[i] = from_fn(|k| c[i - 1][k] - v[j][k] * c[i][k]);
+            for k in 0..N {
+                c[i][k] = c[i - 1][k] - v[j][k] * c[i][k];
+            }
         }
-        c[0] = from_fn(|k| d[j][k] - v[j][k] * c[0][k]);
+        for k in 0..N {
+            c[0][k] = d[j][k] - v[j][k] * c[0][k];
+        }
     }
     c
 }
@@ -321,10 +332,11 @@ fn horner<S: pulp::Simd, const N: usize, const FIRST: bool>(
     };
     let c: [S::f64s; N] = from_fn(|k| simd.splat_f64s(c[k]));
     let begin = [base, u0].map(|value| simd.splat_f64s(value));
-    // Whole vectors are stored where they do not cross lines of the cache, which takes twice as long on large grids;
-    // the first and the last may overlap them.
-    let end = u.len();
-    for part in [0..S::F64_LANES, last..end, lead(out)..end] {
+    // Long runs are stored where lines of the cache begin: a store across two takes twice as long. The vectors at both
+    // ends may overlap the others.
+    let (end, long) = (u.len(), u.len() >= LONG_RUN);
+    let parts = if long { [0..S::F64_LANES, last..end, lead(out)..end] } else { [0..0, last..end, 0..end] };
+    for part in parts {
         let (u, out) = (S::as_simd_f64s(&u[part.clone()]).0, S::as_mut_simd_f64s(&mut out[part]).0);
         for (s, &u) in out.iter_mut().zip(u) {
             *s = value::<S, N, FIRST>(simd, begin, &c, u);

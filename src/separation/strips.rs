@@ -127,22 +127,43 @@ fn divide(spectral: &Spectral<'_>, xi: &[f64], [a, b]: [f64; 2], u_max: f64, str
     if columns < LEAST_COLUMNS {
         return;
     }
-    let middle = a + (b - a) / 2.0;
-    let points = std::array::from_fn(|k| middle + (b - a) / 2.0 * chebyshev::point(k, MANY));
-    if let Some(series) = spectral.columns_at(points, u_max).and_then(Series::new) {
-        let own = if series.columns.contact { Gap::Relative } else { Gap::Plain };
-        let gaps = [own, Gap::Computed];
-        let tried = if columns < MANY_GAPS { &gaps[..] } else { &gaps[..1] };
-        if let Some((gap, kept)) = tried.iter().find_map(|&gap| Some((gap, series.kept(gap)?))) {
-            return strips.push(Strip::new(&series, [a, b], gap, kept));
+    match spectral.arch.dispatch(Attempt { spectral, xi: [a, b], u_max, columns }) {
+        Some(strip) => strips.push(strip),
+        None => {
+            let middle = a + (b - a) / 2.0;
+            divide(spectral, xi, [a, middle], u_max, strips);
+            divide(spectral, xi, [middle, b], u_max, strips);
         }
     }
-    divide(spectral, xi, [a, middle], u_max, strips);
-    divide(spectral, xi, [middle, b], u_max, strips);
+}
+
+/// One strip over an interval with so many columns, compiled for each kind of machine.
+struct Attempt<'a> {
+    spectral: &'a Spectral<'a>,
+    xi: [f64; 2],
+    u_max: f64,
+    columns: usize,
+}
+
+impl pulp::WithSimd for Attempt<'_> {
+    type Output = Option<Strip>;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> Option<Strip> {
+        let ([a, b], half) = (self.xi, (self.xi[1] - self.xi[0]) / 2.0);
+        let points = row(|k| a + half + half * chebyshev::point(k, MANY));
+        let series = Series::new(self.spectral.columns_at(points, self.u_max)?)?;
+        let own = if series.columns.contact { Gap::Relative } else { Gap::Plain };
+        let gaps = [own, Gap::Computed];
+        let tried = if self.columns < MANY_GAPS { &gaps[..] } else { &gaps[..1] };
+        let (gap, kept) = tried.iter().find_map(|&gap| Some((gap, series.kept(gap)?)))?;
+        Some(Strip::new(&series, [a, b], gap, kept))
+    }
 }
 
 impl Strip {
     /// The strip by so many coefficients of its series.
+    #[inline(always)]
     fn new(series: &Series, xi: [f64; 2], gap: Gap, kept: usize) -> Self {
         let kept = kept.next_multiple_of(2);
         let (mut width, mut spans) = (0, Vec::with_capacity(MOST_SPANS));
@@ -221,6 +242,7 @@ impl Strip {
 
 impl Series {
     /// `None` where there are too many spans, or something is not finite.
+    #[inline(always)]
     fn new(mut columns: Columns) -> Option<Self> {
         let single = columns.spans.len() == 1;
         let mut rounding = [[0.0; 2]; MOST_SPANS];
@@ -259,6 +281,7 @@ impl Series {
     }
 
     /// Number of coefficients of which the last is more than rounding; `None` where too few are rounding.
+    #[inline(always)]
     fn kept(&self, gap: Gap) -> Option<usize> {
         let mut more = [false; MANY];
         let mut judge = |row: &Row, allowed: f64| {

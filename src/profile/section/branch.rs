@@ -94,7 +94,7 @@ pub struct PolynomialBranch {
 
 impl ArcBranch {
     /// (S, C) at ξ.
-    #[inline]
+    #[inline(always)]
     pub fn sine_cosine(&self, xi: f64) -> (f64, f64) {
         let sin = self.sin + self.curvature * (xi - self.anchor[0]);
         (sin, cosine(sin))
@@ -107,7 +107,7 @@ impl ArcBranch {
         self.height_of(xi, sin, cos)
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn height_of(&self, xi: f64, sin: f64, cos: f64) -> f64 {
         self.anchor[1] + (xi - self.anchor[0]) * ((self.sin + sin) / (self.cos + cos))
     }

@@ -39,6 +39,7 @@ impl<const N: usize> From<&BranchPoint> for BranchPoints<N> {
 
 impl Branch {
     /// The points at ξ and their ζ \[mm\]; `None` where Newton's steps on a polynomial do not settle.
+    #[inline(always)]
     pub fn points<const N: usize>(&self, xi: &[f64; N]) -> Option<(BranchPoints<N>, [f64; N])> {
         match &self.shape {
             BranchShape::Arc(arc) => {
@@ -57,6 +58,7 @@ impl Branch {
     }
 
     /// The slopes of the chords from the points to the abscissae; `None` as for [`Self::points`].
+    #[inline(always)]
     pub fn chords_from<const N: usize>(&self, from: &BranchPoints<N>, to: &[f64; N]) -> Option<[f64; N]> {
         match (&self.shape, from) {
             (BranchShape::Arc(arc), BranchPoints::Arc { sin, cos }) => {
@@ -81,6 +83,7 @@ impl Branch {
 
 impl PolynomialBranch {
     /// t with ξ(t) = ξ by Newton's steps from guesses.
+    #[inline(always)]
     fn parameters<const N: usize>(&self, xi: &[f64; N], guess: [f64; N]) -> Option<[f64; N]> {
         let [low, high] = self.t;
         let done = QUADRATIC * (high - low);
@@ -105,6 +108,7 @@ impl PolynomialBranch {
 }
 
 /// Values and first derivatives.
+#[inline(always)]
 fn values_and_slopes<const N: usize>(c: &[f64], t: &[f64; N]) -> ([f64; N], [f64; N]) {
     let (mut value, mut slope) = ([0.0; N], [0.0; N]);
     for &c in c.iter().rev() {
@@ -117,6 +121,7 @@ fn values_and_slopes<const N: usize>(c: &[f64], t: &[f64; N]) -> ([f64; N], [f64
 }
 
 /// [`crate::numerics::polynomial::divided_difference`] for several.
+#[inline(always)]
 fn differences<const N: usize>(c: &[f64], a: &[f64; N], b: &[f64; N]) -> [f64; N] {
     let (mut quotient, mut sum) = ([0.0; N], [0.0; N]);
     for &c in c.iter().skip(1).rev() {
