@@ -30,7 +30,7 @@ struct Bound {
 
 /// The historical baseline cancels (erratum 7): it has absolute digits only, and near C no relative ones.
 const BOUNDS: [Bound; 3] = [
-    Bound { method: Method::Spectral, relative: 5e-15, absolute: 2.5e-15 },
+    Bound { method: Method::Spectral, relative: 2e-15, absolute: 2.5e-15 },
     Bound { method: Method::Pointwise, relative: 3e-15, absolute: 2.5e-15 },
     Bound { method: Method::ReportNewton, relative: f64::INFINITY, absolute: 1.2e-13 },
 ];

@@ -5,3 +5,4 @@ pub mod elliptic;
 pub mod polynomial;
 pub mod quadrature;
 pub mod roots;
+pub mod twice;

@@ -25,42 +25,31 @@ pub fn row(value: impl Fn(usize) -> f64) -> Row {
 
 /// Columns that pass the same branches in the same order.
 #[derive(Debug)]
-pub struct Columns {
+pub struct Columns<'a> {
+    wheel: WheelSurface<'a>,
     /// Their abscissae \[mm\].
     pub xi: Row,
     /// Whether they begin over both contact segments.
     pub contact: bool,
     /// In order of u.
-    pub spans: Vec<SpanColumns>,
-    /// Of every span the coefficients of q, s at its beginning and u_0: s + v Σ c_k v^k, v = u − u_0.
-    pub quantities: Vec<Row>,
+    pub spans: Vec<SpanColumns<'a>>,
 }
 
-/// One span of every column.
+/// Where the columns enter and leave a span.
 #[derive(Debug)]
-pub struct SpanColumns {
-    /// Index of the first coefficient among the quantities.
-    pub at: usize,
-    /// Number of coefficients.
-    pub n: usize,
-    /// Length of the span in u, up to the window's end \[mm²\].
-    pub width: Row,
-    /// Size of the coordinates that s at the beginning is computed from \[mm\].
-    pub height: Row,
-}
-
-/// Where the columns enter a span.
-struct Begin<'a> {
-    xi: Row,
+pub struct SpanColumns<'a> {
     branch: &'a Branch,
     points: BranchPoints<MANY>,
-    /// ζ of the wheel.
+    /// s there \[mm\].
+    pub base: Row,
+    /// ζ of the wheel there \[mm\].
     height: Row,
-    e: Row,
-    u: Row,
+    /// Range of u, up to the window's end \[mm²\].
+    pub u: [Row; 2],
+    /// Range of e \[mm\].
+    e: [Row; 2],
+    /// Axle distance at the beginning \[mm\].
     w: Row,
-    /// Sagittae at the other end of the span.
-    far: Row,
 }
 
 /// Points on the wheel, one of every column.
@@ -71,12 +60,11 @@ struct Feet {
     u: Row,
 }
 
-impl Columns {
-    /// The columns at ξ up to u = `u_max`, with at least so many coefficients, if they are as the one in the middle;
-    /// `None` where a column is not whole or no polynomial reaches the demand.
+impl<'a> Columns<'a> {
+    /// The columns at ξ up to u = `u_max`, if they are as the one in the middle; `None` where one is not, or not whole.
     #[inline(always)]
-    pub fn new(evaluator: &Evaluator<'_>, demand: Demand, least: usize, u_max: f64, xi: Row) -> Option<Self> {
-        let (wheel, middle) = (&evaluator.wheel, xi[MANY / 2]);
+    pub fn new(evaluator: &Evaluator<'a>, u_max: f64, xi: Row) -> Option<Self> {
+        let (wheel, middle) = (evaluator.wheel, xi[MANY / 2]);
         let mut shape = Vec::with_capacity(4);
         wheel.spans(middle, u_max, &mut shape);
         if !is_whole(&shape, u_max) {
@@ -85,121 +73,117 @@ impl Columns {
         let contact = evaluator.over_contact(middle, &shape[0]);
         let rail = evaluator.placement.rail.section.branch_at(middle)?;
         let rail_height = if contact && shape.len() == 1 { [0.0; MANY] } else { rail.points(&xi)?.1 };
-        let mut spans: Vec<SpanColumns> = Vec::with_capacity(shape.len());
-        let mut quantities = Vec::with_capacity(shape.len() * (MOST_COEFFICIENTS + 2));
-        let mut u0 = [0.0; MANY];
+        let mut spans: Vec<SpanColumns<'a>> = Vec::with_capacity(shape.len());
         for (k, span) in shape.iter().enumerate() {
-            let begin = wheel.begin(&xi, span, u0)?;
-            let ends = wheel.ends(&begin, span);
-            let last = k + 1 == shape.len();
+            let u0 = spans.last().map_or([0.0; MANY], |before| before.u[1]);
+            let mut here = wheel.span_at_many(&xi, span, u0)?;
+            let (ends, last) = (here.u[1], k + 1 == shape.len());
             // A span that ends elsewhere than in the middle column is another shape.
             if !(0..MANY).all(|k| if last { ends[k] >= u_max } else { ends[k] > u0[k] && ends[k] <= u_max }) {
                 return None;
             }
-            let u1 = if last { [u_max; MANY] } else { ends };
-            let at = quantities.len();
-            let n = wheel.polynomials(&begin, &u1, demand, least, &mut quantities)?;
-            quantities.push(if contact && k == 0 {
-                contact_gaps(rail, begin.branch, &xi, &begin.height)
+            if last {
+                here.u[1] = [u_max; MANY];
+            }
+            here.base = if contact && k == 0 {
+                contact_gaps(rail, here.branch, &xi, &here.points)?
             } else {
-                row(|k| begin.height[k] - rail_height[k])
-            });
-            quantities.push(u0);
-            let height = row(|k| evaluator.size(xi[k], begin.height[k]));
-            spans.push(SpanColumns { at, n, width: row(|k| u1[k] - u0[k]), height });
-            u0 = u1;
+                row(|k| here.height[k] - rail_height[k])
+            };
+            spans.push(here);
         }
-        Some(Self { xi, contact, spans, quantities })
+        Some(Self { wheel, xi, contact, spans })
+    }
+
+    /// Appends the coefficients of q over one span, at least so many, as [`super::spectral::Spectral::polynomial`]; how
+    /// many. `None` where no degree reaches the demand.
+    #[inline(always)]
+    pub fn polynomials(
+        &self,
+        span: usize,
+        demand: Demand,
+        least: usize,
+        coefficients: &mut Vec<Row>,
+    ) -> Option<usize> {
+        let (wheel, span) = (&self.wheel, &self.spans[span]);
+        let end = wheel.feet_near(&self.xi, span, &span.u[1])?;
+        let run: Row = row(|k| end.e[k] - span.e[0][k]);
+        for n in least..=MOST_COEFFICIENTS {
+            let (mut v, mut d) = ([[0.0; MANY]; MOST_COEFFICIENTS], [[0.0; MANY]; MOST_COEFFICIENTS]);
+            for ((v, d), node) in v.iter_mut().zip(&mut d).zip(nodes(n)) {
+                let feet = wheel.feet(&self.xi, span, row(|k| span.e[0][k] + run[k] * node))?;
+                *v = row(|k| feet.u[k] - span.u[0][k]);
+                *d = row(|k| feet.rise[k] / v[k]);
+            }
+            let c = powers(&v[..n], &mut d[..n]);
+            let good = |k: usize| {
+                let v = end.u[k] - span.u[0][k];
+                let value = v * c[..n].iter().rev().fold(0.0, |q, c| q * v + c[k]);
+                let rise = end.rise[k].abs();
+                let allowed = demand.absolute.min(demand.relative * rise);
+                (value - end.rise[k]).abs() <= allowed.max(ROUNDING_LEVEL * (rise + span.e[0][k]))
+            };
+            if (0..MANY).all(good) {
+                coefficients.extend(&c[..n]);
+                return Some(n);
+            }
+        }
+        None
+    }
+}
+
+impl SpanColumns<'_> {
+    /// Size of the coordinates that s at the beginning is computed from \[mm\].
+    pub fn size(&self, evaluator: &Evaluator<'_>, xi: &Row) -> Row {
+        row(|k| evaluator.size(xi[k], self.height[k]))
     }
 }
 
 impl<'a> WheelSurface<'a> {
+    /// One span of all columns, from u as given to the end of its piece; s not yet known.
     #[inline(always)]
-    fn begin(&self, xi: &Row, span: &Span, u: Row) -> Option<Begin<'a>> {
+    fn span_at_many(&self, xi: &Row, span: &Span, u0: Row) -> Option<SpanColumns<'a>> {
         let branch = &self.section.branches[span.branch];
         let piece = &self.section.pieces[span.piece];
         let [near, far] = self.sides();
-        let (e, points, on_profile): (Row, _, Row) = if span.e[0] > 0.0 {
+        let sagitta = |end: f64| row(|k| (xi[k] - end) / self.sin);
+        let (e0, points, on_profile) = if span.e[0] > 0.0 {
             let (point, height) = &piece.ends[near];
-            (row(|k| (xi[k] - piece.xi[near]) / self.sin), point.into(), [*height; MANY])
+            (sagitta(piece.xi[near]), point.into(), [*height; MANY])
         } else {
             let (points, heights) = branch.points(xi)?;
             ([0.0; MANY], points, heights)
         };
-        let height: Row = row(|k| on_profile[k] + e[k] * self.cos);
+        let height = row(|k| on_profile[k] + e0[k] * self.cos);
         let w = row(|k| self.axle - xi[k] * self.sin - height[k] * self.cos);
-        let far = if span.e[1].is_finite() {
-            row(|k| (xi[k] - piece.xi[far]) / self.sin)
-        } else {
-            [f64::INFINITY; MANY]
-        };
-        Some(Begin { xi: *xi, branch, points, height, e, u, w, far })
-    }
-
-    /// u where the columns leave a span.
-    #[inline(always)]
-    fn ends(&self, begin: &Begin<'_>, span: &Span) -> Row {
-        let (_, height) = self.section.pieces[span.piece].ends[self.sides()[1]];
-        row(|k| {
-            let e = begin.far[k];
-            let w = self.axle - begin.xi[k] * self.sin - (height + e * self.cos) * self.cos;
-            // An end that is not finite is beyond the window.
-            if span.u[1].is_finite() && w > 0.0 { e * (2.0 * w + e) } else { f64::INFINITY }
-        })
+        let e1 = if span.e[1].is_finite() { sagitta(piece.xi[far]) } else { [f64::INFINITY; MANY] };
+        let (_, at_end) = piece.ends[far];
+        let u1 = row(|k| {
+            let w = self.axle - xi[k] * self.sin - (at_end + e1[k] * self.cos) * self.cos;
+            // An end that the middle column has not is beyond the window.
+            if span.u[1].is_finite() && w > 0.0 { e1[k] * (2.0 * w + e1[k]) } else { f64::INFINITY }
+        });
+        Some(SpanColumns { branch, points, base: [f64::NAN; MANY], height, u: [u0, u1], e: [e0, e1], w })
     }
 
     #[inline(always)]
-    fn feet(&self, begin: &Begin<'_>, e: Row) -> Option<Feet> {
-        let slope = begin.branch.chords_from(&begin.points, &row(|k| self.abscissa(begin.xi[k], e[k])))?;
-        let rise = row(|k| (e[k] - begin.e[k]) * (self.cos - self.sin * slope[k]));
-        let w = row(|k| begin.w[k] - rise[k] * self.cos);
+    fn feet(&self, xi: &Row, span: &SpanColumns<'_>, e: Row) -> Option<Feet> {
+        let slope = span.branch.chords_from(&span.points, &row(|k| self.abscissa(xi[k], e[k])))?;
+        let rise = row(|k| (e[k] - span.e[0][k]) * (self.cos - self.sin * slope[k]));
+        let w = row(|k| span.w[k] - rise[k] * self.cos);
         let u = row(|k| e[k] * (2.0 * w[k] + e[k]));
         Some(Feet { e, rise, w, u })
     }
 
     /// Points near u, as [`Self::foot_near`]; `None` where one is not.
     #[inline(always)]
-    fn feet_near(&self, begin: &Begin<'_>, u: &Row) -> Option<Feet> {
-        let step = |w: &Row| self.feet(begin, row(|k| sagitta(w[k], u[k]).max(begin.e[k]).min(begin.far[k])));
+    fn feet_near(&self, xi: &Row, span: &SpanColumns<'_>, u: &Row) -> Option<Feet> {
+        let [low, high] = &span.e;
+        let step = |w: &Row| self.feet(xi, span, row(|k| sagitta(w[k], u[k]).max(low[k]).min(high[k])));
         let near = |feet: &Feet| {
             (0..MANY).all(|k| (feet.u[k] - u[k]).abs() <= (1.0 - NEARLY_COVERED) * u[k] && feet.w[k] > 0.0)
         };
-        let first = step(&begin.w)?;
+        let first = step(&span.w)?;
         if near(&first) { Some(first) } else { step(&first.w).filter(near) }
-    }
-
-    /// Appends the coefficients of q, as [`super::spectral::Spectral::polynomial`]; how many.
-    #[inline(always)]
-    fn polynomials(
-        &self,
-        begin: &Begin<'_>,
-        u1: &Row,
-        demand: Demand,
-        least: usize,
-        quantities: &mut Vec<Row>,
-    ) -> Option<usize> {
-        let end = self.feet_near(begin, u1)?;
-        let run: Row = row(|k| end.e[k] - begin.e[k]);
-        for n in least..=MOST_COEFFICIENTS {
-            let (mut v, mut d) = ([[0.0; MANY]; MOST_COEFFICIENTS], [[0.0; MANY]; MOST_COEFFICIENTS]);
-            for ((v, d), node) in v.iter_mut().zip(&mut d).zip(nodes(n)) {
-                let feet = self.feet(begin, row(|k| begin.e[k] + run[k] * node))?;
-                *v = row(|k| feet.u[k] - begin.u[k]);
-                *d = row(|k| feet.rise[k] / v[k]);
-            }
-            let c = powers(&v[..n], &mut d[..n]);
-            let good = |k: usize| {
-                let v = end.u[k] - begin.u[k];
-                let value = v * c[..n].iter().rev().fold(0.0, |q, c| q * v + c[k]);
-                let rise = end.rise[k].abs();
-                let allowed = demand.absolute.min(demand.relative * rise);
-                (value - end.rise[k]).abs() <= allowed.max(ROUNDING_LEVEL * (rise + begin.e[k]))
-            };
-            if (0..MANY).all(good) {
-                quantities.extend(&c[..n]);
-                return Some(n);
-            }
-        }
-        None
     }
 }

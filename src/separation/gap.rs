@@ -1,8 +1,8 @@
 //! The midplane gap g(ξ) = ζ^W(ξ, 0) − ζ^R(ξ), to full relative accuracy over the contact segments.
 
-use super::columns::{Row, row};
+use super::columns::{MANY, Row, row};
 use crate::placement::Placement;
-use crate::profile::{ArcBranch, Branch, BranchShape};
+use crate::profile::{ArcBranch, Branch, BranchPoints, BranchShape};
 
 /// g(ξ) \[mm\], NaN where a body has no surface.
 ///
@@ -26,25 +26,29 @@ pub(super) fn contact_gap(rail: &Branch, wheel: &Branch, xi: f64, zeta_w: f64) -
     if let (BranchShape::Arc(rail), BranchShape::Arc(wheel)) = (&rail.shape, &wheel.shape) {
         return arc_gap(rail, wheel, xi);
     }
-    polynomial_gap(rail, wheel, xi, zeta_w)
-}
-
-/// [`contact_gap`] at many ξ.
-#[inline(always)]
-pub(super) fn contact_gaps(rail: &Branch, wheel: &Branch, xi: &Row, zeta_w: &Row) -> Row {
-    match (&rail.shape, &wheel.shape) {
-        (BranchShape::Arc(rail), BranchShape::Arc(wheel)) => row(|k| arc_gap(rail, wheel, xi[k])),
-        _ => row(|k| polynomial_gap(rail, wheel, xi[k], zeta_w[k])),
-    }
-}
-
-fn polynomial_gap(rail: &Branch, wheel: &Branch, xi: f64, zeta_w: f64) -> f64 {
     let gap = zeta_w - rail.height(xi);
     // Three bits lost are within the promise; beyond that the difference is taken in 32 digits.
     if gap.abs() >= 0.125 * zeta_w.abs() {
         return gap;
     }
-    (wheel.exact_height(xi) - rail.exact_height(xi)).into()
+    (wheel.exact_height(xi) - rail.exact_height(xi)).high
+}
+
+/// [`contact_gap`] at many ξ, from the wheel's points there; differences of polynomials all in 32 digits. `None` where a
+/// point is not found.
+#[inline(always)]
+pub(super) fn contact_gaps(
+    rail: &Branch,
+    wheel: &Branch,
+    xi: &Row,
+    wheel_points: &BranchPoints<MANY>,
+) -> Option<Row> {
+    if let (BranchShape::Arc(rail), BranchShape::Arc(wheel)) = (&rail.shape, &wheel.shape) {
+        return Some(row(|k| arc_gap(rail, wheel, xi[k])));
+    }
+    let zeta_w = wheel.exact_heights(xi, wheel_points);
+    let zeta_r = rail.exact_heights(xi, &rail.points(xi)?.0);
+    Some(row(|k| (zeta_w[k] - zeta_r[k]).high))
 }
 
 /// g = ξ² (κ_W − κ_R) [1 + (κ_W + κ_R)/(κ_W C_R + κ_R C_W)] / ((1 + C_W)(1 + C_R)) for curvatures of one sign;

@@ -8,7 +8,6 @@ use std::array::from_fn;
 
 use super::axis::{EtaAxis, lead};
 use super::column::{NEARLY_COVERED, Span, WheelSurface};
-use super::columns::{Columns, Row};
 use super::gap::midplane_gap;
 use super::grid::{BLOCK, Kernel};
 use super::strips::{self, MOST_SPANS, Strip};
@@ -52,10 +51,10 @@ pub struct ColumnPolynomial {
 /// Columns by interpolation to a demand.
 #[derive(Debug)]
 pub struct Spectral<'a> {
-    evaluator: Evaluator<'a>,
+    pub(super) evaluator: Evaluator<'a>,
     axis: &'a EtaAxis,
-    demand: Demand,
-    coefficients: usize,
+    pub(super) demand: Demand,
+    pub(super) coefficients: usize,
     strips: &'a [Strip],
     spans: Vec<Span>,
     values: Vec<strips::Values>,
@@ -74,12 +73,6 @@ impl<'a> Spectral<'a> {
     /// The same with strips for some of the columns.
     pub fn with_strips(self, strips: &'a [Strip]) -> Self {
         Self { strips, values: vec![Default::default(); BLOCK], ..self }
-    }
-
-    /// Columns at many ξ, if all are as the one in the middle; `None` where one is not, or is no polynomial.
-    #[inline(always)]
-    pub(super) fn columns_at(&self, xi: Row, u_max: f64) -> Option<Columns> {
-        Columns::new(&self.evaluator, self.demand, self.coefficients, u_max, xi)
     }
 
     /// The polynomial over one span up to `u_max` with at least so many coefficients, or `None` where no degree reaches

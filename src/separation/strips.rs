@@ -14,9 +14,6 @@ use crate::placement::Placement;
 /// Columns that a strip must have: those it is made from take as long as about so many singly.
 const LEAST_COLUMNS: usize = 8;
 
-/// From so many columns on, a strip whose gap alone cannot be interpolated is halved; else the gap is computed.
-const MANY_GAPS: usize = 64;
-
 /// A quantity's last coefficients below this share of it are rounding of the columns that it is made from.
 const ROUNDING_LEVEL: f64 = 4.0 * f64::EPSILON;
 
@@ -74,17 +71,16 @@ enum Gap {
     Computed,
 }
 
-/// The columns of one strip, by Chebyshev series in ξ.
+/// The quantities of a strip's columns as Chebyshev series in ξ.
 #[derive(Debug)]
 struct Series {
-    /// As they were sampled.
-    columns: Columns,
-    /// Coefficients of T_0, T_1, … of the quantities, those of q in powers of τ.
+    /// Of every span the index of its first quantity and the number of coefficients of q.
+    spans: Vec<(usize, usize)>,
+    /// Coefficients of T_0, T_1, … of every quantity: of every span those of q in powers of τ, s at its beginning and u_0.
     rows: Vec<Row>,
-    /// Rounding of each span's s and u_0.
-    rounding: [[f64; 2]; MOST_SPANS],
-    /// u at τ = 1 where there is one span and its q is left in powers of u; 1 else.
-    end: f64,
+    /// How many of them are more than rounding.
+    kept: usize,
+    gap: Gap,
 }
 
 /// The strips of a grid up to u = `u_max` \[mm²\], in order of ξ; none for a skewed wheel or few columns.
@@ -152,28 +148,26 @@ impl pulp::WithSimd for Attempt<'_> {
     fn with_simd<S: pulp::Simd>(self, _: S) -> Option<Strip> {
         let ([a, b], half) = (self.xi, (self.xi[1] - self.xi[0]) / 2.0);
         let points = row(|k| a + half + half * chebyshev::point(k, MANY));
-        let series = Series::new(self.spectral.columns_at(points, self.u_max)?)?;
-        let own = if series.columns.contact { Gap::Relative } else { Gap::Plain };
-        let gaps = [own, Gap::Computed];
-        let tried = if self.columns < MANY_GAPS { &gaps[..] } else { &gaps[..1] };
-        let (gap, kept) = tried.iter().find_map(|&gap| Some((gap, series.kept(gap)?)))?;
-        Some(Strip::new(&series, [a, b], gap, kept))
+        let columns = Columns::new(&self.spectral.evaluator, self.u_max, points)?;
+        // Halves of a strip that is so short would be none.
+        let short = self.columns < 2 * LEAST_COLUMNS;
+        let series = Series::new(self.spectral, &columns, short)?;
+        Some(Strip::new(&series, [a, b]))
     }
 }
 
 impl Strip {
-    /// The strip by so many coefficients of its series.
     #[inline(always)]
-    fn new(series: &Series, xi: [f64; 2], gap: Gap, kept: usize) -> Self {
-        let kept = kept.next_multiple_of(2);
+    fn new(series: &Series, xi: [f64; 2]) -> Self {
+        let kept = series.kept.next_multiple_of(2);
         let (mut width, mut spans) = (0, Vec::with_capacity(MOST_SPANS));
-        for span in &series.columns.spans {
-            spans.push((width, span.n));
-            width += (span.n + 2).next_multiple_of(LANES);
+        for (_, n) in &series.spans {
+            spans.push((width, *n));
+            width += (n + 2).next_multiple_of(LANES);
         }
         let mut powers = vec![Lanes([0.0; LANES]); width / LANES * kept];
-        for (&(first, n), span) in spans.iter().zip(&series.columns.spans) {
-            for (at, row) in (first..).zip(&series.rows[span.at..span.at + n + 2]) {
+        for (&(first, n), &(at, _)) in spans.iter().zip(&series.spans) {
+            for (at, row) in (first..).zip(&series.rows[at..at + n + 2]) {
                 let mut ascending = [0.0; MANY];
                 chebyshev::to_powers(&row[..kept], &mut ascending);
                 let lanes = &mut powers[at / LANES * kept..][..kept];
@@ -182,7 +176,7 @@ impl Strip {
                 }
             }
         }
-        Self { xi, gap, spans, powers, kept }
+        Self { xi, gap: series.gap, spans, powers, kept }
     }
 
     /// Number of spans of every column.
@@ -241,75 +235,96 @@ impl Strip {
 }
 
 impl Series {
-    /// `None` where there are too many spans, or something is not finite.
+    /// `None` where there are too many spans, something is not finite, or has too few coefficients that are rounding; of a
+    /// `short` strip the gap may have too few.
     #[inline(always)]
-    fn new(mut columns: Columns) -> Option<Self> {
-        let single = columns.spans.len() == 1;
-        let mut rounding = [[0.0; 2]; MOST_SPANS];
+    fn new(spectral: &Spectral<'_>, columns: &Columns<'_>, short: bool) -> Option<Self> {
         if columns.spans.len() > MOST_SPANS {
             return None;
         }
+        let mut gap = if columns.contact { Gap::Relative } else { Gap::Plain };
+        let mut judged = Judged::default();
+        let mut begins = [[[0.0; MANY]; 2]; MOST_SPANS];
+        let mut rounding = [0.0; MOST_SPANS];
+        // The beginnings first: most intervals that are too long are seen to be so by their gap.
         for (k, span) in columns.spans.iter().enumerate() {
-            let [q @ .., base, u0] = &mut columns.quantities[span.at..span.at + span.n + 2] else {
-                return None;
+            let mut s = span.base;
+            rounding[k] = if columns.contact && k == 0 {
+                s = row(|k| s[k] / (columns.xi[k] * columns.xi[k]));
+                // What is relatively accurate must stay so where it is smallest.
+                ROUNDING_LEVEL * s.iter().fold(f64::INFINITY, |least, s| s.abs().min(least))
+            } else {
+                f64::EPSILON * largest(&span.size(&spectral.evaluator, &columns.xi))
             };
-            if !single {
-                let mut power = span.width;
-                for c in &mut q[1..] {
-                    *c = row(|k| c[k] * power[k]);
-                    power = row(|k| power[k] * span.width[k]);
+            begins[k] = [s, span.u[0]].map(|values| series(&values));
+            judged.with(&begins[k][1], ROUNDING_LEVEL * largest(&span.u[1]));
+            let before = judged;
+            judged.with(&begins[k][0], rounding[k]);
+            if k == 0 && short && judged.kept().is_none() {
+                (judged, gap) = (before, Gap::Computed);
+            }
+        }
+        judged.kept()?;
+        let single = columns.spans.len() == 1;
+        let (mut spans, mut rows) = (Vec::with_capacity(MOST_SPANS), Vec::with_capacity(MOST_LANES * LANES));
+        for (k, span) in columns.spans.iter().enumerate() {
+            let at = rows.len();
+            let n = columns.polynomials(k, spectral.demand, spectral.coefficients, &mut rows)?;
+            let width = row(|k| span.u[1][k] - span.u[0][k]);
+            let q = &mut rows[at..];
+            let mut power = [1.0; MANY];
+            for c in q.iter_mut() {
+                *c = series(&row(|k| c[k] * power[k]));
+                if !single {
+                    power = row(|k| power[k] * width[k]);
                 }
             }
-            let s = if columns.contact && k == 0 {
-                *base = row(|k| base[k] / (columns.xi[k] * columns.xi[k]));
-                // What is relatively accurate must stay so where it is smallest.
-                ROUNDING_LEVEL * base.iter().fold(f64::INFINITY, |least, s| s.abs().min(least))
-            } else {
-                f64::EPSILON * largest(&span.height)
-            };
-            rounding[k] = [s, ROUNDING_LEVEL * largest(&row(|k| u0[k] + span.width[k]))];
-        }
-        if !columns.quantities.as_flattened().iter().all(|v| v.is_finite()) {
-            return None;
-        }
-        let mut rows = vec![[0.0; MANY]; columns.quantities.len()];
-        for (values, row) in columns.quantities.iter().zip(&mut rows) {
-            chebyshev::coefficients(values, row);
-        }
-        let end = if single { columns.spans[0].width[0] } else { 1.0 };
-        Some(Self { columns, rows, rounding, end })
-    }
-
-    /// Number of coefficients of which the last is more than rounding; `None` where too few are rounding.
-    #[inline(always)]
-    fn kept(&self, gap: Gap) -> Option<usize> {
-        let mut more = [false; MANY];
-        let mut judge = |row: &Row, allowed: f64| {
-            for (more, c) in more.iter_mut().zip(row) {
-                *more |= c.abs() > allowed;
-            }
-        };
-        for (k, (span, rounding)) in self.columns.spans.iter().zip(self.rounding).enumerate() {
-            let (q, rest) = self.rows[span.at..].split_at(span.n);
-            if k > 0 || gap != Gap::Computed {
-                judge(&rest[0], rounding[0]);
-            }
-            judge(&rest[1], rounding[1]);
             let relative = ROUNDING_LEVEL * q[0][0].abs();
             // Beyond the contact segments q need not be better than s at the beginning, over the span's width.
-            let contact = self.columns.contact && k == 0;
-            let allowed = if contact { relative } else { relative.max(rounding[0] / largest(&span.width)) };
+            let contact = columns.contact && k == 0;
+            let allowed = if contact { relative } else { relative.max(rounding[k] / largest(&width)) };
+            // u at τ = 1 where there is one span and its q is left in powers of u.
+            let end = if single { width[0] } else { 1.0 };
             for tau in JUDGED {
                 let mut change = [0.0; MANY];
                 for c in q.iter().rev() {
-                    change = row(|k| change[k] * (tau * self.end) + c[k]);
+                    change = row(|k| change[k] * (tau * end) + c[k]);
                 }
-                judge(&change, allowed);
+                judged.with(&change, allowed);
             }
+            spans.push((at, n));
+            rows.extend(begins[k]);
         }
-        let kept = more.iter().rposition(|&more| more).map_or(1, |last| last + 1);
+        let kept = judged.kept()?;
+        Some(Self { spans, rows, kept, gap })
+    }
+}
+
+/// Which Chebyshev coefficients are more than rounding, and whether all are finite.
+#[derive(Debug, Default, Clone, Copy)]
+struct Judged([bool; MANY]);
+
+impl Judged {
+    #[inline(always)]
+    fn with(&mut self, row: &Row, allowed: f64) {
+        for (more, c) in self.0.iter_mut().zip(row) {
+            // What is not finite is more, too.
+            *more |= c.is_nan() || c.abs() > allowed;
+        }
+    }
+
+    /// Number of coefficients of which the last is more; `None` where too few are rounding.
+    fn kept(&self) -> Option<usize> {
+        let kept = self.0.iter().rposition(|&more| more).map_or(1, |last| last + 1);
         (kept + PROOF <= MANY).then_some(kept)
     }
+}
+
+#[inline(always)]
+fn series(values: &Row) -> Row {
+    let mut coefficients = [0.0; MANY];
+    chebyshev::coefficients(values, &mut coefficients);
+    coefficients
 }
 
 fn largest(row: &Row) -> f64 {

@@ -6,6 +6,8 @@
 
 use twofloat::TwoFloat;
 
+use crate::numerics::twice::quotient;
+
 /// The penalty Λ \[mm⁴\] that halves a wave of this length \[mm\].
 pub(super) fn penalty(cutoff_wavelength: f64) -> f64 {
     (cutoff_wavelength / std::f64::consts::TAU).powi(4)
@@ -64,7 +66,7 @@ impl<'a> Smoother<'a> {
         if j >= 2 {
             let [.., far] = self.second_difference(j - 2);
             let [d_before, ..] = self.factor[j - 2];
-            l2 = far * here[0] * slack(j) / d_before;
+            l2 = quotient(far * here[0] * slack(j), d_before);
             d -= l2 * l2 * d_before;
         }
         if j >= 1 {
@@ -75,7 +77,7 @@ impl<'a> Smoother<'a> {
             if j >= 2 {
                 b -= l2 * self.factor[j - 2][0] * l1_before;
             }
-            l1 = b / d_before;
+            l1 = quotient(b, d_before);
             d -= l1 * l1 * d_before;
         }
         [d, l1, l2]
@@ -110,7 +112,7 @@ impl<'a> Smoother<'a> {
             second[j + 1] = r;
         }
         for j in (0..inner).rev() {
-            let mut r = second[j + 1] / self.factor[j][0];
+            let mut r = quotient(second[j + 1], self.factor[j][0]);
             if j + 1 < inner {
                 r -= self.factor[j + 1][1] * second[j + 2];
             }
@@ -135,12 +137,7 @@ impl Fit {
     pub fn cubic(&self, k: usize, step: f64) -> [f64; 4] {
         let (f, g) = (&self.value, &self.second);
         let slope = (f[k + 1] - f[k]) / step - (g[k] * 2.0 + g[k + 1]) * step / 6.0;
-        [
-            f[k].into(),
-            slope.into(),
-            (g[k] / 2.0).into(),
-            ((g[k + 1] - g[k]) / (TwoFloat::from(step) * 6.0)).into(),
-        ]
+        [f[k].into(), slope.into(), (g[k] / 2.0).into(), ((g[k + 1] - g[k]) / step / 6.0).into()]
     }
 
     /// The derivative at knot k.

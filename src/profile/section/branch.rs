@@ -9,6 +9,7 @@ use crate::numerics::polynomial::{
     value_twofloat,
 };
 use crate::numerics::roots::bracketed;
+use crate::numerics::twice;
 
 /// A Newton step below this share of the range, and of the step before, leaves an error of about its square: none.
 pub(super) const QUADRATIC: f64 = 1e-4 * 1e-4;
@@ -89,7 +90,7 @@ pub struct PolynomialBranch {
     /// Parameter range, ξ ascending with t.
     pub t: [f64; 2],
     ends: [f64; 2],
-    exact: [Vec<TwoFloat>; 2],
+    pub(super) exact: [Vec<TwoFloat>; 2],
 }
 
 impl ArcBranch {
@@ -110,16 +111,6 @@ impl ArcBranch {
     #[inline(always)]
     pub(super) fn height_of(&self, xi: f64, sin: f64, cos: f64) -> f64 {
         self.anchor[1] + (xi - self.anchor[0]) * ((self.sin + sin) / (self.cos + cos))
-    }
-
-    fn exact_height(&self, xi: f64) -> TwoFloat {
-        let one = TwoFloat::from(1.0);
-        let run = TwoFloat::new_sub(xi, self.anchor[0]);
-        let turn = if self.radius.is_finite() { run / self.radius } else { TwoFloat::from(0.0) };
-        let sin = turn + self.sin;
-        let square = (one - sin) * (one + sin);
-        let cos = if f64::from(square) > 0.0 { square.sqrt() } else { TwoFloat::from(0.0) };
-        run * (sin + self.sin) / (cos + self.cos) + self.anchor[1]
     }
 }
 
@@ -172,10 +163,6 @@ impl PolynomialBranch {
         // One step more, which doubles the digits whatever the rounding of its slope.
         let t = TwoFloat::from(t);
         t - (value_twofloat(&self.exact[0], t) - xi) / slope
-    }
-
-    fn exact_height(&self, xi: f64) -> TwoFloat {
-        value_twofloat(&self.exact[1], self.exact_parameter(xi))
     }
 }
 
@@ -275,14 +262,6 @@ impl Branch {
         match &self.shape {
             BranchShape::Arc(arc) => arc.height(xi),
             BranchShape::Polynomial(p) => value(&p.zeta, p.parameter(xi)),
-        }
-    }
-
-    /// ζ(ξ) in twice the working precision, for differences between closely conforming branches through C.
-    pub fn exact_height(&self, xi: f64) -> TwoFloat {
-        match &self.shape {
-            BranchShape::Arc(arc) => arc.exact_height(xi),
-            BranchShape::Polynomial(p) => p.exact_height(xi),
         }
     }
 
@@ -468,7 +447,7 @@ impl Polynomial {
         z.resize(z.len().max(2), zero);
         (x[0], z[0]) = (zero, zero);
         let norm = (x[1] * x[1] + z[1] * z[1]).sqrt();
-        let [xi, mut zeta] = turned(&x, &z, x[1] / norm, z[1] / norm);
+        let [xi, mut zeta] = turned(&x, &z, twice::quotient(x[1], norm), twice::quotient(z[1], norm));
         zeta[1] = zero;
         [xi, zeta, self.t.map(|t| TwoFloat::from(t) - origin).to_vec()]
     }

@@ -3,7 +3,10 @@
 
 use std::array::from_fn;
 
-use super::branch::{Branch, BranchPoint, BranchShape, PolynomialBranch, QUADRATIC};
+use twofloat::TwoFloat;
+
+use super::branch::{ArcBranch, Branch, BranchPoint, BranchShape, PolynomialBranch, QUADRATIC};
+use crate::numerics::twice::Twice;
 
 /// Newton's steps are given up after this many: the branch is nearly vertical somewhere.
 const STEPS: usize = 10;
@@ -79,6 +82,50 @@ impl Branch {
             _ => None,
         }
     }
+
+    /// ζ at ξ in twice the working precision, for differences between closely conforming branches; from the points there,
+    /// NaN for those of another branch.
+    #[inline(always)]
+    pub fn exact_heights<const N: usize>(&self, xi: &[f64; N], points: &BranchPoints<N>) -> [Twice; N] {
+        match (&self.shape, points) {
+            (BranchShape::Arc(arc), BranchPoints::Arc { .. }) => arc.exact_heights(xi),
+            (BranchShape::Polynomial(p), BranchPoints::Polynomial { t, .. }) => {
+                let mut exact = t.map(Twice::from);
+                let (abscissa, (_, slope)) = (exact_values(&p.exact[0], &exact), values_and_slopes(&p.xi, t));
+                for k in 0..N {
+                    // One Newton step more, which doubles the digits whatever the rounding of its slope.
+                    let miss = abscissa[k] - Twice::from(xi[k]);
+                    exact[k] = Twice::sum(t[k], -(miss.high / slope[k]));
+                }
+                exact_values(&p.exact[1], &exact)
+            }
+            _ => [Twice::from(f64::NAN); N],
+        }
+    }
+
+    /// ζ(ξ) in twice the working precision.
+    pub fn exact_height(&self, xi: f64) -> Twice {
+        let [zeta] = self.exact_heights(&[xi], &BranchPoints::from(&self.point(xi).0));
+        zeta
+    }
+}
+
+impl ArcBranch {
+    #[inline(always)]
+    fn exact_heights<const N: usize>(&self, xi: &[f64; N]) -> [Twice; N] {
+        let (one, sin_a, cos_a) = (Twice::from(1.0), Twice::from(self.sin), Twice::from(self.cos));
+        let [xi_a, zeta_a] = self.anchor;
+        let mut zeta = [Twice::from(0.0); N];
+        for k in 0..N {
+            let run = Twice::sum(xi[k], -xi_a);
+            let turn =
+                if self.radius.is_finite() { run / Twice::from(self.radius) } else { Twice::from(0.0) };
+            let sin = turn + sin_a;
+            let cos = ((one - sin) * (one + sin)).sqrt();
+            zeta[k] = run * (sin + sin_a) / (cos + cos_a) + Twice::from(zeta_a);
+        }
+        zeta
+    }
 }
 
 impl PolynomialBranch {
@@ -110,24 +157,37 @@ impl PolynomialBranch {
 /// Values and first derivatives.
 #[inline(always)]
 fn values_and_slopes<const N: usize>(c: &[f64], t: &[f64; N]) -> ([f64; N], [f64; N]) {
-    let (mut value, mut slope) = ([0.0; N], [0.0; N]);
+    let (mut value, mut slope) = ([0f64; N], [0f64; N]);
     for &c in c.iter().rev() {
         for k in 0..N {
-            slope[k] = slope[k] * t[k] + value[k];
-            value[k] = value[k] * t[k] + c;
+            slope[k] = slope[k].mul_add(t[k], value[k]);
+            value[k] = value[k].mul_add(t[k], c);
         }
     }
     (value, slope)
 }
 
+/// Values in twice the working precision.
+#[inline(always)]
+fn exact_values<const N: usize>(c: &[TwoFloat], t: &[Twice; N]) -> [Twice; N] {
+    let mut value = [Twice::from(0.0); N];
+    for &c in c.iter().rev() {
+        let c = Twice::from(c);
+        for k in 0..N {
+            value[k] = value[k] * t[k] + c;
+        }
+    }
+    value
+}
+
 /// [`crate::numerics::polynomial::divided_difference`] for several.
 #[inline(always)]
 fn differences<const N: usize>(c: &[f64], a: &[f64; N], b: &[f64; N]) -> [f64; N] {
-    let (mut quotient, mut sum) = ([0.0; N], [0.0; N]);
+    let (mut quotient, mut sum) = ([0f64; N], [0f64; N]);
     for &c in c.iter().skip(1).rev() {
         for k in 0..N {
-            quotient[k] = quotient[k] * a[k] + c;
-            sum[k] = sum[k] * b[k] + quotient[k];
+            quotient[k] = quotient[k].mul_add(a[k], c);
+            sum[k] = sum[k].mul_add(b[k], quotient[k]);
         }
     }
     sum
@@ -148,11 +208,14 @@ mod tests {
             let (xi, to) = ([at(0.1), at(0.5), at(0.9)], [at(0.3), at(0.500001), at(0.95)]);
             let Some((points, heights)) = branch.points(&xi) else { continue };
             let Some(chords) = branch.chords_from(&points, &to) else { continue };
+            let zeta = branch.exact_heights(&xi, &points);
             for k in 0..3 {
                 let (point, height) = branch.point(xi[k]);
                 let chord = branch.chord_from(&point, to[k]);
                 worst = worst.max((heights[k] - height).abs() / (1.0 + height.abs()));
                 worst = worst.max((chords[k] - chord).abs() / (1.0 + chord * chord));
+                let exact = f64::from(TwoFloat::from(zeta[k]) - height).abs();
+                worst = worst.max(exact / (1.0 + height.abs()));
                 compared += 1;
             }
         }
