@@ -27,6 +27,8 @@ pub fn row(value: impl Fn(usize) -> f64) -> Row {
 #[derive(Debug)]
 pub struct Columns<'a> {
     wheel: WheelSurface<'a>,
+    /// Spans of the column in the middle.
+    shape: Vec<Span>,
     /// Their abscissae \[mm\].
     pub xi: Row,
     /// Whether they begin over both contact segments.
@@ -61,23 +63,29 @@ struct Feet {
 }
 
 impl<'a> Columns<'a> {
-    /// The columns at ξ up to u = `u_max`, if they are as the one in the middle; `None` where one is not, or not whole.
+    /// None yet.
+    pub fn new(wheel: WheelSurface<'a>) -> Self {
+        Self { wheel, shape: Vec::new(), xi: [f64::NAN; MANY], contact: false, spans: Vec::new() }
+    }
+
+    /// Takes the columns at ξ up to u = `u_max`, if they are as the one in the middle; `None` where one is not, or not
+    /// whole.
     #[inline(always)]
-    pub fn new(evaluator: &Evaluator<'a>, u_max: f64, xi: Row) -> Option<Self> {
-        let (wheel, middle) = (evaluator.wheel, xi[MANY / 2]);
-        let mut shape = Vec::with_capacity(4);
-        wheel.spans(middle, u_max, &mut shape);
-        if !is_whole(&shape, u_max) {
+    pub fn take(&mut self, evaluator: &Evaluator<'a>, u_max: f64, xi: Row) -> Option<()> {
+        let (wheel, middle) = (&self.wheel, xi[MANY / 2]);
+        wheel.spans(middle, u_max, &mut self.shape);
+        if !is_whole(&self.shape, u_max) {
             return None;
         }
-        let contact = evaluator.over_contact(middle, &shape[0]);
+        let (contact, single) = (evaluator.over_contact(middle, &self.shape[0]), self.shape.len() == 1);
         let rail = evaluator.placement.rail.section.branch_at(middle)?;
-        let rail_height = if contact && shape.len() == 1 { [0.0; MANY] } else { rail.points(&xi)?.1 };
-        let mut spans: Vec<SpanColumns<'a>> = Vec::with_capacity(shape.len());
-        for (k, span) in shape.iter().enumerate() {
-            let u0 = spans.last().map_or([0.0; MANY], |before| before.u[1]);
+        let rail_height = if contact && single { [0.0; MANY] } else { rail.points(&xi)?.1 };
+        (self.xi, self.contact) = (xi, contact);
+        self.spans.clear();
+        for (k, span) in self.shape.iter().enumerate() {
+            let u0 = self.spans.last().map_or([0.0; MANY], |before| before.u[1]);
             let mut here = wheel.span_at_many(&xi, span, u0)?;
-            let (ends, last) = (here.u[1], k + 1 == shape.len());
+            let (ends, last) = (here.u[1], k + 1 == self.shape.len());
             // A span that ends elsewhere than in the middle column is another shape.
             if !(0..MANY).all(|k| if last { ends[k] >= u_max } else { ends[k] > u0[k] && ends[k] <= u_max }) {
                 return None;
@@ -90,9 +98,9 @@ impl<'a> Columns<'a> {
             } else {
                 row(|k| here.height[k] - rail_height[k])
             };
-            spans.push(here);
+            self.spans.push(here);
         }
-        Some(Self { wheel, xi, contact, spans })
+        Some(())
     }
 
     /// Appends the coefficients of q over one span, at least so many, as [`super::spectral::Spectral::polynomial`]; how

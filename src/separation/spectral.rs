@@ -369,3 +369,46 @@ static NODES: std::sync::LazyLock<[[f64; MOST_COEFFICIENTS]; MOST_COEFFICIENTS]>
             })
         })
     });
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::placement::Pair;
+    use crate::profile::standards;
+    use crate::separation::plan::{FULL_PRECISION, demand};
+
+    /// s over a window with joints on the columns and in them, by strips and singly, compiled for one kind of machine.
+    fn filled(placement: &Placement, arch: pulp::Arch) -> Vec<f64> {
+        let steps =
+            |reach: f64, n: i32| (0..n).map(move |k| reach * f64::from(2 * k - n + 1) / f64::from(n - 1));
+        let xi: Vec<f64> = steps(12.0, 101).collect();
+        let axis = EtaAxis::new(&steps(15.0, 53).collect::<Vec<_>>());
+        let spectral = || {
+            let spectral = Spectral::new(placement, &axis, demand(FULL_PRECISION), 4);
+            Spectral { arch, ..spectral }
+        };
+        let strips = strips::strips(&spectral(), placement, &xi, axis.reach * axis.reach);
+        assert!(strips.len() > 1, "{}", strips.len());
+        let mut out = vec![0.0; xi.len() * axis.eta.len()];
+        spectral().with_strips(&strips).columns(&xi, &mut out);
+        out
+    }
+
+    #[test]
+    fn every_machine_gives_the_same_bits() -> crate::error::Result<()> {
+        let pair = Pair::new(standards::rail("UIC60")?, standards::wheel("S1002")?, 460.0)?;
+        let placement = pair.placed(-11.0, -9.0, 0.0)?;
+        let plain = filled(&placement, pulp::Arch::Scalar);
+        assert!(plain.iter().all(|s| s.is_finite()));
+        let same = |arch| {
+            let other = filled(&placement, arch);
+            plain.iter().zip(&other).all(|(a, b)| a.to_bits() == b.to_bits())
+        };
+        assert!(same(pulp::Arch::new()));
+        #[cfg(target_arch = "x86_64")]
+        if let Some(v3) = pulp::x86::V3::try_new() {
+            assert!(same(pulp::Arch::V3(v3)));
+        }
+        Ok(())
+    }
+}

@@ -54,7 +54,9 @@ pub struct Strip {
     /// How s at the beginning of the columns is known.
     gap: Gap,
     /// Of every span the index of its first quantity, at the beginning of a lane, and the number of coefficients of q.
-    spans: Vec<(usize, usize)>,
+    spans: [(usize, usize); MOST_SPANS],
+    /// Number of spans.
+    count: usize,
     /// Coefficients of t^(kept−1), …, t⁰ of the first lanes, then of the next; t from −1 to 1 over the interval.
     powers: Vec<Lanes>,
     kept: usize,
@@ -71,34 +73,23 @@ enum Gap {
     Computed,
 }
 
-/// The quantities of a strip's columns as Chebyshev series in ξ.
-#[derive(Debug)]
-struct Series {
-    /// Of every span the index of its first quantity and the number of coefficients of q.
-    spans: Vec<(usize, usize)>,
-    /// Coefficients of T_0, T_1, … of every quantity: of every span those of q in powers of τ, s at its beginning and u_0.
-    rows: Vec<Row>,
-    /// How many of them are more than rounding.
-    kept: usize,
-    gap: Gap,
-}
-
 /// The strips of a grid up to u = `u_max` \[mm²\], in order of ξ; none for a skewed wheel or few columns.
 pub fn strips(spectral: &Spectral<'_>, placement: &Placement, xi: &[f64], u_max: f64) -> Vec<Strip> {
-    let mut strips = Vec::new();
-    let (Some(&first), Some(&last)) = (xi.first(), xi.last()) else { return strips };
+    let (Some(&first), Some(&last)) = (xi.first(), xi.last()) else { return Vec::new() };
     if placement.skew != 0.0 || u_max == 0.0 {
-        return strips;
+        return Vec::new();
     }
     let mut ends = breaks(placement, u_max);
     ends.retain(|&end| end >= first && end <= last);
     // What is no break belongs to the strip.
     ends.extend([first.next_down(), last.next_up()]);
     ends.sort_by(f64::total_cmp);
+    let columns = Columns::new(spectral.evaluator.wheel);
+    let mut maker = Maker { spectral, xi, u_max, columns, rows: Vec::new(), strips: Vec::new() };
     for pair in ends.windows(2) {
-        divide(spectral, xi, [pair[0], pair[1]], u_max, &mut strips);
+        maker.divide([pair[0], pair[1]]);
     }
-    strips
+    maker.strips
 }
 
 /// The ξ at which a joint of either body enters or leaves the columns.
@@ -117,71 +108,123 @@ fn breaks(placement: &Placement, u_max: f64) -> Vec<f64> {
     ends
 }
 
-/// Appends strips over an interval without breaks.
-fn divide(spectral: &Spectral<'_>, xi: &[f64], [a, b]: [f64; 2], u_max: f64, strips: &mut Vec<Strip>) {
-    let columns = xi.partition_point(|&x| x < b).saturating_sub(xi.partition_point(|&x| x <= a));
-    if columns < LEAST_COLUMNS {
-        return;
-    }
-    match spectral.arch.dispatch(Attempt { spectral, xi: [a, b], u_max, columns }) {
-        Some(strip) => strips.push(strip),
-        None => {
-            let middle = a + (b - a) / 2.0;
-            divide(spectral, xi, [a, middle], u_max, strips);
-            divide(spectral, xi, [middle, b], u_max, strips);
+/// Makes strips, and holds the scratch space.
+struct Maker<'a> {
+    spectral: &'a Spectral<'a>,
+    xi: &'a [f64],
+    u_max: f64,
+    columns: Columns<'a>,
+    /// Coefficients of T_0, T_1, … of every quantity: of every span those of q in powers of τ, s at its beginning and u_0.
+    rows: Vec<Row>,
+    strips: Vec<Strip>,
+}
+
+impl Maker<'_> {
+    /// Appends strips over an interval without breaks.
+    fn divide(&mut self, [a, b]: [f64; 2]) {
+        let up_to = |end: f64| self.xi.partition_point(|&x| x < end);
+        let columns = up_to(b).saturating_sub(up_to(a.next_up()));
+        if columns < LEAST_COLUMNS {
+            return;
+        }
+        // Halves of an interval that is so short would have no strips.
+        let short = columns < 2 * LEAST_COLUMNS;
+        let arch = self.spectral.arch;
+        match arch.dispatch(Attempt { maker: self, xi: [a, b], short }) {
+            Some(strip) => self.strips.push(strip),
+            None => {
+                let middle = a + (b - a) / 2.0;
+                self.divide([a, middle]);
+                self.divide([middle, b]);
+            }
         }
     }
 }
 
-/// One strip over an interval with so many columns, compiled for each kind of machine.
-struct Attempt<'a> {
-    spectral: &'a Spectral<'a>,
+/// One strip over an interval, compiled for each kind of machine.
+struct Attempt<'m, 'a> {
+    maker: &'m mut Maker<'a>,
     xi: [f64; 2],
-    u_max: f64,
-    columns: usize,
+    short: bool,
 }
 
-impl pulp::WithSimd for Attempt<'_> {
+impl pulp::WithSimd for Attempt<'_, '_> {
     type Output = Option<Strip>;
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) -> Option<Strip> {
         let ([a, b], half) = (self.xi, (self.xi[1] - self.xi[0]) / 2.0);
         let points = row(|k| a + half + half * chebyshev::point(k, MANY));
-        let columns = Columns::new(&self.spectral.evaluator, self.u_max, points)?;
-        // Halves of a strip that is so short would be none.
-        let short = self.columns < 2 * LEAST_COLUMNS;
-        let series = Series::new(self.spectral, &columns, short)?;
-        Some(Strip::new(&series, [a, b]))
+        let Maker { spectral, u_max, columns, rows, .. } = self.maker;
+        columns.take(&spectral.evaluator, *u_max, points)?;
+        Strip::new(spectral, columns, [a, b], self.short, rows)
     }
 }
 
 impl Strip {
+    /// The strip through columns at its Chebyshev points; `None` where there are too many spans, something is not finite,
+    /// or has too few coefficients that are rounding; of a `short` strip the gap may have too few.
     #[inline(always)]
-    fn new(series: &Series, xi: [f64; 2]) -> Self {
-        let kept = series.kept.next_multiple_of(2);
-        let (mut width, mut spans) = (0, Vec::with_capacity(MOST_SPANS));
-        for (_, n) in &series.spans {
-            spans.push((width, *n));
-            width += (n + 2).next_multiple_of(LANES);
-        }
-        let mut powers = vec![Lanes([0.0; LANES]); width / LANES * kept];
-        for (&(first, n), &(at, _)) in spans.iter().zip(&series.spans) {
-            for (at, row) in (first..).zip(&series.rows[at..at + n + 2]) {
-                let mut ascending = [0.0; MANY];
-                chebyshev::to_powers(&row[..kept], &mut ascending);
-                let lanes = &mut powers[at / LANES * kept..][..kept];
-                for (lanes, power) in lanes.iter_mut().rev().zip(ascending) {
-                    lanes.0[at % LANES] = power;
+    fn new(
+        spectral: &Spectral<'_>,
+        columns: &Columns<'_>,
+        xi: [f64; 2],
+        short: bool,
+        rows: &mut Vec<Row>,
+    ) -> Option<Self> {
+        let mut beginnings = Beginnings::new(spectral, columns, short)?;
+        let judged = &mut beginnings.judged;
+        let single = columns.spans.len() == 1;
+        let mut spans = [(0, 0); MOST_SPANS];
+        let mut width = 0;
+        rows.clear();
+        for (k, span) in columns.spans.iter().enumerate() {
+            let at = rows.len();
+            let n = columns.polynomials(k, spectral.demand, spectral.coefficients, rows)?;
+            let length = row(|k| span.u[1][k] - span.u[0][k]);
+            let q = &mut rows[at..];
+            let mut power = [1.0; MANY];
+            for c in q.iter_mut() {
+                *c = series(&row(|k| c[k] * power[k]));
+                if !single {
+                    power = row(|k| power[k] * length[k]);
                 }
             }
+            let relative = ROUNDING_LEVEL * q[0][0].abs();
+            // Beyond the contact segments q need not be better than s at the beginning, over the span's length.
+            let contact = columns.contact && k == 0;
+            let allowed =
+                if contact { relative } else { relative.max(beginnings.rounding[k] / largest(&length)) };
+            // u at τ = 1 where there is one span and its q is left in powers of u.
+            let end = if single { length[0] } else { 1.0 };
+            for tau in JUDGED {
+                let mut change = [0.0; MANY];
+                for c in q.iter().rev() {
+                    change = row(|k| change[k] * (tau * end) + c[k]);
+                }
+                judged.with(&change, allowed);
+            }
+            rows.extend(beginnings.series[k]);
+            spans[k] = (width, n);
+            width += (n + 2).next_multiple_of(LANES);
         }
-        Self { xi, gap: series.gap, spans, powers, kept }
+        let kept = judged.kept()?.next_multiple_of(2);
+        let mut powers = vec![Lanes([0.0; LANES]); width / LANES * kept];
+        let places = spans[..columns.spans.len()].iter().flat_map(|&(first, n)| first..first + n + 2);
+        for (at, row) in places.zip(rows.iter()) {
+            let mut ascending = [0.0; MANY];
+            chebyshev::to_powers(&row[..kept], &mut ascending);
+            let lanes = &mut powers[at / LANES * kept..][..kept];
+            for (lanes, power) in lanes.iter_mut().rev().zip(ascending) {
+                lanes.0[at % LANES] = power;
+            }
+        }
+        Some(Self { xi, gap: beginnings.gap, spans, count: columns.spans.len(), powers, kept })
     }
 
     /// Number of spans of every column.
     pub fn spans(&self) -> usize {
-        self.spans.len()
+        self.count
     }
 
     /// \[u_0, u_1\], s at u_0 and the coefficients of q in powers of u − u_0 over one span of the column at ξ, made from
@@ -197,10 +240,11 @@ impl Strip {
         let values = &mut values.0;
         let (at, n) = self.spans[span];
         let (s, u0) = (values[at + n], values[at + n + 1]);
-        let u1 = self.spans.get(span + 1).map_or(u_max, |&(next, n)| values[next + n + 1]);
+        let next = self.spans[..self.count].get(span + 1);
+        let u1 = next.map_or(u_max, |&(next, n)| values[next + n + 1]);
         let base = if self.gap == Gap::Relative && span == 0 { s * (xi * xi) } else { s };
         let c = &mut values[at..at + n];
-        if self.spans.len() > 1 {
+        if self.count > 1 {
             let (shrink, mut power) = (1.0 / (u1 - u0), 1.0);
             for c in &mut c[1..] {
                 power *= shrink;
@@ -234,9 +278,18 @@ impl Strip {
     }
 }
 
-impl Series {
-    /// `None` where there are too many spans, something is not finite, or has too few coefficients that are rounding; of a
-    /// `short` strip the gap may have too few.
+/// Where the columns of a strip begin their spans: most intervals that are too long are seen to be so by it.
+struct Beginnings {
+    gap: Gap,
+    /// Of every span the series of s and of u_0.
+    series: [[Row; 2]; MOST_SPANS],
+    /// Rounding of s.
+    rounding: [f64; MOST_SPANS],
+    judged: Judged,
+}
+
+impl Beginnings {
+    /// `None` as for [`Strip::new`].
     #[inline(always)]
     fn new(spectral: &Spectral<'_>, columns: &Columns<'_>, short: bool) -> Option<Self> {
         if columns.spans.len() > MOST_SPANS {
@@ -246,7 +299,6 @@ impl Series {
         let mut judged = Judged::default();
         let mut begins = [[[0.0; MANY]; 2]; MOST_SPANS];
         let mut rounding = [0.0; MOST_SPANS];
-        // The beginnings first: most intervals that are too long are seen to be so by their gap.
         for (k, span) in columns.spans.iter().enumerate() {
             let mut s = span.base;
             rounding[k] = if columns.contact && k == 0 {
@@ -265,38 +317,7 @@ impl Series {
             }
         }
         judged.kept()?;
-        let single = columns.spans.len() == 1;
-        let (mut spans, mut rows) = (Vec::with_capacity(MOST_SPANS), Vec::with_capacity(MOST_LANES * LANES));
-        for (k, span) in columns.spans.iter().enumerate() {
-            let at = rows.len();
-            let n = columns.polynomials(k, spectral.demand, spectral.coefficients, &mut rows)?;
-            let width = row(|k| span.u[1][k] - span.u[0][k]);
-            let q = &mut rows[at..];
-            let mut power = [1.0; MANY];
-            for c in q.iter_mut() {
-                *c = series(&row(|k| c[k] * power[k]));
-                if !single {
-                    power = row(|k| power[k] * width[k]);
-                }
-            }
-            let relative = ROUNDING_LEVEL * q[0][0].abs();
-            // Beyond the contact segments q need not be better than s at the beginning, over the span's width.
-            let contact = columns.contact && k == 0;
-            let allowed = if contact { relative } else { relative.max(rounding[k] / largest(&width)) };
-            // u at τ = 1 where there is one span and its q is left in powers of u.
-            let end = if single { width[0] } else { 1.0 };
-            for tau in JUDGED {
-                let mut change = [0.0; MANY];
-                for c in q.iter().rev() {
-                    change = row(|k| change[k] * (tau * end) + c[k]);
-                }
-                judged.with(&change, allowed);
-            }
-            spans.push((at, n));
-            rows.extend(begins[k]);
-        }
-        let kept = judged.kept()?;
-        Some(Self { spans, rows, kept, gap })
+        Some(Self { gap, series: begins, rounding, judged })
     }
 }
 
