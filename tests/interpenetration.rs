@@ -233,6 +233,23 @@ fn a_larger_approach_contains_the_smaller_patch() {
     }
 }
 
+/// However near to C: no rounding of a profile's parameter is left over.
+#[test]
+fn the_gap_is_a_parabola_down_to_c() {
+    for (name, placement, _) in cases().into_iter().filter(|(_, placement, _)| placement.skew == 0.0) {
+        let mut evaluator = Evaluator::new(&placement);
+        for side in [-1.0, 1.0] {
+            let mut opening = |xi: f64| evaluator.separation(side * xi, 0.0) / (xi * xi);
+            let expected = opening(1e-11);
+            for decade in 12..100 {
+                let found = opening(0.1f64.powi(decade));
+                let close = (found - expected).abs() <= 1e-9 * expected;
+                assert!(close, "{name} ξ = {side}e-{decade}: {found} {expected}");
+            }
+        }
+    }
+}
+
 #[test]
 fn no_approach_gives_no_patch() {
     for (name, placement, _) in cases() {

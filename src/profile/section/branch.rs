@@ -11,7 +11,8 @@ use crate::numerics::polynomial::{
 use crate::numerics::roots::bracketed;
 use crate::numerics::twice;
 
-/// A Newton step below this share of the range, and of the step before, leaves an error of about its square: none.
+/// A Newton step below this share of the range and of the step before, and below t, leaves of t an error of about its
+/// square: none, down to the contact point at t = 0.
 pub(super) const QUADRATIC: f64 = 1e-4 * 1e-4;
 
 /// A branch ζ(ξ) over a closed interval of ξ.
@@ -89,7 +90,7 @@ pub struct PolynomialBranch {
     pub zeta: Vec<f64>,
     /// Parameter range, ξ ascending with t.
     pub t: [f64; 2],
-    ends: [f64; 2],
+    pub(super) ends: [f64; 2],
     pub(super) exact: [Vec<TwoFloat>; 2],
 }
 
@@ -148,7 +149,8 @@ impl PolynomialBranch {
             let next = if newton >= low && newton <= high { newton } else { low + (high - low) / 2.0 };
             let step = (next - t).abs();
             t = next;
-            if step <= 2.0 * f64::EPSILON * t.abs() || (step <= done && step <= QUADRATIC * last) {
+            let settled = step <= done.min(t.abs()) && step <= QUADRATIC * last;
+            if settled || step <= 2.0 * f64::EPSILON * t.abs() {
                 break;
             }
             last = step;
