@@ -13,8 +13,8 @@ pub mod trace;
 pub use arc::{Arc, Half};
 pub use polynomial::Polynomial;
 pub use section::{
-    ArcBranch, Branch, BranchPoint, BranchPoints, BranchShape, Piece, PolynomialBranch, ProfilePoint,
-    Section, Side, stationary_points,
+    ArcBranch, Branch, BranchPoint, BranchPoints, BranchShape, Branches, Piece, PolynomialBranch,
+    ProfilePoint, Section, Side, stationary_points,
 };
 pub mod drawing;
 

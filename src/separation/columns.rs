@@ -5,7 +5,7 @@ use super::Evaluator;
 use super::column::{NEARLY_COVERED, Span, WheelSurface, sagitta};
 use super::gap::contact_gaps;
 use super::spectral::{Demand, MOST_COEFFICIENTS, ROUNDING_LEVEL, is_whole, nodes, powers};
-use crate::profile::{Branch, BranchPoints};
+use crate::profile::{BranchPoints, Branches, Piece, Section};
 
 /// So many.
 pub const MANY: usize = 16;
@@ -40,7 +40,7 @@ pub struct Columns<'a> {
 /// Where the columns enter and leave a span.
 #[derive(Debug)]
 pub struct SpanColumns<'a> {
-    branch: &'a Branch,
+    branches: Branches<'a, MANY>,
     points: BranchPoints<MANY>,
     /// s there \[mm\].
     pub base: Row,
@@ -94,13 +94,47 @@ impl<'a> Columns<'a> {
                 here.u[1] = [u_max; MANY];
             }
             here.base = if contact && k == 0 {
-                contact_gaps(rail, here.branch, &xi, &here.points)?
+                contact_gaps(rail, &wheel.section.branches[span.branch], &xi, &here.points)?
             } else {
                 row(|k| here.height[k] - rail_height[k])
             };
             self.spans.push(here);
         }
         Some(())
+    }
+
+    /// Takes columns over cubics, as of splines, each over its own; for each whether it is one that lies beyond the contact
+    /// segments and over one branch of either body. In the place of one that does not stands one that does; `None` where
+    /// none does.
+    #[inline(always)]
+    pub fn take_each(&mut self, evaluator: &Evaluator<'a>, u_max: f64, xi: &[f64]) -> Option<[bool; MANY]> {
+        let (rail, wheel) = (&evaluator.placement.rail.section, &self.wheel);
+        let cubics = wheel.cubics_under(rail, u_max, xi);
+        let (first, stand_in) = cubics.iter().enumerate().find_map(|(k, pair)| Some((k, (*pair)?)))?;
+        let [mut rails, mut wheels] = [stand_in.0, stand_in.1].map(|piece| [piece; MANY]);
+        self.xi = [xi[first]; MANY];
+        for (k, pair) in cubics.iter().enumerate() {
+            if let Some((r, w)) = pair {
+                (rails[k], wheels[k], self.xi[k]) = (*r, *w, xi[k]);
+            }
+        }
+        let branches = Branches::cubics(wheels.map(|piece| &wheel.section.branches[piece.branch]))?;
+        let (points, height) = branches.points(&self.xi)?;
+        let rails = Branches::cubics(rails.map(|piece| &rail.branches[piece.branch]))?;
+        let (_, rail_height) = rails.points(&self.xi)?;
+        let zero = [0.0; MANY];
+        self.contact = false;
+        self.spans.clear();
+        self.spans.push(SpanColumns {
+            branches,
+            points,
+            base: row(|k| height[k] - rail_height[k]),
+            height,
+            u: [zero, [u_max; MANY]],
+            e: [zero, row(|k| wheel.far_end(self.xi[k], wheels[k])[0])],
+            w: row(|k| wheel.axle - self.xi[k] * wheel.sin - height[k] * wheel.cos),
+        });
+        Some(cubics.map(|pair| pair.is_some()))
     }
 
     /// Appends the coefficients of q over one span, at least so many, as [`super::spectral::Spectral::polynomial`]; how
@@ -140,6 +174,14 @@ impl<'a> Columns<'a> {
     }
 }
 
+/// The piece that holds ξ inside, if it is a cubic; pieces before it are taken from `rest`.
+fn cubic_at<'a>(section: &Section, rest: &mut &'a [Piece], xi: f64) -> Option<&'a Piece> {
+    let before = rest.iter().take_while(|piece| piece.xi[1] < xi).count();
+    *rest = &rest[before..];
+    let piece = rest.first()?;
+    (piece.xi[0] < xi && xi < piece.xi[1] && section.branches[piece.branch].is_cubic()).then_some(piece)
+}
+
 impl SpanColumns<'_> {
     /// Size of the coordinates that s at the beginning is computed from \[mm\].
     pub fn size(&self, evaluator: &Evaluator<'_>, xi: &Row) -> Row {
@@ -148,12 +190,31 @@ impl SpanColumns<'_> {
 }
 
 impl<'a> WheelSurface<'a> {
+    /// The cubics of rail and wheel at each ξ where the column lies over one of either, not both the contact segments.
+    fn cubics_under<'r>(
+        &self,
+        rail: &'r Section,
+        u_max: f64,
+        xi: &[f64],
+    ) -> [Option<(&'r Piece, &'a Piece)>; MANY] {
+        let mut found = [None; MANY];
+        let (mut rest_r, mut rest_w) = (rail.pieces_from(xi[0]), self.section.pieces_from(xi[0]));
+        for (found, &xi) in found.iter_mut().zip(xi) {
+            let pair = cubic_at(rail, &mut rest_r, xi).zip(cubic_at(self.section, &mut rest_w, xi));
+            *found = pair.filter(|(r, w)| {
+                let contact = rail.contact == Some(r.branch) && self.section.contact == Some(w.branch);
+                !contact && self.far_end(xi, w)[1] >= u_max
+            });
+        }
+        found
+    }
+
     /// One span of all columns, from u as given to the end of its piece; s not yet known.
     #[inline(always)]
     fn span_at_many(&self, xi: &Row, span: &Span, u0: Row) -> Option<SpanColumns<'a>> {
         let branch = &self.section.branches[span.branch];
         let piece = &self.section.pieces[span.piece];
-        let [near, far] = self.sides();
+        let near = self.sides()[0];
         let sagitta = |end: f64| row(|k| (xi[k] - end) / self.sin);
         let (e0, points, on_profile) = if span.e[0] > 0.0 {
             let (point, height) = &piece.ends[near];
@@ -164,19 +225,29 @@ impl<'a> WheelSurface<'a> {
         };
         let height = row(|k| on_profile[k] + e0[k] * self.cos);
         let w = row(|k| self.axle - xi[k] * self.sin - height[k] * self.cos);
-        let e1 = if span.e[1].is_finite() { sagitta(piece.xi[far]) } else { [f64::INFINITY; MANY] };
-        let (_, at_end) = piece.ends[far];
-        let u1 = row(|k| {
-            let w = self.axle - xi[k] * self.sin - (at_end + e1[k] * self.cos) * self.cos;
-            // An end that the middle column has not is beyond the window.
-            if span.u[1].is_finite() && w > 0.0 { e1[k] * (2.0 * w + e1[k]) } else { f64::INFINITY }
-        });
-        Some(SpanColumns { branch, points, base: [f64::NAN; MANY], height, u: [u0, u1], e: [e0, e1], w })
+        let (mut e1, mut u1) = ([f64::INFINITY; MANY], [f64::INFINITY; MANY]);
+        // An end that the middle column has not is beyond the window.
+        for k in 0..MANY {
+            let end = self.far_end(xi[k], piece);
+            e1[k] = if span.e[1].is_finite() { end[0] } else { e1[k] };
+            u1[k] = if span.u[1].is_finite() { end[1] } else { u1[k] };
+        }
+        let branches = Branches::One(branch);
+        Some(SpanColumns { branches, points, base: [f64::NAN; MANY], height, u: [u0, u1], e: [e0, e1], w })
+    }
+
+    /// e and u at which the column at ξ leaves a piece; u is infinite where that is beyond the axle's height.
+    #[inline(always)]
+    fn far_end(&self, xi: f64, piece: &Piece) -> [f64; 2] {
+        let far = self.sides()[1];
+        let e = if self.sin == 0.0 { f64::INFINITY } else { (xi - piece.xi[far]) / self.sin };
+        let w = self.axle - xi * self.sin - (piece.ends[far].1 + e * self.cos) * self.cos;
+        [e, if w > 0.0 { e * (2.0 * w + e) } else { f64::INFINITY }]
     }
 
     #[inline(always)]
     fn feet(&self, xi: &Row, span: &SpanColumns<'_>, e: Row) -> Option<Feet> {
-        let slope = span.branch.chords_from(&span.points, &row(|k| self.abscissa(xi[k], e[k])))?;
+        let slope = span.branches.chords_from(&span.points, &row(|k| self.abscissa(xi[k], e[k])))?;
         let rise = row(|k| (e[k] - span.e[0][k]) * (self.cos - self.sin * slope[k]));
         let w = row(|k| span.w[k] - rise[k] * self.cos);
         let u = row(|k| e[k] * (2.0 * w[k] + e[k]));

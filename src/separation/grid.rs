@@ -116,7 +116,7 @@ impl Choice {
         }
         let strips = match self.method {
             Method::Spectral => {
-                strips(&self.spectral(placement, axis), placement, xi, axis.reach * axis.reach)
+                strips(&mut self.spectral(placement, axis), placement, xi, axis.reach * axis.reach)
             }
             _ => Vec::new(),
         };

@@ -8,6 +8,7 @@ use std::array::from_fn;
 
 use super::axis::{EtaAxis, lead};
 use super::column::{NEARLY_COVERED, Span, WheelSurface};
+use super::columns::{Columns, MANY, Row};
 use super::gap::midplane_gap;
 use super::grid::{BLOCK, Kernel};
 use super::strips::{self, MOST_SPANS, Strip};
@@ -57,6 +58,9 @@ pub struct Spectral<'a> {
     pub(super) coefficients: usize,
     strips: &'a [Strip],
     spans: Vec<Span>,
+    pub(super) columns: Columns<'a>,
+    /// Coefficients of columns.
+    pub(super) rows: Vec<Row>,
     values: Vec<strips::Values>,
     pub(super) arch: pulp::Arch,
 }
@@ -65,9 +69,18 @@ impl<'a> Spectral<'a> {
     /// Over a placed pair; every column starts with `coefficients` and takes more where it needs them.
     pub fn new(placement: &'a Placement, axis: &'a EtaAxis, demand: Demand, coefficients: usize) -> Self {
         let evaluator = Evaluator::new(placement);
-        let (spans, values) = (Vec::with_capacity(8), Vec::new());
-        let arch = pulp::Arch::new();
-        Self { evaluator, axis, demand, coefficients, strips: &[], spans, values, arch }
+        Self {
+            columns: Columns::new(evaluator.wheel),
+            evaluator,
+            axis,
+            demand,
+            coefficients,
+            strips: &[],
+            spans: Vec::with_capacity(8),
+            rows: Vec::new(),
+            values: Vec::new(),
+            arch: pulp::Arch::new(),
+        }
     }
 
     /// The same with strips for some of the columns.
@@ -174,21 +187,67 @@ impl Kernel for Spectral<'_> {
         while let Some(&first) = xi.get(done) {
             let rest = &xi[done..];
             let beyond = self.strips.partition_point(|strip| strip.xi[1] <= first);
-            let strip = self.strips.get(beyond).filter(|strip| strip.xi[0] < first);
-            let count = match strip {
-                Some(strip) => rest.partition_point(|&xi| xi < strip.xi[1]).min(BLOCK),
-                None => 1,
+            let next = self.strips.get(beyond);
+            let strip = next.filter(|strip| strip.xi[0] < first);
+            let count = match (strip, next) {
+                (Some(strip), _) => rest.partition_point(|&xi| xi < strip.xi[1]).min(BLOCK),
+                (None, Some(next)) => rest.partition_point(|&xi| xi <= next.xi[0]).min(MANY),
+                (None, None) => rest.len().min(MANY),
             };
             let (xi, out) = (&rest[..count], &mut out[done * length..(done + count) * length]);
+            let arch = self.arch;
             match strip {
                 Some(strip) => {
                     let (placement, axis) = (self.evaluator.placement, self.axis);
                     let values = &mut self.values;
-                    self.arch.dispatch(StripColumns { placement, strip, xi, axis, values, out });
+                    arch.dispatch(StripColumns { placement, strip, xi, axis, values, out });
                 }
-                None => self.column(first, out),
+                None if count > 1 && self.evaluator.placement.skew == 0.0 => {
+                    arch.dispatch(EachColumn { spectral: self, xi, out });
+                }
+                None => {
+                    for (&xi, out) in xi.iter().zip(out.chunks_exact_mut(length)) {
+                        self.column(xi, out);
+                    }
+                }
             }
             done += count;
+        }
+    }
+}
+
+/// Neighbouring columns that are in no strip; those over cubics at once.
+struct EachColumn<'s, 'a> {
+    spectral: &'s mut Spectral<'a>,
+    /// At most [`MANY`].
+    xi: &'s [f64],
+    out: &'s mut [f64],
+}
+
+impl pulp::WithSimd for EachColumn<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, simd: S) {
+        let Self { spectral, xi, out } = self;
+        let (axis, length) = (spectral.axis, spectral.axis.eta.len());
+        let Spectral { evaluator, demand, coefficients, columns, rows, .. } = &mut *spectral;
+        rows.clear();
+        let mut taken = columns.take_each(evaluator, axis.reach * axis.reach, xi).unwrap_or([false; MANY]);
+        if taken.contains(&true) && columns.polynomials(0, *demand, *coefficients, rows).is_none() {
+            taken = [false; MANY];
+        }
+        for (k, (&xi, out)) in xi.iter().zip(out.chunks_exact_mut(length)).enumerate() {
+            if taken[k] {
+                let mut c = [0.0; MOST_COEFFICIENTS];
+                for (c, row) in c.iter_mut().zip(&spectral.rows) {
+                    *c = row[k];
+                }
+                let base = spectral.columns.spans[0].base[k];
+                evaluate(simd, [base, 0.0], &c[..spectral.rows.len()], &axis.u, out);
+            } else {
+                spectral.column(xi, out);
+            }
         }
     }
 }
@@ -387,7 +446,7 @@ mod tests {
             let spectral = Spectral::new(placement, &axis, demand(FULL_PRECISION), 4);
             Spectral { arch, ..spectral }
         };
-        let strips = strips::strips(&spectral(), placement, &xi, axis.reach * axis.reach);
+        let strips = strips::strips(&mut spectral(), placement, &xi, axis.reach * axis.reach);
         assert!(strips.len() > 1, "{}", strips.len());
         let mut out = vec![0.0; xi.len() * axis.eta.len()];
         spectral().with_strips(&strips).columns(&xi, &mut out);

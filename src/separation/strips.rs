@@ -6,6 +6,7 @@
 //! from columns at 16 Chebyshev points in ξ, to rounding; a strip where that fails is halved, one with few columns is
 //! left to its columns.
 
+use super::Evaluator;
 use super::columns::{Columns, MANY, Row, row};
 use super::spectral::{MOST_COEFFICIENTS, Spectral};
 use crate::numerics::chebyshev;
@@ -74,76 +75,79 @@ enum Gap {
 }
 
 /// The strips of a grid up to u = `u_max` \[mm²\], in order of ξ; none for a skewed wheel or few columns.
-pub fn strips(spectral: &Spectral<'_>, placement: &Placement, xi: &[f64], u_max: f64) -> Vec<Strip> {
+pub fn strips(spectral: &mut Spectral<'_>, placement: &Placement, xi: &[f64], u_max: f64) -> Vec<Strip> {
     let (Some(&first), Some(&last)) = (xi.first(), xi.last()) else { return Vec::new() };
     if placement.skew != 0.0 || u_max == 0.0 {
         return Vec::new();
     }
-    let mut ends = breaks(placement, u_max);
-    ends.retain(|&end| end >= first && end <= last);
     // What is no break belongs to the strip.
-    ends.extend([first.next_down(), last.next_up()]);
-    ends.sort_by(f64::total_cmp);
-    let columns = Columns::new(spectral.evaluator.wheel);
-    let mut maker = Maker { spectral, xi, u_max, columns, rows: Vec::new(), strips: Vec::new() };
-    for pair in ends.windows(2) {
-        maker.divide([pair[0], pair[1]]);
+    let window = [first.next_down(), last.next_up()];
+    let mut maker = Maker { spectral, u_max, strips: Vec::new() };
+    let mut rest = xi;
+    for pair in breaks(placement, u_max, window).windows(2) {
+        rest = &rest[rest.iter().take_while(|&&xi| xi <= pair[0]).count()..];
+        let (inside, beyond) = rest.split_at(rest.iter().take_while(|&&xi| xi < pair[1]).count());
+        maker.divide([pair[0], pair[1]], inside);
+        rest = beyond;
     }
     maker.strips
 }
 
-/// The ξ at which a joint of either body enters or leaves the columns.
-fn breaks(placement: &Placement, u_max: f64) -> Vec<f64> {
+/// The ξ at which a joint of either body enters or leaves the columns, and the window's own ends, in order.
+fn breaks(placement: &Placement, u_max: f64, window: [f64; 2]) -> Vec<f64> {
     let (rail, wheel) = (&placement.rail.section, &placement.wheel.section);
-    let mut ends: Vec<f64> = rail.pieces.iter().chain(&wheel.pieces).flat_map(|piece| piece.xi).collect();
     let (sin, cos) = (wheel.frame.sin, wheel.frame.cos);
-    for piece in &wheel.pieces {
-        for joint in piece.xi {
-            let height = wheel.branches[piece.branch].height(joint);
-            let w = placement.rolling_radius() - joint * sin - height * cos;
-            // u = e (2w − e): the joint's own ring meets the window's edge; it has no such point where that is NaN.
-            ends.push(joint + sin * u_max / (w + (w * w - u_max).sqrt()));
-        }
-    }
+    let leaving = |(joint, height): (f64, f64)| {
+        let w = placement.rolling_radius() - joint * sin - height * cos;
+        // u = e (2w − e): the joint's own ring meets the window's edge; it has no such point where that is NaN.
+        joint + sin * u_max / (w + (w * w - u_max).sqrt())
+    };
+    let inside = |xi: &f64| window[0] < *xi && *xi < window[1];
+    // e ≤ w, so that e² ≤ u: no joint leaves further than this from where it enters.
+    let far = sin.abs() * u_max.sqrt();
+    let mut ends = vec![window[0]];
+    ends.extend(rail.joints(window).map(|(xi, _)| xi).filter(inside));
+    ends.extend(wheel.joints(window).map(|(xi, _)| xi).filter(inside));
+    ends.extend(wheel.joints([window[0] - far, window[1] + far]).map(leaving).filter(inside));
+    ends.push(window[1]);
+    // Four runs in order, which a stable sort merges.
+    ends.sort_by(f64::total_cmp);
     ends
 }
 
-/// Makes strips, and holds the scratch space.
-struct Maker<'a> {
-    spectral: &'a Spectral<'a>,
-    xi: &'a [f64],
+/// Makes strips.
+struct Maker<'s, 'a> {
+    spectral: &'s mut Spectral<'a>,
     u_max: f64,
-    columns: Columns<'a>,
-    /// Coefficients of T_0, T_1, … of every quantity: of every span those of q in powers of τ, s at its beginning and u_0.
-    rows: Vec<Row>,
     strips: Vec<Strip>,
 }
 
-impl Maker<'_> {
-    /// Appends strips over an interval without breaks.
-    fn divide(&mut self, [a, b]: [f64; 2]) {
-        let up_to = |end: f64| self.xi.partition_point(|&x| x < end);
-        let columns = up_to(b).saturating_sub(up_to(a.next_up()));
-        if columns < LEAST_COLUMNS {
+impl Maker<'_, '_> {
+    /// Appends strips for columns inside an interval without breaks.
+    fn divide(&mut self, [a, b]: [f64; 2], columns: &[f64]) {
+        if columns.len() < LEAST_COLUMNS {
             return;
         }
         // Halves of an interval that is so short would have no strips.
-        let short = columns < 2 * LEAST_COLUMNS;
+        let short = columns.len() < 2 * LEAST_COLUMNS;
         let arch = self.spectral.arch;
-        match arch.dispatch(Attempt { maker: self, xi: [a, b], short }) {
+        let attempt = Attempt { spectral: self.spectral, u_max: self.u_max, xi: [a, b], short };
+        match arch.dispatch(attempt) {
             Some(strip) => self.strips.push(strip),
             None => {
                 let middle = a + (b - a) / 2.0;
-                self.divide([a, middle]);
-                self.divide([middle, b]);
+                let (left, right) = columns.split_at(columns.partition_point(|&xi| xi < middle));
+                self.divide([a, middle], left);
+                self.divide([middle, b], right);
             }
         }
     }
 }
 
 /// One strip over an interval, compiled for each kind of machine.
-struct Attempt<'m, 'a> {
-    maker: &'m mut Maker<'a>,
+struct Attempt<'s, 'a> {
+    spectral: &'s mut Spectral<'a>,
+    u_max: f64,
     xi: [f64; 2],
     short: bool,
 }
@@ -155,24 +159,19 @@ impl pulp::WithSimd for Attempt<'_, '_> {
     fn with_simd<S: pulp::Simd>(self, _: S) -> Option<Strip> {
         let ([a, b], half) = (self.xi, (self.xi[1] - self.xi[0]) / 2.0);
         let points = row(|k| a + half + half * chebyshev::point(k, MANY));
-        let Maker { spectral, u_max, columns, rows, .. } = self.maker;
-        columns.take(&spectral.evaluator, *u_max, points)?;
-        Strip::new(spectral, columns, [a, b], self.short, rows)
+        let Spectral { evaluator, columns, .. } = &mut *self.spectral;
+        columns.take(evaluator, self.u_max, points)?;
+        Strip::new(self.spectral, [a, b], self.short)
     }
 }
 
 impl Strip {
-    /// The strip through columns at its Chebyshev points; `None` where there are too many spans, something is not finite,
+    /// The strip through the columns last taken, at its Chebyshev points; `None` where there are too many spans, something is not finite,
     /// or has too few coefficients that are rounding; of a `short` strip the gap may have too few.
     #[inline(always)]
-    fn new(
-        spectral: &Spectral<'_>,
-        columns: &Columns<'_>,
-        xi: [f64; 2],
-        short: bool,
-        rows: &mut Vec<Row>,
-    ) -> Option<Self> {
-        let mut beginnings = Beginnings::new(spectral, columns, short)?;
+    fn new(spectral: &mut Spectral<'_>, xi: [f64; 2], short: bool) -> Option<Self> {
+        let Spectral { evaluator, columns, demand, coefficients, rows, .. } = spectral;
+        let mut beginnings = Beginnings::new(evaluator, columns, short)?;
         let judged = &mut beginnings.judged;
         let single = columns.spans.len() == 1;
         let mut spans = [(0, 0); MOST_SPANS];
@@ -180,7 +179,7 @@ impl Strip {
         rows.clear();
         for (k, span) in columns.spans.iter().enumerate() {
             let at = rows.len();
-            let n = columns.polynomials(k, spectral.demand, spectral.coefficients, rows)?;
+            let n = columns.polynomials(k, *demand, *coefficients, rows)?;
             let length = row(|k| span.u[1][k] - span.u[0][k]);
             let q = &mut rows[at..];
             let mut power = [1.0; MANY];
@@ -291,7 +290,7 @@ struct Beginnings {
 impl Beginnings {
     /// `None` as for [`Strip::new`].
     #[inline(always)]
-    fn new(spectral: &Spectral<'_>, columns: &Columns<'_>, short: bool) -> Option<Self> {
+    fn new(evaluator: &Evaluator<'_>, columns: &Columns<'_>, short: bool) -> Option<Self> {
         if columns.spans.len() > MOST_SPANS {
             return None;
         }
@@ -306,7 +305,7 @@ impl Beginnings {
                 // What is relatively accurate must stay so where it is smallest.
                 ROUNDING_LEVEL * s.iter().fold(f64::INFINITY, |least, s| s.abs().min(least))
             } else {
-                f64::EPSILON * largest(&span.size(&spectral.evaluator, &columns.xi))
+                f64::EPSILON * largest(&span.size(evaluator, &columns.xi))
             };
             begins[k] = [s, span.u[0]].map(|values| series(&values));
             judged.with(&begins[k][1], ROUNDING_LEVEL * largest(&span.u[1]));

@@ -1,11 +1,9 @@
 //! Points and chords of a branch at several abscissae at once: the formulas of [`Branch::point`] and
 //! [`Branch::chord_from`] step by step for all, so that no abscissa waits for the one before it.
 
-use std::array::from_fn;
-
 use twofloat::TwoFloat;
 
-use super::branch::{ArcBranch, Branch, BranchPoint, BranchShape, PolynomialBranch, QUADRATIC};
+use super::branch::{ArcBranch, Branch, BranchPoint, BranchShape, QUADRATIC};
 use crate::numerics::twice::Twice;
 
 /// Newton's steps are given up after this many: the branch is nearly vertical somewhere.
@@ -40,7 +38,81 @@ impl<const N: usize> From<&BranchPoint> for BranchPoints<N> {
     }
 }
 
+/// Branches, one for each of several abscissae.
+#[derive(Debug)]
+pub enum Branches<'a, const N: usize> {
+    /// One for all.
+    One(&'a Branch),
+    /// Such as splines are made of.
+    Cubics(Cubics<N>),
+}
+
+/// Polynomial branches of at most the third degree.
+#[derive(Debug)]
+pub struct Cubics<const N: usize> {
+    xi: [[f64; N]; CUBIC],
+    zeta: [[f64; N]; CUBIC],
+    t: [[f64; N]; 2],
+    ends: [[f64; N]; 2],
+}
+
+/// Coefficients of a cubic.
+const CUBIC: usize = 4;
+
+impl<'a, const N: usize> Branches<'a, N> {
+    /// These branches, if all are cubics.
+    pub fn cubics(branches: [&'a Branch; N]) -> Option<Self> {
+        let none = || [[0.0; N]; CUBIC];
+        let mut all = Cubics { xi: none(), zeta: none(), t: [[0.0; N]; 2], ends: [[0.0; N]; 2] };
+        for (k, branch) in branches.into_iter().enumerate() {
+            let BranchShape::Polynomial(p) = &branch.shape else { return None };
+            if !branch.is_cubic() {
+                return None;
+            }
+            for (rows, c) in [(&mut all.xi, &p.xi), (&mut all.zeta, &p.zeta)] {
+                for (row, c) in rows.iter_mut().zip(c) {
+                    row[k] = *c;
+                }
+            }
+            for end in 0..2 {
+                (all.t[end][k], all.ends[end][k]) = (p.t[end], p.ends[end]);
+            }
+        }
+        Some(Self::Cubics(all))
+    }
+
+    /// As [`Branch::points`].
+    #[inline(always)]
+    pub fn points(&self, xi: &[f64; N]) -> Option<(BranchPoints<N>, [f64; N])> {
+        match self {
+            Self::One(branch) => branch.points(xi),
+            Self::Cubics(c) => {
+                let t = solved(c.xi.iter().rev().copied(), c.t, xi, guesses(c.t, c.ends, xi))?;
+                let (zeta, _) = values_and_slopes(c.zeta.iter().rev().copied(), &t);
+                Some((BranchPoints::Polynomial { xi: *xi, t }, zeta))
+            }
+        }
+    }
+
+    /// As [`Branch::chords_from`].
+    #[inline(always)]
+    pub fn chords_from(&self, from: &BranchPoints<N>, to: &[f64; N]) -> Option<[f64; N]> {
+        match (self, from) {
+            (Self::One(branch), _) => branch.chords_from(from, to),
+            (Self::Cubics(c), BranchPoints::Polynomial { xi, t }) => {
+                chords([c.xi.iter().rev().copied(), c.zeta.iter().rev().copied()], c.t, [xi, t], to)
+            }
+            _ => None,
+        }
+    }
+}
+
 impl Branch {
+    /// Whether it is a polynomial of at most the third degree.
+    pub fn is_cubic(&self) -> bool {
+        matches!(&self.shape, BranchShape::Polynomial(p) if p.xi.len().max(p.zeta.len()) <= CUBIC)
+    }
+
     /// The points at ξ and their ζ \[mm\]; `None` where Newton's steps on a polynomial do not settle.
     #[inline(always)]
     pub fn points<const N: usize>(&self, xi: &[f64; N]) -> Option<(BranchPoints<N>, [f64; N])> {
@@ -54,8 +126,9 @@ impl Branch {
                 Some((BranchPoints::Arc { sin, cos }, zeta))
             }
             BranchShape::Polynomial(p) => {
-                let t = p.parameters(xi, from_fn(|k| p.guess(xi[k])))?;
-                Some((BranchPoints::Polynomial { xi: *xi, t }, values_and_slopes(&p.zeta, &t).0))
+                let range = p.t.map(|t| [t; N]);
+                let t = solved(descending(&p.xi), range, xi, guesses(range, p.ends.map(|end| [end; N]), xi))?;
+                Some((BranchPoints::Polynomial { xi: *xi, t }, values_and_slopes(descending(&p.zeta), &t).0))
             }
         }
     }
@@ -73,10 +146,7 @@ impl Branch {
                 Some(slope)
             }
             (BranchShape::Polynomial(p), BranchPoints::Polynomial { xi, t }) => {
-                let (_, slope) = values_and_slopes(&p.xi, t);
-                let t_to = p.parameters(to, from_fn(|k| t[k] + (to[k] - xi[k]) / slope[k]))?;
-                let (rise, run) = (differences(&p.zeta, t, &t_to), differences(&p.xi, t, &t_to));
-                Some(from_fn(|k| rise[k] / run[k]))
+                chords([descending(&p.xi), descending(&p.zeta)], p.t.map(|t| [t; N]), [xi, t], to)
             }
             // Points of another branch have no chords on this one.
             _ => None,
@@ -91,7 +161,8 @@ impl Branch {
             (BranchShape::Arc(arc), BranchPoints::Arc { .. }) => arc.exact_heights(xi),
             (BranchShape::Polynomial(p), BranchPoints::Polynomial { t, .. }) => {
                 let mut exact = t.map(Twice::from);
-                let (abscissa, (_, slope)) = (exact_values(&p.exact[0], &exact), values_and_slopes(&p.xi, t));
+                let (abscissa, (_, slope)) =
+                    (exact_values(&p.exact[0], &exact), values_and_slopes(descending(&p.xi), t));
                 for k in 0..N {
                     // One Newton step more, which doubles the digits whatever the rounding of its slope.
                     let miss = abscissa[k] - Twice::from(xi[k]);
@@ -128,40 +199,93 @@ impl ArcBranch {
     }
 }
 
-impl PolynomialBranch {
-    /// t with ξ(t) = ξ by Newton's steps from guesses.
-    #[inline(always)]
-    fn parameters<const N: usize>(&self, xi: &[f64; N], guess: [f64; N]) -> Option<[f64; N]> {
-        let [low, high] = self.t;
-        let done = QUADRATIC * (high - low);
-        let mut t = guess.map(|t| t.clamp(low, high));
-        let mut last = [f64::INFINITY; N];
-        let mut settled = [false; N];
-        for _ in 0..STEPS {
-            let (value, slope) = values_and_slopes(&self.xi, &t);
-            for k in 0..N {
-                let next = (t[k] - (value[k] - xi[k]) / slope[k]).clamp(low, high);
-                let step = (next - t[k]).abs();
-                settled[k] |=
-                    step <= 2.0 * f64::EPSILON * next.abs() || (step <= done && step <= QUADRATIC * last[k]);
-                (t[k], last[k]) = (next, step);
-            }
-            if settled.iter().all(|&settled| settled) {
-                return Some(t);
-            }
-        }
-        None
-    }
+/// Coefficients that are the same for all, the highest first.
+#[inline(always)]
+fn descending<const N: usize>(c: &[f64]) -> impl Iterator<Item = [f64; N]> + Clone {
+    c.iter().rev().map(|&c| [c; N])
 }
 
-/// Values and first derivatives.
+/// t where ξ is on the line through the ends.
 #[inline(always)]
-fn values_and_slopes<const N: usize>(c: &[f64], t: &[f64; N]) -> ([f64; N], [f64; N]) {
+fn guesses<const N: usize>(t: [[f64; N]; 2], ends: [[f64; N]; 2], xi: &[f64; N]) -> [f64; N] {
+    let mut guess = [0.0; N];
+    for k in 0..N {
+        let share = (xi[k] - ends[0][k]) / (ends[1][k] - ends[0][k]);
+        guess[k] = t[0][k] + (t[1][k] - t[0][k]) * share;
+    }
+    guess
+}
+
+/// t with ξ(t) = ξ by Newton's steps from guesses within a range.
+#[inline(always)]
+fn solved<const N: usize>(
+    c: impl Iterator<Item = [f64; N]> + Clone,
+    [low, high]: [[f64; N]; 2],
+    xi: &[f64; N],
+    guess: [f64; N],
+) -> Option<[f64; N]> {
+    let mut t = guess;
+    let mut last = [f64::INFINITY; N];
+    let mut settled = [false; N];
+    for k in 0..N {
+        t[k] = within(t[k], low[k], high[k]);
+    }
+    for _ in 0..STEPS {
+        let (value, slope) = values_and_slopes(c.clone(), &t);
+        for k in 0..N {
+            let next = within(t[k] - (value[k] - xi[k]) / slope[k], low[k], high[k]);
+            let step = (next - t[k]).abs();
+            let done = (QUADRATIC * (high[k] - low[k])).min(next.abs());
+            settled[k] |=
+                step <= 2.0 * f64::EPSILON * next.abs() || (step <= done && step <= QUADRATIC * last[k]);
+            (t[k], last[k]) = (next, step);
+        }
+        if settled.iter().all(|&settled| settled) {
+            return Some(t);
+        }
+    }
+    None
+}
+
+/// The value, or the end that it is beyond; NaN stays.
+#[inline(always)]
+fn within(value: f64, low: f64, high: f64) -> f64 {
+    let above = if value < low { low } else { value };
+    if above > high { high } else { above }
+}
+
+/// The slopes of chords from points (ξ, t) to abscissae, of curves with coefficients of ξ and ζ.
+#[inline(always)]
+fn chords<const N: usize>(
+    [c_xi, c_zeta]: [impl Iterator<Item = [f64; N]> + Clone; 2],
+    range: [[f64; N]; 2],
+    [xi, t]: [&[f64; N]; 2],
+    to: &[f64; N],
+) -> Option<[f64; N]> {
+    let (_, slope) = values_and_slopes(c_xi.clone(), t);
+    let mut guess = *t;
+    for k in 0..N {
+        guess[k] += (to[k] - xi[k]) / slope[k];
+    }
+    let t_to = solved(c_xi.clone(), range, to, guess)?;
+    let (mut rise, run) = (differences(c_zeta, t, &t_to), differences(c_xi, t, &t_to));
+    for k in 0..N {
+        rise[k] /= run[k];
+    }
+    Some(rise)
+}
+
+/// Values and first derivatives; the highest coefficients first.
+#[inline(always)]
+fn values_and_slopes<const N: usize>(
+    c: impl Iterator<Item = [f64; N]>,
+    t: &[f64; N],
+) -> ([f64; N], [f64; N]) {
     let (mut value, mut slope) = ([0f64; N], [0f64; N]);
-    for &c in c.iter().rev() {
+    for c in c {
         for k in 0..N {
             slope[k] = slope[k].mul_add(t[k], value[k]);
-            value[k] = value[k].mul_add(t[k], c);
+            value[k] = value[k].mul_add(t[k], c[k]);
         }
     }
     (value, slope)
@@ -180,15 +304,17 @@ fn exact_values<const N: usize>(c: &[TwoFloat], t: &[Twice; N]) -> [Twice; N] {
     value
 }
 
-/// [`crate::numerics::polynomial::divided_difference`] for several.
+/// [`crate::numerics::polynomial::divided_difference`] for several; the highest coefficients first.
 #[inline(always)]
-fn differences<const N: usize>(c: &[f64], a: &[f64; N], b: &[f64; N]) -> [f64; N] {
-    let (mut quotient, mut sum) = ([0f64; N], [0f64; N]);
-    for &c in c.iter().skip(1).rev() {
+fn differences<const N: usize>(c: impl Iterator<Item = [f64; N]>, a: &[f64; N], b: &[f64; N]) -> [f64; N] {
+    let (mut quotient, mut sum, mut before) = ([0f64; N], [0f64; N], [0f64; N]);
+    // The last one, of t⁰, has no part in it: each counts when the next is there.
+    for c in c {
         for k in 0..N {
-            quotient[k] = quotient[k].mul_add(a[k], c);
-            sum[k] = sum[k].mul_add(b[k], quotient[k]);
+            sum[k] = sum[k].mul_add(b[k], before[k]);
+            quotient[k] = quotient[k].mul_add(a[k], c[k]);
         }
+        before = quotient;
     }
     sum
 }

@@ -8,7 +8,7 @@ mod many;
 pub use between::stationary_points;
 pub use branch::{ArcBranch, Branch, BranchPoint, BranchShape, PolynomialBranch};
 pub use envelope::Piece;
-pub use many::BranchPoints;
+pub use many::{BranchPoints, Branches};
 
 use super::{Arc, Profile, Shape, Station};
 use twofloat::TwoFloat;
@@ -101,8 +101,18 @@ impl Section {
 
     /// The piece of the envelope that holds ξ.
     pub fn piece_at(&self, xi: f64) -> Option<&Piece> {
-        let index = self.pieces.partition_point(|piece| piece.xi[1] < xi);
-        self.pieces.get(index).filter(|piece| piece.xi[0] <= xi)
+        self.pieces_from(xi).first().filter(|piece| piece.xi[0] <= xi)
+    }
+
+    /// The pieces of the envelope that do not end before ξ.
+    pub fn pieces_from(&self, xi: f64) -> &[Piece] {
+        &self.pieces[self.pieces.partition_point(|piece| piece.xi[1] < xi)..]
+    }
+
+    /// The ends of the envelope's pieces that touch an interval, with their ζ, in order of ξ; twice where two pieces meet.
+    pub fn joints(&self, [from, to]: [f64; 2]) -> impl Iterator<Item = (f64, f64)> {
+        let pieces = self.pieces_from(from).iter().take_while(move |piece| piece.xi[0] <= to);
+        pieces.flat_map(|piece| [0, 1].map(|end| (piece.xi[end], piece.ends[end].1)))
     }
 
     /// ζ(ξ) of (4.5), or NaN where the body has no surface. Accurate to rounding at the size of ζ near the
