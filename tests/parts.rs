@@ -30,6 +30,17 @@ fn parts_have_a_grid_each_unless_they_are_merged() {
 }
 
 #[test]
+fn a_method_that_misses_the_tolerance_is_warned_of() {
+    for (method, tolerance, missed) in
+        [("quadratic", 1e-6, true), ("quadratic", 1e3, false), ("spectral", 1e-6, false)]
+    {
+        let run = run(&format!("method = \"{method}\"\ntolerance = {tolerance:?}")).expect("a patch");
+        let warned = run.warnings().iter().any(|warning| warning.contains("grid.tolerance"));
+        assert_eq!(warned, missed, "{method} to {tolerance:e}: {:?}", run.warnings());
+    }
+}
+
+#[test]
 fn a_distance_that_means_nothing_is_refused() {
     let axes = "xi = { from = -1.0, to = 1.0, n = 3 }\neta = { from = -1.0, to = 1.0, n = 3 }\n";
     for grid in ["merge = -1.0".to_string(), format!("{axes}merge = 1.0")] {

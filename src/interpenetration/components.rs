@@ -180,7 +180,10 @@ impl Outline<'_> {
 
     /// \[s, ξ, η\] of the smallest s among the nodes and where the depth turns between them.
     fn deepest(&mut self, nodes: &[f64]) -> [f64; 3] {
-        let mut candidates = self.turning_points_among(nodes);
+        // C first: points where s² is below the smallest number are none better.
+        let mut candidates: Vec<f64> =
+            [0.0].into_iter().filter(|&c| nodes[0] <= c && c <= nodes[nodes.len() - 1]).collect();
+        candidates.extend(self.turning_points_among(nodes));
         candidates.extend(nodes);
         let values = candidates.into_iter().map(|xi| {
             let floor = self.floor(xi);

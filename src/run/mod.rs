@@ -17,6 +17,7 @@ use crate::mesh::axes;
 use crate::placement::{Pair, Placement};
 use crate::profile::measured::Record;
 use crate::scene::{self, Scene, check_points};
+use crate::separation::plan::Plan;
 
 /// A scene and everything computed from it.
 #[derive(Debug, Clone)]
@@ -130,6 +131,12 @@ impl Part {
         let mut out = Vec::new();
         if self.analysis.patch.as_ref().is_some_and(Patch::cut_by_window) {
             out.push("the window of the grid cuts the patch: solvers would overestimate the pressure".into());
+        }
+        let Plan { error, tolerance, .. } = self.analysis.plan;
+        if error.is_nan() || error > tolerance {
+            out.push(format!(
+                "the separation's estimated error, {error:.1e} mm, is above grid.tolerance, {tolerance:e} mm"
+            ));
         }
         out
     }

@@ -34,6 +34,8 @@ pub struct Plan {
     pub choice: Choice,
     /// Estimated largest error of s over the grid \[mm\], truncation and rounding.
     pub error: f64,
+    /// Largest error asked for \[mm\].
+    pub tolerance: f64,
     /// One sentence for the summary.
     pub reason: String,
 }
@@ -69,17 +71,18 @@ pub fn plan(
     };
     if let Some(method) = forced {
         let (choice, error) = tried(method);
-        return Plan { choice, error, reason: "asked for by the scene".into() };
+        return Plan { choice, error, tolerance, reason: "asked for by the scene".into() };
     }
     let (choice, error) = tried(Method::Quadratic);
     let exact = error <= samples.rounding;
     if error <= tolerance && (tolerance > FULL_PRECISION || exact) {
-        return Plan { choice, error, reason: format!("cheapest of all, within {tolerance:e} mm") };
+        let reason = format!("cheapest of all, within {tolerance:e} mm");
+        return Plan { choice, error, tolerance, reason };
     }
     let reason =
         format!("cheapest within {tolerance:e} mm; {} is off by {error:.1e} mm", Method::Quadratic.name());
     let (choice, error) = tried(Method::Spectral);
-    Plan { choice, error, reason }
+    Plan { choice, error, tolerance, reason }
 }
 
 /// Point-wise values at a few columns.
