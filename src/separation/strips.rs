@@ -18,6 +18,9 @@ const LEAST_COLUMNS: usize = 8;
 /// A quantity's last coefficients below this share of it are rounding of the columns that it is made from.
 const ROUNDING_LEVEL: f64 = 4.0 * f64::EPSILON;
 
+/// … and where g/ξ² varies much, below this share of its smallest value: a thirtieth of the promised relative error.
+const MOST_ROUNDING: f64 = 16.0 * f64::EPSILON;
+
 /// Coefficients at the end that have to be rounding: one parity may vanish.
 const PROOF: usize = 2;
 
@@ -302,8 +305,11 @@ impl Beginnings {
             let mut s = span.base;
             rounding[k] = if columns.contact && k == 0 {
                 s = row(|k| s[k] / (columns.xi[k] * columns.xi[k]));
-                // What is relatively accurate must stay so where it is smallest.
-                ROUNDING_LEVEL * s.iter().fold(f64::INFINITY, |least, s| s.abs().min(least))
+                // What is relatively accurate must stay so where it is smallest; where it varies much, the largest
+                // values' rounding is more.
+                let least = s.iter().fold(f64::INFINITY, |least, s| s.abs().min(least));
+                let rounding = (0.5 * f64::EPSILON * largest(&s)).min(MOST_ROUNDING * least);
+                rounding.max(ROUNDING_LEVEL * least)
             } else {
                 f64::EPSILON * largest(&span.size(evaluator, &columns.xi))
             };

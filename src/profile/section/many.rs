@@ -161,14 +161,13 @@ impl Branch {
             (BranchShape::Arc(arc), BranchPoints::Arc { .. }) => arc.exact_heights(xi),
             (BranchShape::Polynomial(p), BranchPoints::Polynomial { t, .. }) => {
                 let mut exact = t.map(Twice::from);
-                let (abscissa, (_, slope)) =
-                    (exact_values(&p.exact[0], &exact), values_and_slopes(descending(&p.xi), t));
+                let (abscissa, slope) = exact_values(&p.exact[0], &exact);
                 for k in 0..N {
                     // One Newton step more, which doubles the digits whatever the rounding of its slope.
                     let miss = abscissa[k] - Twice::from(xi[k]);
                     exact[k] = Twice::sum(t[k], -(miss.high / slope[k]));
                 }
-                exact_values(&p.exact[1], &exact)
+                exact_values(&p.exact[1], &exact).0
             }
             _ => [Twice::from(f64::NAN); N],
         }
@@ -291,17 +290,28 @@ fn values_and_slopes<const N: usize>(
     (value, slope)
 }
 
-/// Values in twice the working precision.
+/// Values in twice the working precision, and slopes in the working one: compensated Horner's rule (Langlois and Louvet
+/// 2007), which adds up what every step rounds.
 #[inline(always)]
-fn exact_values<const N: usize>(c: &[TwoFloat], t: &[Twice; N]) -> [Twice; N] {
-    let mut value = [Twice::from(0.0); N];
-    for &c in c.iter().rev() {
-        let c = Twice::from(c);
+fn exact_values<const N: usize>(c: &[TwoFloat], t: &[Twice; N]) -> ([Twice; N], [f64; N]) {
+    let (mut value, mut slope, mut rounded) = ([0f64; N], [0f64; N], [0f64; N]);
+    for c in c.iter().rev() {
+        let (high, low) = (c.hi(), c.lo());
         for k in 0..N {
-            value[k] = value[k] * t[k] + c;
+            let t = t[k].high;
+            let product = value[k] * t;
+            let of_product = value[k].mul_add(t, -product);
+            let sum = Twice::sum(product, high);
+            slope[k] = slope[k].mul_add(t, value[k]);
+            rounded[k] = rounded[k].mul_add(t, of_product + (sum.low + low));
+            value[k] = sum.high;
         }
     }
-    value
+    let mut exact = [Twice::from(0.0); N];
+    for k in 0..N {
+        exact[k] = Twice::sum(value[k], slope[k].mul_add(t[k].low, rounded[k]));
+    }
+    (exact, slope)
 }
 
 /// [`crate::numerics::polynomial::divided_difference`] for several; the highest coefficients first.
