@@ -1,4 +1,4 @@
-//! The three cheap methods: quadratic, constant radius, parabolic.
+//! The three approximations: quadratic, constant radius, parabolic.
 
 use super::axis::EtaAxis;
 use super::grid::Kernel;

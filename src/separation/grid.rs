@@ -32,7 +32,7 @@ pub trait Kernel {
     }
 }
 
-/// The accuracy ladder, cheapest first.
+/// The accuracy ladder, from the simplest formula to the historical baseline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
