@@ -432,12 +432,14 @@ static NODES: std::sync::LazyLock<[[f64; MOST_COEFFICIENTS]; MOST_COEFFICIENTS]>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::Result;
     use crate::placement::Pair;
-    use crate::profile::standards;
+    use crate::profile::measured::{self, CurveKind, Format, Options, write};
+    use crate::profile::{Profile, Side, standards};
     use crate::separation::plan::{FULL_PRECISION, demand};
 
-    /// s over a window with joints on the columns and in them, by strips and singly, compiled for one kind of machine.
-    fn filled(placement: &Placement, arch: pulp::Arch) -> Vec<f64> {
+    /// s over a window with joints on the columns and in them, and the number of strips, compiled for one kind of machine.
+    fn filled(placement: &Placement, arch: pulp::Arch) -> (Vec<f64>, usize) {
         let steps =
             |reach: f64, n: i32| (0..n).map(move |k| reach * f64::from(2 * k - n + 1) / f64::from(n - 1));
         let xi: Vec<f64> = steps(12.0, 101).collect();
@@ -447,26 +449,37 @@ mod tests {
             Spectral { arch, ..spectral }
         };
         let strips = strips::strips(&mut spectral(), placement, &xi, axis.reach * axis.reach);
-        assert!(strips.len() > 1, "{}", strips.len());
         let mut out = vec![0.0; xi.len() * axis.eta.len()];
         spectral().with_strips(&strips).columns(&xi, &mut out);
-        out
+        (out, strips.len())
+    }
+
+    /// A spline through points of a profile.
+    fn spline(profile: &Profile, side: Side) -> Result<Profile> {
+        let text = write::points(&write::sample(profile, 0.5)?, Format::Csv, side, "sample");
+        let [mirror, flip_z] = [Some(false); 2];
+        let options = Options { mirror, flip_z, curve: Some(CurveKind::Smoothing), ..Options::default() };
+        measured::profile("sample.csv", text.as_bytes(), side, &options).map(|measured| measured.profile)
     }
 
     #[test]
-    fn every_machine_gives_the_same_bits() -> crate::error::Result<()> {
-        let pair = Pair::new(standards::rail("UIC60")?, standards::wheel("S1002")?, 460.0)?;
-        let placement = pair.placed(-11.0, -9.0, 0.0)?;
-        let plain = filled(&placement, pulp::Arch::Scalar);
-        assert!(plain.iter().all(|s| s.is_finite()));
-        let same = |arch| {
-            let other = filled(&placement, arch);
-            plain.iter().zip(&other).all(|(a, b)| a.to_bits() == b.to_bits())
-        };
-        assert!(same(pulp::Arch::new()));
-        #[cfg(target_arch = "x86_64")]
-        if let Some(v3) = pulp::x86::V3::try_new() {
-            assert!(same(pulp::Arch::V3(v3)));
+    fn every_machine_gives_the_same_bits() -> Result<()> {
+        let (rail, wheel) = (standards::rail("UIC60")?, standards::wheel("S1002")?);
+        let splines = [spline(&rail, Side::Rail)?, spline(&wheel, Side::Wheel)?];
+        for ([rail, wheel], by_strips) in [([rail, wheel], true), (splines, false)] {
+            let placement = Pair::new(rail, wheel, 460.0)?.placed(-11.0, -9.0, 0.0)?;
+            let (plain, strips) = filled(&placement, pulp::Arch::Scalar);
+            assert_eq!(strips > 1, by_strips, "{strips}");
+            assert!(plain.iter().all(|s| s.is_finite()));
+            let same = |arch| {
+                let (other, _) = filled(&placement, arch);
+                plain.iter().zip(&other).all(|(a, b)| a.to_bits() == b.to_bits())
+            };
+            assert!(same(pulp::Arch::new()));
+            #[cfg(target_arch = "x86_64")]
+            if let Some(v3) = pulp::x86::V3::try_new() {
+                assert!(same(pulp::Arch::V3(v3)));
+            }
         }
         Ok(())
     }
