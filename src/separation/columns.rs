@@ -103,24 +103,24 @@ impl<'a> Columns<'a> {
         Some(())
     }
 
-    /// Takes columns over cubics, as of splines, each over its own; for each whether it is one that lies beyond the contact
-    /// segments and over one branch of either body. In the place of one that does not stands one that does; `None` where
-    /// none does.
+    /// Takes columns each over its own branches, if all are over the same one or over cubics, as of splines; for each whether
+    /// it is one that lies beyond the contact segments and over one branch of either body. In the place of one that does
+    /// not stands one that does; `None` where none does.
     #[inline(always)]
     pub fn take_each(&mut self, evaluator: &Evaluator<'a>, u_max: f64, xi: &[f64]) -> Option<[bool; MANY]> {
         let (rail, wheel) = (&evaluator.placement.rail.section, &self.wheel);
-        let cubics = wheel.cubics_under(rail, u_max, xi);
-        let (first, stand_in) = cubics.iter().enumerate().find_map(|(k, pair)| Some((k, (*pair)?)))?;
+        let pairs = wheel.pieces_under(rail, u_max, xi);
+        let (first, stand_in) = pairs.iter().enumerate().find_map(|(k, pair)| Some((k, (*pair)?)))?;
         let [mut rails, mut wheels] = [stand_in.0, stand_in.1].map(|piece| [piece; MANY]);
         self.xi = [xi[first]; MANY];
-        for (k, pair) in cubics.iter().enumerate() {
+        for (k, pair) in pairs.iter().enumerate() {
             if let Some((r, w)) = pair {
                 (rails[k], wheels[k], self.xi[k]) = (*r, *w, xi[k]);
             }
         }
-        let branches = Branches::cubics(wheels.map(|piece| &wheel.section.branches[piece.branch]))?;
+        let branches = Branches::of(wheels.map(|piece| &wheel.section.branches[piece.branch]))?;
         let (points, height) = branches.points(&self.xi)?;
-        let rails = Branches::cubics(rails.map(|piece| &rail.branches[piece.branch]))?;
+        let rails = Branches::of(rails.map(|piece| &rail.branches[piece.branch]))?;
         let (_, rail_height) = rails.points(&self.xi)?;
         let zero = [0.0; MANY];
         self.contact = false;
@@ -134,7 +134,7 @@ impl<'a> Columns<'a> {
             e: [zero, row(|k| wheel.far_end(self.xi[k], wheels[k])[0])],
             w: row(|k| wheel.axle - self.xi[k] * wheel.sin - height[k] * wheel.cos),
         });
-        Some(cubics.map(|pair| pair.is_some()))
+        Some(pairs.map(|pair| pair.is_some()))
     }
 
     /// Appends the coefficients of q over one span, at least so many, as [`super::spectral::Spectral::polynomial`]; how
@@ -174,12 +174,11 @@ impl<'a> Columns<'a> {
     }
 }
 
-/// The piece that holds ξ inside, if it is a cubic; pieces before it are taken from `rest`.
-fn cubic_at<'a>(section: &Section, rest: &mut &'a [Piece], xi: f64) -> Option<&'a Piece> {
+/// The piece that holds ξ inside; pieces before it are taken from `rest`.
+fn piece_inside<'a>(rest: &mut &'a [Piece], xi: f64) -> Option<&'a Piece> {
     let before = rest.iter().take_while(|piece| piece.xi[1] < xi).count();
     *rest = &rest[before..];
-    let piece = rest.first()?;
-    (piece.xi[0] < xi && xi < piece.xi[1] && section.branches[piece.branch].is_cubic()).then_some(piece)
+    rest.first().filter(|piece| piece.xi[0] < xi && xi < piece.xi[1])
 }
 
 impl SpanColumns<'_> {
@@ -190,8 +189,8 @@ impl SpanColumns<'_> {
 }
 
 impl<'a> WheelSurface<'a> {
-    /// The cubics of rail and wheel at each ξ where the column lies over one of either, not both the contact segments.
-    fn cubics_under<'r>(
+    /// The pieces of rail and wheel at each ξ where the column lies over one of either, not both the contact segments.
+    fn pieces_under<'r>(
         &self,
         rail: &'r Section,
         u_max: f64,
@@ -200,7 +199,7 @@ impl<'a> WheelSurface<'a> {
         let mut found = [None; MANY];
         let (mut rest_r, mut rest_w) = (rail.pieces_from(xi[0]), self.section.pieces_from(xi[0]));
         for (found, &xi) in found.iter_mut().zip(xi) {
-            let pair = cubic_at(rail, &mut rest_r, xi).zip(cubic_at(self.section, &mut rest_w, xi));
+            let pair = piece_inside(&mut rest_r, xi).zip(piece_inside(&mut rest_w, xi));
             *found = pair.filter(|(r, w)| {
                 let contact = rail.contact == Some(r.branch) && self.section.contact == Some(w.branch);
                 !contact && self.far_end(xi, w)[1] >= u_max

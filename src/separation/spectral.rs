@@ -216,7 +216,7 @@ impl Kernel for Spectral<'_> {
     }
 }
 
-/// Neighbouring columns that are in no strip; those over cubics at once.
+/// Neighbouring columns that are in no strip; those over one branch, or each over its own cubic, at once.
 struct EachColumn<'s, 'a> {
     spectral: &'s mut Spectral<'a>,
     /// At most [`MANY`].

@@ -60,13 +60,16 @@ pub struct Cubics<const N: usize> {
 const CUBIC: usize = 4;
 
 impl<'a, const N: usize> Branches<'a, N> {
-    /// These branches, if all are cubics.
-    pub fn cubics(branches: [&'a Branch; N]) -> Option<Self> {
+    /// These branches, if all are the same one or cubics.
+    pub fn of(branches: [&'a Branch; N]) -> Option<Self> {
+        if branches.iter().all(|branch| std::ptr::eq(*branch, branches[0])) {
+            return Some(Self::One(branches[0]));
+        }
         let none = || [[0.0; N]; CUBIC];
         let mut all = Cubics { xi: none(), zeta: none(), t: [[0.0; N]; 2], ends: [[0.0; N]; 2] };
         for (k, branch) in branches.into_iter().enumerate() {
             let BranchShape::Polynomial(p) = &branch.shape else { return None };
-            if !branch.is_cubic() {
+            if p.xi.len().max(p.zeta.len()) > CUBIC {
                 return None;
             }
             for (rows, c) in [(&mut all.xi, &p.xi), (&mut all.zeta, &p.zeta)] {
@@ -108,11 +111,6 @@ impl<'a, const N: usize> Branches<'a, N> {
 }
 
 impl Branch {
-    /// Whether it is a polynomial of at most the third degree.
-    pub fn is_cubic(&self) -> bool {
-        matches!(&self.shape, BranchShape::Polynomial(p) if p.xi.len().max(p.zeta.len()) <= CUBIC)
-    }
-
     /// The points at ξ and their ζ \[mm\]; `None` where Newton's steps on a polynomial do not settle.
     #[inline(always)]
     pub fn points<const N: usize>(&self, xi: &[f64; N]) -> Option<(BranchPoints<N>, [f64; N])> {
