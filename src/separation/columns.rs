@@ -3,7 +3,7 @@
 
 use super::Evaluator;
 use super::column::{NEARLY_COVERED, Span, WheelSurface, sagitta};
-use super::gap::contact_gaps;
+use super::gap::{contact_gap, contact_gaps};
 use super::spectral::{Demand, MOST_COEFFICIENTS, ROUNDING_LEVEL, is_whole, nodes, powers};
 use crate::profile::{BranchPoints, Branches, Piece, Section};
 
@@ -104,8 +104,8 @@ impl<'a> Columns<'a> {
     }
 
     /// Takes columns each over its own branches, if all are over the same one or over cubics, as of splines; for each whether
-    /// it is one that lies beyond the contact segments and over one branch of either body. In the place of one that does
-    /// not stands one that does; `None` where none does.
+    /// it is one that lies over one branch of either body. In the place of one that does not stands one that does; `None`
+    /// where none does.
     #[inline(always)]
     pub fn take_each(&mut self, evaluator: &Evaluator<'a>, u_max: f64, xi: &[f64]) -> Option<[bool; MANY]> {
         let (rail, wheel) = (&evaluator.placement.rail.section, &self.wheel);
@@ -120,15 +120,24 @@ impl<'a> Columns<'a> {
         }
         let branches = Branches::of(wheels.map(|piece| &wheel.section.branches[piece.branch]))?;
         let (points, height) = branches.points(&self.xi)?;
-        let rails = Branches::of(rails.map(|piece| &rail.branches[piece.branch]))?;
-        let (_, rail_height) = rails.points(&self.xi)?;
+        let (_, rail_height) =
+            Branches::of(rails.map(|piece| &rail.branches[piece.branch]))?.points(&self.xi)?;
+        let contact = [rail.contact, wheel.section.contact];
+        let base = row(|k| {
+            let [r, w] = [rails[k].branch, wheels[k].branch];
+            if contact == [Some(r), Some(w)] {
+                contact_gap(&rail.branches[r], &wheel.section.branches[w], self.xi[k], height[k])
+            } else {
+                height[k] - rail_height[k]
+            }
+        });
         let zero = [0.0; MANY];
         self.contact = false;
         self.spans.clear();
         self.spans.push(SpanColumns {
             branches,
             points,
-            base: row(|k| height[k] - rail_height[k]),
+            base,
             height,
             u: [zero, [u_max; MANY]],
             e: [zero, row(|k| wheel.far_end(self.xi[k], wheels[k])[0])],
@@ -189,7 +198,7 @@ impl SpanColumns<'_> {
 }
 
 impl<'a> WheelSurface<'a> {
-    /// The pieces of rail and wheel at each ξ where the column lies over one of either, not both the contact segments.
+    /// The pieces of rail and wheel at each ξ where the column lies over one of either.
     fn pieces_under<'r>(
         &self,
         rail: &'r Section,
@@ -200,10 +209,7 @@ impl<'a> WheelSurface<'a> {
         let (mut rest_r, mut rest_w) = (rail.pieces_from(xi[0]), self.section.pieces_from(xi[0]));
         for (found, &xi) in found.iter_mut().zip(xi) {
             let pair = piece_inside(&mut rest_r, xi).zip(piece_inside(&mut rest_w, xi));
-            *found = pair.filter(|(r, w)| {
-                let contact = rail.contact == Some(r.branch) && self.section.contact == Some(w.branch);
-                !contact && self.far_end(xi, w)[1] >= u_max
-            });
+            *found = pair.filter(|(_, w)| self.far_end(xi, w)[1] >= u_max);
         }
         found
     }
