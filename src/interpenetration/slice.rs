@@ -16,8 +16,11 @@ const CONTRACTIONS: usize = 24;
 /// joint whose two sides round differently.
 const STEP_ROUNDINGS: f64 = 64.0;
 
-/// Newton's steps to s = δ with skew, from outside; five reach rounding on a smooth column.
+/// Newton's steps to s = δ with skew.
 const NEWTON_STEPS: usize = 6;
+
+/// A step below this share of the way leaves its square: nothing.
+const QUADRATIC: f64 = 1e-8;
 
 /// Half the interval, in roundings of η, in which Newton's result is confirmed by a change of sign.
 const NEWTON_ROUNDINGS: f64 = 64.0;
@@ -103,12 +106,14 @@ impl<'a> Slicer<'a> {
     /// The end of the slice on one side of its lowest point, with skew.
     fn edge(&mut self, xi: f64, lowest: f64, mut reach: f64) -> Edge {
         let approach = self.approach;
+        let mut there = self.evaluator.separation(xi, lowest + reach);
         // Ends at the latest where the column leaves the wheel's own ring.
-        while self.evaluator.separation(xi, lowest + reach) < approach {
+        while there < approach {
             reach *= 2.0;
+            there = self.evaluator.separation(xi, lowest + reach);
         }
         let mut far = lowest + reach;
-        if self.evaluator.separation(xi, far).is_nan() {
+        if there.is_nan() {
             far = self.surface_end(xi, lowest, far);
             if self.evaluator.separation(xi, far) < approach {
                 return Edge { eta: far, ledge: true };
@@ -121,19 +126,25 @@ impl<'a> Slicer<'a> {
 
     /// η with s(ξ, η) = δ between `lowest` and `far`, on whose two sides s − δ has different signs.
     ///
-    /// Method: Newton's steps come from outside, where s is convex, and are exact to rounding within five; the
-    /// bracketed root then decides the last bits, over all of the interval where a joint has misled them.
+    /// Method: s is nearly a parabola and convex, so that Newton's steps from half way come from outside, and are exact
+    /// to rounding within four; the bracketed root then decides the last bits, over all of the interval where a joint has
+    /// misled them.
     fn level(&mut self, xi: f64, lowest: f64, far: f64) -> Option<f64> {
         let approach = self.approach;
-        let mut eta = far;
+        let mut eta = lowest + (far - lowest) / 2.0;
         for _ in 0..NEWTON_STEPS {
-            let miss = self.evaluator.separation(xi, eta) - approach;
-            eta -= miss / self.evaluator.wheel_slopes(xi, eta)[1];
+            let (s, [_, slope]) = self.evaluator.separation_and_slopes(xi, eta);
+            let step = (s - approach) / slope;
+            eta -= step;
+            if step.abs() <= QUADRATIC * (eta - lowest).abs() {
+                break;
+            }
         }
         let near = NEWTON_ROUNDINGS * f64::EPSILON * eta.abs().max((eta - lowest).abs());
         let ends = if far > lowest { [eta - near, eta + near] } else { [eta + near, eta - near] };
         let mut depth = |eta: f64| self.evaluator.separation(xi, eta) - approach;
-        bracketed(&mut depth, ends[0], ends[1]).or_else(|| bracketed(depth, lowest, far))
+        let confirmed = depth(ends[0]) <= 0.0 && depth(ends[1]) >= 0.0;
+        if confirmed { Some(eta) } else { bracketed(depth, lowest, far) }
     }
 
     /// The last η with a surface between `on`, which has one, and `off`, which has none.

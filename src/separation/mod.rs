@@ -15,7 +15,7 @@ pub mod spectral;
 pub mod strips;
 
 use crate::placement::Placement;
-use column::{Span, WheelSurface};
+use column::{Foot, Span, WheelSurface};
 
 /// Both outward unit normals (ξ, η, ζ) at one point of the grid, NaN where a body has no surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,11 +48,16 @@ impl<'a> Evaluator<'a> {
     /// below 2e-12 mm × max(1, R_max/300 mm) elsewhere, checked against 60-digit values.
     pub fn separation(&mut self, xi: f64, eta: f64) -> f64 {
         let (xi_w, eta_w) = self.wheel_coordinates(xi, eta);
-        let u = eta_w * eta_w;
-        self.wheel.spans(xi_w, u, &mut self.spans);
-        let Some(k) = WheelSurface::span_at(&self.spans, u) else { return f64::NAN };
-        let span = &self.spans[k];
-        self.base(xi, xi_w, span) + self.rise(xi_w, span, u)
+        let Some((k, foot)) = self.foot(xi_w, eta_w) else { return f64::NAN };
+        self.base(xi, xi_w, &self.spans[k]) + foot.rise
+    }
+
+    /// s and [∂ζ^W/∂ξ, ∂ζ^W/∂η] at (ξ, η), for less than both apart; NaN off the wheel.
+    pub fn separation_and_slopes(&mut self, xi: f64, eta: f64) -> (f64, [f64; 2]) {
+        let (xi_w, eta_w) = self.wheel_coordinates(xi, eta);
+        let Some((k, foot)) = self.foot(xi_w, eta_w) else { return (f64::NAN, [f64::NAN; 2]) };
+        let [x, y, z] = self.wheel_normal(xi_w, eta_w, k, &foot);
+        (self.base(xi, xi_w, &self.spans[k]) + foot.rise, [-x / z, -y / z])
     }
 
     /// Both normals at (ξ, η).
@@ -62,16 +67,24 @@ impl<'a> Evaluator<'a> {
             let tangent = branch.station(xi);
             [-tangent.sin, 0.0, tangent.cos]
         });
+        let foot = self.foot(xi_w, eta_w);
+        let wheel = foot.map(|(k, foot)| self.wheel_normal(xi_w, eta_w, k, &foot));
+        Normals { rail, wheel: wheel.unwrap_or([f64::NAN; 3]) }
+    }
+
+    /// The wheel point over its own (ξ′, η′), and the index of its span among those of its column.
+    fn foot(&mut self, xi_w: f64, eta_w: f64) -> Option<(usize, Foot)> {
         let u = eta_w * eta_w;
         self.wheel.spans(xi_w, u, &mut self.spans);
-        let span = WheelSurface::span_at(&self.spans, u).map(|k| &self.spans[k]);
-        let wheel = span.and_then(|span| {
-            let foot = self.wheel.foot_at(xi_w, span, u)?;
-            let [x, y, z] = self.wheel.normal(xi_w, eta_w, span, &foot);
-            let (sin, cos) = self.skew;
-            Some([x * cos - y * sin, x * sin + y * cos, z])
-        });
-        Normals { rail, wheel: wheel.unwrap_or([f64::NAN; 3]) }
+        let k = WheelSurface::span_at(&self.spans, u)?;
+        Some((k, self.wheel.foot_at(xi_w, &self.spans[k], u)?))
+    }
+
+    /// The wheel's normal in (ξ, η, ζ) at a point over its own (ξ′, η′).
+    fn wheel_normal(&self, xi_w: f64, eta_w: f64, span: usize, foot: &Foot) -> [f64; 3] {
+        let [x, y, z] = self.wheel.normal(xi_w, eta_w, &self.spans[span], foot);
+        let (sin, cos) = self.skew;
+        [x * cos - y * sin, x * sin + y * cos, z]
     }
 
     /// dζ^R/dξ at ξ; NaN off the rail.
@@ -81,7 +94,9 @@ impl<'a> Evaluator<'a> {
 
     /// [∂ζ^W/∂ξ, ∂ζ^W/∂η] at (ξ, η); NaN off the wheel.
     pub fn wheel_slopes(&mut self, xi: f64, eta: f64) -> [f64; 2] {
-        let [x, y, z] = self.normals(xi, eta).wheel;
+        let (xi_w, eta_w) = self.wheel_coordinates(xi, eta);
+        let Some((k, foot)) = self.foot(xi_w, eta_w) else { return [f64::NAN; 2] };
+        let [x, y, z] = self.wheel_normal(xi_w, eta_w, k, &foot);
         [-x / z, -y / z]
     }
 
@@ -132,11 +147,7 @@ impl<'a> Evaluator<'a> {
     /// The profile abscissa ξ′ − e sinθ under (ξ, η), in the wheel's contact frame.
     fn foot_abscissa(&mut self, xi: f64, eta: f64) -> f64 {
         let (xi_w, eta_w) = self.wheel_coordinates(xi, eta);
-        let u = eta_w * eta_w;
-        self.wheel.spans(xi_w, u, &mut self.spans);
-        let span = WheelSurface::span_at(&self.spans, u).map(|k| &self.spans[k]);
-        let foot = span.and_then(|span| self.wheel.foot_at(xi_w, span, u));
-        foot.map_or(f64::NAN, |foot| self.wheel.abscissa(xi_w, foot.e))
+        self.foot(xi_w, eta_w).map_or(f64::NAN, |(_, foot)| self.wheel.abscissa(xi_w, foot.e))
     }
 
     /// dξ_foot/dη by a central difference: only its sign is used, to divide a column.
