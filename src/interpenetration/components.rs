@@ -44,6 +44,17 @@ pub struct Component {
     pub deepest: [f64; 3],
 }
 
+/// Where a connected part of the patch lies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extent {
+    /// In ξ \[mm\].
+    pub xi: [f64; 2],
+    /// In η \[mm\].
+    pub eta: [f64; 2],
+    /// Smallest s on it \[mm\].
+    pub least: f64,
+}
+
 /// The patch {s < δ} inside a window.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Patch {
@@ -69,6 +80,19 @@ impl Patch {
         Self { approach, window: *window, components }
     }
 
+    /// Where the components of [`Patch::new`] lie, without their areas and lengths, which take most of its time.
+    pub fn extents(placement: &Placement, approach: f64, window: &Window) -> Vec<Extent> {
+        let mut outline = Outline::new(placement, approach, window);
+        let parts = outline.parts();
+        let extent = |part: &Part| {
+            let corners = outline.corners_of(part);
+            let points = outline.points(part, &corners);
+            let [least, ..] = outline.deepest(&points);
+            Extent { xi: part.xi, eta: across(&points), least }
+        };
+        parts.iter().map(extent).collect()
+    }
+
     /// Whether any component is cut by the window.
     pub fn cut_by_window(&self) -> bool {
         self.components.iter().any(|component| component.cut_by_window)
@@ -91,50 +115,57 @@ impl Patch {
     }
 }
 
+impl Component {
+    /// Where it lies.
+    pub fn extent(&self) -> Extent {
+        Extent { xi: self.xi, eta: self.eta, least: self.deepest[0] }
+    }
+}
+
 impl Outline<'_> {
     fn component(&mut self, part: &Part) -> Component {
         let Part { xi, ends } = *part;
-        let joints = self.slicer.placement().joints(xi[0], xi[1]);
-        let joined = [&xi[..1], &joints, &xi[1..]].concat();
-        let corners = self.corners(part, &graded(part, &joined));
-        let (nodes, slices) = self.nodes(part, &corners);
-        let mut boundary: Vec<[f64; 2]> =
-            nodes.iter().zip(&slices).map(|(&x, slice)| [x, slice.eta[0]]).collect();
-        let upper = nodes.iter().zip(&slices).rev().filter(|(_, slice)| slice.eta[0] < slice.eta[1]);
-        boundary.extend(upper.map(|(&x, slice)| [x, slice.eta[1]]));
-        let eta = slices.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], slice| {
-            [low.min(slice.eta[0]), high.max(slice.eta[1])]
-        });
+        let corners = self.corners_of(part);
+        let points = self.points(part, &corners);
+        let mut boundary: Vec<[f64; 2]> = points.iter().map(|(x, slice)| [*x, slice.eta[0]]).collect();
+        let upper = points.iter().rev().filter(|(_, slice)| slice.eta[0] < slice.eta[1]);
+        boundary.extend(upper.map(|(x, slice)| [*x, slice.eta[1]]));
+        let eta = across(&points);
+        let window = self.window.eta;
         let cut_by_window = ends.contains(&End::Window)
-            || slices.iter().any(|s| s.eta[0] == self.window.eta[0] || s.eta[1] == self.window.eta[1]);
+            || points.iter().any(|(_, slice)| slice.eta[0] == window[0] || slice.eta[1] == window[1]);
         let (area, perimeter) = self.measures(part, &corners);
-        let deepest = self.deepest(&nodes);
+        let deepest = self.deepest(&points);
         Component { xi, ends, eta, corners, cut_by_window, boundary, area, perimeter, deepest }
     }
 
-    /// ξ of the loop's points and the slices there: every corner, between two of them points that crowd towards
-    /// round ends, and where each branch is farthest out in η.
-    fn nodes(&mut self, part: &Part, corners: &[f64]) -> (Vec<f64>, Vec<Slice>) {
-        let mut nodes = graded(part, corners);
-        let slices: Vec<Slice> = nodes.iter().map(|&x| self.slice_of(part.xi, part.ends, x)).collect();
-        let mut turns = Vec::new();
+    /// Both ends in ξ and, between them, every ξ where the boundary may have a corner.
+    fn corners_of(&mut self, part: &Part) -> Vec<f64> {
+        let joints = self.slicer.placement().joints(part.xi[0], part.xi[1]);
+        let joined = [&part.xi[..1], &joints, &part.xi[1..]].concat();
+        self.corners(part, &graded(part, &joined))
+    }
+
+    /// ξ of the loop's points with the slices there, ascending: every corner, between two of them points that crowd
+    /// towards round ends, and where each branch is farthest out in η.
+    fn points(&mut self, part: &Part, corners: &[f64]) -> Vec<(f64, Slice)> {
+        let at = |outline: &mut Self, xi: f64| (xi, outline.slice_of(part.xi, part.ends, xi));
+        let mut points: Vec<_> = graded(part, corners).into_iter().map(|xi| at(self, xi)).collect();
+        let mut more: Vec<f64> = inner(corners)
+            .iter()
+            .filter(|&&x| self.step(x) > DRAWN_STEP * (part.xi[1] - part.xi[0]))
+            .map(|x| x.next_up())
+            .collect();
         for (branch, sign) in [(0, -1.0), (1, 1.0)] {
-            let outward = |k: &usize| sign * slices[*k].eta[branch];
+            let outward = |k: &usize| sign * points[*k].1.eta[branch];
             let farthest =
-                (1..nodes.len().saturating_sub(1)).max_by(|p, q| outward(p).total_cmp(&outward(q)));
-            turns.extend(farthest.and_then(|k| self.turn_of_branch(branch, nodes[k - 1], nodes[k + 1])));
+                (1..points.len().saturating_sub(1)).max_by(|p, q| outward(p).total_cmp(&outward(q)));
+            more.extend(farthest.and_then(|k| self.turn_of_branch(branch, points[k - 1].0, points[k + 1].0)));
         }
-        nodes.extend(turns);
-        nodes.extend(
-            inner(corners)
-                .iter()
-                .filter(|&&x| self.step(x) > DRAWN_STEP * (part.xi[1] - part.xi[0]))
-                .map(|x| x.next_up()),
-        );
-        nodes.sort_by(f64::total_cmp);
-        nodes.dedup();
-        let slices = nodes.iter().map(|&x| self.slice_of(part.xi, part.ends, x)).collect();
-        (nodes, slices)
+        points.extend(more.into_iter().map(|xi| at(self, xi)));
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        points.dedup_by_key(|point| point.0);
+        points
     }
 
     /// Area and perimeter over the pieces between corners.
@@ -178,13 +209,14 @@ impl Outline<'_> {
         if slope.is_finite() { 1f64.hypot(slope) } else { 0.0 }
     }
 
-    /// \[s, ξ, η\] of the smallest s among the nodes and where the depth turns between them.
-    fn deepest(&mut self, nodes: &[f64]) -> [f64; 3] {
+    /// \[s, ξ, η\] of the smallest s among the points and where the depth turns between them.
+    fn deepest(&mut self, points: &[(f64, Slice)]) -> [f64; 3] {
+        let nodes: Vec<f64> = points.iter().map(|point| point.0).collect();
         // C first: points where s² is below the smallest number are none better.
         let mut candidates: Vec<f64> =
             [0.0].into_iter().filter(|&c| nodes[0] <= c && c <= nodes[nodes.len() - 1]).collect();
-        candidates.extend(self.turning_points_among(nodes));
-        candidates.extend(nodes);
+        candidates.extend(self.turning_points_among(&nodes));
+        candidates.extend(&nodes);
         let values = candidates.into_iter().map(|xi| {
             let floor = self.floor(xi);
             [self.slicer.separation(xi, floor), xi, floor]
@@ -192,6 +224,13 @@ impl Outline<'_> {
         let least = values.filter(|v| !v[0].is_nan()).min_by(|p, q| p[0].total_cmp(&q[0]));
         least.unwrap_or([f64::NAN, nodes[0], 0.0])
     }
+}
+
+/// Extent of slices in η.
+fn across(points: &[(f64, Slice)]) -> [f64; 2] {
+    points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (_, slice)| {
+        [low.min(slice.eta[0]), high.max(slice.eta[1])]
+    })
 }
 
 /// All corners but the two ends.

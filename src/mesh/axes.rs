@@ -4,7 +4,7 @@
 //! over a symmetric patch, and grids of one spacing for several parts or approaches share their centres.
 
 use crate::error::{Error, Result, finite};
-use crate::interpenetration::{Component, Patch, Window};
+use crate::interpenetration::{Component, Extent, Patch, Window};
 use crate::placement::Placement;
 
 /// Cells over the short side of the box when no spacing is given: peak pressures of the two solvers are then within 0.5 %.
@@ -47,7 +47,7 @@ pub struct Group {
     pub extent: Window,
     /// Smallest s on them \[mm\].
     pub least: f64,
-    /// The shorter side of the box around the largest of them \[mm\].
+    /// The shorter side of the largest of their boxes \[mm\].
     pub short_side: f64,
 }
 
@@ -89,70 +89,69 @@ pub fn grids(
         let steps = spacing.unwrap_or([group.short_side / CELLS_ACROSS; 2]);
         Ok(Grid { axes: lattice(&group.extent, steps)?, group })
     };
-    let grids = groups(&patch, merge).into_iter().map(grid).collect::<Result<_>>()?;
+    let extents: Vec<Extent> = patch.components.iter().map(Component::extent).collect();
+    let grids = groups(&extents, merge).into_iter().map(grid).collect::<Result<_>>()?;
     Ok((patch, grids))
 }
 
 /// Boxes of the patch over the whole overlap of the two profiles, one for every component or group of components
 /// closer than `merge` \[mm\]; the group that holds C first, else the deepest first.
 pub fn boxes(placement: &Placement, approach: f64, merge: f64) -> Vec<Window> {
-    let patch = Patch::new(placement, approach, &Window::UNBOUNDED);
-    groups(&patch, merge).into_iter().map(|group| group.extent).collect()
+    let extents = Patch::extents(placement, approach, &Window::UNBOUNDED);
+    groups(&extents, merge).into_iter().map(|group| group.extent).collect()
 }
 
 /// The components of a patch in groups whose boxes are closer to each other than `merge` \[mm\], in the order of
 /// [`grids`].
-pub fn groups(patch: &Patch, merge: f64) -> Vec<Group> {
+pub fn groups(components: &[Extent], merge: f64) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
-    for (index, component) in patch.components.iter().enumerate() {
+    for (index, component) in components.iter().enumerate() {
         let mut group = Group::of(index, component);
         // A new part may link groups that were apart: all that are near are joined.
         while let Some(near) = groups.iter().position(|other| distance(&group.extent, &other.extent) < merge)
         {
-            group = groups.swap_remove(near).joined(group, patch);
+            group = groups.swap_remove(near).joined(group, components);
         }
         groups.push(group);
     }
-    let away = |group: &Group| !group.components.iter().any(|&k| holds_contact(&patch.components[k]));
+    let away = |group: &Group| !group.components.iter().any(|&k| holds_contact(&components[k]));
     groups.sort_by(|a, b| away(a).cmp(&away(b)).then(a.least.total_cmp(&b.least)));
     groups
 }
 
 impl Group {
-    fn of(index: usize, component: &Component) -> Self {
+    fn of(index: usize, component: &Extent) -> Self {
         let extent = Window { xi: component.xi, eta: component.eta };
-        Self {
-            components: vec![index],
-            extent,
-            least: component.deepest[0],
-            short_side: short_side(component),
-        }
+        let [short_side, _] = sides(component);
+        Self { components: vec![index], extent, least: component.least, short_side }
     }
 
-    fn joined(mut self, other: Self, patch: &Patch) -> Self {
+    fn joined(mut self, other: Self, components: &[Extent]) -> Self {
         self.components.extend(other.components);
         self.components.sort_unstable();
         let join = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
-        let components = self.components.iter().map(|&k| &patch.components[k]);
-        let largest = components.max_by(|a, b| a.area.total_cmp(&b.area));
+        let boxes = self.components.iter().map(|&k| sides(&components[k]));
+        let largest = boxes.max_by(|a, b| (a[0] * a[1]).total_cmp(&(b[0] * b[1])));
         Self {
             extent: Window {
                 xi: join(self.extent.xi, other.extent.xi),
                 eta: join(self.extent.eta, other.extent.eta),
             },
             least: self.least.min(other.least),
-            short_side: largest.map_or(self.short_side, short_side),
+            short_side: largest.map_or(self.short_side, |[short, _]| short),
             components: self.components,
         }
     }
 }
 
-fn holds_contact(component: &Component) -> bool {
+fn holds_contact(component: &Extent) -> bool {
     component.xi[0] <= 0.0 && component.xi[1] >= 0.0
 }
 
-fn short_side(component: &Component) -> f64 {
-    (component.xi[1] - component.xi[0]).min(component.eta[1] - component.eta[0])
+/// The shorter side of the box and the longer one \[mm\].
+fn sides(component: &Extent) -> [f64; 2] {
+    let [along, across] = [component.xi, component.eta].map(|[a, b]| b - a);
+    [along.min(across), along.max(across)]
 }
 
 /// Distance of two boxes \[mm\], 0 where they meet.
