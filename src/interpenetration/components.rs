@@ -1,6 +1,6 @@
 //! The connected parts of the patch {s < δ} inside a window, each with its closed boundary loop.
 
-use super::measure::Stretch;
+use super::measure::{Memo, Stretch};
 use super::outline::{End, Outline, Part, Window};
 use super::slice::{Edge, Slice};
 use crate::placement::Placement;
@@ -172,13 +172,18 @@ impl Outline<'_> {
     fn measures(&mut self, part: &Part, corners: &[f64]) -> (f64, f64) {
         let (mut area, mut perimeter) = (0.0, 0.0);
         for piece in pieces(part, corners) {
-            area += piece.integral(&mut |xi| self.width(xi), AREA_DEMAND);
-            perimeter += piece.integral(&mut |xi| self.speed(xi), PERIMETER_DEMAND);
+            let mut memo = Memo::new();
+            area += piece.integral(&mut |xi| width(memo.at(xi, |xi| self.edges(xi))), AREA_DEMAND);
+            let mut speed = |xi: f64| {
+                let edges = memo.at(xi, |xi| self.edges(xi));
+                self.speed(xi, edges)
+            };
+            perimeter += piece.integral(&mut speed, PERIMETER_DEMAND);
         }
         perimeter += inner(corners).iter().map(|&xi| self.step(xi)).sum::<f64>();
         for (xi, end) in part.xi.into_iter().zip(part.ends) {
             if end != End::Tip {
-                perimeter += self.width(xi);
+                perimeter += width(self.edges(xi));
             }
         }
         (area, perimeter)
@@ -190,14 +195,9 @@ impl Outline<'_> {
         left.eta.into_iter().zip(right.eta).map(|(a, b)| (a - b).abs()).sum()
     }
 
-    /// Width of the slice at ξ \[mm\], 0 outside.
-    pub(crate) fn width(&mut self, xi: f64) -> f64 {
-        self.slice(xi).map_or(0.0, |slice| slice.eta[1] - slice.eta[0])
-    }
-
     /// Length of both branches per unit of ξ.
-    fn speed(&mut self, xi: f64) -> f64 {
-        let Some(edges) = self.edges(xi) else { return 0.0 };
+    fn speed(&mut self, xi: f64, edges: Option<[Edge; 2]>) -> f64 {
+        let Some(edges) = edges else { return 0.0 };
         let window = self.window.eta;
         (0..2).map(|k| if edges[k].eta == window[k] { 1.0 } else { self.branch_speed(xi, edges[k]) }).sum()
     }
@@ -224,6 +224,11 @@ impl Outline<'_> {
         let least = values.filter(|v| !v[0].is_nan()).min_by(|p, q| p[0].total_cmp(&q[0]));
         least.unwrap_or([f64::NAN, nodes[0], 0.0])
     }
+}
+
+/// Width of a slice \[mm\], 0 outside.
+fn width(edges: Option<[Edge; 2]>) -> f64 {
+    edges.map_or(0.0, |[low, high]| high.eta - low.eta)
 }
 
 /// Extent of slices in η.

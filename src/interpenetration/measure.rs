@@ -39,6 +39,27 @@ impl Stretch {
     }
 }
 
+/// What was found at the ξ asked for so far: several integrals over one interval mostly share their places.
+#[derive(Debug)]
+pub(crate) struct Memo<T>(Vec<(f64, T)>);
+
+impl<T: Copy> Memo<T> {
+    /// Nothing yet.
+    pub(crate) fn new() -> Self {
+        Self(Vec::new())
+    }
+
+    /// What is at ξ, by `find` if it is not known.
+    pub(crate) fn at(&mut self, xi: f64, find: impl FnOnce(f64) -> T) -> T {
+        if let Some((_, known)) = self.0.iter().find(|(place, _)| *place == xi) {
+            return *known;
+        }
+        let found = find(xi);
+        self.0.push((xi, found));
+        found
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

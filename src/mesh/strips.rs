@@ -12,7 +12,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::error::{Error, Result};
-use crate::interpenetration::measure::Stretch;
+use crate::interpenetration::measure::{Memo, Stretch};
 use crate::interpenetration::{Component, End, Outline, Patch, Slice};
 use crate::placement::Placement;
 
@@ -170,15 +170,15 @@ impl Builder<'_> {
     /// Moments of a strip's width, over its pieces between all corners: also those that have no edge.
     fn moments(&mut self, component: &Component, xi: [f64; 2]) -> Moments {
         let pieces = pieces(component, xi);
-        let outline = &mut self.outline;
-        let area = pieces.iter().map(|piece| piece.integral(&mut |xi| outline.width(xi), AREA_DEMAND)).sum();
+        let mut memo = Memo::new();
+        let mut slice = |xi: f64| memo.at(xi, |xi| self.outline.slice(xi));
+        let mut width = |xi: f64| slice(xi).map_or(0.0, |slice| slice.eta[1] - slice.eta[0]);
+        let area = pieces.iter().map(|piece| piece.integral(&mut width, AREA_DEMAND)).sum();
         // Means of quantities that change sign are taken from an offset, to whose size the demand then refers.
         let offset = component.eta[0].abs().max(component.eta[1].abs());
         let mut mean = |value: &dyn Fn(f64, Slice) -> f64| {
-            let mut weighted = |xi: f64| {
-                let slice = outline.slice(xi);
-                slice.map_or(0.0, |slice| value(xi, slice) * (slice.eta[1] - slice.eta[0]))
-            };
+            let mut weighted =
+                |xi: f64| slice(xi).map_or(0.0, |slice| value(xi, slice) * (slice.eta[1] - slice.eta[0]));
             pieces.iter().map(|piece| piece.integral(&mut weighted, CENTROID_DEMAND)).sum::<f64>() / area
         };
         Moments {
