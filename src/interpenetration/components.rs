@@ -23,11 +23,11 @@ const PERIMETER_DEMAND: f64 = 1e-11;
 /// One connected part of the patch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Component {
-    /// Extent in ξ \[mm\].
+    /// BoundingBox in ξ \[mm\].
     pub xi: [f64; 2],
     /// What bounds it there.
     pub ends: [End; 2],
-    /// Extent in η \[mm\].
+    /// BoundingBox in η \[mm\].
     pub eta: [f64; 2],
     /// Both ends in ξ and, between them, every ξ where the boundary may have a corner \[mm\], ascending.
     pub corners: Vec<f64>,
@@ -46,7 +46,7 @@ pub struct Component {
 
 /// Where a connected part of the patch lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Extent {
+pub struct BoundingBox {
     /// In ξ \[mm\].
     pub xi: [f64; 2],
     /// In η \[mm\].
@@ -81,16 +81,16 @@ impl Patch {
     }
 
     /// Where the components of [`Patch::new`] lie, without their areas and lengths, which take most of its time.
-    pub fn extents(placement: &Placement, approach: f64, window: &Window) -> Vec<Extent> {
+    pub fn bounding_boxes(placement: &Placement, approach: f64, window: &Window) -> Vec<BoundingBox> {
         let mut outline = Outline::new(placement, approach, window);
         let parts = outline.parts();
-        let extent = |part: &Part| {
+        let bounding_box = |part: &Part| {
             let corners = outline.corners_of(part);
             let points = outline.points(part, &corners);
             let [least, ..] = outline.deepest(&points);
-            Extent { xi: part.xi, eta: across(&points), least }
+            BoundingBox { xi: part.xi, eta: across(&points), least }
         };
-        parts.iter().map(extent).collect()
+        parts.iter().map(bounding_box).collect()
     }
 
     /// Whether any component is cut by the window.
@@ -117,8 +117,8 @@ impl Patch {
 
 impl Component {
     /// Where it lies.
-    pub fn extent(&self) -> Extent {
-        Extent { xi: self.xi, eta: self.eta, least: self.deepest[0] }
+    pub fn bounding_box(&self) -> BoundingBox {
+        BoundingBox { xi: self.xi, eta: self.eta, least: self.deepest[0] }
     }
 }
 
@@ -231,7 +231,7 @@ fn width(edges: Option<[Edge; 2]>) -> f64 {
     edges.map_or(0.0, |[low, high]| high.eta - low.eta)
 }
 
-/// Extent of slices in η.
+/// BoundingBox of slices in η.
 fn across(points: &[(f64, Slice)]) -> [f64; 2] {
     points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (_, slice)| {
         [low.min(slice.eta[0]), high.max(slice.eta[1])]

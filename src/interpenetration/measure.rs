@@ -39,7 +39,7 @@ impl Stretch {
     }
 }
 
-/// What was found at the ξ asked for so far: several integrals over one interval mostly share their places.
+/// What was found at the ξ asked for so far, mostly 15 of them: several integrals over one interval share their places.
 #[derive(Debug)]
 pub(crate) struct Memo<T>(Vec<(f64, T)>);
 

@@ -7,6 +7,6 @@ pub(crate) mod measure;
 mod outline;
 mod slice;
 
-pub use components::{Component, Extent, Patch};
+pub use components::{BoundingBox, Component, Patch};
 pub use outline::{End, Outline, Window};
 pub use slice::{Slice, Slicer};

@@ -5,9 +5,9 @@
 
 use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
-use crate::separation::Evaluator;
 use crate::separation::column::{Foot, Span, WheelSurface};
 use crate::separation::gap::midplane_gap;
+use crate::separation::{Evaluator, WheelPoint};
 
 /// Contractions of the sagitta step; each gains at least three digits away from vertical tangents.
 const CONTRACTIONS: usize = 24;
@@ -126,9 +126,9 @@ impl<'a> Slicer<'a> {
 
     /// η with s(ξ, η) = δ between `lowest` and `far`, on whose two sides s − δ has different signs.
     ///
-    /// Method: s is nearly a parabola and convex, so that Newton's steps from half way come from outside, and are exact
-    /// to rounding within four; the bracketed root then decides the last bits, over all of the interval where a joint has
-    /// misled them.
+    /// Method: s is nearly a parabola and convex, so that Newton's steps from half way come from outside and reach rounding
+    /// within four. The result is taken if s − δ changes sign within some roundings of it; a bracketed root replaces one
+    /// that a joint has misled.
     fn level(&mut self, xi: f64, lowest: f64, far: f64) -> Option<f64> {
         let approach = self.approach;
         let mut eta = lowest + (far - lowest) / 2.0;
@@ -141,9 +141,9 @@ impl<'a> Slicer<'a> {
             }
         }
         let near = NEWTON_ROUNDINGS * f64::EPSILON * eta.abs().max((eta - lowest).abs());
-        let ends = if far > lowest { [eta - near, eta + near] } else { [eta + near, eta - near] };
+        let near = near.copysign(far - lowest);
         let mut depth = |eta: f64| self.evaluator.separation(xi, eta) - approach;
-        let confirmed = depth(ends[0]) <= 0.0 && depth(ends[1]) >= 0.0;
+        let confirmed = depth(eta - near) <= 0.0 && depth(eta + near) >= 0.0;
         if confirmed { Some(eta) } else { bracketed(depth, lowest, far) }
     }
 
@@ -248,7 +248,8 @@ impl<'a> Slicer<'a> {
     /// dη/dξ of a ledge: the circle of one profile point about the axle, along which dξ′ : dη′ = η′ sinθ : w.
     pub(super) fn ledge_slope(&mut self, xi: f64, eta: f64) -> f64 {
         // A rounding inside: the ledge itself may count as off the surface.
-        let Some((foot, _, eta_w)) = self.foot(xi, eta * (1.0 - 4.0 * f64::EPSILON)) else { return f64::NAN };
+        let inside = self.evaluator.wheel_point(xi, eta * (1.0 - 4.0 * f64::EPSILON));
+        let Some(WheelPoint { eta_w, foot, .. }) = inside else { return f64::NAN };
         let (sin, cos) = self.placement.skew.sin_cos();
         let along = eta_w * self.placement.wheel.section.frame.sin;
         (along * sin + foot.w * cos) / (along * cos - foot.w * sin)
@@ -256,18 +257,7 @@ impl<'a> Slicer<'a> {
 
     /// Abscissa in the wheel's section of the profile point under (ξ, η) \[mm\]; NaN off the wheel.
     pub(super) fn foot_abscissa(&mut self, xi: f64, eta: f64) -> f64 {
-        let foot = self.foot(xi, eta);
-        foot.map_or(f64::NAN, |(foot, xi_w, _)| self.wheel.abscissa(xi_w, foot.e))
-    }
-
-    /// The wheel point over (ξ, η) and the wheel's own ξ′, η′.
-    fn foot(&mut self, xi: f64, eta: f64) -> Option<(Foot, f64, f64)> {
-        let (sin, cos) = self.placement.skew.sin_cos();
-        let (xi_w, eta_w) = if sin == 0.0 { (xi, eta) } else { (xi * cos + eta * sin, eta * cos - xi * sin) };
-        let u = eta_w * eta_w;
-        self.wheel.spans(xi_w, u, &mut self.spans);
-        let span = &self.spans[WheelSurface::span_at(&self.spans, u)?];
-        Some((self.wheel.foot_at(xi_w, span, u)?, xi_w, eta_w))
+        self.evaluator.foot_abscissa(xi, eta)
     }
 
     /// s(ξ, η) \[mm\].

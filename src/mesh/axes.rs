@@ -4,7 +4,7 @@
 //! over a symmetric patch, and grids of one spacing for several parts or approaches share their centres.
 
 use crate::error::{Error, Result, finite};
-use crate::interpenetration::{Component, Extent, Patch, Window};
+use crate::interpenetration::{BoundingBox, Component, Patch, Window};
 use crate::placement::Placement;
 
 /// Cells over the short side of the box when no spacing is given: peak pressures of the two solvers are then within 0.5 %.
@@ -89,21 +89,21 @@ pub fn grids(
         let steps = spacing.unwrap_or([group.short_side / CELLS_ACROSS; 2]);
         Ok(Grid { axes: lattice(&group.extent, steps)?, group })
     };
-    let extents: Vec<Extent> = patch.components.iter().map(Component::extent).collect();
-    let grids = groups(&extents, merge).into_iter().map(grid).collect::<Result<_>>()?;
+    let boxes: Vec<BoundingBox> = patch.components.iter().map(Component::bounding_box).collect();
+    let grids = groups(&boxes, merge).into_iter().map(grid).collect::<Result<_>>()?;
     Ok((patch, grids))
 }
 
 /// Boxes of the patch over the whole overlap of the two profiles, one for every component or group of components
 /// closer than `merge` \[mm\]; the group that holds C first, else the deepest first.
 pub fn boxes(placement: &Placement, approach: f64, merge: f64) -> Vec<Window> {
-    let extents = Patch::extents(placement, approach, &Window::UNBOUNDED);
-    groups(&extents, merge).into_iter().map(|group| group.extent).collect()
+    let boxes = Patch::bounding_boxes(placement, approach, &Window::UNBOUNDED);
+    groups(&boxes, merge).into_iter().map(|group| group.extent).collect()
 }
 
 /// The components of a patch in groups whose boxes are closer to each other than `merge` \[mm\], in the order of
 /// [`grids`].
-pub fn groups(components: &[Extent], merge: f64) -> Vec<Group> {
+pub fn groups(components: &[BoundingBox], merge: f64) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     for (index, component) in components.iter().enumerate() {
         let mut group = Group::of(index, component);
@@ -120,13 +120,13 @@ pub fn groups(components: &[Extent], merge: f64) -> Vec<Group> {
 }
 
 impl Group {
-    fn of(index: usize, component: &Extent) -> Self {
+    fn of(index: usize, component: &BoundingBox) -> Self {
         let extent = Window { xi: component.xi, eta: component.eta };
         let [short_side, _] = sides(component);
         Self { components: vec![index], extent, least: component.least, short_side }
     }
 
-    fn joined(mut self, other: Self, components: &[Extent]) -> Self {
+    fn joined(mut self, other: Self, components: &[BoundingBox]) -> Self {
         self.components.extend(other.components);
         self.components.sort_unstable();
         let join = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
@@ -144,12 +144,12 @@ impl Group {
     }
 }
 
-fn holds_contact(component: &Extent) -> bool {
+fn holds_contact(component: &BoundingBox) -> bool {
     component.xi[0] <= 0.0 && component.xi[1] >= 0.0
 }
 
 /// The shorter side of the box and the longer one \[mm\].
-fn sides(component: &Extent) -> [f64; 2] {
+fn sides(component: &BoundingBox) -> [f64; 2] {
     let [along, across] = [component.xi, component.eta].map(|[a, b]| b - a);
     [along.min(across), along.max(across)]
 }

@@ -43,8 +43,8 @@ impl EtaAxis {
         [positive, if self.symmetric { 0..0 } else { self.negative(u) }]
     }
 
-    /// The same over the whole axis, without a gap in one range where u0 = 0. `end` is the number of η ≥ 0 up to u0, and
-    /// becomes that up to u1.
+    /// The same with η < 0 always, ascending, and in one range where u0 = 0. `begin` and `end` are the numbers of η ≥ 0 up
+    /// to u0 and to u1, as of [`Self::count`].
     #[inline(always)]
     pub fn runs(&self, u: [f64; 2], begin: usize, end: usize) -> [Range<usize>; 2] {
         let n = self.u.len();
@@ -113,6 +113,17 @@ mod tests {
                 }
             }
             axis.mirror(&mut column);
+            assert_eq!(column, axis.u);
+
+            let (mut column, mut begin) = (vec![f64::NAN; eta.len()], 0);
+            for interval in [[0.0, 1.0], [1.0, 4.0], [4.0, f64::INFINITY]] {
+                let end = axis.count(interval[1], begin);
+                for i in axis.runs(interval, begin, end).into_iter().flatten() {
+                    assert!(column[i].is_nan() && axis.u[i] <= interval[1], "{eta:?} {i}");
+                    column[i] = axis.u[i];
+                }
+                begin = end;
+            }
             assert_eq!(column, axis.u);
         }
     }

@@ -12,7 +12,7 @@
 
 use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
-use crate::profile::{Branch, BranchPoint, Section};
+use crate::profile::{Branch, BranchPoint, Piece, Section};
 
 /// Steps by which a point is found; each gains some six digits. A branch that needs more is steep there and is left to
 /// the bracketed root.
@@ -135,24 +135,35 @@ impl<'a> WheelSurface<'a> {
 
     /// The span over one piece between two sagittae.
     fn span(&self, xi: f64, index: usize, e: [f64; 2], u_max: f64) -> Span {
-        let (piece, [near, far]) = (&self.section.pieces[index], self.sides());
+        let (piece, near) = (&self.section.pieces[index], self.sides()[0]);
         let (begin, on_profile) =
             if e[0] > 0.0 { piece.ends[near] } else { self.section.branches[piece.branch].point(xi) };
         let height = on_profile + e[0] * self.cos;
-        let w = self.axle - xi * self.sin - height * self.cos;
+        let w = self.axle_distance(xi, height);
         let u0 = e[0] * (2.0 * w + e[0]);
         let span = Span { e, u: [u0, f64::INFINITY], branch: piece.branch, piece: index, height, w, begin };
         if e[1] > FAR_END * u_max / (2.0 * w) && w > 0.0 {
             return span;
         }
-        let (_, at_end) = piece.ends[far];
-        let w = self.axle - xi * self.sin - (at_end + e[1] * self.cos) * self.cos;
-        // Beyond the axle's height the profile's end cannot be met: the ring of the column closes before.
-        if w > 0.0 {
-            Span { u: [u0, e[1] * (2.0 * w + e[1])], ..span }
-        } else {
-            Span { e: [e[0], f64::INFINITY], ..span }
-        }
+        let [_, u1] = self.leaves(xi, piece);
+        // Where the ring of the column closes before the profile's end, that is never met.
+        let e1 = if u1.is_finite() { e[1] } else { f64::INFINITY };
+        Span { e: [e[0], e1], u: [u0, u1], ..span }
+    }
+
+    /// e \[mm\] and u \[mm²\] at which the column at ξ leaves a piece; u is infinite where that is beyond the axle's height.
+    #[inline(always)]
+    pub(super) fn leaves(&self, xi: f64, piece: &Piece) -> [f64; 2] {
+        let far = self.sides()[1];
+        let e = if self.sin == 0.0 { f64::INFINITY } else { (xi - piece.xi[far]) / self.sin };
+        let w = self.axle_distance(xi, piece.ends[far].1 + e * self.cos);
+        [e, if w > 0.0 { e * (2.0 * w + e) } else { f64::INFINITY }]
+    }
+
+    /// w \[mm\] of a point of the column at ξ with this ζ.
+    #[inline(always)]
+    pub(super) fn axle_distance(&self, xi: f64, height: f64) -> f64 {
+        self.axle - xi * self.sin - height * self.cos
     }
 
     /// The point with sagitta e over a span: no iteration.

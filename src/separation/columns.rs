@@ -7,7 +7,7 @@ use super::gap::{contact_gap, contact_gaps};
 use super::spectral::{Demand, MOST_COEFFICIENTS, ROUNDING_LEVEL, is_whole, nodes, powers};
 use crate::profile::{BranchPoints, Branches, Piece, Section};
 
-/// So many.
+/// Columns that are computed at once: two of the widest vectors.
 pub const MANY: usize = 16;
 
 /// A quantity of all columns.
@@ -23,13 +23,13 @@ pub fn row(value: impl Fn(usize) -> f64) -> Row {
     row
 }
 
-/// Columns that pass the same branches in the same order.
+/// Columns that pass the same branches in the same order, or each a span of its own.
 #[derive(Debug)]
 pub struct Columns<'a> {
     wheel: WheelSurface<'a>,
-    /// Spans of the column in the middle.
+    /// Scratch space: spans of the column in the middle.
     shape: Vec<Span>,
-    /// Their abscissae \[mm\].
+    /// The columns' abscissae \[mm\].
     pub xi: Row,
     /// Whether they begin over both contact segments.
     pub contact: bool,
@@ -140,14 +140,14 @@ impl<'a> Columns<'a> {
             base,
             height,
             u: [zero, [u_max; MANY]],
-            e: [zero, row(|k| wheel.far_end(self.xi[k], wheels[k])[0])],
-            w: row(|k| wheel.axle - self.xi[k] * wheel.sin - height[k] * wheel.cos),
+            e: [zero, row(|k| wheel.leaves(self.xi[k], wheels[k])[0])],
+            w: row(|k| wheel.axle_distance(self.xi[k], height[k])),
         });
         Some(pairs.map(|pair| pair.is_some()))
     }
 
-    /// Appends the coefficients of q over one span, at least so many, as [`super::spectral::Spectral::polynomial`]; how
-    /// many. `None` where no degree reaches the demand.
+    /// Appends the coefficients of q over one span in powers of u − u_0, at least so many, as
+    /// [`super::spectral::Spectral::polynomial`]; how many. `None` where no degree reaches the demand.
     #[inline(always)]
     pub fn polynomials(
         &self,
@@ -209,7 +209,7 @@ impl<'a> WheelSurface<'a> {
         let (mut rest_r, mut rest_w) = (rail.pieces_from(xi[0]), self.section.pieces_from(xi[0]));
         for (found, &xi) in found.iter_mut().zip(xi) {
             let pair = piece_inside(&mut rest_r, xi).zip(piece_inside(&mut rest_w, xi));
-            *found = pair.filter(|(_, w)| self.far_end(xi, w)[1] >= u_max);
+            *found = pair.filter(|(_, w)| self.leaves(xi, w)[1] >= u_max);
         }
         found
     }
@@ -229,25 +229,16 @@ impl<'a> WheelSurface<'a> {
             ([0.0; MANY], points, heights)
         };
         let height = row(|k| on_profile[k] + e0[k] * self.cos);
-        let w = row(|k| self.axle - xi[k] * self.sin - height[k] * self.cos);
+        let w = row(|k| self.axle_distance(xi[k], height[k]));
         let (mut e1, mut u1) = ([f64::INFINITY; MANY], [f64::INFINITY; MANY]);
         // An end that the middle column has not is beyond the window.
         for k in 0..MANY {
-            let end = self.far_end(xi[k], piece);
+            let end = self.leaves(xi[k], piece);
             e1[k] = if span.e[1].is_finite() { end[0] } else { e1[k] };
             u1[k] = if span.u[1].is_finite() { end[1] } else { u1[k] };
         }
         let branches = Branches::One(branch);
         Some(SpanColumns { branches, points, base: [f64::NAN; MANY], height, u: [u0, u1], e: [e0, e1], w })
-    }
-
-    /// e and u at which the column at ξ leaves a piece; u is infinite where that is beyond the axle's height.
-    #[inline(always)]
-    fn far_end(&self, xi: f64, piece: &Piece) -> [f64; 2] {
-        let far = self.sides()[1];
-        let e = if self.sin == 0.0 { f64::INFINITY } else { (xi - piece.xi[far]) / self.sin };
-        let w = self.axle - xi * self.sin - (piece.ends[far].1 + e * self.cos) * self.cos;
-        [e, if w > 0.0 { e * (2.0 * w + e) } else { f64::INFINITY }]
     }
 
     #[inline(always)]

@@ -79,7 +79,7 @@ impl Method {
 pub struct Choice {
     /// The method.
     pub method: Method,
-    /// What spectral columns are held to.
+    /// What s is held to; its `absolute` is the tolerance on the Report's steps.
     pub demand: Demand,
     /// Coefficients that spectral columns start with.
     pub coefficients: usize,

@@ -35,6 +35,18 @@ pub struct Evaluator<'a> {
     skew: (f64, f64),
 }
 
+/// A point of the wheel over the tangent plane.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct WheelPoint {
+    /// The wheel's own ξ′ and η′ \[mm\].
+    xi_w: f64,
+    pub(crate) eta_w: f64,
+    /// Its span.
+    span: Span,
+    /// Its place there.
+    pub(crate) foot: Foot,
+}
+
 impl<'a> Evaluator<'a> {
     /// An evaluator of one pair.
     pub fn new(placement: &'a Placement) -> Self {
@@ -47,42 +59,47 @@ impl<'a> Evaluator<'a> {
     /// Method: sagitta form. Accuracy: relative error below 1e-13 over both contact segments, absolute error
     /// below 2e-12 mm × max(1, R_max/300 mm) elsewhere, checked against 60-digit values.
     pub fn separation(&mut self, xi: f64, eta: f64) -> f64 {
-        let (xi_w, eta_w) = self.wheel_coordinates(xi, eta);
-        let Some((k, foot)) = self.foot(xi_w, eta_w) else { return f64::NAN };
-        self.base(xi, xi_w, &self.spans[k]) + foot.rise
+        self.wheel_point(xi, eta).map_or(f64::NAN, |point| self.separation_at(xi, &point))
     }
 
-    /// s and [∂ζ^W/∂ξ, ∂ζ^W/∂η] at (ξ, η), for less than both apart; NaN off the wheel.
+    /// s \[mm\] and [∂ζ^W/∂ξ, ∂ζ^W/∂η] at (ξ, η), for less than one after the other; NaN off the wheel.
     pub fn separation_and_slopes(&mut self, xi: f64, eta: f64) -> (f64, [f64; 2]) {
-        let (xi_w, eta_w) = self.wheel_coordinates(xi, eta);
-        let Some((k, foot)) = self.foot(xi_w, eta_w) else { return (f64::NAN, [f64::NAN; 2]) };
-        let [x, y, z] = self.wheel_normal(xi_w, eta_w, k, &foot);
-        (self.base(xi, xi_w, &self.spans[k]) + foot.rise, [-x / z, -y / z])
+        let Some(point) = self.wheel_point(xi, eta) else { return (f64::NAN, [f64::NAN; 2]) };
+        (self.separation_at(xi, &point), slopes(self.wheel_normal(&point)))
+    }
+
+    /// [∂ζ^W/∂ξ, ∂ζ^W/∂η] at (ξ, η); NaN off the wheel.
+    pub fn wheel_slopes(&mut self, xi: f64, eta: f64) -> [f64; 2] {
+        self.wheel_point(xi, eta).map_or([f64::NAN; 2], |point| slopes(self.wheel_normal(&point)))
     }
 
     /// Both normals at (ξ, η).
     pub fn normals(&mut self, xi: f64, eta: f64) -> Normals {
-        let (xi_w, eta_w) = self.wheel_coordinates(xi, eta);
         let rail = self.placement.rail.section.branch_at(xi).map_or([f64::NAN; 3], |branch| {
             let tangent = branch.station(xi);
             [-tangent.sin, 0.0, tangent.cos]
         });
-        let foot = self.foot(xi_w, eta_w);
-        let wheel = foot.map(|(k, foot)| self.wheel_normal(xi_w, eta_w, k, &foot));
-        Normals { rail, wheel: wheel.unwrap_or([f64::NAN; 3]) }
+        let wheel = self.wheel_point(xi, eta).map_or([f64::NAN; 3], |point| self.wheel_normal(&point));
+        Normals { rail, wheel }
     }
 
-    /// The wheel point over its own (ξ′, η′), and the index of its span among those of its column.
-    fn foot(&mut self, xi_w: f64, eta_w: f64) -> Option<(usize, Foot)> {
+    /// The wheel point over (ξ, η); `None` off the wheel.
+    pub(crate) fn wheel_point(&mut self, xi: f64, eta: f64) -> Option<WheelPoint> {
+        let (xi_w, eta_w) = self.wheel_coordinates(xi, eta);
         let u = eta_w * eta_w;
         self.wheel.spans(xi_w, u, &mut self.spans);
-        let k = WheelSurface::span_at(&self.spans, u)?;
-        Some((k, self.wheel.foot_at(xi_w, &self.spans[k], u)?))
+        let span = self.spans[WheelSurface::span_at(&self.spans, u)?];
+        Some(WheelPoint { xi_w, eta_w, span, foot: self.wheel.foot_at(xi_w, &span, u)? })
     }
 
-    /// The wheel's normal in (ξ, η, ζ) at a point over its own (ξ′, η′).
-    fn wheel_normal(&self, xi_w: f64, eta_w: f64, span: usize, foot: &Foot) -> [f64; 3] {
-        let [x, y, z] = self.wheel.normal(xi_w, eta_w, &self.spans[span], foot);
+    /// s where the wheel point lies over ξ.
+    fn separation_at(&self, xi: f64, point: &WheelPoint) -> f64 {
+        self.base(xi, point.xi_w, &point.span) + point.foot.rise
+    }
+
+    /// The wheel's normal in (ξ, η, ζ).
+    fn wheel_normal(&self, point: &WheelPoint) -> [f64; 3] {
+        let [x, y, z] = self.wheel.normal(point.xi_w, point.eta_w, &point.span, &point.foot);
         let (sin, cos) = self.skew;
         [x * cos - y * sin, x * sin + y * cos, z]
     }
@@ -90,14 +107,6 @@ impl<'a> Evaluator<'a> {
     /// dζ^R/dξ at ξ; NaN off the rail.
     pub fn rail_slope(&self, xi: f64) -> f64 {
         self.placement.rail.section.branch_at(xi).map_or(f64::NAN, |branch| branch.chord_slope(xi, xi))
-    }
-
-    /// [∂ζ^W/∂ξ, ∂ζ^W/∂η] at (ξ, η); NaN off the wheel.
-    pub fn wheel_slopes(&mut self, xi: f64, eta: f64) -> [f64; 2] {
-        let (xi_w, eta_w) = self.wheel_coordinates(xi, eta);
-        let Some((k, foot)) = self.foot(xi_w, eta_w) else { return [f64::NAN; 2] };
-        let [x, y, z] = self.wheel_normal(xi_w, eta_w, k, &foot);
-        [-x / z, -y / z]
     }
 
     /// s at all η of one column.
@@ -144,10 +153,10 @@ impl<'a> Evaluator<'a> {
         [self.base(xi, xi_w, span), self.wheel.opening(xi_w, span)]
     }
 
-    /// The profile abscissa ξ′ − e sinθ under (ξ, η), in the wheel's contact frame.
-    fn foot_abscissa(&mut self, xi: f64, eta: f64) -> f64 {
-        let (xi_w, eta_w) = self.wheel_coordinates(xi, eta);
-        self.foot(xi_w, eta_w).map_or(f64::NAN, |(_, foot)| self.wheel.abscissa(xi_w, foot.e))
+    /// Abscissa ξ′ − e sinθ of the profile point under (ξ, η), in the wheel's contact frame \[mm\]; NaN off the wheel.
+    pub(crate) fn foot_abscissa(&mut self, xi: f64, eta: f64) -> f64 {
+        let point = self.wheel_point(xi, eta);
+        point.map_or(f64::NAN, |point| self.wheel.abscissa(point.xi_w, point.foot.e))
     }
 
     /// dξ_foot/dη by a central difference: only its sign is used, to divide a column.
@@ -191,4 +200,9 @@ impl<'a> Evaluator<'a> {
         }
         gap::skewed_gap(rail, branch, xi, xi_w)
     }
+}
+
+/// [∂ζ/∂ξ, ∂ζ/∂η] of a surface with this normal.
+fn slopes([x, y, z]: [f64; 3]) -> [f64; 2] {
+    [-x / z, -y / z]
 }

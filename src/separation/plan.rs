@@ -40,13 +40,10 @@ pub struct Plan {
     pub reason: String,
 }
 
-/// Share of the tolerance that spectral columns may use up; [`BETWEEN_SAMPLES`] and rounding need the rest.
-const TRUNCATION: f64 = 0.5;
-
-/// The demand on spectral columns for a tolerance on s \[mm\].
+/// The demand on s for a tolerance \[mm\].
 pub fn demand(tolerance: f64) -> Demand {
     let relative = if tolerance <= FULL_PRECISION { FULL_RELATIVE } else { f64::INFINITY };
-    Demand { absolute: TRUNCATION * tolerance, relative }
+    Demand { absolute: tolerance, relative }
 }
 
 /// The cheapest method whose estimated error over the grid is below `tolerance` \[mm\], or the `forced` one.

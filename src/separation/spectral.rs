@@ -19,13 +19,16 @@ use crate::placement::Placement;
 /// point-wise.
 pub const MOST_COEFFICIENTS: usize = 12;
 
-/// Relative error of q that counts as rounding: more coefficients would not lower it.
+/// Share of a quantity that counts as rounding: more coefficients would not lower its error.
 pub(super) const ROUNDING_LEVEL: f64 = 4.0 * f64::EPSILON;
+
+/// Share of the absolute demand that truncation may use up: rounding, and what lies between a plan's samples, need the rest.
+const TRUNCATION: f64 = 0.5;
 
 /// Runs from this length on are stored line by line of the cache.
 const LONG_RUN: usize = 64;
 
-/// The demand on a column: |error of s| ≤ `absolute`, and ≤ `relative` × |(u − u_0) q|.
+/// The demand on s: |error| ≤ `absolute`, and ≤ `relative` × |(u − u_0) q|.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Demand {
     /// \[mm\].
@@ -73,7 +76,7 @@ impl<'a> Spectral<'a> {
             columns: Columns::new(evaluator.wheel),
             evaluator,
             axis,
-            demand,
+            demand: Demand { absolute: TRUNCATION * demand.absolute, ..demand },
             coefficients,
             strips: &[],
             spans: Vec::with_capacity(8),

@@ -7,18 +7,17 @@
 //! left to its columns.
 
 use super::Evaluator;
+use super::column::WheelSurface;
 use super::columns::{Columns, MANY, Row, row};
-use super::spectral::{MOST_COEFFICIENTS, Spectral};
+use super::spectral::{MOST_COEFFICIENTS, ROUNDING_LEVEL, Spectral};
 use crate::numerics::chebyshev;
 use crate::placement::Placement;
 
 /// Columns that a strip must have: those it is made from take as long as about so many singly.
 const LEAST_COLUMNS: usize = 8;
 
-/// A quantity's last coefficients below this share of it are rounding of the columns that it is made from.
-const ROUNDING_LEVEL: f64 = 4.0 * f64::EPSILON;
-
-/// … and where g/ξ² varies much, below this share of its smallest value: a thirtieth of the promised relative error.
+/// Where g/ξ² varies much, its last coefficients below this share of its smallest value are rounding: a thirtieth of the
+/// promised relative error.
 const MOST_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Coefficients at the end that have to be rounding: one parity may vanish.
@@ -98,20 +97,19 @@ pub fn strips(spectral: &mut Spectral<'_>, placement: &Placement, xi: &[f64], u_
 
 /// The ξ at which a joint of either body enters or leaves the columns, and the window's own ends, in order.
 fn breaks(placement: &Placement, u_max: f64, window: [f64; 2]) -> Vec<f64> {
-    let (rail, wheel) = (&placement.rail.section, &placement.wheel.section);
-    let (sin, cos) = (wheel.frame.sin, wheel.frame.cos);
+    let (rail, wheel) = (&placement.rail.section, WheelSurface::new(placement));
     let leaving = |(joint, height): (f64, f64)| {
-        let w = placement.rolling_radius() - joint * sin - height * cos;
+        let w = wheel.axle_distance(joint, height);
         // u = e (2w − e): the joint's own ring meets the window's edge; it has no such point where that is NaN.
-        joint + sin * u_max / (w + (w * w - u_max).sqrt())
+        joint + wheel.sin * u_max / (w + (w * w - u_max).sqrt())
     };
     let inside = |xi: &f64| window[0] < *xi && *xi < window[1];
     // e ≤ w, so that e² ≤ u: no joint leaves further than this from where it enters.
-    let far = sin.abs() * u_max.sqrt();
+    let far = wheel.sin.abs() * u_max.sqrt();
     let mut ends = vec![window[0]];
     ends.extend(rail.joints(window).map(|(xi, _)| xi).filter(inside));
-    ends.extend(wheel.joints(window).map(|(xi, _)| xi).filter(inside));
-    ends.extend(wheel.joints([window[0] - far, window[1] + far]).map(leaving).filter(inside));
+    ends.extend(wheel.section.joints(window).map(|(xi, _)| xi).filter(inside));
+    ends.extend(wheel.section.joints([window[0] - far, window[1] + far]).map(leaving).filter(inside));
     ends.push(window[1]);
     // Four runs in order, which a stable sort merges.
     ends.sort_by(f64::total_cmp);
@@ -169,8 +167,8 @@ impl pulp::WithSimd for Attempt<'_, '_> {
 }
 
 impl Strip {
-    /// The strip through the columns last taken, at its Chebyshev points; `None` where there are too many spans, something is not finite,
-    /// or has too few coefficients that are rounding; of a `short` strip the gap may have too few.
+    /// The strip through the columns last taken, at its Chebyshev points; `None` where there are too many spans, something
+    /// is not finite, or has too few coefficients that are rounding; of a `short` strip the gap may have too few.
     #[inline(always)]
     fn new(spectral: &mut Spectral<'_>, xi: [f64; 2], short: bool) -> Option<Self> {
         let Spectral { evaluator, columns, demand, coefficients, rows, .. } = spectral;

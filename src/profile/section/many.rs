@@ -90,7 +90,7 @@ impl<'a, const N: usize> Branches<'a, N> {
         match self {
             Self::One(branch) => branch.points(xi),
             Self::Cubics(c) => {
-                let t = solved(c.xi.iter().rev().copied(), c.t, xi, guesses(c.t, c.ends, xi))?;
+                let t = parameters(c.xi.iter().rev().copied(), c.t, xi, guesses(c.t, c.ends, xi))?;
                 let (zeta, _) = values_and_slopes(c.zeta.iter().rev().copied(), &t);
                 Some((BranchPoints::Polynomial { xi: *xi, t }, zeta))
             }
@@ -125,7 +125,8 @@ impl Branch {
             }
             BranchShape::Polynomial(p) => {
                 let range = p.t.map(|t| [t; N]);
-                let t = solved(descending(&p.xi), range, xi, guesses(range, p.ends.map(|end| [end; N]), xi))?;
+                let t =
+                    parameters(descending(&p.xi), range, xi, guesses(range, p.ends.map(|end| [end; N]), xi))?;
                 Some((BranchPoints::Polynomial { xi: *xi, t }, values_and_slopes(descending(&p.zeta), &t).0))
             }
         }
@@ -215,7 +216,7 @@ fn guesses<const N: usize>(t: [[f64; N]; 2], ends: [[f64; N]; 2], xi: &[f64; N])
 
 /// t with ξ(t) = ξ by Newton's steps from guesses within a range.
 #[inline(always)]
-fn solved<const N: usize>(
+fn parameters<const N: usize>(
     c: impl Iterator<Item = [f64; N]> + Clone,
     [low, high]: [[f64; N]; 2],
     xi: &[f64; N],
@@ -244,7 +245,8 @@ fn solved<const N: usize>(
     None
 }
 
-/// The value, or the end that it is beyond; NaN stays.
+/// The value, or the end that it is beyond; NaN stays. `f64::clamp` checks its ends, which keeps loops from becoming vector
+/// code.
 #[inline(always)]
 fn within(value: f64, low: f64, high: f64) -> f64 {
     let above = if value < low { low } else { value };
@@ -264,7 +266,7 @@ fn chords<const N: usize>(
     for k in 0..N {
         guess[k] += (to[k] - xi[k]) / slope[k];
     }
-    let t_to = solved(c_xi.clone(), range, to, guess)?;
+    let t_to = parameters(c_xi.clone(), range, to, guess)?;
     let (mut rise, run) = (differences(c_zeta, t, &t_to), differences(c_xi, t, &t_to));
     for k in 0..N {
         rise[k] /= run[k];
