@@ -86,11 +86,12 @@ pub struct StatedPatch {
     pub components: Vec<StatedComponent>,
 }
 
-/// Ranges of ξ and η \[mm\].
+/// A rectangle of the contact frame.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-#[allow(missing_docs, reason = "the letters of the contact frame")]
 pub struct StatedWindow {
+    /// Range of ξ \[mm\].
     pub xi: [f64; 2],
+    /// Range of η \[mm\].
     pub eta: [f64; 2],
 }
 

@@ -51,16 +51,51 @@ pub struct ReferenceScene {
 /// One segment.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
-#[allow(missing_docs, reason = "the letters are those of reference.py, explained at each variant")]
 pub enum ReferenceSegment {
-    /// From (x0, z0) to (x1, z1) \[mm\].
-    Line { x0: f64, z0: f64, x1: f64, z1: f64 },
-    /// About (a, b) with radius r \[mm\] over \[x0, x1\]; σ = +1 the upper, −1 the lower half circle.
-    Arc { x0: f64, x1: f64, a: f64, b: f64, r: f64, sigma: f64 },
-    /// z = Σ c_k x^k over \[x0, x1\] \[mm\].
-    Poly { x0: f64, x1: f64, c: Vec<f64> },
-    /// (Σ cx_k t^k, Σ cz_k t^k) over 0 ≤ t ≤ t1 \[mm\].
-    Spline { t1: f64, cx: Vec<f64>, cz: Vec<f64> },
+    /// A straight line.
+    Line {
+        /// Beginning, x \[mm\].
+        x0: f64,
+        /// Beginning, z \[mm\].
+        z0: f64,
+        /// End, x \[mm\].
+        x1: f64,
+        /// End, z \[mm\].
+        z1: f64,
+    },
+    /// A part of a half circle.
+    Arc {
+        /// Smallest x \[mm\].
+        x0: f64,
+        /// Largest x \[mm\].
+        x1: f64,
+        /// Centre, x \[mm\].
+        a: f64,
+        /// Centre, z \[mm\].
+        b: f64,
+        /// Radius \[mm\].
+        r: f64,
+        /// +1 the upper half, −1 the lower.
+        sigma: f64,
+    },
+    /// z = Σ c_k x^k.
+    Poly {
+        /// Smallest x \[mm\].
+        x0: f64,
+        /// Largest x \[mm\].
+        x1: f64,
+        /// c_0, c_1, … \[mm¹⁻ᵏ\].
+        c: Vec<f64>,
+    },
+    /// (Σ cx_k t^k, Σ cz_k t^k) over 0 ≤ t ≤ t1.
+    Spline {
+        /// Largest t.
+        t1: f64,
+        /// Coefficients of x \[mm\].
+        cx: Vec<f64>,
+        /// Coefficients of z \[mm\].
+        cz: Vec<f64>,
+    },
 }
 
 impl ReferenceSegment {

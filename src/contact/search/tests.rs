@@ -1,5 +1,3 @@
-#![allow(clippy::panic)]
-
 use super::wheelset::{Position, Roll, WheelsetOnTrack};
 use super::*;
 use crate::placement::Pair;
