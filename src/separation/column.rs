@@ -16,7 +16,7 @@ use crate::profile::{Branch, BranchPoint, Piece, Section};
 
 /// Steps by which a point is found; each gains some six digits. A branch that needs more is steep there and is left to
 /// the bracketed root.
-const STEPS: usize = 8;
+pub(super) const STEPS: usize = 8;
 
 /// Share of the window's u that a polynomial's nodes must cover; beyond them it is continued that little.
 pub(super) const NEARLY_COVERED: f64 = 0.99;

@@ -2,7 +2,7 @@
 //! that no column waits for the one before it.
 
 use super::Evaluator;
-use super::column::{NEARLY_COVERED, Span, WheelSurface, sagitta};
+use super::column::{NEARLY_COVERED, STEPS, Span, WheelSurface, sagitta};
 use super::gap::{contact_gap, contact_gaps};
 use super::spectral::{Demand, MOST_COEFFICIENTS, ROUNDING_LEVEL, is_whole, nodes, powers};
 use crate::profile::{BranchPoints, Branches, Piece, Section};
@@ -45,19 +45,21 @@ pub struct SpanColumns<'a> {
     /// s there \[mm\].
     pub base: Row,
     /// ζ of the wheel there \[mm\].
-    height: Row,
+    pub height: Row,
     /// Range of u, up to the window's end \[mm²\].
     pub u: [Row; 2],
     /// Range of e \[mm\].
-    e: [Row; 2],
+    pub e: [Row; 2],
     /// Axle distance at the beginning \[mm\].
     w: Row,
 }
 
 /// Points on the wheel, one of every column.
-struct Feet {
-    e: Row,
-    rise: Row,
+pub struct Feet {
+    /// Sagitta \[mm\].
+    pub e: Row,
+    /// ζ above the beginning of the span \[mm\].
+    pub rise: Row,
     w: Row,
     u: Row,
 }
@@ -239,6 +241,41 @@ impl<'a> WheelSurface<'a> {
         }
         let branches = Branches::One(branch);
         Some(SpanColumns { branches, points, base: [f64::NAN; MANY], height, u: [u0, u1], e: [e0, e1], w })
+    }
+
+    /// The spans of columns at ξ over one piece, each from where it enters the piece; s and the ends not known.
+    #[inline(always)]
+    pub(super) fn spans_over(&self, xi: &Row, piece: &Piece) -> Option<SpanColumns<'a>> {
+        let branch = &self.section.branches[piece.branch];
+        let [low, high] = piece.xi;
+        let begin = row(|k| xi[k].max(low).min(high));
+        let (points, heights) = branch.points(&begin)?;
+        let e0 = row(|k| if xi[k] == begin[k] { 0.0 } else { (xi[k] - begin[k]) / self.sin });
+        let height = row(|k| heights[k] + e0[k] * self.cos);
+        let w = row(|k| self.axle_distance(xi[k], height[k]));
+        let (branches, base, u) = (Branches::One(branch), [f64::NAN; MANY], [[f64::NAN; MANY]; 2]);
+        Some(SpanColumns { branches, points, base, height, u, e: [e0, [f64::INFINITY; MANY]], w })
+    }
+
+    /// The points at u, as [`Self::foot_at`]; `None` where one is not found by Newton's steps.
+    #[inline(always)]
+    pub(super) fn feet_at(&self, xi: &Row, span: &SpanColumns<'_>, u: &Row) -> Option<Feet> {
+        let mut feet = self.feet(xi, span, row(|k| sagitta(span.w[k], u[k])))?;
+        let mut last = feet.e;
+        for _ in 0..STEPS {
+            let e = row(|k| {
+                let run = feet.e[k] - span.e[0][k];
+                let fall = if run == 0.0 { 0.0 } else { self.cos * feet.rise[k] / run };
+                feet.e[k] - (feet.u[k] - u[k]) / (2.0 * (feet.w[k] + feet.e[k] * (1.0 - fall)))
+            });
+            let change = row(|k| (e[k] - feet.e[k]).abs());
+            feet = self.feet(xi, span, e)?;
+            if (0..MANY).all(|k| change[k] * change[k] <= f64::EPSILON * e[k] * last[k]) {
+                return Some(feet).filter(|feet| feet.w.iter().all(|&w| w > 0.0));
+            }
+            last = change;
+        }
+        None
     }
 
     #[inline(always)]

@@ -159,12 +159,6 @@ impl<'a> Evaluator<'a> {
         point.map_or(f64::NAN, |point| self.wheel.abscissa(point.xi_w, point.foot.e))
     }
 
-    /// dξ_foot/dη by a central difference: only its sign is used, to divide a column.
-    fn foot_slope(&mut self, xi: f64, eta: f64) -> f64 {
-        let h = f64::EPSILON.cbrt() * self.placement.wheel_radius;
-        self.foot_abscissa(xi, eta + h) - self.foot_abscissa(xi, eta - h)
-    }
-
     /// (ξ, η) in the wheel's own directions of the tangent plane.
     fn wheel_coordinates(&self, xi: f64, eta: f64) -> (f64, f64) {
         let (sin, cos) = self.skew;

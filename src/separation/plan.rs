@@ -86,22 +86,23 @@ pub fn plan(
 struct Samples<'a> {
     placement: &'a Placement,
     xi: Vec<f64>,
+    whole: &'a EtaAxis,
     axis: EtaAxis,
     exact: Vec<f64>,
     rounding: f64,
 }
 
 impl<'a> Samples<'a> {
-    fn new(placement: &'a Placement, xi: &[f64], axis: &EtaAxis) -> Self {
+    fn new(placement: &'a Placement, xi: &[f64], whole: &'a EtaAxis) -> Self {
         let xi = thinned(xi, SAMPLED_COLUMNS);
-        let axis = EtaAxis::new(&thinned(&axis.eta, SAMPLED_ETA));
+        let axis = EtaAxis::new(&thinned(&whole.eta, SAMPLED_ETA));
         let mut evaluator = Evaluator::new(placement);
         let mut exact = vec![f64::NAN; xi.len() * axis.eta.len()];
         for (&xi, out) in xi.iter().zip(exact.chunks_mut(axis.eta.len().max(1))) {
             evaluator.column(xi, &axis.eta, out);
         }
         let rounding = rounding(placement, &xi, &exact);
-        Self { placement, xi, axis, exact, rounding }
+        Self { placement, xi, whole, axis, exact, rounding }
     }
 
     /// Raised largest difference from the point-wise values, or truncation where that is larger, plus rounding.
@@ -115,7 +116,13 @@ impl<'a> Samples<'a> {
 
     /// Coefficients with which most spans of spectral columns are done, and their largest truncation error \[mm\].
     fn polynomials(&self, demand: Demand) -> (usize, f64) {
-        let spectral = Spectral::new(self.placement, &self.axis, demand, 1);
+        let mut spectral = Spectral::new(self.placement, &self.axis, demand, 1);
+        if self.placement.skew != 0.0 {
+            let mut out = vec![f64::NAN; self.whole.eta.len()];
+            let columns = thinned(&self.xi, FITTED_COLUMNS).into_iter();
+            let errors = columns.map(|xi| spectral.skewed_column(xi, &self.whole.eta, &mut out));
+            return (1, errors.fold(0.0, f64::max));
+        }
         let u_max = self.axis.reach * self.axis.reach;
         let wheel = WheelSurface::new(self.placement);
         let (mut needed, mut truncation, mut spans) = (Vec::new(), 0f64, Vec::new());

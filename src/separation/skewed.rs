@@ -1,111 +1,212 @@
 //! Columns of a skewed wheel: s(ξ, ·) as polynomials in η, both parities.
 //!
-//! Along a column the wheel's own ξ′ = ξ cos χ + η sin χ moves too, so that s is no function of η². Between
-//! joints it is analytic in η. Interpolation keeps the accuracy of the column's largest s; the few points
-//! where s is much smaller, near C, are evaluated one by one.
+//! Along a column the wheel's own ξ′ = ξ cos χ + η sin χ moves too, so that s is no function of η². Over one branch of the
+//! wheel it is analytic in η: it is interpolated from 16 Chebyshev points, and an interval where that fails is halved.
+//! Interpolation keeps the accuracy of the interval's largest s; where s is much smaller, near C, it is done anew.
 
 use super::Evaluator;
-use super::axis::EtaAxis;
-use super::spectral::Demand;
+use super::column::WheelSurface;
+use super::columns::{MANY, Row, row};
+use super::gap::contact_gap;
+use super::spectral::{Demand, MOST_COEFFICIENTS, ROUNDING_LEVEL, evaluate};
+use super::strips::{PROOF, series};
 use crate::numerics::chebyshev;
-use crate::numerics::roots::bracketed;
+use crate::profile::{BranchPoints, Piece};
 
-/// Most nodes of a span.
-const MOST_NODES: usize = chebyshev::MOST_POINTS;
-
-/// Below this share of the span's largest |s| a point is evaluated on its own: interpolation there would
-/// cost more than the promised thirteen relative digits.
+/// Below this share of an interval's largest |s|, interpolation would cost more than the promised thirteen relative digits.
 const SMALL_SHARE: f64 = 1.0 / 64.0;
 
 /// One column of the grid.
-pub(super) fn column(
-    evaluator: &mut Evaluator<'_>,
-    axis: &EtaAxis,
+pub(super) struct SkewedColumn<'s, 'a> {
+    evaluator: &'s mut Evaluator<'a>,
+    arch: pulp::Arch,
     demand: Demand,
     xi: f64,
-    out: &mut [f64],
-) {
-    let eta = &axis.eta;
-    let (Some(&first), Some(&last)) = (eta.first(), eta.last()) else { return };
-    let mut cuts = vec![first];
-    breaks(evaluator, xi, first, last, &mut cuts);
-    cuts.push(last);
-    let mut begin = 0;
-    for pair in cuts.windows(2) {
-        let end = if pair[1] == last { eta.len() } else { eta.partition_point(|&eta| eta <= pair[1]) };
-        let (eta, out) = (&eta[begin..end], &mut out[begin..end]);
-        // Interpolating pays where there are more points than nodes.
-        if eta.len() <= MOST_NODES || !interpolate(evaluator, demand, xi, [pair[0], pair[1]], eta, out) {
-            evaluator.column(xi, eta, out);
-        }
-        begin = end;
-    }
+    /// ζ of the rail \[mm\]; NaN where it has no surface.
+    rail_height: f64,
+    contact: Option<Contact>,
+    /// Largest truncation error so far \[mm\].
+    pub error: f64,
 }
 
-/// All η inside (first, last) where the column passes from one branch of the wheel to another.
-fn breaks(evaluator: &mut Evaluator<'_>, xi: f64, first: f64, last: f64, cuts: &mut Vec<f64>) {
-    // The profile abscissa p(η) = ξ′ − e sinθ is a slanted parabola up to terms of fourth order: its turning
-    // point divides the column into two monotone halves.
-    let slope = |evaluator: &mut Evaluator<'_>, eta: f64| evaluator.foot_slope(xi, eta);
-    let turning = bracketed(|eta| slope(evaluator, eta), first, last);
-    let mut halves = vec![first];
-    halves.extend(turning.filter(|&eta| eta > first && eta < last));
-    halves.push(last);
-    for pair in halves.windows(2) {
-        let ends = [0, 1].map(|k| evaluator.foot_abscissa(xi, pair[k]));
-        let [low, high] = if ends[0] <= ends[1] { ends } else { [ends[1], ends[0]] };
-        let joints: Vec<f64> = evaluator.wheel.section.pieces.iter().flat_map(|p| p.xi).collect();
-        let mut found: Vec<f64> = joints
-            .into_iter()
-            .filter(|&joint| joint > low && joint < high)
-            .filter_map(|joint| bracketed(|eta| evaluator.foot_abscissa(xi, eta) - joint, pair[0], pair[1]))
-            .collect();
-        found.sort_by(f64::total_cmp);
-        found.dedup();
-        cuts.extend(found);
-        if pair[1] < last {
-            cuts.push(pair[1]);
-        }
-    }
+/// What s is computed from where ξ lies over both contact segments.
+#[derive(Debug, Clone, Copy)]
+struct Contact {
+    /// g(ξ) \[mm\].
+    gap: f64,
+    /// The wheel's profile point at ξ.
+    from: BranchPoints<MANY>,
 }
 
-/// Chebyshev interpolation of s over one span; `false` where no allowed degree reaches the demand.
-fn interpolate(
-    evaluator: &mut Evaluator<'_>,
-    demand: Demand,
-    xi: f64,
-    [a, b]: [f64; 2],
-    eta: &[f64],
-    out: &mut [f64],
-) -> bool {
-    let (centre, half) = (a + (b - a) / 2.0, (b - a) / 2.0);
-    let mut c = [0.0; MOST_NODES];
-    let mut n = 6;
-    let scale = loop {
-        let values: [f64; MOST_NODES] = std::array::from_fn(|j| {
-            if j < n { evaluator.separation(xi, centre + half * chebyshev::point(j, n)) } else { 0.0 }
+impl<'s, 'a> SkewedColumn<'s, 'a> {
+    /// The column at ξ, held to a demand.
+    pub fn new(evaluator: &'s mut Evaluator<'a>, arch: pulp::Arch, demand: Demand, xi: f64) -> Self {
+        let (rail, wheel) = (&evaluator.placement.rail.section, &evaluator.placement.wheel.section);
+        let piece = rail.piece_at(xi);
+        let rail_height = piece.map_or(f64::NAN, |piece| rail.branches[piece.branch].height(xi));
+        let branches =
+            piece.map(|piece| piece.branch).filter(|r| rail.contact == Some(*r)).zip(wheel.contact);
+        let contact = branches.and_then(|(r, w)| {
+            let (rail, wheel) = (&rail.branches[r], &wheel.branches[w]);
+            let (from, height) = wheel.point(xi);
+            let inside = wheel.xi[0] <= xi && xi <= wheel.xi[1];
+            inside.then(|| Contact { gap: contact_gap(rail, wheel, xi, height), from: (&from).into() })
         });
-        let scale = values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-        if values.iter().any(|v| v.is_nan()) {
-            return false;
+        Self { evaluator, arch, demand, xi, rail_height, contact, error: 0.0 }
+    }
+
+    /// s at ascending η.
+    pub fn fill(&mut self, eta: &[f64], out: &mut [f64]) {
+        if self.rail_height.is_nan() {
+            return out.fill(f64::NAN);
         }
-        chebyshev::coefficients(&values[..n], &mut c[..n]);
-        // Two last coefficients, since one parity may vanish.
-        let tail = c[n - 1].abs() + c[n - 2].abs();
-        let allowed = demand.absolute.min(demand.relative * scale).max(4.0 * f64::EPSILON * scale);
-        if tail <= allowed {
-            break scale;
+        let (Some(&first), Some(&last)) = (eta.first(), eta.last()) else { return };
+        let few = eta.len() <= MANY;
+        let arch = self.arch;
+        let Some(size) = arch.dispatch(Interval { column: self, ends: [first, last], eta, out }) else {
+            if few {
+                return self.evaluator.column(self.xi, eta, out);
+            }
+            let (eta, out) = (eta.split_at(eta.len() / 2), out.split_at_mut(eta.len() / 2));
+            self.fill(eta.0, out.0);
+            return self.fill(eta.1, out.1);
+        };
+        let is_small = |s: &f64| s.abs() < SMALL_SHARE * size.largest;
+        // Between Chebyshev points a parabola falls by less than that share.
+        if few || size.least > 2.0 * SMALL_SHARE * size.largest {
+            return;
         }
-        n += 3;
-        if n > MOST_NODES {
-            return false;
-        }
-    };
-    for (s, &eta) in out.iter_mut().zip(eta) {
-        *s = chebyshev::value(&c[..n], (eta - centre) / half);
-        if s.abs() < SMALL_SHARE * scale {
-            *s = evaluator.separation(xi, eta);
+        let (Some(begin), Some(end)) = (out.iter().position(is_small), out.iter().rposition(is_small)) else {
+            return;
+        };
+        let small = begin..end + 1;
+        if small.len() <= eta.len() / 2 {
+            self.fill(&eta[small.clone()], &mut out[small]);
+        } else {
+            self.evaluator.column(self.xi, &eta[small.clone()], &mut out[small]);
         }
     }
-    true
+}
+
+/// |s| over the Chebyshev points of an interval \[mm\].
+struct Size {
+    largest: f64,
+    least: f64,
+}
+
+/// Part of a column, compiled for each kind of machine.
+struct Interval<'c, 's, 'a> {
+    column: &'c mut SkewedColumn<'s, 'a>,
+    ends: [f64; 2],
+    eta: &'c [f64],
+    out: &'c mut [f64],
+}
+
+impl pulp::WithSimd for Interval<'_, '_, '_> {
+    type Output = Option<Size>;
+
+    /// `None` where s is not over one branch, or its interpolant has too few coefficients that are rounding.
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, simd: S) -> Option<Size> {
+        let Self { column, ends: [a, b], eta, out } = self;
+        let few = eta.len() <= MANY;
+        let (centre, half) = (a + (b - a) / 2.0, (b - a) / 2.0);
+        let points = if few {
+            row(|k| eta[k.min(eta.len() - 1)])
+        } else {
+            row(|k| centre + half * chebyshev::point(k, MANY))
+        };
+        let (s, rounding) = column.separations(&points, !few)?;
+        let size = Size {
+            largest: s.iter().fold(0.0, |most, s| s.abs().max(most)),
+            least: s.iter().fold(f64::INFINITY, |least, s| s.abs().min(least)),
+        };
+        if few {
+            out.copy_from_slice(&s[..eta.len()]);
+            return Some(size);
+        }
+        let demand = column.demand;
+        let c = series(&s);
+        let (kept, dropped) = kept(&c, demand.absolute.min(demand.relative * size.largest), rounding)?;
+        let mut powers = [0.0; MANY];
+        chebyshev::to_powers(&c[..kept], &mut powers);
+        let mut shrink = 1.0;
+        for c in &mut powers[1..kept] {
+            shrink /= half;
+            *c *= shrink;
+        }
+        let c = &powers[1..kept.max(2)];
+        // Powers of a tiny interval may be beyond all numbers.
+        if c.len() > MOST_COEFFICIENTS || !c.iter().all(|c| c.is_finite()) {
+            return None;
+        }
+        evaluate(simd, [powers[0], centre], c, eta, out);
+        column.error = column.error.max(dropped);
+        Some(size)
+    }
+}
+
+/// Number of Chebyshev coefficients that are needed, and the sum of the others, each of which is rounding or all together
+/// within the demand; `None` where that leaves too few.
+#[inline(always)]
+fn kept(c: &Row, demand: f64, rounding: f64) -> Option<(usize, f64)> {
+    let (mut kept, mut dropped) = (MANY, 0.0);
+    while kept > 1 && (c[kept - 1].abs() <= rounding || dropped + c[kept - 1].abs() <= demand) {
+        kept -= 1;
+        dropped += c[kept].abs();
+    }
+    (kept + PROOF <= MANY).then_some((kept, dropped))
+}
+
+impl SkewedColumn<'_, '_> {
+    /// s at η over one branch of the wheel, and its rounding \[mm\]; `None` where they are not, or may not be `between`
+    /// neighbours.
+    #[inline(always)]
+    fn separations(&mut self, eta: &Row, between: bool) -> Option<(Row, f64)> {
+        let (xi, evaluator) = (self.xi, &mut *self.evaluator);
+        let (sin, cos) = evaluator.skew;
+        let xi_w = row(|k| xi * cos + eta[k] * sin);
+        let u = row(|k| {
+            let eta_w = eta[k] * cos - xi * sin;
+            eta_w * eta_w
+        });
+        evaluator.wheel.spans(xi_w[MANY / 2], u[MANY / 2], &mut evaluator.spans);
+        let span = evaluator.spans[WheelSurface::span_at(&evaluator.spans, u[MANY / 2])?];
+        let wheel = &evaluator.wheel;
+        let piece = &wheel.section.pieces[span.piece];
+        let here = wheel.spans_over(&xi_w, piece)?;
+        let feet = wheel.feet_at(&xi_w, &here, &u)?;
+        let abscissae = row(|k| wheel.abscissa(xi_w[k], feet.e[k]));
+        if !inside(piece, &abscissae, between) {
+            return None;
+        }
+        let begun = here.e[0].iter().filter(|&&e| e == 0.0).count();
+        let contact = self.contact.filter(|_| wheel.section.contact == Some(piece.branch) && begun > 0);
+        let Some(contact) = contact else {
+            let s = row(|k| here.height[k] - self.rail_height + feet.rise[k]);
+            let size = here.height.iter().fold(0.0, |most, &height| evaluator.size(xi, height).max(most));
+            return Some((s, f64::EPSILON * size));
+        };
+        if begun < MANY {
+            return None;
+        }
+        let slope = wheel.section.branches[piece.branch].chords_from(&contact.from, &xi_w)?;
+        let s = row(|k| contact.gap + (xi_w[k] - xi) * slope[k] + feet.rise[k]);
+        let largest = s.iter().fold(0.0, |most, s| s.abs().max(most));
+        Some((s, ROUNDING_LEVEL * largest))
+    }
+}
+
+/// Whether abscissae of the profile are inside one piece, and all in between as well: the abscissa is a parabola up to terms of
+/// fourth order, which turns between two points by less than it moves between others.
+#[inline(always)]
+fn inside(piece: &Piece, abscissae: &Row, between: bool) -> bool {
+    let mut margin = 0f64;
+    if between {
+        for pair in abscissae.windows(2) {
+            margin = margin.max((pair[1] - pair[0]).abs());
+        }
+    }
+    let [low, high] = [piece.xi[0] + margin, piece.xi[1] - margin];
+    abscissae.iter().all(|&abscissa| low <= abscissa && abscissa <= high)
 }

@@ -6,13 +6,14 @@
 
 use std::array::from_fn;
 
+use super::Evaluator;
 use super::axis::{EtaAxis, lead};
 use super::column::{NEARLY_COVERED, Span, WheelSurface};
 use super::columns::{Columns, MANY, Row};
 use super::gap::midplane_gap;
 use super::grid::{BLOCK, Kernel};
+use super::skewed::SkewedColumn;
 use super::strips::{self, MOST_SPANS, Strip};
-use super::{Evaluator, skewed};
 use crate::placement::Placement;
 
 /// Most coefficients of a column. A span that needs more is close to a vertical tangent, and is evaluated
@@ -178,7 +179,8 @@ pub(super) fn is_whole(spans: &[Span], u_max: f64) -> bool {
 impl Kernel for Spectral<'_> {
     fn column(&mut self, xi: f64, out: &mut [f64]) {
         if self.evaluator.placement.skew != 0.0 {
-            return skewed::column(&mut self.evaluator, self.axis, self.demand, xi, out);
+            self.skewed_column(xi, &self.axis.eta, out);
+            return;
         }
         self.single_column(xi, self.axis.reach * self.axis.reach, out);
         self.axis.mirror(out);
@@ -296,6 +298,13 @@ impl pulp::WithSimd for StripColumns<'_> {
 }
 
 impl Spectral<'_> {
+    /// A column of a skewed wheel; its truncation error \[mm\].
+    pub(super) fn skewed_column(&mut self, xi: f64, eta: &[f64], out: &mut [f64]) -> f64 {
+        let mut column = SkewedColumn::new(&mut self.evaluator, self.arch, self.demand, xi);
+        column.fill(eta, out);
+        column.error
+    }
+
     /// A column that is in no strip; the half η ≥ 0 of a symmetric axis.
     fn single_column(&mut self, xi: f64, u_max: f64, out: &mut [f64]) {
         let mut spans = std::mem::take(&mut self.spans);
@@ -337,7 +346,7 @@ impl pulp::WithSimd for Run<'_> {
 /// base + (u − u_0) Σ c_k (u − u_0)^k by Horner's rule over a run of u, unrolled for the degree, with the widest vectors
 /// of the machine. Multiply-adds are fused on every machine, be it in software: the same bits everywhere.
 #[inline(always)]
-fn evaluate<S: pulp::Simd>(simd: S, begin: [f64; 2], c: &[f64], u: &[f64], out: &mut [f64]) {
+pub(super) fn evaluate<S: pulp::Simd>(simd: S, begin: [f64; 2], c: &[f64], u: &[f64], out: &mut [f64]) {
     if begin[1] == 0.0 {
         of_degree::<S, true>(simd, begin, c, u, out)
     } else {
@@ -469,8 +478,10 @@ mod tests {
     fn every_machine_gives_the_same_bits() -> Result<()> {
         let (rail, wheel) = (standards::rail("UIC60")?, standards::wheel("S1002")?);
         let splines = [spline(&rail, Side::Rail)?, spline(&wheel, Side::Wheel)?];
-        for ([rail, wheel], by_strips) in [([rail, wheel], true), (splines, false)] {
-            let placement = Pair::new(rail, wheel, 460.0)?.placed(-11.0, -9.0, 0.0)?;
+        let drawings = [rail, wheel];
+        let cases = [(drawings.clone(), 0.0, true), (drawings, 0.02, false), (splines, 0.0, false)];
+        for ([rail, wheel], yaw, by_strips) in cases {
+            let placement = Pair::new(rail, wheel, 460.0)?.placed(-11.0, -9.0, yaw)?;
             let (plain, strips) = filled(&placement, pulp::Arch::Scalar);
             assert_eq!(strips > 1, by_strips, "{strips}");
             assert!(plain.iter().all(|s| s.is_finite()));

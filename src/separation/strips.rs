@@ -21,7 +21,7 @@ const LEAST_COLUMNS: usize = 8;
 const MOST_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Coefficients at the end that have to be rounding: one parity may vanish.
-const PROOF: usize = 2;
+pub(super) const PROOF: usize = 2;
 
 /// Places in 0 ≤ τ ≤ 1 at which changes of q are judged.
 const JUDGED: [f64; 4] = [0.0, 0.3, 0.7, 1.0];
@@ -345,7 +345,7 @@ impl Judged {
 }
 
 #[inline(always)]
-fn series(values: &Row) -> Row {
+pub(super) fn series(values: &Row) -> Row {
     let mut coefficients = [0.0; MANY];
     chebyshev::coefficients(values, &mut coefficients);
     coefficients
