@@ -2,6 +2,7 @@
 #![allow(clippy::expect_used, reason = "a test")]
 
 use std::path::Path;
+use wheelrail::export::{Folder, RUN_FOLDER};
 use wheelrail::run::Run;
 use wheelrail::scene;
 
@@ -59,4 +60,32 @@ fn a_contact_that_only_the_approach_closes_is_no_refusal() {
     let feasible: Vec<bool> = run.parts.iter().map(|part| part.contact.feasibility.feasible).collect();
     assert_eq!(feasible, [true, false]);
     assert!(run.refusals().is_empty(), "{:?}", run.refusals());
+    // No deck may give the whole load to one of the two.
+    let shared = run.warnings().iter().filter(|warning| warning.contains("75000 N")).count();
+    assert_eq!(shared, 2, "{:?}", run.warnings());
+    let home = tempfile::tempdir().expect("a folder");
+    let target = home.path().join("out");
+    let folder = Folder::create(&target, RUN_FOLDER).expect("a folder");
+    run.write(&folder).and_then(|()| folder.commit()).expect("files");
+    for part in &run.parts {
+        let deck = std::fs::read_to_string(target.join(&part.folder).join("contact.inp")).expect("a deck");
+        assert!(deck.contains(" PEN\n") && deck.contains("is shared with other contacts"), "{}", part.folder);
+    }
+}
+
+#[test]
+fn a_contact_at_an_end_takes_no_quadratic_form() {
+    let scene = |method: &str| {
+        let text = format!(
+            "[rail]\nsegments = [{{ arc = {{ center = [0.0, -300.0], radius = 300.0, half = \"upper\", x = [-30.0, 30.0] }} }}]\n\
+             [wheel]\nsegments = [{{ line = {{ from = [-60.0, 0.0], to = [8.0, 0.0] }} }}]\nradius = 460.0\n\
+             [contact]\noffset = -10.0\n[patch]\napproach = 0.02\n[grid]\nmethod = \"{method}\"\n"
+        );
+        Run::new(scene::parse(&text, false)?, Path::new("."), "an end")
+    };
+    let run = scene("auto").expect("a contact");
+    let analysis = &run.parts[0].analysis;
+    assert!(analysis.separation.iter().any(|s| s.is_finite()) && analysis.plan.error.is_finite());
+    let error = scene("quadratic").expect_err("no form").to_string();
+    assert!(error.contains("quadratic with a contact at a kink or end"), "{error}");
 }

@@ -3,7 +3,8 @@
 //!
 //! Its traps, and what is done about them here, in one place: partial writes pass as success (encode to memory),
 //! array lengths are not checked (checked here), counts of zero are left out, which makes empty files
-//! unreadable (put in), FieldData is dropped from XML (inserted as text), blanks in array names break readers (none has).
+//! unreadable (put in), FieldData is dropped from XML (inserted as text), node numbers are unsigned, of which meshio makes
+//! floating-point ones (declared as signed), blanks in array names break readers (none has).
 //! Only the version and the cell kinds are used that meshio reads too: XML 1.0.
 
 use super::model::{Header, Loop, QuadMesh, SurfaceMesh, same_length};
@@ -130,6 +131,8 @@ fn xml(header: &Header, data: DataSet, empty_piece: &str) -> Result<Vec<u8>> {
     let file = Vtk { version, title: String::new(), byte_order, file_path: None, data };
     file.write_xml(&mut bytes).map_err(refused)?;
     let text = String::from_utf8(bytes).map_err(refused)?;
+    // Numbers of nodes are far below 2⁶³: the same bytes.
+    let text = text.replace("<DataArray type=\"UInt64\"", "<DataArray type=\"Int64\"");
     Ok(annotate(text.replacen("<Piece>", empty_piece, 1), header))
 }
 
@@ -162,6 +165,7 @@ mod tests {
         ] {
             let text = text(&file);
             assert!(text.contains("approach_mm") && text.contains("scene 0123abcd"), "{text}");
+            assert!(!text.contains("<DataArray type=\"U"), "{text}");
             assert!(text.contains("version=\"1.0\"") && text.trim_end().ends_with("</VTKFile>"), "{text}");
         }
     }

@@ -45,14 +45,17 @@ impl Quality {
         Self::of(mesh.cells.iter().map(|cell| shape(cell.vertices())))
     }
 
-    /// The facets of a surface; `None` without facets.
+    /// The triangles of a surface; `None` without any.
     pub fn of_surface(surface: &Surface) -> Option<Self> {
-        let shape = |quad: [usize; 4]| {
-            let corners = quad.map(|k| surface.points[k]);
-            let [a, b, c, d] = corners;
-            Shape::new(&corners, cross(between(a, c), between(b, d)))
-        };
-        Self::of(surface.quads().into_iter().map(shape))
+        let corners = |facet: &[usize]| facet.iter().map(|&k| surface.points[k]).collect::<Vec<_>>();
+        let outside = surface.quads().into_iter().map(|quad| {
+            let [a, b, c, d] = quad.map(|k| surface.points[k]);
+            cross(between(a, c), between(b, d))
+        });
+        // Two triangles of every quadrangle, whose normal says which way they should turn.
+        let normals = outside.flat_map(|normal| [normal; 2]);
+        let triangles = surface.triangles().into_iter().zip(normals);
+        Self::of(triangles.map(|(triangle, normal)| Shape::new(&corners(&triangle), normal)))
     }
 
     fn of(shapes: impl Iterator<Item = Shape>) -> Option<Self> {

@@ -11,6 +11,7 @@ use crate::interpenetration::load::{Estimate, approach_under_load};
 use crate::interpenetration::{Patch, Window};
 use crate::mesh::strips::{Counts, StripMesh};
 use crate::placement::Placement;
+use crate::separation::approximate::quadratic_form;
 use crate::separation::axis::EtaAxis;
 use crate::separation::grid::Method;
 use crate::separation::plan::{Plan, plan};
@@ -139,16 +140,10 @@ impl Analysis {
     /// Fills the grid and cuts the patch out of its window; runs on the threads of the current rayon pool.
     ///
     /// # Errors
-    /// The Report's method where it has no formula; a patch that cannot be meshed.
+    /// The Report's method where it has no formula; the quadratic one at a kink; a patch that cannot be meshed.
     pub fn new(contact: &Contact, xi: Vec<f64>, eta: Vec<f64>, question: &Question) -> Result<Self> {
         let placement = &contact.placement;
-        if let (Some(Method::ReportNewton), Some(missing)) =
-            (question.method, report_newton::missing(placement))
-        {
-            let found = format!("report-newton with {missing}");
-            let expected = "another method: the Report has no formula for it";
-            return Err(Error::new("grid: method", found, expected, "leave the method to \"auto\""));
-        }
+        check_method(placement, question.method)?;
         let start = Instant::now();
         let axis = EtaAxis::new(&eta);
         let plan = plan(placement, &xi, &axis, question.tolerance, question.method);
@@ -175,6 +170,21 @@ impl Analysis {
     pub fn window(&self) -> Window {
         window(&self.xi, &self.eta)
     }
+}
+
+/// Whether the method that is asked for has a formula for the pair.
+fn check_method(placement: &Placement, method: Option<Method>) -> Result<()> {
+    let missing = match method {
+        Some(Method::ReportNewton) => report_newton::missing(placement),
+        Some(Method::Quadratic) if quadratic_form(placement).iter().any(|c| c.is_nan()) => {
+            Some("a contact at a kink or end")
+        }
+        _ => None,
+    };
+    let (Some(method), Some(missing)) = (method, missing) else { return Ok(()) };
+    let found = format!("{} with {missing}", method.name());
+    let expected = "another method: this one has no formula for it";
+    Err(Error::new("grid: method", found, expected, "leave the method to \"auto\""))
 }
 
 fn window(xi: &[f64], eta: &[f64]) -> Window {

@@ -293,16 +293,18 @@ fn decks<'a>(
     }
 }
 
-/// CONTACT's control numbers; none without an approach.
+/// CONTACT's control numbers; none without an approach. A load is the force of a contact only where it is the only one of
+/// its wheel.
 fn contact_settings(run: &Run, part: &Part) -> Option<Settings> {
     let (approach, _) = part.contact.approach.filter(|(approach, _)| *approach > 0.0)?;
-    let load = run.scene.patch.as_ref().and_then(|patch| patch.load);
+    let shared_load = run.shared_load(part);
+    let load = run.load().filter(|_| shared_load.is_none());
     let bodies = run.question.material;
     Some(Settings {
-        normal: load.map_or(Normal::Approach(approach), Normal::Force),
+        shared_load,
         poisson: bodies.map(|body| body.poissons_ratio),
         shear_modulus: bodies.map(|body| body.youngs_modulus / (2.0 * (1.0 + body.poissons_ratio))),
-        ..Settings::steel(Normal::Approach(approach))
+        ..Settings::steel(load.map_or(Normal::Approach(approach), Normal::Force))
     })
 }
 

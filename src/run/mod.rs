@@ -103,12 +103,28 @@ impl Run {
         let findings = self.measured.iter().flatten().flat_map(|record| &record.warnings);
         let mut out: Vec<String> =
             findings.map(|finding| format!("{}: {}", finding.place, finding.found)).collect();
-        out.extend(self.parts.iter().flat_map(Part::warnings));
+        out.extend(self.parts.iter().flat_map(|part| part.warnings(self)));
         out
+    }
+
+    /// The load on a wheel \[N\], where the scene gives it.
+    fn load(&self) -> Option<f64> {
+        self.scene.patch.as_ref().and_then(|patch| patch.load)
+    }
+
+    /// That load where other parts of the same wheel carry some of it.
+    fn shared_load(&self, part: &Part) -> Option<f64> {
+        let same_wheel = |other: &&Part| other.side() == part.side();
+        self.load().filter(|_| self.parts.iter().filter(same_wheel).count() > 1)
     }
 }
 
 impl Part {
+    /// Side of a wheelset, if the contact was looked for.
+    fn side(&self) -> Option<&'static str> {
+        self.found.as_ref().map(|found| found.side)
+    }
+
     fn refusals(&self) -> Vec<String> {
         let mut out = Vec::new();
         let feasibility = &self.contact.feasibility;
@@ -127,8 +143,13 @@ impl Part {
         out
     }
 
-    fn warnings(&self) -> Vec<String> {
+    fn warnings(&self, run: &Run) -> Vec<String> {
         let mut out = Vec::new();
+        if let Some(load) = run.shared_load(self) {
+            out.push(format!(
+                "other contacts of the same wheel carry part of its load of {load} N: the decks give this one's approach"
+            ));
+        }
         if self.analysis.patch.as_ref().is_some_and(Patch::cut_by_window) {
             out.push("the window of the grid cuts the patch: solvers would overestimate the pressure".into());
         }

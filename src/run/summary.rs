@@ -73,7 +73,7 @@ pub(super) fn summary(
             "reason": analysis.plan.reason,
         },
         "refusals": part.refusals(),
-        "warnings": part.warnings(),
+        "warnings": part.warnings(run),
         "other_parts": run.parts.iter().map(|p| &p.folder).filter(|f| **f != part.folder).collect::<Vec<_>>(),
         "files": files,
         "files_skipped": skipped,

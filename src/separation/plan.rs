@@ -16,9 +16,11 @@ pub const FULL_PRECISION: f64 = 1e-12;
 /// Relative truncation allowed at full precision: a fiftieth of the promised 1e-13, some roundings.
 const FULL_RELATIVE: f64 = 2e-15;
 
-/// Columns and values of η at which an approximate method is compared with the point-wise one. Its error is
-/// smooth, and largest at edges and joints, which are always among them.
+/// Columns of the grid at which an approximate method is compared with the point-wise one: its error is smooth between
+/// joints and largest at edges, which are among them.
 const SAMPLED_COLUMNS: usize = 65;
+
+/// Values of η there.
 const SAMPLED_ETA: usize = 9;
 
 /// Columns at which the degree of spectral ones is looked for: it hardly changes over a window.
@@ -111,7 +113,7 @@ impl<'a> Samples<'a> {
         choice.fill(self.placement, &self.xi, &self.axis, &mut values);
         let differences = values.iter().zip(&self.exact).filter(|(_, exact)| !exact.is_nan());
         let largest = differences.map(|(s, exact)| (s - exact).abs()).fold(0.0, nan_max);
-        BETWEEN_SAMPLES * largest.max(truncation) + self.rounding
+        BETWEEN_SAMPLES * nan_max(largest, truncation) + self.rounding
     }
 
     /// Coefficients with which most spans of spectral columns are done, and their largest truncation error \[mm\].

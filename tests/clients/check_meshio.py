@@ -13,6 +13,7 @@ if folder.has("patch.vtu") and folder.boundary():
     cells = sum(len(block.data) for block in patch.cells)
     areas = patch.cell_data["area"]
     checks("patch.vtu", sum(map(len, areas)) == cells, f"{cells} cells, {sum(a.sum() for a in areas):.6g} mm2")
+    checks("patch.vtu has whole numbers of nodes", all(block.data.dtype.kind == "i" for block in patch.cells))
     checks("patch.vtu holds triangles and quads", {block.type for block in patch.cells} <= {"triangle", "quad"})
 elif folder.has("patch.vtu"):
     checks("patch.vtu is empty, which meshio cannot read from any program", True)
