@@ -182,8 +182,7 @@ fn crossed_cylinders_interpenetrate_in_an_ellipse() {
     }
 }
 
-/// The patch's area by a quadrature of its own: Simpson's rule in the angle about the deepest point, radii by
-/// bisection of s.
+/// The patch's area by a quadrature of its own: the trapezoid rule in the angle about C, radii by bisection of s.
 #[test]
 fn patch_areas_agree_with_a_polar_quadrature() {
     let conforming = placed(

@@ -1,4 +1,4 @@
-//! Free oracles (rule 9 of the house style): what must not change when nothing of substance does.
+//! Free oracles: what must not change when nothing of substance does.
 //!
 //! Random chains come from generators that make near-tangent, near-equal and near-joint cases on purpose. The
 //! seed is fixed and printed; a failure prints the shrunk case.

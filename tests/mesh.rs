@@ -6,7 +6,7 @@ mod common;
 use common::{approached_references, two_crowns};
 use wheelrail::Result;
 use wheelrail::interpenetration::{Patch, Window};
-use wheelrail::mesh::axes::{self, Grid};
+use wheelrail::mesh::axes::{self, Axes, Group};
 use wheelrail::mesh::quality::Quality;
 use wheelrail::mesh::strips::{Counts, StripMesh};
 use wheelrail::mesh::surfaces::Surface;
@@ -161,21 +161,20 @@ fn windows_cut_the_mesh_too() {
 }
 
 /// Whether the cells of the two outermost rows and columns are empty and all of the group inside.
-fn covers(placement: &Placement, delta: f64, grid: &Grid) -> bool {
+fn covers(placement: &Placement, delta: f64, group: &Group, axes: &Axes) -> bool {
     let mut evaluator = Evaluator::new(placement);
-    let (xi, eta) = (&grid.axes.xi, &grid.axes.eta);
+    let (xi, eta) = (&axes.xi, &axes.eta);
     let (n, m) = (xi.len(), eta.len());
     let mut empty = true;
     for (i, &x) in xi.iter().enumerate() {
         for (j, &y) in eta.iter().enumerate() {
             if i < 2 || j < 2 || i + 2 >= n || j + 2 >= m {
                 let s = evaluator.separation(x, y);
-                empty &=
-                    s.is_nan() || s > delta || grid.group.extent.xi[0] > x || grid.group.extent.xi[1] < x;
+                empty &= s.is_nan() || s > delta || group.extent.xi[0] > x || group.extent.xi[1] < x;
             }
         }
     }
-    let (box_, window) = (&grid.group.extent, grid.axes.window());
+    let (box_, window) = (&group.extent, axes.window());
     let inside = |inner: [f64; 2], outer: [f64; 2]| outer[0] < inner[0] && inner[1] < outer[1];
     empty && inside(box_.xi, window.xi) && inside(box_.eta, window.eta)
 }
@@ -184,19 +183,22 @@ fn covers(placement: &Placement, delta: f64, grid: &Grid) -> bool {
 fn grids_never_cut_the_patch() {
     for (name, placement, delta) in cases() {
         for spacing in [None, Some([0.37, 0.53])] {
-            let (patch, grids) = axes::grids(&placement, delta, spacing, 0.0).expect("grids");
-            assert_eq!(grids.iter().map(|g| g.group.components.len()).sum::<usize>(), patch.components.len());
-            for grid in &grids {
-                assert!(covers(&placement, delta, grid), "{name}: {:?}", grid.group);
-                let extent = &grid.group.extent;
+            let groups = axes::groups(&placement, delta, 0.0);
+            let patch = Patch::new(&placement, delta, &Window::UNBOUNDED);
+            assert_eq!(groups.iter().map(|g| g.components.len()).sum::<usize>(), patch.components.len());
+            for group in &groups {
+                let axes = group.axes(spacing).expect("axes");
+                assert!(covers(&placement, delta, group, &axes), "{name}: {group:?}");
+                let extent = &group.extent;
                 let short = (extent.xi[1] - extent.xi[0]).min(extent.eta[1] - extent.eta[0]);
-                assert!(spacing.is_some() || short / grid.axes.spacing[0] >= 16.0 - 1e-9, "{name}");
+                assert!(spacing.is_some() || short / axes.spacing[0] >= 16.0 - 1e-9, "{name}");
                 if placement.skew == 0.0 {
-                    let eta = &grid.axes.eta;
+                    let eta = &axes.eta;
                     assert!(eta.iter().zip(eta.iter().rev()).all(|(a, b)| *a == -*b), "{name}");
                 }
             }
-            assert!(grids[0].axes.xi.contains(&0.0) && grids[0].axes.eta.contains(&0.0), "{name}");
+            let first = groups[0].axes(spacing).expect("axes");
+            assert!(first.xi.contains(&0.0) && first.eta.contains(&0.0), "{name}");
         }
     }
 }
@@ -204,19 +206,19 @@ fn grids_never_cut_the_patch() {
 #[test]
 fn parts_are_merged_by_a_stated_distance_and_c_comes_first() -> Result<()> {
     let placement = two_crowns(-1e-3, 0.0)?;
-    let (patch, apart) = axes::grids(&placement, 0.08, None, 0.0)?;
+    let patch = Patch::new(&placement, 0.08, &Window::UNBOUNDED);
+    let apart = axes::groups(&placement, 0.08, 0.0);
     assert_eq!(patch.components.len(), 2);
-    assert_eq!(apart.iter().map(|g| g.group.components.clone()).collect::<Vec<_>>(), [vec![1], vec![0]]);
+    assert_eq!(apart.iter().map(|g| g.components.clone()).collect::<Vec<_>>(), [vec![1], vec![0]]);
     let gap = patch.components[1].xi[0] - patch.components[0].xi[1];
-    assert_eq!(axes::grids(&placement, 0.08, None, 0.99 * gap)?.1.len(), 2);
-    let merged = axes::grids(&placement, 0.08, None, 1.01 * gap)?.1;
+    assert_eq!(axes::groups(&placement, 0.08, 0.99 * gap).len(), 2);
+    let merged = axes::groups(&placement, 0.08, 1.01 * gap);
     assert_eq!(merged.len(), 1);
-    assert_eq!(merged[0].group.components, [0, 1]);
-    assert_eq!(Some(merged[0].group.extent), patch.extent());
-    assert_eq!(merged[0].axes.spacing, apart[0].axes.spacing);
-    assert!(axes::grids(&placement, 0.0, None, 0.0)?.1.is_empty());
-    assert!(axes::grids(&placement, 0.08, None, f64::NAN).is_err());
-    assert!(axes::grids(&placement, 0.08, Some([1e-4, 1e-4]), 0.0).is_err());
+    assert_eq!(merged[0].components, [0, 1]);
+    assert_eq!(Some(merged[0].extent), patch.extent());
+    assert_eq!(merged[0].axes(None)?.spacing, apart[0].axes(None)?.spacing);
+    assert!(axes::groups(&placement, 0.0, 0.0).is_empty());
+    assert!(apart[0].axes(Some([1e-4, 1e-4])).is_err());
     Ok(())
 }
 

@@ -1,9 +1,9 @@
 //! A method held to the 60-digit values of a scene.
 
 use super::reference::{Reference, exact};
-use super::speed::steps;
 use crate::placement::Placement;
 use crate::profile::Section;
+use crate::scene::equal_steps;
 use crate::separation::axis::EtaAxis;
 use crate::separation::grid::Choice;
 
@@ -51,7 +51,7 @@ impl Point {
 pub fn compare(reference: &Reference, placement: &Placement, choice: &Choice, columns: usize) -> Vec<Point> {
     let [mut xi, eta] = reference.scene.axes();
     if let (Some(&first), Some(&last)) = (xi.first(), xi.last()) {
-        xi.extend(steps(first, last, columns));
+        xi.extend(equal_steps(first, last, columns));
         xi.sort_by(f64::total_cmp);
     }
     let axis = EtaAxis::new(&eta);

@@ -21,7 +21,7 @@ const PROMISED_ABSOLUTE: f64 = 2e-12;
 /// Points per column on which s has to rise with |η|.
 const RISING_SAMPLES: usize = 64;
 
-/// Share of the bound that the statement about the Report's method may leave unused.
+/// The bound stated for the Report's method may exceed its error by this factor.
 const MOST_SLACK: f64 = 4.0;
 
 /// One check of one case.

@@ -49,7 +49,7 @@ pub enum Curve {
     Interpolation,
     /// With this cut-off wavelength \[mm\].
     Smoothing(f64),
-    /// Within the default tolerance, or three times the noise if that is more.
+    /// Within the default tolerance, or 4.5 times the noise if that is more.
     Arcs,
 }
 
@@ -94,7 +94,7 @@ impl Curve {
             Self::Interpolation => Options { curve: Some(CurveKind::Interpolation), ..base },
             Self::Smoothing(cutoff) => Options { cutoff_wavelength: Some(cutoff), ..base },
             Self::Arcs => {
-                // Of some hundred points the farthest lies three deviations off, some four.
+                // Of some thousand points the farthest lies three to four deviations off.
                 let tolerance = measured::ARC_TOLERANCE.max(4.5e-3 * noise);
                 Options { curve: Some(CurveKind::Arcs), arc_tolerance: Some(tolerance), ..base }
             }

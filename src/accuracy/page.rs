@@ -70,7 +70,8 @@ pub fn page(origin: &Origin, sections: &[Section]) -> String {
 pub fn excerpt(m: &Measurements, origin: &Origin) -> String {
     let value = |name: &str| origin.iter().find(|(n, _)| *n == name).map_or("unknown", |(_, v)| v.as_str());
     format!(
-        "{}\nMade by `{}` on {}; {}. One thread; errors over all reference scenes against 60-digit values.\n",
+        "{}\nMade by `{}` on {}; {}. One thread; errors over all reference scenes against 60-digit values, relative ones over all \
+         points but C itself: beyond the contact segments only absolute digits are promised.\n",
         summary(m),
         value("command"),
         value("processor"),

@@ -5,6 +5,7 @@ use std::hint::black_box;
 use rustix::time::{ClockId, clock_gettime};
 
 use crate::placement::Placement;
+use crate::scene::equal_steps;
 use crate::separation::axis::EtaAxis;
 use crate::separation::grid::Choice;
 
@@ -47,8 +48,8 @@ pub struct Track<'a> {
 impl<'a> Track<'a> {
     /// n × n points over \[ξ_0, ξ_1\] × \[−reach, reach\] \[mm\].
     pub fn new(placement: &'a Placement, [a, b]: [f64; 2], reach: f64, n: usize) -> Self {
-        let xi = steps(a, b, n);
-        let axis = EtaAxis::new(&steps(-reach, reach, n));
+        let xi = equal_steps(a, b, n);
+        let axis = EtaAxis::new(&equal_steps(-reach, reach, n));
         let mut out = vec![0.0; n * n];
         out.fill(STORED);
         Self { placement, xi, axis, out }
@@ -124,12 +125,6 @@ pub fn race(contestants: usize, seconds: f64, mut run: impl FnMut(usize) -> f64)
             return timings;
         }
     }
-}
-
-/// The ends of n − 1 equal steps, symmetric to the last bit where a = −b.
-pub(super) fn steps(a: f64, b: f64, n: usize) -> Vec<f64> {
-    let last = n as f64 - 1.0;
-    (0..n).map(|k| (a * (last - k as f64) + b * k as f64) / last).collect()
 }
 
 #[cfg(test)]

@@ -25,8 +25,7 @@ pub struct Feasibility {
 ///
 /// Exact to rounding: over every interval in which neither body changes its branch the minimum is at an end or
 /// where the two are parallel. The midplane suffices: at fixed ξ the wheel only rises with |η|, since its
-/// profile angle is below 90°. With skew the same holds at the contact point itself, and the midplane
-/// of the rail is what is searched.
+/// profile angle is below 90°. Under a skewed wheel too only the midplane is searched: an overlap elsewhere is not found.
 pub fn feasibility(placement: &Placement) -> Option<Feasibility> {
     let [a, b] = placement.overlap()?;
     // C itself first: rounding may put a stationary point next to it.

@@ -70,7 +70,7 @@ fn principal([xx, xy, yy]: [f64; 3]) -> Curvatures {
     let long_axis_rad = if xy == 0.0 {
         if xx <= yy { 0.0 } else { std::f64::consts::FRAC_PI_2 }
     } else {
-        (-xy / 2.0).atan2(half.mul_add(-1.0, spread)).rem_euclid(std::f64::consts::PI)
+        (-xy / 2.0).atan2(spread - half).rem_euclid(std::f64::consts::PI)
     };
     let long_axis_rad = if long_axis_rad > std::f64::consts::FRAC_PI_2 {
         long_axis_rad - std::f64::consts::PI
@@ -102,7 +102,7 @@ impl Curvatures {
         if ratio >= 1.0 {
             return Some(1.0);
         }
-        // A/B ≥ k² for k < 1, so that k lies between the ratio's own square root's square and 1.
+        // A/B ≤ k ≤ 1.
         bracketed(miss, ratio.ln(), 0.0).map(f64::exp)
     }
 
@@ -122,10 +122,10 @@ impl Curvatures {
     /// The ellipse under a load \[N\]; E* in N/mm².
     pub fn under_load(&self, load: f64, modulus: f64) -> Option<Ellipse> {
         let k = self.axis_ratio()?;
-        let [_, d] = complete(k);
+        let [big_k, d] = complete(k);
         // P = (2/3)π p₀ab with p₀b = A a² E*/D.
         let a = (1.5 * load * d / (std::f64::consts::PI * modulus * self.a_per_mm)).cbrt();
-        let approach = self.a_per_mm * a * a * complete(k)[0] / d;
+        let approach = self.a_per_mm * a * a * big_k / d;
         self.under_approach(approach, modulus)
     }
 }

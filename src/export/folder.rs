@@ -1,4 +1,4 @@
-//! The output folder: the only place of the library that touches the disk.
+//! The output folder, and how it comes onto the disk.
 //!
 //! A run writes into a temporary folder beside DIR and puts it in DIR's place in one step at the end, so that
 //! whoever looks at DIR, and whenever the run is killed, finds the old folder or the new one, each whole.

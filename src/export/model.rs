@@ -206,8 +206,8 @@ fn even_step(format: &str, axis: &str, values: &[f64]) -> Result<f64> {
 pub struct Loop {
     /// Number of the patch's component that it bounds, from 0.
     pub component: usize,
-    /// Its points \[ξ, η, ζ^R\] \[mm\] on the rail's surface; counter-clockwise in (ξ, η) around the component,
-    /// clockwise around a hole. The first is not repeated at the end.
+    /// Its points \[ξ, η, ζ^R\] \[mm\] on the rail's surface, counter-clockwise in (ξ, η). The first is not repeated at the
+    /// end.
     pub points: Vec<[f64; 3]>,
 }
 

@@ -165,7 +165,7 @@ mod tests {
         ] {
             let text = text(&file);
             assert!(text.contains("approach_mm") && text.contains("scene 0123abcd"), "{text}");
-            assert!(!text.contains("<DataArray type=\"U"), "{text}");
+            assert!(!text.contains("<DataArray type=\"UInt64"), "{text}");
             assert!(text.contains("version=\"1.0\"") && text.trim_end().ends_with("</VTKFile>"), "{text}");
         }
     }

@@ -23,11 +23,11 @@ const PERIMETER_DEMAND: f64 = 1e-11;
 /// One connected part of the patch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Component {
-    /// BoundingBox in ξ \[mm\].
+    /// Extent in ξ \[mm\].
     pub xi: [f64; 2],
     /// What bounds it there.
     pub ends: [End; 2],
-    /// BoundingBox in η \[mm\].
+    /// Extent in η \[mm\].
     pub eta: [f64; 2],
     /// Both ends in ξ and, between them, every ξ where the boundary may have a corner \[mm\], ascending.
     pub corners: Vec<f64>,
@@ -231,7 +231,7 @@ fn width(edges: Option<[Edge; 2]>) -> f64 {
     edges.map_or(0.0, |[low, high]| high.eta - low.eta)
 }
 
-/// BoundingBox of slices in η.
+/// Extent of slices in η.
 fn across(points: &[(f64, Slice)]) -> [f64; 2] {
     points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (_, slice)| {
         [low.min(slice.eta[0]), high.max(slice.eta[1])]

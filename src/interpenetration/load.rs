@@ -46,7 +46,7 @@ pub enum Estimate {
 
 /// δ \[mm\] for a load \[N\], with the method; `modulus` is E* \[N/mm²\].
 ///
-/// An estimate for one half-space, not a solution: within 0.5 % of Tamaas on treads and flanges, within 3 % at a flange
+/// An estimate for one half-space, not a solution: within 0.3 % of Tamaas on treads and flanges, within 3 % at a flange
 /// root, 10 % above where the load reaches a second place of contact (table in the docs).
 ///
 /// # Errors
@@ -125,7 +125,7 @@ impl VirtualContact {
     /// Method: secants of ln N over ln δ, nearly a line, with a bisection as every third step for where N jumps.
     /// Cost: about six evaluations of [`VirtualContact::at`], a millisecond each.
     pub fn under_load(placement: &Placement, load: f64, modulus: f64) -> Option<Self> {
-        // From an atom to the wheel.
+        // The approaches searched.
         let range = [1e-7, placement.rolling_radius().min(10.0)].map(f64::ln);
         let ([mut low, mut high], mut here, mut slope) = (range, USUAL_APPROACH.ln(), USUAL_SLOPE);
         let mut before: Option<[f64; 2]> = None;

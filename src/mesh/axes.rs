@@ -4,7 +4,7 @@
 //! over a symmetric patch, and grids of one spacing for several parts or approaches share their centres.
 
 use crate::error::{Error, Result, finite};
-use crate::interpenetration::{BoundingBox, Component, Patch, Window};
+use crate::interpenetration::{BoundingBox, Patch, Window};
 use crate::placement::Placement;
 
 /// Cells over the short side of the box when no spacing is given: peak pressures of the two solvers are then within 0.5 %.
@@ -51,59 +51,14 @@ pub struct Group {
     pub short_side: f64,
 }
 
-/// The grid of one group.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Grid {
-    /// What it is for.
-    pub group: Group,
-    /// Its cell centres.
-    pub axes: Axes,
+/// The components of a patch over the whole overlap of the two profiles, in groups closer to each other than `merge`
+/// \[mm\]. The group that holds C comes first, then the deepest; none for an empty patch.
+pub fn groups(placement: &Placement, approach: f64, merge: f64) -> Vec<Group> {
+    grouped(&Patch::bounding_boxes(placement, approach, &Window::UNBOUNDED), merge)
 }
 
-/// One grid for every component, or for every group of components closer than `merge` \[mm\], and the patch over the
-/// whole overlap of the two profiles from which they are sized. The group that holds C comes first, then the
-/// deepest; none for an empty patch.
-///
-/// `spacing` = \[Δξ, Δη\] \[mm\]; by default square cells, 16 over the short side of the group's largest component.
-/// A group that is cut by the end of a profile has cells without a separation beyond it.
-///
-/// # Errors
-/// A spacing that is not positive; a merge distance that is not a length; more than 10⁸ cells in a grid.
-pub fn grids(
-    placement: &Placement,
-    approach: f64,
-    spacing: Option<[f64; 2]>,
-    merge: f64,
-) -> Result<(Patch, Vec<Grid>)> {
-    if finite("grid: merge distance", merge)? < 0.0 {
-        let advice = "give 0 to keep all parts apart";
-        return Err(Error::new(
-            "grid: merge distance",
-            merge.to_string(),
-            "a length in mm, 0 or more",
-            advice,
-        ));
-    }
-    let patch = Patch::new(placement, approach, &Window::UNBOUNDED);
-    let grid = |group: Group| {
-        let steps = spacing.unwrap_or([group.short_side / CELLS_ACROSS; 2]);
-        Ok(Grid { axes: lattice(&group.extent, steps)?, group })
-    };
-    let boxes: Vec<BoundingBox> = patch.components.iter().map(Component::bounding_box).collect();
-    let grids = groups(&boxes, merge).into_iter().map(grid).collect::<Result<_>>()?;
-    Ok((patch, grids))
-}
-
-/// Boxes of the patch over the whole overlap of the two profiles, one for every component or group of components
-/// closer than `merge` \[mm\]; the group that holds C first, else the deepest first.
-pub fn boxes(placement: &Placement, approach: f64, merge: f64) -> Vec<Window> {
-    let boxes = Patch::bounding_boxes(placement, approach, &Window::UNBOUNDED);
-    groups(&boxes, merge).into_iter().map(|group| group.extent).collect()
-}
-
-/// The components of a patch in groups whose boxes are closer to each other than `merge` \[mm\], in the order of
-/// [`grids`].
-pub fn groups(components: &[BoundingBox], merge: f64) -> Vec<Group> {
+/// Boxes in groups, in the order of [`groups`].
+fn grouped(components: &[BoundingBox], merge: f64) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     for (index, component) in components.iter().enumerate() {
         let mut group = Group::of(index, component);
@@ -120,6 +75,16 @@ pub fn groups(components: &[BoundingBox], merge: f64) -> Vec<Group> {
 }
 
 impl Group {
+    /// Cell centres over the group with a margin of two cells on each side; `spacing` = \[Δξ, Δη\] \[mm\], by default
+    /// square cells, 16 over the short side of its largest component. A group that is cut by the end of a profile has
+    /// cells without a separation beyond it.
+    ///
+    /// # Errors
+    /// A spacing that is not positive, or for which the grid would not fit into memory.
+    pub fn axes(&self, spacing: Option<[f64; 2]>) -> Result<Axes> {
+        lattice(&self.extent, spacing.unwrap_or([self.short_side / CELLS_ACROSS; 2]))
+    }
+
     fn of(index: usize, component: &BoundingBox) -> Self {
         let extent = Window { xi: component.xi, eta: component.eta };
         let [short_side, _] = sides(component);
@@ -160,16 +125,6 @@ fn distance(a: &Window, b: &Window) -> f64 {
     gap(a.xi, b.xi).hypot(gap(a.eta, b.eta))
 }
 
-/// Cell centres over a box with a margin of two cells on each side; `spacing` = \[Δξ, Δη\] \[mm\], by default
-/// square cells, 16 over its short side.
-///
-/// # Errors
-/// A spacing that is not positive, or for which the grid would not fit into memory.
-pub fn over(window: &Window, spacing: Option<[f64; 2]>) -> Result<Axes> {
-    let short = (window.xi[1] - window.xi[0]).min(window.eta[1] - window.eta[0]);
-    lattice(window, spacing.unwrap_or([short / CELLS_ACROSS; 2]))
-}
-
 fn lattice(window: &Window, spacing: [f64; 2]) -> Result<Axes> {
     for step in spacing {
         if finite("grid: spacing", step)? <= 0.0 {
@@ -202,7 +157,7 @@ mod tests {
     fn the_lattice_covers_the_box_with_its_margin_and_no_more() -> Result<()> {
         for [a, b] in [[-1.0, 1.0], [-0.3, 0.7], [5.0, 9.1], [-7.2, -3.0]] {
             for step in [0.1, 0.07, 0.5] {
-                let axes = over(&Window { xi: [a, b], eta: [-2.0, 2.0] }, Some([step, 0.25]))?;
+                let axes = lattice(&Window { xi: [a, b], eta: [-2.0, 2.0] }, [step, 0.25])?;
                 let n = axes.xi.len();
                 let edges = |k: usize| [axes.xi[k] - step / 2.0, axes.xi[k] + step / 2.0];
                 assert!(edges(1)[1] <= a + 1e-12 && edges(2)[1] >= a - 1e-12, "[{a}, {b}] {step}");
@@ -218,8 +173,8 @@ mod tests {
     fn bad_steps_and_too_many_cells_are_refused() {
         let window = Window { xi: [-1.0, 1.0], eta: [-1.0, 1.0] };
         for spacing in [[0.0, 1.0], [1.0, f64::NAN], [-1.0, 1.0], [1e-5, 1e-5], [1e-300, 1.0]] {
-            assert!(over(&window, Some(spacing)).is_err(), "{spacing:?}");
+            assert!(lattice(&window, spacing).is_err(), "{spacing:?}");
         }
-        assert!(over(&Window::UNBOUNDED, None).is_err());
+        assert!(lattice(&Window::UNBOUNDED, [1.0; 2]).is_err());
     }
 }

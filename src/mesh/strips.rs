@@ -23,7 +23,7 @@ const MOST_CELLS: f64 = 1e7;
 /// edge of its own: areas do not need it, and the strip would be a sliver.
 const LEAST_STRIP: f64 = 0.25;
 
-/// Demand on the areas, relative; 1e-10 is promised.
+/// Demand on the areas, relative.
 const AREA_DEMAND: f64 = 1e-12;
 
 /// Demand on the centroids, relative to the extents of the component.

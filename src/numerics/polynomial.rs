@@ -45,8 +45,7 @@ pub fn slope_twofloat(c: &[TwoFloat], t: TwoFloat) -> TwoFloat {
 
 /// The coefficients about t = `centre`: p(centre + u) = Σ c′_k u^k, in twice the working precision.
 ///
-/// A standard's power form about a far origin loses digits at every later evaluation; here they are lost
-/// once, from 32.
+/// A standard's power form about a far origin loses digits at every evaluation; moved once with 32 digits, it does not.
 pub fn recentred(c: &[TwoFloat], centre: TwoFloat) -> Vec<TwoFloat> {
     let mut out = c.to_vec();
     for start in 0..out.len() {

@@ -32,6 +32,8 @@ const MOST_PANELS: usize = 128;
 /// half on the average, noise about 0.7. A kink may by chance sit where the rule hardly sees it, so that a
 /// few such halvings prove nothing.
 const NOISE_SHARE: f64 = 0.6;
+
+/// So many halvings do.
 const IDLE_HALVINGS: usize = 8;
 
 /// An interval with its integral and error estimate.
@@ -42,6 +44,8 @@ struct Panel {
 }
 
 /// ∫ f over \[a, b\] to a relative demand, or to the rounding of `f` where that is larger.
+///
+/// After [`MOST_PANELS`] panels the sum is taken as it is.
 ///
 /// Method: Gauss–Kronrod panels, the worst halved until their errors sum up to less than the demand or halving
 /// no longer helps (as QUADPACK's QAG): how much noise an integrand has, no fixed floor knows.

@@ -2,8 +2,8 @@
 
 /// The root of a continuous `f` between `a` and `b`, where `f(a)` and `f(b)` have opposite signs or one is zero.
 ///
-/// Method: Illinois-free ITP-like bisection with secant steps (Brent's safeguards without his case
-/// analysis): every second step at least halves the bracket, so at most about 120 evaluations.
+/// Method: secant steps; every second step bisects. A root of the size of the bracket takes at most about 120 evaluations;
+/// one much nearer to zero two more for every halving of the way there.
 /// Accuracy: the bracket shrinks until its ends are neighbouring numbers or `f` vanishes exactly;
 /// of the last two ends the one with the smaller |f| is returned.
 /// Degenerate: `None` when the signs are equal or a value is NaN.

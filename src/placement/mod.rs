@@ -34,7 +34,7 @@ pub struct Placement {
     pub skew: f64,
 }
 
-/// The input of a placement by a chosen pair of points.
+/// What is placed: two profiles and the wheel's radius.
 #[derive(Debug, Clone)]
 pub struct Pair {
     /// Rail profile, right-hand.

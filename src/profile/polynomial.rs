@@ -44,7 +44,7 @@ impl Polynomial {
     /// One span of a parametric spline: x = Σ x_k t^k, z = Σ z_k t^k over `t`.
     ///
     /// # Errors
-    /// Values that are not finite, a parameter range out of order, or x falling anywhere at the ends.
+    /// Values that are not finite, a parameter range out of order, or too few coefficients.
     pub fn span(x: &[f64], z: &[f64], t: [f64; 2]) -> Result<Self> {
         for &v in x.iter().chain(z).chain(&t) {
             finite("spline span", v)?;

@@ -13,7 +13,7 @@ pub use places::Found;
 use crate::error::{Error, Result};
 use crate::export::Folder;
 use crate::interpenetration::Patch;
-use crate::mesh::axes;
+use crate::mesh::axes::{self, Group};
 use crate::placement::{Pair, Placement};
 use crate::profile::measured::Record;
 use crate::scene::{self, Scene, check_points};
@@ -200,11 +200,11 @@ fn grids(scene: &Scene, place: &places::Placed) -> Result<Vec<[Vec<f64>; 2]>> {
         check_points("grid", xi.len() as f64 * eta.len() as f64)?;
         return Ok(vec![[xi.clone(), eta.clone()]]);
     }
-    let mut boxes = match place.contact.approach {
-        Some((approach, _)) => axes::boxes(&place.contact.placement, approach, merge),
+    let mut groups = match place.contact.approach {
+        Some((approach, _)) => axes::groups(&place.contact.placement, approach, merge),
         None => Vec::new(),
     };
-    if boxes.is_empty() {
+    if groups.is_empty() {
         let expected = "values, or a patch that the axes can be sized by";
         return Err(Error::new(
             "grid",
@@ -214,15 +214,15 @@ fn grids(scene: &Scene, place: &places::Placed) -> Result<Vec<[Vec<f64>; 2]>> {
         ));
     }
     if place.found.is_some() {
-        boxes.truncate(1);
+        groups.truncate(1);
     }
-    let grid = |window| {
-        let automatic = axes::over(window, spacing)?;
+    let grid = |group: &Group| {
+        let automatic = group.axes(spacing)?;
         let both = [xi.clone().unwrap_or(automatic.xi), eta.clone().unwrap_or(automatic.eta)];
         check_points("grid", both[0].len() as f64 * both[1].len() as f64)?;
         Ok(both)
     };
-    boxes.iter().map(grid).collect()
+    groups.iter().map(grid).collect()
 }
 
 /// The numerical question that a scene asks.

@@ -6,11 +6,15 @@ use super::analysis::{ApproachBy, Contact, Question};
 use crate::contact::search::wheelset::WheelsetOnTrack;
 use crate::contact::search::{self, ONE_CONTACT, ProfilePair, Selection, Touch};
 use crate::error::{Error, Result};
+use crate::mesh::axes;
 use crate::placement::Pair;
 use crate::scene::{Place, Standing};
 
-/// Vertical gap \[mm\] up to which places of contact are looked for: any approach that a rail survives.
+/// Vertical gap \[mm\] up to which places of contact are looked for at least: any approach that a load makes.
 const SEARCHED_GAP: f64 = 1.0;
+
+/// What a wheel sinks by for an approach of 1 along the normal of a flange of 75°; flanges are not steeper.
+const STEEPEST: f64 = 4.0;
 
 /// One contact to analyse.
 pub(super) struct Placed {
@@ -34,7 +38,7 @@ pub struct Found {
     pub contact: usize,
     /// This contact.
     pub place: PlaceOfContact,
-    /// Other places on this side within `within`, or within the approach, that are no contact of their own.
+    /// Other places on this side within `within` that are no contact of their own.
     pub near_misses: Vec<PlaceOfContact>,
 }
 
@@ -82,7 +86,11 @@ struct Side<'a> {
 
 /// All contacts of a scene, the first one first.
 pub(super) fn find(standing: &Standing, pair: &Pair, question: &Question) -> Result<Vec<Placed>> {
-    let selection = Selection { within: SEARCHED_GAP.max(standing.within), apart: ONE_CONTACT };
+    let sunk = match question.approach {
+        Some(ApproachBy::Given(approach)) => STEEPEST * approach,
+        _ => 0.0,
+    };
+    let selection = Selection { within: SEARCHED_GAP.max(standing.within).max(sunk), apart: ONE_CONTACT };
     match standing.place {
         Place::Points { rail_x, wheel_x } => {
             let contact = Contact::new(pair.placed(rail_x, wheel_x, 0.0)?, question)?;
@@ -192,7 +200,7 @@ impl Placed {
         let placement = &self.contact.placement;
         let frame = placement.rail.section.frame;
         let xi = (place.rail_x - frame.x) * frame.cos + (place.rail_z - frame.z) * frame.sin;
-        let boxes = crate::mesh::axes::boxes(placement, approach, merge);
-        boxes.first().is_some_and(|window| window.xi[0] <= xi && xi <= window.xi[1])
+        let groups = axes::groups(placement, approach, merge);
+        groups.first().is_some_and(|group| group.extent.xi[0] <= xi && xi <= group.extent.xi[1])
     }
 }

@@ -59,7 +59,7 @@ pub struct ProfileData {
     /// Segments in order of x.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub segments: Option<Vec<SegmentData>>,
-    /// First point [x, z], mm, of segments in the drawing form of Appendix A.
+    /// First point [x, z], mm, of segments in the drawing form of the Report's Appendix A.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<[f64; 2]>,
     /// Mirror image under x → −x, before anything else; of a measured profile: its first axis points to the centre

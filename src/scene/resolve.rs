@@ -56,7 +56,7 @@ impl Scene {
         Ok((Pair::new(rail.profile, wheel.profile, radius)?, [rail.measured, wheel.measured]))
     }
 
-    /// The approach δ \[mm\] when it is given directly.
+    /// Checks `[patch]`.
     ///
     /// # Errors
     /// Both or neither of `approach` and `load`; a negative or non-finite value.

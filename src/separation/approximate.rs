@@ -55,7 +55,7 @@ impl Kernel for Quadratic<'_> {
     }
 }
 
-/// s ≈ g(ξ) + η²/2R, or with `q` g(ξ) + q(ξ, 0) η²; with skew g and η are the wheel's own.
+/// s ≈ g(ξ) + η²/2R, or without a constant coefficient g(ξ) + q(ξ, 0) η²; with skew g and η are the wheel's own.
 #[derive(Debug)]
 pub struct Parabolic<'a> {
     evaluator: Evaluator<'a>,

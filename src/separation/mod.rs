@@ -62,7 +62,7 @@ impl<'a> Evaluator<'a> {
         self.wheel_point(xi, eta).map_or(f64::NAN, |point| self.separation_at(xi, &point))
     }
 
-    /// s \[mm\] and [∂ζ^W/∂ξ, ∂ζ^W/∂η] at (ξ, η), for less than one after the other; NaN off the wheel.
+    /// s \[mm\] and [∂ζ^W/∂ξ, ∂ζ^W/∂η] at (ξ, η), at less cost than two calls; NaN off the wheel.
     pub fn separation_and_slopes(&mut self, xi: f64, eta: f64) -> (f64, [f64; 2]) {
         let Some(point) = self.wheel_point(xi, eta) else { return (f64::NAN, [f64::NAN; 2]) };
         (self.separation_at(xi, &point), slopes(self.wheel_normal(&point)))

@@ -13,7 +13,7 @@ use super::spectral::{MOST_COEFFICIENTS, ROUNDING_LEVEL, Spectral};
 use crate::numerics::chebyshev;
 use crate::placement::Placement;
 
-/// Columns that a strip must have: those it is made from take as long as about so many singly.
+/// Columns that a strip must have: making it takes as long as about so many columns singly.
 const LEAST_COLUMNS: usize = 8;
 
 /// Where g/ξ² varies much, its last coefficients below this share of its smallest value are rounding: a thirtieth of the

@@ -5,7 +5,7 @@ Independent of the program: no sagitta, no outline, no expansion. The wheel is i
 space) and the surfaces that its profile sweeps about it; the line along zeta through (xi, eta) is intersected with
 the cone (quadratic), torus (quartic) or polynomial surface (bracketed root) of every segment.
 
-Conventions (mm, rad), as in DESIGN.md: x to the field side, y forward, z up. The wheel is turned by
+Conventions (mm, rad): x to the field side, y forward, z up. The wheel is turned by
 A = Ry(roll) Rz(yaw), right-handed, yaw first. Contact frame: origin C, xi along the rail profile's tangent, eta = y,
 zeta along the common normal from rail to wheel. Segments as in reference.py of the project's reference values:
   {"kind": "line", "x0", "z0", "x1", "z1"}

@@ -17,7 +17,7 @@ use crate::contact::sweep::{Conicity, Row, Sweep, TrackSide};
 use crate::error::{Error, Result};
 use crate::run::ApproachBy;
 
-/// Columns of the table: those of the design, then curvatures and Hertz's semi-axes.
+/// Columns of the table.
 const HEADER: &str = "lateral_mm,yaw_rad,roll_rad,side,contact,z_mm,rail_x_mm,wheel_x_mm,y_mm,contact_angle_rad,\
                       rolling_radius_mm,delta_r_mm,conicity,gap_mm,skew_rad,rail_curvature_per_mm,\
                       wheel_curvature_per_mm,kink,hertz_xi_mm,hertz_eta_mm\n";

@@ -269,18 +269,6 @@ impl Contact {
     pub fn kink(&self) -> bool {
         self.rail_kink || self.wheel_kink
     }
-
-    /// Second derivatives \[1/mm\] of the separation in the rail's contact frame, \[∂²/∂ξ², ∂²/∂ξ∂η, ∂²/∂η²\]:
-    /// the wheel's principal curvatures κ_W and cosθ_W/ϱ turned by χ, less the rail's. Infinite or NaN at kinks.
-    pub fn relative_curvatures(&self) -> [f64; 3] {
-        let (sin, cos) = self.skew.sin_cos();
-        let (meridian, ring) = (self.wheel_curvature, self.wheel_angle.cos() / self.rolling_radius);
-        [
-            meridian * cos * cos + ring * sin * sin - self.rail_curvature,
-            (meridian - ring) * sin * cos,
-            meridian * sin * sin + ring * cos * cos,
-        ]
-    }
 }
 
 fn contact(attitude: &Attitude, c: &Candidate, height: f64) -> Contact {

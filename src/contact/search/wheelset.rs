@@ -139,9 +139,9 @@ impl WheelsetSearch<'_> {
     /// solved, when within ±0.1 rad there is no roll at which both wheels touch.
     ///
     /// The difference of the two sides' heights grows with the roll as long as contact is on treads and flanks
-    /// flatter than about atan(S/R + …) ≈ 73°; beyond, turning about the axle moves a flange sideways faster than
-    /// down. The root reached from zero roll by Newton's method is taken, else the one nearest to zero that a search
-    /// outwards brackets.
+    /// flatter than about atan(D/R) ≈ 73°, D the distance of the contacts; beyond, turning about the axle moves a flange
+    /// sideways faster than down. The root reached from zero roll by Newton's method is taken, else the one nearest to
+    /// zero that a search outwards brackets.
     /// Accuracy: heights and roll to rounding at the size of the wheelset, about 1e-13 mm and 1e-16 rad.
     ///
     /// # Errors

@@ -63,6 +63,7 @@ fn outermost(
         return push(out, [a, b], first);
     }
     if first == last {
+        // Sheets of a chain that does not cross itself keep their order; where they meet at an end, rounding decides there.
         return push(out, [a, b], outer(middle).unwrap_or(first));
     }
     let difference = |xi: f64| branches[first].height(xi) - branches[last].height(xi);

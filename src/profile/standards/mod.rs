@@ -21,32 +21,34 @@ struct WheelFile {
 
 /// A rail head as EN 13674 draws it, from crown to corner and symmetric.
 #[derive(Debug, Clone, Deserialize)]
-pub struct RailData {
+struct RailData {
     /// Radii from the crown outwards \[mm\].
-    pub crown_to_corner_radii: Vec<f64>,
+    crown_to_corner_radii: Vec<f64>,
     /// |x| of the joints between them \[mm\].
-    pub tangent_x: Vec<f64>,
+    tangent_x: Vec<f64>,
     /// Flank inclination, 0 for vertical.
-    pub flank_dx_per_dz: f64,
+    flank_dx_per_dz: f64,
     /// Radius between flank and underside \[mm\].
-    pub lower_fillet_radius: f64,
+    lower_fillet_radius: f64,
     /// The underside is z = `underside_apex_z` + |x|/this.
-    pub underside_1_to: f64,
+    underside_1_to: f64,
     /// Where the two undersides meet \[mm\].
-    pub underside_apex_z: f64,
+    underside_apex_z: f64,
     /// Published numbers that the chain must reproduce.
-    pub check: RailCheck,
+    #[cfg(test)]
+    check: RailCheck,
     /// The standard.
-    pub source: String,
+    source: String,
 }
 
 /// Published check values of a rail.
+#[cfg(test)]
 #[derive(Debug, Clone, Deserialize)]
-pub struct RailCheck {
+struct RailCheck {
     /// |x| where the corner arc meets the flank \[mm\].
-    pub half_width_at_flank_tangent: f64,
+    half_width_at_flank_tangent: f64,
     /// z there \[mm\].
-    pub z_at_flank_tangent: Option<f64>,
+    z_at_flank_tangent: Option<f64>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -72,11 +74,6 @@ pub fn rail_names() -> impl Iterator<Item = &'static str> {
 /// Names of the built-in wheels, in alphabetical order.
 pub fn wheel_names() -> impl Iterator<Item = &'static str> {
     WHEELS.keys().map(String::as_str)
-}
-
-/// The drawing data of a built-in rail.
-pub fn rail_data(name: &str) -> Option<&'static RailData> {
-    RAILS.get(name)
 }
 
 /// A built-in rail head: upright, symmetric, origin at the crown apex; with the flanks where they are inclined.

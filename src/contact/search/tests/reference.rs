@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use super::*;
+use crate::separation::approximate::form;
 
 const SCENES: [&str; 3] = [
     include_str!("../../../../tests/reference_yawed/yawed_crown_on_cone.json"),
@@ -75,10 +76,11 @@ fn contacts_agree_with_60_digit_values() -> Result<()> {
             let row = rows.iter().find(|row| row[0] == xi && row[1] == eta);
             row.and_then(|row| row[2].as_str()?.parse().ok()).unwrap_or(f64::NAN)
         };
-        let [along, mixed, across] = c.relative_curvatures();
+        let around = c.wheel_angle.cos() / c.rolling_radius;
+        let [along, mixed, across] = form([c.rail_curvature, c.wheel_curvature], around, c.skew);
         let expected = [
-            (along, (s(-1e-3, 0.0) + s(1e-3, 0.0)) / 1e-6),
-            (across, (s(0.0, -1e-2) + s(0.0, 1e-2)) / 1e-4),
+            (2.0 * along, (s(-1e-3, 0.0) + s(1e-3, 0.0)) / 1e-6),
+            (2.0 * across, (s(0.0, -1e-2) + s(0.0, 1e-2)) / 1e-4),
             (mixed, (s(1e-3, 1e-2) + s(-1e-3, -1e-2) - s(1e-3, -1e-2) - s(-1e-3, 1e-2)) / 4e-5),
         ];
         for (found, expected) in expected {
