@@ -74,6 +74,27 @@ fn a_contact_that_only_the_approach_closes_is_no_refusal() {
 }
 
 #[test]
+fn files_say_that_a_contact_is_infeasible_or_a_mirror_image() {
+    let chosen = "[rail]\nprofile = \"60E1\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n\
+                  [contact]\nrail_x = -10.0\nwheel_x = -30.0\n[patch]\napproach = 0.02\n";
+    let wheelset = "[rail]\nprofile = \"60E1\"\nrotate = \"1:40\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n\
+                    [track]\ngauge = 1435.0\n[wheelset]\nback_to_back = 1360.0\nflange_back_x = -70.0\n\
+                    lateral = 1.0\n[patch]\napproach = 0.05\n";
+    for (text, folder, said) in [(chosen, "", "infeasible contact"), (wheelset, "left", "mirror image")] {
+        let scene = scene::parse(text, false).expect("a scene");
+        let run = Run::new(scene, Path::new("."), "a remark").expect("a contact");
+        let home = tempfile::tempdir().expect("a folder");
+        let target = home.path().join("out");
+        let out = Folder::create(&target, RUN_FOLDER).expect("a folder");
+        run.write(&out).and_then(|()| out.commit()).expect("files");
+        for name in ["contact.inp", "separation.wrp", "rail.vtu", "patch.vtu"] {
+            let file = std::fs::read_to_string(target.join(folder).join(name)).expect("a file");
+            assert!(file.contains(said), "{folder}/{name}");
+        }
+    }
+}
+
+#[test]
 fn a_contact_at_an_end_takes_no_quadratic_form() {
     let scene = |method: &str| {
         let text = format!(

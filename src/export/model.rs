@@ -41,11 +41,14 @@ pub struct Header {
     pub approach: f64,
     /// The frame of all coordinates.
     pub frame: Frame,
+    /// What a reader must know of this contact in particular.
+    pub remarks: Vec<String>,
 }
 
 impl Header {
     /// The lines that explain a file: ASCII, at most 76 columns, none empty.
     pub fn statements(&self) -> Vec<String> {
+        let remarks = self.remarks.iter().flat_map(|remark| wrapped(remark));
         let lines = [
             format!("title: {}", self.title),
             format!("written by wheelrail {}", self.version),
@@ -60,14 +63,32 @@ impl Header {
             "order [i_xi][i_eta]: eta fastest, both ascending".into(),
             "undefined where a body has no surface: NaN in arrays, mask m = 0 in text".into(),
         ];
-        lines.iter().map(|line| plain(line)).collect()
+        lines.into_iter().chain(remarks).map(|line| plain(&line)).collect()
     }
 }
 
-/// One printable ASCII line of at most 76 characters, fit for every format's comments: `--` would end XML's.
+/// Lines of at most so many characters, divided between words.
+fn wrapped(text: &str) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= LINE => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_string()),
+        }
+    }
+    lines
+}
+
+/// Characters of a comment's line.
+const LINE: usize = 76;
+
+/// One printable ASCII line of at most [`LINE`] characters, fit for every format's comments: `--` would end XML's.
 pub(super) fn plain(line: &str) -> String {
     let printable = |c: char| if c.is_ascii_graphic() || c == ' ' { c } else { '?' };
-    let line: String = line.chars().map(printable).take(76).collect();
+    let line: String = line.chars().map(printable).take(LINE).collect();
     line.replace("--", "==")
 }
 

@@ -36,6 +36,7 @@ pub(super) fn header() -> Header {
         scene_hash: "0123abcd".into(),
         approach: 0.05,
         frame: Frame::at(10.0, -0.2, 0.8, 0.6),
+        remarks: Vec::new(),
     }
 }
 

@@ -99,7 +99,21 @@ fn header(run: &Run, part: &Part) -> Header {
         scene_hash: run.hash.clone(),
         approach: part.contact.approach.map_or(0.0, |(approach, _)| approach),
         frame: Frame::at(rail.x, rail.z, rail.cos, rail.sin),
+        remarks: remarks(part),
     }
+}
+
+/// What the reader of a file of this part must know.
+fn remarks(part: &Part) -> Vec<String> {
+    let mut out = part.refusals();
+    if part.side() == Some("left") {
+        out.push(
+            "left side of a wheelset, as its mirror image: x to the left, y forward, z up; lateral creepage, spin \
+             and skew change sign"
+                .into(),
+        );
+    }
+    out
 }
 
 /// Points of a picture along ξ and along η: a line of equal separation is smooth to the eye, and C is among them where
