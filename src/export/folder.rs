@@ -48,6 +48,8 @@ pub struct Names {
     /// All files that the command may write. Those of an earlier run vanish with the old folder; every other
     /// file is the user's and is kept.
     pub files: &'static [&'static str],
+    /// Whether the command may write a subfolder of this name, with files of the same names.
+    pub is_part: fn(&str) -> bool,
 }
 
 /// A folder being written: nothing is seen of it in DIR before [`Folder::commit`], and nothing remains of it
@@ -152,6 +154,10 @@ impl Folder {
         for path in foreign {
             let Some(name) = path.file_name() else { continue };
             let kept = self.temporary.join(name);
+            if kept.is_dir() {
+                let found = "a file named like a folder of this run";
+                return Err(bad(path, found, "another name", "rename it or give another --out"));
+            }
             match fs::hard_link(path, &kept) {
                 Ok(()) => {}
                 Err(e) if matches!(e.kind(), ErrorKind::NotFound | ErrorKind::AlreadyExists) => {}
@@ -276,16 +282,19 @@ fn foreign_files(target: &Path, names: Names) -> Result<Vec<PathBuf>> {
     }
     let is_foreign = |entry: &fs::DirEntry| !names.files.iter().any(|name| entry.file_name() == **name);
     let foreign: Vec<_> = entries.iter().filter(|entry| is_foreign(entry)).collect();
-    // Subfolders are ours when they are folders of the same kind and hold nothing else.
+    // Subfolders are ours when they are named like ours, are folders of the same kind and hold nothing else.
     let is_folder = |entry: &fs::DirEntry| entry.file_type().is_ok_and(|kind| kind.is_dir());
     let is_part = |entry: &fs::DirEntry| {
-        let marked = is_folder(entry) && entry.path().join(names.marker).exists();
+        let named = entry.file_name().to_str().is_some_and(names.is_part);
+        let marked = named && is_folder(entry) && entry.path().join(names.marker).exists();
         marked && foreign_files(&entry.path(), names).is_ok_and(|files| files.is_empty())
     };
     let foreign: Vec<_> = foreign.into_iter().filter(|entry| !is_part(entry)).collect();
     if let Some(folder) = foreign.iter().find(|entry| is_folder(entry)) {
-        let found = format!("a folder {} that this program did not write", folder.file_name().display());
-        return Err(bad(target, &found, "files only", "move it elsewhere or give another --out"));
+        let found =
+            format!("a folder {} with files of others, or of another run", folder.file_name().display());
+        let expected = "nothing beside this command's own files and subfolders";
+        return Err(bad(target, &found, expected, "move it elsewhere or give another --out"));
     }
     Ok(foreign.into_iter().map(fs::DirEntry::path).collect())
 }

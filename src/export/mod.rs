@@ -55,7 +55,14 @@ pub const RUN_FOLDER: Names = Names {
         // Left by a Python that imports or compiles view.py.
         "__pycache__",
     ],
+    is_part: |name| {
+        let words = ["left", "right", "single", "contact", "patch"];
+        name.split('-').all(|word| words.contains(&word) || word.parse::<u32>().is_ok())
+    },
 };
+
+/// The same of `wheelrail sweep --patches`.
+pub const PATCHES_FOLDER: Names = Names { is_part: |name| name.starts_with("position-"), ..RUN_FOLDER };
 
 #[cfg(test)]
 mod sample;

@@ -16,18 +16,18 @@ pub const FULL_PRECISION: f64 = 1e-12;
 /// Relative truncation allowed at full precision: a fiftieth of the promised 1e-13, some roundings.
 const FULL_RELATIVE: f64 = 2e-15;
 
-/// Columns of the grid at which an approximate method is compared with the point-wise one: its error is smooth between
-/// joints and largest at edges, which are among them.
+/// Columns of the grid at which an approximate method is compared with the point-wise one, evenly spread. Its error is
+/// smooth between joints: the columns next to these and half way between them are taken as well.
 const SAMPLED_COLUMNS: usize = 65;
 
 /// Values of η there.
 const SAMPLED_ETA: usize = 9;
 
-/// Columns at which the degree of spectral ones is looked for: it hardly changes over a window.
-const FITTED_COLUMNS: usize = 17;
+/// Where in a span, as a share of its u, the truncation error is measured beside its end, where it may pass through zero.
+const MEASURED: [f64; 4] = [0.1, 0.3, 0.55, 0.8];
 
 /// Share by which the sampled maximum is raised, for what lies between the samples.
-const BETWEEN_SAMPLES: f64 = 1.25;
+const BETWEEN_SAMPLES: f64 = 1.5;
 
 /// A choice, why it was made, and the error to expect.
 #[derive(Debug, Clone, PartialEq)]
@@ -96,7 +96,7 @@ struct Samples<'a> {
 
 impl<'a> Samples<'a> {
     fn new(placement: &'a Placement, xi: &[f64], whole: &'a EtaAxis) -> Self {
-        let xi = thinned(xi, SAMPLED_COLUMNS);
+        let xi = sampled_columns(placement, xi);
         let axis = EtaAxis::new(&thinned(&whole.eta, SAMPLED_ETA));
         let mut evaluator = Evaluator::new(placement);
         let mut exact = vec![f64::NAN; xi.len() * axis.eta.len()];
@@ -111,7 +111,8 @@ impl<'a> Samples<'a> {
     fn error(&self, choice: &Choice, truncation: f64) -> f64 {
         let mut values = vec![f64::NAN; self.exact.len()];
         choice.fill(self.placement, &self.xi, &self.axis, &mut values);
-        let differences = values.iter().zip(&self.exact).filter(|(_, exact)| !exact.is_nan());
+        // A number where there is no surface is as wrong as none where there is one.
+        let differences = values.iter().zip(&self.exact).filter(|(s, exact)| !(s.is_nan() && exact.is_nan()));
         let largest = differences.map(|(s, exact)| (s - exact).abs()).fold(0.0, nan_max);
         BETWEEN_SAMPLES * nan_max(largest, truncation) + self.rounding
     }
@@ -121,18 +122,21 @@ impl<'a> Samples<'a> {
         let mut spectral = Spectral::new(self.placement, &self.axis, demand, 1);
         if self.placement.skew != 0.0 {
             let mut out = vec![f64::NAN; self.whole.eta.len()];
-            let columns = thinned(&self.xi, FITTED_COLUMNS).into_iter();
-            let errors = columns.map(|xi| spectral.skewed_column(xi, &self.whole.eta, &mut out));
+            let errors = self.xi.iter().map(|&xi| spectral.skewed_column(xi, &self.whole.eta, &mut out));
             return (1, errors.fold(0.0, f64::max));
         }
         let u_max = self.axis.reach * self.axis.reach;
         let wheel = WheelSurface::new(self.placement);
         let (mut needed, mut truncation, mut spans) = (Vec::new(), 0f64, Vec::new());
-        for xi in thinned(&self.xi, FITTED_COLUMNS) {
+        for &xi in &self.xi {
             wheel.spans(xi, u_max, &mut spans);
-            for fit in spans.iter().filter_map(|span| spectral.polynomial(xi, span, u_max, 1)) {
+            for span in &spans {
+                let Some(fit) = spectral.polynomial(xi, span, u_max, 1) else { continue };
                 needed.push(fit.n);
-                truncation = truncation.max(fit.error);
+                let run = span.u[1].min(u_max) - span.u[0];
+                let inside =
+                    MEASURED.map(|share| spectral.truncation(xi, span, &fit, span.u[0] + share * run));
+                truncation = inside.into_iter().fold(truncation.max(fit.error), f64::max);
             }
         }
         needed.sort_unstable();
@@ -144,7 +148,7 @@ impl<'a> Samples<'a> {
 const CONTACT_ROUNDINGS: f64 = 8.0;
 
 /// Rounding error of s: a few units of its own last place over the contact segments; elsewhere, of the heights by
-/// which joints are placed in the frame, ζ = Δz cosθ − Δx sinθ, with z_C rounded in Δz.
+/// which joints are placed in the frame, ζ = Δz cosθ − Δx sinθ, with z_C rounded in Δz, and of the rounded ξ times slope.
 fn rounding(placement: &Placement, xi: &[f64], exact: &[f64]) -> f64 {
     let largest = |values: &mut dyn Iterator<Item = f64>| {
         values.filter(|v| !v.is_nan()).fold(0.0, |m: f64, v| m.max(v.abs()))
@@ -159,7 +163,11 @@ fn rounding(placement: &Placement, xi: &[f64], exact: &[f64]) -> f64 {
     }
     let joints = sections.map(|section| {
         let heights = largest(&mut xi.iter().map(|&xi| section.height(xi)));
-        section.frame.z.abs() + heights + section.frame.sin.abs() * largest(&mut xi.iter().copied())
+        let slopes =
+            |xi: &f64| section.branch_at(*xi).map_or(f64::NAN, |branch| branch.chord_slope(*xi, *xi));
+        let width = largest(&mut xi.iter().copied()) + section.frame.x.abs();
+        let steep = width * largest(&mut xi.iter().map(slopes).filter(|slope| slope.is_finite()));
+        section.frame.z.abs() + heights + steep.max(section.frame.sin.abs() * width)
     });
     // Both bodies' joints are off at once.
     2.0 * f64::EPSILON * s.max(joints[0] + joints[1])
@@ -168,6 +176,23 @@ fn rounding(placement: &Placement, xi: &[f64], exact: &[f64]) -> f64 {
 /// The larger of two, NaN if either is.
 fn nan_max(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
+}
+
+/// Columns of the grid, evenly spread, and those next to the joints of both bodies and to the middle between two.
+fn sampled_columns(placement: &Placement, xi: &[f64]) -> Vec<f64> {
+    let mut columns = thinned(xi, SAMPLED_COLUMNS);
+    let (Some(&first), Some(&last)) = (xi.first(), xi.last()) else { return columns };
+    if columns.len() < xi.len() {
+        let joints = placement.joints(first, last);
+        let middles = joints.windows(2).map(|pair| pair[0] + (pair[1] - pair[0]) / 2.0);
+        for place in joints.iter().copied().chain(middles) {
+            let beyond = xi.partition_point(|&xi| xi < place);
+            columns.extend(&xi[beyond.saturating_sub(1)..xi.len().min(beyond + 1)]);
+        }
+        columns.sort_by(f64::total_cmp);
+        columns.dedup();
+    }
+    columns
 }
 
 /// At most `n` of the values, evenly spread, ends included.

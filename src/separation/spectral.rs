@@ -118,7 +118,20 @@ impl<'a> Spectral<'a> {
     }
 }
 
+impl Spectral<'_> {
+    /// Error of a fit at u \[mm\], 0 where the wheel has no point there.
+    pub(super) fn truncation(&self, xi: f64, span: &Span, fit: &ColumnPolynomial, u: f64) -> f64 {
+        let foot = self.evaluator.wheel.foot_at(xi, span, u);
+        foot.map_or(0.0, |foot| (fit.rise(u) - foot.rise).abs())
+    }
+}
+
 impl ColumnPolynomial {
+    /// What q alone adds at u \[mm\].
+    fn rise(&self, u: f64) -> f64 {
+        Self { base: 0.0, ..*self }.value(u)
+    }
+
     fn value(&self, u: f64) -> f64 {
         let v = u - self.u0;
         self.base + v * self.c[..self.n].iter().rev().fold(0.0, |q, c| q * v + c)

@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::export::{Folder, Names};
 
 /// By what a folder of `wheelrail report` is known, and all that it may contain.
-const REPORT_FOLDER: Names = Names { marker: PAGE, files: &FILES };
+const REPORT_FOLDER: Names = Names { marker: PAGE, files: &FILES, is_part: |_| false };
 
 /// Measures, writes the folder, and puts the table into `splice` when there is one; exit code 1 when a hard case is
 /// not as its file states or parry3d's meshes disagree. The ratios decide nothing here: they depend on the machine.

@@ -13,7 +13,7 @@ use super::table::Table;
 use crate::contact::search::Selection;
 use crate::contact::search::wheelset::Position;
 use crate::error::{Error, Result};
-use crate::export::{Folder, RUN_FOLDER, vtk};
+use crate::export::{Folder, PATCHES_FOLDER, vtk};
 use crate::run::Run;
 use crate::scene::{self, Scene};
 
@@ -35,7 +35,7 @@ pub(super) fn write(dir: &Path, scene: &Scene, path: &Path, table: &Table) -> Re
         let expected = format!("{MOST_POSITIONS} positions or fewer");
         return Err(Error::new("--patches", found, expected, "take a larger step, or the table alone"));
     }
-    let folder = Folder::create(dir, RUN_FOLDER)?;
+    let folder = Folder::create(dir, PATCHES_FOLDER)?;
     let progress = Mutex::new((0, Instant::now()));
     let one = |(k, position): (usize, &Position)| {
         let written = patch(&folder, scene, path, table, k, position)

@@ -1,7 +1,11 @@
 use super::*;
 use std::time::{Duration, Instant};
 
-const NAMES: Names = Names { marker: "summary.json", files: &["summary.json", "a.npy", "b.npy"] };
+const NAMES: Names = Names {
+    marker: "summary.json",
+    files: &["summary.json", "a.npy", "b.npy"],
+    is_part: |name| name.starts_with("part"),
+};
 const SUMMARY: &[u8] = b"{\"program\": \"wheelrail 0.1.0\"}";
 
 /// A committed folder with a summary and the given file.
@@ -85,6 +89,28 @@ fn what_is_not_ours_is_refused_or_kept() {
     assert_eq!(fs::read(dir.join("notes.txt")).unwrap(), b"mine");
     fs::create_dir(dir.join("frames")).unwrap();
     assert!(Folder::create(&dir, NAMES).unwrap_err().found.contains("frames"));
+}
+
+#[test]
+fn results_and_files_of_others_inside_are_never_replaced() {
+    let root = tempfile::tempdir().unwrap();
+    let dir = root.path().join("out");
+    let with_part = |name: &str| {
+        let folder = Folder::create(&dir, NAMES)?;
+        folder.write("summary.json", SUMMARY)?;
+        folder.part(name)?.write("summary.json", SUMMARY)?;
+        folder.commit()
+    };
+    with_part("part-1").unwrap();
+    // A part of the last run goes with it; another run's folder, filed here by the user, does not.
+    with_part("part-2").unwrap();
+    assert_eq!(listing(&dir), ["part-2", "summary.json"]);
+    written(&dir.join("archive"), "a.npy").unwrap();
+    assert!(with_part("part-2").unwrap_err().found.contains("archive"));
+    fs::rename(dir.join("archive"), root.path().join("archive")).unwrap();
+    fs::write(dir.join("part-3"), "mine").unwrap();
+    assert!(with_part("part-3").unwrap_err().found.contains("named like a folder"));
+    assert_eq!(fs::read(dir.join("part-3")).unwrap(), b"mine");
 }
 
 #[test]
