@@ -3,8 +3,9 @@
 
 use std::path::Path;
 use wheelrail::export::{Folder, RUN_FOLDER};
-use wheelrail::run::Run;
+use wheelrail::run::{Part, Run};
 use wheelrail::scene;
+use wheelrail::separation::Evaluator;
 
 /// Two crowns 40 mm apart under a cylinder: z = −0.16 + 8e-4 x² − 1e-6 x⁴ is largest at x = ±20.
 fn run(grid: &str) -> wheelrail::Result<Run> {
@@ -47,6 +48,62 @@ fn a_distance_that_means_nothing_is_refused() {
     for grid in ["merge = -1.0".to_string(), format!("{axes}merge = 1.0")] {
         let error = run(&grid).expect_err("bad input").to_string();
         assert!(error.contains("grid: merge"), "{error}");
+    }
+}
+
+#[test]
+fn lengths_beyond_all_measure_are_refused() {
+    let scene = |radius: &str, approach: &str, xi: &str| {
+        let text = format!(
+            "[rail]\nprofile = \"60E1\"\n[wheel]\nprofile = \"S1002\"\nradius = {radius}\n[contact]\noffset = 0.0\n\
+             [patch]\napproach = {approach}\n[grid]\nxi = {xi}\neta = {{ from = -10.0, to = 10.0, n = 21 }}\n"
+        );
+        Run::new(scene::parse(&text, false)?, Path::new("."), "beyond measure")
+    };
+    let usual = "{ from = -12.0, to = 12.0, n = 21 }";
+    for (radius, approach, xi, place) in [
+        ("1e308", "0.08", usual, "wheel: radius"),
+        ("460.0", "5e-324", usual, "patch: approach"),
+        ("460.0", "0.08", "{ values = [0.0, 5e-324] }", "grid: xi"),
+    ] {
+        let error = scene(radius, approach, xi).expect_err("bad input").to_string();
+        assert!(error.contains(place), "{error}");
+    }
+    assert!(scene("1e9", "1e-60", usual).is_ok());
+}
+
+#[test]
+fn narrow_features_and_missing_surfaces_are_seen_by_the_plan() {
+    let wheel = "[wheel]\nsegments = [{ line = { from = [-30.0, 0.0], to = [30.0, 0.0] } }]\nradius = 460.0\n\
+                 [contact]\nrail_x = 0.0\nwheel_x = 0.0\n";
+    let crown = |x: &str| {
+        format!("{{ arc = {{ center = [0.0, -300.0], radius = 300.0, half = \"upper\", x = {x} }} }}")
+    };
+    // A groove 0.3 mm wide and 0.01 mm deep, between the columns of an evenly spread sample; a rail that ends.
+    let groove = format!(
+        "{}, {{ line = {{ from = [4.15, -0.028705540013390873], to = [4.3, -0.040818249607534655] }} }}, \
+         {{ line = {{ from = [4.3, -0.040818249607534655], to = [4.45, -0.03300598232476659] }} }}, {}",
+        crown("[-20.0, 4.15]"),
+        crown("[4.45, 20.0]")
+    );
+    for rail in [groove, crown("[-3.0, 3.0]")] {
+        let text = format!(
+            "[rail]\nsegments = [{rail}]\n{wheel}[grid]\nxi = {{ from = -12.0, to = 12.0, n = 1281 }}\n\
+             eta = {{ from = -4.0, to = 4.0, n = 33 }}\ntolerance = 1e-3\n"
+        );
+        let run =
+            Run::new(scene::parse(&text, false).expect("a scene"), Path::new("."), "narrow").expect("a run");
+        let Part { contact, analysis, .. } = &run.parts[0];
+        let mut evaluator = Evaluator::new(&contact.placement);
+        let mut worst = 0f64;
+        for (&xi, column) in analysis.xi.iter().zip(analysis.separation.chunks(analysis.eta.len())) {
+            for (&eta, &s) in analysis.eta.iter().zip(column) {
+                let exact = evaluator.separation(xi, eta);
+                assert_eq!(s.is_nan(), exact.is_nan(), "ξ = {xi}, η = {eta}");
+                worst = worst.max((s - exact).abs());
+            }
+        }
+        assert!(worst <= analysis.plan.error && worst <= 1e-3, "{worst:e}: {:?}", analysis.plan);
     }
 }
 

@@ -138,7 +138,12 @@ impl Part {
             ));
         }
         if self.analysis.patch.as_ref().is_some_and(|patch| patch.components.is_empty()) {
-            out.push("empty patch: s is nowhere below the approach in the window of the grid".into());
+            let window = self.analysis.window();
+            out.push(if window.xi[0] < window.xi[1] && window.eta[0] < window.eta[1] {
+                "empty patch: s is nowhere below the approach in the window of the grid".into()
+            } else {
+                "empty patch: the grid is a single line".into()
+            });
         }
         out
     }

@@ -30,6 +30,9 @@ struct ProfileFile {
 /// Largest ξ and η \[mm\]: a thousand kilometres, whose squares are far from overflowing.
 const FARTHEST: f64 = 1e9;
 
+/// Smallest approach and extent of a grid other than 0 \[mm\]: below any length, and its powers do not underflow.
+const SMALLEST: f64 = 1e-60;
+
 impl Scene {
     /// The rail and wheel of the scene, turned and shifted as it says; files are relative to `folder`.
     ///
@@ -53,6 +56,15 @@ impl Scene {
         let radius = self.wheel.radius.ok_or_else(|| {
             Error::new("wheel", "no `radius`", "the nominal rolling radius in mm", "add it")
         })?;
+        if radius > FARTHEST {
+            let expected = format!("at most {FARTHEST:e} mm");
+            return Err(Error::new(
+                "wheel: radius",
+                format!("{radius:e}"),
+                expected,
+                "take a plane for a rail",
+            ));
+        }
         Ok((Pair::new(rail.profile, wheel.profile, radius)?, [rail.measured, wheel.measured]))
     }
 
@@ -71,6 +83,10 @@ impl Scene {
         };
         if finite(key, value)? < 0.0 {
             return Err(Error::new(key, value.to_string(), "a value ≥ 0", "correct the sign"));
+        }
+        if value > 0.0 && value < SMALLEST {
+            let expected = format!("0, or at least {SMALLEST:e}");
+            return Err(Error::new(key, format!("{value:e}"), expected, "check the unit"));
         }
         Ok(())
     }
@@ -139,8 +155,13 @@ impl Scene {
         for &value in &values {
             if finite(&place, value)?.abs() > FARTHEST {
                 let expected = format!("values within ±{FARTHEST:e} mm");
-                return Err(Error::new(place, value.to_string(), expected, "check the unit"));
+                return Err(Error::new(place, format!("{value:e}"), expected, "check the unit"));
             }
+        }
+        let extent = values[values.len() - 1] - values[0];
+        if values.len() > 1 && extent < SMALLEST {
+            let expected = format!("values that are at least {SMALLEST:e} mm apart");
+            return Err(Error::new(place, format!("an extent of {extent:e} mm"), expected, "check the unit"));
         }
         Ok(Some(values))
     }

@@ -126,7 +126,9 @@ struct Maker<'s, 'a> {
 impl Maker<'_, '_> {
     /// Appends strips for columns inside an interval without breaks.
     fn divide(&mut self, [a, b]: [f64; 2], columns: &[f64]) {
-        if columns.len() < LEAST_COLUMNS {
+        let middle = a + (b - a) / 2.0;
+        // An interval of two neighbouring numbers has no halves.
+        if columns.len() < LEAST_COLUMNS || middle <= a || middle >= b {
             return;
         }
         // Halves of an interval that is so short would have no strips.
@@ -136,7 +138,6 @@ impl Maker<'_, '_> {
         match arch.dispatch(attempt) {
             Some(strip) => self.strips.push(strip),
             None => {
-                let middle = a + (b - a) / 2.0;
                 let (left, right) = columns.split_at(columns.partition_point(|&xi| xi < middle));
                 self.divide([a, middle], left);
                 self.divide([middle, b], right);

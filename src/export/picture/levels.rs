@@ -39,6 +39,10 @@ pub(super) fn levels(nodes: &Nodes<'_>, approach: f64, panel: &Panel) -> Vec<Lev
         return Vec::new();
     }
     let step = round_below(1.5 * (high - low) / LEVELS);
+    // Below all normal numbers there are no round ones.
+    if !step.is_normal() {
+        return Vec::new();
+    }
     // The lowest value itself is no line: it would be a point.
     let (first, last) = ((low / step).floor() as i64 + 1, (high / step).floor() as i64);
     let level = |k: i64| {
