@@ -88,7 +88,14 @@ pub fn main() -> ExitCode {
     }
 }
 
+/// Threads beyond which starting them takes longer than any work for them.
+const MOST_THREADS: usize = 4096;
+
 fn on_threads(arguments: Arguments) -> Result<Outcome> {
+    if arguments.threads > MOST_THREADS {
+        let expected = format!("at most {MOST_THREADS}");
+        return Err(Error::new("--threads", arguments.threads.to_string(), expected, "take fewer"));
+    }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads).build().map_err(|error| {
         Error::new("--threads", error.to_string(), "a number of threads the system grants", "take fewer")
     })?;

@@ -30,10 +30,26 @@ pub fn parse<T: serde::de::DeserializeOwned>(text: &str, json: bool) -> Result<T
             house_form(format!("line {}", error.line()), &without_position(&error.to_string()))
         });
     }
-    toml::from_str(text).map_err(|error| {
+    let complaint = |error: toml::de::Error| {
         let line = error.span().map(|span| text[..span.start.min(text.len())].matches('\n').count() + 1);
         house_form(line.map_or_else(String::new, |line| format!("line {line}")), error.message())
-    })
+    };
+    let scene = toml::from_str(text).map_err(complaint)?;
+    // `toml` drops what an array has too much, `serde_json` does not; what is not finite is null there, and found later.
+    let value: serde_json::Value = toml::from_str(text).map_err(complaint)?;
+    if !has_null(&value) {
+        serde_json::from_value::<T>(value).map_err(|error| house_form(String::new(), &error.to_string()))?;
+    }
+    Ok(scene)
+}
+
+fn has_null(value: &serde_json::Value) -> bool {
+    match value {
+        serde_json::Value::Null => true,
+        serde_json::Value::Array(values) => values.iter().any(has_null),
+        serde_json::Value::Object(values) => values.values().any(has_null),
+        _ => false,
+    }
 }
 
 /// SHA-256 of the scene as read, in hexadecimal: equal scenes have equal hashes whatever their comments.
@@ -93,6 +109,13 @@ mod tests {
         assert_eq!(parse::<Scene>(&json, true)?, scene);
         assert_eq!(hash(&scene).len(), 64);
         Ok(())
+    }
+
+    #[test]
+    fn an_array_that_is_too_long_is_not_cut_short() {
+        let text = SCENE.replace("[wheel]", "shift = [0.0, 0.0, 99.0]\n[wheel]");
+        let error = parse::<Scene>(&text, false).err().map(|e| e.to_string());
+        assert!(error.as_deref().is_some_and(|e| e.contains("invalid length 3")), "{error:?}");
     }
 
     #[test]
