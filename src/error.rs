@@ -49,3 +49,17 @@ pub fn finite(place: &str, value: f64) -> Result<f64> {
     }
     Err(Error::new(place, value.to_string(), "a finite number", "give a number"))
 }
+
+/// Those of some keys that are given, for messages: "`from` and `slope`".
+pub fn given(keys: &[(&str, bool)]) -> String {
+    let given: Vec<String> =
+        keys.iter().filter(|(_, given)| *given).map(|(key, _)| format!("`{key}`")).collect();
+    match given.as_slice() {
+        [] => {
+            let all: Vec<String> = keys.iter().map(|(key, _)| format!("`{key}`")).collect();
+            format!("none of {}", all.join(", "))
+        }
+        [one] => format!("{one} alone"),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}

@@ -5,7 +5,7 @@
 //! the joint.
 
 use super::{Arc, Half, Segment, Station};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, finite};
 
 /// A chain under construction.
 #[derive(Debug, Clone, Default)]
@@ -21,8 +21,14 @@ impl Builder {
     }
 
     /// An empty chain whose first segment, a line, starts at this point \[mm\].
-    pub fn starting_at(point: [f64; 2]) -> Self {
-        Self { point: Some(point), segments: Vec::new() }
+    ///
+    /// # Errors
+    /// A point that is not finite.
+    pub fn starting_at(point: [f64; 2]) -> Result<Self> {
+        for v in point {
+            finite("start", v)?;
+        }
+        Ok(Self { point: Some(point), segments: Vec::new() })
     }
 
     /// Appends a segment that is fully given.
@@ -33,8 +39,10 @@ impl Builder {
     /// A line to abscissa `to_x`: of the given slope, or along the tangent of the segment before, (A-12).
     ///
     /// # Errors
-    /// No beginning or no slope to go on from; `to_x` not beyond the beginning.
+    /// No beginning or no slope to go on from; values that are not finite; `to_x` not beyond the beginning.
     pub fn line_to(&mut self, slope: Option<f64>, to_x: f64) -> Result<()> {
+        let slope = slope.map(|slope| finite("line: slope", slope)).transpose()?;
+        finite("line: to_x", to_x)?;
         let last = self.segments.last().map(Segment::end);
         let start = match (slope, last, self.point) {
             (None, Some(end), _) => end,
@@ -53,12 +61,14 @@ impl Builder {
     /// an arc.
     ///
     /// # Errors
-    /// No segment to go on from; a radius that is not positive; `to_x` that the arc does not reach.
+    /// No segment to go on from; values that are not finite; a radius that is not positive; `to_x` that the arc does not
+    /// reach.
     pub fn arc_to(&mut self, radius: f64, half: Half, to_x: f64) -> Result<()> {
         let Some(start) = self.segments.last().map(Segment::end) else {
             return Err(nothing_before("an arc given by its radius and end"));
         };
-        if radius.is_nan() || radius <= 0.0 || radius.is_infinite() {
+        finite("arc: to_x", to_x)?;
+        if finite("arc: radius", radius)? <= 0.0 {
             let advice = "give the half of the circle by `half`";
             return Err(Error::new("arc: radius", radius.to_string(), "a positive number", advice));
         }
@@ -103,7 +113,7 @@ mod tests {
     #[test]
     fn line_to_arc_follows_a3_and_a4() -> Result<()> {
         let (slope, x, radius) = (0.35, 12.0, 80.0);
-        let mut builder = Builder::starting_at([-3.0, 1.0]);
+        let mut builder = Builder::starting_at([-3.0, 1.0])?;
         builder.line_to(Some(slope), x)?;
         builder.arc_to(radius, Half::Upper, 30.0)?;
         let z = 1.0 + slope * (x + 3.0);
@@ -144,9 +154,26 @@ mod tests {
     }
 
     #[test]
-    fn nothing_to_go_on_from_is_an_error() {
+    fn nothing_to_go_on_from_is_an_error() -> Result<()> {
         assert!(Builder::new().line_to(Some(0.0), 1.0).is_err());
         assert!(Builder::new().arc_to(1.0, Half::Upper, 1.0).is_err());
-        assert!(Builder::starting_at([0.0, 0.0]).line_to(None, 1.0).is_err());
+        assert!(Builder::starting_at([0.0, 0.0])?.line_to(None, 1.0).is_err());
+        Ok(())
+    }
+
+    #[test]
+    fn what_is_not_finite_is_named() -> Result<()> {
+        let place = |result: Result<()>| result.err().map(|e| e.place).unwrap_or_default();
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            assert!(Builder::starting_at([0.0, bad]).is_err_and(|e| e.place == "start"));
+            let mut builder = Builder::starting_at([0.0, 0.0])?;
+            assert_eq!(place(builder.line_to(Some(bad), 1.0)), "line: slope");
+            assert_eq!(place(builder.line_to(Some(0.0), bad)), "line: to_x");
+            builder.line_to(Some(0.0), 1.0)?;
+            assert_eq!(place(builder.arc_to(bad, Half::Upper, 2.0)), "arc: radius");
+            assert_eq!(place(builder.arc_to(9.0, Half::Upper, bad)), "arc: to_x");
+            assert_eq!(builder.finish().len(), 1);
+        }
+        Ok(())
     }
 }

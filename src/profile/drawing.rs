@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::builder::Builder;
 use super::{Arc, Half, Polynomial, Profile, Segment, Shape};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, given};
 
 /// One segment of a chain: exactly one of `line`, `arc`, `polynomial`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -87,7 +87,7 @@ pub struct PolynomialData {
 /// # Errors
 /// Names the segment and what is wrong with it; steps between segments as in [`Profile::new`].
 pub fn chain(name: &str, source: &str, start: Option<[f64; 2]>, data: &[SegmentData]) -> Result<Profile> {
-    let mut builder = start.map_or_else(Builder::new, Builder::starting_at);
+    let mut builder = start.map_or_else(|| Ok(Builder::new()), Builder::starting_at)?;
     let mut labels = Vec::with_capacity(data.len());
     for (index, segment) in data.iter().enumerate() {
         let label = segment.label.clone().unwrap_or_default();
@@ -119,9 +119,9 @@ fn append(builder: &mut Builder, data: &SegmentData) -> Result<()> {
         (Some(LineData { from: None, to: None, slope, to_x: Some(to_x) }), None, None) => {
             builder.line_to(*slope, *to_x)
         }
-        (Some(_), None, None) => {
+        (Some(line), None, None) => {
             let expected = "either `from` and `to`, or `to_x` and perhaps `slope`";
-            Err(Error::new("line", "another set of keys", expected, "give one of the two forms"))
+            Err(Error::new("line", line.given(), expected, "give one of the two forms"))
         }
         (None, Some(ArcData { center: Some(center), radius, half, x: Some(x), to_x: None }), None) => {
             builder.push(plain(Shape::Arc(Arc::about(*center, *radius, (*half).into(), *x)?)));
@@ -130,9 +130,9 @@ fn append(builder: &mut Builder, data: &SegmentData) -> Result<()> {
         (None, Some(ArcData { center: None, radius, half, x: None, to_x: Some(to_x) }), None) => {
             builder.arc_to(*radius, (*half).into(), *to_x)
         }
-        (None, Some(_), None) => {
+        (None, Some(arc), None) => {
             let expected = "either `center` and `x`, or `to_x`, with `radius` and `half`";
-            Err(Error::new("arc", "another set of keys", expected, "give one of the two forms"))
+            Err(Error::new("arc", arc.given(), expected, "give one of the two forms"))
         }
         (None, None, Some(polynomial)) => {
             let graph = Polynomial::graph(&polynomial.coefficients, polynomial.x)?;
@@ -141,8 +141,28 @@ fn append(builder: &mut Builder, data: &SegmentData) -> Result<()> {
         }
         _ => {
             let expected = "exactly one of `line`, `arc`, `polynomial`";
-            Err(Error::new("", "none or several shapes", expected, "split the segment"))
+            let found = given(&[
+                ("line", data.line.is_some()),
+                ("arc", data.arc.is_some()),
+                ("polynomial", data.polynomial.is_some()),
+            ]);
+            Err(Error::new("", found, expected, "give one, further ones as segments of their own"))
         }
+    }
+}
+
+impl LineData {
+    fn given(&self) -> String {
+        let Self { from, to, slope, to_x } = self;
+        let ends = [("from", from.is_some()), ("to", to.is_some())];
+        given(&[ends[0], ends[1], ("slope", slope.is_some()), ("to_x", to_x.is_some())])
+    }
+}
+
+impl ArcData {
+    fn given(&self) -> String {
+        let Self { center, x, to_x, .. } = self;
+        given(&[("center", center.is_some()), ("x", x.is_some()), ("to_x", to_x.is_some())])
     }
 }
 
@@ -152,5 +172,47 @@ impl From<HalfData> for Half {
             HalfData::Upper => Self::Upper,
             HalfData::Lower => Self::Lower,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn complaint(segments: &str) -> std::result::Result<String, toml::de::Error> {
+        #[derive(Deserialize)]
+        struct Drawn {
+            start: Option<[f64; 2]>,
+            segments: Vec<SegmentData>,
+        }
+        let drawn: Drawn = toml::from_str(segments)?;
+        let error = chain("drawn", "", drawn.start, &drawn.segments).err();
+        Ok(error.map(|e| e.to_string()).unwrap_or_default())
+    }
+
+    #[test]
+    fn a_wrong_segment_is_answered_with_what_it_has() -> std::result::Result<(), toml::de::Error> {
+        for (segments, message) in [
+            (
+                "segments = [{ line = { from = [0, 0], slope = 1, to_x = 2 } }]",
+                "line: found `from`, `slope` and `to_x`;",
+            ),
+            ("segments = [{ line = {} }]", "line: found none of `from`, `to`, `slope`, `to_x`;"),
+            ("segments = [{ arc = { radius = 1, half = 'upper', x = [0, 1] } }]", "arc: found `x` alone;"),
+            ("segments = [{}]", "segment 1: found none of `line`, `arc`, `polynomial`;"),
+            (
+                "segments = [{ line = { to_x = 2 }, arc = { radius = 1, half = 'upper' } }]",
+                "segment 1: found `line` and `arc`;",
+            ),
+            ("start = [nan, 0]\nsegments = [{ line = { slope = 0, to_x = 2 } }]", "start: found NaN;"),
+            (
+                "start = [0, 0]\nsegments = [{ line = { slope = inf, to_x = 2 } }]",
+                "segment 1: line: slope: found inf;",
+            ),
+        ] {
+            let found = complaint(segments)?;
+            assert!(found.contains(message), "{segments}: {found}");
+        }
+        Ok(())
     }
 }
