@@ -119,14 +119,25 @@ pub fn findings(points: &[Point], side: Side, gauge_height: f64) -> Vec<Finding>
     }));
     // A path that runs back crosses itself everywhere: its own findings come first.
     if !out.iter().any(|finding| finding.fatal) {
-        out.extend(loops::crossings(points).iter().map(|[a, b]| {
-            let found = format!("a loop: the curve crosses itself before {}", points[b + 1].place());
-            Finding::new(Check::Loop, &points[*a], found)
-        }));
+        out.extend(crossings(points));
     }
     out.extend(gaps(points));
     out.extend(missing_side_face(points, side, gauge_height));
     out.extend(orientation(points, side));
+    out
+}
+
+fn crossings(points: &[Point]) -> Vec<Finding> {
+    let found = loops::crossings(points);
+    let crossing = |[a, b]: &[usize; 2]| {
+        let found = format!("a loop: the curve crosses itself before {}", points[b + 1].place());
+        Finding::new(Check::Loop, &points[*a], found)
+    };
+    let mut out: Vec<Finding> = found.edges.iter().map(crossing).collect();
+    if let (Some(first), true) = (points.first(), found.cut_short) {
+        let text = "too tangled a path to be searched for loops to its end: there may be some";
+        out.push(Finding { fatal: false, ..Finding::new(Check::Loop, first, text) });
+    }
     out
 }
 
@@ -231,29 +242,37 @@ pub(super) struct Spike {
     pub at: usize,
     /// Distance from the line of its neighbours \[mm\].
     pub height: f64,
-    /// Whether the path turns by more than 120° there.
+    /// Whether the path turns by more than 120° there or beside it.
     pub backwards: bool,
 }
 
 /// Points off the line of their neighbours, whose neighbours are off to the other side: the pattern of a single
 /// wrong point, which an edge does not have.
 pub(super) fn spikes(points: &[Point]) -> Vec<Spike> {
-    /// A single point off by h puts its neighbours off by −h/2 at equal spacing; half of that still tells.
-    const ANSWER: f64 = 0.25;
+    /// A single point off by h puts a neighbour off to the other side by h·d/l, d from the neighbour to the next but one
+    /// and l from there to the point, −h/2 where h is small; half of that still tells.
+    const ANSWER: f64 = 0.5;
     let n = points.len();
     let off: Vec<f64> = (0..n).map(|k| if k == 0 || k + 1 >= n { 0.0 } else { offset(points, k) }).collect();
     let backwards = reversals(points);
     let mut out = Vec::new();
     for k in 1..n.saturating_sub(1) {
         let height = off[k].abs();
-        let answers = |j: usize| off[j] * off[k].signum() < -ANSWER * height;
-        if height <= SPIKE_HEIGHT || !answers(k - 1) || !answers(k + 1) {
+        let answers = |j: usize, outer: usize| {
+            let share = distance(&points[outer], &points[j]) / distance(&points[outer], &points[k]);
+            off[j] * off[k].signum() < -ANSWER * share * height
+        };
+        // The ends have no line of neighbours to be off.
+        let before = k == 1 || answers(k - 1, k - 2);
+        let after = k + 2 == n || answers(k + 1, k + 2);
+        if height <= SPIKE_HEIGHT || !before || !after {
             continue;
         }
         let near =
             (k.saturating_sub(NEIGHBOURHOOD)..n.min(k + NEIGHBOURHOOD + 1)).filter(|j| j.abs_diff(k) > 2);
         if height > SPIKE_RATIO * median(near.map(|j| off[j].abs()).collect()) {
-            out.push(Spike { at: k, height, backwards: backwards.binary_search(&k).is_ok() });
+            let backwards = (k - 1..=k + 1).any(|j| backwards.binary_search(&j).is_ok());
+            out.push(Spike { at: k, height, backwards });
         }
     }
     out

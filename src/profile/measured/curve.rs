@@ -147,21 +147,17 @@ type Arcs = (Vec<Segment>, Vec<f64>, Option<f64>);
 /// the tolerance.
 fn arcs(points: &[Point], corners: &[usize], options: &Options) -> Result<Arcs> {
     let tolerance = options.arc_tolerance();
-    let trials: Vec<Option<f64>> = match options.cutoff_wavelength {
-        Some(cutoff) => vec![Some(cutoff)],
-        None => ARC_CUTOFFS.iter().map(|&cutoff| Some(cutoff)).chain([None]).collect(),
+    let fit = |cutoff: Option<f64>| (pieces(points, corners, cutoff), cutoff);
+    let near = |(pieces, _): &(Vec<Piece>, Option<f64>)| {
+        let worst = spline_residuals(pieces, points).into_iter().fold(0.0, f64::max);
+        worst <= SMOOTHING_SHARE * tolerance
     };
-    let mut chosen = None;
-    for cutoff in trials {
-        let pieces = pieces(points, corners, cutoff);
-        let worst = spline_residuals(&pieces, points).into_iter().fold(0.0, f64::max);
-        chosen = Some((pieces, cutoff));
-        if worst <= SMOOTHING_SHARE * tolerance {
-            break;
+    let (pieces, cutoff) = match options.cutoff_wavelength {
+        Some(cutoff) => fit(Some(cutoff)),
+        None => {
+            let mut smoothed = ARC_CUTOFFS.iter().map(|&cutoff| fit(Some(cutoff)));
+            smoothed.find(near).unwrap_or_else(|| fit(None))
         }
-    }
-    let Some((pieces, cutoff)) = chosen else {
-        return Ok((Vec::new(), Vec::new(), None));
     };
     let mut segments = Vec::new();
     let mut residuals = vec![0.0; points.len()];

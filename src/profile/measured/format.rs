@@ -7,6 +7,7 @@ use super::options::Column;
 use super::points::Points;
 use super::{columns, miniprof, scan, simpack};
 use crate::error::{Error, Result};
+use crate::profile::Side;
 
 /// A format of measured profiles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
@@ -42,6 +43,16 @@ impl Format {
             let advice = format!("give `format = …`, one of {}", names.join(", "));
             Error::new(scan::clipped(name), format!("extension \"{extension}\""), all.join(", "), advice)
         })
+    }
+
+    /// The body that a file's extension stands for, in upper or lower case; `None` for those of either body.
+    pub fn body_of_file(name: &str) -> Option<Side> {
+        let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension).to_lowercase();
+        match extension.as_str() {
+            "ban" | "prr" | "rail" => Some(Side::Rail),
+            "whl" | "prw" | "wheel" => Some(Side::Wheel),
+            _ => None,
+        }
     }
 
     /// Extensions, in lower case.

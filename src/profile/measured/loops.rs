@@ -4,19 +4,32 @@ use super::points::Point;
 
 /// Crossings that are enough to report.
 const MOST_CROSSINGS: usize = 100;
-/// Box comparisons after which the search ends: a profile of a million points takes a tenth of that, a ball of
-/// wool more than any machine has time for; what was found until then is reported.
+/// Box comparisons after which the search ends: a profile of a million points takes a tenth of that; points that wind
+/// about one place take up to n², hours.
 const MOST_COMPARISONS: usize = 100_000_000;
 
-/// Pairs of edges [i, j], i < j, of which i → i + 1 crosses j → j + 1.
-pub(super) fn crossings(points: &[Point]) -> Vec<[usize; 2]> {
+/// What a search for crossings found.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Crossings {
+    /// Pairs of edges [i, j], i < j, of which i → i + 1 crosses j → j + 1; at most [`MOST_CROSSINGS`].
+    pub edges: Vec<[usize; 2]>,
+    /// Whether the search ended at [`MOST_COMPARISONS`]: there may be others.
+    pub cut_short: bool,
+}
+
+/// Where the chain crosses itself.
+pub(super) fn crossings(points: &[Point]) -> Crossings {
+    crossings_within(points, MOST_COMPARISONS)
+}
+
+fn crossings_within(points: &[Point], most_comparisons: usize) -> Crossings {
     if points.len() < 4 {
-        return Vec::new();
+        return Crossings { edges: Vec::new(), cut_short: false };
     }
-    let mut search = Search::new(points);
+    let mut search = Search::new(points, most_comparisons);
     search.inside(Node { index: 1, from: 0, to: points.len() - 1 });
     search.found.sort_unstable();
-    search.found
+    Crossings { edges: search.found, cut_short: search.comparisons > most_comparisons }
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -47,13 +60,14 @@ struct Search<'a> {
     boxes: Vec<Bounds>,
     found: Vec<[usize; 2]>,
     comparisons: usize,
+    most_comparisons: usize,
 }
 
 impl<'a> Search<'a> {
-    fn new(points: &'a [Point]) -> Self {
+    fn new(points: &'a [Point], most_comparisons: usize) -> Self {
         let empty = Bounds { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
         let boxes = vec![empty; 4 * points.len()];
-        let mut search = Self { points, boxes, found: Vec::new(), comparisons: 0 };
+        let mut search = Self { points, boxes, found: Vec::new(), comparisons: 0, most_comparisons };
         search.build(Node { index: 1, from: 0, to: points.len() - 1 });
         search
     }
@@ -86,7 +100,7 @@ impl<'a> Search<'a> {
 
     fn between(&mut self, a: Node, b: Node) {
         self.comparisons += 1;
-        if self.comparisons > MOST_COMPARISONS
+        if self.comparisons > self.most_comparisons
             || self.found.len() >= MOST_CROSSINGS
             || apart(&self.boxes[a.index], &self.boxes[b.index])
         {
@@ -129,8 +143,9 @@ mod tests {
     #[test]
     fn a_loop_is_found_once_and_a_touching_chain_is_not_one() {
         let looped = chain(&[[0.0, 0.0], [2.0, 0.0], [3.0, 1.0], [2.0, 2.0], [1.0, -1.0], [5.0, -1.0]]);
-        assert_eq!(crossings(&looped), [[0, 3]]);
-        assert!(crossings(&chain(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [2.0, 1.0]])).is_empty());
+        assert_eq!(crossings(&looped), Crossings { edges: vec![[0, 3]], cut_short: false });
+        assert_eq!(crossings_within(&looped, 1), Crossings { edges: Vec::new(), cut_short: true });
+        assert!(crossings(&chain(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [2.0, 1.0]])).edges.is_empty());
     }
 
     #[test]
@@ -142,7 +157,7 @@ mod tests {
             })
             .collect();
         let points = chain(&circle);
-        let mut search = Search::new(&points);
+        let mut search = Search::new(&points, MOST_COMPARISONS);
         search.inside(Node { index: 1, from: 0, to: points.len() - 1 });
         assert!(search.found.is_empty() && search.comparisons < 20 * points.len(), "{}", search.comparisons);
     }

@@ -100,12 +100,27 @@ pub fn profile(file: &str, bytes: &[u8], side: Side, options: &Options) -> Resul
     build(file, points, side, options).map_err(|error| error.within(file))
 }
 
+/// The body that a file is of, by its extension or its header; `None` where neither says.
+///
+/// # Errors
+/// Those of [`Format::of_file`] and [`Format::read`].
+pub fn body(file: &str, bytes: &[u8], options: &Options) -> Result<Option<Side>> {
+    if let Some(side) = Format::body_of_file(file) {
+        return Ok(Some(side));
+    }
+    match options.format.map_or_else(|| Format::of_file(file), Ok)? {
+        Format::Simpack => Ok(Format::Simpack.read(bytes, None).map_err(|error| error.within(file))?.body),
+        _ => Ok(None),
+    }
+}
+
 fn build(file: &str, read: Points, side: Side, options: &Options) -> Result<Measured> {
     let mut read = match options.section {
         Some(number) => read.section(number)?,
         None => read,
     };
     let elements_alone = read.at.is_empty();
+    options.validate_for(side, read.format, elements_alone)?;
     if elements_alone {
         read.at = elements::points(&read.elements);
     }

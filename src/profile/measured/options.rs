@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Format;
 use crate::error::{Error, Result, finite};
+use crate::profile::Side;
 
 /// Default cut-off wavelength \[mm\] of smoothing: below the shortest features that carry load (a 13 mm gauge
 /// corner turns a right angle over 20 mm), above the waves of measuring noise.
@@ -225,6 +226,14 @@ impl Options {
         self.arc_tolerance.unwrap_or(ARC_TOLERANCE)
     }
 
+    /// Names of the options that are given.
+    pub fn given(&self) -> Vec<String> {
+        let [own, default] =
+            [self, &Self::default()].map(|options| serde_json::to_value(options).unwrap_or_default());
+        let of = own.as_object().into_iter().flatten();
+        of.filter(|(key, value)| default.get(key) != Some(value)).map(|(key, _)| key.clone()).collect()
+    }
+
     /// Rejects numbers that mean nothing and options that contradict each other.
     ///
     /// # Errors
@@ -246,17 +255,62 @@ impl Options {
             finite("origin", point[0])?;
             finite("origin", point[1])?;
         }
-        let unused = |name: &str, with: &str| {
-            Err(Error::new(name, "an option without effect", with, "delete one of the two"))
-        };
         let smooth = matches!(self.curve, None | Some(CurveKind::Smoothing | CurveKind::Arcs));
-        if self.cutoff_wavelength.is_some() && !smooth {
-            return unused("cutoff_wavelength", "curve = \"smoothing\" or \"arcs\"");
+        let tape_line = Some(Origin::Named(NamedOrigin::TapeLine));
+        reject_idle(&[
+            (
+                "cutoff_wavelength",
+                self.cutoff_wavelength.is_some() && !smooth,
+                "curve = \"smoothing\" or \"arcs\"",
+            ),
+            (
+                "arc_tolerance",
+                self.arc_tolerance.is_some() && self.curve != Some(CurveKind::Arcs),
+                "curve = \"arcs\"",
+            ),
+            (
+                "tape_distance",
+                self.tape_distance.is_some() && self.origin != tape_line,
+                "origin = \"tape-line\"",
+            ),
+        ])
+    }
+
+    /// Rejects options that do nothing for a file of this body and format; `drawn`: of design elements alone.
+    ///
+    /// # Errors
+    /// Names the option.
+    pub(super) fn validate_for(&self, side: Side, format: Format, drawn: bool) -> Result<()> {
+        let table = matches!(format, Format::Text | Format::Csv);
+        let wheel = side == Side::Wheel;
+        let as_drawn = self.curve == Some(CurveKind::Elements) || drawn && self.curve.is_none();
+        let fitted = "a curve through points, not the elements themselves";
+        reject_idle(&[
+            ("columns", self.columns.is_some() && !table, "a text or CSV file"),
+            ("section", self.section.is_some() && format != Format::MiniProf, "an .mpt file"),
+            ("gauge_height", self.gauge_height.is_some() && wheel, "a rail"),
+            ("already_inclined", self.already_inclined && wheel, "a rail"),
+            ("kink_angle", self.kink_angle.is_some() && as_drawn, fitted),
+            ("cutoff_wavelength", self.cutoff_wavelength.is_some() && as_drawn, fitted),
+            // Of a file with points besides, repairs decide whether its points pass the checks.
+            ("repair", !self.repair.is_empty() && drawn && as_drawn, fitted),
+        ])
+    }
+}
+
+/// (option, whether it is given and does nothing, what it belongs to).
+fn reject_idle(options: &[(&str, bool, &str)]) -> Result<()> {
+    match options.iter().find(|(_, idle, _)| *idle) {
+        None => Ok(()),
+        Some((name, _, with)) => {
+            let expected = format!("it with {with} only");
+            Err(Error::new(
+                *name,
+                "an option without effect",
+                expected,
+                "delete it, or give what it belongs to",
+            ))
         }
-        if self.arc_tolerance.is_some() && self.curve != Some(CurveKind::Arcs) {
-            return unused("arc_tolerance", "curve = \"arcs\"");
-        }
-        Ok(())
     }
 }
 

@@ -96,7 +96,7 @@ fn unit(points: &Points, options: &Options, steps: &mut Vec<Step>) -> Result<f64
         }
         (Some(option), _) => (option.millimetres(), "option `unit`"),
         (None, Some(stated)) => (stated, "the format"),
-        (None, None) => (1.0, "mm where neither option nor file say"),
+        (None, None) => (1.0, "the default"),
     };
     steps.push(Step { what: "unit", done: format!("{unit} mm"), because: because.into() });
     Ok(unit)

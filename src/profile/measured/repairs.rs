@@ -106,7 +106,7 @@ fn cut_loops(points: &mut Vec<Point>) -> Vec<Point> {
         points[from..=to].windows(2).map(|pair| distance(&pair[0], &pair[1])).sum()
     };
     let whole = length(0, points.len().saturating_sub(1));
-    let crossings = loops::crossings(points);
+    let crossings = loops::crossings(points).edges;
     let small = crossings.into_iter().filter(|[i, j]| length(*i + 1, *j) <= LARGEST_LOOP * whole);
     let cuts: Vec<[usize; 2]> = small.collect();
     drop_all(points, |k| cuts.iter().any(|[i, j]| *i < k && k <= *j))

@@ -24,8 +24,8 @@ use super::scan::{Line, last_place, lines};
 use crate::error::{Error, Result};
 use crate::profile::Side;
 
-/// Keys of the spline that are read; all but the first act.
-const APPLIED: [&str; 17] = [
+/// Keys of the spline that are read, each once at most; all but the first act.
+const KEYS: [&str; 16] = [
     "approx.smooth",
     "point.dist.min",
     "shift.y",
@@ -42,7 +42,6 @@ const APPLIED: [&str; 17] = [
     "units.ang",
     "units.len.f",
     "units.ang.f",
-    "type",
 ];
 /// Keys that do not change the points.
 const SILENT: [&str; 5] = ["version", "file", "file.mtime", "comment", "type"];
@@ -150,7 +149,7 @@ impl<'a> Keys<'a> {
                 _ => return Err(line.error(line.text, "type = 0 (rail) or 1 (wheel)", "correct it")),
             };
         }
-        if section == "spline" && APPLIED.contains(&key) {
+        if section == "spline" && KEYS.contains(&key) {
             if self.values.insert(key.to_owned(), (line, value)).is_some() {
                 return Err(line.error(line.text, "each key once", "delete the line that is wrong"));
             }
@@ -198,6 +197,7 @@ impl<'a> Keys<'a> {
     fn apply(&self, points: &mut Points) -> Result<()> {
         let before = points.at.len();
         drop_near(&mut points.at, self.number("point.dist.min", 0.0)?);
+        self.note_dropped(points, before, "point.dist.min");
         let shift = [self.number("shift.y", 0.0)?, self.number("shift.z", 0.0)?];
         let (sin, cos) = self.angle()?.sin_cos();
         let bounds = |axis: &str| -> Result<[f64; 2]> {
@@ -213,13 +213,22 @@ impl<'a> Keys<'a> {
             (point.x, point.z) = (y * cos - z * sin, y * sin + z * cos);
         }
         let inside = |v: f64, [low, high]: [f64; 2]| low <= v && v <= high;
+        let before = points.at.len();
         points.at.retain(|point| inside(point.x, y_bounds) && inside(point.z, z_bounds));
-        if points.at.len() < before {
-            let dropped = before - points.at.len();
-            let line = points.at.first().map_or(1, |point| point.line);
-            points.note(line, format!("{dropped} points dropped by point.dist.min and bound.*"));
-        }
+        self.note_dropped(points, before, "bound.");
         self.turn_and_scale(points)
+    }
+
+    /// Notes, at the first of the keys that begin so, how many points they dropped.
+    fn note_dropped(&self, points: &mut Points, before: usize, keys: &str) {
+        let dropped = before - points.at.len();
+        let of_keys = self.values.iter().filter(|(key, _)| key.starts_with(keys));
+        let first = of_keys.map(|(_, (line, _))| line.number).min();
+        if let (Some(line), true) = (first, dropped > 0) {
+            let plural = if dropped == 1 { "" } else { "s" };
+            let all = if keys.ends_with('.') { "*" } else { "" };
+            points.note(line, format!("{dropped} point{plural} dropped by {keys}{all}"));
+        }
     }
 
     /// Rotation \[rad\].
@@ -287,6 +296,17 @@ mod tests {
         assert!(bounded.at.iter().all(|p| -50.0 <= p.x && p.x <= 20.0) && bounded.at.len() > 20);
         let thinned = read(&WHEEL.replace("point.dist.min =  0.0", "point.dist.min =  0.004"))?;
         assert!(thinned.at.len() < plain.at.len() && thinned.notes.len() == 1);
+        for (text, key) in [
+            (WHEEL.replace("point.dist.min =  0.0", "point.dist.min =  0.004"), "point.dist.min"),
+            (
+                WHEEL.replace("bound.y.min    =  1.0", bounds).replace("    bound.y.max    =  0.0", "! max"),
+                "bound.",
+            ),
+        ] {
+            let note = read(&text)?.notes.pop().unwrap_or_else(|| unreachable!("{key}"));
+            let line = 1 + text.lines().position(|line| line.contains(key)).unwrap_or_default();
+            assert!(note.line == line && note.text.contains(key), "{note:?} is not at line {line}");
+        }
         Ok(())
     }
 

@@ -90,7 +90,9 @@ fn beyond(points: impl Iterator<Item = Point>, reach: f64) -> Vec<Point> {
 
 impl Piece {
     /// Two passes: over the chords of the points, whose noise makes them too long, then over those of the first
-    /// pass.
+    /// pass. Where the first pass brings two neighbours within a tenth of their chord, noise as large as the distance of
+    /// the points, its own chords measure nothing and it is taken as it is: smoothed over chords that are too long, so
+    /// with a cut-off wavelength that is too short by as much.
     fn new(
         points: &[Point],
         [from, to]: [usize; 2],
@@ -108,7 +110,6 @@ impl Piece {
         let first = Self::over(&all, from, chords(all.iter().map(Point::xz)), cutoff, pins, extra);
         let smooth = (0..all.len()).map(|k| [f64::from(first.x.value[k]), f64::from(first.z.value[k])]);
         let steps = chords(smooth);
-        // Smoothing that closes a step has nothing left to measure by.
         let open = steps.iter().zip(&first.steps).all(|(new, old)| *new > 0.1 * old);
         let mut piece = if open { Self::over(&all, from, steps, cutoff, pins, extra) } else { first };
         piece.cut(extra);

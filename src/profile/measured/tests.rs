@@ -186,6 +186,93 @@ fn each_defect_is_named_at_its_place_and_mended_by_its_repair() {
 }
 
 #[test]
+fn a_tall_spike_among_dense_noisy_points_is_one_and_goes() -> Result<()> {
+    let rail = standards::rail("60E1")?;
+    let mut random = Random(7);
+    // About normal, 8 µm.
+    let mut noise = || 0.008 * ((0..12).map(|_| random.below(1_000_000) as f64 / 1e6).sum::<f64>() - 6.0);
+    let points: Vec<[f64; 2]> =
+        write::sample(&rail, 0.1)?.into_iter().map(|[x, z]| [x + noise(), z + noise()]).collect();
+    // On the corners a small spike goes as far along as across, and its neighbour is as much a spike as it is.
+    let crown: Vec<usize> = (0..points.len()).filter(|&k| points[k][0].abs() < 25.0).collect();
+    for (n, &at) in crown.iter().step_by(23).enumerate() {
+        for height in [0.2, 0.5, 1.0, -0.7] {
+            let mut spiked = points.clone();
+            spiked[at][1] += height;
+            let text = write::points(&spiked, Format::Csv, Side::Rail, "");
+            let mut options = Options { mirror: Some(false), ..Options::default() };
+            let error = profile("rail.csv", text.as_bytes(), Side::Rail, &options).err();
+            let (place, advice) = error.map(|e| (e.place, e.advice)).unwrap_or_default();
+            let number = format!("point {} ", at + 1);
+            assert!(
+                place.contains(&number) && advice.contains("remove-spikes"),
+                "{at} {height}: {place}: {advice}"
+            );
+            // The fit takes most of the time.
+            if n % 10 == 0 {
+                options.repair = vec![Repair::RemoveSpikes];
+                let repairs = profile("rail.csv", text.as_bytes(), Side::Rail, &options)?.record.repairs;
+                assert!(repairs.len() == 1 && repairs[0].points == 1, "{at} {height}: {repairs:?}");
+            }
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn options_without_effect_are_named() {
+    for (name, options, idle) in [
+        ("wheel.prw", "columns = [1, 2]", "columns"),
+        ("wheel.wheel", "columns = [1, 2]", "columns"),
+        ("old-style.whl", "columns = [1, 2]", "columns"),
+        ("wheel.prw", "section = 1", "section"),
+        ("wheel.prw", "gauge_height = 14.0", "gauge_height"),
+        ("wheel.prw", "already_inclined = true", "already_inclined"),
+        ("wheel.prw", "tape_distance = 70.0", "tape_distance"),
+        ("rail.prr", "tape_distance = 70.0", "tape_distance"),
+        ("design.ban", "mirror = true\nkink_angle = 0.5", "kink_angle"),
+        ("design.ban", "mirror = true\nrepair = ['sort']", "repair"),
+        ("design.ban", "mirror = true\ncutoff_wavelength = 5.0", "cutoff_wavelength"),
+        ("design.ban", "mirror = true\ncurve = 'elements'\nkink_angle = 0.5", "kink_angle"),
+    ] {
+        let error = measured(name, options).err().map(|e| e.to_string()).unwrap_or_default();
+        assert!(
+            error.contains(&format!("{idle}: found an option without effect")),
+            "{name} {options}: {error}"
+        );
+    }
+    for (name, options) in [
+        ("old-style.whl", "origin = 'tape-line'\ntape_distance = 70.0"),
+        ("rail.prr", "gauge_height = 12.0\nalready_inclined = true"),
+        ("design.ban", "mirror = true\ncurve = 'arcs'\nkink_angle = 0.5\nrepair = ['sort']"),
+    ] {
+        let error = measured(name, options).err();
+        assert_eq!(error, None, "{name} {options}");
+    }
+}
+
+#[test]
+fn files_name_their_body() -> Result<()> {
+    for (name, bytes, side) in FILES {
+        let free = ["sections.mpt", "rail.csv", "rail.txt"].contains(&name);
+        let expected = (!free).then_some(side);
+        assert_eq!(body(&name.to_uppercase(), bytes, &Options::default())?, expected, "{name}");
+    }
+    let header = Options { format: Some(Format::Simpack), ..Options::default() };
+    assert_eq!(body("wheel.txt", bytes("wheel.prw").0, &header)?, Some(Side::Wheel));
+    Ok(())
+}
+
+#[test]
+fn a_step_that_takes_too_many_points_is_an_error() -> Result<()> {
+    for profile in [standards::rail("60E1")?, standards::wheel("EN15302-A")?] {
+        let error = write::sample(&profile, 1e-9).err().map(|e| e.to_string()).unwrap_or_default();
+        assert!(error.starts_with("step: found 0.000000001 mm, which takes "), "{error}");
+    }
+    Ok(())
+}
+
+#[test]
 fn smoothing_halves_a_wave_of_the_cutoff_length_whatever_the_spacing() -> Result<()> {
     for spacing in [0.05, 0.2, 0.8] {
         let points: Vec<[f64; 2]> = (0..=(100.0 / spacing) as usize)

@@ -89,7 +89,7 @@ fn simpack(points: &[[f64; 2]], side: Side, name: &str) -> String {
 /// Points \[mm\] at most `step` \[mm\] apart along a profile, all joints among them.
 ///
 /// # Errors
-/// A step that is not positive.
+/// A step that is not positive, or that takes more than 100 000 points over one segment.
 pub fn sample(profile: &Profile, step: f64) -> Result<Vec<[f64; 2]>> {
     if !(step > 0.0 && step.is_finite()) {
         return Err(Error::new("step", step.to_string(), "a positive number of mm", "correct it"));
@@ -97,8 +97,8 @@ pub fn sample(profile: &Profile, step: f64) -> Result<Vec<[f64; 2]>> {
     let mut out: Vec<[f64; 2]> = Vec::new();
     for segment in profile.segments() {
         let own: Vec<[f64; 2]> = match &segment.shape {
-            Shape::Arc(arc) => along_arc(arc, step),
-            Shape::Polynomial(polynomial) => along_polynomial(polynomial, step),
+            Shape::Arc(arc) => along_arc(arc, step)?,
+            Shape::Polynomial(polynomial) => along_polynomial(polynomial, step)?,
         };
         // A joint is one point; the step of a drawing is kept as it is.
         let joint = out.last().zip(own.first()).is_some_and(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]) < 1e-3);
@@ -110,17 +110,27 @@ pub fn sample(profile: &Profile, step: f64) -> Result<Vec<[f64; 2]>> {
 /// Most points of one segment.
 const MOST_SAMPLES: f64 = 1e5;
 
-fn along_arc(arc: &Arc, step: f64) -> Vec<[f64; 2]> {
-    let n = (arc.length() / step).ceil().clamp(1.0, MOST_SAMPLES);
-    let inner = (1..n as usize).map(|k| {
-        let at = arc.station_at(k as f64 / n);
+/// Steps of at most `step` over a length.
+fn steps_over(length: f64, step: f64) -> Result<usize> {
+    let n = (length / step).ceil().max(1.0);
+    if n <= MOST_SAMPLES {
+        return Ok(n as usize);
+    }
+    let found = format!("{step} mm, which takes {n:e} points over {length:.3} mm");
+    Err(Error::new("step", found, format!("at most {MOST_SAMPLES:e} points a segment"), "take a larger step"))
+}
+
+fn along_arc(arc: &Arc, step: f64) -> Result<Vec<[f64; 2]>> {
+    let n = steps_over(arc.length(), step)?;
+    let inner = (1..n).map(|k| {
+        let at = arc.station_at(k as f64 / n as f64);
         [at.x, at.z]
     });
     let ends = [arc.start, arc.end].map(|s| [s.x, s.z]);
-    std::iter::once(ends[0]).chain(inner).chain([ends[1]]).collect()
+    Ok(std::iter::once(ends[0]).chain(inner).chain([ends[1]]).collect())
 }
 
-fn along_polynomial(polynomial: &Polynomial, step: f64) -> Vec<[f64; 2]> {
+fn along_polynomial(polynomial: &Polynomial, step: f64) -> Result<Vec<[f64; 2]>> {
     let [t0, t1] = polynomial.t;
     let at = |share: f64| {
         let station = polynomial.station(t0 + share * (t1 - t0));
@@ -130,8 +140,8 @@ fn along_polynomial(polynomial: &Polynomial, step: f64) -> Vec<[f64; 2]> {
     const CHORDS: usize = 64;
     let coarse: Vec<[f64; 2]> = (0..=CHORDS).map(|k| at(k as f64 / CHORDS as f64)).collect();
     let longest = coarse.windows(2).map(|p| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1])).fold(0.0, f64::max);
-    let n = (longest * CHORDS as f64 / step).ceil().clamp(1.0, MOST_SAMPLES) as usize;
-    (0..=n).map(|k| at(k as f64 / n as f64)).collect()
+    let n = steps_over(longest * CHORDS as f64, step)?;
+    Ok((0..=n).map(|k| at(k as f64 / n as f64)).collect())
 }
 
 /// Segments as a scene has them.
