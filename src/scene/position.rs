@@ -3,7 +3,7 @@
 use super::data::{ContactData, RollData, RollWord, Scene, TrackData, WheelsetData};
 use crate::contact::search::Pose;
 use crate::contact::search::wheelset::{Position, Roll};
-use crate::error::{Error, Result, finite};
+use crate::error::{Error, Result, finite, given};
 use crate::placement::track::{RailDistance, WheelDistance};
 
 /// Depth below the top of rail at which gauge is measured unless the scene says otherwise \[mm\].
@@ -64,7 +64,12 @@ impl Scene {
             }
             _ => {
                 let expected = "either [contact], or both [track] and [wheelset]";
-                Err(Error::new("", "another set of tables", expected, "keep one placement"))
+                let found = given(&[
+                    ("contact", self.contact.is_some()),
+                    ("track", self.track.is_some()),
+                    ("wheelset", self.wheelset.is_some()),
+                ]);
+                Err(Error::new("", found, expected, "keep one placement, with all it needs"))
             }
         }
     }
@@ -95,7 +100,14 @@ fn single(contact: &ContactData) -> Result<Standing> {
         }
         _ => {
             let expected = "either `rail_x` and `wheel_x`, or `offset` with perhaps `roll` and `yaw`";
-            return Err(Error::new("", "another set of keys", expected, "keep one of the two forms"));
+            let found = given(&[
+                ("rail_x", contact.rail_x.is_some()),
+                ("wheel_x", contact.wheel_x.is_some()),
+                ("offset", contact.offset.is_some()),
+                ("roll", contact.roll.is_some()),
+                ("yaw", contact.yaw.is_some()),
+            ]);
+            return Err(Error::new("", found, expected, "keep one of the two forms"));
         }
     };
     Ok(Standing { place, within })
@@ -118,7 +130,12 @@ fn rails(track: &TrackData) -> Result<RailDistance> {
         (None, Some(spacing)) if track.gauge_height.is_none() => Ok(RailDistance::Spacing(spacing)),
         _ => {
             let expected = "either `gauge` with perhaps `gauge_height`, or `spacing`";
-            Err(Error::new("track", "another set of keys", expected, "keep one of the two forms"))
+            let found = given(&[
+                ("gauge", track.gauge.is_some()),
+                ("gauge_height", track.gauge_height.is_some()),
+                ("spacing", track.spacing.is_some()),
+            ]);
+            Err(Error::new("track", found, expected, "keep one of the two forms"))
         }
     }
 }
@@ -131,7 +148,12 @@ fn wheels(wheelset: &WheelsetData) -> Result<WheelDistance> {
         (None, None, Some(spacing)) => Ok(WheelDistance::Spacing(spacing)),
         _ => {
             let expected = "either `back_to_back` and `flange_back_x`, or `spacing`";
-            Err(Error::new("wheelset", "another set of keys", expected, "keep one of the two forms"))
+            let found = given(&[
+                ("back_to_back", wheelset.back_to_back.is_some()),
+                ("flange_back_x", wheelset.flange_back_x.is_some()),
+                ("spacing", wheelset.spacing.is_some()),
+            ]);
+            Err(Error::new("wheelset", found, expected, "keep one of the two forms"))
         }
     }
 }

@@ -13,9 +13,7 @@ use crate::error::{Error, Result};
 /// An unreadable file; syntax, unknown keys and wrong types, each with its line.
 pub fn load(path: &Path) -> Result<Scene> {
     let place = path.display().to_string();
-    let text = std::fs::read_to_string(path).map_err(|error| {
-        Error::new(&place, error.to_string(), "a readable text file in UTF-8", "check the path")
-    })?;
+    let text = std::fs::read_to_string(path).map_err(|error| unreadable(path, &error))?;
     let json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
     parse(&text, json).map_err(|error| error.within(place))
 }
@@ -58,6 +56,32 @@ pub fn hash(scene: &Scene) -> String {
     Sha256::digest(canonical).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
+/// Why a file cannot be read, in words.
+pub fn unreadable(path: &Path, error: &std::io::Error) -> Error {
+    use std::io::ErrorKind;
+    let found = match error.kind() {
+        ErrorKind::NotFound => "no such file".to_owned(),
+        ErrorKind::PermissionDenied => "a file that you may not read".to_owned(),
+        ErrorKind::IsADirectory => "a folder".to_owned(),
+        ErrorKind::InvalidData => "bytes that are no text in UTF-8".to_owned(),
+        _ => error.to_string(),
+    };
+    Error::new(path.display().to_string(), found, "a readable file", "check the path")
+}
+
+/// Advice for a word that is not known: the nearest one that is, where one is near.
+pub fn perhaps(found: &str, known: &[&str]) -> String {
+    /// Likeness from which two words look like one misspelt: `yaw` and `yaw_rad` have 0.87, words of a letter or two in
+    /// common 0.6.
+    const ALIKE: f64 = 0.7;
+    let likeness = |known: &str| strsim::jaro_winkler(known, found);
+    let nearest = known.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
+    match nearest.filter(|nearest| likeness(nearest) >= ALIKE) {
+        Some(nearest) => format!("perhaps `{nearest}` is meant"),
+        None => "correct or remove it".into(),
+    }
+}
+
 fn without_position(message: &str) -> String {
     message.split(" at line ").next().unwrap_or(message).to_string()
 }
@@ -70,12 +94,8 @@ fn house_form(place: String, message: &str) -> Error {
     if (message.starts_with("unknown field") || message.starts_with("unknown variant"))
         && let [found, known @ ..] = quoted.as_slice()
     {
-        let nearest = known
-            .iter()
-            .max_by(|a, b| strsim::jaro_winkler(a, found).total_cmp(&strsim::jaro_winkler(b, found)));
         let expected = format!("one of {}", known.join(", "));
-        let advice = nearest.map_or_else(|| "remove it".into(), |n| format!("perhaps `{n}` is meant"));
-        return Error::new(place, format!("`{found}`"), expected, advice);
+        return Error::new(place, format!("`{found}`"), expected, perhaps(found, known));
     }
     if let (true, Some(key)) = (message.starts_with("missing field"), quoted.first()) {
         return Error::new(place, format!("no `{key}`"), format!("the key `{key}`"), "add it");

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use super::data::{AxisData, ProfileData, Rotation, Scene, Spacing};
-use super::read::parse;
+use super::read::{parse, unreadable};
 use crate::contact::hertz::Elastic;
-use crate::error::{Error, Result, finite};
+use crate::error::{Error, Result, finite, given};
 use crate::placement::Pair;
 use crate::profile::drawing::{SegmentData, chain};
 use crate::profile::measured::{self, Measured, Options, Record};
@@ -148,9 +148,13 @@ impl Scene {
                 equal_steps(from, to, steps.n as usize)
             }
         };
-        if values.is_empty() || !values.windows(2).all(|pair| pair[0] < pair[1]) {
-            let expected = "at least one value, each larger than the one before";
-            return Err(Error::new(place, "another order", expected, "sort the values"));
+        let expected = "at least one value, each larger than the one before";
+        if values.is_empty() {
+            return Err(Error::new(place, "no values", expected, "give some, or \"auto\""));
+        }
+        if let Some(pair) = values.windows(2).find(|pair| pair[0] >= pair[1]) {
+            let found = format!("{} after {}", pair[1], pair[0]);
+            return Err(Error::new(place, found, expected, "sort the values"));
         }
         for &value in &values {
             if finite(&place, value)?.abs() > FARTHEST {
@@ -230,12 +234,17 @@ impl ProfileData {
             (None, None, Some(segments)) => Resolved::drawn(chain("inline", "scene", self.start, segments)?),
             _ => {
                 let expected = "exactly one of `profile`, `file`, `segments`";
-                return Err(Error::new("", "none or several", expected, "give one source"));
+                let found = given(&[
+                    ("profile", self.profile.is_some()),
+                    ("file", self.file.is_some()),
+                    ("segments", self.segments.is_some()),
+                ]);
+                return Err(Error::new("", found, expected, "give one source"));
             }
         };
-        if self.start.is_some() && self.segments.is_none() {
+        if let (Some([x, z]), None) = (self.start, &self.segments) {
             let expected = "`start` only with `segments`";
-            return Err(Error::new("start", "a first point", expected, "remove it"));
+            return Err(Error::new("start", format!("[{x}, {z}]"), expected, "remove it"));
         }
         if measured.is_none() {
             self.reject_measured_keys()?;
@@ -246,7 +255,7 @@ impl ProfileData {
         if let Some(rotation) = &self.rotate {
             if self.already_inclined {
                 let expected = "no `rotate` for a profile that is `already_inclined`";
-                return Err(Error::new("rotate", "an inclination", expected, "remove one of the two"));
+                return Err(Error::new("rotate", rotation.to_string(), expected, "remove one of the two"));
             }
             let (cos, sin) = rotation.cosine_sine().map_err(|e| e.within("rotate"))?;
             profile = profile.rotated(cos, sin);
@@ -269,12 +278,13 @@ impl ProfileData {
 
     /// Keys that mean nothing for a drawn profile are mistakes.
     fn reject_measured_keys(&self) -> Result<()> {
-        let given = Options { mirror: None, ..self.measured() };
-        if given == Options::default() {
+        let keys = Options { mirror: None, ..self.measured() }.given();
+        if keys.is_empty() {
             return Ok(());
         }
         let expected = "keys of measured files only beside a measured `file`";
-        Err(Error::new("", "a key of measured files", expected, "remove it, or give `file` and `format`"))
+        let found = format!("`{}`", keys.join("`, `"));
+        Err(Error::new("", found, expected, "remove it, or give `file` and `format`"))
     }
 }
 
@@ -292,6 +302,14 @@ impl Resolved {
 
 /// A profile of the right body by name.
 fn built_in(name: &str, side: Side) -> Result<Profile> {
+    let (of_other, own, other) = match side {
+        Side::Rail => (standards::wheel_names().any(|known| known == name), "rail", "wheel"),
+        Side::Wheel => (standards::rail_names().any(|known| known == name), "wheel", "rail"),
+    };
+    if of_other {
+        let (found, expected) = (format!("\"{name}\", a {other}"), format!("a {own} profile"));
+        return Err(Error::new("profile", found, expected, "see `wheelrail profile list`"));
+    }
     match side {
         Side::Rail => standards::rail(name),
         Side::Wheel => standards::wheel(name),
@@ -299,7 +317,7 @@ fn built_in(name: &str, side: Side) -> Result<Profile> {
 }
 
 /// Whether a file's extension is that of a chain of segments.
-fn is_chain_file(path: &Path) -> bool {
+pub fn is_chain_file(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml") || e.eq_ignore_ascii_case("json"))
 }
 
@@ -309,13 +327,22 @@ fn is_chain_file(path: &Path) -> bool {
 /// An unreadable or larger file.
 pub fn read_bytes(path: &Path, largest: usize) -> Result<Vec<u8>> {
     let place = path.display().to_string();
-    let broken = |e: std::io::Error| Error::new(&place, e.to_string(), "a readable file", "check the path");
+    let broken = |error: std::io::Error| unreadable(path, &error);
     let length = path.metadata().map_err(broken)?.len();
     if length > largest as u64 {
         let expected = format!("at most {largest} bytes");
         return Err(Error::new(place, format!("{length} bytes"), expected, "is this the right file?"));
     }
     std::fs::read(path).map_err(broken)
+}
+
+impl std::fmt::Display for Rotation {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Self::Radians(angle) => write!(f, "{angle}"),
+            Self::Ratio(text) => write!(f, "\"{text}\""),
+        }
+    }
 }
 
 impl Rotation {
@@ -348,11 +375,68 @@ impl Rotation {
 /// An unreadable file; whatever is wrong with its segments.
 pub fn profile_from_file(path: &Path) -> Result<Profile> {
     let place = path.display().to_string();
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| Error::new(&place, error.to_string(), "a readable file", "check the path"))?;
+    let text = std::fs::read_to_string(path).map_err(|error| unreadable(path, &error))?;
     let json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
     let file: ProfileFile = parse(&text, json).map_err(|e| e.within(&place))?;
     let name = file.name.unwrap_or_else(|| place.clone());
     let source = file.source.unwrap_or_else(|| place.clone());
     chain(&name, &source, file.start, &file.segments).map_err(|e| e.within(&place))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The complaint about a scene of these tables.
+    fn complaint(rail: &str, rest: &str) -> Result<String> {
+        let text = format!("[rail]\n{rail}\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n{rest}");
+        let scene: Scene = parse(&text, false)?;
+        let found = scene.pair(Path::new(".")).err().or(scene.standing().err()).or(scene.axis("xi").err());
+        Ok(found.map(|e| e.to_string()).unwrap_or_default())
+    }
+
+    #[test]
+    fn complaints_say_what_was_found() -> Result<()> {
+        let rails = [
+            ("profile = \"S1002\"", "rail: profile: found \"S1002\", a wheel; expected a rail profile;"),
+            (
+                "profile = \"60E1\"\nunit = \"m\"\nrepair = [\"sort\"]",
+                "rail: found `unit`, `repair`; expected",
+            ),
+            (
+                "profile = \"60E1\"\nfile = \"x.ban\"",
+                "rail: found `profile` and `file`; expected exactly one",
+            ),
+            ("", "rail: found none of `profile`, `file`, `segments`; expected exactly one"),
+            ("profile = \"60E1\"\nstart = [1, 2]", "rail: start: found [1, 2]; expected"),
+            ("file = \"none.toml\"", "none.toml: found no such file; expected a readable file"),
+            ("file = \"none.ban\"", "none.ban: found no such file; expected a readable file"),
+        ];
+        for (rail, message) in rails {
+            let found = complaint(rail, "[contact]\noffset = 0.0\n")?;
+            assert!(found.contains(message), "{rail}: {found}");
+        }
+        let rests = [
+            ("[track]\ngauge = 1435.0", "found `track` alone; expected either [contact]"),
+            ("[contact]\nrail_x = 1.0\nyaw = 0.1", "contact: found `rail_x` and `yaw`; expected either"),
+            (
+                "[track]\n[wheelset]\nspacing = 1500.0",
+                "track: found none of `gauge`, `gauge_height`, `spacing`;",
+            ),
+            (
+                "[track]\ngauge = 1435.0\n[wheelset]\nspacing = 1.0\nback_to_back = 2.0",
+                "wheelset: found `back_to_back` and",
+            ),
+            (
+                "[contact]\noffset = 0.0\n[grid]\nxi = { values = [1.0, 5.0, 3.0] }",
+                "grid: xi: found 3 after 5;",
+            ),
+            ("[contact]\noffset = 0.0\n[grid]\nxi = { values = [] }", "grid: xi: found no values;"),
+        ];
+        for (rest, message) in rests {
+            let found = complaint("profile = \"60E1\"", rest)?;
+            assert!(found.contains(message), "{rest}: {found}");
+        }
+        Ok(())
+    }
 }
