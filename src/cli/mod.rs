@@ -5,6 +5,7 @@
 
 mod check;
 mod midsep;
+mod output;
 mod profile;
 mod report;
 mod run;

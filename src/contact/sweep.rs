@@ -49,7 +49,8 @@ pub struct Sweep<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    /// A sweep that reports the contacts of `selection`, with the equivalent conicity from `conicity` where given.
+    /// A sweep that reports the contacts of `selection`, with the equivalent conicity from `conicity` where given: at
+    /// all positions but those with a given roll, where Δr is not odd and none is defined.
     pub fn new(system: &'a WheelsetOnTrack, selection: Selection, conicity: Option<Conicity>) -> Self {
         Self { search: system.search(), selection, conicity }
     }
@@ -61,7 +62,10 @@ impl<'a> Sweep<'a> {
     pub fn position(&mut self, position: &Position, rows: &mut Vec<Row>) -> Result<()> {
         let Some(touch) = self.search.touch(position, &self.selection)? else { return Ok(()) };
         let [left, right] = touch.sides.map(|side| side.touch.contacts[0].rolling_radius);
-        let conicity = self.conicity.as_ref().and_then(|c| c.at(position.lateral));
+        let conicity = match position.roll {
+            Roll::Fixed(_) => None,
+            Roll::Solve | Roll::Neglect => self.conicity.as_ref().and_then(|c| c.at(position.lateral)),
+        };
         for (side, found) in [TrackSide::Left, TrackSide::Right].into_iter().zip(touch.sides) {
             rows.extend(found.touch.contacts.iter().enumerate().map(|(number, contact)| Row {
                 lateral: position.lateral,
@@ -120,6 +124,10 @@ mod tests {
         }
         // A cone moved to the right rises on the right.
         assert!((rows[1].z - rows[0].z - 0.3).abs() < 1e-12, "{rows:?}");
+        // A given roll has no conicity.
+        rows.clear();
+        sweep.position(&Position { lateral: 3.0, yaw: 0.0, roll: Roll::Fixed(0.0) }, &mut rows)?;
+        assert!(rows.len() == 2 && rows.iter().all(|row| row.conicity.is_nan()), "{rows:?}");
         // A wheelset off its track has no rows.
         sweep.position(&Position { lateral: 300.0, yaw: 0.0, roll: Roll::Solve }, &mut rows)?;
         assert_eq!(rows.len(), 2);

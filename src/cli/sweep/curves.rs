@@ -29,14 +29,10 @@ const OF_SIDE: [(&str, &str, Value); 3] = [
 /// The picture of a table's positions, whose lateral displacements have to ascend.
 pub(super) fn picture(table: &Table, title: &str) -> Result<CurvesPicture> {
     let all = &table.positions;
-    if !all.windows(2).all(|pair| pair[0].lateral < pair[1].lateral) {
+    if let Some(pair) = all.windows(2).find(|pair| pair[0].lateral >= pair[1].lateral) {
+        let found = format!("{} mm after {} mm", pair[1].lateral, pair[0].lateral);
         let expected = "lateral displacements that grow from position to position";
-        return Err(Error::new(
-            "--picture",
-            "another order",
-            expected,
-            "sort the positions, or use --lateral",
-        ));
+        return Err(Error::new("--picture", found, expected, "sort the positions, or use --lateral"));
     }
     let stride = all.len().div_ceil(MOST_DRAWN).max(1);
     let drawn: Vec<&Position> = all.iter().step_by(stride).collect();

@@ -9,6 +9,7 @@ mod table;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use super::output::{PictureFormat, refuse_taken};
 use super::{Outcome, folder_of, print};
 use crate::contact::hertz::effective_modulus;
 use crate::contact::search::wheelset::{Position, Roll, WheelsetOnTrack};
@@ -46,9 +47,30 @@ pub(super) struct SweepArguments {
     picture: Option<PathBuf>,
 }
 
+impl SweepArguments {
+    /// Complains of outputs before an hour's work: a picture of no known format, a file that is read or written twice.
+    fn check_outputs(&self, scene: &Scene) -> Result<()> {
+        if let Some(file) = &self.picture {
+            PictureFormat::of_file("--picture", file)?;
+        }
+        let folder = folder_of(&self.scene);
+        let profiles =
+            [&scene.rail.file, &scene.wheel.file].into_iter().flatten().map(|file| folder.join(file));
+        let mut taken: Vec<PathBuf> =
+            profiles.chain(self.positions.clone()).chain([self.scene.clone()]).collect();
+        for (option, file) in [("--out", &self.out), ("--picture", &self.picture)] {
+            let Some(file) = file else { continue };
+            refuse_taken(option, file, &taken)?;
+            taken.push(file.clone());
+        }
+        Ok(())
+    }
+}
+
 /// Runs the sweep.
 pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     let scene = scene::load(&arguments.scene)?;
+    arguments.check_outputs(&scene)?;
     let (system, template, within) =
         system(&scene, folder_of(&arguments.scene)).map_err(|e| e.within(arguments.scene.display()))?;
     let positions = match (&arguments.lateral, &arguments.positions) {
@@ -62,12 +84,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
             return Err(Error::new("sweep", "neither", expected, "say what to sweep over"));
         }
     };
-    let amplitude = positions.iter().fold(0.0, |most: f64, p| most.max(p.lateral.abs()));
-    let conicity = match template.roll {
-        Roll::Fixed(_) => None,
-        _ if amplitude == 0.0 => None,
-        roll => Some(Conicity::new(&system, amplitude, roll)?),
-    };
+    let conicity = conicity(&system, &positions)?;
     let asked = question(&scene).map_err(|e| e.within(arguments.scene.display()))?;
     let [rail, wheel] = &asked.material;
     let ellipses = asked.approach.map(|approach| (approach, effective_modulus(rail, wheel)));
@@ -80,12 +97,26 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
         let name = arguments.scene.file_stem().unwrap_or_default().to_string_lossy();
         let title = scene.title.as_deref().unwrap_or(&name);
         let picture = curves::picture(&table, title)?;
-        let png = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
-        write_file(file, &if png { picture.png()? } else { picture.svg().into_bytes() })?;
+        let bytes = match PictureFormat::of_file("--picture", file)? {
+            PictureFormat::Png => picture.png()?,
+            PictureFormat::Svg => picture.svg().into_bytes(),
+        };
+        write_file(file, &bytes)?;
     }
     match &arguments.out {
         None => table.blocks(0, |_, text| print(text).map(|_| ())),
         Some(out) => table.write(out),
+    }
+}
+
+/// The equivalent conicity up to the largest amplitude of the positions whose roll is not given; of these all have
+/// theirs found in one way.
+fn conicity(system: &WheelsetOnTrack, positions: &[Position]) -> Result<Option<Conicity>> {
+    let free = || positions.iter().filter(|position| !matches!(position.roll, Roll::Fixed(_)));
+    let amplitude = free().fold(0.0, |most: f64, position| most.max(position.lateral.abs()));
+    match free().next() {
+        Some(first) if amplitude > 0.0 => Conicity::new(system, amplitude, first.roll).map(Some),
+        _ => Ok(None),
     }
 }
 

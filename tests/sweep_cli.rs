@@ -1,0 +1,118 @@
+//! `wheelrail sweep` through the binary: conicity by position, and what bad calls get.
+#![allow(clippy::unwrap_used)]
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use tempfile::TempDir;
+
+const SCENE: &str = "[rail]\nprofile = \"60E1\"\n[wheel]\nprofile = \"cone-1:20\"\nradius = 460.0\n\
+                     [track]\nspacing = 1500.0\n[wheelset]\nspacing = 1500.0\n";
+
+fn sweep(folder: &Path, arguments: &[&str]) -> Output {
+    let binary = env!("CARGO_BIN_EXE_wheelrail");
+    Command::new(binary).current_dir(folder).arg("sweep").args(arguments).output().unwrap()
+}
+
+/// A folder with `scene.toml`, the scene followed by `rest`.
+fn folder(rest: &str) -> TempDir {
+    let folder = TempDir::new().unwrap();
+    std::fs::write(folder.path().join("scene.toml"), format!("{SCENE}{rest}")).unwrap();
+    folder
+}
+
+/// (lateral_mm, conicity) of the rows of the right side.
+fn conicities(table: &str) -> Vec<(String, String)> {
+    let rows = table.lines().map(|row| row.split(',').collect::<Vec<_>>());
+    rows.filter(|row| row[3] == "right").map(|row| (row[0].into(), row[12].into())).collect()
+}
+
+#[test]
+fn a_given_roll_has_no_conicity_and_a_solved_one_has_whatever_the_scene_says() {
+    for scene_roll in ["roll = 0.002\n", "roll = \"neglect\"\n", ""] {
+        let folder = folder(scene_roll);
+        let positions = "lateral_mm,roll_rad\n2,\n3,0.001\n0,\n9,0\n";
+        std::fs::write(folder.path().join("positions.csv"), positions).unwrap();
+        let output = sweep(folder.path(), &["scene.toml", "--positions", "positions.csv"]);
+        let table = String::from_utf8(output.stdout).unwrap();
+        let found = conicities(&table);
+        let empty: Vec<bool> = found.iter().map(|(_, conicity)| conicity.is_empty()).collect();
+        assert_eq!(empty, [false, true, true, true], "{scene_roll}{table}");
+        let conicity: f64 = found[0].1.parse().unwrap();
+        // The roll that goes with the displacement adds 4 % to the cone's own.
+        assert!((conicity - 0.052).abs() < 1e-3, "{table}");
+    }
+}
+
+#[test]
+fn a_range_prints_the_displacements_asked_for() {
+    let folder = folder("");
+    let output = sweep(folder.path(), &["scene.toml", "--lateral", "-0.6:0.6:0.3"]);
+    let table = String::from_utf8(output.stdout).unwrap();
+    let lateral: Vec<String> = conicities(&table).into_iter().map(|(lateral, _)| lateral).collect();
+    assert_eq!(lateral, ["-0.6", "-0.3", "0", "0.3", "0.6"]);
+}
+
+#[test]
+fn bad_calls_end_with_code_2_and_leave_the_inputs() {
+    let folder = folder("");
+    let here = folder.path();
+    std::fs::write(here.join("positions.csv"), "lateral_mm\n1\n").unwrap();
+    std::fs::write(here.join("down.csv"), "lateral_mm\n2\n1\n").unwrap();
+    std::fs::write(here.join("empty.csv"), "lateral_mm,yaw_rad\n,0.1\n").unwrap();
+    std::fs::write(here.join("yaw.csv"), "lateral_mm,yaw\n1,0.1\n").unwrap();
+    let chain = "segments = [{ line = { from = [-60, 3], to = [60, -3] } }]\n";
+    std::fs::write(here.join("wheel.toml"), chain).unwrap();
+    let own = SCENE.replace("profile = \"cone-1:20\"", "file = \"wheel.toml\"");
+    std::fs::write(here.join("own.toml"), own).unwrap();
+    std::os::unix::fs::symlink("scene.toml", here.join("link.toml")).unwrap();
+    let range = ["--lateral", "0:1:1"];
+    let listed = ["--positions", "positions.csv"];
+    let cases: [(&str, &[&str], &[&str], &str); 13] = [
+        (
+            "scene.toml",
+            &["--positions", "down.csv"],
+            &["--picture", "a.svg"],
+            "--picture: found 1 mm after 2 mm;",
+        ),
+        (
+            "scene.toml",
+            &["--lateral", "0:1:1e-9"],
+            &[],
+            "--lateral: found 1.000000001e9 positions; expected at most",
+        ),
+        ("scene.toml", &["--positions", "empty.csv"], &[], "empty.csv: line 2: found an empty lateral_mm"),
+        ("scene.toml", &["--positions", "yaw.csv"], &[], "perhaps `yaw_rad` is meant"),
+        ("scene.toml", &["--positions", "none.csv"], &[], "none.csv: found no such file; expected"),
+        ("nowhere.toml", &range, &[], "nowhere.toml: found no such file; expected"),
+        (
+            "scene.toml",
+            &range,
+            &["--out", "scene.toml"],
+            "--out: found scene.toml, which the same command reads",
+        ),
+        ("scene.toml", &range, &["--out", "link.toml"], "--out: found scene.toml, which"),
+        ("scene.toml", &listed, &["--out", "./positions.csv"], "--out: found positions.csv, which"),
+        ("own.toml", &range, &["--out", "wheel.toml"], "--out: found wheel.toml, which"),
+        ("own.toml", &range, &["--picture", "wheel.toml"], "expected a name that ends in .svg or .png"),
+        (
+            "scene.toml",
+            &range,
+            &["--picture", "curves.jpg"],
+            "--picture: found \"curves.jpg\"; expected a name",
+        ),
+        ("scene.toml", &range, &["--out", "a.svg", "--picture", "./a.svg"], "--picture: found a.svg, which"),
+    ];
+    let files = ["scene.toml", "own.toml", "wheel.toml", "positions.csv"];
+    let contents = || files.map(|file| std::fs::read(here.join(file)).unwrap());
+    let before = contents();
+    for (scene, positions, outputs, message) in cases {
+        let arguments = [&[scene], positions, outputs].concat();
+        let output = sweep(here, &arguments);
+        let complaint = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {complaint}");
+        assert!(complaint.contains(message), "{arguments:?}: {complaint}");
+    }
+    assert_eq!(contents(), before);
+    assert!(!here.join("a.svg").exists());
+}
