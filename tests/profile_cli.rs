@@ -105,6 +105,11 @@ fn show_tells_how_a_measured_file_was_read_and_fitted() {
         assert!(shown.contains(part), "no \"{part}\" in\n{shown}");
     }
     assert!(text(here, &["show", "60E1"]).contains("# joint"));
+    // The file says of which body it is; a chain file is one by its extension in upper case too.
+    assert_eq!(text(here, &["show", "rail.ban", "--mirror", "--cutoff-wavelength", "3"]), shown);
+    let chain = r#"{"segments": [{"line": {"from": [0, 0], "to": [1, 0]}}]}"#;
+    std::fs::write(here.join("chain.JSON"), chain).unwrap();
+    assert!(text(here, &["show", "chain.JSON"]).contains(" line "));
 }
 
 #[test]
@@ -119,6 +124,8 @@ fn plots_have_their_panels_with_units() {
     text(here, &["plot", "60E1", "--out", "rail.svg"]);
     let drawn = std::fs::read_to_string(here.join("rail.svg")).unwrap();
     assert!(drawn.contains("curvature [1/m]") && !drawn.contains("residual"));
+    text(here, &["plot", "60E1", "--out", "rail.PNG"]);
+    assert!(std::fs::read(here.join("rail.PNG")).unwrap().starts_with(b"\x89PNG"));
     assert!(![measured, drawn].iter().any(|svg| svg.contains("NaN") || svg.contains("inf")));
 }
 
@@ -129,12 +136,26 @@ fn bad_input_ends_with_code_2_and_says_what_to_do() {
     let wheel: PathBuf = here.join("wheel.csv");
     text(here, &["convert", "S1002", "--to", "csv", "--out", "wheel.csv"]);
     std::fs::write(here.join("bad.csv"), "x,z\n1.0,2.0\n1.5,two\n").unwrap();
-    assert!(wheel.exists());
-    let cases: [(&[&str], &str); 9] = [
-        (&["show", "nowhere"], "nowhere: found neither; expected a file"),
+    let exact = std::fs::read(&wheel).unwrap();
+    let cases: [(&[&str], &str); 14] = [
+        (&["show", "nowhere"], "nowhere: found no file and no built-in profile; expected a file"),
+        (&["show", "61E1"], "perhaps `60E1` is meant"),
         (&["show", "wheel.csv"], "wheel.csv: found no --side; expected"),
         (&["show", "S1002", "--side", "rail"], "S1002: found the name of a wheel; expected"),
-        (&["show", "S1002", "--unit", "mm"], "S1002: found options of measured files"),
+        (
+            &["show", "S1002", "--unit", "mm", "--kink-angle", "1"],
+            "S1002: found --unit, --kink-angle for a drawn",
+        ),
+        (
+            &["convert", "wheel.csv", "--side", "wheel", "--to", "csv", "--out", "./wheel.csv"],
+            "--out: found wheel.csv",
+        ),
+        (&["plot", "bad.csv", "--side", "wheel", "--out", "bad.csv"], "--out: found bad.csv, which"),
+        (
+            &["plot", "S1002", "--out", "wheel.pdf"],
+            "--out: found \"wheel.pdf\"; expected a name that ends in .svg",
+        ),
+        (&["convert", "S1002", "--to", "foo"], "correct or remove it"),
         (
             &["show", "wheel.csv", "--side", "wheel", "--unit", "furlong"],
             "--unit: found `furlong`; expected one of m",
@@ -153,4 +174,5 @@ fn bad_input_ends_with_code_2_and_says_what_to_do() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {complaint}");
         assert!(complaint.contains(message), "{arguments:?}: {complaint}");
     }
+    assert_eq!(std::fs::read(&wheel).unwrap(), exact);
 }

@@ -36,6 +36,7 @@ pub(in crate::cli) struct ConvertArguments {
 /// # Errors
 /// A format that is none, a body that only --side can tell, segments that no chain file can hold.
 pub(super) fn convert(arguments: &ConvertArguments) -> Result<Outcome> {
+    arguments.source.refuse_output(arguments.out.as_deref())?;
     let text = if arguments.to == "toml" { toml(arguments)? } else { points(arguments)? };
     put(&text, arguments.out.as_deref())
 }

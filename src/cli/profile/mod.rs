@@ -22,16 +22,17 @@ use source::SourceArguments;
 pub(super) enum ProfileCommand {
     /// Names and sources of the built-in profiles.
     List,
-    /// What a profile is made of: segments and joints; of a measured file also how it was read and fitted.
+    /// What a profile is made of: segments and joints; of a measured file how it was read and fitted, and those of its
+    /// arcs or elements, not the spans of a spline.
     Show {
         #[command(flatten)]
         source: SourceArguments,
     },
-    /// Draw points, curve, residual and curvature against arc length, as SVG.
+    /// Draw points, curve, residual and curvature against arc length, as SVG or PNG.
     Plot {
         #[command(flatten)]
         source: SourceArguments,
-        /// File to write; stdout if not given.
+        /// File to write, .svg or .png; SVG to stdout if not given.
         #[arg(long)]
         out: Option<PathBuf>,
     },
@@ -44,7 +45,7 @@ pub(super) fn profile(command: &ProfileCommand) -> Result<Outcome> {
     match command {
         ProfileCommand::List => print(&list()?),
         ProfileCommand::Show { source } => print(&show::show(&source.read()?)),
-        ProfileCommand::Plot { source, out } => put(&plot::plot(&source.read()?), out.as_deref()),
+        ProfileCommand::Plot { source, out } => plot::plot(source, out.as_deref()),
         ProfileCommand::Convert(arguments) => convert::convert(arguments),
     }
 }

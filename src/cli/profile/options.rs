@@ -105,11 +105,13 @@ impl MeasuredArguments {
     /// # Errors
     /// Any option given.
     pub(super) fn reject(&self, name: &str) -> Result<()> {
-        if self.options()? == Options::default() {
+        let given: Vec<String> = self.options()?.given().iter().map(|key| key.replace('_', "-")).collect();
+        if given.is_empty() {
             return Ok(());
         }
-        let found = "options of measured files for a drawn profile";
-        Err(Error::new(name, found, "a file of measured points", "remove the options, or give another file"))
+        let found = format!("--{} for a drawn profile", given.join(", --"));
+        let expected = "options of measured files for a file of measured points only";
+        Err(Error::new(name, found, expected, "remove them, or give another file"))
     }
 }
 

@@ -1,28 +1,47 @@
 //! `wheelrail profile plot`: what the picture shows.
 
-use super::source::Source;
+use std::path::Path;
+
+use super::source::{Source, SourceArguments};
+use super::{Outcome, print};
+use crate::cli::output::PictureFormat;
+use crate::error::Result;
 use crate::export::picture::profile::ProfilePicture;
+use crate::export::write_file;
 use crate::profile::measured::{CurveRecord, Measured};
 use crate::profile::trace::{Mark, beside, trace};
 
 /// Distance of the curve's marks \[mm\]: 1500 over a profile, finer than a page shows.
 const STEP: f64 = 0.1;
 
-/// The picture as SVG.
-pub(super) fn plot(source: &Source) -> String {
+/// Draws the picture into a file, or as SVG to stdout.
+pub(super) fn plot(arguments: &SourceArguments, out: Option<&Path>) -> Result<Outcome> {
+    arguments.refuse_output(out)?;
+    let format = out.map(|out| PictureFormat::of_file("--out", out)).transpose()?;
+    let bytes = picture(&arguments.read()?, format.unwrap_or(PictureFormat::Svg))?;
+    match out {
+        Some(out) => write_file(out, &bytes).map(|()| Outcome::Done),
+        None => print(&String::from_utf8_lossy(&bytes)),
+    }
+}
+
+fn picture(source: &Source, format: PictureFormat) -> Result<Vec<u8>> {
     let profile = source.profile();
     let marks = trace(profile, STEP);
     let points: Vec<[f64; 2]> =
         source.measured().map_or_else(Vec::new, |measured| measured.points.iter().map(|p| p.xz()).collect());
-    ProfilePicture {
+    let picture = ProfilePicture {
         title: &profile.name,
         about: &about(source),
         points: &points,
         curve: &marks.iter().map(|mark| [mark.station.x, mark.station.z]).collect::<Vec<_>>(),
         residual: &residual(&marks, &points),
         curvature: &marks.iter().map(|mark| [mark.s, mark.curvature]).collect::<Vec<_>>(),
+    };
+    match format {
+        PictureFormat::Svg => Ok(picture.svg().into_bytes()),
+        PictureFormat::Png => picture.png(),
     }
-    .svg()
 }
 
 fn about(source: &Source) -> String {

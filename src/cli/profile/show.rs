@@ -39,7 +39,9 @@ fn record(out: &mut String, Measured { record, points, .. }: &Measured) {
     let _ = writeln!(out, "transform  x = {a} first + {x} mm, z = {b} second + {z} mm");
     for repair in &record.repairs {
         let places = repair.places.join(", ");
-        let _ = writeln!(out, "repair     {}: {} points, {places}", name(&repair.repair), repair.points);
+        let plural = if repair.points == 1 { "" } else { "s" };
+        let _ =
+            writeln!(out, "repair     {}: {} point{plural}, {places}", name(&repair.repair), repair.points);
     }
     for finding in &record.warnings {
         let _ = writeln!(out, "finding    {}, {}: {}", name(&finding.check), finding.place, finding.found);

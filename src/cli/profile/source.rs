@@ -1,10 +1,11 @@
 //! The profile that a command is about: a built-in one, a chain file, or a measured file.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::options::{Body, MeasuredArguments};
+use crate::cli::output::refuse_taken;
 use crate::error::{Error, Result};
 use crate::profile::measured::{self, CurveKind, Measured, Options};
 use crate::profile::{Profile, Side, standards};
@@ -15,7 +16,7 @@ use crate::scene;
 pub(in crate::cli) struct SourceArguments {
     /// Name of a built-in profile, or a file: segments in TOML or JSON, or measured points.
     profile: String,
-    /// Which body it is of; a built-in name says so itself.
+    /// Which body it is of; a built-in name says so itself, and so do files such as .ban, .whl, .prr, .prw.
     #[arg(long)]
     side: Option<Body>,
     #[command(flatten)]
@@ -56,6 +57,18 @@ impl Source {
 }
 
 impl SourceArguments {
+    /// Refuses to write over the profile's own file.
+    ///
+    /// # Errors
+    /// `out` is that file.
+    pub(super) fn refuse_output(&self, out: Option<&Path>) -> Result<()> {
+        let own = PathBuf::from(&self.profile);
+        match out {
+            Some(out) if own.exists() => refuse_taken("--out", out, &[own]),
+            _ => Ok(()),
+        }
+    }
+
     /// The profile.
     ///
     /// # Errors
@@ -74,18 +87,20 @@ impl SourceArguments {
             return self.built_in();
         }
         let options = self.measured.options()?;
-        let chain = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml") || e == "json");
         let side = self.side.map(Side::from);
-        if chain && options.format.is_none() {
+        if options.format.is_none() && scene::is_chain_file(path) {
             self.measured.reject(&self.profile)?;
             return Ok(Source { side, content: Content::Drawn(scene::profile_from_file(path)?) });
         }
-        let Some(known) = side else {
-            let (place, expected) = (&self.profile, "the body that a measured file is of");
-            return Err(Error::new(place, "no --side", expected, "give --side rail or --side wheel"));
-        };
         let options = Options { curve: options.curve.or(curve), ..options };
         let bytes = scene::read_bytes(path, measured::LARGEST_FILE)?;
+        let Some(known) =
+            side.map_or_else(|| measured::body(&self.profile, &bytes, &options), |side| Ok(Some(side)))?
+        else {
+            let (place, expected) =
+                (&self.profile, "the body that a measured file is of, where it does not say so");
+            return Err(Error::new(place, "no --side", expected, "give --side rail or --side wheel"));
+        };
         let measured = measured::profile(&self.profile, &bytes, known, &options)?;
         Ok(Source { side, content: Content::Measured(Box::new(measured)) })
     }
@@ -94,7 +109,9 @@ impl SourceArguments {
         let rail = standards::rail_names().any(|name| name == self.profile);
         if !rail && !standards::wheel_names().any(|name| name == self.profile) {
             let expected = "a file, or a name of `wheelrail profile list`";
-            return Err(Error::new(&self.profile, "neither", expected, "check the path or the spelling"));
+            let names: Vec<&str> = standards::rail_names().chain(standards::wheel_names()).collect();
+            let advice = scene::perhaps(&self.profile, &names);
+            return Err(Error::new(&self.profile, "no file and no built-in profile", expected, advice));
         }
         self.measured.reject(&self.profile)?;
         let (side, body) = if rail { (Side::Rail, Body::Rail) } else { (Side::Wheel, Body::Wheel) };

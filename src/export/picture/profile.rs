@@ -2,7 +2,8 @@
 
 use super::canvas::{Anchor, Canvas, Pen};
 use super::panel::{GREY, INK, Panel, SMALL, number};
-use super::{BOUNDARY, WHEEL, cut, heading, legend, range, svg};
+use super::{BOUNDARY, WHEEL, cut, heading, legend, png, range, svg};
+use crate::error::Result;
 
 const CURVE: Pen = Pen::new(WHEEL.colour, 1.4);
 const POINT: Pen = Pen::new(BOUNDARY.colour, 1.0);
@@ -38,6 +39,18 @@ pub struct ProfilePicture<'a> {
 impl ProfilePicture<'_> {
     /// The picture as SVG; without points it has no residual panel.
     pub fn svg(&self) -> String {
+        svg::document(&self.page())
+    }
+
+    /// The same as PNG, two pixels to the page unit.
+    ///
+    /// # Errors
+    /// What the encoder refuses, which would be a fault of this program.
+    pub fn png(&self) -> Result<Vec<u8>> {
+        png::encode(&self.page(), 2.0)
+    }
+
+    fn page(&self) -> Canvas {
         let mut page = Canvas { size: [900.0, 0.0], marks: Vec::new() };
         page.text([40.0, 42.0], cut(self.title, 80), 18.0, Anchor::Start, INK);
         page.text([40.0, 64.0], cut(self.about, 110), SMALL + 1.0, Anchor::Start, INK);
@@ -50,7 +63,7 @@ impl ProfilePicture<'_> {
         let foot = format!("wheelrail {}", env!("CARGO_PKG_VERSION"));
         page.text([LEFT + WIDTH, top], foot, 9.0, Anchor::End, GREY);
         page.size[1] = top + 20.0;
-        svg::document(&page)
+        page
     }
 
     /// Points and curve at true scale, as high as the profile's proportions ask for; returns the next panel's top.
