@@ -112,6 +112,7 @@ impl Scene {
             scene_hash: "0123456789abcdef".into(),
             approach: self.approach,
             frame: Frame::at(10.0, -0.2, 0.8, 0.6),
+            remarks: Vec::new(),
         };
         let folder = Folder::create(dir, RUN_FOLDER).unwrap();
         write_grid(&folder, &header, &grid);

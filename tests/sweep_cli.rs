@@ -68,7 +68,13 @@ fn bad_calls_end_with_code_2_and_leave_the_inputs() {
     std::os::unix::fs::symlink("scene.toml", here.join("link.toml")).unwrap();
     let range = ["--lateral", "0:1:1"];
     let listed = ["--positions", "positions.csv"];
-    let cases: [(&str, &[&str], &[&str], &str); 13] = [
+    std::fs::create_dir(here.join("folder")).unwrap();
+    // Another sweep that is at it.
+    let busy = std::fs::File::create(here.join(".busy.csv.partial")).unwrap();
+    busy.lock().unwrap();
+    let cases: [(&str, &[&str], &[&str], &str); 15] = [
+        ("scene.toml", &range, &["--out", "folder"], "found a folder or device"),
+        ("scene.toml", &range, &["--out", "busy.csv"], "found another sweep that writes it"),
         (
             "scene.toml",
             &["--positions", "down.csv"],

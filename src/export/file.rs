@@ -5,11 +5,13 @@ use std::path::Path;
 use crate::error::{Error, Result};
 
 /// Writes a file so that whoever looks finds the old content or the new one, each whole; what is no ordinary file (a pipe,
-/// a device) is written to as it is.
+/// a device) is written to as it is. Of a symbolic link the file behind it is replaced.
 ///
 /// # Errors
 /// Whatever the disk says; the old file is then as it was.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
+    let behind = path.canonicalize();
+    let path = behind.as_deref().unwrap_or(path);
     let written = if path.metadata().is_ok_and(|found| !found.is_file()) {
         std::fs::write(path, bytes)
     } else {
@@ -41,6 +43,11 @@ mod tests {
             write_file(&path, text.as_bytes())?;
             assert_eq!(std::fs::read_to_string(&path).unwrap_or_default(), text);
         }
+        let link = folder.join("link.svg");
+        std::os::unix::fs::symlink(&path, &link).unwrap_or_default();
+        write_file(&link, b"newest")?;
+        assert!(link.is_symlink() && std::fs::read(&path).is_ok_and(|text| text == b"newest"));
+        std::fs::remove_file(&link).unwrap_or_default();
         assert!(write_file(&folder.join("missing/curves.svg"), b"x").is_err());
         assert!(write_file(&folder, b"x").is_err());
         assert_eq!(std::fs::read_dir(&folder).map(Iterator::count).unwrap_or_default(), 1);

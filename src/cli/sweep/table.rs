@@ -1,7 +1,7 @@
 //! The table of a sweep, block by block, resumable.
 
 use std::fmt::Write as _;
-use std::fs::File;
+use std::fs::{File, TryLockError};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -80,19 +80,34 @@ impl Table {
     /// Writes a file block by block, going on where a stopped sweep of the same input left off; the file has its
     /// name only when it is complete.
     pub(super) fn write(&self, out: &Path) -> Result<Outcome> {
+        // The file behind a link is replaced, not the link.
+        let out = &out.canonicalize().unwrap_or_else(|_| out.to_path_buf());
+        if out.metadata().is_ok_and(|found| !found.is_file()) {
+            let (place, expected) = (out.display().to_string(), "an ordinary file, or nothing yet");
+            return Err(Error::new(place, "a folder or device", expected, "without --out rows go to stdout"));
+        }
         let partial = beside(out, "partial");
         let journal = beside(out, "progress");
         let broken = |error: std::io::Error| {
             Error::new(out.display().to_string(), error.to_string(), "a file written whole", "check the disk")
         };
+        let mut file =
+            File::options().create(true).write(true).truncate(false).open(&partial).map_err(broken)?;
+        if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
+            let (place, expected) = (out.display().to_string(), "one sweep at a time");
+            return Err(Error::new(
+                place,
+                "another sweep that writes it",
+                expected,
+                "give each its own --out",
+            ));
+        }
         let key = self.key();
         let resumed = resume(&journal, &partial, &key);
         let (done, length) = resumed.unwrap_or((0, 0));
         if done > 0 {
             complain(&format!("sweep: going on after {done} positions of an earlier run"));
         }
-        let mut file =
-            File::options().create(true).write(true).truncate(false).open(&partial).map_err(broken)?;
         file.set_len(length).map_err(broken)?;
         let mut length = length;
         std::io::Seek::seek(&mut file, std::io::SeekFrom::Start(length)).map_err(broken)?;
