@@ -6,7 +6,9 @@ mod common;
 use common::{Reference, ReferenceSegment, references};
 use wheelrail::accuracy::verification::{Subject, Verified, built_in_pairs, verify};
 use wheelrail::check::{Answer, Report, Request, check};
-use wheelrail::placement::Placement;
+use wheelrail::interpenetration::Window;
+use wheelrail::placement::{Pair, Placement};
+use wheelrail::profile::{Arc, Half, Polynomial, Profile, Segment, Shape, standards};
 use wheelrail::separation::Evaluator;
 
 /// What the checker must reach itself, so that its verdict means something \[mm\].
@@ -144,4 +146,91 @@ fn a_skew_left_out_is_caught() {
         let report = checked(&placement, &own, &request, |_, _, _| {});
         assert!(!report.agrees, "{}\n{report}", reference.name);
     }
+}
+
+/// A rail and a wheel \[mm\], in contact at chosen abscissae.
+fn pair(rail: Profile, wheel: Profile) -> Pair {
+    Pair::new(rail, wheel, 460.0).expect("finite profiles")
+}
+
+fn arc(radius: f64, half: f64) -> Profile {
+    let arc = Arc::about([0.0, -radius], radius, Half::Upper, [-half, half]).expect("an arc");
+    Profile::new("crown", "test", vec![Segment::arc(arc)]).expect("a profile")
+}
+
+fn window(xi: [f64; 2], eta: [f64; 2], approach: f64) -> Request {
+    Request { window: Window { xi, eta }, approach }
+}
+
+fn as_placed(placement: &Placement, request: &Request) -> Report {
+    checked(placement, placement, request, |_, _, _| {})
+}
+
+#[test]
+fn contact_at_an_edge_agrees() {
+    // The wheel's profile ends at x = 8, steeper than the crown there: ξ is tangent to the rail only.
+    let line = Arc::line([-30.0, 1.9], [8.0, 0.0]).expect("a line");
+    let wheel = Profile::new("edge", "test", vec![Segment::arc(line)]).expect("a profile");
+    let angle = -(8.0f64 / 300.0).asin();
+    let placement = pair(arc(300.0, 36.0), wheel).placed_along([8.0, angle], [8.0, angle], 0.0);
+    let placement = placement.expect("points of both");
+    assert!(placement.rail.is_smooth() && !placement.wheel.is_smooth());
+    let report = as_placed(&placement, &window([-5.0, 5.0], [-5.0, 5.0], 0.02));
+    assert!(report.agrees, "{report}");
+    // A smooth contact whose ξ is turned is still caught.
+    let mut turned = pair(arc(300.0, 36.0), arc(400.0, 36.0)).placed(0.0, 0.0, 0.0).expect("points of both");
+    turned.rail.point.station.sin = 1e-6;
+    let report = as_placed(&turned, &window([-5.0, 5.0], [-5.0, 5.0], 0.02));
+    assert!(!report.agrees, "{report}");
+}
+
+#[test]
+fn the_step_of_a_drawing_is_left_out_by_count() {
+    // S1002's zones A and B meet with a step of 2.8e-10 mm; the point over it is in every check.
+    let (rail, wheel) = (standards::rail("60E1"), standards::wheel("S1002"));
+    let pair = pair(rail.expect("built in"), wheel.expect("built in"));
+    for x in [4.0, 8.0, 12.0, 16.0] {
+        let placement = pair.placed(x, x, 0.0).expect("points of both");
+        let report = as_placed(&placement, &window([-20.0, 30.0], [-15.0, 15.0], 0.1));
+        assert!(report.agrees && report.counts.normals_at_steps > 0, "{x}\n{report}");
+        assert!(report.normals.compared > report.counts.compared, "{report}");
+    }
+}
+
+#[test]
+fn an_inflection_between_foot_and_closest_point_agrees() {
+    // The slope of z = x³ − 0.3x is least at x = 0, inside the piece and on the closest point's way.
+    let wave = Polynomial::graph(&[0.0, -0.3, 0.0, 1.0], [-0.6, 0.6]).expect("a cubic");
+    let segment = Segment { label: String::new(), shape: Shape::Polynomial(wave) };
+    let rail = Profile::new("wave", "test", vec![segment]).expect("a profile");
+    let placement = pair(rail, arc(300.0, 36.0)).placed(-0.316, 0.0, 0.0).expect("points of both");
+    let report = as_placed(&placement, &window([-0.2, 0.8], [-2.0, 2.0], 0.05));
+    assert!(report.agrees, "{report}");
+}
+
+#[test]
+fn a_check_without_any_closest_distance_does_not_agree() {
+    let placement = pair(arc(300.0, 36.0), arc(3000.0, 36.0)).placed(0.0, 0.0, 0.0).expect("points of both");
+    let report = as_placed(&placement, &window([28.0, 34.0], [-5.0, 5.0], 0.0));
+    assert_eq!((report.distances.violation.compared, report.agrees), (0, false), "{report}");
+}
+
+#[test]
+fn an_infeasible_scene_is_no_agreement_for_the_command() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = folder.path().join("scene.toml");
+    let text = "[rail]\nprofile = \"60E1\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n[contact]\nrail_x = 20.0\n\
+                wheel_x = -20.0\n[patch]\napproach = 0.1\n[grid]\nxi = { from = -10.0, to = 10.0, n = 21 }\n\
+                eta = { from = -10.0, to = 10.0, n = 21 }\n";
+    std::fs::write(&scene, text).expect("a file");
+    let command =
+        std::process::Command::new(env!("CARGO_BIN_EXE_wheelrail")).arg("check").arg(&scene).output();
+    let output = command.expect("the program");
+    let [said, complained] =
+        [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).expect("text"));
+    assert_eq!(output.status.code(), Some(1), "{said}{complained}");
+    assert!(
+        said.starts_with("contact: agrees") && complained.contains("infeasible contact"),
+        "{said}{complained}"
+    );
 }

@@ -3,7 +3,7 @@
 use super::meshes::{Hit, Mesh, Origin, Vector};
 use super::patch::{Patch, Place};
 use super::ray::{Height, foot, height};
-use super::sampler::Surface;
+use super::sampler::{Curve, Surface};
 
 /// Cells of the coarse mesh per local scale, least per curve, and around.
 const CELLS_PER_SCALE: f64 = 8.0;
@@ -12,7 +12,7 @@ const CELLS_AROUND: usize = 12;
 
 /// Within this share of the body's size from a segment's end the neighbour counts as well: rounding of the
 /// foot's position, which grows with the slope.
-const JOINT: f64 = 1e-11;
+pub(super) const JOINT: f64 = 1e-11;
 
 /// A foot is looked for on all curves that begin or end within this many coarse cells of the coarse hit.
 const NEARBY_CELLS: f64 = 2.0;
@@ -177,12 +177,16 @@ impl Solid {
             || (place.curve == last && place.t >= self.surface.curves[last].length - slack)
     }
 
-    /// Both sides of all joints between two places, at the v of each of the two.
-    pub fn joints_between(&self, a: &Place, b: &Place) -> Vec<Place> {
-        let (first, last) = if a.curve <= b.curve { (a, b) } else { (b, a) };
-        let sides =
-            (first.curve..last.curve).flat_map(|k| [(k, self.surface.curves[k].length), (k + 1, 0.0)]);
-        sides.flat_map(|(curve, t)| [a.v, b.v].map(|v| Place { curve, t, v })).collect()
+    /// Whether a drawing's step is as near as it is wide: a line along ζ may meet either side of it, or the step.
+    pub fn at_step(&self, place: &Place) -> bool {
+        let curves = &self.surface.curves;
+        let here = curves[place.curve].point(place.t);
+        let near = |end: [f64; 2], step: &Curve| {
+            (end[0] - here[0]).hypot(end[1] - here[1]) <= step.length + JOINT * self.surface.size
+        };
+        let of_step = |step: &&Curve| near(step.point(0.0), step) || near(step.point(step.length), step);
+        let around = place.curve.saturating_sub(1)..(place.curve + 2).min(curves.len());
+        curves[around].iter().filter(|curve| curve.is_step).any(|step| of_step(&step))
     }
 
     /// Where on the coarse mesh `point` is closest to, and the curves around.

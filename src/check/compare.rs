@@ -2,14 +2,15 @@
 
 use std::time::Instant;
 
-use super::body::{Found, STEEPEST, Solid};
-use super::closest::{Closest, of_bodies, to_point};
+use super::body::{Found, JOINT, STEEPEST, Solid};
+use super::closest::{of_bodies, to_point};
 use super::floor::{Floor, floors};
 use super::meshes::Vector;
 use super::patch::Place;
 use super::points::spread_points;
-use super::ray::{FIRST_CELL, Height, extrapolated, normal};
-use super::report::{Counts, Differences, Distances, Orders, RELATION, Report};
+use super::ray::{FIRST_CELL, Height, extrapolated};
+use super::relation::{Above, RELATION, normals_between};
+use super::report::{Counts, Differences, Distances, Orders, Report, largest};
 use super::sampler::{Curve, Surface};
 use super::{Answer, Request};
 use crate::error::{Error, Result};
@@ -68,7 +69,7 @@ pub fn check(
     }
     let distances = tally.distances(request.approach, placement.wheel_radius, answer);
     let contact_point = [&placement.rail, &placement.wheel].map(contact_point);
-    let contact_point = [0, 1].map(|k| contact_point[0][k].max(contact_point[1][k]));
+    let contact_point = [0, 1].map(|k| largest(contact_point.iter().map(|body| body[k])));
     let mut report = tally.report(distances, contact_point);
     report.seconds = start.elapsed().as_secs_f64();
     Ok(report)
@@ -84,7 +85,7 @@ fn smallest_radius(placement: &Placement) -> f64 {
     radii.fold(placement.rolling_radius() / 8.0, f64::min)
 }
 
-/// How far C and the frame's ξ axis are off the profile \[mm, rad\].
+/// How far C and the frame's ξ axis are off the profile \[mm, rad\]; at an edge ξ is no tangent, and 0 off.
 fn contact_point(body: &Body) -> [f64; 2] {
     let frame = body.point.station;
     let segment = &body.profile.segments()[body.point.segment];
@@ -102,7 +103,9 @@ fn contact_point(body: &Body) -> [f64; 2] {
     let tangent = extrapolated(chord).0;
     let turned = tangent.z * frame.cos - tangent.x * frame.sin;
     let [x, z] = curve.point(t);
-    [x.hypot(z), turned.abs()]
+    let slack = JOINT * body.profile.extent() / curve.speed(t);
+    let at_edge = !body.is_smooth() && (t <= slack || t >= curve.length - slack);
+    [x.hypot(z), if at_edge { 0.0 } else { turned.abs() }]
 }
 
 /// Everything measured so far.
@@ -127,7 +130,8 @@ type Compared = (f64, f64, [f64; 2]);
 #[derive(Clone, Copy)]
 struct Near {
     at: [f64; 2],
-    answer: Answer,
+    /// The program's s.
+    separation: f64,
     /// Places on the rail and on the wheel.
     places: [Place; 2],
     /// Points there.
@@ -153,7 +157,7 @@ impl<'a> Tally<'a> {
 
     /// Largest floor of one kind.
     fn floor(&self, kind: impl Fn(&Floor) -> f64) -> f64 {
-        self.floors.iter().map(kind).fold(0.0, f64::max)
+        largest(self.floors.iter().map(kind))
     }
 
     /// Rounding that the program may lose where the least normal has this ζ component \[mm\].
@@ -187,7 +191,7 @@ impl<'a> Tally<'a> {
     fn compare(&mut self, at: [f64; 2], answer: Answer, rail: &[Height], wheel: &[Height]) {
         let both = || rail.iter().chain(wheel);
         let least_normal = both().map(|h| h.normal.z).fold(1.0, f64::min);
-        let estimate = both().map(|h| h.error).fold(0.0, f64::max);
+        let estimate = largest(both().map(|h| h.error));
         let size = self.rail.surface.size.max(self.wheel.surface.size);
         if estimate.is_nan() || estimate > RESOLVED * size {
             self.counts.unresolved += 1;
@@ -202,19 +206,24 @@ impl<'a> Tally<'a> {
         let floor = self.floor(|f| f.ray_mm) / least_normal;
         self.separation.push((beyond(s, measured), SAFETY * floor.max(estimate) + rounding, at));
         let bracket = gap(wheel.iter().map(|h| h.bracket), rail.iter().map(|h| h.bracket));
-        if beyond(s, bracket) > rounding {
+        let outside = beyond(s, bracket);
+        if outside.is_nan() || outside > rounding {
             self.outside += 1;
         }
         if let ([rail], [wheel]) = (rail, wheel) {
             self.bracket = self.bracket.max(bracket[1] - bracket[0]);
             let points = [rail, wheel].map(|h| Vector::new(at[0], at[1], h.zeta));
-            self.near.push(Near { at, answer, places: [rail.place, wheel.place], points });
+            self.near.push(Near { at, separation: s, places: [rail.place, wheel.place], points });
         }
         self.compare_normals(self.rail, at, Vector::from_array(answer.normals.rail), rail);
         self.compare_normals(self.wheel, at, -Vector::from_array(answer.normals.wheel), wheel);
     }
 
     fn compare_normals(&mut self, solid: &Solid, at: [f64; 2], normal: Vector, heights: &[Height]) {
+        if heights.iter().any(|h| solid.at_step(&h.place)) {
+            self.counts.normals_at_steps += 1;
+            return;
+        }
         let floor = self.floor(|f| f.normal);
         let differences = heights.iter().map(|h| {
             // The direction of a drawing's step of a few nm has lost as many digits as the step is shorter.
@@ -224,8 +233,7 @@ impl<'a> Tally<'a> {
             (normal.distance(h.normal), allowed, at)
         });
         let least = differences.min_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)));
-        // A normal that is NaN differs by more than anything allowed.
-        self.normals.extend(least.map(|d| if d.0.is_nan() { (f64::INFINITY, d.1, d.2) } else { d }));
+        self.normals.extend(least);
     }
 
     /// Closest distances of points of each body from the other, and of the bodies.
@@ -235,37 +243,38 @@ impl<'a> Tally<'a> {
         wheel_radius: f64,
         answer: &mut dyn FnMut(f64, f64) -> Answer,
     ) -> Distances {
-        let close = |n: &&Near| n.answer.separation.abs() <= NEARBY * wheel_radius;
+        let none = Distances { bodies_mm: f64::NAN, ..Distances::default() };
+        let close = |n: &&Near| n.separation.abs() <= NEARBY * wheel_radius;
         let near: Vec<&Near> = self.near.iter().filter(close).collect();
-        let least = near.iter().min_by(|a, b| a.answer.separation.total_cmp(&b.answer.separation));
-        let Some(least) = least else {
-            return Distances { bodies_mm: f64::NAN, ..Distances::default() };
+        let Some(least) = near.iter().min_by(|a, b| a.separation.total_cmp(&b.separation)) else {
+            return none;
         };
-        let lift = approach + LIFT * wheel_radius - least.answer.separation.min(0.0);
+        let lift = approach + LIFT * wheel_radius - least.separation.min(0.0);
         let surface = self.wheel.surface.lifted(lift);
-        let Some(wheel) = Solid::new(surface, self.wheel.reach) else { return Distances::default() };
-        let mut relation = Relation { tally: self, lift, all: Vec::new(), widest: 0.0 };
+        let Some(wheel) = Solid::new(surface, self.wheel.reach) else { return none };
+        let mut relation = Relation { tally: self, all: Vec::new(), widest: 0.0 };
         let every = near.len().div_ceil(DISTANCES);
         for n in near.iter().step_by(every) {
-            let above = Above {
-                at: n.at,
-                answer: n.answer,
-                point: n.points[1] + Vector::Z * lift,
-                place: n.places[0],
-            };
-            relation.hold(self.rail, &above, to_point(self.rail, above.point), answer);
-            let below = Above { point: n.points[0], place: n.places[1], ..above };
-            relation.hold(&wheel, &below, to_point(&wheel, below.point), answer);
+            let separation = n.separation + lift;
+            let point = n.points[1] + Vector::Z * lift;
+            relation.hold(self.rail, &Above { at: n.at, separation, point, foot: n.places[0] });
+            relation.hold(&wheel, &Above { at: n.at, separation, point: n.points[0], foot: n.places[1] });
         }
-        let mut out = Distances { lift_mm: lift, bodies_mm: f64::NAN, ..Distances::default() };
+        let mut out = Distances { lift_mm: lift, ..none };
         if let Some([below, above]) = of_bodies(self.rail, &wheel, least.places) {
             let at = [above.point.x, above.point.y];
-            let there = answer(at[0], at[1]);
-            let foot = Above { at, answer: there, point: above.point, place: below.place };
-            relation.hold(self.rail, &foot, to_point(self.rail, above.point), answer);
             out.bodies_mm = above.point.distance(below.point);
             out.bodies_at_mm = at;
-            out.bodies_separation_mm = there.separation + lift;
+            out.bodies_separation_mm = answer(at[0], at[1]).separation + lift;
+            // At the end of a body the foot along ζ comes and goes with rounding.
+            let foot = match self.rail.along_zeta(at[0], at[1]) {
+                Found::Heights(rail) if !wheel.at_end(&above.place) => Some(rail[0].place),
+                _ => None,
+            };
+            if let Some(foot) = foot.filter(|foot| !self.rail.at_end(foot)) {
+                let (separation, point) = (out.bodies_separation_mm, above.point);
+                relation.hold(self.rail, &Above { at, separation, point, foot });
+            }
         }
         out.widest_mm = relation.widest;
         out.violation = Differences::of(&relation.all);
@@ -298,59 +307,22 @@ impl<'a> Tally<'a> {
 /// The relation between distances along ζ and closest distances, point by point.
 struct Relation<'a> {
     tally: &'a Tally<'a>,
-    lift: f64,
     all: Vec<Compared>,
     widest: f64,
 }
 
-/// A point of one body over (or under) the other.
-struct Above {
-    at: [f64; 2],
-    answer: Answer,
-    point: Vector,
-    /// The foot along ζ on the other body.
-    place: Place,
-}
-
 impl Relation<'_> {
-    /// s·min(n) ≤ d ≤ s·max(n) between a point and the body `solid`.
-    ///
-    /// The distance grows along ζ by the normal's ζ component at the closest point, d = ∫ n ds: n between its
-    /// values at both feet where the curvature keeps its sign, and at the joints on the way.
-    fn hold(
-        &mut self,
-        solid: &Solid,
-        above: &Above,
-        closest: Option<Closest>,
-        answer: &mut dyn FnMut(f64, f64) -> Answer,
-    ) {
-        let Some(closest) = closest else { return self.all.push((f64::INFINITY, 1.0, above.at)) };
-        let s = above.answer.separation + self.lift;
-        let component =
-            |a: Answer| if solid.surface.is_wheel() { -a.normals.wheel[2] } else { a.normals.rail[2] };
-        let mut n = vec![component(above.answer)];
-        if solid.at_joint(&closest.place) {
-            // At an edge the closest direction is any between the neighbours' normals.
-            n.push((above.point.z - closest.point.z).abs() / closest.distance);
-        } else {
-            n.push(component(answer(closest.point.x, closest.point.y)));
-        }
-        n.extend(
-            solid
-                .joints_between(&above.place, &closest.place)
-                .iter()
-                .map(|place| normal(&solid.surface, *place).0.z),
-        );
-        let (least, most) =
-            n.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &n| (a.min(n), b.max(n)));
-        let interval = [s * least, s * most];
+    /// s·min n ≤ d ≤ s·max n between a point and the body `solid`.
+    fn hold(&mut self, solid: &Solid, above: &Above) {
+        let Some(closest) = to_point(solid, above.point) else {
+            return self.all.push((f64::INFINITY, 1.0, above.at));
+        };
+        let n = normals_between(solid, above, &closest, self.tally.rounding(1.0));
+        let interval = n.map(|n| above.separation * n);
         self.widest = self.widest.max(interval[1] - interval[0]);
         let floor = self.tally.floor(|f| f.closest_mm);
-        let allowed = SAFETY * (floor + closest.error) + self.tally.rounding(least.max(STEEPEST));
-        let violation = beyond(closest.distance, interval);
-        // NaN, where the program has no normal, is no agreement.
-        let bad = n.iter().any(|n| n.is_nan()) || violation.is_nan();
-        self.all.push((if bad { f64::INFINITY } else { violation }, allowed, above.at));
+        let allowed = SAFETY * (floor + closest.error) + self.tally.rounding(n[0].max(STEEPEST));
+        self.all.push((beyond(closest.distance, interval), allowed, above.at));
     }
 }
 
@@ -362,7 +334,7 @@ fn gap(wheel: impl Iterator<Item = [f64; 2]>, rail: impl Iterator<Item = [f64; 2
     [wheel[0] - rail[1], wheel[1] - rail[0]]
 }
 
-/// How far a value lies outside an interval.
+/// How far a value lies outside an interval; NaN where anything is.
 fn beyond(value: f64, [low, high]: [f64; 2]) -> f64 {
-    (low - value).max(value - high).max(0.0)
+    largest([low - value, value - high])
 }

@@ -9,6 +9,7 @@ use twofloat::TwoFloat;
 use super::body::{Found, Solid};
 use super::closest::to_point;
 use super::meshes::Vector;
+use super::report::largest;
 use super::sampler::Surface;
 use crate::error::Result;
 use crate::placement::{Pair, Placement};
@@ -67,7 +68,7 @@ pub(super) fn floors(radius: f64, wheel_radius: f64) -> Result<Vec<Floor>> {
 
 fn measure(solid: &Solid, exact: &Implicit, form: &'static str, reach: f64) -> Floor {
     let mut floor = Floor { form, ray_mm: 0.0, normal: 0.0, closest_mm: 0.0 };
-    let worse = |worst: &mut f64, error: f64| *worst = if error > *worst { error } else { *worst };
+    let worse = |worst: &mut f64, error: f64| *worst = largest([*worst, error]);
     for i in 0..RAYS * RAYS {
         let at = |k: i32| reach * f64::from(2 * k - RAYS + 1) / f64::from(RAYS - 1);
         let (xi, eta) = (at(i / RAYS), at(i % RAYS));

@@ -12,12 +12,14 @@ mod meshes;
 mod patch;
 mod points;
 mod ray;
+mod relation;
 mod report;
 mod sampler;
 
 pub use compare::check;
 pub use floor::Floor;
-pub use report::{Counts, Differences, Distances, Orders, RELATION, Report};
+pub use relation::RELATION;
+pub use report::{Counts, Differences, Distances, Orders, Report};
 
 use crate::interpenetration::Window;
 use crate::separation::{Evaluator, Normals};

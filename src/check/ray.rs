@@ -148,7 +148,7 @@ fn bracket(surface: &Surface, place: Place, xi: f64, eta: f64) -> Option<([f64; 
 }
 
 /// Normal of the cell centred on the place, its diagonals' cross product: even in h, so that h², h⁴, … go.
-pub(super) fn normal(surface: &Surface, place: Place) -> (Vector, f64) {
+fn normal(surface: &Surface, place: Place) -> (Vector, f64) {
     let h = FIRST_CELL * surface.curves[place.curve].scale;
     let k = surface.v_cell(place.curve, place.t, h);
     let of_cell = |share: f64| {

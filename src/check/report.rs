@@ -6,10 +6,6 @@ use serde::Serialize;
 
 use super::floor::Floor;
 
-/// The relation between the distance along ζ and the closest distance.
-pub const RELATION: &str = "s*min(n0, n1) <= d <= s*max(n0, n1), n0 and n1 the zeta components of the unit \
-                            normals at the foot along zeta and at the closest point, and at joints between";
-
 /// Order at which chordal errors fall, and how far the median of the observed ones may be from it.
 const EXPECTED_ORDER: f64 = 2.0;
 const ORDER_SPREAD: f64 = 0.1;
@@ -63,7 +59,7 @@ pub struct Distances {
     pub bodies_mm: f64,
     /// (ξ, η) of the wheel's foot of it \[mm\].
     pub bodies_at_mm: [f64; 2],
-    /// Separation at that foot, lift included \[mm\]: the relation's s.
+    /// Separation at that foot, lift included \[mm\]: the relation's s; NaN at the end of a body.
     pub bodies_separation_mm: f64,
 }
 
@@ -82,6 +78,8 @@ pub struct Counts {
     pub surface_disputed: usize,
     /// Where the checker could not pin its own answer down: counts as a failure.
     pub unresolved: usize,
+    /// Normals left out at the step of a drawing, where either side's and the step's own are right.
+    pub normals_at_steps: usize,
 }
 
 /// The result of a check.
@@ -109,7 +107,7 @@ pub struct Report {
     pub normals: Differences,
     /// Distance of C from the profiles \[mm\] and angle between the frame's ξ axis and their tangents \[rad\].
     pub contact_point: [f64; 2],
-    /// [`RELATION`].
+    /// [`RELATION`](super::RELATION).
     pub relation: &'static str,
     /// Closest distances.
     pub distances: Distances,
@@ -118,8 +116,10 @@ pub struct Report {
 }
 
 impl Differences {
-    /// From (difference, allowed, (ξ, η)).
+    /// From (difference, allowed, (ξ, η)); NaN differs by more than anything.
     pub(super) fn of(all: &[(f64, f64, [f64; 2])]) -> Self {
+        let number = |difference: f64| if difference.is_nan() { f64::INFINITY } else { difference };
+        let all: Vec<_> = all.iter().map(|d| (number(d.0), d.1, d.2)).collect();
         let Some(worst) = all.iter().max_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1))) else {
             return Self::default();
         };
@@ -138,9 +138,21 @@ impl Differences {
         }
     }
 
-    /// Whether no difference is larger than allowed.
+    /// Whether something was compared and no difference is larger than allowed.
     pub fn within(&self) -> bool {
-        self.compared == 0 || self.worst <= self.allowed
+        self.compared > 0 && self.worst <= self.allowed
+    }
+
+    /// What is wrong with them, in `unit`.
+    fn objection(&self, what: &str, unit: &str) -> Option<String> {
+        let [xi, eta] = self.worst_at_mm;
+        let (worst, allowed) = (self.worst, self.allowed);
+        if self.compared == 0 {
+            return Some(format!("{what}: nothing could be compared; expected at least one point"));
+        }
+        (!self.within()).then(|| {
+            format!("{what}: {worst:.2e}{unit} off at ξ = {xi:.6}, η = {eta:.6} mm; expected at most {allowed:.1e}{unit}")
+        })
     }
 }
 
@@ -159,87 +171,153 @@ impl Report {
     /// Lists every objection; the pair agrees when there is none. `resolved`: largest error \[mm\] the checker may
     /// have itself; `rounding`: of coordinates \[mm\].
     pub(super) fn judge(&mut self, resolved: f64, rounding: f64) {
-        let mut object = |wrong: bool, objection: String| {
-            if wrong {
-                self.objections.push(objection);
+        let counts = self.counts;
+        let mut objections: Vec<String> = [
+            self.separation.objection("separation", " mm"),
+            // Where every point is at a step there is no normal to compare.
+            self.normals
+                .objection("unit normals", "")
+                .filter(|_| self.normals.compared > 0 || counts.compared == 0),
+            self.distances.violation.objection("closest distances", " mm"),
+        ]
+        .into_iter()
+        .flatten()
+        .collect();
+        let mut object = |right: bool, objection: String| {
+            if !right {
+                objections.push(objection);
             }
         };
-        let worst = |d: &Differences| {
-            format!("off by {:e}, more than {:e}, at ξ, η = {:?} mm", d.worst, d.allowed, d.worst_at_mm)
-        };
-        let counts = self.counts;
-        object(!self.separation.within(), format!("separation {} (mm)", worst(&self.separation)));
-        object(!self.normals.within(), format!("unit normal {}", worst(&self.normals)));
+        let bodies = self.distances.bodies_mm;
+        object(bodies.is_finite(), "closest distance of the bodies: not found; expected a number".into());
+        let outside = self.outside_bracket;
         object(
-            !self.distances.violation.within(),
-            format!("relation {} (mm)", worst(&self.distances.violation)),
+            outside == 0,
+            format!("separation: {outside} outside the bracket of the meshes; expected none"),
         );
+        let disputed = counts.surface_disputed;
         object(
-            self.outside_bracket > 0,
-            format!("{} separations outside their bracket", self.outside_bracket),
+            disputed == 0,
+            format!("surface: {disputed} points where only one of both finds one; expected none"),
         );
+        let unresolved = counts.unresolved;
+        object(unresolved == 0, format!("checker: {unresolved} points it could not resolve; expected none"));
+        let [off, turned] = self.contact_point;
+        object(off <= rounding, format!("C: {off:.2e} mm off a profile; expected at most {rounding:.1e} mm"));
+        let tangent = format!(
+            "ξ: turned by {turned:.2e} rad from a profile's tangent at C; expected at most {TANGENT:.1e}"
+        );
+        object(turned <= TANGENT, tangent);
+        let median = self.orders.median;
+        let order = self.orders.observed == 0 || (median - EXPECTED_ORDER).abs() <= ORDER_SPREAD;
+        object(order, format!("meshes: they converge with order {median:.3}; expected {EXPECTED_ORDER}"));
+        let floor = largest(self.floors.iter().flat_map(|f| [f.ray_mm, f.closest_mm]));
         object(
-            counts.surface_disputed > 0,
-            format!("{} points with a surface for one only", counts.surface_disputed),
+            floor <= resolved,
+            format!("checker: {floor:.1e} mm off on closed forms; expected at most {resolved:.1e} mm"),
         );
-        object(counts.unresolved > 0, format!("{} points not resolved by the checker", counts.unresolved));
-        object(counts.compared == 0, "no point could be compared".into());
-        object(
-            self.contact_point[0] > rounding,
-            format!("C is {:e} mm off a profile", self.contact_point[0]),
-        );
-        let turned = self.contact_point[1] > TANGENT;
-        object(turned, format!("ξ is turned from a profile's tangent by {:e} rad", self.contact_point[1]));
-        let order = self.orders.observed > 0 && (self.orders.median - EXPECTED_ORDER).abs() > ORDER_SPREAD;
-        object(order, format!("meshes converge with order {}", self.orders.median));
-        let floor = self.floors.iter().map(|f| f.ray_mm.max(f.closest_mm)).fold(0.0, f64::max);
-        object(floor.is_nan() || floor > resolved, format!("the checker's own floor is {floor:e} mm"));
-        self.agrees = self.objections.is_empty();
+        self.agrees = objections.is_empty();
+        self.objections = objections;
     }
 }
 
+/// The largest of numbers ≥ 0: 0 of none, NaN where one is.
+pub(super) fn largest(all: impl IntoIterator<Item = f64>) -> f64 {
+    all.into_iter().fold(0.0, |a: f64, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) })
+}
+
+/// The whole report, to be read after the name of the contact.
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "floor of the checker on closed forms of this size (mm; normals as unit vectors):")?;
-        for Floor { form, ray_mm, normal, closest_mm } in &self.floors {
-            writeln!(f, "  {form:<9} rays {ray_mm:8.1e}  closest {closest_mm:8.1e}  normals {normal:8.1e}")?;
-        }
-        let Counts { points, compared, no_surface, steep_or_end, surface_disputed, unresolved } = self.counts;
+        let verdict = if self.agrees { "agrees" } else { "DISAGREES" };
+        writeln!(f, "{verdict} with triangle meshes measured by parry3d, {:.2} s", self.seconds)?;
+        self.objections.iter().try_for_each(|objection| writeln!(f, "  objection: {objection}"))?;
+        self.counts.lines(f)?;
+        row(f, "|s - s by rays|", "mm", &self.separation)?;
+        row(f, "|n - n of the meshes|", "", &self.normals)?;
+        row(f, "d outside its range", "mm", &self.distances.violation)?;
         writeln!(
             f,
-            "points {points}: {compared} compared, {no_surface} without surface, {steep_or_end} steep or at an \
-             end, {surface_disputed} disputed, {unresolved} unresolved"
+            "    d: closest distance of a point of one body from the other; its range: {}",
+            self.relation
         )?;
-        row(f, "separation (mm)", &self.separation)?;
-        row(f, "unit normals", &self.normals)?;
-        row(f, "relation (mm)", &self.distances.violation)?;
+        writeln!(f, "    widest range {:.1e} mm", self.distances.widest_mm)?;
+        let Distances { lift_mm, bodies_mm, bodies_separation_mm, .. } = self.distances;
         writeln!(
             f,
-            "bracket of s: at most {:.1e} mm wide; {} outside",
+            "  bodies: {bodies_mm:.6} mm apart with the wheel lifted by {lift_mm:.6} mm; along ζ from there {}",
+            if bodies_separation_mm.is_nan() {
+                "no surface, at the end of a body".into()
+            } else {
+                format!("{bodies_separation_mm:.6} mm")
+            }
+        )?;
+        writeln!(
+            f,
+            "  rigorous bounds of s: at most {:.1e} mm apart, {} s outside",
             self.bracket_mm, self.outside_bracket
         )?;
         let Orders { observed, least, median, most } = self.orders;
-        writeln!(f, "observed order: {least:.3} to {most:.3}, median {median:.3}, of {observed}")?;
-        let [off, turned] = self.contact_point;
-        writeln!(f, "contact point: {off:.1e} mm off the profiles, tangent {turned:.1e} rad off")?;
-        writeln!(f, "relation: {}; at most {:.1e} mm wide", self.relation, self.distances.widest_mm)?;
         writeln!(
             f,
-            "bodies lifted by {} mm: {} mm apart, {} along zeta",
-            self.distances.lift_mm, self.distances.bodies_mm, self.distances.bodies_separation_mm
+            "  error of the meshes ~ cell^p: p = {median:.2} in the middle of {observed} points, {least:.2} to \
+             {most:.2}; expected {EXPECTED_ORDER}"
         )?;
-        for objection in &self.objections {
-            writeln!(f, "objection: {objection}")?;
-        }
-        writeln!(f, "verdict: {}", if self.agrees { "agrees" } else { "does not agree" })
+        let [off, turned] = self.contact_point;
+        writeln!(
+            f,
+            "  C: {off:.1e} mm off the profiles; ξ {turned:.1e} rad off their tangents where smooth"
+        )?;
+        writeln!(f, "  the checker's own errors on bodies of known shape and this size:")?;
+        self.floors.iter().try_for_each(|Floor { form, ray_mm, normal, closest_mm }| {
+            writeln!(
+                f,
+                "    {form:<9} rays {ray_mm:.1e} mm, normals {normal:.1e}, closest points {closest_mm:.1e} mm"
+            )
+        })
     }
 }
 
-fn row(f: &mut fmt::Formatter<'_>, name: &str, d: &Differences) -> fmt::Result {
-    let [xi, eta] = d.worst_at_mm;
+impl Counts {
+    fn lines(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "  points: {} of {} compared", self.compared, self.points)?;
+        let reasons = [
+            (self.no_surface, "points where program and meshes find no surface"),
+            (self.steep_or_end, "points at the end of a body, or where it is within 1.2° of the ζ direction"),
+            (self.surface_disputed, "points where only one of both finds a surface"),
+            (self.unresolved, "points that the checker could not resolve"),
+            (self.normals_at_steps, "normals at a step of a drawing, where several are right"),
+        ];
+        let reasons = reasons.iter().filter(|(count, _)| *count > 0);
+        reasons.into_iter().try_for_each(|(count, reason)| writeln!(f, "    left out: {count} {reason}"))
+    }
+}
+
+fn row(f: &mut fmt::Formatter<'_>, name: &str, unit: &str, d: &Differences) -> fmt::Result {
+    let ([xi, eta], Differences { compared, max, p99, median, worst, allowed, .. }) = (d.worst_at_mm, *d);
+    if compared == 0 {
+        return writeln!(f, "  {name:<22} none compared");
+    }
     writeln!(
         f,
-        "{name:<16} max {:8.1e}  99 % {:8.1e}  median {:8.1e}  of {}; worst {:.1e} (allowed {:.1e}) at ({xi}, {eta})",
-        d.max, d.p99, d.median, d.compared, d.worst, d.allowed
+        "  {name:<22} largest {max:.1e}, 99 % up to {p99:.1e}, half up to {median:.1e} {unit:<2} of {compared}; \
+         nearest to its limit: {worst:.1e} of {allowed:.1e} at ξ = {xi:.4}, η = {eta:.4} mm"
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_compared_and_nan_are_no_agreement() {
+        assert!(!Differences::default().within());
+        for bad in [(f64::NAN, 1.0), (0.0, f64::NAN), (f64::INFINITY, f64::INFINITY)] {
+            let all = [(0.0, 1.0, [0.0; 2]), (bad.0, bad.1, [1.0; 2])];
+            let found = Differences::of(&all);
+            assert!(!found.within() || bad.1.is_infinite(), "{bad:?}: {found:?}");
+        }
+        assert!(largest([1.0, f64::NAN, 2.0]).is_nan());
+        assert_eq!(largest([]), 0.0);
+    }
 }

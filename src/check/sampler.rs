@@ -21,6 +21,10 @@ pub(super) struct Curve {
     pub length: f64,
     /// The parameter range over which the curve turns or stretches by about one: a radius, or its length.
     pub scale: f64,
+    /// A bound of its arc length \[mm\].
+    pub longest: f64,
+    /// Whether it is the straight line over a drawing's step.
+    pub is_step: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -41,14 +45,15 @@ impl Curve {
             Shape::Polynomial(polynomial) => {
                 let length = polynomial.t[1] - polynomial.t[0];
                 let shape = Form::Polynomial { polynomial: polynomial.clone(), origin };
-                Self { shape, length, scale: length }.with_scale_of_polynomial(polynomial)
+                let curve = Self { shape, length, scale: length, longest: length, is_step: false };
+                curve.with_scale_of_polynomial(polynomial)
             }
         }
     }
 
     fn turning(start: &Station, curvature: f64, length: f64, scale: f64, [x, z]: [f64; 2]) -> Self {
         let start = Station { x: start.x - x, z: start.z - z, ..*start };
-        Self { shape: Form::Turning { start, curvature }, length, scale }
+        Self { shape: Form::Turning { start, curvature }, length, scale, longest: length, is_step: false }
     }
 
     /// The smaller of the parameter range and the sharpest of nine radii, in units of the parameter.
@@ -59,6 +64,8 @@ impl Curve {
             let speed = self.speed(t - a);
             self.scale = self.scale.min((polynomial.curvature(t) * speed).abs().recip());
         }
+        let half = self.length / 2.0;
+        self.longest = self.length * (self.speed(half) + self.bend(half, half) * half);
         self
     }
 
@@ -67,7 +74,8 @@ impl Curve {
         let (dx, dz) = (to[0] - from[0], to[1] - from[1]);
         let length = dx.hypot(dz);
         let start = Station { x: from[0], z: from[1], cos: dx / length, sin: dz / length };
-        Self { shape: Form::Turning { start, curvature: 0.0 }, length, scale: length }
+        let shape = Form::Turning { start, curvature: 0.0 };
+        Self { shape, length, scale: length, longest: length, is_step: true }
     }
 
     /// (x − x_C, z − z_C) \[mm\] in profile axes. Beyond its ends the curve goes on as it is.
@@ -87,6 +95,14 @@ impl Curve {
                 let station = polynomial.station(polynomial.t[0] + t);
                 [station.x - origin[0], station.z - origin[1]]
             }
+        }
+    }
+
+    /// Angle \[rad\] of the tangent in profile axes.
+    pub fn angle(&self, t: f64) -> f64 {
+        match &self.shape {
+            Form::Turning { start, curvature } => start.angle() + t * curvature,
+            Form::Polynomial { polynomial, .. } => polynomial.station(polynomial.t[0] + t).angle(),
         }
     }
 
@@ -221,6 +237,29 @@ impl Surface {
     pub fn v_reach(&self, reach: f64) -> f64 {
         // The chord of an angle is at least 2/π of its arc.
         reach * std::f64::consts::FRAC_PI_2
+    }
+
+    /// \[least, largest\] ζ component of the unit normals of points up to `reach` from one at v and height `z` over C,
+    /// where the profile's tangents have angles \[rad\] between `tilts`.
+    ///
+    /// n = cosψ cosφ cosθ + sinψ sinθ at the tangent's angle ψ, turned about the axle by φ.
+    pub fn normals_between(&self, tilts: [f64; 2], v: f64, z: f64, reach: f64) -> [f64; 2] {
+        let turned = self.wheel.map_or([0.0; 2], |Wheel { axle, .. }| {
+            // The chord of an angle is at least 2/π of its arc.
+            let (turn, away) = ((v / axle).abs(), reach * std::f64::consts::FRAC_PI_2 / (axle - z - reach));
+            [(turn - away).max(0.0), turn + away]
+        });
+        let mut out = [f64::INFINITY, f64::NEG_INFINITY];
+        for cos in turned.map(f64::cos) {
+            let (up, along) = (cos * self.cos, self.sin);
+            let crest = along.atan2(up);
+            let at = |tilt: f64| up * tilt.cos() + along * tilt.sin();
+            let highest = (tilts[0] < crest && crest < tilts[1]).then(|| up.hypot(along));
+            for n in tilts.map(at).into_iter().chain(highest) {
+                out = [out[0].min(n), out[1].max(n)];
+            }
+        }
+        out
     }
 
     /// Cell size in v \[mm\] whose sagitta is that of a cell of `h` parameter units in t.

@@ -1,69 +1,45 @@
 //! `wheelrail check`: every contact of a scene against triangle meshes measured by parry3d.
 
-use std::fmt::Write;
 use std::path::Path;
 
-use super::{Outcome, folder_of, print};
-use crate::check::{Answer, Differences, Report, Request, check as compare};
+use super::{Outcome, complain, folder_of, print};
+use crate::check::{Answer, Report, Request, check as compare};
 use crate::error::Result;
-use crate::interpenetration::Window;
 use crate::run::{Part, Run};
 use crate::scene;
 use crate::separation::Evaluator;
 
-/// Checks a scene; exit code 1 where something disagrees.
+/// Checks a scene; exit code 1 where something disagrees, and where `run` says no: then there is nothing worth
+/// agreeing on.
 pub(super) fn check(path: &Path) -> Result<Outcome> {
     let run = Run::new(scene::load(path)?, folder_of(path), "check").map_err(|e| e.within(path.display()))?;
     let mut agrees = true;
     for part in &run.parts {
         let report = check_part(part)?;
         agrees &= report.agrees;
-        print(&text(&part.folder, &report))?;
+        print(&format!("{}: {report}", name(part)))?;
     }
-    Ok(if agrees { Outcome::Done } else { Outcome::No })
+    let refusals = run.refusals();
+    for refusal in &refusals {
+        complain(&format!("no: {refusal}"));
+    }
+    Ok(if agrees && refusals.is_empty() { Outcome::Done } else { Outcome::No })
 }
 
 fn check_part(part: &Part) -> Result<Report> {
     let placement = &part.contact.placement;
-    let ends = |values: &[f64]| [values[0], values[values.len() - 1]];
-    let window = Window { xi: ends(&part.analysis.xi), eta: ends(&part.analysis.eta) };
     let approach = part.contact.approach.map_or(0.0, |(approach, _)| approach);
     let mut evaluator = Evaluator::new(placement);
-    compare(placement, &Request { window, approach }, &mut |xi, eta| Answer::of(&mut evaluator, xi, eta))
+    let request = Request { window: part.analysis.window(), approach };
+    compare(placement, &request, &mut |xi, eta| Answer::of(&mut evaluator, xi, eta))
 }
 
-fn text(folder: &str, report: &Report) -> String {
-    let mut out = String::new();
-    let name = if folder.is_empty() { "first contact" } else { folder };
-    let verdict = if report.agrees { "agrees" } else { "DISAGREES" };
-    let _ = writeln!(out, "{name}: {verdict} with parry3d's meshes, {:.2} s", report.seconds);
-    let counts = &report.counts;
-    let _ = writeln!(out, "  points compared {}, of {}", counts.compared, counts.points);
-    let mut row = |what: &str, unit: &str, d: &Differences| {
-        let _ = writeln!(
-            out,
-            "  {what:<24} max {:8.1e}  99 % {:8.1e}  median {:8.1e} {unit}; worst at xi = {:.4}, eta = {:.4} mm",
-            d.max, d.p99, d.median, d.worst_at_mm[0], d.worst_at_mm[1]
-        );
-    };
-    row("|separation - rays|", "mm", &report.separation);
-    row("|normals - meshes|", "  ", &report.normals);
-    row("closest against zeta", "mm", &report.distances.violation);
-    let _ = writeln!(out, "  relation: {}", report.relation);
-    let _ = writeln!(
-        out,
-        "  bracket of s at most {:.1e} mm wide, {} outside; observed order {:.2}",
-        report.bracket_mm, report.outside_bracket, report.orders.median
-    );
-    for floor in &report.floors {
-        let _ = writeln!(
-            out,
-            "  floor on a {:<10} rays {:8.1e} mm, closest points {:8.1e} mm",
-            floor.form, floor.ray_mm, floor.closest_mm
-        );
+/// Side and number of a contact that was found; which part of the patch, where a chosen one has several grids.
+fn name(part: &Part) -> String {
+    match &part.found {
+        Some(found) if found.side == "single" => format!("contact {}", found.contact),
+        Some(found) => format!("{} side, contact {}", found.side, found.contact),
+        None if part.folder.is_empty() => "contact".into(),
+        None => format!("contact, {}", part.folder),
     }
-    for objection in &report.objections {
-        let _ = writeln!(out, "  objection: {objection}");
-    }
-    out
 }
