@@ -98,7 +98,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
         let title = scene.title.as_deref().unwrap_or(&name);
         let picture = curves::picture(&table, title)?;
         let bytes = match PictureFormat::of_file("--picture", file)? {
-            PictureFormat::Png => picture.png()?,
+            PictureFormat::Png => picture.png().map_err(|error| error.within(file.display()))?,
             PictureFormat::Svg => picture.svg().into_bytes(),
         };
         write_file(file, &bytes)?;

@@ -24,12 +24,8 @@ pub(super) fn encode(canvas: &Canvas, scale: f64) -> Result<Vec<u8>> {
 }
 
 fn refused(found: &str) -> Error {
-    Error::new(
-        "patch.png",
-        found,
-        "a picture",
-        "report this as a fault of wheelrail, use patch.svg meanwhile",
-    )
+    let advice = "report this as a fault of wheelrail, take the picture as SVG meanwhile";
+    Error::new("PNG", found, "a picture", advice)
 }
 
 struct Glyph {
