@@ -4,7 +4,7 @@ use super::table::Table;
 use crate::contact::search::wheelset::Position;
 use crate::contact::sweep::{Row, Sweep, TrackSide};
 use crate::error::{Error, Result};
-use crate::export::picture::curves::{Curve, CurvesPicture, Quantity};
+use crate::export::picture::curves::{Curve, CurvesPicture, Quantity, jumps};
 
 /// At most so many positions are drawn, evenly chosen: more than a page has pixels.
 const MOST_DRAWN: usize = 2000;
@@ -12,11 +12,11 @@ const MOST_DRAWN: usize = 2000;
 /// A quantity of a row.
 type Value = fn(&Row) -> f64;
 
-/// Quantities of a position, as its first row has them.
-const OF_POSITION: [(&str, &str, Value); 3] = [
-    ("Rolling radius difference, right less left", "Δr [mm]", |row| row.delta_r),
-    ("Equivalent conicity at this amplitude", "tan γ [1]", |row| row.conicity),
-    ("Roll", "roll [mrad]", |row| 1e3 * row.roll),
+/// Quantities of a position, as its first row has them; whether they jump where a contact does.
+const OF_POSITION: [(&str, &str, Value, bool); 3] = [
+    ("Rolling radius difference, right less left", "Δr [mm]", |row| row.delta_r, true),
+    ("Equivalent conicity at this amplitude", "tan γ [1]", |row| row.conicity, false),
+    ("Roll", "roll [mrad]", |row| 1e3 * row.roll, false),
 ];
 
 /// Quantities of each side's lowest contact.
@@ -44,20 +44,31 @@ pub(super) fn picture(table: &Table, title: &str) -> Result<CurvesPicture> {
         rows.retain(|row| row.number == 0);
         found.push((position.lateral, rows));
     }
-    let curve = |name: &str, side: TrackSide, value: Value| {
+    let values = |side: TrackSide, value: Value| -> Vec<f64> {
         let of = |rows: &[Row]| rows.iter().find(|row| row.side == side).map_or(f64::NAN, value);
-        Curve {
-            name: name.into(),
-            points: found.iter().map(|(lateral, rows)| [*lateral, of(rows)]).collect(),
-        }
+        found.iter().map(|(_, rows)| of(rows)).collect()
+    };
+    // Once per side, from where the contact is: all its panels are then parted at the same positions.
+    let jumps_of = |side: TrackSide| {
+        jumps(&[&values(side, |row| row.contact.rail_x), &values(side, |row| row.contact.wheel_x)])
+    };
+    let sides = [("left", TrackSide::Left), ("right", TrackSide::Right)];
+    let [left, right] = sides.map(|(_, side)| jumps_of(side));
+    let curve = |name: &str, side: TrackSide, value: Value, jumps: &[usize]| {
+        let points = found.iter().zip(values(side, value)).map(|((lateral, _), value)| [*lateral, value]);
+        Curve { name: name.into(), points: points.collect(), jumps: jumps.to_vec() }
     };
     let quantity =
         |(title, axis): (&str, &str), curves| Quantity { title: title.into(), axis: axis.into(), curves };
-    let of_position = OF_POSITION
-        .map(|(title, axis, value)| quantity((title, axis), vec![curve("", TrackSide::Right, value)]));
+    let either = [left.as_slice(), right.as_slice()].concat();
+    let of_position = OF_POSITION.map(|(title, axis, value, jumps)| {
+        let jumps = if jumps { either.as_slice() } else { &[] };
+        quantity((title, axis), vec![curve("", TrackSide::Right, value, jumps)])
+    });
     let of_side = OF_SIDE.map(|(title, axis, value)| {
-        let sides = [("left", TrackSide::Left), ("right", TrackSide::Right)];
-        quantity((title, axis), sides.map(|(name, side)| curve(name, side, value)).to_vec())
+        let both = sides.into_iter().zip([&left, &right]);
+        let curves = both.map(|((name, side), jumps)| curve(name, side, value, jumps)).collect();
+        quantity((title, axis), curves)
     });
     let count = |n: usize| format!("{n} position{}", if n == 1 { "" } else { "s" });
     Ok(CurvesPicture {

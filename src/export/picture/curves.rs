@@ -15,10 +15,15 @@ const SIZE: [f64; 2] = [330.0, 190.0];
 const ROW: f64 = 290.0;
 const TOP: f64 = 112.0;
 
-/// A change between neighbours that is this many times those beside it, and this share of the curve's range, is a jump:
-/// a contact that has moved elsewhere. Curves are not drawn across.
+/// A change that is this many times the middle one of those beside it, and this share of the range, is a jump.
 const JUMP: f64 = 6.0;
 const JUMP_SHARE: f64 = 0.02;
+
+/// Changes to either side that are beside one: among them two more jumps do not hide a jump.
+const BESIDE: usize = 3;
+
+/// Radius of the dot that stands for a point without a line \[page units\].
+const DOT: f64 = 2.2;
 
 /// One curve.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +32,8 @@ pub struct Curve {
     pub name: String,
     /// (abscissa, value), ascending; NaN where there is none.
     pub points: Vec<[f64; 2]>,
+    /// Points after which the contact is elsewhere: no line goes from them to the next.
+    pub jumps: Vec<usize>,
 }
 
 /// The curves of one quantity.
@@ -95,7 +102,9 @@ impl CurvesPicture {
         }
         for (k, (curve, colour)) in quantity.curves.iter().zip(COLOURS).enumerate() {
             let pen = Pen::new(colour, 1.6);
-            page.lines(panel.curve(&parted(&curve.points)), pen);
+            let parted = curve.parted();
+            page.lines(panel.curve(&parted), pen);
+            page.area(dots(&panel, &parted), colour);
             if !curve.name.is_empty() {
                 legend(
                     page,
@@ -110,30 +119,60 @@ impl CurvesPicture {
     }
 }
 
-/// The points with an undefined one in every jump.
-fn parted(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let [low, high] = range(points.iter().map(|p| p[1]).filter(|v| v.is_finite()));
-    let change = |k: usize| match (points.get(k), points.get(k + 1)) {
-        (Some(a), Some(b)) => (b[1] - a[1]).abs(),
-        _ => 0.0,
-    };
-    let mut out = Vec::with_capacity(points.len() + 4);
-    for (k, &point) in points.iter().enumerate() {
-        out.push(point);
-        let beside = k.checked_sub(1).map_or(0.0, change).max(change(k + 1));
-        if change(k) > JUMP_SHARE * (high - low) && change(k) > JUMP * beside {
-            out.push([f64::NAN; 2]);
+impl Curve {
+    /// The points with an undefined one in every jump.
+    fn parted(&self) -> Vec<[f64; 2]> {
+        let mut out = Vec::with_capacity(self.points.len() + self.jumps.len());
+        for (k, &point) in self.points.iter().enumerate() {
+            out.push(point);
+            if self.jumps.contains(&k) {
+                out.push([f64::NAN; 2]);
+            }
         }
+        out
     }
-    out
+}
+
+/// Dots at the points that have a line to neither side.
+fn dots(panel: &Panel, points: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
+    let defined = |k: usize| points.get(k).is_some_and(|p| p[0].is_finite() && p[1].is_finite());
+    let alone = |k: &usize| defined(*k) && !defined(k + 1) && !k.checked_sub(1).is_some_and(defined);
+    let dot = |k: usize| {
+        let [x, y] = panel.point(points[k]);
+        let corner = |i: i32| (f64::from(i) * std::f64::consts::FRAC_PI_6).sin_cos();
+        (0..12).map(corner).map(|(sin, cos)| [x + DOT * cos, y + DOT * sin]).collect()
+    };
+    (0..points.len()).filter(alone).map(dot).collect()
+}
+
+/// The places k after which a contact jumps: between k and k + 1 one of its abscissae changes by far more than around.
+pub fn jumps(abscissae: &[&[f64]]) -> Vec<usize> {
+    let mut all: Vec<usize> = abscissae.iter().flat_map(|values| jumps_of(values)).collect();
+    all.sort_unstable();
+    all.dedup();
+    all
+}
+
+fn jumps_of(values: &[f64]) -> Vec<usize> {
+    let [low, high] = range(values.iter().copied().filter(|v| v.is_finite()));
+    let changes: Vec<f64> = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
+    let middle = |k: usize| {
+        let last = (k + BESIDE + 1).min(changes.len());
+        let around = (k.saturating_sub(BESIDE)..last).filter(|&i| i != k).map(|i| changes[i]);
+        let mut around: Vec<f64> = around.filter(|change| change.is_finite()).collect();
+        around.sort_by(f64::total_cmp);
+        around.get(around.len() / 2).copied().unwrap_or(0.0)
+    };
+    let jump = |&k: &usize| changes[k] > JUMP_SHARE * (high - low) && changes[k] > JUMP * middle(k);
+    (0..changes.len()).filter(jump).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn picture(points: Vec<[f64; 2]>) -> CurvesPicture {
-        let curves = vec![Curve { name: "left".into(), points }];
+    fn picture(points: Vec<[f64; 2]>, jumps: Vec<usize>) -> CurvesPicture {
+        let curves = vec![Curve { name: "left".into(), points, jumps }];
         let quantity = Quantity { title: "Radius".into(), axis: "r [mm]".into(), curves };
         CurvesPicture {
             title: "A sweep".into(),
@@ -145,20 +184,34 @@ mod tests {
 
     #[test]
     fn a_jump_is_not_drawn_across_and_a_slope_is() {
-        let jump: Vec<[f64; 2]> =
-            (0..20).map(|k| [f64::from(k), f64::from(k) * 0.1 + if k < 10 { 0.0 } else { 9.0 }]).collect();
-        let undefined: Vec<usize> =
-            parted(&jump).iter().enumerate().filter(|(_, p)| p[1].is_nan()).map(|(k, _)| k).collect();
-        assert_eq!(undefined, [10]);
-        let slope: Vec<[f64; 2]> = (0..20).map(|k| [f64::from(k), f64::from(k * k)]).collect();
-        assert_eq!(parted(&slope), slope);
+        let jump = |k: u32| f64::from(k) * 0.1 + if k < 10 { 0.0 } else { 9.0 };
+        let found = jumps(&[&(0..20).map(jump).collect::<Vec<_>>()]);
+        assert_eq!(found, [9]);
+        let slope: Vec<f64> = (0..20).map(|k| f64::from(k * k)).collect();
+        assert_eq!(jumps(&[&slope]), [0; 0]);
+    }
+
+    #[test]
+    fn a_point_between_two_jumps_is_a_dot_and_each_jump_parts() {
+        // There and, one position later, on: the one jump does not hide the other.
+        let x: Vec<f64> =
+            (0..20).map(|k| f64::from(k) * 0.1 + [0.0, 5.0, 12.0][(k.max(9) - 9).min(2) as usize]).collect();
+        let still = vec![0.0; 20];
+        assert_eq!(jumps(&[&still, &x]), [9, 10]);
+        let points = x.iter().enumerate().map(|(k, x)| [k as f64, *x]).collect();
+        let page = picture(points, vec![9, 10]).page();
+        let dots = page.marks.iter().filter_map(|mark| match mark {
+            super::super::canvas::Mark::Area { rings, .. } => Some(rings.len()),
+            _ => None,
+        });
+        assert_eq!(dots.sum::<usize>(), 1);
     }
 
     #[test]
     fn constants_and_nothing_at_all_make_finite_pictures() {
         let constant = (0..5).map(|k| [f64::from(k), 3.0]).collect();
         for points in [constant, vec![[1.0, f64::NAN], [2.0, f64::NAN]], vec![[1.0, 2.0]], Vec::new()] {
-            let svg = picture(points.clone()).svg();
+            let svg = picture(points.clone(), Vec::new()).svg();
             assert!(!svg.contains("NaN") && !svg.contains("inf"), "{points:?}: {svg}");
         }
     }
