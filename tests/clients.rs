@@ -138,7 +138,8 @@ fn picture(header: &Header, grid: &GridFields, loops: &[Loop]) -> String {
     let midplane: Vec<[f64; 2]> = grid.xi().iter().map(|&x| [x, hertz(x, 0.0)]).collect();
     let separation = Nodes { xi: grid.xi(), eta: grid.eta(), values: grid.separation() };
     let cells = [grid.xi(), grid.eta()];
-    Picture { header, cells, separation, midplane: &midplane, loops, rail: &rail, wheel: &wheel }.svg()
+    Picture { header, contact: "", cells, separation, midplane: &midplane, loops, rail: &rail, wheel: &wheel }
+        .svg()
 }
 
 fn rail_height(xi: f64) -> f64 {

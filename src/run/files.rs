@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::export::deck::Deck;
 use crate::export::deck::contact::{Normal, Settings};
 use crate::export::netcdf::NetCdf;
-use crate::export::picture::{Nodes, Picture};
+use crate::export::picture::{Nodes, Picture, SEPARATOR};
 use crate::export::{
     Folder, FolderPart, Frame, GridFields, Header, Interval, Loop, QuadMesh, SurfaceMesh, VIEW_SCRIPT, csv,
     legacy, npy, vtk, vts,
@@ -42,8 +42,10 @@ pub(super) fn write(folder: &Folder, run: &Run, part: &Part) -> Result<()> {
     let strips = part.analysis.strips.as_ref().map(quads);
     let outlines = [&part.contact.placement.rail.section, &part.contact.placement.wheel.section].map(outline);
     let drawn = Drawn::new(part);
+    let contact = contact_name(part);
     let picture = Picture {
         header: &header,
+        contact: &contact,
         cells: [&analysis.xi, &analysis.eta],
         separation: Nodes { xi: &drawn.xi, eta: &drawn.eta.eta, values: &drawn.separation },
         midplane: &drawn.midplane,
@@ -114,6 +116,18 @@ fn remarks(part: &Part) -> Vec<String> {
         );
     }
     out
+}
+
+/// What tells the pictures of a run apart: side and number of a contact that was found, or the part of the patch.
+fn contact_name(part: &Part) -> String {
+    match &part.found {
+        Some(found) if found.side == "single" => format!("contact {}", found.contact),
+        Some(found) => {
+            let mirrored = if found.side == "left" { ", mirrored" } else { "" };
+            format!("{} side{mirrored}{SEPARATOR}contact {}", found.side, found.contact)
+        }
+        None => part.folder.clone(),
+    }
 }
 
 /// Points of a picture along ξ and along η: a line of equal separation is smooth to the eye, and C is among them where

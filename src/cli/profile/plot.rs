@@ -6,6 +6,7 @@ use super::source::{Source, SourceArguments};
 use super::{Outcome, print};
 use crate::cli::output::PictureFormat;
 use crate::error::Result;
+use crate::export::picture::SEPARATOR;
 use crate::export::picture::profile::ProfilePicture;
 use crate::export::write_file;
 use crate::profile::measured::{CurveRecord, Measured};
@@ -47,21 +48,21 @@ fn picture(source: &Source, format: PictureFormat) -> Result<Vec<u8>> {
 fn about(source: &Source) -> String {
     let segments = source.profile().segments().len();
     let Some(Measured { record, .. }) = source.measured() else {
-        return format!("{}    {segments} segments", source.profile().source);
+        return format!("{segments} segments{SEPARATOR}{}", source.profile().source);
     };
     let CurveRecord { residual, cutoff_wavelength, tolerance, .. } = &record.curve;
     let mut out = format!("{} points", record.points_used);
     if let Some(cutoff) = cutoff_wavelength {
-        out += &format!("    cut-off wavelength {cutoff} mm");
+        out += &format!("{SEPARATOR}cut-off wavelength {cutoff} mm");
     }
     if let Some(tolerance) = tolerance {
-        out += &format!("    tolerance {tolerance} mm");
+        out += &format!("{SEPARATOR}tolerance {tolerance} mm");
     }
     if let Some(residual) = residual {
         let (largest, rms) = (1e3 * residual.largest, 1e3 * residual.rms);
-        out += &format!("    residual: largest {largest:.2} µm, rms {rms:.2} µm");
+        out += &format!("{SEPARATOR}residual: largest {largest:.2} µm, rms {rms:.2} µm");
     }
-    out + &format!("    {segments} segments")
+    out + &format!("{SEPARATOR}{segments} segments")
 }
 
 /// \[s, distance of the point to the left of the curve\] \[mm\] for every point.

@@ -91,7 +91,8 @@ pub(super) fn label(
 fn inside(panel: &Panel, at: [f64; 2], size: [f64; 2]) -> bool {
     (0..2).all(|k| {
         let (from, length) = (panel.place[k], panel.place[k + 2]);
-        at[k] - size[k] > from && at[k] + size[k] < from + length
+        let half = size[k] / 2.0 + 2.0;
+        at[k] - half > from && at[k] + half < from + length
     })
 }
 

@@ -22,11 +22,10 @@ const WHEEL: Pen = Pen::new([31, 98, 168], 1.8);
 const BOUNDARY: Pen = Pen::new([200, 30, 30], 2.2);
 const APPROACH: Pen = Pen::new(BOUNDARY.colour, 1.0).dashed([5.0, 3.0]);
 const CELL: Pen = Pen::new([226, 220, 218], 0.6);
-const THIN: Pen = Pen::new(GREY, 0.6);
 const INSIDE: Colour = [253, 232, 226];
 const WINDOW: Colour = [240, 240, 240];
 
-/// Cells with sides shorter than this \[page units\] are shown by ticks at the frame: their borders would be a tint.
+/// Cells with sides shorter than this \[page units\] are not drawn: their borders would be a tint.
 const SMALLEST_CELL: f64 = 5.0;
 
 /// The gap is shown up to this multiple of the approach, the contours up to that: beyond, nothing is of interest to
@@ -34,11 +33,20 @@ const SMALLEST_CELL: f64 = 5.0;
 const SHOWN_GAP: f64 = 3.0;
 const SHOWN_LEVELS: f64 = 5.0;
 
+/// Between the parts of a line of words; readers of SVG make one of several blanks.
+pub const SEPARATOR: &str = " · ";
+
+/// Length of the frame's axes at C, and what ζ takes with its letter \[page units\].
+const AXIS: f64 = 38.0;
+const AXIS_ROOM: f64 = AXIS + 16.0;
+
 /// What the picture shows.
 #[derive(Debug, Clone, Copy)]
 pub struct Picture<'a> {
     /// Title, approach, version.
     pub header: &'a Header,
+    /// Side and number of the contact, or empty: what tells the pictures of one run apart.
+    pub contact: &'a str,
     /// Centres ξ and η of the solver's cells \[mm\], ascending.
     pub cells: [&'a [f64]; 2],
     /// s \[mm\] over the same window, on as many points as a smooth line takes.
@@ -71,19 +79,17 @@ impl Picture<'_> {
         let mut page = Canvas { size: [900.0, 1040.0], marks: Vec::new() };
         let header = self.header;
         let angle = header.frame.xi[2].atan2(header.frame.xi[0]).to_degrees();
-        let approach = if header.approach > 0.0 {
-            format!("approach δ = {} mm    ", significant(header.approach, 4))
-        } else {
-            String::new()
-        };
-        let about = format!(
-            "{approach}contact angle θ = {}°    rail point ({}, {}) mm",
-            number(angle, 0.001),
-            number(header.frame.origin[0], 0.001),
-            number(header.frame.origin[2], 0.001),
-        );
+        let approach = || format!("approach δ = {} mm", significant(header.approach, 4));
+        let [x, z] = [0, 2].map(|k| number(header.frame.origin[k], 0.001));
+        let about = [
+            Some(self.contact.to_owned()).filter(|contact| !contact.is_empty()),
+            (header.approach > 0.0).then(approach),
+            Some(format!("contact angle θ = {}°", number(angle, 0.001))),
+            Some(format!("rail point ({x}, {z}) mm")),
+        ];
+        let about = about.into_iter().flatten().collect::<Vec<_>>().join(SEPARATOR);
         page.text([40.0, 42.0], cut(&header.title, 80), 18.0, Anchor::Start, INK);
-        page.text([40.0, 64.0], about, SMALL + 1.0, Anchor::Start, INK);
+        page.text([40.0, 64.0], cut(&about, 120), SMALL + 1.0, Anchor::Start, INK);
         self.profiles(&mut page, [40.0, 110.0, 380.0, 250.0]);
         self.gap(&mut page, [520.0, 110.0, 340.0, 250.0]);
         self.contours(&mut page, [90.0, 460.0, 590.0, 500.0]);
@@ -99,7 +105,12 @@ impl Picture<'_> {
         if points().next().is_none() {
             return;
         }
-        let panel = Panel::true_scale(room, range(points().map(|p| p[0])), range(points().map(|p| p[1])));
+        let (u, v) = (range(points().map(|p| p[0])), range(points().map(|p| p[1])));
+        // C may be at the very top, as at a flange: ζ and its letter stay below the heading.
+        let above = Panel::true_scale(room, u, v).point([0.0, 0.0])[1] - room[1];
+        let lower = (AXIS_ROOM - above).clamp(0.0, AXIS_ROOM);
+        let room = [room[0], room[1] + lower, room[2], room[3] - lower];
+        let panel = Panel::true_scale(room, u, v);
         let [from, to] = range(self.cells[0].iter().copied()).map(|xi| xi.clamp(panel.u[0], panel.u[1]));
         let half = (to - from) / 2.0;
         let corners =
@@ -111,9 +122,9 @@ impl Picture<'_> {
         // The frame's axes at C.
         let origin = panel.point([0.0, 0.0]);
         let [x, y] = origin;
-        page.lines(vec![vec![[x, y - 38.0], origin, [x + 38.0, y]]], Pen::new(BOUNDARY.colour, 1.0));
-        page.text([x + 34.0, y + 16.0], "ξ", SMALL, Anchor::Start, BOUNDARY.colour);
-        page.text([x, y - 42.0], "ζ", SMALL, Anchor::Middle, BOUNDARY.colour);
+        page.lines(vec![vec![[x, y - AXIS], origin, [x + AXIS, y]]], Pen::new(BOUNDARY.colour, 1.0));
+        page.text([x + AXIS - 4.0, y + 16.0], "ξ", SMALL, Anchor::Start, BOUNDARY.colour);
+        page.text([x, y - AXIS - 4.0], "ζ", SMALL, Anchor::Middle, BOUNDARY.colour);
         let foot = room[1] + room[3] + 28.0;
         legend(page, [room[0], foot], RAIL, "rail");
         legend(page, [room[0] + 80.0, foot], WHEEL, "wheel");
@@ -214,26 +225,18 @@ impl Picture<'_> {
         }
     }
 
-    /// The borders of the solver's cells, half-way between their centres; of small ones the centres, as ticks inside
-    /// the frame, every so many that they stay apart.
+    /// The borders of the solver's cells, half-way between their centres; of small ones the key has number and size.
     fn cells(&self, page: &mut Canvas, panel: &Panel) {
         let [x, y, w, h] = panel.place;
         let [xi, eta] = self.cells;
-        let on_page = |xi: f64, eta: f64| panel.point([xi, eta]);
-        let sides = [w / xi.len() as f64, h / eta.len() as f64];
-        if sides.into_iter().all(|side| side >= SMALLEST_CELL) {
-            let between = |pair: &[f64]| f64::midpoint(pair[0], pair[1]);
-            let columns = xi.windows(2).map(|pair| on_page(between(pair), panel.v[0])[0]);
-            let rows = eta.windows(2).map(|pair| on_page(panel.u[0], between(pair))[1]);
-            let borders = columns.map(|px| vec![[px, y], [px, y + h]]);
-            page.lines(borders.chain(rows.map(|py| vec![[x, py], [x + w, py]])).collect(), CELL);
+        if w / (xi.len() as f64) < SMALLEST_CELL || h / (eta.len() as f64) < SMALLEST_CELL {
             return;
         }
-        let every = |side: f64| (4.0 / side).ceil().max(1.0) as usize;
-        let columns = xi.iter().step_by(every(sides[0])).map(|&xi| on_page(xi, panel.v[0])[0]);
-        let rows = eta.iter().step_by(every(sides[1])).map(|&eta| on_page(panel.u[0], eta)[1]);
-        let ticks = columns.map(|px| vec![[px, y + h], [px, y + h - 4.0]]);
-        page.lines(ticks.chain(rows.map(|py| vec![[x, py], [x + 4.0, py]])).collect(), THIN);
+        let between = |pair: &[f64]| f64::midpoint(pair[0], pair[1]);
+        let columns = xi.windows(2).map(|pair| panel.point([between(pair), panel.v[0]])[0]);
+        let rows = eta.windows(2).map(|pair| panel.point([panel.u[0], between(pair)])[1]);
+        let borders = columns.map(|px| vec![[px, y], [px, y + h]]);
+        page.lines(borders.chain(rows.map(|py| vec![[x, py], [x + w, py]])).collect(), CELL);
     }
 }
 
@@ -280,7 +283,8 @@ fn cut(text: &str, longest: usize) -> String {
     if text.chars().count() <= longest {
         return text.into();
     }
-    text.chars().take(longest - 1).chain(['…']).collect()
+    let kept: String = text.chars().take(longest - 1).collect();
+    format!("{}…", kept.trim_end_matches(|c: char| !c.is_alphanumeric()))
 }
 
 #[cfg(test)]

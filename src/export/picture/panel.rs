@@ -126,18 +126,30 @@ pub(super) fn number(x: f64, step: f64) -> String {
     if zero { "0".into() } else { text.replace('-', "\u{2212}") }
 }
 
-/// Round values inside a range with their labels, at most `most` of them.
-fn ticks_of([low, high]: [f64; 2], most: f64) -> Vec<(f64, String)> {
+/// Round values inside a range with their labels: about `most` of them, and two at least, or there is no scale.
+fn ticks_of(range: [f64; 2], most: f64) -> Vec<(f64, String)> {
     // Rounding takes off up to a factor of 2.5.
-    let step = 2.5 * (high - low) / most;
-    let step = round_below(step);
+    let mut step = round_below(2.5 * (range[1] - range[0]) / most);
+    let mut values = multiples(range, step);
+    // Half the range has two multiples in it: three or four steps down the ladder 1, 2, 5 at most.
+    for _ in 0..LADDER {
+        if values.len() >= 2 {
+            break;
+        }
+        step = round_below(0.7 * step);
+        values = multiples(range, step);
+    }
+    values.into_iter().map(|value| (value, number(value, step))).collect()
+}
+
+/// Most steps down from a first tick's distance, at most some times the range.
+const LADDER: usize = 6;
+
+fn multiples([low, high]: [f64; 2], step: f64) -> Vec<f64> {
     let first = (low / step).ceil();
     let count = (high / step).floor() - first;
-    (0..=count.max(-1.0) as usize)
-        .map(|k| (first + k as f64) * step)
-        .filter(|value| (low..=high).contains(value))
-        .map(|value| (value, number(value, step)))
-        .collect()
+    let all = (0..=count.max(-1.0) as usize).map(|k| (first + k as f64) * step);
+    all.filter(|value| (low..=high).contains(value)).collect()
 }
 
 #[cfg(test)]
@@ -152,6 +164,16 @@ mod tests {
         assert_eq!(number(-0.25, 0.05), "\u{2212}0.25");
         assert_eq!(number(-1e-17, 0.1), "0");
         assert_eq!(number(20.0, 20.0), "20");
+    }
+
+    #[test]
+    fn narrow_axes_have_two_ticks_at_least() {
+        for range in [[-1.5, 1.5], [-0.9, 1.9], [0.21, 0.29], [-7.0, 90.0]] {
+            for most in [0.2, 1.2, 7.0] {
+                assert!(ticks_of(range, most).len() >= 2, "{range:?} {most}: {:?}", ticks_of(range, most));
+            }
+        }
+        assert_eq!(ticks_of([-1.5, 1.5], 1.2).len(), 3);
     }
 
     #[test]

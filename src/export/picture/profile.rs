@@ -2,7 +2,7 @@
 
 use super::canvas::{Anchor, Canvas, Pen};
 use super::panel::{GREY, INK, Panel, SMALL, number};
-use super::{BOUNDARY, WHEEL, cut, heading, legend, png, range, svg};
+use super::{BOUNDARY, SEPARATOR, WHEEL, cut, heading, legend, png, range, svg};
 use crate::error::Result;
 
 const CURVE: Pen = Pen::new(WHEEL.colour, 1.4);
@@ -53,7 +53,7 @@ impl ProfilePicture<'_> {
     fn page(&self) -> Canvas {
         let mut page = Canvas { size: [900.0, 0.0], marks: Vec::new() };
         page.text([40.0, 42.0], cut(self.title, 80), 18.0, Anchor::Start, INK);
-        page.text([40.0, 64.0], cut(self.about, 110), SMALL + 1.0, Anchor::Start, INK);
+        page.text([40.0, 64.0], cut(self.about, 120), SMALL + 1.0, Anchor::Start, INK);
         let mut top = self.shape(&mut page, 112.0);
         let along = range(self.curvature.iter().chain(self.residual).map(|p| p[0]));
         if !self.residual.is_empty() {
@@ -79,14 +79,17 @@ impl ProfilePicture<'_> {
         let room = [LEFT, top, WIDTH, height];
         heading(page, room, "Profile, true scale");
         let panel = Panel::true_scale(room, u, v);
-        page.lines(panel.curve(self.curve), CURVE);
+        // The curve lies above its points, or they would hide it.
         crosses(page, &panel, self.points);
+        page.lines(panel.curve(self.curve), CURVE);
         panel.frame(page);
         panel.axes(page, ["x [mm]", "z [mm]"]);
         let row = top - 18.0;
         legend(page, [LEFT + WIDTH - 180.0, row], CURVE, "curve");
         if !self.points.is_empty() {
-            legend(page, [LEFT + WIDTH - 80.0, row], POINT, "points");
+            let x = LEFT + WIDTH - 80.0;
+            page.lines(cross([x + 20.0, row]).to_vec(), POINT);
+            page.text([x + 32.0, row + 4.0], "points", SMALL, Anchor::Start, INK);
         }
         top + height + 84.0
     }
@@ -110,7 +113,7 @@ impl ProfilePicture<'_> {
         let extremes = range(per_metre.iter().map(|p| p[1]));
         let panel = Panel { place: [LEFT, top, WIDTH, 200.0], u, v: about_zero(extremes) };
         let radius = |k: f64| number((1e3 / k).abs(), 0.1);
-        let of = |k: f64, side: &str| format!("    smallest {side} radius {} mm", radius(k));
+        let of = |k: f64, side: &str| format!("{SEPARATOR}smallest {side} radius {} mm", radius(k));
         let mut title = String::from("Curvature, positive where hollow side up");
         if extremes[0] < 0.0 {
             title += &of(extremes[0], "convex-up");
@@ -139,14 +142,17 @@ fn zero_line(page: &mut Canvas, panel: &Panel) {
     page.line(panel.point([panel.u[0], 0.0]), panel.point([panel.u[1], 0.0]), ZERO);
 }
 
+/// The arms of a cross.
+fn cross([x, y]: [f64; 2]) -> [Vec<[f64; 2]>; 2] {
+    [vec![[x - ARM, y], [x + ARM, y]], vec![[x, y - ARM], [x, y + ARM]]]
+}
+
 /// A small cross for every point.
 fn crosses(page: &mut Canvas, panel: &Panel, points: &[[f64; 2]]) {
     let stride = points.len().div_ceil(MOST_CROSSES).max(1);
     let mut arms = Vec::with_capacity(2 * points.len() / stride);
     for &point in points.iter().step_by(stride) {
-        let [x, y] = panel.point(point);
-        arms.push(vec![[x - ARM, y], [x + ARM, y]]);
-        arms.push(vec![[x, y - ARM], [x, y + ARM]]);
+        arms.extend(cross(panel.point(point)));
     }
     if !arms.is_empty() {
         page.lines(arms, Pen { width: 0.5, ..POINT });

@@ -25,6 +25,7 @@ fn picture<'a>(
 ) -> Picture<'a> {
     Picture {
         header,
+        contact: "left side, mirrored · contact 2",
         cells: [&sample.xi, &sample.eta],
         separation: Nodes { xi: &sample.xi, eta: &sample.eta, values: &sample.separation },
         midplane,
@@ -51,6 +52,8 @@ fn pictures_of_good_and_of_odd_data_are_drawn() {
                 {
                     let svg = picture(&sample, &header, &loops, &midplane, profiles).svg();
                     assert!(svg.contains("a &lt;b&gt; &amp; c") && svg.ends_with("</svg>\n"));
+                    // One blank of several is all that a reader of SVG shows.
+                    assert!(svg.contains("left side, mirrored · contact 2 · ") && !svg.contains("    "));
                     assert!(!svg.contains("NaN") && !svg.contains("inf"), "{n:?}");
                 }
             }
@@ -90,4 +93,20 @@ fn numbers_have_their_digits() {
     let found = [0.076_974_259_6, 0.05, 110.4, 63.0, 1e-9].map(|x| significant(x, 4));
     assert_eq!(found, ["0.07697", "0.05", "110.4", "63", "0.000000001"]);
     assert_eq!(significant(1234.5, 2), "1200");
+}
+
+#[test]
+fn the_axes_at_c_stay_below_the_heading() {
+    // The rail falls off to both sides of C and the wheel is no higher: C is at the top.
+    let line = |slope: f64| (0..20).map(|k| [f64::from(k), -slope * f64::from(k)]).collect::<Vec<_>>();
+    let (header, sample, profiles) = (header(), Sample::new(21, 21), [line(1.0), line(0.9)]);
+    let page = picture(&sample, &header, &[], &midplane(&sample), &profiles).page();
+    let height = |wanted: &str| {
+        page.marks.iter().find_map(|mark| match mark {
+            canvas::Mark::Text { at, text, .. } if text.starts_with(wanted) => Some(at[1]),
+            _ => None,
+        })
+    };
+    let (letter, heading) = (height("ζ").unwrap(), height("Profiles in").unwrap());
+    assert!(letter > heading + 12.0, "{letter} {heading}");
 }
