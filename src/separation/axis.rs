@@ -2,9 +2,6 @@
 
 use std::ops::Range;
 
-/// Values of the widest vector, and of a line of the cache.
-const RUN: usize = 8;
-
 /// η and u = η² of every column, and whether half of it is the mirror image of the other.
 #[derive(Debug, Clone)]
 pub struct EtaAxis {
@@ -87,12 +84,6 @@ impl EtaAxis {
             }
         }
     }
-}
-
-/// Number of values before the first one that begins a line of the cache; all of them where there is none.
-#[inline(always)]
-pub(super) fn lead(values: &[f64]) -> usize {
-    values.as_ptr().align_offset(RUN * size_of::<f64>()).min(values.len())
 }
 
 #[cfg(test)]

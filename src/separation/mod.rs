@@ -6,6 +6,7 @@ pub mod column;
 mod columns;
 pub mod gap;
 pub mod grid;
+mod horner;
 pub mod midsep;
 pub mod plan;
 pub mod pointwise;

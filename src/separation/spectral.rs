@@ -7,11 +7,12 @@
 use std::array::from_fn;
 
 use super::Evaluator;
-use super::axis::{EtaAxis, lead};
+use super::axis::EtaAxis;
 use super::column::{NEARLY_COVERED, Span, WheelSurface};
 use super::columns::{Columns, MANY, Row};
 use super::gap::midplane_gap;
 use super::grid::{BLOCK, Kernel};
+use super::horner::{Run, evaluate};
 use super::skewed::SkewedColumn;
 use super::strips::{self, MOST_SPANS, Strip};
 use crate::placement::Placement;
@@ -25,9 +26,6 @@ pub(super) const ROUNDING_LEVEL: f64 = 4.0 * f64::EPSILON;
 
 /// Share of the absolute demand that truncation may use up: rounding, and what lies between a plan's samples, need the rest.
 const TRUNCATION: f64 = 0.5;
-
-/// Runs from this length on are stored line by line of the cache.
-const LONG_RUN: usize = 64;
 
 /// The demand on s: |error| ≤ `absolute`, and ≤ `relative` × |(u − u_0) q|.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -337,104 +335,6 @@ impl Spectral<'_> {
         }
         self.spans = spans;
     }
-}
-
-/// One run of a column's u.
-struct Run<'a> {
-    fit: &'a ColumnPolynomial,
-    u: &'a [f64],
-    out: &'a mut [f64],
-}
-
-impl pulp::WithSimd for Run<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, simd: S) {
-        let Self { fit, u, out } = self;
-        evaluate(simd, [fit.base, fit.u0], &fit.c[..fit.n], u, out);
-    }
-}
-
-/// base + (u − u_0) Σ c_k (u − u_0)^k by Horner's rule over a run of u, unrolled for the degree, with the widest vectors
-/// of the machine. Multiply-adds are fused on every machine, be it in software: the same bits everywhere.
-#[inline(always)]
-pub(super) fn evaluate<S: pulp::Simd>(simd: S, begin: [f64; 2], c: &[f64], u: &[f64], out: &mut [f64]) {
-    if begin[1] == 0.0 {
-        of_degree::<S, true>(simd, begin, c, u, out)
-    } else {
-        of_degree::<S, false>(simd, begin, c, u, out)
-    }
-}
-
-/// [`evaluate`] where u_0 is zero, and where it is not.
-#[inline(always)]
-fn of_degree<S: pulp::Simd, const FIRST: bool>(
-    simd: S,
-    begin: [f64; 2],
-    c: &[f64],
-    u: &[f64],
-    out: &mut [f64],
-) {
-    match c.len() {
-        1 => horner::<S, 1, FIRST>(simd, begin, c, u, out),
-        2 => horner::<S, 2, FIRST>(simd, begin, c, u, out),
-        3 => horner::<S, 3, FIRST>(simd, begin, c, u, out),
-        4 => horner::<S, 4, FIRST>(simd, begin, c, u, out),
-        5 => horner::<S, 5, FIRST>(simd, begin, c, u, out),
-        6 => horner::<S, 6, FIRST>(simd, begin, c, u, out),
-        7 => horner::<S, 7, FIRST>(simd, begin, c, u, out),
-        8 => horner::<S, 8, FIRST>(simd, begin, c, u, out),
-        9 => horner::<S, 9, FIRST>(simd, begin, c, u, out),
-        10 => horner::<S, 10, FIRST>(simd, begin, c, u, out),
-        11 => horner::<S, 11, FIRST>(simd, begin, c, u, out),
-        _ => horner::<S, MOST_COEFFICIENTS, FIRST>(simd, begin, c, u, out),
-    }
-}
-
-#[inline(always)]
-fn horner<S: pulp::Simd, const N: usize, const FIRST: bool>(
-    simd: S,
-    [base, u0]: [f64; 2],
-    c: &[f64],
-    u: &[f64],
-    out: &mut [f64],
-) {
-    let Some(last) = u.len().checked_sub(S::F64_LANES) else {
-        for (s, u) in out.iter_mut().zip(u) {
-            let v = u - u0;
-            *s = c[..N].iter().rev().fold(0.0, |q: f64, c| q.mul_add(v, *c)).mul_add(v, base);
-        }
-        return;
-    };
-    let c: [S::f64s; N] = from_fn(|k| simd.splat_f64s(c[k]));
-    let begin = [base, u0].map(|value| simd.splat_f64s(value));
-    // Long runs are stored where lines of the cache begin: a store across two takes twice as long. The vectors at both
-    // ends may overlap the others.
-    let (end, long) = (u.len(), u.len() >= LONG_RUN);
-    let parts = if long { [0..S::F64_LANES, last..end, lead(out)..end] } else { [0..0, last..end, 0..end] };
-    for part in parts {
-        let (u, out) = (S::as_simd_f64s(&u[part.clone()]).0, S::as_mut_simd_f64s(&mut out[part]).0);
-        for (s, &u) in out.iter_mut().zip(u) {
-            *s = value::<S, N, FIRST>(simd, begin, &c, u);
-        }
-    }
-}
-
-/// One vector of [`horner`]. A function, since closures may be left out of line.
-#[inline(always)]
-fn value<S: pulp::Simd, const N: usize, const FIRST: bool>(
-    simd: S,
-    [base, u0]: [S::f64s; 2],
-    c: &[S::f64s; N],
-    u: S::f64s,
-) -> S::f64s {
-    let v = if FIRST { u } else { simd.sub_f64s(u, u0) };
-    let mut q = c[N - 1];
-    for &c in c[..N - 1].iter().rev() {
-        q = simd.mul_add_f64s(q, v, c);
-    }
-    simd.mul_add_f64s(q, v, base)
 }
 
 /// The n Chebyshev points of (0, 1), ascending.

@@ -64,6 +64,7 @@ fn hex([red, green, blue]: Colour) -> String {
 
 /// Text as XML takes it; characters that XML does not know are dropped.
 fn escape(text: &str) -> String {
-    let text: String = text.chars().filter(|c| !c.is_control()).collect();
+    // XML has no control characters, nor these two.
+    let text: String = text.chars().filter(|c| !c.is_control() && !"\u{fffe}\u{ffff}".contains(*c)).collect();
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
