@@ -19,14 +19,14 @@ fn steps(a: f64, b: f64, n: usize) -> Vec<f64> {
 }
 
 /// Largest |spectral − pointwise| \[mm\] over a window with columns on every joint, and the estimate for the former.
-fn difference(placement: &Placement, [half, reach]: [f64; 2]) -> (f64, f64) {
+fn difference(placement: &Placement, [half, reach]: [f64; 2], points: usize) -> (f64, f64) {
     let mut xi = steps(-0.9 * half, 1.1 * half, COLUMNS);
     let sections = [&placement.rail.section, &placement.wheel.section];
     let joints = sections.into_iter().flat_map(|section| &section.pieces).flat_map(|piece| piece.xi);
     xi.extend(joints.filter(|xi| xi.abs() < half));
     xi.sort_by(f64::total_cmp);
     xi.dedup();
-    let axis = EtaAxis::new(&steps(-reach, reach, 9));
+    let axis = EtaAxis::new(&steps(-reach, reach, points));
     let plans = [Method::Spectral, Method::Pointwise]
         .map(|method| plan(placement, &xi, &axis, FULL_PRECISION, Some(method)));
     let [spectral, pointwise] = plans.each_ref().map(|plan| {
@@ -51,8 +51,26 @@ fn grids_and_points_agree_within_the_estimate_on_every_built_in_pair() {
         for ([rail_x, wheel_x], window) in CONTACTS.into_iter().zip(WINDOWS) {
             // Not every wheel has a flange at −41 mm.
             let Ok(placement) = pair.placed(rail_x, wheel_x, 0.0) else { continue };
-            let (largest, estimate) = difference(&placement, window);
+            let (largest, estimate) = difference(&placement, window, 9);
             assert!(largest <= estimate, "{} at {rail_x}: {largest:e} > {estimate:e}", subject.name);
+            compared += 1;
+        }
+    }
+    assert!(compared > 900, "{compared}");
+}
+
+#[test]
+fn so_they_do_under_a_yawed_wheel() {
+    let mut compared = 0;
+    for (k, subject) in built_in_pairs().expect("built-in profiles").into_iter().enumerate() {
+        let Placement { rail, wheel, wheel_radius, .. } = subject.placement;
+        let pair = Pair::new(rail.profile, wheel.profile, wheel_radius).expect("a pair");
+        let ([rail_x, wheel_x], window) = (CONTACTS[k % 3], WINDOWS[k % 3]);
+        for yaw in [-0.12, 0.004, 0.05] {
+            let Ok(placement) = pair.placed(rail_x, wheel_x, yaw) else { continue };
+            // More values of η than are computed one by one.
+            let (largest, estimate) = difference(&placement, window, 53);
+            assert!(largest <= estimate, "{} at {rail_x}, {yaw}: {largest:e} > {estimate:e}", subject.name);
             compared += 1;
         }
     }
