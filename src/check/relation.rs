@@ -104,17 +104,17 @@ mod tests {
 
     /// A wave z = a(x³ − 3x) under a wheel: inflected at 0, between extremes at ±1.
     #[test]
-    fn an_inflection_inside_a_piece_is_seen() {
-        let wave = Polynomial::graph(&[0.0, -0.03, 0.0, 0.01], [-2.0, 2.0]).unwrap();
+    fn an_inflection_inside_a_piece_is_seen() -> crate::error::Result<()> {
+        let wave = Polynomial::graph(&[0.0, -0.03, 0.0, 0.01], [-2.0, 2.0])?;
         let rail = Profile::new(
             "wave",
             "test",
             vec![Segment { label: String::new(), shape: Shape::Polynomial(wave) }],
         );
-        let wheel = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-30.0, 30.0]).unwrap();
+        let wheel = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-30.0, 30.0])?;
         let wheel = Profile::new("arc", "test", vec![Segment::arc(wheel)]);
-        let pair = Pair::new(rail.unwrap(), wheel.unwrap(), 460.0).unwrap();
-        let placement = pair.placed(1.0, 0.0, 0.0).unwrap();
+        let pair = Pair::new(rail?, wheel?, 460.0)?;
+        let placement = pair.placed(1.0, 0.0, 0.0)?;
         let surface = Surface::rail(&placement);
         let foot = Place { curve: 0, t: surface.curves[0].length / 2.0, v: 0.0 };
         for reach in [0.3, 0.9] {
@@ -124,5 +124,6 @@ mod tests {
             assert!(least <= component(0.0) && least > component(0.0) - 1e-4, "{least}");
             assert!(most >= component(0.999 * reach) && most < component(reach) + 1e-4, "{most}");
         }
+        Ok(())
     }
 }

@@ -67,7 +67,7 @@ impl Header {
     }
 }
 
-/// Lines of at most so many characters, divided between words.
+/// Lines of at most [`LINE`] characters, divided between words.
 fn wrapped(text: &str) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {

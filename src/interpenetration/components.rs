@@ -115,13 +115,6 @@ impl Patch {
     }
 }
 
-impl Component {
-    /// Where it lies.
-    pub fn bounding_box(&self) -> BoundingBox {
-        BoundingBox { xi: self.xi, eta: self.eta, least: self.deepest[0] }
-    }
-}
-
 impl Outline<'_> {
     fn component(&mut self, part: &Part) -> Component {
         let Part { xi, ends } = *part;

@@ -52,7 +52,7 @@ pub struct Group {
 }
 
 /// The components of a patch over the whole overlap of the two profiles, in groups closer to each other than `merge`
-/// \[mm\]. The group that holds C comes first, then the deepest; none for an empty patch.
+/// \[mm\], each on its own at 0 or NaN. The group that holds C comes first, then the deepest; none for an empty patch.
 pub fn groups(placement: &Placement, approach: f64, merge: f64) -> Vec<Group> {
     grouped(&Patch::bounding_boxes(placement, approach, &Window::UNBOUNDED), merge)
 }

@@ -33,7 +33,7 @@ const MOST_PANELS: usize = 128;
 /// few such halvings prove nothing.
 const NOISE_SHARE: f64 = 0.6;
 
-/// So many halvings do.
+/// After so many of them the rest is rounding.
 const IDLE_HALVINGS: usize = 8;
 
 /// An interval with its integral and error estimate.
@@ -45,7 +45,7 @@ struct Panel {
 
 /// ∫ f over \[a, b\] to a relative demand, or to the rounding of `f` where that is larger.
 ///
-/// After [`MOST_PANELS`] panels the sum is taken as it is.
+/// After 128 panels the sum is taken as it is.
 ///
 /// Method: Gauss–Kronrod panels, the worst halved until their errors sum up to less than the demand or halving
 /// no longer helps (as QUADPACK's QAG): how much noise an integrand has, no fixed floor knows.

@@ -101,13 +101,14 @@ fn header(run: &Run, part: &Part) -> Header {
         scene_hash: run.hash.clone(),
         approach: part.contact.approach.map_or(0.0, |(approach, _)| approach),
         frame: Frame::at(rail.x, rail.z, rail.cos, rail.sin),
-        remarks: remarks(part),
+        remarks: remarks(run, part),
     }
 }
 
 /// What the reader of a file of this part must know.
-fn remarks(part: &Part) -> Vec<String> {
+fn remarks(run: &Run, part: &Part) -> Vec<String> {
     let mut out = part.refusals();
+    out.extend(run.shared_load(part));
     if part.side() == Some("left") {
         out.push(
             "left side of a wheelset, as its mirror image: x to the left, y forward, z up; lateral creepage, spin \
@@ -325,11 +326,9 @@ fn decks<'a>(
 /// its wheel.
 fn contact_settings(run: &Run, part: &Part) -> Option<Settings> {
     let (approach, _) = part.contact.approach.filter(|(approach, _)| *approach > 0.0)?;
-    let shared_load = run.shared_load(part);
-    let load = run.load().filter(|_| shared_load.is_none());
+    let load = run.load().filter(|_| !run.shares_load(part));
     let bodies = run.question.material;
     Some(Settings {
-        shared_load,
         poisson: bodies.map(|body| body.poissons_ratio),
         shear_modulus: bodies.map(|body| body.youngs_modulus / (2.0 * (1.0 + body.poissons_ratio))),
         ..Settings::steel(load.map_or(Normal::Approach(approach), Normal::Force))

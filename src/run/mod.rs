@@ -103,7 +103,10 @@ impl Run {
         let findings = self.measured.iter().flatten().flat_map(|record| &record.warnings);
         let mut out: Vec<String> =
             findings.map(|finding| format!("{}: {}", finding.place, finding.found)).collect();
-        out.extend(self.parts.iter().flat_map(|part| part.warnings(self)));
+        for part in &self.parts {
+            let place = if part.folder.is_empty() { String::new() } else { format!("{}: ", part.folder) };
+            out.extend(part.warnings(self).into_iter().map(|warning| format!("{place}{warning}")));
+        }
         out
     }
 
@@ -112,10 +115,19 @@ impl Run {
         self.scene.patch.as_ref().and_then(|patch| patch.load)
     }
 
-    /// That load where other parts of the same wheel carry some of it.
-    fn shared_load(&self, part: &Part) -> Option<f64> {
+    /// Whether other parts of the same wheel carry some of its load.
+    fn shares_load(&self, part: &Part) -> bool {
         let same_wheel = |other: &&Part| other.side() == part.side();
-        self.load().filter(|_| self.parts.iter().filter(same_wheel).count() > 1)
+        self.load().is_some() && self.parts.iter().filter(same_wheel).count() > 1
+    }
+
+    /// What that means for the part's files.
+    fn shared_load(&self, part: &Part) -> Option<String> {
+        let load = self.load().filter(|_| self.shares_load(part))?;
+        Some(format!(
+            "the load of {load} N is shared with other contacts of this wheel, each in files of its own: contact.inp gives \
+             the approach instead"
+        ))
     }
 }
 
@@ -149,12 +161,7 @@ impl Part {
     }
 
     fn warnings(&self, run: &Run) -> Vec<String> {
-        let mut out = Vec::new();
-        if let Some(load) = run.shared_load(self) {
-            out.push(format!(
-                "other contacts of the same wheel carry part of its load of {load} N: the decks give this one's approach"
-            ));
-        }
+        let mut out = Vec::from_iter(run.shared_load(self));
         if self.analysis.patch.as_ref().is_some_and(Patch::cut_by_window) {
             out.push("the window of the grid cuts the patch: solvers would overestimate the pressure".into());
         }

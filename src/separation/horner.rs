@@ -13,7 +13,9 @@ const LONG_RUN: usize = 64;
 /// One run of a column's u.
 pub(super) struct Run<'a> {
     pub fit: &'a ColumnPolynomial,
+    /// \[mm²\].
     pub u: &'a [f64],
+    /// s \[mm\].
     pub out: &'a mut [f64],
 }
 

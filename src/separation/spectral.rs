@@ -107,7 +107,7 @@ impl<'a> Spectral<'a> {
             let c = interpolate(&self.evaluator.wheel, xi, span, end.e, n);
             let fit = ColumnPolynomial { base: 0.0, u0: span.u[0], c, n, error: 0.0 };
             // The end is where the error of an interpolant at Chebyshev points is largest.
-            let error = (fit.value(end.u) - end.rise).abs();
+            let error = (fit.rise(end.u) - end.rise).abs();
             if error <= allowed.max(rounding) {
                 return Some(ColumnPolynomial { base, error, ..fit });
             }
@@ -125,14 +125,10 @@ impl Spectral<'_> {
 }
 
 impl ColumnPolynomial {
-    /// What q alone adds at u \[mm\].
+    /// ζ above the beginning of the span at u \[mm\].
     fn rise(&self, u: f64) -> f64 {
-        Self { base: 0.0, ..*self }.value(u)
-    }
-
-    fn value(&self, u: f64) -> f64 {
         let v = u - self.u0;
-        self.base + v * self.c[..self.n].iter().rev().fold(0.0, |q, c| q * v + c)
+        v * self.c[..self.n].iter().rev().fold(0.0, |q, c| q * v + c)
     }
 }
 

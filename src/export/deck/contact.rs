@@ -30,8 +30,6 @@ pub enum Normal {
 pub struct Settings {
     /// Force or approach.
     pub normal: Normal,
-    /// Load \[N\] that this and other contacts carry together, so that no force of this one is known.
-    pub shared_load: Option<f64>,
     /// Poisson's ratios of rail and wheel, typically 0.28.
     pub poisson: [f64; 2],
     /// Shear moduli of rail and wheel \[N/mm²\], typically 82,000.
@@ -44,7 +42,7 @@ impl Settings {
     /// Steel on steel: E = 210,000 N/mm², ν = 0.28, friction 0.3.
     pub fn steel(normal: Normal) -> Self {
         let shear = 210_000.0 / (2.0 * (1.0 + 0.28));
-        Self { normal, shared_load: None, poisson: [0.28; 2], shear_modulus: [shear; 2], friction: 0.3 }
+        Self { normal, poisson: [0.28; 2], shear_modulus: [shear; 2], friction: 0.3 }
     }
 }
 
@@ -55,7 +53,7 @@ impl Deck<'_> {
     /// Those of the sink.
     pub fn contact(&self, settings: &Settings, sink: &mut dyn Write) -> io::Result<()> {
         let mut block = Block::new(sink);
-        block.bytes(self.comments(settings).as_bytes())?;
+        block.bytes(self.comments().as_bytes())?;
         block.bytes(self.control(settings).as_bytes())?;
         for i in 0..self.xi.len() {
             for run in self.column(i).chunks(PER_LINE) {
@@ -70,18 +68,12 @@ impl Deck<'_> {
         block.finish()
     }
 
-    fn comments(&self, settings: &Settings) -> String {
+    fn comments(&self) -> String {
         let mut lines = self.header.statements();
         lines.push("CONTACT's axes: x = eta (rolling), y = xi (lateral), z = -zeta (down)".into());
         lines.push("h(1) ... h(MX*MY) = s at element centres, ix (eta) fastest, then iy (xi)".into());
         let undefined = self.grid.separation().iter().filter(|s| s.is_nan()).count();
         lines.push(format!("undefined elements, filled with 10 x the largest |s|: {undefined}"));
-        if let Some(load) = settings.shared_load {
-            lines.push(format!(
-                "the load of {load:?} N is shared with other contacts of this wheel, each in a"
-            ));
-            lines.push("deck of its own: the approach is prescribed, and forces need adding up".into());
-        }
         let count = self.separation.len();
         if count > ELEMENT_LIMIT {
             lines.push(format!("{count} elements: above CONTACT's default NPOT_MAX = {ELEMENT_LIMIT},"));
