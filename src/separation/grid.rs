@@ -18,6 +18,9 @@ pub(super) const BLOCK: usize = 16;
 /// Up to so many points are not worth waking another thread, some 50 µs: of whole columns, and of points one by one.
 const FEW_POINTS: [usize; 2] = [65536, 4096];
 
+/// Arrays from so many points on, 128 MiB, are larger than what most processors' caches keep of them for the next reader.
+const BEYOND_CACHES: usize = 1 << 24;
+
 /// A way to evaluate s over columns of constant ξ.
 pub trait Kernel {
     /// Writes s(ξ, η_j) for all η_j of the axis \[mm\]; NaN where a body has no surface.
@@ -92,12 +95,13 @@ impl Choice {
         placement: &'a Placement,
         axis: &'a EtaAxis,
         strips: &'a [Strip],
+        past_caches: bool,
     ) -> Box<dyn Kernel + 'a> {
         match self.method {
             Method::Quadratic => Box::new(Quadratic::new(placement, axis)),
             Method::ConstantRadius => Box::new(Parabolic::constant_radius(placement, axis)),
             Method::Parabolic => Box::new(Parabolic::local(placement, axis)),
-            Method::Spectral => Box::new(self.spectral(placement, axis).with_strips(strips)),
+            Method::Spectral => Box::new(self.spectral(placement, axis).with_strips(strips, past_caches)),
             Method::Pointwise => Box::new(Pointwise::new(placement, axis)),
             Method::ReportNewton => Box::new(ReportNewton::new(placement, axis, self.demand.absolute)),
         }
@@ -122,11 +126,12 @@ impl Choice {
         };
         let by_columns = self.method < Method::Pointwise;
         if out.len() <= FEW_POINTS[usize::from(!by_columns)] {
-            return self.kernel(placement, axis, &strips).columns(xi, out);
+            return self.kernel(placement, axis, &strips, false).columns(xi, out);
         }
+        let past_caches = out.len() >= BEYOND_CACHES;
         let blocks = out.par_chunks_mut(BLOCK * n).zip(xi.par_chunks(BLOCK));
         blocks.for_each_init(
-            || self.kernel(placement, axis, &strips),
+            || self.kernel(placement, axis, &strips, past_caches),
             |kernel, (out, xi)| kernel.columns(xi, out),
         );
     }

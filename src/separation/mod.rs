@@ -13,6 +13,7 @@ pub mod pointwise;
 pub mod report_newton;
 mod skewed;
 pub mod spectral;
+mod stream;
 pub mod strips;
 
 use crate::placement::Placement;

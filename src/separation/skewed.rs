@@ -141,7 +141,7 @@ impl pulp::WithSimd for Interval<'_, '_, '_> {
         if c.len() > MOST_COEFFICIENTS || !c.iter().all(|c| c.is_finite()) {
             return None;
         }
-        evaluate(simd, [powers[0], centre], c, eta, out);
+        evaluate::<S, false>(simd, [powers[0], centre], c, eta, out);
         column.error = column.error.max(dropped);
         Some(size)
     }

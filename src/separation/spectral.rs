@@ -64,6 +64,7 @@ pub struct Spectral<'a> {
     /// Coefficients of columns.
     pub(super) rows: Vec<Row>,
     values: Vec<strips::Values>,
+    past_caches: bool,
     pub(super) arch: pulp::Arch,
 }
 
@@ -81,13 +82,14 @@ impl<'a> Spectral<'a> {
             spans: Vec::with_capacity(8),
             rows: Vec::new(),
             values: Vec::new(),
+            past_caches: false,
             arch: pulp::Arch::new(),
         }
     }
 
-    /// The same with strips for some of the columns.
-    pub fn with_strips(self, strips: &'a [Strip]) -> Self {
-        Self { strips, values: vec![Default::default(); BLOCK], ..self }
+    /// The same with strips for some of the columns, which are stored past the caches if `past_caches`.
+    pub fn with_strips(self, strips: &'a [Strip], past_caches: bool) -> Self {
+        Self { strips, past_caches, values: vec![Default::default(); BLOCK], ..self }
     }
 
     /// The polynomial over one span up to `u_max` with at least so many coefficients, or `None` where no degree reaches
@@ -212,7 +214,11 @@ impl Kernel for Spectral<'_> {
                 Some(strip) => {
                     let (placement, axis) = (self.evaluator.placement, self.axis);
                     let values = &mut self.values;
-                    arch.dispatch(StripColumns { placement, strip, xi, axis, values, out });
+                    if self.past_caches {
+                        arch.dispatch(StripColumns::<true> { placement, strip, xi, axis, values, out });
+                    } else {
+                        arch.dispatch(StripColumns::<false> { placement, strip, xi, axis, values, out });
+                    }
                 }
                 None if count > 1 && self.evaluator.placement.skew == 0.0 => {
                     arch.dispatch(EachColumn { spectral: self, xi, out });
@@ -256,7 +262,7 @@ impl pulp::WithSimd for EachColumn<'_, '_> {
                     *c = row[k];
                 }
                 let base = spectral.columns.spans[0].base[k];
-                evaluate(simd, [base, 0.0], &c[..spectral.rows.len()], &axis.u, out);
+                evaluate::<S, false>(simd, [base, 0.0], &c[..spectral.rows.len()], &axis.u, out);
             } else {
                 spectral.column(xi, out);
             }
@@ -265,8 +271,8 @@ impl pulp::WithSimd for EachColumn<'_, '_> {
 }
 
 /// Neighbouring columns of one strip, compiled for each kind of machine. A struct, since closures may be left out of
-/// line, and so without the machine's widest vectors.
-struct StripColumns<'a> {
+/// line, and so without the machine's widest vectors. Stored past the caches if `PAST`.
+struct StripColumns<'a, const PAST: bool> {
     placement: &'a Placement,
     strip: &'a Strip,
     /// At most [`BLOCK`].
@@ -277,7 +283,7 @@ struct StripColumns<'a> {
     out: &'a mut [f64],
 }
 
-impl pulp::WithSimd for StripColumns<'_> {
+impl<const PAST: bool> pulp::WithSimd for StripColumns<'_, PAST> {
     type Output = ();
 
     #[inline(always)]
@@ -296,7 +302,7 @@ impl pulp::WithSimd for StripColumns<'_> {
                 *count = axis.count(u[1], *count);
                 // Both halves of a symmetric axis: copying one takes longer than evaluating it.
                 for run in axis.runs(u, begin, *count) {
-                    evaluate(simd, [base, u[0]], c, &axis.u[run.clone()], &mut out[run]);
+                    evaluate::<S, PAST>(simd, [base, u[0]], c, &axis.u[run.clone()], &mut out[run]);
                 }
                 begin = *count;
             }
@@ -359,19 +365,20 @@ mod tests {
     use crate::profile::{Profile, Side, standards};
     use crate::separation::plan::{FULL_PRECISION, demand};
 
-    /// s over a window with joints on the columns and in them, and the number of strips, compiled for one kind of machine.
-    fn filled(placement: &Placement, arch: pulp::Arch) -> (Vec<f64>, usize) {
+    /// s over a window with joints on the columns and in them, and the number of strips, compiled for one kind of machine and
+    /// stored past the caches or not.
+    fn filled(placement: &Placement, arch: pulp::Arch, past_caches: bool) -> (Vec<f64>, usize) {
         let steps =
             |reach: f64, n: i32| (0..n).map(move |k| reach * f64::from(2 * k - n + 1) / f64::from(n - 1));
         let xi: Vec<f64> = steps(12.0, 101).collect();
-        let axis = EtaAxis::new(&steps(15.0, 53).collect::<Vec<_>>());
+        let axis = EtaAxis::new(&steps(15.0, 253).collect::<Vec<_>>());
         let spectral = || {
             let spectral = Spectral::new(placement, &axis, demand(FULL_PRECISION), 4);
             Spectral { arch, ..spectral }
         };
         let strips = strips::strips(&mut spectral(), placement, &xi, axis.reach * axis.reach);
         let mut out = vec![0.0; xi.len() * axis.eta.len()];
-        spectral().with_strips(&strips).columns(&xi, &mut out);
+        spectral().with_strips(&strips, past_caches).columns(&xi, &mut out);
         (out, strips.len())
     }
 
@@ -391,14 +398,16 @@ mod tests {
         let cases = [(drawings.clone(), 0.0, true), (drawings, 0.02, false), (splines, 0.0, false)];
         for ([rail, wheel], yaw, by_strips) in cases {
             let placement = Pair::new(rail, wheel, 460.0)?.placed(-11.0, -9.0, yaw)?;
-            let (plain, strips) = filled(&placement, pulp::Arch::Scalar);
+            let (plain, strips) = filled(&placement, pulp::Arch::Scalar, false);
             assert_eq!(strips > 1, by_strips, "{strips}");
             assert!(plain.iter().all(|s| s.is_finite()));
             let same = |arch| {
-                let (other, _) = filled(&placement, arch);
-                plain.iter().zip(&other).all(|(a, b)| a.to_bits() == b.to_bits())
+                [false, true].into_iter().all(|past_caches| {
+                    let (other, _) = filled(&placement, arch, past_caches);
+                    plain.iter().zip(&other).all(|(a, b)| a.to_bits() == b.to_bits())
+                })
             };
-            assert!(same(pulp::Arch::new()));
+            assert!(same(pulp::Arch::Scalar) && same(pulp::Arch::new()));
             #[cfg(target_arch = "x86_64")]
             if let Some(v3) = pulp::x86::V3::try_new() {
                 assert!(same(pulp::Arch::V3(v3)));
