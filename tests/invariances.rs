@@ -4,10 +4,10 @@
 //! seed is fixed and printed; a failure prints the shrunk case.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
-use std::fmt::Debug;
+mod common;
 
+use common::holds;
 use proptest::prelude::*;
-use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use wheelrail::contact::feasibility::feasibility;
 use wheelrail::interpenetration::{Patch, Slicer, Window};
 use wheelrail::placement::{Pair, Placement};
@@ -17,7 +17,6 @@ use wheelrail::separation::axis::EtaAxis;
 use wheelrail::separation::grid::{Choice, Method};
 use wheelrail::separation::spectral::Demand;
 
-const SEED: [u8; 32] = *b"wheelrail invariances, fixed run";
 const CASES: u32 = 128;
 
 /// Half the window in ξ and η \[mm\].
@@ -254,19 +253,6 @@ impl Case {
     }
 }
 
-/// Runs a property over generated cases with the fixed seed.
-fn holds<S: Strategy>(name: &str, strategy: S, property: impl Fn(S::Value) -> Result<(), TestCaseError>)
-where
-    S::Value: Debug,
-{
-    println!("{name}: {CASES} cases, ChaCha seed {:?}", std::str::from_utf8(&SEED));
-    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &SEED);
-    let config = ProptestConfig { cases: CASES, failure_persistence: None, ..ProptestConfig::default() };
-    if let Err(error) = TestRunner::new_with_rng(config, rng).run(&strategy, property) {
-        panic!("{name}: {error}");
-    }
-}
-
 fn same(a: f64, b: f64) -> bool {
     a == b || (a.is_nan() && b.is_nan())
 }
@@ -312,7 +298,7 @@ fn near_end(placement: &Placement, xi: f64) -> bool {
 fn scaling_all_lengths_gives_the_same_bits() {
     let powers = prop_oneof![Just(1), Just(-1), Just(3), Just(-5), Just(20), Just(-20)];
     let skew = prop_oneof![Just(0.0), Just(0.01), -0.05..0.05];
-    holds("scaling", (case(), powers, skew), |(case, power, skew)| {
+    holds("scaling", CASES, (case(), powers, skew), |(case, power, skew)| {
         let scale = 4f64.powi(power);
         let (one, other) = (case.placement(1.0, skew), case.placement(scale, skew));
         for point in case.points(&one) {
@@ -328,41 +314,51 @@ fn scaling_all_lengths_gives_the_same_bits() {
 fn scaling_keeps_the_bits_of_columns_feasibility_and_boundary() {
     let powers = prop_oneof![Just(1), Just(-2), Just(20), Just(-20)];
     let skew = prop_oneof![3 => Just(0.0), 1 => Just(0.01)];
-    holds("scaling of the rest", (case(), powers, skew, 1e-3..0.1f64), |(case, power, skew, approach)| {
-        let scale = 4f64.powi(power);
-        let (one, other) = (case.placement(1.0, skew), case.placement(scale, skew));
-        let (a, b) = (feasibility(&one), feasibility(&other));
-        prop_assert_eq!(a.map(|f| f.feasible), b.map(|f| f.feasible));
-        prop_assert_eq!(a.map(|f| f.at_xi_mm * scale), b.map(|f| f.at_xi_mm));
-        prop_assert_eq!(a.map(|f| f.least_separation_mm * scale), b.map(|f| f.least_separation_mm));
-        let points = case.points(&one);
-        let mut slicers = [Slicer::new(&one, approach), Slicer::new(&other, approach * scale)];
-        for [xi, _] in &points {
-            let [a, b] = [slicers[0].slice(*xi), slicers[1].slice(xi * scale)];
-            prop_assert_eq!(a.map(|s| s.eta.map(|eta| eta * scale)), b.map(|s| s.eta), "slice at {}", xi);
-        }
-        let columns = |placement: &Placement, scale: f64| {
-            let mut eta: Vec<f64> = points.iter().map(|p| p[1] * scale).collect();
-            eta.sort_by(f64::total_cmp);
-            let demand = Demand { absolute: 1e-9 * scale, relative: f64::INFINITY };
-            let choice = Choice { method: Method::Spectral, demand, coefficients: 1 };
-            let xi: Vec<f64> = points.iter().map(|p| p[0] * scale).collect();
-            let mut out = vec![0.0; xi.len() * eta.len()];
-            choice.fill(placement, &xi, &EtaAxis::new(&eta), &mut out);
-            out
-        };
-        let (a, b) = (columns(&one, 1.0), columns(&other, scale));
-        for (k, (a, b)) in a.iter().zip(&b).enumerate() {
-            prop_assert!(same(a * scale, *b), "column {}: {a:e}, scaled {:e}", k / points.len(), b / scale);
-        }
-        Ok(())
-    });
+    holds(
+        "scaling of the rest",
+        CASES,
+        (case(), powers, skew, 1e-3..0.1f64),
+        |(case, power, skew, approach)| {
+            let scale = 4f64.powi(power);
+            let (one, other) = (case.placement(1.0, skew), case.placement(scale, skew));
+            let (a, b) = (feasibility(&one), feasibility(&other));
+            prop_assert_eq!(a.map(|f| f.feasible), b.map(|f| f.feasible));
+            prop_assert_eq!(a.map(|f| f.at_xi_mm * scale), b.map(|f| f.at_xi_mm));
+            prop_assert_eq!(a.map(|f| f.least_separation_mm * scale), b.map(|f| f.least_separation_mm));
+            let points = case.points(&one);
+            let mut slicers = [Slicer::new(&one, approach), Slicer::new(&other, approach * scale)];
+            for [xi, _] in &points {
+                let [a, b] = [slicers[0].slice(*xi), slicers[1].slice(xi * scale)];
+                prop_assert_eq!(a.map(|s| s.eta.map(|eta| eta * scale)), b.map(|s| s.eta), "slice at {}", xi);
+            }
+            let columns = |placement: &Placement, scale: f64| {
+                let mut eta: Vec<f64> = points.iter().map(|p| p[1] * scale).collect();
+                eta.sort_by(f64::total_cmp);
+                let demand = Demand { absolute: 1e-9 * scale, relative: f64::INFINITY };
+                let choice = Choice { method: Method::Spectral, demand, coefficients: 1 };
+                let xi: Vec<f64> = points.iter().map(|p| p[0] * scale).collect();
+                let mut out = vec![0.0; xi.len() * eta.len()];
+                choice.fill(placement, &xi, &EtaAxis::new(&eta), &mut out);
+                out
+            };
+            let (a, b) = (columns(&one, 1.0), columns(&other, scale));
+            for (k, (a, b)) in a.iter().zip(&b).enumerate() {
+                prop_assert!(
+                    same(a * scale, *b),
+                    "column {}: {a:e}, scaled {:e}",
+                    k / points.len(),
+                    b / scale
+                );
+            }
+            Ok(())
+        },
+    );
 }
 
 #[test]
 fn scaling_keeps_the_bits_of_the_patch() {
     let powers = prop_oneof![Just(1), Just(-2), Just(20), Just(-20)];
-    holds("scaling of the patch", (case(), powers, 1e-3..0.1f64), |(case, power, approach)| {
+    holds("scaling of the patch", CASES, (case(), powers, 1e-3..0.1f64), |(case, power, approach)| {
         let scale = 4f64.powi(power);
         let (one, other) = (case.placement(1.0, 0.0), case.placement(scale, 0.0));
         let patch = |placement: &Placement, scale: f64| {
@@ -393,7 +389,7 @@ fn scaling_keeps_the_bits_of_the_patch() {
 #[test]
 fn a_mirrored_pair_has_the_mirrored_separation() {
     let skew = prop_oneof![Just(0.0), Just(0.02)];
-    holds("mirror", (case(), skew), |(case, skew)| {
+    holds("mirror", CASES, (case(), skew), |(case, skew)| {
         let one = case.placement(1.0, skew);
         let pair = Pair::new(one.rail.profile.mirrored(), one.wheel.profile.mirrored(), one.wheel_radius);
         let [rail_x, wheel_x] = case.abscissae();
@@ -406,7 +402,7 @@ fn a_mirrored_pair_has_the_mirrored_separation() {
 
 #[test]
 fn reversing_a_chain_twice_changes_nothing() {
-    holds("reversal", case(), |case| {
+    holds("reversal", CASES, case(), |case| {
         for chain in [&case.rail, &case.wheel] {
             let profile = chain.profile(1.0);
             prop_assert_eq!(&profile.mirrored().mirrored(), &profile);
@@ -417,7 +413,7 @@ fn reversing_a_chain_twice_changes_nothing() {
 
 #[test]
 fn splitting_arcs_changes_nothing() {
-    holds("splitting", (case(), 0.05..0.95f64), |(case, share)| {
+    holds("splitting", CASES, (case(), 0.05..0.95f64), |(case, share)| {
         let one = case.placement(1.0, 0.0);
         let split = |profile: &Profile| {
             let halves = profile.segments().iter().flat_map(|segment| halves(segment, share)).collect();
@@ -439,7 +435,7 @@ fn halves(segment: &Segment, share: f64) -> Vec<Segment> {
 #[test]
 fn a_rigid_motion_of_the_profiles_changes_nothing() {
     let motion = (-0.6..0.6f64, -300.0..300.0f64, -50.0..50.0f64, -300.0..300.0f64, -20.0..20.0f64);
-    holds("rigid motion", (case(), motion), |(case, (angle, x, z, wheel_x, wheel_z))| {
+    holds("rigid motion", CASES, (case(), motion), |(case, (angle, x, z, wheel_x, wheel_z))| {
         let one = case.placement(1.0, 0.0);
         let (sin, cos) = angle.sin_cos();
         let rail = one.rail.profile.rotated(cos, sin).shifted(x, z);
@@ -468,7 +464,7 @@ fn points_slope(case: &Case) -> f64 {
 
 #[test]
 fn the_other_side_of_the_midplane_is_the_same_to_the_bit() {
-    holds("η → −η", (case(), -0.05..0.05f64), |(case, skew)| {
+    holds("η → −η", CASES, (case(), -0.05..0.05f64), |(case, skew)| {
         for skew in [0.0, skew] {
             let (one, other) = (case.placement(1.0, skew), case.placement(1.0, -skew));
             for [xi, eta] in case.points(&one) {
@@ -486,6 +482,7 @@ fn a_larger_approach_contains_the_smaller_patch() {
     let deltas = (1e-4..0.1f64, prop_oneof![Just(1e-12), Just(1e-6), 1e-3..1.0f64]);
     holds(
         "larger δ",
+        CASES,
         (case(), deltas, prop_oneof![Just(0.0), Just(0.02)]),
         |(case, (delta, more), skew)| {
             let placement = case.placement(1.0, skew);

@@ -27,11 +27,11 @@ fn difference(placement: &Placement, [half, reach]: [f64; 2], points: usize) -> 
     xi.sort_by(f64::total_cmp);
     xi.dedup();
     let axis = EtaAxis::new(&steps(-reach, reach, points));
-    let plans = [Method::Spectral, Method::Pointwise]
+    let mut plans = [Method::Spectral, Method::Pointwise]
         .map(|method| plan(placement, &xi, &axis, FULL_PRECISION, Some(method)));
-    let [spectral, pointwise] = plans.each_ref().map(|plan| {
+    let [spectral, pointwise] = plans.each_mut().map(|plan| {
         let mut s = vec![0.0; xi.len() * axis.eta.len()];
-        plan.choice.fill(placement, &xi, &axis, &mut s);
+        plan.fill(placement, &xi, &axis, &mut s);
         s
     });
     let apart = |(a, b): (&f64, &f64)| if a.is_nan() && b.is_nan() { 0.0 } else { (a - b).abs() };

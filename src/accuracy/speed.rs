@@ -79,7 +79,9 @@ impl<'a> Track<'a> {
                     column.fill(value);
                 }
             }
-            Work::Fill(choice) => choice.fill(self.placement, &self.xi, &self.axis, &mut self.out),
+            Work::Fill(choice) => {
+                choice.fill(self.placement, &self.xi, &self.axis, &mut self.out);
+            }
         }
         black_box(&mut self.out);
     }

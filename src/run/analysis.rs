@@ -146,10 +146,10 @@ impl Analysis {
         check_method(placement, question.method)?;
         let start = Instant::now();
         let axis = EtaAxis::new(&eta);
-        let plan = plan(placement, &xi, &axis, question.tolerance, question.method);
+        let mut plan = plan(placement, &xi, &axis, question.tolerance, question.method);
         let planned = Instant::now();
         let mut separation = vec![0.0; xi.len() * eta.len()];
-        plan.choice.fill(placement, &xi, &axis, &mut separation);
+        plan.fill(placement, &xi, &axis, &mut separation);
         let filled = Instant::now();
         let window = window(&xi, &eta);
         let patch = contact.approach.map(|(approach, _)| Patch::new(placement, approach, &window));

@@ -80,7 +80,7 @@ impl<'a> Parabolic<'a> {
 impl Kernel for Parabolic<'_> {
     fn column(&mut self, xi: f64, out: &mut [f64]) {
         if self.evaluator.placement.skew == 0.0 {
-            let [gap, local] = self.evaluator.parabola(xi, xi);
+            let [gap, local] = self.evaluator.parabola(xi, 0.0);
             let q = self.constant.unwrap_or(local);
             for (s, u) in out.iter_mut().zip(&self.axis.u) {
                 *s = gap + q * u;
@@ -88,8 +88,8 @@ impl Kernel for Parabolic<'_> {
             return;
         }
         for (s, &eta) in out.iter_mut().zip(&self.axis.eta) {
-            let (xi_w, eta_w) = self.evaluator.wheel_coordinates(xi, eta);
-            let [gap, local] = self.evaluator.parabola(xi, xi_w);
+            let [shift, eta_w] = self.evaluator.wheel_coordinates(xi, eta);
+            let [gap, local] = self.evaluator.parabola(xi, shift);
             *s = gap + self.constant.unwrap_or(local) * (eta_w * eta_w);
         }
     }

@@ -18,8 +18,12 @@ use crate::profile::{Branch, BranchPoint, Piece, Section};
 /// the bracketed root.
 pub(super) const STEPS: usize = 8;
 
-/// Share of the window's u that a polynomial's nodes must cover; beyond them it is continued that little.
-pub(super) const NEARLY_COVERED: f64 = 0.99;
+/// A step below so many roundings of w is followed by one that is smaller by e/w and the difference of chord and tangent.
+pub(super) const LAST_STEP: f64 = 16.0 * f64::EPSILON;
+
+/// Share of the window's u that a polynomial's nodes must cover; continued that little beyond them, its error grows by some
+/// per cent.
+pub(super) const NEARLY_COVERED: f64 = 0.9999;
 
 /// A branch that goes on to this many times the sagitta that the window needs is taken to cover it: between
 /// there and the end only a profile that falls towards the axle could bring u back.
@@ -108,6 +112,8 @@ impl<'a> WheelSurface<'a> {
                 // One joint: the ranges meet, whatever rounding or a drawing's step makes of them.
                 span.u[0] = last.u[1];
             }
+            // Near the axle's height u may fall along the column: such a span holds nothing.
+            span.u[1] = span.u[1].max(span.u[0]);
             let done = span.u[1] >= u_max || self.sin == 0.0;
             if span.u[0] <= u_max {
                 spans.push(span);
@@ -175,11 +181,17 @@ impl<'a> WheelSurface<'a> {
         Foot { e, rise, w, u: e * (2.0 * w + e) }
     }
 
-    /// A point near u, by one contraction of the sagitta step or two.
+    /// A point near u, by the contraction of the sagitta step.
     pub fn foot_near(&self, xi: f64, span: &Span, u: f64) -> Foot {
         let step = |w: f64| self.foot(xi, span, sagitta(w, u).clamp(span.e[0], span.e[1]));
-        let first = step(span.w);
-        if (first.u - u).abs() <= (1.0 - NEARLY_COVERED) * u { first } else { step(first.w) }
+        let mut foot = step(span.w);
+        for _ in 0..STEPS {
+            if (foot.u - u).abs() <= (1.0 - NEARLY_COVERED) * u {
+                break;
+            }
+            foot = step(foot.w);
+        }
+        foot
     }
 
     /// The point at u = η² over a span, or `None` where η is beyond the ring.
@@ -194,8 +206,8 @@ impl<'a> WheelSurface<'a> {
             let e = foot.e - (foot.u - u) / (2.0 * (foot.w + foot.e * (1.0 - fall)));
             let change = (e - foot.e).abs();
             foot = self.foot(xi, span, e);
-            // The steps fall in geometric progression, or faster: the next one would be below rounding.
-            if change * change <= f64::EPSILON * e * last {
+            // The steps fall in geometric progression: the next one would be below rounding. The first two may fall faster.
+            if change * change <= f64::EPSILON * e * last && change <= LAST_STEP * foot.w {
                 return Some(foot).filter(|foot| foot.w > 0.0);
             }
             last = change;

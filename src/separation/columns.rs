@@ -2,9 +2,9 @@
 //! that no column waits for the one before it.
 
 use super::Evaluator;
-use super::column::{NEARLY_COVERED, STEPS, Span, WheelSurface, sagitta};
+use super::column::{LAST_STEP, NEARLY_COVERED, STEPS, Span, WheelSurface, sagitta};
 use super::gap::{contact_gap, contact_gaps};
-use super::spectral::{Demand, MOST_COEFFICIENTS, ROUNDING_LEVEL, is_whole, nodes, powers};
+use super::spectral::{Demand, MOST_COEFFICIENTS, ROUNDING_LEVEL, inner_extremum, is_whole, nodes, powers};
 use crate::profile::{BranchPoints, Branches, Piece, Section};
 
 /// Columns that are computed at once: two of the widest vectors.
@@ -149,7 +149,8 @@ impl<'a> Columns<'a> {
     }
 
     /// Appends the coefficients of q over one span in powers of u − u_0, at least so many, as
-    /// [`super::spectral::Spectral::polynomial`]; how many. `None` where no degree reaches the demand.
+    /// [`super::spectral::Spectral::polynomial`]; how many, and their largest measured error \[mm\]. `None` where no degree
+    /// reaches the demand.
     #[inline(always)]
     pub fn polynomials(
         &self,
@@ -157,28 +158,36 @@ impl<'a> Columns<'a> {
         demand: Demand,
         least: usize,
         coefficients: &mut Vec<Row>,
-    ) -> Option<usize> {
+    ) -> Option<(usize, f64)> {
         let (wheel, span) = (&self.wheel, &self.spans[span]);
         let end = wheel.feet_near(&self.xi, span, &span.u[1])?;
         let run: Row = row(|k| end.e[k] - span.e[0][k]);
+        let allowed = row(|k| {
+            let rise = end.rise[k].abs();
+            let rounding = ROUNDING_LEVEL * (rise + span.e[0][k]);
+            demand.absolute.min(demand.relative * rise).max(rounding)
+        });
+        let at = |share: f64| wheel.feet(&self.xi, span, row(|k| span.e[0][k] + run[k] * share));
         for n in least..=MOST_COEFFICIENTS {
             let (mut v, mut d) = ([[0.0; MANY]; MOST_COEFFICIENTS], [[0.0; MANY]; MOST_COEFFICIENTS]);
             for ((v, d), node) in v.iter_mut().zip(&mut d).zip(nodes(n)) {
-                let feet = wheel.feet(&self.xi, span, row(|k| span.e[0][k] + run[k] * node))?;
+                let feet = at(*node)?;
                 *v = row(|k| feet.u[k] - span.u[0][k]);
                 *d = row(|k| feet.rise[k] / v[k]);
             }
             let c = powers(&v[..n], &mut d[..n]);
-            let good = |k: usize| {
-                let v = end.u[k] - span.u[0][k];
-                let value = v * c[..n].iter().rev().fold(0.0, |q, c| q * v + c[k]);
-                let rise = end.rise[k].abs();
-                let allowed = demand.absolute.min(demand.relative * rise);
-                (value - end.rise[k]).abs() <= allowed.max(ROUNDING_LEVEL * (rise + span.e[0][k]))
+            let error = |feet: &Feet| {
+                row(|k| {
+                    let v = feet.u[k] - span.u[0][k];
+                    let value = v * c[..n].iter().rev().fold(0.0, |q, c| q * v + c[k]);
+                    (value - feet.rise[k]).abs()
+                })
             };
-            if (0..MANY).all(good) {
+            let errors = [error(&end), error(&at(inner_extremum(n))?)];
+            // Not so for what is not a number.
+            if (0..MANY).all(|k| errors[0][k] <= allowed[k] && errors[1][k] <= allowed[k]) {
                 coefficients.extend(&c[..n]);
-                return Some(n);
+                return Some((n, errors.as_flattened().iter().fold(0.0, |most, error| error.max(most))));
             }
         }
         None
@@ -270,7 +279,10 @@ impl<'a> WheelSurface<'a> {
             });
             let change = row(|k| (e[k] - feet.e[k]).abs());
             feet = self.feet(xi, span, e)?;
-            if (0..MANY).all(|k| change[k] * change[k] <= f64::EPSILON * e[k] * last[k]) {
+            let settled = |k: usize| {
+                change[k] * change[k] <= f64::EPSILON * e[k] * last[k] && change[k] <= LAST_STEP * feet.w[k]
+            };
+            if (0..MANY).all(settled) {
                 return Some(feet).filter(|feet| feet.w.iter().all(|&w| w > 0.0));
             }
             last = change;
@@ -295,7 +307,13 @@ impl<'a> WheelSurface<'a> {
         let near = |feet: &Feet| {
             (0..MANY).all(|k| (feet.u[k] - u[k]).abs() <= (1.0 - NEARLY_COVERED) * u[k] && feet.w[k] > 0.0)
         };
-        let first = step(&span.w)?;
-        if near(&first) { Some(first) } else { step(&first.w).filter(near) }
+        let mut feet = step(&span.w)?;
+        for _ in 0..STEPS {
+            if near(&feet) {
+                return Some(feet);
+            }
+            feet = step(&feet.w)?;
+        }
+        None
     }
 }

@@ -77,14 +77,14 @@ pub(super) fn curvature_difference(wheel_radius: f64, rail_radius: f64) -> f64 {
     }
 }
 
-/// ζ^W(ξ′) − ζ^R(ξ) for a skewed wheel, over both contact segments: the gap at ξ and the wheel's rise from
-/// there to ξ′, neither of which cancels.
-pub(super) fn skewed_gap(rail: &Branch, wheel: &Branch, xi: f64, xi_w: f64) -> f64 {
+/// ζ^W(ξ + `shift`) − ζ^R(ξ) for a skewed wheel, over both contact segments: the gap at ξ and the wheel's rise from there,
+/// neither of which cancels.
+pub(super) fn skewed_gap(rail: &Branch, wheel: &Branch, xi: f64, shift: f64) -> f64 {
     let inside = |x: f64| x >= wheel.xi[0] && x <= wheel.xi[1];
     if !inside(xi) {
-        return wheel.height(xi_w) - rail.height(xi);
+        return wheel.height(xi + shift) - rail.height(xi);
     }
-    contact_gap(rail, wheel, xi, wheel.height(xi)) + (xi_w - xi) * wheel.chord_slope(xi, xi_w)
+    contact_gap(rail, wheel, xi, wheel.height(xi)) + shift * wheel.chord_slope(xi, xi + shift)
 }
 
 /// κ_W − κ_R \[1/mm\] of two contact arcs, or `None` when a polynomial is among them.

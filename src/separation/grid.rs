@@ -33,6 +33,11 @@ pub trait Kernel {
             self.column(xi, out);
         }
     }
+
+    /// Largest truncation error \[mm\] that was measured so far.
+    fn truncation(&self) -> f64 {
+        0.0
+    }
 }
 
 /// The accuracy ladder, from the simplest formula to the historical baseline.
@@ -112,11 +117,12 @@ impl Choice {
     }
 
     /// s over the grid, index i_ξ · n_η + i_η, on the threads of the current rayon pool. The same bits come
-    /// out for any number of threads.
-    pub fn fill(&self, placement: &Placement, xi: &[f64], axis: &EtaAxis, out: &mut [f64]) {
+    /// out for any number of threads. Returns the largest truncation error \[mm\] that was measured on the way, 0 where
+    /// none is.
+    pub fn fill(&self, placement: &Placement, xi: &[f64], axis: &EtaAxis, out: &mut [f64]) -> f64 {
         let n = axis.eta.len();
         if n == 0 {
-            return;
+            return 0.0;
         }
         let strips = match self.method {
             Method::Spectral => {
@@ -124,15 +130,22 @@ impl Choice {
             }
             _ => Vec::new(),
         };
+        let of_strips = strips.iter().map(|strip| strip.truncation).fold(0.0, f64::max);
         let by_columns = self.method < Method::Pointwise;
         if out.len() <= FEW_POINTS[usize::from(!by_columns)] {
-            return self.kernel(placement, axis, &strips, false).columns(xi, out);
+            let mut kernel = self.kernel(placement, axis, &strips, false);
+            kernel.columns(xi, out);
+            return kernel.truncation().max(of_strips);
         }
         let past_caches = out.len() >= BEYOND_CACHES;
         let blocks = out.par_chunks_mut(BLOCK * n).zip(xi.par_chunks(BLOCK));
-        blocks.for_each_init(
+        let of_blocks = blocks.map_init(
             || self.kernel(placement, axis, &strips, past_caches),
-            |kernel, (out, xi)| kernel.columns(xi, out),
+            |kernel, (out, xi)| {
+                kernel.columns(xi, out);
+                kernel.truncation()
+            },
         );
+        of_blocks.reduce(|| of_strips, f64::max)
     }
 }

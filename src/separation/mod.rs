@@ -35,13 +35,16 @@ pub struct Evaluator<'a> {
     wheel: WheelSurface<'a>,
     spans: Vec<Span>,
     skew: (f64, f64),
+    /// 1 − cos χ, to all digits.
+    versine: f64,
 }
 
 /// A point of the wheel over the tangent plane.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct WheelPoint {
-    /// The wheel's own ξ′ and η′ \[mm\].
+    /// The wheel's own ξ′ and η′ \[mm\], and ξ′ − ξ.
     xi_w: f64,
+    shift: f64,
     pub(crate) eta_w: f64,
     /// Its span.
     span: Span,
@@ -53,7 +56,8 @@ impl<'a> Evaluator<'a> {
     /// An evaluator of one pair.
     pub fn new(placement: &'a Placement) -> Self {
         let skew = placement.skew.sin_cos();
-        Self { placement, wheel: WheelSurface::new(placement), spans: Vec::with_capacity(8), skew }
+        let versine = 2.0 * (placement.skew / 2.0).sin().powi(2);
+        Self { placement, wheel: WheelSurface::new(placement), spans: Vec::with_capacity(8), skew, versine }
     }
 
     /// s(ξ, η) \[mm\], negative where the bodies overlap; NaN where a body has no surface.
@@ -87,16 +91,16 @@ impl<'a> Evaluator<'a> {
 
     /// The wheel point over (ξ, η); `None` off the wheel.
     pub(crate) fn wheel_point(&mut self, xi: f64, eta: f64) -> Option<WheelPoint> {
-        let (xi_w, eta_w) = self.wheel_coordinates(xi, eta);
-        let u = eta_w * eta_w;
+        let [shift, eta_w] = self.wheel_coordinates(xi, eta);
+        let (xi_w, u) = (xi + shift, eta_w * eta_w);
         self.wheel.spans(xi_w, u, &mut self.spans);
         let span = self.spans[WheelSurface::span_at(&self.spans, u)?];
-        Some(WheelPoint { xi_w, eta_w, span, foot: self.wheel.foot_at(xi_w, &span, u)? })
+        Some(WheelPoint { xi_w, shift, eta_w, span, foot: self.wheel.foot_at(xi_w, &span, u)? })
     }
 
     /// s where the wheel point lies over ξ.
     fn separation_at(&self, xi: f64, point: &WheelPoint) -> f64 {
-        self.base(xi, point.xi_w, &point.span) + point.foot.rise
+        self.base(xi, point.shift, &point.span) + point.foot.rise
     }
 
     /// The wheel's normal in (ξ, η, ζ).
@@ -123,7 +127,7 @@ impl<'a> Evaluator<'a> {
                 let u = eta * eta;
                 let found = WheelSurface::span_at(&spans, u);
                 if found != known {
-                    (known, base) = (found, found.map_or(f64::NAN, |k| self.base(xi, xi, &spans[k])));
+                    (known, base) = (found, found.map_or(f64::NAN, |k| self.base(xi, 0.0, &spans[k])));
                 }
                 *s = base + found.map_or(f64::NAN, |k| self.rise(xi, &spans[k], u));
             }
@@ -137,7 +141,7 @@ impl<'a> Evaluator<'a> {
 
     /// s at the given u = η² of one span, without skew.
     fn over_span(&self, xi: f64, span: &Span, u: &[f64], out: &mut [f64]) {
-        let base = self.base(xi, xi, span);
+        let base = self.base(xi, 0.0, span);
         for (s, &u) in out.iter_mut().zip(u) {
             *s = base + self.rise(xi, span, u);
         }
@@ -148,11 +152,12 @@ impl<'a> Evaluator<'a> {
         self.wheel.foot_at(xi_w, span, u).map_or(f64::NAN, |foot| foot.rise)
     }
 
-    /// \[s at η′ = 0, coefficient of η′²\] with the wheel at its own abscissa ξ′.
-    fn parabola(&mut self, xi: f64, xi_w: f64) -> [f64; 2] {
+    /// \[s at η′ = 0, coefficient of η′²\] with the wheel at its own abscissa ξ′ = ξ + `shift`.
+    fn parabola(&mut self, xi: f64, shift: f64) -> [f64; 2] {
+        let xi_w = xi + shift;
         self.wheel.spans(xi_w, 0.0, &mut self.spans);
         let Some(span) = self.spans.first() else { return [f64::NAN; 2] };
-        [self.base(xi, xi_w, span), self.wheel.opening(xi_w, span)]
+        [self.base(xi, shift, span), self.wheel.opening(xi_w, span)]
     }
 
     /// Abscissa ξ′ − e sinθ of the profile point under (ξ, η), in the wheel's contact frame \[mm\]; NaN off the wheel.
@@ -161,10 +166,11 @@ impl<'a> Evaluator<'a> {
         point.map_or(f64::NAN, |point| self.wheel.abscissa(point.xi_w, point.foot.e))
     }
 
-    /// (ξ, η) in the wheel's own directions of the tangent plane.
-    fn wheel_coordinates(&self, xi: f64, eta: f64) -> (f64, f64) {
+    /// ξ′ − ξ, which does not cancel, and η′ in the wheel's own directions of the tangent plane \[mm\].
+    #[inline(always)]
+    fn wheel_coordinates(&self, xi: f64, eta: f64) -> [f64; 2] {
         let (sin, cos) = self.skew;
-        if sin == 0.0 { (xi, eta) } else { (xi * cos + eta * sin, eta * cos - xi * sin) }
+        if sin == 0.0 { [0.0, eta] } else { [eta * sin - xi * self.versine, eta * cos - xi * sin] }
     }
 
     /// Whether a span begins in the midplane, over both contact segments.
@@ -181,8 +187,8 @@ impl<'a> Evaluator<'a> {
         height.abs() + coordinates[0].max(coordinates[1])
     }
 
-    /// s at the beginning of a span: the wheel's height there less the rail's.
-    fn base(&self, xi: f64, xi_w: f64, span: &Span) -> f64 {
+    /// s at the beginning of a span of the column at ξ + `shift`: the wheel's height there less the rail's at ξ.
+    fn base(&self, xi: f64, shift: f64, span: &Span) -> f64 {
         let (rail, wheel) = (&self.placement.rail.section, &self.placement.wheel.section);
         let Some(piece) = rail.piece_at(xi) else { return f64::NAN };
         let both = self.over_contact(xi, span);
@@ -191,10 +197,10 @@ impl<'a> Evaluator<'a> {
             return span.height - rail.height(xi);
         }
         let branch = &wheel.branches[span.branch];
-        if xi == xi_w {
+        if shift == 0.0 {
             return gap::contact_gap(rail, branch, xi, span.height);
         }
-        gap::skewed_gap(rail, branch, xi, xi_w)
+        gap::skewed_gap(rail, branch, xi, shift)
     }
 }
 

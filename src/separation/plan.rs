@@ -36,10 +36,20 @@ pub struct Plan {
     pub choice: Choice,
     /// Estimated largest error of s over the grid \[mm\], truncation and rounding.
     pub error: f64,
+    /// The share of rounding in it \[mm\].
+    pub rounding: f64,
     /// Largest error asked for \[mm\].
     pub tolerance: f64,
     /// One sentence for the summary.
     pub reason: String,
+}
+
+impl Plan {
+    /// Fills the grid that the plan is for; completes its estimate by the truncation errors that are measured on the way.
+    pub fn fill(&mut self, placement: &Placement, xi: &[f64], axis: &EtaAxis, out: &mut [f64]) {
+        let truncation = self.choice.fill(placement, xi, axis, out);
+        self.error = nan_max(self.error, BETWEEN_SAMPLES * truncation + self.rounding);
+    }
 }
 
 /// The demand on s for a tolerance \[mm\].
@@ -61,6 +71,7 @@ pub fn plan(
     forced: Option<Method>,
 ) -> Plan {
     let samples = Samples::new(placement, xi, axis);
+    let rounding = samples.rounding;
     let demand = demand(tolerance);
     let tried = |method| {
         let (coefficients, truncation) =
@@ -70,18 +81,18 @@ pub fn plan(
     };
     if let Some(method) = forced {
         let (choice, error) = tried(method);
-        return Plan { choice, error, tolerance, reason: "asked for by the scene".into() };
+        return Plan { choice, error, rounding, tolerance, reason: "asked for by the scene".into() };
     }
     let (choice, error) = tried(Method::Quadratic);
-    let exact = error <= samples.rounding;
+    let exact = error <= rounding;
     if error <= tolerance && (tolerance > FULL_PRECISION || exact) {
         let reason = format!("cheapest of all, within {tolerance:e} mm");
-        return Plan { choice, error, tolerance, reason };
+        return Plan { choice, error, rounding, tolerance, reason };
     }
     let reason =
         format!("cheapest within {tolerance:e} mm; {} is off by {error:.1e} mm", Method::Quadratic.name());
     let (choice, error) = tried(Method::Spectral);
-    Plan { choice, error, tolerance, reason }
+    Plan { choice, error, rounding, tolerance, reason }
 }
 
 /// Point-wise values at a few columns.
@@ -103,7 +114,7 @@ impl<'a> Samples<'a> {
         for (&xi, out) in xi.iter().zip(exact.chunks_mut(axis.eta.len().max(1))) {
             evaluator.column(xi, &axis.eta, out);
         }
-        let rounding = rounding(placement, &xi, &exact);
+        let rounding = rounding(placement, &xi, &whole.eta, &exact);
         Self { placement, xi, whole, axis, exact, rounding }
     }
 
@@ -144,37 +155,44 @@ impl<'a> Samples<'a> {
     }
 }
 
-/// Roundings of s over the contact segments: gap, rise, and their interpolation over ξ.
-const CONTACT_ROUNDINGS: f64 = 8.0;
+/// Roundings of s over the contact segments: gap, rise, and their interpolation over ξ; under yaw that in powers of η.
+const CONTACT_ROUNDINGS: [f64; 2] = [8.0, 32.0];
+
+/// … and elsewhere: both bodies' joints are off at once.
+const PLACE_ROUNDINGS: f64 = 2.0;
 
 /// Rounding error of s: a few units of its own last place over the contact segments; elsewhere, of the heights by
 /// which joints are placed in the frame, ζ = Δz cosθ − Δx sinθ, with z_C rounded in Δz, and of the rounded ξ times slope.
-fn rounding(placement: &Placement, xi: &[f64], exact: &[f64]) -> f64 {
+fn rounding(placement: &Placement, xi: &[f64], eta: &[f64], exact: &[f64]) -> f64 {
     let largest = |values: &mut dyn Iterator<Item = f64>| {
         values.filter(|v| !v.is_nan()).fold(0.0, |m: f64, v| m.max(v.abs()))
     };
-    let sections = [&placement.rail.section, &placement.wheel.section];
-    let contact = |section: &Section, xi: f64| {
-        section.piece_at(xi).is_none_or(|piece| section.contact == Some(piece.branch))
+    // Beside the midplane columns lie over other places of the wheel's profile.
+    let mut evaluator = Evaluator::new(placement);
+    let mut below = xi.to_vec();
+    for &eta in [eta.first(), eta.last()].into_iter().flatten() {
+        below.extend(xi.iter().map(|&xi| evaluator.foot_abscissa(xi, eta)));
+    }
+    let bodies = [(&placement.rail.section, xi), (&placement.wheel.section, &below)];
+    let contact = |section: &Section, x: f64| {
+        section.piece_at(x).is_none_or(|piece| section.contact == Some(piece.branch))
     };
     let s = largest(&mut exact.iter().copied());
-    if xi.iter().all(|&xi| sections.into_iter().all(|section| contact(section, xi))) {
-        return CONTACT_ROUNDINGS * f64::EPSILON * s;
+    if bodies.into_iter().all(|(section, places)| places.iter().all(|&x| contact(section, x))) {
+        return CONTACT_ROUNDINGS[usize::from(placement.skew != 0.0)] * f64::EPSILON * s;
     }
-    let joints = sections.map(|section| {
-        let heights = largest(&mut xi.iter().map(|&xi| section.height(xi)));
-        let slopes =
-            |xi: &f64| section.branch_at(*xi).map_or(f64::NAN, |branch| branch.chord_slope(*xi, *xi));
-        let width = largest(&mut xi.iter().copied()) + section.frame.x.abs();
-        let steep = width * largest(&mut xi.iter().map(slopes).filter(|slope| slope.is_finite()));
+    let joints = bodies.map(|(section, places)| {
+        let heights = largest(&mut places.iter().map(|&x| section.height(x)));
+        let slopes = |x: &f64| section.branch_at(*x).map_or(f64::NAN, |branch| branch.chord_slope(*x, *x));
+        let width = largest(&mut places.iter().copied()) + section.frame.x.abs();
+        let steep = width * largest(&mut places.iter().map(slopes).filter(|slope| slope.is_finite()));
         section.frame.z.abs() + heights + steep.max(section.frame.sin.abs() * width)
     });
-    // Both bodies' joints are off at once.
-    2.0 * f64::EPSILON * s.max(joints[0] + joints[1])
+    PLACE_ROUNDINGS * f64::EPSILON * s.max(joints[0] + joints[1])
 }
 
 /// The larger of two, NaN if either is.
-fn nan_max(a: f64, b: f64) -> f64 {
+pub(super) fn nan_max(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }
 
@@ -187,7 +205,8 @@ fn sampled_columns(placement: &Placement, xi: &[f64]) -> Vec<f64> {
         let middles = joints.windows(2).map(|pair| pair[0] + (pair[1] - pair[0]) / 2.0);
         for place in joints.iter().copied().chain(middles) {
             let beyond = xi.partition_point(|&xi| xi < place);
-            columns.extend(&xi[beyond.saturating_sub(1)..xi.len().min(beyond + 1)]);
+            // Beside a column on the joint as well.
+            columns.extend(&xi[beyond.saturating_sub(1)..xi.len().min(beyond + 2)]);
         }
         columns.sort_by(f64::total_cmp);
         columns.dedup();

@@ -165,12 +165,12 @@ impl SkewedColumn<'_, '_> {
     #[inline(always)]
     fn separations(&mut self, eta: &Row, between: bool) -> Option<(Row, f64)> {
         let (xi, evaluator) = (self.xi, &mut *self.evaluator);
-        let (sin, cos) = evaluator.skew;
-        let xi_w = row(|k| xi * cos + eta[k] * sin);
-        let u = row(|k| {
-            let eta_w = eta[k] * cos - xi * sin;
-            eta_w * eta_w
-        });
+        let (mut shift, mut u) = ([0.0; MANY], [0.0; MANY]);
+        for k in 0..MANY {
+            let [along, across] = evaluator.wheel_coordinates(xi, eta[k]);
+            (shift[k], u[k]) = (along, across * across);
+        }
+        let xi_w = row(|k| xi + shift[k]);
         evaluator.wheel.spans(xi_w[MANY / 2], u[MANY / 2], &mut evaluator.spans);
         let span = evaluator.spans[WheelSurface::span_at(&evaluator.spans, u[MANY / 2])?];
         let wheel = &evaluator.wheel;
@@ -178,7 +178,7 @@ impl SkewedColumn<'_, '_> {
         let here = wheel.spans_over(&xi_w, piece)?;
         let feet = wheel.feet_at(&xi_w, &here, &u)?;
         let abscissae = row(|k| wheel.abscissa(xi_w[k], feet.e[k]));
-        if !inside(piece, &abscissae, between) {
+        if !inside(piece, &abscissae, between) || !beyond_step(wheel, span.piece, [&xi_w, &u], between) {
             return None;
         }
         let begun = here.e[0].iter().filter(|&&e| e == 0.0).count();
@@ -192,22 +192,41 @@ impl SkewedColumn<'_, '_> {
             return None;
         }
         let slope = wheel.section.branches[piece.branch].chords_from(&contact.from, &xi_w)?;
-        let s = row(|k| contact.gap + (xi_w[k] - xi) * slope[k] + feet.rise[k]);
+        let s = row(|k| contact.gap + shift[k] * slope[k] + feet.rise[k]);
         let largest = s.iter().fold(0.0, |most, s| s.abs().max(most));
         Some((s, ROUNDING_LEVEL * largest))
     }
+}
+
+/// Whether columns that enter a piece by a step of the profile are beyond what the piece before it covers, and all in between
+/// as well: where both have a point, that one counts.
+#[inline(always)]
+fn beyond_step(wheel: &WheelSurface<'_>, index: usize, [xi, u]: [&Row; 2], between: bool) -> bool {
+    let ([near, far], pieces) = (wheel.sides(), &wheel.section.pieces);
+    let neighbour = if near == 0 { index.checked_sub(1) } else { Some(index + 1) };
+    let piece = &pieces[index];
+    let joined = neighbour.and_then(|k| pieces.get(k)).filter(|before| before.xi[far] == piece.xi[near]);
+    let Some(before) = joined.filter(|before| before.ends[far].1 != piece.ends[near].1) else { return true };
+    // A column that begins on the piece, or on neither's side of the joint, leaves the other at e ≤ 0.
+    let beyond = row(|k| match wheel.leaves(xi[k], before) {
+        [e, u_joint] if e > 0.0 => u[k] - u_joint,
+        _ => f64::INFINITY,
+    });
+    let margin = if between { widest_step(&beyond) } else { 0.0 };
+    beyond.iter().all(|&beyond| beyond >= margin)
+}
+
+/// The largest difference of neighbours; infinities count only beside numbers.
+#[inline(always)]
+fn widest_step(values: &Row) -> f64 {
+    values.windows(2).fold(0.0, |widest, pair| (pair[1] - pair[0]).abs().max(widest))
 }
 
 /// Whether abscissae of the profile are inside one piece, and all in between as well: the abscissa is a parabola up to terms of
 /// fourth order, which turns between two points by less than it moves between others.
 #[inline(always)]
 fn inside(piece: &Piece, abscissae: &Row, between: bool) -> bool {
-    let mut margin = 0f64;
-    if between {
-        for pair in abscissae.windows(2) {
-            margin = margin.max((pair[1] - pair[0]).abs());
-        }
-    }
+    let margin = if between { widest_step(abscissae) } else { 0.0 };
     let [low, high] = [piece.xi[0] + margin, piece.xi[1] - margin];
     abscissae.iter().all(|&abscissa| low <= abscissa && abscissa <= high)
 }

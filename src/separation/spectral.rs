@@ -13,6 +13,7 @@ use super::columns::{Columns, MANY, Row};
 use super::gap::midplane_gap;
 use super::grid::{BLOCK, Kernel};
 use super::horner::{Run, evaluate};
+use super::plan::nan_max;
 use super::skewed::SkewedColumn;
 use super::strips::{self, MOST_SPANS, Strip};
 use crate::placement::Placement;
@@ -47,7 +48,7 @@ pub struct ColumnPolynomial {
     pub c: [f64; MOST_COEFFICIENTS],
     /// How many of them.
     pub n: usize,
-    /// Measured error of s \[mm\] at the end of the span, where it is largest.
+    /// Largest measured error of s \[mm\].
     pub error: f64,
 }
 
@@ -66,6 +67,8 @@ pub struct Spectral<'a> {
     values: Vec<strips::Values>,
     past_caches: bool,
     pub(super) arch: pulp::Arch,
+    /// Largest measured truncation error so far \[mm\].
+    truncation: f64,
 }
 
 impl<'a> Spectral<'a> {
@@ -84,6 +87,7 @@ impl<'a> Spectral<'a> {
             values: Vec::new(),
             past_caches: false,
             arch: pulp::Arch::new(),
+            truncation: 0.0,
         }
     }
 
@@ -101,15 +105,16 @@ impl<'a> Spectral<'a> {
         if !covered || end.w <= 0.0 {
             return None;
         }
-        let base = self.evaluator.base(xi, xi, span);
+        let (wheel, base) = (&self.evaluator.wheel, self.evaluator.base(xi, 0.0, span));
         let allowed = self.demand.absolute.min(self.demand.relative * end.rise.abs());
         // A short span's rise is the difference of sagittae that are larger.
         let rounding = ROUNDING_LEVEL * (end.rise.abs() + span.e[0]);
         for n in least..=MOST_COEFFICIENTS {
-            let c = interpolate(&self.evaluator.wheel, xi, span, end.e, n);
+            let c = interpolate(wheel, xi, span, end.e, n);
             let fit = ColumnPolynomial { base: 0.0, u0: span.u[0], c, n, error: 0.0 };
-            // The end is where the error of an interpolant at Chebyshev points is largest.
-            let error = (fit.rise(end.u) - end.rise).abs();
+            let inner = wheel.foot(xi, span, span.e[0] + (end.e - span.e[0]) * inner_extremum(n));
+            let errors = [end, inner].map(|foot| (fit.rise(foot.u) - foot.rise).abs());
+            let error = nan_max(errors[0], errors[1]);
             if error <= allowed.max(rounding) {
                 return Some(ColumnPolynomial { base, error, ..fit });
             }
@@ -188,7 +193,8 @@ pub(super) fn is_whole(spans: &[Span], u_max: f64) -> bool {
 impl Kernel for Spectral<'_> {
     fn column(&mut self, xi: f64, out: &mut [f64]) {
         if self.evaluator.placement.skew != 0.0 {
-            self.skewed_column(xi, &self.axis.eta, out);
+            let error = self.skewed_column(xi, &self.axis.eta, out);
+            self.truncation = self.truncation.max(error);
             return;
         }
         self.single_column(xi, self.axis.reach * self.axis.reach, out);
@@ -232,6 +238,10 @@ impl Kernel for Spectral<'_> {
             done += count;
         }
     }
+
+    fn truncation(&self) -> f64 {
+        self.truncation
+    }
 }
 
 /// Neighbouring columns that are in no strip; those over one branch, or each over its own cubic, at once.
@@ -249,11 +259,14 @@ impl pulp::WithSimd for EachColumn<'_, '_> {
     fn with_simd<S: pulp::Simd>(self, simd: S) {
         let Self { spectral, xi, out } = self;
         let (axis, length) = (spectral.axis, spectral.axis.eta.len());
-        let Spectral { evaluator, demand, coefficients, columns, rows, .. } = &mut *spectral;
+        let Spectral { evaluator, demand, coefficients, columns, rows, truncation, .. } = &mut *spectral;
         rows.clear();
         let mut taken = columns.take_each(evaluator, axis.reach * axis.reach, xi).unwrap_or([false; MANY]);
-        if taken.contains(&true) && columns.polynomials(0, *demand, *coefficients, rows).is_none() {
-            taken = [false; MANY];
+        if taken.contains(&true) {
+            match columns.polynomials(0, *demand, *coefficients, rows) {
+                Some((_, error)) => *truncation = truncation.max(error),
+                None => taken = [false; MANY],
+            }
         }
         for (k, (&xi, out)) in xi.iter().zip(out.chunks_exact_mut(length)).enumerate() {
             if taken[k] {
@@ -299,7 +312,7 @@ impl<const PAST: bool> pulp::WithSimd for StripColumns<'_, PAST> {
             let mut begin = 0;
             for (span, count) in counts[..strip.spans()].iter_mut().enumerate() {
                 let (u, base, c) = strip.span(values, span, xi, u_max);
-                *count = axis.count(u[1], *count);
+                *count = axis.count(u[1], *count).max(begin);
                 // Both halves of a symmetric axis: copying one takes longer than evaluating it.
                 for run in axis.runs(u, begin, *count) {
                     evaluate::<S, PAST>(simd, [base, u[0]], c, &axis.u[run.clone()], &mut out[run]);
@@ -327,6 +340,7 @@ impl Spectral<'_> {
         }
         for span in &spans {
             let fit = self.polynomial(xi, span, u_max, self.coefficients);
+            self.truncation = fit.as_ref().map_or(0.0, |fit| fit.error).max(self.truncation);
             for range in self.axis.ranges(span.u) {
                 let (u, out) = (&self.axis.u[range.clone()], &mut out[range]);
                 match &fit {
@@ -338,6 +352,21 @@ impl Spectral<'_> {
         self.spans = spans;
     }
 }
+
+/// Where in (0, 1) an interpolant at n Chebyshev points is measured besides the end. There its error is largest, unless it
+/// happens to pass through zero; one other extremum tells, near the middle, for s at the beginning of a span is exact.
+pub(super) fn inner_extremum(n: usize) -> f64 {
+    // (1 − cos(kπ/n))/2, k = n/2; the error of one coefficient at v has its own in the first quarter.
+    EXTREMA[n - 1]
+}
+
+/// [`inner_extremum`] by n.
+static EXTREMA: std::sync::LazyLock<[f64; MOST_COEFFICIENTS]> = std::sync::LazyLock::new(|| {
+    from_fn(|row| match row + 1 {
+        1 => 0.25,
+        n => (std::f64::consts::FRAC_PI_2 * (n / 2) as f64 / n as f64).sin().powi(2),
+    })
+});
 
 /// The n Chebyshev points of (0, 1), ascending.
 pub(super) fn nodes(n: usize) -> &'static [f64] {

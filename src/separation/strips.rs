@@ -63,6 +63,8 @@ pub struct Strip {
     /// Coefficients of t^(kept−1), …, t⁰ of the first lanes, then of the next; t from −1 to 1 over the interval.
     powers: Vec<Lanes>,
     kept: usize,
+    /// Largest measured truncation error of its columns \[mm\].
+    pub truncation: f64,
 }
 
 /// s at the beginning of a strip's columns.
@@ -177,11 +179,12 @@ impl Strip {
         let judged = &mut beginnings.judged;
         let single = columns.spans.len() == 1;
         let mut spans = [(0, 0); MOST_SPANS];
-        let mut width = 0;
+        let (mut width, mut truncation) = (0, 0f64);
         rows.clear();
         for (k, span) in columns.spans.iter().enumerate() {
             let at = rows.len();
-            let n = columns.polynomials(k, *demand, *coefficients, rows)?;
+            let (n, error) = columns.polynomials(k, *demand, *coefficients, rows)?;
+            truncation = error.max(truncation);
             let length = row(|k| span.u[1][k] - span.u[0][k]);
             let q = &mut rows[at..];
             let mut power = [1.0; MANY];
@@ -220,7 +223,7 @@ impl Strip {
                 lanes.0[at % LANES] = power;
             }
         }
-        Some(Self { xi, gap: beginnings.gap, spans, count: columns.spans.len(), powers, kept })
+        Some(Self { xi, gap: beginnings.gap, spans, count: columns.spans.len(), powers, kept, truncation })
     }
 
     /// Number of spans of every column.

@@ -1,6 +1,9 @@
 //! The 60-digit reference values and a few placed pairs, shared by the integration tests.
-#![allow(dead_code, unused_imports, clippy::expect_used, reason = "each integration test uses its own part")]
+#![allow(dead_code, unused_imports, reason = "each integration test uses its own part")]
+#![allow(clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "tests")]
 
+use proptest::prelude::*;
+use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use wheelrail::Result;
 use wheelrail::accuracy::errors::Point;
 pub use wheelrail::accuracy::reference::{Reference, ReferenceScene, ReferenceSegment, chain};
@@ -25,6 +28,24 @@ pub fn references_in(name: &str) -> Vec<Reference> {
         Reference::read(&name, &std::fs::read_to_string(path).expect("a readable file")).expect("its format")
     };
     files.iter().map(read).collect()
+}
+
+/// The seed of all generated cases.
+const SEED: [u8; 32] = *b"wheelrail invariances, fixed run";
+
+/// Runs a property over so many generated cases with the fixed seed.
+pub fn holds<S: Strategy>(
+    name: &str,
+    cases: u32,
+    strategy: S,
+    property: impl Fn(S::Value) -> std::result::Result<(), TestCaseError>,
+) {
+    println!("{name}: {cases} cases, ChaCha seed {:?}", std::str::from_utf8(&SEED));
+    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &SEED);
+    let config = ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() };
+    if let Err(error) = TestRunner::new_with_rng(config, rng).run(&strategy, property) {
+        panic!("{name}: {error}");
+    }
 }
 
 /// A folder below `tests`.
