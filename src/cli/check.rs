@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::progress::Progress;
 use super::{Outcome, complain, folder_of, print};
 use crate::check::{Answer, Report, Request, check as compare};
 use crate::error::Result;
@@ -12,12 +13,15 @@ use crate::separation::Evaluator;
 /// Checks a scene; exit code 1 where something disagrees, and where `run` says no: then there is nothing worth
 /// agreeing on.
 pub(super) fn check(path: &Path) -> Result<Outcome> {
-    let run = Run::new(scene::load(path)?, folder_of(path), "check").map_err(|e| e.within(path.display()))?;
+    let progress = Progress::of("check");
+    let run = Run::told(scene::load(path)?, folder_of(path), "check", &|step| progress.at(step))
+        .map_err(|e| e.within(path.display()))?;
     let mut agrees = true;
     for part in &run.parts {
+        progress.at(format!("{}: meshes", part.name()));
         let report = check_part(part)?;
         agrees &= report.agrees;
-        print(&format!("{}: {report}", name(part)))?;
+        print(&format!("{}: {report}", part.name()))?;
     }
     let refusals = run.refusals();
     for refusal in &refusals {
@@ -32,14 +36,4 @@ fn check_part(part: &Part) -> Result<Report> {
     let mut evaluator = Evaluator::new(placement);
     let request = Request { window: part.analysis.window(), approach };
     compare(placement, &request, &mut |xi, eta| Answer::of(&mut evaluator, xi, eta))
-}
-
-/// Side and number of a contact that was found; which part of the patch, where a chosen one has several grids.
-fn name(part: &Part) -> String {
-    match &part.found {
-        Some(found) if found.side == "single" => format!("contact {}", found.contact),
-        Some(found) => format!("{} side, contact {}", found.side, found.contact),
-        None if part.folder.is_empty() => "contact".into(),
-        None => format!("contact, {}", part.folder),
-    }
 }

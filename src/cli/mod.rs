@@ -7,6 +7,7 @@ mod check;
 mod midsep;
 mod output;
 mod profile;
+mod progress;
 mod report;
 mod run;
 mod sweep;

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::progress::Progress;
 use super::{Outcome, complain, folder_of, print};
 use crate::error::Result;
 use crate::export::{Folder, RUN_FOLDER};
@@ -10,12 +11,15 @@ use crate::scene;
 
 /// Runs a scene; exit code 1 for an infeasible contact or an empty patch, whose files are written all the same.
 pub(super) fn run(path: &Path, out: Option<&Path>) -> Result<Outcome> {
+    let progress = Progress::of("run");
+    let tell = |step| progress.at(step);
     let scene = scene::load(path)?;
     let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
-    let run = Run::new(scene, folder_of(path), &name).map_err(|error| error.within(path.display()))?;
+    let run =
+        Run::told(scene, folder_of(path), &name, &tell).map_err(|error| error.within(path.display()))?;
     let target = out.map_or_else(|| PathBuf::from("output").join(&*name), Path::to_path_buf);
     let folder = Folder::create(&target, RUN_FOLDER)?;
-    run.write(&folder)?;
+    run.write_told(&folder, &tell)?;
     folder.commit()?;
     for warning in run.warnings() {
         complain(&format!("warning: {warning}"));

@@ -1,10 +1,11 @@
 //! Which files a run writes, and from what.
 
 use std::fs::File;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use super::{Part, Run, summary};
+use super::{Part, Run, Tell, summary};
 use crate::error::{Error, Result};
 use crate::export::deck::Deck;
 use crate::export::deck::contact::{Normal, Settings};
@@ -26,7 +27,8 @@ use crate::separation::{Evaluator, midsep};
 type Job<'a> = (&'static str, Box<dyn Fn(&FolderPart<'_>) -> Result<()> + Sync + Send + 'a>);
 
 /// Writes all files that the scene asks for, side by side; summary.json last.
-pub(super) fn write(folder: &Folder, run: &Run, part: &Part) -> Result<()> {
+pub(super) fn write(folder: &Folder, run: &Run, part: &Part, tell: Tell<'_>) -> Result<()> {
+    tell(format!("{}: files", part.name()));
     let header = header(run, part);
     let rail = RailColumns::new(part);
     let analysis = &part.analysis;
@@ -70,7 +72,13 @@ pub(super) fn write(folder: &Folder, run: &Run, part: &Part) -> Result<()> {
         decks(&mut jobs, run, part, deck, strips.as_ref());
     }
     let folder = folder.part(&part.folder)?;
-    jobs.par_iter().try_for_each(|(name, job)| job(&folder).map_err(|error| error.within(name)))?;
+    let written = AtomicUsize::new(0);
+    jobs.par_iter().try_for_each(|(_, job)| {
+        job(&folder)?;
+        let written = 1 + written.fetch_add(1, Ordering::Relaxed);
+        tell(format!("{}: {written} of {} files written", part.name(), jobs.len()));
+        Ok(())
+    })?;
     let mut names: Vec<String> = jobs.iter().map(|(name, _)| (*name).to_string()).collect();
     names.sort();
     folder.write("summary.json", &summary::summary(run, part, bodies.as_ref(), &names, &skipped))
@@ -285,6 +293,7 @@ fn bytes<'a>(
     name: &'static str,
     content: impl Fn() -> Result<Vec<u8>> + Sync + Send + 'a,
 ) {
+    let content = move || content().map_err(|error| error.within(name));
     jobs.push((name, Box::new(move |folder: &FolderPart<'_>| folder.write(name, &content()?))));
 }
 

@@ -19,6 +19,9 @@ use crate::profile::measured::Record;
 use crate::scene::{self, Scene, check_points};
 use crate::separation::plan::Plan;
 
+/// Is told what a run is at, from several threads.
+pub type Tell<'a> = &'a (dyn Fn(String) + Sync);
+
 /// A scene and everything computed from it.
 #[derive(Debug, Clone)]
 pub struct Run {
@@ -55,12 +58,23 @@ impl Run {
     /// # Errors
     /// Bad input, by key. An infeasible contact or an empty patch is a result: [`Run::refusals`].
     pub fn new(scene: Scene, folder: &Path, name: &str) -> Result<Self> {
+        Self::told(scene, folder, name, &|_| {})
+    }
+
+    /// The same, telling what it is at.
+    ///
+    /// # Errors
+    /// Those of [`Run::new`].
+    pub fn told(scene: Scene, folder: &Path, name: &str, tell: Tell<'_>) -> Result<Self> {
         let question = question(&scene)?;
+        tell("profiles".into());
         let (pair, measured) = scene.pair_and_records(folder)?;
+        tell("contacts".into());
         let places = places::find(&scene.standing()?, &pair, &question)?;
         let mut parts: Vec<Part> = Vec::new();
         for place in places {
             for (number, [xi, eta]) in grids(&scene, &place)?.into_iter().enumerate() {
+                tell(format!("{}: grid of {} x {} points", place.name(), xi.len(), eta.len()));
                 let analysis = Analysis::new(&place.contact, xi, eta, &question)?;
                 let folder = match (parts.is_empty(), number) {
                     (true, _) => String::new(),
@@ -90,7 +104,15 @@ impl Run {
     /// # Errors
     /// The disk's; a format that cannot hold the grid.
     pub fn write(&self, folder: &Folder) -> Result<()> {
-        self.parts.iter().try_for_each(|part| files::write(folder, self, part))
+        self.write_told(folder, &|_| {})
+    }
+
+    /// The same, telling what it is at.
+    ///
+    /// # Errors
+    /// Those of [`Run::write`].
+    pub fn write_told(&self, folder: &Folder, tell: Tell<'_>) -> Result<()> {
+        self.parts.iter().try_for_each(|part| files::write(folder, self, part, tell))
     }
 
     /// Geometric "no"s.
@@ -132,6 +154,15 @@ impl Run {
 }
 
 impl Part {
+    /// Side and number of a contact that was found; which part of the patch, where a chosen one has several grids.
+    pub fn name(&self) -> String {
+        match &self.found {
+            Some(found) => found.name(),
+            None if self.folder.is_empty() => "contact".into(),
+            None => format!("contact, {}", self.folder),
+        }
+    }
+
     /// Side of a wheelset, if the contact was looked for.
     fn side(&self) -> Option<&'static str> {
         self.found.as_ref().map(|found| found.side)

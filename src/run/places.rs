@@ -61,6 +61,16 @@ pub struct PlaceOfContact {
     pub kink: bool,
 }
 
+impl Found {
+    /// Side and number, as messages call it.
+    pub fn name(&self) -> String {
+        match self.side {
+            "single" => format!("contact {}", self.contact),
+            side => format!("{side} side, contact {}", self.contact),
+        }
+    }
+}
+
 impl From<&search::Contact> for PlaceOfContact {
     fn from(c: &search::Contact) -> Self {
         Self {
@@ -194,6 +204,11 @@ fn approach_left(first: &Placed, place: &search::Contact) -> Option<f64> {
 }
 
 impl Placed {
+    /// As [`Found::name`]; a chosen contact has no number.
+    pub(super) fn name(&self) -> String {
+        self.found.as_ref().map_or_else(|| "contact".into(), Found::name)
+    }
+
     /// Whether the part of this contact's patch around C, with what is merged into it, holds another place.
     fn holds(&self, place: &search::Contact, merge: f64) -> bool {
         let Some((approach, _)) = self.contact.approach else { return false };

@@ -5,6 +5,7 @@ mod splice;
 
 use std::path::Path;
 
+use super::progress::Progress;
 use super::{Outcome, complain, print};
 use crate::accuracy::measurements::{Effort, measure};
 use crate::accuracy::page::{FILES, PAGE, excerpt, page, sections};
@@ -22,7 +23,9 @@ pub(super) fn report(out: Option<&Path>, splice: Option<&Path>) -> Result<Outcom
     let folder = Folder::create(target, REPORT_FOLDER)?;
     let splice = splice.map(splice::Target::open).transpose()?;
     let origin = origin::origin();
-    let measurements = measure(&Effort::full(), &mut |what| complain(&format!("report: {what}")))?;
+    let progress = Progress::of("report");
+    let measurements = measure(&Effort::full(), &mut |step| progress.at(step))?;
+    drop(progress);
     let sections = sections(&measurements);
     for (name, content) in sections.iter().flat_map(|section| &section.files) {
         folder.write(name, content)?;

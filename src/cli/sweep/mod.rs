@@ -7,9 +7,9 @@ mod positions;
 mod table;
 
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use super::output::{PictureFormat, refuse_taken};
+use super::progress::Progress;
 use super::{Outcome, folder_of, print};
 use crate::contact::hertz::effective_modulus;
 use crate::contact::search::wheelset::{Position, Roll, WheelsetOnTrack};
@@ -21,9 +21,6 @@ use crate::run::question;
 use crate::scene::{self, Place, Scene};
 use positions::{lateral_range, read_positions};
 use table::Table;
-
-/// Silence on stderr after which progress is reported.
-const PATIENCE: Duration = Duration::from_secs(2);
 
 /// What to sweep over and where to write.
 #[derive(Debug, clap::Args)]
@@ -69,6 +66,7 @@ impl SweepArguments {
 
 /// Runs the sweep.
 pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
+    let progress = Progress::of("sweep");
     let scene = scene::load(&arguments.scene)?;
     arguments.check_outputs(&scene)?;
     let (system, template, within) =
@@ -84,6 +82,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
             return Err(Error::new("sweep", "neither", expected, "say what to sweep over"));
         }
     };
+    progress.at("equivalent conicity");
     let conicity = conicity(&system, &positions)?;
     let asked = question(&scene).map_err(|e| e.within(arguments.scene.display()))?;
     let [rail, wheel] = &asked.material;
@@ -91,9 +90,10 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     let selection = Selection { within, apart: ONE_CONTACT };
     let table = Table { system, conicity, selection, positions, ellipses };
     if let Some(dir) = &arguments.patches {
-        patches::write(dir, &scene, &arguments.scene, &table)?;
+        patches::write(dir, &scene, &arguments.scene, &table, &progress)?;
     }
     if let Some(file) = &arguments.picture {
+        progress.at("picture");
         let name = arguments.scene.file_stem().unwrap_or_default().to_string_lossy();
         let title = scene.title.as_deref().unwrap_or(&name);
         let picture = curves::picture(&table, title)?;
@@ -104,8 +104,8 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
         write_file(file, &bytes)?;
     }
     match &arguments.out {
-        None => table.blocks(0, |_, text| print(text).map(|_| ())),
-        Some(out) => table.write(out),
+        None => table.blocks(0, &progress, |_, text| print(text).map(|_| ())),
+        Some(out) => table.write(out, &progress),
     }
 }
 

@@ -1,14 +1,13 @@
 //! The patches of a sweep: what `wheelrail run` writes, position by position, and one collection of them.
 
 use std::path::Path;
-use std::sync::Mutex;
-use std::time::Instant;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
+use super::super::progress::Progress;
 use super::super::{complain, folder_of};
-use super::PATIENCE;
 use super::table::Table;
 use crate::contact::search::Selection;
 use crate::contact::search::wheelset::Position;
@@ -28,7 +27,13 @@ struct Written {
 }
 
 /// Writes `DIR/position-0001/` and so on, `DIR/surface.pvd` and `DIR/summary.json`; all of it appears at once.
-pub(super) fn write(dir: &Path, scene: &Scene, path: &Path, table: &Table) -> Result<()> {
+pub(super) fn write(
+    dir: &Path,
+    scene: &Scene,
+    path: &Path,
+    table: &Table,
+    progress: &Progress,
+) -> Result<()> {
     let positions = &table.positions;
     if positions.len() > MOST_POSITIONS {
         let found = format!("{} positions", positions.len());
@@ -36,11 +41,12 @@ pub(super) fn write(dir: &Path, scene: &Scene, path: &Path, table: &Table) -> Re
         return Err(Error::new("--patches", found, expected, "take a larger step, or the table alone"));
     }
     let folder = Folder::create(dir, PATCHES_FOLDER)?;
-    let progress = Mutex::new((0, Instant::now()));
+    let done = AtomicUsize::new(0);
     let one = |(k, position): (usize, &Position)| {
         let written = patch(&folder, scene, path, table, k, position)
             .map_err(|error| error.within(format!("position {}", k + 1)))?;
-        tell(&progress, positions.len());
+        let done = 1 + done.fetch_add(1, Ordering::Relaxed);
+        progress.at(format!("patches of {done} of {} positions", positions.len()));
         Ok(written)
     };
     let written = positions.par_iter().enumerate().map(one).collect::<Result<Vec<_>>>()?;
@@ -72,15 +78,6 @@ fn patch(
     let run = Run::new(scene.at(position), folder_of(path), &name)?.filed_under(&name);
     run.write(folder)?;
     Ok(Written { position: *position, folders: run.parts.into_iter().map(|part| part.folder).collect() })
-}
-
-fn tell(progress: &Mutex<(usize, Instant)>, all: usize) {
-    let Ok(mut progress) = progress.lock() else { return };
-    progress.0 += 1;
-    if progress.1.elapsed() > PATIENCE {
-        progress.1 = Instant::now();
-        complain(&format!("sweep: patches of {} of {all} positions", progress.0));
-    }
 }
 
 /// The separation of every part over time: the lateral displacement where it always grows, the number of the position

@@ -8,8 +8,8 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
+use super::super::progress::Progress;
 use super::super::{Outcome, complain};
-use super::PATIENCE;
 use crate::contact::hertz::curvatures_at;
 use crate::contact::search::wheelset::{Position, WheelsetOnTrack};
 use crate::contact::search::{Contact, Selection};
@@ -43,22 +43,21 @@ impl Table {
     pub(super) fn blocks(
         &self,
         first: usize,
+        progress: &Progress,
         mut sink: impl FnMut(usize, &str) -> Result<()>,
     ) -> Result<Outcome> {
-        let (start, mut told) = (Instant::now(), Instant::now());
+        let start = Instant::now();
         if first == 0 {
             sink(0, HEADER)?;
         }
         let mut done = first;
+        progress.at(format!("{first} of {} positions", self.positions.len()));
         for block in self.positions[first.min(self.positions.len())..].chunks(BLOCK) {
             let texts = block.par_chunks(CHUNK).map(|chunk| self.rows(chunk)).collect::<Result<Vec<_>>>()?;
             done += block.len();
             sink(done, &texts.concat())?;
-            if told.elapsed() > PATIENCE {
-                told = Instant::now();
-                let rate = (done - first) as f64 / start.elapsed().as_secs_f64();
-                complain(&format!("sweep: {done} of {} positions, {rate:.0} a second", self.positions.len()));
-            }
+            let rate = (done - first) as f64 / start.elapsed().as_secs_f64();
+            progress.at(format!("{done} of {} positions, {rate:.0} a second", self.positions.len()));
         }
         Ok(Outcome::Done)
     }
@@ -79,7 +78,7 @@ impl Table {
 
     /// Writes a file block by block, going on where a stopped sweep of the same input left off; the file has its
     /// name only when it is complete.
-    pub(super) fn write(&self, out: &Path) -> Result<Outcome> {
+    pub(super) fn write(&self, out: &Path, progress: &Progress) -> Result<Outcome> {
         // The file behind a link is replaced, not the link.
         let out = &out.canonicalize().unwrap_or_else(|_| out.to_path_buf());
         if out.metadata().is_ok_and(|found| !found.is_file()) {
@@ -111,7 +110,7 @@ impl Table {
         file.set_len(length).map_err(broken)?;
         let mut length = length;
         std::io::Seek::seek(&mut file, std::io::SeekFrom::Start(length)).map_err(broken)?;
-        let outcome = self.blocks(done, |done, text| {
+        let outcome = self.blocks(done, progress, |done, text| {
             file.write_all(text.as_bytes()).map_err(broken)?;
             length += text.len() as u64;
             std::fs::write(&journal, format!("{key} {done} {length}")).map_err(broken)

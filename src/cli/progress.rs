@@ -1,0 +1,73 @@
+//! Progress on stderr: what a command that takes long is at.
+
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use super::complain;
+
+/// Silence on stderr after which progress is reported; a command that ends before says nothing.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// Tells until it is dropped. A thread of its own does so: one step may take longer than anybody's patience.
+#[derive(Debug)]
+pub(super) struct Progress {
+    at: Arc<Mutex<String>>,
+    /// What the teller waits for; it ends when this is gone.
+    _at_work: Sender<()>,
+}
+
+impl Progress {
+    /// Of the command with this name, from now on.
+    pub(super) fn of(command: &'static str) -> Self {
+        Self::told(PATIENCE, move |line| complain(&format!("{command}: {line}")))
+    }
+
+    fn told(patience: Duration, tell: impl Fn(&str) + Send + 'static) -> Self {
+        let (at_work, done) = channel();
+        let at = Arc::new(Mutex::new(String::new()));
+        let (seen, start) = (Arc::clone(&at), Instant::now());
+        let teller = move || {
+            while done.recv_timeout(patience) == Err(RecvTimeoutError::Timeout) {
+                let at = seen.lock().unwrap_or_else(PoisonError::into_inner).clone();
+                tell(&format!("{at} ({} s)", start.elapsed().as_secs()));
+            }
+        };
+        // A system that grants no thread gets the work done in silence.
+        drop(thread::Builder::new().name("progress".into()).spawn(teller));
+        Self { at, _at_work: at_work }
+    }
+
+    /// What the command is at from now on.
+    pub(super) fn at(&self, step: impl Into<String>) {
+        *self.at.lock().unwrap_or_else(PoisonError::into_inner) = step.into();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lines told of two steps that take 300 ms each.
+    fn lines(patience: Duration) -> Vec<String> {
+        let lines = Arc::new(Mutex::new(Vec::new()));
+        let told = Arc::clone(&lines);
+        let progress = Progress::told(patience, move |line| told.lock().unwrap().push(line.to_owned()));
+        for step in ["one", "two"] {
+            progress.at(step);
+            thread::sleep(Duration::from_millis(300));
+        }
+        drop(progress);
+        lines.lock().unwrap().clone()
+    }
+
+    #[test]
+    fn every_long_step_is_told_and_short_work_is_not() {
+        let told = lines(Duration::from_millis(30));
+        for step in ["one (0 s)", "two (0 s)"] {
+            assert!(told.iter().any(|line| line == step), "{told:?}");
+        }
+        assert!(lines(Duration::from_secs(60)).is_empty());
+    }
+}
