@@ -37,6 +37,10 @@ fn write(folder: &Path, name: &str, text: &str) {
     std::fs::write(folder.join(name), text).unwrap();
 }
 
+fn summary(folder: &Path) -> serde_json::Value {
+    serde_json::from_slice(&std::fs::read(folder.join("summary.json")).unwrap()).unwrap()
+}
+
 #[test]
 fn a_long_run_tells_what_it_is_at_and_a_short_one_says_nothing() {
     let folder = TempDir::new().unwrap();
@@ -57,4 +61,54 @@ fn a_long_run_tells_what_it_is_at_and_a_short_one_says_nothing() {
     let output = run.wait_with_output().unwrap();
     assert!(output.status.success());
     assert_eq!(output.stdout, b"output/long\n", "stdout is data");
+}
+
+#[test]
+fn grids_are_bounded_before_memory_is_asked_for() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    let scene = |n_xi: u64, n_eta: u64| {
+        format!(
+            "{BODIES}[contact]\noffset = 0.0\n[patch]\napproach = 0.05\n[grid]\n\
+             xi = {{ from = -6.0, to = 6.0, n = {n_xi} }}\neta = {{ from = -8.0, to = 8.0, n = {n_eta} }}\n"
+        )
+    };
+    for (n_xi, n_eta, found) in [
+        (1_000_000_000, 3, "grid: xi: found 1e9 values; expected at most 1e6 values"),
+        (3, u64::MAX >> 1, "grid: eta: found 9.223372036854776e18 values"),
+        (900_000, 900_000, "grid: found 810000000000 points; expected at most 1e8 points"),
+    ] {
+        write(here, "large.toml", &scene(n_xi, n_eta));
+        let said = complaint(here, &["run", "large.toml"], 2);
+        assert!(said.contains(found), "{said}");
+    }
+    // Memory that the system does not grant: 1.3 GB.
+    write(here, "large.toml", &scene(6000, 6000));
+    let binary = env!("CARGO_BIN_EXE_wheelrail");
+    let limited = format!("ulimit -v 1000000; exec {binary} --threads 1 run large.toml");
+    let output = Command::new("bash").current_dir(here).args(["-c", &limited]).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("36000000 points, which take 1188000000 bytes of memory"), "{said}");
+    assert!(!here.join("output").exists());
+}
+
+#[test]
+fn an_automatic_grid_stays_small_over_an_absurd_patch() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    let line = "segments = [{ line = { from = [-60.0, 0.0], to = [60.0, 0.0] } }]\n";
+    let scene = format!(
+        "[rail]\n{line}[wheel]\n{line}radius = 460.0\n[contact]\nrail_x = 0.0\nwheel_x = 0.0\n\
+         [patch]\napproach = 1e-9\n[output]\nformats = [\"npy\"]\n"
+    );
+    write(here, "line.toml", &scene);
+    let said = complaint(here, &["run", "line.toml"], 0);
+    assert!(
+        said.contains("warning: the patch is so long and thin that") && said.contains("grid.spacing"),
+        "{said}"
+    );
+    let grid = &summary(&here.join("output/line"))["grid"];
+    let [xi, eta] = ["n_xi", "n_eta"].map(|key| grid[key].as_u64().unwrap());
+    assert!(eta == 21 && xi * eta <= 100_000, "{xi} x {eta}");
 }

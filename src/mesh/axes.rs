@@ -13,8 +13,15 @@ const CELLS_ACROSS: f64 = 16.0;
 /// Empty rows and columns on each side of the box, which boundary-element solvers want.
 const MARGIN_CELLS: f64 = 2.0;
 
-/// Cells beyond which a grid does not fit into memory.
-const MOST_CELLS: f64 = 1e8;
+/// Cells of a grid that nobody has sized: five times what CONTACT takes, 50 MB of files. With square ones the patch would
+/// be some 300 times as long as wide.
+const MOST_UNASKED: f64 = 1e5;
+
+/// Points of all grids of a run together: 3.3 GB of memory with the text decks, 50 GB of files with all formats.
+pub const MOST_POINTS: f64 = 1e8;
+
+/// Values of one axis: a column of text, which several writers hold at once, takes 100 MB.
+pub const MOST_ON_AXIS: f64 = 1e6;
 
 /// The axes of one grid of cell centres.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,6 +32,8 @@ pub struct Axes {
     pub eta: Vec<f64>,
     /// \[Δξ, Δη\] \[mm\].
     pub spacing: [f64; 2],
+    /// Cells that there would have been, had they not been stretched: more than a grid has unasked.
+    pub square_cells: Option<f64>,
 }
 
 impl Axes {
@@ -76,13 +85,16 @@ fn grouped(components: &[BoundingBox], merge: f64) -> Vec<Group> {
 
 impl Group {
     /// Cell centres over the group with a margin of two cells on each side; `spacing` = \[Δξ, Δη\] \[mm\], by default
-    /// square cells, 16 over the short side of its largest component. A group that is cut by the end of a profile has
-    /// cells without a separation beyond it.
+    /// square cells, 16 over the short side of its largest component, stretched along the group's longer side where they
+    /// would be more than 10⁵. A group that is cut by the end of a profile has cells without a separation beyond it.
     ///
     /// # Errors
     /// A spacing that is not positive, or for which the grid would not fit into memory.
     pub fn axes(&self, spacing: Option<[f64; 2]>) -> Result<Axes> {
-        lattice(&self.extent, spacing.unwrap_or([self.short_side / CELLS_ACROSS; 2]))
+        match spacing {
+            Some(spacing) => lattice(&self.extent, spacing),
+            None => unasked(&self.extent, self.short_side / CELLS_ACROSS),
+        }
     }
 
     fn of(index: usize, component: &BoundingBox) -> Self {
@@ -125,6 +137,25 @@ fn distance(a: &Window, b: &Window) -> f64 {
     gap(a.xi, b.xi).hypot(gap(a.eta, b.eta))
 }
 
+/// Square cells of this size, stretched where they are too many: the shorter side keeps its own as long as there are more
+/// along the longer one.
+fn unasked(window: &Window, step: f64) -> Result<Axes> {
+    // The lattice has its margins, and a cell more at each end that the window cuts.
+    let more = 2.0 * MARGIN_CELLS + 2.0;
+    let sides = [window.xi, window.eta].map(|[a, b]| b - a);
+    let counts = sides.map(|side| side / step + more);
+    let square_cells = counts[0] * counts[1];
+    if square_cells <= MOST_UNASKED {
+        return lattice(window, [step; 2]);
+    }
+    let across = counts[0].min(counts[1]).min(MOST_UNASKED.sqrt());
+    let stretched = [0, 1].map(|k| {
+        let most = if counts[k] > counts[1 - k] { MOST_UNASKED / across } else { across };
+        if counts[k] <= most { step } else { sides[k] / (most - more) }
+    });
+    Ok(Axes { square_cells: Some(square_cells), ..lattice(window, stretched)? })
+}
+
 fn lattice(window: &Window, spacing: [f64; 2]) -> Result<Axes> {
     for step in spacing {
         if finite("grid: spacing", step)? <= 0.0 {
@@ -137,16 +168,18 @@ fn lattice(window: &Window, spacing: [f64; 2]) -> Result<Axes> {
         [(a / step + 0.5).floor() - MARGIN_CELLS, (b / step - 0.5).ceil() + MARGIN_CELLS]
     };
     let (xi, eta) = (range(window.xi, spacing[0]), range(window.eta, spacing[1]));
-    let cells = (xi[1] - xi[0] + 1.0) * (eta[1] - eta[0] + 1.0);
-    if cells.is_nan() || cells > MOST_CELLS {
-        let found = format!("{cells:e} cells over the patch");
-        let expected = format!("at most {MOST_CELLS:e}");
+    let [along, across] = [xi, eta].map(|[first, last]| last - first + 1.0);
+    let fits = along <= MOST_ON_AXIS && across <= MOST_ON_AXIS && along * across <= MOST_POINTS;
+    if !fits {
+        let found = format!("{along:e} x {across:e} cells over the patch");
+        let expected = format!("at most {MOST_POINTS:e}, and {MOST_ON_AXIS:e} on an axis");
         return Err(Error::new("grid: spacing", found, expected, "take a larger step"));
     }
     let centres = |[first, last]: [f64; 2], step: f64| {
         (first as i64..=last as i64).map(|i| i as f64 * step).collect::<Vec<f64>>()
     };
-    Ok(Axes { xi: centres(xi, spacing[0]), eta: centres(eta, spacing[1]), spacing })
+    let [xi, eta] = [centres(xi, spacing[0]), centres(eta, spacing[1])];
+    Ok(Axes { xi, eta, spacing, square_cells: None })
 }
 
 #[cfg(test)]
@@ -165,6 +198,26 @@ mod tests {
                 assert!(axes.eta.iter().zip(axes.eta.iter().rev()).all(|(p, q)| *p == -*q));
                 assert!(axes.eta.contains(&0.0));
             }
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn cells_that_nobody_sized_are_stretched_and_never_too_many() -> Result<()> {
+        for (sides, step) in
+            [([60.0, 1e-9], 1e-10), ([1e-3, 50.0], 1e-5), ([60.0, 50.0], 1e-7), ([1.0, 250.0], 0.0625)]
+        {
+            let [xi, eta] = sides.map(|side: f64| [-side / 2.0, side / 2.0]);
+            let axes = unasked(&Window { xi, eta }, step)?;
+            let cells = (axes.xi.len() * axes.eta.len()) as f64;
+            assert!(cells <= MOST_UNASKED && cells > 0.8 * MOST_UNASKED, "{sides:?}: {cells}");
+            assert_eq!(axes.square_cells.is_some(), axes.spacing != [step; 2], "{sides:?}");
+            // The thin ones keep their cells across.
+            assert!(
+                sides[0].min(sides[1]) > 10.0 || axes.spacing.contains(&step),
+                "{sides:?}: {:?}",
+                axes.spacing
+            );
         }
         Ok(())
     }

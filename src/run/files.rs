@@ -320,11 +320,7 @@ fn decks<'a>(
         stream(jobs, "conform.wrp", move |file| deck.conform(file));
     }
     if let (true, Some(strips)) = (run.wants_any(&[Format::Countact]), strips) {
-        bytes(jobs, "countact.wrp", move || {
-            let mut text = Vec::new();
-            deck.countact(strips, &mut text)?;
-            Ok(text)
-        });
+        stream(jobs, "countact.wrp", move |file| deck.countact(strips, file));
     }
     if let (true, Some(settings)) = (run.wants_any(&[Format::Contact]), contact_settings(run, part)) {
         stream(jobs, "contact.inp", move |file| deck.contact(&settings, file));

@@ -2,6 +2,7 @@
 
 mod analysis;
 mod files;
+mod grids;
 mod places;
 mod summary;
 
@@ -13,11 +14,11 @@ pub use places::Found;
 use crate::error::{Error, Result};
 use crate::export::Folder;
 use crate::interpenetration::Patch;
-use crate::mesh::axes::{self, Group};
 use crate::placement::{Pair, Placement};
 use crate::profile::measured::Record;
-use crate::scene::{self, Scene, check_points};
+use crate::scene::{self, Scene};
 use crate::separation::plan::Plan;
+use grids::Grid;
 
 /// Is told what a run is at, from several threads.
 pub type Tell<'a> = &'a (dyn Fn(String) + Sync);
@@ -50,6 +51,8 @@ pub struct Part {
     pub contact: Contact,
     /// Its grid and patch.
     pub analysis: Analysis,
+    /// What the user should know of automatic axes.
+    pub grid_warning: Option<String>,
 }
 
 impl Run {
@@ -71,9 +74,11 @@ impl Run {
         let (pair, measured) = scene.pair_and_records(folder)?;
         tell("contacts".into());
         let places = places::find(&scene.standing()?, &pair, &question)?;
+        let grids = places.iter().map(|place| grids::grids(&scene, place)).collect::<Result<Vec<_>>>()?;
+        grids::check_memory(&scene, grids.iter().flatten())?;
         let mut parts: Vec<Part> = Vec::new();
-        for place in places {
-            for (number, [xi, eta]) in grids(&scene, &place)?.into_iter().enumerate() {
+        for (place, grids) in places.into_iter().zip(grids) {
+            for (number, Grid { xi, eta, warning }) in grids.into_iter().enumerate() {
                 tell(format!("{}: grid of {} x {} points", place.name(), xi.len(), eta.len()));
                 let analysis = Analysis::new(&place.contact, xi, eta, &question)?;
                 let folder = match (parts.is_empty(), number) {
@@ -82,7 +87,7 @@ impl Run {
                     (false, _) => format!("{}patch-{}", prefix(&place.folder), number + 1),
                 };
                 let (found, contact) = (place.found.clone(), place.contact.clone());
-                parts.push(Part { folder, found, contact, analysis });
+                parts.push(Part { folder, found, contact, analysis, grid_warning: warning });
             }
         }
         let title = scene.title.clone().unwrap_or_else(|| name.to_string());
@@ -193,6 +198,7 @@ impl Part {
 
     fn warnings(&self, run: &Run) -> Vec<String> {
         let mut out = Vec::from_iter(run.shared_load(self));
+        out.extend(self.grid_warning.clone());
         if self.analysis.patch.as_ref().is_some_and(Patch::cut_by_window) {
             out.push("the window of the grid cuts the patch: solvers would overestimate the pressure".into());
         }
@@ -220,52 +226,6 @@ pub fn first_contact(scene: &Scene, pair: &Pair) -> Result<Placement> {
 
 fn prefix(folder: &str) -> String {
     if folder.is_empty() { String::new() } else { format!("{folder}-") }
-}
-
-/// The grids of one contact: the scene's own axes, or one over every part of the patch.
-///
-/// A contact that was found has one grid, over the part of the patch that holds it: the others are contacts of
-/// their own.
-fn grids(scene: &Scene, place: &places::Placed) -> Result<Vec<[Vec<f64>; 2]>> {
-    let (xi, eta) = (scene.axis("xi")?, scene.axis("eta")?);
-    let (spacing, merge) = (scene.spacing()?, scene.merge()?);
-    if let (Some(xi), Some(eta)) = (&xi, &eta) {
-        let set = [("spacing", spacing.is_some()), ("merge", scene.grid.merge.is_some())];
-        if let Some((key, _)) = set.into_iter().find(|(_, set)| *set) {
-            let expected = format!("`{key}` only with automatic axes");
-            return Err(Error::new(
-                format!("grid: {key}"),
-                "a value beside given axes",
-                expected,
-                "remove it",
-            ));
-        }
-        check_points("grid", xi.len() as f64 * eta.len() as f64)?;
-        return Ok(vec![[xi.clone(), eta.clone()]]);
-    }
-    let mut groups = match place.contact.approach {
-        Some((approach, _)) => axes::groups(&place.contact.placement, approach, merge),
-        None => Vec::new(),
-    };
-    if groups.is_empty() {
-        let expected = "values, or a patch that the axes can be sized by";
-        return Err(Error::new(
-            "grid",
-            "auto, and no patch",
-            expected,
-            "give from, to and n, or a larger approach",
-        ));
-    }
-    if place.found.is_some() {
-        groups.truncate(1);
-    }
-    let grid = |group: &Group| {
-        let automatic = group.axes(spacing)?;
-        let both = [xi.clone().unwrap_or(automatic.xi), eta.clone().unwrap_or(automatic.eta)];
-        check_points("grid", both[0].len() as f64 * both[1].len() as f64)?;
-        Ok(both)
-    };
-    groups.iter().map(grid).collect()
 }
 
 /// The numerical question that a scene asks.

@@ -11,7 +11,7 @@ pub use data::{
 };
 pub use position::{Place, Standing};
 pub use read::{hash, load, parse, perhaps, unreadable};
-pub use resolve::{check_points, equal_steps, is_chain_file, profile_from_file, read_bytes};
+pub use resolve::{equal_steps, is_chain_file, profile_from_file, read_bytes};
 
 /// The JSON Schema of a scene.
 pub fn schema() -> schemars::Schema {

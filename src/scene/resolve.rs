@@ -6,13 +6,11 @@ use super::data::{AxisData, ProfileData, Rotation, Scene, Spacing};
 use super::read::{parse, unreadable};
 use crate::contact::hertz::Elastic;
 use crate::error::{Error, Result, finite, given};
+use crate::mesh::axes::MOST_ON_AXIS;
 use crate::placement::Pair;
 use crate::profile::drawing::{SegmentData, chain};
 use crate::profile::measured::{self, Measured, Options, Record};
 use crate::profile::{Profile, Side, standards};
-
-/// Grid points beyond which s alone takes more than a GiB, its files five.
-const MOST_POINTS: f64 = 1.2e8;
 
 /// A profile file: the same keys as inline.
 #[derive(Debug, serde::Deserialize)]
@@ -137,14 +135,17 @@ impl Scene {
         let place = format!("grid: {name}");
         let values = match axis {
             AxisData::Word(_) => return Ok(None),
-            AxisData::Values(list) => list.values.clone(),
+            AxisData::Values(list) => {
+                check_length(&place, list.values.len() as f64)?;
+                list.values.clone()
+            }
             AxisData::Steps(steps) => {
                 let (from, to) = (finite(&place, steps.from)?, finite(&place, steps.to)?);
                 if from >= to || steps.n < 2 {
                     let found = format!("from {from} to {to} with n = {}", steps.n);
                     return Err(Error::new(place, found, "from < to and n ≥ 2", "correct the axis"));
                 }
-                check_points(&place, steps.n as f64)?;
+                check_length(&place, steps.n as f64)?;
                 equal_steps(from, to, steps.n as usize)
             }
         };
@@ -207,16 +208,12 @@ impl Scene {
     }
 }
 
-/// Rejects grids that would not fit into memory.
-///
-/// # Errors
-/// More than `MOST_POINTS` points.
-pub fn check_points(place: &str, points: f64) -> Result<()> {
-    if points <= MOST_POINTS {
+fn check_length(place: &str, values: f64) -> Result<()> {
+    if values <= MOST_ON_AXIS {
         return Ok(());
     }
-    let expected = format!("at most {MOST_POINTS:e} points");
-    Err(Error::new(place, format!("{points:e} points"), expected, "take a coarser grid or a smaller window"))
+    let expected = format!("at most {MOST_ON_AXIS:e} values");
+    Err(Error::new(place, format!("{values:e} values"), expected, "take fewer, or a smaller window"))
 }
 
 /// n values from a to b, symmetric to the last bit where a = −b.

@@ -95,20 +95,15 @@ impl Deck<'_> {
     /// `countact.wrp`: the records, then the boundary-fitted cells.
     ///
     /// # Errors
-    /// A mesh that contradicts itself, or is too large for the columns; those of the sink.
-    pub fn countact(&self, mesh: &QuadMesh, sink: &mut dyn Write) -> Result<()> {
-        let cells = cells(mesh)?;
+    /// `InvalidInput` for a mesh that contradicts itself, or is too large for the columns; those of the sink.
+    pub fn countact(&self, mesh: &QuadMesh, sink: &mut dyn Write) -> io::Result<()> {
+        let cells = cells(mesh).map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error))?;
         let mut block = Block::new(sink);
-        let written = (|| {
-            block.bytes(self.head("COUNTACT", &COUNTACT_NOTES).as_bytes())?;
-            self.records(&mut block)?;
-            block.bytes(cells.as_bytes())?;
-            block.bytes(b"END\n")?;
-            block.finish()
-        })();
-        written.map_err(|e: io::Error| {
-            Error::new("countact.wrp", e.to_string(), "a file written whole", "check the output folder")
-        })
+        block.bytes(self.head("COUNTACT", &COUNTACT_NOTES).as_bytes())?;
+        self.records(&mut block)?;
+        block.bytes(cells.as_bytes())?;
+        block.bytes(b"END\n")?;
+        block.finish()
     }
 
     fn records(&self, block: &mut Block) -> io::Result<()> {
@@ -232,7 +227,7 @@ mod tests {
         broken.quads[0][0] = 9;
         let (header, grid) = (header(), sample.fields());
         let deck = Deck::new(&header, &grid).unwrap();
-        assert!(deck.countact(&broken, &mut Vec::new()).unwrap_err().found.contains("node 9"));
+        assert!(deck.countact(&broken, &mut Vec::new()).unwrap_err().to_string().contains("node 9"));
     }
 
     #[test]

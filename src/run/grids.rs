@@ -1,0 +1,97 @@
+//! The grids of a run: the scene's own axes, or automatic ones over every part of the patch.
+
+use super::places::Placed;
+use crate::error::{Error, Result};
+use crate::mesh::axes::{self, Axes, Group, MOST_POINTS};
+use crate::scene::{Format, Scene};
+
+/// The axes of one grid.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Grid {
+    pub xi: Vec<f64>,
+    pub eta: Vec<f64>,
+    /// What the user should know of them.
+    pub warning: Option<String>,
+}
+
+impl Grid {
+    fn points(&self) -> usize {
+        self.xi.len() * self.eta.len()
+    }
+}
+
+/// The grids of one contact: the scene's own axes, or one over every part of the patch.
+///
+/// A contact that was found has one grid, over the part of the patch that holds it: the others are contacts of
+/// their own.
+pub(super) fn grids(scene: &Scene, place: &Placed) -> Result<Vec<Grid>> {
+    let (xi, eta) = (scene.axis("xi")?, scene.axis("eta")?);
+    let (spacing, merge) = (scene.spacing()?, scene.merge()?);
+    if let (Some(xi), Some(eta)) = (&xi, &eta) {
+        let set = [("spacing", spacing.is_some()), ("merge", scene.grid.merge.is_some())];
+        if let Some((key, _)) = set.into_iter().find(|(_, set)| *set) {
+            let (place, expected) = (format!("grid: {key}"), format!("`{key}` only with automatic axes"));
+            return Err(Error::new(place, "a value beside given axes", expected, "remove it"));
+        }
+        return Ok(vec![Grid { xi: xi.clone(), eta: eta.clone(), warning: None }]);
+    }
+    let mut groups = match place.contact.approach {
+        Some((approach, _)) => axes::groups(&place.contact.placement, approach, merge),
+        None => Vec::new(),
+    };
+    if groups.is_empty() {
+        let expected = "values, or a patch that the axes can be sized by";
+        let advice = "give from, to and n, or a larger approach";
+        return Err(Error::new("grid", "auto, and no patch", expected, advice));
+    }
+    if place.found.is_some() {
+        groups.truncate(1);
+    }
+    let grid = |group: &Group| {
+        let automatic = group.axes(spacing)?;
+        let warning = stretched(&automatic);
+        let (xi, eta) = (xi.clone().unwrap_or(automatic.xi), eta.clone().unwrap_or(automatic.eta));
+        Ok(Grid { xi, eta, warning })
+    };
+    groups.iter().map(grid).collect()
+}
+
+fn stretched(axes: &Axes) -> Option<String> {
+    let [xi, eta] = axes.spacing;
+    axes.square_cells.map(|cells| {
+        format!(
+            "the patch is so long and thin that {cells:.0} square cells would cover it: the automatic grid's are \
+             {xi:.3e} x {eta:.3e} mm (xi, eta); give grid.spacing for others"
+        )
+    })
+}
+
+/// Rejects grids for which the memory cannot be had, before any is filled: a failed allocation ends the process.
+///
+/// # Errors
+/// More than 10⁸ points together; more than the system grants.
+pub(super) fn check_memory<'a>(scene: &Scene, grids: impl Iterator<Item = &'a Grid>) -> Result<()> {
+    /// Bytes of one value of s …
+    const NUMBER: usize = 8;
+    /// … and of its text, which the decks share.
+    const TEXT: usize = 25;
+    /// Below this the system is not asked.
+    const ALWAYS_THERE: usize = 100_000_000;
+    let (all, largest) = grids.map(Grid::points).fold((0, 0), |(all, largest), n| (all + n, largest.max(n)));
+    let bad = |found: String, expected: String| {
+        Err(Error::new("grid", found, expected, "take a coarser grid, a smaller window or fewer formats"))
+    };
+    if all as f64 > MOST_POINTS {
+        return bad(format!("{all} points"), format!("at most {MOST_POINTS:e} points"));
+    }
+    let decks = [Format::Text, Format::Conform, Format::Countact, Format::Contact];
+    let written = scene.output.wanted().iter().any(|format| decks.contains(format));
+    // All grids are kept, and written one after the other.
+    let bytes = NUMBER * all + if written { TEXT * largest } else { 0 };
+    let mut memory = Vec::<u8>::new();
+    if bytes > ALWAYS_THERE && std::hint::black_box(&mut memory).try_reserve_exact(bytes).is_err() {
+        let found = format!("{all} points, which take {bytes} bytes of memory");
+        return bad(found, "a grid for which the system grants the memory".into());
+    }
+    Ok(())
+}
