@@ -64,6 +64,32 @@ fn a_long_run_tells_what_it_is_at_and_a_short_one_says_nothing() {
 }
 
 #[test]
+fn results_of_a_scene_of_the_same_name_elsewhere_are_not_replaced() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    let scene =
+        |approach: f64| format!("{BODIES}[contact]\noffset = 0.0\n[patch]\napproach = {approach}\n{SMALL}");
+    let approach = |folder: &str| summary(&here.join(folder))["approach_mm"].as_f64().unwrap();
+    write(here, "a/scene.toml", &scene(0.01));
+    write(here, "b/scene.toml", &scene(0.02));
+    complaint(here, &["run", "a/scene.toml"], 0);
+    assert_eq!(summary(&here.join("output/scene"))["scene_file"], "../../a/scene.toml");
+    let said = complaint(here, &["run", "b/scene.toml"], 2);
+    assert!(said.starts_with("error: output/scene: found results of ") && said.contains("--out"), "{said}");
+    assert_eq!(approach("output/scene"), 0.01);
+    // The same file edited, by another path, and whatever --out says, replaces them.
+    write(here, "a/scene.toml", &scene(0.03));
+    complaint(here, &["run", "./b/../a/scene.toml"], 0);
+    assert_eq!(approach("output/scene"), 0.03);
+    complaint(here, &["run", "b/scene.toml", "--out", "output/scene"], 0);
+    assert_eq!(approach("output/scene"), 0.02);
+    complaint(here, &["run", "a/scene.toml"], 2);
+    // So does a scene that has moved: its old file is no more.
+    std::fs::rename(here.join("b"), here.join("c")).unwrap();
+    complaint(here, &["run", "c/scene.toml"], 0);
+}
+
+#[test]
 fn grids_are_bounded_before_memory_is_asked_for() {
     let folder = TempDir::new().unwrap();
     let here = folder.path();

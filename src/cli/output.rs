@@ -1,4 +1,4 @@
-//! Single files that a command writes: none of those it reads, and pictures in the format of their name.
+//! What a command writes: no file that it reads, nobody else's results unasked, pictures in the format of their name.
 
 use std::path::{Path, PathBuf};
 
@@ -16,6 +16,25 @@ pub(super) fn refuse_taken(option: &str, out: &Path, taken: &[PathBuf]) -> Resul
             let found = format!("{}, which the same command reads or writes", other.display());
             Err(Error::new(option, found, "a file of its own", "give another name"))
         }
+    }
+}
+
+/// Refuses a folder that the program has chosen and that holds the results of another scene file, which still exists:
+/// two of one name in different folders.
+///
+/// # Errors
+/// The folder's summary names another file.
+pub(super) fn refuse_results_of_another(folder: &Path, scene: &Path) -> Result<()> {
+    let summary = std::fs::read(folder.join("summary.json")).unwrap_or_default();
+    let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap_or_default();
+    let Some(file) = summary["scene_file"].as_str() else { return Ok(()) };
+    match (folder.join(file).canonicalize(), scene.canonicalize()) {
+        (Ok(other), Ok(own)) if other != own => {
+            let (place, found) = (folder.display().to_string(), format!("results of {}", other.display()));
+            let expected = format!("those of {}, or nothing yet", scene.display());
+            Err(Error::new(place, found, expected, "give --out with a folder for each"))
+        }
+        _ => Ok(()),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::output::refuse_results_of_another;
 use super::progress::Progress;
 use super::{Outcome, complain, folder_of, print};
 use crate::error::Result;
@@ -15,9 +16,17 @@ pub(super) fn run(path: &Path, out: Option<&Path>) -> Result<Outcome> {
     let tell = |step| progress.at(step);
     let scene = scene::load(path)?;
     let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
+    let target = match out {
+        Some(out) => out.to_path_buf(),
+        None => {
+            let target = PathBuf::from("output").join(&*name);
+            refuse_results_of_another(&target, path)?;
+            target
+        }
+    };
     let run =
         Run::told(scene, folder_of(path), &name, &tell).map_err(|error| error.within(path.display()))?;
-    let target = out.map_or_else(|| PathBuf::from("output").join(&*name), Path::to_path_buf);
+    let run = run.read_from(path);
     let folder = Folder::create(&target, RUN_FOLDER)?;
     run.write_told(&folder, &tell)?;
     folder.commit()?;

@@ -19,7 +19,7 @@ use crate::error::{Error, Result};
 use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind, Write};
 use std::os::unix::fs::MetadataExt;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::process;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -171,6 +171,13 @@ impl Folder {
 }
 
 impl FolderPart<'_> {
+    /// The way from here to an absolute path, which holds as well when both are moved together.
+    pub fn relative(&self, path: &Path) -> PathBuf {
+        let common = self.target.components().zip(path.components()).take_while(|(a, b)| a == b).count();
+        let up = self.target.components().skip(common).map(|_| Component::ParentDir);
+        up.chain(path.components().skip(common)).collect()
+    }
+
     /// Writes one file.
     ///
     /// # Errors

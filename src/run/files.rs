@@ -81,7 +81,7 @@ pub(super) fn write(folder: &Folder, run: &Run, part: &Part, tell: Tell<'_>) -> 
     })?;
     let mut names: Vec<String> = jobs.iter().map(|(name, _)| (*name).to_string()).collect();
     names.sort();
-    folder.write("summary.json", &summary::summary(run, part, bodies.as_ref(), &names, &skipped))
+    folder.write("summary.json", &summary::summary(run, part, &folder, bodies.as_ref(), &names, &skipped))
 }
 
 /// ζ^R and the rail's normal at every ξ of the grid.

@@ -6,7 +6,7 @@ mod grids;
 mod places;
 mod summary;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 pub use analysis::{Analysis, ApproachBy, Contact, EllipseUnder, Question, Timings};
 pub use places::Found;
@@ -30,6 +30,8 @@ pub struct Run {
     pub scene: Scene,
     /// SHA-256 of it.
     pub hash: String,
+    /// The file that it was read from, absolute and without links, for the summary.
+    pub file: Option<PathBuf>,
     /// Its title, or its name.
     pub title: String,
     /// What it asks of every contact.
@@ -91,7 +93,13 @@ impl Run {
             }
         }
         let title = scene.title.clone().unwrap_or_else(|| name.to_string());
-        Ok(Self { hash: scene::hash(&scene), scene, title, question, measured, parts })
+        Ok(Self { hash: scene::hash(&scene), file: None, scene, title, question, measured, parts })
+    }
+
+    /// The same, read from this file.
+    #[must_use]
+    pub fn read_from(self, path: &Path) -> Self {
+        Self { file: path.canonicalize().ok(), ..self }
     }
 
     /// Puts all parts below a folder of many runs: the first as `name`, the others as `name-…`.

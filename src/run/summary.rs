@@ -4,6 +4,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::{Part, Run};
+use crate::export::FolderPart;
 use crate::interpenetration::{Component, Patch};
 use crate::mesh::quality::Quality;
 use crate::mesh::surfaces::Surface;
@@ -30,6 +31,7 @@ const PERFECT_JOINT: f64 = 1e-9;
 pub(super) fn summary(
     run: &Run,
     part: &Part,
+    folder: &FolderPart<'_>,
     surfaces: Option<&[Surface; 2]>,
     files: &[String],
     skipped: &[String],
@@ -41,6 +43,7 @@ pub(super) fn summary(
         "version": env!("CARGO_PKG_VERSION"),
         "title": run.title,
         "scene": run.scene,
+        "scene_file": run.file.as_ref().map(|file| folder.relative(file)),
         "scene_sha256": run.hash,
         "conventions": "mm, rad; s > 0 apart; contact frame: origin C, xi along the common tangent, eta along the rail, zeta from rail to wheel; grids [i_xi][i_eta]",
         "rail": body(&placement.rail),

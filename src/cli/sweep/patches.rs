@@ -75,7 +75,7 @@ fn patch(
         return Ok(Written { position: *position, folders: Vec::new() });
     }
     let name = format!("position-{:04}", k + 1);
-    let run = Run::new(scene.at(position), folder_of(path), &name)?.filed_under(&name);
+    let run = Run::new(scene.at(position), folder_of(path), &name)?.read_from(path).filed_under(&name);
     run.write(folder)?;
     Ok(Written { position: *position, folders: run.parts.into_iter().map(|part| part.folder).collect() })
 }
