@@ -138,3 +138,32 @@ fn an_automatic_grid_stays_small_over_an_absurd_patch() {
     let [xi, eta] = ["n_xi", "n_eta"].map(|key| grid[key].as_u64().unwrap());
     assert!(eta == 21 && xi * eta <= 100_000, "{xi} x {eta}");
 }
+
+#[test]
+fn midsep_prints_every_contact() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    write(here, "single.toml", &format!("{BODIES}[contact]\noffset = 0.0\n{SMALL}"));
+    let place = "[track]\ngauge = 1435.0\n[wheelset]\nback_to_back = 1360.0\nflange_back_x = -70.0\n";
+    write(here, "set.toml", &format!("{BODIES}{place}lateral = 3.0\n{SMALL}"));
+    let text = |scene: &str| {
+        let output = wheelrail(here, &["midsep", scene]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let single = text("single.toml");
+    assert!(single.starts_with("# MIDSEP: "), "{single}");
+    let set = text("set.toml");
+    let heads: Vec<&str> = set.lines().filter(|line| line.contains("side, contact")).collect();
+    assert_eq!(heads, ["# right side, contact 1", "# left side, contact 1"]);
+    // α, β of two profiles, and a row for every ξ, in each.
+    let rows = |text: &str| text.lines().filter(|line| !line.starts_with('#') && !line.is_empty()).count();
+    assert_eq!(rows(&set), 2 * rows(&single));
+    assert!(set.matches("# midplane, eta = 0").count() == 2 && set.contains("\n\n# left side"), "{set}");
+    write(here, "off.toml", &format!("{BODIES}[contact]\noffset = 500.0\n"));
+    let said = complaint(here, &["midsep", "off.toml"], 2);
+    assert!(
+        said.contains("off.toml: contact: offset: found no contact; expected a wheel over its rail;"),
+        "{said}"
+    );
+}

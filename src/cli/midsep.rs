@@ -3,22 +3,29 @@
 use std::path::Path;
 
 use super::{Outcome, folder_of, print};
-use crate::error::Result;
-use crate::run::first_contact;
+use crate::error::{Error, Result};
+use crate::placement::Placement;
+use crate::run::contacts;
 use crate::scene::{self, equal_steps};
 use crate::separation::midsep::table;
 
 /// Values of ξ when the scene leaves the axis to the program.
 const DEFAULT_ROWS: usize = 101;
 
-/// Prints the table of a scene.
+/// Prints a table for every contact of a scene, under its name where there are several.
 pub(super) fn midsep(path: &Path) -> Result<Outcome> {
     let scene = scene::load(path)?;
-    let pair = scene.pair(folder_of(path))?;
-    let placement = first_contact(&scene, &pair)?;
-    let xi = match scene.axis("xi")? {
-        Some(xi) => xi,
-        None => placement.overlap().map_or_else(Vec::new, |[a, b]| equal_steps(a, b, DEFAULT_ROWS)),
-    };
-    print(&table(&placement, &xi))
+    let found = || Ok((scene.axis("xi")?, contacts(&scene, &scene.pair(folder_of(path))?)?));
+    let (axis, contacts) = found().map_err(|error: Error| error.within(path.display()))?;
+    let tables = contacts.iter().map(|(name, placement)| {
+        let xi = axis.clone().unwrap_or_else(|| over(placement));
+        let head = if contacts.len() > 1 { format!("# {name}\n") } else { String::new() };
+        head + &table(placement, &xi)
+    });
+    print(&tables.collect::<Vec<_>>().join("\n"))
+}
+
+/// Equal steps over both bodies.
+fn over(placement: &Placement) -> Vec<f64> {
+    placement.overlap().map_or_else(Vec::new, |[a, b]| equal_steps(a, b, DEFAULT_ROWS))
 }

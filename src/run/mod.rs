@@ -11,12 +11,12 @@ use std::path::{Path, PathBuf};
 pub use analysis::{Analysis, ApproachBy, Contact, EllipseUnder, Question, Timings};
 pub use places::Found;
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::export::Folder;
 use crate::interpenetration::Patch;
 use crate::placement::{Pair, Placement};
 use crate::profile::measured::Record;
-use crate::scene::{self, Scene};
+use crate::scene::{self, Place, Scene};
 use crate::separation::plan::Plan;
 use grids::Grid;
 
@@ -220,16 +220,18 @@ impl Part {
     }
 }
 
-/// The placed pair of a scene's first contact, without grid or patch.
+/// The placed pair of every contact that [`Run::new`] finds, the first one first, with their names; no grid, no patch.
 ///
 /// # Errors
 /// Bad input, by key.
-pub fn first_contact(scene: &Scene, pair: &Pair) -> Result<Placement> {
-    let question = Question { approach: None, ..question(scene)? };
-    let placed = places::find(&scene.standing()?, pair, &question)?.into_iter().next();
-    placed
-        .map(|place| place.contact.placement)
-        .ok_or_else(|| Error::new("contact", "none", "a wheel over its rail", "check offsets and signs"))
+pub fn contacts(scene: &Scene, pair: &Pair) -> Result<Vec<(String, Placement)>> {
+    let (standing, mut question) = (scene.standing()?, question(scene)?);
+    if matches!(standing.place, Place::Points { .. }) {
+        // A chosen contact is one whatever the approach.
+        question.approach = None;
+    }
+    let placed = places::find(&standing, pair, &question)?;
+    Ok(placed.into_iter().map(|place| (place.name(), place.contact.placement)).collect())
 }
 
 fn prefix(folder: &str) -> String {

@@ -110,7 +110,7 @@ pub(super) fn find(standing: &Standing, pair: &Pair, question: &Question) -> Res
             let profiles = ProfilePair::new(&pair.rail, &pair.wheel, pair.wheel_radius)?;
             let mut search = profiles.search();
             let Some(touch) = search.touch(&pose, &selection) else {
-                return Err(no_touch("contact: offset"));
+                return Err(no_touch("contact: offset", "a wheel over its rail", "check offset and signs"));
             };
             let side = Side {
                 name: "single",
@@ -125,7 +125,9 @@ pub(super) fn find(standing: &Standing, pair: &Pair, question: &Question) -> Res
             let system = WheelsetOnTrack::new(pair, rails, wheels)?;
             let mut search = system.search();
             let Some(touch) = search.touch(&position, &selection)? else {
-                return Err(no_touch("wheelset: lateral"));
+                let expected =
+                    "wheels over their rails, and a roll within ±0.1 rad at which both sides touch";
+                return Err(no_touch("wheelset: lateral", expected, "check lateral, gauge and signs"));
             };
             let mut all = Vec::new();
             // The right-hand side is the one that a scene describes.
@@ -140,9 +142,8 @@ pub(super) fn find(standing: &Standing, pair: &Pair, question: &Question) -> Res
     }
 }
 
-fn no_touch(place: &str) -> Error {
-    let expected = "a wheel over its rail, and a roll within ±0.1 rad at which both sides touch";
-    Error::new(place, "no contact", expected, "check offsets, gauge and signs")
+fn no_touch(place: &str, expected: &str, advice: &str) -> Error {
+    Error::new(place, "no contact", expected, advice)
 }
 
 impl Side<'_> {
