@@ -176,3 +176,29 @@ fn bad_input_ends_with_code_2_and_says_what_to_do() {
     }
     assert_eq!(std::fs::read(&wheel).unwrap(), exact);
 }
+
+#[test]
+fn what_killed_conversions_leave_goes_with_the_next_one() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    let arguments = ["convert", "60E1", "--to", "csv", "--step", "0.001", "--out", "rail.csv"];
+    let start = std::time::Instant::now();
+    text(here, &arguments);
+    let (duration, exact) = (start.elapsed(), std::fs::read(here.join("rail.csv")).unwrap());
+    for k in 0..40 {
+        let binary = env!("CARGO_BIN_EXE_wheelrail");
+        let mut child =
+            Command::new(binary).current_dir(here).arg("profile").args(arguments).spawn().unwrap();
+        std::thread::sleep(duration * k / 40);
+        let _ = child.kill();
+        let _ = child.wait();
+        assert_eq!(
+            std::fs::read(here.join("rail.csv")).unwrap(),
+            exact,
+            "neither the old file nor the new one"
+        );
+    }
+    std::fs::write(here.join(".wheelrail-tmp.rail.csv.1.0"), "half").unwrap();
+    text(here, &arguments);
+    assert_eq!(std::fs::read_dir(here).unwrap().count(), 1);
+}

@@ -7,35 +7,22 @@
 //!   (`renameat2` with `RENAME_EXCHANGE`), after which the old folder bears the temporary name and is deleted.
 //!   File systems without the exchange (NFS, some FUSE) get two renames: between them DIR is missing for an
 //!   instant, and the old folder waits beside it under a name that the next run puts back.
-//! - **Killed runs.** The temporary folder is locked (`flock`) as long as its run lives, and the kernel drops the
-//!   lock with the process. An unlocked temporary folder is therefore stale, and the next run into the same
-//!   parent removes it.
+//! - **Killed runs.** The temporary folder is locked as long as its run lives: [`temporary`]. What a killed one leaves,
+//!   the next run into the same parent removes.
 //! - **No fsync.** Twenty of them cost more than the whole run. What is promised holds for a kill of the process,
 //!   not for a power cut: a folder cut off by one is recognised by the END lines and the sizes in the headers.
 //! - **Foreign files.** A folder is replaced only if it is empty or carries our own summary. Files in it that
 //!   are not ours (notes, pictures) are hard-linked into the new folder; foreign subfolders are refused.
 
+use super::temporary;
 use crate::error::{Error, Result};
-use std::fs::{self, File, TryLockError};
+use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
 use std::os::unix::fs::MetadataExt;
 use std::path::{Component, Path, PathBuf};
-use std::process;
-use std::sync::atomic::{AtomicU64, Ordering};
-
-/// Every temporary folder's name begins so; what follows is `NAME.PID.NUMBER`.
-const TEMPORARY: &str = ".wheelrail-tmp.";
 
 /// Where the old folder waits while a file system without the exchange of names swaps two folders.
 const ASIDE: &str = ".wheelrail-old.";
-
-/// Names tried for a temporary folder before giving up: each is lost only to a run that cleans up at that
-/// very instant, or to a process that had the same number and was killed.
-const NAMES_TRIED: u32 = 100;
-
-/// Numbers the temporary folders of this process. None is used twice: the owner of a name deletes it after its
-/// folder has moved on, and must not meet another thread's folder there.
-static NUMBER: AtomicU64 = AtomicU64::new(0);
 
 /// Attempts to put the new folder in place, each lost only to another run that does the same just then.
 const SWAPS_TRIED: u32 = 100;
@@ -83,12 +70,16 @@ impl Folder {
         let parent = parent_of(&target);
         fs::create_dir_all(parent).map_err(|e| unwritable(parent, &e))?;
         put_back(&target);
-        remove_stale(parent);
+        temporary::remove_stale(parent);
         if target.exists() {
             reject_unsafe(&target)?;
             foreign_files(&target, names)?;
         }
-        let (temporary, lock) = locked_temporary(&target)?;
+        let made = temporary::locked(&target, |path| {
+            fs::create_dir(path)?;
+            File::open(path)
+        });
+        let (temporary, lock) = made.map_err(|e| unwritable(parent, &e))?;
         Ok(Self { target, temporary, names, _lock: lock })
     }
 
@@ -144,7 +135,7 @@ impl Folder {
             self.target.display().to_string(),
             "other runs that keep replacing it",
             "one run at a time",
-            "give each run its own --out",
+            "give each run its own",
         ))
     }
 
@@ -156,7 +147,7 @@ impl Folder {
             let kept = self.temporary.join(name);
             if kept.is_dir() {
                 let found = "a file named like a folder of this run";
-                return Err(bad(path, found, "another name", "rename it or give another --out"));
+                return Err(bad(path, found, "another name", "rename it or give another folder"));
             }
             match fs::hard_link(path, &kept) {
                 Ok(()) => {}
@@ -200,8 +191,8 @@ impl FolderPart<'_> {
         })
         .map_err(|e| {
             let advice = match e.kind() {
-                ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "free some space or give another --out",
-                _ => "check the folder, or give another --out",
+                ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "free some space or give another folder",
+                _ => "check the folder, or give another folder",
             };
             Error::new(
                 self.target.join(name).display().to_string(),
@@ -231,11 +222,11 @@ fn resolve(dir: &Path) -> Result<PathBuf> {
             dir,
             "a broken symbolic link",
             "a folder, or nothing yet",
-            "remove it or give another --out",
+            "remove it or give another folder",
         ));
     }
     if dir.file_name().is_none() {
-        return Err(bad(dir, "a path without a name at its end", "a folder's name", "give --out NAME"));
+        return Err(bad(dir, "a path without a name at its end", "a folder's name", "give one with a name"));
     }
     std::path::absolute(dir).map_err(|e| unwritable(dir, &e))
 }
@@ -248,24 +239,14 @@ fn parent_of(target: &Path) -> &Path {
 fn reject_unsafe(target: &Path) -> Result<()> {
     let here = target.metadata().map_err(|e| unwritable(target, &e))?;
     if !here.is_dir() {
-        return Err(bad(target, "a file", "a folder, or nothing yet", "remove it or give another --out"));
+        return Err(bad(target, "a file", "a folder, or nothing yet", "remove it or give another folder"));
     }
     if std::env::current_dir().is_ok_and(|cwd| cwd.starts_with(target)) {
         // The shell that started us would be left inside a deleted folder.
-        return Err(bad(
-            target,
-            "the working folder or one above it",
-            "a folder inside it",
-            "give --out ./NAME",
-        ));
+        return Err(bad(target, "the working folder or one above it", "a folder inside it", "give ./NAME"));
     }
     if parent_of(target).metadata().is_ok_and(|parent| parent.dev() != here.dev()) {
-        return Err(bad(
-            target,
-            "a mount point",
-            "a folder that can be replaced",
-            "give a folder inside it as --out",
-        ));
+        return Err(bad(target, "a mount point", "a folder that can be replaced", "give a folder inside it"));
     }
     Ok(())
 }
@@ -284,7 +265,7 @@ fn foreign_files(target: &Path, names: Names) -> Result<Vec<PathBuf>> {
             target,
             &found,
             "an empty or missing folder, or one of an earlier run",
-            "give another --out: the folder would be replaced",
+            "give another folder: the folder would be replaced",
         ));
     }
     let is_foreign = |entry: &fs::DirEntry| !names.files.iter().any(|name| entry.file_name() == **name);
@@ -301,59 +282,9 @@ fn foreign_files(target: &Path, names: Names) -> Result<Vec<PathBuf>> {
         let found =
             format!("a folder {} with files of others, or of another run", folder.file_name().display());
         let expected = "nothing beside this command's own files and subfolders";
-        return Err(bad(target, &found, expected, "move it elsewhere or give another --out"));
+        return Err(bad(target, &found, expected, "move it elsewhere or give another folder"));
     }
     Ok(foreign.into_iter().map(fs::DirEntry::path).collect())
-}
-
-/// Makes and locks a temporary folder. The lock comes a moment after the folder; whoever cleans up in between
-/// takes it for stale, which shows in a lost lock or a name that is gone, and the next name is tried.
-fn locked_temporary(target: &Path) -> Result<(PathBuf, File)> {
-    let parent = parent_of(target);
-    let name = target.file_name().unwrap_or_default().to_string_lossy();
-    for _ in 0..NAMES_TRIED {
-        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
-        let path = parent.join(format!("{TEMPORARY}{name}.{}.{number}", process::id()));
-        match fs::create_dir(&path) {
-            Ok(()) => {}
-            Err(e) if e.kind() == ErrorKind::AlreadyExists => continue,
-            Err(e) => return Err(unwritable(parent, &e)),
-        }
-        let Ok(lock) = File::open(&path) else { continue };
-        // A file system without locks (Error) has no cleaning either.
-        let lost = matches!(lock.try_lock(), Err(TryLockError::WouldBlock));
-        if !lost && same_folder(&lock, &path) {
-            return Ok((path, lock));
-        }
-    }
-    Err(bad(
-        parent,
-        &format!("{NAMES_TRIED} temporary folders in use"),
-        "a free name",
-        "wait for the other runs or give another --out",
-    ))
-}
-
-fn same_folder(open: &File, path: &Path) -> bool {
-    match (open.metadata(), path.metadata()) {
-        (Ok(a), Ok(b)) => (a.dev(), a.ino()) == (b.dev(), b.ino()),
-        _ => false,
-    }
-}
-
-/// Removes the temporary folders of runs that are dead. Whatever fails is somebody else's or is tried again.
-fn remove_stale(parent: &Path) {
-    for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
-        let ours = entry.file_name().to_string_lossy().starts_with(TEMPORARY);
-        if !ours || !entry.file_type().is_ok_and(|kind| kind.is_dir()) {
-            continue;
-        }
-        let Ok(lock) = File::open(entry.path()) else { continue };
-        // The lock is held until all is gone, so that nobody writes into what is being removed.
-        if lock.try_lock().is_ok() {
-            drop(fs::remove_dir_all(entry.path()));
-        }
-    }
 }
 
 /// Exchanges two folders' names.
@@ -405,7 +336,7 @@ fn unwritable(path: &Path, error: &io::Error) -> Error {
         path,
         &error.to_string(),
         "a folder that can be written",
-        "check its permissions or give another --out",
+        "check its permissions or give another folder",
     )
 }
 

@@ -14,10 +14,11 @@ mod model;
 pub mod netcdf;
 pub mod npy;
 pub mod picture;
+mod temporary;
 pub mod vtk;
 pub mod vts;
 
-pub use file::write_file;
+pub use file::{behind_links, write_file};
 pub use folder::{Folder, FolderPart, Names};
 pub use model::{Frame, GridFields, Header, Interval, Loop, QuadMesh, SurfaceMesh};
 

@@ -1,4 +1,6 @@
+use super::super::temporary::TEMPORARY;
 use super::*;
+use std::process;
 use std::time::{Duration, Instant};
 
 const NAMES: Names = Names {

@@ -1,0 +1,76 @@
+//! Temporary names beside what is going to be replaced: each is locked (`flock`) by the process that uses it. The kernel
+//! drops the lock with the process, so an unlocked one is left from a process that was killed; whoever writes into the same
+//! folder next removes it.
+
+use std::fs::{self, File, TryLockError};
+use std::io::{self, ErrorKind};
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+use std::process;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Every temporary name begins so; what follows is `NAME.PID.NUMBER`.
+pub(super) const TEMPORARY: &str = ".wheelrail-tmp.";
+
+/// Names tried before giving up: each is lost only to a run that cleans up at that very instant, or to a process
+/// that had the same number and was killed.
+const NAMES_TRIED: u32 = 100;
+
+/// Characters of a temporary name that tell what it is for; the rest keeps it within what file systems allow.
+const NAME_SHOWN: usize = 40;
+
+/// Numbers the temporary names of this process. None is used twice: the owner of a name deletes it after its
+/// content has moved on, and must not meet another thread's there.
+static NUMBER: AtomicU64 = AtomicU64::new(0);
+
+/// A new folder or file beside `target`, as `make` makes it, open and locked. The lock comes a moment after the name;
+/// whoever cleans up in between takes it for stale, which shows in a lost lock or a name that is gone, and the next
+/// name is tried.
+///
+/// # Errors
+/// Those of `make`; too many names in use.
+pub(super) fn locked(target: &Path, make: impl Fn(&Path) -> io::Result<File>) -> io::Result<(PathBuf, File)> {
+    let name = target.file_name().unwrap_or_default().to_string_lossy();
+    let name: String = name.chars().take(NAME_SHOWN).collect();
+    for _ in 0..NAMES_TRIED {
+        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+        let path = target.with_file_name(format!("{TEMPORARY}{name}.{}.{number}", process::id()));
+        let made = match make(&path) {
+            Ok(made) => made,
+            Err(e) if e.kind() == ErrorKind::AlreadyExists => continue,
+            Err(e) => return Err(e),
+        };
+        // A file system without locks (Error) has no cleaning either.
+        let lost = matches!(made.try_lock(), Err(TryLockError::WouldBlock));
+        if !lost && same(&made, &path) {
+            return Ok((path, made));
+        }
+    }
+    let text = format!("{NAMES_TRIED} temporary names in use by other runs");
+    Err(io::Error::new(ErrorKind::AlreadyExists, text))
+}
+
+fn same(open: &File, path: &Path) -> bool {
+    match (open.metadata(), path.metadata()) {
+        (Ok(a), Ok(b)) => (a.dev(), a.ino()) == (b.dev(), b.ino()),
+        _ => false,
+    }
+}
+
+/// Removes what dead processes have left in a folder. Whatever fails is somebody else's or is tried again.
+pub(super) fn remove_stale(parent: &Path) {
+    for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
+        let ours = entry.file_name().to_string_lossy().starts_with(TEMPORARY);
+        let Ok(kind) = entry.file_type() else { continue };
+        // A pipe of that name would block.
+        if !ours || !(kind.is_dir() || kind.is_file()) {
+            continue;
+        }
+        let Ok(lock) = File::open(entry.path()) else { continue };
+        // The lock is held until all is gone, so that nobody writes into what is being removed.
+        if lock.try_lock().is_ok() {
+            let path = entry.path();
+            drop(if kind.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) });
+        }
+    }
+}
