@@ -137,7 +137,7 @@ fn bad_input_ends_with_code_2_and_says_what_to_do() {
     text(here, &["convert", "S1002", "--to", "csv", "--out", "wheel.csv"]);
     std::fs::write(here.join("bad.csv"), "x,z\n1.0,2.0\n1.5,two\n").unwrap();
     let exact = std::fs::read(&wheel).unwrap();
-    let cases: [(&[&str], &str); 14] = [
+    let cases: [(&[&str], &str); 17] = [
         (&["show", "nowhere"], "nowhere: found no file and no built-in profile; expected a file"),
         (&["show", "61E1"], "perhaps `60E1` is meant"),
         (&["show", "wheel.csv"], "wheel.csv: found no --side; expected"),
@@ -162,6 +162,12 @@ fn bad_input_ends_with_code_2_and_says_what_to_do() {
         ),
         (&["plot", "bad.csv", "--side", "wheel"], "bad.csv: line 3"),
         (&["convert", "S1002", "--to", "pdf"], "--to: found `pdf`; expected one of miniprof"),
+        (&["convert", "S1002", "--to", "CSV"], "perhaps `csv` is meant"),
+        (&["show", "wheel.csv", "--side", "Wheel", "--unit", "MM"], "perhaps `mm` is meant"),
+        (
+            &["show", "wheel.csv", "--side", "wheel", "--columns", "1"],
+            "--columns: found \"1\"; expected two columns",
+        ),
         (&["convert", "S1002", "--to", "csv", "--step", "-1"], "--step"),
         (
             &["convert", "wheel.csv", "--side", "wheel", "--curve", "smoothing", "--to", "toml"],

@@ -24,7 +24,7 @@ use crate::error::{Error, Result};
 #[command(version, about)]
 struct Arguments {
     /// Threads to compute on; 0 takes all cores.
-    #[arg(long, global = true, default_value_t = 0)]
+    #[arg(long, global = true, default_value_t = 0, allow_negative_numbers = true)]
     threads: usize,
     #[command(subcommand)]
     command: Command,

@@ -141,7 +141,7 @@ impl ProfileData {
 
 /// An angle.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged, expecting = "an angle in rad, or a ratio such as \"1:40\"")]
+#[serde(untagged, expecting = "expected an angle in rad, or a ratio such as \"1:40\"")]
 pub enum Rotation {
     /// Radians.
     Radians(f64),
@@ -217,7 +217,7 @@ pub struct WheelsetData {
 
 /// How the roll of a wheelset is found.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged, expecting = "\"solve\", \"neglect\" or an angle in rad")]
+#[serde(untagged, expecting = "expected \"solve\", \"neglect\" or an angle in rad")]
 pub enum RollData {
     /// A word.
     Word(RollWord),
@@ -315,7 +315,7 @@ impl Default for GridData {
 
 /// One axis of the grid.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged, expecting = "\"auto\", { from = …, to = …, n = … } or { values = […] }")]
+#[serde(untagged, expecting = "expected \"auto\", { from = …, to = …, n = … } or { values = […] }")]
 pub enum AxisData {
     /// "auto": the patch and a margin.
     Word(Auto),
@@ -355,7 +355,7 @@ pub struct ValuesData {
 
 /// Step of automatic axes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged, expecting = "a step in mm, or [Δξ, Δη]")]
+#[serde(untagged, expecting = "expected a step in mm, or [Δξ, Δη]")]
 pub enum Spacing {
     /// The same for both axes.
     Both(f64),

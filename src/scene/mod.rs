@@ -10,8 +10,8 @@ pub use data::{
     RollWord, Rotation, Scene, Spacing, TrackData, WheelsetData,
 };
 pub use position::{Place, Standing};
-pub use read::{hash, load, parse, perhaps, unreadable};
-pub use resolve::{equal_steps, is_chain_file, profile_from_file, read_bytes};
+pub use read::{hash, load, parse, perhaps, read_bytes, read_text};
+pub use resolve::{equal_steps, is_chain_file, profile_from_file};
 
 /// The JSON Schema of a scene.
 pub fn schema() -> schemars::Schema {

@@ -1,11 +1,16 @@
 //! Text → scene, with every complaint in the house form.
 
+use std::io::Read;
 use std::path::Path;
 
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
 use sha2::{Digest, Sha256};
 
 use super::Scene;
 use crate::error::{Error, Result};
+use crate::profile::measured::LARGEST_FILE;
 
 /// A scene from a TOML file, or from a JSON file with the same keys.
 ///
@@ -13,7 +18,7 @@ use crate::error::{Error, Result};
 /// An unreadable file; syntax, unknown keys and wrong types, each with its line.
 pub fn load(path: &Path) -> Result<Scene> {
     let place = path.display().to_string();
-    let text = std::fs::read_to_string(path).map_err(|error| unreadable(path, &error))?;
+    let text = read_text(path, LARGEST_FILE)?;
     let json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
     parse(&text, json).map_err(|error| error.within(place))
 }
@@ -22,32 +27,97 @@ pub fn load(path: &Path) -> Result<Scene> {
 ///
 /// # Errors
 /// Syntax, unknown keys and wrong types, each with its line.
-pub fn parse<T: serde::de::DeserializeOwned>(text: &str, json: bool) -> Result<T> {
-    if json {
-        return serde_json::from_str(text).map_err(|error| {
-            house_form(format!("line {}", error.line()), &without_position(&error.to_string()))
-        });
+pub fn parse<T: DeserializeOwned + Serialize>(text: &str, json: bool) -> Result<T> {
+    let (read, value): (T, Value) = if json { from_json(text)? } else { from_toml(text)? };
+    // `serde` takes a list for a table, its items in the order of the keys.
+    let again = serde_json::to_value(&read).unwrap_or_default();
+    match list_for_table(&value, &again, "") {
+        None => Ok(read),
+        Some(key) => Err(Error::new(key, "a list", "a table of keys and values", SEE_ALSO)),
     }
-    let complaint = |error: toml::de::Error| {
-        let line = error.span().map(|span| text[..span.start.min(text.len())].matches('\n').count() + 1);
-        house_form(line.map_or_else(String::new, |line| format!("line {line}")), error.message())
-    };
-    let scene = toml::from_str(text).map_err(complaint)?;
-    // `toml` drops what an array has too much, `serde_json` does not; what is not finite is null there, and found later.
-    let value: serde_json::Value = toml::from_str(text).map_err(complaint)?;
-    if !has_null(&value) {
-        serde_json::from_value::<T>(value).map_err(|error| house_form(String::new(), &error.to_string()))?;
-    }
-    Ok(scene)
 }
 
-fn has_null(value: &serde_json::Value) -> bool {
+fn from_json<T: DeserializeOwned>(text: &str) -> Result<(T, Value)> {
+    let complaint = |error: serde_json::Error| {
+        let line = error.line().checked_sub(1).and_then(|line| text.lines().nth(line));
+        let read = line.and_then(|line| line.get(..error.column()));
+        let found = read.map(|read| format!("what ends in {}", shortened(read, Keep::End)));
+        house_form(format!("line {}", error.line()), &without_position(&error.to_string()), found)
+    };
+    Ok((serde_json::from_str(text).map_err(complaint)?, serde_json::from_str(text).map_err(complaint)?))
+}
+
+fn from_toml<T: DeserializeOwned>(text: &str) -> Result<(T, Value)> {
+    let complaint = |error: toml::de::Error| {
+        let span = error.span().unwrap_or_default();
+        let line = text.get(..span.start).map_or(0, |before| before.matches('\n').count()) + 1;
+        let found = text.get(span.clone()).map(|found| shortened(found, Keep::Beginning));
+        let place = if error.span().is_some() { format!("line {line}") } else { String::new() };
+        house_form(place, error.message(), found)
+    };
+    let read = toml::from_str(text).map_err(complaint)?;
+    // `toml` drops what an array has too much, `serde_json` does not; what is not finite is null there, and found later.
+    let value: Value = toml::from_str(text).map_err(complaint)?;
+    if !has_null(&value) {
+        serde_json::from_value::<T>(value.clone())
+            .map_err(|error| house_form(String::new(), &error.to_string(), None))?;
+    }
+    Ok((read, value))
+}
+
+/// The first key at which a list was read as a table.
+fn list_for_table(given: &Value, read: &Value, key: &str) -> Option<String> {
+    match (given, read) {
+        (Value::Array(_), Value::Object(_)) => Some(key.to_string()),
+        (Value::Array(given), Value::Array(read)) => {
+            given.iter().zip(read).find_map(|(given, read)| list_for_table(given, read, key))
+        }
+        (Value::Object(given), Value::Object(read)) => given.iter().find_map(|(name, given)| {
+            let key = if key.is_empty() { name.clone() } else { format!("{key}: {name}") };
+            list_for_table(given, read.get(name)?, &key)
+        }),
+        _ => None,
+    }
+}
+
+fn has_null(value: &Value) -> bool {
     match value {
-        serde_json::Value::Null => true,
-        serde_json::Value::Array(values) => values.iter().any(has_null),
-        serde_json::Value::Object(values) => values.values().any(has_null),
+        Value::Null => true,
+        Value::Array(values) => values.iter().any(has_null),
+        Value::Object(values) => values.values().any(has_null),
         _ => false,
     }
+}
+
+/// The bytes of a file of at most `largest` bytes; a pipe or device is read no further either.
+///
+/// # Errors
+/// An unreadable or larger file.
+pub fn read_bytes(path: &Path, largest: usize) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(|error| unreadable(path, &error))?;
+    file.take(largest as u64 + 1).read_to_end(&mut bytes).map_err(|error| unreadable(path, &error))?;
+    if bytes.len() > largest {
+        let (found, expected) = (format!("more than {largest} bytes"), format!("at most {largest} bytes"));
+        let advice = "is this the right file?";
+        return Err(Error::new(path.display().to_string(), found, expected, advice));
+    }
+    Ok(bytes)
+}
+
+/// The text of a file of at most `largest` bytes, without the mark that some editors put before it.
+///
+/// # Errors
+/// An unreadable file or one too large; with its line, what is no UTF-8.
+pub fn read_text(path: &Path, largest: usize) -> Result<String> {
+    let text = String::from_utf8(read_bytes(path, largest)?).map_err(|error| {
+        let (bytes, good) = (error.as_bytes(), error.utf8_error().valid_up_to());
+        let line = 1 + bytes[..good].iter().filter(|byte| **byte == b'\n').count();
+        let found = format!("the byte 0x{:02X}, which is no UTF-8 there", bytes[good]);
+        let place = format!("{}: line {line}", path.display());
+        Error::new(place, found, "text in UTF-8", "save the file as UTF-8")
+    })?;
+    Ok(text.strip_prefix('\u{feff}').map(String::from).unwrap_or(text))
 }
 
 /// SHA-256 of the scene as read, in hexadecimal: equal scenes have equal hashes whatever their comments.
@@ -57,13 +127,12 @@ pub fn hash(scene: &Scene) -> String {
 }
 
 /// Why a file cannot be read, in words.
-pub fn unreadable(path: &Path, error: &std::io::Error) -> Error {
+fn unreadable(path: &Path, error: &std::io::Error) -> Error {
     use std::io::ErrorKind;
     let found = match error.kind() {
         ErrorKind::NotFound => "no such file".to_owned(),
         ErrorKind::PermissionDenied => "a file that you may not read".to_owned(),
         ErrorKind::IsADirectory => "a folder".to_owned(),
-        ErrorKind::InvalidData => "bytes that are no text in UTF-8".to_owned(),
         _ => error.to_string(),
     };
     Error::new(path.display().to_string(), found, "a readable file", "check the path")
@@ -71,25 +140,57 @@ pub fn unreadable(path: &Path, error: &std::io::Error) -> Error {
 
 /// Advice for a word that is not known: the nearest one that is, where one is near.
 pub fn perhaps(found: &str, known: &[&str]) -> String {
+    nearest(found, known).unwrap_or_else(|| "correct or remove it".into())
+}
+
+/// The nearest known word as advice, where one is near, in upper or lower case.
+pub fn nearest(found: &str, known: &[&str]) -> Option<String> {
     /// Likeness from which two words look like one misspelt: `yaw` and `yaw_rad` have 0.87, words of a letter or two in
     /// common 0.6.
     const ALIKE: f64 = 0.7;
-    let likeness = |known: &str| strsim::jaro_winkler(known, found);
+    let lower = found.to_lowercase();
+    let likeness = |known: &str| strsim::jaro_winkler(&known.to_lowercase(), &lower);
     let nearest = known.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
-    match nearest.filter(|nearest| likeness(nearest) >= ALIKE) {
-        Some(nearest) => format!("perhaps `{nearest}` is meant"),
-        None => "correct or remove it".into(),
-    }
+    nearest
+        .filter(|nearest| likeness(nearest) >= ALIKE)
+        .map(|nearest| format!("perhaps `{nearest}` is meant"))
 }
+
+/// Advice where there is none in particular.
+const SEE_ALSO: &str = "see `wheelrail schema` and the README";
 
 fn without_position(message: &str) -> String {
     message.split(" at line ").next().unwrap_or(message).to_string()
 }
 
+/// Which part of a long text is shown.
+#[derive(Clone, Copy)]
+enum Keep {
+    Beginning,
+    End,
+}
+
+/// A text on one line, as much of it as helps to find it.
+fn shortened(text: &str, keep: Keep) -> String {
+    /// Characters that are shown.
+    const SHOWN: usize = 60;
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let line: Vec<char> = words.join(" ").chars().collect();
+    match (line.len().checked_sub(SHOWN), keep) {
+        (None | Some(0), _) => line.into_iter().collect(),
+        (_, Keep::Beginning) => line[..SHOWN].iter().chain(['…'].iter()).collect(),
+        (Some(cut), Keep::End) => ['…'].iter().chain(&line[cut..]).collect(),
+    }
+}
+
 /// Serde's "unknown field `x`, expected one of `a`, `b`" and its kin, split into what stands there and what
-/// could.
-fn house_form(place: String, message: &str) -> Error {
+/// could. Where a message says only what could, as those of keys with several forms do, `found` is what stands there.
+fn house_form(place: String, message: &str, found: Option<String>) -> Error {
     let message = message.trim();
+    if let Some(expected) = message.strip_prefix("expected ").or(message.strip_prefix("wanted ")) {
+        let found = found.unwrap_or_else(|| "something else".into());
+        return Error::new(place, found, expected, SEE_ALSO);
+    }
     let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     if (message.starts_with("unknown field") || message.starts_with("unknown variant"))
         && let [found, known @ ..] = quoted.as_slice()
@@ -101,9 +202,19 @@ fn house_form(place: String, message: &str) -> Error {
         return Error::new(place, format!("no `{key}`"), format!("the key `{key}`"), "add it");
     }
     if let Some((found, expected)) = message.split_once(", expected ") {
-        return Error::new(place, found, expected, "see `wheelrail schema` and the README");
+        // A list of the wrong length for a table whose keys it could have stood for.
+        let list = message.starts_with("invalid length") && expected.starts_with("struct");
+        let found = if list { "a list" } else { found };
+        let expected = match expected {
+            "f64" => "a number",
+            "u64" | "usize" => "a whole number of 0 or more",
+            "a sequence" => "a list",
+            table if table == "a map" || table.starts_with("struct") => "a table of keys and values",
+            other => other,
+        };
+        return Error::new(place, found, expected, SEE_ALSO);
     }
-    Error::new(place, message, "a scene in TOML or JSON", "see `wheelrail schema` and the README")
+    Error::new(place, message, "a scene in TOML or JSON", SEE_ALSO)
 }
 
 #[cfg(test)]
@@ -139,6 +250,25 @@ mod tests {
     }
 
     #[test]
+    fn a_list_is_no_table() {
+        for (text, json, place) in [
+            (format!("{SCENE}[grid]\nxi = [-1.0, 1.0, 3]\n"), false, "grid: xi"),
+            (format!("patch = [0.05]\n{SCENE}"), false, "patch"),
+            (
+                SCENE.replace("profile = \"60E1\"", "segments = [{ line = [[0, 0], [1, 0]] }]"),
+                false,
+                "rail: segments: line",
+            ),
+            ("[null, {}, {}, null, null, null, null, {}, {}, {}]".into(), true, ""),
+            ("[]".into(), true, "line 1"),
+        ] {
+            let error = parse::<Scene>(&text, json).err().map(|e| e.to_string()).unwrap_or_default();
+            let expected = format!("{place}: found a list; expected a table of keys and values;");
+            assert!(error.starts_with(&expected), "{text}: {error}");
+        }
+    }
+
+    #[test]
     fn a_method_is_one_of_the_ladder_or_auto() -> Result<()> {
         for (word, method) in [("auto", None), ("report-newton", Some(Method::ReportNewton))] {
             let scene: Scene = parse(&format!("{SCENE}[grid]\nmethod = \"{word}\"\n"), false)?;
@@ -150,6 +280,48 @@ mod tests {
         }
         let error = parse::<Scene>(&format!("{SCENE}[grid]\nmethod = \"spectrl\"\n"), false).err();
         assert_eq!(error.map(|e| e.advice).as_deref(), Some("perhaps `spectral` is meant"));
+        Ok(())
+    }
+
+    #[test]
+    fn keys_with_several_forms_say_what_was_found() {
+        let cases = [
+            (
+                "[rail]\nrotate = true",
+                false,
+                "line 2: found true; expected an angle in rad, or a ratio such as \"1:40\";",
+            ),
+            (
+                "[grid]\nxi = { from = 1,\n  m = 3 }",
+                false,
+                "line 2: found { from = 1, m = 3 }; expected \"auto\", { from = …, to = …, n = … } or",
+            ),
+            ("[output]\nformats = [1]", false, "line 2: found 1; expected string"),
+            (
+                "{\"grid\":\n{\"spacing\": \"fine\"}}",
+                true,
+                "line 2: found what ends in {\"spacing\": \"fine\"}; expected a step in mm, or [Δξ, Δη];",
+            ),
+        ];
+        for (text, json, expected) in cases {
+            let error = parse::<Scene>(text, json).err().map(|e| e.to_string()).unwrap_or_default();
+            assert!(error.starts_with(expected), "{error}");
+        }
+        assert_eq!(shortened(&"a ".repeat(50), Keep::End), format!("…{}", " a".repeat(30)));
+    }
+
+    #[test]
+    fn text_that_is_no_utf_8_is_shown_by_its_line_and_a_mark_before_it_is_no_text() -> Result<()> {
+        let path = std::env::temp_dir().join(format!("wheelrail-text-{}", std::process::id()));
+        let read = |bytes: &[u8]| {
+            std::fs::write(&path, bytes).unwrap();
+            read_text(&path, LARGEST_FILE)
+        };
+        assert_eq!(read(b"\xEF\xBB\xBF[rail]")?, "[rail]");
+        let error = read(b"# 1\n# caf\xE9\n").map_err(|e| e.to_string());
+        let expected = ": line 2: found the byte 0xE9, which is no UTF-8 there; expected text in UTF-8; save";
+        assert!(error.as_ref().is_err_and(|e| e.contains(expected)), "{error:?}");
+        std::fs::remove_file(&path).unwrap();
         Ok(())
     }
 

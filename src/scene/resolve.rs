@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::data::{AxisData, ProfileData, Rotation, Scene, Spacing};
-use super::read::{parse, unreadable};
+use super::read::{nearest, parse, read_bytes, read_text};
 use crate::contact::hertz::Elastic;
 use crate::error::{Error, Result, finite, given};
 use crate::mesh::axes::MOST_ON_AXIS;
@@ -13,7 +13,7 @@ use crate::profile::measured::{self, Measured, Options, Record};
 use crate::profile::{Profile, Side, standards};
 
 /// A profile file: the same keys as inline.
-#[derive(Debug, serde::Deserialize)]
+#[derive(Debug, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ProfileFile {
     #[serde(default)]
@@ -307,30 +307,16 @@ fn built_in(name: &str, side: Side) -> Result<Profile> {
         let (found, expected) = (format!("\"{name}\", a {other}"), format!("a {own} profile"));
         return Err(Error::new("profile", found, expected, "see `wheelrail profile list`"));
     }
-    match side {
-        Side::Rail => standards::rail(name),
-        Side::Wheel => standards::wheel(name),
-    }
+    let (found, known) = match side {
+        Side::Rail => (standards::rail(name), standards::rail_names().collect::<Vec<_>>()),
+        Side::Wheel => (standards::wheel(name), standards::wheel_names().collect()),
+    };
+    found.map_err(|error| Error { advice: nearest(name, &known).unwrap_or(error.advice), ..error })
 }
 
 /// Whether a file's extension is that of a chain of segments.
 pub fn is_chain_file(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml") || e.eq_ignore_ascii_case("json"))
-}
-
-/// The bytes of a file of at most `largest` bytes.
-///
-/// # Errors
-/// An unreadable or larger file.
-pub fn read_bytes(path: &Path, largest: usize) -> Result<Vec<u8>> {
-    let place = path.display().to_string();
-    let broken = |error: std::io::Error| unreadable(path, &error);
-    let length = path.metadata().map_err(broken)?.len();
-    if length > largest as u64 {
-        let expected = format!("at most {largest} bytes");
-        return Err(Error::new(place, format!("{length} bytes"), expected, "is this the right file?"));
-    }
-    std::fs::read(path).map_err(broken)
 }
 
 impl std::fmt::Display for Rotation {
@@ -372,7 +358,7 @@ impl Rotation {
 /// An unreadable file; whatever is wrong with its segments.
 pub fn profile_from_file(path: &Path) -> Result<Profile> {
     let place = path.display().to_string();
-    let text = std::fs::read_to_string(path).map_err(|error| unreadable(path, &error))?;
+    let text = read_text(path, measured::LARGEST_FILE)?;
     let json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
     let file: ProfileFile = parse(&text, json).map_err(|e| e.within(&place))?;
     let name = file.name.unwrap_or_else(|| place.clone());
@@ -395,6 +381,7 @@ mod tests {
     #[test]
     fn complaints_say_what_was_found() -> Result<()> {
         let rails = [
+            ("profile = \"60e1\"", "perhaps `60E1` is meant"),
             ("profile = \"S1002\"", "rail: profile: found \"S1002\", a wheel; expected a rail profile;"),
             (
                 "profile = \"60E1\"\nunit = \"m\"\nrepair = [\"sort\"]",

@@ -1,6 +1,7 @@
 //! The options of measured files on the command line: those of a scene, with the same words.
 
 use clap::{Args, ValueEnum};
+use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::{Error, Result};
@@ -37,7 +38,7 @@ pub(super) struct MeasuredArguments {
     #[arg(long, value_name = "X,Z")]
     columns: Option<String>,
     /// Section of an .mpt file, from 1.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     section: Option<usize>,
     /// Whether the first axis points to the centre of the track.
     #[arg(long, value_name = "true|false", num_args = 0..=1, default_missing_value = "true")]
@@ -52,10 +53,10 @@ pub(super) struct MeasuredArguments {
     #[arg(long, allow_hyphen_values = true)]
     origin: Option<String>,
     /// Depth of the gauge point under the top of rail, mm.
-    #[arg(long, value_name = "MM")]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     gauge_height: Option<f64>,
     /// Distance of the taping line from the flange back, mm.
-    #[arg(long, value_name = "MM")]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     tape_distance: Option<f64>,
     /// Repairs, any of drop-duplicates, sort, remove-spikes, cut-loops, as sort,cut-loops.
     #[arg(long, value_delimiter = ',')]
@@ -64,13 +65,13 @@ pub(super) struct MeasuredArguments {
     #[arg(long)]
     curve: Option<String>,
     /// Wavelength that smoothing halves, mm.
-    #[arg(long, value_name = "MM")]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     cutoff_wavelength: Option<f64>,
     /// Kinks above this angle stay corners, rad.
-    #[arg(long, value_name = "RAD")]
+    #[arg(long, value_name = "RAD", allow_negative_numbers = true)]
     kink_angle: Option<f64>,
     /// Largest distance of a point from an arc chain, mm.
-    #[arg(long, value_name = "MM")]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     arc_tolerance: Option<f64>,
 }
 
@@ -115,12 +116,12 @@ impl MeasuredArguments {
     }
 }
 
-fn word<T: DeserializeOwned>(option: &str, text: Option<&str>) -> Result<Option<T>> {
+fn word<T: DeserializeOwned + Serialize>(option: &str, text: Option<&str>) -> Result<Option<T>> {
     text.map(|text| one_of(option, text)).transpose()
 }
 
 /// A word as a scene spells it; the complaint lists what could stand there.
-pub(super) fn one_of<T: DeserializeOwned>(option: &str, text: &str) -> Result<T> {
+pub(super) fn one_of<T: DeserializeOwned + Serialize>(option: &str, text: &str) -> Result<T> {
     let quoted = serde_json::Value::from(text).to_string();
     scene::parse(&quoted, true).map_err(|error| Error { place: option.into(), ..error })
 }

@@ -17,7 +17,7 @@ pub(in crate::cli) struct SourceArguments {
     /// Name of a built-in profile, or a file: segments in TOML or JSON, or measured points.
     profile: String,
     /// Which body it is of; a built-in name says so itself, and so do files such as .ban, .whl, .prr, .prw.
-    #[arg(long)]
+    #[arg(long, ignore_case = true)]
     side: Option<Body>,
     #[command(flatten)]
     measured: MeasuredArguments,

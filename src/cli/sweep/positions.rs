@@ -9,6 +9,12 @@ use crate::scene;
 /// Most positions of one sweep: a GiB with all that is kept of them.
 const MOST_POSITIONS: usize = 10_000_000;
 
+/// Bytes of a table of so many positions, of a hundred each.
+const LARGEST_TABLE: usize = 100 * MOST_POSITIONS;
+
+/// Largest displacement \[mm\]: beyond any track, and its sums do not overflow.
+const FARTHEST: f64 = 1e9;
+
 /// Columns of a table of positions.
 const COLUMNS: [&str; 3] = ["lateral_mm", "yaw_rad", "roll_rad"];
 
@@ -18,14 +24,14 @@ const MOST_DECIMALS: i32 = 15;
 /// FROM:TO:STEP, both ends included; each position is the double nearest to its decimal number, as printed.
 pub(super) fn lateral_range(text: &str) -> Result<Vec<f64>> {
     let bad = || {
-        let expected = "FROM:TO:STEP in mm with FROM <= TO and STEP > 0";
+        let expected = format!("FROM:TO:STEP in mm with FROM <= TO within ±{FARTHEST:e} and STEP > 0");
         Error::new("--lateral", text, expected, "for example --lateral -8:8:0.1")
     };
     let parts = text.split(':').map(|part| part.trim().parse().ok()).collect::<Option<Vec<f64>>>();
     let Some([from, to, step]) = parts.and_then(|parts| <[f64; 3]>::try_from(parts).ok()) else {
         return Err(bad());
     };
-    if !(from.is_finite() && to.is_finite() && step.is_finite() && step > 0.0 && from <= to) {
+    if !(-FARTHEST <= from && from <= to && to <= FARTHEST && step.is_finite() && step > 0.0) {
         return Err(bad());
     }
     // A last step that ends within a millionth of TO ends there.
@@ -61,13 +67,18 @@ fn check_count(place: &str, count: f64) -> Result<()> {
 
 /// A table with columns `lateral_mm` and perhaps `yaw_rad` and `roll_rad`; without a yaw it is 0, without a roll solved.
 pub(super) fn read_positions(path: &Path) -> Result<Vec<Position>> {
-    let file = std::fs::File::open(path).map_err(|error| scene::unreadable(path, &error))?;
-    read_table(&path.display().to_string(), file)
+    let table = scene::read_text(path, LARGEST_TABLE)?;
+    read_table(&path.display().to_string(), table.as_bytes())
 }
 
 fn read_table(place: &str, table: impl std::io::Read) -> Result<Vec<Position>> {
-    let unreadable = |error: csv::Error| {
-        Error::new(place, error.to_string(), "columns lateral_mm,yaw_rad,roll_rad", "correct the file")
+    let unreadable = |error: csv::Error| match error.kind() {
+        csv::ErrorKind::UnequalLengths { pos, expected_len, len } => {
+            let line = pos.as_ref().map_or(0, csv::Position::line);
+            let expected = format!("{expected_len}, as in the first line");
+            Error::new(format!("{place}: line {line}"), format!("{len} cells"), expected, "correct the line")
+        }
+        _ => Error::new(place, error.to_string(), "columns lateral_mm,yaw_rad,roll_rad", "correct the file"),
     };
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(table);
     let [lateral, yaw, roll] = columns(place, reader.headers().map_err(unreadable)?)?;
@@ -87,12 +98,21 @@ fn read_table(place: &str, table: impl std::io::Read) -> Result<Vec<Position>> {
         };
         let nothing =
             || Error::new(&place, "an empty lateral_mm", "a number of mm", "give it, or drop the line");
+        let lateral = number(lateral)?.ok_or_else(nothing)?;
+        if lateral.abs() > FARTHEST {
+            let expected = format!("a displacement within ±{FARTHEST:e} mm");
+            return Err(Error::new(place, format!("{lateral:e}"), expected, "check the unit"));
+        }
         positions.push(Position {
-            lateral: number(lateral)?.ok_or_else(nothing)?,
+            lateral,
             yaw: number(yaw)?.unwrap_or(0.0),
             roll: number(roll)?.map_or(Roll::Solve, Roll::Fixed),
         });
         check_count(&place, positions.len() as f64)?;
+    }
+    if positions.is_empty() {
+        let advice = "give a line for each position";
+        return Err(Error::new(place, "no positions", "at least one below the columns' names", advice));
     }
     Ok(positions)
 }
@@ -148,7 +168,18 @@ mod tests {
         for bad in ["0:1:1e-9", "0:1:1e-300"] {
             assert!(lateral_range(bad).is_err_and(|e| e.expected == "at most 10000000 positions"), "{bad}");
         }
-        for bad in ["", "0:1", "0:1:0", "1:0:1", "0:1:x:0.5", "nan:1:1", "0:inf:1", "0:1:inf", "0:1:0.5:2"] {
+        for bad in [
+            "",
+            "0:1",
+            "0:1e10:1e9",
+            "0:1:0",
+            "1:0:1",
+            "0:1:x:0.5",
+            "nan:1:1",
+            "0:inf:1",
+            "0:1:inf",
+            "0:1:0.5:2",
+        ] {
             assert!(lateral_range(bad).is_err_and(|e| e.expected.starts_with("FROM:TO:STEP")), "{bad}");
         }
     }
@@ -171,6 +202,9 @@ mod tests {
                 "p.csv: line 3: found an empty lateral_mm; expected a number of mm",
             ),
             ("lateral_mm\nx\n", "p.csv: line 2: found \"x\"; expected a number"),
+            ("lateral_mm\n", "p.csv: found no positions; expected at least one"),
+            ("lateral_mm\n1e308\n", "p.csv: line 2: found 1e308; expected a displacement within ±1e9 mm;"),
+            ("lateral_mm\n1\n2,3\n", "p.csv: line 3: found 2 cells; expected 1, as in the first line;"),
         ] {
             let error =
                 read_table("p.csv", table.as_bytes()).err().map(|e| e.to_string()).unwrap_or_default();

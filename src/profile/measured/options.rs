@@ -80,7 +80,7 @@ pub struct Options {
 
 /// A column of a table.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged, expecting = "a column's number, from 1, or its name in the first row")]
+#[serde(untagged, expecting = "expected a column's number, from 1, or its name in the first row")]
 pub enum Column {
     /// Its number, from 1.
     Number(usize),
@@ -157,7 +157,7 @@ impl Unit {
 
 /// Where the origin of the profile goes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged, expecting = "\"as-is\", \"gauge-point\", \"tape-line\" or a point [x, z]")]
+#[serde(untagged, expecting = "expected \"as-is\", \"gauge-point\", \"tape-line\" or a point [x, z]")]
 pub enum Origin {
     /// By name.
     Named(NamedOrigin),
