@@ -122,3 +122,79 @@ fn bad_calls_end_with_code_2_and_leave_the_inputs() {
     assert_eq!(contents(), before);
     assert!(!here.join("a.svg").exists());
 }
+
+/// Names in a folder, those that begin with a dot too.
+fn names(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_killed_sweep_goes_on_where_it_was_and_one_of_another_scene_begins_anew() {
+    let folder = folder("roll = \"neglect\"\n");
+    let here = folder.path();
+    // Some twenty blocks, of which one thread takes a second.
+    let range = ["--lateral", "-8:8:0.0001", "--out", "out.csv"];
+    let arguments = [&["--threads", "1", "scene.toml"], &range[..]].concat();
+    let killed = || {
+        let binary = env!("CARGO_BIN_EXE_wheelrail");
+        let mut child = Command::new(binary).current_dir(here).arg("sweep").args(&arguments).spawn().unwrap();
+        // Its key, the head of the table, and a block.
+        let begun =
+            || std::fs::read_to_string(here.join(".out.csv.progress")).is_ok_and(|t| t.lines().count() > 2);
+        while !begun() && child.try_wait().unwrap().is_none() {
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        assert_eq!(names(here), [".out.csv.partial", ".out.csv.progress", "scene.toml"]);
+    };
+    let resumed = || {
+        let output = sweep(here, &arguments);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{said}");
+        assert_eq!(names(here), ["out.csv", "scene.toml"]);
+        said
+    };
+    killed();
+    let said = resumed();
+    assert!(said.starts_with("sweep: going on after "), "{said}");
+    let table = std::fs::read(here.join("out.csv")).unwrap();
+    assert_eq!(
+        table,
+        sweep(here, &arguments[..arguments.len() - 2]).stdout,
+        "not what an unbroken sweep writes"
+    );
+
+    std::fs::remove_file(here.join("out.csv")).unwrap();
+    killed();
+    std::fs::write(here.join("scene.toml"), SCENE.replace("460.0", "461.0")).unwrap();
+    assert!(!resumed().contains("going on"));
+    assert_ne!(std::fs::read(here.join("out.csv")).unwrap(), table);
+}
+
+#[test]
+fn a_sweep_ends_with_its_reader() {
+    let folder = folder("");
+    // A minute's work, and more.
+    let mut sweep = Command::new(env!("CARGO_BIN_EXE_wheelrail"))
+        .current_dir(folder.path())
+        .args(["sweep", "scene.toml", "--lateral", "-8:8:0.000004"])
+        .stdout(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let start = std::time::Instant::now();
+    let mut line = String::new();
+    let mut reader = std::io::BufReader::new(sweep.stdout.take().unwrap());
+    std::io::BufRead::read_line(&mut reader, &mut line).unwrap();
+    assert!(line.starts_with("lateral_mm,"), "{line}");
+    drop(reader);
+    while sweep.try_wait().unwrap().is_none() && start.elapsed().as_secs() < 20 {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    let code = sweep.try_wait().unwrap().map(|status| status.code());
+    sweep.kill().unwrap();
+    assert_eq!(code, Some(Some(0)), "still at work");
+}

@@ -119,12 +119,18 @@ fn schema() -> Result<Outcome> {
 
 /// Writes data to stdout; a reader that went away early (`| head`) is not an error.
 fn print(text: &str) -> Result<Outcome> {
+    print_to_reader(text).map(|_| Outcome::Done)
+}
+
+/// The same; whether the reader is still there.
+fn print_to_reader(text: &str) -> Result<bool> {
     use std::io::Write;
     match std::io::stdout().lock().write_all(text.as_bytes()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+        Ok(()) => Ok(true),
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(false),
+        Err(error) => {
             Err(Error::new("stdout", error.to_string(), "a stream that takes the data", "check the disk"))
         }
-        _ => Ok(Outcome::Done),
     }
 }
 

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use super::output::{PictureFormat, refuse_taken};
 use super::progress::Progress;
-use super::{Outcome, folder_of, print};
+use super::{Outcome, folder_of, print_to_reader};
 use crate::contact::hertz::effective_modulus;
 use crate::contact::search::wheelset::{Position, Roll, WheelsetOnTrack};
 use crate::contact::search::{ONE_CONTACT, Selection};
@@ -104,7 +104,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
         write_file(file, &bytes)?;
     }
     match &arguments.out {
-        None => table.blocks(0, &progress, |_, text| print(text).map(|_| ())),
+        None => table.blocks(0, &progress, |_, text| print_to_reader(text)),
         Some(out) => table.write(out, &progress),
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 use std::fs::{File, TryLockError};
-use std::io::Write as _;
+use std::io::{Seek, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -15,6 +15,7 @@ use crate::contact::search::wheelset::{Position, WheelsetOnTrack};
 use crate::contact::search::{Contact, Selection};
 use crate::contact::sweep::{Conicity, Row, Sweep, TrackSide};
 use crate::error::{Error, Result};
+use crate::export::behind_links;
 use crate::run::ApproachBy;
 
 /// Columns of the table.
@@ -39,36 +40,43 @@ pub(super) struct Table {
 }
 
 impl Table {
-    /// Hands the text of every block from position `first` on to `sink`, with the number of positions done.
+    /// Hands the text of every block from position `first` on to `sink`, with the number of positions done, as long as it
+    /// wants more.
     pub(super) fn blocks(
         &self,
         first: usize,
         progress: &Progress,
-        mut sink: impl FnMut(usize, &str) -> Result<()>,
+        mut sink: impl FnMut(usize, &str) -> Result<bool>,
     ) -> Result<Outcome> {
         let start = Instant::now();
-        if first == 0 {
-            sink(0, HEADER)?;
+        if first == 0 && !sink(0, HEADER)? {
+            return Ok(Outcome::Done);
         }
         let mut done = first;
         progress.at(format!("{first} of {} positions", self.positions.len()));
         for block in self.positions[first.min(self.positions.len())..].chunks(BLOCK) {
-            let texts = block.par_chunks(CHUNK).map(|chunk| self.rows(chunk)).collect::<Result<Vec<_>>>()?;
+            let texts = block.par_chunks(CHUNK).enumerate();
+            let texts =
+                texts.map(|(k, chunk)| self.rows(done + k * CHUNK, chunk)).collect::<Result<Vec<_>>>()?;
             done += block.len();
-            sink(done, &texts.concat())?;
+            if !sink(done, &texts.concat())? {
+                break;
+            }
             let rate = (done - first) as f64 / start.elapsed().as_secs_f64();
             progress.at(format!("{done} of {} positions, {rate:.0} a second", self.positions.len()));
         }
         Ok(Outcome::Done)
     }
 
-    /// The rows of a few positions as text.
-    fn rows(&self, positions: &[Position]) -> Result<String> {
+    /// The rows of a few positions as text, after so many others.
+    fn rows(&self, before: usize, positions: &[Position]) -> Result<String> {
         let mut sweep = Sweep::new(&self.system, self.selection, self.conicity.clone());
         let (mut rows, mut text) = (Vec::new(), String::new());
-        for position in positions {
+        for (k, position) in positions.iter().enumerate() {
             rows.clear();
-            sweep.position(position, &mut rows)?;
+            sweep
+                .position(position, &mut rows)
+                .map_err(|error| error.within(format!("position {}", before + k + 1)))?;
             for row in &rows {
                 append(&mut text, row, self.ellipses);
             }
@@ -79,8 +87,7 @@ impl Table {
     /// Writes a file block by block, going on where a stopped sweep of the same input left off; the file has its
     /// name only when it is complete.
     pub(super) fn write(&self, out: &Path, progress: &Progress) -> Result<Outcome> {
-        // The file behind a link is replaced, not the link.
-        let out = &out.canonicalize().unwrap_or_else(|_| out.to_path_buf());
+        let out = &behind_links(out)?;
         if out.metadata().is_ok_and(|found| !found.is_file()) {
             let (place, expected) = (out.display().to_string(), "an ordinary file, or nothing yet");
             return Err(Error::new(place, "a folder or device", expected, "without --out rows go to stdout"));
@@ -88,7 +95,8 @@ impl Table {
         let partial = beside(out, "partial");
         let journal = beside(out, "progress");
         let broken = |error: std::io::Error| {
-            Error::new(out.display().to_string(), error.to_string(), "a file written whole", "check the disk")
+            let advice = "check path, permissions and free space; a sweep that was stopped then goes on";
+            Error::new(out.display().to_string(), error.to_string(), "a file written whole", advice)
         };
         let mut file =
             File::options().create(true).write(true).truncate(false).open(&partial).map_err(broken)?;
@@ -102,18 +110,21 @@ impl Table {
             ));
         }
         let key = self.key();
-        let resumed = resume(&journal, &partial, &key);
-        let (done, length) = resumed.unwrap_or((0, 0));
+        let Resumed { done, mut length, said } = resume(&journal, &partial, &key).unwrap_or_default();
         if done > 0 {
             complain(&format!("sweep: going on after {done} positions of an earlier run"));
         }
-        file.set_len(length).map_err(broken)?;
-        let mut length = length;
-        std::io::Seek::seek(&mut file, std::io::SeekFrom::Start(length)).map_err(broken)?;
+        file.set_len(length).and_then(|()| file.seek(SeekFrom::Start(length))).map_err(broken)?;
+        let mut log = File::options().create(true).append(true).open(&journal).map_err(broken)?;
+        log.set_len(said).map_err(broken)?;
+        if said == 0 {
+            writeln!(log, "{key}").map_err(broken)?;
+        }
         let outcome = self.blocks(done, progress, |done, text| {
             file.write_all(text.as_bytes()).map_err(broken)?;
             length += text.len() as u64;
-            std::fs::write(&journal, format!("{key} {done} {length}")).map_err(broken)
+            log.write_all(format!("{done} {length}\n").as_bytes()).map_err(broken)?;
+            Ok(true)
         })?;
         std::fs::rename(&partial, out).map_err(broken)?;
         std::fs::remove_file(&journal).map_err(broken)?;
@@ -141,14 +152,27 @@ fn beside(out: &Path, suffix: &str) -> PathBuf {
     out.with_file_name(format!(".{name}.{suffix}"))
 }
 
-/// Positions and bytes that an earlier run of the same input has safely written.
-fn resume(journal: &Path, partial: &Path, key: &str) -> Option<(usize, u64)> {
+/// What an earlier run of the same input has safely written.
+#[derive(Default)]
+struct Resumed {
+    /// Positions.
+    done: usize,
+    /// Bytes of the table.
+    length: u64,
+    /// Bytes of the journal that say so.
+    said: u64,
+}
+
+/// The journal is only added to: its key, and a line for every block. A last line without its end may be cut.
+fn resume(journal: &Path, partial: &Path, key: &str) -> Option<Resumed> {
     let text = std::fs::read_to_string(journal).ok()?;
-    let mut words = text.split(' ');
-    let (same, done, length) =
-        (words.next()? == key, words.next()?.parse().ok()?, words.next()?.parse().ok()?);
+    let (whole, _) = text.rsplit_once('\n')?;
+    let (same, lines) = whole.split_once('\n')?;
+    let (done, length) = lines.lines().next_back()?.split_once(' ')?;
+    let resumed =
+        Resumed { done: done.parse().ok()?, length: length.parse().ok()?, said: whole.len() as u64 + 1 };
     let there = partial.metadata().ok()?.len();
-    (same && done > 0 && there >= length).then_some((done, length))
+    (same == key && resumed.done > 0 && there >= resumed.length).then_some(resumed)
 }
 
 fn append(out: &mut String, row: &Row, ellipses: Option<(ApproachBy, f64)>) {
