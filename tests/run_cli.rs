@@ -1,6 +1,9 @@
 //! `wheelrail run`, `midsep` and `schema` through the binary: progress, folders, sizes, and what bad scenes get.
 #![allow(clippy::unwrap_used)]
 
+#[path = "clients/programs.rs"]
+mod programs;
+
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -166,4 +169,14 @@ fn midsep_prints_every_contact() {
         said.contains("off.toml: contact: offset: found no contact; expected a wheel over its rail;"),
         "{said}"
     );
+}
+
+#[test]
+fn the_schema_takes_every_example_and_refuses_a_misspelt_key() {
+    let folder = TempDir::new().unwrap();
+    let output = wheelrail(folder.path(), &["schema"]);
+    assert!(output.status.success());
+    std::fs::write(folder.path().join("schema.json"), output.stdout).unwrap();
+    let scenes = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/scenes");
+    programs::check("check_schema.py", &folder.path().join("schema.json"), &[scenes]);
 }
