@@ -143,6 +143,42 @@ fn an_automatic_grid_stays_small_over_an_absurd_patch() {
 }
 
 #[test]
+fn rough_profiles_do_not_fill_the_disk_with_parts() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    // 120 bumps of 1 mm under a plane.
+    let bump = |k: i32| {
+        let x = f64::from(k) - 60.0;
+        format!(
+            "{{ arc = {{ center = [{}, -1.0], radius = 1.0, half = \"upper\", x = [{x}, {}] }} }},\n",
+            x + 0.5,
+            x + 1.0
+        )
+    };
+    let bumps: String = (0..120).map(bump).collect();
+    let scene = |contact: &str, grid: &str| {
+        format!(
+            "[rail]\nsegments = [\n{bumps}]\n[wheel]\nradius = 460.0\n\
+             segments = [{{ line = {{ from = [-70.0, 0.0], to = [70.0, 0.0] }} }}]\n[contact]\n{contact}\n\
+             [patch]\napproach = 0.001\n[grid]\n{grid}\n[output]\nformats = [\"npy\"]\n"
+        )
+    };
+    for (contact, found) in [
+        ("rail_x = 0.5\nwheel_x = 0.0", "grid: found a patch of 120 parts; expected at most 100;"),
+        (
+            "offset = 0.0",
+            "contact: found more than 100 places of contact of one wheel; expected at most 100;",
+        ),
+    ] {
+        write(here, "rough.toml", &scene(contact, ""));
+        let said = complaint(here, &["run", "rough.toml"], 2);
+        assert!(said.contains(found) && said.contains("grid.merge"), "{said}");
+    }
+    write(here, "rough.toml", &scene("rail_x = 0.5\nwheel_x = 0.0", "merge = 2.0"));
+    complaint(here, &["run", "rough.toml"], 0);
+}
+
+#[test]
 fn midsep_prints_every_contact() {
     let folder = TempDir::new().unwrap();
     let here = folder.path();

@@ -1,6 +1,6 @@
 //! The grids of a run: the scene's own axes, or automatic ones over every part of the patch.
 
-use super::places::Placed;
+use super::places::{MOST_PARTS, Placed};
 use crate::error::{Error, Result};
 use crate::mesh::axes::{self, Axes, Group, MOST_POINTS};
 use crate::scene::{Format, Scene};
@@ -46,6 +46,12 @@ pub(super) fn grids(scene: &Scene, place: &Placed) -> Result<Vec<Grid>> {
     }
     if place.found.is_some() {
         groups.truncate(1);
+    }
+    if groups.len() > MOST_PARTS {
+        let (found, expected) =
+            (format!("a patch of {} parts", groups.len()), format!("at most {MOST_PARTS}"));
+        let advice = "smooth the profiles, give grid.merge, or from, to and n";
+        return Err(Error::new("grid", found, expected, advice));
     }
     let grid = |group: &Group| {
         let automatic = group.axes(spacing)?;

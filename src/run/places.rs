@@ -1,5 +1,7 @@
 //! The contacts of a scene: the chosen one, or those that a search finds.
 
+use std::cell::OnceCell;
+
 use serde::Serialize;
 
 use super::analysis::{ApproachBy, Contact, Question};
@@ -16,12 +18,17 @@ const SEARCHED_GAP: f64 = 1.0;
 /// What a wheel sinks by for an approach of 1 along the normal of a flange of 75°; flanges are not steeper.
 const STEEPEST: f64 = 4.0;
 
+/// Contacts of one wheel, and parts of one patch, beyond which nobody looks through their folders: the profiles are rough.
+pub(super) const MOST_PARTS: usize = 100;
+
 /// One contact to analyse.
 pub(super) struct Placed {
     /// Subfolder of its files.
     pub folder: String,
     pub found: Option<Found>,
     pub contact: Contact,
+    /// ξ over which the part of its patch around C extends, with what is merged into it, once it was asked for.
+    extent: OnceCell<Option<[f64; 2]>>,
 }
 
 /// How a contact was found.
@@ -104,7 +111,7 @@ pub(super) fn find(standing: &Standing, pair: &Pair, question: &Question) -> Res
     match standing.place {
         Place::Points { rail_x, wheel_x } => {
             let contact = Contact::new(pair.placed(rail_x, wheel_x, 0.0)?, question)?;
-            Ok(vec![Placed { folder: String::new(), found: None, contact }])
+            Ok(vec![Placed { folder: String::new(), found: None, contact, extent: OnceCell::new() }])
         }
         Place::Wheel(pose) => {
             let profiles = ProfilePair::new(&pair.rail, &pair.wheel, pair.wheel_radius)?;
@@ -174,6 +181,11 @@ impl Side<'_> {
                 continue;
             }
             let number = placed.len() + 1;
+            if number > MOST_PARTS {
+                let found = format!("more than {MOST_PARTS} places of contact of one wheel");
+                let advice = "smooth the profiles, or give grid.merge";
+                return Err(Error::new("contact", found, format!("at most {MOST_PARTS}"), advice));
+            }
             let found = Found {
                 side: self.name,
                 height_mm: self.height,
@@ -184,7 +196,8 @@ impl Side<'_> {
             };
             let folder =
                 if number == 1 { self.name.to_string() } else { format!("{}-contact-{number}", self.name) };
-            placed.push(Placed { folder, found: Some(found), contact: Contact::new(placement, &asked)? });
+            let contact = Contact::new(placement, &asked)?;
+            placed.push(Placed { folder, found: Some(found), contact, extent: OnceCell::new() });
         }
         missed.retain(|place| place.gap_mm <= self.within);
         for place in &mut placed {
@@ -216,7 +229,7 @@ impl Placed {
         let placement = &self.contact.placement;
         let frame = placement.rail.section.frame;
         let xi = (place.rail_x - frame.x) * frame.cos + (place.rail_z - frame.z) * frame.sin;
-        let groups = axes::groups(placement, approach, merge);
-        groups.first().is_some_and(|group| group.extent.xi[0] <= xi && xi <= group.extent.xi[1])
+        let around = || axes::groups(placement, approach, merge).first().map(|group| group.extent.xi);
+        self.extent.get_or_init(around).is_some_and(|[from, to]| from <= xi && xi <= to)
     }
 }
