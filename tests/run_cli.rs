@@ -56,10 +56,24 @@ fn a_long_run_tells_what_it_is_at_and_a_short_one_says_nothing() {
     write(here, "long.toml", &format!("{slow}{rest}"));
     let wheel = here.join("wheel.toml");
     assert!(Command::new("mkfifo").arg(&wheel).status().unwrap().success());
-    let mut run = command(here, &["run", "long.toml"]);
-    let mut run = run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    let mut lines = BufReader::new(run.stderr.take().unwrap()).lines();
-    assert_eq!(lines.next().unwrap().unwrap(), "run: profiles (2 s)");
+    let begun = [
+        ("run: profiles (2 s)", &["run", "long.toml"][..]),
+        ("midsep: contacts (2 s)", &["midsep", "long.toml"]),
+        ("profile: points and curve (2 s)", &["profile", "show", "wheel.toml"]),
+    ]
+    .map(|(said, arguments)| {
+        let mut command = command(here, arguments);
+        (said, command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap())
+    });
+    let [run, others @ ..] = begun.map(|(said, mut child)| {
+        let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
+        assert_eq!(lines.next().unwrap().unwrap(), said);
+        child
+    });
+    for mut other in others {
+        other.kill().unwrap();
+        other.wait().unwrap();
+    }
     std::fs::write(&wheel, "segments = [{ line = { from = [-60, 3], to = [60, -3] } }]\n").unwrap();
     let output = run.wait_with_output().unwrap();
     assert!(output.status.success());

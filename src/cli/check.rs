@@ -13,7 +13,7 @@ use crate::separation::Evaluator;
 /// Checks a scene; exit code 1 where something disagrees, and where `run` says no: then there is nothing worth
 /// agreeing on.
 pub(super) fn check(path: &Path) -> Result<Outcome> {
-    let progress = Progress::of("check");
+    let progress = Progress::of("check", "scene");
     let run = Run::told(scene::load(path)?, folder_of(path), "check", &|step| progress.at(step))
         .map_err(|e| e.within(path.display()))?;
     let mut agrees = true;

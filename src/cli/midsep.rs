@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::progress::Progress;
 use super::{Outcome, folder_of, print};
 use crate::error::{Error, Result};
 use crate::placement::Placement;
@@ -14,6 +15,7 @@ const DEFAULT_ROWS: usize = 101;
 
 /// Prints a table for every contact of a scene, under its name where there are several.
 pub(super) fn midsep(path: &Path) -> Result<Outcome> {
+    let _progress = Progress::of("midsep", "contacts");
     let scene = scene::load(path)?;
     let found = || Ok((scene.axis("xi")?, contacts(&scene, &scene.pair(folder_of(path))?)?));
     let (axis, contacts) = found().map_err(|error: Error| error.within(path.display()))?;

@@ -19,14 +19,14 @@ pub(super) struct Progress {
 }
 
 impl Progress {
-    /// Of the command with this name, from now on.
-    pub(super) fn of(command: &'static str) -> Self {
-        Self::told(PATIENCE, move |line| complain(&format!("{command}: {line}")))
+    /// Of the command with this name, from now on and at its first step.
+    pub(super) fn of(command: &'static str, step: &str) -> Self {
+        Self::told(PATIENCE, step, move |line| complain(&format!("{command}: {line}")))
     }
 
-    fn told(patience: Duration, tell: impl Fn(&str) + Send + 'static) -> Self {
+    fn told(patience: Duration, step: &str, tell: impl Fn(&str) + Send + 'static) -> Self {
         let (at_work, done) = channel();
-        let at = Arc::new(Mutex::new(String::new()));
+        let at = Arc::new(Mutex::new(step.to_owned()));
         let (seen, start) = (Arc::clone(&at), Instant::now());
         let teller = move || {
             while done.recv_timeout(patience) == Err(RecvTimeoutError::Timeout) {
@@ -53,11 +53,11 @@ mod tests {
     fn lines(patience: Duration) -> Vec<String> {
         let lines = Arc::new(Mutex::new(Vec::new()));
         let told = Arc::clone(&lines);
-        let progress = Progress::told(patience, move |line| told.lock().unwrap().push(line.to_owned()));
-        for step in ["one", "two"] {
-            progress.at(step);
-            thread::sleep(Duration::from_millis(300));
-        }
+        let progress =
+            Progress::told(patience, "one", move |line| told.lock().unwrap().push(line.to_owned()));
+        thread::sleep(Duration::from_millis(300));
+        progress.at("two");
+        thread::sleep(Duration::from_millis(300));
         drop(progress);
         lines.lock().unwrap().clone()
     }

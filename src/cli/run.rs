@@ -12,7 +12,7 @@ use crate::scene;
 
 /// Runs a scene; exit code 1 for an infeasible contact or an empty patch, whose files are written all the same.
 pub(super) fn run(path: &Path, out: Option<&Path>) -> Result<Outcome> {
-    let progress = Progress::of("run");
+    let progress = Progress::of("run", "scene");
     let tell = |step| progress.at(step);
     let scene = scene::load(path)?;
     let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();

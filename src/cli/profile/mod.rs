@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
 
+use super::progress::Progress;
 use super::{Outcome, print};
 use crate::error::Result;
 use crate::export::write_file;
@@ -42,6 +43,7 @@ pub(super) enum ProfileCommand {
 
 /// Runs `wheelrail profile …`.
 pub(super) fn profile(command: &ProfileCommand) -> Result<Outcome> {
+    let _progress = Progress::of("profile", "points and curve");
     match command {
         ProfileCommand::List => print(&list()?),
         ProfileCommand::Show { source } => print(&show::show(&source.read()?)),

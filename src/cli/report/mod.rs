@@ -23,7 +23,7 @@ pub(super) fn report(out: Option<&Path>, splice: Option<&Path>) -> Result<Outcom
     let folder = Folder::create(target, REPORT_FOLDER)?;
     let splice = splice.map(splice::Target::open).transpose()?;
     let origin = origin::origin();
-    let progress = Progress::of("report");
+    let progress = Progress::of("report", "measurements");
     let measurements = measure(&Effort::full(), &mut |step| progress.at(step))?;
     drop(progress);
     let sections = sections(&measurements);

@@ -66,7 +66,7 @@ impl SweepArguments {
 
 /// Runs the sweep.
 pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
-    let progress = Progress::of("sweep");
+    let progress = Progress::of("sweep", "scene");
     let scene = scene::load(&arguments.scene)?;
     arguments.check_outputs(&scene)?;
     let (system, template, within) =
