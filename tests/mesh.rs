@@ -75,7 +75,9 @@ fn cells_are_sound_and_share_their_sides() {
         let mut evaluator = Evaluator::new(&placement);
         for &k in &points {
             let [xi, eta, _] = mesh.points[k];
-            let s = evaluator.separation(xi, eta * (1.0 - 1e-12));
+            // A point on the end of the surface may round off it.
+            let s = [1.0 - 1e-12, 1.0 + 1e-12].map(|nudge| evaluator.separation(xi, eta * nudge));
+            let s = s[0].min(s[1]);
             assert!(s <= delta * (1.0 + 1e-9), "{name}: boundary point ({xi}, {eta}) has s = {s}");
         }
     }

@@ -100,7 +100,7 @@ pub struct StatedWindow {
 pub struct StatedComponent {
     /// Extent in ξ \[mm\], 25 digits.
     pub xi: [String; 2],
-    /// "tip", "window" or "profile-end".
+    /// "tip", "window", "profile-end" or "fork".
     pub ends: [String; 2],
     /// |∂s/∂ξ| at tips, 25 digits.
     pub slope: [Option<String>; 2],

@@ -315,5 +315,6 @@ fn end_name(end: End) -> &'static str {
         End::Tip => "tip",
         End::Window => "window",
         End::ProfileEnd => "profile-end",
+        End::Fork => "fork",
     }
 }

@@ -42,6 +42,8 @@ pub struct Component {
     pub perimeter: f64,
     /// Smallest s on it \[mm\] and where (ξ, η).
     pub deepest: [f64; 3],
+    /// Where its slices are found.
+    pub(crate) part: Part,
 }
 
 /// Where a connected part of the patch lies.
@@ -49,6 +51,8 @@ pub struct Component {
 pub struct BoundingBox {
     /// In ξ \[mm\].
     pub xi: [f64; 2],
+    /// What bounds it there.
+    pub ends: [End; 2],
     /// In η \[mm\].
     pub eta: [f64; 2],
     /// Smallest s on it \[mm\].
@@ -67,8 +71,8 @@ pub struct Patch {
 }
 
 impl Patch {
-    /// All components inside the window. Along every ξ the patch is one interval of η, so that no component
-    /// has a hole and each is an interval of ξ.
+    /// All components inside the window. Along every ξ a component is one interval of η: without skew so is the patch. With
+    /// it a part that divides is given as several components, which meet at forks.
     ///
     /// Degenerate: empty for a δ that the pair nowhere undercuts, δ = 0 at a mere touch included, and for NaN.
     /// With skew, or a window off the midplane, a part that begins and ends within 1/512 of the window
@@ -87,8 +91,8 @@ impl Patch {
         let bounding_box = |part: &Part| {
             let corners = outline.corners_of(part);
             let points = outline.points(part, &corners);
-            let [least, ..] = outline.deepest(&points);
-            BoundingBox { xi: part.xi, eta: across(&points), least }
+            let [least, ..] = outline.deepest(part, &points);
+            BoundingBox { xi: part.xi, ends: part.ends, eta: across(&points), least }
         };
         parts.iter().map(bounding_box).collect()
     }
@@ -117,7 +121,7 @@ impl Patch {
 
 impl Outline<'_> {
     fn component(&mut self, part: &Part) -> Component {
-        let Part { xi, ends } = *part;
+        let Part { xi, ends, .. } = *part;
         let corners = self.corners_of(part);
         let points = self.points(part, &corners);
         let mut boundary: Vec<[f64; 2]> = points.iter().map(|(x, slice)| [*x, slice.eta[0]]).collect();
@@ -128,8 +132,9 @@ impl Outline<'_> {
         let cut_by_window = ends.contains(&End::Window)
             || points.iter().any(|(_, slice)| slice.eta[0] == window[0] || slice.eta[1] == window[1]);
         let (area, perimeter) = self.measures(part, &corners);
-        let deepest = self.deepest(&points);
-        Component { xi, ends, eta, corners, cut_by_window, boundary, area, perimeter, deepest }
+        let deepest = self.deepest(part, &points);
+        let part = part.clone();
+        Component { xi, ends, eta, corners, cut_by_window, boundary, area, perimeter, deepest, part }
     }
 
     /// Both ends in ξ and, between them, every ξ where the boundary may have a corner.
@@ -142,18 +147,20 @@ impl Outline<'_> {
     /// ξ of the loop's points with the slices there, ascending: every corner, between two of them points that crowd
     /// towards round ends, and where each branch is farthest out in η.
     fn points(&mut self, part: &Part, corners: &[f64]) -> Vec<(f64, Slice)> {
-        let at = |outline: &mut Self, xi: f64| (xi, outline.slice_of(part.xi, part.ends, xi));
+        let at = |outline: &mut Self, xi: f64| (xi, outline.slice_of(part, xi));
         let mut points: Vec<_> = graded(part, corners).into_iter().map(|xi| at(self, xi)).collect();
         let mut more: Vec<f64> = inner(corners)
             .iter()
-            .filter(|&&x| self.step(x) > DRAWN_STEP * (part.xi[1] - part.xi[0]))
+            .filter(|&&x| self.step(part, x) > DRAWN_STEP * (part.xi[1] - part.xi[0]))
             .map(|x| x.next_up())
             .collect();
         for (branch, sign) in [(0, -1.0), (1, 1.0)] {
             let outward = |k: &usize| sign * points[*k].1.eta[branch];
             let farthest =
                 (1..points.len().saturating_sub(1)).max_by(|p, q| outward(p).total_cmp(&outward(q)));
-            more.extend(farthest.and_then(|k| self.turn_of_branch(branch, points[k - 1].0, points[k + 1].0)));
+            more.extend(
+                farthest.and_then(|k| self.turn_of_branch(part, branch, points[k - 1].0, points[k + 1].0)),
+            );
         }
         points.extend(more.into_iter().map(|xi| at(self, xi)));
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -164,27 +171,32 @@ impl Outline<'_> {
     /// Area and perimeter over the pieces between corners.
     fn measures(&mut self, part: &Part, corners: &[f64]) -> (f64, f64) {
         let (mut area, mut perimeter) = (0.0, 0.0);
+        let edges = |outline: &mut Self, xi: f64| outline.edges(part.valley(xi), xi);
         for piece in pieces(part, corners) {
             let mut memo = Memo::new();
-            area += piece.integral(&mut |xi| width(memo.at(xi, |xi| self.edges(xi))), AREA_DEMAND);
+            area += piece.integral(&mut |xi| width(memo.at(xi, |xi| edges(self, xi))), AREA_DEMAND);
             let mut speed = |xi: f64| {
-                let edges = memo.at(xi, |xi| self.edges(xi));
+                let edges = memo.at(xi, |xi| edges(self, xi));
                 self.speed(xi, edges)
             };
             perimeter += piece.integral(&mut speed, PERIMETER_DEMAND);
         }
-        perimeter += inner(corners).iter().map(|&xi| self.step(xi)).sum::<f64>();
+        perimeter += inner(corners).iter().map(|&xi| self.step(part, xi)).sum::<f64>();
         for (xi, end) in part.xi.into_iter().zip(part.ends) {
-            if end != End::Tip {
-                perimeter += width(self.edges(xi));
+            if end != End::Tip && end != End::Fork {
+                perimeter += width(edges(self, xi));
             }
         }
         (area, perimeter)
     }
 
     /// How far both branches jump at a corner \[mm\]: a drawing's rounded coordinates leave such steps.
-    fn step(&mut self, xi: f64) -> f64 {
-        let (Some(left), Some(right)) = (self.slice(xi), self.slice(xi.next_up())) else { return 0.0 };
+    fn step(&mut self, part: &Part, xi: f64) -> f64 {
+        // With skew a corner is found by its jump, and may be on either side of it.
+        let before = if part.valley(xi).is_some() { xi.next_down() } else { xi };
+        let (Some(left), Some(right)) = (self.slice(part, before), self.slice(part, xi.next_up())) else {
+            return 0.0;
+        };
         left.eta.into_iter().zip(right.eta).map(|(a, b)| (a - b).abs()).sum()
     }
 
@@ -203,17 +215,14 @@ impl Outline<'_> {
     }
 
     /// \[s, ξ, η\] of the smallest s among the points and where the depth turns between them.
-    fn deepest(&mut self, points: &[(f64, Slice)]) -> [f64; 3] {
+    fn deepest(&mut self, part: &Part, points: &[(f64, Slice)]) -> [f64; 3] {
         let nodes: Vec<f64> = points.iter().map(|point| point.0).collect();
         // C first: points where s² is below the smallest number are none better.
         let mut candidates: Vec<f64> =
             [0.0].into_iter().filter(|&c| nodes[0] <= c && c <= nodes[nodes.len() - 1]).collect();
-        candidates.extend(self.turning_points_among(&nodes));
+        candidates.extend(self.turning_points_of(part, &nodes));
         candidates.extend(&nodes);
-        let values = candidates.into_iter().map(|xi| {
-            let floor = self.floor(xi);
-            [self.slicer.separation(xi, floor), xi, floor]
-        });
+        let values = candidates.into_iter().map(|xi| self.deepest_at(part, xi));
         let least = values.filter(|v| !v[0].is_nan()).min_by(|p, q| p[0].total_cmp(&q[0]));
         least.unwrap_or([f64::NAN, nodes[0], 0.0])
     }

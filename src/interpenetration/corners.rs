@@ -55,11 +55,14 @@ impl Outline<'_> {
     /// The boundary without the window; at a tip, and where rounding finds no width beside it, its lowest point.
     fn sample(&mut self, part: &Part, xi: f64) -> Sample {
         let tip = (0..2).any(|k| xi == part.xi[k] && part.ends[k] == End::Tip);
-        let edges = self.slicer.edges(xi).filter(|_| !tip);
-        let edges = edges.unwrap_or_else(|| [Edge { eta: self.slicer.lowest(xi), ledge: false }; 2]);
+        let (xi, at) = (part.beside_fork(xi), xi);
+        let valley = part.valley(xi);
+        let edges = self.slicer.edges(xi, valley).filter(|_| !tip);
+        let lowest = |k| self.slicer.spot(k, xi).eta;
+        let edges = edges.unwrap_or_else(|| [Edge { eta: valley.map_or(0.0, lowest), ledge: false }; 2]);
         let eta = edges.map(|edge| edge.eta);
         let foot = eta.map(|eta| self.slicer.foot_abscissa(xi, eta));
-        Sample { xi, eta, foot, ledge: edges.map(|edge| edge.ledge) }
+        Sample { xi: at, eta, foot, ledge: edges.map(|edge| edge.ledge) }
     }
 
     /// Where a branch passes from s = δ to the end of a surface, or back.
@@ -88,9 +91,9 @@ impl Outline<'_> {
     }
 
     /// The ξ next to a node at which one branch is farthest out in η: between its neighbours, if it turns there.
-    pub(super) fn turn_of_branch(&mut self, branch: usize, from: f64, to: f64) -> Option<f64> {
+    pub(super) fn turn_of_branch(&mut self, part: &Part, branch: usize, from: f64, to: f64) -> Option<f64> {
         bracketed(
-            |xi| match self.edges(xi).map(|edges| edges[branch]) {
+            |xi| match self.edges(part.valley(xi), xi).map(|edges| edges[branch]) {
                 Some(Edge { eta, ledge: false }) => self.slicer.gradient(xi, eta)[0],
                 _ => f64::NAN,
             },

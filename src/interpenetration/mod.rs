@@ -2,10 +2,14 @@
 
 mod components;
 mod corners;
+mod lanes;
 pub mod load;
 pub(crate) mod measure;
 mod outline;
+mod profile_path;
+mod skewed;
 mod slice;
+mod valleys;
 
 pub use components::{BoundingBox, Component, Patch};
 pub use outline::{End, Outline, Window};

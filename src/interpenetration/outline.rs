@@ -9,7 +9,10 @@ use crate::placement::Placement;
 
 /// Intervals in which stationary points of the depth are looked for where they have no closed form (skew, or a
 /// window off the midplane): a part is missed only if two of them fall into one interval.
-const SEARCHED_INTERVALS: usize = 512;
+pub(super) const SEARCHED_INTERVALS: usize = 512;
+
+/// Share of a part's length by which its slice at a fork is taken inside: its end is then drawn to 1e-4 of its width.
+const FORK_SHARE: f64 = 1e-8;
 
 /// The rectangle of the ξ–η plane that is looked at \[mm\].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -36,13 +39,42 @@ pub enum End {
     Window,
     /// One of the bodies ends, or steps back from the other behind an overhang.
     ProfileEnd,
+    /// The patch goes on in other components: beside a skewed wheel's end, or over a ridge of it, lines of constant ξ
+    /// meet it in several intervals.
+    Fork,
 }
 
-/// An interval of ξ over which the patch has a width.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Part {
-    pub(super) xi: [f64; 2],
-    pub(super) ends: [End; 2],
+/// An interval of ξ over which the patch, or one of several intervals of η of it, has a width.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Part {
+    pub(crate) xi: [f64; 2],
+    pub(crate) ends: [End; 2],
+    /// With skew: up to which ξ which valleys lie in it; the first of them finds it.
+    pub(super) valleys: Vec<(f64, Vec<usize>)>,
+}
+
+impl Part {
+    fn plain(xi: [f64; 2], ends: [End; 2]) -> Self {
+        Self { xi, ends, valleys: Vec::new() }
+    }
+
+    /// The valleys at ξ; none without skew.
+    pub(super) fn valleys_at(&self, xi: f64) -> &[usize] {
+        let k = self.valleys.partition_point(|(to, _)| *to < xi).min(self.valleys.len().saturating_sub(1));
+        self.valleys.get(k).map_or(&[], |(_, valleys)| valleys)
+    }
+
+    /// ξ, or next to it where the part ends in a fork, at which its slice cannot be told from those of others.
+    pub(super) fn beside_fork(&self, xi: f64) -> f64 {
+        let beside = FORK_SHARE * (self.xi[1] - self.xi[0]);
+        let steps = [beside, -beside];
+        let fork = (0..2).find(|&k| self.ends[k] == End::Fork && self.xi[k] == xi);
+        fork.map_or(xi, |k| xi + steps[k])
+    }
+
+    pub(super) fn valley(&self, xi: f64) -> Option<usize> {
+        self.valleys_at(xi).first().copied()
+    }
 }
 
 /// Slices of the patch {s < δ} that end at a window.
@@ -58,15 +90,15 @@ impl<'a> Outline<'a> {
         Self { slicer: Slicer::new(placement, approach), window: *window }
     }
 
-    /// The interval of η at ξ inside the window, or `None` outside the patch.
-    pub fn slice(&mut self, xi: f64) -> Option<Slice> {
-        let [low, high] = self.edges(xi)?;
+    /// The interval of η of a part at ξ inside the window, or `None` outside the patch.
+    pub(crate) fn slice(&mut self, part: &Part, xi: f64) -> Option<Slice> {
+        let [low, high] = self.edges(part.valley(xi), xi)?;
         Some(Slice { eta: [low.eta, high.eta] })
     }
 
     /// Both ends of the slice.
-    pub(super) fn edges(&mut self, xi: f64) -> Option<[Edge; 2]> {
-        let [mut low, mut high] = self.slicer.edges(xi)?;
+    pub(super) fn edges(&mut self, valley: Option<usize>, xi: f64) -> Option<[Edge; 2]> {
+        let [mut low, mut high] = self.slicer.edges(xi, valley)?;
         let [from, to] = self.window.eta;
         if low.eta < from {
             low = Edge { eta: from, ledge: false };
@@ -78,17 +110,18 @@ impl<'a> Outline<'a> {
     }
 
     /// The slice at ξ of a part: of no width at its tips, and where rounding finds none beside them.
-    pub(crate) fn slice_of(&mut self, xi: [f64; 2], ends: [End; 2], at: f64) -> Slice {
-        let tip = (0..2).any(|k| at == xi[k] && ends[k] == End::Tip);
-        if let Some(slice) = self.slice(at).filter(|_| !tip) {
+    pub(crate) fn slice_of(&mut self, part: &Part, at: f64) -> Slice {
+        let tip = (0..2).any(|k| at == part.xi[k] && part.ends[k] == End::Tip);
+        if let Some(slice) = self.slice(part, part.beside_fork(at)).filter(|_| !tip) {
             return slice;
         }
-        Slice { eta: [self.floor(at); 2] }
+        let floor = self.floor(part.valley(at), at);
+        Slice { eta: [self.slicer.on_surface(at, floor); 2] }
     }
 
-    /// η of the least s at ξ within the window: s only rises to both sides of its lowest point.
-    pub(super) fn floor(&mut self, xi: f64) -> f64 {
-        let ([from, to], lowest) = (self.window.eta, self.slicer.lowest(xi));
+    /// η of the least s at ξ, over a valley if there is one, within the window: s only rises to both sides of it.
+    pub(super) fn floor(&mut self, valley: Option<usize>, xi: f64) -> f64 {
+        let ([from, to], lowest) = (self.window.eta, valley.map_or(0.0, |k| self.slicer.spot(k, xi).eta));
         // NaN, where there is no surface, stays NaN.
         if lowest < from {
             from
@@ -114,14 +147,19 @@ impl<'a> Outline<'a> {
         if self.plain() {
             return self.slicer.depth(xi);
         }
-        let floor = self.floor(xi);
+        let floor = self.floor(None, xi);
         self.slicer.separation(xi, floor) - self.slicer.approach
     }
 
     /// d(depth)/dξ: the floor's own motion does not count, since s_η or the motion is zero there.
-    fn depth_slope(&mut self, xi: f64) -> f64 {
-        let floor = self.floor(xi);
-        self.slicer.gradient(xi, floor)[0]
+    fn depth_slope(&mut self, valley: Option<usize>, xi: f64) -> f64 {
+        let floor = self.floor(valley, xi);
+        match valley {
+            Some(valley) if self.slicer.spot(valley, xi).eta == floor => {
+                self.slicer.depth_slope_of(valley, xi)
+            }
+            _ => self.slicer.gradient(xi, floor)[0],
+        }
     }
 
     /// a, b and ξ between them such that the depth is monotone between neighbours: joints and stationary points.
@@ -133,18 +171,18 @@ impl<'a> Outline<'a> {
         let step = (b - a) / SEARCHED_INTERVALS as f64;
         points.extend((1..SEARCHED_INTERVALS).map(|k| a + step * k as f64));
         points.sort_by(f64::total_cmp);
-        points.extend(self.turning_points_among(&points));
+        points.extend(self.turning_points_among(None, &points));
         points.sort_by(f64::total_cmp);
         points.dedup();
         points
     }
 
-    /// Where the depth turns between neighbours of ascending `nodes`.
-    pub(super) fn turning_points_among(&mut self, nodes: &[f64]) -> Vec<f64> {
+    /// Where the depth, over a valley or ridge if one is given, turns between neighbours of ascending `nodes`.
+    pub(super) fn turning_points_among(&mut self, line: Option<usize>, nodes: &[f64]) -> Vec<f64> {
         if self.plain() {
             return critical_points(self.slicer.placement(), nodes[0], nodes[nodes.len() - 1]);
         }
-        let turn = |pair: &[f64]| bracketed(|xi| self.depth_slope(xi), pair[0].next_up(), pair[1]);
+        let turn = |pair: &[f64]| bracketed(|xi| self.depth_slope(line, xi), pair[0].next_up(), pair[1]);
         nodes.windows(2).filter_map(turn).collect()
     }
 
@@ -153,6 +191,9 @@ impl<'a> Outline<'a> {
     /// At a joint the gap may step (a drawing's rounded coordinates, an overhang): every interval between
     /// turning points is judged by its own side's values at both ends.
     pub(super) fn parts(&mut self) -> Vec<Part> {
+        if self.slicer.placement().skew != 0.0 {
+            return self.skewed_parts();
+        }
         let Some([first, last]) = self.slicer.placement().overlap() else { return Vec::new() };
         let [a, b] = [first.max(self.window.xi[0]), last.min(self.window.xi[1])];
         if a.is_nan() || b.is_nan() || a >= b {
@@ -166,7 +207,7 @@ impl<'a> Outline<'a> {
             let step = if pair[0] == a && a != first { End::Window } else { End::ProfileEnd };
             begun = match (begun, inside[0]) {
                 (Some((from, start)), false) => {
-                    parts.push(Part { xi: [from, pair[0]], ends: [start, step] });
+                    parts.push(Part::plain([from, pair[0]], [start, step]));
                     None
                 }
                 (None, true) => Some((pair[0], step)),
@@ -176,7 +217,7 @@ impl<'a> Outline<'a> {
                 let edge = self.part_end([p, q], inside[0]);
                 begun = match begun {
                     Some((from, start)) => {
-                        parts.push(Part { xi: [from, edge.0], ends: [start, edge.1] });
+                        parts.push(Part::plain([from, edge.0], [start, edge.1]));
                         None
                     }
                     None => Some(edge),
@@ -185,7 +226,7 @@ impl<'a> Outline<'a> {
         }
         if let Some((from, start)) = begun {
             let end = if b == last { End::ProfileEnd } else { End::Window };
-            parts.push(Part { xi: [from, b], ends: [start, end] });
+            parts.push(Part::plain([from, b], [start, end]));
         }
         parts.retain(|part| part.xi[0] < part.xi[1]);
         parts
@@ -194,9 +235,7 @@ impl<'a> Outline<'a> {
     /// Where the patch ends between p and q, one of which is inside.
     fn part_end(&mut self, [p, q]: [f64; 2], first_inside: bool) -> (f64, End) {
         if let Some(tip) = bracketed(|xi| self.depth(xi), p, q) {
-            let lowest = self.slicer.lowest(tip);
-            let seen = lowest >= self.window.eta[0] && lowest <= self.window.eta[1];
-            return (tip, if seen { End::Tip } else { End::Window });
+            return (tip, if self.plain() { End::Tip } else { End::Window });
         }
         // No surface on one side: the last ξ with one.
         let (mut on, mut off) = if first_inside { (p, q) } else { (q, p) };

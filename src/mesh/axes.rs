@@ -4,7 +4,7 @@
 //! over a symmetric patch, and grids of one spacing for several parts or approaches share their centres.
 
 use crate::error::{Error, Result, finite};
-use crate::interpenetration::{BoundingBox, Patch, Window};
+use crate::interpenetration::{BoundingBox, End, Patch, Window};
 use crate::placement::Placement;
 
 /// Cells over the short side of the box when no spacing is given: peak pressures of the two solvers are then within 0.5 %.
@@ -61,7 +61,7 @@ pub struct Group {
 }
 
 /// The components of a patch over the whole overlap of the two profiles, in groups closer to each other than `merge`
-/// \[mm\], each on its own at 0 or NaN. The group that holds C comes first, then the deepest; none for an empty patch.
+/// \[mm\], each on its own at 0 or NaN but for those that meet at a fork. The group that holds C comes first, then the deepest; none for an empty patch.
 pub fn groups(placement: &Placement, approach: f64, merge: f64) -> Vec<Group> {
     grouped(&Patch::bounding_boxes(placement, approach, &Window::UNBOUNDED), merge)
 }
@@ -72,8 +72,10 @@ fn grouped(components: &[BoundingBox], merge: f64) -> Vec<Group> {
     for (index, component) in components.iter().enumerate() {
         let mut group = Group::of(index, component);
         // A new part may link groups that were apart: all that are near are joined.
-        while let Some(near) = groups.iter().position(|other| distance(&group.extent, &other.extent) < merge)
-        {
+        let belongs = |group: &Group, other: &Group| {
+            distance(&group.extent, &other.extent) < merge || meet_at_fork(components, group, other)
+        };
+        while let Some(near) = groups.iter().position(|other| belongs(&group, other)) {
             group = groups.swap_remove(near).joined(group, components);
         }
         groups.push(group);
@@ -122,13 +124,26 @@ impl Group {
 }
 
 fn holds_contact(component: &BoundingBox) -> bool {
-    component.xi[0] <= 0.0 && component.xi[1] >= 0.0
+    [component.xi, component.eta].iter().all(|[from, to]| *from <= 0.0 && *to >= 0.0)
 }
 
 /// The shorter side of the box and the longer one \[mm\].
 fn sides(component: &BoundingBox) -> [f64; 2] {
     let [along, across] = [component.xi, component.eta].map(|[a, b]| b - a);
     [along.min(across), along.max(across)]
+}
+
+/// Whether a component of one group goes on in one of the other.
+fn meet_at_fork(components: &[BoundingBox], one: &Group, other: &Group) -> bool {
+    let forks = |k: usize, end: usize| components[k].ends[end] == End::Fork;
+    let meet = |k: usize, l: usize| {
+        let [a, b] = [components[k].eta, components[l].eta];
+        let ends = [(0, 1), (1, 0)].into_iter();
+        let mut met =
+            ends.filter(|&(i, j)| forks(k, i) && forks(l, j) && components[k].xi[i] == components[l].xi[j]);
+        met.next().is_some() && a[0] <= b[1] && b[0] <= a[1]
+    };
+    one.components.iter().any(|&k| other.components.iter().any(|&l| meet(k, l)))
 }
 
 /// Distance of two boxes \[mm\], 0 where they meet.

@@ -144,7 +144,7 @@ impl Builder<'_> {
 
     /// Indices of the points of one strip edge, ascending in η; all the same where it has no width.
     fn row(&mut self, component: &Component, xi: f64) -> Vec<usize> {
-        let Slice { eta: [low, high] } = self.outline.slice_of(component.xi, component.ends, xi);
+        let Slice { eta: [low, high] } = self.outline.slice_of(&component.part, xi);
         let zeta = self.placement.rail.section.height(xi);
         let points = &mut self.mesh.points;
         let first = points.len();
@@ -171,7 +171,7 @@ impl Builder<'_> {
     fn moments(&mut self, component: &Component, xi: [f64; 2]) -> Moments {
         let pieces = pieces(component, xi);
         let mut memo = Memo::new();
-        let mut slice = |xi: f64| memo.at(xi, |xi| self.outline.slice(xi));
+        let mut slice = |xi: f64| memo.at(xi, |xi| self.outline.slice(&component.part, xi));
         let mut width = |xi: f64| slice(xi).map_or(0.0, |slice| slice.eta[1] - slice.eta[0]);
         let area = pieces.iter().map(|piece| piece.integral(&mut width, AREA_DEMAND)).sum();
         // Means of quantities that change sign are taken from an offset, to whose size the demand then refers.

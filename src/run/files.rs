@@ -214,7 +214,11 @@ fn intervals(part: &Part) -> Vec<Interval> {
     for &xi in &part.analysis.xi {
         for (component, patch) in patch.components.iter().enumerate() {
             if patch.xi[0] <= xi && xi <= patch.xi[1] {
-                rows.extend(slicer.slice(xi).map(|slice| Interval { xi, component, eta: slice.eta }));
+                rows.extend(slicer.slice_in(patch, xi).map(|slice| Interval {
+                    xi,
+                    component,
+                    eta: slice.eta,
+                }));
             }
         }
     }

@@ -1,0 +1,176 @@
+//! The places of [`super::valleys`] in the order of the profile, cut where they turn back in ξ.
+
+use std::ops::Range;
+
+use super::valleys::{FARTHEST, Rim, Turned};
+
+/// Steps of a piece between which it is told whether ξ grows: a fold is missed only if it begins and ends within one.
+const STEPS: usize = 16;
+
+/// Thirds by which the end of a fold is narrowed down: ξ there is off by the square of what is left.
+const THIRDS: usize = 60;
+
+/// A turn about the axle below this is no fold: its ridge would stand ρ t²/2 over its valleys, below rounding.
+const LEAST_TURN: f64 = 1e-8;
+
+/// Part of the path over which ξ is monotone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Leg {
+    /// Index of the piece, or `None` on the circle of one profile point.
+    pub(super) piece: Option<usize>,
+    /// That circle; for a piece the one at its beginning.
+    pub(super) rim: Rim,
+    /// Profile abscissae, or t on the circle.
+    pub(super) range: [f64; 2],
+    /// ξ there \[mm\].
+    pub(super) xi: [f64; 2],
+    /// Height of the profile there \[mm\].
+    pub(super) heights: [f64; 2],
+}
+
+impl Leg {
+    fn reversed(self) -> Self {
+        let back = |[a, b]: [f64; 2]| [b, a];
+        Self { xi: back(self.xi), range: back(self.range), heights: back(self.heights), ..self }
+    }
+}
+
+/// The path of one run of pieces.
+pub(super) struct Path {
+    legs: Vec<Leg>,
+    /// Valleys apart from the path: behind ends that lines of constant ξ leave and enter again.
+    apart: Vec<Leg>,
+    /// The circles at its ends.
+    pub(super) ends: [Rim; 2],
+}
+
+impl Path {
+    /// The path over a run of pieces, from the left end of its surface to the right one.
+    pub(super) fn new(turned: &Turned<'_>, run: &Range<usize>) -> Self {
+        let pieces = &turned.section.pieces;
+        let [first, last] = [run.start, run.end - 1];
+        let ends = [turned.rim(first, pieces[first].xi[0]), turned.rim(last, pieces[last].xi[1])];
+        let mut path = Self { legs: Vec::new(), apart: Vec::new(), ends };
+        path.end(turned, 0, turned.parallel(first, pieces[first].xi[0]).1);
+        let mut before = None;
+        for k in run.clone().filter(|&k| !turned.is_drawn_step(k)) {
+            if let Some(before) = before {
+                let from = turned.parallel(before, pieces[before].xi[1]);
+                path.kink(turned, from, turned.parallel(k, pieces[k].xi[0]).1);
+            }
+            path.piece(turned, k);
+            before = Some(k);
+        }
+        path.end(turned, 1, turned.parallel(last, pieces[last].xi[1]).1);
+        path
+    }
+
+    /// The circle at the left end (0) or right end (1), from or to the place of the end point.
+    fn end(&mut self, turned: &Turned<'_>, end: usize, t: f64) {
+        let rim = self.ends[end];
+        // Outward tangents turn the place against the skew on the right, with it on the left.
+        let side = if end == 0 { turned.sin_skew } else { -turned.sin_skew };
+        let (mut limit, touching) = (FARTHEST.copysign(side), turned.touching());
+        if touching.abs() < FARTHEST {
+            if (touching - t) * side > 0.0 {
+                limit = touching;
+            } else if turned.is_hollow(end) {
+                let range = if end == 0 { [-limit, touching] } else { [touching, -limit] };
+                self.apart.push(leg(turned, rim, range));
+            }
+        }
+        if (limit - t) * side > 0.0 {
+            self.legs.push(leg(turned, rim, if end == 0 { [limit, t] } else { [t, limit] }));
+        }
+    }
+
+    /// The circle of a joint between the places of its two tangents.
+    fn kink(&mut self, turned: &Turned<'_>, (rim, from): (Rim, f64), to: f64) {
+        if (to - from).abs() <= LEAST_TURN {
+            return;
+        }
+        let touching = turned.touching();
+        let inside = (touching - from) * (touching - to) < 0.0;
+        let cuts = if inside { vec![from, touching, to] } else { vec![from, to] };
+        self.legs.extend(cuts.windows(2).map(|pair| leg(turned, rim, [pair[0], pair[1]])));
+    }
+
+    /// The places of a piece, in legs between the folds of ξ(p).
+    fn piece(&mut self, turned: &Turned<'_>, index: usize) {
+        let [a, b] = turned.section.pieces[index].xi;
+        let xi = |p: f64| {
+            let (rim, t) = turned.parallel(index, p);
+            turned.place(&rim, t).xi
+        };
+        let node = |k: usize| if k == STEPS { b } else { a + (b - a) * k as f64 / STEPS as f64 };
+        let values: Vec<f64> = (0..=STEPS).map(|k| xi(node(k))).collect();
+        let mut cuts = vec![a];
+        for k in 1..STEPS {
+            let [before, after] = [values[k] - values[k - 1], values[k + 1] - values[k]];
+            if before * after < 0.0 && before.abs().min(after.abs()) > turned.rounding() {
+                cuts.push(turn(node(k - 1), node(k + 1), before.signum(), &xi));
+            }
+        }
+        cuts.push(b);
+        let rim = turned.parallel(index, a).0;
+        self.legs.extend(cuts.windows(2).map(|pair| {
+            let range = [pair[0], pair[1]];
+            let heights = range.map(|p| turned.rim(index, p).height);
+            Leg { piece: Some(index), rim, range, xi: range.map(xi), heights }
+        }));
+    }
+
+    /// Chains of legs along which ξ only grows (valleys) or only falls (ridges, then turned round).
+    pub(super) fn monotone(&self, rounding: f64) -> Vec<(Vec<Leg>, bool)> {
+        let mut chains: Vec<(Vec<Leg>, bool)> = self.apart.iter().map(|leg| (vec![*leg], true)).collect();
+        let mut chain: Vec<Leg> = Vec::new();
+        let mut grows = true;
+        for leg in &self.legs {
+            let up = leg.xi[1] > leg.xi[0];
+            // A piece as short as rounding goes nowhere.
+            if !chain.is_empty() && up != grows && (leg.xi[1] - leg.xi[0]).abs() <= rounding {
+                continue;
+            }
+            if !chain.is_empty() && up != grows {
+                chains.push((std::mem::take(&mut chain), grows));
+            }
+            if leg.xi[0] != leg.xi[1] {
+                grows = up;
+                chain.push(*leg);
+            }
+        }
+        if !chain.is_empty() {
+            chains.push((chain, grows));
+        }
+        for (legs, _) in chains.iter_mut().filter(|(_, grows)| !grows) {
+            legs.reverse();
+            legs.iter_mut().for_each(|leg| *leg = leg.reversed());
+        }
+        chains
+    }
+}
+
+fn leg(turned: &Turned<'_>, rim: Rim, range: [f64; 2]) -> Leg {
+    Leg { piece: None, rim, range, xi: range.map(|t| turned.place(&rim, t).xi), heights: [rim.height; 2] }
+}
+
+/// The whole circle of a profile point, in legs of ascending ξ.
+pub(super) fn circle(turned: &Turned<'_>, rim: Rim) -> Vec<Leg> {
+    let touching = turned.touching().clamp(-FARTHEST, FARTHEST);
+    let halves = [[-FARTHEST, touching], [touching, FARTHEST]].into_iter().filter(|[from, to]| from < to);
+    halves
+        .map(|range| leg(turned, rim, range))
+        .map(|leg| if leg.xi[0] <= leg.xi[1] { leg } else { leg.reversed() })
+        .collect()
+}
+
+/// Where ξ(p) turns between a and b: rising first for `sign` = 1.
+fn turn(mut a: f64, mut b: f64, sign: f64, xi: &impl Fn(f64) -> f64) -> f64 {
+    let value = |p: f64| sign * xi(p);
+    for _ in 0..THIRDS {
+        let third = (b - a) / 3.0;
+        let (p, q) = (a + third, b - third);
+        if value(p) < value(q) { a = p } else { b = q }
+    }
+    a + (b - a) / 2.0
+}
