@@ -96,7 +96,7 @@ impl<'a> Columns<'a> {
                 here.u[1] = [u_max; MANY];
             }
             here.base = if contact && k == 0 {
-                contact_gaps(rail, &wheel.section.branches[span.branch], &xi, &here.points)?
+                contact_gaps(rail, &wheel.section.branches[span.branch], &xi, (&here.points, &here.height))?
             } else {
                 row(|k| here.height[k] - rail_height[k])
             };

@@ -21,33 +21,40 @@ pub fn midplane_gap(placement: &Placement, xi: f64) -> f64 {
     }
 }
 
+/// A difference down to this share of its terms has lost three bits, which is within the promise; a smaller one is taken in 32
+/// digits.
+const UNCANCELLED: f64 = 0.125;
+
 /// The gap between two branches through C that share their tangent there; `zeta_w` is ζ^W(ξ).
 pub(super) fn contact_gap(rail: &Branch, wheel: &Branch, xi: f64, zeta_w: f64) -> f64 {
     if let (BranchShape::Arc(rail), BranchShape::Arc(wheel)) = (&rail.shape, &wheel.shape) {
         return arc_gap(rail, wheel, xi);
     }
     let gap = zeta_w - rail.height(xi);
-    // Three bits lost are within the promise; beyond that the difference is taken in 32 digits.
-    if gap.abs() >= 0.125 * zeta_w.abs() {
+    if gap.abs() >= UNCANCELLED * zeta_w.abs() {
         return gap;
     }
     (wheel.exact_height(xi) - rail.exact_height(xi)).high
 }
 
-/// [`contact_gap`] at many ξ, from the wheel's points there; differences of polynomials all in 32 digits. `None` where a
-/// point is not found.
+/// [`contact_gap`] at many ξ, from the wheel's points there and their ζ; where one is to be taken in 32 digits, all are. `None`
+/// where a point is not found.
 #[inline(always)]
 pub(super) fn contact_gaps(
     rail: &Branch,
     wheel: &Branch,
     xi: &Row,
-    wheel_points: &BranchPoints<MANY>,
+    (wheel_points, zeta_w): (&BranchPoints<MANY>, &Row),
 ) -> Option<Row> {
     if let (BranchShape::Arc(rail), BranchShape::Arc(wheel)) = (&rail.shape, &wheel.shape) {
         return Some(row(|k| arc_gap(rail, wheel, xi[k])));
     }
-    let zeta_w = wheel.exact_heights(xi, wheel_points);
-    let zeta_r = rail.exact_heights(xi, &rail.points(xi)?.0);
+    let (rail_points, zeta_r) = rail.points(xi)?;
+    let gap = row(|k| zeta_w[k] - zeta_r[k]);
+    if (0..MANY).all(|k| gap[k].abs() >= UNCANCELLED * zeta_w[k].abs()) {
+        return Some(gap);
+    }
+    let (zeta_w, zeta_r) = (wheel.exact_heights(xi, wheel_points), rail.exact_heights(xi, &rail_points));
     Some(row(|k| (zeta_w[k] - zeta_r[k]).high))
 }
 

@@ -18,8 +18,8 @@ pub(super) const BLOCK: usize = 16;
 /// Up to so many points are not worth waking another thread, some 50 µs: of whole columns, and of points one by one.
 const FEW_POINTS: [usize; 2] = [65536, 4096];
 
-/// Arrays from so many points on, 128 MiB, are larger than what most processors' caches keep of them for the next reader.
-const BEYOND_CACHES: usize = 1 << 24;
+/// Arrays from so many points on, 64 MiB, are larger than one user's share of the caches.
+const BEYOND_CACHES: usize = 1 << 23;
 
 /// A way to evaluate s over columns of constant ξ.
 pub trait Kernel {

@@ -353,14 +353,13 @@ impl Spectral<'_> {
     }
 }
 
-/// Where in (0, 1) an interpolant at n Chebyshev points is measured besides the end. There its error is largest, unless it
-/// happens to pass through zero; one other extremum tells, near the middle, for s at the beginning of a span is exact.
+/// Where in (0, 1) the error of an interpolant at n Chebyshev points is measured besides the end, at which it is largest unless
+/// it happens to pass through zero there: at an extremum near the middle.
 pub(super) fn inner_extremum(n: usize) -> f64 {
-    // (1 − cos(kπ/n))/2, k = n/2; the error of one coefficient at v has its own in the first quarter.
     EXTREMA[n - 1]
 }
 
-/// [`inner_extremum`] by n.
+/// (1 − cos(kπ/n))/2, k = n/2; for n = 1 that of v times a line through zero at ½.
 static EXTREMA: std::sync::LazyLock<[f64; MOST_COEFFICIENTS]> = std::sync::LazyLock::new(|| {
     from_fn(|row| match row + 1 {
         1 => 0.25,
