@@ -4,7 +4,7 @@
 //! passes s = δ, the intervals stay as they are; from one such stretch of ξ to the next they go on, divide or join.
 
 use super::outline::{End, Outline, Part, SEARCHED_INTERVALS};
-use crate::numerics::roots::bracketed;
+use crate::numerics::roots::{bracketed, last_where};
 
 /// Share of R within which a valley that begins at the edge of an interval belongs to it: where lines of constant ξ only
 /// touch the wheel's end, that is known to the root of rounding.
@@ -97,7 +97,7 @@ impl Outline<'_> {
                 }
                 let Some(xi) = bracketed(|xi| self.depth_over(k, xi), ends[0], ends[1]) else {
                     let (on, off) = if inside[0] { (ends[0], ends[1]) } else { (ends[1], ends[0]) };
-                    events.xi.push(self.last_inside(k, on, off));
+                    events.xi.push(last_where(|xi| self.depth_over(k, xi) < 0.0, on, off));
                     continue;
                 };
                 let lowest = self.slicer.spot(k, xi).eta;
@@ -107,17 +107,6 @@ impl Outline<'_> {
             }
         }
         events
-    }
-
-    /// The last ξ at which a line is inside, between one that is and one that is not.
-    fn last_inside(&mut self, line: usize, mut on: f64, mut off: f64) -> f64 {
-        loop {
-            let middle = on + (off - on) / 2.0;
-            if middle == on || middle == off {
-                return on;
-            }
-            if self.depth_over(line, middle) < 0.0 { on = middle } else { off = middle }
-        }
     }
 
     /// s − δ at the place of a valley or ridge, or next to it in the window; infinite where s rises above δ on the way

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::slice::{Edge, Slice, Slicer};
 use crate::contact::feasibility::critical_points;
-use crate::numerics::roots::bracketed;
+use crate::numerics::roots::{bracketed, last_where};
 use crate::placement::Placement;
 
 /// Intervals in which stationary points of the depth are looked for where they have no closed form (skew, or a
@@ -238,13 +238,7 @@ impl<'a> Outline<'a> {
             return (tip, if self.plain() { End::Tip } else { End::Window });
         }
         // No surface on one side: the last ξ with one.
-        let (mut on, mut off) = if first_inside { (p, q) } else { (q, p) };
-        loop {
-            let middle = on + (off - on) / 2.0;
-            if middle == on || middle == off {
-                return (on, End::ProfileEnd);
-            }
-            if self.depth(middle) < 0.0 { on = middle } else { off = middle }
-        }
+        let (on, off) = if first_inside { (p, q) } else { (q, p) };
+        (last_where(|xi| self.depth(xi) < 0.0, on, off), End::ProfileEnd)
     }
 }

@@ -5,7 +5,7 @@
 
 use super::slice::{Edge, STEP_ROUNDINGS, Slicer};
 use super::valleys::Spot;
-use crate::numerics::roots::bracketed;
+use crate::numerics::roots::{bracketed, last_where};
 
 /// Newton's steps to s = δ.
 const NEWTON_STEPS: usize = 6;
@@ -193,12 +193,6 @@ impl Slicer<'_> {
                 if self.evaluator.separation(xi, place).is_nan() { off = place } else { on = place }
             }
         }
-        loop {
-            let middle = on + (off - on) / 2.0;
-            if middle == on || middle == off {
-                return on;
-            }
-            if self.evaluator.separation(xi, middle).is_nan() { off = middle } else { on = middle }
-        }
+        last_where(|eta| !self.evaluator.separation(xi, eta).is_nan(), on, off)
     }
 }

@@ -45,6 +45,20 @@ pub fn bracketed(mut f: impl FnMut(f64) -> f64, a: f64, b: f64) -> Option<f64> {
     }
 }
 
+/// The last number from `on`, where `holds` is true, towards `off`, where it is false; of several such places any.
+///
+/// Method: bisection until `on` and `off` are neighbouring numbers. Evaluations: those of a root in [`bracketed`].
+/// Degenerate: `on` where the two are equal or neighbours, and where one is NaN.
+pub fn last_where(mut holds: impl FnMut(f64) -> bool, mut on: f64, mut off: f64) -> f64 {
+    loop {
+        let middle = on + (off - on) / 2.0;
+        if middle == on || middle == off || middle.is_nan() {
+            return on;
+        }
+        if holds(middle) { on = middle } else { off = middle }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -63,5 +77,12 @@ mod tests {
         assert_eq!(bracketed(|x| x - 1.0, 0.0, 1.0), Some(1.0));
         assert_eq!(bracketed(|x| x * x + 1.0, -1.0, 1.0), None);
         assert_eq!(bracketed(|_| f64::NAN, -1.0, 1.0), None);
+    }
+
+    #[test]
+    fn the_last_number_with_a_property_is_found_from_either_side() {
+        assert_eq!(last_where(|x| x <= 0.3, 0.0, 1.0), 0.3);
+        assert_eq!(last_where(|x| x >= 0.3, 1.0, 0.0), 0.3);
+        assert_eq!(last_where(|_| true, 0.0, f64::NAN), 0.0);
     }
 }
