@@ -162,7 +162,7 @@ impl Folder {
 }
 
 impl FolderPart<'_> {
-    /// The way from here to an absolute path, which holds as well when both are moved together.
+    /// The way from here to an absolute path without links, which holds as well when both are moved together.
     pub fn relative(&self, path: &Path) -> PathBuf {
         let common = self.target.components().zip(path.components()).take_while(|(a, b)| a == b).count();
         let up = self.target.components().skip(common).map(|_| Component::ParentDir);
@@ -211,7 +211,7 @@ impl Drop for Folder {
     }
 }
 
-/// `dir` without symbolic links, absolute; its last part may be missing.
+/// `dir` without symbolic links, absolute; its last parts may be missing.
 fn resolve(dir: &Path) -> Result<PathBuf> {
     if let Ok(real) = dir.canonicalize() {
         return Ok(real);
@@ -228,7 +228,13 @@ fn resolve(dir: &Path) -> Result<PathBuf> {
     if dir.file_name().is_none() {
         return Err(bad(dir, "a path without a name at its end", "a folder's name", "give one with a name"));
     }
-    std::path::absolute(dir).map_err(|e| unwritable(dir, &e))
+    let dir = std::path::absolute(dir).map_err(|e| unwritable(dir, &e))?;
+    // What is missing below the nearest folder that exists will be made, and holds no links.
+    let real = dir.ancestors().find_map(|above| {
+        let missing = dir.strip_prefix(above).ok()?;
+        above.canonicalize().ok().map(|above| above.join(missing))
+    });
+    Ok(real.unwrap_or(dir))
 }
 
 fn parent_of(target: &Path) -> &Path {

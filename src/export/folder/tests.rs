@@ -52,6 +52,25 @@ fn an_empty_folder_is_taken_and_a_link_is_followed() {
 }
 
 #[test]
+fn the_way_to_a_file_holds_behind_a_linked_parent() {
+    let root = tempfile::tempdir().unwrap();
+    let [real, link, scene] = ["disk/with/much/space", "output", "scene.toml"].map(|n| root.path().join(n));
+    fs::create_dir_all(&real).unwrap();
+    std::os::unix::fs::symlink(&real, &link).unwrap();
+    fs::write(&scene, b"").unwrap();
+    let scene = scene.canonicalize().unwrap();
+    // The first time the folder is still missing.
+    for _ in 0..2 {
+        let dir = link.join("scene");
+        let folder = Folder::create(&dir, NAMES).unwrap();
+        let way = folder.part("").unwrap().relative(&scene);
+        folder.write("summary.json", SUMMARY).unwrap();
+        folder.commit().unwrap();
+        assert!(dir.join(&way).canonicalize().is_ok_and(|found| found == scene), "{}", way.display());
+    }
+}
+
+#[test]
 fn a_failed_or_dropped_run_leaves_everything_as_it_was() {
     let root = tempfile::tempdir().unwrap();
     let dir = root.path().join("out");
