@@ -49,11 +49,10 @@ fn from_json<T: DeserializeOwned>(text: &str) -> Result<(T, Value)> {
 
 fn from_toml<T: DeserializeOwned>(text: &str) -> Result<(T, Value)> {
     let complaint = |error: toml::de::Error| {
-        let span = error.span().unwrap_or_default();
-        let line = text.get(..span.start).map_or(0, |before| before.matches('\n').count()) + 1;
-        let found = text.get(span.clone()).map(|found| shortened(found, Keep::Beginning));
-        let place = if error.span().is_some() { format!("line {line}") } else { String::new() };
-        house_form(place, error.message(), found)
+        let line = |start| text.get(..start).map_or(0, |before: &str| before.matches('\n').count()) + 1;
+        let place = error.span().map_or_else(String::new, |span| format!("line {}", line(span.start)));
+        let found = error.span().and_then(|span| text.get(span));
+        house_form(place, error.message(), found.map(|found| shortened(found, Keep::Beginning)))
     };
     let read = toml::from_str(text).map_err(complaint)?;
     // `toml` drops what an array has too much, `serde_json` does not; what is not finite is null there, and found later.
