@@ -10,9 +10,9 @@ use crate::placement::Placement;
 const POINTS_PER_SIDE: usize = 128;
 const LEAST_POINTS: usize = 4;
 
-/// A step of the boundary at a joint is drawn with both its ends if it is larger than this share of the component:
+/// A step of the boundary at a joint is shown with both its ends if it is larger than this share of the component:
 /// below, the loop's points are no better than that anyway.
-const DRAWN_STEP: f64 = 1e-6;
+const SHOWN_STEP_SHARE: f64 = 1e-6;
 
 /// Demand on the quadrature of the area, relative.
 pub(crate) const AREA_DEMAND: f64 = 1e-13;
@@ -37,8 +37,8 @@ pub struct Component {
     pub boundary: Vec<[f64; 2]>,
     /// Area \[mm²\], to about 1e-12 relative, or to the rounding of s over δ where that is more.
     pub area: f64,
-    /// Length of the loop, steps at joints included \[mm\], to about 1e-10 relative; 1e-7 where the end of a tilted
-    /// wheel profile rounds it.
+    /// Length of the loop, steps at joints included but not its straight sides at forks \[mm\], to about 1e-10 relative;
+    /// 1e-7 where the end of a tilted wheel profile rounds it.
     pub perimeter: f64,
     /// Smallest s on it \[mm\] and where (ξ, η).
     pub deepest: [f64; 3],
@@ -151,7 +151,7 @@ impl Outline<'_> {
         let mut points: Vec<_> = graded(part, corners).into_iter().map(|xi| at(self, xi)).collect();
         let mut more: Vec<f64> = inner(corners)
             .iter()
-            .filter(|&&x| self.step(part, x) > DRAWN_STEP * (part.xi[1] - part.xi[0]))
+            .filter(|&&x| self.step(part, x) > SHOWN_STEP_SHARE * (part.xi[1] - part.xi[0]))
             .map(|x| x.next_up())
             .collect();
         for (branch, sign) in [(0, -1.0), (1, 1.0)] {
@@ -223,9 +223,13 @@ impl Outline<'_> {
         candidates.extend(self.turning_points_of(part, &nodes));
         candidates.extend(&nodes);
         let values = candidates.into_iter().map(|xi| self.deepest_at(part, xi));
-        let least = values.filter(|v| !v[0].is_nan()).min_by(|p, q| p[0].total_cmp(&q[0]));
-        least.unwrap_or([f64::NAN, nodes[0], 0.0])
+        least(values).unwrap_or([f64::NAN, nodes[0], 0.0])
     }
+}
+
+/// The one of \[s, ξ, η\] with the smallest s, NaN left out; the first of several.
+pub(super) fn least(values: impl Iterator<Item = [f64; 3]>) -> Option<[f64; 3]> {
+    values.filter(|v| !v[0].is_nan()).min_by(|p, q| p[0].total_cmp(&q[0]))
 }
 
 /// Width of a slice \[mm\], 0 outside.

@@ -1,6 +1,6 @@
 //! Where the boundary of a part may have a corner, and where it turns back in η.
 
-use super::outline::{End, Outline, Part};
+use super::outline::{End, Outline, Part, ascending};
 use super::slice::Edge;
 use crate::numerics::roots::bracketed;
 
@@ -30,9 +30,7 @@ impl Outline<'_> {
             corners
                 .extend(targets.iter().filter_map(|target| self.crossing(part, target, &pair[0], &pair[1])));
         }
-        corners.sort_by(f64::total_cmp);
-        corners.dedup();
-        corners
+        ascending(corners)
     }
 
     /// The finite window edges and the wheel's joints, for each branch that is not the mirror image of the other.

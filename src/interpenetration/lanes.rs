@@ -3,7 +3,8 @@
 //! Every interval holds a valley of the wheel. Between neighbouring ξ at which a valley or ridge begins, ends, turns or
 //! passes s = δ, the intervals stay as they are; from one such stretch of ξ to the next they go on, divide or join.
 
-use super::outline::{End, Outline, Part, SEARCHED_INTERVALS};
+use super::components::least;
+use super::outline::{End, Outline, Part, SEARCHED_INTERVALS, ascending};
 use crate::numerics::roots::{bracketed, last_where};
 
 /// Share of R within which a valley that begins at the edge of an interval belongs to it: where lines of constant ξ only
@@ -16,13 +17,13 @@ struct Lane {
     valleys: Vec<usize>,
 }
 
-/// Where valleys or ridges pass s = δ.
+/// Where a valley or ridge passes s = δ.
 #[derive(Default)]
 struct Events {
     xi: Vec<f64>,
-    /// Those of them at which it is a valley, with its lowest point inside the window.
+    /// Those of them at which its place is inside the window …
     tips: Vec<f64>,
-    /// And outside.
+    /// … and those at which it is outside.
     cuts: Vec<f64>,
 }
 
@@ -32,9 +33,7 @@ impl Outline<'_> {
         let Some([a, b]) = self.searched() else { return Vec::new() };
         let nodes = self.nodes(a, b);
         let events = self.events(&nodes);
-        let mut all = [&nodes[..], &events.xi].concat();
-        all.sort_by(f64::total_cmp);
-        all.dedup();
+        let all = ascending([&nodes[..], &events.xi].concat());
         let (mut parts, mut lanes): (Vec<Part>, Vec<Lane>) = (Vec::new(), Vec::new());
         for pair in all.windows(2) {
             let groups = self.groups(pair[0] + (pair[1] - pair[0]) / 2.0);
@@ -47,7 +46,7 @@ impl Outline<'_> {
         parts
     }
 
-    /// Where the rail, the window and any valley are.
+    /// The interval of ξ in which the rail, the window and any valley are.
     fn searched(&self) -> Option<[f64; 2]> {
         let reach = self.slicer.placement().rail.section.reach()?;
         let lines = &self.slicer.valleys.as_ref()?.lines;
@@ -59,37 +58,33 @@ impl Outline<'_> {
         (ends[0] < ends[1]).then_some(ends)
     }
 
-    /// ξ between which every valley and ridge is or is not, and its depth is monotone.
+    /// ξ between which no valley or ridge begins or ends, and the depth over each is monotone.
     fn nodes(&mut self, a: f64, b: f64) -> Vec<f64> {
         let step = (b - a) / SEARCHED_INTERVALS as f64;
         let mut nodes = vec![a, b];
         nodes.extend((1..SEARCHED_INTERVALS).map(|k| a + step * k as f64));
         nodes.extend(self.slicer.placement().joints(a, b));
-        let lines = self.lines();
+        let extents = self.extents();
         let steps =
             self.slicer.valleys.iter().flat_map(|valleys| &valleys.lines).flat_map(|line| &line.steps);
-        nodes.extend(lines.iter().flatten().chain(steps).filter(|&&xi| xi > a && xi < b));
-        nodes.sort_by(f64::total_cmp);
-        nodes.dedup();
-        let mut turns = Vec::new();
-        for (k, line) in lines.iter().enumerate() {
-            turns.extend(self.turning_points_among(Some(k), within(&nodes, line)));
+        nodes.extend(extents.iter().flatten().chain(steps).filter(|&&xi| xi > a && xi < b));
+        let nodes = ascending(nodes);
+        let mut all = nodes.clone();
+        for (k, extent) in extents.iter().enumerate() {
+            all.extend(self.turning_points_among(Some(k), within(&nodes, extent)));
         }
-        nodes.extend(turns);
-        nodes.sort_by(f64::total_cmp);
-        nodes.dedup();
-        nodes
+        ascending(all)
     }
 
     /// The intervals of ξ of all valleys and ridges.
-    fn lines(&self) -> Vec<[f64; 2]> {
+    fn extents(&self) -> Vec<[f64; 2]> {
         self.slicer.valleys.iter().flat_map(|valleys| &valleys.lines).map(|line| line.xi).collect()
     }
 
     fn events(&mut self, nodes: &[f64]) -> Events {
         let mut events = Events::default();
-        for (k, line) in self.lines().iter().enumerate() {
-            for pair in within(nodes, line).windows(2) {
+        for (k, extent) in self.extents().iter().enumerate() {
+            for pair in within(nodes, extent).windows(2) {
                 let ends = [pair[0].next_up(), pair[1]];
                 let inside = ends.map(|xi| self.depth_over(k, xi) < 0.0);
                 if inside[0] == inside[1] {
@@ -100,8 +95,8 @@ impl Outline<'_> {
                     events.xi.push(last_where(|xi| self.depth_over(k, xi) < 0.0, on, off));
                     continue;
                 };
-                let lowest = self.slicer.spot(k, xi).eta;
-                let seen = self.window.eta[0] <= lowest && lowest <= self.window.eta[1];
+                let place = self.slicer.spot(k, xi).eta;
+                let seen = self.window.eta[0] <= place && place <= self.window.eta[1];
                 (if seen { &mut events.tips } else { &mut events.cuts }).push(xi);
                 events.xi.push(xi);
             }
@@ -236,10 +231,10 @@ impl Outline<'_> {
         let mut valleys: Vec<usize> = part.valleys.iter().flat_map(|(_, valleys)| valleys).copied().collect();
         valleys.sort_unstable();
         valleys.dedup();
-        let lines = self.lines();
+        let extents = self.extents();
         valleys
             .into_iter()
-            .flat_map(|k| self.turning_points_among(Some(k), within(nodes, &lines[k])))
+            .flat_map(|k| self.turning_points_among(Some(k), within(nodes, &extents[k])))
             .collect()
     }
 
@@ -252,8 +247,7 @@ impl Outline<'_> {
             let floor = self.slicer.on_surface(xi, floor);
             [self.slicer.separation(xi, floor), xi, floor]
         });
-        let least = values.filter(|v| !v[0].is_nan()).min_by(|p, q| p[0].total_cmp(&q[0]));
-        least.unwrap_or([f64::NAN, xi, 0.0])
+        least(values).unwrap_or([f64::NAN, xi, 0.0])
     }
 }
 

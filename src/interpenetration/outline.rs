@@ -49,7 +49,8 @@ pub enum End {
 pub(crate) struct Part {
     pub(crate) xi: [f64; 2],
     pub(crate) ends: [End; 2],
-    /// With skew: up to which ξ which valleys lie in it; the first of them finds it.
+    /// With skew, by ascending ξ: the valleys that lie in it up to that ξ, of which the first, the deepest one, leads to
+    /// its slices.
     pub(super) valleys: Vec<(f64, Vec<usize>)>,
 }
 
@@ -72,6 +73,7 @@ impl Part {
         fork.map_or(xi, |k| xi + steps[k])
     }
 
+    /// The valley by which its slice at ξ is found; `None` without skew.
     pub(super) fn valley(&self, xi: f64) -> Option<usize> {
         self.valleys_at(xi).first().copied()
     }
@@ -142,7 +144,7 @@ impl<'a> Outline<'a> {
         self.slicer.placement().skew == 0.0 && self.window.eta[0] <= 0.0 && self.window.eta[1] >= 0.0
     }
 
-    /// min over the window's η of s − δ.
+    /// min over the window's η of s − δ, without skew.
     pub(super) fn depth(&mut self, xi: f64) -> f64 {
         if self.plain() {
             return self.slicer.depth(xi);
@@ -172,9 +174,7 @@ impl<'a> Outline<'a> {
         points.extend((1..SEARCHED_INTERVALS).map(|k| a + step * k as f64));
         points.sort_by(f64::total_cmp);
         points.extend(self.turning_points_among(None, &points));
-        points.sort_by(f64::total_cmp);
-        points.dedup();
-        points
+        ascending(points)
     }
 
     /// Where the depth, over a valley or ridge if one is given, turns between neighbours of ascending `nodes`.
@@ -241,4 +241,11 @@ impl<'a> Outline<'a> {
         let (on, off) = if first_inside { (p, q) } else { (q, p) };
         (last_where(|xi| self.depth(xi) < 0.0, on, off), End::ProfileEnd)
     }
+}
+
+/// Each number once, in ascending order.
+pub(super) fn ascending(mut numbers: Vec<f64>) -> Vec<f64> {
+    numbers.sort_by(f64::total_cmp);
+    numbers.dedup();
+    numbers
 }

@@ -40,7 +40,7 @@ pub struct Slicer<'a> {
     wheel: WheelSurface<'a>,
     pub(super) evaluator: Evaluator<'a>,
     spans: Vec<Span>,
-    /// With skew.
+    /// The wheel's valleys and ridges; `None` without skew.
     pub(super) valleys: Option<Valleys<'a>>,
     /// δ \[mm\].
     pub approach: f64,
@@ -68,8 +68,8 @@ impl<'a> Slicer<'a> {
         }
     }
 
-    /// The interval of η at ξ, or `None` outside the patch; with skew, of several the deepest. A tip gives an interval of no width; where the wheel's
-    /// surface ends along η before s reaches δ, so does the interval.
+    /// The interval of η at ξ, or `None` outside the patch; with skew, of several the deepest. A tip gives an interval of
+    /// no width; where the wheel's surface ends along η before s reaches δ, so does the interval.
     ///
     /// Accuracy: |Δη| ≤ (R/η) × the accuracy of s.
     pub fn slice(&mut self, xi: f64) -> Option<Slice> {

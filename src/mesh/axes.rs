@@ -61,7 +61,8 @@ pub struct Group {
 }
 
 /// The components of a patch over the whole overlap of the two profiles, in groups closer to each other than `merge`
-/// \[mm\], each on its own at 0 or NaN but for those that meet at a fork. The group that holds C comes first, then the deepest; none for an empty patch.
+/// \[mm\]; at 0 or NaN each on its own but for those that meet at a fork. The group that holds C comes first, then the
+/// deepest; none for an empty patch.
 pub fn groups(placement: &Placement, approach: f64, merge: f64) -> Vec<Group> {
     grouped(&Patch::bounding_boxes(placement, approach, &Window::UNBOUNDED), merge)
 }
@@ -138,10 +139,9 @@ fn meet_at_fork(components: &[BoundingBox], one: &Group, other: &Group) -> bool 
     let forks = |k: usize, end: usize| components[k].ends[end] == End::Fork;
     let meet = |k: usize, l: usize| {
         let [a, b] = [components[k].eta, components[l].eta];
-        let ends = [(0, 1), (1, 0)].into_iter();
-        let mut met =
-            ends.filter(|&(i, j)| forks(k, i) && forks(l, j) && components[k].xi[i] == components[l].xi[j]);
-        met.next().is_some() && a[0] <= b[1] && b[0] <= a[1]
+        let overlap = a[0] <= b[1] && b[0] <= a[1];
+        let same_xi = |i: usize, j: usize| components[k].xi[i] == components[l].xi[j];
+        overlap && [(0, 1), (1, 0)].into_iter().any(|(i, j)| forks(k, i) && forks(l, j) && same_xi(i, j))
     };
     one.components.iter().any(|&k| other.components.iter().any(|&l| meet(k, l)))
 }
