@@ -32,9 +32,12 @@ const ROOT_SHARE: f64 = 4.0 * f64::EPSILON;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Turned<'a> {
     pub(super) section: &'a Section,
+    /// R, the axle distance of C \[mm\].
     axle: f64,
+    /// Of θ.
     sin: f64,
     cos: f64,
+    /// Of χ.
     pub(super) sin_skew: f64,
     cos_skew: f64,
 }
@@ -227,6 +230,7 @@ impl<'a> Valleys<'a> {
             let miss = self.turned.place(&rim, t).xi - xi;
             if miss.abs() <= ROOT_SHARE * xi.abs() { 0.0 } else { miss }
         };
+        // C itself: towards 0 the bracket is halved a thousand times.
         if xi == 0.0 && from.min(to) <= 0.0 && from.max(to) >= 0.0 && miss(0.0) == 0.0 {
             return 0.0;
         }
