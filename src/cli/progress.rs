@@ -65,8 +65,8 @@ mod tests {
     #[test]
     fn every_long_step_is_told_and_short_work_is_not() {
         let told = lines(Duration::from_millis(30));
-        for step in ["one (0 s)", "two (0 s)"] {
-            assert!(told.iter().any(|line| line == step), "{told:?}");
+        for step in ["one (", "two ("] {
+            assert!(told.iter().any(|line| line.starts_with(step)), "{told:?}");
         }
         assert!(lines(Duration::from_secs(60)).is_empty());
     }
