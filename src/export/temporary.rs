@@ -32,12 +32,18 @@ static NUMBER: AtomicU64 = AtomicU64::new(0);
 pub(super) fn locked(target: &Path, make: impl Fn(&Path) -> io::Result<File>) -> io::Result<(PathBuf, File)> {
     let name = target.file_name().unwrap_or_default().to_string_lossy();
     let name: String = name.chars().take(NAME_SHOWN).collect();
+    let text = format!("{NAMES_TRIED} temporary names in use by other runs");
+    let mut error = io::Error::new(ErrorKind::AlreadyExists, text);
     for _ in 0..NAMES_TRIED {
         let number = NUMBER.fetch_add(1, Ordering::Relaxed);
         let path = target.with_file_name(format!("{TEMPORARY}{name}.{}.{number}", process::id()));
         let made = match make(&path) {
             Ok(made) => made,
-            Err(e) if e.kind() == ErrorKind::AlreadyExists => continue,
+            // A folder that was made may be gone before it is open.
+            Err(e) if matches!(e.kind(), ErrorKind::AlreadyExists | ErrorKind::NotFound) => {
+                error = e;
+                continue;
+            }
             Err(e) => return Err(e),
         };
         // A file system without locks (Error) has no cleaning either.
@@ -46,8 +52,7 @@ pub(super) fn locked(target: &Path, make: impl Fn(&Path) -> io::Result<File>) ->
             return Ok((path, made));
         }
     }
-    let text = format!("{NAMES_TRIED} temporary names in use by other runs");
-    Err(io::Error::new(ErrorKind::AlreadyExists, text))
+    Err(error)
 }
 
 fn same(open: &File, path: &Path) -> bool {
