@@ -8,13 +8,23 @@ use super::outline::{End, Outline, Part, SEARCHED_INTERVALS, ascending};
 use crate::numerics::roots::{bracketed, last_where};
 
 /// Share of R within which a valley that begins at the edge of an interval belongs to it: where lines of constant ξ only
-/// touch the wheel's end, that is known to the root of rounding.
+/// touch the wheel's end, the edge is known to the root of rounding, 1.5e-8. Intervals that are nearer than this count as one.
 const TOUCH: f64 = 1e-6;
 
 /// A part that goes on, with the valleys in it.
 struct Lane {
     part: Part,
     valleys: Vec<usize>,
+}
+
+/// A valley inside the patch at one ξ.
+#[derive(Clone, Copy)]
+struct Inside {
+    /// Its place \[mm\].
+    eta: f64,
+    /// s − δ \[mm\].
+    depth: f64,
+    crease: usize,
 }
 
 /// Where a valley or ridge passes s = δ.
@@ -49,10 +59,10 @@ impl Outline<'_> {
     /// The interval of ξ in which the rail, the window and any valley are.
     fn searched(&self) -> Option<[f64; 2]> {
         let reach = self.slicer.placement().rail.section.reach()?;
-        let lines = &self.slicer.valleys.as_ref()?.lines;
-        let valleys = || lines.iter().filter(|line| line.is_valley);
-        let first = valleys().map(|line| line.xi[0]).fold(f64::INFINITY, f64::min);
-        let last = valleys().map(|line| line.xi[1]).fold(f64::NEG_INFINITY, f64::max);
+        let creases = &self.slicer.valleys.as_ref()?.creases;
+        let valleys = || creases.iter().filter(|crease| crease.is_valley);
+        let first = valleys().map(|crease| crease.xi[0]).fold(f64::INFINITY, f64::min);
+        let last = valleys().map(|crease| crease.xi[1]).fold(f64::NEG_INFINITY, f64::max);
         let [a, b] = self.window.xi;
         let ends = [a.max(reach[0]).max(first), b.min(reach[1]).min(last)];
         (ends[0] < ends[1]).then_some(ends)
@@ -66,7 +76,7 @@ impl Outline<'_> {
         nodes.extend(self.slicer.placement().joints(a, b));
         let extents = self.extents();
         let steps =
-            self.slicer.valleys.iter().flat_map(|valleys| &valleys.lines).flat_map(|line| &line.steps);
+            self.slicer.valleys.iter().flat_map(|valleys| &valleys.creases).flat_map(|crease| &crease.steps);
         nodes.extend(extents.iter().flatten().chain(steps).filter(|&&xi| xi > a && xi < b));
         let nodes = ascending(nodes);
         let mut all = nodes.clone();
@@ -78,7 +88,7 @@ impl Outline<'_> {
 
     /// The intervals of ξ of all valleys and ridges.
     fn extents(&self) -> Vec<[f64; 2]> {
-        self.slicer.valleys.iter().flat_map(|valleys| &valleys.lines).map(|line| line.xi).collect()
+        self.slicer.valleys.iter().flat_map(|valleys| &valleys.creases).map(|crease| crease.xi).collect()
     }
 
     fn events(&mut self, nodes: &[f64]) -> Events {
@@ -106,12 +116,12 @@ impl Outline<'_> {
 
     /// s − δ at the place of a valley or ridge, or next to it in the window; infinite where s rises above δ on the way
     /// there.
-    fn depth_over(&mut self, line: usize, xi: f64) -> f64 {
-        let (spot, floor) = (self.slicer.spot(line, xi), self.floor(Some(line), xi));
+    fn depth_over(&mut self, crease: usize, xi: f64) -> f64 {
+        let (spot, floor) = (self.slicer.spot(crease, xi), self.floor(Some(crease), xi));
         if spot.eta == floor || floor.is_nan() {
             return self.slicer.depth_at(xi, &spot);
         }
-        let edges = self.slicer.skewed_edges(xi, line);
+        let edges = self.slicer.skewed_edges(xi, crease);
         let reached = edges.is_some_and(|[low, high]| low.eta <= floor && floor <= high.eta);
         if reached { self.slicer.separation(xi, floor) - self.slicer.approach } else { f64::INFINITY }
     }
@@ -119,30 +129,34 @@ impl Outline<'_> {
     /// The valleys inside at ξ, those of one interval together.
     fn groups(&mut self, xi: f64) -> Vec<Vec<usize>> {
         let valleys = self.slicer.valleys_over(xi);
-        let mut inside: Vec<(f64, f64, usize)> = valleys
+        let mut inside: Vec<Inside> = valleys
             .into_iter()
-            .map(|k| (self.slicer.spot(k, xi).eta, self.depth_over(k, xi), k))
-            .filter(|(_, depth, _)| *depth < 0.0)
+            .map(|crease| {
+                let (eta, depth) = (self.slicer.spot(crease, xi).eta, self.depth_over(crease, xi));
+                Inside { eta, depth, crease }
+            })
+            .filter(|valley| valley.depth < 0.0)
             .collect();
-        inside.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut groups: Vec<Vec<(f64, f64, usize)>> = Vec::new();
+        inside.sort_by(|a, b| a.eta.total_cmp(&b.eta));
+        let mut groups: Vec<Vec<Inside>> = Vec::new();
         let near = TOUCH * self.slicer.placement().rolling_radius();
-        let mut last = f64::NEG_INFINITY;
+        // Upper edge of the interval of the last group.
+        let mut reached = f64::NEG_INFINITY;
         for valley in &inside {
-            match groups.last_mut().filter(|_| valley.0 <= last) {
+            match groups.last_mut().filter(|_| valley.eta <= reached) {
                 Some(group) => group.push(*valley),
                 None => {
                     groups.push(vec![*valley]);
                     if inside.len() > 1 {
-                        let edges = self.slicer.skewed_edges(xi, valley.2);
-                        last = edges.map_or(last, |[_, high]| high.eta + near);
+                        let edges = self.slicer.skewed_edges(xi, valley.crease);
+                        reached = edges.map_or(reached, |[_, high]| high.eta + near);
                     }
                 }
             }
         }
-        let deepest_first = |mut group: Vec<(f64, f64, usize)>| {
-            group.sort_by(|a, b| a.1.total_cmp(&b.1));
-            group.into_iter().map(|(.., k)| k).collect()
+        let deepest_first = |mut group: Vec<Inside>| {
+            group.sort_by(|a, b| a.depth.total_cmp(&b.depth));
+            group.into_iter().map(|valley| valley.crease).collect()
         };
         groups.into_iter().map(deepest_first).collect()
     }
@@ -241,9 +255,10 @@ impl Outline<'_> {
     /// \[s, ξ, η\] of the smallest s of a part at ξ.
     pub(super) fn deepest_at(&mut self, part: &Part, xi: f64) -> [f64; 3] {
         let valleys = part.valleys_at(xi).iter().map(|&k| Some(k));
-        let lines: Vec<Option<usize>> = if part.valleys.is_empty() { vec![None] } else { valleys.collect() };
-        let values = lines.into_iter().map(|line| {
-            let floor = self.floor(line, xi);
+        let creases: Vec<Option<usize>> =
+            if part.valleys.is_empty() { vec![None] } else { valleys.collect() };
+        let values = creases.into_iter().map(|crease| {
+            let floor = self.floor(crease, xi);
             let floor = self.slicer.on_surface(xi, floor);
             [self.slicer.separation(xi, floor), xi, floor]
         });

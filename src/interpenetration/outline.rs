@@ -178,11 +178,11 @@ impl<'a> Outline<'a> {
     }
 
     /// Where the depth, over a valley or ridge if one is given, turns between neighbours of ascending `nodes`.
-    pub(super) fn turning_points_among(&mut self, line: Option<usize>, nodes: &[f64]) -> Vec<f64> {
+    pub(super) fn turning_points_among(&mut self, crease: Option<usize>, nodes: &[f64]) -> Vec<f64> {
         if self.plain() {
             return critical_points(self.slicer.placement(), nodes[0], nodes[nodes.len() - 1]);
         }
-        let turn = |pair: &[f64]| bracketed(|xi| self.depth_slope(line, xi), pair[0].next_up(), pair[1]);
+        let turn = |pair: &[f64]| bracketed(|xi| self.depth_slope(crease, xi), pair[0].next_up(), pair[1]);
         nodes.windows(2).filter_map(turn).collect()
     }
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::valleys::{FARTHEST, Rim, Turned};
+use super::valleys::{Circle, FARTHEST, Turned};
 
 /// Steps of a piece between which it is told whether ξ grows: a fold is missed only if it begins and ends within one.
 const STEPS: usize = 16;
@@ -19,7 +19,7 @@ pub(super) struct Leg {
     /// Index of the piece, or `None` on the circle of one profile point.
     pub(super) piece: Option<usize>,
     /// That circle; for a piece the one at its beginning.
-    pub(super) rim: Rim,
+    pub(super) circle: Circle,
     /// Profile abscissae, or t on the circle.
     pub(super) range: [f64; 2],
     /// ξ there \[mm\].
@@ -41,7 +41,7 @@ pub(super) struct Path {
     /// Valleys apart from the path: behind ends that lines of constant ξ leave and enter again.
     apart: Vec<Leg>,
     /// The circles at its ends.
-    pub(super) ends: [Rim; 2],
+    pub(super) ends: [Circle; 2],
 }
 
 impl Path {
@@ -49,7 +49,7 @@ impl Path {
     pub(super) fn new(turned: &Turned<'_>, run: &Range<usize>) -> Self {
         let pieces = &turned.section.pieces;
         let [first, last] = [run.start, run.end - 1];
-        let ends = [turned.rim(first, pieces[first].xi[0]), turned.rim(last, pieces[last].xi[1])];
+        let ends = [turned.circle(first, pieces[first].xi[0]), turned.circle(last, pieces[last].xi[1])];
         let mut path = Self { legs: Vec::new(), apart: Vec::new(), ends };
         path.end(turned, 0, turned.parallel(first, pieces[first].xi[0]).1);
         let mut before = None;
@@ -67,7 +67,7 @@ impl Path {
 
     /// The circle at the left end (0) or right end (1), from or to the place of the end point.
     fn end(&mut self, turned: &Turned<'_>, end: usize, t: f64) {
-        let rim = self.ends[end];
+        let circle = self.ends[end];
         // Outward tangents turn the place against the skew on the right, with it on the left.
         let side = if end == 0 { turned.sin_skew } else { -turned.sin_skew };
         let (mut limit, touching) = (FARTHEST.copysign(side), turned.touching());
@@ -76,31 +76,31 @@ impl Path {
                 limit = touching;
             } else if turned.is_hollow(end) {
                 let range = if end == 0 { [-limit, touching] } else { [touching, -limit] };
-                self.apart.push(leg(turned, rim, range));
+                self.apart.push(leg(turned, circle, range));
             }
         }
         if (limit - t) * side > 0.0 {
-            self.legs.push(leg(turned, rim, if end == 0 { [limit, t] } else { [t, limit] }));
+            self.legs.push(leg(turned, circle, if end == 0 { [limit, t] } else { [t, limit] }));
         }
     }
 
     /// The circle of a joint between the places of its two tangents.
-    fn kink(&mut self, turned: &Turned<'_>, (rim, from): (Rim, f64), to: f64) {
+    fn kink(&mut self, turned: &Turned<'_>, (circle, from): (Circle, f64), to: f64) {
         if (to - from).abs() <= LEAST_TURN {
             return;
         }
         let touching = turned.touching();
         let inside = (touching - from) * (touching - to) < 0.0;
         let cuts = if inside { vec![from, touching, to] } else { vec![from, to] };
-        self.legs.extend(cuts.windows(2).map(|pair| leg(turned, rim, [pair[0], pair[1]])));
+        self.legs.extend(cuts.windows(2).map(|pair| leg(turned, circle, [pair[0], pair[1]])));
     }
 
     /// The places of a piece, in legs between the folds of ξ(p).
     fn piece(&mut self, turned: &Turned<'_>, index: usize) {
         let [a, b] = turned.section.pieces[index].xi;
         let xi = |p: f64| {
-            let (rim, t) = turned.parallel(index, p);
-            turned.place(&rim, t).xi
+            let (circle, t) = turned.parallel(index, p);
+            turned.place(&circle, t).xi
         };
         let node = |k: usize| if k == STEPS { b } else { a + (b - a) * k as f64 / STEPS as f64 };
         let values: Vec<f64> = (0..=STEPS).map(|k| xi(node(k))).collect();
@@ -112,11 +112,11 @@ impl Path {
             }
         }
         cuts.push(b);
-        let rim = turned.parallel(index, a).0;
+        let circle = turned.parallel(index, a).0;
         self.legs.extend(cuts.windows(2).map(|pair| {
             let range = [pair[0], pair[1]];
-            let heights = range.map(|p| turned.rim(index, p).height);
-            Leg { piece: Some(index), rim, range, xi: range.map(xi), heights }
+            let heights = range.map(|p| turned.circle(index, p).height);
+            Leg { piece: Some(index), circle, range, xi: range.map(xi), heights }
         }));
     }
 
@@ -150,16 +150,22 @@ impl Path {
     }
 }
 
-fn leg(turned: &Turned<'_>, rim: Rim, range: [f64; 2]) -> Leg {
-    Leg { piece: None, rim, range, xi: range.map(|t| turned.place(&rim, t).xi), heights: [rim.height; 2] }
+fn leg(turned: &Turned<'_>, circle: Circle, range: [f64; 2]) -> Leg {
+    Leg {
+        piece: None,
+        circle,
+        range,
+        xi: range.map(|t| turned.place(&circle, t).xi),
+        heights: [circle.height; 2],
+    }
 }
 
 /// The whole circle of a profile point, in legs of ascending ξ.
-pub(super) fn circle(turned: &Turned<'_>, rim: Rim) -> Vec<Leg> {
+pub(super) fn circle_legs(turned: &Turned<'_>, circle: Circle) -> Vec<Leg> {
     let touching = turned.touching().clamp(-FARTHEST, FARTHEST);
     let halves = [[-FARTHEST, touching], [touching, FARTHEST]].into_iter().filter(|[from, to]| from < to);
     halves
-        .map(|range| leg(turned, rim, range))
+        .map(|range| leg(turned, circle, range))
         .map(|leg| if leg.xi[0] <= leg.xi[1] { leg } else { leg.reversed() })
         .collect()
 }

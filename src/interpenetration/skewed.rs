@@ -16,7 +16,7 @@ const QUADRATIC: f64 = 1e-8;
 /// Half the interval, in roundings of η, in which Newton's result is confirmed by a change of sign.
 const NEWTON_ROUNDINGS: f64 = 64.0;
 
-/// Share of R by which a point is beside an end or step, however that is rounded.
+/// Share of R by which a point is beside an end or step: a million roundings, and less than any segment.
 const BESIDE: f64 = 1e-9;
 
 /// Steps of fourfold length in which a point on the surface is looked for next to its end: up to the root of rounding,
@@ -25,13 +25,13 @@ const NUDGES: i32 = 14;
 
 impl Slicer<'_> {
     /// Where a valley or ridge is at ξ.
-    pub(super) fn spot(&self, line: usize, xi: f64) -> Spot {
-        self.valleys.as_ref().map_or(Spot { eta: f64::NAN, rim: None }, |valleys| valleys.spot(line, xi))
+    pub(super) fn spot(&self, crease: usize, xi: f64) -> Spot {
+        self.valleys.as_ref().map_or(Spot { eta: f64::NAN, rim: None }, |valleys| valleys.spot(crease, xi))
     }
 
     /// s − δ at the place of a valley or ridge \[mm\].
-    pub(super) fn depth_of(&mut self, line: usize, xi: f64) -> f64 {
-        let spot = self.spot(line, xi);
+    pub(super) fn depth_of(&mut self, crease: usize, xi: f64) -> f64 {
+        let spot = self.spot(crease, xi);
         self.depth_at(xi, &spot)
     }
 
@@ -45,8 +45,8 @@ impl Slicer<'_> {
     }
 
     /// d(depth)/dξ along a valley or ridge.
-    pub(super) fn depth_slope_of(&mut self, line: usize, xi: f64) -> f64 {
-        let spot = self.spot(line, xi);
+    pub(super) fn depth_slope_of(&mut self, crease: usize, xi: f64) -> f64 {
+        let spot = self.spot(crease, xi);
         match spot.rim {
             Some([_, slope]) => slope - self.evaluator.rail_slope(xi),
             // Its own motion does not count, since s_η is zero there.
@@ -68,7 +68,7 @@ impl Slicer<'_> {
     /// The valleys over ξ.
     pub(super) fn valleys_over(&self, xi: f64) -> Vec<usize> {
         let Some(valleys) = &self.valleys else { return Vec::new() };
-        valleys.over(xi).filter(|&k| valleys.lines[k].is_valley).collect()
+        valleys.over(xi).filter(|&k| valleys.creases[k].is_valley).collect()
     }
 
     /// The valley with the least s at ξ; `None` without skew, and where there is none.
@@ -97,7 +97,7 @@ impl Slicer<'_> {
         let Some(valleys) = self.valleys.as_ref().filter(|valleys| valleys.over(xi).nth(1).is_some()) else {
             return Vec::new();
         };
-        let ridges = valleys.over(xi).filter(|&k| !valleys.lines[k].is_valley);
+        let ridges = valleys.over(xi).filter(|&k| !valleys.creases[k].is_valley);
         ridges.map(|k| valleys.spot(k, xi).eta).chain(valleys.rims(xi)).collect()
     }
 

@@ -13,7 +13,7 @@
 //! profile point is held and φ turns on: the valley follows its circle, the rim. A rim that lines of constant ξ leave and
 //! enter again has a second valley, where they do.
 
-use super::profile_path::{Leg, Path, circle};
+use super::profile_path::{Leg, Path, circle_legs};
 use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
 use crate::profile::Section;
@@ -44,7 +44,7 @@ pub(super) struct Turned<'a> {
 
 /// The circle of one profile point.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Rim {
+pub(super) struct Circle {
     /// Profile abscissa and height in the wheel's contact frame \[mm\].
     p: f64,
     pub(super) height: f64,
@@ -68,16 +68,16 @@ impl<'a> Turned<'a> {
     }
 
     /// The circle of the profile point at `p` of a piece.
-    pub(super) fn rim(&self, piece: usize, p: f64) -> Rim {
-        self.rim_at(p, self.section.branches[self.section.pieces[piece].branch].height(p))
+    pub(super) fn circle(&self, piece: usize, p: f64) -> Circle {
+        self.circle_with(p, self.section.branches[self.section.pieces[piece].branch].height(p))
     }
 
-    fn rim_at(&self, p: f64, height: f64) -> Rim {
-        Rim { p, height, radius: self.axle - p * self.sin - height * self.cos }
+    fn circle_with(&self, p: f64, height: f64) -> Circle {
+        Circle { p, height, radius: self.axle - p * self.sin - height * self.cos }
     }
 
     /// The circle of a profile point, and t of its place that is parallel to η, or of the farthest one on that side.
-    pub(super) fn parallel(&self, piece: usize, p: f64) -> (Rim, f64) {
+    pub(super) fn parallel(&self, piece: usize, p: f64) -> (Circle, f64) {
         let tangent = self.section.branches[self.section.pieces[piece].branch].station(p);
         let sin_phi = tangent.sin * self.cos + tangent.cos * self.sin;
         let cos_phi = tangent.cos * self.cos - tangent.sin * self.sin;
@@ -87,15 +87,15 @@ impl<'a> Turned<'a> {
         let root = (half * half - constant * square).sqrt();
         let t = -constant / (half + root.copysign(half));
         let far = FARTHEST.copysign(-constant * half);
-        let rim = self.rim_at(p, tangent.z);
-        (rim, if t.abs() <= FARTHEST { t } else { far })
+        let circle = self.circle_with(p, tangent.z);
+        (circle, if t.abs() <= FARTHEST { t } else { far })
     }
 
     /// The place at t on a circle.
-    pub(super) fn place(&self, rim: &Rim, t: f64) -> Place {
+    pub(super) fn place(&self, circle: &Circle, t: f64) -> Place {
         let share = 2.0 / (1.0 + t * t);
-        let along = rim.p + rim.radius * share * t * t * self.sin;
-        let across = rim.radius * share * t;
+        let along = circle.p + circle.radius * share * t * t * self.sin;
+        let across = circle.radius * share * t;
         Place {
             xi: along * self.cos_skew - across * self.sin_skew,
             eta: along * self.sin_skew + across * self.cos_skew,
@@ -103,8 +103,8 @@ impl<'a> Turned<'a> {
     }
 
     /// ζ of the wheel at t on a circle.
-    fn height(&self, rim: &Rim, t: f64) -> f64 {
-        rim.height + rim.radius * 2.0 * t * t / (1.0 + t * t) * self.cos
+    fn height(&self, circle: &Circle, t: f64) -> f64 {
+        circle.height + circle.radius * 2.0 * t * t / (1.0 + t * t) * self.cos
     }
 
     /// dζ/dξ along any circle.
@@ -142,10 +142,10 @@ impl<'a> Turned<'a> {
     }
 
     /// Both t at which the line of constant ξ meets a circle; NaN where it does not.
-    fn crossings(&self, rim: &Rim, xi: f64) -> [f64; 2] {
-        let constant = rim.p * self.cos_skew - xi;
-        let square = constant + 2.0 * rim.radius * self.sin * self.cos_skew;
-        let half = rim.radius * self.sin_skew;
+    fn crossings(&self, circle: &Circle, xi: f64) -> [f64; 2] {
+        let constant = circle.p * self.cos_skew - xi;
+        let square = constant + 2.0 * circle.radius * self.sin * self.cos_skew;
+        let half = circle.radius * self.sin_skew;
         let sum = half + (half * half - square * constant).sqrt().copysign(half);
         [constant / sum, sum / square]
     }
@@ -162,7 +162,7 @@ pub(super) struct Spot {
 
 /// A valley or ridge over an interval of ξ.
 #[derive(Debug, Clone)]
-pub(super) struct Line {
+pub(super) struct Crease {
     /// Its interval of ξ \[mm\].
     pub(super) xi: [f64; 2],
     pub(super) is_valley: bool,
@@ -176,49 +176,49 @@ pub(super) struct Line {
 #[derive(Debug)]
 pub(super) struct Valleys<'a> {
     turned: Turned<'a>,
-    pub(super) lines: Vec<Line>,
+    pub(super) creases: Vec<Crease>,
     /// Circles at which the wheel's surface ends or steps.
-    rims: Vec<Rim>,
+    rims: Vec<Circle>,
 }
 
 impl<'a> Valleys<'a> {
     /// Those of a placed pair.
     pub(super) fn new(placement: &'a Placement) -> Self {
         let turned = Turned::new(placement);
-        let (mut lines, mut rims) = (Vec::new(), Vec::new());
+        let (mut creases, mut rims) = (Vec::new(), Vec::new());
         let runs = runs(placement);
         for (k, run) in runs.iter().enumerate() {
             let path = Path::new(&turned, run);
             let chains = path.monotone(turned.rounding()).into_iter();
-            lines.extend(chains.map(|(legs, is_valley)| Line::new(legs, is_valley)));
+            creases.extend(chains.map(|(legs, is_valley)| Crease::new(legs, is_valley)));
             rims.extend(path.ends);
             // A line of constant ξ goes on over a step, if its upper side too is below δ.
             let steps = [k > 0, k + 1 < runs.len()].into_iter().zip(path.ends).filter(|(step, _)| *step);
-            let brinks = steps.flat_map(|(_, rim)| circle(&turned, rim));
-            lines.extend(brinks.map(|leg| Line::new(vec![leg], false)));
+            let brinks = steps.flat_map(|(_, circle)| circle_legs(&turned, circle));
+            creases.extend(brinks.map(|leg| Crease::new(vec![leg], false)));
         }
-        Self { turned, lines, rims }
+        Self { turned, creases, rims }
     }
 
     /// The place of a line at ξ inside its interval.
-    pub(super) fn spot(&self, line: usize, xi: f64) -> Spot {
-        let legs = &self.lines[line].legs;
+    pub(super) fn spot(&self, crease: usize, xi: f64) -> Spot {
+        let legs = &self.creases[crease].legs;
         let leg = &legs[legs.partition_point(|leg| leg.xi[1] < xi).min(legs.len() - 1)];
         match *leg {
             Leg { piece: Some(piece), range, .. } => {
                 let p = self.abscissa(piece, range, xi);
-                let (rim, t) = self.turned.parallel(piece, p);
-                Spot { eta: self.turned.place(&rim, t).eta, rim: None }
+                let (circle, t) = self.turned.parallel(piece, p);
+                Spot { eta: self.turned.place(&circle, t).eta, rim: None }
             }
-            Leg { rim, range, .. } => {
+            Leg { circle, range, .. } => {
                 let [low, high] = [range[0].min(range[1]), range[0].max(range[1])];
                 let outside = |t: &f64| (low - t).max(t - high);
-                let [one, other] = self.turned.crossings(&rim, xi);
+                let [one, other] = self.turned.crossings(&circle, xi);
                 // By rounding the line may miss the circle it touches.
                 let t = if outside(&one) <= outside(&other) { one } else { other };
                 let t = if t.is_nan() { self.turned.touching() } else { t }.clamp(low, high);
-                let eta = self.turned.place(&rim, t).eta;
-                Spot { eta, rim: Some([self.turned.height(&rim, t), self.turned.slope(t)]) }
+                let eta = self.turned.place(&circle, t).eta;
+                Spot { eta, rim: Some([self.turned.height(&circle, t), self.turned.slope(t)]) }
             }
         }
     }
@@ -226,8 +226,8 @@ impl<'a> Valleys<'a> {
     /// The profile abscissa of a piece whose place is at ξ, or the end of its range nearest to that.
     fn abscissa(&self, piece: usize, [from, to]: [f64; 2], xi: f64) -> f64 {
         let miss = |p: f64| {
-            let (rim, t) = self.turned.parallel(piece, p);
-            let miss = self.turned.place(&rim, t).xi - xi;
+            let (circle, t) = self.turned.parallel(piece, p);
+            let miss = self.turned.place(&circle, t).xi - xi;
             if miss.abs() <= ROOT_SHARE * xi.abs() { 0.0 } else { miss }
         };
         // C itself: towards 0 the bracket is halved a thousand times.
@@ -240,7 +240,7 @@ impl<'a> Valleys<'a> {
 
     /// Lines over ξ, by their index.
     pub(super) fn over(&self, xi: f64) -> impl Iterator<Item = usize> {
-        (0..self.lines.len()).filter(move |&k| self.lines[k].xi[0] <= xi && xi <= self.lines[k].xi[1])
+        (0..self.creases.len()).filter(move |&k| self.creases[k].xi[0] <= xi && xi <= self.creases[k].xi[1])
     }
 
     /// η at which the line of constant ξ meets ends and steps of the wheel's surface.
@@ -264,7 +264,7 @@ impl<'a> Valleys<'a> {
     }
 }
 
-impl Line {
+impl Crease {
     fn new(legs: Vec<Leg>, is_valley: bool) -> Self {
         let xi = [legs[0].xi[0], legs[legs.len() - 1].xi[1]];
         let step = |pair: &[Leg]| {

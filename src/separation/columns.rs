@@ -184,7 +184,7 @@ impl<'a> Columns<'a> {
                 })
             };
             let errors = [error(&end), error(&at(inner_extremum(n))?)];
-            // Not so for what is not a number.
+            // An error that is no number is within no demand.
             if (0..MANY).all(|k| errors[0][k] <= allowed[k] && errors[1][k] <= allowed[k]) {
                 coefficients.extend(&c[..n]);
                 return Some((n, errors.as_flattened().iter().fold(0.0, |most, error| error.max(most))));
