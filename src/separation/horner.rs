@@ -11,6 +11,31 @@ const LINE: usize = 8;
 /// Runs from this length on are stored line by line of the cache.
 const LONG_RUN: usize = 64;
 
+/// Work that is compiled for each number of coefficients, so that its innermost loop is unrolled.
+pub(super) trait PerDegree {
+    /// With N coefficients.
+    fn run<const N: usize>(self);
+}
+
+/// Runs the work for n coefficients, at most [`MOST_COEFFICIENTS`].
+#[inline(always)]
+pub(super) fn per_degree(n: usize, work: impl PerDegree) {
+    match n {
+        1 => work.run::<1>(),
+        2 => work.run::<2>(),
+        3 => work.run::<3>(),
+        4 => work.run::<4>(),
+        5 => work.run::<5>(),
+        6 => work.run::<6>(),
+        7 => work.run::<7>(),
+        8 => work.run::<8>(),
+        9 => work.run::<9>(),
+        10 => work.run::<10>(),
+        11 => work.run::<11>(),
+        _ => work.run::<MOST_COEFFICIENTS>(),
+    }
+}
+
 /// One run of a column's u.
 pub(super) struct Run<'a> {
     pub fit: &'a ColumnPolynomial,
@@ -26,65 +51,43 @@ impl pulp::WithSimd for Run<'_> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) {
         let Self { fit, u, out } = self;
-        evaluate::<S, false>(simd, [fit.base, fit.u0], &fit.c[..fit.n], u, out);
+        per_degree(fit.n, OneRun::<S, false> { simd, begin: [fit.base, fit.u0], c: &fit.c, u, out });
     }
 }
 
-/// base + (u − u_0) Σ c_k (u − u_0)^k by Horner's rule over a run of u, unrolled for the degree, with the widest vectors
-/// of the machine. Multiply-adds are fused on every machine, be it in software: the same bits everywhere. Long runs are
-/// stored past the caches if `PAST`.
-#[inline(always)]
-pub(super) fn evaluate<S: pulp::Simd, const PAST: bool>(
-    simd: S,
-    begin: [f64; 2],
-    c: &[f64],
-    u: &[f64],
-    out: &mut [f64],
-) {
-    if begin[1] == 0.0 {
-        of_degree::<S, true, PAST>(simd, begin, c, u, out)
-    } else {
-        of_degree::<S, false, PAST>(simd, begin, c, u, out)
+/// A run of u by at least N coefficients.
+pub(super) struct OneRun<'a, S, const FIRST: bool> {
+    pub simd: S,
+    pub begin: [f64; 2],
+    pub c: &'a [f64],
+    pub u: &'a [f64],
+    pub out: &'a mut [f64],
+}
+
+impl<S: pulp::Simd, const FIRST: bool> PerDegree for OneRun<'_, S, FIRST> {
+    #[inline(always)]
+    fn run<const N: usize>(self) {
+        let mut c = [0.0; N];
+        c.copy_from_slice(&self.c[..N]);
+        horner::<S, N, FIRST, false>(self.simd, self.begin, &c, self.u, self.out);
     }
 }
 
-/// [`evaluate`] where u_0 is zero, and where it is not.
+/// base + (u − u_0) Σ c_k (u − u_0)^k by Horner's rule over a run of u, with the widest vectors
+/// of the machine; u_0 is zero if `FIRST`. Multiply-adds are fused on every machine, be it in software: the same bits
+/// everywhere. Long runs are stored past the caches if `PAST`.
 #[inline(always)]
-fn of_degree<S: pulp::Simd, const FIRST: bool, const PAST: bool>(
-    simd: S,
-    begin: [f64; 2],
-    c: &[f64],
-    u: &[f64],
-    out: &mut [f64],
-) {
-    match c.len() {
-        1 => horner::<S, 1, FIRST, PAST>(simd, begin, c, u, out),
-        2 => horner::<S, 2, FIRST, PAST>(simd, begin, c, u, out),
-        3 => horner::<S, 3, FIRST, PAST>(simd, begin, c, u, out),
-        4 => horner::<S, 4, FIRST, PAST>(simd, begin, c, u, out),
-        5 => horner::<S, 5, FIRST, PAST>(simd, begin, c, u, out),
-        6 => horner::<S, 6, FIRST, PAST>(simd, begin, c, u, out),
-        7 => horner::<S, 7, FIRST, PAST>(simd, begin, c, u, out),
-        8 => horner::<S, 8, FIRST, PAST>(simd, begin, c, u, out),
-        9 => horner::<S, 9, FIRST, PAST>(simd, begin, c, u, out),
-        10 => horner::<S, 10, FIRST, PAST>(simd, begin, c, u, out),
-        11 => horner::<S, 11, FIRST, PAST>(simd, begin, c, u, out),
-        _ => horner::<S, MOST_COEFFICIENTS, FIRST, PAST>(simd, begin, c, u, out),
-    }
-}
-
-#[inline(always)]
-fn horner<S: pulp::Simd, const N: usize, const FIRST: bool, const PAST: bool>(
+pub(super) fn horner<S: pulp::Simd, const N: usize, const FIRST: bool, const PAST: bool>(
     simd: S,
     [base, u0]: [f64; 2],
-    c: &[f64],
+    c: &[f64; N],
     u: &[f64],
     out: &mut [f64],
 ) {
     let Some(last) = u.len().checked_sub(S::F64_LANES) else {
         for (s, u) in out.iter_mut().zip(u) {
             let v = u - u0;
-            *s = c[..N].iter().rev().fold(0.0, |q: f64, c| q.mul_add(v, *c)).mul_add(v, base);
+            *s = c.iter().rev().fold(0.0, |q: f64, c| q.mul_add(v, *c)).mul_add(v, base);
         }
         return;
     };
@@ -93,7 +96,7 @@ fn horner<S: pulp::Simd, const N: usize, const FIRST: bool, const PAST: bool>(
     // Long runs are stored where lines of the cache begin: a store across two takes twice as long. The vectors at both
     // ends, as many as reach there, may overlap the others.
     let (end, long) = (u.len(), u.len() >= LONG_RUN);
-    let begin_lines = if long { lead(out) } else { 0 };
+    let begin_lines = if PAST && long { lead(out) } else { 0 };
     let first = begin_lines.next_multiple_of(S::F64_LANES);
     for part in [0..first, last..end] {
         let (u, out) = (S::as_simd_f64s(&u[part.clone()]).0, S::as_mut_simd_f64s(&mut out[part]).0);

@@ -14,6 +14,7 @@ pub mod report_newton;
 mod skewed;
 pub mod spectral;
 mod stream;
+mod strip;
 pub mod strips;
 
 use crate::placement::Placement;

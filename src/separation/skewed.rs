@@ -8,7 +8,7 @@ use super::Evaluator;
 use super::column::WheelSurface;
 use super::columns::{MANY, Row, row};
 use super::gap::contact_gap;
-use super::horner::evaluate;
+use super::horner::{OneRun, per_degree};
 use super::spectral::{Demand, MOST_COEFFICIENTS, ROUNDING_LEVEL};
 use super::strips::{PROOF, series};
 use crate::numerics::chebyshev;
@@ -141,7 +141,7 @@ impl pulp::WithSimd for Interval<'_, '_, '_> {
         if c.len() > MOST_COEFFICIENTS || !c.iter().all(|c| c.is_finite()) {
             return None;
         }
-        evaluate::<S, false>(simd, [powers[0], centre], c, eta, out);
+        per_degree(c.len(), OneRun::<S, false> { simd, begin: [powers[0], centre], c, u: eta, out });
         column.error = column.error.max(dropped);
         Some(size)
     }

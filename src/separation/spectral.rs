@@ -10,12 +10,11 @@ use super::Evaluator;
 use super::axis::EtaAxis;
 use super::column::{NEARLY_COVERED, Span, WheelSurface};
 use super::columns::{Columns, MANY, Row};
-use super::gap::midplane_gap;
 use super::grid::{BLOCK, Kernel};
-use super::horner::{Run, evaluate};
+use super::horner::{OneRun, Run, per_degree};
 use super::plan::nan_max;
 use super::skewed::SkewedColumn;
-use super::strips::{self, MOST_SPANS, Strip};
+use super::strip::{SpanRows, Strip, StripColumns};
 use crate::placement::Placement;
 
 /// Most coefficients of a column. A span that needs more is close to a vertical tangent, and is evaluated
@@ -64,7 +63,7 @@ pub struct Spectral<'a> {
     pub(super) columns: Columns<'a>,
     /// Coefficients of columns.
     pub(super) rows: Vec<Row>,
-    values: Vec<strips::Values>,
+    span_rows: Vec<SpanRows>,
     past_caches: bool,
     pub(super) arch: pulp::Arch,
     /// Largest measured truncation error so far \[mm\].
@@ -84,7 +83,7 @@ impl<'a> Spectral<'a> {
             strips: &[],
             spans: Vec::with_capacity(8),
             rows: Vec::new(),
-            values: Vec::new(),
+            span_rows: Vec::new(),
             past_caches: false,
             arch: pulp::Arch::new(),
             truncation: 0.0,
@@ -93,7 +92,7 @@ impl<'a> Spectral<'a> {
 
     /// The same with strips for some of the columns, which are stored past the caches if `past_caches`.
     pub fn with_strips(self, strips: &'a [Strip], past_caches: bool) -> Self {
-        Self { strips, past_caches, values: vec![Default::default(); BLOCK], ..self }
+        Self { strips, past_caches, ..self }
     }
 
     /// The polynomial over one span up to `u_max` with at least so many coefficients, or `None` where no degree reaches
@@ -219,11 +218,11 @@ impl Kernel for Spectral<'_> {
             match strip {
                 Some(strip) => {
                     let (placement, axis) = (self.evaluator.placement, self.axis);
-                    let values = &mut self.values;
+                    let rows = &mut self.span_rows;
                     if self.past_caches {
-                        arch.dispatch(StripColumns::<true> { placement, strip, xi, axis, values, out });
+                        arch.dispatch(StripColumns::<true> { placement, strip, xi, axis, rows, out });
                     } else {
-                        arch.dispatch(StripColumns::<false> { placement, strip, xi, axis, values, out });
+                        arch.dispatch(StripColumns::<false> { placement, strip, xi, axis, rows, out });
                     }
                 }
                 None if count > 1 && self.evaluator.placement.skew == 0.0 => {
@@ -275,49 +274,10 @@ impl pulp::WithSimd for EachColumn<'_, '_> {
                     *c = row[k];
                 }
                 let base = spectral.columns.spans[0].base[k];
-                evaluate::<S, false>(simd, [base, 0.0], &c[..spectral.rows.len()], &axis.u, out);
+                let run = OneRun::<S, true> { simd, begin: [base, 0.0], c: &c, u: &axis.u, out };
+                per_degree(spectral.rows.len(), run);
             } else {
                 spectral.column(xi, out);
-            }
-        }
-    }
-}
-
-/// Neighbouring columns of one strip, compiled for each kind of machine. A struct, since closures may be left out of
-/// line, and so without the machine's widest vectors. Stored past the caches if `PAST`.
-struct StripColumns<'a, const PAST: bool> {
-    placement: &'a Placement,
-    strip: &'a Strip,
-    /// At most [`BLOCK`].
-    xi: &'a [f64],
-    axis: &'a EtaAxis,
-    /// Scratch space.
-    values: &'a mut [strips::Values],
-    out: &'a mut [f64],
-}
-
-impl<const PAST: bool> pulp::WithSimd for StripColumns<'_, PAST> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, simd: S) {
-        let Self { placement, strip, xi, axis, values, out } = self;
-        let u_max = axis.reach * axis.reach;
-        // All values first: the processor then works at several columns at once.
-        for (values, &xi) in values.iter_mut().zip(xi) {
-            strip.values(xi, values, |xi| midplane_gap(placement, xi));
-        }
-        let mut counts = [0; MOST_SPANS];
-        for ((out, values), &xi) in out.chunks_exact_mut(axis.eta.len()).zip(values).zip(xi) {
-            let mut begin = 0;
-            for (span, count) in counts[..strip.spans()].iter_mut().enumerate() {
-                let (u, base, c) = strip.span(values, span, xi, u_max);
-                *count = axis.count(u[1], *count).max(begin);
-                // Both halves of a symmetric axis: copying one takes longer than evaluating it.
-                for run in axis.runs(u, begin, *count) {
-                    evaluate::<S, PAST>(simd, [base, u[0]], c, &axis.u[run.clone()], &mut out[run]);
-                }
-                begin = *count;
             }
         }
     }

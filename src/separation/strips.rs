@@ -9,7 +9,9 @@
 use super::Evaluator;
 use super::column::WheelSurface;
 use super::columns::{Columns, MANY, Row, row};
-use super::spectral::{MOST_COEFFICIENTS, ROUNDING_LEVEL, Spectral};
+use super::spectral::{ROUNDING_LEVEL, Spectral};
+pub use super::strip::Strip;
+use super::strip::Gap;
 use crate::numerics::chebyshev;
 use crate::placement::Placement;
 
@@ -23,60 +25,11 @@ const MOST_ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Coefficients at the end that have to be rounding: one parity may vanish.
 pub(super) const PROOF: usize = 2;
 
+/// Most spans of a strip's columns.
+const MOST_SPANS: usize = 3;
+
 /// Places in 0 ≤ τ ≤ 1 at which changes of q are judged.
 const JUDGED: [f64; 4] = [0.0, 0.3, 0.7, 1.0];
-
-/// Most spans of a strip's columns.
-pub const MOST_SPANS: usize = 3;
-
-/// Quantities are evaluated this many at a time.
-const LANES: usize = 8;
-const MOST_LANES: usize = MOST_SPANS * (2 + MOST_COEFFICIENTS).div_ceil(LANES);
-
-/// The quantities of one column.
-#[derive(Debug, Clone)]
-#[repr(align(64))]
-pub struct Values([f64; LANES * MOST_LANES]);
-
-impl Default for Values {
-    fn default() -> Self {
-        Self([0.0; LANES * MOST_LANES])
-    }
-}
-
-/// What fills a line of the cache and the widest vector.
-#[derive(Debug, Clone, Copy)]
-#[repr(align(64))]
-struct Lanes([f64; LANES]);
-
-/// Columns over an interval of ξ.
-#[derive(Debug, Clone)]
-pub struct Strip {
-    /// Its open interval \[mm\]: at its ends may be a drawing's step, which has a value of its own.
-    pub xi: [f64; 2],
-    /// How s at the beginning of the columns is known.
-    gap: Gap,
-    /// Of every span the index of its first quantity, at the beginning of a lane, and the number of coefficients of q.
-    spans: [(usize, usize); MOST_SPANS],
-    /// Number of spans.
-    count: usize,
-    /// Coefficients of t^(kept−1), …, t⁰ of the first lanes, then of the next; t from −1 to 1 over the interval.
-    powers: Vec<Lanes>,
-    kept: usize,
-    /// Largest measured truncation error of its columns \[mm\].
-    pub truncation: f64,
-}
-
-/// s at the beginning of a strip's columns.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Gap {
-    /// Interpolated as it is.
-    Plain,
-    /// Interpolated as g/ξ².
-    Relative,
-    /// Computed for every column: where g/ξ² varies too much for its smallest values to keep their digits.
-    Computed,
-}
 
 /// The strips of a grid up to u = `u_max` \[mm²\], in order of ξ; none for a skewed wheel or few columns.
 pub fn strips(spectral: &mut Spectral<'_>, placement: &Placement, xi: &[f64], u_max: f64) -> Vec<Strip> {
@@ -178,8 +131,7 @@ impl Strip {
         let mut beginnings = Beginnings::new(evaluator, columns, short)?;
         let judged = &mut beginnings.judged;
         let single = columns.spans.len() == 1;
-        let mut spans = [(0, 0); MOST_SPANS];
-        let (mut width, mut truncation) = (0, 0f64);
+        let (mut of_spans, mut truncation) = (Vec::with_capacity(columns.spans.len()), 0f64);
         rows.clear();
         for (k, span) in columns.spans.iter().enumerate() {
             let at = rows.len();
@@ -209,76 +161,18 @@ impl Strip {
                 judged.with(&change, allowed);
             }
             rows.extend(beginnings.series[k]);
-            spans[k] = (width, n);
-            width += (n + 2).next_multiple_of(LANES);
+            of_spans.push(n);
         }
-        let kept = judged.kept()?.next_multiple_of(2);
-        let mut powers = vec![Lanes([0.0; LANES]); width / LANES * kept];
-        let places = spans[..columns.spans.len()].iter().flat_map(|&(first, n)| first..first + n + 2);
-        for (at, row) in places.zip(rows.iter()) {
+        let kept = judged.kept()?;
+        let mut powers = vec![0.0; rows.len() * kept];
+        for (powers, row) in powers.chunks_exact_mut(kept).zip(rows.iter()) {
             let mut ascending = [0.0; MANY];
             chebyshev::to_powers(&row[..kept], &mut ascending);
-            let lanes = &mut powers[at / LANES * kept..][..kept];
-            for (lanes, power) in lanes.iter_mut().rev().zip(ascending) {
-                lanes.0[at % LANES] = power;
+            for (power, value) in powers.iter_mut().rev().zip(ascending) {
+                *power = value;
             }
         }
-        Some(Self { xi, gap: beginnings.gap, spans, count: columns.spans.len(), powers, kept, truncation })
-    }
-
-    /// Number of spans of every column.
-    pub fn spans(&self) -> usize {
-        self.count
-    }
-
-    /// \[u_0, u_1\], s at u_0 and the coefficients of q in powers of u − u_0 over one span of the column at ξ, made from
-    /// its values in their place.
-    #[inline(always)]
-    pub fn span<'v>(
-        &self,
-        values: &'v mut Values,
-        span: usize,
-        xi: f64,
-        u_max: f64,
-    ) -> ([f64; 2], f64, &'v [f64]) {
-        let values = &mut values.0;
-        let (at, n) = self.spans[span];
-        let (s, u0) = (values[at + n], values[at + n + 1]);
-        let next = self.spans[..self.count].get(span + 1);
-        let u1 = next.map_or(u_max, |&(next, n)| values[next + n + 1]);
-        let base = if self.gap == Gap::Relative && span == 0 { s * (xi * xi) } else { s };
-        let c = &mut values[at..at + n];
-        if self.count > 1 {
-            let (shrink, mut power) = (1.0 / (u1 - u0), 1.0);
-            for c in &mut c[1..] {
-                power *= shrink;
-                *c *= power;
-            }
-        }
-        ([u0, u1], base, c)
-    }
-
-    /// All quantities at ξ by Horner's rule, and by `compute` the gap that is not interpolated.
-    #[inline(always)]
-    pub fn values(&self, xi: f64, values: &mut Values, compute: impl Fn(f64) -> f64) {
-        let [a, b] = self.xi;
-        let t = ((xi - a) - (b - xi)) / (b - a);
-        let square = t * t;
-        for (values, powers) in
-            values.0.as_chunks_mut::<LANES>().0.iter_mut().zip(self.powers.chunks_exact(self.kept))
-        {
-            // Two chains, of even and of odd powers: one would be as long as the rest of the column.
-            let mut sums = [[0f64; LANES]; 2];
-            for pair in powers.as_chunks::<2>().0 {
-                for (sum, c) in sums.iter_mut().zip(pair) {
-                    *sum = std::array::from_fn(|k| sum[k].mul_add(square, c.0[k]));
-                }
-            }
-            *values = std::array::from_fn(|k| sums[0][k].mul_add(t, sums[1][k]));
-        }
-        if self.gap == Gap::Computed {
-            values.0[self.spans[0].1] = compute(xi);
-        }
+        Some(Self { xi, gap: beginnings.gap, coefficients: of_spans, powers, kept, truncation })
     }
 }
 
