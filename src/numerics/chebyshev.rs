@@ -1,70 +1,93 @@
-//! Interpolation at Chebyshev points of the first kind.
+//! Interpolation at 16 Chebyshev points of the first kind.
+//!
+//! T_k is even or odd as k is. Both kinds are summed up apart: half the work, in whole vectors, and the values in reverse
+//! order have the same coefficients, every other one with its sign changed, to the last bit.
 
+use std::array::from_fn;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::LazyLock;
 
-/// Most points.
-pub const MOST_POINTS: usize = 16;
+/// How many points.
+pub const POINTS: usize = 16;
 
-/// T_k at the j-th of n points, cos(k (2j + 1) π/2n), at index j n + k; by n.
-static VALUES: LazyLock<Vec<Vec<f64>>> = LazyLock::new(|| {
-    let cosine = |m: usize, n: usize| (m as f64 * FRAC_PI_2 / n as f64).cos();
-    let table = |n: usize| (0..n * n).map(|i| cosine(i % n * (2 * (i / n) + 1) % (4 * n), n)).collect();
-    (0..=MOST_POINTS).map(table).collect()
+const HALF: usize = POINTS / 2;
+
+/// A matrix for T_k with even k, and one with odd k.
+type Parts = [[[f64; HALF]; HALF]; 2];
+
+/// Weight of a value at the j-th point in the coefficient of T_(2i) or T_(2i+1), at index j, i.
+static WEIGHTS: LazyLock<Parts> = LazyLock::new(|| {
+    let weight = |k: usize| if k == 0 { 1.0 } else { 2.0 } / POINTS as f64;
+    from_fn(|odd| from_fn(|j| from_fn(|i| weight(2 * i + odd) * cosine((2 * i + odd) * (2 * j + 1)))))
 });
 
-/// The coefficients of t^0 … t^(MOST_POINTS−1) in T_k, by k: integers.
-static POWERS: LazyLock<Vec<[f64; MOST_POINTS]>> = LazyLock::new(|| {
-    let mut rows = vec![[0.0; MOST_POINTS]; MOST_POINTS];
+/// The coefficients of t^(2i) or t^(2i+1) in T_k, k = 2j or 2j + 1, at index j, i: integers.
+static POWERS: LazyLock<Parts> = LazyLock::new(|| {
+    let mut rows = [[0.0; POINTS]; POINTS];
     (rows[0][0], rows[1][1]) = (1.0, 1.0);
-    for k in 2..MOST_POINTS {
+    for k in 2..POINTS {
         for j in 0..=k {
             let twice = if j == 0 { 0.0 } else { 2.0 * rows[k - 1][j - 1] };
             rows[k][j] = twice - rows[k - 2][j];
         }
     }
-    rows
+    from_fn(|odd| from_fn(|j| from_fn(|i| rows[2 * j + odd][2 * i + odd])))
 });
 
-/// The j-th of n points of (−1, 1), descending; n from 2 to [`MOST_POINTS`].
-pub fn point(j: usize, n: usize) -> f64 {
-    VALUES[n][j * n + 1]
+/// The points of (−1, 1), descending.
+pub static NODES: LazyLock<[f64; POINTS]> = LazyLock::new(|| from_fn(|j| cosine(2 * j + 1)));
+
+/// cos(m π/2n) for n points.
+fn cosine(m: usize) -> f64 {
+    ((m % (4 * POINTS)) as f64 * FRAC_PI_2 / POINTS as f64).cos()
 }
 
-/// The coefficients of T_0 … T_{n−1} of the interpolant through values at the n points.
+/// The coefficients of T_0 … T_15 of the interpolant through values at the points.
 #[inline(always)]
-pub fn coefficients(values: &[f64], c: &mut [f64]) {
-    let n = values.len();
-    c.fill(0.0);
-    let table = VALUES[n].chunks_exact(n);
-    for ((j, first), t) in values[..n.div_ceil(2)].iter().enumerate().zip(table) {
-        // T_k is even or odd as k is: the points at t and −t count together, the one at 0 once.
-        let other = if j == n - 1 - j { 0.0 } else { values[n - 1 - j] };
-        let parts = [first + other, first - other];
-        let (pairs, rest) = c.as_chunks_mut::<2>();
-        let (t_pairs, t_rest) = t.as_chunks::<2>();
-        for (c, t) in pairs.iter_mut().zip(t_pairs) {
-            *c = [c[0] + parts[0] * t[0], c[1] + parts[1] * t[1]];
-        }
-        for (c, t) in rest.iter_mut().zip(t_rest) {
-            *c += parts[0] * t;
-        }
+pub fn coefficients(values: &[f64; POINTS]) -> [f64; POINTS] {
+    let [of_even, of_odd] = &*WEIGHTS;
+    let (mut even, mut odd) = ([0.0; HALF], [0.0; HALF]);
+    for j in 0..HALF {
+        // The points at t and −t count together.
+        let (first, other) = (values[j], values[POINTS - 1 - j]);
+        even = plus(even, first + other, &of_even[j]);
+        odd = plus(odd, first - other, &of_odd[j]);
     }
-    c[0] *= 0.5;
-    for c in c {
-        *c *= 2.0 / n as f64;
-    }
+    in_turn(&even, &odd)
 }
 
-/// The coefficients of t^k from those of T_k. Loses digits where they fall by less than about 0.4 a step.
+/// The coefficients of t^k from those of T_k, of which the first `kept` count. Loses digits where they fall by less than about
+/// 0.4 a step.
 #[inline(always)]
-pub fn to_powers(c: &[f64], powers: &mut [f64]) {
-    powers.fill(0.0);
-    for (c, row) in c.iter().zip(POWERS.iter()) {
-        for (sum, power) in powers.iter_mut().zip(row) {
-            *sum += c * power;
-        }
+pub fn to_powers(c: &[f64; POINTS], kept: usize) -> [f64; POINTS] {
+    let [of_even, of_odd] = &*POWERS;
+    let (mut even, mut odd) = ([0.0; HALF], [0.0; HALF]);
+    for j in 0..kept.div_ceil(2) {
+        even = plus(even, c[2 * j], &of_even[j]);
     }
+    for j in 0..kept / 2 {
+        odd = plus(odd, c[2 * j + 1], &of_odd[j]);
+    }
+    in_turn(&even, &odd)
+}
+
+/// sum + factor × row.
+#[inline(always)]
+fn plus(mut sum: [f64; HALF], factor: f64, row: &[f64; HALF]) -> [f64; HALF] {
+    for k in 0..HALF {
+        sum[k] = row[k].mul_add(factor, sum[k]);
+    }
+    sum
+}
+
+/// Even and odd in turn.
+#[inline(always)]
+fn in_turn(even: &[f64; HALF], odd: &[f64; HALF]) -> [f64; POINTS] {
+    let mut all = [0.0; POINTS];
+    for k in 0..HALF {
+        (all[2 * k], all[2 * k + 1]) = (even[k], odd[k]);
+    }
+    all
 }
 
 #[cfg(test)]
@@ -74,12 +97,7 @@ mod tests {
     #[test]
     fn an_interpolant_takes_the_values() {
         let f = |t: f64| (0.5 * t).exp() / (5.0 - t);
-        let n = 16;
-        let values: Vec<f64> = (0..n).map(|j| f(point(j, n))).collect();
-        let mut c = vec![0.0; n];
-        coefficients(&values, &mut c);
-        let mut powers = vec![0.0; n];
-        to_powers(&c, &mut powers);
+        let powers = to_powers(&coefficients(&NODES.map(f)), POINTS);
         for k in -10..=10 {
             let t = f64::from(k) / 10.0;
             let horner = powers.iter().rev().fold(0.0, |sum, c| sum * t + c);
@@ -88,10 +106,23 @@ mod tests {
     }
 
     #[test]
+    fn values_in_reverse_order_are_those_at_opposite_points() {
+        let values = NODES.map(|t| (0.5 * t).exp() / (5.0 - t));
+        let mut reversed = values;
+        reversed.reverse();
+        let mut c = coefficients(&reversed);
+        for odd in c.iter_mut().skip(1).step_by(2) {
+            *odd = -*odd;
+        }
+        assert_eq!(c, coefficients(&values));
+    }
+
+    #[test]
     fn powers_of_chebyshev_polynomials_are_known() {
-        // T_4 + 3 T_1 + 2.
-        let mut powers = [0.0; 5];
-        to_powers(&[2.0, 3.0, 0.0, 0.0, 1.0], &mut powers);
-        assert_eq!(powers, [3.0, 3.0, -8.0, 0.0, 8.0]);
+        // T_4 + 3 T_1 + 2, and a coefficient that does not count.
+        let c = [2.0, 3.0, 0.0, 0.0, 1.0, 7.0];
+        let c = from_fn(|k| c.get(k).copied().unwrap_or(0.0));
+        assert_eq!(to_powers(&c, 5)[..5], [3.0, 3.0, -8.0, 0.0, 8.0]);
+        assert!(to_powers(&c, 5)[5..].iter().all(|&power| power == 0.0));
     }
 }

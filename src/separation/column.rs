@@ -88,17 +88,7 @@ impl<'a> WheelSurface<'a> {
     pub fn spans(&self, xi: f64, u_max: f64, spans: &mut Vec<Span>) {
         spans.clear();
         let pieces = &self.section.pieces;
-        let falling = self.sin > 0.0;
-        let first = if falling {
-            pieces
-                .partition_point(|p| p.xi[0] < xi)
-                .checked_sub(1)
-                .or((self.at_end(xi) == Some(0)).then_some(0))
-        } else {
-            let index = pieces.partition_point(|p| p.xi[1] <= xi);
-            Some(index).filter(|&i| i < pieces.len()).or(self.at_end(xi))
-        };
-        let Some(mut index) = first else { return };
+        let Some(mut index) = self.first_piece(xi) else { return };
         loop {
             let piece = &pieces[index];
             let [near, far] = self.sides().map(|side| piece.xi[side]);
@@ -118,12 +108,30 @@ impl<'a> WheelSurface<'a> {
             if span.u[0] <= u_max {
                 spans.push(span);
             }
-            let next =
-                if falling { index.checked_sub(1) } else { Some(index + 1).filter(|&i| i < pieces.len()) };
-            match next {
+            match self.next_piece(index) {
                 Some(next) if !done => index = next,
                 _ => return,
             }
+        }
+    }
+
+    /// Index of the piece over which the column at ξ begins, or would if there were no gap.
+    pub(super) fn first_piece(&self, xi: f64) -> Option<usize> {
+        let pieces = &self.section.pieces;
+        if self.sin > 0.0 {
+            let before = pieces.partition_point(|p| p.xi[0] < xi).checked_sub(1);
+            return before.or((self.at_end(xi) == Some(0)).then_some(0));
+        }
+        let index = pieces.partition_point(|p| p.xi[1] <= xi);
+        Some(index).filter(|&i| i < pieces.len()).or(self.at_end(xi))
+    }
+
+    /// Index of the piece that a column passes next.
+    pub(super) fn next_piece(&self, index: usize) -> Option<usize> {
+        if self.sin > 0.0 {
+            index.checked_sub(1)
+        } else {
+            Some(index + 1).filter(|&i| i < self.section.pieces.len())
         }
     }
 

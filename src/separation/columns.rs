@@ -2,13 +2,20 @@
 //! that no column waits for the one before it.
 
 use super::Evaluator;
-use super::column::{LAST_STEP, NEARLY_COVERED, STEPS, Span, WheelSurface, sagitta};
+use super::column::{LAST_STEP, NEARLY_COVERED, STEPS, WheelSurface, sagitta};
 use super::gap::{contact_gap, contact_gaps};
-use super::spectral::{Demand, MOST_COEFFICIENTS, ROUNDING_LEVEL, inner_extremum, is_whole, nodes, powers};
+use super::spectral::{Demand, MOST_COEFFICIENTS, ROUNDING_LEVEL, inner_extremum, nodes, powers};
+use crate::numerics::chebyshev;
 use crate::profile::{BranchPoints, Branches, Piece, Section};
 
-/// Columns that are computed at once: two of the widest vectors.
-pub const MANY: usize = 16;
+/// Columns that are computed at once: two of the widest vectors, and points of an interpolant.
+pub const MANY: usize = chebyshev::POINTS;
+
+/// Most spans of columns that are computed at once.
+pub const MOST_SPANS: usize = 3;
+
+/// Below this share of the columns' u a span, mostly a drawing's step, is so short that two coefficients are a good first guess.
+const SHORT_SPAN: f64 = 0.01;
 
 /// A quantity of all columns.
 pub type Row = [f64; MANY];
@@ -23,12 +30,47 @@ pub fn row(value: impl Fn(usize) -> f64) -> Row {
     row
 }
 
+/// Whether something holds for all columns; with no branch for each of them, as vector code has to be.
+#[inline(always)]
+pub fn every(holds: impl Fn(usize) -> bool) -> bool {
+    let mut missed = 0;
+    for k in 0..MANY {
+        missed |= u64::from(!holds(k));
+    }
+    missed == 0
+}
+
+/// The largest value of a row, 0 where none is positive; what is not a number is passed over.
+#[inline(always)]
+pub fn largest(values: &Row) -> f64 {
+    let larger = |a: f64, b: f64| if b > a { b } else { a };
+    by_halves(row(|k| larger(0.0, values[k])), larger)
+}
+
+/// The smallest magnitude in a row; what is not a number is passed over.
+#[inline(always)]
+pub fn smallest(values: &Row) -> f64 {
+    let smaller = |a: f64, b: f64| if b < a { b } else { a };
+    by_halves(row(|k| smaller(f64::INFINITY, values[k].abs())), smaller)
+}
+
+/// One value of all: one after the other would take as long as everything else.
+#[inline(always)]
+fn by_halves(mut values: Row, of_two: impl Fn(f64, f64) -> f64) -> f64 {
+    let mut half = MANY;
+    while half > 1 {
+        half /= 2;
+        for k in 0..half {
+            values[k] = of_two(values[k], values[k + half]);
+        }
+    }
+    values[0]
+}
+
 /// Columns that pass the same branches in the same order, or each a span of its own.
 #[derive(Debug)]
 pub struct Columns<'a> {
     wheel: WheelSurface<'a>,
-    /// Scratch space: spans of the column in the middle.
-    shape: Vec<Span>,
     /// The columns' abscissae \[mm\].
     pub xi: Row,
     /// Whether they begin over both contact segments.
@@ -67,42 +109,52 @@ pub struct Feet {
 impl<'a> Columns<'a> {
     /// None yet.
     pub fn new(wheel: WheelSurface<'a>) -> Self {
-        Self { wheel, shape: Vec::new(), xi: [f64::NAN; MANY], contact: false, spans: Vec::new() }
+        Self { wheel, xi: [f64::NAN; MANY], contact: false, spans: Vec::with_capacity(MOST_SPANS) }
     }
 
-    /// Takes the columns at ξ up to u = `u_max`, if they are as the one in the middle; `None` where one is not, or not
-    /// whole.
+    /// Takes the columns at ξ up to u = `u_max`; `None` where they do not pass the same branches, too many, or are not whole.
     #[inline(always)]
     pub fn take(&mut self, evaluator: &Evaluator<'a>, u_max: f64, xi: Row) -> Option<()> {
-        let (wheel, middle) = (&self.wheel, xi[MANY / 2]);
-        wheel.spans(middle, u_max, &mut self.shape);
-        if !is_whole(&self.shape, u_max) {
+        let (wheel, section) = (&self.wheel, &evaluator.placement.rail.section);
+        let mut index = wheel.first_piece(xi[MANY / 2])?;
+        let rail_piece = section.piece_at(xi[MANY / 2])?;
+        let inside = |piece: &Piece| every(|k| (piece.xi[0] <= xi[k]) & (xi[k] <= piece.xi[1]));
+        if !inside(&wheel.section.pieces[index]) || !inside(rail_piece) {
             return None;
         }
-        let (contact, single) = (evaluator.over_contact(middle, &self.shape[0]), self.shape.len() == 1);
-        let rail = evaluator.placement.rail.section.branch_at(middle)?;
-        let rail_height = if contact && single { [0.0; MANY] } else { rail.points(&xi)?.1 };
-        (self.xi, self.contact) = (xi, contact);
+        let rail = &section.branches[rail_piece.branch];
+        self.contact = section.contact == Some(rail_piece.branch)
+            && wheel.section.contact == Some(wheel.section.pieces[index].branch);
+        self.xi = xi;
         self.spans.clear();
-        for (k, span) in self.shape.iter().enumerate() {
-            let u0 = self.spans.last().map_or([0.0; MANY], |before| before.u[1]);
-            let mut here = wheel.span_at_many(&xi, span, u0)?;
-            let (ends, last) = (here.u[1], k + 1 == self.shape.len());
-            // A span that ends elsewhere than in the middle column is another shape.
-            if !(0..MANY).all(|k| if last { ends[k] >= u_max } else { ends[k] > u0[k] && ends[k] <= u_max }) {
+        let mut rail_height: Option<Row> = None;
+        loop {
+            let before = self.spans.last().map(|before| before.u[1]);
+            let mut here = wheel.span_at_many(&xi, index, before)?;
+            let [u0, u1] = &mut here.u;
+            let last = every(|k| u1[k] >= u_max);
+            if last {
+                *u1 = [u_max; MANY];
+            }
+            // A span that only some of the columns leave is the end of one shape of columns.
+            if !every(|k| (u0[k] < u1[k]) & (u1[k] <= u_max)) || self.spans.len() == MOST_SPANS {
                 return None;
             }
-            if last {
-                here.u[1] = [u_max; MANY];
-            }
-            here.base = if contact && k == 0 {
-                contact_gaps(rail, &wheel.section.branches[span.branch], &xi, (&here.points, &here.height))?
+            here.base = if self.contact && self.spans.is_empty() {
+                let branch = &wheel.section.branches[wheel.section.pieces[index].branch];
+                contact_gaps(rail, branch, &xi, (&here.points, &here.height))?
             } else {
-                row(|k| here.height[k] - rail_height[k])
+                if rail_height.is_none() {
+                    rail_height = Some(rail.points(&xi)?.1);
+                }
+                rail_height.map(|rail_height| row(|k| here.height[k] - rail_height[k]))?
             };
             self.spans.push(here);
+            if last {
+                return Some(());
+            }
+            index = wheel.next_piece(index)?;
         }
-        Some(())
     }
 
     /// Takes columns each over its own branches, if all are over the same one or over cubics, as of splines; for each whether
@@ -160,38 +212,48 @@ impl<'a> Columns<'a> {
         coefficients: &mut Vec<Row>,
     ) -> Option<(usize, f64)> {
         let (wheel, span) = (&self.wheel, &self.spans[span]);
-        let end = wheel.feet_near(&self.xi, span, &span.u[1])?;
+        let end = wheel.feet_near(span, &span.u[1])?;
         let run: Row = row(|k| end.e[k] - span.e[0][k]);
         let allowed = row(|k| {
             let rise = end.rise[k].abs();
             let rounding = ROUNDING_LEVEL * (rise + span.e[0][k]);
             demand.absolute.min(demand.relative * rise).max(rounding)
         });
-        let at = |share: f64| wheel.feet(&self.xi, span, row(|k| span.e[0][k] + run[k] * share));
+        let at = |share: f64| wheel.feet_by(span, &row(|k| run[k] * share));
+        let u_max = &self.spans.last()?.u[1];
+        let short = every(|k| span.u[1][k] - span.u[0][k] <= SHORT_SPAN * u_max[k]);
+        let least = if short { least.min(2) } else { least };
+        let begin = coefficients.len();
+        let mut v = [[0.0; MANY]; MOST_COEFFICIENTS];
         for n in least..=MOST_COEFFICIENTS {
-            let (mut v, mut d) = ([[0.0; MANY]; MOST_COEFFICIENTS], [[0.0; MANY]; MOST_COEFFICIENTS]);
-            for ((v, d), node) in v.iter_mut().zip(&mut d).zip(nodes(n)) {
-                let feet = at(*node)?;
+            coefficients.resize(begin + n, [0.0; MANY]);
+            let q = &mut coefficients[begin..];
+            for ((v, q), node) in v.iter_mut().zip(&mut *q).zip(nodes(n)) {
+                let feet = at(*node);
                 *v = row(|k| feet.u[k] - span.u[0][k]);
-                *d = row(|k| feet.rise[k] / v[k]);
+                *q = row(|k| feet.rise[k] / v[k]);
             }
-            let c = powers(&v[..n], &mut d[..n]);
-            let error = |feet: &Feet| {
-                row(|k| {
-                    let v = feet.u[k] - span.u[0][k];
-                    let value = v * c[..n].iter().rev().fold(0.0, |q, c| q * v + c[k]);
-                    (value - feet.rise[k]).abs()
-                })
-            };
-            let errors = [error(&end), error(&at(inner_extremum(n))?)];
+            powers(&v[..n], q);
+            let inner = at(inner_extremum(n));
+            let errors = [error(q, span, &end), error(q, span, &inner)];
             // An error that is no number is within no demand.
-            if (0..MANY).all(|k| errors[0][k] <= allowed[k] && errors[1][k] <= allowed[k]) {
-                coefficients.extend(&c[..n]);
-                return Some((n, errors.as_flattened().iter().fold(0.0, |most, error| error.max(most))));
+            if every(|k| errors[0][k] <= allowed[k] && errors[1][k] <= allowed[k]) {
+                return Some((n, largest(&errors[0]).max(largest(&errors[1]))));
             }
         }
         None
     }
+}
+
+/// |rise of the polynomials − rise| at points of a span \[mm\].
+#[inline(always)]
+fn error(q: &[Row], span: &SpanColumns<'_>, feet: &Feet) -> Row {
+    let v = row(|k| feet.u[k] - span.u[0][k]);
+    let mut value = [0f64; MANY];
+    for q in q.iter().rev() {
+        value = row(|k| value[k] * v[k] + q[k]);
+    }
+    row(|k| (value[k] * v[k] - feet.rise[k]).abs())
 }
 
 /// The piece that holds ξ inside; pieces before it are taken from `rest`.
@@ -203,6 +265,7 @@ fn piece_inside<'a>(rest: &mut &'a [Piece], xi: f64) -> Option<&'a Piece> {
 
 impl SpanColumns<'_> {
     /// Size of the coordinates that s at the beginning is computed from \[mm\].
+    #[inline(always)]
     pub fn size(&self, evaluator: &Evaluator<'_>, xi: &Row) -> Row {
         row(|k| evaluator.size(xi[k], self.height[k]))
     }
@@ -225,30 +288,28 @@ impl<'a> WheelSurface<'a> {
         found
     }
 
-    /// One span of all columns, from u as given to the end of its piece; s not yet known.
+    /// One span of all columns to the end of its piece, from the midplane or from u `before` that the column before had at its
+    /// end; s not yet known.
     #[inline(always)]
-    fn span_at_many(&self, xi: &Row, span: &Span, u0: Row) -> Option<SpanColumns<'a>> {
-        let branch = &self.section.branches[span.branch];
-        let piece = &self.section.pieces[span.piece];
+    fn span_at_many(&self, xi: &Row, piece: usize, before: Option<Row>) -> Option<SpanColumns<'a>> {
+        let piece = &self.section.pieces[piece];
+        let branch = &self.section.branches[piece.branch];
         let near = self.sides()[0];
-        let sagitta = |end: f64| row(|k| (xi[k] - end) / self.sin);
-        let (e0, points, on_profile) = if span.e[0] > 0.0 {
+        let (e0, points, on_profile) = if before.is_some() {
             let (point, height) = &piece.ends[near];
-            (sagitta(piece.xi[near]), point.into(), [*height; MANY])
+            let e0 = row(|k| (xi[k] - piece.xi[near]) / self.sin);
+            (e0, branch.repeated(point), [*height; MANY])
         } else {
             let (points, heights) = branch.points(xi)?;
             ([0.0; MANY], points, heights)
         };
         let height = row(|k| on_profile[k] + e0[k] * self.cos);
         let w = row(|k| self.axle_distance(xi[k], height[k]));
-        let (mut e1, mut u1) = ([f64::INFINITY; MANY], [f64::INFINITY; MANY]);
-        // An end that the middle column has not is beyond the window.
+        let (mut e1, mut u1) = ([0.0; MANY], [0.0; MANY]);
         for k in 0..MANY {
-            let end = self.leaves(xi[k], piece);
-            e1[k] = if span.e[1].is_finite() { end[0] } else { e1[k] };
-            u1[k] = if span.u[1].is_finite() { end[1] } else { u1[k] };
+            [e1[k], u1[k]] = self.leaves(xi[k], piece);
         }
-        let branches = Branches::One(branch);
+        let (branches, u0) = (Branches::One(branch), before.unwrap_or([0.0; MANY]));
         Some(SpanColumns { branches, points, base: [f64::NAN; MANY], height, u: [u0, u1], e: [e0, e1], w })
     }
 
@@ -282,37 +343,50 @@ impl<'a> WheelSurface<'a> {
             let settled = |k: usize| {
                 change[k] * change[k] <= f64::EPSILON * e[k] * last[k] && change[k] <= LAST_STEP * feet.w[k]
             };
-            if (0..MANY).all(settled) {
-                return Some(feet).filter(|feet| feet.w.iter().all(|&w| w > 0.0));
+            if every(settled) {
+                return Some(feet).filter(|feet| every(|k| feet.w[k] > 0.0));
             }
             last = change;
         }
         None
     }
 
+    /// The points with sagittae e.
     #[inline(always)]
     fn feet(&self, xi: &Row, span: &SpanColumns<'_>, e: Row) -> Option<Feet> {
         let slope = span.branches.chords_from(&span.points, &row(|k| self.abscissa(xi[k], e[k])))?;
+        Some(self.feet_over(span, e, &slope))
+    }
+
+    /// Points with sagittae larger by about `runs` than at the span's beginning, at half the cost.
+    #[inline(always)]
+    fn feet_by(&self, span: &SpanColumns<'_>, runs: &Row) -> Feet {
+        let [slope, stretch] = span.branches.chords_near(&span.points, &row(|k| -runs[k] * self.sin));
+        self.feet_over(span, row(|k| span.e[0][k] + runs[k] * stretch[k]), &slope)
+    }
+
+    /// The points with sagittae e, over chords of these slopes.
+    #[inline(always)]
+    fn feet_over(&self, span: &SpanColumns<'_>, e: Row, slope: &Row) -> Feet {
         let rise = row(|k| (e[k] - span.e[0][k]) * (self.cos - self.sin * slope[k]));
         let w = row(|k| span.w[k] - rise[k] * self.cos);
         let u = row(|k| e[k] * (2.0 * w[k] + e[k]));
-        Some(Feet { e, rise, w, u })
+        Feet { e, rise, w, u }
     }
 
     /// Points near u, as [`Self::foot_near`]; `None` where one is not.
     #[inline(always)]
-    fn feet_near(&self, xi: &Row, span: &SpanColumns<'_>, u: &Row) -> Option<Feet> {
+    fn feet_near(&self, span: &SpanColumns<'_>, u: &Row) -> Option<Feet> {
         let [low, high] = &span.e;
-        let step = |w: &Row| self.feet(xi, span, row(|k| sagitta(w[k], u[k]).max(low[k]).min(high[k])));
-        let near = |feet: &Feet| {
-            (0..MANY).all(|k| (feet.u[k] - u[k]).abs() <= (1.0 - NEARLY_COVERED) * u[k] && feet.w[k] > 0.0)
-        };
-        let mut feet = step(&span.w)?;
-        for _ in 0..STEPS {
-            if near(&feet) {
+        // The first is as good as if the profile were level: nothing but its slope is then to be found.
+        let mut w = row(|k| span.w[k] - (sagitta(span.w[k], u[k]) - low[k]) * self.cos * self.cos);
+        for _ in 0..=STEPS {
+            let runs = row(|k| sagitta(w[k], u[k]).max(low[k]).min(high[k]) - low[k]);
+            let feet = self.feet_by(span, &runs);
+            if every(|k| ((feet.u[k] - u[k]).abs() <= (1.0 - NEARLY_COVERED) * u[k]) & (feet.w[k] > 0.0)) {
                 return Some(feet);
             }
-            feet = step(&feet.w)?;
+            w = feet.w;
         }
         None
     }

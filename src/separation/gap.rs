@@ -1,6 +1,6 @@
 //! The midplane gap g(ξ) = ζ^W(ξ, 0) − ζ^R(ξ), to full relative accuracy over the contact segments.
 
-use super::columns::{MANY, Row, row};
+use super::columns::{MANY, Row, every, row};
 use crate::placement::Placement;
 use crate::profile::{ArcBranch, Branch, BranchPoints, BranchShape};
 
@@ -28,7 +28,8 @@ const UNCANCELLED: f64 = 0.125;
 /// The gap between two branches through C that share their tangent there; `zeta_w` is ζ^W(ξ).
 pub(super) fn contact_gap(rail: &Branch, wheel: &Branch, xi: f64, zeta_w: f64) -> f64 {
     if let (BranchShape::Arc(rail), BranchShape::Arc(wheel)) = (&rail.shape, &wheel.shape) {
-        return arc_gap(rail, wheel, xi);
+        let [gap] = arc_gaps(rail, wheel, &[xi]);
+        return gap;
     }
     let gap = zeta_w - rail.height(xi);
     if gap.abs() >= UNCANCELLED * zeta_w.abs() {
@@ -47,32 +48,38 @@ pub(super) fn contact_gaps(
     (wheel_points, zeta_w): (&BranchPoints<MANY>, &Row),
 ) -> Option<Row> {
     if let (BranchShape::Arc(rail), BranchShape::Arc(wheel)) = (&rail.shape, &wheel.shape) {
-        return Some(row(|k| arc_gap(rail, wheel, xi[k])));
+        return Some(arc_gaps(rail, wheel, xi));
     }
     let (rail_points, zeta_r) = rail.points(xi)?;
     let gap = row(|k| zeta_w[k] - zeta_r[k]);
-    if (0..MANY).all(|k| gap[k].abs() >= UNCANCELLED * zeta_w[k].abs()) {
+    if every(|k| gap[k].abs() >= UNCANCELLED * zeta_w[k].abs()) {
         return Some(gap);
     }
     let (zeta_w, zeta_r) = (wheel.exact_heights(xi, wheel_points), rail.exact_heights(xi, &rail_points));
-    Some(row(|k| (zeta_w[k] - zeta_r[k]).high))
+    Some(row(|k| (zeta_w.get(k) - zeta_r.get(k)).high))
 }
 
 /// g = ξ² (κ_W − κ_R) [1 + (κ_W + κ_R)/(κ_W C_R + κ_R C_W)] / ((1 + C_W)(1 + C_R)) for curvatures of one sign;
 /// the plain difference, which then does not cancel, for opposite ones.
 #[inline(always)]
-pub(super) fn arc_gap(rail: &ArcBranch, wheel: &ArcBranch, xi: f64) -> f64 {
+pub(super) fn arc_gaps<const N: usize>(rail: &ArcBranch, wheel: &ArcBranch, xi: &[f64; N]) -> [f64; N] {
     let (k_r, k_w) = (rail.curvature, wheel.curvature);
-    let (c_r, c_w) = (rail.sine_cosine(xi).1, wheel.sine_cosine(xi).1);
-    if k_r * k_w < 0.0 {
-        return xi * xi * (k_w / (1.0 + c_w) - k_r / (1.0 + c_r));
-    }
+    let mut gap = [0.0; N];
     if k_r == k_w {
-        return 0.0;
+        return gap;
     }
     let difference = curvature_difference(wheel.radius, rail.radius);
-    let bracket = 1.0 + (k_w + k_r) / (k_w * c_r + k_r * c_w);
-    xi * xi * difference * bracket / ((1.0 + c_w) * (1.0 + c_r))
+    for k in 0..N {
+        let (c_r, c_w) = (rail.sine_cosine(xi[k]).1, wheel.sine_cosine(xi[k]).1);
+        let square = xi[k] * xi[k];
+        gap[k] = if k_r * k_w < 0.0 {
+            square * (k_w / (1.0 + c_w) - k_r / (1.0 + c_r))
+        } else {
+            let bracket = 1.0 + (k_w + k_r) / (k_w * c_r + k_r * c_w);
+            square * difference * bracket / ((1.0 + c_w) * (1.0 + c_r))
+        };
+    }
+    gap
 }
 
 /// κ_W − κ_R from the radii, whose difference is exact when they are close.

@@ -8,8 +8,9 @@ use super::stream;
 /// Values of the widest vector, and of a line of the cache.
 const LINE: usize = 8;
 
-/// Runs from this length on are stored line by line of the cache.
-const LONG_RUN: usize = 64;
+/// Runs from these lengths on are stored line by line of the cache: in the caches, where only the first has them whole, and past
+/// them.
+const LONG_RUNS: [usize; 2] = [512, 64];
 
 /// Work that is compiled for each number of coefficients, so that its innermost loop is unrolled.
 pub(super) trait PerDegree {
@@ -95,8 +96,8 @@ pub(super) fn horner<S: pulp::Simd, const N: usize, const FIRST: bool, const PAS
     let begin = [base, u0].map(|value| simd.splat_f64s(value));
     // Long runs are stored where lines of the cache begin: a store across two takes twice as long. The vectors at both
     // ends, as many as reach there, may overlap the others.
-    let (end, long) = (u.len(), u.len() >= LONG_RUN);
-    let begin_lines = if PAST && long { lead(out) } else { 0 };
+    let (end, long) = (u.len(), u.len() >= LONG_RUNS[usize::from(PAST)]);
+    let begin_lines = if long { lead(out) } else { 0 };
     let first = begin_lines.next_multiple_of(S::F64_LANES);
     for part in [0..first, last..end] {
         let (u, out) = (S::as_simd_f64s(&u[part.clone()]).0, S::as_mut_simd_f64s(&mut out[part]).0);

@@ -182,6 +182,7 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Size of the coordinates from which both bodies' heights are computed, the wheel's being as given \[mm\].
+    #[inline(always)]
     fn size(&self, xi: f64, height: f64) -> f64 {
         let frames = [&self.placement.rail.section.frame, &self.placement.wheel.section.frame];
         let coordinates = frames.map(|frame| frame.z.abs() + (frame.sin * xi).abs());

@@ -128,7 +128,7 @@ impl<'a> Samples<'a> {
         BETWEEN_SAMPLES * nan_max(largest, truncation) + self.rounding
     }
 
-    /// Coefficients with which most spans of spectral columns are done, and their largest truncation error \[mm\].
+    /// Coefficients with which two thirds of the spans of spectral columns are done, and their largest truncation error \[mm\].
     fn polynomials(&self, demand: Demand) -> (usize, f64) {
         let mut spectral = Spectral::new(self.placement, &self.axis, demand, 1);
         if self.placement.skew != 0.0 {
@@ -151,7 +151,7 @@ impl<'a> Samples<'a> {
             }
         }
         needed.sort_unstable();
-        (needed.get(needed.len() / 2).copied().unwrap_or(1), truncation)
+        (needed.get(needed.len() * 2 / 3).copied().unwrap_or(1), truncation)
     }
 }
 

@@ -10,7 +10,7 @@ use super::columns::{MANY, Row, row};
 use super::gap::contact_gap;
 use super::horner::{OneRun, per_degree};
 use super::spectral::{Demand, MOST_COEFFICIENTS, ROUNDING_LEVEL};
-use super::strips::{PROOF, series};
+use super::strips::PROOF;
 use crate::numerics::chebyshev;
 use crate::profile::{BranchPoints, Piece};
 
@@ -51,7 +51,7 @@ impl<'s, 'a> SkewedColumn<'s, 'a> {
             let (rail, wheel) = (&rail.branches[r], &wheel.branches[w]);
             let (from, height) = wheel.point(xi);
             let inside = wheel.xi[0] <= xi && xi <= wheel.xi[1];
-            inside.then(|| Contact { gap: contact_gap(rail, wheel, xi, height), from: (&from).into() })
+            inside.then(|| Contact { gap: contact_gap(rail, wheel, xi, height), from: wheel.repeated(&from) })
         });
         Self { evaluator, arch, demand, xi, rail_height, contact, error: 0.0 }
     }
@@ -115,7 +115,8 @@ impl pulp::WithSimd for Interval<'_, '_, '_> {
         let points = if few {
             row(|k| eta[k.min(eta.len() - 1)])
         } else {
-            row(|k| centre + half * chebyshev::point(k, MANY))
+            let nodes = &*chebyshev::NODES;
+            row(|k| centre + half * nodes[k])
         };
         let (s, rounding) = column.separations(&points, !few)?;
         let size = Size {
@@ -127,10 +128,9 @@ impl pulp::WithSimd for Interval<'_, '_, '_> {
             return Some(size);
         }
         let demand = column.demand;
-        let c = series(&s);
+        let c = chebyshev::coefficients(&s);
         let (kept, dropped) = kept(&c, demand.absolute.min(demand.relative * size.largest), rounding)?;
-        let mut powers = [0.0; MANY];
-        chebyshev::to_powers(&c[..kept], &mut powers);
+        let mut powers = chebyshev::to_powers(&c, kept);
         let mut shrink = 1.0;
         for c in &mut powers[1..kept] {
             shrink /= half;

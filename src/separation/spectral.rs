@@ -153,12 +153,14 @@ fn interpolate(
         *v = [foot.u - span.u[0]];
         *d = [foot.rise / v[0]];
     }
-    powers(&v[..n], &mut d[..n]).map(|[c]| c)
+    powers(&v[..n], &mut d[..n]);
+    d.map(|[c]| c)
 }
 
-/// The coefficients of the polynomials that take the values d at the places v, by divided differences; for N at once.
+/// Makes of the values d at the places v the coefficients of the polynomials through them, by divided differences; for N
+/// at once.
 #[inline(always)]
-pub(super) fn powers<const N: usize>(v: &[[f64; N]], d: &mut [[f64; N]]) -> [[f64; N]; MOST_COEFFICIENTS] {
+pub(super) fn powers<const N: usize>(v: &[[f64; N]], d: &mut [[f64; N]]) {
     let n = v.len();
     for order in 1..n {
         for j in (order..n).rev() {
@@ -167,19 +169,14 @@ pub(super) fn powers<const N: usize>(v: &[[f64; N]], d: &mut [[f64; N]]) -> [[f6
             }
         }
     }
-    let mut c = [[0.0; N]; MOST_COEFFICIENTS];
-    for j in (0..n).rev() {
-        // c ← c·(v − v_j) + d_j
-        for i in (1..n - j).rev() {
+    // p_j = d_j + (v − v_j) p_(j+1), in the place of d_j, …, d_(n−1).
+    for j in (0..n - 1).rev() {
+        for i in j..n - 1 {
             for k in 0..N {
-                c[i][k] = c[i - 1][k] - v[j][k] * c[i][k];
+                d[i][k] -= v[j][k] * d[i + 1][k];
             }
         }
-        for k in 0..N {
-            c[0][k] = d[j][k] - v[j][k] * c[0][k];
-        }
     }
-    c
 }
 
 /// Whether the spans are all of the column up to `u_max`.
@@ -352,6 +349,7 @@ mod tests {
     use crate::profile::measured::{self, CurveKind, Format, Options, write};
     use crate::profile::{Profile, Side, standards};
     use crate::separation::plan::{FULL_PRECISION, demand};
+    use crate::separation::strips::strips;
 
     /// s over a window with joints on the columns and in them, and the number of strips, compiled for one kind of machine and
     /// stored past the caches or not.
@@ -364,7 +362,7 @@ mod tests {
             let spectral = Spectral::new(placement, &axis, demand(FULL_PRECISION), 4);
             Spectral { arch, ..spectral }
         };
-        let strips = strips::strips(&mut spectral(), placement, &xi, axis.reach * axis.reach);
+        let strips = strips(&mut spectral(), placement, &xi, axis.reach * axis.reach);
         let mut out = vec![0.0; xi.len() * axis.eta.len()];
         spectral().with_strips(&strips, past_caches).columns(&xi, &mut out);
         (out, strips.len())

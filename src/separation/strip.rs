@@ -71,11 +71,12 @@ impl<const PAST: bool> pulp::WithSimd for StripColumns<'_, PAST> {
         let Self { placement, strip, xi, axis, rows, out } = self;
         rows.resize(strip.coefficients.len(), SpanRows::NONE);
         strip.rows(placement, xi, axis.reach * axis.reach, rows);
+        let counts = &mut [0; MANY];
         for (k, (rows, &n)) in rows.iter().zip(&strip.coefficients).enumerate() {
             if k == 0 {
-                per_degree(n, SpanOfColumns::<S, true, PAST> { simd, rows, axis, out });
+                per_degree(n, SpanOfColumns::<S, true, PAST> { simd, rows, axis, counts, out });
             } else {
-                per_degree(n, SpanOfColumns::<S, false, PAST> { simd, rows, axis, out });
+                per_degree(n, SpanOfColumns::<S, false, PAST> { simd, rows, axis, counts, out });
             }
         }
     }
@@ -126,20 +127,20 @@ struct SpanOfColumns<'a, S, const FIRST: bool, const PAST: bool> {
     simd: S,
     rows: &'a SpanRows,
     axis: &'a EtaAxis,
+    /// Numbers of η ≥ 0 up to the span's begin, then up to its end.
+    counts: &'a mut [usize; MANY],
     out: &'a mut [f64],
 }
 
 impl<S: pulp::Simd, const FIRST: bool, const PAST: bool> PerDegree for SpanOfColumns<'_, S, FIRST, PAST> {
     #[inline(always)]
     fn run<const N: usize>(self) {
-        let Self { simd, rows, axis, out } = self;
-        let [mut begin, mut end] = [0; 2];
-        for (k, out) in out.chunks_exact_mut(axis.eta.len()).enumerate() {
-            let u = [rows.u[0][k], rows.u[1][k]];
-            if !FIRST {
-                begin = axis.count(u[0], begin);
-            }
-            end = axis.count(u[1], end).max(begin);
+        let Self { simd, rows, axis, counts, out } = self;
+        let mut near = 0;
+        for (k, (out, count)) in out.chunks_exact_mut(axis.eta.len()).zip(counts).enumerate() {
+            let (u, begin) = ([rows.u[0][k], rows.u[1][k]], *count);
+            let end = axis.count(u[1], near).max(begin);
+            (near, *count) = (end, end);
             // A drawing's step is mostly between two values.
             if !FIRST && end == begin && axis.symmetric {
                 continue;

@@ -8,7 +8,7 @@
 
 use super::Evaluator;
 use super::column::WheelSurface;
-use super::columns::{Columns, MANY, Row, row};
+use super::columns::{Columns, MANY, MOST_SPANS, Row, largest, row, smallest};
 use super::spectral::{ROUNDING_LEVEL, Spectral};
 pub use super::strip::Strip;
 use super::strip::Gap;
@@ -24,9 +24,6 @@ const MOST_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Coefficients at the end that have to be rounding: one parity may vanish.
 pub(super) const PROOF: usize = 2;
-
-/// Most spans of a strip's columns.
-const MOST_SPANS: usize = 3;
 
 /// Places in 0 ≤ τ ≤ 1 at which changes of q are judged.
 const JUDGED: [f64; 4] = [0.0, 0.3, 0.7, 1.0];
@@ -115,7 +112,8 @@ impl pulp::WithSimd for Attempt<'_, '_> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) -> Option<Strip> {
         let ([a, b], half) = (self.xi, (self.xi[1] - self.xi[0]) / 2.0);
-        let points = row(|k| a + half + half * chebyshev::point(k, MANY));
+        let (nodes, middle) = (&*chebyshev::NODES, a + half);
+        let points = row(|k| middle + half * nodes[k]);
         let Spectral { evaluator, columns, .. } = &mut *self.spectral;
         columns.take(evaluator, self.u_max, points)?;
         Strip::new(self.spectral, [a, b], self.short)
@@ -141,7 +139,7 @@ impl Strip {
             let q = &mut rows[at..];
             let mut power = [1.0; MANY];
             for c in q.iter_mut() {
-                *c = series(&row(|k| c[k] * power[k]));
+                *c = chebyshev::coefficients(&row(|k| c[k] * power[k]));
                 if !single {
                     power = row(|k| power[k] * length[k]);
                 }
@@ -166,9 +164,7 @@ impl Strip {
         let kept = judged.kept()?;
         let mut powers = vec![0.0; rows.len() * kept];
         for (powers, row) in powers.chunks_exact_mut(kept).zip(rows.iter()) {
-            let mut ascending = [0.0; MANY];
-            chebyshev::to_powers(&row[..kept], &mut ascending);
-            for (power, value) in powers.iter_mut().rev().zip(ascending) {
+            for (power, value) in powers.iter_mut().rev().zip(chebyshev::to_powers(row, kept)) {
                 *power = value;
             }
         }
@@ -190,9 +186,6 @@ impl Beginnings {
     /// `None` as for [`Strip::new`].
     #[inline(always)]
     fn new(evaluator: &Evaluator<'_>, columns: &Columns<'_>, short: bool) -> Option<Self> {
-        if columns.spans.len() > MOST_SPANS {
-            return None;
-        }
         let mut gap = if columns.contact { Gap::Relative } else { Gap::Plain };
         let mut judged = Judged::default();
         let mut begins = [[[0.0; MANY]; 2]; MOST_SPANS];
@@ -203,13 +196,13 @@ impl Beginnings {
                 s = row(|k| s[k] / (columns.xi[k] * columns.xi[k]));
                 // What is relatively accurate must stay so where it is smallest; where it varies much, the largest
                 // values' rounding is more.
-                let least = s.iter().fold(f64::INFINITY, |least, s| s.abs().min(least));
+                let least = smallest(&s);
                 let rounding = (0.5 * f64::EPSILON * largest(&s)).min(MOST_ROUNDING * least);
                 rounding.max(ROUNDING_LEVEL * least)
             } else {
                 f64::EPSILON * largest(&span.size(evaluator, &columns.xi))
             };
-            begins[k] = [s, span.u[0]].map(|values| series(&values));
+            begins[k] = [chebyshev::coefficients(&s), chebyshev::coefficients(&span.u[0])];
             judged.with(&begins[k][1], ROUNDING_LEVEL * largest(&span.u[1]));
             let before = judged;
             judged.with(&begins[k][0], rounding[k]);
@@ -222,33 +215,22 @@ impl Beginnings {
     }
 }
 
-/// Which Chebyshev coefficients are more than rounding, and whether all are finite.
+/// Which Chebyshev coefficients are more than rounding, or not finite: those that are not 0.
 #[derive(Debug, Default, Clone, Copy)]
-struct Judged([bool; MANY]);
+struct Judged([u64; MANY]);
 
 impl Judged {
     #[inline(always)]
     fn with(&mut self, row: &Row, allowed: f64) {
         for (more, c) in self.0.iter_mut().zip(row) {
-            // What is not finite is more, too.
-            *more |= c.is_nan() || c.abs() > allowed;
+            let rounding = c.abs() <= allowed;
+            *more |= u64::from(!rounding);
         }
     }
 
     /// Number of coefficients of which the last is more; `None` where too few are rounding.
     fn kept(&self) -> Option<usize> {
-        let kept = self.0.iter().rposition(|&more| more).map_or(1, |last| last + 1);
+        let kept = self.0.iter().rposition(|&more| more != 0).map_or(1, |last| last + 1);
         (kept + PROOF <= MANY).then_some(kept)
     }
-}
-
-#[inline(always)]
-pub(super) fn series(values: &Row) -> Row {
-    let mut coefficients = [0.0; MANY];
-    chebyshev::coefficients(values, &mut coefficients);
-    coefficients
-}
-
-fn largest(row: &Row) -> f64 {
-    row.iter().fold(0.0, |most, v| v.max(most))
 }

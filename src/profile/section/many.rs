@@ -3,7 +3,9 @@
 
 use twofloat::TwoFloat;
 
+use super::super::arc::cosine;
 use super::branch::{ArcBranch, Branch, BranchPoint, BranchShape, QUADRATIC};
+use crate::numerics::polynomial::value_and_slope;
 use crate::numerics::twice::Twice;
 
 /// Newton's steps are given up after this many: the branch is nearly vertical somewhere.
@@ -25,17 +27,9 @@ pub enum BranchPoints<const N: usize> {
         xi: [f64; N],
         /// t.
         t: [f64; N],
+        /// dt/dξ there.
+        rate: [f64; N],
     },
-}
-
-impl<const N: usize> From<&BranchPoint> for BranchPoints<N> {
-    /// The same point for all.
-    fn from(point: &BranchPoint) -> Self {
-        match *point {
-            BranchPoint::Arc { sin, cos } => Self::Arc { sin: [sin; N], cos: [cos; N] },
-            BranchPoint::Polynomial { xi, t } => Self::Polynomial { xi: [xi; N], t: [t; N] },
-        }
-    }
 }
 
 /// Branches, one for each of several abscissae.
@@ -91,8 +85,9 @@ impl<'a, const N: usize> Branches<'a, N> {
             Self::One(branch) => branch.points(xi),
             Self::Cubics(c) => {
                 let t = parameters(c.xi.iter().rev().copied(), c.t, xi, guesses(c.t, c.ends, xi))?;
+                let (_, slope) = values_and_slopes(c.xi.iter().rev().copied(), &t);
                 let (zeta, _) = values_and_slopes(c.zeta.iter().rev().copied(), &t);
-                Some((BranchPoints::Polynomial { xi: *xi, t }, zeta))
+                Some((BranchPoints::Polynomial { xi: *xi, t, rate: reciprocals(slope) }, zeta))
             }
         }
     }
@@ -102,10 +97,23 @@ impl<'a, const N: usize> Branches<'a, N> {
     pub fn chords_from(&self, from: &BranchPoints<N>, to: &[f64; N]) -> Option<[f64; N]> {
         match (self, from) {
             (Self::One(branch), _) => branch.chords_from(from, to),
-            (Self::Cubics(c), BranchPoints::Polynomial { xi, t }) => {
-                chords([c.xi.iter().rev().copied(), c.zeta.iter().rev().copied()], c.t, [xi, t], to)
+            (Self::Cubics(c), BranchPoints::Polynomial { xi, t, rate }) => {
+                chords([c.xi.iter().rev().copied(), c.zeta.iter().rev().copied()], c.t, [xi, t, rate], to)
             }
             _ => None,
+        }
+    }
+
+    /// The slopes of chords from the points, and how long they are as multiples of `runs` along ξ, which is about 1. With no
+    /// iteration: on a polynomial the other end is where t has changed by runs × dt/dξ.
+    #[inline(always)]
+    pub fn chords_near(&self, from: &BranchPoints<N>, runs: &[f64; N]) -> [[f64; N]; 2] {
+        match (self, from) {
+            (Self::One(branch), _) => branch.chords_near(from, runs),
+            (Self::Cubics(c), BranchPoints::Polynomial { t, rate, .. }) => {
+                chords_near([c.xi.iter().rev().copied(), c.zeta.iter().rev().copied()], [t, rate], runs)
+            }
+            _ => [[f64::NAN; N]; 2],
         }
     }
 }
@@ -124,11 +132,26 @@ impl Branch {
                 Some((BranchPoints::Arc { sin, cos }, zeta))
             }
             BranchShape::Polynomial(p) => {
-                let range = p.t.map(|t| [t; N]);
-                let t =
-                    parameters(descending(&p.xi), range, xi, guesses(range, p.ends.map(|end| [end; N]), xi))?;
-                Some((BranchPoints::Polynomial { xi: *xi, t }, values_and_slopes(descending(&p.zeta), &t).0))
+                let (range, ends) = (rows(p.t), rows(p.ends));
+                let t = parameters(descending(&p.xi), range, xi, guesses(range, ends, xi))?;
+                let (_, slope) = values_and_slopes(descending(&p.xi), &t);
+                let (zeta, _) = values_and_slopes(descending(&p.zeta), &t);
+                Some((BranchPoints::Polynomial { xi: *xi, t, rate: reciprocals(slope) }, zeta))
             }
+        }
+    }
+
+    /// A point of this branch, several times.
+    #[inline(always)]
+    pub fn repeated<const N: usize>(&self, point: &BranchPoint) -> BranchPoints<N> {
+        match (&self.shape, *point) {
+            (_, BranchPoint::Arc { sin, cos }) => BranchPoints::Arc { sin: [sin; N], cos: [cos; N] },
+            (BranchShape::Polynomial(p), BranchPoint::Polynomial { xi, t }) => {
+                let [_, slope] = value_and_slope(&p.xi, t);
+                BranchPoints::Polynomial { xi: [xi; N], t: [t; N], rate: [1.0 / slope; N] }
+            }
+            // No point of this branch.
+            _ => BranchPoints::Arc { sin: [f64::NAN; N], cos: [f64::NAN; N] },
         }
     }
 
@@ -144,57 +167,110 @@ impl Branch {
                 }
                 Some(slope)
             }
-            (BranchShape::Polynomial(p), BranchPoints::Polynomial { xi, t }) => {
-                chords([descending(&p.xi), descending(&p.zeta)], p.t.map(|t| [t; N]), [xi, t], to)
+            (BranchShape::Polynomial(p), BranchPoints::Polynomial { xi, t, rate }) => {
+                chords([descending(&p.xi), descending(&p.zeta)], rows(p.t), [xi, t, rate], to)
             }
             // Points of another branch have no chords on this one.
             _ => None,
         }
     }
 
+    /// As [`Branches::chords_near`].
+    #[inline(always)]
+    fn chords_near<const N: usize>(&self, from: &BranchPoints<N>, runs: &[f64; N]) -> [[f64; N]; 2] {
+        match (&self.shape, from) {
+            (BranchShape::Arc(arc), BranchPoints::Arc { sin, cos }) => {
+                let mut slope = [0.0; N];
+                for k in 0..N {
+                    let sin_to = sin[k] + arc.curvature * runs[k];
+                    slope[k] = (sin[k] + sin_to) / (cos[k] + cosine(sin_to));
+                }
+                [slope, [1.0; N]]
+            }
+            (BranchShape::Polynomial(p), BranchPoints::Polynomial { t, rate, .. }) => {
+                chords_near([descending(&p.xi), descending(&p.zeta)], [t, rate], runs)
+            }
+            // Points of another branch have no chords on this one.
+            _ => [[f64::NAN; N]; 2],
+        }
+    }
+
     /// ζ at ξ in twice the working precision, for differences between closely conforming branches; from the points there,
     /// NaN for those of another branch.
     #[inline(always)]
-    pub fn exact_heights<const N: usize>(&self, xi: &[f64; N], points: &BranchPoints<N>) -> [Twice; N] {
+    pub fn exact_heights<const N: usize>(&self, xi: &[f64; N], points: &BranchPoints<N>) -> Exact<N> {
         match (&self.shape, points) {
             (BranchShape::Arc(arc), BranchPoints::Arc { .. }) => arc.exact_heights(xi),
             (BranchShape::Polynomial(p), BranchPoints::Polynomial { t, .. }) => {
-                let mut exact = t.map(Twice::from);
+                let mut exact = Exact { high: *t, low: [0.0; N] };
                 let (abscissa, slope) = exact_values(&p.exact[0], &exact);
                 for k in 0..N {
                     // One Newton step more, which doubles the digits whatever the rounding of its slope.
-                    let miss = abscissa[k] - Twice::from(xi[k]);
-                    exact[k] = Twice::sum(t[k], -(miss.high / slope[k]));
+                    let miss = abscissa.get(k) - Twice::from(xi[k]);
+                    exact.set(k, Twice::sum(t[k], -(miss.high / slope[k])));
                 }
                 exact_values(&p.exact[1], &exact).0
             }
-            _ => [Twice::from(f64::NAN); N],
+            _ => Exact { high: [f64::NAN; N], low: [f64::NAN; N] },
         }
     }
 
     /// ζ(ξ) in twice the working precision.
     pub fn exact_height(&self, xi: f64) -> Twice {
-        let [zeta] = self.exact_heights(&[xi], &BranchPoints::from(&self.point(xi).0));
-        zeta
+        self.exact_heights(&[xi], &self.repeated(&self.point(xi).0)).get(0)
+    }
+}
+
+/// Several numbers in twice the working precision: high and low parts apart, as vector code wants them.
+#[derive(Debug, Clone, Copy)]
+pub struct Exact<const N: usize> {
+    high: [f64; N],
+    low: [f64; N],
+}
+
+impl<const N: usize> Exact<N> {
+    /// The k-th of them.
+    #[inline(always)]
+    pub fn get(&self, k: usize) -> Twice {
+        Twice { high: self.high[k], low: self.low[k] }
+    }
+
+    #[inline(always)]
+    fn set(&mut self, k: usize, value: Twice) {
+        (self.high[k], self.low[k]) = (value.high, value.low);
     }
 }
 
 impl ArcBranch {
     #[inline(always)]
-    fn exact_heights<const N: usize>(&self, xi: &[f64; N]) -> [Twice; N] {
+    fn exact_heights<const N: usize>(&self, xi: &[f64; N]) -> Exact<N> {
         let (one, sin_a, cos_a) = (Twice::from(1.0), Twice::from(self.sin), Twice::from(self.cos));
         let [xi_a, zeta_a] = self.anchor;
-        let mut zeta = [Twice::from(0.0); N];
+        let mut zeta = Exact { high: [0.0; N], low: [0.0; N] };
         for k in 0..N {
             let run = Twice::sum(xi[k], -xi_a);
             let turn =
                 if self.radius.is_finite() { run / Twice::from(self.radius) } else { Twice::from(0.0) };
             let sin = turn + sin_a;
             let cos = ((one - sin) * (one + sin)).sqrt();
-            zeta[k] = run * (sin + sin_a) / (cos + cos_a) + Twice::from(zeta_a);
+            zeta.set(k, run * (sin + sin_a) / (cos + cos_a) + Twice::from(zeta_a));
         }
         zeta
     }
+}
+
+/// Each of two numbers several times. `array::map` may be left out of line.
+#[inline(always)]
+fn rows<const N: usize>([a, b]: [f64; 2]) -> [[f64; N]; 2] {
+    [[a; N], [b; N]]
+}
+
+#[inline(always)]
+fn reciprocals<const N: usize>(mut values: [f64; N]) -> [f64; N] {
+    for value in &mut values {
+        *value = 1.0 / *value;
+    }
+    values
 }
 
 /// Coefficients that are the same for all, the highest first.
@@ -224,7 +300,7 @@ fn parameters<const N: usize>(
 ) -> Option<[f64; N]> {
     let mut t = guess;
     let mut last = [f64::INFINITY; N];
-    let mut settled = [false; N];
+    let mut settled = [0u64; N];
     for k in 0..N {
         t[k] = within(t[k], low[k], high[k]);
     }
@@ -234,11 +310,11 @@ fn parameters<const N: usize>(
             let next = within(t[k] - (value[k] - xi[k]) / slope[k], low[k], high[k]);
             let step = (next - t[k]).abs();
             let done = (QUADRATIC * (high[k] - low[k])).min(next.abs());
-            settled[k] |=
-                step <= 2.0 * f64::EPSILON * next.abs() || (step <= done && step <= QUADRATIC * last[k]);
+            let small = step <= 2.0 * f64::EPSILON * next.abs();
+            settled[k] |= u64::from(small | ((step <= done) & (step <= QUADRATIC * last[k])));
             (t[k], last[k]) = (next, step);
         }
-        if settled.iter().all(|&settled| settled) {
+        if settled.iter().fold(1, |all, settled| all & settled) == 1 {
             return Some(t);
         }
     }
@@ -253,18 +329,17 @@ fn within(value: f64, low: f64, high: f64) -> f64 {
     if above > high { high } else { above }
 }
 
-/// The slopes of chords from points (ξ, t) to abscissae, of curves with coefficients of ξ and ζ.
+/// The slopes of chords from points (ξ, t, dt/dξ) to abscissae, of curves with coefficients of ξ and ζ.
 #[inline(always)]
 fn chords<const N: usize>(
     [c_xi, c_zeta]: [impl Iterator<Item = [f64; N]> + Clone; 2],
     range: [[f64; N]; 2],
-    [xi, t]: [&[f64; N]; 2],
+    [xi, t, rate]: [&[f64; N]; 3],
     to: &[f64; N],
 ) -> Option<[f64; N]> {
-    let (_, slope) = values_and_slopes(c_xi.clone(), t);
     let mut guess = *t;
     for k in 0..N {
-        guess[k] += (to[k] - xi[k]) / slope[k];
+        guess[k] += (to[k] - xi[k]) * rate[k];
     }
     let t_to = parameters(c_xi.clone(), range, to, guess)?;
     let (mut rise, run) = (differences(c_zeta, t, &t_to), differences(c_xi, t, &t_to));
@@ -272,6 +347,25 @@ fn chords<const N: usize>(
         rise[k] /= run[k];
     }
     Some(rise)
+}
+
+/// As [`Branches::chords_near`], from points (t, dt/dξ) of curves with coefficients of ξ and ζ.
+#[inline(always)]
+fn chords_near<const N: usize>(
+    [c_xi, c_zeta]: [impl Iterator<Item = [f64; N]>; 2],
+    [t, rate]: [&[f64; N]; 2],
+    runs: &[f64; N],
+) -> [[f64; N]; 2] {
+    let mut t_to = *t;
+    for k in 0..N {
+        t_to[k] += runs[k] * rate[k];
+    }
+    let (mut slope, mut stretch) = (differences(c_zeta, t, &t_to), differences(c_xi, t, &t_to));
+    for k in 0..N {
+        slope[k] /= stretch[k];
+        stretch[k] *= rate[k];
+    }
+    [slope, stretch]
 }
 
 /// Values and first derivatives; the highest coefficients first.
@@ -293,12 +387,12 @@ fn values_and_slopes<const N: usize>(
 /// Values in twice the working precision, and slopes in the working one: compensated Horner's rule (Langlois and Louvet
 /// 2007), which adds up what every step rounds.
 #[inline(always)]
-fn exact_values<const N: usize>(c: &[TwoFloat], t: &[Twice; N]) -> ([Twice; N], [f64; N]) {
+fn exact_values<const N: usize>(c: &[TwoFloat], t: &Exact<N>) -> (Exact<N>, [f64; N]) {
     let (mut value, mut slope, mut rounded) = ([0f64; N], [0f64; N], [0f64; N]);
     for c in c.iter().rev() {
         let (high, low) = (c.hi(), c.lo());
         for k in 0..N {
-            let t = t[k].high;
+            let t = t.high[k];
             let product = value[k] * t;
             let of_product = value[k].mul_add(t, -product);
             let sum = Twice::sum(product, high);
@@ -307,9 +401,9 @@ fn exact_values<const N: usize>(c: &[TwoFloat], t: &[Twice; N]) -> ([Twice; N], 
             value[k] = sum.high;
         }
     }
-    let mut exact = [Twice::from(0.0); N];
+    let mut exact = Exact { high: value, low: [0.0; N] };
     for k in 0..N {
-        exact[k] = Twice::sum(value[k], slope[k].mul_add(t[k].low, rounded[k]));
+        exact.set(k, Twice::sum(value[k], slope[k].mul_add(t.low[k], rounded[k])));
     }
     (exact, slope)
 }
@@ -350,7 +444,7 @@ mod tests {
                 let chord = branch.chord_from(&point, to[k]);
                 worst = worst.max((heights[k] - height).abs() / (1.0 + height.abs()));
                 worst = worst.max((chords[k] - chord).abs() / (1.0 + chord * chord));
-                let exact = f64::from(TwoFloat::from(zeta[k]) - height).abs();
+                let exact = f64::from(TwoFloat::from(zeta.get(k)) - height).abs();
                 worst = worst.max(exact / (1.0 + height.abs()));
                 compared += 1;
             }
