@@ -40,32 +40,32 @@ impl EtaAxis {
         [positive, if self.symmetric { 0..0 } else { self.negative(u) }]
     }
 
-    /// The same with η < 0 always, ascending, and in one range where u0 = 0. `begin` and `end` are the numbers of η ≥ 0 up
-    /// to u0 and to u1, as of [`Self::count`].
+    /// Whether the last η before the index `end` is ≥ 0 and up to u, or none is.
     #[inline(always)]
-    pub fn runs(&self, u: [f64; 2], begin: usize, end: usize) -> [Range<usize>; 2] {
-        let n = self.u.len();
-        let begin = if u[0] == 0.0 { 0 } else { begin };
-        let positive = self.first_positive + begin..self.first_positive + end;
-        let negative = if self.symmetric { n - positive.end..n - positive.start } else { self.negative(u) };
-        if u[0] == 0.0 { [negative.start..positive.end, 0..0] } else { [negative, positive] }
+    pub fn is_end(&self, u: f64, end: usize) -> bool {
+        end == self.first_positive || self.u[end - 1] <= u
     }
 
-    /// The number of η ≥ 0 up to u, found from the number for another u nearby.
+    /// The index after the last η ≥ 0 up to u, found from that for another u nearby.
     #[inline(always)]
-    pub fn count(&self, u: f64, near: usize) -> usize {
-        let right = &self.u[self.first_positive..];
-        if right.last().is_none_or(|&last| last <= u) {
-            return right.len();
+    pub fn end(&self, u: f64, near: usize) -> usize {
+        let mut end = near;
+        while end < self.u.len() && self.u[end] <= u {
+            end += 1;
         }
-        let mut count = near;
-        while count < right.len() && right[count] <= u {
-            count += 1;
+        while end > self.first_positive && self.u[end - 1] > u {
+            end -= 1;
         }
-        while count > 0 && right[count - 1] > u {
-            count -= 1;
+        end
+    }
+
+    /// The index of the first η < 0 up to u, where `end` is the one after the last η ≥ 0.
+    #[inline(always)]
+    pub fn begin(&self, u: f64, end: usize) -> usize {
+        if self.symmetric {
+            return self.u.len() - end;
         }
-        count
+        self.u[..self.first_positive].partition_point(|&value| value > u)
     }
 
     /// The indices of η < 0 of [`Self::ranges`].
@@ -106,16 +106,21 @@ mod tests {
             axis.mirror(&mut column);
             assert_eq!(column, axis.u);
 
-            let (mut column, mut begin) = (vec![f64::NAN; eta.len()], 0);
-            for interval in [[0.0, 1.0], [1.0, 4.0], [4.0, f64::INFINITY]] {
-                let end = axis.count(interval[1], begin);
-                for i in axis.runs(interval, begin, end).into_iter().flatten() {
-                    assert!(column[i].is_nan() && axis.u[i] <= interval[1], "{eta:?} {i}");
-                    column[i] = axis.u[i];
+            for u in [0.0, 0.2, 1.0, 4.0, 5.0, 20.0] {
+                let inside = |i: &usize| axis.u[*i] <= u;
+                for near in axis.first_positive..=eta.len() {
+                    let end = axis.end(u, near);
+                    assert!(
+                        axis.is_end(u, end) && (axis.begin(u, end)..end).all(|i| inside(&i)),
+                        "{eta:?} {u}"
+                    );
+                    assert_eq!(
+                        end - axis.begin(u, end),
+                        (0..eta.len()).filter(inside).count(),
+                        "{eta:?} {u}"
+                    );
                 }
-                begin = end;
             }
-            assert_eq!(column, axis.u);
         }
     }
 }

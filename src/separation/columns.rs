@@ -43,28 +43,22 @@ pub fn every(holds: impl Fn(usize) -> bool) -> bool {
 /// The largest value of a row, 0 where none is positive; what is not a number is passed over.
 #[inline(always)]
 pub fn largest(values: &Row) -> f64 {
-    let larger = |a: f64, b: f64| if b > a { b } else { a };
-    by_halves(row(|k| larger(0.0, values[k])), larger)
+    let mut most = row(|k| if values[k] > 0.0 { values[k] } else { 0.0 });
+    // By halves: one after the other would take as long as everything else.
+    let mut half = MANY;
+    while half > 1 {
+        half /= 2;
+        for k in 0..half {
+            most[k] = if most[k + half] > most[k] { most[k + half] } else { most[k] };
+        }
+    }
+    most[0]
 }
 
 /// The smallest magnitude in a row; what is not a number is passed over.
 #[inline(always)]
 pub fn smallest(values: &Row) -> f64 {
-    let smaller = |a: f64, b: f64| if b < a { b } else { a };
-    by_halves(row(|k| smaller(f64::INFINITY, values[k].abs())), smaller)
-}
-
-/// One value of all: one after the other would take as long as everything else.
-#[inline(always)]
-fn by_halves(mut values: Row, of_two: impl Fn(f64, f64) -> f64) -> f64 {
-    let mut half = MANY;
-    while half > 1 {
-        half /= 2;
-        for k in 0..half {
-            values[k] = of_two(values[k], values[k + half]);
-        }
-    }
-    values[0]
+    1.0 / largest(&row(|k| 1.0 / values[k].abs()))
 }
 
 /// Columns that pass the same branches in the same order, or each a span of its own.
@@ -118,9 +112,10 @@ impl<'a> Columns<'a> {
         let (wheel, section) = (&self.wheel, &evaluator.placement.rail.section);
         let mut index = wheel.first_piece(xi[MANY / 2])?;
         let rail_piece = section.piece_at(xi[MANY / 2])?;
-        let inside = |piece: &Piece| every(|k| (piece.xi[0] <= xi[k]) & (xi[k] <= piece.xi[1]));
-        if !inside(&wheel.section.pieces[index]) || !inside(rail_piece) {
-            return None;
+        for piece in [rail_piece, &wheel.section.pieces[index]] {
+            if !every(|k| (piece.xi[0] <= xi[k]) & (xi[k] <= piece.xi[1])) {
+                return None;
+            }
         }
         let rail = &section.branches[rail_piece.branch];
         self.contact = section.contact == Some(rail_piece.branch)
@@ -219,7 +214,6 @@ impl<'a> Columns<'a> {
             let rounding = ROUNDING_LEVEL * (rise + span.e[0][k]);
             demand.absolute.min(demand.relative * rise).max(rounding)
         });
-        let at = |share: f64| wheel.feet_by(span, &row(|k| run[k] * share));
         let u_max = &self.spans.last()?.u[1];
         let short = every(|k| span.u[1][k] - span.u[0][k] <= SHORT_SPAN * u_max[k]);
         let least = if short { least.min(2) } else { least };
@@ -229,12 +223,13 @@ impl<'a> Columns<'a> {
             coefficients.resize(begin + n, [0.0; MANY]);
             let q = &mut coefficients[begin..];
             for ((v, q), node) in v.iter_mut().zip(&mut *q).zip(nodes(n)) {
-                let feet = at(*node);
+                let feet = wheel.feet_by(span, &row(|k| run[k] * node));
                 *v = row(|k| feet.u[k] - span.u[0][k]);
                 *q = row(|k| feet.rise[k] / v[k]);
             }
             powers(&v[..n], q);
-            let inner = at(inner_extremum(n));
+            let share = inner_extremum(n);
+            let inner = wheel.feet_by(span, &row(|k| run[k] * share));
             let errors = [error(q, span, &end), error(q, span, &inner)];
             // An error that is no number is within no demand.
             if every(|k| errors[0][k] <= allowed[k] && errors[1][k] <= allowed[k]) {
@@ -380,12 +375,15 @@ impl<'a> WheelSurface<'a> {
         let [low, high] = &span.e;
         // The first is as good as if the profile were level: nothing but its slope is then to be found.
         let mut w = row(|k| span.w[k] - (sagitta(span.w[k], u[k]) - low[k]) * self.cos * self.cos);
+        let mut shrink = [1.0; MANY];
         for _ in 0..=STEPS {
             let runs = row(|k| sagitta(w[k], u[k]).max(low[k]).min(high[k]) - low[k]);
+            let runs = row(|k| runs[k] * shrink[k]);
             let feet = self.feet_by(span, &runs);
             if every(|k| ((feet.u[k] - u[k]).abs() <= (1.0 - NEARLY_COVERED) * u[k]) & (feet.w[k] > 0.0)) {
                 return Some(feet);
             }
+            shrink = row(|k| runs[k] / (feet.e[k] - low[k]));
             w = feet.w;
         }
         None

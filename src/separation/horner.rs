@@ -99,7 +99,8 @@ pub(super) fn horner<S: pulp::Simd, const N: usize, const FIRST: bool, const PAS
     let (end, long) = (u.len(), u.len() >= LONG_RUNS[usize::from(PAST)]);
     let begin_lines = if long { lead(out) } else { 0 };
     let first = begin_lines.next_multiple_of(S::F64_LANES);
-    for part in [0..first, last..end] {
+    let rest = if (end - begin_lines).is_multiple_of(S::F64_LANES) { end } else { last };
+    for part in [0..first, rest..end] {
         let (u, out) = (S::as_simd_f64s(&u[part.clone()]).0, S::as_mut_simd_f64s(&mut out[part]).0);
         for (s, &u) in out.iter_mut().zip(u) {
             *s = value::<S, N, FIRST>(simd, begin, &c, u);

@@ -58,7 +58,7 @@ impl<'a> Evaluator<'a> {
     pub fn new(placement: &'a Placement) -> Self {
         let skew = placement.skew.sin_cos();
         let versine = 2.0 * (placement.skew / 2.0).sin().powi(2);
-        Self { placement, wheel: WheelSurface::new(placement), spans: Vec::with_capacity(8), skew, versine }
+        Self { placement, wheel: WheelSurface::new(placement), spans: Vec::with_capacity(4), skew, versine }
     }
 
     /// s(ξ, η) \[mm\], negative where the bodies overlap; NaN where a body has no surface.

@@ -11,10 +11,10 @@ use super::axis::EtaAxis;
 use super::column::{NEARLY_COVERED, Span, WheelSurface};
 use super::columns::{Columns, MANY, Row};
 use super::grid::{BLOCK, Kernel};
-use super::horner::{OneRun, Run, per_degree};
+use super::horner::{Run, per_degree};
 use super::plan::nan_max;
 use super::skewed::SkewedColumn;
-use super::strip::{SpanRows, Strip, StripColumns};
+use super::strip::{SpanRows, Strip, StripColumns, WithRows};
 use crate::placement::Placement;
 
 /// Most coefficients of a column. A span that needs more is close to a vertical tangent, and is evaluated
@@ -81,7 +81,7 @@ impl<'a> Spectral<'a> {
             demand: Demand { absolute: TRUNCATION * demand.absolute, ..demand },
             coefficients,
             strips: &[],
-            spans: Vec::with_capacity(8),
+            spans: Vec::new(),
             rows: Vec::new(),
             span_rows: Vec::new(),
             past_caches: false,
@@ -255,7 +255,8 @@ impl pulp::WithSimd for EachColumn<'_, '_> {
     fn with_simd<S: pulp::Simd>(self, simd: S) {
         let Self { spectral, xi, out } = self;
         let (axis, length) = (spectral.axis, spectral.axis.eta.len());
-        let Spectral { evaluator, demand, coefficients, columns, rows, truncation, .. } = &mut *spectral;
+        let Spectral { evaluator, demand, coefficients, columns, rows, span_rows, truncation, .. } =
+            &mut *spectral;
         rows.clear();
         let mut taken = columns.take_each(evaluator, axis.reach * axis.reach, xi).unwrap_or([false; MANY]);
         if taken.contains(&true) {
@@ -264,16 +265,13 @@ impl pulp::WithSimd for EachColumn<'_, '_> {
                 None => taken = [false; MANY],
             }
         }
-        for (k, (&xi, out)) in xi.iter().zip(out.chunks_exact_mut(length)).enumerate() {
-            if taken[k] {
-                let mut c = [0.0; MOST_COEFFICIENTS];
-                for (c, row) in c.iter_mut().zip(&spectral.rows) {
-                    *c = row[k];
-                }
-                let base = spectral.columns.spans[0].base[k];
-                let run = OneRun::<S, true> { simd, begin: [base, 0.0], c: &c, u: &axis.u, out };
-                per_degree(spectral.rows.len(), run);
-            } else {
+        if taken.contains(&true) {
+            span_rows.resize(1, SpanRows::NONE);
+            span_rows[0].set(rows, &columns.spans[0].base);
+            per_degree(rows.len(), WithRows::<S, true, false> { simd, rows: span_rows, axis, out });
+        }
+        for ((&xi, out), taken) in xi.iter().zip(out.chunks_exact_mut(length)).zip(taken) {
+            if !taken {
                 spectral.column(xi, out);
             }
         }

@@ -1,7 +1,7 @@
 //! The columns of one strip: their quantities, and s from them, for many columns at once.
 
 use super::axis::EtaAxis;
-use super::columns::{MANY, Row, row};
+use super::columns::{MANY, MOST_SPANS, Row, row};
 use super::gap::midplane_gap;
 use super::horner::{PerDegree, horner, per_degree};
 use super::spectral::MOST_COEFFICIENTS;
@@ -15,8 +15,10 @@ pub struct Strip {
     pub xi: [f64; 2],
     /// How s at the beginning of the columns is known.
     pub(super) gap: Gap,
-    /// Of every span the number of coefficients of q.
-    pub(super) coefficients: Vec<usize>,
+    /// Number of spans.
+    pub(super) spans: usize,
+    /// Number of coefficients of q.
+    pub(super) coefficients: usize,
     /// Of every quantity the coefficients of t^(kept−1), …, t⁰; t from −1 to 1 over the interval.
     pub(super) powers: Vec<f64>,
     pub(super) kept: usize,
@@ -42,12 +44,19 @@ pub(super) struct SpanRows {
     c: [Row; MOST_COEFFICIENTS],
     /// s at u_0 \[mm\].
     base: Row,
-    /// Range of u \[mm²\].
-    u: [Row; 2],
+    /// u_0 \[mm²\].
+    u0: Row,
 }
 
 impl SpanRows {
-    pub(super) const NONE: Self = Self { c: [[0.0; MANY]; _], base: [0.0; MANY], u: [[0.0; MANY]; 2] };
+    pub(super) const NONE: Self = Self { c: [[0.0; MANY]; _], base: [0.0; MANY], u0: [0.0; MANY] };
+
+    /// Makes it the one span of columns that have no other.
+    #[inline(always)]
+    pub(super) fn set(&mut self, c: &[Row], base: &Row) {
+        self.c[..c.len()].copy_from_slice(c);
+        (self.base, self.u0) = (*base, [0.0; MANY]);
+    }
 }
 
 /// Neighbouring columns of one strip, compiled for each kind of machine. A struct, since closures may be left out of
@@ -69,15 +78,12 @@ impl<const PAST: bool> pulp::WithSimd for StripColumns<'_, PAST> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) {
         let Self { placement, strip, xi, axis, rows, out } = self;
-        rows.resize(strip.coefficients.len(), SpanRows::NONE);
+        rows.resize(strip.spans, SpanRows::NONE);
         strip.rows(placement, xi, axis.reach * axis.reach, rows);
-        let counts = &mut [0; MANY];
-        for (k, (rows, &n)) in rows.iter().zip(&strip.coefficients).enumerate() {
-            if k == 0 {
-                per_degree(n, SpanOfColumns::<S, true, PAST> { simd, rows, axis, counts, out });
-            } else {
-                per_degree(n, SpanOfColumns::<S, false, PAST> { simd, rows, axis, counts, out });
-            }
+        if strip.spans == 1 {
+            per_degree(strip.coefficients, WithRows::<S, true, PAST> { simd, rows, axis, out });
+        } else {
+            per_degree(strip.coefficients, WithRows::<S, false, PAST> { simd, rows, axis, out });
         }
     }
 }
@@ -89,9 +95,9 @@ impl Strip {
         let ([a, b], mut all) = (self.xi, [xi[0]; MANY]);
         all[..xi.len()].copy_from_slice(xi);
         let t = row(|k| ((all[k] - a) - (b - all[k])) / (b - a));
-        let mut powers = self.powers.chunks_exact(self.kept);
-        for (rows, &n) in rows.iter_mut().zip(&self.coefficients) {
-            let quantities = rows.c[..n].iter_mut().chain([&mut rows.base, &mut rows.u[0]]);
+        let (mut powers, n) = (self.powers.chunks_exact(self.kept), self.coefficients);
+        for rows in &mut *rows {
+            let quantities = rows.c[..n].iter_mut().chain([&mut rows.base, &mut rows.u0]);
             for (quantity, powers) in quantities.zip(&mut powers) {
                 let mut sum = [0.0f64; MANY];
                 for c in powers {
@@ -107,53 +113,72 @@ impl Strip {
             Gap::Computed => *base = all.map(|xi| midplane_gap(placement, xi)),
         }
         let mut end = [u_max; MANY];
-        for (rows, &n) in rows.iter_mut().zip(&self.coefficients).rev() {
-            rows.u[1] = end;
-            end = rows.u[0];
-            if self.coefficients.len() > 1 {
-                let shrink = row(|k| 1.0 / (rows.u[1][k] - rows.u[0][k]));
-                let mut power = [1.0; MANY];
-                for c in &mut rows.c[1..n] {
-                    power = row(|k| power[k] * shrink[k]);
-                    *c = row(|k| c[k] * power[k]);
+        for rows in rows.iter_mut().rev().filter(|_| self.spans > 1) {
+            let shrink = row(|k| 1.0 / (end[k] - rows.u0[k]));
+            let mut power = [1.0; MANY];
+            for c in &mut rows.c[1..n] {
+                power = row(|k| power[k] * shrink[k]);
+                *c = row(|k| c[k] * power[k]);
+            }
+            end = rows.u0;
+        }
+    }
+}
+
+/// Neighbouring columns of a strip with known spans, one if `SINGLE`.
+pub(super) struct WithRows<'a, S, const SINGLE: bool, const PAST: bool> {
+    pub simd: S,
+    pub rows: &'a [SpanRows],
+    pub axis: &'a EtaAxis,
+    pub out: &'a mut [f64],
+}
+
+impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> PerDegree for WithRows<'_, S, SINGLE, PAST> {
+    #[inline(always)]
+    fn run<const N: usize>(self) {
+        let Self { simd, rows, axis, out } = self;
+        let count = axis.eta.len();
+        let mut ends = [count; MOST_SPANS];
+        for (k, out) in out.chunks_exact_mut(count).enumerate() {
+            // Both halves of a symmetric axis: copying one takes longer than evaluating it.
+            if SINGLE {
+                horner::<S, N, true, PAST>(simd, [rows[0].base[k], 0.0], &rows[0].of_column(k), &axis.u, out);
+                continue;
+            }
+            for (span, rows) in rows.iter().enumerate().skip(1).rev() {
+                // A drawing's step is mostly between two values; other spans end near where they do in the column before.
+                let (u, beyond) = (rows.u0[k], ends[span]);
+                let near = if axis.is_end(u, beyond) { beyond } else { ends[span - 1] };
+                ends[span - 1] = axis.end(u, near).min(beyond);
+            }
+            // From the first η to the last one, so that memory is written in order.
+            let mut begin = 0;
+            let inwards =
+                (1..rows.len()).rev().map(|span| (span, axis.begin(rows[span].u0[k], ends[span - 1])));
+            let outwards = (0..rows.len()).map(|span| (span, ends[span]));
+            for (span, end) in inwards.chain(outwards) {
+                if end <= begin {
+                    continue;
                 }
+                // Whole vectors: what they hold beyond the span's end is overwritten by the next one.
+                let whole = begin + (end - begin).next_multiple_of(S::F64_LANES);
+                let (run, rows) = (begin..if whole <= count { whole } else { end }, &rows[span]);
+                let (u, out) = (&axis.u[run.clone()], &mut out[run]);
+                horner::<S, N, false, PAST>(simd, [rows.base[k], rows.u0[k]], &rows.of_column(k), u, out);
+                begin = end;
             }
         }
     }
 }
 
-/// One span of neighbouring columns.
-struct SpanOfColumns<'a, S, const FIRST: bool, const PAST: bool> {
-    simd: S,
-    rows: &'a SpanRows,
-    axis: &'a EtaAxis,
-    /// Numbers of η ≥ 0 up to the span's begin, then up to its end.
-    counts: &'a mut [usize; MANY],
-    out: &'a mut [f64],
-}
-
-impl<S: pulp::Simd, const FIRST: bool, const PAST: bool> PerDegree for SpanOfColumns<'_, S, FIRST, PAST> {
+impl SpanRows {
+    /// The coefficients of q of one column.
     #[inline(always)]
-    fn run<const N: usize>(self) {
-        let Self { simd, rows, axis, counts, out } = self;
-        let mut near = 0;
-        for (k, (out, count)) in out.chunks_exact_mut(axis.eta.len()).zip(counts).enumerate() {
-            let (u, begin) = ([rows.u[0][k], rows.u[1][k]], *count);
-            let end = axis.count(u[1], near).max(begin);
-            (near, *count) = (end, end);
-            // A drawing's step is mostly between two values.
-            if !FIRST && end == begin && axis.symmetric {
-                continue;
-            }
-            let mut c = [0.0; N];
-            for (c, row) in c.iter_mut().zip(&rows.c) {
-                *c = row[k];
-            }
-            // Both halves of a symmetric axis: copying one takes longer than evaluating it.
-            for run in axis.runs(u, begin, end) {
-                let (u_run, out) = (&axis.u[run.clone()], &mut out[run]);
-                horner::<S, N, FIRST, PAST>(simd, [rows.base[k], u[0]], &c, u_run, out);
-            }
+    fn of_column<const N: usize>(&self, k: usize) -> [f64; N] {
+        let mut c = [0.0; N];
+        for (c, row) in c.iter_mut().zip(&self.c) {
+            *c = row[k];
         }
+        c
     }
 }

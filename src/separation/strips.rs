@@ -10,8 +10,8 @@ use super::Evaluator;
 use super::column::WheelSurface;
 use super::columns::{Columns, MANY, MOST_SPANS, Row, largest, row, smallest};
 use super::spectral::{ROUNDING_LEVEL, Spectral};
-pub use super::strip::Strip;
 use super::strip::Gap;
+pub use super::strip::Strip;
 use crate::numerics::chebyshev;
 use crate::placement::Placement;
 
@@ -39,12 +39,20 @@ pub fn strips(spectral: &mut Spectral<'_>, placement: &Placement, xi: &[f64], u_
     let mut maker = Maker { spectral, u_max, strips: Vec::new() };
     let mut rest = xi;
     for pair in breaks(placement, u_max, window).windows(2) {
-        rest = &rest[rest.iter().take_while(|&&xi| xi <= pair[0]).count()..];
-        let (inside, beyond) = rest.split_at(rest.iter().take_while(|&&xi| xi < pair[1]).count());
+        rest = &rest[leading(rest, |xi| xi <= pair[0])..];
+        let (inside, beyond) = rest.split_at(leading(rest, |xi| xi < pair[1]));
         maker.divide([pair[0], pair[1]], inside);
         rest = beyond;
     }
     maker.strips
+}
+
+/// How many of the first columns it holds for; of a spline's many intervals most have one column or none.
+fn leading(xi: &[f64], holds: impl Fn(f64) -> bool) -> usize {
+    if xi.get(LEAST_COLUMNS).is_some_and(|&xi| holds(xi)) {
+        return xi.partition_point(|&xi| holds(xi));
+    }
+    xi.iter().take_while(|&&xi| holds(xi)).count()
 }
 
 /// The ξ at which a joint of either body enters or leaves the columns, and the window's own ends, in order.
@@ -129,8 +137,9 @@ impl Strip {
         let mut beginnings = Beginnings::new(evaluator, columns, short)?;
         let judged = &mut beginnings.judged;
         let single = columns.spans.len() == 1;
-        let (mut of_spans, mut truncation) = (Vec::with_capacity(columns.spans.len()), 0f64);
+        let (mut of_spans, mut truncation) = ([0; MOST_SPANS], 0f64);
         rows.clear();
+        rows.reserve(columns.spans.len() * (*coefficients + 2));
         for (k, span) in columns.spans.iter().enumerate() {
             let at = rows.len();
             let (n, error) = columns.polynomials(k, *demand, *coefficients, rows)?;
@@ -159,16 +168,23 @@ impl Strip {
                 judged.with(&change, allowed);
             }
             rows.extend(beginnings.series[k]);
-            of_spans.push(n);
+            of_spans[k] = n;
         }
-        let kept = judged.kept()?;
-        let mut powers = vec![0.0; rows.len() * kept];
-        for (powers, row) in powers.chunks_exact_mut(kept).zip(rows.iter()) {
-            for (power, value) in powers.iter_mut().rev().zip(chebyshev::to_powers(row, kept)) {
-                *power = value;
+        let (kept, spans) = (judged.kept()?, columns.spans.len());
+        let coefficients = of_spans.iter().fold(0, |most, &n| n.max(most));
+        // Columns are evaluated with as many coefficients for every span.
+        let mut powers = vec![0.0; spans * (coefficients + 2) * kept];
+        let mut rows = rows.iter();
+        for (powers, n) in powers.chunks_exact_mut((coefficients + 2) * kept).zip(of_spans) {
+            let quantities = (0..n).chain([coefficients, coefficients + 1]);
+            for (quantity, row) in quantities.zip(&mut rows) {
+                let powers = powers[quantity * kept..][..kept].iter_mut().rev();
+                for (power, value) in powers.zip(chebyshev::to_powers(row, kept)) {
+                    *power = value;
+                }
             }
         }
-        Some(Self { xi, gap: beginnings.gap, coefficients: of_spans, powers, kept, truncation })
+        Some(Self { xi, gap: beginnings.gap, spans, coefficients, powers, kept, truncation })
     }
 }
 

@@ -11,6 +11,9 @@ use crate::numerics::twice::Twice;
 /// Newton's steps are given up after this many: the branch is nearly vertical somewhere.
 const STEPS: usize = 10;
 
+/// A parabola's chord to its vertex is half as long as the tangent promised.
+const LEAST_STRETCH: f64 = 0.5;
+
 /// [`BranchPoint`] for several.
 #[derive(Debug, Clone, Copy)]
 pub enum BranchPoints<const N: usize> {
@@ -84,9 +87,9 @@ impl<'a, const N: usize> Branches<'a, N> {
         match self {
             Self::One(branch) => branch.points(xi),
             Self::Cubics(c) => {
-                let t = parameters(c.xi.iter().rev().copied(), c.t, xi, guesses(c.t, c.ends, xi))?;
-                let (_, slope) = values_and_slopes(c.xi.iter().rev().copied(), &t);
-                let (zeta, _) = values_and_slopes(c.zeta.iter().rev().copied(), &t);
+                let t = parameters(&c.xi, c.t, xi, guesses(c.t, c.ends, xi))?;
+                let (_, slope) = values_and_slopes(&c.xi, &t);
+                let (zeta, _) = values_and_slopes(&c.zeta, &t);
                 Some((BranchPoints::Polynomial { xi: *xi, t, rate: reciprocals(slope) }, zeta))
             }
         }
@@ -98,20 +101,21 @@ impl<'a, const N: usize> Branches<'a, N> {
         match (self, from) {
             (Self::One(branch), _) => branch.chords_from(from, to),
             (Self::Cubics(c), BranchPoints::Polynomial { xi, t, rate }) => {
-                chords([c.xi.iter().rev().copied(), c.zeta.iter().rev().copied()], c.t, [xi, t, rate], to)
+                chords([&c.xi, &c.zeta], c.t, [xi, t, rate], to)
             }
             _ => None,
         }
     }
 
     /// The slopes of chords from the points, and how long they are as multiples of `runs` along ξ, which is about 1. With no
-    /// iteration: on a polynomial the other end is where t has changed by runs × dt/dξ.
+    /// iteration: on a polynomial the other end is where t has changed by runs × dt/dξ; NaN where that may be beyond a vertical
+    /// tangent.
     #[inline(always)]
     pub fn chords_near(&self, from: &BranchPoints<N>, runs: &[f64; N]) -> [[f64; N]; 2] {
         match (self, from) {
             (Self::One(branch), _) => branch.chords_near(from, runs),
             (Self::Cubics(c), BranchPoints::Polynomial { t, rate, .. }) => {
-                chords_near([c.xi.iter().rev().copied(), c.zeta.iter().rev().copied()], [t, rate], runs)
+                chords_near([&c.xi, &c.zeta], [t, rate], runs)
             }
             _ => [[f64::NAN; N]; 2],
         }
@@ -133,9 +137,9 @@ impl Branch {
             }
             BranchShape::Polynomial(p) => {
                 let (range, ends) = (rows(p.t), rows(p.ends));
-                let t = parameters(descending(&p.xi), range, xi, guesses(range, ends, xi))?;
-                let (_, slope) = values_and_slopes(descending(&p.xi), &t);
-                let (zeta, _) = values_and_slopes(descending(&p.zeta), &t);
+                let t = parameters(p.xi.as_slice(), range, xi, guesses(range, ends, xi))?;
+                let (_, slope) = values_and_slopes(p.xi.as_slice(), &t);
+                let (zeta, _) = values_and_slopes(p.zeta.as_slice(), &t);
                 Some((BranchPoints::Polynomial { xi: *xi, t, rate: reciprocals(slope) }, zeta))
             }
         }
@@ -168,7 +172,7 @@ impl Branch {
                 Some(slope)
             }
             (BranchShape::Polynomial(p), BranchPoints::Polynomial { xi, t, rate }) => {
-                chords([descending(&p.xi), descending(&p.zeta)], rows(p.t), [xi, t, rate], to)
+                chords([p.xi.as_slice(), p.zeta.as_slice()], rows(p.t), [xi, t, rate], to)
             }
             // Points of another branch have no chords on this one.
             _ => None,
@@ -188,7 +192,7 @@ impl Branch {
                 [slope, [1.0; N]]
             }
             (BranchShape::Polynomial(p), BranchPoints::Polynomial { t, rate, .. }) => {
-                chords_near([descending(&p.xi), descending(&p.zeta)], [t, rate], runs)
+                chords_near([p.xi.as_slice(), p.zeta.as_slice()], [t, rate], runs)
             }
             // Points of another branch have no chords on this one.
             _ => [[f64::NAN; N]; 2],
@@ -247,8 +251,8 @@ impl ArcBranch {
         let (one, sin_a, cos_a) = (Twice::from(1.0), Twice::from(self.sin), Twice::from(self.cos));
         let [xi_a, zeta_a] = self.anchor;
         let mut zeta = Exact { high: [0.0; N], low: [0.0; N] };
-        for k in 0..N {
-            let run = Twice::sum(xi[k], -xi_a);
+        for (k, &xi) in xi.iter().enumerate() {
+            let run = Twice::sum(xi, -xi_a);
             let turn =
                 if self.radius.is_finite() { run / Twice::from(self.radius) } else { Twice::from(0.0) };
             let sin = turn + sin_a;
@@ -273,10 +277,39 @@ fn reciprocals<const N: usize>(mut values: [f64; N]) -> [f64; N] {
     values
 }
 
-/// Coefficients that are the same for all, the highest first.
-#[inline(always)]
-fn descending<const N: usize>(c: &[f64]) -> impl Iterator<Item = [f64; N]> + Clone {
-    c.iter().rev().map(|&c| [c; N])
+/// The coefficients of several polynomials. A trait and not iterators, whose closures may be left out of line.
+trait Coefficients<const N: usize>: Copy {
+    /// How many they have.
+    fn count(self) -> usize;
+
+    /// Those of t^k.
+    fn row(self, k: usize) -> [f64; N];
+}
+
+/// The same for all.
+impl<const N: usize> Coefficients<N> for &[f64] {
+    #[inline(always)]
+    fn count(self) -> usize {
+        self.len()
+    }
+
+    #[inline(always)]
+    fn row(self, k: usize) -> [f64; N] {
+        [self[k]; N]
+    }
+}
+
+/// Each its own.
+impl<const N: usize> Coefficients<N> for &[[f64; N]; CUBIC] {
+    #[inline(always)]
+    fn count(self) -> usize {
+        CUBIC
+    }
+
+    #[inline(always)]
+    fn row(self, k: usize) -> [f64; N] {
+        self[k]
+    }
 }
 
 /// t where ξ is on the line through the ends.
@@ -293,7 +326,7 @@ fn guesses<const N: usize>(t: [[f64; N]; 2], ends: [[f64; N]; 2], xi: &[f64; N])
 /// t with ξ(t) = ξ by Newton's steps from guesses within a range.
 #[inline(always)]
 fn parameters<const N: usize>(
-    c: impl Iterator<Item = [f64; N]> + Clone,
+    c: impl Coefficients<N>,
     [low, high]: [[f64; N]; 2],
     xi: &[f64; N],
     guess: [f64; N],
@@ -305,7 +338,7 @@ fn parameters<const N: usize>(
         t[k] = within(t[k], low[k], high[k]);
     }
     for _ in 0..STEPS {
-        let (value, slope) = values_and_slopes(c.clone(), &t);
+        let (value, slope) = values_and_slopes(c, &t);
         for k in 0..N {
             let next = within(t[k] - (value[k] - xi[k]) / slope[k], low[k], high[k]);
             let step = (next - t[k]).abs();
@@ -332,7 +365,7 @@ fn within(value: f64, low: f64, high: f64) -> f64 {
 /// The slopes of chords from points (ξ, t, dt/dξ) to abscissae, of curves with coefficients of ξ and ζ.
 #[inline(always)]
 fn chords<const N: usize>(
-    [c_xi, c_zeta]: [impl Iterator<Item = [f64; N]> + Clone; 2],
+    [c_xi, c_zeta]: [impl Coefficients<N>; 2],
     range: [[f64; N]; 2],
     [xi, t, rate]: [&[f64; N]; 3],
     to: &[f64; N],
@@ -341,7 +374,7 @@ fn chords<const N: usize>(
     for k in 0..N {
         guess[k] += (to[k] - xi[k]) * rate[k];
     }
-    let t_to = parameters(c_xi.clone(), range, to, guess)?;
+    let t_to = parameters(c_xi, range, to, guess)?;
     let (mut rise, run) = (differences(c_zeta, t, &t_to), differences(c_xi, t, &t_to));
     for k in 0..N {
         rise[k] /= run[k];
@@ -352,7 +385,7 @@ fn chords<const N: usize>(
 /// As [`Branches::chords_near`], from points (t, dt/dξ) of curves with coefficients of ξ and ζ.
 #[inline(always)]
 fn chords_near<const N: usize>(
-    [c_xi, c_zeta]: [impl Iterator<Item = [f64; N]>; 2],
+    [c_xi, c_zeta]: [impl Coefficients<N>; 2],
     [t, rate]: [&[f64; N]; 2],
     runs: &[f64; N],
 ) -> [[f64; N]; 2] {
@@ -364,18 +397,17 @@ fn chords_near<const N: usize>(
     for k in 0..N {
         slope[k] /= stretch[k];
         stretch[k] *= rate[k];
+        stretch[k] = if stretch[k] > LEAST_STRETCH { stretch[k] } else { f64::NAN };
     }
     [slope, stretch]
 }
 
-/// Values and first derivatives; the highest coefficients first.
+/// Values and first derivatives.
 #[inline(always)]
-fn values_and_slopes<const N: usize>(
-    c: impl Iterator<Item = [f64; N]>,
-    t: &[f64; N],
-) -> ([f64; N], [f64; N]) {
+fn values_and_slopes<const N: usize>(c: impl Coefficients<N>, t: &[f64; N]) -> ([f64; N], [f64; N]) {
     let (mut value, mut slope) = ([0f64; N], [0f64; N]);
-    for c in c {
+    for power in (0..c.count()).rev() {
+        let c = c.row(power);
         for k in 0..N {
             slope[k] = slope[k].mul_add(t[k], value[k]);
             value[k] = value[k].mul_add(t[k], c[k]);
@@ -408,17 +440,16 @@ fn exact_values<const N: usize>(c: &[TwoFloat], t: &Exact<N>) -> (Exact<N>, [f64
     (exact, slope)
 }
 
-/// [`crate::numerics::polynomial::divided_difference`] for several; the highest coefficients first.
+/// [`crate::numerics::polynomial::divided_difference`] for several.
 #[inline(always)]
-fn differences<const N: usize>(c: impl Iterator<Item = [f64; N]>, a: &[f64; N], b: &[f64; N]) -> [f64; N] {
-    let (mut quotient, mut sum, mut before) = ([0f64; N], [0f64; N], [0f64; N]);
-    // The last one, of t⁰, has no part in it: each counts when the next is there.
-    for c in c {
+fn differences<const N: usize>(c: impl Coefficients<N>, a: &[f64; N], b: &[f64; N]) -> [f64; N] {
+    let (mut quotient, mut sum) = ([0f64; N], [0f64; N]);
+    for power in (1..c.count()).rev() {
+        let c = c.row(power);
         for k in 0..N {
-            sum[k] = sum[k].mul_add(b[k], before[k]);
             quotient[k] = quotient[k].mul_add(a[k], c[k]);
+            sum[k] = sum[k].mul_add(b[k], quotient[k]);
         }
-        before = quotient;
     }
     sum
 }
