@@ -469,18 +469,30 @@ mod tests {
             let (xi, to) = ([at(0.1), at(0.5), at(0.9)], [at(0.3), at(0.500001), at(0.95)]);
             let Some((points, heights)) = branch.points(&xi) else { continue };
             let Some(chords) = branch.chords_from(&points, &to) else { continue };
+            let [near, stretch] = branch.chords_near(&points, &[0, 1, 2].map(|k| to[k] - xi[k]));
             let zeta = branch.exact_heights(&xi, &points);
             for k in 0..3 {
                 let (point, height) = branch.point(xi[k]);
                 let chord = branch.chord_from(&point, to[k]);
                 worst = worst.max((heights[k] - height).abs() / (1.0 + height.abs()));
                 worst = worst.max((chords[k] - chord).abs() / (1.0 + chord * chord));
+                let other = branch.chord_from(&point, xi[k] + (to[k] - xi[k]) * stretch[k]);
+                worst = worst.max((near[k] - other).abs() / (1.0 + other * other));
                 let exact = f64::from(TwoFloat::from(zeta.get(k)) - height).abs();
                 worst = worst.max(exact / (1.0 + height.abs()));
                 compared += 1;
             }
         }
         (worst, compared)
+    }
+
+    #[test]
+    fn a_chord_past_a_vertical_tangent_is_no_number() {
+        // ξ = t − t²/2, vertical at t = 1; ζ = t/10.
+        let curve = [&[0.0, 1.0, -0.5][..], &[0.0, 0.1][..]];
+        let [slope, stretch] = chords_near(curve, [&[0.0; 2], &[1.0; 2]], &[0.4, 1.2]);
+        assert!((stretch[0] - 0.8).abs() < 1e-15 && (slope[0] - 0.125).abs() < 1e-15);
+        assert!(stretch[1].is_nan());
     }
 
     #[test]
