@@ -4,7 +4,7 @@
 use super::Evaluator;
 use super::column::{LAST_STEP, NEARLY_COVERED, STEPS, WheelSurface, sagitta};
 use super::gap::{contact_gap, contact_gaps};
-use super::spectral::{Demand, MOST_COEFFICIENTS, ROUNDING_LEVEL, inner_extremum, nodes, powers};
+use super::spectral::{Demand, MOST_COEFFICIENTS, ROUNDING_LEVEL, SHORT_SPAN, inner_extremum, nodes, powers};
 use crate::numerics::chebyshev;
 use crate::profile::{BranchPoints, Branches, Piece, Section};
 
@@ -13,9 +13,6 @@ pub const MANY: usize = chebyshev::POINTS;
 
 /// Most spans of columns that are computed at once.
 pub const MOST_SPANS: usize = 3;
-
-/// Below this share of the columns' u a span, mostly a drawing's step, is so short that two coefficients are a good first guess.
-const SHORT_SPAN: f64 = 0.01;
 
 /// A quantity of all columns.
 pub type Row = [f64; MANY];
@@ -207,8 +204,7 @@ impl<'a> Columns<'a> {
         coefficients: &mut Vec<Row>,
     ) -> Option<(usize, f64)> {
         let (wheel, span) = (&self.wheel, &self.spans[span]);
-        let end = wheel.feet_near(span, &span.u[1])?;
-        let run: Row = row(|k| end.e[k] - span.e[0][k]);
+        let (end, run) = wheel.feet_near(span, &span.u[1])?;
         let allowed = row(|k| {
             let rise = end.rise[k].abs();
             let rounding = ROUNDING_LEVEL * (rise + span.e[0][k]);
@@ -369,9 +365,9 @@ impl<'a> WheelSurface<'a> {
         Feet { e, rise, w, u }
     }
 
-    /// Points near u, as [`Self::foot_near`]; `None` where one is not.
+    /// Points near u, as [`Self::foot_near`], and the runs that [`Self::feet_by`] finds them by; `None` where one is not.
     #[inline(always)]
-    fn feet_near(&self, span: &SpanColumns<'_>, u: &Row) -> Option<Feet> {
+    fn feet_near(&self, span: &SpanColumns<'_>, u: &Row) -> Option<(Feet, Row)> {
         let [low, high] = &span.e;
         // The first is as good as if the profile were level: nothing but its slope is then to be found.
         let mut w = row(|k| span.w[k] - (sagitta(span.w[k], u[k]) - low[k]) * self.cos * self.cos);
@@ -381,7 +377,7 @@ impl<'a> WheelSurface<'a> {
             let runs = row(|k| runs[k] * shrink[k]);
             let feet = self.feet_by(span, &runs);
             if every(|k| ((feet.u[k] - u[k]).abs() <= (1.0 - NEARLY_COVERED) * u[k]) & (feet.w[k] > 0.0)) {
-                return Some(feet);
+                return Some((feet, runs));
             }
             shrink = row(|k| runs[k] / (feet.e[k] - low[k]));
             w = feet.w;

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::approximate::{Parabolic, Quadratic};
 use super::axis::EtaAxis;
+use super::columns::MANY;
 use super::pointwise::Pointwise;
 use super::report_newton::ReportNewton;
 use super::spectral::{Demand, Spectral};
@@ -13,7 +14,7 @@ use super::strips::{Strip, strips};
 use crate::placement::Placement;
 
 /// Columns of one block: the unit of work of a thread.
-pub(super) const BLOCK: usize = 16;
+const BLOCK: usize = MANY;
 
 /// Up to so many points are not worth waking another thread, some 50 µs: of whole columns, and of points one by one.
 const FEW_POINTS: [usize; 2] = [65536, 4096];

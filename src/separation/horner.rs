@@ -8,8 +8,8 @@ use super::stream;
 /// Values of the widest vector, and of a line of the cache.
 const LINE: usize = 8;
 
-/// Runs from these lengths on are stored line by line of the cache: in the caches, where only the first has them whole, and past
-/// them.
+/// Runs from these lengths on, of arrays in the caches and past them, are stored line by line of the cache. Grids of shorter ones
+/// are in the second cache, where that gains nothing.
 const LONG_RUNS: [usize; 2] = [512, 64];
 
 /// Work that is compiled for each number of coefficients, so that its innermost loop is unrolled.
@@ -52,12 +52,12 @@ impl pulp::WithSimd for Run<'_> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) {
         let Self { fit, u, out } = self;
-        per_degree(fit.n, OneRun::<S, false> { simd, begin: [fit.base, fit.u0], c: &fit.c, u, out });
+        per_degree(fit.n, OneRun { simd, begin: [fit.base, fit.u0], c: &fit.c, u, out });
     }
 }
 
 /// A run of u by at least N coefficients.
-pub(super) struct OneRun<'a, S, const FIRST: bool> {
+pub(super) struct OneRun<'a, S> {
     pub simd: S,
     pub begin: [f64; 2],
     pub c: &'a [f64],
@@ -65,12 +65,12 @@ pub(super) struct OneRun<'a, S, const FIRST: bool> {
     pub out: &'a mut [f64],
 }
 
-impl<S: pulp::Simd, const FIRST: bool> PerDegree for OneRun<'_, S, FIRST> {
+impl<S: pulp::Simd> PerDegree for OneRun<'_, S> {
     #[inline(always)]
     fn run<const N: usize>(self) {
         let mut c = [0.0; N];
         c.copy_from_slice(&self.c[..N]);
-        horner::<S, N, FIRST, false>(self.simd, self.begin, &c, self.u, self.out);
+        horner::<S, N, false, false>(self.simd, self.begin, &c, self.u, self.out);
     }
 }
 

@@ -141,7 +141,7 @@ impl pulp::WithSimd for Interval<'_, '_, '_> {
         if c.len() > MOST_COEFFICIENTS || !c.iter().all(|c| c.is_finite()) {
             return None;
         }
-        per_degree(c.len(), OneRun::<S, false> { simd, begin: [powers[0], centre], c, u: eta, out });
+        per_degree(c.len(), OneRun { simd, begin: [powers[0], centre], c, u: eta, out });
         column.error = column.error.max(dropped);
         Some(size)
     }

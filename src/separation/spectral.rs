@@ -10,7 +10,7 @@ use super::Evaluator;
 use super::axis::EtaAxis;
 use super::column::{NEARLY_COVERED, Span, WheelSurface};
 use super::columns::{Columns, MANY, Row};
-use super::grid::{BLOCK, Kernel};
+use super::grid::Kernel;
 use super::horner::{Run, per_degree};
 use super::plan::nan_max;
 use super::skewed::SkewedColumn;
@@ -20,6 +20,10 @@ use crate::placement::Placement;
 /// Most coefficients of a column. A span that needs more is close to a vertical tangent, and is evaluated
 /// point-wise.
 pub const MOST_COEFFICIENTS: usize = 12;
+
+/// A span below this share of its column's u, mostly a drawing's step, starts with two coefficients: more are mostly not needed, and
+/// their divided differences are rounding.
+pub(super) const SHORT_SPAN: f64 = 0.01;
 
 /// Share of a quantity that counts as rounding: more coefficients would not lower its error.
 pub(super) const ROUNDING_LEVEL: f64 = 4.0 * f64::EPSILON;
@@ -108,7 +112,8 @@ impl<'a> Spectral<'a> {
         let allowed = self.demand.absolute.min(self.demand.relative * end.rise.abs());
         // A short span's rise is the difference of sagittae that are larger.
         let rounding = ROUNDING_LEVEL * (end.rise.abs() + span.e[0]);
-        for n in least..=MOST_COEFFICIENTS {
+        let short = u_end - span.u[0] <= SHORT_SPAN * u_max;
+        for n in if short { least.min(2) } else { least }..=MOST_COEFFICIENTS {
             let c = interpolate(wheel, xi, span, end.e, n);
             let fit = ColumnPolynomial { base: 0.0, u0: span.u[0], c, n, error: 0.0 };
             let inner = wheel.foot(xi, span, span.e[0] + (end.e - span.e[0]) * inner_extremum(n));
@@ -206,7 +211,7 @@ impl Kernel for Spectral<'_> {
             let next = self.strips.get(beyond);
             let strip = next.filter(|strip| strip.xi[0] < first);
             let count = match (strip, next) {
-                (Some(strip), _) => rest.partition_point(|&xi| xi < strip.xi[1]).min(BLOCK),
+                (Some(strip), _) => rest.partition_point(|&xi| xi < strip.xi[1]).min(MANY),
                 (None, Some(next)) => rest.partition_point(|&xi| xi <= next.xi[0]).min(MANY),
                 (None, None) => rest.len().min(MANY),
             };
