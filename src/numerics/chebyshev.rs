@@ -50,10 +50,10 @@ pub fn coefficients(values: &[f64; POINTS]) -> [f64; POINTS] {
     for j in 0..HALF {
         // The points at t and −t count together.
         let (first, other) = (values[j], values[POINTS - 1 - j]);
-        even = plus(even, first + other, &of_even[j]);
-        odd = plus(odd, first - other, &of_odd[j]);
+        even = add_multiple(even, first + other, &of_even[j]);
+        odd = add_multiple(odd, first - other, &of_odd[j]);
     }
-    in_turn(&even, &odd)
+    interleaved(&even, &odd)
 }
 
 /// The coefficients of t^k from those of T_k, of which the first `kept` count. Loses digits where they fall by less than about
@@ -63,17 +63,17 @@ pub fn to_powers(c: &[f64; POINTS], kept: usize) -> [f64; POINTS] {
     let [of_even, of_odd] = &*POWERS;
     let (mut even, mut odd) = ([0.0; HALF], [0.0; HALF]);
     for j in 0..kept.div_ceil(2) {
-        even = plus(even, c[2 * j], &of_even[j]);
+        even = add_multiple(even, c[2 * j], &of_even[j]);
     }
     for j in 0..kept / 2 {
-        odd = plus(odd, c[2 * j + 1], &of_odd[j]);
+        odd = add_multiple(odd, c[2 * j + 1], &of_odd[j]);
     }
-    in_turn(&even, &odd)
+    interleaved(&even, &odd)
 }
 
 /// sum + factor × row.
 #[inline(always)]
-fn plus(mut sum: [f64; HALF], factor: f64, row: &[f64; HALF]) -> [f64; HALF] {
+fn add_multiple(mut sum: [f64; HALF], factor: f64, row: &[f64; HALF]) -> [f64; HALF] {
     for k in 0..HALF {
         sum[k] = row[k].mul_add(factor, sum[k]);
     }
@@ -82,7 +82,7 @@ fn plus(mut sum: [f64; HALF], factor: f64, row: &[f64; HALF]) -> [f64; HALF] {
 
 /// Even and odd in turn.
 #[inline(always)]
-fn in_turn(even: &[f64; HALF], odd: &[f64; HALF]) -> [f64; POINTS] {
+fn interleaved(even: &[f64; HALF], odd: &[f64; HALF]) -> [f64; POINTS] {
     let mut all = [0.0; POINTS];
     for k in 0..HALF {
         (all[2 * k], all[2 * k + 1]) = (even[k], odd[k]);

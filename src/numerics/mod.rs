@@ -3,6 +3,7 @@
 pub mod chebyshev;
 pub mod elliptic;
 pub mod polynomial;
+pub mod polynomials;
 pub mod quadrature;
 pub mod roots;
 pub mod twice;

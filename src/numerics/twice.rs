@@ -119,6 +119,36 @@ impl std::ops::Div for Twice {
     }
 }
 
+/// Several numbers in twice the working precision: high and low parts apart, as vector code wants them.
+#[derive(Debug, Clone, Copy)]
+pub struct Twices<const N: usize> {
+    /// The values, rounded.
+    pub high: [f64; N],
+    /// What rounding took.
+    pub low: [f64; N],
+}
+
+impl<const N: usize> From<[f64; N]> for Twices<N> {
+    #[inline(always)]
+    fn from(high: [f64; N]) -> Self {
+        Self { high, low: [0.0; N] }
+    }
+}
+
+impl<const N: usize> Twices<N> {
+    /// The k-th of them.
+    #[inline(always)]
+    pub fn get(&self, k: usize) -> Twice {
+        Twice { high: self.high[k], low: self.low[k] }
+    }
+
+    /// Makes it the k-th.
+    #[inline(always)]
+    pub fn set(&mut self, k: usize, value: Twice) {
+        (self.high[k], self.low[k]) = (value.high, value.low);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

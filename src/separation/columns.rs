@@ -4,9 +4,10 @@
 use super::Evaluator;
 use super::column::{LAST_STEP, NEARLY_COVERED, STEPS, WheelSurface, sagitta};
 use super::gap::{contact_gap, contact_gaps};
-use super::spectral::{Demand, MOST_COEFFICIENTS, ROUNDING_LEVEL, SHORT_SPAN, inner_extremum, nodes, powers};
+use super::plan::nan_max;
+use super::spectral::{Demand, MOST_COEFFICIENTS, ROUNDING_LEVEL, extrema, first_count, nodes, powers};
 use crate::numerics::chebyshev;
-use crate::profile::{BranchPoints, Branches, Piece, Section};
+use crate::profile::{Branch, BranchPoints, Branches, Piece, Section};
 
 /// Columns that are computed at once: two of the widest vectors, and points of an interpolant.
 pub const MANY: usize = chebyshev::POINTS;
@@ -37,10 +38,10 @@ pub fn every(holds: impl Fn(usize) -> bool) -> bool {
     missed == 0
 }
 
-/// The largest value of a row, 0 where none is positive; what is not a number is passed over.
+/// The largest magnitude in a row; what is not a number is passed over.
 #[inline(always)]
 pub fn largest(values: &Row) -> f64 {
-    let mut most = row(|k| if values[k] > 0.0 { values[k] } else { 0.0 });
+    let mut most = row(|k| if values[k].abs() > 0.0 { values[k].abs() } else { 0.0 });
     // By halves: one after the other would take as long as everything else.
     let mut half = MANY;
     while half > 1 {
@@ -52,10 +53,10 @@ pub fn largest(values: &Row) -> f64 {
     most[0]
 }
 
-/// The smallest magnitude in a row; what is not a number is passed over.
+/// The smallest magnitude in a row, to two roundings; what is not a number is passed over.
 #[inline(always)]
 pub fn smallest(values: &Row) -> f64 {
-    1.0 / largest(&row(|k| 1.0 / values[k].abs()))
+    1.0 / largest(&row(|k| 1.0 / values[k]))
 }
 
 /// Columns that pass the same branches in the same order, or each a span of its own.
@@ -122,7 +123,8 @@ impl<'a> Columns<'a> {
         let mut rail_height: Option<Row> = None;
         loop {
             let before = self.spans.last().map(|before| before.u[1]);
-            let mut here = wheel.span_at_many(&xi, index, before)?;
+            let piece = &wheel.section.pieces[index];
+            let mut here = wheel.span_at_many(&xi, piece, before)?;
             let [u0, u1] = &mut here.u;
             let last = every(|k| u1[k] >= u_max);
             if last {
@@ -133,8 +135,7 @@ impl<'a> Columns<'a> {
                 return None;
             }
             here.base = if self.contact && self.spans.is_empty() {
-                let branch = &wheel.section.branches[wheel.section.pieces[index].branch];
-                contact_gaps(rail, branch, &xi, (&here.points, &here.height))?
+                contact_gaps(rail, &wheel.section.branches[piece.branch], &xi, (&here.points, &here.height))?
             } else {
                 if rail_height.is_none() {
                     rail_height = Some(rail.points(&xi)?.1);
@@ -210,12 +211,10 @@ impl<'a> Columns<'a> {
             let rounding = ROUNDING_LEVEL * (rise + span.e[0][k]);
             demand.absolute.min(demand.relative * rise).max(rounding)
         });
-        let u_max = &self.spans.last()?.u[1];
-        let short = every(|k| span.u[1][k] - span.u[0][k] <= SHORT_SPAN * u_max[k]);
-        let least = if short { least.min(2) } else { least };
+        let (length, u_max) = (row(|k| span.u[1][k] - span.u[0][k]), self.spans.last()?.u[1][0]);
         let begin = coefficients.len();
         let mut v = [[0.0; MANY]; MOST_COEFFICIENTS];
-        for n in least..=MOST_COEFFICIENTS {
+        for n in first_count(least, largest(&length), u_max)..=MOST_COEFFICIENTS {
             coefficients.resize(begin + n, [0.0; MANY]);
             let q = &mut coefficients[begin..];
             for ((v, q), node) in v.iter_mut().zip(&mut *q).zip(nodes(n)) {
@@ -224,12 +223,14 @@ impl<'a> Columns<'a> {
                 *q = row(|k| feet.rise[k] / v[k]);
             }
             powers(&v[..n], q);
-            let share = inner_extremum(n);
-            let inner = wheel.feet_by(span, &row(|k| run[k] * share));
-            let errors = [error(q, span, &end), error(q, span, &inner)];
+            let mut errors = error(q, span, &end);
+            for share in extrema(n) {
+                let inner = error(q, span, &wheel.feet_by(span, &row(|k| run[k] * share)));
+                errors = row(|k| nan_max(errors[k], inner[k]));
+            }
             // An error that is no number is within no demand.
-            if every(|k| errors[0][k] <= allowed[k] && errors[1][k] <= allowed[k]) {
-                return Some((n, largest(&errors[0]).max(largest(&errors[1]))));
+            if every(|k| errors[k] <= allowed[k]) {
+                return Some((n, largest(&errors)));
             }
         }
         None
@@ -279,29 +280,24 @@ impl<'a> WheelSurface<'a> {
         found
     }
 
-    /// One span of all columns to the end of its piece, from the midplane or from u `before` that the column before had at its
+    /// One span of all columns to the end of its piece, from the midplane or from u `before` that the span before had at its
     /// end; s not yet known.
     #[inline(always)]
-    fn span_at_many(&self, xi: &Row, piece: usize, before: Option<Row>) -> Option<SpanColumns<'a>> {
-        let piece = &self.section.pieces[piece];
+    fn span_at_many(&self, xi: &Row, piece: &Piece, before: Option<Row>) -> Option<SpanColumns<'a>> {
         let branch = &self.section.branches[piece.branch];
-        let near = self.sides()[0];
-        let (e0, points, on_profile) = if before.is_some() {
+        let mut span = if before.is_some() {
+            let near = self.sides()[0];
             let (point, height) = &piece.ends[near];
             let e0 = row(|k| (xi[k] - piece.xi[near]) / self.sin);
-            (e0, branch.repeated(point), [*height; MANY])
+            self.span_from(xi, branch, e0, (branch.repeated(point), [*height; MANY]))
         } else {
-            let (points, heights) = branch.points(xi)?;
-            ([0.0; MANY], points, heights)
+            self.span_from(xi, branch, [0.0; MANY], branch.points(xi)?)
         };
-        let height = row(|k| on_profile[k] + e0[k] * self.cos);
-        let w = row(|k| self.axle_distance(xi[k], height[k]));
-        let (mut e1, mut u1) = ([0.0; MANY], [0.0; MANY]);
-        for k in 0..MANY {
-            [e1[k], u1[k]] = self.leaves(xi[k], piece);
+        span.u[0] = before.unwrap_or([0.0; MANY]);
+        for (k, &xi) in xi.iter().enumerate() {
+            [span.e[1][k], span.u[1][k]] = self.leaves(xi, piece);
         }
-        let (branches, u0) = (Branches::One(branch), before.unwrap_or([0.0; MANY]));
-        Some(SpanColumns { branches, points, base: [f64::NAN; MANY], height, u: [u0, u1], e: [e0, e1], w })
+        Some(span)
     }
 
     /// The spans of columns at ξ over one piece, each from where it enters the piece; s and the ends not known.
@@ -310,12 +306,23 @@ impl<'a> WheelSurface<'a> {
         let branch = &self.section.branches[piece.branch];
         let [low, high] = piece.xi;
         let begin = row(|k| xi[k].max(low).min(high));
-        let (points, heights) = branch.points(&begin)?;
         let e0 = row(|k| if xi[k] == begin[k] { 0.0 } else { (xi[k] - begin[k]) / self.sin });
-        let height = row(|k| heights[k] + e0[k] * self.cos);
+        Some(self.span_from(xi, branch, e0, branch.points(&begin)?))
+    }
+
+    /// The spans that begin at points of a branch with these heights, where the sagittae are e_0.
+    #[inline(always)]
+    fn span_from(
+        &self,
+        xi: &Row,
+        branch: &'a Branch,
+        e0: Row,
+        (points, on_profile): (BranchPoints<MANY>, Row),
+    ) -> SpanColumns<'a> {
+        let height = row(|k| on_profile[k] + e0[k] * self.cos);
         let w = row(|k| self.axle_distance(xi[k], height[k]));
         let (branches, base, u) = (Branches::One(branch), [f64::NAN; MANY], [[f64::NAN; MANY]; 2]);
-        Some(SpanColumns { branches, points, base, height, u, e: [e0, [f64::INFINITY; MANY]], w })
+        SpanColumns { branches, points, base, height, u, e: [e0, [f64::INFINITY; MANY]], w }
     }
 
     /// The points at u, as [`Self::foot_at`]; `None` where one is not found by Newton's steps.
@@ -346,20 +353,21 @@ impl<'a> WheelSurface<'a> {
     #[inline(always)]
     fn feet(&self, xi: &Row, span: &SpanColumns<'_>, e: Row) -> Option<Feet> {
         let slope = span.branches.chords_from(&span.points, &row(|k| self.abscissa(xi[k], e[k])))?;
-        Some(self.feet_over(span, e, &slope))
+        Some(self.feet_over(span, row(|k| e[k] - span.e[0][k]), &slope))
     }
 
     /// Points with sagittae larger by about `runs` than at the span's beginning, at half the cost.
     #[inline(always)]
     fn feet_by(&self, span: &SpanColumns<'_>, runs: &Row) -> Feet {
         let [slope, stretch] = span.branches.chords_near(&span.points, &row(|k| -runs[k] * self.sin));
-        self.feet_over(span, row(|k| span.e[0][k] + runs[k] * stretch[k]), &slope)
+        self.feet_over(span, row(|k| runs[k] * stretch[k]), &slope)
     }
 
-    /// The points with sagittae e, over chords of these slopes.
+    /// The points with sagittae larger by `runs` than at the span's beginning, over chords of these slopes.
     #[inline(always)]
-    fn feet_over(&self, span: &SpanColumns<'_>, e: Row, slope: &Row) -> Feet {
-        let rise = row(|k| (e[k] - span.e[0][k]) * (self.cos - self.sin * slope[k]));
+    fn feet_over(&self, span: &SpanColumns<'_>, runs: Row, slope: &Row) -> Feet {
+        let e = row(|k| span.e[0][k] + runs[k]);
+        let rise = row(|k| runs[k] * (self.cos - self.sin * slope[k]));
         let w = row(|k| span.w[k] - rise[k] * self.cos);
         let u = row(|k| e[k] * (2.0 * w[k] + e[k]));
         Feet { e, rise, w, u }

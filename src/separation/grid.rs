@@ -125,17 +125,16 @@ impl Choice {
         if n == 0 {
             return 0.0;
         }
-        let mut maker = (self.method == Method::Spectral).then(|| self.spectral(placement, axis));
-        let strips = maker
-            .as_mut()
-            .map_or_else(Vec::new, |spectral| strips(spectral, placement, xi, axis.reach * axis.reach));
+        let strips = match self.method {
+            Method::Spectral => {
+                strips(&mut self.spectral(placement, axis), placement, xi, axis.reach * axis.reach)
+            }
+            _ => Vec::new(),
+        };
         let of_strips = strips.iter().map(|strip| strip.truncation).fold(0.0, f64::max);
         let by_columns = self.method < Method::Pointwise;
         if out.len() <= FEW_POINTS[usize::from(!by_columns)] {
-            let mut kernel: Box<dyn Kernel> = match maker {
-                Some(spectral) => Box::new(spectral.with_strips(&strips, false)),
-                None => self.kernel(placement, axis, &[], false),
-            };
+            let mut kernel = self.kernel(placement, axis, &strips, false);
             kernel.columns(xi, out);
             return kernel.truncation().max(of_strips);
         }

@@ -26,9 +26,8 @@ const SAMPLED_ETA: usize = 9;
 /// Where in a span, as a share of its u, the truncation error is measured beside its end, where it may pass through zero.
 const MEASURED: [f64; 4] = [0.1, 0.3, 0.55, 0.8];
 
-/// Share by which the sampled maximum is raised, for what lies between the samples. Truncation is held to half of a tolerance: what
-/// is raised is still within it.
-const BETWEEN_SAMPLES: f64 = 1.8;
+/// Share by which the sampled maximum is raised, for what lies between the samples.
+const BETWEEN_SAMPLES: f64 = 1.5;
 
 /// A choice, why it was made, and the error to expect.
 #[derive(Debug, Clone, PartialEq)]
@@ -193,6 +192,7 @@ fn rounding(placement: &Placement, xi: &[f64], eta: &[f64], exact: &[f64]) -> f6
 }
 
 /// The larger of two, NaN if either is.
+#[inline(always)]
 pub(super) fn nan_max(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }

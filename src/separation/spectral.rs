@@ -14,16 +14,15 @@ use super::grid::Kernel;
 use super::horner::{Run, per_degree};
 use super::plan::nan_max;
 use super::skewed::SkewedColumn;
-use super::strip::{SpanRows, Strip, StripColumns, WithRows};
+use super::strip::{ColumnPolynomials, Evaluation, Strip, StripColumns};
 use crate::placement::Placement;
 
 /// Most coefficients of a column. A span that needs more is close to a vertical tangent, and is evaluated
 /// point-wise.
 pub const MOST_COEFFICIENTS: usize = 12;
 
-/// A span below this share of its column's u, mostly a drawing's step, starts with two coefficients: more are mostly not needed, and
-/// their divided differences are rounding.
-pub(super) const SHORT_SPAN: f64 = 0.01;
+/// A span below this share of its column's u, mostly a drawing's step, starts with two coefficients.
+const SHORT_SPAN: f64 = 0.01;
 
 /// Share of a quantity that counts as rounding: more coefficients would not lower its error.
 pub(super) const ROUNDING_LEVEL: f64 = 4.0 * f64::EPSILON;
@@ -67,7 +66,7 @@ pub struct Spectral<'a> {
     pub(super) columns: Columns<'a>,
     /// Coefficients of columns.
     pub(super) rows: Vec<Row>,
-    span_rows: Vec<SpanRows>,
+    polynomials: Vec<ColumnPolynomials>,
     past_caches: bool,
     pub(super) arch: pulp::Arch,
     /// Largest measured truncation error so far \[mm\].
@@ -87,7 +86,7 @@ impl<'a> Spectral<'a> {
             strips: &[],
             spans: Vec::new(),
             rows: Vec::new(),
-            span_rows: Vec::new(),
+            polynomials: Vec::new(),
             past_caches: false,
             arch: pulp::Arch::new(),
             truncation: 0.0,
@@ -112,13 +111,12 @@ impl<'a> Spectral<'a> {
         let allowed = self.demand.absolute.min(self.demand.relative * end.rise.abs());
         // A short span's rise is the difference of sagittae that are larger.
         let rounding = ROUNDING_LEVEL * (end.rise.abs() + span.e[0]);
-        let short = u_end - span.u[0] <= SHORT_SPAN * u_max;
-        for n in if short { least.min(2) } else { least }..=MOST_COEFFICIENTS {
+        for n in first_count(least, u_end - span.u[0], u_max)..=MOST_COEFFICIENTS {
             let c = interpolate(wheel, xi, span, end.e, n);
             let fit = ColumnPolynomial { base: 0.0, u0: span.u[0], c, n, error: 0.0 };
-            let inner = wheel.foot(xi, span, span.e[0] + (end.e - span.e[0]) * inner_extremum(n));
-            let errors = [end, inner].map(|foot| (fit.rise(foot.u) - foot.rise).abs());
-            let error = nan_max(errors[0], errors[1]);
+            let inner = extrema(n).iter().map(|share| span.e[0] + (end.e - span.e[0]) * share);
+            let feet = inner.map(|e| wheel.foot(xi, span, e)).chain([end]);
+            let error = feet.map(|foot| (fit.rise(foot.u) - foot.rise).abs()).fold(0.0, nan_max);
             if error <= allowed.max(rounding) {
                 return Some(ColumnPolynomial { base, error, ..fit });
             }
@@ -220,11 +218,11 @@ impl Kernel for Spectral<'_> {
             match strip {
                 Some(strip) => {
                     let (placement, axis) = (self.evaluator.placement, self.axis);
-                    let rows = &mut self.span_rows;
+                    let polynomials = &mut self.polynomials;
                     if self.past_caches {
-                        arch.dispatch(StripColumns::<true> { placement, strip, xi, axis, rows, out });
+                        arch.dispatch(StripColumns::<true> { placement, strip, xi, axis, polynomials, out });
                     } else {
-                        arch.dispatch(StripColumns::<false> { placement, strip, xi, axis, rows, out });
+                        arch.dispatch(StripColumns::<false> { placement, strip, xi, axis, polynomials, out });
                     }
                 }
                 None if count > 1 && self.evaluator.placement.skew == 0.0 => {
@@ -260,7 +258,7 @@ impl pulp::WithSimd for EachColumn<'_, '_> {
     fn with_simd<S: pulp::Simd>(self, simd: S) {
         let Self { spectral, xi, out } = self;
         let (axis, length) = (spectral.axis, spectral.axis.eta.len());
-        let Spectral { evaluator, demand, coefficients, columns, rows, span_rows, truncation, .. } =
+        let Spectral { evaluator, demand, coefficients, columns, rows, polynomials, truncation, .. } =
             &mut *spectral;
         rows.clear();
         let mut taken = columns.take_each(evaluator, axis.reach * axis.reach, xi).unwrap_or([false; MANY]);
@@ -271,9 +269,9 @@ impl pulp::WithSimd for EachColumn<'_, '_> {
             }
         }
         if taken.contains(&true) {
-            span_rows.resize(1, SpanRows::NONE);
-            span_rows[0].set(rows, &columns.spans[0].base);
-            per_degree(rows.len(), WithRows::<S, true, false> { simd, rows: span_rows, axis, out });
+            polynomials.resize(1, ColumnPolynomials::NONE);
+            polynomials[0].set(rows, &columns.spans[0].base);
+            per_degree(rows.len(), Evaluation::<S, true, false> { simd, polynomials, axis, out });
         }
         for ((&xi, out), taken) in xi.iter().zip(out.chunks_exact_mut(length)).zip(taken) {
             if !taken {
@@ -313,19 +311,26 @@ impl Spectral<'_> {
     }
 }
 
-/// Where in (0, 1) the error of an interpolant at n Chebyshev points is measured besides the end, at which it is largest unless
-/// it happens to pass through zero there: at an extremum near the middle.
-pub(super) fn inner_extremum(n: usize) -> f64 {
-    EXTREMA[n - 1]
+/// Where in (0, 1) the error of an interpolant at n Chebyshev points is measured besides the end: at its first extremum, which is
+/// the largest where q is least smooth near the beginning, and near the middle, for at the end it may happen to be zero.
+pub(super) fn extrema(n: usize) -> &'static [f64] {
+    // Up to three coefficients have both at once.
+    &EXTREMA[n - 1][usize::from(n < 4)..]
 }
 
-/// (1 − cos(kπ/n))/2, k = n/2; for n = 1 that of v times a line through zero at ½.
-static EXTREMA: std::sync::LazyLock<[f64; MOST_COEFFICIENTS]> = std::sync::LazyLock::new(|| {
+/// (1 − cos(kπ/n))/2, k = 1 and n/2; for n = 1 that of v times a line through zero at ½.
+static EXTREMA: std::sync::LazyLock<[[f64; 2]; MOST_COEFFICIENTS]> = std::sync::LazyLock::new(|| {
+    let extremum = |k: usize, n: usize| (std::f64::consts::FRAC_PI_2 * k as f64 / n as f64).sin().powi(2);
     from_fn(|row| match row + 1 {
-        1 => 0.25,
-        n => (std::f64::consts::FRAC_PI_2 * (n / 2) as f64 / n as f64).sin().powi(2),
+        1 => [0.25; 2],
+        n => [extremum(1, n), extremum(n / 2, n)],
     })
 });
+
+/// The number of coefficients to start with, mostly `least`, over a span of this length of u.
+pub(super) fn first_count(least: usize, length: f64, u_max: f64) -> usize {
+    if length <= SHORT_SPAN * u_max { least.min(2) } else { least }
+}
 
 /// The n Chebyshev points of (0, 1), ascending.
 pub(super) fn nodes(n: usize) -> &'static [f64] {

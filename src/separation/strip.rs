@@ -37,10 +37,10 @@ pub(super) enum Gap {
     Computed,
 }
 
-/// One span of neighbouring columns.
+/// The polynomials of neighbouring columns over one span: s = base + v Σ c_k v^k, v = u − u_0.
 #[derive(Debug, Clone)]
-pub(super) struct SpanRows {
-    /// Coefficients of q in powers of u − u_0.
+pub(super) struct ColumnPolynomials {
+    /// Coefficients of q.
     c: [Row; MOST_COEFFICIENTS],
     /// s at u_0 \[mm\].
     base: Row,
@@ -48,14 +48,30 @@ pub(super) struct SpanRows {
     u0: Row,
 }
 
-impl SpanRows {
+impl ColumnPolynomials {
     pub(super) const NONE: Self = Self { c: [[0.0; MANY]; _], base: [0.0; MANY], u0: [0.0; MANY] };
 
-    /// Makes it the one span of columns that have no other.
+    /// Makes it those of columns that have no other span.
     #[inline(always)]
     pub(super) fn set(&mut self, c: &[Row], base: &Row) {
         self.c[..c.len()].copy_from_slice(c);
         (self.base, self.u0) = (*base, [0.0; MANY]);
+    }
+
+    /// s over a run of u of the k-th column, its first N coefficients being all.
+    #[inline(always)]
+    fn run<S: pulp::Simd, const N: usize, const FIRST: bool, const PAST: bool>(
+        &self,
+        simd: S,
+        k: usize,
+        u: &[f64],
+        out: &mut [f64],
+    ) {
+        let mut c = [0.0; N];
+        for (c, row) in c.iter_mut().zip(&self.c) {
+            *c = row[k];
+        }
+        horner::<S, N, FIRST, PAST>(simd, [self.base[k], self.u0[k]], &c, u, out);
     }
 }
 
@@ -68,7 +84,7 @@ pub(super) struct StripColumns<'a, const PAST: bool> {
     pub xi: &'a [f64],
     pub axis: &'a EtaAxis,
     /// Scratch space.
-    pub rows: &'a mut Vec<SpanRows>,
+    pub polynomials: &'a mut Vec<ColumnPolynomials>,
     pub out: &'a mut [f64],
 }
 
@@ -77,27 +93,27 @@ impl<const PAST: bool> pulp::WithSimd for StripColumns<'_, PAST> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) {
-        let Self { placement, strip, xi, axis, rows, out } = self;
-        rows.resize(strip.spans, SpanRows::NONE);
-        strip.rows(placement, xi, axis.reach * axis.reach, rows);
+        let Self { placement, strip, xi, axis, polynomials, out } = self;
+        polynomials.resize(strip.spans, ColumnPolynomials::NONE);
+        strip.polynomials(placement, xi, axis.reach * axis.reach, polynomials);
         if strip.spans == 1 {
-            per_degree(strip.coefficients, WithRows::<S, true, PAST> { simd, rows, axis, out });
+            per_degree(strip.coefficients, Evaluation::<S, true, PAST> { simd, polynomials, axis, out });
         } else {
-            per_degree(strip.coefficients, WithRows::<S, false, PAST> { simd, rows, axis, out });
+            per_degree(strip.coefficients, Evaluation::<S, false, PAST> { simd, polynomials, axis, out });
         }
     }
 }
 
 impl Strip {
-    /// The spans at each ξ.
+    /// The polynomials over every span at each ξ.
     #[inline(always)]
-    fn rows(&self, placement: &Placement, xi: &[f64], u_max: f64, rows: &mut [SpanRows]) {
+    fn polynomials(&self, placement: &Placement, xi: &[f64], u_max: f64, spans: &mut [ColumnPolynomials]) {
         let ([a, b], mut all) = (self.xi, [xi[0]; MANY]);
         all[..xi.len()].copy_from_slice(xi);
         let t = row(|k| ((all[k] - a) - (b - all[k])) / (b - a));
         let (mut powers, n) = (self.powers.chunks_exact(self.kept), self.coefficients);
-        for rows in &mut *rows {
-            let quantities = rows.c[..n].iter_mut().chain([&mut rows.base, &mut rows.u0]);
+        for span in &mut *spans {
+            let quantities = span.c[..n].iter_mut().chain([&mut span.base, &mut span.u0]);
             for (quantity, powers) in quantities.zip(&mut powers) {
                 let mut sum = [0.0f64; MANY];
                 for c in powers {
@@ -106,79 +122,68 @@ impl Strip {
                 *quantity = sum;
             }
         }
-        let base = &mut rows[0].base;
+        let base = &mut spans[0].base;
         match self.gap {
             Gap::Plain => {}
             Gap::Relative => *base = row(|k| base[k] * (all[k] * all[k])),
             Gap::Computed => *base = all.map(|xi| midplane_gap(placement, xi)),
         }
+        // Of several spans q is interpolated in powers of τ.
         let mut end = [u_max; MANY];
-        for rows in rows.iter_mut().rev().filter(|_| self.spans > 1) {
-            let shrink = row(|k| 1.0 / (end[k] - rows.u0[k]));
+        for span in spans.iter_mut().rev().filter(|_| self.spans > 1) {
+            let shrink = row(|k| 1.0 / (end[k] - span.u0[k]));
             let mut power = [1.0; MANY];
-            for c in &mut rows.c[1..n] {
+            for c in &mut span.c[1..n] {
                 power = row(|k| power[k] * shrink[k]);
                 *c = row(|k| c[k] * power[k]);
             }
-            end = rows.u0;
+            end = span.u0;
         }
     }
 }
 
-/// Neighbouring columns of a strip with known spans, one if `SINGLE`.
-pub(super) struct WithRows<'a, S, const SINGLE: bool, const PAST: bool> {
+/// Neighbouring columns from their polynomials over every span, of which there is one if `SINGLE`.
+pub(super) struct Evaluation<'a, S, const SINGLE: bool, const PAST: bool> {
     pub simd: S,
-    pub rows: &'a [SpanRows],
+    /// In order of u.
+    pub polynomials: &'a [ColumnPolynomials],
     pub axis: &'a EtaAxis,
     pub out: &'a mut [f64],
 }
 
-impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> PerDegree for WithRows<'_, S, SINGLE, PAST> {
+impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> PerDegree for Evaluation<'_, S, SINGLE, PAST> {
     #[inline(always)]
     fn run<const N: usize>(self) {
-        let Self { simd, rows, axis, out } = self;
+        let Self { simd, polynomials: spans, axis, out } = self;
         let count = axis.eta.len();
         let mut ends = [count; MOST_SPANS];
         for (k, out) in out.chunks_exact_mut(count).enumerate() {
             // Both halves of a symmetric axis: copying one takes longer than evaluating it.
             if SINGLE {
-                horner::<S, N, true, PAST>(simd, [rows[0].base[k], 0.0], &rows[0].of_column(k), &axis.u, out);
+                spans[0].run::<S, N, true, PAST>(simd, k, &axis.u, out);
                 continue;
             }
-            for (span, rows) in rows.iter().enumerate().skip(1).rev() {
+            for (index, span) in spans.iter().enumerate().skip(1).rev() {
                 // A drawing's step is mostly between two values; other spans end near where they do in the column before.
-                let (u, beyond) = (rows.u0[k], ends[span]);
-                let near = if axis.is_end(u, beyond) { beyond } else { ends[span - 1] };
-                ends[span - 1] = axis.end(u, near).min(beyond);
+                let (u, beyond) = (span.u0[k], ends[index]);
+                let near = if axis.is_end(u, beyond) { beyond } else { ends[index - 1] };
+                ends[index - 1] = axis.end(u, near).min(beyond);
             }
             // From the first η to the last one, so that memory is written in order.
             let mut begin = 0;
-            let inwards =
-                (1..rows.len()).rev().map(|span| (span, axis.begin(rows[span].u0[k], ends[span - 1])));
-            let outwards = (0..rows.len()).map(|span| (span, ends[span]));
-            for (span, end) in inwards.chain(outwards) {
+            let inwards = (1..spans.len()).rev();
+            let inwards = inwards.map(|index| (index, axis.begin(spans[index].u0[k], ends[index - 1])));
+            let outwards = (0..spans.len()).map(|index| (index, ends[index]));
+            for (index, end) in inwards.chain(outwards) {
                 if end <= begin {
                     continue;
                 }
                 // Whole vectors: what they hold beyond the span's end is overwritten by the next one.
                 let whole = begin + (end - begin).next_multiple_of(S::F64_LANES);
-                let (run, rows) = (begin..if whole <= count { whole } else { end }, &rows[span]);
-                let (u, out) = (&axis.u[run.clone()], &mut out[run]);
-                horner::<S, N, false, PAST>(simd, [rows.base[k], rows.u0[k]], &rows.of_column(k), u, out);
+                let run = begin..if whole <= count { whole } else { end };
+                spans[index].run::<S, N, false, PAST>(simd, k, &axis.u[run.clone()], &mut out[run]);
                 begin = end;
             }
         }
-    }
-}
-
-impl SpanRows {
-    /// The coefficients of q of one column.
-    #[inline(always)]
-    fn of_column<const N: usize>(&self, k: usize) -> [f64; N] {
-        let mut c = [0.0; N];
-        for (c, row) in c.iter_mut().zip(&self.c) {
-            *c = row[k];
-        }
-        c
     }
 }

@@ -1,12 +1,11 @@
 //! Points and chords of a branch at several abscissae at once: the formulas of [`Branch::point`] and
 //! [`Branch::chord_from`] step by step for all, so that no abscissa waits for the one before it.
 
-use twofloat::TwoFloat;
-
 use super::super::arc::cosine;
 use super::branch::{ArcBranch, Branch, BranchPoint, BranchShape, QUADRATIC};
 use crate::numerics::polynomial::value_and_slope;
-use crate::numerics::twice::Twice;
+use crate::numerics::polynomials::{Coefficients, divided_differences, exact_values, values_and_slopes};
+use crate::numerics::twice::{Twice, Twices};
 
 /// Newton's steps are given up after this many: the branch is nearly vertical somewhere.
 const STEPS: usize = 10;
@@ -86,12 +85,7 @@ impl<'a, const N: usize> Branches<'a, N> {
     pub fn points(&self, xi: &[f64; N]) -> Option<(BranchPoints<N>, [f64; N])> {
         match self {
             Self::One(branch) => branch.points(xi),
-            Self::Cubics(c) => {
-                let t = parameters(&c.xi, c.t, xi, guesses(c.t, c.ends, xi))?;
-                let (_, slope) = values_and_slopes(&c.xi, &t);
-                let (zeta, _) = values_and_slopes(&c.zeta, &t);
-                Some((BranchPoints::Polynomial { xi: *xi, t, rate: reciprocals(slope) }, zeta))
-            }
+            Self::Cubics(c) => points([&c.xi, &c.zeta], c.t, c.ends, xi),
         }
     }
 
@@ -136,11 +130,7 @@ impl Branch {
                 Some((BranchPoints::Arc { sin, cos }, zeta))
             }
             BranchShape::Polynomial(p) => {
-                let (range, ends) = (rows(p.t), rows(p.ends));
-                let t = parameters(p.xi.as_slice(), range, xi, guesses(range, ends, xi))?;
-                let (_, slope) = values_and_slopes(p.xi.as_slice(), &t);
-                let (zeta, _) = values_and_slopes(p.zeta.as_slice(), &t);
-                Some((BranchPoints::Polynomial { xi: *xi, t, rate: reciprocals(slope) }, zeta))
+                points([p.xi.as_slice(), p.zeta.as_slice()], rows(p.t), rows(p.ends), xi)
             }
         }
     }
@@ -202,11 +192,11 @@ impl Branch {
     /// ζ at ξ in twice the working precision, for differences between closely conforming branches; from the points there,
     /// NaN for those of another branch.
     #[inline(always)]
-    pub fn exact_heights<const N: usize>(&self, xi: &[f64; N], points: &BranchPoints<N>) -> Exact<N> {
+    pub fn exact_heights<const N: usize>(&self, xi: &[f64; N], points: &BranchPoints<N>) -> Twices<N> {
         match (&self.shape, points) {
             (BranchShape::Arc(arc), BranchPoints::Arc { .. }) => arc.exact_heights(xi),
             (BranchShape::Polynomial(p), BranchPoints::Polynomial { t, .. }) => {
-                let mut exact = Exact { high: *t, low: [0.0; N] };
+                let mut exact = Twices::from(*t);
                 let (abscissa, slope) = exact_values(&p.exact[0], &exact);
                 for k in 0..N {
                     // One Newton step more, which doubles the digits whatever the rounding of its slope.
@@ -215,7 +205,7 @@ impl Branch {
                 }
                 exact_values(&p.exact[1], &exact).0
             }
-            _ => Exact { high: [f64::NAN; N], low: [f64::NAN; N] },
+            _ => Twices::from([f64::NAN; N]),
         }
     }
 
@@ -225,32 +215,12 @@ impl Branch {
     }
 }
 
-/// Several numbers in twice the working precision: high and low parts apart, as vector code wants them.
-#[derive(Debug, Clone, Copy)]
-pub struct Exact<const N: usize> {
-    high: [f64; N],
-    low: [f64; N],
-}
-
-impl<const N: usize> Exact<N> {
-    /// The k-th of them.
-    #[inline(always)]
-    pub fn get(&self, k: usize) -> Twice {
-        Twice { high: self.high[k], low: self.low[k] }
-    }
-
-    #[inline(always)]
-    fn set(&mut self, k: usize, value: Twice) {
-        (self.high[k], self.low[k]) = (value.high, value.low);
-    }
-}
-
 impl ArcBranch {
     #[inline(always)]
-    fn exact_heights<const N: usize>(&self, xi: &[f64; N]) -> Exact<N> {
+    fn exact_heights<const N: usize>(&self, xi: &[f64; N]) -> Twices<N> {
         let (one, sin_a, cos_a) = (Twice::from(1.0), Twice::from(self.sin), Twice::from(self.cos));
         let [xi_a, zeta_a] = self.anchor;
-        let mut zeta = Exact { high: [0.0; N], low: [0.0; N] };
+        let mut zeta = Twices::from([0.0; N]);
         for (k, &xi) in xi.iter().enumerate() {
             let run = Twice::sum(xi, -xi_a);
             let turn =
@@ -269,58 +239,25 @@ fn rows<const N: usize>([a, b]: [f64; 2]) -> [[f64; N]; 2] {
     [[a; N], [b; N]]
 }
 
+/// As [`Branches::points`], of curves with coefficients of ξ and ζ over ranges of t that end at these ξ.
 #[inline(always)]
-fn reciprocals<const N: usize>(mut values: [f64; N]) -> [f64; N] {
-    for value in &mut values {
-        *value = 1.0 / *value;
-    }
-    values
-}
-
-/// The coefficients of several polynomials. A trait and not iterators, whose closures may be left out of line.
-trait Coefficients<const N: usize>: Copy {
-    /// How many they have.
-    fn count(self) -> usize;
-
-    /// Those of t^k.
-    fn row(self, k: usize) -> [f64; N];
-}
-
-/// The same for all.
-impl<const N: usize> Coefficients<N> for &[f64] {
-    #[inline(always)]
-    fn count(self) -> usize {
-        self.len()
-    }
-
-    #[inline(always)]
-    fn row(self, k: usize) -> [f64; N] {
-        [self[k]; N]
-    }
-}
-
-/// Each its own.
-impl<const N: usize> Coefficients<N> for &[[f64; N]; CUBIC] {
-    #[inline(always)]
-    fn count(self) -> usize {
-        CUBIC
-    }
-
-    #[inline(always)]
-    fn row(self, k: usize) -> [f64; N] {
-        self[k]
-    }
-}
-
-/// t where ξ is on the line through the ends.
-#[inline(always)]
-fn guesses<const N: usize>(t: [[f64; N]; 2], ends: [[f64; N]; 2], xi: &[f64; N]) -> [f64; N] {
+fn points<const N: usize>(
+    [c_xi, c_zeta]: [impl Coefficients<N>; 2],
+    range: [[f64; N]; 2],
+    ends: [[f64; N]; 2],
+    xi: &[f64; N],
+) -> Option<(BranchPoints<N>, [f64; N])> {
     let mut guess = [0.0; N];
     for k in 0..N {
         let share = (xi[k] - ends[0][k]) / (ends[1][k] - ends[0][k]);
-        guess[k] = t[0][k] + (t[1][k] - t[0][k]) * share;
+        guess[k] = range[0][k] + (range[1][k] - range[0][k]) * share;
     }
-    guess
+    let t = parameters(c_xi, range, xi, guess)?;
+    let ([_, mut rate], [zeta, _]) = (values_and_slopes(c_xi, &t), values_and_slopes(c_zeta, &t));
+    for rate in &mut rate {
+        *rate = 1.0 / *rate;
+    }
+    Some((BranchPoints::Polynomial { xi: *xi, t, rate }, zeta))
 }
 
 /// t with ξ(t) = ξ by Newton's steps from guesses within a range.
@@ -338,7 +275,7 @@ fn parameters<const N: usize>(
         t[k] = within(t[k], low[k], high[k]);
     }
     for _ in 0..STEPS {
-        let (value, slope) = values_and_slopes(c, &t);
+        let [value, slope] = values_and_slopes(c, &t);
         for k in 0..N {
             let next = within(t[k] - (value[k] - xi[k]) / slope[k], low[k], high[k]);
             let step = (next - t[k]).abs();
@@ -375,7 +312,7 @@ fn chords<const N: usize>(
         guess[k] += (to[k] - xi[k]) * rate[k];
     }
     let t_to = parameters(c_xi, range, to, guess)?;
-    let (mut rise, run) = (differences(c_zeta, t, &t_to), differences(c_xi, t, &t_to));
+    let (mut rise, run) = (divided_differences(c_zeta, t, &t_to), divided_differences(c_xi, t, &t_to));
     for k in 0..N {
         rise[k] /= run[k];
     }
@@ -393,7 +330,8 @@ fn chords_near<const N: usize>(
     for k in 0..N {
         t_to[k] += runs[k] * rate[k];
     }
-    let (mut slope, mut stretch) = (differences(c_zeta, t, &t_to), differences(c_xi, t, &t_to));
+    let (mut slope, mut stretch) =
+        (divided_differences(c_zeta, t, &t_to), divided_differences(c_xi, t, &t_to));
     for k in 0..N {
         slope[k] /= stretch[k];
         stretch[k] *= rate[k];
@@ -402,60 +340,10 @@ fn chords_near<const N: usize>(
     [slope, stretch]
 }
 
-/// Values and first derivatives.
-#[inline(always)]
-fn values_and_slopes<const N: usize>(c: impl Coefficients<N>, t: &[f64; N]) -> ([f64; N], [f64; N]) {
-    let (mut value, mut slope) = ([0f64; N], [0f64; N]);
-    for power in (0..c.count()).rev() {
-        let c = c.row(power);
-        for k in 0..N {
-            slope[k] = slope[k].mul_add(t[k], value[k]);
-            value[k] = value[k].mul_add(t[k], c[k]);
-        }
-    }
-    (value, slope)
-}
-
-/// Values in twice the working precision, and slopes in the working one: compensated Horner's rule (Langlois and Louvet
-/// 2007), which adds up what every step rounds.
-#[inline(always)]
-fn exact_values<const N: usize>(c: &[TwoFloat], t: &Exact<N>) -> (Exact<N>, [f64; N]) {
-    let (mut value, mut slope, mut rounded) = ([0f64; N], [0f64; N], [0f64; N]);
-    for c in c.iter().rev() {
-        let (high, low) = (c.hi(), c.lo());
-        for k in 0..N {
-            let t = t.high[k];
-            let product = value[k] * t;
-            let of_product = value[k].mul_add(t, -product);
-            let sum = Twice::sum(product, high);
-            slope[k] = slope[k].mul_add(t, value[k]);
-            rounded[k] = rounded[k].mul_add(t, of_product + (sum.low + low));
-            value[k] = sum.high;
-        }
-    }
-    let mut exact = Exact { high: value, low: [0.0; N] };
-    for k in 0..N {
-        exact.set(k, Twice::sum(value[k], slope[k].mul_add(t.low[k], rounded[k])));
-    }
-    (exact, slope)
-}
-
-/// [`crate::numerics::polynomial::divided_difference`] for several.
-#[inline(always)]
-fn differences<const N: usize>(c: impl Coefficients<N>, a: &[f64; N], b: &[f64; N]) -> [f64; N] {
-    let (mut quotient, mut sum) = ([0f64; N], [0f64; N]);
-    for power in (1..c.count()).rev() {
-        let c = c.row(power);
-        for k in 0..N {
-            quotient[k] = quotient[k].mul_add(a[k], c[k]);
-            sum[k] = sum[k].mul_add(b[k], quotient[k]);
-        }
-    }
-    sum
-}
-
 #[cfg(test)]
 mod tests {
+    use twofloat::TwoFloat;
+
     use super::*;
     use crate::profile::{Profile, Section, Side, standards};
 
