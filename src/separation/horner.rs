@@ -1,7 +1,5 @@
 //! Runs of a column by Horner's rule, with the widest vectors of the machine.
 
-use std::array::from_fn;
-
 use super::spectral::{ColumnPolynomial, MOST_COEFFICIENTS};
 use super::stream;
 
@@ -92,8 +90,11 @@ pub(super) fn horner<S: pulp::Simd, const N: usize, const FIRST: bool, const PAS
         }
         return;
     };
-    let c: [S::f64s; N] = from_fn(|k| simd.splat_f64s(c[k]));
-    let begin = [base, u0].map(|value| simd.splat_f64s(value));
+    // A loop, since closures may be left out of line.
+    let (mut splat, begin) = ([simd.splat_f64s(0.0); N], [simd.splat_f64s(base), simd.splat_f64s(u0)]);
+    for (splat, c) in splat.iter_mut().zip(c) {
+        *splat = simd.splat_f64s(*c);
+    }
     // Long runs are stored where lines of the cache begin: a store across two takes twice as long. The vectors at both
     // ends, as many as reach there, may overlap the others.
     let (end, long) = (u.len(), u.len() >= LONG_RUNS[usize::from(PAST)]);
@@ -103,15 +104,15 @@ pub(super) fn horner<S: pulp::Simd, const N: usize, const FIRST: bool, const PAS
     for part in [0..first, rest..end] {
         let (u, out) = (S::as_simd_f64s(&u[part.clone()]).0, S::as_mut_simd_f64s(&mut out[part]).0);
         for (s, &u) in out.iter_mut().zip(u) {
-            *s = value::<S, N, FIRST>(simd, begin, &c, u);
+            *s = value::<S, N, FIRST>(simd, begin, &splat, u);
         }
     }
     let (u, out) = (S::as_simd_f64s(&u[begin_lines..]).0, S::as_mut_simd_f64s(&mut out[begin_lines..]).0);
     if PAST && long {
-        return stream::write(out, u.iter().map(|&u| value::<S, N, FIRST>(simd, begin, &c, u)));
+        return stream::write(out, u.iter().map(|&u| value::<S, N, FIRST>(simd, begin, &splat, u)));
     }
     for (s, &u) in out.iter_mut().zip(u) {
-        *s = value::<S, N, FIRST>(simd, begin, &c, u);
+        *s = value::<S, N, FIRST>(simd, begin, &splat, u);
     }
 }
 
