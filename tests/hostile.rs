@@ -366,3 +366,13 @@ fn a_full_disk_is_an_error_and_leaves_nothing() {
         std::fs::read_dir(&folder).expect("the folder").flatten().map(|e| e.file_name()).collect();
     assert_eq!(left, ["scene.toml"], "{left:?}");
 }
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_stdout_is_an_error_for_help_as_for_data() {
+    for arguments in ["--help", "--version", "run --help", "schema", "profile list"] {
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("a device of Linux");
+        let status = program().args(arguments.split(' ')).stdout(full).status().expect("the program");
+        assert_eq!(status.code(), Some(2), "{arguments}");
+    }
+}

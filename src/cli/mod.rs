@@ -79,8 +79,13 @@ enum Outcome {
 
 /// The program.
 pub fn main() -> ExitCode {
-    let arguments = Arguments::parse();
-    match on_threads(arguments) {
+    let outcome = match Arguments::try_parse() {
+        Ok(arguments) => on_threads(arguments),
+        Err(message) if message.use_stderr() => message.exit(),
+        // Help or the version.
+        Err(message) => print(&message.render().to_string()),
+    };
+    match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::No) => ExitCode::from(1),
         Err(error) => {
