@@ -98,26 +98,25 @@ const SAME_TANGENT: f64 = 1e-9;
 
 impl Body {
     fn at(profile: &Profile, x: f64, side: Side) -> Result<Self> {
-        finite("", x)?;
         let own = Section::own_axes(profile, side);
-        let Some(point) = own.point(profile, x).filter(|point| point.station.cos > 0.0) else {
-            let reach = own.reach().unwrap_or([f64::NAN; 2]);
-            let expected =
-                format!("a point of {}, which lies over [{}, {}]", profile.name, reach[0], reach[1]);
-            return Err(Error::new("", x.to_string(), expected, "choose a point on the profile"));
-        };
-        Ok(Self { section: Section::at_contact(profile, &point, side), profile: profile.clone(), point })
+        let point = own.point(profile, finite("", x)?).filter(|point| point.station.cos > 0.0);
+        Ok(Self::smooth(profile, point.ok_or_else(|| off_profile(profile, &own, x))?, side))
     }
 
     fn along(profile: &Profile, [x, angle]: [f64; 2], side: Side) -> Result<Self> {
-        let smooth = Self::at(profile, x, side)?;
-        if (smooth.contact_angle() - angle).abs() <= SAME_TANGENT {
-            return Ok(smooth);
+        let own = Section::own_axes(profile, side);
+        let point = own.outer_point(profile, finite("", x)?, side);
+        let mut point = point.ok_or_else(|| off_profile(profile, &own, x))?;
+        if (point.station.angle() - angle).abs() <= SAME_TANGENT {
+            return Ok(Self::smooth(profile, point, side));
         }
         let (sin, cos) = angle.sin_cos();
-        let mut point = smooth.point;
         (point.station.cos, point.station.sin) = (cos, sin);
         Ok(Self { section: Section::in_frame(profile, point.station, side), profile: profile.clone(), point })
+    }
+
+    fn smooth(profile: &Profile, point: ProfilePoint, side: Side) -> Self {
+        Self { section: Section::at_contact(profile, &point, side), profile: profile.clone(), point }
     }
 
     /// Whether the contact frame's ξ is the tangent of the profile at C: not so at kinks and ends.
@@ -129,6 +128,12 @@ impl Body {
     pub fn contact_angle(&self) -> f64 {
         self.point.station.angle()
     }
+}
+
+fn off_profile(profile: &Profile, own: &Section, x: f64) -> Error {
+    let reach = own.reach().unwrap_or([f64::NAN; 2]);
+    let expected = format!("a point of {}, which lies over [{}, {}]", profile.name, reach[0], reach[1]);
+    Error::new("", x.to_string(), expected, "choose a point on the profile")
 }
 
 impl Placement {

@@ -1,5 +1,6 @@
 use super::wheelset::{Position, Roll, WheelsetOnTrack};
 use super::*;
+use crate::contact::feasibility::feasibility;
 use crate::placement::Pair;
 use crate::placement::track::{RailDistance, Track, WheelDistance, Wheelset};
 use crate::profile::{Arc, Half, Polynomial, Segment, Shape, standards};
@@ -192,6 +193,22 @@ fn a_wheel_beside_its_rail_touches_nothing() -> Result<()> {
     assert!(Pose::new(f64::NAN, 0.0, 0.0).is_err());
     assert!(Pose::new(0.0, 1.0, 0.0).is_err());
     assert!(ProfilePair::new(&standards::rail("60E1")?, &standards::wheel("S1002")?, 1.0).is_err());
+    Ok(())
+}
+
+#[test]
+fn a_contact_on_a_kink_with_a_step_is_at_the_end_that_stands_out() -> Result<()> {
+    // The flange tip of this drawing: a kink of 10° with a step of 2 µm.
+    let pair = Pair::new(standards::rail("56E1")?, standards::wheel("APTA-120")?, 625.0)?;
+    let profiles = ProfilePair::new(&pair.rail, &pair.wheel, pair.wheel_radius)?;
+    let mut search = profiles.search();
+    let touch = search.touch(&Pose::new(8.045, 0.0, 0.0)?, &ALL);
+    let contact = touch.map(|touch| touch.contacts[0]).filter(Contact::kink);
+    let contact = contact.ok_or_else(|| Error::new("", "no kink", "one", "look at the drawing"))?;
+    let [rail, wheel] = [contact.rail_x, contact.wheel_x].map(|x| [x, contact.contact_angle]);
+    let placement = pair.placed_along(rail, wheel, 0.0)?;
+    assert!((placement.wheel.point.station.z + 9.526_151_761_692_4).abs() < 1e-12, "{placement:?}");
+    assert!(feasibility(&placement).is_some_and(|found| found.feasible));
     Ok(())
 }
 

@@ -33,6 +33,9 @@ pub struct ProfilePoint {
     parameter: TwoFloat,
 }
 
+/// Ends closer than this share of the profile's extent are one joint, moved apart by rounding.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
 /// Part of the profile that faces the other body, as a function ζ(ξ) of the frame.
 ///
 /// Everything is in the frame's axes: ξ along its tangent, ζ along its normal \[mm\]. Where the profile
@@ -68,8 +71,7 @@ impl Section {
 
     fn build(profile: &Profile, frame: Station, contact: Option<&ProfilePoint>, side: Side) -> Self {
         let mut branches: Vec<Branch> = Vec::with_capacity(profile.segments().len());
-        // Ends closer than this are one joint, moved apart by rounding.
-        let rounding = 16.0 * f64::EPSILON * (profile.extent() + frame.x.abs() + frame.z.abs());
+        let rounding = ROUNDING * (profile.extent() + frame.x.abs() + frame.z.abs());
         let mut last: Option<Station> = None;
         for (index, segment) in profile.segments().iter().enumerate() {
             let here = contact.filter(|point| point.segment == index);
@@ -126,9 +128,23 @@ impl Section {
         Some([self.pieces.first()?.xi[0], self.pieces.last()?.xi[1]])
     }
 
-    /// The point of the profile at abscissa x, for a section in the profile's own axes: (4.9)–(4.12).
+    /// The point of the profile at abscissa x, for a section in the profile's own axes: (4.9)–(4.12). At a joint the left one.
     pub fn point(&self, profile: &Profile, x: f64) -> Option<ProfilePoint> {
-        let branch = self.branch_at(x)?;
+        Some(Self::point_on(self.branch_at(x)?, profile, x))
+    }
+
+    /// The same where the other body touches: at a joint with a step the end that stands out.
+    pub fn outer_point(&self, profile: &Profile, x: f64, side: Side) -> Option<ProfilePoint> {
+        let rounding = ROUNDING * profile.extent();
+        let outward = if side == Side::Wheel { -1.0 } else { 1.0 };
+        let here = self.pieces_from(x).iter().take_while(|piece| piece.xi[0] <= x);
+        let outer = here.map(|piece| &self.branches[piece.branch]).reduce(|left, right| {
+            if outward * (right.height(x) - left.height(x)) > rounding { right } else { left }
+        })?;
+        Some(Self::point_on(outer, profile, x))
+    }
+
+    fn point_on(branch: &Branch, profile: &Profile, x: f64) -> ProfilePoint {
         let (station, parameter) = match (&branch.shape, &profile.segments()[branch.segment].shape) {
             (BranchShape::Polynomial(shape), Shape::Polynomial(polynomial)) => {
                 let t = shape.exact_parameter(x);
@@ -136,7 +152,7 @@ impl Section {
             }
             _ => (branch.station(x), TwoFloat::from(0.0)),
         };
-        Some(ProfilePoint { station: Station { x, ..station }, segment: branch.segment, parameter })
+        ProfilePoint { station: Station { x, ..station }, segment: branch.segment, parameter }
     }
 }
 
