@@ -9,6 +9,7 @@ use super::spline_cost::SplineCost;
 use super::table::{accuracy_csv, growth_csv, hard_cases_csv, markdown, verification_csv};
 use super::verification::{Verified, floors};
 use crate::check::{RELATION, Report};
+use crate::numerics::nan_max;
 
 /// One section of the page. A new one is a new function in [`sections`].
 #[derive(Debug, Clone, PartialEq)]
@@ -142,10 +143,9 @@ fn summary(m: &Measurements) -> String {
                 cells.extend(["–", "–", "–"].map(String::from));
                 return cells;
             }
-            let largest = |a: f64, b: f64| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) };
-            cells.push(format!("{:.1e}", errors().map(|e| e.max_abs).fold(0.0, largest)));
+            cells.push(format!("{:.1e}", errors().map(|e| e.max_abs).fold(0.0, nan_max)));
             cells.push(format!("{:.1e}", median(errors().map(|e| e.max_abs))));
-            cells.push(format!("{:.1e}", errors().map(|e| e.max_rel).fold(0.0, largest)));
+            cells.push(format!("{:.1e}", errors().map(|e| e.max_rel).fold(0.0, nan_max)));
             cells
         })
         .collect();

@@ -81,7 +81,8 @@ impl Pair {
     }
 
     /// The pair in contact where a search found it: abscissa and angle \[rad\] of the common normal's frame on each
-    /// body. At a kink the angle is not that of a tangent; s then has no second-order expansion at C.
+    /// body. At a kink the angle is not that of a tangent; s then has no second-order expansion at C. At a joint with a
+    /// drawing's step C is at the end that stands out.
     ///
     /// # Errors
     /// An abscissa off its profile.

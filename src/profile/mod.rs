@@ -13,7 +13,7 @@ pub mod trace;
 pub use arc::{Arc, Half};
 pub use polynomial::Polynomial;
 pub use section::{
-    ArcBranch, Branch, BranchPoint, BranchPoints, BranchShape, Branches, Piece, PolynomialBranch,
+    ArcBranch, Branch, BranchPoint, BranchPoints, BranchShape, Branches, ONE_JOINT, Piece, PolynomialBranch,
     ProfilePoint, Section, Side, stationary_points,
 };
 pub mod drawing;

@@ -4,9 +4,8 @@
 use super::Evaluator;
 use super::column::{LAST_STEP, NEARLY_COVERED, STEPS, WheelSurface, sagitta};
 use super::gap::{contact_gap, contact_gaps};
-use super::plan::nan_max;
 use super::spectral::{Demand, MOST_COEFFICIENTS, ROUNDING_LEVEL, extrema, first_count, nodes, powers};
-use crate::numerics::chebyshev;
+use crate::numerics::{chebyshev, nan_max};
 use crate::profile::{Branch, BranchPoints, Branches, Piece, Section};
 
 /// Columns that are computed at once: two of the widest vectors, and points of an interpolant.

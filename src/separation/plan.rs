@@ -5,6 +5,7 @@ use super::axis::EtaAxis;
 use super::column::WheelSurface;
 use super::grid::{Choice, Method};
 use super::spectral::{Demand, Spectral};
+use crate::numerics::nan_max;
 use crate::placement::Placement;
 use crate::profile::Section;
 
@@ -189,12 +190,6 @@ fn rounding(placement: &Placement, xi: &[f64], eta: &[f64], exact: &[f64]) -> f6
         section.frame.z.abs() + heights + steep.max(section.frame.sin.abs() * width)
     });
     PLACE_ROUNDINGS * f64::EPSILON * s.max(joints[0] + joints[1])
-}
-
-/// The larger of two, NaN if either is.
-#[inline(always)]
-pub(super) fn nan_max(a: f64, b: f64) -> f64 {
-    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }
 
 /// Columns of the grid, evenly spread, and those next to the joints of both bodies and to the middle between two.

@@ -12,9 +12,9 @@ use super::column::{NEARLY_COVERED, Span, WheelSurface};
 use super::columns::{Columns, MANY, Row};
 use super::grid::Kernel;
 use super::horner::{Run, per_degree};
-use super::plan::nan_max;
 use super::skewed::SkewedColumn;
 use super::strip::{ColumnPolynomials, Evaluation, Strip, StripColumns};
+use crate::numerics::nan_max;
 use crate::placement::Placement;
 
 /// Most coefficients of a column. A span that needs more is close to a vertical tangent, and is evaluated

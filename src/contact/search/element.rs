@@ -3,7 +3,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use crate::profile::{ArcBranch, Branch, BranchShape, Profile, Section, Side, Station};
+use crate::profile::{ArcBranch, Branch, BranchShape, ONE_JOINT, Profile, Section, Side, Station};
 
 /// A polynomial is cut until the second derivative varies by less than this share of its size, which makes
 /// nearly every pair of stretches decidable at sight. Smaller shares make more stretches to look at.
@@ -110,8 +110,7 @@ impl Bounds {
 
 /// All elements of the outer surface, from left to right.
 pub(super) fn elements(profile: &Profile, section: &Section, side: Side) -> Vec<Element> {
-    // Ends closer than this are one joint, moved apart by rounding.
-    let rounding = 16.0 * f64::EPSILON * profile.extent();
+    let rounding = ONE_JOINT * profile.extent();
     let (material_left, material_right) = match side {
         Side::Wheel => (-FRAC_PI_2, FRAC_PI_2),
         Side::Rail => (FRAC_PI_2, -FRAC_PI_2),

@@ -34,7 +34,7 @@ pub struct ProfilePoint {
 }
 
 /// Ends closer than this share of the profile's extent are one joint, moved apart by rounding.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
+pub const ONE_JOINT: f64 = 16.0 * f64::EPSILON;
 
 /// Part of the profile that faces the other body, as a function ζ(ξ) of the frame.
 ///
@@ -71,7 +71,7 @@ impl Section {
 
     fn build(profile: &Profile, frame: Station, contact: Option<&ProfilePoint>, side: Side) -> Self {
         let mut branches: Vec<Branch> = Vec::with_capacity(profile.segments().len());
-        let rounding = ROUNDING * (profile.extent() + frame.x.abs() + frame.z.abs());
+        let rounding = ONE_JOINT * (profile.extent() + frame.x.abs() + frame.z.abs());
         let mut last: Option<Station> = None;
         for (index, segment) in profile.segments().iter().enumerate() {
             let here = contact.filter(|point| point.segment == index);
@@ -128,14 +128,15 @@ impl Section {
         Some([self.pieces.first()?.xi[0], self.pieces.last()?.xi[1]])
     }
 
-    /// The point of the profile at abscissa x, for a section in the profile's own axes: (4.9)–(4.12). At a joint the left one.
+    /// The point of the profile at abscissa x \[mm\], for a section in the profile's own axes: (4.9)–(4.12). At a joint the left
+    /// one; `None` where the body has no surface.
     pub fn point(&self, profile: &Profile, x: f64) -> Option<ProfilePoint> {
         Some(Self::point_on(self.branch_at(x)?, profile, x))
     }
 
-    /// The same where the other body touches: at a joint with a step the end that stands out.
+    /// The same where the other body touches: at a joint with a step the end that stands out by more than rounding.
     pub fn outer_point(&self, profile: &Profile, x: f64, side: Side) -> Option<ProfilePoint> {
-        let rounding = ROUNDING * profile.extent();
+        let rounding = ONE_JOINT * profile.extent();
         let outward = if side == Side::Wheel { -1.0 } else { 1.0 };
         let here = self.pieces_from(x).iter().take_while(|piece| piece.xi[0] <= x);
         let outer = here.map(|piece| &self.branches[piece.branch]).reduce(|left, right| {
