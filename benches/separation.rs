@@ -9,6 +9,7 @@ use wheelrail::placement::Placement;
 use wheelrail::separation::axis::EtaAxis;
 use wheelrail::separation::grid::Method;
 use wheelrail::separation::plan::plan;
+use wheelrail::separation::values::Values;
 
 /// A tread, a standard pair with joints, a flange root.
 const SCENES: [&str; 3] = ["hollow_tread", "UIC60_EN15302A_root", "throat"];
@@ -24,7 +25,7 @@ struct Grid {
     placement: Placement,
     xi: Vec<f64>,
     axis: EtaAxis,
-    out: Vec<f64>,
+    out: Values,
 }
 
 fn grid(scene: &str, n: usize) -> Grid {
@@ -39,7 +40,14 @@ fn grid(scene: &str, n: usize) -> Grid {
         eta[k] = -eta[n - 1 - k];
     }
     let placement = reference.placement().expect("a placed pair");
-    Grid { placement, xi: steps(first, last), axis: EtaAxis::new(&eta), out: vec![1.0; n * n] }
+    Grid { placement, xi: steps(first, last), axis: EtaAxis::new(&eta), out: touched(n * n) }
+}
+
+/// Memory whose pages are there.
+fn touched(count: usize) -> Values {
+    let mut out = Values::new(count);
+    out.fill(1.0);
+    out
 }
 
 fn fill(bencher: Bencher<'_, '_>, scene: &str, n: usize, method: Method) {
@@ -47,7 +55,7 @@ fn fill(bencher: Bencher<'_, '_>, scene: &str, n: usize, method: Method) {
     let choice = plan(&placement, &xi, &axis, 1e-12, Some(method)).choice;
     bencher.counter(ItemsCount::new(n * n)).bench_local(|| {
         choice.fill(&placement, &xi, &axis, &mut out);
-        black_box(&mut out);
+        black_box(&mut *out);
     });
 }
 
@@ -68,10 +76,10 @@ fn report_newton<const N: usize>(bencher: Bencher<'_, '_>, scene: &str) {
 
 #[divan::bench(consts = SIDES, max_time = 1)]
 fn store<const N: usize>(bencher: Bencher<'_, '_>) {
-    let mut out = vec![1.0; N * N];
+    let mut out = touched(N * N);
     let value = black_box(0.1);
     bencher.counter(ItemsCount::new(N * N)).bench_local(|| {
         out.fill(value);
-        black_box(&mut out);
+        black_box(&mut *out);
     });
 }

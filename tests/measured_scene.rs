@@ -25,7 +25,7 @@ fn run(name: &str, change: impl Fn(&mut Scene)) -> Run {
 
 /// Largest difference of s \[mm\] over the drawn profiles' patch; the grids are the same.
 fn over_the_patch(measured: &Part, drawn: &Part, approach: f64) -> f64 {
-    let pairs = measured.analysis.separation.iter().zip(&drawn.analysis.separation);
+    let pairs = measured.analysis.separation.iter().zip(drawn.analysis.separation.iter());
     pairs.filter(|(_, s)| **s < approach).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 

@@ -8,6 +8,7 @@ use crate::placement::Placement;
 use crate::scene::equal_steps;
 use crate::separation::axis::EtaAxis;
 use crate::separation::grid::Choice;
+use crate::separation::values::Values;
 
 /// Least and most runs of one contestant: three show a disturbed one; a processor that changes its clock within milliseconds
 /// shows every speed that it has in some thousand short ones.
@@ -43,7 +44,7 @@ pub struct Track<'a> {
     placement: &'a Placement,
     xi: Vec<f64>,
     axis: EtaAxis,
-    out: Vec<f64>,
+    out: Values,
 }
 
 impl<'a> Track<'a> {
@@ -51,7 +52,7 @@ impl<'a> Track<'a> {
     pub fn new(placement: &'a Placement, [a, b]: [f64; 2], reach: f64, n: usize) -> Self {
         let xi = equal_steps(a, b, n);
         let axis = EtaAxis::new(&equal_steps(-reach, reach, n));
-        let mut out = vec![0.0; n * n];
+        let mut out = Values::new(n * n);
         out.fill(STORED);
         Self { placement, xi, axis, out }
     }
@@ -84,7 +85,7 @@ impl<'a> Track<'a> {
                 choice.fill(self.placement, &self.xi, &self.axis, &mut self.out);
             }
         }
-        black_box(&mut self.out);
+        black_box(&mut *self.out);
     }
 
     /// Runs all in turn, round by round, each until it has had `seconds` of time. To be called on a rayon pool of

@@ -16,6 +16,7 @@ use crate::separation::axis::EtaAxis;
 use crate::separation::grid::Method;
 use crate::separation::plan::{Plan, plan};
 use crate::separation::report_newton;
+use crate::separation::values::Values;
 
 /// How far the bodies approach, and how that is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -125,7 +126,7 @@ pub struct Analysis {
     /// η \[mm\], ascending.
     pub eta: Vec<f64>,
     /// s \[mm\] at i_ξ · n_η + i_η; NaN where a body has no surface.
-    pub separation: Vec<f64>,
+    pub separation: Values,
     /// Method, error estimate and reason.
     pub plan: Plan,
     /// The patch in the window of the grid, when there is an approach.
@@ -148,7 +149,7 @@ impl Analysis {
         let axis = EtaAxis::new(&eta);
         let mut plan = plan(placement, &xi, &axis, question.tolerance, question.method);
         let planned = Instant::now();
-        let mut separation = vec![0.0; xi.len() * eta.len()];
+        let mut separation = Values::new(xi.len() * eta.len());
         plan.fill(placement, &xi, &axis, &mut separation);
         let filled = Instant::now();
         let window = window(&xi, &eta);

@@ -21,6 +21,7 @@ use crate::mesh::surfaces::Surface;
 use crate::profile::Section;
 use crate::scene::{Format, equal_steps};
 use crate::separation::axis::EtaAxis;
+use crate::separation::values::Values;
 use crate::separation::{Evaluator, midsep};
 
 /// A file and the writer of its content.
@@ -147,7 +148,7 @@ const DRAWN: usize = 121;
 struct Drawn {
     xi: Vec<f64>,
     eta: EtaAxis,
-    separation: Vec<f64>,
+    separation: Values,
     /// (ξ, s(ξ, 0))
     midplane: Vec<[f64; 2]>,
 }
@@ -158,7 +159,7 @@ impl Drawn {
         let window = analysis.window();
         let axis = |[from, to]: [f64; 2]| if from < to { equal_steps(from, to, DRAWN) } else { vec![from] };
         let (xi, eta) = (axis(window.xi), EtaAxis::new(&axis(window.eta)));
-        let mut separation = vec![f64::NAN; xi.len() * eta.eta.len()];
+        let mut separation = Values::new(xi.len() * eta.eta.len());
         analysis.plan.choice.fill(placement, &xi, &eta, &mut separation);
         let mut evaluator = Evaluator::new(placement);
         let midplane = xi.iter().map(|&xi| [xi, evaluator.separation(xi, 0.0)]).collect();

@@ -8,6 +8,7 @@ use crate::placement::Placement;
 /// Hertz: s ≈ ½ κ_W ξ′² + ½ κ_η η′² − ½ κ_R ξ², with κ_η = cosθ/(R − z_C).
 #[derive(Debug)]
 pub struct Quadratic<'a> {
+    arch: pulp::Arch,
     axis: &'a EtaAxis,
     /// Coefficients of ξ², ξη, η².
     form: [f64; 3],
@@ -16,7 +17,7 @@ pub struct Quadratic<'a> {
 impl<'a> Quadratic<'a> {
     /// The quadratic form of a placed pair.
     pub fn new(placement: &Placement, axis: &'a EtaAxis) -> Self {
-        Self { axis, form: quadratic_form(placement) }
+        Self { arch: pulp::Arch::new(), axis, form: quadratic_form(placement) }
     }
 }
 
@@ -49,15 +50,18 @@ impl Kernel for Quadratic<'_> {
     fn column(&mut self, xi: f64, out: &mut [f64]) {
         let [along, mixed, across] = self.form;
         let (constant, linear) = (along * xi * xi, mixed * xi);
-        for (s, eta) in out.iter_mut().zip(&self.axis.eta) {
-            *s = constant + eta * (linear + across * eta);
-        }
+        self.arch.dispatch(|| {
+            for (s, eta) in out.iter_mut().zip(&self.axis.eta) {
+                *s = constant + eta * (linear + across * eta);
+            }
+        });
     }
 }
 
 /// s ≈ g(ξ) + η²/2R, or without a constant coefficient g(ξ) + q(ξ, 0) η²; with skew g and η are the wheel's own.
 #[derive(Debug)]
 pub struct Parabolic<'a> {
+    arch: pulp::Arch,
     evaluator: Evaluator<'a>,
     axis: &'a EtaAxis,
     /// 1/2R \[1/mm\], or `None` for the local q(ξ, 0).
@@ -68,12 +72,12 @@ impl<'a> Parabolic<'a> {
     /// With the constant coefficient 1/2R of a cylinder of the nominal radius.
     pub fn constant_radius(placement: &'a Placement, axis: &'a EtaAxis) -> Self {
         let constant = Some(0.5 / placement.wheel_radius);
-        Self { evaluator: Evaluator::new(placement), axis, constant }
+        Self { constant, ..Self::local(placement, axis) }
     }
 
     /// With the exact coefficient q(ξ, 0) at every ξ.
     pub fn local(placement: &'a Placement, axis: &'a EtaAxis) -> Self {
-        Self { evaluator: Evaluator::new(placement), axis, constant: None }
+        Self { arch: pulp::Arch::new(), evaluator: Evaluator::new(placement), axis, constant: None }
     }
 }
 
@@ -82,9 +86,11 @@ impl Kernel for Parabolic<'_> {
         if self.evaluator.placement.skew == 0.0 {
             let [gap, local] = self.evaluator.parabola(xi, 0.0);
             let q = self.constant.unwrap_or(local);
-            for (s, u) in out.iter_mut().zip(&self.axis.u) {
-                *s = gap + q * u;
-            }
+            self.arch.dispatch(|| {
+                for (s, u) in out.iter_mut().zip(self.axis.u.iter()) {
+                    *s = gap + q * u;
+                }
+            });
             return;
         }
         for (s, &eta) in out.iter_mut().zip(&self.axis.eta) {

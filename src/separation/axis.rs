@@ -2,13 +2,15 @@
 
 use std::ops::Range;
 
+use super::values::{LINE, Values, lead};
+
 /// η and u = η² of every column, and whether half of it is the mirror image of the other.
 #[derive(Debug, Clone)]
 pub struct EtaAxis {
     /// η \[mm\], ascending.
     pub eta: Vec<f64>,
     /// η² \[mm²\].
-    pub u: Vec<f64>,
+    pub u: Values,
     /// Index of the first η ≥ 0.
     pub first_positive: usize,
     /// η_i = −η_{n−1−i} for all i.
@@ -21,8 +23,12 @@ impl EtaAxis {
     /// Prepares ascending η values.
     pub fn new(eta: &[f64]) -> Self {
         let symmetric = eta.iter().zip(eta.iter().rev()).all(|(a, b)| *a == -*b);
+        let mut u = Values::new(eta.len());
+        for (u, eta) in u.iter_mut().zip(eta) {
+            *u = eta * eta;
+        }
         Self {
-            u: eta.iter().map(|eta| eta * eta).collect(),
+            u,
             first_positive: eta.partition_point(|&eta| eta < 0.0),
             symmetric,
             reach: eta.iter().fold(0.0, |reach, eta| eta.abs().max(reach)),
@@ -75,14 +81,29 @@ impl EtaAxis {
         left.partition_point(|&u| u > u1)..end
     }
 
-    /// Copies the half η ≥ 0 of a column onto the other, where the axis is symmetric.
-    pub fn mirror(&self, column: &mut [f64]) {
-        if self.symmetric {
-            let (left, right) = column.split_at_mut(self.first_positive);
-            for (left, right) in left.iter_mut().zip(right.iter().rev()) {
-                *left = *right;
-            }
-        }
+    /// Where the vector of so many values begins that holds the first η ≥ 0, if the axis is symmetric and columns are whole lines
+    /// of the cache: mirroring one half takes then less time than evaluating it.
+    #[inline(always)]
+    pub(super) fn half(&self, columns: &[f64], lanes: usize) -> Option<usize> {
+        let lines = self.eta.len().is_multiple_of(LINE) && lead(columns) == 0;
+        (self.symmetric && lines).then_some(self.first_positive - self.first_positive % lanes)
+    }
+}
+
+/// Writes the mirror image of a column's end to its first `count` values, at most half of it.
+#[inline(always)]
+pub(super) fn mirror(column: &mut [f64], count: usize) {
+    let (left, right) = column.split_at_mut(count);
+    let right = &right[right.len() - count..];
+    let (lines, inner_left) = left.as_chunks_mut::<LINE>();
+    let (inner_right, mirrored) = right.as_rchunks::<LINE>();
+    for (left, right) in lines.iter_mut().zip(mirrored.iter().rev()) {
+        // All at once, which becomes one vector.
+        let [a, b, c, d, e, f, g, h] = *right;
+        *left = [h, g, f, e, d, c, b, a];
+    }
+    for (left, right) in inner_left.iter_mut().zip(inner_right.iter().rev()) {
+        *left = *right;
     }
 }
 
@@ -103,8 +124,10 @@ mod tests {
                     column[i] = axis.u[i];
                 }
             }
-            axis.mirror(&mut column);
-            assert_eq!(column, axis.u);
+            if axis.symmetric {
+                mirror(&mut column, axis.first_positive);
+            }
+            assert_eq!(column, *axis.u);
 
             for u in [0.0, 0.2, 1.0, 4.0, 5.0, 20.0] {
                 let inside = |i: &usize| axis.u[*i] <= u;

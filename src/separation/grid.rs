@@ -10,7 +10,7 @@ use super::columns::MANY;
 use super::pointwise::Pointwise;
 use super::report_newton::ReportNewton;
 use super::spectral::{Demand, Spectral};
-use super::strips::{Strip, strips};
+use super::strips::strips;
 use crate::placement::Placement;
 
 /// Columns of one block: the unit of work of a thread.
@@ -95,58 +95,51 @@ pub struct Choice {
 }
 
 impl Choice {
-    /// A kernel of this choice, spectral columns with strips.
-    fn kernel<'a>(
-        &self,
-        placement: &'a Placement,
-        axis: &'a EtaAxis,
-        strips: &'a [Strip],
-        past_caches: bool,
-    ) -> Box<dyn Kernel + 'a> {
-        match self.method {
-            Method::Quadratic => Box::new(Quadratic::new(placement, axis)),
-            Method::ConstantRadius => Box::new(Parabolic::constant_radius(placement, axis)),
-            Method::Parabolic => Box::new(Parabolic::local(placement, axis)),
-            Method::Spectral => Box::new(self.spectral(placement, axis).with_strips(strips, past_caches)),
-            Method::Pointwise => Box::new(Pointwise::new(placement, axis)),
-            Method::ReportNewton => Box::new(ReportNewton::new(placement, axis, self.demand.absolute)),
-        }
-    }
-
-    fn spectral<'a>(&self, placement: &'a Placement, axis: &'a EtaAxis) -> Spectral<'a> {
-        Spectral::new(placement, axis, self.demand, self.coefficients)
-    }
-
     /// s over the grid, index i_ξ · n_η + i_η, on the threads of the current rayon pool. The same bits come
     /// out for any number of threads. Returns the largest truncation error \[mm\] that was measured on the way, 0 where
     /// none is.
     pub fn fill(&self, placement: &Placement, xi: &[f64], axis: &EtaAxis, out: &mut [f64]) -> f64 {
-        let n = axis.eta.len();
-        if n == 0 {
+        if axis.eta.is_empty() {
             return 0.0;
         }
-        let strips = match self.method {
-            Method::Spectral => {
-                strips(&mut self.spectral(placement, axis), placement, xi, axis.reach * axis.reach)
-            }
-            _ => Vec::new(),
+        let kernel: &(dyn Fn() -> Box<dyn Kernel> + Sync) = match self.method {
+            Method::Quadratic => &|| Box::new(Quadratic::new(placement, axis)),
+            Method::ConstantRadius => &|| Box::new(Parabolic::constant_radius(placement, axis)),
+            Method::Parabolic => &|| Box::new(Parabolic::local(placement, axis)),
+            Method::Spectral => return self.fill_by_strips(placement, xi, axis, out),
+            Method::Pointwise => &|| Box::new(Pointwise::new(placement, axis)),
+            Method::ReportNewton => &|| Box::new(ReportNewton::new(placement, axis, self.demand.absolute)),
         };
-        let of_strips = strips.iter().map(|strip| strip.truncation).fold(0.0, f64::max);
         let by_columns = self.method < Method::Pointwise;
         if out.len() <= FEW_POINTS[usize::from(!by_columns)] {
-            let mut kernel = self.kernel(placement, axis, &strips, false);
-            kernel.columns(xi, out);
-            return kernel.truncation().max(of_strips);
+            return fill_with(&mut *kernel(), xi, out);
+        }
+        fill_in_blocks(kernel, xi, out)
+    }
+
+    /// The same by spectral columns, which share strips.
+    fn fill_by_strips(&self, placement: &Placement, xi: &[f64], axis: &EtaAxis, out: &mut [f64]) -> f64 {
+        let spectral = || Spectral::new(placement, axis, self.demand, self.coefficients);
+        let mut first = spectral();
+        let strips = strips(&mut first, placement, xi, axis.reach * axis.reach);
+        let of_strips = strips.iter().map(|strip| strip.truncation).fold(0.0, f64::max);
+        if out.len() <= FEW_POINTS[0] {
+            return fill_with(&mut first.with_strips(&strips, false), xi, out).max(of_strips);
         }
         let past_caches = out.len() >= BEYOND_CACHES;
-        let blocks = out.par_chunks_mut(BLOCK * n).zip(xi.par_chunks(BLOCK));
-        let of_blocks = blocks.map_init(
-            || self.kernel(placement, axis, &strips, past_caches),
-            |kernel, (out, xi)| {
-                kernel.columns(xi, out);
-                kernel.truncation()
-            },
-        );
-        of_blocks.reduce(|| of_strips, f64::max)
+        fill_in_blocks(|| Box::new(spectral().with_strips(&strips, past_caches)), xi, out).max(of_strips)
     }
+}
+
+/// All columns by one kernel; the largest truncation error \[mm\].
+fn fill_with(kernel: &mut dyn Kernel, xi: &[f64], out: &mut [f64]) -> f64 {
+    kernel.columns(xi, out);
+    kernel.truncation()
+}
+
+/// All columns by the threads' kernels; the largest truncation error \[mm\].
+fn fill_in_blocks<'k>(kernel: impl Fn() -> Box<dyn Kernel + 'k> + Sync, xi: &[f64], out: &mut [f64]) -> f64 {
+    let length = out.len() / xi.len().max(1);
+    let blocks = out.par_chunks_mut(BLOCK * length).zip(xi.par_chunks(BLOCK));
+    blocks.map_init(&kernel, |kernel, (out, xi)| fill_with(&mut **kernel, xi, out)).reduce(|| 0.0, f64::max)
 }

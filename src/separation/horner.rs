@@ -2,9 +2,7 @@
 
 use super::spectral::{ColumnPolynomial, MOST_COEFFICIENTS};
 use super::stream;
-
-/// Values of the widest vector, and of a line of the cache.
-const LINE: usize = 8;
+use super::values::lead;
 
 /// Runs from these lengths on, of arrays in the caches and past them, are stored line by line of the cache. Grids of shorter ones
 /// are in the second cache, where that gains nothing.
@@ -118,7 +116,7 @@ pub(super) fn horner<S: pulp::Simd, const N: usize, const FIRST: bool, const PAS
 
 /// One vector of [`horner`]. A function, since closures may be left out of line.
 #[inline(always)]
-fn value<S: pulp::Simd, const N: usize, const FIRST: bool>(
+pub(super) fn value<S: pulp::Simd, const N: usize, const FIRST: bool>(
     simd: S,
     [base, u0]: [S::f64s; 2],
     c: &[S::f64s; N],
@@ -130,10 +128,4 @@ fn value<S: pulp::Simd, const N: usize, const FIRST: bool>(
         q = simd.mul_add_f64s(q, v, c);
     }
     simd.mul_add_f64s(q, v, base)
-}
-
-/// Number of values before the first one that begins a line of the cache.
-#[inline(always)]
-fn lead(values: &[f64]) -> usize {
-    values.as_ptr().align_offset(LINE * size_of::<f64>()).min(LINE - 1)
 }

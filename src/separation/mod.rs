@@ -16,6 +16,7 @@ pub mod spectral;
 mod stream;
 mod strip;
 pub mod strips;
+pub mod values;
 
 use crate::placement::Placement;
 use column::{Foot, Span, WheelSurface};

@@ -7,9 +7,9 @@
 use std::array::from_fn;
 
 use super::Evaluator;
-use super::axis::EtaAxis;
+use super::axis::{EtaAxis, mirror};
 use super::column::{NEARLY_COVERED, Span, WheelSurface};
-use super::columns::{Columns, MANY, Row};
+use super::columns::{Columns, MANY, MOST_SPANS, Row};
 use super::grid::Kernel;
 use super::horner::{Run, per_degree};
 use super::skewed::SkewedColumn;
@@ -85,8 +85,8 @@ impl<'a> Spectral<'a> {
             coefficients,
             strips: &[],
             spans: Vec::new(),
-            rows: Vec::new(),
-            polynomials: Vec::new(),
+            rows: Vec::with_capacity(MOST_SPANS * (MOST_COEFFICIENTS + 2)),
+            polynomials: Vec::with_capacity(MOST_SPANS),
             past_caches: false,
             arch: pulp::Arch::new(),
             truncation: 0.0,
@@ -197,7 +197,9 @@ impl Kernel for Spectral<'_> {
             return;
         }
         self.single_column(xi, self.axis.reach * self.axis.reach, out);
-        self.axis.mirror(out);
+        if self.axis.symmetric {
+            mirror(out, self.axis.first_positive);
+        }
     }
 
     fn columns(&mut self, xi: &[f64], out: &mut [f64]) {
@@ -209,30 +211,13 @@ impl Kernel for Spectral<'_> {
             let next = self.strips.get(beyond);
             let strip = next.filter(|strip| strip.xi[0] < first);
             let count = match (strip, next) {
-                (Some(strip), _) => rest.partition_point(|&xi| xi < strip.xi[1]).min(MANY),
-                (None, Some(next)) => rest.partition_point(|&xi| xi <= next.xi[0]).min(MANY),
-                (None, None) => rest.len().min(MANY),
+                (Some(strip), _) => rest.partition_point(|&xi| xi < strip.xi[1]),
+                (None, Some(next)) => rest.partition_point(|&xi| xi <= next.xi[0]),
+                (None, None) => rest.len(),
             };
-            let (xi, out) = (&rest[..count], &mut out[done * length..(done + count) * length]);
-            let arch = self.arch;
-            match strip {
-                Some(strip) => {
-                    let (placement, axis) = (self.evaluator.placement, self.axis);
-                    let polynomials = &mut self.polynomials;
-                    if self.past_caches {
-                        arch.dispatch(StripColumns::<true> { placement, strip, xi, axis, polynomials, out });
-                    } else {
-                        arch.dispatch(StripColumns::<false> { placement, strip, xi, axis, polynomials, out });
-                    }
-                }
-                None if count > 1 && self.evaluator.placement.skew == 0.0 => {
-                    arch.dispatch(EachColumn { spectral: self, xi, out });
-                }
-                None => {
-                    for (&xi, out) in xi.iter().zip(out.chunks_exact_mut(length)) {
-                        self.column(xi, out);
-                    }
-                }
+            let out = &mut out[done * length..(done + count) * length];
+            for (xi, out) in rest[..count].chunks(MANY).zip(out.chunks_mut(MANY * length)) {
+                self.neighbours(strip, xi, out);
             }
             done += count;
         }
@@ -282,6 +267,28 @@ impl pulp::WithSimd for EachColumn<'_, '_> {
 }
 
 impl Spectral<'_> {
+    /// At most [`MANY`] neighbouring columns, of one strip or of none.
+    fn neighbours(&mut self, strip: Option<&Strip>, xi: &[f64], out: &mut [f64]) {
+        let (arch, placement, axis) = (self.arch, self.evaluator.placement, self.axis);
+        let polynomials = &mut self.polynomials;
+        match strip {
+            Some(strip) if self.past_caches => {
+                arch.dispatch(StripColumns::<true> { placement, strip, xi, axis, polynomials, out });
+            }
+            Some(strip) => {
+                arch.dispatch(StripColumns::<false> { placement, strip, xi, axis, polynomials, out });
+            }
+            None if xi.len() > 1 && placement.skew == 0.0 => {
+                arch.dispatch(EachColumn { spectral: self, xi, out });
+            }
+            None => {
+                for (&xi, out) in xi.iter().zip(out.chunks_exact_mut(axis.eta.len())) {
+                    self.column(xi, out);
+                }
+            }
+        }
+    }
+
     /// A column of a skewed wheel; its truncation error \[mm\].
     pub(super) fn skewed_column(&mut self, xi: f64, eta: &[f64], out: &mut [f64]) -> f64 {
         let mut column = SkewedColumn::new(&mut self.evaluator, self.arch, self.demand, xi);
@@ -358,22 +365,38 @@ mod tests {
     use crate::profile::{Profile, Side, standards};
     use crate::separation::plan::{FULL_PRECISION, demand};
     use crate::separation::strips::strips;
+    use crate::separation::values::Values;
 
-    /// s over a window with joints on the columns and in them, and the number of strips, compiled for one kind of machine and
-    /// stored past the caches or not.
-    fn filled(placement: &Placement, arch: pulp::Arch, past_caches: bool) -> (Vec<f64>, usize) {
+    /// A spline has more: so many columns beside them would be in strips.
+    const FEW_JOINTS: usize = 10;
+
+    /// s over a window, with columns beside its joints, and the largest number of spans of its strips' columns; compiled for one
+    /// kind of machine, stored past the caches or not, so many values behind the beginning of a line.
+    fn filled(
+        placement: &Placement,
+        count: i32,
+        arch: pulp::Arch,
+        (past_caches, behind): (bool, usize),
+    ) -> (Vec<f64>, usize) {
         let steps =
             |reach: f64, n: i32| (0..n).map(move |k| reach * f64::from(2 * k - n + 1) / f64::from(n - 1));
-        let xi: Vec<f64> = steps(12.0, 101).collect();
-        let axis = EtaAxis::new(&steps(15.0, 253).collect::<Vec<_>>());
+        let mut xi: Vec<f64> = steps(12.0, 101).collect();
+        // Columns in which a joint is near η = 0.
+        let beside = |joint: f64| (0..16).map(move |k| joint - 1e-6 * 1.6f64.powi(k));
+        let joints = placement.joints(-12.0, 12.0);
+        if joints.len() <= FEW_JOINTS {
+            xi.extend(joints.into_iter().flat_map(beside));
+        }
+        xi.sort_by(f64::total_cmp);
+        let axis = EtaAxis::new(&steps(15.0, count).collect::<Vec<_>>());
         let spectral = || {
             let spectral = Spectral::new(placement, &axis, demand(FULL_PRECISION), 4);
             Spectral { arch, ..spectral }
         };
         let strips = strips(&mut spectral(), placement, &xi, axis.reach * axis.reach);
-        let mut out = vec![0.0; xi.len() * axis.eta.len()];
-        spectral().with_strips(&strips, past_caches).columns(&xi, &mut out);
-        (out, strips.len())
+        let mut out = Values::new(behind + xi.len() * axis.eta.len());
+        spectral().with_strips(&strips, past_caches).columns(&xi, &mut out[behind..]);
+        (out[behind..].to_vec(), strips.iter().map(|strip| strip.spans).max().unwrap_or(0))
     }
 
     /// A spline through points of a profile.
@@ -386,25 +409,28 @@ mod tests {
 
     #[test]
     fn every_machine_gives_the_same_bits() -> Result<()> {
-        let (rail, wheel) = (standards::rail("UIC60")?, standards::wheel("S1002")?);
-        let splines = [spline(&rail, Side::Rail)?, spline(&wheel, Side::Wheel)?];
-        let drawings = [rail, wheel];
-        let cases = [(drawings.clone(), 0.0, true), (drawings, 0.02, false), (splines, 0.0, false)];
-        for ([rail, wheel], yaw, by_strips) in cases {
-            let placement = Pair::new(rail, wheel, 460.0)?.placed(-11.0, -9.0, yaw)?;
-            let (plain, strips) = filled(&placement, pulp::Arch::Scalar, false);
-            assert_eq!(strips > 1, by_strips, "{strips}");
-            assert!(plain.iter().all(|s| s.is_finite()));
-            let same = |arch| {
-                [false, true].into_iter().all(|past_caches| {
-                    let (other, _) = filled(&placement, arch, past_caches);
-                    plain.iter().zip(&other).all(|(a, b)| a.to_bits() == b.to_bits())
-                })
-            };
-            assert!(same(pulp::Arch::Scalar) && same(pulp::Arch::new()));
-            #[cfg(target_arch = "x86_64")]
-            if let Some(v3) = pulp::x86::V3::try_new() {
-                assert!(same(pulp::Arch::V3(v3)));
+        let rail = standards::rail("UIC60")?;
+        let splines = [spline(&rail, Side::Rail)?, spline(&standards::wheel("S1002")?, Side::Wheel)?];
+        let drawings = [rail, standards::wheel("APTA-120")?];
+        let cases = [(drawings.clone(), -14.0, 0.0, 3), (drawings, -14.0, 0.02, 0), (splines, -9.0, 0.0, 0)];
+        for ([rail, wheel], wheel_x, yaw, most_spans) in cases {
+            let placement = Pair::new(rail, wheel, 460.0)?.placed(-11.0, wheel_x, yaw)?;
+            // The columns of the second are whole lines: one half is the other's mirror image.
+            for count in [253, 248] {
+                let (plain, spans) = filled(&placement, count, pulp::Arch::Scalar, (false, 1));
+                assert_eq!(spans, most_spans);
+                assert!(plain.iter().all(|s| s.is_finite()));
+                let same = |arch| {
+                    [(false, 0), (false, 1), (true, 0)].into_iter().all(|stored| {
+                        let (other, _) = filled(&placement, count, arch, stored);
+                        plain.iter().zip(&other).all(|(a, b)| a.to_bits() == b.to_bits())
+                    })
+                };
+                assert!(same(pulp::Arch::Scalar) && same(pulp::Arch::new()));
+                #[cfg(target_arch = "x86_64")]
+                if let Some(v3) = pulp::x86::V3::try_new() {
+                    assert!(same(pulp::Arch::V3(v3)));
+                }
             }
         }
         Ok(())

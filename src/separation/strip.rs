@@ -1,9 +1,9 @@
 //! The columns of one strip: their quantities, and s from them, for many columns at once.
 
-use super::axis::EtaAxis;
+use super::axis::{EtaAxis, mirror};
 use super::columns::{MANY, MOST_SPANS, Row, row};
 use super::gap::midplane_gap;
-use super::horner::{PerDegree, horner, per_degree};
+use super::horner::{PerDegree, horner, per_degree, value};
 use super::spectral::MOST_COEFFICIENTS;
 use crate::placement::Placement;
 
@@ -19,9 +19,13 @@ pub struct Strip {
     pub(super) spans: usize,
     /// Number of coefficients of q.
     pub(super) coefficients: usize,
-    /// Of every quantity the coefficients of t^(kept−1), …, t⁰; t from −1 to 1 over the interval.
+    /// Of every quantity the coefficients of t^(kept−1), …, t⁰, t from −1 to 1 over the interval: of every span those of q, then
+    /// of every span u_0, but for the first one, and s.
     pub(super) powers: Vec<f64>,
-    pub(super) kept: usize,
+    /// Number of powers of the quantities of q, by spans …
+    pub(super) kept: [usize; MOST_SPANS],
+    /// … and of u_0 and s.
+    pub(super) kept_at_beginnings: usize,
     /// Largest measured truncation error of its columns \[mm\].
     pub truncation: f64,
 }
@@ -73,6 +77,30 @@ impl ColumnPolynomials {
         }
         horner::<S, N, FIRST, PAST>(simd, [self.base[k], self.u0[k]], &c, u, out);
     }
+
+    /// The same over whole vectors; in the first of them up to u_0 what is there stays, unless u_0 is zero by `FIRST`.
+    #[inline(always)]
+    fn beyond<S: pulp::Simd, const N: usize, const FIRST: bool>(
+        &self,
+        simd: S,
+        k: usize,
+        u: &[f64],
+        out: &mut [f64],
+    ) {
+        let begin = [simd.splat_f64s(self.base[k]), simd.splat_f64s(self.u0[k])];
+        let mut splat = [simd.splat_f64s(0.0); N];
+        for (splat, c) in splat.iter_mut().zip(&self.c) {
+            *splat = simd.splat_f64s(c[k]);
+        }
+        let (u, out) = (S::as_simd_f64s(u).0, S::as_mut_simd_f64s(out).0);
+        let before = out.first().copied();
+        for (s, &u) in out.iter_mut().zip(u) {
+            *s = value::<S, N, FIRST>(simd, begin, &splat, u);
+        }
+        if !FIRST && let (Some(before), Some(s), Some(&u)) = (before, out.first_mut(), u.first()) {
+            *s = simd.select_f64s(simd.greater_than_f64s(u, begin[1]), *s, before);
+        }
+    }
 }
 
 /// Neighbouring columns of one strip, compiled for each kind of machine. A struct, since closures may be left out of
@@ -104,6 +132,16 @@ impl<const PAST: bool> pulp::WithSimd for StripColumns<'_, PAST> {
     }
 }
 
+/// Σ c t^k at each t, the highest power first.
+#[inline(always)]
+fn at(powers: &[f64], t: &Row) -> Row {
+    let mut sum = [0.0f64; MANY];
+    for c in powers {
+        sum = row(|k| sum[k].mul_add(t[k], *c));
+    }
+    sum
+}
+
 impl Strip {
     /// The polynomials over every span at each ξ.
     #[inline(always)]
@@ -111,16 +149,18 @@ impl Strip {
         let ([a, b], mut all) = (self.xi, [xi[0]; MANY]);
         all[..xi.len()].copy_from_slice(xi);
         let t = row(|k| ((all[k] - a) - (b - all[k])) / (b - a));
-        let (mut powers, n) = (self.powers.chunks_exact(self.kept), self.coefficients);
-        for span in &mut *spans {
-            let quantities = span.c[..n].iter_mut().chain([&mut span.base, &mut span.u0]);
-            for (quantity, powers) in quantities.zip(&mut powers) {
-                let mut sum = [0.0f64; MANY];
-                for c in powers {
-                    sum = row(|k| sum[k].mul_add(t[k], *c));
-                }
-                *quantity = sum;
+        let n = self.coefficients;
+        let mut rest = &self.powers[..];
+        for (span, kept) in spans.iter_mut().zip(self.kept) {
+            let (powers, others) = rest.split_at(n * kept);
+            for (c, powers) in span.c[..n].iter_mut().zip(powers.chunks_exact(kept)) {
+                *c = at(powers, &t);
             }
+            rest = others;
+        }
+        let beginnings = spans.iter_mut().flat_map(|span| [&mut span.u0, &mut span.base]).skip(1);
+        for (quantity, powers) in beginnings.zip(rest.chunks_exact(self.kept_at_beginnings)) {
+            *quantity = at(powers, &t);
         }
         let base = &mut spans[0].base;
         match self.gap {
@@ -154,11 +194,56 @@ pub(super) struct Evaluation<'a, S, const SINGLE: bool, const PAST: bool> {
 impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> PerDegree for Evaluation<'_, S, SINGLE, PAST> {
     #[inline(always)]
     fn run<const N: usize>(self) {
+        // What is stored past the caches is not there to be mirrored.
+        match self.axis.half(self.out, S::F64_LANES) {
+            Some(half) if !PAST => self.mirrored::<N>(half),
+            _ => self.whole::<N>(),
+        }
+    }
+}
+
+impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> Evaluation<'_, S, SINGLE, PAST> {
+    /// Columns from `half` on, in whole vectors, and their mirror images.
+    #[inline(always)]
+    fn mirrored<const N: usize>(self, half: usize) {
+        let Self { simd, polynomials: spans, axis, out } = self;
+        let (count, lanes) = (axis.eta.len(), S::F64_LANES);
+        // Where the vectors begin that hold both a span's beginning and the end of the span before.
+        let mut begins = [half; MOST_SPANS];
+        for (k, out) in out.chunks_exact_mut(count).enumerate() {
+            if SINGLE {
+                spans[0].beyond::<S, N, true>(simd, k, &axis.u[half..], &mut out[half..]);
+            } else {
+                for (span, begin) in spans[1..].iter().zip(&mut begins[1..]) {
+                    // Seldom another vector than in the column before: a loop that no processor foresees takes longer.
+                    while *begin > half && axis.u[*begin] > span.u0[k] {
+                        *begin -= lanes;
+                    }
+                    while *begin + lanes < count && axis.u[*begin + lanes] <= span.u0[k] {
+                        *begin += lanes;
+                    }
+                }
+                for (index, span) in spans.iter().enumerate() {
+                    let end = if index + 1 < spans.len() { begins[index + 1] + lanes } else { count };
+                    let (u, out) = (&axis.u[begins[index]..end], &mut out[begins[index]..end]);
+                    if index == 0 {
+                        span.beyond::<S, N, true>(simd, k, u, out);
+                    } else {
+                        span.beyond::<S, N, false>(simd, k, u, out);
+                    }
+                }
+            }
+            mirror(out, half);
+        }
+    }
+
+    /// Columns from the first η to the last one, so that memory is written in order.
+    #[inline(always)]
+    fn whole<const N: usize>(self) {
         let Self { simd, polynomials: spans, axis, out } = self;
         let count = axis.eta.len();
         let mut ends = [count; MOST_SPANS];
         for (k, out) in out.chunks_exact_mut(count).enumerate() {
-            // Both halves of a symmetric axis: copying one takes longer than evaluating it.
             if SINGLE {
                 spans[0].run::<S, N, true, PAST>(simd, k, &axis.u, out);
                 continue;
@@ -169,7 +254,6 @@ impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> PerDegree for Evaluati
                 let near = if axis.is_end(u, beyond) { beyond } else { ends[index - 1] };
                 ends[index - 1] = axis.end(u, near).min(beyond);
             }
-            // From the first η to the last one, so that memory is written in order.
             let mut begin = 0;
             let inwards = (1..spans.len()).rev();
             let inwards = inwards.map(|index| (index, axis.begin(spans[index].u0[k], ends[index - 1])));

@@ -66,7 +66,8 @@ fn breaks(placement: &Placement, u_max: f64, window: [f64; 2]) -> Vec<f64> {
     let inside = |xi: &f64| window[0] < *xi && *xi < window[1];
     // e ≤ w, so that e² ≤ u: no joint leaves further than this from where it enters.
     let far = wheel.sin.abs() * u_max.sqrt();
-    let mut ends = vec![window[0]];
+    let mut ends = Vec::with_capacity(MANY);
+    ends.push(window[0]);
     ends.extend(rail.joints(window).map(|(xi, _)| xi).filter(inside));
     ends.extend(wheel.section.joints(window).map(|(xi, _)| xi).filter(inside));
     ends.extend(wheel.section.joints([window[0] - far, window[1] + far]).map(leaving).filter(inside));
@@ -134,12 +135,10 @@ impl Strip {
     #[inline(always)]
     fn new(spectral: &mut Spectral<'_>, xi: [f64; 2], short: bool) -> Option<Self> {
         let Spectral { evaluator, columns, demand, coefficients, rows, .. } = spectral;
-        let mut beginnings = Beginnings::new(evaluator, columns, short)?;
-        let judged = &mut beginnings.judged;
+        let beginnings = Beginnings::new(evaluator, columns, short)?;
         let single = columns.spans.len() == 1;
-        let (mut of_spans, mut truncation) = ([0; MOST_SPANS], 0f64);
+        let (mut counts, mut kept, mut truncation) = ([0; MOST_SPANS], [0; MOST_SPANS], 0f64);
         rows.clear();
-        rows.reserve(columns.spans.len() * (*coefficients + 2));
         for (k, span) in columns.spans.iter().enumerate() {
             let at = rows.len();
             let (n, error) = columns.polynomials(k, *demand, *coefficients, rows)?;
@@ -160,6 +159,7 @@ impl Strip {
                 if contact { relative } else { relative.max(beginnings.rounding[k] / largest(&length)) };
             // u at τ = 1 where there is one span and its q is left in powers of u.
             let end = if single { length[0] } else { 1.0 };
+            let mut judged = Judged::default();
             for tau in JUDGED {
                 let mut change = [0.0; MANY];
                 for c in q.iter().rev() {
@@ -167,35 +167,47 @@ impl Strip {
                 }
                 judged.with(&change, allowed);
             }
-            rows.extend(beginnings.series[k]);
-            of_spans[k] = n;
+            (counts[k], kept[k]) = (n, judged.kept()?);
         }
-        let (kept, spans) = (judged.kept()?, columns.spans.len());
-        let coefficients = of_spans.iter().fold(0, |most, &n| n.max(most));
-        // Columns are evaluated with as many coefficients for every span.
-        let mut powers = vec![0.0; spans * (coefficients + 2) * kept];
-        let mut rows = rows.iter();
-        for (powers, n) in powers.chunks_exact_mut((coefficients + 2) * kept).zip(of_spans) {
-            let quantities = (0..n).chain([coefficients, coefficients + 1]);
-            for (quantity, row) in quantities.zip(&mut rows) {
-                let powers = powers[quantity * kept..][..kept].iter_mut().rev();
-                for (power, value) in powers.zip(chebyshev::to_powers(row, kept)) {
-                    *power = value;
-                }
+        let Beginnings { gap, series, kept: kept_at_beginnings, .. } = beginnings;
+        let (spans, coefficients) = (columns.spans.len(), counts.iter().fold(0, |most, &n| n.max(most)));
+        // The first span has no u_0.
+        let at_beginnings = (2 * spans - 1) * kept_at_beginnings;
+        let mut powers = vec![0.0; coefficients * kept.iter().sum::<usize>() + at_beginnings];
+        let (mut rest, mut rows) = (&mut powers[..], rows.iter());
+        for (n, kept) in counts.into_iter().zip(kept).take(spans) {
+            // Columns are evaluated with as many coefficients for every span.
+            let (of_q, others) = rest.split_at_mut(coefficients * kept);
+            for (powers, row) in of_q.chunks_exact_mut(kept).zip(rows.by_ref().take(n)) {
+                write(powers, row);
             }
+            rest = others;
         }
-        Some(Self { xi, gap: beginnings.gap, spans, coefficients, powers, kept, truncation })
+        for (powers, row) in rest.chunks_exact_mut(kept_at_beginnings).zip(&series.as_flattened()[1..]) {
+            write(powers, row);
+        }
+        Some(Self { xi, gap, spans, coefficients, powers, kept, kept_at_beginnings, truncation })
+    }
+}
+
+/// Writes the coefficients of t^(kept−1), …, t⁰ of an interpolant with these Chebyshev coefficients.
+#[inline(always)]
+fn write(powers: &mut [f64], row: &Row) {
+    let values = chebyshev::to_powers(row, powers.len());
+    for (power, value) in powers.iter_mut().rev().zip(values) {
+        *power = value;
     }
 }
 
 /// Where the columns of a strip begin their spans: most intervals that are too long are seen to be so by it.
 struct Beginnings {
     gap: Gap,
-    /// Of every span the series of s and of u_0.
+    /// Of every span the series of u_0 and of s.
     series: [[Row; 2]; MOST_SPANS],
+    /// How many coefficients of these are more than rounding.
+    kept: usize,
     /// Rounding of s.
     rounding: [f64; MOST_SPANS],
-    judged: Judged,
 }
 
 impl Beginnings {
@@ -218,16 +230,15 @@ impl Beginnings {
             } else {
                 f64::EPSILON * largest(&span.size(evaluator, &columns.xi))
             };
-            begins[k] = [chebyshev::coefficients(&s), chebyshev::coefficients(&span.u[0])];
-            judged.with(&begins[k][1], ROUNDING_LEVEL * largest(&span.u[1]));
+            begins[k] = [chebyshev::coefficients(&span.u[0]), chebyshev::coefficients(&s)];
+            judged.with(&begins[k][0], ROUNDING_LEVEL * largest(&span.u[1]));
             let before = judged;
-            judged.with(&begins[k][0], rounding[k]);
+            judged.with(&begins[k][1], rounding[k]);
             if k == 0 && short && judged.kept().is_none() {
                 (judged, gap) = (before, Gap::Computed);
             }
         }
-        judged.kept()?;
-        Some(Self { gap, series: begins, rounding, judged })
+        Some(Self { gap, series: begins, kept: judged.kept()?, rounding })
     }
 }
 

@@ -1,0 +1,67 @@
+//! Memory for s over a grid.
+
+use std::ops::{Deref, DerefMut};
+
+/// Values in a line of the cache.
+pub(super) const LINE: usize = 8;
+
+/// s over a grid \[mm\], index i_ξ · n_η + i_η. The first one begins a line of the cache: a store across two lines takes twice
+/// as long.
+#[derive(Debug)]
+pub struct Values {
+    memory: Vec<f64>,
+    begin: usize,
+    count: usize,
+}
+
+impl Values {
+    /// So many zeros.
+    pub fn new(count: usize) -> Self {
+        let memory = vec![0.0; count + LINE - 1];
+        Self { begin: lead(&memory), memory, count }
+    }
+}
+
+impl Clone for Values {
+    fn clone(&self) -> Self {
+        let mut copy = Self::new(self.count);
+        copy.copy_from_slice(self);
+        copy
+    }
+}
+
+impl Deref for Values {
+    type Target = [f64];
+
+    fn deref(&self) -> &[f64] {
+        &self.memory[self.begin..self.begin + self.count]
+    }
+}
+
+impl DerefMut for Values {
+    fn deref_mut(&mut self) -> &mut [f64] {
+        &mut self.memory[self.begin..self.begin + self.count]
+    }
+}
+
+/// Number of values before the first one that begins a line of the cache.
+#[inline(always)]
+pub(super) fn lead(values: &[f64]) -> usize {
+    values.as_ptr().align_offset(LINE * size_of::<f64>()).min(LINE - 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_value_begins_a_line() {
+        for count in [0, 1, 7, 8, 1000] {
+            let mut values = Values::new(count);
+            assert_eq!((values.len(), lead(&values)), (count, 0));
+            values.fill(0.5);
+            let copy = values.clone();
+            assert_eq!((&*copy, lead(&copy)), (&*values, 0));
+        }
+    }
+}
