@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::values::{LINE, Values, lead};
+use super::values::{LINE, Values};
 
 /// η and u = η² of every column, and whether half of it is the mirror image of the other.
 #[derive(Debug, Clone)]
@@ -79,14 +79,6 @@ impl EtaAxis {
         let left = &self.u[..self.first_positive];
         let end = if u0 == 0.0 { left.len() } else { left.partition_point(|&u| u > u0) };
         left.partition_point(|&u| u > u1)..end
-    }
-
-    /// Where the vector of so many values begins that holds the first η ≥ 0, if the axis is symmetric and columns are whole lines
-    /// of the cache: mirroring one half takes then less time than evaluating it.
-    #[inline(always)]
-    pub(super) fn half(&self, columns: &[f64], lanes: usize) -> Option<usize> {
-        let lines = self.eta.len().is_multiple_of(LINE) && lead(columns) == 0;
-        (self.symmetric && lines).then_some(self.first_positive - self.first_positive % lanes)
     }
 }
 

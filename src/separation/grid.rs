@@ -11,6 +11,7 @@ use super::pointwise::Pointwise;
 use super::report_newton::ReportNewton;
 use super::spectral::{Demand, Spectral};
 use super::strips::strips;
+use super::values::Residence;
 use crate::placement::Placement;
 
 /// Columns of one block: the unit of work of a thread.
@@ -18,9 +19,6 @@ const BLOCK: usize = MANY;
 
 /// Up to so many points are not worth waking another thread, some 50 µs: of whole columns, and of points one by one.
 const FEW_POINTS: [usize; 2] = [65536, 4096];
-
-/// Arrays from so many points on, 64 MiB, are larger than one user's share of the caches.
-const BEYOND_CACHES: usize = 1 << 23;
 
 /// A way to evaluate s over columns of constant ξ.
 pub trait Kernel {
@@ -123,11 +121,11 @@ impl Choice {
         let mut first = spectral();
         let strips = strips(&mut first, placement, xi, axis.reach * axis.reach);
         let of_strips = strips.iter().map(|strip| strip.truncation).fold(0.0, f64::max);
+        let residence = Residence::of(out.len());
         if out.len() <= FEW_POINTS[0] {
-            return fill_with(&mut first.with_strips(&strips, false), xi, out).max(of_strips);
+            return fill_with(&mut first.with_strips(&strips, residence), xi, out).max(of_strips);
         }
-        let past_caches = out.len() >= BEYOND_CACHES;
-        fill_in_blocks(|| Box::new(spectral().with_strips(&strips, past_caches)), xi, out).max(of_strips)
+        fill_in_blocks(|| Box::new(spectral().with_strips(&strips, residence)), xi, out).max(of_strips)
     }
 }
 

@@ -14,6 +14,7 @@ use super::grid::Kernel;
 use super::horner::{Run, per_degree};
 use super::skewed::SkewedColumn;
 use super::strip::{ColumnPolynomials, Evaluation, Strip, StripColumns};
+use super::values::{LINE, Residence, lead};
 use crate::numerics::nan_max;
 use crate::placement::Placement;
 
@@ -67,7 +68,7 @@ pub struct Spectral<'a> {
     /// Coefficients of columns.
     pub(super) rows: Vec<Row>,
     polynomials: Vec<ColumnPolynomials>,
-    past_caches: bool,
+    residence: Residence,
     pub(super) arch: pulp::Arch,
     /// Largest measured truncation error so far \[mm\].
     truncation: f64,
@@ -87,15 +88,15 @@ impl<'a> Spectral<'a> {
             spans: Vec::new(),
             rows: Vec::with_capacity(MOST_SPANS * (MOST_COEFFICIENTS + 2)),
             polynomials: Vec::with_capacity(MOST_SPANS),
-            past_caches: false,
+            residence: Residence::LastCache,
             arch: pulp::Arch::new(),
             truncation: 0.0,
         }
     }
 
-    /// The same with strips for some of the columns, which are stored past the caches if `past_caches`.
-    pub fn with_strips(self, strips: &'a [Strip], past_caches: bool) -> Self {
-        Self { strips, past_caches, ..self }
+    /// The same with strips for some of the columns, for an array that is there while it is filled.
+    pub fn with_strips(self, strips: &'a [Strip], residence: Residence) -> Self {
+        Self { strips, residence, ..self }
     }
 
     /// The polynomial over one span up to `u_max` with at least so many coefficients, or `None` where no degree reaches
@@ -242,7 +243,7 @@ impl pulp::WithSimd for EachColumn<'_, '_> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) {
         let Self { spectral, xi, out } = self;
-        let (axis, length) = (spectral.axis, spectral.axis.eta.len());
+        let (axis, length, mirrored) = (spectral.axis, spectral.axis.eta.len(), spectral.mirrored(out));
         let Spectral { evaluator, demand, coefficients, columns, rows, polynomials, truncation, .. } =
             &mut *spectral;
         rows.clear();
@@ -256,7 +257,7 @@ impl pulp::WithSimd for EachColumn<'_, '_> {
         if taken.contains(&true) {
             polynomials.resize(1, ColumnPolynomials::NONE);
             polynomials[0].set(rows, &columns.spans[0].base);
-            per_degree(rows.len(), Evaluation::<S, true, false> { simd, polynomials, axis, out });
+            per_degree(rows.len(), Evaluation::<S, true, false> { simd, polynomials, axis, mirrored, out });
         }
         for ((&xi, out), taken) in xi.iter().zip(out.chunks_exact_mut(length)).zip(taken) {
             if !taken {
@@ -267,16 +268,39 @@ impl pulp::WithSimd for EachColumn<'_, '_> {
 }
 
 impl Spectral<'_> {
+    /// Whether half of such columns is to be evaluated: where they are whole lines of the cache. A store across two lines takes
+    /// longer than that saves, and further off than the second cache one that goes backwards does.
+    fn mirrored(&self, columns: &[f64]) -> bool {
+        let lines = self.axis.eta.len().is_multiple_of(LINE) && lead(columns) == 0;
+        self.axis.symmetric && lines && self.residence == Residence::SecondCache
+    }
+
     /// At most [`MANY`] neighbouring columns, of one strip or of none.
     fn neighbours(&mut self, strip: Option<&Strip>, xi: &[f64], out: &mut [f64]) {
         let (arch, placement, axis) = (self.arch, self.evaluator.placement, self.axis);
-        let polynomials = &mut self.polynomials;
+        let (mirrored, polynomials) = (self.mirrored(out), &mut self.polynomials);
         match strip {
-            Some(strip) if self.past_caches => {
-                arch.dispatch(StripColumns::<true> { placement, strip, xi, axis, polynomials, out });
+            Some(strip) if self.residence == Residence::Memory => {
+                arch.dispatch(StripColumns::<true> {
+                    placement,
+                    strip,
+                    xi,
+                    axis,
+                    mirrored,
+                    polynomials,
+                    out,
+                });
             }
             Some(strip) => {
-                arch.dispatch(StripColumns::<false> { placement, strip, xi, axis, polynomials, out });
+                arch.dispatch(StripColumns::<false> {
+                    placement,
+                    strip,
+                    xi,
+                    axis,
+                    mirrored,
+                    polynomials,
+                    out,
+                });
             }
             None if xi.len() > 1 && placement.skew == 0.0 => {
                 arch.dispatch(EachColumn { spectral: self, xi, out });
@@ -365,18 +389,19 @@ mod tests {
     use crate::profile::{Profile, Side, standards};
     use crate::separation::plan::{FULL_PRECISION, demand};
     use crate::separation::strips::strips;
+    use crate::separation::values::Residence::{LastCache, Memory, SecondCache};
     use crate::separation::values::Values;
 
     /// A spline has more: so many columns beside them would be in strips.
     const FEW_JOINTS: usize = 10;
 
     /// s over a window, with columns beside its joints, and the largest number of spans of its strips' columns; compiled for one
-    /// kind of machine, stored past the caches or not, so many values behind the beginning of a line.
+    /// kind of machine, for an array that is there, so many values behind the beginning of a line.
     fn filled(
         placement: &Placement,
         count: i32,
         arch: pulp::Arch,
-        (past_caches, behind): (bool, usize),
+        (residence, behind): (Residence, usize),
     ) -> (Vec<f64>, usize) {
         let steps =
             |reach: f64, n: i32| (0..n).map(move |k| reach * f64::from(2 * k - n + 1) / f64::from(n - 1));
@@ -395,7 +420,7 @@ mod tests {
         };
         let strips = strips(&mut spectral(), placement, &xi, axis.reach * axis.reach);
         let mut out = Values::new(behind + xi.len() * axis.eta.len());
-        spectral().with_strips(&strips, past_caches).columns(&xi, &mut out[behind..]);
+        spectral().with_strips(&strips, residence).columns(&xi, &mut out[behind..]);
         (out[behind..].to_vec(), strips.iter().map(|strip| strip.spans).max().unwrap_or(0))
     }
 
@@ -417,14 +442,16 @@ mod tests {
             let placement = Pair::new(rail, wheel, 460.0)?.placed(-11.0, wheel_x, yaw)?;
             // The columns of the second are whole lines: one half is the other's mirror image.
             for count in [253, 248] {
-                let (plain, spans) = filled(&placement, count, pulp::Arch::Scalar, (false, 1));
+                let (plain, spans) = filled(&placement, count, pulp::Arch::Scalar, (LastCache, 1));
                 assert_eq!(spans, most_spans);
                 assert!(plain.iter().all(|s| s.is_finite()));
                 let same = |arch| {
-                    [(false, 0), (false, 1), (true, 0)].into_iter().all(|stored| {
-                        let (other, _) = filled(&placement, count, arch, stored);
-                        plain.iter().zip(&other).all(|(a, b)| a.to_bits() == b.to_bits())
-                    })
+                    [(SecondCache, 0), (LastCache, 0), (SecondCache, 1), (Memory, 0)].into_iter().all(
+                        |stored| {
+                            let (other, _) = filled(&placement, count, arch, stored);
+                            plain.iter().zip(&other).all(|(a, b)| a.to_bits() == b.to_bits())
+                        },
+                    )
                 };
                 assert!(same(pulp::Arch::Scalar) && same(pulp::Arch::new()));
                 #[cfg(target_arch = "x86_64")]

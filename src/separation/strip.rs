@@ -111,6 +111,8 @@ pub(super) struct StripColumns<'a, const PAST: bool> {
     /// At most [`MANY`].
     pub xi: &'a [f64],
     pub axis: &'a EtaAxis,
+    /// Whether one half is the other's mirror image, and columns are whole vectors.
+    pub mirrored: bool,
     /// Scratch space.
     pub polynomials: &'a mut Vec<ColumnPolynomials>,
     pub out: &'a mut [f64],
@@ -121,13 +123,19 @@ impl<const PAST: bool> pulp::WithSimd for StripColumns<'_, PAST> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) {
-        let Self { placement, strip, xi, axis, polynomials, out } = self;
+        let Self { placement, strip, xi, axis, mirrored, polynomials, out } = self;
         polynomials.resize(strip.spans, ColumnPolynomials::NONE);
         strip.polynomials(placement, xi, axis.reach * axis.reach, polynomials);
         if strip.spans == 1 {
-            per_degree(strip.coefficients, Evaluation::<S, true, PAST> { simd, polynomials, axis, out });
+            per_degree(
+                strip.coefficients,
+                Evaluation::<S, true, PAST> { simd, polynomials, axis, mirrored, out },
+            );
         } else {
-            per_degree(strip.coefficients, Evaluation::<S, false, PAST> { simd, polynomials, axis, out });
+            per_degree(
+                strip.coefficients,
+                Evaluation::<S, false, PAST> { simd, polynomials, axis, mirrored, out },
+            );
         }
     }
 }
@@ -188,26 +196,29 @@ pub(super) struct Evaluation<'a, S, const SINGLE: bool, const PAST: bool> {
     /// In order of u.
     pub polynomials: &'a [ColumnPolynomials],
     pub axis: &'a EtaAxis,
+    /// As of [`StripColumns`].
+    pub mirrored: bool,
     pub out: &'a mut [f64],
 }
 
 impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> PerDegree for Evaluation<'_, S, SINGLE, PAST> {
     #[inline(always)]
     fn run<const N: usize>(self) {
-        // What is stored past the caches is not there to be mirrored.
-        match self.axis.half(self.out, S::F64_LANES) {
-            Some(half) if !PAST => self.mirrored::<N>(half),
-            _ => self.whole::<N>(),
+        if self.mirrored {
+            self.outwards::<N>();
+        } else {
+            self.whole::<N>();
         }
     }
 }
 
 impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> Evaluation<'_, S, SINGLE, PAST> {
-    /// Columns from `half` on, in whole vectors, and their mirror images.
+    /// Columns from the vector on that holds the first η ≥ 0, in whole vectors, and their mirror images.
     #[inline(always)]
-    fn mirrored<const N: usize>(self, half: usize) {
-        let Self { simd, polynomials: spans, axis, out } = self;
+    fn outwards<const N: usize>(self) {
+        let Self { simd, polynomials: spans, axis, out, .. } = self;
         let (count, lanes) = (axis.eta.len(), S::F64_LANES);
+        let half = axis.first_positive - axis.first_positive % lanes;
         // Where the vectors begin that hold both a span's beginning and the end of the span before.
         let mut begins = [half; MOST_SPANS];
         for (k, out) in out.chunks_exact_mut(count).enumerate() {
@@ -240,7 +251,7 @@ impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> Evaluation<'_, S, SING
     /// Columns from the first η to the last one, so that memory is written in order.
     #[inline(always)]
     fn whole<const N: usize>(self) {
-        let Self { simd, polynomials: spans, axis, out } = self;
+        let Self { simd, polynomials: spans, axis, out, .. } = self;
         let count = axis.eta.len();
         let mut ends = [count; MOST_SPANS];
         for (k, out) in out.chunks_exact_mut(count).enumerate() {

@@ -5,6 +5,34 @@ use std::ops::{Deref, DerefMut};
 /// Values in a line of the cache.
 pub(super) const LINE: usize = 8;
 
+/// Arrays of so many values, 1 MiB, have room in the second cache of a core …
+const SECOND_CACHE: usize = 1 << 17;
+
+/// … and from so many on, 64 MiB, are larger than one user's share of the last one.
+const BEYOND_CACHES: usize = 1 << 23;
+
+/// Where an array is while it is filled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Residence {
+    /// In a core's second cache.
+    SecondCache,
+    /// In the last cache.
+    LastCache,
+    /// Past the caches.
+    Memory,
+}
+
+impl Residence {
+    /// That of an array of so many values.
+    pub fn of(count: usize) -> Self {
+        match count {
+            0..=SECOND_CACHE => Self::SecondCache,
+            BEYOND_CACHES.. => Self::Memory,
+            _ => Self::LastCache,
+        }
+    }
+}
+
 /// s over a grid \[mm\], index i_ξ · n_η + i_η. The first one begins a line of the cache: a store across two lines takes twice
 /// as long.
 #[derive(Debug)]
