@@ -225,14 +225,17 @@ impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> Evaluation<'_, S, SING
             if SINGLE {
                 spans[0].beyond::<S, N, true>(simd, k, &axis.u[half..], &mut out[half..]);
             } else {
-                for (span, begin) in spans[1..].iter().zip(&mut begins[1..]) {
-                    // Seldom another vector than in the column before: a loop that no processor foresees takes longer.
-                    while *begin > half && axis.u[*begin] > span.u0[k] {
-                        *begin -= lanes;
+                for (index, span) in spans.iter().enumerate().skip(1) {
+                    // Seldom another vector than in the column before: a loop whose end no processor foresees takes longer.
+                    let least = begins[index - 1];
+                    let mut begin = begins[index].max(least);
+                    while begin > least && axis.u[begin] > span.u0[k] {
+                        begin -= lanes;
                     }
-                    while *begin + lanes < count && axis.u[*begin + lanes] <= span.u0[k] {
-                        *begin += lanes;
+                    while begin + lanes < count && axis.u[begin + lanes] <= span.u0[k] {
+                        begin += lanes;
                     }
+                    begins[index] = begin;
                 }
                 for (index, span) in spans.iter().enumerate() {
                     let end = if index + 1 < spans.len() { begins[index + 1] + lanes } else { count };
