@@ -2,7 +2,7 @@
 
 use super::spectral::{ColumnPolynomial, MOST_COEFFICIENTS};
 use super::stream;
-use super::values::lead;
+use super::values::{LINE, lead};
 
 /// Runs from these lengths on, of arrays in the caches and past them, are stored line by line of the cache. Grids of shorter ones
 /// are in the second cache, where that gains nothing.
@@ -82,11 +82,7 @@ pub(super) fn horner<S: pulp::Simd, const N: usize, const FIRST: bool, const PAS
     out: &mut [f64],
 ) {
     let Some(last) = u.len().checked_sub(S::F64_LANES) else {
-        for (s, u) in out.iter_mut().zip(u) {
-            let v = u - u0;
-            *s = c.iter().rev().fold(0.0, |q: f64, c| q.mul_add(v, *c)).mul_add(v, base);
-        }
-        return;
+        return singly([base, u0], c, u, out);
     };
     // A loop, since closures may be left out of line.
     let (mut splat, begin) = ([simd.splat_f64s(0.0); N], [simd.splat_f64s(base), simd.splat_f64s(u0)]);
@@ -97,6 +93,16 @@ pub(super) fn horner<S: pulp::Simd, const N: usize, const FIRST: bool, const PAS
     // ends, as many as reach there, may overlap the others.
     let (end, long) = (u.len(), u.len() >= LONG_RUNS[usize::from(PAST)]);
     let begin_lines = if long { lead(out) } else { 0 };
+    if PAST && long {
+        // Lines that are in part a neighbouring column's go through the caches, and no others: each line but one way.
+        let end_lines = end - (end - begin_lines) % LINE;
+        for part in [0..begin_lines, end_lines..end] {
+            singly([base, u0], c, &u[part.clone()], &mut out[part]);
+        }
+        let u = S::as_simd_f64s(&u[begin_lines..end_lines]).0;
+        let out = S::as_mut_simd_f64s(&mut out[begin_lines..end_lines]).0;
+        return stream::write(out, u.iter().map(|&u| value::<S, N, FIRST>(simd, begin, &splat, u)));
+    }
     let first = begin_lines.next_multiple_of(S::F64_LANES);
     let rest = if (end - begin_lines).is_multiple_of(S::F64_LANES) { end } else { last };
     for part in [0..first, rest..end] {
@@ -106,11 +112,17 @@ pub(super) fn horner<S: pulp::Simd, const N: usize, const FIRST: bool, const PAS
         }
     }
     let (u, out) = (S::as_simd_f64s(&u[begin_lines..]).0, S::as_mut_simd_f64s(&mut out[begin_lines..]).0);
-    if PAST && long {
-        return stream::write(out, u.iter().map(|&u| value::<S, N, FIRST>(simd, begin, &splat, u)));
-    }
     for (s, &u) in out.iter_mut().zip(u) {
         *s = value::<S, N, FIRST>(simd, begin, &splat, u);
+    }
+}
+
+/// The same value by value.
+#[inline(always)]
+fn singly<const N: usize>([base, u0]: [f64; 2], c: &[f64; N], u: &[f64], out: &mut [f64]) {
+    for (s, u) in out.iter_mut().zip(u) {
+        let v = u - u0;
+        *s = c.iter().rev().fold(0.0, |q: f64, c| q.mul_add(v, *c)).mul_add(v, base);
     }
 }
 
