@@ -22,10 +22,8 @@ pub struct Strip {
     /// Of every quantity the coefficients of t^(kept−1), …, t⁰, t from −1 to 1 over the interval: of every span those of q, then
     /// of every span u_0, but for the first one, and s.
     pub(super) powers: Vec<f64>,
-    /// Number of powers of the quantities of q, by spans …
+    /// Number of powers of the quantities of q by spans; of u_0 and s as many as for the first one's.
     pub(super) kept: [usize; MOST_SPANS],
-    /// … and of u_0 and s.
-    pub(super) kept_at_beginnings: usize,
     /// Largest measured truncation error of its columns \[mm\].
     pub truncation: f64,
 }
@@ -167,7 +165,7 @@ impl Strip {
             rest = others;
         }
         let beginnings = spans.iter_mut().flat_map(|span| [&mut span.u0, &mut span.base]).skip(1);
-        for (quantity, powers) in beginnings.zip(rest.chunks_exact(self.kept_at_beginnings)) {
+        for (quantity, powers) in beginnings.zip(rest.chunks_exact(self.kept[0])) {
             *quantity = at(powers, &t);
         }
         let base = &mut spans[0].base;

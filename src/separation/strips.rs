@@ -167,12 +167,12 @@ impl Strip {
                 }
                 judged.with(&change, allowed);
             }
-            (counts[k], kept[k]) = (n, judged.kept()?);
+            (counts[k], kept[k]) = (n, judged.kept()?.max(beginnings.kept));
         }
-        let Beginnings { gap, series, kept: kept_at_beginnings, .. } = beginnings;
+        let Beginnings { gap, series, .. } = beginnings;
         let (spans, coefficients) = (columns.spans.len(), counts.iter().fold(0, |most, &n| n.max(most)));
         // The first span has no u_0.
-        let at_beginnings = (2 * spans - 1) * kept_at_beginnings;
+        let at_beginnings = (2 * spans - 1) * kept[0];
         let mut powers = vec![0.0; coefficients * kept.iter().sum::<usize>() + at_beginnings];
         let (mut rest, mut rows) = (&mut powers[..], rows.iter());
         for (n, kept) in counts.into_iter().zip(kept).take(spans) {
@@ -183,10 +183,10 @@ impl Strip {
             }
             rest = others;
         }
-        for (powers, row) in rest.chunks_exact_mut(kept_at_beginnings).zip(&series.as_flattened()[1..]) {
+        for (powers, row) in rest.chunks_exact_mut(kept[0]).zip(&series.as_flattened()[1..]) {
             write(powers, row);
         }
-        Some(Self { xi, gap, spans, coefficients, powers, kept, kept_at_beginnings, truncation })
+        Some(Self { xi, gap, spans, coefficients, powers, kept, truncation })
     }
 }
 
