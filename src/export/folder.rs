@@ -7,7 +7,7 @@
 //!   (`renameat2` with `RENAME_EXCHANGE`), after which the old folder bears the temporary name and is deleted.
 //!   File systems without the exchange (NFS, some FUSE) get two renames: between them DIR is missing for an
 //!   instant, and the old folder waits beside it under a name that the next run puts back.
-//! - **Killed runs.** The temporary folder is locked as long as its run lives: [`temporary`]. What a killed one leaves,
+//! - **Killed runs.** The temporary folder is locked as long as its run lives: `export::temporary`. What a killed one leaves,
 //!   the next run into the same parent removes.
 //! - **No fsync.** Twenty of them cost more than the whole run. What is promised holds for a kill of the process,
 //!   not for a power cut: a folder cut off by one is recognised by the END lines and the sizes in the headers.

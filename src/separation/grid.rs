@@ -94,8 +94,8 @@ pub struct Choice {
 
 impl Choice {
     /// s over the grid, index i_ξ · n_η + i_η, on the threads of the current rayon pool. The same bits come
-    /// out for any number of threads. Returns the largest truncation error \[mm\] that was measured on the way, 0 where
-    /// none is.
+    /// out for any number of threads; fastest where `out` is [`super::values::Values`]. Returns the largest truncation error
+    /// \[mm\] that was measured on the way, 0 where none is.
     pub fn fill(&self, placement: &Placement, xi: &[f64], axis: &EtaAxis, out: &mut [f64]) -> f64 {
         if axis.eta.is_empty() {
             return 0.0;

@@ -278,29 +278,13 @@ impl Spectral<'_> {
     /// At most [`MANY`] neighbouring columns, of one strip or of none.
     fn neighbours(&mut self, strip: Option<&Strip>, xi: &[f64], out: &mut [f64]) {
         let (arch, placement, axis) = (self.arch, self.evaluator.placement, self.axis);
-        let (mirrored, polynomials) = (self.mirrored(out), &mut self.polynomials);
+        let (mirrored, scratch) = (self.mirrored(out), &mut self.polynomials);
         match strip {
             Some(strip) if self.residence == Residence::Memory => {
-                arch.dispatch(StripColumns::<true> {
-                    placement,
-                    strip,
-                    xi,
-                    axis,
-                    mirrored,
-                    polynomials,
-                    out,
-                });
+                arch.dispatch(StripColumns::<true> { placement, strip, xi, axis, mirrored, scratch, out });
             }
             Some(strip) => {
-                arch.dispatch(StripColumns::<false> {
-                    placement,
-                    strip,
-                    xi,
-                    axis,
-                    mirrored,
-                    polynomials,
-                    out,
-                });
+                arch.dispatch(StripColumns::<false> { placement, strip, xi, axis, mirrored, scratch, out });
             }
             None if xi.len() > 1 && placement.skew == 0.0 => {
                 arch.dispatch(EachColumn { spectral: self, xi, out });

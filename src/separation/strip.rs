@@ -111,8 +111,7 @@ pub(super) struct StripColumns<'a, const PAST: bool> {
     pub axis: &'a EtaAxis,
     /// Whether one half is the other's mirror image, and columns are whole vectors.
     pub mirrored: bool,
-    /// Scratch space.
-    pub polynomials: &'a mut Vec<ColumnPolynomials>,
+    pub scratch: &'a mut Vec<ColumnPolynomials>,
     pub out: &'a mut [f64],
 }
 
@@ -121,7 +120,7 @@ impl<const PAST: bool> pulp::WithSimd for StripColumns<'_, PAST> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) {
-        let Self { placement, strip, xi, axis, mirrored, polynomials, out } = self;
+        let Self { placement, strip, xi, axis, mirrored, scratch: polynomials, out } = self;
         polynomials.resize(strip.spans, ColumnPolynomials::NONE);
         strip.polynomials(placement, xi, axis.reach * axis.reach, polynomials);
         if strip.spans == 1 {

@@ -1,4 +1,4 @@
-//! Memory for s over a grid.
+//! Memory for the values of a grid, and where in a machine it is.
 
 use std::ops::{Deref, DerefMut};
 
@@ -33,8 +33,8 @@ impl Residence {
     }
 }
 
-/// s over a grid \[mm\], index i_ξ · n_η + i_η. The first one begins a line of the cache: a store across two lines takes twice
-/// as long.
+/// Numbers of which the first begins a line of the cache: a store across two lines takes twice as long. s over a grid, or u
+/// along its axis.
 #[derive(Debug)]
 pub struct Values {
     memory: Vec<f64>,
