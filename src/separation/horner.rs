@@ -84,11 +84,7 @@ pub(super) fn horner<S: pulp::Simd, const N: usize, const FIRST: bool, const PAS
     let Some(last) = u.len().checked_sub(S::F64_LANES) else {
         return singly([base, u0], c, u, out);
     };
-    // A loop, since closures may be left out of line.
-    let (mut splat, begin) = ([simd.splat_f64s(0.0); N], [simd.splat_f64s(base), simd.splat_f64s(u0)]);
-    for (splat, c) in splat.iter_mut().zip(c) {
-        *splat = simd.splat_f64s(*c);
-    }
+    let (begin, splat) = splats(simd, [base, u0], c);
     // Long runs are stored where lines of the cache begin: a store across two takes twice as long. The vectors at both
     // ends, as many as reach there, may overlap the others.
     let (end, long) = (u.len(), u.len() >= LONG_RUNS[usize::from(PAST)]);
@@ -117,6 +113,40 @@ pub(super) fn horner<S: pulp::Simd, const N: usize, const FIRST: bool, const PAS
     }
 }
 
+/// The same over whole vectors; in the first of them up to u_0 what is there stays, unless u_0 is zero by `FIRST`.
+#[inline(always)]
+pub(super) fn whole_vectors<S: pulp::Simd, const N: usize, const FIRST: bool>(
+    simd: S,
+    begin: [f64; 2],
+    c: &[f64; N],
+    u: &[f64],
+    out: &mut [f64],
+) {
+    let (begin, splat) = splats(simd, begin, c);
+    let (u, out) = (S::as_simd_f64s(u).0, S::as_mut_simd_f64s(out).0);
+    let before = out.first().copied();
+    for (s, &u) in out.iter_mut().zip(u) {
+        *s = value::<S, N, FIRST>(simd, begin, &splat, u);
+    }
+    if !FIRST && let (Some(before), Some(s), Some(&u)) = (before, out.first_mut(), u.first()) {
+        *s = simd.select_f64s(simd.greater_than_f64s(u, begin[1]), *s, before);
+    }
+}
+
+/// Vectors of base and u_0, and of the coefficients. A loop, since closures may be left out of line.
+#[inline(always)]
+fn splats<S: pulp::Simd, const N: usize>(
+    simd: S,
+    [base, u0]: [f64; 2],
+    c: &[f64; N],
+) -> ([S::f64s; 2], [S::f64s; N]) {
+    let mut splat = [simd.splat_f64s(0.0); N];
+    for (splat, c) in splat.iter_mut().zip(c) {
+        *splat = simd.splat_f64s(*c);
+    }
+    ([simd.splat_f64s(base), simd.splat_f64s(u0)], splat)
+}
+
 /// The same value by value.
 #[inline(always)]
 fn singly<const N: usize>([base, u0]: [f64; 2], c: &[f64; N], u: &[f64], out: &mut [f64]) {
@@ -128,7 +158,7 @@ fn singly<const N: usize>([base, u0]: [f64; 2], c: &[f64; N], u: &[f64], out: &m
 
 /// One vector of [`horner`]. A function, since closures may be left out of line.
 #[inline(always)]
-pub(super) fn value<S: pulp::Simd, const N: usize, const FIRST: bool>(
+fn value<S: pulp::Simd, const N: usize, const FIRST: bool>(
     simd: S,
     [base, u0]: [S::f64s; 2],
     c: &[S::f64s; N],

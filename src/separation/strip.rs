@@ -3,7 +3,7 @@
 use super::axis::{EtaAxis, mirror};
 use super::columns::{MANY, MOST_SPANS, Row, row};
 use super::gap::midplane_gap;
-use super::horner::{PerDegree, horner, per_degree, value};
+use super::horner::{PerDegree, horner, per_degree, whole_vectors};
 use super::spectral::MOST_COEFFICIENTS;
 use crate::placement::Placement;
 
@@ -60,44 +60,14 @@ impl ColumnPolynomials {
         (self.base, self.u0) = (*base, [0.0; MANY]);
     }
 
-    /// s over a run of u of the k-th column, its first N coefficients being all.
+    /// s and u_0 at the beginning of the k-th column's span, and its first N coefficients, which are all.
     #[inline(always)]
-    fn run<S: pulp::Simd, const N: usize, const FIRST: bool, const PAST: bool>(
-        &self,
-        simd: S,
-        k: usize,
-        u: &[f64],
-        out: &mut [f64],
-    ) {
+    fn column<const N: usize>(&self, k: usize) -> ([f64; 2], [f64; N]) {
         let mut c = [0.0; N];
         for (c, row) in c.iter_mut().zip(&self.c) {
             *c = row[k];
         }
-        horner::<S, N, FIRST, PAST>(simd, [self.base[k], self.u0[k]], &c, u, out);
-    }
-
-    /// The same over whole vectors; in the first of them up to u_0 what is there stays, unless u_0 is zero by `FIRST`.
-    #[inline(always)]
-    fn beyond<S: pulp::Simd, const N: usize, const FIRST: bool>(
-        &self,
-        simd: S,
-        k: usize,
-        u: &[f64],
-        out: &mut [f64],
-    ) {
-        let begin = [simd.splat_f64s(self.base[k]), simd.splat_f64s(self.u0[k])];
-        let mut splat = [simd.splat_f64s(0.0); N];
-        for (splat, c) in splat.iter_mut().zip(&self.c) {
-            *splat = simd.splat_f64s(c[k]);
-        }
-        let (u, out) = (S::as_simd_f64s(u).0, S::as_mut_simd_f64s(out).0);
-        let before = out.first().copied();
-        for (s, &u) in out.iter_mut().zip(u) {
-            *s = value::<S, N, FIRST>(simd, begin, &splat, u);
-        }
-        if !FIRST && let (Some(before), Some(s), Some(&u)) = (before, out.first_mut(), u.first()) {
-            *s = simd.select_f64s(simd.greater_than_f64s(u, begin[1]), *s, before);
-        }
+        ([self.base[k], self.u0[k]], c)
     }
 }
 
@@ -111,6 +81,7 @@ pub(super) struct StripColumns<'a, const PAST: bool> {
     pub axis: &'a EtaAxis,
     /// Whether one half is the other's mirror image, and columns are whole vectors.
     pub mirrored: bool,
+    /// Polynomials of every span, overwritten.
     pub scratch: &'a mut Vec<ColumnPolynomials>,
     pub out: &'a mut [f64],
 }
@@ -220,7 +191,8 @@ impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> Evaluation<'_, S, SING
         let mut begins = [half; MOST_SPANS];
         for (k, out) in out.chunks_exact_mut(count).enumerate() {
             if SINGLE {
-                spans[0].beyond::<S, N, true>(simd, k, &axis.u[half..], &mut out[half..]);
+                let (begin, c) = spans[0].column(k);
+                whole_vectors::<S, N, true>(simd, begin, &c, &axis.u[half..], &mut out[half..]);
             } else {
                 for (index, span) in spans.iter().enumerate().skip(1) {
                     // Seldom another vector than in the column before: a loop whose end no processor foresees takes longer.
@@ -237,10 +209,11 @@ impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> Evaluation<'_, S, SING
                 for (index, span) in spans.iter().enumerate() {
                     let end = if index + 1 < spans.len() { begins[index + 1] + lanes } else { count };
                     let (u, out) = (&axis.u[begins[index]..end], &mut out[begins[index]..end]);
+                    let (begin, c) = span.column(k);
                     if index == 0 {
-                        span.beyond::<S, N, true>(simd, k, u, out);
+                        whole_vectors::<S, N, true>(simd, begin, &c, u, out);
                     } else {
-                        span.beyond::<S, N, false>(simd, k, u, out);
+                        whole_vectors::<S, N, false>(simd, begin, &c, u, out);
                     }
                 }
             }
@@ -256,7 +229,8 @@ impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> Evaluation<'_, S, SING
         let mut ends = [count; MOST_SPANS];
         for (k, out) in out.chunks_exact_mut(count).enumerate() {
             if SINGLE {
-                spans[0].run::<S, N, true, PAST>(simd, k, &axis.u, out);
+                let (begin, c) = spans[0].column(k);
+                horner::<S, N, true, PAST>(simd, begin, &c, &axis.u, out);
                 continue;
             }
             for (index, span) in spans.iter().enumerate().skip(1).rev() {
@@ -276,7 +250,8 @@ impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> Evaluation<'_, S, SING
                 // Whole vectors: what they hold beyond the span's end is overwritten by the next one.
                 let whole = begin + (end - begin).next_multiple_of(S::F64_LANES);
                 let run = begin..if whole <= count { whole } else { end };
-                spans[index].run::<S, N, false, PAST>(simd, k, &axis.u[run.clone()], &mut out[run]);
+                let (beginning, c) = spans[index].column(k);
+                horner::<S, N, false, PAST>(simd, beginning, &c, &axis.u[run.clone()], &mut out[run]);
                 begin = end;
             }
         }
