@@ -8,7 +8,7 @@ use super::errors::{Errors, compare};
 use super::hard_case::{Outcome, hard_cases};
 use super::measured;
 use super::reference::{Reference, references};
-use super::speed::{Timing, Track, Work, race};
+use super::speed::{LEAST_RUNS, Timing, Track, Work, race};
 use super::spline_cost::{SplineCost, spline_costs};
 use super::verification::{Subject, Verified, built_in_pairs, verify};
 use crate::error::{Error, Result};
@@ -21,6 +21,9 @@ pub const TOLERANCES: [f64; 4] = [1e-3, 1e-6, 1e-9, FULL_PRECISION];
 
 /// The scene that growth and threads are measured on: a plain tread contact, arcs on both bodies.
 const EXAMPLE: &str = "hollow_tread";
+
+/// How often the scenes' races are taken up again: what slows a machine down may last for seconds.
+const PASSES: usize = 6;
 
 /// How much to measure.
 #[derive(Debug, Clone, PartialEq)]
@@ -132,16 +135,22 @@ pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measur
     let one = pool(1)?;
     let references = references()?;
     let (mut rows, mut planning) = (Vec::new(), Vec::new());
+    let placements = references.iter().map(Reference::placement).collect::<Result<Vec<_>>>()?;
     for &side in &effort.sides {
-        for (k, reference) in references.iter().enumerate() {
-            progress(&format!(
-                "grid {side} x {side}, scene {} of {}: {}",
-                k + 1,
-                references.len(),
-                reference.name
-            ));
-            rows.extend(one.install(|| scene(reference, side, effort.seconds, &mut planning))?);
+        progress(&format!("grid {side} x {side}, errors of {} scenes", references.len()));
+        let entrants = references.iter().zip(&placements);
+        let mut races: Vec<SceneRace<'_>> = one.install(|| {
+            entrants
+                .map(|(reference, placement)| SceneRace::new(reference, placement, side, &mut planning))
+                .collect()
+        });
+        for pass in 1..=PASSES {
+            progress(&format!("grid {side} x {side}, races of all scenes, {pass} of {PASSES}"));
+            let seconds = effort.seconds * pass as f64 / PASSES as f64;
+            let least = if pass == PASSES { LEAST_RUNS } else { 1 };
+            one.install(|| races.iter_mut().for_each(|race| race.run(seconds, least)));
         }
+        rows.extend(races.into_iter().flat_map(SceneRace::rows));
     }
     let example = example(&references)?;
     progress("growth of cost with the number of points");
@@ -207,46 +216,79 @@ fn contestants() -> Vec<(&'static str, Option<f64>, Option<Method>)> {
     all
 }
 
-fn scene(reference: &Reference, side: usize, seconds: f64, planning: &mut Vec<f64>) -> Result<Vec<Row>> {
-    let placement = reference.placement()?;
-    let mut track = track(reference, &placement, side);
-    let contestants = contestants();
-    let (mut works, mut errors) = (Vec::new(), Vec::new());
-    for &(_, tolerance, method) in &contestants {
-        let Some(method) = method else {
-            works.push(Work::Store);
-            errors.push(None);
-            continue;
-        };
-        let tolerance = tolerance.unwrap_or(FULL_PRECISION);
-        let choice = plan(&placement, track.xi(), track.axis(), tolerance, Some(method)).choice;
-        works.push(Work::Fill(choice));
-        errors.push(Some(Errors::of(&compare(reference, &placement, &choice, side))));
+/// All contestants over one scene and grid.
+struct SceneRace<'a> {
+    reference: &'a Reference,
+    placement: &'a Placement,
+    side: usize,
+    works: Vec<Work>,
+    errors: Vec<Option<Errors>>,
+    timings: Vec<Timing>,
+}
+
+impl<'a> SceneRace<'a> {
+    /// Plans and errors; no time yet but that of a plan, which is appended to `planning` \[s\].
+    fn new(
+        reference: &'a Reference,
+        placement: &'a Placement,
+        side: usize,
+        planning: &mut Vec<f64>,
+    ) -> Self {
+        let track = track(reference, placement, side);
+        let planned =
+            |tolerance, method| plan(placement, track.xi(), track.axis(), tolerance, method).choice;
+        let (mut works, mut errors) = (Vec::new(), Vec::new());
+        for (_, tolerance, method) in contestants() {
+            let choice = method.map(|method| planned(tolerance.unwrap_or(FULL_PRECISION), Some(method)));
+            works.push(choice.map_or(Work::Store, Work::Fill));
+            errors.push(choice.map(|choice| Errors::of(&compare(reference, placement, &choice, side))));
+        }
+        let start = Instant::now();
+        planned(FULL_PRECISION, None);
+        planning.push(start.elapsed().as_secs_f64());
+        let timings = vec![Timing::NONE; works.len()];
+        Self { reference, placement, side, works, errors, timings }
     }
-    let start = Instant::now();
-    plan(&placement, track.xi(), track.axis(), FULL_PRECISION, None);
-    planning.push(start.elapsed().as_secs_f64());
-    let timings = track.race(&works, seconds);
-    let rows = contestants.into_iter().zip(timings).zip(errors);
-    Ok(rows
-        .map(|(((method, tolerance, _), timing), errors)| Row {
-            scene: reference.name.clone(),
-            method,
-            tolerance,
-            side,
-            timing,
-            errors,
-        })
-        .collect())
+
+    /// Until everyone has had so much time and so many runs, in an array of this race.
+    fn run(&mut self, seconds: f64, least: usize) {
+        let mut track = track(self.reference, self.placement, self.side);
+        race(&mut self.timings, seconds, least, |k| track.timed(self.works[k]));
+    }
+
+    fn rows(self) -> impl Iterator<Item = Row> {
+        let Self { reference, side, errors, timings, .. } = self;
+        contestants().into_iter().zip(timings).zip(errors).map(
+            move |(((method, tolerance, _), timing), errors)| Row {
+                scene: reference.name.clone(),
+                method,
+                tolerance,
+                side,
+                timing,
+                errors,
+            },
+        )
+    }
 }
 
 fn growth(reference: &Reference, effort: &Effort) -> Result<Vec<Growth>> {
     let placement = reference.placement()?;
-    let rows = effort.growth.iter().map(|&side| {
-        let mut track = track(reference, &placement, side);
-        let plan = plan(&placement, track.xi(), track.axis(), FULL_PRECISION, Some(Method::Spectral));
-        let timings = track.race(&[Work::Store, Work::Fill(plan.choice)], effort.seconds);
-        Growth { points: side * side, store: timings[0].best, spectral: timings[1].best }
+    let mut tracks: Vec<_> = effort.growth.iter().map(|&side| track(reference, &placement, side)).collect();
+    let works: Vec<_> = tracks
+        .iter()
+        .map(|track| {
+            let method = Some(Method::Spectral);
+            let plan = plan(&placement, track.xi(), track.axis(), FULL_PRECISION, method);
+            [Work::Store, Work::Fill(plan.choice)]
+        })
+        .collect();
+    let mut timings = vec![Timing::NONE; 2 * works.len()];
+    race(&mut timings, effort.seconds, LEAST_RUNS, |k| tracks[k / 2].timed(works[k / 2][k % 2]));
+    let grown = effort.growth.iter().zip(timings.as_chunks().0);
+    let rows = grown.map(|(&side, [store, spectral])| Growth {
+        points: side * side,
+        store: store.best,
+        spectral: spectral.best,
     });
     Ok(rows.collect())
 }
@@ -258,7 +300,8 @@ fn threads(reference: &Reference, effort: &Effort) -> Result<Vec<Threads>> {
     let mut track = track(reference, &placement, side);
     let rows = [Method::Spectral, Method::Pointwise].map(|method| {
         let choice = plan(&placement, track.xi(), track.axis(), FULL_PRECISION, Some(method)).choice;
-        let timings = race(2, effort.seconds, |k| {
+        let mut timings = [Timing::NONE; 2];
+        race(&mut timings, effort.seconds, LEAST_RUNS, |k| {
             let start = Instant::now();
             pools[k].install(|| track.run(Work::Fill(choice)));
             start.elapsed().as_secs_f64()

@@ -10,9 +10,8 @@ use crate::separation::axis::EtaAxis;
 use crate::separation::grid::Choice;
 use crate::separation::values::Values;
 
-/// Least and most runs of one contestant: three show a disturbed one; a processor that changes its clock within milliseconds
-/// shows every speed that it has in some thousand short ones.
-const REPEATS: [usize; 2] = [3, 5000];
+/// Runs of one contestant in all its races, at least: three show a disturbed one.
+pub const LEAST_RUNS: usize = 3;
 
 /// A run that takes this many times its contestant's share of time is not repeated.
 const TOO_LONG: f64 = 10.0;
@@ -29,13 +28,20 @@ pub enum Work {
     Fill(Choice),
 }
 
-/// The time of one contestant.
+/// The times of one contestant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Timing {
     /// Shortest run \[s\]: processor time on one thread, time on the wall on several.
     pub best: f64,
+    /// Sum of all runs \[s\].
+    pub spent: f64,
     /// How often it ran.
-    pub repeats: usize,
+    pub runs: usize,
+}
+
+impl Timing {
+    /// That of one that has not run.
+    pub const NONE: Self = Self { best: f64::INFINITY, spent: 0.0, runs: 0 };
 }
 
 /// The grid that is filled: one array for all contestants, its pages touched before the first run.
@@ -88,14 +94,11 @@ impl<'a> Track<'a> {
         black_box(&mut *self.out);
     }
 
-    /// Runs all in turn, round by round, each until it has had `seconds` of time. To be called on a rayon pool of
-    /// one thread, whose processor time is measured.
-    pub fn race(&mut self, works: &[Work], seconds: f64) -> Vec<Timing> {
-        race(works.len(), seconds, |k| {
-            let start = processor_time();
-            self.run(works[k]);
-            processor_time() - start
-        })
+    /// Processor time of one run \[s\]. To be called on a rayon pool of one thread.
+    pub fn timed(&mut self, work: Work) -> f64 {
+        let start = processor_time();
+        self.run(work);
+        processor_time() - start
     }
 }
 
@@ -105,29 +108,23 @@ fn processor_time() -> f64 {
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
 
-/// Rounds in which every contestant that has not had its time yet runs once; `run` gives the seconds of one run.
+/// Runs contestants until each has had `seconds`, earlier races included, and `least` runs; `run` gives the seconds of one.
 ///
-/// Contestants of one round meet the same disturbances by other processes, so that ratios hold where times do not.
-pub fn race(contestants: usize, seconds: f64, mut run: impl FnMut(usize) -> f64) -> Vec<Timing> {
-    let mut timings = vec![Timing { best: f64::INFINITY, repeats: 0 }; contestants];
-    let mut spent = vec![0.0; contestants];
-    let [least, most] = REPEATS;
-    loop {
-        let mut ran = false;
-        for k in 0..contestants {
-            let Timing { best, repeats } = timings[k];
-            let long = repeats > 0 && best > TOO_LONG * seconds;
-            if repeats >= most || long || (repeats >= least && spent[k] >= seconds) {
-                continue;
-            }
-            let time = run(k);
-            spent[k] += time;
-            timings[k] = Timing { best: best.min(time), repeats: repeats + 1 };
-            ran = true;
-        }
-        if !ran {
-            return timings;
-        }
+/// Next is always the one that has had least time: all are spread over the same stretch of time and meet the same disturbances,
+/// so that ratios hold where times do not.
+pub fn race(timings: &mut [Timing], seconds: f64, least: usize, mut run: impl FnMut(usize) -> f64) {
+    let waits = |timing: &Timing| {
+        let long = timing.best > TOO_LONG * seconds;
+        timing.runs == 0 || timing.spent < seconds || (timing.runs < least && !long)
+    };
+    let waiting = |timings: &[Timing]| {
+        let all = timings.iter().enumerate().filter(|(_, timing)| waits(timing));
+        all.min_by(|(_, a), (_, b)| a.spent.total_cmp(&b.spent)).map(|(k, _)| k)
+    };
+    while let Some(k) = waiting(timings) {
+        let time = run(k);
+        let Timing { best, spent, runs } = timings[k];
+        timings[k] = Timing { best: best.min(time), spent: spent + time, runs: runs + 1 };
     }
 }
 
@@ -136,14 +133,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn everyone_runs_in_turn_until_the_time_is_up() {
+    fn whoever_had_least_time_runs_next_until_the_time_is_up() {
         let mut order = Vec::new();
-        let timings = race(2, 1.0, |k| {
+        let mut timings = [Timing::NONE; 3];
+        let mut run = |k| {
             order.push(k);
-            [0.5, 0.1][k]
-        });
-        assert_eq!(&order[..6], &[0, 1, 0, 1, 0, 1]);
-        assert_eq!(timings[0], Timing { best: 0.5, repeats: 3 });
-        assert!(timings[1].repeats >= 10, "{timings:?}");
+            [0.5, 0.125, 20.0][k]
+        };
+        race(&mut timings, 1.0, 3, &mut run);
+        assert_eq!(timings[0], Timing { best: 0.5, spent: 1.5, runs: 3 });
+        assert_eq!(timings[1], Timing { best: 0.125, spent: 1.0, runs: 8 });
+        // Too long a run for a second one.
+        assert_eq!(timings[2], Timing { best: 20.0, spent: 20.0, runs: 1 });
+        // A later race goes on where the first one ended.
+        race(&mut timings, 2.0, 3, &mut run);
+        assert_eq!(timings.map(|timing| timing.runs), [4, 16, 1]);
+        assert_eq!(order[..9], [0, 1, 2, 1, 1, 1, 0, 1, 1]);
     }
 }

@@ -1,6 +1,6 @@
 //! What a grid costs over measured profiles: splines through points of 60E1 and S1002 against chains of arcs.
 
-use super::speed::{Track, Work};
+use super::speed::{LEAST_RUNS, Timing, Track, Work, race};
 use crate::error::Result;
 use crate::placement::{Pair, Placement};
 use crate::profile::measured::{self, CurveKind, Format, Options, write};
@@ -37,14 +37,18 @@ pub fn spline_costs(sides: &[usize], seconds: f64) -> Result<Vec<SplineCost>> {
     let mut costs = Vec::new();
     for &side in sides {
         for spacing in SPACINGS {
-            let splines = fitted(CurveKind::Smoothing, spacing)?;
-            let times = [&splines, &arcs].map(|placement| {
+            let pair = [fitted(CurveKind::Smoothing, spacing)?, arcs.clone()];
+            let mut tracks = pair.each_ref().map(|placement| {
                 let [xi, eta] = HALF_WIDTHS;
-                let mut track = Track::new(placement, [-xi, xi], eta, side);
-                let choice = plan(placement, track.xi(), track.axis(), FULL_PRECISION, None).choice;
-                track.race(&[Work::Fill(choice)], seconds)[0].best
+                Track::new(placement, [-xi, xi], eta, side)
             });
-            costs.push(SplineCost { side, spacing, seconds: times });
+            let works = [0, 1].map(|k| {
+                let (xi, axis) = (tracks[k].xi(), tracks[k].axis());
+                Work::Fill(plan(&pair[k], xi, axis, FULL_PRECISION, None).choice)
+            });
+            let mut timings = [Timing::NONE; 2];
+            race(&mut timings, seconds, LEAST_RUNS, |k| tracks[k].timed(works[k]));
+            costs.push(SplineCost { side, spacing, seconds: timings.map(|timing| timing.best) });
         }
     }
     Ok(costs)
