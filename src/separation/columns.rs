@@ -95,6 +95,8 @@ pub struct Feet {
     pub rise: Row,
     w: Row,
     u: Row,
+    /// u above that of the beginning, to its own roundings \[mm²\].
+    v: Row,
 }
 
 impl<'a> Columns<'a> {
@@ -121,9 +123,15 @@ impl<'a> Columns<'a> {
         self.spans.clear();
         let mut rail_height: Option<Row> = None;
         loop {
-            let before = self.spans.last().map(|before| before.u[1]);
             let piece = &wheel.section.pieces[index];
-            let mut here = wheel.span_at_many(&xi, piece, before)?;
+            let mut here = wheel.span_at_many(&xi, piece, self.spans.is_empty())?;
+            if let Some(before) = self.spans.last_mut() {
+                // One joint: the spans meet, whatever rounding or a drawing's step makes of it.
+                before.u[1] = here.u[0];
+                if !every(|k| before.u[0][k] < before.u[1][k]) {
+                    return None;
+                }
+            }
             let [u0, u1] = &mut here.u;
             let last = every(|k| u1[k] >= u_max);
             if last {
@@ -218,13 +226,13 @@ impl<'a> Columns<'a> {
             let q = &mut coefficients[begin..];
             for ((v, q), node) in v.iter_mut().zip(&mut *q).zip(nodes(n)) {
                 let feet = wheel.feet_by(span, &row(|k| run[k] * node));
-                *v = row(|k| feet.u[k] - span.u[0][k]);
+                *v = feet.v;
                 *q = row(|k| feet.rise[k] / v[k]);
             }
             powers(&v[..n], q);
-            let mut errors = error(q, span, &end);
+            let mut errors = error(q, &end);
             for share in extrema(n) {
-                let inner = error(q, span, &wheel.feet_by(span, &row(|k| run[k] * share)));
+                let inner = error(q, &wheel.feet_by(span, &row(|k| run[k] * share)));
                 errors = row(|k| nan_max(errors[k], inner[k]));
             }
             // An error that is no number is within no demand.
@@ -238,13 +246,12 @@ impl<'a> Columns<'a> {
 
 /// |rise of the polynomials − rise| at points of a span \[mm\].
 #[inline(always)]
-fn error(q: &[Row], span: &SpanColumns<'_>, feet: &Feet) -> Row {
-    let v = row(|k| feet.u[k] - span.u[0][k]);
+fn error(q: &[Row], feet: &Feet) -> Row {
     let mut value = [0f64; MANY];
     for q in q.iter().rev() {
-        value = row(|k| value[k] * v[k] + q[k]);
+        value = row(|k| value[k] * feet.v[k] + q[k]);
     }
-    row(|k| (value[k] * v[k] - feet.rise[k]).abs())
+    row(|k| (value[k] * feet.v[k] - feet.rise[k]).abs())
 }
 
 /// The piece that holds ξ inside; pieces before it are taken from `rest`.
@@ -279,20 +286,18 @@ impl<'a> WheelSurface<'a> {
         found
     }
 
-    /// One span of all columns to the end of its piece, from the midplane or from u `before` that the span before had at its
-    /// end; s not yet known.
+    /// One span of all columns to the end of its piece, from the midplane if it is the `first` one; s not yet known.
     #[inline(always)]
-    fn span_at_many(&self, xi: &Row, piece: &Piece, before: Option<Row>) -> Option<SpanColumns<'a>> {
+    fn span_at_many(&self, xi: &Row, piece: &Piece, first: bool) -> Option<SpanColumns<'a>> {
         let branch = &self.section.branches[piece.branch];
-        let mut span = if before.is_some() {
+        let mut span = if first {
+            self.span_from(xi, branch, [0.0; MANY], branch.points(xi)?)
+        } else {
             let near = self.sides()[0];
             let (point, height) = &piece.ends[near];
             let e0 = row(|k| (xi[k] - piece.xi[near]) / self.sin);
             self.span_from(xi, branch, e0, (branch.repeated(point), [*height; MANY]))
-        } else {
-            self.span_from(xi, branch, [0.0; MANY], branch.points(xi)?)
         };
-        span.u[0] = before.unwrap_or([0.0; MANY]);
         for (k, &xi) in xi.iter().enumerate() {
             [span.e[1][k], span.u[1][k]] = self.leaves(xi, piece);
         }
@@ -320,7 +325,8 @@ impl<'a> WheelSurface<'a> {
     ) -> SpanColumns<'a> {
         let height = row(|k| on_profile[k] + e0[k] * self.cos);
         let w = row(|k| self.axle_distance(xi[k], height[k]));
-        let (branches, base, u) = (Branches::One(branch), [f64::NAN; MANY], [[f64::NAN; MANY]; 2]);
+        let u = [row(|k| e0[k] * (2.0 * w[k] + e0[k])), [f64::NAN; MANY]];
+        let (branches, base) = (Branches::One(branch), [f64::NAN; MANY]);
         SpanColumns { branches, points, base, height, u, e: [e0, [f64::INFINITY; MANY]], w }
     }
 
@@ -352,24 +358,31 @@ impl<'a> WheelSurface<'a> {
     #[inline(always)]
     fn feet(&self, xi: &Row, span: &SpanColumns<'_>, e: Row) -> Option<Feet> {
         let slope = span.branches.chords_from(&span.points, &row(|k| self.abscissa(xi[k], e[k])))?;
-        Some(self.feet_over(span, row(|k| e[k] - span.e[0][k]), &slope))
+        let runs = row(|k| e[k] - span.e[0][k]);
+        let rise = row(|k| runs[k] * (self.cos - self.sin * slope[k]));
+        Some(self.feet_over(span, &runs, rise))
     }
 
     /// Points with sagittae larger by about `runs` than at the span's beginning, at half the cost.
     #[inline(always)]
     fn feet_by(&self, span: &SpanColumns<'_>, runs: &Row) -> Feet {
-        let [slope, stretch] = span.branches.chords_near(&span.points, &row(|k| -runs[k] * self.sin));
-        self.feet_over(span, row(|k| runs[k] * stretch[k]), &slope)
+        let [climb, stretch] = span.branches.chords_near(&span.points, &row(|k| -runs[k] * self.sin));
+        let rise = row(|k| runs[k] * (self.cos * stretch[k] - self.sin * climb[k]));
+        self.feet_over(span, &row(|k| runs[k] * stretch[k]), rise)
     }
 
-    /// The points with sagittae larger by `runs` than at the span's beginning, over chords of these slopes.
+    /// The points that lie `rise` above the span's beginning, with sagittae larger by `runs`.
     #[inline(always)]
-    fn feet_over(&self, span: &SpanColumns<'_>, runs: Row, slope: &Row) -> Feet {
+    fn feet_over(&self, span: &SpanColumns<'_>, runs: &Row, rise: Row) -> Feet {
         let e = row(|k| span.e[0][k] + runs[k]);
-        let rise = row(|k| runs[k] * (self.cos - self.sin * slope[k]));
         let w = row(|k| span.w[k] - rise[k] * self.cos);
         let u = row(|k| e[k] * (2.0 * w[k] + e[k]));
-        Feet { e, rise, w, u }
+        // u − u_0 with no difference of what is nearly equal: w falls by rise cosθ.
+        let v = row(|k| {
+            let [e0, e1] = [span.e[0][k], e[k]];
+            runs[k] * (2.0 * w[k] + (e0 + e1)) - 2.0 * e0 * (rise[k] * self.cos)
+        });
+        Feet { e, rise, w, u, v }
     }
 
     /// Points near u, as [`Self::foot_near`], and the runs that [`Self::feet_by`] finds them by; `None` where one is not.

@@ -167,9 +167,21 @@ fn interpolate(
 pub(super) fn powers<const N: usize>(v: &[[f64; N]], d: &mut [[f64; N]]) {
     let n = v.len();
     for order in 1..n {
-        for j in (order..n).rev() {
+        let mut rest = n;
+        // Two by one division, which takes longer than some products.
+        while rest >= order + 2 {
+            rest -= 2;
+            let [i, j] = [rest, rest + 1];
             for k in 0..N {
-                d[j][k] = (d[j][k] - d[j - 1][k]) / (v[j][k] - v[j - order][k]);
+                let [a, b] = [v[i][k] - v[i - order][k], v[j][k] - v[j - order][k]];
+                let inverse = 1.0 / (a * b);
+                d[j][k] = (d[j][k] - d[i][k]) * (inverse * a);
+                d[i][k] = (d[i][k] - d[i - 1][k]) * (inverse * b);
+            }
+        }
+        if rest > order {
+            for k in 0..N {
+                d[order][k] = (d[order][k] - d[order - 1][k]) / (v[order][k] - v[0][k]);
             }
         }
     }

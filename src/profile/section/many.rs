@@ -1,7 +1,6 @@
 //! Points and chords of a branch at several abscissae at once: the formulas of [`Branch::point`] and
 //! [`Branch::chord_from`] step by step for all, so that no abscissa waits for the one before it.
 
-use super::super::arc::cosine;
 use super::branch::{ArcBranch, Branch, BranchPoint, BranchShape, QUADRATIC};
 use crate::numerics::polynomial::value_and_slope;
 use crate::numerics::polynomials::{Coefficients, divided_differences, exact_values, values_and_slopes};
@@ -16,12 +15,14 @@ const LEAST_STRETCH: f64 = 0.5;
 /// [`BranchPoint`] for several.
 #[derive(Debug, Clone, Copy)]
 pub enum BranchPoints<const N: usize> {
-    /// On an arc: sines and cosines of the tangent angle.
+    /// On an arc: of the tangent angle.
     Arc {
         /// S.
         sin: [f64; N],
         /// C.
         cos: [f64; N],
+        /// 1/C.
+        secant: [f64; N],
     },
     /// On a polynomial: abscissae and parameters.
     Polynomial {
@@ -40,7 +41,7 @@ pub enum Branches<'a, const N: usize> {
     /// One for all.
     One(&'a Branch),
     /// Such as splines are made of.
-    Cubics(Cubics<N>),
+    Cubics(Box<Cubics<N>>),
 }
 
 /// Polynomial branches of at most the third degree.
@@ -77,7 +78,7 @@ impl<'a, const N: usize> Branches<'a, N> {
                 (all.t[end][k], all.ends[end][k]) = (p.t[end], p.ends[end]);
             }
         }
-        Some(Self::Cubics(all))
+        Some(Self::Cubics(Box::new(all)))
     }
 
     /// As [`Branch::points`].
@@ -101,9 +102,9 @@ impl<'a, const N: usize> Branches<'a, N> {
         }
     }
 
-    /// The slopes of chords from the points, and how long they are as multiples of `runs` along ξ, which is about 1. With no
-    /// iteration: on a polynomial the other end is where t has changed by runs × dt/dξ; NaN where that may be beyond a vertical
-    /// tangent.
+    /// ζ and ξ along chords from the points as multiples of `runs`; that of ξ is about 1. With no iteration, and at most one
+    /// division: on a polynomial the other end is where t has changed by runs × dt/dξ, on an arc it is found by its chord's
+    /// angle with the tangent. NaN where that may be beyond a vertical tangent.
     #[inline(always)]
     pub fn chords_near(&self, from: &BranchPoints<N>, runs: &[f64; N]) -> [[f64; N]; 2] {
         match (self, from) {
@@ -122,12 +123,13 @@ impl Branch {
     pub fn points<const N: usize>(&self, xi: &[f64; N]) -> Option<(BranchPoints<N>, [f64; N])> {
         match &self.shape {
             BranchShape::Arc(arc) => {
-                let (mut sin, mut cos, mut zeta) = ([0.0; N], [0.0; N], [0.0; N]);
+                let [mut sin, mut cos, mut secant, mut zeta] = [[0.0; N]; 4];
                 for k in 0..N {
                     (sin[k], cos[k]) = arc.sine_cosine(xi[k]);
+                    secant[k] = 1.0 / cos[k];
                     zeta[k] = arc.height_of(xi[k], sin[k], cos[k]);
                 }
-                Some((BranchPoints::Arc { sin, cos }, zeta))
+                Some((BranchPoints::Arc { sin, cos, secant }, zeta))
             }
             BranchShape::Polynomial(p) => {
                 points([p.xi.as_slice(), p.zeta.as_slice()], rows(p.t), rows(p.ends), xi)
@@ -139,13 +141,15 @@ impl Branch {
     #[inline(always)]
     pub fn repeated<const N: usize>(&self, point: &BranchPoint) -> BranchPoints<N> {
         match (&self.shape, *point) {
-            (_, BranchPoint::Arc { sin, cos }) => BranchPoints::Arc { sin: [sin; N], cos: [cos; N] },
+            (_, BranchPoint::Arc { sin, cos }) => {
+                BranchPoints::Arc { sin: [sin; N], cos: [cos; N], secant: [1.0 / cos; N] }
+            }
             (BranchShape::Polynomial(p), BranchPoint::Polynomial { xi, t }) => {
                 let [_, slope] = value_and_slope(&p.xi, t);
                 BranchPoints::Polynomial { xi: [xi; N], t: [t; N], rate: [1.0 / slope; N] }
             }
             // No point of this branch.
-            _ => BranchPoints::Arc { sin: [f64::NAN; N], cos: [f64::NAN; N] },
+            _ => BranchPoints::Arc { sin: [f64::NAN; N], cos: [f64::NAN; N], secant: [f64::NAN; N] },
         }
     }
 
@@ -153,7 +157,7 @@ impl Branch {
     #[inline(always)]
     pub fn chords_from<const N: usize>(&self, from: &BranchPoints<N>, to: &[f64; N]) -> Option<[f64; N]> {
         match (&self.shape, from) {
-            (BranchShape::Arc(arc), BranchPoints::Arc { sin, cos }) => {
+            (BranchShape::Arc(arc), BranchPoints::Arc { sin, cos, .. }) => {
                 let mut slope = [0.0; N];
                 for k in 0..N {
                     let (sin_to, cos_to) = arc.sine_cosine(to[k]);
@@ -173,13 +177,8 @@ impl Branch {
     #[inline(always)]
     fn chords_near<const N: usize>(&self, from: &BranchPoints<N>, runs: &[f64; N]) -> [[f64; N]; 2] {
         match (&self.shape, from) {
-            (BranchShape::Arc(arc), BranchPoints::Arc { sin, cos }) => {
-                let mut slope = [0.0; N];
-                for k in 0..N {
-                    let sin_to = sin[k] + arc.curvature * runs[k];
-                    slope[k] = (sin[k] + sin_to) / (cos[k] + cosine(sin_to));
-                }
-                [slope, [1.0; N]]
+            (BranchShape::Arc(arc), BranchPoints::Arc { sin, secant, .. }) => {
+                arc.chords_near([sin, secant], runs)
             }
             (BranchShape::Polynomial(p), BranchPoints::Polynomial { t, rate, .. }) => {
                 chords_near([p.xi.as_slice(), p.zeta.as_slice()], [t, rate], runs)
@@ -216,6 +215,24 @@ impl Branch {
 }
 
 impl ArcBranch {
+    /// As [`Branches::chords_near`], from points with sines S and secants 1/C. A chord that turns by an angle α has the length
+    /// 2R sin α and the direction of the tangent and α; α is that of tan α = runs/2RC.
+    #[inline(always)]
+    fn chords_near<const N: usize>(&self, [sin, secant]: [&[f64; N]; 2], runs: &[f64; N]) -> [[f64; N]; 2] {
+        let [mut climb, mut stretch] = [[0.0; N]; 2];
+        for k in 0..N {
+            let slope = sin[k] * secant[k];
+            let turn = 0.5 * self.curvature * (runs[k] * secant[k]);
+            let square_cosine = 1.0 / (1.0 + turn * turn);
+            climb[k] = (slope + turn) * square_cosine;
+            stretch[k] = (1.0 - slope * turn) * square_cosine;
+            // The tangent has turned by 2α.
+            let upright = 1.0 - turn * (turn + 2.0 * slope) > 0.0;
+            stretch[k] = if upright { stretch[k] } else { f64::NAN };
+        }
+        [climb, stretch]
+    }
+
     #[inline(always)]
     fn exact_heights<const N: usize>(&self, xi: &[f64; N]) -> Twices<N> {
         let (one, sin_a, cos_a) = (Twice::from(1.0), Twice::from(self.sin), Twice::from(self.cos));
@@ -330,14 +347,14 @@ fn chords_near<const N: usize>(
     for k in 0..N {
         t_to[k] += runs[k] * rate[k];
     }
-    let (mut slope, mut stretch) =
+    let (mut climb, mut stretch) =
         (divided_differences(c_zeta, t, &t_to), divided_differences(c_xi, t, &t_to));
     for k in 0..N {
-        slope[k] /= stretch[k];
+        climb[k] *= rate[k];
         stretch[k] *= rate[k];
         stretch[k] = if stretch[k] > LEAST_STRETCH { stretch[k] } else { f64::NAN };
     }
-    [slope, stretch]
+    [climb, stretch]
 }
 
 #[cfg(test)]
@@ -357,7 +374,7 @@ mod tests {
             let (xi, to) = ([at(0.1), at(0.5), at(0.9)], [at(0.3), at(0.500001), at(0.95)]);
             let Some((points, heights)) = branch.points(&xi) else { continue };
             let Some(chords) = branch.chords_from(&points, &to) else { continue };
-            let [near, stretch] = branch.chords_near(&points, &[0, 1, 2].map(|k| to[k] - xi[k]));
+            let [climb, stretch] = branch.chords_near(&points, &[0, 1, 2].map(|k| to[k] - xi[k]));
             let zeta = branch.exact_heights(&xi, &points);
             for k in 0..3 {
                 let (point, height) = branch.point(xi[k]);
@@ -365,7 +382,7 @@ mod tests {
                 worst = worst.max((heights[k] - height).abs() / (1.0 + height.abs()));
                 worst = worst.max((chords[k] - chord).abs() / (1.0 + chord * chord));
                 let other = branch.chord_from(&point, xi[k] + (to[k] - xi[k]) * stretch[k]);
-                worst = worst.max((near[k] - other).abs() / (1.0 + other * other));
+                worst = worst.max((climb[k] / stretch[k] - other).abs() / (1.0 + other * other));
                 let exact = f64::from(TwoFloat::from(zeta.get(k)) - height).abs();
                 worst = worst.max(exact / (1.0 + height.abs()));
                 compared += 1;
@@ -378,8 +395,15 @@ mod tests {
     fn a_chord_past_a_vertical_tangent_is_no_number() {
         // ξ = t − t²/2, vertical at t = 1; ζ = t/10.
         let curve = [&[0.0, 1.0, -0.5][..], &[0.0, 0.1][..]];
-        let [slope, stretch] = chords_near(curve, [&[0.0; 2], &[1.0; 2]], &[0.4, 1.2]);
-        assert!((stretch[0] - 0.8).abs() < 1e-15 && (slope[0] - 0.125).abs() < 1e-15);
+        let [climb, stretch] = chords_near(curve, [&[0.0; 2], &[1.0; 2]], &[0.4, 1.2]);
+        assert!((stretch[0] - 0.8).abs() < 1e-15 && (climb[0] - 0.1).abs() < 1e-15);
+        assert!(stretch[1].is_nan());
+
+        // The lower half of a circle from its lowest point, where tan α = 0.2 and 1.1.
+        let arc = ArcBranch { anchor: [0.0; 2], sin: 0.0, cos: 1.0, radius: 1.0, curvature: 1.0 };
+        let [climb, stretch] = arc.chords_near([&[0.0; 2], &[1.0; 2]], &[0.4, 2.2]);
+        let [xi, zeta] = [0.4 * stretch[0], 0.4 * climb[0]];
+        assert!((xi - 5.0 / 13.0).abs() < 1e-15 && (zeta - arc.height(xi)).abs() < 1e-15);
         assert!(stretch[1].is_nan());
     }
 
