@@ -228,15 +228,9 @@ struct SceneRace<'a> {
 
 impl<'a> SceneRace<'a> {
     /// Plans and errors; no time yet but that of a plan, which is appended to `planning` \[s\].
-    fn new(
-        reference: &'a Reference,
-        placement: &'a Placement,
-        side: usize,
-        planning: &mut Vec<f64>,
-    ) -> Self {
+    fn new(reference: &'a Reference, placement: &'a Placement, side: usize, planning: &mut Vec<f64>) -> Self {
         let track = track(reference, placement, side);
-        let planned =
-            |tolerance, method| plan(placement, track.xi(), track.axis(), tolerance, method).choice;
+        let planned = |tolerance, method| plan(placement, track.xi(), track.axis(), tolerance, method).choice;
         let (mut works, mut errors) = (Vec::new(), Vec::new());
         for (_, tolerance, method) in contestants() {
             let choice = method.map(|method| planned(tolerance.unwrap_or(FULL_PRECISION), Some(method)));

@@ -138,13 +138,13 @@ mod tests {
         let mut timings = [Timing::NONE; 3];
         let mut run = |k| {
             order.push(k);
-            [0.5, 0.125, 20.0][k]
+            [0.5, 0.125, 32.0][k]
         };
         race(&mut timings, 1.0, 3, &mut run);
         assert_eq!(timings[0], Timing { best: 0.5, spent: 1.5, runs: 3 });
         assert_eq!(timings[1], Timing { best: 0.125, spent: 1.0, runs: 8 });
         // Too long a run for a second one.
-        assert_eq!(timings[2], Timing { best: 20.0, spent: 20.0, runs: 1 });
+        assert_eq!(timings[2], Timing { best: 32.0, spent: 32.0, runs: 1 });
         // A later race goes on where the first one ended.
         race(&mut timings, 2.0, 3, &mut run);
         assert_eq!(timings.map(|timing| timing.runs), [4, 16, 1]);
