@@ -3,7 +3,7 @@
 use super::chart::{Chart, Series, svg};
 use super::hard_case::Outcome;
 use super::measured;
-use super::measurements::{Growth, Measurements, Row, median};
+use super::measurements::{Growth, Measurements, PASSES, Row, median};
 use super::requirements;
 use super::spline_cost::SplineCost;
 use super::table::{accuracy_csv, growth_csv, hard_cases_csv, markdown, verification_csv};
@@ -406,9 +406,11 @@ fn method(m: &Measurements) -> Section {
              columns are the same polynomials. There are 15 to 50 points a scene, so that a 99 % quantile is close to the largest. \
              Relative errors leave out C itself.\n\
              - Time: processor time of the one thread, which leaves out what other processes took but not what \
-             they did to caches and memory; the shortest of at least three runs (of one, where a run takes seconds). \
-             All contestants of one scene run in turn, so that a ratio's two sides met the same disturbances. With \
-             two threads it is time on the wall, and means nothing on a busy machine (load above).\n\
+             they did to caches and memory, and below 1 ms the time on the wall; the shortest of at least three runs (of \
+             one, where a run takes seconds). \
+             Next is always the contestant that has had least time, so that a ratio's two sides met the same \
+             disturbances; the races of all scenes are taken up {PASSES} times, since on a shared machine these come and go \
+             within seconds. With two threads it is time on the wall, and means nothing on a busy machine (load above).\n\
              - `store` writes one value to the same array; like every method it finds the array's pages already \
              touched, which a program that fills a fresh array once does not. Arrays of up to some MB stay in cache. \
              Both favour the store most.\n\

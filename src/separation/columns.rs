@@ -68,6 +68,8 @@ pub struct Columns<'a> {
     pub contact: bool,
     /// In order of u.
     pub spans: Vec<SpanColumns<'a>>,
+    /// Of the rail, each column's own.
+    rail_branches: Option<Branches<'a, MANY>>,
 }
 
 /// Where the columns enter and leave a span.
@@ -102,7 +104,13 @@ pub struct Feet {
 impl<'a> Columns<'a> {
     /// None yet.
     pub fn new(wheel: WheelSurface<'a>) -> Self {
-        Self { wheel, xi: [f64::NAN; MANY], contact: false, spans: Vec::with_capacity(MOST_SPANS) }
+        Self {
+            wheel,
+            xi: [f64::NAN; MANY],
+            contact: false,
+            spans: Vec::with_capacity(MOST_SPANS),
+            rail_branches: None,
+        }
     }
 
     /// Takes the columns at ξ up to u = `u_max`; `None` where they do not pass the same branches, too many, or are not whole.
@@ -172,10 +180,12 @@ impl<'a> Columns<'a> {
                 (rails[k], wheels[k], self.xi[k]) = (*r, *w, xi[k]);
             }
         }
-        let branches = Branches::of(wheels.map(|piece| &wheel.section.branches[piece.branch]))?;
+        let used = self.spans.pop().map(|span| span.branches);
+        let branches = Branches::of(wheels.map(|piece| &wheel.section.branches[piece.branch]), used)?;
         let (points, height) = branches.points(&self.xi)?;
-        let (_, rail_height) =
-            Branches::of(rails.map(|piece| &rail.branches[piece.branch]))?.points(&self.xi)?;
+        let used = self.rail_branches.take();
+        let rail_branches = Branches::of(rails.map(|piece| &rail.branches[piece.branch]), used)?;
+        let (_, rail_height) = self.rail_branches.insert(rail_branches).points(&self.xi)?;
         let contact = [rail.contact, wheel.section.contact];
         let base = row(|k| {
             let [r, w] = [rails[k].branch, wheels[k].branch];

@@ -56,29 +56,36 @@ pub struct Cubics<const N: usize> {
 /// Coefficients of a cubic.
 const CUBIC: usize = 4;
 
+impl<const N: usize> Cubics<N> {
+    const NONE: Self =
+        Self { xi: [[0.0; N]; CUBIC], zeta: [[0.0; N]; CUBIC], t: [[0.0; N]; 2], ends: [[0.0; N]; 2] };
+}
+
 impl<'a, const N: usize> Branches<'a, N> {
-    /// These branches, if all are the same one or cubics.
-    pub fn of(branches: [&'a Branch; N]) -> Option<Self> {
+    /// These branches, if all are the same one or cubics; in the memory of others, if there are any.
+    pub fn of(branches: [&'a Branch; N], others: Option<Self>) -> Option<Self> {
         if branches.iter().all(|branch| std::ptr::eq(*branch, branches[0])) {
             return Some(Self::One(branches[0]));
         }
-        let none = || [[0.0; N]; CUBIC];
-        let mut all = Cubics { xi: none(), zeta: none(), t: [[0.0; N]; 2], ends: [[0.0; N]; 2] };
+        let mut all = match others {
+            Some(Self::Cubics(others)) => others,
+            _ => Box::new(Cubics::NONE),
+        };
         for (k, branch) in branches.into_iter().enumerate() {
             let BranchShape::Polynomial(p) = &branch.shape else { return None };
             if p.xi.len().max(p.zeta.len()) > CUBIC {
                 return None;
             }
             for (rows, c) in [(&mut all.xi, &p.xi), (&mut all.zeta, &p.zeta)] {
-                for (row, c) in rows.iter_mut().zip(c) {
-                    row[k] = *c;
+                for (power, row) in rows.iter_mut().enumerate() {
+                    row[k] = c.get(power).copied().unwrap_or(0.0);
                 }
             }
             for end in 0..2 {
                 (all.t[end][k], all.ends[end][k]) = (p.t[end], p.ends[end]);
             }
         }
-        Some(Self::Cubics(Box::new(all)))
+        Some(Self::Cubics(all))
     }
 
     /// As [`Branch::points`].
