@@ -67,7 +67,7 @@ pub struct Row {
     pub tolerance: Option<f64>,
     /// n of the n × n grid.
     pub side: usize,
-    /// Best processor time for the whole grid on one thread.
+    /// Times for the whole grid on one thread.
     pub timing: Timing,
     /// Errors at the 60-digit points; none for the store.
     pub errors: Option<Errors>,
@@ -137,24 +137,7 @@ pub struct Measurements {
 pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measurements> {
     let one = pool(1)?;
     let references = references()?;
-    let (mut rows, mut planning) = (Vec::new(), Vec::new());
-    let placements = references.iter().map(Reference::placement).collect::<Result<Vec<_>>>()?;
-    for &side in &effort.sides {
-        progress(&format!("grid {side} x {side}, errors of {} scenes", references.len()));
-        let entrants = references.iter().zip(&placements);
-        let mut races: Vec<SceneRace<'_>> = one.install(|| {
-            entrants
-                .map(|(reference, placement)| SceneRace::new(reference, placement, side, &mut planning))
-                .collect()
-        });
-        for pass in 1..=PASSES {
-            progress(&format!("grid {side} x {side}, races of all scenes, {pass} of {PASSES}"));
-            let seconds = effort.seconds * pass as f64 / PASSES as f64;
-            let least = if pass == PASSES { LEAST_RUNS } else { 1 };
-            one.install(|| races.iter_mut().for_each(|race| race.run(seconds, least)));
-        }
-        rows.extend(races.into_iter().flat_map(SceneRace::rows));
-    }
+    let (rows, planning) = scene_races(&references, effort, &one, progress)?;
     let example = example(&references)?;
     progress("growth of cost with the number of points");
     let growth = one.install(|| growth(example, effort))?;
@@ -169,9 +152,6 @@ pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measur
     let verified = verified(&references, effort.every_pair)?;
     progress("measured profiles");
     let evidence = measured::rows(&effort.spacings)?;
-    planning.sort_by(f64::total_cmp);
-    let planning = [0, planning.len() / 2, planning.len().saturating_sub(1)]
-        .map(|k| planning.get(k).copied().unwrap_or(f64::NAN));
     Ok(Measurements { rows, planning, growth, threads, splines, hard_cases, verified, evidence })
 }
 
@@ -219,52 +199,78 @@ fn contestants() -> Vec<(&'static str, Option<f64>, Option<Method>)> {
     all
 }
 
+/// The rows of all scenes and grids, and the least, median and largest time of a plan \[s\].
+fn scene_races(
+    references: &[Reference],
+    effort: &Effort,
+    one: &ThreadPool,
+    progress: &mut dyn FnMut(&str),
+) -> Result<(Vec<Row>, [f64; 3])> {
+    let placements = references.iter().map(Reference::placement).collect::<Result<Vec<_>>>()?;
+    let (mut rows, mut planning) = (Vec::new(), Vec::new());
+    for &side in &effort.sides {
+        progress(&format!("grid {side} x {side}, errors of {} scenes", references.len()));
+        let entrants = references.iter().zip(&placements);
+        let entered = entrants.map(|(reference, placement)| SceneRace::new(reference, placement, side));
+        let mut races: Vec<_> = one.install(|| entered.collect());
+        for pass in 1..=PASSES {
+            progress(&format!("grid {side} x {side}, races of all scenes, {pass} of {PASSES}"));
+            let seconds = effort.seconds * pass as f64 / PASSES as f64;
+            let least = if pass == PASSES { LEAST_RUNS } else { 1 };
+            one.install(|| races.iter_mut().for_each(|race| race.run(seconds, least)));
+        }
+        planning.extend(races.iter().map(|race| race.planning));
+        rows.extend(races.into_iter().flat_map(|race| race.rows));
+    }
+    planning.sort_by(f64::total_cmp);
+    let planning = [0, planning.len() / 2, planning.len().saturating_sub(1)]
+        .map(|k| planning.get(k).copied().unwrap_or(f64::NAN));
+    Ok((rows, planning))
+}
+
 /// All contestants over one scene and grid.
 struct SceneRace<'a> {
     reference: &'a Reference,
     placement: &'a Placement,
     side: usize,
     works: Vec<Work>,
-    errors: Vec<Option<Errors>>,
-    timings: Vec<Timing>,
+    /// Of every contestant; the times are those of its runs so far.
+    rows: Vec<Row>,
+    /// Time for choosing a method to full precision \[s\].
+    planning: f64,
 }
 
 impl<'a> SceneRace<'a> {
-    /// Plans and errors; no time yet but that of a plan, which is appended to `planning` \[s\].
-    fn new(reference: &'a Reference, placement: &'a Placement, side: usize, planning: &mut Vec<f64>) -> Self {
+    /// Plans and errors; nobody has run.
+    fn new(reference: &'a Reference, placement: &'a Placement, side: usize) -> Self {
         let track = track(reference, placement, side);
         let planned = |tolerance, method| plan(placement, track.xi(), track.axis(), tolerance, method).choice;
-        let (mut works, mut errors) = (Vec::new(), Vec::new());
-        for (_, tolerance, method) in contestants() {
+        let (mut works, mut rows) = (Vec::new(), Vec::new());
+        for (name, tolerance, method) in contestants() {
             let choice = method.map(|method| planned(tolerance.unwrap_or(FULL_PRECISION), Some(method)));
             works.push(choice.map_or(Work::Store, Work::Fill));
-            errors.push(choice.map(|choice| Errors::of(&compare(reference, placement, &choice, side))));
+            rows.push(Row {
+                scene: reference.name.clone(),
+                method: name,
+                tolerance,
+                side,
+                timing: Timing::NONE,
+                errors: choice.map(|choice| Errors::of(&compare(reference, placement, &choice, side))),
+            });
         }
         let start = Instant::now();
         planned(FULL_PRECISION, None);
-        planning.push(start.elapsed().as_secs_f64());
-        let timings = vec![Timing::NONE; works.len()];
-        Self { reference, placement, side, works, errors, timings }
+        Self { reference, placement, side, works, rows, planning: start.elapsed().as_secs_f64() }
     }
 
     /// Until everyone has had so much time and so many runs, in an array of this race.
     fn run(&mut self, seconds: f64, least: usize) {
         let mut track = track(self.reference, self.placement, self.side);
-        race(&mut self.timings, seconds, least, |k| track.timed(self.works[k]));
-    }
-
-    fn rows(self) -> impl Iterator<Item = Row> {
-        let Self { reference, side, errors, timings, .. } = self;
-        contestants().into_iter().zip(timings).zip(errors).map(
-            move |(((method, tolerance, _), timing), errors)| Row {
-                scene: reference.name.clone(),
-                method,
-                tolerance,
-                side,
-                timing,
-                errors,
-            },
-        )
+        let mut timings: Vec<_> = self.rows.iter().map(|row| row.timing).collect();
+        race(&mut timings, seconds, least, |k| track.timed(self.works[k]));
+        for (row, timing) in self.rows.iter_mut().zip(timings) {
+            row.timing = timing;
+        }
     }
 }
 

@@ -36,7 +36,7 @@ pub enum Work {
 /// The times of one contestant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Timing {
-    /// Shortest run \[s\]: processor time on one thread, time on the wall on several.
+    /// Shortest run \[s\]: [`Track::timed`] on one thread, time on the wall on several.
     pub best: f64,
     /// Sum of all runs \[s\].
     pub spent: f64,
@@ -99,7 +99,8 @@ impl<'a> Track<'a> {
         black_box(&mut *self.out);
     }
 
-    /// Time of one run \[s\]: the processor's, and on the wall if that is short. To be called on a rayon pool of one thread.
+    /// Time of one run \[s\]: the processor's, which leaves out what other processes took, and on the wall if that is short. To be
+    /// called on a rayon pool of one thread.
     pub fn timed(&mut self, work: Work) -> f64 {
         let (start, on_the_wall) = (processor_time(), Instant::now());
         self.run(work);
@@ -108,7 +109,7 @@ impl<'a> Track<'a> {
     }
 }
 
-/// Processor time of this thread \[s\]: unlike the time on the wall it leaves out what other processes took.
+/// Processor time of this thread \[s\].
 fn processor_time() -> f64 {
     let time = clock_gettime(ClockId::ThreadCPUTime);
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64

@@ -37,14 +37,15 @@ pub fn spline_costs(sides: &[usize], seconds: f64) -> Result<Vec<SplineCost>> {
     let mut costs = Vec::new();
     for &side in sides {
         for spacing in SPACINGS {
-            let pair = [fitted(CurveKind::Smoothing, spacing)?, arcs.clone()];
-            let mut tracks = pair.each_ref().map(|placement| {
+            let splines = fitted(CurveKind::Smoothing, spacing)?;
+            let pair = [&splines, &arcs];
+            let mut tracks = pair.map(|placement| {
                 let [xi, eta] = HALF_WIDTHS;
                 Track::new(placement, [-xi, xi], eta, side)
             });
             let works = [0, 1].map(|k| {
                 let (xi, axis) = (tracks[k].xi(), tracks[k].axis());
-                Work::Fill(plan(&pair[k], xi, axis, FULL_PRECISION, None).choice)
+                Work::Fill(plan(pair[k], xi, axis, FULL_PRECISION, None).choice)
             });
             let mut timings = [Timing::NONE; 2];
             race(&mut timings, seconds, LEAST_RUNS, |k| tracks[k].timed(works[k]));

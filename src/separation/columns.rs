@@ -68,7 +68,7 @@ pub struct Columns<'a> {
     pub contact: bool,
     /// In order of u.
     pub spans: Vec<SpanColumns<'a>>,
-    /// Of the rail, each column's own.
+    /// Of the rail, each column's own; kept for their memory.
     rail_branches: Option<Branches<'a, MANY>>,
 }
 
@@ -373,7 +373,7 @@ impl<'a> WheelSurface<'a> {
         Some(self.feet_over(span, &runs, rise))
     }
 
-    /// Points with sagittae larger by about `runs` than at the span's beginning, at half the cost.
+    /// Points with sagittae larger by about `runs` than at the span's beginning, with no root.
     #[inline(always)]
     fn feet_by(&self, span: &SpanColumns<'_>, runs: &Row) -> Feet {
         let [climb, stretch] = span.branches.chords_near(&span.points, &row(|k| -runs[k] * self.sin));

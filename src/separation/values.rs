@@ -109,9 +109,10 @@ mod tests {
 
     #[test]
     fn the_first_value_begins_a_line() {
-        for count in [0, 1, 7, 8, 1000] {
+        for count in [0, 1, 7, 8, 1000, LARGE_PAGES] {
             let mut values = Values::new(count);
             assert_eq!((values.len(), lead(&values)), (count, 0));
+            assert!(values.iter().all(|&value| value == 0.0));
             values.fill(0.5);
             let copy = values.clone();
             assert_eq!((&*copy, lead(&copy)), (&*values, 0));

@@ -62,7 +62,8 @@ impl<const N: usize> Cubics<N> {
 }
 
 impl<'a, const N: usize> Branches<'a, N> {
-    /// These branches, if all are the same one or cubics; in the memory of others, if there are any.
+    /// These branches, if all are the same one or cubics; in the memory of `others`: a tenth of a grid's time over splines went to
+    /// asking for it anew.
     pub fn of(branches: [&'a Branch; N], others: Option<Self>) -> Option<Self> {
         if branches.iter().all(|branch| std::ptr::eq(*branch, branches[0])) {
             return Some(Self::One(branches[0]));
