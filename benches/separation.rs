@@ -74,6 +74,23 @@ fn report_newton<const N: usize>(bencher: Bencher<'_, '_>, scene: &str) {
     fill(bencher, scene, N, Method::ReportNewton);
 }
 
+/// A plan to full precision and the fill by it, which has the plan's strips: what a caller waits for.
+#[divan::bench(args = SCENES, consts = SIDES, max_time = 1)]
+fn planned<const N: usize>(bencher: Bencher<'_, '_>, scene: &str) {
+    let Grid { placement, xi, axis, mut out } = grid(scene, N);
+    bencher.counter(ItemsCount::new(N * N)).bench_local(|| {
+        plan(&placement, &xi, &axis, 1e-12, None).fill(&placement, &xi, &axis, &mut out);
+        black_box(&mut *out);
+    });
+}
+
+/// The plan alone.
+#[divan::bench(args = SCENES, consts = SIDES, max_time = 1)]
+fn plans<const N: usize>(bencher: Bencher<'_, '_>, scene: &str) {
+    let Grid { placement, xi, axis, .. } = grid(scene, N);
+    bencher.bench_local(|| plan(&placement, &xi, &axis, 1e-12, None));
+}
+
 #[divan::bench(consts = SIDES, max_time = 1)]
 fn store<const N: usize>(bencher: Bencher<'_, '_>) {
     let mut out = touched(N * N);

@@ -210,6 +210,25 @@ impl<'a> Columns<'a> {
         Some(pairs.map(|pair| pair.is_some()))
     }
 
+    /// u \[mm²\] and s \[mm\] at about these shares of one span's sagittae; `None` where they are not found.
+    #[inline(always)]
+    pub fn separations(&self, span: usize, shares: &Row) -> Option<[Row; 2]> {
+        let span = &self.spans[span];
+        let (_, run) = self.wheel.feet_near(span, &span.u[1])?;
+        let feet = self.wheel.feet_by(span, &row(|k| run[k] * shares[k]));
+        Some([feet.u, row(|k| span.base[k] + feet.rise[k])])
+    }
+
+    /// The largest difference \[mm\] of polynomials over one span from its rise at these shares of its sagittae; NaN where they
+    /// are not found.
+    #[inline(always)]
+    pub fn difference(&self, span: usize, coefficients: &[Row], shares: &Row) -> f64 {
+        let span = &self.spans[span];
+        let Some((_, run)) = self.wheel.feet_near(span, &span.u[1]) else { return f64::NAN };
+        let feet = self.wheel.feet_by(span, &row(|k| run[k] * shares[k]));
+        error(coefficients, &feet).into_iter().fold(0.0, nan_max)
+    }
+
     /// Appends the coefficients of q over one span in powers of u − u_0, at least so many, as
     /// [`super::spectral::Spectral::polynomial`]; how many, and their largest measured error \[mm\]. `None` where no degree
     /// reaches the demand.

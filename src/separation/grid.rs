@@ -10,7 +10,7 @@ use super::columns::MANY;
 use super::pointwise::Pointwise;
 use super::report_newton::ReportNewton;
 use super::spectral::{Demand, Spectral};
-use super::strips::strips;
+use super::strips::{Strip, strips};
 use super::values::Residence;
 use crate::placement::Placement;
 
@@ -104,7 +104,11 @@ impl Choice {
             Method::Quadratic => &|| Box::new(Quadratic::new(placement, axis)),
             Method::ConstantRadius => &|| Box::new(Parabolic::constant_radius(placement, axis)),
             Method::Parabolic => &|| Box::new(Parabolic::local(placement, axis)),
-            Method::Spectral => return self.fill_by_strips(placement, xi, axis, out),
+            Method::Spectral => {
+                let mut spectral = self.spectral(placement, axis);
+                let strips = strips(&mut spectral, placement, xi, axis.reach * axis.reach);
+                return self.fill_by_strips(placement, xi, axis, &strips, out);
+            }
             Method::Pointwise => &|| Box::new(Pointwise::new(placement, axis)),
             Method::ReportNewton => &|| Box::new(ReportNewton::new(placement, axis, self.demand.absolute)),
         };
@@ -115,17 +119,29 @@ impl Choice {
         fill_in_blocks(kernel, xi, out)
     }
 
-    /// The same by spectral columns, which share strips.
-    fn fill_by_strips(&self, placement: &Placement, xi: &[f64], axis: &EtaAxis, out: &mut [f64]) -> f64 {
-        let spectral = || Spectral::new(placement, axis, self.demand, self.coefficients);
-        let mut first = spectral();
-        let strips = strips(&mut first, placement, xi, axis.reach * axis.reach);
+    /// The same by spectral columns with the strips of this pair and grid.
+    pub(super) fn fill_by_strips(
+        &self,
+        placement: &Placement,
+        xi: &[f64],
+        axis: &EtaAxis,
+        strips: &[Strip],
+        out: &mut [f64],
+    ) -> f64 {
+        if axis.eta.is_empty() {
+            return 0.0;
+        }
         let of_strips = strips.iter().map(|strip| strip.truncation).fold(0.0, f64::max);
         let residence = Residence::of(out.len());
+        let kernel = || self.spectral(placement, axis).with_strips(strips, residence);
         if out.len() <= FEW_POINTS[0] {
-            return fill_with(&mut first.with_strips(&strips, residence), xi, out).max(of_strips);
+            return fill_with(&mut kernel(), xi, out).max(of_strips);
         }
-        fill_in_blocks(|| Box::new(spectral().with_strips(&strips, residence)), xi, out).max(of_strips)
+        fill_in_blocks(|| Box::new(kernel()), xi, out).max(of_strips)
+    }
+
+    fn spectral<'a>(&self, placement: &'a Placement, axis: &'a EtaAxis) -> Spectral<'a> {
+        Spectral::new(placement, axis, self.demand, self.coefficients)
     }
 }
 

@@ -1,13 +1,14 @@
 //! Choosing the cheapest method that meets a tolerance, with an estimate of its error.
 
-use super::Evaluator;
 use super::axis::EtaAxis;
-use super::column::WheelSurface;
 use super::grid::{Choice, Method};
+use super::rounding::rounding;
+use super::samples::{Samples, difference, largest, thinned};
 use super::spectral::{Demand, Spectral};
+use super::strips::{Strip, strips};
+use super::{Evaluator, approximate};
 use crate::numerics::nan_max;
 use crate::placement::Placement;
-use crate::profile::Section;
 
 /// At this tolerance \[mm\] and below, the relative accuracy near C is kept as well.
 ///
@@ -17,15 +18,17 @@ pub const FULL_PRECISION: f64 = 1e-12;
 /// Relative truncation allowed at full precision: a fiftieth of the promised 1e-13, some roundings.
 const FULL_RELATIVE: f64 = 2e-15;
 
-/// Columns of the grid at which an approximate method is compared with the point-wise one, evenly spread. Its error is
-/// smooth between joints: the columns next to these and half way between them are taken as well.
-const SAMPLED_COLUMNS: usize = 65;
+/// Columns in no strip whose truncation errors are measured, evenly spread: two rows of them. The others are measured when the
+/// grid is filled.
+const COLUMNS_ALONE: usize = 32;
 
-/// Values of η there.
-const SAMPLED_ETA: usize = 9;
+/// Columns of a skewed wheel that are filled for their errors, and values of η at which they are compared with points one by
+/// one.
+const SKEWED_COLUMNS: usize = 17;
+const SKEWED_ETA: usize = 5;
 
-/// Where in a span, as a share of its u, the truncation error is measured beside its end, where it may pass through zero.
-const MEASURED: [f64; 4] = [0.1, 0.3, 0.55, 0.8];
+/// Values along either axis at which the quadratic form is tried before anything else: ends and middle.
+const PROBED: usize = 3;
 
 /// Share by which the sampled maximum is raised, for what lies between the samples.
 const BETWEEN_SAMPLES: f64 = 1.5;
@@ -43,12 +46,18 @@ pub struct Plan {
     pub tolerance: f64,
     /// One sentence for the summary.
     pub reason: String,
+    /// What spectral columns are filled by where they share it.
+    strips: Vec<Strip>,
 }
 
 impl Plan {
-    /// Fills the grid that the plan is for; completes its estimate by the truncation errors that are measured on the way.
+    /// Fills the grid that the plan is for, the same pair and axes; completes the estimate by the truncation errors that are
+    /// measured on the way.
     pub fn fill(&mut self, placement: &Placement, xi: &[f64], axis: &EtaAxis, out: &mut [f64]) {
-        let truncation = self.choice.fill(placement, xi, axis, out);
+        let truncation = match self.choice.method {
+            Method::Spectral => self.choice.fill_by_strips(placement, xi, axis, &self.strips, out),
+            _ => self.choice.fill(placement, xi, axis, out),
+        };
         self.error = nan_max(self.error, BETWEEN_SAMPLES * truncation + self.rounding);
     }
 }
@@ -64,6 +73,10 @@ pub fn demand(tolerance: f64) -> Demand {
 /// The candidates are the quadratic form and spectral columns. What lies between them on the ladder errs more than spectral
 /// columns and takes no less time: every column has a gap of its own, and under a skewed wheel every point.
 /// At [`FULL_PRECISION`] and below the quadratic form is taken only where it is exact to rounding.
+///
+/// The estimate: spectral columns measure their truncation in every strip, at the strip's nodes and between them, and in some of
+/// the columns that are in none; other methods are compared with points one by one at some hundred columns. Cost: about that of
+/// the fill for spectral columns.
 pub fn plan(
     placement: &Placement,
     xi: &[f64],
@@ -71,149 +84,139 @@ pub fn plan(
     tolerance: f64,
     forced: Option<Method>,
 ) -> Plan {
-    let samples = Samples::new(placement, xi, axis);
-    let rounding = samples.rounding;
-    let demand = demand(tolerance);
-    let tried = |method| {
-        let (coefficients, truncation) =
-            if method == Method::Spectral { samples.polynomials(demand) } else { (1, 0.0) };
-        let choice = Choice { method, demand, coefficients };
-        (choice, samples.error(&choice, truncation))
-    };
-    if let Some(method) = forced {
-        let (choice, error) = tried(method);
-        return Plan { choice, error, rounding, tolerance, reason: "asked for by the scene".into() };
+    let grid = Grid { placement, xi, axis, tolerance };
+    match forced {
+        Some(Method::Spectral) => grid.spectral(&Probe::new(&grid), "asked for by the scene".into()),
+        Some(method) => grid.sampled(method, "asked for by the scene".into()),
+        None => grid.cheapest(),
     }
-    let (choice, error) = tried(Method::Quadratic);
-    let exact = error <= rounding;
-    if error <= tolerance && (tolerance > FULL_PRECISION || exact) {
-        let reason = format!("cheapest of all, within {tolerance:e} mm");
-        return Plan { choice, error, rounding, tolerance, reason };
-    }
-    let reason =
-        format!("cheapest within {tolerance:e} mm; {} is off by {error:.1e} mm", Method::Quadratic.name());
-    let (choice, error) = tried(Method::Spectral);
-    Plan { choice, error, rounding, tolerance, reason }
 }
 
-/// Point-wise values at a few columns.
-struct Samples<'a> {
+/// What is planned for.
+struct Grid<'a> {
     placement: &'a Placement,
-    xi: Vec<f64>,
-    whole: &'a EtaAxis,
-    axis: EtaAxis,
-    exact: Vec<f64>,
+    xi: &'a [f64],
+    axis: &'a EtaAxis,
+    tolerance: f64,
+}
+
+impl Grid<'_> {
+    fn cheapest(&self) -> Plan {
+        let probe = Probe::new(self);
+        let tolerance = self.tolerance;
+        let acceptable = |error: f64, rounding: f64| {
+            error <= tolerance && (tolerance > FULL_PRECISION || error <= rounding)
+        };
+        let mut found = BETWEEN_SAMPLES * probe.quadratic + probe.rounding;
+        if acceptable(found, probe.rounding) {
+            let plan = self.sampled(Method::Quadratic, format!("cheapest of all, within {tolerance:e} mm"));
+            if acceptable(plan.error, plan.rounding) {
+                return plan;
+            }
+            found = plan.error;
+        }
+        let quadratic = Method::Quadratic.name();
+        self.spectral(
+            &probe,
+            format!("cheapest within {tolerance:e} mm; {quadratic} is off by {found:.1e} mm or more"),
+        )
+    }
+
+    /// A method that is compared with points one by one.
+    fn sampled(&self, method: Method, reason: String) -> Plan {
+        let samples = Samples::new(self.placement, self.xi, self.axis);
+        let choice = Choice { method, demand: demand(self.tolerance), coefficients: 1 };
+        let rounding = samples.rounding;
+        let error = BETWEEN_SAMPLES * samples.difference(&choice) + rounding;
+        Plan { choice, error, rounding, tolerance: self.tolerance, reason, strips: Vec::new() }
+    }
+
+    fn spectral(&self, probe: &Probe, reason: String) -> Plan {
+        let demand = demand(self.tolerance);
+        let mut spectral = Spectral::new(self.placement, self.axis, demand, 1);
+        let (strips, coefficients, truncation) = if self.placement.skew == 0.0 {
+            self.measured(&mut spectral)
+        } else {
+            (Vec::new(), 1, self.skewed(&mut spectral))
+        };
+        let choice = Choice { method: Method::Spectral, demand, coefficients };
+        let rounding = probe.rounding;
+        let error = BETWEEN_SAMPLES * truncation + rounding;
+        Plan { choice, error, rounding, tolerance: self.tolerance, reason, strips }
+    }
+
+    /// Strips, the number of coefficients that columns in none are to start with, which two thirds of them need, and the largest
+    /// measured truncation error \[mm\].
+    fn measured(&self, spectral: &mut Spectral<'_>) -> (Vec<Strip>, usize, f64) {
+        let strips = strips(spectral, self.placement, self.xi, self.axis.reach * self.axis.reach);
+        let mut truncation = strips.iter().map(|strip| strip.truncation).fold(0.0, f64::max);
+        let mut needed: Vec<usize> = strips.iter().map(Strip::coefficients).collect();
+        for strip in &strips {
+            truncation = nan_max(truncation, spectral.difference(strip));
+        }
+        let alone = thinned(&alone(&strips, self.xi), COLUMNS_ALONE);
+        truncation = nan_max(truncation, spectral.truncation_alone(&alone, &mut needed));
+        needed.sort_unstable();
+        (strips, needed.get(needed.len() * 2 / 3).copied().unwrap_or(1), truncation)
+    }
+
+    /// Largest error \[mm\] of some columns of a skewed wheel.
+    fn skewed(&self, spectral: &mut Spectral<'_>) -> f64 {
+        let eta = &self.axis.eta;
+        let mut out = vec![f64::NAN; eta.len()];
+        let mut error = 0f64;
+        for xi in thinned(self.xi, SKEWED_COLUMNS) {
+            error = error.max(spectral.skewed_column(xi, eta, &mut out));
+            for at in places(eta.len(), SKEWED_ETA) {
+                let exact = spectral.evaluator.separation(xi, eta[at]);
+                error = nan_max(error, difference(&out[at..=at], &[exact]));
+            }
+        }
+        error
+    }
+}
+
+/// The columns that are in no strip.
+fn alone(strips: &[Strip], xi: &[f64]) -> Vec<f64> {
+    let mut alone = Vec::new();
+    let mut rest = xi;
+    for strip in strips {
+        let (before, others) = rest.split_at(rest.partition_point(|&xi| xi <= strip.xi[0]));
+        alone.extend_from_slice(before);
+        rest = &others[others.partition_point(|&xi| xi < strip.xi[1])..];
+    }
+    alone.extend_from_slice(rest);
+    alone
+}
+
+/// At most `n` indices of so many values, evenly spread, ends included.
+fn places(count: usize, n: usize) -> impl Iterator<Item = usize> {
+    let n = n.min(count);
+    (0..n).map(move |k| if n == 1 { 0 } else { k * (count - 1) / (n - 1) })
+}
+
+/// The quadratic form and the size of s at a few places: ends and middle of both axes.
+struct Probe {
+    /// Largest error of the quadratic form \[mm\].
+    quadratic: f64,
+    /// Rounding error of s \[mm\].
     rounding: f64,
 }
 
-impl<'a> Samples<'a> {
-    fn new(placement: &'a Placement, xi: &[f64], whole: &'a EtaAxis) -> Self {
-        let xi = sampled_columns(placement, xi);
-        let axis = EtaAxis::new(&thinned(&whole.eta, SAMPLED_ETA));
+impl Probe {
+    fn new(grid: &Grid<'_>) -> Self {
+        let Grid { placement, xi, axis, .. } = *grid;
+        let [along, mixed, across] = approximate::quadratic_form(placement);
         let mut evaluator = Evaluator::new(placement);
-        let mut exact = vec![f64::NAN; xi.len() * axis.eta.len()];
-        for (&xi, out) in xi.iter().zip(exact.chunks_mut(axis.eta.len().max(1))) {
-            evaluator.column(xi, &axis.eta, out);
-        }
-        let rounding = rounding(placement, &xi, &whole.eta, &exact);
-        Self { placement, xi, whole, axis, exact, rounding }
-    }
-
-    /// Raised largest difference from the point-wise values, or truncation where that is larger, plus rounding.
-    fn error(&self, choice: &Choice, truncation: f64) -> f64 {
-        let mut values = vec![f64::NAN; self.exact.len()];
-        choice.fill(self.placement, &self.xi, &self.axis, &mut values);
-        // A number where there is no surface is as wrong as none where there is one.
-        let differences = values.iter().zip(&self.exact).filter(|(s, exact)| !(s.is_nan() && exact.is_nan()));
-        let largest = differences.map(|(s, exact)| (s - exact).abs()).fold(0.0, nan_max);
-        BETWEEN_SAMPLES * nan_max(largest, truncation) + self.rounding
-    }
-
-    /// Coefficients with which two thirds of the spans of spectral columns are done, and their largest truncation error \[mm\].
-    fn polynomials(&self, demand: Demand) -> (usize, f64) {
-        let mut spectral = Spectral::new(self.placement, &self.axis, demand, 1);
-        if self.placement.skew != 0.0 {
-            let mut out = vec![f64::NAN; self.whole.eta.len()];
-            let errors = self.xi.iter().map(|&xi| spectral.skewed_column(xi, &self.whole.eta, &mut out));
-            return (1, errors.fold(0.0, f64::max));
-        }
-        let u_max = self.axis.reach * self.axis.reach;
-        let wheel = WheelSurface::new(self.placement);
-        let (mut needed, mut truncation, mut spans) = (Vec::new(), 0f64, Vec::new());
-        for &xi in &self.xi {
-            wheel.spans(xi, u_max, &mut spans);
-            for span in &spans {
-                let Some(fit) = spectral.polynomial(xi, span, u_max, 1) else { continue };
-                needed.push(fit.n);
-                let run = span.u[1].min(u_max) - span.u[0];
-                let inside =
-                    MEASURED.map(|share| spectral.truncation(xi, span, &fit, span.u[0] + share * run));
-                truncation = inside.into_iter().fold(truncation.max(fit.error), f64::max);
+        let (mut most, mut quadratic) = (0f64, 0f64);
+        for xi in places(xi.len(), PROBED).map(|k| xi[k]) {
+            for eta in places(axis.eta.len(), PROBED).map(|k| axis.eta[k]) {
+                let exact = evaluator.separation(xi, eta);
+                let form = along * xi * xi + eta * (mixed * xi + across * eta);
+                most = most.max(largest(&[exact]));
+                quadratic = nan_max(quadratic, difference(&[form], &[exact]));
             }
         }
-        needed.sort_unstable();
-        (needed.get(needed.len() * 2 / 3).copied().unwrap_or(1), truncation)
+        Self { quadratic, rounding: rounding(placement, xi, axis, most) }
     }
-}
-
-/// Roundings of s over the contact segments: gap, rise, and their interpolation over ξ; under yaw that in powers of η.
-const CONTACT_ROUNDINGS: [f64; 2] = [8.0, 32.0];
-
-/// … and elsewhere: both bodies' joints are off at once.
-const PLACE_ROUNDINGS: f64 = 2.0;
-
-/// Rounding error of s: a few units of its own last place over the contact segments; elsewhere, of the heights by
-/// which joints are placed in the frame, ζ = Δz cosθ − Δx sinθ, with z_C rounded in Δz, and of the rounded ξ times slope.
-fn rounding(placement: &Placement, xi: &[f64], eta: &[f64], exact: &[f64]) -> f64 {
-    let largest = |values: &mut dyn Iterator<Item = f64>| {
-        values.filter(|v| !v.is_nan()).fold(0.0, |m: f64, v| m.max(v.abs()))
-    };
-    // Beside the midplane columns lie over other places of the wheel's profile.
-    let mut evaluator = Evaluator::new(placement);
-    let mut below = xi.to_vec();
-    for &eta in [eta.first(), eta.last()].into_iter().flatten() {
-        below.extend(xi.iter().map(|&xi| evaluator.foot_abscissa(xi, eta)));
-    }
-    let bodies = [(&placement.rail.section, xi), (&placement.wheel.section, &below)];
-    let contact = |section: &Section, x: f64| {
-        section.piece_at(x).is_none_or(|piece| section.contact == Some(piece.branch))
-    };
-    let s = largest(&mut exact.iter().copied());
-    if bodies.into_iter().all(|(section, places)| places.iter().all(|&x| contact(section, x))) {
-        return CONTACT_ROUNDINGS[usize::from(placement.skew != 0.0)] * f64::EPSILON * s;
-    }
-    let joints = bodies.map(|(section, places)| {
-        let heights = largest(&mut places.iter().map(|&x| section.height(x)));
-        let slopes = |x: &f64| section.branch_at(*x).map_or(f64::NAN, |branch| branch.chord_slope(*x, *x));
-        let width = largest(&mut places.iter().copied()) + section.frame.x.abs();
-        let steep = width * largest(&mut places.iter().map(slopes).filter(|slope| slope.is_finite()));
-        section.frame.z.abs() + heights + steep.max(section.frame.sin.abs() * width)
-    });
-    PLACE_ROUNDINGS * f64::EPSILON * s.max(joints[0] + joints[1])
-}
-
-/// Columns of the grid, evenly spread, and those next to the joints of both bodies and to the middle between two.
-fn sampled_columns(placement: &Placement, xi: &[f64]) -> Vec<f64> {
-    let mut columns = thinned(xi, SAMPLED_COLUMNS);
-    let (Some(&first), Some(&last)) = (xi.first(), xi.last()) else { return columns };
-    if columns.len() < xi.len() {
-        let joints = placement.joints(first, last);
-        let middles = joints.windows(2).map(|pair| pair[0] + (pair[1] - pair[0]) / 2.0);
-        for place in joints.iter().copied().chain(middles) {
-            let beyond = xi.partition_point(|&xi| xi < place);
-            // Beside a column on the joint as well.
-            columns.extend(&xi[beyond.saturating_sub(1)..xi.len().min(beyond + 2)]);
-        }
-        columns.sort_by(f64::total_cmp);
-        columns.dedup();
-    }
-    columns
-}
-
-/// At most `n` of the values, evenly spread, ends included.
-fn thinned(values: &[f64], n: usize) -> Vec<f64> {
-    if values.len() <= n {
-        return values.to_vec();
-    }
-    (0..n).map(|k| values[k * (values.len() - 1) / (n - 1)]).collect()
 }

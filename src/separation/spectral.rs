@@ -59,15 +59,15 @@ pub struct ColumnPolynomial {
 #[derive(Debug)]
 pub struct Spectral<'a> {
     pub(super) evaluator: Evaluator<'a>,
-    axis: &'a EtaAxis,
+    pub(super) axis: &'a EtaAxis,
     pub(super) demand: Demand,
     pub(super) coefficients: usize,
     strips: &'a [Strip],
-    spans: Vec<Span>,
+    pub(super) spans: Vec<Span>,
     pub(super) columns: Columns<'a>,
     /// Coefficients of columns.
     pub(super) rows: Vec<Row>,
-    polynomials: Vec<ColumnPolynomials>,
+    pub(super) polynomials: Vec<ColumnPolynomials>,
     residence: Residence,
     pub(super) arch: pulp::Arch,
     /// Largest measured truncation error so far \[mm\].

@@ -9,7 +9,7 @@ use crate::placement::Placement;
 
 /// Columns over an interval of ξ, each made up of the same quantities: of every span the coefficients of q, s at its
 /// beginning and u_0, all polynomials in ξ.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Strip {
     /// Its open interval \[mm\]: at its ends may be a drawing's step, which has a value of its own.
     pub xi: [f64; 2],
@@ -47,7 +47,7 @@ pub(super) struct ColumnPolynomials {
     /// s at u_0 \[mm\].
     base: Row,
     /// u_0 \[mm²\].
-    u0: Row,
+    pub(super) u0: Row,
 }
 
 impl ColumnPolynomials {
@@ -58,6 +58,16 @@ impl ColumnPolynomials {
     pub(super) fn set(&mut self, c: &[Row], base: &Row) {
         self.c[..c.len()].copy_from_slice(c);
         (self.base, self.u0) = (*base, [0.0; MANY]);
+    }
+
+    /// s at v = u − u_0 of each column \[mm\], by so many coefficients.
+    #[inline(always)]
+    pub(super) fn values(&self, coefficients: usize, v: &Row) -> Row {
+        let mut q = [0.0f64; MANY];
+        for c in self.c[..coefficients].iter().rev() {
+            q = row(|k| q[k].mul_add(v[k], c[k]));
+        }
+        row(|k| q[k].mul_add(v[k], self.base[k]))
     }
 
     /// s and u_0 at the beginning of the k-th column's span, and its first N coefficients, which are all.
@@ -119,9 +129,20 @@ fn at(powers: &[f64], t: &Row) -> Row {
 }
 
 impl Strip {
+    /// Number of coefficients of q.
+    pub fn coefficients(&self) -> usize {
+        self.coefficients
+    }
+
     /// The polynomials over every span at each ξ.
     #[inline(always)]
-    fn polynomials(&self, placement: &Placement, xi: &[f64], u_max: f64, spans: &mut [ColumnPolynomials]) {
+    pub(super) fn polynomials(
+        &self,
+        placement: &Placement,
+        xi: &[f64],
+        u_max: f64,
+        spans: &mut [ColumnPolynomials],
+    ) {
         let ([a, b], mut all) = (self.xi, [xi[0]; MANY]);
         all[..xi.len()].copy_from_slice(xi);
         let t = row(|k| ((all[k] - a) - (b - all[k])) / (b - a));

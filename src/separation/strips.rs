@@ -36,7 +36,8 @@ pub fn strips(spectral: &mut Spectral<'_>, placement: &Placement, xi: &[f64], u_
     }
     // What is no break belongs to the strip.
     let window = [first.next_down(), last.next_up()];
-    let mut maker = Maker { spectral, u_max, strips: Vec::new() };
+    let least = spectral.coefficients;
+    let mut maker = Maker { spectral, u_max, least, strips: Vec::new() };
     let mut rest = xi;
     for pair in breaks(placement, u_max, window).windows(2) {
         rest = &rest[leading(rest, |xi| xi <= pair[0])..];
@@ -81,6 +82,8 @@ fn breaks(placement: &Placement, u_max: f64, window: [f64; 2]) -> Vec<f64> {
 struct Maker<'s, 'a> {
     spectral: &'s mut Spectral<'a>,
     u_max: f64,
+    /// Coefficients that the next one is to start with: one less than the one before it needed.
+    least: usize,
     strips: Vec<Strip>,
 }
 
@@ -95,9 +98,13 @@ impl Maker<'_, '_> {
         // Halves of an interval that is so short would have no strips.
         let short = columns.len() < 2 * LEAST_COLUMNS;
         let arch = self.spectral.arch;
-        let attempt = Attempt { spectral: self.spectral, u_max: self.u_max, xi: [a, b], short };
+        let attempt =
+            Attempt { spectral: self.spectral, u_max: self.u_max, xi: [a, b], least: self.least, short };
         match arch.dispatch(attempt) {
-            Some(strip) => self.strips.push(strip),
+            Some(strip) => {
+                self.least = strip.coefficients.saturating_sub(1).max(1);
+                self.strips.push(strip);
+            }
             None => {
                 let (left, right) = columns.split_at(columns.partition_point(|&xi| xi < middle));
                 self.divide([a, middle], left);
@@ -107,11 +114,19 @@ impl Maker<'_, '_> {
     }
 }
 
+/// The places t from −1 to 1 of an interval.
+#[inline(always)]
+pub(super) fn inside([a, b]: [f64; 2], t: &Row) -> Row {
+    let half = (b - a) / 2.0;
+    row(|k| a + half + half * t[k])
+}
+
 /// One strip over an interval, compiled for each kind of machine.
 struct Attempt<'s, 'a> {
     spectral: &'s mut Spectral<'a>,
     u_max: f64,
     xi: [f64; 2],
+    least: usize,
     short: bool,
 }
 
@@ -120,12 +135,10 @@ impl pulp::WithSimd for Attempt<'_, '_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) -> Option<Strip> {
-        let ([a, b], half) = (self.xi, (self.xi[1] - self.xi[0]) / 2.0);
-        let (nodes, middle) = (&*chebyshev::NODES, a + half);
-        let points = row(|k| middle + half * nodes[k]);
+        let points = inside(self.xi, &chebyshev::NODES);
         let Spectral { evaluator, columns, .. } = &mut *self.spectral;
         columns.take(evaluator, self.u_max, points)?;
-        Strip::new(self.spectral, [a, b], self.short)
+        Strip::new(self.spectral, self.xi, self.least, self.short)
     }
 }
 
@@ -133,15 +146,15 @@ impl Strip {
     /// The strip through the columns last taken, at its Chebyshev points; `None` where there are too many spans, something
     /// is not finite, or has too few coefficients that are rounding; of a `short` strip the gap may have too few.
     #[inline(always)]
-    fn new(spectral: &mut Spectral<'_>, xi: [f64; 2], short: bool) -> Option<Self> {
-        let Spectral { evaluator, columns, demand, coefficients, rows, .. } = spectral;
+    fn new(spectral: &mut Spectral<'_>, xi: [f64; 2], least: usize, short: bool) -> Option<Self> {
+        let Spectral { evaluator, columns, demand, rows, .. } = spectral;
         let beginnings = Beginnings::new(evaluator, columns, short)?;
         let single = columns.spans.len() == 1;
         let (mut counts, mut kept, mut truncation) = ([0; MOST_SPANS], [0; MOST_SPANS], 0f64);
         rows.clear();
         for (k, span) in columns.spans.iter().enumerate() {
             let at = rows.len();
-            let (n, error) = columns.polynomials(k, *demand, *coefficients, rows)?;
+            let (n, error) = columns.polynomials(k, *demand, least, rows)?;
             truncation = error.max(truncation);
             let length = row(|k| span.u[1][k] - span.u[0][k]);
             let q = &mut rows[at..];

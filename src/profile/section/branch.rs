@@ -300,6 +300,19 @@ impl Branch {
         }
     }
 
+    /// dζ/dξ at a point of this branch; infinite or NaN where it is vertical.
+    #[inline]
+    pub fn slope_from(&self, point: &BranchPoint) -> f64 {
+        match (&self.shape, point) {
+            (BranchShape::Arc(_), BranchPoint::Arc { sin, cos }) => sin / cos,
+            (BranchShape::Polynomial(p), BranchPoint::Polynomial { t, .. }) => {
+                value_and_slope(&p.zeta, *t)[1] / value_and_slope(&p.xi, *t)[1]
+            }
+            // A point of another branch has no tangent on this one.
+            _ => f64::NAN,
+        }
+    }
+
     /// (ζ(b) − ζ(a))/(b − a), the slope ζ′(a) for a = b; nothing cancels.
     pub fn chord_slope(&self, a: f64, b: f64) -> f64 {
         self.chord_from(&self.point(a).0, b)

@@ -1,0 +1,84 @@
+//! A method without an estimate of its own against points one by one, at some columns of a grid.
+
+use super::Evaluator;
+use super::axis::EtaAxis;
+use super::grid::Choice;
+use super::rounding::rounding;
+use crate::numerics::nan_max;
+use crate::placement::Placement;
+
+/// Columns of the grid at which an approximate method is compared with the point-wise one, evenly spread. Its error is
+/// smooth between joints: the columns next to these and half way between them are taken as well.
+const SAMPLED_COLUMNS: usize = 65;
+
+/// Values of η there.
+const SAMPLED_ETA: usize = 9;
+
+/// Point-wise values at a few columns.
+pub(super) struct Samples<'a> {
+    placement: &'a Placement,
+    xi: Vec<f64>,
+    axis: EtaAxis,
+    exact: Vec<f64>,
+    /// Rounding error of s \[mm\].
+    pub rounding: f64,
+}
+
+impl<'a> Samples<'a> {
+    /// Of a grid.
+    pub fn new(placement: &'a Placement, xi: &[f64], whole: &EtaAxis) -> Self {
+        let columns = sampled_columns(placement, xi);
+        let axis = EtaAxis::new(&thinned(&whole.eta, SAMPLED_ETA));
+        let mut evaluator = Evaluator::new(placement);
+        let mut exact = vec![f64::NAN; columns.len() * axis.eta.len()];
+        for (&xi, out) in columns.iter().zip(exact.chunks_mut(axis.eta.len().max(1))) {
+            evaluator.column(xi, &axis.eta, out);
+        }
+        let rounding = rounding(placement, xi, whole, largest(&exact));
+        Self { placement, xi: columns, axis, exact, rounding }
+    }
+
+    /// Largest difference \[mm\] of a method from the point-wise values; NaN where only one of them has a value.
+    pub fn difference(&self, choice: &Choice) -> f64 {
+        let mut values = vec![f64::NAN; self.exact.len()];
+        choice.fill(self.placement, &self.xi, &self.axis, &mut values);
+        difference(&values, &self.exact)
+    }
+}
+
+/// Largest magnitude; what is not a number is passed over.
+pub(super) fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most, value| value.abs().max(most))
+}
+
+/// Largest difference; NaN where only one has a value: a number where there is no surface is as wrong as none where there is one.
+pub(super) fn difference(values: &[f64], exact: &[f64]) -> f64 {
+    let differences = values.iter().zip(exact).filter(|(s, exact)| !(s.is_nan() && exact.is_nan()));
+    differences.map(|(s, exact)| (s - exact).abs()).fold(0.0, nan_max)
+}
+
+/// Columns of the grid, evenly spread, and those next to the joints of both bodies and to the middle between two.
+fn sampled_columns(placement: &Placement, xi: &[f64]) -> Vec<f64> {
+    let mut columns = thinned(xi, SAMPLED_COLUMNS);
+    let (Some(&first), Some(&last)) = (xi.first(), xi.last()) else { return columns };
+    if columns.len() < xi.len() {
+        let joints = placement.joints(first, last);
+        let middles = joints.windows(2).map(|pair| pair[0] + (pair[1] - pair[0]) / 2.0);
+        for place in joints.iter().copied().chain(middles) {
+            let beyond = xi.partition_point(|&xi| xi < place);
+            // Beside a column on the joint as well.
+            columns.extend(&xi[beyond.saturating_sub(1)..xi.len().min(beyond + 2)]);
+        }
+        columns.sort_by(f64::total_cmp);
+        columns.dedup();
+    }
+    columns
+}
+
+/// At most `n` of the values, evenly spread, ends included.
+pub(super) fn thinned(values: &[f64], n: usize) -> Vec<f64> {
+    if values.len() <= n {
+        return values.to_vec();
+    }
+    (0..n).map(|k| values[k * (values.len() - 1) / (n - 1)]).collect()
+}
