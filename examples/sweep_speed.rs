@@ -50,7 +50,7 @@ fn main() -> Result<()> {
             for with_conicity in [false, true] {
                 let conicity =
                     with_conicity.then(|| Conicity::new(&system, 10.0, Roll::Neglect)).transpose()?;
-                let mut sweep = Sweep::new(&system, Selection { within: 0.0, apart: 0.0 }, conicity);
+                let mut sweep = Sweep::new(&system, Selection { within: 0.0, apart: 0.0 }, conicity.as_ref());
                 let mut rows = Vec::new();
                 let start = Clock::start();
                 let mut sum = 0.0;

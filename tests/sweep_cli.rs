@@ -123,6 +123,43 @@ fn bad_calls_end_with_code_2_and_leave_the_inputs() {
     assert!(!here.join("a.svg").exists());
 }
 
+/// Points of a rail crown or a cone, as a measured file has them.
+fn points(height: fn(f64) -> f64) -> String {
+    (-60..=60).map(|k| f64::from(k) / 2.0).map(|x| format!("{x} {}\n", height(x))).collect()
+}
+
+#[test]
+fn measured_files_are_not_opened_again_for_every_position() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    let files = [("rail.txt", points(|x| -x * x / 600.0)), ("wheel.txt", points(|x| x / 20.0))];
+    for (name, text) in &files {
+        std::fs::write(here.join(name), text).unwrap();
+    }
+    let scene = SCENE
+        .replace("profile = \"60E1\"", "file = \"rail.txt\"\nmirror = false\nflip_z = false")
+        .replace("profile = \"cone-1:20\"", "file = \"wheel.txt\"\nmirror = false\nflip_z = false");
+    let rest = "[patch]\napproach = 0.05\n[output]\nformats = [\"text\"]\n";
+    std::fs::write(here.join("scene.toml"), format!("{scene}{rest}")).unwrap();
+    let arguments =
+        ["--threads", "1", "scene.toml", "--lateral", "-2:2:1", "--patches", "out", "--out", "out.csv"];
+    let binary = env!("CARGO_BIN_EXE_wheelrail");
+    let mut child = Command::new(binary).current_dir(here).arg("sweep").args(arguments).spawn().unwrap();
+    // The first position of many is written: the files have been read.
+    let begun = || {
+        let folders = std::fs::read_dir(here).unwrap().map(|entry| entry.unwrap().path());
+        folders.filter(|path| path.is_dir()).any(|path| path.join("position-0001").exists())
+    };
+    while !begun() && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    for (name, _) in &files {
+        std::fs::remove_file(here.join(name)).unwrap();
+    }
+    assert!(child.wait().unwrap().success());
+    assert!(here.join("out/position-0005/boundary.csv").exists());
+}
+
 /// Names in a folder, those that begin with a dot too.
 fn names(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).unwrap();

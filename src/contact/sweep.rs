@@ -2,7 +2,7 @@
 
 mod conicity;
 
-pub use conicity::Conicity;
+pub use conicity::{ACCURACY, Conicity, Equivalent, NoConicity};
 
 use super::search::wheelset::{Position, Roll, WheelsetOnTrack, WheelsetSearch};
 use super::search::{Contact, Selection};
@@ -36,8 +36,8 @@ pub struct Row {
     pub contact: Contact,
     /// Right less left rolling radius of the two sides' lowest contacts \[mm\]; positive when the wheelset is to the right.
     pub delta_r: f64,
-    /// Equivalent conicity tan γ_e at the amplitude |lateral|; NaN where it is not defined.
-    pub conicity: f64,
+    /// Equivalent conicity tan γ_e at the amplitude |lateral|, or why there is none.
+    pub conicity: std::result::Result<Equivalent, NoConicity>,
 }
 
 /// A sweep over positions; keeps its buffers.
@@ -45,13 +45,13 @@ pub struct Row {
 pub struct Sweep<'a> {
     search: WheelsetSearch<'a>,
     selection: Selection,
-    conicity: Option<Conicity>,
+    conicity: Option<&'a Conicity>,
 }
 
 impl<'a> Sweep<'a> {
     /// A sweep that reports the contacts of `selection`, with the equivalent conicity from `conicity` where given: at
     /// all positions but those with a given roll, where Δr is not odd and none is defined.
-    pub fn new(system: &'a WheelsetOnTrack, selection: Selection, conicity: Option<Conicity>) -> Self {
+    pub fn new(system: &'a WheelsetOnTrack, selection: Selection, conicity: Option<&'a Conicity>) -> Self {
         Self { search: system.search(), selection, conicity }
     }
 
@@ -62,9 +62,10 @@ impl<'a> Sweep<'a> {
     pub fn position(&mut self, position: &Position, rows: &mut Vec<Row>) -> Result<()> {
         let Some(touch) = self.search.touch(position, &self.selection)? else { return Ok(()) };
         let [left, right] = touch.sides.map(|side| side.touch.contacts[0].rolling_radius);
-        let conicity = match position.roll {
-            Roll::Fixed(_) => None,
-            Roll::Solve | Roll::Neglect => self.conicity.as_ref().and_then(|c| c.at(position.lateral)),
+        let conicity = match (position.roll, self.conicity) {
+            (_, None) => Err(NoConicity::NotAsked),
+            (Roll::Fixed(_), _) => Err(NoConicity::GivenRoll),
+            (Roll::Solve | Roll::Neglect, Some(conicity)) => conicity.at(position.lateral),
         };
         for (side, found) in [TrackSide::Left, TrackSide::Right].into_iter().zip(touch.sides) {
             rows.extend(found.touch.contacts.iter().enumerate().map(|(number, contact)| Row {
@@ -76,28 +77,11 @@ impl<'a> Sweep<'a> {
                 z: found.z,
                 contact: *contact,
                 delta_r: right - left,
-                conicity: conicity.unwrap_or(f64::NAN),
+                conicity,
             }));
         }
         Ok(())
     }
-}
-
-/// The rolling radius difference Δr \[mm\] at a lateral displacement \[mm\] without yaw: right less left.
-///
-/// # Errors
-/// A displacement or roll that is not finite.
-pub fn rolling_radius_difference(
-    search: &mut WheelsetSearch,
-    lateral: f64,
-    roll: Roll,
-) -> Result<Option<f64>> {
-    let selection = Selection { within: 0.0, apart: 0.0 };
-    let touch = search.touch(&Position { lateral, yaw: 0.0, roll }, &selection)?;
-    Ok(touch.map(|touch| {
-        let [left, right] = touch.sides.map(|side| side.touch.contacts[0].rolling_radius);
-        right - left
-    }))
 }
 
 #[cfg(test)]
@@ -113,13 +97,13 @@ mod tests {
         let (rails, wheels) = (RailDistance::Spacing(1500.0), WheelDistance::Spacing(1500.0));
         let system = WheelsetOnTrack::new(&pair, rails, wheels)?;
         let conicity = Conicity::new(&system, 5.0, Roll::Neglect)?;
-        let mut sweep = Sweep::new(&system, Selection { within: 0.0, apart: 0.0 }, Some(conicity));
+        let mut sweep = Sweep::new(&system, Selection { within: 0.0, apart: 0.0 }, Some(&conicity));
         let mut rows = Vec::new();
         sweep.position(&Position { lateral: 3.0, yaw: 0.0, roll: Roll::Neglect }, &mut rows)?;
         assert_eq!(rows.iter().map(|row| row.side).collect::<Vec<_>>(), [TrackSide::Left, TrackSide::Right]);
         for row in &rows {
             assert!((row.delta_r - 0.3).abs() < 1e-12, "{row:?}");
-            assert!((row.conicity - 0.05).abs() < 1e-9, "{row:?}");
+            assert!(row.conicity.is_ok_and(|found| (found.conicity - 0.05).abs() < 1e-9), "{row:?}");
             assert_eq!((row.number, row.lateral, row.roll), (0, 3.0, 0.0));
         }
         // A cone moved to the right rises on the right.
@@ -127,7 +111,10 @@ mod tests {
         // A given roll has no conicity.
         rows.clear();
         sweep.position(&Position { lateral: 3.0, yaw: 0.0, roll: Roll::Fixed(0.0) }, &mut rows)?;
-        assert!(rows.len() == 2 && rows.iter().all(|row| row.conicity.is_nan()), "{rows:?}");
+        assert!(
+            rows.len() == 2 && rows.iter().all(|row| row.conicity == Err(NoConicity::GivenRoll)),
+            "{rows:?}"
+        );
         // A wheelset off its track has no rows.
         sweep.position(&Position { lateral: 300.0, yaw: 0.0, roll: Roll::Solve }, &mut rows)?;
         assert_eq!(rows.len(), 2);

@@ -20,6 +20,9 @@ use crate::scene::{self, Place, Scene};
 use crate::separation::plan::Plan;
 use grids::Grid;
 
+/// Both profiles of a scene, and what was done to measured ones of rail and wheel.
+pub type Profiles = (Pair, [Option<Record>; 2]);
+
 /// Is told what a run is at, from several threads.
 pub type Tell<'a> = &'a (dyn Fn(String) + Sync);
 
@@ -73,9 +76,28 @@ impl Run {
     pub fn told(scene: Scene, folder: &Path, name: &str, tell: Tell<'_>) -> Result<Self> {
         let question = question(&scene)?;
         tell("profiles".into());
-        let (pair, measured) = scene.pair_and_records(folder)?;
+        let profiles = scene.pair_and_records(folder)?;
+        Self::computed(scene, question, &profiles, name, tell)
+    }
+
+    /// Computes a scene whose profiles are there already: no file is opened.
+    ///
+    /// # Errors
+    /// Those of [`Run::new`] but for the profiles'.
+    pub fn over(scene: Scene, profiles: &Profiles, name: &str) -> Result<Self> {
+        let question = question(&scene)?;
+        Self::computed(scene, question, profiles, name, &|_| {})
+    }
+
+    fn computed(
+        scene: Scene,
+        question: Question,
+        (pair, measured): &Profiles,
+        name: &str,
+        tell: Tell<'_>,
+    ) -> Result<Self> {
         tell("contacts".into());
-        let places = places::find(&scene.standing()?, &pair, &question)?;
+        let places = places::find(&scene.standing()?, pair, &question)?;
         let grids = places.iter().map(|place| grids::grids(&scene, place)).collect::<Result<Vec<_>>>()?;
         grids::check_memory(&scene, grids.iter().flatten())?;
         let mut parts: Vec<Part> = Vec::new();
@@ -93,7 +115,8 @@ impl Run {
             }
         }
         let title = scene.title.clone().unwrap_or_else(|| name.to_string());
-        Ok(Self { hash: scene::hash(&scene), file: None, scene, title, question, measured, parts })
+        let (hash, measured) = (scene::hash(&scene), measured.clone());
+        Ok(Self { hash, file: None, scene, title, question, measured, parts })
     }
 
     /// The same, read from this file.

@@ -15,7 +15,12 @@ type Value = fn(&Row) -> f64;
 /// Quantities of a position, as its first row has them; whether they jump where a contact does.
 const OF_POSITION: [(&str, &str, Value, bool); 3] = [
     ("Rolling radius difference, right less left", "Δr [mm]", |row| row.delta_r, true),
-    ("Equivalent conicity at this amplitude", "tan γ [1]", |row| row.conicity, false),
+    (
+        "Equivalent conicity at this amplitude",
+        "tan γ [1]",
+        |row| row.conicity.map_or(f64::NAN, |found| found.conicity),
+        false,
+    ),
     ("Roll", "roll [mrad]", |row| 1e3 * row.roll, false),
 ];
 
@@ -36,7 +41,7 @@ pub(super) fn picture(table: &Table, title: &str) -> Result<CurvesPicture> {
     }
     let stride = all.len().div_ceil(MOST_DRAWN).max(1);
     let drawn: Vec<&Position> = all.iter().step_by(stride).collect();
-    let mut sweep = Sweep::new(&table.system, table.selection, table.conicity.clone());
+    let mut sweep = Sweep::new(&table.system, table.selection, table.conicity.as_ref());
     let mut found: Vec<(f64, Vec<Row>)> = Vec::with_capacity(drawn.len());
     for position in drawn {
         let mut rows = Vec::new();

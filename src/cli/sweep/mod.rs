@@ -1,22 +1,23 @@
 //! `wheelrail sweep`: the contact geometry of a wheelset at many positions, as CSV, and with files of
 //! every patch.
 
+mod conicity;
 mod curves;
 mod patches;
 mod positions;
 mod table;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::output::{PictureFormat, refuse_taken};
 use super::progress::Progress;
-use super::{Outcome, folder_of, print_to_reader};
+use super::{Outcome, complain, folder_of, print_to_reader};
 use crate::contact::hertz::effective_modulus;
-use crate::contact::search::wheelset::{Position, Roll, WheelsetOnTrack};
+use crate::contact::search::wheelset::{Position, WheelsetOnTrack};
 use crate::contact::search::{ONE_CONTACT, Selection};
-use crate::contact::sweep::Conicity;
 use crate::error::{Error, Result};
 use crate::export::write_file;
+use crate::placement::Pair;
 use crate::run::question;
 use crate::scene::{self, Place, Scene};
 use positions::{lateral_range, read_positions};
@@ -69,8 +70,9 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     let progress = Progress::of("sweep", "scene");
     let scene = scene::load(&arguments.scene)?;
     arguments.check_outputs(&scene)?;
-    let (system, template, within) =
-        system(&scene, folder_of(&arguments.scene)).map_err(|e| e.within(arguments.scene.display()))?;
+    let in_scene = |error: Error| error.within(arguments.scene.display());
+    let profiles = scene.pair_and_records(folder_of(&arguments.scene)).map_err(in_scene)?;
+    let (system, template, within) = system(&scene, &profiles.0).map_err(in_scene)?;
     let positions = match (&arguments.lateral, &arguments.positions) {
         (Some(range), None) => {
             let lateral = lateral_range(range)?;
@@ -82,15 +84,22 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
             return Err(Error::new("sweep", "neither", expected, "say what to sweep over"));
         }
     };
-    progress.at("equivalent conicity");
-    let conicity = conicity(&system, &positions)?;
-    let asked = question(&scene).map_err(|e| e.within(arguments.scene.display()))?;
+    let conicity = conicity::conicity(&system, &positions, &progress)?;
+    for remark in conicity.iter().flat_map(|conicity| conicity::remarks(conicity, &positions)) {
+        complain(&format!("sweep: {remark}"));
+    }
+    let asked = question(&scene).map_err(in_scene)?;
     let [rail, wheel] = &asked.material;
     let ellipses = asked.approach.map(|approach| (approach, effective_modulus(rail, wheel)));
     let selection = Selection { within, apart: ONE_CONTACT };
     let table = Table { system, conicity, selection, positions, ellipses };
     if let Some(dir) = &arguments.patches {
-        patches::write(dir, &scene, &arguments.scene, &table, &progress)?;
+        patches::write(
+            dir,
+            &patches::Origin { scene: &scene, path: &arguments.scene, profiles: &profiles },
+            &table,
+            &progress,
+        )?;
     }
     if let Some(file) = &arguments.picture {
         progress.at("picture");
@@ -109,24 +118,12 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     }
 }
 
-/// The equivalent conicity up to the largest amplitude of the positions whose roll is not given; of these all have
-/// theirs found in one way.
-fn conicity(system: &WheelsetOnTrack, positions: &[Position]) -> Result<Option<Conicity>> {
-    let free = || positions.iter().filter(|position| !matches!(position.roll, Roll::Fixed(_)));
-    let amplitude = free().fold(0.0, |most: f64, position| most.max(position.lateral.abs()));
-    match free().next() {
-        Some(first) if amplitude > 0.0 => Conicity::new(system, amplitude, first.roll).map(Some),
-        _ => Ok(None),
-    }
-}
-
 /// The wheelset and track of a scene, its own position, and how far near misses are reported.
-fn system(scene: &Scene, folder: &Path) -> Result<(WheelsetOnTrack, Position, f64)> {
+fn system(scene: &Scene, pair: &Pair) -> Result<(WheelsetOnTrack, Position, f64)> {
     let standing = scene.standing()?;
     let Place::Wheelset { rails, wheels, position } = standing.place else {
         let expected = "[track] and [wheelset]";
         return Err(Error::new("", "a single wheel", expected, "a sweep moves a wheelset over its track"));
     };
-    let pair = scene.pair(folder)?;
-    Ok((WheelsetOnTrack::new(&pair, rails, wheels)?, position, standing.within))
+    Ok((WheelsetOnTrack::new(pair, rails, wheels)?, position, standing.within))
 }

@@ -6,18 +6,26 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
+use super::super::complain;
 use super::super::progress::Progress;
-use super::super::{complain, folder_of};
 use super::table::Table;
 use crate::contact::search::Selection;
 use crate::contact::search::wheelset::Position;
 use crate::error::{Error, Result};
 use crate::export::{Folder, PATCHES_FOLDER, vtk};
-use crate::run::Run;
+use crate::run::{Profiles, Run};
 use crate::scene::{self, Scene};
 
 /// Most positions: each makes some forty files.
 const MOST_POSITIONS: usize = 5000;
+
+/// What the positions have in common.
+pub(super) struct Origin<'a> {
+    pub scene: &'a Scene,
+    /// The scene's file.
+    pub path: &'a Path,
+    pub profiles: &'a Profiles,
+}
 
 /// A position whose folders are written.
 struct Written {
@@ -27,13 +35,7 @@ struct Written {
 }
 
 /// Writes `DIR/position-0001/` and so on, `DIR/surface.pvd` and `DIR/summary.json`; all of it appears at once.
-pub(super) fn write(
-    dir: &Path,
-    scene: &Scene,
-    path: &Path,
-    table: &Table,
-    progress: &Progress,
-) -> Result<()> {
+pub(super) fn write(dir: &Path, origin: &Origin, table: &Table, progress: &Progress) -> Result<()> {
     let positions = &table.positions;
     if positions.len() > MOST_POSITIONS {
         let found = format!("{} positions", positions.len());
@@ -43,7 +45,7 @@ pub(super) fn write(
     let folder = Folder::create(dir, PATCHES_FOLDER)?;
     let done = AtomicUsize::new(0);
     let one = |(k, position): (usize, &Position)| {
-        let written = patch(&folder, scene, path, table, k, position)
+        let written = patch(&folder, origin, table, k, position)
             .map_err(|error| error.within(format!("position {}", k + 1)))?;
         let done = 1 + done.fetch_add(1, Ordering::Relaxed);
         progress.at(format!("patches of {done} of {} positions", positions.len()));
@@ -51,7 +53,7 @@ pub(super) fn write(
     };
     let written = positions.par_iter().enumerate().map(one).collect::<Result<Vec<_>>>()?;
     folder.write("surface.pvd", collection(&written).as_bytes())?;
-    folder.write("summary.json", &summary(scene, &written))?;
+    folder.write("summary.json", &summary(origin.scene, &written))?;
     folder.commit()?;
     let missing = written.iter().filter(|written| written.folders.is_empty()).count();
     if missing > 0 {
@@ -62,20 +64,14 @@ pub(super) fn write(
 }
 
 /// One position's folders.
-fn patch(
-    folder: &Folder,
-    scene: &Scene,
-    path: &Path,
-    table: &Table,
-    k: usize,
-    position: &Position,
-) -> Result<Written> {
+fn patch(folder: &Folder, origin: &Origin, table: &Table, k: usize, position: &Position) -> Result<Written> {
     let touching = Selection { within: 0.0, apart: 0.0 };
     if table.system.search().touch(position, &touching)?.is_none() {
         return Ok(Written { position: *position, folders: Vec::new() });
     }
     let name = format!("position-{:04}", k + 1);
-    let run = Run::new(scene.at(position), folder_of(path), &name)?.read_from(path).filed_under(&name);
+    let Origin { scene, path, profiles } = origin;
+    let run = Run::over(scene.at(position), profiles, &name)?.read_from(path).filed_under(&name);
     run.write(folder)?;
     Ok(Written { position: *position, folders: run.parts.into_iter().map(|part| part.folder).collect() })
 }

@@ -70,7 +70,7 @@ impl Table {
 
     /// The rows of a few positions as text, after so many others.
     fn rows(&self, before: usize, positions: &[Position]) -> Result<String> {
-        let mut sweep = Sweep::new(&self.system, self.selection, self.conicity.clone());
+        let mut sweep = Sweep::new(&self.system, self.selection, self.conicity.as_ref());
         let (mut rows, mut text) = (Vec::new(), String::new());
         for (k, position) in positions.iter().enumerate() {
             rows.clear();
@@ -181,7 +181,7 @@ fn append(out: &mut String, row: &Row, ellipses: Option<(ApproachBy, f64)>) {
         TrackSide::Left => "left",
         TrackSide::Right => "right",
     };
-    let conicity = if row.conicity.is_nan() { String::new() } else { row.conicity.to_string() };
+    let conicity = row.conicity.map_or(String::new(), |found| found.conicity.to_string());
     let _ = writeln!(
         out,
         "{},{},{},{side},{},{},{},{},{},{},{},{},{conicity},{},{},{},{},{},{}",

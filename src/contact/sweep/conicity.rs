@@ -10,41 +10,129 @@
 //! ```
 //!
 //! free of e and r₀. Both wheels being alike and the yaw neglected, Δr is odd, so a quarter of the movement does.
+//!
+//! # What a table of Δr does to it
+//!
+//! An error ε of Δr changes the conicity by the share 2/T ∫_0^ŷ (∫_y^ŷ ε) v⁻³ dy, less than the largest share
+//! ∫_y^ŷ ε/∫_y^ŷ Δr over y. So not Δr has to be right, but its integrals: bends of micrometres do not count, nor where in
+//! a cell of 1e-6 mm the contact hops.
+//!
+//! Δr is continuous but for hops: displacements at which two places of one side touch at once, and the rolling radius
+//! jumps from that of one to that of the other. A hop is the root of the difference of two gaps. A search near it returns
+//! both, and how fast they close; one or two searches place it.
 
-use super::rolling_radius_difference;
-use crate::contact::search::wheelset::{Roll, WheelsetOnTrack, WheelsetSearch};
+mod branches;
+mod movement;
+mod refine;
+#[cfg(test)]
+mod tests;
+
+use branches::Searched;
+use movement::{Movement, Quarter};
+use refine::{Table, most_searches};
+
+use crate::contact::search::wheelset::{Roll, WheelsetOnTrack};
 use crate::error::{Error, Result, finite};
 
-/// Widest cell of the table of Δr \[mm\], as EN 15302 has it.
-const WIDEST: f64 = 0.1;
+/// Relative accuracy that is asked of a conicity.
+pub const ACCURACY: f64 = 1e-4;
 
-/// Cells over which Δr bends by more than this share of a millimetre are halved …
-const BEND: f64 = 2e-5;
+/// How often the table is refined to a quarter of the influence before, while the estimated error asks for it. Amplitudes at
+/// which the movement barely comes back are never accurate; they are not to use up all searches of the others.
+const ROUNDS: u32 = 4;
 
-/// … down to this width \[mm\]: there Δr jumps, and the place of the jump has this error.
-const NARROWEST: f64 = 1e-6;
+/// Points in √(y − y_k) of a cell at which T is tabulated: Chebyshev's on \[0, 1\].
+const POINTS: [f64; 5] = [
+    0.024_471_741_852_423_234,
+    0.206_107_373_853_763_43,
+    0.5,
+    0.793_892_626_146_236_5,
+    0.975_528_258_147_576_8,
+];
+
+/// … and one between them, at which the interpolant has to agree with T to this share, a hundredth of [`ACCURACY`].
+const BETWEEN: f64 = 0.35;
+/// See [`BETWEEN`].
+const AGREEMENT: f64 = 1e-2 * ACCURACY;
 
 /// The equivalent conicity of a wheelset on its track over the lateral amplitude.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Conicity {
-    /// Displacements y ≥ 0 \[mm\], ascending from 0.
-    y: Vec<f64>,
-    /// Δr(y) \[mm\].
-    delta_r: Vec<f64>,
-    /// 2 ∫_0^y Δr \[mm²\].
-    energy: Vec<f64>,
+    movement: Movement,
+    /// Cell by cell, T as a polynomial; none where it is no such curve.
+    fits: Vec<Option<Fit>>,
+    searches: usize,
+}
+
+/// An equivalent conicity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Equivalent {
+    /// tan γ_e \[1\].
+    pub conicity: f64,
+    /// Its estimated relative error \[1\]: of Δr's table, as if the errors of its cells were independent.
+    pub error: f64,
+}
+
+/// Why there is no equivalent conicity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NoConicity {
+    /// Nobody asked for it.
+    NotAsked,
+    /// The roll is given: Δr is not odd.
+    GivenRoll,
+    /// A displacement of 0 is no amplitude.
+    NoAmplitude,
+    /// The amplitude is beyond the table, which ends at the amplitude it was made for, or where the wheelset leaves its
+    /// track.
+    OffTrack,
+    /// The movement does not come back through 0: Δr does not restore there, or turns it back on the way.
+    NotRestoring,
+}
+
+/// T over one cell, in Newton's form in s = √((y − y_k)/(y_(k+1) − y_k)): beyond a jump of Δr T grows with s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Fit {
+    differences: [f64; POINTS.len()],
+    /// Largest relative error of T.
+    error: f64,
+}
+
+impl Equivalent {
+    /// Whether the estimated error is within [`ACCURACY`].
+    pub fn converged(&self) -> bool {
+        self.error <= ACCURACY
+    }
+
+    fn of(quarter: Quarter) -> Self {
+        let conicity = std::f64::consts::PI.powi(2) / (8.0 * quarter.time * quarter.time);
+        Self { conicity, error: 2.0 * quarter.error }
+    }
 }
 
 impl Conicity {
     /// Tabulates Δr up to the largest amplitude ŷ \[mm\]; the table ends early where the wheelset leaves the track.
     ///
     /// `roll`: [`Roll::Neglect`] is the standard's convention; [`Roll::Solve`] the exact geometry.
-    /// Accuracy: 1e-4 of the conicity, and 1e-6 mm in the places where Δr jumps.
-    /// Cost: some hundred searches.
+    /// Accuracy: 1e-4 of the conicity, or [`Equivalent::error`] says what was reached.
+    /// Cost: at most [`Conicity::most_searches`], of which a drawn pair takes a tenth; every search of a rolling wheelset
+    /// solves its roll.
     ///
     /// # Errors
     /// An amplitude that is not a positive number; a given roll, at which Δr is not odd.
     pub fn new(system: &WheelsetOnTrack, amplitude: f64, roll: Roll) -> Result<Self> {
+        Self::told(system, amplitude, roll, &mut |_, _| {})
+    }
+
+    /// Does what [`Conicity::new`] does, and tells `progress` how many searches are done, and how many there are at most.
+    ///
+    /// # Errors
+    /// Those of [`Conicity::new`].
+    pub fn told(
+        system: &WheelsetOnTrack,
+        amplitude: f64,
+        roll: Roll,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<Self> {
         if finite("conicity: amplitude", amplitude)? <= 0.0 {
             let found = amplitude.to_string();
             return Err(Error::new("conicity: amplitude", found, "a positive number", "give it in mm"));
@@ -53,131 +141,93 @@ impl Conicity {
             let expected = "roll solved or neglected";
             return Err(Error::new("conicity: roll", angle.to_string(), expected, "leave conicity out"));
         }
-        let mut table = Self { y: vec![0.0], delta_r: vec![0.0], energy: vec![0.0] };
-        let mut search = system.search();
-        let cells = (amplitude / WIDEST).ceil();
-        let mut last = [0.0, 0.0];
-        for k in 1..=cells as usize {
-            let y = amplitude * k as f64 / cells;
-            let Some(value) = rolling_radius_difference(&mut search, y, roll)? else { break };
-            table.refine(&mut search, roll, last, [y, value])?;
-            last = [y, value];
-        }
-        Ok(table)
+        let mut searched = Searched::new(system, roll);
+        let table = Table::new(|y, sides| searched.at(y, sides), amplitude, ACCURACY)?;
+        Self::refined(table, progress)
     }
 
-    /// Adds the cell from `a` to `b` (y, Δr), halved where Δr is not straight.
-    fn refine(&mut self, search: &mut WheelsetSearch, roll: Roll, a: [f64; 2], b: [f64; 2]) -> Result<()> {
-        let middle = a[0] + (b[0] - a[0]) / 2.0;
-        if let Some(value) = rolling_radius_difference(search, middle, roll)? {
-            let bend = (value - (a[1] + b[1]) / 2.0).abs();
-            let halve = bend > BEND && b[0] - a[0] > NARROWEST;
-            if halve {
-                self.refine(search, roll, a, [middle, value])?;
-                return self.refine(search, roll, [middle, value], b);
-            }
-        }
-        self.push(b);
-        Ok(())
+    /// The most searches that a table up to an amplitude \[mm\] takes: 30 for every tenth of a millimetre.
+    pub fn most_searches(amplitude: f64) -> usize {
+        most_searches(amplitude, ACCURACY)
     }
 
-    fn push(&mut self, [y, value]: [f64; 2]) {
-        let last = self.y.len() - 1;
-        let energy = self.energy[last] + (y - self.y[last]) * (self.delta_r[last] + value);
-        self.y.push(y);
-        self.delta_r.push(value);
-        self.energy.push(energy);
+    /// How many searches the table took.
+    pub fn searches(&self) -> usize {
+        self.searches
     }
 
-    /// tan γ_e at the amplitude |y|; `None` at 0, beyond the table, and where the movement does not come back
-    /// (Δr does not restore).
+    /// tan γ_e at the amplitude |y| \[mm\], or why there is none.
     ///
-    /// Method: Δr straight between the table's displacements, the movement over each cell in closed form.
-    pub fn at(&self, y: f64) -> Option<f64> {
+    /// Method: Δr straight between the table's displacements; T of such a Δr as a polynomial over each cell, within 1e-6 of
+    /// what crossing all cells gives, or that itself. Cost: some ten nanoseconds, or a microsecond.
+    ///
+    /// # Errors
+    /// 0; amplitudes beyond the table; movements that do not come back.
+    pub fn at(&self, y: f64) -> std::result::Result<Equivalent, NoConicity> {
         let amplitude = y.abs();
-        let above = self.y.partition_point(|&y| y < amplitude);
-        if above == 0 || above >= self.y.len() {
-            return None;
+        if amplitude == 0.0 {
+            return Err(NoConicity::NoAmplitude);
         }
-        let below = above - 1;
-        let share = (amplitude - self.y[below]) / (self.y[above] - self.y[below]);
-        let value = self.delta_r[below] + share * (self.delta_r[above] - self.delta_r[below]);
-        let total = self.energy[below] + (amplitude - self.y[below]) * (self.delta_r[below] + value);
-        // From the turning point, where v = 0, inwards.
-        let (mut outer, mut force, mut speed, mut time) = (amplitude, value, 0.0, 0.0);
-        for k in (0..=below).rev() {
-            let left = total - self.energy[k];
-            if left <= 0.0 {
-                return None;
+        let cell = self.movement.cell(amplitude).ok_or(NoConicity::OffTrack)?;
+        let quarter = match &self.fits[cell] {
+            Some(fit) => Some(fit.at(share(self.movement.ends(cell), amplitude))),
+            None => self.movement.quarter(cell, amplitude),
+        };
+        quarter.map(Equivalent::of).ok_or(NoConicity::NotRestoring)
+    }
+
+    /// Refines the table round by round until all conicities are accurate, or its searches are used up.
+    fn refined<F>(mut table: Table<F>, progress: &mut dyn FnMut(usize, usize)) -> Result<Self>
+    where
+        F: FnMut(f64, &mut branches::Sides) -> Result<bool>,
+    {
+        let mut influence = ACCURACY;
+        let mut rounds = 1..ROUNDS;
+        loop {
+            table.refine(influence, progress)?;
+            let movement = Movement::new(table.knots());
+            let fits: Vec<_> = (0..movement.cells()).map(|cell| Fit::new(&movement, cell)).collect();
+            let [searches, most] = table.searches();
+            let converged = fits.iter().flatten().all(|fit| 2.0 * fit.error <= ACCURACY);
+            if converged || searches >= most || rounds.next().is_none() {
+                return Ok(Self { movement, fits, searches });
             }
-            let inner = left.sqrt();
-            time += crossing([self.y[k], outer], [self.delta_r[k], force], [inner, speed]);
-            (outer, force, speed) = (self.y[k], self.delta_r[k], inner);
+            influence /= 4.0;
         }
-        Some(std::f64::consts::PI.powi(2) / (8.0 * time * time))
     }
 }
 
-/// Time from y0 to y1 under the force Δr, straight between its end values, at the end speeds given: with the stiffness
-/// g, tan(√g T/2) = √g (y1 − y0)/(v0 + v1).
-fn crossing(y: [f64; 2], force: [f64; 2], speed: [f64; 2]) -> f64 {
-    let run = y[1] - y[0];
-    let mean = run / (speed[0] + speed[1]);
-    let stiffness = if run > 0.0 { (force[1] - force[0]) / run } else { 0.0 };
-    let square = stiffness * mean * mean;
-    // The series' next term is below 2e-9 of the first.
-    if square.abs() < 1e-2 {
-        return 2.0 * mean * (1.0 - square * (1.0 / 3.0 - square * (0.2 - square / 7.0)));
-    }
-    let root = square.abs().sqrt();
-    2.0 * mean * if square > 0.0 { root.atan() } else { root.min(1.0).atanh() } / root
+/// √ of the share of a cell that lies below y.
+fn share([from, to]: [f64; 2], y: f64) -> f64 {
+    ((y - from) / (to - from)).sqrt()
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::placement::Pair;
-    use crate::placement::track::{RailDistance, WheelDistance};
-    use crate::profile::{Profile, standards};
-
-    fn system(rail: &Profile, wheel: &str) -> Result<WheelsetOnTrack> {
-        let pair = Pair::new(rail.clone(), standards::wheel(wheel)?, 460.0)?;
-        WheelsetOnTrack::new(&pair, RailDistance::Spacing(1500.0), WheelDistance::Spacing(1500.0))
+impl Fit {
+    /// T over a cell; none over a jump, and where T is no smooth function of s: close to where the movement does not come
+    /// back.
+    fn new(movement: &Movement, cell: usize) -> Option<Self> {
+        let [from, to] = movement.ends(cell);
+        let at = |s: f64| {
+            let y = from + (to - from) * s * s;
+            (y > from).then(|| movement.quarter(cell, y)).flatten()
+        };
+        let (mut differences, mut error) = ([0.0; POINTS.len()], 0f64);
+        for (value, s) in differences.iter_mut().zip(POINTS) {
+            let quarter = at(s)?;
+            (*value, error) = (quarter.time, error.max(quarter.error));
+        }
+        for order in 1..POINTS.len() {
+            for k in (order..POINTS.len()).rev() {
+                differences[k] = (differences[k] - differences[k - 1]) / (POINTS[k] - POINTS[k - order]);
+            }
+        }
+        let fit = Self { differences, error };
+        let exact = at(BETWEEN)?.time;
+        ((fit.at(BETWEEN).time - exact).abs() <= AGREEMENT * exact).then_some(fit)
     }
 
-    #[test]
-    fn a_cone_has_its_own_conicity() -> Result<()> {
-        let system = system(&standards::rail("60E1")?, "cone-1:20")?;
-        let conicity = Conicity::new(&system, 4.0, Roll::Neglect)?;
-        for y in [0.03, 0.5, -1.0, 3.999] {
-            let found = conicity.at(y).unwrap_or(f64::NAN);
-            assert!((found - 0.05).abs() < 1e-9, "{y}: {found}");
-        }
-        assert_eq!(conicity.at(0.0), None);
-        assert_eq!(conicity.at(4.5), None);
-        Ok(())
-    }
-
-    #[test]
-    fn wheel_a_of_en_15302_has_its_published_conicity() -> Result<()> {
-        let (sin, cos) = 0.05f64.sin_cos();
-        let rail = standards::rail("UIC60")?.rotated(cos, sin).shifted(2.60264, 0.14155);
-        let system = system(&rail, "EN15302-A")?;
-        let conicity = Conicity::new(&system, 8.0, Roll::Neglect)?;
-        // Annex E, case A/A/A, as reproduced by a public benchmark program.
-        let table = [
-            (1.0, 0.125),
-            (2.0, 0.155),
-            (3.0, 0.188),
-            (4.0, 0.216),
-            (5.0, 0.254),
-            (6.0, 0.303),
-            (7.0, 0.505),
-        ];
-        for (y, expected) in table {
-            let found = conicity.at(y).unwrap_or(f64::NAN);
-            assert!((found - expected).abs() < 6e-4, "{y}: {found} is not {expected}");
-        }
-        Ok(())
+    fn at(&self, s: f64) -> Quarter {
+        let terms = self.differences.iter().zip(POINTS).rev();
+        Quarter { time: terms.fold(0.0, |sum, (c, point)| sum * (s - point) + c), error: self.error }
     }
 }

@@ -1,0 +1,242 @@
+//! The movement of a wheelset under a force Δr that is straight between displacements: how long a quarter of it takes.
+//!
+//! With E(y) = 2 ∫_0^y Δr the speed at y is v = √(E(ŷ) − E(y)), and T(ŷ) = ∫_0^ŷ dy/v. Near the turning point ŷ the
+//! cells are crossed one by one, in closed form. Far from it, where v² hardly varies, whole blocks of cells are: with E
+//! within c ± r there and d = E(ŷ) − c, 1/v = d^(−1/2) Σ_j C_j ((E − c)/d)^j, so that the moments ∫ (E − c)^j dy,
+//! which do not depend on ŷ, give the block's time.
+
+/// Terms of the series of 1/√(1 − t).
+const TERMS: usize = 16;
+
+/// Largest |t| of the series: its next term is then below 4e-10 of the block's time.
+const FAR: f64 = 1.0 / 3.0;
+
+/// Cells of the smallest blocks: crossing so many costs as much as a series.
+const SMALLEST: usize = 8;
+
+/// Nodes and weights of Gauss and Legendre's rule with 8 points on \[−1, 1\], half of them: exact for moments up to the
+/// seventh, and for the others of cells within a block, whose energy varies less than the block's, to 1e-9.
+const GAUSS: [[f64; 2]; 4] = [
+    [0.183_434_642_495_649_8, 0.362_683_783_378_362],
+    [0.525_532_409_916_329, 0.313_706_645_877_887_3],
+    [0.796_666_477_413_626_7, 0.222_381_034_453_374_48],
+    [0.960_289_856_497_536_3, 0.101_228_536_290_376_26],
+];
+
+/// C_j, the coefficients of 1/√(1 − t): C_j = C_(j−1) (2j − 1)/2j.
+const SERIES: [f64; TERMS] = {
+    let mut c = [1.0; TERMS];
+    let mut j = 1;
+    while j < TERMS {
+        c[j] = c[j - 1] * (2 * j - 1) as f64 / (2 * j) as f64;
+        j += 1;
+    }
+    c
+};
+
+/// A displacement, and Δr there; a jump is two of the same displacement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Knot {
+    /// y \[mm\].
+    pub y: f64,
+    /// Δr \[mm\].
+    pub force: f64,
+    /// By how much ∫ Δr over the cell that ends here may be wrong \[mm²\].
+    pub defect: f64,
+}
+
+/// Δr over \[0, ŷ_max\], prepared for any amplitude.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Movement {
+    knots: Vec<Knot>,
+    /// E at the knots \[mm²\].
+    energy: Vec<f64>,
+    /// Sum of the squares of the defects up to the knots: errors of cells are independent.
+    squares: Vec<f64>,
+    /// A heap: block k consists of 2k and 2k + 1, the last half are the smallest.
+    blocks: Vec<Block>,
+}
+
+/// The time of a quarter of the movement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Quarter {
+    /// T \[1\], with Δr as force.
+    pub time: f64,
+    /// Estimate of its relative error, from the defects.
+    pub error: f64,
+}
+
+/// Some cells together.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Block {
+    /// c, and r \[mm²\].
+    centre: f64,
+    radius: f64,
+    /// ∫ ((E − c)/r)^j dy \[mm\].
+    moments: [f64; TERMS],
+    /// Square of the sum of defects at its middle \[mm⁴\].
+    squares: f64,
+}
+
+/// What is the same for all cells of one movement, and what they add to.
+struct Sum<'m> {
+    movement: &'m Movement,
+    /// Cells below the one of the turning point.
+    below: usize,
+    /// E(ŷ) \[mm²\], and the sum of squares of the defects up to ŷ.
+    total: f64,
+    squares: f64,
+    time: f64,
+    /// Absolute error of the time.
+    error: f64,
+}
+
+impl Movement {
+    /// Knots in order of y, the first at 0.
+    pub(super) fn new(knots: Vec<Knot>) -> Self {
+        let (mut energy, mut squares) = (vec![0.0], vec![0.0]);
+        for (k, cell) in knots.windows(2).enumerate() {
+            energy.push(energy[k] + (cell[1].y - cell[0].y) * (cell[0].force + cell[1].force));
+            squares.push(squares[k] + cell[1].defect * cell[1].defect);
+        }
+        let mut movement = Self { knots, energy, squares, blocks: Vec::new() };
+        let smallest = movement.cells().div_ceil(SMALLEST).next_power_of_two();
+        movement.blocks = (0..2 * smallest).map(|k| movement.block(k, smallest)).collect();
+        movement
+    }
+
+    /// Number of cells between the knots.
+    pub(super) fn cells(&self) -> usize {
+        self.knots.len().saturating_sub(1)
+    }
+
+    /// Where a cell begins and ends \[mm\].
+    pub(super) fn ends(&self, cell: usize) -> [f64; 2] {
+        [self.knots[cell].y, self.knots[cell + 1].y]
+    }
+
+    /// The cell, wider than nothing, that an amplitude above 0 lies in, its end included; none beyond the last.
+    pub(super) fn cell(&self, amplitude: f64) -> Option<usize> {
+        let above = self.knots.partition_point(|knot| knot.y < amplitude);
+        (above < self.knots.len()).then(|| above.checked_sub(1)).flatten()
+    }
+
+    /// The quarter of the movement with its turning point ŷ in `cell`; `None` where it does not come back through 0.
+    ///
+    /// Accuracy: 1e-9 of the time, for the force as it is. Cost: grows as the logarithm of the number of cells.
+    pub(super) fn quarter(&self, cell: usize, amplitude: f64) -> Option<Quarter> {
+        let [inner, outer] = [self.knots[cell], self.knots[cell + 1]];
+        let run = amplitude - inner.y;
+        let share = run / (outer.y - inner.y);
+        let force = inner.force + share * (outer.force - inner.force);
+        let gained = run * (inner.force + force);
+        if gained <= 0.0 {
+            return None;
+        }
+        let speed = gained.sqrt();
+        let time = crossing(run, [inner.force, force], [speed, 0.0])?;
+        let defect = share * outer.defect;
+        let mut sum = Sum {
+            movement: self,
+            below: cell,
+            total: self.energy[cell] + gained,
+            squares: self.squares[cell] + defect * defect,
+            time,
+            error: time * defect / gained,
+        };
+        sum.add(1, 0, self.blocks.len() / 2 * SMALLEST)?;
+        Some(Quarter { time: sum.time, error: sum.error / sum.time })
+    }
+
+    /// The block at a place of the heap, whose last half begins at `smallest`.
+    fn block(&self, place: usize, smallest: usize) -> Block {
+        let depth = place.max(1).ilog2();
+        let cells = (smallest >> depth) * SMALLEST;
+        let first = ((place - (1 << depth).min(place)) * cells).min(self.cells());
+        let last = (first + cells).min(self.cells());
+        let energies = self.energy[first..=last].iter();
+        let (low, high) =
+            energies.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &e| (low.min(e), high.max(e)));
+        let (centre, radius) = (low + (high - low) / 2.0, (high - low) / 2.0);
+        let mut moments = [0.0; TERMS];
+        for k in first..last {
+            self.add_moments(k, centre, radius, &mut moments);
+        }
+        Block { centre, radius, moments, squares: self.squares[first + (last - first) / 2] }
+    }
+
+    fn add_moments(&self, cell: usize, centre: f64, radius: f64, moments: &mut [f64; TERMS]) {
+        let [inner, outer] = [self.knots[cell], self.knots[cell + 1]];
+        let half = (outer.y - inner.y) / 2.0;
+        for [node, weight] in GAUSS.iter().flat_map(|&[node, weight]| [[node, weight], [-node, weight]]) {
+            let share = (1.0 + node) / 2.0;
+            let force = inner.force + share * (outer.force - inner.force);
+            let energy = self.energy[cell] + 2.0 * half * share * (inner.force + force);
+            let t = if radius > 0.0 { (energy - centre) / radius } else { 0.0 };
+            let mut term = half * weight;
+            for moment in moments.iter_mut() {
+                *moment += term;
+                term *= t;
+            }
+        }
+    }
+}
+
+impl Sum<'_> {
+    /// Adds the cells of a block of so many, as far as they lie below the turning point's; `None` where the speed comes
+    /// to nothing.
+    fn add(&mut self, place: usize, first: usize, cells: usize) -> Option<()> {
+        let last = (first + cells).min(self.below);
+        if first >= last {
+            return Some(());
+        }
+        let movement = self.movement;
+        let block = &movement.blocks[place];
+        let depth = self.total - block.centre;
+        let whole = first + cells <= self.below;
+        if whole && block.radius <= FAR * depth {
+            let t = block.radius / depth;
+            let terms = SERIES.iter().zip(&block.moments).rev();
+            let series = terms.fold(0.0, |sum: f64, (c, moment)| sum * t + c * moment);
+            let speed = depth.sqrt();
+            self.time += series / speed;
+            self.error += block.moments[0] * (self.squares - block.squares).max(0.0).sqrt() / (depth * speed);
+            return Some(());
+        }
+        if cells > SMALLEST {
+            self.add(2 * place, first, cells / 2)?;
+            return self.add(2 * place + 1, first + cells / 2, cells / 2);
+        }
+        let mut inner = self.speed(first)?;
+        for k in first..last {
+            let outer = self.speed(k + 1)?;
+            let [from, to] = [movement.knots[k], movement.knots[k + 1]];
+            let time = crossing(to.y - from.y, [from.force, to.force], [inner, outer])?;
+            self.time += time;
+            self.error += time * (self.squares - movement.squares[k]).max(0.0).sqrt() / (inner * inner);
+            inner = outer;
+        }
+        Some(())
+    }
+
+    fn speed(&self, knot: usize) -> Option<f64> {
+        let square = self.total - self.movement.energy[knot];
+        (square > 0.0).then(|| square.sqrt())
+    }
+}
+
+/// Time over a run under a force straight between its end values, at the end speeds given: with the stiffness g,
+/// tan(√g T/2) = √g run/(v0 + v1). `None` where a force outwards (g < 0) turns the movement back within the run.
+fn crossing(run: f64, force: [f64; 2], speed: [f64; 2]) -> Option<f64> {
+    let mean = run / (speed[0] + speed[1]);
+    let stiffness = if run > 0.0 { (force[1] - force[0]) / run } else { 0.0 };
+    let square = stiffness * mean * mean;
+    // The series' next term is below 2e-11 of the first.
+    if square.abs() < 1e-2 {
+        let series = 1.0 / 3.0 - square * (0.2 - square * (1.0 / 7.0 - square / 9.0));
+        return Some(2.0 * mean * (1.0 - square * series));
+    }
+    let root = square.abs().sqrt();
+    let angle = if square > 0.0 { root.atan() } else { (root < 1.0).then(|| root.atanh())? };
+    Some(2.0 * mean * angle / root)
+}
