@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 
 use rayon::prelude::*;
 
+use super::random::Random;
 use crate::contact::hertz::{Elastic, curvatures, effective_modulus};
 use crate::contact::search::{Pose, ProfilePair, Selection};
 use crate::error::{Error, Result};
@@ -129,13 +130,13 @@ impl Drawn {
 
     /// Points every `spacing` mm of arc length with noise \[µm\] across.
     fn points(&self, spacing: f64, noise: f64) -> Vec<[f64; 2]> {
-        let mut random = Normal(SEED ^ self.profile.name.len() as u64);
+        let mut random = Random::new(SEED ^ self.profile.name.len() as u64);
         let mut next = 0.0;
         let mut out = Vec::new();
         for Mark { s, station, .. } in &self.fine {
             if *s >= next {
                 next += spacing;
-                let off = 1e-3 * noise * random.next();
+                let off = 1e-3 * noise * random.normal();
                 out.push([station.x - off * station.sin, station.z + off * station.cos]);
             }
         }
@@ -263,25 +264,6 @@ fn inside(placement: &Placement, extent: &Window) -> Vec<[f64; 3]> {
 fn pressure(placement: &Placement) -> Option<f64> {
     let modulus = effective_modulus(&STEEL, &STEEL);
     curvatures(placement).under_load(LOAD, modulus).map(|ellipse| ellipse.pressure_n_per_mm2)
-}
-
-/// Normal deviates: SplitMix64 and Box–Muller.
-struct Normal(u64);
-
-impl Normal {
-    fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        // In (0, 1]: the logarithm of 0 is none.
-        (((z ^ (z >> 31)) >> 11) as f64 + 1.0) / (1u64 << 53) as f64
-    }
-
-    fn next(&mut self) -> f64 {
-        let (radius, turn) = ((-2.0 * self.uniform().ln()).sqrt(), std::f64::consts::TAU * self.uniform());
-        radius * turn.cos()
-    }
 }
 
 /// All rows: these distances of the points \[mm\] × 4 noises × 5 curves, on all threads.
