@@ -1,7 +1,11 @@
-//! Background: conventions, the numerics with their derivation, the Report's errata, sweeps, clients, references.
+//! Background: conventions, measured files, the numerics with their derivation, the Report's errata, sweeps, clients,
+//! references.
 
 #[doc = include_str!("conventions.md")]
 pub mod conventions {}
+
+#[doc = include_str!("measured-files.md")]
+pub mod measured_files {}
 
 #[doc = include_str!("numerics.md")]
 pub mod numerics {}

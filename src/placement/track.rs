@@ -7,7 +7,8 @@
 //! `docs::conventions`.
 
 use crate::error::{Error, Result, finite};
-use crate::profile::{Branch, Profile, Section, Segment, Side, Station};
+use crate::profile::trace::trace;
+use crate::profile::{Branch, Profile, Section, Segment, Side, Station, last_groove};
 
 /// Where the rails are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,14 +59,15 @@ pub struct Wheelset {
 }
 
 impl Track {
-    /// The track of a right-hand rail profile as placed (inclined), and its mirror image.
+    /// The track of a right-hand rail profile as placed (inclined), and its mirror image. Top of rail and gauge are those
+    /// of the head that wheels run on: of a grooved rail the one at the field side, not the keeper.
     ///
     /// # Errors
     /// Distances that are not positive; a gauge height within which the head has no inner face: a profile that ends
     /// above it and is not vertical there.
     pub fn new(rail: &Profile, distance: RailDistance) -> Result<Self> {
-        let section = Section::own_axes(rail, Side::Rail);
-        let top = highest(&section);
+        let head = RunningHead::of(rail);
+        let top = head.highest();
         if !top.is_finite() {
             return Err(Error::new(&rail.name, "no surface", "a rail head", "reverse or mirror the profile"));
         }
@@ -77,7 +79,7 @@ impl Track {
                     let advice = "give the depth below the top of rail as a positive number";
                     return Err(Error::new("track: gauge_height", height.to_string(), "0 or more", advice));
                 }
-                gauge / 2.0 - gauge_face(rail, &section, top, height)?
+                gauge / 2.0 - gauge_face(rail, &head, top, height)?
             }
         };
         Ok(Self { rail_x, rail_z: -top })
@@ -112,13 +114,39 @@ fn positive(place: &str, value: f64) -> Result<f64> {
 /// Halvings after which an undecided stretch is taken as it is: 2⁻⁵⁰ of it is below rounding.
 const DEEPEST: u32 = 50;
 
-/// Greatest height of a section.
-fn highest(section: &Section) -> f64 {
-    let heights = section.pieces.iter().map(|piece| {
-        let branch = &section.branches[piece.branch];
-        summit(branch, piece.xi, DEEPEST)
-    });
-    heights.fold(f64::NEG_INFINITY, f64::max)
+/// Distance \[mm\] of the marks that tell a groove, some 40 mm wide, from a head.
+const GROOVE_MARKS: f64 = 1.0;
+
+/// The head that wheels run on.
+struct RunningHead {
+    section: Section,
+    /// Its least abscissa \[mm\], the bottom of a groove; −∞ for all of the profile.
+    from: f64,
+}
+
+impl RunningHead {
+    fn of(rail: &Profile) -> Self {
+        let marks = trace(rail, GROOVE_MARKS);
+        let heights: Vec<f64> = marks.iter().map(|mark| mark.station.z).collect();
+        let from = last_groove(&heights).map_or(f64::NEG_INFINITY, |bottom| marks[bottom].station.x);
+        Self { section: Section::own_axes(rail, Side::Rail), from }
+    }
+
+    /// Branches with the intervals on which they are the head's surface, in order of x.
+    fn stretches(&self) -> impl Iterator<Item = (&Branch, [f64; 2])> {
+        let inside = self.section.pieces.iter().filter(|piece| piece.xi[1] > self.from);
+        inside.map(|piece| (&self.section.branches[piece.branch], [piece.xi[0].max(self.from), piece.xi[1]]))
+    }
+
+    /// Greatest height.
+    fn highest(&self) -> f64 {
+        self.stretches().map(|(branch, xi)| summit(branch, xi, DEEPEST)).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Least abscissa where the head is at least `level` high.
+    fn innermost(&self, level: f64) -> Option<f64> {
+        self.stretches().find_map(|(branch, xi)| first_at_level(branch, xi, level, DEEPEST))
+    }
 }
 
 /// Greatest height of a branch over \[a, b\].
@@ -140,11 +168,11 @@ fn summit(branch: &Branch, [a, b]: [f64; 2], depth: u32) -> f64 {
 const VERTICAL: f64 = 1e-6;
 
 /// Abscissa \[mm\] of the innermost point of the head within `height` of its top.
-fn gauge_face(rail: &Profile, section: &Section, top: f64, height: f64) -> Result<f64> {
+fn gauge_face(rail: &Profile, head: &RunningHead, top: f64, height: f64) -> Result<f64> {
     // Where the profile ends above the level, the head goes on unseen, further in unless it is vertical there.
-    let end = rail.segments().first().map(Segment::start);
+    let end = rail.segments().first().map(Segment::start).filter(|end| end.x >= head.from);
     let cut = end.filter(|end| end.z > top - height && end.cos > VERTICAL);
-    if let (None, Some(x)) = (cut, innermost(section, top - height)) {
+    if let (None, Some(x)) = (cut, head.innermost(top - height)) {
         return Ok(x);
     }
     let found = match cut {
@@ -160,14 +188,6 @@ fn gauge_face(rail: &Profile, section: &Section, top: f64, height: f64) -> Resul
         expected,
         "give another gauge_height, or more of the profile",
     ))
-}
-
-/// Least abscissa where the section is at least `level` high.
-fn innermost(section: &Section, level: f64) -> Option<f64> {
-    section
-        .pieces
-        .iter()
-        .find_map(|piece| first_at_level(&section.branches[piece.branch], piece.xi, level, DEEPEST))
 }
 
 /// Least abscissa of \[a, b\] where a branch is at least `level` high.
@@ -236,6 +256,29 @@ mod tests {
         let tilt = 40f64.recip().atan();
         assert!((track.rail_z + 300.0 * (1.0 - tilt.cos())).abs() < 1e-12, "{}", track.rail_z);
         assert_eq!(track.rail_x, 750.0);
+        Ok(())
+    }
+
+    #[test]
+    fn a_grooved_rail_is_gauged_at_its_head_however_high_the_keeper() -> Result<()> {
+        let head = standards::rail("60E1")?;
+        let distance = RailDistance::Gauge { gauge: 1435.0, height: 14.0 };
+        let single = Track::new(&head, distance)?;
+        let flank = |end: &Station| end.z > -30.0;
+        let own = head.segments().iter().filter(|s| flank(&s.start()) && flank(&s.end())).cloned();
+        for keeper in [-8.0, 5.0] {
+            let line = |a, b| crate::profile::Arc::line(a, b).map(Segment::arc);
+            let first = own.clone().next().map_or([0.0; 2], |s| [s.start().x, s.start().z]);
+            let mut chain = vec![
+                line([-90.0, keeper], [-78.0, keeper])?,
+                line([-78.0, keeper], [-74.0, -45.0])?,
+                line([-74.0, -45.0], [-40.0, -45.0])?,
+                line([-40.0, -45.0], first)?,
+            ];
+            chain.extend(own.clone());
+            let grooved = Track::new(&Profile::new("grooved", "", chain)?, distance)?;
+            assert_eq!(grooved, single, "keeper at {keeper}");
+        }
         Ok(())
     }
 

@@ -4,6 +4,7 @@
 mod arc;
 pub mod builder;
 pub mod continuity;
+mod groove;
 pub mod measured;
 mod polynomial;
 mod section;
@@ -11,6 +12,7 @@ pub mod standards;
 pub mod trace;
 
 pub use arc::{Arc, Half};
+pub use groove::last_groove;
 pub use polynomial::Polynomial;
 pub use section::{
     ArcBranch, Branch, BranchPoint, BranchPoints, BranchShape, Branches, ONE_JOINT, Piece, PolynomialBranch,

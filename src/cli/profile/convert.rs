@@ -62,7 +62,19 @@ fn points(arguments: &ConvertArguments) -> Result<String> {
             return Err(Error::new(&source.profile().name, "no --side", expected, advice));
         }
     };
+    let points = if format == Format::Simpack { spaced(points) } else { points };
     Ok(write::points(&points, format, side, &source.profile().name))
+}
+
+/// The points that other programs can tell apart; says how many were left out.
+fn spaced(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    let kept = write::spaced(&points);
+    if kept.len() < points.len() {
+        let (left_out, least) = (points.len() - kept.len(), write::LEAST_DISTANCE);
+        let plural = if left_out == 1 { "" } else { "s" };
+        complain(&format!("note: left out, {left_out} point{plural} nearer than {least} mm to another"));
+    }
+    kept
 }
 
 /// A chain file. A spline cannot be one: a measured file without a --curve becomes a chain of arcs.

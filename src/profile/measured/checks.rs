@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::loops;
 use super::options::Unit;
 use super::points::Point;
-use super::shape::{flange_side, has_flange_back, head_up, side_depths, width};
+use super::shape::{gauge_depth, has_flange_back, width};
 use crate::error::{Error, Result};
 use crate::profile::Side;
 
@@ -50,7 +50,7 @@ pub enum Check {
     Gap,
     /// The gauge face of a rail or the flange back of a wheel was not measured.
     MissingSideFace,
-    /// An option turned the profile against what its shape shows.
+    /// The format's definition, which was followed, turned the profile against what its shape shows.
     Orientation,
 }
 
@@ -71,6 +71,11 @@ impl Finding {
     fn new(check: Check, point: &Point, found: impl Into<String>) -> Self {
         let fatal = !matches!(check, Check::Gap | Check::MissingSideFace | Check::Orientation);
         Self { check, fatal, place: point.place(), found: found.into() }
+    }
+
+    /// A definition that the shape contradicts, at the file's first point.
+    pub(super) fn orientation(first: &Point, found: String) -> Self {
+        Self::new(Check::Orientation, first, found)
     }
 
     fn expectation(&self) -> (&'static str, &'static str) {
@@ -123,7 +128,6 @@ pub fn findings(points: &[Point], side: Side, gauge_height: f64) -> Vec<Finding>
     }
     out.extend(gaps(points));
     out.extend(missing_side_face(points, side, gauge_height));
-    out.extend(orientation(points, side));
     out
 }
 
@@ -308,23 +312,12 @@ fn missing_side_face(points: &[Point], side: Side, gauge_height: f64) -> Option<
         Side::Wheel if has_flange_back(points) => return None,
         Side::Wheel => "no back of the flange".to_owned(),
         Side::Rail => {
-            let [left, _] = side_depths(points)?;
-            if left >= gauge_height {
+            let depth = gauge_depth(points);
+            if depth >= gauge_height {
                 return None;
             }
-            format!("a gauge face measured down to {left:.1} of {gauge_height} mm below the top")
+            format!("a gauge face measured down to {depth:.1} of {gauge_height} mm below the top")
         }
     };
     Some(Finding::new(Check::MissingSideFace, first, found))
-}
-
-fn orientation(points: &[Point], side: Side) -> Option<Finding> {
-    let upside_down = head_up(points, side).filter(|(up, _)| !up);
-    let left_hand = if side == Side::Wheel { flange_side(points).filter(|(left, _)| !left) } else { None };
-    let (_, why) = upside_down.or(left_hand)?;
-    Some(Finding::new(
-        Check::Orientation,
-        points.first()?,
-        format!("not an upright right-hand profile: {why}"),
-    ))
 }

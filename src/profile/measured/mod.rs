@@ -5,7 +5,7 @@
 //!                   (miniprof, simpack, columns)  (options)         └ smoothing spline, interpolation, arcs
 //! ```
 //!
-//! Nothing is guessed and nothing repaired in silence: what an option, the format or the shape itself does not
+//! Nothing is guessed and nothing repaired in silence: what an option, the format's definition or else the shape does not
 //! settle is an error that lists the choices, and every decision is in the [`Record`]. No disk access here.
 
 mod biarc;
@@ -124,11 +124,12 @@ fn build(file: &str, read: Points, side: Side, options: &Options) -> Result<Meas
     if elements_alone {
         read.at = elements::points(&read.elements);
     }
-    let transform = place::resolve(&read, side, options)?;
+    let (transform, turned) = place::resolve(&read, side, options)?;
     let mut points = transform.points(&read.at);
     let repairs = repairs::repair(&mut points, &options.repair);
     let findings = checks::findings(&points, side, options.gauge_height());
     checks::reject(&findings)?;
+    let warnings = findings.into_iter().chain(turned).collect();
     let placed: Vec<Element> = read.elements.iter().map(|element| transform.element(element)).collect();
     let (segments, curve) = curve::curve(&points, &placed, options, elements_alone)?;
     let source = format!("{} file {file}", format_title(read.format));
@@ -141,7 +142,7 @@ fn build(file: &str, read: Points, side: Side, options: &Options) -> Result<Meas
         transform,
         already_inclined: options.already_inclined,
         repairs,
-        warnings: findings,
+        warnings,
         curve,
     };
     Ok(Measured { profile, points, record })

@@ -25,8 +25,9 @@ pub const GAUGE_HEIGHT: f64 = 14.0;
 /// Default distance of the taping line from the flange back \[mm\] (EN 13715: 70).
 pub const TAPE_DISTANCE: f64 = 70.0;
 
-/// How a measured file becomes a profile. Everything is optional; what is not given is taken from the file's
-/// format, or from its shape where that proves it, and is an error where neither says.
+/// How a measured file becomes a profile. Everything is optional; what is not given is taken from the definition of the
+/// file's format, or from its shape where the format says nothing and the shape proves it, and is an error where neither
+/// does.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Options {

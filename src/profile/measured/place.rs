@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use super::Format;
-use super::checks::reject_width;
+use super::checks::{Finding, reject_width};
 use super::options::{NamedOrigin, Options, Origin};
 use super::points::{Element, ElementShape, Point, Points};
-use super::shape::{flange_side, gauge_side, has_flange_back, head_up, side_depths, top};
+use super::shape::{flange_side, gauge_depth, gauge_side, has_flange_back, head_up, running_head, top};
 use crate::error::{Error, Result};
 use crate::profile::Side;
 
@@ -34,10 +34,12 @@ pub struct Transform {
     pub steps: Vec<Step>,
 }
 
-/// What the format's definition says of the axes; see the formats' own pages.
-fn convention(format: Format, side: Side) -> [Option<bool>; 2] {
+/// What the format defines: [whether x = −first, whether z = −second], `None` where it says nothing. The sources are in
+/// `docs/measured-files.md`.
+fn definition(format: Format, side: Side) -> [Option<bool>; 2] {
     match (format, side) {
-        (Format::MiniProf, Side::Rail) => [None, Some(false)],
+        // Instruments and converters write rails with either sign.
+        (Format::MiniProf, Side::Rail) => [None, None],
         (Format::MiniProf, Side::Wheel) => [Some(false), Some(true)],
         (Format::Simpack, _) => [Some(false), Some(true)],
         (Format::Gensys, _) => [Some(true), Some(true)],
@@ -45,13 +47,14 @@ fn convention(format: Format, side: Side) -> [Option<bool>; 2] {
     }
 }
 
-/// The transformation that options, shape and format together give, the shape before the format: a file whose
-/// flange hangs up does so whatever its extension.
+/// The transformation that options, format and shape together give, in this order: an option always holds; else the
+/// format's definition; the shape decides only what the format leaves open. The findings are definitions that the shape
+/// contradicts, with the option that would turn them round: they change nothing.
 ///
 /// # Errors
-/// A body other than the file's own; an orientation that nothing proves, with the choices; an origin that the
-/// points do not reach.
-pub fn resolve(points: &Points, side: Side, options: &Options) -> Result<Transform> {
+/// A body other than the file's own; an orientation that neither says nor the shape proves, with the choices; an origin
+/// that the points do not reach.
+pub fn resolve(points: &Points, side: Side, options: &Options) -> Result<(Transform, Vec<Finding>)> {
     if let Some(body) = points.body.filter(|body| *body != side) {
         let (found, expected) = (format!("a {} profile", name(body)), format!("a {} profile", name(side)));
         return Err(Error::new("type", found, expected, "give the other file"));
@@ -60,24 +63,28 @@ pub fn resolve(points: &Points, side: Side, options: &Options) -> Result<Transfo
     let unit = unit(points, options, &mut transform.steps)?;
     transform.scale = [unit; 2];
     reject_width(&transform.points(&points.at), unit)?;
-    let [mirror, flip] = convention(points.format, side);
-    let flipped = Axis { what: "flip_z", option: options.flip_z, format: points.format, convention: flip };
+    let [mirror, flip] = definition(points.format, side);
+    let mut findings = Vec::new();
+    let flipped = Axis { what: "flip_z", option: options.flip_z, format: points.format, definition: flip };
     let proof = head_up(&transform.points(&points.at), side).map(|(up, why)| (!up, why));
+    findings.extend(flipped.contradiction(proof.as_ref(), &points.at));
     if flipped.decide(proof, side, &mut transform.steps)? {
         transform.scale[1] = -unit;
     }
-    let mirrored = Axis { what: "mirror", option: options.mirror, format: points.format, convention: mirror };
+    let mirrored = Axis { what: "mirror", option: options.mirror, format: points.format, definition: mirror };
     let upright = transform.points(&points.at);
     let proof = match side {
         Side::Rail => gauge_side(&upright),
         Side::Wheel => flange_side(&upright),
     };
-    if mirrored.decide(proof.map(|(left, why)| (!left, why)), side, &mut transform.steps)? {
+    let proof = proof.map(|(left, why)| (!left, why));
+    findings.extend(mirrored.contradiction(proof.as_ref(), &points.at));
+    if mirrored.decide(proof, side, &mut transform.steps)? {
         transform.scale[0] = -unit;
     }
     transform.reverse(&points.at);
     transform.shift_origin(&points.at, side, options)?;
-    Ok(transform)
+    Ok((transform, findings))
 }
 
 fn name(side: Side) -> &'static str {
@@ -107,21 +114,17 @@ struct Axis {
     what: &'static str,
     option: Option<bool>,
     format: Format,
-    convention: Option<bool>,
+    definition: Option<bool>,
 }
 
 impl Axis {
     fn decide(&self, proof: Option<(bool, String)>, side: Side, steps: &mut Vec<Step>) -> Result<bool> {
-        let (turn, because) = match (self.option, proof, self.convention) {
+        let (turn, because) = match (self.option, self.definition, proof) {
             (Some(option), ..) => (option, format!("option `{}`", self.what)),
-            (None, Some((proven, why)), convention) => {
-                let against = convention.is_some_and(|convention| convention != proven);
-                let against = if against { ", against the format's definition" } else { "" };
-                (proven, format!("{why}{against}"))
+            (None, Some(defined), _) => {
+                (defined, format!("definition of the format ({})", self.format.title()))
             }
-            (None, None, Some(convention)) => {
-                (convention, format!("definition of the format ({})", self.format.title()))
-            }
+            (None, None, Some(proof)) => proof,
             (None, None, None) => return Err(self.ambiguous(side)),
         };
         let done = match (self.what, turn) {
@@ -132,6 +135,19 @@ impl Axis {
         };
         steps.push(Step { what: self.what, done: done.into(), because });
         Ok(turn)
+    }
+
+    /// The definition that was followed against what the shape shows; an option is the user's knowledge.
+    fn contradiction(&self, proof: Option<&(bool, String)>, at: &[Point]) -> Option<Finding> {
+        let defined = self.definition.filter(|_| self.option.is_none())?;
+        let (proven, why) = proof.filter(|(proven, _)| *proven != defined)?;
+        let found = format!(
+            "{why}: by that the definition of the format ({}) turns the profile the wrong way; it is kept, `{} = {proven}` \
+             would change it",
+            self.format.title(),
+            self.what
+        );
+        Some(Finding::orientation(at.first()?, found))
     }
 
     fn ambiguous(&self, side: Side) -> Error {
@@ -147,7 +163,7 @@ impl Axis {
                 "at the smaller",
             ),
             (_, Side::Rail) => (
-                "a rail without side faces that show where its foot is",
+                "a rail that does not show where its foot is (no side faces at both ends, no plain crown)",
                 "foot at the larger values of the second axis",
                 "at the smaller",
             ),
@@ -237,11 +253,12 @@ impl Transform {
     }
 }
 
-/// x of the innermost point within `depth` of the top, z of the top.
+/// x of the innermost point of the running head within `depth` of its top, z of the top.
 fn gauge_point(points: &[Point], depth: f64) -> Result<([f64; 2], String)> {
+    let measured = gauge_depth(points);
+    let points = running_head(points);
     let top = top(points);
     let level = top - depth;
-    let measured = side_depths(points).map_or(0.0, |depths| depths[0]);
     if measured < depth {
         let found = format!("a gauge face measured down to {measured:.3} mm below the top");
         let expected = format!("{depth} mm at least");

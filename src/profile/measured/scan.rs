@@ -157,9 +157,10 @@ pub(super) fn unquoted(text: &str) -> &str {
     without('"').or_else(|| without('\'')).unwrap_or(text).trim()
 }
 
-/// At most forty characters of a text, for messages.
+/// At most two hundred characters of a text, for messages: any line of a profile's file, and not all of a file without
+/// line ends.
 pub(super) fn clipped(text: &str) -> String {
-    const LONGEST: usize = 40;
+    const LONGEST: usize = 200;
     let mut out: String = text.chars().take(LONGEST).collect();
     if out.len() < text.len() {
         out.push('…');

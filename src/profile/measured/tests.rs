@@ -108,6 +108,103 @@ fn what_the_file_does_not_prove_is_an_error_with_the_choices() {
     }
 }
 
+/// A rail that lies on its head in a file of each format, with both side faces.
+fn upside_down(format: Format) -> String {
+    let head = [[-36.0, -30.0], [-36.0, -3.0], [0.0, 0.0], [34.0, -3.0], [34.0, -30.0]];
+    write::points(&head.map(|[x, z]| [x, -z]), format, Side::Rail, "on its head")
+}
+
+#[test]
+fn an_option_holds_then_the_definition_and_the_shape_only_where_neither_says() -> Result<()> {
+    let turned = |format: Format, name: &str, flip_z: Option<bool>| {
+        let mirror = matches!(format, Format::MiniProf | Format::Text).then_some(false);
+        let curve = Some(CurveKind::Interpolation);
+        let options = Options { mirror, flip_z, curve, ..Options::default() };
+        profile(name, upside_down(format).as_bytes(), Side::Rail, &options)
+    };
+    // SIMPACK and GENSYS define z: the profile stays on its head, and the finding names the option.
+    for (format, name, sign) in [(Format::Simpack, "a.prr", -1.0), (Format::Gensys, "a.rail", -1.0)] {
+        let found = turned(format, name, None)?;
+        assert_eq!(found.record.transform.scale[1], sign, "{name}");
+        let told = found.record.warnings.iter().filter(|f| f.check == Check::Orientation).collect::<Vec<_>>();
+        assert!(told.len() == 1 && told[0].found.contains("`flip_z = false` would"), "{told:?}");
+        // The user's own word is never argued with, whichever it is.
+        for flip in [false, true] {
+            let given = turned(format, name, Some(flip))?.record;
+            assert!(!given.warnings.iter().any(|f| f.check == Check::Orientation), "{:?}", given.warnings);
+            assert_eq!(given.transform.scale[1], if flip { -1.0 } else { 1.0 });
+        }
+    }
+    // MiniProf and text define no sign for rails: the side faces decide.
+    for (format, name) in [(Format::MiniProf, "a.ban"), (Format::Text, "a.txt")] {
+        assert_eq!(turned(format, name, None)?.record.transform.scale[1], -1.0, "{name}");
+    }
+    Ok(())
+}
+
+#[test]
+fn an_inclined_plane_is_not_mirrored_nor_a_groove_turned() -> Result<()> {
+    let plane: Vec<[f64; 2]> = (-50..=50).map(|k| [f64::from(k), 0.2 * f64::from(k)]).collect();
+    let groove: Vec<[f64; 2]> = (-40..=40)
+        .map(|k| 0.5 * f64::from(k))
+        .map(|x| [x, if x.abs() < 10.0 { -(100.0 - x * x).sqrt() } else { 0.0 }])
+        .collect();
+    for points in [plane, groove] {
+        let text = write::points(&points, Format::Simpack, Side::Rail, "");
+        let found = profile("a.prr", text.as_bytes(), Side::Rail, &Options::default())?;
+        let back: Vec<[f64; 2]> = found.points.iter().map(|p| p.xz()).collect();
+        assert_eq!(back, points);
+        assert!(!found.record.warnings.iter().any(|f| f.check == Check::Orientation));
+        // A text file defines nothing, and neither does its shape.
+        let text = write::points(&points, Format::Text, Side::Rail, "");
+        let error = profile("a.txt", text.as_bytes(), Side::Rail, &Options::default()).err();
+        let error = error.map(|e| e.to_string()).unwrap_or_default();
+        assert!(error.contains("flip_z = true") && error.contains("flip_z = false"), "{error}");
+    }
+    Ok(())
+}
+
+#[test]
+fn simpack_files_have_the_material_to_the_right_of_their_path_and_points_apart() -> Result<()> {
+    for (side, profile) in [(Side::Wheel, standards::wheel("S1002")?), (Side::Rail, standards::rail("60E1")?)]
+    {
+        for step in [0.05, 0.2, 1.7] {
+            let points = write::spaced(&write::sample(&profile, step)?);
+            let text = write::points(&points, Format::Simpack, side, "");
+            assert!(text.contains("inversion      =  0"));
+            let read = Format::Simpack.read(text.as_bytes(), None)?.at;
+            // Where the surface faces the other body the path of a wheel goes to smaller y, that of a rail to larger.
+            let lowest = match side {
+                Side::Wheel => (1..read.len() - 1).max_by(|&a, &b| read[a].z.total_cmp(&read[b].z)),
+                Side::Rail => (1..read.len() - 1).min_by(|&a, &b| read[a].z.total_cmp(&read[b].z)),
+            };
+            let Some(k) = lowest else { unreachable!("points") };
+            assert_eq!(read[k + 1].x < read[k - 1].x, side == Side::Wheel);
+            let near = |pair: &[Point]| checks::distance(&pair[0], &pair[1]) < write::LEAST_DISTANCE;
+            assert!(!read.windows(2).any(near), "{side:?} {step}");
+            let options = Options { curve: Some(CurveKind::Interpolation), ..Options::default() };
+            let name = if side == Side::Wheel { "a.prw" } else { "a.prr" };
+            let back = super::profile(name, text.as_bytes(), side, &options)?;
+            let back: Vec<[f64; 2]> = back.points.iter().map(|p| p.xz()).collect();
+            assert_eq!(back, points, "{side:?} {step}");
+        }
+    }
+    let close = [[0.0, 0.0], [0.005, 0.0], [1.0, 0.0], [1.995, 0.0], [2.0, 0.0]];
+    assert_eq!(write::spaced(&close), [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]);
+    Ok(())
+}
+
+#[test]
+fn the_gauge_point_of_a_grooved_rail_is_on_its_head() -> Result<()> {
+    let rail = "-92 -30\n-92 -1\n-76 -1\n-70 -47\n-40 -47\n-36 -3\n-30 -0.5\n0 0\n34 -1\n34 -30\n";
+    let options = "mirror = false\norigin = 'gauge-point'\ncurve = 'interpolation'";
+    let options = toml::from_str(options).map_err(|e| Error::new("options", e.to_string(), "", ""))?;
+    let found = profile("rail.txt", rail.as_bytes(), Side::Rail, &options)?;
+    // 11 mm of 44 mm down the gauge face, which runs 4 mm out.
+    assert_eq!(found.record.transform.shift, [37.0, 0.0]);
+    Ok(())
+}
+
 #[test]
 fn origins_go_where_they_are_asked() -> Result<()> {
     let gauge = measured("new-style.ban", "mirror = false\norigin = 'gauge-point'\ncurve = 'interpolation'")?;
@@ -373,7 +470,8 @@ fn every_format_gives_back_the_points_it_was_given() -> Result<()> {
             let read = format.read(text.as_bytes(), None)?;
             let mirror = matches!((format, side), (Format::MiniProf, Side::Rail) | (Format::Gensys, _));
             let options = Options { mirror: Some(mirror), ..Options::default() };
-            let transform = place::resolve(&read, side, &options)?;
+            let (transform, findings) = place::resolve(&read, side, &options)?;
+            assert!(findings.is_empty(), "{format:?}: {findings:?}");
             let back: Vec<[f64; 2]> = transform.points(&read.at).iter().map(Point::xz).collect();
             assert_eq!(back, points, "{format:?}");
         }

@@ -53,6 +53,7 @@ fn miniprof(points: &[[f64; 2]], side: Side, name: &str) -> String {
     out + &rows(turned, " ")
 }
 
+/// With the material to the right of the path, as CONTACT wants it: rails from left to right, wheels from right to left.
 fn simpack(points: &[[f64; 2]], side: Side, name: &str) -> String {
     let body = match side {
         Side::Rail => 0,
@@ -82,8 +83,39 @@ fn simpack(points: &[[f64; 2]], side: Side, name: &str) -> String {
         let _ = writeln!(out, "    {key:<14} =  {value}   ! {step}");
     }
     let _ = writeln!(out, "    point.begin");
-    out += &rows(points.iter().map(|[x, z]| [*x, -z]), " ");
+    let turned = points.iter().map(|[x, z]| [*x, -z]);
+    out += &match side {
+        Side::Rail => rows(turned, " "),
+        Side::Wheel => rows(turned.rev(), " "),
+    };
     out + "    point.end\n  spline.end\n"
+}
+
+/// Least distance \[mm\] of neighbours in files for other programs: CONTACT's spline loses whole contacts where points lie
+/// some micrometres apart, and no instrument resolves this.
+pub const LEAST_DISTANCE: f64 = 0.01;
+
+fn near(a: [f64; 2], b: [f64; 2]) -> bool {
+    (a[0] - b[0]).hypot(a[1] - b[1]) < LEAST_DISTANCE
+}
+
+/// The points without those nearer than [`LEAST_DISTANCE`] to the one kept before; the first and the last stay.
+pub fn spaced(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mut out: Vec<[f64; 2]> = Vec::with_capacity(points.len());
+    for &point in points {
+        if !out.last().is_some_and(|&kept| near(kept, point)) {
+            out.push(point);
+        }
+    }
+    if let Some(&last) = points.last() {
+        while out.len() > 1 && out.last().is_some_and(|&kept| kept != last && near(kept, last)) {
+            out.pop();
+        }
+        if out.last() != Some(&last) {
+            out.push(last);
+        }
+    }
+    out
 }
 
 /// Points \[mm\] at most `step` \[mm\] apart along a profile, all joints among them.
@@ -100,8 +132,8 @@ pub fn sample(profile: &Profile, step: f64) -> Result<Vec<[f64; 2]>> {
             Shape::Arc(arc) => along_arc(arc, step)?,
             Shape::Polynomial(polynomial) => along_polynomial(polynomial, step)?,
         };
-        // A joint is one point; the step of a drawing is kept as it is.
-        let joint = out.last().zip(own.first()).is_some_and(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]) < 1e-3);
+        // A joint is one point.
+        let joint = out.last().zip(own.first()).is_some_and(|(a, b)| near(*a, *b));
         out.extend(own.into_iter().skip(usize::from(joint)));
     }
     Ok(out)

@@ -1,0 +1,43 @@
+//! Grooves: which head of a grooved rail, a crossing or a guarded rail the wheels run on.
+
+/// Least depth \[mm\] of a groove under both its tops. Flangeways are 38 mm deep and more; hollow crowns, worn ones too,
+/// stay below 5.
+const LEAST_DEPTH: f64 = 10.0;
+
+/// Index of the bottom of the last groove along a profile's heights \[mm\], in order of x: right of it is the head that
+/// wheels run on, left of it a keeper, check or wing, however high. `None` for a single head.
+///
+/// Cost: one pass.
+pub fn last_groove(heights: &[f64]) -> Option<usize> {
+    let mut top = f64::NEG_INFINITY;
+    let mut bottom = (heights.len(), f64::INFINITY);
+    for (k, &height) in heights.iter().enumerate().rev() {
+        if top - bottom.1 >= LEAST_DEPTH && height - bottom.1 >= LEAST_DEPTH {
+            return Some(bottom.0);
+        }
+        if height > top {
+            (top, bottom) = (height, (k, height));
+        } else if height < bottom.1 {
+            bottom = (k, height);
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_running_head_is_right_of_the_groove_however_high_the_keeper() {
+        for keeper in [-9.0, -2.0, 6.0, 40.0] {
+            let heights = [-30.0, keeper, keeper, -47.0, -46.0, -1.0, 0.0, -1.0, -30.0];
+            assert_eq!(last_groove(&heights), Some(3), "{keeper}");
+        }
+        // A hollow crown, a single head, a step down to a plate, and a wall at the field side.
+        for single in [&[-30.0, -1.0, -4.0, 0.0, -30.0][..], &[-30.0, 0.0, -30.0], &[-30.0, 0.0, -20.0], &[]]
+        {
+            assert_eq!(last_groove(single), None, "{single:?}");
+        }
+    }
+}
