@@ -38,7 +38,8 @@
 //!
 //! # What is guaranteed, and what is not
 //!
-//! Relative error of s below 1e-13 where a point lies over both bodies' contact segments, absolute error below
+//! Relative error of s below 1e-13 where a point lies over both bodies' contact segments (relative to what s is the sum of:
+//! gap, rise across, and under yaw climb along; of s itself where bodies do not overlap), absolute error below
 //! 2e-12 mm (× R_max/300 mm for radii beyond 300 mm) elsewhere, |Δη| ≤ (R/η) × that on the boundary: checked against
 //! 60-digit values on every test run, and against triangle meshes of another library by `wheelrail check`. Not
 //! guaranteed: anything elastic. See [`docs::numerics`] for the formulas and [`docs::errata`] for what differs from

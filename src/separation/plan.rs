@@ -3,7 +3,7 @@
 use super::axis::EtaAxis;
 use super::grid::{Choice, Method};
 use super::rounding::rounding;
-use super::samples::{Samples, difference, largest, thinned};
+use super::samples::{Samples, difference, thinned};
 use super::spectral::{Demand, Spectral};
 use super::strips::{Strip, strips};
 use super::{Evaluator, approximate};
@@ -87,7 +87,7 @@ pub fn plan(
     let grid = Grid { placement, xi, axis, tolerance };
     match forced {
         Some(Method::Spectral) => grid.spectral(&Probe::new(&grid), "asked for by the scene".into()),
-        Some(method) => grid.sampled(method, "asked for by the scene".into()),
+        Some(method) => grid.sampled(method, &Probe::new(&grid), "asked for by the scene".into()),
         None => grid.cheapest(),
     }
 }
@@ -109,7 +109,8 @@ impl Grid<'_> {
         };
         let mut found = BETWEEN_SAMPLES * probe.quadratic + probe.rounding;
         if acceptable(found, probe.rounding) {
-            let plan = self.sampled(Method::Quadratic, format!("cheapest of all, within {tolerance:e} mm"));
+            let plan =
+                self.sampled(Method::Quadratic, &probe, format!("cheapest of all, within {tolerance:e} mm"));
             if acceptable(plan.error, plan.rounding) {
                 return plan;
             }
@@ -123,10 +124,10 @@ impl Grid<'_> {
     }
 
     /// A method that is compared with points one by one.
-    fn sampled(&self, method: Method, reason: String) -> Plan {
+    fn sampled(&self, method: Method, probe: &Probe, reason: String) -> Plan {
         let samples = Samples::new(self.placement, self.xi, self.axis);
         let choice = Choice { method, demand: demand(self.tolerance), coefficients: 1 };
-        let rounding = samples.rounding;
+        let rounding = probe.rounding;
         let error = BETWEEN_SAMPLES * samples.difference(&choice) + rounding;
         Plan { choice, error, rounding, tolerance: self.tolerance, reason, strips: Vec::new() }
     }
@@ -195,7 +196,7 @@ fn places(count: usize, n: usize) -> impl Iterator<Item = usize> {
     (0..n).map(move |k| if n == 1 { 0 } else { k * (count - 1) / (n - 1) })
 }
 
-/// The quadratic form and the size of s at a few places: ends and middle of both axes.
+/// The quadratic form and the size of what s is the sum of at a few places: ends and middle of both axes.
 struct Probe {
     /// Largest error of the quadratic form \[mm\].
     quadratic: f64,
@@ -211,9 +212,9 @@ impl Probe {
         let (mut most, mut quadratic) = (0f64, 0f64);
         for xi in places(xi.len(), PROBED).map(|k| xi[k]) {
             for eta in places(axis.eta.len(), PROBED).map(|k| axis.eta[k]) {
-                let exact = evaluator.separation(xi, eta);
+                let [exact, size] = evaluator.separation_and_size(xi, eta);
                 let form = along * xi * xi + eta * (mixed * xi + across * eta);
-                most = most.max(largest(&[exact]));
+                most = most.max(size);
                 quadratic = nan_max(quadratic, difference(&[form], &[exact]));
             }
         }

@@ -4,27 +4,31 @@ use super::Evaluator;
 use super::axis::EtaAxis;
 use super::column::{WheelSurface, sagitta};
 use crate::placement::Placement;
-use crate::profile::{Piece, Section};
+use crate::profile::{Branch, BranchShape, Piece, Section};
 
-/// Roundings of s over the contact segments: gap, rise, and their interpolation over ξ; under yaw that in powers of η.
-const CONTACT_ROUNDINGS: [f64; 2] = [8.0, 32.0];
+/// Roundings of what s is the sum of: gap, rise, and their interpolation over ξ; under yaw that in powers of η.
+const OWN_ROUNDINGS: [f64; 2] = [16.0, 32.0];
 
-/// … and elsewhere: both bodies' joints are off at once.
-const PLACE_ROUNDINGS: f64 = 2.0;
+/// Beyond the contact segments roundings of the coordinates are added: an angle and a joint of either body, all off at once. Of
+/// 2,700 random scenes one needed 2.6.
+const PLACE_ROUNDINGS: f64 = 4.0;
 
 /// Up to this slope a piece's end counts as it is; at a steeper one, which may be vertical, the nearest column counts.
 const STEEP: f64 = 1.0;
 
-/// Largest rounding error of s \[mm\] over a grid where |s| is at most `largest` \[mm\].
+/// Largest rounding error of s \[mm\] over a grid where the magnitudes of what s is the sum of add up to at most `largest`
+/// \[mm\].
 ///
-/// A few units of the last place of s over the contact segments; elsewhere, of the heights by which joints are placed in the
-/// frame, ζ = Δz cosθ − Δx sinθ, with z_C rounded in Δz, and of the rounded ξ times slope.
+/// A few units of the last place of that; beyond the contact segments also those of the heights by which joints are placed in the
+/// frame, ζ = Δz cosθ − Δx sinθ, with z_C rounded in Δz; of the angle θ_C, off by the rounding of its sine over its cosine, times
+/// the distance from C; and of the rounded ξ and the run to an arc's centre times slope.
 pub fn rounding(placement: &Placement, xi: &[f64], axis: &EtaAxis, largest: f64) -> f64 {
     let bodies = [Reached::of_rail(placement, xi), Reached::of_wheel(placement, xi, axis)];
+    let of_sum = OWN_ROUNDINGS[usize::from(placement.skew != 0.0)] * f64::EPSILON * largest;
     if bodies.iter().all(|body| body.contact) {
-        return CONTACT_ROUNDINGS[usize::from(placement.skew != 0.0)] * f64::EPSILON * largest;
+        return of_sum;
     }
-    PLACE_ROUNDINGS * f64::EPSILON * largest.max(bodies[0].coordinates + bodies[1].coordinates)
+    of_sum + PLACE_ROUNDINGS * f64::EPSILON * (bodies[0].coordinates + bodies[1].coordinates)
 }
 
 /// What of a profile a grid lies over.
@@ -60,8 +64,12 @@ impl Reached {
         let ends = |xi| eta.iter().map(move |&eta| (xi, eta)).map(|(xi, eta)| abscissa(xi, eta));
         let from = ends(first).chain(ends(last)).fold(f64::INFINITY, f64::min);
         let to = ends(first).chain(ends(last)).fold(f64::NEG_INFINITY, f64::max);
-        let (mut height, mut slope) = (0f64, 0f64);
-        for piece in section.pieces_from(from).iter().take_while(|piece| piece.xi[0] <= to) {
+        let curves = reached_pieces(section, [from, to]).all(|piece| is_curve(section, piece));
+        let reach = from.abs().max(to.abs());
+        // Curves are turned into the frame in twice the working precision.
+        let width = if curves { reach } else { reach + section.frame.x.abs() };
+        let (mut height, mut climb) = (0f64, 0f64);
+        for piece in reached_pieces(section, [from, to]) {
             reached.contact &= section.contact == Some(piece.branch);
             let branch = &section.branches[piece.branch];
             for end in [0, 1] {
@@ -74,20 +82,40 @@ impl Reached {
                     (branch.slope_from(point), *zeta)
                 };
                 height = height.max(zeta.abs());
-                if at.abs() <= STEEP {
-                    slope = slope.max(at.abs());
+                let slope = if at.abs() <= STEEP {
+                    at.abs()
                 } else {
-                    slope = eta.iter().fold(slope, |most, &eta| {
+                    eta.iter().fold(0.0, |most, &eta| {
                         let nearest = nearest(piece, end, xi, |xi| abscissa(xi, eta));
                         nearest.map_or(most, |x| branch.chord_slope(x, x).abs().max(most))
-                    });
-                }
+                    })
+                };
+                climb = climb.max((width + run_to_centre(branch, slope)) * slope);
             }
         }
-        let width = from.abs().max(to.abs()) + section.frame.x.abs();
-        reached.coordinates =
-            section.frame.z.abs() + height + (width * slope).max(section.frame.sin.abs() * width);
+        // An arc's angle at C is that of its rounded sine.
+        let sine = section.frame.sin.abs();
+        let turn = if curves { sine } else { sine / section.frame.cos };
+        reached.coordinates = section.frame.z.abs() + height + climb.max(turn * width);
         reached
+    }
+}
+
+/// The pieces that an interval touches.
+fn reached_pieces(section: &Section, [from, to]: [f64; 2]) -> impl Iterator<Item = &Piece> {
+    section.pieces_from(from).iter().take_while(move |piece| piece.xi[0] <= to)
+}
+
+fn is_curve(section: &Section, piece: &Piece) -> bool {
+    matches!(section.branches[piece.branch].shape, BranchShape::Polynomial(_))
+}
+
+/// ξ from a point of an arc with this slope to the centre \[mm\]: the sine of the tangent's angle, which is rounded, times the
+/// radius. None on a line or polynomial.
+fn run_to_centre(branch: &Branch, slope: f64) -> f64 {
+    match &branch.shape {
+        BranchShape::Arc(arc) if arc.radius.is_finite() => arc.radius.abs() * slope / 1f64.hypot(slope),
+        _ => 0.0,
     }
 }
 

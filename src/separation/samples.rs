@@ -3,7 +3,6 @@
 use super::Evaluator;
 use super::axis::EtaAxis;
 use super::grid::Choice;
-use super::rounding::rounding;
 use crate::numerics::nan_max;
 use crate::placement::Placement;
 
@@ -20,8 +19,6 @@ pub(super) struct Samples<'a> {
     xi: Vec<f64>,
     axis: EtaAxis,
     exact: Vec<f64>,
-    /// Rounding error of s \[mm\].
-    pub rounding: f64,
 }
 
 impl<'a> Samples<'a> {
@@ -34,8 +31,7 @@ impl<'a> Samples<'a> {
         for (&xi, out) in columns.iter().zip(exact.chunks_mut(axis.eta.len().max(1))) {
             evaluator.column(xi, &axis.eta, out);
         }
-        let rounding = rounding(placement, xi, whole, largest(&exact));
-        Self { placement, xi: columns, axis, exact, rounding }
+        Self { placement, xi: columns, axis, exact }
     }
 
     /// Largest difference \[mm\] of a method from the point-wise values; NaN where only one of them has a value.
@@ -44,11 +40,6 @@ impl<'a> Samples<'a> {
         choice.fill(self.placement, &self.xi, &self.axis, &mut values);
         difference(&values, &self.exact)
     }
-}
-
-/// Largest magnitude; what is not a number is passed over.
-pub(super) fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |most, value| value.abs().max(most))
 }
 
 /// Largest difference; NaN where only one has a value: a number where there is no surface is as wrong as none where there is one.

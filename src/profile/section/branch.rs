@@ -199,6 +199,9 @@ impl Branch {
             } else {
                 cosine(sin)
             };
+            // From the end that is nearer in angle: often that is the flattest point itself, and often the joint nearest to C.
+            let from_end = ends && (!begins || (sin - end.sin).abs() < (sin - start.sin).abs());
+            let known = if from_end { end } else { start };
             let run = if curvature == 0.0 || sin == known.sin { 0.0 } else { (sin - known.sin) * arc.radius };
             let rise = run * ((known.sin + sin) / (known.cos + cos));
             ArcBranch { anchor: [known.x + run, known.z + rise], sin, cos, radius: arc.radius, curvature }
