@@ -262,10 +262,11 @@ fn entered(line: &impl Inside, upwards: bool) -> Found {
             let begin = first_held([zeta - sign * STEP, zeta], &at);
             before = at(begin).map(|(inside, ..)| (begin, inside)).filter(|_| inside >= 0.0);
         }
-        if let (Some((last, outside)), Some(inside)) = (before, here) {
-            if outside < 0.0 && inside >= 0.0 {
-                return refined(line, [last, zeta], &at);
-            }
+        if let (Some((last, outside)), Some(inside)) = (before, here)
+            && outside < 0.0
+            && inside >= 0.0
+        {
+            return refined(line, [last, zeta], &at);
         }
         before = here.map(|inside| (zeta, inside));
     }
