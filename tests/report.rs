@@ -3,6 +3,7 @@
 
 use wheelrail::accuracy::measurements::{Effort, Measurements, measure};
 use wheelrail::accuracy::page::{FILES, PAGE, excerpt, page, sections};
+use wheelrail::accuracy::rates::Extent;
 use wheelrail::accuracy::reference::{FILES as SCENES, references};
 
 fn small() -> Measurements {
@@ -12,6 +13,8 @@ fn small() -> Measurements {
         growth: vec![10, 20],
         every_pair: 50,
         spacings: vec![2.0],
+        sweeps: Extent { positions: 3, amplitude: 0.2, instruments: vec![] },
+        case_side: 20,
     };
     measure(&effort, &mut |_| {}).expect("a measurement")
 }

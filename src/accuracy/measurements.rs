@@ -7,10 +7,12 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use super::errors::{Errors, compare};
 use super::hard_case::{Outcome, hard_cases};
 use super::measured;
+use super::rates::{Extent, Rate, rates};
 use super::reference::{Reference, references};
 use super::speed::{LEAST_RUNS, Timing, Track, Work, race};
 use super::spline_cost::{SplineCost, spline_costs};
 use super::verification::{Subject, Verified, built_in_pairs, verify};
+use super::whole_case::{RunCost, WholeCase, run_cost, whole_cases};
 use crate::error::{Error, Result};
 use crate::placement::Placement;
 use crate::separation::grid::Method;
@@ -41,10 +43,14 @@ pub struct Effort {
     pub every_pair: usize,
     /// Distances of the points of the measured profiles \[mm\].
     pub spacings: Vec<f64>,
+    /// Sweeps of wheelsets.
+    pub sweeps: Extent,
+    /// n of the n × n grid of whole cases.
+    pub case_side: usize,
 }
 
 impl Effort {
-    /// What `wheelrail report` does: 4 × 10^4 and 4 × 10^6 points, growth up to 10^8; about two minutes, 0.9 GB.
+    /// What `wheelrail report` does: 4 × 10^4 and 4 × 10^6 points, growth up to 10^8; about four minutes, 0.9 GB.
     pub fn full() -> Self {
         Self {
             sides: vec![200, 2000],
@@ -52,6 +58,8 @@ impl Effort {
             growth: vec![100, 316, 1000, 3162, 10_000],
             every_pair: 1,
             spacings: measured::SPACINGS.to_vec(),
+            sweeps: Extent::full(),
+            case_side: 200,
         }
     }
 }
@@ -122,6 +130,12 @@ pub struct Measurements {
     pub threads: Vec<Threads>,
     /// Grids over splines against grids over arcs, one thread.
     pub splines: Vec<SplineCost>,
+    /// Positions of wheelsets a second, one thread.
+    pub rates: Vec<Rate>,
+    /// Cases from first touch to mesh, one thread.
+    pub whole_cases: Vec<WholeCase>,
+    /// What `run` computes for a measured wheelset, one thread; none without measured pairs in [`Effort::sweeps`].
+    pub run: Option<RunCost>,
     /// Hard cases.
     pub hard_cases: Vec<Outcome>,
     /// The check by parry3d's meshes: of the reference scenes, with and without skew, and of the built-in pairs.
@@ -145,6 +159,12 @@ pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measur
     let threads = threads(example, effort)?;
     progress("splines against arcs");
     let splines = one.install(|| spline_costs(&effort.sides, effort.seconds))?;
+    progress("whole cases");
+    let whole_cases = one.install(|| whole_cases(effort.case_side, effort.seconds))?;
+    let measured = !effort.sweeps.instruments.is_empty();
+    let run = measured.then(|| one.install(|| run_cost(effort.seconds))).transpose()?;
+    progress("positions of wheelsets");
+    let rates = one.install(|| rates(&effort.sweeps, effort.seconds))?;
     progress("hard cases");
     let cases = hard_cases()?;
     let hard_cases = cases.iter().map(|case| case.run(&cases)).collect::<Result<_>>()?;
@@ -152,7 +172,19 @@ pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measur
     let verified = verified(&references, effort.every_pair)?;
     progress("measured profiles");
     let evidence = measured::rows(&effort.spacings)?;
-    Ok(Measurements { rows, planning, growth, threads, splines, hard_cases, verified, evidence })
+    Ok(Measurements {
+        rows,
+        planning,
+        growth,
+        threads,
+        splines,
+        rates,
+        whole_cases,
+        run,
+        hard_cases,
+        verified,
+        evidence,
+    })
 }
 
 fn verified(references: &[Reference], every_pair: usize) -> Result<[Vec<Verified>; 2]> {

@@ -3,7 +3,9 @@
 //! [`mod@reference`] reads the 60-digit files, which are part of the program; [`errors`] compares a method with them;
 //! [`speed`] races methods against a plain store of the same array, [`spline_cost`] splines against arcs; [`hard_case`] runs the cases of
 //! `tests/hard_cases`; [`verification`] has parry3d's meshes check them; [`measured`] compares curves through points
-//! with the drawing that the points are from; [`specimen`] makes worn profiles as instruments measure them; [`measurements`] does all of it to a given effort; [`requirements`] judges the ratios;
+//! with the drawing that the points are from; [`specimen`] makes worn profiles as instruments measure them;
+//! [`rates`] counts positions of a wheelset a second over them, [`whole_case`] times a case from first touch to its mesh;
+//! [`measurements`] does all of it to a given effort; [`requirements`] judges the ratios;
 //! [`page`], [`table`] and [`chart`] turn the numbers into Markdown, CSV and SVG. Nothing here touches the disk.
 
 pub mod chart;
@@ -14,6 +16,7 @@ pub mod measured;
 pub mod measurements;
 pub mod page;
 pub mod random;
+pub mod rates;
 pub mod reference;
 pub mod requirements;
 pub mod specimen;
@@ -21,5 +24,6 @@ pub mod speed;
 pub mod spline_cost;
 pub mod table;
 pub mod verification;
+pub mod whole_case;
 
 pub use hard_checks::{BOUNDS, Check};

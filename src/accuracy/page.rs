@@ -1,5 +1,7 @@
 //! The report as a page: a list of sections, each built by one function, and the files beside it.
 
+mod in_use;
+
 use super::chart::{Chart, Series, svg};
 use super::hard_case::Outcome;
 use super::measured;
@@ -29,9 +31,11 @@ pub type Origin = Vec<(&'static str, String)>;
 pub const PAGE: &str = "report.md";
 
 /// All files of a report.
-pub const FILES: [&str; 8] = [
+pub const FILES: [&str; 10] = [
     PAGE,
     "accuracy.csv",
+    "positions.csv",
+    "cases.csv",
     "hard_cases.csv",
     "verification.csv",
     "scaling.csv",
@@ -48,6 +52,8 @@ pub fn sections(m: &Measurements) -> Vec<Section> {
         scenes(m),
         growth(m),
         threads(m),
+        in_use::positions(m),
+        in_use::cases(m),
         hard_cases(m),
         verification(m),
         measured_profiles(m),
@@ -71,9 +77,13 @@ pub fn page(origin: &Origin, sections: &[Section]) -> String {
 pub fn excerpt(m: &Measurements, origin: &Origin) -> String {
     let value = |name: &str| origin.iter().find(|(n, _)| *n == name).map_or("unknown", |(_, v)| v.as_str());
     format!(
-        "{}\nMade by `{}` on {}; {}. One thread; errors over all reference scenes against 60-digit values, relative ones over all \
-         points but C itself: beyond the contact segments only absolute digits are promised.\n",
+        "{}\nErrors over all reference scenes against 60-digit values, relative ones over all points but C itself: beyond the \
+         contact segments only absolute digits are promised.\n\n{}\n{}\n{}\n{}\nMade by `{}` on {}; {}. One thread.\n",
         summary(m),
+        in_use::rate_table(m),
+        in_use::rate_note(m),
+        in_use::case_table(m),
+        in_use::case_note(m),
         value("command"),
         value("processor"),
         value("compiler"),
@@ -319,11 +329,17 @@ fn hard_case(outcome: &Outcome) -> Vec<String> {
 fn measured_profiles(m: &Measurements) -> Section {
     let row = |cost: &SplineCost| {
         let [splines, arcs] = cost.seconds;
-        let figures = [format!("{splines:.2e}"), format!("{arcs:.2e}"), format!("{:.2}", splines / arcs)];
+        let figures = [
+            format!("{splines:.2e}"),
+            format!("{arcs:.2e}"),
+            format!("{:.2}", splines / arcs),
+            format!("{:.2}", cost.nanoseconds()),
+        ];
         [vec![format!("{0} × {0}", cost.side), cost.spacing.to_string()], figures.to_vec()].concat()
     };
     let rows: Vec<Vec<String>> = m.splines.iter().map(row).collect();
-    let head = ["grid", "points every, mm", "splines, s", "arcs, s", "ratio"];
+    let head =
+        ["grid", "points every, mm", "splines, s", "arcs, s", "ratio", "splines with plan, ns a point"];
     plain(
         "Measured profiles",
         format!(

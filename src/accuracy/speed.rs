@@ -9,6 +9,7 @@ use crate::placement::Placement;
 use crate::scene::equal_steps;
 use crate::separation::axis::EtaAxis;
 use crate::separation::grid::Choice;
+use crate::separation::plan::{FULL_PRECISION, plan};
 use crate::separation::values::Values;
 
 /// Runs of one contestant in all its races, at least: three show a disturbed one.
@@ -31,6 +32,8 @@ pub enum Work {
     Store,
     /// The array filled by a method.
     Fill(Choice),
+    /// A method chosen at full precision, and the array filled by it.
+    PlanAndFill,
 }
 
 /// The times of one contestant.
@@ -95,18 +98,27 @@ impl<'a> Track<'a> {
             Work::Fill(choice) => {
                 choice.fill(self.placement, &self.xi, &self.axis, &mut self.out);
             }
+            Work::PlanAndFill => {
+                let mut plan = plan(self.placement, &self.xi, &self.axis, FULL_PRECISION, None);
+                plan.fill(self.placement, &self.xi, &self.axis, &mut self.out);
+            }
         }
         black_box(&mut *self.out);
     }
 
-    /// Time of one run \[s\]: the processor's, which leaves out what other processes took, and on the wall if that is short. To be
-    /// called on a rayon pool of one thread.
+    /// Time of one run \[s\], as [`timed`] has it.
     pub fn timed(&mut self, work: Work) -> f64 {
-        let (start, on_the_wall) = (processor_time(), Instant::now());
-        self.run(work);
-        let on_the_wall = on_the_wall.elapsed().as_secs_f64();
-        (processor_time() - start).max(on_the_wall.min(SHORT))
+        timed(|| self.run(work))
     }
+}
+
+/// Time of some work \[s\]: the processor's, which leaves out what other processes took, and on the wall if that is short. To be
+/// called on a rayon pool of one thread.
+pub fn timed(work: impl FnOnce()) -> f64 {
+    let (start, on_the_wall) = (processor_time(), Instant::now());
+    work();
+    let on_the_wall = on_the_wall.elapsed().as_secs_f64();
+    (processor_time() - start).max(on_the_wall.min(SHORT))
 }
 
 /// Processor time of this thread \[s\].

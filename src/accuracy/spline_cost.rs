@@ -26,6 +26,15 @@ pub struct SplineCost {
     pub spacing: f64,
     /// Best time over splines and over arcs \[s\].
     pub seconds: [f64; 2],
+    /// … and over splines with the choice of the method \[s\].
+    pub with_plan: f64,
+}
+
+impl SplineCost {
+    /// Time a point over splines, with the choice of the method \[ns\].
+    pub fn nanoseconds(&self) -> f64 {
+        1e9 * self.with_plan / (self.side * self.side) as f64
+    }
 }
 
 /// Grids with n × n points for every n, each contestant at least `seconds` long; on one thread.
@@ -47,9 +56,13 @@ pub fn spline_costs(sides: &[usize], seconds: f64) -> Result<Vec<SplineCost>> {
                 let (xi, axis) = (tracks[k].xi(), tracks[k].axis());
                 Work::Fill(plan(pair[k], xi, axis, FULL_PRECISION, None).choice)
             });
-            let mut timings = [Timing::NONE; 2];
-            race(&mut timings, seconds, LEAST_RUNS, |k| tracks[k].timed(works[k]));
-            costs.push(SplineCost { side, spacing, seconds: timings.map(|timing| timing.best) });
+            let mut timings = [Timing::NONE; 3];
+            race(&mut timings, seconds, LEAST_RUNS, |k| match k {
+                0 | 1 => tracks[k].timed(works[k]),
+                _ => tracks[0].timed(Work::PlanAndFill),
+            });
+            let [splines, arcs, with_plan] = timings.map(|timing| timing.best);
+            costs.push(SplineCost { side, spacing, seconds: [splines, arcs], with_plan });
         }
     }
     Ok(costs)

@@ -4,7 +4,9 @@ use std::fmt::Write;
 
 use super::hard_case::{METHODS, Outcome};
 use super::measurements::{Growth, Row};
+use super::rates::Rate;
 use super::verification::Verified;
+use super::whole_case::{PARTS, WholeCase};
 use crate::check::Floor;
 
 /// accuracy.csv. Lengths in mm, times in s; a method that misses a surface, or finds one where there is none, has
@@ -102,6 +104,41 @@ pub fn growth_csv(rows: &[Growth]) -> String {
     let mut out = String::from("points,spectral_seconds,store_seconds\n");
     for row in rows {
         let _ = writeln!(out, "{},{:.4e},{:.4e}", row.points, row.spectral, row.store);
+    }
+    out
+}
+
+/// positions.csv: rates of sweeps, with the table of conicity.
+pub fn positions_csv(rows: &[Rate]) -> String {
+    let mut out = String::from(
+        "pair,measured,motion,positions,with_contact,seconds,positions_per_s,conicity_seconds,conicity_searches,\
+         conicity_error\n",
+    );
+    for row in rows {
+        let [positions, found] = row.positions;
+        let _ = writeln!(
+            out,
+            "{},{},{},{positions},{found},{:.4e},{:.0},{:.4e},{},{:.1e}",
+            quoted(&row.pair),
+            row.measured,
+            quoted(row.motion.name()),
+            row.seconds,
+            row.rate(),
+            row.table_seconds,
+            row.searches,
+            row.conicity_error
+        );
+    }
+    out
+}
+
+/// cases.csv: times of whole cases, part by part \[s\].
+pub fn cases_csv(rows: &[WholeCase]) -> String {
+    let mut out = format!("pair,points,{}_s,total_s\n", PARTS.join("_s,"));
+    for row in rows {
+        let seconds: Vec<String> =
+            row.seconds.iter().chain([&row.total()]).map(|seconds| format!("{seconds:.3e}")).collect();
+        let _ = writeln!(out, "{},{},{}", row.pair, row.side * row.side, seconds.join(","));
     }
     out
 }

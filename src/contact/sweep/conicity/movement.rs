@@ -135,7 +135,8 @@ impl Movement {
         }
         let speed = gained.sqrt();
         let time = crossing(run, [inner.force, force], [speed, 0.0])?;
-        let defect = share * outer.defect;
+        // The table is exact at its knots: from there the error of the integral grows with the square of the way.
+        let defect = share * share * (3.0 - 2.0 * share) * outer.defect;
         let mut sum = Sum {
             movement: self,
             below: cell,
