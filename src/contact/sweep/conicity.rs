@@ -29,7 +29,7 @@ mod tests;
 
 use branches::Searched;
 use movement::{Movement, Quarter};
-use refine::{Table, most_searches};
+use refine::{LEAST_AMPLITUDE, Table, most_searches};
 
 use crate::contact::search::wheelset::{Roll, WheelsetOnTrack};
 use crate::error::{Error, Result, finite};
@@ -113,8 +113,8 @@ impl Conicity {
     /// Tabulates Δr up to the largest amplitude ŷ \[mm\]; the table ends early where the wheelset leaves the track.
     ///
     /// `roll`: [`Roll::Neglect`] is the standard's convention; [`Roll::Solve`] the exact geometry.
-    /// Accuracy: 1e-4 of the conicity, or [`Equivalent::error`] says what was reached.
-    /// Cost: at most [`Conicity::most_searches`], of which a drawn pair takes a tenth; every search of a rolling wheelset
+    /// Accuracy: 1e-4 of the conicity at amplitudes from 0.1 mm on; [`Equivalent::error`] says what was reached.
+    /// Cost: at most [`Conicity::most_searches`], of which a drawn pair takes a fifth; every search of a rolling wheelset
     /// solves its roll.
     ///
     /// # Errors
@@ -146,7 +146,7 @@ impl Conicity {
         Self::refined(table, progress)
     }
 
-    /// The most searches that a table up to an amplitude \[mm\] takes: 30 for every tenth of a millimetre.
+    /// The most searches that a table up to an amplitude \[mm\] takes: 15 for every tenth of a millimetre.
     pub fn most_searches(amplitude: f64) -> usize {
         most_searches(amplitude, ACCURACY)
     }
@@ -188,7 +188,10 @@ impl Conicity {
             let movement = Movement::new(table.knots());
             let fits: Vec<_> = (0..movement.cells()).map(|cell| Fit::new(&movement, cell)).collect();
             let [searches, most] = table.searches();
-            let converged = fits.iter().flatten().all(|fit| 2.0 * fit.error <= ACCURACY);
+            let served = |cell: usize| movement.ends(cell)[1] > LEAST_AMPLITUDE;
+            let fine = |fit: &Fit| 2.0 * fit.error <= ACCURACY;
+            let converged =
+                fits.iter().enumerate().all(|(cell, fit)| !served(cell) || fit.as_ref().is_none_or(fine));
             if converged || searches >= most || rounds.next().is_none() {
                 return Ok(Self { movement, fits, searches });
             }

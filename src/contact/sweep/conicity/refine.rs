@@ -9,18 +9,22 @@ use crate::error::Result;
 /// Widest cell of the table \[mm\], as EN 15302 has it.
 const WIDEST: f64 = 0.1;
 
+/// Smallest amplitude \[mm\] whose conicity is refined for; smaller ones say how accurate they are. Without it all searches would
+/// go to where Δr jumps at 0: that counts the same for every amplitude, however small.
+pub(super) const LEAST_AMPLITUDE: f64 = WIDEST;
+
 /// A search this share of a cell's width from a hop places it: by the slopes of both gaps, to the square of the share.
 const BESIDE: f64 = 1e-2;
 
 /// Tries to meet a hop that its neighbours predict before a cell is halved: gaps that are about to close may open again.
 const TRIES: u8 = 2;
 
-/// The most searches for an amplitude \[mm\] and a relative accuracy of the conicity ε: 2 (1 + log₂ 1/ε) for every tenth of a
-/// millimetre, with which one hop of each side would be found there by halving alone.
+/// The most searches for an amplitude \[mm\] and a relative accuracy of the conicity ε: 1 + log₂ 1/ε for every tenth of a
+/// millimetre, with which one hop would be found there by halving alone.
 pub(super) fn most_searches(amplitude: f64, accuracy: f64) -> usize {
     let halvings = 1.0 + (1.0 / accuracy).log2().max(0.0).ceil();
     // Saturates: an amplitude of a kilometre ends with the track.
-    ((amplitude / WIDEST).ceil() * 2.0 * halvings) as usize
+    ((amplitude / WIDEST).ceil() * halvings) as usize
 }
 
 /// A hop of the contact to another place of its side.
@@ -126,9 +130,7 @@ impl<F: FnMut(f64, &mut Sides) -> Result<bool>> Table<F> {
     /// The table in order of y: every cell's ends, where Δr does not jump one of them.
     pub(super) fn knots(&self) -> Vec<Knot> {
         let mut cells: Vec<&Cell> = self.cells.iter().collect();
-        // By both ends: those without width, beside a jump, come first.
-        let order = |a: &Cell, b: &Cell, end: usize| a.ends[end].y.total_cmp(&b.ends[end].y);
-        cells.sort_unstable_by(|a, b| order(a, b, 0).then(order(a, b, 1)));
+        cells.sort_unstable_by(|a, b| a.ends[0].y.total_cmp(&b.ends[0].y));
         let mut knots = Vec::with_capacity(2 * cells.len());
         for cell in cells {
             let [from, to] = cell.ends;
@@ -161,8 +163,8 @@ impl<F: FnMut(f64, &mut Sides) -> Result<bool>> Table<F> {
         let near = |hop: &Hop| hop.distance <= BESIDE * (to.y - from.y);
         let met = [0, 1].map(|way| middle.hops[way].filter(near).map(|hop| (way, hop)));
         let nearest = met.into_iter().flatten().min_by(|a, b| a.1.distance.total_cmp(&b.1.distance));
-        let parts = match nearest {
-            Some((way, hop)) => self.at_hop(&cell, y, way, hop),
+        let parts = match nearest.and_then(|(way, hop)| self.at_hop(&cell, y, way, hop)) {
+            Some(parts) => parts,
             None => {
                 let tries = if hopped { cell.tries + 1 } else { 0 };
                 let part = |ends| Cell { tries, ..Cell::new(ends, cell.scale) };
@@ -175,11 +177,14 @@ impl<F: FnMut(f64, &mut Sides) -> Result<bool>> Table<F> {
         Ok(())
     }
 
-    /// The two parts of a cell below and above a hop, as it was seen from y. One at an end leaves a part without width.
-    fn at_hop(&self, cell: &Cell, y: f64, way: usize, hop: Hop) -> [Cell; 2] {
+    /// The two parts of a cell below and above a hop, as it was seen from y; `None` where it lies outside: a hop that an end
+    /// predicts may be the one that the other end was placed at.
+    fn at_hop(&self, cell: &Cell, y: f64, way: usize, hop: Hop) -> Option<[Cell; 2]> {
         let [from, to] = cell.ends;
         let place = if way == 0 { y - hop.distance } else { y + hop.distance };
-        let place = place.clamp(from.y, to.y);
+        if place <= from.y || place >= to.y {
+            return None;
+        }
         let mut other = [0, 0];
         other[hop.side] = hop.to;
         let mut nodes = [[0, 0], other].map(|chosen| Node::new(&self.sides, chosen, y, place));
@@ -190,7 +195,7 @@ impl<F: FnMut(f64, &mut Sides) -> Result<bool>> Table<F> {
         // The slopes were those at y: the place is wrong by a share of the way there.
         let defect = hop.jump.abs() * hop.distance * hop.distance / (to.y - from.y);
         parts[0].defect += defect;
-        parts
+        Some(parts)
     }
 
     fn push(&mut self, cell: Cell) {
@@ -291,7 +296,7 @@ impl Cell {
     /// defect/(Δr · h) at the distance h below the turning point, where the movement spends √(h/ŷ) of its time.
     fn influence(&self) -> f64 {
         let [_, to] = &self.ends;
-        let influence = self.defect / (self.scale * (self.width() * to.y).sqrt());
+        let influence = self.defect / (self.scale * (self.width() * to.y.max(LEAST_AMPLITUDE)).sqrt());
         if influence.is_nan() { 0.0 } else { influence }
     }
 
@@ -308,7 +313,7 @@ impl Cell {
             self.predicted().into_iter().flatten().min_by(|a, b| a.0.distance.total_cmp(&b.0.distance));
         let inside = |y: &f64| (from.y..=to.y).contains(y);
         let place = nearest.map(|(_, y)| y).or_else(|| self.crossing()).filter(inside);
-        // A hop at an end is met from inside, still beside it.
+        // A hop at an end is met from inside: what is left beyond is a hundredth of the cell.
         let margin = self.width() * BESIDE / 2.0;
         place.map_or((middle, false), |y| (y.clamp(from.y + margin, to.y - margin), true))
     }

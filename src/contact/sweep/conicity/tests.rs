@@ -54,7 +54,7 @@ fn a_cone_has_its_own_conicity() -> Result<()> {
 fn wheel_a_of_en_15302_has_its_published_conicity() -> Result<()> {
     let system = system(&reference_rail()?, &standards::wheel("EN15302-A")?)?;
     let conicity = Conicity::new(&system, 8.0, Roll::Neglect)?;
-    assert!(conicity.searches() <= 240, "{}", conicity.searches());
+    assert!(conicity.searches() <= 300, "{}", conicity.searches());
     // Annex E, case A/A/A, as reproduced by a public benchmark program.
     let table =
         [(1.0, 0.125), (2.0, 0.155), (3.0, 0.188), (4.0, 0.216), (5.0, 0.254), (6.0, 0.303), (7.0, 0.505)];
@@ -171,8 +171,8 @@ fn the_conicity_of_a_saw_tooth_is_that_of_its_energy() -> Result<()> {
         }
         let hops = (5.0 / period).floor();
         println!("{hops} hops, {} searches", conicity.searches());
-        // Two or three for a hop.
-        assert!((conicity.searches() as f64) <= 51.0 + 3.0 * hops, "{hops} hops: {}", conicity.searches());
+        // Three for a hop, and some more for those on the grid of the first searches.
+        assert!((conicity.searches() as f64) <= 51.0 + 4.0 * hops, "{hops} hops: {}", conicity.searches());
     }
     Ok(())
 }
