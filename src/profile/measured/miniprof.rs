@@ -1,9 +1,8 @@
 //! MiniProf files (Greenwood Engineering): `.ban` rails, `.whl` wheels, `.mpt` several sections.
 //!
-//! Coordinates are mm; the points are moved by `Xoffset`, `Yoffset`. Axes as the instrument's files have them
-//! (files and reader of CONTACT, user's guide "Form as needed by CONTACT"): Y up for rails, so that the foot is
-//! at negative Y; towards the flange tip for wheels, so upside down; X from the flange back of a wheel, and of
-//! no fixed side for rails.
+//! Coordinates are mm; the points are moved by `Xoffset`, `Yoffset`. Axes (`docs/measured-files.md`): of wheels X goes from
+//! the flange back to the field side and Y towards the flange tip, so downwards; of rails neither sign is defined, though
+//! most files have the foot at negative Y.
 //!
 //! | style | told by | header | points |
 //! |---|---|---|---|

@@ -34,7 +34,7 @@ pub struct Transform {
     pub steps: Vec<Step>,
 }
 
-/// What the format defines: [whether x = −first, whether z = −second], `None` where it says nothing. The sources are in
+/// What the format defines: whether x = −first and whether z = −second, `None` where it says nothing. The sources are in
 /// `docs/measured-files.md`.
 fn definition(format: Format, side: Side) -> [Option<bool>; 2] {
     match (format, side) {
