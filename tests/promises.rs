@@ -13,8 +13,8 @@ mod twice;
 use exact::{Exact, Found, doubled};
 use wheelrail::accuracy::errors::{inside_contact, over_contact};
 use wheelrail::accuracy::reference::Reference;
+use wheelrail::accuracy::specimen::{Instrument, Specimen, SpecimenKind};
 use wheelrail::placement::{Pair, Placement};
-use wheelrail::profile::measured::{self, CurveKind, Format, Options, write};
 use wheelrail::profile::{Profile, Shape, Side, standards};
 use wheelrail::scene::equal_steps;
 use wheelrail::separation::axis::EtaAxis;
@@ -42,6 +42,17 @@ const AT_AN_END: f64 = 1e-6;
 
 /// s = 0 leaves this much in 28 digits \[mm\].
 const RESIDUE: f64 = 1e-26;
+
+/// Kinds of measured rails and wheels.
+const SPECIMENS: [[SpecimenKind; 4]; 2] = [
+    [SpecimenKind::NewRail, SpecimenKind::WornRail, SpecimenKind::ConformalRail, SpecimenKind::SwitchBlade],
+    [
+        SpecimenKind::NewWheel,
+        SpecimenKind::FullFlangeWheel,
+        SpecimenKind::WornWheel,
+        SpecimenKind::HollowWheel,
+    ],
+];
 
 /// SplitMix64: the same scenes on every machine.
 struct Dice(u64);
@@ -80,19 +91,10 @@ fn built_in(side: Side) -> Vec<Doubled> {
     all.into_iter().filter_map(|profile| doubled(&profile.expect("a built-in profile"))).collect()
 }
 
-/// A drawing as it is measured: points with noise, smoothed.
-fn measured(drawn: &Profile, side: Side, dice: &mut Dice) -> Option<Doubled> {
-    let spacing = dice.between(0.2, 1.0);
-    let noise = dice.between(0.0, 0.005);
-    let mut points = write::sample(drawn, spacing).ok()?;
-    for point in &mut points {
-        point[1] += dice.between(-noise, noise);
-    }
-    let text = write::points(&points, Format::Csv, side, "noisy");
-    let [mirror, flip_z] = [Some(false); 2];
-    let options = Options { mirror, flip_z, curve: Some(CurveKind::Smoothing), ..Options::default() };
-    let smoothed = measured::profile("noisy.csv", text.as_bytes(), side, &options).ok()?;
-    doubled(&smoothed.profile)
+/// A profile as it is measured, worn or new, smoothed; `None` where it turns back.
+fn measured(kinds: &[SpecimenKind], dice: &mut Dice) -> Option<Doubled> {
+    let instrument = Instrument::new(dice.between(0.2, 1.0), dice.between(0.0, 0.005), dice.next());
+    doubled(&Specimen::new(*dice.pick(kinds), instrument).ok()?.profile().ok()?)
 }
 
 /// One random scene.
@@ -400,8 +402,7 @@ fn promises_are_kept_on_random_pairs() {
         let mut dice = Dice(SEED + k);
         let drawn = [dice.pick(&rails), dice.pick(&wheels)];
         let smoothed = if dice.below(4) == 0 {
-            [(Side::Rail, drawn[0]), (Side::Wheel, drawn[1])]
-                .map(|(side, (profile, _))| measured(profile, side, &mut dice))
+            [&SPECIMENS[0][..], &SPECIMENS[1][..]].map(|kinds| measured(kinds, &mut dice))
         } else {
             [None, None]
         };
