@@ -167,3 +167,31 @@ fn a_contact_at_an_end_takes_no_quadratic_form() {
     let error = scene("quadratic").expect_err("no form").to_string();
     assert!(error.contains("quadratic with a contact at a kink or end"), "{error}");
 }
+
+#[test]
+fn a_joint_of_the_drawing_is_no_second_contact() {
+    // S1002's zones B and C miss each other by 0.04 µm at x = −26, where these contacts are.
+    let mut nearest = f64::INFINITY;
+    for (inclination, from) in [("-0.01", -0.3), ("-0.02", -0.43)] {
+        for k in 0..12 {
+            let offset = from + 0.01 * f64::from(k);
+            let text = format!(
+                "[rail]\nprofile = \"60E1\"\nrotate = {inclination}\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n\
+                 [contact]\noffset = {offset:?}\n[patch]\nload = 1e5\n"
+            );
+            let scene = scene::parse(&text, false).expect("a scene");
+            let run = Run::new(scene, Path::new("."), "near a joint").expect("a contact");
+            let places: Vec<f64> =
+                run.parts.iter().map(|part| part.contact.placement.wheel.point.station.x).collect();
+            for (i, a) in places.iter().enumerate() {
+                nearest = nearest.min((a + 26.0).abs());
+                // Contacts of one wheel are on different curves of it: nearer ones are one patch twice.
+                assert!(
+                    places[..i].iter().all(|b| (a - b).abs() > 5.0),
+                    "{inclination} {offset}: {places:?}"
+                );
+            }
+        }
+    }
+    assert!(nearest < 0.05, "no contact near the joint: {nearest}");
+}

@@ -77,8 +77,8 @@ pub fn over_contact(placement: &Placement, xi: f64, eta: f64) -> bool {
 /// Ends of segments in the contact frame are known to this share of the profiles' extent: rounding of their abscissae.
 const END_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// Like [`over_contact`], but not within rounding of an end: that belongs to the neighbour as well, by which a
-/// drawing's step may be measured.
+/// Like [`over_contact`], but not within rounding of an end: that belongs to the neighbour as well, on which s has absolute
+/// accuracy only.
 pub fn inside_contact(placement: &Placement, xi: f64, eta: f64) -> bool {
     let extent = placement.rail.profile.extent().max(placement.wheel.profile.extent());
     on_contact(placement, xi, eta, END_ROUNDING * extent)

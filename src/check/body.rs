@@ -3,7 +3,7 @@
 use super::meshes::{Hit, Mesh, Origin, Vector};
 use super::patch::{Patch, Place};
 use super::ray::{Height, foot, height};
-use super::sampler::{Curve, Surface};
+use super::sampler::Surface;
 
 /// Cells of the coarse mesh per local scale, least per curve, and around.
 const CELLS_PER_SCALE: f64 = 8.0;
@@ -175,18 +175,6 @@ impl Solid {
         let slack = self.slack(place);
         (place.curve == 0 && place.t <= slack)
             || (place.curve == last && place.t >= self.surface.curves[last].length - slack)
-    }
-
-    /// Whether a drawing's step is as near as it is wide: a line along ζ may meet either side of it, or the step.
-    pub fn at_step(&self, place: &Place) -> bool {
-        let curves = &self.surface.curves;
-        let here = curves[place.curve].point(place.t);
-        let near = |end: [f64; 2], step: &Curve| {
-            (end[0] - here[0]).hypot(end[1] - here[1]) <= step.length + JOINT * self.surface.size
-        };
-        let of_step = |step: &&Curve| near(step.point(0.0), step) || near(step.point(step.length), step);
-        let around = place.curve.saturating_sub(1)..(place.curve + 2).min(curves.len());
-        curves[around].iter().filter(|curve| curve.is_step).any(|step| of_step(&step))
     }
 
     /// Where on the coarse mesh `point` is closest to, and the curves around.

@@ -220,13 +220,9 @@ impl<'a> Tally<'a> {
     }
 
     fn compare_normals(&mut self, solid: &Solid, at: [f64; 2], normal: Vector, heights: &[Height]) {
-        if heights.iter().any(|h| solid.at_step(&h.place)) {
-            self.counts.normals_at_steps += 1;
-            return;
-        }
         let floor = self.floor(|f| f.normal);
         let differences = heights.iter().map(|h| {
-            // The direction of a drawing's step of a few nm has lost as many digits as the step is shorter.
+            // Directions are differences: a short curve's have lost as many digits as it is shorter.
             let digits = 1.0 + solid.surface.size / solid.surface.curves[h.place.curve].scale;
             let rounding = ROUNDINGS * f64::EPSILON * digits / h.normal.z;
             let allowed = SAFETY * floor.max(h.normal_error) + rounding;

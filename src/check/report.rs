@@ -78,8 +78,6 @@ pub struct Counts {
     pub surface_disputed: usize,
     /// Where the checker could not pin its own answer down: counts as a failure.
     pub unresolved: usize,
-    /// Normals left out at the step of a drawing, where either side's and the step's own are right.
-    pub normals_at_steps: usize,
 }
 
 /// The result of a check.
@@ -174,10 +172,7 @@ impl Report {
         let counts = self.counts;
         let mut objections: Vec<String> = [
             self.separation.objection("separation", " mm"),
-            // Where every point is at a step there is no normal to compare.
-            self.normals
-                .objection("unit normals", "")
-                .filter(|_| self.normals.compared > 0 || counts.compared == 0),
+            self.normals.objection("unit normals", ""),
             self.distances.violation.objection("closest distances", " mm"),
         ]
         .into_iter()
@@ -286,7 +281,6 @@ impl Counts {
             (self.steep_or_end, "points at the end of a body, or where it is within 1.2° of the ζ direction"),
             (self.surface_disputed, "points where only one of both finds a surface"),
             (self.unresolved, "points that the checker could not resolve"),
-            (self.normals_at_steps, "normals at a step of a drawing, where several are right"),
         ];
         let reasons = reasons.iter().filter(|(count, _)| *count > 0);
         reasons.into_iter().try_for_each(|(count, reason)| writeln!(f, "    left out: {count} {reason}"))

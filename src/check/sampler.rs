@@ -9,11 +9,7 @@ use crate::numerics::polynomial::recentred;
 use crate::placement::{Body, Placement};
 use crate::profile::{Polynomial, Segment, Shape, Station};
 
-/// Ends of neighbouring segments closer than this share of the profile's extent are one joint; what lies
-/// farther apart is the step of a drawing and gets its straight line, as the profile's contract says.
-const STEP: f64 = 64.0 * f64::EPSILON;
-
-/// One segment, or the straight line over a drawing's step, as a curve (x − x_C, z − z_C)(t), 0 ≤ t ≤ length.
+/// One segment as a curve (x − x_C, z − z_C)(t), 0 ≤ t ≤ length.
 #[derive(Debug, Clone)]
 pub(super) struct Curve {
     shape: Form,
@@ -23,8 +19,6 @@ pub(super) struct Curve {
     pub scale: f64,
     /// A bound of its arc length \[mm\].
     pub longest: f64,
-    /// Whether it is the straight line over a drawing's step.
-    pub is_step: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -45,7 +39,7 @@ impl Curve {
             Shape::Polynomial(polynomial) => {
                 let length = polynomial.t[1] - polynomial.t[0];
                 let shape = Form::Polynomial { polynomial: polynomial.clone(), origin };
-                let curve = Self { shape, length, scale: length, longest: length, is_step: false };
+                let curve = Self { shape, length, scale: length, longest: length };
                 curve.with_scale_of_polynomial(polynomial)
             }
         }
@@ -53,7 +47,7 @@ impl Curve {
 
     fn turning(start: &Station, curvature: f64, length: f64, scale: f64, [x, z]: [f64; 2]) -> Self {
         let start = Station { x: start.x - x, z: start.z - z, ..*start };
-        Self { shape: Form::Turning { start, curvature }, length, scale, longest: length, is_step: false }
+        Self { shape: Form::Turning { start, curvature }, length, scale, longest: length }
     }
 
     /// The smaller of the parameter range and the sharpest of nine radii, in units of the parameter.
@@ -67,15 +61,6 @@ impl Curve {
         let half = self.length / 2.0;
         self.longest = self.length * (self.speed(half) + self.bend(half, half) * half);
         self
-    }
-
-    /// The straight line between two ends.
-    fn step(from: [f64; 2], to: [f64; 2]) -> Self {
-        let (dx, dz) = (to[0] - from[0], to[1] - from[1]);
-        let length = dx.hypot(dz);
-        let start = Station { x: from[0], z: from[1], cos: dx / length, sin: dz / length };
-        let shape = Form::Turning { start, curvature: 0.0 };
-        Self { shape, length, scale: length, longest: length, is_step: true }
     }
 
     /// (x − x_C, z − z_C) \[mm\] in profile axes. Beyond its ends the curve goes on as it is.
@@ -145,7 +130,7 @@ impl Curve {
 /// at the distance of C from the axle \[mm\]. ∂X/∂t × ∂X/∂v points up where the surface faces the other body.
 #[derive(Debug, Clone)]
 pub(super) struct Surface {
-    /// The curves in order of the chain, lines over steps included.
+    /// The curves in order of the chain.
     pub curves: Vec<Curve>,
     cos: f64,
     sin: f64,
@@ -179,17 +164,8 @@ impl Surface {
         let c = body.point.station;
         let origin = [c.x, c.z];
         let extent = body.profile.extent();
-        let mut curves: Vec<Curve> = Vec::new();
-        for segment in body.profile.segments() {
-            let next = Curve::of_segment(segment, origin, extent);
-            if let Some(last) = curves.last() {
-                let (from, to) = (last.point(last.length), next.point(0.0));
-                if (to[0] - from[0]).hypot(to[1] - from[1]) > STEP * extent {
-                    curves.push(Curve::step(from, to));
-                }
-            }
-            curves.push(next);
-        }
+        let segments = body.profile.segments().iter();
+        let curves = segments.map(|segment| Curve::of_segment(segment, origin, extent)).collect();
         let size = extent + c.x.abs() + c.z.abs();
         Self { curves, cos: c.cos, sin: c.sin, wheel, lift: 0.0, size }
     }

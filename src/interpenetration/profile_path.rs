@@ -53,7 +53,7 @@ impl Path {
         let mut path = Self { legs: Vec::new(), apart: Vec::new(), ends };
         path.end(turned, 0, turned.parallel(first, pieces[first].xi[0]).1);
         let mut before = None;
-        for k in run.clone().filter(|&k| !turned.is_drawn_step(k)) {
+        for k in run.clone() {
             if let Some(before) = before {
                 let from = turned.parallel(before, pieces[before].xi[1]);
                 path.kink(turned, from, turned.parallel(k, pieces[k].xi[0]).1);

@@ -119,13 +119,6 @@ impl<'a> Turned<'a> {
         (along * self.sin_skew + across * self.cos_skew) / (along * self.cos_skew - across * self.sin_skew)
     }
 
-    /// Whether a piece is but the bridge over a step of a drawing.
-    pub(super) fn is_drawn_step(&self, piece: usize) -> bool {
-        let piece = &self.section.pieces[piece];
-        let step = (piece.ends[1].1 - piece.ends[0].1).hypot(piece.xi[1] - piece.xi[0]);
-        self.section.branches[piece.branch].is_bridge() && step <= DRAWN_STEP
-    }
-
     /// Rounding of ξ \[mm\].
     pub(super) fn rounding(&self) -> f64 {
         64.0 * f64::EPSILON * self.axle

@@ -18,7 +18,7 @@ const DEEPEST: u32 = 20;
 
 /// Stations in profile axes, ascending along the chain: from C in both directions until ξ leaves the interval `xi` of
 /// the contact frame, which is widened to hold C; C is one of them. The chord between two neighbours is within
-/// `tolerance` \[mm\] of the profile. Joints with steps below the tolerance are drawn as one point.
+/// `tolerance` \[mm\] of the profile.
 ///
 /// # Errors
 /// More than 10⁵ points.

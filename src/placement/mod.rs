@@ -81,8 +81,7 @@ impl Pair {
     }
 
     /// The pair in contact where a search found it: abscissa and angle \[rad\] of the common normal's frame on each
-    /// body. At a kink the angle is not that of a tangent; s then has no second-order expansion at C. At a joint with a
-    /// drawing's step C is at the end that stands out.
+    /// body. At a kink the angle is not that of a tangent; s then has no second-order expansion at C.
     ///
     /// # Errors
     /// An abscissa off its profile.
@@ -106,7 +105,7 @@ impl Body {
 
     fn along(profile: &Profile, [x, angle]: [f64; 2], side: Side) -> Result<Self> {
         let own = Section::own_axes(profile, side);
-        let point = own.outer_point(profile, finite("", x)?, side);
+        let point = own.point(profile, finite("", x)?);
         let mut point = point.ok_or_else(|| off_profile(profile, &own, x))?;
         if (point.station.angle() - angle).abs() <= SAME_TANGENT {
             return Ok(Self::smooth(profile, point, side));

@@ -295,6 +295,57 @@ mod tests {
         Ok(())
     }
 
+    /// Changes of an angle from a last digit to 1e-9 rad, around those that inclined rails have.
+    fn near(angle: f64) -> Vec<f64> {
+        let ulp = f64::EPSILON * angle / 2.0;
+        let mut steps: Vec<f64> = (1..=8).map(|k| f64::from(k) * ulp).collect();
+        steps.extend((1..=7).map(|k| 10f64.powi(k - 16)));
+        steps.iter().flat_map(|step| [angle - step, angle + step]).collect()
+    }
+
+    #[test]
+    fn a_track_does_not_jump_when_an_angle_changes_in_its_last_digit() -> Result<()> {
+        // No point of a head is farther than this from the origin, mm: what an angle of 1 rad moves it by at most.
+        let lever = 80.0;
+        let mut compared = 0;
+        for name in standards::rail_names() {
+            let rail = standards::rail(name)?;
+            for angle in [20f64.recip().atan(), 40f64.recip().atan(), 0.05, 0.0] {
+                for angle in [angle, -angle] {
+                    let track = |angle: f64| {
+                        let rail = rail.rotated(angle.cos(), angle.sin());
+                        Track::new(&rail, RailDistance::Gauge { gauge: 1435.0, height: 14.0 })
+                    };
+                    // A head that ends above the level has no gauge face there.
+                    let Ok(base) = track(angle) else { continue };
+                    for other in near(angle) {
+                        let (track, allowed) = (track(other)?, lever * (other - angle).abs() + 1e-12);
+                        let moved = (track.rail_z - base.rail_z).abs();
+                        assert!(moved <= allowed, "{name} {other}: {moved:e} of {allowed:e} up");
+                        // The gauge point may run along the face: as much again over its slope.
+                        let moved = (track.rail_x - base.rail_x).abs();
+                        assert!(moved <= 4.0 * allowed, "{name} {other}: {moved:e} of {allowed:e} aside");
+                        compared += 1;
+                    }
+                }
+            }
+        }
+        assert!(compared > 25 * 4 * 30, "{compared}");
+        Ok(())
+    }
+
+    #[test]
+    fn a_side_face_that_is_vertical_to_rounding_is_no_top_of_rail() -> Result<()> {
+        let rail = standards::rail("60E1")?;
+        let heights = [0.049_958_395_721_942_765f64, 20f64.recip().atan()].map(|angle| {
+            let rail = rail.rotated(angle.cos(), angle.sin());
+            Track::new(&rail, RailDistance::Gauge { gauge: 1435.0, height: 14.0 }).map(|track| track.rail_z)
+        });
+        let [found, expected] = [heights[0].clone()?, heights[1].clone()?];
+        assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+        Ok(())
+    }
+
     #[test]
     fn back_to_back_and_spacing_give_the_same_wheelset() -> Result<()> {
         let by_backs =

@@ -1,8 +1,8 @@
-//! How well a chain closes: gap, kink and curvature jump at every joint.
+//! How well a chain closes: gap, kink and curvature jump at every joint, and which steps are too large for a drawing.
 
 use serde::Serialize;
 
-use super::{Profile, Segment, Station};
+use super::{Segment, Station};
 use crate::error::{Error, Result};
 
 /// Largest step between two segments, as a share of the chain's extent, that counts as rounding of a drawing.
@@ -18,50 +18,53 @@ pub struct Joint {
     pub left: usize,
     /// Abscissa of the left segment's end \[mm\].
     pub x: f64,
-    /// Distance between the two ends \[mm\].
+    /// Distance between the two ends \[mm\]: of a profile's chain some roundings.
     pub gap: f64,
-    /// The part of the gap that rounded coordinates explain least: its run in x or its part across the steeper
-    /// tangent, whichever is larger \[mm\]. Next to a vertical tangent the gap itself can be a hundred times that.
-    pub step: f64,
     /// Change of tangent angle \[rad\], positive counter-clockwise.
     pub kink: f64,
     /// Change of curvature \[1/mm\].
     pub curvature_jump: f64,
 }
 
-pub(super) fn joints(segments: &[Segment]) -> Vec<Joint> {
-    segments
-        .windows(2)
-        .enumerate()
-        .map(|(left, pair)| {
-            let (end, start) = (pair[0].end(), pair[1].start());
-            let steeper = if end.cos < start.cos { end } else { start };
-            let across = Station { x: start.x, z: start.z, ..steeper }.seen_from(&Station {
-                x: end.x,
-                z: end.z,
-                ..steeper
-            });
-            Joint {
-                left,
-                x: end.x,
-                gap: (start.x - end.x).hypot(start.z - end.z),
-                step: (start.x - end.x).abs().max(across.z.abs()),
-                kink: start.seen_from(&end).angle(),
-                curvature_jump: pair[1].end_curvatures()[0] - pair[0].end_curvatures()[1],
-            }
-        })
-        .collect()
+/// The joints of a chain, from left to right.
+pub fn joints(segments: &[Segment]) -> Vec<Joint> {
+    let joint = |(left, pair): (usize, &[Segment])| {
+        let (end, start) = (pair[0].end(), pair[1].start());
+        Joint {
+            left,
+            x: end.x,
+            gap: (start.x - end.x).hypot(start.z - end.z),
+            kink: start.seen_from(&end).angle(),
+            curvature_jump: pair[1].end_curvatures()[0] - pair[0].end_curvatures()[1],
+        }
+    };
+    segments.windows(2).enumerate().map(joint).collect()
 }
 
-pub(super) fn reject_jumps(profile: &Profile) -> Result<()> {
-    let limit = LARGEST_STEP * profile.extent();
-    let Some(jump) = profile.continuity().into_iter().find(|joint| joint.step.is_nan() || joint.step > limit)
-    else {
-        return Ok(());
-    };
-    let place = profile.segments()[jump.left + 1].place(jump.left + 1);
-    let found =
-        format!("a step of {:.6} mm from the end of the segment before, at x = {}", jump.step, jump.x);
-    let expected = format!("a step of at most {limit:.6} mm");
-    Err(Error::new(place, found, expected, "correct the end points: segments must join in order of x"))
+/// The part \[mm\] of a drawing's gap that rounded coordinates explain least: its run in x or its part across the steeper
+/// tangent, whichever is larger. Next to a vertical tangent the gap itself can be a hundred times that.
+fn step(end: &Station, start: &Station) -> f64 {
+    let steeper = if end.cos < start.cos { end } else { start };
+    let frame = Station { x: end.x, z: end.z, ..*steeper };
+    (start.x - end.x).abs().max(start.seen_from(&frame).z.abs())
+}
+
+/// Refuses steps of drawn segments that no rounding explains, beside the profile's `extent` \[mm\].
+///
+/// # Errors
+/// The first such step, with its place and size.
+pub(super) fn reject_jumps(segments: &[Segment], extent: f64) -> Result<()> {
+    let limit = LARGEST_STEP * extent;
+    for (index, pair) in segments.windows(2).enumerate() {
+        let (end, start) = (pair[0].end(), pair[1].start());
+        let step = step(&end, &start);
+        if step.is_nan() || step > limit {
+            let found =
+                format!("a step of {step:.6} mm from the end of the segment before, at x = {}", end.x);
+            let expected = format!("a step of at most {limit:.6} mm");
+            let advice = "correct the end points: segments must join in order of x";
+            return Err(Error::new(pair[1].place(index + 1), found, expected, advice));
+        }
+    }
+    Ok(())
 }

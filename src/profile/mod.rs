@@ -3,6 +3,7 @@
 
 mod arc;
 pub mod builder;
+pub mod closing;
 pub mod continuity;
 mod groove;
 pub mod measured;
@@ -12,15 +13,17 @@ pub mod standards;
 pub mod trace;
 
 pub use arc::{Arc, Half};
+pub use closing::ONE_JOINT;
 pub use groove::last_groove;
 pub use polynomial::Polynomial;
 pub use section::{
-    ArcBranch, Branch, BranchPoint, BranchPoints, BranchShape, Branches, ONE_JOINT, Piece, PolynomialBranch,
+    ArcBranch, Branch, BranchPoint, BranchPoints, BranchShape, Branches, Piece, PolynomialBranch,
     ProfilePoint, Section, Side, stationary_points,
 };
 pub mod drawing;
 
 use crate::error::{Error, Result};
+use closing::Closing;
 
 /// A point of a profile with its unit tangent in the direction of travel (towards larger x on a graph).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -142,6 +145,9 @@ impl Segment {
 }
 
 /// A chain of segments, travelled from left to right, with its name and source.
+///
+/// Neighbours share their joint point, to rounding: a drawing's rounded coordinates are closed when the chain is made, by the
+/// rule of [`closing`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
     /// Name of the standard, or of the file.
@@ -150,19 +156,21 @@ pub struct Profile {
     pub source: String,
     /// The segments, at least one.
     segments: Vec<Segment>,
+    /// The segments before they were closed; empty where that changed nothing but roundings.
+    drawn: Vec<Segment>,
+    closings: Vec<Closing>,
 }
 
 impl Profile {
-    /// A chain of at least one segment that nowhere jumps.
+    /// A chain of at least one segment that nowhere jumps, closed by the rule of [`closing`].
     ///
-    /// Steps up to [`continuity::LARGEST_STEP`] × the chain's extent are data of a drawing (its rounded
-    /// coordinates); kinks are allowed at any angle. Both are in [`Profile::continuity`].
+    /// Kinks are allowed at any angle: see [`Profile::continuity`].
     ///
     /// # Errors
-    /// An empty chain; a joint with a larger step, with its place and size.
-    pub fn new(name: impl Into<String>, source: impl Into<String>, segments: Vec<Segment>) -> Result<Self> {
-        let profile = Self { name: name.into(), source: source.into(), segments };
-        if profile.segments.is_empty() {
+    /// An empty chain; a joint with a step larger than [`continuity::LARGEST_STEP`] × the chain's extent, or than the short
+    /// segment beside it can take, with its place and size.
+    pub fn new(name: impl Into<String>, source: impl Into<String>, drawn: Vec<Segment>) -> Result<Self> {
+        if drawn.is_empty() {
             return Err(Error::new(
                 "segments",
                 "none",
@@ -170,13 +178,33 @@ impl Profile {
                 "give the profile's segments",
             ));
         }
-        continuity::reject_jumps(&profile)?;
-        Ok(profile)
+        let extent = extent(&drawn);
+        continuity::reject_jumps(&drawn, extent)?;
+        let (segments, closings) = closing::close(&drawn, extent)?;
+        let drawn = if closings.is_empty() { Vec::new() } else { drawn };
+        Ok(Self { name: name.into(), source: source.into(), segments, drawn, closings })
     }
 
     /// The segments from left to right.
     pub fn segments(&self) -> &[Segment] {
         &self.segments
+    }
+
+    /// The segments as they were given, before the chain was closed.
+    pub fn drawn(&self) -> &[Segment] {
+        if self.drawn.is_empty() { &self.segments } else { &self.drawn }
+    }
+
+    /// Where and by how much the drawn chain was changed to close it, from left to right.
+    pub fn closings(&self) -> &[Closing] {
+        &self.closings
+    }
+
+    /// The closing that moved the drawn surface most, with its joint point [x, z] \[mm\]; `None` for a chain drawn without steps.
+    pub fn largest_closing(&self) -> Option<(Closing, [f64; 2])> {
+        let largest = self.closings.iter().max_by(|a, b| a.moved.total_cmp(&b.moved))?;
+        let joint = self.segments[largest.left].end();
+        Some((*largest, [joint.x, joint.z]))
     }
 
     /// Gap, kink and curvature jump at every joint.
@@ -186,14 +214,7 @@ impl Profile {
 
     /// The larger side of the box around all segment ends \[mm\]: the scale that rounding is judged by.
     pub fn extent(&self) -> f64 {
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for station in self.segments.iter().flat_map(|s| [s.start(), s.end()]) {
-            for (k, v) in [station.x, station.z].into_iter().enumerate() {
-                low[k] = low[k].min(v);
-                high[k] = high[k].max(v);
-            }
-        }
-        (high[0] - low[0]).max(high[1] - low[1])
+        extent(&self.segments)
     }
 
     /// The profile turned counter-clockwise about its origin; `cos` and `sin` of the angle.
@@ -211,14 +232,36 @@ impl Profile {
     /// The mirror image under x → −x.
     #[must_use]
     pub fn mirrored(&self) -> Self {
-        let mut segments: Vec<_> =
-            self.segments.iter().map(|s| s.map(Arc::mirrored, Polynomial::mirrored)).collect();
-        segments.reverse();
-        Self { segments, ..self.clone() }
+        let mut mirrored = self.mapped(|s| s.map(Arc::mirrored, Polynomial::mirrored));
+        mirrored.segments.reverse();
+        mirrored.drawn.reverse();
+        mirrored.closings.reverse();
+        for closing in &mut mirrored.closings {
+            // The segment on the other side of the same joint.
+            closing.left = self.segments.len() - 2 - closing.left;
+        }
+        mirrored
     }
 
     fn placed(&self, frame: &Station) -> Self {
-        let segments = self.segments.iter().map(|s| s.map(|a| a.placed_by(frame), |p| p.placed_by(frame)));
-        Self { segments: segments.collect(), ..self.clone() }
+        self.mapped(|s| s.map(|a| a.placed_by(frame), |p| p.placed_by(frame)))
     }
+
+    fn mapped(&self, image: impl Fn(&Segment) -> Segment) -> Self {
+        let [segments, drawn] = [&self.segments, &self.drawn].map(|all| all.iter().map(&image).collect());
+        let (name, source) = (self.name.clone(), self.source.clone());
+        Self { name, source, segments, drawn, closings: self.closings.clone() }
+    }
+}
+
+/// The larger side of the box around all segment ends \[mm\].
+fn extent(segments: &[Segment]) -> f64 {
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for station in segments.iter().flat_map(|s| [s.start(), s.end()]) {
+        for (k, v) in [station.x, station.z].into_iter().enumerate() {
+            low[k] = low[k].min(v);
+            high[k] = high[k].max(v);
+        }
+    }
+    (high[0] - low[0]).max(high[1] - low[1])
 }

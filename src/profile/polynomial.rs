@@ -56,11 +56,15 @@ impl Polynomial {
         Ok(Self { t, x: exact(x), z: exact(z) })
     }
 
+    /// (dx/dt, dz/dt) at parameter t.
+    pub(super) fn rates(&self, t: f64) -> [f64; 2] {
+        [&self.x, &self.z].map(|c| slope_twofloat(c, t.into()).into())
+    }
+
     /// The station at parameter t.
     pub fn station(&self, t: f64) -> Station {
-        let t = TwoFloat::from(t);
-        let (dx, dz) = (f64::from(slope_twofloat(&self.x, t)), f64::from(slope_twofloat(&self.z, t)));
-        let norm = dx.hypot(dz);
+        let [dx, dz] = self.rates(t);
+        let (t, norm) = (TwoFloat::from(t), dx.hypot(dz));
         Station {
             x: value_twofloat(&self.x, t).into(),
             z: value_twofloat(&self.z, t).into(),

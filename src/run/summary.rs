@@ -9,6 +9,7 @@ use crate::interpenetration::{Component, Patch};
 use crate::mesh::quality::Quality;
 use crate::mesh::surfaces::Surface;
 use crate::placement::Body;
+use crate::profile::closing::Closing;
 use crate::profile::continuity::Joint;
 
 /// One body in the summary.
@@ -20,12 +21,25 @@ struct BodySummary<'a> {
     contact_z_mm: f64,
     contact_angle_rad: f64,
     contact_segment: String,
-    /// Joints of the chain that do not close to 1e-9 mm or 1e-9 rad.
-    imperfect_joints: Vec<Joint>,
+    /// Where closing the drawn chain moved its surface most; none for a chain without steps.
+    largest_closing: Option<ClosingSummary>,
+    /// Joints of the chain with a kink above 1e-9 rad.
+    kinks: Vec<Joint>,
 }
 
-/// Joints better than this are not worth a reader's time \[mm, rad\].
-const PERFECT_JOINT: f64 = 1e-9;
+/// How a drawn chain was closed.
+#[derive(Debug, Serialize)]
+struct ClosingSummary {
+    joints_closed: usize,
+    moved_mm: f64,
+    x_mm: f64,
+    z_mm: f64,
+    /// Stretch to either side of the joint that is not as drawn.
+    reach_mm: f64,
+}
+
+/// Kinks below this are not worth a reader's time \[rad\].
+const SMOOTH: f64 = 1e-9;
 
 /// The summary as JSON text; `surfaces` are the written ones of rail and wheel.
 pub(super) fn summary(
@@ -89,7 +103,13 @@ pub(super) fn summary(
 
 fn body(body: &Body) -> BodySummary<'_> {
     let segment = body.point.segment;
-    let joints = body.profile.continuity();
+    let closing = |(largest, [x_mm, z_mm]): (Closing, [f64; 2])| ClosingSummary {
+        joints_closed: body.profile.closings().len(),
+        moved_mm: largest.moved,
+        x_mm,
+        z_mm,
+        reach_mm: largest.reach,
+    };
     BodySummary {
         profile: &body.profile.name,
         source: &body.profile.source,
@@ -97,10 +117,8 @@ fn body(body: &Body) -> BodySummary<'_> {
         contact_z_mm: body.point.station.z,
         contact_angle_rad: body.contact_angle(),
         contact_segment: body.profile.segments()[segment].place(segment),
-        imperfect_joints: joints
-            .into_iter()
-            .filter(|joint| joint.gap > PERFECT_JOINT || joint.kink.abs() > PERFECT_JOINT)
-            .collect(),
+        largest_closing: body.profile.largest_closing().map(closing),
+        kinks: body.profile.continuity().into_iter().filter(|joint| joint.kink.abs() > SMOOTH).collect(),
     }
 }
 

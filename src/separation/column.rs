@@ -99,7 +99,7 @@ impl<'a> WheelSurface<'a> {
             }
             let mut span = self.span(xi, index, [begin, end], u_max);
             if let Some(last) = spans.last().filter(|last| last.e[1] == begin) {
-                // One joint: the ranges meet, whatever rounding or a drawing's step makes of them.
+                // One joint: the ranges meet, whatever rounding makes of them.
                 span.u[0] = last.u[1];
             }
             // Near the axle's height u may fall along the column: such a span holds nothing.

@@ -134,7 +134,7 @@ impl<'a> Columns<'a> {
             let piece = &wheel.section.pieces[index];
             let mut here = wheel.span_at_many(&xi, piece, self.spans.is_empty())?;
             if let Some(before) = self.spans.last_mut() {
-                // One joint: the spans meet, whatever rounding or a drawing's step makes of it.
+                // One joint: the spans meet, whatever rounding makes of it.
                 before.u[1] = here.u[0];
                 if !every(|k| before.u[0][k] < before.u[1][k]) {
                     return None;

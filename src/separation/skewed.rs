@@ -198,7 +198,7 @@ impl SkewedColumn<'_, '_> {
     }
 }
 
-/// Whether columns that enter a piece by a step of the profile are beyond what the piece before it covers, and all in between
+/// Whether columns that enter a piece where the envelope jumps from sheet to sheet are beyond what the piece before it covers, and all in between
 /// as well: where both have a point, that one counts.
 #[inline(always)]
 fn beyond_step(wheel: &WheelSurface<'_>, index: usize, [xi, u]: [&Row; 2], between: bool) -> bool {

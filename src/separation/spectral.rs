@@ -22,7 +22,7 @@ use crate::placement::Placement;
 /// point-wise.
 pub const MOST_COEFFICIENTS: usize = 12;
 
-/// A span below this share of its column's u, mostly a drawing's step, starts with two coefficients.
+/// A span below this share of its column's u, such as the closing of a drawing, starts with two coefficients.
 const SHORT_SPAN: f64 = 0.01;
 
 /// Share of a quantity that counts as rounding: more coefficients would not lower its error.

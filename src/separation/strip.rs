@@ -11,7 +11,7 @@ use crate::placement::Placement;
 /// beginning and u_0, all polynomials in ξ.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Strip {
-    /// Its open interval \[mm\]: at its ends may be a drawing's step, which has a value of its own.
+    /// Its open interval \[mm\].
     pub xi: [f64; 2],
     /// How s at the beginning of the columns is known.
     pub(super) gap: Gap,
@@ -255,7 +255,7 @@ impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> Evaluation<'_, S, SING
                 continue;
             }
             for (index, span) in spans.iter().enumerate().skip(1).rev() {
-                // A drawing's step is mostly between two values; other spans end near where they do in the column before.
+                // A short span is mostly between two values; others end near where they do in the column before.
                 let (u, beyond) = (span.u0[k], ends[index]);
                 let near = if axis.is_end(u, beyond) { beyond } else { ends[index - 1] };
                 ends[index - 1] = axis.end(u, near).min(beyond);

@@ -28,6 +28,9 @@ import sys
 
 from mpmath import atan, atan2, cos, findroot, im, mp, mpf, nstr, polyroots, polyval, re, sin, sqrt
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "reference"))
+from closing import closed  # noqa: E402
+
 mp.dps = 60
 TINY = mpf(10) ** -40
 
@@ -249,8 +252,8 @@ def boundary(wheel, zeta_rail, xi, delta, reach):
 
 
 def values(scene):
-    rail = [Segment(d) for d in scene["rail"]]
-    wheel = [Segment(d) for d in scene["wheel"]]
+    rail = [Segment(d) for d in closed(scene["rail"])]
+    wheel = [Segment(d) for d in closed(scene["wheel"])]
     radius, wheel_x = mpf(scene["wheel_radius"]), mpf(scene["contact_wheel_x"])
     yaw, roll = mpf(scene["yaw"]), mpf(scene["roll"])
     omega, rail_x, triad = contact(rail, wheel, wheel_x, yaw, roll, mpf(scene["guess_rail_x"]))

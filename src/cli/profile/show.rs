@@ -21,6 +21,7 @@ pub(super) fn show(source: &Source) -> String {
     if !source.measured().is_some_and(spline) {
         segments(&mut out, profile);
         joints(&mut out, profile);
+        closings(&mut out, profile);
     }
     out
 }
@@ -114,6 +115,28 @@ fn joints(out: &mut String, profile: &Profile) {
             joint.gap,
             joint.kink,
             joint.curvature_jump
+        );
+    }
+}
+
+/// What was changed of a drawing so that its segments meet.
+fn closings(out: &mut String, profile: &Profile) {
+    let Some((largest, [x, z])) = profile.largest_closing() else { return };
+    let _ = writeln!(
+        out,
+        "\n# closed: the drawn surface moved by at most {:.3e} mm, at ({x:.6}, {z:.6}) mm\n\
+         # joint           x_mm         step_mm       moved_mm       reach_mm",
+        largest.moved
+    );
+    for closing in profile.closings() {
+        let x = profile.segments()[closing.left].end().x;
+        let _ = writeln!(
+            out,
+            "{:<7} {x:14.6} {:14.3e} {:14.3e} {:14.3e}",
+            closing.left + 1,
+            closing.step,
+            closing.moved,
+            closing.reach
         );
     }
 }

@@ -489,7 +489,8 @@ fn segments_written_are_segments_read() -> Result<()> {
     let text = write::points(&points, Format::Csv, Side::Wheel, "");
     let options = Options { curve: Some(CurveKind::Arcs), ..Options::default() };
     let arcs = profile("s1002.csv", text.as_bytes(), Side::Wheel, &options)?.profile;
-    for (profile, bound) in [(&wheel, 0.0), (&arcs, 1e-11)] {
+    // What was drawn comes back; it is closed by arcs that start from rounded ends.
+    for (profile, bound) in [(&wheel, 2e-15), (&arcs, 1e-11)] {
         let written = write::segments(profile)?;
         // The fit turns the vertical back of the flange by a rounding of its tangent.
         assert!(written.cut.len() <= 1, "{:?}", written.cut);
@@ -497,7 +498,7 @@ fn segments_written_are_segments_read() -> Result<()> {
             toml::from_str(&written.toml).map_err(|e| Error::new("toml", e.to_string(), "", ""))?;
         let back = crate::profile::drawing::chain("back", "", None, &scene.segments)?;
         let worst = difference(profile, &back, Side::Wheel, [-69.9, 59.9]);
-        assert!(worst <= bound, "{worst}");
+        assert!(worst <= bound, "{worst:e} of {bound:e}");
     }
     let spline = profile("s1002.csv", text.as_bytes(), Side::Wheel, &Options::default())?.profile;
     assert!(write::segments(&spline).is_err_and(|e| e.place == "segment 1"));

@@ -195,7 +195,7 @@ pub fn segments(profile: &Profile) -> Result<Segments> {
     struct Scene {
         segments: Vec<SegmentData>,
     }
-    let all = profile.segments();
+    let all = profile.drawn();
     let first = all.iter().position(|segment| segment.end().cos >= 0.0).unwrap_or(all.len());
     let last = all.iter().rposition(|segment| segment.start().cos >= 0.0).map_or(0, |k| k + 1);
     let mut scene = Scene { segments: Vec::with_capacity(all.len()) };

@@ -15,12 +15,16 @@ use crate::numerics::twice;
 /// square: none, down to the contact point at t = 0.
 pub(super) const QUADRATIC: f64 = 1e-4 * 1e-4;
 
+/// Cosine of the tangent angle below which a line is kept by its ends: at 1e-3 a rounding of ξ is 1e-11 mm of ζ. Gentler lines
+/// are kept by their angle, which has more digits than a difference of ends that may be near each other.
+const STEEP_LINE: f64 = 1e-3;
+
 /// A branch ζ(ξ) over a closed interval of ξ.
 #[derive(Debug, Clone)]
 pub struct Branch {
     /// Its interval of ξ \[mm\].
     pub xi: [f64; 2],
-    /// Index of the segment it belongs to; of the right neighbour for a bridged step.
+    /// Index of the segment it belongs to.
     pub segment: usize,
     /// Its shape.
     pub shape: BranchShape,
@@ -33,7 +37,6 @@ pub struct Branch {
 enum Kind {
     Contact,
     Plain,
-    Bridge,
 }
 
 /// The two shapes of [`super::super::Shape`], transformed.
@@ -95,11 +98,11 @@ pub struct PolynomialBranch {
 }
 
 impl ArcBranch {
-    /// (S, C) at ξ.
+    /// (S, C) at ξ. A line's own C: that of S = 1 − 1e-17 is 0 to rounding.
     #[inline(always)]
     pub fn sine_cosine(&self, xi: f64) -> (f64, f64) {
         let sin = self.sin + self.curvature * (xi - self.anchor[0]);
-        (sin, cosine(sin))
+        (sin, if self.curvature == 0.0 { self.cos } else { cosine(sin) })
     }
 
     /// ζ(ξ).
@@ -208,14 +211,33 @@ impl Branch {
         };
         let kind = if contact { Kind::Contact } else { Kind::Plain };
         let shape = BranchShape::Arc(shape);
-        Some(Self { xi, segment, shape, begins_segment: begins, ends_segment: ends, kind })
+        let mut branch = Self { xi, segment, shape, begins_segment: begins, ends_segment: ends, kind };
+        branch.keep_ends([start.z, end.z]);
+        Some(branch)
     }
 
-    /// The straight line over the step of a drawing.
-    pub(super) fn bridge(segment: usize, from: &Station, to: &Station) -> Option<Self> {
-        let line = super::step(from, to)?;
-        let branch = Self::of_arc(segment, &line, &Station::AXES, false)?;
-        Some(Self { kind: Kind::Bridge, begins_segment: false, ends_segment: false, ..branch })
+    /// Makes the branch begin where the one before it ends. A joint is rounded on either segment, and the smallest gap between
+    /// two pieces would be an end of the profile.
+    pub(super) fn begin_at(&mut self, joint: f64) {
+        if joint < self.xi[1] {
+            let heights = self.xi.map(|xi| self.height(xi));
+            self.xi[0] = joint;
+            self.keep_ends(heights);
+        }
+    }
+
+    /// Makes a steep line run through its ends' heights. By its angle it would miss them by the rounding of ξ times its slope: by
+    /// its whole length where it is vertical to rounding.
+    fn keep_ends(&mut self, [from, to]: [f64; 2]) {
+        let [a, b] = self.xi;
+        if let BranchShape::Arc(line) = &mut self.shape
+            && self.kind == Kind::Plain
+            && line.curvature == 0.0
+            && line.cos < STEEP_LINE
+        {
+            let length = (b - a).hypot(to - from);
+            (line.anchor, line.sin, line.cos) = ([a, from], (to - from) / length, (b - a) / length);
+        }
     }
 
     /// The parts of a polynomial segment that face the other body; `contact` is the contact point's parameter.
@@ -254,11 +276,6 @@ impl Branch {
 
     pub(super) fn is_contact(&self, segment: usize) -> bool {
         self.kind == Kind::Contact && self.segment == segment
-    }
-
-    /// Whether it stands for the step of a drawing.
-    pub fn is_bridge(&self) -> bool {
-        self.kind == Kind::Bridge
     }
 
     /// ζ(ξ) \[mm\].

@@ -10,7 +10,7 @@ pub use branch::{ArcBranch, Branch, BranchPoint, BranchShape, PolynomialBranch};
 pub use envelope::Piece;
 pub use many::{BranchPoints, Branches};
 
-use super::{Arc, Profile, Shape, Station};
+use super::{ONE_JOINT, Profile, Segment, Shape, Station};
 use twofloat::TwoFloat;
 
 /// Which body a profile bounds, and so which of several heights at one ξ is the outer one.
@@ -33,14 +33,11 @@ pub struct ProfilePoint {
     parameter: TwoFloat,
 }
 
-/// Ends closer than this share of the profile's extent are one joint, moved apart by rounding.
-pub const ONE_JOINT: f64 = 16.0 * f64::EPSILON;
-
 /// Part of the profile that faces the other body, as a function ζ(ξ) of the frame.
 ///
 /// Everything is in the frame's axes: ξ along its tangent, ζ along its normal \[mm\]. Where the profile
 /// overhangs in ξ, the outer of the sheets that face the other body counts; where there is none the height is
-/// undefined. A step of a drawing at a joint is bridged by the straight line between the two ends.
+/// undefined.
 #[derive(Debug, Clone)]
 pub struct Section {
     /// The frame in profile axes.
@@ -72,24 +69,25 @@ impl Section {
     fn build(profile: &Profile, frame: Station, contact: Option<&ProfilePoint>, side: Side) -> Self {
         let mut branches: Vec<Branch> = Vec::with_capacity(profile.segments().len());
         let rounding = ONE_JOINT * (profile.extent() + frame.x.abs() + frame.z.abs());
-        let mut last: Option<Station> = None;
+        let mut goes_on = false;
         for (index, segment) in profile.segments().iter().enumerate() {
             let here = contact.filter(|point| point.segment == index);
             let seen = match &segment.shape {
                 Shape::Arc(arc) => Branch::of_arc(index, arc, &frame, here.is_some()).into_iter().collect(),
                 Shape::Polynomial(p) => Branch::of_polynomial(index, p, &frame, here.map(|c| c.parameter)),
             };
-            let start = segment.start().seen_from(&frame);
             for mut branch in seen {
-                if let (Some(end), true) = (last, branch.begins_segment) {
-                    branches.extend(joined(branches.last(), &mut branch, [&end, &start], rounding));
+                if let Some(before) = branches.last().filter(|_| goes_on && branch.begins_segment) {
+                    branch.begin_at(before.xi[1]);
                 }
-                last = None;
+                goes_on = false;
                 branches.push(branch);
             }
-            if branches.last().is_some_and(|b| b.segment == index && b.ends_segment) {
-                last = Some(segment.end().seen_from(&frame));
-            }
+            goes_on = match branches.last().filter(|branch| branch.segment == index) {
+                Some(branch) => branch.ends_segment,
+                // Vertical to rounding: whether it has a narrow branch or none, the surface goes on beyond it.
+                None => goes_on && run(segment, &frame).abs() <= rounding,
+            };
         }
         let contact = contact.and_then(|point| branches.iter().position(|b| b.is_contact(point.segment)));
         let pieces = envelope::pieces(&branches, side);
@@ -134,17 +132,6 @@ impl Section {
         Some(Self::point_on(self.branch_at(x)?, profile, x))
     }
 
-    /// The same where the other body touches: at a joint with a step the end that stands out by more than rounding.
-    pub fn outer_point(&self, profile: &Profile, x: f64, side: Side) -> Option<ProfilePoint> {
-        let rounding = ONE_JOINT * profile.extent();
-        let outward = if side == Side::Wheel { -1.0 } else { 1.0 };
-        let here = self.pieces_from(x).iter().take_while(|piece| piece.xi[0] <= x);
-        let outer = here.map(|piece| &self.branches[piece.branch]).reduce(|left, right| {
-            if outward * (right.height(x) - left.height(x)) > rounding { right } else { left }
-        })?;
-        Some(Self::point_on(outer, profile, x))
-    }
-
     fn point_on(branch: &Branch, profile: &Profile, x: f64) -> ProfilePoint {
         let (station, parameter) = match (&branch.shape, &profile.segments()[branch.segment].shape) {
             (BranchShape::Polynomial(shape), Shape::Polynomial(polynomial)) => {
@@ -157,30 +144,7 @@ impl Section {
     }
 }
 
-/// Makes a branch begin where the one before it ends; returns the bridge over a drawing's step, if there is one.
-///
-/// The branches' own ends count, not the stations: a polynomial's are rounded in another way, and the smallest
-/// gap between two pieces would be an end of the profile.
-fn joined(
-    before: Option<&Branch>,
-    branch: &mut Branch,
-    [end, start]: [&Station; 2],
-    rounding: f64,
-) -> Option<Branch> {
-    let joint = before.map_or(end.x, |before| before.xi[1]);
-    let step = start.x - end.x;
-    if step > rounding {
-        let mut bridge = Branch::bridge(branch.segment, end, start)?;
-        bridge.xi = [joint, branch.xi[0]];
-        return Some(bridge);
-    }
-    if step >= -rounding && joint < branch.xi[1] {
-        branch.xi[0] = joint;
-    }
-    None
-}
-
-/// The arc of a straight step between two stations.
-fn step(from: &Station, to: &Station) -> Option<Arc> {
-    Arc::line([from.x, from.z], [to.x, to.z]).ok()
+/// Distance \[mm\] in ξ from a segment's start to its end.
+fn run(segment: &Segment, frame: &Station) -> f64 {
+    segment.end().seen_from(frame).x - segment.start().seen_from(frame).x
 }

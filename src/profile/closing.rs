@@ -1,0 +1,567 @@
+//! Closes a drawn chain: neighbouring segments miss each other by the rounding of a drawing's coordinates, and a surface
+//! with steps has contacts, edges and slivers that no wheel has.
+//!
+//! One rule, joint by joint, from the drawn ends alone. Let d be the distance between the two ends across the tangent,
+//! φ the kink, K = [`BEND`] / length of the chain, and w = √(d/K):
+//!
+//! - **met**: ends that differ by roundings only are one point already, and stay as they are;
+//! - **crossing**: where the drawing has a kink, |φ| > Kw, both segments are trimmed or continued to where they cross,
+//!   less than about w away;
+//! - **bend**: else the last w of the left segment and the first w of the right one are bent towards each other. Each bent
+//!   stretch leaves its segment along the tangent with the curvature changed by one constant, ±d/w² = ±K for the step and
+//!   up to K/2 for the kink, which goes. An arc's is an arc; a polynomial's is the polynomial plus a parabola.
+//!
+//! Outside these stretches every segment is the drawn one. A gap along the tangent is no step: the segments first go on towards
+//! each other, by the parts of it that leave the least kink. w is at least [`SHORTEST`] and at most [`SHARE`] of the shorter neighbour. The rule has no direction, no axes and no
+//! unit of length: it commutes with mirroring, rigid motion and scaling, and closing twice changes nothing.
+
+use twofloat::TwoFloat;
+
+use super::{Arc, Polynomial, Segment, Shape, Station};
+use crate::error::{Error, Result};
+
+/// Ends closer than this share of the profile's extent are one joint, moved apart by rounding. Coordinates of arcs are
+/// rounded some ten times; bending over 1e-13 mm would make segments of nothing.
+pub const ONE_JOINT: f64 = 16.0 * f64::EPSILON;
+
+/// Curvature × length of the chain by which a bend may differ from the drawing: 1/(1200 mm) on a wheel of 150 mm. With more, bends
+/// rival the curvature of treads and crowns, and a second contact arises beside the first; with less, they change more of the drawn
+/// surface than the step itself is worth.
+const BEND: f64 = 1.0 / 8.0;
+
+/// Shortest bent stretch as a share of the chain's length: 18 µm of 150 mm. Shorter ones put points of files closer than solvers
+/// tell them apart; longer ones change more of the drawing for steps that are nothing.
+const SHORTEST: f64 = 1.0 / 8192.0;
+
+/// Share of a segment that may be bent, trimmed or continued at either of its ends: the drawn shape keeps its middle.
+const SHARE: f64 = 1.0 / 3.0;
+
+/// Largest step as a share of the bent stretch beside it: a tangent then turns by up to 0.1 rad. More is no rounding of the
+/// segment's ends.
+const STEEPEST: f64 = 1.0 / 16.0;
+
+/// Share of a kink by which it may differ where the segments cross. Beyond, they curve away from each other before they meet.
+const SAME_KINK: f64 = 0.25;
+
+/// Corrections after which a joint has not closed: each gains a factor of curvature × w, ten at least.
+const MOST_CORRECTIONS: usize = 40;
+
+/// How a joint was closed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Closing {
+    /// Index of the segment in the closed chain that ends at the joint point.
+    pub left: usize,
+    /// Distance \[mm\] of the two drawn ends across the tangent.
+    pub step: f64,
+    /// Largest distance \[mm\] by which the drawn surface was moved across its tangent.
+    pub moved: f64,
+    /// Length \[mm\] of the stretch to either side of the joint that is not as drawn.
+    pub reach: f64,
+}
+
+/// Closes a chain: the segments, and what was done at each joint with more than a rounding between its ends.
+///
+/// # Errors
+/// A step beside a segment that is too short to take it.
+pub(super) fn close(segments: &[Segment], extent: f64) -> Result<(Vec<Segment>, Vec<Closing>)> {
+    let lengths: Vec<f64> = segments.iter().map(chord).collect();
+    let chain: f64 = lengths.iter().sum();
+    let mut out: Vec<Segment> = Vec::with_capacity(segments.len());
+    let mut closings = Vec::new();
+    for (index, next) in segments.iter().enumerate() {
+        let Some(last) = out.pop() else {
+            out.push(next.clone());
+            continue;
+        };
+        let longest = SHARE * lengths[index - 1].min(lengths[index]);
+        let (left, right) = (Edge::end(&last), Edge::start(next));
+        let rounding = ONE_JOINT * (extent + left.station.x.abs() + left.station.z.abs());
+        let misfit = Misfit { left, right, chain, longest, rounding };
+        let closed = misfit.closed().ok_or_else(|| misfit.refusal(next.place(index)))?;
+        let [left, bent_left] = closed.left;
+        out.extend(left.into_iter().chain(bent_left));
+        if let Some(closing) = closed.closing {
+            closings.push(Closing { left: out.len() - 1, ..closing });
+        }
+        let [bent_right, right] = closed.right;
+        out.extend(bent_right.into_iter().chain(right));
+    }
+    Ok((out, closings))
+}
+
+/// Distance \[mm\] between a segment's ends.
+fn chord(segment: &Segment) -> f64 {
+    let (start, end) = (segment.start(), segment.end());
+    (end.x - start.x).hypot(end.z - start.z)
+}
+
+/// A segment at the joint to be closed; distances s \[mm\] along it count from its drawn end there, positive to the right.
+#[derive(Debug, Clone, Copy)]
+struct Edge<'a> {
+    segment: &'a Segment,
+    station: Station,
+    /// +1 where the segment ends at the joint, −1 where it begins there.
+    outward: f64,
+}
+
+/// The part of a segment that is bent: from s = −outward × `reach` on, over `length`.
+#[derive(Debug, Clone, Copy)]
+struct Bent {
+    reach: f64,
+    length: f64,
+    /// Change of curvature \[1/mm\].
+    change: f64,
+}
+
+impl<'a> Edge<'a> {
+    fn end(segment: &'a Segment) -> Self {
+        Self { segment, station: segment.end(), outward: 1.0 }
+    }
+
+    fn start(segment: &'a Segment) -> Self {
+        Self { segment, station: segment.start(), outward: -1.0 }
+    }
+
+    /// The station at s of the segment or its continuation.
+    fn at(&self, s: f64) -> Station {
+        match &self.segment.shape {
+            Shape::Arc(arc) => graphed(&self.station, onward(&self.station, arc.curvature(), s)),
+            Shape::Polynomial(polynomial) => polynomial.station(self.parameter(polynomial, s)),
+        }
+    }
+
+    /// The parameter of a polynomial at s, by its speed at the joint.
+    fn parameter(&self, polynomial: &Polynomial, s: f64) -> f64 {
+        let end = if self.outward > 0.0 { polynomial.t[1] } else { polynomial.t[0] };
+        end + s / polynomial.speed(end)
+    }
+
+    /// The segment up to s.
+    fn cut(&self, s: f64) -> Segment {
+        let shape = match &self.segment.shape {
+            Shape::Arc(arc) if self.outward > 0.0 => Shape::Arc(Arc { end: self.at(s), ..*arc }),
+            Shape::Arc(arc) => Shape::Arc(Arc { start: self.at(s), ..*arc }),
+            Shape::Polynomial(polynomial) => {
+                let mut cut = polynomial.clone();
+                cut.t[usize::from(self.outward > 0.0)] = self.parameter(polynomial, s);
+                Shape::Polynomial(cut)
+            }
+        };
+        Segment { label: self.segment.label.clone(), shape }
+    }
+
+    /// The bent part; its far end is the joint.
+    fn bent(&self, bent: &Bent) -> Segment {
+        let (from, length) = (-self.outward * bent.reach, self.outward * bent.length);
+        let shape = match &self.segment.shape {
+            Shape::Arc(arc) => {
+                let curvature = arc.curvature() + bent.change;
+                let near = self.at(from);
+                let far = graphed(&near, onward(&near, curvature, length));
+                let [start, end] = if self.outward > 0.0 { [near, far] } else { [far, near] };
+                Shape::Arc(Arc { start, end, radius: curvature.recip() })
+            }
+            Shape::Polynomial(polynomial) => {
+                let near = self.parameter(polynomial, from);
+                let far = near + length / polynomial.speed(self.parameter(polynomial, 0.0));
+                let mut all = polynomial.curved(near, self.parameter(polynomial, 0.0), bent.change);
+                all.t = if self.outward > 0.0 { [near, far] } else { [far, near] };
+                Shape::Polynomial(all)
+            }
+        };
+        Segment { label: format!("closing {}", self.segment.label).trim_end().into(), shape }
+    }
+}
+
+/// The station at a distance s \[mm\] along an arc of the given curvature, s negative for backwards.
+fn onward(from: &Station, curvature: f64, s: f64) -> Station {
+    let half = 0.5 * curvature * s;
+    let chord = if half == 0.0 { s } else { s * (half.sin() / half) };
+    let (sin, cos) = (2.0 * half).sin_cos();
+    Station { x: chord * half.cos(), z: chord * half.sin(), cos, sin }.placed_by(from)
+}
+
+/// Cosine of the tangent angle from which a point is kept by its abscissa.
+const GRAPH: f64 = 1.0 / 64.0;
+
+/// The station of an arc through `from` near a rounded one: its height is that of the arc at its abscissa, but for one rounding. A
+/// point's own two roundings would move steep segments across by one of the larger coordinate.
+fn graphed(from: &Station, rounded: Station) -> Station {
+    if from.cos.min(rounded.cos) < GRAPH {
+        return rounded;
+    }
+    let run = rounded.x - from.x;
+    Station { z: from.z + run * ((from.sin + rounded.sin) / (from.cos + rounded.cos)), ..rounded }
+}
+
+/// Two neighbours whose ends are to become one.
+#[derive(Debug)]
+struct Misfit<'a> {
+    left: Edge<'a>,
+    right: Edge<'a>,
+    /// Length of the chain \[mm\].
+    chain: f64,
+    /// Largest stretch \[mm\] that may be changed.
+    longest: f64,
+    /// Ends this close \[mm\] are one.
+    rounding: f64,
+}
+
+/// The segments of a closed joint: the left one and its bent end, the bent beginning of the right one and the right one.
+struct Closed {
+    left: [Option<Segment>; 2],
+    right: [Option<Segment>; 2],
+    closing: Option<Closing>,
+}
+
+impl Misfit<'_> {
+    /// From the left station to the right one: along the tangents \[mm\], across the tangent that it is less far from \[mm\], and the
+    /// turn \[rad\].
+    fn miss(left: &Station, right: &Station) -> [f64; 3] {
+        let from_left = right.seen_from(left);
+        let from_right = left.seen_from(right);
+        let along = 0.5 * (from_left.x - from_right.x);
+        let [a, b] = [from_left.z, -from_right.z];
+        [along, if a.abs() < b.abs() { a } else { b }, from_left.angle()]
+    }
+
+    fn closed(&self) -> Option<Closed> {
+        let [left, right] = [&self.left, &self.right].map(|edge| edge.segment.clone());
+        let [along, across, kink] = Self::miss(&self.left.station, &self.right.station);
+        if along.hypot(across) <= self.rounding {
+            return Some(Closed::met(left, right));
+        }
+        if along.abs() > self.longest {
+            return None;
+        }
+        if along.abs() <= self.rounding {
+            return self.met(across, kink);
+        }
+        let share = self.share(along, kink);
+        let (left, right) = (self.left.cut(share * along), self.right.cut((share - 1.0) * along));
+        let met = Misfit { left: Edge::end(&left), right: Edge::start(&right), ..*self };
+        let [along, across, kink] = Self::miss(&met.left.station, &met.right.station);
+        if along.hypot(across) <= self.rounding {
+            return Some(Closed::met(left.clone(), right.clone()));
+        }
+        met.met(across, kink)
+    }
+
+    /// The share of a gap along the tangent that the left segment goes on by; the right one begins earlier by the rest. That which
+    /// leaves the least kink.
+    fn share(&self, along: f64, kink: f64) -> f64 {
+        let (left, right) = (self.left.segment.end_curvatures()[1], self.right.segment.end_curvatures()[0]);
+        let share = (kink / along - right) / (left - right);
+        if share.is_nan() { 0.5 } else { share.clamp(0.0, 1.0) }
+    }
+
+    /// The joint of ends that miss each other across the tangent only.
+    fn met(&self, across: f64, kink: f64) -> Option<Closed> {
+        let most = BEND / self.chain;
+        let w = (across.abs() / most).sqrt().max(SHORTEST * self.chain).min(self.longest);
+        let sharp = kink.abs() > most * w;
+        let crossing = if sharp { self.crossing(across, kink, w) } else { None };
+        crossing.or_else(|| self.bend(w, across, if sharp { kink } else { 0.0 }))
+    }
+
+    /// Both segments up to where they cross, by Newton's steps along the tangents.
+    fn crossing(&self, across: f64, kink: f64, w: f64) -> Option<Closed> {
+        let mut s = [0.0; 2];
+        for _ in 0..MOST_CORRECTIONS {
+            let (left, right) = (self.left.at(s[0]), self.right.at(s[1]));
+            let apart = right.seen_from(&left);
+            if apart.x.hypot(apart.z) <= 0.25 * self.rounding {
+                let change = (apart.angle() - kink).abs();
+                if s.iter().any(|s| s.abs() > w) || change > SAME_KINK * kink.abs() {
+                    return None;
+                }
+                let mut closed = Closed::shared(self.left.cut(s[0]), self.right.cut(s[1]));
+                let (step, reach) = (across.abs(), s[0].abs().max(s[1].abs()));
+                closed.closing = Some(Closing { left: 0, step, moved: step, reach });
+                return Some(closed);
+            }
+            // left + a·t_left = right + b·t_right, in the left one's axes.
+            let b = -apart.z / apart.sin;
+            s = [s[0] + apart.x + b * apart.cos, s[1] + b];
+        }
+        None
+    }
+
+    /// Both segments bent over w towards each other, down to a kink.
+    fn bend(&self, w: f64, across: f64, kept: f64) -> Option<Closed> {
+        if across.abs() > STEEPEST * w {
+            return None;
+        }
+        let mut bents = [Bent { reach: w, length: w, change: 0.0 }; 2];
+        let mut last = f64::INFINITY;
+        for _ in 0..MOST_CORRECTIONS {
+            let (left, right) = (self.left.bent(&bents[0]), self.right.bent(&bents[1]));
+            let apart = right.start().seen_from(&left.end());
+            if bents.iter().any(|bent| !(bent.length <= 2.0 * w && bent.length >= 0.5 * w)) {
+                return None;
+            }
+            let turn = apart.angle() - kept;
+            let miss = apart.x.hypot(apart.z) + turn.abs() * w;
+            if miss <= 0.25 * self.rounding && miss >= 0.5 * last {
+                let mut closed = Closed::shared(left, right);
+                closed.left = [Some(self.left.cut(-w)), closed.left[0].take()];
+                closed.right = [closed.right[1].take(), Some(self.right.cut(w))];
+                let step = across.abs();
+                closed.closing = Some(Closing { left: 0, step, moved: 0.5 * step, reach: w });
+                return Some(closed);
+            }
+            last = miss;
+            let (lift, level) = (apart.z / (w * w), turn / (2.0 * w));
+            bents[0].change += level + lift;
+            bents[1].change += level - lift;
+            bents[0].length += 0.5 * apart.x;
+            bents[1].length += 0.5 * apart.x;
+        }
+        None
+    }
+
+    fn refusal(&self, place: String) -> Error {
+        let [along, across, _] = Self::miss(&self.left.station, &self.right.station);
+        let found = format!(
+            "{:.6} mm across and {:.6} mm along from the end of the segment before, at x = {}",
+            across.abs(),
+            along.abs(),
+            self.left.station.x
+        );
+        let expected = format!("a step that the {:.6} mm beside it can take", self.longest);
+        Error::new(place, found, expected, "correct the end points, or leave out the short segment")
+    }
+}
+
+impl Closed {
+    /// Two segments that meet as they are.
+    fn met(left: Segment, right: Segment) -> Self {
+        Self { left: [Some(left), None], right: [None, Some(right)], closing: None }
+    }
+
+    /// Two segments whose ends are one but for rounding: an arc takes over the other's end, two arcs the point between.
+    fn shared(mut left: Segment, mut right: Segment) -> Self {
+        let (end, start) = (left.end(), right.start());
+        let middle = |a: f64, b: f64| if a == b { a } else { a + 0.5 * (b - a) };
+        // Along its tangent an end may go by roundings of x and stay on its arc; across, only by those of z.
+        let slid =
+            |at: &Station, x: f64| if at.cos < GRAPH { at.z } else { at.z + (x - at.x) * at.sin / at.cos };
+        match (&mut left.shape, &mut right.shape) {
+            (Shape::Arc(left), Shape::Arc(right)) => {
+                let x = middle(end.x, start.x);
+                let z = middle(slid(&end, x), slid(&start, x));
+                (left.end.x, left.end.z) = (x, z);
+                (right.start.x, right.start.z) = (x, z);
+            }
+            (Shape::Arc(left), _) => (left.end.x, left.end.z) = (start.x, start.z),
+            (_, Shape::Arc(right)) => (right.start.x, right.start.z) = (end.x, end.z),
+            _ => {}
+        }
+        Self::met(left, right)
+    }
+}
+
+impl Polynomial {
+    /// Length per unit of the parameter at t.
+    fn speed(&self, t: f64) -> f64 {
+        let [dx, dz] = self.rates(t);
+        dx.hypot(dz)
+    }
+
+    /// The curve plus a parabola that starts at t = `near` and adds `change` \[1/mm\] to the curvature, exactly at t = `at`: along z
+    /// for a graph z(x), which stays one; else along the normal there.
+    fn curved(&self, near: f64, at: f64, change: f64) -> Self {
+        let [dx, dz] = self.rates(at);
+        let speed = dx.hypot(dz);
+        let [along_x, along_z] = if self.x.len() <= 2 { [0.0, 1.0] } else { [-dz / speed, dx / speed] };
+        let half = 0.5 * change * speed.powi(3) / (along_z * dx - along_x * dz);
+        let near = TwoFloat::from(near);
+        let parabola = [near * near * half, near * (-2.0 * half), TwoFloat::from(half)];
+        let plus = |c: &[TwoFloat], share: f64| -> Vec<TwoFloat> {
+            let mut out = c.to_vec();
+            if share != 0.0 {
+                out.resize(out.len().max(3), TwoFloat::from(0.0));
+                out.iter_mut().zip(parabola).for_each(|(c, p)| *c += p * share);
+            }
+            out
+        };
+        Self { t: self.t, x: plus(&self.x, along_x), z: plus(&self.z, along_z) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Half, Profile, standards};
+    use super::*;
+
+    /// Largest kink of a joint that the drawing does not have.
+    const SMOOTH: f64 = 1e-12;
+
+    fn arcs(step: f64, kink: f64) -> Result<Vec<Segment>> {
+        let first = Arc::about([0.0, -96.0], 96.0, Half::Upper, [-40.0, 0.0])?;
+        let start = Station { z: first.end.z + step, cos: kink.cos(), sin: kink.sin(), ..first.end };
+        let second = Arc::tangent_at(start, -345.0, 30.0)?;
+        Ok(vec![Segment::arc(first), Segment::arc(second)])
+    }
+
+    fn polynomials(step: f64) -> Result<Vec<Segment>> {
+        let graph = |c: &[f64], x| {
+            Ok(Segment { label: String::new(), shape: Shape::Polynomial(Polynomial::graph(c, x)?) })
+        };
+        Ok(vec![graph(&[0.0, 0.3, -0.01], [-20.0, 0.0])?, graph(&[step, 0.3, -0.005, 1e-4], [0.0, 20.0])?])
+    }
+
+    /// Largest distance \[mm\] across the tangent of the points of one chain from another, and of those `beyond` \[mm\] away from x = 0.
+    fn apart(one: &Profile, other: &Profile, beyond: f64) -> [f64; 2] {
+        use super::super::trace::{beside, trace};
+        let marks = trace(other, 1e-3);
+        let (mut hint, mut most, mut outside) = (0, 0f64, 0f64);
+        for mark in trace(one, 0.0371) {
+            let at = mark.station;
+            let found = beside(&marks, [at.x, at.z], hint);
+            hint = found.mark;
+            most = most.max(found.across.abs());
+            if at.x.abs() > beyond {
+                outside = outside.max(found.across.abs());
+            }
+        }
+        [most, outside]
+    }
+
+    #[test]
+    fn a_bend_closes_a_step_and_leaves_the_rest_alone() -> Result<()> {
+        for step in [1e-3, -5.4e-5, 3e-8] {
+            for drawn in [arcs(step, 0.0)?, arcs(step, 1e-6)?, polynomials(step)?] {
+                let profile = Profile::new("closed", "", drawn.clone())?;
+                let [closing] = profile.closings() else { return Err(Error::new("", "none", "one", "")) };
+                assert_eq!(profile.segments().len(), 4);
+                assert!((closing.moved / (0.5 * step.abs()) - 1.0).abs() < 0.05, "{closing:?}");
+                assert_eq!(profile.drawn(), drawn);
+                let joints = profile.continuity();
+                let most = BEND / 70.0;
+                for joint in &joints {
+                    assert!(joint.gap < 1e-14 && joint.kink.abs() < SMOOTH, "{step}: {joint:?}");
+                }
+                // The bend leaves its segment, the joint comes between, the bend enters the next.
+                let bent = joints[0].curvature_jump.abs().max(joints[2].curvature_jump.abs());
+                assert!(bent < 2.0 * most, "{step}: {bent:e} of {most:e}");
+                let alone = |k: usize| Profile::new("drawn", "", vec![drawn[k].clone()]);
+                for k in 0..2 {
+                    let half = Profile::new("half", "", profile.segments()[2 * k..2 * k + 2].to_vec())?;
+                    let [most, outside] = apart(&half, &alone(k)?, closing.reach);
+                    assert!(
+                        most < 0.6 * step.abs() + 1e-12 && outside < 1e-12,
+                        "{step}: {most:e} {outside:e}"
+                    );
+                }
+            }
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn a_drawn_kink_stays_and_moves_to_where_the_segments_cross() -> Result<()> {
+        let (flat, slope) = (Arc::line([-30.0, 0.0], [0.0, 0.0])?, Arc::line([0.0, 2e-6], [30.0, 2.0])?);
+        let profile = Profile::new("kinked", "", vec![Segment::arc(flat), Segment::arc(slope)])?;
+        let ([joint], [_, _]) = (&profile.continuity()[..], profile.segments()) else {
+            return Err(Error::new("", "more", "two segments", ""));
+        };
+        assert!((joint.x + 3e-5).abs() < 1e-9 && joint.gap == 0.0, "{joint:?}");
+        assert!((joint.kink - (2.0f64 - 2e-6).atan2(30.0)).abs() < 1e-15, "{joint:?}");
+        Ok(())
+    }
+
+    #[test]
+    fn a_gap_along_a_vertical_tangent_is_no_step() -> Result<()> {
+        // A face that ends 0.3 mm above the arc that goes on from it.
+        let face = Arc::line([-20.0, 30.0], [-20.0, 0.3])?;
+        let arc = Arc::about([0.0, 0.0], 20.0, Half::Lower, [-20.0, 0.0])?;
+        let profile = Profile::new("face", "", vec![Segment::arc(face), Segment::arc(arc)])?;
+        assert!(profile.segments().len() == 2 && profile.closings().is_empty());
+        let [joint] = profile.continuity()[..] else { return Err(Error::new("", "more", "one joint", "")) };
+        assert!(joint.gap == 0.0 && joint.kink.abs() < 1e-15, "{joint:?}");
+        assert!((profile.segments()[0].end().z).abs() < 1e-14, "{joint:?}");
+        Ok(())
+    }
+
+    #[test]
+    fn closing_again_changes_nothing() -> Result<()> {
+        for name in standards::wheel_names() {
+            let profile = standards::wheel(name)?;
+            let again = Profile::new(name, &profile.source, profile.segments().to_vec())?;
+            assert!(again.closings().is_empty(), "{name}: {:?}", again.closings());
+            for (one, other) in profile.segments().iter().zip(again.segments()) {
+                for (a, b) in [(one.start(), other.start()), (one.end(), other.end())] {
+                    assert!((a.x - b.x).hypot(a.z - b.z) < 1e-13, "{name}: {a:?} {b:?}");
+                }
+            }
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn closing_commutes_with_mirror_and_motion() -> Result<()> {
+        let frame = Station { x: 3.0, z: -7.0, cos: 0.8, sin: 0.6 };
+        let wheels = standards::wheel_names().map(standards::wheel).collect::<Result<Vec<_>>>()?;
+        for wheel in &wheels {
+            let mut drawn: Vec<_> =
+                wheel.drawn().iter().map(|s| s.map(Arc::mirrored, Polynomial::mirrored)).collect();
+            drawn.reverse();
+            same(&Profile::new("mirrored", "", drawn)?, &wheel.mirrored())?;
+            let moved = |s: &Segment| s.map(|a| a.placed_by(&frame), |p| p.placed_by(&frame));
+            let arcs = |s: &Segment| matches!(s.shape, Shape::Arc(_));
+            if wheel.drawn().iter().all(arcs) && wheel.drawn().iter().all(|s| moved(s).end().cos > 0.0) {
+                let (segments, _) =
+                    close(&wheel.drawn().iter().map(moved).collect::<Vec<_>>(), wheel.extent())?;
+                same(&Profile { segments, ..wheel.clone() }, &wheel.placed(&frame))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn same(one: &Profile, other: &Profile) -> Result<()> {
+        assert_eq!(one.segments().len(), other.segments().len(), "{}", other.name);
+        for (a, b) in one.segments().iter().zip(other.segments()) {
+            let (a, b) = (a.end(), b.end());
+            // Where tangents are alike a step's rounding moves its closing along by the root of it.
+            assert!((a.x - b.x).hypot(a.z - b.z) < 1e-6, "{}: {a:?} {b:?}", other.name);
+            assert!(a.seen_from(&b).z.abs() < 1e-12, "{}: {a:?} {b:?}", other.name);
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn closing_commutes_with_a_change_of_unit_to_the_bit() -> Result<()> {
+        let scaled = |segment: &Segment, by: f64| {
+            let station = |s: Station| Station { x: s.x * by, z: s.z * by, ..s };
+            segment.map(
+                |a| Arc { start: station(a.start), end: station(a.end), radius: a.radius * by },
+                |p| {
+                    let power = |(k, &c): (usize, &TwoFloat)| c * by.powi(1 - k as i32);
+                    let all = |c: &[TwoFloat]| c.iter().enumerate().map(power).collect();
+                    Polynomial { t: p.t.map(|t| t * by), x: all(&p.x), z: all(&p.z) }
+                },
+            )
+        };
+        for name in standards::wheel_names() {
+            let wheel = standards::wheel(name)?;
+            let drawn = wheel.drawn().iter().map(|s| scaled(s, 4096.0)).collect();
+            let expected: Vec<_> = wheel.segments().iter().map(|s| scaled(s, 4096.0)).collect();
+            assert_eq!(Profile::new(name, "", drawn)?.segments(), expected, "{name}");
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn a_step_that_the_segments_beside_it_cannot_take_is_an_error() -> Result<()> {
+        let line = |from: [f64; 2], to| Arc::line(from, to).map(Segment::arc);
+        let short = vec![
+            line([-50.0, 0.0], [0.0, 0.0])?,
+            line([0.0, 5e-3], [0.05, 5e-3])?,
+            line([0.05, 5e-3], [50.0, 5e-3])?,
+        ];
+        let error = Profile::new("short", "", short).err().map(|e| e.to_string()).unwrap_or_default();
+        assert!(error.contains("segment 2") && error.contains("0.005000 mm across"), "{error}");
+        Ok(())
+    }
+}
