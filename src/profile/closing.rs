@@ -12,7 +12,7 @@
 //!   up to K/2 for the kink, which goes. An arc's is an arc; a polynomial's is the polynomial plus a parabola.
 //!
 //! Outside these stretches every segment is the drawn one. A gap along the tangent is no step: the segments first go on towards
-//! each other, by the parts of it that leave the least kink. w is at least [`SHORTEST`] and at most [`SHARE`] of the shorter neighbour. The rule has no direction, no axes and no
+//! each other, the flatter one further. w is at least [`SHORTEST`] and at most [`SHARE`] of the shorter neighbour. The rule has no direction, no axes and no
 //! unit of length: it commutes with mirroring, rigid motion and scaling, and closing twice changes nothing.
 
 use twofloat::TwoFloat;
@@ -237,7 +237,7 @@ impl Misfit<'_> {
         if along.abs() <= self.rounding {
             return self.met(across, kink);
         }
-        let share = self.share(along, kink);
+        let share = self.share();
         let (left, right) = (self.left.cut(share * along), self.right.cut((share - 1.0) * along));
         let met = Misfit { left: Edge::end(&left), right: Edge::start(&right), ..*self };
         let [along, across, kink] = Self::miss(&met.left.station, &met.right.station);
@@ -247,12 +247,12 @@ impl Misfit<'_> {
         met.met(across, kink)
     }
 
-    /// The share of a gap along the tangent that the left segment goes on by; the right one begins earlier by the rest. That which
-    /// leaves the least kink.
-    fn share(&self, along: f64, kink: f64) -> f64 {
+    /// The share of a gap along the tangent that the left segment goes on by; the right one begins earlier by the rest. A line goes on
+    /// before an arc does, and of two arcs the flatter one further: it turns less on the way.
+    fn share(&self) -> f64 {
         let (left, right) = (self.left.segment.end_curvatures()[1], self.right.segment.end_curvatures()[0]);
-        let share = (kink / along - right) / (left - right);
-        if share.is_nan() { 0.5 } else { share.clamp(0.0, 1.0) }
+        let share = right.abs() / (left.abs() + right.abs());
+        if share.is_nan() { 0.5 } else { share }
     }
 
     /// The joint of ends that miss each other across the tangent only.

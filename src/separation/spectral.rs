@@ -389,7 +389,7 @@ mod tests {
     use crate::separation::values::Values;
 
     /// A spline has more: so many columns beside them would be in strips.
-    const FEW_JOINTS: usize = 10;
+    const FEW_JOINTS: usize = 24;
 
     /// s over a window, with columns beside its joints, and the largest number of spans of its strips' columns; compiled for one
     /// kind of machine, for an array that is there, so many values behind the beginning of a line.
@@ -432,8 +432,15 @@ mod tests {
     fn every_machine_gives_the_same_bits() -> Result<()> {
         let rail = standards::rail("UIC60")?;
         let splines = [spline(&rail, Side::Rail)?, spline(&standards::wheel("S1002")?, Side::Wheel)?];
-        let drawings = [rail, standards::wheel("APTA-120")?];
-        let cases = [(drawings.clone(), -14.0, 0.0, 3), (drawings, -14.0, 0.02, 0), (splines, -9.0, 0.0, 0)];
+        // A kink; and the closing of a drawing, 0.06 mm wide.
+        let drawings = [rail.clone(), standards::wheel("APTA-120")?];
+        let closed = [rail, standards::wheel("EN15302-A")?];
+        let cases = [
+            (drawings.clone(), -14.0, 0.0, 2),
+            (closed, -49.6, 0.0, 3),
+            (drawings, -14.0, 0.02, 0),
+            (splines, -9.0, 0.0, 0),
+        ];
         for ([rail, wheel], wheel_x, yaw, most_spans) in cases {
             let placement = Pair::new(rail, wheel, 460.0)?.placed(-11.0, wheel_x, yaw)?;
             // The columns of the second are whole lines: one half is the other's mirror image.

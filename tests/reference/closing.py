@@ -106,7 +106,7 @@ def joint(left, right, chain, longest):
     """The segments left, bent, bent, right of a joint with a step."""
     along, across, kink = miss(left.station(left.x[1]), right.station(right.x[0]))
     k_left, k_right = left.curvature(left.x[1]), right.curvature(right.x[0])
-    share = mpf(1) / 2 if k_left == k_right else min(max((kink / along - k_right) / (k_left - k_right), 0), 1)
+    share = mpf(1) / 2 if k_left == k_right == 0 else abs(k_right) / (abs(k_left) + abs(k_right))
     left = Curve(left.cut(1, left.away(1, share * along)))
     right = Curve(right.cut(0, right.away(0, (share - 1) * along)))
     along, across, kink = miss(left.station(left.x[1]), right.station(right.x[0]))

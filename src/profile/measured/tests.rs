@@ -489,8 +489,13 @@ fn segments_written_are_segments_read() -> Result<()> {
     let text = write::points(&points, Format::Csv, Side::Wheel, "");
     let options = Options { curve: Some(CurveKind::Arcs), ..Options::default() };
     let arcs = profile("s1002.csv", text.as_bytes(), Side::Wheel, &options)?.profile;
-    // What was drawn comes back; it is closed by arcs that start from rounded ends.
-    for (profile, bound) in [(&wheel, 2e-15), (&arcs, 1e-11)] {
+    let radius = |segment: &crate::profile::Segment| match &segment.shape {
+        crate::profile::Shape::Arc(arc) if arc.radius.is_finite() => arc.radius.abs(),
+        _ => 0.0,
+    };
+    let largest = arcs.segments().iter().map(radius).fold(0.0, f64::max);
+    // What was drawn comes back, and is closed by arcs that start from rounded ends. A fitted arc is written by its rounded centre.
+    for (profile, bound) in [(&wheel, 2e-15), (&arcs, f64::EPSILON * largest)] {
         let written = write::segments(profile)?;
         // The fit turns the vertical back of the flange by a rounding of its tangent.
         assert!(written.cut.len() <= 1, "{:?}", written.cut);
