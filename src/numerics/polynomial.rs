@@ -59,19 +59,34 @@ pub fn recentred(c: &[TwoFloat], centre: TwoFloat) -> Vec<TwoFloat> {
 /// Bounds of p over \[t0, t1\], from its Bernstein coefficients: never too narrow by more than rounding, exact
 /// at the ends, and converging with the square of the width.
 pub fn range(c: &[f64], t0: f64, t1: f64) -> [f64; 2] {
+    let around = |[low, high]: [f64; 2], v: f64| [low.min(v), high.max(v)];
+    bernstein(c, t0, t1).into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], around)
+}
+
+/// Bernstein coefficients of p over \[t0, t1\]: p lies in their hull, and p of a curve in the plane in that of its control points.
+pub fn bernstein(c: &[f64], t0: f64, t1: f64) -> Vec<f64> {
     let shifted = shifted_scaled(c, t0, t1 - t0);
     let n = shifted.len().saturating_sub(1);
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for i in 0..=n {
+    let coefficient = |i: usize| {
         let (mut sum, mut weight) = (0.0, 1.0);
         for (k, &c) in shifted.iter().enumerate().take(i + 1) {
             sum += weight * c;
             weight *= (i as f64 - k as f64) / (n as f64 - k as f64).max(1.0);
         }
-        low = low.min(sum);
-        high = high.max(sum);
+        sum
+    };
+    (0..shifted.len()).map(coefficient).collect()
+}
+
+/// The coefficients of the product of two polynomials; none where one has none.
+pub fn convolution(a: &[f64], b: &[f64]) -> Vec<f64> {
+    let mut out = vec![0.0; (a.len() + b.len()).saturating_sub(1)];
+    for (i, a) in a.iter().enumerate() {
+        for (k, b) in b.iter().enumerate() {
+            out[i + k] += a * b;
+        }
     }
-    [low, high]
+    out
 }
 
 /// Coefficients of p(t0 + w u) in u.

@@ -1,155 +1,160 @@
-//! Pairs of arcs, lines and fans: where wheel and rail have the same tangent at the same abscissa, in closed form
-//! or, for a yawed torus, from roots that are known to be bracketed.
+//! Pairs of arcs, lines and fans whose common tangent has a closed form: all but those with a yawed torus.
 
-use super::element::ArcElement;
-use super::isolate::monotone;
+use super::candidates::{Foot, Search};
+use super::element::{ArcElement, Element, SINE_ROUNDING, Shape, between, cosine};
 use super::locus::Attitude;
-use super::walk::{Placed, Walk};
 use crate::profile::Station;
 
-/// Slack of a sine against the ends of an element: a root on a joint may come out this far beyond either
-/// neighbour. Smaller loses it, larger only moves it, by as little.
-pub(super) const SINE_ROUNDING: f64 = 4.0 * f64::EPSILON;
+/// Looks for contact of two elements; whether there is a closed form.
+pub(super) fn meet(search: &mut Search, elements: [u32; 2]) -> bool {
+    let [wheel, rail] = search.elements(elements);
+    let yawed = search.attitude.sin_yaw != 0.0;
+    let mut pair = Pair { elements, search };
+    match (&wheel.shape, &rail.shape) {
+        (Shape::Arc(arc), Shape::Arc(below)) if !yawed => pair.arc_on_arc((arc, wheel), (below, rail)),
+        (Shape::Line, Shape::Arc(below)) => pair.line_on_arc(&wheel.ends, (below, rail)),
+        (Shape::Arc(arc), Shape::Line) => pair.arc_on_line((arc, wheel), &rail.ends),
+        (Shape::Line, Shape::Line) => pair.line_on_line(&wheel.ends, &rail.ends),
+        _ => return false,
+    }
+    true
+}
 
-/// An arc or fan of the wheel over an arc or fan of the rail.
+/// Two elements under way to be solved.
+struct Pair<'s, 'a> {
+    elements: [u32; 2],
+    search: &'s mut Search<'a>,
+}
+
+/// The outline of an arc or fan.
+struct Seen {
+    /// Sines of its tangents, ascending.
+    sine: [f64; 2],
+    /// Abscissa of the centre of an unyawed one \[mm\].
+    centre: f64,
+}
+
+/// What is seen of an arc or fan; `None` where it has no outline.
 ///
-/// With σ = sinΘ both bodies' abscissae are functions of σ. Without yaw their difference is linear. With yaw its
-/// derivative is (ϱ_c − r_R)/√(1 − σ²), and ϱ_c of [`super::locus`] is monotone in |σ|: between the at most two
-/// places where ϱ_c = r_R there is at most one root each.
-pub(super) fn arc_on_arc(walk: &mut Walk, wheel: (&ArcElement, &Placed), rail: (&ArcElement, [f64; 2])) {
-    let ((arc, placed), (below, sine)) = (wheel, rail);
-    let [low, high] = [placed.sine[0].max(sine[0]), placed.sine[1].min(sine[1])];
-    let rounding = walk.rounding(arc.radius.abs() + below.radius.abs());
-    let difference = below.radius - arc.radius;
-    let slack = if difference == 0.0 { 0.0 } else { rounding / difference.abs() } + SINE_ROUNDING;
-    if low > high + slack {
-        return;
-    }
-    if walk.attitude.sin_yaw != 0.0 {
-        return yawed(walk, arc, below, [low, high.max(low)], rounding);
-    }
-    let gap = placed.centre - below.centre[0];
-    let sin = if difference == 0.0 {
-        // Concentric and alike: they touch all along; the middle stands for it.
-        if gap.abs() > rounding {
-            return;
+/// An arc with its hollow side down has an outline only where ϱ_c < 0, else the rings beside it hide it.
+fn seen(attitude: &Attitude, arc: &ArcElement, element: &Element) -> Option<Seen> {
+    let mut sine = element.range;
+    if attitude.sin_yaw != 0.0 {
+        let steepest = steepest_seen(attitude, arc)?;
+        if sine[0] >= steepest || sine[1] <= -steepest {
+            return None;
         }
-        low + (high - low) / 2.0
-    } else {
-        let sin = gap / difference;
-        if sin < low - slack || sin > high + slack {
-            return;
-        }
-        sin.min(high).max(low)
-    };
-    offer(walk, arc, below, sin);
+        sine = sine.map(|sin| attitude.outline_sine(sin.clamp(-steepest, steepest)));
+    } else if attitude.sin_roll != 0.0 {
+        sine = sine.map(|sin| attitude.rolled_sine(sin));
+    }
+    let centre = attitude.offset + arc.centre[0] * attitude.cos_roll + arc.centre[1] * attitude.sin_roll;
+    (sine[0] <= sine[1]).then_some(Seen { sine, centre })
 }
 
-/// Roots over \[low, high\] of the difference of the two abscissae.
-fn yawed(walk: &mut Walk, arc: &ArcElement, rail: &ArcElement, [low, high]: [f64; 2], rounding: f64) {
-    let attitude = *walk.attitude;
-    let mut cuts = [low; 4];
-    let mut count = 1;
-    for cut in turning_sines(&attitude, arc, rail.radius).into_iter().flatten() {
-        if cut > cuts[count - 1] && cut < high {
-            cuts[count] = cut;
-            count += 1;
+/// Sine of the steepest profile tangent of an arc with an outline: cosψ, and where the hollow side is down
+/// cos³φ = (R − b) sin²ψ/|r|.
+fn steepest_seen(attitude: &Attitude, arc: &ArcElement) -> Option<f64> {
+    if arc.radius >= 0.0 {
+        return Some(attitude.cos_yaw);
+    }
+    let cube = (attitude.radius - arc.centre[1]) * attitude.sin_yaw_squared() / -arc.radius;
+    (cube < 1.0).then(|| cosine(cube.cbrt()).min(attitude.cos_yaw))
+}
+
+impl Pair<'_, '_> {
+    /// An arc or fan of the unyawed wheel over an arc or fan of the rail: both abscissae are linear in the sine of the tangent.
+    fn arc_on_arc(&mut self, (arc, wheel): (&ArcElement, &Element), (below, rail): (&ArcElement, &Element)) {
+        let Some(seen) = seen(self.search.attitude, arc, wheel) else { return };
+        let [low, high] = [seen.sine[0].max(rail.range[0]), seen.sine[1].min(rail.range[1])];
+        let rounding = self.search.rounding(arc.radius.abs() + below.radius.abs());
+        let difference = below.radius - arc.radius;
+        let slack = if difference == 0.0 { 0.0 } else { rounding / difference.abs() } + SINE_ROUNDING;
+        if low > high + slack {
+            return;
+        }
+        let gap = seen.centre - below.centre[0];
+        let sin = if difference == 0.0 {
+            // Concentric and alike: they touch all along; the middle stands for it.
+            if gap.abs() > rounding {
+                return;
+            }
+            low + (high - low) / 2.0
+        } else {
+            let sin = gap / difference;
+            if sin < low - slack || sin > high + slack {
+                return;
+            }
+            sin.min(high).max(low)
+        };
+        self.offer(arc, below, sin);
+    }
+
+    /// A line of the wheel, a straight line as outline, over an arc or fan of the rail.
+    fn line_on_arc(&mut self, ends: &[Station; 2], (below, rail): (&ArcElement, &Element)) {
+        let outline = ends.map(|end| self.search.attitude.outline(&end));
+        let (Station { sin, cos, .. }, sine) = (outline[0], rail.range);
+        if !(cos > 0.0 && sin >= sine[0] - SINE_ROUNDING && sin <= sine[1] + SINE_ROUNDING) {
+            return;
+        }
+        let foot = below.at(sin, cos);
+        let rounding = self.search.rounding(below.radius.abs());
+        if let Some(point) = between(ends, &outline.map(|p| p.x), foot.x, rounding) {
+            self.take(on_line(point), Foot { station: foot, radius: below.radius, parameter: sin });
         }
     }
-    cuts[count] = high;
-    let mut apart = |sin: f64| {
+
+    /// An arc or fan of the wheel over a line of the rail.
+    fn arc_on_line(&mut self, (arc, wheel): (&ArcElement, &Element), rail: &[Station; 2]) {
+        let Station { sin, cos, .. } = rail[0];
+        let Some(Seen { sine, .. }) = seen(self.search.attitude, arc, wheel) else { return };
+        if sin < sine[0] - SINE_ROUNDING || sin > sine[1] + SINE_ROUNDING {
+            return;
+        }
+        let point = wheel_point(self.search.attitude, arc, sin, cos);
+        let x = self.search.attitude.outline(&point).x;
+        let rounding = self.search.rounding(arc.radius.abs());
+        if let Some(foot) = between(rail, &rail.map(|p| p.x), x, rounding) {
+            let above = Foot { station: point, radius: arc.radius, parameter: point.sin };
+            self.take(above, on_line(foot));
+        }
+    }
+
+    /// Two lines: they touch all along if parallel; the middle stands for it.
+    fn line_on_line(&mut self, ends: &[Station; 2], rail: &[Station; 2]) {
+        let outline = ends.map(|end| self.search.attitude.outline(&end));
+        let turn = outline[0].sin * rail[0].cos - outline[0].cos * rail[0].sin;
+        if turn.is_nan() || turn.abs() > SINE_ROUNDING {
+            return;
+        }
+        let (low, high) = (outline[0].x.max(rail[0].x), outline[1].x.min(rail[1].x));
+        let x = low + (high - low) / 2.0;
+        let point = between(ends, &outline.map(|p| p.x), x, 0.0);
+        let foot = between(rail, &rail.map(|p| p.x), x, 0.0);
+        if let (Some(point), Some(foot)) = (point, foot) {
+            self.take(on_line(point), on_line(foot));
+        }
+    }
+
+    fn offer(&mut self, arc: &ArcElement, rail: &ArcElement, sin: f64) {
         let cos = cosine(sin);
-        let point = wheel_point(&attitude, arc, sin, cos);
-        attitude.outline(&point).x - rail.at(sin, cos).x
-    };
-    let mut values = [0.0; 4];
-    for k in 0..=count {
-        values[k] = apart(cuts[k]);
+        let point = wheel_point(self.search.attitude, arc, sin, cos);
+        let above = Foot { station: point, radius: arc.radius, parameter: point.sin };
+        self.take(above, Foot { station: rail.at(sin, cos), radius: rail.radius, parameter: sin });
     }
-    for k in 0..count {
-        let root = monotone(&mut apart, [cuts[k], cuts[k + 1]], [values[k], values[k + 1]], rounding);
-        if let Some(sin) = root {
-            offer(walk, arc, rail, sin);
-        }
+
+    fn take(&mut self, wheel: Foot, rail: Foot) {
+        self.search.offer(self.elements, &wheel, &rail);
     }
 }
 
-/// Sines of the outline's tangent, ascending, where ϱ_c = r_R: (R − b) sin²ψ/cos³φ = r_R − r.
-fn turning_sines(attitude: &Attitude, arc: &ArcElement, rail_radius: f64) -> [Option<f64>; 2] {
-    let cube = (attitude.radius - arc.centre[1]) * attitude.sin_yaw_squared() / (rail_radius - arc.radius);
-    if !(cube > 0.0 && cube < 1.0) {
-        return [None; 2];
-    }
-    let cos = cube.cbrt();
-    let sin = cosine(cos);
-    [-sin, sin].map(|sin| Some(attitude.outline_sine(sin)))
-}
-
-/// A line of the wheel, a straight line as outline, over an arc or fan of the rail.
-pub(super) fn line_on_arc(walk: &mut Walk, ends: &[Station; 2], rail: (&ArcElement, [f64; 2])) {
-    let (below, sine) = rail;
-    let outline = ends.map(|end| walk.attitude.outline(&end));
-    let Station { sin, cos, .. } = outline[0];
-    if !(cos > 0.0 && sin >= sine[0] - SINE_ROUNDING && sin <= sine[1] + SINE_ROUNDING) {
-        return;
-    }
-    let foot = below.at(sin, cos);
-    if let Some(point) = between(ends, &outline.map(|p| p.x), foot.x, walk.rounding(below.radius.abs())) {
-        walk.offer(&point, f64::INFINITY, &foot, below.radius);
-    }
-}
-
-/// An arc or fan of the wheel over a line of the rail.
-pub(super) fn arc_on_line(walk: &mut Walk, wheel: (&ArcElement, &Placed), rail: &[Station; 2]) {
-    let ((arc, placed), Station { sin, cos, .. }) = (wheel, rail[0]);
-    if sin < placed.sine[0] - SINE_ROUNDING || sin > placed.sine[1] + SINE_ROUNDING {
-        return;
-    }
-    let point = wheel_point(walk.attitude, arc, sin, cos);
-    let x = walk.attitude.outline(&point).x;
-    if let Some(foot) = between(rail, &rail.map(|p| p.x), x, walk.rounding(arc.radius.abs())) {
-        walk.offer(&point, arc.radius, &foot, f64::INFINITY);
-    }
-}
-
-/// Two lines: they touch all along if parallel; the middle stands for it.
-pub(super) fn line_on_line(walk: &mut Walk, ends: &[Station; 2], rail: &[Station; 2]) {
-    let outline = ends.map(|end| walk.attitude.outline(&end));
-    let turn = outline[0].sin * rail[0].cos - outline[0].cos * rail[0].sin;
-    if turn.is_nan() || turn.abs() > SINE_ROUNDING {
-        return;
-    }
-    let (low, high) = (outline[0].x.max(rail[0].x), outline[1].x.min(rail[1].x));
-    let x = low + (high - low) / 2.0;
-    let point = between(ends, &outline.map(|p| p.x), x, 0.0);
-    let foot = between(rail, &rail.map(|p| p.x), x, 0.0);
-    if let (Some(point), Some(foot)) = (point, foot) {
-        walk.offer(&point, f64::INFINITY, &foot, f64::INFINITY);
-    }
-}
-
-/// The point of a line where a linear function of it, given at the ends, has a value.
-pub(super) fn between(ends: &[Station; 2], values: &[f64; 2], value: f64, rounding: f64) -> Option<Station> {
-    if !(value >= values[0] - rounding && value <= values[1] + rounding) {
-        return None;
-    }
-    let share = ((value - values[0]) / (values[1] - values[0])).clamp(0.0, 1.0);
-    let [a, b] = ends;
-    Some(Station { x: a.x + share * (b.x - a.x), z: a.z + share * (b.z - a.z), ..*a })
-}
-
-fn offer(walk: &mut Walk, arc: &ArcElement, rail: &ArcElement, sin: f64) {
-    let cos = cosine(sin);
-    let point = wheel_point(walk.attitude, arc, sin, cos);
-    walk.offer(&point, arc.radius, &rail.at(sin, cos), rail.radius);
+/// A point of a line.
+fn on_line(station: Station) -> Foot {
+    Foot { station, radius: f64::INFINITY, parameter: station.x }
 }
 
 /// The point of a wheel's arc whose outline has a given tangent.
 fn wheel_point(attitude: &Attitude, arc: &ArcElement, sin: f64, cos: f64) -> Station {
     let (sin, cos) = attitude.profile_tangent(sin, cos);
     arc.at(sin, cos)
-}
-
-pub(super) fn cosine(sin: f64) -> f64 {
-    ((1.0 - sin) * (1.0 + sin)).max(0.0).sqrt()
 }

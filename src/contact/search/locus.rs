@@ -23,6 +23,7 @@
 //! which is monotone in |Θ|: that is what makes the search over arcs complete. r = 0 is a kink's or end's ring
 //! under its fan of normals, r = ∞ a cone.
 
+use super::element::Place;
 use crate::profile::Station;
 
 /// How a wheel stands over its rail, but for the height: the trigonometry of one position, done once.
@@ -40,13 +41,21 @@ pub(super) struct Attitude {
     pub sin_roll: f64,
     /// Its cosine, positive.
     pub cos_roll: f64,
+    /// tan ψ.
+    pub tan_yaw: f64,
+    /// Tangent of the profile's steepest tangent with an outline: 1/|tan ψ|.
+    pub steepest_tangent: f64,
+    /// tan ψ sin ψ: by how far an outline is shifted, per rolling radius and slope.
+    pub shift: f64,
 }
 
 impl Attitude {
     /// The attitude of a pose.
     pub fn new(offset: f64, yaw: f64, roll: f64, radius: f64) -> Self {
         let ((sin_yaw, cos_yaw), (sin_roll, cos_roll)) = (yaw.sin_cos(), roll.sin_cos());
-        Self { offset, radius, sin_yaw, cos_yaw, sin_roll, cos_roll }
+        let tan_yaw = sin_yaw / cos_yaw;
+        let (steepest_tangent, shift) = (tan_yaw.abs().recip(), tan_yaw * sin_yaw);
+        Self { offset, radius, sin_yaw, cos_yaw, sin_roll, cos_roll, tan_yaw, steepest_tangent, shift }
     }
 
     /// sin² ψ.
@@ -98,12 +107,37 @@ impl Attitude {
     /// beyond the vertical.
     #[inline]
     pub fn outline_sine(&self, profile_sine: f64) -> f64 {
-        let sin = (profile_sine / self.cos_yaw).clamp(-1.0, 1.0);
+        self.rolled_sine((profile_sine / self.cos_yaw).clamp(-1.0, 1.0))
+    }
+
+    /// The sine of a tangent after the roll; ∓1 beyond the vertical.
+    #[inline]
+    pub fn rolled_sine(&self, sin: f64) -> f64 {
         let cos = ((1.0 - sin) * (1.0 + sin)).sqrt();
         if cos * self.cos_roll + sin * self.sin_roll < 0.0 {
             return 1f64.copysign(sin);
         }
         sin * self.cos_roll - cos * self.sin_roll
+    }
+
+    /// The outline's point of a point of the profile, with its derivatives over the same parameter; NaN where there is no
+    /// outline.
+    #[inline]
+    pub fn outline_place(&self, place: &Place) -> Place {
+        let station = self.outline(&place.station);
+        if self.sin_yaw == 0.0 && self.sin_roll == 0.0 {
+            return Place { station, ..*place };
+        }
+        let Station { x: _, z, cos, sin } = place.station;
+        let slope = sin / cos;
+        let rolling = self.radius - z;
+        let bend = rolling * place.turn / (cos * cos * cos);
+        let run = place.run * self.cos_yaw + self.shift * (bend - place.run * slope * slope);
+        // The roll turns the outline: dx by cos(roll) + tanΘ sin(roll), and the sine with it.
+        let sin = sin / self.cos_yaw;
+        let tangent = sin / ((1.0 - sin) * (1.0 + sin)).sqrt();
+        let turned = self.cos_roll + tangent * self.sin_roll;
+        Place { station, run: run * turned, turn: place.turn / self.cos_yaw * turned, radius: place.radius }
     }
 
     /// ϱ_c \[mm\], the outline's signed radius of curvature at a profile point of signed radius `radius`.

@@ -16,26 +16,31 @@
 //! # Method
 //!
 //! `locus`: the outline of the yawed wheel along the rail reduces the search to two plane curves. A local minimum of
-//! the vertical gap has a common tangent (at kinks, steps and ends: a common normal within the fan). All such places
-//! are found pair by pair of segments: in closed form or from guaranteed brackets for arcs and lines
-//! (`arcs`), by interval bounds for polynomials (`polynomials`). So the lowest cannot be missed.
+//! the vertical gap has a common tangent (at kinks and ends: a common normal within the fan). A tree over the elements of
+//! each profile (`body`) bounds the gap of whole stretches at once (`placed`), so that only pairs of elements that may be
+//! lowest are solved (`walk`): arcs and lines in closed form (`arcs`), polynomials and yawed arcs by bounds of their
+//! curvatures and Newton's method (`stretches`). So the lowest cannot be missed.
 //!
 //! What counts is the part of each profile that faces the other body in its own axes ([`Section`]): parts of a
 //! wheel that face down only by virtue of the roll (a flange back beyond the vertical) do not take part.
 
 mod arcs;
+mod body;
+mod bounds;
+mod candidates;
 mod element;
-mod isolate;
 mod locus;
-mod polynomials;
+mod placed;
+mod stretches;
 mod walk;
 pub mod wheelset;
 
 use crate::error::{Error, Result, finite};
-use crate::profile::{Profile, Section, Side};
-use element::Element;
+use crate::profile::{Profile, Side};
+use body::Body;
+use candidates::{Candidate, Meeting, Search};
 use locus::Attitude;
-use walk::{Candidate, Placed, Walk};
+use walk::Walk;
 
 /// Share of the two profiles' extents below which two candidates are one point. Candidates of one contact that
 /// sits on a joint differ by up to 1e-8 of it; the closest contacts that a drawing can mean are 1e-4 apart.
@@ -48,10 +53,8 @@ const LARGEST_ANGLE: f64 = 0.5;
 /// A rail and a wheel profile, prepared for searches.
 #[derive(Debug, Clone)]
 pub struct ProfilePair {
-    rail: Vec<Element>,
-    wheel: Vec<Element>,
-    rail_section: Section,
-    wheel_section: Section,
+    rail: Body,
+    wheel: Body,
     radius: f64,
     /// Sum of both extents: the size that rounding is judged by \[mm\].
     extent: f64,
@@ -130,9 +133,23 @@ pub struct Touch<'a> {
 #[derive(Debug, Clone)]
 pub struct ContactSearch<'a> {
     pair: &'a ProfilePair,
-    placed: Vec<Placed>,
+    walk: Walk,
     candidates: Vec<Candidate>,
     contacts: Vec<Contact>,
+    /// Where contact was in the search before.
+    last: Option<Meeting>,
+    work: Work,
+}
+
+/// What searches have done so far.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Work {
+    /// Searches: a wheel lowered onto its rail once.
+    pub searches: u64,
+    /// Pairs of nodes of the two trees looked at.
+    pub pairs: u64,
+    /// Pairs of elements, or of parts of them, looked at for common tangents.
+    pub solves: u64,
 }
 
 impl ProfilePair {
@@ -142,28 +159,20 @@ impl ProfilePair {
     /// A radius that is not a number, or that does not reach beyond the wheel profile's highest point; a profile
     /// without any part that faces the other body.
     pub fn new(rail: &Profile, wheel: &Profile, radius: f64) -> Result<Self> {
-        let rail_section = Section::own_axes(rail, Side::Rail);
-        let wheel_section = Section::own_axes(wheel, Side::Wheel);
-        for (section, profile) in [(&rail_section, rail), (&wheel_section, wheel)] {
-            if section.pieces.is_empty() {
+        let body = |profile: &Profile, side| {
+            Body::new(profile, side).ok_or_else(|| {
                 let expected = "a profile travelled from left to right";
-                return Err(Error::new(&profile.name, "no surface", expected, "reverse or mirror it"));
-            }
-        }
+                Error::new(&profile.name, "no surface", expected, "reverse or mirror it")
+            })
+        };
+        let (rail_body, wheel_body) = (body(rail, Side::Rail)?, body(wheel, Side::Wheel)?);
         let ends = wheel.segments().iter().flat_map(|s| [s.start().z, s.end().z]);
         let highest = ends.fold(0.0, f64::max);
         if finite("wheel radius", radius)? <= highest {
             let expected = format!("more than {highest} mm, the height of the wheel profile");
             return Err(Error::new("wheel radius", radius.to_string(), expected, "give R in mm"));
         }
-        Ok(Self {
-            rail: element::elements(rail, &rail_section, Side::Rail),
-            wheel: element::elements(wheel, &wheel_section, Side::Wheel),
-            rail_section,
-            wheel_section,
-            radius,
-            extent: rail.extent() + wheel.extent(),
-        })
+        Ok(Self { rail: rail_body, wheel: wheel_body, radius, extent: rail.extent() + wheel.extent() })
     }
 
     /// Nominal rolling radius R \[mm\].
@@ -173,7 +182,14 @@ impl ProfilePair {
 
     /// A search over this pair.
     pub fn search(&self) -> ContactSearch<'_> {
-        ContactSearch { pair: self, placed: Vec::new(), candidates: Vec::new(), contacts: Vec::new() }
+        ContactSearch {
+            pair: self,
+            walk: Walk::new(&self.wheel.nodes, &self.rail.nodes),
+            candidates: Vec::new(),
+            contacts: Vec::new(),
+            last: None,
+            work: Work::default(),
+        }
     }
 }
 
@@ -208,11 +224,12 @@ impl ContactSearch<'_> {
     ///
     /// Accuracy: heights and gaps to a few roundings of the profiles' extents, whatever R; abscissae to that over
     /// √(difference of curvatures), from the common tangent, not from a flat minimum.
-    /// Cost: about a microsecond for arcs, four with polynomials; yaw doubles or triples it.
+    /// Cost: about half a microsecond for arcs, a few with polynomials of any number; yaw doubles it. The first search knows
+    /// no place to start from and costs some times more.
     /// Degenerate: bodies that touch along a stretch (parallel lines, equal arcs) give its middle.
     pub fn touch(&mut self, pose: &Pose, selection: &Selection) -> Option<Touch<'_>> {
         let attitude = Attitude::new(pose.offset, pose.yaw, pose.roll, self.pair.radius);
-        let height = self.lower(&attitude, selection.within)?;
+        let height = -self.lower(&attitude, selection.within)?.gap;
         Some(self.collect(&attitude, height, selection))
     }
 
@@ -240,27 +257,54 @@ impl ContactSearch<'_> {
         Touch { height, contacts: &self.contacts }
     }
 
-    /// Height of first touch, with all candidates up to `within` above it left in the buffer.
-    fn lower(&mut self, attitude: &Attitude, within: f64) -> Option<f64> {
-        let pair = self.pair;
-        self.placed.clear();
-        self.placed.extend(
-            pair.wheel
-                .iter()
-                .enumerate()
-                .filter_map(|(index, element)| walk::place(attitude, index, element)),
-        );
+    /// The lowest candidate, with all others up to `within` above it left in the buffer.
+    fn lower(&mut self, attitude: &Attitude, within: f64) -> Option<Candidate> {
         self.candidates.clear();
-        let candidates = &mut self.candidates;
-        let mut walk = Walk { pair, attitude, within, lowest: f64::INFINITY, candidates };
-        walk.all(&self.placed);
-        let lowest = walk.lowest;
-        lowest.is_finite().then_some(-lowest)
+        let mut search = self.pair.at(attitude, within, &mut self.candidates);
+        search.lowest = self.pair.highest(attitude);
+        self.walk.all(&mut search, self.last);
+        self.work.searches += 1;
+        self.work.solves += search.solves;
+        self.work.pairs = self.walk.pairs;
+        let lowest = *self.candidates.iter().min_by(|a, b| a.gap.total_cmp(&b.gap))?;
+        self.last = Some(lowest.meeting);
+        Some(lowest)
     }
 
-    /// The lowest candidate of the last search.
-    fn lowest(&self) -> Option<&Candidate> {
-        self.candidates.iter().min_by(|a, b| a.gap.total_cmp(&b.gap))
+    /// The place of least gap near a former one, at another attitude; `None` where it has left its elements.
+    fn follow(&self, attitude: &Attitude, meeting: &Meeting) -> Option<Candidate> {
+        walk::follow(&self.pair.at(attitude, 0.0, &mut Vec::new()), meeting)
+    }
+
+    /// What this search has done so far.
+    pub fn work(&self) -> Work {
+        self.work
+    }
+}
+
+impl ProfilePair {
+    /// A search at one attitude.
+    fn at<'a>(
+        &'a self,
+        attitude: &'a Attitude,
+        within: f64,
+        candidates: &'a mut Vec<Candidate>,
+    ) -> Search<'a> {
+        let extent = self.extent + attitude.offset.abs();
+        let bodies = [&self.wheel, &self.rail];
+        let slack = 16.0 * f64::EPSILON * extent;
+        Search { bodies, attitude, extent, within, lowest: f64::INFINITY, candidates, solves: 0, slack }
+    }
+
+    /// The gap of the highest point of the wheel's profile over the lowest of the rail \[mm\]: what is higher is no touch of
+    /// the two profiles, but of a yawed wheel's rings towards the axle. Slopes below 45° may rise over their profile by their
+    /// own ring.
+    fn highest(&self, attitude: &Attitude) -> f64 {
+        let [x, z] = self.wheel.extent;
+        let tilted = (-x[0] * attitude.sin_roll).max(-x[1] * attitude.sin_roll);
+        let steepest = attitude.tan_yaw;
+        let rise = self.radius * steepest * steepest / (1.0 + element::cosine(steepest));
+        z[1] * attitude.cos_roll + tilted + rise - self.rail.extent[1][0]
     }
 }
 

@@ -3,10 +3,11 @@ use super::*;
 use crate::contact::feasibility::feasibility;
 use crate::placement::Pair;
 use crate::placement::track::{RailDistance, Track, WheelDistance, Wheelset};
-use crate::profile::{Arc, Half, Polynomial, Segment, Shape, standards};
+use crate::profile::{Arc, Half, Polynomial, Section, Segment, Shape, standards};
 
 mod brute;
 mod reference;
+mod rough;
 
 const ALL: Selection = Selection { within: 0.0, apart: 0.0 };
 

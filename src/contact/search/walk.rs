@@ -1,180 +1,172 @@
-//! One walk over all pairs of elements at one attitude.
+//! Branch and bound over the trees of both bodies: only pairs of elements that may hold the lowest gap are solved.
+//!
+//! Every pair of nodes has a gap that none of its points comes below. Pairs that cannot come below the lowest gap so far, or
+//! that share no abscissa or no tangent, are dropped; of the others the larger node is replaced by its children, the lower
+//! bound first. The elements that touched in the search before are solved first of all: most other pairs then lie too high.
+//!
+//! Cost: elements of one body follow each other along x, so that a node shares abscissae with few nodes of its own size:
+//! at most some multiple of n_W + n_R pairs are looked at, and with a good first gap some dozens.
 
-use super::ProfilePair;
-use super::arcs::{SINE_ROUNDING, arc_on_arc, arc_on_line, cosine, line_on_arc, line_on_line};
-use super::element::{ArcElement, Element, Shape};
-use super::locus::Attitude;
-use super::polynomials;
-use crate::profile::Station;
+use super::body::Node;
+use super::candidates::{Candidate, Meeting, Search};
+use super::placed::Placed;
+use super::stretches::SAME_TANGENT;
+use super::{arcs, stretches};
 
-/// A wheel element as it stands over the rail.
+/// A pair of nodes that may hold the lowest gap.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Placed {
-    /// Index of the element.
-    pub element: usize,
-    /// Its outline lies between these abscissae of the rail \[mm\].
-    pub x: [f64; 2],
-    /// Sines of the outline's tangent, ascending.
-    pub sine: [f64; 2],
-    /// Abscissa of an unyawed arc's centre.
-    pub centre: f64,
+struct Pending {
+    wheel: u32,
+    rail: u32,
+    bound: f64,
 }
 
-/// A place where wheel and rail have a common tangent at the same abscissa, the wheel above.
+/// A node of the wheel as it stands in the search of this number.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Candidate {
-    /// Vertical gap with the wheel's profile origin on the level of the rail's \[mm\].
-    pub gap: f64,
-    /// The rail's point with the common tangent.
-    pub rail: Station,
-    /// The wheel profile's point with the tangent that belongs to the common one.
-    pub wheel: Station,
-    /// Signed radii of the two profiles \[mm\].
-    pub wheel_radius: f64,
-    /// See `wheel_radius`.
-    pub rail_radius: f64,
+struct Standing {
+    placed: Placed,
+    search: u64,
 }
 
-/// Everything a walk needs.
-pub(super) struct Walk<'a> {
-    /// The profiles.
-    pub pair: &'a ProfilePair,
-    /// The wheel's attitude.
-    pub attitude: &'a Attitude,
-    /// Candidates farther above the lowest than this are dropped \[mm\].
-    pub within: f64,
-    /// The lowest gap so far.
-    pub lowest: f64,
-    /// Candidates so far.
-    pub candidates: &'a mut Vec<Candidate>,
+/// Where the wheel's nodes stand, and the pairs that wait: kept, so that a search allocates nothing.
+#[derive(Debug, Clone)]
+pub(super) struct Walk {
+    wheel: Vec<Standing>,
+    rail: Vec<Placed>,
+    links: [Vec<Link>; 2],
+    /// Number of this search.
+    search: u64,
+    /// Pairs that wait, the next one last.
+    waiting: [Pending; DEEPEST_WAIT],
+    /// Pairs of nodes looked at.
+    pub pairs: u64,
 }
 
-impl Walk<'_> {
-    /// Looks at every pair.
-    pub fn all(&mut self, placed: &[Placed]) {
-        let pair = self.pair;
-        let slack = self.rounding(0.0);
-        for wheel in placed {
-            let element = &pair.wheel[wheel.element];
-            let [low, high] = [wheel.x[0] - slack, wheel.x[1] + slack];
-            // The rail's elements are in order of x, both ends.
-            let first = pair.rail.partition_point(|rail| rail.x[1] < low);
-            for rail in pair.rail[first..].iter().take_while(|rail| rail.x[0] <= high) {
-                if rail.sine[0] <= wheel.sine[1] + SINE_ROUNDING
-                    && rail.sine[1] >= wheel.sine[0] - SINE_ROUNDING
-                {
-                    self.meet(element, wheel, rail);
+/// More pairs than wait at a time: each pair that is replaced leaves one behind at most, down two balanced trees of at most
+/// 2³² nodes.
+const DEEPEST_WAIT: usize = 80;
+
+/// How the tree goes on below a node.
+#[derive(Debug, Clone, Copy)]
+struct Link {
+    /// The right child, or 0; the left one follows its parent.
+    right: u32,
+    /// The element of a leaf.
+    element: u32,
+    /// The larger side of its box \[mm\].
+    size: f64,
+}
+
+impl Link {
+    fn of(node: &Node) -> Self {
+        Self { right: node.right, element: node.element, size: node.size }
+    }
+
+    fn is_leaf(&self) -> bool {
+        self.right == 0
+    }
+}
+
+impl Walk {
+    /// For two trees.
+    pub fn new(wheel: &[Node], rail: &[Node]) -> Self {
+        Self {
+            wheel: vec![Standing { placed: Placed::HIDDEN, search: 0 }; wheel.len()],
+            rail: rail.iter().map(|node| Placed::rail(&node.bounds)).collect(),
+            links: [wheel, rail].map(|nodes| nodes.iter().map(Link::of).collect()),
+            search: 0,
+            waiting: [Pending { wheel: 0, rail: 0, bound: f64::NEG_INFINITY }; DEEPEST_WAIT],
+            pairs: 0,
+        }
+    }
+
+    /// Finds all candidates up to `within` above the lowest, and some more.
+    pub fn all(&mut self, search: &mut Search, last: Option<Meeting>) {
+        let solved = last.map(|meeting| meeting.elements);
+        if let Some(meeting) = last {
+            meet(search, meeting.elements, None);
+            if search.candidates.is_empty()
+                && let Some(gap) = gap_at(search, &meeting)
+            {
+                search.lowest = search.lowest.min(gap);
+            }
+        }
+        self.search += 1;
+        self.waiting[0] = Pending { wheel: 0, rail: 0, bound: f64::NEG_INFINITY };
+        let mut count = 1;
+        let mut ceiling = search.bound_ceiling();
+        while count > 0 {
+            count -= 1;
+            let Pending { wheel, rail, bound } = self.waiting[count];
+            if bound > ceiling {
+                continue;
+            }
+            let (above, below) = (self.links[0][wheel as usize], self.links[1][rail as usize]);
+            let [a, b] = if above.is_leaf() && below.is_leaf() {
+                let elements = [above.element, below.element];
+                if solved != Some(elements) {
+                    meet(search, elements, Some(&self.wheel[wheel as usize].placed));
+                    ceiling = search.bound_ceiling();
                 }
-            }
+                continue;
+            } else if below.is_leaf() || (!above.is_leaf() && above.size >= below.size) {
+                [[wheel + 1, rail], [above.right, rail]]
+            } else {
+                [[wheel, rail + 1], [wheel, below.right]]
+            };
+            self.pairs += 2;
+            let (a, b) = (self.pending(search, a), self.pending(search, b));
+            // The lower bound on top. No branches: which pairs stay is as good as random.
+            let swapped = a.bound < b.bound;
+            let (first, next) = if swapped { (b, a) } else { (a, b) };
+            self.waiting[count] = first;
+            count += usize::from(first.bound <= ceiling);
+            self.waiting[count] = next;
+            count += usize::from(next.bound <= ceiling);
         }
     }
 
-    fn meet(&mut self, wheel: &Element, placed: &Placed, rail: &Element) {
-        match (&wheel.shape, &rail.shape) {
-            (Shape::Arc(arc), Shape::Arc(below)) => arc_on_arc(self, (arc, placed), (below, rail.sine)),
-            (Shape::Line(ends), Shape::Arc(below)) => line_on_arc(self, ends, (below, rail.sine)),
-            (Shape::Arc(arc), Shape::Line(below)) => arc_on_line(self, (arc, placed), below),
-            (Shape::Line(ends), Shape::Line(below)) => line_on_line(self, ends, below),
-            (Shape::Polynomial(stretch), _) => polynomials::over_rail(self, (stretch, wheel.x), rail),
-            (_, Shape::Polynomial(stretch)) => {
-                polynomials::under_wheel(self, wheel, placed, (stretch, rail.x))
-            }
+    /// Two nodes with a gap that none of their points comes below; infinite where they cannot touch.
+    #[inline(always)]
+    fn pending(&mut self, search: &Search, [wheel, rail]: [u32; 2]) -> Pending {
+        let standing = &mut self.wheel[wheel as usize];
+        if standing.search != self.search {
+            let bounds = &search.bodies[0].nodes[wheel as usize].bounds;
+            let placed = search.attitude.place(bounds).widened(search.slack, SAME_TANGENT);
+            *standing = Standing { placed, search: self.search };
         }
-    }
-
-    /// Rounding of an abscissa \[mm\], where lengths of size `radius` take part.
-    pub fn rounding(&self, radius: f64) -> f64 {
-        16.0 * f64::EPSILON * (self.pair.extent + self.attitude.offset.abs() + radius)
-    }
-
-    /// Takes a candidate unless it is a maximum of the gap or too far up.
-    ///
-    /// The gap is corrected along the common tangent for the rounding of the two abscissae.
-    pub fn offer(&mut self, wheel: &Station, wheel_radius: f64, rail: &Station, rail_radius: f64) {
-        let outline = self.attitude.outline(wheel);
-        let gap = (outline.z - rail.z) - rail.sin / rail.cos * (outline.x - rail.x);
-        if gap.is_nan() || gap > self.lowest + self.within {
-            return;
-        }
-        let [above, below] = [self.attitude.outline_radius(wheel, wheel_radius), rail_radius].map(f64::recip);
-        // Equal curvatures stay in: their rounding decides nothing.
-        let seen = above == 0.0 || (above > 0.0) == (wheel_radius.is_sign_positive());
-        if !seen || above - below < -64.0 * f64::EPSILON * (above.abs() + below.abs()) {
-            return;
-        }
-        self.lowest = self.lowest.min(gap);
-        self.candidates.push(Candidate { gap, rail: *rail, wheel: *wheel, wheel_radius, rail_radius });
+        Pending { wheel, rail, bound: standing.placed.gap_over(&self.rail[rail as usize]) }
     }
 }
 
-/// Where a wheel element stands; `None` where it has no outline.
-///
-/// An arc with its hollow side down has an outline only where ϱ_c < 0, else the rings beside it hide it.
-pub(super) fn place(attitude: &Attitude, index: usize, element: &Element) -> Option<Placed> {
-    let (sine, mut x) = match &element.shape {
-        Shape::Polynomial(stretch) => {
-            let sine = element.sine.map(|sin| attitude.outline_sine(sin));
-            (sine, polynomials::range(attitude, stretch, element))
-        }
-        Shape::Line(ends) => {
-            let outline = ends.map(|end| attitude.outline(&end));
-            if outline[0].cos.is_nan() || outline[0].cos <= 0.0 {
-                return None;
-            }
-            ([outline[0].sin; 2], outline.map(|p| p.x))
-        }
-        Shape::Arc(arc) => {
-            let ends = arc_ends(attitude, arc, element)?;
-            (ends.map(|end| end.sin), ends.map(|end| end.x))
-        }
-    };
-    if x[0] > x[1] {
-        x.swap(0, 1);
-    }
-    let centre = if let Shape::Arc(arc) = &element.shape {
-        attitude.offset + arc.centre[0] * attitude.cos_roll + arc.centre[1] * attitude.sin_roll
+/// Looks for contact of two elements; `placed`: the wheel's, where it is known.
+fn meet(search: &mut Search, elements: [u32; 2], placed: Option<&Placed>) {
+    if arcs::meet(search, elements) {
+        search.solves += 1;
     } else {
-        0.0
-    };
-    (sine[0] <= sine[1]).then_some(Placed { element: index, x, sine, centre })
+        stretches::meet(search, elements, placed);
+    }
 }
 
-/// The outline's points at the ends of what is seen of an arc or fan.
-fn arc_ends(attitude: &Attitude, arc: &ArcElement, element: &Element) -> Option<[Station; 2]> {
-    let mut ends = element.ends;
-    if attitude.sin_yaw != 0.0 {
-        let steepest = steepest_seen(attitude, arc)?;
-        if ends[0].sin >= steepest || ends[1].sin <= -steepest {
-            return None;
-        }
-        for end in &mut ends {
-            if end.sin.abs() > steepest {
-                let sin = steepest.copysign(end.sin);
-                *end = arc.at(sin, cosine(sin));
-            }
-        }
-    }
-    let mut outline = ends.map(|end| attitude.outline(&end));
-    if outline[0].cos < 0.0 && outline[1].cos < 0.0 {
+/// The place of contact near a former one, on the same elements; `None` where it has left them.
+pub(super) fn follow(search: &Search, meeting: &Meeting) -> Option<Candidate> {
+    let [wheel, rail] = stretches::follow(search, meeting.elements, meeting.parameters)?;
+    search.candidate(meeting.elements, &wheel, &rail)
+}
+
+/// A gap \[mm\] that the lowest is no higher than: over the wheel's point of a former place of contact.
+fn gap_at(search: &Search, meeting: &Meeting) -> Option<f64> {
+    let [above, below] = search.bodies;
+    let [wheel, _] = search.elements(meeting.elements);
+    let own = wheel.place(&above.coefficients, meeting.parameters[0]).station;
+    let outline = search.attitude.outline(&own);
+    let [low, high] = below.extent[0];
+    if !(outline.x >= low && outline.x <= high && outline.cos > 0.0) {
         return None;
     }
-    for end in &mut outline {
-        if end.cos < 0.0 {
-            // Turned beyond the vertical by the roll: seen up to there.
-            let tangent = 1f64.copysign(end.sin);
-            let (sin, cos) = attitude.profile_tangent(tangent, 0.0);
-            *end = Station { sin: tangent, cos: 0.0, ..attitude.outline(&arc.at(sin, cos)) };
-        }
-    }
-    Some(outline)
-}
-
-/// Sine of the steepest profile tangent of an arc with an outline: cosψ, and where the hollow side is down
-/// cos³φ = (R − b) sin²ψ/|r|.
-fn steepest_seen(attitude: &Attitude, arc: &ArcElement) -> Option<f64> {
-    if arc.radius >= 0.0 {
-        return Some(attitude.cos_yaw);
-    }
-    let cube = (attitude.radius - arc.centre[1]) * attitude.sin_yaw_squared() / -arc.radius;
-    (cube < 1.0).then(|| cosine(cube.cbrt()).min(attitude.cos_yaw))
+    let rail = &below.elements[below.element_at(outline.x)];
+    let parameter = rail.parameter_at(&below.coefficients, outline.x);
+    let foot = rail.place(&below.coefficients, parameter).station;
+    let gap = outline.z - foot.z + search.slack;
+    ((foot.x - outline.x).abs() <= search.slack && gap.is_finite()).then_some(gap)
 }

@@ -4,10 +4,10 @@
 //! c + R_y(roll) R_z(yaw) p. So the right-hand profile origin, S out along the axle and R below it, is at
 //! c + (S cosψ cosφ − R sinφ, S sinψ, −S cosψ sinφ − R cosφ).
 
+use super::candidates::{Candidate, Meeting};
 use super::locus::Attitude;
-use super::{ContactSearch, ProfilePair, Selection, Touch, small_angle};
+use super::{ContactSearch, ProfilePair, Selection, Touch, Work, small_angle};
 use crate::error::{Result, finite};
-use crate::numerics::roots::bracketed;
 use crate::placement::Pair;
 use crate::placement::track::{RailDistance, Track, WheelDistance, Wheelset};
 
@@ -90,15 +90,20 @@ const SIGNS: [f64; 2] = [-1.0, 1.0];
 /// Largest roll that is looked for \[rad\]: a wheelset tilted by this has one flange on top of the rail.
 const LARGEST_ROLL: f64 = 0.1;
 
-/// Newton's method converges quadratically and changes contact a few times at most; after this many steps the bracket
-/// that it keeps is halved instead.
-const NEWTON_STEPS: u32 = 12;
+/// Rolls \[rad\] at which a sign change is looked for where Newton's method finds no roll: with a lift of 28 mm over 1.5 m a
+/// flange stands on top of its rail; wider gauges and higher flanges need more.
+const FAR: [f64; 3] = [0.025, 0.05, LARGEST_ROLL];
 
-/// First step \[rad\] of the search outwards, and the factor of every further one. Two roots closer together than a step
-/// would be missed; they exist only where contact passes through the steepest part of a flange.
-const FIRST_STEP: f64 = 1e-4;
-/// See [`FIRST_STEP`].
-const STEP_GROWTH: f64 = 1.25;
+/// Both sides are lowered no more often than this for one roll. Newton's method takes two to six; a contact beyond 73° leads
+/// it away, and from the far side of the flange it takes as many again. Half of these would do even by halving alone, but
+/// where a wheel leaves its rail: there is no roll then.
+pub const MOST_LEVELS: u32 = 64;
+
+/// Levels of Newton's method without a sign change, before one is looked for.
+const NEWTON_LEVELS: u32 = 5;
+
+/// Newton's steps with the places of contact kept: quadratic, from 1e-3 rad.
+const FOLLOWED: u32 = 6;
 
 /// Both sides lowered at one roll, left and right.
 #[derive(Debug, Clone, Copy)]
@@ -111,6 +116,8 @@ struct Level {
     z: [f64; 2],
     /// Derivative of the difference of `z` with the roll.
     slope: f64,
+    /// The places of contact.
+    meetings: [Meeting; 2],
 }
 
 impl WheelsetOnTrack {
@@ -140,9 +147,11 @@ impl WheelsetSearch<'_> {
     ///
     /// The difference of the two sides' heights grows with the roll as long as contact is on treads and flanks
     /// flatter than about atan(D/R) ≈ 73°, D the distance of the contacts; beyond, turning about the axle moves a flange
-    /// sideways faster than down. The root reached from zero roll by Newton's method is taken, else the one nearest to
-    /// zero that a search outwards brackets.
+    /// sideways faster than down. The root reached from zero roll by Newton's method is taken, else the one that lies between
+    /// zero and a flange on top of its rail.
     /// Accuracy: heights and roll to rounding at the size of the wheelset, about 1e-13 mm and 1e-16 rad.
+    /// Cost: the two sides are lowered two to four times on treads, about ten times at most where a flange is steeper than 73°;
+    /// never more than [`MOST_LEVELS`] times.
     ///
     /// # Errors
     /// Values that are not finite; angles beyond ±0.5 rad.
@@ -153,7 +162,11 @@ impl WheelsetSearch<'_> {
         let level = match position.roll {
             Roll::Neglect => self.level(position, 0.0, reach),
             Roll::Fixed(roll) => self.level(position, small_angle("wheelset: roll", roll)?, reach),
-            Roll::Solve => self.solve_roll(position, reach),
+            Roll::Solve => match self.solve_roll(position) {
+                // Near misses are looked for once, at the end.
+                Some(level) if reach > 0.0 => self.level(position, level.roll, reach),
+                level => level,
+            },
         };
         let Some(Level { roll, z, heights, attitudes, .. }) = level else { return Ok(None) };
         let [left, right] = &mut self.sides;
@@ -165,66 +178,129 @@ impl WheelsetSearch<'_> {
     }
 
     /// Both sides lowered at the roll at which both wheels touch.
-    fn solve_roll(&mut self, position: &Position, within: f64) -> Option<Level> {
-        let rounding = 2.0 * f64::EPSILON * (self.system.wheelset.wheel_x + self.system.wheelset.radius);
-        let (mut below, mut above) = (None, None);
-        let mut level = self.level(position, 0.0, within)?;
-        let mut last = None;
-        for _ in 0..NEWTON_STEPS {
-            let next = level.next(last.as_ref());
-            if level.difference().abs() <= rounding || next == level.roll {
+    ///
+    /// Method: Newton's, with the places of contact kept until their heights agree; then both sides are lowered, which finds
+    /// them again or shows the next ones. A sign change, once there, brackets it.
+    fn solve_roll(&mut self, position: &Position) -> Option<Level> {
+        let mut ends = [None, None];
+        let mut level = self.level(position, 0.0, 0.0)?;
+        let mut far = None;
+        for count in 1..MOST_LEVELS {
+            let difference = level.difference();
+            if difference.abs() <= self.rounding() {
                 return Some(level);
             }
-            let bound = if level.difference() < 0.0 { &mut below } else { &mut above };
-            *bound = Some(level.roll);
-            let inside = match (below, above) {
-                (Some(a), Some(b)) => (next - a) * (next - b) < 0.0,
-                _ => next.abs() <= LARGEST_ROLL,
+            ends[usize::from(difference > 0.0)] = Some(level);
+            let next = match ends {
+                [Some(below), Some(above)] => self.between(position, [below, above], &level, count)?,
+                _ => self.outward(position, &level, &mut far, count)?,
             };
-            if !inside {
-                break;
-            }
-            last = Some(level);
-            level = self.level(position, next, within)?;
-        }
-        let (a, b) = below.zip(above).or_else(|| self.nearest_change(position))?;
-        let apart = |roll: f64| self.level(position, roll, 0.0).map_or(f64::NAN, |level| level.difference());
-        let roll = bracketed(apart, a, b)?;
-        self.level(position, roll, within)
-    }
-
-    /// A bracket of the roll, looked for outwards from zero in growing steps.
-    fn nearest_change(&mut self, position: &Position) -> Option<(f64, f64)> {
-        let mut sign = |roll: f64| self.level(position, roll, 0.0).map(|level| level.difference() > 0.0);
-        let start = sign(0.0)?;
-        let (mut inner, mut outer) = (0.0, FIRST_STEP);
-        while inner < LARGEST_ROLL {
-            for direction in SIGNS {
-                if sign(direction * outer).is_some_and(|s| s != start) {
-                    return Some((direction * inner, direction * outer));
+            level = match self.level(position, next, 0.0) {
+                Some(level) => level,
+                // A wheel beside its rail.
+                None => {
+                    let mut rest = far.take().unwrap_or_else(|| Far::new(difference));
+                    let level = rest.find_map(|roll| self.level(position, roll, 0.0))?;
+                    far = Some(rest);
+                    level
                 }
-            }
-            (inner, outer) = (outer, outer * STEP_GROWTH);
+            };
         }
         None
     }
 
+    /// The next roll to try without a sign change so far: Newton's, or a far one once that has failed.
+    fn outward(&self, position: &Position, level: &Level, far: &mut Option<Far>, count: u32) -> Option<f64> {
+        if far.is_none() {
+            let next = self.follow(position, level);
+            if count < NEWTON_LEVELS && next.abs() <= LARGEST_ROLL && next != level.roll {
+                return Some(next);
+            }
+        }
+        far.get_or_insert_with(|| Far::new(level.difference())).next()
+    }
+
+    /// The next roll to try between two of which one is too small: the root with the places of contact kept of the one that is
+    /// nearer to touching, or of the other, or the middle, which every fourth is in any case.
+    fn between(&self, position: &Position, ends: [Level; 2], last: &Level, count: u32) -> Option<f64> {
+        let [a, b] = ends.map(|end| end.roll);
+        let middle = a + (b - a) / 2.0;
+        if middle == a || middle == b {
+            // No number between: the height jumps where a wheel leaves its rail.
+            return None;
+        }
+        let inside = |roll: &f64| (roll - a) * (roll - b) < 0.0;
+        if count.is_multiple_of(HALVED) {
+            return Some(middle);
+        }
+        let other = if last.roll == a { ends[1] } else { ends[0] };
+        let nearer =
+            if other.difference().abs() < last.difference().abs() { [&other, last] } else { [last, &other] };
+        let followed = nearer.into_iter().map(|level| self.follow(position, level)).find(inside);
+        Some(followed.unwrap_or(middle))
+    }
+
+    /// The roll at which both wheels touch with the places of contact of a level, or where they leave their elements on the
+    /// way there; NaN where there is none.
+    fn follow(&self, position: &Position, level: &Level) -> f64 {
+        let (mut roll, mut difference, mut slope) = (level.roll, level.difference(), level.slope);
+        for _ in 0..FOLLOWED {
+            let next = roll - difference / slope;
+            if next == roll || next.is_nan() || next.abs() > LARGEST_ROLL {
+                return next;
+            }
+            roll = next;
+            let attitudes = SIGNS.map(|sign| self.system.attitude(position, roll, sign));
+            let (mut z, mut sum) = ([0.0; 2], 0.0);
+            for (k, (attitude, datum)) in attitudes.iter().enumerate() {
+                let Some(candidate) = self.sides[k].follow(attitude, &level.meetings[k]) else { return roll };
+                z[k] = datum - candidate.gap;
+                sum += self.lever(position, k, z[k], &candidate);
+            }
+            (difference, slope) = (z[1] - z[0], sum);
+            if difference.abs() <= 0.5 * self.rounding() {
+                break;
+            }
+        }
+        roll
+    }
+
+    /// Rounding of a difference of heights \[mm\].
+    fn rounding(&self) -> f64 {
+        2.0 * f64::EPSILON * (self.system.wheelset.wheel_x + self.system.wheelset.radius)
+    }
+
     /// Lowers both sides at a given roll, leaving candidates up to `within` above first touch in their buffers.
     fn level(&mut self, position: &Position, roll: f64, within: f64) -> Option<Level> {
-        let attitudes = SIGNS.map(|sign| self.system.attitude(position, roll, sign));
-        let mut level =
-            Level { roll, attitudes: attitudes.map(|a| a.0), heights: [0.0; 2], z: [0.0; 2], slope: 0.0 };
-        for (k, (attitude, datum)) in attitudes.into_iter().enumerate() {
-            level.heights[k] = self.sides[k].lower(&attitude, within)?;
-            level.z[k] = datum + level.heights[k];
-            // Turning by dα about c moves the point of contact, at (p_x, p_z) from c, by (p_z, −p_x) dα; the wheel then
-            // has to rise by (p_x + p_z tanθ) dα. The left side's own roll is the negative: the slopes add.
-            let rail = self.sides[k].lowest()?.rail;
-            let x = rail.x + self.system.track.rail_x - SIGNS[k] * position.lateral;
-            let down = rail.z + self.system.track.rail_z - level.z[k] - self.system.wheelset.radius;
-            level.slope += x + down * rail.sin / rail.cos;
+        let placed = SIGNS.map(|sign| self.system.attitude(position, roll, sign));
+        let attitudes = placed.map(|(attitude, _)| attitude);
+        let (mut heights, mut z, mut slope) = ([0.0; 2], [0.0; 2], 0.0);
+        let mut lowest = [None; 2];
+        for (k, (attitude, datum)) in placed.iter().enumerate() {
+            let candidate = self.sides[k].lower(attitude, within)?;
+            heights[k] = -candidate.gap;
+            z[k] = datum + heights[k];
+            slope += self.lever(position, k, z[k], &candidate);
+            lowest[k] = Some(candidate.meeting);
         }
-        Some(level)
+        let [left, right] = lowest;
+        Some(Level { roll, attitudes, heights, z, slope, meetings: [left?, right?] })
+    }
+
+    /// Part of one side in the derivative of the difference of heights with the roll \[mm/rad\].
+    ///
+    /// Turning by dα about c moves the point of contact, at (p_x, p_z) from c, by (p_z, −p_x) dα; the wheel then has to rise by
+    /// (p_x + p_z tanθ) dα. The left side's own roll is the negative: the slopes add.
+    fn lever(&self, position: &Position, side: usize, z: f64, candidate: &Candidate) -> f64 {
+        let rail = &candidate.rail;
+        let x = rail.x + self.system.track.rail_x - SIGNS[side] * position.lateral;
+        let down = rail.z + self.system.track.rail_z - z - self.system.wheelset.radius;
+        x + down * rail.sin / rail.cos
+    }
+
+    /// What the searches of both sides have done so far.
+    pub fn work(&self) -> [Work; 2] {
+        [self.sides[0].work(), self.sides[1].work()]
     }
 }
 
@@ -233,21 +309,31 @@ impl Level {
     fn difference(&self) -> f64 {
         self.z[1] - self.z[0]
     }
+}
 
-    /// The next roll to try: Newton's, or where there was a step before the zero of the inverse cubic with both values
-    /// and slopes, as long as it only refines Newton's; across a change of contact it would not.
-    fn next(&self, last: Option<&Self>) -> f64 {
-        let step = -self.difference() / self.slope;
-        let Some(last) = last else { return self.roll + step };
-        let span = self.difference() - last.difference();
-        let t = -last.difference() / span;
-        let back = (1.0 - t) * (1.0 - t);
-        let refined = back * (1.0 + 2.0 * t) * (last.roll - self.roll)
-            + span * (t * back / last.slope + t * t * (t - 1.0) / self.slope);
-        self.roll + if (refined - step).abs() <= REFINEMENT * step.abs() { refined } else { step }
+/// Of the rolls tried between two ends every so many is the middle.
+const HALVED: u32 = 4;
+
+/// Far rolls on both sides, first on the one to which the wheelset has to be turned by its levers: a wheel that stands too high is
+/// raised.
+struct Far {
+    first: f64,
+    tried: usize,
+}
+
+impl Far {
+    fn new(difference: f64) -> Self {
+        Self { first: -difference.signum(), tried: 0 }
     }
 }
 
-/// Share of Newton's step by which the cubic may differ from it; it does so by its own small error only where the
-/// contact stays on the same pair of segments.
-const REFINEMENT: f64 = 0.1;
+impl Iterator for Far {
+    type Item = f64;
+
+    fn next(&mut self) -> Option<f64> {
+        let sign = if self.tried < FAR.len() { self.first } else { -self.first };
+        let roll = (self.tried < 2 * FAR.len()).then(|| sign * FAR[self.tried % FAR.len()]);
+        self.tried += 1;
+        roll
+    }
+}

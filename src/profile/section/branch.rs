@@ -255,7 +255,11 @@ impl Branch {
         let plain = |c: &[TwoFloat]| -> Vec<f64> { c.iter().map(|&c| c.into()).collect() };
         let (xi_plain, zeta_plain) = (plain(&xi), plain(&zeta));
         let kind = if contact.is_some() { Kind::Contact } else { Kind::Plain };
-        rising_intervals(&derivative(&xi_plain), range_t)
+        let (run, rise) = (derivative(&xi_plain), derivative(&zeta_plain));
+        let fastest =
+            [&run, &rise].map(|c| range(c, range_t[0], range_t[1]).map(f64::abs)).into_iter().flatten();
+        let vertical = VERTICAL * fastest.fold(0.0, f64::max);
+        rising_intervals(&run, vertical, range_t)
             .into_iter()
             .filter(|[a, b]| kind == Kind::Plain || (*a <= 0.0 && *b >= 0.0))
             .map(|part| {
@@ -432,11 +436,19 @@ fn flattest([a, b]: [f64; 2]) -> f64 {
     }
 }
 
-/// The parts of \[t0, t1\] where the polynomial `slope` is positive, by bisection down to 2⁻⁴⁰ of the range.
-fn rising_intervals(slope: &[f64], [t0, t1]: [f64; 2]) -> Vec<[f64; 2]> {
+/// Share of a curve's speed below which its run along ξ is the rounding of a vertical: the direction of a straight wall is
+/// known no better, and its run changes sign all along.
+const VERTICAL: f64 = 16.0 * f64::EPSILON;
+
+/// The parts of \[t0, t1\] where the polynomial `slope` is positive, by bisection down to 2⁻⁴⁰ of the range; none where it is nowhere
+/// larger than `rounding`.
+fn rising_intervals(slope: &[f64], rounding: f64, [t0, t1]: [f64; 2]) -> Vec<[f64; 2]> {
     let mut parts = Vec::new();
+    if range(slope, t0, t1)[1] <= rounding {
+        return parts;
+    }
     let mut cuts = vec![t0];
-    sign_changes(slope, t0, t1, 40, &mut cuts);
+    sign_changes(slope, rounding, [t0, t1], 40, &mut cuts);
     cuts.push(t1);
     for pair in cuts.windows(2) {
         let (a, b) = (pair[0], pair[1]);
@@ -447,9 +459,10 @@ fn rising_intervals(slope: &[f64], [t0, t1]: [f64; 2]) -> Vec<[f64; 2]> {
     parts
 }
 
-fn sign_changes(c: &[f64], a: f64, b: f64, depth: u32, out: &mut Vec<f64>) {
+/// Appends where the polynomial changes sign, but for parts where it is no larger than `rounding`.
+fn sign_changes(c: &[f64], rounding: f64, [a, b]: [f64; 2], depth: u32, out: &mut Vec<f64>) {
     let [low, high] = range(c, a, b);
-    if low > 0.0 || high < 0.0 || depth == 0 {
+    if low > 0.0 || high < 0.0 || depth == 0 || (low >= -rounding && high <= rounding) {
         return;
     }
     let monotone = range(&derivative(c), a, b);
@@ -458,11 +471,11 @@ fn sign_changes(c: &[f64], a: f64, b: f64, depth: u32, out: &mut Vec<f64>) {
         return;
     }
     let middle = a + (b - a) / 2.0;
-    sign_changes(c, a, middle, depth - 1, out);
+    sign_changes(c, rounding, [a, middle], depth - 1, out);
     if value(c, middle) == 0.0 {
         out.push(middle);
     }
-    sign_changes(c, middle, b, depth - 1, out);
+    sign_changes(c, rounding, [middle, b], depth - 1, out);
 }
 
 impl Polynomial {

@@ -220,8 +220,9 @@ fn every_local_minimum_of_the_gap_is_reported() -> Result<()> {
         let mut search = pair.search();
         let touch = search.touch(&Pose::new(offset, 0.0, 0.0)?, &Selection { within, apart: 0.0 });
         let contacts = touch.map_or(Vec::new(), |t| t.contacts.to_vec());
+        let (above, below) = (Section::own_axes(&wheel, Side::Wheel), Section::own_axes(&rail, Side::Rail));
         let gap = |x: f64| {
-            let gap = pair.wheel_section.height(x - offset) - pair.rail_section.height(x);
+            let gap = above.height(x - offset) - below.height(x);
             if gap.is_nan() { f64::INFINITY } else { gap }
         };
         let values: Vec<f64> = (0..70_000).map(|k| gap(-60.0 + step * f64::from(k))).collect();

@@ -1,0 +1,388 @@
+//! A profile prepared for searches: the elements of its outer surface from left to right, and a balanced tree of bounds
+//! over them.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use super::bounds::{Bounds, Reach};
+use super::element::{ArcElement, Element, Shape, Stretch};
+use crate::numerics::polynomial::bernstein;
+use crate::profile::{
+    Branch, BranchPoint, BranchShape, ONE_JOINT, Piece, PolynomialBranch, Profile, Section, Side, Station,
+};
+
+/// No stretch of a polynomial is halved more often than this: 2⁻¹⁰ of a zone of 60 mm is 0.06 mm.
+const DEEPEST_CUT: u32 = 10;
+
+/// Turns \[rad\] up to this are no kinks: both neighbours take a contact there. The tangents at a joint of spans differ by
+/// some roundings; a fan for each would double the elements.
+pub(super) const LEAST_KINK: f64 = 64.0 * f64::EPSILON;
+
+/// Roundings of a profile's extent by which bounds are widened: those of a point's coordinates and of its level.
+const BOUND_ROUNDINGS: f64 = 16.0;
+
+/// Corners of the polygon of tangents around an arc: at least four, which stand off by a sixteenth of the arc's height, …
+const CORNERS: f64 = 4.0;
+
+/// … and no longer turn \[rad\] over one of them.
+const CORNER_TURN: f64 = 0.125;
+
+/// The outer surface of one body.
+#[derive(Debug, Clone)]
+pub(super) struct Body {
+    /// Its elements, from left to right.
+    pub elements: Vec<Element>,
+    /// Coefficients (x, z) of all its stretches.
+    pub coefficients: Vec<[f64; 2]>,
+    /// The tree: its root first, the left child right after its parent.
+    pub nodes: Vec<Node>,
+    /// Rounding of a bound \[mm\].
+    pub rounding: f64,
+    /// Bounds of the whole: of x, and of z.
+    pub extent: [[f64; 2]; 2],
+}
+
+/// One node of the tree.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Node {
+    /// Bounds of all its elements.
+    pub bounds: Bounds,
+    /// Its right child, or 0 for a leaf.
+    pub right: u32,
+    /// Its first element.
+    pub element: u32,
+    /// The larger side of its box \[mm\].
+    pub size: f64,
+}
+
+impl Body {
+    /// The part of a profile that faces the other body in its own axes; `None` where there is none.
+    ///
+    /// Cost: for n elements n log n; some microseconds each.
+    pub fn new(profile: &Profile, side: Side) -> Option<Self> {
+        let section = Section::own_axes(profile, side);
+        let rounding = BOUND_ROUNDINGS * f64::EPSILON * profile.extent();
+        let mut builder = Builder {
+            side,
+            rounding,
+            elements: Vec::new(),
+            coefficients: Vec::new(),
+            hull: Vec::new(),
+            firsts: Vec::new(),
+        };
+        builder.surface(&section, ONE_JOINT * profile.extent());
+        builder.firsts.push(builder.hull.len());
+        let mut nodes = Vec::with_capacity(2 * builder.elements.len());
+        if builder.elements.is_empty() {
+            return None;
+        }
+        builder.tree(0, builder.elements.len(), &mut nodes);
+        let Builder { elements, coefficients, .. } = builder;
+        let whole = &nodes[0].bounds;
+        let extent = [whole.x, whole.z];
+        Some(Self { elements, coefficients, nodes, rounding, extent })
+    }
+
+    /// Indices of the elements that hold an abscissa, or come next to it.
+    pub fn element_at(&self, x: f64) -> usize {
+        let index = self.elements.partition_point(|element| element.bounds.x[1] < x);
+        index.min(self.elements.len() - 1)
+    }
+}
+
+struct Builder {
+    side: Side,
+    rounding: f64,
+    elements: Vec<Element>,
+    coefficients: Vec<[f64; 2]>,
+    /// Points whose hull holds the elements, element by element, …
+    hull: Vec<[f64; 2]>,
+    /// … and where each element's begin.
+    firsts: Vec<usize>,
+}
+
+impl Builder {
+    /// All elements, from left to right.
+    fn surface(&mut self, section: &Section, joint: f64) {
+        let (material_left, material_right) = match self.side {
+            Side::Wheel => (-FRAC_PI_2, FRAC_PI_2),
+            Side::Rail => (FRAC_PI_2, -FRAC_PI_2),
+        };
+        let mut last: Option<Station> = None;
+        for piece in &section.pieces {
+            let branch = &section.branches[piece.branch];
+            let [start, end] = piece.xi.map(|x| branch.station(x));
+            match last {
+                None => self.fan(&start, material_left, start.angle()),
+                Some(before) => self.corner(&before, &start, joint),
+            }
+            self.smooth(branch, piece, [start, end]);
+            last = Some(end);
+        }
+        if let Some(end) = last {
+            self.fan(&end, end.angle(), material_right);
+        }
+    }
+
+    /// The fans between the end of one piece and the start of the next: of one where they meet, of two where the surface
+    /// goes on at another height, behind a part that overhangs.
+    fn corner(&mut self, end: &Station, start: &Station, joint: f64) {
+        let (run, rise) = (start.x - end.x, start.z - end.z);
+        if run.hypot(rise) <= joint {
+            self.fan(start, end.angle(), start.angle());
+        } else {
+            let step = rise.atan2(run);
+            self.fan(end, end.angle(), step);
+            self.fan(start, step, start.angle());
+        }
+    }
+
+    /// The fan of normals where the direction of travel turns from one angle to another; none where the corner is hollow,
+    /// as nothing touches there first.
+    fn fan(&mut self, point: &Station, from: f64, to: f64) {
+        let mut turn = to - from;
+        if turn > PI {
+            turn -= TAU;
+        } else if turn <= -PI {
+            turn += TAU;
+        }
+        let [low, high] = match self.side {
+            Side::Wheel if turn > LEAST_KINK => [from, from + turn],
+            Side::Rail if turn < -LEAST_KINK => [from + turn, from],
+            _ => return,
+        };
+        let (low, high) = (low.max(-FRAC_PI_2), high.min(FRAC_PI_2));
+        if low >= high {
+            return;
+        }
+        let ends = [low, high].map(|angle| Station { sin: angle.sin(), cos: angle.cos().max(0.0), ..*point });
+        let at = [point.x, point.z];
+        let curvature = match self.side {
+            Side::Wheel => f64::INFINITY,
+            Side::Rail => f64::NEG_INFINITY,
+        };
+        let shape = Shape::Arc(ArcElement::fan(point, self.side));
+        self.push(shape, ends.map(|end| end.sin), ends, &[at], [at; 2], [curvature; 2]);
+    }
+
+    fn smooth(&mut self, branch: &Branch, piece: &Piece, mut ends: [Station; 2]) {
+        let outer = ends.map(|end| [end.x, end.z]);
+        match (&branch.shape, piece.ends.map(|end| end.0)) {
+            (BranchShape::Arc(arc), _) if arc.curvature == 0.0 => {
+                self.push(Shape::Line, piece.xi, ends, &outer, outer, [0.0; 2]);
+            }
+            (BranchShape::Arc(arc), _) => {
+                let hull = tangents(&ends, arc.radius);
+                if ends[0].sin > ends[1].sin {
+                    ends.swap(0, 1);
+                }
+                let shape = Shape::Arc(ArcElement::of(arc));
+                self.push(shape, ends.map(|end| end.sin), ends, &hull, outer, [arc.curvature; 2]);
+            }
+            (
+                BranchShape::Polynomial(polynomial),
+                [BranchPoint::Polynomial { t: a, .. }, BranchPoint::Polynomial { t: b, .. }],
+            ) => {
+                self.polynomial(polynomial, [a, b]);
+            }
+            // The ends of a polynomial's piece are a polynomial's.
+            (BranchShape::Polynomial(_), _) => {}
+        }
+    }
+
+    fn polynomial(&mut self, polynomial: &PolynomialBranch, range: [f64; 2]) {
+        let first = self.coefficients.len();
+        let count = polynomial.xi.len().max(polynomial.zeta.len());
+        let get = |c: &[f64], k: usize| c.get(k).copied().unwrap_or(0.0);
+        self.coefficients.extend((0..count).map(|k| [get(&polynomial.xi, k), get(&polynomial.zeta, k)]));
+        self.cut(first, count, range, DEEPEST_CUT);
+    }
+
+    /// Cuts a polynomial until its bounds say something.
+    fn cut(&mut self, first: usize, count: usize, [a, b]: [f64; 2], depth: u32) {
+        let own = &self.coefficients[first..first + count];
+        let reach = Reach::of(own, [a, b]);
+        let middle = a + (b - a) / 2.0;
+        if depth > 0 && reach.is_wide(b - a) && a < middle && middle < b {
+            self.cut(first, count, [a, middle], depth - 1);
+            return self.cut(first, count, [middle, b], depth - 1);
+        }
+        let [x, z] = [0, 1].map(|axis| {
+            let c: Vec<f64> = own.iter().map(|c| c[axis]).collect();
+            bernstein(&c, a, b)
+        });
+        let hull: Vec<[f64; 2]> = x.into_iter().zip(z).map(|(x, z)| [x, z]).collect();
+        let stretch = Stretch { first, count, reach };
+        let shape = Shape::Stretch(stretch);
+        let ends = [a, b].map(|t| stretch.place(&self.coefficients, t).station);
+        let outer = ends.map(|end| [end.x, end.z]);
+        self.push_bounded(shape, [a, b], ends, &hull, outer, [reach.sine, reach.curvature]);
+    }
+
+    fn push(
+        &mut self,
+        shape: Shape,
+        range: [f64; 2],
+        ends: [Station; 2],
+        hull: &[[f64; 2]],
+        outer: [[f64; 2]; 2],
+        curvature: [f64; 2],
+    ) {
+        self.push_bounded(shape, range, ends, hull, outer, [[ends[0].sin, ends[1].sin], curvature]);
+    }
+
+    fn push_bounded(
+        &mut self,
+        shape: Shape,
+        range: [f64; 2],
+        ends: [Station; 2],
+        hull: &[[f64; 2]],
+        outer: [[f64; 2]; 2],
+        turns: [[f64; 2]; 2],
+    ) {
+        let bounds = Bounds::of_hull(hull, outer, turns, self.side, self.rounding);
+        self.firsts.push(self.hull.len());
+        self.hull.extend_from_slice(hull);
+        self.elements.push(Element { shape, range, ends, bounds });
+    }
+
+    /// Appends the tree over a range of elements, the parent first; returns the index of its root.
+    fn tree(&self, from: usize, to: usize, nodes: &mut Vec<Node>) -> u32 {
+        let own = nodes.len();
+        let bounds = if to - from == 1 { self.elements[from].bounds } else { self.joined(from, to) };
+        let size = (bounds.x[1] - bounds.x[0]).max(bounds.z[1] - bounds.z[0]);
+        nodes.push(Node { bounds, right: 0, element: from as u32, size });
+        if to - from > 1 {
+            let middle = self.middle(from, to);
+            self.tree(from, middle, nodes);
+            nodes[own].right = self.tree(middle, to, nodes);
+        }
+        own as u32
+    }
+
+    /// Where to cut a range of elements in two: near the middle of its length, but a quarter of the elements on either side at least.
+    fn middle(&self, from: usize, to: usize) -> usize {
+        let own = &self.elements[from..to];
+        let length = |e: &Element| (e.bounds.x[1] - e.bounds.x[0]) + (e.bounds.z[1] - e.bounds.z[0]);
+        let half = 0.5 * own.iter().map(length).sum::<f64>();
+        let mut walked = 0.0;
+        let cut = own.iter().position(|element| {
+            walked += length(element);
+            walked > half
+        });
+        let count = to - from;
+        let least = (count / 4).max(1);
+        from + cut.unwrap_or(count / 2).clamp(least, count - least)
+    }
+
+    /// Bounds of several elements.
+    fn joined(&self, from: usize, to: usize) -> Bounds {
+        let own = &self.elements[from..to];
+        let fold = |of: fn(&Element) -> [f64; 2]| {
+            let around = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+            own.iter().map(of).fold([f64::INFINITY, f64::NEG_INFINITY], around)
+        };
+        let (sine, curvature) = (fold(|e| e.bounds.sine), fold(|e| e.bounds.curvature));
+        let x = fold(|e| e.bounds.x);
+        let hull = &self.hull[self.firsts[from]..self.firsts[to]];
+        let height = |points: Option<&[f64; 2]>| points.map_or(0.0, |p| p[1]);
+        let ends = [[x[0], height(hull.first())], [x[1], height(hull.last())]];
+        Bounds::of_hull(hull, ends, [sine, curvature], self.side, self.rounding)
+    }
+}
+
+/// Both ends of an arc and the corners of its tangents, in order of travel.
+fn tangents(ends: &[Station; 2], radius: f64) -> Vec<[f64; 2]> {
+    let [start, end] = ends;
+    let relative = end.seen_from(start);
+    let turn = relative.sin.atan2(relative.cos);
+    let corners = (turn.abs() / CORNER_TURN).ceil().max(CORNERS);
+    let half = 0.5 * turn / corners;
+    let mut out = vec![[start.x, start.z]];
+    for k in 0..corners as u32 {
+        // The chord from the start to the point before the corner, then along the tangent there.
+        let before = f64::from(k) * turn / corners;
+        let chord = 2.0 * radius * (0.5 * before).sin();
+        let lead = radius * half.tan();
+        let x = chord * (0.5 * before).cos() + lead * before.cos();
+        let z = chord * (0.5 * before).sin() + lead * before.sin();
+        let corner = Station { x, z, ..Station::AXES }.placed_by(start);
+        out.push([corner.x, corner.z]);
+    }
+    out.push([end.x, end.z]);
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Result;
+    use crate::profile::standards;
+
+    #[test]
+    fn fans_stand_at_ends_and_at_outward_kinks_only() -> Result<()> {
+        let profile = standards::wheel("EN15302-A")?;
+        let body = Body::new(&profile, Side::Wheel).expect("a wheel");
+        let fans: Vec<f64> =
+            body.elements.iter().map(|e| e.bounds.x).filter(|x| x[0] == x[1]).map(|x| x[0]).collect();
+        // The flange back, the kinks to 1:15 and to the chamfer, and the outer face; beside them only kinks of the
+        // drawing's rounding.
+        for x in [30.0, 60.0, 65.0] {
+            assert!(fans.contains(&x), "{x} is not among {fans:?}");
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn polynomials_are_cut_into_few_stretches_without_gaps() -> Result<()> {
+        let profile = standards::wheel("S1002")?;
+        let body = Body::new(&profile, Side::Wheel).expect("a wheel");
+        assert!(body.elements.len() < 200, "{}", body.elements.len());
+        for pair in body.elements.windows(2) {
+            assert!((pair[0].bounds.x[1] - pair[1].bounds.x[0]).abs() < 2e-3);
+        }
+        Ok(())
+    }
+
+    /// Every point of every element lies within the bounds of all nodes above it.
+    #[test]
+    fn bounds_hold() -> Result<()> {
+        for (name, side) in [("S1002", Side::Wheel), ("EN15302-A", Side::Wheel), ("60E1", Side::Rail)] {
+            let profile = if side == Side::Rail { standards::rail(name)? } else { standards::wheel(name)? };
+            let body = Body::new(&profile, side).expect("a surface");
+            let mut checked = 0;
+            for (index, node) in body.nodes.iter().enumerate() {
+                let next = if node.right == 0 {
+                    node.element as usize + 1
+                } else {
+                    // The right child ends where this node does: at its own last leaf.
+                    let mut last = &body.nodes[node.right as usize];
+                    while last.right != 0 {
+                        last = &body.nodes[last.right as usize];
+                    }
+                    last.element as usize + 1
+                };
+                for element in &body.elements[node.element as usize..next] {
+                    for k in 0..=20 {
+                        let p =
+                            element.range[0] + (element.range[1] - element.range[0]) * f64::from(k) / 20.0;
+                        let Station { x, z, sin, .. } = element.place(&body.coefficients, p).station;
+                        let b = &node.bounds;
+                        let level = z * b.chord[0] - x * b.chord[1];
+                        let over = if side == Side::Wheel { level - b.level } else { b.level - level };
+                        assert!(over >= 0.0, "{name} {index}: {over:e}");
+                        let slack = 1e-13;
+                        assert!(x >= b.x[0] - slack && x <= b.x[1] + slack, "{name} {index}");
+                        assert!(
+                            sin >= b.sine[0] - slack && sin <= b.sine[1] + slack,
+                            "{name} {index}: {sin} {:?}",
+                            b.sine
+                        );
+                        checked += 1;
+                    }
+                }
+            }
+            assert!(checked > 500, "{checked}");
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,245 @@
+//! What is known of a part of a profile before its points are looked at: guaranteed bounds, which close with the square
+//! of its length.
+
+use super::element::cosine;
+use crate::numerics::polynomial::{bernstein, convolution, derivative, range};
+use crate::profile::{Side, Station};
+
+/// Bounds of a part of a profile, in the profile's own axes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bounds {
+    /// Abscissae \[mm\].
+    pub x: [f64; 2],
+    /// Heights \[mm\].
+    pub z: [f64; 2],
+    /// Sines of its tangents' angles, ascending …
+    pub sine: [f64; 2],
+    /// … their cosines, and tangents: ±∞ for a vertical.
+    pub cosine: [f64; 2],
+    /// See `cosine`.
+    pub tangent: [f64; 2],
+    /// Curvatures \[1/mm\], positive with the hollow side up.
+    pub curvature: [f64; 2],
+    /// Direction of its chord: (cos, sin).
+    pub chord: [f64; 2],
+    /// The line along the chord that the other body would meet first: z cos − x sin of all points is at least this on a
+    /// wheel, at most this on a rail \[mm\].
+    pub level: f64,
+    /// That line as height at x = 0 \[mm\] and slope; level at the lowest or highest point where it is too steep.
+    pub line: [f64; 2],
+}
+
+/// Chords with a larger slope bound by their height instead: along a steep line rounding of an abscissa counts thirty times and
+/// more, and its ends lie at nearly one abscissa anyway.
+pub(super) const STEEPEST_SLOPE: f64 = 32.0;
+
+/// Bounds of the derivatives of a stretch with respect to its parameter.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Reach {
+    /// Largest |dx|.
+    pub run: f64,
+    /// Largest |dz|.
+    pub rise: f64,
+    /// Largest length of the second derivative.
+    pub bend: f64,
+    /// Sines of its tangents.
+    pub sine: [f64; 2],
+    /// Curvatures \[1/mm\].
+    pub curvature: [f64; 2],
+    /// Largest derivative of the curvature.
+    pub change: f64,
+}
+
+/// A direction in which a point lies z cos − x sin from the origin.
+#[inline]
+fn level([cos, sin]: [f64; 2], [x, z]: [f64; 2]) -> f64 {
+    z * cos - x * sin
+}
+
+/// The smallest interval around two.
+fn around(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0].min(b[0]), a[1].max(b[1])]
+}
+
+impl Bounds {
+    fn new(
+        [x, z]: [[f64; 2]; 2],
+        [sine, curvature]: [[f64; 2]; 2],
+        (chord, level): ([f64; 2], f64),
+        side: Side,
+    ) -> Self {
+        let sine = sine.map(|sin| sin.clamp(-1.0, 1.0));
+        let cosine = sine.map(cosine);
+        let line = if chord[0] * STEEPEST_SLOPE >= 1.0 {
+            [level / chord[0], chord[1] / chord[0]]
+        } else {
+            [if side == Side::Wheel { z[0] } else { z[1] }, 0.0]
+        };
+        let tangent = [sine[0] / cosine[0], sine[1] / cosine[1]];
+        Self { x, z, sine, cosine, tangent, curvature, chord, level, line }
+    }
+
+    /// Bounds of what lies in the hull of some points and has these tangents and curvatures; `rounding` \[mm\] of the points.
+    ///
+    /// `ends`: its left and right end; the chord goes from one to the other, and level with the mean tangent where they
+    /// are one point.
+    pub fn of_hull(
+        hull: &[[f64; 2]],
+        ends: [[f64; 2]; 2],
+        [sine, curvature]: [[f64; 2]; 2],
+        side: Side,
+        rounding: f64,
+    ) -> Self {
+        let (run, rise) = (ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]);
+        let length = run.hypot(rise);
+        let chord = if length > 0.0 {
+            [run / length, rise / length]
+        } else {
+            let angle = (sine[0].clamp(-1.0, 1.0).asin() + sine[1].clamp(-1.0, 1.0).asin()) / 2.0;
+            [angle.cos(), angle.sin()]
+        };
+        let (mut z, mut levels) = ([f64::INFINITY, f64::NEG_INFINITY], [f64::INFINITY, f64::NEG_INFINITY]);
+        for point in hull {
+            let here = level(chord, *point);
+            z = around(z, [point[1]; 2]);
+            levels = around(levels, [here; 2]);
+        }
+        let level = match side {
+            Side::Wheel => levels[0] - rounding,
+            Side::Rail => levels[1] + rounding,
+        };
+        let x = [ends[0][0], ends[1][0]];
+        Self::new([x, [z[0] - rounding, z[1] + rounding]], [sine, curvature], (chord, level), side)
+    }
+
+    /// Bounds of an arc or fan between two points with ascending sines of their tangents, from a point between.
+    pub fn of_arc(
+        ends: &[Station; 2],
+        middle: &Station,
+        curvature: [f64; 2],
+        side: Side,
+        rounding: f64,
+    ) -> Self {
+        let [a, b] = ends;
+        let turn = b.sin.clamp(-1.0, 1.0).asin() - a.sin.clamp(-1.0, 1.0).asin();
+        let length = (b.x - a.x).hypot(b.z - a.z);
+        // A chord of a turn t stands off by less than t/4 of its length, half a turn included.
+        let off = 0.5 * length * turn + rounding;
+        let chord = [middle.cos, middle.sin];
+        let levels = ends.map(|end| level(chord, [end.x, end.z]));
+        let level = match side {
+            Side::Wheel => levels[0].min(levels[1]) - off,
+            Side::Rail => levels[0].max(levels[1]) + off,
+        };
+        let (x, z) = (around([a.x; 2], [b.x; 2]), around([a.z; 2], [b.z; 2]));
+        Self::new([x, [z[0] - off, z[1] + off]], [[a.sin, b.sin], curvature], (chord, level), side)
+    }
+}
+
+impl Reach {
+    /// Bounds over \[a, b\] of the parameter of a curve with coefficients (x, z).
+    ///
+    /// Method: Bernstein coefficients; the tangents lie in the cone of the control vectors. Unbounded where the curve may
+    /// stand still.
+    pub fn of(coefficients: &[[f64; 2]], [a, b]: [f64; 2]) -> Self {
+        let [x, z] = [0, 1].map(|axis| coefficients.iter().map(|c| c[axis]).collect::<Vec<f64>>());
+        let (dx, dz) = (derived(&x), derived(&z));
+        let (hx, hz) = (derived(&dx), derived(&dz));
+        let largest = |c: &[f64]| range(c, a, b).into_iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        let square = sum(&convolution(&dx, &dx), &convolution(&dz, &dz), 1.0);
+        let cross = sum(&convolution(&dx, &hz), &convolution(&dz, &hx), -1.0);
+        let speed = range(&square, a, b).map(|v| v.max(0.0).sqrt());
+        let cubes = speed.map(|v| (v * v * v).recip());
+        let turning = range(&cross, a, b);
+        let over = |v: f64, up: bool| if (v > 0.0) == up { v * cubes[0] } else { v * cubes[1] };
+        let bounded = speed[0] > 0.0;
+        let curvature = if bounded {
+            [over(turning[0], false), over(turning[1], true)]
+        } else {
+            [f64::NEG_INFINITY, f64::INFINITY]
+        };
+        let steepest = curvature[0].abs().max(curvature[1].abs());
+        let change = if bounded {
+            largest(&derived(&cross)) * cubes[0]
+                + 1.5 * steepest * largest(&derived(&square)) / speed[0].powi(2)
+        } else {
+            f64::INFINITY
+        };
+        Self {
+            run: largest(&dx),
+            rise: largest(&dz),
+            bend: largest(&hx).hypot(largest(&hz)),
+            sine: cone(&bernstein(&dx, a, b), &bernstein(&dz, a, b)),
+            curvature,
+            change,
+        }
+    }
+
+    /// Whether the bounds are too wide to decide on at sight: see [`WIDEST_TURN`], [`VARIATION`].
+    pub fn is_wide(&self, width: f64) -> bool {
+        let most = self.curvature[0].abs().max(self.curvature[1].abs());
+        let turn = most * width * self.run.hypot(self.rise);
+        let varies = self.curvature[1] - self.curvature[0] > VARIATION * most;
+        turn.is_nan() || turn > WIDEST_TURN || (varies && turn > LEAST_TURN)
+    }
+
+    /// Bounds of the part \[p − half, p + half\] of the stretch around its point at p, whose curvature is given.
+    ///
+    /// Method: Taylor's theorem about the point with the bounds of the whole stretch.
+    pub fn around(&self, point: &Station, curvature: f64, half: f64, side: Side, rounding: f64) -> Bounds {
+        let (run, rise) = (half * self.run, half * self.rise);
+        let most = self.curvature[0].abs().max(self.curvature[1].abs());
+        let turn = most * run;
+        let change = half * self.change;
+        let off = 0.5 * half * half * self.bend + rounding;
+        let chord = [point.cos, point.sin];
+        let here = level(chord, [point.x, point.z]);
+        let x = [point.x - run, point.x + run];
+        let z = [point.z - rise - rounding, point.z + rise + rounding];
+        let sine = [(point.sin - turn).max(self.sine[0]), (point.sin + turn).min(self.sine[1])];
+        let curvature =
+            [(curvature - change).max(self.curvature[0]), (curvature + change).min(self.curvature[1])];
+        let level = if side == Side::Wheel { here - off } else { here + off };
+        Bounds::new([x, z], [sine, curvature], (chord, level), side)
+    }
+}
+
+/// Turn \[rad\] above which a stretch is cut when a body is prepared: over a quarter of a radian chords say little.
+const WIDEST_TURN: f64 = 0.25;
+
+/// A stretch whose curvature varies by more than this share of its size is cut, so that most pairs of stretches are
+/// decided at sight …
+const VARIATION: f64 = 0.5;
+
+/// … unless it turns by less than this \[rad\]: noise of micrometres would be cut into thousands.
+const LEAST_TURN: f64 = 0.05;
+
+/// Sines between which the directions of some vectors lie; all of them where one does not point to larger x.
+fn cone(x: &[f64], z: &[f64]) -> [f64; 2] {
+    let mut sines = [1.0f64, -1.0f64];
+    for k in 0..x.len().max(z.len()) {
+        let get = |c: &[f64]| c.get(k).or(c.last()).copied().unwrap_or(0.0);
+        let (run, rise) = (get(x), get(z));
+        let length = run.hypot(rise);
+        if length == 0.0 {
+            continue;
+        }
+        if run < 0.0 {
+            return [-1.0, 1.0];
+        }
+        sines = around(sines, [rise / length; 2]);
+    }
+    if sines[0] <= sines[1] { sines } else { [-1.0, 1.0] }
+}
+
+/// The derivative's coefficients; a zero where there are none.
+fn derived(c: &[f64]) -> Vec<f64> {
+    let out = derivative(c);
+    if out.is_empty() { vec![0.0] } else { out }
+}
+
+/// a + k b, coefficient by coefficient.
+fn sum(a: &[f64], b: &[f64], k: f64) -> Vec<f64> {
+    let get = |c: &[f64], i: usize| c.get(i).copied().unwrap_or(0.0);
+    (0..a.len().max(b.len())).map(|i| get(a, i) + k * get(b, i)).collect()
+}

@@ -1,0 +1,395 @@
+//! Pairs with a stretch of a polynomial, or with a yawed arc: cut until the bounds of the parts decide, then solved by
+//! Newton's method.
+//!
+//! Where both outlines pass an abscissa X the sines of their tangents differ by D(X), and
+//!
+//! ```text
+//! dD/dX = κ_W − κ_R
+//! ```
+//!
+//! with the curvatures of the outline and of the rail, wherever the two are and however steep. So bounds of the two
+//! curvatures tell whether there is no common tangent, one at most, or only largest gaps; and from any point of either part
+//! the mean value theorem tells where a common tangent must be.
+
+use super::body::LEAST_KINK;
+use super::bounds::Bounds;
+use super::candidates::{EQUAL_CURVATURES, Foot, Search};
+use super::element::{Element, Place, Shape, cosine, rising_root};
+use super::placed::Placed;
+use crate::profile::Side;
+
+/// A stretch is halved no more often than this: the parts are then 1e-3 of it long. Two common tangents that close together
+/// enclose a dip of a noise of micrometres by less than 1e-12 mm.
+const DEEPEST: u32 = 10;
+
+/// No more pairs of parts are looked at for two elements: only curves that nearly agree all along come so far, and among
+/// their places of least gap no more can be told apart.
+const MOST_PARTS: u32 = 512;
+
+/// Steps of Newton's method: from a bounded start it takes three to five.
+const NEWTON_STEPS: u32 = 12;
+
+/// Roundings of a sine by which the tangents of two curves may differ and be equal.
+pub(super) const SAME_TANGENT: f64 = 2.0 * LEAST_KINK;
+
+/// Part of an element, as it stands in the rail's axes.
+#[derive(Clone, Copy)]
+struct Part {
+    /// Parameters between which it lies.
+    range: [f64; 2],
+    /// Parameter of its middle.
+    middle: f64,
+    /// The middle of the outline, or of the rail.
+    place: Place,
+    /// Bounds.
+    placed: Placed,
+    /// Curvatures \[1/mm\], of a wheel's outline where it is seen.
+    curvature: [f64; 2],
+    /// How often its stretch was halved.
+    depth: u32,
+}
+
+/// Two elements under way to be solved.
+struct Pair<'s, 'a> {
+    search: &'s mut Search<'a>,
+    elements: [u32; 2],
+    shapes: [&'a Element; 2],
+    parts_left: u32,
+}
+
+/// What bounds of two parts tell.
+enum Verdict {
+    /// No common tangent that counts.
+    Nothing,
+    /// A least gap at most; if there is one, its abscissa is near this.
+    OneNear(f64),
+    /// The two agree to rounding all along; parameters of the middle.
+    Agree([f64; 2]),
+    /// Anything.
+    Open,
+}
+
+/// Looks for contact of two elements.
+///
+/// `placed`: bounds of the whole outline of the wheel's, where they are known.
+pub(super) fn meet(search: &mut Search, elements: [u32; 2], placed: Option<&Placed>) {
+    let shapes = search.elements(elements);
+    let mut pair = Pair { search, elements, shapes, parts_left: MOST_PARTS };
+    if let (Some(wheel), Some(rail)) = (pair.whole(Side::Wheel, placed), pair.whole(Side::Rail, None)) {
+        pair.refine(&wheel, &rail);
+    }
+}
+
+/// The common tangent of two elements that Newton's method leads to from a start; `None` where that is beyond their ends.
+pub(super) fn follow(search: &Search, elements: [u32; 2], start: [f64; 2]) -> Option<[Foot; 2]> {
+    let shapes = search.elements(elements);
+    newton(search, shapes, start, shapes.map(|element| element.range))
+}
+
+impl Part {
+    /// Whether all of this part of the wheel is less curved than all of that part of the rail: a common tangent is then a
+    /// largest gap, not a least one.
+    fn is_flatter(&self, rail: &Self) -> bool {
+        let (above, below) = (self.curvature[1], rail.curvature[0]);
+        above < below && below - above > EQUAL_CURVATURES * (above.abs() + below.abs())
+    }
+
+    /// Whether a common tangent of both can only be a least gap, and there is one at most.
+    fn is_rounder(&self, rail: &Self) -> bool {
+        self.curvature[0] > rail.curvature[1]
+    }
+}
+
+impl Pair<'_, '_> {
+    fn whole(&self, side: Side, placed: Option<&Placed>) -> Option<Part> {
+        let element = self.shapes[index(side)];
+        self.bounded(side, element.range, (&element.bounds, placed), 0)
+    }
+
+    /// Half of a part of an element of one body; `None` where it has no outline.
+    fn half(&self, side: Side, range: [f64; 2], depth: u32) -> Option<Part> {
+        let (element, body) = (self.shapes[index(side)], self.search.bodies[index(side)]);
+        let half = (range[1] - range[0]) / 2.0;
+        let own = element.place(&body.coefficients, range[0] + half);
+        let bounds = match &element.shape {
+            Shape::Stretch(stretch) => {
+                stretch.reach.around(&own.station, own.radius.recip(), half, side, body.rounding)
+            }
+            Shape::Arc(arc) => {
+                let ends = range.map(|sin| arc.at(sin, cosine(sin)));
+                Bounds::of_arc(&ends, &own.station, element.bounds.curvature, side, body.rounding)
+            }
+            Shape::Line => element.bounds,
+        };
+        self.bounded(side, range, (&bounds, None), depth)
+    }
+
+    /// A part with its bounds, in its own axes and, where that is known, of its outline.
+    fn bounded(
+        &self,
+        side: Side,
+        range: [f64; 2],
+        (bounds, placed): (&Bounds, Option<&Placed>),
+        depth: u32,
+    ) -> Option<Part> {
+        let (element, body) = (self.shapes[index(side)], self.search.bodies[index(side)]);
+        let attitude = self.search.attitude;
+        let middle = range[0] + (range[1] - range[0]) / 2.0;
+        let own = element.place(&body.coefficients, middle);
+        let (place, placed, curvature) = match side {
+            Side::Wheel => {
+                let known = placed.copied();
+                let placed =
+                    known.unwrap_or_else(|| attitude.place(bounds).widened(self.search.slack, SAME_TANGENT));
+                (attitude.outline_place(&own), placed, attitude.curvatures(bounds)?)
+            }
+            Side::Rail => (own, Placed::rail(bounds), bounds.curvature),
+        };
+        Some(Part { range, middle, place, placed, curvature, depth })
+    }
+
+    fn refine(&mut self, wheel: &Part, rail: &Part) {
+        self.search.solves += 1;
+        self.parts_left = self.parts_left.saturating_sub(1);
+        let bound = wheel.placed.gap_over(&rail.placed);
+        if bound == f64::INFINITY || bound > self.search.bound_ceiling() || wheel.is_flatter(rail) {
+            return;
+        }
+        let shared = wheel.placed.shared(&rail.placed);
+        let ranges = [wheel.range, rail.range];
+        match self.look(wheel, rail, shared) {
+            Verdict::Nothing => return,
+            Verdict::Agree(parameters) => return self.offer_at(parameters),
+            Verdict::OneNear(x) => {
+                let start = [towards(wheel, x, rail), towards(rail, x, wheel)];
+                if let Some(feet) = newton(self.search, self.shapes, start, ranges) {
+                    return self.offer(feet);
+                }
+            }
+            Verdict::Open => {}
+        }
+        let halved = [self.length(Side::Wheel, wheel), self.length(Side::Rail, rail)];
+        if self.parts_left == 0 || halved.iter().all(Option::is_none) {
+            if let Some(feet) = newton(self.search, self.shapes, [wheel.middle, rail.middle], ranges) {
+                self.offer(feet);
+            }
+            return;
+        }
+        if halved[0] >= halved[1] {
+            for half in self.halves(Side::Wheel, wheel).into_iter().flatten() {
+                self.refine(&half, rail);
+            }
+        } else {
+            for half in self.halves(Side::Rail, rail).into_iter().flatten() {
+                self.refine(wheel, &half);
+            }
+        }
+    }
+
+    /// Length of a part that can be halved \[mm\], a bound of it. An arc's bounds leave nothing open but for the curvature of a
+    /// yawed one's outline.
+    fn length(&self, side: Side, part: &Part) -> Option<f64> {
+        let placed = part.placed.x[1] - part.placed.x[0];
+        let length = match &self.shapes[index(side)].shape {
+            Shape::Stretch(stretch) => {
+                placed.max((part.range[1] - part.range[0]) * stretch.reach.run.hypot(stretch.reach.rise))
+            }
+            Shape::Arc(_) if side == Side::Wheel && self.search.attitude.sin_yaw != 0.0 => placed,
+            _ => return None,
+        };
+        (part.depth < DEEPEST).then_some(length)
+    }
+
+    fn halves(&self, side: Side, part: &Part) -> [Option<Part>; 2] {
+        let [a, b] = part.range;
+        [[a, part.middle], [part.middle, b]].map(|range| self.half(side, range, part.depth + 1))
+    }
+
+    /// What the two parts' middles and curvatures tell of the abscissae where the tangents can be equal.
+    fn look(&self, wheel: &Part, rail: &Part, [low, high]: [f64; 2]) -> Verdict {
+        let (above, below) = (&wheel.place.station, &rail.place.station);
+        if above.sin.is_nan() {
+            return Verdict::Open;
+        }
+        let slack = self.search.slack;
+        let ([w0, w1], [r0, r1]) = (wheel.curvature, rail.curvature);
+        if r0 == f64::NEG_INFINITY && rail.place.run == 0.0 {
+            // Over a point of the rail.
+            let there = reached(above.sin, [w0, w1], below.x - above.x);
+            return if apart(there, rail.placed.sine) {
+                Verdict::Nothing
+            } else {
+                one_or_open(wheel, rail, below.x)
+            };
+        }
+        let there = reached(below.sin, [r0, r1], above.x - below.x);
+        if w1 == f64::INFINITY && wheel.place.run == 0.0 {
+            // A point of an unyawed wheel.
+            return if apart(there, wheel.placed.sine) {
+                Verdict::Nothing
+            } else {
+                Verdict::OneNear(above.x)
+            };
+        }
+        // D = 0 at X, with D'(X − X_W) = the rail's sine at X_W less the wheel's.
+        let missing = [there[0] - above.sin - SAME_TANGENT, there[1] - above.sin + SAME_TANGENT];
+        if wheel.is_rounder(rail) {
+            let slope = [w0 - r1, w1 - r0];
+            let first = missing[0] / if missing[0] > 0.0 { slope[1] } else { slope[0] };
+            let last = missing[1] / if missing[1] > 0.0 { slope[0] } else { slope[1] };
+            let (first, last) = ((above.x + first).max(low - slack), (above.x + last).min(high + slack));
+            return if first > last {
+                Verdict::Nothing
+            } else {
+                Verdict::OneNear(first + (last - first) / 2.0)
+            };
+        }
+        let reach = (low - above.x).abs().max((high - above.x).abs()) + slack;
+        let least = if missing[0] > 0.0 {
+            missing[0]
+        } else if missing[1] < 0.0 {
+            -missing[1]
+        } else {
+            0.0
+        };
+        if least > reach * (w0 - r1).abs().max((w1 - r0).abs()) {
+            return Verdict::Nothing;
+        }
+        self.agree(wheel, rail, [low, high]).map_or(Verdict::Open, Verdict::Agree)
+    }
+
+    /// The parameters in the middle of the shared abscissae if the two parts have the same tangents there, at both ends, and
+    /// half way to them: more places than two curves of a drawing share by chance. Without yaw only.
+    fn agree(&self, wheel: &Part, rail: &Part, [low, high]: [f64; 2]) -> Option<[f64; 2]> {
+        let same = |share: f64| {
+            let x = low + (high - low) * share;
+            let parameters =
+                [self.parameter_at(Side::Wheel, wheel, x), self.parameter_at(Side::Rail, rail, x)];
+            let places = self.places(parameters);
+            let differ = (places[0].1.station.sin - places[1].1.station.sin).abs();
+            (differ <= SAME_TANGENT).then_some(parameters)
+        };
+        if self.search.attitude.sin_yaw != 0.0 {
+            return None;
+        }
+        let middle = same(0.5)?;
+        [0.0, 0.25, 0.75, 1.0].into_iter().all(|share| same(share).is_some()).then_some(middle)
+    }
+
+    /// The parameter of a part of an unyawed body at an abscissa of the rail's axes.
+    fn parameter_at(&self, side: Side, part: &Part, x: f64) -> f64 {
+        let (element, body) = (self.shapes[index(side)], self.search.bodies[index(side)]);
+        let at = |p: f64| {
+            let own = element.place(&body.coefficients, p);
+            let place = if side == Side::Wheel { self.search.attitude.outline_place(&own) } else { own };
+            [place.station.x, place.run]
+        };
+        let values = part.range.map(|p| at(p)[0]);
+        let [a, b] = part.range;
+        if values[0] <= values[1] {
+            rising_root([a, b], values, x, at)
+        } else {
+            rising_root([b, a], [values[1], values[0]], x, at)
+        }
+    }
+
+    /// Points of both elements at parameters, in their own axes and in the rail's.
+    fn places(&self, parameters: [f64; 2]) -> [(Place, Place); 2] {
+        places(self.search, self.shapes, parameters)
+    }
+
+    fn offer_at(&mut self, parameters: [f64; 2]) {
+        let [(wheel, _), (rail, _)] = self.places(parameters);
+        self.offer([foot(&wheel, parameters[0]), foot(&rail, parameters[1])]);
+    }
+
+    fn offer(&mut self, [wheel, rail]: [Foot; 2]) {
+        self.search.offer(self.elements, &wheel, &rail);
+    }
+}
+
+fn index(side: Side) -> usize {
+    match side {
+        Side::Wheel => 0,
+        Side::Rail => 1,
+    }
+}
+
+fn foot(own: &Place, parameter: f64) -> Foot {
+    Foot { station: own.station, radius: own.radius, parameter }
+}
+
+/// Bounds of a sine at a distance along x, from bounds of the curvature on the way.
+fn reached(sine: f64, curvature: [f64; 2], distance: f64) -> [f64; 2] {
+    let ends = curvature.map(|k| if distance == 0.0 { 0.0 } else { k * distance });
+    [sine + ends[0].min(ends[1]), sine + ends[0].max(ends[1])]
+}
+
+fn apart(a: [f64; 2], b: [f64; 2]) -> bool {
+    a[0] > b[1] + SAME_TANGENT || b[0] > a[1] + SAME_TANGENT
+}
+
+fn one_or_open(wheel: &Part, rail: &Part, x: f64) -> Verdict {
+    if wheel.is_rounder(rail) { Verdict::OneNear(x) } else { Verdict::Open }
+}
+
+/// A parameter of a part to start from for an abscissa, as far as its tangent line tells; of a point the other's tangent.
+fn towards(part: &Part, x: f64, other: &Part) -> f64 {
+    let Place { station, run, turn, .. } = part.place;
+    let step =
+        if run == 0.0 { (other.place.station.sin - station.sin) / turn } else { (x - station.x) / run };
+    let p = part.middle + step;
+    if p.is_nan() { part.middle } else { p.clamp(part.range[0], part.range[1]) }
+}
+
+fn places(search: &Search, shapes: [&Element; 2], [p, q]: [f64; 2]) -> [(Place, Place); 2] {
+    let [wheel, rail] = shapes;
+    let [above, below] = search.bodies;
+    let own = wheel.place(&above.coefficients, p);
+    let foot = rail.place(&below.coefficients, q);
+    [(own, search.attitude.outline_place(&own)), (foot, foot)]
+}
+
+/// Newton's method for equal abscissae and equal sines of the tangents; `None` unless it settles between the `limits` of both
+/// parameters, to the rounding of a joint.
+fn newton(
+    search: &Search,
+    shapes: [&Element; 2],
+    start: [f64; 2],
+    limits: [[f64; 2]; 2],
+) -> Option<[Foot; 2]> {
+    let rounding = search.slack;
+    let mut p = start;
+    let mut settled = false;
+    for _ in 0..NEWTON_STEPS {
+        let [(own, above), (foot_place, below)] = places(search, shapes, p);
+        let apart = [above.station.x - below.station.x, above.station.sin - below.station.sin];
+        let turn = below.run * above.turn - above.run * below.turn;
+        let step = [
+            (apart[0] * below.turn - below.run * apart[1]) / turn,
+            (above.turn * apart[0] - above.run * apart[1]) / turn,
+        ];
+        if !(step[0].is_finite() && step[1].is_finite()) {
+            return None;
+        }
+        if settled {
+            // By how much rounding of an abscissa, or a kink that is none, moves the place.
+            let slack = [
+                ((rounding * below.turn).abs() + (below.run * SAME_TANGENT).abs()) / turn.abs(),
+                ((rounding * above.turn).abs() + (above.run * SAME_TANGENT).abs()) / turn.abs(),
+            ];
+            let inside = |k: usize| p[k] >= limits[k][0] - slack[k] && p[k] <= limits[k][1] + slack[k];
+            if apart[0].abs() <= rounding {
+                return (inside(0) && inside(1)).then(|| [foot(&own, p[0]), foot(&foot_place, p[1])]);
+            }
+        }
+        settled = (above.run * step[0]).abs() + (below.run * step[1]).abs() <= rounding;
+        for k in 0..2 {
+            // Beyond its end an element is continued, but not farther than it is long.
+            let width = limits[k][1] - limits[k][0];
+            let next = (p[k] + step[k]).clamp(limits[k][0] - width, limits[k][1] + width);
+            p[k] = if matches!(shapes[k].shape, Shape::Arc(_)) { next.clamp(-1.0, 1.0) } else { next };
+        }
+    }
+    None
+}
