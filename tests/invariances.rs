@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use wheelrail::contact::feasibility::feasibility;
 use wheelrail::interpenetration::{Patch, Slicer, Window};
 use wheelrail::placement::{Pair, Placement};
-use wheelrail::profile::{Arc, Polynomial, Profile, Segment, Shape, Station};
+use wheelrail::profile::{Arc, Polynomial, Profile, Segment, Shape, Station, standards};
 use wheelrail::separation::Evaluator;
 use wheelrail::separation::axis::EtaAxis;
 use wheelrail::separation::grid::{Choice, Method};
@@ -498,4 +498,37 @@ fn a_larger_approach_contains_the_smaller_patch() {
             Ok(())
         },
     );
+}
+
+/// An angle moves the surfaces in proportion: nothing jumps when a side face becomes vertical to rounding.
+#[test]
+fn a_last_digit_of_an_inclination_moves_s_by_as_much() {
+    let wheel = standards::wheel("S1002").expect("built in");
+    // How far 1 rad moves points of the head, C among them, and with C the frame over the window [mm].
+    let lever = 1e3;
+    for name in standards::rail_names() {
+        let rail = standards::rail(name).expect("built in");
+        let placed = |angle: f64| {
+            let pair =
+                Pair::new(rail.rotated(angle.cos(), angle.sin()), wheel.clone(), 460.0).expect("a pair");
+            pair.placed(0.0, 0.0, 0.01).expect("points of both")
+        };
+        for angle in [20f64.recip().atan(), -(20f64.recip().atan()), 40f64.recip().atan(), 0.05, 0.0] {
+            let base = placed(angle);
+            for change in [-1e-9, -1e-12, -1e-15, -2e-17, 7e-18, 2e-17, 1e-16, 1e-14, 1e-11] {
+                let other = placed(angle + change);
+                let mut evaluators = [&base, &other].map(Evaluator::new);
+                for xi in [-30.0, -12.0, -1.0, 0.0, 3.0, 25.0, 31.0] {
+                    for eta in [0.0, -7.0, 15.0] {
+                        let [a, b] = evaluators.each_mut().map(|e| e.separation(xi, eta));
+                        let allowed = 2.0 * PROMISED + lever * change.abs();
+                        assert!(
+                            (a - b).abs() <= allowed,
+                            "{name} {angle} {change:e}: s({xi}, {eta}) = {a}, {b}"
+                        );
+                    }
+                }
+            }
+        }
+    }
 }

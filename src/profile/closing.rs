@@ -125,7 +125,7 @@ impl<'a> Edge<'a> {
     /// The station at s of the segment or its continuation.
     fn at(&self, s: f64) -> Station {
         match &self.segment.shape {
-            Shape::Arc(arc) => graphed(&self.station, onward(&self.station, arc.curvature(), s)),
+            Shape::Arc(arc) => graphed(&self.station, arc.curvature(), s),
             Shape::Polynomial(polynomial) => polynomial.station(self.parameter(polynomial, s)),
         }
     }
@@ -157,7 +157,7 @@ impl<'a> Edge<'a> {
             Shape::Arc(arc) => {
                 let curvature = arc.curvature() + bent.change;
                 let near = self.at(from);
-                let far = graphed(&near, onward(&near, curvature, length));
+                let far = graphed(&near, curvature, length);
                 let [start, end] = if self.outward > 0.0 { [near, far] } else { [far, near] };
                 Shape::Arc(Arc { start, end, radius: curvature.recip() })
             }
@@ -184,14 +184,18 @@ fn onward(from: &Station, curvature: f64, s: f64) -> Station {
 /// Cosine of the tangent angle from which a point is kept by its abscissa.
 const GRAPH: f64 = 1.0 / 64.0;
 
-/// The station of an arc through `from` near a rounded one: its height is that of the arc at its abscissa, but for one rounding. A
-/// point's own two roundings would move steep segments across by one of the larger coordinate.
-fn graphed(from: &Station, rounded: Station) -> Station {
+/// The station of an arc through `from` of the given curvature, a distance s \[mm\] on: its abscissa is rounded, and its tangent
+/// and height are those of the arc there. Roundings of their own would move all that is anchored at the station: the height of
+/// steep segments by one of the larger coordinate.
+fn graphed(from: &Station, curvature: f64, s: f64) -> Station {
+    let rounded = onward(from, curvature, s);
     if from.cos.min(rounded.cos) < GRAPH {
         return rounded;
     }
     let run = rounded.x - from.x;
-    Station { z: from.z + run * ((from.sin + rounded.sin) / (from.cos + rounded.cos)), ..rounded }
+    let sin = from.sin + curvature * run;
+    let cos = rounded.cos - (sin - rounded.sin) * (rounded.sin / rounded.cos);
+    Station { z: from.z + run * ((from.sin + sin) / (from.cos + cos)), cos, sin, ..rounded }
 }
 
 /// Two neighbours whose ends are to become one.
@@ -390,178 +394,4 @@ impl Polynomial {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::{Half, Profile, standards};
-    use super::*;
-
-    /// Largest kink of a joint that the drawing does not have.
-    const SMOOTH: f64 = 1e-12;
-
-    fn arcs(step: f64, kink: f64) -> Result<Vec<Segment>> {
-        let first = Arc::about([0.0, -96.0], 96.0, Half::Upper, [-40.0, 0.0])?;
-        let start = Station { z: first.end.z + step, cos: kink.cos(), sin: kink.sin(), ..first.end };
-        let second = Arc::tangent_at(start, -345.0, 30.0)?;
-        Ok(vec![Segment::arc(first), Segment::arc(second)])
-    }
-
-    fn polynomials(step: f64) -> Result<Vec<Segment>> {
-        let graph = |c: &[f64], x| {
-            Ok(Segment { label: String::new(), shape: Shape::Polynomial(Polynomial::graph(c, x)?) })
-        };
-        Ok(vec![graph(&[0.0, 0.3, -0.01], [-20.0, 0.0])?, graph(&[step, 0.3, -0.005, 1e-4], [0.0, 20.0])?])
-    }
-
-    /// Largest distance \[mm\] across the tangent of the points of one chain from another, and of those `beyond` \[mm\] away from x = 0.
-    fn apart(one: &Profile, other: &Profile, beyond: f64) -> [f64; 2] {
-        use super::super::trace::{beside, trace};
-        let marks = trace(other, 1e-3);
-        let (mut hint, mut most, mut outside) = (0, 0f64, 0f64);
-        for mark in trace(one, 0.0371) {
-            let at = mark.station;
-            let found = beside(&marks, [at.x, at.z], hint);
-            hint = found.mark;
-            most = most.max(found.across.abs());
-            if at.x.abs() > beyond {
-                outside = outside.max(found.across.abs());
-            }
-        }
-        [most, outside]
-    }
-
-    #[test]
-    fn a_bend_closes_a_step_and_leaves_the_rest_alone() -> Result<()> {
-        for step in [1e-3, -5.4e-5, 3e-8] {
-            for drawn in [arcs(step, 0.0)?, arcs(step, 1e-6)?, polynomials(step)?] {
-                let profile = Profile::new("closed", "", drawn.clone())?;
-                let [closing] = profile.closings() else { return Err(Error::new("", "none", "one", "")) };
-                assert_eq!(profile.segments().len(), 4);
-                assert!((closing.moved / (0.5 * step.abs()) - 1.0).abs() < 0.05, "{closing:?}");
-                assert_eq!(profile.drawn(), drawn);
-                let joints = profile.continuity();
-                let most = BEND / 70.0;
-                for joint in &joints {
-                    assert!(joint.gap < 1e-14 && joint.kink.abs() < SMOOTH, "{step}: {joint:?}");
-                }
-                // The bend leaves its segment, the joint comes between, the bend enters the next.
-                let bent = joints[0].curvature_jump.abs().max(joints[2].curvature_jump.abs());
-                assert!(bent < 2.0 * most, "{step}: {bent:e} of {most:e}");
-                let alone = |k: usize| Profile::new("drawn", "", vec![drawn[k].clone()]);
-                for k in 0..2 {
-                    let half = Profile::new("half", "", profile.segments()[2 * k..2 * k + 2].to_vec())?;
-                    let [most, outside] = apart(&half, &alone(k)?, closing.reach);
-                    assert!(
-                        most < 0.6 * step.abs() + 1e-12 && outside < 1e-12,
-                        "{step}: {most:e} {outside:e}"
-                    );
-                }
-            }
-        }
-        Ok(())
-    }
-
-    #[test]
-    fn a_drawn_kink_stays_and_moves_to_where_the_segments_cross() -> Result<()> {
-        let (flat, slope) = (Arc::line([-30.0, 0.0], [0.0, 0.0])?, Arc::line([0.0, 2e-6], [30.0, 2.0])?);
-        let profile = Profile::new("kinked", "", vec![Segment::arc(flat), Segment::arc(slope)])?;
-        let ([joint], [_, _]) = (&profile.continuity()[..], profile.segments()) else {
-            return Err(Error::new("", "more", "two segments", ""));
-        };
-        assert!((joint.x + 3e-5).abs() < 1e-9 && joint.gap == 0.0, "{joint:?}");
-        assert!((joint.kink - (2.0f64 - 2e-6).atan2(30.0)).abs() < 1e-15, "{joint:?}");
-        Ok(())
-    }
-
-    #[test]
-    fn a_gap_along_a_vertical_tangent_is_no_step() -> Result<()> {
-        // A face that ends 0.3 mm above the arc that goes on from it.
-        let face = Arc::line([-20.0, 30.0], [-20.0, 0.3])?;
-        let arc = Arc::about([0.0, 0.0], 20.0, Half::Lower, [-20.0, 0.0])?;
-        let profile = Profile::new("face", "", vec![Segment::arc(face), Segment::arc(arc)])?;
-        assert!(profile.segments().len() == 2 && profile.closings().is_empty());
-        let [joint] = profile.continuity()[..] else { return Err(Error::new("", "more", "one joint", "")) };
-        assert!(joint.gap == 0.0 && joint.kink.abs() < 1e-15, "{joint:?}");
-        assert!((profile.segments()[0].end().z).abs() < 1e-14, "{joint:?}");
-        Ok(())
-    }
-
-    #[test]
-    fn closing_again_changes_nothing() -> Result<()> {
-        for name in standards::wheel_names() {
-            let profile = standards::wheel(name)?;
-            let again = Profile::new(name, &profile.source, profile.segments().to_vec())?;
-            assert!(again.closings().is_empty(), "{name}: {:?}", again.closings());
-            for (one, other) in profile.segments().iter().zip(again.segments()) {
-                for (a, b) in [(one.start(), other.start()), (one.end(), other.end())] {
-                    assert!((a.x - b.x).hypot(a.z - b.z) < 1e-13, "{name}: {a:?} {b:?}");
-                }
-            }
-        }
-        Ok(())
-    }
-
-    #[test]
-    fn closing_commutes_with_mirror_and_motion() -> Result<()> {
-        let frame = Station { x: 3.0, z: -7.0, cos: 0.8, sin: 0.6 };
-        let wheels = standards::wheel_names().map(standards::wheel).collect::<Result<Vec<_>>>()?;
-        for wheel in &wheels {
-            let mut drawn: Vec<_> =
-                wheel.drawn().iter().map(|s| s.map(Arc::mirrored, Polynomial::mirrored)).collect();
-            drawn.reverse();
-            same(&Profile::new("mirrored", "", drawn)?, &wheel.mirrored())?;
-            let moved = |s: &Segment| s.map(|a| a.placed_by(&frame), |p| p.placed_by(&frame));
-            let arcs = |s: &Segment| matches!(s.shape, Shape::Arc(_));
-            if wheel.drawn().iter().all(arcs) && wheel.drawn().iter().all(|s| moved(s).end().cos > 0.0) {
-                let (segments, _) =
-                    close(&wheel.drawn().iter().map(moved).collect::<Vec<_>>(), wheel.extent())?;
-                same(&Profile { segments, ..wheel.clone() }, &wheel.placed(&frame))?;
-            }
-        }
-        Ok(())
-    }
-
-    fn same(one: &Profile, other: &Profile) -> Result<()> {
-        assert_eq!(one.segments().len(), other.segments().len(), "{}", other.name);
-        for (a, b) in one.segments().iter().zip(other.segments()) {
-            let (a, b) = (a.end(), b.end());
-            // Where tangents are alike a step's rounding moves its closing along by the root of it.
-            assert!((a.x - b.x).hypot(a.z - b.z) < 1e-6, "{}: {a:?} {b:?}", other.name);
-            assert!(a.seen_from(&b).z.abs() < 1e-12, "{}: {a:?} {b:?}", other.name);
-        }
-        Ok(())
-    }
-
-    #[test]
-    fn closing_commutes_with_a_change_of_unit_to_the_bit() -> Result<()> {
-        let scaled = |segment: &Segment, by: f64| {
-            let station = |s: Station| Station { x: s.x * by, z: s.z * by, ..s };
-            segment.map(
-                |a| Arc { start: station(a.start), end: station(a.end), radius: a.radius * by },
-                |p| {
-                    let power = |(k, &c): (usize, &TwoFloat)| c * by.powi(1 - k as i32);
-                    let all = |c: &[TwoFloat]| c.iter().enumerate().map(power).collect();
-                    Polynomial { t: p.t.map(|t| t * by), x: all(&p.x), z: all(&p.z) }
-                },
-            )
-        };
-        for name in standards::wheel_names() {
-            let wheel = standards::wheel(name)?;
-            let drawn = wheel.drawn().iter().map(|s| scaled(s, 4096.0)).collect();
-            let expected: Vec<_> = wheel.segments().iter().map(|s| scaled(s, 4096.0)).collect();
-            assert_eq!(Profile::new(name, "", drawn)?.segments(), expected, "{name}");
-        }
-        Ok(())
-    }
-
-    #[test]
-    fn a_step_that_the_segments_beside_it_cannot_take_is_an_error() -> Result<()> {
-        let line = |from: [f64; 2], to| Arc::line(from, to).map(Segment::arc);
-        let short = vec![
-            line([-50.0, 0.0], [0.0, 0.0])?,
-            line([0.0, 5e-3], [0.05, 5e-3])?,
-            line([0.05, 5e-3], [50.0, 5e-3])?,
-        ];
-        let error = Profile::new("short", "", short).err().map(|e| e.to_string()).unwrap_or_default();
-        assert!(error.contains("segment 2") && error.contains("0.005000 mm across"), "{error}");
-        Ok(())
-    }
-}
+mod tests;
