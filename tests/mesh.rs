@@ -186,8 +186,8 @@ fn covers(placement: &Placement, delta: f64, group: &Group, axes: &Axes) -> bool
 fn grids_never_cut_the_patch() {
     for (name, placement, delta) in cases() {
         for spacing in [None, Some([0.37, 0.53])] {
-            let groups = axes::groups(&placement, delta, 0.0);
-            let patch = Patch::new(&placement, delta, &Window::UNBOUNDED);
+            let patch = whole(&placement, delta);
+            let groups = axes::groups(&patch, 0.0, spacing);
             assert_eq!(groups.iter().map(|g| g.components.len()).sum::<usize>(), patch.components.len());
             for group in &groups {
                 let axes = group.axes(spacing).expect("axes");
@@ -209,18 +209,18 @@ fn grids_never_cut_the_patch() {
 #[test]
 fn parts_are_merged_by_a_stated_distance_and_c_comes_first() -> Result<()> {
     let placement = two_crowns(-1e-3, 0.0)?;
-    let patch = Patch::new(&placement, 0.08, &Window::UNBOUNDED);
-    let apart = axes::groups(&placement, 0.08, 0.0);
+    let patch = whole(&placement, 0.08);
+    let apart = axes::groups(&patch, 0.0, None);
     assert_eq!(patch.components.len(), 2);
     assert_eq!(apart.iter().map(|g| g.components.clone()).collect::<Vec<_>>(), [vec![1], vec![0]]);
     let gap = patch.components[1].xi[0] - patch.components[0].xi[1];
-    assert_eq!(axes::groups(&placement, 0.08, 0.99 * gap).len(), 2);
-    let merged = axes::groups(&placement, 0.08, 1.01 * gap);
+    assert_eq!(axes::groups(&patch, 0.99 * gap, None).len(), 2);
+    let merged = axes::groups(&patch, 1.01 * gap, None);
     assert_eq!(merged.len(), 1);
     assert_eq!(merged[0].components, [0, 1]);
     assert_eq!(Some(merged[0].extent), patch.extent());
     assert_eq!(merged[0].axes(None)?.spacing, apart[0].axes(None)?.spacing);
-    assert!(axes::groups(&placement, 0.0, 0.0).is_empty());
+    assert!(axes::groups(&whole(&placement, 0.0), 0.0, None).is_empty());
     assert!(apart[0].axes(Some([1e-4, 1e-4])).is_err());
     Ok(())
 }

@@ -315,6 +315,5 @@ fn end_name(end: End) -> &'static str {
         End::Tip => "tip",
         End::Window => "window",
         End::ProfileEnd => "profile-end",
-        End::Fork => "fork",
     }
 }

@@ -4,3 +4,4 @@ pub mod feasibility;
 pub mod hertz;
 pub mod search;
 pub mod sweep;
+pub(crate) mod valleys;

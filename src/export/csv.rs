@@ -3,7 +3,7 @@
 use super::model::{Interval, Loop};
 use std::fmt::Write;
 
-/// `boundary.csv`: component, xi, eta. Loop after loop, counter-clockwise, each closed by its first point.
+/// `boundary.csv`: component, xi, eta. Loop after loop, counter-clockwise (around holes clockwise), each closed by its first point.
 pub fn boundary(loops: &[Loop]) -> String {
     let mut text = String::from("component,xi,eta\n");
     for ring in loops {

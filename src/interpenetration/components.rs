@@ -1,24 +1,21 @@
-//! The connected parts of the patch {s < δ} inside a window, each with its closed boundary loop.
+//! The connected parts of the patch {s < δ} inside a window, each with its closed boundary loops.
 
-use super::measure::{Memo, Stretch};
-use super::outline::{End, Outline, Part, Window};
-use super::slice::{Edge, Slice};
+use super::band::Band;
+use super::corners::{self, Row};
+use super::loops::{self, Rows};
+use super::measure::area_and_length;
+use super::outline::{End, Outline, Window};
+use super::skewed::Edge;
+use super::slice::Slice;
+use super::{lanes, plain};
 use crate::placement::Placement;
 
 /// Points of a loop along each of its two sides: the polygon is then within 1e-4 of the patch's width of the
-/// curve. Shared out among the pieces between corners by length, with at least [`LEAST_POINTS`] each.
+/// curve. Shared out among the pieces between corners by the angle at which they are on an ellipse as long …
 const POINTS_PER_SIDE: usize = 128;
-const LEAST_POINTS: usize = 4;
 
-/// A step of the boundary at a joint is shown with both its ends if it is larger than this share of the component:
-/// below, the loop's points are no better than that anyway.
-const SHOWN_STEP_SHARE: f64 = 1e-6;
-
-/// Demand on the quadrature of the area, relative.
-pub(crate) const AREA_DEMAND: f64 = 1e-13;
-
-/// Demand on the quadrature of the perimeter, relative.
-const PERIMETER_DEMAND: f64 = 1e-11;
+/// … with at least as many in every piece.
+const LEAST_POINTS: usize = 2;
 
 /// One connected part of the patch.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,30 +30,18 @@ pub struct Component {
     pub corners: Vec<f64>,
     /// Whether the window cuts it anywhere.
     pub cut_by_window: bool,
-    /// Closed loop of \[ξ, η\], counter-clockwise seen from +ζ, the first point not repeated; tips exact.
+    /// Closed loop of \[ξ, η\] around it, counter-clockwise seen from +ζ, the first point not repeated; tips exact.
     pub boundary: Vec<[f64; 2]>,
+    /// Closed loops around holes in it, clockwise: only under a skewed wheel.
+    pub holes: Vec<Vec<[f64; 2]>>,
     /// Area \[mm²\], to about 1e-12 relative, or to the rounding of s over δ where that is more.
     pub area: f64,
-    /// Length of the loop, steps at joints included but not its straight sides at forks \[mm\], to about 1e-10 relative;
-    /// 1e-7 where the end of a tilted wheel profile rounds it.
+    /// Length of all loops \[mm\], to about 1e-10 relative; 1e-7 where the end of a tilted wheel profile rounds it.
     pub perimeter: f64,
     /// Smallest s on it \[mm\] and where (ξ, η).
     pub deepest: [f64; 3],
-    /// Where its slices are found.
-    pub(crate) part: Part,
-}
-
-/// Where a connected part of the patch lies.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BoundingBox {
-    /// In ξ \[mm\].
-    pub xi: [f64; 2],
-    /// What bounds it there.
-    pub ends: [End; 2],
-    /// In η \[mm\].
-    pub eta: [f64; 2],
-    /// Smallest s on it \[mm\].
-    pub least: f64,
+    /// What it is made of, by ascending ξ.
+    pub(crate) bands: Vec<Band>,
 }
 
 /// The patch {s < δ} inside a window.
@@ -71,30 +56,46 @@ pub struct Patch {
 }
 
 impl Patch {
-    /// All components inside the window. Along every ξ a component is one interval of η: without skew so is the patch. With
-    /// it a part that divides is given as several components, which meet at forks.
+    /// All components inside the window. Without skew a line of constant ξ meets a component in one interval of η; with it
+    /// there may be several, and holes.
     ///
     /// Degenerate: empty for a δ that the pair nowhere undercuts, δ = 0 at a mere touch included, and for NaN.
-    /// With skew, or a window off the midplane, a part that begins and ends within 1/512 of the window
-    /// beside another minimum of s can be missed.
+    /// With skew, what lies between two turns of s along a valley that are closer than a quarter of the way between two joints
+    /// can be missed (see the docs on numerics); with a window beside a valley, what it leaves of a component for less
+    /// than 1/64 of that way.
     pub fn new(placement: &Placement, approach: f64, window: &Window) -> Self {
         let mut outline = Outline::new(placement, approach, window);
-        let parts = outline.parts();
-        let components = parts.iter().map(|part| outline.component(part)).collect();
+        let components =
+            regions(&mut outline).into_iter().map(|region| region.component(&mut outline)).collect();
         Self { approach, window: *window, components }
     }
 
-    /// Where the components of [`Patch::new`] lie, without their areas and lengths, which take most of its time.
-    pub fn bounding_boxes(placement: &Placement, approach: f64, window: &Window) -> Vec<BoundingBox> {
-        let mut outline = Outline::new(placement, approach, window);
-        let parts = outline.parts();
-        let bounding_box = |part: &Part| {
-            let corners = outline.corners_of(part);
-            let points = outline.points(part, &corners);
-            let [least, ..] = outline.deepest(part, &points);
-            BoundingBox { xi: part.xi, ends: part.ends, eta: across(&points), least }
-        };
-        parts.iter().map(bounding_box).collect()
+    /// What of it is inside another window, if that cuts no component; `None` if it does.
+    pub fn within(&self, window: &Window) -> Option<Self> {
+        let inside = |inner: [f64; 2], outer: [f64; 2]| outer[0] < inner[0] && inner[1] < outer[1];
+        let apart = |a: [f64; 2], b: [f64; 2]| a[1] < b[0] || b[1] < a[0];
+        let mut components = Vec::new();
+        for component in &self.components {
+            if inside(component.xi, window.xi) && inside(component.eta, window.eta) {
+                components.push(component.clone());
+            } else if !apart(component.xi, window.xi) && !apart(component.eta, window.eta) {
+                return None;
+            }
+        }
+        Some(Self { approach: self.approach, window: *window, components })
+    }
+
+    /// The intervals of η at ξ that lie in the patch, with the index of their component, in no order; where intervals end and
+    /// others begin those on the left. `outline` is that of the same placed pair.
+    pub fn slices(&self, outline: &mut Outline<'_>, xi: f64) -> Vec<(usize, Slice)> {
+        let mut slices = Vec::new();
+        for (index, component) in self.components.iter().enumerate() {
+            let bands = &component.bands;
+            let ended = bands.iter().any(|band| band.xi[1] == xi);
+            let over = |band: &&Band| (band.xi[0] < xi && xi <= band.xi[1]) || (xi == band.xi[0] && !ended);
+            slices.extend(bands.iter().filter(over).map(|band| (index, band.slice(outline, xi))));
+        }
+        slices
     }
 
     /// Whether any component is cut by the window.
@@ -119,159 +120,217 @@ impl Patch {
     }
 }
 
-impl Outline<'_> {
-    fn component(&mut self, part: &Part) -> Component {
-        let Part { xi, ends, .. } = *part;
-        let corners = self.corners_of(part);
-        let points = self.points(part, &corners);
-        let mut boundary: Vec<[f64; 2]> = points.iter().map(|(x, slice)| [*x, slice.eta[0]]).collect();
-        let upper = points.iter().rev().filter(|(_, slice)| slice.eta[0] < slice.eta[1]);
-        boundary.extend(upper.map(|(x, slice)| [*x, slice.eta[1]]));
-        let eta = across(&points);
-        let window = self.window.eta;
-        let cut_by_window = ends.contains(&End::Window)
-            || points.iter().any(|(_, slice)| slice.eta[0] == window[0] || slice.eta[1] == window[1]);
-        let (area, perimeter) = self.measures(part, &corners);
-        let deepest = self.deepest(part, &points);
-        let part = part.clone();
-        Component { xi, ends, eta, corners, cut_by_window, boundary, area, perimeter, deepest, part }
-    }
+/// The bands of one component.
+struct Region {
+    bands: Vec<Band>,
+    /// Valleys and ξ where the least s may be.
+    turns: Vec<(Option<usize>, f64)>,
+}
 
-    /// Both ends in ξ and, between them, every ξ where the boundary may have a corner.
-    fn corners_of(&mut self, part: &Part) -> Vec<f64> {
-        let joints = self.slicer.placement().joints(part.xi[0], part.xi[1]);
-        let joined = [&part.xi[..1], &joints, &part.xi[1..]].concat();
-        self.corners(part, &graded(part, &joined))
+/// The components of the patch, by ascending ξ.
+fn regions(outline: &mut Outline<'_>) -> Vec<Region> {
+    let (mut bands, turns) = if outline.slicer.skewed.is_some() {
+        let (bands, turns) = lanes::bands(outline);
+        (bands, turns.into_iter().map(|(valley, xi)| (Some(valley), xi)).collect())
+    } else {
+        let (bands, turns) = plain::bands(outline);
+        (bands, turns.into_iter().map(|xi| (None, xi)).collect::<Vec<_>>())
+    };
+    bands.sort_by(|a, b| a.xi[0].total_cmp(&b.xi[0]));
+    let meeting: Vec<[usize; 2]> = (0..bands.len())
+        .flat_map(|i| (0..bands.len()).map(move |j| [i, j]))
+        .filter(|&[i, j]| bands[i].meets(&bands[j]))
+        .collect();
+    // The first band of each band's component.
+    let mut first: Vec<usize> = (0..bands.len()).collect();
+    for [i, j] in meeting {
+        (bands[i].ends[1], bands[j].ends[0]) = (None, None);
+        let (kept, joined) = (first[i].min(first[j]), first[i].max(first[j]));
+        first.iter_mut().filter(|k| **k == joined).for_each(|k| *k = kept);
     }
-
-    /// ξ of the loop's points with the slices there, ascending: every corner, between two of them points that crowd
-    /// towards round ends, and where each branch is farthest out in η.
-    fn points(&mut self, part: &Part, corners: &[f64]) -> Vec<(f64, Slice)> {
-        let at = |outline: &mut Self, xi: f64| (xi, outline.slice_of(part, xi));
-        let mut points: Vec<_> = graded(part, corners).into_iter().map(|xi| at(self, xi)).collect();
-        let mut more: Vec<f64> = inner(corners)
-            .iter()
-            .filter(|&&x| self.step(part, x) > SHOWN_STEP_SHARE * (part.xi[1] - part.xi[0]))
-            .map(|x| x.next_up())
-            .collect();
-        for (branch, sign) in [(0, -1.0), (1, 1.0)] {
-            let outward = |k: &usize| sign * points[*k].1.eta[branch];
-            let farthest =
-                (1..points.len().saturating_sub(1)).max_by(|p, q| outward(p).total_cmp(&outward(q)));
-            more.extend(
-                farthest.and_then(|k| self.turn_of_branch(part, branch, points[k - 1].0, points[k + 1].0)),
-            );
-        }
-        points.extend(more.into_iter().map(|xi| at(self, xi)));
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        points.dedup_by_key(|point| point.0);
-        points
-    }
-
-    /// Area and perimeter over the pieces between corners.
-    fn measures(&mut self, part: &Part, corners: &[f64]) -> (f64, f64) {
-        let (mut area, mut perimeter) = (0.0, 0.0);
-        let edges = |outline: &mut Self, xi: f64| outline.edges(part.valley(xi), xi);
-        for piece in pieces(part, corners) {
-            let mut memo = Memo::new();
-            area += piece.integral(&mut |xi| width(memo.at(xi, |xi| edges(self, xi))), AREA_DEMAND);
-            let mut speed = |xi: f64| {
-                let edges = memo.at(xi, |xi| edges(self, xi));
-                self.speed(xi, edges)
-            };
-            perimeter += piece.integral(&mut speed, PERIMETER_DEMAND);
-        }
-        perimeter += inner(corners).iter().map(|&xi| self.step(part, xi)).sum::<f64>();
-        for (xi, end) in part.xi.into_iter().zip(part.ends) {
-            if end != End::Tip && end != End::Fork {
-                perimeter += width(edges(self, xi));
+    let mut regions: Vec<Region> = Vec::new();
+    let mut heads: Vec<usize> = Vec::new();
+    for (band, head) in bands.into_iter().zip(first) {
+        match heads.iter().position(|known| *known == head) {
+            Some(place) => regions[place].bands.push(band),
+            None => {
+                heads.push(head);
+                regions.push(Region { bands: vec![band], turns: turns.clone() });
             }
         }
-        (area, perimeter)
+    }
+    regions
+}
+
+impl Region {
+    fn xi(&self) -> [f64; 2] {
+        let ends = self.bands.iter().map(|band| band.xi);
+        ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], xi| [a.min(xi[0]), b.max(xi[1])])
     }
 
-    /// How far both branches jump at a corner \[mm\]: a drawing's rounded coordinates leave such steps.
-    fn step(&mut self, part: &Part, xi: f64) -> f64 {
-        // With skew a corner is found by its jump, and may be on either side of it.
-        let before = if part.valley(xi).is_some() { xi.next_down() } else { xi };
-        let (Some(left), Some(right)) = (self.slice(part, before), self.slice(part, xi.next_up())) else {
-            return 0.0;
+    /// What bounds it where it begins and ends.
+    fn ends(&self) -> [End; 2] {
+        let xi = self.xi();
+        [0, 1].map(|end| {
+            let outermost = self.bands.iter().filter(|band| band.xi[end] == xi[end]);
+            // A band that goes on in another one is not outermost.
+            outermost.filter_map(|band| band.ends[end]).next().unwrap_or(End::ProfileEnd)
+        })
+    }
+
+    fn component(mut self, outline: &mut Outline<'_>) -> Component {
+        let rows = self.rows(outline);
+        let (xi, eta, ends) = (self.xi(), across(&rows), self.ends());
+        let window = outline.window.eta;
+        let at_window = |row: &[f64; 3]| row[1] == window[0] || row[2] == window[1];
+        let cut_by_window = self.bands.iter().any(|band| band.ends.contains(&Some(End::Window)))
+            || rows.iter().flatten().any(at_window);
+        let mut loops = loops::loops(&self.bands, &rows);
+        // The outer one is the largest.
+        loops.sort_by(|a, b| loops::enclosed(b).total_cmp(&loops::enclosed(a)));
+        let mut loops = loops.into_iter();
+        let boundary = loops.next().unwrap_or_default();
+        let mut sums = [0.0, loops::walls(&self.bands)];
+        for band in &self.bands {
+            let [area, length] = area_and_length(outline, band);
+            sums = [sums[0] + area, sums[1] + length];
+        }
+        let mut corners: Vec<f64> = self.bands.iter().flat_map(|band| &band.corners).copied().collect();
+        sort(&mut corners);
+        let deepest = self.deepest(outline, &rows);
+        Component {
+            xi,
+            ends,
+            eta,
+            corners,
+            cut_by_window,
+            boundary,
+            holes: loops.collect(),
+            area: sums[0],
+            perimeter: sums[1],
+            deepest,
+            bands: self.bands,
+        }
+    }
+
+    /// The slices of every band at the loops' points: every corner, between two of them ξ that crowd towards round ends, and
+    /// where each branch is farthest out in η. Finds the corners.
+    fn rows(&mut self, outline: &mut Outline<'_>) -> Vec<Rows> {
+        let [a, b] = self.xi();
+        let skewed = outline.slicer.skewed.is_some();
+        let rail = &outline.slicer.placement().rail.section;
+        let deepest = if skewed { f64::NAN } else { self.deepest(outline, &[])[0] };
+        let mut all = Vec::with_capacity(self.bands.len());
+        for band in &mut self.bands {
+            let [from, to] = band.xi;
+            let joints = rail.joints(band.xi).map(|(xi, _)| xi);
+            let mut corners: Vec<f64> =
+                [from, to].into_iter().chain(joints.filter(|xi| from < *xi && *xi < to)).collect();
+            if !skewed {
+                corners::plain(outline, band, deepest, &mut corners);
+            }
+            sort(&mut corners);
+            band.corners = corners;
+            let nodes = graded(band, b - a);
+            let mut rows: Vec<Row> = nodes.into_iter().map(|xi| row(outline, band, xi)).collect();
+            let mut more = Vec::new();
+            if skewed {
+                let eta = rows.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], row| {
+                    [low.min(row.edges[0].eta), high.max(row.edges[1].eta)]
+                });
+                corners::skewed(outline, band, eta, &mut more);
+            }
+            corners::at_window(outline, band, &rows, &mut more);
+            rows.extend(more.iter().map(|&xi| row(outline, band, xi)));
+            band.corners.append(&mut more);
+            sort(&mut band.corners);
+            rows.sort_by(|p, q| p.xi.total_cmp(&q.xi));
+            add_farthest(outline, band, &mut rows);
+            rows.dedup_by_key(|row| row.xi);
+            all.push(rows.iter().map(|row| [row.xi, row.edges[0].eta, row.edges[1].eta]).collect());
+        }
+        all
+    }
+
+    /// \[s, ξ, η\] of the smallest s: where it turns along the valleys in it, at C, and at its ends; where the window cuts the
+    /// valley off, over the loops' points.
+    fn deepest(&self, outline: &mut Outline<'_>, rows: &[Rows]) -> [f64; 3] {
+        let mut least = [f64::NAN, self.xi()[0], 0.0];
+        let mut take = |found: [f64; 3]| {
+            if found[0] < least[0] || least[0].is_nan() {
+                least = found;
+            }
         };
-        left.eta.into_iter().zip(right.eta).map(|(a, b)| (a - b).abs()).sum()
-    }
-
-    /// Length of both branches per unit of ξ.
-    fn speed(&mut self, xi: f64, edges: Option<[Edge; 2]>) -> f64 {
-        let Some(edges) = edges else { return 0.0 };
-        let window = self.window.eta;
-        (0..2).map(|k| if edges[k].eta == window[k] { 1.0 } else { self.branch_speed(xi, edges[k]) }).sum()
-    }
-
-    fn branch_speed(&mut self, xi: f64, Edge { eta, ledge }: Edge) -> f64 {
-        let slicer = &mut self.slicer;
-        let slope = if ledge { slicer.ledge_slope(xi, eta) } else { slicer.boundary_slope(xi, eta) };
-        // Infinite only where ξ has been rounded onto a round end itself, which has no measure.
-        if slope.is_finite() { 1f64.hypot(slope) } else { 0.0 }
-    }
-
-    /// \[s, ξ, η\] of the smallest s among the points and where the depth turns between them.
-    fn deepest(&mut self, part: &Part, points: &[(f64, Slice)]) -> [f64; 3] {
-        let nodes: Vec<f64> = points.iter().map(|point| point.0).collect();
-        // C first: points where s² is below the smallest number are none better.
-        let mut candidates: Vec<f64> =
-            [0.0].into_iter().filter(|&c| nodes[0] <= c && c <= nodes[nodes.len() - 1]).collect();
-        candidates.extend(self.turning_points_of(part, &nodes));
-        candidates.extend(&nodes);
-        let values = candidates.into_iter().map(|xi| self.deepest_at(part, xi));
-        least(values).unwrap_or([f64::NAN, nodes[0], 0.0])
+        for (k, band) in self.bands.iter().enumerate() {
+            let holds = |xi: f64| band.xi[0] <= xi && xi <= band.xi[1];
+            let mut places = Vec::new();
+            // C first: points where s² is below the smallest number are none better.
+            places.extend(holds(0.0).then_some(0.0));
+            places.extend(band.xi);
+            let cut = outline.window.eta.into_iter().any(f64::is_finite) && !band.valleys.is_empty();
+            places.extend(rows.get(k).into_iter().flatten().filter(|_| cut).map(|row| row[0]));
+            for xi in places {
+                for &valley in band.valleys_at(xi) {
+                    take(outline.lowest(Some(valley), xi));
+                }
+                if band.valleys.is_empty() {
+                    take(outline.lowest(None, xi));
+                }
+            }
+            for &(valley, xi) in self.turns.iter().filter(|(_, xi)| holds(*xi)) {
+                if valley.is_none_or(|valley| band.valleys_at(xi).contains(&valley)) {
+                    take(outline.lowest(valley, xi));
+                }
+            }
+        }
+        least
     }
 }
 
-/// The one of \[s, ξ, η\] with the smallest s, NaN left out; the first of several.
-pub(super) fn least(values: impl Iterator<Item = [f64; 3]>) -> Option<[f64; 3]> {
-    values.filter(|v| !v[0].is_nan()).min_by(|p, q| p[0].total_cmp(&q[0]))
+/// Both edges of a band at ξ.
+fn row(outline: &mut Outline<'_>, band: &Band, xi: f64) -> Row {
+    let Slice { eta } = band.slice(outline, xi);
+    Row { xi, edges: eta.map(|eta| Edge { eta, ledge: false }) }
 }
 
-/// Width of a slice \[mm\], 0 outside.
-fn width(edges: Option<[Edge; 2]>) -> f64 {
-    edges.map_or(0.0, |[low, high]| high.eta - low.eta)
+/// Adds the rows at which each branch is farthest out in η, if it turns there.
+fn add_farthest(outline: &mut Outline<'_>, band: &Band, rows: &mut Vec<Row>) {
+    let symmetric = outline.slicer.skewed.is_none() && outline.window.eta[0] == -outline.window.eta[1];
+    let branches: &[usize] = if symmetric { &[1] } else { &[0, 1] };
+    let mut more = Vec::new();
+    for &branch in branches {
+        let outward = |k: &usize| if branch == 0 { -rows[*k].edges[0].eta } else { rows[*k].edges[1].eta };
+        let inner = 1..rows.len().saturating_sub(1);
+        let farthest = inner.max_by(|p, q| outward(p).total_cmp(&outward(q)));
+        let between = farthest.map(|k| [rows[k - 1].xi, rows[k + 1].xi]);
+        more.extend(between.and_then(|between| corners::turn_of_branch(outline, band, branch, between)));
+    }
+    rows.extend(more.into_iter().map(|xi| row(outline, band, xi)));
+    rows.sort_by(|p, q| p.xi.total_cmp(&q.xi));
 }
 
-/// Extent of slices in η.
-fn across(points: &[(f64, Slice)]) -> [f64; 2] {
-    points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (_, slice)| {
-        [low.min(slice.eta[0]), high.max(slice.eta[1])]
-    })
+/// Each number once, in ascending order.
+fn sort(numbers: &mut Vec<f64>) {
+    numbers.sort_by(f64::total_cmp);
+    numbers.dedup();
 }
 
-/// All corners but the two ends.
-fn inner(corners: &[f64]) -> &[f64] {
-    &corners[1..corners.len() - 1]
+/// Extent of rows in η.
+fn across(rows: &[Rows]) -> [f64; 2] {
+    rows.iter()
+        .flatten()
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], row| [low.min(row[1]), high.max(row[2])])
 }
 
-/// The pieces of a part between corners.
-fn pieces(part: &Part, corners: &[f64]) -> impl Iterator<Item = Stretch> {
-    let ends = part.ends;
-    let last = corners.len().saturating_sub(2);
-    corners.windows(2).enumerate().map(move |(k, pair)| Stretch {
-        xi: [pair[0], pair[1]],
-        round: [k == 0 && ends[0] != End::Window, k == last && ends[1] != End::Window],
-    })
-}
-
-/// Intervals of a piece of the loop.
-fn points_between(a: f64, b: f64, whole: f64) -> usize {
-    LEAST_POINTS.max((POINTS_PER_SIDE as f64 * (b - a) / whole) as usize)
-}
-
-/// Every corner, and between two of them ξ that crowd towards round ends.
-fn graded(part: &Part, corners: &[f64]) -> Vec<f64> {
-    let mut nodes = vec![corners[0]];
-    let whole = part.xi[1] - part.xi[0];
-    for piece in pieces(part, corners) {
-        let n = points_between(piece.xi[0], piece.xi[1], whole);
-        nodes.extend((1..n).map(|k| piece.xi(k as f64 / n as f64)));
-        nodes.push(piece.xi[1]);
+/// Every corner of a band, and between two of them ξ that crowd towards round ends; `whole` is the length of its component.
+fn graded(band: &Band, whole: f64) -> Vec<f64> {
+    let (grading, share) = (band.grading(), (band.xi[1] - band.xi[0]) / whole);
+    let mut nodes = Vec::with_capacity(2 * POINTS_PER_SIDE);
+    nodes.push(band.corners[0]);
+    for (piece, [from, to]) in band.pieces().enumerate() {
+        let n = LEAST_POINTS.max((POINTS_PER_SIDE as f64 * share * (to - from)).round() as usize);
+        nodes.extend((1..n).map(|k| grading.xi(from + (to - from) * k as f64 / n as f64)));
+        nodes.push(band.corners[piece + 1]);
     }
     nodes.dedup();
     nodes

@@ -1,116 +1,106 @@
-//! Where the boundary of a part may have a corner, and where it turns back in η.
+//! Where the boundary of a patch may have a corner, and where it turns back in η.
 
-use super::outline::{End, Outline, Part, ascending};
-use super::slice::Edge;
-use crate::numerics::roots::bracketed;
+use super::band::Band;
+use super::outline::Outline;
+use super::skewed::Edge;
+use crate::numerics::roots::{bracketed, last_where};
 
-/// One ξ of the boundary: both ends of the slice, and the wheel's profile abscissa under them.
+/// How far from a band, as a multiple of its depth × sinθ, joints of the wheel are looked at: enough for slopes up to 80°. What
+/// is farther off only costs the quadrature some panels.
+const FAR_JOINTS: f64 = 16.0;
+
+/// Intervals of a circle in which it is looked for s = δ: it is missed only where it passes it twice within one.
+const CIRCLE_INTERVALS: usize = 8;
+
+/// Doublings of the bracket of a sagitta.
+const DOUBLINGS: usize = 40;
+
+/// Both edges of a band at one ξ.
 #[derive(Debug, Clone, Copy)]
-struct Sample {
-    xi: f64,
-    eta: [f64; 2],
-    foot: [f64; 2],
-    ledge: [bool; 2],
+pub(super) struct Row {
+    pub(super) xi: f64,
+    pub(super) edges: [Edge; 2],
 }
 
-impl Outline<'_> {
-    /// Both ends of a part and all ξ between where its boundary may have a corner: joints of the two profiles,
-    /// joints of the wheel that the boundary crosses off the midplane (erratum 6), and where it meets the window or
-    /// the end of a surface.
-    /// What happens twice between two of `nodes`, which hold the joints, is missed.
-    pub(super) fn corners(&mut self, part: &Part, nodes: &[f64]) -> Vec<f64> {
-        let [a, b] = part.xi;
-        let mut corners = vec![a];
-        corners.extend(self.slicer.placement().joints(a, b));
-        corners.push(b);
-        let targets = self.targets();
-        let samples: Vec<Sample> = nodes.iter().map(|&xi| self.sample(part, xi)).collect();
-        for pair in samples.windows(2) {
-            corners.extend((0..2).filter_map(|branch| self.ledge_begin(part, branch, &pair[0], &pair[1])));
-            corners
-                .extend(targets.iter().filter_map(|target| self.crossing(part, target, &pair[0], &pair[1])));
+/// Appends the ξ inside a band where its boundary passes over a joint or the end of the wheel's surface without skew. The two
+/// branches mirror each other.
+///
+/// In closed form but for one root a joint: over the joint at p lies ξ = p + e sinθ, at the height h(p) + e cosθ, and that is to
+/// be ζ^R(ξ) + δ.
+pub(super) fn plain(outline: &Outline<'_>, band: &Band, deepest: f64, corners: &mut Vec<f64>) {
+    let placement = outline.slicer.placement();
+    let (approach, rail) = (outline.slicer.approach(), &placement.rail.section);
+    let frame = placement.wheel.section.frame;
+    let far = FAR_JOINTS * (approach - deepest).abs() * frame.sin.abs();
+    let [a, b] = band.xi;
+    for (p, height) in placement.wheel.section.joints([a - far, b + far]) {
+        let miss = |e: f64| height + e * frame.cos - rail.height(p + e * frame.sin) - approach;
+        if frame.sin == 0.0 || miss(0.0) >= 0.0 {
+            if frame.sin == 0.0 {
+                corners.extend((a < p && p < b).then_some(p));
+            }
+            continue;
         }
-        ascending(corners)
+        let mut high = (approach - deepest).abs() / frame.cos;
+        for _ in 0..DOUBLINGS {
+            if miss(high).is_nan() || miss(high) > 0.0 || high > placement.rolling_radius() {
+                break;
+            }
+            high *= 2.0;
+        }
+        let root = bracketed(miss, 0.0, high).map(|e| p + e * frame.sin);
+        corners.extend(root.filter(|&xi| a < xi && xi < b));
     }
+}
 
-    /// The finite window edges and the wheel's joints, for each branch that is not the mirror image of the other.
-    fn targets(&self) -> Vec<Target> {
-        let placement = self.slicer.placement();
-        let [skewed, tilted] = [placement.skew != 0.0, placement.wheel.section.frame.sin != 0.0];
-        let mut targets = Vec::new();
+/// Appends the ξ inside a band where s = δ on the circle of a joint or end of a skewed wheel, from the η that the band spans.
+pub(super) fn skewed(outline: &Outline<'_>, band: &Band, eta: [f64; 2], corners: &mut Vec<f64>) {
+    let Some(skewed) = &outline.slicer.skewed else { return };
+    let (approach, rail) = (outline.slicer.approach(), &outline.slicer.placement().rail.section);
+    let [a, b] = band.xi;
+    skewed.valleys.circles([a, b], eta, |place, [from, to]| {
+        let depth = |t: f64| {
+            let [xi, height] = place(t);
+            height - rail.height(xi) - approach
+        };
+        let at = |k: usize| from + (to - from) * k as f64 / CIRCLE_INTERVALS as f64;
+        let mut before = depth(from);
+        for k in 1..=CIRCLE_INTERVALS {
+            let here = depth(at(k));
+            if before * here < 0.0 {
+                let root = bracketed(depth, at(k - 1), at(k)).map(|t| place(t)[0]);
+                corners.extend(root.filter(|&xi| a < xi && xi < b));
+            }
+            before = here;
+        }
+    });
+}
+
+/// Appends the ξ between two rows at which a branch runs into the window.
+pub(super) fn at_window(outline: &mut Outline<'_>, band: &Band, rows: &[Row], corners: &mut Vec<f64>) {
+    let window = outline.window.eta;
+    for pair in rows.windows(2) {
         for branch in 0..2 {
-            let edges = self.window.eta.into_iter().filter(|edge| edge.is_finite());
-            targets.extend(edges.map(|value| Target { branch, foot: false, value }));
-            if skewed || (tilted && branch == 1) {
-                let pieces = &placement.wheel.section.pieces;
-                let joints = pieces.iter().skip(1).map(|piece| piece.xi[0]);
-                targets.extend(joints.map(|value| Target { branch, foot: true, value }));
+            let cut = |edges: [Edge; 2]| edges[branch].eta == window[branch];
+            let first = cut(pair[0].edges);
+            if first != cut(pair[1].edges) {
+                let same = |xi: f64| outline.edges(band.valley(xi), xi).map_or(!first, cut) == first;
+                corners.push(last_where(same, pair[0].xi, pair[1].xi));
             }
         }
-        targets
-    }
-
-    /// The boundary without the window; at a tip, and where rounding finds no width beside it, its lowest point.
-    fn sample(&mut self, part: &Part, xi: f64) -> Sample {
-        let tip = (0..2).any(|k| xi == part.xi[k] && part.ends[k] == End::Tip);
-        let (xi, at) = (part.beside_fork(xi), xi);
-        let valley = part.valley(xi);
-        let edges = self.slicer.edges(xi, valley).filter(|_| !tip);
-        let lowest = |k| self.slicer.spot(k, xi).eta;
-        let edges = edges.unwrap_or_else(|| [Edge { eta: valley.map_or(0.0, lowest), ledge: false }; 2]);
-        let eta = edges.map(|edge| edge.eta);
-        let foot = eta.map(|eta| self.slicer.foot_abscissa(xi, eta));
-        Sample { xi: at, eta, foot, ledge: edges.map(|edge| edge.ledge) }
-    }
-
-    /// Where a branch passes from s = δ to the end of a surface, or back.
-    fn ledge_begin(&mut self, part: &Part, branch: usize, from: &Sample, to: &Sample) -> Option<f64> {
-        if from.ledge[branch] == to.ledge[branch] || from.eta[branch].is_nan() || to.eta[branch].is_nan() {
-            return None;
-        }
-        let (mut a, mut b) = (from.xi, to.xi);
-        loop {
-            let middle = a + (b - a) / 2.0;
-            if middle == a || middle == b {
-                return Some(middle);
-            }
-            if self.sample(part, middle).ledge[branch] == from.ledge[branch] {
-                a = middle
-            } else {
-                b = middle
-            }
-        }
-    }
-
-    fn crossing(&mut self, part: &Part, target: &Target, from: &Sample, to: &Sample) -> Option<f64> {
-        let (p, q) = (target.miss(from), target.miss(to));
-        let change = p * q < 0.0;
-        change.then(|| bracketed(|xi| target.miss(&self.sample(part, xi)), from.xi, to.xi)).flatten()
-    }
-
-    /// The ξ next to a node at which one branch is farthest out in η: between its neighbours, if it turns there.
-    pub(super) fn turn_of_branch(&mut self, part: &Part, branch: usize, from: f64, to: f64) -> Option<f64> {
-        bracketed(
-            |xi| match self.edges(part.valley(xi), xi).map(|edges| edges[branch]) {
-                Some(Edge { eta, ledge: false }) => self.slicer.gradient(xi, eta)[0],
-                _ => f64::NAN,
-            },
-            from,
-            to,
-        )
     }
 }
 
-/// A value that one branch of the boundary may cross.
-#[derive(Debug, Clone, Copy)]
-struct Target {
+/// The ξ between two rows at which one branch is farthest out in η, if it turns there.
+pub(super) fn turn_of_branch(
+    outline: &mut Outline<'_>,
+    band: &Band,
     branch: usize,
-    foot: bool,
-    value: f64,
-}
-
-impl Target {
-    fn miss(&self, sample: &Sample) -> f64 {
-        (if self.foot { sample.foot } else { sample.eta })[self.branch] - self.value
-    }
+    [from, to]: [f64; 2],
+) -> Option<f64> {
+    let slope = |xi: f64| match outline.edges(band.valley(xi), xi).map(|edges| edges[branch]) {
+        Some(Edge { eta, ledge: false }) => outline.slicer.gradient(xi, eta)[0],
+        _ => f64::NAN,
+    };
+    bracketed(slope, from, to)
 }

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use serde::Serialize;
 
 use super::Slicer;
-use super::measure::Stretch;
+use super::grading::Grading;
 use crate::contact::hertz::{Curvatures, Ellipse, curvatures};
 use crate::error::{Error, Result};
 use crate::numerics::elliptic::complete;
@@ -99,7 +99,7 @@ impl VirtualContact {
         let mut half_width = |xi: f64| slicer.slice(xi).map_or(0.0, |s| (s.eta[1] - s.eta[0]) / 2.0);
         let mut over_overlap = |integrand: &dyn Fn(f64, f64) -> f64| {
             // A square root at the ends, a logarithm at C.
-            let sides = [[first, 0.0], [0.0, last]].map(|xi| Stretch { xi, round: [true; 2] });
+            let sides = [[first, 0.0], [0.0, last]].map(|xi| Grading { xi, round: [true; 2] });
             sides
                 .into_iter()
                 .map(|side| side.integral(&mut |xi| integrand(xi, half_width(xi)), FINE_ENOUGH))

@@ -3,9 +3,14 @@
 //! Between its lowest and highest points, and the ends and steps of the wheel's surface, s is monotone along a line of
 //! constant ξ. All of them are known, so that the ends of a slice are found by following them.
 
-use super::slice::{Edge, STEP_ROUNDINGS, Slicer};
-use super::valleys::Spot;
+use crate::contact::valleys::{Spot, Valleys};
 use crate::numerics::roots::{bracketed, last_where};
+use crate::placement::Placement;
+use crate::separation::Evaluator;
+
+/// A step of the wheel along a column counts as one beyond this many roundings of its height; less is a smooth
+/// joint whose two sides round differently.
+pub(super) const STEP_ROUNDINGS: f64 = 64.0;
 
 /// Newton's steps to s = δ.
 const NEWTON_STEPS: usize = 6;
@@ -23,86 +28,99 @@ const BESIDE: f64 = 1e-9;
 /// where lines of constant ξ but touch it.
 const NUDGES: i32 = 14;
 
-impl Slicer<'_> {
-    /// Where a valley or ridge is at ξ.
-    pub(super) fn spot(&self, crease: usize, xi: f64) -> Spot {
-        self.valleys.as_ref().map_or(Spot { eta: f64::NAN, rim: None }, |valleys| valleys.spot(crease, xi))
+/// One end of a slice.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Edge {
+    /// η \[mm\].
+    pub(crate) eta: f64,
+    /// Whether the wheel's surface ends or steps there, so that s jumps past δ.
+    pub(super) ledge: bool,
+}
+
+/// Slices under a skewed wheel at one approach.
+#[derive(Debug)]
+pub(super) struct Skewed<'a> {
+    placement: &'a Placement,
+    evaluator: Evaluator<'a>,
+    /// The wheel's valleys and ridges.
+    pub(super) valleys: Valleys<'a>,
+    /// δ \[mm\].
+    approach: f64,
+    /// η at which s may turn or end, along the line of constant ξ in hand.
+    stops: Vec<f64>,
+}
+
+impl<'a> Skewed<'a> {
+    /// Slices of a placed pair for approach δ \[mm\].
+    pub(super) fn new(placement: &'a Placement, approach: f64) -> Self {
+        let (evaluator, valleys) = (Evaluator::new(placement), Valleys::new(placement));
+        Self { placement, evaluator, valleys, approach, stops: Vec::new() }
     }
 
     /// s − δ at the place of a valley or ridge \[mm\].
-    pub(super) fn depth_of(&mut self, crease: usize, xi: f64) -> f64 {
-        let spot = self.spot(crease, xi);
+    pub(super) fn depth(&mut self, crease: usize, xi: f64) -> f64 {
+        let spot = self.valleys.spot(crease, xi);
         self.depth_at(xi, &spot)
     }
 
+    /// s − δ at such a place \[mm\].
     pub(super) fn depth_at(&mut self, xi: f64, spot: &Spot) -> f64 {
-        let s = match spot.rim {
-            // The surface may end there, by a rounding too early.
-            Some([height, _]) => height - self.placement.rail.section.height(xi),
-            None => self.evaluator.separation(xi, spot.eta),
-        };
-        s - self.approach
+        self.valleys.separation(&mut self.evaluator, xi, spot) - self.approach
     }
 
-    /// d(depth)/dξ along a valley or ridge.
-    pub(super) fn depth_slope_of(&mut self, crease: usize, xi: f64) -> f64 {
-        let spot = self.spot(crease, xi);
-        match spot.rim {
-            Some([_, slope]) => slope - self.evaluator.rail_slope(xi),
-            // Its own motion does not count, since s_η is zero there.
-            None => self.gradient(xi, spot.eta)[0],
+    /// The valley with the least s at ξ; `None` where there is none.
+    pub(super) fn lowest_valley(&mut self, xi: f64) -> Option<usize> {
+        let mut lowest: Option<(f64, usize)> = None;
+        for k in 0..self.valleys.creases.len() {
+            let crease = &self.valleys.creases[k];
+            if !crease.is_valley || xi < crease.xi[0] || crease.xi[1] < xi {
+                continue;
+            }
+            let depth = self.depth(k, xi);
+            if !depth.is_nan() && lowest.is_none_or(|(least, _)| depth < least) {
+                lowest = Some((depth, k));
+            }
         }
+        lowest.map(|(_, k)| k)
     }
 
     /// η, or next to it where the surface ends by a rounding too early.
     pub(super) fn on_surface(&mut self, xi: f64, eta: f64) -> f64 {
-        if self.valleys.is_none() {
-            return eta;
-        }
         let rounding = f64::EPSILON * self.placement.rolling_radius();
         let steps = std::iter::once(0.0).chain((0..NUDGES).flat_map(|k| [4f64.powi(k), -4f64.powi(k)]));
         let mut near = steps.map(|n| eta + n * rounding);
         near.find(|&eta| !self.evaluator.separation(xi, eta).is_nan()).unwrap_or(eta)
     }
 
-    /// The valleys over ξ.
-    pub(super) fn valleys_over(&self, xi: f64) -> Vec<usize> {
-        let Some(valleys) = &self.valleys else { return Vec::new() };
-        valleys.over(xi).filter(|&k| valleys.creases[k].is_valley).collect()
-    }
-
-    /// The valley with the least s at ξ; `None` without skew, and where there is none.
-    pub(super) fn lowest_valley(&mut self, xi: f64) -> Option<usize> {
-        let depths: Vec<_> = self.valleys_over(xi).into_iter().map(|k| (self.depth_of(k, xi), k)).collect();
-        let known = depths.into_iter().filter(|(depth, _)| !depth.is_nan());
-        known.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, k)| k)
-    }
-
-    /// Both ends of the slice that holds a valley.
-    pub(super) fn skewed_edges(&mut self, xi: f64, valley: usize) -> Option<[Edge; 2]> {
-        let spot = self.spot(valley, xi);
+    /// Both ends of the slice that holds a valley; `None` outside the patch.
+    pub(super) fn edges(&mut self, xi: f64, valley: usize) -> Option<[Edge; 2]> {
+        let spot = self.valleys.spot(valley, xi);
         let depth = -self.depth_at(xi, &spot);
         if depth.is_nan() || depth < 0.0 {
             return None;
         }
-        let stops = self.stops(xi);
+        let mut stops = std::mem::take(&mut self.stops);
+        self.stops_at(xi, &mut stops);
         // The wheel rises by about η²/2R: twice that width is enough but for steep profiles.
         let radius = self.placement.rolling_radius();
         let reach = (2.0 * (2.0 * radius * depth).sqrt()).max(STEP_ROUNDINGS * f64::EPSILON * radius);
-        Some([-1.0, 1.0].map(|side| self.outward(xi, spot.eta, side * reach, &stops)))
+        let edges = [-1.0, 1.0].map(|side| self.outward(xi, spot.eta, side * reach, &mut stops));
+        self.stops = stops;
+        Some(edges)
     }
 
     /// η at which s may turn or end, if there is more than one valley at ξ.
-    fn stops(&self, xi: f64) -> Vec<f64> {
-        let Some(valleys) = self.valleys.as_ref().filter(|valleys| valleys.over(xi).nth(1).is_some()) else {
-            return Vec::new();
-        };
-        let ridges = valleys.over(xi).filter(|&k| !valleys.creases[k].is_valley);
-        ridges.map(|k| valleys.spot(k, xi).eta).chain(valleys.rims(xi)).collect()
+    fn stops_at(&self, xi: f64, stops: &mut Vec<f64>) {
+        stops.clear();
+        let valleys = &self.valleys;
+        if valleys.over(xi).nth(1).is_some() {
+            let ridges = valleys.over(xi).filter(|&k| !valleys.creases[k].is_valley);
+            stops.extend(ridges.map(|k| valleys.spot(k, xi).eta).chain(valleys.rims(xi)));
+        }
     }
 
     /// The end of the slice on one side of its lowest point.
-    fn outward(&mut self, xi: f64, lowest: f64, reach: f64, stops: &[f64]) -> Edge {
+    fn outward(&mut self, xi: f64, lowest: f64, reach: f64, stops: &mut [f64]) -> Edge {
         let beside = (BESIDE * self.placement.rolling_radius()).copysign(reach);
         let mut from = self.on_surface(xi, lowest);
         let s = self.evaluator.separation(xi, from);
@@ -111,9 +129,8 @@ impl Slicer<'_> {
             return Edge { eta: from, ledge: true };
         }
         let away = |stop: &f64| (stop - lowest) * reach.signum();
-        let mut stops: Vec<f64> = stops.iter().copied().filter(|stop| away(stop) > -beside.abs()).collect();
         stops.sort_by(|a, b| away(a).total_cmp(&away(b)));
-        for stop in stops {
+        for &stop in stops.iter().filter(|stop| away(stop) > -beside.abs()) {
             for place in [stop - beside, stop + beside] {
                 if (place - from) * reach <= 0.0 {
                     continue;
@@ -186,7 +203,7 @@ impl Slicer<'_> {
     fn surface_end(&mut self, xi: f64, mut on: f64, mut off: f64) -> f64 {
         let beside = (BESIDE * self.placement.rolling_radius()).copysign(off - on);
         let between = |rim: &f64| (rim - on) * (off - rim) > 0.0;
-        let rims = self.valleys.iter().flat_map(|valleys| valleys.rims(xi)).filter(between);
+        let rims = self.valleys.rims(xi).filter(between);
         let nearest = rims.min_by(|a, b| (a - on).abs().total_cmp(&(b - on).abs()));
         for place in nearest.into_iter().flat_map(|rim| [rim - beside, rim + beside]) {
             if (place - on) * (off - place) > 0.0 {

@@ -4,8 +4,7 @@
 //! over a symmetric patch, and grids of one spacing for several parts or approaches share their centres.
 
 use crate::error::{Error, Result, finite};
-use crate::interpenetration::{BoundingBox, End, Patch, Window};
-use crate::placement::Placement;
+use crate::interpenetration::{Component, Patch, Window};
 
 /// Cells over the short side of the box when no spacing is given: peak pressures of the two solvers are then within 0.5 %.
 const CELLS_ACROSS: f64 = 16.0;
@@ -60,21 +59,18 @@ pub struct Group {
     pub short_side: f64,
 }
 
-/// The components of a patch over the whole overlap of the two profiles, in groups closer to each other than `merge`
-/// \[mm\]; at 0 or NaN each on its own but for those that meet at a fork. The group that holds C comes first, then the
-/// deepest; none for an empty patch.
-pub fn groups(placement: &Placement, approach: f64, merge: f64) -> Vec<Group> {
-    grouped(&Patch::bounding_boxes(placement, approach, &Window::UNBOUNDED), merge)
-}
-
-/// Boxes in groups, in the order of [`groups`].
-fn grouped(components: &[BoundingBox], merge: f64) -> Vec<Group> {
+/// The components of a patch, which is to be that over the whole plane, in groups closer to each other than `merge`
+/// \[mm\]; at 0 or NaN each on its own but for those that the grid of another, of this spacing (as for [`Group::axes`]), would
+/// cut. The group that holds C comes first, then the deepest; none for an empty patch.
+pub fn groups(patch: &Patch, merge: f64, spacing: Option<[f64; 2]>) -> Vec<Group> {
+    let components = &patch.components;
     let mut groups: Vec<Group> = Vec::new();
     for (index, component) in components.iter().enumerate() {
         let mut group = Group::of(index, component);
         // A new part may link groups that were apart: all that are near are joined.
         let belongs = |group: &Group, other: &Group| {
-            distance(&group.extent, &other.extent) < merge || meet_at_fork(components, group, other)
+            let apart = distance(&group.extent, &other.extent);
+            apart < merge || group.cuts(other, spacing) || other.cuts(group, spacing)
         };
         while let Some(near) = groups.iter().position(|other| belongs(&group, other)) {
             group = groups.swap_remove(near).joined(group, components);
@@ -100,13 +96,18 @@ impl Group {
         }
     }
 
-    fn of(index: usize, component: &BoundingBox) -> Self {
-        let extent = Window { xi: component.xi, eta: component.eta };
-        let [short_side, _] = sides(component);
-        Self { components: vec![index], extent, least: component.least, short_side }
+    /// Whether the automatic grid over it reaches into another one: part of its ring would lie in that patch.
+    fn cuts(&self, other: &Self, spacing: Option<[f64; 2]>) -> bool {
+        self.axes(spacing).is_ok_and(|axes| distance(&axes.window(), &other.extent) <= 0.0)
     }
 
-    fn joined(mut self, other: Self, components: &[BoundingBox]) -> Self {
+    fn of(index: usize, component: &Component) -> Self {
+        let extent = Window { xi: component.xi, eta: component.eta };
+        let [short_side, _] = sides(component);
+        Self { components: vec![index], extent, least: component.deepest[0], short_side }
+    }
+
+    fn joined(mut self, other: Self, components: &[Component]) -> Self {
         self.components.extend(other.components);
         self.components.sort_unstable();
         let join = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
@@ -124,26 +125,14 @@ impl Group {
     }
 }
 
-fn holds_contact(component: &BoundingBox) -> bool {
+fn holds_contact(component: &Component) -> bool {
     [component.xi, component.eta].iter().all(|[from, to]| *from <= 0.0 && *to >= 0.0)
 }
 
 /// The shorter side of the box and the longer one \[mm\].
-fn sides(component: &BoundingBox) -> [f64; 2] {
+fn sides(component: &Component) -> [f64; 2] {
     let [along, across] = [component.xi, component.eta].map(|[a, b]| b - a);
     [along.min(across), along.max(across)]
-}
-
-/// Whether a component of one group goes on in one of the other.
-fn meet_at_fork(components: &[BoundingBox], one: &Group, other: &Group) -> bool {
-    let forks = |k: usize, end: usize| components[k].ends[end] == End::Fork;
-    let meet = |k: usize, l: usize| {
-        let [a, b] = [components[k].eta, components[l].eta];
-        let overlap = a[0] <= b[1] && b[0] <= a[1];
-        let same_xi = |i: usize, j: usize| components[k].xi[i] == components[l].xi[j];
-        overlap && [(0, 1), (1, 0)].into_iter().any(|(i, j)| forks(k, i) && forks(l, j) && same_xi(i, j))
-    };
-    one.components.iter().any(|&k| other.components.iter().any(|&l| meet(k, l)))
 }
 
 /// Distance of two boxes \[mm\], 0 where they meet.

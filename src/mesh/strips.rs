@@ -1,7 +1,8 @@
 //! The boundary-fitted mesh of COUNTACT and CONFORM: strips across ξ, cells between the two boundary branches.
 //!
-//! Every component is the image of a rectangle: ξ runs from end to end in strips, and
-//! η = (η_l + η_u)/2 + c (η_u − η_l)/2 from the lower branch at c = −1 to the upper at c = 1. Cells are the images
+//! Every band of a component (a range of ξ with one interval of η, mostly all of it) is the image of a rectangle: ξ runs from
+//! end to end in strips, and η = (η_l + η_u)/2 + c (η_u − η_l)/2 from the lower branch at c = −1 to the upper at c = 1. Where
+//! bands meet they have the same points: one that divides takes the lines of those that it divides into. Cells are the images
 //! of equal steps of an angle in both directions (Chebyshev points), so that they become small with the square of
 //! their number towards the boundary, where pressure varies fastest. Sides of constant ξ are straight, sides of
 //! constant c follow the boundary; the outermost are the boundary itself. Areas and centroids are those of
@@ -9,11 +10,11 @@
 //! upwards. At a tip the cells are triangles that share it: quads with one corner repeated, so that
 //! neighbours share all their sides and the mesh has neither gaps nor hanging points.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::FRAC_PI_2;
 
+use super::lines::{Meeting, between, lines};
 use crate::error::{Error, Result};
-use crate::interpenetration::measure::{Memo, Stretch};
-use crate::interpenetration::{Component, End, Outline, Patch, Slice};
+use crate::interpenetration::{Band, Component, Outline, Patch};
 use crate::placement::Placement;
 
 /// Cells beyond which a mesh is a mistake: the patch itself is known to fewer digits.
@@ -51,7 +52,7 @@ impl Default for Counts {
 pub struct Cell {
     /// Index of its component.
     pub component: usize,
-    /// Strip along ξ and place along η within the component, both from 0 and ascending.
+    /// Strip within the component, from 0, band by band by ascending ξ, and place along η in it, from 0 and ascending.
     pub place: [usize; 2],
     /// Indices of its corners, counter-clockwise seen from +ζ; at a tip the last repeats the first.
     pub corners: [usize; 4],
@@ -91,6 +92,8 @@ impl StripMesh {
             outline: Outline::new(placement, patch.approach, &patch.window),
             shares: shares(counts.across),
             mesh: Self { points: Vec::new(), cells: Vec::new() },
+            eta: Vec::new(),
+            separation: Vec::new(),
         };
         for (index, component) in patch.components.iter().enumerate() {
             builder.component(index, component, counts.strips);
@@ -122,85 +125,120 @@ fn shares(across: usize) -> Vec<f64> {
 struct Builder<'a> {
     placement: &'a Placement,
     outline: Outline<'a>,
+    /// c of the points across a band of its own.
     shares: Vec<f64>,
     mesh: StripMesh,
+    /// η and s of a strip's centroids.
+    eta: Vec<f64>,
+    separation: Vec<f64>,
 }
 
 impl Builder<'_> {
     fn component(&mut self, index: usize, component: &Component, strips: usize) {
-        let edges = strip_edges(component, strips);
-        let rows: Vec<Vec<usize>> = edges.iter().map(|&xi| self.row(component, xi)).collect();
-        for (i, (xi, rows)) in edges.windows(2).zip(rows.windows(2)).enumerate() {
-            let moments = self.moments(component, [xi[0], xi[1]]);
-            for j in 0..self.shares.len() - 1 {
-                let quad = [rows[0][j], rows[1][j], rows[1][j + 1], rows[0][j + 1]];
-                if let Some(corners) = tip_first(quad) {
-                    let cell = self.cell(&moments, j);
-                    self.mesh.cells.push(Cell { component: index, place: [i, j], corners, ..cell });
+        let bands = &component.bands;
+        let shares = lines(bands, &self.shares);
+        let mut meetings: Vec<Meeting> = Meeting::all(bands, &shares);
+        let whole = component.xi[1] - component.xi[0];
+        let mut first_strip = 0;
+        for (band, shares) in bands.iter().zip(&shares) {
+            let edges = strip_edges(band, strips as f64 / whole);
+            let mut before: Vec<usize> = Vec::new();
+            for (i, &xi) in edges.iter().enumerate() {
+                let row = match meetings.iter_mut().find(|meeting| meeting.xi == xi) {
+                    Some(meeting) if xi == band.xi[0] || xi == band.xi[1] => {
+                        meeting.row(&mut self.mesh.points, self.placement, band, shares)
+                    }
+                    _ => self.row(band, shares, xi),
+                };
+                if i > 0 {
+                    self.strip(
+                        band,
+                        shares,
+                        [edges[i - 1], xi],
+                        [index, first_strip + i - 1],
+                        [&before, &row],
+                    );
                 }
+                before = row;
+            }
+            first_strip += edges.len() - 1;
+        }
+    }
+
+    /// The cells between two rows of points; `place` is the component's index and the strip's.
+    fn strip(
+        &mut self,
+        band: &Band,
+        shares: &[f64],
+        xi: [f64; 2],
+        [component, strip]: [usize; 2],
+        rows: [&[usize]; 2],
+    ) {
+        let moments = self.moments(band, xi);
+        let middle = |j: usize| moments.middle + moments.half * (shares[j] + shares[j + 1]) / 2.0;
+        self.eta.clear();
+        self.eta.extend((1..shares.len()).map(|j| middle(j - 1)));
+        self.separation.resize(self.eta.len(), f64::NAN);
+        self.outline.column(moments.xi, &self.eta, &mut self.separation);
+        for j in 0..self.eta.len() {
+            let quad = [rows[0][j], rows[1][j], rows[1][j + 1], rows[0][j + 1]];
+            if let Some(corners) = tip_first(quad) {
+                self.mesh.cells.push(Cell {
+                    component,
+                    place: [strip, j],
+                    corners,
+                    // Its share of the width is the same all along.
+                    area: moments.area * (shares[j + 1] - shares[j]) / 2.0,
+                    centroid: [moments.xi, self.eta[j]],
+                    separation: self.separation[j],
+                });
             }
         }
     }
 
     /// Indices of the points of one strip edge, ascending in η; all the same where it has no width.
-    fn row(&mut self, component: &Component, xi: f64) -> Vec<usize> {
-        let Slice { eta: [low, high] } = self.outline.slice_of(&component.part, xi);
+    fn row(&mut self, band: &Band, shares: &[f64], xi: f64) -> Vec<usize> {
+        let eta = band.slice(&mut self.outline, xi).eta;
         let zeta = self.placement.rail.section.height(xi);
         let points = &mut self.mesh.points;
         let first = points.len();
-        if low >= high {
-            points.push([xi, low, zeta]);
-            return vec![first; self.shares.len()];
+        if eta[0] >= eta[1] {
+            points.push([xi, eta[0], zeta]);
+            return vec![first; shares.len()];
         }
-        let last = self.shares.len() - 1;
-        points.extend(self.shares.iter().enumerate().map(|(j, share)| {
-            let between = low + (high - low) / 2.0 * (1.0 + share);
-            let eta = if j == 0 {
-                low
-            } else if j == last {
-                high
-            } else {
-                between
-            };
-            [xi, eta, zeta]
-        }));
-        (first..=first + last).collect()
+        points.extend(shares.iter().map(|&share| [xi, between(eta, share), zeta]));
+        (first..first + shares.len()).collect()
     }
 
     /// Moments of a strip's width, over its pieces between all corners: also those that have no edge.
-    fn moments(&mut self, component: &Component, xi: [f64; 2]) -> Moments {
-        let pieces = pieces(component, xi);
-        let mut memo = Memo::new();
-        let mut slice = |xi: f64| memo.at(xi, |xi| self.outline.slice(&component.part, xi));
-        let mut width = |xi: f64| slice(xi).map_or(0.0, |slice| slice.eta[1] - slice.eta[0]);
-        let area = pieces.iter().map(|piece| piece.integral(&mut width, AREA_DEMAND)).sum();
+    fn moments(&mut self, band: &Band, xi: [f64; 2]) -> Moments {
         // Means of quantities that change sign are taken from an offset, to whose size the demand then refers.
-        let offset = component.eta[0].abs().max(component.eta[1].abs());
-        let mut mean = |value: &dyn Fn(f64, Slice) -> f64| {
-            let mut weighted =
-                |xi: f64| slice(xi).map_or(0.0, |slice| value(xi, slice) * (slice.eta[1] - slice.eta[0]));
-            pieces.iter().map(|piece| piece.integral(&mut weighted, CENTROID_DEMAND)).sum::<f64>() / area
+        let offset = band.sides.into_iter().flatten().fold(xi[1] - xi[0], |most, eta| eta.abs().max(most));
+        let grading = band.grading();
+        let inside = band.corners.iter().copied().filter(|&corner| corner > xi[0] && corner < xi[1]);
+        // The ends are 0 and 1, whatever rounding makes of them.
+        let parameter = |x: f64| match x {
+            x if x == band.xi[0] => 0.0,
+            x if x == band.xi[1] => 1.0,
+            x => grading.parameter(x),
         };
-        Moments {
-            area,
-            xi: xi[0] + mean(&|x, _| x - xi[0]),
-            middle: mean(&|_, slice| offset + (slice.eta[0] + slice.eta[1]) / 2.0) - offset,
-            half: mean(&|_, slice| (slice.eta[1] - slice.eta[0]) / 2.0),
+        let (mut sums, mut from) = ([0.0; 4], parameter(xi[0]));
+        for to in inside.chain([xi[1]]).map(parameter) {
+            let weighted = |x: f64| match self.outline.edges(band.valley(x), x) {
+                Some([low, high]) => {
+                    let width = high.eta - low.eta;
+                    let middle = low.eta + width / 2.0;
+                    [width, (x - xi[0]) * width, (offset + middle) * width, width * width / 2.0]
+                }
+                None => [0.0; 4],
+            };
+            let demand = [AREA_DEMAND, CENTROID_DEMAND, CENTROID_DEMAND, CENTROID_DEMAND];
+            let piece = grading.integrals([from, to], weighted, demand);
+            sums = [0, 1, 2, 3].map(|k| sums[k] + piece[k]);
+            from = to;
         }
-    }
-
-    /// The j-th cell of a strip: its share of the width is the same all along.
-    fn cell(&mut self, moments: &Moments, j: usize) -> Cell {
-        let [from, to] = [self.shares[j], self.shares[j + 1]];
-        let centroid = [moments.xi, moments.middle + moments.half * (from + to) / 2.0];
-        Cell {
-            component: 0,
-            place: [0; 2],
-            corners: [0; 4],
-            area: moments.area * (to - from) / 2.0,
-            centroid,
-            separation: self.outline.separation(centroid[0], centroid[1]),
-        }
+        let [area, along, across, half] = sums;
+        Moments { area, xi: xi[0] + along / area, middle: across / area - offset, half: half / area }
     }
 }
 
@@ -216,16 +254,6 @@ struct Moments {
     half: f64,
 }
 
-/// The parts of a strip between the corners of the boundary inside it.
-fn pieces(component: &Component, [a, b]: [f64; 2]) -> Vec<Stretch> {
-    let inside = component.corners.iter().copied().filter(|&corner| corner > a && corner < b);
-    let cuts: Vec<f64> = std::iter::once(a).chain(inside).chain([b]).collect();
-    let round = |xi: f64| (0..2).any(|k| xi == component.xi[k] && component.ends[k] != End::Window);
-    cuts.windows(2)
-        .map(|pair| Stretch { xi: [pair[0], pair[1]], round: [round(pair[0]), round(pair[1])] })
-        .collect()
-}
-
 /// A quad with a side of no length as a triangle that begins and ends there; `None` with two such sides.
 fn tip_first(quad @ [a, b, c, d]: [usize; 4]) -> Option<[usize; 4]> {
     match (a == d, b == c) {
@@ -235,24 +263,25 @@ fn tip_first(quad @ [a, b, c, d]: [usize; 4]) -> Option<[usize; 4]> {
     }
 }
 
-/// ξ of the strips' edges: equal steps of the angle between corners, which are edges themselves.
-fn strip_edges(component: &Component, strips: usize) -> Vec<f64> {
-    let grading = Grading { xi: component.xi, round: component.ends.map(|end| end != End::Window) };
-    let least = LEAST_STRIP / strips as f64;
-    let mut kept = vec![(0.0, component.xi[0])];
-    for &corner in &component.corners {
+/// ξ of the edges of a band's strips, so many per mm: equal steps of the angle between corners, which are edges themselves.
+fn strip_edges(band: &Band, strips_per_mm: f64) -> Vec<f64> {
+    let grading = band.grading();
+    let strips = (strips_per_mm * (band.xi[1] - band.xi[0])).round().max(2.0);
+    let least = LEAST_STRIP / strips;
+    let mut kept = vec![(0.0, band.xi[0])];
+    for &corner in &band.corners {
         let t = grading.parameter(corner);
         if t - kept[kept.len() - 1].0 >= least && 1.0 - t >= least {
             kept.push((t, corner));
         }
     }
-    kept.push((1.0, component.xi[1]));
-    let mut edges = vec![component.xi[0]];
+    kept.push((1.0, band.xi[1]));
+    let mut edges = vec![band.xi[0]];
     for pair in kept.windows(2) {
         let [(from, _), (to, xi)] = [pair[0], pair[1]];
-        // A component without corners always gets two strips: two tips cannot share one.
+        // A band without corners always gets two strips: two tips cannot share one.
         let least = if kept.len() == 2 { 2.0 } else { 1.0 };
-        let n = (strips as f64 * (to - from)).round().max(least) as usize;
+        let n = (strips * (to - from)).round().max(least) as usize;
         edges.extend((1..n).map(|k| grading.xi(from + (to - from) * k as f64 / n as f64)));
         edges.push(xi);
     }
@@ -260,49 +289,9 @@ fn strip_edges(component: &Component, strips: usize) -> Vec<f64> {
     edges
 }
 
-/// ξ as a function of t in \[0, 1\] that crowds equal steps of t towards round ends.
-struct Grading {
-    xi: [f64; 2],
-    round: [bool; 2],
-}
-
-impl Grading {
-    fn xi(&self, t: f64) -> f64 {
-        let share = match self.round {
-            [true, true] => (PI * t / 2.0).sin().powi(2),
-            [true, false] => 2.0 * (PI * t / 4.0).sin().powi(2),
-            [false, true] => (FRAC_PI_2 * t).sin(),
-            [false, false] => t,
-        };
-        self.xi[0] + (self.xi[1] - self.xi[0]) * share
-    }
-
-    fn parameter(&self, xi: f64) -> f64 {
-        let share = (xi - self.xi[0]) / (self.xi[1] - self.xi[0]);
-        match self.round {
-            [true, true] => 2.0 / PI * share.sqrt().asin(),
-            [true, false] => 4.0 / PI * (share / 2.0).sqrt().asin(),
-            [false, true] => share.asin() / FRAC_PI_2,
-            [false, false] => share,
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn gradings_and_their_inverses() {
-        for round in [[true, true], [true, false], [false, true], [false, false]] {
-            let grading = Grading { xi: [-2.0, 5.0], round };
-            assert_eq!(grading.xi(0.0), -2.0);
-            assert!((grading.xi(1.0) - 5.0).abs() < 1e-14);
-            for t in [0.0, 0.1, 0.5, 0.9] {
-                assert!((grading.parameter(grading.xi(t)) - t).abs() < 1e-14, "{round:?} {t}");
-            }
-        }
-    }
 
     #[test]
     fn triangles_start_at_their_tip_and_keep_their_sense() {

@@ -1,5 +1,6 @@
 //! One placed pair from question to numbers.
 
+use std::sync::OnceLock;
 use std::time::Instant;
 
 use serde::Serialize;
@@ -51,7 +52,7 @@ pub struct Timings {
     pub plan_s: f64,
     /// Filling the grid.
     pub grid_s: f64,
-    /// Boundary, area, perimeter.
+    /// Boundary, area, perimeter, where they were not known from sizing the grid.
     pub patch_s: f64,
     /// Boundary-fitted mesh.
     pub mesh_s: f64,
@@ -84,6 +85,8 @@ pub struct Contact {
     pub ellipse_under: Option<EllipseUnder>,
     /// Seconds spent on estimating the approach.
     pub load_s: f64,
+    /// The patch over the whole plane, once it was asked for.
+    whole_patch: OnceLock<Patch>,
 }
 
 impl Contact {
@@ -114,7 +117,21 @@ impl Contact {
         };
         let load_s = if under == Some(EllipseUnder::Load) { start.elapsed().as_secs_f64() } else { 0.0 };
         let ellipse_under = under.filter(|_| ellipse.is_some());
-        Ok(Self { placement, feasibility, curvatures, approach, ellipse, ellipse_under, load_s })
+        let whole_patch = OnceLock::new();
+        Ok(Self { placement, feasibility, curvatures, approach, ellipse, ellipse_under, load_s, whole_patch })
+    }
+
+    /// The patch over the whole plane, found once; `None` without an approach.
+    pub fn whole_patch(&self) -> Option<&Patch> {
+        let (approach, _) = self.approach?;
+        Some(self.whole_patch.get_or_init(|| Patch::new(&self.placement, approach, &Window::UNBOUNDED)))
+    }
+
+    /// The patch in a window: the whole one's components where they are known and the window cuts none.
+    fn patch_in(&self, window: &Window) -> Option<Patch> {
+        let (approach, _) = self.approach?;
+        let known = self.whole_patch.get().and_then(|patch| patch.within(window));
+        Some(known.unwrap_or_else(|| Patch::new(&self.placement, approach, window)))
     }
 }
 
@@ -153,7 +170,7 @@ impl Analysis {
         plan.fill(placement, &xi, &axis, &mut separation);
         let filled = Instant::now();
         let window = window(&xi, &eta);
-        let patch = contact.approach.map(|(approach, _)| Patch::new(placement, approach, &window));
+        let patch = contact.patch_in(&window);
         let cut = Instant::now();
         let mesh = |patch: &Patch| StripMesh::new(placement, patch, Counts::default());
         let strips = patch.as_ref().map(mesh).transpose()?;

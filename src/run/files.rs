@@ -15,7 +15,7 @@ use crate::export::{
     Folder, FolderPart, Frame, GridFields, Header, Interval, Loop, QuadMesh, SurfaceMesh, VIEW_SCRIPT, csv,
     legacy, npy, vtk, vts,
 };
-use crate::interpenetration::Slicer;
+use crate::interpenetration::Outline;
 use crate::mesh::strips::StripMesh;
 use crate::mesh::surfaces::Surface;
 use crate::profile::Section;
@@ -194,34 +194,30 @@ fn quads(strips: &StripMesh) -> QuadMesh {
     }
 }
 
-/// The boundary loops, lifted onto the rail.
+/// The boundary loops, lifted onto the rail: of every component the outer one, then those around its holes.
 fn loops(part: &Part) -> Vec<Loop> {
     let section = &part.contact.placement.rail.section;
-    let components = part.analysis.patch.iter().flat_map(|patch| &patch.components);
-    components
-        .enumerate()
-        .map(|(component, patch)| {
-            let points = patch.boundary.iter().map(|&[xi, eta]| [xi, eta, section.height(xi)]).collect();
+    let components = part.analysis.patch.iter().flat_map(|patch| &patch.components).enumerate();
+    let loops = components.flat_map(|(index, component)| {
+        [&component.boundary].into_iter().chain(&component.holes).map(move |points| (index, points))
+    });
+    loops
+        .map(|(component, points)| {
+            let points = points.iter().map(|&[xi, eta]| [xi, eta, section.height(xi)]).collect();
             Loop { component, points }
         })
         .collect()
 }
 
-/// INTERPEN's own table: the interval of η at every ξ of the grid that lies in the patch.
+/// INTERPEN's own table: the intervals of η at every ξ of the grid that lies in the patch, by component and η.
 fn intervals(part: &Part) -> Vec<Interval> {
     let Some(patch) = &part.analysis.patch else { return Vec::new() };
-    let mut slicer = Slicer::new(&part.contact.placement, patch.approach);
+    let mut outline = Outline::new(&part.contact.placement, patch.approach, &patch.window);
     let mut rows = Vec::new();
     for &xi in &part.analysis.xi {
-        for (component, patch) in patch.components.iter().enumerate() {
-            if patch.xi[0] <= xi && xi <= patch.xi[1] {
-                rows.extend(slicer.slice_in(patch, xi).map(|slice| Interval {
-                    xi,
-                    component,
-                    eta: slice.eta,
-                }));
-            }
-        }
+        let mut here = patch.slices(&mut outline, xi);
+        here.sort_by(|(a, p), (b, q)| a.cmp(b).then(p.eta[0].total_cmp(&q.eta[0])));
+        rows.extend(here.into_iter().map(|(component, slice)| Interval { xi, component, eta: slice.eta }));
     }
     rows
 }

@@ -35,10 +35,8 @@ pub(super) fn grids(scene: &Scene, place: &Placed) -> Result<Vec<Grid>> {
         }
         return Ok(vec![Grid { xi: xi.clone(), eta: eta.clone(), warning: None }]);
     }
-    let mut groups = match place.contact.approach {
-        Some((approach, _)) => axes::groups(&place.contact.placement, approach, merge),
-        None => Vec::new(),
-    };
+    let patch = place.contact.whole_patch();
+    let mut groups = patch.map_or_else(Vec::new, |patch| axes::groups(patch, merge, spacing));
     if groups.is_empty() {
         let expected = "values, or a patch that the axes can be sized by";
         let advice = "give from, to and n, or a larger approach";

@@ -211,9 +211,9 @@ impl Part {
         let first = self.found.as_ref().is_none_or(|found| found.contact == 1);
         if first && !feasibility.feasible {
             out.push(format!(
-                "infeasible contact: the bodies overlap by {:.6e} mm at xi = {:.6} mm; expected s >= 0 everywhere \
-                 (4.1); choose another pair of points",
-                -feasibility.least_separation_mm, feasibility.at_xi_mm
+                "infeasible contact: the bodies overlap by {:.6e} mm at xi = {:.6} mm, eta = {:.6} mm; expected s >= 0 \
+                 everywhere (4.1); choose another pair of points",
+                -feasibility.least_separation_mm, feasibility.at_xi_mm, feasibility.at_eta_mm
             ));
         }
         if self.analysis.patch.as_ref().is_some_and(|patch| patch.components.is_empty()) {

@@ -225,11 +225,11 @@ impl Placed {
 
     /// Whether the part of this contact's patch around C, with what is merged into it, holds another place.
     fn holds(&self, place: &search::Contact, merge: f64) -> bool {
-        let Some((approach, _)) = self.contact.approach else { return false };
+        let Some(patch) = self.contact.whole_patch() else { return false };
         let placement = &self.contact.placement;
         let frame = placement.rail.section.frame;
         let xi = (place.rail_x - frame.x) * frame.cos + (place.rail_z - frame.z) * frame.sin;
-        let around = || axes::groups(placement, approach, merge).first().map(|group| group.extent.xi);
+        let around = || axes::groups(patch, merge, None).first().map(|group| group.extent.xi);
         self.extent.get_or_init(around).is_some_and(|[from, to]| from <= xi && xi <= to)
     }
 }

@@ -132,6 +132,11 @@ impl<'a> Evaluator<'a> {
         self.placement.rail.section.branch_at(xi).map_or(f64::NAN, |branch| branch.chord_slope(xi, xi))
     }
 
+    /// ζ^R(ξ) \[mm\]; NaN off the rail.
+    pub fn rail_height(&self, xi: f64) -> f64 {
+        self.placement.rail.section.height(xi)
+    }
+
     /// s at all η of one column.
     pub fn column(&mut self, xi: f64, eta: &[f64], out: &mut [f64]) {
         if self.placement.skew == 0.0 {
@@ -175,12 +180,6 @@ impl<'a> Evaluator<'a> {
         self.wheel.spans(xi_w, 0.0, &mut self.spans);
         let Some(span) = self.spans.first() else { return [f64::NAN; 2] };
         [self.base(xi, shift, span), self.wheel.opening(xi_w, span)]
-    }
-
-    /// Abscissa ξ′ − e sinθ of the profile point under (ξ, η), in the wheel's contact frame \[mm\]; NaN off the wheel.
-    pub(crate) fn foot_abscissa(&mut self, xi: f64, eta: f64) -> f64 {
-        let point = self.wheel_point(xi, eta);
-        point.map_or(f64::NAN, |point| self.wheel.abscissa(point.xi_w, point.foot.e))
     }
 
     /// ξ′ − ξ, which does not cancel, and η′ in the wheel's own directions of the tangent plane \[mm\].

@@ -1,11 +1,15 @@
-//! The places of [`super::valleys`] in the order of the profile, cut where they turn back in ξ.
+//! The places of a wheel that are parallel to η, in the order of its profile, cut where they turn back in ξ.
 
 use std::ops::Range;
 
-use super::valleys::{Circle, FARTHEST, Turned};
+use super::circle::{Circle, FARTHEST, Turned};
 
-/// Steps of a piece between which it is told whether ξ grows: a fold is missed only if it begins and ends within one.
-const STEPS: usize = 16;
+/// Steps of a piece between which it is told whether ξ grows, one for each such length \[mm\] of it: a fold is missed only if
+/// it begins and ends within one. It takes a curvature of some 1/(R χ²), and so turns the profile by a large angle.
+const STEP: f64 = 0.5;
+
+/// Fewest and most of them.
+const STEPS: [usize; 2] = [2, 16];
 
 /// Thirds by which the end of a fold is narrowed down: ξ there is off by the square of what is left.
 const THIRDS: usize = 60;
@@ -24,14 +28,12 @@ pub(super) struct Leg {
     pub(super) range: [f64; 2],
     /// ξ there \[mm\].
     pub(super) xi: [f64; 2],
-    /// Height of the profile there \[mm\].
-    pub(super) heights: [f64; 2],
 }
 
 impl Leg {
     fn reversed(self) -> Self {
         let back = |[a, b]: [f64; 2]| [b, a];
-        Self { xi: back(self.xi), range: back(self.range), heights: back(self.heights), ..self }
+        Self { xi: back(self.xi), range: back(self.range), ..self }
     }
 }
 
@@ -102,10 +104,11 @@ impl Path {
             let (circle, t) = turned.parallel(index, p);
             turned.place(&circle, t).xi
         };
-        let node = |k: usize| if k == STEPS { b } else { a + (b - a) * k as f64 / STEPS as f64 };
-        let values: Vec<f64> = (0..=STEPS).map(|k| xi(node(k))).collect();
+        let steps = (((b - a) / STEP) as usize).clamp(STEPS[0], STEPS[1]);
+        let node = |k: usize| if k == steps { b } else { a + (b - a) * k as f64 / steps as f64 };
+        let values: Vec<f64> = (0..=steps).map(|k| xi(node(k))).collect();
         let mut cuts = vec![a];
-        for k in 1..STEPS {
+        for k in 1..steps {
             let [before, after] = [values[k] - values[k - 1], values[k + 1] - values[k]];
             if before * after < 0.0 && before.abs().min(after.abs()) > turned.rounding() {
                 cuts.push(turn(node(k - 1), node(k + 1), before.signum(), &xi));
@@ -115,8 +118,7 @@ impl Path {
         let circle = turned.parallel(index, a).0;
         self.legs.extend(cuts.windows(2).map(|pair| {
             let range = [pair[0], pair[1]];
-            let heights = range.map(|p| turned.circle(index, p).height);
-            Leg { piece: Some(index), circle, range, xi: range.map(xi), heights }
+            Leg { piece: Some(index), circle, range, xi: range.map(xi) }
         }));
     }
 
@@ -151,13 +153,7 @@ impl Path {
 }
 
 fn leg(turned: &Turned<'_>, circle: Circle, range: [f64; 2]) -> Leg {
-    Leg {
-        piece: None,
-        circle,
-        range,
-        xi: range.map(|t| turned.place(&circle, t).xi),
-        heights: [circle.height; 2],
-    }
+    Leg { piece: None, circle, range, xi: range.map(|t| turned.place(&circle, t).xi) }
 }
 
 /// The whole circle of a profile point, in legs of ascending ξ.

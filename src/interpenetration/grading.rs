@@ -1,0 +1,119 @@
+//! ξ as a function of a parameter that takes the square-root behaviour at the tips of a patch out of its width.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use crate::numerics::quadrature::{integral, smooth_integrals};
+
+/// A piece up to this share of a band is tried with few nodes first.
+const SHORT: f64 = 0.1;
+
+/// ξ as a function of t in \[0, 1\] that crowds equal steps of t towards round ends: as an angle of an ellipse does, so that its
+/// width is smooth in t.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Grading {
+    /// Its ends \[mm\].
+    pub(crate) xi: [f64; 2],
+    /// Which of them are round: tips, and ends of a profile, which a tilted wheel's columns reach as √ too.
+    pub(crate) round: [bool; 2],
+}
+
+impl Grading {
+    /// ξ(t) \[mm\].
+    pub(crate) fn xi(&self, t: f64) -> f64 {
+        let share = match self.round {
+            [true, true] => (FRAC_PI_2 * t).sin().powi(2),
+            [true, false] => 2.0 * (FRAC_PI_2 / 2.0 * t).sin().powi(2),
+            [false, true] => (FRAC_PI_2 * t).sin(),
+            [false, false] => t,
+        };
+        self.xi[0] + (self.xi[1] - self.xi[0]) * share
+    }
+
+    /// ξ(t) and dξ/dt \[mm\].
+    fn xi_and_slope(&self, t: f64) -> (f64, f64) {
+        let (share, slope) = match self.round {
+            [true, true] => {
+                let (sin, cos) = (FRAC_PI_2 * t).sin_cos();
+                (sin * sin, PI * sin * cos)
+            }
+            [true, false] => {
+                let (sin, cos) = (FRAC_PI_2 / 2.0 * t).sin_cos();
+                (2.0 * sin * sin, PI * sin * cos)
+            }
+            [false, true] => {
+                let (sin, cos) = (FRAC_PI_2 * t).sin_cos();
+                (sin, FRAC_PI_2 * cos)
+            }
+            [false, false] => (t, 1.0),
+        };
+        let length = self.xi[1] - self.xi[0];
+        (self.xi[0] + length * share, length * slope)
+    }
+
+    /// t of ξ.
+    pub(crate) fn parameter(&self, xi: f64) -> f64 {
+        let share = (xi - self.xi[0]) / (self.xi[1] - self.xi[0]);
+        match self.round {
+            [true, true] => share.sqrt().asin() / FRAC_PI_2,
+            [true, false] => (share / 2.0).sqrt().asin() / (FRAC_PI_2 / 2.0),
+            [false, true] => share.asin() / FRAC_PI_2,
+            [false, false] => share,
+        }
+    }
+
+    /// ∫ f dξ between two t, of several functions at the same places, each to its relative demand; smooth there.
+    pub(crate) fn integrals<const N: usize>(
+        &self,
+        t: [f64; 2],
+        mut f: impl FnMut(f64) -> [f64; N],
+        relative: [f64; N],
+    ) -> [f64; N] {
+        let mut weighted = |t: f64| {
+            let (xi, slope) = self.xi_and_slope(t);
+            f(xi).map(|value| value * slope)
+        };
+        smooth_integrals(&mut weighted, t, relative, t[1] - t[0] <= SHORT)
+    }
+
+    /// ∫ f dξ over all of it, of a function that may have kinks.
+    pub(crate) fn integral(&self, f: &mut impl FnMut(f64) -> f64, relative: f64) -> f64 {
+        let mut weighted = |t: f64| {
+            let (xi, slope) = self.xi_and_slope(t);
+            f(xi) * slope
+        };
+        integral(&mut weighted, 0.0, 1.0, relative)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn square_roots_at_both_ends_cost_nothing() {
+        let half_circle = Grading { xi: [-1.0, 1.0], round: [true; 2] };
+        let mut count = 0usize;
+        let height = |x: f64| {
+            count += 1;
+            [((1.0 - x) * (1.0 + x)).sqrt()]
+        };
+        let [area] = half_circle.integrals([0.0, 1.0], height, [1e-13]);
+        assert!((area - FRAC_PI_2).abs() < 1e-13 && count <= 45, "{area} {count}");
+    }
+
+    #[test]
+    fn gradings_and_their_inverses() {
+        for round in [[true, true], [true, false], [false, true], [false, false]] {
+            let grading = Grading { xi: [-2.0, 5.0], round };
+            assert_eq!(grading.xi(0.0), -2.0);
+            assert!((grading.xi(1.0) - 5.0).abs() < 1e-14);
+            for t in [0.0, 0.1, 0.5, 0.9] {
+                assert!((grading.parameter(grading.xi(t)) - t).abs() < 1e-14, "{round:?} {t}");
+                let (xi, slope) = grading.xi_and_slope(t);
+                assert!((xi - grading.xi(t)).abs() < 1e-14, "{round:?} {t}");
+                let [run] = grading.integrals([0.0, t], |_| [1.0], [1e-13]);
+                assert!((run - (xi + 2.0)).abs() < 1e-13 && slope >= 0.0, "{round:?} {t}");
+            }
+        }
+    }
+}

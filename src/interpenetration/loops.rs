@@ -1,0 +1,154 @@
+//! The closed loops around bands that touch.
+//!
+//! At every ξ where bands end or begin, the boundary goes on from a side of one band to a side of another, if need be along
+//! the line of constant ξ: up where the patch is on the left of it only, down where it is on the right only.
+
+use super::band::Band;
+
+/// A side of a band.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Side {
+    band: usize,
+    /// Lower (0), along which a loop runs with ξ, or upper (1), along which it runs back.
+    branch: usize,
+}
+
+/// The slices of one band at ascending ξ, its ends included: \[ξ, lower η, upper η\] \[mm\].
+pub(super) type Rows = Vec<[f64; 3]>;
+
+/// Loops of \[ξ, η\] \[mm\] around bands, the patch on their left: the outer ones counter-clockwise, holes clockwise. The first
+/// point is not repeated; no two neighbours are the same.
+pub(super) fn loops(bands: &[Band], rows: &[Rows]) -> Vec<Vec<[f64; 2]>> {
+    let mut free: Vec<Side> =
+        (0..bands.len()).flat_map(|band| [0, 1].map(|branch| Side { band, branch })).collect();
+    let mut loops = Vec::new();
+    while let Some(first) = free.pop() {
+        let (mut points, mut side) = (Vec::new(), first);
+        loop {
+            let rows = rows[side.band].iter();
+            if side.branch == 0 {
+                points.extend(rows.map(|[xi, low, _]| [*xi, *low]));
+            } else {
+                points.extend(rows.rev().map(|[xi, _, high]| [*xi, *high]));
+            }
+            side = next(bands, side);
+            if side == first {
+                break;
+            }
+            match free.iter().position(|other| *other == side) {
+                Some(place) => free.swap_remove(place),
+                // Two intervals that overlap at one ξ by rounding: the loop is closed where it is.
+                None => break,
+            };
+        }
+        points.dedup();
+        while points.len() > 1 && points.first() == points.last() {
+            points.pop();
+        }
+        loops.push(points);
+    }
+    loops
+}
+
+/// The side on which a loop goes on after another.
+fn next(bands: &[Band], Side { band, branch }: Side) -> Side {
+    let (end, here) = (1 - branch, &bands[band]);
+    let (xi, eta) = (here.xi[end], here.sides[end][branch]);
+    // Where bands end there, and where they begin.
+    let across = |k: usize| bands[k].xi[1 - end] == xi;
+    let along = |k: usize| bands[k].xi[end] == xi;
+    // Upwards for a lower side, downwards for an upper one, or the other way behind a band on the other side.
+    let up = |value: f64| if branch == 0 { value } else { -value };
+    let near = |k: usize| up(bands[k].sides[1 - end][branch]);
+    let far = |k: usize| up(bands[k].sides[1 - end][1 - branch]);
+    let start = up(eta);
+    let others = || (0..bands.len()).filter(|&k| across(k));
+    match others().find(|&k| near(k) <= start && start < far(k)) {
+        // Beside a band on the other side: back along it to its own edge, or to a band on this side before that.
+        Some(beside) => {
+            let last = |k: &usize| up(bands[*k].sides[end][1 - branch]);
+            let own = (0..bands.len()).filter(|&k| along(k) && k != band);
+            let before = own.filter(|k| last(k) <= start && last(k) > near(beside));
+            let before = before.max_by(|p, q| last(p).total_cmp(&last(q)));
+            before.map_or(Side { band: beside, branch }, |band| Side { band, branch: 1 - branch })
+        }
+        // Nothing there: on to the band's own other side, or to a band on the other side before that.
+        None => {
+            let limit = up(here.sides[end][1 - branch]);
+            let before = others().filter(|&k| start <= near(k) && near(k) < limit);
+            let before = before.min_by(|&p, &q| near(p).total_cmp(&near(q)));
+            before.map_or(Side { band, branch: 1 - branch }, |band| Side { band, branch })
+        }
+    }
+}
+
+/// The area that a loop encloses \[mm²\], positive where it runs counter-clockwise.
+pub(super) fn enclosed(points: &[[f64; 2]]) -> f64 {
+    let Some([x, y]) = points.first() else { return 0.0 };
+    let pairs = points.iter().zip(points.iter().cycle().skip(1));
+    pairs.map(|(p, q)| ((p[0] - x) * (q[1] - y) - (q[0] - x) * (p[1] - y)) / 2.0).sum()
+}
+
+/// Length of the boundary along lines of constant ξ, where bands end or begin and others do not go on \[mm\].
+pub(super) fn walls(bands: &[Band]) -> f64 {
+    let width = |[low, high]: [f64; 2]| (high - low).max(0.0);
+    let sides = bands.iter().flat_map(|band| band.sides).map(width).sum::<f64>();
+    let common = bands.iter().flat_map(|left| bands.iter().map(move |right| (left, right)));
+    let common = common.filter(|(left, right)| left.xi[1] == right.xi[0]).map(|(left, right)| {
+        let [a, b] = [left.sides[1], right.sides[0]];
+        width([a[0].max(b[0]), a[1].min(b[1])])
+    });
+    sides - 2.0 * common.sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn band(xi: [f64; 2], sides: [[f64; 2]; 2]) -> Band {
+        Band { xi, ends: [None; 2], sides, valleys: Vec::new(), corners: xi.to_vec() }
+    }
+
+    /// Loops of bands with straight sides.
+    fn around(bands: &[Band]) -> Vec<Vec<[f64; 2]>> {
+        let row = |band: &Band, k: usize| [band.xi[k], band.sides[k][0], band.sides[k][1]];
+        loops(bands, &bands.iter().map(|band| vec![row(band, 0), row(band, 1)]).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn a_fork_is_one_loop() {
+        let bands = [
+            band([0.0, 1.0], [[0.0; 2], [-2.0, 2.0]]),
+            band([1.0, 3.0], [[-2.0, 0.5], [-1.0; 2]]),
+            band([1.0, 2.0], [[0.5, 2.0], [1.0; 2]]),
+        ];
+        let loops = around(&bands);
+        assert_eq!(loops.len(), 1, "{loops:?}");
+        assert!((enclosed(&loops[0]) - (2.0 + 2.5 + 0.75)).abs() < 1e-15, "{loops:?}");
+        assert_eq!(walls(&bands), 0.0);
+    }
+
+    #[test]
+    fn a_hole_runs_clockwise() {
+        let bands = [
+            band([0.0, 1.0], [[0.0; 2], [-2.0, 2.0]]),
+            band([1.0, 2.0], [[-2.0, 0.0], [-2.0, 0.0]]),
+            band([1.0, 2.0], [[0.0, 2.0], [0.5, 2.0]]),
+            band([2.0, 3.0], [[-2.0, 2.0], [0.0; 2]]),
+        ];
+        let mut areas: Vec<f64> = around(&bands).iter().map(|points| enclosed(points)).collect();
+        areas.sort_by(f64::total_cmp);
+        assert_eq!(areas, [-0.25, 8.0]);
+        assert_eq!(walls(&bands), 0.5);
+    }
+
+    #[test]
+    fn a_step_is_drawn_along_its_line() {
+        let bands =
+            [band([0.0, 1.0], [[-1.0, 1.0], [-1.0, 1.0]]), band([1.0, 2.0], [[-3.0, 0.5], [-3.0, 0.5]])];
+        let loops = around(&bands);
+        assert_eq!(loops.len(), 1);
+        assert!((enclosed(&loops[0]) - 5.5).abs() < 1e-15 && loops[0].len() == 8, "{loops:?}");
+        assert_eq!(walls(&bands), 2.0 + 3.5 + 2.5);
+    }
+}

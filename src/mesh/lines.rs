@@ -1,0 +1,127 @@
+//! The lines of a strip mesh along ξ, which go on from band to band where these meet.
+
+use crate::interpenetration::Band;
+use crate::placement::Placement;
+
+/// Two lines closer than this share of a band's width are one: far above what rounding makes of one line on both sides of a
+/// meeting, far below a cell.
+const ONE_LINE: f64 = 1e-7;
+
+/// c = −1 … 1 of the lines of every band, ascending. A band of its own has those given; one that is wider than a band it meets
+/// takes that one's, and every line goes on as far as there are bands.
+pub(super) fn lines(bands: &[Band], own: &[f64]) -> Vec<Vec<f64>> {
+    if bands.len() == 1 {
+        return vec![own.to_vec()];
+    }
+    let mut pairs: Vec<[usize; 2]> = (0..bands.len())
+        .flat_map(|left| (0..bands.len()).map(move |right| [left, right]))
+        .filter(|&[left, right]| bands[left].meets(&bands[right]))
+        .collect();
+    pairs.sort_by(|p, q| bands[p[1]].xi[0].total_cmp(&bands[q[1]].xi[0]));
+    let takes = |k: usize| {
+        pairs.iter().any(|&[left, right]| {
+            let widths = [(left, 1), (right, 0)].map(|(band, end)| {
+                let [low, high] = bands[band].sides[end];
+                high - low
+            });
+            (k == left && widths[0] > widths[1]) || (k == right && widths[1] > widths[0])
+        })
+    };
+    let mut shares: Vec<Vec<f64>> =
+        (0..bands.len()).map(|k| if takes(k) { vec![-1.0, 1.0] } else { own.to_vec() }).collect();
+    for &[left, right] in pairs.iter().rev() {
+        carry(bands, &mut shares, (right, 0), (left, 1));
+    }
+    for &[left, right] in &pairs {
+        carry(bands, &mut shares, (left, 1), (right, 0));
+    }
+    shares
+}
+
+/// Adds the lines of a band at one of its ends to another one that meets it there.
+fn carry(bands: &[Band], shares: &mut [Vec<f64>], (from, end): (usize, usize), (to, side): (usize, usize)) {
+    let [low, high] = bands[to].sides[side];
+    let places: Vec<f64> = shares[from].iter().map(|&share| between(bands[from].sides[end], share)).collect();
+    let shares = &mut shares[to];
+    for eta in places {
+        let share = 2.0 * (eta - low) / (high - low) - 1.0;
+        let k = shares.partition_point(|&other| other < share);
+        let near = |other: Option<&f64>| other.is_some_and(|other| (other - share).abs() <= 2.0 * ONE_LINE);
+        // Of two lines that are one, the side's own is kept.
+        if share > -1.0 && share < 1.0 && !near(shares.get(k)) && !near(shares.get(k.wrapping_sub(1))) {
+            shares.insert(k, share);
+        }
+    }
+}
+
+/// The points at which bands meet.
+pub(super) struct Meeting {
+    /// Where \[mm\].
+    pub(super) xi: f64,
+    /// η \[mm\] of its points, ascending.
+    eta: Vec<f64>,
+    /// Their indices, once they are in the mesh.
+    points: Vec<Option<usize>>,
+}
+
+impl Meeting {
+    /// All meetings of some bands with these lines.
+    pub(super) fn all(bands: &[Band], shares: &[Vec<f64>]) -> Vec<Self> {
+        let mut meetings: Vec<Self> = Vec::new();
+        for band in bands {
+            let xi = band.xi[1];
+            if meetings.iter().any(|known| known.xi == xi) || !bands.iter().any(|next| band.meets(next)) {
+                continue;
+            }
+            let mut eta = Vec::new();
+            let mut width = 0.0f64;
+            for (other, shares) in bands.iter().zip(shares) {
+                for end in (0..2).filter(|&end| other.xi[end] == xi) {
+                    let side = other.sides[end];
+                    width = width.max(side[1] - side[0]);
+                    eta.extend(shares.iter().map(|&share| between(side, share)));
+                }
+            }
+            eta.sort_by(f64::total_cmp);
+            eta.dedup_by(|a, b| (*a - *b).abs() <= ONE_LINE * width);
+            meetings.push(Self { xi, points: vec![None; eta.len()], eta });
+        }
+        meetings
+    }
+
+    /// Indices of the points of a band that ends or begins here; new ones are added to the mesh.
+    pub(super) fn row(
+        &mut self,
+        points: &mut Vec<[f64; 3]>,
+        placement: &Placement,
+        band: &Band,
+        shares: &[f64],
+    ) -> Vec<usize> {
+        let side = band.sides[usize::from(self.xi == band.xi[1])];
+        let zeta = placement.rail.section.height(self.xi);
+        let place = |share: &f64| {
+            let eta = between(side, *share);
+            let k = self.eta.partition_point(|&other| other < eta);
+            let before = k.saturating_sub(1);
+            let k = k.min(self.eta.len() - 1);
+            let nearest =
+                if (self.eta[before] - eta).abs() <= (self.eta[k] - eta).abs() { before } else { k };
+            *self.points[nearest].get_or_insert_with(|| {
+                points.push([self.xi, self.eta[nearest], zeta]);
+                points.len() - 1
+            })
+        };
+        shares.iter().map(place).collect()
+    }
+}
+
+/// η at a share of a slice, −1 … 1.
+pub(super) fn between([low, high]: [f64; 2], share: f64) -> f64 {
+    if share == -1.0 {
+        low
+    } else if share == 1.0 {
+        high
+    } else {
+        low + (high - low) / 2.0 * (1.0 + share)
+    }
+}
