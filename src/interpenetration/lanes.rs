@@ -16,6 +16,9 @@ const TOUCH: f64 = 1e-6;
 /// as square roots and are a thousandth of their width apart.
 const INSIDE: f64 = 1e-6;
 
+/// Events closer than this many roundings of R are one: between them rounding decides what is inside, and there may be no ξ.
+const XI_ROUNDINGS: f64 = 64.0;
+
 /// The valleys of one interval, the deepest first.
 type Group = Vec<usize>;
 
@@ -58,7 +61,8 @@ pub(super) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<(usize, f64)>)
     all.sort_by(f64::total_cmp);
     all.dedup();
     let mut walk = Walk { outline, events, lanes: Vec::new(), done: Vec::new() };
-    for pair in all.windows(2) {
+    let shortest = XI_ROUNDINGS * f64::EPSILON * placement.rolling_radius();
+    for pair in all.windows(2).filter(|pair| pair[1] - pair[0] > shortest) {
         let groups = groups(walk.outline, pair[0] + (pair[1] - pair[0]) / 2.0);
         walk.step([pair[0], pair[1]], groups, rail_steps.contains(&pair[0]));
     }
