@@ -56,6 +56,28 @@ fn points_come_back_from_every_format_bit_for_bit() {
 }
 
 #[test]
+fn simpack_wheels_descend_and_a_file_on_its_head_is_kept_by_its_definition_and_told_of() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    let wheel = text(here, &["convert", "S1002", "--to", "simpack", "--out", "wheel.prw"]);
+    assert!(wheel.is_empty());
+    let file = std::fs::read_to_string(here.join("wheel.prw")).unwrap();
+    let points = file.split("point.begin").nth(1).unwrap().split("point.end").next().unwrap();
+    let y: Vec<f64> =
+        points.lines().filter_map(|line| line.split_whitespace().next()?.parse().ok()).collect();
+    assert!(
+        y.len() > 500 && y[0] == 60.0 && *y.last().unwrap() == -70.0 && file.contains("inversion      =  0")
+    );
+    // The same file with z up: SIMPACK's definition holds, the flange that then points up is told of with the option.
+    std::fs::write(here.join("up.prw"), file.replace("mirror.z       =  0", "mirror.z       =  1")).unwrap();
+    let shown = text(here, &["show", "up.prw"]);
+    assert!(shown.contains("z = -1 second") && shown.contains("finding    orientation"), "{shown}");
+    assert!(shown.contains("it is kept, `flip_z = false` would change it"), "{shown}");
+    let turned = text(here, &["show", "up.prw", "--flip-z", "false"]);
+    assert!(turned.contains("z = 1 second") && !turned.contains("orientation"), "{turned}");
+}
+
+#[test]
 fn segments_come_back_from_toml() {
     let folder = TempDir::new().unwrap();
     let here = folder.path();

@@ -6,6 +6,7 @@
 //! with the drawing that the points are from; [`specimen`] makes worn profiles as instruments measure them;
 //! [`rates`] counts positions of a wheelset a second over them, [`whole_case`] times a case from first touch to its mesh;
 //! [`measurements`] does all of it to a given effort; [`requirements`] judges the ratios;
+//! [`practice`] runs whole cases as engineers have them against brute force;
 //! [`page`], [`table`] and [`chart`] turn the numbers into Markdown, CSV and SVG. Nothing here touches the disk.
 
 pub mod chart;
@@ -15,6 +16,7 @@ mod hard_checks;
 pub mod measured;
 pub mod measurements;
 pub mod page;
+pub mod practice;
 pub mod random;
 pub mod rates;
 pub mod reference;

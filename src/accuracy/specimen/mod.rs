@@ -6,14 +6,17 @@
 
 mod outline;
 
+use serde::Deserialize;
+
 use super::random::Random;
 use crate::error::Result;
 use crate::profile::measured::{self, Format, Measured, Options, write};
 use crate::profile::{Profile, Side, standards};
-use outline::{Place, drawn, recorded, rounded, worn};
+use outline::{OutlinePoint, drawn, recorded, rounded, worn};
 
 /// What is measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum SpecimenKind {
     /// 60E1 as drawn, with its inclined flanks.
     NewRail,
@@ -193,7 +196,7 @@ fn outline(kind: SpecimenKind, wear: &mut Random) -> Result<Vec<[f64; 2]>> {
         SpecimenKind::ConformalRail => rounded(&CONFORMAL_HEAD),
         SpecimenKind::LippedRail => {
             let (gauge, field) = (wear.between(0.5, 1.5), wear.between(0.5, 1.2));
-            let lip = |at: &Place| match at.x {
+            let lip = |at: &OutlinePoint| match at.x {
                 x if x < -30.0 => -bell(at.z, -17.0, 1.5, gauge),
                 x if x > 30.0 => -bell(at.z, -15.0, 1.5, field),
                 _ => 0.0,
@@ -214,7 +217,7 @@ fn outline(kind: SpecimenKind, wear: &mut Random) -> Result<Vec<[f64; 2]>> {
         }
         SpecimenKind::WornWheel => {
             let (tread, flange) = (wear.between(0.7, 2.0), wear.between(0.5, 1.5));
-            let depth = |at: &Place| bell(at.x, 2.0, 16.0, tread) + bell(at.x, -43.0, 4.0, flange);
+            let depth = |at: &OutlinePoint| bell(at.x, 2.0, 16.0, tread) + bell(at.x, -43.0, 4.0, flange);
             worn(&drawn(&standards::wheel("S1002")?), Side::Wheel, depth)
         }
         SpecimenKind::HollowWheel => {

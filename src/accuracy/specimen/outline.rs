@@ -17,7 +17,7 @@ const CLEAR_END: f64 = 0.05;
 
 /// A point of an outline with its unit tangent.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct OutlinePoint {
     /// Arc length from the left end \[mm\].
     pub s: f64,
     pub x: f64,
@@ -62,7 +62,7 @@ pub(super) fn drawn(profile: &Profile) -> Vec<[f64; 2]> {
 }
 
 /// Places every [`STEP`] along a chain of points.
-pub(super) fn places(points: &[[f64; 2]]) -> Vec<Place> {
+pub(super) fn places(points: &[[f64; 2]]) -> Vec<OutlinePoint> {
     let mut out = Vec::new();
     let (mut s, mut next) = (0.0, 0.0);
     for pair in points.windows(2) {
@@ -74,7 +74,7 @@ pub(super) fn places(points: &[[f64; 2]]) -> Vec<Place> {
         let (cos, sin) = ((x1 - x0) / length, (z1 - z0) / length);
         while next <= s + length {
             let along = next - s;
-            out.push(Place { s: next, x: x0 + along * cos, z: z0 + along * sin, cos, sin });
+            out.push(OutlinePoint { s: next, x: x0 + along * cos, z: z0 + along * sin, cos, sin });
             next += STEP;
         }
         s += length;
@@ -84,7 +84,7 @@ pub(super) fn places(points: &[[f64; 2]]) -> Vec<Place> {
 
 /// What is left after a depth \[mm\] has been worn away at every place, into the material across the outline;
 /// negative where material has flowed outwards.
-pub(super) fn worn(points: &[[f64; 2]], side: Side, depth: impl Fn(&Place) -> f64) -> Vec<[f64; 2]> {
+pub(super) fn worn(points: &[[f64; 2]], side: Side, depth: impl Fn(&OutlinePoint) -> f64) -> Vec<[f64; 2]> {
     let inwards = match side {
         Side::Rail => -1.0,
         Side::Wheel => 1.0,
