@@ -13,7 +13,7 @@ fn small() -> Measurements {
         growth: vec![10, 20],
         every_pair: 50,
         spacings: vec![2.0],
-        sweeps: Extent { positions: 3, amplitude: 0.2, instruments: vec![] },
+        sweeps: Extent { positions: 3, amplitude: 0.2, instruments: vec![[0.5, 3.0]] },
         case_side: 20,
     };
     measure(&effort, &mut |_| {}).expect("a measurement")
