@@ -102,8 +102,7 @@ impl Element {
     pub fn place(&self, coefficients: &[[f64; 2]], p: f64) -> Place {
         match &self.shape {
             Shape::Arc(arc) => {
-                let cos = ((1.0 - p) * (1.0 + p)).sqrt();
-                Place { station: arc.at(p, cos), run: arc.radius, turn: 1.0, radius: arc.radius }
+                Place { station: arc.at(p, cosine(p)), run: arc.radius, turn: 1.0, radius: arc.radius }
             }
             Shape::Line => {
                 let a = &self.ends[0];
