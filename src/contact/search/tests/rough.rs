@@ -474,8 +474,8 @@ fn compare(seed: u64) -> Result<std::result::Result<usize, String>> {
     }
     for contact in touch.contacts {
         // A point of both surfaces, at one abscissa, with the gap that it claims.
-        // An end may be a rounding outside, and a step has two heights.
-        let beside = [-1e-12, 0.0, 1e-12].map(|h| contact.rail_x + h);
+        // An end may be a rounding outside, on a steep one some more, and a step has two heights.
+        let beside = [-1e-9, 0.0, 1e-9].map(|h| contact.rail_x + h);
         let here =
             beside.map(|x| oracle.lowest(x, oracle.near(x), 12)[0]).into_iter().fold(f64::INFINITY, f64::min);
         let lower = here - (contact.gap - touch.height);
