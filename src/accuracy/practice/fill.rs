@@ -32,8 +32,13 @@ pub(super) fn filled(placement: &Placement, approach: f64, window: &Window) -> F
     let eta: Vec<f64> = (0..counts[1]).map(|k| at(window.eta, k, counts[1])).collect();
     let mut evaluator = Evaluator::new(placement);
     let mut s = vec![f64::NAN; counts[0] * counts[1]];
+    // Without skew a patch is what lies over the midplane.
+    let over = if placement.skew == 0.0 { placement.overlap() } else { Some(window.xi) };
     for (k, column) in s.chunks_exact_mut(counts[1]).enumerate() {
-        evaluator.column(at(window.xi, k, counts[0]), &eta, column);
+        let xi = at(window.xi, k, counts[0]);
+        if over.is_some_and(|[a, b]| a <= xi && xi <= b) {
+            evaluator.column(xi, &eta, column);
+        }
     }
     let cell = sides[0] / (counts[0] - 1) as f64 * (sides[1] / (counts[1] - 1) as f64);
     Filled {
