@@ -169,3 +169,19 @@ fn a_step_that_the_segments_beside_it_cannot_take_is_an_error() -> Result<()> {
     assert!(error.contains("segment 2") && error.contains("0.005000 mm across"), "{error}");
     Ok(())
 }
+
+#[test]
+fn sampled_chains_have_no_points_that_files_cannot_tell_apart() -> Result<()> {
+    use crate::profile::measured::write::{LEAST_DISTANCE, sample};
+    let rails = standards::rail_names().map(standards::rail);
+    for profile in rails.chain(standards::wheel_names().map(standards::wheel)) {
+        let profile = profile?;
+        for step in [0.05, 0.2, 1.0] {
+            let points = sample(&profile, step)?;
+            let apart = points.windows(2).map(|p| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1]));
+            let least = apart.fold(f64::INFINITY, f64::min);
+            assert!(least >= LEAST_DISTANCE, "{} at {step}: {least:e}", profile.name);
+        }
+    }
+    Ok(())
+}
