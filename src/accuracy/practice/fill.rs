@@ -15,6 +15,8 @@ const LEAST_POINTS: usize = 9;
 /// A patch as a fine grid has it.
 #[derive(Debug)]
 pub(super) struct Filled {
+    /// Distance of its points along ξ \[mm\].
+    pub step: f64,
     /// Area \[mm²\].
     pub area: f64,
     /// Connected parts of at least nine points.
@@ -43,6 +45,7 @@ pub(super) fn filled(placement: &Placement, approach: f64, window: &Window) -> F
     let cell = sides[0] / (counts[0] - 1) as f64 * (sides[1] / (counts[1] - 1) as f64);
     Filled {
         area: cell * covered(&s, counts[1], approach),
+        step: sides[0] / (counts[0] - 1) as f64,
         parts: parts(&s, counts[1], approach),
         least_area: cell * LEAST_POINTS as f64,
     }
