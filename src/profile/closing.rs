@@ -2,7 +2,7 @@
 //! with steps has contacts, edges and slivers that no wheel has.
 //!
 //! One rule, joint by joint, from the drawn ends alone. Let d be the distance between the two ends across the tangent,
-//! φ the kink, K = [`BEND`] / length of the chain, and w = √(d/K):
+//! φ the kink, K = `BEND` / length of the chain, and w = √(d/K):
 //!
 //! - **met**: ends that differ by roundings only are one point already, and stay as they are;
 //! - **crossing**: where the drawing has a kink, |φ| > Kw, both segments are trimmed or continued to where they cross,
@@ -12,7 +12,7 @@
 //!   up to K/2 for the kink, which goes. An arc's is an arc; a polynomial's is the polynomial plus a parabola.
 //!
 //! Outside these stretches every segment is the drawn one. A gap along the tangent is no step: the segments first go on towards
-//! each other, the flatter one further. w is at least [`SHORTEST`] and at most [`SHARE`] of the shorter neighbour. The rule has no direction, no axes and no
+//! each other, the flatter one further. w is at least `SHORTEST` and at most `SHARE` of the shorter neighbour. The rule has no direction, no axes and no
 //! unit of length: it commutes with mirroring, rigid motion and scaling, and closing twice changes nothing.
 
 use twofloat::TwoFloat;

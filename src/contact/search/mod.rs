@@ -21,7 +21,7 @@
 //! lowest are solved (`walk`): arcs and lines in closed form (`arcs`), polynomials and yawed arcs by bounds of their
 //! curvatures and Newton's method (`stretches`). So the lowest cannot be missed.
 //!
-//! What counts is the part of each profile that faces the other body in its own axes ([`Section`]): parts of a
+//! What counts is the part of each profile that faces the other body in its own axes ([`Section`](crate::profile::Section)): parts of a
 //! wheel that face down only by virtue of the roll (a flange back beyond the vertical) do not take part.
 
 mod arcs;
