@@ -242,7 +242,8 @@ impl Builder {
         let bounds = Bounds::of_hull(hull, outer, turns, self.side, self.rounding);
         self.firsts.push(self.hull.len());
         self.hull.extend_from_slice(hull);
-        self.elements.push(Element { shape, range, ends, bounds });
+        let middle = shape.place(&ends[0], &self.coefficients, range[0] + (range[1] - range[0]) / 2.0);
+        self.elements.push(Element { shape, range, ends, middle, bounds });
     }
 
     /// Appends the tree over a range of elements, the parent first; returns the index of its root.

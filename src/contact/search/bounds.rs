@@ -188,17 +188,16 @@ impl Reach {
     /// Method: Taylor's theorem about the point with the bounds of the whole stretch.
     pub fn around(&self, point: &Station, curvature: f64, half: f64, side: Side, rounding: f64) -> Bounds {
         let (run, rise) = (half * self.run, half * self.rise);
-        let most = self.curvature[0].abs().max(self.curvature[1].abs());
-        let turn = most * run;
         let change = half * self.change;
+        let curvature =
+            [(curvature - change).max(self.curvature[0]), (curvature + change).min(self.curvature[1])];
+        let turn = curvature[0].abs().max(curvature[1].abs()) * run;
         let off = 0.5 * half * half * self.bend + rounding;
         let chord = [point.cos, point.sin];
         let here = level(chord, [point.x, point.z]);
         let x = [point.x - run, point.x + run];
         let z = [point.z - rise - rounding, point.z + rise + rounding];
         let sine = [(point.sin - turn).max(self.sine[0]), (point.sin + turn).min(self.sine[1])];
-        let curvature =
-            [(curvature - change).max(self.curvature[0]), (curvature + change).min(self.curvature[1])];
         let level = if side == Side::Wheel { here - off } else { here + off };
         Bounds::new([x, z], [sine, curvature], (chord, level), side)
     }

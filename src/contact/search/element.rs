@@ -15,8 +15,10 @@ pub(super) struct Element {
     pub shape: Shape,
     /// The parameters between which it lies, ascending: of an arc or fan sinφ, of a line x \[mm\], of a stretch t.
     pub range: [f64; 2],
-    /// Its points at the ends of `range`.
+    /// Its points at the ends of `range` …
     pub ends: [Station; 2],
+    /// … and in its middle.
+    pub middle: Place,
     /// What bounds it.
     pub bounds: Bounds,
 }
@@ -39,6 +41,8 @@ pub(super) struct ArcElement {
     /// Signed radius \[mm\]: positive with the hollow side up; +0 for a fan of the wheel, −0 of the rail, so that
     /// the curvature is ±∞ as it should.
     pub radius: f64,
+    /// 1/radius.
+    curvature: f64,
     /// Centre \[mm\]: good for abscissae, too coarse for heights when the radius is large.
     pub centre: [f64; 2],
 }
@@ -63,8 +67,8 @@ pub(super) struct Place {
     pub run: f64,
     /// d sinφ over the parameter.
     pub turn: f64,
-    /// Signed radius \[mm\]: of the profile, whatever the yaw.
-    pub radius: f64,
+    /// Curvature \[1/mm\] of the profile, whatever the yaw.
+    pub curvature: f64,
 }
 
 impl ArcElement {
@@ -72,14 +76,15 @@ impl ArcElement {
     pub fn of(arc: &ArcBranch) -> Self {
         let [x, z] = arc.anchor;
         let centre = [x - arc.radius * arc.sin, z + arc.radius * arc.cos];
-        Self { anchor: Station { x, z, cos: arc.cos, sin: arc.sin }, radius: arc.radius, centre }
+        let anchor = Station { x, z, cos: arc.cos, sin: arc.sin };
+        Self { anchor, radius: arc.radius, curvature: arc.radius.recip(), centre }
     }
 
     /// All normals through a point.
     pub fn fan(point: &Station, side: Side) -> Self {
         let anchor = Station { cos: 1.0, sin: 0.0, ..*point };
         let radius = if side == Side::Wheel { 0.0 } else { -0.0 };
-        Self { anchor, radius, centre: [point.x, point.z] }
+        Self { anchor, radius, curvature: radius.recip(), centre: [point.x, point.z] }
     }
 
     /// The point with a given tangent.
@@ -96,20 +101,36 @@ impl ArcElement {
     }
 }
 
+impl Shape {
+    /// The point at a parameter; `start`: one point of a line.
+    #[inline]
+    pub fn place(&self, start: &Station, coefficients: &[[f64; 2]], p: f64) -> Place {
+        match self {
+            Shape::Arc(arc) => {
+                Place { station: arc.at(p, cosine(p)), run: arc.radius, turn: 1.0, curvature: arc.curvature }
+            }
+            Shape::Line => {
+                let z = start.z + (p - start.x) * (start.sin / start.cos);
+                Place { station: Station { x: p, z, ..*start }, run: 1.0, turn: 0.0, curvature: 0.0 }
+            }
+            Shape::Stretch(stretch) => stretch.place(coefficients, p),
+        }
+    }
+}
+
 impl Element {
     /// The point at a parameter, inside the element or beyond it; `coefficients` are those of the whole body.
     #[inline]
     pub fn place(&self, coefficients: &[[f64; 2]], p: f64) -> Place {
+        self.shape.place(&self.ends[0], coefficients, p)
+    }
+
+    /// Signed radius \[mm\] of the profile at one of its points.
+    pub fn radius(&self, place: &Place) -> f64 {
         match &self.shape {
-            Shape::Arc(arc) => {
-                Place { station: arc.at(p, cosine(p)), run: arc.radius, turn: 1.0, radius: arc.radius }
-            }
-            Shape::Line => {
-                let a = &self.ends[0];
-                let z = a.z + (p - a.x) * (a.sin / a.cos);
-                Place { station: Station { x: p, z, ..*a }, run: 1.0, turn: 0.0, radius: f64::INFINITY }
-            }
-            Shape::Stretch(stretch) => stretch.place(coefficients, p),
+            Shape::Arc(arc) => arc.radius,
+            Shape::Line => f64::INFINITY,
+            Shape::Stretch(_) => place.curvature.recip(),
         }
     }
 
@@ -150,6 +171,9 @@ pub(super) fn rising_root(ends: [f64; 2], values: [f64; 2], value: f64, f: impl 
     for _ in 0..64 {
         let [at, slope] = f(p);
         let miss = at - value;
+        if miss == 0.0 {
+            break;
+        }
         if miss > 0.0 {
             high = p;
         } else {
@@ -160,7 +184,7 @@ pub(super) fn rising_root(ends: [f64; 2], values: [f64; 2], value: f64, f: impl 
         let next = if inside { newton } else { low + (high - low) / 2.0 };
         let step = (next - p).abs();
         p = next;
-        if miss == 0.0 || step <= done {
+        if step <= done {
             break;
         }
     }
@@ -177,11 +201,10 @@ impl Stretch {
             (dx, dz) = (dx * t + x, dz * t + z);
             (x, z) = (x * t + c[0], z * t + c[1]);
         }
-        let speed = (dx * dx + dz * dz).sqrt();
-        let (cos, sin) = (dx / speed, dz / speed);
-        let curvature = (dx * hz - dz * hx) / (speed * speed * speed);
-        let station = Station { x, z, cos, sin };
-        Place { station, run: dx, turn: curvature * dx, radius: curvature.recip() }
+        let slowness = (dx * dx + dz * dz).sqrt().recip();
+        let (cos, sin) = (dx * slowness, dz * slowness);
+        let curvature = (cos * hz - sin * hx) * (slowness * slowness);
+        Place { station: Station { x, z, cos, sin }, run: dx, turn: curvature * dx, curvature }
     }
 }
 

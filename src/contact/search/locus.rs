@@ -137,7 +137,7 @@ impl Attitude {
         let sin = sin / self.cos_yaw;
         let tangent = sin / ((1.0 - sin) * (1.0 + sin)).sqrt();
         let turned = self.cos_roll + tangent * self.sin_roll;
-        Place { station, run: run * turned, turn: place.turn / self.cos_yaw * turned, radius: place.radius }
+        Place { station, run: run * turned, turn: place.turn / self.cos_yaw * turned, ..*place }
     }
 
     /// ϱ_c \[mm\], the outline's signed radius of curvature at a profile point of signed radius `radius`.

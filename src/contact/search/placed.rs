@@ -11,6 +11,7 @@
 //! the profile that close with the square of its length do so for the outline.
 
 use super::bounds::{Bounds, STEEPEST_SLOPE};
+use super::element::cosine;
 use super::locus::Attitude;
 
 /// Bounds in the rail's axes; of a wheel those of its outline.
@@ -54,6 +55,11 @@ impl Placed {
         if (low <= high) & (flat <= steep) { gap } else { f64::INFINITY }
     }
 
+    /// Leaves only what is no farther from an abscissa than this \[mm\]; everything where that is no number.
+    pub fn narrow(&mut self, middle: f64, reach: f64) {
+        self.x = [self.x[0].max(middle - reach), self.x[1].min(middle + reach)];
+    }
+
     /// The same, wider by the rounding of an abscissa \[mm\] and of a sine.
     #[inline]
     #[must_use]
@@ -79,7 +85,7 @@ fn smaller(a: f64, b: f64) -> f64 {
 }
 
 impl Attitude {
-    /// A part of the wheel; [`Placed::HIDDEN`] where it has no outline.
+    /// A part of the wheel; [`Placed::HIDDEN`] where it has no outline that is seen.
     #[inline]
     pub fn place(&self, bounds: &Bounds) -> Placed {
         if self.sin_yaw == 0.0 && self.sin_roll == 0.0 {
@@ -102,6 +108,11 @@ impl Attitude {
             return None;
         }
         let tangent = [larger(bounds.tangent[0], -steepest), smaller(bounds.tangent[1], steepest)];
+        let most = bounds.curvature[1];
+        if most < 0.0 && 1.0 + most * (self.radius - bounds.z[1]) * self.sin_yaw_squared() <= 0.0 {
+            // Hidden by the rings beside it, even where its tangent is level: steeper rings are wider.
+            return None;
+        }
         let rolling = [self.radius - bounds.z[0], self.radius - bounds.z[1]];
         // ϱ tanφ tanψ sinψ, with the radius that makes it extreme.
         let shift = [
@@ -153,12 +164,14 @@ impl Attitude {
         Placed { x, sine: [first, last], line }
     }
 
-    /// Curvatures of the outline of a part of the profile where it is seen; `None` where all of it is hidden by the rings beside
-    /// it.
-    pub fn curvatures(&self, bounds: &Bounds) -> Option<[f64; 2]> {
+    /// Curvatures of the outline of a part of the profile where it is seen, and the largest |dX/dx_W| all along it; `None` where all
+    /// of it is hidden by the rings beside it.
+    pub fn outline_bounds(&self, bounds: &Bounds) -> Option<([f64; 2], f64)> {
         let [least, most] = bounds.curvature;
+        let sin = larger(-bounds.sine[0], bounds.sine[1]) / self.cos_yaw;
+        let turned = self.cos_roll + sin / cosine(sin) * self.sin_roll.abs();
         if self.sin_yaw == 0.0 {
-            return Some([least, most]);
+            return Some(([least, most], turned));
         }
         let level = bounds.sine[0] <= 0.0 && bounds.sine[1] >= 0.0;
         let cos = bounds.cosine.map(|cos| cos.max(self.sin_yaw.abs()));
@@ -167,11 +180,11 @@ impl Attitude {
         let rolling = bounds.z.map(|z| self.radius - z);
         let ring = [rolling[1] * tilt[0] / flat, rolling[0] * tilt[1] / steep];
         // The outline's radius is r (1 − tilt) + ring; with the hollow side down and a ring larger than r it is hidden.
-        let seen = |curvature: f64, tilt: f64, ring: f64| 1.0 - tilt + curvature * ring;
+        let seen = |curvature: f64, k: usize| 1.0 - tilt[k] + curvature * ring[k];
         let highest = if most > 0.0 {
             (most.recip() * (1.0 - tilt[1]) + ring[0]).recip()
         } else {
-            let seen = seen(most, tilt[0], ring[0]);
+            let seen = seen(most, 0);
             if seen <= 0.0 {
                 return None;
             }
@@ -180,10 +193,13 @@ impl Attitude {
         let lowest = if least > 0.0 {
             (least.recip() * (1.0 - tilt[0]) + ring[1]).recip()
         } else {
-            let seen = seen(least, tilt[1], ring[1]);
+            let seen = seen(least, 1);
             if seen > 0.0 { least / seen } else { f64::NEG_INFINITY }
         };
-        Some([lowest, highest])
+        // dX/dx_W = (cos(roll) + tanΘ sin(roll)) (1 − tilt + κ ring)/cosψ.
+        let most_seen = 1.0 - tilt[0] + most * ring[usize::from(most > 0.0)];
+        let least_seen = 1.0 - tilt[1] + least * ring[usize::from(least < 0.0)];
+        Some(([lowest, highest], most_seen.max(-least_seen) * turned / self.cos_yaw))
     }
 }
 

@@ -16,6 +16,7 @@ use super::bounds::Bounds;
 use super::candidates::{EQUAL_CURVATURES, Foot, Search};
 use super::element::{Element, Place, Shape, cosine, rising_root};
 use super::placed::Placed;
+use crate::numerics::roots::bracketed;
 use crate::profile::Side;
 
 /// A stretch is halved no more often than this: the parts are then 1e-3 of it long. Two common tangents that close together
@@ -25,6 +26,10 @@ const DEEPEST: u32 = 10;
 /// No more pairs of parts are looked at for two elements: only curves that nearly agree all along come so far, and among
 /// their places of least gap no more can be told apart.
 const MOST_PARTS: u32 = 512;
+
+/// Halvings after which two parts are asked whether they are one curve: pairs that differ seldom come so far, and the question
+/// costs as much as looking at ten parts.
+const AGREE_AT: u32 = 6;
 
 /// Steps of Newton's method: from a bounded start it takes three to five.
 const NEWTON_STEPS: u32 = 12;
@@ -54,6 +59,9 @@ struct Pair<'s, 'a> {
     search: &'s mut Search<'a>,
     elements: [u32; 2],
     shapes: [&'a Element; 2],
+    /// Both elements whole.
+    wholes: [&'s Part; 2],
+    /// Pairs of parts that may still be looked at.
     parts_left: u32,
 }
 
@@ -63,8 +71,6 @@ enum Verdict {
     Nothing,
     /// A least gap at most; if there is one, its abscissa is near this.
     OneNear(f64),
-    /// The two agree to rounding all along; parameters of the middle.
-    Agree([f64; 2]),
     /// Anything.
     Open,
 }
@@ -73,11 +79,24 @@ enum Verdict {
 ///
 /// `placed`: bounds of the whole outline of the wheel's, where they are known.
 pub(super) fn meet(search: &mut Search, elements: [u32; 2], placed: Option<&Placed>) {
-    let shapes = search.elements(elements);
-    let mut pair = Pair { search, elements, shapes, parts_left: MOST_PARTS };
-    if let (Some(wheel), Some(rail)) = (pair.whole(Side::Wheel, placed), pair.whole(Side::Rail, None)) {
-        pair.refine(&wheel, &rail);
+    let [above, below] = search.elements(elements);
+    search.solves += 1;
+    let Some((curvature, _)) = search.attitude.outline_bounds(&above.bounds) else { return };
+    if flatter(curvature, below.bounds.curvature) {
+        return;
     }
+    let whole = |element: &Element, place, placed, curvature| {
+        let [a, b] = element.range;
+        Part { range: [a, b], middle: a + (b - a) / 2.0, place, placed, curvature, depth: 0 }
+    };
+    let placed = placed.copied();
+    let placed =
+        placed.unwrap_or_else(|| search.attitude.place(&above.bounds).widened(search.slack, SAME_TANGENT));
+    let wheel = whole(above, search.attitude.outline_place(&above.middle), placed, curvature);
+    let rail = whole(below, below.middle, Placed::rail(&below.bounds), below.bounds.curvature);
+    let mut pair =
+        Pair { search, elements, shapes: [above, below], parts_left: MOST_PARTS, wholes: [&wheel, &rail] };
+    pair.refine(&wheel, &rail);
 }
 
 /// The common tangent of two elements that Newton's method leads to from a start; `None` where that is beyond their ends.
@@ -87,33 +106,29 @@ pub(super) fn follow(search: &Search, elements: [u32; 2], start: [f64; 2]) -> Op
 }
 
 impl Part {
-    /// Whether all of this part of the wheel is less curved than all of that part of the rail: a common tangent is then a
-    /// largest gap, not a least one.
-    fn is_flatter(&self, rail: &Self) -> bool {
-        let (above, below) = (self.curvature[1], rail.curvature[0]);
-        above < below && below - above > EQUAL_CURVATURES * (above.abs() + below.abs())
-    }
-
-    /// Whether a common tangent of both can only be a least gap, and there is one at most.
+    /// Whether a common tangent of this part of the wheel and one of the rail can only be a least gap, and there is one at most.
     fn is_rounder(&self, rail: &Self) -> bool {
         self.curvature[0] > rail.curvature[1]
     }
 }
 
-impl Pair<'_, '_> {
-    fn whole(&self, side: Side, placed: Option<&Placed>) -> Option<Part> {
-        let element = self.shapes[index(side)];
-        self.bounded(side, element.range, (&element.bounds, placed), 0)
-    }
+/// Whether all of a part of the wheel is less curved than all of one of the rail: a common tangent is then a largest gap, not a
+/// least one.
+fn flatter(wheel: [f64; 2], rail: [f64; 2]) -> bool {
+    let (above, below) = (wheel[1], rail[0]);
+    above < below && below - above > EQUAL_CURVATURES * (above.abs() + below.abs())
+}
 
+impl Pair<'_, '_> {
     /// Half of a part of an element of one body; `None` where it has no outline.
     fn half(&self, side: Side, range: [f64; 2], depth: u32) -> Option<Part> {
         let (element, body) = (self.shapes[index(side)], self.search.bodies[index(side)]);
         let half = (range[1] - range[0]) / 2.0;
-        let own = element.place(&body.coefficients, range[0] + half);
+        let middle = range[0] + half;
+        let own = element.place(&body.coefficients, middle);
         let bounds = match &element.shape {
             Shape::Stretch(stretch) => {
-                stretch.reach.around(&own.station, own.radius.recip(), half, side, body.rounding)
+                stretch.reach.around(&own.station, own.curvature, half, side, body.rounding)
             }
             Shape::Arc(arc) => {
                 let ends = range.map(|sin| arc.at(sin, cosine(sin)));
@@ -121,55 +136,49 @@ impl Pair<'_, '_> {
             }
             Shape::Line => element.bounds,
         };
-        self.bounded(side, range, (&bounds, None), depth)
-    }
-
-    /// A part with its bounds, in its own axes and, where that is known, of its outline.
-    fn bounded(
-        &self,
-        side: Side,
-        range: [f64; 2],
-        (bounds, placed): (&Bounds, Option<&Placed>),
-        depth: u32,
-    ) -> Option<Part> {
-        let (element, body) = (self.shapes[index(side)], self.search.bodies[index(side)]);
         let attitude = self.search.attitude;
-        let middle = range[0] + (range[1] - range[0]) / 2.0;
-        let own = element.place(&body.coefficients, middle);
         let (place, placed, curvature) = match side {
             Side::Wheel => {
-                let known = placed.copied();
-                let placed =
-                    known.unwrap_or_else(|| attitude.place(bounds).widened(self.search.slack, SAME_TANGENT));
-                (attitude.outline_place(&own), placed, attitude.curvatures(bounds)?)
+                let place = attitude.outline_place(&own);
+                let (curvature, fastest) = attitude.outline_bounds(&bounds)?;
+                let mut placed = attitude.place(&bounds).widened(self.search.slack, SAME_TANGENT);
+                if let Shape::Stretch(stretch) = &element.shape {
+                    placed.narrow(place.station.x, half * stretch.reach.run * fastest + self.search.slack);
+                }
+                (place, placed, curvature)
             }
-            Side::Rail => (own, Placed::rail(bounds), bounds.curvature),
+            Side::Rail => (own, Placed::rail(&bounds), bounds.curvature),
         };
         Some(Part { range, middle, place, placed, curvature, depth })
     }
 
     fn refine(&mut self, wheel: &Part, rail: &Part) {
-        self.search.solves += 1;
-        self.parts_left = self.parts_left.saturating_sub(1);
-        let bound = wheel.placed.gap_over(&rail.placed);
-        if bound == f64::INFINITY || bound > self.search.bound_ceiling() || wheel.is_flatter(rail) {
-            return;
-        }
         let shared = wheel.placed.shared(&rail.placed);
         let ranges = [wheel.range, rail.range];
         match self.look(wheel, rail, shared) {
             Verdict::Nothing => return,
-            Verdict::Agree(parameters) => return self.offer_at(parameters),
             Verdict::OneNear(x) => {
                 let start = [towards(wheel, x, rail), towards(rail, x, wheel)];
                 if let Some(feet) = newton(self.search, self.shapes, start, ranges) {
                     return self.offer(feet);
                 }
+                let ends = [self.ends(Side::Wheel, wheel), self.ends(Side::Rail, rail)];
+                if let [Some(above), Some(below)] = ends {
+                    let found = self.between_ends([wheel, rail], above, below);
+                    return found.into_iter().for_each(|parameters| self.offer_at(parameters));
+                }
             }
             Verdict::Open => {}
         }
+        if wheel.depth + rail.depth == AGREE_AT
+            && let Some(parameters) = self.agree(wheel, rail)
+        {
+            let [above, below] = self.wholes;
+            self.parts_left = 0;
+            return self.offer_at(self.agree(above, below).unwrap_or(parameters));
+        }
         let halved = [self.length(Side::Wheel, wheel), self.length(Side::Rail, rail)];
-        if self.parts_left == 0 || halved.iter().all(Option::is_none) {
+        if self.parts_left <= 1 || halved.iter().all(Option::is_none) {
             if let Some(feet) = newton(self.search, self.shapes, [wheel.middle, rail.middle], ranges) {
                 self.offer(feet);
             }
@@ -177,12 +186,28 @@ impl Pair<'_, '_> {
         }
         if halved[0] >= halved[1] {
             for half in self.halves(Side::Wheel, wheel).into_iter().flatten() {
-                self.refine(&half, rail);
+                self.further(&half, rail);
             }
         } else {
             for half in self.halves(Side::Rail, rail).into_iter().flatten() {
-                self.refine(wheel, &half);
+                self.further(wheel, &half);
             }
+        }
+    }
+
+    /// Looks at two parts of which one is new, unless their bounds exclude contact.
+    fn further(&mut self, wheel: &Part, rail: &Part) {
+        if self.parts_left == 0 {
+            return;
+        }
+        self.search.solves += 1;
+        self.parts_left -= 1;
+        let bound = wheel.placed.gap_over(&rail.placed);
+        if bound != f64::INFINITY
+            && bound <= self.search.bound_ceiling()
+            && !flatter(wheel.curvature, rail.curvature)
+        {
+            self.refine(wheel, rail);
         }
     }
 
@@ -238,11 +263,14 @@ impl Pair<'_, '_> {
             let first = missing[0] / if missing[0] > 0.0 { slope[1] } else { slope[0] };
             let last = missing[1] / if missing[1] > 0.0 { slope[0] } else { slope[1] };
             let (first, last) = ((above.x + first).max(low - slack), (above.x + last).min(high + slack));
-            return if first > last {
-                Verdict::Nothing
-            } else {
-                Verdict::OneNear(first + (last - first) / 2.0)
-            };
+            if first > last {
+                return Verdict::Nothing;
+            }
+            // Where it would be with the curvatures of both middles.
+            let bends = [&wheel.place, &rail.place].map(|place| place.turn / place.run);
+            let near =
+                above.x + (below.sin - above.sin + bends[1] * (above.x - below.x)) / (bends[0] - bends[1]);
+            return Verdict::OneNear(if near.is_nan() { first } else { near.max(first).min(last) });
         }
         let reach = (low - above.x).abs().max((high - above.x).abs()) + slack;
         let least = if missing[0] > 0.0 {
@@ -255,12 +283,13 @@ impl Pair<'_, '_> {
         if least > reach * (w0 - r1).abs().max((w1 - r0).abs()) {
             return Verdict::Nothing;
         }
-        self.agree(wheel, rail, [low, high]).map_or(Verdict::Open, Verdict::Agree)
+        Verdict::Open
     }
 
     /// The parameters in the middle of the shared abscissae if the two parts have the same tangents there, at both ends, and
     /// half way to them: more places than two curves of a drawing share by chance. Without yaw only.
-    fn agree(&self, wheel: &Part, rail: &Part, [low, high]: [f64; 2]) -> Option<[f64; 2]> {
+    fn agree(&self, wheel: &Part, rail: &Part) -> Option<[f64; 2]> {
+        let [low, high] = wheel.placed.shared(&rail.placed);
         let same = |share: f64| {
             let x = low + (high - low) * share;
             let parameters =
@@ -276,12 +305,62 @@ impl Pair<'_, '_> {
         [0.0, 0.25, 0.75, 1.0].into_iter().all(|share| same(share).is_some()).then_some(middle)
     }
 
-    /// The parameter of a part of an unyawed body at an abscissa of the rail's axes.
+    /// The common tangent of two parts with one at most, if the difference of their tangents changes sign between the ends of the
+    /// abscissae that they share.
+    ///
+    /// `above`, `below`: abscissae between which the two lie.
+    fn between_ends(&self, [wheel, rail]: [&Part; 2], above: [f64; 2], below: [f64; 2]) -> Option<[f64; 2]> {
+        let (low, high) = (above[0].max(below[0]), above[1].min(below[1]));
+        if low > high + self.search.slack {
+            return None;
+        }
+        let parameters =
+            |x: f64| [self.parameter_at(Side::Wheel, wheel, x), self.parameter_at(Side::Rail, rail, x)];
+        let turn =
+            |[p, q]: [f64; 2]| self.at(Side::Wheel, p).station.sin - self.at(Side::Rail, q).station.sin;
+        if below[0] == below[1] || above[0] == above[1] {
+            // A point: its tangent is the other's.
+            let [p, q] = parameters(low);
+            let (point, other) = if below[0] == below[1] {
+                (rail, self.at(Side::Wheel, p))
+            } else {
+                (wheel, self.at(Side::Rail, q))
+            };
+            let sin = other.station.sin;
+            let inside =
+                sin >= point.placed.sine[0] - SAME_TANGENT && sin <= point.placed.sine[1] + SAME_TANGENT;
+            let both = if below[0] == below[1] { [p, sin] } else { [sin, q] };
+            return inside.then_some(both);
+        }
+        let ends = [low, high].map(parameters);
+        let turns = ends.map(turn);
+        if turns[0].abs() <= SAME_TANGENT {
+            return Some(ends[0]);
+        }
+        if turns[1].abs() <= SAME_TANGENT {
+            return Some(ends[1]);
+        }
+        (turns[0] < 0.0 && turns[1] > 0.0)
+            .then(|| bracketed(|x| turn(parameters(x)), low, high))?
+            .map(parameters)
+    }
+
+    /// Abscissae of the ends of a part, ascending; `None` where one end of a yawed wheel's has no outline.
+    fn ends(&self, side: Side, part: &Part) -> Option<[f64; 2]> {
+        let [a, b] = part.range.map(|p| self.at(side, p).station.x);
+        if a <= b { Some([a, b]) } else { (b < a).then_some([b, a]) }
+    }
+
+    /// A point in the rail's axes.
+    fn at(&self, side: Side, parameter: f64) -> Place {
+        let own = self.shapes[index(side)].place(&self.search.bodies[index(side)].coefficients, parameter);
+        if side == Side::Wheel { self.search.attitude.outline_place(&own) } else { own }
+    }
+
+    /// The parameter of a part whose abscissae are monotone at an abscissa of the rail's axes, or that of the nearer end.
     fn parameter_at(&self, side: Side, part: &Part, x: f64) -> f64 {
-        let (element, body) = (self.shapes[index(side)], self.search.bodies[index(side)]);
         let at = |p: f64| {
-            let own = element.place(&body.coefficients, p);
-            let place = if side == Side::Wheel { self.search.attitude.outline_place(&own) } else { own };
+            let place = self.at(side, p);
             [place.station.x, place.run]
         };
         let values = part.range.map(|p| at(p)[0]);
@@ -300,7 +379,8 @@ impl Pair<'_, '_> {
 
     fn offer_at(&mut self, parameters: [f64; 2]) {
         let [(wheel, _), (rail, _)] = self.places(parameters);
-        self.offer([foot(&wheel, parameters[0]), foot(&rail, parameters[1])]);
+        let [above, below] = self.shapes;
+        self.offer([foot(above, &wheel, parameters[0]), foot(below, &rail, parameters[1])]);
     }
 
     fn offer(&mut self, [wheel, rail]: [Foot; 2]) {
@@ -315,8 +395,8 @@ fn index(side: Side) -> usize {
     }
 }
 
-fn foot(own: &Place, parameter: f64) -> Foot {
-    Foot { station: own.station, radius: own.radius, parameter }
+fn foot(element: &Element, own: &Place, parameter: f64) -> Foot {
+    Foot { station: own.station, radius: element.radius(own), parameter }
 }
 
 /// Bounds of a sine at a distance along x, from bounds of the curvature on the way.
@@ -380,7 +460,8 @@ fn newton(
             ];
             let inside = |k: usize| p[k] >= limits[k][0] - slack[k] && p[k] <= limits[k][1] + slack[k];
             if apart[0].abs() <= rounding {
-                return (inside(0) && inside(1)).then(|| [foot(&own, p[0]), foot(&foot_place, p[1])]);
+                return (inside(0) && inside(1))
+                    .then(|| [foot(shapes[0], &own, p[0]), foot(shapes[1], &foot_place, p[1])]);
             }
         }
         settled = (above.run * step[0]).abs() + (below.run * step[1]).abs() <= rounding;
