@@ -92,7 +92,7 @@ fn any_grid_is_within_its_estimate() {
         let (index, radius, (rail_x, wheel_x), yaw) = placed;
         let Placement { rail, wheel, .. } = pairs[index].placement.clone();
         // Not every wheel may be so small, nor has every profile a point there.
-        let pair = Pair::new(rail.profile, wheel.profile, radius);
+        let pair = Pair::new(rail.profile().clone(), wheel.profile().clone(), radius);
         let Ok(placement) = pair.and_then(|pair| pair.placed(rail_x, wheel_x, yaw)) else { return Ok(()) };
         compared.set(compared.get() + 1);
         let (mut xi, mut eta, on_joints) = grid;

@@ -160,7 +160,7 @@ fn areas_agree_with_rows_of_constant_eta() {
 
 /// The largest distance of two ends that are one joint \[mm\]: what closing a chain leaves of a step.
 fn largest_gap(placement: &Placement) -> f64 {
-    let profiles = [&placement.rail.profile, &placement.wheel.profile];
+    let profiles = [placement.rail.profile(), placement.wheel.profile()];
     profiles.into_iter().flat_map(|profile| profile.continuity()).map(|joint| joint.gap).fold(0.0, f64::max)
 }
 

@@ -391,7 +391,7 @@ fn a_mirrored_pair_has_the_mirrored_separation() {
     let skew = prop_oneof![Just(0.0), Just(0.02)];
     holds("mirror", CASES, (case(), skew), |(case, skew)| {
         let one = case.placement(1.0, skew);
-        let pair = Pair::new(one.rail.profile.mirrored(), one.wheel.profile.mirrored(), one.wheel_radius);
+        let pair = Pair::new(one.rail.profile().mirrored(), one.wheel.profile().mirrored(), one.wheel_radius);
         let [rail_x, wheel_x] = case.abscissae();
         let other = pair.and_then(|pair| pair.placed(-rail_x, -wheel_x, -skew)).expect("the mirrored pair");
         // At a joint the left neighbour counts, whose tangent may differ: then it is another contact.
@@ -419,7 +419,7 @@ fn splitting_arcs_changes_nothing() {
             let halves = profile.segments().iter().flat_map(|segment| halves(segment, share)).collect();
             Profile::new("split", "generator", halves).expect("the same chain")
         };
-        let other = case.placed(split(&one.rail.profile), split(&one.wheel.profile), 1.0, 0.0);
+        let other = case.placed(split(one.rail.profile()), split(one.wheel.profile()), 1.0, 0.0);
         compare(&one, &other, &case.points(&one), |p| p, case.allowed())
     });
 }
@@ -438,9 +438,9 @@ fn a_rigid_motion_of_the_profiles_changes_nothing() {
     holds("rigid motion", CASES, (case(), motion), |(case, (angle, x, z, wheel_x, wheel_z))| {
         let one = case.placement(1.0, 0.0);
         let (sin, cos) = angle.sin_cos();
-        let rail = one.rail.profile.rotated(cos, sin).shifted(x, z);
+        let rail = one.rail.profile().rotated(cos, sin).shifted(x, z);
         // The wheel may only move along its axle, and with it.
-        let wheel = one.wheel.profile.shifted(wheel_x, wheel_z);
+        let wheel = one.wheel.profile().shifted(wheel_x, wheel_z);
         let c = one.rail.point.station;
         let turned = c.placed_by(&Station { x, z, cos, sin });
         prop_assume!(turned.cos > STEEP);

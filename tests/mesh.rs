@@ -289,7 +289,7 @@ fn surfaces_face_outwards_and_move_into_rail_axes() {
         let own = &placement.rail.section.frame;
         let moved = rail.in_rail_axes(&placement);
         let profile =
-            wheelrail::profile::Section::own_axes(&placement.rail.profile, wheelrail::profile::Side::Rail);
+            wheelrail::profile::Section::own_axes(placement.rail.profile(), wheelrail::profile::Side::Rail);
         for p in &moved.points {
             let miss = (profile.height(p[0]) - p[2]).abs();
             assert!(miss.is_nan() || miss < 1e-3, "{name}: {p:?} {miss:e}");

@@ -199,7 +199,7 @@ impl<'a> Scene<'a> {
 
 /// R_max/300 mm of [`ABSOLUTE`], at least 1.
 fn scale(placement: &Placement) -> f64 {
-    let segments = placement.rail.profile.segments().iter().chain(placement.wheel.profile.segments());
+    let segments = placement.rail.profile().segments().iter().chain(placement.wheel.profile().segments());
     let radius = |shape: &Shape| match shape {
         Shape::Arc(arc) if arc.radius.is_finite() => arc.radius.abs(),
         _ => 0.0,

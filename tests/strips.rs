@@ -47,7 +47,7 @@ fn grids_and_points_agree_within_the_estimate_on_every_built_in_pair() {
     let mut compared = 0;
     for subject in built_in_pairs().expect("built-in profiles") {
         let Placement { rail, wheel, wheel_radius, .. } = subject.placement;
-        let pair = Pair::new(rail.profile, wheel.profile, wheel_radius).expect("a pair");
+        let pair = Pair::new(rail.profile().clone(), wheel.profile().clone(), wheel_radius).expect("a pair");
         for ([rail_x, wheel_x], window) in CONTACTS.into_iter().zip(WINDOWS) {
             // Not every wheel has a flange at −41 mm.
             let Ok(placement) = pair.placed(rail_x, wheel_x, 0.0) else { continue };
@@ -64,7 +64,7 @@ fn so_they_do_under_a_yawed_wheel() {
     let mut compared = 0;
     for (k, subject) in built_in_pairs().expect("built-in profiles").into_iter().enumerate() {
         let Placement { rail, wheel, wheel_radius, .. } = subject.placement;
-        let pair = Pair::new(rail.profile, wheel.profile, wheel_radius).expect("a pair");
+        let pair = Pair::new(rail.profile().clone(), wheel.profile().clone(), wheel_radius).expect("a pair");
         let ([rail_x, wheel_x], window) = (CONTACTS[k % 3], WINDOWS[k % 3]);
         for yaw in [-0.12, 0.004, 0.05] {
             let Ok(placement) = pair.placed(rail_x, wheel_x, yaw) else { continue };

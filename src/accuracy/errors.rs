@@ -80,7 +80,7 @@ const END_ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Like [`over_contact`], but not within rounding of an end: that belongs to the neighbour as well, on which s has absolute
 /// accuracy only.
 pub fn inside_contact(placement: &Placement, xi: f64, eta: f64) -> bool {
-    let extent = placement.rail.profile.extent().max(placement.wheel.profile.extent());
+    let extent = placement.rail.profile().extent().max(placement.wheel.profile().extent());
     on_contact(placement, xi, eta, END_ROUNDING * extent)
 }
 

@@ -13,7 +13,7 @@ use crate::interpenetration::{Patch, Window};
 use crate::placement::{Body, Pair, Placement};
 use crate::profile::measured::{self, CUTOFF_WAVELENGTH, CurveKind, Format, Options, write};
 use crate::profile::trace::{Mark, beside, trace};
-use crate::profile::{Profile, Section, Side, standards};
+use crate::profile::{Profile, Side, standards};
 use crate::separation::Evaluator;
 
 /// Distances of the points \[mm\].
@@ -187,7 +187,7 @@ impl Reference {
         let rail = standards::rail("60E1")?;
         let bodies = [Drawn::new(rail, Side::Rail), Drawn::new(standards::wheel("S1002")?, Side::Wheel)];
         let pair = pair(&bodies[0].profile, &bodies[1].profile)?;
-        let search = ProfilePair::new(&pair.rail, &pair.wheel, RADIUS)?;
+        let search = ProfilePair::new(&pair)?;
         let mut search = search.search();
         let touch = search.touch(&Pose::new(0.0, 0.0, 0.0)?, &Selection { within: 0.0, apart: 0.5 });
         let missing = |what: &str| Error::new("60E1 on S1002", what, "a tread contact", "report this");
@@ -208,7 +208,7 @@ impl Reference {
         let (fitted_rail, fitted_wheel) = (fit(rail)?, fit(wheel)?);
         let (a, b) = (rail.compare(&fitted_rail), wheel.compare(&fitted_wheel));
         let pair = pair(&fitted_rail, &fitted_wheel)?;
-        let placed = self.in_the_same_frame(&pair);
+        let placed = pair.placed_like(&self.placement);
         let mut evaluator = Evaluator::new(&placed);
         let found: Vec<f64> =
             self.points.iter().map(|[xi, eta, _]| evaluator.separation(*xi, *eta)).collect();
@@ -221,20 +221,6 @@ impl Reference {
         let pressure = pressure(&own).map(|pressure| pressure / self.pressure - 1.0);
         let [profile, slope, curvature] = [0, 1, 2].map(|k: usize| a[k].max(b[k]));
         Ok(Errors { profile, slope, curvature, separation, area, pressure })
-    }
-
-    /// A fitted pair in the drawn pair's contact frame: s is then comparable point by point.
-    fn in_the_same_frame(&self, pair: &Pair) -> Placement {
-        let body = |drawn: &Body, profile: &Profile, side| Body {
-            section: Section::in_frame(profile, drawn.point.station, side),
-            profile: profile.clone(),
-            point: drawn.point,
-        };
-        Placement {
-            rail: body(&self.placement.rail, &pair.rail, Side::Rail),
-            wheel: body(&self.placement.wheel, &pair.wheel, Side::Wheel),
-            ..self.placement.clone()
-        }
     }
 }
 

@@ -123,7 +123,7 @@ pub fn run_cost(seconds: f64) -> Result<RunCost> {
 }
 
 fn parts(pair: &Pair, side: usize, seconds: f64) -> Result<[f64; PARTS.len()]> {
-    let profiles = ProfilePair::new(&pair.rail, &pair.wheel, pair.wheel_radius)?;
+    let profiles = ProfilePair::new(pair)?;
     let mut search = profiles.search();
     let (pose, selection) = (Pose::new(0.0, 0.0, 0.0)?, Selection { within: 0.0, apart: ONE_CONTACT });
     let found = search.touch(&pose, &selection).and_then(|touch| touch.contacts.first().copied());

@@ -77,7 +77,7 @@ pub fn check(
 
 /// The sharpest arc of both profiles \[mm\], at most an eighth of the wheel: what the closed forms are made of.
 fn smallest_radius(placement: &Placement) -> f64 {
-    let segments = [&placement.rail, &placement.wheel].into_iter().flat_map(|body| body.profile.segments());
+    let segments = [&placement.rail, &placement.wheel].into_iter().flat_map(|body| body.profile().segments());
     let radii = segments.filter_map(|segment| match &segment.shape {
         Shape::Arc(arc) => Some(arc.radius.abs()),
         Shape::Polynomial(_) => None,
@@ -88,8 +88,8 @@ fn smallest_radius(placement: &Placement) -> f64 {
 /// How far C and the frame's ξ axis are off the profile \[mm, rad\]; at an edge ξ is no tangent, and 0 off.
 fn contact_point(body: &Body) -> [f64; 2] {
     let frame = body.point.station;
-    let segment = &body.profile.segments()[body.point.segment];
-    let curve = Curve::of_segment(segment, [frame.x, frame.z], body.profile.extent());
+    let segment = &body.profile().segments()[body.point.segment];
+    let curve = Curve::of_segment(segment, [frame.x, frame.z], body.profile().extent());
     let mut t = curve.nearest_to_origin();
     for _ in 0..CONTACT_STEPS {
         let [x, z] = curve.point(t);
@@ -103,7 +103,7 @@ fn contact_point(body: &Body) -> [f64; 2] {
     let tangent = extrapolated(chord).0;
     let turned = tangent.z * frame.cos - tangent.x * frame.sin;
     let [x, z] = curve.point(t);
-    let slack = JOINT * body.profile.extent() / curve.speed(t);
+    let slack = JOINT * body.profile().extent() / curve.speed(t);
     let at_edge = !body.is_smooth() && (t <= slack || t >= curve.length - slack);
     [x.hypot(z), if at_edge { 0.0 } else { turned.abs() }]
 }

@@ -163,8 +163,8 @@ impl Surface {
     fn new(body: &Body, wheel: Option<Wheel>) -> Self {
         let c = body.point.station;
         let origin = [c.x, c.z];
-        let extent = body.profile.extent();
-        let segments = body.profile.segments().iter();
+        let extent = body.profile().extent();
+        let segments = body.profile().segments().iter();
         let curves = segments.map(|segment| Curve::of_segment(segment, origin, extent)).collect();
         let size = extent + c.x.abs() + c.z.abs();
         Self { curves, cos: c.cos, sin: c.sin, wheel, lift: 0.0, size }

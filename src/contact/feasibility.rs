@@ -40,7 +40,7 @@ pub struct Feasibility {
 pub fn feasibility(placement: &Placement) -> Option<Feasibility> {
     let (least_separation_mm, at_xi_mm, at_eta_mm) =
         if placement.skew == 0.0 { least_in_midplane(placement)? } else { least_under_skew(placement)? };
-    let extent = placement.rail.profile.extent().max(placement.wheel.profile.extent());
+    let extent = placement.rail.profile().extent().max(placement.wheel.profile().extent());
     let feasible = least_separation_mm >= -ROUNDING * extent;
     Some(Feasibility { feasible, least_separation_mm, at_xi_mm, at_eta_mm })
 }

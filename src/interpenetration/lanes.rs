@@ -55,7 +55,7 @@ pub(super) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<(usize, f64)>)
     let mut events = events(outline, [a, b]);
     let turns = std::mem::take(&mut events.turns);
     let placement = outline.slicer.placement();
-    let extent = placement.rail.profile.extent().max(placement.wheel.profile.extent());
+    let extent = placement.rail.profile().extent().max(placement.wheel.profile().extent());
     let rail_steps: Vec<f64> = steps(&placement.rail.section, [a, b], extent).collect();
     let mut all = [&events.xi[..], &rail_steps, &[a, b]].concat();
     all.sort_by(f64::total_cmp);

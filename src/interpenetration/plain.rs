@@ -21,7 +21,7 @@ pub(super) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<f64>) {
         return (Vec::new(), Vec::new());
     }
     let turns = turning_points(outline, a, b);
-    let extent = placement.rail.profile.extent().max(placement.wheel.profile.extent());
+    let extent = placement.rail.profile().extent().max(placement.wheel.profile().extent());
     let mut torn: Vec<f64> = steps(&placement.rail.section, [a, b], extent).collect();
     torn.extend(steps(&placement.wheel.section, [a, b], extent));
     let mut bands = Vec::new();

@@ -43,7 +43,7 @@ struct Tracer<'a> {
 
 impl Tracer<'_> {
     fn segment(&self, index: usize) -> &Segment {
-        &self.body.profile.segments()[index]
+        &self.body.profile().segments()[index]
     }
 
     /// ξ of a station.
@@ -65,7 +65,7 @@ impl Tracer<'_> {
 
     /// Stations beyond C, C not included, until ξ passes `limit` or the chain ends.
     fn walk(&self, contact: f64, limit: f64, forward: bool) -> Result<Vec<Station>> {
-        let (index, n) = (self.body.point.segment, self.body.profile.segments().len());
+        let (index, n) = (self.body.point.segment, self.body.profile().segments().len());
         let order: Vec<usize> = if forward { (index..n).collect() } else { (0..=index).rev().collect() };
         let mut stations: Vec<Station> = Vec::new();
         for k in order {

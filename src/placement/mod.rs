@@ -2,14 +2,22 @@
 
 pub mod track;
 
+use std::sync::Arc;
+
 use crate::error::{Error, Result, finite};
 use crate::profile::{Profile, ProfilePoint, Section, Side};
+
+/// A profile with its outer surface in its own axes.
+#[derive(Debug)]
+struct Prepared {
+    profile: Profile,
+    own_axes: Section,
+}
 
 /// One body of a placed pair.
 #[derive(Debug, Clone)]
 pub struct Body {
-    /// The profile in its own axes.
-    pub profile: Profile,
+    prepared: Arc<Prepared>,
     /// The contact point C on it; its tangent gives θ_C.
     pub point: ProfilePoint,
     /// The profile in the contact frame.
@@ -34,15 +42,12 @@ pub struct Placement {
     pub skew: f64,
 }
 
-/// What is placed: two profiles and the wheel's radius.
+/// What is placed: two right-hand profiles, prepared once, and the wheel's radius. A clone shares the profiles.
 #[derive(Debug, Clone)]
 pub struct Pair {
-    /// Rail profile, right-hand.
-    pub rail: Profile,
-    /// Wheel profile, right-hand.
-    pub wheel: Profile,
-    /// R \[mm\].
-    pub wheel_radius: f64,
+    rail: Arc<Prepared>,
+    wheel: Arc<Prepared>,
+    wheel_radius: f64,
 }
 
 impl Pair {
@@ -66,7 +71,31 @@ impl Pair {
             let expected = format!("all of it below the axle at z = R = {wheel_radius} mm");
             return Err(Error::new("wheel: profile", found, expected, "check unit, sign of z and radius"));
         }
+        let [rail, wheel] = [(rail, Side::Rail), (wheel, Side::Wheel)].map(|(profile, side)| {
+            let own_axes = Section::own_axes(&profile, side);
+            Arc::new(Prepared { profile, own_axes })
+        });
         Ok(Self { rail, wheel, wheel_radius })
+    }
+
+    /// The rail profile.
+    pub fn rail(&self) -> &Profile {
+        &self.rail.profile
+    }
+
+    /// The wheel profile.
+    pub fn wheel(&self) -> &Profile {
+        &self.wheel.profile
+    }
+
+    /// The outer surface of the rail and of the wheel, each in its own axes.
+    pub fn sections(&self) -> [&Section; 2] {
+        [&self.rail.own_axes, &self.wheel.own_axes]
+    }
+
+    /// R \[mm\].
+    pub fn wheel_radius(&self) -> f64 {
+        self.wheel_radius
     }
 
     /// The pair in contact at chosen abscissae of the two profiles, the Report's way: (4.9)–(4.12). Each body
@@ -90,6 +119,22 @@ impl Pair {
         let wheel = Body::along(&self.wheel, wheel, Side::Wheel).map_err(|e| e.within("contact: wheel"))?;
         Ok(Placement { rail, wheel, wheel_radius: self.wheel_radius, skew })
     }
+
+    /// This pair in the contact frames of another placed pair, so that s of both can be compared point by point.
+    #[must_use]
+    pub fn placed_like(&self, other: &Placement) -> Placement {
+        let body = |prepared: &Arc<Prepared>, like: &Body, side| Body {
+            section: Section::in_frame(&prepared.profile, like.point.station, side),
+            prepared: Arc::clone(prepared),
+            point: like.point,
+        };
+        Placement {
+            rail: body(&self.rail, &other.rail, Side::Rail),
+            wheel: body(&self.wheel, &other.wheel, Side::Wheel),
+            wheel_radius: self.wheel_radius,
+            skew: other.skew,
+        }
+    }
 }
 
 /// Angles closer than this \[rad\] are those of one tangent: what a search leaves by rounding, far below the kinks of
@@ -97,26 +142,30 @@ impl Pair {
 const SAME_TANGENT: f64 = 1e-9;
 
 impl Body {
-    fn at(profile: &Profile, x: f64, side: Side) -> Result<Self> {
-        let own = Section::own_axes(profile, side);
-        let point = own.point(profile, finite("", x)?).filter(|point| point.station.cos > 0.0);
-        Ok(Self::smooth(profile, point.ok_or_else(|| off_profile(profile, &own, x))?, side))
+    fn at(prepared: &Arc<Prepared>, x: f64, side: Side) -> Result<Self> {
+        let point = prepared.point(x)?;
+        if point.station.cos > 0.0 { Ok(Self::smooth(prepared, point, side)) } else { Err(prepared.off(x)) }
     }
 
-    fn along(profile: &Profile, [x, angle]: [f64; 2], side: Side) -> Result<Self> {
-        let own = Section::own_axes(profile, side);
-        let point = own.point(profile, finite("", x)?);
-        let mut point = point.ok_or_else(|| off_profile(profile, &own, x))?;
+    fn along(prepared: &Arc<Prepared>, [x, angle]: [f64; 2], side: Side) -> Result<Self> {
+        let mut point = prepared.point(x)?;
         if (point.station.angle() - angle).abs() <= SAME_TANGENT {
-            return Ok(Self::smooth(profile, point, side));
+            return Ok(Self::smooth(prepared, point, side));
         }
         let (sin, cos) = angle.sin_cos();
         (point.station.cos, point.station.sin) = (cos, sin);
-        Ok(Self { section: Section::in_frame(profile, point.station, side), profile: profile.clone(), point })
+        let section = Section::in_frame(&prepared.profile, point.station, side);
+        Ok(Self { prepared: Arc::clone(prepared), point, section })
     }
 
-    fn smooth(profile: &Profile, point: ProfilePoint, side: Side) -> Self {
-        Self { section: Section::at_contact(profile, &point, side), profile: profile.clone(), point }
+    fn smooth(prepared: &Arc<Prepared>, point: ProfilePoint, side: Side) -> Self {
+        let section = Section::at_contact(&prepared.profile, &point, side);
+        Self { prepared: Arc::clone(prepared), point, section }
+    }
+
+    /// The profile in its own axes.
+    pub fn profile(&self) -> &Profile {
+        &self.prepared.profile
     }
 
     /// Whether the contact frame's ξ is the tangent of the profile at C: not so at kinks and ends.
@@ -130,10 +179,17 @@ impl Body {
     }
 }
 
-fn off_profile(profile: &Profile, own: &Section, x: f64) -> Error {
-    let reach = own.reach().unwrap_or([f64::NAN; 2]);
-    let expected = format!("a point of {}, which lies over [{}, {}]", profile.name, reach[0], reach[1]);
-    Error::new("", x.to_string(), expected, "choose a point on the profile")
+impl Prepared {
+    fn point(&self, x: f64) -> Result<ProfilePoint> {
+        self.own_axes.point(&self.profile, finite("", x)?).ok_or_else(|| self.off(x))
+    }
+
+    fn off(&self, x: f64) -> Error {
+        let reach = self.own_axes.reach().unwrap_or([f64::NAN; 2]);
+        let name = &self.profile.name;
+        let expected = format!("a point of {name}, which lies over [{}, {}]", reach[0], reach[1]);
+        Error::new("", x.to_string(), expected, "choose a point on the profile")
+    }
 }
 
 impl Placement {

@@ -159,6 +159,8 @@ pub struct Profile {
     /// The segments before they were closed; empty where that changed nothing but roundings.
     drawn: Vec<Segment>,
     closings: Vec<Closing>,
+    /// The larger side of the box around the segments' ends \[mm\].
+    extent: f64,
 }
 
 impl Profile {
@@ -182,7 +184,17 @@ impl Profile {
         continuity::reject_jumps(&drawn, extent)?;
         let (segments, closings) = closing::close(&drawn, extent)?;
         let drawn = if closings.is_empty() { Vec::new() } else { drawn };
-        Ok(Self { name: name.into(), source: source.into(), segments, drawn, closings })
+        Ok(Self::closed(name.into(), source.into(), [segments, drawn], closings))
+    }
+
+    fn closed(
+        name: String,
+        source: String,
+        [segments, drawn]: [Vec<Segment>; 2],
+        closings: Vec<Closing>,
+    ) -> Self {
+        let extent = extent(&segments);
+        Self { name, source, segments, drawn, closings, extent }
     }
 
     /// The segments from left to right.
@@ -214,7 +226,7 @@ impl Profile {
 
     /// The larger side of the box around all segment ends \[mm\]: the scale that rounding is judged by.
     pub fn extent(&self) -> f64 {
-        extent(&self.segments)
+        self.extent
     }
 
     /// The profile turned counter-clockwise about its origin; `cos` and `sin` of the angle.
@@ -248,9 +260,8 @@ impl Profile {
     }
 
     fn mapped(&self, image: impl Fn(&Segment) -> Segment) -> Self {
-        let [segments, drawn] = [&self.segments, &self.drawn].map(|all| all.iter().map(&image).collect());
-        let (name, source) = (self.name.clone(), self.source.clone());
-        Self { name, source, segments, drawn, closings: self.closings.clone() }
+        let chains = [&self.segments, &self.drawn].map(|all| all.iter().map(&image).collect());
+        Self::closed(self.name.clone(), self.source.clone(), chains, self.closings.clone())
     }
 }
 

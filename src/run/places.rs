@@ -114,7 +114,7 @@ pub(super) fn find(standing: &Standing, pair: &Pair, question: &Question) -> Res
             Ok(vec![Placed { folder: String::new(), found: None, contact, extent: OnceCell::new() }])
         }
         Place::Wheel(pose) => {
-            let profiles = ProfilePair::new(&pair.rail, &pair.wheel, pair.wheel_radius)?;
+            let profiles = ProfilePair::new(pair)?;
             let mut search = profiles.search();
             let Some(touch) = search.touch(&pose, &selection) else {
                 return Err(no_touch("contact: offset", "a wheel over its rail", "check offset and signs"));

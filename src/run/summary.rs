@@ -104,21 +104,21 @@ pub(super) fn summary(
 fn body(body: &Body) -> BodySummary<'_> {
     let segment = body.point.segment;
     let closing = |(largest, [x_mm, z_mm]): (Closing, [f64; 2])| ClosingSummary {
-        joints_closed: body.profile.closings().len(),
+        joints_closed: body.profile().closings().len(),
         moved_mm: largest.moved,
         x_mm,
         z_mm,
         reach_mm: largest.reach,
     };
     BodySummary {
-        profile: &body.profile.name,
-        source: &body.profile.source,
+        profile: &body.profile().name,
+        source: &body.profile().source,
         contact_x_mm: body.point.station.x,
         contact_z_mm: body.point.station.z,
         contact_angle_rad: body.contact_angle(),
-        contact_segment: body.profile.segments()[segment].place(segment),
-        largest_closing: body.profile.largest_closing().map(closing),
-        kinks: body.profile.continuity().into_iter().filter(|joint| joint.kink.abs() > SMOOTH).collect(),
+        contact_segment: body.profile().segments()[segment].place(segment),
+        largest_closing: body.profile().largest_closing().map(closing),
+        kinks: body.profile().continuity().into_iter().filter(|joint| joint.kink.abs() > SMOOTH).collect(),
     }
 }
 

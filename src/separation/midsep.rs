@@ -37,7 +37,7 @@ pub struct Row {
 /// RAIL0 and WHEEL0 of the Report: the transformed parameters of every segment.
 pub fn transformed_parameters(body: &Body) -> Vec<Transformed> {
     let frame = &body.section.frame;
-    body.profile
+    body.profile()
         .segments()
         .iter()
         .map(|segment| {
@@ -89,7 +89,7 @@ pub fn table(placement: &Placement, xi: &[f64]) -> String {
 
 fn parameters(out: &mut String, name: &str, body: &Body) {
     let (point, angle) = (&body.point.station, body.contact_angle());
-    let _ = writeln!(out, "\n# {name}: {}", body.profile.name);
+    let _ = writeln!(out, "\n# {name}: {}", body.profile().name);
     let _ = writeln!(out, "# C: x = {} z = {} theta_C = {angle}", point.x, point.z);
     let header =
         format!("{:>24} {:>24} {:>24} {:>24} {:>24}", "alpha", "beta", "radius", "xi_start", "xi_end");

@@ -29,7 +29,7 @@ pub fn missing(placement: &Placement) -> Option<&'static str> {
     if placement.skew != 0.0 {
         return Some("yaw");
     }
-    let segments = placement.wheel.profile.segments().iter();
+    let segments = placement.wheel.profile().segments().iter();
     let unknown = |shape| Printed::of(shape, &Station::AXES).is_none();
     segments.map(|segment| &segment.shape).any(unknown).then_some("a wheel of parametric curves")
 }
@@ -87,7 +87,7 @@ impl<'a> ReportNewton<'a> {
     /// `tolerance` \[mm\].
     pub fn new(placement: &'a Placement, axis: &'a EtaAxis, tolerance: f64) -> Self {
         let printed = |body: &Body, frame: &Station| {
-            let segments = body.profile.segments().iter();
+            let segments = body.profile().segments().iter();
             segments
                 .filter_map(|s| {
                     let ends = [s.start().seen_from(frame).x, s.end().seen_from(frame).x];

@@ -38,7 +38,7 @@ const EDGE: f64 = 0.06;
 
 impl Bodies {
     pub fn new(pair: &Pair) -> Self {
-        Self { rail: vertices(&pair.rail), wheel: vertices(&pair.wheel), radius: pair.wheel_radius }
+        Self { rail: vertices(pair.rail()), wheel: vertices(pair.wheel()), radius: pair.wheel_radius() }
     }
 
     /// Lowers the wheel; `None` where it is not over its rail.

@@ -36,7 +36,7 @@ const SELECTION: Selection = Selection { within: WITHIN, apart: ONE_CONTACT };
 /// A single wheel: its contacts, and the patch around the first.
 pub(super) fn wheel(pair: &Pair, offset: f64, yaw: f64, approach: f64, row: &mut PracticeRow) -> Result<()> {
     let bodies = Bodies::new(pair);
-    let profiles = ProfilePair::new(&pair.rail, &pair.wheel, pair.wheel_radius)?;
+    let profiles = ProfilePair::new(pair)?;
     let mut search = profiles.search();
     let touch = search.touch(&Pose::new(offset, yaw, 0.0)?, &SELECTION);
     let touch =

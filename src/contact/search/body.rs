@@ -7,7 +7,7 @@ use super::bounds::{Bounds, Reach};
 use super::element::{ArcElement, Element, Shape, Stretch};
 use crate::numerics::polynomial::bernstein;
 use crate::profile::{
-    Branch, BranchPoint, BranchShape, ONE_JOINT, Piece, PolynomialBranch, Profile, Section, Side, Station,
+    Branch, BranchPoint, BranchShape, ONE_JOINT, Piece, PolynomialBranch, Section, Side, Station,
 };
 
 /// No stretch of a polynomial is halved more often than this: 2⁻¹⁰ of a zone of 60 mm is 0.06 mm.
@@ -55,12 +55,12 @@ pub(super) struct Node {
 }
 
 impl Body {
-    /// The part of a profile that faces the other body in its own axes; `None` where there is none.
+    /// The part of a profile that faces the other body in its own axes, with the profile's extent \[mm\]; `None` where there is
+    /// none.
     ///
     /// Cost: for n elements n log n; some microseconds each.
-    pub fn new(profile: &Profile, side: Side) -> Option<Self> {
-        let section = Section::own_axes(profile, side);
-        let rounding = BOUND_ROUNDINGS * f64::EPSILON * profile.extent();
+    pub fn new(section: &Section, extent: f64, side: Side) -> Option<Self> {
+        let rounding = BOUND_ROUNDINGS * f64::EPSILON * extent;
         let mut builder = Builder {
             side,
             rounding,
@@ -69,7 +69,7 @@ impl Body {
             hull: Vec::new(),
             firsts: Vec::new(),
         };
-        builder.surface(&section, ONE_JOINT * profile.extent());
+        builder.surface(section, ONE_JOINT * extent);
         builder.firsts.push(builder.hull.len());
         let mut nodes = Vec::with_capacity(2 * builder.elements.len());
         if builder.elements.is_empty() {
@@ -322,7 +322,8 @@ mod tests {
     #[test]
     fn fans_stand_at_ends_and_at_outward_kinks_only() -> Result<()> {
         let profile = standards::wheel("EN15302-A")?;
-        let body = Body::new(&profile, Side::Wheel).expect("a wheel");
+        let body = Body::new(&Section::own_axes(&profile, Side::Wheel), profile.extent(), Side::Wheel)
+            .expect("a wheel");
         let fans: Vec<f64> =
             body.elements.iter().map(|e| e.bounds.x).filter(|x| x[0] == x[1]).map(|x| x[0]).collect();
         // The flange back, the kinks to 1:15 and to the chamfer, and the outer face; beside them only kinks of the
@@ -336,7 +337,8 @@ mod tests {
     #[test]
     fn polynomials_are_cut_into_few_stretches_without_gaps() -> Result<()> {
         let profile = standards::wheel("S1002")?;
-        let body = Body::new(&profile, Side::Wheel).expect("a wheel");
+        let body = Body::new(&Section::own_axes(&profile, Side::Wheel), profile.extent(), Side::Wheel)
+            .expect("a wheel");
         assert!(body.elements.len() < 200, "{}", body.elements.len());
         for pair in body.elements.windows(2) {
             assert!((pair[0].bounds.x[1] - pair[1].bounds.x[0]).abs() < 2e-3);
@@ -349,7 +351,8 @@ mod tests {
     fn bounds_hold() -> Result<()> {
         for (name, side) in [("S1002", Side::Wheel), ("EN15302-A", Side::Wheel), ("60E1", Side::Rail)] {
             let profile = if side == Side::Rail { standards::rail(name)? } else { standards::wheel(name)? };
-            let body = Body::new(&profile, side).expect("a surface");
+            let body =
+                Body::new(&Section::own_axes(&profile, side), profile.extent(), side).expect("a surface");
             let mut checked = 0;
             for (index, node) in body.nodes.iter().enumerate() {
                 let next = if node.right == 0 {

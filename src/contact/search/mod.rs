@@ -36,7 +36,8 @@ mod walk;
 pub mod wheelset;
 
 use crate::error::{Error, Result, finite};
-use crate::profile::{Profile, Side};
+use crate::placement::Pair;
+use crate::profile::{Profile, Section, Side};
 use body::Body;
 use candidates::{Candidate, Meeting, Search};
 use locus::Attitude;
@@ -153,26 +154,24 @@ pub struct Work {
 }
 
 impl ProfilePair {
-    /// Prepares a rail profile as placed (inclined) and a wheel profile with its nominal rolling radius R \[mm\].
+    /// Prepares a pair, its rail as placed (inclined).
     ///
     /// # Errors
-    /// A radius that is not a number, or that does not reach beyond the wheel profile's highest point; a profile
-    /// without any part that faces the other body.
-    pub fn new(rail: &Profile, wheel: &Profile, radius: f64) -> Result<Self> {
-        let body = |profile: &Profile, side| {
-            Body::new(profile, side).ok_or_else(|| {
+    /// A profile without any part that faces the other body.
+    pub fn new(pair: &Pair) -> Result<Self> {
+        let body = |profile: &Profile, section: &Section, side| {
+            Body::new(section, profile.extent(), side).ok_or_else(|| {
                 let expected = "a profile travelled from left to right";
                 Error::new(&profile.name, "no surface", expected, "reverse or mirror it")
             })
         };
-        let (rail_body, wheel_body) = (body(rail, Side::Rail)?, body(wheel, Side::Wheel)?);
-        let ends = wheel.segments().iter().flat_map(|s| [s.start().z, s.end().z]);
-        let highest = ends.fold(0.0, f64::max);
-        if finite("wheel radius", radius)? <= highest {
-            let expected = format!("more than {highest} mm, the height of the wheel profile");
-            return Err(Error::new("wheel radius", radius.to_string(), expected, "give R in mm"));
-        }
-        Ok(Self { rail: rail_body, wheel: wheel_body, radius, extent: rail.extent() + wheel.extent() })
+        let ([rail, wheel], [below, above]) = ([pair.rail(), pair.wheel()], pair.sections());
+        Ok(Self {
+            rail: body(rail, below, Side::Rail)?,
+            wheel: body(wheel, above, Side::Wheel)?,
+            radius: pair.wheel_radius(),
+            extent: rail.extent() + wheel.extent(),
+        })
     }
 
     /// Nominal rolling radius R \[mm\].

@@ -63,6 +63,8 @@ struct Pair<'s, 'a> {
     wholes: [&'s Part; 2],
     /// Pairs of parts that may still be looked at.
     parts_left: u32,
+    /// Whether both elements have turned out to be one curve: their place is then known.
+    are_one: bool,
 }
 
 /// What bounds of two parts tell.
@@ -94,8 +96,8 @@ pub(super) fn meet(search: &mut Search, elements: [u32; 2], placed: Option<&Plac
         placed.unwrap_or_else(|| search.attitude.place(&above.bounds).widened(search.slack, SAME_TANGENT));
     let wheel = whole(above, search.attitude.outline_place(&above.middle), placed, curvature);
     let rail = whole(below, below.middle, Placed::rail(&below.bounds), below.bounds.curvature);
-    let mut pair =
-        Pair { search, elements, shapes: [above, below], parts_left: MOST_PARTS, wholes: [&wheel, &rail] };
+    let (shapes, wholes) = ([above, below], [&wheel, &rail]);
+    let mut pair = Pair { search, elements, shapes, wholes, parts_left: MOST_PARTS, are_one: false };
     pair.refine(&wheel, &rail);
 }
 
@@ -174,11 +176,11 @@ impl Pair<'_, '_> {
             && let Some(parameters) = self.agree(wheel, rail)
         {
             let [above, below] = self.wholes;
-            self.parts_left = 0;
+            self.are_one = true;
             return self.offer_at(self.agree(above, below).unwrap_or(parameters));
         }
         let halved = [self.length(Side::Wheel, wheel), self.length(Side::Rail, rail)];
-        if self.parts_left <= 1 || halved.iter().all(Option::is_none) {
+        if self.parts_left == 0 || halved.iter().all(Option::is_none) {
             if let Some(feet) = newton(self.search, self.shapes, [wheel.middle, rail.middle], ranges) {
                 self.offer(feet);
             }
@@ -197,11 +199,11 @@ impl Pair<'_, '_> {
 
     /// Looks at two parts of which one is new, unless their bounds exclude contact.
     fn further(&mut self, wheel: &Part, rail: &Part) {
-        if self.parts_left == 0 {
+        if self.are_one {
             return;
         }
         self.search.solves += 1;
-        self.parts_left -= 1;
+        self.parts_left = self.parts_left.saturating_sub(1);
         let bound = wheel.placed.gap_over(&rail.placed);
         if bound != f64::INFINITY
             && bound <= self.search.bound_ceiling()

@@ -25,7 +25,7 @@ fn en_15302_a() -> Result<WheelsetOnTrack> {
     let (sin, cos) = 0.05f64.sin_cos();
     let rail = standards::rail("UIC60")?.rotated(cos, sin).shifted(2.60264, 0.14155);
     Ok(WheelsetOnTrack {
-        pair: ProfilePair::new(&rail, &standards::wheel("EN15302-A")?, 460.0)?,
+        pair: ProfilePair::new(&Pair::new(rail.clone(), standards::wheel("EN15302-A")?, 460.0)?)?,
         track: Track::new(&rail, RailDistance::Spacing(1500.0))?,
         wheelset: Wheelset::new(WheelDistance::Spacing(1500.0), 460.0)?,
     })
@@ -167,7 +167,7 @@ fn parallel_lines_and_equal_arcs_touch_in_their_middle() -> Result<()> {
     let line = |from, to| Ok::<_, Error>(vec![Segment::arc(Arc::line(from, to)?)]);
     let rail = Profile::new("", "", line([-10.0, -1.0], [10.0, 1.0])?)?;
     let wheel = Profile::new("", "", line([-20.0, -2.0], [20.0, 2.0])?)?;
-    let pair = ProfilePair::new(&rail, &wheel, 460.0)?;
+    let pair = ProfilePair::new(&Pair::new(rail, wheel, 460.0)?)?;
     let pose = Pose::new(15.0, 0.0, 0.0)?;
     let mut search = pair.search();
     let touch = search.touch(&pose, &ALL);
@@ -177,7 +177,7 @@ fn parallel_lines_and_equal_arcs_touch_in_their_middle() -> Result<()> {
     let arc = |x| Ok::<_, Error>(vec![Segment::arc(Arc::about([0.0, 80.0], 80.0, Half::Lower, x)?)]);
     let rail = Profile::new("", "", arc([-30.0, 10.0])?)?;
     let wheel = Profile::new("", "", arc([-20.0, 20.0])?)?;
-    let pair = ProfilePair::new(&rail, &wheel, 460.0)?;
+    let pair = ProfilePair::new(&Pair::new(rail, wheel, 460.0)?)?;
     let mut search = pair.search();
     let touch = search.touch(&Pose::new(0.0, 0.0, 0.0)?, &ALL);
     assert!(touch.is_some_and(|t| t.height.abs() < 1e-13), "{touch:?}");
@@ -186,14 +186,14 @@ fn parallel_lines_and_equal_arcs_touch_in_their_middle() -> Result<()> {
 
 #[test]
 fn a_wheel_beside_its_rail_touches_nothing() -> Result<()> {
-    let pair = ProfilePair::new(&standards::rail("60E1")?, &standards::wheel("S1002")?, 460.0)?;
+    let pair = ProfilePair::new(&Pair::new(standards::rail("60E1")?, standards::wheel("S1002")?, 460.0)?)?;
     let mut search = pair.search();
     for offset in [-200.0, 300.0] {
         assert_eq!(search.touch(&Pose::new(offset, 0.0, 0.0)?, &ALL), None);
     }
     assert!(Pose::new(f64::NAN, 0.0, 0.0).is_err());
     assert!(Pose::new(0.0, 1.0, 0.0).is_err());
-    assert!(ProfilePair::new(&standards::rail("60E1")?, &standards::wheel("S1002")?, 1.0).is_err());
+    assert!(Pair::new(standards::rail("60E1")?, standards::wheel("S1002")?, 1.0).is_err());
     Ok(())
 }
 
@@ -201,7 +201,7 @@ fn a_wheel_beside_its_rail_touches_nothing() -> Result<()> {
 fn a_contact_on_a_kink_is_where_the_closed_segments_cross() -> Result<()> {
     // The flange tip of this drawing: a kink of 10° whose arcs, drawn with a step of 2 µm, cross 11 µm beside it.
     let pair = Pair::new(standards::rail("56E1")?, standards::wheel("APTA-120")?, 625.0)?;
-    let profiles = ProfilePair::new(&pair.rail, &pair.wheel, pair.wheel_radius)?;
+    let profiles = ProfilePair::new(&pair)?;
     let mut search = profiles.search();
     let touch = search.touch(&Pose::new(8.045, 0.0, 0.0)?, &ALL);
     let contact = touch.map(|touch| touch.contacts[0]).filter(Contact::kink);
@@ -222,7 +222,7 @@ fn lengths_times_four_give_the_same_bits() -> Result<()> {
         };
         let rail = Profile::new("", "", vec![arc([0.0, -300.0], 300.0, Half::Upper, [-20.0, 25.0])?])?;
         let wheel = Profile::new("", "", vec![arc([3.0, -330.0], 330.0, Half::Upper, [-40.0, 30.0])?])?;
-        let pair = ProfilePair::new(&rail, &wheel, 460.0 * k)?;
+        let pair = ProfilePair::new(&Pair::new(rail, wheel, 460.0 * k)?)?;
         let mut search = pair.search();
         let touch = search.touch(&Pose::new(1.5 * k, 0.02, 0.01)?, &ALL);
         Ok(touch.map_or(f64::NAN, |t| t.height / k))

@@ -51,9 +51,9 @@ impl WheelsetOnTrack {
     /// As [`ProfilePair::new`], [`Track::new`] and [`Wheelset::new`].
     pub fn new(pair: &Pair, rails: RailDistance, wheels: WheelDistance) -> Result<Self> {
         Ok(Self {
-            pair: ProfilePair::new(&pair.rail, &pair.wheel, pair.wheel_radius)?,
-            track: Track::new(&pair.rail, rails)?,
-            wheelset: Wheelset::new(wheels, pair.wheel_radius)?,
+            pair: ProfilePair::new(pair)?,
+            track: Track::new(pair.rail(), rails)?,
+            wheelset: Wheelset::new(wheels, pair.wheel_radius())?,
         })
     }
 }

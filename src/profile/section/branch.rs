@@ -255,27 +255,33 @@ impl Branch {
         let plain = |c: &[TwoFloat]| -> Vec<f64> { c.iter().map(|&c| c.into()).collect() };
         let (xi_plain, zeta_plain) = (plain(&xi), plain(&zeta));
         let kind = if contact.is_some() { Kind::Contact } else { Kind::Plain };
-        let (run, rise) = (derivative(&xi_plain), derivative(&zeta_plain));
-        let fastest =
-            [&run, &rise].map(|c| range(c, range_t[0], range_t[1]).map(f64::abs)).into_iter().flatten();
-        let vertical = VERTICAL * fastest.fold(0.0, f64::max);
-        rising_intervals(&run, vertical, range_t)
-            .into_iter()
-            .filter(|[a, b]| kind == Kind::Plain || (*a <= 0.0 && *b >= 0.0))
-            .map(|part| {
-                let ends = part.map(|t| value(&xi_plain, t));
-                let shape = PolynomialBranch {
-                    xi: xi_plain.clone(),
-                    zeta: zeta_plain.clone(),
-                    t: part,
-                    ends,
-                    exact: [xi.clone(), zeta.clone()],
-                };
-                let shape = BranchShape::Polynomial(Box::new(shape));
-                let (begins_segment, ends_segment) = (part[0] == range_t[0], part[1] == range_t[1]);
-                Self { xi: ends, segment, shape, begins_segment, ends_segment, kind }
-            })
-            .collect()
+        let mut parts = if rises_throughout(&xi_plain, range_t) {
+            vec![range_t]
+        } else {
+            let (run, rise) = (derivative(&xi_plain), derivative(&zeta_plain));
+            let fastest =
+                [&run, &rise].map(|c| range(c, range_t[0], range_t[1]).map(f64::abs)).into_iter().flatten();
+            let vertical = VERTICAL * fastest.fold(0.0, f64::max);
+            rising_intervals(&run, vertical, range_t)
+        };
+        let shape = PolynomialBranch {
+            xi: xi_plain,
+            zeta: zeta_plain,
+            t: range_t,
+            ends: [f64::NAN; 2],
+            exact: [xi, zeta],
+        };
+        let branch = |part: [f64; 2], shape: PolynomialBranch| {
+            let ends = part.map(|t| value(&shape.xi, t));
+            let shape = BranchShape::Polynomial(Box::new(PolynomialBranch { t: part, ends, ..shape }));
+            let (begins_segment, ends_segment) = (part[0] == range_t[0], part[1] == range_t[1]);
+            Self { xi: ends, segment, shape, begins_segment, ends_segment, kind }
+        };
+        parts.retain(|[a, b]| kind == Kind::Plain || (*a <= 0.0 && *b >= 0.0));
+        let Some(last) = parts.pop() else { return Vec::new() };
+        let mut branches: Vec<Self> = parts.into_iter().map(|part| branch(part, shape.clone())).collect();
+        branches.push(branch(last, shape));
+        branches
     }
 
     pub(super) fn is_contact(&self, segment: usize) -> bool {
@@ -439,6 +445,20 @@ fn flattest([a, b]: [f64; 2]) -> f64 {
 /// Share of a curve's speed below which its run along ξ is the rounding of a vertical: the direction of a straight wall is
 /// known no better, and its run changes sign all along.
 const VERTICAL: f64 = 16.0 * f64::EPSILON;
+
+/// Whether a polynomial has a positive derivative all over \[t0, t1\], by a bound that costs a sum: true of most spans. Where
+/// it is false the polynomial may rise all the same.
+fn rises_throughout(c: &[f64], [t0, t1]: [f64; 2]) -> bool {
+    let farthest = t0.abs().max(t1.abs());
+    let Some(first) = c.get(1) else { return false };
+    let (mut slope, mut power) = (0.0, 1.0);
+    for (k, c) in c.iter().enumerate().skip(2) {
+        power *= farthest;
+        slope += k as f64 * c.abs() * power;
+    }
+    // Far above the rounding of a slope.
+    0.5 * first > slope
+}
 
 /// The parts of \[t0, t1\] where the polynomial `slope` is positive, by bisection down to 2⁻⁴⁰ of the range; none where it is nowhere
 /// larger than `rounding`.

@@ -154,7 +154,7 @@ fn compare(seed: u64, polynomials: bool, yaw: f64, roll: f64) -> Result<()> {
 
 fn compare_scene(name: &str, scene: Scene) -> Result<()> {
     let pose = scene.pose;
-    let pair = ProfilePair::new(&scene.rail, &scene.wheel, scene.radius)?;
+    let pair = ProfilePair::new(&Pair::new(scene.rail.clone(), scene.wheel.clone(), scene.radius)?)?;
     let [sampled, x, omega] = scene.lowest_gap();
     let mut search = pair.search();
     let touch = search.touch(&Pose::new(pose[0], pose[1], pose[2])?, &ALL);
@@ -216,7 +216,7 @@ fn every_local_minimum_of_the_gap_is_reported() -> Result<()> {
         let rail = random_chain(&mut random, 4, seed % 2 == 0)?;
         let wheel = random_chain(&mut random, 5, seed % 2 == 0)?;
         let offset = random.between(-8.0, 8.0);
-        let pair = ProfilePair::new(&rail, &wheel, 300.0)?;
+        let pair = ProfilePair::new(&Pair::new(rail.clone(), wheel.clone(), 300.0)?)?;
         let mut search = pair.search();
         let touch = search.touch(&Pose::new(offset, 0.0, 0.0)?, &Selection { within, apart: 0.0 });
         let contacts = touch.map_or(Vec::new(), |t| t.contacts.to_vec());

@@ -46,7 +46,7 @@ fn contacts_agree_with_60_digit_values() -> Result<()> {
         let (rail, wheel) = (profile(&scene["rail"])?, profile(&scene["wheel"])?);
         let radius = number(scene, "wheel_radius");
         let (yaw, roll) = (number(scene, "yaw"), number(scene, "roll"));
-        let pair = ProfilePair::new(&rail, &wheel, radius)?;
+        let pair = ProfilePair::new(&Pair::new(rail, wheel.clone(), radius)?)?;
         // The offset that brings the two given points over each other.
         let station = Section::own_axes(&wheel, Side::Wheel)
             .branch_at(number(scene, "contact_wheel_x"))

@@ -441,7 +441,7 @@ fn samples(section: &Section, step: f64) -> Vec<[f64; 2]> {
 fn compare(seed: u64) -> Result<std::result::Result<usize, String>> {
     const RADIUS: f64 = 460.0;
     let pair = random_pair(seed)?;
-    let profiles = ProfilePair::new(&pair.rail, &pair.wheel, RADIUS)?;
+    let profiles = ProfilePair::new(&Pair::new(pair.rail.clone(), pair.wheel.clone(), RADIUS)?)?;
     let [offset, yaw, roll] = pair.pose;
     let mut search = profiles.search();
     let touch = search.touch(&Pose::new(offset, yaw, roll)?, &Selection { within: WITHIN, apart: 0.0 });
