@@ -4,12 +4,12 @@
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use wheelrail::accuracy::reference::references;
 use wheelrail::placement::Placement;
 use wheelrail::separation::axis::EtaAxis;
 use wheelrail::separation::grid::Method;
 use wheelrail::separation::plan::plan;
 use wheelrail::separation::values::Values;
+use wheelrail_report::reference::references;
 
 /// A tread, a standard pair with joints, a flange root.
 const SCENES: [&str; 3] = ["hollow_tread", "UIC60_EN15302A_root", "throat"];

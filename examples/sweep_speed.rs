@@ -4,7 +4,7 @@
 #![allow(clippy::print_stdout)]
 
 use wheelrail::Result;
-use wheelrail::accuracy::rates::{Extent, rates};
+use wheelrail_report::rates::{Extent, rates};
 
 /// Time each sweep gets at least \[s\].
 const SECONDS: f64 = 0.25;

@@ -45,9 +45,6 @@
 //! guaranteed: anything elastic. See [`docs::numerics`] for the formulas and [`docs::errata`] for what differs from
 //! the Report.
 
-pub mod accuracy;
-pub mod check;
-pub mod cli;
 pub mod contact;
 pub mod docs;
 pub mod error;

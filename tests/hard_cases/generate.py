@@ -43,7 +43,7 @@ def through(x, z, slope, x0, x1):
 
 def standard(body):
     """UIC60 rail or EN 15302 wheel A, as in the reference scene."""
-    path = HERE.parents[1] / "src/accuracy/reference/UIC60_EN15302A_root.json"
+    path = HERE.parents[1] / "crates/report/src/reference/UIC60_EN15302A_root.json"
     return json.loads(path.read_text())["scene"][body]
 
 

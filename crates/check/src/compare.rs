@@ -1,0 +1,336 @@
+//! The program's answers against what the meshes measure.
+
+use std::time::Instant;
+
+use super::body::{Found, JOINT, STEEPEST, Solid};
+use super::closest::{of_bodies, to_point};
+use super::floor::{Floor, floors};
+use super::meshes::Vector;
+use super::patch::Place;
+use super::points::spread_points;
+use super::ray::{FIRST_CELL, Height, extrapolated};
+use super::relation::{Above, RELATION, normals_between};
+use super::report::{Counts, Differences, Distances, Orders, Report, largest};
+use super::sampler::{Curve, Surface};
+use super::{Answer, Request};
+use wheelrail::error::{Error, Result};
+use wheelrail::placement::{Body, Placement};
+use wheelrail::profile::Shape;
+
+/// Differences up to this many times the larger of floor and own estimate agree: maxima over a few dozen
+/// points of the closed forms stand for those over all points.
+const SAFETY: f64 = 4.0;
+
+/// Roundings of the largest coordinate that the program itself may lose: it promises 2e-12 mm on profiles
+/// of 150 mm, 60 roundings.
+const ROUNDINGS: f64 = 64.0;
+
+/// An own estimate above this share of the body's size \[1\] decides nothing.
+const RESOLVED: f64 = 1e-11;
+
+/// Points at which closest distances are taken, and the largest share of R that s may reach there: the
+/// relation closes with the square of it.
+const DISTANCES: usize = 24;
+const NEARBY: f64 = 2e-3;
+
+/// Newton steps from the nearest sample of a segment to C.
+const CONTACT_STEPS: usize = 12;
+
+/// Lift of the wheel for closest distances as a share of R, on top of the approach.
+const LIFT: f64 = 1e-4;
+
+/// Checks what `answer` says of s and normals at (ξ, η) of a placed pair.
+///
+/// Cost: about a millisecond a point, under 0.5 s in all.
+///
+/// # Errors
+/// A placed pair whose profiles have points that are not finite, or a window that is not finite.
+pub fn check(
+    placement: &Placement,
+    request: &Request,
+    answer: &mut dyn FnMut(f64, f64) -> Answer,
+) -> Result<Report> {
+    let start = Instant::now();
+    let [xi, eta] = [request.window.xi, request.window.eta];
+    let reach = [xi, eta].map(|[a, b]| a.abs().max(b.abs()));
+    let reach = reach[0].hypot(reach[1]);
+    let not_finite = || {
+        let expected = "finite points over a finite window";
+        Error::new("check: profiles", "points that are not finite", expected, "check profiles and grid")
+    };
+    let [rail, wheel] = [Surface::rail(placement), Surface::wheel(placement)]
+        .map(|surface| Solid::new(surface, reach).filter(|_| reach.is_finite()).ok_or_else(not_finite));
+    let (rail, wheel) = (rail?, wheel?);
+    let floors = floors(smallest_radius(placement), placement.rolling_radius())?;
+    let points = spread_points(placement, request, &rail.surface, &wheel.surface);
+    let mut tally = Tally::new(&rail, &wheel, &floors);
+    for &[xi, eta] in &points {
+        tally.ray(xi, eta, answer(xi, eta));
+    }
+    let distances = tally.distances(request.approach, placement.wheel_radius, answer);
+    let contact_point = [&placement.rail, &placement.wheel].map(contact_point);
+    let contact_point = [0, 1].map(|k| largest(contact_point.iter().map(|body| body[k])));
+    let mut report = tally.report(distances, contact_point);
+    report.seconds = start.elapsed().as_secs_f64();
+    Ok(report)
+}
+
+/// The sharpest arc of both profiles \[mm\], at most an eighth of the wheel: what the closed forms are made of.
+fn smallest_radius(placement: &Placement) -> f64 {
+    let segments = [&placement.rail, &placement.wheel].into_iter().flat_map(|body| body.profile().segments());
+    let radii = segments.filter_map(|segment| match &segment.shape {
+        Shape::Arc(arc) => Some(arc.radius.abs()),
+        Shape::Polynomial(_) => None,
+    });
+    radii.fold(placement.rolling_radius() / 8.0, f64::min)
+}
+
+/// How far C and the frame's ξ axis are off the profile \[mm, rad\]; at an edge ξ is no tangent, and 0 off.
+fn contact_point(body: &Body) -> [f64; 2] {
+    let frame = body.point.station;
+    let segment = &body.profile().segments()[body.point.segment];
+    let curve = Curve::of_segment(segment, [frame.x, frame.z], body.profile().extent());
+    let mut t = curve.nearest_to_origin();
+    for _ in 0..CONTACT_STEPS {
+        let [x, z] = curve.point(t);
+        t -= (x * frame.cos + z * frame.sin) / curve.speed(t);
+    }
+    let h = FIRST_CELL * curve.scale;
+    let chord = |share: f64| {
+        let ([x0, z0], [x1, z1]) = (curve.point(t - h * share), curve.point(t + h * share));
+        Vector::new(x1 - x0, 0.0, z1 - z0).normalize()
+    };
+    let tangent = extrapolated(chord).0;
+    let turned = tangent.z * frame.cos - tangent.x * frame.sin;
+    let [x, z] = curve.point(t);
+    let slack = JOINT * body.profile().extent() / curve.speed(t);
+    let at_edge = !body.is_smooth() && (t <= slack || t >= curve.length - slack);
+    [x.hypot(z), if at_edge { 0.0 } else { turned.abs() }]
+}
+
+/// Everything measured so far.
+struct Tally<'a> {
+    rail: &'a Solid,
+    wheel: &'a Solid,
+    floors: &'a [Floor],
+    counts: Counts,
+    separation: Vec<Compared>,
+    normals: Vec<Compared>,
+    orders: Vec<f64>,
+    bracket: f64,
+    outside: usize,
+    estimate: f64,
+    near: Vec<Near>,
+}
+
+/// Difference, what is allowed, and (ξ, η).
+type Compared = (f64, f64, [f64; 2]);
+
+/// A compared point whose feet are inside their segments.
+#[derive(Clone, Copy)]
+struct Near {
+    at: [f64; 2],
+    /// The program's s.
+    separation: f64,
+    /// Places on the rail and on the wheel.
+    places: [Place; 2],
+    /// Points there.
+    points: [Vector; 2],
+}
+
+impl<'a> Tally<'a> {
+    fn new(rail: &'a Solid, wheel: &'a Solid, floors: &'a [Floor]) -> Self {
+        Self {
+            rail,
+            wheel,
+            floors,
+            counts: Counts::default(),
+            separation: Vec::new(),
+            normals: Vec::new(),
+            orders: Vec::new(),
+            bracket: 0.0,
+            outside: 0,
+            estimate: 0.0,
+            near: Vec::new(),
+        }
+    }
+
+    /// Largest floor of one kind.
+    fn floor(&self, kind: impl Fn(&Floor) -> f64) -> f64 {
+        largest(self.floors.iter().map(kind))
+    }
+
+    /// Rounding that the program may lose where the least normal has this ζ component \[mm\].
+    fn rounding(&self, least_normal: f64) -> f64 {
+        let size = self.rail.surface.size.max(self.wheel.surface.size);
+        ROUNDINGS * f64::EPSILON * size / least_normal
+    }
+
+    /// Measures at (ξ, η) and compares.
+    fn ray(&mut self, xi: f64, eta: f64, answer: Answer) {
+        self.counts.points += 1;
+        let missing = answer.separation.is_nan();
+        match (self.rail.along_zeta(xi, eta), self.wheel.along_zeta(xi, eta)) {
+            (Found::Unresolved, _) | (_, Found::Unresolved) => self.counts.unresolved += 1,
+            (Found::Steep, _) | (_, Found::Steep) => self.counts.steep_or_end += 1,
+            (Found::Nothing, _) | (_, Found::Nothing) if missing => self.counts.no_surface += 1,
+            (Found::Nothing, _) | (_, Found::Nothing) => self.counts.surface_disputed += 1,
+            (Found::Heights(rail), Found::Heights(wheel)) => {
+                let ends = |solid: &Solid, all: &[Height]| all.iter().all(|h| solid.at_end(&h.place));
+                if ends(self.rail, &rail) || ends(self.wheel, &wheel) {
+                    self.counts.steep_or_end += 1;
+                } else if missing {
+                    self.counts.surface_disputed += 1;
+                } else {
+                    self.compare([xi, eta], answer, &rail, &wheel);
+                }
+            }
+        }
+    }
+
+    fn compare(&mut self, at: [f64; 2], answer: Answer, rail: &[Height], wheel: &[Height]) {
+        let both = || rail.iter().chain(wheel);
+        let least_normal = both().map(|h| h.normal.z).fold(1.0, f64::min);
+        let estimate = largest(both().map(|h| h.error));
+        let size = self.rail.surface.size.max(self.wheel.surface.size);
+        if estimate.is_nan() || estimate > RESOLVED * size {
+            self.counts.unresolved += 1;
+            return;
+        }
+        self.counts.compared += 1;
+        self.estimate = self.estimate.max(estimate);
+        self.orders.extend(both().filter_map(|h| h.order));
+        let s = answer.separation;
+        let rounding = self.rounding(least_normal);
+        let measured = gap(wheel.iter().map(|h| [h.zeta; 2]), rail.iter().map(|h| [h.zeta; 2]));
+        let floor = self.floor(|f| f.ray_mm) / least_normal;
+        self.separation.push((beyond(s, measured), SAFETY * floor.max(estimate) + rounding, at));
+        let bracket = gap(wheel.iter().map(|h| h.bracket), rail.iter().map(|h| h.bracket));
+        let outside = beyond(s, bracket);
+        if outside.is_nan() || outside > rounding {
+            self.outside += 1;
+        }
+        if let ([rail], [wheel]) = (rail, wheel) {
+            self.bracket = self.bracket.max(bracket[1] - bracket[0]);
+            let points = [rail, wheel].map(|h| Vector::new(at[0], at[1], h.zeta));
+            self.near.push(Near { at, separation: s, places: [rail.place, wheel.place], points });
+        }
+        self.compare_normals(self.rail, at, Vector::from_array(answer.normals.rail), rail);
+        self.compare_normals(self.wheel, at, -Vector::from_array(answer.normals.wheel), wheel);
+    }
+
+    fn compare_normals(&mut self, solid: &Solid, at: [f64; 2], normal: Vector, heights: &[Height]) {
+        let floor = self.floor(|f| f.normal);
+        let differences = heights.iter().map(|h| {
+            // Directions are differences: a short curve's have lost as many digits as it is shorter.
+            let digits = 1.0 + solid.surface.size / solid.surface.curves[h.place.curve].scale;
+            let rounding = ROUNDINGS * f64::EPSILON * digits / h.normal.z;
+            let allowed = SAFETY * floor.max(h.normal_error) + rounding;
+            (normal.distance(h.normal), allowed, at)
+        });
+        let least = differences.min_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)));
+        self.normals.extend(least);
+    }
+
+    /// Closest distances of points of each body from the other, and of the bodies.
+    fn distances(
+        &self,
+        approach: f64,
+        wheel_radius: f64,
+        answer: &mut dyn FnMut(f64, f64) -> Answer,
+    ) -> Distances {
+        let none = Distances { bodies_mm: f64::NAN, ..Distances::default() };
+        let close = |n: &&Near| n.separation.abs() <= NEARBY * wheel_radius;
+        let near: Vec<&Near> = self.near.iter().filter(close).collect();
+        let Some(least) = near.iter().min_by(|a, b| a.separation.total_cmp(&b.separation)) else {
+            return none;
+        };
+        let lift = approach + LIFT * wheel_radius - least.separation.min(0.0);
+        let surface = self.wheel.surface.lifted(lift);
+        let Some(wheel) = Solid::new(surface, self.wheel.reach) else { return none };
+        let mut relation = Relation { tally: self, all: Vec::new(), widest: 0.0 };
+        let every = near.len().div_ceil(DISTANCES);
+        for n in near.iter().step_by(every) {
+            let separation = n.separation + lift;
+            let point = n.points[1] + Vector::Z * lift;
+            relation.hold(self.rail, &Above { at: n.at, separation, point, foot: n.places[0] });
+            relation.hold(&wheel, &Above { at: n.at, separation, point: n.points[0], foot: n.places[1] });
+        }
+        let mut out = Distances { lift_mm: lift, ..none };
+        if let Some([below, above]) = of_bodies(self.rail, &wheel, least.places) {
+            let at = [above.point.x, above.point.y];
+            out.bodies_mm = above.point.distance(below.point);
+            out.bodies_at_mm = at;
+            out.bodies_separation_mm = answer(at[0], at[1]).separation + lift;
+            // At the end of a body the foot along ζ comes and goes with rounding.
+            let foot = match self.rail.along_zeta(at[0], at[1]) {
+                Found::Heights(rail) if !wheel.at_end(&above.place) => Some(rail[0].place),
+                _ => None,
+            };
+            if let Some(foot) = foot.filter(|foot| !self.rail.at_end(foot)) {
+                let (separation, point) = (out.bodies_separation_mm, above.point);
+                relation.hold(self.rail, &Above { at, separation, point, foot });
+            }
+        }
+        out.widest_mm = relation.widest;
+        out.violation = Differences::of(&relation.all);
+        out
+    }
+
+    fn report(self, distances: Distances, contact_point: [f64; 2]) -> Report {
+        let mut report = Report {
+            agrees: false,
+            objections: Vec::new(),
+            counts: self.counts,
+            floors: self.floors.to_vec(),
+            separation: Differences::of(&self.separation),
+            bracket_mm: self.bracket,
+            outside_bracket: self.outside,
+            largest_estimate_mm: self.estimate,
+            orders: Orders::of(self.orders.clone()),
+            normals: Differences::of(&self.normals),
+            contact_point,
+            relation: RELATION,
+            distances,
+            seconds: 0.0,
+        };
+        let size = self.rail.surface.size.max(self.wheel.surface.size);
+        report.judge(RESOLVED * size, self.rounding(1.0));
+        report
+    }
+}
+
+/// The relation between distances along ζ and closest distances, point by point.
+struct Relation<'a> {
+    tally: &'a Tally<'a>,
+    all: Vec<Compared>,
+    widest: f64,
+}
+
+impl Relation<'_> {
+    /// s·min n ≤ d ≤ s·max n between a point and the body `solid`.
+    fn hold(&mut self, solid: &Solid, above: &Above) {
+        let Some(closest) = to_point(solid, above.point) else {
+            return self.all.push((f64::INFINITY, 1.0, above.at));
+        };
+        let n = normals_between(solid, above, &closest, self.tally.rounding(1.0));
+        let interval = n.map(|n| above.separation * n);
+        self.widest = self.widest.max(interval[1] - interval[0]);
+        let floor = self.tally.floor(|f| f.closest_mm);
+        let allowed = SAFETY * (floor + closest.error) + self.tally.rounding(n[0].max(STEEPEST));
+        self.all.push((beyond(closest.distance, interval), allowed, above.at));
+    }
+}
+
+/// \[least, largest\] of wheel − rail.
+fn gap(wheel: impl Iterator<Item = [f64; 2]>, rail: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
+    let join = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+    let empty = [f64::INFINITY, f64::NEG_INFINITY];
+    let (wheel, rail) = (wheel.fold(empty, join), rail.fold(empty, join));
+    [wheel[0] - rail[1], wheel[1] - rail[0]]
+}
+
+/// How far a value lies outside an interval; NaN where anything is.
+fn beyond(value: f64, [low, high]: [f64; 2]) -> f64 {
+    largest([low - value, value - high])
+}

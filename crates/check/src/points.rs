@@ -1,0 +1,86 @@
+//! Where to look: window, joints, tips, boundary and deepest points.
+
+use super::Request;
+use super::sampler::Surface;
+use wheelrail::contact::feasibility::critical_points;
+use wheelrail::interpenetration::Slicer;
+use wheelrail::numerics::roots::bracketed;
+use wheelrail::placement::Placement;
+
+/// Lines of the regular grid in ξ and η, edges of the window included.
+const GRID: [usize; 2] = [9, 7];
+
+/// Columns in which the boundary is looked for, and about how many of them give points.
+const SLICES: usize = 48;
+const LOOP_POINTS: usize = 8;
+
+/// All (ξ, η) \[mm\] at which rays are cast.
+pub(super) fn spread_points(
+    placement: &Placement,
+    request: &Request,
+    rail: &Surface,
+    wheel: &Surface,
+) -> Vec<[f64; 2]> {
+    let window = &request.window;
+    let at = |[a, b]: [f64; 2], k: usize, n: usize| {
+        if k + 1 == n { b } else { a + (b - a) * k as f64 / (n - 1) as f64 }
+    };
+    let mut all: Vec<[f64; 2]> = (0..GRID[0] * GRID[1])
+        .map(|k| [at(window.xi, k / GRID[1], GRID[0]), at(window.eta, k % GRID[1], GRID[1])])
+        .collect();
+    all.extend(joints(rail, window.eta));
+    all.extend(joints(wheel, window.eta));
+    all.extend(boundary(placement, request));
+    let inside = |p: &[f64; 2]| within(p[0], window.xi) && within(p[1], window.eta);
+    all.retain(inside);
+    all
+}
+
+fn within(value: f64, [low, high]: [f64; 2]) -> bool {
+    value >= low && value <= high
+}
+
+/// The deepest midplane point, tips, and points of the boundary s = δ as the program has them.
+///
+/// Slices suffice: loops with their areas cost far more than the check itself when the wheel is yawed.
+fn boundary(placement: &Placement, request: &Request) -> Vec<[f64; 2]> {
+    let Some([first, last]) = placement.overlap() else { return Vec::new() };
+    let [from, to] = request.window.xi;
+    let (from, to) = (from.max(first), to.min(last));
+    if from >= to {
+        return Vec::new();
+    }
+    let mut slicer = Slicer::new(placement, request.approach);
+    let deepest = critical_points(placement, from, to)
+        .into_iter()
+        .map(|xi| (slicer.separation(xi, 0.0), xi))
+        .filter(|(s, _)| !s.is_nan())
+        .min_by(|a, b| a.0.total_cmp(&b.0));
+    let mut all: Vec<[f64; 2]> = deepest.iter().map(|&(_, xi)| [xi, 0.0]).collect();
+    let columns: Vec<f64> = (0..=SLICES)
+        .map(|k| from + (to - from) * k as f64 / SLICES as f64)
+        .chain(deepest.map(|d| d.1))
+        .collect();
+    let mut depths: Vec<(f64, f64)> = columns.iter().map(|&xi| (xi, slicer.depth(xi))).collect();
+    depths.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for pair in depths.windows(2).filter(|pair| (pair[0].1 < 0.0) != (pair[1].1 < 0.0)) {
+        let tip = bracketed(|xi| slicer.depth(xi), pair[0].0, pair[1].0);
+        all.extend(tip.and_then(|xi| slicer.slice(xi).map(|slice| [xi, slice.eta[0]])));
+    }
+    for (xi, _) in depths.iter().filter(|(_, depth)| *depth < 0.0).step_by(SLICES / LOOP_POINTS) {
+        all.extend(slicer.slice(*xi).iter().flat_map(|slice| slice.eta.map(|eta| [*xi, eta])));
+    }
+    all
+}
+
+/// Points over the joints of one body, in the midplane and towards both edges of the window.
+fn joints(surface: &Surface, eta: [f64; 2]) -> Vec<[f64; 2]> {
+    let ends = surface.curves.iter().enumerate().flat_map(|(k, c)| [(k, 0.0), (k, c.length)]);
+    ends.flat_map(|(curve, t)| {
+        [0.0, 0.5 * eta[0], 0.75 * eta[1]].map(|v| {
+            let point = surface.point(curve, t, v);
+            [point.x, point.y]
+        })
+    })
+    .collect()
+}

@@ -1,0 +1,129 @@
+//! The closest distance against the separation.
+//!
+//! On its way up from the foot F along ζ a point gains distance by the ζ component of the unit normal where it is
+//! closest, d = ∫ n dζ. That closest point rises as the point does, from F by h in all, and stays inside the sphere
+//! of radius s around the end of the way: so it is never farther than √(2sh) from F. The extremes of n within that
+//! reach bracket d. They are enclosed piece by piece, with what the profile can turn inside a piece, so that an
+//! inflection between two samples does not slip through.
+
+use super::body::Solid;
+use super::closest::Closest;
+use super::meshes::Vector;
+use super::patch::Place;
+use super::sampler::{Curve, Surface};
+
+/// The relation in words.
+pub const RELATION: &str = "s·min n ≤ d ≤ s·max n, where n are the ζ components of the body's unit normals up to \
+                            √(2sh) from the foot along ζ, h the height of the closest point over the foot";
+
+/// Pieces of a profile are halved until they are this share of the reach: the bracket widens by half a piece's turn.
+const PIECE: f64 = 1.0 / 16.0;
+
+/// Most halvings: a range of the parameter has no more bits.
+const HALVINGS: u32 = 52;
+
+/// A point of one body over (or under) the other.
+pub(super) struct Above {
+    /// (ξ, η) \[mm\].
+    pub at: [f64; 2],
+    /// s there, lift included \[mm\].
+    pub separation: f64,
+    /// The point.
+    pub point: Vector,
+    /// The foot along ζ on the other body.
+    pub foot: Place,
+}
+
+/// \[least, largest\] n between the foot of `above` and the closest point of `solid`.
+///
+/// Where the closest point is a joint or an end, its direction counts as well: any between its neighbours' normals
+/// can be the closest one's. An end that the closest point only comes across on its way is not seen.
+pub(super) fn normals_between(solid: &Solid, above: &Above, closest: &Closest, rounding: f64) -> [f64; 2] {
+    let surface = &solid.surface;
+    let foot = surface.point(above.foot.curve, above.foot.t, above.foot.v);
+    let h = (closest.point.z - foot.z).abs() + closest.error + rounding;
+    let reach = (2.0 * above.separation * h).sqrt() + rounding;
+    let [least, most] = normals_within(surface, &above.foot, reach);
+    if !solid.at_joint(&closest.place) {
+        return [least, most];
+    }
+    let direct = (above.point.z - closest.point.z).abs() / closest.distance;
+    // NaN, of a distance 0, stays one.
+    if direct.is_nan() { [f64::NAN; 2] } else { [least.min(direct), most.max(direct)] }
+}
+
+/// \[least, largest\] ζ component of the unit normals of all points up to `reach` from a place.
+fn normals_within(surface: &Surface, foot: &Place, reach: f64) -> [f64; 2] {
+    let centre = surface.curves[foot.curve].point(foot.t);
+    let near = Near { centre, reach };
+    let own = [surface.curves[foot.curve].angle(foot.t); 2];
+    let curves = surface.curves.iter().filter(|curve| near.may_hold(curve));
+    let tilts = curves.fold(own, |hull, curve| near.tilts(curve, [0.0, curve.length], HALVINGS, hull));
+    surface.normals_between(tilts, foot.v, centre[1], reach)
+}
+
+/// The disc of a profile's plane in which points are looked for.
+struct Near {
+    centre: [f64; 2],
+    reach: f64,
+}
+
+impl Near {
+    fn distance(&self, [x, z]: [f64; 2]) -> f64 {
+        (x - self.centre[0]).hypot(z - self.centre[1])
+    }
+
+    fn may_hold(&self, curve: &Curve) -> bool {
+        self.distance(curve.point(0.0)) <= self.reach + curve.longest
+    }
+
+    /// The hull widened by the tangent angles \[rad\] of the curve inside the disc, from parameter a to b.
+    fn tilts(&self, curve: &Curve, [a, b]: [f64; 2], halvings: u32, hull: [f64; 2]) -> [f64; 2] {
+        let (middle, half) = (f64::midpoint(a, b), (b - a) / 2.0);
+        let bend = curve.bend(middle, half);
+        let speed = curve.speed(middle);
+        let length = half * (speed + bend * half);
+        if self.distance(curve.point(middle)) > self.reach + length {
+            return hull;
+        }
+        let least_speed = speed - bend * half;
+        if halvings > 0 && (length > PIECE * self.reach || least_speed <= 0.0) {
+            let left = self.tilts(curve, [a, middle], halvings - 1, hull);
+            return self.tilts(curve, [middle, b], halvings - 1, left);
+        }
+        let (angle, turn) = (curve.angle(middle), bend * half / least_speed);
+        [hull[0].min(angle - turn), hull[1].max(angle + turn)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wheelrail::placement::Pair;
+    use wheelrail::profile::{Arc, Half, Polynomial, Profile, Segment, Shape};
+
+    /// A wave z = a(x³ − 3x) under a wheel: inflected at 0, between extremes at ±1.
+    #[test]
+    fn an_inflection_inside_a_piece_is_seen() -> wheelrail::error::Result<()> {
+        let wave = Polynomial::graph(&[0.0, -0.03, 0.0, 0.01], [-2.0, 2.0])?;
+        let rail = Profile::new(
+            "wave",
+            "test",
+            vec![Segment { label: String::new(), shape: Shape::Polynomial(wave) }],
+        );
+        let wheel = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-30.0, 30.0])?;
+        let wheel = Profile::new("arc", "test", vec![Segment::arc(wheel)]);
+        let pair = Pair::new(rail?, wheel?, 460.0)?;
+        let placement = pair.placed(1.0, 0.0, 0.0)?;
+        let surface = Surface::rail(&placement);
+        let foot = Place { curve: 0, t: surface.curves[0].length / 2.0, v: 0.0 };
+        for reach in [0.3, 0.9] {
+            let [least, most] = normals_within(&surface, &foot, reach);
+            let component = |x: f64| 1.0 / (1.0 + (0.03 * x * x - 0.03).powi(2)).sqrt();
+            // Steepest at the inflection: neither the ends nor anything but x = 0 shows it.
+            assert!(least <= component(0.0) && least > component(0.0) - 1e-4, "{least}");
+            assert!(most >= component(0.999 * reach) && most < component(reach) + 1e-4, "{most}");
+        }
+        Ok(())
+    }
+}

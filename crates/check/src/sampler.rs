@@ -1,0 +1,263 @@
+//! Points of both bodies from the profiles' own parametrisation: nothing here knows the separation code.
+//!
+//! A curve is travelled by turning its start station (arcs, lines) or by its parameter (polynomials); the rail
+//! is the curve moved along y, the wheel the curve turned about the axle. All coordinates are measured from
+//! the contact point, so that the axle's distance costs no digits.
+
+use super::meshes::Vector;
+use wheelrail::numerics::polynomial::recentred;
+use wheelrail::placement::{Body, Placement};
+use wheelrail::profile::{Polynomial, Segment, Shape, Station};
+
+/// One segment as a curve (x − x_C, z − z_C)(t), 0 ≤ t ≤ length.
+#[derive(Debug, Clone)]
+pub(super) struct Curve {
+    shape: Form,
+    /// Range of the parameter: \[mm\] along arcs and lines, the polynomial's own unit else.
+    pub length: f64,
+    /// The parameter range over which the curve turns or stretches by about one: a radius, or its length.
+    pub scale: f64,
+    /// A bound of its arc length \[mm\].
+    pub longest: f64,
+}
+
+#[derive(Debug, Clone)]
+enum Form {
+    Turning { start: Station, curvature: f64 },
+    Polynomial { polynomial: Polynomial, origin: [f64; 2] },
+}
+
+impl Curve {
+    /// The curve of a segment, seen from `origin`; `longest` bounds the scale \[mm\].
+    pub fn of_segment(segment: &Segment, origin: [f64; 2], longest: f64) -> Self {
+        match &segment.shape {
+            Shape::Arc(arc) => {
+                let length = arc.length();
+                let scale = if arc.radius.is_finite() { arc.radius.abs() } else { length };
+                Self::turning(&arc.start, arc.curvature(), length, scale.min(longest), origin)
+            }
+            Shape::Polynomial(polynomial) => {
+                let length = polynomial.t[1] - polynomial.t[0];
+                let shape = Form::Polynomial { polynomial: polynomial.clone(), origin };
+                let curve = Self { shape, length, scale: length, longest: length };
+                curve.with_scale_of_polynomial(polynomial)
+            }
+        }
+    }
+
+    fn turning(start: &Station, curvature: f64, length: f64, scale: f64, [x, z]: [f64; 2]) -> Self {
+        let start = Station { x: start.x - x, z: start.z - z, ..*start };
+        Self { shape: Form::Turning { start, curvature }, length, scale, longest: length }
+    }
+
+    /// The smaller of the parameter range and the sharpest of nine radii, in units of the parameter.
+    fn with_scale_of_polynomial(mut self, polynomial: &Polynomial) -> Self {
+        let [a, b] = polynomial.t;
+        for k in 0..=8 {
+            let t = a + (b - a) * f64::from(k) / 8.0;
+            let speed = self.speed(t - a);
+            self.scale = self.scale.min((polynomial.curvature(t) * speed).abs().recip());
+        }
+        let half = self.length / 2.0;
+        self.longest = self.length * (self.speed(half) + self.bend(half, half) * half);
+        self
+    }
+
+    /// (x − x_C, z − z_C) \[mm\] in profile axes. Beyond its ends the curve goes on as it is.
+    pub fn point(&self, t: f64) -> [f64; 2] {
+        match &self.shape {
+            Form::Turning { start, curvature } => {
+                // Half the turn: the chord lies at the mean of its end tangents' angles.
+                let half = t * curvature / 2.0;
+                let chord = if half == 0.0 { t } else { t * (half.sin() / half) };
+                let (sin, cos) = half.sin_cos();
+                [
+                    start.x + chord * (start.cos * cos - start.sin * sin),
+                    start.z + chord * (start.sin * cos + start.cos * sin),
+                ]
+            }
+            Form::Polynomial { polynomial, origin } => {
+                let station = polynomial.station(polynomial.t[0] + t);
+                [station.x - origin[0], station.z - origin[1]]
+            }
+        }
+    }
+
+    /// Angle \[rad\] of the tangent in profile axes.
+    pub fn angle(&self, t: f64) -> f64 {
+        match &self.shape {
+            Form::Turning { start, curvature } => start.angle() + t * curvature,
+            Form::Polynomial { polynomial, .. } => polynomial.station(polynomial.t[0] + t).angle(),
+        }
+    }
+
+    /// The parameter of the sample nearest to the contact point.
+    pub fn nearest_to_origin(&self) -> f64 {
+        let distance = |t: f64| self.point(t).into_iter().fold(0.0, f64::hypot);
+        let samples = (0..=64).map(|k| self.length * f64::from(k) / 64.0);
+        samples.min_by(|&a, &b| distance(a).total_cmp(&distance(b))).unwrap_or(0.0)
+    }
+
+    /// Length per unit of the parameter, by a central difference; only sizes of cells are chosen by it.
+    pub fn speed(&self, t: f64) -> f64 {
+        let h = self.scale * f64::EPSILON.cbrt();
+        let ([x0, z0], [x1, z1]) = (self.point(t - h), self.point(t + h));
+        (x1 - x0).hypot(z1 - z0) / (2.0 * h)
+    }
+
+    /// A bound of |d²(x, z)/dt²| within `reach` of t.
+    pub fn bend(&self, t: f64, reach: f64) -> f64 {
+        match &self.shape {
+            Form::Turning { curvature, .. } => curvature.abs(),
+            Form::Polynomial { polynomial, .. } => {
+                let bound = |c: &[twofloat::TwoFloat]| -> f64 {
+                    let local = recentred(c, (polynomial.t[0] + t).into());
+                    let terms = local.iter().enumerate().skip(2);
+                    terms
+                        .map(|(k, &c)| {
+                            let (power, c) = (k as i32 - 2, f64::from(c).abs());
+                            (k * (k - 1)) as f64 * c * reach.powi(power)
+                        })
+                        .sum()
+                };
+                bound(&polynomial.x).hypot(bound(&polynomial.z))
+            }
+        }
+    }
+}
+
+/// One body's surface over the contact frame, by (curve, t, v); v is the length along y or around the wheel
+/// at the distance of C from the axle \[mm\]. ∂X/∂t × ∂X/∂v points up where the surface faces the other body.
+#[derive(Debug, Clone)]
+pub(super) struct Surface {
+    /// The curves in order of the chain.
+    pub curves: Vec<Curve>,
+    cos: f64,
+    sin: f64,
+    /// Distance of C from the axle, and sin χ, cos χ; none for the rail.
+    wheel: Option<Wheel>,
+    /// Raised along ζ by this \[mm\].
+    lift: f64,
+    /// Largest coordinate that was rounded on the way \[mm\].
+    pub size: f64,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Wheel {
+    axle: f64,
+    skew: (f64, f64),
+}
+
+impl Surface {
+    /// The extruded rail of a placed pair.
+    pub fn rail(placement: &Placement) -> Self {
+        Self::new(&placement.rail, None)
+    }
+
+    /// The revolved wheel of a placed pair, turned about ζ by the skew.
+    pub fn wheel(placement: &Placement) -> Self {
+        let axle = placement.wheel_radius - placement.wheel.point.station.z;
+        Self::new(&placement.wheel, Some(Wheel { axle, skew: placement.skew.sin_cos() }))
+    }
+
+    fn new(body: &Body, wheel: Option<Wheel>) -> Self {
+        let c = body.point.station;
+        let origin = [c.x, c.z];
+        let extent = body.profile().extent();
+        let segments = body.profile().segments().iter();
+        let curves = segments.map(|segment| Curve::of_segment(segment, origin, extent)).collect();
+        let size = extent + c.x.abs() + c.z.abs();
+        Self { curves, cos: c.cos, sin: c.sin, wheel, lift: 0.0, size }
+    }
+
+    /// The same surface raised along ζ \[mm\].
+    pub fn lifted(&self, lift: f64) -> Self {
+        Self { lift, ..self.clone() }
+    }
+
+    /// Whether this is the wheel.
+    pub fn is_wheel(&self) -> bool {
+        self.wheel.is_some()
+    }
+
+    /// The point (ξ, η, ζ) \[mm\].
+    pub fn point(&self, curve: usize, t: f64, v: f64) -> Vector {
+        let [x, z] = self.curves[curve].point(t);
+        let Some(Wheel { axle, skew }) = self.wheel else {
+            return Vector::new(x * self.cos + z * self.sin, v, z * self.cos - x * self.sin + self.lift);
+        };
+        // Turned about the axle by φ: z rises by w(1 − cos φ) = 2w sin²(φ/2).
+        let (w, half) = (axle - z, v / axle / 2.0);
+        let (sin, cos) = half.sin_cos();
+        let (y, z) = (2.0 * w * sin * cos, z + 2.0 * w * sin * sin);
+        let (along, zeta) = (x * self.cos + z * self.sin, z * self.cos - x * self.sin);
+        Vector::new(along * skew.1 - y * skew.0, along * skew.0 + y * skew.1, zeta + self.lift)
+    }
+
+    /// (∂X/∂t, ∂X/∂v) by central differences, for Newton steps.
+    pub fn tangents(&self, curve: usize, t: f64, v: f64) -> [Vector; 2] {
+        let h = self.curves[curve].scale * f64::EPSILON.cbrt();
+        let k = self.round_scale() * f64::EPSILON.cbrt();
+        [
+            (self.point(curve, t + h, v) - self.point(curve, t - h, v)) / (2.0 * h),
+            (self.point(curve, t, v + k) - self.point(curve, t, v - k)) / (2.0 * k),
+        ]
+    }
+
+    /// The length over which v turns the surface: the axle distance; any length for the rail.
+    pub fn round_scale(&self) -> f64 {
+        self.wheel.map_or(self.size, |wheel| wheel.axle)
+    }
+
+    /// The largest v needed for points up to `reach` from the origin in the ξ–η plane.
+    pub fn v_reach(&self, reach: f64) -> f64 {
+        // The chord of an angle is at least 2/π of its arc.
+        reach * std::f64::consts::FRAC_PI_2
+    }
+
+    /// \[least, largest\] ζ component of the unit normals of points up to `reach` from one at v and height `z` over C,
+    /// where the profile's tangents have angles \[rad\] between `tilts`.
+    ///
+    /// n = cosψ cosφ cosθ + sinψ sinθ at the tangent's angle ψ, turned about the axle by φ.
+    pub fn normals_between(&self, tilts: [f64; 2], v: f64, z: f64, reach: f64) -> [f64; 2] {
+        let turned = self.wheel.map_or([0.0; 2], |Wheel { axle, .. }| {
+            // The chord of an angle is at least 2/π of its arc.
+            let (turn, away) = ((v / axle).abs(), reach * std::f64::consts::FRAC_PI_2 / (axle - z - reach));
+            [(turn - away).max(0.0), turn + away]
+        });
+        let mut out = [f64::INFINITY, f64::NEG_INFINITY];
+        for cos in turned.map(f64::cos) {
+            let (up, along) = (cos * self.cos, self.sin);
+            let crest = along.atan2(up);
+            let at = |tilt: f64| up * tilt.cos() + along * tilt.sin();
+            let highest = (tilts[0] < crest && crest < tilts[1]).then(|| up.hypot(along));
+            for n in tilts.map(at).into_iter().chain(highest) {
+                out = [out[0].min(n), out[1].max(n)];
+            }
+        }
+        out
+    }
+
+    /// Cell size in v \[mm\] whose sagitta is that of a cell of `h` parameter units in t.
+    pub fn v_cell(&self, curve: usize, t: f64, h: f64) -> f64 {
+        let curve = &self.curves[curve];
+        let speed = curve.speed(t);
+        h * speed * (self.round_scale() / (curve.scale * speed)).sqrt().max(1.0)
+    }
+
+    /// A bound \[mm\] of the distance between the surface and a triangle whose legs are a cell (h, k) at (t, v):
+    /// ¼ ‖D²X‖ in units of the cell, and the angle \[rad\] by which the normal can turn over a cell.
+    pub fn chordal_bound(&self, curve: usize, t: f64, [h, k]: [f64; 2]) -> [f64; 2] {
+        let reach = 3.0 * h;
+        let (bend, speed) = (self.curves[curve].bend(t, reach), self.curves[curve].speed(t));
+        let least_speed = (speed - bend * reach).max(0.0);
+        let turn = bend * h / least_speed;
+        let along = h * h * bend;
+        let Some(Wheel { axle, .. }) = self.wheel else { return [along / 4.0, turn] };
+        let [_, z] = self.curves[curve].point(t);
+        let greatest_speed = speed + bend * reach;
+        let mixed = h * k * greatest_speed / axle;
+        let around = k * k * ((axle - z).abs() + reach * greatest_speed) / (axle * axle);
+        [(along * along + 2.0 * mixed * mixed + around * around).sqrt() / 4.0, turn + k / axle]
+    }
+}

@@ -1,0 +1,111 @@
+//! `wheelrail profile convert`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::source::{Content, Source, SourceArguments};
+use super::{Outcome, put};
+use crate::complain;
+use wheelrail::error::{Error, Result};
+use wheelrail::profile::measured::{CurveKind, Format, write};
+use wheelrail::profile::{Profile, Side};
+
+/// Distance of points \[mm\] along a drawn profile if none is given: that of hand-held instruments.
+const STEP: f64 = 0.2;
+
+/// What to convert to what.
+#[derive(Debug, Args)]
+pub(crate) struct ConvertArguments {
+    #[command(flatten)]
+    source: SourceArguments,
+    /// miniprof, simpack, gensys, text, csv: points; toml: the segments of a chain.
+    #[arg(long)]
+    to: String,
+    /// Distance of points along the curve, mm. If not given: 0.2 of a drawn profile, the measured points of a
+    /// measured one.
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    step: Option<f64>,
+    /// File to write; stdout if not given.
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+/// Converts a profile.
+///
+/// # Errors
+/// A format that is none, a body that only --side can tell, segments that no chain file can hold.
+pub(super) fn convert(arguments: &ConvertArguments) -> Result<Outcome> {
+    arguments.source.refuse_output(arguments.out.as_deref())?;
+    let text = if arguments.to == "toml" { toml(arguments)? } else { points(arguments)? };
+    put(&text, arguments.out.as_deref())
+}
+
+fn points(arguments: &ConvertArguments) -> Result<String> {
+    let format: Format = super::options::one_of("--to", &arguments.to).map_err(|mut error| {
+        error.expected += ", toml";
+        error
+    })?;
+    let source = arguments.source.read()?;
+    let points = match (&source.content, arguments.step) {
+        (Content::Measured(measured), None) => measured.points.iter().map(|point| point.xz()).collect(),
+        (_, step) => write::sample(source.profile(), step.unwrap_or(STEP))
+            .map_err(|error| Error { place: "--step".into(), ..error })?,
+    };
+    let side = match (source.side, format) {
+        (Some(side), _) => side,
+        // These have no place for the body, nor axes that depend on it.
+        (None, Format::Gensys | Format::Text | Format::Csv) => Side::Rail,
+        (None, _) => {
+            let expected = format!("the body, which sets the axes of {}", format.title());
+            let advice = "give --side rail or --side wheel";
+            return Err(Error::new(&source.profile().name, "no --side", expected, advice));
+        }
+    };
+    let points = if format == Format::Simpack { spaced(points) } else { points };
+    Ok(write::points(&points, format, side, &source.profile().name))
+}
+
+/// The points that other programs can tell apart; says how many were left out.
+fn spaced(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    let kept = write::spaced(&points);
+    if kept.len() < points.len() {
+        let (left_out, least) = (points.len() - kept.len(), write::LEAST_DISTANCE);
+        let plural = if left_out == 1 { "" } else { "s" };
+        complain(&format!("note: left out, {left_out} point{plural} nearer than {least} mm to another"));
+    }
+    kept
+}
+
+/// A chain file. A spline cannot be one: a measured file without a --curve becomes a chain of arcs.
+fn toml(arguments: &ConvertArguments) -> Result<String> {
+    if let Some(step) = arguments.step {
+        let expected = "no --step beside --to toml, which writes segments";
+        return Err(Error::new("--step", step.to_string(), expected, "remove it"));
+    }
+    let source = arguments.source.read_as(Some(CurveKind::Arcs))?;
+    chosen(&source);
+    let profile = source.profile();
+    let segments = write::segments(profile).map_err(|error| error.within(&profile.name))?;
+    for cut in &segments.cut {
+        complain(&format!("note: left out, {cut}"));
+    }
+    Ok(head(profile) + &segments.toml)
+}
+
+fn chosen(source: &Source) {
+    let Some(curve) = source.measured().map(|measured| &measured.record.curve) else { return };
+    if let (CurveKind::Arcs, Some(tolerance), Some(residual)) = (curve.kind, curve.tolerance, &curve.residual)
+    {
+        let (n, largest) = (curve.segments, residual.largest);
+        complain(&format!(
+            "note: {n} arcs within {tolerance} mm of the points, at most {largest:.2e} mm off"
+        ));
+    }
+}
+
+/// `name` and `source`, as TOML quotes them.
+fn head(profile: &Profile) -> String {
+    let quoted = |text: &str| toml::Value::from(text).to_string();
+    format!("name = {}\nsource = {}\n\n", quoted(&profile.name), quoted(&profile.source))
+}

@@ -1,0 +1,71 @@
+//! `wheelrail profile`: list, show, plot and convert profiles.
+
+mod convert;
+mod options;
+mod plot;
+mod show;
+mod source;
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use clap::Subcommand;
+
+use super::progress::Progress;
+use super::{Outcome, print};
+use source::SourceArguments;
+use wheelrail::error::Result;
+use wheelrail::export::write_file;
+use wheelrail::profile::standards;
+
+/// What to do with profiles.
+#[derive(Debug, Subcommand)]
+pub(super) enum ProfileCommand {
+    /// Names and sources of the built-in profiles.
+    List,
+    /// What a profile is made of: segments and joints; of a measured file how it was read and fitted, and those of its
+    /// arcs or elements, not the spans of a spline.
+    Show {
+        #[command(flatten)]
+        source: SourceArguments,
+    },
+    /// Draw points, curve, residual and curvature against arc length, as SVG or PNG.
+    Plot {
+        #[command(flatten)]
+        source: SourceArguments,
+        /// File to write, .svg or .png; SVG to stdout if not given.
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
+    /// Write a profile in another format.
+    Convert(convert::ConvertArguments),
+}
+
+/// Runs `wheelrail profile …`.
+pub(super) fn profile(command: &ProfileCommand) -> Result<Outcome> {
+    let _progress = Progress::of("profile", "points and curve");
+    match command {
+        ProfileCommand::List => print(&list()?),
+        ProfileCommand::Show { source } => print(&show::show(&source.read()?)),
+        ProfileCommand::Plot { source, out } => plot::plot(source, out.as_deref()),
+        ProfileCommand::Convert(arguments) => convert::convert(arguments),
+    }
+}
+
+fn list() -> Result<String> {
+    let mut out = String::new();
+    for name in standards::rail_names() {
+        let _ = writeln!(out, "rail   {name:<24} {}", standards::rail(name)?.source);
+    }
+    for name in standards::wheel_names() {
+        let _ = writeln!(out, "wheel  {name:<24} {}", standards::wheel(name)?.source);
+    }
+    Ok(out)
+}
+
+/// Writes text to a file, or to stdout.
+fn put(text: &str, out: Option<&Path>) -> Result<Outcome> {
+    let Some(path) = out else { return print(text) };
+    write_file(path, text.as_bytes())?;
+    Ok(Outcome::Done)
+}

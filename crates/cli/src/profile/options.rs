@@ -1,0 +1,148 @@
+//! The options of measured files on the command line: those of a scene, with the same words.
+
+use clap::{Args, ValueEnum};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use wheelrail::error::{Error, Result};
+use wheelrail::profile::Side;
+use wheelrail::profile::measured::{Column, Options, Origin};
+use wheelrail::scene;
+
+/// Rail or wheel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Body {
+    /// Material below.
+    Rail,
+    /// Material above.
+    Wheel,
+}
+
+impl From<Body> for Side {
+    fn from(body: Body) -> Self {
+        match body {
+            Body::Rail => Self::Rail,
+            Body::Wheel => Self::Wheel,
+        }
+    }
+}
+
+/// How a measured file is read; the words and defaults are those of a scene.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Measured files")]
+pub(super) struct MeasuredArguments {
+    /// Format: miniprof, simpack, gensys, text, csv; by the extension if not given.
+    #[arg(long)]
+    format: Option<String>,
+    /// Columns of x and z of a text or CSV file: numbers from 1, or names, as 2,3.
+    #[arg(long, value_name = "X,Z")]
+    columns: Option<String>,
+    /// Section of an .mpt file, from 1.
+    #[arg(long, allow_negative_numbers = true)]
+    section: Option<usize>,
+    /// Whether the first axis points to the centre of the track.
+    #[arg(long, value_name = "true|false", num_args = 0..=1, default_missing_value = "true")]
+    mirror: Option<bool>,
+    /// Whether the second axis points down.
+    #[arg(long, value_name = "true|false", num_args = 0..=1, default_missing_value = "true")]
+    flip_z: Option<bool>,
+    /// Unit: m, cm, mm, um, in, ft.
+    #[arg(long)]
+    unit: Option<String>,
+    /// Origin: as-is, gauge-point, tape-line, or a point X,Z in mm.
+    #[arg(long, allow_hyphen_values = true)]
+    origin: Option<String>,
+    /// Depth of the gauge point under the top of rail, mm.
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    gauge_height: Option<f64>,
+    /// Distance of the taping line from the flange back, mm.
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    tape_distance: Option<f64>,
+    /// Repairs, any of drop-duplicates, sort, remove-spikes, cut-loops, as sort,cut-loops.
+    #[arg(long, value_delimiter = ',')]
+    repair: Vec<String>,
+    /// Curve: smoothing, interpolation, arcs, elements.
+    #[arg(long)]
+    curve: Option<String>,
+    /// Wavelength that smoothing halves, mm.
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    cutoff_wavelength: Option<f64>,
+    /// Kinks above this angle stay corners, rad.
+    #[arg(long, value_name = "RAD", allow_negative_numbers = true)]
+    kink_angle: Option<f64>,
+    /// Largest distance of a point from an arc chain, mm.
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    arc_tolerance: Option<f64>,
+}
+
+impl MeasuredArguments {
+    /// The options that they stand for.
+    ///
+    /// # Errors
+    /// A word that an option does not know, with those it does.
+    pub(super) fn options(&self) -> Result<Options> {
+        Ok(Options {
+            format: word("--format", self.format.as_deref())?,
+            columns: self.columns.as_deref().map(columns).transpose()?,
+            section: self.section,
+            mirror: self.mirror,
+            flip_z: self.flip_z,
+            unit: word("--unit", self.unit.as_deref())?,
+            origin: self.origin.as_deref().map(origin).transpose()?,
+            gauge_height: self.gauge_height,
+            tape_distance: self.tape_distance,
+            // An inclination is a scene's: nothing here applies one.
+            already_inclined: false,
+            repair: self.repair.iter().map(|name| one_of("--repair", name)).collect::<Result<_>>()?,
+            curve: word("--curve", self.curve.as_deref())?,
+            cutoff_wavelength: self.cutoff_wavelength,
+            kink_angle: self.kink_angle,
+            arc_tolerance: self.arc_tolerance,
+        })
+    }
+
+    /// Rejects options that a profile without points does not know.
+    ///
+    /// # Errors
+    /// Any option given.
+    pub(super) fn reject(&self, name: &str) -> Result<()> {
+        let given: Vec<String> = self.options()?.given().iter().map(|key| key.replace('_', "-")).collect();
+        if given.is_empty() {
+            return Ok(());
+        }
+        let found = format!("--{} for a drawn profile", given.join(", --"));
+        let expected = "options of measured files for a file of measured points only";
+        Err(Error::new(name, found, expected, "remove them, or give another file"))
+    }
+}
+
+fn word<T: DeserializeOwned + Serialize>(option: &str, text: Option<&str>) -> Result<Option<T>> {
+    text.map(|text| one_of(option, text)).transpose()
+}
+
+/// A word as a scene spells it; the complaint lists what could stand there.
+pub(super) fn one_of<T: DeserializeOwned + Serialize>(option: &str, text: &str) -> Result<T> {
+    let quoted = serde_json::Value::from(text).to_string();
+    scene::parse(&quoted, true).map_err(|error| Error { place: option.into(), ..error })
+}
+
+/// "2,3" or "y,z".
+fn columns(text: &str) -> Result<[Column; 2]> {
+    let column = |name: &str| {
+        let name = name.trim();
+        name.parse().map_or_else(|_| Column::Name(name.into()), Column::Number)
+    };
+    match text.split(',').map(column).collect::<Vec<_>>().as_slice() {
+        [x, z] => Ok([x.clone(), z.clone()]),
+        _ => Err(Error::new("--columns", format!("\"{text}\""), "two columns X,Z", "give 2,3 or names")),
+    }
+}
+
+/// A name, or "x,z".
+fn origin(text: &str) -> Result<Origin> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    if let Some([x, z]) = numbers.as_deref() {
+        return Ok(Origin::At([*x, *z]));
+    }
+    one_of("--origin", text).map(Origin::Named)
+}

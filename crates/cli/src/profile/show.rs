@@ -1,0 +1,142 @@
+//! `wheelrail profile show`.
+
+use std::fmt::Write;
+
+use super::source::Source;
+use wheelrail::profile::measured::{CurveKind, CurveRecord, Measured, Record};
+use wheelrail::profile::{Profile, Shape};
+
+/// Name and source; of a measured file how it was read and fitted; segments and joints, unless they are the
+/// spans of a spline, of which there are as many as points.
+pub(super) fn show(source: &Source) -> String {
+    let profile = source.profile();
+    // Writing to a string cannot fail, here and below.
+    let mut out = format!("# {}\n# {}\n", profile.name, profile.source);
+    if let Some(measured) = source.measured() {
+        record(&mut out, measured);
+    }
+    let spline = |measured: &Measured| {
+        matches!(measured.record.curve.kind, CurveKind::Smoothing | CurveKind::Interpolation)
+    };
+    if !source.measured().is_some_and(spline) {
+        segments(&mut out, profile);
+        joints(&mut out, profile);
+        closings(&mut out, profile);
+    }
+    out
+}
+
+fn record(out: &mut String, Measured { record, points, .. }: &Measured) {
+    let Record { transform, curve, .. } = record;
+    let _ = writeln!(out, "format     {}", record.format.name());
+    let _ = writeln!(out, "points     {} read, {} used", record.points_read, record.points_used);
+    for note in &record.notes {
+        let _ = writeln!(out, "note       line {}: {}", note.line, note.text);
+    }
+    for step in &transform.steps {
+        let _ = writeln!(out, "transform  {}: {}, because of {}", step.what, step.done, step.because);
+    }
+    let [[a, b], [x, z]] = [transform.scale, transform.shift];
+    let _ = writeln!(out, "transform  x = {a} first + {x} mm, z = {b} second + {z} mm");
+    for repair in &record.repairs {
+        let places = repair.places.join(", ");
+        let plural = if repair.points == 1 { "" } else { "s" };
+        let _ =
+            writeln!(out, "repair     {}: {} point{plural}, {places}", name(&repair.repair), repair.points);
+    }
+    for finding in &record.warnings {
+        let _ = writeln!(out, "finding    {}, {}: {}", name(&finding.check), finding.place, finding.found);
+    }
+    if let [first, .., last] = points.as_slice() {
+        let _ = writeln!(out, "extent     x from {} to {} mm", first.x, last.x);
+    }
+    fitted(out, curve);
+}
+
+fn fitted(out: &mut String, curve: &CurveRecord) {
+    let _ = write!(out, "curve      {}, {} segments", name(&curve.kind), curve.segments);
+    if let Some(cutoff) = curve.cutoff_wavelength {
+        let _ = write!(out, ", cut-off wavelength {cutoff} mm");
+    }
+    if let Some(tolerance) = curve.tolerance {
+        let _ = write!(out, ", tolerance {tolerance} mm");
+    }
+    out.push('\n');
+    for corner in &curve.corners {
+        let ([x, z], turn) = (corner.point, corner.angle);
+        let _ = writeln!(out, "corner     {} at ({x}, {z}) mm, turns by {turn:.4} rad", corner.place);
+    }
+    if let Some(residual) = &curve.residual {
+        let (largest, rms) = (1e3 * residual.largest, 1e3 * residual.rms);
+        let worst = &residual.worst;
+        let _ = writeln!(out, "residual   largest {largest:.3} um at {worst}, rms {rms:.3} um");
+    }
+}
+
+/// A name as scenes and summaries spell it.
+fn name(of: &impl serde::Serialize) -> String {
+    serde_json::to_value(of).ok().and_then(|v| v.as_str().map(String::from)).unwrap_or_default()
+}
+
+fn segments(out: &mut String, profile: &Profile) {
+    let _ = writeln!(
+        out,
+        "# {:<10} {:<10} {:>22} {:>22} {:>22} {:>22} {:>14}",
+        "segment", "kind", "x_start", "z_start", "x_end", "z_end", "radius_mm"
+    );
+    for (index, segment) in profile.segments().iter().enumerate() {
+        let label = if segment.label.is_empty() { (index + 1).to_string() } else { segment.label.clone() };
+        let (kind, radius) = match &segment.shape {
+            Shape::Arc(arc) if arc.radius.is_finite() => ("arc", format!("{:.9}", arc.radius)),
+            Shape::Arc(_) => ("line", "-".into()),
+            Shape::Polynomial(_) => ("polynomial", "-".into()),
+        };
+        let (start, end) = (segment.start(), segment.end());
+        let _ = writeln!(
+            out,
+            "{:<12} {kind:<10} {:22.15} {:22.15} {:22.15} {:22.15} {radius:>14}",
+            label.replace(' ', "_"),
+            start.x,
+            start.z,
+            end.x,
+            end.z
+        );
+    }
+}
+
+fn joints(out: &mut String, profile: &Profile) {
+    *out += "\n# joint           x_mm         gap_mm        kink_rad  curvature_jump_per_mm\n";
+    for joint in profile.continuity() {
+        let _ = writeln!(
+            out,
+            "{:<7} {:14.6} {:14.3e} {:15.6e} {:22.6e}",
+            joint.left + 1,
+            joint.x,
+            joint.gap,
+            joint.kink,
+            joint.curvature_jump
+        );
+    }
+}
+
+/// What was changed of a drawing so that its segments meet.
+fn closings(out: &mut String, profile: &Profile) {
+    let Some((largest, [x, z])) = profile.largest_closing() else { return };
+    let _ = writeln!(
+        out,
+        "\n# closed: the drawn surface moved by at most {:.3e} mm, at ({x:.6}, {z:.6}) mm\n\
+         # joint           x_mm         step_mm       moved_mm       reach_mm",
+        largest.moved
+    );
+    for closing in profile.closings() {
+        let x = profile.segments()[closing.left].end().x;
+        let _ = writeln!(
+            out,
+            "{:<7} {x:14.6} {:14.3e} {:14.3e} {:14.3e}",
+            closing.left + 1,
+            closing.step,
+            closing.moved,
+            closing.reach
+        );
+    }
+}

@@ -1,0 +1,130 @@
+//! The profile that a command is about: a built-in one, a chain file, or a measured file.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::options::{Body, MeasuredArguments};
+use crate::output::refuse_taken;
+use wheelrail::error::{Error, Result};
+use wheelrail::profile::measured::{self, CurveKind, Measured, Options};
+use wheelrail::profile::{Profile, Side, standards};
+use wheelrail::scene;
+
+/// Which profile.
+#[derive(Debug, Args)]
+pub(crate) struct SourceArguments {
+    /// Name of a built-in profile, or a file: segments in TOML or JSON, or measured points.
+    profile: String,
+    /// Which body it is of; a built-in name says so itself, and so do files such as .ban, .whl, .prr, .prw.
+    #[arg(long, ignore_case = true)]
+    side: Option<Body>,
+    #[command(flatten)]
+    measured: MeasuredArguments,
+}
+
+/// A profile with what is known of it.
+#[derive(Debug)]
+pub(super) struct Source {
+    /// Which body it is of, where that is known.
+    pub side: Option<Side>,
+    pub content: Content,
+}
+
+/// Where a profile comes from.
+#[derive(Debug)]
+pub(super) enum Content {
+    /// Built in, or a file of segments.
+    Drawn(Profile),
+    /// A file of points.
+    Measured(Box<Measured>),
+}
+
+impl Source {
+    pub(super) fn profile(&self) -> &Profile {
+        match &self.content {
+            Content::Drawn(profile) => profile,
+            Content::Measured(measured) => &measured.profile,
+        }
+    }
+
+    pub(super) fn measured(&self) -> Option<&Measured> {
+        match &self.content {
+            Content::Drawn(_) => None,
+            Content::Measured(measured) => Some(measured),
+        }
+    }
+}
+
+impl SourceArguments {
+    /// Refuses to write over the profile's own file.
+    ///
+    /// # Errors
+    /// `out` is that file.
+    pub(super) fn refuse_output(&self, out: Option<&Path>) -> Result<()> {
+        let own = PathBuf::from(&self.profile);
+        match out {
+            Some(out) if own.exists() => refuse_taken("--out", out, &[own]),
+            _ => Ok(()),
+        }
+    }
+
+    /// The profile.
+    ///
+    /// # Errors
+    /// A name that is none; whatever is wrong with a file or its options.
+    pub(super) fn read(&self) -> Result<Source> {
+        self.read_as(None)
+    }
+
+    /// The profile; a measured file as this kind of curve where no option names one.
+    ///
+    /// # Errors
+    /// Those of [`SourceArguments::read`].
+    pub(super) fn read_as(&self, curve: Option<CurveKind>) -> Result<Source> {
+        let path = Path::new(&self.profile);
+        if !path.exists() {
+            return self.built_in();
+        }
+        let options = self.measured.options()?;
+        let side = self.side.map(Side::from);
+        if options.format.is_none() && scene::is_chain_file(path) {
+            self.measured.reject(&self.profile)?;
+            return Ok(Source { side, content: Content::Drawn(scene::profile_from_file(path)?) });
+        }
+        let options = Options { curve: options.curve.or(curve), ..options };
+        let bytes = scene::read_bytes(path, measured::LARGEST_FILE)?;
+        let Some(known) =
+            side.map_or_else(|| measured::body(&self.profile, &bytes, &options), |side| Ok(Some(side)))?
+        else {
+            let (place, expected) =
+                (&self.profile, "the body that a measured file is of, where it does not say so");
+            return Err(Error::new(place, "no --side", expected, "give --side rail or --side wheel"));
+        };
+        let measured = measured::profile(&self.profile, &bytes, known, &options)?;
+        Ok(Source { side, content: Content::Measured(Box::new(measured)) })
+    }
+
+    fn built_in(&self) -> Result<Source> {
+        let rail = standards::rail_names().any(|name| name == self.profile);
+        if !rail && !standards::wheel_names().any(|name| name == self.profile) {
+            let expected = "a file, or a name of `wheelrail profile list`";
+            let names: Vec<&str> = standards::rail_names().chain(standards::wheel_names()).collect();
+            let advice = scene::perhaps(&self.profile, &names);
+            return Err(Error::new(&self.profile, "no file and no built-in profile", expected, advice));
+        }
+        self.measured.reject(&self.profile)?;
+        let (side, body) = if rail { (Side::Rail, Body::Rail) } else { (Side::Wheel, Body::Wheel) };
+        if self.side.is_some_and(|given| given != body) {
+            let found = if rail { "the name of a rail" } else { "the name of a wheel" };
+            return Err(Error::new(
+                &self.profile,
+                found,
+                "one of the --side given",
+                "correct one of the two",
+            ));
+        }
+        let profile = if rail { standards::rail(&self.profile)? } else { standards::wheel(&self.profile)? };
+        Ok(Source { side: Some(side), content: Content::Drawn(profile) })
+    }
+}

@@ -1,0 +1,85 @@
+//! Where and by what a report is made. What the system does not tell is "unknown".
+
+use std::path::Path;
+use std::process::Command;
+use std::thread::available_parallelism;
+
+use wheelrail_report::page::Origin;
+
+/// Load from which other processes disturb what is measured: one of two cores taken half of the time.
+const QUIET: f64 = 0.5;
+
+/// Machine, compiler, commit and command.
+pub(super) fn origin() -> Origin {
+    vec![
+        ("command", command()),
+        ("version", format!("wheelrail {}", env!("CARGO_PKG_VERSION"))),
+        ("commit", commit()),
+        ("compiler", compiler()),
+        ("system", system()),
+        ("processor", processor()),
+        ("memory", field("/proc/meminfo", "MemTotal")),
+        ("load at the start", load()),
+    ]
+}
+
+/// The command line, with the program's path left out.
+fn command() -> String {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    format!("wheelrail {}", arguments.join(" "))
+}
+
+fn compiler() -> String {
+    let checks = if cfg!(debug_assertions) { ", with debug assertions: times mean nothing" } else { "" };
+    format!("{}{checks}", env!("WHEELRAIL_RUSTC"))
+}
+
+/// The commit that stands in the folder the program was built in, when that is still there.
+///
+/// Asked now and not when building: a build that follows the commit would build everything anew after each.
+fn commit() -> String {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+    if !Path::new(folder).join(".git").exists() {
+        return "unknown: not built in a work tree".into();
+    }
+    let git = ["describe", "--always", "--dirty", "--abbrev=12"];
+    let output = Command::new("git").arg("-C").arg(folder).args(git).output();
+    match output {
+        Ok(output) if output.status.success() => String::from_utf8_lossy(&output.stdout).trim().into(),
+        _ => "unknown: git does not answer".into(),
+    }
+}
+
+/// Processes that were running already, over the last minute, 5 and 15 minutes.
+fn load() -> String {
+    let text = first_words("/proc/loadavg", 3);
+    let last_minute = text.split(' ').next().and_then(|word| word.parse::<f64>().ok());
+    let busy = last_minute.is_some_and(|load| load > QUIET);
+    if busy { format!("{text}: **busy**; measure again on a quiet machine") } else { text }
+}
+
+fn system() -> String {
+    let release = first_words("/proc/sys/kernel/osrelease", 1);
+    format!("{} {release}, {}", std::env::consts::OS, std::env::consts::ARCH)
+}
+
+fn processor() -> String {
+    let threads = available_parallelism().map_or("unknown".into(), |n| n.to_string());
+    format!("{}, {threads} threads", field("/proc/cpuinfo", "model name"))
+}
+
+/// The value of the first "name : value" line of a file.
+fn field(file: &str, name: &str) -> String {
+    let text = std::fs::read_to_string(file).unwrap_or_default();
+    let value = text.lines().find_map(|line| {
+        let (key, value) = line.split_once(':')?;
+        (key.trim() == name).then(|| value.trim().to_string())
+    });
+    value.unwrap_or_else(|| "unknown".into())
+}
+
+fn first_words(file: &str, n: usize) -> String {
+    let text = std::fs::read_to_string(file).unwrap_or_default();
+    let words: Vec<&str> = text.split_whitespace().take(n).collect();
+    if words.is_empty() { "unknown".into() } else { words.join(" ") }
+}

@@ -1,0 +1,86 @@
+//! The generated table inside a page that people write.
+
+use std::path::{Path, PathBuf};
+
+use wheelrail::error::{Error, Result};
+use wheelrail::export::write_file;
+
+/// Lines between which everything is generated.
+const BEGIN: &str = "<!-- report:begin -->";
+const END: &str = "<!-- report:end -->";
+
+/// A file with both markers.
+#[derive(Debug)]
+pub(super) struct Target {
+    path: PathBuf,
+}
+
+impl Target {
+    /// Checks that the file can be read and has its markers.
+    ///
+    /// # Errors
+    /// It cannot, or has not.
+    pub(super) fn open(path: &Path) -> Result<Self> {
+        let target = Self { path: path.to_path_buf() };
+        target.spliced("").map(|_| target)
+    }
+
+    /// Replaces what stands between the markers: the file is read anew, and replaced in one step.
+    ///
+    /// # Errors
+    /// As [`Target::open`]; the folder cannot be written.
+    pub(super) fn replace(&self, generated: &str) -> Result<()> {
+        write_file(&self.path, self.spliced(generated)?.as_bytes())
+    }
+
+    fn spliced(&self, generated: &str) -> Result<String> {
+        let place = self.path.display().to_string();
+        let text = std::fs::read_to_string(&self.path).map_err(|e| {
+            Error::new(&place, e.to_string(), "a readable Markdown file", "check the path of --splice")
+        })?;
+        spliced(&text, generated).map_err(|e| e.within(place))
+    }
+}
+
+/// `text` with `generated` between its markers.
+fn spliced(text: &str, generated: &str) -> Result<String> {
+    let parts = text.split_once(BEGIN).and_then(|(before, rest)| {
+        let (_, after) = rest.split_once(END)?;
+        Some((before, after))
+    });
+    let unique = text.matches(BEGIN).count() == 1 && text.matches(END).count() == 1;
+    match parts.filter(|_| unique) {
+        Some((before, after)) => Ok(format!("{before}{BEGIN}\n\n{}\n\n{END}{after}", generated.trim())),
+        None => {
+            let found =
+                format!("{} × {BEGIN}, {} × {END}", text.matches(BEGIN).count(), text.matches(END).count());
+            Err(Error::new(
+                "",
+                found,
+                "each once, in this order",
+                "put both markers where the table is to be",
+            ))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_is_between_the_markers_changes() -> Result<()> {
+        let text = format!("a\n{BEGIN}\nold\n{END}\nb\n");
+        let new = spliced(&text, "| new |\n")?;
+        assert_eq!(new, format!("a\n{BEGIN}\n\n| new |\n\n{END}\nb\n"));
+        assert_eq!(spliced(&new, "| new |\n")?, new);
+        Ok(())
+    }
+
+    #[test]
+    fn missing_doubled_or_swapped_markers_are_refused() {
+        for text in ["", BEGIN, &format!("{END}{BEGIN}"), &format!("{BEGIN}{END}{BEGIN}")] {
+            assert!(spliced(text, "x").is_err(), "{text}");
+        }
+    }
+}

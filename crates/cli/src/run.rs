@@ -1,0 +1,42 @@
+//! `wheelrail run`: the whole pipeline, and the folder it writes.
+
+use std::path::{Path, PathBuf};
+
+use super::output::refuse_results_of_another;
+use super::progress::Progress;
+use super::{Outcome, complain, folder_of, print};
+use wheelrail::error::Result;
+use wheelrail::export::{Folder, RUN_FOLDER};
+use wheelrail::run::Run;
+use wheelrail::scene;
+
+/// Runs a scene; exit code 1 for an infeasible contact or an empty patch, whose files are written all the same.
+pub(super) fn run(path: &Path, out: Option<&Path>) -> Result<Outcome> {
+    let progress = Progress::of("run", "scene");
+    let tell = |step| progress.at(step);
+    let scene = scene::load(path)?;
+    let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
+    let target = match out {
+        Some(out) => out.to_path_buf(),
+        None => {
+            let target = PathBuf::from("output").join(&*name);
+            refuse_results_of_another(&target, path)?;
+            target
+        }
+    };
+    let run =
+        Run::told(scene, folder_of(path), &name, &tell).map_err(|error| error.within(path.display()))?;
+    let run = run.read_from(path);
+    let folder = Folder::create(&target, RUN_FOLDER)?;
+    run.write_told(&folder, &tell)?;
+    folder.commit()?;
+    for warning in run.warnings() {
+        complain(&format!("warning: {warning}"));
+    }
+    let refusals = run.refusals();
+    for refusal in &refusals {
+        complain(&format!("no: {refusal}"));
+    }
+    print(&format!("{}\n", target.display()))?;
+    Ok(if refusals.is_empty() { Outcome::Done } else { Outcome::No })
+}

@@ -1,0 +1,83 @@
+//! The equivalent conicity of a sweep's positions, and what a user should know of it.
+
+use super::super::progress::Progress;
+use wheelrail::contact::search::wheelset::{Position, Roll, WheelsetOnTrack};
+use wheelrail::contact::sweep::{ACCURACY, Conicity, Equivalent, NoConicity};
+use wheelrail::error::Result;
+
+/// Relative errors up to which conicities that are not converged are counted in classes.
+const CLASSES: [f64; 2] = [1e-3, 1e-2];
+
+/// The equivalent conicity up to the largest amplitude of the positions whose roll is not given; of these all have
+/// theirs found in one way.
+pub(super) fn conicity(
+    system: &WheelsetOnTrack,
+    positions: &[Position],
+    progress: &Progress,
+) -> Result<Option<Conicity>> {
+    let amplitude = free(positions).fold(0.0, |most: f64, position| most.max(position.lateral.abs()));
+    let Some(first) = free(positions).next().filter(|_| amplitude > 0.0) else { return Ok(None) };
+    let mut told = |done: usize, most: usize| {
+        progress.at(format!("equivalent conicity, {done} of at most {most} searches"));
+    };
+    Conicity::told(system, amplitude, first.roll, &mut told).map(Some)
+}
+
+fn free(positions: &[Position]) -> impl Iterator<Item = &Position> {
+    positions.iter().filter(|position| !matches!(position.roll, Roll::Fixed(_)))
+}
+
+/// What to say of the positions whose conicity is not accurate, or is not there although both wheels touch; nothing where all is
+/// well.
+pub(super) fn remarks(conicity: &Conicity, positions: &[Position]) -> Vec<String> {
+    let found: Vec<Found> = free(positions).map(|position| conicity.at(position.lateral)).collect();
+    let inaccurate = inaccurate(&found).map(|text| format!("{text}, after {} searches", conicity.searches()));
+    inaccurate.into_iter().chain(missing(&found)).collect()
+}
+
+type Found = std::result::Result<Equivalent, NoConicity>;
+
+fn inaccurate(found: &[Found]) -> Option<String> {
+    let open = || found.iter().flatten().filter(|found| !found.converged());
+    let class = |found: &Equivalent| CLASSES.iter().take_while(|limit| found.error > **limit).count();
+    let names = CLASSES.map(|limit| format!("up to {limit:e}")).into_iter().chain(["more".into()]);
+    let counts: Vec<String> = names
+        .enumerate()
+        .map(|(k, name)| (open().filter(|found| class(found) == k).count(), name))
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, name)| format!("{count} {name}"))
+        .collect();
+    (open().count() > 0).then(|| {
+        format!(
+            "conicity of {} of {} positions is not converged to {ACCURACY:e}; estimated relative errors: {}",
+            open().count(),
+            found.len(),
+            counts.join(", ")
+        )
+    })
+}
+
+fn missing(found: &[Found]) -> Option<String> {
+    let stuck = found.iter().filter(|found| **found == Err(NoConicity::NotRestoring)).count();
+    let plural = if stuck == 1 { "" } else { "s" };
+    (stuck > 0).then(|| {
+        format!("no conicity at {stuck} position{plural}, from which the movement does not come back")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_converged_is_counted_by_its_error() {
+        let found = |error| Ok(Equivalent { conicity: 0.1, error });
+        let all = [found(1e-5), found(1e-4), Err(NoConicity::NoAmplitude), Err(NoConicity::OffTrack)];
+        assert_eq!((inaccurate(&all), missing(&all)), (None, None));
+        let all = [found(2e-4), found(1e-3), found(0.5), found(0.0), Err(NoConicity::NotRestoring)];
+        let expected = "conicity of 3 of 5 positions is not converged to 1e-4; estimated relative errors: 2 up to 1e-3, 1 more";
+        assert_eq!(inaccurate(&all).as_deref(), Some(expected));
+        let expected = "no conicity at 1 position, from which the movement does not come back";
+        assert_eq!(missing(&all).as_deref(), Some(expected));
+    }
+}

@@ -1,0 +1,85 @@
+//! The usual curves of a sweep as a picture.
+
+use super::table::Table;
+use wheelrail::contact::search::wheelset::Position;
+use wheelrail::contact::sweep::{Row, Sweep, TrackSide};
+use wheelrail::error::{Error, Result};
+use wheelrail::export::picture::curves::{Curve, CurvesPicture, Quantity, jumps};
+
+/// At most so many positions are drawn, evenly chosen: more than a page has pixels.
+const MOST_DRAWN: usize = 2000;
+
+/// A quantity of a row.
+type Value = fn(&Row) -> f64;
+
+/// Quantities of a position, as its first row has them; whether they jump where a contact does.
+const OF_POSITION: [(&str, &str, Value, bool); 3] = [
+    ("Rolling radius difference, right less left", "Δr [mm]", |row| row.delta_r, true),
+    (
+        "Equivalent conicity at this amplitude",
+        "tan γ [1]",
+        |row| row.conicity.map_or(f64::NAN, |found| found.conicity),
+        false,
+    ),
+    ("Roll", "roll [mrad]", |row| 1e3 * row.roll, false),
+];
+
+/// Quantities of each side's lowest contact.
+const OF_SIDE: [(&str, &str, Value); 3] = [
+    ("Contact angle", "θ [°]", |row| row.contact.contact_angle.to_degrees()),
+    ("Contact on the rail", "x on the rail [mm]", |row| row.contact.rail_x),
+    ("Contact on the wheel", "x on the wheel [mm]", |row| row.contact.wheel_x),
+];
+
+/// The picture of a table's positions, whose lateral displacements have to ascend.
+pub(super) fn picture(table: &Table, title: &str) -> Result<CurvesPicture> {
+    let all = &table.positions;
+    if let Some(pair) = all.windows(2).find(|pair| pair[0].lateral >= pair[1].lateral) {
+        let found = format!("{} mm after {} mm", pair[1].lateral, pair[0].lateral);
+        let expected = "lateral displacements that grow from position to position";
+        return Err(Error::new("--picture", found, expected, "sort the positions, or use --lateral"));
+    }
+    let stride = all.len().div_ceil(MOST_DRAWN).max(1);
+    let drawn: Vec<&Position> = all.iter().step_by(stride).collect();
+    let mut sweep = Sweep::new(&table.system, table.selection, table.conicity.as_ref());
+    let mut found: Vec<(f64, Vec<Row>)> = Vec::with_capacity(drawn.len());
+    for position in drawn {
+        let mut rows = Vec::new();
+        sweep.position(position, &mut rows)?;
+        rows.retain(|row| row.number == 0);
+        found.push((position.lateral, rows));
+    }
+    let values = |side: TrackSide, value: Value| -> Vec<f64> {
+        let of = |rows: &[Row]| rows.iter().find(|row| row.side == side).map_or(f64::NAN, value);
+        found.iter().map(|(_, rows)| of(rows)).collect()
+    };
+    // Once per side, from where the contact is: all its panels are then parted at the same positions.
+    let jumps_of = |side: TrackSide| {
+        jumps(&[&values(side, |row| row.contact.rail_x), &values(side, |row| row.contact.wheel_x)])
+    };
+    let sides = [("left", TrackSide::Left), ("right", TrackSide::Right)];
+    let [left, right] = sides.map(|(_, side)| jumps_of(side));
+    let curve = |name: &str, side: TrackSide, value: Value, jumps: &[usize]| {
+        let points = found.iter().zip(values(side, value)).map(|((lateral, _), value)| [*lateral, value]);
+        Curve { name: name.into(), points: points.collect(), jumps: jumps.to_vec() }
+    };
+    let quantity =
+        |(title, axis): (&str, &str), curves| Quantity { title: title.into(), axis: axis.into(), curves };
+    let either = [left.as_slice(), right.as_slice()].concat();
+    let of_position = OF_POSITION.map(|(title, axis, value, jumps)| {
+        let jumps = if jumps { either.as_slice() } else { &[] };
+        quantity((title, axis), vec![curve("", TrackSide::Right, value, jumps)])
+    });
+    let of_side = OF_SIDE.map(|(title, axis, value)| {
+        let both = sides.into_iter().zip([&left, &right]);
+        let curves = both.map(|((name, side), jumps)| curve(name, side, value, jumps)).collect();
+        quantity((title, axis), curves)
+    });
+    let count = |n: usize| format!("{n} position{}", if n == 1 { "" } else { "s" });
+    Ok(CurvesPicture {
+        title: title.into(),
+        about: format!("{}; lowest contact of each side, in its own profile axes", count(all.len())),
+        abscissa: "lateral displacement [mm]".into(),
+        quantities: of_position.into_iter().chain(of_side).collect(),
+    })
+}

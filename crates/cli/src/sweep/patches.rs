@@ -1,0 +1,112 @@
+//! The patches of a sweep: what `wheelrail run` writes, position by position, and one collection of them.
+
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+use serde_json::{Value, json};
+
+use super::super::complain;
+use super::super::progress::Progress;
+use super::table::Table;
+use wheelrail::contact::search::Selection;
+use wheelrail::contact::search::wheelset::Position;
+use wheelrail::error::{Error, Result};
+use wheelrail::export::{Folder, PATCHES_FOLDER, vtk};
+use wheelrail::run::{Profiles, Run};
+use wheelrail::scene::{self, Scene};
+
+/// Most positions: each makes some forty files.
+const MOST_POSITIONS: usize = 5000;
+
+/// What the positions have in common.
+pub(super) struct Origin<'a> {
+    pub scene: &'a Scene,
+    /// The scene's file.
+    pub path: &'a Path,
+    pub profiles: &'a Profiles,
+}
+
+/// A position whose folders are written.
+struct Written {
+    position: Position,
+    /// None for a position without contact.
+    folders: Vec<String>,
+}
+
+/// Writes `DIR/position-0001/` and so on, `DIR/surface.pvd` and `DIR/summary.json`; all of it appears at once.
+pub(super) fn write(dir: &Path, origin: &Origin, table: &Table, progress: &Progress) -> Result<()> {
+    let positions = &table.positions;
+    if positions.len() > MOST_POSITIONS {
+        let found = format!("{} positions", positions.len());
+        let expected = format!("{MOST_POSITIONS} positions or fewer");
+        return Err(Error::new("--patches", found, expected, "take a larger step, or the table alone"));
+    }
+    let folder = Folder::create(dir, PATCHES_FOLDER)?;
+    let done = AtomicUsize::new(0);
+    let one = |(k, position): (usize, &Position)| {
+        let written = patch(&folder, origin, table, k, position)
+            .map_err(|error| error.within(format!("position {}", k + 1)))?;
+        let done = 1 + done.fetch_add(1, Ordering::Relaxed);
+        progress.at(format!("patches of {done} of {} positions", positions.len()));
+        Ok(written)
+    };
+    let written = positions.par_iter().enumerate().map(one).collect::<Result<Vec<_>>>()?;
+    folder.write("surface.pvd", collection(&written).as_bytes())?;
+    folder.write("summary.json", &summary(origin.scene, &written))?;
+    folder.commit()?;
+    let missing = written.iter().filter(|written| written.folders.is_empty()).count();
+    if missing > 0 {
+        let plural = if missing == 1 { "" } else { "s" };
+        complain(&format!("sweep: {missing} position{plural} without contact, and without a folder"));
+    }
+    Ok(())
+}
+
+/// One position's folders.
+fn patch(folder: &Folder, origin: &Origin, table: &Table, k: usize, position: &Position) -> Result<Written> {
+    let touching = Selection { within: 0.0, apart: 0.0 };
+    if table.system.search().touch(position, &touching)?.is_none() {
+        return Ok(Written { position: *position, folders: Vec::new() });
+    }
+    let name = format!("position-{:04}", k + 1);
+    let Origin { scene, path, profiles } = origin;
+    let run = Run::over(scene.at(position), profiles, &name)?.read_from(path).filed_under(&name);
+    run.write(folder)?;
+    Ok(Written { position: *position, folders: run.parts.into_iter().map(|part| part.folder).collect() })
+}
+
+/// The separation of every part over time: the lateral displacement where it always grows, the number of the position
+/// elsewhere.
+fn collection(written: &[Written]) -> String {
+    let grows = written.windows(2).all(|pair| pair[0].position.lateral < pair[1].position.lateral);
+    let mut steps = Vec::new();
+    for (k, written) in written.iter().enumerate() {
+        let time = if grows { written.position.lateral } else { (k + 1) as f64 };
+        let parts = written.folders.iter().enumerate();
+        steps.extend(parts.map(|(part, folder)| (time, part, format!("{folder}/separation.vts"))));
+    }
+    vtk::collection(&steps)
+}
+
+fn summary(scene: &Scene, written: &[Written]) -> Vec<u8> {
+    let positions: Vec<Value> = written
+        .iter()
+        .map(|Written { position, folders }| {
+            let scene = scene.at(position);
+            let roll = scene.wheelset.map(|wheelset| wheelset.roll);
+            json!({ "lateral_mm": position.lateral, "yaw_rad": position.yaw, "roll": roll, "folders": folders })
+        })
+        .collect();
+    let value = json!({
+        "program": "wheelrail",
+        "version": env!("CARGO_PKG_VERSION"),
+        "title": scene.title,
+        "scene": scene,
+        "scene_sha256": scene::hash(scene),
+        "positions": positions,
+    });
+    let mut text = serde_json::to_vec_pretty(&value).unwrap_or_default();
+    text.push(b'\n');
+    text
+}

@@ -1,0 +1,201 @@
+//! Folders of `wheelrail run` itself, read and solved by the programs that they are for.
+
+use crate::programs::{check, check_run, folder, output_of};
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use wheelrail::contact::hertz::effective_modulus;
+use wheelrail::export::RUN_FOLDER;
+use wheelrail::interpenetration::load::VirtualContact;
+use wheelrail::run::Run;
+use wheelrail::scene;
+
+/// The Hertz case of a 460 mm wheel on a 300 mm crown under 80 kN: E* \[N/mm²\], p₀ \[N/mm²\], δ \[mm\].
+const HERTZ: [&str; 3] = ["113932", "1139.19", "0.0904879"];
+
+/// Every format that a scene may ask for.
+const ALL_FORMATS: &str = "[output]\nformats = [\"vtk\", \"npy\", \"netcdf\", \"text\", \"conform\", \"countact\", \"contact\", \"png\"]\n";
+
+/// What may lie in a run's folder and is not of the run: the collection is a sweep's, the other one is Python's.
+const NOT_OF_A_RUN: [&str; 2] = ["surface.pvd", "__pycache__"];
+
+/// The page that holds the table of estimates, and programs in Python.
+const DOCS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../src/docs/clients.md");
+
+/// A scene of one standard rail, inclined 1:40, under one standard wheel.
+fn standard(rail: &str, wheel: &str, offset: f64, rest: &str) -> String {
+    format!(
+        "[rail]\nprofile = \"{rail}\"\nrotate = \"1:40\"\n[wheel]\nprofile = \"{wheel}\"\nradius = 460.0\n\
+         [contact]\noffset = {offset:?}\n{rest}"
+    )
+}
+
+/// A 300 mm crown under a wheel of one line with this slope, touching at the rail's `x`.
+fn crown(slope: f64, x: f64, rest: &str) -> String {
+    let z = 40.0 * slope;
+    format!(
+        "[rail]\nsegments = [{{ arc = {{ center = [0.0, -300.0], radius = 300.0, half = \"upper\", x = [-40.0, 40.0] \
+         }} }}]\n[wheel]\nsegments = [{{ line = {{ from = [-40.0, {:?}], to = [40.0, {z:?}] }} }}]\nradius = 460.0\n\
+         [contact]\nrail_x = {x:?}\nwheel_x = 0.0\n{rest}",
+        -z
+    )
+}
+
+/// Runs a scene with the real program and all formats and returns its folder, in which every file is.
+fn run(name: &str, scene: &str) -> PathBuf {
+    let (path, dir) = (folder(&format!("{name}.toml")), folder(name));
+    std::fs::write(&path, format!("{scene}{ALL_FORMATS}")).unwrap();
+    let mut program = Command::new(env!("CARGO_BIN_EXE_wheelrail"));
+    let output = program.arg("run").arg(&path).arg("--out").arg(&dir).output().unwrap();
+    assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+    assert_complete(&dir);
+    dir
+}
+
+/// The folder holds the files of [`RUN_FOLDER`], no other ones, and the summary lists the same.
+fn assert_complete(dir: &Path) {
+    let summary = std::fs::read_to_string(dir.join("summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    let listed = summary["files"].as_array().unwrap().iter().map(|name| name.as_str().unwrap().to_owned());
+    let listed: BTreeSet<String> = listed.chain(["summary.json".to_owned()]).collect();
+    let entries = std::fs::read_dir(dir).unwrap().map(|entry| entry.unwrap());
+    let files = entries.filter(|entry| entry.file_type().unwrap().is_file());
+    let written: BTreeSet<String> = files.map(|entry| entry.file_name().into_string().unwrap()).collect();
+    let of_a_run = RUN_FOLDER.files.iter().filter(|name| !NOT_OF_A_RUN.contains(name));
+    let expected: BTreeSet<String> = of_a_run.map(|name| (*name).to_owned()).collect();
+    assert_eq!(written, expected, "{}", dir.display());
+    assert_eq!(listed, expected, "{}", dir.display());
+}
+
+/// The page that explains the folder names each of its files.
+#[test]
+fn the_page_about_the_folder_is_complete() {
+    let page = include_str!("../../../../output/README.md");
+    for name in RUN_FOLDER.files.iter().filter(|name| !NOT_OF_A_RUN.contains(name)) {
+        assert!(page.contains(&format!("`{name}`")), "output/README.md does not name {name}");
+    }
+}
+
+#[test]
+fn every_reader_reads_what_runs_write() {
+    check_run(&run("tread", include_str!("../../../../examples/scenes/60e1_s1002.toml")));
+    check_run(&run("flange", &standard("60E1", "S1002", 6.0, "[patch]\nload = 60000.0\n")));
+    // Beyond the ends of both profiles, where cells are undefined.
+    let wide = "[patch]\napproach = 0.08\n[grid]\nxi = { from = -60.0, to = 90.0, n = 76 }\n\
+                eta = { from = -9.0, to = 9.0, n = 19 }\n";
+    let wide = run("wide", &standard("60E1", "S1002", 0.0, wide));
+    check_run(&wide);
+    check("check_undefined.py", &wide, &[]);
+}
+
+#[test]
+fn every_reader_reads_each_contact_of_a_wheelset() {
+    let dir = run("wheelset", include_str!("../../../../examples/scenes/wheelset.toml"));
+    check_run(&dir);
+    let parts = std::fs::read_dir(&dir).unwrap().map(|entry| entry.unwrap().path());
+    let parts: Vec<_> = parts.filter(|path| path.is_dir()).collect();
+    assert!(parts.iter().any(|part| part.ends_with("left")), "{parts:?}");
+    for part in parts {
+        assert_complete(&part);
+        check_run(&part);
+    }
+}
+
+#[test]
+fn pyvista_plays_the_patches_of_a_sweep() {
+    let dir = folder("swept");
+    let text = include_str!("../../../../examples/scenes/wheelset.toml");
+    let run = run("swept_run", text);
+    let (scene, table) = (folder("swept.toml"), folder("swept.csv"));
+    std::fs::write(&scene, text).unwrap();
+    // The second one is the scene's own; the last one is off the track.
+    std::fs::write(&table, "lateral_mm,yaw_rad,roll_rad\n4,0.001,\n5,0.002,\n300,0,\n").unwrap();
+    let mut program = Command::new(env!("CARGO_BIN_EXE_wheelrail"));
+    program.arg("sweep").arg(&scene).arg("--positions").arg(&table).arg("--patches").arg(&dir);
+    let output = program.output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && said.contains("1 position without contact"), "{said}");
+    let table = String::from_utf8_lossy(&output.stdout).into_owned();
+    let row = |side: &str| table.lines().any(|row| row.starts_with("5,") && row.contains(side));
+    assert!(row(",left,1,") && row(",right,1,"), "{table}");
+    check("check_sweep.py", &dir, &[run.to_str().unwrap(), "5"]);
+}
+
+#[test]
+fn tamaas_and_contact_mechanics_solve_hertz_from_a_run() {
+    let dir = run("hertz_run", &crown(0.0, 0.0, "[patch]\nload = 80000.0\n[grid]\nspacing = 0.12\n"));
+    check_run(&dir);
+    let [modulus, peak, approach] = HERTZ;
+    let expected = ["--peak", peak, "--approach", approach, "--within", "0.001"];
+    check("solve.py", &dir, &[&["--modulus", modulus, "--load", "80000"][..], &expected].concat());
+}
+
+#[test]
+fn tamaas_and_contact_mechanics_agree_on_60e1_under_s1002() {
+    let dir = run("tread60", &standard("60E1", "S1002", 0.0, "[patch]\nload = 60000.0\n"));
+    check_run(&dir);
+    check("solve.py", &dir, &["--modulus", HERTZ[0], "--load", "60000", "--within", "0.005"]);
+    check("check_docs.py", &dir, &[DOCS]);
+}
+
+/// A case of the table: what it is called, its scene up to `[patch]`, its load \[N\].
+type Case = (&'static str, String, f64);
+
+fn cases() -> Vec<Case> {
+    let s1002 = |offset: f64| standard("60E1", "S1002", offset, "");
+    vec![
+        ("cylinder 460 mm on crown 300 mm", crown(0.0, 0.0, ""), 80e3),
+        ("crown 300 mm under a 1:20 cone", crown(0.05, -300.0 * 0.05f64.atan().sin(), ""), 60e3),
+        ("UIC60/EN15302-A tread", standard("UIC60", "EN15302-A", 0.0, ""), 60e3),
+        ("60E1/S1002 tread", s1002(0.0), 20e3),
+        ("60E1/S1002 tread", s1002(0.0), 40e3),
+        ("60E1/S1002 tread", s1002(0.0), 60e3),
+        ("60E1/S1002 tread", s1002(0.0), 100e3),
+        ("60E1/S1002, wheel 6 mm inwards", s1002(-6.0), 60e3),
+        ("60E1/S1002, over a jump of curvature", s1002(-3.0), 60e3),
+        ("60E1/S1002, reaching the flange root", s1002(2.0), 60e3),
+        ("60E1/S1002 gauge corner", s1002(3.0), 60e3),
+        ("60E1/S1002 flange root", s1002(3.5), 60e3),
+        ("60E1/S1002 flange", s1002(6.0), 60e3),
+    ]
+}
+
+/// The load, the estimates by Hertz (δ and p₀) and by virtual interpenetration, and which of them a run takes, as
+/// `load_table.py` takes them; and the step of the automatic grid.
+fn estimates(path: &Path, load: f64) -> (Vec<String>, f64) {
+    let run = Run::new(scene::load(path).unwrap(), Path::new("."), "case").unwrap();
+    let part = &run.parts[0];
+    let [rail, wheel] = &run.question.material;
+    let modulus = effective_modulus(rail, wheel);
+    let hertz = part.contact.ellipse.unwrap();
+    let placement = &part.contact.placement;
+    let contact = VirtualContact::under_load(placement, load, modulus).unwrap();
+    let approaches = [hertz.approach_mm, contact.published_approach_mm, contact.approach_mm];
+    let numbers = [load, modulus, hertz.pressure_n_per_mm2].into_iter().chain(approaches);
+    let angle = placement.rail.contact_angle().to_degrees();
+    let chosen = format!("{:?}", part.contact.approach.unwrap().1.unwrap());
+    let mut arguments: Vec<String> = numbers.map(|number| format!("{number:?}")).collect();
+    arguments.extend([format!("{angle:.1}"), chosen]);
+    (arguments, part.analysis.xi[1] - part.analysis.xi[0])
+}
+
+/// The table of `src/docs/clients.md` is what the program and Tamaas give today.
+#[test]
+fn the_load_table_in_the_docs_is_current() {
+    let mut table = String::new();
+    for (number, (name, scene, load)) in cases().into_iter().enumerate() {
+        let scene = format!("{scene}[patch]\nload = {load:?}\n");
+        let path = folder(&format!("load{number}.toml"));
+        std::fs::write(&path, &scene).unwrap();
+        let (arguments, step) = estimates(&path, load);
+        // Three times as fine as the automatic grid: 48 cells over the box's short side.
+        let fine = format!("{scene}[grid]\nspacing = {:?}\n", step / 3.0);
+        let dir = run(&format!("load{number}"), &fine);
+        let arguments: Vec<&str> =
+            std::iter::once(name).chain(arguments.iter().map(String::as_str)).collect();
+        let _ = write!(table, "{}", output_of("load_table.py", &dir, &arguments));
+    }
+    let docs = std::fs::read_to_string(DOCS).unwrap();
+    assert!(docs.contains(&table), "src/docs/clients.md has another table; put this one there:\n{table}");
+}

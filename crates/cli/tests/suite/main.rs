@@ -1,0 +1,17 @@
+//! The tests of the program and what other programs make of its files, in one binary: each binary links the whole library.
+#![allow(
+    clippy::expect_used,
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "tests stop at the first surprise and say what they saw"
+)]
+
+mod clients;
+mod clients_runs;
+mod hostile;
+mod profile_cli;
+mod programs;
+mod run_cli;
+mod sweep_cli;

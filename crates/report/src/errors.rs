@@ -1,0 +1,134 @@
+//! A method held to the 60-digit values of a scene.
+
+use super::reference::{Reference, exact};
+use wheelrail::placement::Placement;
+use wheelrail::profile::Section;
+use wheelrail::scene::equal_steps;
+use wheelrail::separation::axis::EtaAxis;
+use wheelrail::separation::grid::Choice;
+
+/// One compared point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Point {
+    /// ξ \[mm\].
+    pub xi: f64,
+    /// η \[mm\].
+    pub eta: f64,
+    /// s as computed \[mm\], NaN where the method finds no surface.
+    pub found: f64,
+    /// s to f64 precision \[mm\], `None` where there is no surface.
+    pub expected: Option<f64>,
+    /// Whether the point lies over both contact segments, where full relative accuracy is promised.
+    pub over_contact: bool,
+    /// … and not within rounding of an end of theirs.
+    pub inside_contact: bool,
+}
+
+impl Point {
+    /// |found − expected| \[mm\]: 0 where there is no surface and none was found, NaN where only one of the two
+    /// has a value.
+    pub fn error(&self) -> f64 {
+        match self.expected {
+            Some(expected) => (self.found - expected).abs(),
+            None if self.found.is_nan() => 0.0,
+            None => f64::NAN,
+        }
+    }
+
+    /// Error relative to s, NaN like [`Point::error`]; `None` at C itself, where s = 0 has no relative error,
+    /// and where there is no surface.
+    pub fn relative(&self) -> Option<f64> {
+        self.expected.filter(|&expected| expected != 0.0).map(|expected| self.error() / expected.abs())
+    }
+}
+
+/// A choice evaluated at all points of a scene's file, in the file's order, on a grid with `columns` equally spaced
+/// columns between them.
+///
+/// The η values are those of the file, so that spectral columns reach as far, and are the same polynomials, as
+/// on any grid with the same largest |η|. Strips are made where there are many columns: with as many as a grid has,
+/// its own strips are compared.
+pub fn compare(reference: &Reference, placement: &Placement, choice: &Choice, columns: usize) -> Vec<Point> {
+    let [mut xi, eta] = reference.scene.axes();
+    if let (Some(&first), Some(&last)) = (xi.first(), xi.last()) {
+        xi.extend(equal_steps(first, last, columns));
+        xi.sort_by(f64::total_cmp);
+    }
+    let axis = EtaAxis::new(&eta);
+    let mut values = vec![0.0; xi.len() * eta.len()];
+    choice.fill(placement, &xi, &axis, &mut values);
+    let index = |values: &[f64], v: f64| values.partition_point(|&w| w < v);
+    let points = reference.separation.iter().map(|(x, y, value)| Point {
+        xi: *x,
+        eta: *y,
+        found: values[index(&xi, *x) * eta.len() + index(&eta, *y)],
+        expected: value.as_deref().map(exact),
+        over_contact: over_contact(placement, *x, *y),
+        inside_contact: inside_contact(placement, *x, *y),
+    });
+    points.collect()
+}
+
+/// Whether (ξ, η) and the wheel's foot below it, at ξ′ − e sinθ with e ≈ η′²/2R, lie over both contact segments.
+pub fn over_contact(placement: &Placement, xi: f64, eta: f64) -> bool {
+    on_contact(placement, xi, eta, 0.0)
+}
+
+/// Ends of segments in the contact frame are known to this share of the profiles' extent: rounding of their abscissae.
+const END_ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// Like [`over_contact`], but not within rounding of an end: that belongs to the neighbour as well, on which s has absolute
+/// accuracy only.
+pub fn inside_contact(placement: &Placement, xi: f64, eta: f64) -> bool {
+    let extent = placement.rail.profile().extent().max(placement.wheel.profile().extent());
+    on_contact(placement, xi, eta, END_ROUNDING * extent)
+}
+
+fn on_contact(placement: &Placement, xi: f64, eta: f64, end: f64) -> bool {
+    let (rail, wheel) = (&placement.rail.section, &placement.wheel.section);
+    let (sin, cos) = placement.skew.sin_cos();
+    let (xi_w, eta_w) = (xi * cos + eta * sin, eta * cos - xi * sin);
+    let e = eta_w * eta_w / (2.0 * placement.rolling_radius());
+    let inside = |section: &Section, xi: f64| {
+        section.piece_at(xi).is_some_and(|piece| {
+            section.contact == Some(piece.branch) && piece.xi[0] + end <= xi && xi <= piece.xi[1] - end
+        })
+    };
+    inside(rail, xi) && inside(wheel, xi_w) && inside(wheel, xi_w - e * wheel.frame.sin)
+}
+
+/// The figures of one row of accuracy.csv. A method that misses a surface, or finds one where there is none, has
+/// NaN for its largest errors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Errors {
+    /// Largest absolute error \[mm\].
+    pub max_abs: f64,
+    /// Largest relative error, C itself left out.
+    pub max_rel: f64,
+    /// 99 % quantile of the relative errors: the largest of fewer than a hundred.
+    pub q99_rel: f64,
+    /// Where the largest absolute error is (ξ, η) \[mm\].
+    pub worst: [f64; 2],
+    /// Points with a value where there is none, or without one where there is.
+    pub wrongly_masked: usize,
+}
+
+impl Errors {
+    /// The largest errors and quantiles of some points.
+    pub fn of(points: &[Point]) -> Self {
+        let worst = points.iter().max_by(|p, q| p.error().total_cmp(&q.error()));
+        let mut relative: Vec<f64> = points.iter().filter_map(Point::relative).map(f64::abs).collect();
+        relative.sort_by(f64::total_cmp);
+        let quantile = |share: f64| {
+            let rank = (share * relative.len() as f64).ceil() as usize;
+            rank.checked_sub(1).and_then(|k| relative.get(k)).copied().unwrap_or(0.0)
+        };
+        Self {
+            max_abs: worst.map_or(0.0, Point::error),
+            max_rel: quantile(1.0),
+            q99_rel: quantile(0.99),
+            worst: worst.map_or([0.0; 2], |point| [point.xi, point.eta]),
+            wrongly_masked: points.iter().filter(|point| point.error().is_nan()).count(),
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! The sections on what users wait for: positions of a wheelset, and whole cases.
+
+use super::{Section, markdown};
+use crate::measurements::Measurements;
+use crate::rates::{Motion, Rate};
+use crate::table::{cases_csv, positions_csv};
+use crate::whole_case::{PARTS, WholeCase};
+
+/// Positions of wheelsets a second.
+pub(super) fn positions(m: &Measurements) -> Section {
+    let body = format!("{}\n{}\nAll rows: [positions.csv](positions.csv).\n", rate_table(m), rate_note(m));
+    let files = vec![("positions.csv", positions_csv(&m.rates).into_bytes())];
+    Section { title: "Positions of a wheelset", body, files }
+}
+
+/// What a case takes, part by part.
+pub(super) fn cases(m: &Measurements) -> Section {
+    let body = format!("{}\n{}\nAll rows: [cases.csv](cases.csv).\n", case_table(m), case_note(m));
+    let files = vec![("cases.csv", cases_csv(&m.whole_cases).into_bytes())];
+    Section { title: "Whole cases", body, files }
+}
+
+/// One row a pair: rates, and their ratio to that of drawn arcs.
+pub(super) fn rate_table(m: &Measurements) -> String {
+    let mut head = vec!["pair".to_string()];
+    for motion in Motion::ALL {
+        head.extend([format!("{}, positions/s", motion.name()), "drawn over this".into()]);
+    }
+    head.extend(["conicity table, s".into(), "searches".into(), "estimated error".into()]);
+    let of = |pair: &str, motion| m.rates.iter().find(|row| row.pair == pair && row.motion == motion);
+    let drawn = |motion| m.rates.iter().find(|row| !row.measured && row.motion == motion);
+    let mut pairs: Vec<&str> = m.rates.iter().map(|row| row.pair.as_str()).collect();
+    pairs.dedup();
+    let row = |pair: &str| {
+        let mut cells = vec![pair.to_string()];
+        for motion in Motion::ALL {
+            let rate = of(pair, motion).map_or(f64::NAN, Rate::rate);
+            let ratio = drawn(motion).map_or(f64::NAN, Rate::rate) / rate;
+            cells.extend([format!("{rate:.0}"), format!("{ratio:.2}")]);
+        }
+        cells.extend(of(pair, Motion::Lateral).map_or_else(Vec::new, |row| {
+            vec![
+                format!("{:.4}", row.table_seconds),
+                row.searches.to_string(),
+                format!("{:.0e}", row.conicity_error),
+            ]
+        }));
+        cells
+    };
+    let rows: Vec<Vec<String>> = pairs.into_iter().map(row).collect();
+    markdown(&head.iter().map(String::as_str).collect::<Vec<_>>(), 1, &rows)
+}
+
+/// What the table of rates is about.
+pub(super) fn rate_note(m: &Measurements) -> String {
+    let positions = m.rates.first().map_or(0, |row| row.positions[0]);
+    format!(
+        "Wheelsets on their track, {positions} positions evenly over the amplitude to both sides, the table of equivalent conicity \
+         included; yaw 2 mrad a millimetre. Drawn arcs: 60E1 (1:40) and wheel A of EN 15302; worn: specimens with noise, \
+         by a fixed seed, written as files and read back. The last three columns are of the table with the roll neglected.\n"
+    )
+}
+
+/// One row a case: its parts.
+pub(super) fn case_table(m: &Measurements) -> String {
+    let mut head = vec!["case".to_string(), "grid".into()];
+    head.extend(PARTS.iter().map(|part| format!("{part}, µs")));
+    head.push("total, µs".into());
+    let row = |case: &WholeCase| {
+        let mut cells = vec![case.pair.to_string(), format!("{0} × {0}", case.side)];
+        cells.extend(
+            case.seconds.iter().chain([&case.total()]).map(|seconds| format!("{:.1}", 1e6 * seconds)),
+        );
+        cells
+    };
+    let rows: Vec<Vec<String>> = m.whole_cases.iter().map(row).collect();
+    markdown(&head.iter().map(String::as_str).collect::<Vec<_>>(), 2, &rows)
+}
+
+/// What the table of cases is about.
+pub(super) fn case_note(m: &Measurements) -> String {
+    let mut note = "A wheel lowered onto its rail, placed at its contact, a grid planned at 1e-12 mm and filled, the patch cut out and \
+                    meshed.\n"
+        .to_string();
+    if let Some(run) = &m.run {
+        let [profiles, rest] = [run.profiles, run.rest].map(|seconds| 1e3 * seconds);
+        note += &format!(
+            "All that `run` computes for a measured wheelset, automatic grids of both contacts: {profiles:.1} ms for reading and \
+             smoothing the profiles, {rest:.1} ms for the rest; files are not written.\n"
+        );
+    }
+    note
+}

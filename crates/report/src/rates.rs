@@ -1,0 +1,198 @@
+//! Positions of a wheelset a second on one core: drawn arcs against worn profiles as instruments measure them.
+
+use super::specimen::{Instrument, Specimen, SpecimenKind};
+use super::speed::{LEAST_RUNS, Timing, race, timed};
+use wheelrail::contact::search::Selection;
+use wheelrail::contact::search::wheelset::{Position, Roll, WheelsetOnTrack};
+use wheelrail::contact::sweep::{Conicity, Sweep};
+use wheelrail::error::Result;
+use wheelrail::placement::Pair;
+use wheelrail::placement::track::{RailDistance, WheelDistance};
+use wheelrail::profile::measured::{CurveKind, Format, Options};
+use wheelrail::profile::{Profile, standards};
+
+/// How far the wheelset is moved to either side \[mm\], and its yaw with every millimetre \[rad/mm\].
+pub const AMPLITUDE: f64 = 10.0;
+const YAW: f64 = 2e-3;
+
+/// Distance of the points \[mm\] and noise \[µm\] of the measured pairs: 500 and 4000 points on a profile.
+pub const INSTRUMENTS: [[f64; 2]; 4] = [[0.28, 3.0], [0.28, 5.0], [0.035, 3.0], [0.035, 5.0]];
+
+/// Seed of wear and noise.
+const SEED: u64 = 60_115_302;
+
+/// R \[mm\].
+const RADIUS: f64 = 460.0;
+
+/// How much of it to measure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Extent {
+    /// Positions of one sweep.
+    pub positions: usize,
+    /// Largest displacement \[mm\].
+    pub amplitude: f64,
+    /// Distances \[mm\] and noises \[µm\] of the measured pairs.
+    pub instruments: Vec<[f64; 2]>,
+}
+
+impl Extent {
+    /// What `wheelrail report` does.
+    pub fn full() -> Self {
+        Self { positions: 20_000, amplitude: AMPLITUDE, instruments: INSTRUMENTS.to_vec() }
+    }
+}
+
+/// Which freedoms a sweep's wheelset has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Motion {
+    /// Lateral displacement, the roll neglected as EN 15302 does.
+    Lateral,
+    /// Lateral displacement, the roll solved.
+    Rolling,
+    /// Lateral displacement and yaw, the roll solved.
+    Yawing,
+}
+
+impl Motion {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Lateral, Self::Rolling, Self::Yawing];
+
+    /// Its name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lateral => "roll neglected",
+            Self::Rolling => "roll solved",
+            Self::Yawing => "yaw, roll solved",
+        }
+    }
+
+    fn at(self, lateral: f64) -> Position {
+        match self {
+            Self::Lateral => Position { lateral, yaw: 0.0, roll: Roll::Neglect },
+            Self::Rolling => Position { lateral, yaw: 0.0, roll: Roll::Solve },
+            Self::Yawing => Position { lateral, yaw: YAW * lateral, roll: Roll::Solve },
+        }
+    }
+}
+
+/// One row of positions.csv.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rate {
+    /// What the pair is made of.
+    pub pair: String,
+    /// Whether it is a measured one.
+    pub measured: bool,
+    /// Freedoms of the wheelset.
+    pub motion: Motion,
+    /// Positions of the sweep, and how many of them have a contact.
+    pub positions: [usize; 2],
+    /// Shortest time of a sweep with its table of conicity \[s\].
+    pub seconds: f64,
+    /// Shortest time of that table \[s\], and its searches.
+    pub table_seconds: f64,
+    /// See `table_seconds`.
+    pub searches: usize,
+    /// Largest estimated relative error of the conicities.
+    pub conicity_error: f64,
+}
+
+impl Rate {
+    /// Positions a second.
+    pub fn rate(&self) -> f64 {
+        self.positions[0] as f64 / self.seconds
+    }
+}
+
+/// The rates of all pairs and motions, in one race, each sweep at least `seconds` long; to be called on one thread.
+///
+/// # Errors
+/// Specimens that cannot be read or do not stand on the track: a fault of this program.
+pub fn rates(extent: &Extent, seconds: f64) -> Result<Vec<Rate>> {
+    let mut systems = vec![("drawn arcs".to_string(), false, system(drawn()?)?)];
+    for &[spacing, noise] in &extent.instruments {
+        for curve in [CurveKind::Smoothing, CurveKind::Interpolation] {
+            let (points, pair) = worn(spacing, noise, curve)?;
+            let curve = if curve == CurveKind::Smoothing { "smoothed" } else { "interpolated" };
+            systems.push((format!("worn, {points} points, {noise} µm, {curve}"), true, system(pair)?));
+        }
+    }
+    let contestants = systems.iter().flat_map(|system| Motion::ALL.map(|motion| (system, motion)));
+    let mut rows = Vec::new();
+    let mut tracks = Vec::new();
+    for ((pair, measured, system), motion) in contestants {
+        tracks.push((system, motion));
+        rows.push(Rate {
+            pair: pair.clone(),
+            measured: *measured,
+            motion,
+            positions: [extent.positions, 0],
+            seconds: f64::INFINITY,
+            table_seconds: f64::INFINITY,
+            searches: 0,
+            conicity_error: 0.0,
+        });
+    }
+    let mut timings = vec![Timing::NONE; rows.len()];
+    let mut failed = None;
+    race(&mut timings, seconds, LEAST_RUNS, |k| {
+        let mut run = || swept(tracks[k].0, tracks[k].1, extent, &mut rows[k]);
+        let mut result = Ok(());
+        let time = timed(|| result = run());
+        failed = failed.take().or(result.err());
+        time
+    });
+    for (row, timing) in rows.iter_mut().zip(timings) {
+        row.seconds = timing.best;
+    }
+    failed.map_or(Ok(rows), Err)
+}
+
+/// One sweep with its table of conicity.
+fn swept(system: &WheelsetOnTrack, motion: Motion, extent: &Extent, row: &mut Rate) -> Result<()> {
+    let Extent { positions, amplitude, .. } = *extent;
+    let mut table = None;
+    let seconds = timed(|| table = Some(Conicity::new(system, amplitude, motion.at(0.0).roll)));
+    let Some(conicity) = table.transpose()? else { return Ok(()) };
+    row.table_seconds = row.table_seconds.min(seconds);
+    row.searches = conicity.searches();
+    let mut sweep = Sweep::new(system, Selection { within: 0.0, apart: 0.0 }, Some(&conicity));
+    let mut found = Vec::new();
+    row.positions[1] = 0;
+    for k in 0..positions {
+        let share = k as f64 / positions.saturating_sub(1).max(1) as f64;
+        found.clear();
+        sweep.position(&motion.at(amplitude * (2.0 * share - 1.0)), &mut found)?;
+        let Some(first) = found.first() else { continue };
+        row.positions[1] += 1;
+        row.conicity_error = first.conicity.map_or(row.conicity_error, |c| row.conicity_error.max(c.error));
+    }
+    Ok(())
+}
+
+/// 60E1 and wheel A of EN 15302: arcs and lines.
+fn drawn() -> Result<Pair> {
+    pair(&standards::rail("60E1")?, standards::wheel("EN15302-A")?)
+}
+
+/// A worn pair through points every `spacing` mm with `noise` µm, and the number of points of the larger profile.
+fn worn(spacing: f64, noise: f64, curve: CurveKind) -> Result<(usize, Pair)> {
+    let specimen = |kind: SpecimenKind| Specimen::new(kind, Instrument::new(spacing, noise, SEED));
+    let fitted = |specimen: &Specimen| -> Result<Profile> {
+        let options = Options { curve: Some(curve), ..specimen.options(Format::Csv) };
+        specimen.measured_with(Format::Csv, &options).map(|measured| measured.profile)
+    };
+    let (rail, wheel) = (specimen(SpecimenKind::WornRail)?, specimen(SpecimenKind::WornWheel)?);
+    let points = rail.points.len().max(wheel.points.len());
+    Ok((points, pair(&fitted(&rail)?, fitted(&wheel)?)?))
+}
+
+/// The rail inclined 1:40, under the wheel.
+fn pair(rail: &Profile, wheel: Profile) -> Result<Pair> {
+    let run = 40f64.hypot(1.0);
+    Pair::new(rail.rotated(40.0 / run, 1.0 / run), wheel, RADIUS)
+}
+
+fn system(pair: Pair) -> Result<WheelsetOnTrack> {
+    let backs = WheelDistance::BackToBack { distance: 1360.0, flange_back_x: -70.0 };
+    WheelsetOnTrack::new(&pair, RailDistance::Gauge { gauge: 1435.0, height: 14.0 }, backs)
+}

@@ -1,0 +1,216 @@
+//! The ratios that the project asks of itself, and whether a run met them.
+
+use super::measurements::{Growth, Measurements, Row, median};
+use super::rates::{Motion, Rate};
+use super::spline_cost::SplineCost;
+use wheelrail::separation::grid::Method;
+use wheelrail::separation::plan::FULL_PRECISION;
+
+/// Rate of spectral columns at full precision over the Report's Newton.
+const OVER_REPORT: f64 = 20.0;
+/// … and over a plain store of the same array.
+const OVER_STORE: f64 = 0.5;
+/// Rate on two threads over that on one.
+const TWO_THREADS: f64 = 1.6;
+/// Time of a grid over measured profiles over that over chains of arcs.
+const SPLINES_OVER_ARCS: f64 = 2.0;
+/// Time of a point of a splined grid, with its plan \[ns\].
+const SPLINED_POINT: f64 = 6.0;
+/// Positions a second on one core of drawn arcs and of measured pairs, by motion.
+const RATES: [(Motion, f64, f64); 3] =
+    [(Motion::Lateral, 1e6, 2e4), (Motion::Rolling, 2e5, 1e4), (Motion::Yawing, 1e5, 5e3)];
+/// Rate of drawn arcs over that of a measured pair.
+const DRAWN_OVER_MEASURED: f64 = 3.0;
+/// Time of the table of conicity to ±10 mm of a measured pair \[s\].
+const CONICITY_TABLE: f64 = 0.2;
+/// Time of `run` for a measured wheelset \[s\].
+const RUN: f64 = 0.1;
+/// Time of a whole case by pair \[s\].
+const WHOLE_CASES: [(&str, f64); 2] = [("drawn", 1e-4), ("measured", 3e-4)];
+/// Time of a plan over that of the fill.
+const PLAN_OVER_FILL: f64 = 2.0;
+/// How far d log time/d log points may be from 1 where growth counts as linear: a factor of 1.6 over four decades.
+const LINEAR: f64 = 0.05;
+
+/// One requirement.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Requirement {
+    /// What is compared.
+    pub what: String,
+    /// What is asked for.
+    pub least: String,
+    /// What was found.
+    pub found: String,
+    /// Where, and what lies around it.
+    pub remark: String,
+    /// Whether it is met.
+    pub met: bool,
+}
+
+/// All of them.
+pub fn all(m: &Measurements) -> Vec<Requirement> {
+    let mut sides: Vec<usize> = m.rows.iter().map(|row| row.side).collect();
+    sides.sort_unstable();
+    sides.dedup();
+    let mut out = Vec::new();
+    for side in sides {
+        for (other, least) in [("report-newton", OVER_REPORT), ("store", OVER_STORE)] {
+            out.extend(ratio(m, side, other, least));
+        }
+    }
+    out.extend(linear(m));
+    out.extend(m.threads.iter().filter(|row| row.method == Method::Spectral).map(|row| {
+        let ratio = row.seconds[0] / row.seconds[1];
+        Requirement {
+            what: "2 threads over 1 thread, the same bits".into(),
+            least: format!("{TWO_THREADS}"),
+            found: format!("{ratio:.2}"),
+            remark: format!("{} points", row.points),
+            met: ratio >= TWO_THREADS && row.same_bits,
+        }
+    }));
+    out.extend(splines(m));
+    out.extend(splined_points(m));
+    out.extend(RATES.iter().flat_map(|&(motion, drawn, measured)| rates(m, motion, [drawn, measured])));
+    out.extend(conicity_table(m));
+    out.extend(whole_cases(m));
+    out.extend(m.run.map(|run| {
+        at_most("`run` of a measured wheelset, files not written, s", RUN, run.total(), String::new())
+    }));
+    out
+}
+
+/// A figure that is not to exceed a bound.
+fn at_most(what: impl Into<String>, bound: f64, found: f64, remark: String) -> Requirement {
+    let (least, met) = (format!("at most {bound}"), found <= bound);
+    Requirement { what: what.into(), least, found: format!("{found:.3e}"), remark, met }
+}
+
+/// Drawn arcs, the slowest measured pair, and the ratio of the two.
+fn rates(m: &Measurements, motion: Motion, [drawn, measured]: [f64; 2]) -> Vec<Requirement> {
+    let slowest = |of_measured: bool| {
+        let rows = m.rates.iter().filter(|row| row.motion == motion && row.measured == of_measured);
+        rows.min_by(|a, b| a.rate().total_cmp(&b.rate()))
+    };
+    let name = motion.name();
+    let at_least = |kind: &str, row: &Rate, bound: f64| Requirement {
+        what: format!("positions a second, {kind}, {name}"),
+        least: format!("{bound}"),
+        found: format!("{:.0}", row.rate()),
+        remark: row.pair.clone(),
+        met: row.rate() >= bound,
+    };
+    let mut out = Vec::new();
+    let rows = (slowest(false), slowest(true));
+    out.extend(rows.0.map(|row| at_least("drawn", row, drawn)));
+    out.extend(rows.1.map(|row| at_least("measured", row, measured)));
+    if let (Some(drawn), Some(measured)) = rows {
+        let ratio = drawn.rate() / measured.rate();
+        let what = format!("positions a second, drawn over measured, {name}");
+        out.push(at_most(what, DRAWN_OVER_MEASURED, ratio, measured.pair.clone()));
+    }
+    out
+}
+
+/// The dearest table of a measured pair.
+fn conicity_table(m: &Measurements) -> Option<Requirement> {
+    let measured = m.rates.iter().filter(|row| row.measured);
+    let worst = measured.max_by(|a, b| a.table_seconds.total_cmp(&b.table_seconds))?;
+    let remark = format!("{}, {}; {} searches", worst.pair, worst.motion.name(), worst.searches);
+    Some(at_most("table of conicity to ±10 mm, measured, s", CONICITY_TABLE, worst.table_seconds, remark))
+}
+
+fn whole_cases(m: &Measurements) -> Vec<Requirement> {
+    let mut out = Vec::new();
+    for case in &m.whole_cases {
+        let (pair, side) = (case.pair, case.side);
+        let bound = WHOLE_CASES.iter().find(|(name, _)| *name == pair).map_or(f64::NAN, |(_, bound)| *bound);
+        let what = format!("touch to mesh, {pair}, {side} × {side}, s");
+        out.push(at_most(what, bound, case.total(), String::new()));
+        let what = format!("plan over fill, {pair}, {side} × {side}");
+        out.push(at_most(what, PLAN_OVER_FILL, case.part("plan") / case.part("fill"), String::new()));
+    }
+    out
+}
+
+/// The dearest grid decides.
+fn splined_points(m: &Measurements) -> Option<Requirement> {
+    let worst = m.splines.iter().max_by(|a, b| a.nanoseconds().total_cmp(&b.nanoseconds()))?;
+    let remark = format!("points every {} mm, {1} × {1}", worst.spacing, worst.side);
+    Some(at_most(
+        "time of a splined grid's point, plan included, ns",
+        SPLINED_POINT,
+        worst.nanoseconds(),
+        remark,
+    ))
+}
+
+/// The dearest grid decides.
+fn splines(m: &Measurements) -> Option<Requirement> {
+    let ratio = |cost: &SplineCost| cost.seconds[0] / cost.seconds[1];
+    let worst = m.splines.iter().max_by(|a, b| ratio(a).total_cmp(&ratio(b)))?;
+    Some(Requirement {
+        what: "time of a grid over splines, over that over arcs".into(),
+        least: format!("at most {SPLINES_OVER_ARCS}"),
+        found: format!("{:.2}", ratio(worst)),
+        remark: format!("points every {} mm, {1} × {1}", worst.spacing, worst.side),
+        met: ratio(worst) <= SPLINES_OVER_ARCS,
+    })
+}
+
+/// Rate of a method over that of another, scene by scene.
+pub(super) fn ratios<'m>(
+    m: &'m Measurements,
+    (method, tolerance): (&'m str, Option<f64>),
+    other: &'m str,
+    side: usize,
+) -> impl Iterator<Item = (&'m str, f64)> {
+    let at = move |row: &&Row, name: &str| row.method == name && row.side == side;
+    let mine = m.rows.iter().filter(move |row| at(row, method) && row.tolerance == tolerance);
+    mine.filter_map(move |row| {
+        let other = m.rows.iter().find(|o| at(o, other) && o.scene == row.scene)?;
+        Some((row.scene.as_str(), row.rate() / other.rate()))
+    })
+}
+
+/// The least ratio over the scenes decides.
+fn ratio(m: &Measurements, side: usize, other: &str, least: f64) -> Option<Requirement> {
+    let all = || ratios(m, (Method::Spectral.name(), Some(FULL_PRECISION)), other, side);
+    let (scene, smallest) = all().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let middle = median(all().map(|(_, ratio)| ratio));
+    let met = all().filter(|(_, ratio)| *ratio >= least).count();
+    Some(Requirement {
+        what: format!("spectral over {other}, {side} × {side}"),
+        least: format!("{least}"),
+        found: format!("{smallest:.2}"),
+        remark: format!("{scene}; median {middle:.2}; {met} of {} scenes", all().count()),
+        met: smallest >= least,
+    })
+}
+
+/// The store's exponent beside: what it takes more where its array outgrows the caches is no growth of a computation.
+fn linear(m: &Measurements) -> Option<Requirement> {
+    let (first, last) = (m.growth.first()?, m.growth.last()?);
+    let (spectral, store) = (exponent(m, |row| row.spectral), exponent(m, |row| row.store));
+    let per_point = |row: &Growth| row.spectral / row.points as f64 * 1e9;
+    Some(Requirement {
+        what: format!("cost over points, {:.0e} to {:.0e}", first.points as f64, last.points as f64),
+        least: format!("exponent 1 ± {LINEAR}"),
+        found: format!("{spectral:.3}"),
+        remark: format!(
+            "store {store:.3}; {:.2} ns a point at first, {:.2} at last",
+            per_point(first),
+            per_point(last)
+        ),
+        met: (spectral - 1.0).abs() <= LINEAR,
+    })
+}
+
+/// Slope of log time over log points by least squares.
+fn exponent(m: &Measurements, seconds: impl Fn(&Growth) -> f64) -> f64 {
+    let points: Vec<[f64; 2]> =
+        m.growth.iter().map(|row| [(row.points as f64).ln(), seconds(row).ln()]).collect();
+    let mean = [0, 1].map(|k| points.iter().map(|p| p[k]).sum::<f64>() / points.len() as f64);
+    let moment = |k: usize| points.iter().map(|p| (p[0] - mean[0]) * (p[k] - mean[k])).sum::<f64>();
+    moment(1) / moment(0)
+}

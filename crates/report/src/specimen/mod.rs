@@ -1,0 +1,338 @@
+//! Profiles as instruments measure them, made from a seed: new and worn, hollow, lipped, grooved, noisy.
+//!
+//! A [`SpecimenKind`] is an outline that wear has changed by an amount drawn from the seed; an [`Instrument`] takes
+//! points along it; [`Specimen::file`] writes them in a format of measured files, [`Specimen::measured`] reads
+//! that file back, so that a case goes the whole way of a user's file.
+
+mod outline;
+
+use serde::Deserialize;
+
+use super::random::Random;
+use outline::{OutlinePoint, drawn, recorded, rounded, worn};
+use wheelrail::error::Result;
+use wheelrail::profile::measured::{self, Format, Measured, Options, write};
+use wheelrail::profile::{Profile, Side, standards};
+
+/// What is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SpecimenKind {
+    /// 60E1 as drawn, with its inclined flanks.
+    NewRail,
+    /// A head with flanks that are vertical for 20 mm on both sides.
+    FullHead,
+    /// 60E1 worn by 1–3 mm on the crown and by 0.5–2 mm on the gauge face.
+    WornRail,
+    /// A head whose gauge corner and gauge face have worn to the root and the flange of S1002: radius 14 mm, 70°.
+    ConformalRail,
+    /// 60E1 with lips of 0.5–1.5 mm that overhang the gauge and the field flank.
+    LippedRail,
+    /// A grooved rail: head, groove 47 mm deep, keeper; outer faces of both measured.
+    GroovedRail,
+    /// A switch blade whose head is 8–24 mm wide.
+    SwitchBlade,
+    /// S1002 as drawn, up to its flange back.
+    NewWheel,
+    /// S1002 with 30 mm of its flange back, vertical.
+    FullFlangeWheel,
+    /// S1002 worn by 0.7–2 mm on the tread and by 0.5–1.5 mm on the flange.
+    WornWheel,
+    /// S1002 with a tread worn hollow by 2–4 mm: the field side stands out.
+    HollowWheel,
+    /// A tram wheel for the grooved rail: flange 22 mm high and 20 mm thick, vertical flange back, tread 1:40.
+    TramWheel,
+}
+
+impl SpecimenKind {
+    /// The rails.
+    pub const RAILS: [Self; 7] = [
+        Self::NewRail,
+        Self::FullHead,
+        Self::WornRail,
+        Self::ConformalRail,
+        Self::LippedRail,
+        Self::GroovedRail,
+        Self::SwitchBlade,
+    ];
+    /// The wheels.
+    pub const WHEELS: [Self; 5] =
+        [Self::NewWheel, Self::FullFlangeWheel, Self::WornWheel, Self::HollowWheel, Self::TramWheel];
+
+    /// The body that it is of.
+    pub fn side(self) -> Side {
+        if Self::WHEELS.contains(&self) { Side::Wheel } else { Side::Rail }
+    }
+
+    /// Its name in tables and files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NewRail => "new-rail",
+            Self::FullHead => "full-head",
+            Self::WornRail => "worn-rail",
+            Self::ConformalRail => "conformal-rail",
+            Self::LippedRail => "lipped-rail",
+            Self::GroovedRail => "grooved-rail",
+            Self::SwitchBlade => "switch-blade",
+            Self::NewWheel => "new-wheel",
+            Self::FullFlangeWheel => "full-flange-wheel",
+            Self::WornWheel => "worn-wheel",
+            Self::HollowWheel => "hollow-wheel",
+            Self::TramWheel => "tram-wheel",
+        }
+    }
+}
+
+/// How it is measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Instrument {
+    /// Distance of the points along the profile \[mm\], each up to a fifth of it off its place; typical 0.05–1.
+    pub spacing: f64,
+    /// Standard deviation of the noise across the profile \[µm\]; typical 0–20. Points nearer than 0.25 mm share it in
+    /// part.
+    pub noise: f64,
+    /// Dents in the surface, 0.05–0.3 mm deep and 1–5 mm wide.
+    pub pits: usize,
+    /// Stretches of 4–12 mm that are plane.
+    pub flats: usize,
+    /// Seed of the wear, the noise and the places of pits and flats.
+    pub seed: u64,
+}
+
+impl Instrument {
+    /// Points every `spacing` \[mm\] with `noise` \[µm\], without pits and flats.
+    pub fn new(spacing: f64, noise: f64, seed: u64) -> Self {
+        Self { spacing, noise, pits: 0, flats: 0, seed }
+    }
+}
+
+/// A measured body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Specimen {
+    /// What was measured.
+    pub kind: SpecimenKind,
+    /// How.
+    pub instrument: Instrument,
+    /// The points \[mm\] in profile axes, from left to right.
+    pub points: Vec<[f64; 2]>,
+}
+
+impl Specimen {
+    /// Measures a body: the same kind and instrument give the same points on every machine with correctly rounded
+    /// elementary functions, and points equal to 1e-12 mm on others.
+    ///
+    /// # Errors
+    /// None but a fault of the built-in profiles.
+    pub fn new(kind: SpecimenKind, instrument: Instrument) -> Result<Self> {
+        // Another stream than that of the noise, of the same seed.
+        let mut wear = Random::new(!instrument.seed);
+        let points = recorded(&outline(kind, &mut wear)?, kind.side(), &instrument);
+        Ok(Self { kind, instrument, points })
+    }
+
+    /// Name and text of a file of the points.
+    pub fn file(&self, format: Format) -> (String, String) {
+        let side = self.kind.side();
+        let extension = match (format, side) {
+            (Format::MiniProf, Side::Rail) => "ban",
+            (Format::MiniProf, Side::Wheel) => "whl",
+            (Format::Simpack, Side::Rail) => "prr",
+            (Format::Simpack, Side::Wheel) => "prw",
+            (Format::Gensys, Side::Rail) => "rail",
+            (Format::Gensys, Side::Wheel) => "wheel",
+            (Format::Text, _) => "txt",
+            (Format::Csv, _) => "csv",
+        };
+        let name = format!("{}-{}.{extension}", self.kind.name(), self.instrument.seed);
+        let text = write::points(&self.points, format, side, &name);
+        (name, text)
+    }
+
+    /// The options that say what a format leaves open.
+    pub fn options(&self, format: Format) -> Options {
+        let (mirror, flip_z) = match (format, self.kind.side()) {
+            (Format::MiniProf, Side::Rail) => (Some(true), Some(false)),
+            (Format::Text | Format::Csv, _) => (Some(false), Some(false)),
+            _ => (None, None),
+        };
+        Options { mirror, flip_z, ..Options::default() }
+    }
+
+    /// The profile that the program makes of the file in a format, smoothed as by default.
+    ///
+    /// # Errors
+    /// Whatever the program refuses about the file.
+    pub fn measured(&self, format: Format) -> Result<Measured> {
+        self.measured_with(format, &self.options(format))
+    }
+
+    /// The profile that the program makes of the file in a format with these options.
+    ///
+    /// # Errors
+    /// Whatever the program refuses about the file or the options.
+    pub fn measured_with(&self, format: Format, options: &Options) -> Result<Measured> {
+        let (name, text) = self.file(format);
+        measured::profile(&name, text.as_bytes(), self.kind.side(), options)
+    }
+
+    /// The profile that the program makes of a SIMPACK file of the points, smoothed as by default.
+    ///
+    /// # Errors
+    /// Whatever the program refuses about the file.
+    pub fn profile(&self) -> Result<Profile> {
+        self.measured(Format::Simpack).map(|measured| measured.profile)
+    }
+}
+
+/// The outline of a body \[mm\], its wear drawn from the stream.
+fn outline(kind: SpecimenKind, wear: &mut Random) -> Result<Vec<[f64; 2]>> {
+    Ok(match kind {
+        SpecimenKind::NewRail => head()?,
+        SpecimenKind::FullHead => rounded(&FULL_HEAD),
+        SpecimenKind::WornRail => {
+            let (crown, face) = (wear.between(1.0, 3.0), wear.between(0.5, 2.0));
+            worn(&head()?, Side::Rail, |at| bell(at.x, -4.0, 18.0, crown) + bell(at.x, -37.0, 4.0, face))
+        }
+        SpecimenKind::ConformalRail => rounded(&CONFORMAL_HEAD),
+        SpecimenKind::LippedRail => {
+            let (gauge, field) = (wear.between(0.5, 1.5), wear.between(0.5, 1.2));
+            let lip = |at: &OutlinePoint| match at.x {
+                x if x < -30.0 => -bell(at.z, -17.0, 1.5, gauge),
+                x if x > 30.0 => -bell(at.z, -15.0, 1.5, field),
+                _ => 0.0,
+            };
+            worn(&head()?, Side::Rail, lip)
+        }
+        SpecimenKind::GroovedRail => {
+            let crown = wear.between(0.0, 1.5);
+            worn(&rounded(&GROOVED_HEAD), Side::Rail, |at| bell(at.x, -2.0, 12.0, crown))
+        }
+        SpecimenKind::SwitchBlade => rounded(&blade(wear.between(8.0, 24.0))),
+        SpecimenKind::NewWheel => drawn(&standards::wheel("S1002")?),
+        SpecimenKind::FullFlangeWheel => {
+            let mut points = drawn(&standards::wheel("S1002")?);
+            let back = points.first().map_or([0.0; 2], |first| [first[0], first[1] + FLANGE_BACK]);
+            points.insert(0, back);
+            points
+        }
+        SpecimenKind::WornWheel => {
+            let (tread, flange) = (wear.between(0.7, 2.0), wear.between(0.5, 1.5));
+            let depth = |at: &OutlinePoint| bell(at.x, 2.0, 16.0, tread) + bell(at.x, -43.0, 4.0, flange);
+            worn(&drawn(&standards::wheel("S1002")?), Side::Wheel, depth)
+        }
+        SpecimenKind::HollowWheel => {
+            let depth = wear.between(2.0, 4.0);
+            worn(&drawn(&standards::wheel("S1002")?), Side::Wheel, |at| bell(at.x, 6.0, 15.0, depth))
+        }
+        SpecimenKind::TramWheel => rounded(&TRAM_WHEEL),
+    })
+}
+
+/// Length of the flange back \[mm\].
+const FLANGE_BACK: f64 = 30.0;
+/// Depth \[mm\] under its top down to which a drawn head is measured: the flank, above the fillet of the underside.
+const HEAD_DEPTH: f64 = 32.0;
+/// Corners (x, z, radius) \[mm\].
+const FULL_HEAD: [[f64; 3]; 6] = [
+    [-36.0, -34.0, 0.0],
+    [-36.0, -1.2, 13.0],
+    [-10.0, 0.0, 200.0],
+    [10.0, 0.0, 200.0],
+    [36.0, -1.2, 13.0],
+    [36.0, -34.0, 0.0],
+];
+const CONFORMAL_HEAD: [[f64; 3]; 5] =
+    [[-48.0, -40.0, 0.0], [-34.5, -1.2, 14.0], [10.0, 0.2, 200.0], [36.0, -2.0, 12.0], [36.0, -34.0, 0.0]];
+const GROOVED_HEAD: [[f64; 3]; 9] = [
+    [-92.0, -30.0, 0.0],
+    [-92.0, -2.0, 4.0],
+    [-76.0, -2.0, 5.0],
+    [-70.0, -47.0, 11.0],
+    [-40.0, -47.0, 11.0],
+    [-36.0, -0.8, 12.0],
+    [0.0, 0.3, 250.0],
+    [34.0, -0.8, 10.0],
+    [34.0, -30.0, 0.0],
+];
+const TRAM_WHEEL: [[f64; 3]; 6] = [
+    [-62.0, 20.0, 0.0],
+    [-62.0, -22.0, 9.0],
+    [-44.0, -22.0, 7.0],
+    [-38.0, -1.0, 12.0],
+    [50.0, 1.2, 3.0],
+    [58.0, 9.0, 0.0],
+];
+
+/// A switch blade whose head has this width \[mm\] at its top.
+fn blade(width: f64) -> [[f64; 3]; 4] {
+    let radius = 0.3 * width;
+    [[-39.0, -38.0, 0.0], [-36.0, -2.0, radius], [-36.0 + width, -3.0, radius], [-24.0 + width, -36.0, 0.0]]
+}
+
+/// The head of 60E1 with its flanks.
+fn head() -> Result<Vec<[f64; 2]>> {
+    let mut points = drawn(&standards::rail("60E1")?);
+    let top = points.iter().map(|p| p[1]).fold(f64::NEG_INFINITY, f64::max);
+    points.retain(|p| p[1] >= top - HEAD_DEPTH);
+    Ok(points)
+}
+
+/// Gauss's bell: `height` at `centre`, 61 % of it at the distance `width`.
+fn bell(at: f64, centre: f64, width: f64, height: f64) -> f64 {
+    let share = (at - centre) / width;
+    height * (-0.5 * share * share).exp()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_reads_back_in_every_format_as_it_was_measured() -> Result<()> {
+        let mut seed = 60;
+        for kind in SpecimenKind::RAILS.into_iter().chain(SpecimenKind::WHEELS) {
+            for format in Format::ALL {
+                seed += 1;
+                let instrument = Instrument { pits: 2, flats: 1, ..Instrument::new(0.2, 3.0, seed) };
+                let specimen = Specimen::new(kind, instrument)?;
+                let read = specimen.measured(format)?;
+                let back: Vec<[f64; 2]> = read.points.iter().map(|p| p.xz()).collect();
+                assert_eq!(back, specimen.points, "{kind:?} {format:?} seed {seed}");
+            }
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn spacing_noise_and_seed_are_what_they_are_called() -> Result<()> {
+        let clean = Specimen::new(SpecimenKind::FullHead, Instrument::new(0.05, 0.0, 1))?;
+        let noisy = Specimen::new(SpecimenKind::FullHead, Instrument::new(0.05, 20.0, 1))?;
+        assert_eq!(clean.points.len(), noisy.points.len());
+        assert!((2500..3500).contains(&clean.points.len()), "{}", clean.points.len());
+        let steps = clean.points.windows(2).map(|p| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1]));
+        assert!(steps.clone().all(|step| (0.02..=0.1).contains(&step)), "{:?}", steps.fold(0.0, f64::max));
+        let off: Vec<f64> =
+            clean.points.iter().zip(&noisy.points).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).collect();
+        let rms = (off.iter().map(|d| d * d).sum::<f64>() / off.len() as f64).sqrt();
+        // Between two normal numbers the mean square of the line is two thirds of theirs.
+        assert!((rms - 0.020 * (2.0f64 / 3.0).sqrt()).abs() < 0.002, "{rms}");
+        let other = Specimen::new(SpecimenKind::FullHead, Instrument::new(0.05, 20.0, 2))?;
+        assert!(other.points != noisy.points);
+        assert_eq!(Specimen::new(SpecimenKind::FullHead, noisy.instrument)?, noisy);
+        Ok(())
+    }
+
+    #[test]
+    fn overhangs_grooves_and_hollows_are_there() -> Result<()> {
+        let specimen = |kind| Specimen::new(kind, Instrument::new(0.1, 0.0, 5));
+        let lipped = specimen(SpecimenKind::LippedRail)?.points;
+        assert!(lipped.windows(2).any(|p| p[1][0] < p[0][0] - 1e-3), "no overhang");
+        let grooved = specimen(SpecimenKind::GroovedRail)?.points;
+        assert!(grooved.iter().any(|p| p[1] < -46.0 && (-70.0..-40.0).contains(&p[0])));
+        let hollow = specimen(SpecimenKind::HollowWheel)?.points;
+        let at = |x: f64| hollow.iter().find(|p| p[0] > x).map_or(f64::NAN, |p| p[1]);
+        // Material above: the worn tread lies higher than the field side.
+        assert!(at(6.0) > at(40.0) + 1.0, "{} {}", at(6.0), at(40.0));
+        Ok(())
+    }
+}

@@ -1,0 +1,172 @@
+//! Races: several methods and a plain store fill the same array in turn.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use rustix::time::{ClockId, clock_gettime};
+
+use wheelrail::placement::Placement;
+use wheelrail::scene::equal_steps;
+use wheelrail::separation::axis::EtaAxis;
+use wheelrail::separation::grid::Choice;
+use wheelrail::separation::plan::{FULL_PRECISION, plan};
+use wheelrail::separation::values::Values;
+
+/// Runs of one contestant in all its races, at least: three show a disturbed one.
+pub const LEAST_RUNS: usize = 3;
+
+/// A run that takes this many times its contestant's share of time is not repeated.
+const TOO_LONG: f64 = 10.0;
+
+/// Runs up to so long \[s\] count the time on the wall, which the shortest of many is not disturbed in; the clock of a thread's
+/// processor time was seen to stand still during one of some million.
+const SHORT: f64 = 1e-3;
+
+/// The value that is stored: no pattern of equal bytes, which a compiler could hand to `memset`.
+const STORED: f64 = 0.1;
+
+/// What is timed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Work {
+    /// One value written to the whole array, column by column.
+    Store,
+    /// The array filled by a method.
+    Fill(Choice),
+    /// A method chosen at full precision, and the array filled by it.
+    PlanAndFill,
+}
+
+/// The times of one contestant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Timing {
+    /// Shortest run \[s\]: [`Track::timed`] on one thread, time on the wall on several.
+    pub best: f64,
+    /// Sum of all runs \[s\].
+    pub spent: f64,
+    /// How often it ran.
+    pub runs: usize,
+}
+
+impl Timing {
+    /// That of one that has not run.
+    pub const NONE: Self = Self { best: f64::INFINITY, spent: 0.0, runs: 0 };
+}
+
+/// The grid that is filled: one array for all contestants, its pages touched before the first run.
+#[derive(Debug)]
+pub struct Track<'a> {
+    placement: &'a Placement,
+    xi: Vec<f64>,
+    axis: EtaAxis,
+    out: Values,
+}
+
+impl<'a> Track<'a> {
+    /// n × n points over \[ξ_0, ξ_1\] × \[−reach, reach\] \[mm\].
+    pub fn new(placement: &'a Placement, [a, b]: [f64; 2], reach: f64, n: usize) -> Self {
+        let xi = equal_steps(a, b, n);
+        let axis = EtaAxis::new(&equal_steps(-reach, reach, n));
+        let mut out = Values::new(n * n);
+        out.fill(STORED);
+        Self { placement, xi, axis, out }
+    }
+
+    /// ξ of the columns \[mm\].
+    pub fn xi(&self) -> &[f64] {
+        &self.xi
+    }
+
+    /// The common η axis.
+    pub fn axis(&self) -> &EtaAxis {
+        &self.axis
+    }
+
+    /// The array as the last run left it \[mm\].
+    pub fn values(&self) -> &[f64] {
+        &self.out
+    }
+
+    /// One run on the threads of the current rayon pool.
+    pub fn run(&mut self, work: Work) {
+        match work {
+            Work::Store => {
+                let value = black_box(STORED);
+                for column in self.out.chunks_mut(self.axis.eta.len().max(1)) {
+                    column.fill(value);
+                }
+            }
+            Work::Fill(choice) => {
+                choice.fill(self.placement, &self.xi, &self.axis, &mut self.out);
+            }
+            Work::PlanAndFill => {
+                let mut plan = plan(self.placement, &self.xi, &self.axis, FULL_PRECISION, None);
+                plan.fill(self.placement, &self.xi, &self.axis, &mut self.out);
+            }
+        }
+        black_box(&mut *self.out);
+    }
+
+    /// Time of one run \[s\], as [`timed`] has it.
+    pub fn timed(&mut self, work: Work) -> f64 {
+        timed(|| self.run(work))
+    }
+}
+
+/// Time of some work \[s\]: the processor's, which leaves out what other processes took, and on the wall if that is short. To be
+/// called on a rayon pool of one thread.
+pub fn timed(work: impl FnOnce()) -> f64 {
+    let (start, on_the_wall) = (processor_time(), Instant::now());
+    work();
+    let on_the_wall = on_the_wall.elapsed().as_secs_f64();
+    (processor_time() - start).max(on_the_wall.min(SHORT))
+}
+
+/// Processor time of this thread \[s\].
+fn processor_time() -> f64 {
+    let time = clock_gettime(ClockId::ThreadCPUTime);
+    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
+}
+
+/// Runs contestants until each has had `seconds`, earlier races included, and `least` runs; `run` gives the seconds of one.
+///
+/// Next is always the one that has had least time: all are spread over the same stretch of time and meet the same disturbances,
+/// so that ratios hold where times do not.
+pub fn race(timings: &mut [Timing], seconds: f64, least: usize, mut run: impl FnMut(usize) -> f64) {
+    let waits = |timing: &Timing| {
+        let long = timing.best > TOO_LONG * seconds;
+        timing.runs == 0 || timing.spent < seconds || (timing.runs < least && !long)
+    };
+    let waiting = |timings: &[Timing]| {
+        let all = timings.iter().enumerate().filter(|(_, timing)| waits(timing));
+        all.min_by(|(_, a), (_, b)| a.spent.total_cmp(&b.spent)).map(|(k, _)| k)
+    };
+    while let Some(k) = waiting(timings) {
+        let time = run(k);
+        let Timing { best, spent, runs } = timings[k];
+        timings[k] = Timing { best: best.min(time), spent: spent + time, runs: runs + 1 };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whoever_had_least_time_runs_next_until_the_time_is_up() {
+        let mut order = Vec::new();
+        let mut timings = [Timing::NONE; 3];
+        let mut run = |k| {
+            order.push(k);
+            [0.5, 0.125, 32.0][k]
+        };
+        race(&mut timings, 1.0, 3, &mut run);
+        assert_eq!(timings[0], Timing { best: 0.5, spent: 1.5, runs: 3 });
+        assert_eq!(timings[1], Timing { best: 0.125, spent: 1.0, runs: 8 });
+        // Too long a run for a second one.
+        assert_eq!(timings[2], Timing { best: 32.0, spent: 32.0, runs: 1 });
+        // A later race goes on where the first one ended.
+        race(&mut timings, 2.0, 3, &mut run);
+        assert_eq!(timings.map(|timing| timing.runs), [4, 16, 1]);
+        assert_eq!(order[..9], [0, 1, 2, 1, 1, 1, 0, 1, 1]);
+    }
+}

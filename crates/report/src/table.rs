@@ -1,0 +1,173 @@
+//! Tables of the report: CSV for programs, Markdown for people.
+
+use std::fmt::Write;
+
+use super::hard_case::{METHODS, Outcome};
+use super::measurements::{Growth, Row};
+use super::rates::Rate;
+use super::verification::Verified;
+use super::whole_case::{PARTS, WholeCase};
+use wheelrail_check::Floor;
+
+/// accuracy.csv. Lengths in mm, times in s; a method that misses a surface, or finds one where there is none, has
+/// NaN for its largest errors.
+pub fn accuracy_csv(rows: &[Row]) -> String {
+    let mut out = String::from(
+        "scene,method,tolerance_mm,points,seconds,mpoints_per_s,max_abs_error_mm,max_rel_error,q99_rel_error,\
+         worst_xi,worst_eta\n",
+    );
+    for row in rows {
+        let tolerance = row.tolerance.map_or(String::new(), |t| format!("{t:e}"));
+        let errors = row.errors.map_or_else(
+            || ",,,,".to_string(),
+            |e| {
+                let [xi, eta] = e.worst;
+                format!("{:.4e},{:.4e},{:.4e},{xi},{eta}", e.max_abs, e.max_rel, e.q99_rel)
+            },
+        );
+        let (points, seconds, rate) = (row.points(), row.timing.best, row.rate());
+        let _ = writeln!(
+            out,
+            "{},{},{tolerance},{points},{seconds:.4e},{rate:.1},{errors}",
+            row.scene, row.method
+        );
+    }
+    out
+}
+
+/// hard_cases.csv: per case and method the errors where there is a value, and the points where there wrongly is
+/// one or none.
+pub fn hard_cases_csv(outcomes: &[Outcome]) -> String {
+    let mut out = String::from(
+        "case,title,status,as_stated,method,points,wrongly_masked,max_abs_error_mm,max_rel_error,failed_checks,\
+         report_newton_remark,provenance\n",
+    );
+    for outcome in outcomes {
+        let case = &outcome.case;
+        let failed: Vec<&str> = outcome.failures().map(|check| check.what.as_str()).collect();
+        for (method, e) in METHODS.iter().zip(&outcome.errors) {
+            let _ = writeln!(
+                out,
+                "{},{},{},{},{},{},{},{:.4e},{:.4e},{},{},{}",
+                case.reference.name,
+                quoted(&case.title),
+                case.status.name(),
+                outcome.as_stated(),
+                method.name(),
+                outcome.points,
+                e.wrongly_masked,
+                e.max_abs,
+                e.max_rel,
+                quoted(&failed.join("; ")),
+                quoted(&case.report_newton.remark),
+                quoted(&case.provenance),
+            );
+        }
+    }
+    out
+}
+
+/// verification.csv: what parry3d's meshes say, one row per placed pair; lengths in mm.
+pub fn verification_csv(groups: &[Vec<Verified>]) -> String {
+    let mut out = String::from(
+        "pair,agrees,points,compared,max_mm,q99_mm,median_mm,worst_xi,worst_eta,bracket_mm,outside_bracket,\
+         max_normal,relation_mm,order,floor_rays_mm,floor_closest_mm\n",
+    );
+    for Verified { name, report } in groups.iter().flatten() {
+        let s = &report.separation;
+        let [xi, eta] = s.worst_at_mm;
+        let floor = |figure: fn(&Floor) -> f64| report.floors.iter().map(figure).fold(0.0, f64::max);
+        let _ = writeln!(
+            out,
+            "{},{},{},{},{:.2e},{:.2e},{:.2e},{xi},{eta},{:.2e},{},{:.2e},{:.2e},{:.3},{:.2e},{:.2e}",
+            quoted(name),
+            report.agrees,
+            report.counts.points,
+            report.counts.compared,
+            s.max,
+            s.p99,
+            s.median,
+            report.bracket_mm,
+            report.outside_bracket,
+            report.normals.max,
+            report.distances.violation.max,
+            report.orders.median,
+            floor(|f| f.ray_mm),
+            floor(|f| f.closest_mm),
+        );
+    }
+    out
+}
+
+/// scaling.csv.
+pub fn growth_csv(rows: &[Growth]) -> String {
+    let mut out = String::from("points,spectral_seconds,store_seconds\n");
+    for row in rows {
+        let _ = writeln!(out, "{},{:.4e},{:.4e}", row.points, row.spectral, row.store);
+    }
+    out
+}
+
+/// positions.csv: rates of sweeps, with the table of conicity.
+pub fn positions_csv(rows: &[Rate]) -> String {
+    let mut out = String::from(
+        "pair,measured,motion,positions,with_contact,seconds,positions_per_s,conicity_seconds,conicity_searches,\
+         conicity_error\n",
+    );
+    for row in rows {
+        let [positions, found] = row.positions;
+        let _ = writeln!(
+            out,
+            "{},{},{},{positions},{found},{:.4e},{:.0},{:.4e},{},{:.1e}",
+            quoted(&row.pair),
+            row.measured,
+            quoted(row.motion.name()),
+            row.seconds,
+            row.rate(),
+            row.table_seconds,
+            row.searches,
+            row.conicity_error
+        );
+    }
+    out
+}
+
+/// cases.csv: times of whole cases, part by part \[s\].
+pub fn cases_csv(rows: &[WholeCase]) -> String {
+    let mut out = format!("pair,points,{}_s,total_s\n", PARTS.join("_s,"));
+    for row in rows {
+        let seconds: Vec<String> =
+            row.seconds.iter().chain([&row.total()]).map(|seconds| format!("{seconds:.3e}")).collect();
+        let _ = writeln!(out, "{},{},{}", row.pair, row.side * row.side, seconds.join(","));
+    }
+    out
+}
+
+fn quoted(text: &str) -> String {
+    format!("\"{}\"", text.replace('"', "\"\""))
+}
+
+/// A Markdown table; columns after the first `left` are aligned to the right.
+pub fn markdown(head: &[&str], left: usize, rows: &[Vec<String>]) -> String {
+    let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+    let mut out = line(&head.iter().map(ToString::to_string).collect::<Vec<_>>());
+    let rule: Vec<String> =
+        (0..head.len()).map(|k| if k < left { "---" } else { "---:" }.to_string()).collect();
+    out += &line(&rule);
+    for row in rows {
+        out += &line(row);
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_are_quoted_and_aligned() {
+        assert_eq!(quoted("a \"b\", c"), "\"a \"\"b\"\", c\"");
+        let table = markdown(&["a", "b"], 1, &[vec!["x".into(), "1".into()]]);
+        assert_eq!(table, "| a | b |\n| --- | ---: |\n| x | 1 |\n");
+    }
+}

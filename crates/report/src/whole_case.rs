@@ -1,0 +1,157 @@
+//! What a caller waits for: from a pair of profiles to a meshed patch, part by part, and all that `run` computes.
+
+use std::hint::black_box;
+
+use super::specimen::{Instrument, Specimen, SpecimenKind};
+use super::speed::{LEAST_RUNS, Timing, race, timed};
+use wheelrail::contact::search::{ONE_CONTACT, Pose, ProfilePair, Selection};
+use wheelrail::error::{Error, Result};
+use wheelrail::interpenetration::{Patch, Window};
+use wheelrail::mesh::strips::{Counts, StripMesh};
+use wheelrail::placement::{Pair, Placement};
+use wheelrail::profile::Profile;
+use wheelrail::profile::measured::Format;
+use wheelrail::profile::standards;
+use wheelrail::run::Run;
+use wheelrail::scene::{Scene, equal_steps, parse};
+use wheelrail::separation::axis::EtaAxis;
+use wheelrail::separation::plan::{FULL_PRECISION, plan};
+use wheelrail::separation::values::Values;
+
+/// R, δ, half widths of the window \[mm\].
+const RADIUS: f64 = 460.0;
+const APPROACH: f64 = 0.08;
+const HALF_WIDTHS: [f64; 2] = [12.0, 10.0];
+
+/// Distance of the points \[mm\], noise \[µm\] and seed of the measured pair.
+const SPACING: f64 = 0.28;
+const NOISE: f64 = 3.0;
+const SEED: u64 = 1979;
+
+/// The parts of a case, in order.
+pub const PARTS: [&str; 6] = ["touch", "place", "plan", "fill", "patch", "mesh"];
+
+/// Times of the parts of one case.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WholeCase {
+    /// "drawn" or "measured".
+    pub pair: &'static str,
+    /// n of the n × n grid.
+    pub side: usize,
+    /// Shortest time of every part of [`PARTS`] \[s\].
+    pub seconds: [f64; PARTS.len()],
+}
+
+impl WholeCase {
+    /// Of all parts together \[s\].
+    pub fn total(&self) -> f64 {
+        self.seconds.iter().sum()
+    }
+
+    /// Of one part \[s\].
+    pub fn part(&self, name: &str) -> f64 {
+        PARTS.iter().position(|part| *part == name).map_or(f64::NAN, |k| self.seconds[k])
+    }
+}
+
+/// A centred wheel on its rail, lowered, placed, with a grid of n × n points at full precision, the patch in its window and
+/// the patch's mesh; each part at least `seconds` long. To be called on one thread.
+///
+/// # Errors
+/// Pairs that cannot be fitted or placed: a fault of this program.
+pub fn whole_cases(side: usize, seconds: f64) -> Result<Vec<WholeCase>> {
+    let drawn = pair([standards::rail("60E1")?, standards::wheel("EN15302-A")?])?;
+    [("drawn", drawn), ("measured", pair(measured()?)?)]
+        .into_iter()
+        .map(|(pair, profiles)| Ok(WholeCase { pair, side, seconds: parts(&profiles, side, seconds)? }))
+        .collect()
+}
+
+/// The rail inclined 1:40, under the wheel.
+fn pair([rail, wheel]: [Profile; 2]) -> Result<Pair> {
+    let run = 40f64.hypot(1.0);
+    Pair::new(rail.rotated(40.0 / run, 1.0 / run), wheel, RADIUS)
+}
+
+/// A worn rail and a worn wheel, written as files, read and smoothed.
+fn measured() -> Result<[Profile; 2]> {
+    let profile = |kind| {
+        let specimen = Specimen::new(kind, Instrument::new(SPACING, NOISE, SEED))?;
+        specimen.measured(Format::Csv).map(|measured| measured.profile)
+    };
+    Ok([profile(SpecimenKind::WornRail)?, profile(SpecimenKind::WornWheel)?])
+}
+
+/// What `run` computes for a worn, measured wheelset 3 mm to the right.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RunCost {
+    /// Shortest time for reading and smoothing both profiles \[s\].
+    pub profiles: f64,
+    /// … and for all the rest, but writing the files \[s\].
+    pub rest: f64,
+}
+
+impl RunCost {
+    /// Both \[s\].
+    pub fn total(&self) -> f64 {
+        self.profiles + self.rest
+    }
+}
+
+/// The scene of [`RunCost`]; its profiles are handed over, not read by their names.
+const WHEELSET: &str = "[rail]\nprofile = \"60E1\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n\
+                        [track]\ngauge = 1435.0\n[wheelset]\nback_to_back = 1360.0\nflange_back_x = -70.0\n\
+                        lateral = 3.0\n[patch]\nload = 60000.0\n";
+
+/// Times what `run` computes, at least `seconds` long; to be called on one thread.
+///
+/// # Errors
+/// A scene that cannot be computed: a fault of this program.
+pub fn run_cost(seconds: f64) -> Result<RunCost> {
+    let scene: Scene = parse(WHEELSET, false)?;
+    let profiles = (pair(measured()?)?, [None, None]);
+    Run::over(scene.clone(), &profiles, "measured")?;
+    let mut timings = [Timing::NONE; 2];
+    race(&mut timings, seconds, LEAST_RUNS, |part| {
+        timed(|| match part {
+            0 => drop(measured()),
+            _ => drop(Run::over(scene.clone(), &profiles, "measured")),
+        })
+    });
+    let [profiles, rest] = timings.map(|timing| timing.best);
+    Ok(RunCost { profiles, rest })
+}
+
+fn parts(pair: &Pair, side: usize, seconds: f64) -> Result<[f64; PARTS.len()]> {
+    let profiles = ProfilePair::new(pair)?;
+    let mut search = profiles.search();
+    let (pose, selection) = (Pose::new(0.0, 0.0, 0.0)?, Selection { within: 0.0, apart: ONE_CONTACT });
+    let found = search.touch(&pose, &selection).and_then(|touch| touch.contacts.first().copied());
+    let lost = || Error::new("whole case", "no contact", "a tread contact", "report this");
+    let contact = found.ok_or_else(lost)?;
+    let place = || pair.placed(contact.rail_x, contact.wheel_x, contact.skew);
+    let placement: Placement = place()?;
+    let [xi, eta] = HALF_WIDTHS.map(|half| equal_steps(-half, half, side));
+    let [xi_window, eta_window] = HALF_WIDTHS.map(|half| [-half, half]);
+    let window = Window { xi: xi_window, eta: eta_window };
+    let axis = EtaAxis::new(&eta);
+    let mut planned = plan(&placement, &xi, &axis, FULL_PRECISION, None);
+    let mut values = Values::new(side * side);
+    values.fill(0.0);
+    let mut patch = Patch::new(&placement, APPROACH, &window);
+    StripMesh::new(&placement, &patch, Counts::default())?;
+    let mut timings = [Timing::NONE; PARTS.len()];
+    race(&mut timings, seconds, LEAST_RUNS, |part| {
+        timed(|| match PARTS[part] {
+            "touch" => {
+                black_box(search.touch(&pose, &selection));
+            }
+            "place" => drop(place()),
+            "plan" => planned = plan(&placement, &xi, &axis, FULL_PRECISION, None),
+            "fill" => planned.fill(&placement, &xi, &axis, &mut values),
+            "patch" => patch = Patch::new(&placement, APPROACH, &window),
+            _ => drop(StripMesh::new(&placement, &patch, Counts::default())),
+        })
+    });
+    Ok(timings.map(|timing| timing.best))
+}

@@ -1,0 +1,358 @@
+//! Patches of random pairs against a flood fill of a fine grid: points, components, area, cut by the window; and automatic
+//! grids, which never cut what they are for.
+
+use rayon::prelude::*;
+use wheelrail::interpenetration::{Component, End, Outline, Patch, Window};
+use wheelrail::mesh::axes;
+use wheelrail::placement::{Pair, Placement};
+use wheelrail::profile::{Profile, standards};
+use wheelrail::run::contacts;
+use wheelrail::scene;
+use wheelrail::separation::axis::EtaAxis;
+use wheelrail::separation::grid::{Choice, Method};
+use wheelrail::separation::plan::demand;
+
+/// Random pairs, as many as `WHEELRAIL_PATCHES` says instead; each seeded by its number.
+const PAIRS: u64 = 3000;
+
+/// Points of the first and of the finest grid on an axis.
+const POINTS: [usize; 2] = [64, 512];
+
+/// Tolerance of the grid's values \[mm\], and of the judgement of a point.
+const TOLERANCE: f64 = 1e-9;
+const DOUBTFUL: f64 = 1e-8;
+
+/// Largest relative error of the area, where the fill knows it better than that.
+const AREA: f64 = 1e-3;
+
+/// Share of the pairs for which the finest grid may leave open what is connected.
+const UNDECIDED: f64 = 0.01;
+
+/// SplitMix64.
+struct Dice(u64);
+
+impl Dice {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    fn between(&mut self, a: f64, b: f64) -> f64 {
+        a + (b - a) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn pick<T: Clone>(&mut self, all: &[T]) -> T {
+        all[(self.next() % all.len() as u64) as usize].clone()
+    }
+}
+
+/// A placed pair and what is asked of it.
+struct Case {
+    name: String,
+    placement: Placement,
+    approach: f64,
+    window: Window,
+}
+
+impl Case {
+    /// A wheel that is let down on a rail, or two points of them put together; `None` where they do not meet.
+    fn new(number: u64) -> Option<Self> {
+        let mut dice = Dice(number);
+        let rails: Vec<&str> = standards::rail_names().collect();
+        let wheels: Vec<&str> = standards::wheel_names().collect();
+        let (rail, wheel) = (dice.pick(&rails), dice.pick(&wheels));
+        let inclination = dice.pick(&["1:20", "1:40", "0.0"]);
+        let radius = dice.between(200.0, 600.0);
+        let approach = 10f64.powf(dice.between(-4.0, -0.3));
+        let yaw = dice.pick(&[0.0, 1.0, 1.0]) * dice.between(-0.08, 0.08) * dice.between(0.0, 1.0);
+        let (placement, how) = if dice.pick(&[true, true, false]) {
+            let (offset, roll) = (dice.between(-9.0, 9.0), dice.between(-0.01, 0.01));
+            let how = format!("offset {offset}, roll {roll}");
+            let text = format!(
+                "[rail]\nprofile = {rail:?}\nrotate = {}\n[wheel]\nprofile = {wheel:?}\nradius = {radius:?}\n\
+                 [contact]\noffset = {offset:?}\nroll = {roll:?}\nyaw = {yaw:?}\n",
+                if inclination == "0.0" { "0.0".into() } else { format!("{inclination:?}") }
+            );
+            let scene: scene::Scene = scene::parse(&text, false).expect("a scene");
+            let (pair, _) = scene.pair_and_records(std::path::Path::new(".")).expect("a pair");
+            (contacts(&scene, &pair).ok()?.into_iter().next()?.1, how)
+        } else {
+            let profiles: [Profile; 2] =
+                [standards::rail(rail), standards::wheel(wheel)].map(|profile| profile.expect("a profile"));
+            let [r, w] = [dice.between(-36.0, 25.0), dice.between(-45.0, 30.0)];
+            let [rail, wheel] = profiles;
+            let pair = Pair::new(rail, wheel, radius).expect("a pair");
+            (pair.placed(r, w, yaw).ok()?, format!("points {r}, {w}"))
+        };
+        let name = format!(
+            "case {number}: {rail} at {inclination} under {wheel}, R {radius}, yaw {yaw}, {how}, δ {approach}"
+        );
+        // As wide as a patch of the usual curvatures, and some that cut it.
+        let size = approach.sqrt() * dice.pick(&[15.0, 40.0, 60.0]);
+        let mut end = |sign: f64| sign * size * dice.between(0.3, 1.0);
+        let window = Window { xi: [end(-1.0), end(1.0)], eta: [end(-1.0), end(1.0)] };
+        Some(Self { name, placement, approach, window })
+    }
+
+    /// s − δ over a grid of n × n points, and its axes; infinite where a body has no surface.
+    fn filled(&self, window: &Window, n: usize) -> Filled {
+        let axis = |[a, b]: [f64; 2]| -> Vec<f64> {
+            (0..n).map(|k| if k + 1 == n { b } else { a + (b - a) * k as f64 / (n - 1) as f64 }).collect()
+        };
+        let (xi, eta) = (axis(window.xi), axis(window.eta));
+        let depth = depths(&self.placement, &xi, &eta, self.approach);
+        Filled { xi, eta, depth }
+    }
+
+    /// Area and its change from grids half as fine, over the box around the points inside, and whether that is fine enough.
+    fn closer_area(&self, filled: &Filled) -> ([f64; 2], bool) {
+        let window = filled.inside(&self.window);
+        let [coarse, fine] = [1, 2].map(|n| self.filled(&window, n * POINTS[1] / 2).area());
+        let change = (fine - coarse).abs();
+        ([fine, change], change <= 0.5 * AREA * fine)
+    }
+}
+
+fn depths(placement: &Placement, xi: &[f64], eta: &[f64], approach: f64) -> Vec<f64> {
+    let mut s = vec![f64::NAN; xi.len() * eta.len()];
+    let choice = Choice { method: Method::Spectral, demand: demand(TOLERANCE), coefficients: 3 };
+    choice.fill(placement, xi, &EtaAxis::new(eta), &mut s);
+    // Without skew the patch is that over the midplane.
+    let over =
+        if placement.skew == 0.0 { placement.overlap().unwrap_or([0.0; 2]) } else { [f64::MIN, f64::MAX] };
+    let n = eta.len();
+    s.iter_mut().enumerate().for_each(|(k, s)| {
+        let seen = over[0] <= xi[k / n] && xi[k / n] <= over[1];
+        *s = if s.is_nan() || !seen { f64::INFINITY } else { *s - approach };
+    });
+    s
+}
+
+/// s − δ over a grid.
+struct Filled {
+    xi: Vec<f64>,
+    eta: Vec<f64>,
+    depth: Vec<f64>,
+}
+
+impl Filled {
+    fn at(&self, i: usize, j: usize) -> f64 {
+        self.depth[i * self.eta.len() + j]
+    }
+
+    /// Area by straight lines between the points of every column \[mm²\].
+    fn area(&self) -> f64 {
+        let (n, m) = (self.xi.len(), self.eta.len());
+        let (dx, dy) = (self.xi[1] - self.xi[0], self.eta[1] - self.eta[0]);
+        let share = |a: f64, b: f64| match (a < 0.0, b < 0.0) {
+            (true, true) => 1.0,
+            (false, false) => 0.0,
+            _ if a.is_infinite() || b.is_infinite() => 0.5,
+            (inside, _) => {
+                let root = a / (a - b);
+                if inside { root } else { 1.0 - root }
+            }
+        };
+        let column = |i: usize| (1..m).map(|j| share(self.at(i, j - 1), self.at(i, j))).sum::<f64>() * dy;
+        (0..n).map(|i| column(i) * dx * if i == 0 || i + 1 == n { 0.5 } else { 1.0 }).sum()
+    }
+
+    /// The box around the points inside, and two points and a quarter of it more: the tips between its lines.
+    fn inside(&self, window: &Window) -> Window {
+        let m = self.eta.len();
+        let around = |axis: &[f64], index: &dyn Fn(usize) -> usize, [a, b]: [f64; 2]| {
+            let inside = (0..self.depth.len()).filter(|k| self.depth[*k] < 0.0).map(index);
+            let [first, last] = inside.fold([usize::MAX, 0], |[p, q], k| [p.min(k), q.max(k)]);
+            if first > last {
+                return [a, b];
+            }
+            let more = 2.0 * (axis[1] - axis[0]) + 0.25 * (axis[last] - axis[first]);
+            [(axis[first] - more).max(a), (axis[last] + more).min(b)]
+        };
+        Window { xi: around(&self.xi, &|k| k / m, window.xi), eta: around(&self.eta, &|k| k % m, window.eta) }
+    }
+
+    /// Number of parts of the points inside, where neighbours are four, and where they are eight.
+    fn parts(&self) -> [usize; 2] {
+        [4, 8].map(|neighbours| {
+            let (n, m) = (self.xi.len() as i64, self.eta.len() as i64);
+            let mut known = vec![false; self.depth.len()];
+            let mut count = 0;
+            let mut stack = Vec::new();
+            for start in 0..self.depth.len() {
+                if known[start] || self.depth[start] >= 0.0 {
+                    continue;
+                }
+                count += 1;
+                known[start] = true;
+                stack.push(start);
+                while let Some(k) = stack.pop() {
+                    let (i, j) = (k as i64 / m, k as i64 % m);
+                    for (di, dj) in [(0, 1), (1, 0), (0, -1), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1)]
+                        .into_iter()
+                        .take(neighbours)
+                    {
+                        let (p, q) = (i + di, j + dj);
+                        if p < 0 || q < 0 || p >= n || q >= m {
+                            continue;
+                        }
+                        let l = (p * m + q) as usize;
+                        if !known[l] && self.depth[l] < 0.0 {
+                            known[l] = true;
+                            stack.push(l);
+                        }
+                    }
+                }
+            }
+            count
+        })
+    }
+
+    /// Whether a point on the window's edge is inside.
+    fn touches_the_edge(&self) -> bool {
+        let (n, m) = (self.xi.len(), self.eta.len());
+        let ends = |i: usize| self.at(i, 0) < 0.0 || self.at(i, m - 1) < 0.0;
+        (0..n).any(ends) || (0..m).any(|j| self.at(0, j) < 0.0 || self.at(n - 1, j) < 0.0)
+    }
+}
+
+/// Every point of the grid, judged by the patch's slices.
+fn check_points(case: &Case, patch: &Patch, filled: &Filled) {
+    let mut outline = Outline::new(&case.placement, case.approach, &case.window);
+    for (i, &xi) in filled.xi.iter().enumerate() {
+        let slices = patch.slices(&mut outline, xi);
+        for (j, &eta) in filled.eta.iter().enumerate() {
+            let depth = filled.at(i, j);
+            let found = slices.iter().any(|(_, slice)| slice.eta[0] <= eta && eta <= slice.eta[1]);
+            let sure = depth.abs() > DOUBTFUL && depth.is_finite();
+            // Where a body ends a point may round off it.
+            let beside = |slice: &[f64; 2]| slice.iter().any(|edge| (edge - eta).abs() < 1e-6);
+            assert!(
+                found == (depth < 0.0) || !sure || slices.iter().any(|(_, slice)| beside(&slice.eta)),
+                "{}: s − δ = {depth:e} at ({xi}, {eta}), {slices:?}",
+                case.name
+            );
+        }
+    }
+}
+
+/// What the fill of a case has left open.
+#[derive(Debug, Default, Clone, Copy)]
+struct Open {
+    cases: usize,
+    connection: usize,
+    edge: usize,
+    area: usize,
+}
+
+/// What a fill of such cells \[mm\] may miss of the area beside the ends of a surface, where s does not pass δ \[mm²\].
+fn beside_ends(patch: &Patch, cell: f64) -> f64 {
+    let ends = |c: &Component| c.ends.iter().filter(|end| **end == End::ProfileEnd).count();
+    patch.components.iter().map(|c| 0.5 * cell * (c.eta[1] - c.eta[0]) * ends(c) as f64).sum()
+}
+
+fn check(case: &Case) -> Open {
+    let patch = Patch::new(&case.placement, case.approach, &case.window);
+    let mut n = POINTS[0];
+    let mut before = case.filled(&case.window, n);
+    check_points(case, &patch, &before);
+    let mut open = Open { cases: 1, ..Open::default() };
+    loop {
+        n *= 2;
+        let filled = case.filled(&case.window, n);
+        let (area, change) = (filled.area(), (filled.area() - before.area()).abs());
+        let near = (patch.area() - area).abs() <= AREA * area + 2.0 * change;
+        let parts = filled.parts();
+        let connected = parts == [patch.components.len(); 2];
+        let cut = patch.cut_by_window() == filled.touches_the_edge();
+        let fine = change <= 0.5 * AREA * area;
+        if near && connected && cut && fine {
+            return open;
+        }
+        if n >= POINTS[1] {
+            let cell = filled.xi[1] - filled.xi[0];
+            let cells = cell * (filled.eta[1] - filled.eta[0]);
+            // Two coarse grids may agree by chance.
+            let ([area, change], fine) =
+                if near && fine { ([area, change], true) } else { case.closer_area(&filled) };
+            let near = (patch.area() - area).abs() <= AREA * area + 2.0 * change + beside_ends(&patch, cell);
+            assert!(near, "{}: area {}, by the fill {area} ± {change}", case.name, patch.area());
+            // What is smaller than some cells the fill may not see.
+            let seen = patch.components.iter().filter(|c| c.area > 100.0 * cells).count();
+            assert!(
+                connected || parts[0] >= seen || parts[1] <= patch.components.len(),
+                "{}: {} components, {parts:?} by the fill",
+                case.name,
+                patch.components.len()
+            );
+            assert!(
+                patch.cut_by_window() || !filled.touches_the_edge(),
+                "{}: not cut by the window, and points on its edge are inside",
+                case.name
+            );
+            open.connection = usize::from(!connected);
+            open.edge = usize::from(!cut);
+            open.area = usize::from(!fine);
+            if !connected {
+                println!("{}: {} components, {parts:?} by the fill", case.name, patch.components.len());
+            }
+            return open;
+        }
+        before = filled;
+    }
+}
+
+/// An automatic grid has a ring of s > δ around it, or of points without a surface; and the whole patch's components are those
+/// of its window.
+fn check_rings(case: &Case) {
+    let whole = Patch::new(&case.placement, case.approach, &Window::UNBOUNDED);
+    for group in axes::groups(&whole, 0.0, None) {
+        let axes = group.axes(None).expect("axes");
+        let (n, m) = (axes.xi.len(), axes.eta.len());
+        let depth = depths(&case.placement, &axes.xi, &axes.eta, case.approach);
+        for (k, depth) in depth.iter().enumerate() {
+            let (i, j) = (k / m, k % m);
+            let ring = i == 0 || j == 0 || i + 1 == n || j + 1 == m;
+            assert!(
+                !ring || *depth > -DOUBTFUL,
+                "{}: s − δ = {depth:e} on the ring, at ({}, {}) of {group:?}",
+                case.name,
+                axes.xi[i],
+                axes.eta[j]
+            );
+        }
+    }
+}
+
+#[test]
+fn patches_are_what_a_flood_fill_finds() {
+    let count = std::env::var("WHEELRAIL_PATCHES").ok().and_then(|count| count.parse().ok()).unwrap_or(PAIRS);
+    println!("cases 0 … {count}");
+    let failed = std::sync::Mutex::new(Vec::new());
+    let sum = |a: Open, b: Open| Open {
+        cases: a.cases + b.cases,
+        connection: a.connection + b.connection,
+        edge: a.edge + b.edge,
+        area: a.area + b.area,
+    };
+    let one = |number: u64| {
+        let Some(case) = Case::new(number) else { return Open::default() };
+        let outcome = std::panic::catch_unwind(|| {
+            check_rings(&case);
+            check(&case)
+        });
+        outcome.unwrap_or_else(|_| {
+            failed.lock().expect("a list").push(case.name.clone());
+            Open { cases: 1, ..Open::default() }
+        })
+    };
+    let open = (0..count).into_par_iter().map(one).reduce(Open::default, sum);
+    println!("left open: {open:?}");
+    let failed = failed.into_inner().expect("a list");
+    assert!(failed.is_empty(), "{} of {} failed:\n{}", failed.len(), open.cases, failed.join("\n"));
+    assert!(open.cases as f64 > 0.7 * count as f64, "only {} pairs meet", open.cases);
+    assert!((open.connection as f64) < UNDECIDED * count as f64, "{open:?}");
+}

@@ -1,0 +1,213 @@
+//! The parry3d check agrees on every scene it should agree on, and on no mutation.
+
+use crate::common::{Reference, ReferenceSegment, references};
+use wheelrail::interpenetration::Window;
+use wheelrail::placement::{Pair, Placement};
+use wheelrail::profile::{Arc, Half, Polynomial, Profile, Segment, Shape, standards};
+use wheelrail::separation::Evaluator;
+use wheelrail_check::{Answer, Report, Request, check};
+use wheelrail_report::verification::{Subject, Verified, built_in_pairs, verify};
+
+/// What the checker must reach itself, so that its verdict means something \[mm\].
+const FLOOR: f64 = 1e-12;
+const BRACKET: f64 = 1e-9;
+
+/// Time for one scene \[s\]: 2 s are promised in release, on an idle machine.
+const SECONDS: f64 = 2.0;
+
+/// The check of a placed pair against the point-wise evaluator over `own`, with a mutation of its answers.
+fn checked(
+    placement: &Placement,
+    own: &Placement,
+    request: &Request,
+    mutate: impl Fn(&mut Answer, f64, f64),
+) -> Report {
+    let mut evaluator = Evaluator::new(own);
+    let mut answer = |xi: f64, eta: f64| {
+        let mut answer = Answer::of(&mut evaluator, xi, eta);
+        mutate(&mut answer, xi, eta);
+        answer
+    };
+    check(placement, request, &mut answer).expect("finite profiles")
+}
+
+fn assert_agrees(Verified { name, report }: &Verified) {
+    assert!(report.agrees, "{name}\n{report}");
+    let counts = report.counts;
+    assert!(counts.compared >= counts.points / 2, "{name}\n{report}");
+    assert!(report.floors.len() == 4 && report.floors.iter().all(|f| f.ray_mm < FLOOR), "{name}\n{report}");
+    assert!(report.bracket_mm > 0.0 && report.bracket_mm < BRACKET, "{name}\n{report}");
+    assert!(report.distances.violation.compared > 0, "{name}\n{report}");
+    assert!(report.distances.bodies_mm > 0.0, "{name}\n{report}");
+    assert!(report.seconds < SECONDS, "{name}: {} s", report.seconds);
+}
+
+fn subject(reference: &Reference) -> Subject {
+    Subject::of_reference(reference).expect("a scene that can be placed")
+}
+
+#[test]
+fn every_reference_scene_agrees_with_and_without_skew() {
+    for reference in references() {
+        let subject = subject(&reference);
+        for subject in subject.skewed().chain([subject.clone()]) {
+            let verified = subject.verify().expect("finite profiles");
+            println!("{}: {:.3} s\n{}", verified.name, verified.report.seconds, verified.report);
+            assert_agrees(&verified);
+        }
+    }
+}
+
+#[test]
+fn every_built_in_pair_agrees() {
+    let pairs = built_in_pairs().expect("profiles with a point at x = 0");
+    assert_eq!(pairs.len(), 25 * 14);
+    verify(&pairs).expect("finite profiles").iter().for_each(assert_agrees);
+}
+
+/// Scenes whose bodies are one arc or line each.
+fn simple_references() -> Vec<Reference> {
+    let simple = |r: &Reference| r.scene.rail.len() == 1 && r.scene.wheel.len() == 1;
+    let all: Vec<_> = references().into_iter().filter(simple).collect();
+    assert!(all.len() >= 5);
+    all
+}
+
+#[test]
+fn a_wrong_separation_is_caught() {
+    for reference in references() {
+        let Subject { placement, request, .. } = subject(&reference);
+        for wrong in [1e-6, -1e-6, 1e-10] {
+            let report = checked(&placement, &placement, &request, |a, _, _| a.separation += wrong);
+            assert!(!report.agrees, "{}: {wrong} mm\n{report}", reference.name);
+            assert!((report.separation.median - wrong.abs()).abs() < 1e-12, "{report}");
+        }
+        // At a single point.
+        let at = [request.window.xi[1], request.window.eta[0]];
+        let report = checked(&placement, &placement, &request, |a, xi, eta| {
+            if [xi, eta] == at {
+                a.separation += 1e-6;
+            }
+        });
+        assert!(!report.agrees && report.separation.worst_at_mm == at, "{}\n{report}", reference.name);
+        let report = checked(&placement, &placement, &request, |a, _, eta| {
+            if eta > 0.0 {
+                a.separation = f64::NAN;
+            }
+        });
+        assert!(!report.agrees, "{}\n{report}", reference.name);
+    }
+}
+
+#[test]
+fn a_wrong_radius_is_caught() {
+    for reference in simple_references() {
+        let Subject { placement, request, .. } = subject(&reference);
+        for body in 0..3 {
+            let mut wrong = reference.clone();
+            let segments = [&mut wrong.scene.rail, &mut wrong.scene.wheel];
+            if let Some(segments) = segments.into_iter().nth(body) {
+                let ReferenceSegment::Arc { r, .. } = &mut segments[0] else { continue };
+                *r *= 1.0 + 1e-6;
+            } else {
+                wrong.scene.wheel_radius *= 1.0 + 1e-6;
+            }
+            let own = subject(&wrong).placement;
+            // 1e-6 of a crown of 10 m is a nm at 15 mm from C: the window of the scene, not a point of it.
+            let report = checked(&placement, &own, &request, |_, _, _| {});
+            assert!(!report.agrees, "{} {body}\n{report}", reference.name);
+        }
+    }
+}
+
+#[test]
+fn a_wrong_normal_is_caught() {
+    for reference in references() {
+        let Subject { placement, request, .. } = subject(&reference);
+        let flip = |n: &mut [f64; 3]| n.iter_mut().for_each(|c| *c = -*c);
+        let rail = checked(&placement, &placement, &request, |a, _, _| flip(&mut a.normals.rail));
+        let wheel = checked(&placement, &placement, &request, |a, _, _| flip(&mut a.normals.wheel));
+        let tilted = checked(&placement, &placement, &request, |a, _, _| a.normals.wheel[1] += 1e-9);
+        let missing = checked(&placement, &placement, &request, |a, _, _| a.normals.rail[0] = f64::NAN);
+        for report in [rail, wheel, tilted, missing] {
+            assert!(!report.agrees && !report.normals.within(), "{}\n{report}", reference.name);
+        }
+    }
+}
+
+#[test]
+fn a_skew_left_out_is_caught() {
+    for reference in references() {
+        let Subject { placement: own, request, .. } = subject(&reference);
+        let placement = Placement { skew: own.skew + 1e-3, ..own.clone() };
+        let report = checked(&placement, &own, &request, |_, _, _| {});
+        assert!(!report.agrees, "{}\n{report}", reference.name);
+    }
+}
+
+/// A rail and a wheel \[mm\], in contact at chosen abscissae.
+fn pair(rail: Profile, wheel: Profile) -> Pair {
+    Pair::new(rail, wheel, 460.0).expect("finite profiles")
+}
+
+fn arc(radius: f64, half: f64) -> Profile {
+    let arc = Arc::about([0.0, -radius], radius, Half::Upper, [-half, half]).expect("an arc");
+    Profile::new("crown", "test", vec![Segment::arc(arc)]).expect("a profile")
+}
+
+fn window(xi: [f64; 2], eta: [f64; 2], approach: f64) -> Request {
+    Request { window: Window { xi, eta }, approach }
+}
+
+fn as_placed(placement: &Placement, request: &Request) -> Report {
+    checked(placement, placement, request, |_, _, _| {})
+}
+
+#[test]
+fn contact_at_an_edge_agrees() {
+    // The wheel's profile ends at x = 8, steeper than the crown there: ξ is tangent to the rail only.
+    let line = Arc::line([-30.0, 1.9], [8.0, 0.0]).expect("a line");
+    let wheel = Profile::new("edge", "test", vec![Segment::arc(line)]).expect("a profile");
+    let angle = -(8.0f64 / 300.0).asin();
+    let placement = pair(arc(300.0, 36.0), wheel).placed_along([8.0, angle], [8.0, angle], 0.0);
+    let placement = placement.expect("points of both");
+    assert!(placement.rail.is_smooth() && !placement.wheel.is_smooth());
+    let report = as_placed(&placement, &window([-5.0, 5.0], [-5.0, 5.0], 0.02));
+    assert!(report.agrees, "{report}");
+    // A smooth contact whose ξ is turned is still caught.
+    let mut turned = pair(arc(300.0, 36.0), arc(400.0, 36.0)).placed(0.0, 0.0, 0.0).expect("points of both");
+    turned.rail.point.station.sin = 1e-6;
+    let report = as_placed(&turned, &window([-5.0, 5.0], [-5.0, 5.0], 0.02));
+    assert!(!report.agrees, "{report}");
+}
+
+#[test]
+fn the_closings_of_a_drawing_agree() {
+    // S1002's zones A and B miss each other by 2.8e-10 mm; the point over their joint is in every check.
+    let (rail, wheel) = (standards::rail("60E1"), standards::wheel("S1002"));
+    let pair = pair(rail.expect("built in"), wheel.expect("built in"));
+    for x in [4.0, 8.0, 12.0, 16.0] {
+        let placement = pair.placed(x, x, 0.0).expect("points of both");
+        let report = as_placed(&placement, &window([-20.0, 30.0], [-15.0, 15.0], 0.1));
+        assert!(report.agrees, "{x}\n{report}");
+        assert_eq!(report.normals.compared, 2 * report.counts.compared, "{report}");
+    }
+}
+
+#[test]
+fn an_inflection_between_foot_and_closest_point_agrees() {
+    // The slope of z = x³ − 0.3x is least at x = 0, inside the piece and on the closest point's way.
+    let wave = Polynomial::graph(&[0.0, -0.3, 0.0, 1.0], [-0.6, 0.6]).expect("a cubic");
+    let segment = Segment { label: String::new(), shape: Shape::Polynomial(wave) };
+    let rail = Profile::new("wave", "test", vec![segment]).expect("a profile");
+    let placement = pair(rail, arc(300.0, 36.0)).placed(-0.316, 0.0, 0.0).expect("points of both");
+    let report = as_placed(&placement, &window([-0.2, 0.8], [-2.0, 2.0], 0.05));
+    assert!(report.agrees, "{report}");
+}
+
+#[test]
+fn a_check_without_any_closest_distance_does_not_agree() {
+    let placement = pair(arc(300.0, 36.0), arc(3000.0, 36.0)).placed(0.0, 0.0, 0.0).expect("points of both");
+    let report = as_placed(&placement, &window([28.0, 34.0], [-5.0, 5.0], 0.0));
+    assert_eq!((report.distances.violation.compared, report.agrees), (0, false), "{report}");
+}

@@ -1,0 +1,29 @@
+//! The tests of the library, in one binary: each binary links the whole library.
+#![allow(
+    clippy::expect_used,
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "tests stop at the first surprise and say what they saw"
+)]
+
+mod any_grid;
+mod closed_forms;
+mod common;
+mod flood_fill;
+mod hard_cases;
+mod independent_check;
+mod interpenetration;
+mod invariances;
+mod layers;
+mod measured_scene;
+mod mesh;
+mod parts;
+mod practice;
+mod promises;
+mod reference_values;
+mod reference_yawed;
+mod report;
+mod strips;
+mod yawed_patches;

@@ -1,0 +1,293 @@
+//! Patches under yawed wheels against every point of lines of constant ξ.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use crate::common::{profile, references};
+use wheelrail::contact::feasibility::feasibility;
+use wheelrail::interpenetration::{End, Outline, Patch, Window};
+use wheelrail::mesh::strips::{Counts, StripMesh};
+use wheelrail::numerics::roots::bracketed;
+use wheelrail::placement::{Pair, Placement};
+use wheelrail::profile::{Arc, Half, Profile, Section, Side, standards};
+use wheelrail::run::Run;
+use wheelrail::scene;
+use wheelrail::separation::Evaluator;
+
+/// Points of a line of constant ξ at which s is looked at.
+const POINTS: usize = 600;
+
+/// Lines of constant ξ over a patch, and beyond it by this share on each side.
+const LINES: usize = 60;
+const MARGIN: f64 = 0.05;
+
+/// What is looked at \[mm\].
+const NEAR: Window = Window { xi: [-8.0, 8.0], eta: [-15.0, 15.0] };
+
+/// No scene may take longer, on a loaded machine.
+const LONGEST: Duration = Duration::from_secs(20);
+
+/// All intervals of η in which s < δ, but for those between two of the points.
+fn scanned(evaluator: &mut Evaluator<'_>, xi: f64, [from, to]: [f64; 2], delta: f64) -> Vec<[f64; 2]> {
+    let mut inside = |eta: f64| evaluator.separation(xi, eta) < delta;
+    let eta = |k: usize| from + (to - from) * k as f64 / POINTS as f64;
+    let mut intervals: Vec<[f64; 2]> = Vec::new();
+    let mut before = inside(from);
+    intervals.extend(before.then_some([from, to]));
+    for k in 1..=POINTS {
+        let here = inside(eta(k));
+        if here != before {
+            let side = |eta: f64| if inside(eta) == before { -1.0 } else { 1.0 };
+            let change = bracketed(side, eta(k - 1), eta(k)).expect("a change");
+            match intervals.last_mut().filter(|_| before) {
+                Some(last) => last[1] = change,
+                None => intervals.push([change, to]),
+            }
+        }
+        before = here;
+    }
+    intervals
+}
+
+/// The slices of all components at ξ.
+fn sliced(patch: &Patch, outline: &mut Outline<'_>, xi: f64) -> Vec<[f64; 2]> {
+    let mut all: Vec<[f64; 2]> = patch.slices(outline, xi).into_iter().map(|(_, slice)| slice.eta).collect();
+    all.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    all.retain(|[a, b]| a < b);
+    all
+}
+
+fn shoelace(points: &[[f64; 2]]) -> f64 {
+    let around = points.iter().zip(points.iter().cycle().skip(1));
+    around.map(|(p, q)| (p[0] * q[1] - q[0] * p[1]) / 2.0).sum()
+}
+
+fn widths(intervals: &[[f64; 2]]) -> f64 {
+    intervals.iter().map(|[a, b]| b - a).sum()
+}
+
+/// Checks a patch near C line by line, its area, loops and mesh; the patch.
+fn check(name: &str, placement: &Placement, delta: f64) -> Patch {
+    let patch = Patch::new(placement, delta, &NEAR);
+    let extent = patch.extent().unwrap_or_else(|| panic!("{name}: empty"));
+    let wider = |[a, b]: [f64; 2], [from, to]: [f64; 2]| {
+        let margin = MARGIN * (b - a);
+        [(a - margin).max(from), (b + margin).min(to)]
+    };
+    let [xi, eta] = [wider(extent.xi, NEAR.xi), wider(extent.eta, NEAR.eta)];
+    let (mut evaluator, mut outline) = (Evaluator::new(placement), Outline::new(placement, delta, &NEAR));
+    let (step, fine) = ((xi[1] - xi[0]) / LINES as f64, (eta[1] - eta[0]) / POINTS as f64);
+    let mut area = 0.0;
+    for k in 0..LINES {
+        let xi = xi[0] + step * (k as f64 + 0.5);
+        let [expected, found] = [scanned(&mut evaluator, xi, eta, delta), sliced(&patch, &mut outline, xi)];
+        area += step * widths(&expected);
+        // What is narrower than two points the scan may miss.
+        let all_wide = expected.iter().chain(&found).all(|[a, b]| b - a > 2.0 * fine);
+        let allowed = if all_wide && expected.len() == found.len() { 1e-8 } else { 4.0 * fine };
+        let off = (widths(&expected) - widths(&found)).abs();
+        assert!(off <= allowed, "{name}: at ξ = {xi} {found:?}, not {expected:?}");
+    }
+    let error = (patch.area() / area - 1.0).abs();
+    assert!(error < 0.01, "{name}: area {}, {area} by lines", patch.area());
+    for c in &patch.components {
+        let enclosed: f64 = [&c.boundary].into_iter().chain(&c.holes).map(|points| shoelace(points)).sum();
+        assert!((enclosed - c.area).abs() < 2e-3 * area, "{name}: loops around {enclosed} of {}", c.area);
+        assert!(c.holes.iter().all(|hole| shoelace(hole) < 0.0), "{name}: a hole that runs the other way");
+    }
+    let mesh = StripMesh::new(placement, &patch, Counts::default()).expect("a mesh");
+    let meshed: f64 = mesh.cells.iter().map(|cell| cell.area).sum();
+    assert!((meshed / patch.area() - 1.0).abs() < 1e-6, "{name}: mesh of {meshed} over {}", patch.area());
+    patch
+}
+
+#[test]
+fn built_in_pairs_have_the_patch_that_the_points_have() {
+    let pairs = [("60E1", "S1002"), ("56E1", "EN15302-A"), ("49E1", "APTA-120"), ("54E3", "EN15302-I")];
+    for (rail, wheel) in pairs {
+        let [r, w] = [standards::rail(rail), standards::wheel(wheel)].map(|p| p.expect("a profile"));
+        let [first, last] = Section::own_axes(&w, Side::Wheel).reach().expect("a profile with points");
+        let pair = Pair::new(r, w, 460.0).expect("a pair");
+        for yaw in [-0.1, -0.02, -0.003, 0.003, 0.02, 0.1] {
+            // On the flange, in its root, on the tread, and towards the wheel's end.
+            for wheel_x in [first + 15.0, first + 40.0, 0.0, last - 3.0, last - 0.3] {
+                let placement = pair.placed(if wheel_x < first + 41.0 { -34.0 } else { 5.0 }, wheel_x, yaw);
+                let name = format!("{rail} under {wheel} at {wheel_x}, yaw {yaw}");
+                check(&name, &placement.expect("a placement"), 0.05);
+            }
+        }
+    }
+}
+
+#[test]
+fn hollow_wheels_and_throats_have_theirs() {
+    let names = ["hollow_tread", "throat", "steep_flange", "UIC60_EN15302A_root", "joint_in_column"];
+    for reference in references().iter().filter(|reference| names.contains(&reference.name.as_str())) {
+        for yaw in [-0.15, -0.05, 0.01, 0.05, 0.3] {
+            let mut placement = reference.placement().expect("a placement");
+            placement.skew = yaw;
+            check(&format!("{}, yaw {yaw}", reference.name), &placement, 0.05);
+        }
+    }
+}
+
+/// A crown of 50 mm radius under a cone of 45° that ends beside C, on the left or on the right.
+fn at_the_end(from: f64, to: f64, yaw: f64) -> Placement {
+    let rail = Arc::about([0.0, -50.0], 50.0, Half::Upper, [-45.0, 20.0]).and_then(profile);
+    let wheel = Arc::line([from, from], [to, to]).and_then(profile);
+    let pair = Pair::new(rail.expect("a crown"), wheel.expect("a cone"), 460.0).expect("a pair");
+    pair.placed(-50.0 / 2f64.sqrt(), 0.0, yaw).expect("a placement")
+}
+
+#[test]
+fn the_end_of_a_wheel_beside_the_midplane() {
+    for yaw in [-0.05, -0.01, 0.01, 0.05] {
+        let left = check(&format!("left end, yaw {yaw}"), &at_the_end(-0.05, 20.0, yaw), 0.2);
+        assert_eq!(left.components.len(), 1, "yaw {yaw}");
+        check(&format!("right end, yaw {yaw}"), &at_the_end(-20.0, 0.05, yaw), 0.2);
+    }
+}
+
+/// Lines of constant ξ that touch the circle of the wheel's end divide: two prongs, of one component with one loop.
+#[test]
+fn a_component_goes_on_on_both_sides_of_the_wheel_s_end() {
+    for yaw in [-1e-3, 1e-3] {
+        let placement = at_the_end(-20.0, 0.05, yaw);
+        let patch = check(&format!("yaw {yaw}"), &placement, 0.2);
+        let [c] = patch.components.as_slice() else { panic!("{} components", patch.components.len()) };
+        assert_eq!((c.ends, c.holes.len()), ([End::Tip; 2], 0), "yaw {yaw}");
+        let mut outline = Outline::new(&placement, 0.2, &NEAR);
+        let most = (0..400).map(|k| c.xi[0] + (c.xi[1] - c.xi[0]) * (f64::from(k) + 0.5) / 400.0);
+        let most = most.map(|xi| sliced(&patch, &mut outline, xi).len()).max();
+        assert_eq!(most, Some(2), "yaw {yaw}");
+    }
+}
+
+/// Two lines of a wheel that meet in a hollow kink have a lowest place each.
+#[test]
+fn a_hollow_kink_divides_the_lines() {
+    let rail = Arc::about([0.0, -80.0], 80.0, Half::Upper, [-30.0, 30.0]).and_then(profile).expect("a crown");
+    let sides = [Arc::line([-30.0, -1.5], [1.0, 0.05]), Arc::line([1.0, 0.05], [30.0, -8.65])];
+    let sides = sides.map(|side| wheelrail::profile::Segment::arc(side.expect("a line")));
+    let wheel = Profile::new("roof", "test", sides.to_vec()).expect("a wheel");
+    for yaw in [-0.1, 0.02, 0.1, 0.2] {
+        let pair = Pair::new(rail.clone(), wheel.clone(), 460.0).expect("a pair");
+        let placement = pair.placed(4.0, 0.0, yaw).expect("a placement");
+        check(&format!("roof, yaw {yaw}"), &placement, 0.02);
+    }
+}
+
+#[test]
+fn any_yaw_ends_in_time() {
+    for (rail, wheel, radius) in
+        [("56E1", "S1002", 1200.0), ("60E1", "EN15302-A", 2500.0), ("49E1", "S1002", 460.0)]
+    {
+        for yaw in [-0.334, -0.22, 0.25, 0.334, 0.5, 0.9, 1.3] {
+            let text = format!(
+                "[rail]\nprofile = \"{rail}\"\n[wheel]\nprofile = \"{wheel}\"\nradius = {radius}\n\
+                 [contact]\noffset = 0.0\nyaw = {yaw}\n[patch]\napproach = 0.05\n"
+            );
+            let start = Instant::now();
+            let scene = scene::parse(&text, false).expect("a scene");
+            let run = Run::new(scene, Path::new("."), "yawed");
+            assert!(start.elapsed() < LONGEST, "{rail}, {wheel}, {yaw}: {:?}", start.elapsed());
+            for part in run.iter().flat_map(|run| &run.parts) {
+                check(
+                    &format!("{rail} under {wheel}, R = {radius}, yaw {yaw}"),
+                    &part.contact.placement,
+                    0.05,
+                );
+            }
+        }
+    }
+}
+
+/// The least s over a box, by grids that close in on the lowest point of the one before.
+fn least_by_grids(placement: &Placement, [xi, eta]: [[f64; 2]; 2]) -> f64 {
+    let mut evaluator = Evaluator::new(placement);
+    let (mut centre, mut half) =
+        ([(xi[0] + xi[1]) / 2.0, (eta[0] + eta[1]) / 2.0], [(xi[1] - xi[0]) / 2.0, (eta[1] - eta[0]) / 2.0]);
+    let mut least = f64::INFINITY;
+    for (round, points) in [(0, 400), (1, 40), (2, 40), (3, 40), (4, 40), (5, 40)] {
+        let around = centre;
+        for i in 0..=points {
+            for j in 0..=points {
+                let at = [(i, 0), (j, 1)].map(|(k, axis)| {
+                    around[axis] + half[axis] * (2.0 * f64::from(k) / f64::from(points) - 1.0)
+                });
+                let s = evaluator.separation(at[0], at[1]);
+                if s < least {
+                    (least, centre) = (s, at);
+                }
+            }
+        }
+        let share = if round == 0 { 0.02 } else { 0.2 };
+        half = half.map(|half| half * share);
+    }
+    least
+}
+
+/// Flange contacts that overlap before or behind the midplane, and some that do not.
+#[test]
+fn the_least_separation_under_yaw_is_that_of_all_points() {
+    let (mut overlaps, mut beside) = (0, 0);
+    for (rail, wheel) in [("60E1", "S1002"), ("56E1", "EN15302-A"), ("49E1", "APTA-120")] {
+        let profiles = [standards::rail(rail), standards::wheel(wheel)].map(|p| p.expect("a profile"));
+        let [r, w] = profiles;
+        let pair = Pair::new(r, w, 460.0).expect("a pair");
+        for (rail_x, wheel_x) in [(-34.0, -33.0), (-35.0, -38.0), (-35.5, -42.0), (-20.0, -24.0), (4.0, 6.0)]
+        {
+            for yaw in [-0.05, -0.01, 0.003, 0.02, 0.08] {
+                // Not every wheel has a flange that wide.
+                let Ok(placement) = pair.placed(rail_x, wheel_x, yaw) else { continue };
+                let found = feasibility(&placement).expect("an overlap");
+                let name = format!("{rail} at {rail_x} under {wheel} at {wheel_x}, yaw {yaw}: {found:?}");
+                let [a, b] = placement.overlap().expect("an overlap");
+                let by_grids = least_by_grids(&placement, [[a - 20.0, b + 20.0], [-150.0, 150.0]]);
+                let least = found.least_separation_mm;
+                assert!(least <= by_grids + 1e-10, "{name}, {by_grids} by grids");
+                // Where the surfaces end the grids do not hit the lowest point.
+                assert!(least > by_grids - 0.02 * (1.0 + by_grids.abs()), "{name}, {by_grids} by grids");
+                let there = Evaluator::new(&placement).separation(found.at_xi_mm, found.at_eta_mm);
+                assert!(there.is_nan() || (there - least).abs() < 1e-9, "{name}: {there} there");
+                overlaps += usize::from(!found.feasible);
+                beside += usize::from(found.at_eta_mm.abs() > 1.0);
+            }
+        }
+    }
+    assert!(overlaps > 10 && beside > 10, "{overlaps} overlap, {beside} beside the midplane");
+}
+
+/// Joints of S1002 and 60E1 as drawn miss each other by a tenth of a micrometre: no patch may be torn there, and no grid cut it.
+#[test]
+fn joints_of_drawings_do_not_tear_patches() {
+    let rail = "[rail]\nprofile = \"60E1\"\nrotate = \"1:40\"\n";
+    let single = |wheel: &str, offset: f64, yaw: f64| {
+        format!(
+            "{rail}[wheel]\nprofile = {wheel:?}\nradius = 460.0\n[contact]\noffset = {offset}\nyaw = {yaw}\n"
+        )
+    };
+    let wheelset = |lateral: f64, yaw: f64| {
+        format!(
+            "{rail}[wheel]\nprofile = \"S1002\"\nradius = 460.0\n[track]\ngauge = 1435.0\ngauge_height = 14.0\n\
+             [wheelset]\nback_to_back = 1360.0\nflange_back_x = -70.0\nlateral = {lateral}\nyaw = {yaw}\n"
+        )
+    };
+    let mut scenes = Vec::new();
+    for k in 0..11 {
+        let more = 0.02 * f64::from(k) - 0.1;
+        scenes.extend(["S1002", "S1002-arcs-1um"].map(|wheel| single(wheel, 3.5 + more, 0.01)));
+        scenes.push(single("S1002", 3.4 + more, 0.012));
+        scenes.push(wheelset(6.15 + more, 0.01));
+    }
+    for scene in scenes {
+        let text = format!("{scene}[patch]\napproach = 0.08\n");
+        let parsed = scene::parse(&text, false).expect("a scene");
+        let run = Run::new(parsed, Path::new("."), "joints").expect("a run");
+        for part in &run.parts {
+            let patch = part.analysis.patch.as_ref().expect("a patch");
+            let [c] = patch.components.as_slice() else { panic!("{text}: {} parts", patch.components.len()) };
+            assert_eq!((c.ends, c.cut_by_window, c.holes.len()), ([End::Tip; 2], false, 0), "{text}");
+        }
+    }
+}
