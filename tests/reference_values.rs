@@ -9,8 +9,8 @@ use wheelrail::accuracy::reference::exact;
 use wheelrail::interpenetration::Slicer;
 use wheelrail::separation::axis::EtaAxis;
 use wheelrail::separation::grid::Method;
+use wheelrail::separation::methods::report_newton;
 use wheelrail::separation::plan::{self, FULL_PRECISION};
-use wheelrail::separation::report_newton;
 
 /// What is promised to users; no row of [`BOUNDS`] may be looser.
 const PROMISED_RELATIVE: f64 = 1e-13;

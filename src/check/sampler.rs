@@ -6,6 +6,7 @@
 
 use super::meshes::Vector;
 use crate::numerics::polynomial::recentred;
+use crate::numerics::twice::Twice;
 use crate::placement::{Body, Placement};
 use crate::profile::{Polynomial, Segment, Shape, Station};
 
@@ -110,7 +111,7 @@ impl Curve {
         match &self.shape {
             Form::Turning { curvature, .. } => curvature.abs(),
             Form::Polynomial { polynomial, .. } => {
-                let bound = |c: &[twofloat::TwoFloat]| -> f64 {
+                let bound = |c: &[Twice]| -> f64 {
                     let local = recentred(c, (polynomial.t[0] + t).into());
                     let terms = local.iter().enumerate().skip(2);
                     terms

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::placement::Placement;
 use crate::run::contacts;
 use crate::scene::{self, equal_steps};
-use crate::separation::midsep::table;
+use crate::separation::midplane::table;
 
 /// Values of ξ when the scene leaves the axis to the program.
 const DEFAULT_ROWS: usize = 101;
