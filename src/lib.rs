@@ -14,7 +14,7 @@
 //! |---|---|---|
 //! | Sec. 3, App. A | segment equations, smooth chains from drawing data | [`profile`], [`profile::builder`] |
 //! | Sec. 4 | contact frame, transformed parameters, feasibility | [`placement`], [`contact::feasibility`] |
-//! | MIDSEP, Sec. 5 | transformed parameters and Δζ on the midplane | [`separation::midsep`] |
+//! | MIDSEP, Sec. 5 | transformed parameters and Δζ on the midplane | [`separation::midplane`] |
 //! | INSEP, Sec. 6 | s(ξ, η) and unit normals over the grid | [`separation`] |
 //! | INTERPEN, Sec. 7 | η(ξ) with s = δ | [`interpenetration`] |
 //! | CONFORM, COUNTACT | the solvers that read all this | [`mod@export`] (decks), [`mesh`] |

@@ -6,7 +6,7 @@ use super::search::Contact;
 use crate::numerics::elliptic::complete;
 use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
-use crate::separation::approximate::{form, quadratic_form};
+use crate::separation::methods::quadratic::{form, quadratic_form};
 
 /// Elastic constants of one body.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -12,8 +12,8 @@ use crate::numerics::elliptic::complete;
 use crate::numerics::quadrature::integral;
 use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
-use crate::separation::approximate::quadratic_form;
 use crate::separation::gap::midplane_gap;
+use crate::separation::methods::quadratic::quadratic_form;
 
 /// Share of δ by which Kik and Piotrowski let the bodies overlap: the surfaces between settle the rest.
 const VIRTUAL_SHARE: f64 = 0.55;

@@ -6,8 +6,8 @@
 use super::skewed::{Edge, STEP_ROUNDINGS, Skewed};
 use crate::placement::Placement;
 use crate::separation::Evaluator;
-use crate::separation::column::{Foot, Span, WheelSurface};
 use crate::separation::gap::midplane_gap;
+use crate::separation::wheel_surface::{SagittaPoint, Span, WheelSurface};
 
 /// Contractions of the sagitta step; each gains at least three digits away from vertical tangents.
 const CONTRACTIONS: usize = 24;
@@ -24,7 +24,7 @@ pub struct Slice {
 struct Half {
     edge: Edge,
     span: Span,
-    foot: Foot,
+    foot: SagittaPoint,
 }
 
 /// Slices of a placed pair at one approach.
@@ -130,7 +130,7 @@ impl<'a> Slicer<'a> {
     /// `None` where it is beyond `u_max`.
     fn foot_lifted(&mut self, xi: f64, depth: f64, u_max: f64) -> Option<Half> {
         self.wheel.spans(xi, u_max, &mut self.spans);
-        let half = |foot: Foot, span: &Span, ledge: bool| Half {
+        let half = |foot: SagittaPoint, span: &Span, ledge: bool| Half {
             edge: Edge { eta: foot.u.max(0.0).sqrt(), ledge },
             span: *span,
             foot,
@@ -138,15 +138,15 @@ impl<'a> Slicer<'a> {
         let floor = self.spans.first().filter(|span| span.e[0] == 0.0)?.height;
         for span in &self.spans {
             let rise = depth - (span.height - floor);
-            let end = span.e[1].is_finite().then(|| self.wheel.foot(xi, span, span.e[1]));
+            let end = span.e[1].is_finite().then(|| self.wheel.point(xi, span, span.e[1]));
             if end.is_none_or(|end| end.rise >= rise) {
                 let step = rise < -STEP_ROUNDINGS * f64::EPSILON * (span.height.abs() + floor.abs());
-                let foot = self.wheel.foot_with_rise(xi, span, rise.max(0.0), CONTRACTIONS);
+                let foot = self.wheel.point_with_rise(xi, span, rise.max(0.0), CONTRACTIONS);
                 return Some(half(foot, span, step));
             }
         }
         let last = self.spans.last().filter(|span| span.u[1] < u_max)?;
-        Some(half(self.wheel.foot(xi, last, last.e[1]), last, true))
+        Some(half(self.wheel.point(xi, last, last.e[1]), last, true))
     }
 
     /// η of the least s at ξ \[mm\]: 0 without skew, else where the wheel is parallel to η or its surface ends; NaN where

@@ -1,27 +1,36 @@
-//! Interpolation at 16 Chebyshev points of the first kind.
+//! Chebyshev points: interpolation at 16 of them, and interpolation in powers at a few.
 //!
-//! T_k is even or odd as k is. Both kinds are summed up apart: half the work, in whole vectors, and the values in reverse
-//! order have the same coefficients, every other one with its sign changed, to the last bit.
+//! The 16 points are those of the first kind on (−1, 1). T_k is even where k is even and odd where k is odd. Both kinds are summed
+//! apart: that is half the work, in whole vectors, and values in reverse order have the same coefficients to the last bit, the odd
+//! ones with opposite sign.
 
 use std::array::from_fn;
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use std::sync::LazyLock;
 
-/// How many points.
-pub const POINTS: usize = 16;
+use super::lanes::{Lanes, MANY};
+
+/// How many points an interpolant has.
+pub const POINTS: usize = MANY;
+
+/// Coefficients at the end of a series that have to be rounding before the series counts as complete. One may vanish by parity.
+pub const PROOF: usize = 2;
+
+/// Most points of an interpolant in powers.
+pub const MOST_POINTS: usize = 12;
 
 const HALF: usize = POINTS / 2;
 
-/// A matrix for T_k with even k, and one with odd k.
+/// Two matrices: one for T_k with even k, one for T_k with odd k.
 type Parts = [[[f64; HALF]; HALF]; 2];
 
-/// Weight of a value at the j-th point in the coefficient of T_(2i) or T_(2i+1), at index j, i.
+/// The weight of the value at the j-th point in the coefficient of T_(2i) (first matrix) and of T_(2i+1) (second), at \[j\]\[i\].
 static WEIGHTS: LazyLock<Parts> = LazyLock::new(|| {
     let weight = |k: usize| if k == 0 { 1.0 } else { 2.0 } / POINTS as f64;
     from_fn(|odd| from_fn(|j| from_fn(|i| weight(2 * i + odd) * cosine((2 * i + odd) * (2 * j + 1)))))
 });
 
-/// The coefficients of t^(2i) or t^(2i+1) in T_k, k = 2j or 2j + 1, at index j, i: integers.
+/// The coefficient of t^(2i) in T_(2j) (first matrix) and of t^(2i+1) in T_(2j+1) (second), at \[j\]\[i\]. All are integers.
 static POWERS: LazyLock<Parts> = LazyLock::new(|| {
     let mut rows = [[0.0; POINTS]; POINTS];
     (rows[0][0], rows[1][1]) = (1.0, 1.0);
@@ -34,17 +43,17 @@ static POWERS: LazyLock<Parts> = LazyLock::new(|| {
     from_fn(|odd| from_fn(|j| from_fn(|i| rows[2 * j + odd][2 * i + odd])))
 });
 
-/// The points of (−1, 1), descending.
-pub static NODES: LazyLock<[f64; POINTS]> = LazyLock::new(|| from_fn(|j| cosine(2 * j + 1)));
+/// The 16 points of (−1, 1), in descending order.
+pub static NODES: LazyLock<Lanes> = LazyLock::new(|| from_fn(|j| cosine(2 * j + 1)));
 
-/// cos(m π/2n) for n points.
+/// Computes cos(m π/2n) for n = 16 points.
 fn cosine(m: usize) -> f64 {
     ((m % (4 * POINTS)) as f64 * FRAC_PI_2 / POINTS as f64).cos()
 }
 
-/// The coefficients of T_0 … T_15 of the interpolant through values at the points.
+/// Computes the coefficients of T_0 … T_15 of the interpolant that takes these values at the 16 points.
 #[inline(always)]
-pub fn coefficients(values: &[f64; POINTS]) -> [f64; POINTS] {
+pub fn coefficients(values: &Lanes) -> Lanes {
     let [of_even, of_odd] = &*WEIGHTS;
     let (mut even, mut odd) = ([0.0; HALF], [0.0; HALF]);
     for j in 0..HALF {
@@ -56,10 +65,11 @@ pub fn coefficients(values: &[f64; POINTS]) -> [f64; POINTS] {
     interleaved(&even, &odd)
 }
 
-/// The coefficients of t^k from those of T_k, of which the first `kept` count. Loses digits where they fall by less than about
-/// 0.4 a step.
+/// Computes the coefficients of t^k from those of T_k. Only the first `kept` count; the others are taken for 0.
+///
+/// Accuracy: digits are lost where the coefficients fall by a factor weaker than about 0.4 a step.
 #[inline(always)]
-pub fn to_powers(c: &[f64; POINTS], kept: usize) -> [f64; POINTS] {
+pub fn to_powers(c: &Lanes, kept: usize) -> Lanes {
     let [of_even, of_odd] = &*POWERS;
     let (mut even, mut odd) = ([0.0; HALF], [0.0; HALF]);
     for j in 0..kept.div_ceil(2) {
@@ -71,7 +81,7 @@ pub fn to_powers(c: &[f64; POINTS], kept: usize) -> [f64; POINTS] {
     interleaved(&even, &odd)
 }
 
-/// sum + factor × row.
+/// Computes sum + factor × row.
 #[inline(always)]
 fn add_multiple(mut sum: [f64; HALF], factor: f64, row: &[f64; HALF]) -> [f64; HALF] {
     for k in 0..HALF {
@@ -80,15 +90,86 @@ fn add_multiple(mut sum: [f64; HALF], factor: f64, row: &[f64; HALF]) -> [f64; H
     sum
 }
 
-/// Even and odd in turn.
+/// Merges the coefficients of even and of odd k into one series.
 #[inline(always)]
-fn interleaved(even: &[f64; HALF], odd: &[f64; HALF]) -> [f64; POINTS] {
+fn interleaved(even: &[f64; HALF], odd: &[f64; HALF]) -> Lanes {
     let mut all = [0.0; POINTS];
     for k in 0..HALF {
         (all[2 * k], all[2 * k + 1]) = (even[k], odd[k]);
     }
     all
 }
+
+/// Turns values into coefficients, in place: N polynomials at once, each through the values `d` at its own places `v`.
+///
+/// `v` and `d` have one entry per point, each with N lanes; `d` ends with the coefficients of v⁰, v¹, ….
+///
+/// Method: divided differences, then Horner's rule on the factors. Cost: about n² steps for n points.
+#[inline(always)]
+pub fn powers<const N: usize>(v: &[[f64; N]], d: &mut [[f64; N]]) {
+    let n = v.len();
+    for order in 1..n {
+        let mut rest = n;
+        // Two by one division, which takes longer than some products.
+        while rest >= order + 2 {
+            rest -= 2;
+            let [i, j] = [rest, rest + 1];
+            for k in 0..N {
+                let [a, b] = [v[i][k] - v[i - order][k], v[j][k] - v[j - order][k]];
+                let inverse = 1.0 / (a * b);
+                d[j][k] = (d[j][k] - d[i][k]) * (inverse * a);
+                d[i][k] = (d[i][k] - d[i - 1][k]) * (inverse * b);
+            }
+        }
+        if rest > order {
+            for k in 0..N {
+                d[order][k] = (d[order][k] - d[order - 1][k]) / (v[order][k] - v[0][k]);
+            }
+        }
+    }
+    // p_j = d_j + (v − v_j) p_(j+1), in the place of d_j, …, d_(n−1).
+    for j in (0..n - 1).rev() {
+        for i in j..n - 1 {
+            for k in 0..N {
+                d[i][k] -= v[j][k] * d[i + 1][k];
+            }
+        }
+    }
+}
+
+/// Gives the n Chebyshev points of (0, 1) in ascending order, for n from 1 to [`MOST_POINTS`].
+pub fn unit_nodes(n: usize) -> &'static [f64] {
+    &UNIT_NODES[n - 1][..n]
+}
+
+/// The points (1 − cos((2j + 1)π/2n))/2 for n = 1 … [`MOST_POINTS`]; row n − 1 has n of them.
+static UNIT_NODES: LazyLock<[[f64; MOST_POINTS]; MOST_POINTS]> = LazyLock::new(|| {
+    from_fn(|row| {
+        let n = row as f64 + 1.0;
+        from_fn(|j| {
+            let half = (2.0 * j as f64 + 1.0) * FRAC_PI_4 / n;
+            half.sin().powi(2)
+        })
+    })
+});
+
+/// Gives the places of (0, 1) at which the error of an interpolant at n Chebyshev points is to be measured, besides the end.
+///
+/// The first extremum of the error is the largest where the function is least smooth near the beginning; the other one is near the
+/// middle, because the error at the end may happen to be zero. Up to three points have both in one place.
+pub fn extrema(n: usize) -> &'static [f64] {
+    &EXTREMA[n - 1][usize::from(n < 4)..]
+}
+
+/// The extrema (1 − cos(kπ/n))/2 for k = 1 and k = n/2; row n − 1 is for n points. For n = 1 it is that of v times a line through
+/// zero at ½.
+static EXTREMA: LazyLock<[[f64; 2]; MOST_POINTS]> = LazyLock::new(|| {
+    let extremum = |k: usize, n: usize| (FRAC_PI_2 * k as f64 / n as f64).sin().powi(2);
+    from_fn(|row| match row + 1 {
+        1 => [0.25; 2],
+        n => [extremum(1, n), extremum(n / 2, n)],
+    })
+});
 
 #[cfg(test)]
 mod tests {

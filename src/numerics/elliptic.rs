@@ -1,11 +1,11 @@
 //! Complete elliptic integrals by the arithmetic–geometric mean.
 
-/// Steps of the mean: it converges quadratically, from any modulus a double can hold.
+/// Most steps of the mean. It converges quadratically, from any modulus that a double can hold.
 const MOST_STEPS: usize = 64;
 
-/// K(e), and D(e) = (K − E)/e², for the complementary modulus k′ = √(1 − e²) in (0, 1].
+/// Computes K(e) and D(e) = (K − E)/e² for the complementary modulus k′ = √(1 − e²) in (0, 1].
 ///
-/// Accuracy: a few roundings, also for e → 0, where K − E cancels and D → π/4.
+/// Accuracy: a few roundings, even for e → 0, where K − E cancels and D → π/4.
 /// Degenerate: k′ = 0 gives infinities.
 pub fn complete(complementary: f64) -> [f64; 2] {
     let (mut a, mut b) = (1.0, complementary);

@@ -1,14 +1,15 @@
-//! Roots, polynomials, Chebyshev series, quadrature and elliptic integrals: no railway words here.
+//! Numerical methods without railway words: values in lanes, roots, polynomials, Chebyshev series, twice the working precision,
+//! quadrature and elliptic integrals.
 
 pub mod chebyshev;
 pub mod elliptic;
+pub mod lanes;
 pub mod polynomial;
-pub mod polynomials;
 pub mod quadrature;
 pub mod roots;
 pub mod twice;
 
-/// The larger of two, NaN if either is.
+/// Gives the larger of two numbers, and NaN if either is NaN.
 #[inline(always)]
 pub fn nan_max(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }

@@ -1,14 +1,14 @@
 //! Adaptive Gauss–Kronrod quadrature.
 
-/// A Gauss–Kronrod pair on \[−1, 1\]: its nodes from 0 up, outermost first, the centre last; their weights; those of the Gauss
-/// rule at every second one.
+/// A Gauss–Kronrod pair on \[−1, 1\]: the nodes of one half, the outermost first and the centre last; their weights; and the weights
+/// of the Gauss rule, which has every second node.
 struct Rule<const K: usize, const G: usize> {
     nodes: [f64; K],
     kronrod: [f64; K],
     gauss: [f64; G],
 }
 
-/// 3 and 7 points.
+/// The pair with 3 and 7 points.
 const SHORT: Rule<4, 2> = Rule {
     nodes: [0.960_491_268_708_020_3, 0.774_596_669_241_483_4, 0.434_243_749_346_802_6, 0.0],
     kronrod: [
@@ -20,7 +20,7 @@ const SHORT: Rule<4, 2> = Rule {
     gauss: [5.0 / 9.0, 8.0 / 9.0],
 };
 
-/// 7 and 15 points.
+/// The pair with 7 and 15 points.
 const LONG: Rule<8, 4> = Rule {
     nodes: [
         0.991_455_371_120_812_6,
@@ -50,45 +50,42 @@ const LONG: Rule<8, 4> = Rule {
     ],
 };
 
-/// By which the difference of a pair's two sums is raised, relative to the sum, before its power 3/2 is taken for the error
-/// over a smooth integrand (as in QUADPACK): that of a Gauss rule of half the order.
+/// Factor on the relative difference of a pair's two sums, before its power 3/2 is taken for the error over a smooth integrand (as in
+/// QUADPACK). The difference is the error of the Gauss rule, which has half the order.
 const SMOOTH: f64 = 200.0;
 
-/// Panels after which the result is taken as it is: a kink takes 40.
+/// After so many panels the result is taken as it is. A kink takes 40.
 const MOST_PANELS: usize = 128;
 
-/// Halvings that leave more than this share of a panel's error have met rounding: a kink leaves a quarter, a step a
-/// half on the average, noise about 0.7. A kink may by chance sit where the rule hardly sees it, so that a
-/// few such halvings prove nothing.
+/// A halving that leaves more than this share of a panel's error has met rounding: a kink leaves a quarter, a step a half on the
+/// average, noise about 0.7. A kink may by chance sit where the rule hardly sees it, so that a few such halvings prove nothing.
 const NOISE_SHARE: f64 = 0.6;
 
-/// After so many of them the rest is rounding.
+/// After so many halvings that met rounding, the rest is rounding.
 const IDLE_HALVINGS: usize = 8;
 
-/// An interval with its integrals and their error estimates.
-struct Panel<const N: usize> {
+/// An interval with the integrals over it and their error estimates.
+struct GaussPanel<const N: usize> {
     ends: [f64; 2],
     sums: [f64; N],
     errors: [f64; N],
 }
 
-/// ∫ f over \[a, b\] to a relative demand, or to the rounding of `f` where that is larger; `f` may have kinks.
+/// Computes ∫ f over \[a, b\] to a relative demand, or to the rounding of `f` where that is larger; `f` may have kinks.
 ///
-/// After 128 panels the sum is taken as it is.
-///
-/// Method: Gauss–Kronrod panels, the worst halved until their errors sum up to less than the demand or halving
-/// no longer helps (as QUADPACK's QAG): how much noise an integrand has, no fixed floor knows.
-/// Cost: 15 evaluations a panel, one panel for most smooth pieces.
-/// Degenerate: NaN where `f` is.
+/// Method: Gauss–Kronrod panels. The worst one is halved until their errors sum up to less than the demand, or halving no longer helps,
+/// or there are 128 panels (as QUADPACK's QAG): no fixed floor knows how much noise an integrand has.
+/// Cost: 15 evaluations a panel, and one panel for most smooth pieces.
+/// Degenerate: NaN where `f` is NaN.
 pub fn integral(f: &mut impl FnMut(f64) -> f64, a: f64, b: f64, relative: f64) -> f64 {
     let [sum] = halved(&mut |x| [f(x)], [a, b], [relative], false);
     sum
 }
 
-/// ∫ f over an interval, of several smooth functions known at the same places, each to its relative demand, or to the rounding
-/// of `f` where that is larger.
+/// Computes ∫ f over an interval for several smooth functions that are known at the same places. Each is computed to its relative
+/// demand, or to the rounding of `f` where that is larger.
 ///
-/// Method and cost: as [`integral`], with the error that a Kronrod rule has over smooth functions; `short` intervals of a
+/// Method and cost are those of [`integral`], with the error that a Kronrod rule has over smooth functions. `short` intervals of a
 /// smooth piece are tried with 7 evaluations first. Nothing is allocated for one panel.
 pub fn smooth_integrals<const N: usize>(
     f: &mut impl FnMut(f64) -> [f64; N],
@@ -97,7 +94,7 @@ pub fn smooth_integrals<const N: usize>(
     short: bool,
 ) -> [f64; N] {
     if short {
-        let panel = Panel::new(f, ends, &SHORT, true);
+        let panel = GaussPanel::new(f, ends, &SHORT, true);
         if excess(&panel.sums, &panel.errors, &relative) <= 1.0 {
             return panel.sums;
         }
@@ -105,14 +102,14 @@ pub fn smooth_integrals<const N: usize>(
     halved(f, ends, relative, true)
 }
 
-/// Integrals by panels that are halved.
+/// Computes integrals by panels that are halved.
 fn halved<const N: usize>(
     f: &mut impl FnMut(f64) -> [f64; N],
     ends: [f64; 2],
     relative: [f64; N],
     smooth: bool,
 ) -> [f64; N] {
-    let first = Panel::new(f, ends, &LONG, smooth);
+    let first = GaussPanel::new(f, ends, &LONG, smooth);
     if excess(&first.sums, &first.errors, &relative) <= 1.0 {
         return first.sums;
     }
@@ -129,22 +126,22 @@ fn halved<const N: usize>(
             .max_by(|&p, &q| excess_of(&panels[p].errors).total_cmp(&excess_of(&panels[q].errors)));
         let enough = excess_of(&errors) <= 1.0 || panels.len() >= MOST_PANELS || idle >= IDLE_HALVINGS;
         let Some(worst) = worst.filter(|_| !enough) else { return sums };
-        let Panel { ends: [a, b], errors, .. } = panels.swap_remove(worst);
+        let GaussPanel { ends: [a, b], errors, .. } = panels.swap_remove(worst);
         let middle = a + (b - a) / 2.0;
-        let halves = [[a, middle], [middle, b]].map(|ends| Panel::new(f, ends, &LONG, smooth));
+        let halves = [[a, middle], [middle, b]].map(|ends| GaussPanel::new(f, ends, &LONG, smooth));
         let left = excess_of(&halves[0].errors) + excess_of(&halves[1].errors);
         idle += usize::from(left > NOISE_SHARE * excess_of(&errors));
         panels.extend(halves);
     }
 }
 
-/// The largest of the errors, each in units of what it may be; one that is no number decides nothing.
+/// Gives the largest of the errors, each in units of what it may be. An error that is no number decides nothing.
 fn excess<const N: usize>(sums: &[f64; N], errors: &[f64; N], relative: &[f64; N]) -> f64 {
     (0..N).map(|k| errors[k] / (relative[k] * sums[k].abs())).fold(0.0, f64::max)
 }
 
-impl<const N: usize> Panel<N> {
-    /// The Kronrod sums, with |Kronrod − Gauss| as their errors, or what is left of that for smooth functions.
+impl<const N: usize> GaussPanel<N> {
+    /// Evaluates the Kronrod sums over an interval. Their errors are |Kronrod − Gauss|, and less for smooth functions.
     fn new<const K: usize, const G: usize>(
         f: &mut impl FnMut(f64) -> [f64; N],
         ends @ [a, b]: [f64; 2],
@@ -175,7 +172,7 @@ impl<const N: usize> Panel<N> {
     }
 }
 
-/// a + c b.
+/// Computes a + c b.
 fn add<const N: usize>(mut a: [f64; N], b: [f64; N], c: f64) -> [f64; N] {
     for (a, b) in a.iter_mut().zip(b) {
         *a += c * b;

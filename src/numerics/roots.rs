@@ -1,11 +1,11 @@
 //! Bracketed roots of functions of one variable.
 
-/// The root of a continuous `f` between `a` and `b`, where `f(a)` and `f(b)` have opposite signs or one is zero.
+/// Finds the root of a continuous `f` between `a` and `b`, where `f(a)` and `f(b)` have opposite signs or one is zero.
 ///
-/// Method: secant steps; every second step bisects. A root of the size of the bracket takes at most about 120 evaluations;
-/// one much nearer to zero two more for every halving of the way there.
-/// Accuracy: the bracket shrinks until its ends are neighbouring numbers or `f` vanishes exactly;
-/// of the last two ends the one with the smaller |f| is returned.
+/// Method: secant steps; a step that does not halve the bracket is followed by a bisection. A root of the size of the bracket takes
+/// at most about 120 evaluations; a root much nearer to zero takes two more for every halving of the way there.
+/// Accuracy: the bracket shrinks until its ends are neighbouring numbers or `f` vanishes exactly. Of the last two ends the one with
+/// the smaller |f| is returned.
 /// Degenerate: `None` when the signs are equal or a value is NaN.
 pub fn bracketed(mut f: impl FnMut(f64) -> f64, a: f64, b: f64) -> Option<f64> {
     let (mut low, mut high) = (a, b);
@@ -45,7 +45,8 @@ pub fn bracketed(mut f: impl FnMut(f64) -> f64, a: f64, b: f64) -> Option<f64> {
     }
 }
 
-/// The last number from `on`, where `holds` is true, towards `off`, where it is false; of several such places any.
+/// Finds the last number for which `holds` is true, from `on`, where it is true, towards `off`, where it is false. Of several such
+/// numbers it is any one.
 ///
 /// Method: bisection until `on` and `off` are neighbouring numbers. Evaluations: those of a root in [`bracketed`].
 /// Degenerate: `on` where the two are equal or neighbours, and where one is NaN.

@@ -1,15 +1,19 @@
-//! Twice the working precision for loops over rows of numbers: algorithms of Joldes, Muller and Popescu (2017), as in
-//! `twofloat`, but without its calls, so that a loop becomes vector code; and quotients, of which `twofloat` 0.8 rounds
-//! one step to the working precision.
+//! Twice the working precision: a number as an unevaluated sum of two, with about 32 digits.
+//!
+//! The algorithms are those of Joldes, Muller and Popescu (2017). They are loops without calls, so that they become vector code
+//! where they run over lanes. A product needs the fused multiply-add; machines without the instruction compute it in software, to
+//! the same bits.
 
-use twofloat::TwoFloat;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// A sum of two numbers, the second below half a unit of the first one's last place.
+use super::lanes::Lanes;
+
+/// A sum of two numbers, of which the second is below half a unit of the first one's last place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Twice {
-    /// The value, rounded.
+    /// The value, rounded to the working precision.
     pub high: f64,
-    /// What rounding took.
+    /// The value less `high`.
     pub low: f64,
 }
 
@@ -20,26 +24,18 @@ impl From<f64> for Twice {
     }
 }
 
-impl From<TwoFloat> for Twice {
+impl From<Twice> for f64 {
     #[inline(always)]
-    fn from(value: TwoFloat) -> Self {
-        Self { high: value.hi(), low: value.lo() }
-    }
-}
-
-impl From<Twice> for TwoFloat {
     fn from(value: Twice) -> Self {
-        Self::new_add(value.high, value.low)
+        value.high
     }
-}
-
-/// a/b to all digits.
-pub fn quotient(a: TwoFloat, b: TwoFloat) -> TwoFloat {
-    (Twice::from(a) / Twice::from(b)).into()
 }
 
 impl Twice {
-    /// a + b exactly (Algorithm 2).
+    /// Zero.
+    pub const ZERO: Self = Self { high: 0.0, low: 0.0 };
+
+    /// Computes a + b exactly (Algorithm 2).
     #[inline(always)]
     pub fn sum(a: f64, b: f64) -> Self {
         let high = a + b;
@@ -48,14 +44,21 @@ impl Twice {
         Self { high, low: (a - from_a) + (b - from_b) }
     }
 
-    /// a + b exactly where a is the larger (Algorithm 1).
+    /// Computes a + b exactly where |a| is the larger (Algorithm 1).
     #[inline(always)]
     fn ordered_sum(a: f64, b: f64) -> Self {
         let high = a + b;
         Self { high, low: b - (high - a) }
     }
 
-    /// √self, 0 where it is not positive.
+    /// Computes a b exactly (Algorithm 3).
+    #[inline(always)]
+    pub fn product(a: f64, b: f64) -> Self {
+        let high = a * b;
+        Self { high, low: a.mul_add(b, -high) }
+    }
+
+    /// Computes the square root; it is 0 where the number is not positive.
     #[inline(always)]
     pub fn sqrt(self) -> Self {
         let root = self.high.max(0.0).sqrt();
@@ -64,7 +67,7 @@ impl Twice {
     }
 }
 
-impl std::ops::Neg for Twice {
+impl Neg for Twice {
     type Output = Self;
 
     #[inline(always)]
@@ -73,76 +76,92 @@ impl std::ops::Neg for Twice {
     }
 }
 
-impl std::ops::Add for Twice {
+impl<T: Into<Self>> Add<T> for Twice {
     type Output = Self;
 
-    /// Algorithm 6.
+    /// Adds by Algorithm 6.
     #[inline(always)]
-    fn add(self, other: Self) -> Self {
+    fn add(self, other: T) -> Self {
+        let other = other.into();
         let (high, low) = (Self::sum(self.high, other.high), Self::sum(self.low, other.low));
         let first = Self::ordered_sum(high.high, high.low + low.high);
         Self::ordered_sum(first.high, low.low + first.low)
     }
 }
 
-impl std::ops::Sub for Twice {
+impl<T: Into<Self>> Sub<T> for Twice {
     type Output = Self;
 
     #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        self + -other
+    fn sub(self, other: T) -> Self {
+        self + -other.into()
     }
 }
 
-impl std::ops::Mul for Twice {
+impl<T: Into<Self>> Mul<T> for Twice {
     type Output = Self;
 
-    /// Algorithm 12.
+    /// Multiplies by Algorithm 12.
     #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        let high = self.high * other.high;
-        let rest = self.high.mul_add(other.high, -high);
+    fn mul(self, other: T) -> Self {
+        let other = other.into();
+        let high = Self::product(self.high, other.high);
         let cross = self.high.mul_add(other.low, self.low * other.low);
-        Self::ordered_sum(high, rest + self.low.mul_add(other.high, cross))
+        Self::ordered_sum(high.high, high.low + self.low.mul_add(other.high, cross))
     }
 }
 
-impl std::ops::Div for Twice {
+impl<T: Into<Self>> Div<T> for Twice {
     type Output = Self;
 
-    /// Long division by two digits (Algorithm 17).
+    /// Divides by long division with two digits (Algorithm 17).
     #[inline(always)]
-    fn div(self, other: Self) -> Self {
+    fn div(self, other: T) -> Self {
+        let other = other.into();
         let first = self.high / other.high;
-        let rest = self - Self::from(first) * other;
+        let rest = self - other * first;
         Self::ordered_sum(first, rest.high / other.high)
     }
 }
 
-/// Several numbers in twice the working precision: high and low parts apart, as vector code wants them.
-#[derive(Debug, Clone, Copy)]
-pub struct Twices<const N: usize> {
-    /// The values, rounded.
-    pub high: [f64; N],
-    /// What rounding took.
-    pub low: [f64; N],
+impl<T: Into<Self>> AddAssign<T> for Twice {
+    #[inline(always)]
+    fn add_assign(&mut self, other: T) {
+        *self = *self + other;
+    }
 }
 
-impl<const N: usize> From<[f64; N]> for Twices<N> {
+impl<T: Into<Self>> SubAssign<T> for Twice {
     #[inline(always)]
-    fn from(high: [f64; N]) -> Self {
+    fn sub_assign(&mut self, other: T) {
+        *self = *self - other;
+    }
+}
+
+/// N numbers in twice the working precision, with high and low parts apart, as vector code needs them.
+#[derive(Debug, Clone, Copy)]
+pub struct Twices<const N: usize> {
+    /// The values, rounded to the working precision.
+    pub high: Lanes<N>,
+    /// The values less `high`.
+    pub low: Lanes<N>,
+}
+
+impl<const N: usize> From<Lanes<N>> for Twices<N> {
+    #[inline(always)]
+    fn from(high: Lanes<N>) -> Self {
         Self { high, low: [0.0; N] }
     }
 }
 
 impl<const N: usize> Twices<N> {
-    /// The k-th of them.
+    /// Gives the k-th number.
     #[inline(always)]
     pub fn get(&self, k: usize) -> Twice {
         Twice { high: self.high[k], low: self.low[k] }
     }
 
-    /// Makes it the k-th.
+    /// Replaces the k-th number.
     #[inline(always)]
     pub fn set(&mut self, k: usize, value: Twice) {
         (self.high[k], self.low[k]) = (value.high, value.low);
@@ -151,28 +170,36 @@ impl<const N: usize> Twices<N> {
 
 #[cfg(test)]
 mod tests {
+    use twofloat::TwoFloat;
+
     use super::*;
 
-    /// |found/expected − 1|.
+    /// |found/expected − 1|, by the arithmetic of another library.
     fn relative(found: Twice, expected: TwoFloat) -> f64 {
-        let apart = TwoFloat::from(found) - expected;
-        (f64::from(apart) / f64::from(expected)).abs()
+        f64::from((TwoFloat::new_add(found.high, found.low) - expected) / expected).abs()
     }
 
     #[test]
     fn every_operation_has_all_digits() {
-        let third = TwoFloat::new_div(1.0, 3.0);
-        let pairs =
-            [(third, TwoFloat::new_mul(1e8 + 1.0, 1.1)), (TwoFloat::from(2.5), -third), (third, third)];
-        for (a, b) in pairs {
-            let (x, y) = (Twice::from(a), Twice::from(b));
-            for (found, expected) in
-                [(x + y, a + b), (x * y, a * b), (x / y * y, a), (x.sqrt() * x.sqrt(), a)]
-            {
+        let (third, large) = (TwoFloat::new_div(1.0, 3.0), TwoFloat::new_mul(1e8 + 1.0, 1.1));
+        for (a, b) in [(third, large), (TwoFloat::from(2.5), -third), (third, third)] {
+            let [x, y] = [a, b].map(|value| Twice { high: value.hi(), low: value.lo() });
+            let pairs = [
+                (x + y, a + b),
+                (x * y, a * b),
+                (x / y * y, a),
+                (x.sqrt() * x.sqrt(), a),
+                (x + y.high, a + b.hi()),
+                (x * y.high, a * b.hi()),
+                (x / y.high, a / b.hi()),
+                (Twice::product(x.high, y.high), TwoFloat::new_mul(a.hi(), b.hi())),
+            ];
+            for (found, expected) in pairs {
                 assert!(relative(found, expected) <= 1e-31, "{found:?} {expected:?}");
             }
-            assert!(f64::from(TwoFloat::from(x - y) - (a - b)).abs() <= 1e-31 * f64::from(b).abs());
+            let apart = x - y + y - x;
+            assert!(apart.high.abs() <= 1e-31 * y.high.abs());
         }
-        assert_eq!(Twice::from(-1.0).sqrt(), Twice::from(0.0));
+        assert_eq!(Twice::from(-1.0).sqrt(), Twice::ZERO);
     }
 }

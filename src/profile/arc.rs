@@ -1,9 +1,8 @@
 //! Lines and circular arcs in curvature form: Report (3.2), with a signed radius (erratum 2).
 
-use twofloat::TwoFloat;
-
 use super::Station;
 use crate::error::{Error, Result, finite};
+use crate::numerics::twice::Twice;
 
 /// A drawing's arc may end where its tangent is vertical; its rounded coordinates may then lie this many
 /// roundings of the radius beyond. More is a drawing that does not close.
@@ -152,9 +151,9 @@ fn station_on_circle([a, b]: [f64; 2], radius: f64, x: f64) -> Result<Station> {
         let expected = format!("abscissae within [{}, {}]", a - radius.abs(), a + radius.abs());
         return Err(Error::new("arc: x", x.to_string(), expected, "correct the centre, radius or end"));
     }
-    let offset = TwoFloat::new_sub(x, a);
-    let square = (TwoFloat::from(radius) - offset) * (TwoFloat::from(radius) + offset);
-    let leg = if f64::from(square) > 0.0 { square.sqrt() } else { TwoFloat::from(0.0) };
+    let offset = Twice::sum(x, -a);
+    let square = (Twice::from(radius) - offset) * (Twice::from(radius) + offset);
+    let leg = if f64::from(square) > 0.0 { square.sqrt() } else { Twice::ZERO };
     let height = if radius < 0.0 { leg + b } else { -leg + b };
     let sin = f64::from(offset / radius).clamp(-1.0, 1.0);
     Ok(Station { x, z: f64::from(height), cos: f64::from(leg) / radius.abs(), sin })

@@ -15,10 +15,9 @@
 //! each other, the flatter one further. w is at least `SHORTEST` and at most `SHARE` of the shorter neighbour. The rule has no direction, no axes and no
 //! unit of length: it commutes with mirroring, rigid motion and scaling, and closing twice changes nothing.
 
-use twofloat::TwoFloat;
-
 use super::{Arc, Polynomial, Segment, Shape, Station};
 use crate::error::{Error, Result};
+use crate::numerics::twice::Twice;
 
 /// Ends closer than this share of the profile's extent are one joint, moved apart by rounding. Coordinates of arcs are
 /// rounded some ten times; bending over 1e-13 mm would make segments of nothing.
@@ -379,12 +378,12 @@ impl Polynomial {
         let speed = dx.hypot(dz);
         let [along_x, along_z] = if self.x.len() <= 2 { [0.0, 1.0] } else { [-dz / speed, dx / speed] };
         let half = 0.5 * change * speed.powi(3) / (along_z * dx - along_x * dz);
-        let near = TwoFloat::from(near);
-        let parabola = [near * near * half, near * (-2.0 * half), TwoFloat::from(half)];
-        let plus = |c: &[TwoFloat], share: f64| -> Vec<TwoFloat> {
+        let near = Twice::from(near);
+        let parabola = [near * near * half, near * (-2.0 * half), Twice::from(half)];
+        let plus = |c: &[Twice], share: f64| -> Vec<Twice> {
             let mut out = c.to_vec();
             if share != 0.0 {
-                out.resize(out.len().max(3), TwoFloat::from(0.0));
+                out.resize(out.len().max(3), Twice::ZERO);
                 out.iter_mut().zip(parabola).for_each(|(c, p)| *c += p * share);
             }
             out

@@ -1,10 +1,9 @@
 //! Polynomial segments: the zones of a standard such as S1002, and the spans of a parametric spline.
 
-use twofloat::TwoFloat;
-
 use super::Station;
 use crate::error::{Error, Result, finite};
-use crate::numerics::polynomial::{recentred, slope_twofloat, value_twofloat};
+use crate::numerics::polynomial::{exact_slope, exact_value, recentred};
+use crate::numerics::twice::Twice;
 
 /// A curve (x(t), z(t)) with polynomial coordinates, kept in twice the working precision about a point of
 /// its own: a standard's power form about x = 0 cancels from thousands of mm.
@@ -13,9 +12,9 @@ pub struct Polynomial {
     /// Parameter range, ascending \[mm or the spline's unit\].
     pub t: [f64; 2],
     /// Coefficients of x(t) \[mm\].
-    pub x: Vec<TwoFloat>,
+    pub(crate) x: Vec<Twice>,
     /// Coefficients of z(t) \[mm\].
-    pub z: Vec<TwoFloat>,
+    pub(crate) z: Vec<Twice>,
 }
 
 impl Polynomial {
@@ -33,7 +32,7 @@ impl Polynomial {
             return Err(Error::new("polynomial", found, expected, "correct the segment"));
         }
         let middle = x[0] + (x[1] - x[0]) / 2.0;
-        let exact: Vec<TwoFloat> = c.iter().map(|&c| c.into()).collect();
+        let exact: Vec<Twice> = c.iter().map(|&c| c.into()).collect();
         Ok(Self {
             t: x.map(|x| x - middle),
             x: vec![middle.into(), 1.0.into()],
@@ -56,18 +55,23 @@ impl Polynomial {
         Ok(Self { t, x: exact(x), z: exact(z) })
     }
 
+    /// Gives the coefficients of x(t) and of z(t) \[mm\], each as a sum of two numbers: the rounded one and the rest.
+    pub fn coefficients(&self) -> [Vec<[f64; 2]>; 2] {
+        [&self.x, &self.z].map(|c| c.iter().map(|c| [c.high, c.low]).collect())
+    }
+
     /// (dx/dt, dz/dt) at parameter t.
     pub(super) fn rates(&self, t: f64) -> [f64; 2] {
-        [&self.x, &self.z].map(|c| slope_twofloat(c, t.into()).into())
+        [&self.x, &self.z].map(|c| exact_slope(c, t.into()).into())
     }
 
     /// The station at parameter t.
     pub fn station(&self, t: f64) -> Station {
         let [dx, dz] = self.rates(t);
-        let (t, norm) = (TwoFloat::from(t), dx.hypot(dz));
+        let (t, norm) = (Twice::from(t), dx.hypot(dz));
         Station {
-            x: value_twofloat(&self.x, t).into(),
-            z: value_twofloat(&self.z, t).into(),
+            x: exact_value(&self.x, t).into(),
+            z: exact_value(&self.z, t).into(),
             cos: dx / norm,
             sin: dz / norm,
         }
@@ -75,7 +79,7 @@ impl Polynomial {
 
     /// Curvature \[1/mm\] at t, positive where the curve turns counter-clockwise.
     pub fn curvature(&self, t: f64) -> f64 {
-        let about = |c: &[TwoFloat]| {
+        let about = |c: &[Twice]| {
             let c = recentred(c, t.into());
             [1, 2].map(|k| c.get(k).map_or(0.0, |&c| f64::from(c)))
         };
@@ -84,7 +88,7 @@ impl Polynomial {
     }
 
     pub(super) fn mirrored(&self) -> Self {
-        let flip = |c: &[TwoFloat], sign: f64| {
+        let flip = |c: &[Twice], sign: f64| {
             c.iter().enumerate().map(|(k, &c)| c * if k % 2 == 1 { -sign } else { sign }).collect()
         };
         Self { t: [-self.t[1], -self.t[0]], x: flip(&self.x, -1.0), z: flip(&self.z, 1.0) }
@@ -92,9 +96,9 @@ impl Polynomial {
 
     pub(super) fn placed_by(&self, frame: &Station) -> Self {
         let n = self.x.len().max(self.z.len());
-        let get = |c: &[TwoFloat], k: usize| c.get(k).copied().unwrap_or(TwoFloat::from(0.0));
+        let get = |c: &[Twice], k: usize| c.get(k).copied().unwrap_or(Twice::ZERO);
         let turn = |along: f64, across: f64, x: bool| {
-            let mut c: Vec<TwoFloat> = (0..n)
+            let mut c: Vec<Twice> = (0..n)
                 .map(|k| {
                     if x {
                         get(&self.x, k) * along - get(&self.z, k) * across

@@ -12,11 +12,11 @@ use crate::interpenetration::load::{Estimate, approach_under_load};
 use crate::interpenetration::{Patch, Window};
 use crate::mesh::strips::{Counts, StripMesh};
 use crate::placement::Placement;
-use crate::separation::approximate::quadratic_form;
 use crate::separation::axis::EtaAxis;
 use crate::separation::grid::Method;
+use crate::separation::methods::quadratic::quadratic_form;
+use crate::separation::methods::report_newton;
 use crate::separation::plan::{Plan, plan};
-use crate::separation::report_newton;
 use crate::separation::values::Values;
 
 /// How far the bodies approach, and how that is known.

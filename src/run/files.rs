@@ -22,7 +22,7 @@ use crate::profile::Section;
 use crate::scene::{Format, equal_steps};
 use crate::separation::axis::EtaAxis;
 use crate::separation::values::Values;
-use crate::separation::{Evaluator, midsep};
+use crate::separation::{Evaluator, midplane};
 
 /// A file and the writer of its content.
 type Job<'a> = (&'static str, Box<dyn Fn(&FolderPart<'_>) -> Result<()> + Sync + Send + 'a>);
@@ -226,7 +226,7 @@ fn tables<'a>(jobs: &mut Vec<Job<'a>>, part: &'a Part, loops: &'a [Loop]) {
     bytes(jobs, "boundary.csv", move || Ok(csv::boundary(loops).into_bytes()));
     bytes(jobs, "interpen.csv", move || Ok(csv::interpen(&intervals(part)).into_bytes()));
     bytes(jobs, "midsep.txt", move || {
-        Ok(midsep::table(&part.contact.placement, &part.analysis.xi).into_bytes())
+        Ok(midplane::table(&part.contact.placement, &part.analysis.xi).into_bytes())
     });
 }
 

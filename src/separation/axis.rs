@@ -20,7 +20,7 @@ pub struct EtaAxis {
 }
 
 impl EtaAxis {
-    /// Prepares ascending η values.
+    /// Prepares the axis for ascending η \[mm\].
     pub fn new(eta: &[f64]) -> Self {
         let symmetric = eta.iter().zip(eta.iter().rev()).all(|(a, b)| *a == -*b);
         let mut u = Values::new(eta.len());
@@ -36,8 +36,8 @@ impl EtaAxis {
         }
     }
 
-    /// The index ranges whose u lies in (u0, u1], or in \[u0, u1\] for u0 = 0: η ≥ 0, and η < 0 where that is not the
-    /// mirror image.
+    /// Gives the index ranges whose u lies in (u0, u1], or in \[u0, u1\] for u0 = 0: first for η ≥ 0, then for η < 0. The second is
+    /// empty where it is the mirror image of the first.
     pub fn ranges(&self, u: [f64; 2]) -> [Range<usize>; 2] {
         let right = &self.u[self.first_positive..];
         let ends = u.map(|end| right.partition_point(|&u| u <= end));
@@ -46,13 +46,13 @@ impl EtaAxis {
         [positive, if self.symmetric { 0..0 } else { self.negative(u) }]
     }
 
-    /// Whether the last η before the index `end` is ≥ 0 and up to u, or none is.
+    /// Tells whether the last η ≥ 0 before the index `end` has at most this u \[mm²\], or there is no such η.
     #[inline(always)]
     pub fn is_end(&self, u: f64, end: usize) -> bool {
         end == self.first_positive || self.u[end - 1] <= u
     }
 
-    /// The index after the last η ≥ 0 up to u, found from that for another u nearby.
+    /// Finds the index after the last η ≥ 0 up to u \[mm²\], from the index `near` for another u nearby.
     #[inline(always)]
     pub fn end(&self, u: f64, near: usize) -> usize {
         let mut end = near;
@@ -65,7 +65,7 @@ impl EtaAxis {
         end
     }
 
-    /// The index of the first η < 0 up to u, where `end` is the one after the last η ≥ 0.
+    /// Finds the index of the first η < 0 up to u \[mm²\], where `end` is the index after the last η ≥ 0 up to u.
     #[inline(always)]
     pub fn begin(&self, u: f64, end: usize) -> usize {
         if self.symmetric {
@@ -74,7 +74,7 @@ impl EtaAxis {
         self.u[..self.first_positive].partition_point(|&value| value > u)
     }
 
-    /// The indices of η < 0 of [`Self::ranges`].
+    /// Gives the second range of [`Self::ranges`].
     fn negative(&self, [u0, u1]: [f64; 2]) -> Range<usize> {
         let left = &self.u[..self.first_positive];
         let end = if u0 == 0.0 { left.len() } else { left.partition_point(|&u| u > u0) };
@@ -82,7 +82,7 @@ impl EtaAxis {
     }
 }
 
-/// Writes the mirror image of a column's end to its first `count` values, at most half of it.
+/// Writes the mirror image of a column's end to its first `count` values, which are at most half of it.
 #[inline(always)]
 pub(super) fn mirror(column: &mut [f64], count: usize) {
     let (left, right) = column.split_at_mut(count);

@@ -1,13 +1,13 @@
 //! The midplane gap g(ξ) = ζ^W(ξ, 0) − ζ^R(ξ), to full relative accuracy over the contact segments.
 
-use super::columns::{MANY, Row, every, row};
+use crate::numerics::lanes::{Lanes, every, lanes};
 use crate::placement::Placement;
-use crate::profile::{ArcBranch, Branch, BranchPoints, BranchShape};
+use crate::profile::{ArcBranch, Branch, BranchShape, Section};
 
-/// g(ξ) \[mm\], NaN where a body has no surface.
+/// Computes g(ξ) \[mm\]; NaN where a body has no surface.
 ///
-/// Accuracy: relative, a few roundings, where both bodies' contact segments lie (arcs that conform to ten
-/// digits included); absolute, a few roundings of the profile's extent, elsewhere.
+/// Accuracy: a few roundings of g where ξ lies over both contact segments, even for arcs that conform to ten digits; a few
+/// roundings of the profile's extent elsewhere.
 pub fn midplane_gap(placement: &Placement, xi: f64) -> f64 {
     let (rail, wheel) = (&placement.rail.section, &placement.wheel.section);
     match (rail.piece_at(xi), wheel.piece_at(xi)) {
@@ -21,48 +21,41 @@ pub fn midplane_gap(placement: &Placement, xi: f64) -> f64 {
     }
 }
 
-/// A difference down to this share of its terms has lost three bits, which is within the promise; a smaller one is taken in 32
+/// A difference down to this share of its terms has lost three bits, which is within the promise. A smaller one is taken with 32
 /// digits.
 const UNCANCELLED: f64 = 0.125;
 
-/// The gap between two branches through C that share their tangent there; `zeta_w` is ζ^W(ξ).
+/// Computes the gap \[mm\] between two branches through C that share their tangent there; `zeta_w` is ζ^W(ξ).
 pub(super) fn contact_gap(rail: &Branch, wheel: &Branch, xi: f64, zeta_w: f64) -> f64 {
-    if let (BranchShape::Arc(rail), BranchShape::Arc(wheel)) = (&rail.shape, &wheel.shape) {
-        let [gap] = arc_gaps(rail, wheel, &[xi]);
-        return gap;
-    }
-    let gap = zeta_w - rail.height(xi);
-    if gap.abs() >= UNCANCELLED * zeta_w.abs() {
-        return gap;
-    }
-    (wheel.exact_height(xi) - rail.exact_height(xi)).high
+    contact_gaps(rail, wheel, &[xi], &[zeta_w]).map_or(f64::NAN, |[gap]| gap)
 }
 
-/// [`contact_gap`] at many ξ, from the wheel's points there and their ζ; where one is to be taken in 32 digits, all are. `None`
-/// where a point is not found.
+/// Computes the gaps \[mm\] between two branches through C at N abscissae, from the wheel's ζ there. Where one gap needs 32 digits, all
+/// are taken with them. `None` for several abscissae where a point is not found.
 #[inline(always)]
-pub(super) fn contact_gaps(
+pub(super) fn contact_gaps<const N: usize>(
     rail: &Branch,
     wheel: &Branch,
-    xi: &Row,
-    (wheel_points, zeta_w): (&BranchPoints<MANY>, &Row),
-) -> Option<Row> {
+    xi: &Lanes<N>,
+    zeta_w: &Lanes<N>,
+) -> Option<Lanes<N>> {
     if let (BranchShape::Arc(rail), BranchShape::Arc(wheel)) = (&rail.shape, &wheel.shape) {
         return Some(arc_gaps(rail, wheel, xi));
     }
     let (rail_points, zeta_r) = rail.points(xi)?;
-    let gap = row(|k| zeta_w[k] - zeta_r[k]);
-    if every(|k| gap[k].abs() >= UNCANCELLED * zeta_w[k].abs()) {
+    let gap: Lanes<N> = lanes(|k| zeta_w[k] - zeta_r[k]);
+    if every::<N>(|k| gap[k].abs() >= UNCANCELLED * zeta_w[k].abs()) {
         return Some(gap);
     }
-    let (zeta_w, zeta_r) = (wheel.exact_heights(xi, wheel_points), rail.exact_heights(xi, &rail_points));
-    Some(row(|k| (zeta_w.get(k) - zeta_r.get(k)).high))
+    let zeta_r = rail.exact_heights(xi, &rail_points);
+    let zeta_w = wheel.exact_heights(xi, &wheel.points(xi)?.0);
+    Some(lanes(|k| (zeta_w.get(k) - zeta_r.get(k)).high))
 }
 
-/// g = ξ² (κ_W − κ_R) [1 + (κ_W + κ_R)/(κ_W C_R + κ_R C_W)] / ((1 + C_W)(1 + C_R)) for curvatures of one sign;
-/// the plain difference, which then does not cancel, for opposite ones.
+/// Computes the gaps \[mm\] between two arcs through C: g = ξ² (κ_W − κ_R) [1 + (κ_W + κ_R)/(κ_W C_R + κ_R C_W)] / ((1 + C_W)(1 + C_R))
+/// for curvatures of one sign. For opposite ones it is the plain difference, which does not cancel then.
 #[inline(always)]
-pub(super) fn arc_gaps<const N: usize>(rail: &ArcBranch, wheel: &ArcBranch, xi: &[f64; N]) -> [f64; N] {
+fn arc_gaps<const N: usize>(rail: &ArcBranch, wheel: &ArcBranch, xi: &Lanes<N>) -> Lanes<N> {
     let (k_r, k_w) = (rail.curvature, wheel.curvature);
     let mut gap = [0.0; N];
     if k_r == k_w {
@@ -82,8 +75,8 @@ pub(super) fn arc_gaps<const N: usize>(rail: &ArcBranch, wheel: &ArcBranch, xi: 
     gap
 }
 
-/// κ_W − κ_R from the radii, whose difference is exact when they are close.
-pub(super) fn curvature_difference(wheel_radius: f64, rail_radius: f64) -> f64 {
+/// Computes κ_W − κ_R \[1/mm\] from the radii, whose difference is exact where they are close.
+fn curvature_difference(wheel_radius: f64, rail_radius: f64) -> f64 {
     if wheel_radius.is_finite() && rail_radius.is_finite() {
         (rail_radius - wheel_radius) / (rail_radius * wheel_radius)
     } else {
@@ -91,8 +84,8 @@ pub(super) fn curvature_difference(wheel_radius: f64, rail_radius: f64) -> f64 {
     }
 }
 
-/// ζ^W(ξ + `shift`) − ζ^R(ξ) for a skewed wheel, over both contact segments: the gap at ξ and the wheel's rise from there,
-/// neither of which cancels.
+/// Computes ζ^W(ξ + `shift`) − ζ^R(ξ) \[mm\] for a skewed wheel over both contact segments. It is the sum of the gap at ξ and of the
+/// wheel's rise from there, and neither cancels.
 pub(super) fn skewed_gap(rail: &Branch, wheel: &Branch, xi: f64, shift: f64) -> f64 {
     let inside = |x: f64| x >= wheel.xi[0] && x <= wheel.xi[1];
     if !inside(xi) {
@@ -101,9 +94,9 @@ pub(super) fn skewed_gap(rail: &Branch, wheel: &Branch, xi: f64, shift: f64) -> 
     contact_gap(rail, wheel, xi, wheel.height(xi)) + shift * wheel.chord_slope(xi, xi + shift)
 }
 
-/// κ_W − κ_R \[1/mm\] of two contact arcs, or `None` when a polynomial is among them.
+/// Gives κ_W − κ_R \[1/mm\] of two contact arcs; `None` where a polynomial is among them.
 pub(super) fn relative_curvature(placement: &Placement) -> Option<f64> {
-    let arc = |section: &crate::profile::Section| match &section.branches[section.contact?].shape {
+    let arc = |section: &Section| match &section.branches[section.contact?].shape {
         BranchShape::Arc(arc) => Some(arc.radius),
         BranchShape::Polynomial(_) => None,
     };

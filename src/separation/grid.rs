@@ -1,43 +1,30 @@
-//! The ladder of methods behind one interface, and the grid they fill.
+//! The accuracy ladder, and how a method of it fills a grid.
 
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::approximate::{Parabolic, Quadratic};
 use super::axis::EtaAxis;
-use super::columns::MANY;
-use super::pointwise::Pointwise;
-use super::report_newton::ReportNewton;
-use super::spectral::{Demand, Spectral};
-use super::strips::{Strip, strips};
+use super::columns::fit::Fitter;
+use super::columns::strip::Strip;
+use super::columns::strips::strips;
+use super::demand::Demand;
+use super::kernel::Kernel;
+use super::methods::parabolic::Parabolic;
+use super::methods::pointwise::Pointwise;
+use super::methods::quadratic::Quadratic;
+use super::methods::report_newton::ReportNewton;
+use super::methods::spectral::Spectral;
 use super::values::Residence;
+use crate::numerics::lanes::MANY;
 use crate::placement::Placement;
 
-/// Columns of one block: the unit of work of a thread.
+/// Columns of one block, which is the unit of work of a thread.
 const BLOCK: usize = MANY;
 
-/// Up to so many points are not worth waking another thread, some 50 µs: of whole columns, and of points one by one.
+/// So many points or fewer are not worth waking another thread, which takes some 50 µs: first for methods that fill whole columns,
+/// then for those that go point by point.
 const FEW_POINTS: [usize; 2] = [65536, 4096];
-
-/// A way to evaluate s over columns of constant ξ.
-pub trait Kernel {
-    /// Writes s(ξ, η_j) for all η_j of the axis \[mm\]; NaN where a body has no surface.
-    fn column(&mut self, xi: f64, out: &mut [f64]);
-
-    /// Writes neighbouring columns, one after the other.
-    fn columns(&mut self, xi: &[f64], out: &mut [f64]) {
-        let length = out.len() / xi.len().max(1);
-        for (&xi, out) in xi.iter().zip(out.chunks_exact_mut(length)) {
-            self.column(xi, out);
-        }
-    }
-
-    /// Largest truncation error \[mm\] that was measured so far.
-    fn truncation(&self) -> f64 {
-        0.0
-    }
-}
 
 /// The accuracy ladder, from the simplest formula to the historical baseline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
@@ -58,7 +45,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// All of them, in order of the ladder.
+    /// All methods, in order of the ladder.
     pub const ALL: [Self; 6] = [
         Self::Quadratic,
         Self::ConstantRadius,
@@ -68,7 +55,7 @@ impl Method {
         Self::ReportNewton,
     ];
 
-    /// Its name in scenes and reports.
+    /// Gives the name in scenes and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Quadratic => "quadratic",
@@ -84,18 +71,20 @@ impl Method {
 /// A method ready to run to a tolerance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Choice {
-    /// The method.
+    /// Which method.
     pub method: Method,
-    /// What s is held to; its `absolute` is the tolerance on the Report's steps.
+    /// What s is held to. Its `absolute` is also the tolerance on the steps of the Report's method.
     pub demand: Demand,
-    /// Coefficients that spectral columns start with.
+    /// Number of coefficients that spectral columns start with.
     pub coefficients: usize,
 }
 
 impl Choice {
-    /// s over the grid, index i_ξ · n_η + i_η, on the threads of the current rayon pool. The same bits come
-    /// out for any number of threads; fastest where `out` is [`super::values::Values`]. Returns the largest truncation error
-    /// \[mm\] that was measured on the way, 0 where none is.
+    /// Writes s \[mm\] over the grid, at index i_ξ · n_η + i_η; NaN where a body has no surface. The result is the largest truncation
+    /// error \[mm\] that was measured on the way, 0 where none is.
+    ///
+    /// It runs on the threads of the current rayon pool; any number of threads gives the same bits. It is fastest where `out` is
+    /// [`super::values::Values`].
     pub fn fill(&self, placement: &Placement, xi: &[f64], axis: &EtaAxis, out: &mut [f64]) -> f64 {
         if axis.eta.is_empty() {
             return 0.0;
@@ -105,8 +94,8 @@ impl Choice {
             Method::ConstantRadius => &|| Box::new(Parabolic::constant_radius(placement, axis)),
             Method::Parabolic => &|| Box::new(Parabolic::local(placement, axis)),
             Method::Spectral => {
-                let mut spectral = self.spectral(placement, axis);
-                let strips = strips(&mut spectral, placement, xi, axis.reach * axis.reach);
+                let mut fitter = Fitter::new(placement, self.demand, self.coefficients);
+                let strips = strips(&mut fitter, placement, xi, axis.reach * axis.reach);
                 return self.fill_by_strips(placement, xi, axis, &strips, out);
             }
             Method::Pointwise => &|| Box::new(Pointwise::new(placement, axis)),
@@ -119,7 +108,7 @@ impl Choice {
         fill_in_blocks(kernel, xi, out)
     }
 
-    /// The same by spectral columns with the strips of this pair and grid.
+    /// Fills the grid as [`Self::fill`] does, by spectral columns with the strips of this pair and grid.
     pub(super) fn fill_by_strips(
         &self,
         placement: &Placement,
@@ -133,25 +122,22 @@ impl Choice {
         }
         let of_strips = strips.iter().map(|strip| strip.truncation).fold(0.0, f64::max);
         let residence = Residence::of(out.len());
-        let kernel = || self.spectral(placement, axis).with_strips(strips, residence);
+        let spectral = || Spectral::new(placement, axis, self.demand, self.coefficients);
+        let kernel = || spectral().with_strips(strips, residence);
         if out.len() <= FEW_POINTS[0] {
             return fill_with(&mut kernel(), xi, out).max(of_strips);
         }
         fill_in_blocks(|| Box::new(kernel()), xi, out).max(of_strips)
     }
-
-    fn spectral<'a>(&self, placement: &'a Placement, axis: &'a EtaAxis) -> Spectral<'a> {
-        Spectral::new(placement, axis, self.demand, self.coefficients)
-    }
 }
 
-/// All columns by one kernel; the largest truncation error \[mm\].
+/// Fills all columns by one kernel; gives the largest truncation error \[mm\].
 fn fill_with(kernel: &mut dyn Kernel, xi: &[f64], out: &mut [f64]) -> f64 {
     kernel.columns(xi, out);
     kernel.truncation()
 }
 
-/// All columns by the threads' kernels; the largest truncation error \[mm\].
+/// Fills all columns by the threads' kernels; gives the largest truncation error \[mm\].
 fn fill_in_blocks<'k>(kernel: impl Fn() -> Box<dyn Kernel + 'k> + Sync, xi: &[f64], out: &mut [f64]) -> f64 {
     let length = out.len() / xi.len().max(1);
     let blocks = out.par_chunks_mut(BLOCK * length).zip(xi.par_chunks(BLOCK));

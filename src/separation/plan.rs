@@ -1,12 +1,16 @@
-//! Choosing the cheapest method that meets a tolerance, with an estimate of its error.
+//! The choice of the cheapest method that meets a tolerance, with an estimate of its error.
 
 use super::axis::EtaAxis;
+use super::columns::fit::Fitter;
+use super::columns::strip::Strip;
+use super::columns::strips::strips;
+use super::columns::{skewed, truncation};
+use super::demand::Demand;
+use super::evaluator::Evaluator;
 use super::grid::{Choice, Method};
+use super::methods::quadratic::quadratic_form;
 use super::rounding::rounding;
 use super::samples::{Samples, difference, thinned};
-use super::spectral::{Demand, Spectral};
-use super::strips::{Strip, strips};
-use super::{Evaluator, approximate};
 use crate::numerics::nan_max;
 use crate::placement::Placement;
 
@@ -18,19 +22,19 @@ pub const FULL_PRECISION: f64 = 1e-12;
 /// Relative truncation allowed at full precision: a fiftieth of the promised 1e-13, some roundings.
 const FULL_RELATIVE: f64 = 2e-15;
 
-/// Columns in no strip whose truncation errors are measured, evenly spread: two rows of them. The others are measured when the
-/// grid is filled.
+/// Columns in no strip whose truncation errors are measured, evenly spread. The others are measured when the grid is filled.
 const COLUMNS_ALONE: usize = 32;
 
-/// Columns of a skewed wheel that are filled for their errors, and values of η at which they are compared with points one by
-/// one.
+/// Columns of a skewed wheel that are filled for their errors.
 const SKEWED_COLUMNS: usize = 17;
+
+/// Values of η at which these columns are compared with single points.
 const SKEWED_ETA: usize = 5;
 
-/// Values along either axis at which the quadratic form is tried before anything else: ends and middle.
+/// Values along either axis at which the quadratic form is tried before anything else: the ends and the middle.
 const PROBED: usize = 3;
 
-/// Share by which the sampled maximum is raised, for what lies between the samples.
+/// Factor on the sampled maximum, for what lies between the samples.
 const BETWEEN_SAMPLES: f64 = 1.5;
 
 /// A choice, why it was made, and the error to expect.
@@ -40,18 +44,18 @@ pub struct Plan {
     pub choice: Choice,
     /// Estimated largest error of s over the grid \[mm\], truncation and rounding.
     pub error: f64,
-    /// The share of rounding in it \[mm\].
+    /// The share of rounding in `error` \[mm\].
     pub rounding: f64,
     /// Largest error asked for \[mm\].
     pub tolerance: f64,
     /// One sentence for the summary.
     pub reason: String,
-    /// What spectral columns are filled by where they share it.
+    /// The strips of spectral columns.
     strips: Vec<Strip>,
 }
 
 impl Plan {
-    /// Fills the grid that the plan is for, the same pair and axes; completes the estimate by the truncation errors that are
+    /// Fills the grid that the plan is for, with the same pair and axes, and raises the estimate to the truncation errors that are
     /// measured on the way.
     pub fn fill(&mut self, placement: &Placement, xi: &[f64], axis: &EtaAxis, out: &mut [f64]) {
         let truncation = match self.choice.method {
@@ -62,21 +66,21 @@ impl Plan {
     }
 }
 
-/// The demand on s for a tolerance \[mm\].
+/// Gives the demand on s for a tolerance \[mm\].
 pub fn demand(tolerance: f64) -> Demand {
     let relative = if tolerance <= FULL_PRECISION { FULL_RELATIVE } else { f64::INFINITY };
     Demand { absolute: tolerance, relative }
 }
 
-/// The cheapest method whose estimated error over the grid is below `tolerance` \[mm\], or the `forced` one.
+/// Finds the cheapest method whose estimated error over the grid is below `tolerance` \[mm\], or plans the `forced` one.
 ///
-/// The candidates are the quadratic form and spectral columns. What lies between them on the ladder errs more than spectral
-/// columns and takes no less time: every column has a gap of its own, and under a skewed wheel every point.
-/// At [`FULL_PRECISION`] and below the quadratic form is taken only where it is exact to rounding.
+/// The candidates are the quadratic form and spectral columns. What lies between them on the ladder errs more than spectral columns
+/// and takes no less time: every column has a gap of its own, and under a skewed wheel every point. At [`FULL_PRECISION`] and
+/// below the quadratic form is taken only where it is exact to rounding.
 ///
-/// The estimate: spectral columns measure their truncation in every strip, at the strip's nodes and between them, and in some of
-/// the columns that are in none; other methods are compared with points one by one at some hundred columns. Cost: about that of
-/// the fill for spectral columns.
+/// The estimate: spectral columns measure their truncation in every strip, at the strip's nodes and between them, and in some of the
+/// columns that are in none. Other methods are compared with single points at some hundred columns. Cost: about that of the fill for
+/// spectral columns.
 pub fn plan(
     placement: &Placement,
     xi: &[f64],
@@ -84,7 +88,7 @@ pub fn plan(
     tolerance: f64,
     forced: Option<Method>,
 ) -> Plan {
-    let grid = Grid { placement, xi, axis, tolerance };
+    let grid = Planned { placement, xi, axis, tolerance };
     match forced {
         Some(Method::Spectral) => grid.spectral(&Probe::new(&grid), "asked for by the scene".into()),
         Some(method) => grid.sampled(method, &Probe::new(&grid), "asked for by the scene".into()),
@@ -92,15 +96,15 @@ pub fn plan(
     }
 }
 
-/// What is planned for.
-struct Grid<'a> {
+/// What a plan is made for.
+struct Planned<'a> {
     placement: &'a Placement,
     xi: &'a [f64],
     axis: &'a EtaAxis,
     tolerance: f64,
 }
 
-impl Grid<'_> {
+impl Planned<'_> {
     fn cheapest(&self) -> Plan {
         let probe = Probe::new(self);
         let tolerance = self.tolerance;
@@ -123,7 +127,7 @@ impl Grid<'_> {
         )
     }
 
-    /// A method that is compared with points one by one.
+    /// Plans a method whose error is estimated by comparison with single points.
     fn sampled(&self, method: Method, probe: &Probe, reason: String) -> Plan {
         let samples = Samples::new(self.placement, self.xi, self.axis);
         let choice = Choice { method, demand: demand(self.tolerance), coefficients: 1 };
@@ -134,11 +138,11 @@ impl Grid<'_> {
 
     fn spectral(&self, probe: &Probe, reason: String) -> Plan {
         let demand = demand(self.tolerance);
-        let mut spectral = Spectral::new(self.placement, self.axis, demand, 1);
+        let mut fitter = Fitter::new(self.placement, demand, 1);
         let (strips, coefficients, truncation) = if self.placement.skew == 0.0 {
-            self.measured(&mut spectral)
+            self.measured(&mut fitter)
         } else {
-            (Vec::new(), 1, self.skewed(&mut spectral))
+            (Vec::new(), 1, self.skewed(&mut fitter))
         };
         let choice = Choice { method: Method::Spectral, demand, coefficients };
         let rounding = probe.rounding;
@@ -146,30 +150,32 @@ impl Grid<'_> {
         Plan { choice, error, rounding, tolerance: self.tolerance, reason, strips }
     }
 
-    /// Strips, the number of coefficients that columns in none are to start with, which two thirds of them need, and the largest
-    /// measured truncation error \[mm\].
-    fn measured(&self, spectral: &mut Spectral<'_>) -> (Vec<Strip>, usize, f64) {
-        let strips = strips(spectral, self.placement, self.xi, self.axis.reach * self.axis.reach);
-        let mut truncation = strips.iter().map(|strip| strip.truncation).fold(0.0, f64::max);
+    /// Makes the strips. Gives them, the number of coefficients that columns in no strip are to start with, which is enough for two
+    /// thirds of them, and the largest measured truncation error \[mm\].
+    fn measured(&self, fitter: &mut Fitter<'_>) -> (Vec<Strip>, usize, f64) {
+        let u_max = self.axis.reach * self.axis.reach;
+        let strips = strips(fitter, self.placement, self.xi, u_max);
+        let mut most = strips.iter().map(|strip| strip.truncation).fold(0.0, f64::max);
         let mut needed: Vec<usize> = strips.iter().map(Strip::coefficients).collect();
         for strip in &strips {
-            truncation = nan_max(truncation, spectral.difference(strip));
+            most = nan_max(most, truncation::of_strip(fitter, strip, u_max));
         }
         let alone = thinned(&alone(&strips, self.xi), COLUMNS_ALONE);
-        truncation = nan_max(truncation, spectral.truncation_alone(&alone, &mut needed));
+        most = nan_max(most, truncation::of_columns(fitter, &alone, u_max, &mut needed));
         needed.sort_unstable();
-        (strips, needed.get(needed.len() * 2 / 3).copied().unwrap_or(1), truncation)
+        (strips, needed.get(needed.len() * 2 / 3).copied().unwrap_or(1), most)
     }
 
-    /// Largest error \[mm\] of some columns of a skewed wheel.
-    fn skewed(&self, spectral: &mut Spectral<'_>) -> f64 {
+    /// Measures the largest error \[mm\] of some columns of a skewed wheel.
+    fn skewed(&self, fitter: &mut Fitter<'_>) -> f64 {
         let eta = &self.axis.eta;
+        let Fitter { evaluator, arch, demand, .. } = fitter;
         let mut out = vec![f64::NAN; eta.len()];
         let mut error = 0f64;
         for xi in thinned(self.xi, SKEWED_COLUMNS) {
-            error = error.max(spectral.skewed_column(xi, eta, &mut out));
+            error = error.max(skewed::fill(evaluator, (*arch, *demand), xi, eta, &mut out));
             for at in places(eta.len(), SKEWED_ETA) {
-                let exact = spectral.evaluator.separation(xi, eta[at]);
+                let exact = evaluator.separation(xi, eta[at]);
                 error = nan_max(error, difference(&out[at..=at], &[exact]));
             }
         }
@@ -177,7 +183,7 @@ impl Grid<'_> {
     }
 }
 
-/// The columns that are in no strip.
+/// Finds the columns that are in no strip.
 fn alone(strips: &[Strip], xi: &[f64]) -> Vec<f64> {
     let mut alone = Vec::new();
     let mut rest = xi;
@@ -190,13 +196,13 @@ fn alone(strips: &[Strip], xi: &[f64]) -> Vec<f64> {
     alone
 }
 
-/// At most `n` indices of so many values, evenly spread, ends included.
+/// Gives at most `n` indices of so many values, evenly spread, ends included.
 fn places(count: usize, n: usize) -> impl Iterator<Item = usize> {
     let n = n.min(count);
     (0..n).map(move |k| if n == 1 { 0 } else { k * (count - 1) / (n - 1) })
 }
 
-/// The quadratic form and the size of what s is the sum of at a few places: ends and middle of both axes.
+/// What a few places of the grid tell: the ends and the middle of both axes.
 struct Probe {
     /// Largest error of the quadratic form \[mm\].
     quadratic: f64,
@@ -205,9 +211,9 @@ struct Probe {
 }
 
 impl Probe {
-    fn new(grid: &Grid<'_>) -> Self {
-        let Grid { placement, xi, axis, .. } = *grid;
-        let [along, mixed, across] = approximate::quadratic_form(placement);
+    fn new(grid: &Planned<'_>) -> Self {
+        let Planned { placement, xi, axis, .. } = *grid;
+        let [along, mixed, across] = quadratic_form(placement);
         let mut evaluator = Evaluator::new(placement);
         let (mut most, mut quadratic) = (0f64, 0f64);
         for xi in places(xi.len(), PROBED).map(|k| xi[k]) {

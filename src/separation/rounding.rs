@@ -1,27 +1,28 @@
 //! The rounding error of s over a grid, from the sizes of what s is computed from.
 
-use super::Evaluator;
 use super::axis::EtaAxis;
-use super::column::{WheelSurface, sagitta};
+use super::evaluator::Evaluator;
+use super::wheel_surface::{WheelSurface, sagitta};
 use crate::placement::Placement;
 use crate::profile::{Branch, BranchShape, Piece, Section};
 
-/// Roundings of what s is the sum of: gap, rise, and their interpolation over ξ; under yaw that in powers of η.
+/// Roundings of the terms of s: gap, rise, and their interpolation over ξ; under yaw, of the interpolation in powers of η.
 const OWN_ROUNDINGS: [f64; 2] = [16.0, 32.0];
 
-/// Beyond the contact segments roundings of the coordinates are added: an angle and a joint of either body, all off at once. Of
-/// 2,700 random scenes one needed 2.6.
+/// Roundings of the coordinates, which are added beyond the contact segments: an angle and a joint of either body, all off at once.
+/// Of 2,700 random scenes one needed 2.6.
 const PLACE_ROUNDINGS: f64 = 4.0;
 
-/// Up to this slope a piece's end counts as it is; at a steeper one, which may be vertical, the nearest column counts.
+/// Up to this slope the end of a piece counts as it is. At a steeper end, which may be vertical, the nearest column counts.
 const STEEP: f64 = 1.0;
 
-/// Largest rounding error of s \[mm\] over a grid where the magnitudes of what s is the sum of add up to at most `largest`
+/// Estimates the largest rounding error of s \[mm\] over a grid where the magnitudes of the terms of s add up to at most `largest`
 /// \[mm\].
 ///
-/// A few units of the last place of that; beyond the contact segments also those of the heights by which joints are placed in the
-/// frame, ζ = Δz cosθ − Δx sinθ, with z_C rounded in Δz; of the angle θ_C, off by the rounding of its sine over its cosine, times
-/// the distance from C; and of the rounded ξ and the run to an arc's centre times slope.
+/// It is a few units of the last place of that sum. Beyond the contact segments there are three more terms: the roundings of the
+/// heights by which joints are placed in the frame, ζ = Δz cosθ − Δx sinθ, with z_C rounded in Δz; the error of the angle θ_C, which
+/// is the rounding of its sine over its cosine, times the distance from C; and the roundings of ξ and of the run to an arc's centre,
+/// times the slope.
 pub fn rounding(placement: &Placement, xi: &[f64], axis: &EtaAxis, largest: f64) -> f64 {
     let bodies = [Reached::of_rail(placement, xi), Reached::of_wheel(placement, xi, axis)];
     let of_sum = OWN_ROUNDINGS[usize::from(placement.skew != 0.0)] * f64::EPSILON * largest;
@@ -31,11 +32,11 @@ pub fn rounding(placement: &Placement, xi: &[f64], axis: &EtaAxis, largest: f64)
     of_sum + PLACE_ROUNDINGS * f64::EPSILON * (bodies[0].coordinates + bodies[1].coordinates)
 }
 
-/// What of a profile a grid lies over.
+/// The part of a profile that a grid lies over.
 struct Reached {
-    /// Whether it is nothing but the contact segment.
+    /// Whether this is nothing but the contact segment.
     contact: bool,
-    /// Size of the coordinates that heights are computed from, the slope's share included \[mm\].
+    /// Size of the coordinates that heights are computed from \[mm\], with the slope's share.
     coordinates: f64,
 }
 
@@ -44,7 +45,7 @@ impl Reached {
         Self::new(&placement.rail.section, xi, &[0.0], |xi, _| xi)
     }
 
-    /// Beside the midplane columns lie over other places of the wheel's profile.
+    /// Finds the part of the wheel; beside the midplane, columns lie over other places of its profile.
     fn of_wheel(placement: &Placement, xi: &[f64], axis: &EtaAxis) -> Self {
         let evaluator = Evaluator::new(placement);
         let wheel = WheelSurface::new(placement);
@@ -57,7 +58,7 @@ impl Reached {
         Self::new(&placement.wheel.section, xi, &[0.0, ends[0], ends[1]], below)
     }
 
-    /// Over the abscissae that columns reach at some η.
+    /// Finds the part of a section over the abscissae that columns reach at some η.
     fn new(section: &Section, xi: &[f64], eta: &[f64], abscissa: impl Fn(f64, f64) -> f64) -> Self {
         let mut reached = Self { contact: true, coordinates: 0.0 };
         let (Some(&first), Some(&last)) = (xi.first(), xi.last()) else { return reached };
@@ -101,7 +102,7 @@ impl Reached {
     }
 }
 
-/// The pieces that an interval touches.
+/// Gives the pieces that an interval touches.
 fn reached_pieces(section: &Section, [from, to]: [f64; 2]) -> impl Iterator<Item = &Piece> {
     section.pieces_from(from).iter().take_while(move |piece| piece.xi[0] <= to)
 }
@@ -110,8 +111,8 @@ fn is_curve(section: &Section, piece: &Piece) -> bool {
     matches!(section.branches[piece.branch].shape, BranchShape::Polynomial(_))
 }
 
-/// ξ from a point of an arc with this slope to the centre \[mm\]: the sine of the tangent's angle, which is rounded, times the
-/// radius. None on a line or polynomial.
+/// Computes the run in ξ \[mm\] from a point of an arc with this slope to the centre: the sine of the tangent's angle, which is rounded,
+/// times the radius. It is 0 for a line or polynomial.
 fn run_to_centre(branch: &Branch, slope: f64) -> f64 {
     match &branch.shape {
         BranchShape::Arc(arc) if arc.radius.is_finite() => arc.radius.abs() * slope / 1f64.hypot(slope),
@@ -119,7 +120,7 @@ fn run_to_centre(branch: &Branch, slope: f64) -> f64 {
     }
 }
 
-/// The abscissa inside a piece that is nearest to one of its ends, of columns whose abscissae ascend.
+/// Finds the abscissa inside a piece that is nearest to one of its ends, of columns whose abscissae ascend.
 fn nearest(piece: &Piece, end: usize, xi: &[f64], abscissa: impl Fn(f64) -> f64) -> Option<f64> {
     let index = if end == 0 {
         xi.partition_point(|&xi| abscissa(xi) < piece.xi[0])

@@ -1,16 +1,16 @@
-//! A method without an estimate of its own against points one by one, at some columns of a grid.
+//! The error of a method without an estimate of its own: a comparison with single points at some columns of a grid.
 
-use super::Evaluator;
 use super::axis::EtaAxis;
+use super::evaluator::Evaluator;
 use super::grid::Choice;
 use crate::numerics::nan_max;
 use crate::placement::Placement;
 
-/// Columns of the grid at which an approximate method is compared with the point-wise one, evenly spread. Its error is
-/// smooth between joints: the columns next to these and half way between them are taken as well.
+/// Columns of the grid at which an approximate method is compared with the point-wise one, evenly spread. Its error is smooth between
+/// joints; the columns next to joints and half way between them are taken as well.
 const SAMPLED_COLUMNS: usize = 65;
 
-/// Values of η there.
+/// Values of η at which it is compared in these columns.
 const SAMPLED_ETA: usize = 9;
 
 /// Point-wise values at a few columns.
@@ -22,7 +22,7 @@ pub(super) struct Samples<'a> {
 }
 
 impl<'a> Samples<'a> {
-    /// Of a grid.
+    /// Takes the samples of a grid.
     pub fn new(placement: &'a Placement, xi: &[f64], whole: &EtaAxis) -> Self {
         let columns = sampled_columns(placement, xi);
         let axis = EtaAxis::new(&thinned(&whole.eta, SAMPLED_ETA));
@@ -34,7 +34,7 @@ impl<'a> Samples<'a> {
         Self { placement, xi: columns, axis, exact }
     }
 
-    /// Largest difference \[mm\] of a method from the point-wise values; NaN where only one of them has a value.
+    /// Computes the largest difference \[mm\] of a method from the point-wise values; NaN where only one of them has a value.
     pub fn difference(&self, choice: &Choice) -> f64 {
         let mut values = vec![f64::NAN; self.exact.len()];
         choice.fill(self.placement, &self.xi, &self.axis, &mut values);
@@ -42,13 +42,14 @@ impl<'a> Samples<'a> {
     }
 }
 
-/// Largest difference; NaN where only one has a value: a number where there is no surface is as wrong as none where there is one.
+/// Computes the largest difference of values; NaN where only one has a value, because a number where there is no surface is as wrong
+/// as none where there is one.
 pub(super) fn difference(values: &[f64], exact: &[f64]) -> f64 {
     let differences = values.iter().zip(exact).filter(|(s, exact)| !(s.is_nan() && exact.is_nan()));
     differences.map(|(s, exact)| (s - exact).abs()).fold(0.0, nan_max)
 }
 
-/// Columns of the grid, evenly spread, and those next to the joints of both bodies and to the middle between two.
+/// Chooses columns of the grid: some evenly spread, and those next to the joints of both bodies and to the middle between two joints.
 fn sampled_columns(placement: &Placement, xi: &[f64]) -> Vec<f64> {
     let mut columns = thinned(xi, SAMPLED_COLUMNS);
     let (Some(&first), Some(&last)) = (xi.first(), xi.last()) else { return columns };
@@ -57,7 +58,7 @@ fn sampled_columns(placement: &Placement, xi: &[f64]) -> Vec<f64> {
         let middles = joints.windows(2).map(|pair| pair[0] + (pair[1] - pair[0]) / 2.0);
         for place in joints.iter().copied().chain(middles) {
             let beyond = xi.partition_point(|&xi| xi < place);
-            // Beside a column on the joint as well.
+            // On both sides of a column that is on the joint.
             columns.extend(&xi[beyond.saturating_sub(1)..xi.len().min(beyond + 2)]);
         }
         columns.sort_by(f64::total_cmp);
@@ -66,7 +67,7 @@ fn sampled_columns(placement: &Placement, xi: &[f64]) -> Vec<f64> {
     columns
 }
 
-/// At most `n` of the values, evenly spread, ends included.
+/// Gives at most `n` of the values, evenly spread, ends included.
 pub(super) fn thinned(values: &[f64], n: usize) -> Vec<f64> {
     if values.len() <= n {
         return values.to_vec();

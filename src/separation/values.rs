@@ -2,16 +2,16 @@
 
 use std::ops::{Deref, DerefMut};
 
-/// Values in a line of the cache.
+/// The number of values in a line of the cache.
 pub(super) const LINE: usize = 8;
 
-/// Arrays of so many values, 1 MiB, have room in the second cache of a core …
+/// Arrays of so many values, 1 MiB, have room in the second cache of a core.
 const SECOND_CACHE: usize = 1 << 17;
 
-/// … and from so many on, 64 MiB, are larger than one user's share of the last one.
+/// Arrays of so many values or more, 64 MiB, are larger than one user's share of the last cache.
 const BEYOND_CACHES: usize = 1 << 23;
 
-/// Arrays from so many values on, 4 MiB, hold a whole one of the system's large pages, of 2 MiB, wherever they begin.
+/// Arrays of so many values or more, 4 MiB, hold a whole one of the system's large pages of 2 MiB, wherever they begin.
 const LARGE_PAGES: usize = 1 << 19;
 
 /// Where an array is while it is filled.
@@ -26,7 +26,7 @@ pub enum Residence {
 }
 
 impl Residence {
-    /// That of an array of so many values.
+    /// Tells where an array of so many values is.
     pub fn of(count: usize) -> Self {
         match count {
             0..=SECOND_CACHE => Self::SecondCache,
@@ -36,8 +36,8 @@ impl Residence {
     }
 }
 
-/// Numbers of which the first begins a line of the cache: a store across two lines takes twice as long. s over a grid, or u
-/// along its axis.
+/// Numbers of which the first begins a line of the cache, such as s over a grid or u along its axis. A store across two lines takes
+/// twice as long.
 #[derive(Debug)]
 pub struct Values {
     memory: Vec<f64>,
@@ -46,7 +46,7 @@ pub struct Values {
 }
 
 impl Values {
-    /// So many zeros.
+    /// Makes so many zeros.
     pub fn new(count: usize) -> Self {
         let memory = vec![0.0; count + LINE - 1];
         if count >= LARGE_PAGES {
@@ -78,8 +78,8 @@ impl DerefMut for Values {
     }
 }
 
-/// Asks the system for large pages, which are mapped in a third of the time when they are first written: 4·10⁶ values take
-/// 5 ms instead of 14, three times as long as s of them. The system may have none.
+/// Asks the system for large pages, which are mapped in a third of the time when they are first written: 4·10⁶ values take 5 ms
+/// instead of 14, and computing s of them takes 5 ms. The system may have none.
 #[cfg(target_os = "linux")]
 #[allow(unsafe_code, reason = "no safe call gives this advice")]
 fn ask_for_large_pages(memory: &[f64]) {
@@ -97,7 +97,7 @@ fn ask_for_large_pages(memory: &[f64]) {
 #[cfg(not(target_os = "linux"))]
 fn ask_for_large_pages(_: &[f64]) {}
 
-/// Number of values before the first one that begins a line of the cache.
+/// Counts the values before the first one that begins a line of the cache.
 #[inline(always)]
 pub(super) fn lead(values: &[f64]) -> usize {
     values.as_ptr().align_offset(LINE * size_of::<f64>()).min(LINE - 1)

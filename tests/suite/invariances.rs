@@ -11,8 +11,8 @@ use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Polynomial, Profile, Segment, Shape, Station, standards};
 use wheelrail::separation::Evaluator;
 use wheelrail::separation::axis::EtaAxis;
+use wheelrail::separation::demand::Demand;
 use wheelrail::separation::grid::{Choice, Method};
-use wheelrail::separation::spectral::Demand;
 
 const CASES: u32 = 128;
 

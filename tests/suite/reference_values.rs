@@ -4,8 +4,8 @@ use crate::common::{Reference, Worst, references, references_in};
 use wheelrail::interpenetration::Slicer;
 use wheelrail::separation::axis::EtaAxis;
 use wheelrail::separation::grid::Method;
+use wheelrail::separation::methods::report_newton;
 use wheelrail::separation::plan::{self, FULL_PRECISION};
-use wheelrail::separation::report_newton;
 use wheelrail_report::errors::{compare, over_contact};
 use wheelrail_report::reference::exact;
 

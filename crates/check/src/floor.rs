@@ -4,7 +4,6 @@
 //! implicit equations, evaluated in twice the working precision, give the error of every measured point.
 
 use serde::Serialize;
-use twofloat::TwoFloat;
 
 use super::body::{Found, Solid};
 use super::closest::to_point;
@@ -12,6 +11,7 @@ use super::meshes::Vector;
 use super::report::largest;
 use super::sampler::Surface;
 use wheelrail::error::Result;
+use wheelrail::numerics::twice::Twice;
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Half, Profile, Segment, Station};
 
@@ -107,7 +107,7 @@ impl Implicit {
 
     fn distance_and_normal(&self, point: Vector) -> (f64, Vector) {
         let Station { x, z, cos, sin } = self.frame;
-        let two = |a: f64, b: f64| TwoFloat::new_mul(a, b);
+        let two = Twice::product;
         let along = two(point.x, cos) - two(point.z, sin) + x;
         let up = two(point.x, sin) + two(point.z, cos) + z;
         let w = self.axle.map(|r| -up + r);
@@ -124,7 +124,7 @@ impl Implicit {
         (distance, Vector::new(gx * cos + up * sin, y, up * cos - gx * sin))
     }
 
-    fn meridian(&self, x: TwoFloat, z: TwoFloat) -> (f64, [f64; 2]) {
+    fn meridian(&self, x: Twice, z: Twice) -> (f64, [f64; 2]) {
         let start = self.arc.start;
         let Some([a, b]) = self.arc.centre() else {
             let distance = (z - start.z) * start.cos - (x - start.x) * start.sin;

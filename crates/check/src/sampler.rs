@@ -6,6 +6,7 @@
 
 use super::meshes::Vector;
 use wheelrail::numerics::polynomial::recentred;
+use wheelrail::numerics::twice::Twice;
 use wheelrail::placement::{Body, Placement};
 use wheelrail::profile::{Polynomial, Segment, Shape, Station};
 
@@ -110,8 +111,9 @@ impl Curve {
         match &self.shape {
             Form::Turning { curvature, .. } => curvature.abs(),
             Form::Polynomial { polynomial, .. } => {
-                let bound = |c: &[twofloat::TwoFloat]| -> f64 {
-                    let local = recentred(c, (polynomial.t[0] + t).into());
+                let bound = |c: &[[f64; 2]]| -> f64 {
+                    let exact: Vec<Twice> = c.iter().map(|[high, low]| Twice::sum(*high, *low)).collect();
+                    let local = recentred(&exact, (polynomial.t[0] + t).into());
                     let terms = local.iter().enumerate().skip(2);
                     terms
                         .map(|(k, &c)| {
@@ -120,7 +122,8 @@ impl Curve {
                         })
                         .sum()
                 };
-                bound(&polynomial.x).hypot(bound(&polynomial.z))
+                let [x, z] = polynomial.coefficients();
+                bound(&x).hypot(bound(&z))
             }
         }
     }

@@ -8,7 +8,7 @@ use wheelrail::error::{Error, Result};
 use wheelrail::placement::Placement;
 use wheelrail::run::contacts;
 use wheelrail::scene::{self, equal_steps};
-use wheelrail::separation::midsep::table;
+use wheelrail::separation::midplane::table;
 
 /// Values of ξ when the scene leaves the axis to the program.
 const DEFAULT_ROWS: usize = 101;

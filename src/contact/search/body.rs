@@ -180,7 +180,7 @@ impl Builder {
             }
             (
                 BranchShape::Polynomial(polynomial),
-                [BranchPoint::Polynomial { t: a, .. }, BranchPoint::Polynomial { t: b, .. }],
+                [BranchPoint::Polynomial { t: [a], .. }, BranchPoint::Polynomial { t: [b], .. }],
             ) => {
                 self.polynomial(polynomial, [a, b]);
             }

@@ -142,8 +142,8 @@ fn closing_commutes_with_a_change_of_unit_to_the_bit() -> Result<()> {
         segment.map(
             |a| Arc { start: station(a.start), end: station(a.end), radius: a.radius * by },
             |p| {
-                let power = |(k, &c): (usize, &TwoFloat)| c * by.powi(1 - k as i32);
-                let all = |c: &[TwoFloat]| c.iter().enumerate().map(power).collect();
+                let power = |(k, &c): (usize, &Twice)| c * by.powi(1 - k as i32);
+                let all = |c: &[Twice]| c.iter().enumerate().map(power).collect();
                 Polynomial { t: p.t.map(|t| t * by), x: all(&p.x), z: all(&p.z) }
             },
         )

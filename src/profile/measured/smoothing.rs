@@ -4,9 +4,7 @@
 //! f = y − Λ D Q γ, D = diag(1/wᵢ), γ the second derivatives. With wᵢ the local spacing the sum is the integral
 //! ∫ (y − f)² ds, and a wave of length λ keeps the share 1/(1 + Λ (2π/λ)⁴) of its height, whatever the spacing.
 
-use twofloat::TwoFloat;
-
-use crate::numerics::twice::quotient;
+use crate::numerics::twice::Twice;
 
 /// The penalty Λ \[mm⁴\] that halves a wave of this length \[mm\].
 pub(super) fn penalty(cutoff_wavelength: f64) -> f64 {
@@ -22,19 +20,19 @@ pub(super) struct Smoother<'a> {
     slack: &'a [f64],
     penalty: f64,
     /// (d, l₁, l₂) of LDLᵀ for each inner knot.
-    factor: Vec<[TwoFloat; 3]>,
+    factor: Vec<[Twice; 3]>,
 }
 
 /// A natural cubic spline at its knots.
 #[derive(Debug, Clone)]
 pub(super) struct Fit {
     /// Values f at the knots.
-    pub value: Vec<TwoFloat>,
+    pub value: Vec<Twice>,
     /// Second derivatives γ at the knots, 0 at the ends.
-    pub second: Vec<TwoFloat>,
+    pub second: Vec<Twice>,
 }
 
-const ZERO: TwoFloat = TwoFloat::from_f64(0.0);
+const ZERO: Twice = Twice::ZERO;
 
 impl<'a> Smoother<'a> {
     /// For knots `steps` \[mm\] apart, all positive, and 1/wᵢ = `slack` for each: 0 pins the spline to the value
@@ -50,15 +48,15 @@ impl<'a> Smoother<'a> {
     }
 
     /// The three entries of column j of Q, for knots j, j + 1, j + 2.
-    fn second_difference(&self, j: usize) -> [TwoFloat; 3] {
-        let (a, b) = (TwoFloat::new_div(1.0, self.steps[j]), TwoFloat::new_div(1.0, self.steps[j + 1]));
+    fn second_difference(&self, j: usize) -> [Twice; 3] {
+        let (a, b) = (Twice::from(1.0) / self.steps[j], Twice::from(1.0) / self.steps[j + 1]);
         [a, -(a + b), b]
     }
 
-    fn eliminated(&self, j: usize) -> [TwoFloat; 3] {
+    fn eliminated(&self, j: usize) -> [Twice; 3] {
         let here = self.second_difference(j);
-        let slack = |k: usize| TwoFloat::from(self.slack[k]) * self.penalty;
-        let mut d = TwoFloat::new_add(self.steps[j], self.steps[j + 1]) / 3.0;
+        let slack = |k: usize| Twice::from(self.slack[k]) * self.penalty;
+        let mut d = Twice::sum(self.steps[j], self.steps[j + 1]) / 3.0;
         for (k, q) in here.iter().enumerate() {
             d += *q * *q * slack(j + k);
         }
@@ -66,18 +64,18 @@ impl<'a> Smoother<'a> {
         if j >= 2 {
             let [.., far] = self.second_difference(j - 2);
             let [d_before, ..] = self.factor[j - 2];
-            l2 = quotient(far * here[0] * slack(j), d_before);
+            l2 = far * here[0] * slack(j) / d_before;
             d -= l2 * l2 * d_before;
         }
         if j >= 1 {
             let [_, middle, far] = self.second_difference(j - 1);
-            let mut b = TwoFloat::from(self.steps[j]) / 6.0;
+            let mut b = Twice::from(self.steps[j]) / 6.0;
             b += middle * here[0] * slack(j) + far * here[1] * slack(j + 1);
             let [d_before, l1_before, _] = self.factor[j - 1];
             if j >= 2 {
                 b -= l2 * self.factor[j - 2][0] * l1_before;
             }
-            l1 = quotient(b, d_before);
+            l1 = b / d_before;
             d -= l1 * l1 * d_before;
         }
         [d, l1, l2]
@@ -89,13 +87,13 @@ impl<'a> Smoother<'a> {
     }
 
     /// The spline of these values with given second derivatives at its ends; an interpolation, where they are not 0.
-    pub fn fit_between(&self, y: &[f64], ends: [TwoFloat; 2]) -> Fit {
+    pub fn fit_between(&self, y: &[f64], ends: [Twice; 2]) -> Fit {
         let n = y.len();
         let mut second = vec![ZERO; n];
         (second[0], second[n - 1]) = (ends[0], ends[1]);
         let inner = self.factor.len();
         for j in 0..inner {
-            let rise = |k: usize| TwoFloat::new_sub(y[k + 1], y[k]) / self.steps[k];
+            let rise = |k: usize| Twice::sum(y[k + 1], -y[k]) / self.steps[k];
             let mut r = rise(j + 1) - rise(j);
             if j == 0 {
                 r -= ends[0] * self.steps[0] / 6.0;
@@ -112,7 +110,7 @@ impl<'a> Smoother<'a> {
             second[j + 1] = r;
         }
         for j in (0..inner).rev() {
-            let mut r = quotient(second[j + 1], self.factor[j][0]);
+            let mut r = second[j + 1] / self.factor[j][0];
             if j + 1 < inner {
                 r -= self.factor[j + 1][1] * second[j + 2];
             }
@@ -121,10 +119,10 @@ impl<'a> Smoother<'a> {
             }
             second[j + 1] = r;
         }
-        let mut value: Vec<TwoFloat> = y.iter().map(|&y| y.into()).collect();
+        let mut value: Vec<Twice> = y.iter().map(|&y| y.into()).collect();
         for j in (0..inner).filter(|_| self.penalty > 0.0) {
             for (k, q) in self.second_difference(j).into_iter().enumerate() {
-                let slack = TwoFloat::from(self.slack[j + k]) * self.penalty;
+                let slack = Twice::from(self.slack[j + k]) * self.penalty;
                 value[j + k] -= slack * q * second[j + 1];
             }
         }

@@ -1,22 +1,16 @@
-//! One segment, or the part of it that faces the other body, as a function ζ(ξ).
-
-use twofloat::TwoFloat;
+//! One segment, or the part of it that faces the other body, as a function ζ(ξ). Points and chords are found for N abscissae at
+//! once; one is N = 1.
 
 use super::super::arc::cosine;
 use super::super::{Arc, Polynomial, Station};
-use crate::numerics::polynomial::{
-    derivative, derivatives, divided_difference, range, recentred, slope_twofloat, value, value_and_slope,
-    value_twofloat,
-};
-use crate::numerics::roots::bracketed;
-use crate::numerics::twice;
+use super::points::{self, BranchPoint, BranchPoints, repeated};
+use super::turned::{rising_parts, seen_from, seen_from_own_point};
+use crate::numerics::lanes::Lanes;
+use crate::numerics::polynomial::{derivative, derivatives, exact_values, range, value, value_and_slope};
+use crate::numerics::twice::{Twice, Twices};
 
-/// A Newton step below this share of the range and of the step before, and below t, leaves of t an error of about its
-/// square: none, down to the contact point at t = 0.
-pub(super) const QUADRATIC: f64 = 1e-4 * 1e-4;
-
-/// Cosine of the tangent angle below which a line is kept by its ends: at 1e-3 a rounding of ξ is 1e-11 mm of ζ. Gentler lines
-/// are kept by their angle, which has more digits than a difference of ends that may be near each other.
+/// A line whose tangent has a smaller cosine is kept by its ends: at 1e-3 a rounding of ξ is 1e-11 mm of ζ. Gentler lines are
+/// kept by their angle, which has more digits than a difference of ends that may be near each other.
 const STEEP_LINE: f64 = 1e-3;
 
 /// A branch ζ(ξ) over a closed interval of ξ.
@@ -48,27 +42,8 @@ pub enum BranchShape {
     Polynomial(Box<PolynomialBranch>),
 }
 
-/// A point of a branch, from which chords are drawn.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum BranchPoint {
-    /// On an arc: sine and cosine of the tangent angle.
-    Arc {
-        /// S.
-        sin: f64,
-        /// C.
-        cos: f64,
-    },
-    /// On a polynomial: abscissa and parameter.
-    Polynomial {
-        /// ξ \[mm\].
-        xi: f64,
-        /// t.
-        t: f64,
-    },
-}
-
-/// ζ = ζ_a + Δξ (S_a + S)/(C_a + C) with S = S_a + κΔξ, C = √(1 − S²): the slope of a chord is the tangent
-/// of its mean angle. Nothing cancels, for any radius, lines included.
+/// A line or arc, ζ = ζ_a + Δξ (S_a + S)/(C_a + C) with S = S_a + κΔξ and C = √(1 − S²). The slope of a chord is the tangent of
+/// its mean angle. Nothing cancels for any radius, lines included.
 #[derive(Debug, Clone, Copy)]
 pub struct ArcBranch {
     /// Anchor (ξ_a, ζ_a): the contact point, or where the branch is flattest.
@@ -83,8 +58,8 @@ pub struct ArcBranch {
     pub curvature: f64,
 }
 
-/// (ξ(t), ζ(t)) with t = 0 at the contact point where there is one: ζ then has neither constant nor linear
-/// term, and keeps its relative accuracy down to C.
+/// A curve (ξ(t), ζ(t)). Where the contact point is on it, t = 0 there; ζ then has neither a constant nor a linear term, and keeps
+/// its relative accuracy down to C.
 #[derive(Debug, Clone)]
 pub struct PolynomialBranch {
     /// Coefficients of ξ(t).
@@ -94,18 +69,18 @@ pub struct PolynomialBranch {
     /// Parameter range, ξ ascending with t.
     pub t: [f64; 2],
     pub(super) ends: [f64; 2],
-    pub(super) exact: [Vec<TwoFloat>; 2],
+    pub(super) exact: [Vec<Twice>; 2],
 }
 
 impl ArcBranch {
-    /// (S, C) at ξ. A line's own C: that of S = 1 − 1e-17 is 0 to rounding.
+    /// Gives (S, C) at ξ. A line has its own C, because √(1 − S²) is 0 to rounding for S = 1 − 1e-17.
     #[inline(always)]
     pub fn sine_cosine(&self, xi: f64) -> (f64, f64) {
         let sin = self.sin + self.curvature * (xi - self.anchor[0]);
         (sin, if self.curvature == 0.0 { self.cos } else { cosine(sin) })
     }
 
-    /// ζ(ξ).
+    /// Computes ζ(ξ) \[mm\].
     #[inline]
     pub fn height(&self, xi: f64) -> f64 {
         let (sin, cos) = self.sine_cosine(xi);
@@ -113,66 +88,92 @@ impl ArcBranch {
     }
 
     #[inline(always)]
-    pub(super) fn height_of(&self, xi: f64, sin: f64, cos: f64) -> f64 {
+    fn height_of(&self, xi: f64, sin: f64, cos: f64) -> f64 {
         self.anchor[1] + (xi - self.anchor[0]) * ((self.sin + sin) / (self.cos + cos))
+    }
+
+    /// Computes ζ and ξ along chords as [`Branch::chords_near`] does, from points with sines S and secants 1/C.
+    ///
+    /// A chord that turns by an angle α has the length 2R sin α, and its direction is that of the tangent and α; tan α = runs/2RC.
+    #[inline(always)]
+    fn chords_near<const N: usize>(&self, [sin, secant]: [&Lanes<N>; 2], runs: &Lanes<N>) -> [Lanes<N>; 2] {
+        let [mut climb, mut stretch] = [[0.0; N]; 2];
+        for k in 0..N {
+            let slope = sin[k] * secant[k];
+            let turn = 0.5 * self.curvature * (runs[k] * secant[k]);
+            let square_cosine = 1.0 / (1.0 + turn * turn);
+            climb[k] = (slope + turn) * square_cosine;
+            stretch[k] = (1.0 - slope * turn) * square_cosine;
+            // The tangent has turned by 2α.
+            let upright = 1.0 - turn * (turn + 2.0 * slope) > 0.0;
+            stretch[k] = if upright { stretch[k] } else { f64::NAN };
+        }
+        [climb, stretch]
+    }
+
+    #[inline(always)]
+    fn exact_heights<const N: usize>(&self, xi: &Lanes<N>) -> Twices<N> {
+        let one = Twice::from(1.0);
+        let [xi_a, zeta_a] = self.anchor;
+        let mut zeta = Twices::from([0.0; N]);
+        for (k, &xi) in xi.iter().enumerate() {
+            let run = Twice::sum(xi, -xi_a);
+            let turn = if self.radius.is_finite() { run / self.radius } else { Twice::ZERO };
+            let sin = turn + self.sin;
+            let cos = ((one - sin) * (one + sin)).sqrt();
+            zeta.set(k, run * (sin + self.sin) / (cos + self.cos) + zeta_a);
+        }
+        zeta
     }
 }
 
 impl PolynomialBranch {
-    /// t with ξ(t) = ξ.
+    /// Gives the coefficients of ξ(t) and of ζ(t).
+    #[inline(always)]
+    fn coefficients(&self) -> [&[f64]; 2] {
+        [&self.xi, &self.zeta]
+    }
+
+    /// Finds t with ξ(t) = ξ; where ξ is beyond the branch, its nearer end.
     pub fn parameter(&self, xi: f64) -> f64 {
-        self.parameter_near(xi, self.guess(xi))
+        let (range, ends) = (repeated(self.t), repeated(self.ends));
+        let guess = points::guess(range, ends, &[xi]);
+        points::parameters(self.xi.as_slice(), range, &[xi], guess).map_or(f64::NAN, |[t]| t)
     }
 
-    /// t where ξ is on the line through the ends.
-    pub(super) fn guess(&self, xi: f64) -> f64 {
-        let [low, high] = self.t;
-        let share = (xi - self.ends[0]) / (self.ends[1] - self.ends[0]);
-        low + (high - low) * share
-    }
-
-    /// t with ξ(t) = ξ, by Newton steps from a guess inside a shrinking bracket.
-    fn parameter_near(&self, xi: f64, guess: f64) -> f64 {
-        let [mut low, mut high] = self.t;
-        let mut t = guess.clamp(low, high);
-        let (done, mut last) = (QUADRATIC * (high - low), f64::INFINITY);
-        // Newton's steps fall below rounding within 6 on any branch that is not vertical.
-        for _ in 0..60 {
-            let [p, slope] = value_and_slope(&self.xi, t);
-            let miss = p - xi;
-            if miss == 0.0 {
-                return t;
-            }
-            if miss > 0.0 {
-                high = t;
-            } else {
-                low = t;
-            }
-            let newton = t - miss / slope;
-            let next = if newton >= low && newton <= high { newton } else { low + (high - low) / 2.0 };
-            let step = (next - t).abs();
-            t = next;
-            let settled = step <= done.min(t.abs()) && step <= QUADRATIC * last;
-            if settled || step <= 2.0 * f64::EPSILON * t.abs() {
-                break;
-            }
-            last = step;
+    /// Finds t with ξ(t) = ξ in twice the working precision, from t in the working one.
+    #[inline(always)]
+    pub(super) fn exact_parameters<const N: usize>(&self, xi: &Lanes<N>, t: &Lanes<N>) -> Twices<N> {
+        let mut exact = Twices::from(*t);
+        let (abscissa, slope) = exact_values(&self.exact[0], &exact);
+        for k in 0..N {
+            // One Newton step more, which doubles the digits whatever the rounding of its slope.
+            let miss = abscissa.get(k) - xi[k];
+            exact.set(k, Twice::sum(t[k], -(miss.high / slope[k])));
         }
-        t
+        exact
     }
 
-    /// The parameter in twice the working precision.
-    pub(super) fn exact_parameter(&self, xi: f64) -> TwoFloat {
-        let t = self.parameter(xi);
-        let [_, slope] = value_and_slope(&self.xi, t);
-        // One step more, which doubles the digits whatever the rounding of its slope.
-        let t = TwoFloat::from(t);
-        t - (value_twofloat(&self.exact[0], t) - xi) / slope
+    fn derivative_bounds(&self, a: f64, b: f64) -> [[f64; 2]; 2] {
+        let (a, b) = (self.parameter(a), self.parameter(b));
+        let (dx, dz) = (derivative(&self.xi), derivative(&self.zeta));
+        let run = range(&dx, a, b);
+        if run[0] <= 0.0 {
+            return [[f64::NEG_INFINITY, f64::INFINITY]; 2];
+        }
+        let rise = range(&dz, a, b);
+        let slope = quotient(rise, run);
+        let turn = add(
+            product(range(&derivative(&dz), a, b), run),
+            product(range(&derivative(&dx), a, b), rise).map(|v| -v),
+        );
+        [slope, quotient(turn, [run[0].powi(3), run[1].powi(3)])]
     }
 }
 
 impl Branch {
-    /// The part of an arc that faces the other body: where the tangent points to larger ξ.
+    /// Makes the branch of an arc: the part that faces the other body, where the tangent points to larger ξ. `None` where there is
+    /// no such part.
     pub(super) fn of_arc(segment: usize, arc: &Arc, frame: &Station, contact: bool) -> Option<Self> {
         let (start, end) = (arc.start.seen_from(frame), arc.end.seen_from(frame));
         let (begins, ends) = (start.cos >= 0.0, end.cos >= 0.0);
@@ -216,8 +217,8 @@ impl Branch {
         Some(branch)
     }
 
-    /// Makes the branch begin where the one before it ends. A joint is rounded on either segment, and the smallest gap between
-    /// two pieces would be an end of the profile.
+    /// Makes the branch begin where the one before it ends. A joint is rounded on either segment, and the smallest gap between two
+    /// pieces would be an end of the profile.
     pub(super) fn begin_at(&mut self, joint: f64) {
         if joint < self.xi[1] {
             let heights = self.xi.map(|xi| self.height(xi));
@@ -226,8 +227,8 @@ impl Branch {
         }
     }
 
-    /// Makes a steep line run through its ends' heights. By its angle it would miss them by the rounding of ξ times its slope: by
-    /// its whole length where it is vertical to rounding.
+    /// Makes a steep line run through the heights of its ends. By its angle it would miss them by the rounding of ξ times its slope,
+    /// which is its whole length where it is vertical to rounding.
     fn keep_ends(&mut self, [from, to]: [f64; 2]) {
         let [a, b] = self.xi;
         if let BranchShape::Arc(line) = &mut self.shape
@@ -240,47 +241,33 @@ impl Branch {
         }
     }
 
-    /// The parts of a polynomial segment that face the other body; `contact` is the contact point's parameter.
+    /// Makes the branches of a polynomial segment: the parts that face the other body. `contact` is the parameter of the contact
+    /// point, where that is on the segment; only the part through it then counts.
     pub(super) fn of_polynomial(
         segment: usize,
         polynomial: &Polynomial,
         frame: &Station,
-        contact: Option<TwoFloat>,
+        contact: Option<Twice>,
     ) -> Vec<Self> {
-        let [xi, zeta, t] = match contact {
-            Some(origin) => polynomial.seen_from_own_point(origin),
-            None => polynomial.seen_from(frame),
+        let (exact, range) = match contact {
+            Some(origin) => seen_from_own_point(polynomial, origin),
+            None => seen_from(polynomial, frame),
         };
-        let range_t = [f64::from(t[0]), f64::from(t[1])];
-        let plain = |c: &[TwoFloat]| -> Vec<f64> { c.iter().map(|&c| c.into()).collect() };
-        let (xi_plain, zeta_plain) = (plain(&xi), plain(&zeta));
+        let [xi, zeta] = [&exact[0], &exact[1]].map(|c| c.iter().map(|c| c.high).collect::<Vec<_>>());
         let kind = if contact.is_some() { Kind::Contact } else { Kind::Plain };
-        let mut parts = if rises_throughout(&xi_plain, range_t) {
-            vec![range_t]
-        } else {
-            let (run, rise) = (derivative(&xi_plain), derivative(&zeta_plain));
-            let fastest =
-                [&run, &rise].map(|c| range(c, range_t[0], range_t[1]).map(f64::abs)).into_iter().flatten();
-            let vertical = VERTICAL * fastest.fold(0.0, f64::max);
-            rising_intervals(&run, vertical, range_t)
-        };
-        let shape = PolynomialBranch {
-            xi: xi_plain,
-            zeta: zeta_plain,
-            t: range_t,
-            ends: [f64::NAN; 2],
-            exact: [xi, zeta],
-        };
-        let branch = |part: [f64; 2], shape: PolynomialBranch| {
-            let ends = part.map(|t| value(&shape.xi, t));
-            let shape = BranchShape::Polynomial(Box::new(PolynomialBranch { t: part, ends, ..shape }));
-            let (begins_segment, ends_segment) = (part[0] == range_t[0], part[1] == range_t[1]);
+        let mut parts = rising_parts([&xi, &zeta], range);
+        parts.retain(|[a, b]| kind == Kind::Plain || (*a <= 0.0 && *b >= 0.0));
+        let whole = PolynomialBranch { xi, zeta, t: range, ends: [f64::NAN; 2], exact };
+        let branch = |t: [f64; 2], whole: PolynomialBranch| {
+            let ends = t.map(|t| value(&whole.xi, t));
+            let shape = BranchShape::Polynomial(Box::new(PolynomialBranch { t, ends, ..whole }));
+            let (begins_segment, ends_segment) = (t[0] == range[0], t[1] == range[1]);
             Self { xi: ends, segment, shape, begins_segment, ends_segment, kind }
         };
-        parts.retain(|[a, b]| kind == Kind::Plain || (*a <= 0.0 && *b >= 0.0));
+        // The last part takes the coefficients themselves: nearly always there is only one.
         let Some(last) = parts.pop() else { return Vec::new() };
-        let mut branches: Vec<Self> = parts.into_iter().map(|part| branch(part, shape.clone())).collect();
-        branches.push(branch(last, shape));
+        let mut branches: Vec<Self> = parts.into_iter().map(|t| branch(t, whole.clone())).collect();
+        branches.push(branch(last, whole));
         branches
     }
 
@@ -288,7 +275,7 @@ impl Branch {
         self.kind == Kind::Contact && self.segment == segment
     }
 
-    /// ζ(ξ) \[mm\].
+    /// Computes ζ(ξ) \[mm\].
     #[inline]
     pub fn height(&self, xi: f64) -> f64 {
         match &self.shape {
@@ -297,58 +284,111 @@ impl Branch {
         }
     }
 
-    /// The point at ξ, from which chords are drawn, and ζ(ξ) \[mm\].
-    #[inline]
-    pub fn point(&self, xi: f64) -> (BranchPoint, f64) {
+    /// Computes ζ at points of this branch in twice the working precision, for differences between closely conforming branches. The
+    /// result is NaN for points of another branch.
+    #[inline(always)]
+    pub fn exact_heights<const N: usize>(&self, xi: &Lanes<N>, points: &BranchPoints<N>) -> Twices<N> {
+        match (&self.shape, points) {
+            (BranchShape::Arc(arc), BranchPoints::Arc { .. }) => arc.exact_heights(xi),
+            (BranchShape::Polynomial(p), BranchPoints::Polynomial { t, .. }) => {
+                exact_values(&p.exact[1], &p.exact_parameters(xi, t)).0
+            }
+            _ => Twices::from([f64::NAN; N]),
+        }
+    }
+
+    /// Finds the points at N abscissae, from which chords are drawn, and their ζ \[mm\]. `None` for several abscissae where Newton's
+    /// steps on a polynomial do not settle.
+    #[inline(always)]
+    pub fn points<const N: usize>(&self, xi: &Lanes<N>) -> Option<(BranchPoints<N>, Lanes<N>)> {
         match &self.shape {
             BranchShape::Arc(arc) => {
-                let (sin, cos) = arc.sine_cosine(xi);
-                (BranchPoint::Arc { sin, cos }, arc.height_of(xi, sin, cos))
+                let [mut sin, mut cos, mut secant, mut zeta] = [[0.0; N]; 4];
+                for k in 0..N {
+                    (sin[k], cos[k]) = arc.sine_cosine(xi[k]);
+                    secant[k] = 1.0 / cos[k];
+                    zeta[k] = arc.height_of(xi[k], sin[k], cos[k]);
+                }
+                Some((BranchPoints::Arc { sin, cos, secant }, zeta))
             }
             BranchShape::Polynomial(p) => {
-                let t = p.parameter(xi);
-                (BranchPoint::Polynomial { xi, t }, value(&p.zeta, t))
+                points::points(p.coefficients(), repeated(p.t), repeated(p.ends), xi)
             }
         }
     }
 
-    /// (ζ(to) − ζ(from))/(to − from), the tangent's slope where they are equal; nothing cancels.
+    /// Finds the point at ξ, from which chords are drawn, and ζ(ξ) \[mm\].
+    #[inline]
+    pub fn point(&self, xi: f64) -> (BranchPoint, f64) {
+        let nan = [f64::NAN];
+        let nowhere = (BranchPoint::Arc { sin: nan, cos: nan, secant: nan }, nan);
+        let (point, [height]) = self.points(&[xi]).unwrap_or(nowhere);
+        (point, height)
+    }
+
+    /// Computes the slopes (ζ(to) − ζ(from))/(to − from) of chords from points of this branch. It is the tangent's slope where the
+    /// two are equal; nothing cancels. `None` for points of another branch, and as for [`Self::points`].
+    #[inline(always)]
+    pub fn chords_from<const N: usize>(&self, from: &BranchPoints<N>, to: &Lanes<N>) -> Option<Lanes<N>> {
+        match (&self.shape, from) {
+            (BranchShape::Arc(arc), BranchPoints::Arc { sin, cos, .. }) => {
+                let mut slope = [0.0; N];
+                for k in 0..N {
+                    let (sin_to, cos_to) = arc.sine_cosine(to[k]);
+                    slope[k] = (sin[k] + sin_to) / (cos[k] + cos_to);
+                }
+                Some(slope)
+            }
+            (BranchShape::Polynomial(p), BranchPoints::Polynomial { xi, t, rate }) => {
+                points::chords(p.coefficients(), repeated(p.t), [xi, t, rate], to)
+            }
+            _ => None,
+        }
+    }
+
+    /// Computes the slope of the chord from a point of this branch to the abscissa `to`; NaN for a point of another branch.
     #[inline]
     pub fn chord_from(&self, from: &BranchPoint, to: f64) -> f64 {
-        match (&self.shape, from) {
-            (BranchShape::Arc(arc), BranchPoint::Arc { sin, cos }) => {
-                let (sin_to, cos_to) = arc.sine_cosine(to);
-                (sin + sin_to) / (cos + cos_to)
-            }
-            (BranchShape::Polynomial(p), BranchPoint::Polynomial { xi, t }) => {
-                let slope = value_and_slope(&p.xi, *t)[1];
-                let t_to = p.parameter_near(to, t + (to - xi) / slope);
-                divided_difference(&p.zeta, *t, t_to) / divided_difference(&p.xi, *t, t_to)
-            }
-            // A point of another branch has no chord on this one.
-            _ => f64::NAN,
-        }
+        self.chords_from(from, &[to]).map_or(f64::NAN, |[slope]| slope)
     }
 
-    /// dζ/dξ at a point of this branch; infinite or NaN where it is vertical.
-    #[inline]
-    pub fn slope_from(&self, point: &BranchPoint) -> f64 {
-        match (&self.shape, point) {
-            (BranchShape::Arc(_), BranchPoint::Arc { sin, cos }) => sin / cos,
-            (BranchShape::Polynomial(p), BranchPoint::Polynomial { t, .. }) => {
-                value_and_slope(&p.zeta, *t)[1] / value_and_slope(&p.xi, *t)[1]
-            }
-            // A point of another branch has no tangent on this one.
-            _ => f64::NAN,
-        }
-    }
-
-    /// (ζ(b) − ζ(a))/(b − a), the slope ζ′(a) for a = b; nothing cancels.
+    /// Computes the slope of the chord from ξ = a to ξ = b, which is ζ′(a) for a = b. Nothing cancels.
     pub fn chord_slope(&self, a: f64, b: f64) -> f64 {
         self.chord_from(&self.point(a).0, b)
     }
 
-    /// The point at ξ with its unit tangent, in the frame.
+    /// Computes ζ and ξ along chords from points of this branch, as multiples of `runs`. The multiple of ξ is about 1.
+    ///
+    /// There is no iteration, and at most one division. On a polynomial the other end of a chord is where t has changed by
+    /// runs × dt/dξ; on an arc it is found by the angle of the chord with the tangent. NaN where that may be beyond a vertical tangent.
+    #[inline(always)]
+    pub fn chords_near<const N: usize>(&self, from: &BranchPoints<N>, runs: &Lanes<N>) -> [Lanes<N>; 2] {
+        match (&self.shape, from) {
+            (BranchShape::Arc(arc), BranchPoints::Arc { sin, secant, .. }) => {
+                arc.chords_near([sin, secant], runs)
+            }
+            (BranchShape::Polynomial(p), BranchPoints::Polynomial { t, rate, .. }) => {
+                points::chords_near(p.coefficients(), [t, rate], runs)
+            }
+            // Points of another branch have no chords on this one.
+            _ => [[f64::NAN; N]; 2],
+        }
+    }
+
+    /// Computes dζ/dξ at a point of this branch. It is infinite or NaN where the branch is vertical, and NaN for a point of another
+    /// branch.
+    #[inline]
+    pub fn slope_from(&self, point: &BranchPoint) -> f64 {
+        match (&self.shape, point) {
+            (BranchShape::Arc(_), BranchPoint::Arc { sin: [sin], cos: [cos], .. }) => sin / cos,
+            (BranchShape::Polynomial(p), BranchPoint::Polynomial { t: [t], .. }) => {
+                value_and_slope(&p.zeta, *t)[1] / value_and_slope(&p.xi, *t)[1]
+            }
+            _ => f64::NAN,
+        }
+    }
+
+    /// Finds the point at ξ with its unit tangent, in the frame.
     pub fn station(&self, xi: f64) -> Station {
         match &self.shape {
             BranchShape::Arc(arc) => {
@@ -364,7 +404,7 @@ impl Branch {
         }
     }
 
-    /// Curvature \[1/mm\] at ξ, positive where hollow side up.
+    /// Computes the curvature \[1/mm\] at ξ, which is positive where the hollow side is up.
     pub fn curvature(&self, xi: f64) -> f64 {
         match &self.shape {
             BranchShape::Arc(arc) => arc.curvature,
@@ -376,7 +416,7 @@ impl Branch {
         }
     }
 
-    /// Bounds of ζ′ and ζ″ over \[a, b\], for searches that must not miss a minimum. Infinite where the branch
+    /// Computes bounds of ζ′ and of ζ″ over \[a, b\], for searches that must not miss a minimum. They are infinite where the branch
     /// is vertical.
     pub fn derivative_bounds(&self, a: f64, b: f64) -> [[f64; 2]; 2] {
         match &self.shape {
@@ -393,24 +433,6 @@ impl Branch {
     }
 }
 
-impl PolynomialBranch {
-    fn derivative_bounds(&self, a: f64, b: f64) -> [[f64; 2]; 2] {
-        let (a, b) = (self.parameter(a), self.parameter(b));
-        let (dx, dz) = (derivative(&self.xi), derivative(&self.zeta));
-        let run = range(&dx, a, b);
-        if run[0] <= 0.0 {
-            return [[f64::NEG_INFINITY, f64::INFINITY]; 2];
-        }
-        let rise = range(&dz, a, b);
-        let slope = quotient(rise, run);
-        let turn = add(
-            product(range(&derivative(&dz), a, b), run),
-            product(range(&derivative(&dx), a, b), rise).map(|v| -v),
-        );
-        [slope, quotient(turn, [run[0].powi(3), run[1].powi(3)])]
-    }
-}
-
 fn ordered(a: f64, b: f64) -> [f64; 2] {
     if a <= b { [a, b] } else { [b, a] }
 }
@@ -420,18 +442,18 @@ fn product(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [all.into_iter().fold(f64::INFINITY, f64::min), all.into_iter().fold(f64::NEG_INFINITY, f64::max)]
 }
 
-/// Quotient by a positive interval.
+/// Divides an interval by a positive one.
 fn quotient(a: [f64; 2], positive: [f64; 2]) -> [f64; 2] {
     product(a, [positive[1].recip(), positive[0].recip()])
 }
 
-/// a + b, where b may come with its ends swapped by a change of sign.
+/// Adds two intervals; the ends of b may be swapped, as by a change of sign.
 fn add(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     let b = ordered(b[0], b[1]);
     [a[0] + b[0], a[1] + b[1]]
 }
 
-/// The sine of smallest size between two.
+/// Gives the sine of smallest size between two.
 fn flattest([a, b]: [f64; 2]) -> f64 {
     if a * b <= 0.0 {
         0.0
@@ -442,103 +464,17 @@ fn flattest([a, b]: [f64; 2]) -> f64 {
     }
 }
 
-/// Share of a curve's speed below which its run along ξ is the rounding of a vertical: the direction of a straight wall is
-/// known no better, and its run changes sign all along.
-const VERTICAL: f64 = 16.0 * f64::EPSILON;
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// Whether a polynomial has a positive derivative all over \[t0, t1\], by a bound that costs a sum: true of most spans. Where
-/// it is false the polynomial may rise all the same.
-fn rises_throughout(c: &[f64], [t0, t1]: [f64; 2]) -> bool {
-    let farthest = t0.abs().max(t1.abs());
-    let Some(first) = c.get(1) else { return false };
-    let (mut slope, mut power) = (0.0, 1.0);
-    for (k, c) in c.iter().enumerate().skip(2) {
-        power *= farthest;
-        slope += k as f64 * c.abs() * power;
+    #[test]
+    fn a_chord_past_a_vertical_tangent_is_no_number() {
+        // The lower half of a circle from its lowest point, where tan α = 0.2 and 1.1.
+        let arc = ArcBranch { anchor: [0.0; 2], sin: 0.0, cos: 1.0, radius: 1.0, curvature: 1.0 };
+        let [climb, stretch] = arc.chords_near([&[0.0; 2], &[1.0; 2]], &[0.4, 2.2]);
+        let [xi, zeta] = [0.4 * stretch[0], 0.4 * climb[0]];
+        assert!((xi - 5.0 / 13.0).abs() < 1e-15 && (zeta - arc.height(xi)).abs() < 1e-15);
+        assert!(stretch[1].is_nan());
     }
-    // Far above the rounding of a slope.
-    0.5 * first > slope
-}
-
-/// The parts of \[t0, t1\] where the polynomial `slope` is positive, by bisection down to 2⁻⁴⁰ of the range; none where it is nowhere
-/// larger than `rounding`.
-fn rising_intervals(slope: &[f64], rounding: f64, [t0, t1]: [f64; 2]) -> Vec<[f64; 2]> {
-    let mut parts = Vec::new();
-    if range(slope, t0, t1)[1] <= rounding {
-        return parts;
-    }
-    let mut cuts = vec![t0];
-    sign_changes(slope, rounding, [t0, t1], 40, &mut cuts);
-    cuts.push(t1);
-    for pair in cuts.windows(2) {
-        let (a, b) = (pair[0], pair[1]);
-        if b > a && value(slope, a + (b - a) / 2.0) > 0.0 {
-            parts.push([a, b]);
-        }
-    }
-    parts
-}
-
-/// Appends where the polynomial changes sign, but for parts where it is no larger than `rounding`.
-fn sign_changes(c: &[f64], rounding: f64, [a, b]: [f64; 2], depth: u32, out: &mut Vec<f64>) {
-    let [low, high] = range(c, a, b);
-    if low > 0.0 || high < 0.0 || depth == 0 || (low >= -rounding && high <= rounding) {
-        return;
-    }
-    let monotone = range(&derivative(c), a, b);
-    if monotone[0] > 0.0 || monotone[1] < 0.0 {
-        out.extend(bracketed(|t| value(c, t), a, b).filter(|&t| t > a && t < b));
-        return;
-    }
-    let middle = a + (b - a) / 2.0;
-    sign_changes(c, rounding, [a, middle], depth - 1, out);
-    if value(c, middle) == 0.0 {
-        out.push(middle);
-    }
-    sign_changes(c, rounding, [middle, b], depth - 1, out);
-}
-
-impl Polynomial {
-    /// Coefficients of ξ and ζ and the parameter range, seen from a frame.
-    fn seen_from(&self, frame: &Station) -> [Vec<TwoFloat>; 3] {
-        let (mut x, mut z) = (self.x.clone(), self.z.clone());
-        (x[0], z[0]) = (x[0] - frame.x, z[0] - frame.z);
-        let [xi, zeta] = turned(&x, &z, frame.cos.into(), frame.sin.into());
-        [xi, zeta, self.t.map(TwoFloat::from).to_vec()]
-    }
-
-    /// The same seen from the contact frame of its own point t = `origin`, which becomes t = 0; ζ has neither
-    /// constant nor linear term, exactly.
-    fn seen_from_own_point(&self, origin: TwoFloat) -> [Vec<TwoFloat>; 3] {
-        let zero = TwoFloat::from(0.0);
-        let (mut x, mut z) = (recentred(&self.x, origin), recentred(&self.z, origin));
-        z.resize(z.len().max(2), zero);
-        (x[0], z[0]) = (zero, zero);
-        let norm = (x[1] * x[1] + z[1] * z[1]).sqrt();
-        let [xi, mut zeta] = turned(&x, &z, twice::quotient(x[1], norm), twice::quotient(z[1], norm));
-        zeta[1] = zero;
-        [xi, zeta, self.t.map(|t| TwoFloat::from(t) - origin).to_vec()]
-    }
-
-    /// The station at a parameter in twice the working precision.
-    pub(super) fn station_at(&self, t: TwoFloat) -> Station {
-        let (dx, dz) = (slope_twofloat(&self.x, t), slope_twofloat(&self.z, t));
-        let norm = (dx * dx + dz * dz).sqrt();
-        Station {
-            x: value_twofloat(&self.x, t).into(),
-            z: value_twofloat(&self.z, t).into(),
-            cos: (dx / norm).into(),
-            sin: (dz / norm).into(),
-        }
-    }
-}
-
-/// (x, z) → (x cos + z sin, z cos − x sin), coefficient by coefficient.
-fn turned(x: &[TwoFloat], z: &[TwoFloat], cos: TwoFloat, sin: TwoFloat) -> [Vec<TwoFloat>; 2] {
-    let get = |c: &[TwoFloat], k: usize| c.get(k).copied().unwrap_or(TwoFloat::from(0.0));
-    let n = x.len().max(z.len());
-    [
-        (0..n).map(|k| get(x, k) * cos + get(z, k) * sin).collect(),
-        (0..n).map(|k| get(z, k) * cos - get(x, k) * sin).collect(),
-    ]
 }

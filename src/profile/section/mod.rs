@@ -2,16 +2,19 @@
 
 mod between;
 mod branch;
+mod branches;
 mod envelope;
-mod many;
+mod points;
+mod turned;
 
 pub use between::stationary_points;
-pub use branch::{ArcBranch, Branch, BranchPoint, BranchShape, PolynomialBranch};
+pub use branch::{ArcBranch, Branch, BranchShape, PolynomialBranch};
+pub use branches::Branches;
 pub use envelope::Piece;
-pub use many::{BranchPoints, Branches};
+pub use points::{BranchPoint, BranchPoints};
 
 use super::{ONE_JOINT, Profile, Segment, Shape, Station};
-use twofloat::TwoFloat;
+use crate::numerics::twice::Twice;
 
 /// Which body a profile bounds, and so which of several heights at one ξ is the outer one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,7 +33,7 @@ pub struct ProfilePoint {
     /// Index of its segment. A joint belongs to both neighbours; here to the left one.
     pub segment: usize,
     /// Its parameter on a polynomial segment, 0 on an arc.
-    parameter: TwoFloat,
+    parameter: Twice,
 }
 
 /// Part of the profile that faces the other body, as a function ζ(ξ) of the frame.
@@ -135,10 +138,10 @@ impl Section {
     fn point_on(branch: &Branch, profile: &Profile, x: f64) -> ProfilePoint {
         let (station, parameter) = match (&branch.shape, &profile.segments()[branch.segment].shape) {
             (BranchShape::Polynomial(shape), Shape::Polynomial(polynomial)) => {
-                let t = shape.exact_parameter(x);
-                (polynomial.station_at(t), t)
+                let t = shape.exact_parameters(&[x], &[shape.parameter(x)]).get(0);
+                (turned::station_at(polynomial, t), t)
             }
-            _ => (branch.station(x), TwoFloat::from(0.0)),
+            _ => (branch.station(x), Twice::ZERO),
         };
         ProfilePoint { station: Station { x, ..station }, segment: branch.segment, parameter }
     }

@@ -72,8 +72,9 @@ pub fn doubled(profile: &Profile) -> Option<(Profile, Exact)> {
                 if !ascends(p) {
                     return None;
                 }
-                let exact = |c: &[_]| c.iter().map(twofloat).collect();
-                (segment.shape.clone(), Graph::Curve { t: p.t, x: exact(&p.x), z: exact(&p.z) })
+                let [x, z] =
+                    p.coefficients().map(|c| c.into_iter().map(|[high, low]| Twice { high, low }).collect());
+                (segment.shape.clone(), Graph::Curve { t: p.t, x, z })
             }
         };
         rebuilt.push(ProfileSegment { label: String::new(), shape });
@@ -87,10 +88,6 @@ fn ascends(curve: &Polynomial) -> bool {
     let [first, last] = curve.t;
     let stations = (0..=64).map(|k| curve.station(first + (last - first) * f64::from(k) / 64.0));
     stations.into_iter().all(|station| station.cos > 0.0)
-}
-
-fn twofloat(value: &twofloat::TwoFloat) -> Twice {
-    Twice { high: value.hi(), low: value.lo() }
 }
 
 /// Value and derivative by Horner's rule.

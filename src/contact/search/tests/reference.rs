@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::*;
-use crate::separation::approximate::form;
+use crate::separation::methods::quadratic::form;
 
 const SCENES: [&str; 3] = [
     include_str!("../../../../tests/reference_yawed/yawed_crown_on_cone.json"),

@@ -2,28 +2,28 @@
 
 use std::fmt::Write;
 
+use super::gap::midplane_gap;
 use crate::placement::{Body, Placement};
 use crate::profile::{Shape, Station};
-use crate::separation::gap::midplane_gap;
 
-/// α, β and the end abscissa of one segment in the contact frame, (4.6)–(4.8).
+/// The parameters α, β and ξ_i of one segment in the contact frame, (4.6)–(4.8).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transformed {
-    /// The drawing's name.
+    /// The segment's name in the drawing; empty where it has none.
     pub label: String,
     /// "line", "arc" or "polynomial".
     pub kind: &'static str,
-    /// α and β: centre of an arc \[mm\], slope and intercept \[1, mm\] of a line; none for a polynomial.
+    /// α and β: the centre of an arc \[mm\], or slope and intercept of a line \[1, mm\]. A polynomial has none.
     pub alpha_beta: Option<[f64; 2]>,
-    /// Signed radius \[mm\] of an arc, positive where hollow side up.
+    /// Signed radius \[mm\] of an arc, positive where the hollow side is up.
     pub radius: Option<f64>,
     /// ξ of its two ends \[mm\].
     pub xi: [f64; 2],
 }
 
-/// One row of the midplane table.
+/// What the midplane table tells about one ξ.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Row {
+pub struct MidplaneRow {
     /// ξ \[mm\].
     pub xi: f64,
     /// ζ^R \[mm\], NaN off the rail.
@@ -34,7 +34,7 @@ pub struct Row {
     pub gap: f64,
 }
 
-/// RAIL0 and WHEEL0 of the Report: the transformed parameters of every segment.
+/// Computes the transformed parameters of every segment, as RAIL0 and WHEEL0 of the Report do.
 pub fn transformed_parameters(body: &Body) -> Vec<Transformed> {
     let frame = &body.section.frame;
     body.profile()
@@ -60,9 +60,9 @@ pub fn transformed_parameters(body: &Body) -> Vec<Transformed> {
         .collect()
 }
 
-/// The midplane table at the given ξ.
-pub fn rows(placement: &Placement, xi: &[f64]) -> Vec<Row> {
-    let row = |&xi: &f64| Row {
+/// Computes the midplane table at these ξ \[mm\].
+pub fn rows(placement: &Placement, xi: &[f64]) -> Vec<MidplaneRow> {
+    let row = |&xi: &f64| MidplaneRow {
         xi,
         rail: placement.rail.section.height(xi),
         wheel: placement.wheel.section.height(xi),
@@ -71,7 +71,7 @@ pub fn rows(placement: &Placement, xi: &[f64]) -> Vec<Row> {
     xi.iter().map(row).collect()
 }
 
-/// What MIDSEP printed, as a table that a person can read.
+/// Writes what MIDSEP printed as a table that a person can read.
 pub fn table(placement: &Placement, xi: &[f64]) -> String {
     let mut out = String::from("# MIDSEP: midplane separation, Report FRA/ORD-78/41, Sec. 5\n");
     out += "# Lengths in mm, angles in rad; contact frame: origin C, xi along the tangent, zeta from rail to wheel.\n";

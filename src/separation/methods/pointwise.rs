@@ -1,11 +1,11 @@
-//! Point-wise sagitta iteration at every point of the grid.
+//! Every point of a grid by its own sagitta iteration.
 
-use super::Evaluator;
-use super::axis::EtaAxis;
-use super::grid::Kernel;
+use super::super::axis::EtaAxis;
+use super::super::evaluator::Evaluator;
+use super::super::kernel::Kernel;
 use crate::placement::Placement;
 
-/// Every point on its own; the reference for all other methods.
+/// Evaluates every point on its own: the reference for all other methods.
 #[derive(Debug)]
 pub struct Pointwise<'a> {
     evaluator: Evaluator<'a>,
@@ -13,7 +13,7 @@ pub struct Pointwise<'a> {
 }
 
 impl<'a> Pointwise<'a> {
-    /// Over a placed pair.
+    /// Makes the method for a placed pair.
     pub fn new(placement: &'a Placement, axis: &'a EtaAxis) -> Self {
         Self { evaluator: Evaluator::new(placement), axis }
     }

@@ -1,19 +1,19 @@
 //! The Report's own INSEP: Newton–Raphson on (6.13), kept as the historical baseline.
 //!
-//! Written as printed, in centre form, with its cancellation: F = (z − R)² − (ρ² − η²) leaves an absolute error
-//! of about 1e-13 mm whatever the size of s (erratum 7). Profiles are searched by x anew at every iterate
-//! (erratum 6); an iterate that leaves the profile, or an arc, gives NaN.
+//! It is written as printed, in centre form, with its cancellation: F = (z − R)² − (ρ² − η²) leaves an absolute error of about
+//! 1e-13 mm whatever the size of s (erratum 7). The segment is found anew from x at every iterate (erratum 6). An iterate that
+//! leaves the profile, or an arc, gives NaN.
 
-use super::axis::EtaAxis;
-use super::grid::Kernel;
+use super::super::axis::EtaAxis;
+use super::super::kernel::Kernel;
 use crate::numerics::polynomial::derivatives;
 use crate::placement::{Body, Placement};
 use crate::profile::{Shape, Station};
 
-/// Iterations after which the Report's method is taken not to converge; it needs 2 to 5 where it does.
+/// After so many iterations the Report's method is taken not to converge. It needs 2 to 5 where it does.
 const MOST_ITERATIONS: usize = 50;
 
-/// One segment as (3.2) writes it.
+/// A segment as (3.2) writes it.
 #[derive(Debug, Clone)]
 enum Printed {
     /// z = b ± √(R² − (x − a)²), the sign carried for erratum 2.
@@ -24,7 +24,7 @@ enum Printed {
     Polynomial { middle: f64, c: Vec<f64> },
 }
 
-/// What of a placed pair the Report's method has no formula for, if there is such a thing; its values are NaN there.
+/// Names what of a placed pair the Report's method has no formula for; its values are NaN there. `None` where it has them all.
 pub fn missing(placement: &Placement) -> Option<&'static str> {
     if placement.skew != 0.0 {
         return Some("yaw");
@@ -34,7 +34,7 @@ pub fn missing(placement: &Placement) -> Option<&'static str> {
     segments.map(|segment| &segment.shape).any(unknown).then_some("a wheel of parametric curves")
 }
 
-/// Newton on (6.13) at every point.
+/// Newton's iteration on (6.13) at every point.
 #[derive(Debug)]
 pub struct ReportNewton<'a> {
     placement: &'a Placement,
@@ -66,7 +66,7 @@ impl Printed {
         }
     }
 
-    /// (z, dz/dx) at x.
+    /// Computes (z, dz/dx) at x.
     fn profile(&self, x: f64) -> (f64, f64) {
         match self {
             Self::Arc { a, b, radius, sign } => {
@@ -83,8 +83,8 @@ impl Printed {
 }
 
 impl<'a> ReportNewton<'a> {
-    /// Over a placed pair without skew, which the Report does not have; iterates until |Δζ| is below
-    /// `tolerance` \[mm\].
+    /// Makes the method for a placed pair without skew, which the Report does not have. It iterates until |Δζ| is below `tolerance`
+    /// \[mm\].
     pub fn new(placement: &'a Placement, axis: &'a EtaAxis, tolerance: f64) -> Self {
         let printed = |body: &Body, frame: &Station| {
             let segments = body.profile().segments().iter();
@@ -113,7 +113,7 @@ impl<'a> ReportNewton<'a> {
         Some(self.wheel[self.last].1.profile(x))
     }
 
-    /// Steps a to h of Sec. 6.2.
+    /// Computes ζ^W \[mm\] by the steps a to h of Sec. 6.2; NaN where they do not converge.
     fn wheel_height(&mut self, xi: f64, eta: f64, guess: f64) -> f64 {
         let Station { x: x_c, z: z_c, cos, sin } = self.placement.wheel.section.frame;
         let radius = self.placement.wheel_radius;

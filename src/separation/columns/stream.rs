@@ -1,7 +1,7 @@
 //! Stores past the caches, for arrays that do not fit into them.
 //!
-//! An ordinary store first reads the line of memory that it is going to overwrite. For such arrays that takes most of the
-//! time: 10⁸ points take a third of it without (`wheelrail report`, growth of cost).
+//! An ordinary store first reads the line of memory that it is going to overwrite. For such arrays that takes most of the time: 10⁸
+//! points take a third of the time without it (`wheelrail report`, growth of cost).
 
 use pulp::bytemuck::Pod;
 

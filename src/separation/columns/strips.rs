@@ -1,43 +1,40 @@
-//! Strips: neighbouring columns that pass the same branches in the same order, as one polynomial in ξ.
+//! How strips are made: neighbouring columns that pass the same branches in the same order, as polynomials in ξ.
 //!
-//! Between the ξ at which a joint of either body enters or leaves the window, all that makes up a spectral column
-//! is analytic in ξ: of every span s at its beginning (over both contact segments as g/ξ², which keeps its relative
-//! accuracy down to C), u_0, and the coefficients of q in powers of τ = (u − u_0)/(u_1 − u_0). They are interpolated
-//! from columns at 16 Chebyshev points in ξ, to rounding; a strip where that fails is halved, one with few columns is
-//! left to its columns.
+//! Between the ξ at which a joint of either body enters or leaves the window, all that makes up a spectral column is analytic in ξ.
+//! For every span this is s at the beginning (over both contact segments as g/ξ², which keeps its relative accuracy down to C), u_0,
+//! and the coefficients of q in powers of τ = (u − u_0)/(u_1 − u_0). They are interpolated to rounding from columns at 16 Chebyshev
+//! points in ξ. A strip where that fails is halved; one with few columns is left to its columns.
 
-use super::Evaluator;
-use super::column::WheelSurface;
-use super::columns::{Columns, MANY, MOST_SPANS, Row, largest, row, smallest};
-use super::spectral::{ROUNDING_LEVEL, Spectral};
-use super::strip::Gap;
-pub use super::strip::Strip;
-use crate::numerics::chebyshev;
+use super::super::demand::ROUNDING_LEVEL;
+use super::super::evaluator::Evaluator;
+use super::super::wheel_surface::WheelSurface;
+use super::fit::{Fitter, polynomials};
+use super::neighbours::{MOST_SPANS, Neighbours};
+use super::strip::{Gap, Strip};
+use crate::numerics::chebyshev::{self, PROOF};
+use crate::numerics::lanes::{Lanes, MANY, lanes, largest, smallest};
 use crate::placement::Placement;
 
-/// Columns that a strip must have: making it takes as long as about so many columns singly.
+/// The number of columns that a strip must have. Making it takes as long as about so many single columns.
 const LEAST_COLUMNS: usize = 8;
 
-/// Where g/ξ² varies much, its last coefficients below this share of its smallest value are rounding: a thirtieth of the
-/// promised relative error.
+/// Where g/ξ² varies much, coefficients below this share of its smallest value are rounding. It is a thirtieth of the promised
+/// relative error.
 const MOST_ROUNDING: f64 = 16.0 * f64::EPSILON;
-
-/// Coefficients at the end that have to be rounding: one parity may vanish.
-pub(super) const PROOF: usize = 2;
 
 /// Places in 0 ≤ τ ≤ 1 at which changes of q are judged.
 const JUDGED: [f64; 4] = [0.0, 0.3, 0.7, 1.0];
 
-/// The strips of a grid up to u = `u_max` \[mm²\], in order of ξ; none for a skewed wheel or few columns.
-pub fn strips(spectral: &mut Spectral<'_>, placement: &Placement, xi: &[f64], u_max: f64) -> Vec<Strip> {
+/// Makes the strips of a grid up to u = `u_max` \[mm²\], in order of ξ. There are none for a skewed wheel or few columns.
+pub fn strips(fitter: &mut Fitter<'_>, placement: &Placement, xi: &[f64], u_max: f64) -> Vec<Strip> {
     let (Some(&first), Some(&last)) = (xi.first(), xi.last()) else { return Vec::new() };
     if placement.skew != 0.0 || u_max == 0.0 {
         return Vec::new();
     }
     // What is no break belongs to the strip.
     let window = [first.next_down(), last.next_up()];
-    let least = spectral.coefficients;
-    let mut maker = Maker { spectral, u_max, least, strips: Vec::new() };
+    let least = fitter.least;
+    let mut maker = Maker { fitter, u_max, least, strips: Vec::new() };
     let mut rest = xi;
     for pair in breaks(placement, u_max, window).windows(2) {
         rest = &rest[leading(rest, |xi| xi <= pair[0])..];
@@ -48,7 +45,7 @@ pub fn strips(spectral: &mut Spectral<'_>, placement: &Placement, xi: &[f64], u_
     maker.strips
 }
 
-/// How many of the first columns it holds for; of a spline's many intervals most have one column or none.
+/// Counts the first columns for which a property holds. Most of a spline's many intervals have one column or none.
 fn leading(xi: &[f64], holds: impl Fn(f64) -> bool) -> usize {
     if xi.get(LEAST_COLUMNS).is_some_and(|&xi| holds(xi)) {
         return xi.partition_point(|&xi| holds(xi));
@@ -56,7 +53,7 @@ fn leading(xi: &[f64], holds: impl Fn(f64) -> bool) -> usize {
     xi.iter().take_while(|&&xi| holds(xi)).count()
 }
 
-/// The ξ at which a joint of either body enters or leaves the columns, and the window's own ends, in order.
+/// Finds the ξ \[mm\] at which a joint of either body enters or leaves the columns, and the window's own ends, in order.
 fn breaks(placement: &Placement, u_max: f64, window: [f64; 2]) -> Vec<f64> {
     let (rail, wheel) = (&placement.rail.section, WheelSurface::new(placement));
     let leaving = |(joint, height): (f64, f64)| {
@@ -78,11 +75,11 @@ fn breaks(placement: &Placement, u_max: f64, window: [f64; 2]) -> Vec<f64> {
     ends
 }
 
-/// Makes strips.
+/// The strips made so far, and what they are made with.
 struct Maker<'s, 'a> {
-    spectral: &'s mut Spectral<'a>,
+    fitter: &'s mut Fitter<'a>,
     u_max: f64,
-    /// Coefficients that the next one is to start with: one less than the one before it needed.
+    /// The number of coefficients that the next strip starts with: one less than the last one needed.
     least: usize,
     strips: Vec<Strip>,
 }
@@ -97,9 +94,9 @@ impl Maker<'_, '_> {
         }
         // Halves of an interval that is so short would have no strips.
         let short = columns.len() < 2 * LEAST_COLUMNS;
-        let arch = self.spectral.arch;
+        let arch = self.fitter.arch;
         let attempt =
-            Attempt { spectral: self.spectral, u_max: self.u_max, xi: [a, b], least: self.least, short };
+            Attempt { fitter: self.fitter, u_max: self.u_max, xi: [a, b], least: self.least, short };
         match arch.dispatch(attempt) {
             Some(strip) => {
                 self.least = strip.coefficients.saturating_sub(1).max(1);
@@ -114,16 +111,16 @@ impl Maker<'_, '_> {
     }
 }
 
-/// The places t from −1 to 1 of an interval.
+/// Gives ξ \[mm\] at places t, which run from −1 to 1 over an interval.
 #[inline(always)]
-pub(super) fn inside([a, b]: [f64; 2], t: &Row) -> Row {
+pub fn inside([a, b]: [f64; 2], t: &Lanes) -> Lanes {
     let half = (b - a) / 2.0;
-    row(|k| a + half + half * t[k])
+    lanes(|k| a + half + half * t[k])
 }
 
-/// One strip over an interval, compiled for each kind of machine.
+/// The attempt to make one strip over an interval; compiled for each kind of machine.
 struct Attempt<'s, 'a> {
-    spectral: &'s mut Spectral<'a>,
+    fitter: &'s mut Fitter<'a>,
     u_max: f64,
     xi: [f64; 2],
     least: usize,
@@ -136,33 +133,35 @@ impl pulp::WithSimd for Attempt<'_, '_> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) -> Option<Strip> {
         let points = inside(self.xi, &chebyshev::NODES);
-        let Spectral { evaluator, columns, .. } = &mut *self.spectral;
-        columns.take(evaluator, self.u_max, points)?;
-        Strip::new(self.spectral, self.xi, self.least, self.short)
+        let Fitter { evaluator, neighbours, .. } = &mut *self.fitter;
+        neighbours.take(evaluator, self.u_max, points)?;
+        self.strip()
     }
 }
 
-impl Strip {
-    /// The strip through the columns last taken, at its Chebyshev points; `None` where there are too many spans, something
-    /// is not finite, or has too few coefficients that are rounding; of a `short` strip the gap may have too few.
+impl Attempt<'_, '_> {
+    /// Makes the strip through the columns last taken, which are at its Chebyshev points. `None` where there are too many spans,
+    /// where something is not finite, or where a quantity has too few coefficients that are rounding. The gap of a `short` strip may
+    /// have too few.
     #[inline(always)]
-    fn new(spectral: &mut Spectral<'_>, xi: [f64; 2], least: usize, short: bool) -> Option<Self> {
-        let Spectral { evaluator, columns, demand, rows, .. } = spectral;
+    fn strip(self) -> Option<Strip> {
+        let Self { fitter, u_max, xi, least, short } = self;
+        let Fitter { evaluator, neighbours: columns, demand, rows, .. } = fitter;
         let beginnings = Beginnings::new(evaluator, columns, short)?;
         let single = columns.spans.len() == 1;
         let (mut counts, mut kept, mut truncation) = ([0; MOST_SPANS], [0; MOST_SPANS], 0f64);
         rows.clear();
         for (k, span) in columns.spans.iter().enumerate() {
             let at = rows.len();
-            let (n, error) = columns.polynomials(k, *demand, least, rows)?;
+            let (n, error) = polynomials(&columns.wheel, &span.wheel, u_max, (*demand, least), rows)?;
             truncation = error.max(truncation);
-            let length = row(|k| span.u[1][k] - span.u[0][k]);
+            let length: Lanes = lanes(|k| span.wheel.u[1][k] - span.wheel.u[0][k]);
             let q = &mut rows[at..];
             let mut power = [1.0; MANY];
             for c in q.iter_mut() {
-                *c = chebyshev::coefficients(&row(|k| c[k] * power[k]));
+                *c = chebyshev::coefficients(&lanes(|k| c[k] * power[k]));
                 if !single {
-                    power = row(|k| power[k] * length[k]);
+                    power = lanes(|k| power[k] * length[k]);
                 }
             }
             let relative = ROUNDING_LEVEL * q[0][0].abs();
@@ -176,7 +175,7 @@ impl Strip {
             for tau in JUDGED {
                 let mut change = [0.0; MANY];
                 for c in q.iter().rev() {
-                    change = row(|k| change[k] * (tau * end) + c[k]);
+                    change = lanes(|k| change[k] * (tau * end) + c[k]);
                 }
                 judged.with(&change, allowed);
             }
@@ -199,34 +198,35 @@ impl Strip {
         for (powers, row) in rest.chunks_exact_mut(kept[0]).zip(&series.as_flattened()[1..]) {
             write(powers, row);
         }
-        Some(Self { xi, gap, spans, coefficients, powers, kept, truncation })
+        Some(Strip { xi, gap, spans, coefficients, powers, kept, truncation })
     }
 }
 
 /// Writes the coefficients of t^(kept−1), …, t⁰ of an interpolant with these Chebyshev coefficients.
 #[inline(always)]
-fn write(powers: &mut [f64], row: &Row) {
+fn write(powers: &mut [f64], row: &Lanes) {
     let values = chebyshev::to_powers(row, powers.len());
     for (power, value) in powers.iter_mut().rev().zip(values) {
         *power = value;
     }
 }
 
-/// Where the columns of a strip begin their spans: most intervals that are too long are seen to be so by it.
+/// What the spans of a strip's columns begin with. Most intervals that are too long are found out by it.
 struct Beginnings {
     gap: Gap,
-    /// Of every span the series of u_0 and of s.
-    series: [[Row; 2]; MOST_SPANS],
-    /// How many coefficients of these are more than rounding.
+    /// The Chebyshev series of u_0 and of s, of every span.
+    series: [[Lanes; 2]; MOST_SPANS],
+    /// The number of coefficients of these that are more than rounding.
     kept: usize,
-    /// Rounding of s.
+    /// The rounding of s, of every span \[mm, or 1/mm for g/ξ²\].
     rounding: [f64; MOST_SPANS],
 }
 
 impl Beginnings {
-    /// `None` as for [`Strip::new`].
+    /// Judges the beginnings of the columns last taken. `None` where u_0 or s has too few coefficients that are rounding; s of a
+    /// `short` strip may have too few over the contact segments.
     #[inline(always)]
-    fn new(evaluator: &Evaluator<'_>, columns: &Columns<'_>, short: bool) -> Option<Self> {
+    fn new(evaluator: &Evaluator<'_>, columns: &Neighbours<'_>, short: bool) -> Option<Self> {
         let mut gap = if columns.contact { Gap::Relative } else { Gap::Plain };
         let mut judged = Judged::default();
         let mut begins = [[[0.0; MANY]; 2]; MOST_SPANS];
@@ -234,7 +234,7 @@ impl Beginnings {
         for (k, span) in columns.spans.iter().enumerate() {
             let mut s = span.base;
             rounding[k] = if columns.contact && k == 0 {
-                s = row(|k| s[k] / (columns.xi[k] * columns.xi[k]));
+                s = lanes(|k| s[k] / (columns.xi[k] * columns.xi[k]));
                 // What is relatively accurate must stay so where it is smallest; where it varies much, the largest
                 // values' rounding is more.
                 let least = smallest(&s);
@@ -243,8 +243,8 @@ impl Beginnings {
             } else {
                 f64::EPSILON * largest(&span.size(evaluator, &columns.xi))
             };
-            begins[k] = [chebyshev::coefficients(&span.u[0]), chebyshev::coefficients(&s)];
-            judged.with(&begins[k][0], ROUNDING_LEVEL * largest(&span.u[1]));
+            begins[k] = [chebyshev::coefficients(&span.wheel.u[0]), chebyshev::coefficients(&s)];
+            judged.with(&begins[k][0], ROUNDING_LEVEL * largest(&span.wheel.u[1]));
             let before = judged;
             judged.with(&begins[k][1], rounding[k]);
             if k == 0 && short && judged.kept().is_none() {
@@ -255,20 +255,21 @@ impl Beginnings {
     }
 }
 
-/// Which Chebyshev coefficients are more than rounding, or not finite: those that are not 0.
+/// Tells by entries that are not 0 which Chebyshev coefficients are more than rounding, or not finite.
 #[derive(Debug, Default, Clone, Copy)]
 struct Judged([u64; MANY]);
 
 impl Judged {
+    /// Judges one more series, of which coefficients up to `allowed` are rounding.
     #[inline(always)]
-    fn with(&mut self, row: &Row, allowed: f64) {
+    fn with(&mut self, row: &Lanes, allowed: f64) {
         for (more, c) in self.0.iter_mut().zip(row) {
             let rounding = c.abs() <= allowed;
             *more |= u64::from(!rounding);
         }
     }
 
-    /// Number of coefficients of which the last is more; `None` where too few are rounding.
+    /// Gives the number of coefficients up to the last one that is more than rounding; `None` where too few are rounding.
     fn kept(&self) -> Option<usize> {
         let kept = self.0.iter().rposition(|&more| more != 0).map_or(1, |last| last + 1);
         (kept + PROOF <= MANY).then_some(kept)

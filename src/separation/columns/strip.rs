@@ -1,76 +1,77 @@
-//! The columns of one strip: their quantities, and s from them, for many columns at once.
+//! One strip of neighbouring columns: its quantities, and s from them, for many columns at once.
 
-use super::axis::{EtaAxis, mirror};
-use super::columns::{MANY, MOST_SPANS, Row, row};
-use super::gap::midplane_gap;
-use super::horner::{PerDegree, horner, per_degree, whole_vectors};
-use super::spectral::MOST_COEFFICIENTS;
+use super::super::axis::{EtaAxis, mirror};
+use super::super::gap::midplane_gap;
+use super::horner::{MOST_COEFFICIENTS, PerDegree, horner, per_degree, whole_vectors};
+use super::neighbours::MOST_SPANS;
+use crate::numerics::lanes::{Lanes, MANY, lanes};
 use crate::placement::Placement;
 
-/// Columns over an interval of ξ, each made up of the same quantities: of every span the coefficients of q, s at its
-/// beginning and u_0, all polynomials in ξ.
+/// Columns over an interval of ξ that are made up of the same quantities. These are, for every span, the coefficients of q, s at the
+/// beginning and u_0. All are polynomials in ξ.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Strip {
-    /// Its open interval \[mm\].
+    /// The open interval of ξ \[mm\].
     pub xi: [f64; 2],
     /// How s at the beginning of the columns is known.
     pub(super) gap: Gap,
     /// Number of spans.
-    pub(super) spans: usize,
+    pub spans: usize,
     /// Number of coefficients of q.
     pub(super) coefficients: usize,
-    /// Of every quantity the coefficients of t^(kept−1), …, t⁰, t from −1 to 1 over the interval: of every span those of q, then
-    /// of every span u_0, but for the first one, and s.
+    /// The coefficients of t^(kept−1), …, t⁰ of every quantity, where t runs from −1 to 1 over the interval. First come the
+    /// coefficients of q, span by span; then s of the first span; then u_0 and s of each further span.
     pub(super) powers: Vec<f64>,
-    /// Number of powers of the quantities of q by spans; of u_0 and s as many as for the first one's.
+    /// The number of powers of each coefficient of q, by spans. u_0 and s have as many as the first span.
     pub(super) kept: [usize; MOST_SPANS],
-    /// Largest measured truncation error of its columns \[mm\].
+    /// Largest measured truncation error of the columns \[mm\].
     pub truncation: f64,
 }
 
-/// s at the beginning of a strip's columns.
+/// How s at the beginning of a strip's columns is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Gap {
-    /// Interpolated as it is.
+pub enum Gap {
+    /// s is interpolated.
     Plain,
-    /// Interpolated as g/ξ².
+    /// g/ξ² is interpolated.
     Relative,
-    /// Computed for every column: where g/ξ² varies too much for its smallest values to keep their digits.
+    /// g is computed for every column, because g/ξ² varies too much for its smallest values to keep their digits.
     Computed,
 }
 
-/// The polynomials of neighbouring columns over one span: s = base + v Σ c_k v^k, v = u − u_0.
+/// The polynomials s = base + v Σ c_k v^k of neighbouring columns over one span, v = u − u_0.
 #[derive(Debug, Clone)]
-pub(super) struct ColumnPolynomials {
+pub struct ColumnPolynomials {
     /// Coefficients of q.
-    c: [Row; MOST_COEFFICIENTS],
+    c: [Lanes; MOST_COEFFICIENTS],
     /// s at u_0 \[mm\].
-    base: Row,
+    base: Lanes,
     /// u_0 \[mm²\].
-    pub(super) u0: Row,
+    pub(super) u0: Lanes,
 }
 
 impl ColumnPolynomials {
-    pub(super) const NONE: Self = Self { c: [[0.0; MANY]; _], base: [0.0; MANY], u0: [0.0; MANY] };
+    /// Zero polynomials.
+    pub const ZERO: Self = Self { c: [[0.0; MANY]; _], base: [0.0; MANY], u0: [0.0; MANY] };
 
-    /// Makes it those of columns that have no other span.
+    /// Makes these the polynomials of columns that have one span.
     #[inline(always)]
-    pub(super) fn set(&mut self, c: &[Row], base: &Row) {
+    pub fn set(&mut self, c: &[Lanes], base: &Lanes) {
         self.c[..c.len()].copy_from_slice(c);
         (self.base, self.u0) = (*base, [0.0; MANY]);
     }
 
-    /// s at v = u − u_0 of each column \[mm\], by so many coefficients.
+    /// Computes s \[mm\] of each column at its own v \[mm²\], by so many coefficients.
     #[inline(always)]
-    pub(super) fn values(&self, coefficients: usize, v: &Row) -> Row {
+    pub fn values(&self, coefficients: usize, v: &Lanes) -> Lanes {
         let mut q = [0.0f64; MANY];
         for c in self.c[..coefficients].iter().rev() {
-            q = row(|k| q[k].mul_add(v[k], c[k]));
+            q = lanes(|k| q[k].mul_add(v[k], c[k]));
         }
-        row(|k| q[k].mul_add(v[k], self.base[k]))
+        lanes(|k| q[k].mul_add(v[k], self.base[k]))
     }
 
-    /// s and u_0 at the beginning of the k-th column's span, and its first N coefficients, which are all.
+    /// Gives s and u_0 at the beginning of the k-th column's span, and its N coefficients.
     #[inline(always)]
     fn column<const N: usize>(&self, k: usize) -> ([f64; 2], [f64; N]) {
         let mut c = [0.0; N];
@@ -81,18 +82,23 @@ impl ColumnPolynomials {
     }
 }
 
-/// Neighbouring columns of one strip, compiled for each kind of machine. A struct, since closures may be left out of
-/// line, and so without the machine's widest vectors. Stored past the caches if `PAST`.
-pub(super) struct StripColumns<'a, const PAST: bool> {
+/// Neighbouring columns of one strip to be evaluated; compiled for each kind of machine. They are stored past the caches if `PAST`.
+///
+/// It is a struct, because closures may be left out of line, and so without the machine's widest vectors.
+pub struct StripColumns<'a, const PAST: bool> {
+    /// The pair.
     pub placement: &'a Placement,
+    /// The strip.
     pub strip: &'a Strip,
-    /// At most [`MANY`].
+    /// ξ of the columns \[mm\], at most [`MANY`].
     pub xi: &'a [f64],
+    /// η of every column.
     pub axis: &'a EtaAxis,
-    /// Whether one half is the other's mirror image, and columns are whole vectors.
+    /// Whether one half of a column is the other's mirror image, and columns are whole vectors.
     pub mirrored: bool,
-    /// Polynomials of every span, overwritten.
+    /// Memory for the polynomials of every span, overwritten.
     pub scratch: &'a mut Vec<ColumnPolynomials>,
+    /// s \[mm\], column by column, overwritten.
     pub out: &'a mut [f64],
 }
 
@@ -102,41 +108,36 @@ impl<const PAST: bool> pulp::WithSimd for StripColumns<'_, PAST> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) {
         let Self { placement, strip, xi, axis, mirrored, scratch: polynomials, out } = self;
-        polynomials.resize(strip.spans, ColumnPolynomials::NONE);
+        polynomials.resize(strip.spans, ColumnPolynomials::ZERO);
         strip.polynomials(placement, xi, axis.reach * axis.reach, polynomials);
+        let n = strip.coefficients;
         if strip.spans == 1 {
-            per_degree(
-                strip.coefficients,
-                Evaluation::<S, true, PAST> { simd, polynomials, axis, mirrored, out },
-            );
+            per_degree(n, Evaluation::<S, true, PAST> { simd, polynomials, axis, mirrored, out });
         } else {
-            per_degree(
-                strip.coefficients,
-                Evaluation::<S, false, PAST> { simd, polynomials, axis, mirrored, out },
-            );
+            per_degree(n, Evaluation::<S, false, PAST> { simd, polynomials, axis, mirrored, out });
         }
     }
 }
 
-/// Σ c t^k at each t, the highest power first.
+/// Computes Σ c t^k at each t, from coefficients with the highest power first.
 #[inline(always)]
-fn at(powers: &[f64], t: &Row) -> Row {
+fn at(powers: &[f64], t: &Lanes) -> Lanes {
     let mut sum = [0.0f64; MANY];
     for c in powers {
-        sum = row(|k| sum[k].mul_add(t[k], *c));
+        sum = lanes(|k| sum[k].mul_add(t[k], *c));
     }
     sum
 }
 
 impl Strip {
-    /// Number of coefficients of q.
+    /// Gives the number of coefficients of q.
     pub fn coefficients(&self) -> usize {
         self.coefficients
     }
 
-    /// The polynomials over every span at each ξ.
+    /// Computes the polynomials over every span at each ξ \[mm\], at most [`MANY`]; `u_max` \[mm²\] is the end of the columns.
     #[inline(always)]
-    pub(super) fn polynomials(
+    pub fn polynomials(
         &self,
         placement: &Placement,
         xi: &[f64],
@@ -145,7 +146,7 @@ impl Strip {
     ) {
         let ([a, b], mut all) = (self.xi, [xi[0]; MANY]);
         all[..xi.len()].copy_from_slice(xi);
-        let t = row(|k| ((all[k] - a) - (b - all[k])) / (b - a));
+        let t = lanes(|k| ((all[k] - a) - (b - all[k])) / (b - a));
         let n = self.coefficients;
         let mut rest = &self.powers[..];
         for (span, kept) in spans.iter_mut().zip(self.kept) {
@@ -162,31 +163,34 @@ impl Strip {
         let base = &mut spans[0].base;
         match self.gap {
             Gap::Plain => {}
-            Gap::Relative => *base = row(|k| base[k] * (all[k] * all[k])),
+            Gap::Relative => *base = lanes(|k| base[k] * (all[k] * all[k])),
             Gap::Computed => *base = all.map(|xi| midplane_gap(placement, xi)),
         }
         // Of several spans q is interpolated in powers of τ.
         let mut end = [u_max; MANY];
         for span in spans.iter_mut().rev().filter(|_| self.spans > 1) {
-            let shrink = row(|k| 1.0 / (end[k] - span.u0[k]));
+            let shrink: Lanes = lanes(|k| 1.0 / (end[k] - span.u0[k]));
             let mut power = [1.0; MANY];
             for c in &mut span.c[1..n] {
-                power = row(|k| power[k] * shrink[k]);
-                *c = row(|k| c[k] * power[k]);
+                power = lanes(|k| power[k] * shrink[k]);
+                *c = lanes(|k| c[k] * power[k]);
             }
             end = span.u0;
         }
     }
 }
 
-/// Neighbouring columns from their polynomials over every span, of which there is one if `SINGLE`.
-pub(super) struct Evaluation<'a, S, const SINGLE: bool, const PAST: bool> {
+/// Neighbouring columns to be evaluated from their polynomials over every span, of which there is one if `SINGLE`.
+pub struct Evaluation<'a, S, const SINGLE: bool, const PAST: bool> {
+    /// The machine's vectors.
     pub simd: S,
-    /// In order of u.
+    /// Polynomials of every span, in order of u.
     pub polynomials: &'a [ColumnPolynomials],
+    /// η of every column.
     pub axis: &'a EtaAxis,
-    /// As of [`StripColumns`].
+    /// Whether one half of a column is the other's mirror image, and columns are whole vectors.
     pub mirrored: bool,
+    /// s \[mm\], column by column, overwritten.
     pub out: &'a mut [f64],
 }
 
@@ -202,7 +206,7 @@ impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> PerDegree for Evaluati
 }
 
 impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> Evaluation<'_, S, SINGLE, PAST> {
-    /// Columns from the vector on that holds the first η ≥ 0, in whole vectors, and their mirror images.
+    /// Writes columns from the vector on that holds the first η ≥ 0, in whole vectors, and then their mirror images.
     #[inline(always)]
     fn outwards<const N: usize>(self) {
         let Self { simd, polynomials: spans, axis, out, .. } = self;
@@ -242,7 +246,7 @@ impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> Evaluation<'_, S, SING
         }
     }
 
-    /// Columns from the first η to the last one, so that memory is written in order.
+    /// Writes columns from the first η to the last one, so that memory is written in order.
     #[inline(always)]
     fn whole<const N: usize>(self) {
         let Self { simd, polynomials: spans, axis, out, .. } = self;

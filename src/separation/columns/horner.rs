@@ -1,22 +1,49 @@
-//! Runs of a column by Horner's rule, with the widest vectors of the machine.
+//! Polynomials of single columns, and runs of a column by Horner's rule with the widest vectors of the machine.
 
-use super::spectral::{ColumnPolynomial, MOST_COEFFICIENTS};
+use super::super::values::{LINE, lead};
 use super::stream;
-use super::values::{LINE, lead};
+use crate::numerics::chebyshev::MOST_POINTS;
+use crate::numerics::polynomial;
 
-/// Runs from these lengths on, of arrays in the caches and past them, are stored line by line of the cache. Grids of shorter ones
+/// Most coefficients of a column. A span that needs more is close to a vertical tangent, and is evaluated point by point.
+pub const MOST_COEFFICIENTS: usize = MOST_POINTS;
+
+/// Runs of so many values or more, of arrays in the caches and past them, are stored line by line of the cache. Grids of shorter runs
 /// are in the second cache, where that gains nothing.
 const LONG_RUNS: [usize; 2] = [512, 64];
 
+/// A polynomial s = base + v Σ c_k v^k over one span of a column, v = u − u_0.
+#[derive(Debug, Clone, Copy)]
+pub struct ColumnPolynomial {
+    /// s at the beginning of the span \[mm\].
+    pub base: f64,
+    /// u_0 \[mm²\].
+    pub u0: f64,
+    /// Coefficients of q.
+    pub c: [f64; MOST_COEFFICIENTS],
+    /// How many of them count.
+    pub n: usize,
+    /// Largest measured error of s \[mm\].
+    pub error: f64,
+}
+
+impl ColumnPolynomial {
+    /// Computes ζ of the wheel above the beginning of the span \[mm\].
+    pub fn rise(&self, u: f64) -> f64 {
+        let v = u - self.u0;
+        v * polynomial::value(&self.c[..self.n], v)
+    }
+}
+
 /// Work that is compiled for each number of coefficients, so that its innermost loop is unrolled.
-pub(super) trait PerDegree {
-    /// With N coefficients.
+pub trait PerDegree {
+    /// Does the work with N coefficients.
     fn run<const N: usize>(self);
 }
 
-/// Runs the work for n coefficients, at most [`MOST_COEFFICIENTS`].
+/// Does the work for n coefficients, at most [`MOST_COEFFICIENTS`].
 #[inline(always)]
-pub(super) fn per_degree(n: usize, work: impl PerDegree) {
+pub fn per_degree(n: usize, work: impl PerDegree) {
     match n {
         1 => work.run::<1>(),
         2 => work.run::<2>(),
@@ -33,16 +60,17 @@ pub(super) fn per_degree(n: usize, work: impl PerDegree) {
     }
 }
 
-/// One run of a column's u.
-pub(super) struct Run<'a> {
+/// A run of a column's u, which lies over one span; compiled for each kind of machine.
+pub struct SpanRun<'a> {
+    /// The polynomial over the span.
     pub fit: &'a ColumnPolynomial,
-    /// \[mm²\].
+    /// u \[mm²\].
     pub u: &'a [f64],
-    /// s \[mm\].
+    /// s \[mm\], overwritten.
     pub out: &'a mut [f64],
 }
 
-impl pulp::WithSimd for Run<'_> {
+impl pulp::WithSimd for SpanRun<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -52,12 +80,17 @@ impl pulp::WithSimd for Run<'_> {
     }
 }
 
-/// A run of u by at least N coefficients.
-pub(super) struct OneRun<'a, S> {
+/// A run of values by one polynomial.
+pub struct OneRun<'a, S> {
+    /// The machine's vectors.
     pub simd: S,
+    /// base and u_0.
     pub begin: [f64; 2],
+    /// Coefficients, at least as many as the work is compiled for.
     pub c: &'a [f64],
+    /// Places.
     pub u: &'a [f64],
+    /// Values, overwritten.
     pub out: &'a mut [f64],
 }
 
@@ -70,11 +103,12 @@ impl<S: pulp::Simd> PerDegree for OneRun<'_, S> {
     }
 }
 
-/// base + (u − u_0) Σ c_k (u − u_0)^k by Horner's rule over a run of u, with the widest vectors
-/// of the machine; u_0 is zero if `FIRST`. Multiply-adds are fused on every machine, be it in software: the same bits
-/// everywhere. Long runs are stored past the caches if `PAST`.
+/// Computes base + (u − u_0) Σ c_k (u − u_0)^k by Horner's rule over a run of u. u_0 is zero if `FIRST`.
+///
+/// Multiply-adds are fused on every machine, in software where it must be: the bits are the same everywhere. Long runs are stored
+/// past the caches if `PAST`.
 #[inline(always)]
-pub(super) fn horner<S: pulp::Simd, const N: usize, const FIRST: bool, const PAST: bool>(
+pub fn horner<S: pulp::Simd, const N: usize, const FIRST: bool, const PAST: bool>(
     simd: S,
     [base, u0]: [f64; 2],
     c: &[f64; N],
@@ -113,9 +147,10 @@ pub(super) fn horner<S: pulp::Simd, const N: usize, const FIRST: bool, const PAS
     }
 }
 
-/// The same over whole vectors; in the first of them up to u_0 what is there stays, unless u_0 is zero by `FIRST`.
+/// Computes what [`horner`] does over a run of whole vectors. In the first vector, values up to u_0 stay as they are, unless u_0 is
+/// zero by `FIRST`.
 #[inline(always)]
-pub(super) fn whole_vectors<S: pulp::Simd, const N: usize, const FIRST: bool>(
+pub fn whole_vectors<S: pulp::Simd, const N: usize, const FIRST: bool>(
     simd: S,
     begin: [f64; 2],
     c: &[f64; N],
@@ -133,7 +168,7 @@ pub(super) fn whole_vectors<S: pulp::Simd, const N: usize, const FIRST: bool>(
     }
 }
 
-/// Vectors of base and u_0, and of the coefficients. A loop, since closures may be left out of line.
+/// Makes vectors of base and u_0, and of the coefficients. It is a loop, because closures may be left out of line.
 #[inline(always)]
 fn splats<S: pulp::Simd, const N: usize>(
     simd: S,
@@ -147,7 +182,7 @@ fn splats<S: pulp::Simd, const N: usize>(
     ([simd.splat_f64s(base), simd.splat_f64s(u0)], splat)
 }
 
-/// The same value by value.
+/// Computes what [`horner`] does, value by value.
 #[inline(always)]
 fn singly<const N: usize>([base, u0]: [f64; 2], c: &[f64; N], u: &[f64], out: &mut [f64]) {
     for (s, u) in out.iter_mut().zip(u) {
@@ -156,7 +191,7 @@ fn singly<const N: usize>([base, u0]: [f64; 2], c: &[f64; N], u: &[f64], out: &m
     }
 }
 
-/// One vector of [`horner`]. A function, since closures may be left out of line.
+/// Computes one vector of [`horner`]. It is a function, because closures may be left out of line.
 #[inline(always)]
 fn value<S: pulp::Simd, const N: usize, const FIRST: bool>(
     simd: S,

@@ -1,0 +1,113 @@
+//! A polynomial segment seen from a frame, and the parts of it that face the other body.
+
+use super::super::{Polynomial, Station};
+use crate::numerics::polynomial::{derivative, exact_slope, exact_value, range, recentred, value};
+use crate::numerics::roots::bracketed;
+use crate::numerics::twice::Twice;
+
+/// Share of a curve's speed below which its run along ξ is the rounding of a vertical: the direction of a straight wall is
+/// known no better, and its run changes sign all along.
+const VERTICAL: f64 = 16.0 * f64::EPSILON;
+
+/// Finds the parts of \[t0, t1\] where ξ(t) rises, from the coefficients of ξ and ζ. There are none where ξ rises by no more than
+/// rounding. Method: a bound of the slope that costs a sum, true of most spans; otherwise bisection down to 2⁻⁴⁰ of the range.
+pub(super) fn rising_parts([xi, zeta]: [&[f64]; 2], [t0, t1]: [f64; 2]) -> Vec<[f64; 2]> {
+    if rises_throughout(xi, [t0, t1]) {
+        return vec![[t0, t1]];
+    }
+    let [run, rise] = [xi, zeta].map(derivative);
+    let fastest = [&run, &rise].map(|c| range(c, t0, t1).map(f64::abs)).into_iter().flatten();
+    rising_intervals(&run, VERTICAL * fastest.fold(0.0, f64::max), [t0, t1])
+}
+
+/// Tells whether a polynomial plainly has a positive derivative all over \[t0, t1\]. Where this is false it may rise all the same.
+fn rises_throughout(c: &[f64], [t0, t1]: [f64; 2]) -> bool {
+    let farthest = t0.abs().max(t1.abs());
+    let Some(first) = c.get(1) else { return false };
+    let (mut others, mut power) = (0.0, 1.0);
+    for (k, c) in c.iter().enumerate().skip(2) {
+        power *= farthest;
+        others += k as f64 * c.abs() * power;
+    }
+    // Far above the rounding of a slope.
+    0.5 * first > others
+}
+
+/// Finds the parts of \[t0, t1\] where the polynomial `slope` is positive; there are none where it is nowhere larger than `rounding`.
+fn rising_intervals(slope: &[f64], rounding: f64, [t0, t1]: [f64; 2]) -> Vec<[f64; 2]> {
+    let mut parts = Vec::new();
+    if range(slope, t0, t1)[1] <= rounding {
+        return parts;
+    }
+    let mut cuts = vec![t0];
+    sign_changes(slope, rounding, [t0, t1], 40, &mut cuts);
+    cuts.push(t1);
+    for pair in cuts.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
+        if b > a && value(slope, a + (b - a) / 2.0) > 0.0 {
+            parts.push([a, b]);
+        }
+    }
+    parts
+}
+
+/// Appends the places where a polynomial changes its sign, except in parts where it is no larger than `rounding`.
+fn sign_changes(c: &[f64], rounding: f64, [a, b]: [f64; 2], depth: u32, out: &mut Vec<f64>) {
+    let [low, high] = range(c, a, b);
+    if low > 0.0 || high < 0.0 || depth == 0 || (low >= -rounding && high <= rounding) {
+        return;
+    }
+    let monotone = range(&derivative(c), a, b);
+    if monotone[0] > 0.0 || monotone[1] < 0.0 {
+        out.extend(bracketed(|t| value(c, t), a, b).filter(|&t| t > a && t < b));
+        return;
+    }
+    let middle = a + (b - a) / 2.0;
+    sign_changes(c, rounding, [a, middle], depth - 1, out);
+    if value(c, middle) == 0.0 {
+        out.push(middle);
+    }
+    sign_changes(c, rounding, [middle, b], depth - 1, out);
+}
+
+/// Turns a segment into a frame: gives the coefficients of ξ(t) and of ζ(t), and the range of t.
+pub(super) fn seen_from(polynomial: &Polynomial, frame: &Station) -> ([Vec<Twice>; 2], [f64; 2]) {
+    let (mut x, mut z) = (polynomial.x.clone(), polynomial.z.clone());
+    (x[0], z[0]) = (x[0] - frame.x, z[0] - frame.z);
+    (turned(&x, &z, frame.cos.into(), frame.sin.into()), polynomial.t)
+}
+
+/// Turns a segment into the contact frame of its own point t = `origin`, which becomes t = 0. ζ then has neither a constant nor a
+/// linear term, exactly.
+pub(super) fn seen_from_own_point(polynomial: &Polynomial, origin: Twice) -> ([Vec<Twice>; 2], [f64; 2]) {
+    let [mut x, mut z] = [&polynomial.x, &polynomial.z].map(|c| recentred(c, origin));
+    z.resize(z.len().max(2), Twice::ZERO);
+    (x[0], z[0]) = (Twice::ZERO, Twice::ZERO);
+    let norm = (x[1] * x[1] + z[1] * z[1]).sqrt();
+    let [xi, mut zeta] = turned(&x, &z, x[1] / norm, z[1] / norm);
+    zeta[1] = Twice::ZERO;
+    ([xi, zeta], polynomial.t.map(|t| (Twice::from(t) - origin).into()))
+}
+
+/// Gives the station of a segment, in profile axes, at a parameter in twice the working precision.
+pub(super) fn station_at(polynomial: &Polynomial, t: Twice) -> Station {
+    let (x, z) = (&polynomial.x, &polynomial.z);
+    let (dx, dz) = (exact_slope(x, t), exact_slope(z, t));
+    let norm = (dx * dx + dz * dz).sqrt();
+    Station {
+        x: exact_value(x, t).into(),
+        z: exact_value(z, t).into(),
+        cos: (dx / norm).into(),
+        sin: (dz / norm).into(),
+    }
+}
+
+/// Turns (x, z) into (x cos + z sin, z cos − x sin), coefficient by coefficient.
+fn turned(x: &[Twice], z: &[Twice], cos: Twice, sin: Twice) -> [Vec<Twice>; 2] {
+    let get = |c: &[Twice], k: usize| c.get(k).copied().unwrap_or(Twice::ZERO);
+    let n = x.len().max(z.len());
+    [
+        (0..n).map(|k| get(x, k) * cos + get(z, k) * sin).collect(),
+        (0..n).map(|k| get(z, k) * cos - get(x, k) * sin).collect(),
+    ]
+}

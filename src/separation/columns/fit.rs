@@ -1,0 +1,129 @@
+//! q(ξ, ·) over one span as a polynomial in v = u − u_0, for N columns at once, to a demand.
+//!
+//! Over one branch of the wheel s = s_0 + v q(v), with s_0 at the beginning of the span and q analytic. q is interpolated, not s: the
+//! relative accuracy of both terms survives. The nodes are Chebyshev points in the sagitta e, of which u is nearly a multiple:
+//! ζ and u follow from e with no iteration.
+
+use super::super::demand::{Demand, first_count};
+use super::super::evaluator::Evaluator;
+use super::super::wheel_surface::{SagittaPoints, Span, SpanLanes, WheelSurface};
+use super::horner::{ColumnPolynomial, MOST_COEFFICIENTS};
+use super::neighbours::{MOST_SPANS, Neighbours};
+use crate::numerics::chebyshev::{extrema, powers, unit_nodes};
+use crate::numerics::lanes::{Lanes, MANY, every, lanes, largest};
+use crate::numerics::nan_max;
+use crate::placement::Placement;
+
+/// Fits polynomials to columns of a placed pair. It holds the memory for that, which single columns, strips and the measurement of
+/// errors share.
+#[derive(Debug)]
+pub struct Fitter<'a> {
+    /// s at single points.
+    pub evaluator: Evaluator<'a>,
+    /// Columns that are fitted at once.
+    pub neighbours: Neighbours<'a>,
+    /// What truncation is held to.
+    pub demand: Demand,
+    /// The number of coefficients that every column starts with.
+    pub least: usize,
+    /// Coefficients of columns that are fitted at once.
+    pub rows: Vec<Lanes>,
+    /// The spans of a single column.
+    pub spans: Vec<Span>,
+    /// Coefficients of a single column.
+    single: Vec<Lanes<1>>,
+    /// The kind of machine that work on lanes is compiled for.
+    pub arch: pulp::Arch,
+}
+
+impl<'a> Fitter<'a> {
+    /// Makes a fitter for a demand on s. Every column starts with `least` coefficients and takes more where it needs them.
+    pub fn new(placement: &'a Placement, demand: Demand, least: usize) -> Self {
+        let evaluator = Evaluator::new(placement);
+        Self {
+            neighbours: Neighbours::new(evaluator.wheel),
+            evaluator,
+            demand: demand.on_truncation(),
+            least,
+            rows: Vec::with_capacity(MOST_SPANS * (MOST_COEFFICIENTS + 2)),
+            spans: Vec::new(),
+            single: Vec::with_capacity(MOST_COEFFICIENTS),
+            arch: pulp::Arch::new(),
+        }
+    }
+
+    /// Fits the column at ξ over one span up to `u_max` \[mm²\], without skew. `None` where no degree reaches the demand.
+    pub fn column(&mut self, xi: f64, span: &Span, u_max: f64) -> Option<ColumnPolynomial> {
+        let wheel = &self.evaluator.wheel;
+        let mut lane = wheel.lane(span);
+        lane.u[1] = [span.u[1].min(u_max)];
+        self.single.clear();
+        let (n, error) = polynomials(wheel, &lane, u_max, (self.demand, self.least), &mut self.single)?;
+        let mut c = [0.0; MOST_COEFFICIENTS];
+        c[..n].copy_from_slice(self.single.as_flattened());
+        Some(ColumnPolynomial { base: self.evaluator.base(xi, 0.0, span), u0: span.u[0], c, n, error })
+    }
+
+    /// Fits columns in no strip at once up to `u_max` \[mm²\], at most [`MANY`], each over one span; their coefficients are in `rows`.
+    ///
+    /// The result tells which columns are fitted, with how many coefficients, and the largest measured error \[mm\]. `None` where no
+    /// column is.
+    #[inline(always)]
+    pub fn columns(&mut self, u_max: f64, xi: &[f64]) -> Option<([bool; MANY], usize, f64)> {
+        let Self { evaluator, neighbours, demand, least, rows, .. } = self;
+        rows.clear();
+        let taken = neighbours.take_each(evaluator, u_max, xi)?;
+        let span = &neighbours.spans[0].wheel;
+        let (n, error) = polynomials(&neighbours.wheel, span, u_max, (*demand, *least), rows)?;
+        taken.contains(&true).then_some((taken, n, error))
+    }
+}
+
+/// Appends the coefficients of q over one span in powers of v, at least so many; for columns up to `u_max` \[mm²\].
+///
+/// The result is their number and the largest error \[mm\], which is measured at the end of the span and between its nodes. `None`
+/// where no degree reaches the demand; the span is then close to a vertical tangent.
+#[inline(always)]
+pub fn polynomials<const N: usize>(
+    wheel: &WheelSurface<'_>,
+    span: &SpanLanes<'_, N>,
+    u_max: f64,
+    (demand, least): (Demand, usize),
+    coefficients: &mut Vec<Lanes<N>>,
+) -> Option<(usize, f64)> {
+    let (end, run) = wheel.points_near(span, &span.u[1])?;
+    let allowed: Lanes<N> = lanes(|k| demand.allowed(end.rise[k], span.e[0][k]));
+    let length: Lanes<N> = lanes(|k| span.u[1][k] - span.u[0][k]);
+    let begin = coefficients.len();
+    let mut v = [[0.0; N]; MOST_COEFFICIENTS];
+    for n in first_count(least, largest(&length), u_max)..=MOST_COEFFICIENTS {
+        coefficients.resize(begin + n, [0.0; N]);
+        let q = &mut coefficients[begin..];
+        for ((v, q), node) in v.iter_mut().zip(&mut *q).zip(unit_nodes(n)) {
+            let points = wheel.points_by(span, &lanes(|k| run[k] * node));
+            *v = points.v;
+            *q = lanes(|k| points.rise[k] / v[k]);
+        }
+        powers(&v[..n], q);
+        let mut errors = error(q, &end);
+        for share in extrema(n) {
+            let inner = error(q, &wheel.points_by(span, &lanes(|k| run[k] * share)));
+            errors = lanes(|k| nan_max(errors[k], inner[k]));
+        }
+        // An error that is no number is within no demand.
+        if every::<N>(|k| errors[k] <= allowed[k]) {
+            return Some((n, largest(&errors)));
+        }
+    }
+    None
+}
+
+/// Computes the errors \[mm\] of polynomials at points of a span.
+#[inline(always)]
+pub fn error<const N: usize>(q: &[Lanes<N>], points: &SagittaPoints<N>) -> Lanes<N> {
+    let mut value = [0f64; N];
+    for q in q.iter().rev() {
+        value = lanes(|k| value[k] * points.v[k] + q[k]);
+    }
+    lanes(|k| (value[k] * points.v[k] - points.rise[k]).abs())
+}

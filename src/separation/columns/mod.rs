@@ -1,0 +1,10 @@
+//! Columns s(ξ, ·) as polynomials: how they are fitted, and how they are evaluated by many.
+
+pub(super) mod fit;
+pub(super) mod horner;
+pub(super) mod neighbours;
+pub(super) mod skewed;
+mod stream;
+pub(super) mod strip;
+pub(super) mod strips;
+pub(super) mod truncation;

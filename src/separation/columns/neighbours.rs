@@ -1,0 +1,195 @@
+//! Neighbouring columns at once: which branches they pass, and what they begin with.
+
+use super::super::evaluator::Evaluator;
+use super::super::gap::{contact_gap, contact_gaps};
+use super::super::wheel_surface::{SpanLanes, WheelSurface};
+use crate::numerics::lanes::{Lanes, MANY, every, lanes};
+use crate::profile::{Branches, Piece, Section};
+
+/// Most spans of columns that are computed at once.
+pub const MOST_SPANS: usize = 3;
+
+/// [`MANY`] columns that pass the same branches in the same order, or that have one span each over branches of their own.
+#[derive(Debug)]
+pub struct Neighbours<'a> {
+    /// The wheel below the columns.
+    pub wheel: WheelSurface<'a>,
+    /// ξ of the columns \[mm\].
+    pub xi: Lanes,
+    /// Whether the columns begin over both contact segments.
+    pub contact: bool,
+    /// The spans in order of u.
+    pub spans: Vec<SpanColumns<'a>>,
+    /// The rail's branches of columns that each have their own; kept for their memory.
+    rail_branches: Option<Branches<'a, MANY>>,
+}
+
+/// One span of [`MANY`] columns.
+#[derive(Debug)]
+pub struct SpanColumns<'a> {
+    /// The span on the wheel. Its last u is that of the window's end.
+    pub wheel: SpanLanes<'a, MANY>,
+    /// s at the beginning \[mm\].
+    pub base: Lanes,
+}
+
+impl SpanColumns<'_> {
+    /// Gives the size \[mm\] of the coordinates that s at the beginning is computed from.
+    #[inline(always)]
+    pub fn size(&self, evaluator: &Evaluator<'_>, xi: &Lanes) -> Lanes {
+        lanes(|k| evaluator.size(xi[k], self.wheel.height[k]))
+    }
+}
+
+impl<'a> Neighbours<'a> {
+    /// Makes a place for columns, without columns.
+    pub fn new(wheel: WheelSurface<'a>) -> Self {
+        Self {
+            wheel,
+            xi: [f64::NAN; MANY],
+            contact: false,
+            spans: Vec::with_capacity(MOST_SPANS),
+            rail_branches: None,
+        }
+    }
+
+    /// Takes the columns at ξ up to u = `u_max` \[mm²\]. `None` where they do not pass the same branches, pass more than
+    /// [`MOST_SPANS`], or are not whole.
+    #[inline(always)]
+    pub fn take(&mut self, evaluator: &Evaluator<'a>, u_max: f64, xi: Lanes) -> Option<()> {
+        let (wheel, section) = (&self.wheel, &evaluator.placement.rail.section);
+        let mut index = wheel.first_piece(xi[MANY / 2])?;
+        let rail_piece = section.piece_at(xi[MANY / 2])?;
+        for piece in [rail_piece, &wheel.section.pieces[index]] {
+            if !every::<MANY>(|k| (piece.xi[0] <= xi[k]) & (xi[k] <= piece.xi[1])) {
+                return None;
+            }
+        }
+        let rail = &section.branches[rail_piece.branch];
+        self.contact = section.contact == Some(rail_piece.branch)
+            && wheel.section.contact == Some(wheel.section.pieces[index].branch);
+        self.xi = xi;
+        self.spans.clear();
+        let mut rail_height: Option<Lanes> = None;
+        loop {
+            let piece = &wheel.section.pieces[index];
+            let mut here = span_over(wheel, &xi, piece, self.spans.is_empty())?;
+            if let Some(before) = self.spans.last_mut() {
+                // One joint: the spans meet, whatever rounding makes of it.
+                before.wheel.u[1] = here.u[0];
+                if !every::<MANY>(|k| before.wheel.u[0][k] < before.wheel.u[1][k]) {
+                    return None;
+                }
+            }
+            let [u0, u1] = &mut here.u;
+            let last = every::<MANY>(|k| u1[k] >= u_max);
+            if last {
+                *u1 = [u_max; MANY];
+            }
+            // A span that only some of the columns leave is the end of one shape of columns.
+            if !every::<MANY>(|k| (u0[k] < u1[k]) & (u1[k] <= u_max)) || self.spans.len() == MOST_SPANS {
+                return None;
+            }
+            let base = if self.contact && self.spans.is_empty() {
+                contact_gaps(rail, &wheel.section.branches[piece.branch], &xi, &here.height)?
+            } else {
+                if rail_height.is_none() {
+                    rail_height = Some(rail.points(&xi)?.1);
+                }
+                rail_height.map(|rail_height| lanes(|k| here.height[k] - rail_height[k]))?
+            };
+            self.spans.push(SpanColumns { wheel: here, base });
+            if last {
+                return Some(());
+            }
+            index = wheel.next_piece(index)?;
+        }
+    }
+
+    /// Takes columns each over its own branches, if all are over the same one or all over cubics, as of splines.
+    ///
+    /// The result tells for each column whether it is taken, which it is where it lies over one branch of either body. In the lane of
+    /// a column that is not taken there is a copy of one that is. `None` where none is taken.
+    #[inline(always)]
+    pub fn take_each(&mut self, evaluator: &Evaluator<'a>, u_max: f64, xi: &[f64]) -> Option<[bool; MANY]> {
+        let (rail, wheel) = (&evaluator.placement.rail.section, &self.wheel);
+        let pairs = pieces_under(wheel, rail, u_max, xi);
+        let (first, stand_in) = pairs.iter().enumerate().find_map(|(k, pair)| Some((k, (*pair)?)))?;
+        let [mut rails, mut wheels] = [stand_in.0, stand_in.1].map(|piece| [piece; MANY]);
+        self.xi = [xi[first]; MANY];
+        for (k, pair) in pairs.iter().enumerate() {
+            if let Some((r, w)) = pair {
+                (rails[k], wheels[k], self.xi[k]) = (*r, *w, xi[k]);
+            }
+        }
+        let used = self.spans.pop().map(|span| span.wheel.branches);
+        let branches = Branches::of(wheels.map(|piece| &wheel.section.branches[piece.branch]), used)?;
+        let (points, height) = branches.points(&self.xi)?;
+        let used = self.rail_branches.take();
+        let rail_branches = Branches::of(rails.map(|piece| &rail.branches[piece.branch]), used)?;
+        let (_, rail_height) = self.rail_branches.insert(rail_branches).points(&self.xi)?;
+        let contact = [rail.contact, wheel.section.contact];
+        let base = lanes(|k| {
+            let [r, w] = [rails[k].branch, wheels[k].branch];
+            if contact == [Some(r), Some(w)] {
+                contact_gap(&rail.branches[r], &wheel.section.branches[w], self.xi[k], height[k])
+            } else {
+                height[k] - rail_height[k]
+            }
+        });
+        let zero = [0.0; MANY];
+        self.contact = false;
+        self.spans.clear();
+        let e = [zero, lanes(|k| wheel.leaves(self.xi[k], wheels[k])[0])];
+        let (u, w) = ([zero, [u_max; MANY]], lanes(|k| wheel.axle_distance(self.xi[k], height[k])));
+        let span = SpanLanes { branches, points, height, w, e, u };
+        self.spans.push(SpanColumns { wheel: span, base });
+        Some(pairs.map(|pair| pair.is_some()))
+    }
+}
+
+/// Finds the piece that holds ξ inside, and removes the pieces before it from `rest`.
+fn piece_inside<'a>(rest: &mut &'a [Piece], xi: f64) -> Option<&'a Piece> {
+    let before = rest.iter().take_while(|piece| piece.xi[1] < xi).count();
+    *rest = &rest[before..];
+    rest.first().filter(|piece| piece.xi[0] < xi && xi < piece.xi[1])
+}
+
+/// Finds the pieces of rail and wheel at each ξ where the column lies over one piece of either.
+fn pieces_under<'r, 'w>(
+    wheel: &WheelSurface<'w>,
+    rail: &'r Section,
+    u_max: f64,
+    xi: &[f64],
+) -> [Option<(&'r Piece, &'w Piece)>; MANY] {
+    let mut found = [None; MANY];
+    let (mut rest_r, mut rest_w) = (rail.pieces_from(xi[0]), wheel.section.pieces_from(xi[0]));
+    for (found, &xi) in found.iter_mut().zip(xi) {
+        let pair = piece_inside(&mut rest_r, xi).zip(piece_inside(&mut rest_w, xi));
+        *found = pair.filter(|(_, w)| wheel.leaves(xi, w)[1] >= u_max);
+    }
+    found
+}
+
+/// Makes one span of all columns to the end of its piece. The `first` one begins in the midplane. `None` where a point is not found.
+#[inline(always)]
+fn span_over<'a>(
+    wheel: &WheelSurface<'a>,
+    xi: &Lanes,
+    piece: &Piece,
+    first: bool,
+) -> Option<SpanLanes<'a, MANY>> {
+    let branch = &wheel.section.branches[piece.branch];
+    let mut span = if first {
+        wheel.span_from(xi, branch, [0.0; MANY], branch.points(xi)?)
+    } else {
+        let near = wheel.sides()[0];
+        let (point, height) = &piece.ends[near];
+        let e0 = lanes(|k| (xi[k] - piece.xi[near]) / wheel.sin);
+        wheel.span_from(xi, branch, e0, (point.repeated(), [*height; MANY]))
+    };
+    for (k, &xi) in xi.iter().enumerate() {
+        [span.e[1][k], span.u[1][k]] = wheel.leaves(xi, piece);
+    }
+    Some(span)
+}

@@ -1,0 +1,7 @@
+//! The methods of the accuracy ladder, one file each.
+
+pub mod parabolic;
+pub mod pointwise;
+pub mod quadratic;
+pub mod report_newton;
+pub mod spectral;

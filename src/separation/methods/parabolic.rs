@@ -1,0 +1,49 @@
+//! Parabolas across the midplane, with one coefficient for all columns or one for each.
+
+use super::super::axis::EtaAxis;
+use super::super::evaluator::Evaluator;
+use super::super::kernel::Kernel;
+use crate::placement::Placement;
+
+/// The parabolas s ≈ g(ξ) + η²/2R or s ≈ g(ξ) + q(ξ, 0) η². Under skew, g is taken at ξ′ and η is η′.
+#[derive(Debug)]
+pub struct Parabolic<'a> {
+    arch: pulp::Arch,
+    evaluator: Evaluator<'a>,
+    axis: &'a EtaAxis,
+    /// The coefficient 1/2R \[1/mm\]; `None` for q(ξ, 0).
+    constant: Option<f64>,
+}
+
+impl<'a> Parabolic<'a> {
+    /// Makes parabolas with the constant coefficient 1/2R of a cylinder of the nominal radius.
+    pub fn constant_radius(placement: &'a Placement, axis: &'a EtaAxis) -> Self {
+        let constant = Some(0.5 / placement.wheel_radius);
+        Self { constant, ..Self::local(placement, axis) }
+    }
+
+    /// Makes parabolas with the exact coefficient q(ξ, 0) at every ξ.
+    pub fn local(placement: &'a Placement, axis: &'a EtaAxis) -> Self {
+        Self { arch: pulp::Arch::new(), evaluator: Evaluator::new(placement), axis, constant: None }
+    }
+}
+
+impl Kernel for Parabolic<'_> {
+    fn column(&mut self, xi: f64, out: &mut [f64]) {
+        if self.evaluator.placement.skew == 0.0 {
+            let [gap, local] = self.evaluator.parabola(xi, 0.0);
+            let q = self.constant.unwrap_or(local);
+            self.arch.dispatch(|| {
+                for (s, u) in out.iter_mut().zip(self.axis.u.iter()) {
+                    *s = gap + q * u;
+                }
+            });
+            return;
+        }
+        for (s, &eta) in out.iter_mut().zip(&self.axis.eta) {
+            let [shift, eta_w] = self.evaluator.wheel_coordinates(xi, eta);
+            let [gap, local] = self.evaluator.parabola(xi, shift);
+            *s = gap + self.constant.unwrap_or(local) * (eta_w * eta_w);
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! The second-order expansion of s at C, which Hertz's theory uses.
+
+use super::super::axis::EtaAxis;
+use super::super::gap;
+use super::super::kernel::Kernel;
+use crate::placement::Placement;
+use crate::profile::Section;
+
+/// The quadratic form s ≈ ½ κ_W ξ′² + ½ κ_η η′² − ½ κ_R ξ², with κ_η = cosθ/(R − z_C).
+#[derive(Debug)]
+pub struct Quadratic<'a> {
+    arch: pulp::Arch,
+    axis: &'a EtaAxis,
+    /// Coefficients of ξ², ξη and η² \[1/mm\].
+    form: [f64; 3],
+}
+
+impl<'a> Quadratic<'a> {
+    /// Makes the quadratic form of a placed pair.
+    pub fn new(placement: &Placement, axis: &'a EtaAxis) -> Self {
+        Self { arch: pulp::Arch::new(), axis, form: quadratic_form(placement) }
+    }
+}
+
+/// Computes the coefficients of ξ², ξη and η² \[1/mm\] in the second-order expansion of s at C.
+///
+/// At a joint the curvatures are those of the contact segments. The result is NaN where a body touches with a kink.
+pub fn quadratic_form(placement: &Placement) -> [f64; 3] {
+    if !(placement.rail.is_smooth() && placement.wheel.is_smooth()) {
+        return [f64::NAN; 3];
+    }
+    let curvature = |section: &Section| section.branch_at(0.0).map_or(f64::NAN, |b| b.curvature(0.0));
+    let curvatures = [curvature(&placement.rail.section), curvature(&placement.wheel.section)];
+    let around = placement.wheel.section.frame.cos / placement.rolling_radius();
+    let [along, mixed, across] = form(curvatures, around, placement.skew);
+    match gap::relative_curvature(placement) {
+        Some(relative) if placement.skew == 0.0 => [relative / 2.0, mixed, across],
+        _ => [along, mixed, across],
+    }
+}
+
+/// Computes the coefficients of ξ², ξη and η² \[1/mm\] from the curvatures of rail and wheel profile and cosθ_W/ϱ \[1/mm\], and the
+/// skew χ \[rad\].
+pub fn form([k_r, k_w]: [f64; 2], around: f64, skew: f64) -> [f64; 3] {
+    let (sin, cos) = skew.sin_cos();
+    let along = k_w * cos * cos + around * sin * sin - k_r;
+    [along / 2.0, (k_w - around) * sin * cos, (k_w * sin * sin + around * cos * cos) / 2.0]
+}
+
+impl Kernel for Quadratic<'_> {
+    fn column(&mut self, xi: f64, out: &mut [f64]) {
+        let [along, mixed, across] = self.form;
+        let (constant, linear) = (along * xi * xi, mixed * xi);
+        self.arch.dispatch(|| {
+            for (s, eta) in out.iter_mut().zip(&self.axis.eta) {
+                *s = constant + eta * (linear + across * eta);
+            }
+        });
+    }
+}

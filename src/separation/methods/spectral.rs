@@ -1,0 +1,269 @@
+//! Spectral columns: q(ξ, ·) as a polynomial in u = η², by strips, by neighbouring columns, or by single columns.
+
+use super::super::axis::{EtaAxis, mirror};
+use super::super::columns::fit::Fitter;
+use super::super::columns::horner::{SpanRun, per_degree};
+use super::super::columns::neighbours::MOST_SPANS;
+use super::super::columns::skewed;
+use super::super::columns::strip::{ColumnPolynomials, Evaluation, Strip, StripColumns};
+use super::super::demand::Demand;
+use super::super::kernel::Kernel;
+use super::super::values::{LINE, Residence, lead};
+use super::super::wheel_surface::Span;
+use crate::numerics::lanes::MANY;
+use crate::placement::Placement;
+
+/// Columns by interpolation to a demand.
+#[derive(Debug)]
+pub struct Spectral<'a> {
+    fitter: Fitter<'a>,
+    axis: &'a EtaAxis,
+    strips: &'a [Strip],
+    /// Polynomials of neighbouring columns.
+    polynomials: Vec<ColumnPolynomials>,
+    residence: Residence,
+    /// Largest measured truncation error so far \[mm\].
+    truncation: f64,
+}
+
+impl<'a> Spectral<'a> {
+    /// Makes the method for a placed pair. Every column starts with `coefficients` and takes more where it needs them.
+    pub fn new(placement: &'a Placement, axis: &'a EtaAxis, demand: Demand, coefficients: usize) -> Self {
+        Self {
+            fitter: Fitter::new(placement, demand, coefficients),
+            axis,
+            strips: &[],
+            polynomials: Vec::with_capacity(MOST_SPANS),
+            residence: Residence::LastCache,
+            truncation: 0.0,
+        }
+    }
+
+    /// Adds strips for some of the columns, and tells where the array is while it is filled.
+    pub(in super::super) fn with_strips(self, strips: &'a [Strip], residence: Residence) -> Self {
+        Self { strips, residence, ..self }
+    }
+}
+
+/// Tells whether spans are all of the column up to `u_max` \[mm²\].
+fn is_whole(spans: &[Span], u_max: f64) -> bool {
+    spans.first().is_some_and(|span| span.e[0] == 0.0)
+        && spans.last().is_some_and(|span| span.u[1] >= u_max)
+        && spans.windows(2).all(|pair| pair[0].u[1] == pair[1].u[0])
+}
+
+impl Kernel for Spectral<'_> {
+    fn column(&mut self, xi: f64, out: &mut [f64]) {
+        if self.fitter.evaluator.placement.skew != 0.0 {
+            let Fitter { evaluator, arch, demand, .. } = &mut self.fitter;
+            let error = skewed::fill(evaluator, (*arch, *demand), xi, &self.axis.eta, out);
+            self.truncation = self.truncation.max(error);
+            return;
+        }
+        self.single_column(xi, self.axis.reach * self.axis.reach, out);
+        if self.axis.symmetric {
+            mirror(out, self.axis.first_positive);
+        }
+    }
+
+    fn columns(&mut self, xi: &[f64], out: &mut [f64]) {
+        let length = self.axis.eta.len();
+        let mut done = 0;
+        while let Some(&first) = xi.get(done) {
+            let rest = &xi[done..];
+            let beyond = self.strips.partition_point(|strip| strip.xi[1] <= first);
+            let next = self.strips.get(beyond);
+            let strip = next.filter(|strip| strip.xi[0] < first);
+            let count = match (strip, next) {
+                (Some(strip), _) => rest.partition_point(|&xi| xi < strip.xi[1]),
+                (None, Some(next)) => rest.partition_point(|&xi| xi <= next.xi[0]),
+                (None, None) => rest.len(),
+            };
+            let out = &mut out[done * length..(done + count) * length];
+            for (xi, out) in rest[..count].chunks(MANY).zip(out.chunks_mut(MANY * length)) {
+                self.neighbours(strip, xi, out);
+            }
+            done += count;
+        }
+    }
+
+    fn truncation(&self) -> f64 {
+        self.truncation
+    }
+}
+
+/// Neighbouring columns that are in no strip; those over one branch, or each over its own cubic, are fitted at once. Compiled for each
+/// kind of machine.
+struct EachColumn<'s, 'a> {
+    spectral: &'s mut Spectral<'a>,
+    /// At most [`MANY`].
+    xi: &'s [f64],
+    out: &'s mut [f64],
+}
+
+impl pulp::WithSimd for EachColumn<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, simd: S) {
+        let Self { spectral, xi, out } = self;
+        let (axis, length, mirrored) = (spectral.axis, spectral.axis.eta.len(), spectral.mirrored(out));
+        let Spectral { fitter, polynomials, truncation, .. } = &mut *spectral;
+        let mut taken = [false; MANY];
+        if let Some((fitted, n, error)) = fitter.columns(axis.reach * axis.reach, xi) {
+            (taken, *truncation) = (fitted, truncation.max(error));
+            polynomials.resize(1, ColumnPolynomials::ZERO);
+            polynomials[0].set(&fitter.rows, &fitter.neighbours.spans[0].base);
+            per_degree(n, Evaluation::<S, true, false> { simd, polynomials, axis, mirrored, out });
+        }
+        for ((&xi, out), taken) in xi.iter().zip(out.chunks_exact_mut(length)).zip(taken) {
+            if !taken {
+                spectral.column(xi, out);
+            }
+        }
+    }
+}
+
+impl Spectral<'_> {
+    /// Tells whether half of such columns is to be evaluated: where they are whole lines of the cache. A store across two lines takes
+    /// longer than that saves, and farther off than the second cache one that goes backwards does.
+    fn mirrored(&self, columns: &[f64]) -> bool {
+        let lines = self.axis.eta.len().is_multiple_of(LINE) && lead(columns) == 0;
+        self.axis.symmetric && lines && self.residence == Residence::SecondCache
+    }
+
+    /// Writes at most [`MANY`] neighbouring columns, of one strip or of none.
+    fn neighbours(&mut self, strip: Option<&Strip>, xi: &[f64], out: &mut [f64]) {
+        let (arch, placement, axis) = (self.fitter.arch, self.fitter.evaluator.placement, self.axis);
+        let (mirrored, scratch) = (self.mirrored(out), &mut self.polynomials);
+        match strip {
+            Some(strip) if self.residence == Residence::Memory => {
+                arch.dispatch(StripColumns::<true> { placement, strip, xi, axis, mirrored, scratch, out });
+            }
+            Some(strip) => {
+                arch.dispatch(StripColumns::<false> { placement, strip, xi, axis, mirrored, scratch, out });
+            }
+            None if xi.len() > 1 && placement.skew == 0.0 => {
+                arch.dispatch(EachColumn { spectral: self, xi, out });
+            }
+            None => {
+                for (&xi, out) in xi.iter().zip(out.chunks_exact_mut(axis.eta.len())) {
+                    self.column(xi, out);
+                }
+            }
+        }
+    }
+
+    /// Writes a column that is in no strip; of a symmetric axis the half η ≥ 0.
+    fn single_column(&mut self, xi: f64, u_max: f64, out: &mut [f64]) {
+        let mut spans = std::mem::take(&mut self.fitter.spans);
+        self.fitter.evaluator.wheel.spans(xi, u_max, &mut spans);
+        if !is_whole(&spans, u_max) {
+            out.fill(f64::NAN);
+        }
+        for span in &spans {
+            let fit = self.fitter.column(xi, span, u_max);
+            self.truncation = fit.as_ref().map_or(0.0, |fit| fit.error).max(self.truncation);
+            for range in self.axis.ranges(span.u) {
+                let (u, out) = (&self.axis.u[range.clone()], &mut out[range]);
+                match &fit {
+                    Some(fit) => self.fitter.arch.dispatch(SpanRun { fit, u, out }),
+                    None => self.fitter.evaluator.over_span(xi, span, u, out),
+                }
+            }
+        }
+        self.fitter.spans = spans;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Result;
+    use crate::placement::Pair;
+    use crate::profile::measured::{self, CurveKind, Format, Options, write};
+    use crate::profile::{Profile, Side, standards};
+    use crate::separation::columns::strips::strips;
+    use crate::separation::plan::{FULL_PRECISION, demand};
+    use crate::separation::values::Residence::{LastCache, Memory, SecondCache};
+    use crate::separation::values::Values;
+
+    /// A spline has more: so many columns beside them would be in strips.
+    const FEW_JOINTS: usize = 24;
+
+    /// Fills a window, with columns beside its joints, by code for one kind of machine; the array is taken to be in one kind of
+    /// memory, so many values behind the beginning of a line. The result is s and the largest number of spans of the strips' columns.
+    fn filled(
+        placement: &Placement,
+        count: i32,
+        arch: pulp::Arch,
+        (residence, behind): (Residence, usize),
+    ) -> (Vec<f64>, usize) {
+        let steps =
+            |reach: f64, n: i32| (0..n).map(move |k| reach * f64::from(2 * k - n + 1) / f64::from(n - 1));
+        let mut xi: Vec<f64> = steps(12.0, 101).collect();
+        // Columns in which a joint is near η = 0.
+        let beside = |joint: f64| (0..16).map(move |k| joint - 1e-6 * 1.6f64.powi(k));
+        let joints = placement.joints(-12.0, 12.0);
+        if joints.len() <= FEW_JOINTS {
+            xi.extend(joints.into_iter().flat_map(beside));
+        }
+        xi.sort_by(f64::total_cmp);
+        let axis = EtaAxis::new(&steps(15.0, count).collect::<Vec<_>>());
+        let spectral = || {
+            let mut spectral = Spectral::new(placement, &axis, demand(FULL_PRECISION), 4);
+            spectral.fitter.arch = arch;
+            spectral
+        };
+        let strips = strips(&mut spectral().fitter, placement, &xi, axis.reach * axis.reach);
+        let mut out = Values::new(behind + xi.len() * axis.eta.len());
+        spectral().with_strips(&strips, residence).columns(&xi, &mut out[behind..]);
+        (out[behind..].to_vec(), strips.iter().map(|strip| strip.spans).max().unwrap_or(0))
+    }
+
+    /// A spline through points of a profile.
+    fn spline(profile: &Profile, side: Side) -> Result<Profile> {
+        let text = write::points(&write::sample(profile, 0.5)?, Format::Csv, side, "sample");
+        let [mirror, flip_z] = [Some(false); 2];
+        let options = Options { mirror, flip_z, curve: Some(CurveKind::Smoothing), ..Options::default() };
+        measured::profile("sample.csv", text.as_bytes(), side, &options).map(|measured| measured.profile)
+    }
+
+    #[test]
+    fn every_machine_gives_the_same_bits() -> Result<()> {
+        let rail = standards::rail("UIC60")?;
+        let splines = [spline(&rail, Side::Rail)?, spline(&standards::wheel("S1002")?, Side::Wheel)?];
+        // A kink; and the closing of a drawing, 0.06 mm wide.
+        let drawings = [rail.clone(), standards::wheel("APTA-120")?];
+        let closed = [rail, standards::wheel("EN15302-A")?];
+        let cases = [
+            (drawings.clone(), -14.0, 0.0, 2),
+            (closed, -49.6, 0.0, 3),
+            (drawings, -14.0, 0.02, 0),
+            (splines, -9.0, 0.0, 0),
+        ];
+        for ([rail, wheel], wheel_x, yaw, most_spans) in cases {
+            let placement = Pair::new(rail, wheel, 460.0)?.placed(-11.0, wheel_x, yaw)?;
+            // The columns of the second are whole lines: one half is the other's mirror image.
+            for count in [253, 248] {
+                let (plain, spans) = filled(&placement, count, pulp::Arch::Scalar, (LastCache, 1));
+                assert_eq!(spans, most_spans);
+                assert!(plain.iter().all(|s| s.is_finite()));
+                let same = |arch| {
+                    [(SecondCache, 0), (LastCache, 0), (SecondCache, 1), (Memory, 0)].into_iter().all(
+                        |stored| {
+                            let (other, _) = filled(&placement, count, arch, stored);
+                            plain.iter().zip(&other).all(|(a, b)| a.to_bits() == b.to_bits())
+                        },
+                    )
+                };
+                assert!(same(pulp::Arch::Scalar) && same(pulp::Arch::new()));
+                #[cfg(target_arch = "x86_64")]
+                if let Some(v3) = pulp::x86::V3::try_new() {
+                    assert!(same(pulp::Arch::V3(v3)));
+                }
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,437 @@
+//! The wheel as a surface over the contact frame, along columns of constant ξ, in sagitta form.
+//!
+//! A point at axle distance w = R − z and lateral offset η has the sagitta e = √(w² + η²) − w. It is on the wheel exactly when
+//! (x, z − e) is on the profile. In the contact frame, with h(ξ) the midplane height,
+//!
+//! ```text
+//! ζ = h(ξ − e sinθ) + e cosθ,   w = R − z_C − ξ sinθ − ζ cosθ,   u = η² = e (2w + e).
+//! ```
+//!
+//! Given e, ζ and u follow with no iteration. Given u, the step e ← u/(w + √(w² + u)) contracts by about e/w. The profile abscissa
+//! ξ − e sinθ moves along the column, so that one column can cross joints (erratum 6). The formulas are written for N columns at
+//! once; one column is N = 1.
+
+use crate::numerics::lanes::{Lanes, every, lanes};
+use crate::numerics::roots::bracketed;
+use crate::placement::Placement;
+use crate::profile::{Branch, BranchPoint, BranchPoints, Branches, Piece, Section};
+
+/// Most steps by which a point is found; each gains some six digits. A branch that needs more is steep there: one column is then
+/// left to a bracketed root.
+const STEPS: usize = 8;
+
+/// A step below so many roundings of w is followed by one that is smaller by e/w and by the difference of chord and tangent.
+const LAST_STEP: f64 = 16.0 * f64::EPSILON;
+
+/// Share of the window's u that the nodes of a polynomial must cover. Beyond them it is continued that little, by which its error
+/// grows by some per cent.
+const NEARLY_COVERED: f64 = 0.9999;
+
+/// A branch that goes on to this many times the sagitta that the window needs is taken to cover it. Between there and the end only
+/// a profile that falls towards the axle could bring u back.
+const FAR_END: f64 = 4.0;
+
+/// The wheel as a surface over the contact frame of its own meridian.
+#[derive(Debug, Clone, Copy)]
+pub struct WheelSurface<'a> {
+    /// The wheel profile in the contact frame.
+    pub section: &'a Section,
+    /// R − z_C \[mm\].
+    pub(super) axle: f64,
+    cos: f64,
+    pub(super) sin: f64,
+}
+
+/// The part of a column that lies over one branch of the wheel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Span {
+    /// Range of e \[mm\]; the end may be infinite.
+    pub e: [f64; 2],
+    /// Range of u = η² \[mm²\]; the end may be infinite.
+    pub u: [f64; 2],
+    /// Index of the branch.
+    pub branch: usize,
+    /// Index of the piece of the envelope.
+    pub(super) piece: usize,
+    /// ζ of the wheel at the beginning \[mm\].
+    pub height: f64,
+    /// Axle distance w at the beginning \[mm\].
+    pub w: f64,
+    /// The profile point at the beginning.
+    begin: BranchPoint,
+}
+
+/// A point of the wheel by its sagitta, over one span of a column.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SagittaPoint {
+    /// Sagitta e \[mm\].
+    pub e: f64,
+    /// ζ less ζ at the beginning of the span \[mm\].
+    pub rise: f64,
+    /// Axle distance w \[mm\].
+    pub w: f64,
+    /// u = η² \[mm²\].
+    pub u: f64,
+}
+
+/// One span of N columns, from where they enter the branches below it to where they leave them.
+#[derive(Debug)]
+pub struct SpanLanes<'a, const N: usize> {
+    /// The branches.
+    pub branches: Branches<'a, N>,
+    /// The profile points at the beginning.
+    pub points: BranchPoints<N>,
+    /// ζ of the wheel at the beginning \[mm\].
+    pub height: Lanes<N>,
+    /// Axle distance at the beginning \[mm\].
+    pub w: Lanes<N>,
+    /// Range of e \[mm\]; the end may be infinite.
+    pub e: [Lanes<N>; 2],
+    /// Range of u \[mm²\].
+    pub u: [Lanes<N>; 2],
+}
+
+/// Points of the wheel by their sagittae, one over each of N columns.
+pub struct SagittaPoints<const N: usize> {
+    /// Sagitta \[mm\].
+    pub e: Lanes<N>,
+    /// ζ less ζ at the beginning of the span \[mm\].
+    pub rise: Lanes<N>,
+    /// Axle distance \[mm\].
+    pub w: Lanes<N>,
+    /// u \[mm²\].
+    pub u: Lanes<N>,
+    /// u less u at the beginning of the span, to its own roundings \[mm²\].
+    pub v: Lanes<N>,
+}
+
+impl From<SagittaPoints<1>> for SagittaPoint {
+    #[inline(always)]
+    fn from(SagittaPoints { e: [e], rise: [rise], w: [w], u: [u], .. }: SagittaPoints<1>) -> Self {
+        Self { e, rise, w, u }
+    }
+}
+
+impl<'a> WheelSurface<'a> {
+    /// Makes the surface of the wheel of a placed pair.
+    pub fn new(placement: &'a Placement) -> Self {
+        let station = placement.wheel.section.frame;
+        let axle = placement.rolling_radius();
+        Self { section: &placement.wheel.section, axle, cos: station.cos, sin: station.sin }
+    }
+
+    fn branch(&self, span: &Span) -> &'a Branch {
+        &self.section.branches[span.branch]
+    }
+
+    /// Finds the spans of the column at ξ from η = 0 until u reaches `u_max` \[mm²\], in order of u. `spans` is overwritten; it is
+    /// empty where the wheel has no surface.
+    pub fn spans(&self, xi: f64, u_max: f64, spans: &mut Vec<Span>) {
+        spans.clear();
+        let pieces = &self.section.pieces;
+        let Some(mut index) = self.first_piece(xi) else { return };
+        loop {
+            let piece = &pieces[index];
+            let [near, far] = self.sides().map(|side| piece.xi[side]);
+            let begin = if self.sin == 0.0 { 0.0 } else { ((xi - near) / self.sin).max(0.0) };
+            let end = if self.sin == 0.0 { f64::INFINITY } else { (xi - far) / self.sin };
+            if self.sin == 0.0 && !(piece.xi[0] <= xi && xi <= piece.xi[1]) {
+                return;
+            }
+            let mut span = self.span(xi, index, [begin, end], u_max);
+            if let Some(last) = spans.last().filter(|last| last.e[1] == begin) {
+                // One joint: the ranges meet, whatever rounding makes of them.
+                span.u[0] = last.u[1];
+            }
+            // Near the axle's height u may fall along the column: such a span holds nothing.
+            span.u[1] = span.u[1].max(span.u[0]);
+            let done = span.u[1] >= u_max || self.sin == 0.0;
+            if span.u[0] <= u_max {
+                spans.push(span);
+            }
+            match self.next_piece(index) {
+                Some(next) if !done => index = next,
+                _ => return,
+            }
+        }
+    }
+
+    /// Finds the index of the piece over which the column at ξ begins, or would begin if there were no gap.
+    pub(super) fn first_piece(&self, xi: f64) -> Option<usize> {
+        let pieces = &self.section.pieces;
+        if self.sin > 0.0 {
+            let before = pieces.partition_point(|p| p.xi[0] < xi).checked_sub(1);
+            return before.or((self.at_end(xi) == Some(0)).then_some(0));
+        }
+        let index = pieces.partition_point(|p| p.xi[1] <= xi);
+        Some(index).filter(|&i| i < pieces.len()).or(self.at_end(xi))
+    }
+
+    /// Gives the index of the piece that a column passes next; `None` at the end of the profile.
+    pub(super) fn next_piece(&self, index: usize) -> Option<usize> {
+        if self.sin > 0.0 {
+            index.checked_sub(1)
+        } else {
+            Some(index + 1).filter(|&i| i < self.section.pieces.len())
+        }
+    }
+
+    /// Gives the index of the first or last piece whose outer end is ξ.
+    fn at_end(&self, xi: f64) -> Option<usize> {
+        let pieces = &self.section.pieces;
+        let last = pieces.len().checked_sub(1)?;
+        if pieces[0].xi[0] == xi { Some(0) } else { (pieces[last].xi[1] == xi).then_some(last) }
+    }
+
+    /// Gives the ends of a piece by which a column enters and leaves it, 0 for the end at smaller ξ.
+    pub(super) fn sides(&self) -> [usize; 2] {
+        if self.sin > 0.0 { [1, 0] } else { [0, 1] }
+    }
+
+    /// Makes the span over one piece between two sagittae.
+    fn span(&self, xi: f64, index: usize, e: [f64; 2], u_max: f64) -> Span {
+        let (piece, near) = (&self.section.pieces[index], self.sides()[0]);
+        let branch = &self.section.branches[piece.branch];
+        let (begin, on_profile) = if e[0] > 0.0 { piece.ends[near] } else { branch.point(xi) };
+        let SpanLanes { height: [height], w: [w], u: [[u0], _], .. } =
+            self.span_from(&[xi], branch, [e[0]], (begin, [on_profile]));
+        let span = Span { e, u: [u0, f64::INFINITY], branch: piece.branch, piece: index, height, w, begin };
+        if e[1] > FAR_END * u_max / (2.0 * w) && w > 0.0 {
+            return span;
+        }
+        let [_, u1] = self.leaves(xi, piece);
+        // Where the ring of the column closes before the profile's end, that is never met.
+        let e1 = if u1.is_finite() { e[1] } else { f64::INFINITY };
+        Span { e: [e[0], e1], u: [u0, u1], ..span }
+    }
+
+    /// Makes the spans that begin at points of a branch with these heights \[mm\], where the sagittae are e_0 \[mm\]. Their ends are
+    /// not known yet: e is infinite and u NaN there.
+    #[inline(always)]
+    pub(super) fn span_from<const N: usize>(
+        &self,
+        xi: &Lanes<N>,
+        branch: &'a Branch,
+        e0: Lanes<N>,
+        (points, on_profile): (BranchPoints<N>, Lanes<N>),
+    ) -> SpanLanes<'a, N> {
+        let height = lanes(|k| on_profile[k] + e0[k] * self.cos);
+        let w = lanes(|k| self.axle_distance(xi[k], height[k]));
+        let u = [lanes(|k| e0[k] * (2.0 * w[k] + e0[k])), [f64::NAN; N]];
+        SpanLanes { branches: Branches::One(branch), points, height, w, e: [e0, [f64::INFINITY; N]], u }
+    }
+
+    /// Gives one span as lanes, of which there is one.
+    #[inline(always)]
+    pub(super) fn lane(&self, span: &Span) -> SpanLanes<'a, 1> {
+        SpanLanes {
+            branches: Branches::One(self.branch(span)),
+            points: span.begin,
+            height: [span.height],
+            w: [span.w],
+            e: [[span.e[0]], [span.e[1]]],
+            u: [[span.u[0]], [span.u[1]]],
+        }
+    }
+
+    /// Gives e \[mm\] and u \[mm²\] at which the column at ξ leaves a piece. u is infinite where that is beyond the axle's height.
+    #[inline(always)]
+    pub(super) fn leaves(&self, xi: f64, piece: &Piece) -> [f64; 2] {
+        let far = self.sides()[1];
+        let e = if self.sin == 0.0 { f64::INFINITY } else { (xi - piece.xi[far]) / self.sin };
+        let w = self.axle_distance(xi, piece.ends[far].1 + e * self.cos);
+        [e, if w > 0.0 { e * (2.0 * w + e) } else { f64::INFINITY }]
+    }
+
+    /// Gives w \[mm\] of a point of the column at ξ with this ζ \[mm\].
+    #[inline(always)]
+    pub(super) fn axle_distance(&self, xi: f64, height: f64) -> f64 {
+        self.axle - xi * self.sin - height * self.cos
+    }
+
+    /// Finds the point with sagitta e \[mm\] over a span, without iteration.
+    #[inline]
+    pub fn point(&self, xi: f64, span: &Span, e: f64) -> SagittaPoint {
+        let nowhere = SagittaPoint { e, rise: f64::NAN, w: f64::NAN, u: f64::NAN };
+        self.points(&[xi], &self.lane(span), &[e]).map_or(nowhere, SagittaPoint::from)
+    }
+
+    /// Finds the points with sagittae e \[mm\]. `None` for several lanes where Newton's steps on a polynomial do not settle.
+    #[inline(always)]
+    fn points<const N: usize>(
+        &self,
+        xi: &Lanes<N>,
+        span: &SpanLanes<'_, N>,
+        e: &Lanes<N>,
+    ) -> Option<SagittaPoints<N>> {
+        let slope = span.branches.chords_from(&span.points, &lanes(|k| self.abscissa(xi[k], e[k])))?;
+        let runs = lanes(|k| e[k] - span.e[0][k]);
+        let rise = lanes(|k| runs[k] * (self.cos - self.sin * slope[k]));
+        Some(self.points_above(span, &runs, rise))
+    }
+
+    /// Finds points whose sagittae are larger by about `runs` \[mm\] than at the span's beginning. No root is taken, which is why
+    /// the runs are not exact. NaN near a vertical tangent.
+    #[inline(always)]
+    pub(super) fn points_by<const N: usize>(
+        &self,
+        span: &SpanLanes<'_, N>,
+        runs: &Lanes<N>,
+    ) -> SagittaPoints<N> {
+        let [climb, stretch] = span.branches.chords_near(&span.points, &lanes(|k| -runs[k] * self.sin));
+        let rise = lanes(|k| runs[k] * (self.cos * stretch[k] - self.sin * climb[k]));
+        self.points_above(span, &lanes(|k| runs[k] * stretch[k]), rise)
+    }
+
+    /// Completes the points that lie `rise` \[mm\] above the span's beginning, with sagittae larger by `runs` \[mm\].
+    #[inline(always)]
+    fn points_above<const N: usize>(
+        &self,
+        span: &SpanLanes<'_, N>,
+        runs: &Lanes<N>,
+        rise: Lanes<N>,
+    ) -> SagittaPoints<N> {
+        let e = lanes(|k| span.e[0][k] + runs[k]);
+        let w = lanes(|k| span.w[k] - rise[k] * self.cos);
+        let u = lanes(|k| e[k] * (2.0 * w[k] + e[k]));
+        // u − u_0 without a difference of what is nearly equal: w falls by rise cosθ.
+        let v = lanes(|k| {
+            let [e0, e1] = [span.e[0][k], e[k]];
+            runs[k] * (2.0 * w[k] + (e0 + e1)) - 2.0 * e0 * (rise[k] * self.cos)
+        });
+        SagittaPoints { e, rise, w, u, v }
+    }
+
+    /// Finds points near u \[mm²\] by the contraction of the sagitta step, and the runs \[mm\] by which [`Self::points_by`] finds
+    /// them. `None` where one is not found, or has no axle distance left.
+    #[inline(always)]
+    pub(super) fn points_near<const N: usize>(
+        &self,
+        span: &SpanLanes<'_, N>,
+        u: &Lanes<N>,
+    ) -> Option<(SagittaPoints<N>, Lanes<N>)> {
+        let [low, high] = &span.e;
+        // The first is as good as if the profile were level: only its slope is then to be found.
+        let mut w = lanes(|k| span.w[k] - (sagitta(span.w[k], u[k]) - low[k]) * self.cos * self.cos);
+        let mut shrink = [1.0; N];
+        for _ in 0..=STEPS {
+            let runs: Lanes<N> = lanes(|k| sagitta(w[k], u[k]).max(low[k]).min(high[k]) - low[k]);
+            let runs = lanes(|k| runs[k] * shrink[k]);
+            let points = self.points_by(span, &runs);
+            let near = |k: usize| (points.u[k] - u[k]).abs() <= (1.0 - NEARLY_COVERED) * u[k];
+            if every::<N>(|k| near(k) & (points.w[k] > 0.0)) {
+                return Some((points, runs));
+            }
+            shrink = lanes(|k| runs[k] / (points.e[k] - low[k]));
+            w = points.w;
+        }
+        None
+    }
+
+    /// Finds the points at u = η² \[mm²\]; `None` where the steps do not settle. w is not positive where η is beyond the ring.
+    ///
+    /// Method: Newton's step on u(e) = e (2w + e), with the chord's slope for the tangent's, from which it differs by
+    /// e × curvature.
+    #[inline(always)]
+    pub(super) fn points_at<const N: usize>(
+        &self,
+        xi: &Lanes<N>,
+        span: &SpanLanes<'_, N>,
+        u: &Lanes<N>,
+    ) -> Option<SagittaPoints<N>> {
+        let mut points = self.points(xi, span, &lanes(|k| sagitta(span.w[k], u[k])))?;
+        let mut last = points.e;
+        for _ in 0..STEPS {
+            let e = lanes(|k| {
+                let run = points.e[k] - span.e[0][k];
+                let fall = if run == 0.0 { 0.0 } else { self.cos * points.rise[k] / run };
+                points.e[k] - (points.u[k] - u[k]) / (2.0 * (points.w[k] + points.e[k] * (1.0 - fall)))
+            });
+            let change: Lanes<N> = lanes(|k| (e[k] - points.e[k]).abs());
+            points = self.points(xi, span, &e)?;
+            // The steps fall in geometric progression: the next one would be below rounding. The first two may fall faster.
+            let settled = |k: usize| {
+                change[k] * change[k] <= f64::EPSILON * e[k] * last[k] && change[k] <= LAST_STEP * points.w[k]
+            };
+            if every::<N>(settled) {
+                return Some(points);
+            }
+            last = change;
+        }
+        None
+    }
+
+    /// Finds the point at u = η² \[mm²\] over a span; `None` where η is beyond the ring.
+    ///
+    /// Method: that of [`Self::points_at`]; where it does not settle, a bracketed root.
+    pub fn point_at(&self, xi: f64, span: &Span, u: f64) -> Option<SagittaPoint> {
+        let point = match self.points_at(&[xi], &self.lane(span), &[u]) {
+            Some(points) => points.into(),
+            None => {
+                self.point(xi, span, bracketed(|e| self.point(xi, span, e).u - u, span.e[0], self.end(span))?)
+            }
+        };
+        Some(point).filter(|point| point.w > 0.0)
+    }
+
+    /// Gives a sagitta \[mm\] beyond which a span has no point.
+    fn end(&self, span: &Span) -> f64 {
+        if span.e[1].is_finite() { span.e[1] } else { self.axle }
+    }
+
+    /// Finds the point that lies `rise` \[mm\] above the span's beginning.
+    ///
+    /// Method: at most `contractions` steps e ← e_0 + rise/(cosθ − sinθ × chord slope), which contract by e × curvature; then a
+    /// bracketed root. Degenerate: the last step, where there is no root.
+    pub fn point_with_rise(&self, xi: f64, span: &Span, rise: f64, contractions: usize) -> SagittaPoint {
+        let mut point = self.point(xi, span, span.e[0]);
+        for _ in 0..contractions {
+            let slope = self.branch(span).chord_from(&span.begin, self.abscissa(xi, point.e));
+            let e = (span.e[0] + rise / (self.cos - self.sin * slope)).min(span.e[1]);
+            let change = (e - point.e).abs();
+            point = self.point(xi, span, e);
+            if change <= f64::EPSILON * e {
+                return point;
+            }
+        }
+        let root = bracketed(|e| self.point(xi, span, e).rise - rise, span.e[0], self.end(span));
+        root.map_or(point, |e| self.point(xi, span, e))
+    }
+
+    /// Gives the profile abscissa ξ − e sinθ \[mm\] under the point with sagitta e.
+    #[inline(always)]
+    pub fn abscissa(&self, xi: f64, e: f64) -> f64 {
+        xi - e * self.sin
+    }
+
+    /// Computes q(ξ, 0) = (cosθ − h′(ξ) sinθ)/2w \[1/mm\], the growth of ζ with η², for a span from η = 0.
+    pub fn opening(&self, xi: f64, span: &Span) -> f64 {
+        let slope = self.branch(span).chord_from(&span.begin, xi);
+        (self.cos - self.sin * slope) / (2.0 * span.w)
+    }
+
+    /// Finds the index of the span that holds u \[mm²\], among the spans of a column in order of u.
+    pub fn span_at(spans: &[Span], u: f64) -> Option<usize> {
+        let k = spans.iter().position(|span| u <= span.u[1])?;
+        (u >= spans[k].u[0]).then_some(k)
+    }
+
+    /// Computes the outward unit normal (towards the rail) in (ξ, η, ζ) at a point with lateral offset η \[mm\].
+    pub fn normal(&self, xi: f64, eta: f64, span: &Span, point: &SagittaPoint) -> [f64; 3] {
+        let tangent = self.branch(span).station(self.abscissa(xi, point.e));
+        // Profile angle φ = ψ + θ in the wheel's own axes; the meridian plane is turned by atan(η/w).
+        let (sin, cos) = (
+            tangent.sin * self.cos + tangent.cos * self.sin,
+            tangent.cos * self.cos - tangent.sin * self.sin,
+        );
+        let rho = point.w.hypot(eta);
+        let (x, y, z) = (sin, cos * eta / rho, -cos * point.w / rho);
+        [x * self.cos + z * self.sin, y, z * self.cos - x * self.sin]
+    }
+}
+
+/// Computes e = √(w² + u) − w \[mm\] without cancellation.
+#[inline]
+pub(super) fn sagitta(w: f64, u: f64) -> f64 {
+    u / (w + (w * w + u).sqrt())
+}
