@@ -3,8 +3,8 @@
 //!     cargo run --release --example 02_patch
 #![allow(clippy::print_stdout)]
 
-use wheelrail::contact::feasibility::feasibility;
-use wheelrail::interpenetration::{Patch, Window};
+use wheelrail::load::feasibility::feasibility;
+use wheelrail::patch::{Patch, Window};
 use wheelrail::placement::Pair;
 use wheelrail::profile::standards;
 

@@ -5,8 +5,8 @@
 
 use std::path::Path;
 
+use wheelrail::case::Run;
 use wheelrail::export::{Folder, RUN_FOLDER};
-use wheelrail::run::Run;
 use wheelrail::scene;
 
 fn main() -> wheelrail::Result<()> {

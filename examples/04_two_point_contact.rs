@@ -3,11 +3,11 @@
 //!     cargo run --release --example 04_two_point_contact
 #![allow(clippy::print_stdout)]
 
-use wheelrail::contact::search::Selection;
-use wheelrail::contact::search::wheelset::{Position, Roll, WheelsetOnTrack};
 use wheelrail::placement::Pair;
 use wheelrail::placement::track::{RailDistance, WheelDistance};
 use wheelrail::profile::standards;
+use wheelrail::search::Selection;
+use wheelrail::search::wheelset::{Position, Roll, WheelsetOnTrack};
 
 fn main() -> wheelrail::Result<()> {
     let norm = 40f64.hypot(1.0);

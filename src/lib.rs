@@ -6,23 +6,23 @@
 //! estimate that turns a load into an approach.
 //!
 //! ```text
-//! scene → profiles → placement → separation → interpenetration → meshes → files
+//! scene → profiles → placement → separation → patch → meshes → files
 //!                         └─────────── check (parry3d) ── report
 //! ```
 //!
 //! | Report FRA/ORD-78/41 | what it does | here |
 //! |---|---|---|
 //! | Sec. 3, App. A | segment equations, smooth chains from drawing data | [`profile`], [`profile::builder`] |
-//! | Sec. 4 | contact frame, transformed parameters, feasibility | [`placement`], [`contact::feasibility`] |
+//! | Sec. 4 | contact frame, transformed parameters, feasibility | [`placement`], [`load::feasibility`] |
 //! | MIDSEP, Sec. 5 | transformed parameters and Δζ on the midplane | [`separation::midplane`] |
 //! | INSEP, Sec. 6 | s(ξ, η) and unit normals over the grid | [`separation`] |
-//! | INTERPEN, Sec. 7 | η(ξ) with s = δ | [`interpenetration`] |
+//! | INTERPEN, Sec. 7 | η(ξ) with s = δ | [`patch`] |
 //! | CONFORM, COUNTACT | the solvers that read all this | [`mod@export`] (decks), [`mesh`] |
 //!
 //! # In a few lines
 //!
 //! ```
-//! use wheelrail::interpenetration::{Patch, Window};
+//! use wheelrail::patch::{Patch, Window};
 //! use wheelrail::placement::Pair;
 //! use wheelrail::profile::standards;
 //! use wheelrail::separation::Evaluator;
@@ -45,17 +45,19 @@
 //! guaranteed: anything elastic. See [`docs::numerics`] for the formulas and [`docs::errata`] for what differs from
 //! the Report.
 
-pub mod contact;
+pub mod case;
 pub mod docs;
 pub mod error;
 pub mod export;
-pub mod interpenetration;
+pub mod load;
+pub mod measured;
 pub mod mesh;
 pub mod numerics;
+pub mod patch;
 pub mod placement;
 pub mod profile;
-pub mod run;
 pub mod scene;
+pub mod search;
 pub mod separation;
 
 pub use error::{Error, Result};

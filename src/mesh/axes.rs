@@ -4,7 +4,7 @@
 //! over a symmetric patch, and grids of one spacing for several parts or approaches share their centres.
 
 use crate::error::{Error, Result, finite};
-use crate::interpenetration::{Component, Patch, Window};
+use crate::patch::{Component, Patch, Window};
 
 /// Cells over the short side of the box when no spacing is given: peak pressures of the two solvers are then within 0.5 %.
 const CELLS_ACROSS: f64 = 16.0;

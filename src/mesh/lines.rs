@@ -1,6 +1,6 @@
 //! The lines of a strip mesh along ξ, which go on from band to band where these meet.
 
-use crate::interpenetration::Band;
+use crate::patch::Band;
 use crate::placement::Placement;
 
 /// Two lines closer than this share of a band's width are one: far above what rounding makes of one line on both sides of a

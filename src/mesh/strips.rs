@@ -14,7 +14,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::lines::{Meeting, between, lines};
 use crate::error::{Error, Result};
-use crate::interpenetration::{Band, Component, Outline, Patch};
+use crate::patch::{Band, Component, Outline, Patch};
 use crate::placement::Placement;
 
 /// Cells beyond which a mesh is a mistake: the patch itself is known to fewer digits.

@@ -5,7 +5,7 @@
 //! s(ξ, η) cannot.
 
 use crate::error::{Error, Result, finite};
-use crate::interpenetration::Window;
+use crate::patch::Window;
 use crate::placement::Placement;
 use crate::profile::{Side, Station};
 

@@ -6,7 +6,6 @@ pub mod builder;
 pub mod closing;
 pub mod continuity;
 mod groove;
-pub mod measured;
 mod polynomial;
 mod section;
 pub mod standards;

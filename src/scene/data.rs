@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::measured;
 use crate::profile::drawing::SegmentData;
-use crate::profile::measured;
 use crate::separation::grid::Method;
 
 /// A scene: a wheel on a rail or a wheelset on a track, what is asked of it, and what is to be written.

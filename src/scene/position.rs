@@ -1,10 +1,10 @@
 //! `[contact]`, `[track]` and `[wheelset]`: where the bodies stand.
 
 use super::data::{ContactData, RollData, RollWord, Scene, TrackData, WheelsetData};
-use crate::contact::search::Pose;
-use crate::contact::search::wheelset::{Position, Roll};
 use crate::error::{Error, Result, finite, given};
 use crate::placement::track::{RailDistance, WheelDistance};
+use crate::search::Pose;
+use crate::search::wheelset::{Position, Roll};
 
 /// Depth below the top of rail at which gauge is measured unless the scene says otherwise \[mm\].
 const GAUGE_HEIGHT: f64 = 14.0;

@@ -10,7 +10,7 @@ use sha2::{Digest, Sha256};
 
 use super::Scene;
 use crate::error::{Error, Result};
-use crate::profile::measured::LARGEST_FILE;
+use crate::measured::LARGEST_FILE;
 
 /// A scene from a TOML file, or from a JSON file with the same keys.
 ///

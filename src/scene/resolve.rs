@@ -4,12 +4,13 @@ use std::path::Path;
 
 use super::data::{AxisData, ProfileData, Rotation, Scene, Spacing};
 use super::read::{nearest, parse, read_bytes, read_text};
-use crate::contact::hertz::Elastic;
 use crate::error::{Error, Result, finite, given};
+use crate::load::hertz::Elastic;
+use crate::measured;
+use crate::measured::{Measured, Options, Record};
 use crate::mesh::axes::MOST_ON_AXIS;
 use crate::placement::Pair;
 use crate::profile::drawing::{SegmentData, chain};
-use crate::profile::measured::{self, Measured, Options, Record};
 use crate::profile::{Profile, Side, standards};
 
 /// A profile file: the same keys as inline.

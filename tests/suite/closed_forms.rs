@@ -4,8 +4,8 @@
 //! form are in its own test.
 
 use twofloat::TwoFloat;
-use wheelrail::contact::hertz::curvatures;
-use wheelrail::interpenetration::{Patch, Slicer, Window};
+use wheelrail::load::hertz::curvatures;
+use wheelrail::patch::{Patch, Slicer, Window};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Half, Profile, Segment};
 use wheelrail::separation::Evaluator;

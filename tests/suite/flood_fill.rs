@@ -2,11 +2,11 @@
 //! grids, which never cut what they are for.
 
 use rayon::prelude::*;
-use wheelrail::interpenetration::{Component, End, Outline, Patch, Window};
+use wheelrail::case::contacts;
 use wheelrail::mesh::axes;
+use wheelrail::patch::{Component, End, Outline, Patch, Window};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Profile, standards};
-use wheelrail::run::contacts;
 use wheelrail::scene;
 use wheelrail::separation::axis::EtaAxis;
 use wheelrail::separation::grid::{Choice, Method};

@@ -1,7 +1,7 @@
 //! The parry3d check agrees on every scene it should agree on, and on no mutation.
 
 use crate::common::{Reference, ReferenceSegment, references};
-use wheelrail::interpenetration::Window;
+use wheelrail::patch::Window;
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Half, Polynomial, Profile, Segment, Shape, standards};
 use wheelrail::separation::Evaluator;

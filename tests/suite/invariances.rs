@@ -5,8 +5,8 @@
 
 use crate::common::holds;
 use proptest::prelude::*;
-use wheelrail::contact::feasibility::feasibility;
-use wheelrail::interpenetration::{Patch, Slicer, Window};
+use wheelrail::load::feasibility::feasibility;
+use wheelrail::patch::{Patch, Slicer, Window};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Polynomial, Profile, Segment, Shape, Station, standards};
 use wheelrail::separation::Evaluator;

@@ -3,18 +3,20 @@
 use std::path::{Path, PathBuf};
 
 /// Modules from the bottom up; each may use those before it and itself.
-const ORDER: [&str; 12] = [
+const ORDER: [&str; 14] = [
     "error",
     "numerics",
     "profile",
+    "measured",
     "placement",
     "separation",
-    "contact",
-    "interpenetration",
+    "search",
+    "patch",
+    "load",
     "mesh",
     "export",
     "scene",
-    "run",
+    "case",
     "docs",
 ];
 

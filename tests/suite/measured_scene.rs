@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use wheelrail::run::{Part, Run};
+use wheelrail::case::{Part, Run};
 use wheelrail::scene::{self, Scene};
 
 /// Both profiles sampled every 0.5 mm and smoothed with the default cut-off: twice what was found (0.5 %, 2.2 µm of
@@ -48,7 +48,7 @@ fn measured_files_give_the_patch_of_their_drawings() {
 #[test]
 fn interpolation_of_exact_points_is_nearer_still() {
     let interpolated = run("measured.toml", |scene| {
-        scene.rail.curve = Some(wheelrail::profile::measured::CurveKind::Interpolation);
+        scene.rail.curve = Some(wheelrail::measured::CurveKind::Interpolation);
         scene.wheel.curve = scene.rail.curve;
     });
     let drawn = run("60e1_s1002.toml", |_| ());

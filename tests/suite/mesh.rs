@@ -2,11 +2,11 @@
 
 use crate::common::{approached_references, two_crowns};
 use wheelrail::Result;
-use wheelrail::interpenetration::{Patch, Window};
 use wheelrail::mesh::axes::{self, Axes, Group};
 use wheelrail::mesh::quality::Quality;
 use wheelrail::mesh::strips::{Counts, StripMesh};
 use wheelrail::mesh::surfaces::Surface;
+use wheelrail::patch::{Patch, Window};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Half, Profile, Segment, standards};
 use wheelrail::separation::Evaluator;

@@ -1,7 +1,7 @@
 //! Every scene of `crates/report/src/reference` and `tests/reference_spline` against its 60-digit values: the one table of accuracy bounds.
 
 use crate::common::{Reference, Worst, references, references_in};
-use wheelrail::interpenetration::Slicer;
+use wheelrail::patch::Slicer;
 use wheelrail::separation::axis::EtaAxis;
 use wheelrail::separation::grid::Method;
 use wheelrail::separation::methods::report_newton;

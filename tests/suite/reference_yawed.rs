@@ -1,7 +1,7 @@
 //! Yawed wheels against the 60-digit values of `tests/reference_yawed`, to bounds near those of the unyawed ones.
 
 use crate::common::{Reference, Worst, folder};
-use wheelrail::interpenetration::Slicer;
+use wheelrail::patch::Slicer;
 use wheelrail::placement::Placement;
 use wheelrail::separation::axis::EtaAxis;
 use wheelrail::separation::grid::Method;

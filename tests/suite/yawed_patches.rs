@@ -4,13 +4,13 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use crate::common::{profile, references};
-use wheelrail::contact::feasibility::feasibility;
-use wheelrail::interpenetration::{End, Outline, Patch, Window};
+use wheelrail::case::Run;
+use wheelrail::load::feasibility::feasibility;
 use wheelrail::mesh::strips::{Counts, StripMesh};
 use wheelrail::numerics::roots::bracketed;
+use wheelrail::patch::{End, Outline, Patch, Window};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Half, Profile, Section, Side, standards};
-use wheelrail::run::Run;
 use wheelrail::scene;
 use wheelrail::separation::Evaluator;
 

@@ -21,7 +21,7 @@ pub use floor::Floor;
 pub use relation::RELATION;
 pub use report::{Counts, Differences, Distances, Orders, Report};
 
-use wheelrail::interpenetration::Window;
+use wheelrail::patch::Window;
 use wheelrail::separation::{Evaluator, Normals};
 
 /// What is checked of a placed pair.

@@ -2,9 +2,9 @@
 
 use super::Request;
 use super::sampler::Surface;
-use wheelrail::contact::feasibility::critical_points;
-use wheelrail::interpenetration::Slicer;
 use wheelrail::numerics::roots::bracketed;
+use wheelrail::patch::Slicer;
+use wheelrail::patch::turning_points;
 use wheelrail::placement::Placement;
 
 /// Lines of the regular grid in ξ and η, edges of the window included.
@@ -51,7 +51,7 @@ fn boundary(placement: &Placement, request: &Request) -> Vec<[f64; 2]> {
         return Vec::new();
     }
     let mut slicer = Slicer::new(placement, request.approach);
-    let deepest = critical_points(placement, from, to)
+    let deepest = turning_points(placement, from, to)
         .into_iter()
         .map(|xi| (slicer.separation(xi, 0.0), xi))
         .filter(|(s, _)| !s.is_nan())

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::progress::Progress;
 use super::{Outcome, complain, folder_of, print};
+use wheelrail::case::{Part, Run};
 use wheelrail::error::Result;
-use wheelrail::run::{Part, Run};
 use wheelrail::scene;
 use wheelrail::separation::Evaluator;
 use wheelrail_check::{Answer, Report, Request, check as compare};

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use super::progress::Progress;
 use super::{Outcome, folder_of, print};
+use wheelrail::case::contacts;
 use wheelrail::error::{Error, Result};
 use wheelrail::placement::Placement;
-use wheelrail::run::contacts;
 use wheelrail::scene::{self, equal_steps};
 use wheelrail::separation::midplane::table;
 

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use super::output::refuse_results_of_another;
 use super::progress::Progress;
 use super::{Outcome, complain, folder_of, print};
+use wheelrail::case::Run;
 use wheelrail::error::Result;
 use wheelrail::export::{Folder, RUN_FOLDER};
-use wheelrail::run::Run;
 use wheelrail::scene;
 
 /// Runs a scene; exit code 1 for an infeasible contact or an empty patch, whose files are written all the same.

@@ -4,7 +4,7 @@ use super::errors::{Point, compare, inside_contact};
 use super::hard_case::{COLUMNS, HardCase, METHODS, RelationKind, StatedComponent, StatedPatch};
 use super::reference::exact;
 use wheelrail::error::{Error, Result};
-use wheelrail::interpenetration::{Component, End, Patch, Slicer, Window};
+use wheelrail::patch::{Component, End, Patch, Slicer, Window};
 use wheelrail::placement::Placement;
 use wheelrail::separation::Evaluator;
 use wheelrail::separation::grid::{Choice, Method};

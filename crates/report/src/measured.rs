@@ -6,14 +6,14 @@ use std::fmt::Write as _;
 use rayon::prelude::*;
 
 use super::random::Random;
-use wheelrail::contact::hertz::{Elastic, curvatures, effective_modulus};
-use wheelrail::contact::search::{Pose, ProfilePair, Selection};
 use wheelrail::error::{Error, Result};
-use wheelrail::interpenetration::{Patch, Window};
+use wheelrail::load::hertz::{Elastic, curvatures, effective_modulus};
+use wheelrail::measured::{self, CUTOFF_WAVELENGTH, CurveKind, Format, Options, write};
+use wheelrail::patch::{Patch, Window};
 use wheelrail::placement::{Body, Pair, Placement};
-use wheelrail::profile::measured::{self, CUTOFF_WAVELENGTH, CurveKind, Format, Options, write};
 use wheelrail::profile::trace::{Mark, beside, trace};
 use wheelrail::profile::{Profile, Side, standards};
+use wheelrail::search::{Pose, ProfilePair, Selection};
 use wheelrail::separation::Evaluator;
 
 /// Distances of the points \[mm\].

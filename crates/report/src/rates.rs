@@ -2,14 +2,14 @@
 
 use super::specimen::{Instrument, Specimen, SpecimenKind};
 use super::speed::{LEAST_RUNS, Timing, race, timed};
-use wheelrail::contact::search::Selection;
-use wheelrail::contact::search::wheelset::{Position, Roll, WheelsetOnTrack};
-use wheelrail::contact::sweep::{Conicity, Sweep};
 use wheelrail::error::Result;
+use wheelrail::measured::{CurveKind, Format, Options};
 use wheelrail::placement::Pair;
 use wheelrail::placement::track::{RailDistance, WheelDistance};
-use wheelrail::profile::measured::{CurveKind, Format, Options};
 use wheelrail::profile::{Profile, standards};
+use wheelrail::search::Selection;
+use wheelrail::search::sweep::{Conicity, Sweep};
+use wheelrail::search::wheelset::{Position, Roll, WheelsetOnTrack};
 
 /// How far the wheelset is moved to either side \[mm\], and its yaw with every millimetre \[rad/mm\].
 pub const AMPLITUDE: f64 = 10.0;

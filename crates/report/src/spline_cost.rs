@@ -2,8 +2,8 @@
 
 use super::speed::{LEAST_RUNS, Timing, Track, Work, race};
 use wheelrail::error::Result;
+use wheelrail::measured::{self, CurveKind, Format, Options, write};
 use wheelrail::placement::{Pair, Placement};
-use wheelrail::profile::measured::{self, CurveKind, Format, Options, write};
 use wheelrail::profile::{Profile, Side, standards};
 use wheelrail::separation::plan::{FULL_PRECISION, plan};
 

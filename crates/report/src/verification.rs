@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::reference::Reference;
 use wheelrail::error::Result;
-use wheelrail::interpenetration::Window;
+use wheelrail::patch::Window;
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::standards;
 use wheelrail::separation::Evaluator;

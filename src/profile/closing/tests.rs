@@ -172,7 +172,7 @@ fn a_step_that_the_segments_beside_it_cannot_take_is_an_error() -> Result<()> {
 
 #[test]
 fn sampled_chains_have_no_points_that_files_cannot_tell_apart() -> Result<()> {
-    use crate::profile::measured::write::{LEAST_DISTANCE, sample};
+    use crate::measured::write::{LEAST_DISTANCE, sample};
     let rails = standards::rail_names().map(standards::rail);
     for profile in rails.chain(standards::wheel_names().map(standards::wheel)) {
         let profile = profile?;

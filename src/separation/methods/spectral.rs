@@ -180,8 +180,8 @@ impl Spectral<'_> {
 mod tests {
     use super::*;
     use crate::error::Result;
+    use crate::measured::{self, CurveKind, Format, Options, write};
     use crate::placement::Pair;
-    use crate::profile::measured::{self, CurveKind, Format, Options, write};
     use crate::profile::{Profile, Side, standards};
     use crate::separation::columns::strips::strips;
     use crate::separation::plan::{FULL_PRECISION, demand};

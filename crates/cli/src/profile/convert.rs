@@ -8,7 +8,7 @@ use super::source::{Content, Source, SourceArguments};
 use super::{Outcome, put};
 use crate::complain;
 use wheelrail::error::{Error, Result};
-use wheelrail::profile::measured::{CurveKind, Format, write};
+use wheelrail::measured::{CurveKind, Format, write};
 use wheelrail::profile::{Profile, Side};
 
 /// Distance of points \[mm\] along a drawn profile if none is given: that of hand-held instruments.

@@ -5,8 +5,8 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use wheelrail::error::{Error, Result};
+use wheelrail::measured::{Column, Options, Origin};
 use wheelrail::profile::Side;
-use wheelrail::profile::measured::{Column, Options, Origin};
 use wheelrail::scene;
 
 /// Rail or wheel.

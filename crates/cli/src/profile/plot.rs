@@ -9,7 +9,7 @@ use wheelrail::error::Result;
 use wheelrail::export::picture::SEPARATOR;
 use wheelrail::export::picture::profile::ProfilePicture;
 use wheelrail::export::write_file;
-use wheelrail::profile::measured::{CurveRecord, Measured};
+use wheelrail::measured::{CurveRecord, Measured};
 use wheelrail::profile::trace::{Mark, beside, trace};
 
 /// Distance of the curve's marks \[mm\]: 1500 over a profile, finer than a page shows.

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::source::Source;
-use wheelrail::profile::measured::{CurveKind, CurveRecord, Measured, Record};
+use wheelrail::measured::{CurveKind, CurveRecord, Measured, Record};
 use wheelrail::profile::{Profile, Shape};
 
 /// Name and source; of a measured file how it was read and fitted; segments and joints, unless they are the

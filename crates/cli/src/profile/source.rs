@@ -7,7 +7,7 @@ use clap::Args;
 use super::options::{Body, MeasuredArguments};
 use crate::output::refuse_taken;
 use wheelrail::error::{Error, Result};
-use wheelrail::profile::measured::{self, CurveKind, Measured, Options};
+use wheelrail::measured::{self, CurveKind, Measured, Options};
 use wheelrail::profile::{Profile, Side, standards};
 use wheelrail::scene;
 

@@ -1,9 +1,9 @@
 //! The equivalent conicity of a sweep's positions, and what a user should know of it.
 
 use super::super::progress::Progress;
-use wheelrail::contact::search::wheelset::{Position, Roll, WheelsetOnTrack};
-use wheelrail::contact::sweep::{ACCURACY, Conicity, Equivalent, NoConicity};
 use wheelrail::error::Result;
+use wheelrail::search::sweep::{ACCURACY, Conicity, Equivalent, NoConicity};
+use wheelrail::search::wheelset::{Position, Roll, WheelsetOnTrack};
 
 /// Relative errors up to which conicities that are not converged are counted in classes.
 const CLASSES: [f64; 2] = [1e-3, 1e-2];

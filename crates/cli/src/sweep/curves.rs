@@ -1,10 +1,10 @@
 //! The usual curves of a sweep as a picture.
 
 use super::table::Table;
-use wheelrail::contact::search::wheelset::Position;
-use wheelrail::contact::sweep::{Row, Sweep, TrackSide};
 use wheelrail::error::{Error, Result};
 use wheelrail::export::picture::curves::{Curve, CurvesPicture, Quantity, jumps};
+use wheelrail::search::sweep::{Row, Sweep, TrackSide};
+use wheelrail::search::wheelset::Position;
 
 /// At most so many positions are drawn, evenly chosen: more than a page has pixels.
 const MOST_DRAWN: usize = 2000;

@@ -14,14 +14,14 @@ use super::progress::Progress;
 use super::{Outcome, complain, folder_of, print_to_reader};
 use positions::{lateral_range, read_positions};
 use table::Table;
-use wheelrail::contact::hertz::effective_modulus;
-use wheelrail::contact::search::wheelset::{Position, WheelsetOnTrack};
-use wheelrail::contact::search::{ONE_CONTACT, Selection};
+use wheelrail::case::question;
 use wheelrail::error::{Error, Result};
 use wheelrail::export::write_file;
+use wheelrail::load::hertz::effective_modulus;
 use wheelrail::placement::Pair;
-use wheelrail::run::question;
 use wheelrail::scene::{self, Place, Scene};
+use wheelrail::search::wheelset::{Position, WheelsetOnTrack};
+use wheelrail::search::{ONE_CONTACT, Selection};
 
 /// What to sweep over and where to write.
 #[derive(Debug, clap::Args)]

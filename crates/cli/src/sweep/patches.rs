@@ -9,12 +9,12 @@ use serde_json::{Value, json};
 use super::super::complain;
 use super::super::progress::Progress;
 use super::table::Table;
-use wheelrail::contact::search::Selection;
-use wheelrail::contact::search::wheelset::Position;
+use wheelrail::case::{Profiles, Run};
 use wheelrail::error::{Error, Result};
 use wheelrail::export::{Folder, PATCHES_FOLDER, vtk};
-use wheelrail::run::{Profiles, Run};
 use wheelrail::scene::{self, Scene};
+use wheelrail::search::Selection;
+use wheelrail::search::wheelset::Position;
 
 /// Most positions: each makes some forty files.
 const MOST_POSITIONS: usize = 5000;

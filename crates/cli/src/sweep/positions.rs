@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use wheelrail::contact::search::wheelset::{Position, Roll};
 use wheelrail::error::{Error, Result, finite};
 use wheelrail::scene;
+use wheelrail::search::wheelset::{Position, Roll};
 
 /// Most positions of one sweep: a GiB with all that is kept of them.
 const MOST_POSITIONS: usize = 10_000_000;

@@ -10,13 +10,13 @@ use rayon::prelude::*;
 
 use super::super::progress::Progress;
 use super::super::{Outcome, complain};
-use wheelrail::contact::hertz::curvatures_at;
-use wheelrail::contact::search::wheelset::{Position, WheelsetOnTrack};
-use wheelrail::contact::search::{Contact, Selection};
-use wheelrail::contact::sweep::{Conicity, Row, Sweep, TrackSide};
+use wheelrail::case::ApproachBy;
 use wheelrail::error::{Error, Result};
 use wheelrail::export::behind_links;
-use wheelrail::run::ApproachBy;
+use wheelrail::load::hertz::curvatures_at;
+use wheelrail::search::sweep::{Conicity, Row, Sweep, TrackSide};
+use wheelrail::search::wheelset::{Position, WheelsetOnTrack};
+use wheelrail::search::{Contact, Selection};
 
 /// Columns of the table.
 const HEADER: &str = "lateral_mm,yaw_rad,roll_rad,side,contact,z_mm,rail_x_mm,wheel_x_mm,y_mm,contact_angle_rad,\

@@ -5,10 +5,10 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use wheelrail::contact::hertz::effective_modulus;
+use wheelrail::case::Run;
 use wheelrail::export::RUN_FOLDER;
-use wheelrail::interpenetration::load::VirtualContact;
-use wheelrail::run::Run;
+use wheelrail::load::hertz::effective_modulus;
+use wheelrail::load::virtual_interpenetration::VirtualContact;
 use wheelrail::scene;
 
 /// The Hertz case of a 460 mm wheel on a 300 mm crown under 80 kN: E* \[N/mm²\], p₀ \[N/mm²\], δ \[mm\].

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use wheelrail::run::Run;
+use wheelrail::case::Run;
 use wheelrail::scene::{self, Scene};
 
 /// Scenes of one ordinary test run; `WHEELRAIL_HOSTILE_SCENES=1000000` is the long one (five minutes).

@@ -4,14 +4,14 @@ use super::PracticeRow;
 use super::brute::{Bodies, Stance};
 use super::fill::filled;
 use crate::random::Random;
-use wheelrail::contact::search::wheelset::{Position, Roll, WheelsetOnTrack};
-use wheelrail::contact::search::{Contact, ONE_CONTACT, Pose, ProfilePair, Selection, Touch};
-use wheelrail::contact::sweep::{Conicity, NoConicity};
 use wheelrail::error::{Error, Result};
-use wheelrail::interpenetration::{Component, End, Patch, Window};
 use wheelrail::mesh::axes;
+use wheelrail::patch::{Component, End, Patch, Window};
 use wheelrail::placement::track::{RailDistance, WheelDistance};
 use wheelrail::placement::{Pair, Placement};
+use wheelrail::search::sweep::{Conicity, NoConicity};
+use wheelrail::search::wheelset::{Position, Roll, WheelsetOnTrack};
+use wheelrail::search::{Contact, ONE_CONTACT, Pose, ProfilePair, Selection, Touch};
 use wheelrail::separation::Evaluator;
 
 /// Gap \[mm\] up to which near misses are compared.

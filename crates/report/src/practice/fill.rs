@@ -1,6 +1,6 @@
 //! The patch by a flood fill over a fine grid.
 
-use wheelrail::interpenetration::Window;
+use wheelrail::patch::Window;
 use wheelrail::placement::Placement;
 use wheelrail::separation::Evaluator;
 

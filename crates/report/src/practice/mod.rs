@@ -14,8 +14,8 @@ use serde::Deserialize;
 
 use super::specimen::{Instrument, Specimen, SpecimenKind};
 use wheelrail::error::{Error, Result};
+use wheelrail::measured::Format;
 use wheelrail::placement::Pair;
-use wheelrail::profile::measured::Format;
 use wheelrail::profile::{Profile, Side, standards};
 
 /// One row of the report: what a case gave.

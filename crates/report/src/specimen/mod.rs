@@ -11,7 +11,7 @@ use serde::Deserialize;
 use super::random::Random;
 use outline::{OutlinePoint, drawn, recorded, rounded, worn};
 use wheelrail::error::Result;
-use wheelrail::profile::measured::{self, Format, Measured, Options, write};
+use wheelrail::measured::{self, Format, Measured, Options, write};
 use wheelrail::profile::{Profile, Side, standards};
 
 /// What is measured.

@@ -1,0 +1,148 @@
+//! summary.json: what was computed, from what, how and how well.
+
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use super::{Part, Run};
+use crate::export::FolderPart;
+use crate::mesh::quality::Quality;
+use crate::mesh::surfaces::Surface;
+use crate::patch::{Component, Patch};
+use crate::placement::Body;
+use crate::profile::closing::Closing;
+use crate::profile::continuity::Joint;
+
+/// One body in the summary.
+#[derive(Debug, Serialize)]
+struct BodySummary<'a> {
+    profile: &'a str,
+    source: &'a str,
+    contact_x_mm: f64,
+    contact_z_mm: f64,
+    contact_angle_rad: f64,
+    contact_segment: String,
+    /// Where closing the drawn chain moved its surface most; none for a chain without steps.
+    largest_closing: Option<ClosingSummary>,
+    /// Joints of the chain with a kink above 1e-9 rad.
+    kinks: Vec<Joint>,
+}
+
+/// How a drawn chain was closed.
+#[derive(Debug, Serialize)]
+struct ClosingSummary {
+    joints_closed: usize,
+    moved_mm: f64,
+    x_mm: f64,
+    z_mm: f64,
+    /// Stretch to either side of the joint that is not as drawn.
+    reach_mm: f64,
+}
+
+/// Kinks below this are not worth a reader's time \[rad\].
+const SMOOTH: f64 = 1e-9;
+
+/// The summary as JSON text; `surfaces` are the written ones of rail and wheel.
+pub(super) fn summary(
+    run: &Run,
+    part: &Part,
+    folder: &FolderPart<'_>,
+    surfaces: Option<&[Surface; 2]>,
+    files: &[String],
+    skipped: &[String],
+) -> Vec<u8> {
+    let (contact, analysis) = (&part.contact, &part.analysis);
+    let placement = &contact.placement;
+    let value = json!({
+        "program": "wheelrail",
+        "version": env!("CARGO_PKG_VERSION"),
+        "title": run.title,
+        "scene": run.scene,
+        "scene_file": run.file.as_ref().map(|file| folder.relative(file)),
+        "scene_sha256": run.hash,
+        "conventions": "mm, rad; s > 0 apart; contact frame: origin C, xi along the common tangent, eta along the rail, zeta from rail to wheel; grids [i_xi][i_eta]",
+        "rail": body(&placement.rail),
+        "wheel": body(&placement.wheel),
+        "measured_rail": run.measured[0],
+        "measured_wheel": run.measured[1],
+        "wheel_radius_mm": placement.wheel_radius,
+        "rolling_radius_mm": placement.rolling_radius(),
+        "skew_rad": placement.skew,
+        "found": part.found,
+        "feasibility": contact.feasibility,
+        "curvatures": contact.curvatures,
+        "approach_mm": contact.approach.map(|(approach, _)| approach),
+        "approach_estimated_by": contact.approach.and_then(|(_, estimate)| estimate),
+        "hertz_ellipse": contact.ellipse,
+        "hertz_ellipse_under": contact.ellipse_under,
+        "patch": analysis.patch.as_ref().map(patch),
+        "mesh_quality": analysis.strips.as_ref().and_then(Quality::of_strips),
+        "surface_quality": surfaces.map(|[rail, wheel]| json!({
+            "rail": Quality::of_surface(rail),
+            "wheel": Quality::of_surface(wheel),
+        })),
+        "grid": {
+            "n_xi": analysis.xi.len(),
+            "n_eta": analysis.eta.len(),
+            "undefined_points": analysis.separation.iter().filter(|s| s.is_nan()).count(),
+            "method": analysis.plan.choice.method,
+            "coefficients": analysis.plan.choice.coefficients,
+            "estimated_error_mm": analysis.plan.error,
+            "reason": analysis.plan.reason,
+        },
+        "refusals": part.refusals(),
+        "warnings": part.warnings(run),
+        "other_parts": run.parts.iter().map(|p| &p.folder).filter(|f| **f != part.folder).collect::<Vec<_>>(),
+        "files": files,
+        "files_skipped": skipped,
+        "timings": analysis.timings,
+    });
+    let mut text = serde_json::to_vec_pretty(&value).unwrap_or_default();
+    text.push(b'\n');
+    text
+}
+
+fn body(body: &Body) -> BodySummary<'_> {
+    let segment = body.point.segment;
+    let closing = |(largest, [x_mm, z_mm]): (Closing, [f64; 2])| ClosingSummary {
+        joints_closed: body.profile().closings().len(),
+        moved_mm: largest.moved,
+        x_mm,
+        z_mm,
+        reach_mm: largest.reach,
+    };
+    BodySummary {
+        profile: &body.profile().name,
+        source: &body.profile().source,
+        contact_x_mm: body.point.station.x,
+        contact_z_mm: body.point.station.z,
+        contact_angle_rad: body.contact_angle(),
+        contact_segment: body.profile().segments()[segment].place(segment),
+        largest_closing: body.profile().largest_closing().map(closing),
+        kinks: body.profile().continuity().into_iter().filter(|joint| joint.kink.abs() > SMOOTH).collect(),
+    }
+}
+
+fn patch(patch: &Patch) -> Value {
+    let extent = patch.extent();
+    json!({
+        "area_mm2": patch.area(),
+        "perimeter_mm": patch.components.iter().map(|c| c.perimeter).sum::<f64>(),
+        "xi_extent_mm": extent.map(|e| e.xi),
+        "eta_extent_mm": extent.map(|e| e.eta),
+        "cut_by_window": patch.cut_by_window(),
+        "components": patch.components.iter().map(component).collect::<Vec<_>>(),
+    })
+}
+
+fn component(component: &Component) -> Value {
+    json!({
+        "xi_extent_mm": component.xi,
+        "eta_extent_mm": component.eta,
+        "ends": component.ends,
+        "cut_by_window": component.cut_by_window,
+        "area_mm2": component.area,
+        "perimeter_mm": component.perimeter,
+        "least_separation_mm": component.deepest[0],
+        "least_separation_at_mm": [component.deepest[1], component.deepest[2]],
+    })
+}

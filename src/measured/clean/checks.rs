@@ -1,0 +1,323 @@
+//! What can be wrong with measured points, each with its place in the file; in profile axes, left to right.
+
+use std::ops::RangeInclusive;
+
+use serde::Serialize;
+
+use super::loops;
+use crate::error::{Error, Result};
+use crate::measured::options::Unit;
+use crate::measured::read::points::Point;
+use crate::measured::shape::{gauge_depth, has_flange_back, width};
+use crate::profile::Side;
+
+/// Points nearer than this \[mm\] are one point: a nanometre is below every instrument and every file's digits.
+const SAME_POINT: f64 = 1e-6;
+/// Cosine of the turn at a point beyond which the path goes back, 120°: sharp edges of profiles turn by less
+/// than 100°, points in the wrong order by about 180°.
+const BACKWARDS: f64 = -0.5;
+/// A spike sticks out this many times as far as its neighbourhood; ten times the median is beyond noise
+/// (normal noise: once in 10⁹ points) and below what a speck of dirt gives.
+const SPIKE_RATIO: f64 = 10.0;
+/// Least height of a spike \[mm\]; less is the roughness that smoothing removes.
+const SPIKE_HEIGHT: f64 = 0.02;
+/// Points on each side that make a spike's neighbourhood.
+const NEIGHBOURHOOD: usize = 10;
+/// A gap is this many times the median distance of neighbours, and at least [`GAP`].
+const GAP_RATIO: f64 = 10.0;
+/// Least gap \[mm\]: the length of a contact patch.
+const GAP: f64 = 5.0;
+/// Widths \[mm\] that a profile may have; others are a wrong unit (0.14: metres; 5500: thousandths of an inch).
+const WIDTHS: RangeInclusive<f64> = 5.0..=500.0;
+
+/// A thing that can be wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Check {
+    /// Two points in one place.
+    Duplicate,
+    /// A single point in the wrong place of the order.
+    OutOfOrder,
+    /// A stretch that runs back over the one before, as sections stitched together do.
+    ZigZag,
+    /// The path turns back and does not return: a point added or left at an end.
+    TurnsBack,
+    /// A single point off the curve.
+    Spike,
+    /// The curve crosses itself.
+    Loop,
+    /// A long stretch without points.
+    Gap,
+    /// The gauge face of a rail or the flange back of a wheel was not measured.
+    MissingSideFace,
+    /// The format's definition, which was followed, turned the profile against what its shape shows.
+    Orientation,
+}
+
+/// Something found.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Finding {
+    /// What.
+    pub check: Check,
+    /// Whether no curve can be drawn through the points as they are.
+    pub fatal: bool,
+    /// Where in the file: "point 12 (line 40)".
+    pub place: String,
+    /// What was found there.
+    pub found: String,
+}
+
+impl Finding {
+    fn new(check: Check, point: &Point, found: impl Into<String>) -> Self {
+        let fatal = !matches!(check, Check::Gap | Check::MissingSideFace | Check::Orientation);
+        Self { check, fatal, place: point.place(), found: found.into() }
+    }
+
+    /// A definition that the shape contradicts, at the file's first point.
+    pub(in crate::measured) fn orientation(first: &Point, found: String) -> Self {
+        Self::new(Check::Orientation, first, found)
+    }
+
+    fn expectation(&self) -> (&'static str, &'static str) {
+        match self.check {
+            Check::Duplicate => ("different points", "delete one, or allow repair = [\"drop-duplicates\"]"),
+            Check::OutOfOrder | Check::ZigZag => {
+                ("points in order along the profile", "put them in order, or allow repair = [\"sort\"]")
+            }
+            Check::Spike => ("points near the curve", "delete it, or allow repair = [\"remove-spikes\"]"),
+            Check::Loop => ("a curve that does not cross itself", "allow repair = [\"cut-loops\"]"),
+            Check::TurnsBack => ("a path that ends where the profile does", "delete the points after it"),
+            Check::Gap | Check::MissingSideFace => ("a complete profile", "measure it"),
+            Check::Orientation => ("an upright right-hand profile", "correct `mirror` or `flip_z`"),
+        }
+    }
+}
+
+/// Rejects a width outside 5–500 mm: a wrong unit.
+///
+/// # Errors
+/// With the width, and the units that would do.
+pub(in crate::measured) fn reject_width(points: &[Point], unit: f64) -> Result<()> {
+    let [low, high] = width(points);
+    if WIDTHS.contains(&(high - low)) {
+        return Ok(());
+    }
+    let fitting = |other: &Unit| WIDTHS.contains(&((high - low) / unit * other.millimetres()));
+    let names: Vec<_> = Unit::ALL.into_iter().filter(fitting).map(|u| format!("\"{}\"", u.name())).collect();
+    let advice = match names.len() {
+        0 => "give another file".to_owned(),
+        _ => format!("give the right `unit`: {} would do", names.join(" or ")),
+    };
+    let (found, expected) = (format!("a width of {} mm", high - low), "5 to 500 mm");
+    Err(Error::new("unit", found, expected, advice))
+}
+
+/// Everything that is wrong, in the order of [`Check`].
+pub fn findings(points: &[Point], side: Side, gauge_height: f64) -> Vec<Finding> {
+    let mut out = Vec::new();
+    let found = |k: usize| format!("the same place as {}", points[k - 1].place());
+    out.extend(duplicates(points).map(|k| Finding::new(Check::Duplicate, &points[k], found(k))));
+    out.extend(folds(points).iter().map(|fold| fold.finding(points)));
+    out.extend(spikes(points).iter().map(|spike| {
+        let found = format!("a point {:.3} mm off the line of its neighbours", spike.height);
+        Finding { fatal: spike.backwards, ..Finding::new(Check::Spike, &points[spike.at], found) }
+    }));
+    // A path that runs back crosses itself everywhere: its own findings come first.
+    if !out.iter().any(|finding| finding.fatal) {
+        out.extend(crossings(points));
+    }
+    out.extend(gaps(points));
+    out.extend(missing_side_face(points, side, gauge_height));
+    out
+}
+
+fn crossings(points: &[Point]) -> Vec<Finding> {
+    let found = loops::crossings(points);
+    let crossing = |[a, b]: &[usize; 2]| {
+        let found = format!("a loop: the curve crosses itself before {}", points[b + 1].place());
+        Finding::new(Check::Loop, &points[*a], found)
+    };
+    let mut out: Vec<Finding> = found.edges.iter().map(crossing).collect();
+    if let (Some(first), true) = (points.first(), found.cut_short) {
+        let text = "too tangled a path to be searched for loops to its end: there may be some";
+        out.push(Finding { fatal: false, ..Finding::new(Check::Loop, first, text) });
+    }
+    out
+}
+
+/// The first fatal finding as an error that counts the others.
+///
+/// # Errors
+/// When there is one.
+pub fn reject(findings: &[Finding]) -> Result<()> {
+    let mut fatal = findings.iter().filter(|finding| finding.fatal);
+    let Some(first) = fatal.next() else {
+        return Ok(());
+    };
+    let (expected, advice) = first.expectation();
+    let found = match fatal.filter(|other| other.check == first.check).count() {
+        0 => first.found.clone(),
+        more => format!("{} (and {more} more)", first.found),
+    };
+    Err(Error::new(first.place.clone(), found, expected, advice))
+}
+
+/// Indices of points in the place of the one before.
+pub(in crate::measured) fn duplicates(points: &[Point]) -> impl Iterator<Item = usize> {
+    points.windows(2).enumerate().filter(|(_, pair)| same(&pair[0], &pair[1])).map(|(k, _)| k + 1)
+}
+
+pub(in crate::measured) fn same(a: &Point, b: &Point) -> bool {
+    distance(a, b) <= SAME_POINT
+}
+
+pub(in crate::measured) fn distance(a: &Point, b: &Point) -> f64 {
+    (b.x - a.x).hypot(b.z - a.z)
+}
+
+/// Points `from`..=`to` between two reversals of the path; one reversal alone has `from == to`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::measured) struct Fold {
+    pub from: usize,
+    pub to: usize,
+}
+
+impl Fold {
+    /// How many points before it the path runs back over.
+    fn overrun(&self, points: &[Point]) -> usize {
+        let [a, b] = [points[self.from], points[self.to]];
+        let along = |p: &Point| (p.x - b.x) * (a.x - b.x) + (p.z - b.z) * (a.z - b.z);
+        points[..self.from].iter().rev().take_while(|p| along(p) > 0.0).count()
+    }
+
+    fn finding(&self, points: &[Point]) -> Finding {
+        let (first, last) = (&points[self.from], &points[self.to]);
+        match self.to - self.from {
+            0 => Finding::new(Check::TurnsBack, first, "a path that turns back and does not return"),
+            1 if self.overrun(points) == 0 => {
+                Finding::new(Check::OutOfOrder, first, format!("the wrong order with {}", last.place()))
+            }
+            _ => Finding::new(Check::ZigZag, first, format!("a zig-zag back to {}", last.place())),
+        }
+    }
+}
+
+/// Where the path runs back, apart from spikes.
+pub(in crate::measured) fn folds(points: &[Point]) -> Vec<Fold> {
+    let spikes: Vec<usize> = spikes(points).iter().filter(|s| s.backwards).map(|s| s.at).collect();
+    let beside = |k: usize| {
+        let next = spikes.partition_point(|&s| s + 1 < k);
+        spikes.get(next).is_some_and(|&s| s <= k + 1)
+    };
+    let mut out: Vec<Fold> = Vec::new();
+    let mut open = None;
+    for k in reversals(points).into_iter().filter(|&k| !beside(k)) {
+        match open.take() {
+            Some(from) => out.push(Fold { from, to: k }),
+            None => open = Some(k),
+        }
+    }
+    out.extend(open.map(|from| Fold { from, to: from }));
+    out
+}
+
+/// Points where the path turns by more than 120°; coinciding points are passed over.
+fn reversals(points: &[Point]) -> Vec<usize> {
+    let mut out = Vec::new();
+    let mut before: Option<[f64; 2]> = None;
+    for (k, pair) in points.windows(2).enumerate() {
+        let [u, w] = [pair[1].x - pair[0].x, pair[1].z - pair[0].z];
+        let length = u.hypot(w);
+        if length <= SAME_POINT {
+            continue;
+        }
+        let direction = [u / length, w / length];
+        if before.is_some_and(|b| b[0] * direction[0] + b[1] * direction[1] < BACKWARDS) {
+            out.push(k);
+        }
+        before = Some(direction);
+    }
+    out
+}
+
+/// A single point off the curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::measured) struct Spike {
+    pub at: usize,
+    /// Distance from the line of its neighbours \[mm\].
+    pub height: f64,
+    /// Whether the path turns by more than 120° there or beside it.
+    pub backwards: bool,
+}
+
+/// Points off the line of their neighbours, whose neighbours are off to the other side: the pattern of a single
+/// wrong point, which an edge does not have.
+pub(in crate::measured) fn spikes(points: &[Point]) -> Vec<Spike> {
+    /// A single point off by h puts a neighbour off to the other side by h·d/l, d from the neighbour to the next but one
+    /// and l from there to the point, −h/2 where h is small; half of that still tells.
+    const ANSWER: f64 = 0.5;
+    let n = points.len();
+    let off: Vec<f64> = (0..n).map(|k| if k == 0 || k + 1 >= n { 0.0 } else { offset(points, k) }).collect();
+    let backwards = reversals(points);
+    let mut out = Vec::new();
+    for k in 1..n.saturating_sub(1) {
+        let height = off[k].abs();
+        let answers = |j: usize, outer: usize| {
+            let share = distance(&points[outer], &points[j]) / distance(&points[outer], &points[k]);
+            off[j] * off[k].signum() < -ANSWER * share * height
+        };
+        // The ends have no line of neighbours to be off.
+        let before = k == 1 || answers(k - 1, k - 2);
+        let after = k + 2 == n || answers(k + 1, k + 2);
+        if height <= SPIKE_HEIGHT || !before || !after {
+            continue;
+        }
+        let near =
+            (k.saturating_sub(NEIGHBOURHOOD)..n.min(k + NEIGHBOURHOOD + 1)).filter(|j| j.abs_diff(k) > 2);
+        if height > SPIKE_RATIO * median(near.map(|j| off[j].abs()).collect()) {
+            let backwards = (k - 1..=k + 1).any(|j| backwards.binary_search(&j).is_ok());
+            out.push(Spike { at: k, height, backwards });
+        }
+    }
+    out
+}
+
+/// Signed distance of a point from the line of its neighbours.
+fn offset(points: &[Point], k: usize) -> f64 {
+    let [a, p, b] = [points[k - 1], points[k], points[k + 1]];
+    let [u, w] = [b.x - a.x, b.z - a.z];
+    let length = u.hypot(w);
+    if length > 0.0 { (u * (p.z - a.z) - w * (p.x - a.x)) / length } else { distance(&a, &p) }
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::INFINITY)
+}
+
+fn gaps(points: &[Point]) -> Vec<Finding> {
+    let steps: Vec<f64> = points.windows(2).map(|pair| distance(&pair[0], &pair[1])).collect();
+    let least = GAP.max(GAP_RATIO * median(steps.clone()));
+    let wide = steps.iter().enumerate().filter(|(_, step)| **step > least);
+    wide.map(|(k, step)| {
+        let found = format!("no point over {step:.2} mm up to {}", points[k + 1].place());
+        Finding::new(Check::Gap, &points[k], found)
+    })
+    .collect()
+}
+
+fn missing_side_face(points: &[Point], side: Side, gauge_height: f64) -> Option<Finding> {
+    let first = points.first()?;
+    let found = match side {
+        Side::Wheel if has_flange_back(points) => return None,
+        Side::Wheel => "no back of the flange".to_owned(),
+        Side::Rail => {
+            let depth = gauge_depth(points);
+            if depth >= gauge_height {
+                return None;
+            }
+            format!("a gauge face measured down to {depth:.1} of {gauge_height} mm below the top")
+        }
+    };
+    Some(Finding::new(Check::MissingSideFace, first, found))
+}

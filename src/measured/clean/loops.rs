@@ -1,0 +1,164 @@
+//! Where a chain of points crosses itself, by a tree of boxes: n log n for anything like a profile.
+
+use crate::measured::read::points::Point;
+
+/// Crossings that are enough to report.
+const MOST_CROSSINGS: usize = 100;
+/// Box comparisons after which the search ends: a profile of a million points takes a tenth of that; points that wind
+/// about one place take up to n², hours.
+const MOST_COMPARISONS: usize = 100_000_000;
+
+/// What a search for crossings found.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(in crate::measured) struct Crossings {
+    /// Pairs of edges [i, j], i < j, of which i → i + 1 crosses j → j + 1; at most [`MOST_CROSSINGS`].
+    pub edges: Vec<[usize; 2]>,
+    /// Whether the search ended at [`MOST_COMPARISONS`]: there may be others.
+    pub cut_short: bool,
+}
+
+/// Where the chain crosses itself.
+pub(in crate::measured) fn crossings(points: &[Point]) -> Crossings {
+    crossings_within(points, MOST_COMPARISONS)
+}
+
+fn crossings_within(points: &[Point], most_comparisons: usize) -> Crossings {
+    if points.len() < 4 {
+        return Crossings { edges: Vec::new(), cut_short: false };
+    }
+    let mut search = Search::new(points, most_comparisons);
+    search.inside(Node { index: 1, from: 0, to: points.len() - 1 });
+    search.found.sort_unstable();
+    Crossings { edges: search.found, cut_short: search.comparisons > most_comparisons }
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Bounds {
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+/// Edges `from`..`to` and the index of their box; the children of box k are 2k and 2k + 1.
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    index: usize,
+    from: usize,
+    to: usize,
+}
+
+impl Node {
+    fn halves(self) -> Option<[Self; 2]> {
+        let middle = self.from + (self.to - self.from) / 2;
+        let half = |index, from, to| Self { index, from, to };
+        (self.to - self.from > 1)
+            .then(|| [half(2 * self.index, self.from, middle), half(2 * self.index + 1, middle, self.to)])
+    }
+}
+
+struct Search<'a> {
+    points: &'a [Point],
+    boxes: Vec<Bounds>,
+    found: Vec<[usize; 2]>,
+    comparisons: usize,
+    most_comparisons: usize,
+}
+
+impl<'a> Search<'a> {
+    fn new(points: &'a [Point], most_comparisons: usize) -> Self {
+        let empty = Bounds { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
+        let boxes = vec![empty; 4 * points.len()];
+        let mut search = Self { points, boxes, found: Vec::new(), comparisons: 0, most_comparisons };
+        search.build(Node { index: 1, from: 0, to: points.len() - 1 });
+        search
+    }
+
+    fn build(&mut self, node: Node) -> Bounds {
+        let bounds = match node.halves() {
+            Some([a, b]) => {
+                let (a, b) = (self.build(a), self.build(b));
+                Bounds {
+                    low: [a.low[0].min(b.low[0]), a.low[1].min(b.low[1])],
+                    high: [a.high[0].max(b.high[0]), a.high[1].max(b.high[1])],
+                }
+            }
+            None => {
+                let (a, b) = (self.points[node.from], self.points[node.from + 1]);
+                Bounds { low: [a.x.min(b.x), a.z.min(b.z)], high: [a.x.max(b.x), a.z.max(b.z)] }
+            }
+        };
+        self.boxes[node.index] = bounds;
+        bounds
+    }
+
+    fn inside(&mut self, node: Node) {
+        if let Some([a, b]) = node.halves() {
+            self.inside(a);
+            self.inside(b);
+            self.between(a, b);
+        }
+    }
+
+    fn between(&mut self, a: Node, b: Node) {
+        self.comparisons += 1;
+        if self.comparisons > self.most_comparisons
+            || self.found.len() >= MOST_CROSSINGS
+            || apart(&self.boxes[a.index], &self.boxes[b.index])
+        {
+            return;
+        }
+        let larger_first = a.to - a.from >= b.to - b.from;
+        match (a.halves(), b.halves()) {
+            (Some(halves), other) if larger_first || other.is_none() => {
+                halves.into_iter().for_each(|half| self.between(half, b));
+            }
+            (_, Some(halves)) => halves.into_iter().for_each(|half| self.between(a, half)),
+            _ if a.from + 1 < b.from && self.cross(a.from, b.from) => self.found.push([a.from, b.from]),
+            _ => {}
+        }
+    }
+
+    /// Whether two edges cross in their interiors.
+    fn cross(&self, i: usize, j: usize) -> bool {
+        let [a, b, c, d] = [i, i + 1, j, j + 1].map(|k| self.points[k]);
+        turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0
+    }
+}
+
+fn turn(a: Point, b: Point, c: Point) -> f64 {
+    ((b.x - a.x) * (c.z - a.z) - (b.z - a.z) * (c.x - a.x)).signum()
+}
+
+fn apart(a: &Bounds, b: &Bounds) -> bool {
+    (0..2).any(|k| a.high[k] < b.low[k] || b.high[k] < a.low[k])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chain(xz: &[[f64; 2]]) -> Vec<Point> {
+        xz.iter().map(|&[x, z]| Point { x, z, weight: 1.0, number: 1, line: 1 }).collect()
+    }
+
+    #[test]
+    fn a_loop_is_found_once_and_a_touching_chain_is_not_one() {
+        let looped = chain(&[[0.0, 0.0], [2.0, 0.0], [3.0, 1.0], [2.0, 2.0], [1.0, -1.0], [5.0, -1.0]]);
+        assert_eq!(crossings(&looped), Crossings { edges: vec![[0, 3]], cut_short: false });
+        assert_eq!(crossings_within(&looped, 1), Crossings { edges: Vec::new(), cut_short: true });
+        assert!(crossings(&chain(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [2.0, 1.0]])).edges.is_empty());
+    }
+
+    #[test]
+    fn a_long_chain_takes_little_time() {
+        let circle: Vec<_> = (0..200_000)
+            .map(|k| {
+                let angle = 3e-5 * f64::from(k);
+                [angle.cos(), angle.sin()]
+            })
+            .collect();
+        let points = chain(&circle);
+        let mut search = Search::new(&points, MOST_COMPARISONS);
+        search.inside(Node { index: 1, from: 0, to: points.len() - 1 });
+        assert!(search.found.is_empty() && search.comparisons < 20 * points.len(), "{}", search.comparisons);
+    }
+}

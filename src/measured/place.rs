@@ -1,0 +1,297 @@
+//! From the file's axes to the profile's: x to the field side, z up, mm, right-hand, from left to right.
+
+use serde::Serialize;
+
+use super::Format;
+use super::clean::checks::{Finding, reject_width};
+use super::options::{NamedOrigin, Options, Origin};
+use super::read::points::{Element, ElementShape, Point, Points};
+use super::shape::{flange_side, gauge_depth, gauge_side, has_flange_back, head_up, running_head, top};
+use crate::error::{Error, Result};
+use crate::profile::Side;
+
+/// One decision on the way from the file to the profile.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Step {
+    /// "unit", "mirror", "flip_z", "origin" or "order".
+    pub what: &'static str,
+    /// What was done.
+    pub done: String,
+    /// Why: an option, the format, or what in the shape proves it.
+    pub because: String,
+}
+
+/// The whole transformation: x = scale\[0\]·first + shift\[0\], z = scale\[1\]·second + shift\[1\].
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Transform {
+    /// mm per unit of the file, negative where the axis is turned round.
+    pub scale: [f64; 2],
+    /// \[mm\].
+    pub shift: [f64; 2],
+    /// Whether the order of the points is turned round.
+    pub reversed: bool,
+    /// The decisions, in order.
+    pub steps: Vec<Step>,
+}
+
+/// What the format defines: whether x = −first and whether z = −second, `None` where it says nothing. The sources are in
+/// `docs/measured-files.md`.
+fn definition(format: Format, side: Side) -> [Option<bool>; 2] {
+    match (format, side) {
+        // Instruments and converters write rails with either sign.
+        (Format::MiniProf, Side::Rail) => [None, None],
+        (Format::MiniProf, Side::Wheel) => [Some(false), Some(true)],
+        (Format::Simpack, _) => [Some(false), Some(true)],
+        (Format::Gensys, _) => [Some(true), Some(true)],
+        (Format::Text | Format::Csv, _) => [None, None],
+    }
+}
+
+/// The transformation that options, format and shape together give, in this order: an option always holds; else the
+/// format's definition; the shape decides only what the format leaves open. The findings are definitions that the shape
+/// contradicts, with the option that would turn them round: they change nothing.
+///
+/// # Errors
+/// A body other than the file's own; an orientation that neither says nor the shape proves, with the choices; an origin
+/// that the points do not reach.
+pub fn resolve(points: &Points, side: Side, options: &Options) -> Result<(Transform, Vec<Finding>)> {
+    if let Some(body) = points.body.filter(|body| *body != side) {
+        let (found, expected) = (format!("a {} profile", name(body)), format!("a {} profile", name(side)));
+        return Err(Error::new("type", found, expected, "give the other file"));
+    }
+    let mut transform = Transform { scale: [1.0; 2], shift: [0.0; 2], reversed: false, steps: Vec::new() };
+    let unit = unit(points, options, &mut transform.steps)?;
+    transform.scale = [unit; 2];
+    reject_width(&transform.points(&points.at), unit)?;
+    let [mirror, flip] = definition(points.format, side);
+    let mut findings = Vec::new();
+    let flipped = Axis { what: "flip_z", option: options.flip_z, format: points.format, definition: flip };
+    let proof = head_up(&transform.points(&points.at), side).map(|(up, why)| (!up, why));
+    findings.extend(flipped.contradiction(proof.as_ref(), &points.at));
+    if flipped.decide(proof, side, &mut transform.steps)? {
+        transform.scale[1] = -unit;
+    }
+    let mirrored = Axis { what: "mirror", option: options.mirror, format: points.format, definition: mirror };
+    let upright = transform.points(&points.at);
+    let proof = match side {
+        Side::Rail => gauge_side(&upright),
+        Side::Wheel => flange_side(&upright),
+    };
+    let proof = proof.map(|(left, why)| (!left, why));
+    findings.extend(mirrored.contradiction(proof.as_ref(), &points.at));
+    if mirrored.decide(proof, side, &mut transform.steps)? {
+        transform.scale[0] = -unit;
+    }
+    transform.reverse(&points.at);
+    transform.shift_origin(&points.at, side, options)?;
+    Ok((transform, findings))
+}
+
+fn name(side: Side) -> &'static str {
+    match side {
+        Side::Rail => "rail",
+        Side::Wheel => "wheel",
+    }
+}
+
+/// mm per unit of the file.
+fn unit(points: &Points, options: &Options, steps: &mut Vec<Step>) -> Result<f64> {
+    let (unit, because) = match (options.unit, points.unit) {
+        (Some(option), Some(stated)) if option.millimetres() != stated => {
+            let expected = "the unit that the format states, mm after reading";
+            return Err(Error::new("unit", option.name(), expected, "delete the option"));
+        }
+        (Some(option), _) => (option.millimetres(), "option `unit`"),
+        (None, Some(stated)) => (stated, "the format"),
+        (None, None) => (1.0, "the default"),
+    };
+    steps.push(Step { what: "unit", done: format!("{unit} mm"), because: because.into() });
+    Ok(unit)
+}
+
+/// One of the two questions of orientation.
+struct Axis {
+    what: &'static str,
+    option: Option<bool>,
+    format: Format,
+    definition: Option<bool>,
+}
+
+impl Axis {
+    fn decide(&self, proof: Option<(bool, String)>, side: Side, steps: &mut Vec<Step>) -> Result<bool> {
+        let (turn, because) = match (self.option, self.definition, proof) {
+            (Some(option), ..) => (option, format!("option `{}`", self.what)),
+            (None, Some(defined), _) => {
+                (defined, format!("definition of the format ({})", self.format.title()))
+            }
+            (None, None, Some(proof)) => proof,
+            (None, None, None) => return Err(self.ambiguous(side)),
+        };
+        let done = match (self.what, turn) {
+            ("mirror", true) => "x = −first axis",
+            ("mirror", false) => "x = first axis",
+            (_, true) => "z = −second axis",
+            (_, false) => "z = second axis",
+        };
+        steps.push(Step { what: self.what, done: done.into(), because });
+        Ok(turn)
+    }
+
+    /// The definition that was followed against what the shape shows; an option is the user's knowledge.
+    fn contradiction(&self, proof: Option<&(bool, String)>, at: &[Point]) -> Option<Finding> {
+        let defined = self.definition.filter(|_| self.option.is_none())?;
+        let (proven, why) = proof.filter(|(proven, _)| *proven != defined)?;
+        let found = format!(
+            "{why}: by that the definition of the format ({}) turns the profile the wrong way; it is kept, `{} = {proven}` \
+             would change it",
+            self.format.title(),
+            self.what
+        );
+        Some(Finding::orientation(at.first()?, found))
+    }
+
+    fn ambiguous(&self, side: Side) -> Error {
+        let (found, yes, no) = match (self.what, side) {
+            ("mirror", Side::Rail) => (
+                "a rail whose gauge side nothing proves (not just one side face)",
+                "gauge corner at the larger values of the first axis",
+                "at the smaller",
+            ),
+            ("mirror", Side::Wheel) => (
+                "a wheel whose flange is not plainly at one end",
+                "flange at the larger values of the first axis",
+                "at the smaller",
+            ),
+            (_, Side::Rail) => (
+                "a rail that does not show where its foot is (no side faces at both ends, no plain crown)",
+                "foot at the larger values of the second axis",
+                "at the smaller",
+            ),
+            (_, Side::Wheel) => (
+                "a wheel without a flange tip that shows where down is",
+                "flange tip at the larger values of the second axis",
+                "at the smaller",
+            ),
+        };
+        let expected = format!("`{0} = true` ({yes}) or `{0} = false` ({no})", self.what);
+        Error::new(self.what, found, expected, "give the option")
+    }
+}
+
+impl Transform {
+    /// A point of the file in profile axes.
+    pub fn apply(&self, [x, z]: [f64; 2]) -> [f64; 2] {
+        [self.scale[0] * x + self.shift[0], self.scale[1] * z + self.shift[1]]
+    }
+
+    /// The points in profile axes, from left to right.
+    pub fn points(&self, at: &[Point]) -> Vec<Point> {
+        let place = |point: &Point| {
+            let [x, z] = self.apply(point.xz());
+            Point { x, z, ..*point }
+        };
+        if self.reversed { at.iter().rev().map(place).collect() } else { at.iter().map(place).collect() }
+    }
+
+    /// A design element in profile axes; an arc stays counter-clockwise.
+    pub fn element(&self, element: &Element) -> Element {
+        let shape = match element.shape {
+            ElementShape::Line { from, to } => {
+                ElementShape::Line { from: self.apply(from), to: self.apply(to) }
+            }
+            ElementShape::Arc { center, radius, mut angles } => {
+                if self.scale[0] < 0.0 {
+                    angles = [std::f64::consts::PI - angles[1], std::f64::consts::PI - angles[0]];
+                }
+                if self.scale[1] < 0.0 {
+                    angles = [-angles[1], -angles[0]];
+                }
+                let radius = radius * self.scale[0].abs();
+                ElementShape::Arc { center: self.apply(center), radius, angles }
+            }
+        };
+        Element { shape, line: element.line }
+    }
+
+    /// Travel from left to right.
+    fn reverse(&mut self, at: &[Point]) {
+        if let [first, .., last] = at
+            && self.apply(last.xz())[0] < self.apply(first.xz())[0]
+        {
+            self.reversed = true;
+            let because = "the last point lies left of the first".into();
+            self.steps.push(Step { what: "order", done: "reversed".into(), because });
+        }
+    }
+
+    fn shift_origin(&mut self, at: &[Point], side: Side, options: &Options) -> Result<()> {
+        let points = self.points(at);
+        let (origin, because) = match (options.origin, side) {
+            (None | Some(Origin::Named(NamedOrigin::AsIs)), _) => return Ok(()),
+            (Some(Origin::At(point)), _) => (point, "option `origin`".to_owned()),
+            (Some(Origin::Named(NamedOrigin::GaugePoint)), Side::Rail) => {
+                gauge_point(&points, options.gauge_height())?
+            }
+            (Some(Origin::Named(NamedOrigin::TapeLine)), Side::Wheel) => {
+                tape_line(&points, options.tape_distance())?
+            }
+            (Some(Origin::Named(_)), side) => {
+                let expected = "\"gauge-point\" for rails, \"tape-line\" for wheels";
+                let advice = "choose another origin";
+                return Err(Error::new(
+                    "origin",
+                    format!("the other one for a {}", name(side)),
+                    expected,
+                    advice,
+                ));
+            }
+        };
+        self.shift = [0.0 - origin[0], 0.0 - origin[1]];
+        let done = format!("shifted by [{}, {}] mm", self.shift[0], self.shift[1]);
+        self.steps.push(Step { what: "origin", done, because });
+        Ok(())
+    }
+}
+
+/// x of the innermost point of the running head within `depth` of its top, z of the top.
+fn gauge_point(points: &[Point], depth: f64) -> Result<([f64; 2], String)> {
+    let measured = gauge_depth(points);
+    let points = running_head(points);
+    let top = top(points);
+    let level = top - depth;
+    if measured < depth {
+        let found = format!("a gauge face measured down to {measured:.3} mm below the top");
+        let expected = format!("{depth} mm at least");
+        return Err(Error::new("origin = \"gauge-point\"", found, expected, "give the origin as [x, z]"));
+    }
+    let mut innermost = f64::INFINITY;
+    for pair in points.windows(2) {
+        let [a, b] = [pair[0], pair[1]];
+        for p in pair.iter().filter(|p| p.z >= level) {
+            innermost = innermost.min(p.x);
+        }
+        if (a.z - level) * (b.z - level) < 0.0 {
+            innermost = innermost.min(a.x + (b.x - a.x) * ((level - a.z) / (b.z - a.z)));
+        }
+    }
+    let because = format!("gauge point: innermost within {depth} mm of the top, at x = {innermost}");
+    Ok(([innermost, top], because))
+}
+
+/// The tread at `distance` from the flange back.
+fn tape_line(points: &[Point], distance: f64) -> Result<([f64; 2], String)> {
+    let back = points.iter().map(|p| p.x).fold(f64::INFINITY, f64::min);
+    let x = back + distance;
+    let heights = points.windows(2).filter(|pair| (pair[0].x - x) * (pair[1].x - x) <= 0.0).map(|pair| {
+        let [a, b] = [pair[0], pair[1]];
+        if b.x == a.x { a.z.min(b.z) } else { a.z + (b.z - a.z) * ((x - a.x) / (b.x - a.x)) }
+    });
+    // The tread is the lowest surface there: material above.
+    let z = heights.fold(f64::INFINITY, f64::min);
+    if !has_flange_back(points) || z.is_infinite() {
+        let found = format!("no flange back, or no tread {distance} mm from it");
+        let expected = "points from the flange back over the taping line";
+        return Err(Error::new("origin = \"tape-line\"", found, expected, "give the origin as [x, z]"));
+    }
+    Ok(([x, z], format!("taping line: {distance} mm from the flange back at x = {back}")))
+}

@@ -1,0 +1,104 @@
+//! The file formats, and which one a file has.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::points::Points;
+use super::{columns, miniprof, scan, simpack};
+use crate::error::{Error, Result};
+use crate::measured::options::Column;
+use crate::profile::Side;
+
+/// A format of measured profiles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Format {
+    /// MiniProf `.ban`, `.whl`, `.mpt`.
+    MiniProf,
+    /// SIMPACK `.prr`, `.prw`.
+    Simpack,
+    /// GENSYS `.rail`, `.wheel`.
+    Gensys,
+    /// Columns between white space.
+    Text,
+    /// Columns between commas or semicolons.
+    Csv,
+}
+
+impl Format {
+    /// All formats.
+    pub const ALL: [Self; 5] = [Self::MiniProf, Self::Simpack, Self::Gensys, Self::Text, Self::Csv];
+
+    /// The format that a file's extension stands for, in upper or lower case.
+    ///
+    /// # Errors
+    /// An extension that no format claims; the message lists `format = …`.
+    pub fn of_file(name: &str) -> Result<Self> {
+        let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension).to_lowercase();
+        let known = Self::ALL.into_iter().find(|format| format.extensions().contains(&extension.as_str()));
+        known.ok_or_else(|| {
+            let all: Vec<_> =
+                Self::ALL.iter().flat_map(|f| f.extensions()).map(|e| format!(".{e}")).collect();
+            let names: Vec<_> = Self::ALL.iter().map(|f| format!("\"{}\"", f.name())).collect();
+            let advice = format!("give `format = …`, one of {}", names.join(", "));
+            Error::new(scan::clipped(name), format!("extension \"{extension}\""), all.join(", "), advice)
+        })
+    }
+
+    /// The body that a file's extension stands for, in upper or lower case; `None` for those of either body.
+    pub fn body_of_file(name: &str) -> Option<Side> {
+        let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension).to_lowercase();
+        match extension.as_str() {
+            "ban" | "prr" | "rail" => Some(Side::Rail),
+            "whl" | "prw" | "wheel" => Some(Side::Wheel),
+            _ => None,
+        }
+    }
+
+    /// Extensions, in lower case.
+    pub fn extensions(self) -> &'static [&'static str] {
+        match self {
+            Self::MiniProf => &["ban", "whl", "mpt"],
+            Self::Simpack => &["prr", "prw"],
+            Self::Gensys => &["rail", "wheel"],
+            Self::Text => &["txt", "dat", "xy", "asc"],
+            Self::Csv => &["csv"],
+        }
+    }
+
+    /// The value of `format = …`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::MiniProf => "miniprof",
+            Self::Simpack => "simpack",
+            Self::Gensys => "gensys",
+            Self::Text => "text",
+            Self::Csv => "csv",
+        }
+    }
+
+    /// Its name in a sentence.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::MiniProf => "MiniProf",
+            Self::Simpack => "SIMPACK",
+            Self::Gensys => "GENSYS",
+            Self::Text => "a plain text file",
+            Self::Csv => "a CSV file",
+        }
+    }
+
+    /// What a file of this format says; `columns` for those with free columns.
+    ///
+    /// # Errors
+    /// Whatever is not of the format, with its line; at most [`super::points::MOST_POINTS`] points.
+    pub fn read(self, bytes: &[u8], columns: Option<&[Column; 2]>) -> Result<Points> {
+        let text = scan::text(bytes)?;
+        match self {
+            Self::MiniProf => miniprof::read(&text),
+            Self::Simpack => simpack::read(&text),
+            Self::Gensys => columns::read_gensys(&text),
+            Self::Text | Self::Csv => columns::read_table(&text, self, columns),
+        }
+    }
+}

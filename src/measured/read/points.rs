@@ -1,0 +1,168 @@
+//! What a file says: points, design elements, and what is odd about it.
+
+use serde::Serialize;
+
+use super::scan::{Line, last_place};
+use crate::error::{Error, Result};
+use crate::measured::Format;
+use crate::profile::Side;
+
+/// Most points of one file. A profile of 200 mm would have them every 0.2 µm; more is not a profile.
+pub const MOST_POINTS: usize = 1_000_000;
+/// Most design elements of one file.
+pub const MOST_ELEMENTS: usize = 10_000;
+
+/// One measured point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Point {
+    /// Lateral coordinate: as the file has it, and \[mm\] in profile axes once placed.
+    pub x: f64,
+    /// Height, likewise.
+    pub z: f64,
+    /// Relative weight in a smoothing fit, 1 unless the file says otherwise; typical 0.1–10.
+    pub weight: f64,
+    /// Its number in the file, from 1.
+    pub number: usize,
+    /// Its line in the file, from 1.
+    pub line: usize,
+}
+
+impl Point {
+    /// (x, z) as an array.
+    pub fn xz(&self) -> [f64; 2] {
+        [self.x, self.z]
+    }
+
+    /// "point 12 (line 40)".
+    pub fn place(&self) -> String {
+        format!("point {} (line {})", self.number, self.line)
+    }
+}
+
+/// One element of a design profile (MiniProf `MPDk=`), in the file's own axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Element {
+    /// Its shape.
+    pub shape: ElementShape,
+    /// Its line in the file, from 1.
+    pub line: usize,
+}
+
+/// A line or an arc of a design profile.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ElementShape {
+    /// A straight line.
+    Line {
+        /// One end.
+        from: [f64; 2],
+        /// The other end.
+        to: [f64; 2],
+    },
+    /// A circular arc, counter-clockwise in the file's axes from the first to the second angle.
+    Arc {
+        /// Centre.
+        center: [f64; 2],
+        /// Radius, positive.
+        radius: f64,
+        /// Angles of the two ends \[rad\] from the file's first axis to its second, ascending.
+        angles: [f64; 2],
+    },
+}
+
+/// Something odd that was read all the same.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Note {
+    /// Line in the file, from 1.
+    pub line: usize,
+    /// What is odd and what was done.
+    pub text: String,
+}
+
+/// The content of a file: in the order, the unit and the axes of the file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Points {
+    /// The file's format.
+    pub format: Format,
+    /// Which body the file says it is of.
+    pub body: Option<Side>,
+    /// Unit of the coordinates \[mm\], where the format or the file states it.
+    pub unit: Option<f64>,
+    /// The points.
+    pub at: Vec<Point>,
+    /// Index of the first point of each section; one section unless the format has several.
+    pub sections: Vec<usize>,
+    /// Design elements, in the file's numbering.
+    pub elements: Vec<Element>,
+    /// What is odd.
+    pub notes: Vec<Note>,
+}
+
+impl Points {
+    pub(in crate::measured) fn new(format: Format, unit: Option<f64>) -> Self {
+        Self {
+            format,
+            unit,
+            body: None,
+            at: Vec::new(),
+            sections: vec![0],
+            elements: Vec::new(),
+            notes: Vec::new(),
+        }
+    }
+
+    pub(in crate::measured) fn push(&mut self, line: Line, [x, z]: [f64; 2], weight: f64) -> Result<()> {
+        let number = self.at.len() + 1;
+        if number > MOST_POINTS {
+            return Err(line.error(
+                "one more point",
+                format!("{MOST_POINTS} points at most"),
+                "thin them out",
+            ));
+        }
+        self.at.push(Point { x, z, weight, number, line: line.number });
+        Ok(())
+    }
+
+    pub(in crate::measured) fn push_element(&mut self, line: Line, shape: ElementShape) -> Result<()> {
+        if self.elements.len() >= MOST_ELEMENTS {
+            let expected = format!("{MOST_ELEMENTS} elements at most");
+            return Err(line.error("one more element", expected, "give the points instead"));
+        }
+        self.elements.push(Element { shape, line: line.number });
+        Ok(())
+    }
+
+    pub(in crate::measured) fn note(&mut self, line: usize, text: impl Into<String>) {
+        self.notes.push(Note { line, text: text.into() });
+    }
+
+    /// The whole, if it has enough to be a profile.
+    pub(in crate::measured) fn finish(self, text: &str) -> Result<Self> {
+        if self.at.len() < 2 && self.elements.is_empty() {
+            let found = format!("{} points up to the end of the file", self.at.len());
+            let expected = format!("a profile as {} writes it", self.format.title());
+            return Err(Error::new(last_place(text), found, expected, "give another file or its `format`"));
+        }
+        if let Some(far) = self.at.iter().find(|point| !(point.x.is_finite() && point.z.is_finite())) {
+            let advice = "correct the numbers, the shift or the unit";
+            return Err(Error::new(far.place(), "an overflow", "finite coordinates", advice));
+        }
+        Ok(self)
+    }
+
+    /// One section alone, counted from 1.
+    ///
+    /// # Errors
+    /// A section that the file does not have.
+    pub fn section(mut self, number: usize) -> Result<Self> {
+        let bounds = number.checked_sub(1).and_then(|k| self.sections.get(k).map(|&from| (k, from)));
+        let Some((k, from)) = bounds else {
+            let expected = format!("1 to {}", self.sections.len());
+            return Err(Error::new("section", number.to_string(), expected, "choose one of the file's"));
+        };
+        let to = self.sections.get(k + 1).copied().unwrap_or(self.at.len());
+        self.at = self.at[from..to].to_vec();
+        self.sections = vec![0];
+        Ok(self)
+    }
+}

@@ -1,0 +1,285 @@
+//! What the shape of a profile proves about its orientation: foot, groove and flange.
+//!
+//! Used where neither an option nor the format's definition says how a file is turned. A shape that looks like a body
+//! both ways up proves nothing: a groove cut off on both its tops is an upside-down head.
+
+use std::ops::RangeInclusive;
+
+use super::read::points::Point;
+use crate::profile::{Side, last_groove};
+
+/// The true upper side of a wheel drops at both ends this many times as far as the wrong one: 4 leaves room
+/// for hollow wear and for edges that curl.
+const PLAIN: f64 = 4.0;
+/// Least drop \[mm\] of both ends from a rail's top, or from a flange's tip, that counts as a shape and not as
+/// wear or noise.
+const LEAST_DROP: f64 = 0.5;
+/// Heights \[mm\] of a flange tip over the tread: tram to full-wear railway flanges.
+const FLANGE_HEIGHTS: RangeInclusive<f64> = 10.0..=60.0;
+/// Depth \[mm\] below the top of rail that a side face must reach to be one; gauge faces are measured at 14.
+const SIDE_FACE: f64 = 10.0;
+/// Inclination of a side face: a fall of sin 30° of the way along it. Crowns end at less than 20°, the flattest worn
+/// gauge faces stand at 50°.
+const FACE_SINE: f64 = 0.5;
+/// Length \[mm\] along the path over which an end is a face or not: longer than the hooks and lips at its end.
+const END: f64 = 6.0;
+/// Chords into which a path is cut to see how it turns: long against noise, short against a head.
+const CHORDS: usize = 16;
+/// Least turn \[rad\] of a rail's crown from end to end that counts as a shape: 75 mm of a radius of 300 mm.
+const LEAST_TURN: f64 = 0.25;
+/// Most of the turn that may go the other way in an outline that bulges throughout: waves of wear and noise.
+const OTHER_WAY: f64 = 0.25;
+/// A flange tip lies at least this share of the profile's width away from its middle.
+const OFF_MIDDLE: f64 = 0.15;
+/// Drop \[mm\] of the flange back from the tip that shows the flange back was measured.
+const FLANGE_BACK: f64 = 5.0;
+
+/// Largest height.
+pub(super) fn top(points: &[Point]) -> f64 {
+    points.iter().map(|p| p.z).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// Index of the extreme towards `sign`·z, and the smaller of the two drops from it to the ends.
+fn extreme(points: &[Point], sign: f64) -> Option<(usize, f64)> {
+    let height = |k: usize| sign * points[k].z;
+    let best = (0..points.len()).max_by(|&a, &b| height(a).total_cmp(&height(b)))?;
+    let drop = |end: usize| height(best) - height(end);
+    Some((best, drop(0).min(drop(points.len() - 1))))
+}
+
+/// Whether z points up as given, with the reason; `None` where the shape does not prove it.
+pub(super) fn head_up(points: &[Point], side: Side) -> Option<(bool, String)> {
+    match side {
+        Side::Rail => foot_down(points),
+        Side::Wheel => flange_down(points),
+    }
+}
+
+/// A rail ends in two side faces that fall outwards, whatever grooves lie between; or it bulges upwards throughout.
+fn foot_down(points: &[Point]) -> Option<(bool, String)> {
+    let falls = [end_fall(points, false)?, end_fall(points, true)?];
+    let face = |fall: f64| fall.abs() >= FACE_SINE;
+    if falls.iter().all(|&fall| face(fall)) {
+        // Faces that disagree are those of a step, which lies either way.
+        let up = falls[0] > 0.0;
+        return (up == (falls[1] > 0.0)).then(|| {
+            let way = if up { "falls" } else { "rises" };
+            (up, format!("side faces: the profile {way} outwards at both ends"))
+        });
+    }
+    let turn = bulge(points)?;
+    let up = turn < 0.0;
+    let (_, drop) = extreme(points, if up { 1.0 } else { -1.0 })?;
+    (drop >= LEAST_DROP).then(|| {
+        let way = if up { "upwards" } else { "downwards" };
+        (up, format!("crown: the profile bulges {way} throughout, by {:.2} rad", turn.abs()))
+    })
+}
+
+/// Fall of an end \[mm/mm\] towards it, over [`END`] along the path; negative where it rises.
+fn end_fall(points: &[Point], last: bool) -> Option<f64> {
+    let n = points.len();
+    let at = |k: usize| if last { points[n - 1 - k] } else { points[k] };
+    let mut walked = 0.0;
+    for k in 1..n {
+        walked += distance(at(k - 1), at(k));
+        if walked >= END || k + 1 == n {
+            return (walked > 0.0).then(|| (at(k).z - at(0).z) / walked);
+        }
+    }
+    None
+}
+
+fn distance(a: Point, b: Point) -> f64 {
+    (b.x - a.x).hypot(b.z - a.z)
+}
+
+/// Turn \[rad\] from the first chord to the last, negative clockwise on the way to larger x; `None` where the path turns
+/// both ways, or hardly.
+fn bulge(points: &[Point]) -> Option<f64> {
+    let chain = evenly(points)?;
+    let angles: Vec<f64> =
+        chain.windows(2).map(|pair| (pair[1][1] - pair[0][1]).atan2(pair[1][0] - pair[0][0])).collect();
+    let turns = angles.windows(2).map(|pair| {
+        let turn = pair[1] - pair[0];
+        turn - std::f64::consts::TAU * (turn / std::f64::consts::TAU).round()
+    });
+    let (mut left, mut right) = (0.0, 0.0);
+    for turn in turns {
+        if turn > 0.0 { left += turn } else { right -= turn }
+    }
+    let (more, less) = if left > right { (left, right) } else { (right, left) };
+    let turn = left - right;
+    (turn.abs() >= LEAST_TURN && less <= OTHER_WAY * more).then_some(turn)
+}
+
+/// [`CHORDS`] + 1 points at equal distances along the path, towards larger x.
+fn evenly(points: &[Point]) -> Option<Vec<[f64; 2]>> {
+    let whole: f64 = points.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
+    let (first, last) = (points.first()?, points.last()?);
+    let mut out = vec![first.xz()];
+    let mut walked = 0.0;
+    for pair in points.windows(2) {
+        let step = distance(pair[0], pair[1]);
+        while out.len() < CHORDS {
+            let along = whole * out.len() as f64 / CHORDS as f64 - walked;
+            if along > step {
+                break;
+            }
+            let share = if step > 0.0 { along / step } else { 0.0 };
+            let between = |a: f64, b: f64| a + share * (b - a);
+            out.push([between(pair[0].x, pair[1].x), between(pair[0].z, pair[1].z)]);
+        }
+        walked += step;
+    }
+    out.push(last.xz());
+    if last.x < first.x {
+        out.reverse();
+    }
+    (out.len() == CHORDS + 1).then_some(out)
+}
+
+/// A wheel's flange tip hangs below both its back and its tread; the wrong extreme is an end of the profile, or nearly
+/// so.
+fn flange_down(points: &[Point]) -> Option<(bool, String)> {
+    let up = extreme(points, 1.0)?;
+    let down = extreme(points, -1.0)?;
+    let (tip_up, tip, other) = if up.1 >= down.1 { (true, up, down) } else { (false, down, up) };
+    if tip.1 < LEAST_DROP || tip.1 < PLAIN * other.1 {
+        return None;
+    }
+    let (place, height) = (points[tip.0].place(), flange_height(points, tip.0));
+    let flange = FLANGE_HEIGHTS.contains(&height);
+    flange.then(|| (!tip_up, format!("flange tip, {height:.1} mm from the tread, at {place}")))
+}
+
+/// Height of the tip over the median height of the profile, which lies on the tread.
+fn flange_height(points: &[Point], tip: usize) -> f64 {
+    let mut heights: Vec<(f64, f64)> = points
+        .windows(2)
+        .map(|pair| (0.5 * (pair[0].z + pair[1].z), (pair[1].x - pair[0].x).abs()))
+        .collect();
+    heights.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let half = 0.5 * heights.iter().map(|(_, run)| run).sum::<f64>();
+    let mut sum = 0.0;
+    let median = heights.iter().find(|(_, run)| {
+        sum += run;
+        sum >= half
+    });
+    median.map_or(0.0, |(height, _)| (points[tip].z - height).abs())
+}
+
+/// Whether the flange of an upright wheel is at smaller x, with the reason.
+pub(super) fn flange_side(points: &[Point]) -> Option<(bool, String)> {
+    let (tip, drop) = extreme(points, -1.0)?;
+    let [low, high] = width(points);
+    let off = (points[tip].x - 0.5 * (low + high)) / (high - low);
+    let height = flange_height(points, tip);
+    let flange = FLANGE_HEIGHTS.contains(&height);
+    (drop >= LEAST_DROP && flange && off.abs() >= OFF_MIDDLE)
+        .then(|| (off < 0.0, format!("flange tip at {}", points[tip].place())))
+}
+
+/// Whether the gauge corner of an upright rail is at smaller x: the only side face that was measured is the
+/// gauge face, or that of a groove.
+pub(super) fn gauge_side(points: &[Point]) -> Option<(bool, String)> {
+    let [left, right] = side_depths(points)?;
+    let (is_left, name, depth) = match (left >= SIDE_FACE, right >= SIDE_FACE) {
+        (true, false) => (true, "smaller", left),
+        (false, true) => (false, "larger", right),
+        _ => return None,
+    };
+    has_face(points, is_left)
+        .then(|| (is_left, format!("only the side face at {name} values is there, {depth:.1} mm deep")))
+}
+
+/// Whether an upright rail falls by [`SIDE_FACE`] over a face as steep as one, to this side of its top.
+fn has_face(points: &[Point], left: bool) -> bool {
+    let Some((best, _)) = extreme(points, 1.0) else { return false };
+    let top = points[best];
+    let beside: Vec<Point> = points.iter().filter(|p| (p.x < top.x) == left).copied().collect();
+    let reach = SIDE_FACE / FACE_SINE;
+    let mut from = 0;
+    (0..beside.len()).any(|k| {
+        while (beside[k].x - beside[from].x).hypot(beside[k].z - beside[from].z) > reach {
+            from += 1;
+        }
+        (beside[k].z - beside[from].z).abs() >= SIDE_FACE
+    })
+}
+
+/// How far below its top an upright rail was measured to the left and to the right.
+fn side_depths(points: &[Point]) -> Option<[f64; 2]> {
+    let (best, _) = extreme(points, 1.0)?;
+    let top = points[best];
+    let depth =
+        |left: bool| points.iter().filter(|p| (p.x < top.x) == left).map(|p| top.z - p.z).fold(0.0, f64::max);
+    Some([depth(true), depth(false)])
+}
+
+/// The part of an upright right-hand rail, from left to right, that wheels run on: right of its last groove.
+pub(super) fn running_head(points: &[Point]) -> &[Point] {
+    let heights: Vec<f64> = points.iter().map(|p| p.z).collect();
+    &points[last_groove(&heights).unwrap_or(0)..]
+}
+
+/// How far below the top of the running head its gauge side was measured.
+pub(super) fn gauge_depth(points: &[Point]) -> f64 {
+    side_depths(running_head(points)).map_or(0.0, |depths| depths[0])
+}
+
+/// Whether an upright right-hand wheel was measured on the back of its flange.
+pub(super) fn has_flange_back(points: &[Point]) -> bool {
+    match (extreme(points, -1.0), points.first()) {
+        (Some((tip, _)), Some(first)) => first.z - points[tip].z >= FLANGE_BACK,
+        _ => false,
+    }
+}
+
+/// Smallest and largest x.
+pub(super) fn width(points: &[Point]) -> [f64; 2] {
+    let x = points.iter().map(|p| p.x);
+    [x.clone().fold(f64::INFINITY, f64::min), x.fold(f64::NEG_INFINITY, f64::max)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chain(xz: &[[f64; 2]]) -> Vec<Point> {
+        xz.iter().map(|&[x, z]| Point { x, z, weight: 1.0, number: 1, line: 1 }).collect()
+    }
+
+    fn up(xz: &[[f64; 2]]) -> Option<bool> {
+        let turned: Vec<[f64; 2]> = xz.iter().map(|[x, z]| [-x, -z]).collect();
+        let [way, other] = [xz, &turned].map(|points| foot_down(&chain(points)).map(|(up, _)| up));
+        // Turned by half a circle the proof is the opposite one, or none in both.
+        assert_eq!(way, other.map(|up| !up), "{xz:?}");
+        way
+    }
+
+    /// Heights every 0.5 mm.
+    fn graph(from: f64, to: f64, z: impl Fn(f64) -> f64) -> Vec<[f64; 2]> {
+        let n = ((to - from) / 0.5) as usize;
+        (0..=n).map(|k| from + 0.5 * k as f64).map(|x| [x, z(x)]).collect()
+    }
+
+    #[test]
+    fn heads_are_told_from_grooves_and_what_is_both_is_neither() {
+        let head = [[-36.0, -30.0], [-36.0, -3.0], [0.0, 0.0], [36.0, -3.0], [36.0, -30.0]];
+        assert_eq!(up(&head), Some(true));
+        let keeper = [[-92.0, -30.0], [-92.0, -2.0], [-76.0, -2.0], [-70.0, -47.0], [-40.0, -47.0]];
+        let grooved: Vec<[f64; 2]> = keeper.into_iter().chain(head[1..].iter().copied()).collect();
+        assert_eq!(up(&grooved), Some(true));
+        // Flat tops beside a round groove: the same as a round head on a plate.
+        let groove = graph(-20.0, 20.0, |x| if x.abs() < 10.0 { -(100.0 - x * x).sqrt() } else { 0.0 });
+        assert_eq!(up(&groove), None);
+        // A crown measured from its top to the wall of the keeper: an upside-down head by its looks.
+        let open = [[-74.0, -20.0], [-70.0, -47.0], [-40.0, -47.0], [-36.0, -2.0], [0.0, 0.0]];
+        assert_eq!(up(&open), None);
+        assert_eq!(up(&graph(-20.0, 20.0, |x| -x * x / 160.0)), Some(true));
+        assert_eq!(up(&graph(-20.0, 20.0, |x| 0.2 * x)), None);
+        assert_eq!(up(&graph(-20.0, 20.0, |x| -x * x / 2000.0)), None);
+        assert_eq!(up(&[[-20.0, -40.0], [-18.0, 0.0], [18.0, 0.0], [20.0, 40.0]]), None);
+    }
+}

@@ -1,0 +1,603 @@
+//! The whole way from bytes to a profile, on the samples in tests/profiles.
+
+use super::*;
+use crate::error::Error;
+use crate::profile::{Section, standards};
+
+const FILES: [(&str, &[u8], Side); 9] = [
+    ("new-style.ban", include_bytes!("../../tests/profiles/new-style.ban"), Side::Rail),
+    ("old-style.whl", include_bytes!("../../tests/profiles/old-style.whl"), Side::Wheel),
+    ("sections.mpt", include_bytes!("../../tests/profiles/sections.mpt"), Side::Rail),
+    ("design.ban", include_bytes!("../../tests/profiles/design.ban"), Side::Rail),
+    ("wheel.prw", include_bytes!("../../tests/profiles/wheel.prw"), Side::Wheel),
+    ("wheel.wheel", include_bytes!("../../tests/profiles/wheel.wheel"), Side::Wheel),
+    ("rail.csv", include_bytes!("../../tests/profiles/rail.csv"), Side::Rail),
+    ("rail.txt", include_bytes!("../../tests/profiles/rail.txt"), Side::Rail),
+    ("rail.prr", RAIL_PRR, Side::Rail),
+];
+const RAIL_PRR: &[u8] =
+    b"header.begin\ntype = 0\nheader.end\nspline.begin\nunits.len = 'mm'\nunits.len.f = 1000\n\
+point.begin\n-36 35\n-36 14 1.0\n-26 3\n-10 0.2\n0 0\n10 0.2\n26 3\n36 14\n36 35\npoint.end\nspline.end\n";
+
+fn bytes(name: &str) -> (&'static [u8], Side) {
+    FILES.iter().find(|file| file.0 == name).map_or((&[], Side::Rail), |file| (file.1, file.2))
+}
+
+fn measured(name: &str, options: &str) -> Result<Measured> {
+    let (bytes, side) = bytes(name);
+    let options = toml::from_str(options).map_err(|e| Error::new("options", e.to_string(), "", ""))?;
+    profile(name, bytes, side, &options)
+}
+
+/// Largest difference in height of two profiles over a range of x.
+fn difference(a: &Profile, b: &Profile, side: Side, [from, to]: [f64; 2]) -> f64 {
+    let [a, b] = [a, b].map(|p| Section::own_axes(p, side));
+    let at = |k: i32| from + (to - from) * f64::from(k) / 500.0;
+    (0..=500)
+        .map(|k| (a.height(at(k)) - b.height(at(k))).abs())
+        .fold(0.0, |m: f64, d| if d > m || d.is_nan() { d } else { m })
+}
+
+fn s1002(step: f64) -> Result<(Profile, Vec<[f64; 2]>)> {
+    let profile = standards::wheel("S1002")?;
+    let points = write::sample(&profile, step)?;
+    Ok((profile, points))
+}
+
+#[test]
+fn every_wheel_file_becomes_the_same_right_hand_wheel() -> Result<()> {
+    let wheel = standards::wheel("S1002")?;
+    for (name, options, flip, mirror) in [
+        ("wheel.prw", "curve = 'interpolation'", -1e0, 1.0),
+        ("wheel.wheel", "curve = 'interpolation'", -1.0, -1.0),
+        ("old-style.whl", "curve = 'interpolation'\norigin = 'tape-line'", -1.0, 1.0),
+    ] {
+        let found = measured(name, options)?;
+        assert_eq!(found.record.transform.scale, [mirror, flip], "{name}");
+        assert!(found.record.warnings.is_empty(), "{name}: {:?}", found.record.warnings);
+        // Points every 3 mm and curvature jumps of 1/13 mm: h²Δκ/16.
+        let worst = difference(&found.profile, &wheel, Side::Wheel, [-69.0, 59.0]);
+        assert!(worst < 0.05, "{name}: {worst}");
+    }
+    Ok(())
+}
+
+#[test]
+fn every_rail_file_becomes_the_same_right_hand_rail() -> Result<()> {
+    let rail = standards::rail("60E1")?;
+    for (name, options) in [
+        ("new-style.ban", "mirror = true"),
+        ("sections.mpt", "mirror = false\nrepair = ['sort']"),
+        ("design.ban", "mirror = true"),
+        ("rail.txt", "mirror = false\nunit = 'in'\ncolumns = [1, 2]"),
+        ("rail.csv", "unit = 'm'\ncolumns = ['y', 'z']"),
+        ("new-style.ban", "mirror = false\ncurve = 'interpolation'"),
+    ] {
+        let found = measured(name, options)?;
+        let worst = difference(&found.profile, &rail, Side::Rail, [-35.0, 25.0]);
+        assert!(worst < 0.1, "{name}: {worst}");
+    }
+    let exact = measured("design.ban", "mirror = false")?;
+    assert_eq!(exact.record.curve.kind, CurveKind::Elements);
+    let worst = difference(&exact.profile, &rail, Side::Rail, [-36.0, 36.0]);
+    assert!(worst < 1e-7, "{worst}");
+    Ok(())
+}
+
+#[test]
+fn what_the_file_does_not_prove_is_an_error_with_the_choices() {
+    let error = measured("new-style.ban", "").err().map(|e| e.to_string()).unwrap_or_default();
+    assert!(error.contains("mirror = true") && error.contains("mirror = false"), "{error}");
+    // SIMPACK's definition decides what the symmetric head does not; only one side face decides for rail.csv.
+    assert!(measured("rail.prr", "").is_ok_and(|m| m.record.transform.steps.len() == 3));
+    let one_sided = measured("rail.csv", "unit = 'm'\ncolumns = [2, 3]");
+    assert!(one_sided.is_ok_and(|m| m.record.transform.scale == [-1e3, 1e3]));
+    let (wheel, _) = bytes("wheel.prw");
+    assert!(profile("wheel.prw", wheel, Side::Rail, &Options::default()).is_err());
+    for (name, options, part) in [
+        ("rail.csv", "columns = [2, 3]", "\"m\" or"),
+        ("rail.csv", "unit = 'm'", "columns"),
+        ("wheel.prw", "unit = 'm'", "unit"),
+        ("wheel.prw", "origin = 'gauge-point'", "origin"),
+        ("sections.mpt", "mirror = true", "back"),
+        ("sections.mpt", "section = 3", "section"),
+        ("wheel.prw", "curve = 'elements'", "elements"),
+    ] {
+        let error = measured(name, options).err().map(|e| e.to_string()).unwrap_or_default();
+        assert!(error.starts_with(name) && error.contains(part), "{name} {options}: {error}");
+    }
+}
+
+/// A rail that lies on its head in a file of each format, with both side faces.
+fn upside_down(format: Format) -> String {
+    let head = [[-36.0, -30.0], [-36.0, -3.0], [0.0, 0.0], [34.0, -3.0], [34.0, -30.0]];
+    write::points(&head.map(|[x, z]| [x, -z]), format, Side::Rail, "on its head")
+}
+
+#[test]
+fn an_option_holds_then_the_definition_and_the_shape_only_where_neither_says() -> Result<()> {
+    let turned = |format: Format, name: &str, flip_z: Option<bool>| {
+        let mirror = matches!(format, Format::MiniProf | Format::Text).then_some(false);
+        let curve = Some(CurveKind::Interpolation);
+        let options = Options { mirror, flip_z, curve, ..Options::default() };
+        profile(name, upside_down(format).as_bytes(), Side::Rail, &options)
+    };
+    // SIMPACK and GENSYS define z: the profile stays on its head, and the finding names the option.
+    for (format, name, sign) in [(Format::Simpack, "a.prr", -1.0), (Format::Gensys, "a.rail", -1.0)] {
+        let found = turned(format, name, None)?;
+        assert_eq!(found.record.transform.scale[1], sign, "{name}");
+        let told = found.record.warnings.iter().filter(|f| f.check == Check::Orientation).collect::<Vec<_>>();
+        assert!(told.len() == 1 && told[0].found.contains("`flip_z = false` would"), "{told:?}");
+        // The user's own word is never argued with, whichever it is.
+        for flip in [false, true] {
+            let given = turned(format, name, Some(flip))?.record;
+            assert!(!given.warnings.iter().any(|f| f.check == Check::Orientation), "{:?}", given.warnings);
+            assert_eq!(given.transform.scale[1], if flip { -1.0 } else { 1.0 });
+        }
+    }
+    // MiniProf and text define no sign for rails: the side faces decide.
+    for (format, name) in [(Format::MiniProf, "a.ban"), (Format::Text, "a.txt")] {
+        assert_eq!(turned(format, name, None)?.record.transform.scale[1], -1.0, "{name}");
+    }
+    Ok(())
+}
+
+#[test]
+fn an_inclined_plane_is_not_mirrored_nor_a_groove_turned() -> Result<()> {
+    let plane: Vec<[f64; 2]> = (-50..=50).map(|k| [f64::from(k), 0.2 * f64::from(k)]).collect();
+    let groove: Vec<[f64; 2]> = (-40..=40)
+        .map(|k| 0.5 * f64::from(k))
+        .map(|x| [x, if x.abs() < 10.0 { -(100.0 - x * x).sqrt() } else { 0.0 }])
+        .collect();
+    for points in [plane, groove] {
+        let text = write::points(&points, Format::Simpack, Side::Rail, "");
+        let found = profile("a.prr", text.as_bytes(), Side::Rail, &Options::default())?;
+        let back: Vec<[f64; 2]> = found.points.iter().map(|p| p.xz()).collect();
+        assert_eq!(back, points);
+        assert!(!found.record.warnings.iter().any(|f| f.check == Check::Orientation));
+        // A text file defines nothing, and neither does its shape.
+        let text = write::points(&points, Format::Text, Side::Rail, "");
+        let error = profile("a.txt", text.as_bytes(), Side::Rail, &Options::default()).err();
+        let error = error.map(|e| e.to_string()).unwrap_or_default();
+        assert!(error.contains("flip_z = true") && error.contains("flip_z = false"), "{error}");
+    }
+    Ok(())
+}
+
+#[test]
+fn simpack_files_have_the_material_to_the_right_of_their_path_and_points_apart() -> Result<()> {
+    for (side, profile) in [(Side::Wheel, standards::wheel("S1002")?), (Side::Rail, standards::rail("60E1")?)]
+    {
+        for step in [0.05, 0.2, 1.7] {
+            let points = write::spaced(&write::sample(&profile, step)?);
+            let text = write::points(&points, Format::Simpack, side, "");
+            assert!(text.contains("inversion      =  0"));
+            let read = Format::Simpack.read(text.as_bytes(), None)?.at;
+            // Where the surface faces the other body the path of a wheel goes to smaller y, that of a rail to larger.
+            let lowest = match side {
+                Side::Wheel => (1..read.len() - 1).max_by(|&a, &b| read[a].z.total_cmp(&read[b].z)),
+                Side::Rail => (1..read.len() - 1).min_by(|&a, &b| read[a].z.total_cmp(&read[b].z)),
+            };
+            let Some(k) = lowest else { unreachable!("points") };
+            assert_eq!(read[k + 1].x < read[k - 1].x, side == Side::Wheel);
+            let near = |pair: &[Point]| clean::checks::distance(&pair[0], &pair[1]) < write::LEAST_DISTANCE;
+            assert!(!read.windows(2).any(near), "{side:?} {step}");
+            let options = Options { curve: Some(CurveKind::Interpolation), ..Options::default() };
+            let name = if side == Side::Wheel { "a.prw" } else { "a.prr" };
+            let back = super::profile(name, text.as_bytes(), side, &options)?;
+            let back: Vec<[f64; 2]> = back.points.iter().map(|p| p.xz()).collect();
+            assert_eq!(back, points, "{side:?} {step}");
+        }
+    }
+    let close = [[0.0, 0.0], [0.005, 0.0], [1.0, 0.0], [1.995, 0.0], [2.0, 0.0]];
+    assert_eq!(write::spaced(&close), [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]);
+    Ok(())
+}
+
+#[test]
+fn the_gauge_point_of_a_grooved_rail_is_on_its_head() -> Result<()> {
+    let rail = "-92 -30\n-92 -1\n-76 -1\n-70 -47\n-40 -47\n-36 -3\n-30 -0.5\n0 0\n34 -1\n34 -30\n";
+    let options = "mirror = false\norigin = 'gauge-point'\ncurve = 'interpolation'";
+    let options = toml::from_str(options).map_err(|e| Error::new("options", e.to_string(), "", ""))?;
+    let found = profile("rail.txt", rail.as_bytes(), Side::Rail, &options)?;
+    // 11 mm of 44 mm down the gauge face, which runs 4 mm out.
+    assert_eq!(found.record.transform.shift, [37.0, 0.0]);
+    Ok(())
+}
+
+#[test]
+fn origins_go_where_they_are_asked() -> Result<()> {
+    let gauge = measured("new-style.ban", "mirror = false\norigin = 'gauge-point'\ncurve = 'interpolation'")?;
+    let section = Section::own_axes(&gauge.profile, Side::Rail);
+    let inner = gauge.points.iter().filter(|p| p.z >= -14.0).map(|p| p.x).fold(f64::INFINITY, f64::min);
+    assert!(section.height(36.0).abs() < 0.02 && (0.0..0.35).contains(&inner), "{inner}");
+    let given = measured("new-style.ban", "mirror = false\norigin = [1.0, 2.0]")?;
+    assert_eq!(given.record.transform.shift, [-1.0, -2.0]);
+    Ok(())
+}
+
+/// Points of a sine wave on a flat, 60 mm wide.
+fn flat(wave: impl Fn(f64) -> f64) -> Vec<Point> {
+    (0..300)
+        .map(|k| {
+            let x = -30.0 + 0.2 * f64::from(k);
+            Point {
+                x,
+                z: wave(x) - 0.005 * x * x,
+                weight: 1.0,
+                number: k as usize + 1,
+                line: k as usize + 10,
+            }
+        })
+        .collect()
+}
+
+fn checked(points: &[Point]) -> Vec<(Check, String)> {
+    clean::checks::findings(points, Side::Rail, 14.0)
+        .into_iter()
+        .filter(|f| f.check != Check::MissingSideFace)
+        .map(|f| (f.check, f.place))
+        .collect()
+}
+
+#[test]
+fn each_defect_is_named_at_its_place_and_mended_by_its_repair() {
+    let clean = flat(|_| 0.0);
+    assert_eq!(checked(&clean), []);
+    let place = |k: usize| clean[k].place();
+    let mut twice = clean.clone();
+    twice.insert(100, twice[99]);
+    let mut swapped = clean.clone();
+    swapped.swap(150, 151);
+    let mut spiked = clean.clone();
+    spiked[200].z += 0.15;
+    let mut folded = clean.clone();
+    folded.splice(80..80, clean[70..80].iter().map(|p| Point { x: p.x + 0.05, z: p.z + 0.01, ..*p }));
+    let mut looped = clean.clone();
+    for (k, p) in looped[120..140].iter_mut().enumerate() {
+        let angle = std::f64::consts::TAU * k as f64 / 20.0;
+        (p.x, p.z) =
+            (clean[120].x + 0.6 * angle.sin() + 0.01 * k as f64, clean[120].z + 0.6 * (1.0 - angle.cos()));
+    }
+    for (points, expected, repair) in [
+        (twice, (Check::Duplicate, place(99)), Repair::DropDuplicates),
+        (swapped, (Check::OutOfOrder, place(151)), Repair::Sort),
+        (spiked, (Check::Spike, place(200)), Repair::RemoveSpikes),
+        (folded, (Check::ZigZag, place(79)), Repair::Sort),
+        (looped, (Check::Loop, place(121)), Repair::CutLoops),
+    ] {
+        let found = checked(&points);
+        assert!(found.contains(&expected), "{expected:?} not in {found:?}");
+        let mut mended = points.clone();
+        assert!(clean::repairs::repair(&mut mended, &[]).is_empty() && mended == points);
+        let done = clean::repairs::repair(&mut mended, &[repair]);
+        assert_eq!(done.len(), 1, "{expected:?}");
+        assert!(done[0].repair == repair && done[0].points > 0);
+        assert!(
+            !checked(&mended).iter().any(|(check, _)| *check == expected.0),
+            "{expected:?}: {:?}",
+            checked(&mended)
+        );
+    }
+    assert_eq!(checked(&[&clean[..100], &clean[160..]].concat())[0].0, Check::Gap);
+}
+
+#[test]
+fn a_tall_spike_among_dense_noisy_points_is_one_and_goes() -> Result<()> {
+    let rail = standards::rail("60E1")?;
+    let mut random = Random(7);
+    // About normal, 8 µm.
+    let mut noise = || 0.008 * ((0..12).map(|_| random.below(1_000_000) as f64 / 1e6).sum::<f64>() - 6.0);
+    let points: Vec<[f64; 2]> =
+        write::sample(&rail, 0.1)?.into_iter().map(|[x, z]| [x + noise(), z + noise()]).collect();
+    // On the corners a small spike goes as far along as across, and its neighbour is as much a spike as it is.
+    let crown: Vec<usize> = (0..points.len()).filter(|&k| points[k][0].abs() < 25.0).collect();
+    for (n, &at) in crown.iter().step_by(23).enumerate() {
+        for height in [0.2, 0.5, 1.0, -0.7] {
+            let mut spiked = points.clone();
+            spiked[at][1] += height;
+            let text = write::points(&spiked, Format::Csv, Side::Rail, "");
+            let mut options = Options { mirror: Some(false), ..Options::default() };
+            let error = profile("rail.csv", text.as_bytes(), Side::Rail, &options).err();
+            let (place, advice) = error.map(|e| (e.place, e.advice)).unwrap_or_default();
+            let number = format!("point {} ", at + 1);
+            assert!(
+                place.contains(&number) && advice.contains("remove-spikes"),
+                "{at} {height}: {place}: {advice}"
+            );
+            // The fit takes most of the time.
+            if n % 10 == 0 {
+                options.repair = vec![Repair::RemoveSpikes];
+                let repairs = profile("rail.csv", text.as_bytes(), Side::Rail, &options)?.record.repairs;
+                assert!(repairs.len() == 1 && repairs[0].points == 1, "{at} {height}: {repairs:?}");
+            }
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn options_without_effect_are_named() {
+    for (name, options, idle) in [
+        ("wheel.prw", "columns = [1, 2]", "columns"),
+        ("wheel.wheel", "columns = [1, 2]", "columns"),
+        ("old-style.whl", "columns = [1, 2]", "columns"),
+        ("wheel.prw", "section = 1", "section"),
+        ("wheel.prw", "gauge_height = 14.0", "gauge_height"),
+        ("wheel.prw", "already_inclined = true", "already_inclined"),
+        ("wheel.prw", "tape_distance = 70.0", "tape_distance"),
+        ("rail.prr", "tape_distance = 70.0", "tape_distance"),
+        ("design.ban", "mirror = true\nkink_angle = 0.5", "kink_angle"),
+        ("design.ban", "mirror = true\nrepair = ['sort']", "repair"),
+        ("design.ban", "mirror = true\ncutoff_wavelength = 5.0", "cutoff_wavelength"),
+        ("design.ban", "mirror = true\ncurve = 'elements'\nkink_angle = 0.5", "kink_angle"),
+    ] {
+        let error = measured(name, options).err().map(|e| e.to_string()).unwrap_or_default();
+        assert!(
+            error.contains(&format!("{idle}: found an option without effect")),
+            "{name} {options}: {error}"
+        );
+    }
+    for (name, options) in [
+        ("old-style.whl", "origin = 'tape-line'\ntape_distance = 70.0"),
+        ("rail.prr", "gauge_height = 12.0\nalready_inclined = true"),
+        ("design.ban", "mirror = true\ncurve = 'arcs'\nkink_angle = 0.5\nrepair = ['sort']"),
+    ] {
+        let error = measured(name, options).err();
+        assert_eq!(error, None, "{name} {options}");
+    }
+}
+
+#[test]
+fn files_name_their_body() -> Result<()> {
+    for (name, bytes, side) in FILES {
+        let free = ["sections.mpt", "rail.csv", "rail.txt"].contains(&name);
+        let expected = (!free).then_some(side);
+        assert_eq!(body(&name.to_uppercase(), bytes, &Options::default())?, expected, "{name}");
+    }
+    let header = Options { format: Some(Format::Simpack), ..Options::default() };
+    assert_eq!(body("wheel.txt", bytes("wheel.prw").0, &header)?, Some(Side::Wheel));
+    Ok(())
+}
+
+#[test]
+fn a_step_that_takes_too_many_points_is_an_error() -> Result<()> {
+    for profile in [standards::rail("60E1")?, standards::wheel("EN15302-A")?] {
+        let error = write::sample(&profile, 1e-9).err().map(|e| e.to_string()).unwrap_or_default();
+        assert!(error.starts_with("step: found 0.000000001 mm, which takes "), "{error}");
+    }
+    Ok(())
+}
+
+#[test]
+fn smoothing_halves_a_wave_of_the_cutoff_length_whatever_the_spacing() -> Result<()> {
+    for spacing in [0.05, 0.2, 0.8] {
+        let points: Vec<[f64; 2]> = (0..=(100.0 / spacing) as usize)
+            .map(|k| {
+                let x = spacing * k as f64 - 50.0;
+                [x, 0.01 * (std::f64::consts::TAU * x / 5.0).cos() - x * x / 600.0]
+            })
+            .collect();
+        let text = write::points(&points, Format::Text, Side::Rail, "wave");
+        let options = Options { mirror: Some(false), ..Options::default() };
+        let smooth = profile("wave.txt", text.as_bytes(), Side::Rail, &options)?.profile;
+        let section = Section::own_axes(&smooth, Side::Rail);
+        // Crest and trough, 2.5 mm apart, around the parabola's own drop.
+        let height = section.height(0.0) - section.height(2.5) - 2.5f64.powi(2) / 600.0;
+        assert!((height / 0.02 - 0.5).abs() < 0.015, "{spacing}: {height}");
+    }
+    Ok(())
+}
+
+#[test]
+fn interpolation_passes_through_every_point_and_joins_to_rounding() -> Result<()> {
+    let (_, points) = s1002(0.5)?;
+    let text = write::points(&points, Format::Csv, Side::Wheel, "");
+    let options = Options { curve: Some(CurveKind::Interpolation), ..Options::default() };
+    let found = profile("s1002.csv", text.as_bytes(), Side::Wheel, &options)?;
+    assert_eq!(found.profile.segments().len(), points.len() - 1);
+    for (segment, point) in found.profile.segments().iter().zip(&points) {
+        assert_eq!([segment.start().x, segment.start().z], *point);
+    }
+    for joint in found.profile.continuity() {
+        assert!(
+            joint.gap < 1e-13 && joint.kink.abs() < 1e-12 && joint.curvature_jump.abs() < 1e-10,
+            "{joint:?}"
+        );
+    }
+    Ok(())
+}
+
+#[test]
+fn smoothing_keeps_clean_points_and_a_chain_of_arcs_its_tolerance() -> Result<()> {
+    let (wheel, points) = s1002(0.25)?;
+    let text = write::points(&points, Format::Csv, Side::Wheel, "");
+    let smooth = profile("s1002.csv", text.as_bytes(), Side::Wheel, &Options::default())?;
+    assert!(smooth.record.curve.corners.is_empty(), "{:?}", smooth.record.curve);
+    // Curvature jumps of 1/13 + 1/20 mm⁻¹ on the 70° flank, (λ_c/2π)² = 0.63 mm².
+    let worst = difference(&smooth.profile, &wheel, Side::Wheel, [-60.0, 50.0]);
+    assert!(worst < 0.03, "{worst} {:?}", smooth.record.curve);
+    for tolerance in [0.001, 0.01, 0.05] {
+        let options =
+            Options { curve: Some(CurveKind::Arcs), arc_tolerance: Some(tolerance), ..Options::default() };
+        let found = profile("s1002.csv", text.as_bytes(), Side::Wheel, &options)?;
+        let residual = found.record.curve.residual.as_ref().map_or(f64::NAN, |r| r.largest);
+        assert!(residual <= tolerance, "{residual}");
+        let worst = difference(&found.profile, &wheel, Side::Wheel, [-69.0, 59.0]);
+        // Height differences are the distance over the cosine of a 70° flank.
+        assert!(worst < 4.0 * tolerance, "{tolerance}: {worst}");
+        let n = found.profile.segments().len();
+        assert!(n <= if tolerance < 0.002 { 60 } else { 30 }, "{tolerance}: {n} segments");
+        for joint in found.profile.continuity() {
+            assert!(joint.gap < 1e-12 && joint.kink.abs() < 1e-12, "{joint:?}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn noise_is_smoothed_and_the_corner_of_a_new_wheel_stays() -> Result<()> {
+    // A roof of 40°, noise of 5 µm from a linear congruential generator.
+    let mut seed = 12_345u64;
+    let mut noise = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        0.005 * ((seed >> 11) as f64 / 2f64.powi(52) - 1.0)
+    };
+    let points: Vec<[f64; 2]> = (-200..=200)
+        .map(|k| {
+            let x = 0.1 * f64::from(k);
+            [x, -x.abs() * 20f64.to_radians().tan() + noise()]
+        })
+        .collect();
+    let text = write::points(&points, Format::Text, Side::Rail, "roof");
+    let options = Options { mirror: Some(false), ..Options::default() };
+    let found = profile("roof.txt", text.as_bytes(), Side::Rail, &options)?;
+    let corners = &found.record.curve.corners;
+    assert_eq!(corners.len(), 1, "{corners:?}");
+    assert!(corners[0].point[0].abs() < 0.11 && (corners[0].angle + 40f64.to_radians()).abs() < 0.03);
+    let kinks: Vec<_> = found.profile.continuity().into_iter().filter(|j| j.kink.abs() > 0.01).collect();
+    assert!(kinks.len() == 1 && kinks[0].gap < 1e-13, "{kinks:?}");
+    Ok(())
+}
+
+#[test]
+fn every_format_gives_back_the_points_it_was_given() -> Result<()> {
+    for (side, profile) in [(Side::Wheel, standards::wheel("S1002")?), (Side::Rail, standards::rail("60E1")?)]
+    {
+        let points = write::sample(&profile, 0.7)?;
+        for format in Format::ALL {
+            let text = write::points(&points, format, side, "round 'trip' = \"1\"!\n");
+            let read = format.read(text.as_bytes(), None)?;
+            let mirror = matches!((format, side), (Format::MiniProf, Side::Rail) | (Format::Gensys, _));
+            let options = Options { mirror: Some(mirror), ..Options::default() };
+            let (transform, findings) = place::resolve(&read, side, &options)?;
+            assert!(findings.is_empty(), "{format:?}: {findings:?}");
+            let back: Vec<[f64; 2]> = transform.points(&read.at).iter().map(Point::xz).collect();
+            assert_eq!(back, points, "{format:?}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn segments_written_are_segments_read() -> Result<()> {
+    #[derive(serde::Deserialize)]
+    struct Scene {
+        segments: Vec<crate::profile::drawing::SegmentData>,
+    }
+    let (wheel, points) = s1002(0.25)?;
+    let text = write::points(&points, Format::Csv, Side::Wheel, "");
+    let options = Options { curve: Some(CurveKind::Arcs), ..Options::default() };
+    let arcs = profile("s1002.csv", text.as_bytes(), Side::Wheel, &options)?.profile;
+    let radius = |segment: &crate::profile::Segment| match &segment.shape {
+        crate::profile::Shape::Arc(arc) if arc.radius.is_finite() => arc.radius.abs(),
+        _ => 0.0,
+    };
+    let largest = arcs.segments().iter().map(radius).fold(0.0, f64::max);
+    // What was drawn comes back, and is closed by arcs that start from rounded ends. A fitted arc is written by its rounded centre.
+    for (profile, bound) in [(&wheel, 2e-15), (&arcs, f64::EPSILON * largest)] {
+        let written = write::segments(profile)?;
+        // The fit turns the vertical back of the flange by a rounding of its tangent.
+        assert!(written.cut.len() <= 1, "{:?}", written.cut);
+        let scene: Scene =
+            toml::from_str(&written.toml).map_err(|e| Error::new("toml", e.to_string(), "", ""))?;
+        let back = crate::profile::drawing::chain("back", "", None, &scene.segments)?;
+        let worst = difference(profile, &back, Side::Wheel, [-69.9, 59.9]);
+        assert!(worst <= bound, "{worst:e} of {bound:e}");
+    }
+    let spline = profile("s1002.csv", text.as_bytes(), Side::Wheel, &Options::default())?.profile;
+    assert!(write::segments(&spline).is_err_and(|e| e.place == "segment 1"));
+    Ok(())
+}
+
+/// splitmix64.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, n: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) % n.max(1) as u64) as usize
+    }
+}
+
+const SNIPPETS: [&str; 18] = [
+    "\n",
+    "\n\n",
+    " ",
+    ",",
+    ";",
+    "=",
+    "\"",
+    "!",
+    "-",
+    "1e999",
+    "nan",
+    "\u{1a}",
+    "[Profile2Points]\n",
+    "XYPoints=1\n",
+    "MPD3=A 1 2 3 4 5\n",
+    "point.end\n",
+    "inversion = 1\n",
+    "ColumnDef=Y,X\n",
+];
+
+fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
+    for _ in 0..=random.below(3) {
+        let at = random.below(bytes.len());
+        let end = (at + random.below(40)).min(bytes.len());
+        match random.below(7) {
+            0 if at < bytes.len() => bytes[at] = random.below(256) as u8,
+            1 if at < bytes.len() => bytes[at] ^= 1 << random.below(8),
+            2 => drop(bytes.drain(at..end)),
+            3 => {
+                let copy = bytes[at..end].to_vec();
+                let to = random.below(bytes.len());
+                bytes.splice(to..to, copy);
+            }
+            4 => bytes.truncate(at.max(1)),
+            5 => bytes[at..end].reverse(),
+            _ => {
+                let snippet = SNIPPETS[random.below(SNIPPETS.len())];
+                bytes.splice(at..at, snippet.bytes());
+            }
+        }
+    }
+}
+
+#[test]
+fn every_reader_survives_a_hundred_thousand_mutations() {
+    const ROUNDS: usize = 100_008;
+    let mut random = Random(2026);
+    let (mut good, mut whole) = (0, 0);
+    for round in 0..ROUNDS {
+        let (name, original, side) = FILES[round % FILES.len()];
+        let mut bytes = original.to_vec();
+        mutate(&mut bytes, &mut random);
+        let Ok(format) = Format::of_file(name) else { unreachable!("{name}") };
+        let columns = [Column::Number(1 + random.below(3)), Column::Number(1 + random.below(3))];
+        let free = matches!(format, Format::Text | Format::Csv);
+        match format.read(&bytes, free.then_some(&columns)) {
+            Ok(points) => {
+                good += 1;
+                assert!(points.at.len() <= bytes.len() && points.at.iter().all(|p| p.x.is_finite()));
+            }
+            Err(error) => {
+                let placed = error.place.starts_with("line ") || error.place.starts_with("point ");
+                assert!(placed, "round {round}: {error}");
+            }
+        }
+        // The rest of the way for one in ten.
+        if round % 10 == 0 {
+            let curve = [None, Some(CurveKind::Interpolation), Some(CurveKind::Arcs)][random.below(3)];
+            let repair = vec![Repair::DropDuplicates, Repair::Sort, Repair::RemoveSpikes, Repair::CutLoops];
+            let unit = (name == "rail.csv").then_some(Unit::Metre);
+            let columns = free.then_some(columns);
+            let options = Options { mirror: Some(false), columns, unit, curve, repair, ..Options::default() };
+            whole += usize::from(profile(name, &bytes, side, &options).is_ok());
+        }
+    }
+    assert!(good > ROUNDS / 10 && whole > ROUNDS / 100, "{good} read, {whole} fitted");
+}

@@ -1,0 +1,340 @@
+//! The connected parts of the patch {s < δ} inside a window, each with its closed boundary loops.
+
+use super::band::Band;
+use super::corners;
+use super::corners::Row;
+use super::loops;
+use super::loops::Rows;
+use super::measure::area_and_length;
+use super::outline::{End, Outline, Window};
+use super::plain;
+use super::skewed::lanes;
+use super::skewed::slicer::Edge;
+use super::slice::Slice;
+use crate::placement::Placement;
+
+/// Points of a loop along each of its two sides: the polygon is then within 1e-4 of the patch's width of the
+/// curve. Shared out among the pieces between corners by the angle at which they are on an ellipse as long …
+const POINTS_PER_SIDE: usize = 128;
+
+/// … with at least as many in every piece.
+const LEAST_POINTS: usize = 2;
+
+/// One connected part of the patch.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Component {
+    /// Extent in ξ \[mm\].
+    pub xi: [f64; 2],
+    /// What bounds it there.
+    pub ends: [End; 2],
+    /// Extent in η \[mm\].
+    pub eta: [f64; 2],
+    /// Both ends in ξ and, between them, every ξ where the boundary may have a corner \[mm\], ascending.
+    pub corners: Vec<f64>,
+    /// Whether the window cuts it anywhere.
+    pub cut_by_window: bool,
+    /// Closed loop of \[ξ, η\] around it, counter-clockwise seen from +ζ, the first point not repeated; tips exact.
+    pub boundary: Vec<[f64; 2]>,
+    /// Closed loops around holes in it, clockwise: only under a skewed wheel.
+    pub holes: Vec<Vec<[f64; 2]>>,
+    /// Area \[mm²\], to about 1e-12 relative, or to the rounding of s over δ where that is more.
+    pub area: f64,
+    /// Length of all loops \[mm\], to about 1e-10 relative; 1e-7 where the end of a tilted wheel profile rounds it.
+    pub perimeter: f64,
+    /// Smallest s on it \[mm\] and where (ξ, η).
+    pub deepest: [f64; 3],
+    /// What it is made of, by ascending ξ.
+    pub(crate) bands: Vec<Band>,
+}
+
+/// The patch {s < δ} inside a window.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Patch {
+    /// δ \[mm\].
+    pub approach: f64,
+    /// The window that was looked at.
+    pub window: Window,
+    /// Its parts, by ascending ξ.
+    pub components: Vec<Component>,
+}
+
+impl Patch {
+    /// All components inside the window. Without skew a line of constant ξ meets a component in one interval of η; with it
+    /// there may be several, and holes.
+    ///
+    /// Degenerate: empty for a δ that the pair nowhere undercuts, δ = 0 at a mere touch included, and for NaN.
+    /// With skew, what lies between two turns of s along a valley that are closer than a quarter of the way between two joints
+    /// can be missed (see the docs on numerics); with a window beside a valley, what it leaves of a component for less
+    /// than 1/64 of that way.
+    pub fn new(placement: &Placement, approach: f64, window: &Window) -> Self {
+        let mut outline = Outline::new(placement, approach, window);
+        let components =
+            regions(&mut outline).into_iter().map(|region| region.component(&mut outline)).collect();
+        Self { approach, window: *window, components }
+    }
+
+    /// What of it is inside another window, if that cuts no component; `None` if it does.
+    pub fn within(&self, window: &Window) -> Option<Self> {
+        let inside = |inner: [f64; 2], outer: [f64; 2]| outer[0] < inner[0] && inner[1] < outer[1];
+        let apart = |a: [f64; 2], b: [f64; 2]| a[1] < b[0] || b[1] < a[0];
+        let mut components = Vec::new();
+        for component in &self.components {
+            if inside(component.xi, window.xi) && inside(component.eta, window.eta) {
+                components.push(component.clone());
+            } else if !apart(component.xi, window.xi) && !apart(component.eta, window.eta) {
+                return None;
+            }
+        }
+        Some(Self { approach: self.approach, window: *window, components })
+    }
+
+    /// The intervals of η at ξ that lie in the patch, with the index of their component, in no order; where intervals end and
+    /// others begin those on the left. `outline` is that of the same placed pair.
+    pub fn slices(&self, outline: &mut Outline<'_>, xi: f64) -> Vec<(usize, Slice)> {
+        let mut slices = Vec::new();
+        for (index, component) in self.components.iter().enumerate() {
+            let bands = &component.bands;
+            let ended = bands.iter().any(|band| band.xi[1] == xi);
+            let over = |band: &&Band| (band.xi[0] < xi && xi <= band.xi[1]) || (xi == band.xi[0] && !ended);
+            slices.extend(bands.iter().filter(over).map(|band| (index, band.slice(outline, xi))));
+        }
+        slices
+    }
+
+    /// Whether any component is cut by the window.
+    pub fn cut_by_window(&self) -> bool {
+        self.components.iter().any(|component| component.cut_by_window)
+    }
+
+    /// Total area \[mm²\].
+    pub fn area(&self) -> f64 {
+        self.components.iter().map(|component| component.area).sum()
+    }
+
+    /// The box around all components, or `None` for an empty patch.
+    pub fn extent(&self) -> Option<Window> {
+        let mut components = self.components.iter();
+        let first = components.next()?;
+        let join = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+        Some(components.fold(Window { xi: first.xi, eta: first.eta }, |w, c| Window {
+            xi: join(w.xi, c.xi),
+            eta: join(w.eta, c.eta),
+        }))
+    }
+}
+
+/// The bands of one component.
+struct Region {
+    bands: Vec<Band>,
+    /// Valleys and ξ where the least s may be.
+    turns: Vec<(Option<usize>, f64)>,
+}
+
+/// The components of the patch, by ascending ξ.
+fn regions(outline: &mut Outline<'_>) -> Vec<Region> {
+    let (mut bands, turns) = if outline.slicer.skewed.is_some() {
+        let (bands, turns) = lanes::bands(outline);
+        (bands, turns.into_iter().map(|(valley, xi)| (Some(valley), xi)).collect())
+    } else {
+        let (bands, turns) = plain::bands(outline);
+        (bands, turns.into_iter().map(|xi| (None, xi)).collect::<Vec<_>>())
+    };
+    bands.sort_by(|a, b| a.xi[0].total_cmp(&b.xi[0]));
+    let meeting: Vec<[usize; 2]> = (0..bands.len())
+        .flat_map(|i| (0..bands.len()).map(move |j| [i, j]))
+        .filter(|&[i, j]| bands[i].meets(&bands[j]))
+        .collect();
+    // The first band of each band's component.
+    let mut first: Vec<usize> = (0..bands.len()).collect();
+    for [i, j] in meeting {
+        (bands[i].ends[1], bands[j].ends[0]) = (None, None);
+        let (kept, joined) = (first[i].min(first[j]), first[i].max(first[j]));
+        first.iter_mut().filter(|k| **k == joined).for_each(|k| *k = kept);
+    }
+    let mut regions: Vec<Region> = Vec::new();
+    let mut heads: Vec<usize> = Vec::new();
+    for (band, head) in bands.into_iter().zip(first) {
+        match heads.iter().position(|known| *known == head) {
+            Some(place) => regions[place].bands.push(band),
+            None => {
+                heads.push(head);
+                regions.push(Region { bands: vec![band], turns: turns.clone() });
+            }
+        }
+    }
+    regions
+}
+
+impl Region {
+    fn xi(&self) -> [f64; 2] {
+        let ends = self.bands.iter().map(|band| band.xi);
+        ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], xi| [a.min(xi[0]), b.max(xi[1])])
+    }
+
+    /// What bounds it where it begins and ends.
+    fn ends(&self) -> [End; 2] {
+        let xi = self.xi();
+        [0, 1].map(|end| {
+            let outermost = self.bands.iter().filter(|band| band.xi[end] == xi[end]);
+            // A band that goes on in another one is not outermost.
+            outermost.filter_map(|band| band.ends[end]).next().unwrap_or(End::ProfileEnd)
+        })
+    }
+
+    fn component(mut self, outline: &mut Outline<'_>) -> Component {
+        let rows = self.rows(outline);
+        let (xi, eta, ends) = (self.xi(), across(&rows), self.ends());
+        let window = outline.window.eta;
+        let at_window = |row: &[f64; 3]| row[1] == window[0] || row[2] == window[1];
+        let cut_by_window = self.bands.iter().any(|band| band.ends.contains(&Some(End::Window)))
+            || rows.iter().flatten().any(at_window);
+        let mut loops = loops::loops(&self.bands, &rows);
+        // The outer one is the largest.
+        loops.sort_by(|a, b| loops::enclosed(b).total_cmp(&loops::enclosed(a)));
+        let mut loops = loops.into_iter();
+        let boundary = loops.next().unwrap_or_default();
+        let mut sums = [0.0, loops::walls(&self.bands)];
+        for band in &self.bands {
+            let [area, length] = area_and_length(outline, band);
+            sums = [sums[0] + area, sums[1] + length];
+        }
+        let mut corners: Vec<f64> = self.bands.iter().flat_map(|band| &band.corners).copied().collect();
+        sort(&mut corners);
+        let deepest = self.deepest(outline, &rows);
+        Component {
+            xi,
+            ends,
+            eta,
+            corners,
+            cut_by_window,
+            boundary,
+            holes: loops.collect(),
+            area: sums[0],
+            perimeter: sums[1],
+            deepest,
+            bands: self.bands,
+        }
+    }
+
+    /// The slices of every band at the loops' points: every corner, between two of them ξ that crowd towards round ends, and
+    /// where each branch is farthest out in η. Finds the corners.
+    fn rows(&mut self, outline: &mut Outline<'_>) -> Vec<Rows> {
+        let [a, b] = self.xi();
+        let skewed = outline.slicer.skewed.is_some();
+        let rail = &outline.slicer.placement().rail.section;
+        let deepest = if skewed { f64::NAN } else { self.deepest(outline, &[])[0] };
+        let mut all = Vec::with_capacity(self.bands.len());
+        for band in &mut self.bands {
+            let [from, to] = band.xi;
+            let joints = rail.joints(band.xi).map(|(xi, _)| xi);
+            let mut corners: Vec<f64> =
+                [from, to].into_iter().chain(joints.filter(|xi| from < *xi && *xi < to)).collect();
+            if !skewed {
+                corners::plain(outline, band, deepest, &mut corners);
+            }
+            sort(&mut corners);
+            band.corners = corners;
+            let nodes = graded(band, b - a);
+            let mut rows: Vec<Row> = nodes.into_iter().map(|xi| row(outline, band, xi)).collect();
+            let mut more = Vec::new();
+            if skewed {
+                let eta = rows.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], row| {
+                    [low.min(row.edges[0].eta), high.max(row.edges[1].eta)]
+                });
+                corners::skewed(outline, band, eta, &mut more);
+            }
+            corners::at_window(outline, band, &rows, &mut more);
+            rows.extend(more.iter().map(|&xi| row(outline, band, xi)));
+            band.corners.append(&mut more);
+            sort(&mut band.corners);
+            rows.sort_by(|p, q| p.xi.total_cmp(&q.xi));
+            add_farthest(outline, band, &mut rows);
+            rows.dedup_by_key(|row| row.xi);
+            all.push(rows.iter().map(|row| [row.xi, row.edges[0].eta, row.edges[1].eta]).collect());
+        }
+        all
+    }
+
+    /// \[s, ξ, η\] of the smallest s: where it turns along the valleys in it, at C, and at its ends; where the window cuts the
+    /// valley off, over the loops' points.
+    fn deepest(&self, outline: &mut Outline<'_>, rows: &[Rows]) -> [f64; 3] {
+        let mut least = [f64::NAN, self.xi()[0], 0.0];
+        let mut take = |found: [f64; 3]| {
+            if found[0] < least[0] || least[0].is_nan() {
+                least = found;
+            }
+        };
+        for (k, band) in self.bands.iter().enumerate() {
+            let holds = |xi: f64| band.xi[0] <= xi && xi <= band.xi[1];
+            let mut places = Vec::new();
+            // C first: points where s² is below the smallest number are none better.
+            places.extend(holds(0.0).then_some(0.0));
+            places.extend(band.xi);
+            let cut = outline.window.eta.into_iter().any(f64::is_finite) && !band.valleys.is_empty();
+            places.extend(rows.get(k).into_iter().flatten().filter(|_| cut).map(|row| row[0]));
+            for xi in places {
+                for &valley in band.valleys_at(xi) {
+                    take(outline.lowest(Some(valley), xi));
+                }
+                if band.valleys.is_empty() {
+                    take(outline.lowest(None, xi));
+                }
+            }
+            for &(valley, xi) in self.turns.iter().filter(|(_, xi)| holds(*xi)) {
+                if valley.is_none_or(|valley| band.valleys_at(xi).contains(&valley)) {
+                    take(outline.lowest(valley, xi));
+                }
+            }
+        }
+        least
+    }
+}
+
+/// Both edges of a band at ξ.
+fn row(outline: &mut Outline<'_>, band: &Band, xi: f64) -> Row {
+    let Slice { eta } = band.slice(outline, xi);
+    Row { xi, edges: eta.map(|eta| Edge { eta, ledge: false }) }
+}
+
+/// Adds the rows at which each branch is farthest out in η, if it turns there.
+fn add_farthest(outline: &mut Outline<'_>, band: &Band, rows: &mut Vec<Row>) {
+    let symmetric = outline.slicer.skewed.is_none() && outline.window.eta[0] == -outline.window.eta[1];
+    let branches: &[usize] = if symmetric { &[1] } else { &[0, 1] };
+    let mut more = Vec::new();
+    for &branch in branches {
+        let outward = |k: &usize| if branch == 0 { -rows[*k].edges[0].eta } else { rows[*k].edges[1].eta };
+        let inner = 1..rows.len().saturating_sub(1);
+        let farthest = inner.max_by(|p, q| outward(p).total_cmp(&outward(q)));
+        let between = farthest.map(|k| [rows[k - 1].xi, rows[k + 1].xi]);
+        more.extend(between.and_then(|between| corners::turn_of_branch(outline, band, branch, between)));
+    }
+    rows.extend(more.into_iter().map(|xi| row(outline, band, xi)));
+    rows.sort_by(|p, q| p.xi.total_cmp(&q.xi));
+}
+
+/// Each number once, in ascending order.
+fn sort(numbers: &mut Vec<f64>) {
+    numbers.sort_by(f64::total_cmp);
+    numbers.dedup();
+}
+
+/// Extent of rows in η.
+fn across(rows: &[Rows]) -> [f64; 2] {
+    rows.iter()
+        .flatten()
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], row| [low.min(row[1]), high.max(row[2])])
+}
+
+/// Every corner of a band, and between two of them ξ that crowd towards round ends; `whole` is the length of its component.
+fn graded(band: &Band, whole: f64) -> Vec<f64> {
+    let (grading, share) = (band.grading(), (band.xi[1] - band.xi[0]) / whole);
+    let mut nodes = Vec::with_capacity(2 * POINTS_PER_SIDE);
+    nodes.push(band.corners[0]);
+    for (piece, [from, to]) in band.pieces().enumerate() {
+        let n = LEAST_POINTS.max((POINTS_PER_SIDE as f64 * share * (to - from)).round() as usize);
+        nodes.extend((1..n).map(|k| grading.xi(from + (to - from) * k as f64 / n as f64)));
+        nodes.push(band.corners[piece + 1]);
+    }
+    nodes.dedup();
+    nodes
+}

@@ -1,0 +1,106 @@
+//! Where the boundary of a patch may have a corner, and where it turns back in η.
+
+use super::band::Band;
+use super::outline::Outline;
+use super::skewed::slicer::Edge;
+use crate::numerics::roots::{bracketed, last_where};
+
+/// How far from a band, as a multiple of its depth × sinθ, joints of the wheel are looked at: enough for slopes up to 80°. What
+/// is farther off only costs the quadrature some panels.
+const FAR_JOINTS: f64 = 16.0;
+
+/// Intervals of a circle in which it is looked for s = δ: it is missed only where it passes it twice within one.
+const CIRCLE_INTERVALS: usize = 8;
+
+/// Doublings of the bracket of a sagitta.
+const DOUBLINGS: usize = 40;
+
+/// Both edges of a band at one ξ.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Row {
+    pub(super) xi: f64,
+    pub(super) edges: [Edge; 2],
+}
+
+/// Appends the ξ inside a band where its boundary passes over a joint or the end of the wheel's surface without skew. The two
+/// branches mirror each other.
+///
+/// In closed form but for one root a joint: over the joint at p lies ξ = p + e sinθ, at the height h(p) + e cosθ, and that is to
+/// be ζ^R(ξ) + δ.
+pub(super) fn plain(outline: &Outline<'_>, band: &Band, deepest: f64, corners: &mut Vec<f64>) {
+    let placement = outline.slicer.placement();
+    let (approach, rail) = (outline.slicer.approach(), &placement.rail.section);
+    let frame = placement.wheel.section.frame;
+    let far = FAR_JOINTS * (approach - deepest).abs() * frame.sin.abs();
+    let [a, b] = band.xi;
+    for (p, height) in placement.wheel.section.joints([a - far, b + far]) {
+        let miss = |e: f64| height + e * frame.cos - rail.height(p + e * frame.sin) - approach;
+        if frame.sin == 0.0 || miss(0.0) >= 0.0 {
+            if frame.sin == 0.0 {
+                corners.extend((a < p && p < b).then_some(p));
+            }
+            continue;
+        }
+        let mut high = (approach - deepest).abs() / frame.cos;
+        for _ in 0..DOUBLINGS {
+            if miss(high).is_nan() || miss(high) > 0.0 || high > placement.rolling_radius() {
+                break;
+            }
+            high *= 2.0;
+        }
+        let root = bracketed(miss, 0.0, high).map(|e| p + e * frame.sin);
+        corners.extend(root.filter(|&xi| a < xi && xi < b));
+    }
+}
+
+/// Appends the ξ inside a band where s = δ on the circle of a joint or end of a skewed wheel, from the η that the band spans.
+pub(super) fn skewed(outline: &Outline<'_>, band: &Band, eta: [f64; 2], corners: &mut Vec<f64>) {
+    let Some(skewed) = &outline.slicer.skewed else { return };
+    let (approach, rail) = (outline.slicer.approach(), &outline.slicer.placement().rail.section);
+    let [a, b] = band.xi;
+    skewed.valleys.circles([a, b], eta, |place, [from, to]| {
+        let depth = |t: f64| {
+            let [xi, height] = place(t);
+            height - rail.height(xi) - approach
+        };
+        let at = |k: usize| from + (to - from) * k as f64 / CIRCLE_INTERVALS as f64;
+        let mut before = depth(from);
+        for k in 1..=CIRCLE_INTERVALS {
+            let here = depth(at(k));
+            if before * here < 0.0 {
+                let root = bracketed(depth, at(k - 1), at(k)).map(|t| place(t)[0]);
+                corners.extend(root.filter(|&xi| a < xi && xi < b));
+            }
+            before = here;
+        }
+    });
+}
+
+/// Appends the ξ between two rows at which a branch runs into the window.
+pub(super) fn at_window(outline: &mut Outline<'_>, band: &Band, rows: &[Row], corners: &mut Vec<f64>) {
+    let window = outline.window.eta;
+    for pair in rows.windows(2) {
+        for branch in 0..2 {
+            let cut = |edges: [Edge; 2]| edges[branch].eta == window[branch];
+            let first = cut(pair[0].edges);
+            if first != cut(pair[1].edges) {
+                let same = |xi: f64| outline.edges(band.valley(xi), xi).map_or(!first, cut) == first;
+                corners.push(last_where(same, pair[0].xi, pair[1].xi));
+            }
+        }
+    }
+}
+
+/// The ξ between two rows at which one branch is farthest out in η, if it turns there.
+pub(super) fn turn_of_branch(
+    outline: &mut Outline<'_>,
+    band: &Band,
+    branch: usize,
+    [from, to]: [f64; 2],
+) -> Option<f64> {
+    let slope = |xi: f64| match outline.edges(band.valley(xi), xi).map(|edges| edges[branch]) {
+        Some(Edge { eta, ledge: false }) => outline.slicer.gradient(xi, eta)[0],
+        _ => f64::NAN,
+    };
+    bracketed(slope, from, to)
+}

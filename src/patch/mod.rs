@@ -1,0 +1,20 @@
+//! INTERPEN (Report Sec. 7): the curve s(ξ, η) = δ and the patch it bounds.
+
+mod band;
+mod components;
+mod corners;
+mod grading;
+mod loops;
+mod measure;
+mod outline;
+mod plain;
+pub(crate) mod skewed;
+mod slice;
+mod turning_points;
+
+pub(crate) use band::Band;
+pub use components::{Component, Patch};
+pub(crate) use grading::Grading;
+pub use outline::{End, Outline, Window};
+pub use slice::{Slice, Slicer};
+pub use turning_points::turning_points;

@@ -1,0 +1,127 @@
+//! The slices of a patch that a window leaves.
+
+use serde::Serialize;
+
+use super::skewed::slicer::Edge;
+use super::slice::Slicer;
+use crate::placement::Placement;
+
+/// The rectangle of the ξ–η plane that is looked at \[mm\].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Window {
+    /// Range of ξ.
+    pub xi: [f64; 2],
+    /// Range of η.
+    pub eta: [f64; 2],
+}
+
+impl Window {
+    /// The whole plane: nothing but the bodies' own ends bounds the patch.
+    pub const UNBOUNDED: Self =
+        Self { xi: [f64::NEG_INFINITY, f64::INFINITY], eta: [f64::NEG_INFINITY, f64::INFINITY] };
+}
+
+/// What bounds a component at one of its ends in ξ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum End {
+    /// The two branches meet where s(ξ, η) = δ in a single point.
+    Tip,
+    /// The window cuts it.
+    Window,
+    /// One of the bodies ends, or steps back from the other behind an overhang.
+    ProfileEnd,
+}
+
+/// Slices of the patch {s < δ} that end at a window.
+#[derive(Debug)]
+pub struct Outline<'a> {
+    pub(super) slicer: Slicer<'a>,
+    pub(super) window: Window,
+}
+
+impl<'a> Outline<'a> {
+    /// The outline of a placed pair's patch at approach δ \[mm\] inside a window.
+    pub fn new(placement: &'a Placement, approach: f64, window: &Window) -> Self {
+        Self { slicer: Slicer::new(placement, approach), window: *window }
+    }
+
+    /// Both ends of the slice at ξ, with skew of the one that holds a valley; `None` outside the patch or the window.
+    pub(crate) fn edges(&mut self, valley: Option<usize>, xi: f64) -> Option<[Edge; 2]> {
+        let edges = self.slicer.edges(xi, valley)?;
+        self.clipped(edges)
+    }
+
+    /// The same with dη/dξ of both branches: 0 along the window.
+    pub(super) fn edges_and_slopes(
+        &mut self,
+        valley: Option<usize>,
+        xi: f64,
+    ) -> Option<([Edge; 2], [f64; 2])> {
+        let (whole, slopes) = self.slicer.edges_and_slopes(xi, valley)?;
+        let edges = self.clipped(whole)?;
+        Some((edges, [0, 1].map(|k| if edges[k].eta == whole[k].eta { slopes[k] } else { 0.0 })))
+    }
+
+    fn clipped(&self, [mut low, mut high]: [Edge; 2]) -> Option<[Edge; 2]> {
+        let [from, to] = self.window.eta;
+        if low.eta < from {
+            low = Edge { eta: from, ledge: false };
+        }
+        if high.eta > to {
+            high = Edge { eta: to, ledge: false };
+        }
+        (low.eta <= high.eta).then_some([low, high])
+    }
+
+    /// η of the least s at ξ, over a valley if there is one, within the window: s only rises to both sides of it.
+    pub(super) fn floor(&self, valley: Option<usize>, xi: f64) -> f64 {
+        let ([from, to], lowest) = (self.window.eta, self.slicer.valley(valley, xi));
+        // NaN, where there is no surface, stays NaN.
+        if lowest < from {
+            from
+        } else if lowest > to {
+            to
+        } else {
+            lowest
+        }
+    }
+
+    /// s − δ at the place of a valley, or next to it in the window; infinite where s rises above δ on the way there.
+    pub(super) fn depth(&mut self, valley: Option<usize>, xi: f64) -> f64 {
+        let floor = self.floor(valley, xi);
+        match (&mut self.slicer.skewed, valley) {
+            (Some(skewed), Some(valley)) => {
+                let spot = skewed.valleys.spot(valley, xi);
+                if spot.eta == floor || floor.is_nan() {
+                    return skewed.depth_at(xi, &spot);
+                }
+                let reached =
+                    skewed.edges(xi, valley).is_some_and(|[low, high]| low.eta <= floor && floor <= high.eta);
+                if !reached {
+                    return f64::INFINITY;
+                }
+            }
+            _ if floor == 0.0 => return self.slicer.depth(xi),
+            _ => {}
+        }
+        self.slicer.separation(xi, floor) - self.slicer.approach()
+    }
+
+    /// \[s, ξ, η\] of the least s at ξ, over a valley if there is one.
+    pub(super) fn lowest(&mut self, valley: Option<usize>, xi: f64) -> [f64; 3] {
+        let floor = self.floor(valley, xi);
+        let eta = self.slicer.on_surface(xi, floor);
+        [self.slicer.separation(xi, eta), xi, eta]
+    }
+
+    /// s(ξ, η) \[mm\].
+    pub fn separation(&mut self, xi: f64, eta: f64) -> f64 {
+        self.slicer.separation(xi, eta)
+    }
+
+    /// s(ξ, η) at all η of one column \[mm\].
+    pub(crate) fn column(&mut self, xi: f64, eta: &[f64], out: &mut [f64]) {
+        self.slicer.column(xi, eta, out);
+    }
+}

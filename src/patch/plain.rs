@@ -1,0 +1,107 @@
+//! The bands of a patch without skew, where every line of constant ξ meets it in one interval at most.
+
+use super::band::{Band, steps};
+use super::outline::{End, Outline};
+use crate::numerics::roots::{bracketed, last_where};
+use crate::patch::turning_points;
+
+/// Intervals in which a window that leaves the midplane out is searched for where the depth along its edge turns: a part is
+/// missed only if it begins and ends within one of them.
+const WINDOW_INTERVALS: usize = 512;
+
+/// The bands, by ascending ξ, and the ξ at which the least s may be \[mm\].
+///
+/// At a joint the gap may step (an overhang): every interval between turning points is judged by its own side's values
+/// at both ends.
+pub(super) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<f64>) {
+    let placement = outline.slicer.placement();
+    let Some([first, last]) = placement.overlap() else { return (Vec::new(), Vec::new()) };
+    let [a, b] = [first.max(outline.window.xi[0]), last.min(outline.window.xi[1])];
+    if a.is_nan() || b.is_nan() || a >= b {
+        return (Vec::new(), Vec::new());
+    }
+    let turns = turns_of_depth(outline, a, b);
+    let extent = placement.rail.profile().extent().max(placement.wheel.profile().extent());
+    let mut torn: Vec<f64> = steps(&placement.rail.section, [a, b], extent).collect();
+    torn.extend(steps(&placement.wheel.section, [a, b], extent));
+    let mut bands = Vec::new();
+    let mut begun: Option<(f64, Option<End>)> = None;
+    for pair in turns.windows(2) {
+        let (p, q) = (pair[0].next_up(), pair[1]);
+        let inside = [p, q].map(|xi| outline.depth(None, xi) < 0.0);
+        let step = if pair[0] == a && a != first { End::Window } else { End::ProfileEnd };
+        begun = match begun {
+            Some(begin) if !inside[0] => {
+                bands.push(closed(outline, begin, (pair[0], Some(step))));
+                None
+            }
+            Some(begin) if torn.contains(&pair[0]) => {
+                bands.push(closed(outline, begin, (pair[0], None)));
+                Some((pair[0], None))
+            }
+            None if inside[0] => Some((pair[0], Some(step))),
+            begun => begun,
+        };
+        if inside[0] != inside[1] {
+            let (xi, end) = part_end(outline, [p, q], inside[0]);
+            begun = match begun {
+                Some(begin) => {
+                    bands.push(closed(outline, begin, (xi, Some(end))));
+                    None
+                }
+                None => Some((xi, Some(end))),
+            };
+        }
+    }
+    if let Some(begin) = begun {
+        let end = if b == last { End::ProfileEnd } else { End::Window };
+        bands.push(closed(outline, begin, (b, Some(end))));
+    }
+    bands.retain(|band| band.xi[0] < band.xi[1]);
+    (bands, turns)
+}
+
+fn closed(
+    outline: &mut Outline<'_>,
+    (from, begin): (f64, Option<End>),
+    (to, end): (f64, Option<End>),
+) -> Band {
+    // A joint belongs to the left: where the surface steps or begins there, the slice on its right is the one next to it.
+    let beside = begin.is_none() || outline.depth(None, from).is_nan();
+    let places = [(begin, if beside { from.next_up() } else { from }), (end, to)];
+    let sides = places.map(|(end, xi)| {
+        let edges = outline.edges(None, xi).filter(|_| end != Some(End::Tip));
+        edges.map_or_else(|| [outline.floor(None, xi); 2], |edges| edges.map(|edge| edge.eta))
+    });
+    Band { xi: [from, to], ends: [begin, end], sides, valleys: Vec::new(), corners: Vec::new() }
+}
+
+/// a, b and ξ between them such that the depth is monotone between neighbours: joints and stationary points.
+fn turns_of_depth(outline: &mut Outline<'_>, a: f64, b: f64) -> Vec<f64> {
+    let mut points = turning_points(outline.slicer.placement(), a, b);
+    let floor = outline.floor(None, a);
+    if floor == 0.0 {
+        return points;
+    }
+    let step = (b - a) / WINDOW_INTERVALS as f64;
+    points.extend((1..WINDOW_INTERVALS).map(|k| a + step * k as f64));
+    points.sort_by(f64::total_cmp);
+    let slicer = &mut outline.slicer;
+    let mut slope = |xi: f64| slicer.gradient(xi, floor)[0];
+    let turns: Vec<f64> =
+        points.windows(2).filter_map(|pair| bracketed(&mut slope, pair[0].next_up(), pair[1])).collect();
+    points.extend(turns);
+    points.sort_by(f64::total_cmp);
+    points.dedup();
+    points
+}
+
+/// Where the patch ends between p and q, one of which is inside.
+fn part_end(outline: &mut Outline<'_>, [p, q]: [f64; 2], first_inside: bool) -> (f64, End) {
+    if let Some(tip) = bracketed(|xi| outline.depth(None, xi), p, q) {
+        return (tip, if outline.floor(None, tip) == 0.0 { End::Tip } else { End::Window });
+    }
+    // No surface on one side: the last ξ with one.
+    let (on, off) = if first_inside { (p, q) } else { (q, p) };
+    (last_where(|xi| outline.depth(None, xi) < 0.0, on, off), End::ProfileEnd)
+}

@@ -1,0 +1,104 @@
+//! Where lines of constant ξ under a skewed wheel begin or cease to meet a patch in the same intervals.
+
+use crate::numerics::roots::{bracketed, last_where};
+use crate::patch::outline::Outline;
+
+/// Intervals of a monotone stretch in which it is searched what a valley outside the window shows of the patch inside: a part
+/// that the window leaves of it is missed if it begins and ends within one.
+const WINDOW_INTERVALS: usize = 64;
+
+/// Where the intervals of η may change \[mm\], in no order.
+#[derive(Debug, Default)]
+pub(in crate::patch) struct Events {
+    /// All of them.
+    pub(in crate::patch) xi: Vec<f64>,
+    /// Those at which a valley or ridge inside the window passes s = δ …
+    pub(in crate::patch) tips: Vec<f64>,
+    /// … and those at which it is outside.
+    pub(in crate::patch) cuts: Vec<f64>,
+    /// Valleys, and ξ at which s over them may be least.
+    pub(in crate::patch) turns: Vec<(usize, f64)>,
+}
+
+/// The events inside an interval of ξ, which is not to be empty.
+pub(in crate::patch) fn events(outline: &mut Outline<'_>, range: [f64; 2]) -> Events {
+    let mut events = Events::default();
+    let approach = outline.slicer.approach();
+    let rail = &outline.slicer.placement().rail.section;
+    let count = outline.slicer.skewed.as_ref().map_or(0, |skewed| skewed.valleys.creases.len());
+    let mut intervals = Vec::new();
+    for crease in 0..count {
+        let Some(skewed) = &mut outline.slicer.skewed else { break };
+        let is_valley = skewed.valleys.creases[crease].is_valley;
+        for xi in skewed.valleys.creases[crease].xi {
+            // Above δ nothing begins or ends there.
+            let above = skewed.depth(crease, xi) > 0.0;
+            events.xi.extend((!above && range[0] < xi && xi < range[1]).then_some(xi));
+        }
+        intervals.clear();
+        let matters = |[low, high]: [f64; 2]| low < approach && (is_valley || high > approach);
+        skewed.valleys.monotone(rail, crease, range, matters, &mut intervals);
+        for &[from, to] in &intervals {
+            passes(outline, crease, [from.next_up(), to], &mut events);
+            if is_valley {
+                events.turns.extend([(crease, from.next_up()), (crease, to)]);
+            }
+        }
+    }
+    events
+}
+
+/// Adds where s over a valley or ridge passes δ in a stretch over which it is monotone.
+fn passes(outline: &mut Outline<'_>, crease: usize, ends: [f64; 2], events: &mut Events) {
+    if ends[0] > ends[1] {
+        return;
+    }
+    let inside = ends.map(|xi| crease_depth(outline, crease, xi) < 0.0);
+    let [low, high] = outline.window.eta;
+    let seen = ends.map(|xi| {
+        let eta = outline.slicer.valley(Some(crease), xi);
+        low <= eta && eta <= high
+    });
+    if seen == [true; 2] {
+        if inside[0] == inside[1] {
+            return;
+        }
+        match bracketed(|xi| crease_depth(outline, crease, xi), ends[0], ends[1]) {
+            Some(xi) => {
+                events.tips.push(xi);
+                events.xi.push(xi);
+            }
+            None => {
+                let (on, off) = if inside[0] { (ends[0], ends[1]) } else { (ends[1], ends[0]) };
+                events.xi.push(last_where(|xi| crease_depth(outline, crease, xi) < 0.0, on, off));
+            }
+        }
+    } else if inside.contains(&true) {
+        passes_beside_window(outline, crease, ends, events);
+    }
+}
+
+/// The same where a valley or ridge leaves the window: what it shows of the patch there counts.
+fn passes_beside_window(outline: &mut Outline<'_>, crease: usize, [from, to]: [f64; 2], events: &mut Events) {
+    let at = |k: usize| {
+        if k == WINDOW_INTERVALS { to } else { from + (to - from) * k as f64 / WINDOW_INTERVALS as f64 }
+    };
+    let mut before = outline.depth(Some(crease), from) < 0.0;
+    for k in 1..=WINDOW_INTERVALS {
+        let here = outline.depth(Some(crease), at(k)) < 0.0;
+        if here != before {
+            let (on, off) = if before { (at(k - 1), at(k)) } else { (at(k), at(k - 1)) };
+            let xi = last_where(|xi| outline.depth(Some(crease), xi) < 0.0, on, off);
+            let eta = outline.slicer.valley(Some(crease), xi);
+            let seen = outline.window.eta[0] <= eta && eta <= outline.window.eta[1];
+            (if seen { &mut events.tips } else { &mut events.cuts }).push(xi);
+            events.xi.push(xi);
+        }
+        before = here;
+    }
+}
+
+/// s − δ at the place of a valley or ridge, whatever the window \[mm\].
+fn crease_depth(outline: &mut Outline<'_>, crease: usize, xi: f64) -> f64 {
+    outline.slicer.skewed.as_mut().map_or(f64::NAN, |skewed| skewed.depth(crease, xi))
+}

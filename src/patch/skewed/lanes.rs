@@ -1,0 +1,279 @@
+//! The bands of a patch under a skewed wheel, where a line of constant ξ may meet it in several intervals of η.
+//!
+//! Every interval holds a valley of the wheel. Between neighbouring ξ at which a valley or ridge begins, ends or
+//! passes s = δ, or at which the rail steps, the intervals stay as they are; from one such stretch of ξ to the next they
+//! go on, divide or join.
+
+use super::events::{Events, events};
+use crate::patch::band::{Band, overlap, steps};
+use crate::patch::outline::{End, Outline};
+
+/// Share of R within which a valley that begins at the edge of an interval belongs to it: where lines of constant ξ only
+/// touch the wheel's end, the edge is known to the root of rounding, 1.5e-8. Intervals that are nearer than this count as one.
+const TOUCH: f64 = 1e-6;
+
+/// Share of a stretch by which its intervals are looked at inside: where two of them meet at its end, their edges run there
+/// as square roots and are a thousandth of their width apart.
+const INSIDE: f64 = 1e-6;
+
+/// Events closer than this many roundings of R are one: between them rounding decides what is inside, and there may be no ξ.
+const XI_ROUNDINGS: f64 = 64.0;
+
+/// The valleys of one interval, the deepest first.
+type Group = Vec<usize>;
+
+/// A band that goes on.
+struct Lane {
+    band: Band,
+    /// Its valleys over the last stretch.
+    group: Group,
+    /// Its interval at the end of that, a little inside.
+    edge: [f64; 2],
+}
+
+/// A valley inside the patch at one ξ.
+#[derive(Clone, Copy)]
+struct Inside {
+    /// Its place \[mm\].
+    eta: f64,
+    /// s − δ \[mm\].
+    depth: f64,
+    crease: usize,
+}
+
+/// Walks over the stretches.
+struct Walk<'w, 'a> {
+    outline: &'w mut Outline<'a>,
+    events: Events,
+    lanes: Vec<Lane>,
+    done: Vec<Band>,
+}
+
+/// The bands, and the valleys and ξ at which the least s may be \[mm\].
+pub(in crate::patch) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<(usize, f64)>) {
+    let Some([a, b]) = searched(outline) else { return (Vec::new(), Vec::new()) };
+    let mut events = events(outline, [a, b]);
+    let turns = std::mem::take(&mut events.turns);
+    let placement = outline.slicer.placement();
+    let extent = placement.rail.profile().extent().max(placement.wheel.profile().extent());
+    let rail_steps: Vec<f64> = steps(&placement.rail.section, [a, b], extent).collect();
+    let mut all = [&events.xi[..], &rail_steps, &[a, b]].concat();
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    let mut walk = Walk { outline, events, lanes: Vec::new(), done: Vec::new() };
+    let shortest = XI_ROUNDINGS * f64::EPSILON * placement.rolling_radius();
+    for pair in all.windows(2).filter(|pair| pair[1] - pair[0] > shortest) {
+        let groups = groups(walk.outline, pair[0] + (pair[1] - pair[0]) / 2.0);
+        walk.step([pair[0], pair[1]], groups, rail_steps.contains(&pair[0]));
+    }
+    walk.step([b, b], Vec::new(), false);
+    (walk.done, turns)
+}
+
+/// The interval of ξ in which the rail, the window and any valley are.
+fn searched(outline: &Outline<'_>) -> Option<[f64; 2]> {
+    let reach = outline.slicer.placement().rail.section.reach()?;
+    let creases = &outline.slicer.skewed.as_ref()?.valleys.creases;
+    let valleys = || creases.iter().filter(|crease| crease.is_valley);
+    let first = valleys().map(|crease| crease.xi[0]).fold(f64::INFINITY, f64::min);
+    let last = valleys().map(|crease| crease.xi[1]).fold(f64::NEG_INFINITY, f64::max);
+    let [a, b] = outline.window.xi;
+    let ends = [a.max(reach[0]).max(first), b.min(reach[1]).min(last)];
+    (ends[0] < ends[1]).then_some(ends)
+}
+
+/// The valleys inside at ξ, those of one interval together, by ascending η.
+fn groups(outline: &mut Outline<'_>, xi: f64) -> Vec<Group> {
+    let near = TOUCH * outline.slicer.placement().rolling_radius();
+    let Some(skewed) = &outline.slicer.skewed else { return Vec::new() };
+    let valleys = &skewed.valleys;
+    let over: Vec<usize> = valleys.over(xi).filter(|&k| valleys.creases[k].is_valley).collect();
+    let places = over.into_iter().map(|crease| {
+        let depth = outline.depth(Some(crease), xi);
+        Inside { eta: outline.slicer.valley(Some(crease), xi), depth, crease }
+    });
+    let mut inside: Vec<Inside> = places.filter(|valley| valley.depth < 0.0).collect();
+    inside.sort_by(|a, b| a.eta.total_cmp(&b.eta));
+    let mut groups: Vec<Vec<Inside>> = Vec::new();
+    // Upper edge of the interval of the last group.
+    let mut reached = f64::NEG_INFINITY;
+    for valley in &inside {
+        match groups.last_mut().filter(|_| valley.eta <= reached) {
+            Some(group) => group.push(*valley),
+            None => {
+                groups.push(vec![*valley]);
+                if inside.len() > 1 {
+                    let edges = outline.slicer.edges(xi, Some(valley.crease));
+                    reached = edges.map_or(reached, |[_, high]| high.eta + near);
+                }
+            }
+        }
+    }
+    let deepest_first = |mut group: Vec<Inside>| {
+        group.sort_by(|a, b| a.depth.total_cmp(&b.depth));
+        group.into_iter().map(|valley| valley.crease).collect()
+    };
+    groups.into_iter().map(deepest_first).collect()
+}
+
+impl Walk<'_, '_> {
+    /// Goes over a stretch in which these groups are, after the event at its beginning.
+    fn step(&mut self, [from, to]: [f64; 2], groups: Vec<Group>, rail_steps: bool) {
+        let inside = INSIDE * (to - from);
+        let begins: Vec<[f64; 2]> = groups.iter().map(|group| self.interval(group, from + inside)).collect();
+        let lanes = std::mem::take(&mut self.lanes);
+        let links: Vec<[usize; 2]> = (0..lanes.len())
+            .flat_map(|i| (0..groups.len()).map(move |j| [i, j]))
+            .filter(|&[i, j]| {
+                let shared = groups[j].iter().any(|k| lanes[i].group.contains(k));
+                shared || overlap(lanes[i].edge, begins[j])
+            })
+            .collect();
+        let partners = |side: usize, k: usize| -> Vec<usize> {
+            links.iter().filter(|link| link[side] == k).map(|link| link[1 - side]).collect()
+        };
+        let (mut kept, mut sides): (Vec<Option<Band>>, Vec<Option<[f64; 2]>>) =
+            (vec![None; groups.len()], vec![None; groups.len()]);
+        let mut closing: Vec<(Lane, Option<[f64; 2]>)> = Vec::new();
+        let forks = if rail_steps { Vec::new() } else { self.forks(from, &lanes, &groups, &begins, &links) };
+        for (i, lane) in lanes.into_iter().enumerate() {
+            match partners(0, i)[..] {
+                [j] if !rail_steps && partners(1, j).len() == 1 => kept[j] = Some(lane.band),
+                _ => {
+                    let side = forks.iter().find(|fork| fork.0 == 0 && fork.1 == i).map(|fork| fork.2);
+                    closing.push((lane, side));
+                }
+            }
+        }
+        for (side, index, eta) in forks {
+            if side == 1 {
+                sides[index] = Some(eta);
+            }
+        }
+        let ended: Vec<Band> =
+            closing.into_iter().map(|(lane, side)| self.closed(lane, from, side)).collect();
+        let mut lanes = Vec::new();
+        for (j, group) in groups.into_iter().enumerate() {
+            let mut band = kept[j].take().unwrap_or_else(|| {
+                self.opened(&group, from, sides[j], if rail_steps { from.next_up() } else { from })
+            });
+            match band.valleys.last_mut().filter(|(_, valleys)| *valleys == group) {
+                Some((end, _)) => *end = to,
+                None => band.valleys.push((to, group.clone())),
+            }
+            let edge = self.interval(&group, to - inside);
+            lanes.push(Lane { band, group, edge });
+        }
+        self.lanes = lanes;
+        self.done.extend(ended);
+    }
+
+    /// The interval of a group at ξ; empty where there is none.
+    fn interval(&mut self, group: &Group, xi: f64) -> [f64; 2] {
+        let edges = self.outline.edges(group.first().copied(), xi);
+        edges.map_or([f64::NAN; 2], |edges| edges.map(|edge| edge.eta))
+    }
+
+    /// Sides of lanes (0) and groups (1) at an event at which one of them divides into several or several join: there those
+    /// that are neighbours meet on a ridge or on the circle of an end.
+    fn forks(
+        &mut self,
+        xi: f64,
+        lanes: &[Lane],
+        groups: &[Group],
+        begins: &[[f64; 2]],
+        links: &[[usize; 2]],
+    ) -> Vec<(usize, usize, [f64; 2])> {
+        let mut sides = Vec::new();
+        let counts = [lanes.len(), groups.len()];
+        for whole in 0..2 {
+            for k in 0..counts[whole] {
+                let mut parts: Vec<usize> =
+                    links.iter().filter(|link| link[whole] == k).map(|link| link[1 - whole]).collect();
+                let only = |part: &usize| links.iter().filter(|l| l[1 - whole] == *part).count() == 1;
+                if parts.len() < 2 || !parts.iter().all(only) {
+                    continue;
+                }
+                let interval = |part: usize| if whole == 0 { begins[part] } else { lanes[part].edge };
+                parts.sort_by(|&p, &q| interval(p)[0].total_cmp(&interval(q)[0]));
+                let (first, last) = (parts[0], parts[parts.len() - 1]);
+                let group = |part: usize| if whole == 0 { &groups[part] } else { &lanes[part].group };
+                let (low, high) = (group(first).clone(), group(last).clone());
+                let mut cuts = vec![self.outer(&low, xi, 0).unwrap_or(interval(first)[0])];
+                for pair in parts.windows(2) {
+                    cuts.push(self.meeting_point(xi, [interval(pair[0])[1], interval(pair[1])[0]]));
+                }
+                cuts.push(self.outer(&high, xi, 1).unwrap_or(interval(last)[1]));
+                sides.push((whole, k, [cuts[0], cuts[parts.len()]]));
+                sides.extend(
+                    parts.iter().zip(cuts.windows(2)).map(|(&p, cut)| (1 - whole, p, [cut[0], cut[1]])),
+                );
+            }
+        }
+        sides
+    }
+
+    /// The lower (0) or upper (1) edge of a group at ξ.
+    fn outer(&mut self, group: &Group, xi: f64, side: usize) -> Option<f64> {
+        self.outline.edges(group.first().copied(), xi).map(|edges| edges[side].eta)
+    }
+
+    /// Where two intervals meet: on a ridge or the circle of an end next to both, or half way.
+    fn meeting_point(&self, xi: f64, [from, to]: [f64; 2]) -> f64 {
+        let middle = from + (to - from) / 2.0;
+        let Some(skewed) = &self.outline.slicer.skewed else { return middle };
+        let valleys = &skewed.valleys;
+        let ridges = valleys.over(xi).filter(|&k| !valleys.creases[k].is_valley);
+        let places = ridges.map(|k| valleys.spot(k, xi).eta).chain(valleys.rims(xi));
+        let between = places.filter(|&eta| from.min(to) <= eta && eta <= from.max(to));
+        let nearest = between.min_by(|p, q| (p - middle).abs().total_cmp(&(q - middle).abs()));
+        nearest.unwrap_or(middle)
+    }
+
+    /// The band of a lane that ends at ξ.
+    fn closed(&mut self, lane: Lane, xi: f64, fork: Option<[f64; 2]>) -> Band {
+        let Lane { mut band, group, edge } = lane;
+        let (side, end) = self.end(&group, xi, xi, edge);
+        band.xi[1] = xi;
+        band.sides[1] = fork.unwrap_or(side);
+        band.ends[1] = fork.is_none().then_some(end);
+        band
+    }
+
+    /// A band that begins at ξ, with its slice at `at`, next to that.
+    fn opened(&mut self, group: &Group, xi: f64, fork: Option<[f64; 2]>, at: f64) -> Band {
+        let (side, end) = self.end(group, xi, at, [f64::NAN; 2]);
+        Band {
+            xi: [xi; 2],
+            ends: [fork.is_none().then_some(end), None],
+            sides: [fork.unwrap_or(side); 2],
+            valleys: Vec::new(),
+            corners: Vec::new(),
+        }
+    }
+
+    /// The side of a band that begins or ends at ξ without a fork, and what bounds it.
+    fn end(&mut self, group: &Group, xi: f64, at: f64, inside: [f64; 2]) -> ([f64; 2], End) {
+        let valley = group.first().copied();
+        let end = self.end_at(xi);
+        let edges = self.outline.edges(valley, at).filter(|_| end != End::Tip);
+        let [_, _, lowest] = self.outline.lowest(valley, at);
+        let side = match edges {
+            Some(edges) => edges.map(|edge| edge.eta),
+            None if end == End::Tip || inside[0].is_nan() => [lowest; 2],
+            None => inside,
+        };
+        (side, end)
+    }
+
+    /// What bounds a band that begins or ends at ξ without a fork.
+    fn end_at(&self, xi: f64) -> End {
+        if self.events.tips.contains(&xi) {
+            End::Tip
+        } else if self.outline.window.xi.contains(&xi) || self.events.cuts.contains(&xi) {
+            End::Window
+        } else {
+            End::ProfileEnd
+        }
+    }
+}

@@ -1,0 +1,9 @@
+//! The patch under a skewed wheel, where a line of constant ξ may meet it in several intervals: valleys lead to each.
+
+mod circle;
+pub(super) mod events;
+pub(super) mod lanes;
+mod monotone;
+mod path;
+pub(super) mod slicer;
+pub(crate) mod valleys;

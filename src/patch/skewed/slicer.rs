@@ -1,0 +1,215 @@
+//! Slices of a skewed wheel: from a valley outwards to s = δ.
+//!
+//! Between its lowest and highest points, and the ends and steps of the wheel's surface, s is monotone along a line of
+//! constant ξ. All of them are known, so that the ends of a slice are found by following them.
+
+use super::valleys::{Spot, Valleys};
+use crate::numerics::roots::{bracketed, last_where};
+use crate::placement::Placement;
+use crate::separation::Evaluator;
+
+/// A step of the wheel along a column counts as one beyond this many roundings of its height; less is a smooth
+/// joint whose two sides round differently.
+pub(in crate::patch) const STEP_ROUNDINGS: f64 = 64.0;
+
+/// Newton's steps to s = δ.
+const NEWTON_STEPS: usize = 6;
+
+/// A step below this share of the way leaves its square: nothing.
+const QUADRATIC: f64 = 1e-8;
+
+/// Half the interval, in roundings of η, in which Newton's result is confirmed by a change of sign.
+const NEWTON_ROUNDINGS: f64 = 64.0;
+
+/// Share of R by which a point is beside an end or step: a million roundings, and less than any segment.
+const BESIDE: f64 = 1e-9;
+
+/// Steps of fourfold length in which a point on the surface is looked for next to its end: up to the root of rounding,
+/// where lines of constant ξ but touch it.
+const NUDGES: i32 = 14;
+
+/// One end of a slice.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Edge {
+    /// η \[mm\].
+    pub(crate) eta: f64,
+    /// Whether the wheel's surface ends or steps there, so that s jumps past δ.
+    pub(in crate::patch) ledge: bool,
+}
+
+/// Slices under a skewed wheel at one approach.
+#[derive(Debug)]
+pub(in crate::patch) struct Skewed<'a> {
+    placement: &'a Placement,
+    evaluator: Evaluator<'a>,
+    /// The wheel's valleys and ridges.
+    pub(in crate::patch) valleys: Valleys<'a>,
+    /// δ \[mm\].
+    approach: f64,
+    /// η at which s may turn or end, along the line of constant ξ in hand.
+    stops: Vec<f64>,
+}
+
+impl<'a> Skewed<'a> {
+    /// Slices of a placed pair for approach δ \[mm\].
+    pub(in crate::patch) fn new(placement: &'a Placement, approach: f64) -> Self {
+        let (evaluator, valleys) = (Evaluator::new(placement), Valleys::new(placement));
+        Self { placement, evaluator, valleys, approach, stops: Vec::new() }
+    }
+
+    /// s − δ at the place of a valley or ridge \[mm\].
+    pub(in crate::patch) fn depth(&mut self, crease: usize, xi: f64) -> f64 {
+        let spot = self.valleys.spot(crease, xi);
+        self.depth_at(xi, &spot)
+    }
+
+    /// s − δ at such a place \[mm\].
+    pub(in crate::patch) fn depth_at(&mut self, xi: f64, spot: &Spot) -> f64 {
+        self.valleys.separation(&mut self.evaluator, xi, spot) - self.approach
+    }
+
+    /// The valley with the least s at ξ; `None` where there is none.
+    pub(in crate::patch) fn lowest_valley(&mut self, xi: f64) -> Option<usize> {
+        let mut lowest: Option<(f64, usize)> = None;
+        for k in 0..self.valleys.creases.len() {
+            let crease = &self.valleys.creases[k];
+            if !crease.is_valley || xi < crease.xi[0] || crease.xi[1] < xi {
+                continue;
+            }
+            let depth = self.depth(k, xi);
+            if !depth.is_nan() && lowest.is_none_or(|(least, _)| depth < least) {
+                lowest = Some((depth, k));
+            }
+        }
+        lowest.map(|(_, k)| k)
+    }
+
+    /// η, or next to it where the surface ends by a rounding too early.
+    pub(in crate::patch) fn on_surface(&mut self, xi: f64, eta: f64) -> f64 {
+        let rounding = f64::EPSILON * self.placement.rolling_radius();
+        let steps = std::iter::once(0.0).chain((0..NUDGES).flat_map(|k| [4f64.powi(k), -4f64.powi(k)]));
+        let mut near = steps.map(|n| eta + n * rounding);
+        near.find(|&eta| !self.evaluator.separation(xi, eta).is_nan()).unwrap_or(eta)
+    }
+
+    /// Both ends of the slice that holds a valley; `None` outside the patch.
+    pub(in crate::patch) fn edges(&mut self, xi: f64, valley: usize) -> Option<[Edge; 2]> {
+        let spot = self.valleys.spot(valley, xi);
+        let depth = -self.depth_at(xi, &spot);
+        if depth.is_nan() || depth < 0.0 {
+            return None;
+        }
+        let mut stops = std::mem::take(&mut self.stops);
+        self.stops_at(xi, &mut stops);
+        // The wheel rises by about η²/2R: twice that width is enough but for steep profiles.
+        let radius = self.placement.rolling_radius();
+        let reach = (2.0 * (2.0 * radius * depth).sqrt()).max(STEP_ROUNDINGS * f64::EPSILON * radius);
+        let edges = [-1.0, 1.0].map(|side| self.outward(xi, spot.eta, side * reach, &mut stops));
+        self.stops = stops;
+        Some(edges)
+    }
+
+    /// η at which s may turn or end, if there is more than one valley at ξ.
+    fn stops_at(&self, xi: f64, stops: &mut Vec<f64>) {
+        stops.clear();
+        let valleys = &self.valleys;
+        if valleys.over(xi).nth(1).is_some() {
+            let ridges = valleys.over(xi).filter(|&k| !valleys.creases[k].is_valley);
+            stops.extend(ridges.map(|k| valleys.spot(k, xi).eta).chain(valleys.rims(xi)));
+        }
+    }
+
+    /// The end of the slice on one side of its lowest point.
+    fn outward(&mut self, xi: f64, lowest: f64, reach: f64, stops: &mut [f64]) -> Edge {
+        let beside = (BESIDE * self.placement.rolling_radius()).copysign(reach);
+        let mut from = self.on_surface(xi, lowest);
+        let s = self.evaluator.separation(xi, from);
+        let beyond = self.evaluator.separation(xi, from + beside);
+        if s.is_nan() || (from != lowest && (beyond.is_nan() || beyond >= self.approach)) {
+            return Edge { eta: from, ledge: true };
+        }
+        let away = |stop: &f64| (stop - lowest) * reach.signum();
+        stops.sort_by(|a, b| away(a).total_cmp(&away(b)));
+        for &stop in stops.iter().filter(|stop| away(stop) > -beside.abs()) {
+            for place in [stop - beside, stop + beside] {
+                if (place - from) * reach <= 0.0 {
+                    continue;
+                }
+                let s = self.evaluator.separation(xi, place);
+                if s.is_nan() || s >= self.approach {
+                    return self.edge(xi, from, reach, place);
+                }
+                from = place;
+            }
+        }
+        self.edge(xi, from, reach, f64::INFINITY.copysign(reach))
+    }
+
+    /// The end of the slice before `limit`, between which and `from` s only rises.
+    fn edge(&mut self, xi: f64, from: f64, mut reach: f64, limit: f64) -> Edge {
+        let clipped = |reach: f64| if (from + reach - limit) * reach > 0.0 { limit } else { from + reach };
+        let (mut far, mut there) = (clipped(reach), self.evaluator.separation(xi, clipped(reach)));
+        // Ends at the latest where the column leaves the wheel's own ring.
+        while there < self.approach {
+            reach *= 2.0;
+            far = clipped(reach);
+            there = self.evaluator.separation(xi, far);
+        }
+        if there.is_nan() { self.end_between(xi, from, far) } else { self.level_between(xi, from, far) }
+    }
+
+    /// The end of the slice before the surface ends between `from` and `off`.
+    fn end_between(&mut self, xi: f64, from: f64, off: f64) -> Edge {
+        let end = self.surface_end(xi, from, off);
+        if self.evaluator.separation(xi, end) < self.approach {
+            return Edge { eta: end, ledge: true };
+        }
+        self.level_between(xi, from, end)
+    }
+
+    fn level_between(&mut self, xi: f64, from: f64, far: f64) -> Edge {
+        let eta = self.level(xi, from, far).unwrap_or(from);
+        let step = STEP_ROUNDINGS * f64::EPSILON * self.placement.wheel.profile().extent();
+        Edge { eta, ledge: (self.evaluator.separation(xi, eta) - self.approach).abs() > step }
+    }
+
+    /// η with s(ξ, η) = δ between `from` and `far`, on whose two sides s − δ has different signs.
+    ///
+    /// Method: s is nearly a parabola and convex, so that Newton's steps from half way come from outside and reach rounding
+    /// within four. The result is taken if s − δ changes sign within some roundings of it; a bracketed root replaces one
+    /// that a joint has misled.
+    fn level(&mut self, xi: f64, from: f64, far: f64) -> Option<f64> {
+        let approach = self.approach;
+        let mut eta = from + (far - from) / 2.0;
+        let mut settled = false;
+        for _ in 0..NEWTON_STEPS {
+            let (s, [_, slope]) = self.evaluator.separation_and_slopes(xi, eta);
+            let step = (s - approach) / slope;
+            eta -= step;
+            settled = step.abs() <= QUADRATIC * (eta - from).abs();
+            if settled {
+                break;
+            }
+        }
+        let near = NEWTON_ROUNDINGS * f64::EPSILON * eta.abs().max((eta - from).abs());
+        let near = near.copysign(far - from);
+        settled &= (eta - from) * (far - eta) >= 0.0;
+        let mut depth = |eta: f64| self.evaluator.separation(xi, eta) - approach;
+        let confirmed = settled && depth(eta - near) <= 0.0 && depth(eta + near) >= 0.0;
+        if confirmed { Some(eta) } else { bracketed(depth, from, far) }
+    }
+
+    /// The last η with a surface between `on`, which has one, and `off`, which has none.
+    fn surface_end(&mut self, xi: f64, mut on: f64, mut off: f64) -> f64 {
+        let beside = (BESIDE * self.placement.rolling_radius()).copysign(off - on);
+        let between = |rim: &f64| (rim - on) * (off - rim) > 0.0;
+        let rims = self.valleys.rims(xi).filter(between);
+        let nearest = rims.min_by(|a, b| (a - on).abs().total_cmp(&(b - on).abs()));
+        for place in nearest.into_iter().flat_map(|rim| [rim - beside, rim + beside]) {
+            if (place - on) * (off - place) > 0.0 {
+                if self.evaluator.separation(xi, place).is_nan() { off = place } else { on = place }
+            }
+        }
+        last_where(|eta| !self.evaluator.separation(xi, eta).is_nan(), on, off)
+    }
+}

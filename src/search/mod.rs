@@ -1,0 +1,342 @@
+//! The contact search: how far a placed wheel can be lowered onto its rail, and where it then touches.
+//!
+//! # Axes, signs and order of rotation
+//!
+//! Everything of one side is in the rail's profile axes: x towards the field side, y forward along the rail, z up.
+//! For the right-hand wheel they are the track's directions; the left-hand side is solved as its mirror image
+//! (x → −x), with lateral displacement, yaw and roll reversed; its axes are then left-handed.
+//!
+//! The wheel is turned by A = R_y(roll) · R_z(yaw): first the yaw about z, then the roll about the *unyawed* y axis of
+//! the track, both by the right-hand rule. So the axle, from flange to field side, points along
+//! (cosψ cosφ, sinψ, −cosψ sinφ).
+//! A single wheel ([`Pose`]) is turned about its **profile origin**, the lowest point of the nominal running circle:
+//! `offset` is where that origin lies, whatever the angles. A wheelset ([`wheelset`]) is turned about the middle of
+//! its axle.
+//!
+//! # Method
+//!
+//! `locus`: the outline of the yawed wheel along the rail reduces the search to two plane curves. A local minimum of
+//! the vertical gap has a common tangent (at kinks and ends: a common normal within the fan). A tree over the elements of
+//! each profile (`body`) bounds the gap of whole stretches at once (`placed`), so that only pairs of elements that may be
+//! lowest are solved (`walk`): arcs and lines in closed form (`arcs`), polynomials and yawed arcs by bounds of their
+//! curvatures and Newton's method (`stretches`). So the lowest cannot be missed.
+//!
+//! What counts is the part of each profile that faces the other body in its own axes ([`Section`](crate::profile::Section)): parts of a
+//! wheel that face down only by virtue of the roll (a flange back beyond the vertical) do not take part.
+
+mod arcs;
+mod body;
+mod bounds;
+mod candidates;
+mod element;
+mod locus;
+mod placed;
+mod stretches;
+pub mod sweep;
+mod walk;
+pub mod wheelset;
+
+use crate::error::{Error, Result, finite};
+use crate::placement::Pair;
+use crate::profile::{Profile, Section, Side};
+use body::Body;
+use candidates::{Candidate, Meeting, Search};
+use locus::Attitude;
+use walk::Walk;
+
+/// Share of the two profiles' extents below which two candidates are one point. Candidates of one contact that
+/// sits on a joint differ by up to 1e-8 of it; the closest contacts that a drawing can mean are 1e-4 apart.
+const SAME_POINT: f64 = 1e-7;
+
+/// Largest yaw and roll \[rad\] that a pose may have. Far above any running gear's; from about 1 rad on, parts of a
+/// profile that face down are no longer those that do so in the profile's own axes.
+const LARGEST_ANGLE: f64 = 0.5;
+
+/// A rail and a wheel profile, prepared for searches.
+#[derive(Debug, Clone)]
+pub struct ProfilePair {
+    rail: Body,
+    wheel: Body,
+    radius: f64,
+    /// Sum of both extents: the size that rounding is judged by \[mm\].
+    extent: f64,
+}
+
+/// Where a single wheel stands over its rail, but for the height.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pose {
+    offset: f64,
+    yaw: f64,
+    roll: f64,
+}
+
+/// Places closer than this \[mm\] are one contact: drawings' steps and kinks make groups within 0.1 mm.
+pub const ONE_CONTACT: f64 = 0.5;
+
+/// Which of the places of contact to report.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Selection {
+    /// Vertical gap \[mm\] above first touch up to which near misses are reported; 0 for touching ones only. Typically
+    /// 0.1.
+    pub within: f64,
+    /// Of two places closer than this on both profiles \[mm along x\] only the lower is reported; 0 for all. Usually
+    /// [`ONE_CONTACT`].
+    pub apart: f64,
+}
+
+/// A place of contact or near miss; x and angles in the side's own profile axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact {
+    /// Abscissa x_R on the rail profile \[mm\], from its origin, + to the field side.
+    pub rail_x: f64,
+    /// Abscissa x_W on the wheel profile \[mm\], from its origin, + to the field side (a flange has −38).
+    pub wheel_x: f64,
+    /// Height of the rail's point over the rail profile's origin \[mm\].
+    pub rail_z: f64,
+    /// Height of the wheel profile's point over the wheel profile's origin \[mm\].
+    pub wheel_z: f64,
+    /// Place along the rail from the vertical plane across the track through the wheel's centre \[mm\], + forward:
+    /// sinψ (x_W − ϱ tanθ_W). Behind the centre at a flange when yaw > 0.
+    pub y: f64,
+    /// Contact angle θ_R \[rad\]: of the common tangent in the rail's axes, + counter-clockwise from x to z. A flange
+    /// contact has 1.2.
+    pub contact_angle: f64,
+    /// Wheel profile's tangent angle θ_W \[rad\] that belongs to the common normal, in the wheel profile's axes. Without
+    /// yaw the contact angle plus the roll.
+    pub wheel_angle: f64,
+    /// Skew χ \[rad\]: how far the wheel's contact frame (ξ' along its meridian tangent, η' along its circumference,
+    /// forward) is turned about the common normal ζ, + from ξ to η, against the rail's (ξ along its profile's
+    /// tangent, η = y): ξ' = ξ cosχ + η sinχ, η' = η cosχ − ξ sinχ, ζ' = ζ. sinχ = sinψ/cosθ_W.
+    pub skew: f64,
+    /// Vertical gap left at first touch \[mm\]; 0 for the lowest.
+    pub gap: f64,
+    /// Actual rolling radius ϱ = R − z_W \[mm\].
+    pub rolling_radius: f64,
+    /// Curvature of the rail profile \[1/mm\], + hollow side up (a crown has −1/300); −∞ at a kink.
+    pub rail_curvature: f64,
+    /// Curvature of the wheel profile \[1/mm\], + hollow side up, −1/13 in a flange root; +∞ at a kink.
+    pub wheel_curvature: f64,
+    /// The rail touches with a kink, step or end: the contact angle is the common normal's, not that of a tangent.
+    pub rail_kink: bool,
+    /// The wheel touches with a kink, step or end; likewise θ_W.
+    pub wheel_kink: bool,
+}
+
+/// First touch of a wheel and its rail.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Touch<'a> {
+    /// Height of the wheel's profile origin over the rail's at first touch \[mm\], + up.
+    pub height: f64,
+    /// The places of contact and near miss, the lowest gap first; never empty.
+    pub contacts: &'a [Contact],
+}
+
+/// Searches over one pair; keeps its buffers, so that searching allocates nothing.
+#[derive(Debug, Clone)]
+pub struct ContactSearch<'a> {
+    pair: &'a ProfilePair,
+    walk: Walk,
+    candidates: Vec<Candidate>,
+    contacts: Vec<Contact>,
+    /// Where contact was in the search before.
+    last: Option<Meeting>,
+    work: Work,
+}
+
+/// What searches have done so far.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Work {
+    /// Searches: a wheel lowered onto its rail once.
+    pub searches: u64,
+    /// Pairs of nodes of the two trees looked at.
+    pub pairs: u64,
+    /// Pairs of elements, or of parts of them, looked at for common tangents.
+    pub solves: u64,
+}
+
+impl ProfilePair {
+    /// Prepares a pair, its rail as placed (inclined).
+    ///
+    /// # Errors
+    /// A profile without any part that faces the other body.
+    pub fn new(pair: &Pair) -> Result<Self> {
+        let body = |profile: &Profile, section: &Section, side| {
+            Body::new(section, profile.extent(), side).ok_or_else(|| {
+                let expected = "a profile travelled from left to right";
+                Error::new(&profile.name, "no surface", expected, "reverse or mirror it")
+            })
+        };
+        let ([rail, wheel], [below, above]) = ([pair.rail(), pair.wheel()], pair.sections());
+        Ok(Self {
+            rail: body(rail, below, Side::Rail)?,
+            wheel: body(wheel, above, Side::Wheel)?,
+            radius: pair.wheel_radius(),
+            extent: rail.extent() + wheel.extent(),
+        })
+    }
+
+    /// Nominal rolling radius R \[mm\].
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// A search over this pair.
+    pub fn search(&self) -> ContactSearch<'_> {
+        ContactSearch {
+            pair: self,
+            walk: Walk::new(&self.wheel.nodes, &self.rail.nodes),
+            candidates: Vec::new(),
+            contacts: Vec::new(),
+            last: None,
+            work: Work::default(),
+        }
+    }
+}
+
+impl Pose {
+    /// A wheel with its profile origin `offset` mm beside the rail's, + to the field side, turned about that origin
+    /// by `yaw` and then `roll` \[rad\], right-handed about z and y.
+    ///
+    /// # Errors
+    /// Values that are not finite; angles beyond ±0.5 rad.
+    pub fn new(offset: f64, yaw: f64, roll: f64) -> Result<Self> {
+        finite("offset", offset)?;
+        Ok(Self { offset, yaw: small_angle("yaw", yaw)?, roll: small_angle("roll", roll)? })
+    }
+
+    /// Roll \[rad\].
+    pub fn roll(&self) -> f64 {
+        self.roll
+    }
+}
+
+/// Rejects angles that no wheel has.
+pub(super) fn small_angle(place: &str, angle: f64) -> Result<f64> {
+    if finite(place, angle)?.abs() <= LARGEST_ANGLE {
+        return Ok(angle);
+    }
+    let expected = format!("an angle within ±{LARGEST_ANGLE} rad");
+    Err(Error::new(place, angle.to_string(), expected, "give angles in rad"))
+}
+
+impl ContactSearch<'_> {
+    /// Lowers a wheel until it touches; `None` when no part of it is over the rail.
+    ///
+    /// Accuracy: heights and gaps to a few roundings of the profiles' extents, whatever R; abscissae to that over
+    /// √(difference of curvatures), from the common tangent, not from a flat minimum.
+    /// Cost: about half a microsecond for arcs, a few with polynomials of any number; yaw doubles it. The first search knows
+    /// no place to start from and costs some times more.
+    /// Degenerate: bodies that touch along a stretch (parallel lines, equal arcs) give its middle.
+    pub fn touch(&mut self, pose: &Pose, selection: &Selection) -> Option<Touch<'_>> {
+        let attitude = Attitude::new(pose.offset, pose.yaw, pose.roll, self.pair.radius);
+        let height = -self.lower(&attitude, selection.within)?.gap;
+        Some(self.collect(&attitude, height, selection))
+    }
+
+    /// The contacts of `selection` among the candidates that [`Self::lower`] left, at the height that it gave.
+    fn collect(&mut self, attitude: &Attitude, height: f64, selection: &Selection) -> Touch<'_> {
+        self.candidates.retain(|c| c.gap + height <= selection.within);
+        self.candidates.sort_unstable_by(|a, b| a.gap.total_cmp(&b.gap));
+        let apart = selection.apart.max(SAME_POINT * self.pair.extent);
+        // A smooth contact on a joint is also one of the joint's fan, a rounding apart.
+        let rounding = 16.0 * f64::EPSILON * self.pair.extent;
+        self.contacts.clear();
+        for candidate in &self.candidates {
+            let contact = contact(attitude, candidate, height);
+            let near = |c: &&mut Contact| {
+                (c.rail_x - contact.rail_x).abs() <= apart && (c.wheel_x - contact.wheel_x).abs() <= apart
+            };
+            match self.contacts.iter_mut().find(near) {
+                None => self.contacts.push(contact),
+                Some(kept) if kept.kink() && !contact.kink() && contact.gap - kept.gap <= rounding => {
+                    *kept = Contact { gap: kept.gap, ..contact };
+                }
+                Some(_) => {}
+            }
+        }
+        Touch { height, contacts: &self.contacts }
+    }
+
+    /// The lowest candidate, with all others up to `within` above it left in the buffer.
+    fn lower(&mut self, attitude: &Attitude, within: f64) -> Option<Candidate> {
+        self.candidates.clear();
+        let mut search = self.pair.at(attitude, within, &mut self.candidates);
+        search.lowest = self.pair.highest(attitude);
+        self.walk.all(&mut search, self.last);
+        self.work.searches += 1;
+        self.work.solves += search.solves;
+        self.work.pairs = self.walk.pairs;
+        let lowest = *self.candidates.iter().min_by(|a, b| a.gap.total_cmp(&b.gap))?;
+        self.last = Some(lowest.meeting);
+        Some(lowest)
+    }
+
+    /// The place of least gap near a former one, at another attitude; `None` where it has left its elements.
+    fn follow(&self, attitude: &Attitude, meeting: &Meeting) -> Option<Candidate> {
+        walk::follow(&self.pair.at(attitude, 0.0, &mut Vec::new()), meeting)
+    }
+
+    /// What this search has done so far.
+    pub fn work(&self) -> Work {
+        self.work
+    }
+}
+
+impl ProfilePair {
+    /// A search at one attitude.
+    fn at<'a>(
+        &'a self,
+        attitude: &'a Attitude,
+        within: f64,
+        candidates: &'a mut Vec<Candidate>,
+    ) -> Search<'a> {
+        let extent = self.extent + attitude.offset.abs();
+        let bodies = [&self.wheel, &self.rail];
+        let slack = 16.0 * f64::EPSILON * extent;
+        Search { bodies, attitude, extent, within, lowest: f64::INFINITY, candidates, solves: 0, slack }
+    }
+
+    /// The gap of the highest point of the wheel's profile over the lowest of the rail \[mm\]: what is higher is no touch of
+    /// the two profiles, but of a yawed wheel's rings towards the axle. Slopes below 45° may rise over their profile by their
+    /// own ring.
+    fn highest(&self, attitude: &Attitude) -> f64 {
+        let [x, z] = self.wheel.extent;
+        let tilted = (-x[0] * attitude.sin_roll).max(-x[1] * attitude.sin_roll);
+        let steepest = attitude.tan_yaw;
+        let rise = self.radius * steepest * steepest / (1.0 + element::cosine(steepest));
+        z[1] * attitude.cos_roll + tilted + rise - self.rail.extent[1][0]
+    }
+}
+
+impl Contact {
+    /// Whether one of the bodies touches with a kink, a step or an end.
+    pub fn kink(&self) -> bool {
+        self.rail_kink || self.wheel_kink
+    }
+}
+
+fn contact(attitude: &Attitude, c: &Candidate, height: f64) -> Contact {
+    let rolling_radius = attitude.radius - c.wheel.z;
+    let sin = c.wheel.sin / attitude.cos_yaw;
+    let unrolled_cos = ((1.0 - sin) * (1.0 + sin)).max(0.0).sqrt();
+    Contact {
+        rail_x: c.rail.x,
+        wheel_x: c.wheel.x,
+        rail_z: c.rail.z,
+        wheel_z: c.wheel.z,
+        // Without yaw 0, not −0.
+        y: attitude.sin_yaw * (c.wheel.x - rolling_radius * c.wheel.sin / c.wheel.cos) + 0.0,
+        contact_angle: c.rail.angle(),
+        wheel_angle: c.wheel.angle(),
+        skew: attitude.sin_yaw.atan2(attitude.cos_yaw * unrolled_cos) + 0.0,
+        gap: c.gap + height,
+        rolling_radius,
+        rail_curvature: c.rail_radius.recip(),
+        wheel_curvature: c.wheel_radius.recip(),
+        rail_kink: c.rail_radius == 0.0,
+        wheel_kink: c.wheel_radius == 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,236 @@
+//! Equivalent conicity by integration of the wheelset's kinematic movement, as in EN 15302.
+//!
+//! A wheelset that rolls without slip moves by y″ = −Δr(y)/(e r₀), primes along the track, e the distance of the
+//! contact points. A cone of conicity γ has Δr = 2y tanγ and Klingel's wavelength λ, λ² = 2π² e r₀/tanγ. The
+//! equivalent conicity of any Δr is that of the cone with the same wavelength at the same amplitude:
+//! tanγ_e = (π/λ)² 2 e r₀. With v² = 2 ∫_y^ŷ Δr the energy integral gives
+//!
+//! ```text
+//! λ = 4 √(e r₀) T,   T = ∫_0^ŷ dy/v        tanγ_e = π²/(8 T²)
+//! ```
+//!
+//! free of e and r₀. Both wheels being alike and the yaw neglected, Δr is odd, so a quarter of the movement does.
+//!
+//! # What a table of Δr does to it
+//!
+//! An error ε of Δr changes the conicity by the share 2/T ∫_0^ŷ (∫_y^ŷ ε) v⁻³ dy, less than the largest share
+//! ∫_y^ŷ ε/∫_y^ŷ Δr over y. So not Δr has to be right, but its integrals: bends of micrometres do not count, nor where in
+//! a cell of 1e-6 mm the contact hops.
+//!
+//! Δr is continuous but for hops: displacements at which two places of one side touch at once, and the rolling radius
+//! jumps from that of one to that of the other. A hop is the root of the difference of two gaps. A search near it returns
+//! both, and how fast they close; one or two searches place it.
+
+mod branches;
+mod movement;
+mod refine;
+#[cfg(test)]
+mod tests;
+
+use branches::Searched;
+use movement::{Movement, Quarter};
+use refine::{LEAST_AMPLITUDE, Table, most_searches};
+
+use crate::error::{Error, Result, finite};
+use crate::search::wheelset::{Roll, WheelsetOnTrack};
+
+/// Relative accuracy that is asked of a conicity.
+pub const ACCURACY: f64 = 1e-4;
+
+/// How often the table is refined to a quarter of the influence before, while the estimated error asks for it. Amplitudes at
+/// which the movement barely comes back are never accurate; they are not to use up all searches of the others.
+const ROUNDS: u32 = 4;
+
+/// Points in √(y − y_k) of a cell at which T is tabulated: Chebyshev's on \[0, 1\].
+const POINTS: [f64; 5] = [
+    0.024_471_741_852_423_234,
+    0.206_107_373_853_763_43,
+    0.5,
+    0.793_892_626_146_236_5,
+    0.975_528_258_147_576_8,
+];
+
+/// … and one between them, at which the interpolant has to agree with T to this share, a hundredth of [`ACCURACY`].
+const BETWEEN: f64 = 0.35;
+/// See [`BETWEEN`].
+const AGREEMENT: f64 = 1e-2 * ACCURACY;
+
+/// The equivalent conicity of a wheelset on its track over the lateral amplitude.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Conicity {
+    movement: Movement,
+    /// Cell by cell, T as a polynomial; none where it is no such curve.
+    fits: Vec<Option<Fit>>,
+    searches: usize,
+}
+
+/// An equivalent conicity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Equivalent {
+    /// tan γ_e \[1\].
+    pub conicity: f64,
+    /// Its estimated relative error \[1\]: of Δr's table, as if the errors of its cells were independent.
+    pub error: f64,
+}
+
+/// Why there is no equivalent conicity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NoConicity {
+    /// Nobody asked for it.
+    NotAsked,
+    /// The roll is given: Δr is not odd.
+    GivenRoll,
+    /// A displacement of 0 is no amplitude.
+    NoAmplitude,
+    /// The amplitude is beyond the table, which ends at the amplitude it was made for, or where the wheelset leaves its
+    /// track.
+    OffTrack,
+    /// The movement does not come back through 0: Δr does not restore there, or turns it back on the way.
+    NotRestoring,
+}
+
+/// T over one cell, in Newton's form in s = √((y − y_k)/(y_(k+1) − y_k)): beyond a jump of Δr T grows with s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Fit {
+    differences: [f64; POINTS.len()],
+    /// Largest relative error of T.
+    error: f64,
+}
+
+impl Equivalent {
+    /// Whether the estimated error is within [`ACCURACY`].
+    pub fn converged(&self) -> bool {
+        self.error <= ACCURACY
+    }
+
+    fn of(quarter: Quarter) -> Self {
+        let conicity = std::f64::consts::PI.powi(2) / (8.0 * quarter.time * quarter.time);
+        Self { conicity, error: 2.0 * quarter.error }
+    }
+}
+
+impl Conicity {
+    /// Tabulates Δr up to the largest amplitude ŷ \[mm\]; the table ends early where the wheelset leaves the track.
+    ///
+    /// `roll`: [`Roll::Neglect`] is the standard's convention; [`Roll::Solve`] the exact geometry.
+    /// Accuracy: 1e-4 of the conicity at amplitudes from 0.1 mm on; [`Equivalent::error`] says what was reached.
+    /// Cost: at most [`Conicity::most_searches`], of which a drawn pair takes a fifth; every search of a rolling wheelset
+    /// solves its roll.
+    ///
+    /// # Errors
+    /// An amplitude that is not a positive number; a given roll, at which Δr is not odd.
+    pub fn new(system: &WheelsetOnTrack, amplitude: f64, roll: Roll) -> Result<Self> {
+        Self::told(system, amplitude, roll, &mut |_, _| {})
+    }
+
+    /// Does what [`Conicity::new`] does, and tells `progress` how many searches are done, and how many there are at most.
+    ///
+    /// # Errors
+    /// Those of [`Conicity::new`].
+    pub fn told(
+        system: &WheelsetOnTrack,
+        amplitude: f64,
+        roll: Roll,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<Self> {
+        if finite("conicity: amplitude", amplitude)? <= 0.0 {
+            let found = amplitude.to_string();
+            return Err(Error::new("conicity: amplitude", found, "a positive number", "give it in mm"));
+        }
+        if let Roll::Fixed(angle) = roll {
+            let expected = "roll solved or neglected";
+            return Err(Error::new("conicity: roll", angle.to_string(), expected, "leave conicity out"));
+        }
+        let mut searched = Searched::new(system, roll);
+        let table = Table::new(|y, sides| searched.at(y, sides), amplitude, ACCURACY)?;
+        Self::refined(table, progress)
+    }
+
+    /// The most searches that a table up to an amplitude \[mm\] takes: 15 for every tenth of a millimetre.
+    pub fn most_searches(amplitude: f64) -> usize {
+        most_searches(amplitude, ACCURACY)
+    }
+
+    /// How many searches the table took.
+    pub fn searches(&self) -> usize {
+        self.searches
+    }
+
+    /// tan γ_e at the amplitude |y| \[mm\], or why there is none.
+    ///
+    /// Method: Δr straight between the table's displacements; T of such a Δr as a polynomial over each cell, within 1e-6 of
+    /// what crossing all cells gives, or that itself. Cost: some ten nanoseconds, or a microsecond.
+    ///
+    /// # Errors
+    /// 0; amplitudes beyond the table; movements that do not come back.
+    pub fn at(&self, y: f64) -> std::result::Result<Equivalent, NoConicity> {
+        let amplitude = y.abs();
+        if amplitude == 0.0 {
+            return Err(NoConicity::NoAmplitude);
+        }
+        let cell = self.movement.cell(amplitude).ok_or(NoConicity::OffTrack)?;
+        let quarter = match &self.fits[cell] {
+            Some(fit) => Some(fit.at(share(self.movement.ends(cell), amplitude))),
+            None => self.movement.quarter(cell, amplitude),
+        };
+        quarter.map(Equivalent::of).ok_or(NoConicity::NotRestoring)
+    }
+
+    /// Refines the table round by round until all conicities are accurate, or its searches are used up.
+    fn refined<F>(mut table: Table<F>, progress: &mut dyn FnMut(usize, usize)) -> Result<Self>
+    where
+        F: FnMut(f64, &mut branches::Sides) -> Result<bool>,
+    {
+        let mut influence = ACCURACY;
+        let mut rounds = 1..ROUNDS;
+        loop {
+            table.refine(influence, progress)?;
+            let movement = Movement::new(table.knots());
+            let fits: Vec<_> = (0..movement.cells()).map(|cell| Fit::new(&movement, cell)).collect();
+            let [searches, most] = table.searches();
+            let served = |cell: usize| movement.ends(cell)[1] > LEAST_AMPLITUDE;
+            let fine = |fit: &Fit| 2.0 * fit.error <= ACCURACY;
+            let converged =
+                fits.iter().enumerate().all(|(cell, fit)| !served(cell) || fit.as_ref().is_none_or(fine));
+            if converged || searches >= most || rounds.next().is_none() {
+                return Ok(Self { movement, fits, searches });
+            }
+            influence /= 4.0;
+        }
+    }
+}
+
+/// √ of the share of a cell that lies below y.
+fn share([from, to]: [f64; 2], y: f64) -> f64 {
+    ((y - from) / (to - from)).sqrt()
+}
+
+impl Fit {
+    /// T over a cell; none over a jump, and where T is no smooth function of s: close to where the movement does not come
+    /// back.
+    fn new(movement: &Movement, cell: usize) -> Option<Self> {
+        let [from, to] = movement.ends(cell);
+        let at = |s: f64| {
+            let y = from + (to - from) * s * s;
+            (y > from).then(|| movement.quarter(cell, y)).flatten()
+        };
+        let (mut differences, mut error) = ([0.0; POINTS.len()], 0f64);
+        for (value, s) in differences.iter_mut().zip(POINTS) {
+            let quarter = at(s)?;
+            (*value, error) = (quarter.time, error.max(quarter.error));
+        }
+        for order in 1..POINTS.len() {
+            for k in (order..POINTS.len()).rev() {
+                differences[k] = (differences[k] - differences[k - 1]) / (POINTS[k] - POINTS[k - order]);
+            }
+        }
+        let fit = Self { differences, error };
+        let exact = at(BETWEEN)?.time;
+        ((fit.at(BETWEEN).time - exact).abs() <= AGREEMENT * exact).then_some(fit)
+    }
+
+    fn at(&self, s: f64) -> Quarter {
+        let terms = self.differences.iter().zip(POINTS).rev();
+        Quarter { time: terms.fold(0.0, |sum, (c, point)| sum * (s - point) + c), error: self.error }
+    }
+}

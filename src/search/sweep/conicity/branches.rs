@@ -1,0 +1,115 @@
+//! What the places of contact and near miss at one displacement tell of their neighbourhood.
+
+use crate::error::Result;
+use crate::search::wheelset::{Position, Roll, SideTouch, WheelsetOnTrack, WheelsetSearch};
+use crate::search::{Contact, Selection};
+
+/// Near misses that are looked at: gaps up to 1 µm close within a displacement of 0.01 to 0.1 mm. Less, and hops are found
+/// by halving; more, and rough profiles have hundreds of them. Places within 1 µm of each other are one: a hop that short
+/// changes Δr by less than 0.1 µm on a tread.
+const NEAR: Selection = Selection { within: 1e-3, apart: 1e-3 };
+
+/// Which way a side's own axes point along the track's: left, right.
+const SIGNS: [f64; 2] = [-1.0, 1.0];
+
+/// A place where a side touches, or nearly does, at one displacement y of the wheelset.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Branch {
+    /// Vertical gap \[mm\].
+    pub gap: f64,
+    /// Height of the axle's middle \[mm\] at which this side touches.
+    pub height: f64,
+    /// Rate \[mm/mm\] at which the axle's middle has to rise with y for this place to keep its gap.
+    pub climb: f64,
+    /// Rolling radius ϱ \[mm\].
+    pub radius: f64,
+    /// dϱ/dy \[mm/mm\]; infinite or NaN where the curvatures do not tell.
+    pub growth: f64,
+}
+
+/// The places of the left and the right side, the lowest gap first.
+pub(super) type Sides = [Vec<Branch>; 2];
+
+/// Searches at one displacement after another.
+pub(super) struct Searched<'a> {
+    system: &'a WheelsetOnTrack,
+    search: WheelsetSearch<'a>,
+    roll: Roll,
+}
+
+impl<'a> Searched<'a> {
+    pub(super) fn new(system: &'a WheelsetOnTrack, roll: Roll) -> Self {
+        Self { system, search: system.search(), roll }
+    }
+
+    /// The places at one displacement \[mm\] without yaw; false where the wheelset is off its track.
+    ///
+    /// # Errors
+    /// A displacement or roll that is not finite.
+    pub(super) fn at(&mut self, lateral: f64, sides: &mut Sides) -> Result<bool> {
+        let position = Position { lateral, yaw: 0.0, roll: self.roll };
+        let Some(touch) = self.search.touch(&position, &NEAR)? else { return Ok(false) };
+        let arms = [0, 1].map(|k| Arm::new(self.system, lateral, SIGNS[k], &touch.sides[k]));
+        let lowest = [0, 1].map(|k| arms[k].turning(&touch.sides[k].touch.contacts[0]));
+        // With the roll solved both sides rise alike: it turns by so much with y.
+        let turn = match self.roll {
+            Roll::Solve => -(lowest[0][0] + lowest[1][0]) / (lowest[0][1] + lowest[1][1]),
+            Roll::Neglect | Roll::Fixed(_) => 0.0,
+        };
+        for (k, places) in sides.iter_mut().enumerate() {
+            places.clear();
+            places.extend(touch.sides[k].touch.contacts.iter().map(|contact| arms[k].branch(contact, turn)));
+        }
+        Ok(true)
+    }
+}
+
+/// Where the axle's middle is, seen from the profiles of one side.
+struct Arm {
+    sign: f64,
+    height: f64,
+    /// Of the rail profile's origin from the axle's middle \[mm\], in the side's axes.
+    origin: [f64; 2],
+}
+
+impl Arm {
+    fn new(system: &WheelsetOnTrack, lateral: f64, sign: f64, side: &SideTouch) -> Self {
+        let x = system.track.rail_x - sign * lateral;
+        let z = system.track.rail_z - side.z - system.wheelset.radius;
+        Self { sign, height: side.z, origin: [x, z] }
+    }
+
+    /// Rates at which the axle's middle rises with the displacement and with the roll of the side's own axes.
+    fn turning(&self, contact: &Contact) -> [f64; 2] {
+        let [x, z] = [self.origin[0] + contact.rail_x, self.origin[1] + contact.rail_z];
+        let slope = contact.contact_angle.tan();
+        [slope, x + z * slope]
+    }
+
+    /// `turn`: of the track's roll with y \[rad/mm\].
+    fn branch(&self, contact: &Contact, turn: f64) -> Branch {
+        let [slope, rise] = self.turning(contact);
+        let turn = self.sign * turn;
+        // The wheel's material at the contact moves across by so much with y.
+        let across = self.sign + turn * (self.origin[1] + contact.rail_z);
+        Branch {
+            gap: contact.gap,
+            height: self.height,
+            climb: self.sign * slope + rise * turn,
+            radius: contact.rolling_radius,
+            growth: -contact.wheel_angle.sin() * travel(contact, across, turn),
+        }
+    }
+}
+
+/// How far the contact travels along the wheel's profile with y \[mm/mm\], by κ_R ds_R = κ_W ds_W − dα and
+/// ds_R − ds_W = dx/cosθ; the larger curvature, infinite at a kink, is divided by.
+fn travel(contact: &Contact, across: f64, turn: f64) -> f64 {
+    let (rail, wheel) = (contact.rail_curvature, contact.wheel_curvature);
+    let along = across / contact.contact_angle.cos();
+    if rail.abs() >= wheel.abs() {
+        (along + turn / rail) / (wheel / rail - 1.0)
+    } else {
+        (along * (rail / wheel) + turn / wheel) / (1.0 - rail / wheel)
+    }
+}

@@ -1,0 +1,233 @@
+use super::wheelset::{Position, Roll, WheelsetOnTrack};
+use super::*;
+use crate::load::feasibility::feasibility;
+use crate::placement::Pair;
+use crate::placement::track::{RailDistance, Track, WheelDistance, Wheelset};
+use crate::profile::{Arc, Half, Polynomial, Section, Segment, Shape, standards};
+
+mod brute;
+mod reference;
+mod rough;
+
+const ALL: Selection = Selection { within: 0.0, apart: 0.0 };
+
+/// Manchester contact benchmark: S1002 on UIC60 at 1:40.
+fn manchester() -> Result<WheelsetOnTrack> {
+    let norm = 40f64.hypot(1.0);
+    let rail = standards::rail("UIC60")?.rotated(40.0 / norm, norm.recip());
+    let backs = WheelDistance::BackToBack { distance: 1360.0, flange_back_x: -70.0 };
+    let pair = Pair::new(rail, standards::wheel("S1002")?, 460.0)?;
+    WheelsetOnTrack::new(&pair, RailDistance::Gauge { gauge: 1435.0, height: 14.0 }, backs)
+}
+
+/// EN 15302 wheel A over rail A, inclined by 0.05 rad.
+fn en_15302_a() -> Result<WheelsetOnTrack> {
+    let (sin, cos) = 0.05f64.sin_cos();
+    let rail = standards::rail("UIC60")?.rotated(cos, sin).shifted(2.60264, 0.14155);
+    Ok(WheelsetOnTrack {
+        pair: ProfilePair::new(&Pair::new(rail.clone(), standards::wheel("EN15302-A")?, 460.0)?)?,
+        track: Track::new(&rail, RailDistance::Spacing(1500.0))?,
+        wheelset: Wheelset::new(WheelDistance::Spacing(1500.0), 460.0)?,
+    })
+}
+
+#[test]
+fn heights_of_first_touch_of_the_manchester_benchmark() -> Result<()> {
+    let system = manchester()?;
+    let mut search = system.search();
+    // Lateral, yaw, roll, side (0 left, 1 right), height; CONTACT's yaw and height are the negatives.
+    let table = [
+        (0.0, 0.0, 0.0, 0, -0.1821),
+        (0.0, 0.0, 0.0, 1, -0.1821),
+        (5.0, -0.0120, -0.000_355_40, 0, 0.0205),
+        (5.0, -0.0120, -0.000_355_40, 1, 0.0271),
+        (6.5, -0.0156, -0.004_376_00, 1, 3.1382),
+        (10.0, -0.0240, -0.011_264_31, 1, 8.3159),
+    ];
+    for (lateral, yaw, roll, side, z) in table {
+        let position = Position { lateral, yaw, roll: Roll::Fixed(roll) };
+        let found = search.touch(&position, &ALL)?.map_or(f64::NAN, |touch| touch.sides[side].z);
+        // CONTACT's search is sampled and its numbers have four decimals; the worst row is 2.6e-4.
+        assert!((found - z).abs() < 3e-4, "at {lateral}, {yaw}, side {side}: {found} is not {z}");
+    }
+    Ok(())
+}
+
+#[test]
+fn rolling_radius_differences_of_en_15302_wheel_a() -> Result<()> {
+    let system = en_15302_a()?;
+    let mut search = system.search();
+    for (lateral, expected) in [(2.0, 0.667), (4.0, 1.913), (6.0, 4.327)] {
+        let position = Position { lateral, yaw: 0.0, roll: Roll::Neglect };
+        let touch = search.touch(&position, &ALL)?;
+        let radii = touch.map_or([f64::NAN; 2], |t| t.sides.map(|s| s.touch.contacts[0].rolling_radius));
+        let found = radii[1] - radii[0];
+        assert!((found - expected).abs() < 1e-3, "at {lateral}: {found} is not {expected}");
+    }
+    Ok(())
+}
+
+#[test]
+fn mirrored_positions_have_mirrored_answers_to_the_bit() -> Result<()> {
+    for system in [manchester()?, en_15302_a()?] {
+        let (mut one, mut other) = (system.search(), system.search());
+        for (lateral, yaw) in [(0.0, 0.0), (1.5, 0.0), (5.0, 0.01), (-7.0, 0.02), (9.0, -0.03)] {
+            for roll in [Roll::Solve, Roll::Neglect, Roll::Fixed(0.004)] {
+                let back = if let Roll::Fixed(roll) = roll { Roll::Fixed(-roll) } else { roll };
+                let selection = Selection { within: 1.0, apart: 0.0 };
+                let there = one.touch(&Position { lateral, yaw, roll }, &selection)?;
+                let here = other.touch(&Position { lateral: -lateral, yaw: -yaw, roll: back }, &selection)?;
+                let (Some(there), Some(here)) = (there, here) else { panic!("no contact at {lateral}") };
+                // Two equal Newton iterates may end a rounding apart, since −0 − x is not 0 + x in a bracket.
+                assert!((there.roll + here.roll).abs() < 1e-16, "{} {}", there.roll, here.roll);
+                for side in 0..2 {
+                    let (a, b) = (there.sides[side], here.sides[1 - side]);
+                    assert!((a.z - b.z).abs() < 2e-13, "{} {}", a.z, b.z);
+                    assert_eq!(a.touch.contacts.len(), b.touch.contacts.len());
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn a_solved_roll_makes_both_wheels_touch() -> Result<()> {
+    for system in [manchester()?, en_15302_a()?] {
+        let mut search = system.search();
+        for k in -40..=40 {
+            let position =
+                Position { lateral: 0.25 * f64::from(k), yaw: 5e-4 * f64::from(k), roll: Roll::Solve };
+            let Some(touch) = search.touch(&position, &ALL)? else { panic!("no contact at {position:?}") };
+            let [left, right] = touch.sides.map(|side| side.z);
+            assert!((left - right).abs() < 6e-13, "{position:?}: {left} {right}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn contact_jumps_pass_through_two_points_of_contact() -> Result<()> {
+    let system = manchester()?;
+    let mut search = system.search();
+    // Displacements between which the right-hand wheel's contact jumps past a place on the rail: on the tread, into
+    // the flange root, onto the flange.
+    for (mut low, mut high, past) in [(0.2, 0.3, -5.0), (5.0, 5.1, -20.0), (6.6, 6.7, -32.0)] {
+        let mut last = Vec::new();
+        for _ in 0..60 {
+            let lateral = (low + high) / 2.0;
+            let position = Position { lateral, yaw: 0.0, roll: Roll::Neglect };
+            let touch = search.touch(&position, &Selection { within: 0.1, apart: 0.1 })?;
+            last = touch.map_or(Vec::new(), |t| t.sides[1].touch.contacts.to_vec());
+            if last[0].rail_x > past { low = lateral } else { high = lateral }
+        }
+        assert!(last.len() > 1 && last[1].gap < 1e-12, "at {low}: {last:?}");
+        assert!((last[0].rail_x - last[1].rail_x).abs() > 3.0, "at {low}: {last:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn skew_turns_the_wheel_s_frame_into_the_rail_s() -> Result<()> {
+    let system = manchester()?;
+    let mut search = system.search();
+    for (lateral, yaw, roll) in [(5.0, 0.012, -0.0004), (10.0, -0.024, -0.0113), (-6.0, 0.05, 0.02)] {
+        let position = Position { lateral, yaw, roll: Roll::Fixed(roll) };
+        let Some(touch) = search.touch(&position, &ALL)? else { panic!("no contact") };
+        for (side, sign) in touch.sides.iter().zip([-1.0, 1.0]) {
+            let c = side.touch.contacts[0];
+            let (yaw, roll) = (sign * yaw, sign * roll);
+            // Yaw, then roll, of the wheel's meridian tangent and circumferential direction at angle ω.
+            let turned = |[x, y, z]: [f64; 3]| {
+                let (x, y) = (x * yaw.cos() - y * yaw.sin(), x * yaw.sin() + y * yaw.cos());
+                [x * roll.cos() + z * roll.sin(), y, z * roll.cos() - x * roll.sin()]
+            };
+            let omega = -(c.wheel_angle.tan() * yaw.tan()).asin();
+            let (s, t) = (c.wheel_angle.sin(), c.wheel_angle.cos());
+            let meridian = turned([t, -s * omega.sin(), s * omega.cos()]);
+            let round = turned([0.0, omega.cos(), omega.sin()]);
+            let normal = turned([-s, -t * omega.sin(), t * omega.cos()]);
+            let (sin, cos) = c.contact_angle.sin_cos();
+            let (xi, eta, zeta) = ([cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, cos]);
+            let dot = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            let expected =
+                [(meridian, xi, c.skew.cos()), (meridian, eta, c.skew.sin()), (round, xi, -c.skew.sin())];
+            for (wheel, rail, expected) in expected {
+                assert!((dot(wheel, rail) - expected).abs() < 1e-14, "{c:?}");
+            }
+            assert!((dot(round, eta) - c.skew.cos()).abs() < 1e-14, "{c:?}");
+            assert!((dot(normal, zeta) - 1.0).abs() < 1e-14, "{c:?}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn parallel_lines_and_equal_arcs_touch_in_their_middle() -> Result<()> {
+    let line = |from, to| Ok::<_, Error>(vec![Segment::arc(Arc::line(from, to)?)]);
+    let rail = Profile::new("", "", line([-10.0, -1.0], [10.0, 1.0])?)?;
+    let wheel = Profile::new("", "", line([-20.0, -2.0], [20.0, 2.0])?)?;
+    let pair = ProfilePair::new(&Pair::new(rail, wheel, 460.0)?)?;
+    let pose = Pose::new(15.0, 0.0, 0.0)?;
+    let mut search = pair.search();
+    let touch = search.touch(&pose, &ALL);
+    let contacts = touch.map_or(Vec::new(), |t| t.contacts.to_vec());
+    assert!(contacts.iter().any(|c| (c.rail_x - 2.5).abs() < 1e-12 && !c.kink()), "{contacts:?}");
+
+    let arc = |x| Ok::<_, Error>(vec![Segment::arc(Arc::about([0.0, 80.0], 80.0, Half::Lower, x)?)]);
+    let rail = Profile::new("", "", arc([-30.0, 10.0])?)?;
+    let wheel = Profile::new("", "", arc([-20.0, 20.0])?)?;
+    let pair = ProfilePair::new(&Pair::new(rail, wheel, 460.0)?)?;
+    let mut search = pair.search();
+    let touch = search.touch(&Pose::new(0.0, 0.0, 0.0)?, &ALL);
+    assert!(touch.is_some_and(|t| t.height.abs() < 1e-13), "{touch:?}");
+    Ok(())
+}
+
+#[test]
+fn a_wheel_beside_its_rail_touches_nothing() -> Result<()> {
+    let pair = ProfilePair::new(&Pair::new(standards::rail("60E1")?, standards::wheel("S1002")?, 460.0)?)?;
+    let mut search = pair.search();
+    for offset in [-200.0, 300.0] {
+        assert_eq!(search.touch(&Pose::new(offset, 0.0, 0.0)?, &ALL), None);
+    }
+    assert!(Pose::new(f64::NAN, 0.0, 0.0).is_err());
+    assert!(Pose::new(0.0, 1.0, 0.0).is_err());
+    assert!(Pair::new(standards::rail("60E1")?, standards::wheel("S1002")?, 1.0).is_err());
+    Ok(())
+}
+
+#[test]
+fn a_contact_on_a_kink_is_where_the_closed_segments_cross() -> Result<()> {
+    // The flange tip of this drawing: a kink of 10° whose arcs, drawn with a step of 2 µm, cross 11 µm beside it.
+    let pair = Pair::new(standards::rail("56E1")?, standards::wheel("APTA-120")?, 625.0)?;
+    let profiles = ProfilePair::new(&pair)?;
+    let mut search = profiles.search();
+    let touch = search.touch(&Pose::new(8.045, 0.0, 0.0)?, &ALL);
+    let contact = touch.map(|touch| touch.contacts[0]).filter(Contact::kink);
+    let contact = contact.ok_or_else(|| Error::new("", "no kink", "one", "look at the drawing"))?;
+    let [rail, wheel] = [contact.rail_x, contact.wheel_x].map(|x| [x, contact.contact_angle]);
+    let placement = pair.placed_along(rail, wheel, 0.0)?;
+    let z = placement.wheel.point.station.z;
+    assert!((z + 9.525_298_313_755).abs() < 1e-12, "{z}");
+    assert!(feasibility(&placement).is_some_and(|found| found.feasible));
+    Ok(())
+}
+
+#[test]
+fn lengths_times_four_give_the_same_bits() -> Result<()> {
+    let scaled = |k: f64| -> Result<f64> {
+        let arc = |c: [f64; 2], r: f64, half, x: [f64; 2]| {
+            Ok::<_, Error>(Segment::arc(Arc::about(c.map(|v| v * k), r * k, half, x.map(|v| v * k))?))
+        };
+        let rail = Profile::new("", "", vec![arc([0.0, -300.0], 300.0, Half::Upper, [-20.0, 25.0])?])?;
+        let wheel = Profile::new("", "", vec![arc([3.0, -330.0], 330.0, Half::Upper, [-40.0, 30.0])?])?;
+        let pair = ProfilePair::new(&Pair::new(rail, wheel, 460.0 * k)?)?;
+        let mut search = pair.search();
+        let touch = search.touch(&Pose::new(1.5 * k, 0.02, 0.01)?, &ALL);
+        Ok(touch.map_or(f64::NAN, |t| t.height / k))
+    };
+    assert_eq!(scaled(1.0)?.to_bits(), scaled(4.0)?.to_bits());
+    assert_eq!(scaled(1.0)?.to_bits(), scaled(0.0625)?.to_bits());
+    Ok(())
+}
