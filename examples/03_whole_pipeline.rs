@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use wheelrail::export::{Folder, RUN_FOLDER};
+use wheelrail::files::{Folder, RUN_FOLDER};
 use wheelrail::run::Run;
 use wheelrail::scene;
 

@@ -52,6 +52,7 @@ pub mod contact;
 pub mod docs;
 pub mod error;
 pub mod export;
+pub mod files;
 pub mod interpenetration;
 pub mod mesh;
 pub mod numerics;

@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use wheelrail::contact::hertz::effective_modulus;
-use wheelrail::export::RUN_FOLDER;
+use wheelrail::files::RUN_FOLDER;
 use wheelrail::interpenetration::load::VirtualContact;
 use wheelrail::run::Run;
 use wheelrail::scene;

@@ -2,7 +2,7 @@
 #![allow(clippy::expect_used, reason = "a test")]
 
 use std::path::Path;
-use wheelrail::export::{Folder, RUN_FOLDER};
+use wheelrail::files::{Folder, RUN_FOLDER};
 use wheelrail::run::{Part, Run};
 use wheelrail::scene;
 use wheelrail::separation::Evaluator;

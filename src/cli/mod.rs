@@ -6,6 +6,7 @@
 mod check;
 mod midsep;
 mod output;
+mod png;
 mod profile;
 mod progress;
 mod report;
@@ -127,7 +128,7 @@ fn print(text: &str) -> Result<Outcome> {
     print_to_reader(text).map(|_| Outcome::Done)
 }
 
-/// The same; whether the reader is still there.
+/// Writes data to stdout and tells whether the reader is still there.
 fn print_to_reader(text: &str) -> Result<bool> {
     use std::io::Write;
     match std::io::stdout().lock().write_all(text.as_bytes()) {

@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use super::output::refuse_results_of_another;
+use super::png::png;
 use super::progress::Progress;
 use super::{Outcome, complain, folder_of, print};
 use crate::error::Result;
-use crate::export::{Folder, RUN_FOLDER};
+use crate::files::{Folder, RUN_FOLDER};
 use crate::run::Run;
 use crate::scene;
 
@@ -28,7 +29,7 @@ pub(super) fn run(path: &Path, out: Option<&Path>) -> Result<Outcome> {
         Run::told(scene, folder_of(path), &name, &tell).map_err(|error| error.within(path.display()))?;
     let run = run.read_from(path);
     let folder = Folder::create(&target, RUN_FOLDER)?;
-    run.write_told(&folder, &tell)?;
+    run.write_told(&folder, Some(png), &tell)?;
     folder.commit()?;
     for warning in run.warnings() {
         complain(&format!("warning: {warning}"));

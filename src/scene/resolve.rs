@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use super::data::{AxisData, ProfileData, Rotation, Scene, Spacing};
-use super::read::{nearest, parse, read_bytes, read_text};
+use super::read::{nearest, parse};
 use crate::contact::hertz::Elastic;
 use crate::error::{Error, Result, finite, given};
+use crate::files::{read_bytes, read_text};
 use crate::mesh::axes::MOST_ON_AXIS;
 use crate::placement::Pair;
 use crate::profile::drawing::{SegmentData, chain};

@@ -14,7 +14,7 @@ use clap::Subcommand;
 use super::progress::Progress;
 use super::{Outcome, print};
 use crate::error::Result;
-use crate::export::write_file;
+use crate::files::write_file;
 use crate::profile::standards;
 use source::SourceArguments;
 

@@ -10,7 +10,7 @@ use super::{Outcome, complain, print};
 use crate::accuracy::measurements::{Effort, measure};
 use crate::accuracy::page::{FILES, PAGE, excerpt, page, sections};
 use crate::error::Result;
-use crate::export::{Folder, Names};
+use crate::files::{Folder, Names};
 
 /// By what a folder of `wheelrail report` is known, and all that it may contain.
 const REPORT_FOLDER: Names = Names { marker: PAGE, files: &FILES, is_part: |_| false };

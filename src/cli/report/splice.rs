@@ -3,11 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
-use crate::export::write_file;
+use crate::files::{read_text, write_file};
 
 /// Lines between which everything is generated.
 const BEGIN: &str = "<!-- report:begin -->";
 const END: &str = "<!-- report:end -->";
+
+/// Largest page \[bytes\] that is taken for one.
+const LARGEST_PAGE: usize = 1 << 26;
 
 /// A file with both markers.
 #[derive(Debug)]
@@ -34,11 +37,8 @@ impl Target {
     }
 
     fn spliced(&self, generated: &str) -> Result<String> {
-        let place = self.path.display().to_string();
-        let text = std::fs::read_to_string(&self.path).map_err(|e| {
-            Error::new(&place, e.to_string(), "a readable Markdown file", "check the path of --splice")
-        })?;
-        spliced(&text, generated).map_err(|e| e.within(place))
+        let text = read_text(&self.path, LARGEST_PAGE)?;
+        spliced(&text, generated).map_err(|error| error.within(self.path.display()))
     }
 }
 

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::contact::search::wheelset::{Position, Roll};
 use crate::error::{Error, Result, finite};
+use crate::files::read_text;
 use crate::scene;
 
 /// Most positions of one sweep: a GiB with all that is kept of them.
@@ -67,7 +68,7 @@ fn check_count(place: &str, count: f64) -> Result<()> {
 
 /// A table with columns `lateral_mm` and perhaps `yaw_rad` and `roll_rad`; without a yaw it is 0, without a roll solved.
 pub(super) fn read_positions(path: &Path) -> Result<Vec<Position>> {
-    let table = scene::read_text(path, LARGEST_TABLE)?;
+    let table = read_text(path, LARGEST_TABLE)?;
     read_table(&path.display().to_string(), table.as_bytes())
 }
 
