@@ -69,10 +69,10 @@ enum Command {
     Schema,
 }
 
-/// What a command that ran to its end found.
+/// The answer of a command that ran to its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Outcome {
-    /// What was asked for.
+    /// The command did what was asked for.
     Done,
     /// A geometric "no".
     No,
@@ -138,6 +138,17 @@ fn print_to_reader(text: &str) -> Result<bool> {
             Err(Error::new("stdout", error.to_string(), "a stream that takes the data", "check the disk"))
         }
     }
+}
+
+/// Says every geometric "no" on stderr; the outcome is [`Outcome::No`] where there is one.
+fn outcome(noes: impl IntoIterator<Item = String>) -> Outcome {
+    let said = noes.into_iter().map(|no| complain(&format!("no: {no}"))).count();
+    if said == 0 { Outcome::Done } else { Outcome::No }
+}
+
+/// A number of things in words: "1 point", "2 points".
+fn counted(n: usize, thing: &str) -> String {
+    format!("{n} {thing}{}", if n == 1 { "" } else { "s" })
 }
 
 /// A line to stderr; there is nobody to tell when that fails.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::output::refuse_results_of_another;
 use super::png::png;
 use super::progress::Progress;
-use super::{Outcome, complain, folder_of, print};
+use super::{Outcome, complain, folder_of, outcome, print};
 use crate::error::Result;
 use crate::files::{Folder, RUN_FOLDER};
 use crate::run::Run;
@@ -34,10 +34,7 @@ pub(super) fn run(path: &Path, out: Option<&Path>) -> Result<Outcome> {
     for warning in run.warnings() {
         complain(&format!("warning: {warning}"));
     }
-    let refusals = run.refusals();
-    for refusal in &refusals {
-        complain(&format!("no: {refusal}"));
-    }
+    let outcome = outcome(run.refusals());
     print(&format!("{}\n", target.display()))?;
-    Ok(if refusals.is_empty() { Outcome::Done } else { Outcome::No })
+    Ok(outcome)
 }

@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::temporary;
+use super::{bad, temporary};
 use crate::error::{Error, Result};
 
 /// A file being written: nothing is seen of it under its name before [`NewFile::commit`], and nothing remains of it when it
@@ -92,10 +92,6 @@ fn behind_links(path: &Path) -> Result<PathBuf> {
         )),
         _ => Ok(path.to_path_buf()),
     }
-}
-
-fn bad(path: &Path, found: &str, expected: &str, advice: &str) -> Error {
-    Error::new(path.display().to_string(), found, expected, advice)
 }
 
 fn unwritable(path: &Path, error: &io::Error) -> Error {

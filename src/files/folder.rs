@@ -5,8 +5,8 @@
 //!
 //! - **The step.** A plain `rename` where DIR is missing or empty; elsewhere the kernel's exchange of two names
 //!   (`renameat2` with `RENAME_EXCHANGE`), after which the old folder bears the temporary name and is deleted.
-//!   Systems and file systems without the exchange (Windows, NFS, some FUSE) get two renames: between them DIR is missing for an
-//!   instant, and the old folder waits beside it under a name that the next run puts back.
+//!   Systems and file systems without the exchange (Windows, NFS, some FUSE) get two renames: between them DIR is
+//!   missing for an instant, and the old folder waits beside it under a name that the next run puts back.
 //! - **Killed runs.** The temporary folder is locked as long as its run lives: `files::temporary`. What a killed one leaves,
 //!   the next run into the same parent removes, on systems that lock folders.
 //! - **No fsync.** Twenty of them cost more than the whole run. What is promised holds for a kill of the process,
@@ -15,7 +15,7 @@
 //!   are not ours (notes, pictures) are hard-linked into the new folder; foreign subfolders are refused.
 
 use super::names::Names;
-use super::{system, temporary};
+use super::{bad, system, temporary};
 use crate::error::{Error, Result};
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
@@ -121,8 +121,8 @@ impl Folder {
                 Err(e) => return Err(unwritable(&self.target, &e)),
             }
         }
-        Err(Error::new(
-            self.target.display().to_string(),
+        Err(bad(
+            &self.target,
             "other runs that keep replacing it",
             "one run at a time",
             "give each run its own",
@@ -152,7 +152,8 @@ impl Folder {
 }
 
 impl FolderPart<'_> {
-    /// The way from here to an absolute path without links, which holds as well when both are moved together.
+    /// The relative path from here to an absolute path without links. It still leads there after both have been moved
+    /// together.
     pub fn relative(&self, path: &Path) -> PathBuf {
         let common = self.target.components().zip(path.components()).take_while(|(a, b)| a == b).count();
         let up = self.target.components().skip(common).map(|_| Component::ParentDir);
@@ -184,12 +185,7 @@ impl FolderPart<'_> {
                 ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "free some space or give another folder",
                 _ => "check the folder, or give another folder",
             };
-            Error::new(
-                self.target.join(name).display().to_string(),
-                e.to_string(),
-                "a file written whole",
-                advice,
-            )
+            bad(&self.target.join(name), &e.to_string(), "a file written whole", advice)
         })
     }
 }
@@ -315,10 +311,6 @@ fn put_back(target: &Path) {
 fn aside_of(target: &Path) -> PathBuf {
     let name = target.file_name().unwrap_or_default().to_string_lossy();
     parent_of(target).join(format!("{ASIDE}{name}"))
-}
-
-fn bad(path: &Path, found: &str, expected: &str, advice: &str) -> Error {
-    Error::new(path.display().to_string(), found, expected, advice)
 }
 
 fn unwritable(path: &Path, error: &io::Error) -> Error {

@@ -13,3 +13,8 @@ pub use file::{NewFile, write_file};
 pub use folder::{Folder, FolderPart};
 pub use names::{Names, PATCHES_FOLDER, RUN_FOLDER};
 pub use read::{read_bytes, read_text};
+
+/// A complaint about a path.
+fn bad(path: &std::path::Path, found: &str, expected: &str, advice: &str) -> crate::error::Error {
+    crate::error::Error::new(path.display().to_string(), found, expected, advice)
+}

@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
+use super::bad;
 use crate::error::{Error, Result};
 
 /// The bytes of a file of at most `largest` bytes; a pipe or device is read no further either.
@@ -20,12 +21,11 @@ pub fn read_bytes(path: &Path, largest: usize) -> Result<Vec<u8>> {
             ErrorKind::IsADirectory => "a folder".to_owned(),
             _ => error.to_string(),
         };
-        Error::new(path.display().to_string(), found, "a readable file", "check the path")
+        bad(path, &found, "a readable file", "check the path")
     })?;
     if bytes.len() > largest {
         let (found, expected) = (format!("more than {largest} bytes"), format!("at most {largest} bytes"));
-        let advice = "is this the right file?";
-        return Err(Error::new(path.display().to_string(), found, expected, advice));
+        return Err(bad(path, &found, &expected, "is this the right file?"));
     }
     Ok(bytes)
 }

@@ -1,6 +1,6 @@
-//! Temporary names beside what is going to be replaced: each is locked (`flock`) by the process that uses it. The kernel
-//! drops the lock with the process, so an unlocked one is left from a process that was killed; whoever writes into the same
-//! folder next removes it.
+//! Temporary names beside what is going to be replaced. Each is locked (`flock`) by the process that uses it, and the
+//! kernel drops the lock with the process: what bears such a name without a lock was left by a process that was killed.
+//! The next process that writes into the same folder removes it.
 
 use super::system;
 use std::fs::{self, File, TryLockError};
@@ -55,7 +55,8 @@ pub(super) fn locked(target: &Path, make: impl Fn(&Path) -> io::Result<File>) ->
     Err(error)
 }
 
-/// Removes what dead processes have left in a folder. Whatever fails is somebody else's or is tried again.
+/// Removes what dead processes have left in a folder. What cannot be removed belongs to somebody else, or the next process
+/// tries again.
 pub(super) fn remove_stale(parent: &Path) {
     for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
         let ours = entry.file_name().to_string_lossy().starts_with(TEMPORARY);

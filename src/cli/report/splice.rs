@@ -22,7 +22,7 @@ impl Target {
     /// Checks that the file can be read and has its markers.
     ///
     /// # Errors
-    /// It cannot, or has not.
+    /// A file that cannot be read; a marker that is missing, doubled or misplaced.
     pub(super) fn open(path: &Path) -> Result<Self> {
         let target = Self { path: path.to_path_buf() };
         target.spliced("").map(|_| target)
@@ -31,7 +31,7 @@ impl Target {
     /// Replaces what stands between the markers: the file is read anew, and replaced in one step.
     ///
     /// # Errors
-    /// As [`Target::open`]; the folder cannot be written.
+    /// Those of [`Target::open`]; the folder cannot be written.
     pub(super) fn replace(&self, generated: &str) -> Result<()> {
         write_file(&self.path, self.spliced(generated)?.as_bytes())
     }

@@ -6,9 +6,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use super::super::complain;
 use super::super::png::png;
 use super::super::progress::Progress;
+use super::super::{complain, counted};
 use super::table::Table;
 use crate::contact::search::Selection;
 use crate::contact::search::wheelset::Position;
@@ -57,8 +57,8 @@ pub(super) fn write(folder: &Folder, origin: &Origin, table: &Table, progress: &
     folder.write("summary.json", &summary(origin.scene, &written))?;
     let missing = written.iter().filter(|written| written.folders.is_empty()).count();
     if missing > 0 {
-        let plural = if missing == 1 { "" } else { "s" };
-        complain(&format!("sweep: {missing} position{plural} without contact, and without a folder"));
+        let positions = counted(missing, "position");
+        complain(&format!("sweep: {positions} without contact, and without a folder"));
     }
     Ok(())
 }
