@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use wheelrail::case::Run;
-use wheelrail::export::{Folder, RUN_FOLDER};
+use wheelrail::files::{Folder, RUN_FOLDER};
 use wheelrail::scene;
 
 fn main() -> wheelrail::Result<()> {

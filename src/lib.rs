@@ -49,6 +49,7 @@ pub mod case;
 pub mod docs;
 pub mod error;
 pub mod export;
+pub mod files;
 pub mod load;
 pub mod measured;
 pub mod mesh;

@@ -1,20 +1,20 @@
 //! Which files a run writes, and from what.
 
-use std::fs::File;
+use std::io::Write;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use super::{Part, Run, Tell, summary};
+use super::{Part, Rasterise, Run, Tell, summary};
 use crate::error::{Error, Result};
 use crate::export::deck::Deck;
 use crate::export::deck::contact::{Normal, Settings};
 use crate::export::netcdf::NetCdf;
 use crate::export::picture::{Nodes, Picture, SEPARATOR};
 use crate::export::{
-    Folder, FolderPart, Frame, GridFields, Header, Interval, Loop, QuadMesh, SurfaceMesh, VIEW_SCRIPT, csv,
-    legacy, npy, vtk, vts,
+    Frame, GridFields, Header, Interval, Loop, QuadMesh, SurfaceMesh, VIEW_SCRIPT, csv, legacy, npy, vtk, vts,
 };
+use crate::files::{Folder, FolderPart};
 use crate::mesh::strips::StripMesh;
 use crate::mesh::surfaces::Surface;
 use crate::patch::Outline;
@@ -28,7 +28,13 @@ use crate::separation::{Evaluator, midplane};
 type Job<'a> = (&'static str, Box<dyn Fn(&FolderPart<'_>) -> Result<()> + Sync + Send + 'a>);
 
 /// Writes all files that the scene asks for, side by side; summary.json last.
-pub(super) fn write(folder: &Folder, run: &Run, part: &Part, tell: Tell<'_>) -> Result<()> {
+pub(super) fn write(
+    folder: &Folder,
+    run: &Run,
+    part: &Part,
+    png: Option<Rasterise>,
+    tell: Tell<'_>,
+) -> Result<()> {
     tell(format!("{}: files", part.name()));
     let header = header(run, part);
     let rail = RailColumns::new(part);
@@ -61,7 +67,12 @@ pub(super) fn write(folder: &Folder, run: &Run, part: &Part, tell: Tell<'_>) -> 
     arrays(&mut jobs, run, part);
     bytes(&mut jobs, "patch.svg", || Ok(picture.svg().into_bytes()));
     if run.wants_any(&[Format::Png]) {
-        bytes(&mut jobs, "patch.png", || picture.png());
+        let png = png.ok_or_else(|| {
+            let expected = "formats that the library writes by itself";
+            Error::new("output: formats", "\"png\"", expected, "use the program `wheelrail`, or leave it out")
+        })?;
+        let picture = &picture;
+        bytes(&mut jobs, "patch.png", move || png(&picture.svg()));
     }
     if run.wants_any(&[Format::Vtk]) {
         surfaces(&mut jobs, &header, &grid, &loops, strips.as_ref(), bodies.as_ref());
@@ -265,7 +276,7 @@ fn surfaces<'a>(
     strips: Option<&'a QuadMesh>,
     bodies: Option<&'a [Surface; 2]>,
 ) {
-    type Writer = fn(&mut dyn std::io::Write, &Header, &GridFields<'_>) -> std::io::Result<()>;
+    type Writer = fn(&mut dyn Write, &Header, &GridFields<'_>) -> std::io::Result<()>;
     let writers: [(&'static str, Writer); 4] = [
         ("separation.vts", vts::separation),
         ("rail.vts", vts::rail),
@@ -302,7 +313,7 @@ fn bytes<'a>(
 fn stream<'a>(
     jobs: &mut Vec<Job<'a>>,
     name: &'static str,
-    content: impl Fn(&mut File) -> std::io::Result<()> + Sync + Send + 'a,
+    content: impl Fn(&mut dyn Write) -> std::io::Result<()> + Sync + Send + 'a,
 ) {
     jobs.push((name, Box::new(move |folder: &FolderPart<'_>| folder.stream(name, &content))));
 }

@@ -12,7 +12,7 @@ pub use analysis::{Analysis, ApproachBy, Contact, EllipseUnder, Question, Timing
 pub use places::Found;
 
 use crate::error::Result;
-use crate::export::Folder;
+use crate::files::Folder;
 use crate::measured::Record;
 use crate::patch::Patch;
 use crate::placement::{Pair, Placement};
@@ -25,6 +25,9 @@ pub type Profiles = (Pair, [Option<Record>; 2]);
 
 /// Is told what a run is at, from several threads.
 pub type Tell<'a> = &'a (dyn Fn(String) + Sync);
+
+/// Turns a picture's SVG into PNG. The library draws no pixels; who wants them brings this.
+pub type Rasterise = fn(&str) -> Result<Vec<u8>>;
 
 /// A scene and everything computed from it.
 #[derive(Debug, Clone)]
@@ -135,20 +138,20 @@ impl Run {
         self
     }
 
-    /// Writes all files that the scene asks for.
+    /// Writes all files that the scene asks for, in silence and without PNG.
     ///
     /// # Errors
-    /// The disk's; a format that cannot hold the grid.
+    /// The disk's; a format that cannot hold the grid; a scene that asks for PNG.
     pub fn write(&self, folder: &Folder) -> Result<()> {
-        self.write_told(folder, &|_| {})
+        self.write_told(folder, None, &|_| {})
     }
 
-    /// The same, telling what it is at.
+    /// Writes all files that the scene asks for, and tells what it is at.
     ///
     /// # Errors
-    /// Those of [`Run::write`].
-    pub fn write_told(&self, folder: &Folder, tell: Tell<'_>) -> Result<()> {
-        self.parts.iter().try_for_each(|part| files::write(folder, self, part, tell))
+    /// The disk's; a format that cannot hold the grid; a scene that asks for PNG, without what makes it.
+    pub fn write_told(&self, folder: &Folder, png: Option<Rasterise>, tell: Tell<'_>) -> Result<()> {
+        self.parts.iter().try_for_each(|part| files::write(folder, self, part, png, tell))
     }
 
     /// Geometric "no"s.

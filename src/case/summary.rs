@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::{Part, Run};
-use crate::export::FolderPart;
+use crate::files::FolderPart;
 use crate::mesh::quality::Quality;
 use crate::mesh::surfaces::Surface;
 use crate::patch::{Component, Patch};

@@ -10,7 +10,7 @@ pub use data::{
     RollWord, Rotation, Scene, Spacing, TrackData, WheelsetData,
 };
 pub use position::{Place, Standing};
-pub use read::{hash, load, parse, perhaps, read_bytes, read_text};
+pub use read::{hash, load, parse, perhaps};
 pub use resolve::{equal_steps, is_chain_file, profile_from_file};
 
 /// The JSON Schema of a scene.

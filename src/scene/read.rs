@@ -1,6 +1,5 @@
 //! Text → scene, with every complaint in the house form.
 
-use std::io::Read;
 use std::path::Path;
 
 use serde::Serialize;
@@ -10,6 +9,7 @@ use sha2::{Digest, Sha256};
 
 use super::Scene;
 use crate::error::{Error, Result};
+use crate::files::read_text;
 use crate::measured::LARGEST_FILE;
 
 /// A scene from a TOML file, or from a JSON file with the same keys.
@@ -88,53 +88,10 @@ fn has_null(value: &Value) -> bool {
     }
 }
 
-/// The bytes of a file of at most `largest` bytes; a pipe or device is read no further either.
-///
-/// # Errors
-/// An unreadable or larger file.
-pub fn read_bytes(path: &Path, largest: usize) -> Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    let file = std::fs::File::open(path).map_err(|error| unreadable(path, &error))?;
-    file.take(largest as u64 + 1).read_to_end(&mut bytes).map_err(|error| unreadable(path, &error))?;
-    if bytes.len() > largest {
-        let (found, expected) = (format!("more than {largest} bytes"), format!("at most {largest} bytes"));
-        let advice = "is this the right file?";
-        return Err(Error::new(path.display().to_string(), found, expected, advice));
-    }
-    Ok(bytes)
-}
-
-/// The text of a file of at most `largest` bytes, without the mark that some editors put before it.
-///
-/// # Errors
-/// An unreadable file or one too large; with its line, what is no UTF-8.
-pub fn read_text(path: &Path, largest: usize) -> Result<String> {
-    let text = String::from_utf8(read_bytes(path, largest)?).map_err(|error| {
-        let (bytes, good) = (error.as_bytes(), error.utf8_error().valid_up_to());
-        let line = 1 + bytes[..good].iter().filter(|byte| **byte == b'\n').count();
-        let found = format!("the byte 0x{:02X}, which is no UTF-8 there", bytes[good]);
-        let place = format!("{}: line {line}", path.display());
-        Error::new(place, found, "text in UTF-8", "save the file as UTF-8")
-    })?;
-    Ok(text.strip_prefix('\u{feff}').map(String::from).unwrap_or(text))
-}
-
 /// SHA-256 of the scene as read, in hexadecimal: equal scenes have equal hashes whatever their comments.
 pub fn hash(scene: &Scene) -> String {
     let canonical = serde_json::to_vec(scene).unwrap_or_default();
     Sha256::digest(canonical).iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
-/// Why a file cannot be read, in words.
-fn unreadable(path: &Path, error: &std::io::Error) -> Error {
-    use std::io::ErrorKind;
-    let found = match error.kind() {
-        ErrorKind::NotFound => "no such file".to_owned(),
-        ErrorKind::PermissionDenied => "a file that you may not read".to_owned(),
-        ErrorKind::IsADirectory => "a folder".to_owned(),
-        _ => error.to_string(),
-    };
-    Error::new(path.display().to_string(), found, "a readable file", "check the path")
 }
 
 /// Advice for a word that is not known: the nearest one that is, where one is near.
@@ -307,21 +264,6 @@ mod tests {
             assert!(error.starts_with(expected), "{error}");
         }
         assert_eq!(shortened(&"a ".repeat(50), Keep::End), format!("…{}", " a".repeat(30)));
-    }
-
-    #[test]
-    fn text_that_is_no_utf_8_is_shown_by_its_line_and_a_mark_before_it_is_no_text() -> Result<()> {
-        let path = std::env::temp_dir().join(format!("wheelrail-text-{}", std::process::id()));
-        let read = |bytes: &[u8]| {
-            std::fs::write(&path, bytes).unwrap();
-            read_text(&path, LARGEST_FILE)
-        };
-        assert_eq!(read(b"\xEF\xBB\xBF[rail]")?, "[rail]");
-        let error = read(b"# 1\n# caf\xE9\n").map_err(|e| e.to_string());
-        let expected = ": line 2: found the byte 0xE9, which is no UTF-8 there; expected text in UTF-8; save";
-        assert!(error.as_ref().is_err_and(|e| e.contains(expected)), "{error:?}");
-        std::fs::remove_file(&path).unwrap();
-        Ok(())
     }
 
     #[test]

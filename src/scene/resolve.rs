@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use super::data::{AxisData, ProfileData, Rotation, Scene, Spacing};
-use super::read::{nearest, parse, read_bytes, read_text};
+use super::read::{nearest, parse};
 use crate::error::{Error, Result, finite, given};
+use crate::files::{read_bytes, read_text};
 use crate::load::hertz::Elastic;
-use crate::measured;
-use crate::measured::{Measured, Options, Record};
+use crate::measured::{self, Measured, Options, Record};
 use crate::mesh::axes::MOST_ON_AXIS;
 use crate::placement::Pair;
 use crate::profile::drawing::{SegmentData, chain};

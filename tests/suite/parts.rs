@@ -2,7 +2,7 @@
 
 use std::path::Path;
 use wheelrail::case::{Part, Run};
-use wheelrail::export::{Folder, RUN_FOLDER};
+use wheelrail::files::{Folder, RUN_FOLDER};
 use wheelrail::scene;
 use wheelrail::separation::Evaluator;
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::progress::Progress;
-use super::{Outcome, complain, folder_of, print};
+use super::{Outcome, folder_of, outcome, print};
 use wheelrail::case::{Part, Run};
 use wheelrail::error::Result;
 use wheelrail::scene;
@@ -23,11 +23,8 @@ pub(super) fn check(path: &Path) -> Result<Outcome> {
         agrees &= report.agrees;
         print(&format!("{}: {report}", part.name()))?;
     }
-    let refusals = run.refusals();
-    for refusal in &refusals {
-        complain(&format!("no: {refusal}"));
-    }
-    Ok(if agrees && refusals.is_empty() { Outcome::Done } else { Outcome::No })
+    let outcome = outcome(run.refusals());
+    Ok(if agrees { outcome } else { Outcome::No })
 }
 
 fn check_part(part: &Part) -> Result<Report> {

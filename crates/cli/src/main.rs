@@ -6,6 +6,7 @@
 mod check;
 mod midsep;
 mod output;
+mod png;
 mod profile;
 mod progress;
 mod report;
@@ -68,10 +69,10 @@ enum Command {
     Schema,
 }
 
-/// What a command that ran to its end found.
+/// The answer of a command that ran to its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Outcome {
-    /// What was asked for.
+    /// The command did what was asked for.
     Done,
     /// A geometric "no".
     No,
@@ -126,7 +127,7 @@ fn print(text: &str) -> Result<Outcome> {
     print_to_reader(text).map(|_| Outcome::Done)
 }
 
-/// The same; whether the reader is still there.
+/// Writes data to stdout and tells whether the reader is still there.
 fn print_to_reader(text: &str) -> Result<bool> {
     use std::io::Write;
     match std::io::stdout().lock().write_all(text.as_bytes()) {
@@ -136,6 +137,17 @@ fn print_to_reader(text: &str) -> Result<bool> {
             Err(Error::new("stdout", error.to_string(), "a stream that takes the data", "check the disk"))
         }
     }
+}
+
+/// Says every geometric "no" on stderr; the outcome is [`Outcome::No`] where there is one.
+fn outcome(noes: impl IntoIterator<Item = String>) -> Outcome {
+    let said = noes.into_iter().map(|no| complain(&format!("no: {no}"))).count();
+    if said == 0 { Outcome::Done } else { Outcome::No }
+}
+
+/// A number of things in words: "1 point", "2 points".
+fn counted(n: usize, thing: &str) -> String {
+    format!("{n} {thing}{}", if n == 1 { "" } else { "s" })
 }
 
 /// A line to stderr; there is nobody to tell when that fails.

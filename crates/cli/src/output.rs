@@ -2,7 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use super::png::png;
 use wheelrail::error::{Error, Result};
+use wheelrail::files::read_bytes;
+
+/// Largest summary \[bytes\] that is looked into: many times one of a run with a hundred contacts.
+const LARGEST_SUMMARY: usize = 1 << 28;
 
 /// Refuses to write a file that the command reads or has another use for.
 ///
@@ -25,7 +30,7 @@ pub(super) fn refuse_taken(option: &str, out: &Path, taken: &[PathBuf]) -> Resul
 /// # Errors
 /// The folder's summary names another file.
 pub(super) fn refuse_results_of_another(folder: &Path, scene: &Path) -> Result<()> {
-    let summary = std::fs::read(folder.join("summary.json")).unwrap_or_default();
+    let summary = read_bytes(&folder.join("summary.json"), LARGEST_SUMMARY).unwrap_or_default();
     let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap_or_default();
     let Some(file) = summary["scene_file"].as_str() else { return Ok(()) };
     match (folder.join(file).canonicalize(), scene.canonicalize()) {
@@ -70,6 +75,17 @@ impl PictureFormat {
                 let found = format!("\"{}\"", file.display());
                 Err(Error::new(option, found, "a name that ends in .svg or .png", "choose one of the two"))
             }
+        }
+    }
+
+    /// A picture in this format.
+    ///
+    /// # Errors
+    /// What the renderer of PNG refuses.
+    pub(super) fn bytes(self, svg: String) -> Result<Vec<u8>> {
+        match self {
+            Self::Svg => Ok(svg.into_bytes()),
+            Self::Png => png(&svg),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Progress on stderr: what a command that takes long is at.
+//! Progress on stderr: the step that a long command is at.
 
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -10,16 +10,17 @@ use super::complain;
 /// Silence on stderr after which progress is reported; a command that ends before says nothing.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Tells until it is dropped. A thread of its own does so: one step may take longer than anybody's patience.
+/// Tells what a command is at until it is dropped. It has a thread of its own: one step may take longer than anybody's
+/// patience.
 #[derive(Debug)]
 pub(super) struct Progress {
     at: Arc<Mutex<String>>,
-    /// What the teller waits for; it ends when this is gone.
+    /// The teller waits for its end, and stops when it is dropped.
     _at_work: Sender<()>,
 }
 
 impl Progress {
-    /// Of the command with this name, from now on and at its first step.
+    /// Starts to tell of the command with this name, which is at its first step.
     pub(super) fn of(command: &'static str, step: &str) -> Self {
         Self::told(PATIENCE, step, move |line| complain(&format!("{command}: {line}")))
     }
@@ -39,7 +40,7 @@ impl Progress {
         Self { at, _at_work: at_work }
     }
 
-    /// What the command is at from now on.
+    /// Names the step that the command is at from now on.
     pub(super) fn at(&self, step: impl Into<String>) {
         *self.at.lock().unwrap_or_else(PoisonError::into_inner) = step.into();
     }

@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use super::output::refuse_results_of_another;
+use super::png::png;
 use super::progress::Progress;
-use super::{Outcome, complain, folder_of, print};
+use super::{Outcome, complain, folder_of, outcome, print};
 use wheelrail::case::Run;
 use wheelrail::error::Result;
-use wheelrail::export::{Folder, RUN_FOLDER};
+use wheelrail::files::{Folder, RUN_FOLDER};
 use wheelrail::scene;
 
 /// Runs a scene; exit code 1 for an infeasible contact or an empty patch, whose files are written all the same.
@@ -28,15 +29,12 @@ pub(super) fn run(path: &Path, out: Option<&Path>) -> Result<Outcome> {
         Run::told(scene, folder_of(path), &name, &tell).map_err(|error| error.within(path.display()))?;
     let run = run.read_from(path);
     let folder = Folder::create(&target, RUN_FOLDER)?;
-    run.write_told(&folder, &tell)?;
+    run.write_told(&folder, Some(png), &tell)?;
     folder.commit()?;
     for warning in run.warnings() {
         complain(&format!("warning: {warning}"));
     }
-    let refusals = run.refusals();
-    for refusal in &refusals {
-        complain(&format!("no: {refusal}"));
-    }
+    let outcome = outcome(run.refusals());
     print(&format!("{}\n", target.display()))?;
-    Ok(if refusals.is_empty() { Outcome::Done } else { Outcome::No })
+    Ok(outcome)
 }

@@ -7,9 +7,8 @@
 //! [`rates`] counts positions of a wheelset a second over them, [`whole_case`] times a case from first touch to its mesh;
 //! [`measurements`] does all of it to a given effort; [`requirements`] judges the ratios;
 //! [`practice`] runs whole cases as engineers have them against brute force;
-//! [`page`], [`table`] and [`chart`] turn the numbers into Markdown, CSV and SVG. Nothing here touches the disk.
+//! [`page`] and [`table`] turn the numbers into Markdown and CSV, and into charts. Nothing here touches the disk.
 
-pub mod chart;
 pub mod errors;
 pub mod hard_case;
 mod hard_checks;

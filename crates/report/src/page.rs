@@ -2,7 +2,6 @@
 
 mod in_use;
 
-use super::chart::{Chart, Series, svg};
 use super::hard_case::Outcome;
 use super::measured;
 use super::measurements::{Growth, Measurements, PASSES, Row, median};
@@ -10,6 +9,7 @@ use super::requirements;
 use super::spline_cost::SplineCost;
 use super::table::{accuracy_csv, growth_csv, hard_cases_csv, markdown, verification_csv};
 use super::verification::{Verified, floors};
+use wheelrail::export::picture::chart::{Chart, Series};
 use wheelrail::numerics::nan_max;
 use wheelrail_check::{RELATION, Report};
 
@@ -171,7 +171,7 @@ fn speed_and_error(m: &Measurements) -> Section {
     let mut files = vec![("accuracy.csv", accuracy_csv(&m.rows).into_bytes())];
     for (side, name) in sides(m).into_iter().zip(["work_error_small.svg", "work_error_large.svg"]) {
         body += &format!("\n![error against speed, {side} × {side} points]({name})\n");
-        files.push((name, svg(&work_error(m, side)).into_bytes()));
+        files.push((name, work_error(m, side).svg().into_bytes()));
     }
     Section { title: "Speed against error", body, files }
 }
@@ -258,7 +258,7 @@ fn growth(m: &Measurements) -> Section {
     );
     let files = vec![
         ("scaling.csv", growth_csv(&m.growth).into_bytes()),
-        ("scaling.svg", svg(&growth_chart(&m.growth)).into_bytes()),
+        ("scaling.svg", growth_chart(&m.growth).svg().into_bytes()),
     ];
     Section { title: "Growth of cost", body, files }
 }

@@ -1,13 +1,10 @@
 //! The picture of a sweep: several quantities over one abscissa, a panel each.
 
-use super::canvas::{Anchor, Canvas, Colour, Pen};
-use super::panel::{GREY, INK, Panel, SMALL};
-use super::{BOUNDARY, WHEEL, cut, heading, legend, png, range, svg};
-use crate::error::Result;
+use super::page::{BLUE, Colour, Page, Pen, RED, polygon};
+use super::panel::{Panel, airy, range};
 
 /// Colours of the curves of a panel, in order.
-const COLOURS: [Colour; 2] = [WHEEL.colour, BOUNDARY.colour];
-const ZERO: Pen = Pen::new(GREY, 0.6);
+const COLOURS: [Colour; 2] = [BLUE, RED];
 
 /// Left edges of the two columns of panels, their width and height, and what one row takes \[page units\].
 const LEFT: [f64; 2] = [90.0, 540.0];
@@ -63,58 +60,34 @@ pub struct CurvesPicture {
 impl CurvesPicture {
     /// The picture as SVG.
     pub fn svg(&self) -> String {
-        svg::document(&self.page())
-    }
-
-    /// The same as PNG, two pixels to the page unit.
-    ///
-    /// # Errors
-    /// What the encoder refuses, which would be a fault of this program.
-    pub fn png(&self) -> Result<Vec<u8>> {
-        png::encode(&self.page(), 2.0)
-    }
-
-    fn page(&self) -> Canvas {
         let height = TOP + ROW * self.quantities.len().div_ceil(LEFT.len()) as f64;
-        let mut page = Canvas { size: [900.0, height], marks: Vec::new() };
-        page.text([40.0, 42.0], cut(&self.title, 80), 18.0, Anchor::Start, INK);
-        page.text([40.0, 64.0], cut(&self.about, 110), SMALL + 1.0, Anchor::Start, INK);
+        let mut page = Page::new(&self.title, &self.about);
         let all = self.quantities.iter().flat_map(|q| &q.curves).flat_map(|curve| &curve.points);
-        let u = range(all.map(|p| p[0]).filter(|u| u.is_finite()));
+        let u = range(all.map(|p| p[0]));
         for (k, quantity) in self.quantities.iter().enumerate() {
             let place = [LEFT[k % LEFT.len()], TOP + ROW * (k / LEFT.len()) as f64, SIZE[0], SIZE[1]];
             self.panel(&mut page, place, u, quantity);
         }
-        let foot = format!("wheelrail {}", env!("CARGO_PKG_VERSION"));
-        page.text([860.0, height - 16.0], foot, 9.0, Anchor::End, GREY);
-        page
+        page.finish(height, &super::foot())
     }
 
-    fn panel(&self, page: &mut Canvas, place: [f64; 4], u: [f64; 2], quantity: &Quantity) {
-        heading(page, place, &quantity.title);
+    fn panel(&self, page: &mut Page, place: [f64; 4], u: [f64; 2], quantity: &Quantity) {
+        page.heading(place, &quantity.title);
         let values = quantity.curves.iter().flat_map(|curve| &curve.points).map(|p| p[1]);
-        let [low, high] = range(values.filter(|v| v.is_finite()));
-        // Rounding of a constant is a line, not a picture of rounding.
-        let air = (0.06 * (high - low)).max(1e-6 * low.abs().max(high.abs())).max(1e-9);
-        let panel = Panel { place, u, v: [low - air, high + air] };
-        if panel.v[0] < 0.0 && panel.v[1] > 0.0 {
-            page.line(panel.point([u[0], 0.0]), panel.point([u[1], 0.0]), ZERO);
-        }
+        let [low, high] = range(values);
+        let least = (1e-6 * low.abs().max(high.abs())).max(1e-9);
+        let panel = Panel { place, u, v: airy([low, high], 0.06, least) };
+        panel.zero_line(page);
         for (k, (curve, colour)) in quantity.curves.iter().zip(COLOURS).enumerate() {
             let pen = Pen::new(colour, 1.6);
             let parted = curve.parted();
-            page.lines(panel.curve(&parted), pen);
-            page.area(dots(&panel, &parted), colour);
+            page.lines(&panel.curve(&parted), pen);
+            page.area(&dots(&panel, &parted), colour);
             if !curve.name.is_empty() {
-                legend(
-                    page,
-                    [place[0] + place[2] - 130.0 + 70.0 * k as f64, place[1] - 18.0],
-                    pen,
-                    &curve.name,
-                );
+                let at = [place[0] + place[2] - 130.0 + 70.0 * k as f64, place[1] - 18.0];
+                page.legend(at, pen, &curve.name);
             }
         }
-        panel.frame(page);
         panel.axes(page, [&self.abscissa, &quantity.axis]);
     }
 }
@@ -137,12 +110,7 @@ impl Curve {
 fn dots(panel: &Panel, points: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
     let defined = |k: usize| points.get(k).is_some_and(|p| p[0].is_finite() && p[1].is_finite());
     let alone = |k: &usize| defined(*k) && !defined(k + 1) && !k.checked_sub(1).is_some_and(defined);
-    let dot = |k: usize| {
-        let [x, y] = panel.point(points[k]);
-        let corner = |i: i32| (f64::from(i) * std::f64::consts::FRAC_PI_6).sin_cos();
-        (0..12).map(corner).map(|(sin, cos)| [x + DOT * cos, y + DOT * sin]).collect()
-    };
-    (0..points.len()).filter(alone).map(dot).collect()
+    (0..points.len()).filter(alone).map(|k| polygon(panel.point(points[k]), DOT, 12, 0.0)).collect()
 }
 
 /// The places k after which a contact jumps: between k and k + 1 one of its abscissae changes by far more than around.
@@ -154,7 +122,7 @@ pub fn jumps(abscissae: &[&[f64]]) -> Vec<usize> {
 }
 
 fn jumps_of(values: &[f64]) -> Vec<usize> {
-    let [low, high] = range(values.iter().copied().filter(|v| v.is_finite()));
+    let [low, high] = range(values.iter().copied());
     let changes: Vec<f64> = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
     let middle = |k: usize| {
         let last = (k + BESIDE + 1).min(changes.len());
@@ -191,6 +159,11 @@ mod tests {
         assert_eq!(jumps(&[&slope]), [0; 0]);
     }
 
+    /// Closed rings of a path.
+    fn rings(path: &str) -> usize {
+        path.matches('Z').count()
+    }
+
     #[test]
     fn a_point_between_two_jumps_is_a_dot_and_each_jump_parts() {
         // There and, one position later, on: the one jump does not hide the other.
@@ -199,12 +172,9 @@ mod tests {
         let still = vec![0.0; 20];
         assert_eq!(jumps(&[&still, &x]), [9, 10]);
         let points = x.iter().enumerate().map(|(k, x)| [k as f64, *x]).collect();
-        let page = picture(points, vec![9, 10]).page();
-        let dots = page.marks.iter().filter_map(|mark| match mark {
-            super::super::canvas::Mark::Area { rings, .. } => Some(rings.len()),
-            _ => None,
-        });
-        assert_eq!(dots.sum::<usize>(), 1);
+        let svg = picture(points, vec![9, 10]).svg();
+        let dots: Vec<usize> = svg.lines().filter(|line| line.contains("evenodd")).map(rings).collect();
+        assert_eq!(dots, [1]);
     }
 
     #[test]

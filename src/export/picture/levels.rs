@@ -1,15 +1,19 @@
 //! Which lines of equal separation are drawn, and where their numbers stand.
 
-use super::canvas::{Anchor, Canvas, Colour, Pen};
 use super::contour::Nodes;
-use super::panel::{INK, Panel, number, round_below};
-use super::{INSIDE, SHOWN_LEVELS, extremes};
+use super::page::{Colour, Page, Pen, WHITE, Words};
+use super::panel::{Panel, extremes, number, round_below};
+use super::patch::INSIDE;
+
+/// Lines are drawn up to this multiple of the approach: near a flange s grows to many times as much, which is of no
+/// interest to the patch.
+const SHOWN: f64 = 5.0;
 
 /// Lines of equal separation aimed at.
 const LEVELS: f64 = 10.0;
 
-/// Size of the numbers on the lines \[page units\], and the part of it that a digit is wide.
-const SIZE: f64 = 9.5;
+/// The numbers on the lines, and the part of their size that a digit is wide.
+const NUMBERS: Words = Words::new(9.5).middle();
 const DIGIT: f64 = 0.64;
 
 /// Places on one level that are tried for its number.
@@ -26,14 +30,14 @@ pub(super) struct Level {
     pub(super) value: f64,
     pub(super) name: String,
     pub(super) pen: Pen,
-    /// On the page.
+    /// The lines in coordinates of the page.
     pub(super) lines: Vec<Vec<[f64; 2]>>,
 }
 
 /// Round levels up to a multiple of the approach, or up to the largest value without one.
 pub(super) fn levels(nodes: &Nodes<'_>, approach: f64, panel: &Panel) -> Vec<Level> {
-    let [low, high] = extremes(nodes.values.iter().copied().filter(|s| s.is_finite()));
-    let shown = SHOWN_LEVELS * approach;
+    let [low, high] = extremes(nodes.values.iter().copied());
+    let shown = SHOWN * approach;
     let high = if approach > 0.0 && shown > low { high.min(shown) } else { high };
     if low >= high {
         return Vec::new();
@@ -57,7 +61,7 @@ pub(super) fn levels(nodes: &Nodes<'_>, approach: f64, panel: &Panel) -> Vec<Lev
 
 /// Writes each level's number where its line is farthest from all others and from the numbers before.
 pub(super) fn label(
-    page: &mut Canvas,
+    page: &mut Page,
     levels: &[Level],
     rings: &[Vec<[f64; 2]>],
     panel: &Panel,
@@ -65,7 +69,7 @@ pub(super) fn label(
 ) {
     let mut placed: Vec<[f64; 2]> = Vec::new();
     for (number, level) in levels.iter().enumerate() {
-        let size = [SIZE * DIGIT * level.name.chars().count() as f64 + 3.0, SIZE + 1.0];
+        let size = [NUMBERS.size * DIGIT * level.name.chars().count() as f64 + 3.0, NUMBERS.size + 1.0];
         let neighbours = levels.iter().enumerate().filter(|(k, _)| k.abs_diff(number) == 1);
         let others = neighbours.flat_map(|(_, other)| &other.lines).chain(rings);
         let others: Vec<[f64; 2]> = others.flatten().copied().collect();
@@ -79,10 +83,10 @@ pub(super) fn label(
             points.iter().step_by(points.len().div_ceil(TRIED).max(1)).filter(|at| inside(panel, **at, size));
         let rated = tried.filter_map(|at| Some((free(*at)?, *at)));
         let Some((_, [x, y])) = rated.max_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
-        let ground = if level.value < approach { INSIDE } else { [255; 3] };
+        let ground = if level.value < approach { INSIDE } else { WHITE };
         let corners = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]];
-        page.area(vec![corners.map(|[i, j]| [x + i * size[0], y + j * size[1]]).to_vec()], ground);
-        page.text([x, y + 0.36 * SIZE], level.name.clone(), SIZE, Anchor::Middle, INK);
+        page.area(&[corners.map(|[i, j]| [x + i * size[0], y + j * size[1]]).to_vec()], ground);
+        page.text([x, y + 0.36 * NUMBERS.size], &level.name, NUMBERS);
         placed.push([x, y]);
     }
 }

@@ -1,13 +1,13 @@
 //! A panel: a rectangle of the page with its own coordinates, ticks and scale bar.
 
-use super::canvas::{Anchor, Canvas, Colour, Pen};
+use super::page::{BODY, GREY, INK, Page, Pen, SMALL};
 
-pub(super) const INK: Colour = [34, 34, 34];
-pub(super) const GREY: Colour = [120, 120, 120];
 const FRAME: Pen = Pen::new(GREY, 0.8);
+const ZERO: Pen = Pen::new(GREY, 0.6);
+const GRID: Pen = Pen::new([221; 3], 1.0);
 
-/// Size of the smaller texts \[page units\].
-pub(super) const SMALL: f64 = 11.0;
+/// Values along an axis with their labels.
+type Ticks = Vec<(f64, String)>;
 
 /// A map from (u, v), v upwards, onto a rectangle of the page.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,42 +73,83 @@ impl Panel {
         (known && from < to).then_some(ends)
     }
 
-    pub(super) fn frame(&self, canvas: &mut Canvas) {
-        let [x, y, w, h] = self.place;
-        canvas.lines(vec![vec![[x, y], [x + w, y], [x + w, y + h], [x, y + h], [x, y]]], FRAME);
+    /// A line at v = 0, where the panel shows it.
+    pub(super) fn zero_line(&self, page: &mut Page) {
+        page.lines(&self.curve(&[[self.u[0], 0.0], [self.u[1], 0.0]]), ZERO);
     }
 
-    /// Ticks, numbers and names below and to the left.
-    pub(super) fn axes(&self, canvas: &mut Canvas, names: [&str; 2]) {
+    /// Frame, ticks, numbers and names below and to the left.
+    pub(super) fn axes(&self, page: &mut Page, names: [&str; 2]) {
+        let [_, _, w, h] = self.place;
+        self.ticked(page, names, [ticks_of(self.u, w / 45.0), ticks_of(self.v, h / 28.0)]);
+    }
+
+    /// Frame, ticks and names where u and v are decimal logarithms between whole numbers.
+    pub(super) fn decade_axes(&self, page: &mut Page, names: [&str; 2]) {
+        self.ticked(page, names, [self.u, self.v].map(decades));
+    }
+
+    /// Lines across the panel at its decades.
+    pub(super) fn decade_grid(&self, page: &mut Page) {
+        let across = decades(self.u).into_iter().map(|(u, _)| [[u, self.v[0]], [u, self.v[1]]]);
+        let along = decades(self.v).into_iter().map(|(v, _)| [[self.u[0], v], [self.u[1], v]]);
+        let lines: Vec<_> =
+            across.chain(along).map(|ends| ends.map(|end| self.point(end)).to_vec()).collect();
+        page.lines(&lines, GRID);
+    }
+
+    fn ticked(&self, page: &mut Page, names: [&str; 2], [below, left]: [Ticks; 2]) {
         let [x, y, w, h] = self.place;
+        page.lines(&[vec![[x, y], [x + w, y], [x + w, y + h], [x, y + h], [x, y]]], FRAME);
         let mut ticks = Vec::new();
-        for (value, label) in ticks_of(self.u, w / 45.0) {
+        for (value, label) in below {
             let [px, _] = self.point([value, self.v[0]]);
             ticks.push(vec![[px, y + h], [px, y + h + 5.0]]);
-            canvas.text([px, y + h + 18.0], label, SMALL, Anchor::Middle, INK);
+            page.text([px, y + h + 18.0], label, SMALL.middle());
         }
-        for (value, label) in ticks_of(self.v, h / 28.0) {
+        for (value, label) in left {
             let [_, py] = self.point([self.u[0], value]);
             ticks.push(vec![[x, py], [x - 5.0, py]]);
-            canvas.text([x - 8.0, py + 4.0], label, SMALL, Anchor::End, INK);
+            page.text([x - 8.0, py + 4.0], label, SMALL.end());
         }
-        canvas.lines(ticks, FRAME);
-        canvas.text([x + w / 2.0, y + h + 36.0], names[0], SMALL + 1.0, Anchor::Middle, INK);
-        canvas.upright([x - 46.0, y + h / 2.0], names[1], SMALL + 1.0, INK);
+        page.lines(&ticks, FRAME);
+        page.text([x + w / 2.0, y + h + 36.0], names[0], BODY.middle());
+        page.upright([x - 46.0, y + h / 2.0], names[1], BODY.middle());
     }
 
     /// A bar of a round length along u, with its right end at `end` \[page units\].
-    pub(super) fn scale_bar(&self, canvas: &mut Canvas, end: [f64; 2], longest: f64) {
+    pub(super) fn scale_bar(&self, page: &mut Page, end: [f64; 2], longest: f64) {
         let scale = self.scale()[0];
         let length = round_below(longest / scale);
         let start = end[0] - length * scale;
-        let pen = Pen::new(INK, 1.6);
-        canvas.line([start, end[1]], end, pen);
+        page.line([start, end[1]], end, Pen::new(INK, 1.6));
         let caps = [start, end[0]].map(|x| vec![[x, end[1] - 3.0], [x, end[1] + 3.0]]);
-        canvas.lines(caps.to_vec(), Pen::new(INK, 1.0));
+        page.lines(&caps, Pen::new(INK, 1.0));
         let middle = [(start + end[0]) / 2.0, end[1] - 7.0];
-        canvas.text(middle, format!("{} mm", number(length, length)), SMALL, Anchor::Middle, INK);
+        page.text(middle, format!("{} mm", number(length, length)), SMALL.middle());
     }
+}
+
+/// The smallest range that holds all finite values, widened to a length if they are one; 0 to 1 without any.
+pub(super) fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    match extremes(values) {
+        [low, high] if high > low => [low, high],
+        [low, _] if low.is_finite() => [low - 0.5, low + 0.5],
+        _ => [0.0, 1.0],
+    }
+}
+
+/// The smallest and the largest finite value; of none, +∞ and −∞.
+pub(super) fn extremes(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    let finite = values.filter(|value| value.is_finite());
+    finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+}
+
+/// A range with air at both ends: this share of its length, and `least` where that is more. Rounding of a constant is
+/// then a line, not a picture of rounding.
+pub(super) fn airy([low, high]: [f64; 2], share: f64, least: f64) -> [f64; 2] {
+    let air = (share * (high - low)).max(least);
+    [low - air, high + air]
 }
 
 /// The largest of …, 1, 2, 5, 10, … that is not above x > 0.
@@ -118,7 +159,7 @@ pub(super) fn round_below(x: f64) -> f64 {
     [10.0, 5.0, 2.0].into_iter().find(|f| x >= 0.999_999 * f * power).unwrap_or(1.0) * power
 }
 
-/// x with as many decimals as multiples of `step` need.
+/// The number x with as many decimals as multiples of `step` need.
 pub(super) fn number(x: f64, step: f64) -> String {
     let decimals = (-step.log10().floor()).clamp(0.0, 12.0) as usize;
     let text = format!("{x:.decimals$}");
@@ -127,7 +168,7 @@ pub(super) fn number(x: f64, step: f64) -> String {
 }
 
 /// Round values inside a range with their labels: about `most` of them, and two at least, or there is no scale.
-fn ticks_of(range: [f64; 2], most: f64) -> Vec<(f64, String)> {
+fn ticks_of(range: [f64; 2], most: f64) -> Ticks {
     // Rounding takes off up to a factor of 2.5.
     let mut step = round_below(2.5 * (range[1] - range[0]) / most);
     let mut values = multiples(range, step);
@@ -152,6 +193,25 @@ fn multiples([low, high]: [f64; 2], step: f64) -> Vec<f64> {
     all.filter(|value| (low..=high).contains(value)).collect()
 }
 
+/// Powers of ten to label along a range of logarithms between whole numbers, at most about ten.
+fn decades([low, high]: [f64; 2]) -> Ticks {
+    let (low, high) = (low.round() as i32, high.round() as i32);
+    let step = ((high - low) / 10 + 1) as usize;
+    (low..=high).step_by(step).map(|power| (f64::from(power), power_of_ten(power))).collect()
+}
+
+/// A power of ten as words: "10⁻¹²".
+fn power_of_ten(power: i32) -> String {
+    let digit = |c: char| match c {
+        '-' => '⁻',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        c => char::from_u32(0x2070 + c.to_digit(10).unwrap_or(0)).unwrap_or(c),
+    };
+    format!("10{}", power.to_string().chars().map(digit).collect::<String>())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -174,6 +234,14 @@ mod tests {
             }
         }
         assert_eq!(ticks_of([-1.5, 1.5], 1.2).len(), 3);
+    }
+
+    #[test]
+    fn decades_are_labelled_as_powers() {
+        let labels = |range| decades(range).into_iter().map(|(_, label)| label).collect::<Vec<_>>();
+        assert_eq!(labels([-1.0, 1.0]), ["10⁻¹", "10⁰", "10¹"]);
+        assert_eq!(labels([-24.0, 0.0]).first().map(String::as_str), Some("10⁻²⁴"));
+        assert!(labels([-24.0, 0.0]).len() <= 11);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::source::{Content, Source, SourceArguments};
 use super::{Outcome, put};
-use crate::complain;
+use crate::{complain, counted};
 use wheelrail::error::{Error, Result};
 use wheelrail::measured::{CurveKind, Format, write};
 use wheelrail::profile::{Profile, Side};
@@ -66,13 +66,12 @@ fn points(arguments: &ConvertArguments) -> Result<String> {
     Ok(write::points(&points, format, side, &source.profile().name))
 }
 
-/// The points that other programs can tell apart; says how many were left out.
+/// The points that other programs can tell apart; those left out are counted on stderr.
 fn spaced(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let kept = write::spaced(&points);
     if kept.len() < points.len() {
-        let (left_out, least) = (points.len() - kept.len(), write::LEAST_DISTANCE);
-        let plural = if left_out == 1 { "" } else { "s" };
-        complain(&format!("note: left out, {left_out} point{plural} nearer than {least} mm to another"));
+        let (left_out, least) = (counted(points.len() - kept.len(), "point"), write::LEAST_DISTANCE);
+        complain(&format!("note: left out, {left_out} nearer than {least} mm to another"));
     }
     kept
 }

@@ -15,7 +15,7 @@ use super::progress::Progress;
 use super::{Outcome, print};
 use source::SourceArguments;
 use wheelrail::error::Result;
-use wheelrail::export::write_file;
+use wheelrail::files::write_file;
 use wheelrail::profile::standards;
 
 /// What to do with profiles.

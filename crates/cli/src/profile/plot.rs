@@ -8,7 +8,7 @@ use crate::output::PictureFormat;
 use wheelrail::error::Result;
 use wheelrail::export::picture::SEPARATOR;
 use wheelrail::export::picture::profile::ProfilePicture;
-use wheelrail::export::write_file;
+use wheelrail::files::write_file;
 use wheelrail::measured::{CurveRecord, Measured};
 use wheelrail::profile::trace::{Mark, beside, trace};
 
@@ -19,30 +19,27 @@ const STEP: f64 = 0.1;
 pub(super) fn plot(arguments: &SourceArguments, out: Option<&Path>) -> Result<Outcome> {
     arguments.refuse_output(out)?;
     let format = out.map(|out| PictureFormat::of_file("--out", out)).transpose()?;
-    let bytes = picture(&arguments.read()?, format.unwrap_or(PictureFormat::Svg))?;
-    match out {
-        Some(out) => write_file(out, &bytes).map(|()| Outcome::Done),
-        None => print(&String::from_utf8_lossy(&bytes)),
+    let svg = picture(&arguments.read()?);
+    match out.zip(format) {
+        Some((out, format)) => write_file(out, &format.bytes(svg)?).map(|()| Outcome::Done),
+        None => print(&svg),
     }
 }
 
-fn picture(source: &Source, format: PictureFormat) -> Result<Vec<u8>> {
+fn picture(source: &Source) -> String {
     let profile = source.profile();
     let marks = trace(profile, STEP);
     let points: Vec<[f64; 2]> =
         source.measured().map_or_else(Vec::new, |measured| measured.points.iter().map(|p| p.xz()).collect());
-    let picture = ProfilePicture {
+    ProfilePicture {
         title: &profile.name,
         about: &about(source),
         points: &points,
         curve: &marks.iter().map(|mark| [mark.station.x, mark.station.z]).collect::<Vec<_>>(),
         residual: &residual(&marks, &points),
         curvature: &marks.iter().map(|mark| [mark.s, mark.curvature]).collect::<Vec<_>>(),
-    };
-    match format {
-        PictureFormat::Svg => Ok(picture.svg().into_bytes()),
-        PictureFormat::Png => picture.png(),
     }
+    .svg()
 }
 
 fn about(source: &Source) -> String {

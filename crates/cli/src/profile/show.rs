@@ -3,11 +3,12 @@
 use std::fmt::Write;
 
 use super::source::Source;
+use crate::counted;
 use wheelrail::measured::{CurveKind, CurveRecord, Measured, Record};
 use wheelrail::profile::{Profile, Shape};
 
-/// Name and source; of a measured file how it was read and fitted; segments and joints, unless they are the
-/// spans of a spline, of which there are as many as points.
+/// Describes a profile: name and source; how a measured file was read and fitted; segments and joints. The spans of a
+/// spline are left out: there are as many as points.
 pub(super) fn show(source: &Source) -> String {
     let profile = source.profile();
     // Writing to a string cannot fail, here and below.
@@ -39,10 +40,8 @@ fn record(out: &mut String, Measured { record, points, .. }: &Measured) {
     let [[a, b], [x, z]] = [transform.scale, transform.shift];
     let _ = writeln!(out, "transform  x = {a} first + {x} mm, z = {b} second + {z} mm");
     for repair in &record.repairs {
-        let places = repair.places.join(", ");
-        let plural = if repair.points == 1 { "" } else { "s" };
-        let _ =
-            writeln!(out, "repair     {}: {} point{plural}, {places}", name(&repair.repair), repair.points);
+        let (points, places) = (counted(repair.points, "point"), repair.places.join(", "));
+        let _ = writeln!(out, "repair     {}: {points}, {places}", name(&repair.repair));
     }
     for finding in &record.warnings {
         let _ = writeln!(out, "finding    {}, {}: {}", name(&finding.check), finding.place, finding.found);

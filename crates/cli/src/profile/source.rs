@@ -7,6 +7,7 @@ use clap::Args;
 use super::options::{Body, MeasuredArguments};
 use crate::output::refuse_taken;
 use wheelrail::error::{Error, Result};
+use wheelrail::files::read_bytes;
 use wheelrail::measured::{self, CurveKind, Measured, Options};
 use wheelrail::profile::{Profile, Side, standards};
 use wheelrail::scene;
@@ -93,7 +94,7 @@ impl SourceArguments {
             return Ok(Source { side, content: Content::Drawn(scene::profile_from_file(path)?) });
         }
         let options = Options { curve: options.curve.or(curve), ..options };
-        let bytes = scene::read_bytes(path, measured::LARGEST_FILE)?;
+        let bytes = read_bytes(path, measured::LARGEST_FILE)?;
         let Some(known) =
             side.map_or_else(|| measured::body(&self.profile, &bytes, &options), |side| Ok(Some(side)))?
         else {

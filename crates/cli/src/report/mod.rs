@@ -6,13 +6,13 @@ mod splice;
 use std::path::Path;
 
 use super::progress::Progress;
-use super::{Outcome, complain, print};
+use super::{Outcome, outcome, print};
 use wheelrail::error::Result;
-use wheelrail::export::{Folder, Names};
+use wheelrail::files::{Folder, Names};
 use wheelrail_report::measurements::{Effort, measure};
 use wheelrail_report::page::{FILES, PAGE, excerpt, page, sections};
 
-/// By what a folder of `wheelrail report` is known, and all that it may contain.
+/// The names by which a folder of `wheelrail report` is known.
 const REPORT_FOLDER: Names = Names { marker: PAGE, files: &FILES, is_part: |_| false };
 
 /// Measures, writes the folder, and puts the table into `splice` when there is one; exit code 1 when a hard case is
@@ -36,14 +36,9 @@ pub(super) fn report(out: Option<&Path>, splice: Option<&Path>) -> Result<Outcom
         target.replace(&excerpt(&measurements, &origin))?;
     }
     print(&format!("{}\n", target.display()))?;
-    let wrong: Vec<_> = measurements.hard_cases.iter().filter(|outcome| !outcome.as_stated()).collect();
-    for outcome in &wrong {
-        complain(&format!("no: hard case {} is not as stated", outcome.case.reference.name));
-    }
-    let disputed: Vec<_> =
-        measurements.verified.iter().flatten().filter(|verified| !verified.report.agrees).collect();
-    for verified in &disputed {
-        complain(&format!("no: {} disagrees with parry3d's meshes", verified.name));
-    }
-    Ok(if wrong.is_empty() && disputed.is_empty() { Outcome::Done } else { Outcome::No })
+    let wrong = measurements.hard_cases.iter().filter(|case| !case.as_stated());
+    let wrong = wrong.map(|case| format!("hard case {} is not as stated", case.case.reference.name));
+    let disputed = measurements.verified.iter().flatten().filter(|verified| !verified.report.agrees);
+    let disputed = disputed.map(|verified| format!("{} disagrees with parry3d's meshes", verified.name));
+    Ok(outcome(wrong.chain(disputed)))
 }

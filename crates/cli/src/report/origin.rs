@@ -4,10 +4,14 @@ use std::path::Path;
 use std::process::Command;
 use std::thread::available_parallelism;
 
+use wheelrail::files::read_text;
 use wheelrail_report::page::Origin;
 
 /// Load from which other processes disturb what is measured: one of two cores taken half of the time.
 const QUIET: f64 = 0.5;
+
+/// Most of what is read of one of the system's files \[bytes\]: a thousand processors take less.
+const LARGEST_FILE: usize = 1 << 24;
 
 /// Machine, compiler, commit and command.
 pub(super) fn origin() -> Origin {
@@ -70,7 +74,7 @@ fn processor() -> String {
 
 /// The value of the first "name : value" line of a file.
 fn field(file: &str, name: &str) -> String {
-    let text = std::fs::read_to_string(file).unwrap_or_default();
+    let text = read_text(Path::new(file), LARGEST_FILE).unwrap_or_default();
     let value = text.lines().find_map(|line| {
         let (key, value) = line.split_once(':')?;
         (key.trim() == name).then(|| value.trim().to_string())
@@ -79,7 +83,7 @@ fn field(file: &str, name: &str) -> String {
 }
 
 fn first_words(file: &str, n: usize) -> String {
-    let text = std::fs::read_to_string(file).unwrap_or_default();
+    let text = read_text(Path::new(file), LARGEST_FILE).unwrap_or_default();
     let words: Vec<&str> = text.split_whitespace().take(n).collect();
     if words.is_empty() { "unknown".into() } else { words.join(" ") }
 }

@@ -3,11 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use wheelrail::error::{Error, Result};
-use wheelrail::export::write_file;
+use wheelrail::files::{read_text, write_file};
 
 /// Lines between which everything is generated.
 const BEGIN: &str = "<!-- report:begin -->";
 const END: &str = "<!-- report:end -->";
+
+/// Largest page \[bytes\] that is taken for one.
+const LARGEST_PAGE: usize = 1 << 26;
 
 /// A file with both markers.
 #[derive(Debug)]
@@ -19,7 +22,7 @@ impl Target {
     /// Checks that the file can be read and has its markers.
     ///
     /// # Errors
-    /// It cannot, or has not.
+    /// A file that cannot be read; a marker that is missing, doubled or misplaced.
     pub(super) fn open(path: &Path) -> Result<Self> {
         let target = Self { path: path.to_path_buf() };
         target.spliced("").map(|_| target)
@@ -28,17 +31,14 @@ impl Target {
     /// Replaces what stands between the markers: the file is read anew, and replaced in one step.
     ///
     /// # Errors
-    /// As [`Target::open`]; the folder cannot be written.
+    /// Those of [`Target::open`]; the folder cannot be written.
     pub(super) fn replace(&self, generated: &str) -> Result<()> {
         write_file(&self.path, self.spliced(generated)?.as_bytes())
     }
 
     fn spliced(&self, generated: &str) -> Result<String> {
-        let place = self.path.display().to_string();
-        let text = std::fs::read_to_string(&self.path).map_err(|e| {
-            Error::new(&place, e.to_string(), "a readable Markdown file", "check the path of --splice")
-        })?;
-        spliced(&text, generated).map_err(|e| e.within(place))
+        let text = read_text(&self.path, LARGEST_PAGE)?;
+        spliced(&text, generated).map_err(|error| error.within(self.path.display()))
     }
 }
 

@@ -1,5 +1,6 @@
 //! The equivalent conicity of a sweep's positions, and what a user should know of it.
 
+use super::super::counted;
 use super::super::progress::Progress;
 use wheelrail::error::Result;
 use wheelrail::search::sweep::{ACCURACY, Conicity, Equivalent, NoConicity};
@@ -8,8 +9,8 @@ use wheelrail::search::wheelset::{Position, Roll, WheelsetOnTrack};
 /// Relative errors up to which conicities that are not converged are counted in classes.
 const CLASSES: [f64; 2] = [1e-3, 1e-2];
 
-/// The equivalent conicity up to the largest amplitude of the positions whose roll is not given; of these all have
-/// theirs found in one way.
+/// The equivalent conicity up to the largest amplitude of the positions whose roll is not given. All these rolls are found
+/// in one way, solved or neglected.
 pub(super) fn conicity(
     system: &WheelsetOnTrack,
     positions: &[Position],
@@ -27,8 +28,7 @@ fn free(positions: &[Position]) -> impl Iterator<Item = &Position> {
     positions.iter().filter(|position| !matches!(position.roll, Roll::Fixed(_)))
 }
 
-/// What to say of the positions whose conicity is not accurate, or is not there although both wheels touch; nothing where all is
-/// well.
+/// Remarks on the positions whose conicity is not accurate, or is not there although both wheels touch.
 pub(super) fn remarks(conicity: &Conicity, positions: &[Position]) -> Vec<String> {
     let found: Vec<Found> = free(positions).map(|position| conicity.at(position.lateral)).collect();
     let inaccurate = inaccurate(&found).map(|text| format!("{text}, after {} searches", conicity.searches()));
@@ -59,10 +59,8 @@ fn inaccurate(found: &[Found]) -> Option<String> {
 
 fn missing(found: &[Found]) -> Option<String> {
     let stuck = found.iter().filter(|found| **found == Err(NoConicity::NotRestoring)).count();
-    let plural = if stuck == 1 { "" } else { "s" };
-    (stuck > 0).then(|| {
-        format!("no conicity at {stuck} position{plural}, from which the movement does not come back")
-    })
+    let positions = counted(stuck, "position");
+    (stuck > 0).then(|| format!("no conicity at {positions}, from which the movement does not come back"))
 }
 
 #[cfg(test)]

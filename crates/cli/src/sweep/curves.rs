@@ -1,5 +1,6 @@
 //! The usual curves of a sweep as a picture.
 
+use super::super::counted;
 use super::table::Table;
 use wheelrail::error::{Error, Result};
 use wheelrail::export::picture::curves::{Curve, CurvesPicture, Quantity, jumps};
@@ -39,21 +40,12 @@ pub(super) fn picture(table: &Table, title: &str) -> Result<CurvesPicture> {
         let expected = "lateral displacements that grow from position to position";
         return Err(Error::new("--picture", found, expected, "sort the positions, or use --lateral"));
     }
-    let stride = all.len().div_ceil(MOST_DRAWN).max(1);
-    let drawn: Vec<&Position> = all.iter().step_by(stride).collect();
-    let mut sweep = Sweep::new(&table.system, table.selection, table.conicity.as_ref());
-    let mut found: Vec<(f64, Vec<Row>)> = Vec::with_capacity(drawn.len());
-    for position in drawn {
-        let mut rows = Vec::new();
-        sweep.position(position, &mut rows)?;
-        rows.retain(|row| row.number == 0);
-        found.push((position.lateral, rows));
-    }
+    let found = lowest(table)?;
     let values = |side: TrackSide, value: Value| -> Vec<f64> {
         let of = |rows: &[Row]| rows.iter().find(|row| row.side == side).map_or(f64::NAN, value);
         found.iter().map(|(_, rows)| of(rows)).collect()
     };
-    // Once per side, from where the contact is: all its panels are then parted at the same positions.
+    // A side's contact jumps or not whatever quantity is drawn: all its panels are parted at the same positions.
     let jumps_of = |side: TrackSide| {
         jumps(&[&values(side, |row| row.contact.rail_x), &values(side, |row| row.contact.wheel_x)])
     };
@@ -75,11 +67,26 @@ pub(super) fn picture(table: &Table, title: &str) -> Result<CurvesPicture> {
         let curves = both.map(|((name, side), jumps)| curve(name, side, value, jumps)).collect();
         quantity((title, axis), curves)
     });
-    let count = |n: usize| format!("{n} position{}", if n == 1 { "" } else { "s" });
     Ok(CurvesPicture {
         title: title.into(),
-        about: format!("{}; lowest contact of each side, in its own profile axes", count(all.len())),
+        about: format!(
+            "{}; lowest contact of each side, in its own profile axes",
+            counted(all.len(), "position")
+        ),
         abscissa: "lateral displacement [mm]".into(),
         quantities: of_position.into_iter().chain(of_side).collect(),
     })
+}
+
+/// Lateral displacement \[mm\] and lowest contact of each side, at evenly chosen positions.
+fn lowest(table: &Table) -> Result<Vec<(f64, Vec<Row>)>> {
+    let stride = table.positions.len().div_ceil(MOST_DRAWN).max(1);
+    let mut sweep = Sweep::new(&table.system, table.selection, table.conicity.as_ref());
+    let mut rows_at = |position: &Position| {
+        let mut rows = Vec::new();
+        sweep.position(position, &mut rows)?;
+        rows.retain(|row| row.number == 0);
+        Ok((position.lateral, rows))
+    };
+    table.positions.iter().step_by(stride).map(&mut rows_at).collect()
 }

@@ -16,7 +16,7 @@ use positions::{lateral_range, read_positions};
 use table::Table;
 use wheelrail::case::question;
 use wheelrail::error::{Error, Result};
-use wheelrail::export::write_file;
+use wheelrail::files::{Folder, NewFile, PATCHES_FOLDER};
 use wheelrail::load::hertz::effective_modulus;
 use wheelrail::placement::Pair;
 use wheelrail::scene::{self, Place, Scene};
@@ -46,22 +46,62 @@ pub(super) struct SweepArguments {
 }
 
 impl SweepArguments {
-    /// Complains of outputs before an hour's work: a picture of no known format, a file that is read or written twice.
-    fn check_outputs(&self, scene: &Scene) -> Result<()> {
-        if let Some(file) = &self.picture {
-            PictureFormat::of_file("--picture", file)?;
+    /// The positions, from the range or the file; yaw and roll of a range are those of `template`.
+    fn positions(&self, template: Position) -> Result<Vec<Position>> {
+        match (&self.lateral, &self.positions) {
+            (Some(range), None) => {
+                let lateral = lateral_range(range)?.into_iter();
+                Ok(lateral.map(|lateral| Position { lateral, ..template }).collect())
+            }
+            (None, Some(file)) => read_positions(file),
+            _ => {
+                let expected = "either --lateral FROM:TO:STEP or --positions FILE.csv";
+                Err(Error::new("sweep", "neither", expected, "say what to sweep over"))
+            }
         }
-        let folder = folder_of(&self.scene);
-        let profiles =
-            [&scene.rail.file, &scene.wheel.file].into_iter().flatten().map(|file| folder.join(file));
-        let mut taken: Vec<PathBuf> =
-            profiles.chain(self.positions.clone()).chain([self.scene.clone()]).collect();
-        for (option, file) in [("--out", &self.out), ("--picture", &self.picture)] {
+    }
+}
+
+/// What a sweep writes besides stdout, all of it under temporary names until the sweep has ended.
+struct Outputs {
+    table: Option<NewFile>,
+    picture: Option<(PictureFormat, NewFile)>,
+    patches: Option<Folder>,
+}
+
+impl Outputs {
+    /// Opens the outputs: what is wrong with them is to be known before an hour's work.
+    ///
+    /// # Errors
+    /// A picture of no known format; a file that is read, or written twice; whatever the disk says.
+    fn create(arguments: &SweepArguments, scene: &Scene) -> Result<Self> {
+        let picture = arguments.picture.as_deref();
+        let format = picture.map(|file| PictureFormat::of_file("--picture", file)).transpose()?;
+        let folder = folder_of(&arguments.scene);
+        let profiles = [&scene.rail.file, &scene.wheel.file].into_iter().flatten();
+        let mut taken: Vec<PathBuf> = profiles.map(|file| folder.join(file)).collect();
+        taken.extend(arguments.positions.clone().into_iter().chain([arguments.scene.clone()]));
+        for (option, file) in [("--out", &arguments.out), ("--picture", &arguments.picture)] {
             let Some(file) = file else { continue };
             refuse_taken(option, file, &taken)?;
             taken.push(file.clone());
         }
-        Ok(())
+        Ok(Self {
+            table: arguments.out.as_deref().map(NewFile::create).transpose()?,
+            picture: format.zip(picture.map(NewFile::create).transpose()?),
+            patches: arguments
+                .patches
+                .as_deref()
+                .map(|dir| Folder::create(dir, PATCHES_FOLDER))
+                .transpose()?,
+        })
+    }
+
+    /// Gives everything its name.
+    fn commit(self) -> Result<()> {
+        self.patches.map_or(Ok(()), Folder::commit)?;
+        self.picture.map_or(Ok(()), |(_, file)| file.commit())?;
+        self.table.map_or(Ok(()), NewFile::commit)
     }
 }
 
@@ -69,21 +109,11 @@ impl SweepArguments {
 pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     let progress = Progress::of("sweep", "scene");
     let scene = scene::load(&arguments.scene)?;
-    arguments.check_outputs(&scene)?;
+    let mut outputs = Outputs::create(arguments, &scene)?;
     let in_scene = |error: Error| error.within(arguments.scene.display());
     let profiles = scene.pair_and_records(folder_of(&arguments.scene)).map_err(in_scene)?;
     let (system, template, within) = system(&scene, &profiles.0).map_err(in_scene)?;
-    let positions = match (&arguments.lateral, &arguments.positions) {
-        (Some(range), None) => {
-            let lateral = lateral_range(range)?;
-            lateral.into_iter().map(|lateral| Position { lateral, ..template }).collect()
-        }
-        (None, Some(file)) => read_positions(file)?,
-        _ => {
-            let expected = "either --lateral FROM:TO:STEP or --positions FILE.csv";
-            return Err(Error::new("sweep", "neither", expected, "say what to sweep over"));
-        }
-    };
+    let positions = arguments.positions(template)?;
     let conicity = conicity::conicity(&system, &positions, &progress)?;
     for remark in conicity.iter().flat_map(|conicity| conicity::remarks(conicity, &positions)) {
         complain(&format!("sweep: {remark}"));
@@ -93,29 +123,22 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     let ellipses = asked.approach.map(|approach| (approach, effective_modulus(rail, wheel)));
     let selection = Selection { within, apart: ONE_CONTACT };
     let table = Table { system, conicity, selection, positions, ellipses };
-    if let Some(dir) = &arguments.patches {
-        patches::write(
-            dir,
-            &patches::Origin { scene: &scene, path: &arguments.scene, profiles: &profiles },
-            &table,
-            &progress,
-        )?;
+    if let Some(folder) = &outputs.patches {
+        let origin = patches::Origin { scene: &scene, path: &arguments.scene, profiles: &profiles };
+        patches::write(folder, &origin, &table, &progress)?;
     }
-    if let Some(file) = &arguments.picture {
+    if let Some((format, file)) = &mut outputs.picture {
         progress.at("picture");
         let name = arguments.scene.file_stem().unwrap_or_default().to_string_lossy();
-        let title = scene.title.as_deref().unwrap_or(&name);
-        let picture = curves::picture(&table, title)?;
-        let bytes = match PictureFormat::of_file("--picture", file)? {
-            PictureFormat::Png => picture.png().map_err(|error| error.within(file.display()))?,
-            PictureFormat::Svg => picture.svg().into_bytes(),
-        };
-        write_file(file, &bytes)?;
+        let picture = curves::picture(&table, scene.title.as_deref().unwrap_or(&name))?;
+        file.put(&format.bytes(picture.svg())?)?;
     }
-    match &arguments.out {
-        None => table.blocks(0, &progress, |_, text| print_to_reader(text)),
-        Some(out) => table.write(out, &progress),
+    match &mut outputs.table {
+        None => table.blocks(&progress, print_to_reader)?,
+        Some(file) => table.blocks(&progress, |text| file.put(text.as_bytes()).map(|()| true))?,
     }
+    outputs.commit()?;
+    Ok(Outcome::Done)
 }
 
 /// The wheelset and track of a scene, its own position, and how far near misses are reported.

@@ -6,12 +6,14 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use super::super::complain;
+use super::super::png::png;
 use super::super::progress::Progress;
+use super::super::{complain, counted};
 use super::table::Table;
 use wheelrail::case::{Profiles, Run};
 use wheelrail::error::{Error, Result};
-use wheelrail::export::{Folder, PATCHES_FOLDER, vtk};
+use wheelrail::export::vtk;
+use wheelrail::files::Folder;
 use wheelrail::scene::{self, Scene};
 use wheelrail::search::Selection;
 use wheelrail::search::wheelset::Position;
@@ -34,18 +36,17 @@ struct Written {
     folders: Vec<String>,
 }
 
-/// Writes `DIR/position-0001/` and so on, `DIR/surface.pvd` and `DIR/summary.json`; all of it appears at once.
-pub(super) fn write(dir: &Path, origin: &Origin, table: &Table, progress: &Progress) -> Result<()> {
+/// Writes `position-0001/` and so on, `surface.pvd` and `summary.json` into a folder.
+pub(super) fn write(folder: &Folder, origin: &Origin, table: &Table, progress: &Progress) -> Result<()> {
     let positions = &table.positions;
     if positions.len() > MOST_POSITIONS {
         let found = format!("{} positions", positions.len());
         let expected = format!("{MOST_POSITIONS} positions or fewer");
         return Err(Error::new("--patches", found, expected, "take a larger step, or the table alone"));
     }
-    let folder = Folder::create(dir, PATCHES_FOLDER)?;
     let done = AtomicUsize::new(0);
     let one = |(k, position): (usize, &Position)| {
-        let written = patch(&folder, origin, table, k, position)
+        let written = patch(folder, origin, table, k, position)
             .map_err(|error| error.within(format!("position {}", k + 1)))?;
         let done = 1 + done.fetch_add(1, Ordering::Relaxed);
         progress.at(format!("patches of {done} of {} positions", positions.len()));
@@ -54,11 +55,10 @@ pub(super) fn write(dir: &Path, origin: &Origin, table: &Table, progress: &Progr
     let written = positions.par_iter().enumerate().map(one).collect::<Result<Vec<_>>>()?;
     folder.write("surface.pvd", collection(&written).as_bytes())?;
     folder.write("summary.json", &summary(origin.scene, &written))?;
-    folder.commit()?;
     let missing = written.iter().filter(|written| written.folders.is_empty()).count();
     if missing > 0 {
-        let plural = if missing == 1 { "" } else { "s" };
-        complain(&format!("sweep: {missing} position{plural} without contact, and without a folder"));
+        let positions = counted(missing, "position");
+        complain(&format!("sweep: {positions} without contact, and without a folder"));
     }
     Ok(())
 }
@@ -72,7 +72,7 @@ fn patch(folder: &Folder, origin: &Origin, table: &Table, k: usize, position: &P
     let name = format!("position-{:04}", k + 1);
     let Origin { scene, path, profiles } = origin;
     let run = Run::over(scene.at(position), profiles, &name)?.read_from(path).filed_under(&name);
-    run.write(folder)?;
+    run.write_told(folder, Some(png), &|_| {})?;
     Ok(Written { position: *position, folders: run.parts.into_iter().map(|part| part.folder).collect() })
 }
 

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use wheelrail::error::{Error, Result, finite};
+use wheelrail::files::read_text;
 use wheelrail::scene;
 use wheelrail::search::wheelset::{Position, Roll};
 
@@ -67,7 +68,7 @@ fn check_count(place: &str, count: f64) -> Result<()> {
 
 /// A table with columns `lateral_mm` and perhaps `yaw_rad` and `roll_rad`; without a yaw it is 0, without a roll solved.
 pub(super) fn read_positions(path: &Path) -> Result<Vec<Position>> {
-    let table = scene::read_text(path, LARGEST_TABLE)?;
+    let table = read_text(path, LARGEST_TABLE)?;
     read_table(&path.display().to_string(), table.as_bytes())
 }
 

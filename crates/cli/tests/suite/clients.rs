@@ -8,9 +8,9 @@ use wheelrail::export::deck::contact::{Normal, Settings};
 use wheelrail::export::netcdf::NetCdf;
 use wheelrail::export::picture::{Nodes, Picture};
 use wheelrail::export::{
-    Folder, Frame, GridFields, Header, Interval, Loop, QuadMesh, RUN_FOLDER, VIEW_SCRIPT, csv, legacy, npy,
-    vtk, vts,
+    Frame, GridFields, Header, Interval, Loop, QuadMesh, VIEW_SCRIPT, csv, legacy, npy, vtk, vts,
 };
+use wheelrail::files::{Folder, RUN_FOLDER};
 
 /// Hertz: a wheel of 460 mm on a rail of 300 mm, 80 kN, E* of steel; closed form with elliptic integrals.
 const RADII: [f64; 2] = [300.0, 460.0];

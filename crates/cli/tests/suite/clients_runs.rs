@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use wheelrail::case::Run;
-use wheelrail::export::RUN_FOLDER;
+use wheelrail::files::RUN_FOLDER;
 use wheelrail::load::hertz::effective_modulus;
 use wheelrail::load::virtual_interpenetration::VirtualContact;
 use wheelrail::scene;

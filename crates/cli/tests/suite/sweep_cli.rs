@@ -68,12 +68,14 @@ fn bad_calls_end_with_code_2_and_leave_the_inputs() {
     let range = ["--lateral", "0:1:1"];
     let listed = ["--positions", "positions.csv"];
     std::fs::create_dir(here.join("folder")).unwrap();
-    // Another sweep that is at it.
-    let busy = std::fs::File::create(here.join(".busy.csv.partial")).unwrap();
-    busy.lock().unwrap();
     let cases: [(&str, &[&str], &[&str], &str); 15] = [
-        ("scene.toml", &range, &["--out", "folder"], "found a folder or device"),
-        ("scene.toml", &range, &["--out", "busy.csv"], "found another sweep that writes it"),
+        (
+            "scene.toml",
+            &range,
+            &["--out", "folder"],
+            "folder: found a folder; expected a file, or nothing yet",
+        ),
+        ("scene.toml", &range, &["--out", "nowhere/a.csv"], "nowhere/a.csv: found No such file"),
         (
             "scene.toml",
             &["--positions", "down.csv"],
@@ -119,7 +121,18 @@ fn bad_calls_end_with_code_2_and_leave_the_inputs() {
         assert!(complaint.contains(message), "{arguments:?}: {complaint}");
     }
     assert_eq!(contents(), before);
-    assert!(!here.join("a.svg").exists());
+    let there = [
+        "down.csv",
+        "empty.csv",
+        "folder",
+        "link.toml",
+        "own.toml",
+        "positions.csv",
+        "scene.toml",
+        "wheel.toml",
+        "yaw.csv",
+    ];
+    assert_eq!(names(here), there, "an output, or what was to become one");
 }
 
 /// Points of a rail crown or a cone, as a measured file has them.
@@ -168,47 +181,51 @@ fn names(folder: &Path) -> Vec<String> {
 }
 
 #[test]
-fn a_killed_sweep_goes_on_where_it_was_and_one_of_another_scene_begins_anew() {
-    let folder = folder("roll = \"neglect\"\n");
+fn a_killed_sweep_leaves_what_was_there_and_the_next_one_clears_up() {
+    const ALL: [&str; 6] = ["--out", "out.csv", "--picture", "out.svg", "--patches", "out"];
+    let folder = folder("roll = \"neglect\"\n[patch]\napproach = 0.05\n[output]\nformats = [\"text\"]\n");
     let here = folder.path();
-    // Some twenty blocks, of which one thread takes a second.
-    let range = ["--lateral", "-8:8:0.0001", "--out", "out.csv"];
-    let arguments = [&["--threads", "1", "scene.toml"], &range[..]].concat();
-    let killed = || {
-        let binary = env!("CARGO_BIN_EXE_wheelrail");
-        let mut child = Command::new(binary).current_dir(here).arg("sweep").args(&arguments).spawn().unwrap();
-        // Its key, the head of the table, and a block.
-        let begun =
-            || std::fs::read_to_string(here.join(".out.csv.progress")).is_ok_and(|t| t.lines().count() > 2);
-        while !begun() && child.try_wait().unwrap().is_none() {
+    let arguments = |range: &'static str, outputs: &'static [&str]| {
+        [&["--threads", "1", "scene.toml", "--lateral", range], outputs].concat()
+    };
+    // What stands in the outputs.
+    let found = || ["out.csv", "out.svg", "out/summary.json"].map(|name| std::fs::read(here.join(name)).ok());
+    // Some twenty blocks, or so many folders, of which one thread takes a second; killed when it has begun to write them.
+    let long: [(&'static str, &'static [&str], &str, &str); 2] =
+        [("-8:8:0.0001", &ALL[..4], "out.csv.", ""), ("-1:1:0.01", &ALL, "out.", "/position-0001")];
+    let killed = |(range, outputs, file, part): (&'static str, &'static [&str], &str, &str)| {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_wheelrail"))
+            .current_dir(here)
+            .arg("sweep")
+            .args(arguments(range, outputs))
+            .spawn()
+            .unwrap();
+        let ours = |name: &String| name.starts_with(".wheelrail-tmp.");
+        let begun = |name: String| {
+            let written = here.join(format!("{name}{part}")).metadata();
+            name.starts_with(&format!(".wheelrail-tmp.{file}"))
+                && written.is_ok_and(|found| found.is_dir() || found.len() > 1000)
+        };
+        while !names(here).into_iter().any(begun) && child.try_wait().unwrap().is_none() {
             std::thread::sleep(std::time::Duration::from_millis(1));
         }
         child.kill().unwrap();
-        child.wait().unwrap();
-        assert_eq!(names(here), [".out.csv.partial", ".out.csv.progress", "scene.toml"]);
+        assert!(!child.wait().unwrap().success(), "it had ended");
+        assert_eq!(names(here).iter().filter(|name| ours(name)).count(), outputs.len() / 2);
     };
-    let resumed = || {
-        let output = sweep(here, &arguments);
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert!(output.status.success(), "{said}");
-        assert_eq!(names(here), ["out.csv", "scene.toml"]);
-        said
+    let whole = || {
+        let output = sweep(here, &arguments("-1:1:1", &ALL));
+        assert!(output.status.success() && output.stdout.is_empty());
+        assert_eq!(names(here), ["out", "out.csv", "out.svg", "scene.toml"]);
+        found()
     };
-    killed();
-    let said = resumed();
-    assert!(said.starts_with("sweep: going on after "), "{said}");
-    let table = std::fs::read(here.join("out.csv")).unwrap();
-    assert_eq!(
-        table,
-        sweep(here, &arguments[..arguments.len() - 2]).stdout,
-        "not what an unbroken sweep writes"
-    );
-
-    std::fs::remove_file(here.join("out.csv")).unwrap();
-    killed();
-    std::fs::write(here.join("scene.toml"), SCENE.replace("460.0", "461.0")).unwrap();
-    assert!(!resumed().contains("going on"));
-    assert_ne!(std::fs::read(here.join("out.csv")).unwrap(), table);
+    long.into_iter().for_each(killed);
+    assert_eq!(found(), [const { None }; 3]);
+    let before = whole();
+    assert_eq!(before[0], Some(sweep(here, &["scene.toml", "--lateral", "-1:1:1"]).stdout));
+    long.into_iter().for_each(killed);
+    assert_eq!(found(), before);
+    assert_eq!(whole(), before);
 }
 
 #[test]

@@ -1,10 +1,10 @@
-//! Temporary names beside what is going to be replaced: each is locked (`flock`) by the process that uses it. The kernel
-//! drops the lock with the process, so an unlocked one is left from a process that was killed; whoever writes into the same
-//! folder next removes it.
+//! Temporary names beside what is going to be replaced. Each is locked (`flock`) by the process that uses it, and the
+//! kernel drops the lock with the process: what bears such a name without a lock was left by a process that was killed.
+//! The next process that writes into the same folder removes it.
 
+use super::system;
 use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind};
-use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::process;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -48,21 +48,15 @@ pub(super) fn locked(target: &Path, make: impl Fn(&Path) -> io::Result<File>) ->
         };
         // A file system without locks (Error) has no cleaning either.
         let lost = matches!(made.try_lock(), Err(TryLockError::WouldBlock));
-        if !lost && same(&made, &path) {
+        if !lost && system::is_at(&made, &path) {
             return Ok((path, made));
         }
     }
     Err(error)
 }
 
-fn same(open: &File, path: &Path) -> bool {
-    match (open.metadata(), path.metadata()) {
-        (Ok(a), Ok(b)) => (a.dev(), a.ino()) == (b.dev(), b.ino()),
-        _ => false,
-    }
-}
-
-/// Removes what dead processes have left in a folder. Whatever fails is somebody else's or is tried again.
+/// Removes what dead processes have left in a folder. What cannot be removed belongs to somebody else, or the next process
+/// tries again.
 pub(super) fn remove_stale(parent: &Path) {
     for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
         let ours = entry.file_name().to_string_lossy().starts_with(TEMPORARY);

@@ -5,20 +5,20 @@
 //!
 //! - **The step.** A plain `rename` where DIR is missing or empty; elsewhere the kernel's exchange of two names
 //!   (`renameat2` with `RENAME_EXCHANGE`), after which the old folder bears the temporary name and is deleted.
-//!   File systems without the exchange (NFS, some FUSE) get two renames: between them DIR is missing for an
-//!   instant, and the old folder waits beside it under a name that the next run puts back.
-//! - **Killed runs.** The temporary folder is locked as long as its run lives: `export::temporary`. What a killed one leaves,
-//!   the next run into the same parent removes.
+//!   Systems and file systems without the exchange (Windows, NFS, some FUSE) get two renames: between them DIR is
+//!   missing for an instant, and the old folder waits beside it under a name that the next run puts back.
+//! - **Killed runs.** The temporary folder is locked as long as its run lives: `files::temporary`. What a killed one leaves,
+//!   the next run into the same parent removes, on systems that lock folders.
 //! - **No fsync.** Twenty of them cost more than the whole run. What is promised holds for a kill of the process,
 //!   not for a power cut: a folder cut off by one is recognised by the END lines and the sizes in the headers.
 //! - **Foreign files.** A folder is replaced only if it is empty or carries our own summary. Files in it that
 //!   are not ours (notes, pictures) are hard-linked into the new folder; foreign subfolders are refused.
 
-use super::temporary;
+use super::names::Names;
+use super::{bad, system, temporary};
 use crate::error::{Error, Result};
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
-use std::os::unix::fs::MetadataExt;
 use std::path::{Component, Path, PathBuf};
 
 /// Where the old folder waits while a file system without the exchange of names swaps two folders.
@@ -26,18 +26,6 @@ const ASIDE: &str = ".wheelrail-old.";
 
 /// Attempts to put the new folder in place, each lost only to another run that does the same just then.
 const SWAPS_TRIED: u32 = 100;
-
-/// The files by which one command's output folder is known.
-#[derive(Debug, Clone, Copy)]
-pub struct Names {
-    /// The file without which a non-empty folder is not ours; it has to contain the word `wheelrail`.
-    pub marker: &'static str,
-    /// All files that the command may write. Those of an earlier run vanish with the old folder; every other
-    /// file is the user's and is kept.
-    pub files: &'static [&'static str],
-    /// Whether the command may write a subfolder of this name, with files of the same names.
-    pub is_part: fn(&str) -> bool,
-}
 
 /// A folder being written: nothing is seen of it in DIR before [`Folder::commit`], and nothing remains of it
 /// when it is dropped without.
@@ -77,7 +65,7 @@ impl Folder {
         }
         let made = temporary::locked(&target, |path| {
             fs::create_dir(path)?;
-            File::open(path)
+            system::open_folder(path)
         });
         let (temporary, lock) = made.map_err(|e| unwritable(parent, &e))?;
         Ok(Self { target, temporary, names, _lock: lock })
@@ -96,7 +84,7 @@ impl Folder {
     /// Writes one file of the folder.
     ///
     /// # Errors
-    /// As [`FolderPart::write`].
+    /// Those of [`FolderPart::write`].
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<()> {
         self.part("")?.write(name, bytes)
     }
@@ -104,8 +92,8 @@ impl Folder {
     /// Writes one file of the folder piece by piece.
     ///
     /// # Errors
-    /// As [`FolderPart::write`].
-    pub fn stream(&self, name: &str, content: impl FnOnce(&mut File) -> io::Result<()>) -> Result<()> {
+    /// Those of [`FolderPart::write`].
+    pub fn stream(&self, name: &str, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
         self.part("")?.stream(name, content)
     }
 
@@ -115,11 +103,13 @@ impl Folder {
     /// # Errors
     /// Meanwhile DIR has become something that may not be replaced; the disk refuses. DIR is then as it was.
     pub fn commit(self) -> Result<()> {
+        use ErrorKind::{AlreadyExists, DirectoryNotEmpty, PermissionDenied};
         for _ in 0..SWAPS_TRIED {
             // Replaces an empty folder too.
             match fs::rename(&self.temporary, &self.target) {
                 Ok(()) => return Ok(()),
-                Err(e) if matches!(e.kind(), ErrorKind::DirectoryNotEmpty | ErrorKind::AlreadyExists) => {}
+                // What systems say of a folder that is in the way.
+                Err(e) if matches!(e.kind(), DirectoryNotEmpty | AlreadyExists | PermissionDenied) => {}
                 Err(e) => return Err(unwritable(&self.target, &e)),
             }
             self.keep(&foreign_files(&self.target, self.names)?)?;
@@ -131,8 +121,8 @@ impl Folder {
                 Err(e) => return Err(unwritable(&self.target, &e)),
             }
         }
-        Err(Error::new(
-            self.target.display().to_string(),
+        Err(bad(
+            &self.target,
             "other runs that keep replacing it",
             "one run at a time",
             "give each run its own",
@@ -162,7 +152,8 @@ impl Folder {
 }
 
 impl FolderPart<'_> {
-    /// The way from here to an absolute path without links, which holds as well when both are moved together.
+    /// The relative path from here to an absolute path without links. It still leads there after both have been moved
+    /// together.
     pub fn relative(&self, path: &Path) -> PathBuf {
         let common = self.target.components().zip(path.components()).take_while(|(a, b)| a == b).count();
         let up = self.target.components().skip(common).map(|_| Component::ParentDir);
@@ -181,8 +172,8 @@ impl FolderPart<'_> {
     /// ten kilobytes.
     ///
     /// # Errors
-    /// As [`FolderPart::write`].
-    pub fn stream(&self, name: &str, content: impl FnOnce(&mut File) -> io::Result<()>) -> Result<()> {
+    /// Those of [`FolderPart::write`].
+    pub fn stream(&self, name: &str, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
         let path = self.temporary.join(name);
         let file = File::options().write(true).create_new(true).open(&path);
         file.and_then(|mut file| {
@@ -194,12 +185,7 @@ impl FolderPart<'_> {
                 ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "free some space or give another folder",
                 _ => "check the folder, or give another folder",
             };
-            Error::new(
-                self.target.join(name).display().to_string(),
-                e.to_string(),
-                "a file written whole",
-                advice,
-            )
+            bad(&self.target.join(name), &e.to_string(), "a file written whole", advice)
         })
     }
 }
@@ -251,7 +237,7 @@ fn reject_unsafe(target: &Path) -> Result<()> {
         // The shell that started us would be left inside a deleted folder.
         return Err(bad(target, "the working folder or one above it", "a folder inside it", "give ./NAME"));
     }
-    if parent_of(target).metadata().is_ok_and(|parent| parent.dev() != here.dev()) {
+    if parent_of(target).metadata().is_ok_and(|parent| system::is_mount_point(&here, &parent)) {
         return Err(bad(target, "a mount point", "a folder that can be replaced", "give a folder inside it"));
     }
     Ok(())
@@ -293,18 +279,12 @@ fn foreign_files(target: &Path, names: Names) -> Result<Vec<PathBuf>> {
     Ok(foreign.into_iter().map(fs::DirEntry::path).collect())
 }
 
-/// Exchanges two folders' names.
+/// Exchanges the names of two folders.
 fn exchange(new: &Path, old: &Path) -> io::Result<()> {
-    use rustix::fs::{CWD, RenameFlags, renameat_with};
-    use rustix::io::Errno;
-    match renameat_with(CWD, new, CWD, old, RenameFlags::EXCHANGE) {
-        Ok(()) => Ok(()),
-        Err(Errno::INVAL | Errno::NOSYS | Errno::OPNOTSUPP) => exchange_in_two(new, old),
-        Err(e) => Err(e.into()),
-    }
+    system::exchanged(new, old).unwrap_or_else(|| exchange_in_two(new, old))
 }
 
-/// The same for file systems that cannot do it in one step.
+/// Exchanges the names of two folders by two renames; a kill in between is undone by [`put_back`].
 fn exchange_in_two(new: &Path, old: &Path) -> io::Result<()> {
     let aside = aside_of(old);
     fs::rename(old, &aside)?;
@@ -315,7 +295,7 @@ fn exchange_in_two(new: &Path, old: &Path) -> io::Result<()> {
     }
 }
 
-/// Undoes an [`exchange_in_two`] that was killed half-way.
+/// Undoes an [`exchange_in_two`] that was killed half-way; a rename that is refused is tried again by the next run.
 fn put_back(target: &Path) {
     let aside = aside_of(target);
     if !aside.is_dir() {
@@ -331,10 +311,6 @@ fn put_back(target: &Path) {
 fn aside_of(target: &Path) -> PathBuf {
     let name = target.file_name().unwrap_or_default().to_string_lossy();
     parent_of(target).join(format!("{ASIDE}{name}"))
-}
-
-fn bad(path: &Path, found: &str, expected: &str, advice: &str) -> Error {
-    Error::new(path.display().to_string(), found, expected, advice)
 }
 
 fn unwritable(path: &Path, error: &io::Error) -> Error {

@@ -192,7 +192,7 @@ fn a_killed_run_is_swept_up_by_the_next_one_and_a_living_one_is_not() {
     let mut child = process::Command::new(std::env::current_exe().unwrap())
         .args([
             "--exact",
-            "export::folder::tests::a_killed_run_is_swept_up_by_the_next_one_and_a_living_one_is_not",
+            "files::folder::tests::a_killed_run_is_swept_up_by_the_next_one_and_a_living_one_is_not",
         ])
         .env(TO_BE_KILLED, &dir)
         .stdout(process::Stdio::null())

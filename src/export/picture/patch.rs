@@ -1,0 +1,223 @@
+//! The picture of a patch for a report: both profiles at true scale, the gap exaggerated, and the lines of equal separation
+//! with the boundary over the solver's cells, to scale, with units and a legend.
+
+use super::super::model::{Header, Loop};
+use super::contour::Nodes;
+use super::page::{BLUE, BODY, Colour, Page, Pen, RED, SMALL};
+use super::panel::{Panel, airy, extremes, number, range};
+use super::{SEPARATOR, levels};
+
+const RAIL: Pen = Pen::new([70, 70, 70], 1.8);
+const WHEEL: Pen = Pen::new(BLUE, 1.8);
+const BOUNDARY: Pen = Pen::new(RED, 2.2);
+const APPROACH: Pen = Pen::new(RED, 1.0).dashed([5.0, 3.0]);
+const CELL: Pen = Pen::new([226, 220, 218], 0.6);
+pub(super) const INSIDE: Colour = [253, 232, 226];
+const WINDOW: Colour = [240, 240, 240];
+
+/// Cells with sides shorter than this \[page units\] are not drawn: their borders would be a tint.
+const SMALLEST_CELL: f64 = 5.0;
+
+/// The gap is shown up to this multiple of the approach: near a flange s grows to many times as much.
+const SHOWN_GAP: f64 = 3.0;
+
+/// Length of the frame's axes at C, and what ζ takes with its letter \[page units\].
+const AXIS: f64 = 38.0;
+const AXIS_ROOM: f64 = AXIS + 16.0;
+
+/// Height of the page \[page units\].
+const HEIGHT: f64 = 1040.0;
+
+/// What the picture shows.
+#[derive(Debug, Clone, Copy)]
+pub struct Picture<'a> {
+    /// Title, approach, version.
+    pub header: &'a Header,
+    /// Side and number of the contact, which tell the pictures of one run apart; empty for a single one.
+    pub contact: &'a str,
+    /// Centres ξ and η of the solver's cells \[mm\], ascending.
+    pub cells: [&'a [f64]; 2],
+    /// s \[mm\] over the same window, on as many points as a smooth line takes.
+    pub separation: Nodes<'a>,
+    /// (ξ, s(ξ, 0)) \[mm\] over the same window.
+    pub midplane: &'a [[f64; 2]],
+    /// The boundary of the patch.
+    pub loops: &'a [Loop],
+    /// The rail's profile (ξ, ζ) \[mm\]; NaN points part its pieces.
+    pub rail: &'a [[f64; 2]],
+    /// The wheel's profile (ξ, ζ) \[mm\] in the midplane η = 0 before any approach; NaN points part its pieces.
+    pub wheel: &'a [[f64; 2]],
+}
+
+impl Picture<'_> {
+    /// The picture as SVG.
+    pub fn svg(&self) -> String {
+        let header = self.header;
+        let angle = header.frame.xi[2].atan2(header.frame.xi[0]).to_degrees();
+        let approach = || format!("approach δ = {} mm", significant(header.approach, 4));
+        let [x, z] = [0, 2].map(|k| number(header.frame.origin[k], 0.001));
+        let about = [
+            Some(self.contact.to_owned()).filter(|contact| !contact.is_empty()),
+            (header.approach > 0.0).then(approach),
+            Some(format!("contact angle θ = {}°", number(angle, 0.001))),
+            Some(format!("rail point ({x}, {z}) mm")),
+        ];
+        let about = about.into_iter().flatten().collect::<Vec<_>>().join(SEPARATOR);
+        let mut page = Page::new(&header.title, &about);
+        self.profiles(&mut page, [40.0, 110.0, 380.0, 250.0]);
+        self.gap(&mut page, [520.0, 110.0, 340.0, 250.0]);
+        self.contours(&mut page, [90.0, 460.0, 590.0, 500.0]);
+        page.finish(HEIGHT, &format!("wheelrail {}, scene {}", header.version, header.scene_hash))
+    }
+
+    /// Both profiles at true scale, and which part of them the other panels show.
+    fn profiles(&self, page: &mut Page, room: [f64; 4]) {
+        page.heading(room, "Profiles in the contact frame, true scale");
+        let points = || self.rail.iter().chain(self.wheel).filter(|p| p[0].is_finite() && p[1].is_finite());
+        if points().next().is_none() {
+            return;
+        }
+        let (u, v) = (range(points().map(|p| p[0])), range(points().map(|p| p[1])));
+        // C may be at the very top, as at a flange: ζ and its letter stay below the heading.
+        let above = Panel::true_scale(room, u, v).point([0.0, 0.0])[1] - room[1];
+        let lower = (AXIS_ROOM - above).clamp(0.0, AXIS_ROOM);
+        let room = [room[0], room[1] + lower, room[2], room[3] - lower];
+        let panel = Panel::true_scale(room, u, v);
+        let [from, to] = range(self.cells[0].iter().copied()).map(|xi| xi.clamp(panel.u[0], panel.u[1]));
+        let half = (to - from) / 2.0;
+        let corners =
+            [[from, -half], [to, -half], [to, half], [from, half]].map(|corner| panel.point(corner));
+        let window = corners.map(|[x, y]| [x, y.clamp(room[1], room[1] + room[3])]);
+        page.area(&[window.to_vec()], WINDOW);
+        page.lines(&panel.curve(self.rail), RAIL);
+        page.lines(&panel.curve(self.wheel), WHEEL);
+        // The frame's axes at C.
+        let origin = panel.point([0.0, 0.0]);
+        let [x, y] = origin;
+        page.lines(&[vec![[x, y - AXIS], origin, [x + AXIS, y]]], Pen::new(RED, 1.0));
+        page.text([x + AXIS - 4.0, y + 16.0], "ξ", SMALL.in_colour(RED));
+        page.text([x, y - AXIS - 4.0], "ζ", SMALL.in_colour(RED).middle());
+        let foot = room[1] + room[3] + 28.0;
+        page.legend([room[0], foot], RAIL, "rail");
+        page.legend([room[0] + 80.0, foot], WHEEL, "wheel");
+        page.legend([room[0] + 170.0, foot], Pen::new(WINDOW, 9.0), "grid");
+        panel.scale_bar(page, [room[0] + room[2], foot], room[2] / 4.0);
+    }
+
+    /// The gap in the midplane over a straightened rail, with the heights stretched.
+    fn gap(&self, page: &mut Page, room: [f64; 4]) {
+        let approach = self.header.approach;
+        let [low, high] = range(self.midplane.iter().map(|p| p[1]).chain([0.0, approach]));
+        let high = if approach > 0.0 { high.min(SHOWN_GAP * approach) } else { high };
+        let u = range(self.cells[0].iter().copied());
+        let panel = Panel { place: room, u, v: airy([low, high], 0.08, 0.0) };
+        let [a, b] = panel.scale();
+        page.heading(room, &format!("Gap at η = 0 over the rail, heights × {}", significant(b / a, 2)));
+        page.area(&self.overlap(&panel), INSIDE);
+        page.lines(&panel.curve(&[[u[0], 0.0], [u[1], 0.0]]), RAIL);
+        page.lines(&panel.curve(self.midplane), WHEEL);
+        panel.axes(page, ["ξ [mm]", "s [mm]"]);
+        if approach > 0.0 {
+            page.lines(&panel.curve(&[[u[0], approach], [u[1], approach]]), APPROACH);
+            page.legend([room[0], room[1] + room[3] + 52.0], APPROACH, "approach δ");
+        }
+    }
+
+    /// What lies between the wheel and the approach, stretch by stretch of the midplane.
+    fn overlap(&self, panel: &Panel) -> Vec<Vec<[f64; 2]>> {
+        let approach = self.header.approach;
+        let quad = |pair: &[[f64; 2]]| {
+            let ([[a, s], [b, t]], over) = ([pair[0], pair[1]], |s: f64| s <= approach);
+            let at = a + (b - a) * ((approach - s) / (t - s));
+            let corners = match (over(s), over(t)) {
+                (true, true) => vec![[a, s], [b, t], [b, approach], [a, approach]],
+                (true, false) => vec![[a, s], [at, approach], [a, approach]],
+                (false, true) => vec![[at, approach], [b, t], [b, approach]],
+                (false, false) => Vec::new(),
+            };
+            let drawn = corners.iter().flatten().all(|x| x.is_finite());
+            (drawn && !corners.is_empty()).then(|| corners.into_iter().map(|p| panel.point(p)).collect())
+        };
+        self.midplane.windows(2).filter_map(quad).collect()
+    }
+
+    /// Lines of equal separation over ξ–η, at one scale.
+    fn contours(&self, page: &mut Page, room: [f64; 4]) {
+        page.heading(room, "Separation s(ξ, η) before approach, true scale");
+        let [u, v] = self.cells.map(|values| range(values.iter().copied()));
+        let panel = Panel::true_scale(room, u, v);
+        let ring = |ring: &Loop| {
+            let closed = ring.points.iter().chain(ring.points.first());
+            closed.map(|p| panel.point([p[0], p[1]])).collect::<Vec<_>>()
+        };
+        let rings: Vec<Vec<[f64; 2]>> = self.loops.iter().map(ring).collect();
+        page.area(&rings, INSIDE);
+        self.cells(page, &panel);
+        let levels = levels::levels(&self.separation, self.header.approach, &panel);
+        for level in &levels {
+            page.lines(&level.lines, level.pen);
+        }
+        levels::label(page, &levels, &rings, &panel, self.header.approach);
+        page.lines(&rings, BOUNDARY);
+        panel.axes(page, ["ξ [mm]", "η [mm] (rolling direction)"]);
+        let side = room[0] + room[2] + 40.0;
+        self.key(page, [side, room[1] + 20.0], &levels);
+        panel.scale_bar(page, [side + 130.0, room[1] + room[3]], 130.0);
+    }
+
+    /// What the lines mean, beside them.
+    fn key(&self, page: &mut Page, [side, top]: [f64; 2], levels: &[levels::Level]) {
+        let mut row = top;
+        page.text([side, row], "s [mm]", BODY);
+        for level in levels {
+            row += 20.0;
+            page.legend([side, row], level.pen, &level.name);
+        }
+        row += 32.0;
+        if !self.loops.is_empty() {
+            page.legend([side, row], BOUNDARY, "boundary s = δ");
+            row += 32.0;
+        }
+        let [xi, eta] = self.cells;
+        page.text([side, row], format!("grid {} × {} cells", xi.len(), eta.len()), SMALL);
+        for (name, step) in ["Δξ", "Δη"].into_iter().zip(self.cells.map(even_step)) {
+            let Some(step) = step else { continue };
+            row += 18.0;
+            page.text([side, row], format!("{name} = {} mm", significant(step, 3)), SMALL);
+        }
+    }
+
+    /// The borders of the solver's cells, half-way between their centres; of small ones the key has number and size.
+    fn cells(&self, page: &mut Page, panel: &Panel) {
+        let [x, y, w, h] = panel.place;
+        let [xi, eta] = self.cells;
+        if w / (xi.len() as f64) < SMALLEST_CELL || h / (eta.len() as f64) < SMALLEST_CELL {
+            return;
+        }
+        let between = |pair: &[f64]| f64::midpoint(pair[0], pair[1]);
+        let columns = xi.windows(2).map(|pair| panel.point([between(pair), panel.v[0]])[0]);
+        let rows = eta.windows(2).map(|pair| panel.point([panel.u[0], between(pair)])[1]);
+        let borders = columns.map(|px| vec![[px, y], [px, y + h]]);
+        let borders: Vec<_> = borders.chain(rows.map(|py| vec![[x, py], [x + w, py]])).collect();
+        page.lines(&borders, CELL);
+    }
+}
+
+/// The step of equally spaced values, as far as three digits show.
+fn even_step(values: &[f64]) -> Option<f64> {
+    if values.len() < 2 {
+        return None;
+    }
+    let [low, high] = extremes(values.windows(2).map(|pair| pair[1] - pair[0]));
+    (low > 0.0 && high - low <= 1e-4 * high).then_some(low)
+}
+
+/// A positive number with so many significant digits, without zeros at its end.
+fn significant(x: f64, digits: i32) -> String {
+    let step = 10f64.powi(x.log10().floor() as i32 + 1 - digits);
+    let text = number((x / step).round() * step, step);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
+}
+
+#[cfg(test)]
+mod tests;

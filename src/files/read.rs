@@ -1,0 +1,66 @@
+//! Whole files of a bounded size, with complaints in the house form.
+
+use std::fs::File;
+use std::io::{ErrorKind, Read};
+use std::path::Path;
+
+use super::bad;
+use crate::error::{Error, Result};
+
+/// The bytes of a file of at most `largest` bytes; a pipe or device is read no further either.
+///
+/// # Errors
+/// An unreadable or larger file.
+pub fn read_bytes(path: &Path, largest: usize) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(largest as u64 + 1).read_to_end(&mut bytes));
+    read.map_err(|error| {
+        let found = match error.kind() {
+            ErrorKind::NotFound => "no such file".to_owned(),
+            ErrorKind::PermissionDenied => "a file that you may not read".to_owned(),
+            ErrorKind::IsADirectory => "a folder".to_owned(),
+            _ => error.to_string(),
+        };
+        bad(path, &found, "a readable file", "check the path")
+    })?;
+    if bytes.len() > largest {
+        let (found, expected) = (format!("more than {largest} bytes"), format!("at most {largest} bytes"));
+        return Err(bad(path, &found, &expected, "is this the right file?"));
+    }
+    Ok(bytes)
+}
+
+/// The text of a file of at most `largest` bytes, without the mark that some editors put before it.
+///
+/// # Errors
+/// An unreadable file or one too large; text that is no UTF-8, with its line.
+pub fn read_text(path: &Path, largest: usize) -> Result<String> {
+    let text = String::from_utf8(read_bytes(path, largest)?).map_err(|error| {
+        let (bytes, good) = (error.as_bytes(), error.utf8_error().valid_up_to());
+        let line = 1 + bytes[..good].iter().filter(|byte| **byte == b'\n').count();
+        let found = format!("the byte 0x{:02X}, which is no UTF-8 there", bytes[good]);
+        let place = format!("{}: line {line}", path.display());
+        Error::new(place, found, "text in UTF-8", "save the file as UTF-8")
+    })?;
+    Ok(text.strip_prefix('\u{feff}').map(String::from).unwrap_or(text))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_that_is_no_utf_8_is_shown_by_its_line_and_a_mark_before_it_is_no_text() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("text");
+        let read = |bytes: &[u8]| {
+            std::fs::write(&path, bytes).unwrap();
+            read_text(&path, 100)
+        };
+        assert_eq!(read(b"\xEF\xBB\xBF[rail]").unwrap(), "[rail]");
+        let error = read(b"# 1\n# caf\xE9\n").unwrap_err().to_string();
+        let expected = ": line 2: found the byte 0xE9, which is no UTF-8 there; expected text in UTF-8; save";
+        assert!(error.contains(expected), "{error}");
+        assert_eq!(read(&[b'x'; 101]).unwrap_err().found, "more than 100 bytes");
+    }
+}
