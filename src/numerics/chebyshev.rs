@@ -161,8 +161,7 @@ pub fn extrema(n: usize) -> &'static [f64] {
     &EXTREMA[n - 1][usize::from(n < 4)..]
 }
 
-/// The extrema (1 − cos(kπ/n))/2 for k = 1 and k = n/2; row n − 1 is for n points. For n = 1 it is that of v times a line through
-/// zero at ½.
+/// The extrema (1 − cos(kπ/n))/2 for k = 1 and k = n/2, n points in row n − 1; for n = 1 that of v times a line through zero at ½.
 static EXTREMA: LazyLock<[[f64; 2]; MOST_POINTS]> = LazyLock::new(|| {
     let extremum = |k: usize, n: usize| (FRAC_PI_2 * k as f64 / n as f64).sin().powi(2);
     from_fn(|row| match row + 1 {

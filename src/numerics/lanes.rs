@@ -9,8 +9,7 @@ pub const MANY: usize = 16;
 /// One quantity, N times.
 pub type Lanes<const N: usize = MANY> = [f64; N];
 
-/// Makes an array from a function of the index. It is a loop, because the compiler may leave the calls of
-/// `std::array::from_fn` out of line.
+/// Makes an array from a function of the index, by a loop: the calls of `std::array::from_fn` may be left out of line.
 #[inline(always)]
 pub fn lanes<const N: usize>(value: impl Fn(usize) -> f64) -> Lanes<N> {
     let mut lanes = [0.0; N];

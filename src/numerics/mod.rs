@@ -1,5 +1,4 @@
-//! Numerical methods without railway words: values in lanes, roots, polynomials, Chebyshev series, twice the working precision,
-//! quadrature and elliptic integrals.
+//! Numerical methods without railway words, for one value or for values in lanes.
 
 pub mod chebyshev;
 pub mod elliptic;

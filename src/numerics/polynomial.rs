@@ -1,7 +1,9 @@
 //! Polynomials by their coefficients c_0, c_1, … of t⁰, t¹, …: values for N lanes, 32 digits, bounds.
 
+use std::ops::{Add, Mul};
+
 use super::lanes::{Lanes, multiply_add};
-use super::twice::{Twice, Twices};
+use super::twice::Twice;
 
 /// The coefficients of N polynomials. It is a trait and not an iterator, because the closures of iterators may be left out of line.
 pub trait Coefficients<const N: usize>: Copy {
@@ -87,14 +89,13 @@ pub fn divided_differences<const N: usize>(c: impl Coefficients<N>, a: &Lanes<N>
 
 /// Computes values in twice the working precision, and slopes in the working one, of one polynomial at N places.
 ///
-/// Method: compensated Horner's rule (Langlois and Louvet 2007), which adds up what every step rounds. Accuracy: about 1e-31
-/// of Σ |c_k t^k|.
+/// Method: compensated Horner's rule (Langlois and Louvet 2007). Accuracy: about 1e-31 of Σ |c_k t^k|.
 #[inline(always)]
-pub fn exact_values<const N: usize>(c: &[Twice], t: &Twices<N>) -> (Twices<N>, Lanes<N>) {
+pub fn exact_values<const N: usize>(c: &[Twice], t: &[Twice; N]) -> ([Twice; N], Lanes<N>) {
     let (mut value, mut slope, mut rounded) = ([0f64; N], [0f64; N], [0f64; N]);
     for c in c.iter().rev() {
         for k in 0..N {
-            let t = t.high[k];
+            let t = t[k].high;
             let product = Twice::product(value[k], t);
             let sum = Twice::sum(product.high, c.high);
             slope[k] = slope[k].mul_add(t, value[k]);
@@ -102,16 +103,16 @@ pub fn exact_values<const N: usize>(c: &[Twice], t: &Twices<N>) -> (Twices<N>, L
             value[k] = sum.high;
         }
     }
-    let mut exact = Twices::from(value);
+    let mut exact = *t;
     for k in 0..N {
-        exact.set(k, Twice::sum(value[k], slope[k].mul_add(t.low[k], rounded[k])));
+        exact[k] = Twice::sum(value[k], slope[k].mul_add(t[k].low, rounded[k]));
     }
     (exact, slope)
 }
 
 /// Computes p(t) in twice the working precision.
 pub fn exact_value(c: &[Twice], t: Twice) -> Twice {
-    exact_values(c, &Twices { high: [t.high], low: [t.low] }).0.get(0)
+    exact_values(c, &[t]).0[0]
 }
 
 /// Computes p′(t) in twice the working precision.
@@ -123,10 +124,10 @@ pub fn exact_slope(c: &[Twice], t: Twice) -> Twice {
     sum
 }
 
-/// Computes the coefficients c′ about t = `centre`: p(centre + u) = Σ c′_k u^k, in twice the working precision.
+/// Computes the coefficients c′ about t = `centre`: p(centre + u) = Σ c′_k u^k, in the working precision or twice that.
 ///
 /// A standard's power form about a far origin loses digits at every evaluation. It loses none once it is moved with 32 digits.
-pub fn recentred(c: &[Twice], centre: Twice) -> Vec<Twice> {
+pub fn recentred<T: Copy + Add<Output = T> + Mul<Output = T>>(c: &[T], centre: T) -> Vec<T> {
     let mut out = c.to_vec();
     for start in 0..out.len() {
         for k in (start..out.len().saturating_sub(1)).rev() {
@@ -143,10 +144,14 @@ pub fn range(c: &[f64], t0: f64, t1: f64) -> [f64; 2] {
     bernstein(c, t0, t1).into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], around)
 }
 
-/// Computes the Bernstein coefficients of p over \[t0, t1\]. p lies in their hull; a curve in the plane lies in the hull of its
-/// control points.
+/// Computes the Bernstein coefficients of p over \[t0, t1\]. p, or a curve with such coordinates, lies in their hull.
 pub fn bernstein(c: &[f64], t0: f64, t1: f64) -> Vec<f64> {
-    let shifted = shifted_scaled(c, t0, t1 - t0);
+    let mut shifted = recentred(c, t0);
+    let mut power = 1.0;
+    for c in &mut shifted {
+        *c *= power;
+        power *= t1 - t0;
+    }
     let n = shifted.len().saturating_sub(1);
     let coefficient = |i: usize| {
         let (mut sum, mut weight) = (0.0, 1.0);
@@ -170,22 +175,6 @@ pub fn convolution(a: &[f64], b: &[f64]) -> Vec<f64> {
     out
 }
 
-/// Computes the coefficients of p(t0 + w u) in u.
-fn shifted_scaled(c: &[f64], t0: f64, w: f64) -> Vec<f64> {
-    let mut out = c.to_vec();
-    for start in 0..out.len() {
-        for k in (start..out.len().saturating_sub(1)).rev() {
-            out[k] += t0 * out[k + 1];
-        }
-    }
-    let mut power = 1.0;
-    for c in &mut out {
-        *c *= power;
-        power *= w;
-    }
-    out
-}
-
 /// Computes the coefficients of p′.
 pub fn derivative(c: &[f64]) -> Vec<f64> {
     c.iter().enumerate().skip(1).map(|(k, &c)| c * k as f64).collect()
@@ -205,7 +194,7 @@ mod tests {
         assert_eq!([value, slope], values_and_slopes(&own, &a));
         let difference = divided_differences(same, &a, &b);
         assert_eq!(difference, divided_differences(&own, &a, &b));
-        let exact = exact_values(&C.map(Twice::from), &Twices::from(a)).0;
+        let exact = exact_values(&C.map(Twice::from), &a.map(Twice::from)).0;
         for k in 0..3 {
             let [p, d, _] = derivatives(&C, a[k]);
             assert_eq!([p, d], value_and_slope(&C, a[k]));
@@ -214,7 +203,7 @@ mod tests {
             assert!((difference[k] - one).abs() < 1e-14);
             // Horner's rule in twice the working precision throughout.
             let expected = C.iter().rev().fold(Twice::ZERO, |sum, &c| sum * a[k] + c);
-            assert!((exact.get(k) - expected).high.abs() < 1e-30);
+            assert!((exact[k] - expected).high.abs() < 1e-30);
         }
     }
 

@@ -6,8 +6,6 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use super::lanes::Lanes;
-
 /// A sum of two numbers, of which the second is below half a unit of the first one's last place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Twice {
@@ -135,36 +133,6 @@ impl<T: Into<Self>> SubAssign<T> for Twice {
     #[inline(always)]
     fn sub_assign(&mut self, other: T) {
         *self = *self - other;
-    }
-}
-
-/// N numbers in twice the working precision, with high and low parts apart, as vector code needs them.
-#[derive(Debug, Clone, Copy)]
-pub struct Twices<const N: usize> {
-    /// The values, rounded to the working precision.
-    pub high: Lanes<N>,
-    /// The values less `high`.
-    pub low: Lanes<N>,
-}
-
-impl<const N: usize> From<Lanes<N>> for Twices<N> {
-    #[inline(always)]
-    fn from(high: Lanes<N>) -> Self {
-        Self { high, low: [0.0; N] }
-    }
-}
-
-impl<const N: usize> Twices<N> {
-    /// Gives the k-th number.
-    #[inline(always)]
-    pub fn get(&self, k: usize) -> Twice {
-        Twice { high: self.high[k], low: self.low[k] }
-    }
-
-    /// Replaces the k-th number.
-    #[inline(always)]
-    pub fn set(&mut self, k: usize, value: Twice) {
-        (self.high[k], self.low[k]) = (value.high, value.low);
     }
 }
 

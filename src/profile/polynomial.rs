@@ -95,23 +95,19 @@ impl Polynomial {
     }
 
     pub(super) fn placed_by(&self, frame: &Station) -> Self {
-        let n = self.x.len().max(self.z.len());
-        let get = |c: &[Twice], k: usize| c.get(k).copied().unwrap_or(Twice::ZERO);
-        let turn = |along: f64, across: f64, x: bool| {
-            let mut c: Vec<Twice> = (0..n)
-                .map(|k| {
-                    if x {
-                        get(&self.x, k) * along - get(&self.z, k) * across
-                    } else {
-                        get(&self.x, k) * across + get(&self.z, k) * along
-                    }
-                })
-                .collect();
-            c[0] += if x { frame.x } else { frame.z };
-            c
-        };
-        Self { t: self.t, x: turn(frame.cos, frame.sin, true), z: turn(frame.cos, frame.sin, false) }
+        let [mut x, mut z] = turned([&self.x, &self.z], frame.cos, -frame.sin);
+        x[0] += frame.x;
+        z[0] += frame.z;
+        Self { t: self.t, x, z }
     }
+}
+
+/// Turns (x, z) into (x cos + z sin, z cos − x sin), coefficient by coefficient.
+pub(super) fn turned(c: [&[Twice]; 2], cos: impl Into<Twice>, sin: impl Into<Twice>) -> [Vec<Twice>; 2] {
+    let (cos, sin) = (cos.into(), sin.into());
+    let get = |c: &[Twice], k: usize| c.get(k).copied().unwrap_or(Twice::ZERO);
+    let both = (0..c[0].len().max(c[1].len())).map(|k| c.map(|c| get(c, k)));
+    both.map(|[x, z]| (x * cos + z * sin, z * cos - x * sin)).unzip::<_, _, Vec<_>, Vec<_>>().into()
 }
 
 #[cfg(test)]

@@ -88,8 +88,7 @@ impl<'a> Evaluator<'a> {
         Some(WheelPoint { xi_w, shift, eta_w, span, point: self.wheel.point_at(xi_w, &span, u)? })
     }
 
-    /// Computes s \[mm\] and the sum of the magnitudes of its terms \[mm\]: gap, climb along ξ′ − ξ, rise across. Both are NaN where
-    /// a body has no surface.
+    /// Computes s and the sum of the magnitudes of its terms \[mm\]: gap, climb along ξ′ − ξ, rise across. NaN off either body.
     pub(super) fn separation_and_size(&mut self, xi: f64, eta: f64) -> [f64; 2] {
         let Some(point) = self.wheel_point(xi, eta) else { return [f64::NAN; 2] };
         let base = self.base(xi, point.shift, &point.span);

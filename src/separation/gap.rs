@@ -21,8 +21,7 @@ pub fn midplane_gap(placement: &Placement, xi: f64) -> f64 {
     }
 }
 
-/// A difference down to this share of its terms has lost three bits, which is within the promise. A smaller one is taken with 32
-/// digits.
+/// A difference below this share of its terms has lost more than three bits, and is taken with 32 digits.
 const UNCANCELLED: f64 = 0.125;
 
 /// Computes the gap \[mm\] between two branches through C that share their tangent there; `zeta_w` is ζ^W(ξ).
@@ -49,7 +48,7 @@ pub(super) fn contact_gaps<const N: usize>(
     }
     let zeta_r = rail.exact_heights(xi, &rail_points);
     let zeta_w = wheel.exact_heights(xi, &wheel.points(xi)?.0);
-    Some(lanes(|k| (zeta_w.get(k) - zeta_r.get(k)).high))
+    Some(lanes(|k| (zeta_w[k] - zeta_r[k]).high))
 }
 
 /// Computes the gaps \[mm\] between two arcs through C: g = ξ² (κ_W − κ_R) [1 + (κ_W + κ_R)/(κ_W C_R + κ_R C_W)] / ((1 + C_W)(1 + C_R))

@@ -22,8 +22,7 @@ use crate::placement::Placement;
 /// Columns of one block, which is the unit of work of a thread.
 const BLOCK: usize = MANY;
 
-/// So many points or fewer are not worth waking another thread, which takes some 50 µs: first for methods that fill whole columns,
-/// then for those that go point by point.
+/// Most points that are not worth waking another thread, some 50 µs: by methods that fill columns, and point by point.
 const FEW_POINTS: [usize; 2] = [65536, 4096];
 
 /// The accuracy ladder, from the simplest formula to the historical baseline.
@@ -94,8 +93,7 @@ impl Choice {
             Method::ConstantRadius => &|| Box::new(Parabolic::constant_radius(placement, axis)),
             Method::Parabolic => &|| Box::new(Parabolic::local(placement, axis)),
             Method::Spectral => {
-                let mut fitter = Fitter::new(placement, self.demand, self.coefficients);
-                let strips = strips(&mut fitter, placement, xi, axis.reach * axis.reach);
+                let strips = strips(&mut self.fitter(placement), placement, xi, axis.reach * axis.reach);
                 return self.fill_by_strips(placement, xi, axis, &strips, out);
             }
             Method::Pointwise => &|| Box::new(Pointwise::new(placement, axis)),
@@ -122,12 +120,15 @@ impl Choice {
         }
         let of_strips = strips.iter().map(|strip| strip.truncation).fold(0.0, f64::max);
         let residence = Residence::of(out.len());
-        let spectral = || Spectral::new(placement, axis, self.demand, self.coefficients);
-        let kernel = || spectral().with_strips(strips, residence);
+        let kernel = || Spectral::new(self.fitter(placement), axis, strips, residence);
         if out.len() <= FEW_POINTS[0] {
             return fill_with(&mut kernel(), xi, out).max(of_strips);
         }
         fill_in_blocks(|| Box::new(kernel()), xi, out).max(of_strips)
+    }
+
+    fn fitter<'a>(&self, placement: &'a Placement) -> Fitter<'a> {
+        Fitter::new(placement, self.demand, self.coefficients)
     }
 }
 

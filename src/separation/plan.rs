@@ -10,7 +10,7 @@ use super::evaluator::Evaluator;
 use super::grid::{Choice, Method};
 use super::methods::quadratic::quadratic_form;
 use super::rounding::rounding;
-use super::samples::{Samples, difference, thinned};
+use super::samples::{Samples, difference, places, thinned};
 use crate::numerics::nan_max;
 use crate::placement::Placement;
 
@@ -55,8 +55,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Fills the grid that the plan is for, with the same pair and axes, and raises the estimate to the truncation errors that are
-    /// measured on the way.
+    /// Fills the grid that the plan is for, and raises the estimate to the truncation errors that are measured on the way.
     pub fn fill(&mut self, placement: &Placement, xi: &[f64], axis: &EtaAxis, out: &mut [f64]) {
         let truncation = match self.choice.method {
             Method::Spectral => self.choice.fill_by_strips(placement, xi, axis, &self.strips, out),
@@ -156,7 +155,7 @@ impl Planned<'_> {
         let u_max = self.axis.reach * self.axis.reach;
         let strips = strips(fitter, self.placement, self.xi, u_max);
         let mut most = strips.iter().map(|strip| strip.truncation).fold(0.0, f64::max);
-        let mut needed: Vec<usize> = strips.iter().map(Strip::coefficients).collect();
+        let mut needed: Vec<usize> = strips.iter().map(|strip| strip.coefficients).collect();
         for strip in &strips {
             most = nan_max(most, truncation::of_strip(fitter, strip, u_max));
         }
@@ -194,12 +193,6 @@ fn alone(strips: &[Strip], xi: &[f64]) -> Vec<f64> {
     }
     alone.extend_from_slice(rest);
     alone
-}
-
-/// Gives at most `n` indices of so many values, evenly spread, ends included.
-fn places(count: usize, n: usize) -> impl Iterator<Item = usize> {
-    let n = n.min(count);
-    (0..n).map(move |k| if n == 1 { 0 } else { k * (count - 1) / (n - 1) })
 }
 
 /// What a few places of the grid tell: the ends and the middle of both axes.

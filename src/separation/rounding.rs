@@ -9,8 +9,7 @@ use crate::profile::{Branch, BranchShape, Piece, Section};
 /// Roundings of the terms of s: gap, rise, and their interpolation over ξ; under yaw, of the interpolation in powers of η.
 const OWN_ROUNDINGS: [f64; 2] = [16.0, 32.0];
 
-/// Roundings of the coordinates, which are added beyond the contact segments: an angle and a joint of either body, all off at once.
-/// Of 2,700 random scenes one needed 2.6.
+/// Roundings of the coordinates, which count beyond the contact segments. Of 2,700 random scenes one needed 2.6.
 const PLACE_ROUNDINGS: f64 = 4.0;
 
 /// Up to this slope the end of a piece counts as it is. At a steeper end, which may be vertical, the nearest column counts.

@@ -42,8 +42,7 @@ impl<'a> Samples<'a> {
     }
 }
 
-/// Computes the largest difference of values; NaN where only one has a value, because a number where there is no surface is as wrong
-/// as none where there is one.
+/// Computes the largest difference; NaN where only one has a value, since a number off the surface is as wrong as none on it.
 pub(super) fn difference(values: &[f64], exact: &[f64]) -> f64 {
     let differences = values.iter().zip(exact).filter(|(s, exact)| !(s.is_nan() && exact.is_nan()));
     differences.map(|(s, exact)| (s - exact).abs()).fold(0.0, nan_max)
@@ -69,8 +68,11 @@ fn sampled_columns(placement: &Placement, xi: &[f64]) -> Vec<f64> {
 
 /// Gives at most `n` of the values, evenly spread, ends included.
 pub(super) fn thinned(values: &[f64], n: usize) -> Vec<f64> {
-    if values.len() <= n {
-        return values.to_vec();
-    }
-    (0..n).map(|k| values[k * (values.len() - 1) / (n - 1)]).collect()
+    places(values.len(), n).map(|k| values[k]).collect()
+}
+
+/// Gives at most `n` indices of so many values, evenly spread, ends included.
+pub(super) fn places(count: usize, n: usize) -> impl Iterator<Item = usize> {
+    let n = n.min(count);
+    (0..n).map(move |k| if n == 1 { 0 } else { k * (count - 1) / (n - 1) })
 }

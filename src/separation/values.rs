@@ -36,8 +36,7 @@ impl Residence {
     }
 }
 
-/// Numbers of which the first begins a line of the cache, such as s over a grid or u along its axis. A store across two lines takes
-/// twice as long.
+/// Numbers of which the first begins a line of the cache: a store across two lines takes twice as long.
 #[derive(Debug)]
 pub struct Values {
     memory: Vec<f64>,

@@ -16,15 +16,13 @@ use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
 use crate::profile::{Branch, BranchPoint, BranchPoints, Branches, Piece, Section};
 
-/// Most steps by which a point is found; each gains some six digits. A branch that needs more is steep there: one column is then
-/// left to a bracketed root.
+/// Most steps by which a point is found; each gains some six digits. A branch that needs more is steep there.
 const STEPS: usize = 8;
 
 /// A step below so many roundings of w is followed by one that is smaller by e/w and by the difference of chord and tangent.
 const LAST_STEP: f64 = 16.0 * f64::EPSILON;
 
-/// Share of the window's u that the nodes of a polynomial must cover. Beyond them it is continued that little, by which its error
-/// grows by some per cent.
+/// Share of the window's u that nodes must cover. Where a polynomial is continued beyond them its error grows by some per cent.
 const NEARLY_COVERED: f64 = 0.9999;
 
 /// A branch that goes on to this many times the sagitta that the window needs is taken to cover it. Between there and the end only
@@ -330,8 +328,7 @@ impl<'a> WheelSurface<'a> {
 
     /// Finds the points at u = η² \[mm²\]; `None` where the steps do not settle. w is not positive where η is beyond the ring.
     ///
-    /// Method: Newton's step on u(e) = e (2w + e), with the chord's slope for the tangent's, from which it differs by
-    /// e × curvature.
+    /// Method: Newton's step on u(e) = e (2w + e), with the slope of the chord, which is off by e × curvature.
     #[inline(always)]
     pub(super) fn points_at<const N: usize>(
         &self,
@@ -363,7 +360,7 @@ impl<'a> WheelSurface<'a> {
 
     /// Finds the point at u = η² \[mm²\] over a span; `None` where η is beyond the ring.
     ///
-    /// Method: that of [`Self::points_at`]; where it does not settle, a bracketed root.
+    /// Method: Newton's step on u(e) = e (2w + e); where it does not settle, a bracketed root.
     pub fn point_at(&self, xi: f64, span: &Span, u: f64) -> Option<SagittaPoint> {
         let point = match self.points_at(&[xi], &self.lane(span), &[u]) {
             Some(points) => points.into(),

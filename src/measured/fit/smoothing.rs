@@ -32,8 +32,6 @@ pub(in crate::measured) struct Fit {
     pub second: Vec<Twice>,
 }
 
-const ZERO: Twice = Twice::ZERO;
-
 impl<'a> Smoother<'a> {
     /// For knots `steps` \[mm\] apart, all positive, and 1/wᵢ = `slack` for each: 0 pins the spline to the value
     /// there. A penalty of 0 interpolates.
@@ -60,7 +58,7 @@ impl<'a> Smoother<'a> {
         for (k, q) in here.iter().enumerate() {
             d += *q * *q * slack(j + k);
         }
-        let (mut l1, mut l2) = (ZERO, ZERO);
+        let (mut l1, mut l2) = (Twice::ZERO, Twice::ZERO);
         if j >= 2 {
             let [.., far] = self.second_difference(j - 2);
             let [d_before, ..] = self.factor[j - 2];
@@ -83,13 +81,13 @@ impl<'a> Smoother<'a> {
 
     /// The spline of these values, natural at its ends.
     pub fn fit(&self, y: &[f64]) -> Fit {
-        self.fit_between(y, [ZERO; 2])
+        self.fit_between(y, [Twice::ZERO; 2])
     }
 
     /// The spline of these values with given second derivatives at its ends; an interpolation, where they are not 0.
     pub fn fit_between(&self, y: &[f64], ends: [Twice; 2]) -> Fit {
         let n = y.len();
-        let mut second = vec![ZERO; n];
+        let mut second = vec![Twice::ZERO; n];
         (second[0], second[n - 1]) = (ends[0], ends[1]);
         let inner = self.factor.len();
         for j in 0..inner {

@@ -1,5 +1,4 @@
-//! One segment, or the part of it that faces the other body, as a function ζ(ξ). Points and chords are found for N abscissae at
-//! once; one is N = 1.
+//! One segment, or the part of it that faces the other body, as a function ζ(ξ): points and chords for N abscissae at once.
 
 use super::super::arc::cosine;
 use super::super::{Arc, Polynomial, Station};
@@ -7,7 +6,7 @@ use super::points::{self, BranchPoint, BranchPoints, repeated};
 use super::turned::{rising_parts, seen_from, seen_from_own_point};
 use crate::numerics::lanes::Lanes;
 use crate::numerics::polynomial::{derivative, derivatives, exact_values, range, value, value_and_slope};
-use crate::numerics::twice::{Twice, Twices};
+use crate::numerics::twice::Twice;
 
 /// A line whose tangent has a smaller cosine is kept by its ends: at 1e-3 a rounding of ξ is 1e-11 mm of ζ. Gentler lines are
 /// kept by their angle, which has more digits than a difference of ends that may be near each other.
@@ -58,8 +57,7 @@ pub struct ArcBranch {
     pub curvature: f64,
 }
 
-/// A curve (ξ(t), ζ(t)). Where the contact point is on it, t = 0 there; ζ then has neither a constant nor a linear term, and keeps
-/// its relative accuracy down to C.
+/// A curve (ξ(t), ζ(t)). With the contact point at t = 0, ζ has neither a constant nor a linear term, and keeps its digits down to C.
 #[derive(Debug, Clone)]
 pub struct PolynomialBranch {
     /// Coefficients of ξ(t).
@@ -112,16 +110,16 @@ impl ArcBranch {
     }
 
     #[inline(always)]
-    fn exact_heights<const N: usize>(&self, xi: &Lanes<N>) -> Twices<N> {
+    fn exact_heights<const N: usize>(&self, xi: &Lanes<N>) -> [Twice; N] {
         let one = Twice::from(1.0);
         let [xi_a, zeta_a] = self.anchor;
-        let mut zeta = Twices::from([0.0; N]);
+        let mut zeta = [Twice::ZERO; N];
         for (k, &xi) in xi.iter().enumerate() {
             let run = Twice::sum(xi, -xi_a);
             let turn = if self.radius.is_finite() { run / self.radius } else { Twice::ZERO };
             let sin = turn + self.sin;
             let cos = ((one - sin) * (one + sin)).sqrt();
-            zeta.set(k, run * (sin + self.sin) / (cos + self.cos) + zeta_a);
+            zeta[k] = run * (sin + self.sin) / (cos + self.cos) + zeta_a;
         }
         zeta
     }
@@ -143,13 +141,16 @@ impl PolynomialBranch {
 
     /// Finds t with ξ(t) = ξ in twice the working precision, from t in the working one.
     #[inline(always)]
-    pub(super) fn exact_parameters<const N: usize>(&self, xi: &Lanes<N>, t: &Lanes<N>) -> Twices<N> {
-        let mut exact = Twices::from(*t);
+    pub(super) fn exact_parameters<const N: usize>(&self, xi: &Lanes<N>, t: &Lanes<N>) -> [Twice; N] {
+        let mut exact = [Twice::ZERO; N];
+        for k in 0..N {
+            exact[k] = t[k].into();
+        }
         let (abscissa, slope) = exact_values(&self.exact[0], &exact);
         for k in 0..N {
             // One Newton step more, which doubles the digits whatever the rounding of its slope.
-            let miss = abscissa.get(k) - xi[k];
-            exact.set(k, Twice::sum(t[k], -(miss.high / slope[k])));
+            let miss = abscissa[k] - xi[k];
+            exact[k] = Twice::sum(t[k], -(miss.high / slope[k]));
         }
         exact
     }
@@ -172,8 +173,7 @@ impl PolynomialBranch {
 }
 
 impl Branch {
-    /// Makes the branch of an arc: the part that faces the other body, where the tangent points to larger ξ. `None` where there is
-    /// no such part.
+    /// Makes the branch of the part of an arc that faces the other body; `None` where the tangent nowhere points to larger ξ.
     pub(super) fn of_arc(segment: usize, arc: &Arc, frame: &Station, contact: bool) -> Option<Self> {
         let (start, end) = (arc.start.seen_from(frame), arc.end.seen_from(frame));
         let (begins, ends) = (start.cos >= 0.0, end.cos >= 0.0);
@@ -287,18 +287,17 @@ impl Branch {
     /// Computes ζ at points of this branch in twice the working precision, for differences between closely conforming branches. The
     /// result is NaN for points of another branch.
     #[inline(always)]
-    pub fn exact_heights<const N: usize>(&self, xi: &Lanes<N>, points: &BranchPoints<N>) -> Twices<N> {
+    pub fn exact_heights<const N: usize>(&self, xi: &Lanes<N>, points: &BranchPoints<N>) -> [Twice; N] {
         match (&self.shape, points) {
             (BranchShape::Arc(arc), BranchPoints::Arc { .. }) => arc.exact_heights(xi),
             (BranchShape::Polynomial(p), BranchPoints::Polynomial { t, .. }) => {
                 exact_values(&p.exact[1], &p.exact_parameters(xi, t)).0
             }
-            _ => Twices::from([f64::NAN; N]),
+            _ => [Twice { high: f64::NAN, low: f64::NAN }; N],
         }
     }
 
-    /// Finds the points at N abscissae, from which chords are drawn, and their ζ \[mm\]. `None` for several abscissae where Newton's
-    /// steps on a polynomial do not settle.
+    /// Finds the points at N abscissae and their ζ \[mm\]. `None` for several where Newton's steps on a polynomial do not settle.
     #[inline(always)]
     pub fn points<const N: usize>(&self, xi: &Lanes<N>) -> Option<(BranchPoints<N>, Lanes<N>)> {
         match &self.shape {
@@ -375,8 +374,7 @@ impl Branch {
         }
     }
 
-    /// Computes dζ/dξ at a point of this branch. It is infinite or NaN where the branch is vertical, and NaN for a point of another
-    /// branch.
+    /// Computes dζ/dξ at a point of this branch; infinite or NaN where it is vertical, and NaN for a point of another branch.
     #[inline]
     pub fn slope_from(&self, point: &BranchPoint) -> f64 {
         match (&self.shape, point) {
@@ -416,8 +414,7 @@ impl Branch {
         }
     }
 
-    /// Computes bounds of ζ′ and of ζ″ over \[a, b\], for searches that must not miss a minimum. They are infinite where the branch
-    /// is vertical.
+    /// Computes bounds of ζ′ and of ζ″ over \[a, b\] that miss no value. They are infinite where the branch is vertical.
     pub fn derivative_bounds(&self, a: f64, b: f64) -> [[f64; 2]; 2] {
         match &self.shape {
             BranchShape::Arc(arc) => {

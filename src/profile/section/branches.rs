@@ -117,7 +117,7 @@ mod tests {
                 worst = worst.max((chords[k] - chord).abs() / (1.0 + chord * chord));
                 let other = branch.chord_from(&point, xi[k] + (to[k] - xi[k]) * stretch[k]);
                 worst = worst.max((climb[k] / stretch[k] - other).abs() / (1.0 + other * other));
-                let exact = (zeta.get(k) - height).high.abs();
+                let exact = (zeta[k] - height).high.abs();
                 worst = worst.max(exact / (1.0 + height.abs()));
                 compared += 1;
             }

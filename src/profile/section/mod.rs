@@ -138,7 +138,7 @@ impl Section {
     fn point_on(branch: &Branch, profile: &Profile, x: f64) -> ProfilePoint {
         let (station, parameter) = match (&branch.shape, &profile.segments()[branch.segment].shape) {
             (BranchShape::Polynomial(shape), Shape::Polynomial(polynomial)) => {
-                let t = shape.exact_parameters(&[x], &[shape.parameter(x)]).get(0);
+                let t = shape.exact_parameters(&[x], &[shape.parameter(x)])[0];
                 (turned::station_at(polynomial, t), t)
             }
             _ => (branch.station(x), Twice::ZERO),

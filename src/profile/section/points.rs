@@ -1,5 +1,4 @@
-//! Points of branches, and chords between points of polynomial curves, at N abscissae at once: no abscissa waits for the one
-//! before it.
+//! Points of branches, and chords of polynomial curves, at N abscissae at once, so that none waits for another.
 //!
 //! A curve is given by the coefficients of ξ(t) and ζ(t) in lanes: one curve for all, or one for each.
 
@@ -142,8 +141,7 @@ fn bisected<const N: usize>(c: impl Coefficients<N>, [low, high]: [Lanes<N>; 2],
     t
 }
 
-/// Gives the value, or the end of the range that it is beyond; NaN stays NaN. `f64::clamp` checks its ends, which keeps loops from
-/// becoming vector code.
+/// Gives the value, or the end that it is beyond; NaN stays NaN. `f64::clamp` checks its ends, which is no vector code.
 #[inline(always)]
 fn within(value: f64, low: f64, high: f64) -> f64 {
     let above = if value < low { low } else { value };

@@ -1,5 +1,6 @@
 //! A polynomial segment seen from a frame, and the parts of it that face the other body.
 
+use super::super::polynomial::turned;
 use super::super::{Polynomial, Station};
 use crate::numerics::polynomial::{derivative, exact_slope, exact_value, range, recentred, value};
 use crate::numerics::roots::bracketed;
@@ -74,17 +75,16 @@ fn sign_changes(c: &[f64], rounding: f64, [a, b]: [f64; 2], depth: u32, out: &mu
 pub(super) fn seen_from(polynomial: &Polynomial, frame: &Station) -> ([Vec<Twice>; 2], [f64; 2]) {
     let (mut x, mut z) = (polynomial.x.clone(), polynomial.z.clone());
     (x[0], z[0]) = (x[0] - frame.x, z[0] - frame.z);
-    (turned(&x, &z, frame.cos.into(), frame.sin.into()), polynomial.t)
+    (turned([&x, &z], frame.cos, frame.sin), polynomial.t)
 }
 
-/// Turns a segment into the contact frame of its own point t = `origin`, which becomes t = 0. ζ then has neither a constant nor a
-/// linear term, exactly.
+/// Turns a segment into the contact frame of its own point t = `origin`. ζ then has no constant and no linear term, exactly.
 pub(super) fn seen_from_own_point(polynomial: &Polynomial, origin: Twice) -> ([Vec<Twice>; 2], [f64; 2]) {
     let [mut x, mut z] = [&polynomial.x, &polynomial.z].map(|c| recentred(c, origin));
     z.resize(z.len().max(2), Twice::ZERO);
     (x[0], z[0]) = (Twice::ZERO, Twice::ZERO);
     let norm = (x[1] * x[1] + z[1] * z[1]).sqrt();
-    let [xi, mut zeta] = turned(&x, &z, x[1] / norm, z[1] / norm);
+    let [xi, mut zeta] = turned([&x, &z], x[1] / norm, z[1] / norm);
     zeta[1] = Twice::ZERO;
     ([xi, zeta], polynomial.t.map(|t| (Twice::from(t) - origin).into()))
 }
@@ -100,14 +100,4 @@ pub(super) fn station_at(polynomial: &Polynomial, t: Twice) -> Station {
         cos: (dx / norm).into(),
         sin: (dz / norm).into(),
     }
-}
-
-/// Turns (x, z) into (x cos + z sin, z cos − x sin), coefficient by coefficient.
-fn turned(x: &[Twice], z: &[Twice], cos: Twice, sin: Twice) -> [Vec<Twice>; 2] {
-    let get = |c: &[Twice], k: usize| c.get(k).copied().unwrap_or(Twice::ZERO);
-    let n = x.len().max(z.len());
-    [
-        (0..n).map(|k| get(x, k) * cos + get(z, k) * sin).collect(),
-        (0..n).map(|k| get(z, k) * cos - get(x, k) * sin).collect(),
-    ]
 }

@@ -4,23 +4,20 @@
 //! relative accuracy of both terms survives. The nodes are Chebyshev points in the sagitta e, of which u is nearly a multiple:
 //! ζ and u follow from e with no iteration.
 
-use super::super::demand::{Demand, first_count};
-use super::super::evaluator::Evaluator;
-use super::super::wheel_surface::{SagittaPoints, Span, SpanLanes, WheelSurface};
 use super::horner::{ColumnPolynomial, MOST_COEFFICIENTS};
 use super::neighbours::{MOST_SPANS, Neighbours};
 use crate::numerics::chebyshev::{extrema, powers, unit_nodes};
 use crate::numerics::lanes::{Lanes, MANY, every, lanes, largest};
 use crate::numerics::nan_max;
 use crate::placement::Placement;
+use crate::separation::demand::{Demand, first_count};
+use crate::separation::evaluator::Evaluator;
+use crate::separation::wheel_surface::{SagittaPoints, Span, SpanLanes, WheelSurface};
 
-/// Fits polynomials to columns of a placed pair. It holds the memory for that, which single columns, strips and the measurement of
-/// errors share.
+/// Fits polynomials to columns of a placed pair, for strips, for columns in none, and for the measurement of errors.
 #[derive(Debug)]
 pub struct Fitter<'a> {
-    /// s at single points.
     pub evaluator: Evaluator<'a>,
-    /// Columns that are fitted at once.
     pub neighbours: Neighbours<'a>,
     /// What truncation is held to.
     pub demand: Demand,
@@ -28,10 +25,9 @@ pub struct Fitter<'a> {
     pub least: usize,
     /// Coefficients of columns that are fitted at once.
     pub rows: Vec<Lanes>,
-    /// The spans of a single column.
     pub spans: Vec<Span>,
     /// Coefficients of a single column.
-    single: Vec<Lanes<1>>,
+    pub single: Vec<Lanes<1>>,
     /// The kind of machine that work on lanes is compiled for.
     pub arch: pulp::Arch,
 }

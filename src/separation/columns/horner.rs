@@ -1,9 +1,9 @@
 //! Polynomials of single columns, and runs of a column by Horner's rule with the widest vectors of the machine.
 
-use super::super::values::{LINE, lead};
 use super::stream;
 use crate::numerics::chebyshev::MOST_POINTS;
 use crate::numerics::polynomial;
+use crate::separation::values::{LINE, lead};
 
 /// Most coefficients of a column. A span that needs more is close to a vertical tangent, and is evaluated point by point.
 pub const MOST_COEFFICIENTS: usize = MOST_POINTS;
@@ -62,9 +62,7 @@ pub fn per_degree(n: usize, work: impl PerDegree) {
 
 /// A run of a column's u, which lies over one span; compiled for each kind of machine.
 pub struct SpanRun<'a> {
-    /// The polynomial over the span.
     pub fit: &'a ColumnPolynomial,
-    /// u \[mm²\].
     pub u: &'a [f64],
     /// s \[mm\], overwritten.
     pub out: &'a mut [f64],
@@ -82,15 +80,12 @@ impl pulp::WithSimd for SpanRun<'_> {
 
 /// A run of values by one polynomial.
 pub struct OneRun<'a, S> {
-    /// The machine's vectors.
     pub simd: S,
     /// base and u_0.
     pub begin: [f64; 2],
     /// Coefficients, at least as many as the work is compiled for.
     pub c: &'a [f64],
-    /// Places.
     pub u: &'a [f64],
-    /// Values, overwritten.
     pub out: &'a mut [f64],
 }
 
@@ -147,8 +142,7 @@ pub fn horner<S: pulp::Simd, const N: usize, const FIRST: bool, const PAST: bool
     }
 }
 
-/// Computes what [`horner`] does over a run of whole vectors. In the first vector, values up to u_0 stay as they are, unless u_0 is
-/// zero by `FIRST`.
+/// Computes what [`horner`] does over whole vectors. Values up to u_0 in the first one stay, unless u_0 is zero by `FIRST`.
 #[inline(always)]
 pub fn whole_vectors<S: pulp::Simd, const N: usize, const FIRST: bool>(
     simd: S,

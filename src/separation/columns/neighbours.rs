@@ -1,10 +1,10 @@
 //! Neighbouring columns at once: which branches they pass, and what they begin with.
 
-use super::super::evaluator::Evaluator;
-use super::super::gap::{contact_gap, contact_gaps};
-use super::super::wheel_surface::{SpanLanes, WheelSurface};
 use crate::numerics::lanes::{Lanes, MANY, every, lanes};
 use crate::profile::{Branches, Piece, Section};
+use crate::separation::evaluator::Evaluator;
+use crate::separation::gap::{contact_gap, contact_gaps};
+use crate::separation::wheel_surface::{SpanLanes, WheelSurface};
 
 /// Most spans of columns that are computed at once.
 pub const MOST_SPANS: usize = 3;
@@ -31,14 +31,6 @@ pub struct SpanColumns<'a> {
     pub wheel: SpanLanes<'a, MANY>,
     /// s at the beginning \[mm\].
     pub base: Lanes,
-}
-
-impl SpanColumns<'_> {
-    /// Gives the size \[mm\] of the coordinates that s at the beginning is computed from.
-    #[inline(always)]
-    pub fn size(&self, evaluator: &Evaluator<'_>, xi: &Lanes) -> Lanes {
-        lanes(|k| evaluator.size(xi[k], self.wheel.height[k]))
-    }
 }
 
 impl<'a> Neighbours<'a> {

@@ -4,17 +4,16 @@
 //! analytic in η. It is interpolated from 16 Chebyshev points, and an interval where that fails is halved. Interpolation keeps the
 //! accuracy of the interval's largest s; where s is much smaller, near C, it is done anew.
 
-use super::super::demand::{Demand, ROUNDING_LEVEL};
-use super::super::evaluator::Evaluator;
-use super::super::gap::contact_gap;
-use super::super::wheel_surface::{SpanLanes, WheelSurface};
 use super::horner::{MOST_COEFFICIENTS, OneRun, per_degree};
 use crate::numerics::chebyshev::{self, PROOF};
 use crate::numerics::lanes::{Lanes, MANY, every, lanes};
 use crate::profile::{BranchPoints, Piece};
+use crate::separation::demand::{Demand, ROUNDING_LEVEL};
+use crate::separation::evaluator::Evaluator;
+use crate::separation::gap::contact_gap;
+use crate::separation::wheel_surface::{SpanLanes, WheelSurface};
 
-/// Values below this share of an interval's largest |s| are not interpolated with it: they would not have the promised thirteen
-/// digits.
+/// Values below this share of an interval's largest |s| would not have the promised thirteen digits by its interpolant.
 const SMALL_SHARE: f64 = 1.0 / 64.0;
 
 /// Writes s \[mm\] of the column at ξ over ascending η, held to a demand; NaN where a body has no surface. The result is the largest

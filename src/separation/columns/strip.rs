@@ -1,11 +1,11 @@
 //! One strip of neighbouring columns: its quantities, and s from them, for many columns at once.
 
-use super::super::axis::{EtaAxis, mirror};
-use super::super::gap::midplane_gap;
 use super::horner::{MOST_COEFFICIENTS, PerDegree, horner, per_degree, whole_vectors};
 use super::neighbours::MOST_SPANS;
 use crate::numerics::lanes::{Lanes, MANY, lanes};
 use crate::placement::Placement;
+use crate::separation::axis::{EtaAxis, mirror};
+use crate::separation::gap::midplane_gap;
 
 /// Columns over an interval of ξ that are made up of the same quantities. These are, for every span, the coefficients of q, s at the
 /// beginning and u_0. All are polynomials in ξ.
@@ -18,7 +18,7 @@ pub struct Strip {
     /// Number of spans.
     pub spans: usize,
     /// Number of coefficients of q.
-    pub(super) coefficients: usize,
+    pub coefficients: usize,
     /// The coefficients of t^(kept−1), …, t⁰ of every quantity, where t runs from −1 to 1 over the interval. First come the
     /// coefficients of q, span by span; then s of the first span; then u_0 and s of each further span.
     pub(super) powers: Vec<f64>,
@@ -86,13 +86,10 @@ impl ColumnPolynomials {
 ///
 /// It is a struct, because closures may be left out of line, and so without the machine's widest vectors.
 pub struct StripColumns<'a, const PAST: bool> {
-    /// The pair.
     pub placement: &'a Placement,
-    /// The strip.
     pub strip: &'a Strip,
     /// ξ of the columns \[mm\], at most [`MANY`].
     pub xi: &'a [f64],
-    /// η of every column.
     pub axis: &'a EtaAxis,
     /// Whether one half of a column is the other's mirror image, and columns are whole vectors.
     pub mirrored: bool,
@@ -130,11 +127,6 @@ fn at(powers: &[f64], t: &Lanes) -> Lanes {
 }
 
 impl Strip {
-    /// Gives the number of coefficients of q.
-    pub fn coefficients(&self) -> usize {
-        self.coefficients
-    }
-
     /// Computes the polynomials over every span at each ξ \[mm\], at most [`MANY`]; `u_max` \[mm²\] is the end of the columns.
     #[inline(always)]
     pub fn polynomials(
@@ -182,11 +174,9 @@ impl Strip {
 
 /// Neighbouring columns to be evaluated from their polynomials over every span, of which there is one if `SINGLE`.
 pub struct Evaluation<'a, S, const SINGLE: bool, const PAST: bool> {
-    /// The machine's vectors.
     pub simd: S,
     /// Polynomials of every span, in order of u.
     pub polynomials: &'a [ColumnPolynomials],
-    /// η of every column.
     pub axis: &'a EtaAxis,
     /// Whether one half of a column is the other's mirror image, and columns are whole vectors.
     pub mirrored: bool,

@@ -5,21 +5,20 @@
 //! and the coefficients of q in powers of τ = (u − u_0)/(u_1 − u_0). They are interpolated to rounding from columns at 16 Chebyshev
 //! points in ξ. A strip where that fails is halved; one with few columns is left to its columns.
 
-use super::super::demand::ROUNDING_LEVEL;
-use super::super::evaluator::Evaluator;
-use super::super::wheel_surface::WheelSurface;
 use super::fit::{Fitter, polynomials};
 use super::neighbours::{MOST_SPANS, Neighbours};
 use super::strip::{Gap, Strip};
 use crate::numerics::chebyshev::{self, PROOF};
 use crate::numerics::lanes::{Lanes, MANY, lanes, largest, smallest};
 use crate::placement::Placement;
+use crate::separation::demand::ROUNDING_LEVEL;
+use crate::separation::evaluator::Evaluator;
+use crate::separation::wheel_surface::WheelSurface;
 
 /// The number of columns that a strip must have. Making it takes as long as about so many single columns.
 const LEAST_COLUMNS: usize = 8;
 
-/// Where g/ξ² varies much, coefficients below this share of its smallest value are rounding. It is a thirtieth of the promised
-/// relative error.
+/// Where g/ξ² varies much, this share of its smallest value is rounding: a thirtieth of the promised relative error.
 const MOST_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Places in 0 ≤ τ ≤ 1 at which changes of q are judged.
@@ -241,7 +240,8 @@ impl Beginnings {
                 let rounding = (0.5 * f64::EPSILON * largest(&s)).min(MOST_ROUNDING * least);
                 rounding.max(ROUNDING_LEVEL * least)
             } else {
-                f64::EPSILON * largest(&span.size(evaluator, &columns.xi))
+                f64::EPSILON
+                    * largest::<MANY>(&lanes(|k| evaluator.size(columns.xi[k], span.wheel.height[k])))
             };
             begins[k] = [chebyshev::coefficients(&span.wheel.u[0]), chebyshev::coefficients(&s)];
             judged.with(&begins[k][0], ROUNDING_LEVEL * largest(&span.wheel.u[1]));

@@ -2,7 +2,6 @@
 
 use std::sync::LazyLock;
 
-use super::super::wheel_surface::{SagittaPoints, WheelSurface};
 use super::fit::{Fitter, error};
 use super::neighbours::{MOST_SPANS, SpanColumns};
 use super::strip::{ColumnPolynomials, Strip};
@@ -10,16 +9,15 @@ use super::strips::inside;
 use crate::numerics::chebyshev;
 use crate::numerics::lanes::{Lanes, MANY, lanes};
 use crate::numerics::nan_max;
+use crate::separation::wheel_surface::{SagittaPoints, WheelSurface};
 
-/// Places in a span, as shares of its u, at which the truncation error of a single column is measured beside the end. The error may
-/// pass through zero at one of them.
+/// Places in a span, as shares of its u, at which the truncation error of a single column is measured beside the end.
 const MEASURED: [f64; 4] = [0.1, 0.3, 0.55, 0.8];
 
 /// (√5 − 1)/2: the fractions of its multiples are spread evenly, however many are taken.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
-/// Places of an interval half way between its nodes, the last one half way to its middle; and shares of spans, spread by the golden
-/// ratio.
+/// Places half way between the nodes of an interval, the last one to its middle; and shares of spans by the golden ratio.
 static BETWEEN: LazyLock<(Lanes, Lanes)> = LazyLock::new(|| {
     let nodes = &*chebyshev::NODES;
     let places = lanes(|k| 0.5 * (nodes[k] + if k + 1 < MANY { nodes[k + 1] } else { -1.0 }));
@@ -32,8 +30,7 @@ pub fn of_strip(fitter: &mut Fitter<'_>, strip: &Strip, u_max: f64) -> f64 {
     fitter.arch.dispatch(StripDifference { fitter, strip, u_max })
 }
 
-/// Measures the largest truncation error \[mm\] of columns in no strip, up to u = `u_max` \[mm²\]. Appends the numbers of coefficients
-/// that they need.
+/// Measures the largest truncation error \[mm\] of columns in no strip. Appends the numbers of coefficients that they need.
 pub fn of_columns(fitter: &mut Fitter<'_>, xi: &[f64], u_max: f64, needed: &mut Vec<usize>) -> f64 {
     let arch = fitter.arch;
     let columns = |xi| arch.dispatch(LoneColumns { fitter: &mut *fitter, xi, u_max, needed: &mut *needed });

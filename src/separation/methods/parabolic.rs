@@ -1,9 +1,9 @@
 //! Parabolas across the midplane, with one coefficient for all columns or one for each.
 
-use super::super::axis::EtaAxis;
-use super::super::evaluator::Evaluator;
-use super::super::kernel::Kernel;
 use crate::placement::Placement;
+use crate::separation::axis::EtaAxis;
+use crate::separation::evaluator::Evaluator;
+use crate::separation::kernel::Kernel;
 
 /// The parabolas s ≈ g(ξ) + η²/2R or s ≈ g(ξ) + q(ξ, 0) η². Under skew, g is taken at ξ′ and η is η′.
 #[derive(Debug)]

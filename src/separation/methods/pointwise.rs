@@ -1,9 +1,9 @@
 //! Every point of a grid by its own sagitta iteration.
 
-use super::super::axis::EtaAxis;
-use super::super::evaluator::Evaluator;
-use super::super::kernel::Kernel;
 use crate::placement::Placement;
+use crate::separation::axis::EtaAxis;
+use crate::separation::evaluator::Evaluator;
+use crate::separation::kernel::Kernel;
 
 /// Evaluates every point on its own: the reference for all other methods.
 #[derive(Debug)]

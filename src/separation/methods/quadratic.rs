@@ -1,10 +1,10 @@
 //! The second-order expansion of s at C, which Hertz's theory uses.
 
-use super::super::axis::EtaAxis;
-use super::super::gap;
-use super::super::kernel::Kernel;
 use crate::placement::Placement;
 use crate::profile::Section;
+use crate::separation::axis::EtaAxis;
+use crate::separation::gap;
+use crate::separation::kernel::Kernel;
 
 /// The quadratic form s ≈ ½ κ_W ξ′² + ½ κ_η η′² − ½ κ_R ξ², with κ_η = cosθ/(R − z_C).
 #[derive(Debug)]
@@ -39,8 +39,7 @@ pub fn quadratic_form(placement: &Placement) -> [f64; 3] {
     }
 }
 
-/// Computes the coefficients of ξ², ξη and η² \[1/mm\] from the curvatures of rail and wheel profile and cosθ_W/ϱ \[1/mm\], and the
-/// skew χ \[rad\].
+/// Computes the coefficients from the curvatures of rail and wheel profile and cosθ_W/ϱ \[1/mm\], and the skew χ \[rad\].
 pub fn form([k_r, k_w]: [f64; 2], around: f64, skew: f64) -> [f64; 3] {
     let (sin, cos) = skew.sin_cos();
     let along = k_w * cos * cos + around * sin * sin - k_r;

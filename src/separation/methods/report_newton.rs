@@ -4,11 +4,11 @@
 //! 1e-13 mm whatever the size of s (erratum 7). The segment is found anew from x at every iterate (erratum 6). An iterate that
 //! leaves the profile, or an arc, gives NaN.
 
-use super::super::axis::EtaAxis;
-use super::super::kernel::Kernel;
 use crate::numerics::polynomial::derivatives;
 use crate::placement::{Body, Placement};
 use crate::profile::{Shape, Station};
+use crate::separation::axis::EtaAxis;
+use crate::separation::kernel::Kernel;
 
 /// After so many iterations the Report's method is taken not to converge. It needs 2 to 5 where it does.
 const MOST_ITERATIONS: usize = 50;
@@ -83,8 +83,7 @@ impl Printed {
 }
 
 impl<'a> ReportNewton<'a> {
-    /// Makes the method for a placed pair without skew, which the Report does not have. It iterates until |Δζ| is below `tolerance`
-    /// \[mm\].
+    /// Makes the method for a placed pair without skew. It iterates until |Δζ| is below `tolerance` \[mm\].
     pub fn new(placement: &'a Placement, axis: &'a EtaAxis, tolerance: f64) -> Self {
         let printed = |body: &Body, frame: &Station| {
             let segments = body.profile().segments().iter();

@@ -1,17 +1,15 @@
 //! Spectral columns: q(ξ, ·) as a polynomial in u = η², by strips, by neighbouring columns, or by single columns.
 
-use super::super::axis::{EtaAxis, mirror};
-use super::super::columns::fit::Fitter;
-use super::super::columns::horner::{SpanRun, per_degree};
-use super::super::columns::neighbours::MOST_SPANS;
-use super::super::columns::skewed;
-use super::super::columns::strip::{ColumnPolynomials, Evaluation, Strip, StripColumns};
-use super::super::demand::Demand;
-use super::super::kernel::Kernel;
-use super::super::values::{LINE, Residence, lead};
-use super::super::wheel_surface::Span;
 use crate::numerics::lanes::MANY;
-use crate::placement::Placement;
+use crate::separation::axis::{EtaAxis, mirror};
+use crate::separation::columns::fit::Fitter;
+use crate::separation::columns::horner::{SpanRun, per_degree};
+use crate::separation::columns::neighbours::MOST_SPANS;
+use crate::separation::columns::skewed;
+use crate::separation::columns::strip::{ColumnPolynomials, Evaluation, Strip, StripColumns};
+use crate::separation::kernel::Kernel;
+use crate::separation::values::{LINE, Residence, lead};
+use crate::separation::wheel_surface::Span;
 
 /// Columns by interpolation to a demand.
 #[derive(Debug)]
@@ -27,21 +25,10 @@ pub struct Spectral<'a> {
 }
 
 impl<'a> Spectral<'a> {
-    /// Makes the method for a placed pair. Every column starts with `coefficients` and takes more where it needs them.
-    pub fn new(placement: &'a Placement, axis: &'a EtaAxis, demand: Demand, coefficients: usize) -> Self {
-        Self {
-            fitter: Fitter::new(placement, demand, coefficients),
-            axis,
-            strips: &[],
-            polynomials: Vec::with_capacity(MOST_SPANS),
-            residence: Residence::LastCache,
-            truncation: 0.0,
-        }
-    }
-
-    /// Adds strips for some of the columns, and tells where the array is while it is filled.
-    pub(in super::super) fn with_strips(self, strips: &'a [Strip], residence: Residence) -> Self {
-        Self { strips, residence, ..self }
+    /// Makes the method by a fitter, with strips for some of the columns, for an array in one kind of memory.
+    pub fn new(fitter: Fitter<'a>, axis: &'a EtaAxis, strips: &'a [Strip], residence: Residence) -> Self {
+        let polynomials = Vec::with_capacity(MOST_SPANS);
+        Self { fitter, axis, strips, polynomials, residence, truncation: 0.0 }
     }
 }
 
@@ -92,8 +79,7 @@ impl Kernel for Spectral<'_> {
     }
 }
 
-/// Neighbouring columns that are in no strip; those over one branch, or each over its own cubic, are fitted at once. Compiled for each
-/// kind of machine.
+/// Neighbouring columns that are in no strip, fitted at once where they can be; compiled for each kind of machine.
 struct EachColumn<'s, 'a> {
     spectral: &'s mut Spectral<'a>,
     /// At most [`MANY`].
@@ -181,7 +167,7 @@ mod tests {
     use super::*;
     use crate::error::Result;
     use crate::measured::{self, CurveKind, Format, Options, write};
-    use crate::placement::Pair;
+    use crate::placement::{Pair, Placement};
     use crate::profile::{Profile, Side, standards};
     use crate::separation::columns::strips::strips;
     use crate::separation::plan::{FULL_PRECISION, demand};
@@ -210,14 +196,10 @@ mod tests {
         }
         xi.sort_by(f64::total_cmp);
         let axis = EtaAxis::new(&steps(15.0, count).collect::<Vec<_>>());
-        let spectral = || {
-            let mut spectral = Spectral::new(placement, &axis, demand(FULL_PRECISION), 4);
-            spectral.fitter.arch = arch;
-            spectral
-        };
-        let strips = strips(&mut spectral().fitter, placement, &xi, axis.reach * axis.reach);
+        let fitter = || Fitter { arch, ..Fitter::new(placement, demand(FULL_PRECISION), 4) };
+        let strips = strips(&mut fitter(), placement, &xi, axis.reach * axis.reach);
         let mut out = Values::new(behind + xi.len() * axis.eta.len());
-        spectral().with_strips(&strips, residence).columns(&xi, &mut out[behind..]);
+        Spectral::new(fitter(), &axis, &strips, residence).columns(&xi, &mut out[behind..]);
         (out[behind..].to_vec(), strips.iter().map(|strip| strip.spans).max().unwrap_or(0))
     }
 
