@@ -7,8 +7,8 @@ use rayon::prelude::*;
 
 use super::{Part, Rasterise, Run, Tell, summary};
 use crate::error::{Error, Result};
-use crate::export::deck::Deck;
-use crate::export::deck::contact::{Normal, Settings};
+use crate::export::deck::contact::{Normal, Settings, contact};
+use crate::export::deck::{Deck, wrp};
 use crate::export::netcdf::NetCdf;
 use crate::export::picture::{Nodes, Picture, SEPARATOR};
 use crate::export::{
@@ -326,16 +326,16 @@ fn decks<'a>(
     strips: Option<&'a QuadMesh>,
 ) {
     if run.wants_any(&[Format::Text]) {
-        stream(jobs, "separation.wrp", move |file| deck.separation(file));
+        stream(jobs, "separation.wrp", move |file| wrp::separation(deck, file));
     }
     if run.wants_any(&[Format::Conform]) {
-        stream(jobs, "conform.wrp", move |file| deck.conform(file));
+        stream(jobs, "conform.wrp", move |file| wrp::conform(deck, file));
     }
     if let (true, Some(strips)) = (run.wants_any(&[Format::Countact]), strips) {
-        stream(jobs, "countact.wrp", move |file| deck.countact(strips, file));
+        stream(jobs, "countact.wrp", move |file| wrp::countact(deck, strips, file));
     }
     if let (true, Some(settings)) = (run.wants_any(&[Format::Contact]), contact_settings(run, part)) {
-        stream(jobs, "contact.inp", move |file| deck.contact(&settings, file));
+        stream(jobs, "contact.inp", move |file| contact(deck, &settings, file));
     }
 }
 

@@ -4,7 +4,8 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::{bad, temporary};
+use super::complaint::bad;
+use super::temporary;
 use crate::error::{Error, Result};
 
 /// A file being written: nothing is seen of it under its name before [`NewFile::commit`], and nothing remains of it when it

@@ -14,8 +14,9 @@
 //! - **Foreign files.** A folder is replaced only if it is empty or carries our own summary. Files in it that
 //!   are not ours (notes, pictures) are hard-linked into the new folder; foreign subfolders are refused.
 
+use super::complaint::bad;
 use super::names::Names;
-use super::{bad, system, temporary};
+use super::{system, temporary};
 use crate::error::{Error, Result};
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};

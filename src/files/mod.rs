@@ -2,6 +2,7 @@
 //!
 //! Whatever is written appears whole or not at all: a single file by [`NewFile`], a folder of files by [`Folder`].
 
+mod complaint;
 mod file;
 mod folder;
 mod names;
@@ -13,8 +14,3 @@ pub use file::{NewFile, write_file};
 pub use folder::{Folder, FolderPart};
 pub use names::{Names, PATCHES_FOLDER, RUN_FOLDER};
 pub use read::{read_bytes, read_text};
-
-/// A complaint about a path.
-fn bad(path: &std::path::Path, found: &str, expected: &str, advice: &str) -> crate::error::Error {
-    crate::error::Error::new(path.display().to_string(), found, expected, advice)
-}

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-use super::bad;
+use super::complaint::bad;
 use crate::error::{Error, Result};
 
 /// The bytes of a file of at most `largest` bytes; a pipe or device is read no further either.

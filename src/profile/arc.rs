@@ -1,7 +1,8 @@
 //! Lines and circular arcs in curvature form: Report (3.2), with a signed radius (erratum 2).
 
-use super::Station;
+use super::station::Station;
 use crate::error::{Error, Result, finite};
+use crate::numerics::cosine;
 use crate::numerics::twice::Twice;
 
 /// A drawing's arc may end where its tangent is vertical; its rounded coordinates may then lie this many
@@ -135,12 +136,6 @@ impl Arc {
     pub(super) fn placed_by(&self, frame: &Station) -> Self {
         Self { start: self.start.placed_by(frame), end: self.end.placed_by(frame), radius: self.radius }
     }
-}
-
-/// √(1 − sin²) without cancellation, 0 where rounding has carried |sin| past 1.
-#[inline(always)]
-pub(super) fn cosine(sin: f64) -> f64 {
-    ((1.0 - sin) * (1.0 + sin)).max(0.0).sqrt()
 }
 
 /// The point of a circle at abscissa x; `radius` negative for the upper half. The height is rounded once

@@ -15,9 +15,11 @@
 //! each other, the flatter one further. w is at least `SHORTEST` and at most `SHARE` of the shorter neighbour. The rule has no direction, no axes and no
 //! unit of length: it commutes with mirroring, rigid motion and scaling, and closing twice changes nothing.
 
-use super::{Arc, Polynomial, Segment, Shape, Station};
+use super::arc::Arc;
+use super::polynomial::Polynomial;
+use super::segment::{Segment, Shape};
+use super::station::Station;
 use crate::error::{Error, Result};
-use crate::numerics::twice::Twice;
 
 /// Ends closer than this share of the profile's extent are one joint, moved apart by rounding. Coordinates of arcs are
 /// rounded some ten times; bending over 1e-13 mm would make segments of nothing.
@@ -361,34 +363,6 @@ impl Closed {
             _ => {}
         }
         Self::met(left, right)
-    }
-}
-
-impl Polynomial {
-    /// Length per unit of the parameter at t.
-    fn speed(&self, t: f64) -> f64 {
-        let [dx, dz] = self.rates(t);
-        dx.hypot(dz)
-    }
-
-    /// The curve plus a parabola that starts at t = `near` and adds `change` \[1/mm\] to the curvature, exactly at t = `at`: along z
-    /// for a graph z(x), which stays one; else along the normal there.
-    fn curved(&self, near: f64, at: f64, change: f64) -> Self {
-        let [dx, dz] = self.rates(at);
-        let speed = dx.hypot(dz);
-        let [along_x, along_z] = if self.x.len() <= 2 { [0.0, 1.0] } else { [-dz / speed, dx / speed] };
-        let half = 0.5 * change * speed.powi(3) / (along_z * dx - along_x * dz);
-        let near = Twice::from(near);
-        let parabola = [near * near * half, near * (-2.0 * half), Twice::from(half)];
-        let plus = |c: &[Twice], share: f64| -> Vec<Twice> {
-            let mut out = c.to_vec();
-            if share != 0.0 {
-                out.resize(out.len().max(3), Twice::ZERO);
-                out.iter_mut().zip(parabola).for_each(|(c, p)| *c += p * share);
-            }
-            out
-        };
-        Self { t: self.t, x: plus(&self.x, along_x), z: plus(&self.z, along_z) }
     }
 }
 

@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use super::{Segment, Station};
+use super::segment::Segment;
+use super::station::Station;
 use crate::error::{Error, Result};
 
 /// Largest step between two segments, as a share of the chain's extent, that counts as rounding of a drawing.

@@ -1,6 +1,6 @@
 //! Polynomial segments: the zones of a standard such as S1002, and the spans of a parametric spline.
 
-use super::Station;
+use super::station::Station;
 use crate::error::{Error, Result, finite};
 use crate::numerics::polynomial::{exact_slope, exact_value, recentred};
 use crate::numerics::twice::Twice;
@@ -85,6 +85,32 @@ impl Polynomial {
         };
         let ([dx, hx], [dz, hz]) = (about(&self.x), about(&self.z));
         2.0 * (dx * hz - dz * hx) / dx.hypot(dz).powi(3)
+    }
+
+    /// Length per unit of the parameter at t.
+    pub(super) fn speed(&self, t: f64) -> f64 {
+        let [dx, dz] = self.rates(t);
+        dx.hypot(dz)
+    }
+
+    /// The curve plus a parabola that starts at t = `near` and adds `change` \[1/mm\] to the curvature, exactly at t = `at`: along z
+    /// for a graph z(x), which stays one; else along the normal there.
+    pub(super) fn curved(&self, near: f64, at: f64, change: f64) -> Self {
+        let [dx, dz] = self.rates(at);
+        let speed = dx.hypot(dz);
+        let [along_x, along_z] = if self.x.len() <= 2 { [0.0, 1.0] } else { [-dz / speed, dx / speed] };
+        let half = 0.5 * change * speed.powi(3) / (along_z * dx - along_x * dz);
+        let near = Twice::from(near);
+        let parabola = [near * near * half, near * (-2.0 * half), Twice::from(half)];
+        let plus = |c: &[Twice], share: f64| -> Vec<Twice> {
+            let mut out = c.to_vec();
+            if share != 0.0 {
+                out.resize(out.len().max(3), Twice::ZERO);
+                out.iter_mut().zip(parabola).for_each(|(c, p)| *c += p * share);
+            }
+            out
+        };
+        Self { t: self.t, x: plus(&self.x, along_x), z: plus(&self.z, along_z) }
     }
 
     pub(super) fn mirrored(&self) -> Self {

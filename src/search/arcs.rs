@@ -1,8 +1,9 @@
 //! Pairs of arcs, lines and fans whose common tangent has a closed form: all but those with a yawed torus.
 
 use super::candidates::{Foot, Search};
-use super::element::{ArcElement, Element, SINE_ROUNDING, Shape, between, cosine};
+use super::element::{ArcElement, Element, SINE_ROUNDING, Shape, between};
 use super::locus::Attitude;
+use crate::numerics::cosine;
 use crate::profile::Station;
 
 /// Looks for contact of two elements; whether there is a closed form.

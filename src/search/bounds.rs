@@ -1,7 +1,7 @@
 //! What is known of a part of a profile before its points are looked at: guaranteed bounds, which close with the square
 //! of its length.
 
-use super::element::cosine;
+use crate::numerics::cosine;
 use crate::numerics::polynomial::{bernstein, convolution, derivative, range};
 use crate::profile::{Side, Station};
 

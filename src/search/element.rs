@@ -2,6 +2,7 @@
 //! and ends. Each is a curve over a parameter of its own, which runs through the vertical without harm.
 
 use super::bounds::{Bounds, Reach};
+use crate::numerics::cosine;
 use crate::profile::{ArcBranch, Side, Station};
 
 /// Slack of a sine against the ends of an element: a root on a joint may come out this far beyond either
@@ -216,10 +217,4 @@ pub(super) fn between(ends: &[Station; 2], values: &[f64; 2], value: f64, roundi
     let share = ((value - values[0]) / (values[1] - values[0])).clamp(0.0, 1.0);
     let [a, b] = ends;
     Some(Station { x: a.x + share * (b.x - a.x), z: a.z + share * (b.z - a.z), ..*a })
-}
-
-/// √(1 − sin²) without cancellation, 0 where rounding has carried |sin| past 1.
-#[inline]
-pub(super) fn cosine(sin: f64) -> f64 {
-    ((1.0 - sin) * (1.0 + sin)).max(0.0).sqrt()
 }

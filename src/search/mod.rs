@@ -303,7 +303,7 @@ impl ProfilePair {
         let [x, z] = self.wheel.extent;
         let tilted = (-x[0] * attitude.sin_roll).max(-x[1] * attitude.sin_roll);
         let steepest = attitude.tan_yaw;
-        let rise = self.radius * steepest * steepest / (1.0 + element::cosine(steepest));
+        let rise = self.radius * steepest * steepest / (1.0 + crate::numerics::cosine(steepest));
         z[1] * attitude.cos_roll + tilted + rise - self.rail.extent[1][0]
     }
 }

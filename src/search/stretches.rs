@@ -14,8 +14,9 @@
 use super::body::LEAST_KINK;
 use super::bounds::Bounds;
 use super::candidates::{EQUAL_CURVATURES, Foot, Search};
-use super::element::{Element, Place, Shape, cosine, rising_root};
-use super::placed::Placed;
+use super::element::{Element, Place, Shape, rising_root};
+use super::placed::{Placed, outline_bounds, placed_bounds};
+use crate::numerics::cosine;
 use crate::numerics::roots::bracketed;
 use crate::profile::Side;
 
@@ -83,7 +84,7 @@ enum Verdict {
 pub(super) fn meet(search: &mut Search, elements: [u32; 2], placed: Option<&Placed>) {
     let [above, below] = search.elements(elements);
     search.solves += 1;
-    let Some((curvature, _)) = search.attitude.outline_bounds(&above.bounds) else { return };
+    let Some((curvature, _)) = outline_bounds(search.attitude, &above.bounds) else { return };
     if flatter(curvature, below.bounds.curvature) {
         return;
     }
@@ -92,8 +93,8 @@ pub(super) fn meet(search: &mut Search, elements: [u32; 2], placed: Option<&Plac
         Part { range: [a, b], middle: a + (b - a) / 2.0, place, placed, curvature, depth: 0 }
     };
     let placed = placed.copied();
-    let placed =
-        placed.unwrap_or_else(|| search.attitude.place(&above.bounds).widened(search.slack, SAME_TANGENT));
+    let placed = placed
+        .unwrap_or_else(|| placed_bounds(search.attitude, &above.bounds).widened(search.slack, SAME_TANGENT));
     let wheel = whole(above, search.attitude.outline_place(&above.middle), placed, curvature);
     let rail = whole(below, below.middle, Placed::rail(&below.bounds), below.bounds.curvature);
     let (shapes, wholes) = ([above, below], [&wheel, &rail]);
@@ -142,8 +143,8 @@ impl Pair<'_, '_> {
         let (place, placed, curvature) = match side {
             Side::Wheel => {
                 let place = attitude.outline_place(&own);
-                let (curvature, fastest) = attitude.outline_bounds(&bounds)?;
-                let mut placed = attitude.place(&bounds).widened(self.search.slack, SAME_TANGENT);
+                let (curvature, fastest) = outline_bounds(attitude, &bounds)?;
+                let mut placed = placed_bounds(attitude, &bounds).widened(self.search.slack, SAME_TANGENT);
                 if let Shape::Stretch(stretch) = &element.shape {
                     placed.narrow(place.station.x, half * stretch.reach.run * fastest + self.search.slack);
                 }

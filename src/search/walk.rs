@@ -9,7 +9,7 @@
 
 use super::body::Node;
 use super::candidates::{Candidate, Meeting, Search};
-use super::placed::Placed;
+use super::placed::{Placed, placed_bounds};
 use super::stretches::SAME_TANGENT;
 use super::{arcs, stretches};
 
@@ -132,7 +132,7 @@ impl Walk {
         let standing = &mut self.wheel[wheel as usize];
         if standing.search != self.search {
             let bounds = &search.bodies[0].nodes[wheel as usize].bounds;
-            let placed = search.attitude.place(bounds).widened(search.slack, SAME_TANGENT);
+            let placed = placed_bounds(search.attitude, bounds).widened(search.slack, SAME_TANGENT);
             *standing = Standing { placed, search: self.search };
         }
         Pending { wheel, rail, bound: standing.placed.gap_over(&self.rail[rail as usize]) }

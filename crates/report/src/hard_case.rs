@@ -4,8 +4,6 @@
 
 use serde::Deserialize;
 
-use super::errors::{Errors, Point, compare};
-use super::hard_checks::{self, Check};
 use super::reference::{Reference, embedded, malformed};
 use wheelrail::error::Result;
 use wheelrail::placement::Placement;
@@ -13,7 +11,7 @@ use wheelrail::separation::axis::EtaAxis;
 use wheelrail::separation::grid::{Choice, Method};
 use wheelrail::separation::plan::{FULL_PRECISION, plan};
 
-/// The methods that a case is run with, in the order of [`Outcome::errors`].
+/// The methods that a case is run with, in the order of [`Outcome::errors`](super::hard_run::Outcome::errors).
 pub const METHODS: [Method; 3] = [Method::Spectral, Method::Pointwise, Method::ReportNewton];
 
 /// Columns between those of a case: none, and as many as make strips.
@@ -153,52 +151,6 @@ impl HardCase {
         let mut choice = plan(placement, &xi, &EtaAxis::new(&eta), FULL_PRECISION, Some(method)).choice;
         choice.demand.absolute *= self.unit;
         choice
-    }
-
-    /// Runs all checks; `all` are the cases that a relation may name.
-    ///
-    /// # Errors
-    /// A scene that cannot be placed; a relation to no case.
-    pub fn run(&self, all: &[Self]) -> Result<Outcome> {
-        let placement = self.reference.placement()?;
-        let points: [Vec<Point>; 3] = METHODS.map(|method| {
-            let choice = self.choice(&placement, method);
-            let columns = if method == Method::Spectral { &COLUMNS[..] } else { &COLUMNS[..1] };
-            columns.iter().flat_map(|&n| compare(&self.reference, &placement, &choice, n)).collect()
-        });
-        let checks = hard_checks::all(self, &placement, &points, all)?;
-        let errors = points.each_ref().map(|points| {
-            let defined: Vec<Point> = points.iter().filter(|p| !p.error().is_nan()).copied().collect();
-            let wrongly_masked = points.len() - defined.len();
-            Errors { wrongly_masked, ..Errors::of(&defined) }
-        });
-        Ok(Outcome { case: self.clone(), points: self.reference.separation.len(), errors, checks })
-    }
-}
-
-/// A case and what came out.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Outcome {
-    /// The case.
-    pub case: HardCase,
-    /// Compared points.
-    pub points: usize,
-    /// Per method of [`METHODS`], over the points that have a value where one is due.
-    pub errors: [Errors; 3],
-    /// Every check.
-    pub checks: Vec<Check>,
-}
-
-impl Outcome {
-    /// The checks that failed.
-    pub fn failures(&self) -> impl Iterator<Item = &Check> {
-        self.checks.iter().filter(|check| !check.passed)
-    }
-
-    /// Whether the case is as its status says.
-    pub fn as_stated(&self) -> bool {
-        let passed = self.failures().next().is_none();
-        passed == (self.case.status == Status::Holds)
     }
 }
 

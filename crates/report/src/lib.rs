@@ -12,6 +12,7 @@
 pub mod errors;
 pub mod hard_case;
 mod hard_checks;
+pub mod hard_run;
 pub mod measured;
 pub mod measurements;
 pub mod page;

@@ -5,7 +5,8 @@ use std::time::Instant;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::errors::{Errors, compare};
-use super::hard_case::{Outcome, hard_cases};
+use super::hard_case::hard_cases;
+use super::hard_run::{self, Outcome};
 use super::measured;
 use super::rates::{Extent, Rate, rates};
 use super::reference::{Reference, references};
@@ -167,7 +168,7 @@ pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measur
     let rates = one.install(|| rates(&effort.sweeps, effort.seconds))?;
     progress("hard cases");
     let cases = hard_cases()?;
-    let hard_cases = cases.iter().map(|case| case.run(&cases)).collect::<Result<_>>()?;
+    let hard_cases = cases.iter().map(|case| hard_run::run(case, &cases)).collect::<Result<_>>()?;
     progress("the check by parry3d's meshes");
     let verified = verified(&references, effort.every_pair)?;
     progress("measured profiles");

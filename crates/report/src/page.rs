@@ -2,7 +2,7 @@
 
 mod in_use;
 
-use super::hard_case::Outcome;
+use super::hard_run::Outcome;
 use super::measured;
 use super::measurements::{Growth, Measurements, PASSES, Row, median};
 use super::requirements;

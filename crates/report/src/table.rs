@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use super::hard_case::{METHODS, Outcome};
+use super::hard_case::METHODS;
+use super::hard_run::Outcome;
 use super::measurements::{Growth, Row};
 use super::rates::Rate;
 use super::verification::Verified;

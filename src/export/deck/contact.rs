@@ -46,64 +46,62 @@ impl Settings {
     }
 }
 
-impl Deck<'_> {
-    /// `contact.inp`. Undefined distances are 10 × the largest |s|.
-    ///
-    /// # Errors
-    /// Those of the sink.
-    pub fn contact(&self, settings: &Settings, sink: &mut dyn Write) -> io::Result<()> {
-        let mut block = Block::new(sink);
-        block.bytes(self.comments().as_bytes())?;
-        block.bytes(self.control(settings).as_bytes())?;
-        for i in 0..self.xi.len() {
-            for run in self.column(i).chunks(PER_LINE) {
-                let room = block.room(run.len() * WIDTH + 1)?;
-                for (place, number) in room.chunks_exact_mut(WIDTH).zip(run) {
-                    place.copy_from_slice(number);
-                }
-                room[run.len() * WIDTH] = b'\n';
+/// `contact.inp`. Undefined distances are 10 × the largest |s|.
+///
+/// # Errors
+/// Those of the sink.
+pub fn contact(deck: &Deck<'_>, settings: &Settings, sink: &mut dyn Write) -> io::Result<()> {
+    let mut block = Block::new(sink);
+    block.bytes(comments(deck).as_bytes())?;
+    block.bytes(control(deck, settings).as_bytes())?;
+    for i in 0..deck.xi.len() {
+        for run in deck.column(i).chunks(PER_LINE) {
+            let room = block.room(run.len() * WIDTH + 1)?;
+            for (place, number) in room.chunks_exact_mut(WIDTH).zip(run) {
+                place.copy_from_slice(number);
             }
+            room[run.len() * WIDTH] = b'\n';
         }
-        block.bytes(b" 0  MODULE\n")?;
-        block.finish()
     }
+    block.bytes(b" 0  MODULE\n")?;
+    block.finish()
+}
 
-    fn comments(&self) -> String {
-        let mut lines = self.header.statements();
-        lines.push("CONTACT's axes: x = eta (rolling), y = xi (lateral), z = -zeta (down)".into());
-        lines.push("h(1) ... h(MX*MY) = s at element centres, ix (eta) fastest, then iy (xi)".into());
-        let undefined = self.grid.separation().iter().filter(|s| s.is_nan()).count();
-        lines.push(format!("undefined elements, filled with 10 x the largest |s|: {undefined}"));
-        let count = self.separation.len();
-        if count > ELEMENT_LIMIT {
-            lines.push(format!("{count} elements: above CONTACT's default NPOT_MAX = {ELEMENT_LIMIT},"));
-            lines.push("beyond which it coarsens the grid; use a coarser one or raise NPOT_MAX".into());
-        }
-        lines.iter().map(|line| format!("% {line}\n")).collect()
+fn comments(deck: &Deck<'_>) -> String {
+    let mut lines = deck.header.statements();
+    lines.push("CONTACT's axes: x = eta (rolling), y = xi (lateral), z = -zeta (down)".into());
+    lines.push("h(1) ... h(MX*MY) = s at element centres, ix (eta) fastest, then iy (xi)".into());
+    let undefined = deck.grid.separation().iter().filter(|s| s.is_nan()).count();
+    lines.push(format!("undefined elements, filled with 10 x the largest |s|: {undefined}"));
+    let count = deck.separation.len();
+    if count > ELEMENT_LIMIT {
+        lines.push(format!("{count} elements: above CONTACT's default NPOT_MAX = {ELEMENT_LIMIT},"));
+        lines.push("beyond which it coarsens the grid; use a coarser one or raise NPOT_MAX".into());
     }
+    lines.iter().map(|line| format!("% {line}\n")).collect()
+}
 
-    fn control(&self, settings: &Settings) -> String {
-        let (force, normal) = match settings.normal {
-            Normal::Force(force) => (1, force),
-            Normal::Approach(approach) => (0, approach),
-        };
-        let ([nu_r, nu_w], [g_r, g_w]) = (settings.poisson, settings.shear_modulus);
-        let mut text = format!(
-            " 3  MODULE\n  200{force}00       P-B-T-N-F-S     % N = {force}: {} prescribed\n",
-            if force == 1 { "normal force [N]" } else { "approach [mm]" }
-        );
-        text += "  022020       L-D-C-M-Z-E\n 0002221       H-G-I-A-O-W-R\n";
-        text += "   999 100 30 1 1.0e-8           MAXGS MAXIN MAXNR MAXOUT EPS\n";
-        // `{:?}` writes every f64 with a point or an exponent, shortest that reads back the same.
-        let _ = writeln!(text, "   {normal:?} 0.0 0.0 0.0           {}", ["PEN", "FN"][force]);
-        let _ = writeln!(text, "   {0:?} {0:?}           FSTAT FKIN", settings.friction);
-        let _ = writeln!(text, "   {nu_r:?} {nu_w:?} {g_r:?} {g_w:?}           POISS 1,2  GG 1,2");
-        text += "   3           IPOTCN\n";
-        let _ = write!(text, "   {} {} ", self.eta.len(), self.xi.len());
-        text += line(&[self.grid.eta()[0], self.grid.xi()[0], self.steps[1], self.steps[0]]).trim_end();
-        text += "  MX MY XC1 YC1 DX DY\n";
-        text + "   9 1           IBASE IPLAN\n"
-    }
+fn control(deck: &Deck<'_>, settings: &Settings) -> String {
+    let (force, normal) = match settings.normal {
+        Normal::Force(force) => (1, force),
+        Normal::Approach(approach) => (0, approach),
+    };
+    let ([nu_r, nu_w], [g_r, g_w]) = (settings.poisson, settings.shear_modulus);
+    let mut text = format!(
+        " 3  MODULE\n  200{force}00       P-B-T-N-F-S     % N = {force}: {} prescribed\n",
+        if force == 1 { "normal force [N]" } else { "approach [mm]" }
+    );
+    text += "  022020       L-D-C-M-Z-E\n 0002221       H-G-I-A-O-W-R\n";
+    text += "   999 100 30 1 1.0e-8           MAXGS MAXIN MAXNR MAXOUT EPS\n";
+    // `{:?}` writes every f64 with a point or an exponent, shortest that reads back the same.
+    let _ = writeln!(text, "   {normal:?} 0.0 0.0 0.0           {}", ["PEN", "FN"][force]);
+    let _ = writeln!(text, "   {0:?} {0:?}           FSTAT FKIN", settings.friction);
+    let _ = writeln!(text, "   {nu_r:?} {nu_w:?} {g_r:?} {g_w:?}           POISS 1,2  GG 1,2");
+    text += "   3           IPOTCN\n";
+    let _ = write!(text, "   {} {} ", deck.eta.len(), deck.xi.len());
+    text += line(&[deck.grid.eta()[0], deck.grid.xi()[0], deck.steps[1], deck.steps[0]]).trim_end();
+    text += "  MX MY XC1 YC1 DX DY\n";
+    text + "   9 1           IBASE IPLAN\n"
 }
 
 #[cfg(test)]
@@ -114,7 +112,8 @@ mod tests {
     fn deck(sample: &Sample, normal: Normal) -> String {
         let (header, grid) = (header(), sample.fields());
         let mut bytes = Vec::new();
-        Deck::new(&header, &grid).unwrap().contact(&Settings::steel(normal), &mut bytes).unwrap();
+        let deck = Deck::new(&header, &grid).unwrap();
+        contact(&deck, &Settings::steel(normal), &mut bytes).unwrap();
         String::from_utf8(bytes).unwrap()
     }
 

@@ -64,7 +64,7 @@ impl Chart {
         for (k, series) in self.series.iter().enumerate() {
             series.draw_line(&mut page, &panel, k);
         }
-        page.finish(HEIGHT, &super::foot())
+        page.finish(HEIGHT, &super::page::foot())
     }
 }
 

@@ -68,7 +68,7 @@ impl CurvesPicture {
             let place = [LEFT[k % LEFT.len()], TOP + ROW * (k / LEFT.len()) as f64, SIZE[0], SIZE[1]];
             self.panel(&mut page, place, u, quantity);
         }
-        page.finish(height, &super::foot())
+        page.finish(height, &super::page::foot())
     }
 
     fn panel(&self, page: &mut Page, place: [f64; 4], u: [f64; 2], quantity: &Quantity) {

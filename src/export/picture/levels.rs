@@ -1,9 +1,8 @@
 //! Which lines of equal separation are drawn, and where their numbers stand.
 
 use super::contour::Nodes;
-use super::page::{Colour, Page, Pen, WHITE, Words};
+use super::page::{Colour, INSIDE, Page, Pen, WHITE, Words};
 use super::panel::{Panel, extremes, number, round_below};
-use super::patch::INSIDE;
 
 /// Lines are drawn up to this multiple of the approach: near a flange s grows to many times as much, which is of no
 /// interest to the patch.

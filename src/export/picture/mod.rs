@@ -11,12 +11,5 @@ mod patch;
 pub mod profile;
 
 pub use contour::Nodes;
+pub use page::SEPARATOR;
 pub use patch::Picture;
-
-/// Stands between the parts of a line of words; of several blanks readers of SVG show one.
-pub const SEPARATOR: &str = " · ";
-
-/// The line at the foot of pictures that belong to no scene.
-fn foot() -> String {
-    format!("wheelrail {}", env!("CARGO_PKG_VERSION"))
-}

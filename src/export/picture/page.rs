@@ -7,6 +7,7 @@ pub(super) type Colour = [u8; 3];
 
 pub(super) const INK: Colour = [34, 34, 34];
 pub(super) const GREY: Colour = [120, 120, 120];
+pub(super) const INSIDE: Colour = [253, 232, 226];
 pub(super) const WHITE: Colour = [255; 3];
 pub(super) const BLUE: Colour = [31, 98, 168];
 pub(super) const RED: Colour = [200, 30, 30];
@@ -195,4 +196,12 @@ fn cut(text: &str, longest: usize) -> String {
     }
     let kept: String = text.chars().take(longest - 1).collect();
     format!("{}…", kept.trim_end_matches(|c: char| !c.is_alphanumeric()))
+}
+
+/// Stands between the parts of a line of words; of several blanks readers of SVG show one.
+pub const SEPARATOR: &str = " · ";
+
+/// The line at the foot of pictures that belong to no scene.
+pub(super) fn foot() -> String {
+    format!("wheelrail {}", env!("CARGO_PKG_VERSION"))
 }

@@ -3,16 +3,16 @@
 
 use super::super::model::{Header, Loop};
 use super::contour::Nodes;
-use super::page::{BLUE, BODY, Colour, Page, Pen, RED, SMALL};
+use super::levels;
+use super::page::SEPARATOR;
+use super::page::{BLUE, BODY, Colour, INSIDE, Page, Pen, RED, SMALL};
 use super::panel::{Panel, airy, extremes, number, range};
-use super::{SEPARATOR, levels};
 
 const RAIL: Pen = Pen::new([70, 70, 70], 1.8);
 const WHEEL: Pen = Pen::new(BLUE, 1.8);
 const BOUNDARY: Pen = Pen::new(RED, 2.2);
 const APPROACH: Pen = Pen::new(RED, 1.0).dashed([5.0, 3.0]);
 const CELL: Pen = Pen::new([226, 220, 218], 0.6);
-pub(super) const INSIDE: Colour = [253, 232, 226];
 const WINDOW: Colour = [240, 240, 240];
 
 /// Cells with sides shorter than this \[page units\] are not drawn: their borders would be a tint.

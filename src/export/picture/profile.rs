@@ -1,6 +1,6 @@
 //! The picture of a profile: points and curve at true scale, and against arc length the residual and the curvature.
 
-use super::SEPARATOR;
+use super::page::SEPARATOR;
 use super::page::{BLUE, Page, Pen, RED, SMALL};
 use super::panel::{Panel, airy, number, range};
 
@@ -44,7 +44,7 @@ impl ProfilePicture<'_> {
             top = self.residuals(&mut page, top, along);
         }
         top = self.curvatures(&mut page, top, along);
-        page.finish(top + 20.0, &super::foot())
+        page.finish(top + 20.0, &super::page::foot())
     }
 
     /// Points and curve at true scale, as high as the profile's proportions ask for; returns the next panel's top.

@@ -1,5 +1,6 @@
 //! Where lines of constant ξ under a skewed wheel begin or cease to meet a patch in the same intervals.
 
+use super::monotone::monotone;
 use crate::numerics::roots::{bracketed, last_where};
 use crate::patch::outline::Outline;
 
@@ -37,7 +38,7 @@ pub(in crate::patch) fn events(outline: &mut Outline<'_>, range: [f64; 2]) -> Ev
         }
         intervals.clear();
         let matters = |[low, high]: [f64; 2]| low < approach && (is_valley || high > approach);
-        skewed.valleys.monotone(rail, crease, range, matters, &mut intervals);
+        monotone(&skewed.valleys, rail, crease, range, matters, &mut intervals);
         for &[from, to] in &intervals {
             passes(outline, crease, [from.next_up(), to], &mut events);
             if is_valley {

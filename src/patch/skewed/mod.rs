@@ -3,7 +3,7 @@
 mod circle;
 pub(super) mod events;
 pub(super) mod lanes;
-mod monotone;
+pub(crate) mod monotone;
 mod path;
 pub(super) mod slicer;
 pub(crate) mod valleys;

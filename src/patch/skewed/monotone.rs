@@ -44,46 +44,44 @@ struct Stretch<'v> {
     rail: &'v Branch,
 }
 
-impl Valleys<'_> {
-    /// Appends, in order of ξ \[mm\], the intervals of a valley or ridge inside a range of ξ over which s is monotone: they end at
-    /// joints of both bodies and where s turns. Left out are stretches between joints for whose least and largest s
-    /// `matters` is false.
-    ///
-    /// Method: the slope of the surface where it is parallel to η less that of the rail, in closed form, at some places of
-    /// every stretch. Missed are two turns inside a quarter of a stretch between which |slope| has no minimum that shows
-    /// there: s changes between them by less than that slope × their distance.
-    /// Cost: two places for a stretch that does not matter, five and a root each for others.
-    pub(crate) fn monotone(
-        &self,
-        rail: &Section,
-        crease: usize,
-        [from, to]: [f64; 2],
-        matters: impl Fn([f64; 2]) -> bool,
-        intervals: &mut Vec<[f64; 2]>,
-    ) {
-        let mut turns = Vec::new();
-        for leg in &self.creases[crease].legs {
-            let (a, b) = (leg.xi[0].max(from), leg.xi[1].min(to));
-            if a >= b {
-                continue;
-            }
-            let mut left = a;
-            let inside = |xi: &f64| a < *xi && *xi < b;
-            let joints = rail.joints([a, b]).map(|(xi, _)| xi).filter(inside);
-            for right in joints.chain([b]) {
-                let branch = rail.branch_at(left + (right - left) / 2.0).filter(|_| right > left);
-                let stretch = branch.map(|rail| Stretch { valleys: self, leg, rail });
-                turns.clear();
-                if stretch.is_some_and(|stretch| stretch.turns([left, right], &matters, &mut turns)) {
-                    turns.retain(|turn| left < *turn && *turn < right);
-                    turns.sort_by(f64::total_cmp);
-                    for &turn in turns.iter().chain([&right]) {
-                        intervals.push([left, turn]);
-                        left = turn;
-                    }
+/// Appends, in order of ξ \[mm\], the intervals of a valley or ridge inside a range of ξ over which s is monotone: they end at
+/// joints of both bodies and where s turns. Left out are stretches between joints for whose least and largest s
+/// `matters` is false.
+///
+/// Method: the slope of the surface where it is parallel to η less that of the rail, in closed form, at some places of
+/// every stretch. Missed are two turns inside a quarter of a stretch between which |slope| has no minimum that shows
+/// there: s changes between them by less than that slope × their distance.
+/// Cost: two places for a stretch that does not matter, five and a root each for others.
+pub(crate) fn monotone(
+    valleys: &Valleys<'_>,
+    rail: &Section,
+    crease: usize,
+    [from, to]: [f64; 2],
+    matters: impl Fn([f64; 2]) -> bool,
+    intervals: &mut Vec<[f64; 2]>,
+) {
+    let mut turns = Vec::new();
+    for leg in &valleys.creases[crease].legs {
+        let (a, b) = (leg.xi[0].max(from), leg.xi[1].min(to));
+        if a >= b {
+            continue;
+        }
+        let mut left = a;
+        let inside = |xi: &f64| a < *xi && *xi < b;
+        let joints = rail.joints([a, b]).map(|(xi, _)| xi).filter(inside);
+        for right in joints.chain([b]) {
+            let branch = rail.branch_at(left + (right - left) / 2.0).filter(|_| right > left);
+            let stretch = branch.map(|rail| Stretch { valleys, leg, rail });
+            turns.clear();
+            if stretch.is_some_and(|stretch| stretch.turns([left, right], &matters, &mut turns)) {
+                turns.retain(|turn| left < *turn && *turn < right);
+                turns.sort_by(f64::total_cmp);
+                for &turn in turns.iter().chain([&right]) {
+                    intervals.push([left, turn]);
+                    left = turn;
                 }
-                left = right;
             }
+            left = right;
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Where two branches are parallel: the stationary points of the gap between them.
 
-use super::{ArcBranch, Branch, BranchShape};
+use super::branch::{ArcBranch, Branch, BranchShape};
 use crate::numerics::roots::bracketed;
 
 /// Bisections after which an interval on which neither bound decides is left: 2⁻⁴⁸ of it is below rounding.

@@ -1,7 +1,9 @@
 //! Which branch is the outer one at each ξ.
 
-use super::{Branch, BranchPoint, Side};
+use super::branch::Branch;
+use super::points::BranchPoint;
 use crate::numerics::roots::bracketed;
+use crate::profile::side::Side;
 
 /// A closed interval of ξ over which one branch is the outer one.
 #[derive(Debug, Clone, Copy, PartialEq)]

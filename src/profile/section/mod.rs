@@ -13,17 +13,12 @@ pub use branches::Branches;
 pub use envelope::Piece;
 pub use points::{BranchPoint, BranchPoints};
 
-use super::{ONE_JOINT, Profile, Segment, Shape, Station};
+use super::chain::Profile;
+use super::closing::ONE_JOINT;
+use super::segment::{Segment, Shape};
+use super::side::Side;
+use super::station::Station;
 use crate::numerics::twice::Twice;
-
-/// Which body a profile bounds, and so which of several heights at one ξ is the outer one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
-    /// Material below: the highest branch counts.
-    Rail,
-    /// Material above: the lowest branch counts.
-    Wheel,
-}
 
 /// The origin of a frame on a profile: eqs. (4.9)–(4.12).
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,7 +4,10 @@
 //! points along it; [`Specimen::file`] writes them in a format of measured files, [`Specimen::measured`] reads
 //! that file back, so that a case goes the whole way of a user's file.
 
+mod instrument;
 mod outline;
+
+pub use instrument::Instrument;
 
 use serde::Deserialize;
 
@@ -80,29 +83,6 @@ impl SpecimenKind {
             Self::HollowWheel => "hollow-wheel",
             Self::TramWheel => "tram-wheel",
         }
-    }
-}
-
-/// How it is measured.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Instrument {
-    /// Distance of the points along the profile \[mm\], each up to a fifth of it off its place; typical 0.05–1.
-    pub spacing: f64,
-    /// Standard deviation of the noise across the profile \[µm\]; typical 0–20. Points nearer than 0.25 mm share it in
-    /// part.
-    pub noise: f64,
-    /// Dents in the surface, 0.05–0.3 mm deep and 1–5 mm wide.
-    pub pits: usize,
-    /// Stretches of 4–12 mm that are plane.
-    pub flats: usize,
-    /// Seed of the wear, the noise and the places of pits and flats.
-    pub seed: u64,
-}
-
-impl Instrument {
-    /// Points every `spacing` \[mm\] with `noise` \[µm\], without pits and flats.
-    pub fn new(spacing: f64, noise: f64, seed: u64) -> Self {
-        Self { spacing, noise, pits: 0, flats: 0, seed }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Outlines of bodies as dense chains of points \[mm\], from left to right: drawn, worn away, measured.
 
-use super::Instrument;
+use super::instrument::Instrument;
 use crate::random::Random;
 use wheelrail::profile::trace::trace;
 use wheelrail::profile::{Profile, Side};
