@@ -161,14 +161,16 @@ impl Builder {
             Side::Rail => f64::NEG_INFINITY,
         };
         let shape = Shape::Arc(ArcElement::fan(point, self.side));
-        self.push(shape, ends.map(|end| end.sin), ends, &[at], [at; 2], [curvature; 2]);
+        let sines = ends.map(|end| end.sin);
+        self.push(shape, sines, ends, &[at], [at; 2], [sines, [curvature; 2]]);
     }
 
     fn smooth(&mut self, branch: &Branch, piece: &Piece, mut ends: [Station; 2]) {
         let outer = ends.map(|end| [end.x, end.z]);
         match (&branch.shape, piece.ends.map(|end| end.0)) {
             (BranchShape::Arc(arc), _) if arc.curvature == 0.0 => {
-                self.push(Shape::Line, piece.xi, ends, &outer, outer, [0.0; 2]);
+                let sines = ends.map(|end| end.sin);
+                self.push(Shape::Line, piece.xi, ends, &outer, outer, [sines, [0.0; 2]]);
             }
             (BranchShape::Arc(arc), _) => {
                 let hull = tangents(&ends, arc.radius);
@@ -176,7 +178,8 @@ impl Builder {
                     ends.swap(0, 1);
                 }
                 let shape = Shape::Arc(ArcElement::of(arc));
-                self.push(shape, ends.map(|end| end.sin), ends, &hull, outer, [arc.curvature; 2]);
+                let sines = ends.map(|end| end.sin);
+                self.push(shape, sines, ends, &hull, outer, [sines, [arc.curvature; 2]]);
             }
             (
                 BranchShape::Polynomial(polynomial),
@@ -215,22 +218,10 @@ impl Builder {
         let shape = Shape::Stretch(stretch);
         let ends = [a, b].map(|t| stretch.place(&self.coefficients, t).station);
         let outer = ends.map(|end| [end.x, end.z]);
-        self.push_bounded(shape, [a, b], ends, &hull, outer, [reach.sine, reach.curvature]);
+        self.push(shape, [a, b], ends, &hull, outer, [reach.sine, reach.curvature]);
     }
 
     fn push(
-        &mut self,
-        shape: Shape,
-        range: [f64; 2],
-        ends: [Station; 2],
-        hull: &[[f64; 2]],
-        outer: [[f64; 2]; 2],
-        curvature: [f64; 2],
-    ) {
-        self.push_bounded(shape, range, ends, hull, outer, [[ends[0].sin, ends[1].sin], curvature]);
-    }
-
-    fn push_bounded(
         &mut self,
         shape: Shape,
         range: [f64; 2],

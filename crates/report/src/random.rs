@@ -19,6 +19,16 @@ impl Random {
         z ^ (z >> 31)
     }
 
+    /// A whole number below n, 0 where n is 0.
+    pub fn below(&mut self, n: usize) -> usize {
+        (self.bits() % n.max(1) as u64) as usize
+    }
+
+    /// One of several.
+    pub fn pick<'a, T>(&mut self, all: &'a [T]) -> &'a T {
+        &all[self.below(all.len())]
+    }
+
     /// A uniform deviate in (0, 1]: its logarithm is finite.
     pub fn uniform(&mut self) -> f64 {
         ((self.bits() >> 11) as f64 + 1.0) / (1u64 << 53) as f64
