@@ -1,10 +1,10 @@
 //! Rail or wheel.
 
-/// Which body a profile bounds, and so which of several heights at one ξ is the outer one.
+/// The body that a profile bounds; it decides which of several heights at one ξ is the outer one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
-    /// Material below: the highest branch counts.
+    /// Rail, with the material below: the highest branch counts.
     Rail,
-    /// Material above: the lowest branch counts.
+    /// Wheel, with the material above: the lowest branch counts.
     Wheel,
 }

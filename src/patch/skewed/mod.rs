@@ -1,4 +1,5 @@
-//! The patch under a skewed wheel, where a line of constant ξ may meet it in several intervals: valleys lead to each.
+//! The patch under a skewed wheel, where a line of constant ξ may meet it in several intervals: each is found
+//! from a valley.
 
 mod circle;
 pub(super) mod events;
