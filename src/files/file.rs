@@ -35,7 +35,7 @@ impl NewFile {
         } else {
             beside(&target).map(|(temporary, sink)| (Some(temporary), sink))
         };
-        let (temporary, sink) = opened.map_err(|error| unwritable(&target, &error))?;
+        let (temporary, sink) = opened.map_err(|error| unwritable(&target, error))?;
         Ok(Self { target, temporary, sink })
     }
 
@@ -44,7 +44,7 @@ impl NewFile {
     /// # Errors
     /// Whatever the disk says.
     pub fn put(&mut self, bytes: &[u8]) -> Result<()> {
-        self.sink.write_all(bytes).map_err(|error| unwritable(&self.target, &error))
+        self.sink.write_all(bytes).map_err(|error| unwritable(&self.target, error))
     }
 
     /// Gives the file its name: whoever looks finds the old content or the new one, each whole.
@@ -53,7 +53,7 @@ impl NewFile {
     /// Whatever the disk says; the old file is then as it was.
     pub fn commit(self) -> Result<()> {
         let moved = self.temporary.iter().try_for_each(|temporary| fs::rename(temporary, &self.target));
-        moved.map_err(|error| unwritable(&self.target, &error))
+        moved.map_err(|error| unwritable(&self.target, error))
     }
 }
 
@@ -95,9 +95,9 @@ fn behind_links(path: &Path) -> Result<PathBuf> {
     }
 }
 
-fn unwritable(path: &Path, error: &io::Error) -> Error {
+fn unwritable(path: &Path, error: io::Error) -> Error {
     let advice = "check path, permissions and free space";
-    bad(path, &error.to_string(), "a file that can be written", advice)
+    bad(path, &error.to_string(), "a file that can be written", advice).caused_by(error)
 }
 
 #[cfg(test)]

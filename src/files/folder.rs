@@ -57,7 +57,7 @@ impl Folder {
     pub fn create(dir: &Path, names: Names) -> Result<Self> {
         let target = resolve(dir)?;
         let parent = parent_of(&target);
-        fs::create_dir_all(parent).map_err(|e| unwritable(parent, &e))?;
+        fs::create_dir_all(parent).map_err(|e| unwritable(parent, e))?;
         put_back(&target);
         temporary::remove_stale(parent);
         if target.exists() {
@@ -68,7 +68,7 @@ impl Folder {
             fs::create_dir(path)?;
             system::open_folder(path)
         });
-        let (temporary, lock) = made.map_err(|e| unwritable(parent, &e))?;
+        let (temporary, lock) = made.map_err(|e| unwritable(parent, e))?;
         Ok(Self { target, temporary, names, _lock: lock })
     }
 
@@ -78,7 +78,7 @@ impl Folder {
     /// Whatever the disk says.
     pub fn part(&self, name: &str) -> Result<FolderPart<'_>> {
         let (temporary, target) = (self.temporary.join(name), self.target.join(name));
-        fs::create_dir_all(&temporary).map_err(|e| unwritable(&target, &e))?;
+        fs::create_dir_all(&temporary).map_err(|e| unwritable(&target, e))?;
         Ok(FolderPart { temporary, target, _whole: self })
     }
 
@@ -111,7 +111,7 @@ impl Folder {
                 Ok(()) => return Ok(()),
                 // What systems say of a folder that is in the way.
                 Err(e) if matches!(e.kind(), DirectoryNotEmpty | AlreadyExists | PermissionDenied) => {}
-                Err(e) => return Err(unwritable(&self.target, &e)),
+                Err(e) => return Err(unwritable(&self.target, e)),
             }
             self.keep(&foreign_files(&self.target, self.names)?)?;
             match exchange(&self.temporary, &self.target) {
@@ -119,7 +119,7 @@ impl Folder {
                 Ok(()) => return Ok(()),
                 // Another run has just moved DIR.
                 Err(e) if e.kind() == ErrorKind::NotFound => {}
-                Err(e) => return Err(unwritable(&self.target, &e)),
+                Err(e) => return Err(unwritable(&self.target, e)),
             }
         }
         Err(bad(
@@ -144,7 +144,7 @@ impl Folder {
                 Ok(()) => {}
                 Err(e) if matches!(e.kind(), ErrorKind::NotFound | ErrorKind::AlreadyExists) => {}
                 Err(_) => {
-                    fs::copy(path, &kept).map_err(|e| unwritable(path, &e))?;
+                    fs::copy(path, &kept).map_err(|e| unwritable(path, e))?;
                 }
             }
         }
@@ -215,7 +215,7 @@ fn resolve(dir: &Path) -> Result<PathBuf> {
     if dir.file_name().is_none() {
         return Err(bad(dir, "a path without a name at its end", "a folder's name", "give one with a name"));
     }
-    let dir = std::path::absolute(dir).map_err(|e| unwritable(dir, &e))?;
+    let dir = std::path::absolute(dir).map_err(|e| unwritable(dir, e))?;
     // What is missing below the nearest folder that exists will be made, and holds no links.
     let real = dir.ancestors().find_map(|above| {
         let missing = dir.strip_prefix(above).ok()?;
@@ -230,7 +230,7 @@ fn parent_of(target: &Path) -> &Path {
 
 /// Refuses what cannot or must not be replaced whatever it contains.
 fn reject_unsafe(target: &Path) -> Result<()> {
-    let here = target.metadata().map_err(|e| unwritable(target, &e))?;
+    let here = target.metadata().map_err(|e| unwritable(target, e))?;
     if !here.is_dir() {
         return Err(bad(target, "a file", "a folder, or nothing yet", "remove it or give another folder"));
     }
@@ -247,7 +247,7 @@ fn reject_unsafe(target: &Path) -> Result<()> {
 /// The files in `target` that are the user's own.
 fn foreign_files(target: &Path, names: Names) -> Result<Vec<PathBuf>> {
     let entries = fs::read_dir(target).and_then(|list| list.collect::<io::Result<Vec<_>>>());
-    let entries = entries.map_err(|e| unwritable(target, &e))?;
+    let entries = entries.map_err(|e| unwritable(target, e))?;
     if entries.is_empty() {
         return Ok(Vec::new());
     }
@@ -314,13 +314,14 @@ fn aside_of(target: &Path) -> PathBuf {
     parent_of(target).join(format!("{ASIDE}{name}"))
 }
 
-fn unwritable(path: &Path, error: &io::Error) -> Error {
+fn unwritable(path: &Path, error: io::Error) -> Error {
     bad(
         path,
         &error.to_string(),
         "a folder that can be written",
         "check its permissions or give another folder",
     )
+    .caused_by(error)
 }
 
 #[cfg(test)]

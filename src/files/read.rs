@@ -5,7 +5,7 @@ use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 use super::complaint::bad;
-use crate::error::{Error, Result};
+use crate::error::{Error, Kind, Result};
 
 /// The bytes of a file of at most `largest` bytes; a pipe or device is read no further either.
 ///
@@ -21,11 +21,11 @@ pub fn read_bytes(path: &Path, largest: usize) -> Result<Vec<u8>> {
             ErrorKind::IsADirectory => "a folder".to_owned(),
             _ => error.to_string(),
         };
-        bad(path, &found, "a readable file", "check the path")
+        bad(path, &found, "a readable file", "check the path").caused_by(error)
     })?;
     if bytes.len() > largest {
         let (found, expected) = (format!("more than {largest} bytes"), format!("at most {largest} bytes"));
-        return Err(bad(path, &found, &expected, "is this the right file?"));
+        return Err(bad(path, &found, &expected, "is this the right file?").of_kind(Kind::Limit));
     }
     Ok(bytes)
 }

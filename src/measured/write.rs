@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use super::Format;
-use crate::error::{Error, Result};
+use crate::error::{Error, Kind, Result};
 use crate::numerics::polynomial::recentred;
 use crate::profile::drawing::{ArcData, HalfData, LineData, PolynomialData, SegmentData};
 use crate::profile::{Arc, Polynomial, Profile, Segment, Shape, Side, Station};
@@ -153,7 +153,8 @@ fn steps_over(length: f64, step: f64) -> Result<usize> {
         return Ok(n as usize);
     }
     let found = format!("{step} mm, which takes {n:e} points over {length:.3} mm");
-    Err(Error::new("step", found, format!("at most {MOST_SAMPLES:e} points a segment"), "take a larger step"))
+    Err(Error::new("step", found, format!("at most {MOST_SAMPLES:e} points a segment"), "take a larger step")
+        .of_kind(Kind::Limit))
 }
 
 fn along_arc(arc: &Arc, step: f64) -> Result<Vec<[f64; 2]>> {

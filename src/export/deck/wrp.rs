@@ -28,7 +28,7 @@
 use super::super::block::Block;
 use super::super::model::QuadMesh;
 use super::{Deck, Field, WIDTH, field, line};
-use crate::error::{Error, Result};
+use crate::error::{Error, Kind, Result};
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
@@ -152,7 +152,8 @@ fn cells(mesh: &QuadMesh) -> Result<String> {
     const LARGEST: usize = 99_999_999;
     if mesh.points.len().max(mesh.quads.len()) > LARGEST {
         let found = format!("{} nodes, {} cells", mesh.points.len(), mesh.quads.len());
-        return Err(Error::new("countact.wrp", found, format!("at most {LARGEST}"), "use a coarser mesh"));
+        return Err(Error::new("countact.wrp", found, format!("at most {LARGEST}"), "use a coarser mesh")
+            .of_kind(Kind::Limit));
     }
     let mut text = format!("{:>8}{:>8}\n", mesh.points.len(), mesh.quads.len());
     mesh.points.iter().for_each(|point| text += &line(point));

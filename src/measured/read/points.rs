@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::scan::{Line, last_place};
-use crate::error::{Error, Result};
+use crate::error::{Error, Kind, Result};
 use crate::measured::Format;
 use crate::profile::Side;
 
@@ -126,7 +126,8 @@ impl Points {
     pub(in crate::measured) fn push_element(&mut self, line: Line, shape: ElementShape) -> Result<()> {
         if self.elements.len() >= MOST_ELEMENTS {
             let expected = format!("{MOST_ELEMENTS} elements at most");
-            return Err(line.error("one more element", expected, "give the points instead"));
+            let error = line.error("one more element", expected, "give the points instead");
+            return Err(error.of_kind(Kind::Limit));
         }
         self.elements.push(Element { shape, line: line.number });
         Ok(())
