@@ -1,6 +1,7 @@
-//! The disk: what the program reads and what it leaves there. No other room opens a file.
+//! The disk: the files that the program reads and those that it leaves. No other room opens a file.
 //!
-//! Whatever is written appears whole or not at all: a single file by [`NewFile`], a folder of files by [`Folder`].
+//! A written file or folder appears whole or not at all: a single file by [`NewFile`], a folder of files by
+//! [`Folder`].
 
 mod complaint;
 mod file;

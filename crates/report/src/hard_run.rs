@@ -6,36 +6,36 @@ use super::hard_checks::{self, Check};
 use wheelrail::error::Result;
 use wheelrail::separation::grid::Method;
 
-/// A case and what came out.
+/// A case and the results of its checks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
-    /// The case.
+    /// The case that was run.
     pub case: HardCase,
-    /// Compared points.
+    /// Number of compared points.
     pub points: usize,
-    /// Per method of [`METHODS`], over the points that have a value where one is due.
+    /// Errors for each of [`METHODS`], over the points that have a value where they should.
     pub errors: [Errors; 3],
-    /// Every check.
+    /// All checks.
     pub checks: Vec<Check>,
 }
 
 impl Outcome {
-    /// The checks that failed.
+    /// Returns the checks that failed.
     pub fn failures(&self) -> impl Iterator<Item = &Check> {
         self.checks.iter().filter(|check| !check.passed)
     }
 
-    /// Whether the case is as its status says.
+    /// Returns whether the result is the one that the status states.
     pub fn as_stated(&self) -> bool {
         let passed = self.failures().next().is_none();
         passed == (self.case.status == Status::Holds)
     }
 }
 
-/// Runs all checks; `all` are the cases that a relation may name.
+/// Runs all checks; `all` holds the cases that a relation may name.
 ///
 /// # Errors
-/// A scene that cannot be placed; a relation to no case.
+/// A scene that cannot be placed; a relation to a case that does not exist.
 pub fn run(case: &HardCase, all: &[HardCase]) -> Result<Outcome> {
     let placement = case.reference.placement()?;
     let points: [Vec<Point>; 3] = METHODS.map(|method| {

@@ -1,22 +1,23 @@
-//! `contact.inp`: a deck for Vollebregt's CONTACT, module 3 (one point of contact), with the undeformed distance
-//! given point by point (IBASE = 9).
+//! Writes `contact.inp`: a deck for Vollebregt's CONTACT, module 3 (one point of contact), with the
+//! undeformed distance given point by point (IBASE = 9).
 //!
-//! CONTACT's axes are x rolling, y lateral, z down: (x, y, z) = ours (η, ξ, −ζ). Its elements are our cells, its
-//! distances belong to their centres, x fastest: the same order as ours. The program exits with 0 even when it
-//! rejects its input, so read its output.
+//! CONTACT's axes are x rolling, y lateral, z down: (x, y, z) = ours (η, ξ, −ζ). Its elements are our cells,
+//! and its distances belong to their centres, x fastest, which is our order too. The program exits with 0
+//! even when it rejects its input, so read its output.
 
 use super::super::block::Block;
 use super::{Deck, WIDTH, line};
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-/// CONTACT's own limit of elements (NPOT_MAX), beyond which it coarsens the grid.
+/// Largest number of elements that CONTACT takes (NPOT_MAX); beyond it CONTACT coarsens the grid.
 pub const ELEMENT_LIMIT: usize = 20_000;
 
-/// Numbers on a line: CONTACT takes lines of up to 256 characters and 50 items; three keep these under 80.
+/// Numbers on a line: CONTACT takes lines of up to 256 characters and 50 items; three numbers keep a line
+/// under 80.
 const PER_LINE: usize = 3;
 
-/// What is prescribed along the normal.
+/// The quantity prescribed along the normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Normal {
     /// Total normal force \[N\], > 0.
@@ -25,10 +26,10 @@ pub enum Normal {
     Approach(f64),
 }
 
-/// What CONTACT needs beside the geometry.
+/// The data that CONTACT needs besides the geometry.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// Force or approach.
+    /// Prescribed force or approach.
     pub normal: Normal,
     /// Poisson's ratios of rail and wheel, typically 0.28.
     pub poisson: [f64; 2],
@@ -39,17 +40,17 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Steel on steel: E = 210,000 N/mm², ν = 0.28, friction 0.3.
+    /// Returns the settings for steel on steel: E = 210,000 N/mm², ν = 0.28, friction 0.3.
     pub fn steel(normal: Normal) -> Self {
         let shear = 210_000.0 / (2.0 * (1.0 + 0.28));
         Self { normal, poisson: [0.28; 2], shear_modulus: [shear; 2], friction: 0.3 }
     }
 }
 
-/// `contact.inp`. Undefined distances are 10 × the largest |s|.
+/// Writes `contact.inp`. Undefined distances are 10 × the largest |s|.
 ///
 /// # Errors
-/// Those of the sink.
+/// The errors of the sink.
 pub fn contact(deck: &Deck<'_>, settings: &Settings, sink: &mut dyn Write) -> io::Result<()> {
     let mut block = Block::new(sink);
     block.bytes(comments(deck).as_bytes())?;
@@ -93,7 +94,7 @@ fn control(deck: &Deck<'_>, settings: &Settings) -> String {
     );
     text += "  022020       L-D-C-M-Z-E\n 0002221       H-G-I-A-O-W-R\n";
     text += "   999 100 30 1 1.0e-8           MAXGS MAXIN MAXNR MAXOUT EPS\n";
-    // `{:?}` writes every f64 with a point or an exponent, shortest that reads back the same.
+    // `{:?}` writes every f64 with a point or an exponent, in the shortest form that reads back the same.
     let _ = writeln!(text, "   {normal:?} 0.0 0.0 0.0           {}", ["PEN", "FN"][force]);
     let _ = writeln!(text, "   {0:?} {0:?}           FSTAT FKIN", settings.friction);
     let _ = writeln!(text, "   {nu_r:?} {nu_w:?} {g_r:?} {g_w:?}           POISS 1,2  GG 1,2");

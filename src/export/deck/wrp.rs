@@ -1,4 +1,4 @@
-//! `separation.wrp`, `conform.wrp`, `countact.wrp`: a fixed-column text format for Fortran programs.
+//! Writes `separation.wrp`, `conform.wrp`, `countact.wrp`: a fixed-column text format for Fortran programs.
 //!
 //! ```text
 //! WRPATCH    1 mm                            (a8,i4,1x,a8)   magic, version, unit
@@ -13,9 +13,9 @@
 //! END
 //! ```
 //!
-//! The magic word tells the three apart. `CONFORM`: each record has a second line with the rail's outward unit
-//! normal n_xi n_zeta, (2x,2e25.16), as one line would pass 80 columns. `COUNTACT`: between the records and END
-//! stand the boundary-fitted cells:
+//! The first word tells the three files apart. In `CONFORM` each record has a second line with the rail's
+//! outward unit normal n_xi n_zeta, (2x,2e25.16), as a single line would exceed 80 columns. `COUNTACT` has
+//! the boundary-fitted cells between the records and END:
 //!
 //! ```text
 //! n_points n_cells                           (2i8)
@@ -23,7 +23,7 @@
 //! component p1 p2 p3 p4 area                 (i4,4i8,e25.16) n_cells cells; nodes counted from 1
 //! ```
 //!
-//! Where m = 0 the number in place of s is 10 × the largest |s|, and a normal that does not exist is 0 0.
+//! Where m = 0, the number in the column of s is 10 × the largest |s|. A normal that does not exist is 0 0.
 
 use super::super::block::Block;
 use super::super::model::QuadMesh;
@@ -56,10 +56,10 @@ const COUNTACT_NOTES: [&str; 4] = [
     "(xi, eta), exact area in the xi-eta plane [mm2]; a tip may repeat a node",
 ];
 
-/// `separation.wrp`.
+/// Writes `separation.wrp`.
 ///
 /// # Errors
-/// Those of the sink.
+/// The errors of the sink.
 pub fn separation(deck: &Deck<'_>, sink: &mut dyn Write) -> io::Result<()> {
     let mut block = Block::new(sink);
     block.bytes(head(deck, "WRPATCH", &[]).as_bytes())?;
@@ -68,10 +68,10 @@ pub fn separation(deck: &Deck<'_>, sink: &mut dyn Write) -> io::Result<()> {
     block.finish()
 }
 
-/// `conform.wrp`: the records with the rail's normal.
+/// Writes `conform.wrp`: the records with the rail's normal.
 ///
 /// # Errors
-/// Those of the sink.
+/// The errors of the sink.
 pub fn conform(deck: &Deck<'_>, sink: &mut dyn Write) -> io::Result<()> {
     let mut block = Block::new(sink);
     block.bytes(head(deck, "CONFORM", &CONFORM_NOTES).as_bytes())?;
@@ -91,10 +91,11 @@ pub fn conform(deck: &Deck<'_>, sink: &mut dyn Write) -> io::Result<()> {
     block.finish()
 }
 
-/// `countact.wrp`: the records, then the boundary-fitted cells.
+/// Writes `countact.wrp`: the records, then the boundary-fitted cells.
 ///
 /// # Errors
-/// `InvalidInput` for a mesh that contradicts itself, or is too large for the columns; those of the sink.
+/// `InvalidInput` for a mesh that contradicts itself, or is too large for the columns; the errors of the
+/// sink.
 pub fn countact(deck: &Deck<'_>, mesh: &QuadMesh, sink: &mut dyn Write) -> io::Result<()> {
     let cells = cells(mesh).map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error))?;
     let mut block = Block::new(sink);
@@ -145,10 +146,10 @@ fn head(deck: &Deck<'_>, magic: &str, notes: &[&str]) -> String {
     text
 }
 
-/// The boundary-fitted cells as text.
+/// Returns the boundary-fitted cells as text.
 fn cells(mesh: &QuadMesh) -> Result<String> {
     mesh.validate()?;
-    // What i8 holds.
+    // The largest number that the format i8 holds.
     const LARGEST: usize = 99_999_999;
     if mesh.points.len().max(mesh.quads.len()) > LARGEST {
         let found = format!("{} nodes, {} cells", mesh.points.len(), mesh.quads.len());

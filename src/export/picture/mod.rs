@@ -1,5 +1,5 @@
-//! Pictures as SVG: of a patch, of a sweep, of a profile, and the charts of the report. All are drawn with one page and one
-//! kind of panel.
+//! Draws pictures as SVG: of a patch, of a sweep, of a profile, and the charts of the report. All use one
+//! kind of page and one kind of panel.
 
 pub mod chart;
 mod contour;
