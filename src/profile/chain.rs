@@ -18,9 +18,9 @@ pub struct Profile {
     pub name: String,
     /// Where the numbers come from.
     pub source: String,
-    /// The segments, at least one.
+    /// At least one segment.
     segments: Vec<Segment>,
-    /// The segments before they were closed; empty where that changed nothing but roundings.
+    /// The segments before the chain was closed; empty if closing changed nothing but roundings.
     drawn: Vec<Segment>,
     closings: Vec<Closing>,
     /// The larger side of the box around the segments' ends \[mm\].
@@ -28,7 +28,7 @@ pub struct Profile {
 }
 
 impl Profile {
-    /// A chain of at least one segment that nowhere jumps, closed by the rule of [`closing`].
+    /// Makes a chain of at least one segment that nowhere jumps, and closes it by the rule of [`closing`].
     ///
     /// Kinks are allowed at any angle: see [`Profile::continuity`].
     ///
@@ -61,51 +61,52 @@ impl Profile {
         Self { name, source, segments, drawn, closings, extent }
     }
 
-    /// The segments from left to right.
+    /// Returns the segments from left to right.
     pub fn segments(&self) -> &[Segment] {
         &self.segments
     }
 
-    /// The segments as they were given, before the chain was closed.
+    /// Returns the segments as they were given, before the chain was closed.
     pub fn drawn(&self) -> &[Segment] {
         if self.drawn.is_empty() { &self.segments } else { &self.drawn }
     }
 
-    /// Where and by how much the drawn chain was changed to close it, from left to right.
+    /// Returns the places where the drawn chain was changed to close it, and by how much, from left to right.
     pub fn closings(&self) -> &[Closing] {
         &self.closings
     }
 
-    /// The closing that moved the drawn surface most, with its joint point [x, z] \[mm\]; `None` for a chain drawn without steps.
+    /// Returns the closing that moved the drawn surface most, with its joint \[x, z\] \[mm\]; `None` for a chain drawn without
+    /// steps.
     pub fn largest_closing(&self) -> Option<(Closing, [f64; 2])> {
         let largest = self.closings.iter().max_by(|a, b| a.moved.total_cmp(&b.moved))?;
         let joint = self.segments[largest.left].end();
         Some((*largest, [joint.x, joint.z]))
     }
 
-    /// Gap, kink and curvature jump at every joint.
+    /// Returns gap, kink and jump of curvature at every joint, from left to right.
     pub fn continuity(&self) -> Vec<continuity::Joint> {
         continuity::joints(&self.segments)
     }
 
-    /// The larger side of the box around all segment ends \[mm\]: the scale that rounding is judged by.
+    /// Returns the larger side of the box around the ends of all segments \[mm\]: the scale by which rounding is judged.
     pub fn extent(&self) -> f64 {
         self.extent
     }
 
-    /// The profile turned counter-clockwise about its origin; `cos` and `sin` of the angle.
+    /// Returns the profile turned counter-clockwise about its origin, by the angle with this cosine and sine.
     #[must_use]
     pub fn rotated(&self, cos: f64, sin: f64) -> Self {
         self.placed(&Station { x: 0.0, z: 0.0, cos, sin })
     }
 
-    /// The profile moved by (x, z) \[mm\].
+    /// Returns the profile moved by (x, z) \[mm\].
     #[must_use]
     pub fn shifted(&self, x: f64, z: f64) -> Self {
         self.placed(&Station { x, z, ..Station::AXES })
     }
 
-    /// The mirror image under x → −x.
+    /// Returns the mirror image under x → −x.
     #[must_use]
     pub fn mirrored(&self) -> Self {
         let mut mirrored = self.mapped(|s| s.map(Arc::mirrored, Polynomial::mirrored));

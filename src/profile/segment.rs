@@ -4,7 +4,7 @@ use super::arc::Arc;
 use super::polynomial::Polynomial;
 use super::station::Station;
 
-/// The shape of one segment.
+/// The curve of one segment.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
     /// A line or a circular arc, eqs. (3.2).
@@ -13,22 +13,22 @@ pub enum Shape {
     Polynomial(Polynomial),
 }
 
-/// One segment of a chain.
+/// A segment of a chain: a curve with a name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Segment {
     /// The drawing's name of the segment, or empty.
     pub label: String,
-    /// Its shape.
+    /// The curve.
     pub shape: Shape,
 }
 
 impl Segment {
-    /// A line or arc without a label.
+    /// Makes a segment of a line or arc, without a label.
     pub fn arc(arc: Arc) -> Self {
         Self { label: String::new(), shape: Shape::Arc(arc) }
     }
 
-    /// The station at its beginning.
+    /// Returns the station at the beginning.
     pub fn start(&self) -> Station {
         match &self.shape {
             Shape::Arc(arc) => arc.start,
@@ -36,7 +36,7 @@ impl Segment {
         }
     }
 
-    /// The station at its end.
+    /// Returns the station at the end.
     pub fn end(&self) -> Station {
         match &self.shape {
             Shape::Arc(arc) => arc.end,
@@ -44,7 +44,7 @@ impl Segment {
         }
     }
 
-    /// Curvature \[1/mm\] at its two ends, positive where it turns counter-clockwise (hollow side up).
+    /// Returns the curvature \[1/mm\] at the two ends, positive where the curve turns counter-clockwise (hollow side up).
     pub fn end_curvatures(&self) -> [f64; 2] {
         match &self.shape {
             Shape::Arc(arc) => [arc.curvature(); 2],
@@ -52,7 +52,7 @@ impl Segment {
         }
     }
 
-    /// "segment 3 (R80)", counted from 1.
+    /// Names the segment with this index for messages: "segment 3 (R80)", counted from 1.
     pub fn place(&self, index: usize) -> String {
         let number = index + 1;
         if self.label.is_empty() {

@@ -17,12 +17,12 @@ impl Station {
     /// The profile's own axes: origin (0, 0), tangent along x.
     pub const AXES: Self = Self { x: 0.0, z: 0.0, cos: 1.0, sin: 0.0 };
 
-    /// Tangent angle φ \[rad\] in (−π, π\].
+    /// Returns the tangent angle φ \[rad\] in (−π, π\].
     pub fn angle(&self) -> f64 {
         self.sin.atan2(self.cos)
     }
 
-    /// This station seen from the frame whose origin and first axis are `frame`: eqs. (4.2-a, b).
+    /// Returns this station as seen from the frame whose origin and first axis are `frame`: eqs. (4.2-a, b).
     #[must_use]
     pub fn seen_from(&self, frame: &Self) -> Self {
         let (dx, dz) = (self.x - frame.x, self.z - frame.z);
@@ -34,7 +34,8 @@ impl Station {
         }
     }
 
-    /// The inverse of [`Station::seen_from`]: eqs. (4.3-a, b).
+    /// Returns this station, given in the axes of `frame`, in the axes in which `frame` is given: eqs. (4.3-a, b). It is the
+    /// inverse of [`Station::seen_from`].
     #[must_use]
     pub fn placed_by(&self, frame: &Self) -> Self {
         Self {
@@ -45,7 +46,7 @@ impl Station {
         }
     }
 
-    /// The mirror image under x → −x, still travelled towards larger x.
+    /// Returns the mirror image under x → −x, still travelled towards larger x.
     #[must_use]
     pub fn mirrored(&self) -> Self {
         Self { x: -self.x, z: self.z, cos: self.cos, sin: -self.sin }

@@ -1,7 +1,7 @@
 //! What is promised of s, on random pairs against 28-digit values: relative and absolute errors, estimates at every tolerance, and
 //! where there is a surface at all.
 //!
-//! `WHEELRAIL_PROMISE_SCENES=5000 cargo test --test promises -- --nocapture` is the long run.
+//! `WHEELRAIL_PROMISE_SCENES=5000 cargo test promises -- --nocapture` is the long run.
 
 mod exact;
 mod twice;

@@ -2,12 +2,14 @@
 
 use std::time::Instant;
 
+use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::errors::{Errors, compare};
 use super::hard_case::hard_cases;
 use super::hard_run::{self, Outcome};
 use super::measured;
+use super::practice::{self, PracticeRow};
 use super::rates::{Extent, Rate, rates};
 use super::reference::{Reference, references};
 use super::speed::{LEAST_RUNS, Timing, Track, Work, race};
@@ -43,6 +45,8 @@ pub struct Effort {
     pub growth: Vec<usize>,
     /// Step in the list of built-in pairs that parry3d's meshes check: every n-th pair is checked.
     pub every_pair: usize,
+    /// Step in the list of practice cases: every n-th case is run.
+    pub every_case: usize,
     /// Distances of the points of the measured profiles \[mm\].
     pub spacings: Vec<f64>,
     /// Extent of the sweeps of wheelsets.
@@ -60,6 +64,7 @@ impl Effort {
             seconds: 0.25,
             growth: vec![100, 316, 1000, 3162, 10_000],
             every_pair: 1,
+            every_case: 1,
             spacings: measured::SPACINGS.to_vec(),
             sweeps: Extent::full(),
             case_side: 200,
@@ -143,6 +148,8 @@ pub struct Measurements {
     pub run: Option<RunCost>,
     /// Results of the hard cases.
     pub hard_cases: Vec<Outcome>,
+    /// Results of the practice cases against brute force.
+    pub practice: Vec<PracticeRow>,
     /// Results of the check by parry3d's meshes: of the reference scenes, with and without skew, and of the
     /// built-in pairs.
     pub verified: [Vec<Verified>; 2],
@@ -174,6 +181,9 @@ pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measur
     progress("hard cases");
     let cases = hard_cases()?;
     let hard_cases = cases.iter().map(|case| hard_run::run(case, &cases)).collect::<Result<_>>()?;
+    progress("practice cases against brute force");
+    let cases: Vec<_> = practice::cases()?.into_iter().step_by(effort.every_case).collect();
+    let practice = cases.par_iter().map(practice::run).collect();
     progress("the check by parry3d's meshes");
     let verified = verified(&references, effort.every_pair)?;
     progress("measured profiles");
@@ -188,6 +198,7 @@ pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measur
         whole_cases,
         run,
         hard_cases,
+        practice,
         verified,
         evidence,
     })

@@ -31,12 +31,13 @@ pub type Origin = Vec<(&'static str, String)>;
 pub const PAGE: &str = "report.md";
 
 /// Names of all files of a report.
-pub const FILES: [&str; 10] = [
+pub const FILES: [&str; 11] = [
     PAGE,
     "accuracy.csv",
     "positions.csv",
     "cases.csv",
     "hard_cases.csv",
+    "practice.csv",
     "verification.csv",
     "scaling.csv",
     "scaling.svg",
@@ -55,6 +56,7 @@ pub fn sections(m: &Measurements) -> Vec<Section> {
         in_use::positions(m),
         in_use::cases(m),
         hard_cases(m),
+        in_use::practice(m),
         verification(m),
         measured_profiles(m),
         method(m),

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::hard_case::METHODS;
 use super::hard_run::Outcome;
 use super::measurements::{Growth, Row};
+use super::practice::PracticeRow;
 use super::rates::Rate;
 use super::verification::Verified;
 use super::whole_case::{PARTS, WholeCase};
@@ -64,6 +65,18 @@ pub fn hard_cases_csv(outcomes: &[Outcome]) -> String {
                 quoted(&case.provenance),
             );
         }
+    }
+    out
+}
+
+/// Returns practice.csv: for each case its largest difference from brute force, and what disagrees.
+pub fn practice_csv(rows: &[PracticeRow]) -> String {
+    let mut out =
+        String::from("case,places,largest_difference_mm,largest_area_difference,disagreements,what\n");
+    for row in rows {
+        let PracticeRow { name, what, figure, contacts, area, failures } = row;
+        let (failures, what) = (quoted(&failures.join("; ")), quoted(what));
+        let _ = writeln!(out, "{name},{contacts},{figure:.4e},{area:.4e},{failures},{what}");
     }
     out
 }
