@@ -1,8 +1,9 @@
 //! The independent check: wheel and rail as triangle meshes, measured by parry3d.
 //!
-//! Nothing that is measured comes from the separation code: points of the meshes come from the profiles' own parametrisation,
-//! turned about the axle and moved along the rail (`sampler`). Rays along ζ give s (`ray`), closest points
-//! give distances (`closest`), and the error of all of it is first measured on closed forms (`floor`).
+//! No measured quantity comes from the separation code. Points of the meshes come from the profiles' own
+//! parametrisation, turned about the axle and moved along the rail (`sampler`). Rays along ζ give s (`ray`),
+//! closest points give distances (`closest`). The error of all this is first measured on closed forms
+//! (`floor`).
 
 mod body;
 mod closest;
@@ -24,26 +25,26 @@ pub use report::{Counts, Differences, Distances, Orders, Report};
 use wheelrail::patch::Window;
 use wheelrail::separation::{Evaluator, Normals};
 
-/// What is checked of a placed pair.
+/// The extent of a check of a placed pair.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Request {
-    /// The rectangle of the ξ–η plane over which points are spread \[mm\].
+    /// Rectangle of the ξ–η plane over which points are spread \[mm\].
     pub window: Window,
-    /// δ \[mm\]: tips, boundary and deepest points of the patch s < δ are among them.
+    /// Approach δ \[mm\]: tips, boundary and deepest points of the patch s < δ are among the points.
     pub approach: f64,
 }
 
-/// What the program says of one (ξ, η).
+/// The program's answer at one (ξ, η).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Answer {
     /// s \[mm\], NaN where a body has no surface.
     pub separation: f64,
-    /// Both outward unit normals.
+    /// Outward unit normals of both bodies.
     pub normals: Normals,
 }
 
 impl Answer {
-    /// The answer of the point-wise evaluator.
+    /// Returns the answer of the point-wise evaluator.
     pub fn of(evaluator: &mut Evaluator<'_>, xi: f64, eta: f64) -> Self {
         Self { separation: evaluator.separation(xi, eta), normals: evaluator.normals(xi, eta) }
     }
