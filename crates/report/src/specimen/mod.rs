@@ -46,7 +46,7 @@ pub enum SpecimenKind {
 }
 
 impl SpecimenKind {
-    /// The rails.
+    /// All kinds of rail.
     pub const RAILS: [Self; 7] = [
         Self::NewRail,
         Self::FullHead,
@@ -56,7 +56,7 @@ impl SpecimenKind {
         Self::GroovedRail,
         Self::SwitchBlade,
     ];
-    /// The wheels.
+    /// All kinds of wheel.
     pub const WHEELS: [Self; 5] =
         [Self::NewWheel, Self::FullFlangeWheel, Self::WornWheel, Self::HollowWheel, Self::TramWheel];
 
