@@ -49,7 +49,7 @@ mod tests {
     use super::*;
     use crate::export::sample::{Sample, header};
 
-    /// What follows the line `head`, which stands once in the file.
+    /// Returns what follows the line `head`, which the file contains once.
     fn after<'a>(file: &'a [u8], head: &str) -> &'a [u8] {
         let found: Vec<_> =
             file.windows(head.len()).enumerate().filter(|(_, w)| *w == head.as_bytes()).collect();

@@ -235,7 +235,7 @@ mod tests {
         let value = |at: usize| f64::from_be_bytes(bytes[at..at + 8].try_into().unwrap());
         assert_eq!(value(begin), sample.xi[0]);
         assert_eq!(value(begin + 48 + 8), -sample.separation[1]);
-        // The offset of the last variable stands at the head's end.
+        // The offset of the last variable is at the end of the header.
         let mask = u32::from_be_bytes(bytes[begin - 4..begin].try_into().unwrap()) as usize;
         assert_eq!(mask, begin + 48 + 72);
         assert_eq!(&bytes[mask..], [1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);

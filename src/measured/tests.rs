@@ -1,4 +1,4 @@
-//! The whole way from bytes to a profile, on the samples in tests/profiles.
+//! Tests the whole way from bytes to a profile, on the samples in tests/profiles.
 
 use super::*;
 use crate::error::Error;
@@ -29,7 +29,7 @@ fn measured(name: &str, options: &str) -> Result<Measured> {
     profile(name, bytes, side, &options)
 }
 
-/// Largest difference in height of two profiles over a range of x.
+/// Returns the largest difference in height of two profiles over a range of x.
 fn difference(a: &Profile, b: &Profile, side: Side, [from, to]: [f64; 2]) -> f64 {
     let [a, b] = [a, b].map(|p| Section::own_axes(p, side));
     let at = |k: i32| from + (to - from) * f64::from(k) / 500.0;
@@ -88,7 +88,8 @@ fn every_rail_file_becomes_the_same_right_hand_rail() -> Result<()> {
 fn what_the_file_does_not_prove_is_an_error_with_the_choices() {
     let error = measured("new-style.ban", "").err().map(|e| e.to_string()).unwrap_or_default();
     assert!(error.contains("mirror = true") && error.contains("mirror = false"), "{error}");
-    // SIMPACK's definition decides what the symmetric head does not; only one side face decides for rail.csv.
+    // SIMPACK's definition decides what the symmetric head does not; rail.csv is decided only by its single
+    // side face.
     assert!(measured("rail.prr", "").is_ok_and(|m| m.record.transform.steps.len() == 3));
     let one_sided = measured("rail.csv", "unit = 'm'\ncolumns = [2, 3]");
     assert!(one_sided.is_ok_and(|m| m.record.transform.scale == [-1e3, 1e3]));
@@ -108,7 +109,7 @@ fn what_the_file_does_not_prove_is_an_error_with_the_choices() {
     }
 }
 
-/// A rail that lies on its head in a file of each format, with both side faces.
+/// Returns a rail on its head in a file of each format, with both side faces.
 fn upside_down(format: Format) -> String {
     let head = [[-36.0, -30.0], [-36.0, -3.0], [0.0, 0.0], [34.0, -3.0], [34.0, -30.0]];
     write::points(&head.map(|[x, z]| [x, -z]), format, Side::Rail, "on its head")
@@ -128,7 +129,7 @@ fn an_option_holds_then_the_definition_and_the_shape_only_where_neither_says() -
         assert_eq!(found.record.transform.scale[1], sign, "{name}");
         let told = found.record.warnings.iter().filter(|f| f.check == Check::Orientation).collect::<Vec<_>>();
         assert!(told.len() == 1 && told[0].found.contains("`flip_z = false` would"), "{told:?}");
-        // The user's own word is never argued with, whichever it is.
+        // The user's own option is always accepted, whatever its value.
         for flip in [false, true] {
             let given = turned(format, name, Some(flip))?.record;
             assert!(!given.warnings.iter().any(|f| f.check == Check::Orientation), "{:?}", given.warnings);
@@ -155,7 +156,7 @@ fn an_inclined_plane_is_not_mirrored_nor_a_groove_turned() -> Result<()> {
         let back: Vec<[f64; 2]> = found.points.iter().map(|p| p.xz()).collect();
         assert_eq!(back, points);
         assert!(!found.record.warnings.iter().any(|f| f.check == Check::Orientation));
-        // A text file defines nothing, and neither does its shape.
+        // A text file defines nothing, and its shape proves nothing.
         let text = write::points(&points, Format::Text, Side::Rail, "");
         let error = profile("a.txt", text.as_bytes(), Side::Rail, &Options::default()).err();
         let error = error.map(|e| e.to_string()).unwrap_or_default();
@@ -290,7 +291,7 @@ fn a_tall_spike_among_dense_noisy_points_is_one_and_goes() -> Result<()> {
     let mut noise = || 0.008 * ((0..12).map(|_| random.below(1_000_000) as f64 / 1e6).sum::<f64>() - 6.0);
     let points: Vec<[f64; 2]> =
         write::sample(&rail, 0.1)?.into_iter().map(|[x, z]| [x + noise(), z + noise()]).collect();
-    // On the corners a small spike goes as far along as across, and its neighbour is as much a spike as it is.
+    // At the corners a small spike reaches as far along as across, and its neighbour is equally a spike.
     let crown: Vec<usize> = (0..points.len()).filter(|&k| points[k][0].abs() < 25.0).collect();
     for (n, &at) in crown.iter().step_by(23).enumerate() {
         for height in [0.2, 0.5, 1.0, -0.7] {
@@ -494,7 +495,8 @@ fn segments_written_are_segments_read() -> Result<()> {
         _ => 0.0,
     };
     let largest = arcs.segments().iter().map(radius).fold(0.0, f64::max);
-    // What was drawn comes back, and is closed by arcs that start from rounded ends. A fitted arc is written by its rounded centre.
+    // The drawn profile comes back, and is closed by arcs that start from rounded ends. A fitted arc is
+    // written by its rounded centre.
     for (profile, bound) in [(&wheel, 2e-15), (&arcs, f64::EPSILON * largest)] {
         let written = write::segments(profile)?;
         // The fit turns the vertical back of the flange by a rounding of its tangent.

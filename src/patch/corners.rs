@@ -26,7 +26,7 @@ pub(super) struct Row {
 /// Appends the ξ inside a band where, without skew, its boundary crosses a joint or the end of the wheel's
 /// surface. The two branches mirror each other.
 ///
-/// Method: closed form but for one root a joint. The point over the joint at p lies at ξ = p + e sinθ and
+/// Method: closed form except for one root per joint. The point over the joint at p lies at ξ = p + e sinθ and
 /// height h(p) + e cosθ; that height must equal ζ^R(ξ) + δ.
 pub(super) fn plain(outline: &Outline<'_>, band: &Band, deepest: f64, corners: &mut Vec<f64>) {
     let placement = outline.slicer.placement();

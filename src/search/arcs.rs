@@ -55,7 +55,7 @@ fn seen(attitude: &Attitude, arc: &ArcElement, element: &Element) -> Option<Seen
 }
 
 /// Returns the sine of the steepest profile tangent of an arc with an outline: cosψ; with the hollow side
-/// down, the angle of cos³φ = (R − b) sin²ψ/|r|.
+/// down at most sinφ of cos³φ = (R − b) sin²ψ/|r|, `None` if no φ has that.
 fn steepest_seen(attitude: &Attitude, arc: &ArcElement) -> Option<f64> {
     if arc.radius >= 0.0 {
         return Some(attitude.cos_yaw);

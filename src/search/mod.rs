@@ -24,7 +24,7 @@
 //! (`stretches`). So the lowest contact cannot be missed.
 //!
 //! Only the part of each profile that faces the other body in its own axes counts
-//! ([`Section`](crate::profile::Section)): a part of a wheel that faces down only because of the roll (a
+//! ([`Section`]): a part of a wheel that faces down only because of the roll (a
 //! flange back beyond the vertical) does not take part.
 
 mod arcs;

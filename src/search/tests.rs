@@ -11,7 +11,7 @@ mod rough;
 
 const ALL: Selection = Selection { within: 0.0, apart: 0.0 };
 
-/// Manchester contact benchmark: S1002 on UIC60 at 1:40.
+/// Makes the pair of the Manchester contact benchmark: S1002 on UIC60 at 1:40.
 fn manchester() -> Result<WheelsetOnTrack> {
     let norm = 40f64.hypot(1.0);
     let rail = standards::rail("UIC60")?.rotated(40.0 / norm, norm.recip());
@@ -20,7 +20,7 @@ fn manchester() -> Result<WheelsetOnTrack> {
     WheelsetOnTrack::new(&pair, RailDistance::Gauge { gauge: 1435.0, height: 14.0 }, backs)
 }
 
-/// EN 15302 wheel A over rail A, inclined by 0.05 rad.
+/// Makes the pair of EN 15302: wheel A over rail A, inclined by 0.05 rad.
 fn en_15302_a() -> Result<WheelsetOnTrack> {
     let (sin, cos) = 0.05f64.sin_cos();
     let rail = standards::rail("UIC60")?.rotated(cos, sin).shifted(2.60264, 0.14155);

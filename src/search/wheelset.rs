@@ -80,7 +80,7 @@ pub struct SideTouch<'a> {
     /// Height \[mm\] of the axle's middle above R over the top of rail when this side touches, + up: −0.18
     /// for a centred S1002 on 60E1 at 1:40. Equal on both sides if the roll is solved.
     pub z: f64,
-    /// The side's contacts in its own axes.
+    /// Contacts of the side, in its own axes.
     pub touch: Touch<'a>,
 }
 
@@ -222,9 +222,9 @@ impl WheelsetSearch<'_> {
         far.get_or_insert_with(|| Far::new(level.difference())).next()
     }
 
-    /// Returns the next roll to try between two rolls with different signs: the root with the places of
-    /// contact kept from the end that is nearer to touching, or else from the other end, or else the middle.
-    /// Every fourth roll is the middle.
+    /// Returns the next roll to try between two rolls with different signs of the height difference: the root
+    /// with the places of contact kept from the end that is nearer to touching, or else from the other end,
+    /// or else the middle. Every fourth roll is the middle.
     fn between(&self, position: &Position, ends: [Level; 2], last: &Level, count: u32) -> Option<f64> {
         let [a, b] = ends.map(|end| end.roll);
         let middle = a + (b - a) / 2.0;

@@ -1,53 +1,56 @@
-//! One body as a coarse mesh: which segments a ray meets first, and the heights measured there.
+//! One body as a coarse mesh: finds the segments that a ray meets first, and the heights measured there.
 
 use super::meshes::{Hit, Mesh, Origin, Vector};
 use super::patch::{Patch, Place};
 use super::ray::{Height, foot, height};
 use super::sampler::Surface;
 
-/// Cells of the coarse mesh per local scale, least per curve, and around.
+/// Cells of the coarse mesh per local scale.
 const CELLS_PER_SCALE: f64 = 8.0;
+/// Fewest cells of the coarse mesh per curve.
 const LEAST_CELLS: usize = 2;
+/// Cells of the coarse mesh around the axle, or along the rail.
 const CELLS_AROUND: usize = 12;
 
-/// Within this share of the body's size from a segment's end the neighbour counts as well: rounding of the
-/// foot's position, which grows with the slope.
+/// Distance from a segment's end within which the neighbour counts too, as a share of the body's size:
+/// rounding of the foot's position, which grows with the slope.
 pub(super) const JOINT: f64 = 1e-11;
 
-/// A foot is looked for on all curves that begin or end within this many coarse cells of the coarse hit.
+/// Distance from the coarse hit, in coarse cells, within which a foot is looked for on all curves that begin
+/// or end there.
 const NEARBY_CELLS: f64 = 2.0;
 
-/// Below this ζ component of the normal a ray is tangent for practical purposes: heights lose two digits and
-/// neighbouring sheets cannot be told apart.
+/// Least ζ component of the normal: below it a ray is practically tangent, heights lose two digits, and
+/// neighbouring sheets cannot be distinguished.
 pub(super) const STEEPEST: f64 = 0.02;
 
-/// A body with its coarse mesh; only triangles that face the other body are in it.
+/// A body with its coarse mesh, which has only triangles that face the other body.
 pub(super) struct Solid {
-    /// Its surface.
+    /// The surface of the body.
     pub surface: Surface,
-    /// Reach from the origin that is meshed \[mm\].
+    /// Largest distance from the origin that is meshed \[mm\].
     pub reach: f64,
     patches: Vec<Patch>,
     mesh: Option<Mesh>,
-    /// Curve and triangle of its patch, for each triangle of the mesh.
+    /// For each triangle of the mesh, its curve and its index in the patch.
     owners: Vec<(usize, usize)>,
 }
 
-/// What a line along ζ finds.
+/// The result along a line parallel to ζ.
 #[derive(Debug, Clone)]
 pub(super) enum Found {
     /// Heights of all sheets that may be the outer one: one, or two at a joint.
     Heights(Vec<Height>),
-    /// No surface.
+    /// There is no surface.
     Nothing,
-    /// A sheet steeper than [`STEEPEST`], or the very end of the body.
+    /// The sheet is steeper than [`STEEPEST`], or ends here.
     Steep,
-    /// A sheet whose foot could not be pinned down.
+    /// The foot on a sheet could not be located.
     Unresolved,
 }
 
 impl Solid {
-    /// The body, meshed around the ξ–η window with the given reach from the origin \[mm\]; `None` where its
+    /// Meshes a body around the ξ–η window, up to the given distance from the origin \[mm\]; `None` if its
     /// profile has a point that is not finite.
     pub fn new(surface: Surface, reach: f64) -> Option<Self> {
         let v = surface.v_reach(reach);
@@ -68,7 +71,7 @@ impl Solid {
         Some(Self { surface, reach, patches, mesh, owners })
     }
 
-    /// The heights that the line through (ξ, η) meets first.
+    /// Returns the heights that the line through (ξ, η) meets first.
     pub fn along_zeta(&self, xi: f64, eta: f64) -> Found {
         let guesses = match self.coarse(xi, eta) {
             Some(coarse) => self.candidates(&coarse),
@@ -96,18 +99,18 @@ impl Solid {
         }
     }
 
-    /// The outermost of the heights, with all others that end at a joint right there.
+    /// Returns the outermost of the heights, with all others that end at a joint there.
     fn outermost(&self, mut found: Vec<Height>) -> Vec<Height> {
         let sign = if self.surface.is_wheel() { 1.0 } else { -1.0 };
         found.sort_by(|a, b| (sign * a.zeta).total_cmp(&(sign * b.zeta)));
-        // At a joint the outermost may be there by rounding only: the next one then counts as well.
+        // At a joint the outermost height may be there by rounding only: then the next one counts too.
         if let Some(inner) = found.iter().position(|height| !self.at_joint(&height.place)) {
             found.truncate(inner + 1);
         }
         found
     }
 
-    /// Guesses on every curve, for lines that slip past the coarse mesh near a silhouette or an end.
+    /// Returns guesses on every curve, for lines that miss the coarse mesh near a silhouette or an end.
     fn all_ends(&self, eta: f64) -> Vec<Place> {
         let curves = self.surface.curves.iter().enumerate();
         curves.flat_map(|(curve, c)| [0.0, c.length].map(|t| Place { curve, t, v: eta })).collect()
@@ -116,7 +119,7 @@ impl Solid {
     fn coarse(&self, xi: f64, eta: f64) -> Option<Place> {
         let origin = if self.surface.is_wheel() { Origin::Below } else { Origin::Above };
         let mesh = self.mesh.as_ref()?;
-        // Rays through an edge or vertex of the mesh may slip through: look beside it then.
+        // Rays through an edge or vertex of the mesh may miss it: then look beside it.
         let nudge = self.surface.size * f64::EPSILON.sqrt();
         let beside = [[0.0, 0.0], [1.0, 0.7], [-0.7, 1.0], [-1.0, -0.6], [0.6, -1.0]];
         let hit =
@@ -124,7 +127,7 @@ impl Solid {
         Some(self.own_place(hit))
     }
 
-    /// The coarse place, and the near ends of its neighbours where it is close to an end.
+    /// Returns the coarse place, and the near ends of its neighbours if it is close to an end.
     fn candidates(&self, coarse: &Place) -> Vec<Place> {
         let curves = &self.surface.curves;
         let mut all = vec![*coarse];
@@ -158,7 +161,7 @@ impl Solid {
         place.t >= -slack && place.t <= curve.length + slack
     }
 
-    /// Whether a place is the end of its curve up to rounding.
+    /// Returns whether a place is the end of its curve, up to rounding.
     pub fn at_joint(&self, place: &Place) -> bool {
         let curve = &self.surface.curves[place.curve];
         let slack = self.slack(place);
@@ -169,7 +172,7 @@ impl Solid {
         JOINT * self.surface.size / self.surface.curves[place.curve].speed(place.t)
     }
 
-    /// Whether a place is an end of the whole chain up to rounding.
+    /// Returns whether a place is an end of the whole chain, up to rounding.
     pub fn at_end(&self, place: &Place) -> bool {
         let last = self.surface.curves.len() - 1;
         let slack = self.slack(place);
@@ -177,7 +180,7 @@ impl Solid {
             || (place.curve == last && place.t >= self.surface.curves[last].length - slack)
     }
 
-    /// Where on the coarse mesh `point` is closest to, and the curves around.
+    /// Returns the places on the coarse mesh, and on the curves around, that are closest to `point`.
     pub fn near(&self, point: Vector) -> Vec<Place> {
         let Some(mesh) = &self.mesh else { return Vec::new() };
         let place = self.own_place(mesh.closest_to(point));
@@ -190,7 +193,7 @@ impl Solid {
     }
 }
 
-/// n + 1 values from a to b.
+/// Returns n + 1 values from a to b.
 pub(super) fn spread(a: f64, b: f64, n: usize) -> Vec<f64> {
     (0..=n).map(|k| a + (b - a) * k as f64 / n as f64).collect()
 }

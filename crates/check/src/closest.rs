@@ -1,40 +1,44 @@
-//! Closest points: of a point and a body, and of the two bodies, by parry on meshes that close in.
+//! Finds closest points, of a point and a body and of the two bodies, by parry on meshes that close in.
 
 use super::body::{Solid, spread};
 use super::meshes::Vector;
 use super::patch::{Patch, Place};
 use super::sampler::Surface;
 
-/// First and last cell as shares of the local scale, cells a side, and the factor from one mesh to the next:
-/// the place found on one mesh then lies well inside the next.
+/// First cell, as a share of the local scale.
 const FIRST_CELL: f64 = 1.0 / 16.0;
+/// Last cell, as a share of the local scale.
 const LAST_CELL: f64 = 1e-6;
+/// Number of cells a side.
 const CELLS: usize = 4;
+/// Factor from the cells of one mesh to those of the next: the place found on one mesh is then well inside
+/// the next.
 const CLOSER: f64 = 0.125;
 
 /// Most meshes on the way in, moves sideways included.
 const MOST_MESHES: usize = 200;
 
-/// Last cell of the pair search: pairs of triangles are left to GJK, whose own tolerance shows below that.
+/// Last cell of the pair search, as a share of the local scale: GJK handles pairs of triangles, and its own
+/// tolerance shows below this size.
 const LAST_PAIR_CELL: f64 = 1e-5;
 
-/// Times the feet of a pair are found anew from each other.
+/// Number of times that the feet of a pair are found anew from each other.
 const ALTERNATIONS: usize = 4;
 
-/// A closest point.
+/// A closest point on a body.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Closest {
-    /// Where on the body.
+    /// Place on the body.
     pub place: Place,
-    /// The point.
+    /// Coordinates of the point \[mm\].
     pub point: Vector,
-    /// Its distance \[mm\].
+    /// Distance of the point \[mm\].
     pub distance: f64,
     /// Rigorous bound of the distance's error from the last mesh's chords \[mm\].
     pub error: f64,
 }
 
-/// The point of a body closest to `point`, over all curves around the coarse answer.
+/// Returns the point of a body closest to `point`, over all curves around the coarse answer.
 pub(super) fn to_point(solid: &Solid, point: Vector) -> Option<Closest> {
     let near = solid.near(point).into_iter();
     near.filter_map(|start| on_curve(&solid.surface, start, point))
@@ -56,7 +60,7 @@ fn on_curve(surface: &Surface, start: Place, point: Vector) -> Option<Closest> {
     None
 }
 
-/// The closest points of the two bodies near a pair of places: \[on the rail, on the wheel\].
+/// Returns the closest points of the two bodies near a pair of places: \[on the rail, on the wheel\].
 pub(super) fn of_bodies(rail: &Solid, wheel: &Solid, start: [Place; 2]) -> Option<[Closest; 2]> {
     let mut windows = start.map(|place| Closing::new(place, FIRST_CELL));
     let surfaces = [&rail.surface, &wheel.surface];
@@ -90,7 +94,7 @@ pub(super) fn of_bodies(rail: &Solid, wheel: &Solid, start: [Place; 2]) -> Optio
     feet
 }
 
-/// A window of cells around a place that closes in on it.
+/// A window of cells that closes in on a place.
 struct Closing {
     place: Place,
     cell: f64,
@@ -101,7 +105,7 @@ impl Closing {
         Self { place, cell }
     }
 
-    /// Cell sizes in t and v.
+    /// Returns the cell sizes in t and v.
     fn cells(&self, surface: &Surface) -> [f64; 2] {
         let h = self.cell * surface.curves[self.place.curve].scale;
         [h, surface.v_cell(self.place.curve, self.place.t, h)]
@@ -115,7 +119,7 @@ impl Closing {
         Patch::new(surface, curve, t, spread(v - half * k, v + half * k, CELLS))
     }
 
-    /// Moves to a place of the patch; closes in when it is inside, and tells so.
+    /// Moves to a place of the patch; closes in if the place is inside, and returns whether it is.
     fn move_to(&mut self, surface: &Surface, patch: &Patch, place: Place) -> bool {
         let length = surface.curves[place.curve].length;
         let inside = !patch.at_border(&place, length);

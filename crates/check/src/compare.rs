@@ -1,4 +1,4 @@
-//! The program's answers against what the meshes measure.
+//! Compares the program's answers with the measurements on the meshes.
 
 use std::time::Instant;
 
@@ -18,29 +18,29 @@ use wheelrail::numerics::largest;
 use wheelrail::placement::{Body, Placement};
 use wheelrail::profile::Shape;
 
-/// Differences up to this many times the larger of floor and own estimate agree: maxima over a few dozen
-/// points of the closed forms stand for those over all points.
+/// Largest difference that counts as agreement, as a multiple of the larger of floor and own estimate: maxima
+/// over a few dozen points of the closed forms represent those over all points.
 const SAFETY: f64 = 4.0;
 
-/// Roundings of the largest coordinate that the program itself may lose: it promises 2e-12 mm on profiles
-/// of 150 mm, 60 roundings.
+/// Error that the program itself may have, in roundings of the largest coordinate: it promises 2e-12 mm on
+/// profiles of 150 mm, 60 roundings.
 const ROUNDINGS: f64 = 64.0;
 
-/// An own estimate above this share of the body's size \[1\] decides nothing.
+/// Largest own estimate that can decide, as a share of the body's size \[1\].
 const RESOLVED: f64 = 1e-11;
 
-/// Points at which closest distances are taken, and the largest share of R that s may reach there: the
-/// relation closes with the square of it.
+/// Number of points at which closest distances are taken.
 const DISTANCES: usize = 24;
+/// Largest s at these points, as a share of R: the width of the relation's interval grows with its square.
 const NEARBY: f64 = 2e-3;
 
 /// Newton steps from the nearest sample of a segment to C.
 const CONTACT_STEPS: usize = 12;
 
-/// Lift of the wheel for closest distances as a share of R, on top of the approach.
+/// Lift of the wheel for closest distances, as a share of R, on top of the approach.
 const LIFT: f64 = 1e-4;
 
-/// Checks what `answer` says of s and normals at (ξ, η) of a placed pair.
+/// Checks the answers of `answer` for s and normals at (ξ, η) of a placed pair.
 ///
 /// Cost: about a millisecond a point, under 0.5 s in all.
 ///
@@ -76,7 +76,8 @@ pub fn check(
     Ok(report)
 }
 
-/// The sharpest arc of both profiles \[mm\], at most an eighth of the wheel: what the closed forms are made of.
+/// Returns the sharpest radius of both profiles \[mm\], at most an eighth of the wheel's: the radius of the
+/// closed forms.
 fn smallest_radius(placement: &Placement) -> f64 {
     let segments = [&placement.rail, &placement.wheel].into_iter().flat_map(|body| body.profile().segments());
     let radii = segments.filter_map(|segment| match &segment.shape {
@@ -86,7 +87,8 @@ fn smallest_radius(placement: &Placement) -> f64 {
     radii.fold(placement.rolling_radius() / 8.0, f64::min)
 }
 
-/// How far C and the frame's ξ axis are off the profile \[mm, rad\]; at an edge ξ is no tangent, and 0 off.
+/// Returns the distance of C from the profile \[mm\] and the angle between the frame's ξ axis and its tangent
+/// \[rad\]; at an edge ξ is no tangent, and the angle is 0.
 fn contact_point(body: &Body) -> [f64; 2] {
     let frame = body.point.station;
     let segment = &body.profile().segments()[body.point.segment];
@@ -124,18 +126,18 @@ struct Tally<'a> {
     near: Vec<Near>,
 }
 
-/// Difference, what is allowed, and (ξ, η).
+/// A difference, the allowed difference, and (ξ, η).
 type Compared = (f64, f64, [f64; 2]);
 
 /// A compared point whose feet are inside their segments.
 #[derive(Clone, Copy)]
 struct Near {
     at: [f64; 2],
-    /// The program's s.
+    /// The program's s \[mm\].
     separation: f64,
     /// Places on the rail and on the wheel.
     places: [Place; 2],
-    /// Points there.
+    /// Points at these places \[mm\].
     points: [Vector; 2],
 }
 
@@ -156,12 +158,12 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// Largest floor of one kind.
+    /// Returns the largest floor of one kind.
     fn floor(&self, kind: impl Fn(&Floor) -> f64) -> f64 {
         largest(self.floors.iter().map(kind))
     }
 
-    /// Rounding that the program may lose where the least normal has this ζ component \[mm\].
+    /// Returns the rounding that the program may have if the least normal has this ζ component \[mm\].
     fn rounding(&self, least_normal: f64) -> f64 {
         let size = self.rail.surface.size.max(self.wheel.surface.size);
         ROUNDINGS * f64::EPSILON * size / least_normal
@@ -223,7 +225,7 @@ impl<'a> Tally<'a> {
     fn compare_normals(&mut self, solid: &Solid, at: [f64; 2], normal: Vector, heights: &[Height]) {
         let floor = self.floor(|f| f.normal);
         let differences = heights.iter().map(|h| {
-            // Directions are differences: a short curve's have lost as many digits as it is shorter.
+            // Directions are differences: those of a short curve have lost as many digits as it is shorter.
             let digits = 1.0 + solid.surface.size / solid.surface.curves[h.place.curve].scale;
             let rounding = ROUNDINGS * f64::EPSILON * digits / h.normal.z;
             let allowed = SAFETY * floor.max(h.normal_error) + rounding;
@@ -233,7 +235,7 @@ impl<'a> Tally<'a> {
         self.normals.extend(least);
     }
 
-    /// Closest distances of points of each body from the other, and of the bodies.
+    /// Measures closest distances of points of each body from the other, and of the bodies.
     fn distances(
         &self,
         approach: f64,
@@ -263,7 +265,7 @@ impl<'a> Tally<'a> {
             out.bodies_mm = above.point.distance(below.point);
             out.bodies_at_mm = at;
             out.bodies_separation_mm = answer(at[0], at[1]).separation + lift;
-            // At the end of a body the foot along ζ comes and goes with rounding.
+            // At the end of a body the foot along ζ depends on rounding.
             let foot = match self.rail.along_zeta(at[0], at[1]) {
                 Found::Heights(rail) if !wheel.at_end(&above.place) => Some(rail[0].place),
                 _ => None,
@@ -309,7 +311,7 @@ struct Relation<'a> {
 }
 
 impl Relation<'_> {
-    /// s·min n ≤ d ≤ s·max n between a point and the body `solid`.
+    /// Checks s·min n ≤ d ≤ s·max n between a point and the body `solid`.
     fn hold(&mut self, solid: &Solid, above: &Above) {
         let Some(closest) = to_point(solid, above.point) else {
             return self.all.push((f64::INFINITY, 1.0, above.at));
@@ -323,7 +325,7 @@ impl Relation<'_> {
     }
 }
 
-/// \[least, largest\] of wheel − rail.
+/// Returns \[least, largest\] of wheel − rail.
 fn gap(wheel: impl Iterator<Item = [f64; 2]>, rail: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
     let join = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
     let empty = [f64::INFINITY, f64::NEG_INFINITY];
@@ -331,7 +333,7 @@ fn gap(wheel: impl Iterator<Item = [f64; 2]>, rail: impl Iterator<Item = [f64; 2
     [wheel[0] - rail[1], wheel[1] - rail[0]]
 }
 
-/// How far a value lies outside an interval; NaN where anything is.
+/// Returns how far a value is outside an interval; NaN if any of them is.
 fn beyond(value: f64, [low, high]: [f64; 2]) -> f64 {
     largest([low - value, value - high])
 }

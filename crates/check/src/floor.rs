@@ -1,6 +1,6 @@
-//! The checker's own error, measured on closed forms before anything is judged by it.
+//! Measures the checker's own error on closed forms, before it judges anything.
 //!
-//! A plane and a cylinder take the rail's path through the checker, a cone and a torus the wheel's. Their
+//! A plane and a cylinder take the rail's way through the checker, a cone and a torus the wheel's. Their
 //! implicit equations, evaluated in twice the working precision, give the error of every measured point.
 
 use serde::Serialize;
@@ -18,7 +18,7 @@ use wheelrail::profile::{Arc, Half, Profile, Segment, Station};
 /// Errors of the checker on one closed form.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Floor {
-    /// "plane", "cylinder", "cone" or "torus".
+    /// Name of the form: "plane", "cylinder", "cone" or "torus".
     pub form: &'static str,
     /// Largest distance of a point measured by an extrapolated ray from the true surface \[mm\].
     pub ray_mm: f64,
@@ -28,19 +28,24 @@ pub struct Floor {
     pub closest_mm: f64,
 }
 
-/// Tilt of lines, offset of the contact from the middle of arcs and half their width, as shares.
+/// Slope of the lines.
 const SLOPE: f64 = 0.375;
+/// Distance of the contact from the middle of the arcs, as a share of the radius.
 const OFFSET: f64 = 0.3125;
+/// Half width of the arcs, as a share of the radius.
 const WIDTH: f64 = 0.9;
 
-/// Rays on each form are n × n over this share of the radius to either side.
+/// Rays along each side: n × n rays on each form.
 const RAYS: i32 = 4;
+/// Distance of the outermost rays to either side, as a share of the radius.
 const REACH: f64 = 0.4;
 
-/// Floors on the four forms, of the scene's own size: radius r of the arcs, R of the wheel \[mm\].
+/// Measures the floors on the four forms, at the scene's own size: radius r of the arcs, R of the wheel
+/// \[mm\].
 ///
 /// # Errors
-/// None for positive finite radii with r well below R; those of [`Profile::new`] and [`Pair::new`] else.
+/// None for positive finite radii with r well below R; otherwise the errors of [`Profile::new`] and
+/// [`Pair::new`].
 pub(super) fn floors(radius: f64, wheel_radius: f64) -> Result<Vec<Floor>> {
     let width = WIDTH * radius;
     let line = |slope: f64| Arc::line([-width, -slope * width], [width, slope * width]);
@@ -81,7 +86,7 @@ fn measure(solid: &Solid, exact: &Implicit, form: &'static str, reach: f64) -> F
         let (distance, normal) = exact.distance_and_normal(point);
         worse(&mut floor.ray_mm, distance.abs());
         worse(&mut floor.normal, height.normal.distance(normal));
-        // Off the surface on the side of the other body.
+        // Off the surface, on the side of the other body.
         let away = if solid.surface.is_wheel() { -normal } else { normal };
         let point = point + away * (reach / 64.0);
         let error = to_point(solid, point)
@@ -91,10 +96,10 @@ fn measure(solid: &Solid, exact: &Implicit, form: &'static str, reach: f64) -> F
     floor
 }
 
-/// F(ξ, η, ζ), the signed distance from the surface \[mm\], positive above.
+/// The function F(ξ, η, ζ), the signed distance from the surface \[mm\], positive above.
 struct Implicit {
     frame: Station,
-    /// R for the wheel.
+    /// R of the wheel \[mm\]; `None` for the rail.
     axle: Option<f64>,
     arc: Arc,
 }

@@ -1,8 +1,9 @@
 //! The independent check: wheel and rail as triangle meshes, measured by parry3d.
 //!
-//! Nothing that is measured comes from the separation code: points of the meshes come from the profiles' own parametrisation,
-//! turned about the axle and moved along the rail (`sampler`). Rays along ζ give s (`ray`), closest points
-//! give distances (`closest`), and the error of all of it is first measured on closed forms (`floor`).
+//! No measured quantity comes from the separation code. Points of the meshes come from the profiles' own
+//! parametrisation, turned about the axle and moved along the rail (`sampler`). Rays along ζ give s (`ray`),
+//! closest points give distances (`closest`). The error of all this is first measured on closed forms
+//! (`floor`).
 
 mod body;
 mod closest;

@@ -1,42 +1,42 @@
-//! The one place that speaks to parry3d: triangle meshes, rays along ζ, closest points.
+//! The one module that uses parry3d: triangle meshes, rays along ζ, closest points.
 //!
-//! The f64 build is used because f32 carries 5e-5 mm of noise at the axle's distance, and because its
-//! triangle–triangle distance was found to return a false 0. parry answers nonsense for meshes with NaN
-//! (distance 0), so none is ever built.
+//! It uses the f64 build, because f32 has 5e-5 mm of noise at the axle's distance, and its triangle–triangle
+//! distance was found to return a false 0. parry gives nonsense for meshes with NaN (distance 0), so none is
+//! ever built.
 
 use parry3d_f64::math::Pose;
 use parry3d_f64::query::details::local_ray_intersection_with_triangle;
 use parry3d_f64::query::{ClosestPoints, PointQueryWithLocation, Ray, RayCast, closest_points};
 use parry3d_f64::shape::TriMesh;
 
-/// A point or direction (ξ, η, ζ) of the contact frame \[mm\]; glam's type, as parry takes it.
+/// A point or direction (ξ, η, ζ) of the contact frame \[mm\]; glam's type, which parry takes.
 pub(super) type Vector = parry3d_f64::math::Vector;
 
 /// A triangle mesh.
 pub(super) struct Mesh(TriMesh);
 
-/// Where a query met a mesh.
+/// The place where a query met a mesh.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Hit {
     /// Index of the triangle.
     pub triangle: usize,
-    /// Barycentric weights of its three corners.
+    /// Barycentric weights of the triangle's three corners.
     pub weights: [f64; 3],
-    /// The point.
+    /// Coordinates of the point \[mm\].
     pub point: Vector,
 }
 
-/// Where along ζ a ray starts.
+/// The end of ζ from which a ray starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Origin {
-    /// Below everything, going up: meets the lowest sheet.
+    /// Below everything: the ray goes up and meets the lowest sheet.
     Below,
-    /// Above everything, going down: meets the highest sheet.
+    /// Above everything: the ray goes down and meets the highest sheet.
     Above,
 }
 
 impl Mesh {
-    /// A mesh, or `None` where there is no triangle or a vertex is not finite.
+    /// Makes a mesh, or `None` if there is no triangle or a vertex is not finite.
     pub fn new(vertices: Vec<Vector>, triangles: Vec<[u32; 3]>) -> Option<Self> {
         if vertices.iter().any(|v| !v.is_finite()) {
             return None;
@@ -44,9 +44,9 @@ impl Mesh {
         TriMesh::new(vertices, triangles).ok().map(Self)
     }
 
-    /// The first triangle that the line (ξ, η) meets from the origin; `None` beside the mesh.
+    /// Returns the first triangle that the line (ξ, η) meets from the origin; `None` beside the mesh.
     ///
-    /// The ray starts right outside the mesh's box, so that its length costs no digits.
+    /// The ray starts close to the mesh's box, so that its length costs no digits.
     pub fn along_zeta(&self, xi: f64, eta: f64, origin: Origin) -> Option<Hit> {
         let bounds = self.0.local_aabb();
         let margin = bounds.extents().max_element();
@@ -62,14 +62,14 @@ impl Mesh {
         Some(Hit { triangle, weights: weights.to_array(), point: Vector::new(xi, eta, zeta) })
     }
 
-    /// The point of the mesh that is closest to `point`.
+    /// Returns the point of the mesh that is closest to `point`.
     pub fn closest_to(&self, point: Vector) -> Hit {
         let (projection, (triangle, location)) = self.0.project_local_point_and_get_location(point, false);
         let weights = location.barycentric_coordinates().unwrap_or([f64::NAN; 3]);
         Hit { triangle: triangle as usize, weights, point: projection.point }
     }
 
-    /// The closest points of two meshes, or `None` where they touch or overlap.
+    /// Returns the closest points of two meshes, or `None` if they touch or overlap.
     pub fn closest_pair(&self, other: &Self) -> Option<[Vector; 2]> {
         let here = Pose::IDENTITY;
         match closest_points(&here, &self.0, &here, &other.0, f64::MAX) {
@@ -78,18 +78,18 @@ impl Mesh {
         }
     }
 
-    /// Number of triangles.
+    /// Returns the number of triangles.
     pub fn len(&self) -> usize {
         self.0.num_triangles()
     }
 
-    /// The corners of a triangle.
+    /// Returns the corners of a triangle.
     pub fn corners(&self, triangle: usize) -> [Vector; 3] {
         let t = self.0.triangle(triangle as u32);
         [t.a, t.b, t.c]
     }
 
-    /// Unit normal of a triangle, in the sense of its corners' order.
+    /// Returns the unit normal of a triangle, right-handed by the order of its corners.
     pub fn normal(&self, triangle: usize) -> Vector {
         let [a, b, c] = self.corners(triangle);
         (b - a).cross(c - a).normalize()

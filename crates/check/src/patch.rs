@@ -1,30 +1,30 @@
-//! Meshes over the parameter plane of one curve: rectangles of cells, two triangles each.
+//! Meshes over the parameter plane of one curve: rectangular cells of two triangles each.
 
 use super::meshes::{Hit, Mesh, Vector};
 use super::sampler::Surface;
 
 /// A mesh over the product of ascending parameter values.
 pub(super) struct Patch {
-    /// The triangles.
+    /// The mesh of the cells.
     pub mesh: Mesh,
     curve: usize,
     t: Vec<f64>,
     v: Vec<f64>,
 }
 
-/// A point of a surface with its parameters.
+/// A point of a surface, given by its parameters.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
     /// Index of the curve.
     pub curve: usize,
-    /// Parameter along it.
+    /// Parameter along the curve.
     pub t: f64,
-    /// Length around \[mm\].
+    /// Length around the axle, or along the rail \[mm\].
     pub v: f64,
 }
 
 impl Patch {
-    /// The patch over t × v; `None` where a point is not finite.
+    /// Makes the patch over t × v; `None` if a point is not finite.
     pub fn new(surface: &Surface, curve: usize, t: Vec<f64>, v: Vec<f64>) -> Option<Self> {
         let vertices: Vec<Vector> =
             t.iter().flat_map(|&t| v.iter().map(move |&v| surface.point(curve, t, v))).collect();
@@ -32,7 +32,7 @@ impl Patch {
         Some(Self { mesh: Mesh::new(vertices, triangles)?, curve, t, v })
     }
 
-    /// The parameters of a hit.
+    /// Returns the parameters of a hit.
     pub fn place(&self, hit: &Hit) -> Place {
         let columns = self.v.len() - 1;
         let (cell, second) = (hit.triangle / 2, hit.triangle % 2);
@@ -44,8 +44,8 @@ impl Patch {
         Place { curve: self.curve, t: between(&self.t, i, a), v: between(&self.v, j, across) }
     }
 
-    /// Whether a place is in the outer ring of cells, so that the true one may lie outside; ends of the curve
-    /// (0 and `length`) are no border.
+    /// Returns whether a place is in the outer ring of cells, so that the true place may be outside; ends of
+    /// the curve (0 and `length`) are no border.
     pub fn at_border(&self, place: &Place, length: f64) -> bool {
         let outer = |x: &[f64], value: f64, ends: [f64; 2]| {
             let last = x.len() - 1;
@@ -55,7 +55,7 @@ impl Patch {
     }
 }
 
-/// Triangles of an n × m array of vertices, counter-clockwise in (t, v).
+/// Returns the triangles of an n × m array of vertices, counter-clockwise in (t, v).
 pub(super) fn cells(n: usize, m: usize) -> Vec<[u32; 3]> {
     let at = |i: usize, j: usize| (i * m + j) as u32;
     (0..n.saturating_sub(1))

@@ -1,4 +1,4 @@
-//! Where to look: window, joints, tips, boundary and deepest points.
+//! Chooses the points of the check: window, joints, tips, boundary and deepest points.
 
 use super::request::Request;
 use super::sampler::Surface;
@@ -7,14 +7,15 @@ use wheelrail::patch::Slicer;
 use wheelrail::patch::turning_points;
 use wheelrail::placement::Placement;
 
-/// Lines of the regular grid in ξ and η, edges of the window included.
+/// Numbers of lines of the regular grid in ξ and η, with the edges of the window.
 const GRID: [usize; 2] = [9, 7];
 
-/// Columns in which the boundary is looked for, and about how many of them give points.
+/// Number of columns in which the boundary is looked for.
 const SLICES: usize = 48;
+/// About how many of these columns give points.
 const LOOP_POINTS: usize = 8;
 
-/// All (ξ, η) \[mm\] at which rays are cast.
+/// Returns all (ξ, η) \[mm\] at which rays are cast.
 pub(super) fn spread_points(
     placement: &Placement,
     request: &Request,
@@ -40,9 +41,9 @@ fn within(value: f64, [low, high]: [f64; 2]) -> bool {
     value >= low && value <= high
 }
 
-/// The deepest midplane point, tips, and points of the boundary s = δ as the program has them.
+/// Returns the deepest midplane point, the tips, and points of the boundary s = δ as the program finds them.
 ///
-/// Slices suffice: loops with their areas cost far more than the check itself when the wheel is yawed.
+/// Slices are enough: loops with their areas cost far more than the check itself if the wheel is yawed.
 fn boundary(placement: &Placement, request: &Request) -> Vec<[f64; 2]> {
     let Some([first, last]) = placement.overlap() else { return Vec::new() };
     let [from, to] = request.window.xi;
@@ -73,7 +74,7 @@ fn boundary(placement: &Placement, request: &Request) -> Vec<[f64; 2]> {
     all
 }
 
-/// Points over the joints of one body, in the midplane and towards both edges of the window.
+/// Returns points over the joints of one body, in the midplane and towards both edges of the window.
 fn joints(surface: &Surface, eta: [f64; 2]) -> Vec<[f64; 2]> {
     let ends = surface.curves.iter().enumerate().flat_map(|(k, c)| [(k, 0.0), (k, c.length)]);
     ends.flat_map(|(curve, t)| {

@@ -1,52 +1,53 @@
-//! The height of a surface over (ξ, η), measured by rays on meshes.
+//! Measures the height of a surface over (ξ, η) by rays on meshes.
 //!
-//! A coarse mesh of the whole body says which segment is met, and about where. The foot is then meshed anew
-//! with cells that halve from level to level while the ray keeps its relative position inside the cell: the
-//! chordal error is then a power series c₂h² + c₃h³ + … and Richardson's table takes it out. One last mesh of
-//! very small cells gives a rigorous bracket.
+//! A coarse mesh of the whole body gives the segment that is met, and about where. The foot is then meshed
+//! anew with cells that halve from level to level, while the ray keeps its relative position inside the cell.
+//! The chordal error is then a power series c₂h² + c₃h³ + …, and Richardson's table removes it. One last mesh
+//! of very small cells gives a rigorous bracket.
 
 use super::meshes::{Origin, Vector};
 use super::patch::{Patch, Place};
 use super::sampler::Surface;
 
-/// Cells of the first level as a share of the local scale (radius or length), and levels, each half of the
-/// one before. Larger cells leave terms of high order, smaller ones rounding.
+/// Cells of the first level, as a share of the local scale (radius or length). Larger cells leave terms of
+/// high order, smaller ones rounding.
 pub(super) const FIRST_CELL: f64 = 1.0 / 32.0;
+/// Number of levels; the cells of each are half of those of the level before.
 const LEVELS: usize = 5;
 
-/// Times the first cell is divided by four while the table has not converged.
+/// Most times that the first cell is divided by four while the table has not converged.
 const REFINEMENTS: i32 = 3;
 
-/// Cell of the bracket's mesh as a share of the local scale: its chordal bound, about a quarter of the square,
-/// is then near rounding, and the cell itself still holds seven digits of its own.
+/// Cell of the bracket's mesh, as a share of the local scale: its chordal bound, about a quarter of the
+/// square, is then near rounding, and the cell itself still has seven digits.
 const BRACKET_CELL: f64 = 1e-6;
 
-/// Where inside its cell the ray passes: off the diagonal and off every symmetry, where the error has no h².
+/// Position of the ray inside its cell: off the diagonal and off every symmetry, where the error has no h².
 const INSIDE: [f64; 2] = [0.375, 0.25];
 
-/// Newton steps for the foot's parameters; five do on any sheet that is not vertical.
+/// Most Newton steps for the foot's parameters; five are enough on any sheet that is not vertical.
 const NEWTON: usize = 40;
 
 /// One measured height.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Height {
-    /// Where on the surface.
+    /// Place on the surface.
     pub place: Place,
-    /// ζ \[mm\], extrapolated.
+    /// Extrapolated ζ \[mm\].
     pub zeta: f64,
     /// Estimated error of the extrapolation \[mm\].
     pub error: f64,
     /// Rigorous bounds of ζ \[mm\].
     pub bracket: [f64; 2],
-    /// log₂ of the ratio of successive differences, where they stand clear of rounding.
+    /// log₂ of the ratio of successive differences, if these are clear of rounding.
     pub order: Option<f64>,
-    /// Unit normal, up where the surface faces the other body, extrapolated.
+    /// Extrapolated unit normal, up where the surface faces the other body.
     pub normal: Vector,
     /// Estimated error of the normal.
     pub normal_error: f64,
 }
 
-/// The foot on one curve or its continuation, from a guess: (ξ, η) of X(t, v) by Newton steps.
+/// Returns the foot on one curve or its continuation: solves (ξ, η) of X(t, v) by Newton steps from a guess.
 pub(super) fn foot(surface: &Surface, guess: Place, xi: f64, eta: f64) -> Option<Place> {
     let mut place = guess;
     let curve = &surface.curves[place.curve];
@@ -66,7 +67,7 @@ pub(super) fn foot(surface: &Surface, guess: Place, xi: f64, eta: f64) -> Option
         if !size.is_finite() {
             return None;
         }
-        // Below this, steps are rounding and no longer shrink.
+        // Below this size steps are rounding and no longer shrink.
         if size < 1e3 * f64::EPSILON && size >= 0.5 * last || size == 0.0 {
             return Some(place);
         }
@@ -75,7 +76,7 @@ pub(super) fn foot(surface: &Surface, guess: Place, xi: f64, eta: f64) -> Option
     (last < 1e6 * f64::EPSILON).then_some(place)
 }
 
-/// The height at a foot; `None` where the sheet is vertical there.
+/// Returns the height at a foot; `None` if the sheet is vertical there.
 pub(super) fn height(surface: &Surface, place: Place, xi: f64, eta: f64) -> Option<Height> {
     let bracket = bracket(surface, place, xi, eta)?;
     let rounding = rounding(surface, bracket.1);
@@ -105,12 +106,13 @@ pub(super) fn height(surface: &Surface, place: Place, xi: f64, eta: f64) -> Opti
     })
 }
 
-/// Rounding of a height \[mm\]: of coordinates as large as the profile, over a slope.
+/// Returns the rounding of a height \[mm\]: that of coordinates as large as the profile, over a slope.
 fn rounding(surface: &Surface, normal_zeta: f64) -> f64 {
     f64::EPSILON * surface.size / normal_zeta
 }
 
-/// Heights on meshes of 3 × 3 cells, the foot at the same relative position in the middle one.
+/// Returns the heights on meshes of 3 × 3 cells, with the foot at the same relative position in the middle
+/// cell.
 fn heights(surface: &Surface, place: Place, xi: f64, eta: f64, first: f64) -> Option<[f64; LEVELS]> {
     let h = first * surface.curves[place.curve].scale;
     let k = surface.v_cell(place.curve, place.t, h);
@@ -123,7 +125,7 @@ fn heights(surface: &Surface, place: Place, xi: f64, eta: f64, first: f64) -> Op
     Some(out)
 }
 
-/// 3 × 3 cells with the place inside the middle one.
+/// Returns 3 × 3 cells with the place inside the middle one.
 fn around(surface: &Surface, place: Place, [h, k]: [f64; 2]) -> Option<Patch> {
     let nodes = |x: f64, cell: f64, inside: f64| {
         [-1.0, 0.0, 1.0, 2.0].iter().map(|i| x + (i - inside) * cell).collect()
@@ -131,7 +133,7 @@ fn around(surface: &Surface, place: Place, [h, k]: [f64; 2]) -> Option<Patch> {
     Patch::new(surface, place.curve, nodes(place.t, h, INSIDE[0]), nodes(place.v, k, INSIDE[1]))
 }
 
-/// A rigorous bracket of ζ, and the least ζ component of the normal around the foot.
+/// Returns a rigorous bracket of ζ, and the least ζ component of the normal around the foot.
 fn bracket(surface: &Surface, place: Place, xi: f64, eta: f64) -> Option<([f64; 2], f64)> {
     let h = BRACKET_CELL * surface.curves[place.curve].scale;
     let k = surface.v_cell(place.curve, place.t, h);
@@ -147,7 +149,8 @@ fn bracket(surface: &Surface, place: Place, xi: f64, eta: f64) -> Option<([f64; 
     Some(([hit.point.z - half, hit.point.z + half], least))
 }
 
-/// Normal of the cell centred on the place, its diagonals' cross product: even in h, so that h², h⁴, … go.
+/// Returns the normal of the cell centred on the place, its diagonals' cross product: it is even in h, so
+/// that the errors in h², h⁴, … can be removed.
 fn normal(surface: &Surface, place: Place) -> (Vector, f64) {
     let h = FIRST_CELL * surface.curves[place.curve].scale;
     let k = surface.v_cell(place.curve, place.t, h);
@@ -159,7 +162,7 @@ fn normal(surface: &Surface, place: Place) -> (Vector, f64) {
     extrapolated(of_cell)
 }
 
-/// The limit of a direction whose error is even in the share of the first cell, and the last change.
+/// Returns the limit of a direction whose error is even in the share of the first cell, and the last change.
 pub(super) fn extrapolated(direction: impl Fn(f64) -> Vector) -> (Vector, f64) {
     let mut row: Vec<Vector> = (0..LEVELS).map(|level| direction(0.5f64.powi(level as i32))).collect();
     let mut before = row[LEVELS - 1];
@@ -195,7 +198,7 @@ impl Table {
     }
 }
 
-/// log₂ of the ratio of the last two differences that stand a thousand roundings clear.
+/// Returns log₂ of the ratio of the last two differences that are larger than a thousand roundings.
 fn observed_order(values: &[f64; LEVELS], rounding: f64) -> Option<f64> {
     let differences: Vec<f64> = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
     let clear = differences.windows(2).rev().find(|pair| pair[1] > 1e3 * rounding)?;

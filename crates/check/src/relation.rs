@@ -1,10 +1,10 @@
-//! The closest distance against the separation.
+//! Compares the closest distance with the separation.
 //!
-//! On its way up from the foot F along ζ a point gains distance by the ζ component of the unit normal where it is
-//! closest, d = ∫ n dζ. That closest point rises as the point does, from F by h in all, and stays inside the sphere
-//! of radius s around the end of the way: so it is never farther than √(2sh) from F. The extremes of n within that
-//! reach bracket d. They are enclosed piece by piece, with what the profile can turn inside a piece, so that an
-//! inflection between two samples does not slip through.
+//! When a point rises from its foot F along ζ, its distance grows by the ζ component n of the unit normal at
+//! its closest point: d = ∫ n dζ. The closest point rises with it, from F by h in all, and stays inside the
+//! sphere of radius s around the end of the way. So it is never farther than √(2sh) from F, and the extremes
+//! of n within that distance bracket d. They are enclosed piece by piece, with the largest turn of the
+//! profile inside a piece, so that an inflection between two samples is not missed.
 
 use super::body::Solid;
 use super::closest::Closest;
@@ -16,7 +16,7 @@ use super::sampler::{Curve, Surface};
 pub const RELATION: &str = "s·min n ≤ d ≤ s·max n, where n are the ζ components of the body's unit normals up to \
                             √(2sh) from the foot along ζ, h the height of the closest point over the foot";
 
-/// Pieces of a profile are halved until they are this share of the reach: the bracket widens by half a piece's turn.
+/// Largest piece of a profile, as a share of the reach: the bracket widens by half a piece's turn.
 const PIECE: f64 = 1.0 / 16.0;
 
 /// Most halvings: a range of the parameter has no more bits.
@@ -24,20 +24,21 @@ const HALVINGS: u32 = 52;
 
 /// A point of one body over (or under) the other.
 pub(super) struct Above {
-    /// (ξ, η) \[mm\].
+    /// Coordinates (ξ, η) \[mm\].
     pub at: [f64; 2],
-    /// s there, lift included \[mm\].
+    /// s at the point, lift included \[mm\].
     pub separation: f64,
-    /// The point.
+    /// Coordinates of the point \[mm\].
     pub point: Vector,
     /// The foot along ζ on the other body.
     pub foot: Place,
 }
 
-/// \[least, largest\] n between the foot of `above` and the closest point of `solid`.
+/// Returns \[least, largest\] n between the foot of `above` and the closest point of `solid`.
 ///
-/// Where the closest point is a joint or an end, its direction counts as well: any between its neighbours' normals
-/// can be the closest one's. An end that the closest point only comes across on its way is not seen.
+/// If the closest point is a joint or an end, the direction to it counts too: any direction between the
+/// neighbours' normals can be the closest one's. An end that the closest point only passes on its way is not
+/// seen.
 pub(super) fn normals_between(solid: &Solid, above: &Above, closest: &Closest, rounding: f64) -> [f64; 2] {
     let surface = &solid.surface;
     let foot = surface.point(above.foot.curve, above.foot.t, above.foot.v);
@@ -48,11 +49,11 @@ pub(super) fn normals_between(solid: &Solid, above: &Above, closest: &Closest, r
         return [least, most];
     }
     let direct = (above.point.z - closest.point.z).abs() / closest.distance;
-    // NaN, of a distance 0, stays one.
+    // NaN, of a distance 0, stays NaN.
     if direct.is_nan() { [f64::NAN; 2] } else { [least.min(direct), most.max(direct)] }
 }
 
-/// \[least, largest\] ζ component of the unit normals of all points up to `reach` from a place.
+/// Returns \[least, largest\] ζ component of the unit normals of all points up to `reach` from a place.
 fn normals_within(surface: &Surface, foot: &Place, reach: f64) -> [f64; 2] {
     let centre = surface.curves[foot.curve].point(foot.t);
     let near = Near { centre, reach };
@@ -77,7 +78,8 @@ impl Near {
         self.distance(curve.point(0.0)) <= self.reach + curve.longest
     }
 
-    /// The hull widened by the tangent angles \[rad\] of the curve inside the disc, from parameter a to b.
+    /// Returns the hull widened by the tangent angles \[rad\] of the curve inside the disc, from parameter a
+    /// to b.
     fn tilts(&self, curve: &Curve, [a, b]: [f64; 2], halvings: u32, hull: [f64; 2]) -> [f64; 2] {
         let (middle, half) = (f64::midpoint(a, b), (b - a) / 2.0);
         let bend = curve.bend(middle, half);
@@ -102,7 +104,7 @@ mod tests {
     use wheelrail::placement::Pair;
     use wheelrail::profile::{Arc, Half, Polynomial, Profile, Segment, Shape};
 
-    /// A wave z = a(x³ − 3x) under a wheel: inflected at 0, between extremes at ±1.
+    /// A wave z = a(x³ − 3x) under a wheel, with an inflection at 0 between extremes at ±1.
     #[test]
     fn an_inflection_inside_a_piece_is_seen() -> wheelrail::error::Result<()> {
         let wave = Polynomial::graph(&[0.0, -0.03, 0.0, 0.01], [-2.0, 2.0])?;
@@ -120,7 +122,7 @@ mod tests {
         for reach in [0.3, 0.9] {
             let [least, most] = normals_within(&surface, &foot, reach);
             let component = |x: f64| 1.0 / (1.0 + (0.03 * x * x - 0.03).powi(2)).sqrt();
-            // Steepest at the inflection: neither the ends nor anything but x = 0 shows it.
+            // Steepest at the inflection: neither the ends nor any place but x = 0 shows it.
             assert!(least <= component(0.0) && least > component(0.0) - 1e-4, "{least}");
             assert!(most >= component(0.999 * reach) && most < component(reach) + 1e-4, "{most}");
         }

@@ -1,4 +1,4 @@
-//! What the check answers, as data and as text.
+//! The result of the check, as data and as text.
 
 use std::fmt;
 
@@ -7,115 +7,116 @@ use serde::Serialize;
 use super::floor::Floor;
 use wheelrail::numerics::largest;
 
-/// Order at which chordal errors fall, and how far the median of the observed ones may be from it.
+/// Expected order at which chordal errors fall.
 const EXPECTED_ORDER: f64 = 2.0;
 const ORDER_SPREAD: f64 = 0.1;
 
-/// Largest angle \[rad\] between ξ and the profile's tangent at C: a tangent of a drawing with ten digits, and far
-/// above rounding.
+/// Largest angle \[rad\] between ξ and the profile's tangent at C: a tangent of a drawing with ten digits,
+/// and far above rounding.
 const TANGENT: f64 = 1e-12;
 
-/// Differences between two measurements of the same quantity.
+/// Statistics of the differences between two measurements of the same quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Differences {
-    /// How many were compared.
+    /// Number of compared values.
     pub compared: usize,
-    /// Largest.
+    /// Largest difference.
     pub max: f64,
-    /// 99 % of them are not larger.
+    /// 99 % quantile of the differences.
     pub p99: f64,
-    /// Half of them are not larger.
+    /// Median of the differences.
     pub median: f64,
-    /// (ξ, η) \[mm\] of the point that is worst against what is allowed there.
+    /// Point (ξ, η) \[mm\] whose difference is worst against the allowed one.
     pub worst_at_mm: [f64; 2],
-    /// The difference there.
+    /// Difference at the worst point.
     pub worst: f64,
-    /// What is allowed there.
+    /// Allowed difference at the worst point.
     pub allowed: f64,
 }
 
-/// Orders log₂(e(h)/e(h/2)) that were observed between levels of meshes; 2 is expected.
+/// Observed orders log₂(e(h)/e(h/2)) between levels of meshes; 2 is expected.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Orders {
-    /// Heights with errors clear of rounding.
+    /// Number of heights with errors clear of rounding.
     pub observed: usize,
-    /// Smallest.
+    /// Least order.
     pub least: f64,
-    /// Middle one.
+    /// Median order.
     pub median: f64,
-    /// Largest.
+    /// Largest order.
     pub most: f64,
 }
 
-/// Closest distances against the separation.
+/// Closest distances compared with the separation.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Distances {
-    /// By how much the relation is violated \[mm\]; 0 where it holds.
+    /// Amount by which the relation is violated \[mm\]; 0 if it holds.
     pub violation: Differences,
-    /// Widest interval of the relation \[mm\]: how tight it is.
+    /// Widest interval of the relation \[mm\], which tells how sharp it is.
     pub widest_mm: f64,
-    /// By how much the wheel is lifted along ζ so that the bodies are apart \[mm\].
+    /// Lift of the wheel along ζ that separates the bodies \[mm\].
     pub lift_mm: f64,
-    /// Closest distance of the two bodies so lifted \[mm\]; NaN where it was not found.
+    /// Closest distance of the two bodies after the lift \[mm\]; NaN if it was not found.
     pub bodies_mm: f64,
-    /// (ξ, η) of the wheel's foot of it \[mm\].
+    /// Place (ξ, η) of the wheel's closest point \[mm\].
     pub bodies_at_mm: [f64; 2],
-    /// Separation at that foot, lift included \[mm\]: the relation's s; NaN at the end of a body.
+    /// Separation at that place, lift included \[mm\]: the s of the relation; NaN at the end of a body.
     pub bodies_separation_mm: f64,
 }
 
-/// Counts of points, none left out silently.
+/// Numbers of points; no point is left out silently.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Counts {
-    /// Rays asked for.
+    /// Rays that were asked for.
     pub points: usize,
-    /// Separations compared.
+    /// Separations that were compared.
     pub compared: usize,
-    /// Neither the checker nor the program finds both surfaces.
+    /// Points where neither the checker nor the program finds both surfaces.
     pub no_surface: usize,
-    /// Too steep to measure, or at the very end of a body.
+    /// Points where a surface is too steep to measure, or ends.
     pub steep_or_end: usize,
-    /// One finds a surface where the other does not: a disagreement.
+    /// Points where only one of checker and program finds a surface: a disagreement.
     pub surface_disputed: usize,
-    /// Where the checker could not pin its own answer down: counts as a failure.
+    /// Points where the checker could not locate its own answer: these count as failures.
     pub unresolved: usize,
 }
 
 /// The result of a check.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report {
-    /// Whether everything agrees to the floor.
+    /// Whether all values agree to the floor.
     pub agrees: bool,
-    /// Why not; empty when it agrees.
+    /// The objections; empty if all values agree.
     pub objections: Vec<String>,
-    /// What became of the points.
+    /// Numbers of points by what became of them.
     pub counts: Counts,
     /// The checker's own errors on closed forms of the scene's size.
     pub floors: Vec<Floor>,
-    /// |s − s by rays| \[mm\].
+    /// Differences |s − s by rays| \[mm\].
     pub separation: Differences,
-    /// Widest rigorous bracket of s \[mm\], full width.
+    /// Full width of the widest rigorous bracket of s \[mm\].
     pub bracket_mm: f64,
-    /// Separations outside their bracket.
+    /// Number of separations outside their bracket.
     pub outside_bracket: usize,
     /// Largest error estimate of an extrapolated height \[mm\].
     pub largest_estimate_mm: f64,
-    /// Observed orders.
+    /// Observed orders of the chordal errors.
     pub orders: Orders,
-    /// |n − n by meshes| of both bodies' unit normals.
+    /// Differences |n − n by meshes| of both bodies' unit normals.
     pub normals: Differences,
-    /// Distance of C from the profiles \[mm\] and angle between the frame's ξ axis and their tangents \[rad\].
+    /// Distance of C from the profiles \[mm\] and angle between the frame's ξ axis and their tangents
+    /// \[rad\].
     pub contact_point: [f64; 2],
-    /// [`RELATION`](super::RELATION).
+    /// The text [`RELATION`](super::RELATION).
     pub relation: &'static str,
-    /// Closest distances.
+    /// Closest distances compared with the separation.
     pub distances: Distances,
-    /// Time taken \[s\].
+    /// Time of the check \[s\].
     pub seconds: f64,
 }
 
 impl Differences {
-    /// From (difference, allowed, (ξ, η)); NaN differs by more than anything.
+    /// Calculates the statistics of (difference, allowed, (ξ, η)); NaN counts as larger than any difference.
     pub(super) fn of(all: &[(f64, f64, [f64; 2])]) -> Self {
         let number = |difference: f64| if difference.is_nan() { f64::INFINITY } else { difference };
         let all: Vec<_> = all.iter().map(|d| (number(d.0), d.1, d.2)).collect();
@@ -137,12 +138,12 @@ impl Differences {
         }
     }
 
-    /// Whether something was compared and no difference is larger than allowed.
+    /// Returns whether something was compared and no difference is larger than allowed.
     pub fn within(&self) -> bool {
         self.compared > 0 && self.worst <= self.allowed
     }
 
-    /// What is wrong with them, in `unit`.
+    /// Returns the objection to the differences, in `unit`; `None` if there is none.
     fn objection(&self, what: &str, unit: &str) -> Option<String> {
         let [xi, eta] = self.worst_at_mm;
         let (worst, allowed) = (self.worst, self.allowed);
@@ -167,8 +168,8 @@ impl Orders {
 }
 
 impl Report {
-    /// Lists every objection; the pair agrees when there is none. `resolved`: largest error \[mm\] the checker may
-    /// have itself; `rounding`: of coordinates \[mm\].
+    /// Lists every objection; the pair agrees if there is none. `resolved` is the largest error \[mm\] that
+    /// the checker itself may have, `rounding` that of coordinates \[mm\].
     pub(super) fn judge(&mut self, resolved: f64, rounding: f64) {
         let counts = self.counts;
         let mut objections: Vec<String> = [
@@ -217,7 +218,7 @@ impl Report {
     }
 }
 
-/// The whole report, to be read after the name of the contact.
+/// Writes the whole report, to be read after the name of the contact.
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let verdict = if self.agrees { "agrees" } else { "DISAGREES" };

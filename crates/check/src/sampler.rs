@@ -1,8 +1,9 @@
-//! Points of both bodies from the profiles' own parametrisation: nothing here knows the separation code.
+//! Samples points of both bodies from the profiles' own parametrisation: nothing here uses the separation
+//! code.
 //!
-//! A curve is travelled by turning its start station (arcs, lines) or by its parameter (polynomials); the rail
-//! is the curve moved along y, the wheel the curve turned about the axle. All coordinates are measured from
-//! the contact point, so that the axle's distance costs no digits.
+//! Points of a curve come from turning its start station (arcs, lines) or from its parameter (polynomials).
+//! The rail is the curve moved along y, the wheel the curve turned about the axle. All coordinates are
+//! measured from the contact point, so that the axle's distance costs no digits.
 
 use super::meshes::Vector;
 use wheelrail::numerics::polynomial::recentred;
@@ -14,11 +15,11 @@ use wheelrail::profile::{Polynomial, Segment, Shape, Station};
 #[derive(Debug, Clone)]
 pub(super) struct Curve {
     shape: Form,
-    /// Range of the parameter: \[mm\] along arcs and lines, the polynomial's own unit else.
+    /// Largest parameter: \[mm\] along arcs and lines, else in the polynomial's own unit.
     pub length: f64,
-    /// The parameter range over which the curve turns or stretches by about one: a radius, or its length.
+    /// Range of the parameter over which the curve turns or stretches by about one: a radius, or its length.
     pub scale: f64,
-    /// A bound of its arc length \[mm\].
+    /// Bound of the arc length \[mm\].
     pub longest: f64,
 }
 
@@ -29,7 +30,7 @@ enum Form {
 }
 
 impl Curve {
-    /// The curve of a segment, seen from `origin`; `longest` bounds the scale \[mm\].
+    /// Makes the curve of a segment, seen from `origin`; `longest` bounds the scale \[mm\].
     pub fn of_segment(segment: &Segment, origin: [f64; 2], longest: f64) -> Self {
         match &segment.shape {
             Shape::Arc(arc) => {
@@ -51,7 +52,8 @@ impl Curve {
         Self { shape: Form::Turning { start, curvature }, length, scale, longest: length }
     }
 
-    /// The smaller of the parameter range and the sharpest of nine radii, in units of the parameter.
+    /// Sets the scale to the smaller of the parameter range and the sharpest of nine radii, in units of the
+    /// parameter.
     fn with_scale_of_polynomial(mut self, polynomial: &Polynomial) -> Self {
         let [a, b] = polynomial.t;
         for k in 0..=8 {
@@ -64,11 +66,11 @@ impl Curve {
         self
     }
 
-    /// (x − x_C, z − z_C) \[mm\] in profile axes. Beyond its ends the curve goes on as it is.
+    /// Returns (x − x_C, z − z_C) \[mm\] in profile axes. Beyond its ends the curve continues unchanged.
     pub fn point(&self, t: f64) -> [f64; 2] {
         match &self.shape {
             Form::Turning { start, curvature } => {
-                // Half the turn: the chord lies at the mean of its end tangents' angles.
+                // Half the turn: the chord has the mean of its end tangents' angles.
                 let half = t * curvature / 2.0;
                 let chord = if half == 0.0 { t } else { t * (half.sin() / half) };
                 let (sin, cos) = half.sin_cos();
@@ -84,7 +86,7 @@ impl Curve {
         }
     }
 
-    /// Angle \[rad\] of the tangent in profile axes.
+    /// Returns the angle \[rad\] of the tangent in profile axes.
     pub fn angle(&self, t: f64) -> f64 {
         match &self.shape {
             Form::Turning { start, curvature } => start.angle() + t * curvature,
@@ -92,21 +94,22 @@ impl Curve {
         }
     }
 
-    /// The parameter of the sample nearest to the contact point.
+    /// Returns the parameter of the sample nearest to the contact point.
     pub fn nearest_to_origin(&self) -> f64 {
         let distance = |t: f64| self.point(t).into_iter().fold(0.0, f64::hypot);
         let samples = (0..=64).map(|k| self.length * f64::from(k) / 64.0);
         samples.min_by(|&a, &b| distance(a).total_cmp(&distance(b))).unwrap_or(0.0)
     }
 
-    /// Length per unit of the parameter, by a central difference; only sizes of cells are chosen by it.
+    /// Returns the length per unit of the parameter, by a central difference; it is used only for sizes of
+    /// cells.
     pub fn speed(&self, t: f64) -> f64 {
         let h = self.scale * f64::EPSILON.cbrt();
         let ([x0, z0], [x1, z1]) = (self.point(t - h), self.point(t + h));
         (x1 - x0).hypot(z1 - z0) / (2.0 * h)
     }
 
-    /// A bound of |d²(x, z)/dt²| within `reach` of t.
+    /// Returns a bound of |d²(x, z)/dt²| within `reach` of t.
     pub fn bend(&self, t: f64, reach: f64) -> f64 {
         match &self.shape {
             Form::Turning { curvature, .. } => curvature.abs(),
@@ -133,13 +136,13 @@ impl Curve {
 /// at the distance of C from the axle \[mm\]. ∂X/∂t × ∂X/∂v points up where the surface faces the other body.
 #[derive(Debug, Clone)]
 pub(super) struct Surface {
-    /// The curves in order of the chain.
+    /// The curves, in order of the chain.
     pub curves: Vec<Curve>,
     cos: f64,
     sin: f64,
-    /// Distance of C from the axle, and sin χ, cos χ; none for the rail.
+    /// Distance of C from the axle, with sin χ and cos χ; `None` for the rail.
     wheel: Option<Wheel>,
-    /// Raised along ζ by this \[mm\].
+    /// Lift along ζ \[mm\].
     lift: f64,
     /// Largest coordinate that was rounded on the way \[mm\].
     pub size: f64,
@@ -152,12 +155,12 @@ struct Wheel {
 }
 
 impl Surface {
-    /// The extruded rail of a placed pair.
+    /// Makes the extruded rail of a placed pair.
     pub fn rail(placement: &Placement) -> Self {
         Self::new(&placement.rail, None)
     }
 
-    /// The revolved wheel of a placed pair, turned about ζ by the skew.
+    /// Makes the revolved wheel of a placed pair, turned about ζ by the skew.
     pub fn wheel(placement: &Placement) -> Self {
         let axle = placement.wheel_radius - placement.wheel.point.station.z;
         Self::new(&placement.wheel, Some(Wheel { axle, skew: placement.skew.sin_cos() }))
@@ -173,17 +176,17 @@ impl Surface {
         Self { curves, cos: c.cos, sin: c.sin, wheel, lift: 0.0, size }
     }
 
-    /// The same surface raised along ζ \[mm\].
+    /// Returns the surface raised along ζ by `lift` \[mm\].
     pub fn lifted(&self, lift: f64) -> Self {
         Self { lift, ..self.clone() }
     }
 
-    /// Whether this is the wheel.
+    /// Returns whether this is the wheel.
     pub fn is_wheel(&self) -> bool {
         self.wheel.is_some()
     }
 
-    /// The point (ξ, η, ζ) \[mm\].
+    /// Returns the point (ξ, η, ζ) \[mm\].
     pub fn point(&self, curve: usize, t: f64, v: f64) -> Vector {
         let [x, z] = self.curves[curve].point(t);
         let Some(Wheel { axle, skew }) = self.wheel else {
@@ -197,7 +200,7 @@ impl Surface {
         Vector::new(along * skew.1 - y * skew.0, along * skew.0 + y * skew.1, zeta + self.lift)
     }
 
-    /// (∂X/∂t, ∂X/∂v) by central differences, for Newton steps.
+    /// Returns \[∂X/∂t, ∂X/∂v\] by central differences, for Newton steps.
     pub fn tangents(&self, curve: usize, t: f64, v: f64) -> [Vector; 2] {
         let h = self.curves[curve].scale * f64::EPSILON.cbrt();
         let k = self.round_scale() * f64::EPSILON.cbrt();
@@ -207,21 +210,21 @@ impl Surface {
         ]
     }
 
-    /// The length over which v turns the surface: the axle distance; any length for the rail.
+    /// Returns the length over which v turns the surface: the axle distance; any length for the rail.
     pub fn round_scale(&self) -> f64 {
         self.wheel.map_or(self.size, |wheel| wheel.axle)
     }
 
-    /// The largest v needed for points up to `reach` from the origin in the ξ–η plane.
+    /// Returns the largest v needed for points up to `reach` from the origin in the ξ–η plane.
     pub fn v_reach(&self, reach: f64) -> f64 {
         // The chord of an angle is at least 2/π of its arc.
         reach * std::f64::consts::FRAC_PI_2
     }
 
-    /// \[least, largest\] ζ component of the unit normals of points up to `reach` from one at v and height `z` over C,
-    /// where the profile's tangents have angles \[rad\] between `tilts`.
+    /// Returns \[least, largest\] ζ component of the unit normals of points up to `reach` from one at v and
+    /// height `z` over C, if the profile's tangents have angles \[rad\] between `tilts`.
     ///
-    /// n = cosψ cosφ cosθ + sinψ sinθ at the tangent's angle ψ, turned about the axle by φ.
+    /// Method: n = cosψ cosφ cosθ + sinψ sinθ at the tangent's angle ψ, turned about the axle by φ.
     pub fn normals_between(&self, tilts: [f64; 2], v: f64, z: f64, reach: f64) -> [f64; 2] {
         let turned = self.wheel.map_or([0.0; 2], |Wheel { axle, .. }| {
             // The chord of an angle is at least 2/π of its arc.
@@ -241,15 +244,16 @@ impl Surface {
         out
     }
 
-    /// Cell size in v \[mm\] whose sagitta is that of a cell of `h` parameter units in t.
+    /// Returns the cell size in v \[mm\] whose sagitta is that of a cell of `h` parameter units in t.
     pub fn v_cell(&self, curve: usize, t: f64, h: f64) -> f64 {
         let curve = &self.curves[curve];
         let speed = curve.speed(t);
         h * speed * (self.round_scale() / (curve.scale * speed)).sqrt().max(1.0)
     }
 
-    /// A bound \[mm\] of the distance between the surface and a triangle whose legs are a cell (h, k) at (t, v):
-    /// ¼ ‖D²X‖ in units of the cell, and the angle \[rad\] by which the normal can turn over a cell.
+    /// Returns a bound \[mm\] of the distance between the surface and a triangle whose legs are a cell (h, k)
+    /// at (t, v), ¼ ‖D²X‖ in units of the cell, and the angle \[rad\] by which the normal can turn over a
+    /// cell.
     pub fn chordal_bound(&self, curve: usize, t: f64, [h, k]: [f64; 2]) -> [f64; 2] {
         let reach = 3.0 * h;
         let (bend, speed) = (self.curves[curve].bend(t, reach), self.curves[curve].speed(t));

@@ -133,9 +133,9 @@ pub struct Measurements {
     /// Least, median and largest time for choosing a method at full precision \[s\], over the scenes and
     /// grids of the rows.
     pub planning: [f64; 3],
-    /// Growth of cost.
+    /// Cost against the number of points, on one thread.
     pub growth: Vec<Growth>,
-    /// Threads.
+    /// Times on one thread and on two, method by method.
     pub threads: Vec<Threads>,
     /// Times of grids over splines and over arcs, on one thread.
     pub splines: Vec<SplineCost>,

@@ -164,7 +164,7 @@ mod tests {
         assert_eq!(jumps(&[&slope]), [0; 0]);
     }
 
-    /// Closed rings of a path.
+    /// Returns the number of closed rings of a path.
     fn rings(path: &str) -> usize {
         path.matches('Z').count()
     }

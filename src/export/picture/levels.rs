@@ -35,7 +35,8 @@ pub(super) struct Level {
     pub(super) lines: Vec<Vec<[f64; 2]>>,
 }
 
-/// Returns round levels up to [`SHOWN`] times the approach, or up to the largest value if the approach is 0.
+/// Returns round levels up to the largest value, or up to [`SHOWN`] times the approach if that is lower and
+/// above the least value.
 pub(super) fn levels(nodes: &Nodes<'_>, approach: f64, panel: &Panel) -> Vec<Level> {
     let [low, high] = extremes(nodes.values.iter().copied());
     let shown = SHOWN * approach;

@@ -82,7 +82,7 @@ const MARGIN: f64 = 40.0;
 /// A page: x to the right, y downwards, in page units; a screen shows one unit as a pixel.
 #[derive(Debug)]
 pub(super) struct Page {
-    /// SVG elements, one a line.
+    /// SVG elements, one per line.
     marks: String,
 }
 

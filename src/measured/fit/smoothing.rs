@@ -156,7 +156,7 @@ mod tests {
     use super::*;
     use std::f64::consts::{PI, TAU};
 
-    /// The share of a wave of length `wavelength` that is left in the middle of 200 mm.
+    /// Returns the share of a wave of length `wavelength` that is left in the middle of 200 mm.
     fn share(cutoff: f64, wavelength: f64, spacing: f64) -> f64 {
         let n = (200.0 / spacing) as usize + 1;
         let y: Vec<f64> = (0..n).map(|k| (TAU * k as f64 * spacing / wavelength).sin()).collect();

@@ -102,7 +102,7 @@ impl<'a> Skewed<'a> {
         }
         let mut stops = std::mem::take(&mut self.stops);
         self.stops_at(xi, &mut stops);
-        // The wheel rises by about η²/2R: twice that width is enough but for steep profiles.
+        // The wheel rises by about η²/2R: twice that width is enough except for steep profiles.
         let radius = self.placement.rolling_radius();
         let reach = (2.0 * (2.0 * radius * depth).sqrt()).max(STEP_ROUNDINGS * f64::EPSILON * radius);
         let edges = [-1.0, 1.0].map(|side| self.outward(xi, spot.eta, side * reach, &mut stops));

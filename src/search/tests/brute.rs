@@ -1,4 +1,4 @@
-//! The search against dense sampling in three dimensions, which knows neither outlines nor normals.
+//! Tests the search against dense sampling in three dimensions, which uses neither outlines nor normals.
 
 use super::*;
 
@@ -11,7 +11,8 @@ struct Scene {
 }
 
 impl Scene {
-    /// The wheel's point at profile abscissa x and angle ω about the axle, profile origin at height 0.
+    /// Returns the wheel's point at profile abscissa x and angle ω about the axle, with the profile origin at
+    /// height 0.
     fn point(&self, section: &Section, x: f64, omega: f64) -> [f64; 3] {
         self.point_at(x, section.height(x), omega)
     }
@@ -29,7 +30,7 @@ impl Scene {
         ]
     }
 
-    /// The lowest gap \[mm\] and where, by a grid and eight zooms into its best cells.
+    /// Returns the lowest gap \[mm\] and its place, by a grid and eight zooms into its best cells.
     fn lowest_gap(&self) -> [f64; 3] {
         let rail = Section::own_axes(&self.rail, Side::Rail);
         let wheel = Section::own_axes(&self.wheel, Side::Wheel);
@@ -64,7 +65,7 @@ impl Scene {
 
 type Cell = (f64, [f64; 2], [f64; 2]);
 
-/// The twelve lowest local minima of a grid, each with the interval of its neighbours.
+/// Returns the twelve lowest local minima of a grid, each with the interval of its neighbours.
 fn best_cells(gap: &impl Fn(f64, f64) -> f64, x: [f64; 2], omega: [f64; 2], n: [usize; 2]) -> Vec<Cell> {
     let at = |range: [f64; 2], k: usize, n: usize| range[0] + (range[1] - range[0]) * k as f64 / n as f64;
     let values: Vec<Vec<f64>> =
@@ -104,7 +105,7 @@ impl Random {
     }
 }
 
-/// A chain of lines, arcs of either half and cubics with a kink at every joint.
+/// Makes a chain of lines, arcs of either half and cubics with a kink at every joint.
 pub(super) fn random_chain(random: &mut Random, n: usize, polynomials: bool) -> Result<Profile> {
     let mut segments = Vec::new();
     let (mut x, mut z) = (-30.0, random.between(-3.0, 0.0));
@@ -161,15 +162,15 @@ fn compare_scene(name: &str, scene: Scene) -> Result<()> {
     let Some(touch) = touch else { panic!("{name}: no touch, sampled {sampled}") };
     let first = touch.contacts[0];
     let difference = touch.height + sampled;
-    // Not later than any sample; not too early, since the place of contact below is on both surfaces. Samples get stuck
-    // in the sharp valley over a kink of the rail.
+    // First touch is no later than any sample finds it, and no earlier than possible, since the place of
+    // contact below is on both surfaces. Samples get stuck in the sharp valley over a kink of the rail.
     assert!(
         (-1e-9..1e-3).contains(&difference),
         "{name}: touch at {}, samples at {}, x {x}, ω {omega}, {difference:e}, {first:?}",
         touch.height,
         -sampled
     );
-    // The place of contact in space, independently of the outline. At a step both heights are the surface's.
+    // The place of contact in space, without the outline. At a step both heights are the surface's.
     let tilt = -(first.wheel_angle.tan() * pose[1].tan()).asin();
     let section = Section::own_axes(&scene.wheel, Side::Wheel);
     assert!((section.height(first.wheel_x) - first.wheel_z).abs() < 2e-3, "{name}: {first:?}");
@@ -207,7 +208,8 @@ fn first_touch_agrees_with_dense_samples_of_standard_profiles() -> Result<()> {
     Ok(())
 }
 
-/// Without yaw and roll the gap is a function of x: its local minima on a fine grid are the contacts.
+/// Compares with a fine grid: without yaw and roll the gap is a function of x, and its local minima are the
+/// contacts.
 #[test]
 fn every_local_minimum_of_the_gap_is_reported() -> Result<()> {
     let (step, within) = (2e-3, 30.0);

@@ -1,4 +1,4 @@
-//! The search against `tests/reference_yawed/yawed_*.json`.
+//! Tests the search against `tests/reference_yawed/yawed_*.json`.
 
 use serde_json::Value;
 
@@ -84,7 +84,7 @@ fn contacts_agree_with_60_digit_values() -> Result<()> {
             (mixed, (s(1e-3, 1e-2) + s(-1e-3, -1e-2) - s(1e-3, -1e-2) - s(-1e-3, 1e-2)) / 4e-5),
         ];
         for (found, expected) in expected {
-            // The differences' own error is of the square of the step.
+            // The differences have an error of the square of the step.
             assert!((found - expected).abs() < 1e-6, "{title}: {found} is not {expected}");
         }
     }

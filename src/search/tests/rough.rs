@@ -1,41 +1,42 @@
-//! The search against an oracle that knows no tree, no tangents and no outlines, on rough pairs: noise, pits, flats, lips,
-//! vertical sides, copies that touch in many points; yawed and rolled.
+//! Tests the search on rough pairs against an oracle that uses no tree, no tangents and no outlines: noise,
+//! pits, flats, lips, vertical sides, copies that touch in many points; yawed and rolled.
 //!
-//! The oracle lowers rings: at an abscissa X of the rail every ring of the wheel has a height in closed form; the lowest over
-//! dense samples of the wheel's profile, less the rail's height, is the gap. Its local minima over dense X are refined by
-//! zooming in.
+//! The oracle lowers rings. At an abscissa X of the rail every ring of the wheel has a height in closed form.
+//! The gap is the lowest height over dense samples of the wheel's profile, less the rail's height. Its local
+//! minima over dense X are refined by zooming in.
 
 use super::brute::Random;
 use super::*;
 
-/// Pairs in every run; `WHEELRAIL_ROUGH_PAIRS` sets another number.
+/// Number of pairs in every run; `WHEELRAIL_ROUGH_PAIRS` sets another number.
 const PAIRS: u64 = 2000;
 
 /// First seed.
 const SEED: u64 = 0x2024_0001;
 
-/// Near misses that are compared \[mm\].
+/// Largest gap of the near misses that are compared \[mm\].
 const WITHIN: f64 = 0.05;
 
-/// By how much a sample of the wheel may lie above the lowest ring beside it \[mm\]: half a step at a noise's slope.
+/// Largest height of a sample of the wheel over the lowest ring beside it \[mm\]: half a step at a noise's
+/// slope.
 const COARSE: f64 = 1e-2;
 
-/// Distance of the abscissae of a first pass \[mm\], and by how much the gap may fall between two: noise, a flank of 60° over
-/// the step, and the near misses that are asked for.
+/// Distance of the abscissae of a first pass \[mm\].
 const COARSE_STEP: f64 = 0.1;
-/// See [`COARSE_STEP`].
+/// Largest fall of the gap between two abscissae of a first pass \[mm\]: noise, a flank of 60° over the step,
+/// and the near misses that are asked for.
 const COARSE_MARGIN: f64 = 0.35;
 
 /// A path that is sampled: its direction turns by a curvature over each length.
 struct Path {
     at: [f64; 2],
     angle: f64,
-    /// [length mm, curvature 1/mm].
+    /// Pairs \[length \[mm\], curvature \[1/mm\]\].
     parts: Vec<[f64; 2]>,
 }
 
 impl Path {
-    /// Points every `spacing` mm with their normals.
+    /// Returns points every `spacing` mm with their normals.
     fn points(&self, spacing: f64) -> Vec<[f64; 4]> {
         let (mut at, mut angle) = (self.at, self.angle);
         let mut out = Vec::new();
@@ -53,7 +54,7 @@ impl Path {
         out
     }
 
-    /// An arc of a radius that turns by an angle, both signed alike.
+    /// Returns an arc of a radius that turns by an angle, both of the same sign.
     fn turn(radius: f64, angle: f64) -> [f64; 2] {
         [radius * angle.abs(), angle.signum() / radius]
     }
@@ -95,7 +96,7 @@ fn wheel_path(random: &mut Random) -> Path {
     Path { at: [-26.0, -9.0], angle, parts }
 }
 
-/// Wear and faults on sampled points, outwards along their normals \[mm\].
+/// Makes wear and faults on sampled points, outwards along their normals \[mm\].
 fn worn(points: &[[f64; 4]], random: &mut Random, side: Side, noise: f64) -> Vec<[f64; 2]> {
     let outward = if side == Side::Rail { 1.0 } else { -1.0 };
     let mut faults = Vec::new();
@@ -128,7 +129,8 @@ fn flattened(points: &mut [[f64; 2]], side: Side, depth: f64) {
     }
 }
 
-/// Cubics through the points with the tangents of central differences, or the straight lines between them.
+/// Returns cubics through the points with the tangents of central differences, or the straight lines between
+/// the points.
 fn through(points: &[[f64; 2]], straight: bool) -> Result<Profile> {
     let n = points.len();
     let slope = |k: usize, axis: usize| {
@@ -157,7 +159,7 @@ fn through(points: &[[f64; 2]], straight: bool) -> Result<Profile> {
     Profile::new("rough", "", segments)
 }
 
-/// A rough pair and how it stands.
+/// A rough pair and its position.
 struct Pair3 {
     rail: Profile,
     wheel: Profile,
@@ -187,14 +189,15 @@ fn random_pair(seed: u64) -> Result<Pair3> {
         }
     }
     let offset = if conformal { random.between(-0.5, 0.5) } else { random.between(-12.0, 12.0) };
-    // The oracle sees no ring that reaches less far than its samples lie apart: yaw is none, or not small.
+    // The oracle misses a ring that reaches less far than the distance of its samples: so yaw is 0 or not
+    // small.
     let yaw = [0.0, 0.0, -1.0, 1.0, 1.0][random.between(0.0, 5.0) as usize] * random.between(0.015, 0.05);
     let roll = [0.0, 1.0][random.between(0.0, 2.0) as usize] * random.between(-0.05, 0.05);
     let pose = [offset, yaw, roll];
     Ok(Pair3 { rail: through(&rail, straight)?, wheel: through(&wheel, straight)?, pose, spacing })
 }
 
-/// The gap by rings.
+/// The oracle, which finds the gap by rings.
 struct Oracle {
     rail: Section,
     wheel: Section,
@@ -205,7 +208,8 @@ struct Oracle {
 }
 
 impl Oracle {
-    /// Gap over the rail's abscissa X of the ring of the wheel's profile point (x, z); infinite where it does not reach.
+    /// Returns the gap over the rail's abscissa X of the ring of the wheel's profile point (x, z); infinite
+    /// if the ring does not reach X.
     fn gap(&self, [x, z]: [f64; 2], at: f64, rail: f64) -> f64 {
         let [offset, yaw, roll] = self.pose;
         let (rolling, (sy, cy), (sr, cr)) = (self.radius - z, yaw.sin_cos(), roll.sin_cos());
@@ -218,7 +222,8 @@ impl Oracle {
         };
         let length = a.hypot(b);
         if yaw == 0.0 {
-            // All of the ring is at one abscissa but for the roll; its lowest point counts, and X is checked by the caller.
+            // Except for the roll, the whole ring is at one abscissa; its lowest point counts, and the caller
+            // checks X.
             return f64::NAN;
         }
         if c.abs() > length {
@@ -233,8 +238,8 @@ impl Oracle {
         both[0].min(both[1]) - rail
     }
 
-    /// The wheel's height over an abscissa without yaw between two samples, where its profile is a curve in the rail's axes: by
-    /// bisection along x.
+    /// Returns the wheel's height over an abscissa between two samples without yaw, where its profile is a
+    /// curve in the rail's axes: by bisection along x.
     fn unyawed(&self, at: f64, samples: [[f64; 2]; 2]) -> f64 {
         let [offset, _, roll] = self.pose;
         let [low, high] = samples.map(|[x, _]| x);
@@ -265,7 +270,8 @@ impl Oracle {
         if (x - at).abs() < 1e-9 { z } else { f64::INFINITY }
     }
 
-    /// The gap over X, of the lowest ring between samples `from` and `to`, with the abscissa of that ring.
+    /// Returns the gap over X of the lowest ring between samples `from` and `to`, with the abscissa of that
+    /// ring.
     fn lowest(&self, at: f64, [from, to]: [usize; 2], zooms: u32) -> [f64; 2] {
         let rail = self.rail.height(at);
         let mut best = [f64::INFINITY, f64::NAN];
@@ -283,7 +289,8 @@ impl Oracle {
             return best;
         }
         let to = to.min(self.samples.len() - 1);
-        // A ring rises over its profile point by u²/2ϱ sin²ψ and more, u its distance along x but for the roll.
+        // A ring rises over its profile point by at least u²/2ϱ sin²ψ; u is its distance along x except for
+        // the roll.
         let [offset, yaw, roll] = self.pose;
         let rise = 0.5 / ((self.radius + 40.0) * yaw.sin().powi(2));
         let mut coarse_so_far = f64::INFINITY;
@@ -316,7 +323,8 @@ impl Oracle {
         best
     }
 
-    /// The lowest gap of the rings between two abscissae of the wheel's profile, and whose it is.
+    /// Returns the lowest gap of the rings between two abscissae of the wheel's profile, with the abscissa of
+    /// the ring.
     fn ring_between(&self, at: f64, rail: f64, mut cell: [f64; 2], zooms: u32) -> [f64; 2] {
         let (ends, mut best) = (cell, [f64::INFINITY, cell[0]]);
         for _ in 0..zooms {
@@ -339,7 +347,8 @@ impl Oracle {
         Self { rail: Section::own_axes(&pair.rail, Side::Rail), wheel, radius, pose: pair.pose, samples }
     }
 
-    /// Samples whose rings may be lowest at X: those of unyawed ones beside it, and as far as a ring's slope goes.
+    /// Returns the samples whose rings may be lowest at X: without yaw those beside X, with yaw as far as a
+    /// ring's slope allows.
     fn near(&self, at: f64) -> [usize; 2] {
         let [offset, yaw, roll] = self.pose;
         // tanφ up to 8, that is 83°; the roll shifts by heights of 40 mm.
@@ -350,7 +359,8 @@ impl Oracle {
         [first.saturating_sub(1), last]
     }
 
-    /// Abscissae of the rail that see every bump of either body; those of a yawed wheel are wider than a step.
+    /// Returns abscissae of the rail that resolve every bump of either body; bumps of a yawed wheel are wider
+    /// than a step.
     fn abscissae(&self, step: f64) -> Vec<f64> {
         let mut all: Vec<f64> = samples(&self.rail, step).iter().map(|s| s[0]).collect();
         let [offset, yaw, roll] = self.pose;
@@ -364,10 +374,10 @@ impl Oracle {
         all
     }
 
-    /// All local minima of the gap up to `within` above the lowest: [gap, X].
+    /// Returns all local minima of the gap up to `within` above the lowest, as \[gap, X\].
     fn minima(&self, step: f64) -> Vec<[f64; 2]> {
         let x = self.abscissae(step);
-        // A coarse pass leaves out what lies too high for the noise and the slope of a step to make up for.
+        // A coarse pass leaves out what is too high for noise and the slope of a step.
         let stride = (COARSE_STEP / step).ceil() as usize;
         let rough: Vec<f64> =
             x.iter().step_by(stride).map(|&at| self.lowest(at, self.near(at), 1)[0]).collect();
@@ -384,7 +394,7 @@ impl Oracle {
         let mut out: Vec<[f64; 2]> = Vec::new();
         for k in 0..x.len() {
             let (a, b) = (k.saturating_sub(1), (k + 1).min(x.len() - 1));
-            // A sample lies above its minimum by a noise's slope times the step at most.
+            // A sample is above its minimum by at most a noise's slope times the step.
             let low = gaps[k] <= gaps[a] && gaps[k] <= gaps[b] && gaps[k] <= lowest + WITHIN + 1e-2;
             if low && gaps[k].is_finite() {
                 out.extend(
@@ -400,7 +410,8 @@ impl Oracle {
         out
     }
 
-    /// The least gap between two abscissae, [gap, X]; `None` where it is at one of them, unless that is an end of the rail.
+    /// Returns the least gap between two abscissae, as \[gap, X\]; `None` if it is at one of them, unless
+    /// that is an end of the rail.
     fn zoomed(&self, cell: [f64; 2], rail: [f64; 2]) -> Option<[f64; 2]> {
         let [mut a, mut b] = cell;
         let mut best = [f64::INFINITY, a];
@@ -421,7 +432,7 @@ impl Oracle {
     }
 }
 
-/// Points of the outer surface every `step` mm along it, with the ends of all pieces.
+/// Returns points of the outer surface every `step` mm along it, with the ends of all pieces.
 fn samples(section: &Section, step: f64) -> Vec<[f64; 2]> {
     let mut out: Vec<[f64; 2]> = Vec::new();
     for piece in &section.pieces {
@@ -437,7 +448,7 @@ fn samples(section: &Section, step: f64) -> Vec<[f64; 2]> {
     out
 }
 
-/// Compares one pair: the number of its contacts and near misses, or what differs.
+/// Compares one pair; returns the number of its contacts and near misses, or the differences.
 fn compare(seed: u64) -> Result<std::result::Result<usize, String>> {
     const RADIUS: f64 = 460.0;
     let pair = random_pair(seed)?;
@@ -445,7 +456,7 @@ fn compare(seed: u64) -> Result<std::result::Result<usize, String>> {
     let [offset, yaw, roll] = pair.pose;
     let mut search = profiles.search();
     let touch = search.touch(&Pose::new(offset, yaw, roll)?, &Selection { within: WITHIN, apart: 0.0 });
-    // Four samples of a span at least, see `samples`.
+    // At least four samples of a span, see `samples`.
     let step = (pair.spacing / 5.0).clamp(0.015, 0.06);
     let oracle = Oracle::new(&pair, RADIUS, step);
     let minima = oracle.minima(step);
@@ -465,7 +476,8 @@ fn compare(seed: u64) -> Result<std::result::Result<usize, String>> {
     }
     for [gap, x] in &minima {
         let gap = gap - lowest;
-        // A gap as flat as rounding along x has its place anywhere there; on a steep end zooming stops at 1e-9 mm along x.
+        // A gap as flat as rounding along x has its place anywhere there; on a steep end zooming stops at
+        // 1e-9 mm along x.
         let near =
             |c: &Contact| (c.gap - gap).abs() < 1e-7 && (c.rail_x - x).abs() < 1e-4 + 4e-4 * flatness(c);
         if gap < WITHIN - 1e-6 && !touch.contacts.iter().any(near) {
@@ -473,8 +485,8 @@ fn compare(seed: u64) -> Result<std::result::Result<usize, String>> {
         }
     }
     for contact in touch.contacts {
-        // A point of both surfaces, at one abscissa, with the gap that it claims.
-        // An end may be a rounding outside, on a steep one some more, and a step has two heights.
+        // A point of both surfaces, at one abscissa, with the gap that it claims. An end may be a rounding
+        // outside, on a steep end some more, and a step has two heights.
         let beside = [-1e-9, 0.0, 1e-9].map(|h| contact.rail_x + h);
         let here =
             beside.map(|x| oracle.lowest(x, oracle.near(x), 12)[0]).into_iter().fold(f64::INFINITY, f64::min);
@@ -488,7 +500,8 @@ fn compare(seed: u64) -> Result<std::result::Result<usize, String>> {
     Ok(Ok(touch.contacts.len()))
 }
 
-/// By how much of a millimetre along x a gap of 1e-8 mm reaches, over 1e-4 mm: √(2e-8/Δκ).
+/// Returns the distance along x at which a gap has changed by 1e-8 mm, √(2e-8/Δκ) but at most 1 mm, in units
+/// of 1e-4 mm.
 fn flatness(contact: &Contact) -> f64 {
     let rounder = (contact.wheel_curvature - contact.rail_curvature).max(1e-9);
     (2e-8 / rounder).sqrt().min(1.0) * 1e4

@@ -41,7 +41,7 @@ pub(super) fn practice(m: &Measurements) -> Section {
     Section { title: "Practice", body, files }
 }
 
-/// Returns the table of rates, one row a pair: rates, and their ratio to that of drawn arcs.
+/// Returns the table of rates, one row per pair: rates, and their ratio to that of drawn arcs.
 pub(super) fn rate_table(m: &Measurements) -> String {
     let mut head = vec!["pair".to_string()];
     for motion in Motion::ALL {
@@ -82,7 +82,7 @@ pub(super) fn rate_note(m: &Measurements) -> String {
     )
 }
 
-/// Returns the table of cases, one row a case with its parts.
+/// Returns the table of cases, one row per case with its parts.
 pub(super) fn case_table(m: &Measurements) -> String {
     let mut head = vec!["case".to_string(), "grid".into()];
     head.extend(PARTS.iter().map(|part| format!("{part}, µs")));

@@ -49,7 +49,7 @@ pub enum SpecimenKind {
 }
 
 impl SpecimenKind {
-    /// The rails.
+    /// All kinds of rail.
     pub const RAILS: [Self; 7] = [
         Self::NewRail,
         Self::FullHead,
@@ -59,7 +59,7 @@ impl SpecimenKind {
         Self::GroovedRail,
         Self::SwitchBlade,
     ];
-    /// The wheels.
+    /// All kinds of wheel.
     pub const WHEELS: [Self; 5] =
         [Self::NewWheel, Self::FullFlangeWheel, Self::WornWheel, Self::HollowWheel, Self::TramWheel];
 

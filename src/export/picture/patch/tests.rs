@@ -15,7 +15,7 @@ fn profiles() -> [Vec<[f64; 2]>; 2] {
     [arc(-36, 37, |x| -x * x / 600.0), arc(-60, 70, |x| x * x / 2000.0)]
 }
 
-/// A picture of a sample, with its own points for the contours.
+/// Makes a picture of a sample, with its own points for the contours.
 fn picture<'a>(
     sample: &'a Sample,
     header: &'a Header,
@@ -61,7 +61,7 @@ fn pictures_of_good_and_of_odd_data_are_drawn() {
     }
 }
 
-/// The numbers in a picture's text elements of the size of contour labels.
+/// Returns the numbers in a picture's text elements of the size of contour labels.
 fn labels(svg: &str) -> Vec<String> {
     let marked = svg.lines().filter(|line| line.contains("font-size=\"9.5\""));
     marked.map(|line| line.split(['>', '<']).nth(2).unwrap().to_owned()).collect()

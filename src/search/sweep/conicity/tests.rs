@@ -14,18 +14,19 @@ fn system(rail: &Profile, wheel: &Profile) -> Result<WheelsetOnTrack> {
     WheelsetOnTrack::new(&pair, RailDistance::Spacing(1500.0), WheelDistance::Spacing(1500.0))
 }
 
-/// UIC60 at 1:20 as EN 15302's reference profiles have it.
+/// Returns UIC60 at 1:20, as in EN 15302's reference profiles.
 fn reference_rail() -> Result<Profile> {
     let (sin, cos) = 0.05f64.sin_cos();
     Ok(standards::rail("UIC60")?.rotated(cos, sin).shifted(2.60264, 0.14155))
 }
 
-/// tan γ_e of a quarter's time.
+/// Returns tan γ_e for the time of a quarter.
 fn conicity_of(time: f64) -> f64 {
     PI.powi(2) / (8.0 * time * time)
 }
 
-/// T(ŷ) = ∫ dy/√(E(ŷ) − E(y)) by the rectangle rule in u, y = ŷ(1 − u²), which the turning point does not disturb.
+/// Integrates T(ŷ) = ∫ dy/√(E(ŷ) − E(y)) by the rectangle rule in u, y = ŷ(1 − u²), which the turning point
+/// does not disturb.
 fn quadrature(energy: impl Fn(f64) -> f64, amplitude: f64, steps: u32) -> f64 {
     let total = energy(amplitude);
     let sum: f64 = (0..steps)
@@ -66,7 +67,8 @@ fn wheel_a_of_en_15302_has_its_published_conicity() -> Result<()> {
     Ok(())
 }
 
-/// What the contacts' curvatures say of dϱ/dy, and their angles of the height, is what happens beside them.
+/// Compares the rates that the contacts' curvatures (of ϱ) and angles (of the height) give with the positions
+/// beside them.
 #[test]
 fn slopes_are_those_of_the_next_positions() -> Result<()> {
     let system = system(&reference_rail()?, &standards::wheel("EN15302-A")?)?;
@@ -87,7 +89,7 @@ fn slopes_are_those_of_the_next_positions() -> Result<()> {
                 let [low, high] = [below[side], above[side]];
                 let climb = (high.height - low.height) / (2.0 * STEP);
                 let growth = (high.radius - low.radius) / (2.0 * STEP);
-                // A joint or a hop between.
+                // A joint or a hop is between.
                 let near = |a: f64, b: f64| (a - b).abs() <= 1e-3 * (1.0 + b.abs());
                 if !near(low.growth, high.growth) || !near(low.climb, high.climb) {
                     continue;
@@ -108,7 +110,7 @@ fn slopes_are_those_of_the_next_positions() -> Result<()> {
     Ok(())
 }
 
-/// Δr = a y, less a tooth's depth beyond each hop, as the right side's contact makes it.
+/// A saw tooth, Δr = a y, less a tooth's depth beyond each hop, as the right side's contact makes it.
 struct SawTooth {
     rise: f64,
     period: f64,
@@ -120,14 +122,14 @@ impl SawTooth {
         (y / self.period).floor()
     }
 
-    /// ∫_0^y Δr, twice.
+    /// Returns 2 ∫_0^y Δr.
     fn energy(&self, y: f64) -> f64 {
         let (tooth, period) = (self.tooth(y), self.period);
         let lost = self.depth * (period * tooth * (tooth - 1.0) / 2.0 + tooth * (y - tooth * period));
         self.rise * y * y - 2.0 * lost
     }
 
-    /// The two teeth beside y as places of contact; the gap of the next one closes at the rate 0.02.
+    /// Returns the two teeth beside y as places of contact; the gap of the next one closes at the rate 0.02.
     fn places(&self, y: f64, sides: &mut Sides) {
         let height = 0.02 * (self.tooth(y) * y - self.period * self.tooth(y) * (self.tooth(y) + 1.0) / 2.0);
         let place = |tooth: f64, gap: f64, climb: f64| Branch {
@@ -184,7 +186,7 @@ fn more_hops_than_searches_give_a_flagged_result() -> Result<()> {
         let saw = SawTooth { rise: 0.4, period, depth };
         let search = |y: f64, sides: &mut Sides| {
             saw.places(y, sides);
-            // Nothing but the touching one is seen: hops have to be found by halving.
+            // Only the touching one is seen: hops have to be found by halving.
             sides[1].truncate(1);
             Ok(true)
         };
@@ -205,7 +207,7 @@ fn more_hops_than_searches_give_a_flagged_result() -> Result<()> {
     Ok(())
 }
 
-/// Knots of straight pieces through (y, Δr).
+/// Makes knots of straight pieces through (y, Δr).
 fn movement(points: &[[f64; 2]]) -> Movement {
     Movement::new(points.iter().map(|&[y, force]| Knot { y, force, defect: 0.0 }).collect())
 }
@@ -281,7 +283,7 @@ fn movements_that_do_not_come_back_have_no_conicity() {
     }
 }
 
-/// A polyline of `spacing` mm along a curve, whose corners lie off it by up to `noise` mm.
+/// Returns a polyline of `spacing` mm along a curve, with corners off the curve by up to `noise` mm.
 fn rough(curve: fn(f64) -> f64, spacing: f64, noise: f64, seed: u64) -> Result<Profile> {
     let mut random = seed;
     let mut next = || {
@@ -298,7 +300,7 @@ fn rough(curve: fn(f64) -> f64, spacing: f64, noise: f64, seed: u64) -> Result<P
     Profile::new("rough", "seeded", lines)
 }
 
-/// Δr at equal steps, searched one by one; and at every other of them.
+/// Searches Δr at equal steps one by one; returns the movements over all steps and over every other one.
 fn brute_force(
     search: &mut WheelsetSearch,
     steps: usize,
@@ -343,7 +345,7 @@ fn rough_pairs_agree_with_a_very_fine_table_or_say_by_how_much_not() -> Result<(
             });
             let found = conicity.at(amplitude);
             let ([Some(fine), Some(coarse)], Ok(found)) = (exact, found) else {
-                // The movement comes back from neither.
+                // The movement comes back for neither.
                 assert!(
                     exact[0].is_none() == found.is_err(),
                     "{spacing} {noise} {amplitude}: {found:?} {exact:?}"
@@ -354,7 +356,7 @@ fn rough_pairs_agree_with_a_very_fine_table_or_say_by_how_much_not() -> Result<(
             worst = [worst[0].max(off), worst[1].max(found.error)];
             compared += 1;
             converged += usize::from(found.converged());
-            // The tables hold a hop to their steps: their own error is about the difference of both.
+            // The tables place a hop to within their steps: their own error is about the difference of both.
             let bound = found.error.max(ACCURACY) + 2.0 * (coarse / fine - 1.0).abs();
             assert!(off <= bound, "{spacing} {noise} {amplitude}: {off:e} {bound:e} {found:?}");
         }
