@@ -6,6 +6,7 @@ pub mod builder;
 pub mod closing;
 pub mod continuity;
 mod groove;
+mod inclination;
 mod polynomial;
 mod section;
 pub mod standards;
@@ -14,12 +15,15 @@ pub mod trace;
 pub use arc::{Arc, Half};
 pub use closing::ONE_JOINT;
 pub use groove::last_groove;
+pub use inclination::inclination;
 pub use polynomial::Polynomial;
 pub use section::{
     ArcBranch, Branch, BranchPoint, BranchPoints, BranchShape, Branches, Piece, PolynomialBranch,
     ProfilePoint, Section, Side, stationary_points,
 };
 pub mod drawing;
+
+use nalgebra::UnitComplex;
 
 use crate::error::{Error, Result};
 use closing::Closing;
@@ -228,10 +232,10 @@ impl Profile {
         self.extent
     }
 
-    /// The profile turned counter-clockwise about its origin; `cos` and `sin` of the angle.
+    /// The profile turned about its origin, counter-clockwise from x to z. For 1:n see [`inclination()`].
     #[must_use]
-    pub fn rotated(&self, cos: f64, sin: f64) -> Self {
-        self.placed(&Station { x: 0.0, z: 0.0, cos, sin })
+    pub fn rotated(&self, turn: UnitComplex<f64>) -> Self {
+        self.placed(&Station { x: 0.0, z: 0.0, cos: turn.re, sin: turn.im })
     }
 
     /// The profile moved by (x, z) \[mm\].

@@ -53,13 +53,16 @@ impl Subject {
         Ok(Self { name: reference.name.clone(), placement: reference.placement()?, request })
     }
 
-    /// The same with other skews.
-    pub fn skewed(&self) -> impl Iterator<Item = Self> {
-        SKEWS.into_iter().map(|skew| Self {
-            name: format!("{}, skew {skew}", self.name),
-            placement: Placement { skew, ..self.placement.clone() },
-            request: self.request,
-        })
+    /// This pair under other skews.
+    ///
+    /// # Errors
+    /// As [`Placement::with_skew`].
+    pub fn skewed(&self) -> Result<Vec<Self>> {
+        let skewed = |skew: f64| {
+            let name = format!("{}, skew {skew}", self.name);
+            Ok(Self { name, placement: self.placement.with_skew(skew)?, request: self.request })
+        };
+        SKEWS.into_iter().map(skewed).collect()
     }
 
     /// Asks the meshes about the point-wise evaluator's answers.

@@ -35,7 +35,7 @@ pub(super) fn filled(placement: &Placement, approach: f64, window: &Window) -> F
     let mut evaluator = Evaluator::new(placement);
     let mut s = vec![f64::NAN; counts[0] * counts[1]];
     // Without skew a patch is what lies over the midplane.
-    let over = if placement.skew == 0.0 { placement.overlap() } else { Some(window.xi) };
+    let over = if placement.skew() == 0.0 { placement.overlap() } else { Some(window.xi) };
     for (k, column) in s.chunks_exact_mut(counts[1]).enumerate() {
         let xi = at(window.xi, k, counts[0]);
         if over.is_some_and(|[a, b]| a <= xi && xi <= b) {
