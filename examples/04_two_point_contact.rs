@@ -5,13 +5,12 @@
 
 use wheelrail::placement::Pair;
 use wheelrail::placement::track::{RailDistance, WheelDistance};
-use wheelrail::profile::standards;
+use wheelrail::profile::{inclination, standards};
 use wheelrail::search::Selection;
 use wheelrail::search::wheelset::{Position, Roll, WheelsetOnTrack};
 
 fn main() -> wheelrail::Result<()> {
-    let norm = 40f64.hypot(1.0);
-    let rail = standards::rail("60E1")?.rotated(40.0 / norm, 1.0 / norm);
+    let rail = standards::rail("60E1")?.rotated(inclination(1.0, 40.0)?);
     let pair = Pair::new(rail, standards::wheel("S1002")?, 460.0)?;
     let backs = WheelDistance::BackToBack { distance: 1360.0, flange_back_x: -70.0 };
     let system = WheelsetOnTrack::new(&pair, RailDistance::Gauge { gauge: 1435.0, height: 14.0 }, backs)?;
@@ -25,12 +24,14 @@ fn main() -> wheelrail::Result<()> {
         if right.len() > 1 {
             println!("y = {lateral:.1} mm:");
             for contact in right {
+                let placement = contact.placed(&pair)?;
                 println!(
-                    "  rail x = {:8.3}, wheel x = {:8.3} mm, angle {:5.1} deg, gap {:.4} mm",
+                    "  rail x = {:8.3}, wheel x = {:8.3} mm, angle {:5.1} deg, gap {:.4} mm, rolling radius {:.3} mm",
                     contact.rail_x,
                     contact.wheel_x,
-                    contact.contact_angle.to_degrees(),
-                    contact.gap
+                    placement.rail().contact_angle().to_degrees(),
+                    contact.gap,
+                    placement.rolling_radius()
                 );
             }
         }

@@ -62,3 +62,5 @@ pub mod search;
 pub mod separation;
 
 pub use error::{Error, Kind as ErrorKind, Result};
+/// Points, normals, rotations and frames of the public API are of this version of nalgebra.
+pub use nalgebra;

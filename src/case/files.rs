@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use nalgebra::Point3;
 use rayon::prelude::*;
 
 use super::{Part, Rasterise, Run, Tell, summary};
@@ -49,7 +50,8 @@ pub(super) fn write(
     let bodies = surfaces_around(run, part, &mut skipped)?;
     let loops = loops(part);
     let strips = part.analysis.strips.as_ref().map(quads);
-    let outlines = [&part.contact.placement.rail.section, &part.contact.placement.wheel.section].map(outline);
+    let outlines =
+        [&part.contact.placement.rail().section, &part.contact.placement.wheel().section].map(outline);
     let drawn = Drawn::new(part);
     let contact = contact_name(part);
     let picture = Picture {
@@ -104,7 +106,7 @@ struct RailColumns {
 
 impl RailColumns {
     fn new(part: &Part) -> Self {
-        let section = &part.contact.placement.rail.section;
+        let section = &part.contact.placement.rail().section;
         let station = |&xi: &f64| section.branch_at(xi).map(|branch| branch.station(xi));
         let column = |s: crate::profile::Station| (s.z, [-s.sin, s.cos]);
         let columns = part.analysis.xi.iter().map(|xi| station(xi).map_or((f64::NAN, [f64::NAN; 2]), column));
@@ -114,13 +116,12 @@ impl RailColumns {
 }
 
 fn header(run: &Run, part: &Part) -> Header {
-    let rail = part.contact.placement.rail.point.station;
     Header {
         title: run.title.clone(),
         version: env!("CARGO_PKG_VERSION").into(),
         scene_hash: run.hash.clone(),
         approach: part.contact.approach.map_or(0.0, |(approach, _)| approach),
-        frame: Frame::at(rail.x, rail.z, rail.cos, rail.sin),
+        frame: Frame::from(&part.contact.placement.rail().contact_frame()),
         remarks: remarks(run, part),
     }
 }
@@ -207,14 +208,14 @@ fn quads(strips: &StripMesh) -> QuadMesh {
 
 /// The boundary loops, lifted onto the rail: of every component the outer one, then those around its holes.
 fn loops(part: &Part) -> Vec<Loop> {
-    let section = &part.contact.placement.rail.section;
+    let section = &part.contact.placement.rail().section;
     let components = part.analysis.patch.iter().flat_map(|patch| &patch.components).enumerate();
     let loops = components.flat_map(|(index, component)| {
         [&component.boundary].into_iter().chain(&component.holes).map(move |points| (index, points))
     });
     loops
         .map(|(component, points)| {
-            let points = points.iter().map(|&[xi, eta]| [xi, eta, section.height(xi)]).collect();
+            let points = points.iter().map(|&[xi, eta]| Point3::new(xi, eta, section.height(xi))).collect();
             Loop { component, points }
         })
         .collect()

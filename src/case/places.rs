@@ -2,6 +2,7 @@
 
 use std::cell::OnceCell;
 
+use nalgebra::Point2;
 use serde::Serialize;
 
 use super::analysis::{ApproachBy, Contact, Question};
@@ -160,11 +161,7 @@ impl Side<'_> {
         let mut placed: Vec<Placed> = Vec::new();
         let mut missed = Vec::new();
         for place in self.touch.contacts {
-            let placement = pair.placed_along(
-                [place.rail_x, place.contact_angle],
-                [place.wheel_x, place.wheel_angle],
-                place.skew,
-            )?;
+            let placement = place.placed(pair)?;
             let asked = match placed.first() {
                 None => question.clone(),
                 Some(first) => {
@@ -214,7 +211,7 @@ impl Side<'_> {
 /// δ₁/cosθ₁, closes the gap there, and the rest counts along that place's normal.
 fn approach_left(first: &Placed, place: &search::Contact) -> Option<f64> {
     let (approach, _) = first.contact.approach?;
-    let sunk = approach / first.contact.placement.rail.point.station.cos;
+    let sunk = approach / first.contact.placement.rail().point.station.cos;
     Some((sunk - place.gap) * place.contact_angle.cos())
 }
 
@@ -228,8 +225,8 @@ impl Placed {
     fn holds(&self, place: &search::Contact, merge: f64) -> bool {
         let Some(patch) = self.contact.whole_patch() else { return false };
         let placement = &self.contact.placement;
-        let frame = placement.rail.section.frame;
-        let xi = (place.rail_x - frame.x) * frame.cos + (place.rail_z - frame.z) * frame.sin;
+        let frame = placement.rail().contact_frame();
+        let xi = frame.inverse_transform_point(&Point2::new(place.rail_x, place.rail_z)).x;
         let around = || axes::groups(patch, merge, None).first().map(|group| group.extent.xi);
         self.extent.get_or_init(around).is_some_and(|[from, to]| from <= xi && xi <= to)
     }

@@ -9,9 +9,9 @@ use std::fmt::Write;
 pub fn boundary(loops: &[Loop]) -> String {
     let mut text = String::from("component,xi,eta\n");
     for ring in loops {
-        for [xi, eta, _] in ring.points.iter().chain(ring.points.first()) {
+        for point in ring.points.iter().chain(ring.points.first()) {
             // Writing to a String cannot fail.
-            let _ = writeln!(text, "{},{xi:?},{eta:?}", ring.component);
+            let _ = writeln!(text, "{},{:?},{:?}", ring.component, point.x, point.y);
         }
     }
     text

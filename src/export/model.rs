@@ -1,5 +1,7 @@
 //! The input of the writers: slices of numbers, and statements about them.
 
+use nalgebra::{Isometry2, Point3, Unit, Vector3};
+
 use crate::error::{Error, Result};
 
 /// Largest difference of the steps of an evenly spaced grid, as a multiple of the largest |coordinate|: two
@@ -12,20 +14,26 @@ const STEP_ROUNDING: f64 = 8.0 * f64::EPSILON;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
     /// The initial contact point C.
-    pub origin: [f64; 3],
-    /// Unit vector of ξ, along the common tangent.
-    pub xi: [f64; 3],
-    /// Unit vector of η, along the rail.
-    pub eta: [f64; 3],
-    /// Unit vector of ζ, along the common normal from rail to wheel.
-    pub zeta: [f64; 3],
+    pub origin: Point3<f64>,
+    /// Direction of ξ, along the common tangent.
+    pub xi: Unit<Vector3<f64>>,
+    /// Direction of η, along the rail.
+    pub eta: Unit<Vector3<f64>>,
+    /// Direction of ζ, along the common normal from rail to wheel.
+    pub zeta: Unit<Vector3<f64>>,
 }
 
-impl Frame {
-    /// Makes the frame at the rail's contact point (x, z) \[mm\], with the contact angle θ_C given by its
-    /// cosine and sine: eqs. (4.2). ξ × η = ζ.
-    pub fn at(x: f64, z: f64, cos: f64, sin: f64) -> Self {
-        Self { origin: [x, 0.0, z], xi: [cos, 0.0, sin], eta: [0.0, 1.0, 0.0], zeta: [-sin, 0.0, cos] }
+impl From<&Isometry2<f64>> for Frame {
+    /// Puts the contact frame of the rail's plane (x, z), as [`Body::contact_frame`](crate::placement::Body::contact_frame)
+    /// gives it, into space: eqs. (4.2). ξ × η = ζ.
+    fn from(in_plane: &Isometry2<f64>) -> Self {
+        let (origin, turn) = (in_plane.translation.vector, in_plane.rotation);
+        Self {
+            origin: Point3::new(origin.x, 0.0, origin.y),
+            xi: Unit::new_unchecked(Vector3::new(turn.re, 0.0, turn.im)),
+            eta: Vector3::y_axis(),
+            zeta: Unit::new_unchecked(Vector3::new(-turn.im, 0.0, turn.re)),
+        }
     }
 }
 
@@ -229,9 +237,9 @@ fn even_step(format: &str, axis: &str, values: &[f64]) -> Result<f64> {
 pub struct Loop {
     /// Number of the component that the loop bounds, from 0.
     pub component: usize,
-    /// Points \[ξ, η, ζ^R\] \[mm\] on the rail's surface, counter-clockwise in (ξ, η) (clockwise around
-    /// holes). The first is not repeated at the end.
-    pub points: Vec<[f64; 3]>,
+    /// Its points (ξ, η, ζ^R) \[mm\] on the rail's surface, counter-clockwise in (ξ, η). The first is not repeated at the
+    /// end.
+    pub points: Vec<Point3<f64>>,
 }
 
 /// One row of INTERPEN's table: an interval of η in which a line of constant ξ is inside the patch.
@@ -248,8 +256,8 @@ pub struct Interval {
 /// The boundary-fitted solver mesh of the patch.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct QuadMesh {
-    /// Nodes \[ξ, η, ζ^R\] \[mm\] on the rail's surface.
-    pub points: Vec<[f64; 3]>,
+    /// Nodes (ξ, η, ζ^R) \[mm\] on the rail's surface.
+    pub points: Vec<Point3<f64>>,
     /// Cells: indices of four nodes, counter-clockwise in (ξ, η). A cell at a tip may repeat a node.
     pub quads: Vec<[usize; 4]>,
     /// Exact area of each cell in the ξ–η plane \[mm²\], with its curved boundary edge.
@@ -273,8 +281,8 @@ impl QuadMesh {
 /// A triangulated surface of one body around the patch.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SurfaceMesh {
-    /// Nodes \[ξ, η, ζ\] \[mm\].
-    pub points: Vec<[f64; 3]>,
+    /// Nodes (ξ, η, ζ) \[mm\].
+    pub points: Vec<Point3<f64>>,
     /// Triangles: indices of three nodes, counter-clockwise seen from outside the body.
     pub triangles: Vec<[usize; 3]>,
 }
@@ -318,10 +326,8 @@ mod tests {
 
     #[test]
     fn the_frame_is_right_handed() {
-        let frame = Frame::at(1.0, 2.0, 0.8, 0.6);
-        let [a, b] = [frame.xi, frame.eta];
-        let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-        assert_eq!(cross, frame.zeta);
+        let frame = crate::export::sample::header().frame;
+        assert_eq!(frame.xi.cross(&frame.eta), *frame.zeta);
     }
 
     #[test]

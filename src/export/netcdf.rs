@@ -122,7 +122,12 @@ fn information(header: &Header) -> String {
         "program": format!("wheelrail {}", header.version),
         "scene": header.scene_hash,
         "approach_mm": header.approach,
-        "frame": {"origin_mm": frame.origin, "xi": frame.xi, "eta": frame.eta, "zeta": frame.zeta},
+        "frame": {
+            "origin_mm": frame.origin.coords.as_slice(),
+            "xi": frame.xi.as_slice(),
+            "eta": frame.eta.as_slice(),
+            "zeta": frame.zeta.as_slice(),
+        },
         "heights": "minus the separation s; x = xi, y = eta",
         "statements": header.statements(),
     })

@@ -1,5 +1,7 @@
 //! Sample data for the writers' tests: a paraboloid, with a corner where no body is.
 
+use nalgebra::{Isometry2, Point3, Translation2, UnitComplex};
+
 use super::model::{Frame, GridFields, Header, Loop, QuadMesh};
 
 /// A grid that owns its arrays.
@@ -30,24 +32,25 @@ impl Sample {
 }
 
 pub(super) fn header() -> Header {
+    let turn = UnitComplex::from_cos_sin_unchecked(0.8, 0.6);
     Header {
         title: "a test".into(),
         version: "0.0.0".into(),
         scene_hash: "0123abcd".into(),
         approach: 0.05,
-        frame: Frame::at(10.0, -0.2, 0.8, 0.6),
+        frame: Frame::from(&Isometry2::from_parts(Translation2::new(10.0, -0.2), turn)),
         remarks: Vec::new(),
     }
 }
 
 /// Returns the square |ξ|, |η| ≤ 1 in four cells.
 pub(super) fn mesh() -> QuadMesh {
-    let points = (0..9).map(|i| [f64::from(i / 3) - 1.0, f64::from(i % 3) - 1.0, 0.0]).collect();
+    let points = (0..9).map(|i| Point3::new(f64::from(i / 3) - 1.0, f64::from(i % 3) - 1.0, 0.0)).collect();
     let quads = [0, 1, 3, 4].map(|a| [a, a + 3, a + 4, a + 1]).to_vec();
     QuadMesh { points, quads, area: vec![1.0; 4], component: vec![0, 0, 1, 1] }
 }
 
 pub(super) fn square() -> Loop {
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-    Loop { component: 0, points: corners.map(|[x, y]| [x, y, 0.0]).to_vec() }
+    Loop { component: 0, points: corners.map(|[x, y]| Point3::new(x, y, 0.0)).to_vec() }
 }

@@ -10,6 +10,7 @@
 use super::model::{Header, Loop, QuadMesh, SurfaceMesh, same_length};
 use super::vts::{comment, field_data};
 use crate::error::{Error, Result};
+use nalgebra::Point3;
 use vtkio::model::{
     Attribute, Attributes, ByteOrder, CellType, Cells, DataArray, DataSet, ElementType, IOBuffer,
     PolyDataPiece, UnstructuredGridPiece, Version, VertexNumbers, Vtk,
@@ -36,11 +37,10 @@ pub fn boundary(header: &Header, loops: &[Loop]) -> Result<Vec<u8>> {
         offsets.push(connectivity.len() as u64);
         first += count;
     }
-    let points: Vec<_> = loops.iter().flat_map(|ring| &ring.points).copied().collect();
     let components = loops.iter().map(|ring| ring.component as i32).collect::<Vec<_>>();
     let cell = vec![scalars("component", components.into(), loops.len())?];
     let piece = PolyDataPiece {
-        points: points.into_flattened().into(),
+        points: coordinates(loops.iter().flat_map(|ring| &ring.points)),
         lines: Some(VertexNumbers::XML { connectivity, offsets }),
         data: Attributes { point: Vec::new(), cell },
         ..PolyDataPiece::default()
@@ -89,7 +89,7 @@ pub fn collection(steps: &[(f64, usize, String)]) -> String {
 
 fn unstructured(
     header: &Header,
-    points: &[[f64; 3]],
+    points: &[Point3<f64>],
     cells: &[Vec<usize>],
     cell: Vec<Attribute>,
 ) -> Result<Vec<u8>> {
@@ -103,11 +103,16 @@ fn unstructured(
     let types = types.collect();
     let connectivity = cells.iter().flatten().map(|&node| node as u64).collect();
     let piece = UnstructuredGridPiece {
-        points: points.as_flattened().to_vec().into(),
+        points: coordinates(points),
         cells: Cells { cell_verts: VertexNumbers::XML { connectivity, offsets }, types },
         data: Attributes { point: Vec::new(), cell },
     };
     xml(header, DataSet::inline(piece), EMPTY_UNSTRUCTURED)
+}
+
+/// Coordinates one after another.
+fn coordinates<'a>(points: impl IntoIterator<Item = &'a Point3<f64>>) -> IOBuffer {
+    points.into_iter().flat_map(|point| point.coords.as_slice()).copied().collect::<Vec<f64>>().into()
 }
 
 /// Returns the nodes of a cell without equal neighbours.
@@ -177,7 +182,7 @@ mod tests {
         let DataSet::UnstructuredGrid { pieces, .. } = file.data else { panic!("{file:?}") };
         let piece = pieces[0].clone().into_loaded_piece_data(None).unwrap();
         let points: Vec<f64> = piece.points.cast_into().unwrap();
-        assert_eq!(points, mesh().points.into_flattened());
+        assert_eq!(points, mesh().points.into_iter().flat_map(<[f64; 3]>::from).collect::<Vec<_>>());
         assert_eq!((piece.cells.num_cells(), piece.cells.num_verts()), (4, 16));
     }
 
@@ -193,7 +198,7 @@ mod tests {
         let mut broken = mesh();
         broken.area.pop();
         assert!(patch(&header(), &broken).unwrap_err().place.contains("areas"));
-        let surface_mesh = SurfaceMesh { points: vec![[0.0; 3]; 3], triangles: vec![[0, 1, 3]] };
+        let surface_mesh = SurfaceMesh { points: vec![Point3::origin(); 3], triangles: vec![[0, 1, 3]] };
         assert!(surface(&header(), &surface_mesh).is_err());
     }
 }

@@ -170,10 +170,10 @@ pub(super) fn field_data(header: &Header) -> String {
     let approach = [header.approach];
     let entries: [(&str, &[f64]); 5] = [
         ("approach_mm", &approach),
-        ("frame_origin_mm", &frame.origin),
-        ("frame_xi", &frame.xi),
-        ("frame_eta", &frame.eta),
-        ("frame_zeta", &frame.zeta),
+        ("frame_origin_mm", frame.origin.coords.as_slice()),
+        ("frame_xi", frame.xi.as_slice()),
+        ("frame_eta", frame.eta.as_slice()),
+        ("frame_zeta", frame.zeta.as_slice()),
     ];
     for (name, values) in entries {
         let numbers: Vec<_> = values.iter().map(|v| format!("{v:?}")).collect();

@@ -40,8 +40,8 @@ pub struct Feasibility {
 /// Cost: some ten nanoseconds a joint without skew, some hundred with it.
 pub fn feasibility(placement: &Placement) -> Option<Feasibility> {
     let (least_separation_mm, at_xi_mm, at_eta_mm) =
-        if placement.skew == 0.0 { least_in_midplane(placement)? } else { least_under_skew(placement)? };
-    let extent = placement.rail.profile().extent().max(placement.wheel.profile().extent());
+        if placement.skew() == 0.0 { least_in_midplane(placement)? } else { least_under_skew(placement)? };
+    let extent = placement.rail().profile().extent().max(placement.wheel().profile().extent());
     let feasible = least_separation_mm >= -ROUNDING * extent;
     Some(Feasibility { feasible, least_separation_mm, at_xi_mm, at_eta_mm })
 }
@@ -63,14 +63,14 @@ fn least_in_midplane(placement: &Placement) -> Option<(f64, f64, f64)> {
 /// (s, ξ, η) \[mm\] of the least s over all valleys of a skewed wheel.
 fn least_under_skew(placement: &Placement) -> Option<(f64, f64, f64)> {
     let (valleys, mut evaluator) = (Valleys::new(placement), Evaluator::new(placement));
-    let reach = placement.rail.section.reach()?;
+    let reach = placement.rail().section.reach()?;
     let at_contact = evaluator.separation(0.0, 0.0);
     let mut least = (!at_contact.is_nan()).then_some((at_contact, 0.0, 0.0));
     let mut intervals = Vec::new();
     for k in (0..valleys.creases.len()).filter(|&k| valleys.creases[k].is_valley) {
         intervals.clear();
         let smallest = least.map_or(f64::INFINITY, |(smallest, ..)| smallest);
-        monotone(&valleys, &placement.rail.section, k, reach, |[low, _]| low < smallest, &mut intervals);
+        monotone(&valleys, &placement.rail().section, k, reach, |[low, _]| low < smallest, &mut intervals);
         for [from, to] in &intervals {
             // Where the rail steps, its right side is next to the joint.
             for xi in [from.next_up(), *to] {

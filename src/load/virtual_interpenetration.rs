@@ -91,7 +91,7 @@ impl VirtualContact {
     ///
     /// The skew is left out: it turns the overlap about C, and changes the load by its square.
     pub fn at(placement: &Placement, approach: f64, modulus: f64) -> Option<Self> {
-        let placement = &straight(placement);
+        let placement = &placement.without_skew();
         let depth = VIRTUAL_SHARE * approach;
         let mut slicer = Slicer::new(placement, depth);
         slicer.slice(0.0)?;
@@ -183,18 +183,13 @@ fn end_of_overlap(slicer: &mut Slicer<'_>, end: f64) -> f64 {
     end
 }
 
-/// The pair without its skew.
-fn straight(placement: &Placement) -> Placement {
-    Placement { skew: 0.0, ..placement.clone() }
-}
-
 /// Whether the gap follows its parabola over the ellipse.
 ///
 /// To first order δ changes under a constant load by the departure, weighted by a flat punch's pressure (Betti), which
 /// summed up along η is the same at every ξ: by the mean departure over the ellipse's extent in ξ. Here without its
 /// sign, as what cancels in δ is still no ellipse.
 fn constant_curvature(placement: &Placement, curvatures: &Curvatures, ellipse: &Ellipse) -> bool {
-    let placement = &straight(placement);
+    let placement = &placement.without_skew();
     let (sin, cos) = curvatures.long_axis_rad.sin_cos();
     let reach = (ellipse.a_mm * cos).hypot(ellipse.b_mm * sin);
     let [along, ..] = quadratic_form(placement);

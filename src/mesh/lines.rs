@@ -1,5 +1,7 @@
 //! The lines of a strip mesh along ξ, which go on from band to band where these meet.
 
+use nalgebra::Point3;
+
 use crate::patch::Band;
 use crate::placement::Placement;
 
@@ -92,13 +94,13 @@ impl Meeting {
     /// Indices of the points of a band that ends or begins here; new ones are added to the mesh.
     pub(super) fn row(
         &mut self,
-        points: &mut Vec<[f64; 3]>,
+        points: &mut Vec<Point3<f64>>,
         placement: &Placement,
         band: &Band,
         shares: &[f64],
     ) -> Vec<usize> {
         let side = band.sides[usize::from(self.xi == band.xi[1])];
-        let zeta = placement.rail.section.height(self.xi);
+        let zeta = placement.rail().section.height(self.xi);
         let place = |share: &f64| {
             let eta = between(side, *share);
             let k = self.eta.partition_point(|&other| other < eta);
@@ -107,7 +109,7 @@ impl Meeting {
             let nearest =
                 if (self.eta[before] - eta).abs() <= (self.eta[k] - eta).abs() { before } else { k };
             *self.points[nearest].get_or_insert_with(|| {
-                points.push([self.xi, self.eta[nearest], zeta]);
+                points.push(Point3::new(self.xi, self.eta[nearest], zeta));
                 points.len() - 1
             })
         };

@@ -1,5 +1,6 @@
 //! How well shaped the cells of a mesh are: what mesh generators report, for summary.json.
 
+use nalgebra::{Point3, Vector3};
 use serde::Serialize;
 
 use super::strips::StripMesh;
@@ -37,10 +38,10 @@ pub struct Quality {
 impl Quality {
     /// The cells of a strip mesh, in the ξ–η plane; `None` without cells.
     pub fn of_strips(mesh: &StripMesh) -> Option<Self> {
-        let flat = |&k: &usize| [mesh.points[k][0], mesh.points[k][1], 0.0];
+        let flat = |&k: &usize| Point3::new(mesh.points[k].x, mesh.points[k].y, 0.0);
         let shape = |corners: &[usize]| {
-            let corners: Vec<[f64; 3]> = corners.iter().map(flat).collect();
-            Shape::new(&corners, [0.0, 0.0, 1.0])
+            let corners: Vec<_> = corners.iter().map(flat).collect();
+            Shape::new(&corners, &Vector3::z())
         };
         Self::of(mesh.cells.iter().map(|cell| shape(cell.vertices())))
     }
@@ -50,12 +51,12 @@ impl Quality {
         let corners = |facet: &[usize]| facet.iter().map(|&k| surface.points[k]).collect::<Vec<_>>();
         let outside = surface.quads().into_iter().map(|quad| {
             let [a, b, c, d] = quad.map(|k| surface.points[k]);
-            cross(between(a, c), between(b, d))
+            (c - a).cross(&(d - b))
         });
         // Two triangles of every quadrangle, whose normal says which way they should turn.
         let normals = outside.flat_map(|normal| [normal; 2]);
         let triangles = surface.triangles().into_iter().zip(normals);
-        Self::of(triangles.map(|(triangle, normal)| Shape::new(&corners(&triangle), normal)))
+        Self::of(triangles.map(|(triangle, normal)| Shape::new(&corners(&triangle), &normal)))
     }
 
     fn of(shapes: impl Iterator<Item = Shape>) -> Option<Self> {
@@ -86,21 +87,21 @@ struct Shape {
 }
 
 impl Shape {
-    /// From its corners, counter-clockwise about `normal`.
-    fn new(corners: &[[f64; 3]], normal: [f64; 3]) -> Self {
+    /// Measures a cell with these corners, counter-clockwise about `normal` of any length.
+    fn new(corners: &[Point3<f64>], normal: &Vector3<f64>) -> Self {
         let n = corners.len();
-        let sides: Vec<[f64; 3]> = (0..n).map(|k| between(corners[k], corners[(k + 1) % n])).collect();
-        let lengths = sides.iter().map(|side| dot(*side, *side).sqrt());
+        let sides: Vec<Vector3<f64>> = (0..n).map(|k| corners[(k + 1) % n] - corners[k]).collect();
+        let lengths = sides.iter().map(Vector3::norm);
         let (shortest, longest) =
             lengths.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), l| (low.min(l), high.max(l)));
         let (mut inverted, mut smallest, mut largest) = (false, f64::INFINITY, 0.0f64);
         for k in 0..n {
-            let (back, on) = (sides[(k + n - 1) % n].map(|v| -v), sides[k]);
-            let turn = dot(cross(on, back), normal);
+            let (back, on) = (-sides[(k + n - 1) % n], sides[k]);
+            let area = on.cross(&back);
+            let turn = area.dot(normal);
             // A NaN counts as inverted too.
             inverted |= turn.is_nan() || turn <= 0.0;
-            let area = cross(on, back);
-            let angle = dot(area, area).sqrt().atan2(dot(on, back));
+            let angle = area.norm().atan2(on.dot(&back));
             (smallest, largest) = (smallest.min(angle), largest.max(angle));
         }
         let even = std::f64::consts::PI * (n as f64 - 2.0) / n as f64;
@@ -110,38 +111,25 @@ impl Shape {
     }
 }
 
-fn between(p: [f64; 3], q: [f64; 3]) -> [f64; 3] {
-    [q[0] - p[0], q[1] - p[1], q[2] - p[2]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-    const UP: [f64; 3] = [0.0, 0.0, 1.0];
-
     #[test]
     fn a_square_a_triangle_and_a_bow_tie() {
-        let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
-        let shape = Shape::new(&square, UP);
+        let up = Vector3::z();
+        let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| Point3::new(x, y, 0.0));
+        let shape = Shape::new(&square, &up);
         assert!(!shape.inverted && !shape.triangle);
         assert_eq!([shape.aspect_ratio, shape.skewness, shape.smallest_angle], [1.0, 0.0, FRAC_PI_2]);
-        let half = Shape::new(&square[..3], UP);
+        let half = Shape::new(&square[..3], &up);
         assert!(half.triangle && !half.inverted);
         assert!((half.smallest_angle - FRAC_PI_4).abs() < 1e-15 && (half.skewness - 0.25).abs() < 1e-15);
         let bow_tie = [square[0], square[1], square[3], square[2]];
-        assert!(Shape::new(&bow_tie, UP).inverted);
+        assert!(Shape::new(&bow_tie, &up).inverted);
         let mut reversed = square;
         reversed.reverse();
-        assert!(Shape::new(&reversed, UP).inverted);
+        assert!(Shape::new(&reversed, &up).inverted);
     }
 }

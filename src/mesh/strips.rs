@@ -12,6 +12,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use nalgebra::Point3;
+
 use super::lines::{Meeting, between, lines};
 use crate::error::{Error, Kind, Result};
 use crate::patch::{Band, Component, Outline, Patch};
@@ -74,8 +76,8 @@ impl Cell {
 /// The mesh of all components.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StripMesh {
-    /// \[ξ, η, ζ^R\] \[mm\]: points on the rail.
-    pub points: Vec<[f64; 3]>,
+    /// Points (ξ, η, ζ^R) \[mm\] on the rail.
+    pub points: Vec<Point3<f64>>,
     /// Component by component, strip by strip, η fastest.
     pub cells: Vec<Cell>,
 }
@@ -199,14 +201,14 @@ impl Builder<'_> {
     /// Indices of the points of one strip edge, ascending in η; all the same where it has no width.
     fn row(&mut self, band: &Band, shares: &[f64], xi: f64) -> Vec<usize> {
         let eta = band.slice(&mut self.outline, xi).eta;
-        let zeta = self.placement.rail.section.height(xi);
+        let zeta = self.placement.rail().section.height(xi);
         let points = &mut self.mesh.points;
         let first = points.len();
         if eta[0] >= eta[1] {
-            points.push([xi, eta[0], zeta]);
+            points.push(Point3::new(xi, eta[0], zeta));
             return vec![first; shares.len()];
         }
-        points.extend(shares.iter().map(|&share| [xi, between(eta, share), zeta]));
+        points.extend(shares.iter().map(|&share| Point3::new(xi, between(eta, share), zeta)));
         (first..first + shares.len()).collect()
     }
 

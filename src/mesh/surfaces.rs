@@ -4,6 +4,8 @@
 //! parameters – profile × extrusion, profile × rotation about the axle – and so show walls and overhangs that
 //! s(ξ, η) cannot.
 
+use nalgebra::{Point2, Point3, Vector2, distance_squared};
+
 use crate::error::{Error, Kind, Result, finite};
 use crate::patch::Window;
 use crate::placement::Placement;
@@ -33,7 +35,7 @@ pub struct Surface {
     /// Points \[along the profile, along the rolling direction\].
     pub n: [usize; 2],
     /// Points \[mm\], index i · n\[1\] + j; (ξ, η, ζ) of the contact frame unless moved.
-    pub points: Vec<[f64; 3]>,
+    pub points: Vec<Point3<f64>>,
 }
 
 impl Surface {
@@ -62,16 +64,16 @@ impl Surface {
     /// A window that is not finite or wider than the wheel; a tolerance that is not positive, or takes too many points.
     pub fn rail(placement: &Placement, window: &Window, tolerance: f64) -> Result<Self> {
         check(placement, window, tolerance)?;
-        let stations = trace(&placement.rail, window.xi, tolerance)?;
+        let stations = trace(placement.rail(), window.xi, tolerance)?;
         let radius = placement.rolling_radius();
         let along: Vec<f64> = angles(window.eta, radius, radius, tolerance / 2.0)
             .into_iter()
             .map(|psi| radius * psi.sin())
             .collect();
-        let frame = placement.rail.section.frame;
+        let frame = placement.rail().contact_frame();
         let points = |station: &Station| {
-            let here = station.seen_from(&frame);
-            along.iter().map(|&eta| [here.x, eta, here.z]).collect::<Vec<_>>()
+            let here = frame.inverse_transform_point(&Point2::new(station.x, station.z));
+            along.iter().map(|&eta| in_space(here, eta)).collect::<Vec<_>>()
         };
         Self::of(Side::Rail, &stations, along.len(), points)
     }
@@ -85,8 +87,8 @@ impl Surface {
     pub fn wheel(placement: &Placement, window: &Window, tolerance: f64) -> Result<Self> {
         check(placement, window, tolerance)?;
         let own = in_wheel_directions(placement, window);
-        let stations = trace(&placement.wheel, own.xi, tolerance / 2.0)?;
-        let radii = || stations.iter().map(|s| placement.wheel_radius - s.z);
+        let stations = trace(placement.wheel(), own.xi, tolerance / 2.0)?;
+        let radii = || stations.iter().map(|s| placement.wheel_radius() - s.z);
         let [smallest, largest] = [radii().fold(f64::INFINITY, f64::min), radii().fold(0.0, f64::max)];
         let psi = angles(own.eta, smallest, largest, tolerance / 2.0);
         let points =
@@ -98,7 +100,7 @@ impl Surface {
         side: Side,
         stations: &[Station],
         along: usize,
-        points: impl Fn(&Station) -> Vec<[f64; 3]>,
+        points: impl Fn(&Station) -> Vec<Point3<f64>>,
     ) -> Result<Self> {
         let n = [stations.len(), along];
         let count = n[0] as f64 * n[1] as f64;
@@ -118,11 +120,8 @@ impl Surface {
     /// The same points in the rail profile's axes (x, y, z), y = η.
     #[must_use]
     pub fn in_rail_axes(&self, placement: &Placement) -> Self {
-        let frame = placement.rail.section.frame;
-        let moved = |&[xi, eta, zeta]: &[f64; 3]| {
-            let there = Station { x: xi, z: zeta, ..Station::AXES }.placed_by(&frame);
-            [there.x, eta, there.z]
-        };
+        let frame = placement.rail().contact_frame();
+        let moved = |point: &Point3<f64>| in_space(frame * point.xz(), point.y);
         Self { points: self.points.iter().map(moved).collect(), ..self.clone() }
     }
 
@@ -139,12 +138,9 @@ impl Surface {
 
     /// Every facet as two triangles along its shorter diagonal, counter-clockwise seen from outside the body.
     pub fn triangles(&self) -> Vec<[usize; 3]> {
-        let length = |p: usize, q: usize| {
-            let [dx, dy, dz] = [0, 1, 2].map(|k| self.points[q][k] - self.points[p][k]);
-            dx * dx + dy * dy + dz * dz
-        };
+        let apart = |p: usize, q: usize| distance_squared(&self.points[p], &self.points[q]);
         let split = |[a, b, c, d]: [usize; 4]| {
-            if length(a, c) <= length(b, d) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
+            if apart(a, c) <= apart(b, d) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
         };
         self.quads().into_iter().flat_map(split).collect()
     }
@@ -169,15 +165,15 @@ fn check(placement: &Placement, window: &Window, tolerance: f64) -> Result<()> {
 
 /// The window in the wheel's own ξ′ and η′, widened in ξ′ by what the profile moves sideways as it turns: e sinθ.
 fn in_wheel_directions(placement: &Placement, window: &Window) -> Window {
-    let (sin, cos) = placement.skew.sin_cos();
-    let corners = window.xi.into_iter().flat_map(|xi| window.eta.map(|eta| [xi, eta]));
-    let own: Vec<[f64; 2]> = corners.map(|[xi, eta]| [xi * cos + eta * sin, eta * cos - xi * sin]).collect();
+    let skew = placement.skew_rotation();
+    let corners = window.xi.into_iter().flat_map(|xi| window.eta.map(|eta| Vector2::new(xi, eta)));
+    let own: Vec<_> = corners.map(|corner| skew.inverse_transform_vector(&corner)).collect();
     let range = |k: usize| {
         own.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p[k]), high.max(p[k])])
     };
     let (xi, eta) = (range(0), range(1));
     let (axle, widest) = (placement.rolling_radius(), eta[0].abs().max(eta[1].abs()));
-    let aside = widest * widest / (axle + axle.hypot(widest)) * placement.wheel.section.frame.sin;
+    let aside = widest * widest / (axle + axle.hypot(widest)) * placement.wheel().section.frame.sin;
     Window { xi: [xi[0] - aside.max(0.0), xi[1] - aside.min(0.0)], eta }
 }
 
@@ -200,13 +196,17 @@ fn angles(eta: [f64; 2], radius: f64, largest: f64, tolerance: f64) -> Vec<f64> 
     angles
 }
 
-/// (ξ, η, ζ) of a profile point turned about the axle by ψ.
-fn wheel_point(placement: &Placement, station: &Station, psi: f64) -> [f64; 3] {
-    let w = placement.wheel_radius - station.z;
+/// The point of space over a point of the midplane (ξ, ζ) or (x, z), at η \[mm\].
+fn in_space(in_plane: Point2<f64>, eta: f64) -> Point3<f64> {
+    Point3::new(in_plane.x, eta, in_plane.y)
+}
+
+/// Gives (ξ, η, ζ) of a profile point turned about the axle by ψ.
+fn wheel_point(placement: &Placement, station: &Station, psi: f64) -> Point3<f64> {
+    let w = placement.wheel_radius() - station.z;
     // R − w cosψ without cancellation.
-    let turned = Station { z: station.z + 2.0 * w * (psi / 2.0).sin().powi(2), ..*station };
-    let here = turned.seen_from(&placement.wheel.section.frame);
-    let (sin, cos) = placement.skew.sin_cos();
-    let (xi, eta) = (here.x, w * psi.sin());
-    [xi * cos - eta * sin, xi * sin + eta * cos, here.z]
+    let turned = Point2::new(station.x, station.z + 2.0 * w * (psi / 2.0).sin().powi(2));
+    let own = placement.wheel().contact_frame().inverse_transform_point(&turned);
+    let tangential = placement.skew_rotation() * Vector2::new(own.x, w * psi.sin());
+    Point3::new(tangential.x, tangential.y, own.y)
 }

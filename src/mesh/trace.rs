@@ -1,6 +1,8 @@
 //! A profile as a polygon through its contact point, within a chordal tolerance, in the profile's own parameters:
 //! walls and overhangs, which are no function of ξ, are traced like the rest.
 
+use nalgebra::{Point2, Vector2};
+
 use crate::error::{Error, Result};
 use crate::numerics::roots::bracketed;
 use crate::placement::Body;
@@ -74,7 +76,7 @@ impl Tracer<'_> {
             let segment = self.segment(k);
             let near = stations.last().map_or(self.body.point.station, |last| *last);
             let begin = at(segment, from);
-            if (begin.x - near.x).hypot(begin.z - near.z) > self.tolerance {
+            if (point(&begin) - point(&near)).norm() > self.tolerance {
                 stations.push(begin);
             }
             let mut last = from;
@@ -118,10 +120,9 @@ impl Tracer<'_> {
 
     fn halved(&self, p: &Polynomial, from: f64, to: f64, depth: u32, shares: &mut Vec<f64>) -> Result<()> {
         let inner = [0.25, 0.5, 0.75].map(|part| on_polynomial(p, from + (to - from) * part));
-        let (a, b) = (on_polynomial(p, from), on_polynomial(p, to));
-        let (dx, dz) = (b.x - a.x, b.z - a.z);
-        let length = dx.hypot(dz);
-        let off = |s: &Station| ((s.x - a.x) * dz - (s.z - a.z) * dx).abs() > self.tolerance * length;
+        let start = point(&on_polynomial(p, from));
+        let chord: Vector2<f64> = point(&on_polynomial(p, to)) - start;
+        let off = |s: &Station| (point(s) - start).perp(&chord).abs() > self.tolerance * chord.norm();
         if depth == 0 || !inner.iter().any(off) {
             shares.push(to);
             return Ok(());
@@ -133,6 +134,11 @@ impl Tracer<'_> {
         self.halved(p, from, middle, depth - 1, shares)?;
         self.halved(p, middle, to, depth - 1, shares)
     }
+}
+
+/// The place (x, z) of a station \[mm\].
+fn point(station: &Station) -> Point2<f64> {
+    Point2::new(station.x, station.z)
 }
 
 fn too_many(tolerance: f64) -> Error {

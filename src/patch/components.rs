@@ -226,7 +226,7 @@ impl Region {
     fn rows(&mut self, outline: &mut Outline<'_>) -> Vec<Rows> {
         let [a, b] = self.xi();
         let skewed = outline.slicer.skewed.is_some();
-        let rail = &outline.slicer.placement().rail.section;
+        let rail = &outline.slicer.placement().rail().section;
         let deepest = if skewed { f64::NAN } else { self.deepest(outline, &[])[0] };
         let mut all = Vec::with_capacity(self.bands.len());
         for band in &mut self.bands {

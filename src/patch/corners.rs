@@ -30,11 +30,11 @@ pub(super) struct Row {
 /// height h(p) + e cosθ; that height must equal ζ^R(ξ) + δ.
 pub(super) fn plain(outline: &Outline<'_>, band: &Band, deepest: f64, corners: &mut Vec<f64>) {
     let placement = outline.slicer.placement();
-    let (approach, rail) = (outline.slicer.approach(), &placement.rail.section);
-    let frame = placement.wheel.section.frame;
+    let (approach, rail) = (outline.slicer.approach(), &placement.rail().section);
+    let frame = placement.wheel().section.frame;
     let far = FAR_JOINTS * (approach - deepest).abs() * frame.sin.abs();
     let [a, b] = band.xi;
-    for (p, height) in placement.wheel.section.joints([a - far, b + far]) {
+    for (p, height) in placement.wheel().section.joints([a - far, b + far]) {
         let miss = |e: f64| height + e * frame.cos - rail.height(p + e * frame.sin) - approach;
         if frame.sin == 0.0 || miss(0.0) >= 0.0 {
             if frame.sin == 0.0 {
@@ -58,7 +58,7 @@ pub(super) fn plain(outline: &Outline<'_>, band: &Band, deepest: f64, corners: &
 /// range of η of the band.
 pub(super) fn skewed(outline: &Outline<'_>, band: &Band, eta: [f64; 2], corners: &mut Vec<f64>) {
     let Some(skewed) = &outline.slicer.skewed else { return };
-    let (approach, rail) = (outline.slicer.approach(), &outline.slicer.placement().rail.section);
+    let (approach, rail) = (outline.slicer.approach(), &outline.slicer.placement().rail().section);
     let [a, b] = band.xi;
     skewed.valleys.circles([a, b], eta, |place, [from, to]| {
         let depth = |t: f64| {

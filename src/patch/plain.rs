@@ -22,9 +22,9 @@ pub(super) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<f64>) {
         return (Vec::new(), Vec::new());
     }
     let turns = turns_of_depth(outline, a, b);
-    let extent = placement.rail.profile().extent().max(placement.wheel.profile().extent());
-    let mut torn: Vec<f64> = steps(&placement.rail.section, [a, b], extent).collect();
-    torn.extend(steps(&placement.wheel.section, [a, b], extent));
+    let extent = placement.rail().profile().extent().max(placement.wheel().profile().extent());
+    let mut torn: Vec<f64> = steps(&placement.rail().section, [a, b], extent).collect();
+    torn.extend(steps(&placement.wheel().section, [a, b], extent));
     let mut bands = Vec::new();
     let mut begun: Option<(f64, Option<End>)> = None;
     for pair in turns.windows(2) {

@@ -47,7 +47,7 @@ impl<'a> Slicer<'a> {
             wheel: WheelSurface::new(placement),
             evaluator: Evaluator::new(placement),
             spans: Vec::new(),
-            skewed: (placement.skew != 0.0).then(|| Skewed::new(placement, approach)),
+            skewed: (placement.skew() != 0.0).then(|| Skewed::new(placement, approach)),
             approach,
         }
     }
@@ -122,12 +122,12 @@ impl<'a> Slicer<'a> {
     /// ledge.
     fn half_slope(&self, xi: f64, Half { edge, span, foot }: &Half) -> f64 {
         if edge.ledge {
-            return foot.w / (edge.eta * self.placement.wheel.section.frame.sin);
+            return foot.w / (edge.eta * self.placement.wheel().section.frame.sin);
         }
-        let [along, across, up] = self.wheel.normal(xi, edge.eta, span, foot);
+        let normal = self.wheel.normal(xi, edge.eta, span, foot);
         let rail = self.evaluator.rail_slope(xi);
         // s_ξ = −n_ξ/n_ζ − the rail's slope, s_η = −n_η/n_ζ.
-        -(along + rail * up) / across
+        -(normal.x + rail * normal.z) / normal.y
     }
 
     /// Returns the wheel point that lies `depth` above the midplane point at ξ, or the point before that at

@@ -13,7 +13,7 @@ pub fn turning_points(placement: &Placement, a: f64, b: f64) -> Vec<f64> {
     let mut all = vec![a];
     for pair in ends.windows(2) {
         let middle = pair[0] + (pair[1] - pair[0]) / 2.0;
-        let (rail, wheel) = (&placement.rail.section, &placement.wheel.section);
+        let (rail, wheel) = (&placement.rail().section, &placement.wheel().section);
         if let (Some(rail), Some(wheel)) = (rail.branch_at(middle), wheel.branch_at(middle)) {
             all.extend(stationary_points(rail, wheel, pair[0], pair[1]));
         }

@@ -4,6 +4,8 @@ pub mod track;
 
 use std::sync::Arc;
 
+use nalgebra::{Isometry2, Translation2, UnitComplex};
+
 use crate::error::{Error, Result, finite};
 use crate::profile::{Profile, ProfilePoint, Section, Side};
 
@@ -32,14 +34,12 @@ pub struct Body {
 /// η′ = η cos χ − ξ sin χ.
 #[derive(Debug, Clone)]
 pub struct Placement {
-    /// The extruded body, below.
-    pub rail: Body,
-    /// The revolved body, above.
-    pub wheel: Body,
-    /// R, nominal rolling radius: distance from the axle to the wheel profile's origin \[mm\].
-    pub wheel_radius: f64,
-    /// χ \[rad\], 0 without yaw.
-    pub skew: f64,
+    rail: Body,
+    wheel: Body,
+    /// R \[mm\].
+    wheel_radius: f64,
+    /// χ \[rad\], finite.
+    skew: f64,
 }
 
 /// What is placed: two right-hand profiles, prepared once, and the wheel's radius. A clone shares the profiles.
@@ -98,26 +98,27 @@ impl Pair {
         self.wheel_radius
     }
 
-    /// The pair in contact at chosen abscissae of the two profiles, the Report's way: (4.9)–(4.12). Each body
-    /// is turned so that its own tangent at C lies along ξ.
+    /// Places the pair in contact at chosen abscissae \[mm\] of the two profiles, the Report's way: (4.9)–(4.12). Each body
+    /// is turned so that its own tangent at C lies along ξ. The skew χ \[rad\] is 0 without yaw.
     ///
     /// # Errors
-    /// An abscissa off its profile, or where the profile is vertical.
+    /// An abscissa off its profile, or where the profile is vertical; a skew that is not finite.
     pub fn placed(&self, rail_x: f64, wheel_x: f64, skew: f64) -> Result<Placement> {
         let rail = Body::at(&self.rail, rail_x, Side::Rail).map_err(|e| e.within("contact: rail_x"))?;
         let wheel = Body::at(&self.wheel, wheel_x, Side::Wheel).map_err(|e| e.within("contact: wheel_x"))?;
-        Ok(Placement { rail, wheel, wheel_radius: self.wheel_radius, skew })
+        Ok(Placement { rail, wheel, wheel_radius: self.wheel_radius, skew: checked_skew(skew)? })
     }
 
-    /// The pair in contact where a search found it: abscissa and angle \[rad\] of the common normal's frame on each
-    /// body. At a kink the angle is not that of a tangent; s then has no second-order expansion at C.
+    /// Places the pair in contact along a given common tangent: abscissa \[mm\] and angle of ξ \[rad\] in the own axes of each
+    /// body. At a kink the angle is not that of a tangent; s then has no second-order expansion at C. The place of contact
+    /// of a search is placed by its own method `placed`.
     ///
     /// # Errors
-    /// An abscissa off its profile.
+    /// An abscissa off its profile, or a skew that is not finite.
     pub fn placed_along(&self, rail: [f64; 2], wheel: [f64; 2], skew: f64) -> Result<Placement> {
         let rail = Body::along(&self.rail, rail, Side::Rail).map_err(|e| e.within("contact: rail"))?;
         let wheel = Body::along(&self.wheel, wheel, Side::Wheel).map_err(|e| e.within("contact: wheel"))?;
-        Ok(Placement { rail, wheel, wheel_radius: self.wheel_radius, skew })
+        Ok(Placement { rail, wheel, wheel_radius: self.wheel_radius, skew: checked_skew(skew)? })
     }
 
     /// This pair in the contact frames of another placed pair, so that s of both can be compared point by point.
@@ -135,6 +136,11 @@ impl Pair {
             skew: other.skew,
         }
     }
+}
+
+/// Rejects a skew that is no number.
+fn checked_skew(skew: f64) -> Result<f64> {
+    finite("contact: skew", skew)
 }
 
 /// Angles closer than this \[rad\] are those of one tangent: what a search leaves by rounding, far below the kinks of
@@ -168,6 +174,17 @@ impl Body {
         &self.prepared.profile
     }
 
+    /// The contact frame in the profile's own axes (x, z): its translation is C \[mm\], its rotation θ_C.
+    ///
+    /// It takes a point (ξ, ζ) of the midplane to (x, z), eqs. (4.3), and its inverse (x, z) to (ξ, ζ), eqs. (4.2).
+    /// `inverse_transform_point` subtracts C before it turns, so that points near C keep all digits of their distance from
+    /// it; the composed `inverse()` does not.
+    pub fn contact_frame(&self) -> Isometry2<f64> {
+        let frame = &self.section.frame;
+        let turn = UnitComplex::from_cos_sin_unchecked(frame.cos, frame.sin);
+        Isometry2::from_parts(Translation2::new(frame.x, frame.z), turn)
+    }
+
     /// Whether the contact frame's ξ is the tangent of the profile at C: not so at kinks and ends.
     pub fn is_smooth(&self) -> bool {
         self.section.contact.is_some()
@@ -193,6 +210,51 @@ impl Prepared {
 }
 
 impl Placement {
+    /// The extruded body, below.
+    pub fn rail(&self) -> &Body {
+        &self.rail
+    }
+
+    /// The revolved body, above.
+    pub fn wheel(&self) -> &Body {
+        &self.wheel
+    }
+
+    /// The pair that is placed; it shares the profiles.
+    pub fn pair(&self) -> Pair {
+        let [rail, wheel] = [&self.rail, &self.wheel].map(|body| Arc::clone(&body.prepared));
+        Pair { rail, wheel, wheel_radius: self.wheel_radius }
+    }
+
+    /// R \[mm\], the nominal rolling radius: distance from the axle to the wheel profile's origin.
+    pub fn wheel_radius(&self) -> f64 {
+        self.wheel_radius
+    }
+
+    /// χ \[rad\], the skew: 0 without yaw, + turns the wheel from ξ to η.
+    pub fn skew(&self) -> f64 {
+        self.skew
+    }
+
+    /// The rotation by χ in the tangent plane: it takes the wheel's own (ξ′, η′) to (ξ, η).
+    pub fn skew_rotation(&self) -> UnitComplex<f64> {
+        UnitComplex::new(self.skew)
+    }
+
+    /// The same contact with another skew χ \[rad\].
+    ///
+    /// # Errors
+    /// A skew that is not finite.
+    pub fn with_skew(&self, skew: f64) -> Result<Self> {
+        Ok(Self { skew: checked_skew(skew)?, ..self.clone() })
+    }
+
+    /// The same contact with χ = 0.
+    #[must_use]
+    pub fn without_skew(&self) -> Self {
+        Self { skew: 0.0, ..self.clone() }
+    }
+
     /// R − z_C \[mm\]: distance from the axle to C.
     pub fn rolling_radius(&self) -> f64 {
         self.wheel_radius - self.wheel.point.station.z

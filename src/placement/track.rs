@@ -213,11 +213,11 @@ fn first_at_level(branch: &Branch, [a, b]: [f64; 2], level: f64, depth: u32) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::profile::standards;
+    use crate::profile::{inclination, standards};
+    use nalgebra::UnitComplex;
 
     fn inclined(name: &str, n: f64) -> Result<Profile> {
-        let norm = n.hypot(1.0);
-        Ok(standards::rail(name)?.rotated(n / norm, norm.recip()))
+        Ok(standards::rail(name)?.rotated(inclination(1.0, n)?))
     }
 
     #[test]
@@ -313,7 +313,7 @@ mod tests {
             for angle in [20f64.recip().atan(), 40f64.recip().atan(), 0.05, 0.0] {
                 for angle in [angle, -angle] {
                     let track = |angle: f64| {
-                        let rail = rail.rotated(angle.cos(), angle.sin());
+                        let rail = rail.rotated(UnitComplex::new(angle));
                         Track::new(&rail, RailDistance::Gauge { gauge: 1435.0, height: 14.0 })
                     };
                     // A head that ends above the level has no gauge face there.
@@ -338,7 +338,7 @@ mod tests {
     fn a_side_face_that_is_vertical_to_rounding_is_no_top_of_rail() -> Result<()> {
         let rail = standards::rail("60E1")?;
         let heights = [0.049_958_395_721_942_765f64, 20f64.recip().atan()].map(|angle| {
-            let rail = rail.rotated(angle.cos(), angle.sin());
+            let rail = rail.rotated(UnitComplex::new(angle));
             Track::new(&rail, RailDistance::Gauge { gauge: 1435.0, height: 14.0 }).map(|track| track.rail_z)
         });
         let [found, expected] = [heights[0].clone()?, heights[1].clone()?];

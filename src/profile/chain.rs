@@ -1,5 +1,7 @@
 //! A profile: a chain of segments that meet.
 
+use nalgebra::UnitComplex;
+
 use super::arc::Arc;
 use super::closing::{self, Closing};
 use super::continuity;
@@ -94,10 +96,11 @@ impl Profile {
         self.extent
     }
 
-    /// Returns the profile turned counter-clockwise about its origin, by the angle with this cosine and sine.
+    /// Returns the profile turned about its origin, counter-clockwise from x to z. For 1:n see
+    /// [`inclination`](super::inclination()).
     #[must_use]
-    pub fn rotated(&self, cos: f64, sin: f64) -> Self {
-        self.placed(&Station { x: 0.0, z: 0.0, cos, sin })
+    pub fn rotated(&self, turn: UnitComplex<f64>) -> Self {
+        self.placed(&Station { x: 0.0, z: 0.0, cos: turn.re, sin: turn.im })
     }
 
     /// Returns the profile moved by (x, z) \[mm\].

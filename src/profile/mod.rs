@@ -8,6 +8,7 @@ pub mod closing;
 pub mod continuity;
 pub mod drawing;
 mod groove;
+mod inclination;
 mod polynomial;
 mod section;
 mod segment;
@@ -20,6 +21,7 @@ pub use arc::{Arc, Half};
 pub use chain::Profile;
 pub use closing::ONE_JOINT;
 pub use groove::last_groove;
+pub use inclination::inclination;
 pub use polynomial::Polynomial;
 pub use section::{
     ArcBranch, Branch, BranchPoint, BranchPoints, BranchShape, Branches, Piece, PolynomialBranch,

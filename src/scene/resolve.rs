@@ -1,5 +1,7 @@
 //! Scene → domain: profiles, axes, approach.
 
+use nalgebra::UnitComplex;
+
 use std::path::Path;
 
 use super::data::{AxisData, ProfileData, Rotation, Scene, Spacing};
@@ -11,7 +13,7 @@ use crate::measured::{self, Measured, Options, Record};
 use crate::mesh::axes::MOST_ON_AXIS;
 use crate::placement::Pair;
 use crate::profile::drawing::{SegmentData, chain};
-use crate::profile::{Profile, Side, standards};
+use crate::profile::{Profile, Side, inclination, standards};
 
 /// A profile file: the same keys as inline.
 #[derive(Debug, serde::Serialize, serde::Deserialize)]
@@ -255,8 +257,7 @@ impl ProfileData {
                 let expected = "no `rotate` for a profile that is `already_inclined`";
                 return Err(Error::new("rotate", rotation.to_string(), expected, "remove one of the two"));
             }
-            let (cos, sin) = rotation.cosine_sine().map_err(|e| e.within("rotate"))?;
-            profile = profile.rotated(cos, sin);
+            profile = profile.rotated(rotation.turn().map_err(|e| e.within("rotate"))?);
         }
         if let Some([x, z]) = self.shift {
             profile = profile.shifted(finite("shift", x)?, finite("shift", z)?);
@@ -333,22 +334,16 @@ impl std::fmt::Display for Rotation {
 }
 
 impl Rotation {
-    /// (cos, sin) of the angle.
-    fn cosine_sine(&self) -> Result<(f64, f64)> {
+    /// The rotation that is written.
+    fn turn(&self) -> Result<UnitComplex<f64>> {
         let bad = |found: String| Error::new("", found, "rad, or \"1:n\" with n ≠ 0", "correct it");
         match self {
-            Self::Radians(angle) => {
-                let (sin, cos) = finite("", *angle)?.sin_cos();
-                Ok((cos, sin))
-            }
+            Self::Radians(angle) => Ok(UnitComplex::new(finite("", *angle)?)),
             Self::Ratio(text) => {
                 let (one, n) = text.split_once(':').ok_or_else(|| bad(format!("\"{text}\"")))?;
                 let number = |s: &str| s.trim().parse::<f64>().ok().filter(|v| v.is_finite());
                 match (number(one), number(n)) {
-                    (Some(rise), Some(run)) if run != 0.0 => {
-                        let run_length = rise.hypot(run).copysign(run);
-                        Ok((run / run_length, rise / run_length))
-                    }
+                    (Some(rise), Some(run)) if run != 0.0 => inclination(rise, run),
                     _ => Err(bad(format!("\"{text}\""))),
                 }
             }

@@ -7,7 +7,7 @@
 //! rail, z up. For the right-hand wheel they are the track's directions. The left-hand side is solved as its
 //! mirror image (x → −x), with lateral displacement, yaw and roll reversed; its axes are then left-handed.
 //!
-//! The wheel is turned by A = R_y(roll) · R_z(yaw): first the yaw about z, then the roll about the *unyawed* y axis of
+//! The wheel is turned by A = R_y(roll) · R_z(yaw) ([`wheel_rotation`]): first the yaw about z, then the roll about the *unyawed* y axis of
 //! the track, both by the right-hand rule. So the axle, from flange to field side, points along
 //! (cosψ cosφ, sinψ, −cosψ sinφ).
 //! A single wheel ([`Pose`]) is turned about its **profile origin**, the lowest point of the nominal running circle:
@@ -39,8 +39,10 @@ pub mod sweep;
 mod walk;
 pub mod wheelset;
 
+use nalgebra::{Rotation3, Vector3};
+
 use crate::error::{Error, Result, finite};
-use crate::placement::Pair;
+use crate::placement::{Pair, Placement};
 use crate::profile::{Profile, Section, Side};
 use body::Body;
 use candidates::{Candidate, Meeting, Search};
@@ -216,6 +218,17 @@ impl Pose {
     pub fn roll(&self) -> f64 {
         self.roll
     }
+
+    /// The rotation of the wheel about its profile origin: see [`wheel_rotation`].
+    pub fn rotation(&self) -> Rotation3<f64> {
+        wheel_rotation(self.yaw, self.roll)
+    }
+}
+
+/// The rotation A = R_y(roll) · R_z(yaw) of a wheel or wheelset, angles in rad: the yaw is applied first, the roll
+/// second, about the unyawed y axis. It takes vectors (x, y, z) of the wheel, x along its axle, to the rail's axes.
+pub fn wheel_rotation(yaw: f64, roll: f64) -> Rotation3<f64> {
+    Rotation3::from_axis_angle(&Vector3::y_axis(), roll) * Rotation3::from_axis_angle(&Vector3::z_axis(), yaw)
 }
 
 /// Returns the angle, or an error if it is one that no wheel has.
@@ -322,6 +335,34 @@ impl Contact {
     /// Returns whether one of the bodies touches with a kink, a step or an end.
     pub fn kink(&self) -> bool {
         self.rail_kink || self.wheel_kink
+    }
+
+    /// Places the searched pair in contact here: contact frame along the common tangent, skew, and all that follows.
+    ///
+    /// Where a body touches with its smooth profile, ξ is the profile's own tangent to the last bit; at a kink, step or end
+    /// it is the common tangent, and s has no second-order expansion at C.
+    ///
+    /// # Errors
+    /// A contact of another pair, which has no point at these abscissae.
+    ///
+    /// # Examples
+    /// ```
+    /// use wheelrail::placement::Pair;
+    /// use wheelrail::profile::standards;
+    /// use wheelrail::search::{ONE_CONTACT, Pose, ProfilePair, Selection};
+    ///
+    /// let pair = Pair::new(standards::rail("60E1")?, standards::wheel("S1002")?, 460.0)?;
+    /// let profiles = ProfilePair::new(&pair)?;
+    /// let mut search = profiles.search();
+    /// let selection = Selection { within: 0.0, apart: ONE_CONTACT };
+    /// if let Some(touch) = search.touch(&Pose::new(0.0, 0.01, 0.0)?, &selection) {
+    ///     let placement = touch.contacts[0].placed(&pair)?;
+    ///     assert_eq!(placement.skew(), touch.contacts[0].skew);
+    /// }
+    /// # Ok::<(), wheelrail::Error>(())
+    /// ```
+    pub fn placed(&self, pair: &Pair) -> Result<Placement> {
+        pair.placed_along([self.rail_x, self.contact_angle], [self.wheel_x, self.wheel_angle], self.skew)
     }
 }
 

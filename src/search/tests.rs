@@ -3,7 +3,8 @@ use super::*;
 use crate::load::feasibility::feasibility;
 use crate::placement::Pair;
 use crate::placement::track::{RailDistance, Track, WheelDistance, Wheelset};
-use crate::profile::{Arc, Half, Polynomial, Section, Segment, Shape, standards};
+use crate::profile::{Arc, Half, Polynomial, Section, Segment, Shape, inclination, standards};
+use nalgebra::{Point2, UnitComplex};
 
 mod brute;
 mod reference;
@@ -13,8 +14,7 @@ const ALL: Selection = Selection { within: 0.0, apart: 0.0 };
 
 /// Makes the pair of the Manchester contact benchmark: S1002 on UIC60 at 1:40.
 fn manchester() -> Result<WheelsetOnTrack> {
-    let norm = 40f64.hypot(1.0);
-    let rail = standards::rail("UIC60")?.rotated(40.0 / norm, norm.recip());
+    let rail = standards::rail("UIC60")?.rotated(inclination(1.0, 40.0)?);
     let backs = WheelDistance::BackToBack { distance: 1360.0, flange_back_x: -70.0 };
     let pair = Pair::new(rail, standards::wheel("S1002")?, 460.0)?;
     WheelsetOnTrack::new(&pair, RailDistance::Gauge { gauge: 1435.0, height: 14.0 }, backs)
@@ -22,8 +22,7 @@ fn manchester() -> Result<WheelsetOnTrack> {
 
 /// Makes the pair of EN 15302: wheel A over rail A, inclined by 0.05 rad.
 fn en_15302_a() -> Result<WheelsetOnTrack> {
-    let (sin, cos) = 0.05f64.sin_cos();
-    let rail = standards::rail("UIC60")?.rotated(cos, sin).shifted(2.60264, 0.14155);
+    let rail = standards::rail("UIC60")?.rotated(UnitComplex::new(0.05)).shifted(2.60264, 0.14155);
     Ok(WheelsetOnTrack {
         pair: ProfilePair::new(&Pair::new(rail.clone(), standards::wheel("EN15302-A")?, 460.0)?)?,
         track: Track::new(&rail, RailDistance::Spacing(1500.0))?,
@@ -128,6 +127,56 @@ fn contact_jumps_pass_through_two_points_of_contact() -> Result<()> {
 }
 
 #[test]
+fn attitudes_stand_where_the_rotation_puts_the_wheelset() -> Result<()> {
+    let system = manchester()?;
+    let (out, radius) = (system.wheelset.wheel_x, system.wheelset.radius);
+    for (lateral, yaw, roll) in [(5.0, 0.012, -0.0004), (10.0, -0.3, -0.0113), (-6.0, 0.05, 0.2)] {
+        let position = Position { lateral, yaw, roll: Roll::Fixed(roll) };
+        let axle = position.rotation(roll) * Vector3::x();
+        let closed = Vector3::new(yaw.cos() * roll.cos(), yaw.sin(), -yaw.cos() * roll.sin());
+        assert!((axle - closed).norm() < 1e-15, "{axle} {closed}");
+        assert_eq!(position.rotation(roll), Pose::new(lateral, yaw, roll)?.rotation());
+        for sign in [-1.0, 1.0] {
+            let (attitude, level) = system.attitude(&position, roll, sign);
+            // The side's own axes, mirrored on the left: middle of the axle to the wheel profile's origin.
+            let origin = wheel_rotation(sign * yaw, sign * roll) * Vector3::new(out, 0.0, -radius);
+            let x = sign * lateral + origin.x - system.track.rail_x;
+            assert!((attitude.offset - x).abs() < 1e-12, "{} {x}", attitude.offset);
+            // With both origins level the axle's middle is `level` above R over the top of rail.
+            let z = radius + level + origin.z - system.track.rail_z;
+            assert!(z.abs() < 1e-12, "{z}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn a_contact_is_placed_with_its_angles_and_its_skew() -> Result<()> {
+    let system = manchester()?;
+    let pair = Pair::new(
+        standards::rail("UIC60")?.rotated(inclination(1.0, 40.0)?),
+        standards::wheel("S1002")?,
+        460.0,
+    )?;
+    let mut search = system.search();
+    for (lateral, yaw) in [(0.0, 0.0), (3.0, 0.01), (6.5, -0.02)] {
+        let position = Position { lateral, yaw, roll: Roll::Solve };
+        let Some(touch) = search.touch(&position, &ALL)? else { panic!("no contact") };
+        for contact in touch.sides.iter().flat_map(|side| side.touch.contacts) {
+            let placement = contact.placed(&pair)?;
+            let [rail, wheel] = [placement.rail(), placement.wheel()];
+            assert_eq!((placement.skew(), placement.pair().wheel_radius()), (contact.skew, 460.0));
+            assert_eq!([rail.is_smooth(), wheel.is_smooth()], [!contact.rail_kink, !contact.wheel_kink]);
+            assert!((rail.contact_angle() - contact.contact_angle).abs() < 1e-12, "{contact:?}");
+            assert!((wheel.contact_angle() - contact.wheel_angle).abs() < 1e-12, "{contact:?}");
+            let c = rail.contact_frame() * Point2::origin();
+            assert!((c - Point2::new(contact.rail_x, contact.rail_z)).norm() < 1e-12, "{contact:?}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
 fn skew_turns_the_wheel_s_frame_into_the_rail_s() -> Result<()> {
     let system = manchester()?;
     let mut search = system.search();
@@ -138,25 +187,21 @@ fn skew_turns_the_wheel_s_frame_into_the_rail_s() -> Result<()> {
             let c = side.touch.contacts[0];
             let (yaw, roll) = (sign * yaw, sign * roll);
             // Yaw, then roll, of the wheel's meridian tangent and circumferential direction at angle ω.
-            let turned = |[x, y, z]: [f64; 3]| {
-                let (x, y) = (x * yaw.cos() - y * yaw.sin(), x * yaw.sin() + y * yaw.cos());
-                [x * roll.cos() + z * roll.sin(), y, z * roll.cos() - x * roll.sin()]
-            };
+            let turned = |x, y, z| wheel_rotation(yaw, roll) * Vector3::new(x, y, z);
             let omega = -(c.wheel_angle.tan() * yaw.tan()).asin();
             let (s, t) = (c.wheel_angle.sin(), c.wheel_angle.cos());
-            let meridian = turned([t, -s * omega.sin(), s * omega.cos()]);
-            let round = turned([0.0, omega.cos(), omega.sin()]);
-            let normal = turned([-s, -t * omega.sin(), t * omega.cos()]);
+            let meridian = turned(t, -s * omega.sin(), s * omega.cos());
+            let round = turned(0.0, omega.cos(), omega.sin());
+            let normal = turned(-s, -t * omega.sin(), t * omega.cos());
             let (sin, cos) = c.contact_angle.sin_cos();
-            let (xi, eta, zeta) = ([cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, cos]);
-            let dot = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            let (xi, eta, zeta) = (Vector3::new(cos, 0.0, sin), Vector3::y(), Vector3::new(-sin, 0.0, cos));
             let expected =
                 [(meridian, xi, c.skew.cos()), (meridian, eta, c.skew.sin()), (round, xi, -c.skew.sin())];
             for (wheel, rail, expected) in expected {
-                assert!((dot(wheel, rail) - expected).abs() < 1e-14, "{c:?}");
+                assert!((wheel.dot(&rail) - expected).abs() < 1e-14, "{c:?}");
             }
-            assert!((dot(round, eta) - c.skew.cos()).abs() < 1e-14, "{c:?}");
-            assert!((dot(normal, zeta) - 1.0).abs() < 1e-14, "{c:?}");
+            assert!((round.dot(&eta) - c.skew.cos()).abs() < 1e-14, "{c:?}");
+            assert!((normal.dot(&zeta) - 1.0).abs() < 1e-14, "{c:?}");
         }
     }
     Ok(())
@@ -206,9 +251,8 @@ fn a_contact_on_a_kink_is_where_the_closed_segments_cross() -> Result<()> {
     let touch = search.touch(&Pose::new(8.045, 0.0, 0.0)?, &ALL);
     let contact = touch.map(|touch| touch.contacts[0]).filter(Contact::kink);
     let contact = contact.ok_or_else(|| Error::new("", "no kink", "one", "look at the drawing"))?;
-    let [rail, wheel] = [contact.rail_x, contact.wheel_x].map(|x| [x, contact.contact_angle]);
-    let placement = pair.placed_along(rail, wheel, 0.0)?;
-    let z = placement.wheel.point.station.z;
+    let placement = contact.placed(&pair)?;
+    let z = placement.wheel().point.station.z;
     assert!((z + 9.525_298_313_755).abs() < 1e-12, "{z}");
     assert!(feasibility(&placement).is_some_and(|found| found.feasible));
     Ok(())

@@ -1,12 +1,14 @@
-//! Lowers a wheelset onto its track: both sides at once, with the roll solved, neglected or given.
+//! A wheelset on its track: both sides lowered, with the roll solved, neglected or given.
 //!
 //! The wheelset is turned about the middle of its axle, c: a point p of it, relative to c, goes to
-//! c + R_y(roll) R_z(yaw) p. So the right-hand profile origin, S out along the axle and R below it, is at
+//! c + A p, with A of [`wheel_rotation`]. So the right-hand profile origin, S out along the axle and R below it, is at
 //! c + (S cosψ cosφ − R sinφ, S sinψ, −S cosψ sinφ − R cosφ).
 
 use super::candidates::{Candidate, Meeting};
 use super::locus::Attitude;
-use super::{ContactSearch, ProfilePair, Selection, Touch, Work, small_angle};
+use nalgebra::Rotation3;
+
+use super::{ContactSearch, ProfilePair, Selection, Touch, Work, small_angle, wheel_rotation};
 use crate::error::{Result, finite};
 use crate::placement::Pair;
 use crate::placement::track::{RailDistance, Track, WheelDistance, Wheelset};
@@ -42,6 +44,14 @@ pub struct WheelsetOnTrack {
     pub track: Track,
     /// The positions of the wheels.
     pub wheelset: Wheelset,
+}
+
+impl Position {
+    /// The rotation of the wheelset about the middle of its axle in track axes at a roll \[rad\], which may be the one that a
+    /// search solved for: see [`wheel_rotation`].
+    pub fn rotation(&self, roll: f64) -> Rotation3<f64> {
+        wheel_rotation(self.yaw, roll)
+    }
 }
 
 impl WheelsetOnTrack {
@@ -128,7 +138,7 @@ impl WheelsetOnTrack {
 
     /// Returns the attitude of one side (sign −1 left, +1 right), and the height of the axle's middle above R
     /// over the top of rail when the wheel's profile origin is level with the rail's \[mm\].
-    fn attitude(&self, position: &Position, roll: f64, sign: f64) -> (Attitude, f64) {
+    pub(super) fn attitude(&self, position: &Position, roll: f64, sign: f64) -> (Attitude, f64) {
         let (radius, half) = (self.wheelset.radius, self.wheelset.wheel_x);
         let mut attitude = Attitude::new(0.0, sign * position.yaw, sign * roll, radius);
         let along = half * attitude.cos_yaw;

@@ -1,16 +1,18 @@
 //! s(ξ, η), its slopes and both unit normals at single points: the reference for all other methods.
 
+use nalgebra::{Unit, UnitComplex, Vector2, Vector3};
+
 use super::gap;
 use super::wheel_surface::{SagittaPoint, Span, WheelSurface};
 use crate::placement::Placement;
 
-/// Both outward unit normals (ξ, η, ζ) over one point of the tangent plane; NaN where a body has no surface.
+/// Both outward unit normals (ξ, η, ζ) over one point of the tangent plane; `None` where a body has no surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Normals {
     /// The rail's; it points up at C.
-    pub rail: [f64; 3],
+    pub rail: Option<Unit<Vector3<f64>>>,
     /// The wheel's; it points down at C.
-    pub wheel: [f64; 3],
+    pub wheel: Option<Unit<Vector3<f64>>>,
 }
 
 /// Evaluates single points over a placed pair. It holds the memory for the spans of one column.
@@ -19,8 +21,8 @@ pub struct Evaluator<'a> {
     pub(super) placement: &'a Placement,
     pub(super) wheel: WheelSurface<'a>,
     pub(super) spans: Vec<Span>,
-    /// sin χ and cos χ.
-    skew: (f64, f64),
+    /// The rotation by χ.
+    skew: UnitComplex<f64>,
     /// 1 − cos χ, to all digits.
     versine: f64,
 }
@@ -43,8 +45,8 @@ struct WheelPoint {
 impl<'a> Evaluator<'a> {
     /// Makes an evaluator of one pair.
     pub fn new(placement: &'a Placement) -> Self {
-        let skew = placement.skew.sin_cos();
-        let versine = 2.0 * (placement.skew / 2.0).sin().powi(2);
+        let skew = placement.skew_rotation();
+        let versine = 2.0 * (placement.skew() / 2.0).sin().powi(2);
         Self { placement, wheel: WheelSurface::new(placement), spans: Vec::with_capacity(4), skew, versine }
     }
 
@@ -71,11 +73,11 @@ impl<'a> Evaluator<'a> {
 
     /// Computes both normals at (ξ, η).
     pub fn normals(&mut self, xi: f64, eta: f64) -> Normals {
-        let rail = self.placement.rail.section.branch_at(xi).map_or([f64::NAN; 3], |branch| {
+        let rail = self.placement.rail().section.branch_at(xi).map(|branch| {
             let tangent = branch.station(xi);
-            [-tangent.sin, 0.0, tangent.cos]
+            Unit::new_unchecked(Vector3::new(-tangent.sin, 0.0, tangent.cos))
         });
-        let wheel = self.wheel_point(xi, eta).map_or([f64::NAN; 3], |point| self.wheel_normal(&point));
+        let wheel = self.wheel_point(xi, eta).map(|point| self.wheel_normal(&point));
         Normals { rail, wheel }
     }
 
@@ -103,25 +105,25 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Computes the wheel's normal in (ξ, η, ζ).
-    fn wheel_normal(&self, point: &WheelPoint) -> [f64; 3] {
-        let [x, y, z] = self.wheel.normal(point.xi_w, point.eta_w, &point.span, &point.point);
-        let (sin, cos) = self.skew;
-        [x * cos - y * sin, x * sin + y * cos, z]
+    fn wheel_normal(&self, point: &WheelPoint) -> Unit<Vector3<f64>> {
+        let own = self.wheel.normal(point.xi_w, point.eta_w, &point.span, &point.point);
+        let turned = self.skew * Vector2::new(own.x, own.y);
+        Unit::new_unchecked(Vector3::new(turned.x, turned.y, own.z))
     }
 
     /// Computes dζ^R/dξ at ξ. NaN off the rail.
     pub fn rail_slope(&self, xi: f64) -> f64 {
-        self.placement.rail.section.branch_at(xi).map_or(f64::NAN, |branch| branch.chord_slope(xi, xi))
+        self.placement.rail().section.branch_at(xi).map_or(f64::NAN, |branch| branch.chord_slope(xi, xi))
     }
 
     /// Computes ζ^R(ξ) \[mm\]. NaN off the rail.
     pub fn rail_height(&self, xi: f64) -> f64 {
-        self.placement.rail.section.height(xi)
+        self.placement.rail().section.height(xi)
     }
 
     /// Computes s \[mm\] at all η \[mm\] of one column; NaN where a body has no surface.
     pub fn column(&mut self, xi: f64, eta: &[f64], out: &mut [f64]) {
-        if self.placement.skew == 0.0 {
+        if self.placement.skew() == 0.0 {
             let u_max = eta.iter().fold(0.0, |m: f64, eta| m.max(eta * eta));
             let mut spans = std::mem::take(&mut self.spans);
             self.wheel.spans(xi, u_max, &mut spans);
@@ -167,13 +169,13 @@ impl<'a> Evaluator<'a> {
     /// Computes ξ′ − ξ, without cancellation, and η′ \[mm\], in the wheel's own directions of the tangent plane.
     #[inline(always)]
     pub(super) fn wheel_coordinates(&self, xi: f64, eta: f64) -> [f64; 2] {
-        let (sin, cos) = self.skew;
+        let (sin, cos) = (self.skew.im, self.skew.re);
         if sin == 0.0 { [0.0, eta] } else { [eta * sin - xi * self.versine, eta * cos - xi * sin] }
     }
 
     /// Tells whether a span begins in the midplane, over both contact segments.
     fn over_contact(&self, xi: f64, span: &Span) -> bool {
-        let (rail, wheel) = (&self.placement.rail.section, &self.placement.wheel.section);
+        let (rail, wheel) = (&self.placement.rail().section, &self.placement.wheel().section);
         let contact = rail.piece_at(xi).is_some_and(|piece| rail.contact == Some(piece.branch));
         contact && wheel.contact == Some(span.branch) && span.e[0] == 0.0
     }
@@ -181,14 +183,14 @@ impl<'a> Evaluator<'a> {
     /// Gives the size \[mm\] of the coordinates from which both bodies' heights are computed, where the wheel's height is `height`.
     #[inline(always)]
     pub(super) fn size(&self, xi: f64, height: f64) -> f64 {
-        let frames = [&self.placement.rail.section.frame, &self.placement.wheel.section.frame];
+        let frames = [&self.placement.rail().section.frame, &self.placement.wheel().section.frame];
         let coordinates = frames.map(|frame| frame.z.abs() + (frame.sin * xi).abs());
         height.abs() + coordinates[0].max(coordinates[1])
     }
 
     /// Computes s \[mm\] at the beginning of a span of the column at ξ + `shift`: the wheel's height there less the rail's at ξ.
     pub(super) fn base(&self, xi: f64, shift: f64, span: &Span) -> f64 {
-        let (rail, wheel) = (&self.placement.rail.section, &self.placement.wheel.section);
+        let (rail, wheel) = (&self.placement.rail().section, &self.placement.wheel().section);
         let Some(piece) = rail.piece_at(xi) else { return f64::NAN };
         let both = self.over_contact(xi, span);
         let rail = &rail.branches[piece.branch];
@@ -204,6 +206,6 @@ impl<'a> Evaluator<'a> {
 }
 
 /// Computes [∂ζ/∂ξ, ∂ζ/∂η] of a surface with this normal.
-fn slopes([x, y, z]: [f64; 3]) -> [f64; 2] {
-    [-x / z, -y / z]
+fn slopes(normal: Unit<Vector3<f64>>) -> [f64; 2] {
+    [-normal.x / normal.z, -normal.y / normal.z]
 }

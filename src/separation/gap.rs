@@ -9,7 +9,7 @@ use crate::profile::{ArcBranch, Branch, BranchShape, Section};
 /// Accuracy: a few roundings of g where ξ lies over both contact segments, even for arcs that conform to ten digits; a few
 /// roundings of the profile's extent elsewhere.
 pub fn midplane_gap(placement: &Placement, xi: f64) -> f64 {
-    let (rail, wheel) = (&placement.rail.section, &placement.wheel.section);
+    let (rail, wheel) = (&placement.rail().section, &placement.wheel().section);
     match (rail.piece_at(xi), wheel.piece_at(xi)) {
         (Some(r), Some(w)) => {
             let contact = rail.contact == Some(r.branch) && wheel.contact == Some(w.branch);
@@ -99,5 +99,5 @@ pub(super) fn relative_curvature(placement: &Placement) -> Option<f64> {
         BranchShape::Arc(arc) => Some(arc.radius),
         BranchShape::Polynomial(_) => None,
     };
-    Some(curvature_difference(arc(&placement.wheel.section)?, arc(&placement.rail.section)?))
+    Some(curvature_difference(arc(&placement.wheel().section)?, arc(&placement.rail().section)?))
 }

@@ -64,8 +64,8 @@ pub fn transformed_parameters(body: &Body) -> Vec<Transformed> {
 pub fn rows(placement: &Placement, xi: &[f64]) -> Vec<MidplaneRow> {
     let row = |&xi: &f64| MidplaneRow {
         xi,
-        rail: placement.rail.section.height(xi),
-        wheel: placement.wheel.section.height(xi),
+        rail: placement.rail().section.height(xi),
+        wheel: placement.wheel().section.height(xi),
         gap: midplane_gap(placement, xi),
     };
     xi.iter().map(row).collect()
@@ -75,7 +75,7 @@ pub fn rows(placement: &Placement, xi: &[f64]) -> Vec<MidplaneRow> {
 pub fn table(placement: &Placement, xi: &[f64]) -> String {
     let mut out = String::from("# MIDSEP: midplane separation, Report FRA/ORD-78/41, Sec. 5\n");
     out += "# Lengths in mm, angles in rad; contact frame: origin C, xi along the tangent, zeta from rail to wheel.\n";
-    for (name, body) in [("rail", &placement.rail), ("wheel", &placement.wheel)] {
+    for (name, body) in [("rail", placement.rail()), ("wheel", placement.wheel())] {
         parameters(&mut out, name, body);
     }
     out += "\n# midplane, eta = 0\n";

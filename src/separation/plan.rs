@@ -138,7 +138,7 @@ impl Planned<'_> {
     fn spectral(&self, probe: &Probe, reason: String) -> Plan {
         let demand = demand(self.tolerance);
         let mut fitter = Fitter::new(self.placement, demand, 1);
-        let (strips, coefficients, truncation) = if self.placement.skew == 0.0 {
+        let (strips, coefficients, truncation) = if self.placement.skew() == 0.0 {
             self.measured(&mut fitter)
         } else {
             (Vec::new(), 1, self.skewed(&mut fitter))

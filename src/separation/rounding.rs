@@ -24,7 +24,7 @@ const STEEP: f64 = 1.0;
 /// times the slope.
 pub fn rounding(placement: &Placement, xi: &[f64], axis: &EtaAxis, largest: f64) -> f64 {
     let bodies = [Reached::of_rail(placement, xi), Reached::of_wheel(placement, xi, axis)];
-    let of_sum = OWN_ROUNDINGS[usize::from(placement.skew != 0.0)] * f64::EPSILON * largest;
+    let of_sum = OWN_ROUNDINGS[usize::from(placement.skew() != 0.0)] * f64::EPSILON * largest;
     if bodies.iter().all(|body| body.contact) {
         return of_sum;
     }
@@ -41,7 +41,7 @@ struct Reached {
 
 impl Reached {
     fn of_rail(placement: &Placement, xi: &[f64]) -> Self {
-        Self::new(&placement.rail.section, xi, &[0.0], |xi, _| xi)
+        Self::new(&placement.rail().section, xi, &[0.0], |xi, _| xi)
     }
 
     /// Finds the part of the wheel; beside the midplane, columns lie over other places of its profile.
@@ -54,7 +54,7 @@ impl Reached {
             wheel.abscissa(xi + shift, sagitta(wheel.axle, eta_w * eta_w))
         };
         let ends = [axis.eta.first(), axis.eta.last()].map(|eta| eta.copied().unwrap_or(0.0));
-        Self::new(&placement.wheel.section, xi, &[0.0, ends[0], ends[1]], below)
+        Self::new(&placement.wheel().section, xi, &[0.0, ends[0], ends[1]], below)
     }
 
     /// Finds the part of a section over the abscissae that columns reach at some η.

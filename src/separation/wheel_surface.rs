@@ -11,6 +11,8 @@
 //! ξ − e sinθ moves along the column, so that one column can cross joints (erratum 6). The formulas are written for N columns at
 //! once; one column is N = 1.
 
+use nalgebra::{Unit, UnitComplex, Vector2, Vector3};
+
 use crate::numerics::lanes::{Lanes, every, lanes};
 use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
@@ -113,9 +115,9 @@ impl From<SagittaPoints<1>> for SagittaPoint {
 impl<'a> WheelSurface<'a> {
     /// Makes the surface of the wheel of a placed pair.
     pub fn new(placement: &'a Placement) -> Self {
-        let station = placement.wheel.section.frame;
+        let station = placement.wheel().section.frame;
         let axle = placement.rolling_radius();
-        Self { section: &placement.wheel.section, axle, cos: station.cos, sin: station.sin }
+        Self { section: &placement.wheel().section, axle, cos: station.cos, sin: station.sin }
     }
 
     fn branch(&self, span: &Span) -> &'a Branch {
@@ -414,16 +416,14 @@ impl<'a> WheelSurface<'a> {
     }
 
     /// Computes the outward unit normal (towards the rail) in (ξ, η, ζ) at a point with lateral offset η \[mm\].
-    pub fn normal(&self, xi: f64, eta: f64, span: &Span, point: &SagittaPoint) -> [f64; 3] {
+    pub fn normal(&self, xi: f64, eta: f64, span: &Span, point: &SagittaPoint) -> Unit<Vector3<f64>> {
         let tangent = self.branch(span).station(self.abscissa(xi, point.e));
         // Profile angle φ = ψ + θ in the wheel's own axes; the meridian plane is turned by atan(η/w).
-        let (sin, cos) = (
-            tangent.sin * self.cos + tangent.cos * self.sin,
-            tangent.cos * self.cos - tangent.sin * self.sin,
-        );
+        let tilt = UnitComplex::from_cos_sin_unchecked(self.cos, self.sin);
+        let own = tilt * Vector2::new(tangent.cos, tangent.sin);
         let rho = point.w.hypot(eta);
-        let (x, y, z) = (sin, cos * eta / rho, -cos * point.w / rho);
-        [x * self.cos + z * self.sin, y, z * self.cos - x * self.sin]
+        let down = tilt.inverse_transform_vector(&Vector2::new(own.y, -own.x * point.w / rho));
+        Unit::new_unchecked(Vector3::new(down.x, own.x * eta / rho, down.y))
     }
 }
 

@@ -87,7 +87,7 @@ fn any_grid_is_within_its_estimate() {
     let compared = Cell::new(0);
     holds("any grid", CASES, (placed, grid, tolerance, method), |(placed, grid, tolerance, method)| {
         let (index, radius, (rail_x, wheel_x), yaw) = placed;
-        let Placement { rail, wheel, .. } = pairs[index].placement.clone();
+        let [rail, wheel] = [pairs[index].placement.rail(), pairs[index].placement.wheel()];
         // Not every wheel may be so small, nor has every profile a point there.
         let pair = Pair::new(rail.profile().clone(), wheel.profile().clone(), radius);
         let Ok(placement) = pair.and_then(|pair| pair.placed(rail_x, wheel_x, yaw)) else { return Ok(()) };

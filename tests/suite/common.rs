@@ -85,8 +85,8 @@ pub fn approached_references() -> Vec<(String, Placement, f64)> {
     let mut all = Vec::new();
     for reference in references() {
         for skew in [0.0, 0.01] {
-            let mut placement = reference.placement().expect("a placement");
-            placement.skew = skew;
+            let placement = reference.placement().and_then(|placement| placement.with_skew(skew));
+            let placement = placement.expect("a placement");
             let deltas = reference.scene.delta.iter();
             all.extend(
                 deltas.map(|&d| (format!("{} δ = {d} χ = {skew}", reference.name), placement.clone(), d)),

@@ -102,7 +102,7 @@ fn depths(placement: &Placement, xi: &[f64], eta: &[f64], approach: f64) -> Vec<
     choice.fill(placement, xi, &EtaAxis::new(eta), &mut s);
     // Without skew the patch is that over the midplane.
     let over =
-        if placement.skew == 0.0 { placement.overlap().unwrap_or([0.0; 2]) } else { [f64::MIN, f64::MAX] };
+        if placement.skew() == 0.0 { placement.overlap().unwrap_or([0.0; 2]) } else { [f64::MIN, f64::MAX] };
     let n = eta.len();
     s.iter_mut().enumerate().for_each(|(k, s)| {
         let seen = over[0] <= xi[k / n] && xi[k / n] <= over[1];

@@ -156,7 +156,7 @@ fn areas_agree_with_rows_of_constant_eta() {
 
 /// The largest distance of two ends that are one joint \[mm\]: what closing a chain leaves of a step.
 fn largest_gap(placement: &Placement) -> f64 {
-    let profiles = [placement.rail.profile(), placement.wheel.profile()];
+    let profiles = [placement.rail().profile(), placement.wheel().profile()];
     profiles.into_iter().flat_map(|profile| profile.continuity()).map(|joint| joint.gap).fold(0.0, f64::max)
 }
 
@@ -242,7 +242,7 @@ fn a_larger_approach_contains_the_smaller_patch() {
 /// However near to C: no rounding of a profile's parameter is left over.
 #[test]
 fn the_gap_is_a_parabola_down_to_c() {
-    for (name, placement, _) in cases().into_iter().filter(|(_, placement, _)| placement.skew == 0.0) {
+    for (name, placement, _) in cases().into_iter().filter(|(_, placement, _)| placement.skew() == 0.0) {
         let mut evaluator = Evaluator::new(&placement);
         for side in [-1.0, 1.0] {
             let mut opening = |xi: f64| evaluator.separation(side * xi, 0.0) / (xi * xi);
@@ -272,8 +272,8 @@ fn no_approach_gives_no_patch() {
 fn a_tiny_approach_finds_the_tiny_patch_at_c() {
     for reference in references() {
         for (skew, delta) in [(0.0, 1e-9), (0.0, 1e-15), (0.015, 1e-9), (0.015, 1e-12)] {
-            let mut placement = reference.placement().expect("a placement");
-            placement.skew = skew;
+            let placement = reference.placement().and_then(|placement| placement.with_skew(skew));
+            let placement = placement.expect("a placement");
             let patch = Patch::new(&placement, delta, &Window::UNBOUNDED);
             let at_c = patch.components.iter().find(|c| c.xi[0] < 0.0 && c.xi[1] > 0.0);
             let Some(c) = at_c else { panic!("{} δ = {delta} χ = {skew}: no patch at C", reference.name) };
@@ -383,8 +383,7 @@ fn the_end_of_a_wheel_profile_cuts_the_patch_along_eta() -> Result<()> {
     let placement = Pair::new(rail, wheel, 460.0)?.placed(-50.0 / 2f64.sqrt(), 0.0, 0.0)?;
     let delta = 0.2;
     for skew in [0.0, 1e-3] {
-        let mut placement = placement.clone();
-        placement.skew = skew;
+        let placement = placement.with_skew(skew)?;
         let patch = Patch::new(&placement, delta, &Window::UNBOUNDED);
         let [c] = patch.components.as_slice() else { panic!("{} components", patch.components.len()) };
         let mut evaluator = Evaluator::new(&placement);

@@ -6,6 +6,7 @@
 use crate::common::holds;
 use proptest::prelude::*;
 use wheelrail::load::feasibility::feasibility;
+use wheelrail::nalgebra::UnitComplex;
 use wheelrail::patch::{Patch, Slicer, Window};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Polynomial, Profile, Segment, Shape, Station, standards};
@@ -258,7 +259,7 @@ fn same(a: f64, b: f64) -> bool {
 fn evaluated(placement: &Placement, [xi, eta]: [f64; 2]) -> [f64; 7] {
     let mut evaluator = Evaluator::new(placement);
     let n = evaluator.normals(xi, eta);
-    let [a, b] = [n.rail, n.wheel];
+    let [a, b] = [n.rail, n.wheel].map(|n| n.map_or([f64::NAN; 3], |n| n.into_inner().into()));
     [evaluator.separation(xi, eta), a[0], a[1], a[2], b[0], b[1], b[2]]
 }
 
@@ -388,7 +389,8 @@ fn a_mirrored_pair_has_the_mirrored_separation() {
     let skew = prop_oneof![Just(0.0), Just(0.02)];
     holds("mirror", CASES, (case(), skew), |(case, skew)| {
         let one = case.placement(1.0, skew);
-        let pair = Pair::new(one.rail.profile().mirrored(), one.wheel.profile().mirrored(), one.wheel_radius);
+        let pair =
+            Pair::new(one.rail().profile().mirrored(), one.wheel().profile().mirrored(), one.wheel_radius());
         let [rail_x, wheel_x] = case.abscissae();
         let other = pair.and_then(|pair| pair.placed(-rail_x, -wheel_x, -skew)).expect("the mirrored pair");
         // At a joint the left neighbour counts, whose tangent may differ: then it is another contact.
@@ -416,7 +418,7 @@ fn splitting_arcs_changes_nothing() {
             let halves = profile.segments().iter().flat_map(|segment| halves(segment, share)).collect();
             Profile::new("split", "generator", halves).expect("the same chain")
         };
-        let other = case.placed(split(one.rail.profile()), split(one.wheel.profile()), 1.0, 0.0);
+        let other = case.placed(split(one.rail().profile()), split(one.wheel().profile()), 1.0, 0.0);
         compare(&one, &other, &case.points(&one), |p| p, case.allowed())
     });
 }
@@ -434,17 +436,17 @@ fn a_rigid_motion_of_the_profiles_changes_nothing() {
     let motion = (-0.6..0.6f64, -300.0..300.0f64, -50.0..50.0f64, -300.0..300.0f64, -20.0..20.0f64);
     holds("rigid motion", CASES, (case(), motion), |(case, (angle, x, z, wheel_x, wheel_z))| {
         let one = case.placement(1.0, 0.0);
-        let (sin, cos) = angle.sin_cos();
-        let rail = one.rail.profile().rotated(cos, sin).shifted(x, z);
+        let turn = UnitComplex::new(angle);
+        let rail = one.rail().profile().rotated(turn).shifted(x, z);
         // The wheel may only move along its axle, and with it.
-        let wheel = one.wheel.profile().shifted(wheel_x, wheel_z);
-        let c = one.rail.point.station;
-        let turned = c.placed_by(&Station { x, z, cos, sin });
+        let wheel = one.wheel().profile().shifted(wheel_x, wheel_z);
+        let c = one.rail().point.station;
+        let turned = c.placed_by(&Station { x, z, cos: turn.re, sin: turn.im });
         prop_assume!(turned.cos > STEEP);
         // A point next to a joint may come to lie on its other side.
         prop_assume!(case.contacts_off_joints());
-        let pair = Pair::new(rail, wheel, one.wheel_radius + wheel_z).expect("a pair");
-        let placed = pair.placed(turned.x, one.wheel.point.station.x + wheel_x, 0.0);
+        let pair = Pair::new(rail, wheel, one.wheel_radius() + wheel_z).expect("a pair");
+        let placed = pair.placed(turned.x, one.wheel().point.station.x + wheel_x, 0.0);
         let other = placed.expect("the same contact");
         // C itself is rounded at coordinates of up to 300 mm, and with it the frame.
         let frame = 64.0 * f64::EPSILON * 300.0;
@@ -507,7 +509,7 @@ fn a_last_digit_of_an_inclination_moves_s_by_as_much() {
         let rail = standards::rail(name).expect("built in");
         let placed = |angle: f64| {
             let pair =
-                Pair::new(rail.rotated(angle.cos(), angle.sin()), wheel.clone(), 460.0).expect("a pair");
+                Pair::new(rail.rotated(UnitComplex::new(angle)), wheel.clone(), 460.0).expect("a pair");
             pair.placed(0.0, 0.0, 0.01).expect("points of both")
         };
         for angle in [20f64.recip().atan(), -(20f64.recip().atan()), 40f64.recip().atan(), 0.05, 0.0] {

@@ -6,6 +6,7 @@ use wheelrail::mesh::axes::{self, Axes, Group};
 use wheelrail::mesh::quality::Quality;
 use wheelrail::mesh::strips::{Counts, StripMesh};
 use wheelrail::mesh::surfaces::Surface;
+use wheelrail::nalgebra::Point3;
 use wheelrail::patch::{Patch, Window};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Half, Profile, Segment, standards};
@@ -71,7 +72,7 @@ fn cells_are_sound_and_share_their_sides() {
         assert_eq!(used.len(), mesh.points.len(), "{name}: points without a cell");
         let mut evaluator = Evaluator::new(&placement);
         for &k in &points {
-            let [xi, eta, _] = mesh.points[k];
+            let (xi, eta) = (mesh.points[k].x, mesh.points[k].y);
             // A point on the end of the surface may round off it.
             let [inner, outer] =
                 [1.0 - 1e-12, 1.0 + 1e-12].map(|nudge| evaluator.separation(xi, eta * nudge));
@@ -120,11 +121,8 @@ fn boundary_cells_include_the_curved_edge() -> Result<()> {
         .iter()
         .map(|cell| {
             let v = cell.vertices();
-            let cross = |k: usize| {
-                let (p, q) = (mesh.points[v[k]], mesh.points[v[(k + 1) % v.len()]]);
-                (p[0] * q[1] - q[0] * p[1]) / 2.0
-            };
-            (0..v.len()).map(cross).sum::<f64>()
+            let corner = |k: usize| mesh.points[v[k % v.len()]].coords.xy();
+            (0..v.len()).map(|k| corner(k).perp(&corner(k + 1)) / 2.0).sum::<f64>()
         })
         .sum();
     assert!(polygon < 0.98 * patch.area());
@@ -192,7 +190,7 @@ fn grids_never_cut_the_patch() {
                 let extent = &group.extent;
                 let short = (extent.xi[1] - extent.xi[0]).min(extent.eta[1] - extent.eta[0]);
                 assert!(spacing.is_some() || short / axes.spacing[0] >= 16.0 - 1e-9, "{name}");
-                if placement.skew == 0.0 {
+                if placement.skew() == 0.0 {
                     let eta = &axes.eta;
                     assert!(eta.iter().zip(eta.iter().rev()).all(|(a, b)| *a == -*b), "{name}");
                 }
@@ -225,8 +223,9 @@ fn parts_are_merged_by_a_stated_distance_and_c_comes_first() -> Result<()> {
 /// Largest distance of points between the corners of a facet from the true surface, and of the corners themselves.
 fn departures(placement: &Placement, surface: &Surface) -> [f64; 2] {
     let mut evaluator = Evaluator::new(placement);
-    let mut off = |[xi, eta, zeta]: [f64; 3]| {
-        let rail = placement.rail.section.height(xi);
+    let mut off = |point: Point3<f64>| {
+        let (xi, eta, zeta) = (point.x, point.y, point.z);
+        let rail = placement.rail().section.height(xi);
         match surface.side {
             wheelrail::profile::Side::Rail => zeta - rail,
             wheelrail::profile::Side::Wheel => zeta - (rail + evaluator.separation(xi, eta)),
@@ -239,8 +238,8 @@ fn departures(placement: &Placement, surface: &Surface) -> [f64; 2] {
     for [a, b, c] in surface.triangles() {
         for weights in [[0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5], [1.0 / 3.0; 3]] {
             let [p, q, r] = [corner(a), corner(b), corner(c)];
-            let point = [0, 1, 2].map(|k| weights[0] * p[k] + weights[1] * q[k] + weights[2] * r[k]);
-            between = between.max(off(point).abs());
+            let point = weights[0] * p.coords + weights[1] * q.coords + weights[2] * r.coords;
+            between = between.max(off(point.into()).abs());
         }
     }
     [corners, between]
@@ -258,7 +257,7 @@ fn surfaces_keep_their_tolerance_and_hold_c() {
                 let surface = surface.expect("a surface");
                 let side = surface.side;
                 assert_eq!(surface.points.len(), surface.n[0] * surface.n[1]);
-                assert!(surface.points.contains(&[0.0; 3]), "{name} {side:?}");
+                assert!(surface.points.contains(&Point3::origin()), "{name} {side:?}");
                 let [corners, between] = departures(&placement, &surface);
                 assert!(corners < 1e-11, "{name} {side:?}: corners {corners:e}");
                 // Along ζ, which is not quite across the surface.
@@ -279,14 +278,14 @@ fn surfaces_face_outwards_and_move_into_rail_axes() {
         for (surface, sign) in [(&rail, 1.0), (&wheel, -1.0)] {
             for [a, b, c] in surface.triangles() {
                 let [p, q, r] = [a, b, c].map(|k| surface.points[k]);
-                let up = (q[0] - p[0]) * (r[1] - p[1]) - (r[0] - p[0]) * (q[1] - p[1]);
-                assert!(sign * up > 0.0, "{name} {:?}", surface.side);
+                let up = (q - p).cross(&(r - p));
+                assert!(sign * up.z > 0.0, "{name} {:?}", surface.side);
             }
         }
-        let own = &placement.rail.section.frame;
+        let own = &placement.rail().section.frame;
         let moved = rail.in_rail_axes(&placement);
         let profile =
-            wheelrail::profile::Section::own_axes(placement.rail.profile(), wheelrail::profile::Side::Rail);
+            wheelrail::profile::Section::own_axes(placement.rail().profile(), wheelrail::profile::Side::Rail);
         for p in &moved.points {
             let miss = (profile.height(p[0]) - p[2]).abs();
             assert!(miss.is_nan() || miss < 1e-3, "{name}: {p:?} {miss:e}");

@@ -7,6 +7,7 @@ mod exact;
 mod twice;
 
 use exact::{Exact, Found, doubled};
+use wheelrail::nalgebra::Vector2;
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Profile, Shape, Side, standards};
 use wheelrail::scene::equal_steps;
@@ -135,17 +136,17 @@ impl<'a> Scene<'a> {
 
     /// Whether s leads from the rail to the wheel.
     fn on_both(&self, place: [f64; 2], s: f64) -> bool {
-        self.exact.on_both(place, self.placement.rail.section.height(place[0]), s)
+        self.exact.on_both(place, self.placement.rail().section.height(place[0]), s)
     }
 
     /// Sum of the magnitudes of what s is the sum of \[mm\]: midplane gap, climb of the wheel along ξ′ − ξ, its rise across.
     fn size(&self, [xi, eta]: [f64; 2], s: f64) -> f64 {
-        let (sin, cos) = self.placement.skew.sin_cos();
+        let skew = self.placement.skew_rotation();
         let midplane = |xi: f64| match self.straight.wheel(xi, 0.0) {
             Found::At(zeta) => Some(zeta),
             _ => None,
         };
-        let xi_w = xi * cos + eta * sin;
+        let xi_w = skew.inverse_transform_vector(&Vector2::new(xi, eta)).x;
         let (Found::At(gap), Some(here), Some(there)) =
             (self.straight.separation(xi, 0.0), midplane(xi), midplane(xi_w))
         else {
@@ -171,7 +172,7 @@ impl<'a> Scene<'a> {
 
 /// R_max/300 mm of [`ABSOLUTE`], at least 1.
 fn scale(placement: &Placement) -> f64 {
-    let segments = placement.rail.profile().segments().iter().chain(placement.wheel.profile().segments());
+    let segments = placement.rail().profile().segments().iter().chain(placement.wheel().profile().segments());
     let radius = |shape: &Shape| match shape {
         Shape::Arc(arc) if arc.radius.is_finite() => arc.radius.abs(),
         _ => 0.0,

@@ -1,6 +1,6 @@
 //! Whole grids against points one by one, on every built-in pair: strips, joints on columns, masks, estimate.
 
-use wheelrail::placement::{Pair, Placement};
+use wheelrail::placement::Placement;
 use wheelrail::separation::axis::EtaAxis;
 use wheelrail::separation::grid::Method;
 use wheelrail::separation::plan::{FULL_PRECISION, plan};
@@ -20,7 +20,7 @@ fn steps(a: f64, b: f64, n: usize) -> Vec<f64> {
 /// Largest |spectral − pointwise| \[mm\] over a window with columns on every joint, and the estimate for the former.
 fn difference(placement: &Placement, [half, reach]: [f64; 2], points: usize) -> (f64, f64) {
     let mut xi = steps(-0.9 * half, 1.1 * half, COLUMNS);
-    let sections = [&placement.rail.section, &placement.wheel.section];
+    let sections = [&placement.rail().section, &placement.wheel().section];
     let joints = sections.into_iter().flat_map(|section| &section.pieces).flat_map(|piece| piece.xi);
     xi.extend(joints.filter(|xi| xi.abs() < half));
     xi.sort_by(f64::total_cmp);
@@ -45,8 +45,7 @@ fn difference(placement: &Placement, [half, reach]: [f64; 2], points: usize) -> 
 fn grids_and_points_agree_within_the_estimate_on_every_built_in_pair() {
     let mut compared = 0;
     for subject in built_in_pairs().expect("built-in profiles") {
-        let Placement { rail, wheel, wheel_radius, .. } = subject.placement;
-        let pair = Pair::new(rail.profile().clone(), wheel.profile().clone(), wheel_radius).expect("a pair");
+        let pair = subject.placement.pair();
         for ([rail_x, wheel_x], window) in CONTACTS.into_iter().zip(WINDOWS) {
             // Not every wheel has a flange at −41 mm.
             let Ok(placement) = pair.placed(rail_x, wheel_x, 0.0) else { continue };
@@ -62,8 +61,7 @@ fn grids_and_points_agree_within_the_estimate_on_every_built_in_pair() {
 fn so_they_do_under_a_yawed_wheel() {
     let mut compared = 0;
     for (k, subject) in built_in_pairs().expect("built-in profiles").into_iter().enumerate() {
-        let Placement { rail, wheel, wheel_radius, .. } = subject.placement;
-        let pair = Pair::new(rail.profile().clone(), wheel.profile().clone(), wheel_radius).expect("a pair");
+        let pair = subject.placement.pair();
         let ([rail_x, wheel_x], window) = (CONTACTS[k % 3], WINDOWS[k % 3]);
         for yaw in [-0.12, 0.004, 0.05] {
             let Ok(placement) = pair.placed(rail_x, wheel_x, yaw) else { continue };

@@ -124,9 +124,8 @@ fn hollow_wheels_and_throats_have_theirs() {
     let names = ["hollow_tread", "throat", "steep_flange", "UIC60_EN15302A_root", "joint_in_column"];
     for reference in references().iter().filter(|reference| names.contains(&reference.name.as_str())) {
         for yaw in [-0.15, -0.05, 0.01, 0.05, 0.3] {
-            let mut placement = reference.placement().expect("a placement");
-            placement.skew = yaw;
-            check(&format!("{}, yaw {yaw}", reference.name), &placement, 0.05);
+            let placement = reference.placement().and_then(|placement| placement.with_skew(yaw));
+            check(&format!("{}, yaw {yaw}", reference.name), &placement.expect("a placement"), 0.05);
         }
     }
 }

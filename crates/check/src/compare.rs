@@ -1,6 +1,7 @@
 //! Compares the program's answers with the measurements on the meshes.
 
 use std::time::Instant;
+use wheelrail::nalgebra::{Unit, Vector3};
 
 use super::body::{Found, JOINT, STEEPEST, Solid};
 use super::closest::{of_bodies, to_point};
@@ -68,8 +69,8 @@ pub fn check(
     for &[xi, eta] in &points {
         tally.ray(xi, eta, answer(xi, eta));
     }
-    let distances = tally.distances(request.approach, placement.wheel_radius, answer);
-    let contact_point = [&placement.rail, &placement.wheel].map(contact_point);
+    let distances = tally.distances(request.approach, placement.wheel_radius(), answer);
+    let contact_point = [placement.rail(), placement.wheel()].map(contact_point);
     let contact_point = [0, 1].map(|k| largest(contact_point.iter().map(|body| body[k])));
     let mut report = tally.report(distances, contact_point);
     report.seconds = start.elapsed().as_secs_f64();
@@ -79,7 +80,8 @@ pub fn check(
 /// Returns the sharpest radius of both profiles \[mm\], at most an eighth of the wheel's: the radius of the
 /// closed forms.
 fn smallest_radius(placement: &Placement) -> f64 {
-    let segments = [&placement.rail, &placement.wheel].into_iter().flat_map(|body| body.profile().segments());
+    let segments =
+        [placement.rail(), placement.wheel()].into_iter().flat_map(|body| body.profile().segments());
     let radii = segments.filter_map(|segment| match &segment.shape {
         Shape::Arc(arc) => Some(arc.radius.abs()),
         Shape::Polynomial(_) => None,
@@ -218,8 +220,11 @@ impl<'a> Tally<'a> {
             let points = [rail, wheel].map(|h| Vector::new(at[0], at[1], h.zeta));
             self.near.push(Near { at, separation: s, places: [rail.place, wheel.place], points });
         }
-        self.compare_normals(self.rail, at, Vector::from_array(answer.normals.rail), rail);
-        self.compare_normals(self.wheel, at, -Vector::from_array(answer.normals.wheel), wheel);
+        let vector = |normal: Option<_>| {
+            normal.map_or(Vector::NAN, |n: Unit<Vector3<f64>>| Vector::from_array(n.into_inner().into()))
+        };
+        self.compare_normals(self.rail, at, vector(answer.normals.rail), rail);
+        self.compare_normals(self.wheel, at, -vector(answer.normals.wheel), wheel);
     }
 
     fn compare_normals(&mut self, solid: &Solid, at: [f64; 2], normal: Vector, heights: &[Height]) {

@@ -106,8 +106,8 @@ struct Implicit {
 
 impl Implicit {
     fn new(placement: &Placement, wheel: bool, arc: Arc) -> Self {
-        let body = if wheel { &placement.wheel } else { &placement.rail };
-        Self { frame: body.point.station, axle: wheel.then_some(placement.wheel_radius), arc }
+        let body = if wheel { placement.wheel() } else { placement.rail() };
+        Self { frame: body.point.station, axle: wheel.then_some(placement.wheel_radius()), arc }
     }
 
     fn distance_and_normal(&self, point: Vector) -> (f64, Vector) {

@@ -157,13 +157,13 @@ struct Wheel {
 impl Surface {
     /// Makes the extruded rail of a placed pair.
     pub fn rail(placement: &Placement) -> Self {
-        Self::new(&placement.rail, None)
+        Self::new(placement.rail(), None)
     }
 
     /// Makes the revolved wheel of a placed pair, turned about ζ by the skew.
     pub fn wheel(placement: &Placement) -> Self {
-        let axle = placement.wheel_radius - placement.wheel.point.station.z;
-        Self::new(&placement.wheel, Some(Wheel { axle, skew: placement.skew.sin_cos() }))
+        let axle = placement.wheel_radius() - placement.wheel().point.station.z;
+        Self::new(placement.wheel(), Some(Wheel { axle, skew: placement.skew().sin_cos() }))
     }
 
     fn new(body: &Body, wheel: Option<Wheel>) -> Self {

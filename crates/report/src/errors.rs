@@ -1,6 +1,7 @@
 //! Compares a method with the 60-digit values of a scene.
 
 use super::reference::{Reference, exact};
+use wheelrail::nalgebra::Vector2;
 use wheelrail::placement::Placement;
 use wheelrail::profile::Section;
 use wheelrail::scene::equal_steps;
@@ -82,14 +83,14 @@ const END_ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Returns whether a point is [`over_contact`], and not within rounding of an end: there the point belongs to
 /// the neighbour too, on which s has only absolute accuracy.
 pub fn inside_contact(placement: &Placement, xi: f64, eta: f64) -> bool {
-    let extent = placement.rail.profile().extent().max(placement.wheel.profile().extent());
+    let extent = placement.rail().profile().extent().max(placement.wheel().profile().extent());
     on_contact(placement, xi, eta, END_ROUNDING * extent)
 }
 
 fn on_contact(placement: &Placement, xi: f64, eta: f64, end: f64) -> bool {
-    let (rail, wheel) = (&placement.rail.section, &placement.wheel.section);
-    let (sin, cos) = placement.skew.sin_cos();
-    let (xi_w, eta_w) = (xi * cos + eta * sin, eta * cos - xi * sin);
+    let (rail, wheel) = (&placement.rail().section, &placement.wheel().section);
+    let own = placement.skew_rotation().inverse_transform_vector(&Vector2::new(xi, eta));
+    let (xi_w, eta_w) = (own.x, own.y);
     let e = eta_w * eta_w / (2.0 * placement.rolling_radius());
     let inside = |section: &Section, xi: f64| {
         section.piece_at(xi).is_some_and(|piece| {

@@ -241,7 +241,7 @@ impl Bench<'_> {
     /// Returns whether tips agree within the bound on s over its slope there, and other ends within the
     /// rounding of abscissae.
     fn same_extent(&self, found: &Component, expected: &StatedComponent, delta: f64) -> bool {
-        let profiles = [self.placement.rail.profile(), self.placement.wheel.profile()];
+        let profiles = [self.placement.rail().profile(), self.placement.wheel().profile()];
         let extent = profiles.map(|profile| profile.extent()).into_iter().fold(0.0, f64::max);
         let rounding = 16.0 * f64::EPSILON * extent;
         (0..2).all(|k| {

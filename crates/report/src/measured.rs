@@ -12,7 +12,7 @@ use wheelrail::measured::{self, CUTOFF_WAVELENGTH, CurveKind, Format, Options, w
 use wheelrail::patch::{Patch, Window};
 use wheelrail::placement::{Body, Pair, Placement};
 use wheelrail::profile::trace::{Mark, beside, trace};
-use wheelrail::profile::{Profile, Side, standards};
+use wheelrail::profile::{Profile, Side, inclination, standards};
 use wheelrail::search::{Pose, ProfilePair, Selection};
 use wheelrail::separation::Evaluator;
 
@@ -198,7 +198,7 @@ impl Reference {
         let touch = search.touch(&Pose::new(0.0, 0.0, 0.0)?, &Selection { within: 0.0, apart: 0.5 });
         let missing = |what: &str| Error::new("60E1 on S1002", what, "a tread contact", "report this");
         let contact = touch.and_then(|t| t.contacts.first().copied()).ok_or_else(|| missing("no contact"))?;
-        let placement = pair.placed(contact.rail_x, contact.wheel_x, 0.0)?;
+        let placement = contact.placed(&pair)?;
         let window = Window { xi: [-20.0, 20.0], eta: [-20.0, 20.0] };
         let patch = Patch::new(&placement, APPROACH, &window);
         let extent = patch.extent().ok_or_else(|| missing("no patch"))?;
@@ -223,7 +223,7 @@ impl Reference {
         let separation = off.fold(0.0, f64::max);
         let area = Patch::new(&placed, APPROACH + lowest, &self.window).area() / self.area - 1.0;
         let at_contact = |body: &Body| body.point.station.x;
-        let own = pair.placed(at_contact(&self.placement.rail), at_contact(&self.placement.wheel), 0.0)?;
+        let own = pair.placed(at_contact(self.placement.rail()), at_contact(self.placement.wheel()), 0.0)?;
         let pressure = pressure(&own).map(|pressure| pressure / self.pressure - 1.0);
         let [profile, slope, curvature] = [0, 1, 2].map(|k: usize| a[k].max(b[k]));
         Ok(Errors { profile, slope, curvature, separation, area, pressure })
@@ -232,8 +232,7 @@ impl Reference {
 
 /// Makes the pair of the rail, inclined 1:40, and the wheel.
 fn pair(rail: &Profile, wheel: &Profile) -> Result<Pair> {
-    let run = 40f64.hypot(1.0);
-    Pair::new(rail.rotated(40.0 / run, 1.0 / run), wheel.clone(), RADIUS)
+    Pair::new(rail.rotated(inclination(1.0, 40.0)?), wheel.clone(), RADIUS)
 }
 
 /// Returns \[ξ, η, s\] at the points of a grid over the box that are in the patch; C is one of them.

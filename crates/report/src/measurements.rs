@@ -208,7 +208,7 @@ fn verified(references: &[Reference], every_pair: usize) -> Result<[Vec<Verified
     let mut scenes = Vec::new();
     for reference in references {
         let subject = Subject::of_reference(reference)?;
-        scenes.extend(subject.skewed());
+        scenes.extend(subject.skewed()?);
         scenes.push(subject);
     }
     let pairs: Vec<Subject> = built_in_pairs()?.into_iter().step_by(every_pair).collect();

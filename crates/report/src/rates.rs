@@ -7,7 +7,7 @@ use wheelrail::error::Result;
 use wheelrail::measured::{CurveKind, Format, Options};
 use wheelrail::placement::Pair;
 use wheelrail::placement::track::{RailDistance, WheelDistance};
-use wheelrail::profile::{Profile, standards};
+use wheelrail::profile::{Profile, inclination, standards};
 use wheelrail::search::Selection;
 use wheelrail::search::sweep::{Conicity, Sweep};
 use wheelrail::search::wheelset::{Position, Roll, WheelsetOnTrack};
@@ -192,8 +192,7 @@ fn worn(spacing: f64, noise: f64, curve: CurveKind) -> Result<(usize, Pair)> {
 
 /// Makes the pair of the rail, inclined 1:40, and the wheel.
 fn pair(rail: &Profile, wheel: Profile) -> Result<Pair> {
-    let run = 40f64.hypot(1.0);
-    Pair::new(rail.rotated(40.0 / run, 1.0 / run), wheel, RADIUS)
+    Pair::new(rail.rotated(inclination(1.0, 40.0)?), wheel, RADIUS)
 }
 
 fn system(pair: Pair) -> Result<WheelsetOnTrack> {

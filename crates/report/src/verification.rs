@@ -12,14 +12,11 @@ use wheelrail_check::{Answer, Floor, Report, Request, check};
 
 /// Skew of every third built-in pair \[rad\].
 const SKEW: f64 = 0.01;
-/// Additional skews of the reference scenes \[rad\].
 const SKEWS: [f64; 2] = [SKEW, -0.06];
 
 /// R of the built-in pairs \[mm\].
 const WHEEL_RADIUS: f64 = 460.0;
-/// Half widths of the window of the built-in pairs \[mm\].
 const HALF_WIDTHS: [f64; 2] = [30.0, 15.0];
-/// Approach δ of the built-in pairs \[mm\].
 const APPROACH: f64 = 0.05;
 
 /// A placed pair to be checked, with the place of the check.
@@ -56,13 +53,16 @@ impl Subject {
         Ok(Self { name: reference.name.clone(), placement: reference.placement()?, request })
     }
 
-    /// Returns the subject with other skews.
-    pub fn skewed(&self) -> impl Iterator<Item = Self> {
-        SKEWS.into_iter().map(|skew| Self {
-            name: format!("{}, skew {skew}", self.name),
-            placement: Placement { skew, ..self.placement.clone() },
-            request: self.request,
-        })
+    /// This pair under other skews.
+    ///
+    /// # Errors
+    /// As [`Placement::with_skew`].
+    pub fn skewed(&self) -> Result<Vec<Self>> {
+        let skewed = |skew: f64| {
+            let name = format!("{}, skew {skew}", self.name);
+            Ok(Self { name, placement: self.placement.with_skew(skew)?, request: self.request })
+        };
+        SKEWS.into_iter().map(skewed).collect()
     }
 
     /// Checks the point-wise evaluator's answers by the meshes.

@@ -11,8 +11,7 @@ use wheelrail::measured::Format;
 use wheelrail::mesh::strips::{Counts, StripMesh};
 use wheelrail::patch::{Patch, Window};
 use wheelrail::placement::{Pair, Placement};
-use wheelrail::profile::Profile;
-use wheelrail::profile::standards;
+use wheelrail::profile::{Profile, inclination, standards};
 use wheelrail::scene::{Scene, equal_steps, parse};
 use wheelrail::search::{ONE_CONTACT, Pose, ProfilePair, Selection};
 use wheelrail::separation::axis::EtaAxis;
@@ -75,8 +74,7 @@ pub fn whole_cases(side: usize, seconds: f64) -> Result<Vec<WholeCase>> {
 
 /// Makes the pair of the rail, inclined 1:40, and the wheel.
 fn pair([rail, wheel]: [Profile; 2]) -> Result<Pair> {
-    let run = 40f64.hypot(1.0);
-    Pair::new(rail.rotated(40.0 / run, 1.0 / run), wheel, RADIUS)
+    Pair::new(rail.rotated(inclination(1.0, 40.0)?), wheel, RADIUS)
 }
 
 /// Writes a worn rail and a worn wheel as files, reads and smooths them.
@@ -135,7 +133,7 @@ fn parts(pair: &Pair, side: usize, seconds: f64) -> Result<[f64; PARTS.len()]> {
     let found = search.touch(&pose, &selection).and_then(|touch| touch.contacts.first().copied());
     let lost = || Error::new("whole case", "no contact", "a tread contact", "report this");
     let contact = found.ok_or_else(lost)?;
-    let place = || pair.placed(contact.rail_x, contact.wheel_x, contact.skew);
+    let place = || contact.placed(pair);
     let placement: Placement = place()?;
     let [xi, eta] = HALF_WIDTHS.map(|half| equal_steps(-half, half, side));
     let [xi_window, eta_window] = HALF_WIDTHS.map(|half| [-half, half]);

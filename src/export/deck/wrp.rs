@@ -142,7 +142,8 @@ fn head(deck: &Deck<'_>, magic: &str, notes: &[&str]) -> String {
     text += &line(&[grid.xi()[0], grid.eta()[0]]);
     text += &line(&deck.steps);
     text += &line(&[deck.header.approach]);
-    [frame.origin, frame.xi, frame.eta, frame.zeta].iter().for_each(|vector| text += &line(vector));
+    let vectors = [frame.origin.coords, *frame.xi, *frame.eta, *frame.zeta];
+    vectors.iter().for_each(|vector| text += &line(vector.as_slice()));
     text
 }
 
@@ -157,7 +158,7 @@ fn cells(mesh: &QuadMesh) -> Result<String> {
             .of_kind(Kind::Limit));
     }
     let mut text = format!("{:>8}{:>8}\n", mesh.points.len(), mesh.quads.len());
-    mesh.points.iter().for_each(|point| text += &line(point));
+    mesh.points.iter().for_each(|point| text += &line(point.coords.as_slice()));
     for ((quad, &area), component) in mesh.quads.iter().zip(&mesh.area).zip(&mesh.component) {
         let [a, b, c, d] = quad.map(|node| node + 1);
         let _ = write!(text, "{component:>4}{a:>8}{b:>8}{c:>8}{d:>8}");

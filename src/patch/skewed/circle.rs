@@ -1,6 +1,8 @@
 //! The circles that the points of a wheel's profile describe about the axle, seen in the tangent plane of a
 //! skewed placement.
 
+use nalgebra::{UnitComplex, Vector2};
+
 use crate::placement::Placement;
 use crate::profile::Section;
 
@@ -17,14 +19,10 @@ pub(super) struct Turned<'a> {
     pub(super) section: &'a Section,
     /// R, the axle distance of C \[mm\].
     axle: f64,
-    /// sinθ.
-    sin: f64,
-    /// cosθ.
-    cos: f64,
-    /// sinχ, with χ the skew.
-    pub(super) sin_skew: f64,
-    /// cosχ.
-    cos_skew: f64,
+    /// The rotation by θ, from the wheel's contact frame to its profile's axes.
+    tilt: UnitComplex<f64>,
+    /// The rotation by χ, from the wheel's directions in the tangent plane to ξ and η.
+    pub(super) skew: UnitComplex<f64>,
 }
 
 /// The circle of one profile point about the axle.
@@ -32,7 +30,6 @@ pub(super) struct Turned<'a> {
 pub(super) struct Circle {
     /// Profile abscissa in the wheel's contact frame \[mm\].
     p: f64,
-    /// Profile height in the wheel's contact frame \[mm\].
     pub(super) height: f64,
     /// Axle distance \[mm\].
     radius: f64,
@@ -56,12 +53,15 @@ pub(super) struct Parallel {
 }
 
 impl<'a> Turned<'a> {
-    /// Takes the frame and the skew of a placed pair.
+    /// Makes the circles of a placed pair.
     pub(super) fn new(placement: &'a Placement) -> Self {
-        let section = &placement.wheel.section;
-        let (sin_skew, cos_skew) = placement.skew.sin_cos();
-        let axle = placement.rolling_radius();
-        Self { section, axle, sin: section.frame.sin, cos: section.frame.cos, sin_skew, cos_skew }
+        let wheel = placement.wheel();
+        Self {
+            section: &wheel.section,
+            axle: placement.rolling_radius(),
+            tilt: wheel.contact_frame().rotation,
+            skew: placement.skew_rotation(),
+        }
     }
 
     /// Returns the circle of the profile point at abscissa `p` of a piece.
@@ -70,7 +70,7 @@ impl<'a> Turned<'a> {
     }
 
     fn circle_with(&self, p: f64, height: f64) -> Circle {
-        Circle { p, height, radius: self.axle - p * self.sin - height * self.cos }
+        Circle { p, height, radius: self.axle - p * self.tilt.im - height * self.tilt.re }
     }
 
     /// Returns the circle of a profile point and t of its place that is parallel to η, or ±[`FARTHEST`] if
@@ -83,11 +83,11 @@ impl<'a> Turned<'a> {
     /// Returns the place of a profile point that is parallel to η, with the slope of the surface there.
     pub(super) fn parallel_with_slope(&self, piece: usize, p: f64) -> Parallel {
         let tangent = self.section.branches[self.section.pieces[piece].branch].station(p);
-        let sin_phi = tangent.sin * self.cos + tangent.cos * self.sin;
-        let cos_phi = tangent.cos * self.cos - tangent.sin * self.sin;
-        let half = cos_phi * self.cos_skew;
-        let constant = self.sin_skew * tangent.sin;
-        let square = self.sin_skew * (sin_phi * self.cos + cos_phi * self.sin);
+        // The tangent (cos φ, sin φ) in the profile's own axes.
+        let own = self.tilt * Vector2::new(tangent.cos, tangent.sin);
+        let half = own.x * self.skew.re;
+        let constant = self.skew.im * tangent.sin;
+        let square = self.skew.im * (self.tilt * own).y;
         let root = (half * half - constant * square).sqrt();
         let nearest = -constant / (half + root.copysign(half));
         let far = FARTHEST.copysign(-constant * half);
@@ -95,40 +95,38 @@ impl<'a> Turned<'a> {
         let share = 2.0 / (1.0 + t * t);
         // The normal in the wheel's own directions: the one in the midplane, and what the turn by v adds to
         // it.
-        let lifted = cos_phi * share * t * t;
-        let along = tangent.sin + lifted * self.sin;
-        let across = cos_phi * share * t;
-        let up = lifted * self.cos - tangent.cos;
-        let slope = (across * self.sin_skew - along * self.cos_skew) / up;
+        let lifted = own.x * share * t * t;
+        let along = tangent.sin + lifted * self.tilt.im;
+        let across = own.x * share * t;
+        let up = lifted * self.tilt.re - tangent.cos;
+        let slope = -(self.skew * Vector2::new(along, across)).x / up;
         Parallel { circle: self.circle_with(p, tangent.z), t, slope }
     }
 
     /// Returns the place at t on a circle.
     pub(super) fn place(&self, circle: &Circle, t: f64) -> Place {
         let share = 2.0 / (1.0 + t * t);
-        let along = circle.p + circle.radius * share * t * t * self.sin;
+        let along = circle.p + circle.radius * share * t * t * self.tilt.im;
         let across = circle.radius * share * t;
-        Place {
-            xi: along * self.cos_skew - across * self.sin_skew,
-            eta: along * self.sin_skew + across * self.cos_skew,
-        }
+        let turned = self.skew * Vector2::new(along, across);
+        Place { xi: turned.x, eta: turned.y }
     }
 
     /// Returns ζ of the wheel at t on a circle \[mm\].
     pub(super) fn height(&self, circle: &Circle, t: f64) -> f64 {
-        circle.height + circle.radius * 2.0 * t * t / (1.0 + t * t) * self.cos
+        circle.height + circle.radius * 2.0 * t * t / (1.0 + t * t) * self.tilt.re
     }
 
     /// Returns dζ/dξ along any circle at t.
     pub(super) fn slope(&self, t: f64) -> f64 {
         let (sin, cos) = (2.0 * t, 1.0 - t * t);
-        sin * self.cos / (self.sin * self.cos_skew * sin - self.sin_skew * cos)
+        sin * self.tilt.re / (self.tilt.im * self.skew.re * sin - self.skew.im * cos)
     }
 
     /// Returns dη/dξ along any circle at t.
     pub(super) fn rim_slope(&self, t: f64) -> f64 {
-        let (along, across) = (2.0 * t * self.sin, 1.0 - t * t);
-        (along * self.sin_skew + across * self.cos_skew) / (along * self.cos_skew - across * self.sin_skew)
+        let along = self.skew * Vector2::new(2.0 * t * self.tilt.im, 1.0 - t * t);
+        along.y / along.x
     }
 
     /// Returns the rounding of ξ and ζ \[mm\].
@@ -138,7 +136,7 @@ impl<'a> Turned<'a> {
 
     /// Returns t where a circle is parallel to η: a line of constant ξ touches the circle there.
     pub(super) fn touching(&self) -> f64 {
-        ((self.sin_skew / (self.sin * self.cos_skew)).atan() / 2.0).tan()
+        ((self.skew.im / (self.tilt.im * self.skew.re)).atan() / 2.0).tan()
     }
 
     /// Returns both t at which a circle crosses the ends of a range of η, widened a little.
@@ -148,7 +146,7 @@ impl<'a> Turned<'a> {
         [eta[0] - margin, eta[1] + margin].map(|eta| {
             // This leaves out how far the circle moves along the profile as it turns: the margin makes up for
             // that.
-            let sin = (eta - circle.p * self.sin_skew) / (self.cos_skew * circle.radius);
+            let sin = (eta - circle.p * self.skew.im) / (self.skew.re * circle.radius);
             let sin = sin.clamp(-most, most);
             sin / (1.0 + (1.0 - sin * sin).sqrt())
         })
@@ -157,14 +155,14 @@ impl<'a> Turned<'a> {
     /// Returns whether lines of constant ξ leave the wheel over the left end (0) or right end (1) of its
     /// profile and enter it again.
     pub(super) fn is_hollow(&self, end: usize) -> bool {
-        if end == 0 { self.sin < 0.0 } else { self.sin > 0.0 }
+        if end == 0 { self.tilt.im < 0.0 } else { self.tilt.im > 0.0 }
     }
 
     /// Returns both t at which the line of constant ξ meets a circle; NaN where it does not.
     pub(super) fn crossings(&self, circle: &Circle, xi: f64) -> [f64; 2] {
-        let constant = circle.p * self.cos_skew - xi;
-        let square = constant + 2.0 * circle.radius * self.sin * self.cos_skew;
-        let half = circle.radius * self.sin_skew;
+        let constant = circle.p * self.skew.re - xi;
+        let square = constant + 2.0 * circle.radius * self.tilt.im * self.skew.re;
+        let half = circle.radius * self.skew.im;
         let sum = half + (half * half - square * constant).sqrt().copysign(half);
         [constant / sum, sum / square]
     }

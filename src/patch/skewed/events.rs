@@ -26,7 +26,7 @@ pub(in crate::patch) struct Events {
 pub(in crate::patch) fn events(outline: &mut Outline<'_>, range: [f64; 2]) -> Events {
     let mut events = Events::default();
     let approach = outline.slicer.approach();
-    let rail = &outline.slicer.placement().rail.section;
+    let rail = &outline.slicer.placement().rail().section;
     let count = outline.slicer.skewed.as_ref().map_or(0, |skewed| skewed.valleys.creases.len());
     let mut intervals = Vec::new();
     for crease in 0..count {

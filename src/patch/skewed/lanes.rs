@@ -59,8 +59,8 @@ pub(in crate::patch) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<(usi
     let mut events = events(outline, [a, b]);
     let turns = std::mem::take(&mut events.turns);
     let placement = outline.slicer.placement();
-    let extent = placement.rail.profile().extent().max(placement.wheel.profile().extent());
-    let rail_steps: Vec<f64> = steps(&placement.rail.section, [a, b], extent).collect();
+    let extent = placement.rail().profile().extent().max(placement.wheel().profile().extent());
+    let rail_steps: Vec<f64> = steps(&placement.rail().section, [a, b], extent).collect();
     let mut all = [&events.xi[..], &rail_steps, &[a, b]].concat();
     all.sort_by(f64::total_cmp);
     all.dedup();
@@ -76,7 +76,7 @@ pub(in crate::patch) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<(usi
 
 /// Returns the range of ξ that the rail, the window and the valleys have in common; `None` if it is empty.
 fn searched(outline: &Outline<'_>) -> Option<[f64; 2]> {
-    let reach = outline.slicer.placement().rail.section.reach()?;
+    let reach = outline.slicer.placement().rail().section.reach()?;
     let creases = &outline.slicer.skewed.as_ref()?.valleys.creases;
     let valleys = || creases.iter().filter(|crease| crease.is_valley);
     let first = valleys().map(|crease| crease.xi[0]).fold(f64::INFINITY, f64::min);

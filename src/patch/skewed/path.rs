@@ -77,7 +77,7 @@ impl Path {
     fn end(&mut self, turned: &Turned<'_>, end: usize, t: f64) {
         let circle = self.ends[end];
         // Outward tangents turn the place against the skew on the right, and with it on the left.
-        let side = if end == 0 { turned.sin_skew } else { -turned.sin_skew };
+        let side = if end == 0 { turned.skew.im } else { -turned.skew.im };
         let (mut limit, touching) = (FARTHEST.copysign(side), turned.touching());
         if touching.abs() < FARTHEST {
             if (touching - t) * side > 0.0 {

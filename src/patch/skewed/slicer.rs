@@ -170,7 +170,7 @@ impl<'a> Skewed<'a> {
 
     fn level_between(&mut self, xi: f64, from: f64, far: f64) -> Edge {
         let eta = self.level(xi, from, far).unwrap_or(from);
-        let step = STEP_ROUNDINGS * f64::EPSILON * self.placement.wheel.profile().extent();
+        let step = STEP_ROUNDINGS * f64::EPSILON * self.placement.wheel().profile().extent();
         Edge { eta, ledge: (self.evaluator.separation(xi, eta) - self.approach).abs() > step }
     }
 

@@ -1,6 +1,7 @@
 //! Tests the search against dense sampling in three dimensions, which uses neither outlines nor normals.
 
 use super::*;
+use nalgebra::UnitComplex;
 
 /// A surface sampled in space: the wheel's points in track axes with their gap over the rail.
 struct Scene {
@@ -198,9 +199,9 @@ fn first_touch_agrees_with_dense_samples_of_standard_profiles() -> Result<()> {
     for name in standards::wheel_names() {
         for _ in 0..3 {
             let rail = rails[random.between(0.0, rails.len() as f64) as usize];
-            let (sin, cos) = random.between(0.0, 0.06).sin_cos();
+            let turn = UnitComplex::new(random.between(0.0, 0.06));
             let pose = [random.between(-14.0, 8.0), random.between(-0.04, 0.04), random.between(-0.02, 0.02)];
-            let (rail_profile, wheel) = (standards::rail(rail)?.rotated(cos, sin), standards::wheel(name)?);
+            let (rail_profile, wheel) = (standards::rail(rail)?.rotated(turn), standards::wheel(name)?);
             let scene = Scene { rail: rail_profile, wheel, radius: 460.0, pose };
             compare_scene(&format!("{name} on {rail} at {pose:?}"), scene)?;
         }

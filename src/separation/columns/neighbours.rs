@@ -49,7 +49,7 @@ impl<'a> Neighbours<'a> {
     /// [`MOST_SPANS`], or are not whole.
     #[inline(always)]
     pub fn take(&mut self, evaluator: &Evaluator<'a>, u_max: f64, xi: Lanes) -> Option<()> {
-        let (wheel, section) = (&self.wheel, &evaluator.placement.rail.section);
+        let (wheel, section) = (&self.wheel, &evaluator.placement.rail().section);
         let mut index = wheel.first_piece(xi[MANY / 2])?;
         let rail_piece = section.piece_at(xi[MANY / 2])?;
         for piece in [rail_piece, &wheel.section.pieces[index]] {
@@ -104,7 +104,7 @@ impl<'a> Neighbours<'a> {
     /// a column that is not taken there is a copy of one that is. `None` where none is taken.
     #[inline(always)]
     pub fn take_each(&mut self, evaluator: &Evaluator<'a>, u_max: f64, xi: &[f64]) -> Option<[bool; MANY]> {
-        let (rail, wheel) = (&evaluator.placement.rail.section, &self.wheel);
+        let (rail, wheel) = (&evaluator.placement.rail().section, &self.wheel);
         let pairs = pieces_under(wheel, rail, u_max, xi);
         let (first, stand_in) = pairs.iter().enumerate().find_map(|(k, pair)| Some((k, (*pair)?)))?;
         let [mut rails, mut wheels] = [stand_in.0, stand_in.1].map(|piece| [piece; MANY]);

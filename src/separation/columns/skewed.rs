@@ -54,7 +54,7 @@ struct ContactBeginning {
 
 impl<'s, 'a> SkewedColumn<'s, 'a> {
     fn new(evaluator: &'s mut Evaluator<'a>, arch: pulp::Arch, demand: Demand, xi: f64) -> Self {
-        let (rail, wheel) = (&evaluator.placement.rail.section, &evaluator.placement.wheel.section);
+        let (rail, wheel) = (&evaluator.placement.rail().section, &evaluator.placement.wheel().section);
         let piece = rail.piece_at(xi);
         let rail_height = piece.map_or(f64::NAN, |piece| rail.branches[piece.branch].height(xi));
         let branches =

@@ -27,7 +27,7 @@ const JUDGED: [f64; 4] = [0.0, 0.3, 0.7, 1.0];
 /// Makes the strips of a grid up to u = `u_max` \[mm²\], in order of ξ. There are none for a skewed wheel or few columns.
 pub fn strips(fitter: &mut Fitter<'_>, placement: &Placement, xi: &[f64], u_max: f64) -> Vec<Strip> {
     let (Some(&first), Some(&last)) = (xi.first(), xi.last()) else { return Vec::new() };
-    if placement.skew != 0.0 || u_max == 0.0 {
+    if placement.skew() != 0.0 || u_max == 0.0 {
         return Vec::new();
     }
     // What is no break belongs to the strip.
@@ -54,7 +54,7 @@ fn leading(xi: &[f64], holds: impl Fn(f64) -> bool) -> usize {
 
 /// Finds the ξ \[mm\] at which a joint of either body enters or leaves the columns, and the window's own ends, in order.
 fn breaks(placement: &Placement, u_max: f64, window: [f64; 2]) -> Vec<f64> {
-    let (rail, wheel) = (&placement.rail.section, WheelSurface::new(placement));
+    let (rail, wheel) = (&placement.rail().section, WheelSurface::new(placement));
     let leaving = |(joint, height): (f64, f64)| {
         let w = wheel.axle_distance(joint, height);
         // u = e (2w − e): the joint's own ring meets the window's edge; it has no such point where that is NaN.

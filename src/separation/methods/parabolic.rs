@@ -18,7 +18,7 @@ pub struct Parabolic<'a> {
 impl<'a> Parabolic<'a> {
     /// Makes parabolas with the constant coefficient 1/2R of a cylinder of the nominal radius.
     pub fn constant_radius(placement: &'a Placement, axis: &'a EtaAxis) -> Self {
-        let constant = Some(0.5 / placement.wheel_radius);
+        let constant = Some(0.5 / placement.wheel_radius());
         Self { constant, ..Self::local(placement, axis) }
     }
 
@@ -30,7 +30,7 @@ impl<'a> Parabolic<'a> {
 
 impl Kernel for Parabolic<'_> {
     fn column(&mut self, xi: f64, out: &mut [f64]) {
-        if self.evaluator.placement.skew == 0.0 {
+        if self.evaluator.placement.skew() == 0.0 {
             let [gap, local] = self.evaluator.parabola(xi, 0.0);
             let q = self.constant.unwrap_or(local);
             self.arch.dispatch(|| {

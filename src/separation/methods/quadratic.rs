@@ -26,15 +26,15 @@ impl<'a> Quadratic<'a> {
 ///
 /// At a joint the curvatures are those of the contact segments. The result is NaN where a body touches with a kink.
 pub fn quadratic_form(placement: &Placement) -> [f64; 3] {
-    if !(placement.rail.is_smooth() && placement.wheel.is_smooth()) {
+    if !(placement.rail().is_smooth() && placement.wheel().is_smooth()) {
         return [f64::NAN; 3];
     }
     let curvature = |section: &Section| section.branch_at(0.0).map_or(f64::NAN, |b| b.curvature(0.0));
-    let curvatures = [curvature(&placement.rail.section), curvature(&placement.wheel.section)];
-    let around = placement.wheel.section.frame.cos / placement.rolling_radius();
-    let [along, mixed, across] = form(curvatures, around, placement.skew);
+    let curvatures = [curvature(&placement.rail().section), curvature(&placement.wheel().section)];
+    let around = placement.wheel().section.frame.cos / placement.rolling_radius();
+    let [along, mixed, across] = form(curvatures, around, placement.skew());
     match gap::relative_curvature(placement) {
-        Some(relative) if placement.skew == 0.0 => [relative / 2.0, mixed, across],
+        Some(relative) if placement.skew() == 0.0 => [relative / 2.0, mixed, across],
         _ => [along, mixed, across],
     }
 }

@@ -26,10 +26,10 @@ enum Printed {
 
 /// Names what of a placed pair the Report's method has no formula for; its values are NaN there. `None` where it has them all.
 pub fn missing(placement: &Placement) -> Option<&'static str> {
-    if placement.skew != 0.0 {
+    if placement.skew() != 0.0 {
         return Some("yaw");
     }
-    let segments = placement.wheel.profile().segments().iter();
+    let segments = placement.wheel().profile().segments().iter();
     let unknown = |shape| Printed::of(shape, &Station::AXES).is_none();
     segments.map(|segment| &segment.shape).any(unknown).then_some("a wheel of parametric curves")
 }
@@ -95,8 +95,8 @@ impl<'a> ReportNewton<'a> {
                 .collect()
         };
         Self {
-            rail: printed(&placement.rail, &placement.rail.section.frame),
-            wheel: printed(&placement.wheel, &Station::AXES),
+            rail: printed(placement.rail(), &placement.rail().section.frame),
+            wheel: printed(placement.wheel(), &Station::AXES),
             placement,
             axis,
             tolerance,
@@ -114,8 +114,8 @@ impl<'a> ReportNewton<'a> {
 
     /// Computes ζ^W \[mm\] by the steps a to h of Sec. 6.2; NaN where they do not converge.
     fn wheel_height(&mut self, xi: f64, eta: f64, guess: f64) -> f64 {
-        let Station { x: x_c, z: z_c, cos, sin } = self.placement.wheel.section.frame;
-        let radius = self.placement.wheel_radius;
+        let Station { x: x_c, z: z_c, cos, sin } = self.placement.wheel().section.frame;
+        let radius = self.placement.wheel_radius();
         let mut zeta = guess;
         for _ in 0..MOST_ITERATIONS {
             let x = x_c + xi * cos - zeta * sin;
@@ -142,10 +142,10 @@ impl Kernel for ReportNewton<'_> {
     fn column(&mut self, xi: f64, out: &mut [f64]) {
         let holds = |([x0, x1], _): &&([f64; 2], Printed)| *x0 <= xi && xi <= *x1;
         let rail = self.rail.iter().find(holds).map_or_else(
-            || self.placement.rail.section.height(xi), // a polynomial, which (6.2) does not cover
+            || self.placement.rail().section.height(xi), // a polynomial, which (6.2) does not cover
             |(_, printed)| printed.profile(xi).0,
         );
-        let guess = self.placement.wheel.section.height(xi);
+        let guess = self.placement.wheel().section.height(xi);
         for (s, &eta) in out.iter_mut().zip(&self.axis.eta) {
             *s = self.wheel_height(xi, eta, guess) - rail;
         }

@@ -41,7 +41,7 @@ fn is_whole(spans: &[Span], u_max: f64) -> bool {
 
 impl Kernel for Spectral<'_> {
     fn column(&mut self, xi: f64, out: &mut [f64]) {
-        if self.fitter.evaluator.placement.skew != 0.0 {
+        if self.fitter.evaluator.placement.skew() != 0.0 {
             let Fitter { evaluator, arch, demand, .. } = &mut self.fitter;
             let error = skewed::fill(evaluator, (*arch, *demand), xi, &self.axis.eta, out);
             self.truncation = self.truncation.max(error);
@@ -129,7 +129,7 @@ impl Spectral<'_> {
             Some(strip) => {
                 arch.dispatch(StripColumns::<false> { placement, strip, xi, axis, mirrored, scratch, out });
             }
-            None if xi.len() > 1 && placement.skew == 0.0 => {
+            None if xi.len() > 1 && placement.skew() == 0.0 => {
                 arch.dispatch(EachColumn { spectral: self, xi, out });
             }
             None => {

@@ -11,6 +11,7 @@ use wheelrail::export::{
     Frame, GridFields, Header, Interval, Loop, QuadMesh, VIEW_SCRIPT, csv, legacy, npy, vtk, vts,
 };
 use wheelrail::files::{Folder, RUN_FOLDER};
+use wheelrail::nalgebra::{Isometry2, Point3, Translation2, UnitComplex, Vector2};
 
 /// Hertz: a wheel of 460 mm on a rail of 300 mm, 80 kN, E* of steel; closed form with elliptic integrals.
 const RADII: [f64; 2] = [300.0, 460.0];
@@ -57,7 +58,7 @@ impl Scene {
         let point = |k: u32| {
             let angle = f64::from(k) * std::f64::consts::TAU / 180.0;
             let xi = half[0] * angle.cos();
-            [xi, half[1] * angle.sin(), rail_height(xi)]
+            Point3::new(xi, half[1] * angle.sin(), rail_height(xi))
         };
         let points = (0..180).map(point).collect();
         if self.approach > 0.0 { vec![Loop { component: 0, points }] } else { Vec::new() }
@@ -73,7 +74,7 @@ impl Scene {
         for i in 0..=32u32 {
             let xi = -half[0] * (f64::from(i) * std::f64::consts::PI / 32.0).cos();
             let edge = half[1] * (1.0 - (xi / half[0]).powi(2)).max(0.0).sqrt();
-            mesh.points.extend((-2..=2).map(|j| [xi, edge * f64::from(j) / 2.0, rail_height(xi)]));
+            mesh.points.extend((-2..=2).map(|j| Point3::new(xi, edge * f64::from(j) / 2.0, rail_height(xi))));
         }
         for i in 0..32 {
             for j in 0..4 {
@@ -87,9 +88,8 @@ impl Scene {
                 mesh.quads.push([node, node + 5, node + 6, node + 1].map(tip));
             }
         }
-        let corners = |quad: &[usize; 4]| quad.map(|n| mesh.points[n]);
-        let cross = |[a, b]: [[f64; 3]; 2]| a[0] * b[1] - b[0] * a[1];
-        let area = |p: [[f64; 3]; 4]| (0..4).map(|k| cross([p[k], p[(k + 1) % 4]])).sum::<f64>() / 2.0;
+        let corners = |quad: &[usize; 4]| quad.map(|n| mesh.points[n].coords.xy());
+        let area = |p: [Vector2<f64>; 4]| (0..4).map(|k| p[k].perp(&p[(k + 1) % 4])).sum::<f64>() / 2.0;
         mesh.area = mesh.quads.iter().map(|quad| area(corners(quad))).collect();
         mesh.component = vec![0; mesh.quads.len()];
         mesh
@@ -102,12 +102,13 @@ impl Scene {
         let heights: Vec<f64> = xi.iter().map(|&x| rail_height(x)).collect();
         let normals: Vec<[f64; 2]> = xi.iter().map(|x| [x / 300.0, (1.0 - x * x / 9e4).sqrt()]).collect();
         let grid = GridFields::new(&xi, &eta, &separation, &heights, &normals).unwrap();
+        let turn = UnitComplex::from_cos_sin_unchecked(0.8, 0.6);
         let header = Header {
             title: "Paraboloids -- \u{a7}7 <test>".into(),
             version: env!("CARGO_PKG_VERSION").into(),
             scene_hash: "0123456789abcdef".into(),
             approach: self.approach,
-            frame: Frame::at(10.0, -0.2, 0.8, 0.6),
+            frame: Frame::from(&Isometry2::from_parts(Translation2::new(10.0, -0.2), turn)),
             remarks: Vec::new(),
         };
         let folder = Folder::create(dir, RUN_FOLDER).unwrap();

@@ -172,7 +172,7 @@ fn estimates(path: &Path, load: f64) -> (Vec<String>, f64) {
     let contact = VirtualContact::under_load(placement, load, modulus).unwrap();
     let approaches = [hertz.approach_mm, contact.published_approach_mm, contact.approach_mm];
     let numbers = [load, modulus, hertz.pressure_n_per_mm2].into_iter().chain(approaches);
-    let angle = placement.rail.contact_angle().to_degrees();
+    let angle = placement.rail().contact_angle().to_degrees();
     let chosen = format!("{:?}", part.contact.approach.unwrap().1.unwrap());
     let mut arguments: Vec<String> = numbers.map(|number| format!("{number:?}")).collect();
     arguments.extend([format!("{angle:.1}"), chosen]);

@@ -1,8 +1,8 @@
 //! Finds first touch and separation by brute force, from the definitions of the axes alone.
 
 use super::polyline::{Facing, Polyline, Vertex, outermost, vertices};
+use wheelrail::nalgebra::{Isometry2, Point2, Rotation3, UnitComplex, Vector2, Vector3};
 use wheelrail::placement::{Pair, Placement};
-use wheelrail::profile::Station;
 
 /// The attitude of a wheel: position of its profile origin beside the rail's \[mm\] and angles \[rad\], in
 /// the side's own axes.
@@ -93,15 +93,14 @@ impl Bodies {
 
     /// Returns s(ξ, η) \[mm\] of a placed pair; `None` where a body has no surface.
     pub fn separation(&self, placement: &Placement, xi: f64, eta: f64) -> Option<f64> {
-        let seen = |frame: &Station, x: f64, z: f64| {
-            let at = Station { x, z, ..Station::AXES }.seen_from(frame);
-            [at.x, at.z]
+        let seen = |frame: &Isometry2<f64>, x: f64, z: f64| -> [f64; 2] {
+            frame.inverse_transform_point(&Point2::new(x, z)).into()
         };
-        let frame = placement.rail.point.station;
+        let frame = placement.rail().contact_frame();
         let rail = outermost(self.rail.iter().map(|v| seen(&frame, v.x, v.z)), xi, Facing::Up)?;
-        let (sin, cos) = placement.skew.sin_cos();
-        let (xi_w, eta_w) = (xi * cos + eta * sin, eta * cos - xi * sin);
-        let frame = placement.wheel.point.station;
+        let own = UnitComplex::new(placement.skew()).inverse_transform_vector(&Vector2::new(xi, eta));
+        let (xi_w, eta_w) = (own.x, own.y);
+        let frame = placement.wheel().contact_frame();
         let section = self.wheel.iter().map(|v| {
             let distance = self.radius - v.z;
             // The circle of this point, cut by the plane η′.
@@ -150,21 +149,18 @@ impl Lowered {
 /// Directions of a turned wheel in the rail's (x, z): along the axle, forward, up.
 #[derive(Debug, Clone, Copy)]
 struct Directions {
-    along: [f64; 2],
-    forward: [f64; 2],
-    up: [f64; 2],
+    along: Vector2<f64>,
+    forward: Vector2<f64>,
+    up: Vector2<f64>,
 }
 
 impl Directions {
     /// Returns the columns of R_y(roll) R_z(yaw), both right-handed.
     fn new(standing: &Stance) -> Self {
-        let (sin_yaw, cos_yaw) = standing.yaw.sin_cos();
-        let (sin, cos) = standing.roll.sin_cos();
-        Self {
-            along: [cos_yaw * cos, -cos_yaw * sin],
-            forward: [-sin_yaw * cos, sin_yaw * sin],
-            up: [sin, cos],
-        }
+        let turned = |axis, angle| Rotation3::from_axis_angle(&axis, angle);
+        let turn = turned(Vector3::y_axis(), standing.roll) * turned(Vector3::z_axis(), standing.yaw);
+        let [along, forward, up] = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| (turn * axis).xz());
+        Self { along, forward, up }
     }
 
     /// Returns a point of the profile turned about the axle, in the rail's (x, z), with the wheel's profile
@@ -172,9 +168,7 @@ impl Directions {
     fn place(&self, standing: &Stance, radius: f64, [x, z]: [f64; 2], turn: f64) -> [f64; 2] {
         let (sin, cos) = turn.sin_cos();
         let distance = radius - z;
-        let component = |k: usize| {
-            radius * self.up[k] + x * self.along[k] + distance * (self.forward[k] * sin - self.up[k] * cos)
-        };
-        [standing.offset + component(0), component(1)]
+        let turned = radius * self.up + x * self.along + distance * (self.forward * sin - self.up * cos);
+        [standing.offset + turned.x, turned.y]
     }
 }

@@ -155,7 +155,7 @@ fn patch(
     row: &mut PracticeRow,
 ) -> Result<()> {
     let Some(c) = contact else { return Ok(()) };
-    let placement = pair.placed_along([c.rail_x, c.contact_angle], [c.wheel_x, c.wheel_angle], c.skew)?;
+    let placement = c.placed(pair)?;
     let whole = Patch::new(&placement, approach, &Window::UNBOUNDED);
     let groups = axes::groups(&whole, 0.0, None);
     let Some(group) = groups.first() else {

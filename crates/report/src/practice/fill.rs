@@ -6,7 +6,6 @@ use wheelrail::separation::Evaluator;
 
 /// Number of points along the shorter side of the grid.
 const FEWEST: f64 = 160.0;
-/// Most points along the longer side of the grid.
 const MOST: f64 = 2400.0;
 /// Number of points across a cell at which s is interpolated for the area.
 const INSIDE: usize = 4;
@@ -36,7 +35,7 @@ pub(super) fn filled(placement: &Placement, approach: f64, window: &Window) -> F
     let mut evaluator = Evaluator::new(placement);
     let mut s = vec![f64::NAN; counts[0] * counts[1]];
     // Without skew the patch is over the midplane.
-    let over = if placement.skew == 0.0 { placement.overlap() } else { Some(window.xi) };
+    let over = if placement.skew() == 0.0 { placement.overlap() } else { Some(window.xi) };
     for (k, column) in s.chunks_exact_mut(counts[1]).enumerate() {
         let xi = at(window.xi, k, counts[0]);
         if over.is_some_and(|[a, b]| a <= xi && xi <= b) {

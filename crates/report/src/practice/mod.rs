@@ -17,7 +17,7 @@ use super::specimen::{Instrument, Specimen, SpecimenKind};
 use wheelrail::error::{Error, Result};
 use wheelrail::measured::Format;
 use wheelrail::placement::Pair;
-use wheelrail::profile::{Profile, Side, standards};
+use wheelrail::profile::{Profile, Side, inclination, standards};
 
 /// The result of a case, one row of the report.
 #[derive(Debug, Clone, PartialEq)]
@@ -146,7 +146,7 @@ impl PracticeCase {
     fn pair(&self) -> Result<Pair> {
         let rail = self.rail.profile(Side::Rail)?;
         let rail = match self.lean {
-            Some(n) => rail.rotated(n / n.hypot(1.0), n.hypot(1.0).recip()),
+            Some(n) => rail.rotated(inclination(1.0, n)?),
             None => rail,
         };
         Pair::new(rail, self.wheel.profile(Side::Wheel)?, self.radius)

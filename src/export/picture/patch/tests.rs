@@ -1,11 +1,12 @@
 use super::*;
 use crate::export::sample::{Sample, header};
+use nalgebra::Point3;
 
 fn ellipse(delta: f64) -> Loop {
     let half = [(600.0 * delta).sqrt(), (920.0 * delta).sqrt()];
     let point = |k: i32| {
         let angle = f64::from(k).to_radians();
-        [half[0] * angle.cos(), half[1] * angle.sin(), 0.0]
+        Point3::new(half[0] * angle.cos(), half[1] * angle.sin(), 0.0)
     };
     Loop { component: 0, points: (0..360).map(point).collect() }
 }

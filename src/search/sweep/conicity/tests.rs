@@ -1,3 +1,4 @@
+use nalgebra::UnitComplex;
 use std::f64::consts::PI;
 
 use super::branches::{Branch, Sides};
@@ -16,8 +17,7 @@ fn system(rail: &Profile, wheel: &Profile) -> Result<WheelsetOnTrack> {
 
 /// Returns UIC60 at 1:20, as in EN 15302's reference profiles.
 fn reference_rail() -> Result<Profile> {
-    let (sin, cos) = 0.05f64.sin_cos();
-    Ok(standards::rail("UIC60")?.rotated(cos, sin).shifted(2.60264, 0.14155))
+    Ok(standards::rail("UIC60")?.rotated(UnitComplex::new(0.05)).shifted(2.60264, 0.14155))
 }
 
 /// Returns tan γ_e for the time of a quarter.
