@@ -16,8 +16,8 @@ const ORDER: [&str; 15] = [
     "load",
     "mesh",
     "export",
-    "scene",
     "case",
+    "scene",
     "docs",
 ];
 

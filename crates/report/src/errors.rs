@@ -1,9 +1,9 @@
 //! A method held to the 60-digit values of a scene.
 
 use super::reference::{Reference, exact};
+use wheelrail::case::equal_steps;
 use wheelrail::placement::Placement;
 use wheelrail::profile::Section;
-use wheelrail::scene::equal_steps;
 use wheelrail::separation::axis::EtaAxis;
 use wheelrail::separation::grid::Choice;
 
