@@ -30,10 +30,6 @@ pub type Rasterise = fn(&str) -> Result<Vec<u8>>;
 /// A file and the writer of its content.
 type Job<'a> = (&'static str, Box<dyn Fn(&FolderPart<'_>) -> Result<()> + Sync + Send + 'a>);
 
-/// Formats that are solver decks.
-const DECKS: [OutputFormat; 4] =
-    [OutputFormat::Text, OutputFormat::Conform, OutputFormat::Countact, OutputFormat::Contact];
-
 /// Writes all files that a run's case asks for, part by part, and tells what it is at.
 ///
 /// # Errors
@@ -50,7 +46,7 @@ fn write_part(run: &Run, part: &Part, folder: &Folder, png: Option<Rasterise>, t
     let rail = RailColumns::new(part);
     let axes = &part.site.grid;
     let grid = GridFields::new(&axes.xi, &axes.eta, &part.analysis.separation, &rail.height, &rail.normal)?;
-    let deck = possible(outputs, "decks", &DECKS, || Deck::new(&header, &grid), &mut skipped)?;
+    let deck = possible(outputs, "decks", &OutputFormat::DECKS, || Deck::new(&header, &grid), &mut skipped)?;
     let netcdf = || NetCdf::new(&header, &grid);
     let netcdf = possible(outputs, "separation.nc", &[OutputFormat::Netcdf], netcdf, &mut skipped)?;
     let bodies = surfaces_around(outputs, part, &mut skipped)?;

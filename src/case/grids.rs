@@ -87,9 +87,8 @@ pub(super) fn check_memory<'a>(outputs: &Outputs, grids: impl Iterator<Item = &'
     if all as f64 > MOST_POINTS {
         return bad(format!("{all} points"), format!("at most {MOST_POINTS:e} points"));
     }
-    let decks = [OutputFormat::Text, OutputFormat::Conform, OutputFormat::Countact, OutputFormat::Contact];
     // All grids are kept, and written one after the other.
-    let bytes = NUMBER * all + if outputs.any(&decks) { TEXT * largest } else { 0 };
+    let bytes = NUMBER * all + if outputs.any(&OutputFormat::DECKS) { TEXT * largest } else { 0 };
     let mut memory = Vec::<u8>::new();
     if bytes > ALWAYS_THERE && std::hint::black_box(&mut memory).try_reserve_exact(bytes).is_err() {
         let found = format!("{all} points, which take {bytes} bytes of memory");

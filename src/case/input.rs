@@ -160,6 +160,11 @@ pub enum OutputFormat {
     Png,
 }
 
+impl OutputFormat {
+    /// Formats that are solver decks.
+    pub(super) const DECKS: [Self; 4] = [Self::Text, Self::Conform, Self::Countact, Self::Contact];
+}
+
 /// What files say of the scene that they come from; nothing is computed from it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Echo {

@@ -3,6 +3,7 @@
 
 mod axes;
 mod data;
+mod method_or_auto;
 mod profiles;
 mod read;
 mod resolve;

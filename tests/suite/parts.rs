@@ -13,7 +13,12 @@ fn run(grid: &str) -> wheelrail::Result<Run> {
          [wheel]\nsegments = [{{ line = {{ from = [-60.0, 0.0], to = [60.0, 0.0] }} }}]\nradius = 460.0\n\
          [contact]\nrail_x = 20.0\nwheel_x = 20.0\n[patch]\napproach = 0.02\n[grid]\n{grid}\n"
     );
-    Run::new(scene::resolve(&scene::parse(&text, false)?, Path::new("."), "crowns")?, SILENT)
+    computed(&text)
+}
+
+/// Reads, resolves and computes a scene.
+fn computed(text: &str) -> wheelrail::Result<Run> {
+    Run::new(scene::resolve(&scene::parse(text, false)?, Path::new("."), "a scene")?, SILENT)
 }
 
 #[test]
@@ -61,7 +66,7 @@ fn lengths_beyond_all_measure_are_refused() {
             "[rail]\nprofile = \"60E1\"\n[wheel]\nprofile = \"S1002\"\nradius = {radius}\n[contact]\noffset = 0.0\n\
              [patch]\napproach = {approach}\n[grid]\nxi = {xi}\neta = {{ from = -10.0, to = 10.0, n = 21 }}\n"
         );
-        Run::new(scene::resolve(&scene::parse(&text, false)?, Path::new("."), "beyond measure")?, SILENT)
+        computed(&text)
     };
     let usual = "{ from = -12.0, to = 12.0, n = 21 }";
     for (radius, approach, xi, place) in [
@@ -94,8 +99,7 @@ fn narrow_features_and_missing_surfaces_are_seen_by_the_plan() {
             "[rail]\nsegments = [{rail}]\n{wheel}[grid]\nxi = {{ from = -12.0, to = 12.0, n = 1281 }}\n\
              eta = {{ from = -4.0, to = 4.0, n = 33 }}\ntolerance = 1e-3\n"
         );
-        let run = scene::resolve(&scene::parse(&text, false).expect("a scene"), Path::new("."), "narrow");
-        let run = Run::new(run.expect("a case"), SILENT).expect("a run");
+        let run = computed(&text).expect("a run");
         let Part { site, analysis } = &run.parts[0];
         let (xi, eta) = (&site.grid.xi, &site.grid.eta);
         let mut evaluator = Evaluator::new(&site.contact.placement);
@@ -116,9 +120,7 @@ fn a_contact_that_only_the_approach_closes_is_no_refusal() {
     let text = "[rail]\nprofile = \"49E1\"\nrotate = \"1:20\"\n\
                 [wheel]\nprofile = \"EN13715-1:40-h28-e32.5\"\nradius = 425.0\n\
                 [contact]\noffset = 5.5\nyaw = 0.008\n[patch]\nload = 75000.0\n";
-    let scene = scene::parse(text, false).expect("a scene");
-    let case = scene::resolve(&scene, Path::new("."), "two contacts").expect("a case");
-    let run = Run::new(case, SILENT).expect("a contact");
+    let run = computed(text).expect("a contact");
     let feasible: Vec<bool> = run.parts.iter().map(|part| part.site.contact.feasibility.feasible).collect();
     assert_eq!(feasible, [true, false]);
     assert!(run.refusals().is_empty(), "{:?}", run.refusals());
@@ -144,9 +146,7 @@ fn files_say_that_a_contact_is_infeasible_or_a_mirror_image() {
                     [track]\ngauge = 1435.0\n[wheelset]\nback_to_back = 1360.0\nflange_back_x = -70.0\n\
                     lateral = 1.0\n[patch]\napproach = 0.05\n";
     for (text, folder, said) in [(chosen, "", "infeasible contact"), (wheelset, "left", "mirror image")] {
-        let scene = scene::parse(text, false).expect("a scene");
-        let case = scene::resolve(&scene, Path::new("."), "a remark").expect("a case");
-        let run = Run::new(case, SILENT).expect("a contact");
+        let run = computed(text).expect("a contact");
         let home = tempfile::tempdir().expect("a folder");
         let target = home.path().join("out");
         let out = Folder::create(&target, RUN_FOLDER).expect("a folder");
@@ -166,7 +166,7 @@ fn a_contact_at_an_end_takes_no_quadratic_form() {
              [wheel]\nsegments = [{{ line = {{ from = [-60.0, 0.0], to = [8.0, 0.0] }} }}]\nradius = 460.0\n\
              [contact]\noffset = -10.0\n[patch]\napproach = 0.02\n[grid]\nmethod = \"{method}\"\n"
         );
-        Run::new(scene::resolve(&scene::parse(&text, false)?, Path::new("."), "an end")?, SILENT)
+        computed(&text)
     };
     let run = scene("auto").expect("a contact");
     let analysis = &run.parts[0].analysis;
@@ -186,9 +186,7 @@ fn a_joint_of_the_drawing_is_no_second_contact() {
                 "[rail]\nprofile = \"60E1\"\nrotate = {inclination}\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n\
                  [contact]\noffset = {offset:?}\n[patch]\nload = 1e5\n"
             );
-            let scene = scene::parse(&text, false).expect("a scene");
-            let case = scene::resolve(&scene, Path::new("."), "near a joint").expect("a case");
-            let run = Run::new(case, SILENT).expect("a contact");
+            let run = computed(&text).expect("a contact");
             let places: Vec<f64> =
                 run.parts.iter().map(|part| part.site.contact.placement.wheel.point.station.x).collect();
             for (i, a) in places.iter().enumerate() {
