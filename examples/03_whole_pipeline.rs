@@ -5,13 +5,14 @@
 
 use std::path::Path;
 
-use wheelrail::case::Run;
+use wheelrail::case::{Run, SILENT, write};
 use wheelrail::files::{Folder, RUN_FOLDER};
 use wheelrail::scene;
 
 fn main() -> wheelrail::Result<()> {
     let path = Path::new("examples/scenes/60e1_s1002.toml");
-    let run = Run::new(scene::load(path)?, Path::new("examples/scenes"), "60e1_s1002")?;
+    let case = scene::resolve(&scene::load(path)?, Path::new("examples/scenes"), "60e1_s1002")?;
+    let run = Run::new(case, SILENT)?;
     for part in &run.parts {
         println!(
             "method {}, error below {:e} mm",
@@ -20,6 +21,6 @@ fn main() -> wheelrail::Result<()> {
         );
     }
     let folder = Folder::create(Path::new("output/from_library"), RUN_FOLDER)?;
-    run.write(&folder)?;
+    write(&run, &folder, None, SILENT)?;
     folder.commit()
 }

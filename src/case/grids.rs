@@ -1,16 +1,18 @@
-//! The grids of a run: the scene's own axes, or automatic ones over every part of the patch.
+//! The grids of a case: its own axes, or automatic ones over every part of the patch.
 
+use super::input::{AskedAxes, OutputFormat, Outputs};
 use super::places::{MOST_PARTS, Placed};
 use crate::error::{Error, Result};
 use crate::mesh::axes::{self, Axes, Group, MOST_POINTS};
-use crate::scene::{Format, Scene};
 
 /// The axes of one grid.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Grid {
+pub struct Grid {
+    /// ξ \[mm\], ascending.
     pub xi: Vec<f64>,
+    /// η \[mm\], ascending.
     pub eta: Vec<f64>,
-    /// What the user should know of them.
+    /// What the user should know of automatic axes.
     pub warning: Option<String>,
 }
 
@@ -20,23 +22,20 @@ impl Grid {
     }
 }
 
-/// The grids of one contact: the scene's own axes, or one over every part of the patch.
+/// Gives the grids of one contact: the case's own axes, or one grid over every part of the patch.
 ///
 /// A contact that was found has one grid, over the part of the patch that holds it: the others are contacts of
 /// their own.
-pub(super) fn grids(scene: &Scene, place: &Placed) -> Result<Vec<Grid>> {
-    let (xi, eta) = (scene.axis("xi")?, scene.axis("eta")?);
-    let (spacing, merge) = (scene.spacing()?, scene.merge()?);
-    if let (Some(xi), Some(eta)) = (&xi, &eta) {
-        let set = [("spacing", spacing.is_some()), ("merge", scene.grid.merge.is_some())];
-        if let Some((key, _)) = set.into_iter().find(|(_, set)| *set) {
-            let (place, expected) = (format!("grid: {key}"), format!("`{key}` only with automatic axes"));
-            return Err(Error::new(place, "a value beside given axes", expected, "remove it"));
-        }
+///
+/// # Errors
+/// Automatic axes without a patch; a patch of more parts than anybody looks through; cells that do not fit into memory.
+pub(super) fn grids(asked: &AskedAxes, place: &Placed) -> Result<Vec<Grid>> {
+    let AskedAxes { xi, eta, spacing, merge } = asked;
+    if let (Some(xi), Some(eta)) = (xi, eta) {
         return Ok(vec![Grid { xi: xi.clone(), eta: eta.clone(), warning: None }]);
     }
     let patch = place.contact.whole_patch();
-    let mut groups = patch.map_or_else(Vec::new, |patch| axes::groups(patch, merge, spacing));
+    let mut groups = patch.map_or_else(Vec::new, |patch| axes::groups(patch, *merge, *spacing));
     if groups.is_empty() {
         let expected = "values, or a patch that the axes can be sized by";
         let advice = "give from, to and n, or a larger approach";
@@ -52,7 +51,7 @@ pub(super) fn grids(scene: &Scene, place: &Placed) -> Result<Vec<Grid>> {
         return Err(Error::new("grid", found, expected, advice));
     }
     let grid = |group: &Group| {
-        let automatic = group.axes(spacing)?;
+        let automatic = group.axes(*spacing)?;
         let warning = stretched(&automatic);
         let (xi, eta) = (xi.clone().unwrap_or(automatic.xi), eta.clone().unwrap_or(automatic.eta));
         Ok(Grid { xi, eta, warning })
@@ -70,14 +69,14 @@ fn stretched(axes: &Axes) -> Option<String> {
     })
 }
 
-/// Rejects grids for which the memory cannot be had, before any is filled: a failed allocation ends the process.
+/// Refuses grids for which the memory cannot be had, before any is filled: a failed allocation ends the process.
 ///
 /// # Errors
 /// More than 10⁸ points together; more than the system grants.
-pub(super) fn check_memory<'a>(scene: &Scene, grids: impl Iterator<Item = &'a Grid>) -> Result<()> {
-    /// Bytes of one value of s …
+pub(super) fn check_memory<'a>(outputs: &Outputs, grids: impl Iterator<Item = &'a Grid>) -> Result<()> {
+    /// Bytes of one value of s.
     const NUMBER: usize = 8;
-    /// … and of its text, which the decks share.
+    /// Bytes of its text, which the decks share.
     const TEXT: usize = 25;
     /// Below this the system is not asked.
     const ALWAYS_THERE: usize = 100_000_000;
@@ -88,10 +87,8 @@ pub(super) fn check_memory<'a>(scene: &Scene, grids: impl Iterator<Item = &'a Gr
     if all as f64 > MOST_POINTS {
         return bad(format!("{all} points"), format!("at most {MOST_POINTS:e} points"));
     }
-    let decks = [Format::Text, Format::Conform, Format::Countact, Format::Contact];
-    let written = scene.output.wanted().iter().any(|format| decks.contains(format));
     // All grids are kept, and written one after the other.
-    let bytes = NUMBER * all + if written { TEXT * largest } else { 0 };
+    let bytes = NUMBER * all + if outputs.any(&OutputFormat::DECKS) { TEXT * largest } else { 0 };
     let mut memory = Vec::<u8>::new();
     if bytes > ALWAYS_THERE && std::hint::black_box(&mut memory).try_reserve_exact(bytes).is_err() {
         let found = format!("{all} points, which take {bytes} bytes of memory");

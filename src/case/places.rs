@@ -1,18 +1,17 @@
-//! The contacts of a scene: the chosen one, or those that a search finds.
+//! The contacts of a case: the chosen one, or those that a search finds.
 
 use std::cell::OnceCell;
 
 use nalgebra::Point2;
 use serde::Serialize;
 
-use super::analysis::{ApproachBy, Contact, Question};
+use super::contact::Contact;
+use super::input::{ApproachBy, Case, Place};
 use crate::error::{Error, Result};
 use crate::mesh::axes;
-use crate::placement::Pair;
-use crate::scene::{Place, Standing};
+use crate::placement::Placement;
 use crate::search;
-use crate::search::wheelset::WheelsetOnTrack;
-use crate::search::{ONE_CONTACT, ProfilePair, Selection, Touch};
+use crate::search::{ONE_CONTACT, Selection, Touch};
 
 /// Vertical gap \[mm\] up to which places of contact are looked for at least: any approach that a load makes.
 const SEARCHED_GAP: f64 = 1.0;
@@ -29,7 +28,7 @@ pub(super) struct Placed {
     pub folder: String,
     pub found: Option<Found>,
     pub contact: Contact,
-    /// ξ over which the part of its patch around C extends, with what is merged into it, once it was asked for.
+    /// ξ \[mm\] over which the part of its patch around C extends, with what is merged into it, once it was asked for.
     extent: OnceCell<Option<[f64; 2]>>,
 }
 
@@ -71,7 +70,7 @@ pub struct PlaceOfContact {
 }
 
 impl Found {
-    /// Side and number, as messages call it.
+    /// Names side and number, as messages call the contact.
     pub fn name(&self) -> String {
         match self.side {
             "single" => format!("contact {}", self.contact),
@@ -94,57 +93,62 @@ impl From<&search::Contact> for PlaceOfContact {
     }
 }
 
-/// One side of a search, as it is turned into contacts.
+/// First touch of one side.
 struct Side<'a> {
     name: &'static str,
     height: f64,
     roll: f64,
     touch: Touch<'a>,
-    within: f64,
 }
 
-/// All contacts of a scene, the first one first.
-pub(super) fn find(standing: &Standing, pair: &Pair, question: &Question) -> Result<Vec<Placed>> {
-    let sunk = match question.approach {
+/// Places the pair at every contact of a case, the first one first, with their names; computes no grid and no patch but
+/// those that tell contacts apart.
+///
+/// # Errors
+/// No contact, or more than anybody looks through; a load that no approach carries.
+pub fn contacts(case: &Case) -> Result<Vec<(String, Placement)>> {
+    // A chosen contact is one whatever the approach.
+    let chosen = matches!(case.standing.place, Place::Points { .. });
+    let placed = find(case, case.question.approach.filter(|_| !chosen))?;
+    Ok(placed.into_iter().map(|place| (place.name(), place.contact.placement)).collect())
+}
+
+/// Finds all contacts of a case under an approach, the first one first.
+///
+/// # Errors
+/// No contact, or more than anybody looks through; a load that no approach carries.
+pub(super) fn find(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<Placed>> {
+    let sunk = match approach {
         Some(ApproachBy::Given(approach)) => STEEPEST * approach,
         _ => 0.0,
     };
-    let selection = Selection { within: SEARCHED_GAP.max(standing.within).max(sunk), apart: ONE_CONTACT };
-    match standing.place {
+    let within = SEARCHED_GAP.max(case.standing.within).max(sunk);
+    let selection = Selection { within, apart: ONE_CONTACT };
+    match &case.standing.place {
         Place::Points { rail_x, wheel_x } => {
-            let contact = Contact::new(pair.placed(rail_x, wheel_x, 0.0)?, question)?;
+            let placement = case.profiles.pair.placed(*rail_x, *wheel_x, 0.0)?;
+            let contact = Contact::new(placement, approach, case.question.modulus())?;
             Ok(vec![Placed { folder: String::new(), found: None, contact, extent: OnceCell::new() }])
         }
-        Place::Wheel(pose) => {
-            let profiles = ProfilePair::new(pair)?;
+        Place::Wheel { profiles, pose } => {
             let mut search = profiles.search();
-            let Some(touch) = search.touch(&pose, &selection) else {
+            let Some(touch) = search.touch(pose, &selection) else {
                 return Err(no_touch("contact: offset", "a wheel over its rail", "check offset and signs"));
             };
-            let side = Side {
-                name: "single",
-                height: touch.height,
-                roll: pose.roll(),
-                touch,
-                within: standing.within,
-            };
-            side.contacts(pair, question)
+            Side { name: "single", height: touch.height, roll: pose.roll(), touch }.contacts(case, approach)
         }
-        Place::Wheelset { rails, wheels, position } => {
-            let system = WheelsetOnTrack::new(pair, rails, wheels)?;
+        Place::Wheelset { system, position } => {
             let mut search = system.search();
-            let Some(touch) = search.touch(&position, &selection)? else {
+            let Some(touch) = search.touch(position, &selection)? else {
                 let expected =
                     "wheels over their rails, and a roll within ±0.1 rad at which both sides touch";
                 return Err(no_touch("wheelset: lateral", expected, "check lateral, gauge and signs"));
             };
             let mut all = Vec::new();
-            // The right-hand side is the one that a scene describes.
-            for (name, side) in [("left", touch.sides[0]), ("right", touch.sides[1])].into_iter().rev() {
-                let (height, touch_of_side) = (side.z, side.touch);
-                let side =
-                    Side { name, height, roll: touch.roll, touch: touch_of_side, within: standing.within };
-                all.extend(side.contacts(pair, question)?);
+            // The right-hand side is the one that is described.
+            for (name, side) in [("right", touch.sides[1]), ("left", touch.sides[0])] {
+                let side = Side { name, height: side.z, roll: touch.roll, touch: side.touch };
+                all.extend(side.contacts(case, approach)?);
             }
             Ok(all)
         }
@@ -156,59 +160,67 @@ fn no_touch(place: &str, expected: &str, advice: &str) -> Error {
 }
 
 impl Side<'_> {
-    /// First touch, and every other place that the approach closes and that is not in the patch of one before.
-    fn contacts(&self, pair: &Pair, question: &Question) -> Result<Vec<Placed>> {
+    /// Places the first touch, and every other place that the approach closes and that is not in the patch of one before.
+    fn contacts(&self, case: &Case, asked: Option<ApproachBy>) -> Result<Vec<Placed>> {
+        let within = case.standing.within;
         let mut placed: Vec<Placed> = Vec::new();
         let mut missed = Vec::new();
         for place in self.touch.contacts {
-            let placement = place.placed(pair)?;
-            let asked = match placed.first() {
-                None => question.clone(),
+            let approach = match placed.first() {
+                None => asked,
                 Some(first) => {
                     let approach = approach_left(first, place);
                     if approach.is_some_and(|approach| approach <= 0.0)
-                        || placed.iter().any(|p| p.holds(place, question.merge))
+                        || placed.iter().any(|p| p.holds(place, case.axes.merge))
                     {
                         missed.push(PlaceOfContact::from(place));
                         continue;
                     }
-                    Question { approach: approach.map(ApproachBy::Given), ..question.clone() }
+                    approach.map(ApproachBy::Given)
                 }
             };
-            if question.approach.is_none() && place.gap > self.within {
-                continue;
+            if asked.is_some() || place.gap <= within {
+                placed.push(self.contact(case, place, placed.len() + 1, approach)?);
             }
-            let number = placed.len() + 1;
-            if number > MOST_PARTS {
-                let found = format!("more than {MOST_PARTS} places of contact of one wheel");
-                let advice = "smooth the profiles, or give grid.merge";
-                return Err(Error::new("contact", found, format!("at most {MOST_PARTS}"), advice));
-            }
-            let found = Found {
-                side: self.name,
-                height_mm: self.height,
-                roll_rad: self.roll,
-                contact: number,
-                place: place.into(),
-                near_misses: Vec::new(),
-            };
-            let folder =
-                if number == 1 { self.name.to_string() } else { format!("{}-contact-{number}", self.name) };
-            let contact = Contact::new(placement, &asked)?;
-            placed.push(Placed { folder, found: Some(found), contact, extent: OnceCell::new() });
         }
-        missed.retain(|place| place.gap_mm <= self.within);
-        for place in &mut placed {
-            if let Some(found) = &mut place.found {
-                found.near_misses.clone_from(&missed);
-            }
+        missed.retain(|place| place.gap_mm <= within);
+        for found in placed.iter_mut().filter_map(|place| place.found.as_mut()) {
+            found.near_misses.clone_from(&missed);
         }
         Ok(placed)
     }
+
+    /// Places the contact with this number, from 1.
+    fn contact(
+        &self,
+        case: &Case,
+        place: &search::Contact,
+        number: usize,
+        approach: Option<ApproachBy>,
+    ) -> Result<Placed> {
+        if number > MOST_PARTS {
+            let found = format!("more than {MOST_PARTS} places of contact of one wheel");
+            let advice = "smooth the profiles, or give grid.merge";
+            return Err(Error::new("contact", found, format!("at most {MOST_PARTS}"), advice));
+        }
+        let placement = place.placed(&case.profiles.pair)?;
+        let found = Found {
+            side: self.name,
+            height_mm: self.height,
+            roll_rad: self.roll,
+            contact: number,
+            place: place.into(),
+            near_misses: Vec::new(),
+        };
+        let folder =
+            if number == 1 { self.name.to_string() } else { format!("{}-contact-{number}", self.name) };
+        let contact = Contact::new(placement, approach, case.question.modulus())?;
+        Ok(Placed { folder, found: Some(found), contact, extent: OnceCell::new() })
+    }
 }
 
-/// δ at another place of a side when the first contact approaches by its own along its normal: the wheel sinks by
-/// δ₁/cosθ₁, closes the gap there, and the rest counts along that place's normal.
+/// Gives δ \[mm\] at another place of a side when the first contact approaches by its own δ₁ along its normal: the wheel sinks
+/// by δ₁/cosθ₁, closes the gap at the place, and the rest counts along the place's normal. `None` without an approach.
 fn approach_left(first: &Placed, place: &search::Contact) -> Option<f64> {
     let (approach, _) = first.contact.approach?;
     let sunk = approach / first.contact.placement.rail().point.station.cos;
@@ -216,12 +228,12 @@ fn approach_left(first: &Placed, place: &search::Contact) -> Option<f64> {
 }
 
 impl Placed {
-    /// As [`Found::name`]; a chosen contact has no number.
+    /// Names the contact as messages call it: by side and number, or "contact" for a chosen one.
     pub(super) fn name(&self) -> String {
         self.found.as_ref().map_or_else(|| "contact".into(), Found::name)
     }
 
-    /// Whether the part of this contact's patch around C, with what is merged into it, holds another place.
+    /// Tells whether the part of this contact's patch around C, with what is merged into it, holds another place.
     fn holds(&self, place: &search::Contact, merge: f64) -> bool {
         let Some(patch) = self.contact.whole_patch() else { return false };
         let placement = &self.contact.placement;

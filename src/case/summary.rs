@@ -3,7 +3,8 @@
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::{Part, Run};
+use super::input::Case;
+use super::run::{Part, Run};
 use crate::files::FolderPart;
 use crate::mesh::quality::Quality;
 use crate::mesh::surfaces::Surface;
@@ -41,7 +42,7 @@ struct ClosingSummary {
 /// Kinks below this are not worth a reader's time \[rad\].
 const SMOOTH: f64 = 1e-9;
 
-/// The summary as JSON text; `surfaces` are the written ones of rail and wheel.
+/// Gives the summary of one part as JSON text; `surfaces` are the written ones of rail and wheel.
 pub(super) fn summary(
     run: &Run,
     part: &Part,
@@ -50,24 +51,25 @@ pub(super) fn summary(
     files: &[String],
     skipped: &[String],
 ) -> Vec<u8> {
-    let (contact, analysis) = (&part.contact, &part.analysis);
+    let (Part { site, analysis }, Case { echo, file, profiles, .. }) = (part, &run.case);
+    let contact = &site.contact;
     let placement = &contact.placement;
     let value = json!({
         "program": "wheelrail",
         "version": env!("CARGO_PKG_VERSION"),
-        "title": run.title,
-        "scene": run.scene,
-        "scene_file": run.file.as_ref().map(|file| folder.relative(file)),
-        "scene_sha256": run.hash,
+        "title": echo.title,
+        "scene": echo.scene,
+        "scene_file": file.as_ref().map(|file| folder.relative(file)),
+        "scene_sha256": echo.hash,
         "conventions": "mm, rad; s > 0 apart; contact frame: origin C, xi along the common tangent, eta along the rail, zeta from rail to wheel; grids [i_xi][i_eta]",
         "rail": body(placement.rail()),
         "wheel": body(placement.wheel()),
-        "measured_rail": run.measured[0],
-        "measured_wheel": run.measured[1],
+        "measured_rail": profiles.measured[0],
+        "measured_wheel": profiles.measured[1],
         "wheel_radius_mm": placement.wheel_radius(),
         "rolling_radius_mm": placement.rolling_radius(),
         "skew_rad": placement.skew(),
-        "found": part.found,
+        "found": site.found,
         "feasibility": contact.feasibility,
         "curvatures": contact.curvatures,
         "approach_mm": contact.approach.map(|(approach, _)| approach),
@@ -81,8 +83,8 @@ pub(super) fn summary(
             "wheel": Quality::of_surface(wheel),
         })),
         "grid": {
-            "n_xi": analysis.xi.len(),
-            "n_eta": analysis.eta.len(),
+            "n_xi": site.grid.xi.len(),
+            "n_eta": site.grid.eta.len(),
             "undefined_points": analysis.separation.iter().filter(|s| s.is_nan()).count(),
             "method": analysis.plan.choice.method,
             "coefficients": analysis.plan.choice.coefficients,
@@ -90,8 +92,8 @@ pub(super) fn summary(
             "reason": analysis.plan.reason,
         },
         "refusals": part.refusals(),
-        "warnings": part.warnings(run),
-        "other_parts": run.parts.iter().map(|p| &p.folder).filter(|f| **f != part.folder).collect::<Vec<_>>(),
+        "warnings": run.warnings_of(part),
+        "other_parts": run.parts.iter().map(|p| &p.site.folder).filter(|f| **f != site.folder).collect::<Vec<_>>(),
         "files": files,
         "files_skipped": skipped,
         "timings": analysis.timings,

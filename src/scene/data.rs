@@ -1,12 +1,16 @@
 //! The keys of a scene. Unknown keys are errors.
 
+use std::fmt;
 use std::path::PathBuf;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::method_or_auto;
+use crate::case::OutputFormat;
 use crate::measured;
 use crate::profile::drawing::SegmentData;
+use crate::search::wheelset::{Position, Roll};
 use crate::separation::grid::Method;
 
 /// A scene: a wheel on a rail or a wheelset on a track, what is asked of it, and what is to be written.
@@ -41,6 +45,26 @@ pub struct Scene {
     /// What is written.
     #[serde(default)]
     pub output: OutputData,
+}
+
+/// Gives the JSON Schema of a scene.
+pub fn schema() -> schemars::Schema {
+    schemars::schema_for!(Scene)
+}
+
+impl Scene {
+    /// Gives the same scene with its wheelset at another position; a scene without a wheelset as it is.
+    #[must_use]
+    pub fn at(&self, position: &Position) -> Self {
+        let roll = match position.roll {
+            Roll::Solve => RollData::Word(RollWord::Solve),
+            Roll::Neglect => RollData::Word(RollWord::Neglect),
+            Roll::Fixed(angle) => RollData::Radians(angle),
+        };
+        let (lateral, yaw) = (position.lateral, position.yaw);
+        let moved = |wheelset: &WheelsetData| WheelsetData { lateral, yaw, roll, ..wheelset.clone() };
+        Self { wheelset: self.wheelset.as_ref().map(moved), ..self.clone() }
+    }
 }
 
 /// A profile: exactly one of `profile`, `file`, `segments`; then `mirror`, `rotate`, `shift`, in this order.
@@ -117,7 +141,7 @@ pub struct ProfileData {
 }
 
 impl ProfileData {
-    /// The keys of a measured file.
+    /// Gives the keys of a measured file.
     pub fn measured(&self) -> measured::Options {
         measured::Options {
             format: self.format,
@@ -147,6 +171,15 @@ pub enum Rotation {
     Radians(f64),
     /// "1:n", atan(1/n); "-1:n" the other way.
     Ratio(String),
+}
+
+impl fmt::Display for Rotation {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Radians(angle) => write!(f, "{angle}"),
+            Self::Ratio(text) => write!(f, "\"{text}\""),
+        }
+    }
 }
 
 /// A chosen pair of points, or a placed single wheel that is lowered until it touches.
@@ -363,75 +396,11 @@ pub enum Spacing {
     Each([f64; 2]),
 }
 
-/// The method of a grid in a scene: its name, or "auto" for `None`.
-mod method_or_auto {
-    use schemars::{Schema, SchemaGenerator, json_schema};
-    use serde::de::Error;
-    use serde::{Deserialize, Deserializer, Serializer};
-
-    use super::Method;
-
-    const AUTO: &str = "auto";
-
-    fn words() -> Vec<&'static str> {
-        std::iter::once(AUTO).chain(Method::ALL.map(Method::name)).collect()
-    }
-
-    // The signature is serde's.
-    pub(super) fn serialize<S: Serializer>(method: &Option<Method>, to: S) -> Result<S::Ok, S::Error> {
-        to.serialize_str(method.map_or(AUTO, Method::name))
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Method>, D::Error> {
-        let word = String::deserialize(from)?;
-        let named = Method::ALL.into_iter().find(|method| method.name() == word);
-        if named.is_some() || word == AUTO {
-            return Ok(named);
-        }
-        let known = words().join("`, `");
-        Err(D::Error::custom(format!("unknown variant `{word}`, expected one of `{known}`")))
-    }
-
-    pub(super) fn schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({ "type": "string", "enum": words() })
-    }
-}
-
 /// What is written besides summary.json, the tables and the picture.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputData {
     /// Formats; all but "png" by default.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub formats: Option<Vec<Format>>,
-}
-
-impl OutputData {
-    /// The formats to write.
-    pub fn wanted(&self) -> &[Format] {
-        use Format::{Conform, Contact, Countact, Netcdf, Npy, Text, Vtk};
-        self.formats.as_deref().unwrap_or(&[Vtk, Npy, Netcdf, Text, Conform, Countact, Contact])
-    }
-}
-
-/// One output format.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum Format {
-    /// .vts, .vtp, .vtu, .vtk and view.py.
-    Vtk,
-    /// xi.npy, eta.npy, separation.npy.
-    Npy,
-    /// separation.nc.
-    Netcdf,
-    /// separation.wrp.
-    Text,
-    /// conform.wrp.
-    Conform,
-    /// countact.wrp.
-    Countact,
-    /// contact.inp.
-    Contact,
-    /// patch.png.
-    Png,
+    pub formats: Option<Vec<OutputFormat>>,
 }

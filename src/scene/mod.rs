@@ -1,19 +1,20 @@
-//! Scenes: what the user writes, read and checked once, in mm and rad from here on.
+//! Scenes: what the user writes, read and then resolved once into a [`Case`](crate::case::Case) of checked values, in mm and
+//! rad.
 
+mod axes;
 mod data;
-mod position;
+mod method_or_auto;
+mod profiles;
 mod read;
 mod resolve;
+mod standing;
+mod words;
 
 pub use data::{
-    AxisData, ContactData, Format, GridData, MaterialData, OutputData, PatchData, ProfileData, RollData,
-    RollWord, Rotation, Scene, Spacing, TrackData, WheelsetData,
+    AxisData, ContactData, GridData, MaterialData, OutputData, PatchData, ProfileData, RollData, RollWord,
+    Rotation, Scene, Spacing, TrackData, WheelsetData, schema,
 };
-pub use position::{Place, Standing};
-pub use read::{hash, load, parse, perhaps};
-pub use resolve::{equal_steps, is_chain_file, profile_from_file};
-
-/// The JSON Schema of a scene.
-pub fn schema() -> schemars::Schema {
-    schemars::schema_for!(Scene)
-}
+pub use profiles::{is_chain_file, profile_from_file};
+pub use read::{load, parse};
+pub use resolve::{echo, resolve, with_profiles};
+pub use words::perhaps;

@@ -5,14 +5,14 @@ use std::path::Path;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
-use sha2::{Digest, Sha256};
 
-use super::Scene;
+use super::data::Scene;
+use super::words::perhaps;
 use crate::error::{Error, Result};
 use crate::files::read_text;
 use crate::measured::LARGEST_FILE;
 
-/// A scene from a TOML file, or from a JSON file with the same keys.
+/// Reads a scene from a TOML file, or from a JSON file with the same keys.
 ///
 /// # Errors
 /// An unreadable file; syntax, unknown keys and wrong types, each with its line.
@@ -23,7 +23,7 @@ pub fn load(path: &Path) -> Result<Scene> {
     parse(&text, json).map_err(|error| error.within(place))
 }
 
-/// A scene from text.
+/// Reads a scene, or another table of keys, from text.
 ///
 /// # Errors
 /// Syntax, unknown keys and wrong types, each with its line.
@@ -64,7 +64,7 @@ fn from_toml<T: DeserializeOwned>(text: &str) -> Result<(T, Value)> {
     Ok((read, value))
 }
 
-/// The first key at which a list was read as a table.
+/// Finds the first key at which a list was read as a table.
 fn list_for_table(given: &Value, read: &Value, key: &str) -> Option<String> {
     match (given, read) {
         (Value::Array(_), Value::Object(_)) => Some(key.to_string()),
@@ -88,30 +88,6 @@ fn has_null(value: &Value) -> bool {
     }
 }
 
-/// SHA-256 of the scene as read, in hexadecimal: equal scenes have equal hashes whatever their comments.
-pub fn hash(scene: &Scene) -> String {
-    let canonical = serde_json::to_vec(scene).unwrap_or_default();
-    Sha256::digest(canonical).iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
-/// Advice for a word that is not known: the nearest one that is, where one is near.
-pub fn perhaps(found: &str, known: &[&str]) -> String {
-    nearest(found, known).unwrap_or_else(|| "correct or remove it".into())
-}
-
-/// The nearest known word as advice, where one is near, in upper or lower case.
-pub fn nearest(found: &str, known: &[&str]) -> Option<String> {
-    /// Likeness from which two words look like one misspelt: `yaw` and `yaw_rad` have 0.87, words of a letter or two in
-    /// common 0.6.
-    const ALIKE: f64 = 0.7;
-    let lower = found.to_lowercase();
-    let likeness = |known: &str| strsim::jaro_winkler(&known.to_lowercase(), &lower);
-    let nearest = known.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
-    nearest
-        .filter(|nearest| likeness(nearest) >= ALIKE)
-        .map(|nearest| format!("perhaps `{nearest}` is meant"))
-}
-
 /// Advice where there is none in particular.
 const SEE_ALSO: &str = "see `wheelrail schema` and the README";
 
@@ -126,7 +102,7 @@ enum Keep {
     End,
 }
 
-/// A text on one line, as much of it as helps to find it.
+/// Gives a text on one line, as much of it as helps to find it.
 fn shortened(text: &str, keep: Keep) -> String {
     /// Characters that are shown.
     const SHOWN: usize = 60;
@@ -139,7 +115,7 @@ fn shortened(text: &str, keep: Keep) -> String {
     }
 }
 
-/// Serde's "unknown field `x`, expected one of `a`, `b`" and its kin, split into what stands there and what
+/// Splits Serde's "unknown field `x`, expected one of `a`, `b`" and its kin into what stands there and what
 /// could. Where a message says only what could, as those of keys with several forms do, `found` is what stands there.
 fn house_form(place: String, message: &str, found: Option<String>) -> Error {
     let message = message.trim();
@@ -194,7 +170,6 @@ mod tests {
         let scene: Scene = parse(SCENE, false)?;
         let json = serde_json::to_string(&scene).unwrap_or_default();
         assert_eq!(parse::<Scene>(&json, true)?, scene);
-        assert_eq!(hash(&scene).len(), 64);
         Ok(())
     }
 

@@ -57,8 +57,8 @@ impl Case {
                 if inclination == "0.0" { "0.0".into() } else { format!("{inclination:?}") }
             );
             let scene: scene::Scene = scene::parse(&text, false).expect("a scene");
-            let (pair, _) = scene.pair_and_records(std::path::Path::new(".")).expect("a pair");
-            (contacts(&scene, &pair).ok()?.into_iter().next()?.1, how)
+            let case = scene::resolve(&scene, std::path::Path::new("."), "flood").expect("a case");
+            (contacts(&case).ok()?.into_iter().next()?.1, how)
         } else {
             let profiles: [Profile; 2] =
                 [standards::rail(rail), standards::wheel(wheel)].map(|profile| profile.expect("a profile"));

@@ -19,8 +19,8 @@ const ORDER: [&str; 15] = [
     "load",
     "mesh",
     "export",
-    "scene",
     "case",
+    "scene",
     "docs",
 ];
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use wheelrail::case::{Part, Run};
+use wheelrail::case::{Part, Run, SILENT};
 use wheelrail::scene::{self, Scene};
 
 /// Both profiles sampled every 0.5 mm and smoothed with the default cut-off: twice what was found (0.5 %, 2.2 µm of
@@ -19,7 +19,7 @@ fn folder() -> &'static Path {
 fn run(name: &str, change: impl Fn(&mut Scene)) -> Run {
     let mut scene = scene::load(&folder().join(name)).unwrap();
     change(&mut scene);
-    Run::new(scene, folder(), name).unwrap()
+    Run::new(scene::resolve(&scene, folder(), name).unwrap(), SILENT).unwrap()
 }
 
 /// Largest difference of s \[mm\] over the drawn profiles' patch; the grids are the same.
@@ -32,9 +32,9 @@ fn over_the_patch(measured: &Part, drawn: &Part, approach: f64) -> f64 {
 fn measured_files_give_the_patch_of_their_drawings() {
     let (measured, drawn) = (run("measured.toml", |_| ()), run("60e1_s1002.toml", |_| ()));
     assert!(measured.refusals().is_empty(), "{:?}", measured.refusals());
-    assert!(measured.measured.iter().all(Option::is_some));
+    assert!(measured.case.measured().iter().all(Option::is_some));
     let (part, exact) = (&measured.parts[0], &drawn.parts[0]);
-    assert_eq!((&part.analysis.xi, &part.analysis.eta), (&exact.analysis.xi, &exact.analysis.eta));
+    assert_eq!((&part.site.grid.xi, &part.site.grid.eta), (&exact.site.grid.xi, &exact.site.grid.eta));
     let [patch, reference] = [part, exact].map(|part| part.analysis.patch.as_ref().unwrap());
     assert_eq!(patch.components.len(), reference.components.len(), "joints of spans must not cut the patch");
     let area = patch.area() / reference.area() - 1.0;

@@ -1,7 +1,7 @@
 //! The parts of a run: contacts of one wheel, and parts of a patch with a grid each or, by `[grid] merge`, together.
 
 use std::path::Path;
-use wheelrail::case::{Part, Run};
+use wheelrail::case::{Part, Run, SILENT, write};
 use wheelrail::files::{Folder, RUN_FOLDER};
 use wheelrail::scene;
 use wheelrail::separation::Evaluator;
@@ -13,7 +13,12 @@ fn run(grid: &str) -> wheelrail::Result<Run> {
          [wheel]\nsegments = [{{ line = {{ from = [-60.0, 0.0], to = [60.0, 0.0] }} }}]\nradius = 460.0\n\
          [contact]\nrail_x = 20.0\nwheel_x = 20.0\n[patch]\napproach = 0.02\n[grid]\n{grid}\n"
     );
-    Run::new(scene::parse(&text, false)?, Path::new("."), "crowns")
+    computed(&text)
+}
+
+/// Reads, resolves and computes a scene.
+fn computed(text: &str) -> wheelrail::Result<Run> {
+    Run::new(scene::resolve(&scene::parse(text, false)?, Path::new("."), "a scene")?, SILENT)
 }
 
 #[test]
@@ -22,7 +27,11 @@ fn parts_have_a_grid_each_unless_they_are_merged() {
         [("", vec!["", "patch-2"]), ("merge = 5.0", vec!["", "patch-2"]), ("merge = 60.0", vec![""])]
     {
         let run = run(grid).expect("a patch");
-        assert_eq!(run.parts.iter().map(|part| part.folder.as_str()).collect::<Vec<_>>(), folders, "{grid}");
+        assert_eq!(
+            run.parts.iter().map(|part| part.site.folder.as_str()).collect::<Vec<_>>(),
+            folders,
+            "{grid}"
+        );
         let components =
             run.parts.iter().map(|part| part.analysis.patch.as_ref().map_or(0, |p| p.components.len()));
         assert_eq!(components.sum::<usize>(), 2, "{grid}");
@@ -57,7 +66,7 @@ fn lengths_beyond_all_measure_are_refused() {
             "[rail]\nprofile = \"60E1\"\n[wheel]\nprofile = \"S1002\"\nradius = {radius}\n[contact]\noffset = 0.0\n\
              [patch]\napproach = {approach}\n[grid]\nxi = {xi}\neta = {{ from = -10.0, to = 10.0, n = 21 }}\n"
         );
-        Run::new(scene::parse(&text, false)?, Path::new("."), "beyond measure")
+        computed(&text)
     };
     let usual = "{ from = -12.0, to = 12.0, n = 21 }";
     for (radius, approach, xi, place) in [
@@ -90,13 +99,13 @@ fn narrow_features_and_missing_surfaces_are_seen_by_the_plan() {
             "[rail]\nsegments = [{rail}]\n{wheel}[grid]\nxi = {{ from = -12.0, to = 12.0, n = 1281 }}\n\
              eta = {{ from = -4.0, to = 4.0, n = 33 }}\ntolerance = 1e-3\n"
         );
-        let run =
-            Run::new(scene::parse(&text, false).expect("a scene"), Path::new("."), "narrow").expect("a run");
-        let Part { contact, analysis, .. } = &run.parts[0];
-        let mut evaluator = Evaluator::new(&contact.placement);
+        let run = computed(&text).expect("a run");
+        let Part { site, analysis } = &run.parts[0];
+        let (xi, eta) = (&site.grid.xi, &site.grid.eta);
+        let mut evaluator = Evaluator::new(&site.contact.placement);
         let mut worst = 0f64;
-        for (&xi, column) in analysis.xi.iter().zip(analysis.separation.chunks(analysis.eta.len())) {
-            for (&eta, &s) in analysis.eta.iter().zip(column) {
+        for (&xi, column) in xi.iter().zip(analysis.separation.chunks(eta.len())) {
+            for (&eta, &s) in eta.iter().zip(column) {
                 let exact = evaluator.separation(xi, eta);
                 assert_eq!(s.is_nan(), exact.is_nan(), "ξ = {xi}, η = {eta}");
                 worst = worst.max((s - exact).abs());
@@ -111,9 +120,8 @@ fn a_contact_that_only_the_approach_closes_is_no_refusal() {
     let text = "[rail]\nprofile = \"49E1\"\nrotate = \"1:20\"\n\
                 [wheel]\nprofile = \"EN13715-1:40-h28-e32.5\"\nradius = 425.0\n\
                 [contact]\noffset = 5.5\nyaw = 0.008\n[patch]\nload = 75000.0\n";
-    let scene = scene::parse(text, false).expect("a scene");
-    let run = Run::new(scene, Path::new("."), "two contacts").expect("a contact");
-    let feasible: Vec<bool> = run.parts.iter().map(|part| part.contact.feasibility.feasible).collect();
+    let run = computed(text).expect("a contact");
+    let feasible: Vec<bool> = run.parts.iter().map(|part| part.site.contact.feasibility.feasible).collect();
     assert_eq!(feasible, [true, false]);
     assert!(run.refusals().is_empty(), "{:?}", run.refusals());
     // No deck may give the whole load to one of the two.
@@ -122,10 +130,11 @@ fn a_contact_that_only_the_approach_closes_is_no_refusal() {
     let home = tempfile::tempdir().expect("a folder");
     let target = home.path().join("out");
     let folder = Folder::create(&target, RUN_FOLDER).expect("a folder");
-    run.write(&folder).and_then(|()| folder.commit()).expect("files");
+    write(&run, &folder, None, SILENT).and_then(|()| folder.commit()).expect("files");
     for part in &run.parts {
-        let deck = std::fs::read_to_string(target.join(&part.folder).join("contact.inp")).expect("a deck");
-        assert!(deck.contains(" PEN\n") && deck.contains("is shared with other"), "{}", part.folder);
+        let deck =
+            std::fs::read_to_string(target.join(&part.site.folder).join("contact.inp")).expect("a deck");
+        assert!(deck.contains(" PEN\n") && deck.contains("is shared with other"), "{}", part.site.folder);
     }
 }
 
@@ -137,12 +146,11 @@ fn files_say_that_a_contact_is_infeasible_or_a_mirror_image() {
                     [track]\ngauge = 1435.0\n[wheelset]\nback_to_back = 1360.0\nflange_back_x = -70.0\n\
                     lateral = 1.0\n[patch]\napproach = 0.05\n";
     for (text, folder, said) in [(chosen, "", "infeasible contact"), (wheelset, "left", "mirror image")] {
-        let scene = scene::parse(text, false).expect("a scene");
-        let run = Run::new(scene, Path::new("."), "a remark").expect("a contact");
+        let run = computed(text).expect("a contact");
         let home = tempfile::tempdir().expect("a folder");
         let target = home.path().join("out");
         let out = Folder::create(&target, RUN_FOLDER).expect("a folder");
-        run.write(&out).and_then(|()| out.commit()).expect("files");
+        write(&run, &out, None, SILENT).and_then(|()| out.commit()).expect("files");
         for name in ["contact.inp", "separation.wrp", "rail.vtu", "patch.vtu"] {
             let file = std::fs::read_to_string(target.join(folder).join(name)).expect("a file");
             assert!(file.contains(said), "{folder}/{name}");
@@ -158,7 +166,7 @@ fn a_contact_at_an_end_takes_no_quadratic_form() {
              [wheel]\nsegments = [{{ line = {{ from = [-60.0, 0.0], to = [8.0, 0.0] }} }}]\nradius = 460.0\n\
              [contact]\noffset = -10.0\n[patch]\napproach = 0.02\n[grid]\nmethod = \"{method}\"\n"
         );
-        Run::new(scene::parse(&text, false)?, Path::new("."), "an end")
+        computed(&text)
     };
     let run = scene("auto").expect("a contact");
     let analysis = &run.parts[0].analysis;
@@ -178,10 +186,9 @@ fn a_joint_of_the_drawing_is_no_second_contact() {
                 "[rail]\nprofile = \"60E1\"\nrotate = {inclination}\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n\
                  [contact]\noffset = {offset:?}\n[patch]\nload = 1e5\n"
             );
-            let scene = scene::parse(&text, false).expect("a scene");
-            let run = Run::new(scene, Path::new("."), "near a joint").expect("a contact");
+            let run = computed(&text).expect("a contact");
             let places: Vec<f64> =
-                run.parts.iter().map(|part| part.contact.placement.wheel().point.station.x).collect();
+                run.parts.iter().map(|part| part.site.contact.placement.wheel().point.station.x).collect();
             for (i, a) in places.iter().enumerate() {
                 nearest = nearest.min((a + 26.0).abs());
                 // Contacts of one wheel are on different curves of it: nearer ones are one patch twice.

@@ -7,10 +7,10 @@ mod exact;
 mod twice;
 
 use exact::{Exact, Found, doubled};
+use wheelrail::case::equal_steps;
 use wheelrail::nalgebra::Vector2;
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Profile, Shape, Side, standards};
-use wheelrail::scene::equal_steps;
 use wheelrail::separation::axis::EtaAxis;
 use wheelrail::separation::grid::Method;
 use wheelrail::separation::plan::{FULL_PRECISION, plan};

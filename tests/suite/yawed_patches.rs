@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use crate::common::{profile, references};
-use wheelrail::case::Run;
+use wheelrail::case::{Run, SILENT};
 use wheelrail::load::feasibility::feasibility;
 use wheelrail::mesh::strips::{Counts, StripMesh};
 use wheelrail::numerics::roots::bracketed;
@@ -188,12 +188,12 @@ fn any_yaw_ends_in_time() {
             );
             let start = Instant::now();
             let scene = scene::parse(&text, false).expect("a scene");
-            let run = Run::new(scene, Path::new("."), "yawed");
+            let run = scene::resolve(&scene, Path::new("."), "yawed").and_then(|case| Run::new(case, SILENT));
             assert!(start.elapsed() < LONGEST, "{rail}, {wheel}, {yaw}: {:?}", start.elapsed());
             for part in run.iter().flat_map(|run| &run.parts) {
                 check(
                     &format!("{rail} under {wheel}, R = {radius}, yaw {yaw}"),
-                    &part.contact.placement,
+                    &part.site.contact.placement,
                     0.05,
                 );
             }
@@ -282,7 +282,8 @@ fn joints_of_drawings_do_not_tear_patches() {
     for scene in scenes {
         let text = format!("{scene}[patch]\napproach = 0.08\n");
         let parsed = scene::parse(&text, false).expect("a scene");
-        let run = Run::new(parsed, Path::new("."), "joints").expect("a run");
+        let case = scene::resolve(&parsed, Path::new("."), "joints").expect("a case");
+        let run = Run::new(case, SILENT).expect("a run");
         for part in &run.parts {
             let patch = part.analysis.patch.as_ref().expect("a patch");
             let [c] = patch.components.as_slice() else { panic!("{text}: {} parts", patch.components.len()) };

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use super::progress::Progress;
 use super::{Outcome, folder_of, print};
-use wheelrail::case::contacts;
-use wheelrail::error::{Error, Result};
+use wheelrail::case::{contacts, equal_steps};
+use wheelrail::error::Result;
 use wheelrail::placement::Placement;
-use wheelrail::scene::{self, equal_steps};
+use wheelrail::scene;
 use wheelrail::separation::midplane::table;
 
 /// Values of ξ when the scene leaves the axis to the program.
@@ -17,17 +17,18 @@ const DEFAULT_ROWS: usize = 101;
 pub(super) fn midsep(path: &Path) -> Result<Outcome> {
     let _progress = Progress::of("midsep", "contacts");
     let scene = scene::load(path)?;
-    let found = || Ok((scene.axis("xi")?, contacts(&scene, &scene.pair(folder_of(path))?)?));
-    let (axis, contacts) = found().map_err(|error: Error| error.within(path.display()))?;
+    let found =
+        scene::resolve(&scene, folder_of(path), "midsep").and_then(|case| Ok((contacts(&case)?, case)));
+    let (contacts, case) = found.map_err(|error| error.within(path.display()))?;
     let tables = contacts.iter().map(|(name, placement)| {
-        let xi = axis.clone().unwrap_or_else(|| over(placement));
+        let xi = case.axes().xi.clone().unwrap_or_else(|| over(placement));
         let head = if contacts.len() > 1 { format!("# {name}\n") } else { String::new() };
         head + &table(placement, &xi)
     });
     print(&tables.collect::<Vec<_>>().join("\n"))
 }
 
-/// Equal steps over both bodies.
+/// Gives equal steps over both bodies.
 fn over(placement: &Placement) -> Vec<f64> {
     placement.overlap().map_or_else(Vec::new, |[a, b]| equal_steps(a, b, DEFAULT_ROWS))
 }

@@ -6,7 +6,7 @@ use super::output::refuse_results_of_another;
 use super::png::png;
 use super::progress::Progress;
 use super::{Outcome, complain, folder_of, outcome, print};
-use wheelrail::case::Run;
+use wheelrail::case::{Run, write};
 use wheelrail::error::Result;
 use wheelrail::files::{Folder, RUN_FOLDER};
 use wheelrail::scene;
@@ -25,11 +25,13 @@ pub(super) fn run(path: &Path, out: Option<&Path>) -> Result<Outcome> {
             target
         }
     };
-    let run =
-        Run::told(scene, folder_of(path), &name, &tell).map_err(|error| error.within(path.display()))?;
-    let run = run.read_from(path);
+    progress.at("profiles");
+    let case = scene::resolve(&scene, folder_of(path), &name);
+    let run = case
+        .and_then(|case| Run::new(case.read_from(path), &tell))
+        .map_err(|error| error.within(path.display()))?;
     let folder = Folder::create(&target, RUN_FOLDER)?;
-    run.write_told(&folder, Some(png), &tell)?;
+    write(&run, &folder, Some(png), &tell)?;
     folder.commit()?;
     for warning in run.warnings() {
         complain(&format!("warning: {warning}"));

@@ -1,10 +1,10 @@
 //! Compares a method with the 60-digit values of a scene.
 
 use super::reference::{Reference, exact};
+use wheelrail::case::equal_steps;
 use wheelrail::nalgebra::Vector2;
 use wheelrail::placement::Placement;
 use wheelrail::profile::Section;
-use wheelrail::scene::equal_steps;
 use wheelrail::separation::axis::EtaAxis;
 use wheelrail::separation::grid::Choice;
 

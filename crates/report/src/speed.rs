@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use rustix::time::{ClockId, clock_gettime};
 
+use wheelrail::case::equal_steps;
 use wheelrail::placement::Placement;
-use wheelrail::scene::equal_steps;
 use wheelrail::separation::axis::EtaAxis;
 use wheelrail::separation::grid::Choice;
 use wheelrail::separation::plan::{FULL_PRECISION, plan};

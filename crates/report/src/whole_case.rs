@@ -5,14 +5,14 @@ use std::hint::black_box;
 
 use super::specimen::{Instrument, Specimen, SpecimenKind};
 use super::speed::{LEAST_RUNS, Timing, race, timed};
-use wheelrail::case::Run;
+use wheelrail::case::{Profiles, Run, SILENT, equal_steps};
 use wheelrail::error::{Error, Result};
 use wheelrail::measured::Format;
 use wheelrail::mesh::strips::{Counts, StripMesh};
 use wheelrail::patch::{Patch, Window};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Profile, inclination, standards};
-use wheelrail::scene::{Scene, equal_steps, parse};
+use wheelrail::scene::{parse, with_profiles};
 use wheelrail::search::{ONE_CONTACT, Pose, ProfilePair, Selection};
 use wheelrail::separation::axis::EtaAxis;
 use wheelrail::separation::plan::{FULL_PRECISION, plan};
@@ -112,14 +112,15 @@ const WHEELSET: &str = "[rail]\nprofile = \"60E1\"\n[wheel]\nprofile = \"S1002\"
 /// # Errors
 /// A scene that cannot be computed, which is a fault of this program.
 pub fn run_cost(seconds: f64) -> Result<RunCost> {
-    let scene: Scene = parse(WHEELSET, false)?;
-    let profiles = (pair(measured()?)?, [None, None]);
-    Run::over(scene.clone(), &profiles, "measured")?;
+    let scene = parse(WHEELSET, false)?;
+    let profiles = Profiles { pair: pair(measured()?)?, measured: [None, None] };
+    let run = || Run::new(with_profiles(&scene, profiles.clone(), "measured")?, SILENT);
+    run()?;
     let mut timings = [Timing::NONE; 2];
     race(&mut timings, seconds, LEAST_RUNS, |part| {
         timed(|| match part {
             0 => drop(measured()),
-            _ => drop(Run::over(scene.clone(), &profiles, "measured")),
+            _ => drop(run()),
         })
     });
     let [profiles, rest] = timings.map(|timing| timing.best);

@@ -32,7 +32,7 @@ const OF_SIDE: [(&str, &str, Value); 3] = [
     ("Contact on the wheel", "x on the wheel [mm]", |row| row.contact.wheel_x),
 ];
 
-/// The picture of a table's positions, whose lateral displacements have to ascend.
+/// Makes the picture of a table's positions, whose lateral displacements have to ascend.
 pub(super) fn picture(table: &Table, title: &str) -> Result<CurvesPicture> {
     let all = &table.positions;
     if let Some(pair) = all.windows(2).find(|pair| pair[0].lateral >= pair[1].lateral) {
@@ -78,10 +78,10 @@ pub(super) fn picture(table: &Table, title: &str) -> Result<CurvesPicture> {
     })
 }
 
-/// Lateral displacement \[mm\] and lowest contact of each side, at evenly chosen positions.
+/// Finds lateral displacement \[mm\] and lowest contact of each side, at evenly chosen positions.
 fn lowest(table: &Table) -> Result<Vec<(f64, Vec<Row>)>> {
     let stride = table.positions.len().div_ceil(MOST_DRAWN).max(1);
-    let mut sweep = Sweep::new(&table.system, table.selection, table.conicity.as_ref());
+    let mut sweep = Sweep::new(table.system, table.selection, table.conicity.as_ref());
     let mut rows_at = |position: &Position| {
         let mut rows = Vec::new();
         sweep.position(position, &mut rows)?;

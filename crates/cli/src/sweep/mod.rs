@@ -8,18 +8,17 @@ mod positions;
 mod table;
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::output::{PictureFormat, refuse_taken};
 use super::progress::Progress;
 use super::{Outcome, complain, folder_of, print_to_reader};
 use positions::{lateral_range, read_positions};
 use table::Table;
-use wheelrail::case::question;
+use wheelrail::case::{Case, Place};
 use wheelrail::error::{Error, Result};
 use wheelrail::files::{Folder, NewFile, PATCHES_FOLDER};
-use wheelrail::load::hertz::effective_modulus;
-use wheelrail::placement::Pair;
-use wheelrail::scene::{self, Place, Scene};
+use wheelrail::scene::{self, Scene};
 use wheelrail::search::wheelset::{Position, WheelsetOnTrack};
 use wheelrail::search::{ONE_CONTACT, Selection};
 
@@ -46,7 +45,7 @@ pub(super) struct SweepArguments {
 }
 
 impl SweepArguments {
-    /// The positions, from the range or the file; yaw and roll of a range are those of `template`.
+    /// Gives the positions, from the range or the file; yaw and roll of a range are those of `template`.
     fn positions(&self, template: Position) -> Result<Vec<Position>> {
         match (&self.lateral, &self.positions) {
             (Some(range), None) => {
@@ -108,29 +107,28 @@ impl Outputs {
 /// Runs the sweep.
 pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     let progress = Progress::of("sweep", "scene");
-    let scene = scene::load(&arguments.scene)?;
+    let path = arguments.scene.as_path();
+    let scene = scene::load(path)?;
     let mut outputs = Outputs::create(arguments, &scene)?;
-    let in_scene = |error: Error| error.within(arguments.scene.display());
-    let profiles = scene.pair_and_records(folder_of(&arguments.scene)).map_err(in_scene)?;
-    let (system, template, within) = system(&scene, &profiles.0).map_err(in_scene)?;
+    let in_scene = |error: Error| error.within(path.display());
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let case = scene::resolve(&scene, folder_of(path), &name).map_err(in_scene)?.read_from(path);
+    let (system, template) = wheelset(&case).map_err(in_scene)?;
     let positions = arguments.positions(template)?;
-    let conicity = conicity::conicity(&system, &positions, &progress)?;
+    let conicity = conicity::conicity(system, &positions, &progress)?;
     for remark in conicity.iter().flat_map(|conicity| conicity::remarks(conicity, &positions)) {
         complain(&format!("sweep: {remark}"));
     }
-    let asked = question(&scene).map_err(in_scene)?;
-    let [rail, wheel] = &asked.material;
-    let ellipses = asked.approach.map(|approach| (approach, effective_modulus(rail, wheel)));
-    let selection = Selection { within, apart: ONE_CONTACT };
+    let asked = case.question();
+    let ellipses = asked.approach.map(|approach| (approach, asked.modulus()));
+    let selection = Selection { within: case.standing().within, apart: ONE_CONTACT };
     let table = Table { system, conicity, selection, positions, ellipses };
     if let Some(folder) = &outputs.patches {
-        let origin = patches::Origin { scene: &scene, path: &arguments.scene, profiles: &profiles };
-        patches::write(folder, &origin, &table, &progress)?;
+        patches::write(folder, &scene, &case, &table, &progress)?;
     }
     if let Some((format, file)) = &mut outputs.picture {
         progress.at("picture");
-        let name = arguments.scene.file_stem().unwrap_or_default().to_string_lossy();
-        let picture = curves::picture(&table, scene.title.as_deref().unwrap_or(&name))?;
+        let picture = curves::picture(&table, &case.echo().title)?;
         file.put(&format.bytes(picture.svg())?)?;
     }
     match &mut outputs.table {
@@ -141,12 +139,11 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// The wheelset and track of a scene, its own position, and how far near misses are reported.
-fn system(scene: &Scene, pair: &Pair) -> Result<(WheelsetOnTrack, Position, f64)> {
-    let standing = scene.standing()?;
-    let Place::Wheelset { rails, wheels, position } = standing.place else {
+/// Gives the wheelset and track of a case, and the case's own position.
+fn wheelset(case: &Case) -> Result<(&Arc<WheelsetOnTrack>, Position)> {
+    let Place::Wheelset { system, position } = &case.standing().place else {
         let expected = "[track] and [wheelset]";
         return Err(Error::new("", "a single wheel", expected, "a sweep moves a wheelset over its track"));
     };
-    Ok((WheelsetOnTrack::new(pair, rails, wheels)?, position, standing.within))
+    Ok((system, *position))
 }

@@ -1,6 +1,6 @@
 //! The patches of a sweep: what `wheelrail run` writes, position by position, and one collection of them.
 
-use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
@@ -10,7 +10,7 @@ use super::super::png::png;
 use super::super::progress::Progress;
 use super::super::{complain, counted};
 use super::table::Table;
-use wheelrail::case::{Profiles, Run};
+use wheelrail::case::{self, Case, Place, Run, SILENT, Standing};
 use wheelrail::error::{Error, Result};
 use wheelrail::export::vtk;
 use wheelrail::files::Folder;
@@ -21,23 +21,22 @@ use wheelrail::search::wheelset::Position;
 /// Most positions: each makes some forty files.
 const MOST_POSITIONS: usize = 5000;
 
-/// What the positions have in common.
-pub(super) struct Origin<'a> {
-    pub scene: &'a Scene,
-    /// The scene's file.
-    pub path: &'a Path,
-    pub profiles: &'a Profiles,
-}
-
 /// A position whose folders are written.
 struct Written {
     position: Position,
-    /// None for a position without contact.
+    /// Empty for a position without contact.
     folders: Vec<String>,
 }
 
-/// Writes `position-0001/` and so on, `surface.pvd` and `summary.json` into a folder.
-pub(super) fn write(folder: &Folder, origin: &Origin, table: &Table, progress: &Progress) -> Result<()> {
+/// Writes `position-0001/` and so on, `surface.pvd` and `summary.json` into a folder. The scene is only echoed: every position
+/// shares the case's profiles and search.
+pub(super) fn write(
+    folder: &Folder,
+    scene: &Scene,
+    case: &Case,
+    table: &Table,
+    progress: &Progress,
+) -> Result<()> {
     let positions = &table.positions;
     if positions.len() > MOST_POSITIONS {
         let found = format!("{} positions", positions.len());
@@ -46,7 +45,8 @@ pub(super) fn write(folder: &Folder, origin: &Origin, table: &Table, progress: &
     }
     let done = AtomicUsize::new(0);
     let one = |(k, position): (usize, &Position)| {
-        let written = patch(folder, origin, table, k, position)
+        let name = format!("position-{:04}", k + 1);
+        let written = patch(folder, scene, case, table, position, &name)
             .map_err(|error| error.within(format!("position {}", k + 1)))?;
         let done = 1 + done.fetch_add(1, Ordering::Relaxed);
         progress.at(format!("patches of {done} of {} positions", positions.len()));
@@ -54,7 +54,7 @@ pub(super) fn write(folder: &Folder, origin: &Origin, table: &Table, progress: &
     };
     let written = positions.par_iter().enumerate().map(one).collect::<Result<Vec<_>>>()?;
     folder.write("surface.pvd", collection(&written).as_bytes())?;
-    folder.write("summary.json", &summary(origin.scene, &written))?;
+    folder.write("summary.json", &summary(scene, &case.echo().hash, &written))?;
     let missing = written.iter().filter(|written| written.folders.is_empty()).count();
     if missing > 0 {
         let positions = counted(missing, "position");
@@ -63,20 +63,27 @@ pub(super) fn write(folder: &Folder, origin: &Origin, table: &Table, progress: &
     Ok(())
 }
 
-/// One position's folders.
-fn patch(folder: &Folder, origin: &Origin, table: &Table, k: usize, position: &Position) -> Result<Written> {
-    let touching = Selection { within: 0.0, apart: 0.0 };
-    if table.system.search().touch(position, &touching)?.is_none() {
-        return Ok(Written { position: *position, folders: Vec::new() });
+/// Writes one position's folders.
+fn patch(
+    folder: &Folder,
+    scene: &Scene,
+    case: &Case,
+    table: &Table,
+    position: &Position,
+    name: &str,
+) -> Result<Written> {
+    let (position, touching) = (*position, Selection { within: 0.0, apart: 0.0 });
+    if table.system.search().touch(&position, &touching)?.is_none() {
+        return Ok(Written { position, folders: Vec::new() });
     }
-    let name = format!("position-{:04}", k + 1);
-    let Origin { scene, path, profiles } = origin;
-    let run = Run::over(scene.at(position), profiles, &name)?.read_from(path).filed_under(&name);
-    run.write_told(folder, Some(png), &|_| {})?;
-    Ok(Written { position: *position, folders: run.parts.into_iter().map(|part| part.folder).collect() })
+    let place = Place::Wheelset { system: Arc::clone(table.system), position };
+    let standing = Standing { place, within: table.selection.within };
+    let run = Run::new(case.at(standing, scene::echo(&scene.at(&position), name)), SILENT)?.filed_under(name);
+    case::write(&run, folder, Some(png), SILENT)?;
+    Ok(Written { position, folders: run.parts.into_iter().map(|part| part.site.folder).collect() })
 }
 
-/// The separation of every part over time: the lateral displacement where it always grows, the number of the position
+/// Collects the separation of every part over time: the lateral displacement where it always grows, the number of the position
 /// elsewhere.
 fn collection(written: &[Written]) -> String {
     let grows = written.windows(2).all(|pair| pair[0].position.lateral < pair[1].position.lateral);
@@ -89,7 +96,7 @@ fn collection(written: &[Written]) -> String {
     vtk::collection(&steps)
 }
 
-fn summary(scene: &Scene, written: &[Written]) -> Vec<u8> {
+fn summary(scene: &Scene, hash: &str, written: &[Written]) -> Vec<u8> {
     let positions: Vec<Value> = written
         .iter()
         .map(|Written { position, folders }| {
@@ -103,7 +110,7 @@ fn summary(scene: &Scene, written: &[Written]) -> Vec<u8> {
         "version": env!("CARGO_PKG_VERSION"),
         "title": scene.title,
         "scene": scene,
-        "scene_sha256": scene::hash(scene),
+        "scene_sha256": hash,
         "positions": positions,
     });
     let mut text = serde_json::to_vec_pretty(&value).unwrap_or_default();

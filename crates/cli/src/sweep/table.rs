@@ -1,6 +1,7 @@
 //! The table of a sweep, block by block.
 
 use std::fmt::Write;
+use std::sync::Arc;
 use std::time::Instant;
 
 use rayon::prelude::*;
@@ -25,8 +26,8 @@ const BLOCK: usize = 8192;
 const CHUNK: usize = 256;
 
 /// A sweep ready to run.
-pub(super) struct Table {
-    pub system: WheelsetOnTrack,
+pub(super) struct Table<'a> {
+    pub system: &'a Arc<WheelsetOnTrack>,
     pub conicity: Option<Conicity>,
     pub selection: Selection,
     pub positions: Vec<Position>,
@@ -34,7 +35,7 @@ pub(super) struct Table {
     pub ellipses: Option<(ApproachBy, f64)>,
 }
 
-impl Table {
+impl Table<'_> {
     /// Hands the table's text to `sink`, block by block, as long as it wants more.
     pub(super) fn blocks(
         &self,
@@ -60,9 +61,9 @@ impl Table {
         Ok(())
     }
 
-    /// The rows of a few positions as text, after so many others.
+    /// Gives the rows of a few positions as text; `before` positions come before them.
     fn rows(&self, before: usize, positions: &[Position]) -> Result<String> {
-        let mut sweep = Sweep::new(&self.system, self.selection, self.conicity.as_ref());
+        let mut sweep = Sweep::new(self.system, self.selection, self.conicity.as_ref());
         let (mut rows, mut text) = (Vec::new(), String::new());
         for (k, position) in positions.iter().enumerate() {
             rows.clear();
@@ -77,6 +78,7 @@ impl Table {
     }
 }
 
+/// Adds a row as text.
 fn append(out: &mut String, row: &Row, ellipses: Option<(ApproachBy, f64)>) {
     let c = &row.contact;
     let side = match row.side {
@@ -107,7 +109,7 @@ fn append(out: &mut String, row: &Row, ellipses: Option<(ApproachBy, f64)>) {
     );
 }
 
-/// The two last cells: empty without approach or load, at kinks, and where s is not convex.
+/// Gives the two last cells: empty without approach or load, at kinks, and where s is not convex.
 fn semi_axes(contact: &Contact, ellipses: Option<(ApproachBy, f64)>) -> String {
     let ellipse = |(by, modulus)| {
         let curvatures = curvatures_at(contact);

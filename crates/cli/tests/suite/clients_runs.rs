@@ -4,7 +4,7 @@ use crate::programs::{check, check_run, folder, output_of};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use wheelrail::case::Run;
+use wheelrail::case::{Run, SILENT};
 use wheelrail::files::RUN_FOLDER;
 use wheelrail::load::hertz::effective_modulus;
 use wheelrail::load::virtual_interpenetration::VirtualContact;
@@ -163,20 +163,21 @@ fn cases() -> Vec<Case> {
 /// The load, the estimates by Hertz (δ and p₀) and by virtual interpenetration, and which of them a run takes, as
 /// `load_table.py` takes them; and the step of the automatic grid.
 fn estimates(path: &Path, load: f64) -> (Vec<String>, f64) {
-    let run = Run::new(scene::load(path).unwrap(), Path::new("."), "case").unwrap();
+    let case = scene::resolve(&scene::load(path).unwrap(), Path::new("."), "case").unwrap();
+    let run = Run::new(case, SILENT).unwrap();
     let part = &run.parts[0];
-    let [rail, wheel] = &run.question.material;
+    let [rail, wheel] = &run.case.question().material;
     let modulus = effective_modulus(rail, wheel);
-    let hertz = part.contact.ellipse.unwrap();
-    let placement = &part.contact.placement;
+    let hertz = part.site.contact.ellipse.unwrap();
+    let placement = &part.site.contact.placement;
     let contact = VirtualContact::under_load(placement, load, modulus).unwrap();
     let approaches = [hertz.approach_mm, contact.published_approach_mm, contact.approach_mm];
     let numbers = [load, modulus, hertz.pressure_n_per_mm2].into_iter().chain(approaches);
     let angle = placement.rail().contact_angle().to_degrees();
-    let chosen = format!("{:?}", part.contact.approach.unwrap().1.unwrap());
+    let chosen = format!("{:?}", part.site.contact.approach.unwrap().1.unwrap());
     let mut arguments: Vec<String> = numbers.map(|number| format!("{number:?}")).collect();
     arguments.extend([format!("{angle:.1}"), chosen]);
-    (arguments, part.analysis.xi[1] - part.analysis.xi[0])
+    (arguments, part.site.grid.xi[1] - part.site.grid.xi[0])
 }
 
 /// The table of `src/docs/clients.md` is what the program and Tamaas give today.

@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 use wheelrail_report::random::Random;
 
-use wheelrail::case::Run;
+use wheelrail::case::{Run, SILENT};
 use wheelrail::scene::{self, Scene};
 
 /// Scenes of one ordinary test run; `WHEELRAIL_HOSTILE_SCENES=1000000` is the long one (five minutes).
@@ -180,12 +180,13 @@ fn mutated(dice: &mut Random, base: &str) -> String {
 /// Reads and runs a scene; `Ok(true)` when it gave a result.
 fn attempt(text: &str, json: bool) -> Result<bool, String> {
     let Ok(scene) = scene::parse::<Scene>(text, json) else { return Ok(false) };
-    let axis = |name| scene.axis(name).ok().flatten().map_or(usize::MAX, |axis| axis.len());
-    if axis("xi").saturating_mul(axis("eta")) > POINTS {
+    let start = Instant::now();
+    let Ok(case) = scene::resolve(&scene, Path::new("."), "hostile") else { return Ok(false) };
+    let points = |axis: &Option<Vec<f64>>| axis.as_ref().map_or(usize::MAX, Vec::len);
+    if points(&case.axes().xi).saturating_mul(points(&case.axes().eta)) > POINTS {
         return Ok(false);
     }
-    let start = Instant::now();
-    let Ok(run) = Run::new(scene, Path::new("."), "hostile") else { return Ok(false) };
+    let Ok(run) = Run::new(case, SILENT) else { return Ok(false) };
     if start.elapsed() > LONGEST {
         return Err(format!("took {:?}", start.elapsed()));
     }
@@ -201,7 +202,8 @@ fn attempt(text: &str, json: bool) -> Result<bool, String> {
         if let Some(bad) = numbers.copied().find(|v| !v.is_finite()) {
             return Err(format!("{bad} in the patch"));
         }
-        let claimed = [part.contact.feasibility.least_separation_mm, part.contact.feasibility.at_xi_mm];
+        let claimed =
+            [part.site.contact.feasibility.least_separation_mm, part.site.contact.feasibility.at_xi_mm];
         if claimed.iter().any(|v| !v.is_finite()) {
             return Err(format!("feasibility {claimed:?}"));
         }

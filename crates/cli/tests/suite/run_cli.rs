@@ -121,6 +121,9 @@ fn grids_are_bounded_before_memory_is_asked_for() {
         let said = complaint(here, &["run", "large.toml"], 2);
         assert!(said.contains(found), "{said}");
     }
+    // A check needs the window alone.
+    let output = wheelrail(here, &["check", "large.toml"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     // Memory that the system does not grant: 1.3 GB.
     write(here, "large.toml", &scene(6000, 6000));
     let binary = env!("CARGO_BIN_EXE_wheelrail");

@@ -1,7 +1,8 @@
 //! `wheelrail sweep` through the binary: conicity by position, and what bad calls get.
 
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
@@ -141,34 +142,41 @@ fn points(height: fn(f64) -> f64) -> String {
 }
 
 #[test]
-fn measured_files_are_not_opened_again_for_every_position() {
+fn no_command_opens_a_file_twice() {
     let folder = TempDir::new().unwrap();
     let here = folder.path();
-    let files = [("rail.txt", points(|x| -x * x / 600.0)), ("wheel.txt", points(|x| x / 20.0))];
-    for (name, text) in &files {
-        std::fs::write(here.join(name), text).unwrap();
-    }
+    let own = "\"\nmirror = false\nflip_z = false";
     let scene = SCENE
-        .replace("profile = \"60E1\"", "file = \"rail.txt\"\nmirror = false\nflip_z = false")
-        .replace("profile = \"cone-1:20\"", "file = \"wheel.txt\"\nmirror = false\nflip_z = false");
-    let rest = "[patch]\napproach = 0.05\n[output]\nformats = [\"text\"]\n";
-    std::fs::write(here.join("scene.toml"), format!("{scene}{rest}")).unwrap();
-    let arguments =
-        ["--threads", "1", "scene.toml", "--lateral", "-2:2:1", "--patches", "out", "--out", "out.csv"];
-    let binary = env!("CARGO_BIN_EXE_wheelrail");
-    let mut child = Command::new(binary).current_dir(here).arg("sweep").args(arguments).spawn().unwrap();
-    // The first position of many is written: the files have been read.
-    let begun = || {
-        let folders = std::fs::read_dir(here).unwrap().map(|entry| entry.unwrap().path());
-        folders.filter(|path| path.is_dir()).any(|path| path.join("position-0001").exists())
-    };
-    while !begun() && child.try_wait().unwrap().is_none() {
-        std::thread::sleep(std::time::Duration::from_millis(1));
-    }
+        .replace("profile = \"60E1\"", &format!("file = \"rail.txt{own}"))
+        .replace("profile = \"cone-1:20\"", &format!("file = \"wheel.txt{own}"));
+    let files = [
+        ("rail.txt", points(|x| -x * x / 600.0)),
+        ("wheel.txt", points(|x| x / 20.0)),
+        ("scene.toml", format!("{scene}[patch]\napproach = 0.05\n[output]\nformats = [\"text\"]\n")),
+        ("positions.csv", "lateral_mm\n-2\n-1\n0\n1\n2\n".into()),
+    ];
+    // What was written into a pipe can be read once: whoever opens it again waits for ever.
     for (name, _) in &files {
-        std::fs::remove_file(here.join(name)).unwrap();
+        assert!(Command::new("mkfifo").arg(here.join(name)).status().unwrap().success());
     }
-    assert!(child.wait().unwrap().success());
+    let sweep = ["--positions", "positions.csv", "--patches", "out", "--picture", "a.svg", "--out", "a.csv"];
+    for (command, arguments, read) in
+        [("sweep", &sweep[..], 4), ("run", &[], 3), ("check", &[], 3), ("midsep", &[], 3)]
+    {
+        for (name, text) in files[..read].iter().cloned() {
+            let path = here.join(name);
+            std::thread::spawn(move || std::fs::write(path, text));
+        }
+        let mut child = Command::new(env!("CARGO_BIN_EXE_wheelrail"));
+        let child = child.current_dir(here).args([command, "scene.toml"]).args(arguments);
+        let mut child = child.stdout(Stdio::null()).spawn().unwrap();
+        let start = Instant::now();
+        while child.try_wait().unwrap().is_none() && start.elapsed().as_secs() < 60 {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        child.kill().unwrap();
+        assert_eq!(child.wait().unwrap().code(), Some(0), "{command} waits for a file that it has read");
+    }
     assert!(here.join("out/position-0005/boundary.csv").exists());
 }
 
@@ -207,7 +215,7 @@ fn a_killed_sweep_leaves_what_was_there_and_the_next_one_clears_up() {
                 && written.is_ok_and(|found| found.is_dir() || found.len() > 1000)
         };
         while !names(here).into_iter().any(begun) && child.try_wait().unwrap().is_none() {
-            std::thread::sleep(std::time::Duration::from_millis(1));
+            std::thread::sleep(Duration::from_millis(1));
         }
         child.kill().unwrap();
         assert!(!child.wait().unwrap().success(), "it had ended");
@@ -235,17 +243,17 @@ fn a_sweep_ends_with_its_reader() {
     let mut sweep = Command::new(env!("CARGO_BIN_EXE_wheelrail"))
         .current_dir(folder.path())
         .args(["sweep", "scene.toml", "--lateral", "-8:8:0.000004"])
-        .stdout(std::process::Stdio::piped())
+        .stdout(Stdio::piped())
         .spawn()
         .unwrap();
-    let start = std::time::Instant::now();
+    let start = Instant::now();
     let mut line = String::new();
     let mut reader = std::io::BufReader::new(sweep.stdout.take().unwrap());
     std::io::BufRead::read_line(&mut reader, &mut line).unwrap();
     assert!(line.starts_with("lateral_mm,"), "{line}");
     drop(reader);
     while sweep.try_wait().unwrap().is_none() && start.elapsed().as_secs() < 20 {
-        std::thread::sleep(std::time::Duration::from_millis(20));
+        std::thread::sleep(Duration::from_millis(20));
     }
     let code = sweep.try_wait().unwrap().map(|status| status.code());
     sweep.kill().unwrap();

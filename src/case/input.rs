@@ -1,0 +1,216 @@
+//! A case: what is to be computed, as checked values.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::load::hertz::{Elastic, effective_modulus};
+use crate::measured::Record;
+use crate::placement::Pair;
+use crate::search::wheelset::{Position, WheelsetOnTrack};
+use crate::search::{Pose, ProfilePair};
+use crate::separation::grid::Method;
+
+/// Two prepared profiles, where they stand, what is asked of them, and what is to be written.
+///
+/// The room `scene` makes one, by its `resolve`. A clone shares the profiles and the search trees over them.
+#[derive(Debug, Clone)]
+pub struct Case {
+    pub(crate) profiles: Profiles,
+    pub(crate) standing: Standing,
+    pub(crate) question: Question,
+    pub(crate) axes: AskedAxes,
+    pub(crate) outputs: Outputs,
+    pub(crate) echo: Echo,
+    pub(crate) file: Option<PathBuf>,
+}
+
+/// Both profiles, and what was done to measured ones.
+#[derive(Debug, Clone)]
+pub struct Profiles {
+    /// Rail and wheel.
+    pub pair: Pair,
+    /// The records of rail and wheel; `None` for a drawn profile.
+    pub measured: [Option<Record>; 2],
+}
+
+/// Where the bodies stand, and how far near misses are looked for.
+#[derive(Debug, Clone)]
+pub struct Standing {
+    /// What is placed, and where.
+    pub place: Place,
+    /// Largest vertical gap \[mm\] of a near miss that is reported; usually 0.
+    pub within: f64,
+}
+
+/// The three ways to place bodies.
+#[derive(Debug, Clone)]
+pub enum Place {
+    /// Both profiles touch at chosen points of them, the Report's way.
+    Points {
+        /// Abscissa on the rail profile \[mm\].
+        rail_x: f64,
+        /// Abscissa on the wheel profile \[mm\].
+        wheel_x: f64,
+    },
+    /// A single wheel is lowered until it touches.
+    Wheel {
+        /// The profiles, prepared for searches.
+        profiles: Arc<ProfilePair>,
+        /// Where the wheel stands.
+        pose: Pose,
+    },
+    /// A wheelset is lowered onto its track.
+    Wheelset {
+        /// The wheelset and the track, prepared for searches.
+        system: Arc<WheelsetOnTrack>,
+        /// Displacement, yaw and roll.
+        position: Position,
+    },
+}
+
+/// How far the bodies approach, and how that is known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ApproachBy {
+    /// δ is given \[mm\].
+    Given(f64),
+    /// δ is estimated from a normal load \[N\].
+    Load(f64),
+}
+
+/// What is asked of every contact.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Question {
+    /// The approach; `None` asks for the geometry only.
+    pub approach: Option<ApproachBy>,
+    /// Elastic constants of rail and wheel.
+    pub material: [Elastic; 2],
+    /// Absolute tolerance on s \[mm\]; 1e-12 asks for all digits.
+    pub tolerance: f64,
+    /// A method of the accuracy ladder; `None` takes the cheapest within the tolerance.
+    pub method: Option<Method>,
+}
+
+impl Question {
+    /// Gives E* of both materials \[N/mm²\].
+    pub fn modulus(&self) -> f64 {
+        let [rail, wheel] = &self.material;
+        effective_modulus(rail, wheel)
+    }
+
+    /// Gives the load on a wheel \[N\], where the approach is estimated from it.
+    pub fn load(&self) -> Option<f64> {
+        match self.approach {
+            Some(ApproachBy::Load(load)) => Some(load),
+            _ => None,
+        }
+    }
+}
+
+/// The axes of a case's grids.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AskedAxes {
+    /// ξ \[mm\], ascending; `None` sizes the axis by the patch.
+    pub xi: Option<Vec<f64>>,
+    /// η \[mm\], ascending; `None` sizes the axis by the patch.
+    pub eta: Option<Vec<f64>>,
+    /// \[Δξ, Δη\] \[mm\] of automatic axes; `None` lays 16 cells over the patch's shorter side.
+    pub spacing: Option<[f64; 2]>,
+    /// Parts of the patch closer than this \[mm\] share a grid; 0 merges none.
+    pub merge: f64,
+}
+
+/// The files that are written besides the tables and the picture.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Outputs {
+    /// Their formats.
+    pub formats: Vec<OutputFormat>,
+    /// Whether each of them has to be written. Otherwise a format that cannot hold the grid is left out with a remark.
+    pub required: bool,
+}
+
+impl Outputs {
+    /// Tells whether any of the formats is asked for.
+    pub fn any(&self, formats: &[OutputFormat]) -> bool {
+        self.formats.iter().any(|format| formats.contains(format))
+    }
+}
+
+/// One output format.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum OutputFormat {
+    /// .vts, .vtp, .vtu, .vtk and view.py.
+    Vtk,
+    /// xi.npy, eta.npy, separation.npy.
+    Npy,
+    /// separation.nc.
+    Netcdf,
+    /// separation.wrp.
+    Text,
+    /// conform.wrp.
+    Conform,
+    /// countact.wrp.
+    Countact,
+    /// contact.inp.
+    Contact,
+    /// patch.png.
+    Png,
+}
+
+impl OutputFormat {
+    /// Formats that are solver decks.
+    pub(super) const DECKS: [Self; 4] = [Self::Text, Self::Conform, Self::Countact, Self::Contact];
+}
+
+/// What files say of the scene that they come from; nothing is computed from it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Echo {
+    /// Title of files and pictures.
+    pub title: String,
+    /// The scene as it was read.
+    pub scene: serde_json::Value,
+    /// SHA-256 of the scene, in hexadecimal.
+    pub hash: String,
+}
+
+impl Case {
+    /// Names the file that the scene was read from, for the summary.
+    #[must_use]
+    pub fn read_from(self, path: &Path) -> Self {
+        Self { file: path.canonicalize().ok(), ..self }
+    }
+
+    /// Gives the same case with its bodies elsewhere, under another echo. It shares the profiles and the search trees.
+    #[must_use]
+    pub fn at(&self, standing: Standing, echo: Echo) -> Self {
+        Self { standing, echo, ..self.clone() }
+    }
+
+    /// Gives where the bodies stand.
+    pub fn standing(&self) -> &Standing {
+        &self.standing
+    }
+
+    /// Gives what is asked of every contact.
+    pub fn question(&self) -> &Question {
+        &self.question
+    }
+
+    /// Gives the axes of the grids.
+    pub fn axes(&self) -> &AskedAxes {
+        &self.axes
+    }
+
+    /// Gives what files say of the scene.
+    pub fn echo(&self) -> &Echo {
+        &self.echo
+    }
+
+    /// Gives what was done to measured profiles of rail and wheel.
+    pub fn measured(&self) -> &[Option<Record>; 2] {
+        &self.profiles.measured
+    }
+}

@@ -1,0 +1,120 @@
+//! A case and everything computed from it.
+
+use super::analysis::Analysis;
+use super::grids::check_memory;
+use super::input::Case;
+use super::site::{Site, sites};
+use crate::error::Result;
+use crate::patch::Patch;
+use crate::separation::plan::Plan;
+
+/// Is told the step that a run is at, from several threads.
+pub type Tell<'a> = &'a (dyn Fn(String) + Sync);
+
+/// Tells nobody.
+pub const SILENT: Tell<'static> = &|_| {};
+
+/// A case and everything computed from it.
+#[derive(Debug, Clone)]
+pub struct Run {
+    /// What was computed.
+    pub case: Case,
+    /// One part for every grid; the first contact's first.
+    pub parts: Vec<Part>,
+}
+
+/// A site and the analysis of its grid.
+#[derive(Debug, Clone)]
+pub struct Part {
+    /// Contact and axes.
+    pub site: Site,
+    /// Separation and patch.
+    pub analysis: Analysis,
+}
+
+impl Run {
+    /// Computes a case.
+    ///
+    /// # Errors
+    /// No contact; grids that cannot be sized or take more memory than there is; a method without a formula for the
+    /// pair. An infeasible contact or an empty patch is a result: [`Run::refusals`].
+    pub fn new(case: Case, tell: Tell<'_>) -> Result<Self> {
+        tell("contacts".into());
+        let sites = sites(&case)?;
+        check_memory(&case.outputs, sites.iter().map(|site| &site.grid))?;
+        let part = |site: Site| {
+            let Site { grid, .. } = &site;
+            tell(format!("{}: grid of {} x {} points", site.name(), grid.xi.len(), grid.eta.len()));
+            let analysis = Analysis::new(&site, &case.question)?;
+            Ok(Part { site, analysis })
+        };
+        let parts = sites.into_iter().map(part).collect::<Result<_>>()?;
+        Ok(Self { case, parts })
+    }
+
+    /// Puts all parts below a folder of many runs: the first as `name`, the others as `name-…`.
+    #[must_use]
+    pub fn filed_under(mut self, name: &str) -> Self {
+        for Part { site, .. } in &mut self.parts {
+            site.folder =
+                if site.folder.is_empty() { name.to_string() } else { format!("{name}-{}", site.folder) };
+        }
+        self
+    }
+
+    /// Lists the geometric "no"s.
+    pub fn refusals(&self) -> Vec<String> {
+        self.parts.iter().flat_map(Part::refusals).collect()
+    }
+
+    /// Lists what a user should know before using the files.
+    pub fn warnings(&self) -> Vec<String> {
+        let findings = self.case.profiles.measured.iter().flatten().flat_map(|record| &record.warnings);
+        let mut out: Vec<String> =
+            findings.map(|finding| format!("{}: {}", finding.place, finding.found)).collect();
+        for part in &self.parts {
+            let folder = &part.site.folder;
+            let place = if folder.is_empty() { String::new() } else { format!("{folder}: ") };
+            out.extend(self.warnings_of(part).into_iter().map(|warning| format!("{place}{warning}")));
+        }
+        out
+    }
+
+    /// Lists what a user should know before using the files of one part.
+    pub(super) fn warnings_of(&self, part: &Part) -> Vec<String> {
+        let mut out = Vec::from_iter(self.shared_load(part));
+        out.extend(part.site.grid.warning.clone());
+        if part.analysis.patch.as_ref().is_some_and(Patch::cut_by_window) {
+            out.push("the window of the grid cuts the patch: solvers would overestimate the pressure".into());
+        }
+        let Plan { error, tolerance, .. } = part.analysis.plan;
+        if error.is_nan() || error > tolerance {
+            out.push(format!(
+                "the separation's estimated error, {error:.1e} mm, is above grid.tolerance, {tolerance:e} mm"
+            ));
+        }
+        out
+    }
+
+    /// Tells whether other parts of the same wheel carry some of its load.
+    pub(super) fn shares_load(&self, part: &Part) -> bool {
+        let same_wheel = |other: &&Part| other.site.side() == part.site.side();
+        self.case.question.load().is_some() && self.parts.iter().filter(same_wheel).count() > 1
+    }
+
+    /// Says what a shared load means for the part's files.
+    pub(super) fn shared_load(&self, part: &Part) -> Option<String> {
+        let load = self.case.question.load().filter(|_| self.shares_load(part))?;
+        Some(format!(
+            "the load of {load} N is shared with other contacts of this wheel, each in files of its own: contact.inp gives \
+             the approach instead"
+        ))
+    }
+}
+
+impl Part {
+    /// Lists the geometric "no"s of the part.
+    pub fn refusals(&self) -> Vec<String> {
+        self.site.refusals(self.analysis.patch.as_ref())
+    }
+}

@@ -1,0 +1,113 @@
+//! Contacts with the axes of their grids: all that is known of a case before a grid is filled.
+
+use super::contact::Contact;
+use super::grids::{Grid, grids};
+use super::input::Case;
+use super::places::{Found, find};
+use crate::error::Result;
+use crate::patch::{Patch, Window};
+
+/// One contact with the axes of one grid, and the folder of its files.
+#[derive(Debug, Clone)]
+pub struct Site {
+    /// Folder below the run's own; empty for the run's own.
+    pub folder: String,
+    /// How the contact was found; `None` for a chosen one.
+    pub found: Option<Found>,
+    /// The placed pair.
+    pub contact: Contact,
+    /// The axes.
+    pub grid: Grid,
+}
+
+/// Finds the sites of a case, the first contact's first; a patch of several parts has a site for each.
+///
+/// # Errors
+/// No contact; axes that cannot be sized; more contacts or parts than anybody looks through.
+pub fn sites(case: &Case) -> Result<Vec<Site>> {
+    let places = find(case, case.question.approach)?;
+    let grids = places.iter().map(|place| grids(&case.axes, place)).collect::<Result<Vec<_>>>()?;
+    let mut sites: Vec<Site> = Vec::new();
+    for (place, grids) in places.into_iter().zip(grids) {
+        for (number, grid) in grids.into_iter().enumerate() {
+            let folder = match (sites.is_empty(), number) {
+                (true, _) => String::new(),
+                (false, 0) => place.folder.clone(),
+                (false, _) if place.folder.is_empty() => format!("patch-{}", number + 1),
+                (false, _) => format!("{}-patch-{}", place.folder, number + 1),
+            };
+            let (found, contact) = (place.found.clone(), place.contact.clone());
+            sites.push(Site { folder, found, contact, grid });
+        }
+    }
+    Ok(sites)
+}
+
+impl Site {
+    /// Names the contact as messages call it: by side and number if it was found, by its part of the patch if it was
+    /// chosen and has several grids.
+    pub fn name(&self) -> String {
+        match &self.found {
+            Some(found) => found.name(),
+            None if self.folder.is_empty() => "contact".into(),
+            None => format!("contact, {}", self.folder),
+        }
+    }
+
+    /// Gives the side of a contact that was found: "left" or "right" of a wheelset, "single" otherwise.
+    pub fn side(&self) -> Option<&'static str> {
+        self.found.as_ref().map(|found| found.side)
+    }
+
+    /// Gives δ \[mm\], 0 for a case without an approach.
+    pub fn approach(&self) -> f64 {
+        self.contact.approach.map_or(0.0, |(approach, _)| approach)
+    }
+
+    /// Gives the rectangle between the outermost points of the grid.
+    pub fn window(&self) -> Window {
+        Window { xi: ends(&self.grid.xi), eta: ends(&self.grid.eta) }
+    }
+
+    /// Finds the patch in the window of the grid; `None` without an approach.
+    pub fn patch(&self) -> Option<Patch> {
+        self.contact.patch_in(&self.window())
+    }
+
+    /// Lists the geometric "no"s of the contact and of its patch in the window.
+    pub fn refusals(&self, patch: Option<&Patch>) -> Vec<String> {
+        let mut out = Vec::new();
+        let feasibility = &self.contact.feasibility;
+        // A further contact of a side is closed by the approach only, and the first one overlaps by that approach.
+        let first = self.found.as_ref().is_none_or(|found| found.contact == 1);
+        if first && !feasibility.feasible {
+            out.push(format!(
+                "infeasible contact: the bodies overlap by {:.6e} mm at xi = {:.6} mm, eta = {:.6} mm; expected s >= 0 \
+                 everywhere (4.1); choose another pair of points",
+                -feasibility.least_separation_mm, feasibility.at_xi_mm, feasibility.at_eta_mm
+            ));
+        }
+        if patch.is_some_and(|patch| patch.components.is_empty()) {
+            out.push(if self.has_extent() {
+                "empty patch: s is nowhere below the approach in the window of the grid".into()
+            } else {
+                "empty patch: the grid is a single line".into()
+            });
+        }
+        out
+    }
+
+    /// Tells whether the grid has more than one row and one column.
+    pub fn has_extent(&self) -> bool {
+        self.grid.xi.len() > 1 && self.grid.eta.len() > 1
+    }
+}
+
+/// First and last value.
+fn ends(values: &[f64]) -> [f64; 2] {
+    match values {
+        [first, .., last] => [*first, *last],
+        [only] => [*only; 2],
+        [] => [0.0; 2],
+    }
+}

@@ -1,0 +1,183 @@
+//! `[rail]` and `[wheel]`: the profiles, built in, inline or from files.
+
+use std::path::Path;
+
+use nalgebra::UnitComplex;
+
+use super::data::{ProfileData, Rotation, Scene};
+use super::read::parse;
+use super::words::nearest;
+use crate::case::Profiles;
+use crate::error::{Error, Result, finite, given};
+use crate::files::{read_bytes, read_text};
+use crate::measured::{self, Measured, Options, Record};
+use crate::placement::Pair;
+use crate::profile::drawing::{SegmentData, chain};
+use crate::profile::{Profile, Side, inclination, standards};
+
+/// Largest rolling radius \[mm\]: a kilometre times a thousand, whose square is far from overflowing.
+const FARTHEST: f64 = 1e9;
+
+/// A profile file: the same keys as inline.
+#[derive(Debug, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ProfileFile {
+    #[serde(default)]
+    name: Option<String>,
+    #[serde(default)]
+    source: Option<String>,
+    #[serde(default)]
+    start: Option<[f64; 2]>,
+    segments: Vec<SegmentData>,
+}
+
+/// Gives rail and wheel of a scene, turned and shifted as it says; files are relative to `folder`. Opens each file once.
+///
+/// # Errors
+/// Whatever is wrong with a profile, by key.
+pub(super) fn profiles(scene: &Scene, folder: &Path) -> Result<Profiles> {
+    let rail = profile(&scene.rail, folder, Side::Rail).map_err(|e| e.within("rail"))?;
+    if let Some(radius) = scene.rail.radius {
+        let expected = "a radius only for the wheel";
+        return Err(Error::new("rail: radius", radius.to_string(), expected, "remove it"));
+    }
+    let wheel = profile(&scene.wheel, folder, Side::Wheel).map_err(|e| e.within("wheel"))?;
+    let radius = scene
+        .wheel
+        .radius
+        .ok_or_else(|| Error::new("wheel", "no `radius`", "the nominal rolling radius in mm", "add it"))?;
+    if radius > FARTHEST {
+        let expected = format!("at most {FARTHEST:e} mm");
+        let found = format!("{radius:e}");
+        return Err(Error::new("wheel: radius", found, expected, "take a plane for a rail"));
+    }
+    let pair = Pair::new(rail.profile, wheel.profile, radius)?;
+    Ok(Profiles { pair, measured: [rail.measured, wheel.measured] })
+}
+
+/// Gives a profile as the scene places it, and the record of a measured one.
+fn profile(data: &ProfileData, folder: &Path, side: Side) -> Result<Resolved> {
+    let Resolved { mut profile, measured } = match (&data.profile, &data.file, &data.segments) {
+        (Some(name), None, None) => Resolved::drawn(built_in(name, side)?),
+        (None, Some(file), None) => in_file(data, &folder.join(file), side)?,
+        (None, None, Some(segments)) => Resolved::drawn(chain("inline", "scene", data.start, segments)?),
+        _ => {
+            let expected = "exactly one of `profile`, `file`, `segments`";
+            let found = given(&[
+                ("profile", data.profile.is_some()),
+                ("file", data.file.is_some()),
+                ("segments", data.segments.is_some()),
+            ]);
+            return Err(Error::new("", found, expected, "give one source"));
+        }
+    };
+    if let (Some([x, z]), None) = (data.start, &data.segments) {
+        let expected = "`start` only with `segments`";
+        return Err(Error::new("start", format!("[{x}, {z}]"), expected, "remove it"));
+    }
+    if measured.is_none() {
+        reject_measured_keys(data)?;
+        if data.mirror == Some(true) {
+            profile = profile.mirrored();
+        }
+    }
+    if let Some(rotation) = &data.rotate {
+        if data.already_inclined {
+            let expected = "no `rotate` for a profile that is `already_inclined`";
+            return Err(Error::new("rotate", rotation.to_string(), expected, "remove one of the two"));
+        }
+        profile = profile.rotated(turn(rotation).map_err(|e| e.within("rotate"))?);
+    }
+    if let Some([x, z]) = data.shift {
+        profile = profile.shifted(finite("shift", x)?, finite("shift", z)?);
+    }
+    Ok(Resolved { profile, measured })
+}
+
+fn in_file(data: &ProfileData, path: &Path, side: Side) -> Result<Resolved> {
+    if data.format.is_none() && is_chain_file(path) {
+        return profile_from_file(path).map(Resolved::drawn);
+    }
+    let place = path.display().to_string();
+    let bytes = read_bytes(path, measured::LARGEST_FILE)?;
+    let Measured { profile, record, .. } = measured::profile(&place, &bytes, side, &data.measured())?;
+    Ok(Resolved { profile, measured: Some(record) })
+}
+
+/// Refuses keys that mean nothing for a drawn profile.
+fn reject_measured_keys(data: &ProfileData) -> Result<()> {
+    let keys = Options { mirror: None, ..data.measured() }.given();
+    if keys.is_empty() {
+        return Ok(());
+    }
+    let expected = "keys of measured files only beside a measured `file`";
+    let found = format!("`{}`", keys.join("`, `"));
+    Err(Error::new("", found, expected, "remove it, or give `file` and `format`"))
+}
+
+/// A profile, and the record of a measured one.
+struct Resolved {
+    profile: Profile,
+    measured: Option<Record>,
+}
+
+impl Resolved {
+    fn drawn(profile: Profile) -> Self {
+        Self { profile, measured: None }
+    }
+}
+
+/// Gives a built-in profile of the right body by name.
+fn built_in(name: &str, side: Side) -> Result<Profile> {
+    let (of_other, own, other) = match side {
+        Side::Rail => (standards::wheel_names().any(|known| known == name), "rail", "wheel"),
+        Side::Wheel => (standards::rail_names().any(|known| known == name), "wheel", "rail"),
+    };
+    if of_other {
+        let (found, expected) = (format!("\"{name}\", a {other}"), format!("a {own} profile"));
+        return Err(Error::new("profile", found, expected, "see `wheelrail profile list`"));
+    }
+    let (found, known) = match side {
+        Side::Rail => (standards::rail(name), standards::rail_names().collect::<Vec<_>>()),
+        Side::Wheel => (standards::wheel(name), standards::wheel_names().collect()),
+    };
+    found.map_err(|mut error| {
+        error.advice = nearest(name, &known).unwrap_or(error.advice);
+        error
+    })
+}
+
+/// Tells whether a file's extension is that of a chain of segments.
+pub fn is_chain_file(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml") || e.eq_ignore_ascii_case("json"))
+}
+
+/// Gives the rotation that is written.
+fn turn(rotation: &Rotation) -> Result<UnitComplex<f64>> {
+    let bad = |found: String| Error::new("", found, "rad, or \"1:n\" with n ≠ 0", "correct it");
+    match rotation {
+        Rotation::Radians(angle) => Ok(UnitComplex::new(finite("", *angle)?)),
+        Rotation::Ratio(text) => {
+            let (one, n) = text.split_once(':').ok_or_else(|| bad(format!("\"{text}\"")))?;
+            let number = |s: &str| s.trim().parse::<f64>().ok().filter(|v| v.is_finite());
+            match (number(one), number(n)) {
+                (Some(rise), Some(run)) if run != 0.0 => inclination(rise, run),
+                _ => Err(bad(format!("\"{text}\""))),
+            }
+        }
+    }
+}
+
+/// Reads a profile file with `segments` and perhaps `name`, `source`, `start`.
+///
+/// # Errors
+/// An unreadable file; whatever is wrong with its segments.
+pub fn profile_from_file(path: &Path) -> Result<Profile> {
+    let place = path.display().to_string();
+    let text = read_text(path, measured::LARGEST_FILE)?;
+    let json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
+    let file: ProfileFile = parse(&text, json).map_err(|e| e.within(&place))?;
+    let name = file.name.unwrap_or_else(|| place.clone());
+    let source = file.source.unwrap_or_else(|| place.clone());
+    chain(&name, &source, file.start, &file.segments).map_err(|e| e.within(&place))
+}
