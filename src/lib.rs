@@ -19,20 +19,26 @@
 //! | INTERPEN, Sec. 7 | η(ξ) with s = δ | [`patch`] |
 //! | CONFORM, COUNTACT | the solvers that read all this | [`mod@export`] (decks), [`mesh`] |
 //!
-//! # In a few lines
+//! # In eight lines
 //!
 //! ```
 //! use wheelrail::patch::{Patch, Window};
 //! use wheelrail::placement::Pair;
-//! use wheelrail::profile::standards;
+//! use wheelrail::profile::{inclination, standards};
+//! use wheelrail::search::{ONE_CONTACT, Pose, ProfilePair, Selection};
 //! use wheelrail::separation::Evaluator;
 //!
-//! let pair = Pair::new(standards::rail("60E1")?, standards::wheel("cone-1:20")?, 460.0)?;
-//! let placement = pair.placed(-14.0, 0.0, 0.0)?;
+//! let rail = standards::rail("60E1")?.rotated(inclination(1.0, 40.0)?);
+//! let pair = Pair::new(rail, standards::wheel("S1002")?, 460.0)?;
+//! let profiles = ProfilePair::new(&pair)?;
+//! let mut search = profiles.search();
+//! let touch = search.touch(&Pose::new(0.0, 0.0, 0.0)?, &Selection { within: 0.0, apart: ONE_CONTACT });
+//! let placement = touch.expect("a wheel over its rail").contacts[0].placed(&pair)?;
 //! let s = Evaluator::new(&placement).separation(2.0, 5.0);
-//! assert!((s - 0.052).abs() < 1e-3);
-//! let patch = Patch::new(&placement, 0.05, &Window { xi: [-12.0, 12.0], eta: [-12.0, 12.0] });
-//! assert_eq!(patch.components.len(), 1);
+//! let patch = Patch::new(&placement, 0.05, &Window::UNBOUNDED);
+//!
+//! assert!((s - 0.040_428).abs() < 1e-6, "{s}");
+//! assert!((patch.area() - 88.828).abs() < 1e-3, "{}", patch.area());
 //! # Ok::<(), wheelrail::Error>(())
 //! ```
 //!
