@@ -61,4 +61,4 @@ pub mod scene;
 pub mod search;
 pub mod separation;
 
-pub use error::{Error, Result};
+pub use error::{Error, Kind as ErrorKind, Result};

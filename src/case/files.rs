@@ -10,8 +10,8 @@ use super::input::{OutputFormat, Outputs};
 use super::run::{Part, Run, Tell};
 use super::summary::summary;
 use crate::error::{Error, Result};
-use crate::export::deck::Deck;
-use crate::export::deck::contact::{Normal, Settings};
+use crate::export::deck::contact::{Normal, Settings, contact};
+use crate::export::deck::{Deck, wrp};
 use crate::export::netcdf::NetCdf;
 use crate::export::picture::Picture;
 use crate::export::{
@@ -306,18 +306,18 @@ fn decks<'a>(
     strips: Option<&'a QuadMesh>,
 ) {
     if run.case.outputs.any(&[OutputFormat::Text]) {
-        stream(jobs, "separation.wrp", move |file| deck.separation(file));
+        stream(jobs, "separation.wrp", move |file| wrp::separation(deck, file));
     }
     if run.case.outputs.any(&[OutputFormat::Conform]) {
-        stream(jobs, "conform.wrp", move |file| deck.conform(file));
+        stream(jobs, "conform.wrp", move |file| wrp::conform(deck, file));
     }
     if let (true, Some(strips)) = (run.case.outputs.any(&[OutputFormat::Countact]), strips) {
-        stream(jobs, "countact.wrp", move |file| deck.countact(strips, file));
+        stream(jobs, "countact.wrp", move |file| wrp::countact(deck, strips, file));
     }
     if let (true, Some(settings)) =
         (run.case.outputs.any(&[OutputFormat::Contact]), contact_settings(run, part))
     {
-        stream(jobs, "contact.inp", move |file| deck.contact(&settings, file));
+        stream(jobs, "contact.inp", move |file| contact(deck, &settings, file));
     }
 }
 

@@ -1,9 +1,9 @@
-//! Numbers to little-endian bytes at the speed of memory: a block that is filled and handed on.
+//! Turns numbers into little-endian bytes at the speed of memory: a block is filled and passed to a sink.
 
 use std::io::{self, Write};
 
-/// A block is handed on when it has grown to this many bytes: it stays inside the second-level cache, and
-/// the call that takes it costs nothing beside its content.
+/// Size in bytes at which a block is passed to the sink: it stays inside the second-level cache, and the cost
+/// of the call is nothing compared with its content.
 const BLOCK: usize = 1 << 18;
 
 /// Gathers bytes into blocks for a sink.
@@ -17,14 +17,14 @@ impl<'a> Block<'a> {
         Self { sink, bytes: Vec::with_capacity(BLOCK) }
     }
 
-    /// Room for the next `count` bytes, to be filled by the caller.
+    /// Returns room for the next `count` bytes, which the caller must fill.
     pub(super) fn room(&mut self, count: usize) -> io::Result<&mut [u8]> {
         let begin = self.begin(count)?;
         self.bytes.resize(begin + count, 0);
         Ok(&mut self.bytes[begin..])
     }
 
-    /// The next bytes.
+    /// Appends bytes.
     pub(super) fn bytes(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.begin(bytes.len())?;
         self.bytes.extend_from_slice(bytes);
@@ -39,20 +39,20 @@ impl<'a> Block<'a> {
         Ok(self.bytes.len())
     }
 
-    /// Hands on what is left.
+    /// Passes the rest to the sink.
     pub(super) fn finish(self) -> io::Result<()> {
         self.sink.write_all(&self.bytes)
     }
 }
 
-/// Puts numbers into `room`, 8 bytes each, little-endian.
+/// Writes numbers into `room`, 8 bytes each, little-endian.
 pub(super) fn put_f64(room: &mut [u8], values: impl Iterator<Item = f64>) {
     for (place, value) in room.chunks_exact_mut(8).zip(values) {
         place.copy_from_slice(&value.to_le_bytes());
     }
 }
 
-/// Puts vectors into `room`, 24 bytes each, little-endian.
+/// Writes vectors into `room`, 24 bytes each, little-endian.
 pub(super) fn put_vectors(room: &mut [u8], vectors: impl Iterator<Item = [f64; 3]>) {
     for (place, [x, y, z]) in room.chunks_exact_mut(24).zip(vectors) {
         place[..8].copy_from_slice(&x.to_le_bytes());
@@ -61,12 +61,12 @@ pub(super) fn put_vectors(room: &mut [u8], vectors: impl Iterator<Item = [f64; 3
     }
 }
 
-/// Puts bytes into `room`.
+/// Writes bytes into `room`.
 pub(super) fn put_bytes(room: &mut [u8], values: impl Iterator<Item = u8>) {
     room.iter_mut().zip(values).for_each(|(place, value)| *place = value);
 }
 
-/// As [`put_f64`], big-endian.
+/// Writes numbers into `room`, 8 bytes each, big-endian.
 pub(super) fn put_f64_be(room: &mut [u8], values: impl Iterator<Item = f64>) {
     for (place, value) in room.chunks_exact_mut(8).zip(values) {
         place.copy_from_slice(&value.to_be_bytes());

@@ -1,9 +1,11 @@
-//! `boundary.csv` and `interpen.csv`: one head line, then numbers in mm, shortest form that reads back the same.
+//! Writes `boundary.csv` and `interpen.csv`: a header line, then numbers in mm, in the shortest form that
+//! reads back the same.
 
 use super::model::{Interval, Loop};
 use std::fmt::Write;
 
-/// `boundary.csv`: component, xi, eta. Loop after loop, counter-clockwise (around holes clockwise), each closed by its first point.
+/// Writes `boundary.csv`: component, xi, eta. Loop after loop, counter-clockwise (clockwise around holes),
+/// each closed by its first point.
 pub fn boundary(loops: &[Loop]) -> String {
     let mut text = String::from("component,xi,eta\n");
     for ring in loops {
@@ -15,7 +17,8 @@ pub fn boundary(loops: &[Loop]) -> String {
     text
 }
 
-/// `interpen.csv`, INTERPEN's own table: for each grid ξ inside the patch, xi, component, eta_min, eta_max.
+/// Writes `interpen.csv`, INTERPEN's own table: for each grid ξ inside the patch, xi, component, eta_min,
+/// eta_max.
 pub fn interpen(intervals: &[Interval]) -> String {
     let mut text = String::from("xi,component,eta_min,eta_max\n");
     for Interval { xi, component, eta: [low, high] } in intervals {

@@ -1,15 +1,18 @@
-//! `separation.vtk`: the grid in VTK's legacy format, in one pass, for readers without `.vts` such as meshio.
+//! Writes `separation.vtk`: the grid in VTK's legacy format, in one pass, for readers without `.vts` such as
+//! meshio.
 //!
-//! Version 4.2, the last one that meshio reads, and binary, which is big-endian: the format has no other order.
+//! The version is 4.2, the last one that meshio reads. The file is binary, which in this format is always
+//! big-endian.
 
 use super::block::{Block, put_bytes, put_f64_be};
 use super::model::{GridFields, Header, plain};
 use std::io::{self, Write};
 
-/// The rail's surface with the point arrays separation \[mm\] (NaN where undefined) and mask (1 where it is defined).
+/// Writes the rail's surface with the point arrays separation \[mm\] (NaN where undefined) and mask (1 where
+/// separation is defined).
 ///
 /// # Errors
-/// Those of the sink.
+/// The errors of the sink.
 pub fn separation(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io::Result<()> {
     let (n_xi, n_eta) = (grid.xi().len(), grid.eta().len());
     let count = n_xi * n_eta;

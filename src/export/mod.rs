@@ -1,8 +1,8 @@
-//! Writers: plain arrays in, bytes out. Nothing here computes geometry or touches the disk.
+//! Writers: they take plain arrays and give bytes. Nothing here computes geometry or touches the disk.
 //!
-//! Large files (grids) are written to any [`std::io::Write`] in one pass and in blocks, so that a grid is never
-//! held twice; small ones are returned as bytes. Every file is in the contact frame of Report Sec. 4 in mm;
-//! [`Header::statements`] is the one place where frame, signs, order and mask are put into words.
+//! Large files (grids) are written to any [`std::io::Write`] in one pass and in blocks, so that a grid is
+//! never held twice; small files are returned as bytes. Every file is in the contact frame of Report Sec. 4,
+//! in mm. [`Header::statements`] is the one place that describes frame, signs, order and mask in words.
 
 mod block;
 pub mod csv;
@@ -17,7 +17,7 @@ pub mod vts;
 
 pub use model::{Frame, GridFields, Header, Interval, Loop, QuadMesh, SurfaceMesh};
 
-/// The ParaView script that opens the folder it lies in: separation coloured, boundary overlaid, gap vectors.
+/// The ParaView script that opens its own folder: coloured separation, the boundary, gap vectors.
 pub const VIEW_SCRIPT: &str = include_str!("view.py");
 
 #[cfg(test)]

@@ -1,10 +1,11 @@
-//! What the writers are given: slices of numbers and a few statements about them.
+//! The input of the writers: slices of numbers, and statements about them.
 
 use crate::error::{Error, Result};
 
-/// Steps of an evenly spaced grid may differ by this × the largest |coordinate|: two roundings of `from + i·step`
-/// at each end. A smaller factor would refuse grids that are even as far as f64 can say; a larger one would let
-/// values of which a solver sees the spacing only move off their points.
+/// Largest difference of the steps of an evenly spaced grid, as a multiple of the largest |coordinate|: two
+/// roundings of `from + i·step` at each end. A smaller factor would refuse grids that are even as far as f64
+/// can say; a larger one would accept values that are off the points of the spacing, which is all that a
+/// solver sees.
 const STEP_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// The contact frame ξηζ in the rail profile's axes (x lateral, y rolling direction, z up) \[mm\].
@@ -21,17 +22,17 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The frame at the rail's contact point (x, z) \[mm\] with contact angle θ_C given by its cosine and sine:
-    /// eqs. (4.2). ξ × η = ζ.
+    /// Makes the frame at the rail's contact point (x, z) \[mm\], with the contact angle θ_C given by its
+    /// cosine and sine: eqs. (4.2). ξ × η = ζ.
     pub fn at(x: f64, z: f64, cos: f64, sin: f64) -> Self {
         Self { origin: [x, 0.0, z], xi: [cos, 0.0, sin], eta: [0.0, 1.0, 0.0], zeta: [-sin, 0.0, cos] }
     }
 }
 
-/// What every file says about itself.
+/// The statements that every file makes about itself.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Header {
-    /// The scene's title.
+    /// Title of the scene.
     pub title: String,
     /// Version of this program, e.g. `0.1.0`.
     pub version: String,
@@ -41,12 +42,12 @@ pub struct Header {
     pub approach: f64,
     /// The frame of all coordinates.
     pub frame: Frame,
-    /// What a reader must know of this contact in particular.
+    /// Special properties of this contact that a reader must know.
     pub remarks: Vec<String>,
 }
 
 impl Header {
-    /// The lines that explain a file: ASCII, at most 76 columns, none empty.
+    /// Returns the lines that explain a file: ASCII, at most 76 columns, none empty.
     pub fn statements(&self) -> Vec<String> {
         let remarks = self.remarks.iter().flat_map(|remark| wrapped(remark));
         let lines = [
@@ -67,7 +68,7 @@ impl Header {
     }
 }
 
-/// Lines of at most [`LINE`] characters, divided between words.
+/// Returns lines of at most [`LINE`] characters, divided between words.
 fn wrapped(text: &str) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -82,10 +83,11 @@ fn wrapped(text: &str) -> Vec<String> {
     lines
 }
 
-/// Characters of a comment's line.
+/// Most characters of a comment's line.
 const LINE: usize = 76;
 
-/// One printable ASCII line of at most [`LINE`] characters, fit for every format's comments: `--` would end XML's.
+/// Returns one printable ASCII line of at most [`LINE`] characters, fit for the comments of every format:
+/// `--` would end a comment in XML.
 pub(super) fn plain(line: &str) -> String {
     let printable = |c: char| if c.is_ascii_graphic() || c == ' ' { c } else { '?' };
     let line: String = line.chars().map(printable).take(LINE).collect();
@@ -103,14 +105,14 @@ pub struct GridFields<'a> {
 }
 
 impl<'a> GridFields<'a> {
-    /// Fields whose lengths fit each other.
+    /// Makes the fields from arrays whose lengths must agree.
     ///
-    /// `xi`, `eta`: ascending grid coordinates \[mm\]. `separation`: s \[mm\] at `i_xi * n_eta + i_eta`, NaN where
-    /// undefined. `rail_height`: ζ^R(ξ) \[mm\], per ξ, NaN where the rail has no surface. `rail_normal`: per ξ, the
-    /// rail's outward (upward) unit normal (n_ξ, n_ζ).
+    /// `xi`, `eta`: ascending grid coordinates \[mm\]. `separation`: s \[mm\] at `i_xi * n_eta + i_eta`, NaN
+    /// where undefined. `rail_height`: ζ^R(ξ) \[mm\] per ξ, NaN where the rail has no surface. `rail_normal`:
+    /// the rail's outward (upward) unit normal (n_ξ, n_ζ) per ξ.
     ///
     /// # Errors
-    /// An empty axis, or lengths that do not fit.
+    /// An empty axis, or lengths that do not agree.
     pub fn new(
         xi: &'a [f64],
         eta: &'a [f64],
@@ -132,65 +134,65 @@ impl<'a> GridFields<'a> {
         Ok(Self { xi, eta, separation, rail_height, rail_normal })
     }
 
-    /// Grid coordinates ξ \[mm\], ascending.
+    /// Returns the grid coordinates ξ \[mm\], ascending.
     pub fn xi(&self) -> &'a [f64] {
         self.xi
     }
 
-    /// Grid coordinates η \[mm\], ascending.
+    /// Returns the grid coordinates η \[mm\], ascending.
     pub fn eta(&self) -> &'a [f64] {
         self.eta
     }
 
-    /// s \[mm\] at `i_xi * n_eta + i_eta`, NaN where undefined.
+    /// Returns s \[mm\] at `i_xi * n_eta + i_eta`, NaN where undefined.
     pub fn separation(&self) -> &'a [f64] {
         self.separation
     }
 
-    /// s \[mm\] along the column of ξ number `i`.
+    /// Returns s \[mm\] along the column of ξ number `i`.
     pub fn column(&self, i: usize) -> &'a [f64] {
         &self.separation[i * self.eta.len()..(i + 1) * self.eta.len()]
     }
 
-    /// ζ^R(ξ) \[mm\], NaN where the rail has no surface.
+    /// Returns ζ^R(ξ) \[mm\], NaN where the rail has no surface.
     pub fn rail_height(&self) -> &'a [f64] {
         self.rail_height
     }
 
-    /// The rail's surface \[ξ, η, ζ^R\] \[mm\] under the column of ξ number `i`; on ζ = 0 where it has none, as a point
-    /// needs coordinates nevertheless.
+    /// Returns the points \[ξ, η, ζ^R\] \[mm\] of the rail's surface under the column of ξ number `i`. Where
+    /// there is no surface ζ is 0, as a point must have coordinates.
     pub(super) fn rail_points(&self, i: usize) -> impl Iterator<Item = [f64; 3]> + 'a {
         let (xi, zeta) = (self.xi[i], known(self.rail_height[i]));
         self.eta.iter().map(move |&eta| [xi, eta, zeta])
     }
 
-    /// 1 where s is defined, 0 elsewhere, along the column of ξ number `i`.
+    /// Returns the mask along the column of ξ number `i`: 1 where s is defined, 0 elsewhere.
     pub(super) fn mask(&self, i: usize) -> impl Iterator<Item = u8> + 'a {
         self.column(i).iter().map(|s| u8::from(!s.is_nan()))
     }
 
-    /// The rail's outward unit normal (n_ξ, n_ζ) per ξ.
+    /// Returns the rail's outward unit normal (n_ξ, n_ζ) per ξ.
     pub fn rail_normal(&self) -> &'a [[f64; 2]] {
         self.rail_normal
     }
 
-    /// The steps \[d_ξ, d_η\] \[mm\] of a grid of equal steps.
+    /// Returns the steps \[d_ξ, d_η\] \[mm\] of a grid of equal steps.
     ///
     /// # Errors
-    /// Unequal steps, or an axis of one point: `format` then has no way to say where the points are.
+    /// Unequal steps, or an axis of one point: `format` cannot say where the points are.
     pub fn steps(&self, format: &str) -> Result<[f64; 2]> {
         Ok([even_step(format, "xi", self.xi)?, even_step(format, "eta", self.eta)?])
     }
 
-    /// What stands for s where a format needs a number at undefined points: 10 × the largest |s|. Much larger
-    /// values spoil a solver's result without a word.
+    /// Returns the number that represents s at undefined points in formats that need one: 10 × the largest
+    /// |s|. Much larger values spoil a solver's result without a warning.
     pub fn fill_value(&self) -> f64 {
-        // `max` passes over NaN.
+        // `max` ignores NaN.
         10.0 * self.separation.iter().fold(0.0, |largest: f64, s| largest.max(s.abs()))
     }
 }
 
-/// The value, or 0 for an undefined one.
+/// Returns the value, or 0 for an undefined one.
 pub(super) fn known(value: f64) -> f64 {
     if value.is_nan() { 0.0 } else { value }
 }
@@ -225,19 +227,19 @@ fn even_step(format: &str, axis: &str, values: &[f64]) -> Result<f64> {
 /// One closed loop of the interpenetration boundary s = δ.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loop {
-    /// Number of the patch's component that it bounds, from 0.
+    /// Number of the component that the loop bounds, from 0.
     pub component: usize,
-    /// Its points \[ξ, η, ζ^R\] \[mm\] on the rail's surface, counter-clockwise in (ξ, η). The first is not repeated at the
-    /// end.
+    /// Points \[ξ, η, ζ^R\] \[mm\] on the rail's surface, counter-clockwise in (ξ, η) (clockwise around
+    /// holes). The first is not repeated at the end.
     pub points: Vec<[f64; 3]>,
 }
 
-/// One row of INTERPEN's table: where a line of constant ξ runs inside the patch.
+/// One row of INTERPEN's table: an interval of η in which a line of constant ξ is inside the patch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
     /// ξ of a grid column \[mm\].
     pub xi: f64,
-    /// Number of the patch's component, from 0.
+    /// Number of the component, from 0.
     pub component: usize,
     /// Smallest and largest η \[mm\] with s ≤ δ.
     pub eta: [f64; 2],
@@ -250,17 +252,17 @@ pub struct QuadMesh {
     pub points: Vec<[f64; 3]>,
     /// Cells: indices of four nodes, counter-clockwise in (ξ, η). A cell at a tip may repeat a node.
     pub quads: Vec<[usize; 4]>,
-    /// Exact area of each cell in the ξ–η plane \[mm²\], curved boundary edge included.
+    /// Exact area of each cell in the ξ–η plane \[mm²\], with its curved boundary edge.
     pub area: Vec<f64>,
-    /// Number of the patch's component that each cell belongs to, from 0.
+    /// Number of the component to which each cell belongs, from 0.
     pub component: Vec<usize>,
 }
 
 impl QuadMesh {
-    /// Checks what every writer relies on.
+    /// Checks the properties that every writer relies on.
     ///
     /// # Errors
-    /// Lengths that do not fit; a node number beyond the nodes.
+    /// Lengths that do not agree; a node number beyond the nodes.
     pub fn validate(&self) -> Result<()> {
         same_length("cell areas", self.area.len(), self.quads.len())?;
         same_length("cell components", self.component.len(), self.quads.len())?;
@@ -278,7 +280,7 @@ pub struct SurfaceMesh {
 }
 
 impl SurfaceMesh {
-    /// Checks what every writer relies on.
+    /// Checks the property that every writer relies on.
     ///
     /// # Errors
     /// A node number beyond the nodes.
@@ -287,8 +289,10 @@ impl SurfaceMesh {
     }
 }
 
+/// Checks the length of an array.
+///
 /// # Errors
-/// When `found` values stand where `expected` should.
+/// `found` differs from `expected`.
 pub(super) fn same_length(what: &str, found: usize, expected: usize) -> Result<()> {
     if found == expected {
         return Ok(());

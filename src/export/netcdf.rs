@@ -1,9 +1,10 @@
-//! `separation.nc`: NetCDF-3 classic, the one format that carries sizes, units and mask to SurfaceTopography and
-//! ContactMechanics.
+//! Writes `separation.nc`: NetCDF-3 classic, the one format that gives sizes, units and mask to
+//! SurfaceTopography and ContactMechanics.
 //!
-//! Dimensions x (= ξ) and y (= η); variables `x`, `y` \[mm\] (cell centres), `heights(x, y)` = −s \[mm\], and
-//! `mask(x, y)` (1 = undefined) where a body has no surface somewhere. −s, as those programs press a rigid flat
-//! down onto `heights`. Own writer: a small format, and the crates for it write only to paths.
+//! Dimensions x (= ξ) and y (= η); variables `x`, `y` \[mm\] (cell centres), `heights(x, y)` = −s \[mm\],
+//! and, if a body has no surface somewhere, `mask(x, y)` (1 = undefined). The sign of −s is right because
+//! those programs press a rigid flat down onto `heights`. The writer is our own: the format is small, and the
+//! crates for it write only to paths.
 
 use super::block::{Block, put_f64_be};
 use super::model::{GridFields, Header};
@@ -20,18 +21,19 @@ const CHAR: u32 = 2;
 const INT: u32 = 4;
 const DOUBLE: u32 = 6;
 
-/// The longest file whose offsets fit the first version's signed 32 bits; longer ones take 64-bit offsets.
+/// Length of the longest file whose offsets fit the first version's signed 32 bits; longer files have 64-bit
+/// offsets.
 const CLASSIC_LIMIT: u64 = (1 << 31) - 1;
 
-/// One variable: its head entry and how long its data are.
+/// One variable: its entry in the header, and the length of its data.
 struct Variable {
     name: &'static str,
-    /// Numbers of its dimensions.
+    /// Numbers of the variable's dimensions.
     dimensions: &'static [u32],
     attributes: Vec<u8>,
     attribute_count: u32,
     kind: u32,
-    /// Bytes, before padding to four.
+    /// Bytes of the data, before padding to four.
     size: u64,
 }
 
@@ -53,10 +55,10 @@ impl<'a> NetCdf<'a> {
         Ok(Self { grid, head: head(header, grid, steps, masked), masked })
     }
 
-    /// Writes it.
+    /// Writes the file.
     ///
     /// # Errors
-    /// Those of the sink.
+    /// The errors of the sink.
     pub fn write(&self, sink: &mut dyn Write) -> io::Result<()> {
         let mut block = Block::new(sink);
         block.bytes(&self.head)?;
@@ -87,7 +89,7 @@ fn head(header: &Header, grid: &GridFields, steps: [f64; 2], masked: bool) -> Ve
     let total: u64 = variables.iter().map(|v| v.size + padding(v.size)).sum();
     let mut bytes = first_part(header, grid);
     let entries = |wide: bool, begin: u64| entries(&variables, wide, begin);
-    // The offsets' width decides the head's length and the head's length the offsets.
+    // The offsets' width decides the header's length, and the header's length the offsets.
     let narrow = bytes.len() as u64 + entries(false, 0).len() as u64;
     let wide = narrow + total > CLASSIC_LIMIT;
     let begin = bytes.len() as u64 + entries(wide, 0).len() as u64;
@@ -96,7 +98,7 @@ fn head(header: &Header, grid: &GridFields, steps: [f64; 2], masked: bool) -> Ve
     bytes
 }
 
-/// Magic, record count, dimensions and global attributes.
+/// Returns magic, record count, dimensions and global attributes.
 fn first_part(header: &Header, grid: &GridFields) -> Vec<u8> {
     let mut bytes = b"CDF\x01".to_vec();
     put(&mut bytes, 0);
@@ -112,7 +114,7 @@ fn first_part(header: &Header, grid: &GridFields) -> Vec<u8> {
     bytes
 }
 
-/// What the format has no field for, as the readers' `info` dictionary.
+/// Returns what the format has no field for, as the readers' `info` dictionary.
 fn information(header: &Header) -> String {
     let frame = &header.frame;
     json!({
@@ -159,7 +161,7 @@ fn variables(grid: &GridFields, steps: [f64; 2], masked: bool) -> Vec<Variable> 
     variables
 }
 
-/// The list of variables, with the data of the first at `begin`.
+/// Returns the list of variables; the data of the first are at `begin`.
 fn entries(variables: &[Variable], wide: bool, mut begin: u64) -> Vec<u8> {
     let mut bytes = Vec::new();
     put(&mut bytes, VARIABLE);

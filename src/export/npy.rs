@@ -1,17 +1,17 @@
-//! NumPy arrays (`.npy`): f64, little-endian, C order. The head is written by `npyz`; its body, value by value,
-//! runs at half the speed of the disk's cache, so the body is ours.
+//! Writes NumPy arrays (`.npy`): f64, little-endian, C order. `npyz` writes the header. Its body, value by
+//! value, runs at half the speed of the disk's cache, so the body is written here.
 
 use super::block::{Block, put_f64};
 use npyz::WriterBuilder;
 use std::io::{self, Write};
 
-/// Values put into a block at a time.
+/// Number of values put into a block at a time.
 const RUN: usize = 1 << 12;
 
-/// One array of the given shape; NaN stays NaN, bit for bit.
+/// Writes one array of the given shape; NaN stays NaN, bit for bit.
 ///
 /// # Errors
-/// Those of the sink; `InvalidInput` when the shape does not have as many elements as `values`.
+/// The errors of the sink; `InvalidInput` if the shape does not have as many elements as `values`.
 pub fn array(sink: &mut dyn Write, shape: &[u64], values: &[f64]) -> io::Result<()> {
     if shape.iter().product::<u64>() != values.len() as u64 {
         let text = format!("{} values for an array of shape {shape:?}", values.len());
@@ -27,7 +27,7 @@ pub fn array(sink: &mut dyn Write, shape: &[u64], values: &[f64]) -> io::Result<
 
 fn head(shape: &[u64]) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    // The head is complete once the writer exists; dropping the writer adds nothing.
+    // The header is complete once the writer exists; dropping the writer adds nothing.
     drop(npyz::WriteOptions::<f64>::new().default_dtype().shape(shape).writer(&mut bytes).begin_nd()?);
     Ok(bytes)
 }

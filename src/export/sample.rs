@@ -1,4 +1,4 @@
-//! What the writers' tests write: a paraboloid, with a corner where no body is.
+//! Sample data for the writers' tests: a paraboloid, with a corner where no body is.
 
 use super::model::{Frame, GridFields, Header, Loop, QuadMesh};
 
@@ -12,7 +12,7 @@ pub(super) struct Sample {
 }
 
 impl Sample {
-    /// n_ξ × n_η points 0.1 mm apart.
+    /// Makes n_ξ × n_η points 0.1 mm apart.
     pub(super) fn new(n_xi: usize, n_eta: usize) -> Self {
         let axis = |n: usize| (0..n).map(|i| (i as f64 - (n - 1) as f64 / 2.0) * 0.1).collect::<Vec<_>>();
         let (xi, eta) = (axis(n_xi), axis(n_eta));
@@ -40,7 +40,7 @@ pub(super) fn header() -> Header {
     }
 }
 
-/// The square |ξ|, |η| ≤ 1 in four cells.
+/// Returns the square |ξ|, |η| ≤ 1 in four cells.
 pub(super) fn mesh() -> QuadMesh {
     let points = (0..9).map(|i| [f64::from(i / 3) - 1.0, f64::from(i % 3) - 1.0, 0.0]).collect();
     let quads = [0, 1, 3, 4].map(|a| [a, a + 3, a + 4, a + 1]).to_vec();

@@ -1,11 +1,11 @@
-//! VTK files through `vtkio` 0.7.0-rc2, which serves for boundaries, patches and surfaces; grids go through
+//! Writes VTK files with `vtkio` 0.7.0-rc2: boundaries, patches and surfaces. Grids are written by
 //! [`vts`](super::vts) and [`legacy`](super::legacy).
 //!
-//! Its traps, and what is done about them here, in one place: partial writes pass as success (encode to memory),
-//! array lengths are not checked (checked here), counts of zero are left out, which makes empty files
-//! unreadable (put in), FieldData is dropped from XML (inserted as text), node numbers are unsigned, of which meshio makes
-//! floating-point ones (declared as signed), blanks in array names break readers (none has).
-//! Only the version and the cell kinds are used that meshio reads too: XML 1.0.
+//! `vtkio` has traps; each is avoided here. It reports partial writes as success (so encode to memory). It
+//! does not check array lengths (checked here). It leaves out counts of zero, so that empty files are
+//! unreadable (put in here). It drops FieldData from XML (inserted as text). Its node numbers are unsigned,
+//! which meshio turns into floating-point numbers (declared as signed). Blanks in array names break readers
+//! (no name has one). Only the version and the cell kinds that meshio reads are used: XML 1.0.
 
 use super::model::{Header, Loop, QuadMesh, SurfaceMesh, same_length};
 use super::vts::{comment, field_data};
@@ -15,17 +15,18 @@ use vtkio::model::{
     PolyDataPiece, UnstructuredGridPiece, Version, VertexNumbers, Vtk,
 };
 
-/// The counts that `vtkio` leaves out when they are zero, without which no reader takes a file.
+/// The counts of an empty PolyData piece, which `vtkio` leaves out; no reader takes a file without them.
 const EMPTY_POLYDATA: &str = "<Piece NumberOfPoints=\"0\" NumberOfVerts=\"0\" NumberOfLines=\"0\" \
     NumberOfStrips=\"0\" NumberOfPolys=\"0\">";
 
-/// The same for an unstructured grid.
+/// The counts of an empty unstructured grid, which `vtkio` leaves out.
 const EMPTY_UNSTRUCTURED: &str = "<Piece NumberOfPoints=\"0\" NumberOfCells=\"0\">";
 
-/// `boundary.vtp`: each loop as one closed polyline on the rail's surface, with the cell array `component`.
+/// Writes `boundary.vtp`: each loop as one closed polyline on the rail's surface, with the cell array
+/// `component`.
 ///
 /// # Errors
-/// What `vtkio` refuses, which would be a fault of this program.
+/// Data that `vtkio` refuses, which would be a fault of this program.
 pub fn boundary(header: &Header, loops: &[Loop]) -> Result<Vec<u8>> {
     let loops: Vec<_> = loops.iter().filter(|ring| !ring.points.is_empty()).collect();
     let (mut connectivity, mut offsets, mut first) = (Vec::new(), Vec::new(), 0);
@@ -47,8 +48,8 @@ pub fn boundary(header: &Header, loops: &[Loop]) -> Result<Vec<u8>> {
     xml(header, DataSet::inline(piece), EMPTY_POLYDATA)
 }
 
-/// `patch.vtu`: the boundary-fitted cells on the rail's surface, with the cell arrays `area` \[mm²\] and
-/// `component`. A cell with a repeated node is written as a triangle.
+/// Writes `patch.vtu`: the boundary-fitted cells on the rail's surface, with the cell arrays `area` \[mm²\]
+/// and `component`. A cell with a repeated node is written as a triangle.
 ///
 /// # Errors
 /// A mesh that contradicts itself.
@@ -63,7 +64,7 @@ pub fn patch(header: &Header, mesh: &QuadMesh) -> Result<Vec<u8>> {
     unstructured(header, &mesh.points, &cells, cell)
 }
 
-/// A triangulated surface as `.vtu`.
+/// Writes a triangulated surface as `.vtu`.
 ///
 /// # Errors
 /// A mesh that contradicts itself.
@@ -73,8 +74,8 @@ pub fn surface(header: &Header, mesh: &SurfaceMesh) -> Result<Vec<u8>> {
     unstructured(header, &mesh.points, &cells, Vec::new())
 }
 
-/// `surface.pvd`: files of a sweep on one time axis, which ParaView plays; `steps` are (time, part, path), paths as
-/// the program makes them.
+/// Writes `surface.pvd`: the files of a sweep on one time axis, which ParaView plays. `steps` are (time,
+/// part, path), with paths as the program makes them.
 pub fn collection(steps: &[(f64, usize, String)]) -> String {
     let set = |(time, part, path): &(f64, usize, String)| {
         format!("    <DataSet timestep=\"{time:?}\" group=\"\" part=\"{part}\" file=\"{path}\"/>\n")
@@ -109,7 +110,7 @@ fn unstructured(
     xml(header, DataSet::inline(piece), EMPTY_UNSTRUCTURED)
 }
 
-/// The nodes of a cell without neighbours that are equal.
+/// Returns the nodes of a cell without equal neighbours.
 fn distinct(quad: &[usize; 4]) -> Vec<usize> {
     let mut nodes = quad.to_vec();
     nodes.dedup();
@@ -131,7 +132,7 @@ fn xml(header: &Header, data: DataSet, empty_piece: &str) -> Result<Vec<u8>> {
     let file = Vtk { version, title: String::new(), byte_order, file_path: None, data };
     file.write_xml(&mut bytes).map_err(refused)?;
     let text = String::from_utf8(bytes).map_err(refused)?;
-    // Numbers of nodes are far below 2⁶³: the same bytes.
+    // Numbers of nodes are far below 2⁶³, so the bytes are the same.
     let text = text.replace("<DataArray type=\"UInt64\"", "<DataArray type=\"Int64\"");
     Ok(annotate(text.replacen("<Piece>", empty_piece, 1), header))
 }

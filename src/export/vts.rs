@@ -1,20 +1,21 @@
-//! VTK structured grids (`.vts`): XML with the arrays appended raw, little-endian, in one pass.
+//! Writes VTK structured grids (`.vts`): XML with the arrays appended raw, little-endian, in one pass.
 //!
-//! Own writer: `vtkio` cannot write appended raw, and its base64 runs at 75 MB/s, a thirtieth of what the disk's
-//! cache takes. Points are (ξ, η, ζ) in the contact frame. VTK's first index runs fastest, so it is η.
+//! The writer is our own: `vtkio` cannot append raw data, and its base64 runs at 75 MB/s, a thirtieth of what
+//! the disk's cache takes. Points are (ξ, η, ζ) in the contact frame. VTK's first index runs fastest, so it
+//! is η.
 //!
-//! Where a body has no surface a point needs coordinates nevertheless: it lies on ζ = 0 and is hidden by VTK's
-//! own array `vtkGhostType`, which is written only where there are such points.
+//! Where a body has no surface, a point still needs coordinates: ζ is 0 there, and VTK's own array
+//! `vtkGhostType` hides the point. The array is written only if there are such points.
 
 use super::block::{Block, put_bytes, put_f64, put_vectors};
 use super::model::{GridFields, Header, known};
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-/// VTK's flag for a point that is not to be shown (`vtkDataSetAttributes::HIDDENPOINT`).
+/// VTK's flag for a hidden point (`vtkDataSetAttributes::HIDDENPOINT`).
 const HIDDEN: u8 = 2;
 
-/// Fills the bytes of column i.
+/// A function that fills the bytes of column i.
 type FillColumn<'a> = Box<dyn Fn(usize, &mut [u8]) + 'a>;
 
 /// One array of a grid, given column by column (a column: constant ξ).
@@ -45,12 +46,13 @@ impl<'a> Array<'a> {
     }
 }
 
-/// `separation.vts`: the grid on the rail's surface with separation \[mm\], interpenetration max(δ − s, 0)
-/// \[mm\], gap_vector s·e_ζ \[mm\] (for Warp By Vector: the rail warped by it is the wheel), rail_normal and mask
-/// (1 where s is defined). NaN where undefined, except gap_vector: 0, as a NaN would take the picture with it.
+/// Writes `separation.vts`: the grid on the rail's surface with separation \[mm\], interpenetration max(δ −
+/// s, 0) \[mm\], gap_vector s·e_ζ \[mm\] (for Warp By Vector: the rail warped by it is the wheel),
+/// rail_normal and mask (1 where s is defined). Undefined values are NaN; in gap_vector they are 0, as a NaN
+/// would destroy the picture.
 ///
 /// # Errors
-/// Those of the sink.
+/// The errors of the sink.
 pub fn separation(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io::Result<()> {
     let delta = header.approach;
     let depth = move |s: f64| if s > delta { 0.0 } else { delta - s };
@@ -67,18 +69,18 @@ pub fn separation(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> i
     structured_grid(sink, header, grid, rail_points(grid), arrays)
 }
 
-/// `rail.vts`: the rail's surface ζ^R(ξ), with the separation as its scalar.
+/// Writes `rail.vts`: the rail's surface ζ^R(ξ), with the separation as its scalar.
 ///
 /// # Errors
-/// Those of the sink.
+/// The errors of the sink.
 pub fn rail(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io::Result<()> {
     structured_grid(sink, header, grid, rail_points(grid), vec![separation_array(grid)])
 }
 
-/// `wheel.vts`: the wheel's surface ζ^R + s before any approach, with the separation as its scalar.
+/// Writes `wheel.vts`: the wheel's surface ζ^R + s before any approach, with the separation as its scalar.
 ///
 /// # Errors
-/// Those of the sink.
+/// The errors of the sink.
 pub fn wheel(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io::Result<()> {
     let points = Array::vector("Points", |i| {
         let (xi, rail) = (grid.xi()[i], grid.rail_height()[i]);
@@ -123,7 +125,7 @@ fn structured_grid(
     block.finish()
 }
 
-/// Everything up to the first appended byte. `arrays[0]` are the points.
+/// Returns everything up to the first appended byte; `arrays[0]` are the points.
 fn head(header: &Header, grid: &GridFields, arrays: &[&Array]) -> String {
     let extent = format!("0 {} 0 {} 0 0", grid.eta().len() - 1, grid.xi().len() - 1);
     let mut offset = 0;
@@ -150,7 +152,7 @@ fn head(header: &Header, grid: &GridFields, arrays: &[&Array]) -> String {
     )
 }
 
-/// The header's statements as an XML comment.
+/// Returns the header's statements as an XML comment.
 pub(super) fn comment(header: &Header) -> String {
     let mut text = String::from("  <!--\n");
     for line in header.statements() {
@@ -161,7 +163,7 @@ pub(super) fn comment(header: &Header) -> String {
     text + "  -->\n"
 }
 
-/// δ and the frame as numeric field data. Strings there would make a file unreadable to meshio.
+/// Returns δ and the frame as numeric field data. Strings there would make a file unreadable to meshio.
 pub(super) fn field_data(header: &Header) -> String {
     let frame = &header.frame;
     let mut text = String::from("    <FieldData>\n");
@@ -191,7 +193,7 @@ mod tests {
     use super::*;
     use crate::export::sample::{Sample, header};
 
-    /// The appended array that starts `offset` bytes after the underscore.
+    /// Returns the appended array that starts `offset` bytes after the underscore.
     fn appended(file: &[u8], offset: usize) -> &[u8] {
         let mark = b"encoding=\"raw\">\n   _";
         let begin = file.windows(mark.len()).position(|w| w == mark).unwrap() + mark.len() + offset;

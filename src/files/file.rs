@@ -1,25 +1,26 @@
-//! A single file, replaced in one step.
+//! Replaces a single file in one step.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::{bad, temporary};
+use super::complaint::bad;
+use super::temporary;
 use crate::error::{Error, Result};
 
-/// A file being written: nothing is seen of it under its name before [`NewFile::commit`], and nothing remains of it when it
-/// is dropped without. A pipe or a device is no file: it takes what is written at once.
+/// A file being written: nothing appears under its name before [`NewFile::commit`], and nothing remains if it
+/// is dropped without a commit. A pipe or a device takes the bytes at once.
 #[derive(Debug)]
 pub struct NewFile {
     target: PathBuf,
-    /// The locked file beside the target that takes its place; none for a pipe or a device.
+    /// The locked file beside the target that will replace it; `None` for a pipe or a device.
     temporary: Option<PathBuf>,
     sink: File,
 }
 
 impl NewFile {
-    /// Opens a temporary file beside `path`, after those that killed processes have left there have been removed. Behind a
-    /// symbolic link stands the file that is replaced.
+    /// Opens a temporary file beside `path`, after removing those left there by killed processes. If `path`
+    /// is a symbolic link, the file behind it is replaced.
     ///
     /// # Errors
     /// A folder, a symbolic link to nothing, a place that cannot be written.
@@ -34,39 +35,39 @@ impl NewFile {
         } else {
             beside(&target).map(|(temporary, sink)| (Some(temporary), sink))
         };
-        let (temporary, sink) = opened.map_err(|error| unwritable(&target, &error))?;
+        let (temporary, sink) = opened.map_err(|error| unwritable(&target, error))?;
         Ok(Self { target, temporary, sink })
     }
 
-    /// Adds bytes at the end. They are not buffered: large files are handed over in blocks.
+    /// Adds bytes at the end. They are not buffered, so pass large files in blocks.
     ///
     /// # Errors
-    /// Whatever the disk says.
+    /// Any error of the disk.
     pub fn put(&mut self, bytes: &[u8]) -> Result<()> {
-        self.sink.write_all(bytes).map_err(|error| unwritable(&self.target, &error))
+        self.sink.write_all(bytes).map_err(|error| unwritable(&self.target, error))
     }
 
-    /// Gives the file its name: whoever looks finds the old content or the new one, each whole.
+    /// Gives the file its name: every reader finds the whole old content or the whole new one.
     ///
     /// # Errors
-    /// Whatever the disk says; the old file is then as it was.
+    /// Any error of the disk; the old file is then as it was.
     pub fn commit(self) -> Result<()> {
         let moved = self.temporary.iter().try_for_each(|temporary| fs::rename(temporary, &self.target));
-        moved.map_err(|error| unwritable(&self.target, &error))
+        moved.map_err(|error| unwritable(&self.target, error))
     }
 }
 
 impl Drop for NewFile {
     fn drop(&mut self) {
-        // After a commit there is none. What cannot be removed is left to the next process.
+        // After a commit there is no such file. The next process removes what cannot be removed here.
         self.temporary.iter().for_each(|temporary| drop(fs::remove_file(temporary)));
     }
 }
 
-/// Writes a whole file: [`NewFile`] in one call.
+/// Writes a whole file by [`NewFile`], in one call.
 ///
 /// # Errors
-/// Those of [`NewFile`].
+/// The errors of [`NewFile`].
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
     let mut file = NewFile::create(path)?;
     file.put(bytes)?;
@@ -80,7 +81,8 @@ fn beside(target: &Path) -> io::Result<(PathBuf, File)> {
     temporary::locked(&target, |name| File::create_new(name))
 }
 
-/// The file behind a symbolic link; any other path as it is. A link to nothing is an error: what it is meant for is unknown.
+/// Returns the file behind a symbolic link, or any other path as it is. A link to nothing is an error: its
+/// purpose is unknown.
 fn behind_links(path: &Path) -> Result<PathBuf> {
     match path.canonicalize() {
         Ok(real) if path.is_symlink() => Ok(real),
@@ -94,9 +96,9 @@ fn behind_links(path: &Path) -> Result<PathBuf> {
     }
 }
 
-fn unwritable(path: &Path, error: &io::Error) -> Error {
+fn unwritable(path: &Path, error: io::Error) -> Error {
     let advice = "check path, permissions and free space";
-    bad(path, &error.to_string(), "a file that can be written", advice)
+    bad(path, &error.to_string(), "a file that can be written", advice).caused_by(error)
 }
 
 #[cfg(test)]

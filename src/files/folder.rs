@@ -1,40 +1,43 @@
-//! The output folder, and how it comes onto the disk.
+//! Puts the output folder onto the disk.
 //!
-//! A run writes into a temporary folder beside DIR and puts it in DIR's place in one step at the end, so that
-//! whoever looks at DIR, and whenever the run is killed, finds the old folder or the new one, each whole.
+//! A run writes into a temporary folder beside DIR and puts it in DIR's place in one step at the end. So
+//! every reader of DIR finds the whole old folder or the whole new one, whenever the run is killed.
 //!
-//! - **The step.** A plain `rename` where DIR is missing or empty; elsewhere the kernel's exchange of two names
-//!   (`renameat2` with `RENAME_EXCHANGE`), after which the old folder bears the temporary name and is deleted.
-//!   Systems and file systems without the exchange (Windows, NFS, some FUSE) get two renames: between them DIR is
-//!   missing for an instant, and the old folder waits beside it under a name that the next run puts back.
-//! - **Killed runs.** The temporary folder is locked as long as its run lives: `files::temporary`. What a killed one leaves,
-//!   the next run into the same parent removes, on systems that lock folders.
-//! - **No fsync.** Twenty of them cost more than the whole run. What is promised holds for a kill of the process,
-//!   not for a power cut: a folder cut off by one is recognised by the END lines and the sizes in the headers.
-//! - **Foreign files.** A folder is replaced only if it is empty or carries our own summary. Files in it that
-//!   are not ours (notes, pictures) are hard-linked into the new folder; foreign subfolders are refused.
+//! - **The step.** A plain `rename` if DIR is missing or empty; otherwise the kernel's exchange of two names
+//!   (`renameat2` with `RENAME_EXCHANGE`), after which the old folder has the temporary name and is deleted.
+//!   Systems and file systems without the exchange (Windows, NFS, some FUSE) get two renames: between them
+//!   DIR is missing for an instant, and the old folder waits beside it under a name that the next run puts
+//!   back.
+//! - **Killed runs.** The temporary folder is locked as long as its run lives: `files::temporary`. On systems
+//!   that lock folders, the next run into the same parent removes what a killed run left.
+//! - **No fsync.** Twenty of them cost more than the whole run. The promise holds for a kill of the process,
+//!   not for a power cut: the END lines and the sizes in the headers show that a folder is incomplete.
+//! - **Foreign files.** A folder is replaced only if it is empty or contains our own summary. Files in it
+//!   that are not ours (notes, pictures) are hard-linked into the new folder; foreign subfolders are refused.
 
+use super::complaint::bad;
 use super::names::Names;
-use super::{bad, system, temporary};
+use super::{system, temporary};
 use crate::error::{Error, Result};
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Component, Path, PathBuf};
 
-/// Where the old folder waits while a file system without the exchange of names swaps two folders.
+/// Name of the old folder while two folders are swapped on a file system without the exchange of names.
 const ASIDE: &str = ".wheelrail-old.";
 
-/// Attempts to put the new folder in place, each lost only to another run that does the same just then.
+/// Most attempts to put the new folder in place; an attempt fails only if another run does the same at that
+/// moment.
 const SWAPS_TRIED: u32 = 100;
 
-/// A folder being written: nothing is seen of it in DIR before [`Folder::commit`], and nothing remains of it
-/// when it is dropped without.
+/// A folder being written: nothing appears in DIR before [`Folder::commit`], and nothing remains if it is
+/// dropped without a commit.
 #[derive(Debug)]
 pub struct Folder {
     target: PathBuf,
     temporary: PathBuf,
     names: Names,
-    /// The open temporary folder, locked; the lock goes with it.
+    /// The open temporary folder, locked; the lock ends with it.
     _lock: File,
 }
 
@@ -47,7 +50,7 @@ pub struct FolderPart<'a> {
 }
 
 impl Folder {
-    /// A temporary folder beside `dir`, after stale ones of killed runs have been removed. Missing parents are
+    /// Makes a temporary folder beside `dir`, after removing stale ones of killed runs. Missing parents are
     /// created; a symbolic link to a folder is followed.
     ///
     /// # Errors
@@ -56,7 +59,7 @@ impl Folder {
     pub fn create(dir: &Path, names: Names) -> Result<Self> {
         let target = resolve(dir)?;
         let parent = parent_of(&target);
-        fs::create_dir_all(parent).map_err(|e| unwritable(parent, &e))?;
+        fs::create_dir_all(parent).map_err(|e| unwritable(parent, e))?;
         put_back(&target);
         temporary::remove_stale(parent);
         if target.exists() {
@@ -67,24 +70,24 @@ impl Folder {
             fs::create_dir(path)?;
             system::open_folder(path)
         });
-        let (temporary, lock) = made.map_err(|e| unwritable(parent, &e))?;
+        let (temporary, lock) = made.map_err(|e| unwritable(parent, e))?;
         Ok(Self { target, temporary, names, _lock: lock })
     }
 
-    /// A subfolder with files of the same names, made at once; an empty `name` is the folder itself.
+    /// Makes a subfolder with files of the same names at once; an empty `name` is the folder itself.
     ///
     /// # Errors
-    /// Whatever the disk says.
+    /// Any error of the disk.
     pub fn part(&self, name: &str) -> Result<FolderPart<'_>> {
         let (temporary, target) = (self.temporary.join(name), self.target.join(name));
-        fs::create_dir_all(&temporary).map_err(|e| unwritable(&target, &e))?;
+        fs::create_dir_all(&temporary).map_err(|e| unwritable(&target, e))?;
         Ok(FolderPart { temporary, target, _whole: self })
     }
 
     /// Writes one file of the folder.
     ///
     /// # Errors
-    /// Those of [`FolderPart::write`].
+    /// The errors of [`FolderPart::write`].
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<()> {
         self.part("")?.write(name, bytes)
     }
@@ -92,16 +95,16 @@ impl Folder {
     /// Writes one file of the folder piece by piece.
     ///
     /// # Errors
-    /// Those of [`FolderPart::write`].
+    /// The errors of [`FolderPart::write`].
     pub fn stream(&self, name: &str, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
         self.part("")?.stream(name, content)
     }
 
-    /// Puts the folder in DIR's place and deletes the old one. An old folder that cannot be deleted is left,
-    /// under its temporary name, to the next run.
+    /// Puts the folder in DIR's place and deletes the old one. An old folder that cannot be deleted keeps its
+    /// temporary name; the next run deletes it.
     ///
     /// # Errors
-    /// Meanwhile DIR has become something that may not be replaced; the disk refuses. DIR is then as it was.
+    /// DIR has meanwhile become something that may not be replaced; the disk refuses. DIR is then as it was.
     pub fn commit(self) -> Result<()> {
         use ErrorKind::{AlreadyExists, DirectoryNotEmpty, PermissionDenied};
         for _ in 0..SWAPS_TRIED {
@@ -110,7 +113,7 @@ impl Folder {
                 Ok(()) => return Ok(()),
                 // What systems say of a folder that is in the way.
                 Err(e) if matches!(e.kind(), DirectoryNotEmpty | AlreadyExists | PermissionDenied) => {}
-                Err(e) => return Err(unwritable(&self.target, &e)),
+                Err(e) => return Err(unwritable(&self.target, e)),
             }
             self.keep(&foreign_files(&self.target, self.names)?)?;
             match exchange(&self.temporary, &self.target) {
@@ -118,7 +121,7 @@ impl Folder {
                 Ok(()) => return Ok(()),
                 // Another run has just moved DIR.
                 Err(e) if e.kind() == ErrorKind::NotFound => {}
-                Err(e) => return Err(unwritable(&self.target, &e)),
+                Err(e) => return Err(unwritable(&self.target, e)),
             }
         }
         Err(bad(
@@ -129,8 +132,8 @@ impl Folder {
         ))
     }
 
-    /// Gives the user's own files a second name in the new folder, so that they are never in one place only
-    /// where a kill or another run could take them.
+    /// Gives the user's own files a second name in the new folder, so that they are never only in a place
+    /// where a kill or another run could remove them.
     fn keep(&self, foreign: &[PathBuf]) -> Result<()> {
         for path in foreign {
             let Some(name) = path.file_name() else { continue };
@@ -143,7 +146,7 @@ impl Folder {
                 Ok(()) => {}
                 Err(e) if matches!(e.kind(), ErrorKind::NotFound | ErrorKind::AlreadyExists) => {}
                 Err(_) => {
-                    fs::copy(path, &kept).map_err(|e| unwritable(path, &e))?;
+                    fs::copy(path, &kept).map_err(|e| unwritable(path, e))?;
                 }
             }
         }
@@ -152,8 +155,8 @@ impl Folder {
 }
 
 impl FolderPart<'_> {
-    /// The relative path from here to an absolute path without links. It still leads there after both have been moved
-    /// together.
+    /// Returns the relative path from here to an absolute path without links. It remains valid after both
+    /// have been moved together.
     pub fn relative(&self, path: &Path) -> PathBuf {
         let common = self.target.components().zip(path.components()).take_while(|(a, b)| a == b).count();
         let up = self.target.components().skip(common).map(|_| Component::ParentDir);
@@ -163,16 +166,16 @@ impl FolderPart<'_> {
     /// Writes one file.
     ///
     /// # Errors
-    /// Whatever the disk says (full, quota, …); a name that was written already.
+    /// Any error of the disk (full, quota, …); a name that was written already.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<()> {
         self.stream(name, |sink| sink.write_all(bytes))
     }
 
-    /// Writes one file piece by piece, for large ones. The sink is not buffered: hand it blocks of at least some
-    /// ten kilobytes.
+    /// Writes one file piece by piece, for large files. The sink is not buffered: pass blocks of at least
+    /// some ten kilobytes.
     ///
     /// # Errors
-    /// Those of [`FolderPart::write`].
+    /// The errors of [`FolderPart::write`].
     pub fn stream(&self, name: &str, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
         let path = self.temporary.join(name);
         let file = File::options().write(true).create_new(true).open(&path);
@@ -197,12 +200,12 @@ impl Drop for Folder {
     }
 }
 
-/// `dir` without symbolic links, absolute; its last parts may be missing.
+/// Returns `dir` without symbolic links, absolute; its last parts may be missing.
 fn resolve(dir: &Path) -> Result<PathBuf> {
     if let Ok(real) = dir.canonicalize() {
         return Ok(real);
     }
-    // What another run has put there since is no link.
+    // If another run has made it since, it is no link.
     if dir.symlink_metadata().is_ok_and(|found| found.is_symlink()) {
         return Err(bad(
             dir,
@@ -214,8 +217,8 @@ fn resolve(dir: &Path) -> Result<PathBuf> {
     if dir.file_name().is_none() {
         return Err(bad(dir, "a path without a name at its end", "a folder's name", "give one with a name"));
     }
-    let dir = std::path::absolute(dir).map_err(|e| unwritable(dir, &e))?;
-    // What is missing below the nearest folder that exists will be made, and holds no links.
+    let dir = std::path::absolute(dir).map_err(|e| unwritable(dir, e))?;
+    // Folders missing below the nearest one that exists will be made, and contain no links.
     let real = dir.ancestors().find_map(|above| {
         let missing = dir.strip_prefix(above).ok()?;
         above.canonicalize().ok().map(|above| above.join(missing))
@@ -227,9 +230,9 @@ fn parent_of(target: &Path) -> &Path {
     target.parent().unwrap_or(target)
 }
 
-/// Refuses what cannot or must not be replaced whatever it contains.
+/// Rejects what cannot or must not be replaced, whatever it contains.
 fn reject_unsafe(target: &Path) -> Result<()> {
-    let here = target.metadata().map_err(|e| unwritable(target, &e))?;
+    let here = target.metadata().map_err(|e| unwritable(target, e))?;
     if !here.is_dir() {
         return Err(bad(target, "a file", "a folder, or nothing yet", "remove it or give another folder"));
     }
@@ -243,10 +246,10 @@ fn reject_unsafe(target: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The files in `target` that are the user's own.
+/// Returns the files in `target` that are the user's own.
 fn foreign_files(target: &Path, names: Names) -> Result<Vec<PathBuf>> {
     let entries = fs::read_dir(target).and_then(|list| list.collect::<io::Result<Vec<_>>>());
-    let entries = entries.map_err(|e| unwritable(target, &e))?;
+    let entries = entries.map_err(|e| unwritable(target, e))?;
     if entries.is_empty() {
         return Ok(Vec::new());
     }
@@ -262,7 +265,7 @@ fn foreign_files(target: &Path, names: Names) -> Result<Vec<PathBuf>> {
     }
     let is_foreign = |entry: &fs::DirEntry| !names.files.iter().any(|name| entry.file_name() == **name);
     let foreign: Vec<_> = entries.iter().filter(|entry| is_foreign(entry)).collect();
-    // Subfolders are ours when they are named like ours, are folders of the same kind and hold nothing else.
+    // Subfolders are ours if they are named like ours, are folders of the same kind and contain nothing else.
     let is_folder = |entry: &fs::DirEntry| entry.file_type().is_ok_and(|kind| kind.is_dir());
     let is_part = |entry: &fs::DirEntry| {
         let named = entry.file_name().to_str().is_some_and(names.is_part);
@@ -284,18 +287,18 @@ fn exchange(new: &Path, old: &Path) -> io::Result<()> {
     system::exchanged(new, old).unwrap_or_else(|| exchange_in_two(new, old))
 }
 
-/// Exchanges the names of two folders by two renames; a kill in between is undone by [`put_back`].
+/// Exchanges the names of two folders by two renames; [`put_back`] undoes a kill in between.
 fn exchange_in_two(new: &Path, old: &Path) -> io::Result<()> {
     let aside = aside_of(old);
     fs::rename(old, &aside)?;
     match fs::rename(new, old) {
-        // The old folder takes the temporary name, to be deleted under it.
+        // The old folder takes the temporary name, and is deleted under it.
         Ok(()) => fs::rename(&aside, new),
         Err(e) => fs::rename(&aside, old).and(Err(e)),
     }
 }
 
-/// Undoes an [`exchange_in_two`] that was killed half-way; a rename that is refused is tried again by the next run.
+/// Undoes an [`exchange_in_two`] that was killed half-way; the next run tries a refused rename again.
 fn put_back(target: &Path) {
     let aside = aside_of(target);
     if !aside.is_dir() {
@@ -313,13 +316,14 @@ fn aside_of(target: &Path) -> PathBuf {
     parent_of(target).join(format!("{ASIDE}{name}"))
 }
 
-fn unwritable(path: &Path, error: &io::Error) -> Error {
+fn unwritable(path: &Path, error: io::Error) -> Error {
     bad(
         path,
         &error.to_string(),
         "a folder that can be written",
         "check its permissions or give another folder",
     )
+    .caused_by(error)
 }
 
 #[cfg(test)]

@@ -1,7 +1,9 @@
-//! The disk: what the program reads and what it leaves there. No other room opens a file.
+//! The disk: the files that the program reads and those that it leaves. No other room opens a file.
 //!
-//! Whatever is written appears whole or not at all: a single file by [`NewFile`], a folder of files by [`Folder`].
+//! A written file or folder appears whole or not at all: a single file by [`NewFile`], a folder of files by
+//! [`Folder`].
 
+mod complaint;
 mod file;
 mod folder;
 mod names;
@@ -13,8 +15,3 @@ pub use file::{NewFile, write_file};
 pub use folder::{Folder, FolderPart};
 pub use names::{Names, PATCHES_FOLDER, RUN_FOLDER};
 pub use read::{read_bytes, read_text};
-
-/// A complaint about a path.
-fn bad(path: &std::path::Path, found: &str, expected: &str, advice: &str) -> crate::error::Error {
-    crate::error::Error::new(path.display().to_string(), found, expected, advice)
-}

@@ -1,15 +1,15 @@
-//! By which names the program knows its own folders.
+//! The names by which the program knows its own folders.
 
 /// The files by which the output folder of one command is known.
 #[derive(Debug, Clone, Copy)]
 pub struct Names {
-    /// The file that marks a folder as ours: it contains the word `wheelrail`. A folder without it is not replaced unless
-    /// it is empty.
+    /// The file that marks a folder as ours: it contains the word `wheelrail`. A folder without it is
+    /// replaced only if it is empty.
     pub marker: &'static str,
-    /// All files that the command may write. Those of an earlier run vanish with the old folder; every other file is
-    /// the user's and is kept.
+    /// All files that the command may write. Those of an earlier run are deleted with the old folder; every
+    /// other file is the user's and is kept.
     pub files: &'static [&'static str],
-    /// Tells whether the command may write a subfolder of this name, with files of the same names.
+    /// Returns whether the command may write a subfolder of this name, with files of the same names.
     pub is_part: fn(&str) -> bool,
 }
 
@@ -41,7 +41,7 @@ pub const RUN_FOLDER: Names = Names {
         "countact.wrp",
         "contact.inp",
         "view.py",
-        // Left by a Python that imports or compiles view.py.
+        // A Python that imports or compiles view.py leaves this folder.
         "__pycache__",
     ],
     is_part: |name| {
@@ -50,5 +50,5 @@ pub const RUN_FOLDER: Names = Names {
     },
 };
 
-/// The folder of `wheelrail sweep --patches`: folders of runs as subfolders.
+/// The folder of `wheelrail sweep --patches`: its subfolders are folders of runs.
 pub const PATCHES_FOLDER: Names = Names { is_part: |name| name.starts_with("position-"), ..RUN_FOLDER };

@@ -1,13 +1,13 @@
-//! Whole files of a bounded size, with complaints in the house form.
+//! Reads whole files of a bounded size, with errors in the house form.
 
 use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-use super::bad;
-use crate::error::{Error, Result};
+use super::complaint::bad;
+use crate::error::{Error, Kind, Result};
 
-/// The bytes of a file of at most `largest` bytes; a pipe or device is read no further either.
+/// Returns the bytes of a file of at most `largest` bytes; it reads no more from a pipe or device either.
 ///
 /// # Errors
 /// An unreadable or larger file.
@@ -21,19 +21,20 @@ pub fn read_bytes(path: &Path, largest: usize) -> Result<Vec<u8>> {
             ErrorKind::IsADirectory => "a folder".to_owned(),
             _ => error.to_string(),
         };
-        bad(path, &found, "a readable file", "check the path")
+        bad(path, &found, "a readable file", "check the path").caused_by(error)
     })?;
     if bytes.len() > largest {
         let (found, expected) = (format!("more than {largest} bytes"), format!("at most {largest} bytes"));
-        return Err(bad(path, &found, &expected, "is this the right file?"));
+        return Err(bad(path, &found, &expected, "is this the right file?").of_kind(Kind::Limit));
     }
     Ok(bytes)
 }
 
-/// The text of a file of at most `largest` bytes, without the mark that some editors put before it.
+/// Returns the text of a file of at most `largest` bytes, without the byte order mark that some editors put
+/// before it.
 ///
 /// # Errors
-/// An unreadable file or one too large; text that is no UTF-8, with its line.
+/// An unreadable or larger file; text that is not UTF-8, with its line.
 pub fn read_text(path: &Path, largest: usize) -> Result<String> {
     let text = String::from_utf8(read_bytes(path, largest)?).map_err(|error| {
         let (bytes, good) = (error.as_bytes(), error.utf8_error().valid_up_to());

@@ -1,5 +1,5 @@
-//! Temporary names beside what is going to be replaced. Each is locked (`flock`) by the process that uses it, and the
-//! kernel drops the lock with the process: what bears such a name without a lock was left by a process that was killed.
+//! Makes temporary names beside what will be replaced. The process that uses a name locks it (`flock`), and
+//! the kernel drops the lock with the process: a name without a lock was left by a process that was killed.
 //! The next process that writes into the same folder removes it.
 
 use super::system;
@@ -9,26 +9,27 @@ use std::path::{Path, PathBuf};
 use std::process;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Every temporary name begins so; what follows is `NAME.PID.NUMBER`.
+/// Beginning of every temporary name, followed by `NAME.PID.NUMBER`.
 pub(super) const TEMPORARY: &str = ".wheelrail-tmp.";
 
-/// Names tried before giving up: each is lost only to a run that cleans up at that very instant, or to a process
-/// that had the same number and was killed.
+/// Most names tried: a name is lost only to a run that cleans up at that very instant, or to a killed process
+/// that had the same number.
 const NAMES_TRIED: u32 = 100;
 
-/// Characters of a temporary name that tell what it is for; the rest keeps it within what file systems allow.
+/// Characters of a temporary name that tell what it is for; the limit keeps the name within what file systems
+/// allow.
 const NAME_SHOWN: usize = 40;
 
-/// Numbers the temporary names of this process. None is used twice: the owner of a name deletes it after its
-/// content has moved on, and must not meet another thread's there.
+/// Numbers the temporary names of this process. No number is used twice: the owner of a name deletes it after
+/// its content has been moved, and must not meet another thread's content there.
 static NUMBER: AtomicU64 = AtomicU64::new(0);
 
-/// A new folder or file beside `target`, as `make` makes it, open and locked. The lock comes a moment after the name;
-/// whoever cleans up in between takes it for stale, which shows in a lost lock or a name that is gone, and the next
-/// name is tried.
+/// Makes a new folder or file beside `target` with `make`, open and locked. The lock comes a moment after the
+/// name. A process that cleans up in between takes the name for stale; then the lock is lost or the name is
+/// gone, and the next name is tried.
 ///
 /// # Errors
-/// Those of `make`; too many names in use.
+/// The errors of `make`; too many names in use.
 pub(super) fn locked(target: &Path, make: impl Fn(&Path) -> io::Result<File>) -> io::Result<(PathBuf, File)> {
     let name = target.file_name().unwrap_or_default().to_string_lossy();
     let name: String = name.chars().take(NAME_SHOWN).collect();
@@ -55,8 +56,8 @@ pub(super) fn locked(target: &Path, make: impl Fn(&Path) -> io::Result<File>) ->
     Err(error)
 }
 
-/// Removes what dead processes have left in a folder. What cannot be removed belongs to somebody else, or the next process
-/// tries again.
+/// Removes what dead processes have left in a folder. What cannot be removed belongs to somebody else, or the
+/// next process tries again.
 pub(super) fn remove_stale(parent: &Path) {
     for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
         let ours = entry.file_name().to_string_lossy().starts_with(TEMPORARY);
@@ -66,7 +67,7 @@ pub(super) fn remove_stale(parent: &Path) {
             continue;
         }
         let Ok(lock) = File::open(entry.path()) else { continue };
-        // The lock is held until all is gone, so that nobody writes into what is being removed.
+        // The lock is held until all is gone, so that no process writes into what is being removed.
         if lock.try_lock().is_ok() {
             let path = entry.path();
             drop(if kind.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) });

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::patch::skewed::monotone::monotone;
 use crate::patch::skewed::valleys::Valleys;
 use crate::patch::turning_points;
 use crate::placement::Placement;
@@ -69,7 +70,7 @@ fn least_under_skew(placement: &Placement) -> Option<(f64, f64, f64)> {
     for k in (0..valleys.creases.len()).filter(|&k| valleys.creases[k].is_valley) {
         intervals.clear();
         let smallest = least.map_or(f64::INFINITY, |(smallest, ..)| smallest);
-        valleys.monotone(&placement.rail.section, k, reach, |[low, _]| low < smallest, &mut intervals);
+        monotone(&valleys, &placement.rail.section, k, reach, |[low, _]| low < smallest, &mut intervals);
         for [from, to] in &intervals {
             // Where the rail steps, its right side is next to the joint.
             for xi in [from.next_up(), *to] {

@@ -1,12 +1,13 @@
-//! Measured profiles: from an instrument's file to a chain of segments.
+//! Turns an instrument's file of measured points into a profile, a chain of segments.
 //!
 //! ```text
 //! bytes ─ scan ─ reader of the format ─ placing ─ repairs ─ checks ─ curve ─ Profile
 //!                   (miniprof, simpack, columns)  (options)         └ smoothing spline, interpolation, arcs
 //! ```
 //!
-//! Nothing is guessed and nothing repaired in silence: what an option, the format's definition or else the shape does not
-//! settle is an error that lists the choices, and every decision is in the [`Record`]. No disk access here.
+//! Nothing is guessed and nothing is repaired in silence. An option decides, or else the format's definition,
+//! or else the shape; a question that none of them answers is an error that lists the choices. Every decision
+//! is in the [`Record`]. This module does not access the disk.
 
 mod clean;
 mod fit;
@@ -36,47 +37,47 @@ use serde::Serialize;
 use crate::error::Result;
 use crate::profile::{Profile, Side};
 
-/// What was read, decided, repaired and fitted: for summary.json.
+/// What was read, decided, repaired and fitted; written to summary.json.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Record {
     /// The file's format.
     pub format: Format,
-    /// Points in the file, of the section chosen.
+    /// Number of points in the file, or in the section chosen.
     pub points_read: usize,
-    /// Points under the curve.
+    /// Number of points under the curve.
     pub points_used: usize,
-    /// What is odd about the file.
+    /// Oddities of the file.
     pub notes: Vec<Note>,
-    /// From the file's axes to the profile's.
+    /// Transformation from the file's axes to the profile's.
     pub transform: Transform,
-    /// Whether the rail's inclination is in the points already.
+    /// Whether the points already contain the rail's inclination.
     pub already_inclined: bool,
-    /// Repairs that were made.
+    /// The repairs that were made.
     pub repairs: Vec<Repaired>,
-    /// What is left that a user should know of.
+    /// Findings that remain and that a user should know of.
     pub warnings: Vec<Finding>,
-    /// The curve.
+    /// The curve that was drawn.
     pub curve: CurveRecord,
 }
 
-/// A measured profile.
+/// A measured profile with its points and its record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
-    /// The chain of segments.
+    /// The profile.
     pub profile: Profile,
-    /// The points under it \[mm\], in profile axes, from left to right.
+    /// The points under the curve \[mm\], in profile axes, from left to right.
     pub points: Vec<Point>,
-    /// How it came about.
+    /// How the profile was made.
     pub record: Record,
 }
 
-/// The profile that a file of measured points describes; `file` is its name, for the format and for messages.
+/// Makes the profile of a file of measured points. `file` is its name, for the format and for messages.
 ///
-/// Cost: about 5 µs a point of usual files, 20 µs of a million, most of it the spline.
+/// Cost: about 5 µs a point for usual files, 20 µs a point for a million, most of it for the spline.
 ///
 /// # Errors
-/// Whatever is wrong with the options, the file or its points, with the place: see [`Options`], [`Format::read`],
-/// [`Transform`], [`Check`].
+/// Anything wrong with the options, the file or its points, with the place: see [`Options`],
+/// [`Format::read`], [`Transform`], [`Check`].
 pub fn profile(file: &str, bytes: &[u8], side: Side, options: &Options) -> Result<Measured> {
     options.validate()?;
     let format = match options.format {
@@ -87,10 +88,10 @@ pub fn profile(file: &str, bytes: &[u8], side: Side, options: &Options) -> Resul
     build(file, points, side, options).map_err(|error| error.within(file))
 }
 
-/// The body that a file is of, by its extension or its header; `None` where neither says.
+/// Returns the body that a file describes, by its extension or its header; `None` if neither says.
 ///
 /// # Errors
-/// Those of [`Format::of_file`] and [`Format::read`].
+/// The errors of [`Format::of_file`] and [`Format::read`].
 pub fn body(file: &str, bytes: &[u8], options: &Options) -> Result<Option<Side>> {
     if let Some(side) = Format::body_of_file(file) {
         return Ok(Some(side));

@@ -1,4 +1,4 @@
-//! What a scene may say about a measured file.
+//! The options that a scene may give for a measured file.
 
 use std::fmt;
 
@@ -12,66 +12,68 @@ use crate::profile::Side;
 /// Default cut-off wavelength \[mm\] of smoothing: below the shortest features that carry load (a 13 mm gauge
 /// corner turns a right angle over 20 mm), above the waves of measuring noise.
 pub const CUTOFF_WAVELENGTH: f64 = 5.0;
-/// Cut-off wavelengths \[mm\] tried under a chain of arcs, the first whose residual leaves room in the tolerance;
-/// after them interpolation.
+/// Cut-off wavelengths \[mm\] tried under a chain of arcs; the first with a residual small enough for the
+/// tolerance is taken, else interpolation.
 pub(super) const ARC_CUTOFFS: [f64; 4] = [5.0, 2.5, 1.25, 0.625];
-/// Default kink angle \[rad\], 30°: worn fillets turn less within half a cut-off wavelength, edges of plastic
-/// flow and of drawings more.
+/// Default kink angle \[rad\], 30°: worn fillets turn less within half a cut-off wavelength; edges of plastic
+/// flow and of drawings turn more.
 pub const KINK_ANGLE: f64 = std::f64::consts::FRAC_PI_6;
 /// Default tolerance of an arc chain \[mm\]: the accuracy of hand-held instruments.
 pub const ARC_TOLERANCE: f64 = 0.01;
-/// Default depth of the gauge point under the top of rail \[mm\] (EN 13848: 14).
+/// Default depth of the gauge point below the top of rail \[mm\] (EN 13848: 14).
 pub const GAUGE_HEIGHT: f64 = 14.0;
 /// Default distance of the taping line from the flange back \[mm\] (EN 13715: 70).
 pub const TAPE_DISTANCE: f64 = 70.0;
 
-/// How a measured file becomes a profile. Everything is optional; what is not given is taken from the definition of the
-/// file's format, or from its shape where the format says nothing and the shape proves it, and is an error where neither
-/// does.
+/// How a measured file becomes a profile. Every option may be left out. Then the definition of the file's
+/// format decides; if it says nothing, the shape decides; if the shape proves nothing, this is an error.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Options {
-    /// Format; by the file's extension if not given.
+    /// Format of the file; by the file's extension if not given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub format: Option<Format>,
-    /// The columns of x and z in a text or CSV file: numbers from 1, or names in its first row.
+    /// Columns of x and z in a text or CSV file: numbers from 1, or names in its first row.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub columns: Option<[Column; 2]>,
-    /// Which section of an .mpt file, from 1; all of them in a row if not given.
+    /// Section of an .mpt file to use, from 1; all sections in a row if not given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub section: Option<usize>,
-    /// true: the file's first axis points to the centre of the track (x = −first). Profiles are right-hand:
+    /// Whether the file's first axis points to the centre of the track (x = −first). Profiles are right-hand:
     /// flange and gauge corner at negative x.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mirror: Option<bool>,
-    /// true: the file's second axis points down (z = −second).
+    /// Whether the file's second axis points down (z = −second).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flip_z: Option<bool>,
-    /// Unit of the file's coordinates; mm if neither given nor stated by the file.
+    /// Unit of the file's coordinates; mm if neither the option nor the file states it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unit: Option<Unit>,
-    /// Where the origin goes.
+    /// Point of the file that becomes the origin.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub origin: Option<Origin>,
-    /// Depth of the gauge point under the top of rail, mm; 14 if not given.
+    /// Depth of the gauge point below the top of rail, mm; 14 if not given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gauge_height: Option<f64>,
     /// Distance of the taping line from the flange back, mm; 70 if not given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tape_distance: Option<f64>,
-    /// The rail was measured as it lies: its inclination is in the points, and must not be applied again.
+    /// Whether the rail was measured as it lies, so that the points already contain its inclination and it is
+    /// not applied again.
     pub already_inclined: bool,
-    /// Repairs that may be made; each that was made is listed in the summary.
+    /// Repairs that may be made; the summary lists each repair that was made.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub repair: Vec<Repair>,
-    /// The curve through the points: "smoothing", or "elements" for a file of design elements alone, if not given.
+    /// Kind of curve through the points; if not given "smoothing", or "elements" for a file with design
+    /// elements only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub curve: Option<CurveKind>,
-    /// Wavelength that smoothing halves, mm; 5 if not given. For arcs: of the tangents' smoothing; by the
-    /// tolerance if not given.
+    /// Wavelength that smoothing halves, mm; 5 if not given. For arcs it smooths the tangents; if not given,
+    /// the tolerance decides.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cutoff_wavelength: Option<f64>,
-    /// Kinks above this angle stay corners, rad; π/6 if not given; π for none.
+    /// Largest kink that smoothing may round off, rad; larger kinks stay corners. π/6 if not given; π for no
+    /// corners.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub kink_angle: Option<f64>,
     /// Largest distance of a point from the arc chain, mm; 0.01 if not given.
@@ -83,9 +85,9 @@ pub struct Options {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "expected a column's number, from 1, or its name in the first row")]
 pub enum Column {
-    /// Its number, from 1.
+    /// Number of the column, from 1.
     Number(usize),
-    /// Its name in the first row, in upper or lower case.
+    /// Name of the column in the first row, in upper or lower case.
     Name(String),
 }
 
@@ -126,12 +128,12 @@ impl Unit {
     pub const ALL: [Self; 6] =
         [Self::Metre, Self::Centimetre, Self::Millimetre, Self::Micrometre, Self::Inch, Self::Foot];
 
-    /// The unit of this name.
+    /// Returns the unit with this name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|unit| unit.name() == name)
     }
 
-    /// Its name.
+    /// Returns the name of the unit.
     pub fn name(self) -> &'static str {
         match self {
             Self::Metre => "m",
@@ -143,7 +145,7 @@ impl Unit {
         }
     }
 
-    /// Its length \[mm\].
+    /// Returns the length of the unit \[mm\].
     pub fn millimetres(self) -> f64 {
         match self {
             Self::Metre => 1e3,
@@ -156,25 +158,25 @@ impl Unit {
     }
 }
 
-/// Where the origin of the profile goes.
+/// The point of a file that becomes the origin of the profile.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "expected \"as-is\", \"gauge-point\", \"tape-line\" or a point [x, z]")]
 pub enum Origin {
-    /// By name.
+    /// An origin with a name.
     Named(NamedOrigin),
-    /// At this point [x, z], mm, of the file after its axes are turned into the profile's.
+    /// This point \[x, z\], mm, of the file after its axes are turned into the profile's.
     At([f64; 2]),
 }
 
-/// An origin by name.
+/// An origin with a name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum NamedOrigin {
-    /// The file's own.
+    /// The file's own origin.
     AsIs,
-    /// Of a rail: x of its innermost point down to the gauge height, z of its top.
+    /// For a rail: x of the innermost point down to the gauge height, z of the top of rail.
     GaugePoint,
-    /// Of a wheel: the tread at the taping distance from the flange back.
+    /// For a wheel: the tread at the taping distance from the flange back.
     TapeLine,
 }
 
@@ -182,17 +184,17 @@ pub enum NamedOrigin {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Repair {
-    /// Of points that coincide one is kept.
+    /// Keeps one of several coinciding points.
     DropDuplicates,
-    /// Points between two reversals are sorted along the direction across them.
+    /// Sorts points between two reversals along the direction across them.
     Sort,
-    /// Points that stick out are dropped.
+    /// Drops points that stick out.
     RemoveSpikes,
-    /// Points inside a loop are dropped.
+    /// Drops points inside a loop.
     CutLoops,
 }
 
-/// The curve through the points.
+/// The kind of curve through the points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum CurveKind {
@@ -207,27 +209,27 @@ pub enum CurveKind {
 }
 
 impl Options {
-    /// Depth of the gauge point \[mm\].
+    /// Returns the depth of the gauge point below the top of rail \[mm\].
     pub fn gauge_height(&self) -> f64 {
         self.gauge_height.unwrap_or(GAUGE_HEIGHT)
     }
 
-    /// Distance of the taping line from the flange back \[mm\].
+    /// Returns the distance of the taping line from the flange back \[mm\].
     pub fn tape_distance(&self) -> f64 {
         self.tape_distance.unwrap_or(TAPE_DISTANCE)
     }
 
-    /// Kink angle \[rad\].
+    /// Returns the kink angle \[rad\].
     pub fn kink_angle(&self) -> f64 {
         self.kink_angle.unwrap_or(KINK_ANGLE)
     }
 
-    /// Tolerance of an arc chain \[mm\].
+    /// Returns the tolerance of an arc chain \[mm\].
     pub fn arc_tolerance(&self) -> f64 {
         self.arc_tolerance.unwrap_or(ARC_TOLERANCE)
     }
 
-    /// Names of the options that are given.
+    /// Returns the names of the options that are given.
     pub fn given(&self) -> Vec<String> {
         let [own, default] =
             [self, &Self::default()].map(|options| serde_json::to_value(options).unwrap_or_default());
@@ -235,10 +237,10 @@ impl Options {
         of.filter(|(key, value)| default.get(key) != Some(value)).map(|(key, _)| key.clone()).collect()
     }
 
-    /// Rejects numbers that mean nothing and options that contradict each other.
+    /// Rejects meaningless numbers, and options that contradict each other.
     ///
     /// # Errors
-    /// Names the option.
+    /// A meaningless or contradicted option, with its name.
     pub fn validate(&self) -> Result<()> {
         let lengths = [
             ("gauge_height", self.gauge_height),
@@ -277,10 +279,11 @@ impl Options {
         ])
     }
 
-    /// Rejects options that do nothing for a file of this body and format; `drawn`: of design elements alone.
+    /// Rejects options that have no effect for a file of this body and format; `drawn` tells that the file
+    /// has design elements only.
     ///
     /// # Errors
-    /// Names the option.
+    /// An option without effect, with its name.
     pub(super) fn validate_for(&self, side: Side, format: Format, drawn: bool) -> Result<()> {
         let table = matches!(format, Format::Text | Format::Csv);
         let wheel = side == Side::Wheel;
@@ -293,13 +296,14 @@ impl Options {
             ("already_inclined", self.already_inclined && wheel, "a rail"),
             ("kink_angle", self.kink_angle.is_some() && as_drawn, fitted),
             ("cutoff_wavelength", self.cutoff_wavelength.is_some() && as_drawn, fitted),
-            // Of a file with points besides, repairs decide whether its points pass the checks.
+            // If a file has points too, repairs decide whether its points pass the checks.
             ("repair", !self.repair.is_empty() && drawn && as_drawn, fitted),
         ])
     }
 }
 
-/// (option, whether it is given and does nothing, what it belongs to).
+/// Rejects the first option that has no effect; each entry is (option, whether it is given and has no effect,
+/// what it belongs to).
 fn reject_idle(options: &[(&str, bool, &str)]) -> Result<()> {
     match options.iter().find(|(_, idle, _)| *idle) {
         None => Ok(()),

@@ -1,4 +1,5 @@
-//! From the file's axes to the profile's: x to the field side, z up, mm, right-hand, from left to right.
+//! Turns points from the file's axes into the profile's: x to the field side, z up, mm, right-hand, from left
+//! to right.
 
 use serde::Serialize;
 
@@ -13,29 +14,29 @@ use crate::profile::Side;
 /// One decision on the way from the file to the profile.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Step {
-    /// "unit", "mirror", "flip_z", "origin" or "order".
+    /// Subject of the decision: "unit", "mirror", "flip_z", "origin" or "order".
     pub what: &'static str,
     /// What was done.
     pub done: String,
-    /// Why: an option, the format, or what in the shape proves it.
+    /// Reason: an option, the format, or a proof from the shape.
     pub because: String,
 }
 
 /// The whole transformation: x = scale\[0\]·first + shift\[0\], z = scale\[1\]·second + shift\[1\].
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Transform {
-    /// mm per unit of the file, negative where the axis is turned round.
+    /// Length of the file's unit \[mm\] for each axis, negative where the axis is reversed.
     pub scale: [f64; 2],
-    /// \[mm\].
+    /// Shift of each axis \[mm\].
     pub shift: [f64; 2],
-    /// Whether the order of the points is turned round.
+    /// Whether the order of the points is reversed.
     pub reversed: bool,
     /// The decisions, in order.
     pub steps: Vec<Step>,
 }
 
-/// What the format defines: whether x = −first and whether z = −second, `None` where it says nothing. The sources are in
-/// `docs/measured-files.md`.
+/// Returns what the format defines: whether x = −first and whether z = −second, `None` where it says nothing.
+/// The sources are in `docs/measured-files.md`.
 fn definition(format: Format, side: Side) -> [Option<bool>; 2] {
     match (format, side) {
         // Instruments and converters write rails with either sign.
@@ -47,13 +48,13 @@ fn definition(format: Format, side: Side) -> [Option<bool>; 2] {
     }
 }
 
-/// The transformation that options, format and shape together give, in this order: an option always holds; else the
-/// format's definition; the shape decides only what the format leaves open. The findings are definitions that the shape
-/// contradicts, with the option that would turn them round: they change nothing.
+/// Finds the transformation from options, format and shape, in this order: an option always holds, else the
+/// format's definition; the shape decides only what the format leaves open. The findings are definitions that
+/// the shape contradicts, with the option that would reverse them; they change nothing.
 ///
 /// # Errors
-/// A body other than the file's own; an orientation that neither says nor the shape proves, with the choices; an origin
-/// that the points do not reach.
+/// A body other than the file's own; an orientation that neither option, format nor shape decides, with the
+/// choices; an origin that the points do not reach.
 pub fn resolve(points: &Points, side: Side, options: &Options) -> Result<(Transform, Vec<Finding>)> {
     if let Some(body) = points.body.filter(|body| *body != side) {
         let (found, expected) = (format!("a {} profile", name(body)), format!("a {} profile", name(side)));
@@ -94,7 +95,7 @@ fn name(side: Side) -> &'static str {
     }
 }
 
-/// mm per unit of the file.
+/// Returns the length of the file's unit \[mm\].
 fn unit(points: &Points, options: &Options, steps: &mut Vec<Step>) -> Result<f64> {
     let (unit, because) = match (options.unit, points.unit) {
         (Some(option), Some(stated)) if option.millimetres() != stated => {
@@ -109,7 +110,7 @@ fn unit(points: &Points, options: &Options, steps: &mut Vec<Step>) -> Result<f64
     Ok(unit)
 }
 
-/// One of the two questions of orientation.
+/// One of the two questions of orientation: `mirror` or `flip_z`.
 struct Axis {
     what: &'static str,
     option: Option<bool>,
@@ -137,7 +138,8 @@ impl Axis {
         Ok(turn)
     }
 
-    /// The definition that was followed against what the shape shows; an option is the user's knowledge.
+    /// Returns a finding if the definition that was followed contradicts what the shape shows; none if an
+    /// option decided, which is the user's knowledge.
     fn contradiction(&self, proof: Option<&(bool, String)>, at: &[Point]) -> Option<Finding> {
         let defined = self.definition.filter(|_| self.option.is_none())?;
         let (proven, why) = proof.filter(|(proven, _)| *proven != defined)?;
@@ -179,12 +181,12 @@ impl Axis {
 }
 
 impl Transform {
-    /// A point of the file in profile axes.
+    /// Turns a point of the file into profile axes.
     pub fn apply(&self, [x, z]: [f64; 2]) -> [f64; 2] {
         [self.scale[0] * x + self.shift[0], self.scale[1] * z + self.shift[1]]
     }
 
-    /// The points in profile axes, from left to right.
+    /// Turns points into profile axes, from left to right.
     pub fn points(&self, at: &[Point]) -> Vec<Point> {
         let place = |point: &Point| {
             let [x, z] = self.apply(point.xz());
@@ -193,7 +195,7 @@ impl Transform {
         if self.reversed { at.iter().rev().map(place).collect() } else { at.iter().map(place).collect() }
     }
 
-    /// A design element in profile axes; an arc stays counter-clockwise.
+    /// Turns a design element into profile axes; an arc stays counter-clockwise.
     pub fn element(&self, element: &Element) -> Element {
         let shape = match element.shape {
             ElementShape::Line { from, to } => {
@@ -213,7 +215,7 @@ impl Transform {
         Element { shape, line: element.line }
     }
 
-    /// Travel from left to right.
+    /// Makes the path go from left to right.
     fn reverse(&mut self, at: &[Point]) {
         if let [first, .., last] = at
             && self.apply(last.xz())[0] < self.apply(first.xz())[0]
@@ -253,7 +255,8 @@ impl Transform {
     }
 }
 
-/// x of the innermost point of the running head within `depth` of its top, z of the top.
+/// Returns the gauge point: x of the innermost point of the running head within `depth` of its top, z of the
+/// top.
 fn gauge_point(points: &[Point], depth: f64) -> Result<([f64; 2], String)> {
     let measured = gauge_depth(points);
     let points = running_head(points);
@@ -278,7 +281,7 @@ fn gauge_point(points: &[Point], depth: f64) -> Result<([f64; 2], String)> {
     Ok(([innermost, top], because))
 }
 
-/// The tread at `distance` from the flange back.
+/// Returns the point of the tread at `distance` from the flange back.
 fn tape_line(points: &[Point], distance: f64) -> Result<([f64; 2], String)> {
     let back = points.iter().map(|p| p.x).fold(f64::INFINITY, f64::min);
     let x = back + distance;
@@ -286,7 +289,7 @@ fn tape_line(points: &[Point], distance: f64) -> Result<([f64; 2], String)> {
         let [a, b] = [pair[0], pair[1]];
         if b.x == a.x { a.z.min(b.z) } else { a.z + (b.z - a.z) * ((x - a.x) / (b.x - a.x)) }
     });
-    // The tread is the lowest surface there: material above.
+    // The tread is the lowest surface there, as the material is above.
     let z = heights.fold(f64::INFINITY, f64::min);
     if !has_flange_back(points) || z.is_infinite() {
         let found = format!("no flange back, or no tread {distance} mm from it");

@@ -1,6 +1,6 @@
-//! What the shape of a profile proves about its orientation: foot, groove and flange.
+//! Decides the orientation of a profile from its shape: foot, groove and flange.
 //!
-//! Used where neither an option nor the format's definition says how a file is turned. A shape that looks like a body
+//! This is used where neither an option nor the format's definition decides. A shape that looks like a body
 //! both ways up proves nothing: a groove cut off on both its tops is an upside-down head.
 
 use std::ops::RangeInclusive;
@@ -8,38 +8,40 @@ use std::ops::RangeInclusive;
 use super::read::points::Point;
 use crate::profile::{Side, last_groove};
 
-/// The true upper side of a wheel drops at both ends this many times as far as the wrong one: 4 leaves room
-/// for hollow wear and for edges that curl.
+/// Least ratio of the end drops of a wheel's true upper side to those of the wrong one: 4 leaves room for
+/// hollow wear and for edges that curl.
 const PLAIN: f64 = 4.0;
-/// Least drop \[mm\] of both ends from a rail's top, or from a flange's tip, that counts as a shape and not as
-/// wear or noise.
+/// Least drop \[mm\] of both ends from a rail's top, or from a flange's tip, that counts as a shape and not
+/// as wear or noise.
 const LEAST_DROP: f64 = 0.5;
-/// Heights \[mm\] of a flange tip over the tread: tram to full-wear railway flanges.
+/// Heights \[mm\] of a flange tip over the tread, from tram flanges to fully worn railway flanges.
 const FLANGE_HEIGHTS: RangeInclusive<f64> = 10.0..=60.0;
-/// Depth \[mm\] below the top of rail that a side face must reach to be one; gauge faces are measured at 14.
+/// Least depth \[mm\] of a side face below the top of rail; gauge faces are measured at 14.
 const SIDE_FACE: f64 = 10.0;
-/// Inclination of a side face: a fall of sin 30° of the way along it. Crowns end at less than 20°, the flattest worn
-/// gauge faces stand at 50°.
+/// Least inclination of a side face: a fall of sin 30° of the length along it. Crowns end at less than 20°;
+/// the flattest worn gauge faces are at 50°.
 const FACE_SINE: f64 = 0.5;
-/// Length \[mm\] along the path over which an end is a face or not: longer than the hooks and lips at its end.
+/// Length \[mm\] of an end along the path that is tested for being a face: longer than the hooks and lips at
+/// its end.
 const END: f64 = 6.0;
-/// Chords into which a path is cut to see how it turns: long against noise, short against a head.
+/// Number of chords into which a path is cut to see how it turns: long against noise, short against a head.
 const CHORDS: usize = 16;
 /// Least turn \[rad\] of a rail's crown from end to end that counts as a shape: 75 mm of a radius of 300 mm.
 const LEAST_TURN: f64 = 0.25;
-/// Most of the turn that may go the other way in an outline that bulges throughout: waves of wear and noise.
+/// Largest turn the other way, as a share of the turn, in an outline that bulges throughout: waves of wear
+/// and noise.
 const OTHER_WAY: f64 = 0.25;
-/// A flange tip lies at least this share of the profile's width away from its middle.
+/// Least distance of a flange tip from the middle of the profile, as a share of its width.
 const OFF_MIDDLE: f64 = 0.15;
-/// Drop \[mm\] of the flange back from the tip that shows the flange back was measured.
+/// Drop \[mm\] from the tip that shows that the flange back was measured.
 const FLANGE_BACK: f64 = 5.0;
 
-/// Largest height.
+/// Returns the largest height.
 pub(super) fn top(points: &[Point]) -> f64 {
     points.iter().map(|p| p.z).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Index of the extreme towards `sign`·z, and the smaller of the two drops from it to the ends.
+/// Returns the index of the extreme towards `sign`·z, and the smaller of the two drops from it to the ends.
 fn extreme(points: &[Point], sign: f64) -> Option<(usize, f64)> {
     let height = |k: usize| sign * points[k].z;
     let best = (0..points.len()).max_by(|&a, &b| height(a).total_cmp(&height(b)))?;
@@ -47,7 +49,7 @@ fn extreme(points: &[Point], sign: f64) -> Option<(usize, f64)> {
     Some((best, drop(0).min(drop(points.len() - 1))))
 }
 
-/// Whether z points up as given, with the reason; `None` where the shape does not prove it.
+/// Returns whether z points up as given, with the reason; `None` if the shape does not prove it.
 pub(super) fn head_up(points: &[Point], side: Side) -> Option<(bool, String)> {
     match side {
         Side::Rail => foot_down(points),
@@ -55,12 +57,13 @@ pub(super) fn head_up(points: &[Point], side: Side) -> Option<(bool, String)> {
     }
 }
 
-/// A rail ends in two side faces that fall outwards, whatever grooves lie between; or it bulges upwards throughout.
+/// Returns whether a rail's foot is down, with the reason. An upright rail ends in two side faces that fall
+/// outwards, whatever grooves are between, or it bulges upwards throughout.
 fn foot_down(points: &[Point]) -> Option<(bool, String)> {
     let falls = [end_fall(points, false)?, end_fall(points, true)?];
     let face = |fall: f64| fall.abs() >= FACE_SINE;
     if falls.iter().all(|&fall| face(fall)) {
-        // Faces that disagree are those of a step, which lies either way.
+        // Faces that disagree belong to a step, which looks alike both ways up.
         let up = falls[0] > 0.0;
         return (up == (falls[1] > 0.0)).then(|| {
             let way = if up { "falls" } else { "rises" };
@@ -76,7 +79,7 @@ fn foot_down(points: &[Point]) -> Option<(bool, String)> {
     })
 }
 
-/// Fall of an end \[mm/mm\] towards it, over [`END`] along the path; negative where it rises.
+/// Returns the fall towards an end \[mm/mm\], over [`END`] along the path; negative if the path rises.
 fn end_fall(points: &[Point], last: bool) -> Option<f64> {
     let n = points.len();
     let at = |k: usize| if last { points[n - 1 - k] } else { points[k] };
@@ -94,8 +97,8 @@ fn distance(a: Point, b: Point) -> f64 {
     (b.x - a.x).hypot(b.z - a.z)
 }
 
-/// Turn \[rad\] from the first chord to the last, negative clockwise on the way to larger x; `None` where the path turns
-/// both ways, or hardly.
+/// Returns the turn \[rad\] from the first chord to the last, negative clockwise on the way to larger x;
+/// `None` if the path turns both ways or hardly turns.
 fn bulge(points: &[Point]) -> Option<f64> {
     let chain = evenly(points)?;
     let angles: Vec<f64> =
@@ -113,7 +116,7 @@ fn bulge(points: &[Point]) -> Option<f64> {
     (turn.abs() >= LEAST_TURN && less <= OTHER_WAY * more).then_some(turn)
 }
 
-/// [`CHORDS`] + 1 points at equal distances along the path, towards larger x.
+/// Returns [`CHORDS`] + 1 points at equal distances along the path, towards larger x.
 fn evenly(points: &[Point]) -> Option<Vec<[f64; 2]>> {
     let whole: f64 = points.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
     let (first, last) = (points.first()?, points.last()?);
@@ -139,8 +142,8 @@ fn evenly(points: &[Point]) -> Option<Vec<[f64; 2]>> {
     (out.len() == CHORDS + 1).then_some(out)
 }
 
-/// A wheel's flange tip hangs below both its back and its tread; the wrong extreme is an end of the profile, or nearly
-/// so.
+/// Returns whether a wheel's flange is down, with the reason. The flange tip is lower than both back and
+/// tread; the wrong extreme is at an end of the profile, or near it.
 fn flange_down(points: &[Point]) -> Option<(bool, String)> {
     let up = extreme(points, 1.0)?;
     let down = extreme(points, -1.0)?;
@@ -153,7 +156,7 @@ fn flange_down(points: &[Point]) -> Option<(bool, String)> {
     flange.then(|| (!tip_up, format!("flange tip, {height:.1} mm from the tread, at {place}")))
 }
 
-/// Height of the tip over the median height of the profile, which lies on the tread.
+/// Returns the height of the tip over the median height of the profile, which is on the tread.
 fn flange_height(points: &[Point], tip: usize) -> f64 {
     let mut heights: Vec<(f64, f64)> = points
         .windows(2)
@@ -169,7 +172,7 @@ fn flange_height(points: &[Point], tip: usize) -> f64 {
     median.map_or(0.0, |(height, _)| (points[tip].z - height).abs())
 }
 
-/// Whether the flange of an upright wheel is at smaller x, with the reason.
+/// Returns whether the flange of an upright wheel is at smaller x, with the reason.
 pub(super) fn flange_side(points: &[Point]) -> Option<(bool, String)> {
     let (tip, drop) = extreme(points, -1.0)?;
     let [low, high] = width(points);
@@ -180,8 +183,8 @@ pub(super) fn flange_side(points: &[Point]) -> Option<(bool, String)> {
         .then(|| (off < 0.0, format!("flange tip at {}", points[tip].place())))
 }
 
-/// Whether the gauge corner of an upright rail is at smaller x: the only side face that was measured is the
-/// gauge face, or that of a groove.
+/// Returns whether the gauge corner of an upright rail is at smaller x, with the reason: the only side face
+/// that was measured is the gauge face, or that of a groove.
 pub(super) fn gauge_side(points: &[Point]) -> Option<(bool, String)> {
     let [left, right] = side_depths(points)?;
     let (is_left, name, depth) = match (left >= SIDE_FACE, right >= SIDE_FACE) {
@@ -193,7 +196,7 @@ pub(super) fn gauge_side(points: &[Point]) -> Option<(bool, String)> {
         .then(|| (is_left, format!("only the side face at {name} values is there, {depth:.1} mm deep")))
 }
 
-/// Whether an upright rail falls by [`SIDE_FACE`] over a face as steep as one, to this side of its top.
+/// Returns whether an upright rail falls by [`SIDE_FACE`] over a face, to this side of its top.
 fn has_face(points: &[Point], left: bool) -> bool {
     let Some((best, _)) = extreme(points, 1.0) else { return false };
     let top = points[best];
@@ -208,7 +211,7 @@ fn has_face(points: &[Point], left: bool) -> bool {
     })
 }
 
-/// How far below its top an upright rail was measured to the left and to the right.
+/// Returns how far below its top an upright rail was measured to the left and to the right \[mm\].
 fn side_depths(points: &[Point]) -> Option<[f64; 2]> {
     let (best, _) = extreme(points, 1.0)?;
     let top = points[best];
@@ -217,18 +220,19 @@ fn side_depths(points: &[Point]) -> Option<[f64; 2]> {
     Some([depth(true), depth(false)])
 }
 
-/// The part of an upright right-hand rail, from left to right, that wheels run on: right of its last groove.
+/// Returns the part of an upright right-hand rail, from left to right, on which wheels run: right of its last
+/// groove.
 pub(super) fn running_head(points: &[Point]) -> &[Point] {
     let heights: Vec<f64> = points.iter().map(|p| p.z).collect();
     &points[last_groove(&heights).unwrap_or(0)..]
 }
 
-/// How far below the top of the running head its gauge side was measured.
+/// Returns how far below the top of the running head its gauge side was measured \[mm\].
 pub(super) fn gauge_depth(points: &[Point]) -> f64 {
     side_depths(running_head(points)).map_or(0.0, |depths| depths[0])
 }
 
-/// Whether an upright right-hand wheel was measured on the back of its flange.
+/// Returns whether an upright right-hand wheel was measured on the back of its flange.
 pub(super) fn has_flange_back(points: &[Point]) -> bool {
     match (extreme(points, -1.0), points.first()) {
         (Some((tip, _)), Some(first)) => first.z - points[tip].z >= FLANGE_BACK,
@@ -236,7 +240,7 @@ pub(super) fn has_flange_back(points: &[Point]) -> bool {
     }
 }
 
-/// Smallest and largest x.
+/// Returns the smallest and largest x.
 pub(super) fn width(points: &[Point]) -> [f64; 2] {
     let x = points.iter().map(|p| p.x);
     [x.clone().fold(f64::INFINITY, f64::min), x.fold(f64::NEG_INFINITY, f64::max)]

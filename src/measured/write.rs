@@ -1,4 +1,4 @@
-//! Writers: points in profile axes → the text of a file, in the axes of its format (see the readers).
+//! Writes points in profile axes as the text of a file, in the axes of its format (see the readers).
 //!
 //! Numbers are written with the fewest digits that read back as the same number.
 
@@ -7,14 +7,16 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use super::Format;
-use crate::error::{Error, Result};
+use crate::error::{Error, Kind, Result};
 use crate::numerics::polynomial::recentred;
 use crate::profile::drawing::{ArcData, HalfData, LineData, PolynomialData, SegmentData};
 use crate::profile::{Arc, Polynomial, Profile, Segment, Shape, Side, Station};
 
-/// A file of these points \[mm\], x to the field side, z up, from left to right; `name` goes into its header.
+/// Returns the text of a file with these points \[mm\], x to the field side, z up, from left to right; `name`
+/// goes into its header.
 ///
-/// The gauge side of a MiniProf rail is at positive X, as instruments have it: reading it needs `mirror = true`.
+/// The gauge side of a MiniProf rail is at positive X, as instruments have it, so that reading it needs
+/// `mirror = true`.
 pub fn points(points: &[[f64; 2]], format: Format, side: Side, name: &str) -> String {
     // A name must not end its line or its quotes.
     let name: String = name.chars().filter(|c| !c.is_control() && !"'\"!".contains(*c)).collect();
@@ -53,7 +55,8 @@ fn miniprof(points: &[[f64; 2]], side: Side, name: &str) -> String {
     out + &rows(turned, " ")
 }
 
-/// With the material to the right of the path, as CONTACT wants it: rails from left to right, wheels from right to left.
+/// Returns a SIMPACK file with the material to the right of the path, as CONTACT needs it: rails from left to
+/// right, wheels from right to left.
 fn simpack(points: &[[f64; 2]], side: Side, name: &str) -> String {
     let body = match side {
         Side::Rail => 0,
@@ -91,15 +94,16 @@ fn simpack(points: &[[f64; 2]], side: Side, name: &str) -> String {
     out + "    point.end\n  spline.end\n"
 }
 
-/// Least distance \[mm\] of neighbours in files for other programs: CONTACT's spline loses whole contacts where points lie
-/// some micrometres apart, and no instrument resolves this.
+/// Least distance \[mm\] of neighbours in files for other programs: CONTACT's spline loses whole contacts
+/// where points are some micrometres apart, and no instrument resolves this.
 pub const LEAST_DISTANCE: f64 = 0.01;
 
 fn near(a: [f64; 2], b: [f64; 2]) -> bool {
     (a[0] - b[0]).hypot(a[1] - b[1]) < LEAST_DISTANCE
 }
 
-/// The points without those nearer than [`LEAST_DISTANCE`] to the one kept before; the first and the last stay.
+/// Returns the points without those nearer than [`LEAST_DISTANCE`] to the last one kept; the first and the
+/// last point stay.
 pub fn spaced(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut out: Vec<[f64; 2]> = Vec::with_capacity(points.len());
     for &point in points {
@@ -118,7 +122,7 @@ pub fn spaced(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     out
 }
 
-/// Points \[mm\] at most `step` \[mm\] apart along a profile, all joints among them.
+/// Returns points \[mm\] at most `step` \[mm\] apart along a profile, with all joints.
 ///
 /// # Errors
 /// A step that is not positive, or that takes more than 100 000 points over one segment.
@@ -142,14 +146,15 @@ pub fn sample(profile: &Profile, step: f64) -> Result<Vec<[f64; 2]>> {
 /// Most points of one segment.
 const MOST_SAMPLES: f64 = 1e5;
 
-/// Steps of at most `step` over a length.
+/// Returns the number of steps of at most `step` over a length.
 fn steps_over(length: f64, step: f64) -> Result<usize> {
     let n = (length / step).ceil().max(1.0);
     if n <= MOST_SAMPLES {
         return Ok(n as usize);
     }
     let found = format!("{step} mm, which takes {n:e} points over {length:.3} mm");
-    Err(Error::new("step", found, format!("at most {MOST_SAMPLES:e} points a segment"), "take a larger step"))
+    Err(Error::new("step", found, format!("at most {MOST_SAMPLES:e} points a segment"), "take a larger step")
+        .of_kind(Kind::Limit))
 }
 
 fn along_arc(arc: &Arc, step: f64) -> Result<Vec<[f64; 2]>> {
@@ -168,7 +173,7 @@ fn along_polynomial(polynomial: &Polynomial, step: f64) -> Result<Vec<[f64; 2]>>
         let station = polynomial.station(t0 + share * (t1 - t0));
         [station.x, station.z]
     };
-    // Arc length by chords: the parts are smooth and short.
+    // Number of chords that measure the arc length: the parts are smooth and short.
     const CHORDS: usize = 64;
     let coarse: Vec<[f64; 2]> = (0..=CHORDS).map(|k| at(k as f64 / CHORDS as f64)).collect();
     let longest = coarse.windows(2).map(|p| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1])).fold(0.0, f64::max);
@@ -176,20 +181,20 @@ fn along_polynomial(polynomial: &Polynomial, step: f64) -> Result<Vec<[f64; 2]>>
     Ok((0..=n).map(|k| at(k as f64 / n as f64)).collect())
 }
 
-/// Segments as a scene has them.
+/// A profile as the segments of a scene.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Segments {
-    /// `[[segments]]` in TOML.
+    /// The `[[segments]]` tables in TOML.
     pub toml: String,
-    /// What was left out at the two ends: side faces beyond the vertical, which a graph z(x) cannot hold.
+    /// What was cut off at the two ends: side faces beyond the vertical, which a graph z(x) cannot hold.
     pub cut: Vec<String>,
 }
 
-/// The profile as `[[segments]]` of a scene, up to where its side faces are vertical.
+/// Writes the profile as `[[segments]]` of a scene, up to where its side faces are vertical.
 ///
 /// # Errors
-/// Segments between that are no graph z(x), with their place: undercuts, and the spans of a spline, which are
-/// parametric; `curve = "arcs"` gives segments that can be written.
+/// Segments between the ends that are no graph z(x), with their place: undercuts, and the spans of a spline,
+/// which are parametric. `curve = "arcs"` gives segments that can be written.
 pub fn segments(profile: &Profile) -> Result<Segments> {
     #[derive(Serialize)]
     struct Scene {
@@ -228,7 +233,7 @@ fn labelled(segment: &Segment, data: SegmentData) -> SegmentData {
 
 const NOTHING: SegmentData = SegmentData { label: None, line: None, arc: None, polynomial: None };
 
-/// An arc; at an end where `clip` allows it only up to its vertical tangent.
+/// Returns the data of an arc; an end that `clip` allows is cut off at its vertical tangent.
 fn arc_data(arc: &Arc, clip: [bool; 2]) -> Result<SegmentData> {
     let (start, end) = (arc.start, arc.end);
     let vertical = |side: f64| arc.centre().map_or(f64::NAN, |[a, _]| a + side * arc.radius.abs());
@@ -242,7 +247,7 @@ fn arc_data(arc: &Arc, clip: [bool; 2]) -> Result<SegmentData> {
     let chord = (end.x - start.x).hypot(end.z - start.z);
     let sagitta = chord * chord / (8.0 * arc.radius.abs());
     let data = match arc.centre() {
-        // About a centre so far away the height has fewer digits than the arc is high.
+        // If the centre is too far away, a height about it has fewer digits than the arc is high.
         Some(center) if sagitta > 4.0 * f64::EPSILON * arc.radius.abs() => {
             let half = if arc.radius < 0.0 { HalfData::Upper } else { HalfData::Lower };
             let x = Some([x0, x1]);
@@ -257,7 +262,8 @@ fn arc_data(arc: &Arc, clip: [bool; 2]) -> Result<SegmentData> {
     Ok(data)
 }
 
-/// z(x) in powers of x about 0, as standards print it: what was read in that form comes back bit for bit.
+/// Returns z(x) in powers of x about 0, as standards print it: what was read in that form comes back bit for
+/// bit.
 fn polynomial_data(polynomial: &Polynomial) -> Result<SegmentData> {
     let graph = polynomial.x.len() == 2 && f64::from(polynomial.x[1]) == 1.0;
     if !graph {

@@ -4,7 +4,7 @@
 //! parameters – profile × extrusion, profile × rotation about the axle – and so show walls and overhangs that
 //! s(ξ, η) cannot.
 
-use crate::error::{Error, Result, finite};
+use crate::error::{Error, Kind, Result, finite};
 use crate::patch::Window;
 use crate::placement::Placement;
 use crate::profile::{Side, Station};
@@ -109,7 +109,8 @@ impl Surface {
                 format!("{count:e} points"),
                 expected,
                 "take a coarser tolerance",
-            ));
+            )
+            .of_kind(Kind::Limit));
         }
         Ok(Self { side, n, points: stations.iter().flat_map(points).collect() })
     }

@@ -13,3 +13,14 @@ pub mod twice;
 pub fn nan_max(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }
+
+/// Gives √(1 − sin²) without cancellation, and 0 where rounding has carried |sin| past 1.
+#[inline(always)]
+pub fn cosine(sin: f64) -> f64 {
+    ((1.0 - sin) * (1.0 + sin)).max(0.0).sqrt()
+}
+
+/// Gives the largest of numbers ≥ 0: 0 of none, and NaN if one is NaN.
+pub fn largest(all: impl IntoIterator<Item = f64>) -> f64 {
+    all.into_iter().fold(0.0, nan_max)
+}

@@ -1,42 +1,43 @@
-//! What components are made of: ranges of ξ with one interval of η.
+//! Bands: the parts of a component that have one interval of η at each ξ.
 
 use super::grading::Grading;
 use super::outline::{End, Outline};
 use super::slice::Slice;
 use crate::profile::Section;
 
-/// A step of a surface counts as one beyond this many roundings of the profile's extent: less is a joint.
+/// Least step of a surface, in roundings of the profile's extent; a smaller one counts as a joint.
 const STEP_ROUNDINGS: f64 = 64.0;
 
 /// A range of ξ over which a component has one interval of η, whose ends vary without a jump.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Band {
-    /// Its range \[mm\].
+    /// Range of ξ \[mm\].
     pub(crate) xi: [f64; 2],
-    /// What bounds it there; `None` where the component goes on in other bands.
+    /// What bounds the band at either end of `xi`; `None` where the component continues in other bands.
     pub(crate) ends: [Option<End>; 2],
-    /// η of its slices there \[mm\]: of no width at a tip.
+    /// Interval of η at either end of `xi` \[mm\]; of no width at a tip.
     pub(crate) sides: [[f64; 2]; 2],
-    /// With skew, by ascending ξ: the valleys that lie in it up to that ξ, of which the first, the deepest one, leads to
-    /// its slices.
+    /// With skew, pairs (ξ, valleys) by ascending ξ: the valleys that lie in the band up to that ξ, the
+    /// deepest first. The slices are found from the deepest. Empty without skew.
     pub(super) valleys: Vec<(f64, Vec<usize>)>,
-    /// Both ends and, between them, every ξ where its sides may have a corner \[mm\], ascending.
+    /// Both ends of `xi`, and every ξ between them where a side may have a corner \[mm\], ascending.
     pub(crate) corners: Vec<f64>,
 }
 
 impl Band {
-    /// The valleys at ξ; none without skew.
+    /// Returns the valleys in the band at ξ, the deepest first; none without skew.
     pub(super) fn valleys_at(&self, xi: f64) -> &[usize] {
         let k = self.valleys.partition_point(|(to, _)| *to < xi).min(self.valleys.len().saturating_sub(1));
         self.valleys.get(k).map_or(&[], |(_, valleys)| valleys)
     }
 
-    /// The valley by which its slice at ξ is found; `None` without skew.
+    /// Returns the valley from which the slice at ξ is found; `None` without skew.
     pub(crate) fn valley(&self, xi: f64) -> Option<usize> {
         self.valleys_at(xi).first().copied()
     }
 
-    /// Its slice at ξ within its range; of no width where rounding finds none.
+    /// Returns the slice at ξ, which must lie within `xi`. Where rounding finds no slice, the result has no
+    /// width.
     pub(crate) fn slice(&self, outline: &mut Outline<'_>, xi: f64) -> Slice {
         if let Some(end) = (0..2).find(|&end| xi == self.xi[end]) {
             return Slice { eta: self.sides[end] };
@@ -48,12 +49,13 @@ impl Band {
         Slice { eta: [eta; 2] }
     }
 
-    /// ξ as a function of t in \[0, 1\] in which its width is smooth but for its corners: not round at a window.
+    /// Returns ξ as a function of t in \[0, 1\] in which the width of the band is smooth except at corners.
+    /// An end at a window is not round.
     pub(crate) fn grading(&self) -> Grading {
         Grading { xi: self.xi, round: self.ends.map(|end| end != Some(End::Window)) }
     }
 
-    /// The ranges of t between its corners.
+    /// Returns the ranges of t between neighbouring corners.
     pub(crate) fn pieces(&self) -> impl Iterator<Item = [f64; 2]> {
         let (grading, last) = (self.grading(), self.corners.len().saturating_sub(1));
         // The ends are 0 and 1, whatever rounding makes of them.
@@ -65,18 +67,19 @@ impl Band {
         (1..self.corners.len()).map(move |k| [parameter(k - 1), parameter(k)])
     }
 
-    /// Whether it goes on in another one: their slices overlap where one ends and the other begins.
+    /// Returns whether the component continues in `next`: this band ends where `next` begins, and their
+    /// slices overlap there.
     pub(crate) fn meets(&self, next: &Self) -> bool {
         self.xi[1] == next.xi[0] && overlap(self.sides[1], next.sides[0])
     }
 }
 
-/// Whether two intervals have more than a point in common.
+/// Returns whether two intervals have more than a point in common.
 pub(super) fn overlap(a: [f64; 2], b: [f64; 2]) -> bool {
     a[0].max(b[0]) < a[1].min(b[1])
 }
 
-/// The ξ inside (a, b) at which a body's surface steps or ends: where its profile overhangs.
+/// Returns the ξ inside (a, b) at which a body's surface steps or ends because its profile overhangs.
 pub(super) fn steps(section: &Section, [a, b]: [f64; 2], extent: f64) -> impl Iterator<Item = f64> {
     let rounding = STEP_ROUNDINGS * f64::EPSILON * extent;
     let torn = move |k: usize| {

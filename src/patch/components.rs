@@ -1,4 +1,4 @@
-//! The connected parts of the patch {s < δ} inside a window, each with its closed boundary loops.
+//! Finds the connected components of the patch {s < δ} inside a window, and the closed loops around each.
 
 use super::band::Band;
 use super::corners;
@@ -13,59 +13,63 @@ use super::skewed::slicer::Edge;
 use super::slice::Slice;
 use crate::placement::Placement;
 
-/// Points of a loop along each of its two sides: the polygon is then within 1e-4 of the patch's width of the
-/// curve. Shared out among the pieces between corners by the angle at which they are on an ellipse as long …
+/// Number of points on each of the two sides of a loop: the polygon then lies within 1e-4 of the patch's
+/// width of the curve. A piece between two corners gets a share in proportion to its angle on an ellipse as
+/// long as the component.
 const POINTS_PER_SIDE: usize = 128;
 
-/// … with at least as many in every piece.
+/// Least number of points on a piece of a loop between two corners.
 const LEAST_POINTS: usize = 2;
 
-/// One connected part of the patch.
+/// One connected component of the patch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Component {
-    /// Extent in ξ \[mm\].
+    /// Range of ξ \[mm\].
     pub xi: [f64; 2],
-    /// What bounds it there.
+    /// What bounds the component at either end of its range of ξ.
     pub ends: [End; 2],
-    /// Extent in η \[mm\].
+    /// Range of η \[mm\].
     pub eta: [f64; 2],
-    /// Both ends in ξ and, between them, every ξ where the boundary may have a corner \[mm\], ascending.
+    /// Both ends of the range of ξ, and every ξ between them where the boundary may have a corner \[mm\],
+    /// ascending.
     pub corners: Vec<f64>,
-    /// Whether the window cuts it anywhere.
+    /// Whether the window cuts the component anywhere.
     pub cut_by_window: bool,
-    /// Closed loop of \[ξ, η\] around it, counter-clockwise seen from +ζ, the first point not repeated; tips exact.
+    /// Outer boundary: a closed loop of \[ξ, η\] \[mm\], counter-clockwise seen from +ζ. The first point is
+    /// not repeated; the tips are exact.
     pub boundary: Vec<[f64; 2]>,
-    /// Closed loops around holes in it, clockwise: only under a skewed wheel.
+    /// Boundaries of the holes: closed loops of \[ξ, η\] \[mm\], clockwise. Only a skewed wheel makes holes.
     pub holes: Vec<Vec<[f64; 2]>>,
-    /// Area \[mm²\], to about 1e-12 relative, or to the rounding of s over δ where that is more.
+    /// Area \[mm²\], to about 1e-12 relative, or to the rounding of s over δ where that is larger.
     pub area: f64,
-    /// Length of all loops \[mm\], to about 1e-10 relative; 1e-7 where the end of a tilted wheel profile rounds it.
+    /// Length of all loops \[mm\], to about 1e-10 relative; to 1e-7 where the end of a tilted wheel profile
+    /// rounds the boundary.
     pub perimeter: f64,
-    /// Smallest s on it \[mm\] and where (ξ, η).
+    /// \[s, ξ, η\] of the point with the smallest s \[mm\].
     pub deepest: [f64; 3],
-    /// What it is made of, by ascending ξ.
+    /// The bands that make up the component, by ascending ξ.
     pub(crate) bands: Vec<Band>,
 }
 
 /// The patch {s < δ} inside a window.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Patch {
-    /// δ \[mm\].
+    /// Approach δ \[mm\].
     pub approach: f64,
-    /// The window that was looked at.
+    /// The window in which the patch was searched for.
     pub window: Window,
-    /// Its parts, by ascending ξ.
+    /// The connected components, by ascending ξ.
     pub components: Vec<Component>,
 }
 
 impl Patch {
-    /// All components inside the window. Without skew a line of constant ξ meets a component in one interval of η; with it
-    /// there may be several, and holes.
+    /// Finds all components inside the window. Without skew a line of constant ξ meets a component in one
+    /// interval of η; with skew in one or several, and a component may have holes.
     ///
-    /// Degenerate: empty for a δ that the pair nowhere undercuts, δ = 0 at a mere touch included, and for NaN.
-    /// With skew, what lies between two turns of s along a valley that are closer than a quarter of the way between two joints
-    /// can be missed (see the docs on numerics); with a window beside a valley, what it leaves of a component for less
-    /// than 1/64 of that way.
+    /// Degenerate: empty if s < δ nowhere, at a mere touch with δ = 0, and for δ = NaN. With skew two parts
+    /// can be missed (see the docs on numerics): one between two turns of s along a valley that are closer
+    /// than a quarter of the distance between two joints, and, where the valley is outside the window, one
+    /// shorter than 1/64 of that distance.
     pub fn new(placement: &Placement, approach: f64, window: &Window) -> Self {
         let mut outline = Outline::new(placement, approach, window);
         let components =
@@ -73,7 +77,7 @@ impl Patch {
         Self { approach, window: *window, components }
     }
 
-    /// What of it is inside another window, if that cuts no component; `None` if it does.
+    /// Returns the components inside another window, or `None` if that window cuts a component.
     pub fn within(&self, window: &Window) -> Option<Self> {
         let inside = |inner: [f64; 2], outer: [f64; 2]| outer[0] < inner[0] && inner[1] < outer[1];
         let apart = |a: [f64; 2], b: [f64; 2]| a[1] < b[0] || b[1] < a[0];
@@ -88,8 +92,9 @@ impl Patch {
         Some(Self { approach: self.approach, window: *window, components })
     }
 
-    /// The intervals of η at ξ that lie in the patch, with the index of their component, in no order; where intervals end and
-    /// others begin those on the left. `outline` is that of the same placed pair.
+    /// Returns the intervals of η of the patch at ξ, each with the index of its component, in no order. Where
+    /// some intervals end and others begin, it returns those on the left. `outline` must be that of the same
+    /// placed pair.
     pub fn slices(&self, outline: &mut Outline<'_>, xi: f64) -> Vec<(usize, Slice)> {
         let mut slices = Vec::new();
         for (index, component) in self.components.iter().enumerate() {
@@ -101,17 +106,17 @@ impl Patch {
         slices
     }
 
-    /// Whether any component is cut by the window.
+    /// Returns whether the window cuts any component.
     pub fn cut_by_window(&self) -> bool {
         self.components.iter().any(|component| component.cut_by_window)
     }
 
-    /// Total area \[mm²\].
+    /// Returns the total area \[mm²\].
     pub fn area(&self) -> f64 {
         self.components.iter().map(|component| component.area).sum()
     }
 
-    /// The box around all components, or `None` for an empty patch.
+    /// Returns the smallest box around all components, or `None` for an empty patch.
     pub fn extent(&self) -> Option<Window> {
         let mut components = self.components.iter();
         let first = components.next()?;
@@ -123,14 +128,14 @@ impl Patch {
     }
 }
 
-/// The bands of one component.
+/// The bands of one component, before it is measured.
 struct Region {
     bands: Vec<Band>,
-    /// Valleys and ξ where the least s may be.
+    /// \[valley, ξ\] at which s may be least; no valley without skew.
     turns: Vec<(Option<usize>, f64)>,
 }
 
-/// The components of the patch, by ascending ξ.
+/// Collects the bands of the patch into components, by ascending ξ.
 fn regions(outline: &mut Outline<'_>) -> Vec<Region> {
     let (mut bands, turns) = if outline.slicer.skewed.is_some() {
         let (bands, turns) = lanes::bands(outline);
@@ -144,7 +149,7 @@ fn regions(outline: &mut Outline<'_>) -> Vec<Region> {
         .flat_map(|i| (0..bands.len()).map(move |j| [i, j]))
         .filter(|&[i, j]| bands[i].meets(&bands[j]))
         .collect();
-    // The first band of each band's component.
+    // For each band, the index of the first band of its component.
     let mut first: Vec<usize> = (0..bands.len()).collect();
     for [i, j] in meeting {
         (bands[i].ends[1], bands[j].ends[0]) = (None, None);
@@ -171,12 +176,12 @@ impl Region {
         ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], xi| [a.min(xi[0]), b.max(xi[1])])
     }
 
-    /// What bounds it where it begins and ends.
+    /// Returns what bounds the component at either end of its range of ξ.
     fn ends(&self) -> [End; 2] {
         let xi = self.xi();
         [0, 1].map(|end| {
             let outermost = self.bands.iter().filter(|band| band.xi[end] == xi[end]);
-            // A band that goes on in another one is not outermost.
+            // A band that continues in another one is not outermost.
             outermost.filter_map(|band| band.ends[end]).next().unwrap_or(End::ProfileEnd)
         })
     }
@@ -189,7 +194,7 @@ impl Region {
         let cut_by_window = self.bands.iter().any(|band| band.ends.contains(&Some(End::Window)))
             || rows.iter().flatten().any(at_window);
         let mut loops = loops::loops(&self.bands, &rows);
-        // The outer one is the largest.
+        // The outer loop is the largest.
         loops.sort_by(|a, b| loops::enclosed(b).total_cmp(&loops::enclosed(a)));
         let mut loops = loops.into_iter();
         let boundary = loops.next().unwrap_or_default();
@@ -216,8 +221,8 @@ impl Region {
         }
     }
 
-    /// The slices of every band at the loops' points: every corner, between two of them ξ that crowd towards round ends, and
-    /// where each branch is farthest out in η. Finds the corners.
+    /// Finds the corners of every band, and its slices at the points of the loops: at every corner, at ξ
+    /// between two corners that crowd towards round ends, and where each branch is farthest out in η.
     fn rows(&mut self, outline: &mut Outline<'_>) -> Vec<Rows> {
         let [a, b] = self.xi();
         let skewed = outline.slicer.skewed.is_some();
@@ -255,8 +260,8 @@ impl Region {
         all
     }
 
-    /// \[s, ξ, η\] of the smallest s: where it turns along the valleys in it, at C, and at its ends; where the window cuts the
-    /// valley off, over the loops' points.
+    /// Returns \[s, ξ, η\] of the smallest s. It looks where s turns along the valleys of the component, at C
+    /// and at the component's ends; where the window cuts a valley off, also at the points of the loops.
     fn deepest(&self, outline: &mut Outline<'_>, rows: &[Rows]) -> [f64; 3] {
         let mut least = [f64::NAN, self.xi()[0], 0.0];
         let mut take = |found: [f64; 3]| {
@@ -267,7 +272,7 @@ impl Region {
         for (k, band) in self.bands.iter().enumerate() {
             let holds = |xi: f64| band.xi[0] <= xi && xi <= band.xi[1];
             let mut places = Vec::new();
-            // C first: points where s² is below the smallest number are none better.
+            // C is first, so that it wins among the points whose s² underflows.
             places.extend(holds(0.0).then_some(0.0));
             places.extend(band.xi);
             let cut = outline.window.eta.into_iter().any(f64::is_finite) && !band.valleys.is_empty();
@@ -290,13 +295,13 @@ impl Region {
     }
 }
 
-/// Both edges of a band at ξ.
+/// Returns both edges of a band at ξ.
 fn row(outline: &mut Outline<'_>, band: &Band, xi: f64) -> Row {
     let Slice { eta } = band.slice(outline, xi);
     Row { xi, edges: eta.map(|eta| Edge { eta, ledge: false }) }
 }
 
-/// Adds the rows at which each branch is farthest out in η, if it turns there.
+/// Adds the rows at which a branch turns and is farthest out in η.
 fn add_farthest(outline: &mut Outline<'_>, band: &Band, rows: &mut Vec<Row>) {
     let symmetric = outline.slicer.skewed.is_none() && outline.window.eta[0] == -outline.window.eta[1];
     let branches: &[usize] = if symmetric { &[1] } else { &[0, 1] };
@@ -312,20 +317,21 @@ fn add_farthest(outline: &mut Outline<'_>, band: &Band, rows: &mut Vec<Row>) {
     rows.sort_by(|p, q| p.xi.total_cmp(&q.xi));
 }
 
-/// Each number once, in ascending order.
+/// Sorts numbers into ascending order and removes repeated ones.
 fn sort(numbers: &mut Vec<f64>) {
     numbers.sort_by(f64::total_cmp);
     numbers.dedup();
 }
 
-/// Extent of rows in η.
+/// Returns the range of η over all rows.
 fn across(rows: &[Rows]) -> [f64; 2] {
     rows.iter()
         .flatten()
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], row| [low.min(row[1]), high.max(row[2])])
 }
 
-/// Every corner of a band, and between two of them ξ that crowd towards round ends; `whole` is the length of its component.
+/// Returns every corner of a band, and ξ between two corners that crowd towards round ends. `whole` is the
+/// length of the component in ξ.
 fn graded(band: &Band, whole: f64) -> Vec<f64> {
     let (grading, share) = (band.grading(), (band.xi[1] - band.xi[0]) / whole);
     let mut nodes = Vec::with_capacity(2 * POINTS_PER_SIDE);

@@ -1,18 +1,19 @@
-//! Where the boundary of a patch may have a corner, and where it turns back in η.
+//! Finds where the boundary of a patch may have a corner, and where it turns back in η.
 
 use super::band::Band;
 use super::outline::Outline;
 use super::skewed::slicer::Edge;
 use crate::numerics::roots::{bracketed, last_where};
 
-/// How far from a band, as a multiple of its depth × sinθ, joints of the wheel are looked at: enough for slopes up to 80°. What
-/// is farther off only costs the quadrature some panels.
+/// Distance from a band up to which joints of the wheel are looked at, as a multiple of the band's depth ×
+/// sinθ: enough for slopes up to 80°. A joint that is missed beyond it only costs the quadrature some panels.
 const FAR_JOINTS: f64 = 16.0;
 
-/// Intervals of a circle in which it is looked for s = δ: it is missed only where it passes it twice within one.
+/// Number of intervals of a circle in which a root of s = δ is looked for: two roots within one interval are
+/// missed.
 const CIRCLE_INTERVALS: usize = 8;
 
-/// Doublings of the bracket of a sagitta.
+/// Most doublings of the bracket of a sagitta.
 const DOUBLINGS: usize = 40;
 
 /// Both edges of a band at one ξ.
@@ -22,11 +23,11 @@ pub(super) struct Row {
     pub(super) edges: [Edge; 2],
 }
 
-/// Appends the ξ inside a band where its boundary passes over a joint or the end of the wheel's surface without skew. The two
-/// branches mirror each other.
+/// Appends the ξ inside a band where, without skew, its boundary crosses a joint or the end of the wheel's
+/// surface. The two branches mirror each other.
 ///
-/// In closed form but for one root a joint: over the joint at p lies ξ = p + e sinθ, at the height h(p) + e cosθ, and that is to
-/// be ζ^R(ξ) + δ.
+/// Method: closed form but for one root a joint. The point over the joint at p lies at ξ = p + e sinθ and
+/// height h(p) + e cosθ; that height must equal ζ^R(ξ) + δ.
 pub(super) fn plain(outline: &Outline<'_>, band: &Band, deepest: f64, corners: &mut Vec<f64>) {
     let placement = outline.slicer.placement();
     let (approach, rail) = (outline.slicer.approach(), &placement.rail.section);
@@ -53,7 +54,8 @@ pub(super) fn plain(outline: &Outline<'_>, band: &Band, deepest: f64, corners: &
     }
 }
 
-/// Appends the ξ inside a band where s = δ on the circle of a joint or end of a skewed wheel, from the η that the band spans.
+/// Appends the ξ inside a band where s = δ on the circle of a joint or end of a skewed wheel. `eta` is the
+/// range of η of the band.
 pub(super) fn skewed(outline: &Outline<'_>, band: &Band, eta: [f64; 2], corners: &mut Vec<f64>) {
     let Some(skewed) = &outline.slicer.skewed else { return };
     let (approach, rail) = (outline.slicer.approach(), &outline.slicer.placement().rail.section);
@@ -76,7 +78,7 @@ pub(super) fn skewed(outline: &Outline<'_>, band: &Band, eta: [f64; 2], corners:
     });
 }
 
-/// Appends the ξ between two rows at which a branch runs into the window.
+/// Appends the ξ between two rows at which a branch meets the edge of the window.
 pub(super) fn at_window(outline: &mut Outline<'_>, band: &Band, rows: &[Row], corners: &mut Vec<f64>) {
     let window = outline.window.eta;
     for pair in rows.windows(2) {
@@ -91,7 +93,7 @@ pub(super) fn at_window(outline: &mut Outline<'_>, band: &Band, rows: &[Row], co
     }
 }
 
-/// The ξ between two rows at which one branch is farthest out in η, if it turns there.
+/// Returns the ξ between two rows at which a branch turns, farthest out in η; `None` if it does not turn.
 pub(super) fn turn_of_branch(
     outline: &mut Outline<'_>,
     band: &Band,

@@ -1,24 +1,25 @@
-//! ξ as a function of a parameter that takes the square-root behaviour at the tips of a patch out of its width.
+//! Maps a parameter to ξ so that the width of a patch, a square root at its tips, is smooth in the parameter.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::numerics::quadrature::{integral, smooth_integrals};
 
-/// A piece up to this share of a band is tried with few nodes first.
+/// Longest piece, as a share of a band, that is tried with few nodes first.
 const SHORT: f64 = 0.1;
 
-/// ξ as a function of t in \[0, 1\] that crowds equal steps of t towards round ends: as an angle of an ellipse does, so that its
-/// width is smooth in t.
+/// ξ as a function of t in \[0, 1\]: equal steps of t crowd towards round ends like equal angles of an
+/// ellipse, so that the width of a patch is smooth in t.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Grading {
-    /// Its ends \[mm\].
+    /// Ends of the range of ξ \[mm\].
     pub(crate) xi: [f64; 2],
-    /// Which of them are round: tips, and ends of a profile, which a tilted wheel's columns reach as √ too.
+    /// Which ends are round: tips, and ends of a profile, which a tilted wheel's columns reach as a square
+    /// root too.
     pub(crate) round: [bool; 2],
 }
 
 impl Grading {
-    /// ξ(t) \[mm\].
+    /// Returns ξ(t) \[mm\].
     pub(crate) fn xi(&self, t: f64) -> f64 {
         let share = match self.round {
             [true, true] => (FRAC_PI_2 * t).sin().powi(2),
@@ -29,7 +30,7 @@ impl Grading {
         self.xi[0] + (self.xi[1] - self.xi[0]) * share
     }
 
-    /// ξ(t) and dξ/dt \[mm\].
+    /// Returns ξ(t) and dξ/dt \[mm\].
     fn xi_and_slope(&self, t: f64) -> (f64, f64) {
         let (share, slope) = match self.round {
             [true, true] => {
@@ -50,7 +51,7 @@ impl Grading {
         (self.xi[0] + length * share, length * slope)
     }
 
-    /// t of ξ.
+    /// Returns t of ξ.
     pub(crate) fn parameter(&self, xi: f64) -> f64 {
         let share = (xi - self.xi[0]) / (self.xi[1] - self.xi[0]);
         match self.round {
@@ -61,7 +62,8 @@ impl Grading {
         }
     }
 
-    /// ∫ f dξ between two t, of several functions at the same places, each to its relative demand; smooth there.
+    /// Returns ∫ f dξ between two values of t, for several functions at the same places, each to its own
+    /// relative accuracy. The functions must be smooth there.
     pub(crate) fn integrals<const N: usize>(
         &self,
         t: [f64; 2],
@@ -75,7 +77,7 @@ impl Grading {
         smooth_integrals(&mut weighted, t, relative, t[1] - t[0] <= SHORT)
     }
 
-    /// ∫ f dξ over all of it, of a function that may have kinks.
+    /// Returns ∫ f dξ over the whole range, for a function that may have kinks.
     pub(crate) fn integral(&self, f: &mut impl FnMut(f64) -> f64, relative: f64) -> f64 {
         let mut weighted = |t: f64| {
             let (xi, slope) = self.xi_and_slope(t);

@@ -1,23 +1,24 @@
-//! The closed loops around bands that touch.
+//! Joins the sides of bands that touch into closed loops.
 //!
-//! At every ξ where bands end or begin, the boundary goes on from a side of one band to a side of another, if need be along
-//! the line of constant ξ: up where the patch is on the left of it only, down where it is on the right only.
+//! At every ξ where bands end or begin, the loop continues from a side of one band to a side of another, if
+//! need be along the line of constant ξ: up where the patch is only on its left, down where it is only on its
+//! right.
 
 use super::band::Band;
 
-/// A side of a band.
+/// A side of a band, as part of a loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Side {
     band: usize,
-    /// Lower (0), along which a loop runs with ξ, or upper (1), along which it runs back.
+    /// 0 is the lower side, along which a loop runs with ξ; 1 is the upper side, along which it runs back.
     branch: usize,
 }
 
-/// The slices of one band at ascending ξ, its ends included: \[ξ, lower η, upper η\] \[mm\].
+/// The slices of one band at ascending ξ, both ends included: \[ξ, lower η, upper η\] \[mm\].
 pub(super) type Rows = Vec<[f64; 3]>;
 
-/// Loops of \[ξ, η\] \[mm\] around bands, the patch on their left: the outer ones counter-clockwise, holes clockwise. The first
-/// point is not repeated; no two neighbours are the same.
+/// Returns loops of \[ξ, η\] \[mm\] around the bands, with the patch on the left: outer loops are
+/// counter-clockwise, holes clockwise. The first point is not repeated; no two neighbours are the same.
 pub(super) fn loops(bands: &[Band], rows: &[Rows]) -> Vec<Vec<[f64; 2]>> {
     let mut free: Vec<Side> =
         (0..bands.len()).flat_map(|band| [0, 1].map(|branch| Side { band, branch })).collect();
@@ -37,7 +38,7 @@ pub(super) fn loops(bands: &[Band], rows: &[Rows]) -> Vec<Vec<[f64; 2]>> {
             }
             match free.iter().position(|other| *other == side) {
                 Some(place) => free.swap_remove(place),
-                // Two intervals that overlap at one ξ by rounding: the loop is closed where it is.
+                // By rounding two intervals overlap at one ξ: the loop is closed here.
                 None => break,
             };
         }
@@ -50,21 +51,22 @@ pub(super) fn loops(bands: &[Band], rows: &[Rows]) -> Vec<Vec<[f64; 2]>> {
     loops
 }
 
-/// The side on which a loop goes on after another.
+/// Returns the side on which a loop continues after another side.
 fn next(bands: &[Band], Side { band, branch }: Side) -> Side {
     let (end, here) = (1 - branch, &bands[band]);
     let (xi, eta) = (here.xi[end], here.sides[end][branch]);
-    // Where bands end there, and where they begin.
+    // Bands that lie on the other side of the line ξ, and bands that lie on the same side.
     let across = |k: usize| bands[k].xi[1 - end] == xi;
     let along = |k: usize| bands[k].xi[end] == xi;
-    // Upwards for a lower side, downwards for an upper one, or the other way behind a band on the other side.
+    // Turns η so that the loop moves upwards along the line ξ.
     let up = |value: f64| if branch == 0 { value } else { -value };
     let near = |k: usize| up(bands[k].sides[1 - end][branch]);
     let far = |k: usize| up(bands[k].sides[1 - end][1 - branch]);
     let start = up(eta);
     let others = || (0..bands.len()).filter(|&k| across(k));
     match others().find(|&k| near(k) <= start && start < far(k)) {
-        // Beside a band on the other side: back along it to its own edge, or to a band on this side before that.
+        // A band on the other side is here: move back along it to its own edge, or to a band on this side
+        // before that.
         Some(beside) => {
             let last = |k: &usize| up(bands[*k].sides[end][1 - branch]);
             let own = (0..bands.len()).filter(|&k| along(k) && k != band);
@@ -72,7 +74,8 @@ fn next(bands: &[Band], Side { band, branch }: Side) -> Side {
             let before = before.max_by(|p, q| last(p).total_cmp(&last(q)));
             before.map_or(Side { band: beside, branch }, |band| Side { band, branch: 1 - branch })
         }
-        // Nothing there: on to the band's own other side, or to a band on the other side before that.
+        // No band on the other side is here: move on to the band's own other side, or to a band on the other
+        // side before that.
         None => {
             let limit = up(here.sides[end][1 - branch]);
             let before = others().filter(|&k| start <= near(k) && near(k) < limit);
@@ -82,14 +85,15 @@ fn next(bands: &[Band], Side { band, branch }: Side) -> Side {
     }
 }
 
-/// The area that a loop encloses \[mm²\], positive where it runs counter-clockwise.
+/// Returns the area that a loop encloses \[mm²\], positive if the loop is counter-clockwise.
 pub(super) fn enclosed(points: &[[f64; 2]]) -> f64 {
     let Some([x, y]) = points.first() else { return 0.0 };
     let pairs = points.iter().zip(points.iter().cycle().skip(1));
     pairs.map(|(p, q)| ((p[0] - x) * (q[1] - y) - (q[0] - x) * (p[1] - y)) / 2.0).sum()
 }
 
-/// Length of the boundary along lines of constant ξ, where bands end or begin and others do not go on \[mm\].
+/// Returns the length of the boundary along lines of constant ξ where bands end or begin and no other band
+/// continues \[mm\].
 pub(super) fn walls(bands: &[Band]) -> f64 {
     let width = |[low, high]: [f64; 2]| (high - low).max(0.0);
     let sides = bands.iter().flat_map(|band| band.sides).map(width).sum::<f64>();
@@ -109,7 +113,7 @@ mod tests {
         Band { xi, ends: [None; 2], sides, valleys: Vec::new(), corners: xi.to_vec() }
     }
 
-    /// Loops of bands with straight sides.
+    /// Returns the loops of bands with straight sides.
     fn around(bands: &[Band]) -> Vec<Vec<[f64; 2]>> {
         let row = |band: &Band, k: usize| [band.xi[k], band.sides[k][0], band.sides[k][1]];
         loops(bands, &bands.iter().map(|band| vec![row(band, 0), row(band, 1)]).collect::<Vec<_>>())

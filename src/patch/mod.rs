@@ -1,4 +1,4 @@
-//! INTERPEN (Report Sec. 7): the curve s(ξ, η) = δ and the patch it bounds.
+//! INTERPEN (Report Sec. 7): finds the curve s(ξ, η) = δ and the patch inside it.
 
 mod band;
 mod components;

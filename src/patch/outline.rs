@@ -1,4 +1,4 @@
-//! The slices of a patch that a window leaves.
+//! Cuts the slices of a patch off at the edges of a window.
 
 use serde::Serialize;
 
@@ -6,17 +6,17 @@ use super::skewed::slicer::Edge;
 use super::slice::Slicer;
 use crate::placement::Placement;
 
-/// The rectangle of the ξ–η plane that is looked at \[mm\].
+/// A rectangle of the ξ–η plane \[mm\], inside which a patch is searched for.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Window {
-    /// Range of ξ.
+    /// Range of ξ \[mm\].
     pub xi: [f64; 2],
-    /// Range of η.
+    /// Range of η \[mm\].
     pub eta: [f64; 2],
 }
 
 impl Window {
-    /// The whole plane: nothing but the bodies' own ends bounds the patch.
+    /// The whole plane: only the ends of the bodies bound the patch.
     pub const UNBOUNDED: Self =
         Self { xi: [f64::NEG_INFINITY, f64::INFINITY], eta: [f64::NEG_INFINITY, f64::INFINITY] };
 }
@@ -25,15 +25,15 @@ impl Window {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum End {
-    /// The two branches meet where s(ξ, η) = δ in a single point.
+    /// A tip: the two branches meet in a single point with s(ξ, η) = δ.
     Tip,
-    /// The window cuts it.
+    /// The window cuts the component.
     Window,
-    /// One of the bodies ends, or steps back from the other behind an overhang.
+    /// One of the bodies ends, or steps away from the other body behind an overhang.
     ProfileEnd,
 }
 
-/// Slices of the patch {s < δ} that end at a window.
+/// Slices of the patch {s < δ}, cut off at a window.
 #[derive(Debug)]
 pub struct Outline<'a> {
     pub(super) slicer: Slicer<'a>,
@@ -41,18 +41,20 @@ pub struct Outline<'a> {
 }
 
 impl<'a> Outline<'a> {
-    /// The outline of a placed pair's patch at approach δ \[mm\] inside a window.
+    /// Makes the outline of a placed pair's patch at approach δ \[mm\] inside a window.
     pub fn new(placement: &'a Placement, approach: f64, window: &Window) -> Self {
         Self { slicer: Slicer::new(placement, approach), window: *window }
     }
 
-    /// Both ends of the slice at ξ, with skew of the one that holds a valley; `None` outside the patch or the window.
+    /// Returns both ends of the slice at ξ, with skew of the slice that holds `valley`; `None` outside the
+    /// patch or the window.
     pub(crate) fn edges(&mut self, valley: Option<usize>, xi: f64) -> Option<[Edge; 2]> {
         let edges = self.slicer.edges(xi, valley)?;
         self.clipped(edges)
     }
 
-    /// The same with dη/dξ of both branches: 0 along the window.
+    /// Returns both ends of the slice at ξ and dη/dξ of both branches there, 0 along the window. With skew,
+    /// the slice is the one that holds `valley`.
     pub(super) fn edges_and_slopes(
         &mut self,
         valley: Option<usize>,
@@ -74,7 +76,8 @@ impl<'a> Outline<'a> {
         (low.eta <= high.eta).then_some([low, high])
     }
 
-    /// η of the least s at ξ, over a valley if there is one, within the window: s only rises to both sides of it.
+    /// Returns η of the least s at ξ within the window \[mm\]: the place of the valley (η = 0 without skew),
+    /// or the window's edge next to it, since s only rises to both sides.
     pub(super) fn floor(&self, valley: Option<usize>, xi: f64) -> f64 {
         let ([from, to], lowest) = (self.window.eta, self.slicer.valley(valley, xi));
         // NaN, where there is no surface, stays NaN.
@@ -87,7 +90,8 @@ impl<'a> Outline<'a> {
         }
     }
 
-    /// s − δ at the place of a valley, or next to it in the window; infinite where s rises above δ on the way there.
+    /// Returns s − δ at the place of a valley, or at the window's edge next to it \[mm\]; infinite if s rises
+    /// above δ between the valley and that edge.
     pub(super) fn depth(&mut self, valley: Option<usize>, xi: f64) -> f64 {
         let floor = self.floor(valley, xi);
         match (&mut self.slicer.skewed, valley) {
@@ -108,19 +112,19 @@ impl<'a> Outline<'a> {
         self.slicer.separation(xi, floor) - self.slicer.approach()
     }
 
-    /// \[s, ξ, η\] of the least s at ξ, over a valley if there is one.
+    /// Returns \[s, ξ, η\] of the least s at ξ within the window, with skew over `valley`.
     pub(super) fn lowest(&mut self, valley: Option<usize>, xi: f64) -> [f64; 3] {
         let floor = self.floor(valley, xi);
         let eta = self.slicer.on_surface(xi, floor);
         [self.slicer.separation(xi, eta), xi, eta]
     }
 
-    /// s(ξ, η) \[mm\].
+    /// Returns s(ξ, η) \[mm\].
     pub fn separation(&mut self, xi: f64, eta: f64) -> f64 {
         self.slicer.separation(xi, eta)
     }
 
-    /// s(ξ, η) at all η of one column \[mm\].
+    /// Writes s(ξ, η) at all η of one column to `out` \[mm\].
     pub(crate) fn column(&mut self, xi: f64, eta: &[f64], out: &mut [f64]) {
         self.slicer.column(xi, eta, out);
     }

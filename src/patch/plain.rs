@@ -1,18 +1,19 @@
-//! The bands of a patch without skew, where every line of constant ξ meets it in one interval at most.
+//! Finds the bands of a patch without skew, where a line of constant ξ meets the patch in one interval at
+//! most.
 
 use super::band::{Band, steps};
 use super::outline::{End, Outline};
 use crate::numerics::roots::{bracketed, last_where};
 use crate::patch::turning_points;
 
-/// Intervals in which a window that leaves the midplane out is searched for where the depth along its edge turns: a part is
-/// missed only if it begins and ends within one of them.
+/// Number of intervals in which the depth along the window's edge is searched for turns, if the midplane is
+/// outside the window: a part is missed only if it begins and ends within one of them.
 const WINDOW_INTERVALS: usize = 512;
 
-/// The bands, by ascending ξ, and the ξ at which the least s may be \[mm\].
+/// Returns the bands by ascending ξ, and the ξ at which s may be least \[mm\].
 ///
-/// At a joint the gap may step (an overhang): every interval between turning points is judged by its own side's values
-/// at both ends.
+/// At a joint the gap may step (an overhang). So every interval between turning points is judged by the
+/// values at its own two ends.
 pub(super) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<f64>) {
     let placement = outline.slicer.placement();
     let Some([first, last]) = placement.overlap() else { return (Vec::new(), Vec::new()) };
@@ -66,7 +67,8 @@ fn closed(
     (from, begin): (f64, Option<End>),
     (to, end): (f64, Option<End>),
 ) -> Band {
-    // A joint belongs to the left: where the surface steps or begins there, the slice on its right is the one next to it.
+    // A joint belongs to the left. Where the surface steps or begins at a joint, the slice on its right is
+    // the next number.
     let beside = begin.is_none() || outline.depth(None, from).is_nan();
     let places = [(begin, if beside { from.next_up() } else { from }), (end, to)];
     let sides = places.map(|(end, xi)| {
@@ -76,7 +78,8 @@ fn closed(
     Band { xi: [from, to], ends: [begin, end], sides, valleys: Vec::new(), corners: Vec::new() }
 }
 
-/// a, b and ξ between them such that the depth is monotone between neighbours: joints and stationary points.
+/// Returns a, b and all ξ between them where the depth may turn, joints and stationary points: between
+/// neighbours the depth is monotone.
 fn turns_of_depth(outline: &mut Outline<'_>, a: f64, b: f64) -> Vec<f64> {
     let mut points = turning_points(outline.slicer.placement(), a, b);
     let floor = outline.floor(None, a);
@@ -96,12 +99,12 @@ fn turns_of_depth(outline: &mut Outline<'_>, a: f64, b: f64) -> Vec<f64> {
     points
 }
 
-/// Where the patch ends between p and q, one of which is inside.
+/// Returns where the patch ends between p and q, one of which is inside it, and what bounds it there.
 fn part_end(outline: &mut Outline<'_>, [p, q]: [f64; 2], first_inside: bool) -> (f64, End) {
     if let Some(tip) = bracketed(|xi| outline.depth(None, xi), p, q) {
         return (tip, if outline.floor(None, tip) == 0.0 { End::Tip } else { End::Window });
     }
-    // No surface on one side: the last ξ with one.
+    // There is no surface on one side: take the last ξ with one.
     let (on, off) = if first_inside { (p, q) } else { (q, p) };
     (last_where(|xi| outline.depth(None, xi) < 0.0, on, off), End::ProfileEnd)
 }

@@ -1,7 +1,7 @@
-//! The patch at one ξ: the interval of η with s(ξ, η) < δ.
+//! Finds the patch at one ξ: the interval of η with s(ξ, η) < δ.
 //!
-//! Without skew (7.2)–(7.3) become: the wheel is to rise by δ − g(ξ), which gives the sagitta e, and
-//! η = ±√(e(2w + e)): exact at the tips, where (7.3) cancels.
+//! Without skew (7.2)–(7.3) become: the wheel must rise by δ − g(ξ), which gives the sagitta e, and η =
+//! ±√(e(2w + e)). This is exact at the tips, where (7.3) cancels.
 
 use super::skewed::slicer::{Edge, STEP_ROUNDINGS, Skewed};
 use crate::placement::Placement;
@@ -9,17 +9,17 @@ use crate::separation::Evaluator;
 use crate::separation::gap::midplane_gap;
 use crate::separation::wheel_surface::{SagittaPoint, Span, WheelSurface};
 
-/// Contractions of the sagitta step; each gains at least three digits away from vertical tangents.
+/// Most contractions of the sagitta step; each gains at least three digits away from vertical tangents.
 const CONTRACTIONS: usize = 24;
 
-/// The interval of η at one ξ.
+/// The interval of η of the patch at one ξ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slice {
     /// Lower and upper end \[mm\].
     pub eta: [f64; 2],
 }
 
-/// The upper end of a slice without skew, and the wheel point there.
+/// The upper end of a slice without skew, and the wheel point at that end.
 #[derive(Debug, Clone, Copy)]
 struct Half {
     edge: Edge,
@@ -27,20 +27,20 @@ struct Half {
     foot: SagittaPoint,
 }
 
-/// Slices of a placed pair at one approach.
+/// Finds the slices of a placed pair at one approach.
 #[derive(Debug)]
 pub struct Slicer<'a> {
     pub(super) placement: &'a Placement,
     wheel: WheelSurface<'a>,
     pub(super) evaluator: Evaluator<'a>,
     spans: Vec<Span>,
-    /// Slices from the wheel's valleys; `None` without skew.
+    /// The slices under a skewed wheel; `None` without skew.
     pub(super) skewed: Option<Skewed<'a>>,
     approach: f64,
 }
 
 impl<'a> Slicer<'a> {
-    /// A slicer for approach δ \[mm\].
+    /// Makes a slicer for approach δ \[mm\].
     pub fn new(placement: &'a Placement, approach: f64) -> Self {
         Self {
             placement,
@@ -52,12 +52,13 @@ impl<'a> Slicer<'a> {
         }
     }
 
-    /// δ \[mm\].
+    /// Returns the approach δ \[mm\].
     pub fn approach(&self) -> f64 {
         self.approach
     }
 
-    /// min over η of s(ξ, η) − δ \[mm\]: negative inside the patch, zero at its tips; NaN off the bodies.
+    /// Returns the minimum over η of s(ξ, η) − δ \[mm\]: negative inside the patch, zero at its tips, NaN off
+    /// the bodies.
     pub fn depth(&mut self, xi: f64) -> f64 {
         match &mut self.skewed {
             Some(skewed) => skewed.lowest_valley(xi).map_or(f64::NAN, |valley| skewed.depth(valley, xi)),
@@ -65,8 +66,9 @@ impl<'a> Slicer<'a> {
         }
     }
 
-    /// The interval of η at ξ, or `None` outside the patch; with skew, of several the deepest. A tip gives an interval of
-    /// no width; where the wheel's surface ends along η before s reaches δ, so does the interval.
+    /// Returns the interval of η at ξ, or `None` outside the patch; with skew, the deepest of several
+    /// intervals. At a tip the interval has no width. It ends where the wheel's surface ends along η, if that
+    /// is before s reaches δ.
     ///
     /// Accuracy: |Δη| ≤ (R/η) × the accuracy of s.
     pub fn slice(&mut self, xi: f64) -> Option<Slice> {
@@ -77,7 +79,7 @@ impl<'a> Slicer<'a> {
         self.edges(xi, valley).map(|[low, high]| Slice { eta: [low.eta, high.eta] })
     }
 
-    /// Both ends of the slice; with skew, of the one that holds a valley.
+    /// Returns both ends of the slice at ξ; with skew, of the slice that holds `valley`.
     pub(super) fn edges(&mut self, xi: f64, valley: Option<usize>) -> Option<[Edge; 2]> {
         if let (Some(skewed), Some(valley)) = (&mut self.skewed, valley) {
             return skewed.edges(xi, valley);
@@ -86,7 +88,8 @@ impl<'a> Slicer<'a> {
         Some([Edge { eta: -edge.eta, ..edge }, edge])
     }
 
-    /// The same with dη/dξ of both branches, infinite at a tip.
+    /// Returns both ends of the slice at ξ and dη/dξ of both branches there, infinite at a tip. With skew,
+    /// the slice is the one that holds `valley`.
     pub(super) fn edges_and_slopes(
         &mut self,
         xi: f64,
@@ -104,18 +107,19 @@ impl<'a> Slicer<'a> {
         Some(([Edge { eta: -half.edge.eta, ..half.edge }, half.edge], [-slope, slope]))
     }
 
-    /// The slice for η > 0 without skew.
+    /// Returns the upper end of the slice at ξ without skew, or `None` outside the patch.
     fn half(&mut self, xi: f64) -> Option<Half> {
         let depth = self.approach - midplane_gap(self.placement, xi);
         if depth.is_nan() || depth < 0.0 {
             return None;
         }
-        // Enough for slopes up to 80°; steeper ones take the whole profile.
+        // This is enough for slopes up to 80°; steeper ones take the whole profile.
         let likely = 16.0 * self.placement.rolling_radius() * depth;
         self.foot_lifted(xi, depth, likely).or_else(|| self.foot_lifted(xi, depth, f64::INFINITY))
     }
 
-    /// dη/dξ of the branch η > 0 without skew: −s_ξ/s_η, or along the circle of a ledge.
+    /// Returns dη/dξ of the branch η > 0 without skew: −s_ξ/s_η, or the slope of the wheel's circle on a
+    /// ledge.
     fn half_slope(&self, xi: f64, Half { edge, span, foot }: &Half) -> f64 {
         if edge.ledge {
             return foot.w / (edge.eta * self.placement.wheel.section.frame.sin);
@@ -126,8 +130,8 @@ impl<'a> Slicer<'a> {
         -(along + rail * up) / across
     }
 
-    /// The wheel point that lies `depth` above the midplane point at ξ, or where the surface ends or steps below that;
-    /// `None` where it is beyond `u_max`.
+    /// Returns the wheel point that lies `depth` above the midplane point at ξ, or the point before that at
+    /// which the surface ends or steps. `None` where η² would exceed `u_max`.
     fn foot_lifted(&mut self, xi: f64, depth: f64, u_max: f64) -> Option<Half> {
         self.wheel.spans(xi, u_max, &mut self.spans);
         let half = |foot: SagittaPoint, span: &Span, ledge: bool| Half {
@@ -149,53 +153,54 @@ impl<'a> Slicer<'a> {
         Some(half(self.wheel.point(xi, last, last.e[1]), last, true))
     }
 
-    /// η of the least s at ξ \[mm\]: 0 without skew, else where the wheel is parallel to η or its surface ends; NaN where
-    /// there is none.
+    /// Returns η of the least s at ξ \[mm\]: 0 without skew, else where the wheel is parallel to η or its
+    /// surface ends; NaN where the wheel has no surface.
     pub fn lowest(&mut self, xi: f64) -> f64 {
         let Some(skewed) = &mut self.skewed else { return 0.0 };
         skewed.lowest_valley(xi).map_or(f64::NAN, |valley| skewed.valleys.spot(valley, xi).eta)
     }
 
-    /// η of a valley at ξ \[mm\]; 0 without skew.
+    /// Returns η of a valley at ξ \[mm\]; 0 without skew.
     pub(super) fn valley(&self, valley: Option<usize>, xi: f64) -> f64 {
         let places = self.skewed.as_ref().zip(valley);
         places.map_or(0.0, |(skewed, valley)| skewed.valleys.spot(valley, xi).eta)
     }
 
-    /// η, or next to it where the surface ends by a rounding too early.
+    /// Returns η, or a place next to it if rounding ends the surface too early.
     pub(super) fn on_surface(&mut self, xi: f64, eta: f64) -> f64 {
         self.skewed.as_mut().map_or(eta, |skewed| skewed.on_surface(xi, eta))
     }
 
-    /// dη/dξ of the boundary at a point of it: −s_ξ/s_η, infinite at a tip.
+    /// Returns dη/dξ at a point of the boundary: −s_ξ/s_η, infinite at a tip.
     pub fn boundary_slope(&mut self, xi: f64, eta: f64) -> f64 {
         let [along, across] = self.gradient(xi, eta);
         -along / across
     }
 
-    /// (∂s/∂ξ, ∂s/∂η).
+    /// Returns \[∂s/∂ξ, ∂s/∂η\].
     pub(super) fn gradient(&mut self, xi: f64, eta: f64) -> [f64; 2] {
         let rail = self.evaluator.rail_slope(xi);
         let [along, across] = self.evaluator.wheel_slopes(xi, eta);
         [along - rail, across]
     }
 
-    /// dη/dξ under skew along the end or step of the wheel's surface next to a point; NaN without skew.
+    /// Returns dη/dξ along the end or step of a skewed wheel's surface that is next to a point; NaN without
+    /// skew.
     fn ledge_slope(&self, xi: f64, eta: f64) -> f64 {
         self.skewed.as_ref().map_or(f64::NAN, |skewed| skewed.valleys.rim_slope(xi, eta))
     }
 
-    /// s(ξ, η) \[mm\].
+    /// Returns s(ξ, η) \[mm\].
     pub fn separation(&mut self, xi: f64, eta: f64) -> f64 {
         self.evaluator.separation(xi, eta)
     }
 
-    /// s(ξ, η) at all η of one column \[mm\].
+    /// Writes s(ξ, η) at all η of one column to `out` \[mm\].
     pub(super) fn column(&mut self, xi: f64, eta: &[f64], out: &mut [f64]) {
         self.evaluator.column(xi, eta, out);
     }
 
-    /// The pair.
+    /// Returns the placed pair.
     pub fn placement(&self) -> &'a Placement {
         self.placement
     }

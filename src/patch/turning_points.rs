@@ -1,4 +1,4 @@
-//! Where the gap of the midplane may turn.
+//! Finds where the gap of the midplane may turn.
 
 use crate::placement::Placement;
 use crate::profile::stationary_points;

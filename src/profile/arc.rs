@@ -1,36 +1,37 @@
 //! Lines and circular arcs in curvature form: Report (3.2), with a signed radius (erratum 2).
 
-use super::Station;
+use super::station::Station;
 use crate::error::{Error, Result, finite};
+use crate::numerics::cosine;
 use crate::numerics::twice::Twice;
 
-/// A drawing's arc may end where its tangent is vertical; its rounded coordinates may then lie this many
-/// roundings of the radius beyond. More is a drawing that does not close.
+/// Distance beyond the vertical tangent, in roundings of the radius, at which an arc of a drawing may end:
+/// its coordinates are rounded. More means a drawing that does not close.
 const VERTICAL_END_ROUNDINGS: f64 = 64.0;
 
-/// Which half of its circle an arc is on.
+/// The half of its circle on which an arc is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Half {
-    /// z = b + √(r² − (x − a)²): bulges up.
+    /// The upper half z = b + √(r² − (x − a)²), which bulges up.
     Upper,
-    /// z = b − √(r² − (x − a)²): bulges down.
+    /// The lower half z = b − √(r² − (x − a)²), which bulges down.
     Lower,
 }
 
 /// A line (infinite radius) or a circular arc of at most half a turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Arc {
-    /// Where it begins.
+    /// Station at the beginning.
     pub start: Station,
-    /// Where it ends.
+    /// Station at the end.
     pub end: Station,
-    /// Signed radius \[mm\]: positive where it turns counter-clockwise (lower half), ∞ for a line. Kept rather
-    /// than the curvature, since differences of nearly equal radii are then exact.
+    /// Signed radius \[mm\]: positive if the arc turns counter-clockwise (lower half), ∞ for a line. The
+    /// radius is kept, not the curvature, since differences of nearly equal radii are then exact.
     pub radius: f64,
 }
 
 impl Arc {
-    /// The line between two points \[mm\].
+    /// Makes the line between two points \[mm\].
     ///
     /// # Errors
     /// Points that are not finite or coincide.
@@ -48,7 +49,7 @@ impl Arc {
         Ok(Self { start: at(from), end: at(to), radius: f64::INFINITY })
     }
 
-    /// The arc about `centre` (a, b) between two abscissae, (3.2-a).
+    /// Makes the arc about `centre` (a, b) between two abscissae, (3.2-a).
     ///
     /// # Errors
     /// Values that are not finite, a radius that is not positive, abscissae out of order or off the circle.
@@ -69,11 +70,11 @@ impl Arc {
         Ok(Self { start: at(x[0])?, end: at(x[1])?, radius: signed })
     }
 
-    /// The arc or line that leaves `start` along its tangent and goes on to abscissa `to_x`
-    /// (Appendix A: smooth transitions); `radius` signed, ∞ for a line.
+    /// Makes the arc or line that leaves `start` along its tangent and ends at abscissa `to_x` (Appendix A:
+    /// smooth transitions); `radius` is signed, ∞ for a line.
     ///
     /// # Errors
-    /// `to_x` not beyond the start, or not reached before the tangent is vertical.
+    /// A `to_x` that is not beyond the start, or not reached before the tangent is vertical.
     pub fn tangent_at(start: Station, radius: f64, to_x: f64) -> Result<Self> {
         let run = finite("to_x", to_x)? - start.x;
         if run <= 0.0 {
@@ -93,34 +94,35 @@ impl Arc {
         Ok(Self { start, end: Station { x: to_x, z, cos, sin }, radius })
     }
 
-    /// Signed curvature \[1/mm\], 0 for a line.
+    /// Returns the signed curvature \[1/mm\], 0 for a line.
     pub fn curvature(&self) -> f64 {
         self.radius.recip()
     }
 
-    /// Centre (a, b) of (3.2-a) \[mm\], or `None` for a line.
+    /// Returns the centre (a, b) of (3.2-a) \[mm\], or `None` for a line.
     pub fn centre(&self) -> Option<[f64; 2]> {
         let Station { x, z, cos, sin } = self.start;
         self.radius.is_finite().then_some([x - self.radius * sin, z + self.radius * cos])
     }
 
-    /// Turning angle from start to end \[rad\], signed; 0 for a line.
+    /// Returns the signed turn from start to end \[rad\]; 0 for a line.
     pub fn turn(&self) -> f64 {
         let relative = self.end.seen_from(&self.start);
         let turn = relative.sin.atan2(relative.cos);
-        // Half a turn comes out with either sign.
+        // Half a turn can come out with either sign.
         if self.radius.is_finite() { turn.abs().copysign(self.radius) } else { 0.0 }
     }
 
-    /// Length along the arc \[mm\].
+    /// Returns the length along the arc \[mm\].
     pub fn length(&self) -> f64 {
         let chord = (self.end.x - self.start.x).hypot(self.end.z - self.start.z);
         if self.radius.is_finite() { (self.turn() * self.radius).abs() } else { chord }
     }
 
-    /// The station at a share (0 to 1) of the length.
+    /// Returns the station at a share (0 to 1) of the length.
     pub fn station_at(&self, share: f64) -> Station {
-        // Chord of the part: its direction is the mean tangent, its length that of the arc times sinc.
+        // The chord of the part has the direction of the mean tangent; its length is that of the arc times
+        // sinc.
         let turn = share * self.turn();
         let half = 0.5 * turn;
         let chord = share * self.length() * if half == 0.0 { 1.0 } else { half.sin() / half };
@@ -137,14 +139,8 @@ impl Arc {
     }
 }
 
-/// √(1 − sin²) without cancellation, 0 where rounding has carried |sin| past 1.
-#[inline(always)]
-pub(super) fn cosine(sin: f64) -> f64 {
-    ((1.0 - sin) * (1.0 + sin)).max(0.0).sqrt()
-}
-
-/// The point of a circle at abscissa x; `radius` negative for the upper half. The height is rounded once
-/// only: b and r may be thousands of times larger than their sum.
+/// Returns the point of a circle at abscissa x; `radius` is negative for the upper half. The height is
+/// rounded once only: b and r may be thousands of times larger than their sum.
 fn station_on_circle([a, b]: [f64; 2], radius: f64, x: f64) -> Result<Station> {
     let beyond = (x - a).abs() - radius.abs();
     if beyond > VERTICAL_END_ROUNDINGS * f64::EPSILON * (radius.abs() + a.abs()) {

@@ -1,8 +1,8 @@
-//! Appendix A of the Report: smooth chains from drawing data.
+//! Appendix A of the Report: builds smooth chains from drawing data.
 //!
-//! A segment is given by its slope or radius and the abscissa where it ends; it leaves the one before along
-//! its tangent. Equations –(A-13) are one rule in the form used here: the new centre lies on the normal of
-//! the joint.
+//! A segment is given by its slope or radius and the abscissa where it ends; it leaves the segment before
+//! along its tangent. Equations –(A-13) are one rule in the form used here: the new centre is on the
+//! normal of the joint.
 
 use super::{Arc, Half, Segment, Station};
 use crate::error::{Error, Result, finite};
@@ -15,12 +15,12 @@ pub struct Builder {
 }
 
 impl Builder {
-    /// An empty chain.
+    /// Begins an empty chain.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// An empty chain whose first segment, a line, starts at this point \[mm\].
+    /// Begins an empty chain whose first segment, a line, starts at this point \[mm\].
     ///
     /// # Errors
     /// A point that is not finite.
@@ -36,10 +36,12 @@ impl Builder {
         self.segments.push(segment);
     }
 
-    /// A line to abscissa `to_x`: of the given slope, or along the tangent of the segment before, (A-12).
+    /// Appends a line to abscissa `to_x`: with the given slope, or along the tangent of the segment before
+    ///
     ///
     /// # Errors
-    /// No beginning or no slope to go on from; values that are not finite; `to_x` not beyond the beginning.
+    /// No beginning or no slope to continue from; values that are not finite; `to_x` not beyond the
+    /// beginning.
     pub fn line_to(&mut self, slope: Option<f64>, to_x: f64) -> Result<()> {
         let slope = slope.map(|slope| finite("line: slope", slope)).transpose()?;
         finite("line: to_x", to_x)?;
@@ -57,12 +59,12 @@ impl Builder {
         Ok(())
     }
 
-    /// An arc to abscissa `to_x`, smooth with the segment before, (A-4) after a line, (A-8), (A-9) after
-    /// an arc.
+    /// Appends an arc to abscissa `to_x`, smooth with the segment before, (A-4) after a line, (A-8),
+    /// after an arc.
     ///
     /// # Errors
-    /// No segment to go on from; values that are not finite; a radius that is not positive; `to_x` that the arc does not
-    /// reach.
+    /// No segment to continue from; values that are not finite; a radius that is not positive; a `to_x` that
+    /// the arc does not reach.
     pub fn arc_to(&mut self, radius: f64, half: Half, to_x: f64) -> Result<()> {
         let Some(start) = self.segments.last().map(Segment::end) else {
             return Err(nothing_before("an arc given by its radius and end"));
@@ -77,7 +79,7 @@ impl Builder {
         Ok(())
     }
 
-    /// The chain.
+    /// Returns the chain.
     pub fn finish(self) -> Vec<Segment> {
         self.segments
     }

@@ -1,48 +1,55 @@
-//! Closes a drawn chain: neighbouring segments miss each other by the rounding of a drawing's coordinates, and a surface
-//! with steps has contacts, edges and slivers that no wheel has.
+//! Closes a drawn chain. Neighbouring segments miss each other by the rounding of a drawing's coordinates,
+//! and a surface with steps has contacts, edges and slivers that no wheel has.
 //!
-//! One rule, joint by joint, from the drawn ends alone. Let d be the distance between the two ends across the tangent,
-//! φ the kink, K = `BEND` / length of the chain, and w = √(d/K):
+//! One rule closes each joint, from the drawn ends alone. Let d be the distance between the two ends across
+//! the tangent, φ the kink, K = `BEND` / length of the chain, and w = √(d/K):
 //!
 //! - **met**: ends that differ by roundings only are one point already, and stay as they are;
-//! - **crossing**: where the drawing has a kink, |φ| > Kw, both segments are trimmed or continued to where they cross,
-//!   less than about w away;
-//! - **bend**: else the last w of the left segment and the first w of the right one are bent towards each other. Each bent
-//!   stretch leaves its segment along the tangent with the curvature changed by one constant, ±d/w² = ±K for the step and
-//!   up to K/2 for the kink, which goes. An arc's is an arc; a polynomial's is the polynomial plus a parabola.
+//! - **crossing**: if the drawing has a kink, |φ| > Kw, both segments are trimmed or continued to where they
+//!   cross, less than about w away;
+//! - **bend**: otherwise the last w of the left segment and the first w of the right one are bent towards
+//!   each other. Each bent stretch leaves its segment along the tangent, with the curvature changed by one
+//!   constant: ±d/w² = ±K for the step, and up to K/2 for the kink, which disappears. A bent arc is an arc; a
+//!   bent polynomial is the polynomial plus a parabola.
 //!
-//! Outside these stretches every segment is the drawn one. A gap along the tangent is no step: the segments first go on towards
-//! each other, the flatter one further. w is at least `SHORTEST` and at most `SHARE` of the shorter neighbour. The rule has no direction, no axes and no
-//! unit of length: it commutes with mirroring, rigid motion and scaling, and closing twice changes nothing.
+//! Outside these stretches every segment is the drawn one. A gap along the tangent is no step: the segments
+//! are first continued towards each other, the flatter one further. w is at least `SHORTEST` and at most
+//! `SHARE` of the shorter neighbour. The rule has no direction, no axes and no unit of length: it commutes
+//! with mirroring, rigid motion and scaling, and closing twice changes nothing.
 
-use super::{Arc, Polynomial, Segment, Shape, Station};
+use super::arc::Arc;
+use super::polynomial::Polynomial;
+use super::segment::{Segment, Shape};
+use super::station::Station;
 use crate::error::{Error, Result};
-use crate::numerics::twice::Twice;
 
-/// Ends closer than this share of the profile's extent are one joint, moved apart by rounding. Coordinates of arcs are
-/// rounded some ten times; bending over 1e-13 mm would make segments of nothing.
+/// Distance, as a share of the profile's extent, below which two ends are one joint, moved apart by rounding.
+/// Coordinates of arcs are rounded some ten times; a bend over 1e-13 mm would make segments of nothing.
 pub const ONE_JOINT: f64 = 16.0 * f64::EPSILON;
 
-/// Curvature × length of the chain by which a bend may differ from the drawing: 1/(1200 mm) on a wheel of 150 mm. With more, bends
-/// rival the curvature of treads and crowns, and a second contact arises beside the first; with less, they change more of the drawn
-/// surface than the step itself is worth.
+/// Curvature × length of the chain by which a bend may differ from the drawing: 1/(1200 mm) on a wheel of 150
+/// mm. A larger value rivals the curvature of treads and crowns, and makes a second contact beside the first;
+/// a smaller one changes more of the drawn surface than the step itself is worth.
 const BEND: f64 = 1.0 / 8.0;
 
-/// Shortest bent stretch as a share of the chain's length: 18 µm of 150 mm. Shorter ones put points of files closer than solvers
-/// tell them apart; longer ones change more of the drawing for steps that are nothing.
+/// Shortest bent stretch, as a share of the chain's length: 18 µm of 150 mm. A shorter one puts points of
+/// files closer than solvers distinguish; a longer one changes more of the drawing for steps that are
+/// nothing.
 const SHORTEST: f64 = 1.0 / 8192.0;
 
-/// Share of a segment that may be bent, trimmed or continued at either of its ends: the drawn shape keeps its middle.
+/// Largest share of a segment that may be bent, trimmed or continued at either of its ends, so that the drawn
+/// shape keeps its middle.
 const SHARE: f64 = 1.0 / 3.0;
 
-/// Largest step as a share of the bent stretch beside it: a tangent then turns by up to 0.1 rad. More is no rounding of the
-/// segment's ends.
+/// Largest step, as a share of the bent stretch beside it: a tangent then turns by up to 0.1 rad. A larger
+/// step is no rounding of the segment's ends.
 const STEEPEST: f64 = 1.0 / 16.0;
 
-/// Share of a kink by which it may differ where the segments cross. Beyond, they curve away from each other before they meet.
+/// Largest change of a kink where the segments cross, as a share of the kink. With more, they curve away from
+/// each other before they meet.
 const SAME_KINK: f64 = 0.25;
 
-/// Corrections after which a joint has not closed: each gains a factor of curvature × w, ten at least.
+/// Most corrections of a joint: each gains a factor of curvature × w, at least ten.
 const MOST_CORRECTIONS: usize = 40;
 
 /// How a joint was closed.
@@ -58,7 +65,8 @@ pub struct Closing {
     pub reach: f64,
 }
 
-/// Closes a chain: the segments, and what was done at each joint with more than a rounding between its ends.
+/// Closes a chain: returns its segments, and what was done at each joint whose ends differed by more than a
+/// rounding.
 ///
 /// # Errors
 /// A step beside a segment that is too short to take it.
@@ -88,22 +96,23 @@ pub(super) fn close(segments: &[Segment], extent: f64) -> Result<(Vec<Segment>, 
     Ok((out, closings))
 }
 
-/// Distance \[mm\] between a segment's ends.
+/// Returns the distance between a segment's ends \[mm\].
 fn chord(segment: &Segment) -> f64 {
     let (start, end) = (segment.start(), segment.end());
     (end.x - start.x).hypot(end.z - start.z)
 }
 
-/// A segment at the joint to be closed; distances s \[mm\] along it count from its drawn end there, positive to the right.
+/// A segment at the joint to be closed. A distance s \[mm\] along it counts from its drawn end at the joint,
+/// positive to the right.
 #[derive(Debug, Clone, Copy)]
 struct Edge<'a> {
     segment: &'a Segment,
     station: Station,
-    /// +1 where the segment ends at the joint, −1 where it begins there.
+    /// +1 if the segment ends at the joint, −1 if it begins there.
     outward: f64,
 }
 
-/// The part of a segment that is bent: from s = −outward × `reach` on, over `length`.
+/// The bent part of a segment: it begins at s = −outward × `reach` and has the length `length`, both in mm.
 #[derive(Debug, Clone, Copy)]
 struct Bent {
     reach: f64,
@@ -121,7 +130,7 @@ impl<'a> Edge<'a> {
         Self { segment, station: segment.start(), outward: -1.0 }
     }
 
-    /// The station at s of the segment or its continuation.
+    /// Returns the station at s on the segment or its continuation.
     fn at(&self, s: f64) -> Station {
         match &self.segment.shape {
             Shape::Arc(arc) => graphed(&self.station, arc.curvature(), s),
@@ -129,13 +138,13 @@ impl<'a> Edge<'a> {
         }
     }
 
-    /// The parameter of a polynomial at s, by its speed at the joint.
+    /// Returns the parameter of a polynomial at s, by its speed at the joint.
     fn parameter(&self, polynomial: &Polynomial, s: f64) -> f64 {
         let end = if self.outward > 0.0 { polynomial.t[1] } else { polynomial.t[0] };
         end + s / polynomial.speed(end)
     }
 
-    /// The segment up to s.
+    /// Returns the segment cut off, or continued, at s.
     fn cut(&self, s: f64) -> Segment {
         let shape = match &self.segment.shape {
             Shape::Arc(arc) if self.outward > 0.0 => Shape::Arc(Arc { end: self.at(s), ..*arc }),
@@ -149,7 +158,7 @@ impl<'a> Edge<'a> {
         Segment { label: self.segment.label.clone(), shape }
     }
 
-    /// The bent part; its far end is the joint.
+    /// Returns the bent part; its far end is the joint.
     fn bent(&self, bent: &Bent) -> Segment {
         let (from, length) = (-self.outward * bent.reach, self.outward * bent.length);
         let shape = match &self.segment.shape {
@@ -172,7 +181,7 @@ impl<'a> Edge<'a> {
     }
 }
 
-/// The station at a distance s \[mm\] along an arc of the given curvature, s negative for backwards.
+/// Returns the station at a distance s \[mm\] along an arc of the given curvature; s < 0 goes backwards.
 fn onward(from: &Station, curvature: f64, s: f64) -> Station {
     let half = 0.5 * curvature * s;
     let chord = if half == 0.0 { s } else { s * (half.sin() / half) };
@@ -180,12 +189,13 @@ fn onward(from: &Station, curvature: f64, s: f64) -> Station {
     Station { x: chord * half.cos(), z: chord * half.sin(), cos, sin }.placed_by(from)
 }
 
-/// Cosine of the tangent angle from which a point is kept by its abscissa.
+/// Least cosine of the tangent angle at which a point keeps its rounded abscissa.
 const GRAPH: f64 = 1.0 / 64.0;
 
-/// The station of an arc through `from` of the given curvature, a distance s \[mm\] on: its abscissa is rounded, and its tangent
-/// and height are those of the arc there. Roundings of their own would move all that is anchored at the station: the height of
-/// steep segments by one of the larger coordinate.
+/// Returns the station at a distance s \[mm\] along an arc of the given curvature from `from`. Its abscissa
+/// is rounded, and its tangent and height are those of the arc there. If they had roundings of their own,
+/// these would move everything anchored at the station: the height of steep segments by a rounding of the
+/// larger coordinate.
 fn graphed(from: &Station, curvature: f64, s: f64) -> Station {
     let rounded = onward(from, curvature, s);
     if from.cos.min(rounded.cos) < GRAPH {
@@ -197,20 +207,21 @@ fn graphed(from: &Station, curvature: f64, s: f64) -> Station {
     Station { z: from.z + run * ((from.sin + sin) / (from.cos + cos)), cos, sin, ..rounded }
 }
 
-/// Two neighbours whose ends are to become one.
+/// Two neighbours whose ends must become one.
 #[derive(Debug)]
 struct Misfit<'a> {
     left: Edge<'a>,
     right: Edge<'a>,
     /// Length of the chain \[mm\].
     chain: f64,
-    /// Largest stretch \[mm\] that may be changed.
+    /// Longest stretch \[mm\] that may be changed.
     longest: f64,
-    /// Ends this close \[mm\] are one.
+    /// Distance \[mm\] below which ends are one.
     rounding: f64,
 }
 
-/// The segments of a closed joint: the left one and its bent end, the bent beginning of the right one and the right one.
+/// The segments of a closed joint: `left` holds the left segment and its bent end, `right` the bent beginning
+/// of the right segment and that segment.
 struct Closed {
     left: [Option<Segment>; 2],
     right: [Option<Segment>; 2],
@@ -218,8 +229,8 @@ struct Closed {
 }
 
 impl Misfit<'_> {
-    /// From the left station to the right one: along the tangents \[mm\], across the tangent that it is less far from \[mm\], and the
-    /// turn \[rad\].
+    /// Returns how far the right station is from the left one: along the tangents \[mm\], across the tangent
+    /// from which it is less far \[mm\], and the turn \[rad\].
     fn miss(left: &Station, right: &Station) -> [f64; 3] {
         let from_left = right.seen_from(left);
         let from_right = left.seen_from(right);
@@ -250,15 +261,16 @@ impl Misfit<'_> {
         met.met(across, kink)
     }
 
-    /// The share of a gap along the tangent that the left segment goes on by; the right one begins earlier by the rest. A line goes on
-    /// before an arc does, and of two arcs the flatter one further: it turns less on the way.
+    /// Returns the share of a gap along the tangent by which the left segment is continued; the right one
+    /// begins earlier by the rest. A line is continued rather than an arc, and the flatter of two arcs by
+    /// more: it turns less on the way.
     fn share(&self) -> f64 {
         let (left, right) = (self.left.segment.end_curvatures()[1], self.right.segment.end_curvatures()[0]);
         let share = right.abs() / (left.abs() + right.abs());
         if share.is_nan() { 0.5 } else { share }
     }
 
-    /// The joint of ends that miss each other across the tangent only.
+    /// Closes ends that miss each other across the tangent only.
     fn met(&self, across: f64, kink: f64) -> Option<Closed> {
         let most = BEND / self.chain;
         let w = (across.abs() / most).sqrt().max(SHORTEST * self.chain).min(self.longest);
@@ -267,7 +279,8 @@ impl Misfit<'_> {
         crossing.or_else(|| self.bend(w, across, if sharp { kink } else { 0.0 }))
     }
 
-    /// Both segments up to where they cross, by Newton's steps along the tangents.
+    /// Cuts or continues both segments to where they cross, by Newton steps along the tangents; `None` if the
+    /// crossing is farther than `w` or the kink changes too much.
     fn crossing(&self, across: f64, kink: f64, w: f64) -> Option<Closed> {
         let mut s = [0.0; 2];
         for _ in 0..MOST_CORRECTIONS {
@@ -290,7 +303,8 @@ impl Misfit<'_> {
         None
     }
 
-    /// Both segments bent over w towards each other, down to a kink.
+    /// Bends both segments towards each other over `w`, until they meet with the kink `kept`; `None` if the
+    /// step is too large for `w`.
     fn bend(&self, w: f64, across: f64, kept: f64) -> Option<Closed> {
         if across.abs() > STEEPEST * w {
             return None;
@@ -337,16 +351,18 @@ impl Misfit<'_> {
 }
 
 impl Closed {
-    /// Two segments that meet as they are.
+    /// Makes the joint of two segments that meet as they are.
     fn met(left: Segment, right: Segment) -> Self {
         Self { left: [Some(left), None], right: [None, Some(right)], closing: None }
     }
 
-    /// Two segments whose ends are one but for rounding: an arc takes over the other's end, two arcs the point between.
+    /// Joins two segments whose ends are one except for rounding: an arc takes over the other's end, two arcs
+    /// the point between.
     fn shared(mut left: Segment, mut right: Segment) -> Self {
         let (end, start) = (left.end(), right.start());
         let middle = |a: f64, b: f64| if a == b { a } else { a + 0.5 * (b - a) };
-        // Along its tangent an end may go by roundings of x and stay on its arc; across, only by those of z.
+        // Along its tangent an end may move by roundings of x and stay on its arc; across it, only by
+        // roundings of z.
         let slid =
             |at: &Station, x: f64| if at.cos < GRAPH { at.z } else { at.z + (x - at.x) * at.sin / at.cos };
         match (&mut left.shape, &mut right.shape) {
@@ -361,34 +377,6 @@ impl Closed {
             _ => {}
         }
         Self::met(left, right)
-    }
-}
-
-impl Polynomial {
-    /// Length per unit of the parameter at t.
-    fn speed(&self, t: f64) -> f64 {
-        let [dx, dz] = self.rates(t);
-        dx.hypot(dz)
-    }
-
-    /// The curve plus a parabola that starts at t = `near` and adds `change` \[1/mm\] to the curvature, exactly at t = `at`: along z
-    /// for a graph z(x), which stays one; else along the normal there.
-    fn curved(&self, near: f64, at: f64, change: f64) -> Self {
-        let [dx, dz] = self.rates(at);
-        let speed = dx.hypot(dz);
-        let [along_x, along_z] = if self.x.len() <= 2 { [0.0, 1.0] } else { [-dz / speed, dx / speed] };
-        let half = 0.5 * change * speed.powi(3) / (along_z * dx - along_x * dz);
-        let near = Twice::from(near);
-        let parabola = [near * near * half, near * (-2.0 * half), Twice::from(half)];
-        let plus = |c: &[Twice], share: f64| -> Vec<Twice> {
-            let mut out = c.to_vec();
-            if share != 0.0 {
-                out.resize(out.len().max(3), Twice::ZERO);
-                out.iter_mut().zip(parabola).for_each(|(c, p)| *c += p * share);
-            }
-            out
-        };
-        Self { t: self.t, x: plus(&self.x, along_x), z: plus(&self.z, along_z) }
     }
 }
 

@@ -1,24 +1,26 @@
-//! How well a chain closes: gap, kink and curvature jump at every joint, and which steps are too large for a drawing.
+//! Measures how well a chain closes: gap, kink and curvature jump at every joint; rejects steps too large for
+//! a drawing.
 
 use serde::Serialize;
 
-use super::{Segment, Station};
+use super::segment::Segment;
+use super::station::Station;
 use crate::error::{Error, Result};
 
 /// Largest step between two segments, as a share of the chain's extent, that counts as rounding of a drawing.
 ///
-/// Standards print coordinates to 1e-3 mm or 1e-4 inch on profiles of 140 mm; the built-in ones have steps of up to
-/// 1.5e-5 of their extent. Several times that is a wrong number.
+/// Standards print coordinates to 1e-3 mm or 1e-4 inch on profiles of 140 mm; the built-in profiles have
+/// steps of up to 1.5e-5 of their extent. A step several times larger is a wrong number.
 pub const LARGEST_STEP: f64 = 1e-4;
 
-/// What happens at the joint between two neighbouring segments.
+/// The gap, kink and curvature jump at the joint of two neighbouring segments.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Joint {
     /// Index of the segment on the left.
     pub left: usize,
     /// Abscissa of the left segment's end \[mm\].
     pub x: f64,
-    /// Distance between the two ends \[mm\]: of a profile's chain some roundings.
+    /// Distance between the two ends \[mm\]; some roundings in a profile's chain.
     pub gap: f64,
     /// Change of tangent angle \[rad\], positive counter-clockwise.
     pub kink: f64,
@@ -26,7 +28,7 @@ pub struct Joint {
     pub curvature_jump: f64,
 }
 
-/// The joints of a chain, from left to right.
+/// Returns the joints of a chain, from left to right.
 pub fn joints(segments: &[Segment]) -> Vec<Joint> {
     let joint = |(left, pair): (usize, &[Segment])| {
         let (end, start) = (pair[0].end(), pair[1].start());
@@ -41,15 +43,16 @@ pub fn joints(segments: &[Segment]) -> Vec<Joint> {
     segments.windows(2).enumerate().map(joint).collect()
 }
 
-/// The part \[mm\] of a drawing's gap that rounded coordinates explain least: its run in x or its part across the steeper
-/// tangent, whichever is larger. Next to a vertical tangent the gap itself can be a hundred times that.
+/// Returns the part \[mm\] of a drawing's gap that rounded coordinates explain least: its run in x or its
+/// part across the steeper tangent, whichever is larger. Next to a vertical tangent the gap itself can be a
+/// hundred times that.
 fn step(end: &Station, start: &Station) -> f64 {
     let steeper = if end.cos < start.cos { end } else { start };
     let frame = Station { x: end.x, z: end.z, ..*steeper };
     (start.x - end.x).abs().max(start.seen_from(&frame).z.abs())
 }
 
-/// Refuses steps of drawn segments that no rounding explains, beside the profile's `extent` \[mm\].
+/// Rejects steps between drawn segments that no rounding explains; `extent` \[mm\] is that of the profile.
 ///
 /// # Errors
 /// The first such step, with its place and size.

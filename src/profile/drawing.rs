@@ -1,4 +1,4 @@
-//! Segments as scenes and data files write them.
+//! Reads segments in the form of scenes and data files.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -11,7 +11,7 @@ use crate::error::{Error, Result, given};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SegmentData {
-    /// The drawing's name for it.
+    /// Name of the segment in the drawing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub label: Option<String>,
     /// A straight line.
@@ -35,7 +35,7 @@ pub struct LineData {
     /// Last point [x, z], mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub to: Option<[f64; 2]>,
-    /// dz/dx; without it the line leaves the segment before along its tangent.
+    /// Slope dz/dx; without it the line leaves the segment before along its tangent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub slope: Option<f64>,
     /// Abscissa of the end, mm.
@@ -52,7 +52,7 @@ pub struct ArcData {
     pub center: Option<[f64; 2]>,
     /// Radius, mm, positive.
     pub radius: f64,
-    /// Which half of the circle.
+    /// Half of the circle on which the arc is.
     pub half: HalfData,
     /// Abscissae [x0, x1] of the ends, mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -66,26 +66,27 @@ pub struct ArcData {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum HalfData {
-    /// Bulges up.
+    /// The upper half, which bulges up.
     Upper,
-    /// Bulges down.
+    /// The lower half, which bulges down.
     Lower,
 }
 
-/// z = Σ c_k x^k over [x0, x1], mm.
+/// A polynomial z = Σ c_k x^k over [x0, x1], mm.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PolynomialData {
     /// Abscissae [x0, x1] of the ends, mm.
     pub x: [f64; 2],
-    /// c0, c1, …
+    /// Coefficients c0, c1, … of z(x).
     pub coefficients: Vec<f64>,
 }
 
-/// The chain of segments; `start` is the first point of a chain that begins in the form of Appendix A.
+/// Makes the profile of a chain of segments; `start` is the first point of a chain that begins in the form of
+/// Appendix A.
 ///
 /// # Errors
-/// Names the segment and what is wrong with it; steps between segments as in [`Profile::new`].
+/// A wrong segment, with its name and what is wrong with it; steps between segments as in [`Profile::new`].
 pub fn chain(name: &str, source: &str, start: Option<[f64; 2]>, data: &[SegmentData]) -> Result<Profile> {
     let mut builder = start.map_or_else(|| Ok(Builder::new()), Builder::starting_at)?;
     let mut labels = Vec::with_capacity(data.len());

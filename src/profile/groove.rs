@@ -1,11 +1,12 @@
-//! Grooves: which head of a grooved rail, a crossing or a guarded rail the wheels run on.
+//! Finds grooves, and so the head of a grooved rail, a crossing or a guarded rail on which wheels run.
 
-/// Least depth \[mm\] of a groove under both its tops. Flangeways are 38 mm deep and more; hollow crowns, worn ones too,
-/// stay below 5.
+/// Least depth \[mm\] of a groove below both its tops. Flangeways are 38 mm deep and more; hollow crowns,
+/// worn ones too, stay below 5.
 const LEAST_DEPTH: f64 = 10.0;
 
-/// Index of the bottom of the last groove along a profile's heights \[mm\], in order of x: right of it is the head that
-/// wheels run on, left of it a keeper, check or wing, however high. `None` for a single head.
+/// Returns the index of the bottom of the last groove along a profile's heights \[mm\], in order of x; `None`
+/// for a single head. Right of it is the head on which wheels run; left of it is a keeper, check or wing,
+/// however high.
 ///
 /// Cost: one pass.
 pub fn last_groove(heights: &[f64]) -> Option<usize> {

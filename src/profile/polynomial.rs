@@ -1,15 +1,15 @@
 //! Polynomial segments: the zones of a standard such as S1002, and the spans of a parametric spline.
 
-use super::Station;
+use super::station::Station;
 use crate::error::{Error, Result, finite};
 use crate::numerics::polynomial::{exact_slope, exact_value, recentred};
 use crate::numerics::twice::Twice;
 
-/// A curve (x(t), z(t)) with polynomial coordinates, kept in twice the working precision about a point of
-/// its own: a standard's power form about x = 0 cancels from thousands of mm.
+/// A curve (x(t), z(t)) with polynomial coordinates. They are kept in twice the working precision about a
+/// point of the curve's own: a standard's power form about x = 0 cancels from thousands of mm.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Polynomial {
-    /// Parameter range, ascending \[mm or the spline's unit\].
+    /// Range of the parameter, ascending \[mm or the spline's unit\].
     pub t: [f64; 2],
     /// Coefficients of x(t) \[mm\].
     pub(crate) x: Vec<Twice>,
@@ -18,7 +18,7 @@ pub struct Polynomial {
 }
 
 impl Polynomial {
-    /// z = Σ c_k x^k between two abscissae, as standards print it.
+    /// Makes z = Σ c_k x^k between two abscissae, as standards print it.
     ///
     /// # Errors
     /// No coefficient, values that are not finite, abscissae out of order.
@@ -40,7 +40,7 @@ impl Polynomial {
         })
     }
 
-    /// One span of a parametric spline: x = Σ x_k t^k, z = Σ z_k t^k over `t`.
+    /// Makes one span of a parametric spline: x = Σ x_k t^k, z = Σ z_k t^k over `t`.
     ///
     /// # Errors
     /// Values that are not finite, a parameter range out of order, or too few coefficients.
@@ -55,17 +55,18 @@ impl Polynomial {
         Ok(Self { t, x: exact(x), z: exact(z) })
     }
 
-    /// Gives the coefficients of x(t) and of z(t) \[mm\], each as a sum of two numbers: the rounded one and the rest.
+    /// Returns the coefficients of x(t) and of z(t) \[mm\], each as a sum of two numbers: the rounded one and
+    /// the rest.
     pub fn coefficients(&self) -> [Vec<[f64; 2]>; 2] {
         [&self.x, &self.z].map(|c| c.iter().map(|c| [c.high, c.low]).collect())
     }
 
-    /// (dx/dt, dz/dt) at parameter t.
+    /// Returns \[dx/dt, dz/dt\] at parameter t.
     pub(super) fn rates(&self, t: f64) -> [f64; 2] {
         [&self.x, &self.z].map(|c| exact_slope(c, t.into()).into())
     }
 
-    /// The station at parameter t.
+    /// Returns the station at parameter t.
     pub fn station(&self, t: f64) -> Station {
         let [dx, dz] = self.rates(t);
         let (t, norm) = (Twice::from(t), dx.hypot(dz));
@@ -77,7 +78,7 @@ impl Polynomial {
         }
     }
 
-    /// Curvature \[1/mm\] at t, positive where the curve turns counter-clockwise.
+    /// Returns the curvature \[1/mm\] at t, positive if the curve turns counter-clockwise.
     pub fn curvature(&self, t: f64) -> f64 {
         let about = |c: &[Twice]| {
             let c = recentred(c, t.into());
@@ -85,6 +86,33 @@ impl Polynomial {
         };
         let ([dx, hx], [dz, hz]) = (about(&self.x), about(&self.z));
         2.0 * (dx * hz - dz * hx) / dx.hypot(dz).powi(3)
+    }
+
+    /// Returns the length per unit of the parameter at t.
+    pub(super) fn speed(&self, t: f64) -> f64 {
+        let [dx, dz] = self.rates(t);
+        dx.hypot(dz)
+    }
+
+    /// Returns the curve plus a parabola that begins at t = `near` and adds `change` \[1/mm\] to the
+    /// curvature, exactly at t = `at`. The parabola is along z for a graph z(x), which stays a graph; else
+    /// along the normal at `at`.
+    pub(super) fn curved(&self, near: f64, at: f64, change: f64) -> Self {
+        let [dx, dz] = self.rates(at);
+        let speed = dx.hypot(dz);
+        let [along_x, along_z] = if self.x.len() <= 2 { [0.0, 1.0] } else { [-dz / speed, dx / speed] };
+        let half = 0.5 * change * speed.powi(3) / (along_z * dx - along_x * dz);
+        let near = Twice::from(near);
+        let parabola = [near * near * half, near * (-2.0 * half), Twice::from(half)];
+        let plus = |c: &[Twice], share: f64| -> Vec<Twice> {
+            let mut out = c.to_vec();
+            if share != 0.0 {
+                out.resize(out.len().max(3), Twice::ZERO);
+                out.iter_mut().zip(parabola).for_each(|(c, p)| *c += p * share);
+            }
+            out
+        };
+        Self { t: self.t, x: plus(&self.x, along_x), z: plus(&self.z, along_z) }
     }
 
     pub(super) fn mirrored(&self) -> Self {

@@ -1,4 +1,4 @@
-//! A profile along its arc length: what a plot draws and a comparison of two curves walks along.
+//! Follows a profile by arc length, to plot it and to compare two curves.
 
 use super::{Profile, Segment, Shape, Station};
 
@@ -7,15 +7,15 @@ use super::{Profile, Segment, Shape, Station};
 pub struct Mark {
     /// Arc length from the profile's left end \[mm\]; the steps of a drawing count as their length.
     pub s: f64,
-    /// Where, and the tangent there.
+    /// Point and tangent.
     pub station: Station,
-    /// Curvature \[1/mm\], positive where hollow side up.
+    /// Curvature \[1/mm\], positive with the hollow side up.
     pub curvature: f64,
-    /// Index of its segment.
+    /// Index of the segment.
     pub segment: usize,
 }
 
-/// Where a point lies beside a trace.
+/// The position of a point beside a trace.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Beside {
     /// Index of the nearest mark.
@@ -26,9 +26,10 @@ pub struct Beside {
     pub across: f64,
 }
 
-/// Marks at most `step` \[mm\] apart, ascending in s; both sides of every joint among them.
+/// Returns marks at most `step` \[mm\] apart, by ascending s; both sides of every joint are among them.
 ///
-/// Arc length is exact on arcs, by chords of `step` on polynomials: to 1e-5 of it for 0.1 mm on a 3 mm radius.
+/// Accuracy: arc length is exact on arcs; on polynomials it is by chords of `step`, to 1e-5 of it for 0.1 mm
+/// on a 3 mm radius.
 pub fn trace(profile: &Profile, step: f64) -> Vec<Mark> {
     let mut marks: Vec<Mark> = Vec::new();
     for (index, segment) in profile.segments().iter().enumerate() {
@@ -42,10 +43,12 @@ pub fn trace(profile: &Profile, step: f64) -> Vec<Mark> {
     marks
 }
 
-/// The foot of a point \[mm\] on a trace, searched near mark `hint`: pass that of the point before.
+/// Finds the foot of a point \[mm\] on a trace, from mark `hint` on; pass the mark found for the point
+/// before.
 ///
-/// By the circle of curvature at the nearest mark: to κ′a³/6 with a half the distance of marks, about 1e-6 mm for
-/// 0.1 mm. Cost: the marks between hint and foot. Of several feet the first one met from the hint.
+/// Method: the circle of curvature at the nearest mark, accurate to κ′a³/6 with a half the distance of marks,
+/// about 1e-6 mm for 0.1 mm. Cost: the marks between hint and foot. Of several feet it finds the first one
+/// from the hint.
 pub fn beside(marks: &[Mark], [x, z]: [f64; 2], hint: usize) -> Beside {
     let square = |k: usize| {
         let at = &marks[k].station;
@@ -53,7 +56,8 @@ pub fn beside(marks: &[Mark], [x, z]: [f64; 2], hint: usize) -> Beside {
     };
     let mut best = hint.min(marks.len() - 1);
     for forward in [true, false] {
-        // Both marks of a joint lie at one place; noise and bends may hide the next dip: look on a little.
+        // Both marks of a joint are at one place; noise and bends may hide the next dip: look a little
+        // further.
         let mut k = best;
         let mut idle = 0;
         while let Some(next) =
@@ -76,10 +80,10 @@ pub fn beside(marks: &[Mark], [x, z]: [f64; 2], hint: usize) -> Beside {
     Beside { mark: best, s: mark.s + at.x, across }
 }
 
-/// Marks looked at beyond the nearest so far.
+/// Number of marks looked at beyond the nearest so far.
 const LOOKED_ON: usize = 16;
 
-/// Station and curvature at a share (0 to 1) of a segment's length, or of a polynomial's parameter.
+/// Returns station and curvature at a share (0 to 1) of a segment's length, or of a polynomial's parameter.
 fn at_share(segment: &Segment, share: f64) -> (Station, f64) {
     match &segment.shape {
         Shape::Arc(arc) if share == 1.0 => (arc.end, arc.curvature()),
@@ -92,7 +96,7 @@ fn at_share(segment: &Segment, share: f64) -> (Station, f64) {
     }
 }
 
-/// Length \[mm\]; of a polynomial by chords, never below the truth by more than a few per cent.
+/// Returns the length of a segment \[mm\]; of a polynomial by chords, at most a few per cent too short.
 fn segment_length(segment: &Segment) -> f64 {
     const CHORDS: usize = 8;
     match &segment.shape {
@@ -106,7 +110,7 @@ fn segment_length(segment: &Segment) -> f64 {
     }
 }
 
-/// Length of the circular arc over a chord.
+/// Returns the length of the circular arc over a chord \[mm\].
 fn chord(a: &Station, b: &Station, curvature: f64) -> f64 {
     let chord = (b.x - a.x).hypot(b.z - a.z);
     chord * (1.0 + (chord * curvature).powi(2) / 24.0)

@@ -140,7 +140,10 @@ fn built_in(name: &str, side: Side) -> Result<Profile> {
         Side::Rail => (standards::rail(name), standards::rail_names().collect::<Vec<_>>()),
         Side::Wheel => (standards::wheel(name), standards::wheel_names().collect()),
     };
-    found.map_err(|error| Error { advice: nearest(name, &known).unwrap_or(error.advice), ..error })
+    found.map_err(|mut error| {
+        error.advice = nearest(name, &known).unwrap_or(error.advice);
+        error
+    })
 }
 
 /// Tells whether a file's extension is that of a chain of segments.

@@ -1,11 +1,13 @@
-//! Pairs of arcs, lines and fans whose common tangent has a closed form: all but those with a yawed torus.
+//! Solves pairs of arcs, lines and fans whose common tangent has a closed form: all pairs but those with a
+//! yawed torus.
 
 use super::candidates::{Foot, Search};
-use super::element::{ArcElement, Element, SINE_ROUNDING, Shape, between, cosine};
+use super::element::{ArcElement, Element, SINE_ROUNDING, Shape, between};
 use super::locus::Attitude;
+use crate::numerics::cosine;
 use crate::profile::Station;
 
-/// Looks for contact of two elements; whether there is a closed form.
+/// Looks for contact of two elements; returns whether there is a closed form.
 pub(super) fn meet(search: &mut Search, elements: [u32; 2]) -> bool {
     let [wheel, rail] = search.elements(elements);
     let yawed = search.attitude.sin_yaw != 0.0;
@@ -20,7 +22,7 @@ pub(super) fn meet(search: &mut Search, elements: [u32; 2]) -> bool {
     true
 }
 
-/// Two elements under way to be solved.
+/// Two elements while they are solved.
 struct Pair<'s, 'a> {
     elements: [u32; 2],
     search: &'s mut Search<'a>,
@@ -28,15 +30,15 @@ struct Pair<'s, 'a> {
 
 /// The outline of an arc or fan.
 struct Seen {
-    /// Sines of its tangents, ascending.
+    /// Sines of the tangents at both ends, ascending.
     sine: [f64; 2],
-    /// Abscissa of the centre of an unyawed one \[mm\].
+    /// Abscissa of the centre without yaw \[mm\].
     centre: f64,
 }
 
-/// What is seen of an arc or fan; `None` where it has no outline.
+/// Returns the part of an arc or fan that is seen; `None` if it has no outline.
 ///
-/// An arc with its hollow side down has an outline only where ϱ_c < 0, else the rings beside it hide it.
+/// An arc with its hollow side down has an outline only where ϱ_c < 0; elsewhere the rings beside it hide it.
 fn seen(attitude: &Attitude, arc: &ArcElement, element: &Element) -> Option<Seen> {
     let mut sine = element.range;
     if attitude.sin_yaw != 0.0 {
@@ -52,8 +54,8 @@ fn seen(attitude: &Attitude, arc: &ArcElement, element: &Element) -> Option<Seen
     (sine[0] <= sine[1]).then_some(Seen { sine, centre })
 }
 
-/// Sine of the steepest profile tangent of an arc with an outline: cosψ, and where the hollow side is down
-/// cos³φ = (R − b) sin²ψ/|r|.
+/// Returns the sine of the steepest profile tangent of an arc with an outline: cosψ; with the hollow side
+/// down, the angle of cos³φ = (R − b) sin²ψ/|r|.
 fn steepest_seen(attitude: &Attitude, arc: &ArcElement) -> Option<f64> {
     if arc.radius >= 0.0 {
         return Some(attitude.cos_yaw);
@@ -63,7 +65,8 @@ fn steepest_seen(attitude: &Attitude, arc: &ArcElement) -> Option<f64> {
 }
 
 impl Pair<'_, '_> {
-    /// An arc or fan of the unyawed wheel over an arc or fan of the rail: both abscissae are linear in the sine of the tangent.
+    /// Solves an arc or fan of the unyawed wheel over an arc or fan of the rail: both abscissae are linear in
+    /// the sine of the tangent.
     fn arc_on_arc(&mut self, (arc, wheel): (&ArcElement, &Element), (below, rail): (&ArcElement, &Element)) {
         let Some(seen) = seen(self.search.attitude, arc, wheel) else { return };
         let [low, high] = [seen.sine[0].max(rail.range[0]), seen.sine[1].min(rail.range[1])];
@@ -75,7 +78,7 @@ impl Pair<'_, '_> {
         }
         let gap = seen.centre - below.centre[0];
         let sin = if difference == 0.0 {
-            // Concentric and alike: they touch all along; the middle stands for it.
+            // Concentric with equal radii: they touch all along, and the middle represents them.
             if gap.abs() > rounding {
                 return;
             }
@@ -90,7 +93,7 @@ impl Pair<'_, '_> {
         self.offer(arc, below, sin);
     }
 
-    /// A line of the wheel, a straight line as outline, over an arc or fan of the rail.
+    /// Solves a line of the wheel, whose outline is straight, over an arc or fan of the rail.
     fn line_on_arc(&mut self, ends: &[Station; 2], (below, rail): (&ArcElement, &Element)) {
         let outline = ends.map(|end| self.search.attitude.outline(&end));
         let (Station { sin, cos, .. }, sine) = (outline[0], rail.range);
@@ -104,7 +107,7 @@ impl Pair<'_, '_> {
         }
     }
 
-    /// An arc or fan of the wheel over a line of the rail.
+    /// Solves an arc or fan of the wheel over a line of the rail.
     fn arc_on_line(&mut self, (arc, wheel): (&ArcElement, &Element), rail: &[Station; 2]) {
         let Station { sin, cos, .. } = rail[0];
         let Some(Seen { sine, .. }) = seen(self.search.attitude, arc, wheel) else { return };
@@ -120,7 +123,7 @@ impl Pair<'_, '_> {
         }
     }
 
-    /// Two lines: they touch all along if parallel; the middle stands for it.
+    /// Solves two lines: parallel ones touch all along, and the middle represents them.
     fn line_on_line(&mut self, ends: &[Station; 2], rail: &[Station; 2]) {
         let outline = ends.map(|end| self.search.attitude.outline(&end));
         let turn = outline[0].sin * rail[0].cos - outline[0].cos * rail[0].sin;
@@ -148,12 +151,12 @@ impl Pair<'_, '_> {
     }
 }
 
-/// A point of a line.
+/// Returns the foot for a point of a line.
 fn on_line(station: Station) -> Foot {
     Foot { station, radius: f64::INFINITY, parameter: station.x }
 }
 
-/// The point of a wheel's arc whose outline has a given tangent.
+/// Returns the point of a wheel's arc whose outline has a given tangent.
 fn wheel_point(attitude: &Attitude, arc: &ArcElement, sin: f64, cos: f64) -> Station {
     let (sin, cos) = attitude.profile_tangent(sin, cos);
     arc.at(sin, cos)

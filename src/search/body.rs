@@ -1,5 +1,5 @@
-//! A profile prepared for searches: the elements of its outer surface from left to right, and a balanced tree of bounds
-//! over them.
+//! Prepares a profile for searches: the elements of its outer surface from left to right, and a balanced tree
+//! of bounds over them.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -10,55 +10,57 @@ use crate::profile::{
     Branch, BranchPoint, BranchShape, ONE_JOINT, Piece, PolynomialBranch, Section, Side, Station,
 };
 
-/// No stretch of a polynomial is halved more often than this: 2⁻¹⁰ of a zone of 60 mm is 0.06 mm.
+/// Most halvings of a stretch of a polynomial: 2⁻¹⁰ of a zone of 60 mm is 0.06 mm.
 const DEEPEST_CUT: u32 = 10;
 
-/// Turns \[rad\] up to this are no kinks: both neighbours take a contact there. The tangents at a joint of spans differ by
-/// some roundings; a fan for each would double the elements.
+/// Turn \[rad\] up to which a joint is no kink: both neighbours take a contact there. The tangents at a joint
+/// of spans differ by some roundings; a fan for each would double the elements.
 pub(super) const LEAST_KINK: f64 = 64.0 * f64::EPSILON;
 
-/// Roundings of a profile's extent by which bounds are widened: those of a point's coordinates and of its level.
+/// Roundings of a profile's extent by which bounds are widened: those of a point's coordinates and of its
+/// level.
 const BOUND_ROUNDINGS: f64 = 16.0;
 
-/// Corners of the polygon of tangents around an arc: at least four, which stand off by a sixteenth of the arc's height, …
+/// Fewest corners of the polygon of tangents around an arc: with four, the corners are off the arc by a
+/// sixteenth of its height.
 const CORNERS: f64 = 4.0;
 
-/// … and no longer turn \[rad\] over one of them.
+/// Largest turn \[rad\] of the tangent from one corner of that polygon to the next.
 const CORNER_TURN: f64 = 0.125;
 
-/// The outer surface of one body.
+/// The outer surface of one body, prepared for searches.
 #[derive(Debug, Clone)]
 pub(super) struct Body {
-    /// Its elements, from left to right.
+    /// The elements, from left to right.
     pub elements: Vec<Element>,
-    /// Coefficients (x, z) of all its stretches.
+    /// Coefficients \[x, z\] of all stretches.
     pub coefficients: Vec<[f64; 2]>,
-    /// The tree: its root first, the left child right after its parent.
+    /// The tree over the elements: the root is first, a left child follows its parent.
     pub nodes: Vec<Node>,
     /// Rounding of a bound \[mm\].
     pub rounding: f64,
-    /// Bounds of the whole: of x, and of z.
+    /// Bounds of x and of z of the whole surface \[mm\].
     pub extent: [[f64; 2]; 2],
 }
 
-/// One node of the tree.
+/// A node of the tree: a range of elements.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Node {
-    /// Bounds of all its elements.
+    /// Bounds of all elements of the node.
     pub bounds: Bounds,
-    /// Its right child, or 0 for a leaf.
+    /// Index of the right child, or 0 for a leaf.
     pub right: u32,
-    /// Its first element.
+    /// Index of the first element.
     pub element: u32,
-    /// The larger side of its box \[mm\].
+    /// Larger side of the bounding box \[mm\].
     pub size: f64,
 }
 
 impl Body {
-    /// The part of a profile that faces the other body in its own axes, with the profile's extent \[mm\]; `None` where there is
-    /// none.
+    /// Prepares the part of a profile that faces the other body in its own axes; `extent` is the profile's
+    /// extent \[mm\]. `None` if no part faces the other body.
     ///
-    /// Cost: for n elements n log n; some microseconds each.
+    /// Cost: n log n for n elements; some microseconds each.
     pub fn new(section: &Section, extent: f64, side: Side) -> Option<Self> {
         let rounding = BOUND_ROUNDINGS * f64::EPSILON * extent;
         let mut builder = Builder {
@@ -82,7 +84,7 @@ impl Body {
         Some(Self { elements, coefficients, nodes, rounding, extent })
     }
 
-    /// Indices of the elements that hold an abscissa, or come next to it.
+    /// Returns the index of the element that holds an abscissa, or is next to it.
     pub fn element_at(&self, x: f64) -> usize {
         let index = self.elements.partition_point(|element| element.bounds.x[1] < x);
         index.min(self.elements.len() - 1)
@@ -94,14 +96,14 @@ struct Builder {
     rounding: f64,
     elements: Vec<Element>,
     coefficients: Vec<[f64; 2]>,
-    /// Points whose hull holds the elements, element by element, …
+    /// Points whose hull holds the elements, in the order of the elements.
     hull: Vec<[f64; 2]>,
-    /// … and where each element's begin.
+    /// Index in `hull` of each element's first point.
     firsts: Vec<usize>,
 }
 
 impl Builder {
-    /// All elements, from left to right.
+    /// Appends all elements, from left to right.
     fn surface(&mut self, section: &Section, joint: f64) {
         let (material_left, material_right) = match self.side {
             Side::Wheel => (-FRAC_PI_2, FRAC_PI_2),
@@ -123,8 +125,8 @@ impl Builder {
         }
     }
 
-    /// The fans between the end of one piece and the start of the next: of one where they meet, of two where the surface
-    /// goes on at another height, behind a part that overhangs.
+    /// Appends the fans between the end of one piece and the start of the next: one fan if they meet, two if
+    /// the surface continues at another height, behind a part that overhangs.
     fn corner(&mut self, end: &Station, start: &Station, joint: f64) {
         let (run, rise) = (start.x - end.x, start.z - end.z);
         if run.hypot(rise) <= joint {
@@ -136,8 +138,8 @@ impl Builder {
         }
     }
 
-    /// The fan of normals where the direction of travel turns from one angle to another; none where the corner is hollow,
-    /// as nothing touches there first.
+    /// Appends the fan of normals where the direction of travel turns from one angle to another; none at a
+    /// hollow corner, as nothing touches there first.
     fn fan(&mut self, point: &Station, from: f64, to: f64) {
         let mut turn = to - from;
         if turn > PI {
@@ -161,14 +163,16 @@ impl Builder {
             Side::Rail => f64::NEG_INFINITY,
         };
         let shape = Shape::Arc(ArcElement::fan(point, self.side));
-        self.push(shape, ends.map(|end| end.sin), ends, &[at], [at; 2], [curvature; 2]);
+        let sines = ends.map(|end| end.sin);
+        self.push(shape, sines, ends, &[at], [at; 2], [sines, [curvature; 2]]);
     }
 
     fn smooth(&mut self, branch: &Branch, piece: &Piece, mut ends: [Station; 2]) {
         let outer = ends.map(|end| [end.x, end.z]);
         match (&branch.shape, piece.ends.map(|end| end.0)) {
             (BranchShape::Arc(arc), _) if arc.curvature == 0.0 => {
-                self.push(Shape::Line, piece.xi, ends, &outer, outer, [0.0; 2]);
+                let sines = ends.map(|end| end.sin);
+                self.push(Shape::Line, piece.xi, ends, &outer, outer, [sines, [0.0; 2]]);
             }
             (BranchShape::Arc(arc), _) => {
                 let hull = tangents(&ends, arc.radius);
@@ -176,7 +180,8 @@ impl Builder {
                     ends.swap(0, 1);
                 }
                 let shape = Shape::Arc(ArcElement::of(arc));
-                self.push(shape, ends.map(|end| end.sin), ends, &hull, outer, [arc.curvature; 2]);
+                let sines = ends.map(|end| end.sin);
+                self.push(shape, sines, ends, &hull, outer, [sines, [arc.curvature; 2]]);
             }
             (
                 BranchShape::Polynomial(polynomial),
@@ -184,7 +189,7 @@ impl Builder {
             ) => {
                 self.polynomial(polynomial, [a, b]);
             }
-            // The ends of a polynomial's piece are a polynomial's.
+            // Both ends of a polynomial's piece are points of a polynomial, so this does not occur.
             (BranchShape::Polynomial(_), _) => {}
         }
     }
@@ -197,7 +202,7 @@ impl Builder {
         self.cut(first, count, range, DEEPEST_CUT);
     }
 
-    /// Cuts a polynomial until its bounds say something.
+    /// Cuts a polynomial until its bounds are narrow enough to be useful, and appends the parts.
     fn cut(&mut self, first: usize, count: usize, [a, b]: [f64; 2], depth: u32) {
         let own = &self.coefficients[first..first + count];
         let reach = Reach::of(own, [a, b]);
@@ -215,22 +220,10 @@ impl Builder {
         let shape = Shape::Stretch(stretch);
         let ends = [a, b].map(|t| stretch.place(&self.coefficients, t).station);
         let outer = ends.map(|end| [end.x, end.z]);
-        self.push_bounded(shape, [a, b], ends, &hull, outer, [reach.sine, reach.curvature]);
+        self.push(shape, [a, b], ends, &hull, outer, [reach.sine, reach.curvature]);
     }
 
     fn push(
-        &mut self,
-        shape: Shape,
-        range: [f64; 2],
-        ends: [Station; 2],
-        hull: &[[f64; 2]],
-        outer: [[f64; 2]; 2],
-        curvature: [f64; 2],
-    ) {
-        self.push_bounded(shape, range, ends, hull, outer, [[ends[0].sin, ends[1].sin], curvature]);
-    }
-
-    fn push_bounded(
         &mut self,
         shape: Shape,
         range: [f64; 2],
@@ -260,7 +253,8 @@ impl Builder {
         own as u32
     }
 
-    /// Where to cut a range of elements in two: near the middle of its length, but a quarter of the elements on either side at least.
+    /// Returns where to cut a range of elements in two: near the middle of its length, with at least a
+    /// quarter of the elements on either side.
     fn middle(&self, from: usize, to: usize) -> usize {
         let own = &self.elements[from..to];
         let length = |e: &Element| (e.bounds.x[1] - e.bounds.x[0]) + (e.bounds.z[1] - e.bounds.z[0]);
@@ -275,7 +269,7 @@ impl Builder {
         from + cut.unwrap_or(count / 2).clamp(least, count - least)
     }
 
-    /// Bounds of several elements.
+    /// Returns the bounds of several elements.
     fn joined(&self, from: usize, to: usize) -> Bounds {
         let own = &self.elements[from..to];
         let fold = |of: fn(&Element) -> [f64; 2]| {
@@ -291,7 +285,7 @@ impl Builder {
     }
 }
 
-/// Both ends of an arc and the corners of its tangents, in order of travel.
+/// Returns both ends of an arc and the corners of its tangents, in order of travel.
 fn tangents(ends: &[Station; 2], radius: f64) -> Vec<[f64; 2]> {
     let [start, end] = ends;
     let relative = end.seen_from(start);
@@ -326,8 +320,8 @@ mod tests {
             .expect("a wheel");
         let fans: Vec<f64> =
             body.elements.iter().map(|e| e.bounds.x).filter(|x| x[0] == x[1]).map(|x| x[0]).collect();
-        // The flange back, the kinks to 1:15 and to the chamfer, and the outer face; beside them only kinks of the
-        // drawing's rounding.
+        // The flange back, the kinks to 1:15 and to the chamfer, and the outer face; apart from these, only
+        // kinks of the drawing's rounding.
         for x in [30.0, 60.0, 65.0] {
             assert!(fans.contains(&x), "{x} is not among {fans:?}");
         }
@@ -346,7 +340,7 @@ mod tests {
         Ok(())
     }
 
-    /// Every point of every element lies within the bounds of all nodes above it.
+    /// Checks that every point of every element lies within the bounds of all nodes above it.
     #[test]
     fn bounds_hold() -> Result<()> {
         for (name, side) in [("S1002", Side::Wheel), ("EN15302-A", Side::Wheel), ("60E1", Side::Rail)] {
@@ -358,7 +352,7 @@ mod tests {
                 let next = if node.right == 0 {
                     node.element as usize + 1
                 } else {
-                    // The right child ends where this node does: at its own last leaf.
+                    // The right child ends where this node does: at its last leaf.
                     let mut last = &body.nodes[node.right as usize];
                     while last.right != 0 {
                         last = &body.nodes[last.right as usize];

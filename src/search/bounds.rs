@@ -1,36 +1,37 @@
-//! What is known of a part of a profile before its points are looked at: guaranteed bounds, which close with the square
-//! of its length.
+//! Guaranteed bounds of a part of a profile, known before its points are looked at. Their width shrinks with
+//! the square of the part's length.
 
-use super::element::cosine;
+use crate::numerics::cosine;
 use crate::numerics::polynomial::{bernstein, convolution, derivative, range};
 use crate::profile::{Side, Station};
 
 /// Bounds of a part of a profile, in the profile's own axes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bounds {
-    /// Abscissae \[mm\].
+    /// Least and largest abscissa \[mm\].
     pub x: [f64; 2],
-    /// Heights \[mm\].
+    /// Least and largest height \[mm\].
     pub z: [f64; 2],
-    /// Sines of its tangents' angles, ascending …
+    /// Least and largest sine of the tangent angle.
     pub sine: [f64; 2],
-    /// … their cosines, and tangents: ±∞ for a vertical.
+    /// Cosines of the tangent angles of `sine`.
     pub cosine: [f64; 2],
-    /// See `cosine`.
+    /// Tangents of the tangent angles of `sine`, ±∞ for a vertical.
     pub tangent: [f64; 2],
-    /// Curvatures \[1/mm\], positive with the hollow side up.
+    /// Least and largest curvature \[1/mm\], positive with the hollow side up.
     pub curvature: [f64; 2],
-    /// Direction of its chord: (cos, sin).
+    /// Direction of the chord: \[cos, sin\].
     pub chord: [f64; 2],
-    /// The line along the chord that the other body would meet first: z cos − x sin of all points is at least this on a
-    /// wheel, at most this on a rail \[mm\].
+    /// Level of the line along the chord that the other body would meet first \[mm\]: z cos − x sin of all
+    /// points is at least this on a wheel, at most this on a rail.
     pub level: f64,
-    /// That line as height at x = 0 \[mm\] and slope; level at the lowest or highest point where it is too steep.
+    /// The line of `level` as its height at x = 0 \[mm\] and slope. If it is too steep, a horizontal line
+    /// through the lowest or highest point instead.
     pub line: [f64; 2],
 }
 
-/// Chords with a larger slope bound by their height instead: along a steep line rounding of an abscissa counts thirty times and
-/// more, and its ends lie at nearly one abscissa anyway.
+/// Largest slope of a chord that bounds; a steeper one is replaced by the height. Along a steep line rounding
+/// of an abscissa counts thirty times and more, and the ends lie at nearly one abscissa anyway.
 pub(super) const STEEPEST_SLOPE: f64 = 32.0;
 
 /// Bounds of the derivatives of a stretch with respect to its parameter.
@@ -42,21 +43,22 @@ pub(super) struct Reach {
     pub rise: f64,
     /// Largest length of the second derivative.
     pub bend: f64,
-    /// Sines of its tangents.
+    /// Least and largest sine of the tangent angle.
     pub sine: [f64; 2],
-    /// Curvatures \[1/mm\].
+    /// Least and largest curvature \[1/mm\].
     pub curvature: [f64; 2],
     /// Largest derivative of the curvature.
     pub change: f64,
 }
 
-/// A direction in which a point lies z cos − x sin from the origin.
+/// Returns the distance of a point from the line through the origin with direction `[cos, sin]`: z cos − x
+/// sin.
 #[inline]
 fn level([cos, sin]: [f64; 2], [x, z]: [f64; 2]) -> f64 {
     z * cos - x * sin
 }
 
-/// The smallest interval around two.
+/// Returns the smallest interval around two intervals.
 fn around(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
@@ -79,10 +81,11 @@ impl Bounds {
         Self { x, z, sine, cosine, tangent, curvature, chord, level, line }
     }
 
-    /// Bounds of what lies in the hull of some points and has these tangents and curvatures; `rounding` \[mm\] of the points.
+    /// Returns the bounds of a part that lies in the hull of some points, with these tangents and curvatures;
+    /// `rounding` \[mm\] is that of the points.
     ///
-    /// `ends`: its left and right end; the chord goes from one to the other, and level with the mean tangent where they
-    /// are one point.
+    /// The chord goes from the left to the right of `ends`; if they are one point, it has the direction of
+    /// the mean tangent.
     pub fn of_hull(
         hull: &[[f64; 2]],
         ends: [[f64; 2]; 2],
@@ -112,7 +115,8 @@ impl Bounds {
         Self::new([x, [z[0] - rounding, z[1] + rounding]], [sine, curvature], (chord, level), side)
     }
 
-    /// Bounds of an arc or fan between two points with ascending sines of their tangents, from a point between.
+    /// Returns the bounds of an arc or fan between two points with ascending sines of their tangents, from a
+    /// point between them.
     pub fn of_arc(
         ends: &[Station; 2],
         middle: &Station,
@@ -123,7 +127,7 @@ impl Bounds {
         let [a, b] = ends;
         let turn = b.sin.clamp(-1.0, 1.0).asin() - a.sin.clamp(-1.0, 1.0).asin();
         let length = (b.x - a.x).hypot(b.z - a.z);
-        // A chord of a turn t stands off by less than t/4 of its length, half a turn included.
+        // A chord of a turn t is off the arc by less than t/4 of its length, for turns up to half a circle.
         let off = 0.5 * length * turn + rounding;
         let chord = [middle.cos, middle.sin];
         let levels = ends.map(|end| level(chord, [end.x, end.z]));
@@ -137,10 +141,10 @@ impl Bounds {
 }
 
 impl Reach {
-    /// Bounds over \[a, b\] of the parameter of a curve with coefficients (x, z).
+    /// Returns the bounds over \[a, b\] of the parameter, for a curve with coefficients \[x, z\].
     ///
-    /// Method: Bernstein coefficients; the tangents lie in the cone of the control vectors. Unbounded where the curve may
-    /// stand still.
+    /// Method: Bernstein coefficients; the tangents lie in the cone of the control vectors. Unbounded where
+    /// the curve may stand still.
     pub fn of(coefficients: &[[f64; 2]], [a, b]: [f64; 2]) -> Self {
         let [x, z] = [0, 1].map(|axis| coefficients.iter().map(|c| c[axis]).collect::<Vec<f64>>());
         let (dx, dz) = (derived(&x), derived(&z));
@@ -175,7 +179,8 @@ impl Reach {
         }
     }
 
-    /// Whether the bounds are too wide to decide on at sight: see [`WIDEST_TURN`], [`VARIATION`].
+    /// Returns whether the bounds are too wide to decide most pairs at once: see [`WIDEST_TURN`],
+    /// [`VARIATION`].
     pub fn is_wide(&self, width: f64) -> bool {
         let most = self.curvature[0].abs().max(self.curvature[1].abs());
         let turn = most * width * self.run.hypot(self.rise);
@@ -183,9 +188,10 @@ impl Reach {
         turn.is_nan() || turn > WIDEST_TURN || (varies && turn > LEAST_TURN)
     }
 
-    /// Bounds of the part \[p − half, p + half\] of the stretch around its point at p, whose curvature is given.
+    /// Returns the bounds of the part \[p − half, p + half\] of the stretch around its point at p, whose
+    /// curvature is given.
     ///
-    /// Method: Taylor's theorem about the point with the bounds of the whole stretch.
+    /// Method: Taylor's theorem about the point, with the bounds of the whole stretch.
     pub fn around(&self, point: &Station, curvature: f64, half: f64, side: Side, rounding: f64) -> Bounds {
         let (run, rise) = (half * self.run, half * self.rise);
         let change = half * self.change;
@@ -203,17 +209,19 @@ impl Reach {
     }
 }
 
-/// Turn \[rad\] above which a stretch is cut when a body is prepared: over a quarter of a radian chords say little.
+/// Turn \[rad\] above which a stretch is cut when a body is prepared: over a quarter of a radian a chord is a
+/// poor bound.
 const WIDEST_TURN: f64 = 0.25;
 
-/// A stretch whose curvature varies by more than this share of its size is cut, so that most pairs of stretches are
-/// decided at sight …
+/// Variation of the curvature, as a share of its size, above which a stretch is cut, so that most pairs of
+/// stretches are decided at once. Stretches below [`LEAST_TURN`] are not cut.
 const VARIATION: f64 = 0.5;
 
-/// … unless it turns by less than this \[rad\]: noise of micrometres would be cut into thousands.
+/// Turn \[rad\] below which a stretch is not cut: noise of micrometres would be cut into thousands.
 const LEAST_TURN: f64 = 0.05;
 
-/// Sines between which the directions of some vectors lie; all of them where one does not point to larger x.
+/// Returns the range of the sines of the directions of some vectors; \[−1, 1\] if one does not point to
+/// larger x.
 fn cone(x: &[f64], z: &[f64]) -> [f64; 2] {
     let mut sines = [1.0f64, -1.0f64];
     for k in 0..x.len().max(z.len()) {
@@ -231,13 +239,13 @@ fn cone(x: &[f64], z: &[f64]) -> [f64; 2] {
     if sines[0] <= sines[1] { sines } else { [-1.0, 1.0] }
 }
 
-/// The derivative's coefficients; a zero where there are none.
+/// Returns the derivative's coefficients; a single zero for a constant.
 fn derived(c: &[f64]) -> Vec<f64> {
     let out = derivative(c);
     if out.is_empty() { vec![0.0] } else { out }
 }
 
-/// a + k b, coefficient by coefficient.
+/// Returns a + k b, coefficient by coefficient.
 fn sum(a: &[f64], b: &[f64], k: f64) -> Vec<f64> {
     let get = |c: &[f64], i: usize| c.get(i).copied().unwrap_or(0.0);
     (0..a.len().max(b.len())).map(|i| get(a, i) + k * get(b, i)).collect()

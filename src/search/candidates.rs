@@ -1,4 +1,4 @@
-//! Places of contact as a search finds them.
+//! Candidates: the places of contact that a search collects.
 
 use super::body::Body;
 use super::bounds::STEEPEST_SLOPE;
@@ -7,12 +7,14 @@ use super::locus::Attitude;
 
 use crate::profile::Station;
 
-/// Cosine of the steepest tangent of a first touch. A curve turns from the vertical to here within 1e-16 of its radius along
-/// x: nothing steeper can be told from a vertical wall, over which nothing comes to rest. Larger would leave contacts out that
-/// a rounding of the offset does not undo; smaller divides a gap's rounding by nothing.
+/// Cosine of the steepest tangent of a first touch. A curve turns from the vertical to here within 1e-16 of
+/// its radius along x: a steeper tangent cannot be told from a vertical wall, over which nothing comes to
+/// rest. A larger value would leave out contacts that a rounding of the offset does not undo; a smaller one
+/// would divide a gap's rounding by nothing.
 const STEEPEST: f64 = 1.5e-8;
 
-/// Share of their size by which curvatures may differ and be equal: their rounding decides nothing.
+/// Share of their size by which two curvatures may differ and still count as equal: below it rounding
+/// decides.
 pub(super) const EQUAL_CURVATURES: f64 = 64.0 * f64::EPSILON;
 
 /// A place where wheel and rail have a common tangent at the same abscissa, the wheel above.
@@ -20,28 +22,28 @@ pub(super) const EQUAL_CURVATURES: f64 = 64.0 * f64::EPSILON;
 pub(super) struct Candidate {
     /// Vertical gap with the wheel's profile origin on the level of the rail's \[mm\].
     pub gap: f64,
-    /// The rail's point with the common tangent.
+    /// The rail's point.
     pub rail: Station,
-    /// The wheel profile's point with the tangent that belongs to the common one.
+    /// The wheel profile's point, with the tangent that gives the common one.
     pub wheel: Station,
-    /// Signed radii of the two profiles \[mm\].
+    /// Signed radius of the wheel profile \[mm\].
     pub wheel_radius: f64,
-    /// See `wheel_radius`.
+    /// Signed radius of the rail profile \[mm\].
     pub rail_radius: f64,
-    /// Where it was found.
+    /// The two elements that meet, with a parameter on each.
     pub meeting: Meeting,
 }
 
 /// An element of the wheel and one of the rail, with a parameter on each.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Meeting {
-    /// Indices of the elements: wheel, rail.
+    /// Indices of the wheel's and the rail's element.
     pub elements: [u32; 2],
-    /// Parameters on them.
+    /// Parameter on the wheel's and on the rail's element.
     pub parameters: [f64; 2],
 }
 
-/// A point of the wheel's profile or of the rail's, with its signed radius \[mm\] and its parameter.
+/// A point of the wheel's or the rail's profile, with its signed radius and its parameter.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Foot {
     /// The point, in its own profile's axes.
@@ -52,53 +54,56 @@ pub(super) struct Foot {
     pub parameter: f64,
 }
 
-/// Both bodies at one attitude, with what has been found so far.
+/// A search at one attitude: both bodies, and the candidates found so far.
 pub(super) struct Search<'a> {
     /// The wheel and the rail.
     pub bodies: [&'a Body; 2],
     /// The wheel's attitude.
     pub attitude: &'a Attitude,
-    /// Sum of both profiles' extents and of the offset: the size that rounding is judged by \[mm\].
+    /// Size against which rounding is judged: the sum of both profiles' extents and of the offset \[mm\].
     pub extent: f64,
-    /// Candidates farther above the lowest than this are dropped \[mm\].
+    /// Height above the lowest candidate beyond which candidates are dropped \[mm\].
     pub within: f64,
-    /// The lowest gap so far, or one that is known to be no lower than the lowest.
+    /// Lowest gap so far, or a gap that the lowest is known not to exceed \[mm\].
     pub lowest: f64,
-    /// Candidates so far.
+    /// The candidates so far.
     pub candidates: &'a mut Vec<Candidate>,
-    /// Pairs of elements solved, parts of stretches included.
+    /// Number of pairs of elements solved, parts of stretches included.
     pub solves: u64,
-    /// Rounding of an abscissa \[mm\]: that of [`Search::rounding`] without a radius.
+    /// Rounding of an abscissa \[mm\]: [`Search::rounding`] with a radius of 0.
     pub slack: f64,
 }
 
 impl<'a> Search<'a> {
-    /// The wheel's element and the rail's.
+    /// Returns the wheel's element and the rail's.
     pub fn elements(&self, [wheel, rail]: [u32; 2]) -> [&'a Element; 2] {
         let [above, below] = self.bodies;
         [&above.elements[wheel as usize], &below.elements[rail as usize]]
     }
 
-    /// Rounding of an abscissa \[mm\], where lengths of size `radius` take part.
+    /// Returns the rounding of an abscissa \[mm\] in whose calculation lengths of size `radius` take part.
     pub fn rounding(&self, radius: f64) -> f64 {
         16.0 * f64::EPSILON * (self.extent + radius)
     }
 
-    /// The gap above which nothing is looked for any more \[mm\].
+    /// Returns the gap above which candidates are dropped \[mm\].
     #[inline]
     pub fn ceiling(&self) -> f64 {
         self.lowest + self.within
     }
 
-    /// The same for bounds of gaps, which may be too high by the rounding of an abscissa on the steepest chord that bounds.
+    /// Returns the value above which bounds of gaps are dropped \[mm\]: the ceiling, raised by the rounding
+    /// of an abscissa on the steepest chord that bounds.
     #[inline]
     pub fn bound_ceiling(&self) -> f64 {
         self.ceiling() + 2.0 * STEEPEST_SLOPE * self.slack
     }
 
-    /// Takes two points with a common tangent at one abscissa, to rounding, unless the gap is largest there or too large.
+    /// Adds the candidate of two points that have a common tangent at one abscissa, to rounding, unless the
+    /// gap is largest there or above the ceiling.
     ///
-    /// The gap is that of the two points, corrected along the common tangent for the rounding of their abscissae.
+    /// The gap is that of the two points, corrected along the common tangent for the rounding of their
+    /// abscissae.
     pub fn offer(&mut self, elements: [u32; 2], wheel: &Foot, rail: &Foot) {
         if let Some(candidate) = self.candidate(elements, wheel, rail)
             && candidate.gap <= self.ceiling()
@@ -108,7 +113,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The place of least gap that two points are; `None` where the gap is largest there or the tangent vertical.
+    /// Returns the candidate of two points; `None` if the gap is largest there or the tangent vertical.
     pub fn candidate(&self, elements: [u32; 2], wheel: &Foot, rail: &Foot) -> Option<Candidate> {
         let outline = self.attitude.outline(&wheel.station);
         let below = &rail.station;

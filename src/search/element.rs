@@ -1,60 +1,62 @@
-//! The elements of a profile's outer surface: arcs, lines, stretches of polynomials, and the fans of normals at kinks
-//! and ends. Each is a curve over a parameter of its own, which runs through the vertical without harm.
+//! The elements of a profile's outer surface: arcs, lines, stretches of polynomials, and the fans of normals
+//! at kinks and ends. Each is a curve over its own parameter, which passes the vertical without a
+//! singularity.
 
 use super::bounds::{Bounds, Reach};
+use crate::numerics::cosine;
 use crate::profile::{ArcBranch, Side, Station};
 
-/// Slack of a sine against the ends of an element: a root on a joint may come out this far beyond either
-/// neighbour. Smaller loses it, larger only moves it, by as little.
+/// Amount by which a sine may exceed the ends of an element: a root on a joint may come out this far beyond
+/// either neighbour. A smaller value loses the root; a larger one only moves it, by as little.
 pub(super) const SINE_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// One stretch of a profile, or the fan of normals at one of its points.
 #[derive(Debug, Clone)]
 pub(super) struct Element {
-    /// What it is.
+    /// Kind of curve, with its data.
     pub shape: Shape,
-    /// The parameters between which it lies, ascending: of an arc or fan sinφ, of a line x \[mm\], of a stretch t.
+    /// Range of the parameter, ascending: sinφ of an arc or fan, x \[mm\] of a line, t of a stretch.
     pub range: [f64; 2],
-    /// Its points at the ends of `range` …
+    /// The points at the ends of `range`.
     pub ends: [Station; 2],
-    /// … and in its middle.
+    /// The point in the middle of `range`.
     pub middle: Place,
-    /// What bounds it.
+    /// Guaranteed bounds of the element.
     pub bounds: Bounds,
 }
 
-/// The shapes the search tells apart.
+/// The kinds of curve that the search distinguishes.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Shape {
-    /// An arc; of radius 0 for a fan.
+    /// An arc; a fan is an arc of radius 0.
     Arc(ArcElement),
     /// A line.
     Line,
-    /// Part of a polynomial.
+    /// A part of a polynomial.
     Stretch(Stretch),
 }
 
-/// An arc in terms of its tangent's sine.
+/// An arc with the sine of its tangent angle as parameter.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ArcElement {
     anchor: Station,
-    /// Signed radius \[mm\]: positive with the hollow side up; +0 for a fan of the wheel, −0 of the rail, so that
-    /// the curvature is ±∞ as it should.
+    /// Signed radius \[mm\], positive with the hollow side up. A fan has +0 on the wheel and −0 on the rail,
+    /// so that its curvature is ±∞ as it must be.
     pub radius: f64,
-    /// 1/radius.
+    /// Curvature 1/radius \[1/mm\].
     curvature: f64,
-    /// Centre \[mm\]: good for abscissae, too coarse for heights when the radius is large.
+    /// Centre \[mm\]: accurate enough for abscissae, too coarse for heights when the radius is large.
     pub centre: [f64; 2],
 }
 
-/// Part of a polynomial: where the body keeps its coefficients, and how fast it moves.
+/// A part of a polynomial: where the body keeps its coefficients, and bounds of its derivatives.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stretch {
     /// Index of the first coefficient.
     pub first: usize,
     /// Number of coefficients.
     pub count: usize,
-    /// Bounds of its derivatives.
+    /// Bounds of the derivatives.
     pub reach: Reach,
 }
 
@@ -63,16 +65,16 @@ pub(super) struct Stretch {
 pub(super) struct Place {
     /// The point and its tangent.
     pub station: Station,
-    /// dx over the parameter.
+    /// Derivative of x with respect to the parameter.
     pub run: f64,
-    /// d sinφ over the parameter.
+    /// Derivative of sinφ with respect to the parameter.
     pub turn: f64,
     /// Curvature \[1/mm\] of the profile, whatever the yaw.
     pub curvature: f64,
 }
 
 impl ArcElement {
-    /// The arc of a branch.
+    /// Makes the element of a branch that is an arc.
     pub fn of(arc: &ArcBranch) -> Self {
         let [x, z] = arc.anchor;
         let centre = [x - arc.radius * arc.sin, z + arc.radius * arc.cos];
@@ -80,14 +82,14 @@ impl ArcElement {
         Self { anchor, radius: arc.radius, curvature: arc.radius.recip(), centre }
     }
 
-    /// All normals through a point.
+    /// Makes the fan of all normals through a point.
     pub fn fan(point: &Station, side: Side) -> Self {
         let anchor = Station { cos: 1.0, sin: 0.0, ..*point };
         let radius = if side == Side::Wheel { 0.0 } else { -0.0 };
         Self { anchor, radius, curvature: radius.recip(), centre: [point.x, point.z] }
     }
 
-    /// The point with a given tangent.
+    /// Returns the point with a given tangent.
     #[inline]
     pub fn at(&self, sin: f64, cos: f64) -> Station {
         let a = &self.anchor;
@@ -95,14 +97,14 @@ impl ArcElement {
         Station { x: a.x + run, z: a.z + run * ((a.sin + sin) / (a.cos + cos)), cos, sin }
     }
 
-    /// The sine of the tangent at an abscissa; of a fan that of its anchor.
+    /// Returns the sine of the tangent at an abscissa; for a fan, the sine at its anchor.
     fn sine_at(&self, x: f64) -> f64 {
         if self.radius == 0.0 { self.anchor.sin } else { self.anchor.sin + (x - self.anchor.x) / self.radius }
     }
 }
 
 impl Shape {
-    /// The point at a parameter; `start`: one point of a line.
+    /// Returns the point at a parameter; `start` is a point of the line, if the shape is one.
     #[inline]
     pub fn place(&self, start: &Station, coefficients: &[[f64; 2]], p: f64) -> Place {
         match self {
@@ -119,13 +121,14 @@ impl Shape {
 }
 
 impl Element {
-    /// The point at a parameter, inside the element or beyond it; `coefficients` are those of the whole body.
+    /// Returns the point at a parameter, inside the element or beyond it; `coefficients` are those of the
+    /// whole body.
     #[inline]
     pub fn place(&self, coefficients: &[[f64; 2]], p: f64) -> Place {
         self.shape.place(&self.ends[0], coefficients, p)
     }
 
-    /// Signed radius \[mm\] of the profile at one of its points.
+    /// Returns the signed radius \[mm\] of the profile at a point of this element.
     pub fn radius(&self, place: &Place) -> f64 {
         match &self.shape {
             Shape::Arc(arc) => arc.radius,
@@ -134,9 +137,9 @@ impl Element {
         }
     }
 
-    /// The parameter at an abscissa between the element's own.
+    /// Returns the parameter at an abscissa within the element.
     ///
-    /// Accuracy: rounding. Cost of a stretch: three or four steps of Newton's method, safeguarded by a bracket.
+    /// Accuracy: rounding. Cost for a stretch: three or four Newton steps, safeguarded by a bracket.
     pub fn parameter_at(&self, coefficients: &[[f64; 2]], x: f64) -> f64 {
         match &self.shape {
             Shape::Arc(arc) => arc.sine_at(x).clamp(self.range[0], self.range[1]),
@@ -152,10 +155,12 @@ impl Element {
     }
 }
 
-/// The parameter where a monotone function has a value: from `ends` of the parameter, at which the function has `values`,
-/// ascending; `f` gives the function and its derivative. Beyond the values the nearer end.
+/// Returns the parameter at which a rising function equals `value`. `ends` of the parameter have the
+/// function's `values`, ascending; `f` gives the function and its derivative. For a value beyond `values` it
+/// returns the nearer end.
 ///
-/// Accuracy: rounding. Cost: three or four steps of Newton's method on what is nearly straight; a bracket is kept.
+/// Accuracy: rounding. Cost: three or four Newton steps on a function that is nearly straight; a bracket is
+/// kept.
 pub(super) fn rising_root(ends: [f64; 2], values: [f64; 2], value: f64, f: impl Fn(f64) -> [f64; 2]) -> f64 {
     let [mut low, mut high] = ends;
     let share = (value - values[0]) / (values[1] - values[0]);
@@ -167,7 +172,7 @@ pub(super) fn rising_root(ends: [f64; 2], values: [f64; 2], value: f64, f: impl 
     }
     let done = 2.0 * f64::EPSILON * (low.abs() + high.abs());
     let mut p = low + (high - low) * share;
-    // Halving alone needs some 60 steps.
+    // Halving alone takes some 60 steps.
     for _ in 0..64 {
         let [at, slope] = f(p);
         let miss = at - value;
@@ -192,7 +197,7 @@ pub(super) fn rising_root(ends: [f64; 2], values: [f64; 2], value: f64, f: impl 
 }
 
 impl Stretch {
-    /// The point at a parameter.
+    /// Returns the point at a parameter.
     #[inline]
     pub fn place(&self, coefficients: &[[f64; 2]], t: f64) -> Place {
         let ([mut x, mut dx, mut hx], [mut z, mut dz, mut hz]) = ([0.0; 3], [0.0; 3]);
@@ -208,7 +213,8 @@ impl Stretch {
     }
 }
 
-/// The point of a line where a linear function of it, given at the ends, has a value.
+/// Returns the point of a line at which a linear function, given by its `values` at the ends, equals `value`;
+/// `None` outside the line.
 pub(super) fn between(ends: &[Station; 2], values: &[f64; 2], value: f64, rounding: f64) -> Option<Station> {
     if !(value >= values[0] - rounding && value <= values[1] + rounding) {
         return None;
@@ -216,10 +222,4 @@ pub(super) fn between(ends: &[Station; 2], values: &[f64; 2], value: f64, roundi
     let share = ((value - values[0]) / (values[1] - values[0])).clamp(0.0, 1.0);
     let [a, b] = ends;
     Some(Station { x: a.x + share * (b.x - a.x), z: a.z + share * (b.z - a.z), ..*a })
-}
-
-/// √(1 − sin²) without cancellation, 0 where rounding has carried |sin| past 1.
-#[inline]
-pub(super) fn cosine(sin: f64) -> f64 {
-    ((1.0 - sin) * (1.0 + sin)).max(0.0).sqrt()
 }

@@ -2,16 +2,16 @@
 //!
 //! A rail is the same at every y, so a wheel meets it where the wheel's *outline* in the xz plane does. The
 //! outline is the set of surface points whose normal has no y component. For a point (x, z) of the wheel's
-//! profile with tangent angle φ, at the radius ϱ = R − z, that picks one angle ω about the axle (from the lowest
-//! meridian, forward positive), and with yaw ψ and no roll
+//! profile with tangent angle φ, at the radius ϱ = R − z, this condition gives one angle ω about the axle
+//! (from the lowest meridian, forward positive). With yaw ψ and no roll
 //!
 //! ```text
 //! sin ω = −tan φ tan ψ        X = x cosψ − ϱ sinω sinψ        sin Θ = sin φ / cosψ
 //! cos ω = cos Θ / cos φ       Z = R − ϱ cosω                  tan Θ: slope of the outline
 //! ```
 //!
-//! Z counts from the level R below the axle. The roll then turns (X, Z) and Θ rigidly about the y axis.
-//! Where |sin φ| > cosψ a wheel has no outline: that ring is nowhere seen edge on.
+//! Z counts from the level R below the axle. The roll then turns (X, Z) and Θ rigidly about the y axis. Where
+//! |sin φ| > cosψ a wheel has no outline: no part of that ring is seen edge on.
 //!
 //! An arc of radius r about (a, b), r > 0 for the lower half, is the outline parallel to the ellipse of its
 //! centre ring: X = a cosψ + r sinΘ + …; its radius of curvature is
@@ -20,37 +20,37 @@
 //! ϱ_c = r (1 − sin²ψ/cos²φ) + ϱ sin²ψ/cos³φ = r + (R − b) sin²ψ/cos³φ
 //! ```
 //!
-//! which is monotone in |Θ|: that is what makes the search over arcs complete. r = 0 is a kink's or end's ring
+//! which is monotone in |Θ|; therefore the search over arcs is complete. r = 0 is the ring of a kink or end
 //! under its fan of normals, r = ∞ a cone.
 
 use super::element::Place;
 use crate::profile::Station;
 
-/// How a wheel stands over its rail, but for the height: the trigonometry of one position, done once.
+/// The attitude of a wheel over its rail, without the height: the trigonometry of one position, done once.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Attitude {
     /// Abscissa of the wheel's profile origin in the rail's axes \[mm\].
     pub offset: f64,
     /// Nominal rolling radius R \[mm\].
     pub radius: f64,
-    /// sin ψ.
+    /// sinψ, ψ the yaw.
     pub sin_yaw: f64,
-    /// cos ψ, positive.
+    /// cosψ, positive.
     pub cos_yaw: f64,
-    /// sin of the roll, positive clockwise as seen along y.
+    /// Sine of the roll, positive clockwise as seen along y.
     pub sin_roll: f64,
-    /// Its cosine, positive.
+    /// Cosine of the roll, positive.
     pub cos_roll: f64,
-    /// tan ψ.
+    /// tanψ.
     pub tan_yaw: f64,
-    /// Tangent of the profile's steepest tangent with an outline: 1/|tan ψ|.
+    /// Slope of the steepest profile tangent with an outline: 1/|tanψ|.
     pub steepest_tangent: f64,
-    /// tan ψ sin ψ: by how far an outline is shifted, per rolling radius and slope.
+    /// tanψ sinψ: the shift of an outline per rolling radius and slope.
     pub shift: f64,
 }
 
 impl Attitude {
-    /// The attitude of a pose.
+    /// Calculates the attitude of a pose.
     pub fn new(offset: f64, yaw: f64, roll: f64, radius: f64) -> Self {
         let ((sin_yaw, cos_yaw), (sin_roll, cos_roll)) = (yaw.sin_cos(), roll.sin_cos());
         let tan_yaw = sin_yaw / cos_yaw;
@@ -58,13 +58,13 @@ impl Attitude {
         Self { offset, radius, sin_yaw, cos_yaw, sin_roll, cos_roll, tan_yaw, steepest_tangent, shift }
     }
 
-    /// sin² ψ.
+    /// Returns sin²ψ.
     pub fn sin_yaw_squared(&self) -> f64 {
         self.sin_yaw * self.sin_yaw
     }
 
-    /// The outline point of a point of the wheel profile, with the tangent of the outline: x in the rail's axes,
-    /// z above the (still unknown) height of the wheel's profile origin. NaN where there is no outline.
+    /// Returns the outline point of a wheel profile point, with the tangent of the outline: x in the rail's
+    /// axes, z above the (still unknown) height of the wheel's profile origin. NaN where there is no outline.
     ///
     /// Accuracy: a few roundings of the profile's coordinates; R enters only through the small ϱ(1 − cosω).
     #[inline]
@@ -82,7 +82,7 @@ impl Attitude {
         self.rolled(&Station { x, z, cos, sin })
     }
 
-    /// A point of the unrolled outline in the rail's axes.
+    /// Turns a point of the outline by the roll, into the rail's axes.
     #[inline]
     fn rolled(&self, p: &Station) -> Station {
         let (cos, sin) = (self.cos_roll, self.sin_roll);
@@ -94,23 +94,24 @@ impl Attitude {
         }
     }
 
-    /// (sin φ, cos φ) of the wheel's profile where its outline has the tangent (sin, cos) in the rail's axes.
+    /// Returns (sin φ, cos φ) of the wheel's profile where its outline has the tangent (sin, cos) in the
+    /// rail's axes.
     #[inline]
     pub fn profile_tangent(&self, sin: f64, cos: f64) -> (f64, f64) {
-        // Past 1 by a rounding there would be no outline to come back to.
+        // A sine past 1 by a rounding would have no outline.
         let unrolled = (sin * self.cos_roll + cos * self.sin_roll).clamp(-1.0, 1.0);
         let sine = unrolled * self.cos_yaw;
         (sine, ((1.0 - sine) * (1.0 + sine)).max(0.0).sqrt())
     }
 
-    /// The sine of the outline's tangent in the rail's axes for a sine of the profile's; ∓1 where that lies
-    /// beyond the vertical.
+    /// Returns the sine of the outline's tangent in the rail's axes for a sine of the profile's tangent; ∓1
+    /// where the outline's tangent is beyond the vertical.
     #[inline]
     pub fn outline_sine(&self, profile_sine: f64) -> f64 {
         self.rolled_sine((profile_sine / self.cos_yaw).clamp(-1.0, 1.0))
     }
 
-    /// The sine of a tangent after the roll; ∓1 beyond the vertical.
+    /// Returns the sine of a tangent after the roll; ∓1 beyond the vertical.
     #[inline]
     pub fn rolled_sine(&self, sin: f64) -> f64 {
         let cos = ((1.0 - sin) * (1.0 + sin)).sqrt();
@@ -120,8 +121,8 @@ impl Attitude {
         sin * self.cos_roll - cos * self.sin_roll
     }
 
-    /// The outline's point of a point of the profile, with its derivatives over the same parameter; NaN where there is no
-    /// outline.
+    /// Returns the outline point of a wheel profile point, with its derivatives with respect to the same
+    /// parameter; NaN where there is no outline.
     #[inline]
     pub fn outline_place(&self, place: &Place) -> Place {
         let station = self.outline(&place.station);
@@ -133,14 +134,15 @@ impl Attitude {
         let rolling = self.radius - z;
         let bend = rolling * place.turn / (cos * cos * cos);
         let run = place.run * self.cos_yaw + self.shift * (bend - place.run * slope * slope);
-        // The roll turns the outline: dx by cos(roll) + tanΘ sin(roll), and the sine with it.
+        // The roll turns the outline: dx by cos(roll) + tanΘ sin(roll), and the sine too.
         let sin = sin / self.cos_yaw;
         let tangent = sin / ((1.0 - sin) * (1.0 + sin)).sqrt();
         let turned = self.cos_roll + tangent * self.sin_roll;
         Place { station, run: run * turned, turn: place.turn / self.cos_yaw * turned, ..*place }
     }
 
-    /// ϱ_c \[mm\], the outline's signed radius of curvature at a profile point of signed radius `radius`.
+    /// Returns the outline's signed radius of curvature ϱ_c \[mm\] at a profile point of signed radius
+    /// `radius`.
     pub fn outline_radius(&self, point: &Station, radius: f64) -> f64 {
         let tilt = self.sin_yaw_squared() / (point.cos * point.cos);
         if tilt == 0.0 {

@@ -1,10 +1,11 @@
-//! The contact search: how far a placed wheel can be lowered onto its rail, and where it then touches.
+//! The contact search: finds how far a placed wheel can be lowered onto its rail, and where the two then
+//! touch.
 //!
 //! # Axes, signs and order of rotation
 //!
-//! Everything of one side is in the rail's profile axes: x towards the field side, y forward along the rail, z up.
-//! For the right-hand wheel they are the track's directions; the left-hand side is solved as its mirror image
-//! (x → −x), with lateral displacement, yaw and roll reversed; its axes are then left-handed.
+//! All quantities of one side are in the rail's profile axes: x towards the field side, y forward along the
+//! rail, z up. For the right-hand wheel they are the track's directions. The left-hand side is solved as its
+//! mirror image (x → −x), with lateral displacement, yaw and roll reversed; its axes are then left-handed.
 //!
 //! The wheel is turned by A = R_y(roll) · R_z(yaw): first the yaw about z, then the roll about the *unyawed* y axis of
 //! the track, both by the right-hand rule. So the axle, from flange to field side, points along
@@ -15,14 +16,16 @@
 //!
 //! # Method
 //!
-//! `locus`: the outline of the yawed wheel along the rail reduces the search to two plane curves. A local minimum of
-//! the vertical gap has a common tangent (at kinks and ends: a common normal within the fan). A tree over the elements of
-//! each profile (`body`) bounds the gap of whole stretches at once (`placed`), so that only pairs of elements that may be
-//! lowest are solved (`walk`): arcs and lines in closed form (`arcs`), polynomials and yawed arcs by bounds of their
-//! curvatures and Newton's method (`stretches`). So the lowest cannot be missed.
+//! `locus`: the outline of the yawed wheel along the rail reduces the search to two plane curves. A local
+//! minimum of the vertical gap has a common tangent (at kinks and ends: a common normal within the fan). A
+//! tree over the elements of each profile (`body`) bounds the gap of whole stretches at once (`placed`), so
+//! that only pairs of elements that may be lowest are solved (`walk`). Arcs and lines have closed forms
+//! (`arcs`); polynomials and yawed arcs are solved by bounds of their curvatures and Newton's method
+//! (`stretches`). So the lowest contact cannot be missed.
 //!
-//! What counts is the part of each profile that faces the other body in its own axes ([`Section`](crate::profile::Section)): parts of a
-//! wheel that face down only by virtue of the roll (a flange back beyond the vertical) do not take part.
+//! Only the part of each profile that faces the other body in its own axes counts
+//! ([`Section`](crate::profile::Section)): a part of a wheel that faces down only because of the roll (a
+//! flange back beyond the vertical) does not take part.
 
 mod arcs;
 mod body;
@@ -44,12 +47,13 @@ use candidates::{Candidate, Meeting, Search};
 use locus::Attitude;
 use walk::Walk;
 
-/// Share of the two profiles' extents below which two candidates are one point. Candidates of one contact that
-/// sits on a joint differ by up to 1e-8 of it; the closest contacts that a drawing can mean are 1e-4 apart.
+/// Distance below which two candidates are one point, as a share of the two profiles' extents. Candidates of
+/// one contact on a joint differ by up to 1e-8 of the extents; the closest contacts that a drawing can mean
+/// are 1e-4 apart.
 const SAME_POINT: f64 = 1e-7;
 
-/// Largest yaw and roll \[rad\] that a pose may have. Far above any running gear's; from about 1 rad on, parts of a
-/// profile that face down are no longer those that do so in the profile's own axes.
+/// Largest yaw and roll \[rad\] of a pose. It is far above the angles of any running gear; from about 1 rad
+/// on, the parts of a profile that face down are no longer those that do so in the profile's own axes.
 const LARGEST_ANGLE: f64 = 0.5;
 
 /// A rail and a wheel profile, prepared for searches.
@@ -58,11 +62,11 @@ pub struct ProfilePair {
     rail: Body,
     wheel: Body,
     radius: f64,
-    /// Sum of both extents: the size that rounding is judged by \[mm\].
+    /// Size against which rounding is judged: the sum of both extents \[mm\].
     extent: f64,
 }
 
-/// Where a single wheel stands over its rail, but for the height.
+/// The place and attitude of a single wheel over its rail, without the height.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
     offset: f64,
@@ -70,21 +74,22 @@ pub struct Pose {
     roll: f64,
 }
 
-/// Places closer than this \[mm\] are one contact: drawings' steps and kinks make groups within 0.1 mm.
+/// Distance below which two places count as one contact \[mm\]: steps and kinks of drawings make groups
+/// within 0.1 mm.
 pub const ONE_CONTACT: f64 = 0.5;
 
-/// Which of the places of contact to report.
+/// Which places of contact a search reports.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Selection {
-    /// Vertical gap \[mm\] above first touch up to which near misses are reported; 0 for touching ones only. Typically
-    /// 0.1.
+    /// Vertical gap \[mm\] above first touch up to which near misses are reported; 0 reports only touching
+    /// places. Typically 0.1.
     pub within: f64,
-    /// Of two places closer than this on both profiles \[mm along x\] only the lower is reported; 0 for all. Usually
-    /// [`ONE_CONTACT`].
+    /// Distance along x on both profiles \[mm\] below which only the lower of two places is reported; 0
+    /// reports all. Usually [`ONE_CONTACT`].
     pub apart: f64,
 }
 
-/// A place of contact or near miss; x and angles in the side's own profile axes.
+/// A place of contact or a near miss; x and angles are in the profile axes of its side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
     /// Abscissa x_R on the rail profile \[mm\], from its origin, + to the field side.
@@ -95,20 +100,20 @@ pub struct Contact {
     pub rail_z: f64,
     /// Height of the wheel profile's point over the wheel profile's origin \[mm\].
     pub wheel_z: f64,
-    /// Place along the rail from the vertical plane across the track through the wheel's centre \[mm\], + forward:
-    /// sinψ (x_W − ϱ tanθ_W). Behind the centre at a flange when yaw > 0.
+    /// Position along the rail, + forward \[mm\], from the vertical plane across the track through the
+    /// wheel's centre: sinψ (x_W − ϱ tanθ_W). Behind the centre at a flange when yaw > 0.
     pub y: f64,
-    /// Contact angle θ_R \[rad\]: of the common tangent in the rail's axes, + counter-clockwise from x to z. A flange
-    /// contact has 1.2.
+    /// Contact angle θ_R \[rad\]: tangent angle of the common tangent in the rail's axes, + counter-clockwise
+    /// from x to z. A flange contact has 1.2.
     pub contact_angle: f64,
-    /// Wheel profile's tangent angle θ_W \[rad\] that belongs to the common normal, in the wheel profile's axes. Without
-    /// yaw the contact angle plus the roll.
+    /// Tangent angle θ_W \[rad\] of the wheel profile at the contact, in the wheel profile's axes. Without
+    /// yaw it is the contact angle plus the roll.
     pub wheel_angle: f64,
-    /// Skew χ \[rad\]: how far the wheel's contact frame (ξ' along its meridian tangent, η' along its circumference,
-    /// forward) is turned about the common normal ζ, + from ξ to η, against the rail's (ξ along its profile's
-    /// tangent, η = y): ξ' = ξ cosχ + η sinχ, η' = η cosχ − ξ sinχ, ζ' = ζ. sinχ = sinψ/cosθ_W.
+    /// Skew χ \[rad\]: angle about the common normal ζ, + from ξ to η, from the rail's contact frame (ξ along
+    /// its profile's tangent, η = y) to the wheel's (ξ' along its meridian tangent, η' along its
+    /// circumference, forward): ξ' = ξ cosχ + η sinχ, η' = η cosχ − ξ sinχ, ζ' = ζ. sinχ = sinψ/cosθ_W.
     pub skew: f64,
-    /// Vertical gap left at first touch \[mm\]; 0 for the lowest.
+    /// Vertical gap left at first touch \[mm\]; 0 for the lowest contact.
     pub gap: f64,
     /// Actual rolling radius ϱ = R − z_W \[mm\].
     pub rolling_radius: f64,
@@ -116,9 +121,11 @@ pub struct Contact {
     pub rail_curvature: f64,
     /// Curvature of the wheel profile \[1/mm\], + hollow side up, −1/13 in a flange root; +∞ at a kink.
     pub wheel_curvature: f64,
-    /// The rail touches with a kink, step or end: the contact angle is the common normal's, not that of a tangent.
+    /// Whether the rail touches with a kink, step or end: the contact angle is then that of the common
+    /// normal, not of a tangent.
     pub rail_kink: bool,
-    /// The wheel touches with a kink, step or end; likewise θ_W.
+    /// Whether the wheel touches with a kink, step or end: θ_W is then that of the common normal, not of a
+    /// tangent.
     pub wheel_kink: bool,
 }
 
@@ -131,34 +138,34 @@ pub struct Touch<'a> {
     pub contacts: &'a [Contact],
 }
 
-/// Searches over one pair; keeps its buffers, so that searching allocates nothing.
+/// Searches over one pair; keeps its buffers, so that a search allocates nothing.
 #[derive(Debug, Clone)]
 pub struct ContactSearch<'a> {
     pair: &'a ProfilePair,
     walk: Walk,
     candidates: Vec<Candidate>,
     contacts: Vec<Contact>,
-    /// Where contact was in the search before.
+    /// The contact of the last search.
     last: Option<Meeting>,
     work: Work,
 }
 
-/// What searches have done so far.
+/// Counts what the searches have done so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Work {
-    /// Searches: a wheel lowered onto its rail once.
+    /// Number of searches: each lowers a wheel onto its rail once.
     pub searches: u64,
-    /// Pairs of nodes of the two trees looked at.
+    /// Number of pairs of tree nodes looked at.
     pub pairs: u64,
-    /// Pairs of elements, or of parts of them, looked at for common tangents.
+    /// Number of pairs of elements, or of parts of them, looked at for common tangents.
     pub solves: u64,
 }
 
 impl ProfilePair {
-    /// Prepares a pair, its rail as placed (inclined).
+    /// Prepares a pair for searches; the rail is the one as placed (inclined).
     ///
     /// # Errors
-    /// A profile without any part that faces the other body.
+    /// A profile has no part that faces the other body.
     pub fn new(pair: &Pair) -> Result<Self> {
         let body = |profile: &Profile, section: &Section, side| {
             Body::new(section, profile.extent(), side).ok_or_else(|| {
@@ -175,12 +182,12 @@ impl ProfilePair {
         })
     }
 
-    /// Nominal rolling radius R \[mm\].
+    /// Returns the nominal rolling radius R \[mm\].
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// A search over this pair.
+    /// Makes a search over this pair.
     pub fn search(&self) -> ContactSearch<'_> {
         ContactSearch {
             pair: self,
@@ -194,8 +201,9 @@ impl ProfilePair {
 }
 
 impl Pose {
-    /// A wheel with its profile origin `offset` mm beside the rail's, + to the field side, turned about that origin
-    /// by `yaw` and then `roll` \[rad\], right-handed about z and y.
+    /// Makes the pose of a wheel whose profile origin lies `offset` mm beside the rail's, + to the field
+    /// side. The wheel is turned about that origin by `yaw` and then `roll` \[rad\], right-handed about z and
+    /// y.
     ///
     /// # Errors
     /// Values that are not finite; angles beyond ±0.5 rad.
@@ -204,13 +212,13 @@ impl Pose {
         Ok(Self { offset, yaw: small_angle("yaw", yaw)?, roll: small_angle("roll", roll)? })
     }
 
-    /// Roll \[rad\].
+    /// Returns the roll \[rad\].
     pub fn roll(&self) -> f64 {
         self.roll
     }
 }
 
-/// Rejects angles that no wheel has.
+/// Returns the angle, or an error if it is one that no wheel has.
 pub(super) fn small_angle(place: &str, angle: f64) -> Result<f64> {
     if finite(place, angle)?.abs() <= LARGEST_ANGLE {
         return Ok(angle);
@@ -220,12 +228,12 @@ pub(super) fn small_angle(place: &str, angle: f64) -> Result<f64> {
 }
 
 impl ContactSearch<'_> {
-    /// Lowers a wheel until it touches; `None` when no part of it is over the rail.
+    /// Lowers a wheel until it touches; `None` if no part of it is over the rail.
     ///
-    /// Accuracy: heights and gaps to a few roundings of the profiles' extents, whatever R; abscissae to that over
-    /// √(difference of curvatures), from the common tangent, not from a flat minimum.
-    /// Cost: about half a microsecond for arcs, a few with polynomials of any number; yaw doubles it. The first search knows
-    /// no place to start from and costs some times more.
+    /// Accuracy: heights and gaps to a few roundings of the profiles' extents, whatever R; abscissae to that
+    /// over √(difference of curvatures), from the common tangent, not from a flat minimum.
+    /// Cost: about half a microsecond for arcs, a few for polynomials of any number; yaw doubles it. The
+    /// first search has no place to start from and costs some times more.
     /// Degenerate: bodies that touch along a stretch (parallel lines, equal arcs) give its middle.
     pub fn touch(&mut self, pose: &Pose, selection: &Selection) -> Option<Touch<'_>> {
         let attitude = Attitude::new(pose.offset, pose.yaw, pose.roll, self.pair.radius);
@@ -233,12 +241,13 @@ impl ContactSearch<'_> {
         Some(self.collect(&attitude, height, selection))
     }
 
-    /// The contacts of `selection` among the candidates that [`Self::lower`] left, at the height that it gave.
+    /// Collects the contacts of `selection` among the candidates that [`Self::lower`] left, at the height
+    /// that it gave.
     fn collect(&mut self, attitude: &Attitude, height: f64, selection: &Selection) -> Touch<'_> {
         self.candidates.retain(|c| c.gap + height <= selection.within);
         self.candidates.sort_unstable_by(|a, b| a.gap.total_cmp(&b.gap));
         let apart = selection.apart.max(SAME_POINT * self.pair.extent);
-        // A smooth contact on a joint is also one of the joint's fan, a rounding apart.
+        // A smooth contact on a joint is also one of the joint's fan, a rounding away.
         let rounding = 16.0 * f64::EPSILON * self.pair.extent;
         self.contacts.clear();
         for candidate in &self.candidates {
@@ -257,7 +266,7 @@ impl ContactSearch<'_> {
         Touch { height, contacts: &self.contacts }
     }
 
-    /// The lowest candidate, with all others up to `within` above it left in the buffer.
+    /// Returns the lowest candidate, and leaves all others up to `within` above it in the buffer.
     fn lower(&mut self, attitude: &Attitude, within: f64) -> Option<Candidate> {
         self.candidates.clear();
         let mut search = self.pair.at(attitude, within, &mut self.candidates);
@@ -271,19 +280,20 @@ impl ContactSearch<'_> {
         Some(lowest)
     }
 
-    /// The place of least gap near a former one, at another attitude; `None` where it has left its elements.
+    /// Returns the place of least gap near a former one at another attitude; `None` if it has left its two
+    /// elements.
     fn follow(&self, attitude: &Attitude, meeting: &Meeting) -> Option<Candidate> {
         walk::follow(&self.pair.at(attitude, 0.0, &mut Vec::new()), meeting)
     }
 
-    /// What this search has done so far.
+    /// Returns what this search has done so far.
     pub fn work(&self) -> Work {
         self.work
     }
 }
 
 impl ProfilePair {
-    /// A search at one attitude.
+    /// Makes a search at one attitude.
     fn at<'a>(
         &'a self,
         attitude: &'a Attitude,
@@ -296,20 +306,20 @@ impl ProfilePair {
         Search { bodies, attitude, extent, within, lowest: f64::INFINITY, candidates, solves: 0, slack }
     }
 
-    /// The gap of the highest point of the wheel's profile over the lowest of the rail \[mm\]: what is higher is no touch of
-    /// the two profiles, but of a yawed wheel's rings towards the axle. Slopes below 45° may rise over their profile by their
-    /// own ring.
+    /// Returns the gap of the highest point of the wheel's profile over the lowest of the rail \[mm\]. A
+    /// larger gap is no touch of the two profiles, but of a yawed wheel's rings towards the axle. Slopes
+    /// below 45° may rise above their profile by their own ring.
     fn highest(&self, attitude: &Attitude) -> f64 {
         let [x, z] = self.wheel.extent;
         let tilted = (-x[0] * attitude.sin_roll).max(-x[1] * attitude.sin_roll);
         let steepest = attitude.tan_yaw;
-        let rise = self.radius * steepest * steepest / (1.0 + element::cosine(steepest));
+        let rise = self.radius * steepest * steepest / (1.0 + crate::numerics::cosine(steepest));
         z[1] * attitude.cos_roll + tilted + rise - self.rail.extent[1][0]
     }
 }
 
 impl Contact {
-    /// Whether one of the bodies touches with a kink, a step or an end.
+    /// Returns whether one of the bodies touches with a kink, a step or an end.
     pub fn kink(&self) -> bool {
         self.rail_kink || self.wheel_kink
     }
@@ -324,7 +334,7 @@ fn contact(attitude: &Attitude, c: &Candidate, height: f64) -> Contact {
         wheel_x: c.wheel.x,
         rail_z: c.rail.z,
         wheel_z: c.wheel.z,
-        // Without yaw 0, not −0.
+        // Without yaw y is 0, not −0.
         y: attitude.sin_yaw * (c.wheel.x - rolling_radius * c.wheel.sin / c.wheel.cos) + 0.0,
         contact_angle: c.rail.angle(),
         wheel_angle: c.wheel.angle(),

@@ -1,51 +1,52 @@
-//! Bounds as they stand in the rail's axes, and what two of them say of the gap.
+//! Places bounds in the rail's axes, and bounds the gap between two of them.
 //!
-//! A wheel's ring at the profile point (x, z) reaches, along the normal of an outline tangent Θ without roll, exactly as far
-//! as the point itself along the normal of φ, sinφ = sinΘ cosψ, but for a constant:
+//! A wheel's ring at the profile point (x, z) reaches, along the normal of an outline tangent Θ without roll,
+//! as far as the point itself along the normal of φ, sinφ = sinΘ cosψ, except for a constant:
 //!
 //! ```text
 //! Z cosΘ − X sinΘ ≥ (z cosφ − x sinφ) − R (cosφ − cosΘ)
 //! ```
 //!
-//! with equality at the outline. So a line below the profile is a line below its outline, whatever the yaw, and bounds of
-//! the profile that close with the square of its length do so for the outline.
+//! with equality at the outline. So a line below the profile is a line below its outline, whatever the yaw.
+//! Bounds of the profile whose width shrinks with the square of its length do so for the outline too.
 
 use super::bounds::{Bounds, STEEPEST_SLOPE};
-use super::element::cosine;
 use super::locus::Attitude;
+use crate::numerics::cosine;
 
-/// Bounds in the rail's axes; of a wheel those of its outline.
+/// Bounds in the rail's axes: of a part of the rail, or of the outline of a part of the wheel.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Placed {
-    /// Abscissae \[mm\].
+    /// Least and largest abscissa \[mm\].
     pub x: [f64; 2],
-    /// Sines of its tangents; ∓1 for those turned beyond the vertical.
+    /// Least and largest sine of the tangents; ∓1 for tangents beyond the vertical.
     pub sine: [f64; 2],
-    /// The line z = level + slope x below a wheel, above a rail: height at x = 0 \[mm\], and slope.
+    /// Line z = level + slope x below a wheel or above a rail: height at x = 0 \[mm\] and slope.
     pub line: [f64; 2],
 }
 
 impl Placed {
-    /// What has no outline: no abscissa and no tangent.
+    /// Bounds of a part without outline: no abscissa and no tangent.
     pub const HIDDEN: Self = Self {
         x: [f64::INFINITY, f64::NEG_INFINITY],
         sine: [f64::INFINITY, f64::NEG_INFINITY],
         line: [f64::INFINITY, 0.0],
     };
 
-    /// A part of the rail.
+    /// Takes the bounds of a part of the rail.
     pub fn rail(bounds: &Bounds) -> Self {
         Self { x: bounds.x, sine: bounds.sine, line: bounds.line }
     }
 
-    /// Abscissae that this part of the wheel and one of the rail share: ascending, or none.
+    /// Returns the abscissae that this part of the wheel shares with a part of the rail \[mm\]; not ascending
+    /// if there are none.
     #[inline(always)]
     pub fn shared(&self, rail: &Self) -> [f64; 2] {
         [larger(self.x[0], rail.x[0]), smaller(self.x[1], rail.x[1])]
     }
 
-    /// A gap \[mm\] that no point of this part of the wheel comes below over that part of the rail; infinite where there is no
-    /// abscissa or no tangent in common.
+    /// Returns a lower bound of the gap of this part of the wheel over a part of the rail \[mm\]; infinite if
+    /// they have no abscissa or no tangent in common.
     #[inline(always)]
     pub fn gap_over(&self, rail: &Self) -> f64 {
         let [low, high] = self.shared(rail);
@@ -55,12 +56,12 @@ impl Placed {
         if (low <= high) & (flat <= steep) { gap } else { f64::INFINITY }
     }
 
-    /// Leaves only what is no farther from an abscissa than this \[mm\]; everything where that is no number.
+    /// Narrows the abscissae to those within `reach` of `middle` \[mm\]; changes nothing if either is NaN.
     pub fn narrow(&mut self, middle: f64, reach: f64) {
         self.x = [self.x[0].max(middle - reach), self.x[1].min(middle + reach)];
     }
 
-    /// The same, wider by the rounding of an abscissa \[mm\] and of a sine.
+    /// Returns the bounds, wider by the rounding of an abscissa \[mm\] and of a sine.
     #[inline]
     #[must_use]
     pub fn widened(self, abscissa: f64, sine: f64) -> Self {
@@ -72,135 +73,135 @@ impl Placed {
     }
 }
 
-/// The larger of two that are numbers, by one instruction.
+/// Returns the larger of two numbers that are not NaN, by one instruction.
 #[inline(always)]
 fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// The smaller of two that are numbers, by one instruction.
+/// Returns the smaller of two numbers that are not NaN, by one instruction.
 #[inline(always)]
 fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
-impl Attitude {
-    /// A part of the wheel; [`Placed::HIDDEN`] where it has no outline that is seen.
-    #[inline]
-    pub fn place(&self, bounds: &Bounds) -> Placed {
-        if self.sin_yaw == 0.0 && self.sin_roll == 0.0 {
-            let [level, slope] = bounds.line;
-            let x = [bounds.x[0] + self.offset, bounds.x[1] + self.offset];
-            return Placed { x, sine: bounds.sine, line: [level - slope * self.offset, slope] };
-        }
-        if self.sin_yaw == 0.0 {
-            let Bounds { x, z, sine, cosine, chord, level, .. } = *bounds;
-            return self.rolled_bounds(&Outline { x, z, sine, cosine: [cosine; 2], chord, level });
-        }
-        self.yawed(bounds).map_or(Placed::HIDDEN, |outline| self.rolled_bounds(&outline))
+/// Places the bounds of a part of the wheel; [`Placed::HIDDEN`] if it has no outline that is seen.
+#[inline]
+pub fn placed_bounds(attitude: &Attitude, bounds: &Bounds) -> Placed {
+    if attitude.sin_yaw == 0.0 && attitude.sin_roll == 0.0 {
+        let [level, slope] = bounds.line;
+        let x = [bounds.x[0] + attitude.offset, bounds.x[1] + attitude.offset];
+        return Placed { x, sine: bounds.sine, line: [level - slope * attitude.offset, slope] };
     }
+    if attitude.sin_yaw == 0.0 {
+        let Bounds { x, z, sine, cosine, chord, level, .. } = *bounds;
+        return rolled_bounds(attitude, &Outline { x, z, sine, cosine: [cosine; 2], chord, level });
+    }
+    yawed(attitude, bounds).map_or(Placed::HIDDEN, |outline| rolled_bounds(attitude, &outline))
+}
 
-    /// Bounds of the unrolled outline.
-    #[inline]
-    fn yawed(&self, bounds: &Bounds) -> Option<Outline> {
-        let steepest = self.steepest_tangent;
-        if bounds.tangent[0] >= steepest || bounds.tangent[1] <= -steepest {
+/// Returns the bounds of the outline before the roll; `None` if it is hidden.
+#[inline]
+fn yawed(attitude: &Attitude, bounds: &Bounds) -> Option<Outline> {
+    let steepest = attitude.steepest_tangent;
+    if bounds.tangent[0] >= steepest || bounds.tangent[1] <= -steepest {
+        return None;
+    }
+    let tangent = [larger(bounds.tangent[0], -steepest), smaller(bounds.tangent[1], steepest)];
+    let most = bounds.curvature[1];
+    if most < 0.0 && 1.0 + most * (attitude.radius - bounds.z[1]) * attitude.sin_yaw_squared() <= 0.0 {
+        // The rings beside it hide it, even where its tangent is level: steeper rings are wider.
+        return None;
+    }
+    let rolling = [attitude.radius - bounds.z[0], attitude.radius - bounds.z[1]];
+    // ϱ tanφ tanψ sinψ, with the radius that makes it extreme.
+    let shift = [
+        tangent[0] * attitude.shift * rolling[usize::from(tangent[0] > 0.0)],
+        tangent[1] * attitude.shift * rolling[usize::from(tangent[1] < 0.0)],
+    ];
+    let x = [bounds.x[0] * attitude.cos_yaw + shift[0], bounds.x[1] * attitude.cos_yaw + shift[1]];
+    // 1 − cosω ≤ sin²ω.
+    let sin_omega = larger(-tangent[0], tangent[1]) * attitude.tan_yaw;
+    let z = [bounds.z[0], bounds.z[1] + rolling[0] * sin_omega * sin_omega];
+    let sine =
+        [larger(bounds.sine[0] / attitude.cos_yaw, -1.0), smaller(bounds.sine[1] / attitude.cos_yaw, 1.0)];
+    // cosΘ = √(cos²φ − sin²ψ)/cosψ lies between cosφ − |sinψ| and cosφ.
+    let away = attitude.sin_yaw.abs();
+    let least = [larger(bounds.cosine[0] - away, 0.0), larger(bounds.cosine[1] - away, 0.0)];
+    let [cos, sin] = bounds.chord;
+    let outline_sin = sin / attitude.cos_yaw;
+    let outline_cos = larger((1.0 - outline_sin) * (1.0 + outline_sin), 0.0).sqrt();
+    // cosφ − cosΘ, free of cancellation.
+    let nearer = outline_sin * outline_sin * attitude.sin_yaw_squared() / (cos + outline_cos);
+    Some(Outline {
+        x,
+        z,
+        sine,
+        cosine: [least, bounds.cosine],
+        chord: [outline_cos, outline_sin],
+        level: bounds.level - attitude.radius * nearer,
+    })
+}
+
+#[inline]
+fn rolled_bounds(attitude: &Attitude, outline: &Outline) -> Placed {
+    let (cos, sin) = (attitude.cos_roll, attitude.sin_roll);
+    let Outline { x, z, sine, cosine: [least, most], .. } = outline;
+    let (rising, falling) = if sin > 0.0 { (1, 0) } else { (0, 1) };
+    let [chord_cos, chord_sin] = outline.chord;
+    let turned = chord_cos * cos + chord_sin * sin;
+    let line = if chord_cos > 0.0 && turned * STEEPEST_SLOPE >= 1.0 {
+        let slope = (chord_sin * cos - chord_cos * sin) / turned;
+        [outline.level / turned - slope * attitude.offset, slope]
+    } else {
+        [z[0] * cos - x[rising] * sin, 0.0]
+    };
+    let x = [attitude.offset + x[0] * cos + z[falling] * sin, attitude.offset + x[1] * cos + z[rising] * sin];
+    // The largest and the least that the roll subtracts, and ∓1 where it may turn beyond the vertical.
+    let off = if sin > 0.0 { [most[0], least[1]] } else { [least[0], most[1]] };
+    let beyond = |end: usize| least[end] * cos + sine[end] * sin < 0.0;
+    let first = if sine[0] < 0.0 && beyond(0) { -1.0 } else { sine[0] * cos - off[0] * sin };
+    let last = if sine[1] > 0.0 && beyond(1) { 1.0 } else { sine[1] * cos - off[1] * sin };
+    Placed { x, sine: [first, last], line }
+}
+
+/// Returns bounds of the outline's curvature where a part of the profile is seen, and the largest
+/// |dX/dx_W| along the whole part; `None` if the rings beside it hide all of it.
+pub fn outline_bounds(attitude: &Attitude, bounds: &Bounds) -> Option<([f64; 2], f64)> {
+    let [least, most] = bounds.curvature;
+    let sin = larger(-bounds.sine[0], bounds.sine[1]) / attitude.cos_yaw;
+    let turned = attitude.cos_roll + sin / cosine(sin) * attitude.sin_roll.abs();
+    if attitude.sin_yaw == 0.0 {
+        return Some(([least, most], turned));
+    }
+    let level = bounds.sine[0] <= 0.0 && bounds.sine[1] >= 0.0;
+    let cos = bounds.cosine.map(|cos| cos.max(attitude.sin_yaw.abs()));
+    let (steep, flat) = (cos[0].min(cos[1]), if level { 1.0 } else { cos[0].max(cos[1]) });
+    let tilt = [flat, steep].map(|cos| (attitude.sin_yaw_squared() / (cos * cos)).min(1.0));
+    let rolling = bounds.z.map(|z| attitude.radius - z);
+    let ring = [rolling[1] * tilt[0] / flat, rolling[0] * tilt[1] / steep];
+    // The outline's radius is r (1 − tilt) + ring; with the hollow side down and a ring larger than r it
+    // is hidden.
+    let seen = |curvature: f64, k: usize| 1.0 - tilt[k] + curvature * ring[k];
+    let highest = if most > 0.0 {
+        (most.recip() * (1.0 - tilt[1]) + ring[0]).recip()
+    } else {
+        let seen = seen(most, 0);
+        if seen <= 0.0 {
             return None;
         }
-        let tangent = [larger(bounds.tangent[0], -steepest), smaller(bounds.tangent[1], steepest)];
-        let most = bounds.curvature[1];
-        if most < 0.0 && 1.0 + most * (self.radius - bounds.z[1]) * self.sin_yaw_squared() <= 0.0 {
-            // Hidden by the rings beside it, even where its tangent is level: steeper rings are wider.
-            return None;
-        }
-        let rolling = [self.radius - bounds.z[0], self.radius - bounds.z[1]];
-        // ϱ tanφ tanψ sinψ, with the radius that makes it extreme.
-        let shift = [
-            tangent[0] * self.shift * rolling[usize::from(tangent[0] > 0.0)],
-            tangent[1] * self.shift * rolling[usize::from(tangent[1] < 0.0)],
-        ];
-        let x = [bounds.x[0] * self.cos_yaw + shift[0], bounds.x[1] * self.cos_yaw + shift[1]];
-        // 1 − cosω ≤ sin²ω.
-        let sin_omega = larger(-tangent[0], tangent[1]) * self.tan_yaw;
-        let z = [bounds.z[0], bounds.z[1] + rolling[0] * sin_omega * sin_omega];
-        let sine = [larger(bounds.sine[0] / self.cos_yaw, -1.0), smaller(bounds.sine[1] / self.cos_yaw, 1.0)];
-        // cosΘ = √(cos²φ − sin²ψ)/cosψ lies between cosφ − |sinψ| and cosφ.
-        let away = self.sin_yaw.abs();
-        let least = [larger(bounds.cosine[0] - away, 0.0), larger(bounds.cosine[1] - away, 0.0)];
-        let [cos, sin] = bounds.chord;
-        let outline_sin = sin / self.cos_yaw;
-        let outline_cos = larger((1.0 - outline_sin) * (1.0 + outline_sin), 0.0).sqrt();
-        // cosφ − cosΘ, free of cancellation.
-        let nearer = outline_sin * outline_sin * self.sin_yaw_squared() / (cos + outline_cos);
-        Some(Outline {
-            x,
-            z,
-            sine,
-            cosine: [least, bounds.cosine],
-            chord: [outline_cos, outline_sin],
-            level: bounds.level - self.radius * nearer,
-        })
-    }
-
-    #[inline]
-    fn rolled_bounds(&self, outline: &Outline) -> Placed {
-        let (cos, sin) = (self.cos_roll, self.sin_roll);
-        let Outline { x, z, sine, cosine: [least, most], .. } = outline;
-        let (rising, falling) = if sin > 0.0 { (1, 0) } else { (0, 1) };
-        let [chord_cos, chord_sin] = outline.chord;
-        let turned = chord_cos * cos + chord_sin * sin;
-        let line = if chord_cos > 0.0 && turned * STEEPEST_SLOPE >= 1.0 {
-            let slope = (chord_sin * cos - chord_cos * sin) / turned;
-            [outline.level / turned - slope * self.offset, slope]
-        } else {
-            [z[0] * cos - x[rising] * sin, 0.0]
-        };
-        let x = [self.offset + x[0] * cos + z[falling] * sin, self.offset + x[1] * cos + z[rising] * sin];
-        // The largest and the least that the roll takes off, and ∓1 where it may turn beyond the vertical.
-        let off = if sin > 0.0 { [most[0], least[1]] } else { [least[0], most[1]] };
-        let beyond = |end: usize| least[end] * cos + sine[end] * sin < 0.0;
-        let first = if sine[0] < 0.0 && beyond(0) { -1.0 } else { sine[0] * cos - off[0] * sin };
-        let last = if sine[1] > 0.0 && beyond(1) { 1.0 } else { sine[1] * cos - off[1] * sin };
-        Placed { x, sine: [first, last], line }
-    }
-
-    /// Curvatures of the outline of a part of the profile where it is seen, and the largest |dX/dx_W| all along it; `None` where all
-    /// of it is hidden by the rings beside it.
-    pub fn outline_bounds(&self, bounds: &Bounds) -> Option<([f64; 2], f64)> {
-        let [least, most] = bounds.curvature;
-        let sin = larger(-bounds.sine[0], bounds.sine[1]) / self.cos_yaw;
-        let turned = self.cos_roll + sin / cosine(sin) * self.sin_roll.abs();
-        if self.sin_yaw == 0.0 {
-            return Some(([least, most], turned));
-        }
-        let level = bounds.sine[0] <= 0.0 && bounds.sine[1] >= 0.0;
-        let cos = bounds.cosine.map(|cos| cos.max(self.sin_yaw.abs()));
-        let (steep, flat) = (cos[0].min(cos[1]), if level { 1.0 } else { cos[0].max(cos[1]) });
-        let tilt = [flat, steep].map(|cos| (self.sin_yaw_squared() / (cos * cos)).min(1.0));
-        let rolling = bounds.z.map(|z| self.radius - z);
-        let ring = [rolling[1] * tilt[0] / flat, rolling[0] * tilt[1] / steep];
-        // The outline's radius is r (1 − tilt) + ring; with the hollow side down and a ring larger than r it is hidden.
-        let seen = |curvature: f64, k: usize| 1.0 - tilt[k] + curvature * ring[k];
-        let highest = if most > 0.0 {
-            (most.recip() * (1.0 - tilt[1]) + ring[0]).recip()
-        } else {
-            let seen = seen(most, 0);
-            if seen <= 0.0 {
-                return None;
-            }
-            most / seen
-        };
-        let lowest = if least > 0.0 {
-            (least.recip() * (1.0 - tilt[0]) + ring[1]).recip()
-        } else {
-            let seen = seen(least, 1);
-            if seen > 0.0 { least / seen } else { f64::NEG_INFINITY }
-        };
-        // dX/dx_W = (cos(roll) + tanΘ sin(roll)) (1 − tilt + κ ring)/cosψ.
-        let most_seen = 1.0 - tilt[0] + most * ring[usize::from(most > 0.0)];
-        let least_seen = 1.0 - tilt[1] + least * ring[usize::from(least < 0.0)];
-        Some(([lowest, highest], most_seen.max(-least_seen) * turned / self.cos_yaw))
-    }
+        most / seen
+    };
+    let lowest = if least > 0.0 {
+        (least.recip() * (1.0 - tilt[0]) + ring[1]).recip()
+    } else {
+        let seen = seen(least, 1);
+        if seen > 0.0 { least / seen } else { f64::NEG_INFINITY }
+    };
+    // dX/dx_W = (cos(roll) + tanΘ sin(roll)) (1 − tilt + κ ring)/cosψ.
+    let most_seen = 1.0 - tilt[0] + most * ring[usize::from(most > 0.0)];
+    let least_seen = 1.0 - tilt[1] + least * ring[usize::from(least < 0.0)];
+    Some(([lowest, highest], most_seen.max(-least_seen) * turned / attitude.cos_yaw))
 }
 
 /// Bounds of an outline before the roll.
@@ -208,9 +209,9 @@ struct Outline {
     x: [f64; 2],
     z: [f64; 2],
     sine: [f64; 2],
-    /// Least and largest cosines that the two sines may have.
+    /// Least and largest cosine of the tangents at both ends of the range of sines.
     cosine: [[f64; 2]; 2],
-    /// Direction of the line below it, cosine first; cosine 0 where there is none.
+    /// Direction of the line below the outline, \[cos, sin\]; cos is 0 if there is no line.
     chord: [f64; 2],
     level: f64,
 }

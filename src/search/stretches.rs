@@ -1,89 +1,90 @@
-//! Pairs with a stretch of a polynomial, or with a yawed arc: cut until the bounds of the parts decide, then solved by
-//! Newton's method.
+//! Solves pairs with a stretch of a polynomial or a yawed arc: cuts them until the bounds of the parts
+//! decide, then uses Newton's method.
 //!
-//! Where both outlines pass an abscissa X the sines of their tangents differ by D(X), and
+//! At an abscissa X that both outlines pass, the sines of their tangents differ by D(X), and
 //!
 //! ```text
 //! dD/dX = κ_W − κ_R
 //! ```
 //!
-//! with the curvatures of the outline and of the rail, wherever the two are and however steep. So bounds of the two
-//! curvatures tell whether there is no common tangent, one at most, or only largest gaps; and from any point of either part
-//! the mean value theorem tells where a common tangent must be.
+//! with the curvatures of the outline and of the rail at X, however steep they are. So bounds of the two
+//! curvatures tell whether there is no common tangent, one at most, or only largest gaps; from any point of
+//! either part the mean value theorem tells where a common tangent must be.
 
 use super::body::LEAST_KINK;
 use super::bounds::Bounds;
 use super::candidates::{EQUAL_CURVATURES, Foot, Search};
-use super::element::{Element, Place, Shape, cosine, rising_root};
-use super::placed::Placed;
+use super::element::{Element, Place, Shape, rising_root};
+use super::placed::{Placed, outline_bounds, placed_bounds};
+use crate::numerics::cosine;
 use crate::numerics::roots::bracketed;
 use crate::profile::Side;
 
-/// A stretch is halved no more often than this: the parts are then 1e-3 of it long. Two common tangents that close together
-/// enclose a dip of a noise of micrometres by less than 1e-12 mm.
+/// Most halvings of a stretch: the parts are then 1e-3 of its length. Two common tangents that are closer
+/// enclose a dip of less than 1e-12 mm in a noise of micrometres.
 const DEEPEST: u32 = 10;
 
-/// No more pairs of parts are looked at for two elements: only curves that nearly agree all along come so far, and among
-/// their places of least gap no more can be told apart.
+/// Most pairs of parts looked at for two elements: only curves that nearly agree all along need so many, and
+/// more of their places of least gap cannot be told apart.
 const MOST_PARTS: u32 = 512;
 
-/// Halvings after which two parts are asked whether they are one curve: pairs that differ seldom come so far, and the question
-/// costs as much as looking at ten parts.
+/// Number of halvings after which two parts are tested for being one curve: pairs that differ seldom come so
+/// far, and the test costs as much as looking at ten parts.
 const AGREE_AT: u32 = 6;
 
-/// Steps of Newton's method: from a bounded start it takes three to five.
+/// Most Newton steps: from a bounded start it takes three to five.
 const NEWTON_STEPS: u32 = 12;
 
-/// Roundings of a sine by which the tangents of two curves may differ and be equal.
+/// Largest difference of the sines of two tangents that count as equal.
 pub(super) const SAME_TANGENT: f64 = 2.0 * LEAST_KINK;
 
-/// Part of an element, as it stands in the rail's axes.
+/// A part of an element, placed in the rail's axes.
 #[derive(Clone, Copy)]
 struct Part {
-    /// Parameters between which it lies.
+    /// Range of the parameter.
     range: [f64; 2],
-    /// Parameter of its middle.
+    /// Parameter of the middle.
     middle: f64,
-    /// The middle of the outline, or of the rail.
+    /// Point at the middle: of the wheel's outline, or of the rail.
     place: Place,
-    /// Bounds.
+    /// Bounds in the rail's axes.
     placed: Placed,
-    /// Curvatures \[1/mm\], of a wheel's outline where it is seen.
+    /// Least and largest curvature \[1/mm\]: of the wheel's outline where it is seen, or of the rail.
     curvature: [f64; 2],
-    /// How often its stretch was halved.
+    /// Number of halvings so far.
     depth: u32,
 }
 
-/// Two elements under way to be solved.
+/// Two elements while they are solved.
 struct Pair<'s, 'a> {
     search: &'s mut Search<'a>,
     elements: [u32; 2],
     shapes: [&'a Element; 2],
-    /// Both elements whole.
+    /// Both whole elements.
     wholes: [&'s Part; 2],
-    /// Pairs of parts that may still be looked at.
+    /// Number of pairs of parts that may still be looked at.
     parts_left: u32,
-    /// Whether both elements have turned out to be one curve: their place is then known.
+    /// Whether both elements have turned out to be one curve: their place of contact is then known.
     are_one: bool,
 }
 
-/// What bounds of two parts tell.
+/// What the bounds of two parts tell about common tangents.
 enum Verdict {
-    /// No common tangent that counts.
+    /// There is no common tangent that counts.
     Nothing,
-    /// A least gap at most; if there is one, its abscissa is near this.
+    /// There is one least gap at most; its abscissa would be near this \[mm\].
     OneNear(f64),
-    /// Anything.
+    /// The bounds exclude nothing.
     Open,
 }
 
 /// Looks for contact of two elements.
 ///
-/// `placed`: bounds of the whole outline of the wheel's, where they are known.
+/// `placed` holds the bounds of the whole outline of the wheel's element, if they are known.
 pub(super) fn meet(search: &mut Search, elements: [u32; 2], placed: Option<&Placed>) {
     let [above, below] = search.elements(elements);
     search.solves += 1;
-    let Some((curvature, _)) = search.attitude.outline_bounds(&above.bounds) else { return };
+    let Some((curvature, _)) = outline_bounds(search.attitude, &above.bounds) else { return };
     if flatter(curvature, below.bounds.curvature) {
         return;
     }
@@ -92,8 +93,8 @@ pub(super) fn meet(search: &mut Search, elements: [u32; 2], placed: Option<&Plac
         Part { range: [a, b], middle: a + (b - a) / 2.0, place, placed, curvature, depth: 0 }
     };
     let placed = placed.copied();
-    let placed =
-        placed.unwrap_or_else(|| search.attitude.place(&above.bounds).widened(search.slack, SAME_TANGENT));
+    let placed = placed
+        .unwrap_or_else(|| placed_bounds(search.attitude, &above.bounds).widened(search.slack, SAME_TANGENT));
     let wheel = whole(above, search.attitude.outline_place(&above.middle), placed, curvature);
     let rail = whole(below, below.middle, Placed::rail(&below.bounds), below.bounds.curvature);
     let (shapes, wholes) = ([above, below], [&wheel, &rail]);
@@ -101,28 +102,30 @@ pub(super) fn meet(search: &mut Search, elements: [u32; 2], placed: Option<&Plac
     pair.refine(&wheel, &rail);
 }
 
-/// The common tangent of two elements that Newton's method leads to from a start; `None` where that is beyond their ends.
+/// Returns the common tangent of two elements to which Newton's method leads from `start`; `None` if it is
+/// beyond their ends.
 pub(super) fn follow(search: &Search, elements: [u32; 2], start: [f64; 2]) -> Option<[Foot; 2]> {
     let shapes = search.elements(elements);
     newton(search, shapes, start, shapes.map(|element| element.range))
 }
 
 impl Part {
-    /// Whether a common tangent of this part of the wheel and one of the rail can only be a least gap, and there is one at most.
+    /// Returns whether there is at most one common tangent of this part of the wheel and a part of the rail,
+    /// and it can only be a least gap.
     fn is_rounder(&self, rail: &Self) -> bool {
         self.curvature[0] > rail.curvature[1]
     }
 }
 
-/// Whether all of a part of the wheel is less curved than all of one of the rail: a common tangent is then a largest gap, not a
-/// least one.
+/// Returns whether a part of the wheel is everywhere less curved than a part of the rail: a common tangent is
+/// then a largest gap, not a least one.
 fn flatter(wheel: [f64; 2], rail: [f64; 2]) -> bool {
     let (above, below) = (wheel[1], rail[0]);
     above < below && below - above > EQUAL_CURVATURES * (above.abs() + below.abs())
 }
 
 impl Pair<'_, '_> {
-    /// Half of a part of an element of one body; `None` where it has no outline.
+    /// Makes the part of an element over `range`; `None` if it has no outline.
     fn half(&self, side: Side, range: [f64; 2], depth: u32) -> Option<Part> {
         let (element, body) = (self.shapes[index(side)], self.search.bodies[index(side)]);
         let half = (range[1] - range[0]) / 2.0;
@@ -142,8 +145,8 @@ impl Pair<'_, '_> {
         let (place, placed, curvature) = match side {
             Side::Wheel => {
                 let place = attitude.outline_place(&own);
-                let (curvature, fastest) = attitude.outline_bounds(&bounds)?;
-                let mut placed = attitude.place(&bounds).widened(self.search.slack, SAME_TANGENT);
+                let (curvature, fastest) = outline_bounds(attitude, &bounds)?;
+                let mut placed = placed_bounds(attitude, &bounds).widened(self.search.slack, SAME_TANGENT);
                 if let Shape::Stretch(stretch) = &element.shape {
                     placed.narrow(place.station.x, half * stretch.reach.run * fastest + self.search.slack);
                 }
@@ -213,8 +216,8 @@ impl Pair<'_, '_> {
         }
     }
 
-    /// Length of a part that can be halved \[mm\], a bound of it. An arc's bounds leave nothing open but for the curvature of a
-    /// yawed one's outline.
+    /// Returns a bound of the length of a part that can be halved \[mm\]; `None` if it cannot. The bounds of
+    /// an arc leave nothing open, except the curvature of a yawed arc's outline.
     fn length(&self, side: Side, part: &Part) -> Option<f64> {
         let placed = part.placed.x[1] - part.placed.x[0];
         let length = match &self.shapes[index(side)].shape {
@@ -232,7 +235,8 @@ impl Pair<'_, '_> {
         [[a, part.middle], [part.middle, b]].map(|range| self.half(side, range, part.depth + 1))
     }
 
-    /// What the two parts' middles and curvatures tell of the abscissae where the tangents can be equal.
+    /// Returns what the middles and curvatures of two parts tell about the abscissae at which the tangents
+    /// can be equal.
     fn look(&self, wheel: &Part, rail: &Part, [low, high]: [f64; 2]) -> Verdict {
         let (above, below) = (&wheel.place.station, &rail.place.station);
         if above.sin.is_nan() {
@@ -241,7 +245,7 @@ impl Pair<'_, '_> {
         let slack = self.search.slack;
         let ([w0, w1], [r0, r1]) = (wheel.curvature, rail.curvature);
         if r0 == f64::NEG_INFINITY && rail.place.run == 0.0 {
-            // Over a point of the rail.
+            // The rail's part is a point.
             let there = reached(above.sin, [w0, w1], below.x - above.x);
             return if apart(there, rail.placed.sine) {
                 Verdict::Nothing
@@ -251,7 +255,7 @@ impl Pair<'_, '_> {
         }
         let there = reached(below.sin, [r0, r1], above.x - below.x);
         if w1 == f64::INFINITY && wheel.place.run == 0.0 {
-            // A point of an unyawed wheel.
+            // The part of an unyawed wheel is a point.
             return if apart(there, wheel.placed.sine) {
                 Verdict::Nothing
             } else {
@@ -268,7 +272,7 @@ impl Pair<'_, '_> {
             if first > last {
                 return Verdict::Nothing;
             }
-            // Where it would be with the curvatures of both middles.
+            // Where the tangents would be equal with the curvatures of both middles.
             let bends = [&wheel.place, &rail.place].map(|place| place.turn / place.run);
             let near =
                 above.x + (below.sin - above.sin + bends[1] * (above.x - below.x)) / (bends[0] - bends[1]);
@@ -288,8 +292,9 @@ impl Pair<'_, '_> {
         Verdict::Open
     }
 
-    /// The parameters in the middle of the shared abscissae if the two parts have the same tangents there, at both ends, and
-    /// half way to them: more places than two curves of a drawing share by chance. Without yaw only.
+    /// Returns the parameters in the middle of the shared abscissae if the two parts have the same tangents
+    /// there, at both ends and half way to them: more places than two curves of a drawing share by chance.
+    /// `None` with yaw.
     fn agree(&self, wheel: &Part, rail: &Part) -> Option<[f64; 2]> {
         let [low, high] = wheel.placed.shared(&rail.placed);
         let same = |share: f64| {
@@ -307,10 +312,10 @@ impl Pair<'_, '_> {
         [0.0, 0.25, 0.75, 1.0].into_iter().all(|share| same(share).is_some()).then_some(middle)
     }
 
-    /// The common tangent of two parts with one at most, if the difference of their tangents changes sign between the ends of the
-    /// abscissae that they share.
+    /// Returns the parameters of the common tangent of two parts that have one at most; `None` unless the
+    /// difference of their tangents changes sign between the ends of the abscissae that they share.
     ///
-    /// `above`, `below`: abscissae between which the two lie.
+    /// `above` and `below` are the ranges of abscissae of the wheel's and the rail's part.
     fn between_ends(&self, [wheel, rail]: [&Part; 2], above: [f64; 2], below: [f64; 2]) -> Option<[f64; 2]> {
         let (low, high) = (above[0].max(below[0]), above[1].min(below[1]));
         if low > high + self.search.slack {
@@ -321,7 +326,7 @@ impl Pair<'_, '_> {
         let turn =
             |[p, q]: [f64; 2]| self.at(Side::Wheel, p).station.sin - self.at(Side::Rail, q).station.sin;
         if below[0] == below[1] || above[0] == above[1] {
-            // A point: its tangent is the other's.
+            // One part is a point: it takes the other's tangent.
             let [p, q] = parameters(low);
             let (point, other) = if below[0] == below[1] {
                 (rail, self.at(Side::Wheel, p))
@@ -347,19 +352,21 @@ impl Pair<'_, '_> {
             .map(parameters)
     }
 
-    /// Abscissae of the ends of a part, ascending; `None` where one end of a yawed wheel's has no outline.
+    /// Returns the abscissae of both ends of a part, ascending; `None` if one end of a yawed wheel's part has
+    /// no outline.
     fn ends(&self, side: Side, part: &Part) -> Option<[f64; 2]> {
         let [a, b] = part.range.map(|p| self.at(side, p).station.x);
         if a <= b { Some([a, b]) } else { (b < a).then_some([b, a]) }
     }
 
-    /// A point in the rail's axes.
+    /// Returns the point at a parameter, in the rail's axes.
     fn at(&self, side: Side, parameter: f64) -> Place {
         let own = self.shapes[index(side)].place(&self.search.bodies[index(side)].coefficients, parameter);
         if side == Side::Wheel { self.search.attitude.outline_place(&own) } else { own }
     }
 
-    /// The parameter of a part whose abscissae are monotone at an abscissa of the rail's axes, or that of the nearer end.
+    /// Returns the parameter at an abscissa of the rail's axes, or that of the nearer end, for a part whose
+    /// abscissae are monotone.
     fn parameter_at(&self, side: Side, part: &Part, x: f64) -> f64 {
         let at = |p: f64| {
             let place = self.at(side, p);
@@ -374,7 +381,7 @@ impl Pair<'_, '_> {
         }
     }
 
-    /// Points of both elements at parameters, in their own axes and in the rail's.
+    /// Returns the points of both elements at two parameters, each in its own axes and in the rail's.
     fn places(&self, parameters: [f64; 2]) -> [(Place, Place); 2] {
         places(self.search, self.shapes, parameters)
     }
@@ -401,7 +408,7 @@ fn foot(element: &Element, own: &Place, parameter: f64) -> Foot {
     Foot { station: own.station, radius: element.radius(own), parameter }
 }
 
-/// Bounds of a sine at a distance along x, from bounds of the curvature on the way.
+/// Returns the bounds of a sine at a distance along x, from the bounds of the curvature on the way.
 fn reached(sine: f64, curvature: [f64; 2], distance: f64) -> [f64; 2] {
     let ends = curvature.map(|k| if distance == 0.0 { 0.0 } else { k * distance });
     [sine + ends[0].min(ends[1]), sine + ends[0].max(ends[1])]
@@ -415,7 +422,8 @@ fn one_or_open(wheel: &Part, rail: &Part, x: f64) -> Verdict {
     if wheel.is_rounder(rail) { Verdict::OneNear(x) } else { Verdict::Open }
 }
 
-/// A parameter of a part to start from for an abscissa, as far as its tangent line tells; of a point the other's tangent.
+/// Returns a parameter of a part to start from for an abscissa, by the part's tangent line; for a point, the
+/// parameter with the other part's tangent.
 fn towards(part: &Part, x: f64, other: &Part) -> f64 {
     let Place { station, run, turn, .. } = part.place;
     let step =
@@ -432,8 +440,8 @@ fn places(search: &Search, shapes: [&Element; 2], [p, q]: [f64; 2]) -> [(Place, 
     [(own, search.attitude.outline_place(&own)), (foot, foot)]
 }
 
-/// Newton's method for equal abscissae and equal sines of the tangents; `None` unless it settles between the `limits` of both
-/// parameters, to the rounding of a joint.
+/// Solves for equal abscissae and equal sines of the tangents by Newton's method; `None` unless it settles
+/// within the `limits` of both parameters, to the rounding of a joint.
 fn newton(
     search: &Search,
     shapes: [&Element; 2],
@@ -455,7 +463,7 @@ fn newton(
             return None;
         }
         if settled {
-            // By how much rounding of an abscissa, or a kink that is none, moves the place.
+            // The amount by which rounding of an abscissa, or a kink that counts as none, moves the place.
             let slack = [
                 ((rounding * below.turn).abs() + (below.run * SAME_TANGENT).abs()) / turn.abs(),
                 ((rounding * above.turn).abs() + (above.run * SAME_TANGENT).abs()) / turn.abs(),
@@ -468,7 +476,7 @@ fn newton(
         }
         settled = (above.run * step[0]).abs() + (below.run * step[1]).abs() <= rounding;
         for k in 0..2 {
-            // Beyond its end an element is continued, but not farther than it is long.
+            // Beyond its end an element is continued, but by no more than its own length.
             let width = limits[k][1] - limits[k][0];
             let next = (p[k] + step[k]).clamp(limits[k][0] - width, limits[k][1] + width);
             p[k] = if matches!(shapes[k].shape, Shape::Arc(_)) { next.clamp(-1.0, 1.0) } else { next };

@@ -1,4 +1,4 @@
-//! Sweeps: the contact geometry of a wheelset at many positions, one row per side and contact.
+//! Sweeps: gives the contact geometry of a wheelset at many positions, one row per side and contact.
 
 mod conicity;
 
@@ -8,12 +8,12 @@ use super::wheelset::{Position, Roll, WheelsetOnTrack, WheelsetSearch};
 use super::{Contact, Selection};
 use crate::error::Result;
 
-/// A side of the wheelset.
+/// A side of the track.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TrackSide {
-    /// At negative x of the track.
+    /// The side at negative x of the track.
     Left,
-    /// At positive x.
+    /// The side at positive x of the track.
     Right,
 }
 
@@ -26,21 +26,22 @@ pub struct Row {
     pub yaw: f64,
     /// Roll \[rad\], solved or given, + lowers the right-hand wheel.
     pub roll: f64,
-    /// Which wheel.
+    /// Side of the wheel.
     pub side: TrackSide,
-    /// Number of the contact on its side, from 0, the lowest gap first.
+    /// Number of the contact on its side, from 0, by ascending gap.
     pub number: usize,
     /// Height \[mm\] of the axle's middle above R over the top of rail when this side touches, + up.
     pub z: f64,
-    /// The contact, in the side's own axes.
+    /// The contact, in the axes of its side.
     pub contact: Contact,
-    /// Right less left rolling radius of the two sides' lowest contacts \[mm\]; positive when the wheelset is to the right.
+    /// Right less left rolling radius of the two sides' lowest contacts \[mm\]; positive when the wheelset is
+    /// to the right.
     pub delta_r: f64,
     /// Equivalent conicity tan γ_e at the amplitude |lateral|, or why there is none.
     pub conicity: std::result::Result<Equivalent, NoConicity>,
 }
 
-/// A sweep over positions; keeps its buffers.
+/// Sweeps over positions; keeps its buffers.
 #[derive(Debug, Clone)]
 pub struct Sweep<'a> {
     search: WheelsetSearch<'a>,
@@ -49,13 +50,13 @@ pub struct Sweep<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    /// A sweep that reports the contacts of `selection`, with the equivalent conicity from `conicity` where given: at
-    /// all positions but those with a given roll, where Δr is not odd and none is defined.
+    /// Makes a sweep that reports the contacts of `selection`, with the equivalent conicity from `conicity`
+    /// if that is given. A position with a given roll has no conicity, as Δr is not odd there.
     pub fn new(system: &'a WheelsetOnTrack, selection: Selection, conicity: Option<&'a Conicity>) -> Self {
         Self { search: system.search(), selection, conicity }
     }
 
-    /// Appends the rows of one position to `rows`, left side first. A position without contact has none.
+    /// Appends the rows of one position to `rows`, left side first; none if the position has no contact.
     ///
     /// # Errors
     /// Values that are not finite; angles beyond ±0.5 rad.
@@ -106,7 +107,7 @@ mod tests {
             assert!(row.conicity.is_ok_and(|found| (found.conicity - 0.05).abs() < 1e-9), "{row:?}");
             assert_eq!((row.number, row.lateral, row.roll), (0, 3.0, 0.0));
         }
-        // A cone moved to the right rises on the right.
+        // A cone that moves to the right rises on the right.
         assert!((rows[1].z - rows[0].z - 0.3).abs() < 1e-12, "{rows:?}");
         // A given roll has no conicity.
         rows.clear();

@@ -1,15 +1,18 @@
-//! Branch and bound over the trees of both bodies: only pairs of elements that may hold the lowest gap are solved.
+//! Branch and bound over the trees of both bodies: solves only pairs of elements that may hold the lowest
+//! gap.
 //!
-//! Every pair of nodes has a gap that none of its points comes below. Pairs that cannot come below the lowest gap so far, or
-//! that share no abscissa or no tangent, are dropped; of the others the larger node is replaced by its children, the lower
-//! bound first. The elements that touched in the search before are solved first of all: most other pairs then lie too high.
+//! Every pair of nodes has a lower bound of its gap. A pair is dropped if it cannot come below the lowest gap
+//! so far, or if its nodes share no abscissa or no tangent. Otherwise the larger node is replaced by its
+//! children, the one with the lower bound first. The elements that touched in the last search are solved
+//! first: most other pairs are then too high.
 //!
-//! Cost: elements of one body follow each other along x, so that a node shares abscissae with few nodes of its own size:
-//! at most some multiple of n_W + n_R pairs are looked at, and with a good first gap some dozens.
+//! Cost: elements of one body follow each other along x, so that a node shares abscissae with few nodes of
+//! its own size. At most some multiple of n_W + n_R pairs are looked at, and with a good first gap some
+//! dozens.
 
 use super::body::Node;
 use super::candidates::{Candidate, Meeting, Search};
-use super::placed::Placed;
+use super::placed::{Placed, placed_bounds};
 use super::stretches::SAME_TANGENT;
 use super::{arcs, stretches};
 
@@ -21,14 +24,15 @@ struct Pending {
     bound: f64,
 }
 
-/// A node of the wheel as it stands in the search of this number.
+/// A node of the wheel as placed in the search of number `search`.
 #[derive(Debug, Clone, Copy)]
 struct Standing {
     placed: Placed,
     search: u64,
 }
 
-/// Where the wheel's nodes stand, and the pairs that wait: kept, so that a search allocates nothing.
+/// The placed nodes of the wheel and the pairs that wait; kept between searches, so that a search allocates
+/// nothing.
 #[derive(Debug, Clone)]
 pub(super) struct Walk {
     wheel: Vec<Standing>,
@@ -38,22 +42,22 @@ pub(super) struct Walk {
     search: u64,
     /// Pairs that wait, the next one last.
     waiting: [Pending; DEEPEST_WAIT],
-    /// Pairs of nodes looked at.
+    /// Number of pairs of nodes looked at.
     pub pairs: u64,
 }
 
-/// More pairs than wait at a time: each pair that is replaced leaves one behind at most, down two balanced trees of at most
-/// 2³² nodes.
+/// More pairs than ever wait: each pair that is replaced leaves at most one behind, down two balanced trees
+/// of at most 2³² nodes.
 const DEEPEST_WAIT: usize = 80;
 
-/// How the tree goes on below a node.
+/// How the tree continues below a node.
 #[derive(Debug, Clone, Copy)]
 struct Link {
-    /// The right child, or 0; the left one follows its parent.
+    /// Index of the right child, or 0 for a leaf; the left child follows its parent.
     right: u32,
-    /// The element of a leaf.
+    /// Index of a leaf's element.
     element: u32,
-    /// The larger side of its box \[mm\].
+    /// Larger side of the bounding box \[mm\].
     size: f64,
 }
 
@@ -68,7 +72,7 @@ impl Link {
 }
 
 impl Walk {
-    /// For two trees.
+    /// Makes the walk over two trees.
     pub fn new(wheel: &[Node], rail: &[Node]) -> Self {
         Self {
             wheel: vec![Standing { placed: Placed::HIDDEN, search: 0 }; wheel.len()],
@@ -126,20 +130,20 @@ impl Walk {
         }
     }
 
-    /// Two nodes with a gap that none of their points comes below; infinite where they cannot touch.
+    /// Pairs two nodes with a lower bound of their gap, infinite if they cannot touch.
     #[inline(always)]
     fn pending(&mut self, search: &Search, [wheel, rail]: [u32; 2]) -> Pending {
         let standing = &mut self.wheel[wheel as usize];
         if standing.search != self.search {
             let bounds = &search.bodies[0].nodes[wheel as usize].bounds;
-            let placed = search.attitude.place(bounds).widened(search.slack, SAME_TANGENT);
+            let placed = placed_bounds(search.attitude, bounds).widened(search.slack, SAME_TANGENT);
             *standing = Standing { placed, search: self.search };
         }
         Pending { wheel, rail, bound: standing.placed.gap_over(&self.rail[rail as usize]) }
     }
 }
 
-/// Looks for contact of two elements; `placed`: the wheel's, where it is known.
+/// Looks for contact of two elements; `placed` holds the bounds of the wheel's element, if they are known.
 fn meet(search: &mut Search, elements: [u32; 2], placed: Option<&Placed>) {
     if arcs::meet(search, elements) {
         search.solves += 1;
@@ -148,13 +152,14 @@ fn meet(search: &mut Search, elements: [u32; 2], placed: Option<&Placed>) {
     }
 }
 
-/// The place of contact near a former one, on the same elements; `None` where it has left them.
+/// Returns the place of contact near a former one, on the same elements; `None` if it has left them.
 pub(super) fn follow(search: &Search, meeting: &Meeting) -> Option<Candidate> {
     let [wheel, rail] = stretches::follow(search, meeting.elements, meeting.parameters)?;
     search.candidate(meeting.elements, &wheel, &rail)
 }
 
-/// A gap \[mm\] that the lowest is no higher than: over the wheel's point of a former place of contact.
+/// Returns an upper bound of the lowest gap \[mm\]: the gap over the wheel's point of a former place of
+/// contact.
 fn gap_at(search: &Search, meeting: &Meeting) -> Option<f64> {
     let [above, below] = search.bodies;
     let [wheel, _] = search.elements(meeting.elements);

@@ -1,4 +1,4 @@
-//! A wheelset on its track: both sides lowered, with the roll solved, neglected or given.
+//! Lowers a wheelset onto its track: both sides at once, with the roll solved, neglected or given.
 //!
 //! The wheelset is turned about the middle of its axle, c: a point p of it, relative to c, goes to
 //! c + R_y(roll) R_z(yaw) p. So the right-hand profile origin, S out along the axle and R below it, is at
@@ -14,41 +14,41 @@ use crate::placement::track::{RailDistance, Track, WheelDistance, Wheelset};
 /// How the roll of a wheelset is found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Roll {
-    /// Both wheels touch.
+    /// Finds the roll at which both wheels touch.
     Solve,
-    /// None (the convention of EN 15302): each side is lowered on its own.
+    /// Takes a roll of 0 (the convention of EN 15302): each side is lowered on its own.
     Neglect,
-    /// Given \[rad\], + lowers the right-hand wheel: each side is lowered on its own.
+    /// Takes this roll \[rad\], + lowers the right-hand wheel: each side is lowered on its own.
     Fixed(f64),
 }
 
-/// Where a wheelset stands over its track.
+/// The position of a wheelset over its track.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Position {
     /// Lateral displacement of the axle's middle \[mm\], + to the right.
     pub lateral: f64,
     /// Yaw ψ \[rad\], + moves the right-hand wheel forward.
     pub yaw: f64,
-    /// Roll.
+    /// How the roll is found.
     pub roll: Roll,
 }
 
 /// A profile pair on both sides of a track, the left side mirrored.
 #[derive(Debug, Clone)]
 pub struct WheelsetOnTrack {
-    /// The profiles, in the right side's axes.
+    /// The prepared profiles, in the right side's axes.
     pub pair: ProfilePair,
-    /// Where the rails are.
+    /// The positions of the rails.
     pub track: Track,
-    /// Where the wheels are.
+    /// The positions of the wheels.
     pub wheelset: Wheelset,
 }
 
 impl WheelsetOnTrack {
-    /// A pair on both sides of a track.
+    /// Prepares a pair of profiles on both sides of a track.
     ///
     /// # Errors
-    /// As [`ProfilePair::new`], [`Track::new`] and [`Wheelset::new`].
+    /// The errors of [`ProfilePair::new`], [`Track::new`] and [`Wheelset::new`].
     pub fn new(pair: &Pair, rails: RailDistance, wheels: WheelDistance) -> Result<Self> {
         Ok(Self {
             pair: ProfilePair::new(pair)?,
@@ -58,7 +58,7 @@ impl WheelsetOnTrack {
     }
 }
 
-/// Searches both sides; keeps its buffers, so that searching allocates nothing.
+/// Searches both sides; keeps its buffers, so that a search allocates nothing.
 #[derive(Debug, Clone)]
 pub struct WheelsetSearch<'a> {
     system: &'a WheelsetOnTrack,
@@ -68,7 +68,7 @@ pub struct WheelsetSearch<'a> {
 /// First touch of both wheels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WheelsetTouch<'a> {
-    /// The roll \[rad\], solved or given.
+    /// Roll \[rad\], solved or given.
     pub roll: f64,
     /// Left and right side.
     pub sides: [SideTouch<'a>; 2],
@@ -77,57 +77,57 @@ pub struct WheelsetTouch<'a> {
 /// First touch of one side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SideTouch<'a> {
-    /// Height \[mm\] of the axle's middle above R over the top of rail when this side touches, + up: −0.18 for a
-    /// centred S1002 on 60E1 at 1:40. The same on both sides when the roll is solved.
+    /// Height \[mm\] of the axle's middle above R over the top of rail when this side touches, + up: −0.18
+    /// for a centred S1002 on 60E1 at 1:40. Equal on both sides if the roll is solved.
     pub z: f64,
     /// The side's contacts in its own axes.
     pub touch: Touch<'a>,
 }
 
-/// Left and right, in the order of every pair of sides.
+/// Signs of x of the left and the right side, in the order of every pair of sides.
 const SIGNS: [f64; 2] = [-1.0, 1.0];
 
-/// Largest roll that is looked for \[rad\]: a wheelset tilted by this has one flange on top of the rail.
+/// Largest roll that is tried \[rad\]: at this roll one flange is on top of its rail.
 const LARGEST_ROLL: f64 = 0.1;
 
-/// Rolls \[rad\] at which a sign change is looked for where Newton's method finds no roll: with a lift of 28 mm over 1.5 m a
-/// flange stands on top of its rail; wider gauges and higher flanges need more.
+/// Rolls \[rad\] at which a change of sign is looked for if Newton's method finds no roll: with a lift of 28
+/// mm over 1.5 m a flange is on top of its rail; wider gauges and higher flanges need more.
 const FAR: [f64; 3] = [0.025, 0.05, LARGEST_ROLL];
 
-/// Both sides are lowered no more often than this for one roll. Newton's method takes two to six; a contact beyond 73° leads
-/// it away, and from the far side of the flange it takes as many again. Half of these would do even by halving alone, but
-/// where a wheel leaves its rail: there is no roll then.
+/// Most times that both sides are lowered for one roll. Newton's method takes two to six; a contact beyond
+/// 73° makes it leave the root, and from the far side of the flange it takes as many again. Halving alone
+/// would take half of these, except where a wheel leaves its rail: there is no roll then.
 pub const MOST_LEVELS: u32 = 64;
 
-/// Levels of Newton's method without a sign change, before one is looked for.
+/// Number of Newton's levels without a change of sign before one is looked for.
 const NEWTON_LEVELS: u32 = 5;
 
-/// Newton's steps with the places of contact kept: quadratic, from 1e-3 rad.
+/// Newton steps with the places of contact kept: quadratic, from 1e-3 rad.
 const FOLLOWED: u32 = 6;
 
-/// Both sides lowered at one roll, left and right.
+/// Both sides lowered at one roll; arrays are \[left, right\].
 #[derive(Debug, Clone, Copy)]
 struct Level {
     roll: f64,
     attitudes: [Attitude; 2],
-    /// Of the wheel's profile origin over the rail's.
+    /// Heights of the wheel's profile origin over the rail's \[mm\].
     heights: [f64; 2],
-    /// Of the axle's middle above R over the top of rail.
+    /// Heights of the axle's middle above R over the top of rail \[mm\].
     z: [f64; 2],
-    /// Derivative of the difference of `z` with the roll.
+    /// Derivative of the difference of `z` with respect to the roll \[mm/rad\].
     slope: f64,
-    /// The places of contact.
+    /// The lowest place of contact of each side.
     meetings: [Meeting; 2],
 }
 
 impl WheelsetOnTrack {
-    /// A search over this system.
+    /// Makes a search over this system.
     pub fn search(&self) -> WheelsetSearch<'_> {
         WheelsetSearch { system: self, sides: [self.pair.search(), self.pair.search()] }
     }
 
-    /// The attitude of one side (sign −1 left, +1 right) and the height of the axle's middle above R over the top of
-    /// rail when the wheel's profile origin is level with the rail's.
+    /// Returns the attitude of one side (sign −1 left, +1 right), and the height of the axle's middle above R
+    /// over the top of rail when the wheel's profile origin is level with the rail's \[mm\].
     fn attitude(&self, position: &Position, roll: f64, sign: f64) -> (Attitude, f64) {
         let (radius, half) = (self.wheelset.radius, self.wheelset.wheel_x);
         let mut attitude = Attitude::new(0.0, sign * position.yaw, sign * roll, radius);
@@ -142,16 +142,16 @@ impl WheelsetOnTrack {
 }
 
 impl WheelsetSearch<'_> {
-    /// Lowers the wheelset until it touches; `None` when a side has no wheel over its rail or, with the roll to be
-    /// solved, when within ±0.1 rad there is no roll at which both wheels touch.
+    /// Lowers the wheelset until it touches; `None` if a side has no wheel over its rail, or if the roll is
+    /// to be solved and within ±0.1 rad there is none at which both wheels touch.
     ///
-    /// The difference of the two sides' heights grows with the roll as long as contact is on treads and flanks
-    /// flatter than about atan(D/R) ≈ 73°, D the distance of the contacts; beyond, turning about the axle moves a flange
-    /// sideways faster than down. The root reached from zero roll by Newton's method is taken, else the one that lies between
-    /// zero and a flange on top of its rail.
+    /// The difference of the two sides' heights grows with the roll as long as contact is on treads and
+    /// flanks flatter than about atan(D/R) ≈ 73°, D the distance of the contacts. Beyond that angle, turning
+    /// about the axle moves a flange sideways faster than down. The result is the root that Newton's method
+    /// reaches from zero roll, else the one between zero and a flange on top of its rail.
     /// Accuracy: heights and roll to rounding at the size of the wheelset, about 1e-13 mm and 1e-16 rad.
-    /// Cost: the two sides are lowered two to four times on treads, about ten times at most where a flange is steeper than 73°;
-    /// never more than [`MOST_LEVELS`] times.
+    /// Cost: the two sides are lowered two to four times on treads, about ten times at most where a flange is
+    /// steeper than 73°; never more than [`MOST_LEVELS`] times.
     ///
     /// # Errors
     /// Values that are not finite; angles beyond ±0.5 rad.
@@ -177,10 +177,11 @@ impl WheelsetSearch<'_> {
         Ok(Some(WheelsetTouch { roll, sides }))
     }
 
-    /// Both sides lowered at the roll at which both wheels touch.
+    /// Lowers both sides at the roll at which both wheels touch; `None` if there is no such roll.
     ///
-    /// Method: Newton's, with the places of contact kept until their heights agree; then both sides are lowered, which finds
-    /// them again or shows the next ones. A sign change, once there, brackets it.
+    /// Method: Newton's, with the places of contact kept until their heights agree. Then both sides are
+    /// lowered, which confirms the places or shows the next ones. Once the sign has changed, the root is
+    /// bracketed.
     fn solve_roll(&mut self, position: &Position) -> Option<Level> {
         let mut ends = [None, None];
         let mut level = self.level(position, 0.0, 0.0)?;
@@ -197,7 +198,7 @@ impl WheelsetSearch<'_> {
             };
             level = match self.level(position, next, 0.0) {
                 Some(level) => level,
-                // A wheel beside its rail.
+                // A wheel is beside its rail.
                 None => {
                     let mut rest = far.take().unwrap_or_else(|| Far::new(difference));
                     let level = rest.find_map(|roll| self.level(position, roll, 0.0))?;
@@ -209,7 +210,8 @@ impl WheelsetSearch<'_> {
         None
     }
 
-    /// The next roll to try without a sign change so far: Newton's, or a far one once that has failed.
+    /// Returns the next roll to try before any change of sign: Newton's, or a far one once Newton's has
+    /// failed.
     fn outward(&self, position: &Position, level: &Level, far: &mut Option<Far>, count: u32) -> Option<f64> {
         if far.is_none() {
             let next = self.follow(position, level);
@@ -220,13 +222,14 @@ impl WheelsetSearch<'_> {
         far.get_or_insert_with(|| Far::new(level.difference())).next()
     }
 
-    /// The next roll to try between two of which one is too small: the root with the places of contact kept of the one that is
-    /// nearer to touching, or of the other, or the middle, which every fourth is in any case.
+    /// Returns the next roll to try between two rolls with different signs: the root with the places of
+    /// contact kept from the end that is nearer to touching, or else from the other end, or else the middle.
+    /// Every fourth roll is the middle.
     fn between(&self, position: &Position, ends: [Level; 2], last: &Level, count: u32) -> Option<f64> {
         let [a, b] = ends.map(|end| end.roll);
         let middle = a + (b - a) / 2.0;
         if middle == a || middle == b {
-            // No number between: the height jumps where a wheel leaves its rail.
+            // No number is between: the height jumps where a wheel leaves its rail.
             return None;
         }
         let inside = |roll: &f64| (roll - a) * (roll - b) < 0.0;
@@ -240,8 +243,8 @@ impl WheelsetSearch<'_> {
         Some(followed.unwrap_or(middle))
     }
 
-    /// The roll at which both wheels touch with the places of contact of a level, or where they leave their elements on the
-    /// way there; NaN where there is none.
+    /// Returns the roll at which both wheels touch with the places of contact of a level, or the roll at
+    /// which these leave their elements on the way; NaN if there is none.
     fn follow(&self, position: &Position, level: &Level) -> f64 {
         let (mut roll, mut difference, mut slope) = (level.roll, level.difference(), level.slope);
         for _ in 0..FOLLOWED {
@@ -265,12 +268,13 @@ impl WheelsetSearch<'_> {
         roll
     }
 
-    /// Rounding of a difference of heights \[mm\].
+    /// Returns the rounding of a difference of heights \[mm\].
     fn rounding(&self) -> f64 {
         2.0 * f64::EPSILON * (self.system.wheelset.wheel_x + self.system.wheelset.radius)
     }
 
-    /// Lowers both sides at a given roll, leaving candidates up to `within` above first touch in their buffers.
+    /// Lowers both sides at a given roll, and leaves the candidates up to `within` above first touch in their
+    /// buffers.
     fn level(&mut self, position: &Position, roll: f64, within: f64) -> Option<Level> {
         let placed = SIGNS.map(|sign| self.system.attitude(position, roll, sign));
         let attitudes = placed.map(|(attitude, _)| attitude);
@@ -287,10 +291,12 @@ impl WheelsetSearch<'_> {
         Some(Level { roll, attitudes, heights, z, slope, meetings: [left?, right?] })
     }
 
-    /// Part of one side in the derivative of the difference of heights with the roll \[mm/rad\].
+    /// Returns the part of one side in the derivative of the difference of heights with respect to the roll
+    /// \[mm/rad\].
     ///
-    /// Turning by dα about c moves the point of contact, at (p_x, p_z) from c, by (p_z, −p_x) dα; the wheel then has to rise by
-    /// (p_x + p_z tanθ) dα. The left side's own roll is the negative: the slopes add.
+    /// Turning by dα about c moves the point of contact, at (p_x, p_z) from c, by (p_z, −p_x) dα; the wheel
+    /// then has to rise by (p_x + p_z tanθ) dα. The roll in the left side's axes is the negative, so the two
+    /// parts add.
     fn lever(&self, position: &Position, side: usize, z: f64, candidate: &Candidate) -> f64 {
         let rail = &candidate.rail;
         let x = rail.x + self.system.track.rail_x - SIGNS[side] * position.lateral;
@@ -298,24 +304,24 @@ impl WheelsetSearch<'_> {
         x + down * rail.sin / rail.cos
     }
 
-    /// What the searches of both sides have done so far.
+    /// Returns what the searches of both sides have done so far.
     pub fn work(&self) -> [Work; 2] {
         [self.sides[0].work(), self.sides[1].work()]
     }
 }
 
 impl Level {
-    /// Right height less left height \[mm\].
+    /// Returns the height of the right side less that of the left \[mm\].
     fn difference(&self) -> f64 {
         self.z[1] - self.z[0]
     }
 }
 
-/// Of the rolls tried between two ends every so many is the middle.
+/// Interval, in rolls tried between two ends, at which the middle is taken.
 const HALVED: u32 = 4;
 
-/// Far rolls on both sides, first on the one to which the wheelset has to be turned by its levers: a wheel that stands too high is
-/// raised.
+/// Far rolls on both sides. The first are on the side to which the wheelset must turn by its levers: a wheel
+/// that is too high is raised.
 struct Far {
     first: f64,
     tried: usize,

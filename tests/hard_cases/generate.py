@@ -209,7 +209,7 @@ CASES = {
 }
 
 # What the Report's method gives: undefined points, bounds of the errors [mm, 1], why. Found by running the program's
-# report-newton at the points of each case; `cargo test --test hard_cases` tells when a line no longer holds.
+# report-newton at the points of each case; `cargo test hard_cases` tells when a line no longer holds.
 CANCELS = "(6.13) cancels: noise of 1e-13 mm at any s"
 REPORT_NEWTON = {
     "within_one_nanometre_of_c": (0, 4e-15, 16.0, "no digit is right: s is 1e-16 mm, the noise more"),

@@ -11,6 +11,7 @@ use wheelrail::scene;
 use wheelrail::separation::axis::EtaAxis;
 use wheelrail::separation::grid::{Choice, Method};
 use wheelrail::separation::plan::demand;
+use wheelrail_report::random::Random;
 
 /// Random pairs, as many as `WHEELRAIL_PATCHES` says instead; each seeded by its number.
 const PAIRS: u64 = 3000;
@@ -28,27 +29,6 @@ const AREA: f64 = 1e-3;
 /// Share of the pairs for which the finest grid may leave open what is connected.
 const UNDECIDED: f64 = 0.01;
 
-/// SplitMix64.
-struct Dice(u64);
-
-impl Dice {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    fn between(&mut self, a: f64, b: f64) -> f64 {
-        a + (b - a) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn pick<T: Clone>(&mut self, all: &[T]) -> T {
-        all[(self.next() % all.len() as u64) as usize].clone()
-    }
-}
-
 /// A placed pair and what is asked of it.
 struct Case {
     name: String,
@@ -60,15 +40,15 @@ struct Case {
 impl Case {
     /// A wheel that is let down on a rail, or two points of them put together; `None` where they do not meet.
     fn new(number: u64) -> Option<Self> {
-        let mut dice = Dice(number);
+        let mut dice = Random::new(number);
         let rails: Vec<&str> = standards::rail_names().collect();
         let wheels: Vec<&str> = standards::wheel_names().collect();
-        let (rail, wheel) = (dice.pick(&rails), dice.pick(&wheels));
-        let inclination = dice.pick(&["1:20", "1:40", "0.0"]);
+        let (rail, wheel) = (*dice.pick(&rails), *dice.pick(&wheels));
+        let inclination = *dice.pick(&["1:20", "1:40", "0.0"]);
         let radius = dice.between(200.0, 600.0);
         let approach = 10f64.powf(dice.between(-4.0, -0.3));
-        let yaw = dice.pick(&[0.0, 1.0, 1.0]) * dice.between(-0.08, 0.08) * dice.between(0.0, 1.0);
-        let (placement, how) = if dice.pick(&[true, true, false]) {
+        let yaw = *dice.pick(&[0.0, 1.0, 1.0]) * dice.between(-0.08, 0.08) * dice.between(0.0, 1.0);
+        let (placement, how) = if *dice.pick(&[true, true, false]) {
             let (offset, roll) = (dice.between(-9.0, 9.0), dice.between(-0.01, 0.01));
             let how = format!("offset {offset}, roll {roll}");
             let text = format!(
@@ -91,7 +71,7 @@ impl Case {
             "case {number}: {rail} at {inclination} under {wheel}, R {radius}, yaw {yaw}, {how}, δ {approach}"
         );
         // As wide as a patch of the usual curvatures, and some that cut it.
-        let size = approach.sqrt() * dice.pick(&[15.0, 40.0, 60.0]);
+        let size = approach.sqrt() * *dice.pick(&[15.0, 40.0, 60.0]);
         let mut end = |sign: f64| sign * size * dice.between(0.3, 1.0);
         let window = Window { xi: [end(-1.0), end(1.0)], eta: [end(-1.0), end(1.0)] };
         Some(Self { name, placement, approach, window })

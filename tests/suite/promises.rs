@@ -1,7 +1,7 @@
 //! What is promised of s, on random pairs against 28-digit values: relative and absolute errors, estimates at every tolerance, and
 //! where there is a surface at all.
 //!
-//! `WHEELRAIL_PROMISE_SCENES=5000 cargo test --test promises -- --nocapture` is the long run.
+//! `WHEELRAIL_PROMISE_SCENES=5000 cargo test promises -- --nocapture` is the long run.
 
 mod exact;
 mod twice;
@@ -15,6 +15,7 @@ use wheelrail::separation::grid::Method;
 use wheelrail::separation::plan::{FULL_PRECISION, plan};
 use wheelrail::separation::values::Values;
 use wheelrail_report::errors::{inside_contact, over_contact};
+use wheelrail_report::random::Random;
 use wheelrail_report::reference::Reference;
 use wheelrail_report::specimen::{Instrument, Specimen, SpecimenKind};
 
@@ -50,31 +51,6 @@ const SPECIMENS: [[SpecimenKind; 4]; 2] = [
     ],
 ];
 
-/// SplitMix64: the same scenes on every machine.
-struct Dice(u64);
-
-impl Dice {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, n: usize) -> usize {
-        (self.next() % n.max(1) as u64) as usize
-    }
-
-    fn between(&mut self, a: f64, b: f64) -> f64 {
-        a + (b - a) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn pick<'a, T>(&mut self, all: &'a [T]) -> &'a T {
-        &all[self.below(all.len())]
-    }
-}
-
 /// A profile and its exact double.
 type Doubled = (Profile, Exact);
 
@@ -88,8 +64,8 @@ fn built_in(side: Side) -> Vec<Doubled> {
 }
 
 /// A profile as it is measured, worn or new, smoothed; `None` where it turns back.
-fn measured(kinds: &[SpecimenKind], dice: &mut Dice) -> Option<Doubled> {
-    let instrument = Instrument::new(dice.between(0.2, 1.0), dice.between(0.0, 0.005), dice.next());
+fn measured(kinds: &[SpecimenKind], dice: &mut Random) -> Option<Doubled> {
+    let instrument = Instrument::new(dice.between(0.2, 1.0), dice.between(0.0, 0.005), dice.bits());
     doubled(&Specimen::new(*dice.pick(kinds), instrument).ok()?.profile().ok()?)
 }
 
@@ -105,7 +81,7 @@ struct Scene<'a> {
 }
 
 /// Ascending values over a random window.
-fn values(dice: &mut Dice, widest: f64, most: usize, extra: &[f64]) -> Vec<f64> {
+fn values(dice: &mut Random, widest: f64, most: usize, extra: &[f64]) -> Vec<f64> {
     let half = 10f64.powf(dice.between(-1.0, widest));
     let centre = if dice.below(2) == 0 { 0.0 } else { dice.between(-half, half) };
     let n = 2 + dice.below(most);
@@ -131,7 +107,7 @@ impl<'a> Scene<'a> {
     }
 
     /// `None` where the dice give no placed pair.
-    fn new([rail, wheel]: [&'a Doubled; 2], dice: &mut Dice) -> Option<Self> {
+    fn new([rail, wheel]: [&'a Doubled; 2], dice: &mut Random) -> Option<Self> {
         let radius = dice.between(150.0, 1000.0);
         let skew = if dice.below(2) == 0 { 0.0 } else { dice.between(-0.08, 0.08) };
         let at = [dice.between(-36.0, 36.0), dice.between(-60.0, 60.0)];
@@ -230,7 +206,7 @@ impl Tally {
         }
     }
 
-    fn add(&mut self, scene: &Scene<'_>, dice: &mut Dice) {
+    fn add(&mut self, scene: &Scene<'_>, dice: &mut Random) {
         let grids: Vec<_> =
             [(FULL_PRECISION, Some(Method::Pointwise)), (FULL_PRECISION, Some(Method::Spectral))]
                 .into_iter()
@@ -382,7 +358,7 @@ fn mended_scenes_stay_so() {
             Scene::placed([&rail, &wheel], mended.radius, mended.skew, mended.at).expect("a placed pair");
         let [xi, eta] = mended.window.map(|(from, to, n)| equal_steps(from, to, n));
         (scene.xi, scene.axis) = (xi, EtaAxis::new(&eta));
-        tally.add(&scene, &mut Dice(SEED + k as u64));
+        tally.add(&scene, &mut Random::new(SEED + k as u64));
         let worst: Vec<_> = std::mem::take(&mut tally.of_scene).into_iter().flatten().collect();
         assert!(worst.is_empty() && tally.overstepped.is_empty(), "{}: {worst:?}", mended.why);
     }
@@ -395,7 +371,7 @@ fn promises_are_kept_on_random_pairs() {
     assert!(rails.len() > 20 && wheels.len() > 10, "{} rails, {} wheels", rails.len(), wheels.len());
     let mut tally = Tally::default();
     for k in 0..scenes {
-        let mut dice = Dice(SEED + k);
+        let mut dice = Random::new(SEED + k);
         let drawn = [dice.pick(&rails), dice.pick(&wheels)];
         let smoothed = if dice.below(4) == 0 {
             [&SPECIMENS[0][..], &SPECIMENS[1][..]].map(|kinds| measured(kinds, &mut dice))

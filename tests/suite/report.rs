@@ -11,6 +11,7 @@ fn small() -> Measurements {
         seconds: 0.0,
         growth: vec![10, 20],
         every_pair: 50,
+        every_case: 15,
         spacings: vec![2.0],
         sweeps: Extent { positions: 3, amplitude: 0.2, instruments: vec![[0.5, 3.0]] },
         case_side: 20,

@@ -10,10 +10,11 @@ use super::patch::Place;
 use super::points::spread_points;
 use super::ray::{FIRST_CELL, Height, extrapolated};
 use super::relation::{Above, RELATION, normals_between};
-use super::report::{Counts, Differences, Distances, Orders, Report, largest};
+use super::report::{Counts, Differences, Distances, Orders, Report};
+use super::request::{Answer, Request};
 use super::sampler::{Curve, Surface};
-use super::{Answer, Request};
 use wheelrail::error::{Error, Result};
+use wheelrail::numerics::largest;
 use wheelrail::placement::{Body, Placement};
 use wheelrail::profile::Shape;
 

@@ -1,6 +1,6 @@
 //! Where to look: window, joints, tips, boundary and deepest points.
 
-use super::Request;
+use super::request::Request;
 use super::sampler::Surface;
 use wheelrail::numerics::roots::bracketed;
 use wheelrail::patch::Slicer;

@@ -5,6 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use super::floor::Floor;
+use wheelrail::numerics::largest;
 
 /// Order at which chordal errors fall, and how far the median of the observed ones may be from it.
 const EXPECTED_ORDER: f64 = 2.0;
@@ -214,11 +215,6 @@ impl Report {
         self.agrees = objections.is_empty();
         self.objections = objections;
     }
-}
-
-/// The largest of numbers ≥ 0: 0 of none, NaN where one is.
-pub(super) fn largest(all: impl IntoIterator<Item = f64>) -> f64 {
-    all.into_iter().fold(0.0, |a: f64, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) })
 }
 
 /// The whole report, to be read after the name of the contact.

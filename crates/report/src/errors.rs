@@ -1,4 +1,4 @@
-//! A method held to the 60-digit values of a scene.
+//! Compares a method with the 60-digit values of a scene.
 
 use super::reference::{Reference, exact};
 use wheelrail::case::equal_steps;
@@ -14,19 +14,19 @@ pub struct Point {
     pub xi: f64,
     /// η \[mm\].
     pub eta: f64,
-    /// s as computed \[mm\], NaN where the method finds no surface.
+    /// Computed s \[mm\], NaN where the method finds no surface.
     pub found: f64,
-    /// s to f64 precision \[mm\], `None` where there is no surface.
+    /// Exact s in f64 precision \[mm\], `None` where there is no surface.
     pub expected: Option<f64>,
-    /// Whether the point lies over both contact segments, where full relative accuracy is promised.
+    /// Whether the point is over both contact segments, where full relative accuracy is promised.
     pub over_contact: bool,
-    /// … and not within rounding of an end of theirs.
+    /// Whether the point is over both contact segments, and not within rounding of one of their ends.
     pub inside_contact: bool,
 }
 
 impl Point {
-    /// |found − expected| \[mm\]: 0 where there is no surface and none was found, NaN where only one of the two
-    /// has a value.
+    /// Returns |found − expected| \[mm\]: 0 if there is no surface and none was found, NaN if only one of the
+    /// two has a value.
     pub fn error(&self) -> f64 {
         match self.expected {
             Some(expected) => (self.found - expected).abs(),
@@ -35,19 +35,19 @@ impl Point {
         }
     }
 
-    /// Error relative to s, NaN like [`Point::error`]; `None` at C itself, where s = 0 has no relative error,
-    /// and where there is no surface.
+    /// Returns the error relative to s, NaN if only one of the two has a value; `None` at C itself, where s =
+    /// 0 has no relative error, and where there is no surface.
     pub fn relative(&self) -> Option<f64> {
         self.expected.filter(|&expected| expected != 0.0).map(|expected| self.error() / expected.abs())
     }
 }
 
-/// A choice evaluated at all points of a scene's file, in the file's order, on a grid with `columns` equally spaced
-/// columns between them.
+/// Evaluates a choice at all points of a scene's file, in the file's order, on a grid with `columns` equally
+/// spaced columns between them.
 ///
-/// The η values are those of the file, so that spectral columns reach as far, and are the same polynomials, as
-/// on any grid with the same largest |η|. Strips are made where there are many columns: with as many as a grid has,
-/// its own strips are compared.
+/// The η values are those of the file, so that spectral columns reach as far, and are the same polynomials,
+/// as on any grid with the same largest |η|. Strips are made if there are many columns: with as many as a
+/// grid has, the comparison is of that grid's own strips.
 pub fn compare(reference: &Reference, placement: &Placement, choice: &Choice, columns: usize) -> Vec<Point> {
     let [mut xi, eta] = reference.scene.axes();
     if let (Some(&first), Some(&last)) = (xi.first(), xi.last()) {
@@ -69,16 +69,18 @@ pub fn compare(reference: &Reference, placement: &Placement, choice: &Choice, co
     points.collect()
 }
 
-/// Whether (ξ, η) and the wheel's foot below it, at ξ′ − e sinθ with e ≈ η′²/2R, lie over both contact segments.
+/// Returns whether (ξ, η) and the wheel's foot below it, at ξ′ − e sinθ with e ≈ η′²/2R, are over both
+/// contact segments.
 pub fn over_contact(placement: &Placement, xi: f64, eta: f64) -> bool {
     on_contact(placement, xi, eta, 0.0)
 }
 
-/// Ends of segments in the contact frame are known to this share of the profiles' extent: rounding of their abscissae.
+/// Rounding of the ends of segments in the contact frame, from their abscissae, as a share of the profiles'
+/// extent.
 const END_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// Like [`over_contact`], but not within rounding of an end: that belongs to the neighbour as well, on which s has absolute
-/// accuracy only.
+/// Returns whether a point is [`over_contact`], and not within rounding of an end: there the point belongs to
+/// the neighbour too, on which s has only absolute accuracy.
 pub fn inside_contact(placement: &Placement, xi: f64, eta: f64) -> bool {
     let extent = placement.rail.profile().extent().max(placement.wheel.profile().extent());
     on_contact(placement, xi, eta, END_ROUNDING * extent)
@@ -97,24 +99,24 @@ fn on_contact(placement: &Placement, xi: f64, eta: f64, end: f64) -> bool {
     inside(rail, xi) && inside(wheel, xi_w) && inside(wheel, xi_w - e * wheel.frame.sin)
 }
 
-/// The figures of one row of accuracy.csv. A method that misses a surface, or finds one where there is none, has
-/// NaN for its largest errors.
+/// The figures of one row of accuracy.csv. The largest errors are NaN if a method misses a surface, or finds
+/// one where there is none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Errors {
     /// Largest absolute error \[mm\].
     pub max_abs: f64,
-    /// Largest relative error, C itself left out.
+    /// Largest relative error, without C itself.
     pub max_rel: f64,
-    /// 99 % quantile of the relative errors: the largest of fewer than a hundred.
+    /// 99 % quantile of the relative errors; of fewer than a hundred, the largest.
     pub q99_rel: f64,
-    /// Where the largest absolute error is (ξ, η) \[mm\].
+    /// Place (ξ, η) of the largest absolute error \[mm\].
     pub worst: [f64; 2],
-    /// Points with a value where there is none, or without one where there is.
+    /// Number of points with a value where there is none, or without one where there is one.
     pub wrongly_masked: usize,
 }
 
 impl Errors {
-    /// The largest errors and quantiles of some points.
+    /// Calculates the largest errors and quantiles of some points.
     pub fn of(points: &[Point]) -> Self {
         let worst = points.iter().max_by(|p, q| p.error().total_cmp(&q.error()));
         let mut relative: Vec<f64> = points.iter().filter_map(Point::relative).map(f64::abs).collect();

@@ -1,11 +1,9 @@
 //! Hard cases: scenes at the edge of the method, each a file with its provenance, 60-digit values and status.
 //!
-//! The files are made by `tests/hard_cases/generate.py`, which also explains their keys.
+//! `tests/hard_cases/generate.py` makes the files and explains their keys.
 
 use serde::Deserialize;
 
-use super::errors::{Errors, Point, compare};
-use super::hard_checks::{self, Check};
 use super::reference::{Reference, embedded, malformed};
 use wheelrail::error::Result;
 use wheelrail::placement::Placement;
@@ -13,24 +11,24 @@ use wheelrail::separation::axis::EtaAxis;
 use wheelrail::separation::grid::{Choice, Method};
 use wheelrail::separation::plan::{FULL_PRECISION, plan};
 
-/// The methods that a case is run with, in the order of [`Outcome::errors`].
+/// The methods that a case is run with, in the order of [`Outcome::errors`](super::hard_run::Outcome::errors).
 pub const METHODS: [Method; 3] = [Method::Spectral, Method::Pointwise, Method::ReportNewton];
 
-/// Columns between those of a case: none, and as many as make strips.
+/// Numbers of columns between those of a case: none, and as many as make strips.
 pub(super) const COLUMNS: [usize; 2] = [0, 200];
 
-/// Whether the program is known to master a case.
+/// Whether the program is known to pass all checks of a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Status {
     /// All checks pass.
     Holds,
-    /// Some check fails, and the file says why. When all pass, the mark is out of date.
+    /// Some check fails, and the file says why. If all checks pass, this status is out of date.
     ExpectedFailure,
 }
 
 impl Status {
-    /// As in the files.
+    /// Returns the name of the status in the files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Holds => "holds",
@@ -39,50 +37,50 @@ impl Status {
     }
 }
 
-/// What the Report's own iteration gives at the points of a case.
+/// The stated result of the Report's own iteration at the points of a case.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Stated {
-    /// Points where it has no value although both bodies have a surface, or the other way round.
+    /// Number of points where it has no value although both bodies have a surface, or the other way round.
     pub undefined: usize,
-    /// Bound of its absolute error elsewhere \[mm\].
+    /// Bound of its absolute error at the other points \[mm\].
     pub max_abs_error_mm: f64,
-    /// Bound of its relative error there, C itself left out.
+    /// Bound of its relative error at the other points, without C itself.
     pub max_rel_error: f64,
-    /// Why.
+    /// Reason for these figures.
     pub remark: String,
 }
 
-/// How a case must agree with another one.
+/// An agreement that a case must have with another one.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Relation {
     /// Name of the other case.
     pub to: String,
-    /// In which way.
+    /// Kind of agreement.
     pub kind: RelationKind,
 }
 
-/// Ways in which two cases can agree.
+/// The ways in which two cases can agree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RelationKind {
-    /// All lengths times a power of four: the same bits after rescaling.
+    /// All lengths are multiplied by a power of four: the bits are the same after rescaling.
     Scaled,
-    /// x → −x: the same values at −ξ, within rounding.
+    /// Mirrored, x → −x: the values are the same at −ξ, within rounding.
     Mirrored,
-    /// The same surfaces described otherwise: the same values, within rounding.
+    /// The same surfaces are described in another way: the values are the same, within rounding.
     Same,
-    /// η → −η inside one case: the same bits.
+    /// Reversed, η → −η, inside one case: the bits are the same.
     EtaReversed,
 }
 
 /// The patch at one approach inside one window.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct StatedPatch {
-    /// δ \[mm\].
+    /// Approach δ \[mm\].
     pub delta: f64,
-    /// The window.
+    /// The window in which the patch is searched for.
     pub window: StatedWindow,
-    /// Parts by ascending ξ.
+    /// The components, by ascending ξ.
     pub components: Vec<StatedComponent>,
 }
 
@@ -95,32 +93,32 @@ pub struct StatedWindow {
     pub eta: [f64; 2],
 }
 
-/// One part of a patch.
+/// One component of a patch.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct StatedComponent {
-    /// Extent in ξ \[mm\], 25 digits.
+    /// Range of ξ \[mm\], 25 digits.
     pub xi: [String; 2],
-    /// "tip", "window", "profile-end" or "fork".
+    /// What bounds the component at either end: "tip", "window", "profile-end" or "fork".
     pub ends: [String; 2],
     /// |∂s/∂ξ| at tips, 25 digits.
     pub slope: [Option<String>; 2],
-    /// Whether the window cuts it.
+    /// Whether the window cuts the component.
     pub cut_by_window: bool,
 }
 
-/// One file.
+/// One hard case, as its file has it.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct HardCase {
-    /// What it is.
+    /// Title of the case.
     pub title: String,
-    /// Where it comes from, and what it is about.
+    /// Origin of the case, and its subject.
     pub provenance: String,
-    /// Whether the program masters it.
+    /// Whether the program passes all checks of the case.
     pub status: Status,
-    /// Length \[mm\] that absolute bounds are multiplied by; 1 but for scaled cases.
+    /// Length \[mm\] by which absolute bounds are multiplied; 1 except for scaled cases.
     #[serde(default = "one")]
     pub unit: f64,
-    /// What the Report's method gives.
+    /// Stated result of the Report's method.
     pub report_newton: Stated,
     /// Agreement with another case.
     #[serde(default)]
@@ -128,7 +126,7 @@ pub struct HardCase {
     /// Scene and 60-digit values.
     #[serde(flatten)]
     pub reference: Reference,
-    /// The patch.
+    /// Patches of the scene.
     pub patches: Vec<StatedPatch>,
 }
 
@@ -137,7 +135,7 @@ fn one() -> f64 {
 }
 
 impl HardCase {
-    /// Reads a file's text.
+    /// Reads the text of a file.
     ///
     /// # Errors
     /// Text that is not in the format.
@@ -147,62 +145,16 @@ impl HardCase {
         Ok(case)
     }
 
-    /// Full precision with one method, all lengths in the case's unit.
+    /// Returns full precision with one method, with all lengths in the case's unit.
     pub(super) fn choice(&self, placement: &Placement, method: Method) -> Choice {
         let [xi, eta] = self.reference.scene.axes();
         let mut choice = plan(placement, &xi, &EtaAxis::new(&eta), FULL_PRECISION, Some(method)).choice;
         choice.demand.absolute *= self.unit;
         choice
     }
-
-    /// Runs all checks; `all` are the cases that a relation may name.
-    ///
-    /// # Errors
-    /// A scene that cannot be placed; a relation to no case.
-    pub fn run(&self, all: &[Self]) -> Result<Outcome> {
-        let placement = self.reference.placement()?;
-        let points: [Vec<Point>; 3] = METHODS.map(|method| {
-            let choice = self.choice(&placement, method);
-            let columns = if method == Method::Spectral { &COLUMNS[..] } else { &COLUMNS[..1] };
-            columns.iter().flat_map(|&n| compare(&self.reference, &placement, &choice, n)).collect()
-        });
-        let checks = hard_checks::all(self, &placement, &points, all)?;
-        let errors = points.each_ref().map(|points| {
-            let defined: Vec<Point> = points.iter().filter(|p| !p.error().is_nan()).copied().collect();
-            let wrongly_masked = points.len() - defined.len();
-            Errors { wrongly_masked, ..Errors::of(&defined) }
-        });
-        Ok(Outcome { case: self.clone(), points: self.reference.separation.len(), errors, checks })
-    }
 }
 
-/// A case and what came out.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Outcome {
-    /// The case.
-    pub case: HardCase,
-    /// Compared points.
-    pub points: usize,
-    /// Per method of [`METHODS`], over the points that have a value where one is due.
-    pub errors: [Errors; 3],
-    /// Every check.
-    pub checks: Vec<Check>,
-}
-
-impl Outcome {
-    /// The checks that failed.
-    pub fn failures(&self) -> impl Iterator<Item = &Check> {
-        self.checks.iter().filter(|check| !check.passed)
-    }
-
-    /// Whether the case is as its status says.
-    pub fn as_stated(&self) -> bool {
-        let passed = self.failures().next().is_none();
-        passed == (self.case.status == Status::Holds)
-    }
-}
-
-/// The hard cases.
+/// Names and texts of the files of the hard cases.
 pub const FILES: &[(&str, &str)] = embedded!("../../../tests/hard_cases/":
     "within_one_nanometre_of_c", "conforming_to_1e-9", "radius_of_one_kilometre", "flange_at_70_degrees",
     "contact_on_a_joint", "contact_on_a_kink", "contact_at_a_profile_end", "curvature_jump_under_the_window",
@@ -212,7 +164,7 @@ pub const FILES: &[(&str, &str)] = embedded!("../../../tests/hard_cases/":
     "lengths_times_4_to_minus_20", "mirrored", "arcs_split_in_two", "eta_reversed",
 );
 
-/// All hard cases.
+/// Reads all hard cases.
 ///
 /// # Errors
 /// A file that is not in the format.

@@ -1,4 +1,4 @@
-//! What every hard case is checked for.
+//! The checks of every hard case.
 
 use super::errors::{Point, compare, inside_contact};
 use super::hard_case::{COLUMNS, HardCase, METHODS, RelationKind, StatedComponent, StatedPatch};
@@ -9,35 +9,37 @@ use wheelrail::placement::Placement;
 use wheelrail::separation::Evaluator;
 use wheelrail::separation::grid::{Choice, Method};
 
-/// The bounds of the methods that promise digits: relative over the contact segments, absolute \[mm\] elsewhere,
-/// the latter × unit × max(1, R_max/300 mm). Measured over all cases; less than a quarter used fails the suite.
+/// The bounds of the methods that promise digits: relative over the contact segments, absolute \[mm\]
+/// elsewhere, the latter × unit × max(1, R_max/300 mm). They are measured over all cases; if less than a
+/// quarter of one is used, the suite fails.
 pub const BOUNDS: [(Method, f64, f64); 2] =
     [(Method::Spectral, 5e-15, 2e-14), (Method::Pointwise, 2e-15, 2e-14)];
 
-/// What is promised to users for the boundary and the tips, through the accuracy of s.
+/// Promised relative accuracy of s, through which the boundary and the tips are checked.
 const PROMISED_RELATIVE: f64 = 1e-13;
+/// Promised absolute accuracy of s \[mm\], through which the boundary and the tips are checked.
 const PROMISED_ABSOLUTE: f64 = 2e-12;
 
-/// Points per column on which s has to rise with |η|.
+/// Number of points per column on which s must rise with |η|.
 const RISING_SAMPLES: usize = 64;
 
-/// The bound stated for the Report's method may exceed its error by this factor.
+/// Largest ratio of the stated bound of the Report's method to its error.
 const MOST_SLACK: f64 = 4.0;
 
 /// One check of one case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Check {
-    /// What is checked.
+    /// Subject of the check.
     pub what: String,
     /// The worst input.
     pub input: String,
-    /// What came out there.
+    /// Result at the worst input.
     pub found: String,
-    /// What was to come out.
+    /// Expected result at the worst input.
     pub expected: String,
-    /// Whether it did.
+    /// Whether the check passed.
     pub passed: bool,
-    /// For a check against one of [`BOUNDS`]: its name and the share of the bound that was used.
+    /// For a check against one of [`BOUNDS`]: the name of the bound and the share of it that was used.
     pub share: Option<(String, f64)>,
 }
 
@@ -47,7 +49,7 @@ impl Check {
     }
 }
 
-/// A case on the bench.
+/// A case while it is checked.
 struct Bench<'a> {
     case: &'a HardCase,
     placement: &'a Placement,
@@ -55,7 +57,7 @@ struct Bench<'a> {
     scale: f64,
 }
 
-/// All checks; `points` in the order of [`METHODS`].
+/// Runs all checks; `points` are in the order of [`METHODS`].
 pub(super) fn all(
     case: &HardCase,
     placement: &Placement,
@@ -81,7 +83,7 @@ pub(super) fn all(
 }
 
 impl Bench<'_> {
-    /// Mask, relative error over the contact segments, absolute error elsewhere.
+    /// Checks the mask, the relative error over the contact segments and the absolute error elsewhere.
     fn digits(&self, method: Method, points: &[Point], relative: f64, absolute: f64) -> Vec<Check> {
         let name = method.name();
         let worst = |measure: &dyn Fn(&Point) -> Option<f64>| {
@@ -114,7 +116,7 @@ impl Bench<'_> {
         checks
     }
 
-    /// The file's statement about the Report's method holds, and is not slack.
+    /// Checks that the file's statement about the Report's method holds, and is not slack.
     fn report_newton(&self, points: &[Point]) -> Check {
         let stated = &self.case.report_newton;
         let undefined = points.iter().filter(|p| p.error().is_nan()).count();
@@ -140,7 +142,7 @@ impl Bench<'_> {
         )
     }
 
-    /// Along every column s rises with |η|, so that every slice of the patch is one interval.
+    /// Checks that s rises with |η| along every column, so that every slice of the patch is one interval.
     fn rising(&self) -> Check {
         let [xi, eta] = self.case.reference.scene.axes();
         let reach = eta.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
@@ -168,7 +170,7 @@ impl Bench<'_> {
         )
     }
 
-    /// The bound on s at a point.
+    /// Returns the bound on s at a point.
     fn bound(&self, xi: f64, eta: f64, s: f64) -> f64 {
         if inside_contact(self.placement, xi, eta) {
             PROMISED_RELATIVE * s
@@ -177,7 +179,7 @@ impl Bench<'_> {
         }
     }
 
-    /// η(ξ) of s = δ: |Δη| ≤ R/η × the bound on s, and rounding.
+    /// Checks η(ξ) of s = δ: |Δη| ≤ R/η × the bound on s, and rounding.
     fn boundary(&self) -> Option<Check> {
         let mut worst: Option<(f64, Check)> = None;
         for (delta, xi, value) in &self.case.reference.boundary {
@@ -236,7 +238,8 @@ impl Bench<'_> {
         checks
     }
 
-    /// Tips within the bound on s over its slope there; other ends within the rounding of abscissae.
+    /// Returns whether tips agree within the bound on s over its slope there, and other ends within the
+    /// rounding of abscissae.
     fn same_extent(&self, found: &Component, expected: &StatedComponent, delta: f64) -> bool {
         let profiles = [self.placement.rail.profile(), self.placement.wheel.profile()];
         let extent = profiles.map(|profile| profile.extent()).into_iter().fold(0.0, f64::max);

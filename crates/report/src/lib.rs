@@ -1,17 +1,20 @@
-//! Speed against error: every method of the ladder timed and held to 60-digit values, and the hard cases.
+//! Measures speed against error: times every method of the ladder, compares it with 60-digit values, and runs
+//! the hard cases.
 //!
-//! [`mod@reference`] reads the 60-digit files, which are part of the program; [`errors`] compares a method with them;
-//! [`speed`] races methods against a plain store of the same array, [`spline_cost`] splines against arcs; [`hard_case`] runs the cases of
-//! `tests/hard_cases`; [`verification`] has parry3d's meshes check them; [`measured`] compares curves through points
-//! with the drawing that the points are from; [`specimen`] makes worn profiles as instruments measure them;
-//! [`rates`] counts positions of a wheelset a second over them, [`whole_case`] times a case from first touch to its mesh;
-//! [`measurements`] does all of it to a given effort; [`requirements`] judges the ratios;
-//! [`practice`] runs whole cases as engineers have them against brute force;
-//! [`page`] and [`table`] turn the numbers into Markdown and CSV, and into charts. Nothing here touches the disk.
+//! [`mod@reference`] reads the 60-digit files, which are part of the program; [`errors`] compares a method
+//! with them. [`speed`] races methods against a plain store of the same array, [`spline_cost`] splines
+//! against arcs. [`hard_case`] runs the cases of `tests/hard_cases`; [`verification`] checks them by
+//! parry3d's meshes. [`measured`] compares curves through points with the drawing from which the points are;
+//! [`specimen`] makes worn profiles as instruments measure them. [`rates`] counts positions of a wheelset a
+//! second over them, [`whole_case`] times a case from first touch to its mesh. [`measurements`] does all of
+//! this to a given effort; [`requirements`] judges the ratios; [`practice`] compares whole cases of engineers
+//! with brute force. [`page`] and [`table`] turn the numbers into Markdown, CSV and charts. Nothing here
+//! touches the disk.
 
 pub mod errors;
 pub mod hard_case;
 mod hard_checks;
+pub mod hard_run;
 pub mod measured;
 pub mod measurements;
 pub mod page;

@@ -1,5 +1,5 @@
-//! What sampling, noise and the choice of curve do to measured profiles: 60E1 (1:40) and S1002, sampled from their
-//! drawings, read back as files, and compared with the drawings.
+//! Measures the effects of sampling, noise and the choice of curve on measured profiles: 60E1 (1:40) and
+//! S1002, sampled from their drawings, read back as files, and compared with the drawings.
 
 use std::fmt::Write as _;
 
@@ -18,43 +18,48 @@ use wheelrail::separation::Evaluator;
 
 /// Distances of the points \[mm\].
 pub const SPACINGS: [f64; 4] = [0.1, 0.5, 1.0, 2.0];
-/// Standard deviations of the noise across the profile \[µm\], normal and independent from point to point.
+/// Standard deviations of the noise across the profile \[µm\]; it is normal and independent from point to
+/// point.
 pub const NOISES: [f64; 4] = [0.0, 0.1, 1.0, 10.0];
-/// Seed of the noise: the same for every row of one body, so that rows differ by their curves.
+/// Seed of the noise: the same for every row of one body, so that rows differ only by their curves.
 const SEED: u64 = 0x60E1_51002;
 
-/// R \[mm\], δ \[mm\] and load \[N\] of the comparison.
+/// Nominal rolling radius R of the comparison \[mm\].
 const RADIUS: f64 = 460.0;
+/// Approach δ of the comparison \[mm\].
 const APPROACH: f64 = 0.08;
+/// Load of the comparison \[N\].
 const LOAD: f64 = 1e5;
 const STEEL: Elastic = Elastic { youngs_modulus: 2.1e5, poissons_ratio: 0.28 };
 
-/// Where profiles are compared \[mm\]: the running surface. Below the gauge corner and on the flange no patch
-/// of a tread lies.
+/// Range of x in which rails are compared \[mm\]: the running surface. A patch of a tread is never below the
+/// gauge corner.
 const RAIL_ZONE: [f64; 2] = [-33.0, 33.0];
+/// Range of x in which wheels are compared \[mm\]: a patch of a tread is never on the flange.
 const WHEEL_ZONE: [f64; 2] = [-38.0, 50.0];
-/// Distance of the marks that are compared \[mm\]; no multiple of a spacing.
+/// Distance of the marks that are compared \[mm\]; not a multiple of a spacing.
 const MARKS: f64 = 0.071;
-/// Curvatures below this \[1/mm\] are compared with it, the crown's: a tread has places without any.
+/// Least curvature by which errors of curvature are divided \[1/mm\], that of the crown: a tread has places
+/// without curvature.
 const LEAST_CURVATURE: f64 = 1.0 / 300.0;
-/// Share of the places with errors below the one reported: at a joint of a drawing curvature jumps, and every
-/// smooth curve is wrong there.
+/// Share of the places whose errors are below the reported one: at a joint of a drawing the curvature jumps,
+/// and every smooth curve is wrong there.
 const QUANTILE: f64 = 0.95;
 /// Half the number of columns and rows at which s is compared.
 const GRID: i32 = 20;
 
-/// A curve through the points.
+/// A kind of curve through the points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Curve {
-    /// Through every point.
+    /// A spline through every point.
     Interpolation,
-    /// With this cut-off wavelength \[mm\].
+    /// A smoothing spline with this cut-off wavelength \[mm\].
     Smoothing(f64),
-    /// Within the default tolerance, or 4.5 times the noise if that is more.
+    /// A chain of arcs within the default tolerance, or 4.5 times the noise if that is more.
     Arcs,
 }
 
-/// Curves that are compared.
+/// The curves that are compared.
 pub const CURVES: [Curve; 5] =
     [Curve::Interpolation, Curve::Smoothing(3.0), Curve::Smoothing(5.0), Curve::Smoothing(10.0), Curve::Arcs];
 
@@ -65,26 +70,27 @@ pub struct Row {
     pub spacing: f64,
     /// Standard deviation of the noise \[µm\].
     pub noise: f64,
-    /// The curve.
+    /// Kind of curve.
     pub curve: Curve,
     /// The errors, or why there is no curve.
     pub errors: std::result::Result<Errors, String>,
 }
 
-/// How far a pair of fitted profiles is from the drawn one; of the first three the larger of rail and wheel.
+/// Differences of a pair of fitted profiles from the drawn one; each of the first three is the larger one of
+/// rail and wheel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Errors {
-    /// 95 % quantile of the distance across \[mm\].
+    /// 95 % quantile of the distance across the profile \[mm\].
     pub profile: f64,
-    /// 95 % quantile of the tangent's angle \[rad\].
+    /// 95 % quantile of the error of the tangent angle \[rad\].
     pub slope: f64,
-    /// 95 % quantile of the curvature, relative to it or to 1/300 mm.
+    /// 95 % quantile of the error of the curvature, relative to it or to 1/300 mm.
     pub curvature: f64,
     /// Largest error of s over the patch \[mm\], after lowering to first touch.
     pub separation: f64,
     /// Relative error of the patch's area.
     pub area: f64,
-    /// Relative error of Hertz's pressure at the drawn contact point, or `None` where s is not convex there.
+    /// Relative error of Hertz's pressure at the drawn contact point, or `None` if s is not convex there.
     pub pressure: Option<f64>,
 }
 
@@ -95,7 +101,7 @@ impl Curve {
             Self::Interpolation => Options { curve: Some(CurveKind::Interpolation), ..base },
             Self::Smoothing(cutoff) => Options { cutoff_wavelength: Some(cutoff), ..base },
             Self::Arcs => {
-                // Of some thousand points the farthest lies three to four deviations off.
+                // Of some thousand points the farthest is three to four deviations off.
                 let tolerance = measured::ARC_TOLERANCE.max(4.5e-3 * noise);
                 Options { curve: Some(CurveKind::Arcs), arc_tolerance: Some(tolerance), ..base }
             }
@@ -111,7 +117,7 @@ impl Curve {
     }
 }
 
-/// One drawn body and what is known of it.
+/// One drawn body with its marks.
 struct Drawn {
     profile: Profile,
     side: Side,
@@ -128,7 +134,7 @@ impl Drawn {
         Self { profile, side, marks, fine }
     }
 
-    /// Points every `spacing` mm of arc length with noise \[µm\] across.
+    /// Returns points every `spacing` mm of arc length with noise \[µm\] across.
     fn points(&self, spacing: f64, noise: f64) -> Vec<[f64; 2]> {
         let mut random = Random::new(SEED ^ self.profile.name.len() as u64);
         let mut next = 0.0;
@@ -143,13 +149,13 @@ impl Drawn {
         out
     }
 
-    /// The profile that the program makes of these points, written as a file and read back.
+    /// Returns the profile that the program makes of these points, written as a file and read back.
     fn fitted(&self, points: &[[f64; 2]], options: &Options) -> Result<Profile> {
         let text = write::points(points, Format::Csv, self.side, "sample");
         measured::profile("sample.csv", text.as_bytes(), self.side, options).map(|m| m.profile)
     }
 
-    /// Quantiles of the errors of distance \[mm\], angle \[rad\] and relative curvature.
+    /// Returns the quantiles of the errors of distance \[mm\], angle \[rad\] and relative curvature.
     fn compare(&self, fitted: &Profile) -> [f64; 3] {
         let marks = trace(fitted, MARKS / 2.0);
         let mut hint = 0;
@@ -172,7 +178,7 @@ impl Drawn {
     }
 }
 
-/// The drawn pair in contact, with everything that fitted pairs are compared with.
+/// The drawn pair in contact, with all data for the comparison with fitted pairs.
 struct Reference {
     bodies: [Drawn; 2],
     placement: Placement,
@@ -224,13 +230,13 @@ impl Reference {
     }
 }
 
-/// The rail inclined 1:40, under the wheel.
+/// Makes the pair of the rail, inclined 1:40, and the wheel.
 fn pair(rail: &Profile, wheel: &Profile) -> Result<Pair> {
     let run = 40f64.hypot(1.0);
     Pair::new(rail.rotated(40.0 / run, 1.0 / run), wheel.clone(), RADIUS)
 }
 
-/// \[ξ, η, s\] at the points of a grid over the box that lie in the patch; C among them.
+/// Returns \[ξ, η, s\] at the points of a grid over the box that are in the patch; C is one of them.
 fn inside(placement: &Placement, extent: &Window) -> Vec<[f64; 3]> {
     let mut evaluator = Evaluator::new(placement);
     let steps = || (-GRID..=GRID).map(|k| f64::from(k) / f64::from(GRID));
@@ -246,16 +252,16 @@ fn inside(placement: &Placement, extent: &Window) -> Vec<[f64; 3]> {
     points
 }
 
-/// Hertz's largest pressure \[N/mm²\] under the load.
+/// Returns Hertz's largest pressure \[N/mm²\] under the load.
 fn pressure(placement: &Placement) -> Option<f64> {
     let modulus = effective_modulus(&STEEL, &STEEL);
     curvatures(placement).under_load(LOAD, modulus).map(|ellipse| ellipse.pressure_n_per_mm2)
 }
 
-/// All rows: these distances of the points \[mm\] × 4 noises × 5 curves, on all threads.
+/// Calculates all rows: these distances of the points \[mm\] × 4 noises × 5 curves, on all threads.
 ///
 /// # Errors
-/// Built-in profiles that do not touch: a fault of this program.
+/// Built-in profiles that do not touch, which is a fault of this program.
 pub fn rows(spacings: &[f64]) -> Result<Vec<Row>> {
     let reference = Reference::new()?;
     let cases: Vec<(f64, f64, Curve)> = spacings
@@ -270,7 +276,7 @@ pub fn rows(spacings: &[f64]) -> Result<Vec<Row>> {
     Ok(cases.par_iter().map(row).collect())
 }
 
-/// The section of the report.
+/// Returns the section of the report.
 pub fn section(rows: &[Row]) -> String {
     let mut out = format!(
         "60E1 (1:40) under S1002, R = {RADIUS} mm, sampled from the drawings at equal arc lengths, with normal noise \
@@ -300,11 +306,11 @@ pub fn section(rows: &[Row]) -> String {
     out + &recommendation(rows)
 }
 
-/// What a pressure counts as in the summary where s is not convex: wrong altogether.
+/// Error of the pressure in the summary where s is not convex: wrong altogether.
 const NO_ELLIPSE: f64 = 1.0;
 
-/// The largest errors \[of pressure, relative; of s, mm\] that a curve makes on rows with points up to `spacing` mm
-/// apart and this noise \[µm\]; infinite where there is no curve.
+/// Returns the largest errors \[of pressure, relative; of s, mm\] of a curve on rows with points up to
+/// `spacing` mm apart and this noise \[µm\]; infinite if there is no curve.
 pub fn worst(rows: &[Row], curve: Curve, spacing: f64, noise: f64) -> [f64; 2] {
     let counted = rows.iter().filter(|r| r.curve == curve && r.spacing <= spacing && r.noise == noise);
     counted.fold([0.0f64; 2], |[pressure, s], row| match &row.errors {

@@ -1,12 +1,15 @@
-//! Everything that the report measures.
+//! Measures everything that the report shows.
 
 use std::time::Instant;
 
+use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::errors::{Errors, compare};
-use super::hard_case::{Outcome, hard_cases};
+use super::hard_case::hard_cases;
+use super::hard_run::{self, Outcome};
 use super::measured;
+use super::practice::{self, PracticeRow};
 use super::rates::{Extent, Rate, rates};
 use super::reference::{Reference, references};
 use super::speed::{LEAST_RUNS, Timing, Track, Work, race};
@@ -18,45 +21,50 @@ use wheelrail::placement::Placement;
 use wheelrail::separation::grid::Method;
 use wheelrail::separation::plan::{FULL_PRECISION, plan};
 
-/// Tolerances \[mm\] that spectral columns are measured at.
+/// Tolerances \[mm\] at which spectral columns are measured.
 pub const TOLERANCES: [f64; 4] = [1e-3, 1e-6, 1e-9, FULL_PRECISION];
 
-/// The scene that growth and threads are measured on: a plain tread contact, arcs on both bodies.
+/// The scene on which growth and threads are measured: a plain tread contact with arcs on both bodies.
 const EXAMPLE: &str = "hollow_tread";
 
-/// How much longer the contestants of growth run: the largest grids take a tenth of a second, and memory is disturbed most.
+/// Factor by which the contestants of growth run longer: the largest grids take a tenth of a second, and
+/// memory is disturbed most.
 const GROWTH_SHARES: f64 = 4.0;
 
-/// How often the scenes' races are taken up again: what slows a machine down may last for seconds.
+/// Number of times that the scenes' races are taken up: a disturbance of a machine may last for seconds.
 pub const PASSES: usize = 6;
 
-/// How much to measure.
+/// The amount of measuring.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Effort {
-    /// n of the n × n grids that every method is timed on.
+    /// Numbers n of the n × n grids on which every method is timed.
     pub sides: Vec<usize>,
-    /// Time each contestant of a race gets at least \[s\].
+    /// Least time of each contestant of a race \[s\].
     pub seconds: f64,
-    /// n of the n × n grids of the growth of cost.
+    /// Numbers n of the n × n grids for the growth of cost.
     pub growth: Vec<usize>,
-    /// Every n-th of the built-in pairs is checked by parry3d's meshes.
+    /// Step in the list of built-in pairs that parry3d's meshes check: every n-th pair is checked.
     pub every_pair: usize,
+    /// Step in the list of practice cases: every n-th case is run.
+    pub every_case: usize,
     /// Distances of the points of the measured profiles \[mm\].
     pub spacings: Vec<f64>,
-    /// Sweeps of wheelsets.
+    /// Extent of the sweeps of wheelsets.
     pub sweeps: Extent,
-    /// n of the n × n grid of whole cases.
+    /// Number n of the n × n grid of whole cases.
     pub case_side: usize,
 }
 
 impl Effort {
-    /// What `wheelrail report` does: 4 × 10^4 and 4 × 10^6 points, growth up to 10^8; about four minutes, 0.9 GB.
+    /// Returns the effort of `wheelrail report`: 4 × 10^4 and 4 × 10^6 points, growth up to 10^8; about four
+    /// minutes, 0.9 GB.
     pub fn full() -> Self {
         Self {
             sides: vec![200, 2000],
             seconds: 0.25,
             growth: vec![100, 316, 1000, 3162, 10_000],
             every_pair: 1,
+            every_case: 1,
             spacings: measured::SPACINGS.to_vec(),
             sweeps: Extent::full(),
             case_side: 200,
@@ -71,80 +79,85 @@ pub struct Row {
     pub scene: String,
     /// Name of the method, or "store".
     pub method: &'static str,
-    /// Tolerance \[mm\] of a method that has one.
+    /// Tolerance \[mm\], for a method that has one.
     pub tolerance: Option<f64>,
-    /// n of the n × n grid.
+    /// Number n of the n × n grid.
     pub side: usize,
     /// Times for the whole grid on one thread.
     pub timing: Timing,
-    /// Errors at the 60-digit points; none for the store.
+    /// Errors at the 60-digit points; `None` for the store.
     pub errors: Option<Errors>,
 }
 
 impl Row {
-    /// Points of the grid.
+    /// Returns the number of points of the grid.
     pub fn points(&self) -> usize {
         self.side * self.side
     }
 
-    /// Millions of points a second.
+    /// Returns millions of points a second.
     pub fn rate(&self) -> f64 {
         self.points() as f64 / self.timing.best / 1e6
     }
 }
 
-/// Cost over the number of points, one thread.
+/// Cost against the number of points, on one thread.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Growth {
-    /// Points of the grid.
+    /// Number of points of the grid.
     pub points: usize,
-    /// Spectral columns at full precision \[s\].
+    /// Time of spectral columns at full precision \[s\].
     pub spectral: f64,
-    /// Plain store \[s\].
+    /// Time of a plain store \[s\].
     pub store: f64,
 }
 
-/// One thread against two.
+/// Times on one thread and on two.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Threads {
     /// The method.
     pub method: Method,
-    /// Points of the grid.
+    /// Number of points of the grid.
     pub points: usize,
     /// Best time on the wall on one and on two threads \[s\].
     pub seconds: [f64; 2],
-    /// Whether the same bits came out.
+    /// Whether both gave the same bits.
     pub same_bits: bool,
 }
 
 /// All numbers of a report.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measurements {
-    /// Every scene × method × tolerance × grid.
+    /// Rows for every scene × method × tolerance × grid.
     pub rows: Vec<Row>,
-    /// Least, median and largest time for choosing a method to full precision \[s\], over the rows' scenes and grids.
+    /// Least, median and largest time for choosing a method at full precision \[s\], over the scenes and
+    /// grids of the rows.
     pub planning: [f64; 3],
     /// Growth of cost.
     pub growth: Vec<Growth>,
     /// Threads.
     pub threads: Vec<Threads>,
-    /// Grids over splines against grids over arcs, one thread.
+    /// Times of grids over splines and over arcs, on one thread.
     pub splines: Vec<SplineCost>,
-    /// Positions of wheelsets a second, one thread.
+    /// Positions of wheelsets a second, on one thread.
     pub rates: Vec<Rate>,
-    /// Cases from first touch to mesh, one thread.
+    /// Times of cases from first touch to mesh, on one thread.
     pub whole_cases: Vec<WholeCase>,
-    /// What `run` computes for a measured wheelset, one thread; none without measured pairs in [`Effort::sweeps`].
+    /// Time of what `run` computes for a measured wheelset, on one thread; `None` without measured pairs in
+    /// [`Effort::sweeps`].
     pub run: Option<RunCost>,
-    /// Hard cases.
+    /// Results of the hard cases.
     pub hard_cases: Vec<Outcome>,
-    /// The check by parry3d's meshes: of the reference scenes, with and without skew, and of the built-in pairs.
+    /// Results of the practice cases against brute force.
+    pub practice: Vec<PracticeRow>,
+    /// Results of the check by parry3d's meshes: of the reference scenes, with and without skew, and of the
+    /// built-in pairs.
     pub verified: [Vec<Verified>; 2],
-    /// What sampling, noise and the choice of curve do to measured profiles.
+    /// Effects of sampling, noise and the choice of curve on measured profiles.
     pub evidence: Vec<measured::Row>,
 }
 
-/// Measures; `progress` is told what begins.
+/// Measures everything; `progress` gets the name of each part when it begins.
 ///
 /// # Errors
 /// Embedded files that are not in their format; a system that grants no thread.
@@ -167,7 +180,10 @@ pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measur
     let rates = one.install(|| rates(&effort.sweeps, effort.seconds))?;
     progress("hard cases");
     let cases = hard_cases()?;
-    let hard_cases = cases.iter().map(|case| case.run(&cases)).collect::<Result<_>>()?;
+    let hard_cases = cases.iter().map(|case| hard_run::run(case, &cases)).collect::<Result<_>>()?;
+    progress("practice cases against brute force");
+    let cases: Vec<_> = practice::cases()?.into_iter().step_by(effort.every_case).collect();
+    let practice = cases.par_iter().map(practice::run).collect();
     progress("the check by parry3d's meshes");
     let verified = verified(&references, effort.every_pair)?;
     progress("measured profiles");
@@ -182,6 +198,7 @@ pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measur
         whole_cases,
         run,
         hard_cases,
+        practice,
         verified,
         evidence,
     })
@@ -210,7 +227,8 @@ fn example(references: &[Reference]) -> Result<&Reference> {
     })
 }
 
-/// The window of the scene's own points, so that spectral columns are the same polynomials as at these.
+/// Returns the grid over the window of the scene's own points, so that spectral columns are the same
+/// polynomials as at these points.
 fn track<'a>(reference: &Reference, placement: &'a Placement, side: usize) -> Track<'a> {
     let [xi, eta] = reference.scene.axes();
     let reach = eta.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
@@ -218,7 +236,7 @@ fn track<'a>(reference: &Reference, placement: &'a Placement, side: usize) -> Tr
     Track::new(placement, ends, reach, side)
 }
 
-/// Every method and tolerance, as (name, tolerance, method); the store first.
+/// Returns every method and tolerance as (name, tolerance, method), the store first.
 fn contestants() -> Vec<(&'static str, Option<f64>, Option<Method>)> {
     let mut all = vec![("store", None, None)];
     for method in Method::ALL {
@@ -231,7 +249,7 @@ fn contestants() -> Vec<(&'static str, Option<f64>, Option<Method>)> {
     all
 }
 
-/// The rows of all scenes and grids, and the least, median and largest time of a plan \[s\].
+/// Returns the rows of all scenes and grids, and the least, median and largest time of a plan \[s\].
 fn scene_races(
     references: &[Reference],
     effort: &Effort,
@@ -266,14 +284,14 @@ struct SceneRace<'a> {
     placement: &'a Placement,
     side: usize,
     works: Vec<Work>,
-    /// Of every contestant; the times are those of its runs so far.
+    /// One row for each contestant, with the times of its runs so far.
     rows: Vec<Row>,
-    /// Time for choosing a method to full precision \[s\].
+    /// Time for choosing a method at full precision \[s\].
     planning: f64,
 }
 
 impl<'a> SceneRace<'a> {
-    /// Plans and errors; nobody has run.
+    /// Makes the plans and errors; no contestant has run yet.
     fn new(reference: &'a Reference, placement: &'a Placement, side: usize) -> Self {
         let track = track(reference, placement, side);
         let planned = |tolerance, method| plan(placement, track.xi(), track.axis(), tolerance, method).choice;
@@ -295,7 +313,7 @@ impl<'a> SceneRace<'a> {
         Self { reference, placement, side, works, rows, planning: start.elapsed().as_secs_f64() }
     }
 
-    /// Until everyone has had so much time and so many runs, in an array of this race.
+    /// Runs the contestants until each has had `seconds` and `least` runs, in an array of this race.
     fn run(&mut self, seconds: f64, least: usize) {
         let mut track = track(self.reference, self.placement, self.side);
         let mut timings: Vec<_> = self.rows.iter().map(|row| row.timing).collect();
@@ -353,7 +371,7 @@ fn threads(reference: &Reference, effort: &Effort) -> Result<Vec<Threads>> {
     Ok(rows.to_vec())
 }
 
-/// The median; NaN of nothing.
+/// Returns the median; NaN if there are no values.
 pub(super) fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.collect();
     values.sort_by(f64::total_cmp);

@@ -1,8 +1,8 @@
-//! The report as a page: a list of sections, each built by one function, and the files beside it.
+//! Builds the page of the report: a list of sections, each made by one function, and the files beside it.
 
 mod in_use;
 
-use super::hard_case::Outcome;
+use super::hard_run::Outcome;
 use super::measured;
 use super::measurements::{Growth, Measurements, PASSES, Row, median};
 use super::requirements;
@@ -13,30 +13,31 @@ use wheelrail::export::picture::chart::{Chart, Series};
 use wheelrail::numerics::nan_max;
 use wheelrail_check::{RELATION, Report};
 
-/// One section of the page. A new one is a new function in [`sections`].
+/// One section of the page. For a new one, add a new function in [`sections`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Section {
-    /// Heading.
+    /// Heading of the section.
     pub title: &'static str,
-    /// Markdown.
+    /// Text of the section in Markdown.
     pub body: String,
-    /// Files that belong to it: name in the report's folder, content.
+    /// Files of the section, as (name in the report's folder, content).
     pub files: Vec<(&'static str, Vec<u8>)>,
 }
 
-/// Where, with what and how the numbers were made: (name, value) for the head of the page.
+/// Where, with what and how the numbers were made, as (name, value) for the head of the page.
 pub type Origin = Vec<(&'static str, String)>;
 
-/// The page's own file.
+/// Name of the page's own file.
 pub const PAGE: &str = "report.md";
 
-/// All files of a report.
-pub const FILES: [&str; 10] = [
+/// Names of all files of a report.
+pub const FILES: [&str; 11] = [
     PAGE,
     "accuracy.csv",
     "positions.csv",
     "cases.csv",
     "hard_cases.csv",
+    "practice.csv",
     "verification.csv",
     "scaling.csv",
     "scaling.svg",
@@ -44,7 +45,7 @@ pub const FILES: [&str; 10] = [
     "work_error_large.svg",
 ];
 
-/// The sections of the report, in order.
+/// Returns the sections of the report, in order.
 pub fn sections(m: &Measurements) -> Vec<Section> {
     vec![
         requirements_section(m),
@@ -55,13 +56,14 @@ pub fn sections(m: &Measurements) -> Vec<Section> {
         in_use::positions(m),
         in_use::cases(m),
         hard_cases(m),
+        in_use::practice(m),
         verification(m),
         measured_profiles(m),
         method(m),
     ]
 }
 
-/// The page: head, origin, sections.
+/// Returns the page: head, origin, sections.
 pub fn page(origin: &Origin, sections: &[Section]) -> String {
     let mut out = String::from("# wheelrail: speed against error\n\n");
     let rows: Vec<Vec<String>> =
@@ -73,7 +75,7 @@ pub fn page(origin: &Origin, sections: &[Section]) -> String {
     out
 }
 
-/// The table for a README, with the command that made it.
+/// Returns the table for a README, with the command that made it.
 pub fn excerpt(m: &Measurements, origin: &Origin) -> String {
     let value = |name: &str| origin.iter().find(|(n, _)| *n == name).map_or("unknown", |(_, v)| v.as_str());
     format!(
@@ -106,7 +108,7 @@ fn requirements_section(m: &Measurements) -> Section {
     )
 }
 
-/// (method, tolerance) in the order of the rows.
+/// Returns (method, tolerance) in the order of the rows.
 fn kinds(m: &Measurements) -> Vec<(&'static str, Option<f64>)> {
     let mut all = Vec::new();
     for row in &m.rows {
@@ -128,7 +130,7 @@ fn of<'m>(m: &'m Measurements, kind: (&str, Option<f64>), side: usize) -> impl I
     m.rows.iter().filter(move |row| (row.method, row.tolerance, row.side) == (kind.0, kind.1, side))
 }
 
-/// Method by method: rates, ratios, worst errors.
+/// Returns the table of rates, ratios and worst errors, method by method.
 fn summary(m: &Measurements) -> String {
     let sides = sides(m);
     let last = sides.last().copied().unwrap_or(0);
@@ -176,7 +178,8 @@ fn speed_and_error(m: &Measurements) -> Section {
     Section { title: "Speed against error", body, files }
 }
 
-/// Error over rate: a faint mark per scene, strong ones for the medians, tolerances joined.
+/// Returns the chart of error over rate: a faint mark for each scene, strong ones for the medians, with the
+/// tolerances joined.
 fn work_error(m: &Measurements, side: usize) -> Chart {
     let mut series: Vec<Series> = Vec::new();
     for kind in kinds(m).into_iter().filter(|(name, _)| *name != "store") {
@@ -392,7 +395,7 @@ fn verification(m: &Measurements) -> Section {
     Section { title: "Checked by triangle meshes", body, files }
 }
 
-/// One row: how many agree, and the figures of all of them together.
+/// Returns one row: how many agree, and the figures of all of them together.
 fn agreement(name: &str, all: &[Verified]) -> Vec<String> {
     let of = |figure: fn(&Report) -> f64| all.iter().map(move |v| figure(&v.report));
     let largest = |figure: fn(&Report) -> f64| format!("{:.1e}", of(figure).fold(0.0, f64::max));

@@ -1,16 +1,16 @@
-//! Random numbers from a seed: the same on every machine and in every run.
+//! Random numbers from a seed, equal on every machine and in every run.
 
-/// A stream of deviates: SplitMix64, and Box–Muller for normal ones.
+/// A stream of random numbers: SplitMix64, with Box–Muller for normal ones.
 #[derive(Debug, Clone)]
 pub struct Random(u64);
 
 impl Random {
-    /// The stream of a seed; every seed gives another one.
+    /// Begins the stream of a seed; every seed gives another stream.
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }
 
-    /// The next 64 bits.
+    /// Returns the next 64 bits.
     pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
@@ -19,17 +19,27 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// A uniform deviate in (0, 1]: its logarithm is finite.
+    /// A whole number below n, 0 where n is 0.
+    pub fn below(&mut self, n: usize) -> usize {
+        (self.bits() % n.max(1) as u64) as usize
+    }
+
+    /// One of several.
+    pub fn pick<'a, T>(&mut self, all: &'a [T]) -> &'a T {
+        &all[self.below(all.len())]
+    }
+
+    /// Returns a uniform deviate in (0, 1], so that its logarithm is finite.
     pub fn uniform(&mut self) -> f64 {
         ((self.bits() >> 11) as f64 + 1.0) / (1u64 << 53) as f64
     }
 
-    /// A uniform deviate between two numbers.
+    /// Returns a uniform deviate between two numbers.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.uniform()
     }
 
-    /// A normal deviate of mean 0 and standard deviation 1.
+    /// Returns a normal deviate of mean 0 and standard deviation 1.
     pub fn normal(&mut self) -> f64 {
         let (radius, turn) = ((-2.0 * self.uniform().ln()).sqrt(), std::f64::consts::TAU * self.uniform());
         radius * turn.cos()

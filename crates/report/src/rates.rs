@@ -1,4 +1,5 @@
-//! Positions of a wheelset a second on one core: drawn arcs against worn profiles as instruments measure them.
+//! Counts positions of a wheelset a second on one core: drawn arcs against worn profiles as instruments
+//! measure them.
 
 use super::specimen::{Instrument, Specimen, SpecimenKind};
 use super::speed::{LEAST_RUNS, Timing, race, timed};
@@ -11,23 +12,24 @@ use wheelrail::search::Selection;
 use wheelrail::search::sweep::{Conicity, Sweep};
 use wheelrail::search::wheelset::{Position, Roll, WheelsetOnTrack};
 
-/// How far the wheelset is moved to either side \[mm\], and its yaw with every millimetre \[rad/mm\].
+/// Largest displacement of the wheelset to either side \[mm\].
 pub const AMPLITUDE: f64 = 10.0;
+/// Yaw of the wheelset for every millimetre of displacement \[rad/mm\].
 const YAW: f64 = 2e-3;
 
-/// Distance of the points \[mm\] and noise \[µm\] of the measured pairs: 500 and 4000 points on a profile.
+/// Distances of the points \[mm\] and noises \[µm\] of the measured pairs: 500 and 4000 points on a profile.
 pub const INSTRUMENTS: [[f64; 2]; 4] = [[0.28, 3.0], [0.28, 5.0], [0.035, 3.0], [0.035, 5.0]];
 
 /// Seed of wear and noise.
 const SEED: u64 = 60_115_302;
 
-/// R \[mm\].
+/// Nominal rolling radius R \[mm\].
 const RADIUS: f64 = 460.0;
 
-/// How much of it to measure.
+/// The extent of the measurement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Extent {
-    /// Positions of one sweep.
+    /// Number of positions of one sweep.
     pub positions: usize,
     /// Largest displacement \[mm\].
     pub amplitude: f64,
@@ -36,28 +38,28 @@ pub struct Extent {
 }
 
 impl Extent {
-    /// What `wheelrail report` does.
+    /// Returns the extent of `wheelrail report`.
     pub fn full() -> Self {
         Self { positions: 20_000, amplitude: AMPLITUDE, instruments: INSTRUMENTS.to_vec() }
     }
 }
 
-/// Which freedoms a sweep's wheelset has.
+/// The freedoms of a sweep's wheelset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Motion {
-    /// Lateral displacement, the roll neglected as EN 15302 does.
+    /// Lateral displacement, with the roll neglected as in EN 15302.
     Lateral,
-    /// Lateral displacement, the roll solved.
+    /// Lateral displacement, with the roll solved.
     Rolling,
-    /// Lateral displacement and yaw, the roll solved.
+    /// Lateral displacement and yaw, with the roll solved.
     Yawing,
 }
 
 impl Motion {
-    /// All of them.
+    /// All motions.
     pub const ALL: [Self; 3] = [Self::Lateral, Self::Rolling, Self::Yawing];
 
-    /// Its name in tables.
+    /// Returns the name of the motion in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Lateral => "roll neglected",
@@ -78,35 +80,36 @@ impl Motion {
 /// One row of positions.csv.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rate {
-    /// What the pair is made of.
+    /// Description of the pair.
     pub pair: String,
-    /// Whether it is a measured one.
+    /// Whether the pair is measured.
     pub measured: bool,
     /// Freedoms of the wheelset.
     pub motion: Motion,
-    /// Positions of the sweep, and how many of them have a contact.
+    /// Number of positions of the sweep, and how many of them have a contact.
     pub positions: [usize; 2],
     /// Shortest time of a sweep with its table of conicity \[s\].
     pub seconds: f64,
-    /// Shortest time of that table \[s\], and its searches.
+    /// Shortest time of the table of conicity \[s\].
     pub table_seconds: f64,
-    /// See `table_seconds`.
+    /// Number of searches of the table of conicity.
     pub searches: usize,
     /// Largest estimated relative error of the conicities.
     pub conicity_error: f64,
 }
 
 impl Rate {
-    /// Positions a second.
+    /// Returns positions a second.
     pub fn rate(&self) -> f64 {
         self.positions[0] as f64 / self.seconds
     }
 }
 
-/// The rates of all pairs and motions, in one race, each sweep at least `seconds` long; to be called on one thread.
+/// Measures the rates of all pairs and motions, in one race, each sweep for at least `seconds`; call it on
+/// one thread.
 ///
 /// # Errors
-/// Specimens that cannot be read or do not stand on the track: a fault of this program.
+/// Specimens that cannot be read or are off the track, which is a fault of this program.
 pub fn rates(extent: &Extent, seconds: f64) -> Result<Vec<Rate>> {
     let mut systems = vec![("drawn arcs".to_string(), false, system(drawn()?)?)];
     for &[spacing, noise] in &extent.instruments {
@@ -147,7 +150,7 @@ pub fn rates(extent: &Extent, seconds: f64) -> Result<Vec<Rate>> {
     failed.map_or(Ok(rows), Err)
 }
 
-/// One sweep with its table of conicity.
+/// Runs one sweep with its table of conicity.
 fn swept(system: &WheelsetOnTrack, motion: Motion, extent: &Extent, row: &mut Rate) -> Result<()> {
     let Extent { positions, amplitude, .. } = *extent;
     let mut table = None;
@@ -169,12 +172,13 @@ fn swept(system: &WheelsetOnTrack, motion: Motion, extent: &Extent, row: &mut Ra
     Ok(())
 }
 
-/// 60E1 and wheel A of EN 15302: arcs and lines.
+/// Makes the pair of 60E1 and wheel A of EN 15302: arcs and lines.
 fn drawn() -> Result<Pair> {
     pair(&standards::rail("60E1")?, standards::wheel("EN15302-A")?)
 }
 
-/// A worn pair through points every `spacing` mm with `noise` µm, and the number of points of the larger profile.
+/// Makes a worn pair through points every `spacing` mm with `noise` µm; also returns the number of points of
+/// the larger profile.
 fn worn(spacing: f64, noise: f64, curve: CurveKind) -> Result<(usize, Pair)> {
     let specimen = |kind: SpecimenKind| Specimen::new(kind, Instrument::new(spacing, noise, SEED));
     let fitted = |specimen: &Specimen| -> Result<Profile> {
@@ -186,7 +190,7 @@ fn worn(spacing: f64, noise: f64, curve: CurveKind) -> Result<(usize, Pair)> {
     Ok((points, pair(&fitted(&rail)?, fitted(&wheel)?)?))
 }
 
-/// The rail inclined 1:40, under the wheel.
+/// Makes the pair of the rail, inclined 1:40, and the wheel.
 fn pair(rail: &Profile, wheel: Profile) -> Result<Pair> {
     let run = 40f64.hypot(1.0);
     Pair::new(rail.rotated(40.0 / run, 1.0 / run), wheel, RADIUS)

@@ -1,4 +1,5 @@
-//! The 60-digit reference values, made by `tests/reference/reference.py`, which shares no formula with the program.
+//! Reads the 60-digit reference values, made by `tests/reference/reference.py`, which shares no formula with
+//! the program.
 
 use serde::Deserialize;
 
@@ -6,24 +7,25 @@ use wheelrail::error::{Error, Result};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Half, Polynomial, Profile, Segment, Shape};
 
-/// 60-digit arithmetic leaves residues of about 1e-59 mm where s is zero; no true value of a file is this small.
+/// Largest residue that counts as zero \[mm\]: 60-digit arithmetic leaves residues of about 1e-59 mm where s
+/// is zero, and no true value of a file is this small.
 const RESIDUE: f64 = 1e-40;
 
-/// A scene and its values, one file.
+/// A scene and its values, from one file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Reference {
-    /// The file's name without its ending.
+    /// Name of the file, without its ending.
     #[serde(skip)]
     pub name: String,
-    /// What was evaluated.
+    /// The scene that was evaluated.
     pub scene: ReferenceScene,
-    /// (ξ \[mm\], η \[mm\], s \[mm\] to 25 digits), ξ-major; no value where a body has no surface.
+    /// Values (ξ \[mm\], η \[mm\], s \[mm\] to 25 digits), by ξ, then η; `None` where a body has no surface.
     pub separation: Vec<(f64, f64, Option<String>)>,
-    /// (δ \[mm\], ξ \[mm\], half width η \[mm\] of the patch to 25 digits); none outside the patch.
+    /// Values (δ \[mm\], ξ \[mm\], half width η \[mm\] of the patch to 25 digits); `None` outside the patch.
     pub boundary: Vec<(f64, f64, Option<String>)>,
 }
 
-/// A pair in contact, in the format of the reference program. Lengths in mm, every number taken as the exact
+/// A pair in contact, in the format of the reference program. Lengths are in mm; every number is the exact
 /// binary value that a program reads.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct ReferenceScene {
@@ -31,7 +33,7 @@ pub struct ReferenceScene {
     pub rail: Vec<ReferenceSegment>,
     /// Wheel segments from left to right.
     pub wheel: Vec<ReferenceSegment>,
-    /// R \[mm\].
+    /// Nominal rolling radius R \[mm\].
     pub wheel_radius: f64,
     /// Abscissa of C on the rail \[mm\].
     pub contact_rail_x: f64,
@@ -44,11 +46,11 @@ pub struct ReferenceScene {
     pub xi: Vec<f64>,
     /// η of the values \[mm\], in any order.
     pub eta: Vec<f64>,
-    /// δ of the boundary \[mm\].
+    /// Approaches δ of the boundary \[mm\].
     pub delta: Vec<f64>,
 }
 
-/// One segment.
+/// One segment of a profile.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum ReferenceSegment {
@@ -75,19 +77,19 @@ pub enum ReferenceSegment {
         b: f64,
         /// Radius \[mm\].
         r: f64,
-        /// +1 the upper half, −1 the lower.
+        /// +1 for the upper half, −1 for the lower half.
         sigma: f64,
     },
-    /// z = Σ c_k x^k.
+    /// A polynomial z = Σ c_k x^k.
     Poly {
         /// Smallest x \[mm\].
         x0: f64,
         /// Largest x \[mm\].
         x1: f64,
-        /// c_0, c_1, … \[mm¹⁻ᵏ\].
+        /// Coefficients c_0, c_1, … \[mm¹⁻ᵏ\].
         c: Vec<f64>,
     },
-    /// (Σ cx_k t^k, Σ cz_k t^k) over 0 ≤ t ≤ t1.
+    /// A span of a spline, (Σ cx_k t^k, Σ cz_k t^k) over 0 ≤ t ≤ t1.
     Spline {
         /// Largest t.
         t1: f64,
@@ -99,10 +101,10 @@ pub enum ReferenceSegment {
 }
 
 impl ReferenceSegment {
-    /// The segment as the program knows it.
+    /// Returns the segment in the program's own type.
     ///
     /// # Errors
-    /// Whatever is wrong with the numbers.
+    /// Numbers that make no segment.
     pub fn segment(&self) -> Result<Segment> {
         let shape = match self {
             Self::Line { x0, z0, x1, z1 } => Shape::Arc(Arc::line([*x0, *z0], [*x1, *z1])?),
@@ -117,25 +119,25 @@ impl ReferenceSegment {
     }
 }
 
-/// The profile of a chain of reference segments.
+/// Returns the profile of a chain of reference segments.
 ///
 /// # Errors
-/// Whatever is wrong with a segment or a joint.
+/// A wrong segment or joint.
 pub fn chain(name: &str, segments: &[ReferenceSegment]) -> Result<Profile> {
     Profile::new(name, "reference", segments.iter().map(ReferenceSegment::segment).collect::<Result<_>>()?)
 }
 
 impl ReferenceScene {
-    /// The placed pair.
+    /// Places the pair.
     ///
     /// # Errors
-    /// Whatever is wrong with the profiles or the contact points.
+    /// Wrong profiles or contact points.
     pub fn placement(&self) -> Result<Placement> {
         let (rail, wheel) = (chain("rail", &self.rail)?, chain("wheel", &self.wheel)?);
         Pair::new(rail, wheel, self.wheel_radius)?.placed(self.contact_rail_x, self.contact_wheel_x, self.chi)
     }
 
-    /// The distinct ξ and η of the values, ascending \[mm\].
+    /// Returns the distinct ξ and η of the values, ascending \[mm\].
     pub fn axes(&self) -> [Vec<f64>; 2] {
         [&self.xi, &self.eta].map(|values| {
             let mut values = values.clone();
@@ -147,7 +149,7 @@ impl ReferenceScene {
 }
 
 impl Reference {
-    /// Reads a file's text.
+    /// Reads the text of a file.
     ///
     /// # Errors
     /// Text that is not in the format.
@@ -156,15 +158,15 @@ impl Reference {
         Ok(Self { name: name.into(), ..reference })
     }
 
-    /// The placed pair.
+    /// Places the pair of the scene.
     ///
     /// # Errors
-    /// As [`ReferenceScene::placement`].
+    /// The errors of [`ReferenceScene::placement`].
     pub fn placement(&self) -> Result<Placement> {
         self.scene.placement().map_err(|error| error.within(&self.name))
     }
 
-    /// Largest radius of either profile \[mm\]: the scale of absolute bounds.
+    /// Returns the largest radius of either profile \[mm\]: the scale of absolute bounds.
     pub fn largest_radius(&self) -> f64 {
         let radius = |segment: &ReferenceSegment| match segment {
             ReferenceSegment::Arc { r, .. } => *r,
@@ -174,18 +176,18 @@ impl Reference {
     }
 }
 
-/// The error of a file that is not in its format.
+/// Makes the error of a file that is not in its format.
 pub(super) fn malformed(name: &str, error: &serde_json::Error) -> Error {
     Error::new(name, error.to_string(), "the format of reference.py", "make the file anew with the script")
 }
 
-/// A 25-digit value rounded to f64; NaN for text that is no number.
+/// Returns a 25-digit value rounded to f64; NaN for text that is not a number.
 pub fn exact(text: &str) -> f64 {
     let value: f64 = text.parse().unwrap_or(f64::NAN);
     if value.abs() < RESIDUE { 0.0 } else { value }
 }
 
-/// Name and text of every file of a folder, embedded in the program.
+/// Embeds the files of a folder in the program, as (name, text).
 macro_rules! embedded {
     ($folder:literal: $($name:literal),* $(,)?) => {
         &[$(($name, include_str!(concat!($folder, $name, ".json")))),*]
@@ -193,13 +195,13 @@ macro_rules! embedded {
 }
 pub(super) use embedded;
 
-/// The reference scenes.
+/// Names and texts of the reference scenes.
 pub const FILES: &[(&str, &str)] = embedded!("reference/":
     "60E1_S1002_tread", "UIC60_EN15302A_root", "conforming", "convex_tread", "crown_on_cone", "hollow_tread",
     "huge_radius", "joint_in_column", "long_patch_small_wheel", "near_contact", "steep_flange", "throat",
 );
 
-/// All reference scenes, by name.
+/// Reads all reference scenes, by name.
 ///
 /// # Errors
 /// A file that is not in the format.

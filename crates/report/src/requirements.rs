@@ -1,4 +1,4 @@
-//! The ratios that the project asks of itself, and whether a run met them.
+//! The ratios that the project requires of itself, and whether a run met them.
 
 use super::measurements::{Growth, Measurements, Row, median};
 use super::rates::{Motion, Rate};
@@ -6,48 +6,49 @@ use super::spline_cost::SplineCost;
 use wheelrail::separation::grid::Method;
 use wheelrail::separation::plan::FULL_PRECISION;
 
-/// Rate of spectral columns at full precision over the Report's Newton.
+/// Least rate of spectral columns at full precision over the Report's Newton.
 const OVER_REPORT: f64 = 20.0;
-/// … and over a plain store of the same array.
+/// Least rate of spectral columns at full precision over a plain store of the same array.
 const OVER_STORE: f64 = 0.5;
-/// Rate on two threads over that on one.
+/// Least rate on two threads over that on one.
 const TWO_THREADS: f64 = 1.6;
-/// Time of a grid over measured profiles over that over chains of arcs.
+/// Largest time of a grid over measured profiles over that over chains of arcs.
 const SPLINES_OVER_ARCS: f64 = 2.0;
-/// Time of a point of a splined grid, with its plan \[ns\].
+/// Largest time of a point of a splined grid, with its plan \[ns\].
 const SPLINED_POINT: f64 = 6.0;
-/// Positions a second on one core of drawn arcs and of measured pairs, by motion.
+/// Least positions a second on one core, as (motion, of drawn arcs, of measured pairs).
 const RATES: [(Motion, f64, f64); 3] =
     [(Motion::Lateral, 1e6, 2e4), (Motion::Rolling, 2e5, 1e4), (Motion::Yawing, 1e5, 5e3)];
-/// Rate of drawn arcs over that of a measured pair.
+/// Largest rate of drawn arcs over that of a measured pair.
 const DRAWN_OVER_MEASURED: f64 = 3.0;
-/// Time of the table of conicity to ±10 mm of a measured pair \[s\].
+/// Largest time of the table of conicity to ±10 mm of a measured pair \[s\].
 const CONICITY_TABLE: f64 = 0.2;
-/// Time of `run` for a measured wheelset \[s\].
+/// Largest time of `run` for a measured wheelset \[s\].
 const RUN: f64 = 0.1;
-/// Time of a whole case by pair \[s\].
+/// Largest time of a whole case, by pair \[s\].
 const WHOLE_CASES: [(&str, f64); 2] = [("drawn", 1e-4), ("measured", 3e-4)];
-/// Time of a plan over that of the fill.
+/// Largest time of a plan over that of the fill.
 const PLAN_OVER_FILL: f64 = 2.0;
-/// How far d log time/d log points may be from 1 where growth counts as linear: a factor of 1.6 over four decades.
+/// Largest distance of d log time/d log points from 1 at which growth counts as linear: a factor of 1.6 over
+/// four decades.
 const LINEAR: f64 = 0.05;
 
 /// One requirement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Requirement {
-    /// What is compared.
+    /// Figure that is compared.
     pub what: String,
-    /// What is asked for.
+    /// Required bound.
     pub least: String,
-    /// What was found.
+    /// Figure that was found.
     pub found: String,
-    /// Where, and what lies around it.
+    /// Place of the figure, and other figures beside it.
     pub remark: String,
-    /// Whether it is met.
+    /// Whether the requirement is met.
     pub met: bool,
 }
 
-/// All of them.
+/// Returns all requirements.
 pub fn all(m: &Measurements) -> Vec<Requirement> {
     let mut sides: Vec<usize> = m.rows.iter().map(|row| row.side).collect();
     sides.sort_unstable();
@@ -80,13 +81,13 @@ pub fn all(m: &Measurements) -> Vec<Requirement> {
     out
 }
 
-/// A figure that is not to exceed a bound.
+/// Makes the requirement that a figure does not exceed a bound.
 fn at_most(what: impl Into<String>, bound: f64, found: f64, remark: String) -> Requirement {
     let (least, met) = (format!("at most {bound}"), found <= bound);
     Requirement { what: what.into(), least, found: format!("{found:.3e}"), remark, met }
 }
 
-/// Drawn arcs, the slowest measured pair, and the ratio of the two.
+/// Judges the rates of drawn arcs and of the slowest measured pair, and the ratio of the two.
 fn rates(m: &Measurements, motion: Motion, [drawn, measured]: [f64; 2]) -> Vec<Requirement> {
     let slowest = |of_measured: bool| {
         let rows = m.rates.iter().filter(|row| row.motion == motion && row.measured == of_measured);
@@ -112,7 +113,7 @@ fn rates(m: &Measurements, motion: Motion, [drawn, measured]: [f64; 2]) -> Vec<R
     out
 }
 
-/// The dearest table of a measured pair.
+/// Judges the table of conicity that takes longest, of a measured pair.
 fn conicity_table(m: &Measurements) -> Option<Requirement> {
     let measured = m.rates.iter().filter(|row| row.measured);
     let worst = measured.max_by(|a, b| a.table_seconds.total_cmp(&b.table_seconds))?;
@@ -133,7 +134,7 @@ fn whole_cases(m: &Measurements) -> Vec<Requirement> {
     out
 }
 
-/// The dearest grid decides.
+/// Judges a point of a splined grid; the slowest grid decides.
 fn splined_points(m: &Measurements) -> Option<Requirement> {
     let worst = m.splines.iter().max_by(|a, b| a.nanoseconds().total_cmp(&b.nanoseconds()))?;
     let remark = format!("points every {} mm, {1} × {1}", worst.spacing, worst.side);
@@ -145,7 +146,7 @@ fn splined_points(m: &Measurements) -> Option<Requirement> {
     ))
 }
 
-/// The dearest grid decides.
+/// Judges splines over arcs; the slowest grid decides.
 fn splines(m: &Measurements) -> Option<Requirement> {
     let ratio = |cost: &SplineCost| cost.seconds[0] / cost.seconds[1];
     let worst = m.splines.iter().max_by(|a, b| ratio(a).total_cmp(&ratio(b)))?;
@@ -158,7 +159,7 @@ fn splines(m: &Measurements) -> Option<Requirement> {
     })
 }
 
-/// Rate of a method over that of another, scene by scene.
+/// Returns the rate of a method over that of another, scene by scene.
 pub(super) fn ratios<'m>(
     m: &'m Measurements,
     (method, tolerance): (&'m str, Option<f64>),
@@ -173,7 +174,7 @@ pub(super) fn ratios<'m>(
     })
 }
 
-/// The least ratio over the scenes decides.
+/// Judges the ratio of rates; the least ratio over the scenes decides.
 fn ratio(m: &Measurements, side: usize, other: &str, least: f64) -> Option<Requirement> {
     let all = || ratios(m, (Method::Spectral.name(), Some(FULL_PRECISION)), other, side);
     let (scene, smallest) = all().min_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -188,7 +189,8 @@ fn ratio(m: &Measurements, side: usize, other: &str, least: f64) -> Option<Requi
     })
 }
 
-/// The store's exponent beside: what it takes more where its array outgrows the caches is no growth of a computation.
+/// Judges the growth of cost, with the store's exponent beside it: the store slows down too when its array
+/// outgrows the caches, which is no growth of a computation.
 fn linear(m: &Measurements) -> Option<Requirement> {
     let (first, last) = (m.growth.first()?, m.growth.last()?);
     let (spectral, store) = (exponent(m, |row| row.spectral), exponent(m, |row| row.store));
@@ -206,7 +208,7 @@ fn linear(m: &Measurements) -> Option<Requirement> {
     })
 }
 
-/// Slope of log time over log points by least squares.
+/// Returns the slope of log time over log points, by least squares.
 fn exponent(m: &Measurements, seconds: impl Fn(&Growth) -> f64) -> f64 {
     let points: Vec<[f64; 2]> =
         m.growth.iter().map(|row| [(row.points as f64).ln(), seconds(row).ln()]).collect();

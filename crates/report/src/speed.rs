@@ -1,4 +1,4 @@
-//! Races: several methods and a plain store fill the same array in turn.
+//! Races: several methods and a plain store fill one array in turn.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -12,47 +12,47 @@ use wheelrail::separation::grid::Choice;
 use wheelrail::separation::plan::{FULL_PRECISION, plan};
 use wheelrail::separation::values::Values;
 
-/// Runs of one contestant in all its races, at least: three show a disturbed one.
+/// Least number of runs of one contestant in all its races: three show a disturbed one.
 pub const LEAST_RUNS: usize = 3;
 
-/// A run that takes this many times its contestant's share of time is not repeated.
+/// Length of a run, as a multiple of its contestant's share of time, above which it is not repeated.
 const TOO_LONG: f64 = 10.0;
 
-/// Runs up to so long \[s\] count the time on the wall, which the shortest of many is not disturbed in; the clock of a thread's
-/// processor time was seen to stand still during one of some million.
+/// Longest run \[s\] that is timed on the wall: the shortest of many runs is not disturbed. For such runs the
+/// clock of a thread's processor time was seen to stand still, during one of some million.
 const SHORT: f64 = 1e-3;
 
-/// The value that is stored: no pattern of equal bytes, which a compiler could hand to `memset`.
+/// The value that is stored: not a pattern of equal bytes, which a compiler could turn into `memset`.
 const STORED: f64 = 0.1;
 
-/// What is timed.
+/// The work that is timed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Work {
-    /// One value written to the whole array, column by column.
+    /// Writes one value to the whole array, column by column.
     Store,
-    /// The array filled by a method.
+    /// Fills the array by a method.
     Fill(Choice),
-    /// A method chosen at full precision, and the array filled by it.
+    /// Chooses a method at full precision, and fills the array by it.
     PlanAndFill,
 }
 
 /// The times of one contestant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Timing {
-    /// Shortest run \[s\]: [`Track::timed`] on one thread, time on the wall on several.
+    /// Time of the shortest run \[s\]: [`Track::timed`] on one thread, time on the wall on several.
     pub best: f64,
-    /// Sum of all runs \[s\].
+    /// Sum of the times of all runs \[s\].
     pub spent: f64,
-    /// How often it ran.
+    /// Number of runs.
     pub runs: usize,
 }
 
 impl Timing {
-    /// That of one that has not run.
+    /// The times of a contestant that has not run.
     pub const NONE: Self = Self { best: f64::INFINITY, spent: 0.0, runs: 0 };
 }
 
-/// The grid that is filled: one array for all contestants, its pages touched before the first run.
+/// The grid that is filled: one array for all contestants, with its pages touched before the first run.
 #[derive(Debug)]
 pub struct Track<'a> {
     placement: &'a Placement,
@@ -62,7 +62,7 @@ pub struct Track<'a> {
 }
 
 impl<'a> Track<'a> {
-    /// n × n points over \[ξ_0, ξ_1\] × \[−reach, reach\] \[mm\].
+    /// Makes a grid of n × n points over \[ξ_0, ξ_1\] × \[−reach, reach\] \[mm\].
     pub fn new(placement: &'a Placement, [a, b]: [f64; 2], reach: f64, n: usize) -> Self {
         let xi = equal_steps(a, b, n);
         let axis = EtaAxis::new(&equal_steps(-reach, reach, n));
@@ -71,22 +71,22 @@ impl<'a> Track<'a> {
         Self { placement, xi, axis, out }
     }
 
-    /// ξ of the columns \[mm\].
+    /// Returns ξ of the columns \[mm\].
     pub fn xi(&self) -> &[f64] {
         &self.xi
     }
 
-    /// The common η axis.
+    /// Returns the common η axis.
     pub fn axis(&self) -> &EtaAxis {
         &self.axis
     }
 
-    /// The array as the last run left it \[mm\].
+    /// Returns the array as the last run left it \[mm\].
     pub fn values(&self) -> &[f64] {
         &self.out
     }
 
-    /// One run on the threads of the current rayon pool.
+    /// Runs once, on the threads of the present rayon pool.
     pub fn run(&mut self, work: Work) {
         match work {
             Work::Store => {
@@ -106,14 +106,14 @@ impl<'a> Track<'a> {
         black_box(&mut *self.out);
     }
 
-    /// Time of one run \[s\], as [`timed`] has it.
+    /// Returns the time of one run \[s\], measured by [`timed`].
     pub fn timed(&mut self, work: Work) -> f64 {
         timed(|| self.run(work))
     }
 }
 
-/// Time of some work \[s\]: the processor's, which leaves out what other processes took, and on the wall if that is short. To be
-/// called on a rayon pool of one thread.
+/// Returns the time of some work \[s\]: processor time, which leaves out what other processes took, or time
+/// on the wall if the work is short. Call it on a rayon pool of one thread.
 pub fn timed(work: impl FnOnce()) -> f64 {
     let (start, on_the_wall) = (processor_time(), Instant::now());
     work();
@@ -121,16 +121,17 @@ pub fn timed(work: impl FnOnce()) -> f64 {
     (processor_time() - start).max(on_the_wall.min(SHORT))
 }
 
-/// Processor time of this thread \[s\].
+/// Returns the processor time of this thread \[s\].
 fn processor_time() -> f64 {
     let time = clock_gettime(ClockId::ThreadCPUTime);
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
 
-/// Runs contestants until each has had `seconds`, earlier races included, and `least` runs; `run` gives the seconds of one.
+/// Runs contestants until each has had `seconds`, earlier races included, and `least` runs; `run` returns the
+/// seconds of one run.
 ///
-/// Next is always the one that has had least time: all are spread over the same stretch of time and meet the same disturbances,
-/// so that ratios hold where times do not.
+/// The contestant with the least time so far is next. So all are spread over the same stretch of time and
+/// meet the same disturbances, and ratios hold even where times do not.
 pub fn race(timings: &mut [Timing], seconds: f64, least: usize, mut run: impl FnMut(usize) -> f64) {
     let waits = |timing: &Timing| {
         let long = timing.best > TOO_LONG * seconds;
@@ -162,9 +163,9 @@ mod tests {
         race(&mut timings, 1.0, 3, &mut run);
         assert_eq!(timings[0], Timing { best: 0.5, spent: 1.5, runs: 3 });
         assert_eq!(timings[1], Timing { best: 0.125, spent: 1.0, runs: 8 });
-        // Too long a run for a second one.
+        // The run is too long for a second one.
         assert_eq!(timings[2], Timing { best: 32.0, spent: 32.0, runs: 1 });
-        // A later race goes on where the first one ended.
+        // A later race continues where the first one ended.
         race(&mut timings, 2.0, 3, &mut run);
         assert_eq!(timings.map(|timing| timing.runs), [4, 16, 1]);
         assert_eq!(order[..9], [0, 1, 2, 1, 1, 1, 0, 1, 1]);

@@ -1,4 +1,5 @@
-//! What a grid costs over measured profiles: splines through points of 60E1 and S1002 against chains of arcs.
+//! Measures the cost of a grid over measured profiles: splines through points of 60E1 and S1002 against
+//! chains of arcs.
 
 use super::speed::{LEAST_RUNS, Timing, Track, Work, race};
 use wheelrail::error::Result;
@@ -7,40 +8,43 @@ use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Profile, Side, standards};
 use wheelrail::separation::plan::{FULL_PRECISION, plan};
 
-/// Distances of the points that splines are drawn through \[mm\].
+/// Distances of the points through which splines are drawn \[mm\].
 const SPACINGS: [f64; 3] = [0.1, 0.5, 1.0];
-/// … and arcs, within the default tolerance. The drawn S1002 is made of polynomials, and would be no chain of arcs.
+/// Distance of the points through which arcs are drawn, within the default tolerance \[mm\]. The drawn S1002
+/// is made of polynomials, and would be no chain of arcs.
 const ARC_SPACING: f64 = 0.5;
 
-/// R, the contact's abscissa, half widths of the window \[mm\].
+/// Nominal rolling radius R \[mm\].
 const WHEEL_RADIUS: f64 = 460.0;
+/// Abscissa of the contact on both profiles \[mm\].
 const CONTACT: f64 = -3.0;
+/// Half widths of the window \[mm\].
 const HALF_WIDTHS: [f64; 2] = [12.0, 10.0];
 
 /// The times of one grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SplineCost {
-    /// n of the n × n grid.
+    /// Number n of the n × n grid.
     pub side: usize,
     /// Distance of the points \[mm\].
     pub spacing: f64,
     /// Best time over splines and over arcs \[s\].
     pub seconds: [f64; 2],
-    /// … and over splines with the choice of the method \[s\].
+    /// Best time over splines with the choice of the method \[s\].
     pub with_plan: f64,
 }
 
 impl SplineCost {
-    /// Time a point over splines, with the choice of the method \[ns\].
+    /// Returns the time a point over splines, with the choice of the method \[ns\].
     pub fn nanoseconds(&self) -> f64 {
         1e9 * self.with_plan / (self.side * self.side) as f64
     }
 }
 
-/// Grids with n × n points for every n, each contestant at least `seconds` long; on one thread.
+/// Times grids with n × n points for every n, each contestant for at least `seconds`, on one thread.
 ///
 /// # Errors
-/// Built-in profiles that cannot be fitted or placed: a fault of this program.
+/// Built-in profiles that cannot be fitted or placed, which is a fault of this program.
 pub fn spline_costs(sides: &[usize], seconds: f64) -> Result<Vec<SplineCost>> {
     let arcs = fitted(CurveKind::Arcs, ARC_SPACING)?;
     let mut costs = Vec::new();
@@ -68,7 +72,7 @@ pub fn spline_costs(sides: &[usize], seconds: f64) -> Result<Vec<SplineCost>> {
     Ok(costs)
 }
 
-/// The pair through points of the drawings.
+/// Places the pair through points of the drawings.
 fn fitted(curve: CurveKind, spacing: f64) -> Result<Placement> {
     let profile = |drawn: &Profile, side: Side| -> Result<Profile> {
         let text = write::points(&write::sample(drawn, spacing)?, Format::Csv, side, "sample");

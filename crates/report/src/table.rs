@@ -1,16 +1,18 @@
-//! Tables of the report: CSV for programs, Markdown for people.
+//! Writes the tables of the report: CSV for programs, Markdown for people.
 
 use std::fmt::Write;
 
-use super::hard_case::{METHODS, Outcome};
+use super::hard_case::METHODS;
+use super::hard_run::Outcome;
 use super::measurements::{Growth, Row};
+use super::practice::PracticeRow;
 use super::rates::Rate;
 use super::verification::Verified;
 use super::whole_case::{PARTS, WholeCase};
 use wheelrail_check::Floor;
 
-/// accuracy.csv. Lengths in mm, times in s; a method that misses a surface, or finds one where there is none, has
-/// NaN for its largest errors.
+/// Returns accuracy.csv. Lengths are in mm, times in s. The largest errors are NaN if a method misses a
+/// surface, or finds one where there is none.
 pub fn accuracy_csv(rows: &[Row]) -> String {
     let mut out = String::from(
         "scene,method,tolerance_mm,points,seconds,mpoints_per_s,max_abs_error_mm,max_rel_error,q99_rel_error,\
@@ -35,8 +37,8 @@ pub fn accuracy_csv(rows: &[Row]) -> String {
     out
 }
 
-/// hard_cases.csv: per case and method the errors where there is a value, and the points where there wrongly is
-/// one or none.
+/// Returns hard_cases.csv: for each case and method the errors where there is a value, and the number of
+/// points that wrongly have a value or have none.
 pub fn hard_cases_csv(outcomes: &[Outcome]) -> String {
     let mut out = String::from(
         "case,title,status,as_stated,method,points,wrongly_masked,max_abs_error_mm,max_rel_error,failed_checks,\
@@ -67,7 +69,19 @@ pub fn hard_cases_csv(outcomes: &[Outcome]) -> String {
     out
 }
 
-/// verification.csv: what parry3d's meshes say, one row per placed pair; lengths in mm.
+/// Returns practice.csv: for each case its largest difference from brute force, and what disagrees.
+pub fn practice_csv(rows: &[PracticeRow]) -> String {
+    let mut out =
+        String::from("case,places,largest_difference_mm,largest_area_difference,disagreements,what\n");
+    for row in rows {
+        let PracticeRow { name, what, figure, contacts, area, failures } = row;
+        let (failures, what) = (quoted(&failures.join("; ")), quoted(what));
+        let _ = writeln!(out, "{name},{contacts},{figure:.4e},{area:.4e},{failures},{what}");
+    }
+    out
+}
+
+/// Returns verification.csv: the results of parry3d's meshes, one row for each placed pair; lengths in mm.
 pub fn verification_csv(groups: &[Vec<Verified>]) -> String {
     let mut out = String::from(
         "pair,agrees,points,compared,max_mm,q99_mm,median_mm,worst_xi,worst_eta,bracket_mm,outside_bracket,\
@@ -99,7 +113,7 @@ pub fn verification_csv(groups: &[Vec<Verified>]) -> String {
     out
 }
 
-/// scaling.csv.
+/// Returns scaling.csv.
 pub fn growth_csv(rows: &[Growth]) -> String {
     let mut out = String::from("points,spectral_seconds,store_seconds\n");
     for row in rows {
@@ -108,7 +122,7 @@ pub fn growth_csv(rows: &[Growth]) -> String {
     out
 }
 
-/// positions.csv: rates of sweeps, with the table of conicity.
+/// Returns positions.csv: rates of sweeps, with the table of conicity.
 pub fn positions_csv(rows: &[Rate]) -> String {
     let mut out = String::from(
         "pair,measured,motion,positions,with_contact,seconds,positions_per_s,conicity_seconds,conicity_searches,\
@@ -132,7 +146,7 @@ pub fn positions_csv(rows: &[Rate]) -> String {
     out
 }
 
-/// cases.csv: times of whole cases, part by part \[s\].
+/// Returns cases.csv: times of whole cases, part by part \[s\].
 pub fn cases_csv(rows: &[WholeCase]) -> String {
     let mut out = format!("pair,points,{}_s,total_s\n", PARTS.join("_s,"));
     for row in rows {
@@ -147,7 +161,7 @@ fn quoted(text: &str) -> String {
     format!("\"{}\"", text.replace('"', "\"\""))
 }
 
-/// A Markdown table; columns after the first `left` are aligned to the right.
+/// Returns a Markdown table; columns after the first `left` are aligned to the right.
 pub fn markdown(head: &[&str], left: usize, rows: &[Vec<String>]) -> String {
     let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
     let mut out = line(&head.iter().map(ToString::to_string).collect::<Vec<_>>());

@@ -1,4 +1,4 @@
-//! The check by parry3d's meshes over every reference scene and every pair of built-in profiles.
+//! Runs the check by parry3d's meshes over every reference scene and every pair of built-in profiles.
 
 use rayon::prelude::*;
 
@@ -10,40 +10,43 @@ use wheelrail::profile::standards;
 use wheelrail::separation::Evaluator;
 use wheelrail_check::{Answer, Floor, Report, Request, check};
 
-/// Skew \[rad\] of every third built-in pair, and of the reference scenes besides their own.
+/// Skew of every third built-in pair \[rad\].
 const SKEW: f64 = 0.01;
+/// Additional skews of the reference scenes \[rad\].
 const SKEWS: [f64; 2] = [SKEW, -0.06];
 
-/// R \[mm\], half widths of the window and δ \[mm\] of the built-in pairs.
+/// R of the built-in pairs \[mm\].
 const WHEEL_RADIUS: f64 = 460.0;
+/// Half widths of the window of the built-in pairs \[mm\].
 const HALF_WIDTHS: [f64; 2] = [30.0, 15.0];
+/// Approach δ of the built-in pairs \[mm\].
 const APPROACH: f64 = 0.05;
 
-/// What is checked: a placed pair and where.
+/// A placed pair to be checked, with the place of the check.
 #[derive(Debug, Clone)]
 pub struct Subject {
-    /// Scene, or rail and wheel, with its skew.
+    /// Name of the scene, or of rail and wheel, with the skew.
     pub name: String,
-    /// The pair in contact.
+    /// The placed pair.
     pub placement: Placement,
     /// Window and approach.
     pub request: Request,
 }
 
-/// A subject and what the meshes say of it.
+/// A subject's name and the result of its check.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verified {
-    /// Its name.
+    /// Name of the subject.
     pub name: String,
     /// Agreement and floors.
     pub report: Report,
 }
 
 impl Subject {
-    /// The window of a reference scene's values, and its first approach.
+    /// Makes the subject of a reference scene: the window of its values, and its first approach.
     ///
     /// # Errors
-    /// As [`Reference::placement`].
+    /// The errors of [`Reference::placement`].
     pub fn of_reference(reference: &Reference) -> Result<Self> {
         let [xi, eta] = reference.scene.axes();
         let ends = |values: &[f64]| [values.first(), values.last()].map(|v| v.copied().unwrap_or(0.0));
@@ -53,7 +56,7 @@ impl Subject {
         Ok(Self { name: reference.name.clone(), placement: reference.placement()?, request })
     }
 
-    /// The same with other skews.
+    /// Returns the subject with other skews.
     pub fn skewed(&self) -> impl Iterator<Item = Self> {
         SKEWS.into_iter().map(|skew| Self {
             name: format!("{}, skew {skew}", self.name),
@@ -62,10 +65,10 @@ impl Subject {
         })
     }
 
-    /// Asks the meshes about the point-wise evaluator's answers.
+    /// Checks the point-wise evaluator's answers by the meshes.
     ///
     /// # Errors
-    /// As [`check`].
+    /// The errors of [`check`].
     pub fn verify(&self) -> Result<Verified> {
         let mut evaluator = Evaluator::new(&self.placement);
         let report =
@@ -74,10 +77,11 @@ impl Subject {
     }
 }
 
-/// Every built-in rail under every built-in wheel, the profiles' origins in contact, every third with skew.
+/// Places every built-in rail under every built-in wheel, with the profiles' origins in contact, every third
+/// pair with skew.
 ///
 /// # Errors
-/// A built-in profile without a point at its origin: a fault of this program.
+/// A built-in profile without a point at its origin, which is a fault of this program.
 pub fn built_in_pairs() -> Result<Vec<Subject>> {
     let names = standards::rail_names().flat_map(|rail| standards::wheel_names().map(move |w| (rail, w)));
     names
@@ -93,15 +97,15 @@ pub fn built_in_pairs() -> Result<Vec<Subject>> {
         .collect()
 }
 
-/// All of them, on all threads.
+/// Checks all subjects, on all threads.
 ///
 /// # Errors
-/// As [`check`].
+/// The errors of [`check`].
 pub fn verify(subjects: &[Subject]) -> Result<Vec<Verified>> {
     subjects.par_iter().map(Subject::verify).collect()
 }
 
-/// The checker's largest floors over several reports, form by form.
+/// Returns the checker's largest floors over several reports, form by form.
 pub fn floors<'a>(all: impl Iterator<Item = &'a Verified>) -> Vec<Floor> {
     let mut floors: Vec<Floor> = Vec::new();
     for floor in all.flat_map(|verified| &verified.report.floors) {

@@ -1,4 +1,5 @@
-//! What a caller waits for: from a pair of profiles to a meshed patch, part by part, and all that `run` computes.
+//! Times what a caller waits for: from a pair of profiles to a meshed patch, part by part, and all that `run`
+//! computes.
 
 use std::hint::black_box;
 
@@ -18,47 +19,52 @@ use wheelrail::separation::axis::EtaAxis;
 use wheelrail::separation::plan::{FULL_PRECISION, plan};
 use wheelrail::separation::values::Values;
 
-/// R, δ, half widths of the window \[mm\].
+/// Nominal rolling radius R \[mm\].
 const RADIUS: f64 = 460.0;
+/// Approach δ \[mm\].
 const APPROACH: f64 = 0.08;
+/// Half widths of the window \[mm\].
 const HALF_WIDTHS: [f64; 2] = [12.0, 10.0];
 
-/// Distance of the points \[mm\], noise \[µm\] and seed of the measured pair.
+/// Distance of the points of the measured pair \[mm\].
 const SPACING: f64 = 0.28;
+/// Noise of the measured pair \[µm\].
 const NOISE: f64 = 3.0;
+/// Seed of the measured pair.
 const SEED: u64 = 1979;
 
-/// The parts of a case, in order.
+/// Names of the parts of a case, in order.
 pub const PARTS: [&str; 6] = ["touch", "place", "plan", "fill", "patch", "mesh"];
 
 /// Times of the parts of one case.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WholeCase {
-    /// "drawn" or "measured".
+    /// Kind of the pair: "drawn" or "measured".
     pub pair: &'static str,
-    /// n of the n × n grid.
+    /// Number n of the n × n grid.
     pub side: usize,
     /// Shortest time of every part of [`PARTS`] \[s\].
     pub seconds: [f64; PARTS.len()],
 }
 
 impl WholeCase {
-    /// Of all parts together \[s\].
+    /// Returns the time of all parts together \[s\].
     pub fn total(&self) -> f64 {
         self.seconds.iter().sum()
     }
 
-    /// Of one part \[s\].
+    /// Returns the time of one part \[s\].
     pub fn part(&self, name: &str) -> f64 {
         PARTS.iter().position(|part| *part == name).map_or(f64::NAN, |k| self.seconds[k])
     }
 }
 
-/// A centred wheel on its rail, lowered, placed, with a grid of n × n points at full precision, the patch in its window and
-/// the patch's mesh; each part at least `seconds` long. To be called on one thread.
+/// Times cases of a centred wheel on its rail: lowered, placed, with a grid of n × n points at full
+/// precision, the patch in its window and the patch's mesh. Each part runs for at least `seconds`. Call it on
+/// one thread.
 ///
 /// # Errors
-/// Pairs that cannot be fitted or placed: a fault of this program.
+/// Pairs that cannot be fitted or placed, which is a fault of this program.
 pub fn whole_cases(side: usize, seconds: f64) -> Result<Vec<WholeCase>> {
     let drawn = pair([standards::rail("60E1")?, standards::wheel("EN15302-A")?])?;
     [("drawn", drawn), ("measured", pair(measured()?)?)]
@@ -67,13 +73,13 @@ pub fn whole_cases(side: usize, seconds: f64) -> Result<Vec<WholeCase>> {
         .collect()
 }
 
-/// The rail inclined 1:40, under the wheel.
+/// Makes the pair of the rail, inclined 1:40, and the wheel.
 fn pair([rail, wheel]: [Profile; 2]) -> Result<Pair> {
     let run = 40f64.hypot(1.0);
     Pair::new(rail.rotated(40.0 / run, 1.0 / run), wheel, RADIUS)
 }
 
-/// A worn rail and a worn wheel, written as files, read and smoothed.
+/// Writes a worn rail and a worn wheel as files, reads and smooths them.
 fn measured() -> Result<[Profile; 2]> {
     let profile = |kind| {
         let specimen = Specimen::new(kind, Instrument::new(SPACING, NOISE, SEED))?;
@@ -82,31 +88,31 @@ fn measured() -> Result<[Profile; 2]> {
     Ok([profile(SpecimenKind::WornRail)?, profile(SpecimenKind::WornWheel)?])
 }
 
-/// What `run` computes for a worn, measured wheelset 3 mm to the right.
+/// Times of what `run` computes for a worn, measured wheelset 3 mm to the right.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RunCost {
     /// Shortest time for reading and smoothing both profiles \[s\].
     pub profiles: f64,
-    /// … and for all the rest, but writing the files \[s\].
+    /// Shortest time for all the rest, without writing the files \[s\].
     pub rest: f64,
 }
 
 impl RunCost {
-    /// Both \[s\].
+    /// Returns the sum of both times \[s\].
     pub fn total(&self) -> f64 {
         self.profiles + self.rest
     }
 }
 
-/// The scene of [`RunCost`]; its profiles are handed over, not read by their names.
+/// The scene of [`RunCost`]; its profiles are passed as such, not read by their names.
 const WHEELSET: &str = "[rail]\nprofile = \"60E1\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n\
                         [track]\ngauge = 1435.0\n[wheelset]\nback_to_back = 1360.0\nflange_back_x = -70.0\n\
                         lateral = 3.0\n[patch]\nload = 60000.0\n";
 
-/// Times what `run` computes, at least `seconds` long; to be called on one thread.
+/// Times what `run` computes, for at least `seconds`; call it on one thread.
 ///
 /// # Errors
-/// A scene that cannot be computed: a fault of this program.
+/// A scene that cannot be computed, which is a fault of this program.
 pub fn run_cost(seconds: f64) -> Result<RunCost> {
     let scene = parse(WHEELSET, false)?;
     let profiles = Profiles { pair: pair(measured()?)?, measured: [None, None] };

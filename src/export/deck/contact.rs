@@ -1,22 +1,23 @@
-//! `contact.inp`: a deck for Vollebregt's CONTACT, module 3 (one point of contact), with the undeformed distance
-//! given point by point (IBASE = 9).
+//! Writes `contact.inp`: a deck for Vollebregt's CONTACT, module 3 (one point of contact), with the
+//! undeformed distance given point by point (IBASE = 9).
 //!
-//! CONTACT's axes are x rolling, y lateral, z down: (x, y, z) = ours (η, ξ, −ζ). Its elements are our cells, its
-//! distances belong to their centres, x fastest: the same order as ours. The program exits with 0 even when it
-//! rejects its input, so read its output.
+//! CONTACT's axes are x rolling, y lateral, z down: (x, y, z) = ours (η, ξ, −ζ). Its elements are our cells,
+//! and its distances belong to their centres, x fastest, which is our order too. The program exits with 0
+//! even when it rejects its input, so read its output.
 
 use super::super::block::Block;
 use super::{Deck, WIDTH, line};
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-/// CONTACT's own limit of elements (NPOT_MAX), beyond which it coarsens the grid.
+/// Largest number of elements that CONTACT takes (NPOT_MAX); beyond it CONTACT coarsens the grid.
 pub const ELEMENT_LIMIT: usize = 20_000;
 
-/// Numbers on a line: CONTACT takes lines of up to 256 characters and 50 items; three keep these under 80.
+/// Numbers on a line: CONTACT takes lines of up to 256 characters and 50 items; three numbers keep a line
+/// under 80.
 const PER_LINE: usize = 3;
 
-/// What is prescribed along the normal.
+/// The quantity prescribed along the normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Normal {
     /// Total normal force \[N\], > 0.
@@ -25,10 +26,10 @@ pub enum Normal {
     Approach(f64),
 }
 
-/// What CONTACT needs beside the geometry.
+/// The data that CONTACT needs besides the geometry.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// Force or approach.
+    /// Prescribed force or approach.
     pub normal: Normal,
     /// Poisson's ratios of rail and wheel, typically 0.28.
     pub poisson: [f64; 2],
@@ -39,71 +40,69 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Steel on steel: E = 210,000 N/mm², ν = 0.28, friction 0.3.
+    /// Returns the settings for steel on steel: E = 210,000 N/mm², ν = 0.28, friction 0.3.
     pub fn steel(normal: Normal) -> Self {
         let shear = 210_000.0 / (2.0 * (1.0 + 0.28));
         Self { normal, poisson: [0.28; 2], shear_modulus: [shear; 2], friction: 0.3 }
     }
 }
 
-impl Deck<'_> {
-    /// `contact.inp`. Undefined distances are 10 × the largest |s|.
-    ///
-    /// # Errors
-    /// Those of the sink.
-    pub fn contact(&self, settings: &Settings, sink: &mut dyn Write) -> io::Result<()> {
-        let mut block = Block::new(sink);
-        block.bytes(self.comments().as_bytes())?;
-        block.bytes(self.control(settings).as_bytes())?;
-        for i in 0..self.xi.len() {
-            for run in self.column(i).chunks(PER_LINE) {
-                let room = block.room(run.len() * WIDTH + 1)?;
-                for (place, number) in room.chunks_exact_mut(WIDTH).zip(run) {
-                    place.copy_from_slice(number);
-                }
-                room[run.len() * WIDTH] = b'\n';
+/// Writes `contact.inp`. Undefined distances are 10 × the largest |s|.
+///
+/// # Errors
+/// The errors of the sink.
+pub fn contact(deck: &Deck<'_>, settings: &Settings, sink: &mut dyn Write) -> io::Result<()> {
+    let mut block = Block::new(sink);
+    block.bytes(comments(deck).as_bytes())?;
+    block.bytes(control(deck, settings).as_bytes())?;
+    for i in 0..deck.xi.len() {
+        for run in deck.column(i).chunks(PER_LINE) {
+            let room = block.room(run.len() * WIDTH + 1)?;
+            for (place, number) in room.chunks_exact_mut(WIDTH).zip(run) {
+                place.copy_from_slice(number);
             }
+            room[run.len() * WIDTH] = b'\n';
         }
-        block.bytes(b" 0  MODULE\n")?;
-        block.finish()
     }
+    block.bytes(b" 0  MODULE\n")?;
+    block.finish()
+}
 
-    fn comments(&self) -> String {
-        let mut lines = self.header.statements();
-        lines.push("CONTACT's axes: x = eta (rolling), y = xi (lateral), z = -zeta (down)".into());
-        lines.push("h(1) ... h(MX*MY) = s at element centres, ix (eta) fastest, then iy (xi)".into());
-        let undefined = self.grid.separation().iter().filter(|s| s.is_nan()).count();
-        lines.push(format!("undefined elements, filled with 10 x the largest |s|: {undefined}"));
-        let count = self.separation.len();
-        if count > ELEMENT_LIMIT {
-            lines.push(format!("{count} elements: above CONTACT's default NPOT_MAX = {ELEMENT_LIMIT},"));
-            lines.push("beyond which it coarsens the grid; use a coarser one or raise NPOT_MAX".into());
-        }
-        lines.iter().map(|line| format!("% {line}\n")).collect()
+fn comments(deck: &Deck<'_>) -> String {
+    let mut lines = deck.header.statements();
+    lines.push("CONTACT's axes: x = eta (rolling), y = xi (lateral), z = -zeta (down)".into());
+    lines.push("h(1) ... h(MX*MY) = s at element centres, ix (eta) fastest, then iy (xi)".into());
+    let undefined = deck.grid.separation().iter().filter(|s| s.is_nan()).count();
+    lines.push(format!("undefined elements, filled with 10 x the largest |s|: {undefined}"));
+    let count = deck.separation.len();
+    if count > ELEMENT_LIMIT {
+        lines.push(format!("{count} elements: above CONTACT's default NPOT_MAX = {ELEMENT_LIMIT},"));
+        lines.push("beyond which it coarsens the grid; use a coarser one or raise NPOT_MAX".into());
     }
+    lines.iter().map(|line| format!("% {line}\n")).collect()
+}
 
-    fn control(&self, settings: &Settings) -> String {
-        let (force, normal) = match settings.normal {
-            Normal::Force(force) => (1, force),
-            Normal::Approach(approach) => (0, approach),
-        };
-        let ([nu_r, nu_w], [g_r, g_w]) = (settings.poisson, settings.shear_modulus);
-        let mut text = format!(
-            " 3  MODULE\n  200{force}00       P-B-T-N-F-S     % N = {force}: {} prescribed\n",
-            if force == 1 { "normal force [N]" } else { "approach [mm]" }
-        );
-        text += "  022020       L-D-C-M-Z-E\n 0002221       H-G-I-A-O-W-R\n";
-        text += "   999 100 30 1 1.0e-8           MAXGS MAXIN MAXNR MAXOUT EPS\n";
-        // `{:?}` writes every f64 with a point or an exponent, shortest that reads back the same.
-        let _ = writeln!(text, "   {normal:?} 0.0 0.0 0.0           {}", ["PEN", "FN"][force]);
-        let _ = writeln!(text, "   {0:?} {0:?}           FSTAT FKIN", settings.friction);
-        let _ = writeln!(text, "   {nu_r:?} {nu_w:?} {g_r:?} {g_w:?}           POISS 1,2  GG 1,2");
-        text += "   3           IPOTCN\n";
-        let _ = write!(text, "   {} {} ", self.eta.len(), self.xi.len());
-        text += line(&[self.grid.eta()[0], self.grid.xi()[0], self.steps[1], self.steps[0]]).trim_end();
-        text += "  MX MY XC1 YC1 DX DY\n";
-        text + "   9 1           IBASE IPLAN\n"
-    }
+fn control(deck: &Deck<'_>, settings: &Settings) -> String {
+    let (force, normal) = match settings.normal {
+        Normal::Force(force) => (1, force),
+        Normal::Approach(approach) => (0, approach),
+    };
+    let ([nu_r, nu_w], [g_r, g_w]) = (settings.poisson, settings.shear_modulus);
+    let mut text = format!(
+        " 3  MODULE\n  200{force}00       P-B-T-N-F-S     % N = {force}: {} prescribed\n",
+        if force == 1 { "normal force [N]" } else { "approach [mm]" }
+    );
+    text += "  022020       L-D-C-M-Z-E\n 0002221       H-G-I-A-O-W-R\n";
+    text += "   999 100 30 1 1.0e-8           MAXGS MAXIN MAXNR MAXOUT EPS\n";
+    // `{:?}` writes every f64 with a point or an exponent, in the shortest form that reads back the same.
+    let _ = writeln!(text, "   {normal:?} 0.0 0.0 0.0           {}", ["PEN", "FN"][force]);
+    let _ = writeln!(text, "   {0:?} {0:?}           FSTAT FKIN", settings.friction);
+    let _ = writeln!(text, "   {nu_r:?} {nu_w:?} {g_r:?} {g_w:?}           POISS 1,2  GG 1,2");
+    text += "   3           IPOTCN\n";
+    let _ = write!(text, "   {} {} ", deck.eta.len(), deck.xi.len());
+    text += line(&[deck.grid.eta()[0], deck.grid.xi()[0], deck.steps[1], deck.steps[0]]).trim_end();
+    text += "  MX MY XC1 YC1 DX DY\n";
+    text + "   9 1           IBASE IPLAN\n"
 }
 
 #[cfg(test)]
@@ -114,7 +113,8 @@ mod tests {
     fn deck(sample: &Sample, normal: Normal) -> String {
         let (header, grid) = (header(), sample.fields());
         let mut bytes = Vec::new();
-        Deck::new(&header, &grid).unwrap().contact(&Settings::steel(normal), &mut bytes).unwrap();
+        let deck = Deck::new(&header, &grid).unwrap();
+        contact(&deck, &Settings::steel(normal), &mut bytes).unwrap();
         String::from_utf8(bytes).unwrap()
     }
 

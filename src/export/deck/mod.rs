@@ -1,4 +1,5 @@
-//! Text decks for solvers: fixed columns, 17 significant digits, ASCII, an end that shows when it is missing.
+//! Text decks for solvers: fixed columns, 17 significant digits, ASCII, with an end mark that shows whether
+//! the file is complete.
 //!
 //! The card layouts of the original CONFORM and COUNTACT programs are not public. `conform.wrp` and
 //! `countact.wrp` carry what those solvers read (separation, rail normals, boundary-fitted cells) in the grammar
@@ -12,23 +13,23 @@ use super::model::{GridFields, Header};
 use crate::error::Result;
 use number::{Field, WIDTH, field};
 
-/// A grid's numbers as text, formatted once for all decks.
+/// The numbers of a grid as text, formatted once for all decks.
 pub struct Deck<'a> {
     header: &'a Header,
     grid: &'a GridFields<'a>,
-    /// Steps d_ξ, d_η \[mm\].
+    /// Steps \[d_ξ, d_η\] \[mm\].
     steps: [f64; 2],
     xi: Vec<Field>,
     eta: Vec<Field>,
-    /// s, or the fill value where it is undefined.
+    /// Texts of s, or of the fill value where s is undefined.
     separation: Vec<Field>,
 }
 
 impl<'a> Deck<'a> {
-    /// Formats the grid. Takes 25 bytes a point.
+    /// Formats the grid. It takes 25 bytes a point.
     ///
     /// # Errors
-    /// A grid of unequal steps, or of one row or column: no deck can say where its points are.
+    /// A grid of unequal steps, or of one row or column: a deck cannot say where its points are.
     pub fn new(header: &'a Header, grid: &'a GridFields<'a>) -> Result<Self> {
         let fill = grid.fill_value();
         let number = |&s: &f64| field(if s.is_nan() { fill } else { s });
@@ -42,7 +43,7 @@ impl<'a> Deck<'a> {
         })
     }
 
-    /// The texts of s along the column of ξ number `i`.
+    /// Returns the texts of s along the column of ξ number `i`.
     fn column(&self, i: usize) -> &[Field] {
         &self.separation[i * self.eta.len()..(i + 1) * self.eta.len()]
     }
@@ -52,7 +53,7 @@ fn fields(values: &[f64]) -> Vec<Field> {
     values.iter().map(|&value| field(value)).collect()
 }
 
-/// One line of numbers.
+/// Returns one line of numbers.
 fn line(values: &[f64]) -> String {
     let mut text: String = values.iter().flat_map(|&value| field(value)).map(char::from).collect();
     text.push('\n');

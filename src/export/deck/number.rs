@@ -1,6 +1,7 @@
-//! Numbers as Fortran reads them: `E25.16`, that is 17 significant digits, right-aligned in 25 columns.
+//! Writes numbers as Fortran reads them: `E25.16`, that is 17 significant digits, right-aligned in 25
+//! columns.
 //!
-//! 17 digits bring back every f64 bit for bit. The decimal point is always there: Fortran reads `5e0` under
+//! 17 digits give back every f64 bit for bit. The decimal point is always there: Fortran reads `5e0` under
 //! E25.16 as 5·10⁻¹⁶ without complaint.
 
 use std::io::Write;
@@ -24,10 +25,10 @@ const FIVE: [u64; 28] = {
 
 const TEN_16: u64 = 10_000_000_000_000_000;
 
-/// The same text as `format!("{x:>25.16E}")`, for finite x.
+/// Returns the text of `format!("{x:>25.16E}")`, for finite x.
 ///
 /// Method: for 1e-11 ≤ |x| < 1e17 the 17 digits are the integer part of m·5ᵏ·2ᵉ⁺ᵏ, exact in 128 bits and
-/// rounded half to even; ten times faster than the standard library, to which all else is left.
+/// rounded half to even. This is ten times faster than the standard library, which formats all other numbers.
 pub(super) fn field(x: f64) -> Field {
     let mut text = [b' '; WIDTH];
     let Some((digits, exponent)) = decimal(x.abs()) else {
@@ -68,7 +69,8 @@ pub(super) fn field(x: f64) -> Field {
     text
 }
 
-/// The 17 digits and the decimal exponent of the first of x ≥ 0, or `None` outside \[1e-11, 1e17).
+/// Returns the 17 digits and the decimal exponent of the first digit of x ≥ 0, or `None` outside \[1e-11,
+/// 1e17).
 fn decimal(x: f64) -> Option<(u64, i32)> {
     if x == 0.0 {
         return Some((0, 0));
@@ -79,8 +81,8 @@ fn decimal(x: f64) -> Option<(u64, i32)> {
     let bits = x.to_bits();
     let mantissa = (bits & ((1 << 52) - 1)) | (1 << 52);
     let binary = (bits >> 52) as i32 - 1075;
-    // log10 of the power of two below x, rounded down: that of x itself or one less. 1233/4096 is log10(2)
-    // to 5e-6, enough for the 94 binary exponents of the range.
+    // log10 of the power of two below x, rounded down: that of x itself or one less. 1233/4096 is log10(2) to
+    // 5e-6, enough for the 94 binary exponents of the range.
     let mut exponent = ((binary + 52) * 1233) >> 12;
     let mut digits = scaled(mantissa, binary, 16 - exponent)?;
     if digits >= 10 * TEN_16 {
@@ -90,7 +92,7 @@ fn decimal(x: f64) -> Option<(u64, i32)> {
     (TEN_16..10 * TEN_16).contains(&digits).then_some((digits, exponent))
 }
 
-/// m·2ᵉ·10ᵏ, rounded half to even, for products below 2¹²⁸.
+/// Returns m·2ᵉ·10ᵏ, rounded half to even, for products below 2¹²⁸.
 fn scaled(mantissa: u64, binary: i32, k: i32) -> Option<u64> {
     let product = u128::from(mantissa) * u128::from(*FIVE.get(usize::try_from(k).ok()?)?);
     let shift = -(binary + k);

@@ -1,4 +1,4 @@
-//! `separation.wrp`, `conform.wrp`, `countact.wrp`: a fixed-column text format for Fortran programs.
+//! Writes `separation.wrp`, `conform.wrp`, `countact.wrp`: a fixed-column text format for Fortran programs.
 //!
 //! ```text
 //! WRPATCH    1 mm                            (a8,i4,1x,a8)   magic, version, unit
@@ -13,9 +13,9 @@
 //! END
 //! ```
 //!
-//! The magic word tells the three apart. `CONFORM`: each record has a second line with the rail's outward unit
-//! normal n_xi n_zeta, (2x,2e25.16), as one line would pass 80 columns. `COUNTACT`: between the records and END
-//! stand the boundary-fitted cells:
+//! The first word tells the three files apart. In `CONFORM` each record has a second line with the rail's
+//! outward unit normal n_xi n_zeta, (2x,2e25.16), as a single line would exceed 80 columns. `COUNTACT` has
+//! the boundary-fitted cells between the records and END:
 //!
 //! ```text
 //! n_points n_cells                           (2i8)
@@ -23,12 +23,12 @@
 //! component p1 p2 p3 p4 area                 (i4,4i8,e25.16) n_cells cells; nodes counted from 1
 //! ```
 //!
-//! Where m = 0 the number in place of s is 10 × the largest |s|, and a normal that does not exist is 0 0.
+//! Where m = 0, the number in the column of s is 10 × the largest |s|. A normal that does not exist is 0 0.
 
 use super::super::block::Block;
 use super::super::model::QuadMesh;
 use super::{Deck, Field, WIDTH, field, line};
-use crate::error::{Error, Result};
+use crate::error::{Error, Kind, Result};
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
@@ -56,105 +56,105 @@ const COUNTACT_NOTES: [&str; 4] = [
     "(xi, eta), exact area in the xi-eta plane [mm2]; a tip may repeat a node",
 ];
 
-impl Deck<'_> {
-    /// `separation.wrp`.
-    ///
-    /// # Errors
-    /// Those of the sink.
-    pub fn separation(&self, sink: &mut dyn Write) -> io::Result<()> {
-        let mut block = Block::new(sink);
-        block.bytes(self.head("WRPATCH", &[]).as_bytes())?;
-        self.records(&mut block)?;
-        block.bytes(b"END\n")?;
-        block.finish()
-    }
-
-    /// `conform.wrp`: the records with the rail's normal.
-    ///
-    /// # Errors
-    /// Those of the sink.
-    pub fn conform(&self, sink: &mut dyn Write) -> io::Result<()> {
-        let mut block = Block::new(sink);
-        block.bytes(self.head("CONFORM", &CONFORM_NOTES).as_bytes())?;
-        for i in 0..self.xi.len() {
-            let [n_xi, n_zeta] = self.grid.rail_normal()[i].map(|n| field(if n.is_nan() { 0.0 } else { n }));
-            let mut second = [b' '; NORMAL];
-            second[2..2 + WIDTH].copy_from_slice(&n_xi);
-            second[2 + WIDTH..NORMAL - 1].copy_from_slice(&n_zeta);
-            second[NORMAL - 1] = b'\n';
-            let room = block.room((RECORD + NORMAL) * self.eta.len())?;
-            for (j, place) in room.chunks_exact_mut(RECORD + NORMAL).enumerate() {
-                self.record(i, j, &mut place[..RECORD]);
-                place[RECORD..].copy_from_slice(&second);
-            }
-        }
-        block.bytes(b"END\n")?;
-        block.finish()
-    }
-
-    /// `countact.wrp`: the records, then the boundary-fitted cells.
-    ///
-    /// # Errors
-    /// `InvalidInput` for a mesh that contradicts itself, or is too large for the columns; those of the sink.
-    pub fn countact(&self, mesh: &QuadMesh, sink: &mut dyn Write) -> io::Result<()> {
-        let cells = cells(mesh).map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error))?;
-        let mut block = Block::new(sink);
-        block.bytes(self.head("COUNTACT", &COUNTACT_NOTES).as_bytes())?;
-        self.records(&mut block)?;
-        block.bytes(cells.as_bytes())?;
-        block.bytes(b"END\n")?;
-        block.finish()
-    }
-
-    fn records(&self, block: &mut Block) -> io::Result<()> {
-        for i in 0..self.xi.len() {
-            let room = block.room(RECORD * self.eta.len())?;
-            for (j, place) in room.chunks_exact_mut(RECORD).enumerate() {
-                self.record(i, j, place);
-            }
-        }
-        Ok(())
-    }
-
-    fn record(&self, i: usize, j: usize, place: &mut [u8]) {
-        let defined = !self.grid.column(i)[j].is_nan();
-        place[0] = b' ';
-        place[1] = b'0' + u8::from(defined);
-        let columns: [&Field; 3] = [&self.xi[i], &self.eta[j], &self.column(i)[j]];
-        for (k, column) in columns.into_iter().enumerate() {
-            place[2 + k * WIDTH..2 + (k + 1) * WIDTH].copy_from_slice(column);
-        }
-        place[RECORD - 1] = b'\n';
-    }
-
-    fn head(&self, magic: &str, notes: &[&str]) -> String {
-        let mut comments = self.header.statements();
-        comments.extend(SEPARATION_NOTES.iter().chain(notes).map(|note| (*note).into()));
-        let mut text = format!("{magic:<8}{:>4} {:<8}\n{:>8}\n", 1, "mm", comments.len());
-        for comment in comments {
-            text += "# ";
-            text += &comment;
-            text += "\n";
-        }
-        let (grid, frame) = (self.grid, &self.header.frame);
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{:>8}{:>8}", self.xi.len(), self.eta.len());
-        text += &line(&[grid.xi()[0], grid.eta()[0]]);
-        text += &line(&self.steps);
-        text += &line(&[self.header.approach]);
-        [frame.origin, frame.xi, frame.eta, frame.zeta].iter().for_each(|vector| text += &line(vector));
-        text
-    }
+/// Writes `separation.wrp`.
+///
+/// # Errors
+/// The errors of the sink.
+pub fn separation(deck: &Deck<'_>, sink: &mut dyn Write) -> io::Result<()> {
+    let mut block = Block::new(sink);
+    block.bytes(head(deck, "WRPATCH", &[]).as_bytes())?;
+    records(deck, &mut block)?;
+    block.bytes(b"END\n")?;
+    block.finish()
 }
 
-/// The boundary-fitted cells as text.
+/// Writes `conform.wrp`: the records with the rail's normal.
+///
+/// # Errors
+/// The errors of the sink.
+pub fn conform(deck: &Deck<'_>, sink: &mut dyn Write) -> io::Result<()> {
+    let mut block = Block::new(sink);
+    block.bytes(head(deck, "CONFORM", &CONFORM_NOTES).as_bytes())?;
+    for i in 0..deck.xi.len() {
+        let [n_xi, n_zeta] = deck.grid.rail_normal()[i].map(|n| field(if n.is_nan() { 0.0 } else { n }));
+        let mut second = [b' '; NORMAL];
+        second[2..2 + WIDTH].copy_from_slice(&n_xi);
+        second[2 + WIDTH..NORMAL - 1].copy_from_slice(&n_zeta);
+        second[NORMAL - 1] = b'\n';
+        let room = block.room((RECORD + NORMAL) * deck.eta.len())?;
+        for (j, place) in room.chunks_exact_mut(RECORD + NORMAL).enumerate() {
+            record(deck, i, j, &mut place[..RECORD]);
+            place[RECORD..].copy_from_slice(&second);
+        }
+    }
+    block.bytes(b"END\n")?;
+    block.finish()
+}
+
+/// Writes `countact.wrp`: the records, then the boundary-fitted cells.
+///
+/// # Errors
+/// `InvalidInput` for a mesh that contradicts itself, or is too large for the columns; the errors of the
+/// sink.
+pub fn countact(deck: &Deck<'_>, mesh: &QuadMesh, sink: &mut dyn Write) -> io::Result<()> {
+    let cells = cells(mesh).map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error))?;
+    let mut block = Block::new(sink);
+    block.bytes(head(deck, "COUNTACT", &COUNTACT_NOTES).as_bytes())?;
+    records(deck, &mut block)?;
+    block.bytes(cells.as_bytes())?;
+    block.bytes(b"END\n")?;
+    block.finish()
+}
+
+fn records(deck: &Deck<'_>, block: &mut Block) -> io::Result<()> {
+    for i in 0..deck.xi.len() {
+        let room = block.room(RECORD * deck.eta.len())?;
+        for (j, place) in room.chunks_exact_mut(RECORD).enumerate() {
+            record(deck, i, j, place);
+        }
+    }
+    Ok(())
+}
+
+fn record(deck: &Deck<'_>, i: usize, j: usize, place: &mut [u8]) {
+    let defined = !deck.grid.column(i)[j].is_nan();
+    place[0] = b' ';
+    place[1] = b'0' + u8::from(defined);
+    let columns: [&Field; 3] = [&deck.xi[i], &deck.eta[j], &deck.column(i)[j]];
+    for (k, column) in columns.into_iter().enumerate() {
+        place[2 + k * WIDTH..2 + (k + 1) * WIDTH].copy_from_slice(column);
+    }
+    place[RECORD - 1] = b'\n';
+}
+
+fn head(deck: &Deck<'_>, magic: &str, notes: &[&str]) -> String {
+    let mut comments = deck.header.statements();
+    comments.extend(SEPARATION_NOTES.iter().chain(notes).map(|note| (*note).into()));
+    let mut text = format!("{magic:<8}{:>4} {:<8}\n{:>8}\n", 1, "mm", comments.len());
+    for comment in comments {
+        text += "# ";
+        text += &comment;
+        text += "\n";
+    }
+    let (grid, frame) = (deck.grid, &deck.header.frame);
+    // Writing to a String cannot fail.
+    let _ = writeln!(text, "{:>8}{:>8}", deck.xi.len(), deck.eta.len());
+    text += &line(&[grid.xi()[0], grid.eta()[0]]);
+    text += &line(&deck.steps);
+    text += &line(&[deck.header.approach]);
+    [frame.origin, frame.xi, frame.eta, frame.zeta].iter().for_each(|vector| text += &line(vector));
+    text
+}
+
+/// Returns the boundary-fitted cells as text.
 fn cells(mesh: &QuadMesh) -> Result<String> {
     mesh.validate()?;
-    // What i8 holds.
+    // The largest number that the format i8 holds.
     const LARGEST: usize = 99_999_999;
     if mesh.points.len().max(mesh.quads.len()) > LARGEST {
         let found = format!("{} nodes, {} cells", mesh.points.len(), mesh.quads.len());
-        return Err(Error::new("countact.wrp", found, format!("at most {LARGEST}"), "use a coarser mesh"));
+        return Err(Error::new("countact.wrp", found, format!("at most {LARGEST}"), "use a coarser mesh")
+            .of_kind(Kind::Limit));
     }
     let mut text = format!("{:>8}{:>8}\n", mesh.points.len(), mesh.quads.len());
     mesh.points.iter().for_each(|point| text += &line(point));
@@ -185,7 +185,7 @@ mod tests {
     #[test]
     fn separation_follows_its_grammar() {
         let sample = Sample::new(3, 4);
-        let text = text(|deck, out| deck.separation(out).unwrap(), &sample);
+        let text = text(|deck, out| separation(deck, out).unwrap(), &sample);
         assert!(text.is_ascii() && text.lines().all(|line| line.len() < 80), "{text}");
         assert!(text.starts_with("WRPATCH    1 mm      \n"), "{text}");
         let lines: Vec<_> = text.lines().collect();
@@ -208,16 +208,16 @@ mod tests {
     #[test]
     fn conform_adds_the_normal_and_countact_the_cells() {
         let sample = Sample::new(3, 4);
-        let conform = text(|deck, out| deck.conform(out).unwrap(), &sample);
+        let conform = text(|deck, out| conform(deck, out).unwrap(), &sample);
         assert!(conform.lines().all(|line| line.len() < 80));
         let lines: Vec<_> = conform.lines().collect();
         let last = lines.len() - 3;
         assert_eq!(numbers(lines[last]), [1.0, sample.xi[2], sample.eta[3], sample.separation[11]]);
         assert_eq!(numbers(lines[last + 1]), sample.rail_normal[2]);
 
-        let countact = text(|deck, out| deck.countact(&mesh(), out).unwrap(), &sample);
-        assert!(countact.lines().all(|line| line.len() < 80));
-        let lines: Vec<_> = countact.lines().collect();
+        let written = text(|deck, out| countact(deck, &mesh(), out).unwrap(), &sample);
+        assert!(written.lines().all(|line| line.len() < 80));
+        let lines: Vec<_> = written.lines().collect();
         let cells = lines.iter().position(|line| *line == "       9       4").unwrap();
         assert_eq!(numbers(lines[cells + 1]), [-1.0, -1.0, 0.0]);
         assert_eq!(numbers(lines[cells + 13]), [1.0, 5.0, 8.0, 9.0, 6.0, 1.0]);
@@ -227,13 +227,13 @@ mod tests {
         broken.quads[0][0] = 9;
         let (header, grid) = (header(), sample.fields());
         let deck = Deck::new(&header, &grid).unwrap();
-        assert!(deck.countact(&broken, &mut Vec::new()).unwrap_err().to_string().contains("node 9"));
+        assert!(countact(&deck, &broken, &mut Vec::new()).unwrap_err().to_string().contains("node 9"));
     }
 
     #[test]
     fn an_empty_patch_is_a_deck_too() {
-        let countact =
-            text(|deck, out| deck.countact(&QuadMesh::default(), out).unwrap(), &Sample::new(2, 2));
-        assert!(countact.ends_with("       0       0\nEND\n"));
+        let written =
+            text(|deck, out| countact(deck, &QuadMesh::default(), out).unwrap(), &Sample::new(2, 2));
+        assert!(written.ends_with("       0       0\nEND\n"));
     }
 }

@@ -1,20 +1,22 @@
-//! Charts of the report: values over values, both on logarithmic axes.
+//! Draws charts of the report: values over values, both on logarithmic axes.
 
 use super::page::{Colour, INK, Page, Pen, SMALL, polygon};
 use super::panel::{Panel, extremes};
 use std::f64::consts::FRAC_PI_4;
 
-/// Left, top, width and height of the plotting area, and the height of the picture \[page units\].
+/// Left, top, width and height of the plotting area \[page units\].
 const PLACE: [f64; 4] = [90.0, 70.0, 560.0, 350.0];
+/// Height of the picture \[page units\].
 const HEIGHT: f64 = 490.0;
 
-/// Radius of a strong and of a faint mark \[page units\].
+/// Radius of a strong mark \[page units\].
 const STRONG: f64 = 5.5;
+/// Radius of a faint mark \[page units\].
 const FAINT: f64 = 3.0;
 
 const LIMIT: Pen = Pen::new(INK, 1.0).dashed([4.0, 4.0]);
 
-/// Okabe and Ito's palette, which colour-blind readers tell apart too.
+/// Okabe and Ito's palette, which colour-blind readers can distinguish too.
 const COLOURS: [Colour; 7] =
     [[230, 159, 0], [86, 180, 233], [0, 158, 115], [213, 94, 0], [0, 114, 178], [204, 121, 167], [0, 0, 0]];
 
@@ -29,22 +31,22 @@ pub struct Series {
     pub line: Vec<[f64; 2]>,
 }
 
-/// A chart with logarithmic axes. Values that are not positive are drawn at the lower edge of the axis, values that are NaN
-/// not at all.
+/// A chart with logarithmic axes. Values that are not positive are drawn at the lower end of the axis; NaN
+/// values are not drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
-    /// Title.
+    /// Title of the chart.
     pub title: String,
     /// Title and unit of both axes.
     pub labels: [String; 2],
-    /// What is drawn; colours repeat after seven.
+    /// The sets of points; colours repeat after seven.
     pub series: Vec<Series>,
     /// A vertical line and its name.
     pub limit: Option<(f64, String)>,
 }
 
 impl Chart {
-    /// The chart as SVG.
+    /// Returns the chart as SVG.
     pub fn svg(&self) -> String {
         let all = || self.series.iter().flat_map(|series| series.marks.iter().chain(&series.line));
         let limit = self.limit.as_ref().map(|(value, _)| *value);
@@ -64,18 +66,19 @@ impl Chart {
         for (k, series) in self.series.iter().enumerate() {
             series.draw_line(&mut page, &panel, k);
         }
-        page.finish(HEIGHT, &super::foot())
+        page.finish(HEIGHT, &super::page::foot())
     }
 }
 
 impl Series {
-    /// Draws the faint marks of the k-th series. Each is an area of its own: in one of all of them, overlaps would be holes.
+    /// Draws the faint marks of the k-th series. Each mark is an area of its own: in one common area,
+    /// overlaps would be holes.
     fn draw_marks(&self, page: &mut Page, panel: &Panel, k: usize) {
         let pale = COLOURS[k % COLOURS.len()].map(|c| 255 - (255 - c) / 3);
         placed(&self.marks, panel).into_iter().for_each(|at| page.area(&[mark(at, k, FAINT)], pale));
     }
 
-    /// Draws the line of the k-th series, with its row in the legend to the right of the panel.
+    /// Draws the line of the k-th series, and its row in the legend to the right of the panel.
     fn draw_line(&self, page: &mut Page, panel: &Panel, k: usize) {
         let colour = COLOURS[k % COLOURS.len()];
         let line = placed(&self.line, panel);
@@ -86,19 +89,19 @@ impl Series {
     }
 }
 
-/// Where the points that are known stand on the page.
+/// Returns the places on the page of the points without NaN.
 fn placed(points: &[[f64; 2]], panel: &Panel) -> Vec<[f64; 2]> {
     let known = points.iter().filter(|p| !p[0].is_nan() && !p[1].is_nan());
     known.map(|&[x, y]| panel.point([log_within(x, panel.u), log_within(y, panel.v)])).collect()
 }
 
-/// A mark whose shape tells the series too.
+/// Returns the k-th series' mark, whose shape tells the series too.
 fn mark(at: [f64; 2], k: usize, radius: f64) -> Vec<[f64; 2]> {
     let (corners, turn) = [(24, 0.0), (4, FRAC_PI_4), (3, 0.0), (4, 0.0)][k % 4];
     polygon(at, if corners > 4 { radius } else { 1.2 * radius }, corners, turn)
 }
 
-/// The whole decades around all positive values, as logarithms; one decade at least.
+/// Returns the whole decades around all positive values, as logarithms; at least one decade.
 fn decades(values: impl Iterator<Item = f64>) -> [f64; 2] {
     let [low, high] = extremes(values.filter(|value| *value > 0.0).map(f64::log10));
     if low > high {
@@ -107,7 +110,8 @@ fn decades(values: impl Iterator<Item = f64>) -> [f64; 2] {
     [low.floor(), high.ceil().max(low.floor() + 1.0)]
 }
 
-/// The logarithm of a value as far as its axis reaches; at the lower end for what has none.
+/// Returns the logarithm of a value, limited to the range of its axis; a value without logarithm gives the
+/// lower end.
 fn log_within(value: f64, [low, high]: [f64; 2]) -> f64 {
     if value > 0.0 { value.log10().clamp(low, high) } else { low }
 }

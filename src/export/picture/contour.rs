@@ -1,8 +1,8 @@
-//! Lines of equal separation, by marching squares with linear interpolation along the grid's edges.
+//! Finds lines of equal separation, by marching squares with linear interpolation along the grid's edges.
 
 use std::collections::HashMap;
 
-/// An edge of the grid: its lower node and whether it runs along ξ.
+/// An edge of the grid: its lower node, and whether it runs along ξ.
 type Edge = (usize, bool);
 
 /// A function on the nodes of a rectangular grid, at `i * eta.len() + j`.
@@ -17,8 +17,8 @@ pub struct Nodes<'a> {
 }
 
 impl Nodes<'_> {
-    /// The lines on which the function takes the value `level`, as polylines in (ξ, η); closed ones end where they
-    /// begin. Cells with an undefined corner have none. Linear cost in the number of nodes.
+    /// Returns the lines on which the function equals `level`, as polylines in (ξ, η); closed ones end where
+    /// they begin. Cells with an undefined corner have none. Cost: linear in the number of nodes.
     pub(super) fn lines(&self, level: f64) -> Vec<Vec<[f64; 2]>> {
         let mut links: HashMap<Edge, Vec<Edge>> = HashMap::new();
         for i in 1..self.xi.len() {
@@ -29,14 +29,15 @@ impl Nodes<'_> {
                 }
             }
         }
-        // Open lines first, from their ends; what then remains is closed. Sorted, so that the file is the same
-        // on every run.
+        // Open lines first, from their ends; the rest is closed. Sorted, so that every run writes the same
+        // file.
         let mut starts: Vec<Edge> = links.keys().copied().collect();
         starts.sort_by_key(|edge| (links[edge].len(), *edge));
         starts.into_iter().filter_map(|start| self.chain(&mut links, start, level)).collect()
     }
 
-    /// The pieces of the line inside the cell whose lowest node is (i, j): none, one or, on a saddle, two.
+    /// Returns the pieces of the line inside the cell whose lowest node is (i, j): none, one or, on a saddle,
+    /// two.
     fn segments(&self, i: usize, j: usize, level: f64) -> [Option<[Edge; 2]>; 2] {
         let n = self.eta.len();
         let node = i * n + j;
@@ -62,7 +63,7 @@ impl Nodes<'_> {
         }
     }
 
-    /// Follows the links from `start` until they end, using them up.
+    /// Follows the links from `start` to their end, and removes them.
     fn chain(&self, links: &mut HashMap<Edge, Vec<Edge>>, start: Edge, level: f64) -> Option<Vec<[f64; 2]>> {
         let mut line = vec![self.crossing(start, level)];
         let mut here = start;

@@ -1,4 +1,4 @@
-//! The picture of a sweep: several quantities over one abscissa, a panel each.
+//! Draws the picture of a sweep: several quantities over one abscissa, each in its own panel.
 
 use super::page::{BLUE, Colour, Page, Pen, RED, polygon};
 use super::panel::{Panel, airy, range};
@@ -6,50 +6,54 @@ use super::panel::{Panel, airy, range};
 /// Colours of the curves of a panel, in order.
 const COLOURS: [Colour; 2] = [BLUE, RED];
 
-/// Left edges of the two columns of panels, their width and height, and what one row takes \[page units\].
+/// Left edges of the two columns of panels \[page units\].
 const LEFT: [f64; 2] = [90.0, 540.0];
+/// Width and height of a panel \[page units\].
 const SIZE: [f64; 2] = [330.0, 190.0];
+/// Height of a row of panels \[page units\].
 const ROW: f64 = 290.0;
+/// Top of the first row \[page units\].
 const TOP: f64 = 112.0;
 
-/// A change that is this many times the middle one of those beside it, and this share of the range, is a jump.
+/// Least jump of a contact, as a multiple of the median of the changes beside it.
 const JUMP: f64 = 6.0;
+/// Least jump of a contact, as a share of the range of the values.
 const JUMP_SHARE: f64 = 0.02;
 
-/// Changes to either side that are beside one: among them two more jumps do not hide a jump.
+/// Number of changes to either side that count as beside: even two more jumps among them do not hide a jump.
 const BESIDE: usize = 3;
 
-/// Radius of the dot that stands for a point without a line \[page units\].
+/// Radius of the dot that represents a point without a line \[page units\].
 const DOT: f64 = 2.2;
 
 /// One curve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// What the legend says; empty for the only curve of a panel.
+    /// Name in the legend; empty for the only curve of a panel.
     pub name: String,
-    /// (abscissa, value), ascending; NaN where there is none.
+    /// Points \[abscissa, value\] by ascending abscissa; NaN where there is no value.
     pub points: Vec<[f64; 2]>,
-    /// Points after which the contact is elsewhere: no line goes from them to the next.
+    /// Indices of points after which the contact jumps: no line connects them with the next point.
     pub jumps: Vec<usize>,
 }
 
 /// The curves of one quantity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quantity {
-    /// Heading.
+    /// Heading of the panel.
     pub title: String,
     /// Name of the axis, with its unit.
     pub axis: String,
-    /// At most two curves.
+    /// The curves, at most two.
     pub curves: Vec<Curve>,
 }
 
-/// What the picture shows.
+/// The content of the picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CurvesPicture {
     /// Title of the scene.
     pub title: String,
-    /// One line below it.
+    /// A line below the title.
     pub about: String,
     /// Name of the abscissa, with its unit.
     pub abscissa: String,
@@ -58,7 +62,7 @@ pub struct CurvesPicture {
 }
 
 impl CurvesPicture {
-    /// The picture as SVG.
+    /// Returns the picture as SVG.
     pub fn svg(&self) -> String {
         let height = TOP + ROW * self.quantities.len().div_ceil(LEFT.len()) as f64;
         let mut page = Page::new(&self.title, &self.about);
@@ -68,7 +72,7 @@ impl CurvesPicture {
             let place = [LEFT[k % LEFT.len()], TOP + ROW * (k / LEFT.len()) as f64, SIZE[0], SIZE[1]];
             self.panel(&mut page, place, u, quantity);
         }
-        page.finish(height, &super::foot())
+        page.finish(height, &super::page::foot())
     }
 
     fn panel(&self, page: &mut Page, place: [f64; 4], u: [f64; 2], quantity: &Quantity) {
@@ -93,7 +97,7 @@ impl CurvesPicture {
 }
 
 impl Curve {
-    /// The points with an undefined one in every jump.
+    /// Returns the points, with an undefined point in every jump.
     fn parted(&self) -> Vec<[f64; 2]> {
         let mut out = Vec::with_capacity(self.points.len() + self.jumps.len());
         for (k, &point) in self.points.iter().enumerate() {
@@ -106,14 +110,15 @@ impl Curve {
     }
 }
 
-/// Dots at the points that have a line to neither side.
+/// Returns dots at the points that have no line to either side.
 fn dots(panel: &Panel, points: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
     let defined = |k: usize| points.get(k).is_some_and(|p| p[0].is_finite() && p[1].is_finite());
     let alone = |k: &usize| defined(*k) && !defined(k + 1) && !k.checked_sub(1).is_some_and(defined);
     (0..points.len()).filter(alone).map(|k| polygon(panel.point(points[k]), DOT, 12, 0.0)).collect()
 }
 
-/// The places k after which a contact jumps: between k and k + 1 one of its abscissae changes by far more than around.
+/// Returns the indices k after which a contact jumps: between k and k + 1 one of its abscissae changes by far
+/// more than around.
 pub fn jumps(abscissae: &[&[f64]]) -> Vec<usize> {
     let mut all: Vec<usize> = abscissae.iter().flat_map(|values| jumps_of(values)).collect();
     all.sort_unstable();

@@ -1,28 +1,29 @@
-//! Which lines of equal separation are drawn, and where their numbers stand.
+//! Chooses the lines of equal separation that are drawn, and the places of their numbers.
 
 use super::contour::Nodes;
-use super::page::{Colour, Page, Pen, WHITE, Words};
+use super::page::{Colour, INSIDE, Page, Pen, WHITE, Words};
 use super::panel::{Panel, extremes, number, round_below};
-use super::patch::INSIDE;
 
-/// Lines are drawn up to this multiple of the approach: near a flange s grows to many times as much, which is of no
-/// interest to the patch.
+/// Largest level drawn, as a multiple of the approach: near a flange s grows to many times as much, which
+/// does not matter for the patch.
 const SHOWN: f64 = 5.0;
 
-/// Lines of equal separation aimed at.
+/// Number of lines of equal separation aimed at.
 const LEVELS: f64 = 10.0;
 
-/// The numbers on the lines, and the part of their size that a digit is wide.
+/// The style of the numbers on the lines.
 const NUMBERS: Words = Words::new(9.5).middle();
+/// Width of a digit as a share of its size.
 const DIGIT: f64 = 0.64;
 
-/// Places on one level that are tried for its number.
+/// Number of places on one level that are tried for its number.
 const TRIED: usize = 48;
 
-/// A number stands so far \[page units\] from other lines, or not at all: the key has it too.
+/// Least distance of a number from other lines \[page units\]; a number without such a place is left out, as
+/// the key has it too.
 const CLEAR: f64 = 9.0;
 
-/// Numbers farther apart than this \[page units\] are not better for it.
+/// Distance of numbers \[page units\] beyond which more is no better.
 const APART: f64 = 60.0;
 
 /// The lines of one level.
@@ -34,7 +35,7 @@ pub(super) struct Level {
     pub(super) lines: Vec<Vec<[f64; 2]>>,
 }
 
-/// Round levels up to a multiple of the approach, or up to the largest value without one.
+/// Returns round levels up to [`SHOWN`] times the approach, or up to the largest value if the approach is 0.
 pub(super) fn levels(nodes: &Nodes<'_>, approach: f64, panel: &Panel) -> Vec<Level> {
     let [low, high] = extremes(nodes.values.iter().copied());
     let shown = SHOWN * approach;
@@ -43,7 +44,7 @@ pub(super) fn levels(nodes: &Nodes<'_>, approach: f64, panel: &Panel) -> Vec<Lev
         return Vec::new();
     }
     let step = round_below(1.5 * (high - low) / LEVELS);
-    // Below all normal numbers there are no round ones.
+    // There are no round numbers below all normal ones.
     if !step.is_normal() {
         return Vec::new();
     }
@@ -59,7 +60,7 @@ pub(super) fn levels(nodes: &Nodes<'_>, approach: f64, panel: &Panel) -> Vec<Lev
     (first..=last).map(level).filter(|level| !level.lines.is_empty()).collect()
 }
 
-/// Writes each level's number where its line is farthest from all others and from the numbers before.
+/// Writes each level's number where its line is farthest from all others and from the numbers written before.
 pub(super) fn label(
     page: &mut Page,
     levels: &[Level],
@@ -91,7 +92,7 @@ pub(super) fn label(
     }
 }
 
-/// Whether a number of this size has its place in the panel.
+/// Returns whether a number of this size fits into the panel.
 fn inside(panel: &Panel, at: [f64; 2], size: [f64; 2]) -> bool {
     (0..2).all(|k| {
         let (from, length) = (panel.place[k], panel.place[k + 2]);
@@ -100,13 +101,14 @@ fn inside(panel: &Panel, at: [f64; 2], size: [f64; 2]) -> bool {
     })
 }
 
-/// Distance of the nearest of some points, +∞ without any.
+/// Returns the distance of the nearest of some points, +∞ if there are none.
 fn nearest([x, y]: [f64; 2], points: &[[f64; 2]]) -> f64 {
     let squares = points.iter().map(|[u, v]| (u - x) * (u - x) + (v - y) * (v - y));
     squares.fold(f64::INFINITY, f64::min).sqrt()
 }
 
-/// Colours of the contours, dark to light with t from 0 to 1 (five colours of viridis, without its palest).
+/// Returns the colour of a contour, dark to light for t from 0 to 1 (five colours of viridis, without its
+/// palest).
 fn shade(t: f64) -> Colour {
     const STOPS: [[f64; 3]; 5] = [
         [68.0, 1.0, 84.0],

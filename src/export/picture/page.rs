@@ -1,4 +1,4 @@
-//! A page of lines, areas and words as SVG: real text, two decimals, no style sheet.
+//! Draws a page of lines, areas and words as SVG: real text, two decimals, no style sheet.
 
 use std::fmt::{Display, Write};
 
@@ -7,17 +7,18 @@ pub(super) type Colour = [u8; 3];
 
 pub(super) const INK: Colour = [34, 34, 34];
 pub(super) const GREY: Colour = [120, 120, 120];
+pub(super) const INSIDE: Colour = [253, 232, 226];
 pub(super) const WHITE: Colour = [255; 3];
 pub(super) const BLUE: Colour = [31, 98, 168];
 pub(super) const RED: Colour = [200, 30, 30];
 
-/// How a line is drawn.
+/// The style of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Pen {
     pub(super) colour: Colour,
-    /// \[page units\]
+    /// Width \[page units\].
     pub(super) width: f64,
-    /// Lengths of dash and gap \[page units\]; none of a solid line.
+    /// Lengths of dash and gap \[page units\]; `None` for a solid line.
     pub(super) dash: Option<[f64; 2]>,
 }
 
@@ -31,13 +32,13 @@ impl Pen {
     }
 }
 
-/// How words are written.
+/// The style of words.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Words {
-    /// \[page units\]
+    /// Size of the letters \[page units\].
     pub(super) size: f64,
     pub(super) colour: Colour,
-    /// The part of the words that stands at their place: start, middle or end.
+    /// The part of the words that is at the given place: start, middle or end.
     anchor: &'static str,
 }
 
@@ -59,22 +60,26 @@ impl Words {
     }
 }
 
-/// Words of ticks and legends, of axes, of headings.
+/// Style of ticks and legends.
 pub(super) const SMALL: Words = Words::new(11.0);
+/// Style of the names of axes.
 pub(super) const BODY: Words = Words::new(12.0);
+/// Style of headings.
 const HEADING: Words = Words::new(13.0);
 const TITLE: Words = Words::new(18.0);
 const FOOT: Words = Words::new(9.0).in_colour(GREY).end();
 
-/// Characters of a title, and of any other line, that fit onto the page.
+/// Most characters of a title that fit onto the page.
 const TITLE_FITS: usize = 80;
+/// Most characters of any other line that fit onto the page.
 const LINE_FITS: usize = 120;
 
-/// Width of every page, and its margin \[page units\].
+/// Width of every page \[page units\].
 const WIDTH: f64 = 900.0;
+/// Margin of every page \[page units\].
 const MARGIN: f64 = 40.0;
 
-/// A page: x to the right, y downwards, in units of which a screen shows one as a pixel.
+/// A page: x to the right, y downwards, in page units; a screen shows one unit as a pixel.
 #[derive(Debug)]
 pub(super) struct Page {
     /// SVG elements, one a line.
@@ -82,7 +87,7 @@ pub(super) struct Page {
 }
 
 impl Page {
-    /// A page with its title and one line below it.
+    /// Begins a page with its title and one line below it.
     pub(super) fn new(title: &str, about: &str) -> Self {
         let mut page = Self { marks: String::new() };
         page.text([MARGIN, 42.0], cut(title, TITLE_FITS), TITLE);
@@ -90,7 +95,7 @@ impl Page {
         page
     }
 
-    /// The SVG document of a page of this height, with a line at its foot.
+    /// Returns the SVG document of a page of this height, with a line at its foot.
     pub(super) fn finish(mut self, height: f64, foot: &str) -> String {
         self.text([WIDTH - MARGIN, height - 16.0], cut(foot, LINE_FITS), FOOT);
         format!(
@@ -101,7 +106,7 @@ impl Page {
         )
     }
 
-    /// Polylines under one pen.
+    /// Draws polylines with one pen.
     pub(super) fn lines(&mut self, lines: &[Vec<[f64; 2]>], pen: Pen) {
         let dash = pen.dash.map(|[a, b]| format!(" stroke-dasharray=\"{a} {b}\"")).unwrap_or_default();
         let (path, colour, width) = (path(lines, ""), hex(pen.colour), pen.width);
@@ -116,7 +121,7 @@ impl Page {
         self.lines(&[vec![from, to]], pen);
     }
 
-    /// Rings filled by the even-odd rule.
+    /// Fills rings by the even-odd rule.
     pub(super) fn area(&mut self, rings: &[Vec<[f64; 2]>], colour: Colour) {
         let (path, colour) = (path(rings, "Z"), hex(colour));
         if !path.is_empty() {
@@ -124,12 +129,12 @@ impl Page {
         }
     }
 
-    /// One line of words with its base line at a point; empty words leave no trace.
+    /// Writes one line of words with its base line at a point; empty words leave no trace.
     pub(super) fn text(&mut self, at: [f64; 2], text: impl Display, words: Words) {
         self.written(at, &text.to_string(), words, "");
     }
 
-    /// One line of words that is read from below to above.
+    /// Writes one line of words that reads upwards.
     pub(super) fn upright(&mut self, [x, y]: [f64; 2], text: &str, words: Words) {
         self.written([x, y], text, words, &format!(" transform=\"rotate(-90 {x:.2} {y:.2})\""));
     }
@@ -145,12 +150,12 @@ impl Page {
         }
     }
 
-    /// The heading of a part of the page: left, top, width, height.
+    /// Writes the heading of a part of the page, given as left, top, width, height.
     pub(super) fn heading(&mut self, room: [f64; 4], text: &str) {
         self.text([room[0], room[1] - 14.0], text, HEADING);
     }
 
-    /// A piece of line and what it means.
+    /// Draws a piece of line and writes what it means.
     pub(super) fn legend(&mut self, [x, y]: [f64; 2], pen: Pen, name: &str) {
         self.line([x, y], [x + 26.0, y], pen);
         self.text([x + 32.0, y + 4.0], name, SMALL);
@@ -162,7 +167,7 @@ impl Page {
     }
 }
 
-/// The corners of a regular polygon, the first one at the angle `turn` \[rad\] clockwise from the top.
+/// Returns the corners of a regular polygon; the first is at the angle `turn` \[rad\] clockwise from the top.
 pub(super) fn polygon([x, y]: [f64; 2], radius: f64, corners: u32, turn: f64) -> Vec<[f64; 2]> {
     let angle = |k: u32| turn + std::f64::consts::TAU * f64::from(k) / f64::from(corners);
     (0..corners).map(|k| [x + radius * angle(k).sin(), y - radius * angle(k).cos()]).collect()
@@ -183,7 +188,7 @@ fn hex([red, green, blue]: Colour) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
-/// Text as XML takes it. Control characters and two more, which XML does not know, are dropped.
+/// Escapes text for XML. Control characters and two more that XML does not know are dropped.
 fn escape(text: &str) -> String {
     let text: String = text.chars().filter(|c| !c.is_control() && !"\u{fffe}\u{ffff}".contains(*c)).collect();
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
@@ -195,4 +200,12 @@ fn cut(text: &str, longest: usize) -> String {
     }
     let kept: String = text.chars().take(longest - 1).collect();
     format!("{}…", kept.trim_end_matches(|c: char| !c.is_alphanumeric()))
+}
+
+/// Separator between the parts of a line of words: SVG readers show several blanks as one.
+pub const SEPARATOR: &str = " · ";
+
+/// Returns the line at the foot of pictures that belong to no scene.
+pub(super) fn foot() -> String {
+    format!("wheelrail {}", env!("CARGO_PKG_VERSION"))
 }

@@ -1,4 +1,4 @@
-//! A panel: a rectangle of the page with its own coordinates, ticks and scale bar.
+//! Draws a panel: a rectangle of the page with its own coordinates, ticks and scale bar.
 
 use super::page::{BODY, GREY, INK, Page, Pen, SMALL};
 
@@ -14,13 +14,14 @@ type Ticks = Vec<(f64, String)>;
 pub(super) struct Panel {
     /// Left, top, width, height \[page units\].
     pub(super) place: [f64; 4],
-    /// Smallest and largest u and v that it shows.
+    /// Smallest and largest u shown.
     pub(super) u: [f64; 2],
+    /// Smallest and largest v shown.
     pub(super) v: [f64; 2],
 }
 
 impl Panel {
-    /// The largest panel inside `room` that shows u and v at one scale, centred.
+    /// Makes the largest panel inside `room` that shows u and v at one scale, centred.
     pub(super) fn true_scale(room: [f64; 4], u: [f64; 2], v: [f64; 2]) -> Self {
         let scale = (room[2] / (u[1] - u[0])).min(room[3] / (v[1] - v[0]));
         let size = [scale * (u[1] - u[0]), scale * (v[1] - v[0])];
@@ -29,7 +30,7 @@ impl Panel {
         Self { place, u, v }
     }
 
-    /// Page units per unit of u and v.
+    /// Returns the page units per unit of u and v.
     pub(super) fn scale(&self) -> [f64; 2] {
         [self.place[2] / (self.u[1] - self.u[0]), self.place[3] / (self.v[1] - self.v[0])]
     }
@@ -39,7 +40,7 @@ impl Panel {
         [self.place[0] + a * (u - self.u[0]), self.place[1] + b * (self.v[1] - v)]
     }
 
-    /// Polylines on the page, cut off at the panel's edges and where a point is undefined.
+    /// Returns polylines on the page, cut off at the panel's edges and where a point is undefined.
     pub(super) fn curve(&self, line: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
         let mut pieces: Vec<Vec<[f64; 2]>> = Vec::new();
         for pair in line.windows(2) {
@@ -53,7 +54,7 @@ impl Panel {
         pieces
     }
 
-    /// The part of a segment inside the panel (Liang and Barsky).
+    /// Returns the part of a segment inside the panel (Liang and Barsky).
     fn clip(&self, a: [f64; 2], b: [f64; 2]) -> Option<[[f64; 2]; 2]> {
         let (mut from, mut to) = (0.0f64, 1.0f64);
         for (k, range) in [self.u, self.v].into_iter().enumerate() {
@@ -67,29 +68,29 @@ impl Panel {
             to = to.min(ends[0].max(ends[1]));
         }
         let at = |t: f64| [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
-        // Untouched ends keep their bits, so that neighbouring pieces are seen to meet.
+        // Ends inside keep their bits, so that neighbouring pieces are seen to meet.
         let ends = [if from == 0.0 { a } else { at(from) }, if to == 1.0 { b } else { at(to) }];
         let known = ends.iter().flatten().chain(&a).chain(&b).all(|x| x.is_finite());
         (known && from < to).then_some(ends)
     }
 
-    /// A line at v = 0, where the panel shows it.
+    /// Draws a line at v = 0, if the panel shows it.
     pub(super) fn zero_line(&self, page: &mut Page) {
         page.lines(&self.curve(&[[self.u[0], 0.0], [self.u[1], 0.0]]), ZERO);
     }
 
-    /// Frame, ticks, numbers and names below and to the left.
+    /// Draws the frame, ticks, numbers and names below and to the left.
     pub(super) fn axes(&self, page: &mut Page, names: [&str; 2]) {
         let [_, _, w, h] = self.place;
         self.ticked(page, names, [ticks_of(self.u, w / 45.0), ticks_of(self.v, h / 28.0)]);
     }
 
-    /// Frame, ticks and names where u and v are decimal logarithms between whole numbers.
+    /// Draws the frame, ticks and names if u and v are decimal logarithms between whole numbers.
     pub(super) fn decade_axes(&self, page: &mut Page, names: [&str; 2]) {
         self.ticked(page, names, [self.u, self.v].map(decades));
     }
 
-    /// Lines across the panel at its decades.
+    /// Draws lines across the panel at its decades.
     pub(super) fn decade_grid(&self, page: &mut Page) {
         let across = decades(self.u).into_iter().map(|(u, _)| [[u, self.v[0]], [u, self.v[1]]]);
         let along = decades(self.v).into_iter().map(|(v, _)| [[self.u[0], v], [self.u[1], v]]);
@@ -117,7 +118,7 @@ impl Panel {
         page.upright([x - 46.0, y + h / 2.0], names[1], BODY.middle());
     }
 
-    /// A bar of a round length along u, with its right end at `end` \[page units\].
+    /// Draws a bar of a round length along u, with its right end at `end` \[page units\].
     pub(super) fn scale_bar(&self, page: &mut Page, end: [f64; 2], longest: f64) {
         let scale = self.scale()[0];
         let length = round_below(longest / scale);
@@ -130,7 +131,8 @@ impl Panel {
     }
 }
 
-/// The smallest range that holds all finite values, widened to a length if they are one; 0 to 1 without any.
+/// Returns the smallest range that holds all finite values, widened to a length if they are equal; 0 to 1 if
+/// there are none.
 pub(super) fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
     match extremes(values) {
         [low, high] if high > low => [low, high],
@@ -139,27 +141,27 @@ pub(super) fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
     }
 }
 
-/// The smallest and the largest finite value; of none, +∞ and −∞.
+/// Returns the smallest and the largest finite value; +∞ and −∞ if there are none.
 pub(super) fn extremes(values: impl Iterator<Item = f64>) -> [f64; 2] {
     let finite = values.filter(|value| value.is_finite());
     finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
 }
 
-/// A range with air at both ends: this share of its length, and `least` where that is more. Rounding of a constant is
-/// then a line, not a picture of rounding.
+/// Returns a range with free space at both ends: `share` of its length, or `least` if that is more. A
+/// constant with rounding is then a line, not a picture of rounding.
 pub(super) fn airy([low, high]: [f64; 2], share: f64, least: f64) -> [f64; 2] {
     let air = (share * (high - low)).max(least);
     [low - air, high + air]
 }
 
-/// The largest of …, 1, 2, 5, 10, … that is not above x > 0.
+/// Returns the largest of …, 1, 2, 5, 10, … that is not above x > 0.
 pub(super) fn round_below(x: f64) -> f64 {
     let power = 10f64.powf(x.log10().floor());
-    // Factors a touch low, so that 5 is not missed for 4.999….
+    // Factors slightly low, so that 5 is not missed for 4.999….
     [10.0, 5.0, 2.0].into_iter().find(|f| x >= 0.999_999 * f * power).unwrap_or(1.0) * power
 }
 
-/// The number x with as many decimals as multiples of `step` need.
+/// Returns the number x with as many decimals as multiples of `step` need.
 pub(super) fn number(x: f64, step: f64) -> String {
     let decimals = (-step.log10().floor()).clamp(0.0, 12.0) as usize;
     let text = format!("{x:.decimals$}");
@@ -167,12 +169,13 @@ pub(super) fn number(x: f64, step: f64) -> String {
     if zero { "0".into() } else { text.replace('-', "\u{2212}") }
 }
 
-/// Round values inside a range with their labels: about `most` of them, and two at least, or there is no scale.
+/// Returns round values inside a range with their labels: about `most` of them, and at least two, or there is
+/// no scale.
 fn ticks_of(range: [f64; 2], most: f64) -> Ticks {
     // Rounding takes off up to a factor of 2.5.
     let mut step = round_below(2.5 * (range[1] - range[0]) / most);
     let mut values = multiples(range, step);
-    // Half the range has two multiples in it: three or four steps down the ladder 1, 2, 5 at most.
+    // Half the range has two multiples in it: at most three or four steps down the ladder 1, 2, 5.
     for _ in 0..LADDER {
         if values.len() >= 2 {
             break;
@@ -183,7 +186,7 @@ fn ticks_of(range: [f64; 2], most: f64) -> Ticks {
     values.into_iter().map(|value| (value, number(value, step))).collect()
 }
 
-/// Most steps down from a first tick's distance, at most some times the range.
+/// Most steps down from a first tick's distance, which is at most some times the range.
 const LADDER: usize = 6;
 
 fn multiples([low, high]: [f64; 2], step: f64) -> Vec<f64> {
@@ -193,14 +196,14 @@ fn multiples([low, high]: [f64; 2], step: f64) -> Vec<f64> {
     all.filter(|value| (low..=high).contains(value)).collect()
 }
 
-/// Powers of ten to label along a range of logarithms between whole numbers, at most about ten.
+/// Returns powers of ten as labels along a range of logarithms between whole numbers, at most about ten.
 fn decades([low, high]: [f64; 2]) -> Ticks {
     let (low, high) = (low.round() as i32, high.round() as i32);
     let step = ((high - low) / 10 + 1) as usize;
     (low..=high).step_by(step).map(|power| (f64::from(power), power_of_ten(power))).collect()
 }
 
-/// A power of ten as words: "10⁻¹²".
+/// Returns a power of ten in words: "10⁻¹²".
 fn power_of_ten(power: i32) -> String {
     let digit = |c: char| match c {
         '-' => '⁻',

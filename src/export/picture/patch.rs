@@ -1,56 +1,58 @@
-//! The picture of a patch for a report: both profiles at true scale, the gap exaggerated, and the lines of equal separation
-//! with the boundary over the solver's cells, to scale, with units and a legend.
+//! Draws the picture of a patch for a report: both profiles at true scale, the exaggerated gap, and the lines
+//! of equal separation with the boundary over the solver's cells, to scale, with units and a legend.
 
 use super::super::model::{Header, Loop};
 use super::contour::Nodes;
-use super::page::{BLUE, BODY, Colour, Page, Pen, RED, SMALL};
+use super::levels;
+use super::page::SEPARATOR;
+use super::page::{BLUE, BODY, Colour, INSIDE, Page, Pen, RED, SMALL};
 use super::panel::{Panel, airy, extremes, number, range};
-use super::{SEPARATOR, levels};
 
 const RAIL: Pen = Pen::new([70, 70, 70], 1.8);
 const WHEEL: Pen = Pen::new(BLUE, 1.8);
 const BOUNDARY: Pen = Pen::new(RED, 2.2);
 const APPROACH: Pen = Pen::new(RED, 1.0).dashed([5.0, 3.0]);
 const CELL: Pen = Pen::new([226, 220, 218], 0.6);
-pub(super) const INSIDE: Colour = [253, 232, 226];
 const WINDOW: Colour = [240, 240, 240];
 
-/// Cells with sides shorter than this \[page units\] are not drawn: their borders would be a tint.
+/// Shortest side \[page units\] of cells that are drawn: borders of smaller cells would be a tint.
 const SMALLEST_CELL: f64 = 5.0;
 
-/// The gap is shown up to this multiple of the approach: near a flange s grows to many times as much.
+/// Largest gap shown, as a multiple of the approach: near a flange s grows to many times as much.
 const SHOWN_GAP: f64 = 3.0;
 
-/// Length of the frame's axes at C, and what ζ takes with its letter \[page units\].
+/// Length of the frame's axes at C \[page units\].
 const AXIS: f64 = 38.0;
+/// Room for the ζ axis with its letter \[page units\].
 const AXIS_ROOM: f64 = AXIS + 16.0;
 
 /// Height of the page \[page units\].
 const HEIGHT: f64 = 1040.0;
 
-/// What the picture shows.
+/// The content of the picture.
 #[derive(Debug, Clone, Copy)]
 pub struct Picture<'a> {
-    /// Title, approach, version.
+    /// Header with title, approach and version.
     pub header: &'a Header,
-    /// Side and number of the contact, which tell the pictures of one run apart; empty for a single one.
+    /// Side and number of the contact, which distinguish the pictures of one run; empty for a single contact.
     pub contact: &'a str,
     /// Centres ξ and η of the solver's cells \[mm\], ascending.
     pub cells: [&'a [f64]; 2],
-    /// s \[mm\] over the same window, on as many points as a smooth line takes.
+    /// s \[mm\] over the window of the cells, on as many points as a smooth line takes.
     pub separation: Nodes<'a>,
-    /// (ξ, s(ξ, 0)) \[mm\] over the same window.
+    /// Points \[ξ, s(ξ, 0)\] \[mm\] over the window of the cells.
     pub midplane: &'a [[f64; 2]],
     /// The boundary of the patch.
     pub loops: &'a [Loop],
-    /// The rail's profile (ξ, ζ) \[mm\]; NaN points part its pieces.
+    /// The rail's profile \[ξ, ζ\] \[mm\]; NaN points separate its pieces.
     pub rail: &'a [[f64; 2]],
-    /// The wheel's profile (ξ, ζ) \[mm\] in the midplane η = 0 before any approach; NaN points part its pieces.
+    /// The wheel's profile \[ξ, ζ\] \[mm\] in the midplane η = 0 before any approach; NaN points separate its
+    /// pieces.
     pub wheel: &'a [[f64; 2]],
 }
 
 impl Picture<'_> {
-    /// The picture as SVG.
+    /// Returns the picture as SVG.
     pub fn svg(&self) -> String {
         let header = self.header;
         let angle = header.frame.xi[2].atan2(header.frame.xi[0]).to_degrees();
@@ -70,7 +72,7 @@ impl Picture<'_> {
         page.finish(HEIGHT, &format!("wheelrail {}, scene {}", header.version, header.scene_hash))
     }
 
-    /// Both profiles at true scale, and which part of them the other panels show.
+    /// Draws both profiles at true scale, and which part of them the other panels show.
     fn profiles(&self, page: &mut Page, room: [f64; 4]) {
         page.heading(room, "Profiles in the contact frame, true scale");
         let points = || self.rail.iter().chain(self.wheel).filter(|p| p[0].is_finite() && p[1].is_finite());
@@ -78,7 +80,7 @@ impl Picture<'_> {
             return;
         }
         let (u, v) = (range(points().map(|p| p[0])), range(points().map(|p| p[1])));
-        // C may be at the very top, as at a flange: ζ and its letter stay below the heading.
+        // C may be at the very top, as at a flange: ζ and its letter must stay below the heading.
         let above = Panel::true_scale(room, u, v).point([0.0, 0.0])[1] - room[1];
         let lower = (AXIS_ROOM - above).clamp(0.0, AXIS_ROOM);
         let room = [room[0], room[1] + lower, room[2], room[3] - lower];
@@ -104,7 +106,7 @@ impl Picture<'_> {
         panel.scale_bar(page, [room[0] + room[2], foot], room[2] / 4.0);
     }
 
-    /// The gap in the midplane over a straightened rail, with the heights stretched.
+    /// Draws the gap in the midplane over a straightened rail, with the heights stretched.
     fn gap(&self, page: &mut Page, room: [f64; 4]) {
         let approach = self.header.approach;
         let [low, high] = range(self.midplane.iter().map(|p| p[1]).chain([0.0, approach]));
@@ -123,7 +125,7 @@ impl Picture<'_> {
         }
     }
 
-    /// What lies between the wheel and the approach, stretch by stretch of the midplane.
+    /// Returns the areas between the wheel and the approach, stretch by stretch of the midplane.
     fn overlap(&self, panel: &Panel) -> Vec<Vec<[f64; 2]>> {
         let approach = self.header.approach;
         let quad = |pair: &[[f64; 2]]| {
@@ -141,7 +143,7 @@ impl Picture<'_> {
         self.midplane.windows(2).filter_map(quad).collect()
     }
 
-    /// Lines of equal separation over ξ–η, at one scale.
+    /// Draws lines of equal separation over ξ–η, at one scale.
     fn contours(&self, page: &mut Page, room: [f64; 4]) {
         page.heading(room, "Separation s(ξ, η) before approach, true scale");
         let [u, v] = self.cells.map(|values| range(values.iter().copied()));
@@ -165,7 +167,7 @@ impl Picture<'_> {
         panel.scale_bar(page, [side + 130.0, room[1] + room[3]], 130.0);
     }
 
-    /// What the lines mean, beside them.
+    /// Writes what the lines mean, beside them.
     fn key(&self, page: &mut Page, [side, top]: [f64; 2], levels: &[levels::Level]) {
         let mut row = top;
         page.text([side, row], "s [mm]", BODY);
@@ -187,7 +189,8 @@ impl Picture<'_> {
         }
     }
 
-    /// The borders of the solver's cells, half-way between their centres; of small ones the key has number and size.
+    /// Draws the borders of the solver's cells, half-way between their centres; for small cells the key gives
+    /// number and size.
     fn cells(&self, page: &mut Page, panel: &Panel) {
         let [x, y, w, h] = panel.place;
         let [xi, eta] = self.cells;
@@ -203,7 +206,7 @@ impl Picture<'_> {
     }
 }
 
-/// The step of equally spaced values, as far as three digits show.
+/// Returns the step of equally spaced values, as far as three digits show; `None` if the steps differ.
 fn even_step(values: &[f64]) -> Option<f64> {
     if values.len() < 2 {
         return None;
@@ -212,7 +215,7 @@ fn even_step(values: &[f64]) -> Option<f64> {
     (low > 0.0 && high - low <= 1e-4 * high).then_some(low)
 }
 
-/// A positive number with so many significant digits, without zeros at its end.
+/// Returns a positive number with so many significant digits, without zeros at its end.
 fn significant(x: f64, digits: i32) -> String {
     let step = 10f64.powi(x.log10().floor() as i32 + 1 - digits);
     let text = number((x / step).round() * step, step);

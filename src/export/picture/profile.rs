@@ -1,41 +1,42 @@
-//! The picture of a profile: points and curve at true scale, and against arc length the residual and the curvature.
+//! Draws the picture of a profile: points and curve at true scale; residual and curvature against arc length.
 
-use super::SEPARATOR;
+use super::page::SEPARATOR;
 use super::page::{BLUE, Page, Pen, RED, SMALL};
 use super::panel::{Panel, airy, number, range};
 
 const CURVE: Pen = Pen::new(BLUE, 1.4);
 const POINT: Pen = Pen::new(RED, 1.0);
 
-/// Left edge and width of the panels \[page units\].
+/// Left edge of the panels \[page units\].
 const LEFT: f64 = 90.0;
+/// Width of the panels \[page units\].
 const WIDTH: f64 = 770.0;
 
-/// Half the arms of a point's cross \[page units\].
+/// Half the length of a cross's arms \[page units\].
 const ARM: f64 = 2.0;
 
-/// At most this many points of a panel are marked, evenly chosen: more are a smear, and a large file.
+/// Most points of a panel that are marked, evenly chosen: more are a smear, and a large file.
 const MOST_CROSSES: usize = 4000;
 
-/// What the picture shows.
+/// The content of the picture.
 #[derive(Debug, Clone, Copy)]
 pub struct ProfilePicture<'a> {
     /// Name of the profile.
     pub title: &'a str,
-    /// One line below it.
+    /// A line below the title.
     pub about: &'a str,
-    /// Measured points \[x, z\] \[mm\]; none of a drawn profile.
+    /// Measured points \[x, z\] \[mm\]; none for a drawn profile.
     pub points: &'a [[f64; 2]],
     /// The curve \[x, z\] \[mm\].
     pub curve: &'a [[f64; 2]],
-    /// \[arc length, distance of a point from the curve, positive above\] \[mm\].
+    /// Pairs \[arc length, distance of a point from the curve, positive above\] \[mm\].
     pub residual: &'a [[f64; 2]],
-    /// \[arc length \[mm\], curvature \[1/mm\], positive where hollow side up\].
+    /// Pairs \[arc length \[mm\], curvature \[1/mm\], positive with the hollow side up\].
     pub curvature: &'a [[f64; 2]],
 }
 
 impl ProfilePicture<'_> {
-    /// The picture as SVG; without points it has no residual panel.
+    /// Returns the picture as SVG; without points it has no residual panel.
     pub fn svg(&self) -> String {
         let mut page = Page::new(self.title, self.about);
         let mut top = self.shape(&mut page, 112.0);
@@ -44,10 +45,11 @@ impl ProfilePicture<'_> {
             top = self.residuals(&mut page, top, along);
         }
         top = self.curvatures(&mut page, top, along);
-        page.finish(top + 20.0, &super::foot())
+        page.finish(top + 20.0, &super::page::foot())
     }
 
-    /// Points and curve at true scale, as high as the profile's proportions ask for; returns the next panel's top.
+    /// Draws points and curve at true scale, as high as the profile's proportions need; returns the next
+    /// panel's top.
     fn shape(&self, page: &mut Page, top: f64) -> f64 {
         let both = || self.curve.iter().chain(self.points);
         let (u, v) = (range(both().map(|p| p[0])), range(both().map(|p| p[1])));
@@ -56,7 +58,7 @@ impl ProfilePicture<'_> {
         let room = [LEFT, top, WIDTH, height];
         page.heading(room, "Profile, true scale");
         let panel = Panel::true_scale(room, u, v);
-        // The curve lies above its points, or they would hide it.
+        // The curve is drawn over its points, or they would hide it.
         crosses(page, &panel, self.points);
         page.lines(&panel.curve(self.curve), CURVE);
         panel.axes(page, ["x [mm]", "z [mm]"]);
@@ -70,7 +72,7 @@ impl ProfilePicture<'_> {
         top + height + 84.0
     }
 
-    /// Distance of the points from the curve in µm; returns the next panel's top.
+    /// Draws the distance of the points from the curve in µm; returns the next panel's top.
     fn residuals(&self, page: &mut Page, top: f64, u: [f64; 2]) -> f64 {
         let micrometres: Vec<[f64; 2]> = self.residual.iter().map(|[s, r]| [*s, 1e3 * r]).collect();
         let v = about_zero(range(micrometres.iter().map(|p| p[1])));
@@ -82,7 +84,7 @@ impl ProfilePicture<'_> {
         top + 170.0 + 84.0
     }
 
-    /// Curvature in 1/m, with the radii of its extremes in words; returns the next panel's top.
+    /// Draws the curvature in 1/m, with the radii of its extremes in words; returns the next panel's top.
     fn curvatures(&self, page: &mut Page, top: f64, u: [f64; 2]) -> f64 {
         let per_metre: Vec<[f64; 2]> = self.curvature.iter().map(|[s, k]| [*s, 1e3 * k]).collect();
         let [least, most] = range(per_metre.iter().map(|p| p[1]));
@@ -105,17 +107,17 @@ impl ProfilePicture<'_> {
     }
 }
 
-/// The range with 0 in it and 5 % of air; µm and 1/m have no digits beyond the sixth.
+/// Returns a range that contains 0, with 5 % of free space; µm and 1/m have no digits beyond the sixth.
 fn about_zero([low, high]: [f64; 2]) -> [f64; 2] {
     airy([low.min(0.0), high.max(0.0)], 0.05, 1e-6)
 }
 
-/// The arms of a cross.
+/// Returns the arms of a cross.
 fn cross([x, y]: [f64; 2]) -> [Vec<[f64; 2]>; 2] {
     [vec![[x - ARM, y], [x + ARM, y]], vec![[x, y - ARM], [x, y + ARM]]]
 }
 
-/// A small cross for every point.
+/// Draws a small cross for every point.
 fn crosses(page: &mut Page, panel: &Panel, points: &[[f64; 2]]) {
     let stride = points.len().div_ceil(MOST_CROSSES).max(1);
     let mut arms = Vec::with_capacity(2 * points.len() / stride);

@@ -10,7 +10,7 @@ const NAMES: Names = Names {
 };
 const SUMMARY: &[u8] = b"{\"program\": \"wheelrail 0.1.0\"}";
 
-/// A committed folder with a summary and the given file.
+/// Writes and commits a folder with a summary and the given file.
 fn written(dir: &Path, file: &str) -> Result<()> {
     let folder = Folder::create(dir, NAMES)?;
     folder.write("summary.json", SUMMARY)?;
@@ -123,7 +123,7 @@ fn results_and_files_of_others_inside_are_never_replaced() {
         folder.commit()
     };
     with_part("part-1").unwrap();
-    // A part of the last run goes with it; another run's folder, filed here by the user, does not.
+    // A part of the last run is removed with it; another run's folder, filed here by the user, is not.
     with_part("part-2").unwrap();
     assert_eq!(listing(&dir), ["part-2", "summary.json"]);
     written(&dir.join("archive"), "a.npy").unwrap();

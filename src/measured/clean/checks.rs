@@ -1,4 +1,4 @@
-//! What can be wrong with measured points, each with its place in the file; in profile axes, left to right.
+//! Checks measured points in profile axes, from left to right; each finding has its place in the file.
 
 use std::ops::RangeInclusive;
 
@@ -11,57 +11,58 @@ use crate::measured::read::points::Point;
 use crate::measured::shape::{gauge_depth, has_flange_back, width};
 use crate::profile::Side;
 
-/// Points nearer than this \[mm\] are one point: a nanometre is below every instrument and every file's digits.
+/// Distance \[mm\] below which two points are one: a nanometre is less than any instrument or file resolves.
 const SAME_POINT: f64 = 1e-6;
-/// Cosine of the turn at a point beyond which the path goes back, 120°: sharp edges of profiles turn by less
+/// Cosine of the turn at a point beyond which the path runs back, 120°: sharp edges of profiles turn by less
 /// than 100°, points in the wrong order by about 180°.
 const BACKWARDS: f64 = -0.5;
-/// A spike sticks out this many times as far as its neighbourhood; ten times the median is beyond noise
-/// (normal noise: once in 10⁹ points) and below what a speck of dirt gives.
+/// Least height of a spike, as a multiple of its neighbourhood's median: ten is beyond noise (normal noise:
+/// once in 10⁹ points) and below what a speck of dirt gives.
 const SPIKE_RATIO: f64 = 10.0;
-/// Least height of a spike \[mm\]; less is the roughness that smoothing removes.
+/// Least height of a spike \[mm\]: smoothing removes smaller roughness.
 const SPIKE_HEIGHT: f64 = 0.02;
-/// Points on each side that make a spike's neighbourhood.
+/// Number of points on each side that make a spike's neighbourhood.
 const NEIGHBOURHOOD: usize = 10;
-/// A gap is this many times the median distance of neighbours, and at least [`GAP`].
+/// Least length of a gap, as a multiple of the median distance of neighbours; it is at least [`GAP`] too.
 const GAP_RATIO: f64 = 10.0;
-/// Least gap \[mm\]: the length of a contact patch.
+/// Least length of a gap \[mm\]: the length of a contact patch.
 const GAP: f64 = 5.0;
-/// Widths \[mm\] that a profile may have; others are a wrong unit (0.14: metres; 5500: thousandths of an inch).
+/// Widths \[mm\] that a profile may have; other widths mean a wrong unit (0.14: metres; 5500: thousandths of
+/// an inch).
 const WIDTHS: RangeInclusive<f64> = 5.0..=500.0;
 
-/// A thing that can be wrong.
+/// A fault that measured points can have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Check {
-    /// Two points in one place.
+    /// Two points are in one place.
     Duplicate,
-    /// A single point in the wrong place of the order.
+    /// A single point is in the wrong place of the order.
     OutOfOrder,
-    /// A stretch that runs back over the one before, as sections stitched together do.
+    /// A stretch runs back over the one before, as stitched sections do.
     ZigZag,
-    /// The path turns back and does not return: a point added or left at an end.
+    /// The path turns back and does not return: a point was added or left at an end.
     TurnsBack,
-    /// A single point off the curve.
+    /// A single point is off the curve.
     Spike,
     /// The curve crosses itself.
     Loop,
-    /// A long stretch without points.
+    /// A long stretch has no points.
     Gap,
     /// The gauge face of a rail or the flange back of a wheel was not measured.
     MissingSideFace,
-    /// The format's definition, which was followed, turned the profile against what its shape shows.
+    /// The definition of the format, which was followed, turned the profile against what its shape shows.
     Orientation,
 }
 
-/// Something found.
+/// One fault that was found.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Finding {
-    /// What.
+    /// The kind of fault.
     pub check: Check,
     /// Whether no curve can be drawn through the points as they are.
     pub fatal: bool,
-    /// Where in the file: "point 12 (line 40)".
+    /// Place in the file: "point 12 (line 40)".
     pub place: String,
     /// What was found there.
     pub found: String,
@@ -73,7 +74,7 @@ impl Finding {
         Self { check, fatal, place: point.place(), found: found.into() }
     }
 
-    /// A definition that the shape contradicts, at the file's first point.
+    /// Makes the finding that the shape contradicts the format's definition, at the file's first point.
     pub(in crate::measured) fn orientation(first: &Point, found: String) -> Self {
         Self::new(Check::Orientation, first, found)
     }
@@ -93,10 +94,10 @@ impl Finding {
     }
 }
 
-/// Rejects a width outside 5–500 mm: a wrong unit.
+/// Rejects a width outside 5–500 mm, which means a wrong unit.
 ///
 /// # Errors
-/// With the width, and the units that would do.
+/// A width outside that range; the message names the units that would give a possible width.
 pub(in crate::measured) fn reject_width(points: &[Point], unit: f64) -> Result<()> {
     let [low, high] = width(points);
     if WIDTHS.contains(&(high - low)) {
@@ -112,7 +113,7 @@ pub(in crate::measured) fn reject_width(points: &[Point], unit: f64) -> Result<(
     Err(Error::new("unit", found, expected, advice))
 }
 
-/// Everything that is wrong, in the order of [`Check`].
+/// Finds everything that is wrong, in the order of [`Check`].
 pub fn findings(points: &[Point], side: Side, gauge_height: f64) -> Vec<Finding> {
     let mut out = Vec::new();
     let found = |k: usize| format!("the same place as {}", points[k - 1].place());
@@ -122,7 +123,7 @@ pub fn findings(points: &[Point], side: Side, gauge_height: f64) -> Vec<Finding>
         let found = format!("a point {:.3} mm off the line of its neighbours", spike.height);
         Finding { fatal: spike.backwards, ..Finding::new(Check::Spike, &points[spike.at], found) }
     }));
-    // A path that runs back crosses itself everywhere: its own findings come first.
+    // A path that runs back crosses itself everywhere, so only its own findings are given.
     if !out.iter().any(|finding| finding.fatal) {
         out.extend(crossings(points));
     }
@@ -145,10 +146,10 @@ fn crossings(points: &[Point]) -> Vec<Finding> {
     out
 }
 
-/// The first fatal finding as an error that counts the others.
+/// Returns the first fatal finding as an error that counts the others.
 ///
 /// # Errors
-/// When there is one.
+/// At least one finding is fatal.
 pub fn reject(findings: &[Finding]) -> Result<()> {
     let mut fatal = findings.iter().filter(|finding| finding.fatal);
     let Some(first) = fatal.next() else {
@@ -162,7 +163,7 @@ pub fn reject(findings: &[Finding]) -> Result<()> {
     Err(Error::new(first.place.clone(), found, expected, advice))
 }
 
-/// Indices of points in the place of the one before.
+/// Returns the indices of points at the place of the point before.
 pub(in crate::measured) fn duplicates(points: &[Point]) -> impl Iterator<Item = usize> {
     points.windows(2).enumerate().filter(|(_, pair)| same(&pair[0], &pair[1])).map(|(k, _)| k + 1)
 }
@@ -175,7 +176,7 @@ pub(in crate::measured) fn distance(a: &Point, b: &Point) -> f64 {
     (b.x - a.x).hypot(b.z - a.z)
 }
 
-/// Points `from`..=`to` between two reversals of the path; one reversal alone has `from == to`.
+/// A stretch of points `from`..=`to` between two reversals of the path; a single reversal has `from == to`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::measured) struct Fold {
     pub from: usize,
@@ -183,7 +184,7 @@ pub(in crate::measured) struct Fold {
 }
 
 impl Fold {
-    /// How many points before it the path runs back over.
+    /// Returns the number of points before the fold over which the path runs back.
     fn overrun(&self, points: &[Point]) -> usize {
         let [a, b] = [points[self.from], points[self.to]];
         let along = |p: &Point| (p.x - b.x) * (a.x - b.x) + (p.z - b.z) * (a.z - b.z);
@@ -202,7 +203,7 @@ impl Fold {
     }
 }
 
-/// Where the path runs back, apart from spikes.
+/// Finds where the path runs back, apart from spikes.
 pub(in crate::measured) fn folds(points: &[Point]) -> Vec<Fold> {
     let spikes: Vec<usize> = spikes(points).iter().filter(|s| s.backwards).map(|s| s.at).collect();
     let beside = |k: usize| {
@@ -221,7 +222,7 @@ pub(in crate::measured) fn folds(points: &[Point]) -> Vec<Fold> {
     out
 }
 
-/// Points where the path turns by more than 120°; coinciding points are passed over.
+/// Returns the points where the path turns by more than 120°; it passes over coinciding points.
 fn reversals(points: &[Point]) -> Vec<usize> {
     let mut out = Vec::new();
     let mut before: Option<[f64; 2]> = None;
@@ -244,17 +245,18 @@ fn reversals(points: &[Point]) -> Vec<usize> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::measured) struct Spike {
     pub at: usize,
-    /// Distance from the line of its neighbours \[mm\].
+    /// Distance from the line through its two neighbours \[mm\].
     pub height: f64,
-    /// Whether the path turns by more than 120° there or beside it.
+    /// Whether the path turns by more than 120° at the point or beside it.
     pub backwards: bool,
 }
 
-/// Points off the line of their neighbours, whose neighbours are off to the other side: the pattern of a single
-/// wrong point, which an edge does not have.
+/// Finds points off the line of their neighbours, while their neighbours are off to the other side: this is
+/// the pattern of a single wrong point, which an edge does not have.
 pub(in crate::measured) fn spikes(points: &[Point]) -> Vec<Spike> {
-    /// A single point off by h puts a neighbour off to the other side by h·d/l, d from the neighbour to the next but one
-    /// and l from there to the point, −h/2 where h is small; half of that still tells.
+    /// Share of the expected distance by which a neighbour must be off to the other side. A single point off
+    /// by h puts a neighbour off by h·d/l, with d from the neighbour to the next but one and l from there to
+    /// the point; −h/2 where h is small. Half of that is enough.
     const ANSWER: f64 = 0.5;
     let n = points.len();
     let off: Vec<f64> = (0..n).map(|k| if k == 0 || k + 1 >= n { 0.0 } else { offset(points, k) }).collect();
@@ -266,7 +268,7 @@ pub(in crate::measured) fn spikes(points: &[Point]) -> Vec<Spike> {
             let share = distance(&points[outer], &points[j]) / distance(&points[outer], &points[k]);
             off[j] * off[k].signum() < -ANSWER * share * height
         };
-        // The ends have no line of neighbours to be off.
+        // The points at the ends have no line of neighbours.
         let before = k == 1 || answers(k - 1, k - 2);
         let after = k + 2 == n || answers(k + 1, k + 2);
         if height <= SPIKE_HEIGHT || !before || !after {
@@ -282,7 +284,7 @@ pub(in crate::measured) fn spikes(points: &[Point]) -> Vec<Spike> {
     out
 }
 
-/// Signed distance of a point from the line of its neighbours.
+/// Returns the signed distance of a point from the line through its neighbours \[mm\].
 fn offset(points: &[Point], k: usize) -> f64 {
     let [a, p, b] = [points[k - 1], points[k], points[k + 1]];
     let [u, w] = [b.x - a.x, b.z - a.z];

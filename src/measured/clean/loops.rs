@@ -1,23 +1,24 @@
-//! Where a chain of points crosses itself, by a tree of boxes: n log n for anything like a profile.
+//! Finds where a chain of points crosses itself, by a tree of boxes. Cost: n log n for anything like a
+//! profile.
 
 use crate::measured::read::points::Point;
 
-/// Crossings that are enough to report.
+/// Most crossings that are reported.
 const MOST_CROSSINGS: usize = 100;
-/// Box comparisons after which the search ends: a profile of a million points takes a tenth of that; points that wind
-/// about one place take up to n², hours.
+/// Number of box comparisons after which the search ends: a profile of a million points takes a tenth of it;
+/// points that wind around one place take up to n², which would be hours.
 const MOST_COMPARISONS: usize = 100_000_000;
 
-/// What a search for crossings found.
+/// The result of a search for crossings.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(in crate::measured) struct Crossings {
-    /// Pairs of edges [i, j], i < j, of which i → i + 1 crosses j → j + 1; at most [`MOST_CROSSINGS`].
+    /// Pairs of edges \[i, j\], i < j, where i → i + 1 crosses j → j + 1; at most [`MOST_CROSSINGS`].
     pub edges: Vec<[usize; 2]>,
-    /// Whether the search ended at [`MOST_COMPARISONS`]: there may be others.
+    /// Whether the search ended at [`MOST_COMPARISONS`], so that there may be other crossings.
     pub cut_short: bool,
 }
 
-/// Where the chain crosses itself.
+/// Finds where the chain crosses itself.
 pub(in crate::measured) fn crossings(points: &[Point]) -> Crossings {
     crossings_within(points, MOST_COMPARISONS)
 }
@@ -38,7 +39,7 @@ struct Bounds {
     high: [f64; 2],
 }
 
-/// Edges `from`..`to` and the index of their box; the children of box k are 2k and 2k + 1.
+/// The edges `from`..`to` and the index of their box; the children of box k are 2k and 2k + 1.
 #[derive(Debug, Clone, Copy)]
 struct Node {
     index: usize,
@@ -117,7 +118,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Whether two edges cross in their interiors.
+    /// Returns whether two edges cross in their interiors.
     fn cross(&self, i: usize, j: usize) -> bool {
         let [a, b, c, d] = [i, i + 1, j, j + 1].map(|k| self.points[k]);
         turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0

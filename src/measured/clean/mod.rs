@@ -1,4 +1,4 @@
-//! What can be wrong with measured points, and the repairs that an option allows.
+//! Checks measured points, and makes the repairs that an option allows.
 
 pub mod checks;
 mod loops;

@@ -1,4 +1,4 @@
-//! Repairs that an option allows, each with the places it touched.
+//! Makes the repairs that an option allows, and lists the places that they touched.
 
 use serde::Serialize;
 
@@ -7,22 +7,22 @@ use super::loops;
 use crate::measured::options::Repair;
 use crate::measured::read::points::Point;
 
-/// Largest loop that `cut-loops` cuts, as a share of the whole path: a larger one is not a slip of the probe,
-/// and which part is the profile cannot be told.
+/// Largest loop that `cut-loops` cuts, as a share of the whole path: a larger loop is no slip of the probe,
+/// and it is unknown which part is the profile.
 const LARGEST_LOOP: f64 = 0.1;
-/// Places that the record lists; the count is always complete.
+/// Most places that the record lists; the count is always complete.
 const LISTED: usize = 20;
-/// Rounds after which a repair has done what it can; each removes what the one before laid bare.
+/// Most rounds of a repair: each round removes what the last one uncovered.
 const ROUNDS: usize = 10;
 
 /// A repair that was made.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Repaired {
-    /// Which.
+    /// The kind of repair.
     pub repair: Repair,
-    /// How many points it dropped or moved in the order.
+    /// Number of points that it dropped, or moved in the order.
     pub points: usize,
-    /// The first of their places in the file.
+    /// Places of the first of these points in the file.
     pub places: Vec<String>,
 }
 
@@ -75,8 +75,8 @@ fn sort(points: &mut [Point]) -> Vec<Point> {
     moved
 }
 
-/// Sorts the points of one fold and those it runs back over along the direction of travel across it. Returns
-/// the index after the last one.
+/// Sorts the points of one fold, and those that it runs back over, along the direction of travel across the
+/// fold. Returns the index after the last sorted point.
 fn sort_fold(points: &mut [Point], fold: Fold, moved: &mut Vec<Point>) -> usize {
     let reach = fold.to - fold.from + 1;
     let (mut low, mut high) = (fold.from.saturating_sub(reach), (fold.to + reach).min(points.len() - 1));

@@ -1,25 +1,26 @@
-//! G¹ chains of arcs and lines within a tolerance of points.
+//! Fits G¹ chains of arcs and lines to points within a tolerance.
 //!
-//! Between two stations there is a pair of arcs with equal tangent lengths [Bolton1975]; a chain of such pairs is
-//! laid greedily, each as long as doubling and bisection find it within the tolerance of every point.
+//! Two stations are joined by a pair of arcs with equal tangent lengths [Bolton1975]. A chain of such pairs
+//! is built greedily: doubling and bisection find how long each pair can be within the tolerance of every
+//! point.
 
 use crate::error::{Error, Result};
 use crate::measured::read::points::Point;
 use crate::profile::{Arc, Station};
 
-/// A cross product of coordinates below this many roundings of them is straight.
+/// Largest cross product of coordinates, in roundings of them, that counts as straight.
 const STRAIGHT_ROUNDINGS: f64 = 8.0;
 
 /// A chain of pairs of arcs.
 #[derive(Debug, Clone, Default)]
 pub(in crate::measured) struct Chain {
     pub arcs: Vec<Arc>,
-    /// Distance \[mm\] of each point from it.
+    /// Distance of each point from the chain \[mm\].
     pub residuals: Vec<f64>,
 }
 
-/// Arcs from the first to the last of `stations`, each within `tolerance` \[mm\] of the `points` between, which
-/// belong to the stations one by one.
+/// Fits arcs from the first to the last of `stations`, each within `tolerance` \[mm\] of the `points`
+/// between; point k belongs to station k.
 ///
 /// # Errors
 /// Neighbouring points that a pair of arcs cannot join within the tolerance, with their place.
@@ -54,7 +55,8 @@ pub(in crate::measured) fn chain(stations: &[Station], points: &[Point], toleran
     Ok(chain)
 }
 
-/// The two arcs from station to station, equal in their tangent lengths; neither turns by a right angle or more.
+/// Returns the two arcs from station to station with equal tangent lengths; `None` if one would turn by a
+/// right angle or more.
 fn pair(a: &Station, b: &Station) -> Option<[Arc; 2]> {
     let [vx, vz] = [b.x - a.x, b.z - a.z];
     let along = vx * (a.cos + b.cos) + vz * (a.sin + b.sin);
@@ -73,7 +75,7 @@ fn pair(a: &Station, b: &Station) -> Option<[Arc; 2]> {
     (forward(a) && forward(b)).then(|| [arc(*a, middle), arc(middle, *b)])
 }
 
-/// The arc with these two stations, which lie on one.
+/// Returns the arc with these two stations, which must lie on one.
 fn arc(start: Station, end: Station) -> Arc {
     let [cx, cz] = [end.x - start.x, end.z - start.z];
     let cross = start.cos * cz - start.sin * cx;
@@ -90,14 +92,16 @@ fn arc(start: Station, end: Station) -> Arc {
     Arc { start, end, radius: (cx * cx + cz * cz) / (2.0 * cross) }
 }
 
-/// Distance \[mm\] of a point from a pair of arcs; from the one on whose side of their joint it lies.
+/// Returns the distance \[mm\] of a point from a pair of arcs: from the arc on whose side of their joint it
+/// lies.
 fn distance(pair: &[Arc; 2], point: &Point) -> f64 {
     let joint = &pair[0].end;
     let beyond = (point.x - joint.x) * joint.cos + (point.z - joint.z) * joint.sin > 0.0;
     distance_from(&pair[usize::from(beyond)], point)
 }
 
-/// Distance \[mm\] of a point from the circle or line of an arc, without cancellation for any radius.
+/// Returns the distance \[mm\] of a point from the circle or line of an arc, without cancellation for any
+/// radius.
 fn distance_from(arc: &Arc, point: &Point) -> f64 {
     let at = Station { x: point.x, z: point.z, ..Station::AXES }.seen_from(&arc.start);
     let curvature = arc.curvature();

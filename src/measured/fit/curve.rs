@@ -1,4 +1,4 @@
-//! The curve through points or elements, as segments of a chain.
+//! Draws the curve through points or elements, as segments of a chain.
 
 use serde::Serialize;
 
@@ -11,15 +11,15 @@ use crate::measured::options::{ARC_CUTOFFS, CUTOFF_WAVELENGTH, CurveKind, Option
 use crate::measured::read::points::{Element, Point};
 use crate::profile::Segment;
 
-/// Share of an arc chain's tolerance that the smoothing under it may use up.
+/// Share of an arc chain's tolerance that the smoothing under it may use.
 const SMOOTHING_SHARE: f64 = 0.5;
 
 /// A corner of the curve.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Corner {
-    /// Its point in the file.
+    /// Place of the point in the file.
     pub place: String,
-    /// [x, z] of the point \[mm\].
+    /// Coordinates \[x, z\] of the point \[mm\].
     pub point: [f64; 2],
     /// Turn of the tangent \[rad\], positive counter-clockwise.
     pub angle: f64,
@@ -28,35 +28,35 @@ pub struct Corner {
 /// Distances \[mm\] of the points from the curve, across it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Residual {
-    /// The largest.
+    /// Largest distance.
     pub largest: f64,
-    /// Root mean square.
+    /// Root mean square of the distances.
     pub rms: f64,
-    /// The point of the largest.
+    /// Place of the point with the largest distance.
     pub worst: String,
 }
 
-/// What curve was drawn and how near it passes.
+/// The curve that was drawn, and how close to the points it is.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CurveRecord {
-    /// Its kind.
+    /// Kind of curve.
     pub kind: CurveKind,
-    /// The wavelength that its smoothing halves \[mm\].
+    /// Wavelength that the smoothing halves \[mm\].
     pub cutoff_wavelength: Option<f64>,
-    /// Its tolerance, of a chain of arcs \[mm\].
+    /// Tolerance of a chain of arcs \[mm\].
     pub tolerance: Option<f64>,
     /// Number of segments.
     pub segments: usize,
-    /// Corners, from left to right.
+    /// The corners, from left to right.
     pub corners: Vec<Corner>,
-    /// How far the points lie from the curve; none for design elements.
+    /// Distances of the points from the curve; `None` for design elements.
     pub residual: Option<Residual>,
 }
 
-/// Segments of the curve that the options ask for, and its record.
+/// Draws the curve that the options ask for; returns its segments and its record.
 ///
 /// # Errors
-/// A curve of elements without elements; an arc chain that cannot keep its tolerance.
+/// A curve of elements for a file without elements; an arc chain that cannot keep its tolerance.
 pub(in crate::measured) fn curve(
     points: &[Point],
     elements: &[Element],
@@ -109,7 +109,7 @@ fn residual(residuals: &[f64], points: &[Point]) -> Option<Residual> {
     Some(Residual { largest: residuals[worst], rms, worst: points[worst].place() })
 }
 
-/// The elements themselves.
+/// Draws the elements themselves.
 fn design(elements: &[Element]) -> Result<(Vec<Segment>, CurveRecord)> {
     if elements.is_empty() {
         let advice = "choose \"smoothing\", \"interpolation\" or \"arcs\"";
@@ -128,7 +128,7 @@ fn design(elements: &[Element]) -> Result<(Vec<Segment>, CurveRecord)> {
     Ok((segments, record))
 }
 
-/// Distance of each point from the spline, across its tangent at the point's own knot.
+/// Returns the distance of each point from the spline, across its tangent at the point's own knot \[mm\].
 fn spline_residuals(pieces: &[Piece], points: &[Point]) -> Vec<f64> {
     let mut residuals = vec![0.0; points.len()];
     for piece in pieces {
@@ -143,8 +143,8 @@ fn spline_residuals(pieces: &[Piece], points: &[Point]) -> Vec<f64> {
 
 type Arcs = (Vec<Segment>, Vec<f64>, Option<f64>);
 
-/// A chain of arcs on the tangents of a spline: of the given smoothing, or of the strongest that leaves half of
-/// the tolerance.
+/// Fits a chain of arcs to the tangents of a spline: with the given smoothing, or with the strongest one that
+/// uses no more than half of the tolerance.
 fn arcs(points: &[Point], corners: &[usize], options: &Options) -> Result<Arcs> {
     let tolerance = options.arc_tolerance();
     let fit = |cutoff: Option<f64>| (pieces(points, corners, cutoff), cutoff);

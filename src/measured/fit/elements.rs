@@ -1,16 +1,16 @@
-//! Design elements of a file as a chain of arcs and lines.
+//! Turns the design elements of a file into a chain of arcs and lines.
 
 use crate::error::Result;
 use crate::measured::read::points::{Element, ElementShape, Point};
 use crate::profile::{Arc, Segment, Station};
 
-/// Step \[mm\] of the points that stand for elements in the checks and in the search for orientation.
+/// Distance \[mm\] of the points that represent elements in the checks and in the search for orientation.
 const STEP: f64 = 0.5;
 /// Most steps over one element: 200 mm.
 const MOST_STEPS: f64 = 400.0;
 /// Distance \[mm\] below which two ends are one joint: drawings print 1e-4 mm.
 const JOINT: f64 = 1e-3;
-/// Longest turn of one arc \[rad\]: an arc of a chain turns by half a circle at most, rounding included.
+/// Largest turn of one arc \[rad\]: an arc of a chain turns by at most half a circle, rounding included.
 const LARGEST_TURN: f64 = 3.0;
 
 /// An element with its direction of travel.
@@ -20,7 +20,7 @@ struct Directed {
     backwards: bool,
 }
 
-/// The elements turned so that each begins where the one before ends; their order is the file's.
+/// Gives the elements directions so that each begins where the one before ends; the order is the file's.
 fn directed(elements: &[Element]) -> Vec<Directed> {
     let mut out: Vec<Directed> = Vec::with_capacity(elements.len());
     for (k, &element) in elements.iter().enumerate() {
@@ -59,7 +59,7 @@ impl Directed {
         ends(&self.element)[usize::from(!self.backwards)]
     }
 
-    /// Points along it, both ends included.
+    /// Returns points along the element, both ends included.
     fn points(&self, number: usize) -> Vec<Point> {
         let length = match self.element.shape {
             ElementShape::Line { from, to } => far(from, to),
@@ -73,7 +73,7 @@ impl Directed {
         (0..=n as usize).map(point).collect()
     }
 
-    /// The point at a share of its length.
+    /// Returns the point at a share of the element's length.
     fn at(&self, share: f64) -> [f64; 2] {
         let share = if self.backwards { 1.0 - share } else { share };
         match self.element.shape {
@@ -108,7 +108,7 @@ impl Directed {
     }
 }
 
-/// Points every [`STEP`] along the elements, numbered by element.
+/// Returns points every [`STEP`] along the elements, numbered by element.
 pub(in crate::measured) fn points(elements: &[Element]) -> Vec<Point> {
     let mut out: Vec<Point> = Vec::new();
     for (k, directed) in directed(elements).iter().enumerate() {
@@ -121,10 +121,10 @@ pub(in crate::measured) fn points(elements: &[Element]) -> Vec<Point> {
     out
 }
 
-/// The chain of elements in profile axes, from left to right.
+/// Makes the chain of elements in profile axes, from left to right.
 ///
 /// # Errors
-/// A line between two equal points, with its line.
+/// A line element with two equal ends, with its line in the file.
 pub(in crate::measured) fn segments(elements: &[Element]) -> Result<Vec<Segment>> {
     let mut chain = directed(elements);
     let first = chain.first().map(|first| ends(&first.element)[usize::from(first.backwards)]);

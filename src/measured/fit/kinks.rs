@@ -1,16 +1,16 @@
-//! Corners: where the tangent before and the tangent after a point differ by more than a curve explains.
+//! Finds corners: points where the tangents before and after differ by more than a curve explains.
 
 use super::parabola::Parabola;
 use crate::measured::clean::checks::distance;
 use crate::measured::read::points::Point;
 
-/// Steps of a window that are used, evenly picked: more do not sharpen a tangent, and windows over dense points
-/// would cost n².
+/// Most steps of a window that are used, evenly picked: more do not sharpen a tangent, and windows over dense
+/// points would cost n².
 const MOST_IN_WINDOW: usize = 48;
-/// Points a tangent needs: a parabola's three.
+/// Fewest points for a tangent: a parabola needs three.
 const LEAST_IN_WINDOW: usize = 3;
 
-/// A corner.
+/// A corner at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::measured) struct Kink {
     pub at: usize,
@@ -18,11 +18,11 @@ pub(in crate::measured) struct Kink {
     pub angle: f64,
 }
 
-/// Corners sharper than `least` \[rad\], at points.
+/// Finds points with a corner sharper than `least` \[rad\].
 ///
-/// Method: one parabola over `window` \[mm\] of path on each side, both through their own points only; an arc of
-/// radius r biases each tangent by (window/r)²/10, noise σ on m points by about 14 σ/(window √m). Of corners
-/// nearer than a window the sharpest counts.
+/// Method: fits one parabola over `window` \[mm\] of path on each side, each through points of its own side
+/// only. An arc of radius r biases each tangent by (window/r)²/10, noise σ on m points by about 14 σ/(window
+/// √m). Of several corners within a window only the sharpest counts.
 pub(in crate::measured) fn kinks(points: &[Point], least: f64, window: f64) -> Vec<Kink> {
     let inner = LEAST_IN_WINDOW - 1..points.len().saturating_sub(LEAST_IN_WINDOW - 1);
     let mut path = vec![0.0];
@@ -50,7 +50,8 @@ pub(in crate::measured) fn kinks(points: &[Point], least: f64, window: f64) -> V
     out
 }
 
-/// Direction of travel at a point from the points on one side; `path` is the arc length at each point.
+/// Returns the direction of travel at a point from the points on one side; `path` is the arc length at each
+/// point.
 fn tangent(points: &[Point], path: &[f64], at: usize, forward: bool, window: f64) -> [f64; 2] {
     let far = if forward {
         let within = path.partition_point(|&s| s <= path[at] + window) - 1;

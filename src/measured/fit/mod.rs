@@ -1,4 +1,5 @@
-//! The curve through measured points: smoothing or interpolating spline, arcs, or the file's own elements.
+//! Draws the curve through measured points: a smoothing or interpolating spline, arcs, or the file's own
+//! elements.
 
 mod biarc;
 pub mod curve;

@@ -1,13 +1,14 @@
-//! Least-squares parabolas: tangents and curvatures of noisy points.
+//! Fits least-squares parabolas, for tangents and curvatures of noisy points.
 
-/// c₀ + c₁ s + c₂ s².
+/// The parabola c₀ + c₁ s + c₂ s².
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::measured) struct Parabola([f64; 3]);
 
 impl Parabola {
-    /// The parabola nearest to (s, value) samples, at least three with different s.
+    /// Fits a parabola to (s, value) samples, of which at least three must have different s.
     ///
-    /// Normal equations in s scaled to 1, whose condition is about 500: no digit that noise leaves is lost.
+    /// Method: normal equations in s scaled to 1, whose condition is about 500, so that no digit above the
+    /// noise is lost.
     pub fn fit(samples: impl Iterator<Item = (f64, f64)> + Clone) -> Self {
         let scale = samples.clone().map(|(s, _)| s.abs()).fold(0.0, f64::max);
         let (mut m, mut r) = ([0.0; 5], [0.0; 3]);
@@ -33,13 +34,13 @@ impl Parabola {
         Self([unknown(0), unknown(1), unknown(2)])
     }
 
-    /// The value at s.
+    /// Returns the value at s.
     pub fn value(&self, s: f64) -> f64 {
         let [a, b, c] = self.0;
         a + s * (b + s * c)
     }
 
-    /// The slope at s = 0.
+    /// Returns the slope at s = 0.
     pub fn slope(&self) -> f64 {
         self.0[1]
     }

@@ -1,29 +1,30 @@
-//! Cubic smoothing splines of one coordinate over arc length.
+//! Fits cubic smoothing splines to one coordinate over arc length.
 //!
-//! f minimises Σ wᵢ (yᵢ − f(sᵢ))² + Λ ∫ f″² ds, by Reinsch's band system [Reinsch1967] (R + Λ Qᵀ D Q) γ = Qᵀ y,
-//! f = y − Λ D Q γ, D = diag(1/wᵢ), γ the second derivatives. With wᵢ the local spacing the sum is the integral
-//! ∫ (y − f)² ds, and a wave of length λ keeps the share 1/(1 + Λ (2π/λ)⁴) of its height, whatever the spacing.
+//! f minimises Σ wᵢ (yᵢ − f(sᵢ))² + Λ ∫ f″² ds. Reinsch's band system [Reinsch1967] is (R + Λ Qᵀ D Q) γ = Qᵀ
+//! y, f = y − Λ D Q γ, with D = diag(1/wᵢ) and γ the second derivatives. If wᵢ is the local spacing, the sum
+//! is the integral ∫ (y − f)² ds, and a wave of length λ keeps the share 1/(1 + Λ (2π/λ)⁴) of its height,
+//! whatever the spacing.
 
 use crate::numerics::twice::Twice;
 
-/// The penalty Λ \[mm⁴\] that halves a wave of this length \[mm\].
+/// Returns the penalty Λ \[mm⁴\] that halves a wave of this length \[mm\].
 pub(in crate::measured) fn penalty(cutoff_wavelength: f64) -> f64 {
     (cutoff_wavelength / std::f64::consts::TAU).powi(4)
 }
 
-/// The factored band system for given knots; one for x and z together.
+/// The factored band system for given knots; one serves for x and z.
 ///
-/// In twice the working precision: the condition grows as (cut-off wavelength / spacing)⁴, 1e13 for 5 mm over
-/// points every 0.5 µm. Cost: linear, about 0.5 µs a knot.
+/// It is kept in twice the working precision, as the condition grows as (cut-off wavelength / spacing)⁴: 1e13
+/// for 5 mm over points every 0.5 µm. Cost: linear, about 0.5 µs a knot.
 pub(in crate::measured) struct Smoother<'a> {
     steps: &'a [f64],
     slack: &'a [f64],
     penalty: f64,
-    /// (d, l₁, l₂) of LDLᵀ for each inner knot.
+    /// Entries \[d, l₁, l₂\] of LDLᵀ for each inner knot.
     factor: Vec<[Twice; 3]>,
 }
 
-/// A natural cubic spline at its knots.
+/// A natural cubic spline, given at its knots.
 #[derive(Debug, Clone)]
 pub(in crate::measured) struct Fit {
     /// Values f at the knots.
@@ -33,8 +34,8 @@ pub(in crate::measured) struct Fit {
 }
 
 impl<'a> Smoother<'a> {
-    /// For knots `steps` \[mm\] apart, all positive, and 1/wᵢ = `slack` for each: 0 pins the spline to the value
-    /// there. A penalty of 0 interpolates.
+    /// Factors the system for knots `steps` \[mm\] apart, all positive. `slack` is 1/wᵢ for each knot; 0
+    /// makes the spline pass through the value there. A penalty of 0 interpolates.
     pub fn new(steps: &'a [f64], slack: &'a [f64], penalty: f64) -> Self {
         let inner = steps.len().saturating_sub(1);
         let mut smoother = Self { steps, slack, penalty, factor: Vec::with_capacity(inner) };
@@ -45,7 +46,7 @@ impl<'a> Smoother<'a> {
         smoother
     }
 
-    /// The three entries of column j of Q, for knots j, j + 1, j + 2.
+    /// Returns the three entries of column j of Q, for knots j, j + 1, j + 2.
     fn second_difference(&self, j: usize) -> [Twice; 3] {
         let (a, b) = (Twice::from(1.0) / self.steps[j], Twice::from(1.0) / self.steps[j + 1]);
         [a, -(a + b), b]
@@ -79,12 +80,13 @@ impl<'a> Smoother<'a> {
         [d, l1, l2]
     }
 
-    /// The spline of these values, natural at its ends.
+    /// Fits the spline to values, with natural ends.
     pub fn fit(&self, y: &[f64]) -> Fit {
         self.fit_between(y, [Twice::ZERO; 2])
     }
 
-    /// The spline of these values with given second derivatives at its ends; an interpolation, where they are not 0.
+    /// Fits the spline to values, with given second derivatives at its ends; if these are not 0, it must be
+    /// an interpolation.
     pub fn fit_between(&self, y: &[f64], ends: [Twice; 2]) -> Fit {
         let n = y.len();
         let mut second = vec![Twice::ZERO; n];
@@ -129,14 +131,14 @@ impl<'a> Smoother<'a> {
 }
 
 impl Fit {
-    /// Coefficients of the cubic from knot k to k + 1 about knot k.
+    /// Returns the coefficients of the cubic from knot k to k + 1, about knot k.
     pub fn cubic(&self, k: usize, step: f64) -> [f64; 4] {
         let (f, g) = (&self.value, &self.second);
         let slope = (f[k + 1] - f[k]) / step - (g[k] * 2.0 + g[k + 1]) * step / 6.0;
         [f[k].into(), slope.into(), (g[k] / 2.0).into(), ((g[k + 1] - g[k]) / step / 6.0).into()]
     }
 
-    /// The derivative at knot k.
+    /// Returns the derivative at knot k.
     pub fn slope(&self, k: usize, steps: &[f64]) -> f64 {
         if k < steps.len() {
             return self.cubic(k, steps[k])[1];

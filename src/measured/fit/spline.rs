@@ -1,4 +1,4 @@
-//! Parametric cubic splines through or near points, in pieces between corners.
+//! Fits parametric cubic splines through or near points, in pieces between corners.
 
 use super::parabola::Parabola;
 use super::smoothing::{Fit, Smoother, penalty};
@@ -7,27 +7,27 @@ use crate::measured::clean::checks::distance;
 use crate::measured::read::points::Point;
 use crate::profile::{Polynomial, Segment, Shape, Station};
 
-/// Distance of a smoothed curve's knots as a share of the cut-off wavelength: a cubic through them is off by
-/// (2π/10)⁴/384 of what there is at that wavelength, 0.2 nm on a 13 mm radius for 5 mm.
+/// Distance of a smoothed curve's knots, as a share of the cut-off wavelength: a cubic through them is off by
+/// (2π/10)⁴/384 of the amplitude at that wavelength, 0.2 nm on a 13 mm radius for 5 mm.
 const KNOTS: f64 = 0.1;
 
-/// One piece: C² over its own arc length.
+/// One piece of the curve: C² over its own arc length.
 ///
 /// An interpolation has natural ends (curvature 0). A natural end of a smoothing spline would be off by about
-/// κ (λ_c/2π)², 30 µm on a 20 mm radius at λ_c = 5 mm; so it is fitted beyond its ends to points on the parabolas
-/// that fit its last λ_c best, and cut off there.
+/// κ (λ_c/2π)², 30 µm on a 20 mm radius at λ_c = 5 mm. So a smoothing spline is fitted beyond its ends too,
+/// to points on the parabolas that best fit its last λ_c, and is cut off there.
 #[derive(Debug, Clone)]
 pub(in crate::measured) struct Piece {
-    /// Index of its first point among all.
+    /// Index of the first point of the piece among all points.
     pub from: usize,
     steps: Vec<f64>,
     x: Fit,
     z: Fit,
 }
 
-/// Pieces between `corners` (indices of points); a cut-off wavelength of `None` interpolates.
+/// Fits the pieces between `corners` (indices of points); a cut-off wavelength of `None` interpolates.
 ///
-/// At a corner both pieces end in one point: the mean of where each would end alone.
+/// At a corner both pieces end in one point: the mean of the points where each would end alone.
 pub(in crate::measured) fn pieces(points: &[Point], corners: &[usize], cutoff: Option<f64>) -> Vec<Piece> {
     let mut ends = vec![0];
     ends.extend(corners);
@@ -57,10 +57,12 @@ fn chords(at: impl Iterator<Item = [f64; 2]>) -> Vec<f64> {
     at.windows(2).map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1])).collect()
 }
 
-/// Points beyond the first of some points, nearest first: on the parabola that fits their first `reach` \[mm\]
-/// best, as far apart and over as long a path as they are. None where too few points tell a curvature.
+/// Returns points beyond the first of some points, nearest first: on the parabola that best fits their first
+/// `reach` \[mm\], with the same spacing and over the same length. Returns none if there are too few points
+/// for a curvature.
 fn beyond(points: impl Iterator<Item = Point>, reach: f64) -> Vec<Point> {
-    /// A parabola has three unknowns; twice as many points keep noise out of its curvature.
+    /// Fewest points for the parabola: it has three unknowns, and twice as many points keep noise out of its
+    /// curvature.
     const LEAST: usize = 6;
     let mut near: Vec<Point> = Vec::new();
     let mut path: Vec<f64> = Vec::new();
@@ -89,10 +91,10 @@ fn beyond(points: impl Iterator<Item = Point>, reach: f64) -> Vec<Point> {
 }
 
 impl Piece {
-    /// Two passes: over the chords of the points, whose noise makes them too long, then over those of the first
-    /// pass. Where the first pass brings two neighbours within a tenth of their chord, noise as large as the distance of
-    /// the points, its own chords measure nothing and it is taken as it is: smoothed over chords that are too long, so
-    /// with a cut-off wavelength that is too short by as much.
+    /// Fits the piece in two passes: over the chords of the points, which noise makes too long, then over the
+    /// chords of the first pass. If noise is as large as the distance of the points, the first pass brings
+    /// two neighbours within a tenth of their chord, and its own chords measure nothing. Then the first pass
+    /// is the result: its chords are too long, so its cut-off wavelength is too short by as much.
     fn new(
         points: &[Point],
         [from, to]: [usize; 2],
@@ -154,22 +156,23 @@ impl Piece {
         Self { from, x, z, steps }
     }
 
-    /// Number of knots.
+    /// Returns the number of knots.
     pub fn knots(&self) -> usize {
         self.steps.len() + 1
     }
 
-    /// Point and tangent at a knot.
+    /// Returns the point and tangent at a knot.
     pub fn station(&self, k: usize) -> Station {
         let (dx, dz) = (self.x.slope(k, &self.steps), self.z.slope(k, &self.steps));
         let norm = dx.hypot(dz);
         Station { x: self.x.value[k].into(), z: self.z.value[k].into(), cos: dx / norm, sin: dz / norm }
     }
 
-    /// One segment per span, its parameter the arc length from its start.
+    /// Returns one segment per span; its parameter is the arc length from its start.
     ///
-    /// A smoothed curve has nothing shorter than its cut-off wavelength, and is taken over to knots [`KNOTS`] of it
-    /// apart: thousands of points of an instrument would cost every later step their number.
+    /// A smoothed curve has no detail shorter than its cut-off wavelength, so that it is moved to knots
+    /// [`KNOTS`] of that wavelength apart: thousands of an instrument's points would slow down every later
+    /// step.
     pub fn segments(&self, cutoff: Option<f64>) -> Result<Vec<Segment>> {
         let thinned = cutoff.map(|wavelength| self.thinned(KNOTS * wavelength));
         let Self { steps, x, z, .. } = thinned.as_ref().unwrap_or(self);
@@ -180,7 +183,8 @@ impl Piece {
         steps.iter().enumerate().map(span).collect()
     }
 
-    /// The spline through the values at knots at least `apart` \[mm\] apart, with the same curvature at both ends.
+    /// Returns the spline through the values at knots at least `apart` \[mm\] apart, with the same curvature
+    /// at both ends.
     fn thinned(&self, apart: f64) -> Self {
         let (mut kept, mut steps, mut walked) = (vec![0], Vec::new(), 0.0);
         for (k, step) in self.steps.iter().enumerate() {

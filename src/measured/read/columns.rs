@@ -1,4 +1,4 @@
-//! Files of columns: GENSYS, plain text, CSV.
+//! Reads files of columns: GENSYS, plain text, CSV.
 //!
 //! | format | axes | source |
 //! |---|---|---|
@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::measured::Format;
 use crate::measured::options::Column;
 
-/// Two columns, y towards the track centre and z down, in mm.
+/// Reads two columns, y towards the track centre and z down, in mm.
 ///
 /// # Errors
 /// A row that is not two numbers, with its line.
@@ -27,12 +27,12 @@ pub(in crate::measured) fn read_gensys(text: &str) -> Result<Points> {
     points.finish(text)
 }
 
-/// Two of the columns of a table, by number or by the name in its first row.
+/// Reads two columns of a table, by number or by the name in its first row.
 ///
 /// `#`, `!`, `%` and `//` begin comments. Without `wanted` the table must have two columns.
 ///
 /// # Errors
-/// Columns that are not there, rows without a number there, each with its line.
+/// A wanted column that the table does not have, or a row without a number in it, with the line.
 pub(in crate::measured) fn read_table(
     text: &str,
     format: Format,

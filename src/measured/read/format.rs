@@ -1,4 +1,4 @@
-//! The file formats, and which one a file has.
+//! The file formats of measured profiles, and how a file's format is found.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -29,10 +29,10 @@ impl Format {
     /// All formats.
     pub const ALL: [Self; 5] = [Self::MiniProf, Self::Simpack, Self::Gensys, Self::Text, Self::Csv];
 
-    /// The format that a file's extension stands for, in upper or lower case.
+    /// Returns the format that a file's extension stands for, in upper or lower case.
     ///
     /// # Errors
-    /// An extension that no format claims; the message lists `format = …`.
+    /// An extension of no format; the message lists `format = …`.
     pub fn of_file(name: &str) -> Result<Self> {
         let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension).to_lowercase();
         let known = Self::ALL.into_iter().find(|format| format.extensions().contains(&extension.as_str()));
@@ -45,7 +45,8 @@ impl Format {
         })
     }
 
-    /// The body that a file's extension stands for, in upper or lower case; `None` for those of either body.
+    /// Returns the body that a file's extension stands for, in upper or lower case; `None` for an extension
+    /// of either body.
     pub fn body_of_file(name: &str) -> Option<Side> {
         let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension).to_lowercase();
         match extension.as_str() {
@@ -55,7 +56,7 @@ impl Format {
         }
     }
 
-    /// Extensions, in lower case.
+    /// Returns the extensions of the format, in lower case.
     pub fn extensions(self) -> &'static [&'static str] {
         match self {
             Self::MiniProf => &["ban", "whl", "mpt"],
@@ -66,7 +67,7 @@ impl Format {
         }
     }
 
-    /// The value of `format = …`.
+    /// Returns the value of `format = …`.
     pub fn name(self) -> &'static str {
         match self {
             Self::MiniProf => "miniprof",
@@ -77,7 +78,7 @@ impl Format {
         }
     }
 
-    /// Its name in a sentence.
+    /// Returns the name of the format in a sentence.
     pub fn title(self) -> &'static str {
         match self {
             Self::MiniProf => "MiniProf",
@@ -88,10 +89,10 @@ impl Format {
         }
     }
 
-    /// What a file of this format says; `columns` for those with free columns.
+    /// Reads a file of this format; `columns` is for the formats with free columns.
     ///
     /// # Errors
-    /// Whatever is not of the format, with its line; at most [`super::points::MOST_POINTS`] points.
+    /// Anything that is not of the format, with its line; more than [`super::points::MOST_POINTS`] points.
     pub fn read(self, bytes: &[u8], columns: Option<&[Column; 2]>) -> Result<Points> {
         let text = scan::text(bytes)?;
         match self {

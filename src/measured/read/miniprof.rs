@@ -1,8 +1,8 @@
-//! MiniProf files (Greenwood Engineering): `.ban` rails, `.whl` wheels, `.mpt` several sections.
+//! Reads MiniProf files (Greenwood Engineering): `.ban` rails, `.whl` wheels, `.mpt` several sections.
 //!
-//! Coordinates are mm; the points are moved by `Xoffset`, `Yoffset`. Axes (`docs/measured-files.md`): of wheels X goes from
-//! the flange back to the field side and Y towards the flange tip, so downwards; of rails neither sign is defined, though
-//! most files have the foot at negative Y.
+//! Coordinates are mm; the points are moved by `Xoffset`, `Yoffset`. Axes (`docs/measured-files.md`): for
+//! wheels X goes from the flange back to the field side and Y towards the flange tip, so downwards. For rails
+//! neither sign is defined, though most files have the foot at negative Y.
 //!
 //! | style | told by | header | points |
 //! |---|---|---|---|
@@ -27,17 +27,17 @@ enum Style {
     Sections,
 }
 
-/// What the header in force says.
+/// What the present header says.
 #[derive(Debug, Clone)]
 struct Header {
     /// Indices of X and Y among the columns.
     columns: [usize; 2],
-    /// How many columns `ColumnDef` names.
+    /// Number of columns that `ColumnDef` names.
     width: usize,
     offset: [f64; 2],
     /// `XYPoints` and its line.
     count: Option<(usize, usize)>,
-    /// Design elements by their k, with their lines.
+    /// Design elements as (k, line, shape).
     elements: Vec<(usize, usize, ElementShape)>,
     /// `MPDC` and its line.
     element_count: Option<(usize, usize)>,
@@ -49,14 +49,14 @@ struct Reader {
     points: Points,
     header: Header,
     in_data: bool,
-    /// Index of the first point under the header in force.
+    /// Index of the first point under the present header.
     from: usize,
 }
 
-/// A MiniProf file of any of the three styles.
+/// Reads a MiniProf file of any of the three styles.
 ///
 /// # Errors
-/// With its line: a row without two numbers, a bad `ColumnDef`, offset or element, a key after points.
+/// A row without two numbers, a bad `ColumnDef`, offset or element, or a key after points, with its line.
 pub(in crate::measured) fn read(text: &str) -> Result<Points> {
     let style = style(text);
     let old_data = if style == Style::Old { first_old_row(text) } else { 0 };
@@ -81,8 +81,8 @@ fn style(text: &str) -> Style {
     }
 }
 
-/// Line number where the points of an old file begin: at the first row of numbers after a blank line; without
-/// one, at the first row of numbers that no `(Sd/Sh/qR)` follows.
+/// Returns the line number where the points of an old file begin: at the first row of numbers after a blank
+/// line. Without a blank line: at the first row of numbers that no `(Sd/Sh/qR)` follows.
 fn first_old_row(text: &str) -> usize {
     let rows: Vec<Line> = lines(text).collect();
     let numeric = |k: usize| {
@@ -102,7 +102,7 @@ impl Reader {
             return self.section(line);
         }
         if line.text.is_empty() {
-            // `.mpt` names its points; elsewhere the blank line begins them.
+            // `.mpt` names its points; in other files the blank line begins them.
             self.in_data |= self.style != Style::Sections && line.number > 1;
             return Ok(());
         }
@@ -126,7 +126,7 @@ impl Reader {
         self.points.push(line, point, 1.0)
     }
 
-    /// Points that no blank line precedes.
+    /// Begins the points if no blank line precedes them.
     fn begin_data(&mut self, line: Line) -> Result<()> {
         let fields = line.without_comment(&COMMENTS).fields()?;
         if fields.len() < 2 || !fields[..2].iter().all(|field| is_number(field)) {
@@ -155,7 +155,7 @@ impl Reader {
         Ok(())
     }
 
-    /// Moves the points by the header's offset, keeps its elements, compares its counts.
+    /// Ends a header: moves the points by its offset, keeps its elements, compares its counts.
     fn close_header(&mut self) -> Result<()> {
         let header = std::mem::take(&mut self.header);
         for point in &mut self.points.at[self.from..] {
@@ -230,7 +230,7 @@ impl Header {
         Ok(())
     }
 
-    /// X and Y of a row; what follows the columns' numbers is a comment.
+    /// Returns X and Y of a row; text after the columns' numbers is a comment.
     fn point(&self, line: Line) -> Result<[f64; 2]> {
         let row = line.without_comment(&COMMENTS);
         let fields = row.fields()?;
@@ -251,7 +251,7 @@ impl Header {
     }
 }
 
-/// A number that may be left out.
+/// Reads a number that may be left out.
 fn optional(line: Line, value: &str) -> Result<f64> {
     let value = Line { text: value, ..line }.without_comment(&COMMENTS).text;
     if value.is_empty() { Ok(0.0) } else { line.number(value, "offset") }
@@ -266,7 +266,7 @@ fn count(line: Line, value: &str) -> Result<Option<(usize, usize)>> {
     Ok(Some((count, line.number)))
 }
 
-/// `A x y radius from to` in degrees, or `L x y x y`.
+/// Reads `A x y radius from to` in degrees, or `L x y x y`.
 fn element(line: Line, value: &str) -> Result<ElementShape> {
     let fields = Line { text: value, ..line }.fields()?;
     let kind = fields.first().copied().unwrap_or_default().to_uppercase();

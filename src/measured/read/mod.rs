@@ -1,4 +1,5 @@
-//! Bytes of an instrument's file → points, design elements, and what is odd about the file; one reader a format.
+//! Reads an instrument's file: bytes become points, design elements and notes on oddities. There is one
+//! reader a format.
 
 mod columns;
 pub mod format;

@@ -1,13 +1,13 @@
-//! What a file says: points, design elements, and what is odd about it.
+//! The content of a file: points, design elements, and notes on oddities.
 
 use serde::Serialize;
 
 use super::scan::{Line, last_place};
-use crate::error::{Error, Result};
+use crate::error::{Error, Kind, Result};
 use crate::measured::Format;
 use crate::profile::Side;
 
-/// Most points of one file. A profile of 200 mm would have them every 0.2 µm; more is not a profile.
+/// Most points of one file. A profile of 200 mm would have one every 0.2 µm; more is not a profile.
 pub const MOST_POINTS: usize = 1_000_000;
 /// Most design elements of one file.
 pub const MOST_ELEMENTS: usize = 10_000;
@@ -15,25 +15,25 @@ pub const MOST_ELEMENTS: usize = 10_000;
 /// One measured point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
-    /// Lateral coordinate: as the file has it, and \[mm\] in profile axes once placed.
+    /// Lateral coordinate: as in the file; \[mm\] in profile axes once placed.
     pub x: f64,
-    /// Height, likewise.
+    /// Height: as in the file; \[mm\] in profile axes once placed.
     pub z: f64,
     /// Relative weight in a smoothing fit, 1 unless the file says otherwise; typical 0.1–10.
     pub weight: f64,
-    /// Its number in the file, from 1.
+    /// Number of the point in the file, from 1.
     pub number: usize,
-    /// Its line in the file, from 1.
+    /// Line of the point in the file, from 1.
     pub line: usize,
 }
 
 impl Point {
-    /// (x, z) as an array.
+    /// Returns the array \[x, z\].
     pub fn xz(&self) -> [f64; 2] {
         [self.x, self.z]
     }
 
-    /// "point 12 (line 40)".
+    /// Returns the place in words: "point 12 (line 40)".
     pub fn place(&self) -> String {
         format!("point {} (line {})", self.number, self.line)
     }
@@ -42,9 +42,9 @@ impl Point {
 /// One element of a design profile (MiniProf `MPDk=`), in the file's own axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Element {
-    /// Its shape.
+    /// Shape of the element.
     pub shape: ElementShape,
-    /// Its line in the file, from 1.
+    /// Line of the element in the file, from 1.
     pub line: usize,
 }
 
@@ -69,31 +69,31 @@ pub enum ElementShape {
     },
 }
 
-/// Something odd that was read all the same.
+/// Something odd in a file that was read all the same.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Note {
     /// Line in the file, from 1.
     pub line: usize,
-    /// What is odd and what was done.
+    /// What is odd and what was done about it.
     pub text: String,
 }
 
-/// The content of a file: in the order, the unit and the axes of the file.
+/// The content of a file, in its order, its unit and its axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Points {
-    /// The file's format.
+    /// Format of the file.
     pub format: Format,
-    /// Which body the file says it is of.
+    /// Body that the file names; `None` if it names none.
     pub body: Option<Side>,
-    /// Unit of the coordinates \[mm\], where the format or the file states it.
+    /// Unit of the coordinates \[mm\], if the format or the file states it.
     pub unit: Option<f64>,
-    /// The points.
+    /// The measured points.
     pub at: Vec<Point>,
     /// Index of the first point of each section; one section unless the format has several.
     pub sections: Vec<usize>,
     /// Design elements, in the file's numbering.
     pub elements: Vec<Element>,
-    /// What is odd.
+    /// Notes on oddities.
     pub notes: Vec<Note>,
 }
 
@@ -126,7 +126,8 @@ impl Points {
     pub(in crate::measured) fn push_element(&mut self, line: Line, shape: ElementShape) -> Result<()> {
         if self.elements.len() >= MOST_ELEMENTS {
             let expected = format!("{MOST_ELEMENTS} elements at most");
-            return Err(line.error("one more element", expected, "give the points instead"));
+            let error = line.error("one more element", expected, "give the points instead");
+            return Err(error.of_kind(Kind::Limit));
         }
         self.elements.push(Element { shape, line: line.number });
         Ok(())
@@ -136,7 +137,7 @@ impl Points {
         self.notes.push(Note { line, text: text.into() });
     }
 
-    /// The whole, if it has enough to be a profile.
+    /// Ends the reading; an error if there are not enough points for a profile.
     pub(in crate::measured) fn finish(self, text: &str) -> Result<Self> {
         if self.at.len() < 2 && self.elements.is_empty() {
             let found = format!("{} points up to the end of the file", self.at.len());
@@ -150,7 +151,7 @@ impl Points {
         Ok(self)
     }
 
-    /// One section alone, counted from 1.
+    /// Keeps one section only, counted from 1.
     ///
     /// # Errors
     /// A section that the file does not have.

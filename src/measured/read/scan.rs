@@ -1,10 +1,11 @@
-//! Bytes of an instrument's file → numbered lines → fields → numbers: the one scanner under all readers.
+//! Scans an instrument's file: bytes become numbered lines, fields and numbers. All readers use this scanner.
 
 use std::borrow::Cow;
 
 use crate::error::{Error, Result};
 
-/// Largest file that is read \[bytes\]: a million points at 64 characters a line. Larger ones are not profiles.
+/// Largest file that is read \[bytes\]: a million points at 64 characters a line. Larger files are not
+/// profiles.
 pub const LARGEST_FILE: usize = 64 << 20;
 
 /// One line of a file, trimmed, numbered from 1.
@@ -14,11 +15,11 @@ pub(in crate::measured) struct Line<'a> {
     pub text: &'a str,
 }
 
-/// The text of a file: UTF-8, UTF-16 with its byte order mark, otherwise Latin-1, which instruments of the
-/// nineties write (`Chars=Win`); bytes and line numbers keep their places.
+/// Decodes the text of a file: UTF-8, UTF-16 with its byte order mark, otherwise Latin-1, which instruments
+/// of the nineties write (`Chars=Win`). Line numbers keep their places.
 ///
 /// # Errors
-/// A file over [`LARGEST_FILE`]; zero bytes, so something that is not text; broken UTF-16.
+/// A file over [`LARGEST_FILE`]; zero bytes, which mean that it is not text; broken UTF-16.
 pub(in crate::measured) fn text(bytes: &[u8]) -> Result<Cow<'_, str>> {
     if bytes.len() > LARGEST_FILE {
         let (found, expected) = (format!("{} bytes", bytes.len()), format!("{LARGEST_FILE} bytes at most"));
@@ -55,7 +56,8 @@ fn utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Result<String> {
     Ok(text)
 }
 
-/// The lines of a text: ends \n, \r\n, or \r where there is no \n; an end-of-file mark (Ctrl-Z) is no text.
+/// Splits a text into lines that end with \n, \r\n, or \r if there is no \n; an end-of-file mark (Ctrl-Z) is
+/// dropped.
 pub(in crate::measured) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     let end = if text.contains('\n') { '\n' } else { '\r' };
     text.split(end).enumerate().map(|(index, text)| Line {
@@ -64,30 +66,31 @@ pub(in crate::measured) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     })
 }
 
-/// The place of what is missing from a text as a whole.
+/// Returns the last line as the place of what is missing from a text.
 pub(in crate::measured) fn last_place(text: &str) -> String {
     format!("line {}", lines(text).count())
 }
 
 impl<'a> Line<'a> {
-    /// The same line up to the first of some comment marks.
+    /// Returns the line up to the first of some comment marks.
     pub fn without_comment(self, marks: &[char]) -> Self {
         let text = self.text.find(marks).map_or(self.text, |at| self.text[..at].trim_end());
         Self { text, ..self }
     }
 
-    /// (key, value) of `key = value`, where the key begins with a letter; quotes around the value are dropped.
+    /// Returns (key, value) of `key = value`, if the key begins with a letter; quotes around the value are
+    /// dropped.
     pub fn key_value(self) -> Option<(&'a str, &'a str)> {
         let (key, value) = self.text.split_once('=')?;
         let key = key.trim();
         key.starts_with(|c: char| c.is_alphabetic()).then(|| (key, unquoted(value.trim())))
     }
 
-    /// The fields of a row. Separators are semicolons, else commas, else white space; commas are decimal where
-    /// semicolons separate, or tabs do and there is no decimal point.
+    /// Splits a row into fields. Separators are semicolons, else commas, else white space. Commas are decimal
+    /// if semicolons separate, or if tabs do and there is no decimal point.
     ///
     /// # Errors
-    /// "1,5 2,5": whether commas separate or are decimal cannot be told.
+    /// A row like "1,5 2,5", whose commas may separate or be decimal.
     pub fn fields(self) -> Result<Vec<&'a str>> {
         if self.text.contains(';') {
             let mut fields: Vec<_> = self.text.split(';').map(|f| unquoted(f.trim())).collect();
@@ -116,7 +119,8 @@ impl<'a> Line<'a> {
         Ok(fields)
     }
 
-    /// The number in a field: decimal point or comma, exponent with e or Fortran's d; `what` names it.
+    /// Reads the number in a field: decimal point or comma, exponent with e or Fortran's d; `what` names it
+    /// in an error.
     ///
     /// # Errors
     /// Anything else, infinities and NaN included.
@@ -126,13 +130,13 @@ impl<'a> Line<'a> {
         })
     }
 
-    /// An error at this line; `found` is clipped to a readable length.
+    /// Makes an error at this line; `found` is clipped to a readable length.
     pub fn error(self, found: impl AsRef<str>, expected: impl Into<String>, advice: &str) -> Error {
         Error::new(format!("line {}", self.number), clipped(found.as_ref()), expected, advice)
     }
 }
 
-/// Whether a field is a number as [`Line::number`] reads it.
+/// Returns whether a field is a number that [`Line::number`] reads.
 pub(in crate::measured) fn is_number(field: &str) -> bool {
     number(field).is_some()
 }
@@ -142,7 +146,7 @@ fn number(field: &str) -> Option<f64> {
     let value: f64 = if plain {
         field.parse().ok()?
     } else {
-        // `parse` would also take "inf" and "nan".
+        // `parse` would take "inf" and "nan" too.
         if !field.bytes().all(|b| b.is_ascii_digit() || b"+-.,eEdD".contains(&b)) {
             return None;
         }
@@ -151,14 +155,14 @@ fn number(field: &str) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// A text without one pair of quotes around it.
+/// Returns a text without one pair of quotes around it.
 pub(in crate::measured) fn unquoted(text: &str) -> &str {
     let without = |mark| text.strip_prefix(mark).and_then(|rest: &str| rest.strip_suffix(mark));
     without('"').or_else(|| without('\'')).unwrap_or(text).trim()
 }
 
-/// At most two hundred characters of a text, for messages: any line of a profile's file, and not all of a file without
-/// line ends.
+/// Returns at most two hundred characters of a text, for messages: any line of a profile's file is shorter, a
+/// file without line ends is not.
 pub(in crate::measured) fn clipped(text: &str) -> String {
     const LONGEST: usize = 200;
     let mut out: String = text.chars().take(LONGEST).collect();

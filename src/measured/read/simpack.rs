@@ -1,4 +1,4 @@
-//! SIMPACK profiles: `.prr` rails, `.prw` wheels.
+//! Reads SIMPACK profiles: `.prr` rails, `.prw` wheels.
 //!
 //! A `header` with the body's type (0 rail, 1 wheel), a `spline` with keys that change the points, and the
 //! points (y, z, optional weight), in units of `units.len.f` per metre. Axes: y to the right, z down (comments
@@ -24,7 +24,7 @@ use crate::measured::Format;
 use crate::measured::options::Unit;
 use crate::profile::Side;
 
-/// Keys of the spline that are read, each once at most; all but the first act.
+/// Keys of the spline that are read, each at most once; all but the first have an effect.
 const KEYS: [&str; 16] = [
     "approx.smooth",
     "point.dist.min",
@@ -45,7 +45,7 @@ const KEYS: [&str; 16] = [
 ];
 /// Keys that do not change the points.
 const SILENT: [&str; 5] = ["version", "file", "file.mtime", "comment", "type"];
-/// Keys of the header about measuring positions on the wheel; they do not change the points either.
+/// Beginning of the header's keys about measuring positions on the wheel, which do not change the points.
 const MEASURING: &str = "meas.pos.";
 
 #[derive(Debug, Default)]
@@ -53,12 +53,13 @@ struct Keys<'a> {
     values: BTreeMap<String, (Line<'a>, &'a str)>,
 }
 
-/// A SIMPACK file, its keys applied: y to the right, z down, mm.
+/// Reads a SIMPACK file and applies its keys: y to the right, z down, mm.
 ///
 /// # Errors
-/// With its line: unknown sections, keys outside one, values and points that are not numbers, a missing end.
+/// Unknown sections, keys outside a section, values and points that are not numbers, or a missing end, with
+/// its line.
 pub(in crate::measured) fn read(text: &str) -> Result<Points> {
-    // After step 7.
+    // The unit after step 7.
     let mut points = Points::new(Format::Simpack, Some(1.0));
     let mut keys = Keys::default();
     let mut open: Vec<&str> = Vec::new();
@@ -89,7 +90,8 @@ pub(in crate::measured) fn read(text: &str) -> Result<Points> {
     points.finish(text)
 }
 
-/// Up to the first `!` outside quotes; files of CONTACT also have lines that begin with `%`, `#` or `"`.
+/// Returns the line up to the first `!` outside quotes; files of CONTACT also have lines that begin with `%`,
+/// `#` or `"`.
 fn without_comment(line: Line) -> Line {
     if line.text.starts_with(['%', '#', '"']) {
         return Line { text: "", ..line };
@@ -171,7 +173,7 @@ impl<'a> Keys<'a> {
         }
     }
 
-    /// mm per unit of length.
+    /// Returns the length of the unit \[mm\].
     fn length_unit(&self) -> Result<f64> {
         let per_metre = self.number("units.len.f", 1.0)?;
         let stated = self.values.get("units.len.f");
@@ -184,7 +186,7 @@ impl<'a> Keys<'a> {
         let unit = Unit::named(name)
             .ok_or_else(|| line.error(line.text, "m, cm, mm, um, in or ft", "correct the unit"))?
             .millimetres();
-        // A factor rounded to six figures still names the unit.
+        // Largest relative error of a factor that still names the unit: six figures are enough.
         const ROUNDED: f64 = 1e-5;
         if stated.is_some() && (unit * per_metre - 1e3).abs() > ROUNDED * 1e3 {
             let found = format!("units.len = {name} with units.len.f = {per_metre}");
@@ -219,7 +221,7 @@ impl<'a> Keys<'a> {
         self.turn_and_scale(points)
     }
 
-    /// Notes, at the first of the keys that begin so, how many points they dropped.
+    /// Notes how many points the keys that begin with `keys` dropped, at the line of the first of them.
     fn note_dropped(&self, points: &mut Points, before: usize, keys: &str) {
         let dropped = before - points.at.len();
         let of_keys = self.values.iter().filter(|(key, _)| key.starts_with(keys));
@@ -231,7 +233,7 @@ impl<'a> Keys<'a> {
         }
     }
 
-    /// Rotation \[rad\].
+    /// Returns the rotation \[rad\].
     fn angle(&self) -> Result<f64> {
         let factor = self.number("units.ang.f", 1.0)?;
         let degrees = self.values.get("units.ang").is_some_and(|(_, unit)| unit.starts_with("deg"));

@@ -1,57 +1,62 @@
-//! The circles that the points of a wheel's profile describe about the axle, in the tangent plane of a skewed placement.
+//! The circles that the points of a wheel's profile describe about the axle, seen in the tangent plane of a
+//! skewed placement.
 
 use crate::placement::Placement;
 use crate::profile::Section;
 
-/// Farthest a place is looked for from the midplane, as tan(v/2): |η′| = 0.65 ρ. A tilted wheel is taken to end at 0.7 ρ.
+/// Farthest place from the midplane that is looked at, as tan(v/2): |η′| = 0.65 ρ. A tilted wheel is taken to
+/// end at 0.7 ρ.
 pub(super) const FARTHEST: f64 = 0.369;
 
-/// Share of a range of η by which it is widened on either side.
+/// Share of a range of η by which that range is widened on either side.
 const MARGIN: f64 = 0.05;
 
-/// The wheel's circles in the tangent plane of a skewed placement.
+/// Places the circles of a wheel's profile points over the tangent plane of a skewed placement.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Turned<'a> {
     pub(super) section: &'a Section,
     /// R, the axle distance of C \[mm\].
     axle: f64,
-    /// Of θ.
+    /// sinθ.
     sin: f64,
+    /// cosθ.
     cos: f64,
-    /// Of χ.
+    /// sinχ, with χ the skew.
     pub(super) sin_skew: f64,
+    /// cosχ.
     cos_skew: f64,
 }
 
-/// The circle of one profile point.
+/// The circle of one profile point about the axle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Circle {
-    /// Profile abscissa and height in the wheel's contact frame \[mm\].
+    /// Profile abscissa in the wheel's contact frame \[mm\].
     p: f64,
+    /// Profile height in the wheel's contact frame \[mm\].
     pub(super) height: f64,
     /// Axle distance \[mm\].
     radius: f64,
 }
 
-/// A place over the tangent plane.
+/// A point of the tangent plane, \[mm\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Place {
     pub(super) xi: f64,
     pub(super) eta: f64,
 }
 
-/// Where the surface over one profile point is parallel to η.
+/// The place on the circle of a profile point where the surface is parallel to η.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Parallel {
     pub(super) circle: Circle,
-    /// tan(v/2) of its place on the circle.
+    /// tan(v/2) of the place on the circle.
     pub(super) t: f64,
-    /// dζ/dξ of the surface there.
+    /// dζ/dξ of the surface at the place.
     pub(super) slope: f64,
 }
 
 impl<'a> Turned<'a> {
-    /// Those of a placed pair.
+    /// Takes the frame and the skew of a placed pair.
     pub(super) fn new(placement: &'a Placement) -> Self {
         let section = &placement.wheel.section;
         let (sin_skew, cos_skew) = placement.skew.sin_cos();
@@ -59,7 +64,7 @@ impl<'a> Turned<'a> {
         Self { section, axle, sin: section.frame.sin, cos: section.frame.cos, sin_skew, cos_skew }
     }
 
-    /// The circle of the profile point at `p` of a piece.
+    /// Returns the circle of the profile point at abscissa `p` of a piece.
     pub(super) fn circle(&self, piece: usize, p: f64) -> Circle {
         self.circle_with(p, self.section.branches[self.section.pieces[piece].branch].height(p))
     }
@@ -68,13 +73,14 @@ impl<'a> Turned<'a> {
         Circle { p, height, radius: self.axle - p * self.sin - height * self.cos }
     }
 
-    /// The circle of a profile point, and t of its place that is parallel to η, or of the farthest one on that side.
+    /// Returns the circle of a profile point and t of its place that is parallel to η, or ±[`FARTHEST`] if
+    /// that place is farther.
     pub(super) fn parallel(&self, piece: usize, p: f64) -> (Circle, f64) {
         let Parallel { circle, t, .. } = self.parallel_with_slope(piece, p);
         (circle, t)
     }
 
-    /// The place of a profile point that is parallel to η, with the slope of the surface there.
+    /// Returns the place of a profile point that is parallel to η, with the slope of the surface there.
     pub(super) fn parallel_with_slope(&self, piece: usize, p: f64) -> Parallel {
         let tangent = self.section.branches[self.section.pieces[piece].branch].station(p);
         let sin_phi = tangent.sin * self.cos + tangent.cos * self.sin;
@@ -87,7 +93,8 @@ impl<'a> Turned<'a> {
         let far = FARTHEST.copysign(-constant * half);
         let t = if nearest.abs() <= FARTHEST { nearest } else { far };
         let share = 2.0 / (1.0 + t * t);
-        // The normal in the wheel's own directions: as in the midplane, and what the turn by v adds to that.
+        // The normal in the wheel's own directions: the one in the midplane, and what the turn by v adds to
+        // it.
         let lifted = cos_phi * share * t * t;
         let along = tangent.sin + lifted * self.sin;
         let across = cos_phi * share * t;
@@ -96,7 +103,7 @@ impl<'a> Turned<'a> {
         Parallel { circle: self.circle_with(p, tangent.z), t, slope }
     }
 
-    /// The place at t on a circle.
+    /// Returns the place at t on a circle.
     pub(super) fn place(&self, circle: &Circle, t: f64) -> Place {
         let share = 2.0 / (1.0 + t * t);
         let along = circle.p + circle.radius * share * t * t * self.sin;
@@ -107,51 +114,53 @@ impl<'a> Turned<'a> {
         }
     }
 
-    /// ζ of the wheel at t on a circle.
+    /// Returns ζ of the wheel at t on a circle \[mm\].
     pub(super) fn height(&self, circle: &Circle, t: f64) -> f64 {
         circle.height + circle.radius * 2.0 * t * t / (1.0 + t * t) * self.cos
     }
 
-    /// dζ/dξ along any circle.
+    /// Returns dζ/dξ along any circle at t.
     pub(super) fn slope(&self, t: f64) -> f64 {
         let (sin, cos) = (2.0 * t, 1.0 - t * t);
         sin * self.cos / (self.sin * self.cos_skew * sin - self.sin_skew * cos)
     }
 
-    /// dη/dξ along any circle.
+    /// Returns dη/dξ along any circle at t.
     pub(super) fn rim_slope(&self, t: f64) -> f64 {
         let (along, across) = (2.0 * t * self.sin, 1.0 - t * t);
         (along * self.sin_skew + across * self.cos_skew) / (along * self.cos_skew - across * self.sin_skew)
     }
 
-    /// Rounding of ξ and ζ \[mm\].
+    /// Returns the rounding of ξ and ζ \[mm\].
     pub(super) fn rounding(&self) -> f64 {
         64.0 * f64::EPSILON * self.axle
     }
 
-    /// t where a circle runs along η: there lines of constant ξ touch it.
+    /// Returns t where a circle is parallel to η: a line of constant ξ touches the circle there.
     pub(super) fn touching(&self) -> f64 {
         ((self.sin_skew / (self.sin * self.cos_skew)).atan() / 2.0).tan()
     }
 
-    /// Both t at which a circle passes a range of η, and a little more.
+    /// Returns both t at which a circle crosses the ends of a range of η, widened a little.
     pub(super) fn turns(&self, circle: &Circle, eta: [f64; 2]) -> [f64; 2] {
         let most = 2.0 * FARTHEST / (1.0 + FARTHEST * FARTHEST);
         let margin = MARGIN * (eta[1] - eta[0]);
         [eta[0] - margin, eta[1] + margin].map(|eta| {
-            // Without what the circle moves along the profile as it turns: the margin makes up for that.
+            // This leaves out how far the circle moves along the profile as it turns: the margin makes up for
+            // that.
             let sin = (eta - circle.p * self.sin_skew) / (self.cos_skew * circle.radius);
             let sin = sin.clamp(-most, most);
             sin / (1.0 + (1.0 - sin * sin).sqrt())
         })
     }
 
-    /// Whether lines of constant ξ leave and enter the wheel again over the left end (0) or right end (1) of a profile.
+    /// Returns whether lines of constant ξ leave the wheel over the left end (0) or right end (1) of its
+    /// profile and enter it again.
     pub(super) fn is_hollow(&self, end: usize) -> bool {
         if end == 0 { self.sin < 0.0 } else { self.sin > 0.0 }
     }
 
-    /// Both t at which the line of constant ξ meets a circle; NaN where it does not.
+    /// Returns both t at which the line of constant ξ meets a circle; NaN where it does not.
     pub(super) fn crossings(&self, circle: &Circle, xi: f64) -> [f64; 2] {
         let constant = circle.p * self.cos_skew - xi;
         let square = constant + 2.0 * circle.radius * self.sin * self.cos_skew;

@@ -1,26 +1,28 @@
-//! Where lines of constant ξ under a skewed wheel begin or cease to meet a patch in the same intervals.
+//! Finds the ξ at which the intervals of a patch under a skewed wheel begin, end, divide or join.
 
+use super::monotone::monotone;
 use crate::numerics::roots::{bracketed, last_where};
 use crate::patch::outline::Outline;
 
-/// Intervals of a monotone stretch in which it is searched what a valley outside the window shows of the patch inside: a part
-/// that the window leaves of it is missed if it begins and ends within one.
+/// Number of intervals of a monotone stretch in which the window's edge is searched, if the valley is outside
+/// the window: a part of the patch is missed if it begins and ends within one of them.
 const WINDOW_INTERVALS: usize = 64;
 
-/// Where the intervals of η may change \[mm\], in no order.
+/// Values of ξ at which the intervals of η may change \[mm\], in no order.
 #[derive(Debug, Default)]
 pub(in crate::patch) struct Events {
-    /// All of them.
+    /// All events.
     pub(in crate::patch) xi: Vec<f64>,
-    /// Those at which a valley or ridge inside the window passes s = δ …
+    /// Events at which s over a valley or ridge inside the window passes δ.
     pub(in crate::patch) tips: Vec<f64>,
-    /// … and those at which it is outside.
+    /// Events at which s over a valley or ridge outside the window makes the patch reach the window's edge,
+    /// or leave it.
     pub(in crate::patch) cuts: Vec<f64>,
-    /// Valleys, and ξ at which s over them may be least.
+    /// Pairs (valley, ξ) at which s over the valley may be least.
     pub(in crate::patch) turns: Vec<(usize, f64)>,
 }
 
-/// The events inside an interval of ξ, which is not to be empty.
+/// Finds the events inside a range of ξ, which must not be empty.
 pub(in crate::patch) fn events(outline: &mut Outline<'_>, range: [f64; 2]) -> Events {
     let mut events = Events::default();
     let approach = outline.slicer.approach();
@@ -31,13 +33,13 @@ pub(in crate::patch) fn events(outline: &mut Outline<'_>, range: [f64; 2]) -> Ev
         let Some(skewed) = &mut outline.slicer.skewed else { break };
         let is_valley = skewed.valleys.creases[crease].is_valley;
         for xi in skewed.valleys.creases[crease].xi {
-            // Above δ nothing begins or ends there.
+            // Above δ nothing begins or ends.
             let above = skewed.depth(crease, xi) > 0.0;
             events.xi.extend((!above && range[0] < xi && xi < range[1]).then_some(xi));
         }
         intervals.clear();
         let matters = |[low, high]: [f64; 2]| low < approach && (is_valley || high > approach);
-        skewed.valleys.monotone(rail, crease, range, matters, &mut intervals);
+        monotone(&skewed.valleys, rail, crease, range, matters, &mut intervals);
         for &[from, to] in &intervals {
             passes(outline, crease, [from.next_up(), to], &mut events);
             if is_valley {
@@ -48,7 +50,7 @@ pub(in crate::patch) fn events(outline: &mut Outline<'_>, range: [f64; 2]) -> Ev
     events
 }
 
-/// Adds where s over a valley or ridge passes δ in a stretch over which it is monotone.
+/// Adds the event at which s over a valley or ridge passes δ in a stretch over which it is monotone.
 fn passes(outline: &mut Outline<'_>, crease: usize, ends: [f64; 2], events: &mut Events) {
     if ends[0] > ends[1] {
         return;
@@ -78,7 +80,8 @@ fn passes(outline: &mut Outline<'_>, crease: usize, ends: [f64; 2], events: &mut
     }
 }
 
-/// The same where a valley or ridge leaves the window: what it shows of the patch there counts.
+/// Adds the events of a valley or ridge that leaves the window: where s at its place, or at the window's edge
+/// next to it, passes δ.
 fn passes_beside_window(outline: &mut Outline<'_>, crease: usize, [from, to]: [f64; 2], events: &mut Events) {
     let at = |k: usize| {
         if k == WINDOW_INTERVALS { to } else { from + (to - from) * k as f64 / WINDOW_INTERVALS as f64 }
@@ -98,7 +101,7 @@ fn passes_beside_window(outline: &mut Outline<'_>, crease: usize, [from, to]: [f
     }
 }
 
-/// s − δ at the place of a valley or ridge, whatever the window \[mm\].
+/// Returns s − δ at the place of a valley or ridge \[mm\], inside or outside the window.
 fn crease_depth(outline: &mut Outline<'_>, crease: usize, xi: f64) -> f64 {
     outline.slicer.skewed.as_mut().map_or(f64::NAN, |skewed| skewed.depth(crease, xi))
 }

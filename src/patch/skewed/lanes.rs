@@ -1,47 +1,51 @@
-//! The bands of a patch under a skewed wheel, where a line of constant ξ may meet it in several intervals of η.
+//! Finds the bands of a patch under a skewed wheel, where a line of constant ξ may meet the patch in several
+//! intervals of η.
 //!
-//! Every interval holds a valley of the wheel. Between neighbouring ξ at which a valley or ridge begins, ends or
-//! passes s = δ, or at which the rail steps, the intervals stay as they are; from one such stretch of ξ to the next they
-//! go on, divide or join.
+//! Every interval holds a valley of the wheel. An event is a ξ at which a valley or ridge begins, ends or
+//! passes s = δ, or at which the rail steps. The intervals do not change within a stretch of ξ between two
+//! events; at an event they continue, divide or join.
 
 use super::events::{Events, events};
 use crate::patch::band::{Band, overlap, steps};
 use crate::patch::outline::{End, Outline};
 
-/// Share of R within which a valley that begins at the edge of an interval belongs to it: where lines of constant ξ only
-/// touch the wheel's end, the edge is known to the root of rounding, 1.5e-8. Intervals that are nearer than this count as one.
+/// Distance, as a share of R, within which a valley at the edge of an interval belongs to the interval: where
+/// lines of constant ξ only touch the wheel's end, the edge is known to the root of rounding, 1.5e-8. Nearer
+/// intervals count as one.
 const TOUCH: f64 = 1e-6;
 
-/// Share of a stretch by which its intervals are looked at inside: where two of them meet at its end, their edges run there
-/// as square roots and are a thousandth of their width apart.
+/// Distance from the ends of a stretch at which its intervals are taken, as a share of the stretch. Where two
+/// intervals meet at an end, their edges are square roots there, so that they are a thousandth of their width
+/// apart at this distance.
 const INSIDE: f64 = 1e-6;
 
-/// Events closer than this many roundings of R are one: between them rounding decides what is inside, and there may be no ξ.
+/// Distance, in roundings of R, below which events are one: between them rounding decides what is inside, and
+/// there may be no ξ.
 const XI_ROUNDINGS: f64 = 64.0;
 
 /// The valleys of one interval, the deepest first.
 type Group = Vec<usize>;
 
-/// A band that goes on.
+/// A band that is not finished yet.
 struct Lane {
     band: Band,
-    /// Its valleys over the last stretch.
+    /// The valleys of its interval over the last stretch.
     group: Group,
-    /// Its interval at the end of that, a little inside.
+    /// The interval of η near the end of the last stretch \[mm\].
     edge: [f64; 2],
 }
 
 /// A valley inside the patch at one ξ.
 #[derive(Clone, Copy)]
 struct Inside {
-    /// Its place \[mm\].
+    /// Place of the valley \[mm\].
     eta: f64,
-    /// s − δ \[mm\].
+    /// s − δ at the place \[mm\].
     depth: f64,
     crease: usize,
 }
 
-/// Walks over the stretches.
+/// Walks over the stretches by ascending ξ and builds the bands.
 struct Walk<'w, 'a> {
     outline: &'w mut Outline<'a>,
     events: Events,
@@ -49,7 +53,7 @@ struct Walk<'w, 'a> {
     done: Vec<Band>,
 }
 
-/// The bands, and the valleys and ξ at which the least s may be \[mm\].
+/// Returns the bands, and pairs (valley, ξ) at which s may be least \[mm\].
 pub(in crate::patch) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<(usize, f64)>) {
     let Some([a, b]) = searched(outline) else { return (Vec::new(), Vec::new()) };
     let mut events = events(outline, [a, b]);
@@ -70,7 +74,7 @@ pub(in crate::patch) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<(usi
     (walk.done, turns)
 }
 
-/// The interval of ξ in which the rail, the window and any valley are.
+/// Returns the range of ξ that the rail, the window and the valleys have in common; `None` if it is empty.
 fn searched(outline: &Outline<'_>) -> Option<[f64; 2]> {
     let reach = outline.slicer.placement().rail.section.reach()?;
     let creases = &outline.slicer.skewed.as_ref()?.valleys.creases;
@@ -82,7 +86,7 @@ fn searched(outline: &Outline<'_>) -> Option<[f64; 2]> {
     (ends[0] < ends[1]).then_some(ends)
 }
 
-/// The valleys inside at ξ, those of one interval together, by ascending η.
+/// Returns the valleys inside the patch at ξ, grouped by interval, the groups by ascending η.
 fn groups(outline: &mut Outline<'_>, xi: f64) -> Vec<Group> {
     let near = TOUCH * outline.slicer.placement().rolling_radius();
     let Some(skewed) = &outline.slicer.skewed else { return Vec::new() };
@@ -117,7 +121,8 @@ fn groups(outline: &mut Outline<'_>, xi: f64) -> Vec<Group> {
 }
 
 impl Walk<'_, '_> {
-    /// Goes over a stretch in which these groups are, after the event at its beginning.
+    /// Handles the event at the beginning of a stretch, and continues or opens a band for each of the
+    /// stretch's groups.
     fn step(&mut self, [from, to]: [f64; 2], groups: Vec<Group>, rail_steps: bool) {
         let inside = INSIDE * (to - from);
         let begins: Vec<[f64; 2]> = groups.iter().map(|group| self.interval(group, from + inside)).collect();
@@ -168,14 +173,14 @@ impl Walk<'_, '_> {
         self.done.extend(ended);
     }
 
-    /// The interval of a group at ξ; empty where there is none.
+    /// Returns the interval of a group at ξ \[mm\]; NaN outside the patch.
     fn interval(&mut self, group: &Group, xi: f64) -> [f64; 2] {
         let edges = self.outline.edges(group.first().copied(), xi);
         edges.map_or([f64::NAN; 2], |edges| edges.map(|edge| edge.eta))
     }
 
-    /// Sides of lanes (0) and groups (1) at an event at which one of them divides into several or several join: there those
-    /// that are neighbours meet on a ridge or on the circle of an end.
+    /// Returns the sides of the lanes (0) and groups (1) that meet at an event where one interval divides
+    /// into several or several join. Neighbours meet there on a ridge or on the circle of an end.
     fn forks(
         &mut self,
         xi: f64,
@@ -213,12 +218,12 @@ impl Walk<'_, '_> {
         sides
     }
 
-    /// The lower (0) or upper (1) edge of a group at ξ.
+    /// Returns the lower (0) or upper (1) edge of a group at ξ \[mm\].
     fn outer(&mut self, group: &Group, xi: f64, side: usize) -> Option<f64> {
         self.outline.edges(group.first().copied(), xi).map(|edges| edges[side].eta)
     }
 
-    /// Where two intervals meet: on a ridge or the circle of an end next to both, or half way.
+    /// Returns where two intervals meet: on a ridge or the circle of an end between both, or half way.
     fn meeting_point(&self, xi: f64, [from, to]: [f64; 2]) -> f64 {
         let middle = from + (to - from) / 2.0;
         let Some(skewed) = &self.outline.slicer.skewed else { return middle };
@@ -230,7 +235,7 @@ impl Walk<'_, '_> {
         nearest.unwrap_or(middle)
     }
 
-    /// The band of a lane that ends at ξ.
+    /// Returns the finished band of a lane that ends at ξ.
     fn closed(&mut self, lane: Lane, xi: f64, fork: Option<[f64; 2]>) -> Band {
         let Lane { mut band, group, edge } = lane;
         let (side, end) = self.end(&group, xi, xi, edge);
@@ -240,7 +245,7 @@ impl Walk<'_, '_> {
         band
     }
 
-    /// A band that begins at ξ, with its slice at `at`, next to that.
+    /// Returns a new band that begins at ξ. Its slice is taken at `at`, which is ξ or the next number.
     fn opened(&mut self, group: &Group, xi: f64, fork: Option<[f64; 2]>, at: f64) -> Band {
         let (side, end) = self.end(group, xi, at, [f64::NAN; 2]);
         Band {
@@ -252,7 +257,7 @@ impl Walk<'_, '_> {
         }
     }
 
-    /// The side of a band that begins or ends at ξ without a fork, and what bounds it.
+    /// Returns the side of a band that begins or ends at ξ without a fork, and what bounds the band.
     fn end(&mut self, group: &Group, xi: f64, at: f64, inside: [f64; 2]) -> ([f64; 2], End) {
         let valley = group.first().copied();
         let end = self.end_at(xi);
@@ -266,7 +271,7 @@ impl Walk<'_, '_> {
         (side, end)
     }
 
-    /// What bounds a band that begins or ends at ξ without a fork.
+    /// Returns what bounds a band that begins or ends at ξ without a fork.
     fn end_at(&self, xi: f64) -> End {
         if self.events.tips.contains(&xi) {
             End::Tip

@@ -1,9 +1,10 @@
-//! The patch under a skewed wheel, where a line of constant ξ may meet it in several intervals: valleys lead to each.
+//! The patch under a skewed wheel, where a line of constant ξ may meet it in several intervals: each is found
+//! from a valley.
 
 mod circle;
 pub(super) mod events;
 pub(super) mod lanes;
-mod monotone;
+pub(crate) mod monotone;
 mod path;
 pub(super) mod slicer;
 pub(crate) mod valleys;

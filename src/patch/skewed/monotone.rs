@@ -1,101 +1,99 @@
-//! The intervals of ξ over which s along a valley or ridge only rises or only falls.
+//! Finds the intervals of ξ over which s along a valley or ridge only rises or only falls.
 
 use super::path::Leg;
 use super::valleys::Valleys;
 use crate::numerics::roots::bracketed;
 use crate::profile::{Branch, Section};
 
-/// Intervals of a stretch between two joints at whose ends the slope of s is looked at.
+/// Number of intervals of a stretch between two joints at whose ends the slope of s is taken.
 ///
-/// The slopes of two arcs agree at one place at most, those of two cubics at two. Both are found where they lie in two of
-/// these intervals, and by the least |slope| where they lie in one.
+/// The slopes of two arcs agree at one place at most, those of two cubics at two. Both places are found
+/// directly if they lie in two of these intervals, and by the least |slope| if they lie in one.
 const INTERVALS: usize = 4;
 
-/// By how much the slope inside a stretch may exceed those at its ends. Arcs are steepest at their ends; a cubic of a smooth
-/// profile turns too little between two of its joints.
+/// Factor by which the slope inside a stretch may exceed those at its ends. Arcs are steepest at their ends;
+/// a cubic of a smooth profile turns too little between two of its joints.
 const STEEPER: f64 = 2.0;
 
-/// A least |slope| above this share of the smallest one found is left alone: the parabola through the three around it has
-/// no root near.
+/// Share of the smallest |slope| found above which the least value of the parabola through the three slopes
+/// around it is left alone: there is no root near.
 const NEAR_ROOT: f64 = 0.5;
 
 /// Steps of the golden section, which leave 1e-6 of an interval.
 const GOLDEN_STEPS: usize = 30;
 
-/// (√5 − 1)/2.
+/// The golden section (√5 − 1)/2.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
-/// A place of a valley or ridge.
+/// s and its slope at one place of a valley or ridge.
 #[derive(Debug, Clone, Copy)]
 struct Sample {
-    /// Profile abscissa, or t on a circle.
+    /// Profile abscissa \[mm\], or t on a circle.
     at: f64,
     xi: f64,
-    /// s \[mm\], to its rounding in the size of both bodies' heights.
+    /// s \[mm\], to the rounding of both bodies' heights.
     gap: f64,
-    /// ds/dξ along it.
+    /// ds/dξ along the valley or ridge.
     slope: f64,
 }
 
-/// One leg over one piece of the rail.
+/// One leg over one branch of the rail.
 struct Stretch<'v> {
     valleys: &'v Valleys<'v>,
     leg: &'v Leg,
     rail: &'v Branch,
 }
 
-impl Valleys<'_> {
-    /// Appends, in order of ξ \[mm\], the intervals of a valley or ridge inside a range of ξ over which s is monotone: they end at
-    /// joints of both bodies and where s turns. Left out are stretches between joints for whose least and largest s
-    /// `matters` is false.
-    ///
-    /// Method: the slope of the surface where it is parallel to η less that of the rail, in closed form, at some places of
-    /// every stretch. Missed are two turns inside a quarter of a stretch between which |slope| has no minimum that shows
-    /// there: s changes between them by less than that slope × their distance.
-    /// Cost: two places for a stretch that does not matter, five and a root each for others.
-    pub(crate) fn monotone(
-        &self,
-        rail: &Section,
-        crease: usize,
-        [from, to]: [f64; 2],
-        matters: impl Fn([f64; 2]) -> bool,
-        intervals: &mut Vec<[f64; 2]>,
-    ) {
-        let mut turns = Vec::new();
-        for leg in &self.creases[crease].legs {
-            let (a, b) = (leg.xi[0].max(from), leg.xi[1].min(to));
-            if a >= b {
-                continue;
-            }
-            let mut left = a;
-            let inside = |xi: &f64| a < *xi && *xi < b;
-            let joints = rail.joints([a, b]).map(|(xi, _)| xi).filter(inside);
-            for right in joints.chain([b]) {
-                let branch = rail.branch_at(left + (right - left) / 2.0).filter(|_| right > left);
-                let stretch = branch.map(|rail| Stretch { valleys: self, leg, rail });
-                turns.clear();
-                if stretch.is_some_and(|stretch| stretch.turns([left, right], &matters, &mut turns)) {
-                    turns.retain(|turn| left < *turn && *turn < right);
-                    turns.sort_by(f64::total_cmp);
-                    for &turn in turns.iter().chain([&right]) {
-                        intervals.push([left, turn]);
-                        left = turn;
-                    }
+/// Appends, in order of ξ \[mm\], the intervals of a valley or ridge inside a range of ξ over which s is
+/// monotone. They end at joints of both bodies and where s turns. A stretch between joints is left out if
+/// `matters` is false for bounds of its least and largest s.
+///
+/// Method: takes the slope of the surface where it is parallel to η less the slope of the rail, in closed
+/// form, at some places of every stretch. Two turns inside a quarter of a stretch are missed if |slope|
+/// shows no minimum there: s changes between them by less than that slope × their distance.
+/// Cost: two places for a stretch that does not matter, five and a root each for others.
+pub(crate) fn monotone(
+    valleys: &Valleys<'_>,
+    rail: &Section,
+    crease: usize,
+    [from, to]: [f64; 2],
+    matters: impl Fn([f64; 2]) -> bool,
+    intervals: &mut Vec<[f64; 2]>,
+) {
+    let mut turns = Vec::new();
+    for leg in &valleys.creases[crease].legs {
+        let (a, b) = (leg.xi[0].max(from), leg.xi[1].min(to));
+        if a >= b {
+            continue;
+        }
+        let mut left = a;
+        let inside = |xi: &f64| a < *xi && *xi < b;
+        let joints = rail.joints([a, b]).map(|(xi, _)| xi).filter(inside);
+        for right in joints.chain([b]) {
+            let branch = rail.branch_at(left + (right - left) / 2.0).filter(|_| right > left);
+            let stretch = branch.map(|rail| Stretch { valleys, leg, rail });
+            turns.clear();
+            if stretch.is_some_and(|stretch| stretch.turns([left, right], &matters, &mut turns)) {
+                turns.retain(|turn| left < *turn && *turn < right);
+                turns.sort_by(f64::total_cmp);
+                for &turn in turns.iter().chain([&right]) {
+                    intervals.push([left, turn]);
+                    left = turn;
                 }
-                left = right;
             }
+            left = right;
         }
     }
 }
 
 impl Stretch<'_> {
-    /// Whether the stretch matters; appends the ξ inside at which s turns.
+    /// Returns whether the stretch matters; if it does, appends the ξ inside it at which s turns.
     fn turns(&self, xi: [f64; 2], matters: &impl Fn([f64; 2]) -> bool, turns: &mut Vec<f64>) -> bool {
         let ends = xi.map(|xi| self.sample(self.place_at(xi)));
         let steepest = ends[0].slope.abs().max(ends[1].slope.abs());
         let reach = STEEPER * steepest * (ends[1].xi - ends[0].xi);
         let [low, high] = [ends[0].gap.min(ends[1].gap), ends[0].gap.max(ends[1].gap)];
-        // A slope that is no number decides nothing.
+        // A slope that is not a number decides nothing.
         if !reach.is_nan() && !matters([low - reach, high + reach]) {
             return false;
         }
@@ -117,17 +115,17 @@ impl Stretch<'_> {
         true
     }
 
-    /// Appends the ξ of a change of sign of the slope.
+    /// Appends the ξ at which the slope changes sign between a and b, if it does.
     fn root(&self, a: f64, b: f64, turns: &mut Vec<f64>) {
         let root = bracketed(|at| self.sample(at).slope, a, b);
         turns.extend(root.map(|at| self.sample(at).xi));
     }
 
-    /// Appends the ξ of two changes of sign around the least |slope|, if there are.
+    /// Appends the two ξ at which the slope changes sign around the least |slope|, if it does.
     fn hidden_roots(&self, [before, here, after]: [Sample; 3], turns: &mut Vec<f64>) {
         let sign = here.slope.signum();
         let [p, q, r] = [before, here, after].map(|sample| sign * sample.slope);
-        // All of one sign, the middle one nearest to 0, and the parabola through them nearer still.
+        // All have one sign, the middle one is nearest to 0, and the parabola through them nearer still.
         let dips = p > q && r > q && q > 0.0;
         if !dips || q - (r - p) * (r - p) / (8.0 * (p - 2.0 * q + r)) > NEAR_ROOT * q {
             return;
@@ -155,7 +153,7 @@ impl Stretch<'_> {
         }
     }
 
-    /// The parameter of the leg at ξ.
+    /// Returns the parameter of the leg at ξ.
     fn place_at(&self, xi: f64) -> f64 {
         let leg = self.leg;
         if xi == leg.xi[0] {

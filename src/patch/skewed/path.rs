@@ -1,32 +1,36 @@
-//! The places of a wheel that are parallel to η, in the order of its profile, cut where they turn back in ξ.
+//! Follows the places of a wheel that are parallel to η in the order of its profile, and cuts this path where
+//! it turns back in ξ.
 
 use std::ops::Range;
 
 use super::circle::{Circle, FARTHEST, Turned};
 
-/// Steps of a piece between which it is told whether ξ grows, one for each such length \[mm\] of it: a fold is missed only if
-/// it begins and ends within one. It takes a curvature of some 1/(R χ²), and so turns the profile by a large angle.
+/// Length of the steps in which a piece is searched for folds of ξ \[mm\]: a fold is missed only if it begins
+/// and ends within one step. A fold takes a curvature of about 1/(R χ²), and so turns the profile by a large
+/// angle.
 const STEP: f64 = 0.5;
 
-/// Fewest and most of them.
+/// Fewest and most steps of a piece.
 const STEPS: [usize; 2] = [2, 16];
 
-/// Thirds by which the end of a fold is narrowed down: ξ there is off by the square of what is left.
+/// Number of times that the bracket of a fold is cut by a third; ξ there is off by the square of what is
+/// left.
 const THIRDS: usize = 60;
 
-/// A turn about the axle below this is no fold: its ridge would stand ρ t²/2 over its valleys, below rounding.
+/// Turn about the axle below which a kink makes no fold: its ridge would be ρ t²/2 above its valleys, less
+/// than rounding.
 const LEAST_TURN: f64 = 1e-8;
 
-/// Part of the path over which ξ is monotone.
+/// A part of the path over which ξ is monotone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Leg {
-    /// Index of the piece, or `None` on the circle of one profile point.
+    /// Index of the piece; `None` on the circle of one profile point.
     pub(super) piece: Option<usize>,
-    /// That circle; for a piece the one at its beginning.
+    /// The circle of that profile point; for a piece, the circle at its beginning.
     pub(super) circle: Circle,
-    /// Profile abscissae, or t on the circle.
+    /// Profile abscissae at both ends \[mm\], or t on the circle.
     pub(super) range: [f64; 2],
-    /// ξ there \[mm\].
+    /// ξ at both ends \[mm\].
     pub(super) xi: [f64; 2],
 }
 
@@ -37,17 +41,18 @@ impl Leg {
     }
 }
 
-/// The path of one run of pieces.
+/// The path over one run of pieces.
 pub(super) struct Path {
     legs: Vec<Leg>,
-    /// Valleys apart from the path: behind ends that lines of constant ξ leave and enter again.
+    /// Valleys that are not part of the path: they lie behind ends that lines of constant ξ leave and enter
+    /// again.
     apart: Vec<Leg>,
-    /// The circles at its ends.
+    /// The circles at both ends of the run.
     pub(super) ends: [Circle; 2],
 }
 
 impl Path {
-    /// The path over a run of pieces, from the left end of its surface to the right one.
+    /// Makes the path over a run of pieces, from the left end of its surface to the right end.
     pub(super) fn new(turned: &Turned<'_>, run: &Range<usize>) -> Self {
         let pieces = &turned.section.pieces;
         let [first, last] = [run.start, run.end - 1];
@@ -67,10 +72,11 @@ impl Path {
         path
     }
 
-    /// The circle at the left end (0) or right end (1), from or to the place of the end point.
+    /// Appends the circle at the left end (0) up to the place `t` of the end point, or at the right end (1)
+    /// from there.
     fn end(&mut self, turned: &Turned<'_>, end: usize, t: f64) {
         let circle = self.ends[end];
-        // Outward tangents turn the place against the skew on the right, with it on the left.
+        // Outward tangents turn the place against the skew on the right, and with it on the left.
         let side = if end == 0 { turned.sin_skew } else { -turned.sin_skew };
         let (mut limit, touching) = (FARTHEST.copysign(side), turned.touching());
         if touching.abs() < FARTHEST {
@@ -86,7 +92,7 @@ impl Path {
         }
     }
 
-    /// The circle of a joint between the places of its two tangents.
+    /// Appends the circle of a joint between the places of its two tangents, if these differ.
     fn kink(&mut self, turned: &Turned<'_>, (circle, from): (Circle, f64), to: f64) {
         if (to - from).abs() <= LEAST_TURN {
             return;
@@ -97,7 +103,7 @@ impl Path {
         self.legs.extend(cuts.windows(2).map(|pair| leg(turned, circle, [pair[0], pair[1]])));
     }
 
-    /// The places of a piece, in legs between the folds of ξ(p).
+    /// Appends the places of a piece, as legs between the folds of ξ(p).
     fn piece(&mut self, turned: &Turned<'_>, index: usize) {
         let [a, b] = turned.section.pieces[index].xi;
         let xi = |p: f64| {
@@ -122,14 +128,15 @@ impl Path {
         }));
     }
 
-    /// Chains of legs along which ξ only grows (valleys) or only falls (ridges, then turned round).
+    /// Returns the chains of legs along which ξ only grows (valleys, true) or only falls (ridges, false).
+    /// Ridges are reversed, so that ξ grows along every chain.
     pub(super) fn monotone(&self, rounding: f64) -> Vec<(Vec<Leg>, bool)> {
         let mut chains: Vec<(Vec<Leg>, bool)> = self.apart.iter().map(|leg| (vec![*leg], true)).collect();
         let mut chain: Vec<Leg> = Vec::new();
         let mut grows = true;
         for leg in &self.legs {
             let up = leg.xi[1] > leg.xi[0];
-            // A piece as short as rounding goes nowhere.
+            // A leg no longer than rounding has no direction.
             if !chain.is_empty() && up != grows && (leg.xi[1] - leg.xi[0]).abs() <= rounding {
                 continue;
             }
@@ -156,7 +163,7 @@ fn leg(turned: &Turned<'_>, circle: Circle, range: [f64; 2]) -> Leg {
     Leg { piece: None, circle, range, xi: range.map(|t| turned.place(&circle, t).xi) }
 }
 
-/// The whole circle of a profile point, in legs of ascending ξ.
+/// Returns the whole circle of a profile point, as legs of ascending ξ.
 pub(super) fn circle_legs(turned: &Turned<'_>, circle: Circle) -> Vec<Leg> {
     let touching = turned.touching().clamp(-FARTHEST, FARTHEST);
     let halves = [[-FARTHEST, touching], [touching, FARTHEST]].into_iter().filter(|[from, to]| from < to);
@@ -166,7 +173,7 @@ pub(super) fn circle_legs(turned: &Turned<'_>, circle: Circle) -> Vec<Leg> {
         .collect()
 }
 
-/// Where ξ(p) turns between a and b: rising first for `sign` = 1.
+/// Returns where ξ(p) turns between a and b: at a maximum for `sign` = 1, at a minimum for −1.
 fn turn(mut a: f64, mut b: f64, sign: f64, xi: &impl Fn(f64) -> f64) -> f64 {
     let value = |p: f64| sign * xi(p);
     for _ in 0..THIRDS {

@@ -1,31 +1,32 @@
-//! Slices of a skewed wheel: from a valley outwards to s = δ.
+//! Finds the slices under a skewed wheel: from a valley outwards to s = δ.
 //!
-//! Between its lowest and highest points, and the ends and steps of the wheel's surface, s is monotone along a line of
-//! constant ξ. All of them are known, so that the ends of a slice are found by following them.
+//! Along a line of constant ξ, s is monotone between the lowest and highest points of the wheel and the ends
+//! and steps of its surface. All these places are known, and the search moves outwards from one to the next.
 
 use super::valleys::{Spot, Valleys};
 use crate::numerics::roots::{bracketed, last_where};
 use crate::placement::Placement;
 use crate::separation::Evaluator;
 
-/// A step of the wheel along a column counts as one beyond this many roundings of its height; less is a smooth
-/// joint whose two sides round differently.
+/// Least step of the wheel along a column, in roundings of its height; a smaller one is a smooth joint whose
+/// two sides round differently.
 pub(in crate::patch) const STEP_ROUNDINGS: f64 = 64.0;
 
-/// Newton's steps to s = δ.
+/// Most Newton steps to s = δ.
 const NEWTON_STEPS: usize = 6;
 
-/// A step below this share of the way leaves its square: nothing.
+/// Newton step, as a share of η's distance from the start, after which the error, its square, is nothing.
 const QUADRATIC: f64 = 1e-8;
 
 /// Half the interval, in roundings of η, in which Newton's result is confirmed by a change of sign.
 const NEWTON_ROUNDINGS: f64 = 64.0;
 
-/// Share of R by which a point is beside an end or step: a million roundings, and less than any segment.
+/// Distance of a point beside an end or step, as a share of R: a million roundings, and less than any
+/// segment.
 const BESIDE: f64 = 1e-9;
 
-/// Steps of fourfold length in which a point on the surface is looked for next to its end: up to the root of rounding,
-/// where lines of constant ξ but touch it.
+/// Number of fourfold steps in which a point on the surface is looked for next to its end: up to the root of
+/// rounding, which is the error where lines of constant ξ only touch the end.
 const NUDGES: i32 = 14;
 
 /// One end of a slice.
@@ -33,42 +34,42 @@ const NUDGES: i32 = 14;
 pub(crate) struct Edge {
     /// η \[mm\].
     pub(crate) eta: f64,
-    /// Whether the wheel's surface ends or steps there, so that s jumps past δ.
+    /// Whether the wheel's surface ends or steps here, so that s jumps past δ.
     pub(in crate::patch) ledge: bool,
 }
 
-/// Slices under a skewed wheel at one approach.
+/// Finds the slices under a skewed wheel at one approach.
 #[derive(Debug)]
 pub(in crate::patch) struct Skewed<'a> {
     placement: &'a Placement,
     evaluator: Evaluator<'a>,
     /// The wheel's valleys and ridges.
     pub(in crate::patch) valleys: Valleys<'a>,
-    /// δ \[mm\].
+    /// Approach δ \[mm\].
     approach: f64,
-    /// η at which s may turn or end, along the line of constant ξ in hand.
+    /// The η at which s may turn or end along the present line of constant ξ \[mm\].
     stops: Vec<f64>,
 }
 
 impl<'a> Skewed<'a> {
-    /// Slices of a placed pair for approach δ \[mm\].
+    /// Makes the slices of a placed pair for approach δ \[mm\].
     pub(in crate::patch) fn new(placement: &'a Placement, approach: f64) -> Self {
         let (evaluator, valleys) = (Evaluator::new(placement), Valleys::new(placement));
         Self { placement, evaluator, valleys, approach, stops: Vec::new() }
     }
 
-    /// s − δ at the place of a valley or ridge \[mm\].
+    /// Returns s − δ at the place of a valley or ridge \[mm\].
     pub(in crate::patch) fn depth(&mut self, crease: usize, xi: f64) -> f64 {
         let spot = self.valleys.spot(crease, xi);
         self.depth_at(xi, &spot)
     }
 
-    /// s − δ at such a place \[mm\].
+    /// Returns s − δ at a place of a valley or ridge that is already known \[mm\].
     pub(in crate::patch) fn depth_at(&mut self, xi: f64, spot: &Spot) -> f64 {
         self.valleys.separation(&mut self.evaluator, xi, spot) - self.approach
     }
 
-    /// The valley with the least s at ξ; `None` where there is none.
+    /// Returns the valley with the least s at ξ; `None` where there is no valley.
     pub(in crate::patch) fn lowest_valley(&mut self, xi: f64) -> Option<usize> {
         let mut lowest: Option<(f64, usize)> = None;
         for k in 0..self.valleys.creases.len() {
@@ -84,7 +85,7 @@ impl<'a> Skewed<'a> {
         lowest.map(|(_, k)| k)
     }
 
-    /// η, or next to it where the surface ends by a rounding too early.
+    /// Returns η, or a place next to it if rounding ends the surface too early.
     pub(in crate::patch) fn on_surface(&mut self, xi: f64, eta: f64) -> f64 {
         let rounding = f64::EPSILON * self.placement.rolling_radius();
         let steps = std::iter::once(0.0).chain((0..NUDGES).flat_map(|k| [4f64.powi(k), -4f64.powi(k)]));
@@ -92,7 +93,7 @@ impl<'a> Skewed<'a> {
         near.find(|&eta| !self.evaluator.separation(xi, eta).is_nan()).unwrap_or(eta)
     }
 
-    /// Both ends of the slice that holds a valley; `None` outside the patch.
+    /// Returns both ends of the slice that holds a valley; `None` outside the patch.
     pub(in crate::patch) fn edges(&mut self, xi: f64, valley: usize) -> Option<[Edge; 2]> {
         let spot = self.valleys.spot(valley, xi);
         let depth = -self.depth_at(xi, &spot);
@@ -109,7 +110,7 @@ impl<'a> Skewed<'a> {
         Some(edges)
     }
 
-    /// η at which s may turn or end, if there is more than one valley at ξ.
+    /// Collects the η at which s may turn or end; none if there is only one valley at ξ.
     fn stops_at(&self, xi: f64, stops: &mut Vec<f64>) {
         stops.clear();
         let valleys = &self.valleys;
@@ -119,7 +120,7 @@ impl<'a> Skewed<'a> {
         }
     }
 
-    /// The end of the slice on one side of its lowest point.
+    /// Returns the end of the slice on one side of its lowest point.
     fn outward(&mut self, xi: f64, lowest: f64, reach: f64, stops: &mut [f64]) -> Edge {
         let beside = (BESIDE * self.placement.rolling_radius()).copysign(reach);
         let mut from = self.on_surface(xi, lowest);
@@ -145,7 +146,7 @@ impl<'a> Skewed<'a> {
         self.edge(xi, from, reach, f64::INFINITY.copysign(reach))
     }
 
-    /// The end of the slice before `limit`, between which and `from` s only rises.
+    /// Returns the end of the slice between `from` and `limit`, over which s only rises.
     fn edge(&mut self, xi: f64, from: f64, mut reach: f64, limit: f64) -> Edge {
         let clipped = |reach: f64| if (from + reach - limit) * reach > 0.0 { limit } else { from + reach };
         let (mut far, mut there) = (clipped(reach), self.evaluator.separation(xi, clipped(reach)));
@@ -158,7 +159,7 @@ impl<'a> Skewed<'a> {
         if there.is_nan() { self.end_between(xi, from, far) } else { self.level_between(xi, from, far) }
     }
 
-    /// The end of the slice before the surface ends between `from` and `off`.
+    /// Returns the end of the slice if the surface ends between `from` and `off`.
     fn end_between(&mut self, xi: f64, from: f64, off: f64) -> Edge {
         let end = self.surface_end(xi, from, off);
         if self.evaluator.separation(xi, end) < self.approach {
@@ -173,11 +174,11 @@ impl<'a> Skewed<'a> {
         Edge { eta, ledge: (self.evaluator.separation(xi, eta) - self.approach).abs() > step }
     }
 
-    /// η with s(ξ, η) = δ between `from` and `far`, on whose two sides s − δ has different signs.
+    /// Returns η with s(ξ, η) = δ between `from` and `far`, where s − δ must have different signs.
     ///
-    /// Method: s is nearly a parabola and convex, so that Newton's steps from half way come from outside and reach rounding
-    /// within four. The result is taken if s − δ changes sign within some roundings of it; a bracketed root replaces one
-    /// that a joint has misled.
+    /// Method: s is nearly a parabola and convex, so that Newton's steps from half way come from outside and
+    /// reach rounding within four. The result is taken if s − δ changes sign within some roundings of it. A
+    /// bracketed root replaces a result that a joint has misled.
     fn level(&mut self, xi: f64, from: f64, far: f64) -> Option<f64> {
         let approach = self.approach;
         let mut eta = from + (far - from) / 2.0;
@@ -199,7 +200,7 @@ impl<'a> Skewed<'a> {
         if confirmed { Some(eta) } else { bracketed(depth, from, far) }
     }
 
-    /// The last η with a surface between `on`, which has one, and `off`, which has none.
+    /// Returns the last η with a surface between `on`, which has one, and `off`, which has none.
     fn surface_end(&mut self, xi: f64, mut on: f64, mut off: f64) -> f64 {
         let beside = (BESIDE * self.placement.rolling_radius()).copysign(off - on);
         let between = |rim: &f64| (rim - on) * (off - rim) > 0.0;

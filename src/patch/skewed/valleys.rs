@@ -1,17 +1,19 @@
-//! Where a skewed wheel is parallel to η: the lowest and highest points of all lines of constant ξ, in closed form.
+//! Finds where a skewed wheel is parallel to η: the lowest and highest points of all lines of constant ξ, in
+//! closed form.
 //!
-//! A point of the wheel with the profile abscissa p, tangent angle φ = ψ + θ, axle distance ρ of its circle, at the angle v
-//! from the wheel's midplane, lies at ξ′ = p + ρ (1 − cos v) sinθ, η′ = ρ sin v. The normal there has no component along η
-//! where, with t = tan(v/2),
+//! Let p be the profile abscissa of a wheel point, φ = ψ + θ its tangent angle, ρ the axle distance of its
+//! circle and v its angle from the wheel's midplane. It lies at ξ′ = p + ρ (1 − cos v) sinθ, η′ = ρ sin v.
+//! With t = tan(v/2), the normal there has no component along η where
 //!
 //! ```text
 //! sinχ sin(ψ + 2θ) t² + 2 cosχ cosφ t + sinχ sinψ = 0.
 //! ```
 //!
-//! Of its two roots one is on the side of the rail: every profile point has one such place, and where its ξ grows with p
-//! it is the lowest of its line of constant ξ (a valley), where it falls the highest (a ridge). At kinks and ends the
-//! profile point is held and φ turns on: the valley follows its circle, the rim. A rim that lines of constant ξ leave and
-//! enter again has a second valley, where they do.
+//! One of the two roots is on the side of the rail, so that every profile point has one such place. Where its
+//! ξ grows with p, the place is the lowest of its line of constant ξ (a valley); where ξ falls, the highest
+//! (a ridge). At kinks and ends the profile point is held and φ turns: the valley follows the point's circle,
+//! the rim. If lines of constant ξ leave the wheel over a rim and enter it again, there is a second valley
+//! where they do.
 
 use std::ops::Range;
 
@@ -21,29 +23,29 @@ use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
 use crate::separation::Evaluator;
 
-/// A root that misses ξ by less than this share is taken.
+/// Largest miss of ξ, as a share of ξ, with which a root is taken.
 const ROOT_SHARE: f64 = 4.0 * f64::EPSILON;
 
-/// Secant's steps to the profile point whose place is at ξ; ξ is nearly linear in its abscissa.
+/// Most secant steps to the profile point whose place is at ξ; ξ is nearly linear in its abscissa.
 const SECANTS: usize = 8;
 
-/// Where a valley or ridge is at one ξ.
+/// The place of a valley or ridge at one ξ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Spot {
     /// η \[mm\].
     pub(crate) eta: f64,
-    /// \[ζ, dζ/dξ along it\] on a circle; elsewhere the surface itself is parallel to η.
+    /// \[ζ, dζ/dξ along the circle\] on a circle; `None` where the surface itself is parallel to η.
     pub(crate) rim: Option<[f64; 2]>,
 }
 
 /// A valley or ridge over an interval of ξ.
 #[derive(Debug, Clone)]
 pub(crate) struct Crease {
-    /// Its interval of ξ \[mm\].
+    /// Interval of ξ \[mm\].
     pub(crate) xi: [f64; 2],
-    /// Whether it is a valley, or else a ridge.
+    /// True for a valley, false for a ridge.
     pub(crate) is_valley: bool,
-    /// In order of ξ.
+    /// The legs that make it up, in order of ξ.
     pub(super) legs: Vec<Leg>,
 }
 
@@ -57,7 +59,7 @@ pub(crate) struct Valleys<'a> {
 }
 
 impl<'a> Valleys<'a> {
-    /// Those of a placed pair.
+    /// Finds the valleys and ridges of a placed pair.
     pub(crate) fn new(placement: &'a Placement) -> Self {
         let turned = Turned::new(placement);
         let (mut creases, mut rims) = (Vec::new(), Vec::new());
@@ -67,7 +69,7 @@ impl<'a> Valleys<'a> {
             let chains = path.monotone(turned.rounding()).into_iter();
             creases.extend(chains.map(|(legs, is_valley)| Crease::new(legs, is_valley)));
             rims.extend(path.ends);
-            // A line of constant ξ goes on over a step, if its upper side too is below δ.
+            // A line of constant ξ continues over a step, if the upper side is below δ too.
             let steps = [k > 0, k + 1 < runs.len()].into_iter().zip(path.ends).filter(|(step, _)| *step);
             let brinks = steps.flat_map(|(_, circle)| circle_legs(&turned, circle));
             creases.extend(brinks.map(|leg| Crease::new(vec![leg], false)));
@@ -75,7 +77,7 @@ impl<'a> Valleys<'a> {
         Self { turned, creases, rims }
     }
 
-    /// The place of a line at ξ inside its interval.
+    /// Returns the place of a valley or ridge at ξ, which must lie inside its interval.
     pub(crate) fn spot(&self, crease: usize, xi: f64) -> Spot {
         let legs = &self.creases[crease].legs;
         let leg = &legs[legs.partition_point(|leg| leg.xi[1] < xi).min(legs.len() - 1)];
@@ -93,33 +95,34 @@ impl<'a> Valleys<'a> {
         }
     }
 
-    /// t at which the line of constant ξ meets a leg on a circle.
+    /// Returns t at which the line of constant ξ meets a leg on a circle.
     pub(super) fn turn(&self, leg: &Leg, xi: f64) -> f64 {
         let [low, high] = [leg.range[0].min(leg.range[1]), leg.range[0].max(leg.range[1])];
         let outside = |t: &f64| (low - t).max(t - high);
         let [one, other] = self.turned.crossings(&leg.circle, xi);
-        // By rounding the line may miss the circle it touches.
+        // By rounding the line may miss a circle that it touches.
         let t = if outside(&one) <= outside(&other) { one } else { other };
         if t.is_nan() { self.turned.touching() } else { t }.clamp(low, high)
     }
 
-    /// s(ξ, η) of a placed pair at the place of a valley or ridge \[mm\].
+    /// Returns s(ξ, η) of a placed pair at the place of a valley or ridge \[mm\].
     pub(crate) fn separation(&self, evaluator: &mut Evaluator<'_>, xi: f64, spot: &Spot) -> f64 {
         match spot.rim {
-            // The surface may end there, by a rounding too early.
+            // By rounding the surface may end a little before this place.
             Some([height, _]) => height - evaluator.rail_height(xi),
             None => evaluator.separation(xi, spot.eta),
         }
     }
 
-    /// The profile abscissa of a piece whose place is at ξ, or the end of its range nearest to that.
+    /// Returns the profile abscissa of a piece whose place is at ξ \[mm\], or the end of `[from, to]` that is
+    /// nearest to it.
     pub(super) fn abscissa(&self, piece: usize, [from, to]: [f64; 2], xi: f64) -> f64 {
         let miss = |p: f64| {
             let (circle, t) = self.turned.parallel(piece, p);
             let miss = self.turned.place(&circle, t).xi - xi;
             if miss.abs() <= ROOT_SHARE * xi.abs() { 0.0 } else { miss }
         };
-        // C itself: towards 0 the bracket is halved a thousand times.
+        // C itself: towards 0 the bracket would be halved a thousand times.
         if xi == 0.0 && from.min(to) <= 0.0 && from.max(to) >= 0.0 && miss(0.0) == 0.0 {
             return 0.0;
         }
@@ -139,25 +142,25 @@ impl<'a> Valleys<'a> {
         bracketed(miss, from, to).unwrap_or_else(nearest)
     }
 
-    /// Lines over ξ, by their index.
+    /// Returns the indices of the valleys and ridges over ξ.
     pub(crate) fn over(&self, xi: f64) -> impl Iterator<Item = usize> {
         (0..self.creases.len()).filter(move |&k| self.creases[k].xi[0] <= xi && xi <= self.creases[k].xi[1])
     }
 
-    /// η at which the line of constant ξ meets ends and steps of the wheel's surface.
+    /// Returns the η at which the line of constant ξ meets ends and steps of the wheel's surface \[mm\].
     pub(crate) fn rims(&self, xi: f64) -> impl Iterator<Item = f64> {
         self.crossings(xi).map(|(place, _)| place.eta)
     }
 
-    /// dη/dξ of the end or step of the wheel's surface that is next to a point; NaN if there is none.
+    /// Returns dη/dξ of the end or step of the wheel's surface that is next to a point; NaN if there is none.
     pub(crate) fn rim_slope(&self, xi: f64, eta: f64) -> f64 {
         let off = |place: &Place| (place.eta - eta).abs();
         let nearest = self.crossings(xi).min_by(|(p, _), (q, _)| off(p).total_cmp(&off(q)));
         nearest.map_or(f64::NAN, |(_, t)| self.turned.rim_slope(t))
     }
 
-    /// Calls `visit` for the circle of every joint and end of the wheel that may meet a box of the ξ–η plane: with \[ξ, ζ\] as a
-    /// function of t along it, and the range of t.
+    /// Calls `visit` for the circle of every joint and end of the wheel that may meet a box of the ξ–η plane.
+    /// The arguments of `visit` are \[ξ, ζ\] as a function of t along the circle, and the range of t.
     pub(crate) fn circles(
         &self,
         [a, b]: [f64; 2],
@@ -180,7 +183,7 @@ impl<'a> Valleys<'a> {
         }
     }
 
-    /// Where the line of constant ξ meets ends and steps, with t.
+    /// Returns the places where the line of constant ξ meets ends and steps, with t.
     fn crossings(&self, xi: f64) -> impl Iterator<Item = (Place, f64)> {
         self.rims.iter().flat_map(move |rim| {
             let near = self.turned.crossings(rim, xi).into_iter().filter(|t| t.abs() <= FARTHEST);
@@ -196,7 +199,7 @@ impl Crease {
     }
 }
 
-/// Ranges of the envelope's pieces over which the surface neither ends nor steps.
+/// Returns the ranges of the envelope's pieces over which the surface neither ends nor steps.
 fn runs(turned: &Turned<'_>) -> Vec<Range<usize>> {
     let pieces = &turned.section.pieces;
     let mut runs = Vec::new();

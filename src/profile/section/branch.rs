@@ -1,12 +1,14 @@
 //! One segment, or the part of it that faces the other body, as a function ζ(ξ): points and chords for N abscissae at once.
 
-use super::super::arc::cosine;
-use super::super::{Arc, Polynomial, Station};
 use super::points::{self, BranchPoint, BranchPoints, repeated};
 use super::turned::{rising_parts, seen_from, seen_from_own_point};
+use crate::numerics::cosine;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::polynomial::{derivative, derivatives, exact_values, range, value, value_and_slope};
 use crate::numerics::twice::Twice;
+use crate::profile::arc::Arc;
+use crate::profile::polynomial::Polynomial;
+use crate::profile::station::Station;
 
 /// A line whose tangent has a smaller cosine is kept by its ends: at 1e-3 a rounding of ξ is 1e-11 mm of ζ. Gentler lines are
 /// kept by their angle, which has more digits than a difference of ends that may be near each other.

@@ -1,27 +1,29 @@
-//! Which branch is the outer one at each ξ.
+//! Finds which branch is the outer one at each ξ.
 
-use super::{Branch, BranchPoint, Side};
+use super::branch::Branch;
+use super::points::BranchPoint;
 use crate::numerics::roots::bracketed;
+use crate::profile::side::Side;
 
 /// A closed interval of ξ over which one branch is the outer one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Piece {
-    /// The interval \[mm\].
+    /// Interval of ξ \[mm\].
     pub xi: [f64; 2],
-    /// Index of the branch.
+    /// Index of the outer branch.
     pub branch: usize,
-    /// Its two ends on the branch, with their ζ \[mm\].
+    /// Both ends of the interval on the branch, with their ζ \[mm\].
     pub ends: [(BranchPoint, f64); 2],
 }
 
-/// The outer envelope of all branches, in order of ξ.
+/// Returns the outer envelope of all branches, in order of ξ.
 pub(super) fn pieces(branches: &[Branch], side: Side) -> Vec<Piece> {
     let with_ends =
         |(xi, branch): ([f64; 2], usize)| Piece { xi, branch, ends: xi.map(|xi| branches[branch].point(xi)) };
     intervals(branches, side).into_iter().map(with_ends).collect()
 }
 
-/// Intervals and the index of the outer branch over each.
+/// Returns the intervals, with the index of the outer branch over each.
 fn intervals(branches: &[Branch], side: Side) -> Vec<([f64; 2], usize)> {
     let mut ends: Vec<f64> = branches.iter().flat_map(|b| b.xi).collect();
     ends.sort_by(f64::total_cmp);
@@ -63,7 +65,8 @@ fn outermost(
         return push(out, [a, b], first);
     }
     if first == last {
-        // Sheets of a chain that does not cross itself keep their order; where they meet at an end, rounding decides there.
+        // Sheets of a chain that does not cross itself keep their order; at an end where they meet, rounding
+        // decides.
         return push(out, [a, b], outer(middle).unwrap_or(first));
     }
     let difference = |xi: f64| branches[first].height(xi) - branches[last].height(xi);

@@ -1,4 +1,4 @@
-//! A profile seen from a frame: the transformed profile ζ(ξ) of Report (4.4)–(4.8).
+//! Profiles seen from a frame: the transformed profile ζ(ξ) of Report (4.4)–(4.8).
 
 mod between;
 mod branch;
@@ -13,58 +13,53 @@ pub use branches::Branches;
 pub use envelope::Piece;
 pub use points::{BranchPoint, BranchPoints};
 
-use super::{ONE_JOINT, Profile, Segment, Shape, Station};
+use super::chain::Profile;
+use super::closing::ONE_JOINT;
+use super::segment::{Segment, Shape};
+use super::side::Side;
+use super::station::Station;
 use crate::numerics::twice::Twice;
 
-/// Which body a profile bounds, and so which of several heights at one ξ is the outer one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
-    /// Material below: the highest branch counts.
-    Rail,
-    /// Material above: the lowest branch counts.
-    Wheel,
-}
-
-/// The origin of a frame on a profile: eqs. (4.9)–(4.12).
+/// A point of a profile as the origin of a frame: eqs. (4.9)–(4.12).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ProfilePoint {
-    /// Where it is, with the unit tangent there.
+    /// Point and unit tangent.
     pub station: Station,
-    /// Index of its segment. A joint belongs to both neighbours; here to the left one.
+    /// Index of the segment. A joint belongs to both neighbours; here to the left one.
     pub segment: usize,
-    /// Its parameter on a polynomial segment, 0 on an arc.
+    /// Parameter on a polynomial segment; 0 on an arc.
     parameter: Twice,
 }
 
-/// Part of the profile that faces the other body, as a function ζ(ξ) of the frame.
+/// The part of a profile that faces the other body, as a function ζ(ξ) in a frame.
 ///
-/// Everything is in the frame's axes: ξ along its tangent, ζ along its normal \[mm\]. Where the profile
-/// overhangs in ξ, the outer of the sheets that face the other body counts; where there is none the height is
-/// undefined.
+/// All quantities are in the frame's axes: ξ along its tangent, ζ along its normal \[mm\]. Where the profile
+/// overhangs in ξ, the outer of the sheets that face the other body counts; where no sheet does, the height
+/// is undefined.
 #[derive(Debug, Clone)]
 pub struct Section {
-    /// The frame in profile axes.
+    /// The frame, in profile axes.
     pub frame: Station,
     /// All branches, in the order of the chain.
     pub branches: Vec<Branch>,
-    /// Which branch is the outer one, over disjoint closed intervals of ascending ξ.
+    /// The outer envelope: the outer branch over disjoint closed intervals of ascending ξ.
     pub pieces: Vec<Piece>,
-    /// Index of the branch through the frame's origin, when the frame is that of a contact point.
+    /// Index of the branch through the frame's origin, if the frame is that of a contact point.
     pub contact: Option<usize>,
 }
 
 impl Section {
-    /// The profile in its own axes.
+    /// Makes the section of a profile in its own axes.
     pub fn own_axes(profile: &Profile, side: Side) -> Self {
         Self::build(profile, Station::AXES, None, side)
     }
 
-    /// The profile in the contact frame of one of its points: origin there, ξ along the tangent.
+    /// Makes the section in the contact frame of a point of the profile: origin there, ξ along the tangent.
     pub fn at_contact(profile: &Profile, point: &ProfilePoint, side: Side) -> Self {
         Self::build(profile, point.station, Some(point), side)
     }
 
-    /// The profile in any frame: at a kink, where the common normal is not that of a tangent.
+    /// Makes the section in any frame: for a kink, where the common normal is not that of a tangent.
     pub fn in_frame(profile: &Profile, frame: Station, side: Side) -> Self {
         Self::build(profile, frame, None, side)
     }
@@ -88,7 +83,8 @@ impl Section {
             }
             goes_on = match branches.last().filter(|branch| branch.segment == index) {
                 Some(branch) => branch.ends_segment,
-                // Vertical to rounding: whether it has a narrow branch or none, the surface goes on beyond it.
+                // Vertical to rounding: whether it has a narrow branch or none, the surface continues beyond
+                // it.
                 None => goes_on && run(segment, &frame).abs() <= rounding,
             };
         }
@@ -97,40 +93,43 @@ impl Section {
         Self { frame, branches, pieces, contact }
     }
 
-    /// The outer branch at ξ, or `None` where the body has no surface. At a joint the left one.
+    /// Returns the outer branch at ξ, or `None` where the body has no surface. At a joint it is the left one.
     pub fn branch_at(&self, xi: f64) -> Option<&Branch> {
         self.piece_at(xi).map(|piece| &self.branches[piece.branch])
     }
 
-    /// The piece of the envelope that holds ξ.
+    /// Returns the piece of the envelope that holds ξ.
     pub fn piece_at(&self, xi: f64) -> Option<&Piece> {
         self.pieces_from(xi).first().filter(|piece| piece.xi[0] <= xi)
     }
 
-    /// The pieces of the envelope that do not end before ξ.
+    /// Returns the pieces of the envelope that do not end before ξ.
     pub fn pieces_from(&self, xi: f64) -> &[Piece] {
         &self.pieces[self.pieces.partition_point(|piece| piece.xi[1] < xi)..]
     }
 
-    /// The ends of the envelope's pieces that touch an interval, with their ζ, in order of ξ; twice where two pieces meet.
+    /// Returns the ends of the envelope's pieces that touch an interval, with their ζ, in order of ξ; twice
+    /// where two pieces meet.
     pub fn joints(&self, [from, to]: [f64; 2]) -> impl Iterator<Item = (f64, f64)> {
         let pieces = self.pieces_from(from).iter().take_while(move |piece| piece.xi[0] <= to);
         pieces.flat_map(|piece| [0, 1].map(|end| (piece.xi[end], piece.ends[end].1)))
     }
 
-    /// ζ(ξ) of (4.5), or NaN where the body has no surface. Accurate to rounding at the size of ζ near the
-    /// origin of a contact frame, of the profile's extent elsewhere.
+    /// Returns ζ(ξ) of (4.5) \[mm\], or NaN where the body has no surface.
+    ///
+    /// Accuracy: rounding at the size of ζ near the origin of a contact frame, of the profile's extent
+    /// elsewhere.
     pub fn height(&self, xi: f64) -> f64 {
         self.branch_at(xi).map_or(f64::NAN, |branch| branch.height(xi))
     }
 
-    /// Smallest and largest ξ with a surface.
+    /// Returns the smallest and largest ξ with a surface; `None` if there is no surface.
     pub fn reach(&self) -> Option<[f64; 2]> {
         Some([self.pieces.first()?.xi[0], self.pieces.last()?.xi[1]])
     }
 
-    /// The point of the profile at abscissa x \[mm\], for a section in the profile's own axes: (4.9)–(4.12). At a joint the left
-    /// one; `None` where the body has no surface.
+    /// Returns the point of the profile at abscissa x \[mm\], for a section in the profile's own axes:
+    /// (4.9)–(4.12). At a joint it is on the left segment; `None` where the body has no surface.
     pub fn point(&self, profile: &Profile, x: f64) -> Option<ProfilePoint> {
         Some(Self::point_on(self.branch_at(x)?, profile, x))
     }
@@ -147,7 +146,7 @@ impl Section {
     }
 }
 
-/// Distance \[mm\] in ξ from a segment's start to its end.
+/// Returns the distance \[mm\] in ξ from a segment's start to its end.
 fn run(segment: &Segment, frame: &Station) -> f64 {
     segment.end().seen_from(frame).x - segment.start().seen_from(frame).x
 }

@@ -1,10 +1,10 @@
 //! A polynomial segment seen from a frame, and the parts of it that face the other body.
 
-use super::super::polynomial::turned;
-use super::super::{Polynomial, Station};
 use crate::numerics::polynomial::{derivative, exact_slope, exact_value, range, recentred, value};
 use crate::numerics::roots::bracketed;
 use crate::numerics::twice::Twice;
+use crate::profile::polynomial::{Polynomial, turned};
+use crate::profile::station::Station;
 
 /// Share of a curve's speed below which its run along ξ is the rounding of a vertical: the direction of a straight wall is
 /// known no better, and its run changes sign all along.

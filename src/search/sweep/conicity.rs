@@ -9,17 +9,18 @@
 //! λ = 4 √(e r₀) T,   T = ∫_0^ŷ dy/v        tanγ_e = π²/(8 T²)
 //! ```
 //!
-//! free of e and r₀. Both wheels being alike and the yaw neglected, Δr is odd, so a quarter of the movement does.
+//! which is free of e and r₀. Both wheels are alike and the yaw is neglected, so Δr is odd and a quarter of
+//! the movement is enough.
 //!
-//! # What a table of Δr does to it
+//! # Effect of errors of Δr
 //!
 //! An error ε of Δr changes the conicity by the share 2/T ∫_0^ŷ (∫_y^ŷ ε) v⁻³ dy, less than the largest share
-//! ∫_y^ŷ ε/∫_y^ŷ Δr over y. So not Δr has to be right, but its integrals: bends of micrometres do not count, nor where in
-//! a cell of 1e-6 mm the contact hops.
+//! ∫_y^ŷ ε/∫_y^ŷ Δr over y. So only the integrals of Δr must be right: bends of micrometres do not count, nor
+//! the place of a hop within a cell of 1e-6 mm.
 //!
-//! Δr is continuous but for hops: displacements at which two places of one side touch at once, and the rolling radius
-//! jumps from that of one to that of the other. A hop is the root of the difference of two gaps. A search near it returns
-//! both, and how fast they close; one or two searches place it.
+//! Δr is continuous except at hops: displacements at which two places of one side touch at once, and the
+//! rolling radius jumps from the first place's to the second's. A hop is a root of the difference of two
+//! gaps. A search near it returns both gaps and how fast they close; one or two searches locate it.
 
 mod branches;
 mod movement;
@@ -34,11 +35,12 @@ use refine::{LEAST_AMPLITUDE, Table, most_searches};
 use crate::error::{Error, Result, finite};
 use crate::search::wheelset::{Roll, WheelsetOnTrack};
 
-/// Relative accuracy that is asked of a conicity.
+/// Relative accuracy demanded of a conicity.
 pub const ACCURACY: f64 = 1e-4;
 
-/// How often the table is refined to a quarter of the influence before, while the estimated error asks for it. Amplitudes at
-/// which the movement barely comes back are never accurate; they are not to use up all searches of the others.
+/// Most rounds that refine the table, each to a quarter of the last influence, while the estimated error is
+/// too large. Amplitudes at which the movement barely comes back never become accurate; they must not use up
+/// all searches of the others.
 const ROUNDS: u32 = 4;
 
 /// Points in √(y − y_k) of a cell at which T is tabulated: Chebyshev's on \[0, 1\].
@@ -50,55 +52,57 @@ const POINTS: [f64; 5] = [
     0.975_528_258_147_576_8,
 ];
 
-/// … and one between them, at which the interpolant has to agree with T to this share, a hundredth of [`ACCURACY`].
+/// Point between [`POINTS`] at which the interpolant is compared with T.
 const BETWEEN: f64 = 0.35;
-/// See [`BETWEEN`].
+/// Largest relative difference of the interpolant from T at [`BETWEEN`]: a hundredth of [`ACCURACY`].
 const AGREEMENT: f64 = 1e-2 * ACCURACY;
 
 /// The equivalent conicity of a wheelset on its track over the lateral amplitude.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Conicity {
     movement: Movement,
-    /// Cell by cell, T as a polynomial; none where it is no such curve.
+    /// For each cell T as a polynomial; `None` where T is no smooth curve.
     fits: Vec<Option<Fit>>,
     searches: usize,
 }
 
-/// An equivalent conicity.
+/// An equivalent conicity with its error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Equivalent {
     /// tan γ_e \[1\].
     pub conicity: f64,
-    /// Its estimated relative error \[1\]: of Δr's table, as if the errors of its cells were independent.
+    /// Estimated relative error \[1\], from the table of Δr, as if the errors of its cells were independent.
     pub error: f64,
 }
 
 /// Why there is no equivalent conicity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoConicity {
-    /// Nobody asked for it.
+    /// It was not asked for.
     NotAsked,
-    /// The roll is given: Δr is not odd.
+    /// The roll is given, so that Δr is not odd.
     GivenRoll,
-    /// A displacement of 0 is no amplitude.
+    /// The displacement is 0, which is no amplitude.
     NoAmplitude,
-    /// The amplitude is beyond the table, which ends at the amplitude it was made for, or where the wheelset leaves its
-    /// track.
+    /// The amplitude is beyond the table, which ends at the amplitude it was made for, or where the wheelset
+    /// leaves its track.
     OffTrack,
-    /// The movement does not come back through 0: Δr does not restore there, or turns it back on the way.
+    /// The movement does not come back through 0: Δr does not restore there, or turns the movement back on
+    /// the way.
     NotRestoring,
 }
 
-/// T over one cell, in Newton's form in s = √((y − y_k)/(y_(k+1) − y_k)): beyond a jump of Δr T grows with s.
+/// T over one cell, in Newton's form in s = √((y − y_k)/(y_(k+1) − y_k)): beyond a jump of Δr, T grows with
+/// s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Fit {
     differences: [f64; POINTS.len()],
-    /// Largest relative error of T.
+    /// Largest relative error of T over the cell.
     error: f64,
 }
 
 impl Equivalent {
-    /// Whether the estimated error is within [`ACCURACY`].
+    /// Returns whether the estimated error is within [`ACCURACY`].
     pub fn converged(&self) -> bool {
         self.error <= ACCURACY
     }
@@ -110,12 +114,14 @@ impl Equivalent {
 }
 
 impl Conicity {
-    /// Tabulates Δr up to the largest amplitude ŷ \[mm\]; the table ends early where the wheelset leaves the track.
+    /// Tabulates Δr up to the largest amplitude ŷ \[mm\]; the table ends earlier if the wheelset leaves the
+    /// track.
     ///
-    /// `roll`: [`Roll::Neglect`] is the standard's convention; [`Roll::Solve`] the exact geometry.
-    /// Accuracy: 1e-4 of the conicity at amplitudes from 0.1 mm on; [`Equivalent::error`] says what was reached.
-    /// Cost: at most [`Conicity::most_searches`], of which a drawn pair takes a fifth; every search of a rolling wheelset
-    /// solves its roll.
+    /// `roll`: [`Roll::Neglect`] is the standard's convention, [`Roll::Solve`] the exact geometry.
+    /// Accuracy: 1e-4 of the conicity at amplitudes from 0.1 mm on; [`Equivalent::error`] says what was
+    /// reached.
+    /// Cost: at most [`Conicity::most_searches`], of which a drawn pair takes a fifth; every search of a
+    /// rolling wheelset solves its roll.
     ///
     /// # Errors
     /// An amplitude that is not a positive number; a given roll, at which Δr is not odd.
@@ -123,10 +129,11 @@ impl Conicity {
         Self::told(system, amplitude, roll, &mut |_, _| {})
     }
 
-    /// Does what [`Conicity::new`] does, and tells `progress` how many searches are done, and how many there are at most.
+    /// Tabulates Δr like [`Conicity::new`], and tells `progress` the number of searches done and the most
+    /// there will be.
     ///
     /// # Errors
-    /// Those of [`Conicity::new`].
+    /// The errors of [`Conicity::new`].
     pub fn told(
         system: &WheelsetOnTrack,
         amplitude: f64,
@@ -146,23 +153,25 @@ impl Conicity {
         Self::refined(table, progress)
     }
 
-    /// The most searches that a table up to an amplitude \[mm\] takes: 15 for every tenth of a millimetre.
+    /// Returns the most searches that a table up to an amplitude \[mm\] takes: 15 for every tenth of a
+    /// millimetre.
     pub fn most_searches(amplitude: f64) -> usize {
         most_searches(amplitude, ACCURACY)
     }
 
-    /// How many searches the table took.
+    /// Returns the number of searches that the table took.
     pub fn searches(&self) -> usize {
         self.searches
     }
 
-    /// tan γ_e at the amplitude |y| \[mm\], or why there is none.
+    /// Returns tan γ_e at the amplitude |y| \[mm\], or why there is none.
     ///
-    /// Method: Δr straight between the table's displacements; T of such a Δr as a polynomial over each cell, within 1e-6 of
-    /// what crossing all cells gives, or that itself. Cost: some ten nanoseconds, or a microsecond.
+    /// Method: Δr is straight between the table's displacements. T of such a Δr is a polynomial over each
+    /// cell, within 1e-6 of the sum over all cells; where there is no such polynomial, the sum itself is
+    /// used. Cost: some ten nanoseconds, or a microsecond.
     ///
     /// # Errors
-    /// 0; amplitudes beyond the table; movements that do not come back.
+    /// An amplitude of 0 or beyond the table; a movement that does not come back.
     pub fn at(&self, y: f64) -> std::result::Result<Equivalent, NoConicity> {
         let amplitude = y.abs();
         if amplitude == 0.0 {
@@ -200,14 +209,14 @@ impl Conicity {
     }
 }
 
-/// √ of the share of a cell that lies below y.
+/// Returns the square root of the share of a cell that lies below y.
 fn share([from, to]: [f64; 2], y: f64) -> f64 {
     ((y - from) / (to - from)).sqrt()
 }
 
 impl Fit {
-    /// T over a cell; none over a jump, and where T is no smooth function of s: close to where the movement does not come
-    /// back.
+    /// Fits T over a cell; `None` over a jump, and where T is no smooth function of s: close to where the
+    /// movement does not come back.
     fn new(movement: &Movement, cell: usize) -> Option<Self> {
         let [from, to] = movement.ends(cell);
         let at = |s: f64| {

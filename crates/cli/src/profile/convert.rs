@@ -49,8 +49,9 @@ fn points(arguments: &ConvertArguments) -> Result<String> {
     let source = arguments.source.read()?;
     let points = match (&source.content, arguments.step) {
         (Content::Measured(measured), None) => measured.points.iter().map(|point| point.xz()).collect(),
-        (_, step) => write::sample(source.profile(), step.unwrap_or(STEP))
-            .map_err(|error| Error { place: "--step".into(), ..error })?,
+        (_, step) => {
+            write::sample(source.profile(), step.unwrap_or(STEP)).map_err(|error| error.at("--step"))?
+        }
     };
     let side = match (source.side, format) {
         (Some(side), _) => side,

@@ -123,7 +123,7 @@ fn word<T: DeserializeOwned + Serialize>(option: &str, text: Option<&str>) -> Re
 /// A word as a scene spells it; the complaint lists what could stand there.
 pub(super) fn one_of<T: DeserializeOwned + Serialize>(option: &str, text: &str) -> Result<T> {
     let quoted = serde_json::Value::from(text).to_string();
-    scene::parse(&quoted, true).map_err(|error| Error { place: option.into(), ..error })
+    scene::parse(&quoted, true).map_err(|error| error.at(option))
 }
 
 /// "2,3" or "y,z".

@@ -1,6 +1,7 @@
 #!/bin/sh
-# Sets up what the client tests need, once: a Python environment in target/clients-venv and gfortran.
-# Prints the environment's python as its last line. Does nothing, in milliseconds, when all is there.
+# Makes what the client tests need, once: a Python environment in target/clients-venv and the compiled Fortran reader.
+# Prints the environment's python and, where gfortran is there, the reader, a line each. Installs nothing outside of target/.
+# Does nothing, in milliseconds, when all is there.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 target=${CARGO_TARGET_DIR:-$here/../../../../target}
@@ -17,15 +18,13 @@ if ! cmp -s "$here/requirements.txt" "$venv/installed.txt"; then
     "$venv/bin/pip" install --quiet --disable-pip-version-check -r "$here/requirements.txt" >&2
     cp "$here/requirements.txt" "$venv/installed.txt"
 fi
-
-if ! command -v gfortran >/dev/null; then
-    echo "clients: installing gfortran" >&2
-    root=
-    [ "$(id -u)" = 0 ] || root=sudo
-    $root apt-get install -y -qq gfortran >&2 || { $root apt-get update -qq >&2; $root apt-get install -y -qq gfortran >&2; }
-fi
-
-if [ ! "$target/read_wrp" -nt "$here/read_wrp.f90" ]; then
-    gfortran -std=f2008 -Wall -Wextra -Wno-compare-reals -Werror -O2 -o "$target/read_wrp" "$here/read_wrp.f90" >&2
-fi
 echo "$venv/bin/python"
+
+if command -v gfortran >/dev/null; then
+    if [ ! "$target/read_wrp" -nt "$here/read_wrp.f90" ]; then
+        gfortran -std=f2008 -Wall -Wextra -Wno-compare-reals -Werror -O2 -o "$target/read_wrp" "$here/read_wrp.f90" >&2
+    fi
+    echo "$target/read_wrp"
+else
+    echo "clients: no gfortran, so that nothing reads the decks" >&2
+fi

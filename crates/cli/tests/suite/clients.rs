@@ -3,8 +3,8 @@
 
 use crate::programs::{check, check_all, folder};
 use std::path::Path;
-use wheelrail::export::deck::Deck;
-use wheelrail::export::deck::contact::{Normal, Settings};
+use wheelrail::export::deck::contact::{Normal, Settings, contact};
+use wheelrail::export::deck::{Deck, wrp};
 use wheelrail::export::netcdf::NetCdf;
 use wheelrail::export::picture::{Nodes, Picture};
 use wheelrail::export::{
@@ -158,13 +158,13 @@ fn write_grid(folder: &Folder, header: &Header, grid: &GridFields) {
 
 fn write_decks(folder: &Folder, header: &Header, grid: &GridFields, mesh: &QuadMesh) {
     let deck = Deck::new(header, grid).unwrap();
-    folder.stream("separation.wrp", |sink| deck.separation(sink)).unwrap();
-    folder.stream("conform.wrp", |sink| deck.conform(sink)).unwrap();
+    folder.stream("separation.wrp", |sink| wrp::separation(&deck, sink)).unwrap();
+    folder.stream("conform.wrp", |sink| wrp::conform(&deck, sink)).unwrap();
     let mut countact = Vec::new();
-    deck.countact(mesh, &mut countact).unwrap();
+    wrp::countact(&deck, mesh, &mut countact).unwrap();
     folder.write("countact.wrp", &countact).unwrap();
     let settings = Settings::steel(Normal::Force(LOAD));
-    folder.stream("contact.inp", |sink| deck.contact(&settings, sink)).unwrap();
+    folder.stream("contact.inp", |sink| contact(&deck, &settings, sink)).unwrap();
 }
 
 #[test]

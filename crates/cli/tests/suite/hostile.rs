@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
+use wheelrail_report::random::Random;
 
 use wheelrail::case::{Run, SILENT};
 use wheelrail::scene::{self, Scene};
@@ -108,27 +109,6 @@ const WORDS: [&str; 12] = [
     "\u{3be}",
 ];
 
-/// SplitMix64: enough to choose mutations, the same on every machine.
-struct Dice(u64);
-
-impl Dice {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, n: usize) -> usize {
-        (self.next() % n.max(1) as u64) as usize
-    }
-
-    fn pick<T: Copy>(&mut self, all: &[T]) -> T {
-        all[self.below(all.len())]
-    }
-}
-
 /// Byte ranges of the numbers in a text.
 fn numbers(text: &str) -> Vec<std::ops::Range<usize>> {
     let mut out = Vec::new();
@@ -147,7 +127,7 @@ fn numbers(text: &str) -> Vec<std::ops::Range<usize>> {
     out
 }
 
-fn mutated(dice: &mut Dice, base: &str) -> String {
+fn mutated(dice: &mut Random, base: &str) -> String {
     let mut text = base.to_string();
     for _ in 0..1 + dice.below(3) {
         match dice.below(8) {
@@ -180,13 +160,13 @@ fn mutated(dice: &mut Dice, base: &str) -> String {
                 let quotes: Vec<usize> = text.match_indices('"').map(|(i, _)| i).collect();
                 if quotes.len() > 1 {
                     let k = dice.below(quotes.len() / 2) * 2;
-                    text.replace_range(quotes[k] + 1..quotes[k + 1], dice.pick(&WORDS));
+                    text.replace_range(quotes[k] + 1..quotes[k + 1], dice.pick::<&str>(&WORDS));
                 }
             }
             6 => {
                 let at = dice.below(text.len());
                 if text.is_char_boundary(at) {
-                    text.insert(at, dice.pick(&['[', ']', '{', '"', '=', '\n', '9', '.', '\u{0}', 'é']));
+                    text.insert(at, *dice.pick(&['[', ']', '{', '"', '=', '\n', '9', '.', '\u{0}', 'é']));
                 }
             }
             _ => text.truncate(
@@ -240,8 +220,8 @@ fn mutated_scenes_end_in_a_result_or_an_error() {
         std::env::var("WHEELRAIL_HOSTILE_SCENES").ok().and_then(|n| n.parse().ok()).unwrap_or(SCENES);
     let mut results = 0u64;
     for number in 0..wanted {
-        let mut dice = Dice(SEED ^ number.wrapping_mul(0xD134_2543_DE82_EF95));
-        let base = dice.pick(&BASES);
+        let mut dice = Random::new(SEED ^ number.wrapping_mul(0xD134_2543_DE82_EF95));
+        let base = *dice.pick(&BASES);
         let text = mutated(&mut dice, base);
         let outcome = std::panic::catch_unwind(|| attempt(&text, base.starts_with('{')));
         match outcome {

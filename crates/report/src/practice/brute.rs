@@ -1,10 +1,11 @@
-//! First touch and separation by brute force, from the definitions of the axes alone.
+//! Finds first touch and separation by brute force, from the definitions of the axes alone.
 
 use super::polyline::{Facing, Polyline, Vertex, outermost, vertices};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::Station;
 
-/// Where a wheel stands: its profile origin beside the rail's \[mm\], and its angles \[rad\], in the side's own axes.
+/// The attitude of a wheel: position of its profile origin beside the rail's \[mm\] and angles \[rad\], in
+/// the side's own axes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stance {
     pub offset: f64,
@@ -20,14 +21,14 @@ pub(super) struct Bodies {
     pub radius: f64,
 }
 
-/// First touch.
+/// First touch of a pair.
 #[derive(Debug)]
 pub(super) struct Lowered {
     /// Height of the wheel's profile origin over the rail's \[mm\].
     pub height: f64,
     rail: Polyline,
     wheel: Polyline,
-    /// [abscissa, gap at first touch] \[mm\] at every vertex of either outline, ascending.
+    /// Pairs \[abscissa, gap at first touch\] \[mm\] at every vertex of either outline, ascending.
     pub gaps: Vec<[f64; 2]>,
 }
 
@@ -41,7 +42,7 @@ impl Bodies {
         Self { rail: vertices(pair.rail()), wheel: vertices(pair.wheel()), radius: pair.wheel_radius() }
     }
 
-    /// Lowers the wheel; `None` where it is not over its rail.
+    /// Lowers the wheel; `None` if it is not over its rail.
     pub fn lowered(&self, standing: &Stance) -> Option<Lowered> {
         let rail = Polyline::new(self.rail.iter().map(|v| [v.x, v.z]).collect(), Facing::Up);
         let wheel = Polyline::new(self.outline(standing), Facing::Down);
@@ -54,7 +55,8 @@ impl Bodies {
         (!gaps.is_empty()).then_some(Lowered { height: -least, rail, wheel, gaps })
     }
 
-    /// The wheel seen along the rail, with its profile origin at height 0: where a circle's normal lies across the rail.
+    /// Returns the outline of the wheel along the rail, with its profile origin at height 0: the points where
+    /// a circle's normal is across the rail.
     fn outline(&self, standing: &Stance) -> Vec<[f64; 2]> {
         let axes = Directions::new(standing);
         let mut out: Vec<[f64; 2]> = Vec::with_capacity(self.wheel.len());
@@ -89,7 +91,7 @@ impl Bodies {
         if standing.yaw == 0.0 { vec![place(0)] } else { (-steps..=steps).map(place).collect() }
     }
 
-    /// s(ξ, η) \[mm\] of a placed pair; `None` where a body has no surface.
+    /// Returns s(ξ, η) \[mm\] of a placed pair; `None` where a body has no surface.
     pub fn separation(&self, placement: &Placement, xi: f64, eta: f64) -> Option<f64> {
         let seen = |frame: &Station, x: f64, z: f64| {
             let at = Station { x, z, ..Station::AXES }.seen_from(frame);
@@ -111,16 +113,17 @@ impl Bodies {
 }
 
 impl Lowered {
-    /// Gap at first touch at one abscissa \[mm\].
+    /// Returns the gap at first touch at one abscissa \[mm\].
     pub fn gap(&self, x: f64) -> Option<f64> {
         Some(self.wheel.height(x)? - self.rail.height(x)? + self.height)
     }
 
-    /// [abscissa, gap] of every place that is the lowest within `apart` to either side, up to the gap `within` \[mm\].
+    /// Returns \[abscissa, gap\] of every place that is the lowest within `apart` to either side, up to the
+    /// gap `within` \[mm\].
     pub fn lowest_places(&self, within: f64, apart: f64) -> Vec<[f64; 2]> {
         let mut out = Vec::new();
         let (mut from, mut to) = (0, 0);
-        // Indices of the window's candidates for the least gap, their gaps ascending.
+        // Indices of the window's candidates for the least gap, by ascending gap.
         let mut least: std::collections::VecDeque<usize> = std::collections::VecDeque::new();
         for (k, [x, gap]) in self.gaps.iter().enumerate() {
             while to < self.gaps.len() && self.gaps[to][0] <= x + apart {
@@ -153,7 +156,7 @@ struct Directions {
 }
 
 impl Directions {
-    /// R_y(roll) R_z(yaw), both right-handed.
+    /// Returns the columns of R_y(roll) R_z(yaw), both right-handed.
     fn new(standing: &Stance) -> Self {
         let (sin_yaw, cos_yaw) = standing.yaw.sin_cos();
         let (sin, cos) = standing.roll.sin_cos();
@@ -164,7 +167,8 @@ impl Directions {
         }
     }
 
-    /// A point of the profile turned about the axle, in the rail's (x, z) with the wheel's profile origin at height 0.
+    /// Returns a point of the profile turned about the axle, in the rail's (x, z), with the wheel's profile
+    /// origin at height 0.
     fn place(&self, standing: &Stance, radius: f64, [x, z]: [f64; 2], turn: f64) -> [f64; 2] {
         let (sin, cos) = turn.sin_cos();
         let distance = radius - z;

@@ -1,4 +1,4 @@
-//! The checks of one placed pair against brute force.
+//! Checks one placed pair against brute force.
 
 use super::PracticeRow;
 use super::brute::{Bodies, Stance};
@@ -16,24 +16,25 @@ use wheelrail::separation::Evaluator;
 
 /// Gap \[mm\] up to which near misses are compared.
 const WITHIN: f64 = 0.2;
-/// Difference \[mm\] of a height or a gap from brute force: chords leave a lip of 1 mm radius by 1.3e-5 mm, and on a flange of
-/// 75° that is four times as much upright.
+/// Largest difference \[mm\] of a height or a gap from brute force: chords are off a lip of 1 mm radius by
+/// 1.3e-5 mm, and on a flange of 75° this is four times as much in height.
 const HEIGHT: f64 = 1e-4;
-/// Difference \[mm\] of s from brute force, across the surface.
+/// Largest difference \[mm\] of s from brute force, across the surface.
 const SEPARATION: f64 = 3e-5;
-/// Points at which s is compared.
+/// Number of points at which s is compared.
 const POINTS: usize = 40;
 /// Half the width \[mm\] over which a place of brute force is the lowest: wider than a wave of noise.
 const APART: f64 = 0.3;
-/// Relative difference of a patch's area from that of a flood fill with 160 points across.
+/// Largest relative difference of a patch's area from that of a flood fill with 160 points across.
 const AREA: f64 = 5e-3;
-/// Spacing of the rails' inner faces and the wheels' origins \[mm\].
+/// Gauge of the rails' inner faces \[mm\].
 const GAUGE: RailDistance = RailDistance::Gauge { gauge: 1435.0, height: 14.0 };
+/// Spacing of the wheels' origins \[mm\].
 const WHEELS: WheelDistance = WheelDistance::Spacing(1500.0);
 
 const SELECTION: Selection = Selection { within: WITHIN, apart: ONE_CONTACT };
 
-/// A single wheel: its contacts, and the patch around the first.
+/// Checks a single wheel: its contacts, and the patch around the first.
 pub(super) fn wheel(pair: &Pair, offset: f64, yaw: f64, approach: f64, row: &mut PracticeRow) -> Result<()> {
     let bodies = Bodies::new(pair);
     let profiles = ProfilePair::new(pair)?;
@@ -45,7 +46,7 @@ pub(super) fn wheel(pair: &Pair, offset: f64, yaw: f64, approach: f64, row: &mut
     patch(pair, &bodies, touch.contacts.first(), approach, "", row)
 }
 
-/// A wheelset with its roll solved: both sides as single wheels, at one height.
+/// Checks a wheelset with its roll solved: both sides as single wheels, at one height.
 pub(super) fn wheelset(
     pair: &Pair,
     lateral: f64,
@@ -72,7 +73,7 @@ pub(super) fn wheelset(
     Ok(())
 }
 
-/// A wheelset at many positions, and its conicity.
+/// Checks a wheelset at many positions, and its conicity.
 pub(super) fn sweep(
     pair: &Pair,
     positions: &[f64],
@@ -100,7 +101,7 @@ pub(super) fn sweep(
         row.failures.push(format!("the conicity took {searches} searches of at most {most}"));
     }
     match conicity.at(0.9 * amplitude) {
-        // Worn pairs reach 1; more is a fault. A hollow wheel may not come back at all.
+        // Worn pairs reach 1; more is a fault. The movement of a hollow wheel may not come back at all.
         Ok(found) if found.conicity > 0.0 && found.conicity < 2.0 => {}
         Err(NoConicity::NotRestoring) => {}
         other => row.failures.push(format!("conicity {other:?}")),
@@ -108,14 +109,15 @@ pub(super) fn sweep(
     Ok(())
 }
 
-/// Where one side of a wheelset stands, by the definition of the axes: the left side is the mirror image.
+/// Returns the attitude of one side of a wheelset, by the definition of the axes: the left side is the mirror
+/// image.
 fn standing(system: &WheelsetOnTrack, position: &Position, roll: f64, sign: f64) -> Stance {
     let (yaw, roll) = (sign * position.yaw, sign * roll);
     let along = system.wheelset.wheel_x * yaw.cos() * roll.cos() - system.wheelset.radius * roll.sin();
     Stance { offset: sign * position.lateral + along - system.track.rail_x, yaw, roll }
 }
 
-/// Height, contacts and near misses of one side.
+/// Compares height, contacts and near misses of one side.
 fn contacts(bodies: &Bodies, standing: &Stance, touch: &Touch, name: &str, row: &mut PracticeRow) {
     let Some(lowered) = bodies.lowered(standing) else {
         row.failures.push(format!("{name}brute force finds no wheel over the rail"));
@@ -129,7 +131,7 @@ fn contacts(bodies: &Bodies, standing: &Stance, touch: &Touch, name: &str, row: 
     };
     differ(format!("height {}", touch.height), (touch.height - lowered.height).abs());
     for contact in touch.contacts {
-        // A contact is where both outlines are: at the rail's abscissa.
+        // A contact must be on both outlines at the rail's abscissa.
         let gap = lowered.gap(contact.rail_x).unwrap_or(f64::NAN);
         differ(format!("gap {} at {}", contact.gap, contact.rail_x), (gap - contact.gap).abs());
     }
@@ -143,7 +145,7 @@ fn contacts(bodies: &Bodies, standing: &Stance, touch: &Touch, name: &str, row: 
     }
 }
 
-/// The patch around a contact, its automatic grid, and s at random points of it.
+/// Compares the patch around a contact, its automatic grid, and s at random points of it.
 fn patch(
     pair: &Pair,
     bodies: &Bodies,
@@ -182,7 +184,7 @@ fn patch(
     Ok(())
 }
 
-/// The outermost cells of an automatic grid lie outside the patch.
+/// Checks that the outermost cells of an automatic grid are outside the patch.
 fn ring(placement: &Placement, approach: f64, grid: &axes::Axes, name: &str, row: &mut PracticeRow) {
     let mut evaluator = Evaluator::new(placement);
     let (rows, columns) = (grid.xi.len(), grid.eta.len());
@@ -198,7 +200,7 @@ fn ring(placement: &Placement, approach: f64, grid: &axes::Axes, name: &str, row
     }
 }
 
-/// s at random points of a window.
+/// Compares s at random points of a window.
 fn separations(bodies: &Bodies, placement: &Placement, window: &Window, name: &str, row: &mut PracticeRow) {
     let mut random = Random::new(POINTS as u64);
     let mut evaluator = Evaluator::new(placement);

@@ -1,27 +1,28 @@
-//! The patch by a flood fill over a fine grid.
+//! Finds the patch by a flood fill over a fine grid.
 
 use wheelrail::patch::Window;
 use wheelrail::placement::Placement;
 use wheelrail::separation::Evaluator;
 
-/// Points along the shorter side of the grid, and most along the longer one.
+/// Number of points along the shorter side of the grid.
 const FEWEST: f64 = 160.0;
+/// Most points along the longer side of the grid.
 const MOST: f64 = 2400.0;
-/// Points across a cell at which s is interpolated for the area.
+/// Number of points across a cell at which s is interpolated for the area.
 const INSIDE: usize = 4;
-/// Points of the grid below which a part is too small for a fill to tell.
+/// Points of the grid below which a component is too small for a flood fill.
 const LEAST_POINTS: usize = 9;
 
-/// A patch as a fine grid has it.
+/// A patch found by a flood fill.
 #[derive(Debug)]
 pub(super) struct Filled {
-    /// Distance of its points along ξ \[mm\].
+    /// Distance of the grid's points along ξ \[mm\].
     pub step: f64,
     /// Area \[mm²\].
     pub area: f64,
-    /// Connected parts of at least nine points.
+    /// Number of connected parts of at least nine points.
     pub parts: usize,
-    /// Area \[mm²\] of nine cells: what is smaller is no part here.
+    /// Area \[mm²\] of nine cells: smaller parts are not counted.
     pub least_area: f64,
 }
 
@@ -34,7 +35,7 @@ pub(super) fn filled(placement: &Placement, approach: f64, window: &Window) -> F
     let eta: Vec<f64> = (0..counts[1]).map(|k| at(window.eta, k, counts[1])).collect();
     let mut evaluator = Evaluator::new(placement);
     let mut s = vec![f64::NAN; counts[0] * counts[1]];
-    // Without skew a patch is what lies over the midplane.
+    // Without skew the patch is over the midplane.
     let over = if placement.skew == 0.0 { placement.overlap() } else { Some(window.xi) };
     for (k, column) in s.chunks_exact_mut(counts[1]).enumerate() {
         let xi = at(window.xi, k, counts[0]);
@@ -51,7 +52,8 @@ pub(super) fn filled(placement: &Placement, approach: f64, window: &Window) -> F
     }
 }
 
-/// Cells covered by the patch, s being bilinear in each; cells with a corner off a body count by their defined corners.
+/// Returns the number of cells covered by the patch; s is bilinear in each. Cells with a corner off a body
+/// count by their defined corners.
 fn covered(s: &[f64], n: usize, approach: f64) -> f64 {
     let mut sum = 0.0;
     for k in 0..s.len() / n - 1 {
@@ -79,7 +81,7 @@ fn share([a, b, c, d]: [f64; 4], approach: f64) -> f64 {
     inside as f64 / (INSIDE * INSIDE) as f64
 }
 
-/// Connected parts of at least [`LEAST_POINTS`], by steps along ξ, η and both.
+/// Returns the number of connected parts of at least [`LEAST_POINTS`], by steps along ξ, η and both.
 fn parts(s: &[f64], n: usize, approach: f64) -> usize {
     let mut seen: Vec<bool> = s.iter().map(|s| s.is_nan() || *s >= approach).collect();
     let rows = s.len() / n;

@@ -1,9 +1,10 @@
-//! Whole cases as engineers have them, each run from its files to its grids and checked against brute force.
+//! Runs whole cases of engineers from their files to their grids, and checks them against brute force.
 //!
-//! The cases are `cases.toml`: profiles new and worn, from drawings and from files of every format, where the wheel
-//! stands, and why the case is there. [`run`] makes the profiles, searches the contacts, cuts the patch out of an automatic
-//! grid, and compares: heights and gaps with both bodies as chords of 0.01 mm, s with rays to those chords, parts and area of
-//! the patch with a flood fill, and the ring around the automatic grid with δ. What disagrees is a [`PracticeRow`]'s failure.
+//! The cases are `cases.toml`: profiles new and worn, from drawings and from files of every format, the
+//! position of the wheel, and the reason for the case. [`run`] makes the profiles, searches the contacts,
+//! cuts the patch out of an automatic grid, and compares: heights and gaps with both bodies as chords of 0.01
+//! mm, s with rays to those chords, number and area of the components with a flood fill, and the ring around
+//! the automatic grid with δ. Each disagreement is a failure of a [`PracticeRow`].
 
 mod brute;
 mod checks;
@@ -18,46 +19,46 @@ use wheelrail::measured::Format;
 use wheelrail::placement::Pair;
 use wheelrail::profile::{Profile, Side, standards};
 
-/// One row of the report: what a case gave.
+/// The result of a case, one row of the report.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PracticeRow {
     /// Name of the case.
     pub name: String,
-    /// Why it is there, and what stands where.
+    /// Reason for the case, with its profiles and position.
     pub what: String,
-    /// Its one figure: the largest difference \[mm\] of a height, gap or separation from brute force.
+    /// Largest difference \[mm\] of a height, gap or separation from brute force.
     pub figure: f64,
-    /// Contacts and near misses that were compared.
+    /// Number of contacts and near misses that were compared.
     pub contacts: usize,
-    /// Largest relative difference of a patch's area from the flood fill; NaN where no patch was asked for.
+    /// Largest relative difference of a patch's area from the flood fill; NaN if no patch was asked for.
     pub area: f64,
-    /// What disagrees; empty where all is well.
+    /// The disagreements; empty if there are none.
     pub failures: Vec<String>,
 }
 
-/// A case.
+/// A case as its table has it.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PracticeCase {
-    /// Its name.
+    /// Name of the case.
     pub name: String,
-    /// Why it is there.
+    /// Reason for the case.
     pub why: String,
     rail: CaseProfile,
     wheel: CaseProfile,
-    /// R \[mm\].
+    /// Nominal rolling radius R \[mm\].
     #[serde(default = "usual_radius")]
     radius: f64,
-    /// The rail leans by 1:n; upright if not given.
+    /// Inclination 1:n of the rail; upright if not given.
     #[serde(default)]
     lean: Option<f64>,
     stand: Stand,
-    /// δ \[mm\].
+    /// Approach δ \[mm\].
     #[serde(default = "usual_approach")]
     approach: f64,
 }
 
-/// Where a profile comes from: a name, or a specimen.
+/// The source of a profile: a built-in name, or a specimen.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(untagged)]
 enum CaseProfile {
@@ -80,15 +81,16 @@ struct Made {
     format: Format,
 }
 
-/// Where the wheels stand.
+/// The position of the wheels.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 enum Stand {
-    /// One wheel, its profile origin beside the rail's.
+    /// One wheel, with its profile origin beside the rail's.
     Wheel { offset: f64, yaw: f64 },
-    /// A wheelset: gauge and origins as below; roll solved.
+    /// A wheelset on the track of the checks, with the roll solved.
     Wheelset { lateral: f64, yaw: f64 },
-    /// A wheelset at equal steps of the lateral displacement, roll solved, with the conicity at `amplitude`.
+    /// A wheelset at equal steps of the lateral displacement, with the roll solved and the conicity at
+    /// `amplitude`.
     Sweep { to: f64, steps: u32, yaw: f64, amplitude: f64 },
 }
 
@@ -100,7 +102,7 @@ fn usual_approach() -> f64 {
     0.05
 }
 
-/// All cases.
+/// Reads all cases.
 ///
 /// # Errors
 /// A fault of the table.
@@ -114,7 +116,7 @@ pub fn cases() -> Result<Vec<PracticeCase>> {
     Ok(table.case)
 }
 
-/// Runs one case; what goes wrong on the way, an error included, is a failure of its row.
+/// Runs one case; every fault on the way, an error included, is a failure of its row.
 pub fn run(case: &PracticeCase) -> PracticeRow {
     let mut row = PracticeRow {
         name: case.name.clone(),
@@ -140,7 +142,7 @@ pub fn run(case: &PracticeCase) -> PracticeRow {
 }
 
 impl PracticeCase {
-    /// The rail as it lies, and the wheel.
+    /// Makes the pair of the rail as it lies, and the wheel.
     fn pair(&self) -> Result<Pair> {
         let rail = self.rail.profile(Side::Rail)?;
         let rail = match self.lean {

@@ -1,12 +1,12 @@
-//! Profiles as chains of chords, and where they are outermost: what brute force compares with. Nothing here uses the
-//! sections, searches and kernels that it checks.
+//! Turns profiles into chains of chords, and finds where they are outermost: the data of brute force. Nothing
+//! here uses the sections, searches and kernels that it checks.
 
 use wheelrail::profile::Profile;
 use wheelrail::profile::trace::trace;
 
-/// Distance \[mm\] of a chain's points: its chords leave a radius of 1 mm, that of a lip, by 1.3e-5 mm.
+/// Distance \[mm\] of a chain's points: its chords are off a radius of 1 mm, that of a lip, by 1.3e-5 mm.
 const STEP: f64 = 0.01;
-/// Width \[mm\] of the bins in which chords are looked up: some ten of them.
+/// Width \[mm\] of the bins in which chords are looked up: some ten chords.
 const BIN: f64 = 0.05;
 
 /// A vertex of a profile with its unit tangent.
@@ -18,7 +18,7 @@ pub(super) struct Vertex {
     pub sin: f64,
 }
 
-/// The vertices of a profile, from left to right, both sides of its joints among them.
+/// Returns the vertices of a profile, from left to right, with both sides of its joints.
 pub(super) fn vertices(profile: &Profile) -> Vec<Vertex> {
     let vertex = |station: wheelrail::profile::Station| Vertex {
         x: station.x,
@@ -29,12 +29,12 @@ pub(super) fn vertices(profile: &Profile) -> Vec<Vertex> {
     trace(profile, STEP).iter().map(|mark| vertex(mark.station)).collect()
 }
 
-/// Which way a surface faces.
+/// The direction in which a surface faces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Facing {
-    /// The highest point counts.
+    /// Upwards: the highest point counts.
     Up,
-    /// The lowest point counts.
+    /// Downwards: the lowest point counts.
     Down,
 }
 
@@ -47,7 +47,7 @@ impl Facing {
     }
 }
 
-/// A chain of chords that is asked for its outermost height at many places.
+/// A chain of chords whose outermost height is taken at many places.
 #[derive(Debug)]
 pub(super) struct Polyline {
     points: Vec<[f64; 2]>,
@@ -71,7 +71,7 @@ impl Polyline {
         Self { points, facing, left, bins }
     }
 
-    /// Outermost height at an abscissa; `None` beside the chain.
+    /// Returns the outermost height at an abscissa; `None` beside the chain.
     pub fn height(&self, x: f64) -> Option<f64> {
         let bin = (x >= self.left).then(|| ((x - self.left) / BIN) as usize)?;
         let chords = self
@@ -82,13 +82,13 @@ impl Polyline {
         chords.reduce(|a, b| self.facing.outer(a, b))
     }
 
-    /// The abscissae of its points.
+    /// Returns the abscissae of the chain's points.
     pub fn abscissae(&self) -> impl Iterator<Item = f64> {
         self.points.iter().map(|p| p[0])
     }
 }
 
-/// Height of a chord at an abscissa; of a vertical one its outer end.
+/// Returns the height of a chord at an abscissa; for a vertical chord, that of its outer end.
 fn over(a: [f64; 2], b: [f64; 2], x: f64, facing: Facing) -> Option<f64> {
     let [low, high] = [a[0].min(b[0]), a[0].max(b[0])];
     if x < low || x > high {
@@ -100,7 +100,7 @@ fn over(a: [f64; 2], b: [f64; 2], x: f64, facing: Facing) -> Option<f64> {
     Some(a[1] + (b[1] - a[1]) * ((x - a[0]) / (b[0] - a[0])))
 }
 
-/// Outermost height of a chain at one abscissa, without bins: for chains that are asked once.
+/// Returns the outermost height of a chain at one abscissa, without bins: for chains that are asked once.
 pub(super) fn outermost(points: impl Iterator<Item = [f64; 2]>, x: f64, facing: Facing) -> Option<f64> {
     let mut before: Option<[f64; 2]> = None;
     let mut out: Option<f64> = None;

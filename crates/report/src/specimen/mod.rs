@@ -1,10 +1,13 @@
-//! Profiles as instruments measure them, made from a seed: new and worn, hollow, lipped, grooved, noisy.
+//! Makes profiles as instruments measure them, from a seed: new and worn, hollow, lipped, grooved, noisy.
 //!
-//! A [`SpecimenKind`] is an outline that wear has changed by an amount drawn from the seed; an [`Instrument`] takes
-//! points along it; [`Specimen::file`] writes them in a format of measured files, [`Specimen::measured`] reads
-//! that file back, so that a case goes the whole way of a user's file.
+//! A [`SpecimenKind`] is an outline that wear has changed by an amount drawn from the seed. An [`Instrument`]
+//! takes points along it. [`Specimen::file`] writes them in a format of measured files, and
+//! [`Specimen::measured`] reads that file back, so that a case takes the whole way of a user's file.
 
+mod instrument;
 mod outline;
+
+pub use instrument::Instrument;
 
 use serde::Deserialize;
 
@@ -14,7 +17,7 @@ use wheelrail::error::Result;
 use wheelrail::measured::{self, Format, Measured, Options, write};
 use wheelrail::profile::{Profile, Side, standards};
 
-/// What is measured.
+/// The body that is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SpecimenKind {
@@ -24,11 +27,12 @@ pub enum SpecimenKind {
     FullHead,
     /// 60E1 worn by 1–3 mm on the crown and by 0.5–2 mm on the gauge face.
     WornRail,
-    /// A head whose gauge corner and gauge face have worn to the root and the flange of S1002: radius 14 mm, 70°.
+    /// A head whose gauge corner and gauge face are worn to the shape of S1002's root and flange: radius 14
+    /// mm, 70°.
     ConformalRail,
     /// 60E1 with lips of 0.5–1.5 mm that overhang the gauge and the field flank.
     LippedRail,
-    /// A grooved rail: head, groove 47 mm deep, keeper; outer faces of both measured.
+    /// A grooved rail: head, groove 47 mm deep, keeper, with the outer faces of head and keeper.
     GroovedRail,
     /// A switch blade whose head is 8–24 mm wide.
     SwitchBlade,
@@ -38,7 +42,7 @@ pub enum SpecimenKind {
     FullFlangeWheel,
     /// S1002 worn by 0.7–2 mm on the tread and by 0.5–1.5 mm on the flange.
     WornWheel,
-    /// S1002 with a tread worn hollow by 2–4 mm: the field side stands out.
+    /// S1002 with a tread worn hollow by 2–4 mm, so that the field side protrudes.
     HollowWheel,
     /// A tram wheel for the grooved rail: flange 22 mm high and 20 mm thick, vertical flange back, tread 1:40.
     TramWheel,
@@ -59,12 +63,12 @@ impl SpecimenKind {
     pub const WHEELS: [Self; 5] =
         [Self::NewWheel, Self::FullFlangeWheel, Self::WornWheel, Self::HollowWheel, Self::TramWheel];
 
-    /// The body that it is of.
+    /// Returns the body of the specimen.
     pub fn side(self) -> Side {
         if Self::WHEELS.contains(&self) { Side::Wheel } else { Side::Rail }
     }
 
-    /// Its name in tables and files.
+    /// Returns the name in tables and files.
     pub fn name(self) -> &'static str {
         match self {
             Self::NewRail => "new-rail",
@@ -83,54 +87,31 @@ impl SpecimenKind {
     }
 }
 
-/// How it is measured.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Instrument {
-    /// Distance of the points along the profile \[mm\], each up to a fifth of it off its place; typical 0.05–1.
-    pub spacing: f64,
-    /// Standard deviation of the noise across the profile \[µm\]; typical 0–20. Points nearer than 0.25 mm share it in
-    /// part.
-    pub noise: f64,
-    /// Dents in the surface, 0.05–0.3 mm deep and 1–5 mm wide.
-    pub pits: usize,
-    /// Stretches of 4–12 mm that are plane.
-    pub flats: usize,
-    /// Seed of the wear, the noise and the places of pits and flats.
-    pub seed: u64,
-}
-
-impl Instrument {
-    /// Points every `spacing` \[mm\] with `noise` \[µm\], without pits and flats.
-    pub fn new(spacing: f64, noise: f64, seed: u64) -> Self {
-        Self { spacing, noise, pits: 0, flats: 0, seed }
-    }
-}
-
 /// A measured body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Specimen {
-    /// What was measured.
+    /// The body that was measured.
     pub kind: SpecimenKind,
-    /// How.
+    /// The instrument that measured it.
     pub instrument: Instrument,
     /// The points \[mm\] in profile axes, from left to right.
     pub points: Vec<[f64; 2]>,
 }
 
 impl Specimen {
-    /// Measures a body: the same kind and instrument give the same points on every machine with correctly rounded
+    /// Measures a body. A kind and an instrument give the same points on every machine with correctly rounded
     /// elementary functions, and points equal to 1e-12 mm on others.
     ///
     /// # Errors
-    /// None but a fault of the built-in profiles.
+    /// A fault of the built-in profiles only.
     pub fn new(kind: SpecimenKind, instrument: Instrument) -> Result<Self> {
-        // Another stream than that of the noise, of the same seed.
+        // The wear takes another stream than the noise, of the same seed.
         let mut wear = Random::new(!instrument.seed);
         let points = recorded(&outline(kind, &mut wear)?, kind.side(), &instrument);
         Ok(Self { kind, instrument, points })
     }
 
-    /// Name and text of a file of the points.
+    /// Returns the name and the text of a file of the points.
     pub fn file(&self, format: Format) -> (String, String) {
         let side = self.kind.side();
         let extension = match (format, side) {
@@ -148,7 +129,7 @@ impl Specimen {
         (name, text)
     }
 
-    /// The options that say what a format leaves open.
+    /// Returns the options for what a format leaves open.
     pub fn options(&self, format: Format) -> Options {
         let (mirror, flip_z) = match (format, self.kind.side()) {
             (Format::MiniProf, Side::Rail) => (Some(true), Some(false)),
@@ -158,33 +139,34 @@ impl Specimen {
         Options { mirror, flip_z, ..Options::default() }
     }
 
-    /// The profile that the program makes of the file in a format, smoothed as by default.
+    /// Returns the profile that the program makes of the file in a format, with its default smoothing.
     ///
     /// # Errors
-    /// Whatever the program refuses about the file.
+    /// A file that the program rejects.
     pub fn measured(&self, format: Format) -> Result<Measured> {
         self.measured_with(format, &self.options(format))
     }
 
-    /// The profile that the program makes of the file in a format with these options.
+    /// Returns the profile that the program makes of the file in a format with these options.
     ///
     /// # Errors
-    /// Whatever the program refuses about the file or the options.
+    /// A file or options that the program rejects.
     pub fn measured_with(&self, format: Format, options: &Options) -> Result<Measured> {
         let (name, text) = self.file(format);
         measured::profile(&name, text.as_bytes(), self.kind.side(), options)
     }
 
-    /// The profile that the program makes of a SIMPACK file of the points, smoothed as by default.
+    /// Returns the profile that the program makes of a SIMPACK file of the points, with its default
+    /// smoothing.
     ///
     /// # Errors
-    /// Whatever the program refuses about the file.
+    /// A file that the program rejects.
     pub fn profile(&self) -> Result<Profile> {
         self.measured(Format::Simpack).map(|measured| measured.profile)
     }
 }
 
-/// The outline of a body \[mm\], its wear drawn from the stream.
+/// Returns the outline of a body \[mm\], with its wear drawn from the stream.
 fn outline(kind: SpecimenKind, wear: &mut Random) -> Result<Vec<[f64; 2]>> {
     Ok(match kind {
         SpecimenKind::NewRail => head()?,
@@ -230,9 +212,10 @@ fn outline(kind: SpecimenKind, wear: &mut Random) -> Result<Vec<[f64; 2]>> {
 
 /// Length of the flange back \[mm\].
 const FLANGE_BACK: f64 = 30.0;
-/// Depth \[mm\] under its top down to which a drawn head is measured: the flank, above the fillet of the underside.
+/// Depth \[mm\] below its top to which a drawn head is measured: the flank, above the fillet of the
+/// underside.
 const HEAD_DEPTH: f64 = 32.0;
-/// Corners (x, z, radius) \[mm\].
+/// Corners \[x, z, radius\] of the full head \[mm\].
 const FULL_HEAD: [[f64; 3]; 6] = [
     [-36.0, -34.0, 0.0],
     [-36.0, -1.2, 13.0],
@@ -263,13 +246,13 @@ const TRAM_WHEEL: [[f64; 3]; 6] = [
     [58.0, 9.0, 0.0],
 ];
 
-/// A switch blade whose head has this width \[mm\] at its top.
+/// Returns a switch blade whose head has this width \[mm\] at its top.
 fn blade(width: f64) -> [[f64; 3]; 4] {
     let radius = 0.3 * width;
     [[-39.0, -38.0, 0.0], [-36.0, -2.0, radius], [-36.0 + width, -3.0, radius], [-24.0 + width, -36.0, 0.0]]
 }
 
-/// The head of 60E1 with its flanks.
+/// Returns the head of 60E1 with its flanks.
 fn head() -> Result<Vec<[f64; 2]>> {
     let mut points = drawn(&standards::rail("60E1")?);
     let top = points.iter().map(|p| p[1]).fold(f64::NEG_INFINITY, f64::max);
@@ -277,7 +260,7 @@ fn head() -> Result<Vec<[f64; 2]>> {
     Ok(points)
 }
 
-/// Gauss's bell: `height` at `centre`, 61 % of it at the distance `width`.
+/// Returns Gauss's bell: `height` at `centre`, 61 % of it at the distance `width`.
 fn bell(at: f64, centre: f64, width: f64, height: f64) -> f64 {
     let share = (at - centre) / width;
     height * (-0.5 * share * share).exp()
@@ -331,7 +314,7 @@ mod tests {
         assert!(grooved.iter().any(|p| p[1] < -46.0 && (-70.0..-40.0).contains(&p[0])));
         let hollow = specimen(SpecimenKind::HollowWheel)?.points;
         let at = |x: f64| hollow.iter().find(|p| p[0] > x).map_or(f64::NAN, |p| p[1]);
-        // Material above: the worn tread lies higher than the field side.
+        // The material is above: the worn tread is higher than the field side.
         assert!(at(6.0) > at(40.0) + 1.0, "{} {}", at(6.0), at(40.0));
         Ok(())
     }

@@ -1,18 +1,20 @@
-//! Outlines of bodies as dense chains of points \[mm\], from left to right: drawn, worn away, measured.
+//! Makes outlines of bodies as dense chains of points \[mm\], from left to right: drawn, worn, measured.
 
-use super::Instrument;
+use super::instrument::Instrument;
 use crate::random::Random;
 use wheelrail::profile::trace::trace;
 use wheelrail::profile::{Profile, Side};
 
-/// Distance of an outline's points \[mm\]: its chords leave a 3 mm radius by 2e-5 mm, far below any noise.
+/// Distance of an outline's points \[mm\]: its chords are off a 3 mm radius by 2e-5 mm, far less than any
+/// noise.
 const STEP: f64 = 0.02;
-/// Wavelength \[mm\] below which an instrument's noise is one number: the probe's wheel or the laser's line is wider.
-/// Independent numbers every 0.05 mm would turn the path back on itself, which no instrument's file does.
+/// Wavelength \[mm\] below which an instrument's noise is constant: the probe's wheel or the laser's line is
+/// wider. Independent noise every 0.05 mm would turn the path back on itself, which no instrument's file
+/// does.
 const CORRELATION: f64 = 0.25;
-/// Share of the spacing by which a point lies off its place, to either side.
+/// Largest distance of a point from its place, to either side, as a share of the spacing.
 const JITTER: f64 = 0.2;
-/// Share of the outline at each end without pits and flats.
+/// Share of the outline at each end that has no pits and flats.
 const CLEAR_END: f64 = 0.05;
 
 /// A point of an outline with its unit tangent.
@@ -26,7 +28,8 @@ pub(super) struct OutlinePoint {
     sin: f64,
 }
 
-/// A polygon (x, z, radius) \[mm\] with its corners rounded, radius 0 for a sharp one.
+/// Returns a polygon of \[x, z, radius\] \[mm\] with its corners rounded; a radius of 0 leaves a corner
+/// sharp.
 pub(super) fn rounded(corners: &[[f64; 3]]) -> Vec<[f64; 2]> {
     let mut out = Vec::new();
     for (k, &[x, z, radius]) in corners.iter().enumerate() {
@@ -56,12 +59,12 @@ pub(super) fn rounded(corners: &[[f64; 3]]) -> Vec<[f64; 2]> {
     out
 }
 
-/// The points of a drawn profile.
+/// Returns the points of a drawn profile.
 pub(super) fn drawn(profile: &Profile) -> Vec<[f64; 2]> {
     trace(profile, STEP).iter().map(|mark| [mark.station.x, mark.station.z]).collect()
 }
 
-/// Places every [`STEP`] along a chain of points.
+/// Returns places every [`STEP`] along a chain of points.
 pub(super) fn places(points: &[[f64; 2]]) -> Vec<OutlinePoint> {
     let mut out = Vec::new();
     let (mut s, mut next) = (0.0, 0.0);
@@ -82,8 +85,8 @@ pub(super) fn places(points: &[[f64; 2]]) -> Vec<OutlinePoint> {
     out
 }
 
-/// What is left after a depth \[mm\] has been worn away at every place, into the material across the outline;
-/// negative where material has flowed outwards.
+/// Returns the outline after a depth \[mm\] has been worn off at every place, into the material across the
+/// outline; a negative depth is material that has flowed outwards.
 pub(super) fn worn(points: &[[f64; 2]], side: Side, depth: impl Fn(&OutlinePoint) -> f64) -> Vec<[f64; 2]> {
     let inwards = match side {
         Side::Rail => -1.0,
@@ -98,7 +101,7 @@ pub(super) fn worn(points: &[[f64; 2]], side: Side, depth: impl Fn(&OutlinePoint
         .collect()
 }
 
-/// The points that an instrument records along an outline.
+/// Returns the points that an instrument records along an outline.
 pub(super) fn recorded(outline: &[[f64; 2]], side: Side, instrument: &Instrument) -> Vec<[f64; 2]> {
     let mut random = Random::new(instrument.seed);
     let damaged =
@@ -123,7 +126,7 @@ pub(super) fn recorded(outline: &[[f64; 2]], side: Side, instrument: &Instrument
     out
 }
 
-/// Dents 0.05–0.3 mm deep and 1–5 mm wide.
+/// Returns the outline with dents 0.05–0.3 mm deep and 1–5 mm wide.
 fn pitted(outline: &[[f64; 2]], side: Side, count: usize, random: &mut Random) -> Vec<[f64; 2]> {
     let whole = places(outline).last().map_or(0.0, |last| last.s);
     let pits: Vec<[f64; 3]> = (0..count)
@@ -139,7 +142,7 @@ fn pitted(outline: &[[f64; 2]], side: Side, count: usize, random: &mut Random) -
     worn(outline, side, |place| pits.iter().map(|pit| dent(place.s, pit)).sum())
 }
 
-/// Stretches of 4–12 mm replaced by their chords.
+/// Returns the outline with stretches of 4–12 mm replaced by their chords.
 fn flattened(outline: &[[f64; 2]], count: usize, random: &mut Random) -> Vec<[f64; 2]> {
     let mut places = places(outline);
     let n = places.len() as f64;

@@ -1,18 +1,19 @@
-//! What the places of contact and near miss at one displacement tell of their neighbourhood.
+//! Finds the places of contact and near miss at one displacement, and how they change beside it.
 
 use crate::error::Result;
 use crate::search::wheelset::{Position, Roll, SideTouch, WheelsetOnTrack, WheelsetSearch};
 use crate::search::{Contact, Selection};
 
-/// Near misses that are looked at: gaps up to 1 µm close within a displacement of 0.01 to 0.1 mm. Less, and hops are found
-/// by halving; more, and rough profiles have hundreds of them. Places within 1 µm of each other are one: a hop that short
-/// changes Δr by less than 0.1 µm on a tread.
+/// The near misses that are looked at: gaps up to 1 µm close within a displacement of 0.01 to 0.1 mm. With a
+/// smaller limit hops would be found by halving; with a larger one rough profiles have hundreds of near
+/// misses. Places within 1 µm of each other are one: a hop that short changes Δr by less than 0.1 µm on a
+/// tread.
 const NEAR: Selection = Selection { within: 1e-3, apart: 1e-3 };
 
-/// Which way a side's own axes point along the track's: left, right.
+/// Signs of the left and the right side's own x axis along the track's.
 const SIGNS: [f64; 2] = [-1.0, 1.0];
 
-/// A place where a side touches, or nearly does, at one displacement y of the wheelset.
+/// A place where a side touches, or nearly touches, at one displacement y of the wheelset.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Branch {
     /// Vertical gap \[mm\].
@@ -23,11 +24,11 @@ pub(super) struct Branch {
     pub climb: f64,
     /// Rolling radius ϱ \[mm\].
     pub radius: f64,
-    /// dϱ/dy \[mm/mm\]; infinite or NaN where the curvatures do not tell.
+    /// dϱ/dy \[mm/mm\]; infinite or NaN where the curvatures do not determine it.
     pub growth: f64,
 }
 
-/// The places of the left and the right side, the lowest gap first.
+/// The places of the left and the right side, by ascending gap.
 pub(super) type Sides = [Vec<Branch>; 2];
 
 /// Searches at one displacement after another.
@@ -42,7 +43,7 @@ impl<'a> Searched<'a> {
         Self { system, search: system.search(), roll }
     }
 
-    /// The places at one displacement \[mm\] without yaw; false where the wheelset is off its track.
+    /// Finds the places at one displacement \[mm\] without yaw; false if the wheelset is off its track.
     ///
     /// # Errors
     /// A displacement or roll that is not finite.
@@ -51,7 +52,7 @@ impl<'a> Searched<'a> {
         let Some(touch) = self.search.touch(&position, &NEAR)? else { return Ok(false) };
         let arms = [0, 1].map(|k| Arm::new(self.system, lateral, SIGNS[k], &touch.sides[k]));
         let lowest = [0, 1].map(|k| arms[k].turning(&touch.sides[k].touch.contacts[0]));
-        // With the roll solved both sides rise alike: it turns by so much with y.
+        // With the roll solved both sides rise alike: the roll turns by this much with y.
         let turn = match self.roll {
             Roll::Solve => -(lowest[0][0] + lowest[1][0]) / (lowest[0][1] + lowest[1][1]),
             Roll::Neglect | Roll::Fixed(_) => 0.0,
@@ -64,11 +65,11 @@ impl<'a> Searched<'a> {
     }
 }
 
-/// Where the axle's middle is, seen from the profiles of one side.
+/// Position of the axle's middle, seen from the profiles of one side.
 struct Arm {
     sign: f64,
     height: f64,
-    /// Of the rail profile's origin from the axle's middle \[mm\], in the side's axes.
+    /// Position of the rail profile's origin from the axle's middle \[mm\], in the side's axes.
     origin: [f64; 2],
 }
 
@@ -79,18 +80,19 @@ impl Arm {
         Self { sign, height: side.z, origin: [x, z] }
     }
 
-    /// Rates at which the axle's middle rises with the displacement and with the roll of the side's own axes.
+    /// Returns the rates at which the axle's middle rises with the displacement and with the roll of the
+    /// side's own axes.
     fn turning(&self, contact: &Contact) -> [f64; 2] {
         let [x, z] = [self.origin[0] + contact.rail_x, self.origin[1] + contact.rail_z];
         let slope = contact.contact_angle.tan();
         [slope, x + z * slope]
     }
 
-    /// `turn`: of the track's roll with y \[rad/mm\].
+    /// Makes the branch of a contact; `turn` is the rate of the track's roll with y \[rad/mm\].
     fn branch(&self, contact: &Contact, turn: f64) -> Branch {
         let [slope, rise] = self.turning(contact);
         let turn = self.sign * turn;
-        // The wheel's material at the contact moves across by so much with y.
+        // The wheel's material at the contact moves across by this much with y.
         let across = self.sign + turn * (self.origin[1] + contact.rail_z);
         Branch {
             gap: contact.gap,
@@ -102,8 +104,8 @@ impl Arm {
     }
 }
 
-/// How far the contact travels along the wheel's profile with y \[mm/mm\], by κ_R ds_R = κ_W ds_W − dα and
-/// ds_R − ds_W = dx/cosθ; the larger curvature, infinite at a kink, is divided by.
+/// Returns the rate at which the contact travels along the wheel's profile with y \[mm/mm\], from κ_R ds_R =
+/// κ_W ds_W − dα and ds_R − ds_W = dx/cosθ. It divides by the larger curvature, which is infinite at a kink.
 fn travel(contact: &Contact, across: f64, turn: f64) -> f64 {
     let (rail, wheel) = (contact.rail_curvature, contact.wheel_curvature);
     let along = across / contact.contact_angle.cos();

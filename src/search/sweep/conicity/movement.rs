@@ -1,21 +1,23 @@
-//! The movement of a wheelset under a force Δr that is straight between displacements: how long a quarter of it takes.
+//! Calculates how long a quarter of a wheelset's movement takes, under a force Δr that is straight between
+//! displacements.
 //!
-//! With E(y) = 2 ∫_0^y Δr the speed at y is v = √(E(ŷ) − E(y)), and T(ŷ) = ∫_0^ŷ dy/v. Near the turning point ŷ the
-//! cells are crossed one by one, in closed form. Far from it, where v² hardly varies, whole blocks of cells are: with E
-//! within c ± r there and d = E(ŷ) − c, 1/v = d^(−1/2) Σ_j C_j ((E − c)/d)^j, so that the moments ∫ (E − c)^j dy,
-//! which do not depend on ŷ, give the block's time.
+//! With E(y) = 2 ∫_0^y Δr the speed at y is v = √(E(ŷ) − E(y)), and T(ŷ) = ∫_0^ŷ dy/v. Near the turning point
+//! ŷ the cells are crossed one by one, in closed form. Far from it, where v² hardly varies, whole blocks of
+//! cells are crossed at once: with E within c ± r in a block and d = E(ŷ) − c, 1/v = d^(−1/2) Σ_j C_j ((E −
+//! c)/d)^j. The moments ∫ (E − c)^j dy do not depend on ŷ and give the block's time.
 
-/// Terms of the series of 1/√(1 − t).
+/// Number of terms of the series of 1/√(1 − t).
 const TERMS: usize = 16;
 
 /// Largest |t| of the series: its next term is then below 4e-10 of the block's time.
 const FAR: f64 = 1.0 / 3.0;
 
-/// Cells of the smallest blocks: crossing so many costs as much as a series.
+/// Number of cells of the smallest blocks: crossing so many costs as much as a series.
 const SMALLEST: usize = 8;
 
-/// Nodes and weights of Gauss and Legendre's rule with 8 points on \[−1, 1\], half of them: exact for moments up to the
-/// seventh, and for the others of cells within a block, whose energy varies less than the block's, to 1e-9.
+/// Half of the nodes and weights of the Gauss–Legendre rule with 8 points on \[−1, 1\]: exact for moments up
+/// to the seventh, and to 1e-9 for the other moments of cells in a block, whose energy varies less than the
+/// block's.
 const GAUSS: [[f64; 2]; 4] = [
     [0.183_434_642_495_649_8, 0.362_683_783_378_362],
     [0.525_532_409_916_329, 0.313_706_645_877_887_3],
@@ -23,7 +25,7 @@ const GAUSS: [[f64; 2]; 4] = [
     [0.960_289_856_497_536_3, 0.101_228_536_290_376_26],
 ];
 
-/// C_j, the coefficients of 1/√(1 − t): C_j = C_(j−1) (2j − 1)/2j.
+/// Coefficients C_j of 1/√(1 − t): C_j = C_(j−1) (2j − 1)/2j.
 const SERIES: [f64; TERMS] = {
     let mut c = [1.0; TERMS];
     let mut j = 1;
@@ -34,14 +36,14 @@ const SERIES: [f64; TERMS] = {
     c
 };
 
-/// A displacement, and Δr there; a jump is two of the same displacement.
+/// A displacement with its Δr; a jump is two knots at the same displacement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Knot {
-    /// y \[mm\].
+    /// Displacement y \[mm\].
     pub y: f64,
-    /// Δr \[mm\].
+    /// Δr at y \[mm\].
     pub force: f64,
-    /// By how much ∫ Δr over the cell that ends here may be wrong \[mm²\].
+    /// Possible error of ∫ Δr over the cell that ends here \[mm²\].
     pub defect: f64,
 }
 
@@ -51,9 +53,9 @@ pub(super) struct Movement {
     knots: Vec<Knot>,
     /// E at the knots \[mm²\].
     energy: Vec<f64>,
-    /// Sum of the squares of the defects up to the knots: errors of cells are independent.
+    /// Sum of the squares of the defects up to each knot \[mm⁴\]: errors of cells are independent.
     squares: Vec<f64>,
-    /// A heap: block k consists of 2k and 2k + 1, the last half are the smallest.
+    /// Blocks as a heap: block k consists of blocks 2k and 2k + 1, the last half are the smallest.
     blocks: Vec<Block>,
 }
 
@@ -62,29 +64,31 @@ pub(super) struct Movement {
 pub(super) struct Quarter {
     /// T \[1\], with Δr as force.
     pub time: f64,
-    /// Estimate of its relative error, from the defects.
+    /// Estimated relative error of the time, from the defects.
     pub error: f64,
 }
 
-/// Some cells together.
+/// Several cells together.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Block {
-    /// c, and r \[mm²\].
+    /// Middle c of the range of E \[mm²\].
     centre: f64,
+    /// Half width r of the range of E \[mm²\].
     radius: f64,
-    /// ∫ ((E − c)/r)^j dy \[mm\].
+    /// Moments ∫ ((E − c)/r)^j dy \[mm\].
     moments: [f64; TERMS],
-    /// Square of the sum of defects at its middle \[mm⁴\].
+    /// Sum of the squares of the defects up to the middle of the block \[mm⁴\].
     squares: f64,
 }
 
-/// What is the same for all cells of one movement, and what they add to.
+/// The time of one movement while it is summed over cells and blocks.
 struct Sum<'m> {
     movement: &'m Movement,
-    /// Cells below the one of the turning point.
+    /// Number of cells below the one with the turning point.
     below: usize,
-    /// E(ŷ) \[mm²\], and the sum of squares of the defects up to ŷ.
+    /// E(ŷ) \[mm²\].
     total: f64,
+    /// Sum of the squares of the defects up to ŷ \[mm⁴\].
     squares: f64,
     time: f64,
     /// Absolute error of the time.
@@ -92,7 +96,7 @@ struct Sum<'m> {
 }
 
 impl Movement {
-    /// Knots in order of y, the first at 0.
+    /// Prepares knots, which must be in order of y, the first at 0.
     pub(super) fn new(knots: Vec<Knot>) -> Self {
         let (mut energy, mut squares) = (vec![0.0], vec![0.0]);
         for (k, cell) in knots.windows(2).enumerate() {
@@ -105,25 +109,28 @@ impl Movement {
         movement
     }
 
-    /// Number of cells between the knots.
+    /// Returns the number of cells between the knots.
     pub(super) fn cells(&self) -> usize {
         self.knots.len().saturating_sub(1)
     }
 
-    /// Where a cell begins and ends \[mm\].
+    /// Returns where a cell begins and ends \[mm\].
     pub(super) fn ends(&self, cell: usize) -> [f64; 2] {
         [self.knots[cell].y, self.knots[cell + 1].y]
     }
 
-    /// The cell, wider than nothing, that an amplitude above 0 lies in, its end included; none beyond the last.
+    /// Returns the cell, wider than nothing, in which an amplitude above 0 lies, its end included; `None`
+    /// beyond the last.
     pub(super) fn cell(&self, amplitude: f64) -> Option<usize> {
         let above = self.knots.partition_point(|knot| knot.y < amplitude);
         (above < self.knots.len()).then(|| above.checked_sub(1)).flatten()
     }
 
-    /// The quarter of the movement with its turning point ŷ in `cell`; `None` where it does not come back through 0.
+    /// Returns the quarter of the movement with its turning point ŷ in `cell`; `None` if the movement does
+    /// not come back through 0.
     ///
-    /// Accuracy: 1e-9 of the time, for the force as it is. Cost: grows as the logarithm of the number of cells.
+    /// Accuracy: 1e-9 of the time, for the force as it is. Cost: grows with the logarithm of the number of
+    /// cells.
     pub(super) fn quarter(&self, cell: usize, amplitude: f64) -> Option<Quarter> {
         let [inner, outer] = [self.knots[cell], self.knots[cell + 1]];
         let run = amplitude - inner.y;
@@ -135,7 +142,8 @@ impl Movement {
         }
         let speed = gained.sqrt();
         let time = crossing(run, [inner.force, force], [speed, 0.0])?;
-        // The table is exact at its knots: from there the error of the integral grows with the square of the way.
+        // The table is exact at its knots: from there the error of the integral grows with the square of the
+        // distance.
         let defect = share * share * (3.0 - 2.0 * share) * outer.defect;
         let mut sum = Sum {
             movement: self,
@@ -149,7 +157,7 @@ impl Movement {
         Some(Quarter { time: sum.time, error: sum.error / sum.time })
     }
 
-    /// The block at a place of the heap, whose last half begins at `smallest`.
+    /// Makes the block at a place of the heap, whose last half begins at `smallest`.
     fn block(&self, place: usize, smallest: usize) -> Block {
         let depth = place.max(1).ilog2();
         let cells = (smallest >> depth) * SMALLEST;
@@ -184,8 +192,8 @@ impl Movement {
 }
 
 impl Sum<'_> {
-    /// Adds the cells of a block of so many, as far as they lie below the turning point's; `None` where the speed comes
-    /// to nothing.
+    /// Adds the first `cells` cells of a block that lie below the turning point's cell; `None` if the speed
+    /// drops to zero.
     fn add(&mut self, place: usize, first: usize, cells: usize) -> Option<()> {
         let last = (first + cells).min(self.below);
         if first >= last {
@@ -226,13 +234,14 @@ impl Sum<'_> {
     }
 }
 
-/// Time over a run under a force straight between its end values, at the end speeds given: with the stiffness g,
-/// tan(√g T/2) = √g run/(v0 + v1). `None` where a force outwards (g < 0) turns the movement back within the run.
+/// Returns the time over a run under a force straight between its end values, at the given end speeds: with
+/// the stiffness g, tan(√g T/2) = √g run/(v0 + v1). `None` if a force outwards (g < 0) turns the movement
+/// back within the run.
 fn crossing(run: f64, force: [f64; 2], speed: [f64; 2]) -> Option<f64> {
     let mean = run / (speed[0] + speed[1]);
     let stiffness = if run > 0.0 { (force[1] - force[0]) / run } else { 0.0 };
     let square = stiffness * mean * mean;
-    // The series' next term is below 2e-11 of the first.
+    // The next term of the series is below 2e-11 of the first.
     if square.abs() < 1e-2 {
         let series = 1.0 / 3.0 - square * (0.2 - square * (1.0 / 7.0 - square / 9.0));
         return Some(2.0 * mean * (1.0 - square * series));

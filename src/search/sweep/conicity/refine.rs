@@ -1,4 +1,4 @@
-//! Δr as a table that is as fine as the conicity needs it.
+//! Refines a table of Δr as far as the conicity needs.
 
 use std::collections::BinaryHeap;
 
@@ -6,21 +6,24 @@ use super::branches::{Branch, Sides};
 use super::movement::Knot;
 use crate::error::Result;
 
-/// Widest cell of the table \[mm\], as EN 15302 has it.
+/// Widest cell of the table \[mm\], as in EN 15302.
 const WIDEST: f64 = 0.1;
 
-/// Smallest amplitude \[mm\] whose conicity is refined for; smaller ones say how accurate they are. Without it all searches would
-/// go to where Δr jumps at 0: that counts the same for every amplitude, however small.
+/// Smallest amplitude \[mm\] for whose conicity the table is refined; smaller amplitudes say how accurate
+/// they are. Without this limit all searches would go to a jump of Δr at 0, which counts the same for every
+/// amplitude, however small.
 pub(super) const LEAST_AMPLITUDE: f64 = WIDEST;
 
-/// A search this share of a cell's width from a hop places it: by the slopes of both gaps, to the square of the share.
+/// Distance of a search from a hop, as a share of the cell's width, at which it locates the hop: by the
+/// slopes of both gaps, to the square of the share.
 const BESIDE: f64 = 1e-2;
 
-/// Tries to meet a hop that its neighbours predict before a cell is halved: gaps that are about to close may open again.
+/// Tries to meet a hop that its neighbours predict before a cell is halved: gaps that are about to close may
+/// open again.
 const TRIES: u8 = 2;
 
-/// The most searches for an amplitude \[mm\] and a relative accuracy of the conicity ε: 1 + log₂ 1/ε for every tenth of a
-/// millimetre, with which one hop would be found there by halving alone.
+/// Returns the most searches for an amplitude \[mm\] and a relative accuracy ε of the conicity: 1 + log₂ 1/ε
+/// for every tenth of a millimetre, with which halving alone would find one hop in each.
 pub(super) fn most_searches(amplitude: f64, accuracy: f64) -> usize {
     let halvings = 1.0 + (1.0 / accuracy).log2().max(0.0).ceil();
     // Saturates: an amplitude of a kilometre ends with the track.
@@ -30,59 +33,62 @@ pub(super) fn most_searches(amplitude: f64, accuracy: f64) -> usize {
 /// A hop of the contact to another place of its side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Hop {
-    /// How far from here \[mm\].
+    /// Distance from the node \[mm\].
     distance: f64,
     side: usize,
-    /// The other place, in the order of the side's.
+    /// Index of the other place among those of the side.
     to: usize,
     /// Change of Δr \[mm\].
     jump: f64,
 }
 
-/// Δr at a displacement, on one side of a jump where there is one.
+/// Δr at a displacement; at a jump, on one side of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Node {
     y: f64,
-    /// Δr \[mm\] and dΔr/dy.
+    /// Δr \[mm\].
     value: f64,
+    /// dΔr/dy \[1\].
     slope: f64,
-    /// Of the axle's middle, by each side's contact \[mm\], and its derivative.
+    /// Height of the axle's middle \[mm\], by the contact of each side.
     height: [f64; 2],
+    /// Derivative of `height` with respect to y \[1\].
     climb: [f64; 2],
     /// The nearest hops below and above.
     hops: [Option<Hop>; 2],
 }
 
-/// Stretch between two nodes.
+/// The stretch between two nodes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Cell {
     ends: [Node; 2],
-    /// Mean of |Δr| from 0 to here \[mm\].
+    /// Mean of |Δr| from 0 to this cell \[mm\].
     scale: f64,
-    /// By how much ∫ Δr, straight between the ends, may be wrong \[mm²\].
+    /// Possible error of ∫ Δr, taken as straight between the ends \[mm²\].
     defect: f64,
-    /// Searches spent on hops that were not met.
+    /// Number of searches spent on hops that were not met.
     tries: u8,
 }
 
 /// The table while it is refined.
 #[derive(Debug)]
 pub(super) struct Table<F> {
-    /// Fills in the places of contact at a displacement; false off the track.
+    /// Fills in the places of contact at a displacement; returns false off the track.
     search: F,
     sides: Sides,
     searches: usize,
     most: usize,
     cells: Vec<Cell>,
-    /// Cells that are not fine enough: bits of the influence, which order as non-negative numbers do, and the index.
+    /// Cells that are not fine enough, as (bits of the influence, index): the bits order as non-negative
+    /// numbers do.
     waiting: BinaryHeap<(u64, usize)>,
 }
 
 impl<F: FnMut(f64, &mut Sides) -> Result<bool>> Table<F> {
-    /// Δr at equal steps up to the amplitude, or as far as the track goes.
+    /// Tabulates Δr at equal steps up to the amplitude, or as far as the track goes.
     ///
     /// # Errors
-    /// Those of `search`.
+    /// The errors of `search`.
     pub(super) fn new(search: F, amplitude: f64, accuracy: f64) -> Result<Self> {
         let mut table = Self {
             search,
@@ -105,16 +111,16 @@ impl<F: FnMut(f64, &mut Sides) -> Result<bool>> Table<F> {
         Ok(table)
     }
 
-    /// Searches so far, and the most that there will be.
+    /// Returns the number of searches so far, and the most that there will be.
     pub(super) fn searches(&self) -> [usize; 2] {
         [self.searches, self.most]
     }
 
-    /// Splits the cells that change a conicity by more than this relative influence, the most influential first, as long as
-    /// searches are left; `told` of their number.
+    /// Splits the cells that change a conicity by more than this relative influence, the most influential
+    /// first, while searches are left; tells `told` the number of searches.
     ///
     /// # Errors
-    /// Those of the search.
+    /// The errors of the search.
     pub(super) fn refine(&mut self, influence: f64, told: &mut dyn FnMut(usize, usize)) -> Result<()> {
         while self.searches < self.most
             && let Some(&(bits, index)) = self.waiting.peek()
@@ -127,7 +133,7 @@ impl<F: FnMut(f64, &mut Sides) -> Result<bool>> Table<F> {
         Ok(())
     }
 
-    /// The table in order of y: every cell's ends, where Δr does not jump one of them.
+    /// Returns the table in order of y: the ends of every cell, once where Δr does not jump.
     pub(super) fn knots(&self) -> Vec<Knot> {
         let mut cells: Vec<&Cell> = self.cells.iter().collect();
         cells.sort_unstable_by(|a, b| a.ends[0].y.total_cmp(&b.ends[0].y));
@@ -143,19 +149,19 @@ impl<F: FnMut(f64, &mut Sides) -> Result<bool>> Table<F> {
         knots
     }
 
-    /// One search.
+    /// Searches once, at `y`.
     fn searched(&mut self, y: f64) -> Result<Option<Node>> {
         self.searches += 1;
         let found = (self.search)(y, &mut self.sides)?;
         Ok(found.then(|| Node::new(&self.sides, [0, 0], y, y)))
     }
 
-    /// Replaces a cell by two, at a hop where one is met.
+    /// Replaces a cell by two, divided at a hop if one is met.
     fn split(&mut self, index: usize) -> Result<()> {
         let cell = self.cells[index];
         let [from, to] = cell.ends;
         let (y, hopped) = cell.proposal();
-        // Neighbouring numbers: nothing is left to split.
+        // The ends are neighbouring numbers: there is nothing to split.
         if y <= from.y || y >= to.y {
             return Ok(());
         }
@@ -177,8 +183,8 @@ impl<F: FnMut(f64, &mut Sides) -> Result<bool>> Table<F> {
         Ok(())
     }
 
-    /// The two parts of a cell below and above a hop, as it was seen from y; `None` where it lies outside: a hop that an end
-    /// predicts may be the one that the other end was placed at.
+    /// Returns the parts of a cell below and above a hop that was seen from y; `None` if the hop is outside
+    /// the cell: a hop that one end predicts may be the one at which the other end was placed.
     fn at_hop(&self, cell: &Cell, y: f64, way: usize, hop: Hop) -> Option<[Cell; 2]> {
         let [from, to] = cell.ends;
         let place = if way == 0 { y - hop.distance } else { y + hop.distance };
@@ -192,7 +198,7 @@ impl<F: FnMut(f64, &mut Sides) -> Result<bool>> Table<F> {
             nodes.swap(0, 1);
         }
         let mut parts = [Cell::new([from, nodes[0]], cell.scale), Cell::new([nodes[1], to], cell.scale)];
-        // The slopes were those at y: the place is wrong by a share of the way there.
+        // The slopes are those at y: the place is wrong by a share of the distance.
         let defect = hop.jump.abs() * hop.distance * hop.distance / (to.y - from.y);
         parts[0].defect += defect;
         Some(parts)
@@ -203,7 +209,7 @@ impl<F: FnMut(f64, &mut Sides) -> Result<bool>> Table<F> {
         self.wait(self.cells.len() - 1);
     }
 
-    /// Puts a cell among those that may be split.
+    /// Adds a cell to those that may be split.
     fn wait(&mut self, index: usize) {
         let influence = self.cells[index].influence();
         if influence > 0.0 {
@@ -213,12 +219,13 @@ impl<F: FnMut(f64, &mut Sides) -> Result<bool>> Table<F> {
 }
 
 impl Node {
-    /// What a search at `found` tells of `y` beside it, with these of each side's places in touch.
+    /// Makes the node at `y` from a search at `found` beside it, with the `chosen` place of each side in
+    /// touch.
     fn new(sides: &Sides, chosen: [usize; 2], found: f64, y: f64) -> Self {
         let [left, right] = [0, 1].map(|side| sides[side][chosen[side]]);
         let (slope, off) = (right.growth - left.growth, y - found);
         let value = right.radius - left.radius;
-        // Slopes that curvatures do not tell move nothing.
+        // A slope that the curvatures do not determine moves nothing.
         let moved = if slope.is_finite() { value + slope * off } else { value };
         let mut hops = [None; 2];
         for side in 0..2 {
@@ -243,7 +250,8 @@ impl Node {
     }
 }
 
-/// Which way, and how far from `off` beside the search, the gap of another place closes while one touches.
+/// Returns the direction in which the gap of another place closes while one touches, and the distance from
+/// `off` beside the search.
 fn closing(touching: &Branch, other: &Branch, off: f64) -> Option<(usize, f64)> {
     let (gap, rate) = (other.gap - touching.gap, touching.climb - other.climb);
     let way = usize::from(rate < 0.0);
@@ -263,13 +271,13 @@ impl Cell {
         self.ends[1].y - self.ends[0].y
     }
 
-    /// Most of what Δr can bend by on the average, if it turns from one end's slope to the other's \[mm\].
+    /// Returns a bound of the mean bend of Δr, if its slope turns from one end's to the other's \[mm\].
     fn bend(&self) -> f64 {
         let bend = self.width() * (self.ends[1].slope - self.ends[0].slope).abs() / 8.0;
         if bend.is_finite() { bend } else { 0.0 }
     }
 
-    /// Change of Δr that the slopes do not explain: jumps \[mm\].
+    /// Returns the change of Δr that the slopes do not explain: jumps \[mm\].
     fn unexplained(&self) -> f64 {
         let [from, to] = &self.ends;
         let change = to.value - from.value;
@@ -277,13 +285,13 @@ impl Cell {
         if explained.is_finite() { (change - explained).abs() } else { change.abs() }
     }
 
-    /// What hops that the ends predict inside change ∫ Δr by \[mm²\].
+    /// Returns the change of ∫ Δr by hops that the ends predict inside the cell \[mm²\].
     fn hopped(&self) -> f64 {
         let inside = self.predicted().into_iter().flatten();
         inside.map(|(hop, _)| hop.jump.abs() * (self.width() - hop.distance)).sum()
     }
 
-    /// The hops inside that the lower and the upper end predict, and where.
+    /// Returns the hops inside the cell that the lower and the upper end predict, each with its displacement.
     fn predicted(&self) -> [Option<(Hop, f64)>; 2] {
         let [from, to] = &self.ends;
         let inside = |hop: &Hop| hop.distance < self.width();
@@ -292,16 +300,17 @@ impl Cell {
         [up, down]
     }
 
-    /// Relative change of the conicity at an amplitude just above, if ∫ Δr changes by the defect: T's integrand falls by
-    /// defect/(Δr · h) at the distance h below the turning point, where the movement spends √(h/ŷ) of its time.
+    /// Returns the relative change of the conicity at an amplitude just above the cell, if ∫ Δr changes by
+    /// the defect: T's integrand falls by defect/(Δr · h) at the distance h below the turning point, where
+    /// the movement spends √(h/ŷ) of its time.
     fn influence(&self) -> f64 {
         let [_, to] = &self.ends;
         let influence = self.defect / (self.scale * (self.width() * to.y.max(LEAST_AMPLITUDE)).sqrt());
         if influence.is_nan() { 0.0 } else { influence }
     }
 
-    /// Where to search next, and whether in the hope of a hop: where the nearer end predicts one, or where the heights'
-    /// tangents cross; else in the middle.
+    /// Returns where to search next, and whether a hop is expected there: where the nearer end predicts one,
+    /// or where the tangents of the heights cross; otherwise the middle.
     fn proposal(&self) -> (f64, bool) {
         let [from, to] = &self.ends;
         let middle = from.y + self.width() / 2.0;
@@ -313,12 +322,12 @@ impl Cell {
             self.predicted().into_iter().flatten().min_by(|a, b| a.0.distance.total_cmp(&b.0.distance));
         let inside = |y: &f64| (from.y..=to.y).contains(y);
         let place = nearest.map(|(_, y)| y).or_else(|| self.crossing()).filter(inside);
-        // A hop at an end is met from inside: what is left beyond is a hundredth of the cell.
+        // A hop at an end is met from inside: the rest beyond it is a hundredth of the cell.
         let margin = self.width() * BESIDE / 2.0;
         place.map_or((middle, false), |y| (y.clamp(from.y + margin, to.y - margin), true))
     }
 
-    /// Where the tangents of the height cross, of the side where they differ more.
+    /// Returns where the tangents of the height at both ends cross, for the side where they differ more.
     fn crossing(&self) -> Option<f64> {
         let [from, to] = &self.ends;
         let turn = |side: usize| from.climb[side] - to.climb[side];

@@ -1,0 +1,10 @@
+//! What is wrong with a path.
+
+use std::path::Path;
+
+use crate::error::{Error, Kind};
+
+/// Makes the complaint about a path.
+pub(super) fn bad(path: &Path, found: &str, expected: &str, advice: &str) -> Error {
+    Error::new(path.display().to_string(), found, expected, advice).of_kind(Kind::Io)
+}

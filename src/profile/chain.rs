@@ -1,0 +1,143 @@
+//! A profile: a chain of segments that meet.
+
+use super::arc::Arc;
+use super::closing::{self, Closing};
+use super::continuity;
+use super::polynomial::Polynomial;
+use super::segment::Segment;
+use super::station::Station;
+use crate::error::{Error, Result};
+
+/// A chain of segments, travelled from left to right, with its name and source.
+///
+/// Neighbours share their joint point, to rounding: a drawing's rounded coordinates are closed when the chain is made, by the
+/// rule of [`closing`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Profile {
+    /// Name of the standard, or of the file.
+    pub name: String,
+    /// Where the numbers come from.
+    pub source: String,
+    /// At least one segment.
+    segments: Vec<Segment>,
+    /// The segments before the chain was closed; empty if closing changed nothing but roundings.
+    drawn: Vec<Segment>,
+    closings: Vec<Closing>,
+    /// The larger side of the box around the segments' ends \[mm\].
+    extent: f64,
+}
+
+impl Profile {
+    /// Makes a chain of at least one segment that nowhere jumps, and closes it by the rule of [`closing`].
+    ///
+    /// Kinks are allowed at any angle: see [`Profile::continuity`].
+    ///
+    /// # Errors
+    /// An empty chain; a joint with a step larger than [`continuity::LARGEST_STEP`] × the chain's extent, or than the short
+    /// segment beside it can take, with its place and size.
+    pub fn new(name: impl Into<String>, source: impl Into<String>, drawn: Vec<Segment>) -> Result<Self> {
+        if drawn.is_empty() {
+            return Err(Error::new(
+                "segments",
+                "none",
+                "at least one segment",
+                "give the profile's segments",
+            ));
+        }
+        let extent = extent(&drawn);
+        continuity::reject_jumps(&drawn, extent)?;
+        let (segments, closings) = closing::close(&drawn, extent)?;
+        let drawn = if closings.is_empty() { Vec::new() } else { drawn };
+        Ok(Self::closed(name.into(), source.into(), [segments, drawn], closings))
+    }
+
+    fn closed(
+        name: String,
+        source: String,
+        [segments, drawn]: [Vec<Segment>; 2],
+        closings: Vec<Closing>,
+    ) -> Self {
+        let extent = extent(&segments);
+        Self { name, source, segments, drawn, closings, extent }
+    }
+
+    /// Returns the segments from left to right.
+    pub fn segments(&self) -> &[Segment] {
+        &self.segments
+    }
+
+    /// Returns the segments as they were given, before the chain was closed.
+    pub fn drawn(&self) -> &[Segment] {
+        if self.drawn.is_empty() { &self.segments } else { &self.drawn }
+    }
+
+    /// Returns the places where the drawn chain was changed to close it, and by how much, from left to right.
+    pub fn closings(&self) -> &[Closing] {
+        &self.closings
+    }
+
+    /// Returns the closing that moved the drawn surface most, with its joint \[x, z\] \[mm\]; `None` for a chain drawn without
+    /// steps.
+    pub fn largest_closing(&self) -> Option<(Closing, [f64; 2])> {
+        let largest = self.closings.iter().max_by(|a, b| a.moved.total_cmp(&b.moved))?;
+        let joint = self.segments[largest.left].end();
+        Some((*largest, [joint.x, joint.z]))
+    }
+
+    /// Returns gap, kink and jump of curvature at every joint, from left to right.
+    pub fn continuity(&self) -> Vec<continuity::Joint> {
+        continuity::joints(&self.segments)
+    }
+
+    /// Returns the larger side of the box around the ends of all segments \[mm\]: the scale by which rounding is judged.
+    pub fn extent(&self) -> f64 {
+        self.extent
+    }
+
+    /// Returns the profile turned counter-clockwise about its origin, by the angle with this cosine and sine.
+    #[must_use]
+    pub fn rotated(&self, cos: f64, sin: f64) -> Self {
+        self.placed(&Station { x: 0.0, z: 0.0, cos, sin })
+    }
+
+    /// Returns the profile moved by (x, z) \[mm\].
+    #[must_use]
+    pub fn shifted(&self, x: f64, z: f64) -> Self {
+        self.placed(&Station { x, z, ..Station::AXES })
+    }
+
+    /// Returns the mirror image under x → −x.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        let mut mirrored = self.mapped(|s| s.map(Arc::mirrored, Polynomial::mirrored));
+        mirrored.segments.reverse();
+        mirrored.drawn.reverse();
+        mirrored.closings.reverse();
+        for closing in &mut mirrored.closings {
+            // The segment on the other side of the same joint.
+            closing.left = self.segments.len() - 2 - closing.left;
+        }
+        mirrored
+    }
+
+    pub(super) fn placed(&self, frame: &Station) -> Self {
+        self.mapped(|s| s.map(|a| a.placed_by(frame), |p| p.placed_by(frame)))
+    }
+
+    fn mapped(&self, image: impl Fn(&Segment) -> Segment) -> Self {
+        let chains = [&self.segments, &self.drawn].map(|all| all.iter().map(&image).collect());
+        Self::closed(self.name.clone(), self.source.clone(), chains, self.closings.clone())
+    }
+}
+
+/// The larger side of the box around all segment ends \[mm\].
+fn extent(segments: &[Segment]) -> f64 {
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for station in segments.iter().flat_map(|s| [s.start(), s.end()]) {
+        for (k, v) in [station.x, station.z].into_iter().enumerate() {
+            low[k] = low[k].min(v);
+            high[k] = high[k].max(v);
+        }
+    }
+    (high[0] - low[0]).max(high[1] - low[1])
+}

@@ -1,0 +1,76 @@
+//! One segment of a profile (Report Sec. 3): a line, an arc or a polynomial.
+
+use super::arc::Arc;
+use super::polynomial::Polynomial;
+use super::station::Station;
+
+/// The curve of one segment.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shape {
+    /// A line or a circular arc, eqs. (3.2).
+    Arc(Arc),
+    /// A polynomial z(x) of a standard, or one span of a parametric spline.
+    Polynomial(Polynomial),
+}
+
+/// A segment of a chain: a curve with a name.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Segment {
+    /// The drawing's name of the segment, or empty.
+    pub label: String,
+    /// The curve.
+    pub shape: Shape,
+}
+
+impl Segment {
+    /// Makes a segment of a line or arc, without a label.
+    pub fn arc(arc: Arc) -> Self {
+        Self { label: String::new(), shape: Shape::Arc(arc) }
+    }
+
+    /// Returns the station at the beginning.
+    pub fn start(&self) -> Station {
+        match &self.shape {
+            Shape::Arc(arc) => arc.start,
+            Shape::Polynomial(polynomial) => polynomial.station(polynomial.t[0]),
+        }
+    }
+
+    /// Returns the station at the end.
+    pub fn end(&self) -> Station {
+        match &self.shape {
+            Shape::Arc(arc) => arc.end,
+            Shape::Polynomial(polynomial) => polynomial.station(polynomial.t[1]),
+        }
+    }
+
+    /// Returns the curvature \[1/mm\] at the two ends, positive where the curve turns counter-clockwise (hollow side up).
+    pub fn end_curvatures(&self) -> [f64; 2] {
+        match &self.shape {
+            Shape::Arc(arc) => [arc.curvature(); 2],
+            Shape::Polynomial(polynomial) => polynomial.t.map(|t| polynomial.curvature(t)),
+        }
+    }
+
+    /// Names the segment with this index for messages: "segment 3 (R80)", counted from 1.
+    pub fn place(&self, index: usize) -> String {
+        let number = index + 1;
+        if self.label.is_empty() {
+            format!("segment {number}")
+        } else {
+            format!("segment {number} ({})", self.label)
+        }
+    }
+
+    pub(super) fn map(
+        &self,
+        arc: impl Fn(&Arc) -> Arc,
+        polynomial: impl Fn(&Polynomial) -> Polynomial,
+    ) -> Self {
+        let shape = match &self.shape {
+            Shape::Arc(a) => Shape::Arc(arc(a)),
+            Shape::Polynomial(p) => Shape::Polynomial(polynomial(p)),
+        };
+        Self { label: self.label.clone(), shape }
+    }
+}

@@ -1,0 +1,54 @@
+//! A point with a direction: frames, and points of profiles seen from them (Report (4.2), (4.3)).
+
+/// A point of a profile with its unit tangent in the direction of travel (towards larger x on a graph).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Station {
+    /// Lateral coordinate \[mm\].
+    pub x: f64,
+    /// Height \[mm\].
+    pub z: f64,
+    /// cos φ, φ the tangent's angle from x to z.
+    pub cos: f64,
+    /// sin φ.
+    pub sin: f64,
+}
+
+impl Station {
+    /// The profile's own axes: origin (0, 0), tangent along x.
+    pub const AXES: Self = Self { x: 0.0, z: 0.0, cos: 1.0, sin: 0.0 };
+
+    /// Returns the tangent angle φ \[rad\] in (−π, π\].
+    pub fn angle(&self) -> f64 {
+        self.sin.atan2(self.cos)
+    }
+
+    /// Returns this station as seen from the frame whose origin and first axis are `frame`: eqs. (4.2-a, b).
+    #[must_use]
+    pub fn seen_from(&self, frame: &Self) -> Self {
+        let (dx, dz) = (self.x - frame.x, self.z - frame.z);
+        Self {
+            x: dx * frame.cos + dz * frame.sin,
+            z: dz * frame.cos - dx * frame.sin,
+            cos: self.cos * frame.cos + self.sin * frame.sin,
+            sin: self.sin * frame.cos - self.cos * frame.sin,
+        }
+    }
+
+    /// Returns this station, given in the axes of `frame`, in the axes in which `frame` is given: eqs. (4.3-a, b). It is the
+    /// inverse of [`Station::seen_from`].
+    #[must_use]
+    pub fn placed_by(&self, frame: &Self) -> Self {
+        Self {
+            x: frame.x + self.x * frame.cos - self.z * frame.sin,
+            z: frame.z + self.x * frame.sin + self.z * frame.cos,
+            cos: self.cos * frame.cos - self.sin * frame.sin,
+            sin: self.sin * frame.cos + self.cos * frame.sin,
+        }
+    }
+
+    /// Returns the mirror image under x → −x, still travelled towards larger x.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        Self { x: -self.x, z: self.z, cos: self.cos, sin: -self.sin }
+    }
+}
