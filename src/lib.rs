@@ -51,6 +51,8 @@
 //! guaranteed: anything elastic. See [`docs::numerics`] for the formulas and [`docs::errata`] for what differs from
 //! the Report.
 
+#![cfg_attr(not(test), warn(unused_crate_dependencies))]
+
 pub mod case;
 pub mod docs;
 pub mod error;

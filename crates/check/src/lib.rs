@@ -5,6 +5,8 @@
 //! closest points give distances (`closest`). The error of all this is first measured on closed forms
 //! (`floor`).
 
+#![cfg_attr(not(test), warn(unused_crate_dependencies))]
+
 mod body;
 mod closest;
 mod compare;

@@ -3,6 +3,8 @@
 //! Exit codes: 0 done, 1 a geometric "no" (infeasible contact, empty patch, failed check), 2 bad input. Data goes
 //! to stdout, progress and complaints to stderr.
 
+#![cfg_attr(not(test), warn(unused_crate_dependencies))]
+
 mod check;
 mod midsep;
 mod output;

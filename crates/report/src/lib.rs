@@ -11,6 +11,8 @@
 //! with brute force. [`page`] and [`table`] turn the numbers into Markdown, CSV and charts. Nothing here
 //! touches the disk.
 
+#![cfg_attr(not(test), warn(unused_crate_dependencies))]
+
 pub mod errors;
 pub mod hard_case;
 mod hard_checks;
