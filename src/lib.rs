@@ -10,23 +10,26 @@
 //!                         └─────────── check (parry3d) ── report
 //! ```
 //!
-//! | Report FRA/ORD-78/41 | what it does | here |
+//! | Report FRA/ORD-78/41 | what it is | here |
 //! |---|---|---|
-//! | Sec. 3, App. A | segment equations, smooth chains from drawing data | [`profile`], [`profile::builder`] |
-//! | Sec. 4 | contact frame, transformed parameters, feasibility | [`placement`], [`load::feasibility`] |
+//! | (3.2) | lines and arcs | [`Arc`]; polynomials [`Polynomial`], chains [`Profile`] |
+//! | App. A | smooth chains from drawing data | [`profile::builder`] |
+//! | (4.1) | feasibility of a contact point | [`mod@load::feasibility`] |
+//! | (4.2), (4.3) | a point seen from a frame | [`Station`] |
+//! | (4.4)–(4.8) | the transformed profile ζ(ξ) | [`profile::Section`] |
+//! | (4.9)–(4.12) | the contact frame of two points | [`placement`] |
 //! | MIDSEP, Sec. 5 | transformed parameters and Δζ on the midplane | [`separation::midplane`] |
-//! | INSEP, Sec. 6 | s(ξ, η) and unit normals over the grid | [`separation`] |
-//! | INTERPEN, Sec. 7 | η(ξ) with s = δ | [`patch`] |
-//! | CONFORM, COUNTACT | the solvers that read all this | [`mod@export`] (decks), [`mesh`] |
+//! | INSEP, (6.1)–(6.12) | s(ξ, η) and unit normals | [`separation::wheel_surface`], [`Evaluator`]; over grids [`separation::plan`] |
+//! | (6.13)–(6.16) | the Report's own iteration | [`separation::methods::report_newton`] |
+//! | INTERPEN, (7.1)–(7.3) | the boundary s = δ | [`patch::Slicer`], [`Patch`] |
+//! | CONFORM, COUNTACT | the solvers that read all this | [`export::deck`], [`mesh`] |
+//!
+//! The Report chooses contact points; [`search`] finds them. [`measured`] reads profiles from instruments' files.
 //!
 //! # In eight lines
 //!
 //! ```
-//! use wheelrail::patch::{Patch, Window};
-//! use wheelrail::placement::Pair;
-//! use wheelrail::profile::{inclination, standards};
-//! use wheelrail::search::{ONE_CONTACT, Pose, ProfilePair, Selection};
-//! use wheelrail::separation::Evaluator;
+//! use wheelrail::{Evaluator, ONE_CONTACT, Pair, Patch, Pose, ProfilePair, Selection, Window, inclination, standards};
 //!
 //! let rail = standards::rail("60E1")?.rotated(inclination(1.0, 40.0)?);
 //! let pair = Pair::new(rail, standards::wheel("S1002")?, 460.0)?;
@@ -51,6 +54,7 @@
 //! guaranteed: anything elastic. See [`docs::numerics`] for the formulas and [`docs::errata`] for what differs from
 //! the Report.
 
+#![deny(missing_docs, rustdoc::broken_intra_doc_links)]
 #![cfg_attr(not(test), warn(unused_crate_dependencies))]
 
 pub mod case;
@@ -69,6 +73,19 @@ pub mod scene;
 pub mod search;
 pub mod separation;
 
+pub use case::{Case, Run};
 pub use error::{Error, Kind as ErrorKind, Result};
+pub use load::feasibility::{Feasibility, feasibility};
+pub use mesh::axes::Axes;
+pub use mesh::strips::{Counts, StripMesh};
 /// Points, normals, rotations and frames of the public API are of this version of nalgebra.
 pub use nalgebra;
+pub use patch::{Component, Patch, Window};
+pub use placement::track::{RailDistance, WheelDistance};
+pub use placement::{Body, Pair, Placement};
+pub use profile::{Arc, Half, Polynomial, Profile, Segment, Shape, Side, Station, inclination, standards};
+pub use scene::Scene;
+pub use search::sweep::{Conicity, Sweep};
+pub use search::wheelset::{Position, Roll, WheelsetOnTrack};
+pub use search::{ContactSearch, ONE_CONTACT, Pose, ProfilePair, Selection, Touch};
+pub use separation::{Evaluator, Normals};

@@ -10,11 +10,13 @@
 //! is in the [`Record`]. This module does not access the disk.
 
 mod clean;
+mod column;
 mod fit;
 mod options;
 mod place;
 mod read;
 mod shape;
+mod unit;
 pub mod write;
 
 #[cfg(test)]
@@ -22,15 +24,17 @@ mod tests;
 
 pub use clean::checks::{Check, Finding};
 pub use clean::repairs::Repaired;
+pub use column::Column;
 pub use fit::curve::{Corner, CurveRecord, Residual};
 pub use options::{
-    ARC_TOLERANCE, CUTOFF_WAVELENGTH, Column, CurveKind, GAUGE_HEIGHT, KINK_ANGLE, NamedOrigin, Options,
-    Origin, Repair, TAPE_DISTANCE, Unit,
+    ARC_TOLERANCE, CUTOFF_WAVELENGTH, CurveKind, GAUGE_HEIGHT, KINK_ANGLE, NamedOrigin, Options, Origin,
+    Repair, TAPE_DISTANCE,
 };
 pub use place::{Step, Transform};
 pub use read::format::Format;
 pub use read::points::{Element, ElementShape, MOST_ELEMENTS, MOST_POINTS, Note, Point, Points};
 pub use read::scan::LARGEST_FILE;
+pub use unit::Unit;
 
 use serde::Serialize;
 
@@ -77,27 +81,30 @@ pub struct Measured {
 ///
 /// # Errors
 /// Anything wrong with the options, the file or its points, with the place: see [`Options`],
-/// [`Format::read`], [`Transform`], [`Check`].
+/// [`Format`], [`Transform`], [`Check`].
 pub fn profile(file: &str, bytes: &[u8], side: Side, options: &Options) -> Result<Measured> {
     options.validate()?;
     let format = match options.format {
         Some(format) => format,
         None => Format::of_file(file)?,
     };
-    let points = format.read(bytes, options.columns.as_ref()).map_err(|error| error.within(file))?;
+    let points =
+        read::reader::read(bytes, format, options.columns.as_ref()).map_err(|error| error.within(file))?;
     build(file, points, side, options).map_err(|error| error.within(file))
 }
 
 /// Returns the body that a file describes, by its extension or its header; `None` if neither says.
 ///
 /// # Errors
-/// The errors of [`Format::of_file`] and [`Format::read`].
+/// The errors of [`Format::of_file`], and of a file that is not of its format.
 pub fn body(file: &str, bytes: &[u8], options: &Options) -> Result<Option<Side>> {
     if let Some(side) = Format::body_of_file(file) {
         return Ok(Some(side));
     }
     match options.format.map_or_else(|| Format::of_file(file), Ok)? {
-        Format::Simpack => Ok(Format::Simpack.read(bytes, None).map_err(|error| error.within(file))?.body),
+        Format::Simpack => {
+            Ok(read::reader::read(bytes, Format::Simpack, None).map_err(|error| error.within(file))?.body)
+        }
         _ => Ok(None),
     }
 }

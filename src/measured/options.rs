@@ -1,11 +1,11 @@
 //! The options that a scene may give for a measured file.
 
-use std::fmt;
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Format;
+use super::column::Column;
+use super::read::format::Format;
+use super::unit::Unit;
 use crate::error::{Error, Result, finite};
 use crate::profile::Side;
 
@@ -79,83 +79,6 @@ pub struct Options {
     /// Largest distance of a point from the arc chain, mm; 0.01 if not given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub arc_tolerance: Option<f64>,
-}
-
-/// A column of a table.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged, expecting = "expected a column's number, from 1, or its name in the first row")]
-pub enum Column {
-    /// Number of the column, from 1.
-    Number(usize),
-    /// Name of the column in the first row, in upper or lower case.
-    Name(String),
-}
-
-impl fmt::Display for Column {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Self::Number(n) => write!(f, "{n}"),
-            Self::Name(name) => write!(f, "\"{name}\""),
-        }
-    }
-}
-
-/// A unit of length.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub enum Unit {
-    /// Metres.
-    #[serde(rename = "m")]
-    Metre,
-    /// Centimetres.
-    #[serde(rename = "cm")]
-    Centimetre,
-    /// Millimetres.
-    #[serde(rename = "mm")]
-    Millimetre,
-    /// Micrometres.
-    #[serde(rename = "um")]
-    Micrometre,
-    /// Inches of 25.4 mm.
-    #[serde(rename = "in")]
-    Inch,
-    /// Feet of 304.8 mm.
-    #[serde(rename = "ft")]
-    Foot,
-}
-
-impl Unit {
-    /// All units.
-    pub const ALL: [Self; 6] =
-        [Self::Metre, Self::Centimetre, Self::Millimetre, Self::Micrometre, Self::Inch, Self::Foot];
-
-    /// Returns the unit with this name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|unit| unit.name() == name)
-    }
-
-    /// Returns the name of the unit.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Metre => "m",
-            Self::Centimetre => "cm",
-            Self::Millimetre => "mm",
-            Self::Micrometre => "um",
-            Self::Inch => "in",
-            Self::Foot => "ft",
-        }
-    }
-
-    /// Returns the length of the unit \[mm\].
-    pub fn millimetres(self) -> f64 {
-        match self {
-            Self::Metre => 1e3,
-            Self::Centimetre => 10.0,
-            Self::Millimetre => 1.0,
-            Self::Micrometre => 1e-3,
-            Self::Inch => 25.4,
-            Self::Foot => 304.8,
-        }
-    }
 }
 
 /// The point of a file that becomes the origin of the profile.

@@ -173,7 +173,7 @@ fn simpack_files_have_the_material_to_the_right_of_their_path_and_points_apart()
             let points = write::spaced(&write::sample(&profile, step)?);
             let text = write::points(&points, Format::Simpack, side, "");
             assert!(text.contains("inversion      =  0"));
-            let read = Format::Simpack.read(text.as_bytes(), None)?.at;
+            let read = read::reader::read(text.as_bytes(), Format::Simpack, None)?.at;
             // Where the surface faces the other body the path of a wheel goes to smaller y, that of a rail to larger.
             let lowest = match side {
                 Side::Wheel => (1..read.len() - 1).max_by(|&a, &b| read[a].z.total_cmp(&read[b].z)),
@@ -468,7 +468,7 @@ fn every_format_gives_back_the_points_it_was_given() -> Result<()> {
         let points = write::sample(&profile, 0.7)?;
         for format in Format::ALL {
             let text = write::points(&points, format, side, "round 'trip' = \"1\"!\n");
-            let read = format.read(text.as_bytes(), None)?;
+            let read = read::reader::read(text.as_bytes(), format, None)?;
             let mirror = matches!((format, side), (Format::MiniProf, Side::Rail) | (Format::Gensys, _));
             let options = Options { mirror: Some(mirror), ..Options::default() };
             let (transform, findings) = place::resolve(&read, side, &options)?;
@@ -581,7 +581,7 @@ fn every_reader_survives_a_hundred_thousand_mutations() {
         let Ok(format) = Format::of_file(name) else { unreachable!("{name}") };
         let columns = [Column::Number(1 + random.below(3)), Column::Number(1 + random.below(3))];
         let free = matches!(format, Format::Text | Format::Csv);
-        match format.read(&bytes, free.then_some(&columns)) {
+        match read::reader::read(&bytes, format, free.then_some(&columns)) {
             Ok(points) => {
                 good += 1;
                 assert!(points.at.len() <= bytes.len() && points.at.iter().all(|p| p.x.is_finite()));

@@ -6,9 +6,9 @@ use serde::Serialize;
 
 use super::loops;
 use crate::error::{Error, Result};
-use crate::measured::options::Unit;
 use crate::measured::read::points::Point;
 use crate::measured::shape::{gauge_depth, has_flange_back, width};
+use crate::measured::unit::Unit;
 use crate::profile::Side;
 
 /// Distance \[mm\] below which two points are one: a nanometre is less than any instrument or file resolves.

@@ -9,7 +9,7 @@ use super::points::Points;
 use super::scan::{Line, is_number, last_place, lines};
 use crate::error::{Error, Result};
 use crate::measured::Format;
-use crate::measured::options::Column;
+use crate::measured::column::Column;
 
 /// Reads two columns, y towards the track centre and z down, in mm.
 ///

@@ -3,10 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::points::Points;
-use super::{columns, miniprof, scan, simpack};
+use super::scan;
 use crate::error::{Error, Result};
-use crate::measured::options::Column;
 use crate::profile::Side;
 
 /// A format of measured profiles.
@@ -86,20 +84,6 @@ impl Format {
             Self::Gensys => "GENSYS",
             Self::Text => "a plain text file",
             Self::Csv => "a CSV file",
-        }
-    }
-
-    /// Reads a file of this format; `columns` is for the formats with free columns.
-    ///
-    /// # Errors
-    /// Anything that is not of the format, with its line; more than [`super::points::MOST_POINTS`] points.
-    pub fn read(self, bytes: &[u8], columns: Option<&[Column; 2]>) -> Result<Points> {
-        let text = scan::text(bytes)?;
-        match self {
-            Self::MiniProf => miniprof::read(&text),
-            Self::Simpack => simpack::read(&text),
-            Self::Gensys => columns::read_gensys(&text),
-            Self::Text | Self::Csv => columns::read_table(&text, self, columns),
         }
     }
 }

@@ -5,5 +5,6 @@ mod columns;
 pub mod format;
 mod miniprof;
 pub mod points;
+pub mod reader;
 pub mod scan;
 mod simpack;

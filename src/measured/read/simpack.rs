@@ -21,7 +21,7 @@ use super::points::{Point, Points};
 use super::scan::{Line, last_place, lines};
 use crate::error::{Error, Result};
 use crate::measured::Format;
-use crate::measured::options::Unit;
+use crate::measured::unit::Unit;
 use crate::profile::Side;
 
 /// Keys of the spline that are read, each at most once; all but the first have an effect.
