@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::progress::Progress;
-use super::{Outcome, folder_of, outcome, print};
+use crate::answer::{Outcome, folder_of, outcome, print};
 use wheelrail::case::{Site, sites};
 use wheelrail::error::Result;
 use wheelrail::scene;

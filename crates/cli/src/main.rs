@@ -5,6 +5,7 @@
 
 #![cfg_attr(not(test), warn(unused_crate_dependencies))]
 
+mod answer;
 mod check;
 mod midsep;
 mod output;
@@ -15,11 +16,12 @@ mod report;
 mod run;
 mod sweep;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use answer::{Outcome, complain, print};
 use wheelrail::{Error, Result};
 
 /// Wheel/rail contact-patch preprocessor.
@@ -72,14 +74,6 @@ enum Command {
 }
 
 /// The answer of a command that ran to its end.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Outcome {
-    /// The command did what was asked for.
-    Done,
-    /// A geometric "no".
-    No,
-}
-
 fn main() -> ExitCode {
     let outcome = match Arguments::try_parse() {
         Ok(arguments) => on_threads(arguments),
@@ -122,43 +116,4 @@ fn on_threads(arguments: Arguments) -> Result<Outcome> {
 fn schema() -> Result<Outcome> {
     let text = serde_json::to_string_pretty(&wheelrail::scene::schema()).unwrap_or_default();
     print(&format!("{text}\n"))
-}
-
-/// Writes data to stdout; a reader that went away early (`| head`) is not an error.
-fn print(text: &str) -> Result<Outcome> {
-    print_to_reader(text).map(|_| Outcome::Done)
-}
-
-/// Writes data to stdout and tells whether the reader is still there.
-fn print_to_reader(text: &str) -> Result<bool> {
-    use std::io::Write;
-    match std::io::stdout().lock().write_all(text.as_bytes()) {
-        Ok(()) => Ok(true),
-        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(false),
-        Err(error) => {
-            Err(Error::new("stdout", error.to_string(), "a stream that takes the data", "check the disk"))
-        }
-    }
-}
-
-/// Says every geometric "no" on stderr; the outcome is [`Outcome::No`] where there is one.
-fn outcome(noes: impl IntoIterator<Item = String>) -> Outcome {
-    let said = noes.into_iter().map(|no| complain(&format!("no: {no}"))).count();
-    if said == 0 { Outcome::Done } else { Outcome::No }
-}
-
-/// A number of things in words: "1 point", "2 points".
-fn counted(n: usize, thing: &str) -> String {
-    format!("{n} {thing}{}", if n == 1 { "" } else { "s" })
-}
-
-/// A line to stderr; there is nobody to tell when that fails.
-fn complain(text: &str) {
-    use std::io::Write;
-    let _ = writeln!(std::io::stderr().lock(), "{text}");
-}
-
-/// The folder that a scene's own files are relative to.
-fn folder_of(scene: &Path) -> &Path {
-    scene.parent().unwrap_or(Path::new("."))
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::progress::Progress;
-use super::{Outcome, folder_of, print};
+use crate::answer::{Outcome, folder_of, print};
 use wheelrail::case::{contacts, equal_steps};
 use wheelrail::error::Result;
 use wheelrail::placement::Placement;

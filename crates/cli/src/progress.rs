@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::complain;
+use crate::answer::complain;
 
 /// Silence on stderr after which progress is reported; a command that ends before says nothing.
 const PATIENCE: Duration = Duration::from_secs(2);

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::output::refuse_results_of_another;
 use super::png::png;
 use super::progress::Progress;
-use super::{Outcome, complain, folder_of, outcome, print};
+use crate::answer::{Outcome, complain, folder_of, outcome, print};
 use wheelrail::case::{Run, write};
 use wheelrail::error::Result;
 use wheelrail::files::{Folder, RUN_FOLDER};

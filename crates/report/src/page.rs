@@ -1,6 +1,9 @@
 //! Builds the page of the report: a list of sections, each made by one function, and the files beside it.
 
 mod in_use;
+mod section;
+
+pub use section::Section;
 
 use super::hard_run::Outcome;
 use super::measured;
@@ -12,17 +15,6 @@ use super::verification::{Verified, floors};
 use wheelrail::export::picture::chart::{Chart, Series};
 use wheelrail::numerics::nan_max;
 use wheelrail_check::{RELATION, Report};
-
-/// One section of the page. For a new one, add a new function in [`sections`].
-#[derive(Debug, Clone, PartialEq)]
-pub struct Section {
-    /// Heading of the section.
-    pub title: &'static str,
-    /// Text of the section in Markdown.
-    pub body: String,
-    /// Files of the section, as (name in the report's folder, content).
-    pub files: Vec<(&'static str, Vec<u8>)>,
-}
 
 /// Where, with what and how the numbers were made, as (name, value) for the head of the page.
 pub type Origin = Vec<(&'static str, String)>;

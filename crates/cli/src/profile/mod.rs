@@ -7,15 +7,14 @@ mod show;
 mod source;
 
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Subcommand;
 
 use super::progress::Progress;
-use super::{Outcome, print};
+use crate::answer::{Outcome, print};
 use source::SourceArguments;
 use wheelrail::error::Result;
-use wheelrail::files::write_file;
 use wheelrail::profile::standards;
 
 /// What to do with profiles.
@@ -61,11 +60,4 @@ fn list() -> Result<String> {
         let _ = writeln!(out, "wheel  {name:<24} {}", standards::wheel(name)?.source);
     }
     Ok(out)
-}
-
-/// Writes text to a file, or to stdout.
-fn put(text: &str, out: Option<&Path>) -> Result<Outcome> {
-    let Some(path) = out else { return print(text) };
-    write_file(path, text.as_bytes())?;
-    Ok(Outcome::Done)
 }

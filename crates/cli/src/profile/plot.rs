@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::source::{Source, SourceArguments};
-use super::{Outcome, print};
+use crate::answer::{Outcome, print};
 use crate::output::PictureFormat;
 use wheelrail::error::Result;
 use wheelrail::export::picture::SEPARATOR;

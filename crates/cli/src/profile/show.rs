@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::source::Source;
-use crate::counted;
+use crate::answer::counted;
 use wheelrail::measured::{CurveKind, CurveRecord, Measured, Record};
 use wheelrail::profile::{Profile, Shape};
 

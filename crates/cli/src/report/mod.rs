@@ -6,7 +6,7 @@ mod splice;
 use std::path::Path;
 
 use super::progress::Progress;
-use super::{Outcome, outcome, print};
+use crate::answer::{Outcome, outcome, print};
 use wheelrail::error::Result;
 use wheelrail::files::{Folder, Names};
 use wheelrail_report::measurements::{Effort, measure};

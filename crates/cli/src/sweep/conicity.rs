@@ -1,7 +1,7 @@
 //! The equivalent conicity of a sweep's positions, and what a user should know of it.
 
-use super::super::counted;
 use super::super::progress::Progress;
+use crate::answer::counted;
 use wheelrail::error::Result;
 use wheelrail::search::sweep::{ACCURACY, Conicity, Equivalent, NoConicity};
 use wheelrail::search::wheelset::{Position, Roll, WheelsetOnTrack};

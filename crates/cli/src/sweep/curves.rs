@@ -1,7 +1,7 @@
 //! The usual curves of a sweep as a picture.
 
-use super::super::counted;
 use super::table::Table;
+use crate::answer::counted;
 use wheelrail::error::{Error, Result};
 use wheelrail::export::picture::curves::{Curve, CurvesPicture, Quantity, jumps};
 use wheelrail::search::sweep::{Row, Sweep, TrackSide};

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use super::output::{PictureFormat, refuse_taken};
 use super::progress::Progress;
-use super::{Outcome, complain, folder_of, print_to_reader};
+use crate::answer::{Outcome, complain, folder_of, print_to_reader};
 use positions::{lateral_range, read_positions};
 use table::Table;
 use wheelrail::case::{Case, Place};

@@ -8,8 +8,8 @@ use serde_json::{Value, json};
 
 use super::super::png::png;
 use super::super::progress::Progress;
-use super::super::{complain, counted};
 use super::table::Table;
+use crate::answer::{complain, counted};
 use wheelrail::case::{self, Case, Place, Run, SILENT, Standing};
 use wheelrail::error::{Error, Result};
 use wheelrail::export::vtk;

@@ -1,10 +1,10 @@
 //! Builds the sections on what users wait for: positions of a wheelset, and whole cases.
 
-use super::{Section, markdown};
+use super::section::Section;
 use crate::measurements::Measurements;
 use crate::practice::PracticeRow;
 use crate::rates::{Motion, Rate};
-use crate::table::{cases_csv, positions_csv, practice_csv};
+use crate::table::{cases_csv, markdown, positions_csv, practice_csv};
 use crate::whole_case::{PARTS, WholeCase};
 
 /// Returns the section on positions of wheelsets a second.

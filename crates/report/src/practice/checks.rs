@@ -1,8 +1,8 @@
 //! Checks one placed pair against brute force.
 
-use super::PracticeRow;
 use super::brute::{Bodies, Stance};
 use super::fill::filled;
+use super::row::PracticeRow;
 use crate::random::Random;
 use wheelrail::error::{Error, Result};
 use wheelrail::mesh::axes;

@@ -10,6 +10,9 @@ mod brute;
 mod checks;
 mod fill;
 mod polyline;
+mod row;
+
+pub use row::PracticeRow;
 
 use serde::Deserialize;
 
@@ -18,23 +21,6 @@ use wheelrail::error::{Error, Result};
 use wheelrail::measured::Format;
 use wheelrail::placement::Pair;
 use wheelrail::profile::{Profile, Side, inclination, standards};
-
-/// The result of a case, one row of the report.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PracticeRow {
-    /// Name of the case.
-    pub name: String,
-    /// Reason for the case, with its profiles and position.
-    pub what: String,
-    /// Largest difference \[mm\] of a height, gap or separation from brute force.
-    pub figure: f64,
-    /// Number of contacts and near misses that were compared.
-    pub contacts: usize,
-    /// Largest relative difference of a patch's area from the flood fill; NaN if no patch was asked for.
-    pub area: f64,
-    /// The disagreements; empty if there are none.
-    pub failures: Vec<String>,
-}
 
 /// A case as its table has it.
 #[derive(Debug, Clone, Deserialize)]

@@ -1,0 +1,60 @@
+//! What a command answers: data on stdout, complaints on stderr, and its outcome.
+
+use std::path::Path;
+
+use wheelrail::files::write_file;
+use wheelrail::{Error, Result};
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// The command did what was asked for.
+    Done,
+    /// A geometric "no".
+    No,
+}
+
+/// Writes data to stdout; a reader that went away early (`| head`) is not an error.
+pub fn print(text: &str) -> Result<Outcome> {
+    print_to_reader(text).map(|_| Outcome::Done)
+}
+
+/// Writes data to stdout and tells whether the reader is still there.
+pub fn print_to_reader(text: &str) -> Result<bool> {
+    use std::io::Write;
+    match std::io::stdout().lock().write_all(text.as_bytes()) {
+        Ok(()) => Ok(true),
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(false),
+        Err(error) => {
+            Err(Error::new("stdout", error.to_string(), "a stream that takes the data", "check the disk"))
+        }
+    }
+}
+
+/// Says every geometric "no" on stderr; the outcome is [`Outcome::No`] where there is one.
+pub fn outcome(noes: impl IntoIterator<Item = String>) -> Outcome {
+    let said = noes.into_iter().map(|no| complain(&format!("no: {no}"))).count();
+    if said == 0 { Outcome::Done } else { Outcome::No }
+}
+
+/// Puts a number of things in words: "1 point", "2 points".
+pub fn counted(n: usize, thing: &str) -> String {
+    format!("{n} {thing}{}", if n == 1 { "" } else { "s" })
+}
+
+/// Writes a line to stderr; there is nobody to tell when that fails.
+pub fn complain(text: &str) {
+    use std::io::Write;
+    let _ = writeln!(std::io::stderr().lock(), "{text}");
+}
+
+/// Returns the folder to which the paths in a scene are relative.
+pub fn folder_of(scene: &Path) -> &Path {
+    scene.parent().unwrap_or(Path::new("."))
+}
+
+/// Writes text to a file, or to stdout if none is given.
+pub fn put(text: &str, out: Option<&Path>) -> Result<Outcome> {
+    let Some(path) = out else { return print(text) };
+    write_file(path, text.as_bytes())?;
+    Ok(Outcome::Done)
+}
