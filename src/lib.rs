@@ -57,10 +57,12 @@
 #![deny(missing_docs, rustdoc::broken_intra_doc_links)]
 #![cfg_attr(not(test), warn(unused_crate_dependencies))]
 
+#[cfg(feature = "files")]
 pub mod case;
 pub mod docs;
 pub mod error;
 pub mod export;
+#[cfg(feature = "files")]
 pub mod files;
 pub mod load;
 pub mod measured;
@@ -69,10 +71,12 @@ pub mod numerics;
 pub mod patch;
 pub mod placement;
 pub mod profile;
+#[cfg(feature = "files")]
 pub mod scene;
 pub mod search;
 pub mod separation;
 
+#[cfg(feature = "files")]
 pub use case::{Case, Run};
 pub use error::{Error, Kind as ErrorKind, Result};
 pub use load::feasibility::{Feasibility, feasibility};
@@ -84,6 +88,7 @@ pub use patch::{Component, Patch, Window};
 pub use placement::track::{RailDistance, WheelDistance};
 pub use placement::{Body, Pair, Placement};
 pub use profile::{Arc, Half, Polynomial, Profile, Segment, Shape, Side, Station, inclination, standards};
+#[cfg(feature = "files")]
 pub use scene::Scene;
 pub use search::sweep::{Conicity, Sweep};
 pub use search::wheelset::{Position, Roll, WheelsetOnTrack};
