@@ -77,8 +77,11 @@ impl Analysis {
     }
 }
 
-/// Refuses a method that has no formula for the pair.
-fn check_method(placement: &Placement, method: Option<Method>) -> Result<()> {
+/// Refuses a method that has no formula for a placed pair: the Report's needs arcs, the quadratic one a smooth contact.
+///
+/// # Errors
+/// Says what the pair has that the method does not know, with the place "grid: method".
+pub fn check_method(placement: &Placement, method: Option<Method>) -> Result<()> {
     let missing = match method {
         Some(Method::ReportNewton) => report_newton::missing(placement),
         Some(Method::Quadratic) if quadratic_form(placement).iter().any(|c| c.is_nan()) => {

@@ -1,17 +1,27 @@
 //! What the picture of a part shows, on axes of its own.
 
+use nalgebra::Point3;
+
 use super::run::Part;
+use super::site::ends;
 use super::steps::equal_steps;
 use crate::export::picture::{Nodes, Picture, SEPARATOR};
-use crate::export::{Header, Loop};
+use crate::export::{Frame, Header, Loop};
+use crate::patch::{Patch, Window};
+use crate::placement::Placement;
 use crate::profile::Section;
 use crate::separation::Evaluator;
 use crate::separation::axis::EtaAxis;
+use crate::separation::grid::{Choice, Method};
+use crate::separation::plan::demand;
 use crate::separation::values::Values;
 
 /// Points of a picture along ξ and along η: a line of equal separation is smooth to the eye, and C is among them where
 /// the grid is symmetric about it.
 const DRAWN: usize = 121;
+
+/// Tolerance on s \[mm\] of a picture without a plan: far below the width of a line.
+const DRAWN_TOLERANCE: f64 = 1e-6;
 
 /// Points of a picture's profile along one piece of it.
 const OUTLINE_POINTS: usize = 32;
@@ -31,29 +41,33 @@ pub(super) struct Drawn {
 impl Drawn {
     /// Computes what is drawn of a part.
     pub(super) fn new(part: &Part) -> Self {
-        let placement = &part.site.contact.placement;
-        let window = part.site.window();
+        let (site, choice) = (&part.site, &part.analysis.plan.choice);
+        Self::of(&site.contact.placement, &site.window(), choice, contact_name(part))
+    }
+
+    /// Computes what is drawn of a placed pair over a window.
+    fn of(placement: &Placement, window: &Window, choice: &Choice, contact: String) -> Self {
         let axis = |[from, to]: [f64; 2]| if from < to { equal_steps(from, to, DRAWN) } else { vec![from] };
         let (xi, eta) = (axis(window.xi), EtaAxis::new(&axis(window.eta)));
         let mut separation = Values::new(xi.len() * eta.eta.len());
-        part.analysis.plan.choice.fill(placement, &xi, &eta, &mut separation);
+        choice.fill(placement, &xi, &eta, &mut separation);
         let mut evaluator = Evaluator::new(placement);
         let midplane = xi.iter().map(|&xi| [xi, evaluator.separation(xi, 0.0)]).collect();
         let outlines = [&placement.rail().section, &placement.wheel().section].map(outline);
-        Self { contact: contact_name(part), xi, eta, separation, midplane, outlines }
+        Self { contact, xi, eta, separation, midplane, outlines }
     }
 
-    /// Gives the picture, with the part's own cells and boundary.
+    /// Gives the picture, with the solver's cells and the boundary.
     pub(super) fn picture<'a>(
         &'a self,
         header: &'a Header,
-        part: &'a Part,
+        cells: [&'a [f64]; 2],
         loops: &'a [Loop],
     ) -> Picture<'a> {
         Picture {
             header,
             contact: &self.contact,
-            cells: [&part.site.grid.xi, &part.site.grid.eta],
+            cells,
             separation: Nodes { xi: &self.xi, eta: &self.eta.eta, values: &self.separation },
             midplane: &self.midplane,
             loops,
@@ -61,6 +75,43 @@ impl Drawn {
             wheel: &self.outlines[1],
         }
     }
+}
+
+/// Draws the patch of a placed pair with its boundary and both profiles, as SVG. `title` and `contact` head it; `cells` are
+/// the centres ξ and η \[mm\] of the solver's cells, ascending, and set its window.
+pub fn patch_picture(
+    [title, contact]: [&str; 2],
+    placement: &Placement,
+    patch: &Patch,
+    cells: [&[f64]; 2],
+) -> String {
+    let window = Window { xi: ends(cells[0]), eta: ends(cells[1]) };
+    let choice = Choice { method: Method::Spectral, demand: demand(DRAWN_TOLERANCE), coefficients: 1 };
+    let drawn = Drawn::of(placement, &window, &choice, contact.into());
+    let header = Header {
+        title: title.into(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        scene_hash: "in memory".into(),
+        approach: patch.approach,
+        frame: Frame::from(&placement.rail().contact_frame()),
+        remarks: Vec::new(),
+    };
+    let loops = loops_of(placement, patch);
+    drawn.picture(&header, cells, &loops).svg()
+}
+
+/// Gives the boundary of a patch on the rail's surface.
+pub(super) fn loops_of(placement: &Placement, patch: &Patch) -> Vec<Loop> {
+    let section = &placement.rail().section;
+    let loops = patch.components.iter().enumerate().flat_map(|(index, component)| {
+        [&component.boundary].into_iter().chain(&component.holes).map(move |points| (index, points))
+    });
+    loops
+        .map(|(component, points)| {
+            let points = points.iter().map(|&[xi, eta]| Point3::new(xi, eta, section.height(xi))).collect();
+            Loop { component, points }
+        })
+        .collect()
 }
 
 /// Tells the pictures of a run apart: by side and number of a contact that was found, or by the part of the patch.

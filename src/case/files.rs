@@ -3,10 +3,9 @@
 use std::io::Write;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use nalgebra::Point3;
 use rayon::prelude::*;
 
-use super::drawn::Drawn;
+use super::drawn::{Drawn, loops_of};
 use super::input::{OutputFormat, Outputs};
 use super::run::{Part, Run, Tell};
 use super::summary::summary;
@@ -54,7 +53,7 @@ fn write_part(run: &Run, part: &Part, folder: &Folder, png: Option<Rasterise>, t
     let loops = loops(part);
     let strips = part.analysis.strips.as_ref().map(quads);
     let drawn = Drawn::new(part);
-    let picture = drawn.picture(&header, part, &loops);
+    let picture = drawn.picture(&header, [&axes.xi, &axes.eta], &loops);
     let mut jobs: Vec<Job<'_>> = Vec::new();
     tables(&mut jobs, part, &loops);
     arrays(&mut jobs, outputs, part);
@@ -165,17 +164,8 @@ fn quads(strips: &StripMesh) -> QuadMesh {
 
 /// Gives the boundary loops, lifted onto the rail: of every component the outer one, then those around its holes.
 fn loops(part: &Part) -> Vec<Loop> {
-    let section = &part.site.contact.placement.rail().section;
-    let components = part.analysis.patch.iter().flat_map(|patch| &patch.components).enumerate();
-    let loops = components.flat_map(|(index, component)| {
-        [&component.boundary].into_iter().chain(&component.holes).map(move |points| (index, points))
-    });
-    loops
-        .map(|(component, points)| {
-            let points = points.iter().map(|&[xi, eta]| Point3::new(xi, eta, section.height(xi))).collect();
-            Loop { component, points }
-        })
-        .collect()
+    let placement = &part.site.contact.placement;
+    part.analysis.patch.as_ref().map_or_else(Vec::new, |patch| loops_of(placement, patch))
 }
 
 /// Gives INTERPEN's own table: the intervals of η at every ξ of the grid that lies in the patch, by component and η.

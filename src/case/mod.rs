@@ -3,7 +3,9 @@
 //! Cases know nothing of scenes: the room `scene` makes them.
 
 mod analysis;
+mod columns;
 mod contact;
+mod curves;
 mod drawn;
 mod files;
 mod grids;
@@ -14,8 +16,11 @@ mod site;
 mod steps;
 mod summary;
 
-pub use analysis::{Analysis, Timings};
+pub use analysis::{Analysis, Timings, check_method};
+pub use columns::Columns;
 pub use contact::{Contact, EllipseUnder};
+pub use curves::{MOST_DRAWN, ascending, curves};
+pub use drawn::patch_picture;
 pub use files::{Rasterise, write};
 pub use grids::Grid;
 pub use input::{

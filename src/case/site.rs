@@ -104,7 +104,7 @@ impl Site {
 }
 
 /// First and last value.
-fn ends(values: &[f64]) -> [f64; 2] {
+pub(super) fn ends(values: &[f64]) -> [f64; 2] {
     match values {
         [first, .., last] => [*first, *last],
         [only] => [*only; 2],

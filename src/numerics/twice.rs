@@ -6,8 +6,10 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
+use serde::{Deserialize, Serialize};
+
 /// A sum of two numbers, of which the second is below half a unit of the first one's last place.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Twice {
     /// The value, rounded to the working precision.
     pub high: f64,

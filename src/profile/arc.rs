@@ -1,5 +1,7 @@
 //! Lines and circular arcs in curvature form: Report (3.2), with a signed radius (erratum 2).
 
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
 use super::station::Station;
 use crate::error::{Error, Result, finite};
 use crate::numerics::cosine;
@@ -19,7 +21,7 @@ pub enum Half {
 }
 
 /// A line (infinite radius) or a circular arc of at most half a turn.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Arc {
     /// Station at the beginning.
     pub start: Station,
@@ -27,7 +29,18 @@ pub struct Arc {
     pub end: Station,
     /// Signed radius \[mm\]: positive if the arc turns counter-clockwise (lower half), ∞ for a line. The
     /// radius is kept, not the curvature, since differences of nearly equal radii are then exact.
+    #[serde(serialize_with = "finite_or_none", deserialize_with = "infinite_where_none")]
     pub radius: f64,
+}
+
+/// Stores the radius of a line as nothing: JSON has no infinity.
+fn finite_or_none<S: Serializer>(radius: &f64, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+    Some(*radius).filter(|radius| radius.is_finite()).serialize(serializer)
+}
+
+/// Reads what [`finite_or_none`] stores.
+fn infinite_where_none<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<f64, D::Error> {
+    Ok(Option::deserialize(deserializer)?.unwrap_or(f64::INFINITY))
 }
 
 impl Arc {

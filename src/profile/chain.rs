@@ -1,6 +1,7 @@
 //! A profile: a chain of segments that meet.
 
 use nalgebra::UnitComplex;
+use serde::{Deserialize, Serialize};
 
 use super::arc::Arc;
 use super::closing::{self, Closing};
@@ -13,8 +14,9 @@ use crate::error::{Error, Result};
 /// A chain of segments, travelled from left to right, with its name and source.
 ///
 /// Neighbours share their joint point, to rounding: a drawing's rounded coordinates are closed when the chain is made, by the
-/// rule of [`closing`].
-#[derive(Debug, Clone, PartialEq)]
+/// rule of [`closing`]. A stored profile (`serde`) is read back to the same bits; what is no chain is refused.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Stored")]
 pub struct Profile {
     /// Name of the standard, or of the file.
     pub name: String,
@@ -26,7 +28,35 @@ pub struct Profile {
     drawn: Vec<Segment>,
     closings: Vec<Closing>,
     /// The larger side of the box around the segments' ends \[mm\].
+    #[serde(skip_serializing)]
     extent: f64,
+}
+
+/// A profile as it is stored: without what follows from its segments.
+#[derive(Deserialize)]
+struct Stored {
+    name: String,
+    source: String,
+    segments: Vec<Segment>,
+    drawn: Vec<Segment>,
+    closings: Vec<Closing>,
+}
+
+impl TryFrom<Stored> for Profile {
+    type Error = Error;
+
+    fn try_from(stored: Stored) -> Result<Self> {
+        let Stored { name, source, segments, drawn, closings } = stored;
+        let all = segments.iter().chain(&drawn);
+        let joints = segments.len().saturating_sub(1);
+        let inside = closings.iter().all(|closing| closing.left < joints);
+        if segments.is_empty() || !inside || !all.clone().all(Segment::is_sound) {
+            let expected = "segments and joints of one chain";
+            return Err(Error::new(name, "a damaged profile", expected, "store it anew"));
+        }
+        continuity::reject_jumps(&segments, extent(&segments))?;
+        Ok(Self::closed(name, source, [segments, drawn], closings))
+    }
 }
 
 impl Profile {
@@ -143,4 +173,42 @@ fn extent(segments: &[Segment]) -> f64 {
         }
     }
     (high[0] - low[0]).max(high[1] - low[1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::profile::{inclination, standards};
+
+    #[test]
+    fn a_stored_profile_is_read_back_to_the_last_bit() -> std::result::Result<(), Box<dyn std::error::Error>>
+    {
+        let mut read = 0;
+        for name in standards::wheel_names() {
+            let profile = standards::wheel(name)?.rotated(inclination(1.0, 40.0)?);
+            let text = serde_json::to_string(&profile)?;
+            assert_eq!(serde_json::from_str::<Profile>(&text)?, profile, "{name}");
+            read += 1;
+        }
+        assert!(read > 10);
+        Ok(())
+    }
+
+    #[test]
+    fn a_damaged_profile_is_refused() -> std::result::Result<(), Box<dyn std::error::Error>> {
+        let text = serde_json::to_string(&standards::wheel("S1002")?)?;
+        let value: serde_json::Value = serde_json::from_str(&text)?;
+        let refused = |damage: &dyn Fn(&mut serde_json::Value)| {
+            let mut value = value.clone();
+            damage(&mut value);
+            serde_json::from_value::<Profile>(value).is_err()
+        };
+        assert!(!refused(&|_| {}));
+        assert!(refused(&|value| value["segments"] = serde_json::json!([])));
+        assert!(refused(&|value| value["segments"][1]["shape"]["Polynomial"]["x"] = serde_json::json!([])));
+        assert!(refused(&|value| {
+            value["segments"].as_array_mut().into_iter().for_each(|all| all.swap(1, 3));
+        }));
+        Ok(())
+    }
 }

@@ -17,6 +17,8 @@
 //! `SHARE` of the shorter neighbour. The rule has no direction, no axes and no unit of length: it commutes
 //! with mirroring, rigid motion and scaling, and closing twice changes nothing.
 
+use serde::{Deserialize, Serialize};
+
 use super::arc::Arc;
 use super::polynomial::Polynomial;
 use super::segment::{Segment, Shape};
@@ -53,7 +55,7 @@ const SAME_KINK: f64 = 0.25;
 const MOST_CORRECTIONS: usize = 40;
 
 /// How a joint was closed.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Closing {
     /// Index of the segment in the closed chain that ends at the joint point.
     pub left: usize,

@@ -1,5 +1,7 @@
 //! Polynomial segments: the zones of a standard such as S1002, and the spans of a parametric spline.
 
+use serde::{Deserialize, Serialize};
+
 use super::station::Station;
 use crate::error::{Error, Result, finite};
 use crate::numerics::polynomial::{exact_slope, exact_value, recentred};
@@ -7,7 +9,7 @@ use crate::numerics::twice::Twice;
 
 /// A curve (x(t), z(t)) with polynomial coordinates. They are kept in twice the working precision about a
 /// point of the curve's own: a standard's power form about x = 0 cancels from thousands of mm.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Polynomial {
     /// Range of the parameter, ascending \[mm or the spline's unit\].
     pub t: [f64; 2],
@@ -53,6 +55,11 @@ impl Polynomial {
         }
         let exact = |c: &[f64]| c.iter().map(|&c| c.into()).collect();
         Ok(Self { t, x: exact(x), z: exact(z) })
+    }
+
+    /// Tells whether it has a range and enough coefficients.
+    pub(super) fn is_sound(&self) -> bool {
+        self.t[0] < self.t[1] && self.x.len() >= 2 && !self.z.is_empty()
     }
 
     /// Returns the coefficients of x(t) and of z(t) \[mm\], each as a sum of two numbers: the rounded one and

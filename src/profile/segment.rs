@@ -1,11 +1,13 @@
 //! One segment of a profile (Report Sec. 3): a line, an arc or a polynomial.
 
+use serde::{Deserialize, Serialize};
+
 use super::arc::Arc;
 use super::polynomial::Polynomial;
 use super::station::Station;
 
 /// The curve of one segment.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Shape {
     /// A line or a circular arc, eqs. (3.2).
     Arc(Arc),
@@ -14,7 +16,7 @@ pub enum Shape {
 }
 
 /// A segment of a chain: a curve with a name.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Segment {
     /// The drawing's name of the segment, or empty.
     pub label: String,
@@ -42,6 +44,16 @@ impl Segment {
             Shape::Arc(arc) => arc.end,
             Shape::Polynomial(polynomial) => polynomial.station(polynomial.t[1]),
         }
+    }
+
+    /// Tells whether all numbers of the curve are finite and there are enough of them: what its constructors make.
+    pub(super) fn is_sound(&self) -> bool {
+        let enough = match &self.shape {
+            Shape::Arc(arc) => !arc.radius.is_nan() && arc.radius != 0.0,
+            Shape::Polynomial(polynomial) => polynomial.is_sound(),
+        };
+        let sound = |at: Station| [at.x, at.z, at.cos, at.sin].iter().all(|value| value.is_finite());
+        enough && sound(self.start()) && sound(self.end())
     }
 
     /// Returns the curvature \[1/mm\] at the two ends, positive where the curve turns counter-clockwise (hollow side up).

@@ -1,7 +1,9 @@
 //! A point with a direction: frames, and points of profiles seen from them (Report (4.2), (4.3)).
 
+use serde::{Deserialize, Serialize};
+
 /// A point of a profile with its unit tangent in the direction of travel (towards larger x on a graph).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Station {
     /// Lateral coordinate \[mm\].
     pub x: f64,

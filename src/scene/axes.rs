@@ -33,10 +33,7 @@ pub(super) fn asked_axes(grid: &GridData) -> Result<AskedAxes> {
 fn axis(place: &str, axis: &AxisData) -> Result<Option<Vec<f64>>> {
     let values = match axis {
         AxisData::Word(_) => return Ok(None),
-        AxisData::Values(list) => {
-            check_length(place, list.values.len() as f64)?;
-            list.values.clone()
-        }
+        AxisData::Values(list) => list.values.clone(),
         AxisData::Steps(steps) => {
             let (from, to) = (finite(place, steps.from)?, finite(place, steps.to)?);
             if from >= to || steps.n < 2 {
@@ -47,11 +44,16 @@ fn axis(place: &str, axis: &AxisData) -> Result<Option<Vec<f64>>> {
             equal_steps(from, to, steps.n as usize)
         }
     };
-    check_values(place, &values)?;
+    check_axis(place, &values)?;
     Ok(Some(values))
 }
 
-fn check_values(place: &str, values: &[f64]) -> Result<()> {
+/// Checks the values \[mm\] of an axis; `place` names it.
+///
+/// # Errors
+/// Values that are not finite, not ascending, too many or too near; none at all.
+pub fn check_axis(place: &str, values: &[f64]) -> Result<()> {
+    check_length(place, values.len() as f64)?;
     let [first, .., last] = values else {
         return match values {
             [only] => check_near(place, *only),

@@ -3,13 +3,16 @@
 use std::fmt;
 use std::path::PathBuf;
 
+use nalgebra::UnitComplex;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::method_or_auto;
 use crate::case::OutputFormat;
+use crate::error::{Error, Result, finite};
 use crate::measured;
 use crate::profile::drawing::SegmentData;
+use crate::profile::inclination;
 use crate::search::wheelset::{Position, Roll};
 use crate::separation::grid::Method;
 
@@ -171,6 +174,27 @@ pub enum Rotation {
     Radians(f64),
     /// "1:n", atan(1/n); "-1:n" the other way.
     Ratio(String),
+}
+
+impl Rotation {
+    /// Gives the rotation that is written, counter-clockwise from x to z.
+    ///
+    /// # Errors
+    /// An angle that is not finite; a ratio of other than two numbers, or with a run of 0.
+    pub fn turn(&self) -> Result<UnitComplex<f64>> {
+        let bad = |found: String| Error::new("", found, "rad, or \"1:n\" with n ≠ 0", "correct it");
+        match self {
+            Self::Radians(angle) => Ok(UnitComplex::new(finite("", *angle)?)),
+            Self::Ratio(text) => {
+                let (one, n) = text.split_once(':').ok_or_else(|| bad(format!("\"{text}\"")))?;
+                let number = |s: &str| s.trim().parse::<f64>().ok().filter(|v| v.is_finite());
+                match (number(one), number(n)) {
+                    (Some(rise), Some(run)) if run != 0.0 => inclination(rise, run),
+                    _ => Err(bad(format!("\"{text}\""))),
+                }
+            }
+        }
+    }
 }
 
 impl fmt::Display for Rotation {

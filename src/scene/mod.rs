@@ -10,11 +10,12 @@ mod resolve;
 mod standing;
 mod words;
 
+pub use axes::check_axis;
 pub use data::{
     AxisData, ContactData, GridData, MaterialData, OutputData, PatchData, ProfileData, RollData, RollWord,
     Rotation, Scene, Spacing, TrackData, WheelsetData, schema,
 };
-pub use profiles::{is_chain_file, profile_from_file};
+pub use profiles::{ProfileSource, is_chain_file, profile_from_file, read_profile};
 pub use read::{load, parse};
-pub use resolve::{echo, resolve, with_profiles};
+pub use resolve::{approach, echo, modulus, resolve, with_profiles};
 pub use words::perhaps;

@@ -2,9 +2,7 @@
 
 use std::path::Path;
 
-use nalgebra::UnitComplex;
-
-use super::data::{ProfileData, Rotation, Scene};
+use super::data::{ProfileData, Scene};
 use super::read::parse;
 use super::words::nearest;
 use crate::case::Profiles;
@@ -13,7 +11,7 @@ use crate::files::{read_bytes, read_text};
 use crate::measured::{self, Measured, Options, Record};
 use crate::placement::Pair;
 use crate::profile::drawing::{SegmentData, chain};
-use crate::profile::{Profile, Side, inclination, standards};
+use crate::profile::{Profile, Side, standards};
 
 /// Largest rolling radius \[mm\]: a kilometre times a thousand, whose square is far from overflowing.
 const FARTHEST: f64 = 1e9;
@@ -86,7 +84,7 @@ fn profile(data: &ProfileData, folder: &Path, side: Side) -> Result<Resolved> {
             let expected = "no `rotate` for a profile that is `already_inclined`";
             return Err(Error::new("rotate", rotation.to_string(), expected, "remove one of the two"));
         }
-        profile = profile.rotated(turn(rotation).map_err(|e| e.within("rotate"))?);
+        profile = profile.rotated(rotation.turn().map_err(|e| e.within("rotate"))?);
     }
     if let Some([x, z]) = data.shift {
         profile = profile.shifted(finite("shift", x)?, finite("shift", z)?);
@@ -98,10 +96,66 @@ fn in_file(data: &ProfileData, path: &Path, side: Side) -> Result<Resolved> {
     if data.format.is_none() && is_chain_file(path) {
         return profile_from_file(path).map(Resolved::drawn);
     }
+    let Measured { profile, record, .. } = measured_file(path, Some(side), &data.measured())?;
+    Ok(Resolved { profile, measured: Some(record) })
+}
+
+/// A profile, and how it came to be.
+#[derive(Debug, Clone)]
+pub enum ProfileSource {
+    /// Built in, or a file of segments.
+    Drawn(Profile),
+    /// A file of points.
+    Measured(Box<Measured>),
+}
+
+impl ProfileSource {
+    /// Gives the profile.
+    pub fn profile(&self) -> &Profile {
+        match self {
+            Self::Drawn(profile) => profile,
+            Self::Measured(measured) => &measured.profile,
+        }
+    }
+}
+
+/// Reads a profile from a file of any kind: segments in TOML or JSON, unless the options name a format, or measured points.
+/// `side` is the body that it is of; not needed where the file says so, and of no meaning for segments.
+///
+/// Cost: that of [`measured::profile`].
+///
+/// # Errors
+/// An unreadable file, and whatever is wrong with it; a measured file that does not say which body it is of; options for
+/// a file of segments.
+pub fn read_profile(path: &Path, side: Option<Side>, options: &Options) -> Result<ProfileSource> {
+    if options.format.is_some() || !is_chain_file(path) {
+        return measured_file(path, side, options)
+            .map(|measured| ProfileSource::Measured(Box::new(measured)));
+    }
+    let given = options.given();
+    if !given.is_empty() {
+        let found = format!("`{}` for a drawn profile", given.join("`, `"));
+        let expected = "options of measured files for a file of measured points only";
+        let place = path.display().to_string();
+        return Err(Error::new(place, found, expected, "remove them, or give another file"));
+    }
+    profile_from_file(path).map(ProfileSource::Drawn)
+}
+
+fn measured_file(path: &Path, side: Option<Side>, options: &Options) -> Result<Measured> {
     let place = path.display().to_string();
     let bytes = read_bytes(path, measured::LARGEST_FILE)?;
-    let Measured { profile, record, .. } = measured::profile(&place, &bytes, side, &data.measured())?;
-    Ok(Resolved { profile, measured: Some(record) })
+    let Some(known) = side.map_or_else(|| measured::body(&place, &bytes, options), |side| Ok(Some(side)))?
+    else {
+        let expected = "the body that a measured file is of, where it does not say so";
+        return Err(Error::new(
+            place,
+            "no side",
+            expected,
+            "say rail or wheel (on the command line by --side)",
+        ));
+    };
+    measured::profile(&place, &bytes, known, options)
 }
 
 /// Refuses keys that mean nothing for a drawn profile.
@@ -150,22 +204,6 @@ fn built_in(name: &str, side: Side) -> Result<Profile> {
 /// Tells whether a file's extension is that of a chain of segments.
 pub fn is_chain_file(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml") || e.eq_ignore_ascii_case("json"))
-}
-
-/// Gives the rotation that is written.
-fn turn(rotation: &Rotation) -> Result<UnitComplex<f64>> {
-    let bad = |found: String| Error::new("", found, "rad, or \"1:n\" with n ≠ 0", "correct it");
-    match rotation {
-        Rotation::Radians(angle) => Ok(UnitComplex::new(finite("", *angle)?)),
-        Rotation::Ratio(text) => {
-            let (one, n) = text.split_once(':').ok_or_else(|| bad(format!("\"{text}\"")))?;
-            let number = |s: &str| s.trim().parse::<f64>().ok().filter(|v| v.is_finite());
-            match (number(one), number(n)) {
-                (Some(rise), Some(run)) if run != 0.0 => inclination(rise, run),
-                _ => Err(bad(format!("\"{text}\""))),
-            }
-        }
-    }
 }
 
 /// Reads a profile file with `segments` and perhaps `name`, `source`, `start`.

@@ -10,7 +10,7 @@ use super::profiles::profiles;
 use super::standing::standing;
 use crate::case::{ApproachBy, Case, Echo, OutputFormat, Outputs, Profiles, Question};
 use crate::error::{Error, Result, finite};
-use crate::load::hertz::Elastic;
+use crate::load::hertz::{Elastic, effective_modulus};
 
 /// Smallest approach other than 0 \[mm\] and smallest load \[N\]: below any that is meant, and its powers do not underflow.
 const SMALLEST: f64 = 1e-60;
@@ -74,7 +74,11 @@ fn question(scene: &Scene) -> Result<Question> {
     Ok(Question { approach, material, tolerance, method: scene.grid.method })
 }
 
-fn approach(patch: &PatchData) -> Result<ApproachBy> {
+/// Checks how far the bodies approach: a length or a load.
+///
+/// # Errors
+/// None or both of them; values that are not finite, negative, or too small to be meant.
+pub fn approach(patch: &PatchData) -> Result<ApproachBy> {
     let expected = "exactly one of `approach` and `load`";
     let (key, value, by) = match (patch.approach, patch.load) {
         (Some(approach), None) => ("patch: approach", approach, ApproachBy::Given(approach)),
@@ -90,6 +94,15 @@ fn approach(patch: &PatchData) -> Result<ApproachBy> {
         return Err(Error::new(key, format!("{value:e}"), expected, "check the unit"));
     }
     Ok(by)
+}
+
+/// Gives E* of both materials \[N/mm²\].
+///
+/// # Errors
+/// A modulus that is not positive; a Poisson's ratio beyond (−1, 0.5\].
+pub fn modulus(material: &MaterialData) -> Result<f64> {
+    let [rail, wheel] = elastic(material)?;
+    Ok(effective_modulus(&rail, &wheel))
 }
 
 fn elastic(material: &MaterialData) -> Result<[Elastic; 2]> {

@@ -4,12 +4,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::source::{Content, Source, SourceArguments};
+use super::source::{Source, SourceArguments};
 use crate::answer::{Outcome, put};
 use crate::answer::{complain, counted};
 use wheelrail::error::{Error, Result};
 use wheelrail::measured::{CurveKind, Format, write};
 use wheelrail::profile::{Profile, Side};
+use wheelrail::scene::ProfileSource;
 
 /// Distance of points \[mm\] along a drawn profile if none is given: that of hand-held instruments.
 const STEP: f64 = 0.2;
@@ -48,7 +49,7 @@ fn points(arguments: &ConvertArguments) -> Result<String> {
     })?;
     let source = arguments.source.read()?;
     let points = match (&source.content, arguments.step) {
-        (Content::Measured(measured), None) => measured.points.iter().map(|point| point.xz()).collect(),
+        (ProfileSource::Measured(measured), None) => measured.points.iter().map(|point| point.xz()).collect(),
         (_, step) => {
             write::sample(source.profile(), step.unwrap_or(STEP)).map_err(|error| error.at("--step"))?
         }

@@ -7,10 +7,9 @@ use clap::Args;
 use super::options::{Body, MeasuredArguments};
 use crate::output::refuse_taken;
 use wheelrail::error::{Error, Result};
-use wheelrail::files::read_bytes;
-use wheelrail::measured::{self, CurveKind, Measured, Options};
+use wheelrail::measured::{CurveKind, Measured, Options};
 use wheelrail::profile::{Profile, Side, standards};
-use wheelrail::scene;
+use wheelrail::scene::{self, ProfileSource};
 
 /// Which profile.
 #[derive(Debug, Args)]
@@ -29,30 +28,18 @@ pub(crate) struct SourceArguments {
 pub(super) struct Source {
     /// Which body it is of, where that is known.
     pub side: Option<Side>,
-    pub content: Content,
-}
-
-/// Where a profile comes from.
-#[derive(Debug)]
-pub(super) enum Content {
-    /// Built in, or a file of segments.
-    Drawn(Profile),
-    /// A file of points.
-    Measured(Box<Measured>),
+    pub content: ProfileSource,
 }
 
 impl Source {
     pub(super) fn profile(&self) -> &Profile {
-        match &self.content {
-            Content::Drawn(profile) => profile,
-            Content::Measured(measured) => &measured.profile,
-        }
+        self.content.profile()
     }
 
     pub(super) fn measured(&self) -> Option<&Measured> {
         match &self.content {
-            Content::Drawn(_) => None,
-            Content::Measured(measured) => Some(measured),
+            ProfileSource::Drawn(_) => None,
+            ProfileSource::Measured(measured) => Some(measured),
         }
     }
 }
@@ -89,21 +76,12 @@ impl SourceArguments {
         }
         let options = self.measured.options()?;
         let side = self.side.map(Side::from);
-        if options.format.is_none() && scene::is_chain_file(path) {
+        let drawn = options.format.is_none() && scene::is_chain_file(path);
+        if drawn {
             self.measured.reject(&self.profile)?;
-            return Ok(Source { side, content: Content::Drawn(scene::profile_from_file(path)?) });
         }
-        let options = Options { curve: options.curve.or(curve), ..options };
-        let bytes = read_bytes(path, measured::LARGEST_FILE)?;
-        let Some(known) =
-            side.map_or_else(|| measured::body(&self.profile, &bytes, &options), |side| Ok(Some(side)))?
-        else {
-            let (place, expected) =
-                (&self.profile, "the body that a measured file is of, where it does not say so");
-            return Err(Error::new(place, "no --side", expected, "give --side rail or --side wheel"));
-        };
-        let measured = measured::profile(&self.profile, &bytes, known, &options)?;
-        Ok(Source { side, content: Content::Measured(Box::new(measured)) })
+        let options = Options { curve: options.curve.or(curve.filter(|_| !drawn)), ..options };
+        Ok(Source { side, content: scene::read_profile(path, side, &options)? })
     }
 
     fn built_in(&self) -> Result<Source> {
@@ -126,6 +104,6 @@ impl SourceArguments {
             ));
         }
         let profile = if rail { standards::rail(&self.profile)? } else { standards::wheel(&self.profile)? };
-        Ok(Source { side: Some(side), content: Content::Drawn(profile) })
+        Ok(Source { side: Some(side), content: ProfileSource::Drawn(profile) })
     }
 }

@@ -1,32 +1,11 @@
 //! The equivalent conicity of a sweep's positions, and what a user should know of it.
 
-use super::super::progress::Progress;
 use crate::answer::counted;
-use wheelrail::error::Result;
-use wheelrail::search::sweep::{ACCURACY, Conicity, Equivalent, NoConicity};
-use wheelrail::search::wheelset::{Position, Roll, WheelsetOnTrack};
+use wheelrail::search::sweep::{ACCURACY, Conicity, Equivalent, NoConicity, free};
+use wheelrail::search::wheelset::Position;
 
 /// Relative errors up to which conicities that are not converged are counted in classes.
 const CLASSES: [f64; 2] = [1e-3, 1e-2];
-
-/// The equivalent conicity up to the largest amplitude of the positions whose roll is not given. All these rolls are found
-/// in one way, solved or neglected.
-pub(super) fn conicity(
-    system: &WheelsetOnTrack,
-    positions: &[Position],
-    progress: &Progress,
-) -> Result<Option<Conicity>> {
-    let amplitude = free(positions).fold(0.0, |most: f64, position| most.max(position.lateral.abs()));
-    let Some(first) = free(positions).next().filter(|_| amplitude > 0.0) else { return Ok(None) };
-    let mut told = |done: usize, most: usize| {
-        progress.at(format!("equivalent conicity, {done} of at most {most} searches"));
-    };
-    Conicity::told(system, amplitude, first.roll, &mut told).map(Some)
-}
-
-fn free(positions: &[Position]) -> impl Iterator<Item = &Position> {
-    positions.iter().filter(|position| !matches!(position.roll, Roll::Fixed(_)))
-}
 
 /// Remarks on the positions whose conicity is not accurate, or is not there although both wheels touch.
 pub(super) fn remarks(conicity: &Conicity, positions: &[Position]) -> Vec<String> {

@@ -2,91 +2,31 @@
 
 use super::table::Table;
 use crate::answer::counted;
+use wheelrail::case::{Columns, MOST_DRAWN, ascending, curves};
 use wheelrail::error::{Error, Result};
-use wheelrail::export::picture::curves::{Curve, CurvesPicture, Quantity, jumps};
-use wheelrail::search::sweep::{Row, Sweep, TrackSide};
+use wheelrail::export::picture::curves::CurvesPicture;
 use wheelrail::search::wheelset::Position;
 
-/// At most so many positions are drawn, evenly chosen: more than a page has pixels.
-const MOST_DRAWN: usize = 2000;
-
-/// A quantity of a row.
-type Value = fn(&Row) -> f64;
-
-/// Quantities of a position, as its first row has them; whether they jump where a contact does.
-const OF_POSITION: [(&str, &str, Value, bool); 3] = [
-    ("Rolling radius difference, right less left", "Δr [mm]", |row| row.delta_r, true),
-    (
-        "Equivalent conicity at this amplitude",
-        "tan γ [1]",
-        |row| row.conicity.map_or(f64::NAN, |found| found.conicity),
-        false,
-    ),
-    ("Roll", "roll [mrad]", |row| 1e3 * row.roll, false),
-];
-
-/// Quantities of each side's lowest contact.
-const OF_SIDE: [(&str, &str, Value); 3] = [
-    ("Contact angle", "θ [°]", |row| row.contact.contact_angle.to_degrees()),
-    ("Contact on the rail", "x on the rail [mm]", |row| row.contact.rail_x),
-    ("Contact on the wheel", "x on the wheel [mm]", |row| row.contact.wheel_x),
-];
-
-/// Makes the picture of a table's positions, whose lateral displacements have to ascend.
+/// Makes the picture of a table's positions, evenly chosen; their lateral displacements have to ascend.
 pub(super) fn picture(table: &Table, title: &str) -> Result<CurvesPicture> {
     let all = &table.positions;
-    if let Some(pair) = all.windows(2).find(|pair| pair[0].lateral >= pair[1].lateral) {
-        let found = format!("{} mm after {} mm", pair[1].lateral, pair[0].lateral);
-        let expected = "lateral displacements that grow from position to position";
-        return Err(Error::new("--picture", found, expected, "sort the positions, or use --lateral"));
-    }
-    let found = lowest(table)?;
-    let values = |side: TrackSide, value: Value| -> Vec<f64> {
-        let of = |rows: &[Row]| rows.iter().find(|row| row.side == side).map_or(f64::NAN, value);
-        found.iter().map(|(_, rows)| of(rows)).collect()
-    };
-    // A side's contact jumps or not whatever quantity is drawn: all its panels are parted at the same positions.
-    let jumps_of = |side: TrackSide| {
-        jumps(&[&values(side, |row| row.contact.rail_x), &values(side, |row| row.contact.wheel_x)])
-    };
-    let sides = [("left", TrackSide::Left), ("right", TrackSide::Right)];
-    let [left, right] = sides.map(|(_, side)| jumps_of(side));
-    let curve = |name: &str, side: TrackSide, value: Value, jumps: &[usize]| {
-        let points = found.iter().zip(values(side, value)).map(|((lateral, _), value)| [*lateral, value]);
-        Curve { name: name.into(), points: points.collect(), jumps: jumps.to_vec() }
-    };
-    let quantity =
-        |(title, axis): (&str, &str), curves| Quantity { title: title.into(), axis: axis.into(), curves };
-    let either = [left.as_slice(), right.as_slice()].concat();
-    let of_position = OF_POSITION.map(|(title, axis, value, jumps)| {
-        let jumps = if jumps { either.as_slice() } else { &[] };
-        quantity((title, axis), vec![curve("", TrackSide::Right, value, jumps)])
-    });
-    let of_side = OF_SIDE.map(|(title, axis, value)| {
-        let both = sides.into_iter().zip([&left, &right]);
-        let curves = both.map(|((name, side), jumps)| curve(name, side, value, jumps)).collect();
-        quantity((title, axis), curves)
-    });
-    Ok(CurvesPicture {
-        title: title.into(),
-        about: format!(
-            "{}; lowest contact of each side, in its own profile axes",
-            counted(all.len(), "position")
-        ),
-        abscissa: "lateral displacement [mm]".into(),
-        quantities: of_position.into_iter().chain(of_side).collect(),
-    })
-}
-
-/// Finds lateral displacement \[mm\] and lowest contact of each side, at evenly chosen positions.
-fn lowest(table: &Table) -> Result<Vec<(f64, Vec<Row>)>> {
-    let stride = table.positions.len().div_ceil(MOST_DRAWN).max(1);
-    let mut sweep = Sweep::new(table.system, table.selection, table.conicity.as_ref());
-    let mut rows_at = |position: &Position| {
-        let mut rows = Vec::new();
-        sweep.position(position, &mut rows)?;
-        rows.retain(|row| row.number == 0);
-        Ok((position.lateral, rows))
-    };
-    table.positions.iter().step_by(stride).map(&mut rows_at).collect()
+    let lateral_of = |positions: &[Position]| -> Vec<f64> { positions.iter().map(|p| p.lateral).collect() };
+    let of_picture = |error: Error| error.at("--picture");
+    ascending(&lateral_of(all)).map_err(of_picture)?;
+    let stride = all.len().div_ceil(MOST_DRAWN).max(1);
+    let drawn: Vec<Position> = all.iter().step_by(stride).copied().collect();
+    let mut columns = Columns::default();
+    table.sweep(&drawn).blocks(
+        |chunk: &mut Columns, position, rows| {
+            rows.iter().for_each(|row| chunk.push(position, row, None));
+            Ok(())
+        },
+        |_, chunks| {
+            chunks.iter().for_each(|chunk| columns.extend(chunk));
+            Ok(true)
+        },
+    )?;
+    let about =
+        format!("{}; lowest contact of each side, in its own profile axes", counted(all.len(), "position"));
+    curves(&columns, &lateral_of(&drawn), title, &about).map_err(of_picture)
 }

@@ -19,6 +19,7 @@ use wheelrail::case::{Case, Place};
 use wheelrail::error::{Error, Result};
 use wheelrail::files::{Folder, NewFile, PATCHES_FOLDER};
 use wheelrail::scene::{self, Scene};
+use wheelrail::search::sweep::conicity_over;
 use wheelrail::search::wheelset::{Position, WheelsetOnTrack};
 use wheelrail::search::{ONE_CONTACT, Selection};
 
@@ -115,7 +116,10 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     let case = scene::resolve(&scene, folder_of(path), &name).map_err(in_scene)?.read_from(path);
     let (system, template) = wheelset(&case).map_err(in_scene)?;
     let positions = arguments.positions(template)?;
-    let conicity = conicity::conicity(system, &positions, &progress)?;
+    let mut told = |done: usize, most: usize| {
+        progress.at(format!("equivalent conicity, {done} of at most {most} searches"));
+    };
+    let conicity = conicity_over(system, &positions, &mut told)?;
     for remark in conicity.iter().flat_map(|conicity| conicity::remarks(conicity, &positions)) {
         complain(&format!("sweep: {remark}"));
     }

@@ -4,26 +4,39 @@ use std::fmt::Write;
 use std::sync::Arc;
 use std::time::Instant;
 
-use rayon::prelude::*;
-
 use super::super::progress::Progress;
-use wheelrail::case::ApproachBy;
+use wheelrail::case::{ApproachBy, Columns};
 use wheelrail::error::Result;
-use wheelrail::load::hertz::curvatures_at;
-use wheelrail::search::sweep::{Conicity, Row, Sweep, TrackSide};
+use wheelrail::search::Selection;
+use wheelrail::search::sweep::{Conicity, ParallelSweep};
 use wheelrail::search::wheelset::{Position, WheelsetOnTrack};
-use wheelrail::search::{Contact, Selection};
 
 /// Columns of the table.
-const HEADER: &str = "lateral_mm,yaw_rad,roll_rad,side,contact,z_mm,rail_x_mm,wheel_x_mm,y_mm,contact_angle_rad,\
-                      rolling_radius_mm,delta_r_mm,conicity,gap_mm,skew_rad,rail_curvature_per_mm,\
-                      wheel_curvature_per_mm,kink,hertz_xi_mm,hertz_eta_mm\n";
+const HEADER: [&str; 20] = [
+    "lateral_mm",
+    "yaw_rad",
+    "roll_rad",
+    "side",
+    "contact",
+    "z_mm",
+    "rail_x_mm",
+    "wheel_x_mm",
+    "y_mm",
+    "contact_angle_rad",
+    "rolling_radius_mm",
+    "delta_r_mm",
+    "conicity",
+    "gap_mm",
+    "skew_rad",
+    "rail_curvature_per_mm",
+    "wheel_curvature_per_mm",
+    "kink",
+    "hertz_xi_mm",
+    "hertz_eta_mm",
+];
 
-/// Positions of one block: enough work for all threads, and little memory.
-const BLOCK: usize = 8192;
-
-/// Positions that one thread takes at a time.
-const CHUNK: usize = 256;
+/// Columns that are empty where there is no number: without a conicity or an ellipse.
+const PERHAPS_EMPTY: [&str; 3] = ["conicity", "hertz_xi_mm", "hertz_eta_mm"];
 
 /// A sweep ready to run.
 pub(super) struct Table<'a> {
@@ -43,82 +56,71 @@ impl Table<'_> {
         mut sink: impl FnMut(&str) -> Result<bool>,
     ) -> Result<()> {
         let (start, all) = (Instant::now(), self.positions.len());
-        let mut done = 0;
         progress.at(format!("0 of {all} positions"));
-        let mut wanted = sink(HEADER)?;
-        for block in self.positions.chunks(BLOCK) {
-            if !wanted {
-                break;
-            }
-            let texts = block.par_chunks(CHUNK).enumerate();
-            let texts =
-                texts.map(|(k, chunk)| self.rows(done + k * CHUNK, chunk)).collect::<Result<Vec<_>>>()?;
-            done += block.len();
-            wanted = sink(&texts.concat())?;
+        if !sink(&format!("{}\n", HEADER.join(",")))? {
+            return Ok(());
+        }
+        let (sweep, cells) = (self.sweep(&self.positions), cells());
+        // One position at a time becomes columns, and these text: threads share the work.
+        let lines = |(columns, text): &mut (Columns, String), position, rows: &[_]| {
+            columns.clear();
+            rows.iter().for_each(|row| columns.push(position, row, self.ellipses));
+            append(text, &cells, columns);
+            Ok(())
+        };
+        sweep.blocks(lines, |done, chunks: Vec<(Columns, String)>| {
+            let wanted = sink(&chunks.iter().map(|(_, text)| text.as_str()).collect::<String>())?;
             let rate = done as f64 / start.elapsed().as_secs_f64();
             progress.at(format!("{done} of {all} positions, {rate:.0} a second"));
-        }
-        Ok(())
+            Ok(wanted)
+        })
     }
 
-    /// Gives the rows of a few positions as text; `before` positions come before them.
-    fn rows(&self, before: usize, positions: &[Position]) -> Result<String> {
-        let mut sweep = Sweep::new(self.system, self.selection, self.conicity.as_ref());
-        let (mut rows, mut text) = (Vec::new(), String::new());
-        for (k, position) in positions.iter().enumerate() {
-            rows.clear();
-            sweep
-                .position(position, &mut rows)
-                .map_err(|error| error.within(format!("position {}", before + k + 1)))?;
-            for row in &rows {
-                append(&mut text, row, self.ellipses);
+    /// Gives the sweep over some of the positions.
+    pub(super) fn sweep<'a>(&'a self, positions: &'a [Position]) -> ParallelSweep<'a> {
+        let conicity = self.conicity.as_ref();
+        ParallelSweep { system: self.system, selection: self.selection, conicity, positions }
+    }
+}
+
+/// What a cell of the text shows.
+enum Cell {
+    Side,
+    Contact,
+    Kink,
+    /// The quantity with this index; the flag tells whether the cell is empty where there is no number.
+    Quantity(usize, bool),
+}
+
+/// Gives the cells of a line, in the order of [`HEADER`].
+fn cells() -> Vec<Cell> {
+    let quantity = |name: &str| Columns::QUANTITIES.iter().position(|known| *known == name);
+    let cell = |name: &&str| match *name {
+        "side" => Some(Cell::Side),
+        "contact" => Some(Cell::Contact),
+        "kink" => Some(Cell::Kink),
+        name => quantity(name).map(|index| Cell::Quantity(index, PERHAPS_EMPTY.contains(&name))),
+    };
+    HEADER.iter().filter_map(cell).collect()
+}
+
+/// Adds the rows of some columns as text.
+fn append(out: &mut String, cells: &[Cell], columns: &Columns) {
+    for row in 0..columns.rows() {
+        for (k, cell) in cells.iter().enumerate() {
+            if k > 0 {
+                out.push(',');
             }
+            let _ = match cell {
+                Cell::Side => write!(out, "{}", if columns.right[row] { "right" } else { "left" }),
+                Cell::Contact => write!(out, "{}", columns.contact[row]),
+                Cell::Kink => write!(out, "{}", u8::from(columns.kink[row])),
+                Cell::Quantity(index, perhaps_empty) => match columns.quantities[*index][row] {
+                    value if *perhaps_empty && value.is_nan() => Ok(()),
+                    value => write!(out, "{value}"),
+                },
+            };
         }
-        Ok(text)
+        out.push('\n');
     }
-}
-
-/// Adds a row as text.
-fn append(out: &mut String, row: &Row, ellipses: Option<(ApproachBy, f64)>) {
-    let c = &row.contact;
-    let side = match row.side {
-        TrackSide::Left => "left",
-        TrackSide::Right => "right",
-    };
-    let conicity = row.conicity.map_or(String::new(), |found| found.conicity.to_string());
-    let _ = writeln!(
-        out,
-        "{},{},{},{side},{},{},{},{},{},{},{},{},{conicity},{},{},{},{},{},{}",
-        row.lateral,
-        row.yaw,
-        row.roll,
-        row.number + 1,
-        row.z,
-        c.rail_x,
-        c.wheel_x,
-        c.y,
-        c.contact_angle,
-        c.rolling_radius,
-        row.delta_r,
-        c.gap,
-        c.skew,
-        c.rail_curvature,
-        c.wheel_curvature,
-        u8::from(c.kink()),
-        semi_axes(c, ellipses)
-    );
-}
-
-/// Gives the two last cells: empty without approach or load, at kinks, and where s is not convex.
-fn semi_axes(contact: &Contact, ellipses: Option<(ApproachBy, f64)>) -> String {
-    let ellipse = |(by, modulus)| {
-        let curvatures = curvatures_at(contact);
-        let ellipse = match by {
-            ApproachBy::Given(approach) => curvatures.under_approach(approach, modulus),
-            ApproachBy::Load(load) => curvatures.under_load(load, modulus),
-        };
-        let [xi, eta] = curvatures.along(&ellipse?);
-        Some(format!("{xi},{eta}"))
-    };
-    ellipses.and_then(ellipse).unwrap_or_else(|| ",".into())
 }

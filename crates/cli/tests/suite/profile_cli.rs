@@ -161,7 +161,7 @@ fn bad_input_ends_with_code_2_and_says_what_to_do() {
     let cases: [(&[&str], &str); 17] = [
         (&["show", "nowhere"], "nowhere: found no file and no built-in profile; expected a file"),
         (&["show", "61E1"], "perhaps `60E1` is meant"),
-        (&["show", "wheel.csv"], "wheel.csv: found no --side; expected"),
+        (&["show", "wheel.csv"], "wheel.csv: found no side; expected"),
         (&["show", "S1002", "--side", "rail"], "S1002: found the name of a wheel; expected"),
         (
             &["show", "S1002", "--unit", "mm", "--kink-angle", "1"],

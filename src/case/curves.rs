@@ -1,0 +1,103 @@
+//! The usual curves of a sweep as a picture.
+
+use super::columns::Columns;
+use crate::error::{Error, Result};
+use crate::export::picture::curves::{Curve, CurvesPicture, Quantity, jumps};
+
+/// Most positions that are drawn: more than a page has pixels.
+pub const MOST_DRAWN: usize = 2000;
+
+/// A quantity of a position: heading, axis with unit, column, factor, whether it jumps where a contact does.
+type OfPosition = (&'static str, &'static str, &'static str, f64, bool);
+
+/// Quantities of a position, as its first row has them.
+const OF_POSITION: [OfPosition; 3] = [
+    ("Rolling radius difference, right less left", "Δr [mm]", "delta_r_mm", 1.0, true),
+    ("Equivalent conicity at this amplitude", "tan γ [1]", "conicity", 1.0, false),
+    ("Roll", "roll [mrad]", "roll_rad", 1e3, false),
+];
+
+/// Quantities of each side's lowest contact: heading, axis with unit, column, and whether an angle is shown in degrees.
+const OF_SIDE: [(&str, &str, &str, bool); 3] = [
+    ("Contact angle", "θ [°]", "contact_angle_rad", true),
+    ("Contact on the rail", "x on the rail [mm]", "rail_x_mm", false),
+    ("Contact on the wheel", "x on the wheel [mm]", "wheel_x_mm", false),
+];
+
+/// Rejects lateral displacements \[mm\] that do not grow from position to position: they have no curves.
+///
+/// # Errors
+/// The first that does not, with the place "sweep".
+pub fn ascending(lateral: &[f64]) -> Result<()> {
+    let Some(pair) = lateral.windows(2).find(|pair| pair[0] >= pair[1]) else { return Ok(()) };
+    let found = format!("{} mm after {} mm", pair[1], pair[0]);
+    let expected = "lateral displacements that grow from position to position";
+    Err(Error::new("sweep", found, expected, "sort the positions, or sweep over a range"))
+}
+
+/// Makes the picture of a sweep from its columns, the lowest contact of each side, over the lateral displacements \[mm\] of
+/// all its positions; these have to ascend, and `columns` may lack those without contact. `about` stands below the title.
+///
+/// # Errors
+/// The error of [`ascending`].
+pub fn curves(columns: &Columns, lateral: &[f64], title: &str, about: &str) -> Result<CurvesPicture> {
+    ascending(lateral)?;
+    let lowest = Lowest::new(columns, lateral.len());
+    // A side's contact jumps or not whatever quantity is drawn: all its panels are parted at the same positions.
+    let jumps_of = |right| {
+        jumps(
+            &["rail_x_mm", "wheel_x_mm"].map(|name| lowest.values(right, name)).each_ref().map(Vec::as_slice),
+        )
+    };
+    let sides = [("left", false), ("right", true)];
+    let [left, right] = sides.map(|(_, right)| jumps_of(right));
+    let curve = |name: &str, values: Vec<f64>, jumps: &[usize]| {
+        let points = lateral.iter().zip(values).map(|(&lateral, value)| [lateral, value]).collect();
+        Curve { name: name.into(), points, jumps: jumps.to_vec() }
+    };
+    let quantity =
+        |title: &str, axis: &str, curves| Quantity { title: title.into(), axis: axis.into(), curves };
+    let either = [left.as_slice(), right.as_slice()].concat();
+    let of_position = OF_POSITION.map(|(title, axis, name, factor, jumps)| {
+        let values = lowest.values(true, name).into_iter().map(|value| factor * value).collect();
+        quantity(title, axis, vec![curve("", values, if jumps { &either } else { &[] })])
+    });
+    let of_side = OF_SIDE.map(|(title, axis, name, angle)| {
+        let shown = |value: f64| if angle { value.to_degrees() } else { value };
+        let values = |right| lowest.values(right, name).into_iter().map(shown).collect();
+        let both = sides.into_iter().zip([&left, &right]);
+        quantity(title, axis, both.map(|((name, right), jumps)| curve(name, values(right), jumps)).collect())
+    });
+    Ok(CurvesPicture {
+        title: title.into(),
+        about: about.into(),
+        abscissa: "lateral displacement [mm]".into(),
+        quantities: of_position.into_iter().chain(of_side).collect(),
+    })
+}
+
+/// The rows of the lowest contacts, by position and side.
+struct Lowest<'a> {
+    columns: &'a Columns,
+    /// Rows of the left and the right side of every position.
+    rows: Vec<[Option<usize>; 2]>,
+}
+
+impl<'a> Lowest<'a> {
+    fn new(columns: &'a Columns, positions: usize) -> Self {
+        let mut rows = vec![[None; 2]; positions];
+        for row in (0..columns.rows()).filter(|&row| columns.contact[row] == 1) {
+            if let Some(sides) = rows.get_mut(columns.position[row] as usize) {
+                sides[usize::from(columns.right[row])] = Some(row);
+            }
+        }
+        Self { columns, rows }
+    }
+
+    /// Gives a quantity at every position; NaN where a side has no contact.
+    fn values(&self, right: bool, name: &str) -> Vec<f64> {
+        let column = self.columns.quantity(name).unwrap_or_default();
+        let value = |row: Option<usize>| row.and_then(|row| column.get(row)).copied().unwrap_or(f64::NAN);
+        self.rows.iter().map(|sides| value(sides[usize::from(right)])).collect()
+    }
+}
