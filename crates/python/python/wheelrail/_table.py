@@ -1,0 +1,130 @@
+"""The table of a sweep."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _wheelrail
+
+if TYPE_CHECKING:
+    import pandas
+    import pyarrow
+    from numpy.typing import NDArray
+
+_SIDES = ("left", "right")
+
+# The order of the columns: those of the command line's CSV, after the number of the position.
+_COLUMNS = (
+    "position",
+    "lateral_mm",
+    "yaw_rad",
+    "roll_rad",
+    "side",
+    "contact",
+    "z_mm",
+    "rail_x_mm",
+    "wheel_x_mm",
+    "y_mm",
+    "contact_angle_rad",
+    "rolling_radius_mm",
+    "delta_r_mm",
+    "conicity",
+    "conicity_error",
+    "gap_mm",
+    "skew_rad",
+    "rail_curvature_per_mm",
+    "wheel_curvature_per_mm",
+    "kink",
+    "hertz_xi_mm",
+    "hertz_eta_mm",
+)
+
+
+class Table(Mapping[str, "NDArray[Any]"]):
+    """Contacts of a wheelset at many positions: a mapping of column names to NumPy arrays (n,), a row for each position,
+    side and contact. Lengths are in mm, angles in rad, as the names say; NaN stands where a quantity does not exist.
+
+    `position` counts the positions from 0; one without contact has no row. `contact` counts those of a side from 1, the
+    lowest gap first. What the other columns mean is said in "Sweeps" of the library's documentation.
+
+    `to_pandas`, `to_arrow`, `polars.DataFrame(table)`, `pyarrow.table(table)` and `pandas.DataFrame(table)` take it; number
+    columns are shared, not copied, where the other side can share them.
+    """
+
+    def __init__(self, columns: Mapping[str, NDArray[Any]]) -> None:
+        """Take the columns of a sweep: those of this table, `right` instead of `side`."""
+        self._columns = dict(columns)
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        """Return a column: float64, but for `position` (uint64), `contact` (uint32), `kink` (bool) and `side` (str)."""
+        if name == "side":
+            return np.asarray(_SIDES)[self._columns["right"].astype(np.intp)]
+        if name not in _COLUMNS:
+            raise KeyError(name)
+        return self._columns[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the names of the columns."""
+        return iter(_COLUMNS)
+
+    def __len__(self) -> int:
+        """Return the number of columns; `rows` is that of the rows."""
+        return len(_COLUMNS)
+
+    @property
+    def rows(self) -> int:
+        """Number of rows."""
+        return len(self._columns["position"])
+
+    def lowest(self, side: str) -> dict[str, NDArray[Any]]:
+        """Return the columns of the lowest contacts of one side, "left" or "right": a row for each position with contact."""
+        if side not in _SIDES:
+            raise ValueError(f'found side {side!r}; expected "left" or "right"')
+        chosen = (self._columns["right"] == (side == "right")) & (self._columns["contact"] == 1)
+        return {name: self[name][chosen] for name in self}
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """Return a data frame; `side` is categorical. Needs pandas."""
+        import pandas as pd
+
+        sides = pd.Categorical.from_codes(self._columns["right"].astype(np.int8), categories=list(_SIDES))
+        return pd.DataFrame({name: sides if name == "side" else self[name] for name in self}, copy=False)
+
+    def to_arrow(self) -> pyarrow.Table:
+        """Return an Arrow table; `side` is a dictionary of strings. Needs pyarrow."""
+        import pyarrow as pa
+
+        codes = pa.array(self._columns["right"].astype(np.int8))
+        sides = pa.DictionaryArray.from_arrays(codes, pa.array(_SIDES))
+        return pa.table({name: sides if name == "side" else pa.array(self[name]) for name in self})
+
+    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
+        """Return the table as an Arrow stream (PyCapsule interface), by way of pyarrow, or of polars where that is there."""
+        try:
+            table: Any = self.to_arrow()
+        except ModuleNotFoundError:
+            import polars as pl
+
+            table = pl.DataFrame({name: self[name] for name in self})
+        return table.__arrow_c_stream__(requested_schema)
+
+    def svg(self, title: str = "Sweep") -> str:
+        """Return the usual curves over the lateral displacement as SVG: at most 2000 positions, evenly chosen.
+
+        Raises InputError for displacements that do not ascend.
+        """
+        return _wheelrail.sweep_picture(self._columns, title)
+
+    def __repr__(self) -> str:
+        """Return rows and columns in short."""
+        return f"Table({self.rows} rows: {', '.join(self)})"
+
+    def _repr_html_(self) -> str | None:
+        try:
+            return self.svg()
+        except ValueError:
+            # Positions in no order have no curves.
+            return None

@@ -1,0 +1,176 @@
+"""Studies on many machines: sweeps of many wheelsets, as partitioned Parquet (pip install wheelrail[dask]).
+
+Dask distributed runs the tasks, repeats those of workers that died, and shows its progress; Arrow writes the files. A part
+is written under a temporary name and renamed when it is whole: a part that is there is never computed again, so that a
+study that was stopped goes on where it was.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+from pickle import dumps
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._wheelrail import Wheelset
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+__all__ = ["Positions", "sweep"]
+
+# Positions of a task: about a second of one core.
+_BATCH = 50_000
+
+
+@dataclass(frozen=True)
+class Positions:
+    """Positions of a sweep: arrays of one length, or numbers, as `Wheelset.sweep` takes them."""
+
+    lateral: ArrayLike
+    """Lateral displacements, mm."""
+    yaw: ArrayLike = 0.0
+    """Yaw angles, rad."""
+    roll: ArrayLike = "solve"
+    """Roll angles, rad, or "solve" or "neglect"."""
+
+    @classmethod
+    def grid(cls, lateral: ArrayLike, yaw: ArrayLike = 0.0, roll: str = "solve") -> Positions:
+        """Return every lateral displacement with every yaw, the displacement changing fastest."""
+        yaws, laterals = np.meshgrid(np.atleast_1d(yaw), np.atleast_1d(lateral), indexing="ij")
+        return cls(laterals.ravel(), yaws.ravel(), roll)
+
+
+def sweep(
+    wheelsets: Sequence[Wheelset] | Mapping[str, Wheelset],
+    positions: Positions | ArrayLike,
+    folder: str | os.PathLike[str],
+    *,
+    client: Client,
+    batch: int = _BATCH,
+    retries: int = 3,
+    progress: Callable[[int, int], object] | None = None,
+    **options: Any,
+) -> list[Path]:
+    """Sweep every wheelset over all positions, and return the Parquet files in order.
+
+    The folder gets `pair=NAME/part-FROM-TO.parquet`: the rows of the positions FROM up to but without TO of one wheelset, in
+    their order, with `position` counted over all of them. Names are those of the mapping, or numbers. The rows are the same
+    bits whatever `batch` and the number of workers. `folder` must be seen by all workers.
+
+    Files that are there are kept: the same call goes on with a study that was stopped. A folder with files of another
+    question raises ValueError.
+
+    `client` is a `distributed.Client`, of a cluster of any size. `batch` positions are a task. Tasks of workers that die are
+    computed again, at most `retries` times. `progress(done, all)` is called with the tasks that are done. `options` are
+    keywords of `Wheelset.sweep`: within, load, approach, modulus. The equivalent conicity belongs to a wheelset and not to
+    its positions, and is left out.
+
+    Raises the errors of `Wheelset.sweep`.
+    """
+    from distributed import as_completed
+
+    if not isinstance(positions, Positions):
+        positions = Positions(positions)
+    named = wheelsets if isinstance(wheelsets, Mapping) else _numbered(wheelsets)
+    lateral, yaw, roll = _arrays(positions)
+    root = Path(folder).resolve()
+    _mark(root, [*named.items(), lateral, yaw, roll, batch, *sorted(options.items())])
+    files, futures = [], []
+    for name, wheelset in named.items():
+        home = root / f"pair={name}"
+        home.mkdir(parents=True, exist_ok=True)
+        # Sent once, not with every task.
+        remote = None
+        for start in range(0, len(lateral), batch):
+            end = min(start + batch, len(lateral))
+            file = home / f"part-{start:010}-{end:010}.parquet"
+            files.append(file)
+            if file.exists():
+                continue
+            remote = remote or client.scatter(wheelset, broadcast=False, hash=False)
+            part = slice(start, end)
+            arguments = (lateral[part], yaw[part], roll if isinstance(roll, str) else roll[part])
+            futures.append(client.submit(_part, remote, start, arguments, file, options, retries=retries, pure=False))
+    done = len(files) - len(futures)
+    if progress:
+        progress(done, len(files))
+    for future in as_completed(futures):
+        future.result()
+        # The scheduler forgets what is done: a study of 10**6 tasks is not kept in its memory.
+        future.release()
+        done += 1
+        if progress:
+            progress(done, len(files))
+    return files
+
+
+def one_thread() -> None:
+    """Keep the calling process to one thread of rayon, unless it has been told otherwise: a worker has one core."""
+    os.environ.setdefault("RAYON_NUM_THREADS", "1")
+
+
+def _numbered(wheelsets: Sequence[Wheelset]) -> dict[str, Wheelset]:
+    width = len(str(max(len(wheelsets) - 1, 0)))
+    return {f"{number:0{width}}": wheelset for number, wheelset in enumerate(wheelsets)}
+
+
+def _arrays(positions: Positions) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64] | str]:
+    lateral = np.atleast_1d(np.asarray(positions.lateral, dtype=np.float64))
+    lateral, yaw = np.broadcast_arrays(lateral, np.asarray(positions.yaw, dtype=np.float64))
+    if isinstance(positions.roll, str):
+        return np.ascontiguousarray(lateral), np.ascontiguousarray(yaw), positions.roll
+    roll = np.broadcast_to(np.asarray(positions.roll, dtype=np.float64), lateral.shape)
+    return np.ascontiguousarray(lateral), np.ascontiguousarray(yaw), np.ascontiguousarray(roll)
+
+
+def _mark(root: Path, question: Sequence[object]) -> None:
+    """Write the hash of the question into the folder, or compare it with the one that is there."""
+    # One by one: the bytes of a pickled sequence tell whether two of its items are one object.
+    hash = sha256(b"".join(sha256(dumps(item, protocol=5)).digest() for item in question)).hexdigest()
+    mark = root / "_question.sha256"
+    root.mkdir(parents=True, exist_ok=True)
+    if mark.exists() and mark.read_text() != hash:
+        raise ValueError(f"{root}: found files of another question; expected those of this one, or none; give another folder")
+    _write(mark, lambda file: file.write_text(hash))
+
+
+def _write(file: Path, content: Callable[[Path], object]) -> None:
+    """Write a file under a temporary name, and give it its own in one step."""
+    # A worker that is taken for dead may still write: its name must not be that of its successor.
+    temporary = file.with_name(f"{file.name}.{os.getpid()}.tmp")
+    content(temporary)
+    os.replace(temporary, file)
+
+
+def _part(
+    wheelset: Wheelset,
+    start: int,
+    arguments: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64] | str],
+    file: Path,
+    options: Mapping[str, Any],
+) -> None:
+    """Compute one part and write it."""
+    import pyarrow.compute as pc
+    import pyarrow.parquet as pq
+
+    if file.exists():
+        return
+    one_thread()
+    lateral, yaw, roll = arguments
+    table = wheelset.sweep(lateral, yaw, roll, conicity=False, **options).to_arrow()
+    numbers = pc.add(table["position"], start).cast("uint64")
+    table = table.drop_columns(["conicity", "conicity_error"]).set_column(0, "position", numbers)
+    doubles = [field.name for field in table.schema if field.type == "double"]
+    _write(
+        file,
+        lambda path: pq.write_table(
+            table, path, compression="zstd", use_dictionary=["side"], use_byte_stream_split=doubles
+        ),
+    )

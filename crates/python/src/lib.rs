@@ -1,0 +1,41 @@
+//! The compiled part of the Python package `wheelrail`: every class holds a value of the library, and every method is one
+//! call of it.
+
+mod arrays;
+mod case;
+mod contact;
+mod errors;
+mod long;
+mod pair;
+mod patch;
+mod pictures;
+mod profile;
+mod sweep;
+mod wheelset;
+
+use pyo3::prelude::*;
+
+/// The compiled part of `wheelrail`.
+#[pymodule(gil_used = false)]
+mod _wheelrail {
+    #[pymodule_export]
+    use super::case::{Case, Run, run};
+    #[pymodule_export]
+    use super::contact::{Contact, Feasibility, Hertz, effective_modulus};
+    #[pymodule_export]
+    use super::pair::{Pair, WheelTouch};
+    #[pymodule_export]
+    use super::patch::{Component, Patch};
+    #[pymodule_export]
+    use super::profile::{Profile, profile_from_bytes, rail, rail_names, read_profile, wheel, wheel_names};
+    #[pymodule_export]
+    use super::sweep::sweep_picture;
+    #[pymodule_export]
+    use super::wheelset::{Touch, Wheelset};
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

@@ -1,0 +1,116 @@
+//! Work that takes long: without the GIL, stopped by Ctrl-C, and with its progress told.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::thread;
+use std::time::Duration;
+
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use wheelrail::{Error, Result};
+
+use crate::errors::OrRaise;
+
+/// How often Ctrl-C is looked for and progress is told: a quarter of what a person takes to notice.
+const PATIENCE: Duration = Duration::from_millis(50);
+
+/// How far long work is, and whether somebody still wants it.
+#[derive(Debug, Default)]
+pub(crate) struct Watch {
+    done: AtomicUsize,
+    all: AtomicUsize,
+    unwanted: AtomicBool,
+}
+
+impl Watch {
+    /// Says how much of all the work is done.
+    pub(crate) fn at(&self, done: usize, all: usize) {
+        self.done.store(done, Ordering::Relaxed);
+        self.all.store(all, Ordering::Relaxed);
+    }
+
+    /// Ends work that nobody wants any more: its error never reaches anybody.
+    ///
+    /// # Errors
+    /// After Ctrl-C.
+    pub(crate) fn go_on(&self) -> Result<()> {
+        if self.unwanted.load(Ordering::Relaxed) {
+            return Err(Error::new("", "Ctrl-C", "nothing", "start again"));
+        }
+        Ok(())
+    }
+
+    /// Calls `progress(done, all)`, and lets Python handle its signals.
+    fn tell(&self, progress: Option<&Py<PyAny>>) -> PyResult<()> {
+        Python::attach(|py| {
+            py.check_signals()?;
+            let Some(progress) = progress else { return Ok(()) };
+            let [done, all] = [&self.done, &self.all].map(|count| count.load(Ordering::Relaxed));
+            progress.call1(py, (done, all)).map(drop)
+        })
+    }
+
+    /// Waits for the result of another thread; an exception of `progress` or Ctrl-C makes the work unwanted.
+    fn result<T>(&self, receiver: &Receiver<T>, progress: Option<&Py<PyAny>>) -> PyResult<T> {
+        loop {
+            match receiver.recv_timeout(PATIENCE) {
+                Ok(value) => return Ok(value),
+                Err(RecvTimeoutError::Disconnected) => {
+                    return Err(PyRuntimeError::new_err(
+                        "the work ended without a result: please report this",
+                    ));
+                }
+                Err(RecvTimeoutError::Timeout) => {
+                    self.tell(progress).inspect_err(|_| self.unwanted.store(true, Ordering::Relaxed))?;
+                }
+            }
+        }
+    }
+}
+
+/// Does work that looks at its watch often. Ctrl-C ends it within 0.2 s.
+///
+/// # Errors
+/// Those of the work and of `progress`; KeyboardInterrupt.
+pub(crate) fn watched<T: Send>(
+    py: Python<'_>,
+    progress: Option<&Py<PyAny>>,
+    work: impl FnOnce(&Watch) -> Result<T> + Send,
+) -> PyResult<T> {
+    let watch = Watch::default();
+    let result = py.detach(|| {
+        thread::scope(|scope| {
+            let (sender, receiver) = channel();
+            let watch = &watch;
+            // A send fails only where nobody waits for it.
+            scope.spawn(move || drop(sender.send(work(watch))));
+            watch.result(&receiver, progress)
+        })
+    })?;
+    let value = result.or_raise()?;
+    if let Some(progress) = progress {
+        let all = watch.all.load(Ordering::Relaxed);
+        progress.call1(py, (all, all))?;
+    }
+    Ok(value)
+}
+
+/// Does work that nothing can stop half way. Ctrl-C ends the wait for it within 0.2 s: its thread goes on to its end, and
+/// the work has to look at its watch before it leaves anything behind.
+///
+/// # Errors
+/// Those of the work; KeyboardInterrupt.
+pub(crate) fn waited<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce(&Watch) -> Result<T> + Send + 'static,
+) -> PyResult<T> {
+    let watch = Arc::new(Watch::default());
+    let result = py.detach(|| {
+        let (sender, receiver) = channel();
+        let seen = Arc::clone(&watch);
+        thread::spawn(move || drop(sender.send(work(&seen))));
+        watch.result(&receiver, None)
+    })?;
+    result.or_raise()
+}

@@ -1,0 +1,129 @@
+//! Sweeps over many positions.
+
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use wheelrail::case::{ApproachBy, Columns, MOST_DRAWN, curves};
+use wheelrail::search::sweep::{ParallelSweep, conicity_over};
+use wheelrail::search::wheelset::{Position, WheelsetOnTrack};
+use wheelrail::search::{ONE_CONTACT, Selection};
+
+use crate::arrays::{Numbers, values};
+use crate::errors::OrRaise;
+use crate::long::{Watch, watched};
+use crate::wheelset::Positions;
+
+/// What is asked of every position.
+pub(crate) struct Asked {
+    /// Largest vertical gap of a near miss that is reported \[mm\].
+    pub(crate) within: f64,
+    pub(crate) conicity: bool,
+    /// Approach or load, and E* \[N/mm²\], of Hertz's ellipses.
+    pub(crate) ellipses: Option<(ApproachBy, f64)>,
+}
+
+/// Sweeps, and makes `wheelrail.Table` of the columns.
+pub(crate) fn sweep<'py>(
+    py: Python<'py>,
+    system: &WheelsetOnTrack,
+    positions: Positions,
+    asked: Asked,
+    progress: Option<&Py<PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let Asked { within, conicity, ellipses } = asked;
+    let columns = watched(py, progress, |watch| {
+        watch.at(0, positions.count);
+        let positions = listed(&positions, watch)?;
+        let conicity = if conicity { conicity_over(system, &positions, &mut |_, _| {})? } else { None };
+        let selection = Selection { within, apart: ONE_CONTACT };
+        let sweep = ParallelSweep { system, selection, conicity: conicity.as_ref(), positions: &positions };
+        let mut all = Columns::default();
+        all.reserve(2 * positions.len());
+        sweep.blocks(
+            |chunk: &mut Columns, number, rows| {
+                rows.iter().for_each(|row| chunk.push(number, row, ellipses));
+                watch.go_on()
+            },
+            |done, chunks| {
+                chunks.iter().for_each(|chunk| all.extend(chunk));
+                watch.at(done, positions.len());
+                Ok(true)
+            },
+        )?;
+        Ok(all)
+    })?;
+    let table = py.import("wheelrail._table")?.getattr("Table")?;
+    table.call1((arrays_of(py, columns)?,))
+}
+
+/// Lists the positions; ten million take half a second.
+fn listed(positions: &Positions, watch: &Watch) -> wheelrail::Result<Vec<Position>> {
+    /// Positions between two looks at the watch.
+    const PART: usize = 1 << 16;
+    let mut list = Vec::with_capacity(positions.count);
+    while list.len() < positions.count {
+        watch.go_on()?;
+        let end = positions.count.min(list.len() + PART);
+        list.extend((list.len()..end).map(|k| positions.at(k)));
+    }
+    Ok(list)
+}
+
+/// Gives the columns as NumPy arrays, which take over their memory.
+fn arrays_of(py: Python<'_>, columns: Columns) -> PyResult<Bound<'_, PyDict>> {
+    let arrays = PyDict::new(py);
+    arrays.set_item("position", PyArray1::from_vec(py, columns.position))?;
+    arrays.set_item("right", PyArray1::from_vec(py, columns.right))?;
+    arrays.set_item("contact", PyArray1::from_vec(py, columns.contact))?;
+    arrays.set_item("kink", PyArray1::from_vec(py, columns.kink))?;
+    for (name, column) in Columns::QUANTITIES.into_iter().zip(columns.quantities) {
+        arrays.set_item(name, PyArray1::from_vec(py, column))?;
+    }
+    Ok(arrays)
+}
+
+/// Draw the usual curves of a table's columns over the lateral displacements of its positions, as SVG.
+///
+/// Raises InputError for displacements that do not ascend.
+#[pyfunction]
+pub(crate) fn sweep_picture(columns: &Bound<'_, PyDict>, title: &str) -> PyResult<String> {
+    let column = |name: &str| -> PyResult<Vec<f64>> {
+        let column =
+            columns.get_item(name)?.ok_or_else(|| pyo3::exceptions::PyKeyError::new_err(name.to_owned()))?;
+        values(&column.extract::<Numbers<'_>>()?)
+    };
+    let (position, right, contact) = (column("position")?, column("right")?, column("contact")?);
+    let lateral = column("lateral_mm")?;
+    let mut quantities = Vec::new();
+    for name in Columns::QUANTITIES {
+        quantities.push(column(name)?);
+    }
+    // Positions without contact are not in the table; the others are numbered anew, and evenly chosen.
+    let mut numbers = position.clone();
+    numbers.dedup();
+    let stride = numbers.len().div_ceil(MOST_DRAWN).max(1);
+    let drawn: Vec<f64> = numbers.iter().step_by(stride).copied().collect();
+    let mut chosen = Columns::default();
+    let mut laterals = Vec::new();
+    let mut next = 0;
+    for row in 0..position.len() {
+        while next < drawn.len() && drawn[next] < position[row] {
+            next += 1;
+        }
+        if drawn.get(next) != Some(&position[row]) {
+            continue;
+        }
+        if laterals.len() <= next {
+            laterals.push(lateral[row]);
+        }
+        chosen.position.push(next as u64);
+        chosen.right.push(right[row] != 0.0);
+        chosen.contact.push(contact[row] as u32);
+        chosen.kink.push(false);
+        for (to, from) in chosen.quantities.iter_mut().zip(&quantities) {
+            to.push(from[row]);
+        }
+    }
+    let about = format!("{} positions; lowest contact of each side, in its own profile axes", numbers.len());
+    Ok(curves(&chosen, &laterals, title, &about).or_raise()?.svg())
+}

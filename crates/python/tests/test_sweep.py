@@ -1,0 +1,141 @@
+"""Sweeps, their tables, and who takes them."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+from conftest import need
+
+import wheelrail as wr
+
+
+def test_a_table_has_the_contacts_that_touch_finds(track: wr.Wheelset) -> None:
+    lateral = np.arange(-80, 81) / 10
+    table = track.sweep(lateral=lateral, yaw=0.0, load=60e3)
+    assert set(np.unique(table["side"])) == {"left", "right"}
+    right = table.lowest("right")
+    assert np.array_equal(right["lateral_mm"], lateral) and len(right["kink"]) == len(lateral)
+    for k in (0, 40, 142):
+        touch = track.touch(lateral[k])
+        assert right["roll_rad"][k] == touch.roll
+        assert (right["rail_x_mm"][k], right["contact_angle_rad"][k]) == (
+            touch.right[0].rail_point[0],
+            touch.right[0].contact_angle,
+        )
+        semi_axis = touch.right[0].hertz(load=60e3).semi_axes[0]
+        assert right["hertz_xi_mm"][k] == pytest.approx(semi_axis, rel=1e-12)
+    assert np.isnan(right["conicity"][80]) and 0.0 < right["conicity"][110] < 1.0
+    assert track.sweep(2.0, roll=0.001)["roll_rad"][0] == 0.001
+    assert track.sweep([1.0, 2.0], roll=[0.001, 0.002]).rows == 4
+    assert track.sweep([300.0]).rows == 0
+
+
+def test_tables_go_to_pandas_polars_and_arrow(track: wr.Wheelset) -> None:
+    need("pandas", "polars", "pyarrow")
+    import pandas as pd
+    import polars as pl
+    import pyarrow as pa
+
+    table = track.sweep(np.arange(-2, 2.001, 0.5), conicity=False)
+    frames = [table.to_pandas(), pl.DataFrame(table).to_pandas(), pa.table(table).to_pandas(), pd.DataFrame(dict(table))]
+    for frame in frames:
+        assert list(frame.columns) == list(table)
+        for name in table:
+            assert np.array_equal(frame[name].to_numpy(), table[name], equal_nan=table[name].dtype == float), name
+    arrow = table.to_arrow()["lateral_mm"].chunk(0).buffers()[1]
+    assert arrow.address == table["lateral_mm"].ctypes.data, "a copy"
+
+
+def test_tables_draw_themselves(track: wr.Wheelset) -> None:
+    table = track.sweep(np.arange(-8, 8.001, 0.1))
+    svg = table._repr_html_()
+    assert svg is not None and svg.lstrip().startswith("<svg") and "161 positions" in svg
+    assert track.sweep([1.0, 0.0], conicity=False)._repr_html_() is None
+
+
+def test_progress_is_told_and_may_end_the_sweep(track: wr.Wheelset) -> None:
+    told: list[tuple[int, int]] = []
+    track.sweep(np.linspace(-8, 8, 60_000), conicity=False, progress=lambda done, all: told.append((done, all)))
+    assert told[-1] == (60_000, 60_000) and told == sorted(told)
+
+    def stop(done: int, all: int) -> None:
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        track.sweep(np.linspace(-8, 8, 1_000_000), conicity=False, progress=stop)
+
+
+def test_several_threads_share_a_wheelset_and_the_gil_is_free(track: wr.Wheelset) -> None:
+    lateral = np.linspace(-8, 8, 20_000)
+    expected = track.sweep(lateral, conicity=False)
+    with ThreadPoolExecutor(4) as pool:
+        tables = list(pool.map(lambda _: track.sweep(lateral, conicity=False), range(8)))
+    for table in tables:
+        assert all(np.array_equal(table[name], expected[name]) for name in ("rail_x_mm", "roll_rad"))
+    ticks, done = 0, threading.Event()
+
+    def work() -> None:
+        track.sweep(np.linspace(-8, 8, 200_000), conicity=False)
+        done.set()
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    while not done.is_set():
+        time.sleep(0.001)
+        ticks += 1
+    thread.join()
+    assert ticks > 20
+
+
+# What takes long, each for seconds, as a program that says when it begins.
+LONG = {
+    "sweep": "track.sweep(np.linspace(-8, 8, 9_000_000), conicity=False)",
+    "worn": "rough.sweep(np.linspace(-5, 5, 5_000_000), conicity=False)",
+    "grid": "track.touch().right[0].separation(np.linspace(-9, 9, 9000), np.linspace(-9, 9, 9000), method='pointwise')",
+    "profile": "wr.read_profile(sys.argv[1], side='wheel', mirror=False, flip_z=False, origin='as-is')",
+}
+
+PROGRAM = """
+import sys, time, numpy as np, wheelrail as wr
+pair = wr.Pair(wr.rail('60E1').rotated('1:40'), wr.wheel('S1002'), 460.0)
+distances = dict(gauge=1435.0, back_to_back=1360.0, flange_back_x=-70.0)
+track = wr.Wheelset(pair, **distances)
+x, z = track.pair.wheel.points(0.1).T
+random = np.random.default_rng(1)
+with open(sys.argv[1], 'w') as file:
+    dense = np.interp(np.linspace(0, len(x), SIZE, endpoint=False), np.arange(len(x)), x), np.interp(np.linspace(0, len(x), SIZE, endpoint=False), np.arange(len(x)), z)
+    np.savetxt(file, np.transpose(dense))
+if 'rough' in CALL:
+    worn = wr.read_profile(sys.argv[1], side='wheel', mirror=False, flip_z=False, origin='as-is', curve='interpolation', repair=['drop-duplicates'])
+    rough = wr.Wheelset(wr.Pair(pair.rail, worn, 460.0), **distances)
+print('begins', flush=True)
+try:
+    eval(CALL)
+except KeyboardInterrupt:
+    print(time.time(), flush=True)
+    import os
+    os._exit(7)
+"""
+
+
+@pytest.mark.parametrize("call", LONG)
+def test_ctrl_c_ends_what_takes_long_within_two_tenths_of_a_second(call: str, tmp_path: os.PathLike[str]) -> None:
+    size = {"profile": 900_000, "worn": 1500}.get(call, 100)
+    program = PROGRAM.replace("CALL", repr(LONG[call])).replace("SIZE", str(size))
+    arguments = [sys.executable, "-c", program, os.path.join(tmp_path, "wheel.txt")]
+    with subprocess.Popen(arguments, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "begins\n"
+        time.sleep(0.3)
+        sent = time.time()
+        process.send_signal(signal.SIGINT)
+        ended = process.stdout.readline()
+    assert process.returncode == 7, f"{call} ended by itself"
+    # Two tenths of a second, and what the other tests leave of two cores.
+    assert float(ended) - sent < 0.2 + 0.3, f"{call}: {float(ended) - sent} s"
