@@ -1,5 +1,5 @@
 //! Background: conventions, measured files, the numerics with their derivation, the Report's errata, sweeps, clients,
-//! references.
+//! Python, references.
 
 #[doc = include_str!("conventions.md")]
 pub mod conventions {}
@@ -18,6 +18,9 @@ pub mod sweeps {}
 
 #[doc = include_str!("clients.md")]
 pub mod clients {}
+
+#[doc = include_str!("python.md")]
+pub mod python {}
 
 #[doc = include_str!("references.md")]
 pub mod references {}

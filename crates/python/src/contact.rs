@@ -403,7 +403,7 @@ impl Hertz {
         let Ellipse { load_n, pressure_n_per_mm2, .. } = self.ellipse;
         let (xi, eta) = self.semi_axes();
         format!(
-            "Hertz(load={load_n:.6}, max_pressure={pressure_n_per_mm2:.3}, semi_axes=({xi:.4}, {eta:.4}), \
+            "Hertz(load={load_n:.1}, max_pressure={pressure_n_per_mm2:.3}, semi_axes=({xi:.4}, {eta:.4}), \
              approach={:.6})",
             self.ellipse.approach_mm
         )

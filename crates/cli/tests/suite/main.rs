@@ -13,5 +13,6 @@ mod clients_runs;
 mod hostile;
 mod profile_cli;
 mod programs;
+mod python_package;
 mod run_cli;
 mod sweep_cli;

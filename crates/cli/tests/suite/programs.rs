@@ -42,6 +42,11 @@ fn not_run(what: &str) {
     eprintln!("NOT RUN: {what}");
 }
 
+/// The interpreter of the environment; `None` where none can be made.
+pub fn python() -> Option<&'static str> {
+    clients().map(|clients| clients.python.as_str())
+}
+
 /// Runs one script on a folder, prints its lines, and fails with them.
 pub fn check(script: &str, dir: &Path, arguments: &[&str]) {
     if let Some(lines) = output_of(script, dir, arguments) {

@@ -10,7 +10,7 @@ contact point, xi along the common tangent, eta along the rail, zeta along the c
     >>> track = wr.Wheelset(pair, gauge=1435.0, back_to_back=1360.0, flange_back_x=-70.0)
     >>> contact = track.touch(lateral=6.2, yaw=0.01).right[0]
     >>> round(contact.contact_angle, 4)
-    0.1146
+    0.5125
 
 Errors in the input are `InputError`, bodies that do not lie as the input supposes `GeometryError`, the disk `FileError`,
 too much of something `LimitError`; all are `Error`.

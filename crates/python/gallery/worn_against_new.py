@@ -1,0 +1,41 @@
+# %% [markdown]
+# # Worn against new
+# A worn wheel beside the drawn one: contact positions over the lateral displacement, and equivalent conicity. The worn one
+# is made here, hollow by 1 mm at the middle of its tread, and read like the file of an instrument.
+
+# %%
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+import wheelrail as wr
+
+rail = wr.rail("60E1").rotated("1:40")
+x, z = wr.wheel("S1002").points(step=0.2).T
+hollow = np.exp(-((x / 20.0) ** 2))                        # mm: the surface of a worn wheel lies higher
+with tempfile.TemporaryDirectory() as folder:
+    file = Path(folder) / "worn.txt"
+    np.savetxt(file, np.column_stack([x, z + hollow]))
+    worn = wr.read_profile(
+        file, "wheel", cutoff_wavelength=5.0, mirror=False, flip_z=False, origin="as-is", repair=["drop-duplicates"]
+    )
+worn
+
+# %%
+def on_track(wheel: wr.Profile) -> wr.Wheelset:
+    """Put a wheel on the track."""
+    pair = wr.Pair(rail, wheel, radius=460.0)
+    return wr.Wheelset(pair, gauge=1435.0, back_to_back=1360.0, flange_back_x=-70.0)
+
+
+lateral = np.arange(-70, 71) / 10
+tables = {name: on_track(wheel).sweep(lateral) for name, wheel in {"new": wr.wheel("S1002"), "worn": worn}.items()}
+for name, table in tables.items():
+    right = table.lowest("right")
+    at = right["lateral_mm"] == 3.0
+    print(f"{name}: conicity {right['conicity'][at][0]:.4f} at 3 mm")
+
+# %%
+assert tables["worn"].rows == tables["new"].rows
+tables["worn"]
