@@ -25,7 +25,8 @@ const ORDER: [&str; 15] = [
 ];
 
 /// Source folders of all crates.
-const SOURCES: [&str; 4] = ["src", "crates/check/src", "crates/report/src", "crates/cli/src"];
+const SOURCES: [&str; 5] =
+    ["src", "crates/check/src", "crates/report/src", "crates/cli/src", "crates/python/src"];
 
 /// Names from the root of a crate to a module or an item.
 type Names = Vec<String>;

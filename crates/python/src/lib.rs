@@ -9,6 +9,7 @@ mod long;
 mod pair;
 mod patch;
 mod pictures;
+mod positions;
 mod profile;
 mod sweep;
 mod wheelset;

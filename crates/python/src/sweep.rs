@@ -11,7 +11,7 @@ use wheelrail::search::{ONE_CONTACT, Selection};
 use crate::arrays::{Numbers, values};
 use crate::errors::OrRaise;
 use crate::long::{Watch, watched};
-use crate::wheelset::Positions;
+use crate::positions::Positions;
 
 /// What is asked of every position.
 pub(crate) struct Asked {
