@@ -33,6 +33,7 @@ mod bounds;
 mod candidates;
 mod element;
 mod locus;
+pub mod parallel;
 mod placed;
 mod stretches;
 pub mod sweep;

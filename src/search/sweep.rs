@@ -1,10 +1,8 @@
 //! Sweeps: gives the contact geometry of a wheelset at many positions, one row per side and contact.
 
 mod conicity;
-mod parallel;
 
 pub use conicity::{ACCURACY, Conicity, Equivalent, NoConicity};
-pub use parallel::{ParallelSweep, conicity_over, free};
 
 use super::wheelset::{Position, Roll, WheelsetOnTrack, WheelsetSearch};
 use super::{Contact, Selection};

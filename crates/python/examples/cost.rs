@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use wheelrail::case::Columns;
 use wheelrail::search::ONE_CONTACT;
-use wheelrail::search::sweep::ParallelSweep;
+use wheelrail::search::parallel::ParallelSweep;
 use wheelrail::separation::axis::EtaAxis;
 use wheelrail::separation::plan::plan;
 use wheelrail::separation::values::Values;

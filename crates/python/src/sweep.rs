@@ -4,7 +4,7 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use wheelrail::case::{ApproachBy, Columns, MOST_DRAWN, curves};
-use wheelrail::search::sweep::{ParallelSweep, conicity_over};
+use wheelrail::search::parallel::{ParallelSweep, conicity_over};
 use wheelrail::search::wheelset::{Position, WheelsetOnTrack};
 use wheelrail::search::{ONE_CONTACT, Selection};
 

@@ -1,7 +1,8 @@
 //! The equivalent conicity of a sweep's positions, and what a user should know of it.
 
 use crate::answer::counted;
-use wheelrail::search::sweep::{ACCURACY, Conicity, Equivalent, NoConicity, free};
+use wheelrail::search::parallel::free;
+use wheelrail::search::sweep::{ACCURACY, Conicity, Equivalent, NoConicity};
 use wheelrail::search::wheelset::Position;
 
 /// Relative errors up to which conicities that are not converged are counted in classes.

@@ -19,7 +19,7 @@ use wheelrail::case::{Case, Place};
 use wheelrail::error::{Error, Result};
 use wheelrail::files::{Folder, NewFile, PATCHES_FOLDER};
 use wheelrail::scene::{self, Scene};
-use wheelrail::search::sweep::conicity_over;
+use wheelrail::search::parallel::conicity_over;
 use wheelrail::search::wheelset::{Position, WheelsetOnTrack};
 use wheelrail::search::{ONE_CONTACT, Selection};
 

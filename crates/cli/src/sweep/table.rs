@@ -8,7 +8,8 @@ use super::super::progress::Progress;
 use wheelrail::case::{ApproachBy, Columns};
 use wheelrail::error::Result;
 use wheelrail::search::Selection;
-use wheelrail::search::sweep::{Conicity, ParallelSweep};
+use wheelrail::search::parallel::ParallelSweep;
+use wheelrail::search::sweep::Conicity;
 use wheelrail::search::wheelset::{Position, WheelsetOnTrack};
 
 /// Columns of the table.

@@ -2,11 +2,10 @@
 
 use rayon::prelude::*;
 
-use super::conicity::Conicity;
-use super::{Row, Sweep};
+use super::Selection;
+use super::sweep::{Conicity, Row, Sweep};
+use super::wheelset::{Position, Roll, WheelsetOnTrack};
 use crate::error::Result;
-use crate::search::Selection;
-use crate::search::wheelset::{Position, Roll, WheelsetOnTrack};
 
 /// Positions of one block: enough work for all threads, and little memory.
 const BLOCK: usize = 8192;
