@@ -5,7 +5,7 @@ use std::sync::Arc;
 /// What kind of thing went wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Kind {
+pub enum ErrorKind {
     /// The input is malformed, contradictory or impossible.
     Input,
     /// The bodies do not lie as the input supposes: a point off its profile, a wheel beside its rail.
@@ -23,8 +23,8 @@ pub enum Kind {
 #[derive(Debug, Clone, thiserror::Error)]
 #[error("{place}: found {found}; expected {expected}; {advice}")]
 pub struct Error {
-    /// Kind of the error, for programs.
-    pub kind: Kind,
+    /// ErrorKind of the error, for programs.
+    pub kind: ErrorKind,
     /// Where: file, key, segment or line.
     pub place: String,
     /// What stands there.
@@ -69,7 +69,7 @@ impl Error {
         advice: impl Into<String>,
     ) -> Self {
         Self {
-            kind: Kind::Input,
+            kind: ErrorKind::Input,
             place: place.into(),
             found: found.into(),
             expected: expected.into(),
@@ -80,7 +80,7 @@ impl Error {
 
     /// Makes it an error of another kind.
     #[must_use]
-    pub fn of_kind(self, kind: Kind) -> Self {
+    pub fn of_kind(self, kind: ErrorKind) -> Self {
         Self { kind, ..self }
     }
 

@@ -7,15 +7,13 @@ use serde::Serialize;
 use super::input::Question;
 use super::site::Site;
 use crate::error::{Error, Result};
-use crate::mesh::strips::{Counts, StripMesh};
+use crate::mesh::{Counts, StripMesh};
 use crate::patch::Patch;
 use crate::placement::Placement;
-use crate::separation::axis::EtaAxis;
-use crate::separation::grid::Method;
 use crate::separation::methods::quadratic::quadratic_form;
 use crate::separation::methods::report_newton;
-use crate::separation::plan::{Plan, plan};
-use crate::separation::values::Values;
+use crate::separation::{EtaAxis, Method};
+use crate::separation::{Plan, Values, plan};
 
 /// Seconds spent in the parts of an analysis.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]

@@ -7,9 +7,7 @@ use serde::Serialize;
 
 use super::input::ApproachBy;
 use crate::error::{Error, Result};
-use crate::load::feasibility::{Feasibility, feasibility};
-use crate::load::hertz::{Curvatures, Ellipse, curvatures};
-use crate::load::virtual_interpenetration::{Estimate, approach_under_load};
+use crate::load::{Curvatures, Ellipse, Estimate, Feasibility, approach_under_load, curvatures, feasibility};
 use crate::patch::{Patch, Window};
 use crate::placement::Placement;
 
@@ -25,7 +23,7 @@ pub enum EllipseUnder {
 
 /// The contact point, its feasibility, curvatures and approach.
 #[derive(Debug, Clone)]
-pub struct Contact {
+pub struct PlacedContact {
     /// The placed pair.
     pub placement: Placement,
     /// Whether s ≥ 0 everywhere (4.1), with the least s.
@@ -44,7 +42,7 @@ pub struct Contact {
     whole_patch: OnceLock<Patch>,
 }
 
-impl Contact {
+impl PlacedContact {
     /// Finds feasibility, curvatures and approach of a placed pair; `modulus` is E* \[N/mm²\].
     ///
     /// # Errors

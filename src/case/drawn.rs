@@ -1,13 +1,10 @@
 //! What the picture of a part shows, on axes of its own.
 
 use super::run::Part;
-use super::steps::equal_steps;
-use crate::export::picture::{Nodes, Picture, SEPARATOR};
-use crate::export::{Header, Loop};
+use crate::export::{Header, Loop, Nodes, PatchPicture, SEPARATOR};
+use crate::mesh::equal_steps;
 use crate::profile::Section;
-use crate::separation::Evaluator;
-use crate::separation::axis::EtaAxis;
-use crate::separation::values::Values;
+use crate::separation::{EtaAxis, Evaluator, Values};
 
 /// Points of a picture along ξ and along η: a line of equal separation is smooth to the eye, and C is among them where
 /// the grid is symmetric about it.
@@ -49,8 +46,8 @@ impl Drawn {
         header: &'a Header,
         part: &'a Part,
         loops: &'a [Loop],
-    ) -> Picture<'a> {
-        Picture {
+    ) -> PatchPicture<'a> {
+        PatchPicture {
             header,
             contact: &self.contact,
             cells: [&part.site.grid.xi, &part.site.grid.eta],

@@ -11,19 +11,17 @@ use super::input::{OutputFormat, Outputs};
 use super::run::{Part, Run, Tell};
 use super::summary::summary;
 use crate::error::{Error, Result};
-use crate::export::deck::contact::{Normal, Settings, contact};
-use crate::export::deck::{Deck, wrp};
-use crate::export::netcdf::NetCdf;
-use crate::export::picture::Picture;
 use crate::export::{
-    Frame, GridFields, Header, Interval, Loop, QuadMesh, SurfaceMesh, VIEW_SCRIPT, csv, legacy, npy, vtk, vts,
+    ContactSettings, Deck, Frame, GridFields, Header, Interval, Loop, NetCdf, PatchPicture, Prescribed,
+    QuadMesh, SurfaceMesh, VIEW_SCRIPT, array_npy, boundary_csv, boundary_vtp, conform_wrp, contact_inp,
+    countact_wrp, interpen_csv, patch_vtu, rail_vts, separation_vtk, separation_vts, separation_wrp,
+    surface_vtp, wheel_vts,
 };
 use crate::files::{Folder, FolderPart};
-use crate::mesh::strips::StripMesh;
-use crate::mesh::surfaces::Surface;
+use crate::mesh::{StripMesh, Surface};
 use crate::patch::Outline;
 use crate::profile::Station;
-use crate::separation::midplane;
+use crate::separation::midplane_table;
 
 /// Turns a picture's SVG into PNG. The library draws no pixels: a caller who wants them brings this.
 pub type Rasterise = fn(&str) -> Result<Vec<u8>>;
@@ -192,10 +190,10 @@ fn intervals(part: &Part) -> Vec<Interval> {
 }
 
 fn tables<'a>(jobs: &mut Vec<Job<'a>>, part: &'a Part, loops: &'a [Loop]) {
-    bytes(jobs, "boundary.csv", move || Ok(csv::boundary(loops).into_bytes()));
-    bytes(jobs, "interpen.csv", move || Ok(csv::interpen(&intervals(part)).into_bytes()));
+    bytes(jobs, "boundary.csv", move || Ok(boundary_csv(loops).into_bytes()));
+    bytes(jobs, "interpen.csv", move || Ok(interpen_csv(&intervals(part)).into_bytes()));
     bytes(jobs, "midsep.txt", move || {
-        Ok(midplane::table(&part.site.contact.placement, &part.site.grid.xi).into_bytes())
+        Ok(midplane_table(&part.site.contact.placement, &part.site.grid.xi).into_bytes())
     });
 }
 
@@ -206,7 +204,7 @@ fn arrays<'a>(jobs: &mut Vec<Job<'a>>, outputs: &Outputs, part: &'a Part) {
     let axes = &part.site.grid;
     let (n, m) = (axes.xi.len() as u64, axes.eta.len() as u64);
     let mut add = |name: &'static str, shape: Vec<u64>, values: &'a [f64]| {
-        stream(jobs, name, move |file| npy::array(file, &shape, values));
+        stream(jobs, name, move |file| array_npy(file, &shape, values));
     };
     add("xi.npy", vec![n], &axes.xi);
     add("eta.npy", vec![m], &axes.eta);
@@ -217,7 +215,7 @@ fn arrays<'a>(jobs: &mut Vec<Job<'a>>, outputs: &Outputs, part: &'a Part) {
 fn pictures<'a>(
     jobs: &mut Vec<Job<'a>>,
     outputs: &Outputs,
-    picture: &'a Picture<'a>,
+    picture: &'a PatchPicture<'a>,
     png: Option<Rasterise>,
 ) -> Result<()> {
     bytes(jobs, "patch.svg", || Ok(picture.svg().into_bytes()));
@@ -258,10 +256,10 @@ fn surfaces<'a>(
 ) {
     type Writer = fn(&mut dyn Write, &Header, &GridFields<'_>) -> std::io::Result<()>;
     let writers: [(&'static str, Writer); 4] = [
-        ("separation.vts", vts::separation),
-        ("rail.vts", vts::rail),
-        ("wheel.vts", vts::wheel),
-        ("separation.vtk", legacy::separation),
+        ("separation.vts", separation_vts),
+        ("rail.vts", rail_vts),
+        ("wheel.vts", wheel_vts),
+        ("separation.vtk", separation_vtk),
     ];
     for (name, writer) in writers {
         stream(jobs, name, move |file| writer(file, header, grid));
@@ -269,13 +267,13 @@ fn surfaces<'a>(
     for (name, body) in ["rail.vtu", "wheel.vtu"].into_iter().zip(bodies.into_iter().flatten()) {
         bytes(jobs, name, move || {
             let mesh = SurfaceMesh { points: body.points.clone(), triangles: body.triangles() };
-            vtk::surface(header, &mesh)
+            surface_vtp(header, &mesh)
         });
     }
     if let Some(strips) = strips {
-        bytes(jobs, "patch.vtu", move || vtk::patch(header, strips));
+        bytes(jobs, "patch.vtu", move || patch_vtu(header, strips));
     }
-    bytes(jobs, "boundary.vtp", move || vtk::boundary(header, loops));
+    bytes(jobs, "boundary.vtp", move || boundary_vtp(header, loops));
     bytes(jobs, "view.py", || Ok(VIEW_SCRIPT.as_bytes().to_vec()));
 }
 
@@ -306,30 +304,30 @@ fn decks<'a>(
     strips: Option<&'a QuadMesh>,
 ) {
     if run.case.outputs.any(&[OutputFormat::Text]) {
-        stream(jobs, "separation.wrp", move |file| wrp::separation(deck, file));
+        stream(jobs, "separation.wrp", move |file| separation_wrp(deck, file));
     }
     if run.case.outputs.any(&[OutputFormat::Conform]) {
-        stream(jobs, "conform.wrp", move |file| wrp::conform(deck, file));
+        stream(jobs, "conform.wrp", move |file| conform_wrp(deck, file));
     }
     if let (true, Some(strips)) = (run.case.outputs.any(&[OutputFormat::Countact]), strips) {
-        stream(jobs, "countact.wrp", move |file| wrp::countact(deck, strips, file));
+        stream(jobs, "countact.wrp", move |file| countact_wrp(deck, strips, file));
     }
     if let (true, Some(settings)) =
         (run.case.outputs.any(&[OutputFormat::Contact]), contact_settings(run, part))
     {
-        stream(jobs, "contact.inp", move |file| contact(deck, &settings, file));
+        stream(jobs, "contact.inp", move |file| contact_inp(deck, &settings, file));
     }
 }
 
 /// Gives CONTACT's control numbers; `None` without an approach. A load is the force of a contact only where it is the only one of
 /// its wheel.
-fn contact_settings(run: &Run, part: &Part) -> Option<Settings> {
+fn contact_settings(run: &Run, part: &Part) -> Option<ContactSettings> {
     let (approach, _) = part.site.contact.approach.filter(|(approach, _)| *approach > 0.0)?;
     let load = run.case.question.load().filter(|_| !run.shares_load(part));
     let bodies = run.case.question.material;
-    Some(Settings {
+    Some(ContactSettings {
         poisson: bodies.map(|body| body.poissons_ratio),
         shear_modulus: bodies.map(|body| body.youngs_modulus / (2.0 * (1.0 + body.poissons_ratio))),
-        ..Settings::steel(load.map_or(Normal::Approach(approach), Normal::Force))
+        ..ContactSettings::steel(load.map_or(Prescribed::Approach(approach), Prescribed::Force))
     })
 }

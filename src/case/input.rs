@@ -6,12 +6,11 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::load::hertz::{Elastic, effective_modulus};
+use crate::load::{Elastic, effective_modulus};
 use crate::measured::Record;
 use crate::placement::Pair;
-use crate::search::wheelset::{Position, WheelsetOnTrack};
-use crate::search::{Pose, ProfilePair};
-use crate::separation::grid::Method;
+use crate::search::{Pose, Position, ProfilePair, WheelsetOnTrack};
+use crate::separation::Method;
 
 /// Two prepared profiles, where they stand, what is asked of them, and what is to be written.
 ///

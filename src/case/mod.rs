@@ -11,11 +11,10 @@ mod input;
 mod places;
 mod run;
 mod site;
-mod steps;
 mod summary;
 
 pub use analysis::{Analysis, Timings};
-pub use contact::{Contact, EllipseUnder};
+pub use contact::{EllipseUnder, PlacedContact};
 pub use files::{Rasterise, write};
 pub use grids::Grid;
 pub use input::{
@@ -24,4 +23,3 @@ pub use input::{
 pub use places::{Found, PlaceOfContact, contacts};
 pub use run::{Part, Run, SILENT, Tell};
 pub use site::{Site, sites};
-pub use steps::equal_steps;

@@ -5,10 +5,10 @@ use std::cell::OnceCell;
 use nalgebra::Point2;
 use serde::Serialize;
 
-use super::contact::Contact;
+use super::contact::PlacedContact;
 use super::input::{ApproachBy, Case, Place};
 use crate::error::{Error, Result};
-use crate::mesh::axes;
+use crate::mesh::groups;
 use crate::placement::Placement;
 use crate::search;
 use crate::search::{ONE_CONTACT, Selection, Touch};
@@ -27,7 +27,7 @@ pub(super) struct Placed {
     /// Subfolder of its files.
     pub folder: String,
     pub found: Option<Found>,
-    pub contact: Contact,
+    pub contact: PlacedContact,
     /// ξ \[mm\] over which the part of its patch around C extends, with what is merged into it, once it was asked for.
     extent: OnceCell<Option<[f64; 2]>>,
 }
@@ -127,7 +127,7 @@ pub(super) fn find(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<Plac
     match &case.standing.place {
         Place::Points { rail_x, wheel_x } => {
             let placement = case.profiles.pair.placed(*rail_x, *wheel_x, 0.0)?;
-            let contact = Contact::new(placement, approach, case.question.modulus())?;
+            let contact = PlacedContact::new(placement, approach, case.question.modulus())?;
             Ok(vec![Placed { folder: String::new(), found: None, contact, extent: OnceCell::new() }])
         }
         Place::Wheel { profiles, pose } => {
@@ -214,7 +214,7 @@ impl Side<'_> {
         };
         let folder =
             if number == 1 { self.name.to_string() } else { format!("{}-contact-{number}", self.name) };
-        let contact = Contact::new(placement, approach, case.question.modulus())?;
+        let contact = PlacedContact::new(placement, approach, case.question.modulus())?;
         Ok(Placed { folder, found: Some(found), contact, extent: OnceCell::new() })
     }
 }
@@ -239,7 +239,7 @@ impl Placed {
         let placement = &self.contact.placement;
         let frame = placement.rail().contact_frame();
         let xi = frame.inverse_transform_point(&Point2::new(place.rail_x, place.rail_z)).x;
-        let around = || axes::groups(patch, merge, None).first().map(|group| group.extent.xi);
+        let around = || groups(patch, merge, None).first().map(|group| group.extent.xi);
         self.extent.get_or_init(around).is_some_and(|[from, to]| from <= xi && xi <= to)
     }
 }

@@ -6,7 +6,7 @@ use super::input::Case;
 use super::site::{Site, sites};
 use crate::error::Result;
 use crate::patch::Patch;
-use crate::separation::plan::Plan;
+use crate::separation::Plan;
 
 /// Is told the step that a run is at, from several threads.
 pub type Tell<'a> = &'a (dyn Fn(String) + Sync);

@@ -1,6 +1,6 @@
 //! Contacts with the axes of their grids: all that is known of a case before a grid is filled.
 
-use super::contact::Contact;
+use super::contact::PlacedContact;
 use super::grids::{Grid, grids};
 use super::input::Case;
 use super::places::{Found, find};
@@ -15,7 +15,7 @@ pub struct Site {
     /// How the contact was found; `None` for a chosen one.
     pub found: Option<Found>,
     /// The placed pair.
-    pub contact: Contact,
+    pub contact: PlacedContact,
     /// The axes.
     pub grid: Grid,
 }

@@ -6,12 +6,10 @@ use serde_json::{Value, json};
 use super::input::Case;
 use super::run::{Part, Run};
 use crate::files::FolderPart;
-use crate::mesh::quality::Quality;
-use crate::mesh::surfaces::Surface;
+use crate::mesh::{Quality, Surface};
 use crate::patch::{Component, Patch};
 use crate::placement::Body;
-use crate::profile::closing::Closing;
-use crate::profile::continuity::Joint;
+use crate::profile::{Closing, Joint};
 
 /// One body in the summary.
 #[derive(Debug, Serialize)]

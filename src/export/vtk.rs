@@ -28,7 +28,7 @@ const EMPTY_UNSTRUCTURED: &str = "<Piece NumberOfPoints=\"0\" NumberOfCells=\"0\
 ///
 /// # Errors
 /// Data that `vtkio` refuses, which would be a fault of this program.
-pub fn boundary(header: &Header, loops: &[Loop]) -> Result<Vec<u8>> {
+pub fn boundary_vtp(header: &Header, loops: &[Loop]) -> Result<Vec<u8>> {
     let loops: Vec<_> = loops.iter().filter(|ring| !ring.points.is_empty()).collect();
     let (mut connectivity, mut offsets, mut first) = (Vec::new(), Vec::new(), 0);
     for ring in &loops {
@@ -53,7 +53,7 @@ pub fn boundary(header: &Header, loops: &[Loop]) -> Result<Vec<u8>> {
 ///
 /// # Errors
 /// A mesh that contradicts itself.
-pub fn patch(header: &Header, mesh: &QuadMesh) -> Result<Vec<u8>> {
+pub fn patch_vtu(header: &Header, mesh: &QuadMesh) -> Result<Vec<u8>> {
     mesh.validate()?;
     let components: Vec<i32> = mesh.component.iter().map(|&c| c as i32).collect();
     let cell = vec![
@@ -68,7 +68,7 @@ pub fn patch(header: &Header, mesh: &QuadMesh) -> Result<Vec<u8>> {
 ///
 /// # Errors
 /// A mesh that contradicts itself.
-pub fn surface(header: &Header, mesh: &SurfaceMesh) -> Result<Vec<u8>> {
+pub fn surface_vtp(header: &Header, mesh: &SurfaceMesh) -> Result<Vec<u8>> {
     mesh.validate()?;
     let cells: Vec<Vec<usize>> = mesh.triangles.iter().map(|triangle| triangle.to_vec()).collect();
     unstructured(header, &mesh.points, &cells, Vec::new())
@@ -76,7 +76,7 @@ pub fn surface(header: &Header, mesh: &SurfaceMesh) -> Result<Vec<u8>> {
 
 /// Writes `surface.pvd`: the files of a sweep on one time axis, which ParaView plays. `steps` are (time,
 /// part, path), with paths as the program makes them.
-pub fn collection(steps: &[(f64, usize, String)]) -> String {
+pub fn collection_pvd(steps: &[(f64, usize, String)]) -> String {
     let set = |(time, part, path): &(f64, usize, String)| {
         format!("    <DataSet timestep=\"{time:?}\" group=\"\" part=\"{part}\" file=\"{path}\"/>\n")
     };
@@ -164,10 +164,10 @@ mod tests {
     #[test]
     fn xml_files_carry_frame_and_statements() {
         for file in [
-            boundary(&header(), &[square()]).unwrap(),
-            boundary(&header(), &[]).unwrap(),
-            patch(&header(), &mesh()).unwrap(),
-            patch(&header(), &QuadMesh::default()).unwrap(),
+            boundary_vtp(&header(), &[square()]).unwrap(),
+            boundary_vtp(&header(), &[]).unwrap(),
+            patch_vtu(&header(), &mesh()).unwrap(),
+            patch_vtu(&header(), &QuadMesh::default()).unwrap(),
         ] {
             let text = text(&file);
             assert!(text.contains("approach_mm") && text.contains("scene 0123abcd"), "{text}");
@@ -178,7 +178,7 @@ mod tests {
 
     #[test]
     fn what_is_written_reads_back() {
-        let file = Vtk::parse_xml(&patch(&header(), &mesh()).unwrap()[..]).unwrap();
+        let file = Vtk::parse_xml(&patch_vtu(&header(), &mesh()).unwrap()[..]).unwrap();
         let DataSet::UnstructuredGrid { pieces, .. } = file.data else { panic!("{file:?}") };
         let piece = pieces[0].clone().into_loaded_piece_data(None).unwrap();
         let points: Vec<f64> = piece.points.cast_into().unwrap();
@@ -197,8 +197,8 @@ mod tests {
     fn arrays_and_meshes_that_do_not_fit_are_refused() {
         let mut broken = mesh();
         broken.area.pop();
-        assert!(patch(&header(), &broken).unwrap_err().place.contains("areas"));
+        assert!(patch_vtu(&header(), &broken).unwrap_err().place.contains("areas"));
         let surface_mesh = SurfaceMesh { points: vec![Point3::origin(); 3], triangles: vec![[0, 1, 3]] };
-        assert!(surface(&header(), &surface_mesh).is_err());
+        assert!(surface_vtp(&header(), &surface_mesh).is_err());
     }
 }

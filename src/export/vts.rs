@@ -53,7 +53,7 @@ impl<'a> Array<'a> {
 ///
 /// # Errors
 /// The errors of the sink.
-pub fn separation(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io::Result<()> {
+pub fn separation_vts(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io::Result<()> {
     let delta = header.approach;
     let depth = move |s: f64| if s > delta { 0.0 } else { delta - s };
     let arrays = vec![
@@ -73,7 +73,7 @@ pub fn separation(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> i
 ///
 /// # Errors
 /// The errors of the sink.
-pub fn rail(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io::Result<()> {
+pub fn rail_vts(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io::Result<()> {
     structured_grid(sink, header, grid, rail_points(grid), vec![separation_array(grid)])
 }
 
@@ -81,7 +81,7 @@ pub fn rail(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io::Res
 ///
 /// # Errors
 /// The errors of the sink.
-pub fn wheel(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io::Result<()> {
+pub fn wheel_vts(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io::Result<()> {
     let points = Array::vector("Points", |i| {
         let (xi, rail) = (grid.xi()[i], grid.rail_height()[i]);
         grid.eta().iter().zip(grid.column(i)).map(move |(&eta, s)| [xi, eta, known(rail + s)])
@@ -205,7 +205,7 @@ mod tests {
     fn arrays_lie_where_the_head_says_bit_for_bit() {
         let sample = Sample::new(3, 4);
         let mut file = Vec::new();
-        separation(&mut file, &header(), &sample.fields()).unwrap();
+        separation_vts(&mut file, &header(), &sample.fields()).unwrap();
         let points = appended(&file, 0);
         let last: Vec<f64> =
             points[11 * 24..].chunks_exact(8).map(|c| f64::from_le_bytes(c.try_into().unwrap())).collect();
@@ -222,7 +222,7 @@ mod tests {
     fn grids_without_undefined_points_hide_none() {
         let mut sample = Sample::new(2, 2);
         sample.separation[0] = 0.5;
-        for writer in [separation, rail, wheel] {
+        for writer in [separation_vts, rail_vts, wheel_vts] {
             let mut file = Vec::new();
             writer(&mut file, &header(), &sample.fields()).unwrap();
             assert!(!String::from_utf8_lossy(&file).contains("vtkGhostType"));

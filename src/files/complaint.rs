@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use crate::error::{Error, Kind};
+use crate::error::{Error, ErrorKind};
 
 /// Makes the complaint about a path.
 pub(super) fn bad(path: &Path, found: &str, expected: &str, advice: &str) -> Error {
-    Error::new(path.display().to_string(), found, expected, advice).of_kind(Kind::Io)
+    Error::new(path.display().to_string(), found, expected, advice).of_kind(ErrorKind::Io)
 }

@@ -6,8 +6,7 @@ use crate::patch::skewed::monotone::monotone;
 use crate::patch::skewed::valleys::Valleys;
 use crate::patch::turning_points;
 use crate::placement::Placement;
-use crate::separation::Evaluator;
-use crate::separation::gap::midplane_gap;
+use crate::separation::{Evaluator, midplane_gap};
 
 /// Overlap, as a share of the profiles' extent, up to which a contact counts as feasible: rounding of the
 /// profile and of its drawing's tangents (1e-10 mm on a wheel), far below what any solver resolves.

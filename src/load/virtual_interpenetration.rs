@@ -9,11 +9,10 @@ use crate::error::{Error, Result};
 use crate::numerics::elliptic::complete;
 use crate::numerics::quadrature::integral;
 use crate::numerics::roots::bracketed;
-use crate::patch::Grading;
-use crate::patch::Slicer;
+use crate::patch::{Grading, Slicer};
 use crate::placement::Placement;
-use crate::separation::gap::midplane_gap;
 use crate::separation::methods::quadratic::quadratic_form;
+use crate::separation::midplane_gap;
 
 /// Share of δ by which Kik and Piotrowski let the bodies overlap: the surfaces between settle the rest.
 const VIRTUAL_SHARE: f64 = 0.55;

@@ -484,7 +484,7 @@ fn every_format_gives_back_the_points_it_was_given() -> Result<()> {
 fn segments_written_are_segments_read() -> Result<()> {
     #[derive(serde::Deserialize)]
     struct Scene {
-        segments: Vec<crate::profile::drawing::SegmentData>,
+        segments: Vec<crate::profile::SegmentData>,
     }
     let (wheel, points) = s1002(0.25)?;
     let text = write::points(&points, Format::Csv, Side::Wheel, "");
@@ -503,7 +503,7 @@ fn segments_written_are_segments_read() -> Result<()> {
         assert!(written.cut.len() <= 1, "{:?}", written.cut);
         let scene: Scene =
             toml::from_str(&written.toml).map_err(|e| Error::new("toml", e.to_string(), "", ""))?;
-        let back = crate::profile::drawing::chain("back", "", None, &scene.segments)?;
+        let back = crate::profile::drawn_profile("back", "", None, &scene.segments)?;
         let worst = difference(profile, &back, Side::Wheel, [-69.9, 59.9]);
         assert!(worst <= bound, "{worst:e} of {bound:e}");
     }

@@ -7,10 +7,12 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use super::Format;
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::numerics::polynomial::recentred;
-use crate::profile::drawing::{ArcData, HalfData, LineData, PolynomialData, SegmentData};
-use crate::profile::{Arc, Polynomial, Profile, Segment, Shape, Side, Station};
+use crate::profile::{
+    Arc, ArcData, HalfData, LineData, Polynomial, PolynomialData, Profile, Segment, SegmentData, Shape, Side,
+    Station,
+};
 
 /// Returns the text of a file with these points \[mm\], x to the field side, z up, from left to right; `name`
 /// goes into its header.
@@ -154,7 +156,7 @@ fn steps_over(length: f64, step: f64) -> Result<usize> {
     }
     let found = format!("{step} mm, which takes {n:e} points over {length:.3} mm");
     Err(Error::new("step", found, format!("at most {MOST_SAMPLES:e} points a segment"), "take a larger step")
-        .of_kind(Kind::Limit))
+        .of_kind(ErrorKind::Limit))
 }
 
 fn along_arc(arc: &Arc, step: f64) -> Result<Vec<[f64; 2]>> {

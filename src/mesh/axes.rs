@@ -3,7 +3,7 @@
 //! Centres lie on the lattice (i Δξ, j Δη) about C: C itself is a centre, the η axis is symmetric to the last bit
 //! over a symmetric patch, and grids of one spacing for several parts or approaches share their centres.
 
-use crate::error::{Error, Kind, Result, finite};
+use crate::error::{Error, ErrorKind, Result, finite};
 use crate::patch::{Component, Patch, Window};
 
 /// Cells over the short side of the box when no spacing is given: peak pressures of the two solvers are then within 0.5 %.
@@ -44,6 +44,12 @@ impl Axes {
         };
         Window { xi: edges(&self.xi, self.spacing[0]), eta: edges(&self.eta, self.spacing[1]) }
     }
+}
+
+/// Gives n ≥ 2 values from a to b in equal steps, both ends included, symmetric to the last bit where a = −b.
+pub fn equal_steps(a: f64, b: f64, n: usize) -> Vec<f64> {
+    let last = n as f64 - 1.0;
+    (0..n).map(|k| (a * (last - k as f64) + b * k as f64) / last).collect()
 }
 
 /// Components of a patch that share a grid.
@@ -177,7 +183,9 @@ fn lattice(window: &Window, spacing: [f64; 2]) -> Result<Axes> {
     if !fits {
         let found = format!("{along:e} x {across:e} cells over the patch");
         let expected = format!("at most {MOST_POINTS:e}, and {MOST_ON_AXIS:e} on an axis");
-        return Err(Error::new("grid: spacing", found, expected, "take a larger step").of_kind(Kind::Limit));
+        return Err(
+            Error::new("grid: spacing", found, expected, "take a larger step").of_kind(ErrorKind::Limit)
+        );
     }
     let centres = |[first, last]: [f64; 2], step: f64| {
         (first as i64..=last as i64).map(|i| i as f64 * step).collect::<Vec<f64>>()

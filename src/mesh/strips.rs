@@ -15,7 +15,7 @@ use std::f64::consts::FRAC_PI_2;
 use nalgebra::Point3;
 
 use super::lines::{Meeting, between, lines};
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::patch::{Band, Component, Outline, Patch};
 use crate::placement::Placement;
 
@@ -113,7 +113,7 @@ impl Counts {
         }
         if self.strips as f64 * self.across as f64 > MOST_CELLS {
             let expected = format!("at most {MOST_CELLS:e} cells a component");
-            return Err(Error::new("mesh", found, expected, "ask for fewer").of_kind(Kind::Limit));
+            return Err(Error::new("mesh", found, expected, "ask for fewer").of_kind(ErrorKind::Limit));
         }
         Ok(())
     }

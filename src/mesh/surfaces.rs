@@ -6,7 +6,7 @@
 
 use nalgebra::{Point2, Point3, Vector2, distance_squared};
 
-use crate::error::{Error, Kind, Result, finite};
+use crate::error::{Error, ErrorKind, Result, finite};
 use crate::patch::Window;
 use crate::placement::Placement;
 use crate::profile::{Side, Station};
@@ -112,7 +112,7 @@ impl Surface {
                 expected,
                 "take a coarser tolerance",
             )
-            .of_kind(Kind::Limit));
+            .of_kind(ErrorKind::Limit));
         }
         Ok(Self { side, n, points: stations.iter().flat_map(points).collect() })
     }

@@ -5,9 +5,8 @@
 
 use super::skewed::slicer::{Edge, STEP_ROUNDINGS, Skewed};
 use crate::placement::Placement;
-use crate::separation::Evaluator;
-use crate::separation::gap::midplane_gap;
 use crate::separation::wheel_surface::{SagittaPoint, Span, WheelSurface};
+use crate::separation::{Evaluator, midplane_gap};
 
 /// Most contractions of the sagitta step; each gains at least three digits away from vertical tangents.
 const CONTRACTIONS: usize = 24;

@@ -1,6 +1,8 @@
 //! A placed pair: contact frame ξηζ and both profiles in it (Report Sec. 4).
 
-pub mod track;
+mod track;
+
+pub use track::{RailDistance, Track, WheelDistance, Wheelset};
 
 use std::sync::Arc;
 
@@ -21,9 +23,9 @@ struct Prepared {
 pub struct Body {
     prepared: Arc<Prepared>,
     /// The contact point C on it; its tangent gives θ_C.
-    pub point: ProfilePoint,
+    pub(crate) point: ProfilePoint,
     /// The profile in the contact frame.
-    pub section: Section,
+    pub(crate) section: Section,
 }
 
 /// A rail and a wheel that share the contact point C and the common normal there.
@@ -172,6 +174,16 @@ impl Body {
     /// The profile in its own axes.
     pub fn profile(&self) -> &Profile {
         &self.prepared.profile
+    }
+
+    /// The contact point C on it; its tangent gives θ_C.
+    pub fn point(&self) -> &ProfilePoint {
+        &self.point
+    }
+
+    /// The profile in the contact frame.
+    pub fn section(&self) -> &Section {
+        &self.section
     }
 
     /// The contact frame in the profile's own axes (x, z): its translation is C \[mm\], its rotation θ_C.

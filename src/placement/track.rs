@@ -7,8 +7,7 @@
 //! `docs::conventions`.
 
 use crate::error::{Error, Result, finite};
-use crate::profile::trace::trace;
-use crate::profile::{Branch, Profile, Section, Segment, Side, Station, last_groove};
+use crate::profile::{Branch, Profile, Section, Segment, Side, Station, last_groove, trace};
 
 /// Where the rails are.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -22,12 +22,12 @@ pub enum Half {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Arc {
     /// Station at the beginning.
-    pub start: Station,
+    pub(crate) start: Station,
     /// Station at the end.
-    pub end: Station,
+    pub(crate) end: Station,
     /// Signed radius \[mm\]: positive if the arc turns counter-clockwise (lower half), ∞ for a line. The
     /// radius is kept, not the curvature, since differences of nearly equal radii are then exact.
-    pub radius: f64,
+    pub(crate) radius: f64,
 }
 
 impl Arc {
@@ -92,6 +92,21 @@ impl Arc {
         let cos = cosine(sin);
         let z = start.z + run * (start.sin + sin) / (start.cos + cos);
         Ok(Self { start, end: Station { x: to_x, z, cos, sin }, radius })
+    }
+
+    /// Returns the station at the beginning.
+    pub fn start(&self) -> Station {
+        self.start
+    }
+
+    /// Returns the station at the end.
+    pub fn end(&self) -> Station {
+        self.end
+    }
+
+    /// Returns the signed radius \[mm\]: positive if the arc turns counter-clockwise (lower half), ∞ for a line.
+    pub fn radius(&self) -> f64 {
+        self.radius
     }
 
     /// Returns the signed curvature \[1/mm\], 0 for a line.

@@ -12,8 +12,8 @@ use crate::error::{Error, Result};
 
 /// A chain of segments, travelled from left to right, with its name and source.
 ///
-/// Neighbours share their joint point, to rounding: a drawing's rounded coordinates are closed when the chain is made, by the
-/// rule of [`closing`].
+/// Neighbours share their joint point, to rounding: a drawing's rounded coordinates are closed when the chain is made, by one
+/// rule: see [`Closing`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
     /// Name of the standard, or of the file.
@@ -30,12 +30,12 @@ pub struct Profile {
 }
 
 impl Profile {
-    /// Makes a chain of at least one segment that nowhere jumps, and closes it by the rule of [`closing`].
+    /// Makes a chain of at least one segment that nowhere jumps, and closes it: see [`Closing`].
     ///
     /// Kinks are allowed at any angle: see [`Profile::continuity`].
     ///
     /// # Errors
-    /// An empty chain; a joint with a step larger than [`continuity::LARGEST_STEP`] × the chain's extent, or than the short
+    /// An empty chain; a joint with a step larger than 1e-4 × the chain's extent, or than the short
     /// segment beside it can take, with its place and size.
     pub fn new(name: impl Into<String>, source: impl Into<String>, drawn: Vec<Segment>) -> Result<Self> {
         if drawn.is_empty() {

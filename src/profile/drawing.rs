@@ -87,7 +87,12 @@ pub struct PolynomialData {
 ///
 /// # Errors
 /// A wrong segment, with its name and what is wrong with it; steps between segments as in [`Profile::new`].
-pub fn chain(name: &str, source: &str, start: Option<[f64; 2]>, data: &[SegmentData]) -> Result<Profile> {
+pub fn drawn_profile(
+    name: &str,
+    source: &str,
+    start: Option<[f64; 2]>,
+    data: &[SegmentData],
+) -> Result<Profile> {
     let mut builder = start.map_or_else(|| Ok(Builder::new()), Builder::starting_at)?;
     let mut labels = Vec::with_capacity(data.len());
     for (index, segment) in data.iter().enumerate() {
@@ -187,7 +192,7 @@ mod tests {
             segments: Vec<SegmentData>,
         }
         let drawn: Drawn = toml::from_str(segments)?;
-        let error = chain("drawn", "", drawn.start, &drawn.segments).err();
+        let error = drawn_profile("drawn", "", drawn.start, &drawn.segments).err();
         Ok(error.map(|e| e.to_string()).unwrap_or_default())
     }
 

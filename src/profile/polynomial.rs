@@ -10,7 +10,7 @@ use crate::numerics::twice::Twice;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Polynomial {
     /// Range of the parameter, ascending \[mm or the spline's unit\].
-    pub t: [f64; 2],
+    pub(crate) t: [f64; 2],
     /// Coefficients of x(t) \[mm\].
     pub(crate) x: Vec<Twice>,
     /// Coefficients of z(t) \[mm\].
@@ -64,6 +64,11 @@ impl Polynomial {
     /// Returns \[dx/dt, dz/dt\] at parameter t.
     pub(super) fn rates(&self, t: f64) -> [f64; 2] {
         [&self.x, &self.z].map(|c| exact_slope(c, t.into()).into())
+    }
+
+    /// Returns the range of the parameter, ascending \[mm or the spline's unit\].
+    pub fn range(&self) -> [f64; 2] {
+        self.t
     }
 
     /// Returns the station at parameter t.

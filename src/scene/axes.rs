@@ -1,9 +1,9 @@
 //! `[grid]`: the axes of the grids.
 
 use super::data::{AxisData, GridData, Spacing};
-use crate::case::{AskedAxes, equal_steps};
+use crate::case::AskedAxes;
 use crate::error::{Error, Result, finite};
-use crate::mesh::axes::MOST_ON_AXIS;
+use crate::mesh::{MOST_ON_AXIS, equal_steps};
 
 /// Largest ξ and η \[mm\]: a thousand kilometres, whose squares are far from overflowing.
 const FARTHEST: f64 = 1e9;

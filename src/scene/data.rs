@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 use super::method_or_auto;
 use crate::case::OutputFormat;
 use crate::measured;
-use crate::profile::drawing::SegmentData;
-use crate::search::wheelset::{Position, Roll};
-use crate::separation::grid::Method;
+use crate::profile::SegmentData;
+use crate::search::{Position, Roll};
+use crate::separation::Method;
 
 /// A scene: a wheel on a rail or a wheelset on a track, what is asked of it, and what is to be written.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -4,7 +4,7 @@ use schemars::{Schema, SchemaGenerator, json_schema};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serializer};
 
-use crate::separation::grid::Method;
+use crate::separation::Method;
 
 const AUTO: &str = "auto";
 

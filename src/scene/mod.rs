@@ -8,7 +8,7 @@ mod profiles;
 mod read;
 mod resolve;
 mod standing;
-mod words;
+pub(crate) mod words;
 
 pub use data::{
     AxisData, ContactData, GridData, MaterialData, OutputData, PatchData, ProfileData, RollData, RollWord,
@@ -17,4 +17,3 @@ pub use data::{
 pub use profiles::{is_chain_file, profile_from_file};
 pub use read::{load, parse};
 pub use resolve::{echo, resolve, with_profiles};
-pub use words::perhaps;

@@ -12,8 +12,7 @@ use crate::error::{Error, Result, finite, given};
 use crate::files::{read_bytes, read_text};
 use crate::measured::{self, Measured, Options, Record};
 use crate::placement::Pair;
-use crate::profile::drawing::{SegmentData, chain};
-use crate::profile::{Profile, Side, inclination, standards};
+use crate::profile::{Profile, SegmentData, Side, drawn_profile, inclination, standards};
 
 /// Largest rolling radius \[mm\]: a kilometre times a thousand, whose square is far from overflowing.
 const FARTHEST: f64 = 1e9;
@@ -60,7 +59,9 @@ fn profile(data: &ProfileData, folder: &Path, side: Side) -> Result<Resolved> {
     let Resolved { mut profile, measured } = match (&data.profile, &data.file, &data.segments) {
         (Some(name), None, None) => Resolved::drawn(built_in(name, side)?),
         (None, Some(file), None) => in_file(data, &folder.join(file), side)?,
-        (None, None, Some(segments)) => Resolved::drawn(chain("inline", "scene", data.start, segments)?),
+        (None, None, Some(segments)) => {
+            Resolved::drawn(drawn_profile("inline", "scene", data.start, segments)?)
+        }
         _ => {
             let expected = "exactly one of `profile`, `file`, `segments`";
             let found = given(&[
@@ -179,5 +180,5 @@ pub fn profile_from_file(path: &Path) -> Result<Profile> {
     let file: ProfileFile = parse(&text, json).map_err(|e| e.within(&place))?;
     let name = file.name.unwrap_or_else(|| place.clone());
     let source = file.source.unwrap_or_else(|| place.clone());
-    chain(&name, &source, file.start, &file.segments).map_err(|e| e.within(&place))
+    drawn_profile(&name, &source, file.start, &file.segments).map_err(|e| e.within(&place))
 }

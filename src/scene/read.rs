@@ -152,7 +152,7 @@ fn house_form(place: String, message: &str, found: Option<String>) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::separation::grid::Method;
+    use crate::separation::Method;
 
     const SCENE: &str = "[rail]\nprofile = \"60E1\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n\
                          [contact]\nrail_x = 0.0\nwheel_x = 0.0\n";

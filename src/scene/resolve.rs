@@ -10,7 +10,7 @@ use super::profiles::profiles;
 use super::standing::standing;
 use crate::case::{ApproachBy, Case, Echo, OutputFormat, Outputs, Profiles, Question};
 use crate::error::{Error, Result, finite};
-use crate::load::hertz::Elastic;
+use crate::load::Elastic;
 
 /// Smallest approach other than 0 \[mm\] and smallest load \[N\]: below any that is meant, and its powers do not underflow.
 const SMALLEST: f64 = 1e-60;

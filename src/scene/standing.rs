@@ -5,10 +5,8 @@ use std::sync::Arc;
 use super::data::{ContactData, RollData, RollWord, Scene, TrackData, WheelsetData};
 use crate::case::{Place, Standing};
 use crate::error::{Error, Result, finite, given};
-use crate::placement::Pair;
-use crate::placement::track::{RailDistance, WheelDistance};
-use crate::search::wheelset::{Position, Roll, WheelsetOnTrack};
-use crate::search::{Pose, ProfilePair};
+use crate::placement::{Pair, RailDistance, WheelDistance};
+use crate::search::{Pose, Position, ProfilePair, Roll, WheelsetOnTrack};
 
 /// Depth below the top of rail at which gauge is measured unless the scene says otherwise \[mm\].
 const GAUGE_HEIGHT: f64 = 14.0;

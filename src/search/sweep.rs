@@ -4,8 +4,8 @@ mod conicity;
 
 pub use conicity::{ACCURACY, Conicity, Equivalent, NoConicity};
 
+use super::touch::{Contact, Selection};
 use super::wheelset::{Position, Roll, WheelsetOnTrack, WheelsetSearch};
-use super::{Contact, Selection};
 use crate::error::Result;
 
 /// A side of the track.
@@ -19,7 +19,7 @@ pub enum TrackSide {
 
 /// One row of a sweep: a contact of one side at one position.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Row {
+pub struct SweepRow {
     /// Lateral displacement of the axle's middle \[mm\], + to the right.
     pub lateral: f64,
     /// Yaw \[rad\], + moves the right-hand wheel forward.
@@ -60,7 +60,7 @@ impl<'a> Sweep<'a> {
     ///
     /// # Errors
     /// Values that are not finite; angles beyond ±0.5 rad.
-    pub fn position(&mut self, position: &Position, rows: &mut Vec<Row>) -> Result<()> {
+    pub fn position(&mut self, position: &Position, rows: &mut Vec<SweepRow>) -> Result<()> {
         let Some(touch) = self.search.touch(position, &self.selection)? else { return Ok(()) };
         let [left, right] = touch.sides.map(|side| side.touch.contacts[0].rolling_radius);
         let conicity = match (position.roll, self.conicity) {
@@ -69,7 +69,7 @@ impl<'a> Sweep<'a> {
             (Roll::Solve | Roll::Neglect, Some(conicity)) => conicity.at(position.lateral),
         };
         for (side, found) in [TrackSide::Left, TrackSide::Right].into_iter().zip(touch.sides) {
-            rows.extend(found.touch.contacts.iter().enumerate().map(|(number, contact)| Row {
+            rows.extend(found.touch.contacts.iter().enumerate().map(|(number, contact)| SweepRow {
                 lateral: position.lateral,
                 yaw: position.yaw,
                 roll: touch.roll,
@@ -88,8 +88,7 @@ impl<'a> Sweep<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::placement::Pair;
-    use crate::placement::track::{RailDistance, WheelDistance};
+    use crate::placement::{Pair, RailDistance, WheelDistance};
     use crate::profile::standards;
 
     #[test]

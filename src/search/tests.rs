@@ -1,10 +1,10 @@
-use super::wheelset::{Position, Roll, WheelsetOnTrack};
+use super::locus::Attitude;
 use super::*;
-use crate::load::feasibility::feasibility;
-use crate::placement::Pair;
-use crate::placement::track::{RailDistance, Track, WheelDistance, Wheelset};
-use crate::profile::{Arc, Half, Polynomial, Section, Segment, Shape, inclination, standards};
-use nalgebra::{Point2, UnitComplex};
+use crate::error::{Error, Result};
+use crate::load::feasibility;
+use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
+use crate::profile::{Arc, Half, Polynomial, Profile, Section, Segment, Shape, Side, inclination, standards};
+use nalgebra::{Point2, UnitComplex, Vector3};
 
 mod brute;
 mod reference;

@@ -8,10 +8,9 @@ use super::candidates::{Candidate, Meeting};
 use super::locus::Attitude;
 use nalgebra::Rotation3;
 
-use super::{ContactSearch, ProfilePair, Selection, Touch, Work, small_angle, wheel_rotation};
+use super::touch::{ContactSearch, ProfilePair, Selection, Touch, Work, small_angle, wheel_rotation};
 use crate::error::{Result, finite};
-use crate::placement::Pair;
-use crate::placement::track::{RailDistance, Track, WheelDistance, Wheelset};
+use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
 
 /// How the roll of a wheelset is found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -107,7 +106,7 @@ const FAR: [f64; 3] = [0.025, 0.05, LARGEST_ROLL];
 /// Most times that both sides are lowered for one roll. Newton's method takes two to six; a contact beyond
 /// 73° makes it leave the root, and from the far side of the flange it takes as many again. Halving alone
 /// would take half of these, except where a wheel leaves its rail: there is no roll then.
-pub const MOST_LEVELS: u32 = 64;
+const MOST_LEVELS: u32 = 64;
 
 /// Number of Newton's levels without a change of sign before one is looked for.
 const NEWTON_LEVELS: u32 = 5;
@@ -161,7 +160,7 @@ impl WheelsetSearch<'_> {
     /// reaches from zero roll, else the one between zero and a flange on top of its rail.
     /// Accuracy: heights and roll to rounding at the size of the wheelset, about 1e-13 mm and 1e-16 rad.
     /// Cost: the two sides are lowered two to four times on treads, about ten times at most where a flange is
-    /// steeper than 73°; never more than [`MOST_LEVELS`] times.
+    /// steeper than 73°; never more than 64 times.
     ///
     /// # Errors
     /// Values that are not finite; angles beyond ±0.5 rad.

@@ -9,6 +9,14 @@ const TRUNCATION: f64 = 0.5;
 /// A span below this share of its column's u, such as the closing of a drawing, starts with two coefficients.
 const SHORT_SPAN: f64 = 0.01;
 
+/// At this tolerance \[mm\] and below, the relative accuracy near C is kept as well.
+///
+/// s falls below any absolute tolerance near C; someone who asks for 1e-12 mm asks for all digits.
+pub const FULL_PRECISION: f64 = 1e-12;
+
+/// Relative truncation allowed at full precision: a fiftieth of the promised 1e-13, some roundings.
+const FULL_RELATIVE: f64 = 2e-15;
+
 /// The demand on s: |error| ≤ `absolute`, and |error| ≤ `relative` × |(u − u_0) q|.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Demand {
@@ -19,6 +27,12 @@ pub struct Demand {
 }
 
 impl Demand {
+    /// Gives the demand on s for a tolerance \[mm\].
+    pub fn for_tolerance(tolerance: f64) -> Self {
+        let relative = if tolerance <= FULL_PRECISION { FULL_RELATIVE } else { f64::INFINITY };
+        Self { absolute: tolerance, relative }
+    }
+
     /// Gives the demand on truncation alone.
     pub(super) fn on_truncation(self) -> Self {
         Self { absolute: TRUNCATION * self.absolute, ..self }

@@ -61,7 +61,7 @@ pub fn transformed_parameters(body: &Body) -> Vec<Transformed> {
 }
 
 /// Computes the midplane table at these ξ \[mm\].
-pub fn rows(placement: &Placement, xi: &[f64]) -> Vec<MidplaneRow> {
+pub fn midplane_rows(placement: &Placement, xi: &[f64]) -> Vec<MidplaneRow> {
     let row = |&xi: &f64| MidplaneRow {
         xi,
         rail: placement.rail().section.height(xi),
@@ -72,7 +72,7 @@ pub fn rows(placement: &Placement, xi: &[f64]) -> Vec<MidplaneRow> {
 }
 
 /// Writes what MIDSEP printed as a table that a person can read.
-pub fn table(placement: &Placement, xi: &[f64]) -> String {
+pub fn midplane_table(placement: &Placement, xi: &[f64]) -> String {
     let mut out = String::from("# MIDSEP: midplane separation, Report FRA/ORD-78/41, Sec. 5\n");
     out += "# Lengths in mm, angles in rad; contact frame: origin C, xi along the tangent, zeta from rail to wheel.\n";
     for (name, body) in [("rail", placement.rail()), ("wheel", placement.wheel())] {
@@ -80,7 +80,7 @@ pub fn table(placement: &Placement, xi: &[f64]) -> String {
     }
     out += "\n# midplane, eta = 0\n";
     let _ = writeln!(out, "# {:>22} {:>24} {:>24} {:>24}", "xi", "zeta_rail", "zeta_wheel", "separation");
-    for row in rows(placement, xi) {
+    for row in midplane_rows(placement, xi) {
         let _ =
             writeln!(out, "{:24.16e} {:24.16e} {:24.16e} {:24.16e}", row.xi, row.rail, row.wheel, row.gap);
     }

@@ -5,7 +5,7 @@ use super::columns::fit::Fitter;
 use super::columns::strip::Strip;
 use super::columns::strips::strips;
 use super::columns::{skewed, truncation};
-use super::demand::Demand;
+use super::demand::{Demand, FULL_PRECISION};
 use super::evaluator::Evaluator;
 use super::grid::{Choice, Method};
 use super::methods::quadratic::quadratic_form;
@@ -13,14 +13,6 @@ use super::rounding::rounding;
 use super::samples::{Samples, difference, places, thinned};
 use crate::numerics::nan_max;
 use crate::placement::Placement;
-
-/// At this tolerance \[mm\] and below, the relative accuracy near C is kept as well.
-///
-/// s falls below any absolute tolerance near C; someone who asks for 1e-12 mm asks for all digits.
-pub const FULL_PRECISION: f64 = 1e-12;
-
-/// Relative truncation allowed at full precision: a fiftieth of the promised 1e-13, some roundings.
-const FULL_RELATIVE: f64 = 2e-15;
 
 /// Columns in no strip whose truncation errors are measured, evenly spread. The others are measured when the grid is filled.
 const COLUMNS_ALONE: usize = 32;
@@ -63,12 +55,6 @@ impl Plan {
         };
         self.error = nan_max(self.error, BETWEEN_SAMPLES * truncation + self.rounding);
     }
-}
-
-/// Gives the demand on s for a tolerance \[mm\].
-pub fn demand(tolerance: f64) -> Demand {
-    let relative = if tolerance <= FULL_PRECISION { FULL_RELATIVE } else { f64::INFINITY };
-    Demand { absolute: tolerance, relative }
 }
 
 /// Finds the cheapest method whose estimated error over the grid is below `tolerance` \[mm\], or plans the `forced` one.
@@ -129,14 +115,14 @@ impl Planned<'_> {
     /// Plans a method whose error is estimated by comparison with single points.
     fn sampled(&self, method: Method, probe: &Probe, reason: String) -> Plan {
         let samples = Samples::new(self.placement, self.xi, self.axis);
-        let choice = Choice { method, demand: demand(self.tolerance), coefficients: 1 };
+        let choice = Choice { method, demand: Demand::for_tolerance(self.tolerance), coefficients: 1 };
         let rounding = probe.rounding;
         let error = BETWEEN_SAMPLES * samples.difference(&choice) + rounding;
         Plan { choice, error, rounding, tolerance: self.tolerance, reason, strips: Vec::new() }
     }
 
     fn spectral(&self, probe: &Probe, reason: String) -> Plan {
-        let demand = demand(self.tolerance);
+        let demand = Demand::for_tolerance(self.tolerance);
         let mut fitter = Fitter::new(self.placement, demand, 1);
         let (strips, coefficients, truncation) = if self.placement.skew() == 0.0 {
             self.measured(&mut fitter)

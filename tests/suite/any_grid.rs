@@ -6,10 +6,7 @@ use crate::common::holds;
 use proptest::prelude::*;
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::standards;
-use wheelrail::separation::axis::EtaAxis;
-use wheelrail::separation::grid::Method;
-use wheelrail::separation::plan::{FULL_PRECISION, plan};
-use wheelrail::separation::values::Values;
+use wheelrail::separation::{EtaAxis, FULL_PRECISION, Method, Values, plan};
 use wheelrail_report::verification::built_in_pairs;
 
 const CASES: u32 = 3000;

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use wheelrail::Result;
-use wheelrail::numerics::roots::bracketed;
+use wheelrail::internal::bracketed;
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Polynomial, Profile, Segment, Shape};
 use wheelrail_report::errors::Point;

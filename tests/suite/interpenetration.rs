@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::common::{approached_references, profile, references, two_crowns};
 use wheelrail::Result;
-use wheelrail::numerics::roots::bracketed;
+use wheelrail::internal::bracketed;
 use wheelrail::patch::{Component, End, Patch, Slicer, Window};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Half, Profile, standards};

@@ -2,10 +2,7 @@
 
 use crate::common::{approached_references, two_crowns};
 use wheelrail::Result;
-use wheelrail::mesh::axes::{self, Axes, Group};
-use wheelrail::mesh::quality::Quality;
-use wheelrail::mesh::strips::{Counts, StripMesh};
-use wheelrail::mesh::surfaces::Surface;
+use wheelrail::mesh::{self, Axes, Counts, Group, Quality, StripMesh, Surface};
 use wheelrail::nalgebra::Point3;
 use wheelrail::patch::{Patch, Window};
 use wheelrail::placement::{Pair, Placement};
@@ -182,7 +179,7 @@ fn grids_never_cut_the_patch() {
     for (name, placement, delta) in cases() {
         for spacing in [None, Some([0.37, 0.53])] {
             let patch = whole(&placement, delta);
-            let groups = axes::groups(&patch, 0.0, spacing);
+            let groups = mesh::groups(&patch, 0.0, spacing);
             assert_eq!(groups.iter().map(|g| g.components.len()).sum::<usize>(), patch.components.len());
             for group in &groups {
                 let axes = group.axes(spacing).expect("axes");
@@ -205,17 +202,17 @@ fn grids_never_cut_the_patch() {
 fn parts_are_merged_by_a_stated_distance_and_c_comes_first() -> Result<()> {
     let placement = two_crowns(-1e-3, 0.0)?;
     let patch = whole(&placement, 0.08);
-    let apart = axes::groups(&patch, 0.0, None);
+    let apart = mesh::groups(&patch, 0.0, None);
     assert_eq!(patch.components.len(), 2);
     assert_eq!(apart.iter().map(|g| g.components.clone()).collect::<Vec<_>>(), [vec![1], vec![0]]);
     let gap = patch.components[1].xi[0] - patch.components[0].xi[1];
-    assert_eq!(axes::groups(&patch, 0.99 * gap, None).len(), 2);
-    let merged = axes::groups(&patch, 1.01 * gap, None);
+    assert_eq!(mesh::groups(&patch, 0.99 * gap, None).len(), 2);
+    let merged = mesh::groups(&patch, 1.01 * gap, None);
     assert_eq!(merged.len(), 1);
     assert_eq!(merged[0].components, [0, 1]);
     assert_eq!(Some(merged[0].extent), patch.extent());
     assert_eq!(merged[0].axes(None)?.spacing, apart[0].axes(None)?.spacing);
-    assert!(axes::groups(&whole(&placement, 0.0), 0.0, None).is_empty());
+    assert!(mesh::groups(&whole(&placement, 0.0), 0.0, None).is_empty());
     assert!(apart[0].axes(Some([1e-4, 1e-4])).is_err());
     Ok(())
 }
@@ -225,7 +222,7 @@ fn departures(placement: &Placement, surface: &Surface) -> [f64; 2] {
     let mut evaluator = Evaluator::new(placement);
     let mut off = |point: Point3<f64>| {
         let (xi, eta, zeta) = (point.x, point.y, point.z);
-        let rail = placement.rail().section.height(xi);
+        let rail = placement.rail().section().height(xi);
         match surface.side {
             wheelrail::profile::Side::Rail => zeta - rail,
             wheelrail::profile::Side::Wheel => zeta - (rail + evaluator.separation(xi, eta)),
@@ -282,7 +279,7 @@ fn surfaces_face_outwards_and_move_into_rail_axes() {
                 assert!(sign * up.z > 0.0, "{name} {:?}", surface.side);
             }
         }
-        let own = &placement.rail().section.frame;
+        let own = &placement.rail().point().station;
         let moved = rail.in_rail_axes(&placement);
         let profile =
             wheelrail::profile::Section::own_axes(placement.rail().profile(), wheelrail::profile::Side::Rail);

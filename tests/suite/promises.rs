@@ -7,14 +7,11 @@ mod exact;
 mod twice;
 
 use exact::{Exact, Found, doubled};
-use wheelrail::case::equal_steps;
+use wheelrail::mesh::equal_steps;
 use wheelrail::nalgebra::Vector2;
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Profile, Shape, Side, standards};
-use wheelrail::separation::axis::EtaAxis;
-use wheelrail::separation::grid::Method;
-use wheelrail::separation::plan::{FULL_PRECISION, plan};
-use wheelrail::separation::values::Values;
+use wheelrail::separation::{EtaAxis, FULL_PRECISION, Method, Values, plan};
 use wheelrail_report::errors::{inside_contact, over_contact};
 use wheelrail_report::random::Random;
 use wheelrail_report::reference::Reference;
@@ -136,7 +133,7 @@ impl<'a> Scene<'a> {
 
     /// Whether s leads from the rail to the wheel.
     fn on_both(&self, place: [f64; 2], s: f64) -> bool {
-        self.exact.on_both(place, self.placement.rail().section.height(place[0]), s)
+        self.exact.on_both(place, self.placement.rail().section().height(place[0]), s)
     }
 
     /// Sum of the magnitudes of what s is the sum of \[mm\]: midplane gap, climb of the wheel along ξ′ − ξ, its rise across.
@@ -174,7 +171,7 @@ impl<'a> Scene<'a> {
 fn scale(placement: &Placement) -> f64 {
     let segments = placement.rail().profile().segments().iter().chain(placement.wheel().profile().segments());
     let radius = |shape: &Shape| match shape {
-        Shape::Arc(arc) if arc.radius.is_finite() => arc.radius.abs(),
+        Shape::Arc(arc) if arc.radius().is_finite() => arc.radius().abs(),
         _ => 0.0,
     };
     segments.map(|segment| radius(&segment.shape)).fold(300.0, f64::max) / 300.0

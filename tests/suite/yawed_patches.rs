@@ -5,9 +5,9 @@ use std::time::{Duration, Instant};
 
 use crate::common::{profile, references};
 use wheelrail::case::{Run, SILENT};
-use wheelrail::load::feasibility::feasibility;
-use wheelrail::mesh::strips::{Counts, StripMesh};
-use wheelrail::numerics::roots::bracketed;
+use wheelrail::internal::bracketed;
+use wheelrail::load::feasibility;
+use wheelrail::mesh::{Counts, StripMesh};
 use wheelrail::patch::{End, Outline, Patch, Window};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Half, Profile, Section, Side, standards};

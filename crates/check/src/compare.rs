@@ -15,7 +15,7 @@ use super::report::{Counts, Differences, Distances, Orders, Report};
 use super::request::{Answer, Request};
 use super::sampler::{Curve, Surface};
 use wheelrail::error::{Error, Result};
-use wheelrail::numerics::largest;
+use wheelrail::internal::largest;
 use wheelrail::placement::{Body, Placement};
 use wheelrail::profile::Shape;
 
@@ -83,7 +83,7 @@ fn smallest_radius(placement: &Placement) -> f64 {
     let segments =
         [placement.rail(), placement.wheel()].into_iter().flat_map(|body| body.profile().segments());
     let radii = segments.filter_map(|segment| match &segment.shape {
-        Shape::Arc(arc) => Some(arc.radius.abs()),
+        Shape::Arc(arc) => Some(arc.radius().abs()),
         Shape::Polynomial(_) => None,
     });
     radii.fold(placement.rolling_radius() / 8.0, f64::min)
@@ -92,8 +92,8 @@ fn smallest_radius(placement: &Placement) -> f64 {
 /// Returns the distance of C from the profile \[mm\] and the angle between the frame's ξ axis and its tangent
 /// \[rad\]; at an edge ξ is no tangent, and the angle is 0.
 fn contact_point(body: &Body) -> [f64; 2] {
-    let frame = body.point.station;
-    let segment = &body.profile().segments()[body.point.segment];
+    let frame = body.point().station;
+    let segment = &body.profile().segments()[body.point().segment];
     let curve = Curve::of_segment(segment, [frame.x, frame.z], body.profile().extent());
     let mut t = curve.nearest_to_origin();
     for _ in 0..CONTACT_STEPS {

@@ -10,8 +10,7 @@ use super::closest::to_point;
 use super::meshes::Vector;
 use super::sampler::Surface;
 use wheelrail::error::Result;
-use wheelrail::numerics::largest;
-use wheelrail::numerics::twice::Twice;
+use wheelrail::internal::{Twice, largest};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Half, Profile, Segment, Station};
 
@@ -107,7 +106,7 @@ struct Implicit {
 impl Implicit {
     fn new(placement: &Placement, wheel: bool, arc: Arc) -> Self {
         let body = if wheel { placement.wheel() } else { placement.rail() };
-        Self { frame: body.point.station, axle: wheel.then_some(placement.wheel_radius()), arc }
+        Self { frame: body.point().station, axle: wheel.then_some(placement.wheel_radius()), arc }
     }
 
     fn distance_and_normal(&self, point: Vector) -> (f64, Vector) {
@@ -130,7 +129,7 @@ impl Implicit {
     }
 
     fn meridian(&self, x: Twice, z: Twice) -> (f64, [f64; 2]) {
-        let start = self.arc.start;
+        let start = self.arc.start();
         let Some([a, b]) = self.arc.centre() else {
             let distance = (z - start.z) * start.cos - (x - start.x) * start.sin;
             return (distance.into(), [-start.sin, start.cos]);
@@ -138,6 +137,6 @@ impl Implicit {
         let (dx, dz) = (x - a, z - b);
         let distance = (dx * dx + dz * dz).sqrt();
         let unit = [f64::from(dx / distance), f64::from(dz / distance)];
-        (f64::from(distance - self.arc.radius.abs()), unit)
+        (f64::from(distance - self.arc.radius().abs()), unit)
     }
 }

@@ -2,9 +2,8 @@
 
 use super::request::Request;
 use super::sampler::Surface;
-use wheelrail::numerics::roots::bracketed;
+use wheelrail::internal::{bracketed, turning_points};
 use wheelrail::patch::Slicer;
-use wheelrail::patch::turning_points;
 use wheelrail::placement::Placement;
 
 /// Numbers of lines of the regular grid in ξ and η, with the edges of the window.

@@ -5,7 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use super::floor::Floor;
-use wheelrail::numerics::largest;
+use wheelrail::internal::largest;
 
 /// Expected order at which chordal errors fall.
 const EXPECTED_ORDER: f64 = 2.0;

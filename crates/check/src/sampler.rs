@@ -6,8 +6,7 @@
 //! measured from the contact point, so that the axle's distance costs no digits.
 
 use super::meshes::Vector;
-use wheelrail::numerics::polynomial::recentred;
-use wheelrail::numerics::twice::Twice;
+use wheelrail::internal::{Twice, recentred};
 use wheelrail::placement::{Body, Placement};
 use wheelrail::profile::{Polynomial, Segment, Shape, Station};
 
@@ -35,11 +34,11 @@ impl Curve {
         match &segment.shape {
             Shape::Arc(arc) => {
                 let length = arc.length();
-                let scale = if arc.radius.is_finite() { arc.radius.abs() } else { length };
-                Self::turning(&arc.start, arc.curvature(), length, scale.min(longest), origin)
+                let scale = if arc.radius().is_finite() { arc.radius().abs() } else { length };
+                Self::turning(&arc.start(), arc.curvature(), length, scale.min(longest), origin)
             }
             Shape::Polynomial(polynomial) => {
-                let length = polynomial.t[1] - polynomial.t[0];
+                let length = polynomial.range()[1] - polynomial.range()[0];
                 let shape = Form::Polynomial { polynomial: polynomial.clone(), origin };
                 let curve = Self { shape, length, scale: length, longest: length };
                 curve.with_scale_of_polynomial(polynomial)
@@ -55,7 +54,7 @@ impl Curve {
     /// Sets the scale to the smaller of the parameter range and the sharpest of nine radii, in units of the
     /// parameter.
     fn with_scale_of_polynomial(mut self, polynomial: &Polynomial) -> Self {
-        let [a, b] = polynomial.t;
+        let [a, b] = polynomial.range();
         for k in 0..=8 {
             let t = a + (b - a) * f64::from(k) / 8.0;
             let speed = self.speed(t - a);
@@ -80,7 +79,7 @@ impl Curve {
                 ]
             }
             Form::Polynomial { polynomial, origin } => {
-                let station = polynomial.station(polynomial.t[0] + t);
+                let station = polynomial.station(polynomial.range()[0] + t);
                 [station.x - origin[0], station.z - origin[1]]
             }
         }
@@ -90,7 +89,7 @@ impl Curve {
     pub fn angle(&self, t: f64) -> f64 {
         match &self.shape {
             Form::Turning { start, curvature } => start.angle() + t * curvature,
-            Form::Polynomial { polynomial, .. } => polynomial.station(polynomial.t[0] + t).angle(),
+            Form::Polynomial { polynomial, .. } => polynomial.station(polynomial.range()[0] + t).angle(),
         }
     }
 
@@ -116,7 +115,7 @@ impl Curve {
             Form::Polynomial { polynomial, .. } => {
                 let bound = |c: &[[f64; 2]]| -> f64 {
                     let exact: Vec<Twice> = c.iter().map(|[high, low]| Twice::sum(*high, *low)).collect();
-                    let local = recentred(&exact, (polynomial.t[0] + t).into());
+                    let local = recentred(&exact, (polynomial.range()[0] + t).into());
                     let terms = local.iter().enumerate().skip(2);
                     terms
                         .map(|(k, &c)| {
@@ -162,12 +161,12 @@ impl Surface {
 
     /// Makes the revolved wheel of a placed pair, turned about ζ by the skew.
     pub fn wheel(placement: &Placement) -> Self {
-        let axle = placement.wheel_radius() - placement.wheel().point.station.z;
+        let axle = placement.wheel_radius() - placement.wheel().point().station.z;
         Self::new(placement.wheel(), Some(Wheel { axle, skew: placement.skew().sin_cos() }))
     }
 
     fn new(body: &Body, wheel: Option<Wheel>) -> Self {
-        let c = body.point.station;
+        let c = body.point().station;
         let origin = [c.x, c.z];
         let extent = body.profile().extent();
         let segments = body.profile().segments().iter();

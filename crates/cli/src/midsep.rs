@@ -4,11 +4,12 @@ use std::path::Path;
 
 use super::progress::Progress;
 use crate::answer::{Outcome, folder_of, print};
-use wheelrail::case::{contacts, equal_steps};
+use wheelrail::case::contacts;
 use wheelrail::error::Result;
+use wheelrail::mesh::equal_steps;
 use wheelrail::placement::Placement;
 use wheelrail::scene;
-use wheelrail::separation::midplane::table;
+use wheelrail::separation::midplane_table;
 
 /// Values of ξ when the scene leaves the axis to the program.
 const DEFAULT_ROWS: usize = 101;
@@ -23,7 +24,7 @@ pub(super) fn midsep(path: &Path) -> Result<Outcome> {
     let tables = contacts.iter().map(|(name, placement)| {
         let xi = case.axes().xi.clone().unwrap_or_else(|| over(placement));
         let head = if contacts.len() > 1 { format!("# {name}\n") } else { String::new() };
-        head + &table(placement, &xi)
+        head + &midplane_table(placement, &xi)
     });
     print(&tables.collect::<Vec<_>>().join("\n"))
 }

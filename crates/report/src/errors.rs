@@ -1,12 +1,10 @@
 //! Compares a method with the 60-digit values of a scene.
 
 use super::reference::{Reference, exact};
-use wheelrail::case::equal_steps;
+use wheelrail::mesh::equal_steps;
 use wheelrail::nalgebra::Vector2;
 use wheelrail::placement::Placement;
-use wheelrail::profile::Section;
-use wheelrail::separation::axis::EtaAxis;
-use wheelrail::separation::grid::Choice;
+use wheelrail::separation::{Choice, EtaAxis};
 
 /// One compared point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,16 +86,12 @@ pub fn inside_contact(placement: &Placement, xi: f64, eta: f64) -> bool {
 }
 
 fn on_contact(placement: &Placement, xi: f64, eta: f64, end: f64) -> bool {
-    let (rail, wheel) = (&placement.rail().section, &placement.wheel().section);
     let own = placement.skew_rotation().inverse_transform_vector(&Vector2::new(xi, eta));
     let (xi_w, eta_w) = (own.x, own.y);
     let e = eta_w * eta_w / (2.0 * placement.rolling_radius());
-    let inside = |section: &Section, xi: f64| {
-        section.piece_at(xi).is_some_and(|piece| {
-            section.contact == Some(piece.branch) && piece.xi[0] + end <= xi && xi <= piece.xi[1] - end
-        })
-    };
-    inside(rail, xi) && inside(wheel, xi_w) && inside(wheel, xi_w - e * wheel.frame.sin)
+    let raised = xi_w - e * placement.wheel().point().station.sin;
+    placement.rail().section().on_contact_segment(xi, end)
+        && [xi_w, raised].iter().all(|&xi| placement.wheel().section().on_contact_segment(xi, end))
 }
 
 /// The figures of one row of accuracy.csv. The largest errors are NaN if a method misses a surface, or finds

@@ -6,8 +6,7 @@ use super::reference::exact;
 use wheelrail::error::{Error, Result};
 use wheelrail::patch::{Component, End, Patch, Slicer, Window};
 use wheelrail::placement::Placement;
-use wheelrail::separation::Evaluator;
-use wheelrail::separation::grid::{Choice, Method};
+use wheelrail::separation::{Choice, Evaluator, Method};
 
 /// The bounds of the methods that promise digits: relative over the contact segments, absolute \[mm\]
 /// elsewhere, the latter × unit × max(1, R_max/300 mm). They are measured over all cases; if less than a

@@ -4,7 +4,7 @@ use super::errors::{Errors, Point, compare};
 use super::hard_case::{COLUMNS, HardCase, METHODS, Status};
 use super::hard_checks::{self, Check};
 use wheelrail::error::Result;
-use wheelrail::separation::grid::Method;
+use wheelrail::separation::Method;
 
 /// A case and the results of its checks.
 #[derive(Debug, Clone, PartialEq)]

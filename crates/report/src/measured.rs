@@ -7,12 +7,11 @@ use rayon::prelude::*;
 
 use super::random::Random;
 use wheelrail::error::{Error, Result};
-use wheelrail::load::hertz::{Elastic, curvatures, effective_modulus};
+use wheelrail::load::{Elastic, curvatures, effective_modulus};
 use wheelrail::measured::{self, CUTOFF_WAVELENGTH, CurveKind, Format, Options, write};
 use wheelrail::patch::{Patch, Window};
 use wheelrail::placement::{Body, Pair, Placement};
-use wheelrail::profile::trace::{Mark, beside, trace};
-use wheelrail::profile::{Profile, Side, inclination, standards};
+use wheelrail::profile::{Mark, Profile, Side, beside, inclination, standards, trace};
 use wheelrail::search::{Pose, ProfilePair, Selection};
 use wheelrail::separation::Evaluator;
 
@@ -222,7 +221,7 @@ impl Reference {
         let off = found.iter().zip(&self.points).map(|(s, [.., exact])| (s - lowest - exact).abs());
         let separation = off.fold(0.0, f64::max);
         let area = Patch::new(&placed, APPROACH + lowest, &self.window).area() / self.area - 1.0;
-        let at_contact = |body: &Body| body.point.station.x;
+        let at_contact = |body: &Body| body.point().station.x;
         let own = pair.placed(at_contact(self.placement.rail()), at_contact(self.placement.wheel()), 0.0)?;
         let pressure = pressure(&own).map(|pressure| pressure / self.pressure - 1.0);
         let [profile, slope, curvature] = [0, 1, 2].map(|k: usize| a[k].max(b[k]));

@@ -18,8 +18,7 @@ use super::verification::{Subject, Verified, built_in_pairs, verify};
 use super::whole_case::{RunCost, WholeCase, run_cost, whole_cases};
 use wheelrail::error::{Error, Result};
 use wheelrail::placement::Placement;
-use wheelrail::separation::grid::Method;
-use wheelrail::separation::plan::{FULL_PRECISION, plan};
+use wheelrail::separation::{FULL_PRECISION, Method, plan};
 
 /// Tolerances \[mm\] at which spectral columns are measured.
 pub const TOLERANCES: [f64; 4] = [1e-3, 1e-6, 1e-9, FULL_PRECISION];

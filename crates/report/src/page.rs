@@ -12,8 +12,8 @@ use super::requirements;
 use super::spline_cost::SplineCost;
 use super::table::{accuracy_csv, growth_csv, hard_cases_csv, markdown, verification_csv};
 use super::verification::{Verified, floors};
-use wheelrail::export::picture::chart::{Chart, Series};
-use wheelrail::numerics::nan_max;
+use wheelrail::export::{Chart, Series};
+use wheelrail::internal::nan_max;
 use wheelrail_check::{RELATION, Report};
 
 /// Where, with what and how the numbers were made, as (name, value) for the head of the page.
@@ -196,7 +196,7 @@ fn work_error(m: &Measurements, side: usize) -> Chart {
 
 fn scenes(m: &Measurements) -> Section {
     let side = sides(m).last().copied().unwrap_or(0);
-    let full = Some(wheelrail::separation::plan::FULL_PRECISION);
+    let full = Some(wheelrail::separation::FULL_PRECISION);
     let kinds = [("store", None), ("spectral", full), ("pointwise", None), ("report-newton", full)];
     let mut names: Vec<&str> = m.rows.iter().map(|row| row.scene.as_str()).collect();
     names.dedup();

@@ -3,8 +3,7 @@
 use super::measurements::{Growth, Measurements, Row, median};
 use super::rates::{Motion, Rate};
 use super::spline_cost::SplineCost;
-use wheelrail::separation::grid::Method;
-use wheelrail::separation::plan::FULL_PRECISION;
+use wheelrail::separation::{FULL_PRECISION, Method};
 
 /// Least rate of spectral columns at full precision over the Report's Newton.
 const OVER_REPORT: f64 = 20.0;

@@ -5,12 +5,9 @@ use std::time::Instant;
 
 use rustix::time::{ClockId, clock_gettime};
 
-use wheelrail::case::equal_steps;
+use wheelrail::mesh::equal_steps;
 use wheelrail::placement::Placement;
-use wheelrail::separation::axis::EtaAxis;
-use wheelrail::separation::grid::Choice;
-use wheelrail::separation::plan::{FULL_PRECISION, plan};
-use wheelrail::separation::values::Values;
+use wheelrail::separation::{Choice, EtaAxis, FULL_PRECISION, Values, plan};
 
 /// Least number of runs of one contestant in all its races: three show a disturbed one.
 pub const LEAST_RUNS: usize = 3;

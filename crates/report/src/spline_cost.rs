@@ -6,7 +6,7 @@ use wheelrail::error::Result;
 use wheelrail::measured::{self, CurveKind, Format, Options, write};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Profile, Side, standards};
-use wheelrail::separation::plan::{FULL_PRECISION, plan};
+use wheelrail::separation::{FULL_PRECISION, plan};
 
 /// Distances of the points through which splines are drawn \[mm\].
 const SPACINGS: [f64; 3] = [0.1, 0.5, 1.0];

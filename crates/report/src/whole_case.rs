@@ -5,18 +5,16 @@ use std::hint::black_box;
 
 use super::specimen::{Instrument, Specimen, SpecimenKind};
 use super::speed::{LEAST_RUNS, Timing, race, timed};
-use wheelrail::case::{Profiles, Run, SILENT, equal_steps};
+use wheelrail::case::{Profiles, Run, SILENT};
 use wheelrail::error::{Error, Result};
 use wheelrail::measured::Format;
-use wheelrail::mesh::strips::{Counts, StripMesh};
+use wheelrail::mesh::{Counts, StripMesh, equal_steps};
 use wheelrail::patch::{Patch, Window};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Profile, inclination, standards};
 use wheelrail::scene::{parse, with_profiles};
 use wheelrail::search::{ONE_CONTACT, Pose, ProfilePair, Selection};
-use wheelrail::separation::axis::EtaAxis;
-use wheelrail::separation::plan::{FULL_PRECISION, plan};
-use wheelrail::separation::values::Values;
+use wheelrail::separation::{EtaAxis, FULL_PRECISION, Values, plan};
 
 /// Nominal rolling radius R \[mm\].
 const RADIUS: f64 = 460.0;

@@ -6,7 +6,8 @@
 //! even when it rejects its input, so read its output.
 
 use super::super::block::Block;
-use super::{Deck, WIDTH, line};
+use super::number::WIDTH;
+use super::text::{Deck, line};
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
@@ -19,7 +20,7 @@ const PER_LINE: usize = 3;
 
 /// The quantity prescribed along the normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Normal {
+pub enum Prescribed {
     /// Total normal force \[N\], > 0.
     Force(f64),
     /// Approach δ \[mm\], > 0.
@@ -28,9 +29,9 @@ pub enum Normal {
 
 /// The data that CONTACT needs besides the geometry.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub struct ContactSettings {
     /// Prescribed force or approach.
-    pub normal: Normal,
+    pub normal: Prescribed,
     /// Poisson's ratios of rail and wheel, typically 0.28.
     pub poisson: [f64; 2],
     /// Shear moduli of rail and wheel \[N/mm²\], typically 82,000.
@@ -39,9 +40,9 @@ pub struct Settings {
     pub friction: f64,
 }
 
-impl Settings {
+impl ContactSettings {
     /// Returns the settings for steel on steel: E = 210,000 N/mm², ν = 0.28, friction 0.3.
-    pub fn steel(normal: Normal) -> Self {
+    pub fn steel(normal: Prescribed) -> Self {
         let shear = 210_000.0 / (2.0 * (1.0 + 0.28));
         Self { normal, poisson: [0.28; 2], shear_modulus: [shear; 2], friction: 0.3 }
     }
@@ -51,7 +52,7 @@ impl Settings {
 ///
 /// # Errors
 /// The errors of the sink.
-pub fn contact(deck: &Deck<'_>, settings: &Settings, sink: &mut dyn Write) -> io::Result<()> {
+pub fn contact_inp(deck: &Deck<'_>, settings: &ContactSettings, sink: &mut dyn Write) -> io::Result<()> {
     let mut block = Block::new(sink);
     block.bytes(comments(deck).as_bytes())?;
     block.bytes(control(deck, settings).as_bytes())?;
@@ -82,10 +83,10 @@ fn comments(deck: &Deck<'_>) -> String {
     lines.iter().map(|line| format!("% {line}\n")).collect()
 }
 
-fn control(deck: &Deck<'_>, settings: &Settings) -> String {
+fn control(deck: &Deck<'_>, settings: &ContactSettings) -> String {
     let (force, normal) = match settings.normal {
-        Normal::Force(force) => (1, force),
-        Normal::Approach(approach) => (0, approach),
+        Prescribed::Force(force) => (1, force),
+        Prescribed::Approach(approach) => (0, approach),
     };
     let ([nu_r, nu_w], [g_r, g_w]) = (settings.poisson, settings.shear_modulus);
     let mut text = format!(
@@ -110,18 +111,18 @@ mod tests {
     use super::*;
     use crate::export::sample::{Sample, header};
 
-    fn deck(sample: &Sample, normal: Normal) -> String {
+    fn deck(sample: &Sample, normal: Prescribed) -> String {
         let (header, grid) = (header(), sample.fields());
         let mut bytes = Vec::new();
         let deck = Deck::new(&header, &grid).unwrap();
-        contact(&deck, &Settings::steel(normal), &mut bytes).unwrap();
+        contact_inp(&deck, &ContactSettings::steel(normal), &mut bytes).unwrap();
         String::from_utf8(bytes).unwrap()
     }
 
     #[test]
     fn lines_stand_in_contacts_order() {
         let sample = Sample::new(3, 4);
-        let text = deck(&sample, Normal::Approach(0.05));
+        let text = deck(&sample, Prescribed::Approach(0.05));
         let lines: Vec<_> = text.lines().filter(|line| !line.starts_with('%')).collect();
         let begins = |k: usize, words: &str| {
             assert!(lines[k].trim_start().starts_with(words), "line {k}: {}", lines[k]);
@@ -146,8 +147,8 @@ mod tests {
 
     #[test]
     fn force_and_size_are_said() {
-        assert!(deck(&Sample::new(2, 2), Normal::Force(8e4)).contains("200100"));
-        assert!(deck(&Sample::new(201, 101), Normal::Force(8e4)).contains("above CONTACT's default"));
-        assert!(!deck(&Sample::new(20, 10), Normal::Force(8e4)).contains("above CONTACT's default"));
+        assert!(deck(&Sample::new(2, 2), Prescribed::Force(8e4)).contains("200100"));
+        assert!(deck(&Sample::new(201, 101), Prescribed::Force(8e4)).contains("above CONTACT's default"));
+        assert!(!deck(&Sample::new(20, 10), Prescribed::Force(8e4)).contains("above CONTACT's default"));
     }
 }

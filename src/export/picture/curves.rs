@@ -28,7 +28,7 @@ const DOT: f64 = 2.2;
 
 /// One curve.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Curve {
+pub struct PlottedCurve {
     /// Name in the legend; empty for the only curve of a panel.
     pub name: String,
     /// Points \[abscissa, value\] by ascending abscissa; NaN where there is no value.
@@ -39,13 +39,13 @@ pub struct Curve {
 
 /// The curves of one quantity.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Quantity {
+pub struct CurvesPanel {
     /// Heading of the panel.
     pub title: String,
     /// Name of the axis, with its unit.
     pub axis: String,
     /// The curves, at most two.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<PlottedCurve>,
 }
 
 /// The content of the picture.
@@ -58,7 +58,7 @@ pub struct CurvesPicture {
     /// Name of the abscissa, with its unit.
     pub abscissa: String,
     /// The panels, row by row, two in a row.
-    pub quantities: Vec<Quantity>,
+    pub quantities: Vec<CurvesPanel>,
 }
 
 impl CurvesPicture {
@@ -75,7 +75,7 @@ impl CurvesPicture {
         page.finish(height, &super::page::foot())
     }
 
-    fn panel(&self, page: &mut Page, place: [f64; 4], u: [f64; 2], quantity: &Quantity) {
+    fn panel(&self, page: &mut Page, place: [f64; 4], u: [f64; 2], quantity: &CurvesPanel) {
         page.heading(place, &quantity.title);
         let values = quantity.curves.iter().flat_map(|curve| &curve.points).map(|p| p[1]);
         let [low, high] = range(values);
@@ -96,7 +96,7 @@ impl CurvesPicture {
     }
 }
 
-impl Curve {
+impl PlottedCurve {
     /// Returns the points, with an undefined point in every jump.
     fn parted(&self) -> Vec<[f64; 2]> {
         let mut out = Vec::with_capacity(self.points.len() + self.jumps.len());
@@ -145,8 +145,8 @@ mod tests {
     use super::*;
 
     fn picture(points: Vec<[f64; 2]>, jumps: Vec<usize>) -> CurvesPicture {
-        let curves = vec![Curve { name: "left".into(), points, jumps }];
-        let quantity = Quantity { title: "Radius".into(), axis: "r [mm]".into(), curves };
+        let curves = vec![PlottedCurve { name: "left".into(), points, jumps }];
+        let quantity = CurvesPanel { title: "Radius".into(), axis: "r [mm]".into(), curves };
         CurvesPicture {
             title: "A sweep".into(),
             about: String::new(),

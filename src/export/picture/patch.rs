@@ -31,7 +31,7 @@ const HEIGHT: f64 = 1040.0;
 
 /// The content of the picture.
 #[derive(Debug, Clone, Copy)]
-pub struct Picture<'a> {
+pub struct PatchPicture<'a> {
     /// Header with title, approach and version.
     pub header: &'a Header,
     /// Side and number of the contact, which distinguish the pictures of one run; empty for a single contact.
@@ -51,7 +51,7 @@ pub struct Picture<'a> {
     pub wheel: &'a [[f64; 2]],
 }
 
-impl Picture<'_> {
+impl PatchPicture<'_> {
     /// Returns the picture as SVG.
     pub fn svg(&self) -> String {
         let header = self.header;

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::scan::{Line, last_place};
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::measured::Format;
 use crate::profile::Side;
 
@@ -127,7 +127,7 @@ impl Points {
         if self.elements.len() >= MOST_ELEMENTS {
             let expected = format!("{MOST_ELEMENTS} elements at most");
             let error = line.error("one more element", expected, "give the points instead");
-            return Err(error.of_kind(Kind::Limit));
+            return Err(error.of_kind(ErrorKind::Limit));
         }
         self.elements.push(Element { shape, line: line.number });
         Ok(())

@@ -39,13 +39,13 @@ pub struct ProfilePoint {
 #[derive(Debug, Clone)]
 pub struct Section {
     /// The frame, in profile axes.
-    pub frame: Station,
+    pub(crate) frame: Station,
     /// All branches, in the order of the chain.
-    pub branches: Vec<Branch>,
+    pub(crate) branches: Vec<Branch>,
     /// The outer envelope: the outer branch over disjoint closed intervals of ascending ξ.
-    pub pieces: Vec<Piece>,
+    pub(crate) pieces: Vec<Piece>,
     /// Index of the branch through the frame's origin, if the frame is that of a contact point.
-    pub contact: Option<usize>,
+    pub(crate) contact: Option<usize>,
 }
 
 impl Section {
@@ -55,12 +55,12 @@ impl Section {
     }
 
     /// Makes the section in the contact frame of a point of the profile: origin there, ξ along the tangent.
-    pub fn at_contact(profile: &Profile, point: &ProfilePoint, side: Side) -> Self {
+    pub(crate) fn at_contact(profile: &Profile, point: &ProfilePoint, side: Side) -> Self {
         Self::build(profile, point.station, Some(point), side)
     }
 
     /// Makes the section in any frame: for a kink, where the common normal is not that of a tangent.
-    pub fn in_frame(profile: &Profile, frame: Station, side: Side) -> Self {
+    pub(crate) fn in_frame(profile: &Profile, frame: Station, side: Side) -> Self {
         Self::build(profile, frame, None, side)
     }
 
@@ -94,18 +94,25 @@ impl Section {
     }
 
     /// Returns the outer branch at ξ, or `None` where the body has no surface. At a joint it is the left one.
-    pub fn branch_at(&self, xi: f64) -> Option<&Branch> {
+    pub(crate) fn branch_at(&self, xi: f64) -> Option<&Branch> {
         self.piece_at(xi).map(|piece| &self.branches[piece.branch])
     }
 
     /// Returns the piece of the envelope that holds ξ.
-    pub fn piece_at(&self, xi: f64) -> Option<&Piece> {
+    pub(crate) fn piece_at(&self, xi: f64) -> Option<&Piece> {
         self.pieces_from(xi).first().filter(|piece| piece.xi[0] <= xi)
     }
 
     /// Returns the pieces of the envelope that do not end before ξ.
-    pub fn pieces_from(&self, xi: f64) -> &[Piece] {
+    pub(crate) fn pieces_from(&self, xi: f64) -> &[Piece] {
         &self.pieces[self.pieces.partition_point(|piece| piece.xi[1] < xi)..]
+    }
+
+    /// Returns whether ξ \[mm\] lies on the segment through C, and no nearer than `margin` \[mm\] to the end of its outer part.
+    pub fn on_contact_segment(&self, xi: f64, margin: f64) -> bool {
+        self.piece_at(xi).is_some_and(|piece| {
+            self.contact == Some(piece.branch) && piece.xi[0] + margin <= xi && xi <= piece.xi[1] - margin
+        })
     }
 
     /// Returns the ends of the envelope's pieces that touch an interval, with their ζ, in order of ξ; twice

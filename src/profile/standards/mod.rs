@@ -91,7 +91,7 @@ pub fn rail(name: &str) -> Result<Profile> {
 /// An unknown name, with the nearest known one.
 pub fn wheel(name: &str) -> Result<Profile> {
     let data = WHEELS.get(name).ok_or_else(|| unknown(name, "wheel", wheel_names()))?;
-    drawing::chain(name, &format!("{}; origin: {}", data.source, data.origin), None, &data.segments)
+    drawing::drawn_profile(name, &format!("{}; origin: {}", data.source, data.origin), None, &data.segments)
 }
 
 /// Crown, then arcs smooth with each other down to the flank tangent, then the flank to the lower fillet.

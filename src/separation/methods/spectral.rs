@@ -170,9 +170,9 @@ mod tests {
     use crate::placement::{Pair, Placement};
     use crate::profile::{Profile, Side, standards};
     use crate::separation::columns::strips::strips;
-    use crate::separation::plan::{FULL_PRECISION, demand};
     use crate::separation::values::Residence::{LastCache, Memory, SecondCache};
     use crate::separation::values::Values;
+    use crate::separation::{Demand, FULL_PRECISION};
 
     /// A spline has more: so many columns beside them would be in strips.
     const FEW_JOINTS: usize = 24;
@@ -196,7 +196,7 @@ mod tests {
         }
         xi.sort_by(f64::total_cmp);
         let axis = EtaAxis::new(&steps(15.0, count).collect::<Vec<_>>());
-        let fitter = || Fitter { arch, ..Fitter::new(placement, demand(FULL_PRECISION), 4) };
+        let fitter = || Fitter { arch, ..Fitter::new(placement, Demand::for_tolerance(FULL_PRECISION), 4) };
         let strips = strips(&mut fitter(), placement, &xi, axis.reach * axis.reach);
         let mut out = Values::new(behind + xi.len() * axis.eta.len());
         Spectral::new(fitter(), &axis, &strips, residence).columns(&xi, &mut out[behind..]);

@@ -5,8 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::source::{Content, Source, SourceArguments};
-use crate::answer::{Outcome, put};
-use crate::answer::{complain, counted};
+use crate::answer::{Outcome, complain, counted, put};
 use wheelrail::error::{Error, Result};
 use wheelrail::measured::{CurveKind, Format, write};
 use wheelrail::profile::{Profile, Side};

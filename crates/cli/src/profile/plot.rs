@@ -6,11 +6,10 @@ use super::source::{Source, SourceArguments};
 use crate::answer::{Outcome, print};
 use crate::output::PictureFormat;
 use wheelrail::error::Result;
-use wheelrail::export::picture::SEPARATOR;
-use wheelrail::export::picture::profile::ProfilePicture;
+use wheelrail::export::{ProfilePicture, SEPARATOR};
 use wheelrail::files::write_file;
 use wheelrail::measured::{CurveRecord, Measured};
-use wheelrail::profile::trace::{Mark, beside, trace};
+use wheelrail::profile::{Mark, beside, trace};
 
 /// Distance of the curve's marks \[mm\]: 1500 over a profile, finer than a page shows.
 const STEP: f64 = 0.1;

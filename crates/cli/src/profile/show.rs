@@ -86,7 +86,7 @@ fn segments(out: &mut String, profile: &Profile) {
     for (index, segment) in profile.segments().iter().enumerate() {
         let label = if segment.label.is_empty() { (index + 1).to_string() } else { segment.label.clone() };
         let (kind, radius) = match &segment.shape {
-            Shape::Arc(arc) if arc.radius.is_finite() => ("arc", format!("{:.9}", arc.radius)),
+            Shape::Arc(arc) if arc.radius().is_finite() => ("arc", format!("{:.9}", arc.radius())),
             Shape::Arc(_) => ("line", "-".into()),
             Shape::Polynomial(_) => ("polynomial", "-".into()),
         };

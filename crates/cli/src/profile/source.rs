@@ -8,6 +8,7 @@ use super::options::{Body, MeasuredArguments};
 use crate::output::refuse_taken;
 use wheelrail::error::{Error, Result};
 use wheelrail::files::read_bytes;
+use wheelrail::internal::perhaps;
 use wheelrail::measured::{self, CurveKind, Measured, Options};
 use wheelrail::profile::{Profile, Side, standards};
 use wheelrail::scene;
@@ -111,7 +112,7 @@ impl SourceArguments {
         if !rail && !standards::wheel_names().any(|name| name == self.profile) {
             let expected = "a file, or a name of `wheelrail profile list`";
             let names: Vec<&str> = standards::rail_names().chain(standards::wheel_names()).collect();
-            let advice = scene::perhaps(&self.profile, &names);
+            let advice = perhaps(&self.profile, &names);
             return Err(Error::new(&self.profile, "no file and no built-in profile", expected, advice));
         }
         self.measured.reject(&self.profile)?;

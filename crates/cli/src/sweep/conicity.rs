@@ -3,8 +3,7 @@
 use super::super::progress::Progress;
 use crate::answer::counted;
 use wheelrail::error::Result;
-use wheelrail::search::sweep::{ACCURACY, Conicity, Equivalent, NoConicity};
-use wheelrail::search::wheelset::{Position, Roll, WheelsetOnTrack};
+use wheelrail::search::{ACCURACY, Conicity, Equivalent, NoConicity, Position, Roll, WheelsetOnTrack};
 
 /// Relative errors up to which conicities that are not converged are counted in classes.
 const CLASSES: [f64; 2] = [1e-3, 1e-2];

@@ -3,15 +3,14 @@
 use super::table::Table;
 use crate::answer::counted;
 use wheelrail::error::{Error, Result};
-use wheelrail::export::picture::curves::{Curve, CurvesPicture, Quantity, jumps};
-use wheelrail::search::sweep::{Row, Sweep, TrackSide};
-use wheelrail::search::wheelset::Position;
+use wheelrail::export::{CurvesPanel, CurvesPicture, PlottedCurve, jumps};
+use wheelrail::search::{Position, Sweep, SweepRow, TrackSide};
 
 /// At most so many positions are drawn, evenly chosen: more than a page has pixels.
 const MOST_DRAWN: usize = 2000;
 
 /// A quantity of a row.
-type Value = fn(&Row) -> f64;
+type Value = fn(&SweepRow) -> f64;
 
 /// Quantities of a position, as its first row has them; whether they jump where a contact does.
 const OF_POSITION: [(&str, &str, Value, bool); 3] = [
@@ -42,7 +41,7 @@ pub(super) fn picture(table: &Table, title: &str) -> Result<CurvesPicture> {
     }
     let found = lowest(table)?;
     let values = |side: TrackSide, value: Value| -> Vec<f64> {
-        let of = |rows: &[Row]| rows.iter().find(|row| row.side == side).map_or(f64::NAN, value);
+        let of = |rows: &[SweepRow]| rows.iter().find(|row| row.side == side).map_or(f64::NAN, value);
         found.iter().map(|(_, rows)| of(rows)).collect()
     };
     // A side's contact jumps or not whatever quantity is drawn: all its panels are parted at the same positions.
@@ -53,10 +52,10 @@ pub(super) fn picture(table: &Table, title: &str) -> Result<CurvesPicture> {
     let [left, right] = sides.map(|(_, side)| jumps_of(side));
     let curve = |name: &str, side: TrackSide, value: Value, jumps: &[usize]| {
         let points = found.iter().zip(values(side, value)).map(|((lateral, _), value)| [*lateral, value]);
-        Curve { name: name.into(), points: points.collect(), jumps: jumps.to_vec() }
+        PlottedCurve { name: name.into(), points: points.collect(), jumps: jumps.to_vec() }
     };
     let quantity =
-        |(title, axis): (&str, &str), curves| Quantity { title: title.into(), axis: axis.into(), curves };
+        |(title, axis): (&str, &str), curves| CurvesPanel { title: title.into(), axis: axis.into(), curves };
     let either = [left.as_slice(), right.as_slice()].concat();
     let of_position = OF_POSITION.map(|(title, axis, value, jumps)| {
         let jumps = if jumps { either.as_slice() } else { &[] };
@@ -79,7 +78,7 @@ pub(super) fn picture(table: &Table, title: &str) -> Result<CurvesPicture> {
 }
 
 /// Finds lateral displacement \[mm\] and lowest contact of each side, at evenly chosen positions.
-fn lowest(table: &Table) -> Result<Vec<(f64, Vec<Row>)>> {
+fn lowest(table: &Table) -> Result<Vec<(f64, Vec<SweepRow>)>> {
     let stride = table.positions.len().div_ceil(MOST_DRAWN).max(1);
     let mut sweep = Sweep::new(table.system, table.selection, table.conicity.as_ref());
     let mut rows_at = |position: &Position| {

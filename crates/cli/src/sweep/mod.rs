@@ -19,8 +19,7 @@ use wheelrail::case::{Case, Place};
 use wheelrail::error::{Error, Result};
 use wheelrail::files::{Folder, NewFile, PATCHES_FOLDER};
 use wheelrail::scene::{self, Scene};
-use wheelrail::search::wheelset::{Position, WheelsetOnTrack};
-use wheelrail::search::{ONE_CONTACT, Selection};
+use wheelrail::search::{ONE_CONTACT, Position, Selection, WheelsetOnTrack};
 
 /// What to sweep over and where to write.
 #[derive(Debug, clap::Args)]

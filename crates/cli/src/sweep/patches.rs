@@ -12,11 +12,10 @@ use super::table::Table;
 use crate::answer::{complain, counted};
 use wheelrail::case::{self, Case, Place, Run, SILENT, Standing};
 use wheelrail::error::{Error, Result};
-use wheelrail::export::vtk;
+use wheelrail::export::collection_pvd;
 use wheelrail::files::Folder;
 use wheelrail::scene::{self, Scene};
-use wheelrail::search::Selection;
-use wheelrail::search::wheelset::Position;
+use wheelrail::search::{Position, Selection};
 
 /// Most positions: each makes some forty files.
 const MOST_POSITIONS: usize = 5000;
@@ -93,7 +92,7 @@ fn collection(written: &[Written]) -> String {
         let parts = written.folders.iter().enumerate();
         steps.extend(parts.map(|(part, folder)| (time, part, format!("{folder}/separation.vts"))));
     }
-    vtk::collection(&steps)
+    collection_pvd(&steps)
 }
 
 fn summary(scene: &Scene, hash: &str, written: &[Written]) -> Vec<u8> {

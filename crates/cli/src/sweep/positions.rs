@@ -4,8 +4,8 @@ use std::path::Path;
 
 use wheelrail::error::{Error, Result, finite};
 use wheelrail::files::read_text;
-use wheelrail::scene;
-use wheelrail::search::wheelset::{Position, Roll};
+use wheelrail::internal::perhaps;
+use wheelrail::search::{Position, Roll};
 
 /// Most positions of one sweep: a GiB with all that is kept of them.
 const MOST_POSITIONS: usize = 10_000_000;
@@ -124,7 +124,7 @@ fn columns(place: &str, headers: &csv::StringRecord) -> Result<[Option<usize>; 3
     let mut found = [None; COLUMNS.len()];
     for (at, header) in headers.iter().enumerate() {
         let Some(k) = COLUMNS.iter().position(|name| *name == header) else {
-            let advice = scene::perhaps(header, &COLUMNS);
+            let advice = perhaps(header, &COLUMNS);
             let expected = format!("columns {} only", COLUMNS.join(", "));
             return Err(Error::new(place, format!("a column \"{header}\""), expected, advice));
         };

@@ -9,10 +9,10 @@ use rayon::prelude::*;
 use super::super::progress::Progress;
 use wheelrail::case::ApproachBy;
 use wheelrail::error::Result;
-use wheelrail::load::hertz::curvatures_at;
-use wheelrail::search::sweep::{Conicity, Row, Sweep, TrackSide};
-use wheelrail::search::wheelset::{Position, WheelsetOnTrack};
-use wheelrail::search::{Contact, Selection};
+use wheelrail::load::curvatures_at;
+use wheelrail::search::{
+    Conicity, Contact, Position, Selection, Sweep, SweepRow, TrackSide, WheelsetOnTrack,
+};
 
 /// Columns of the table.
 const HEADER: &str = "lateral_mm,yaw_rad,roll_rad,side,contact,z_mm,rail_x_mm,wheel_x_mm,y_mm,contact_angle_rad,\
@@ -79,7 +79,7 @@ impl Table<'_> {
 }
 
 /// Adds a row as text.
-fn append(out: &mut String, row: &Row, ellipses: Option<(ApproachBy, f64)>) {
+fn append(out: &mut String, row: &SweepRow, ellipses: Option<(ApproachBy, f64)>) {
     let c = &row.contact;
     let side = match row.side {
         TrackSide::Left => "left",

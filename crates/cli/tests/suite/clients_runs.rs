@@ -6,8 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use wheelrail::case::{Run, SILENT};
 use wheelrail::files::RUN_FOLDER;
-use wheelrail::load::hertz::effective_modulus;
-use wheelrail::load::virtual_interpenetration::VirtualContact;
+use wheelrail::load::{VirtualContact, effective_modulus};
 use wheelrail::scene;
 
 /// The Hertz case of a 460 mm wheel on a 300 mm crown under 80 kN: E* \[N/mm²\], p₀ \[N/mm²\], δ \[mm\].

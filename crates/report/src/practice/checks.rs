@@ -5,13 +5,13 @@ use super::fill::filled;
 use super::row::PracticeRow;
 use crate::random::Random;
 use wheelrail::error::{Error, Result};
-use wheelrail::mesh::axes;
+use wheelrail::mesh;
 use wheelrail::patch::{Component, End, Patch, Window};
-use wheelrail::placement::track::{RailDistance, WheelDistance};
-use wheelrail::placement::{Pair, Placement};
-use wheelrail::search::sweep::{Conicity, NoConicity};
-use wheelrail::search::wheelset::{Position, Roll, WheelsetOnTrack};
-use wheelrail::search::{Contact, ONE_CONTACT, Pose, ProfilePair, Selection, Touch};
+use wheelrail::placement::{Pair, Placement, RailDistance, WheelDistance};
+use wheelrail::search::{
+    Conicity, Contact, NoConicity, ONE_CONTACT, Pose, Position, ProfilePair, Roll, Selection, Touch,
+    WheelsetOnTrack,
+};
 use wheelrail::separation::Evaluator;
 
 /// Gap \[mm\] up to which near misses are compared.
@@ -157,7 +157,7 @@ fn patch(
     let Some(c) = contact else { return Ok(()) };
     let placement = c.placed(pair)?;
     let whole = Patch::new(&placement, approach, &Window::UNBOUNDED);
-    let groups = axes::groups(&whole, 0.0, None);
+    let groups = mesh::groups(&whole, 0.0, None);
     let Some(group) = groups.first() else {
         row.failures.push(format!("{name}no patch at {approach} mm"));
         return Ok(());
@@ -185,7 +185,7 @@ fn patch(
 }
 
 /// Checks that the outermost cells of an automatic grid are outside the patch.
-fn ring(placement: &Placement, approach: f64, grid: &axes::Axes, name: &str, row: &mut PracticeRow) {
+fn ring(placement: &Placement, approach: f64, grid: &mesh::Axes, name: &str, row: &mut PracticeRow) {
     let mut evaluator = Evaluator::new(placement);
     let (rows, columns) = (grid.xi.len(), grid.eta.len());
     for (k, &xi) in grid.xi.iter().enumerate() {

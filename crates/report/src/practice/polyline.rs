@@ -1,8 +1,7 @@
 //! Turns profiles into chains of chords, and finds where they are outermost: the data of brute force. Nothing
 //! here uses the sections, searches and kernels that it checks.
 
-use wheelrail::profile::Profile;
-use wheelrail::profile::trace::trace;
+use wheelrail::profile::{Profile, trace};
 
 /// Distance \[mm\] of a chain's points: its chords are off a radius of 1 mm, that of a lip, by 1.3e-5 mm.
 const STEP: f64 = 0.01;

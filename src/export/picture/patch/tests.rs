@@ -23,8 +23,8 @@ fn picture<'a>(
     loops: &'a [Loop],
     midplane: &'a [[f64; 2]],
     profiles: &'a [Vec<[f64; 2]>; 2],
-) -> Picture<'a> {
-    Picture {
+) -> PatchPicture<'a> {
+    PatchPicture {
         header,
         contact: "left side, mirrored · contact 2",
         cells: [&sample.xi, &sample.eta],
