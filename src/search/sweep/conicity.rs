@@ -38,10 +38,10 @@ use crate::search::wheelset::{Roll, WheelsetOnTrack};
 /// Relative accuracy demanded of a conicity.
 pub const ACCURACY: f64 = 1e-4;
 
-/// Most rounds that refine the table, each to a quarter of the last influence, while the estimated error is
+/// Most rounds that refine the table, each to half of the last influence, while the estimated error is
 /// too large. Amplitudes at which the movement barely comes back never become accurate; they must not use up
 /// all searches of the others.
-const ROUNDS: u32 = 4;
+const ROUNDS: u32 = 7;
 
 /// Points in √(y − y_k) of a cell at which T is tabulated: Chebyshev's on \[0, 1\].
 const POINTS: [f64; 5] = [
@@ -204,7 +204,7 @@ impl Conicity {
             if converged || searches >= most || rounds.next().is_none() {
                 return Ok(Self { movement, fits, searches });
             }
-            influence /= 4.0;
+            influence /= 2.0;
         }
     }
 }

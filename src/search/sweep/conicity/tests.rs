@@ -55,7 +55,7 @@ fn wheel_a_of_en_15302_has_its_published_conicity() -> Result<()> {
     let system = system(&reference_rail()?, &standards::wheel("EN15302-A")?)?;
     let conicity = Conicity::new(&system, 8.0, Roll::Neglect)?;
     // The wheel's ten segments are closed by twelve short ones, each with curvatures of its own.
-    assert!(conicity.searches() <= 320, "{}", conicity.searches());
+    assert!(conicity.searches() <= 300, "{}", conicity.searches());
     // Annex E, case A/A/A, as reproduced by a public benchmark program.
     let table =
         [(1.0, 0.125), (2.0, 0.155), (3.0, 0.188), (4.0, 0.216), (5.0, 0.254), (6.0, 0.303), (7.0, 0.505)];
