@@ -18,7 +18,7 @@ use crate::separation::{Plan, Values, plan};
 /// Seconds spent in the parts of an analysis.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Timings {
-    /// Estimating the approach from the load; 0 for a given approach.
+    /// Estimating the approaches of the wheel from its load; 0 for a given approach.
     pub load_s: f64,
     /// Choosing the method.
     pub plan_s: f64,

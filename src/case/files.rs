@@ -133,14 +133,13 @@ fn header(run: &Run, part: &Part) -> Header {
         scene_hash: run.case.echo.hash.clone(),
         approach: part.site.approach(),
         frame: Frame::from(&part.site.contact.placement.rail().contact_frame()),
-        remarks: remarks(run, part),
+        remarks: remarks(part),
     }
 }
 
 /// Lists what the reader of a file of this part must know.
-fn remarks(run: &Run, part: &Part) -> Vec<String> {
+fn remarks(part: &Part) -> Vec<String> {
     let mut out = part.refusals();
-    out.extend(run.shared_load(part));
     if part.site.side() == Some("left") {
         out.push(
             "left side of a wheelset, as its mirror image: x to the left, y forward, z up; lateral creepage, spin \
@@ -319,11 +318,11 @@ fn decks<'a>(
     }
 }
 
-/// Gives CONTACT's control numbers; `None` without an approach. A load is the force of a contact only where it is the only one of
-/// its wheel.
+/// Gives CONTACT's control numbers: the contact's own normal force, or the approach where no load was asked for; `None` without
+/// either.
 fn contact_settings(run: &Run, part: &Part) -> Option<ContactSettings> {
     let (approach, _) = part.site.contact.approach.filter(|(approach, _)| *approach > 0.0)?;
-    let load = run.case.question.load().filter(|_| !run.shares_load(part));
+    let load = part.site.normal_load.filter(|load| *load > 0.0);
     let bodies = run.case.question.material;
     Some(ContactSettings {
         poisson: bodies.map(|body| body.poissons_ratio),

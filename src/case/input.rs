@@ -75,8 +75,10 @@ pub enum Place {
 pub enum ApproachBy {
     /// δ is given \[mm\].
     Given(f64),
-    /// δ is estimated from a normal load \[N\].
-    Load(f64),
+    /// δ of every contact is estimated from the vertical load of each wheel \[N\].
+    WheelLoad(f64),
+    /// δ of every contact is estimated from the vertical load of the axle \[N\]: both wheels sink alike.
+    AxleLoad(f64),
 }
 
 /// What is asked of every contact.
@@ -97,14 +99,6 @@ impl Question {
     pub fn modulus(&self) -> f64 {
         let [rail, wheel] = &self.material;
         effective_modulus(rail, wheel)
-    }
-
-    /// Gives the load on a wheel \[N\], where the approach is estimated from it.
-    pub fn load(&self) -> Option<f64> {
-        match self.approach {
-            Some(ApproachBy::Load(load)) => Some(load),
-            _ => None,
-        }
     }
 }
 

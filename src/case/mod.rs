@@ -12,6 +12,7 @@ mod places;
 mod run;
 mod site;
 mod summary;
+mod wheel;
 
 pub use analysis::{Analysis, Timings};
 pub use contact::{EllipseUnder, PlacedContact};

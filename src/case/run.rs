@@ -75,15 +75,14 @@ impl Run {
         for part in &self.parts {
             let folder = &part.site.folder;
             let place = if folder.is_empty() { String::new() } else { format!("{folder}: ") };
-            out.extend(self.warnings_of(part).into_iter().map(|warning| format!("{place}{warning}")));
+            out.extend(Self::warnings_of(part).into_iter().map(|warning| format!("{place}{warning}")));
         }
         out
     }
 
     /// Lists what a user should know before using the files of one part.
-    pub(super) fn warnings_of(&self, part: &Part) -> Vec<String> {
-        let mut out = Vec::from_iter(self.shared_load(part));
-        out.extend(part.site.grid.warning.clone());
+    pub(super) fn warnings_of(part: &Part) -> Vec<String> {
+        let mut out = Vec::from_iter(part.site.grid.warning.clone());
         if part.analysis.patch.as_ref().is_some_and(Patch::cut_by_window) {
             out.push("the window of the grid cuts the patch: solvers would overestimate the pressure".into());
         }
@@ -94,21 +93,6 @@ impl Run {
             ));
         }
         out
-    }
-
-    /// Tells whether other parts of the same wheel carry some of its load.
-    pub(super) fn shares_load(&self, part: &Part) -> bool {
-        let same_wheel = |other: &&Part| other.site.side() == part.site.side();
-        self.case.question.load().is_some() && self.parts.iter().filter(same_wheel).count() > 1
-    }
-
-    /// Says what a shared load means for the part's files.
-    pub(super) fn shared_load(&self, part: &Part) -> Option<String> {
-        let load = self.case.question.load().filter(|_| self.shares_load(part))?;
-        Some(format!(
-            "the load of {load} N is shared with other contacts of this wheel, each in files of its own: contact.inp gives \
-             the approach instead"
-        ))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::numerics::quadrature::{integral, smooth_integrals};
+use crate::numerics::quadrature::smooth_integrals;
 
 /// Longest piece, as a share of a band, that is tried with few nodes first.
 const SHORT: f64 = 0.1;
@@ -75,15 +75,6 @@ impl Grading {
             f(xi).map(|value| value * slope)
         };
         smooth_integrals(&mut weighted, t, relative, t[1] - t[0] <= SHORT)
-    }
-
-    /// Returns ∫ f dξ over the whole range, for a function that may have kinks.
-    pub(crate) fn integral(&self, f: &mut impl FnMut(f64) -> f64, relative: f64) -> f64 {
-        let mut weighted = |t: f64| {
-            let (xi, slope) = self.xi_and_slope(t);
-            f(xi) * slope
-        };
-        integral(&mut weighted, 0.0, 1.0, relative)
     }
 }
 

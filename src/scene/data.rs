@@ -243,6 +243,9 @@ pub struct WheelsetData {
     /// "solve": both wheels touch; "neglect": 0; or rad about the track's y axis, > 0 lowers the right-hand wheel.
     #[serde(default)]
     pub roll: RollData,
+    /// Vertical load of the axle, N, in the place of [patch]: both wheels sink alike, and δ is an estimate.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub load: Option<f64>,
     /// Near misses up to this vertical gap, mm, are reported.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub within: Option<f64>,
@@ -281,7 +284,7 @@ pub struct PatchData {
     /// δ, mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub approach: Option<f64>,
-    /// Normal load, N; δ is then an estimate.
+    /// Vertical load of each wheel, N, shared by all its contacts; δ is then an estimate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load: Option<f64>,
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use sha2::{Digest, Sha256};
 
 use super::axes::asked_axes;
-use super::data::{MaterialData, PatchData, Scene};
+use super::data::{MaterialData, Scene};
 use super::profiles::profiles;
 use super::standing::standing;
 use crate::case::{ApproachBy, Case, Echo, OutputFormat, Outputs, Profiles, Question};
@@ -65,7 +65,7 @@ fn outputs(scene: &Scene) -> Outputs {
 
 fn question(scene: &Scene) -> Result<Question> {
     let tolerance = scene.grid.tolerance;
-    let approach = scene.patch.as_ref().map(approach).transpose()?;
+    let approach = approach(scene)?;
     let material = elastic(&scene.material)?;
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         let (found, expected) = (tolerance.to_string(), "a positive length in mm");
@@ -74,13 +74,28 @@ fn question(scene: &Scene) -> Result<Question> {
     Ok(Question { approach, material, tolerance, method: scene.grid.method })
 }
 
-fn approach(patch: &PatchData) -> Result<ApproachBy> {
+/// Gives the approach, or the load that it is estimated from, of `[patch]` or `[wheelset]`.
+fn approach(scene: &Scene) -> Result<Option<ApproachBy>> {
     let expected = "exactly one of `approach` and `load`";
-    let (key, value, by) = match (patch.approach, patch.load) {
-        (Some(approach), None) => ("patch: approach", approach, ApproachBy::Given(approach)),
-        (None, Some(load)) => ("patch: load", load, ApproachBy::Load(load)),
-        (Some(_), Some(_)) => return Err(Error::new("patch", "both", expected, "remove one")),
-        (None, None) => return Err(Error::new("patch", "neither", expected, "give one")),
+    let of_axle = scene.wheelset.as_ref().and_then(|wheelset| wheelset.load);
+    let (key, value, by) = match (&scene.patch, of_axle) {
+        (None, None) => return Ok(None),
+        (None, Some(load)) => ("wheelset: load", load, ApproachBy::AxleLoad(load)),
+        (Some(_), Some(load)) => {
+            let expected = "the axle's load without [patch], or [patch] without it";
+            return Err(Error::new(
+                "wheelset: load",
+                format!("{load} beside [patch]"),
+                expected,
+                "remove one",
+            ));
+        }
+        (Some(patch), None) => match (patch.approach, patch.load) {
+            (Some(approach), None) => ("patch: approach", approach, ApproachBy::Given(approach)),
+            (None, Some(load)) => ("patch: load", load, ApproachBy::WheelLoad(load)),
+            (Some(_), Some(_)) => return Err(Error::new("patch", "both", expected, "remove one")),
+            (None, None) => return Err(Error::new("patch", "neither", expected, "give one")),
+        },
     };
     if finite(key, value)? < 0.0 {
         return Err(Error::new(key, value.to_string(), "a value ≥ 0", "correct the sign"));
@@ -89,7 +104,7 @@ fn approach(patch: &PatchData) -> Result<ApproachBy> {
         let expected = format!("0, or at least {SMALLEST:e}");
         return Err(Error::new(key, format!("{value:e}"), expected, "check the unit"));
     }
-    Ok(by)
+    Ok(Some(by))
 }
 
 fn elastic(material: &MaterialData) -> Result<[Elastic; 2]> {

@@ -17,6 +17,7 @@ mod independent_check;
 mod interpenetration;
 mod invariances;
 mod layers;
+mod loads;
 mod measured_scene;
 mod mesh;
 mod parts;

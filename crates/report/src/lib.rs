@@ -6,7 +6,7 @@
 //! against arcs. [`hard_case`] runs the cases of `tests/hard_cases`; [`verification`] checks them by
 //! parry3d's meshes. [`measured`] compares curves through points with the drawing from which the points are;
 //! [`specimen`] makes worn profiles as instruments measure them. [`rates`] counts positions of a wheelset a
-//! second over them, [`whole_case`] times a case from first touch to its mesh. [`measurements`] does all of
+//! second over them, [`loads`] compares approaches under load with solved ones, [`whole_case`] times a case from first touch to its mesh. [`measurements`] does all of
 //! this to a given effort; [`requirements`] judges the ratios; [`practice`] compares whole cases of engineers
 //! with brute force. [`page`] and [`table`] turn the numbers into Markdown, CSV and charts. Nothing here
 //! touches the disk.
@@ -17,6 +17,7 @@ pub mod errors;
 pub mod hard_case;
 mod hard_checks;
 pub mod hard_run;
+pub mod loads;
 pub mod measured;
 pub mod measurements;
 pub mod page;

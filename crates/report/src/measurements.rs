@@ -8,6 +8,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use super::errors::{Errors, compare};
 use super::hard_case::hard_cases;
 use super::hard_run::{self, Outcome};
+use super::loads::{self, ApproachError, Carried};
 use super::measured;
 use super::practice::{self, PracticeRow};
 use super::rates::{Extent, Rate, rates};
@@ -149,6 +150,8 @@ pub struct Measurements {
     pub hard_cases: Vec<Outcome>,
     /// Results of the practice cases against brute force.
     pub practice: Vec<PracticeRow>,
+    /// Errors of approaches under loads.
+    pub loads: Vec<ApproachError>,
     /// Results of the check by parry3d's meshes: of the reference scenes, with and without skew, and of the
     /// built-in pairs.
     pub verified: [Vec<Verified>; 2],
@@ -183,6 +186,8 @@ pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measur
     progress("practice cases against brute force");
     let cases: Vec<_> = practice::cases()?.into_iter().step_by(effort.every_case).collect();
     let practice = cases.par_iter().map(practice::run).collect();
+    progress("loads");
+    let loads = loads::carried()?.iter().map(Carried::compared).collect();
     progress("the check by parry3d's meshes");
     let verified = verified(&references, effort.every_pair)?;
     progress("measured profiles");
@@ -198,6 +203,7 @@ pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measur
         run,
         hard_cases,
         practice,
+        loads,
         verified,
         evidence,
     })

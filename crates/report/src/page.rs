@@ -49,6 +49,7 @@ pub fn sections(m: &Measurements) -> Vec<Section> {
         in_use::cases(m),
         hard_cases(m),
         in_use::practice(m),
+        in_use::loads(m),
         verification(m),
         measured_profiles(m),
         method(m),

@@ -76,7 +76,7 @@ fn pair([rail, wheel]: [Profile; 2]) -> Result<Pair> {
 }
 
 /// Writes a worn rail and a worn wheel as files, reads and smooths them.
-fn measured() -> Result<[Profile; 2]> {
+pub(super) fn measured() -> Result<[Profile; 2]> {
     let profile = |kind| {
         let specimen = Specimen::new(kind, Instrument::new(SPACING, NOISE, SEED))?;
         specimen.measured(Format::Csv).map(|measured| measured.profile)

@@ -109,13 +109,17 @@ fn append(out: &mut String, row: &SweepRow, ellipses: Option<(ApproachBy, f64)>)
     );
 }
 
-/// Gives the two last cells: empty without approach or load, at kinks, and where s is not convex.
+/// Gives the two last cells: empty without approach or load, at kinks, and where s is not convex. A load counts as if this contact
+/// carried all of its wheel's alone; both wheels of an axle carry half of its load.
 fn semi_axes(contact: &Contact, ellipses: Option<(ApproachBy, f64)>) -> String {
     let ellipse = |(by, modulus)| {
         let curvatures = curvatures_at(contact);
         let ellipse = match by {
             ApproachBy::Given(approach) => curvatures.under_approach(approach, modulus),
-            ApproachBy::Load(load) => curvatures.under_load(load, modulus),
+            ApproachBy::WheelLoad(load) => curvatures.under_load(load / contact.contact_angle.cos(), modulus),
+            ApproachBy::AxleLoad(load) => {
+                curvatures.under_load(load / 2.0 / contact.contact_angle.cos(), modulus)
+            }
         };
         let [xi, eta] = curvatures.along(&ellipse?);
         Some(format!("{xi},{eta}"))

@@ -1,6 +1,7 @@
 //! Builds the sections on what users wait for: positions of a wheelset, and whole cases.
 
 use super::section::Section;
+use crate::loads::distribution;
 use crate::measurements::Measurements;
 use crate::practice::PracticeRow;
 use crate::rates::{Motion, Rate};
@@ -39,6 +40,20 @@ pub(super) fn practice(m: &Measurements) -> Section {
     );
     let files = vec![("practice.csv", practice_csv(&m.practice).into_bytes())];
     Section { title: "Practice", body, files }
+}
+
+/// Makes the section on approaches under load, against a boundary-element solver.
+pub(super) fn loads(m: &Measurements) -> Section {
+    let worst = m.loads.iter().max_by(|a, b| a.error.abs().total_cmp(&b.error.abs()));
+    let worst =
+        worst.map_or_else(String::new, |one| format!(" The largest error is that of {}.", one.region));
+    let body = format!(
+        "Errors of δ from a load, against Tamaas under the same normal force on cells three times as fine as the automatic grid's:          treads, flange roots, flanges, yaw, several places, drawn and worn.{worst}
+
+{}",
+        distribution(&m.loads)
+    );
+    Section { title: "Approaches under load", body, files: Vec::new() }
 }
 
 /// Returns the table of rates, one row per pair: rates, and their ratio to that of drawn arcs.
