@@ -32,7 +32,7 @@ pub use options::{
 };
 pub use place::{Step, Transform};
 pub use read::format::Format;
-pub use read::points::{Element, ElementShape, MOST_ELEMENTS, MOST_POINTS, Note, Point, Points};
+pub use read::points::{DesignElement, ElementShape, MOST_ELEMENTS, MOST_POINTS, Note, Point, Points};
 pub use read::scan::LARGEST_FILE;
 pub use unit::Unit;
 
@@ -125,7 +125,7 @@ fn build(file: &str, read: Points, side: Side, options: &Options) -> Result<Meas
     let findings = clean::checks::findings(&points, side, options.gauge_height());
     clean::checks::reject(&findings)?;
     let warnings = findings.into_iter().chain(turned).collect();
-    let placed: Vec<Element> = read.elements.iter().map(|element| transform.element(element)).collect();
+    let placed: Vec<DesignElement> = read.elements.iter().map(|element| transform.element(element)).collect();
     let (segments, curve) = fit::curve::curve(&points, &placed, options, elements_alone)?;
     let source = format!("{} file {file}", format_title(read.format));
     let profile = Profile::new(file, source, segments)?;

@@ -2,7 +2,7 @@
 
 use super::band::Band;
 use super::corners;
-use super::corners::Row;
+use super::corners::BandRow;
 use super::loops;
 use super::loops::Rows;
 use super::measure::area_and_length;
@@ -240,7 +240,7 @@ impl Region {
             sort(&mut corners);
             band.corners = corners;
             let nodes = graded(band, b - a);
-            let mut rows: Vec<Row> = nodes.into_iter().map(|xi| row(outline, band, xi)).collect();
+            let mut rows: Vec<BandRow> = nodes.into_iter().map(|xi| row(outline, band, xi)).collect();
             let mut more = Vec::new();
             if skewed {
                 let eta = rows.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], row| {
@@ -296,13 +296,13 @@ impl Region {
 }
 
 /// Returns both edges of a band at ξ.
-fn row(outline: &mut Outline<'_>, band: &Band, xi: f64) -> Row {
+fn row(outline: &mut Outline<'_>, band: &Band, xi: f64) -> BandRow {
     let Slice { eta } = band.slice(outline, xi);
-    Row { xi, edges: eta.map(|eta| Edge { eta, ledge: false }) }
+    BandRow { xi, edges: eta.map(|eta| Edge { eta, ledge: false }) }
 }
 
 /// Adds the rows at which a branch turns and is farthest out in η.
-fn add_farthest(outline: &mut Outline<'_>, band: &Band, rows: &mut Vec<Row>) {
+fn add_farthest(outline: &mut Outline<'_>, band: &Band, rows: &mut Vec<BandRow>) {
     let symmetric = outline.slicer.skewed.is_none() && outline.window.eta[0] == -outline.window.eta[1];
     let branches: &[usize] = if symmetric { &[1] } else { &[0, 1] };
     let mut more = Vec::new();

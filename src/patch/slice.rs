@@ -20,7 +20,7 @@ pub struct Slice {
 
 /// The upper end of a slice without skew, and the wheel point at that end.
 #[derive(Debug, Clone, Copy)]
-struct Half {
+struct UpperEnd {
     edge: Edge,
     span: Span,
     foot: SagittaPoint,
@@ -83,7 +83,7 @@ impl<'a> Slicer<'a> {
         if let (Some(skewed), Some(valley)) = (&mut self.skewed, valley) {
             return skewed.edges(xi, valley);
         }
-        let Half { edge, .. } = self.half(xi)?;
+        let UpperEnd { edge, .. } = self.half(xi)?;
         Some([Edge { eta: -edge.eta, ..edge }, edge])
     }
 
@@ -107,7 +107,7 @@ impl<'a> Slicer<'a> {
     }
 
     /// Returns the upper end of the slice at ξ without skew, or `None` outside the patch.
-    fn half(&mut self, xi: f64) -> Option<Half> {
+    fn half(&mut self, xi: f64) -> Option<UpperEnd> {
         let depth = self.approach - midplane_gap(self.placement, xi);
         if depth.is_nan() || depth < 0.0 {
             return None;
@@ -119,7 +119,7 @@ impl<'a> Slicer<'a> {
 
     /// Returns dη/dξ of the branch η > 0 without skew: −s_ξ/s_η, or the slope of the wheel's circle on a
     /// ledge.
-    fn half_slope(&self, xi: f64, Half { edge, span, foot }: &Half) -> f64 {
+    fn half_slope(&self, xi: f64, UpperEnd { edge, span, foot }: &UpperEnd) -> f64 {
         if edge.ledge {
             return foot.w / (edge.eta * self.placement.wheel().section.frame.sin);
         }
@@ -131,9 +131,9 @@ impl<'a> Slicer<'a> {
 
     /// Returns the wheel point that lies `depth` above the midplane point at ξ, or the point before that at
     /// which the surface ends or steps. `None` where η² would exceed `u_max`.
-    fn foot_lifted(&mut self, xi: f64, depth: f64, u_max: f64) -> Option<Half> {
+    fn foot_lifted(&mut self, xi: f64, depth: f64, u_max: f64) -> Option<UpperEnd> {
         self.wheel.spans(xi, u_max, &mut self.spans);
-        let half = |foot: SagittaPoint, span: &Span, ledge: bool| Half {
+        let half = |foot: SagittaPoint, span: &Span, ledge: bool| UpperEnd {
             edge: Edge { eta: foot.u.max(0.0).sqrt(), ledge },
             span: *span,
             foot,

@@ -4,14 +4,14 @@ use super::*;
 use nalgebra::UnitComplex;
 
 /// A surface sampled in space: the wheel's points in track axes with their gap over the rail.
-struct Scene {
+struct RandomScene {
     rail: Profile,
     wheel: Profile,
     radius: f64,
     pose: [f64; 3],
 }
 
-impl Scene {
+impl RandomScene {
     /// Returns the wheel's point at profile abscissa x and angle ω about the axle, with the profile origin at
     /// height 0.
     fn point(&self, section: &Section, x: f64, omega: f64) -> [f64; 3] {
@@ -64,10 +64,10 @@ impl Scene {
     }
 }
 
-type Cell = (f64, [f64; 2], [f64; 2]);
+type Square = (f64, [f64; 2], [f64; 2]);
 
 /// Returns the twelve lowest local minima of a grid, each with the interval of its neighbours.
-fn best_cells(gap: &impl Fn(f64, f64) -> f64, x: [f64; 2], omega: [f64; 2], n: [usize; 2]) -> Vec<Cell> {
+fn best_cells(gap: &impl Fn(f64, f64) -> f64, x: [f64; 2], omega: [f64; 2], n: [usize; 2]) -> Vec<Square> {
     let at = |range: [f64; 2], k: usize, n: usize| range[0] + (range[1] - range[0]) * k as f64 / n as f64;
     let values: Vec<Vec<f64>> =
         (0..=n[0]).map(|i| (0..=n[1]).map(|j| gap(at(x, i, n[0]), at(omega, j, n[1]))).collect()).collect();
@@ -151,10 +151,10 @@ fn compare(seed: u64, polynomials: bool, yaw: f64, roll: f64) -> Result<()> {
     let rail = random_chain(&mut random, 4, polynomials)?;
     let wheel = random_chain(&mut random, 5, polynomials)?;
     let pose = [random.between(-8.0, 8.0), random.between(-yaw, yaw), random.between(-roll, roll)];
-    compare_scene(&format!("seed {seed}"), Scene { rail, wheel, radius: 300.0, pose })
+    compare_scene(&format!("seed {seed}"), RandomScene { rail, wheel, radius: 300.0, pose })
 }
 
-fn compare_scene(name: &str, scene: Scene) -> Result<()> {
+fn compare_scene(name: &str, scene: RandomScene) -> Result<()> {
     let pose = scene.pose;
     let pair = ProfilePair::new(&Pair::new(scene.rail.clone(), scene.wheel.clone(), scene.radius)?)?;
     let [sampled, x, omega] = scene.lowest_gap();
@@ -202,7 +202,7 @@ fn first_touch_agrees_with_dense_samples_of_standard_profiles() -> Result<()> {
             let turn = UnitComplex::new(random.between(0.0, 0.06));
             let pose = [random.between(-14.0, 8.0), random.between(-0.04, 0.04), random.between(-0.02, 0.02)];
             let (rail_profile, wheel) = (standards::rail(rail)?.rotated(turn), standards::wheel(name)?);
-            let scene = Scene { rail: rail_profile, wheel, radius: 460.0, pose };
+            let scene = RandomScene { rail: rail_profile, wheel, radius: 460.0, pose };
             compare_scene(&format!("{name} on {rail} at {pose:?}"), scene)?;
         }
     }
