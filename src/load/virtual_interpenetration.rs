@@ -50,6 +50,20 @@ pub enum Estimate {
 ///
 /// # Errors
 /// A load that no approach of 1e-7 to 10 mm carries.
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
+/// use wheelrail::load::{Estimate, approach_under_load};
+/// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+/// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+/// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+/// # let pair = Pair::new(rail, wheel, 460.0)?;
+/// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
+/// let (approach, by) = approach_under_load(&placement, 80_000.0, 113_932.3)?;
+/// assert!((approach - 0.090_487_9).abs() < 1e-6 && by == Estimate::Hertz);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 pub fn approach_under_load(placement: &Placement, load: f64, modulus: f64) -> Result<(f64, Estimate)> {
     if load == 0.0 {
         return Ok((0.0, Estimate::Hertz));

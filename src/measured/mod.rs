@@ -82,6 +82,24 @@ pub struct Measured {
 /// # Errors
 /// Anything wrong with the options, the file or its points, with the place: see [`Options`],
 /// [`Format`], [`Transform`], [`Check`].
+///
+/// # Examples
+/// ```
+/// use wheelrail::Side;
+/// use wheelrail::measured::{CurveKind, Options, profile};
+///
+/// let file = (0..=40).map(|k| f64::from(k) - 20.0).map(|x| format!("{x},{}\n", -x * x / 600.0)).collect::<String>();
+/// let options = Options {
+///     mirror: Some(false),
+///     flip_z: Some(false),
+///     curve: Some(CurveKind::Interpolation),
+///     ..Options::default()
+/// };
+/// let measured = profile("crown.csv", file.as_bytes(), Side::Rail, &options)?;
+/// assert_eq!(measured.record.points_used, 41);
+/// assert_eq!(measured.profile.segments().len(), 40);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 pub fn profile(file: &str, bytes: &[u8], side: Side, options: &Options) -> Result<Measured> {
     options.validate()?;
     let format = match options.format {

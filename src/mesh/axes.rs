@@ -68,6 +68,21 @@ pub struct GridGroup {
 /// The components of a patch, which is to be that over the whole plane, in groups closer to each other than `merge`
 /// \[mm\]; at 0 or NaN each on its own but for those that the grid of another, of this spacing (as for [`Group::axes`]), would
 /// cut. The group that holds C comes first, then the deepest; none for an empty patch.
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
+/// use wheelrail::{Patch, Window, mesh::groups};
+/// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+/// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+/// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+/// # let pair = Pair::new(rail, wheel, 460.0)?;
+/// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
+/// let patch = Patch::new(&placement, 0.05, &Window::UNBOUNDED);
+/// let axes = groups(&patch, 0.0, None)[0].axes(Some([0.5, 0.5]))?;
+/// assert!(axes.xi.contains(&0.0) && axes.xi[0] < patch.components[0].xi[0]);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 pub fn groups(patch: &Patch, merge: f64, spacing: Option<[f64; 2]>) -> Vec<GridGroup> {
     let components = &patch.components;
     let mut groups: Vec<GridGroup> = Vec::new();

@@ -74,6 +74,23 @@ impl Cell {
 }
 
 /// The mesh of all components.
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
+/// use wheelrail::{Patch, StripCounts, StripMesh, Window, mesh::Quality};
+/// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+/// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+/// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+/// # let pair = Pair::new(rail, wheel, 460.0)?;
+/// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
+/// let patch = Patch::new(&placement, 0.05, &Window::UNBOUNDED);
+/// let mesh = StripMesh::new(&placement, &patch, StripCounts::default())?;
+/// let quality = Quality::of_strips(&mesh).expect("a mesh with cells");
+/// assert_eq!((quality.cells, quality.inverted), (mesh.cells.len(), 0));
+/// assert!(mesh.cells.len() >= 32 * 16);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct StripMesh {
     /// Points (ξ, η, ζ^R) \[mm\] on the rail.

@@ -52,6 +52,23 @@ pub struct Component {
 }
 
 /// The patch {s < δ} inside a window.
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
+/// use wheelrail::{Patch, Window};
+/// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+/// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+/// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+/// # let pair = Pair::new(rail, wheel, 460.0)?;
+/// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
+/// let patch = Patch::new(&placement, 0.05, &Window::UNBOUNDED);
+/// let component = &patch.components[0];
+/// let half = f64::sqrt(300.0 * 300.0 - 299.95 * 299.95);
+/// assert!((component.xi[1] - half).abs() < 1e-11);
+/// assert!((patch.area() / (std::f64::consts::PI * half * component.eta[1]) - 1.0).abs() < 1e-3); // nearly an ellipse
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Patch {
     /// Approach δ \[mm\].

@@ -27,6 +27,20 @@ struct UpperEnd {
 }
 
 /// Finds the slices of a placed pair at one approach.
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
+/// use wheelrail::patch::Slicer;
+/// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+/// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+/// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+/// # let pair = Pair::new(rail, wheel, 460.0)?;
+/// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
+/// let slice = Slicer::new(&placement, 0.05).slice(0.0).expect("inside the patch");
+/// assert!((slice.eta[1] - f64::sqrt(460.0 * 460.0 - 459.95 * 459.95)).abs() < 1e-11);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct Slicer<'a> {
     pub(super) placement: &'a Placement,

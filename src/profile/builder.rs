@@ -8,6 +8,18 @@ use super::{Arc, Half, Segment, Station};
 use crate::error::{Error, Result, finite};
 
 /// A chain under construction.
+///
+/// # Examples
+/// ```
+/// use wheelrail::profile::{ChainBuilder, Half, Profile};
+///
+/// let mut chain = ChainBuilder::starting_at([-10.0, 0.0])?;
+/// chain.line_to(Some(0.0), 0.0)?;
+/// chain.arc_to(50.0, Half::Upper, 30.0)?; // smooth: it leaves the line along its tangent
+/// let profile = Profile::new("crown", "", chain.finish())?;
+/// assert!((profile.segments()[1].end().z + 10.0).abs() < 1e-13);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug, Clone, Default)]
 pub struct ChainBuilder {
     point: Option<[f64; 2]>,

@@ -35,14 +35,28 @@ pub struct Position {
 }
 
 /// A profile pair on both sides of a track, the left side mirrored.
+///
+/// # Examples
+/// ```
+/// use wheelrail::{ONE_CONTACT, Pair, Position, RailDistance, Roll, Selection, WheelDistance, WheelsetOnTrack, standards};
+///
+/// let pair = Pair::new(standards::rail("60E1")?, standards::wheel("S1002")?, 460.0)?;
+/// let system = WheelsetOnTrack::new(&pair, RailDistance::Spacing(1500.0), WheelDistance::Spacing(1500.0))?;
+/// let mut search = system.search();
+/// let centred = Position { lateral: 0.0, yaw: 0.0, roll: Roll::Solve };
+/// let touch = search.touch(&centred, &Selection { within: 0.0, apart: ONE_CONTACT })?.expect("both wheels touch");
+/// let [left, right] = touch.sides.map(|side| side.touch.contacts[0].rolling_radius);
+/// assert!((left - right).abs() < 1e-9);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct WheelsetOnTrack {
     /// The prepared profiles, in the right side's axes.
-    pub pair: ProfilePair,
+    pub(crate) pair: ProfilePair,
     /// The positions of the rails.
-    pub track: Track,
+    pub(crate) track: Track,
     /// The positions of the wheels.
-    pub wheelset: Wheelset,
+    pub(crate) wheelset: Wheelset,
 }
 
 impl Position {
@@ -64,6 +78,16 @@ impl WheelsetOnTrack {
             track: Track::new(pair.rail(), rails)?,
             wheelset: Wheelset::new(wheels, pair.wheel_radius())?,
         })
+    }
+
+    /// Returns the positions of the rails.
+    pub fn track(&self) -> &Track {
+        &self.track
+    }
+
+    /// Returns the positions of the wheels on their axle.
+    pub fn wheelset(&self) -> &Wheelset {
+        &self.wheelset
     }
 }
 

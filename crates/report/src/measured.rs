@@ -165,7 +165,8 @@ impl DrawnBody {
         let mut hint = 0;
         let mut errors: [Vec<f64>; 3] = Default::default();
         for exact in &self.marks {
-            let found = beside(&marks, [exact.station.x, exact.station.z], hint);
+            let at = [exact.station.x, exact.station.z];
+            let Some(found) = beside(&marks, at, hint) else { continue };
             hint = found.mark;
             let near = &marks[found.mark];
             // The nearest mark is up to half a step away from the foot.

@@ -88,7 +88,7 @@ impl<'a> RaceTrack<'a> {
         match work {
             TimedWork::Store => {
                 let value = black_box(STORED);
-                for column in self.out.chunks_mut(self.axis.eta.len().max(1)) {
+                for column in self.out.chunks_mut(self.axis.eta().len().max(1)) {
                     column.fill(value);
                 }
             }

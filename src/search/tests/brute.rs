@@ -2,6 +2,7 @@
 
 use super::*;
 use nalgebra::UnitComplex;
+use wheelrail_report::random::Random;
 
 /// A surface sampled in space: the wheel's points in track axes with their gap over the rail.
 struct RandomScene {
@@ -92,20 +93,6 @@ fn best_cells(gap: &impl Fn(f64, f64) -> f64, x: [f64; 2], omega: [f64; 2], n: [
     cells
 }
 
-/// SplitMix64 on a printed seed.
-pub(super) struct Random(pub u64);
-
-impl Random {
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        let unit = ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64;
-        low + (high - low) * unit
-    }
-}
-
 /// Makes a chain of lines, arcs of either half and cubics with a kink at every joint.
 pub(super) fn random_chain(random: &mut Random, n: usize, polynomials: bool) -> Result<Profile> {
     let mut segments = Vec::new();
@@ -147,7 +134,7 @@ pub(super) fn random_chain(random: &mut Random, n: usize, polynomials: bool) -> 
 }
 
 fn compare(seed: u64, polynomials: bool, yaw: f64, roll: f64) -> Result<()> {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let rail = random_chain(&mut random, 4, polynomials)?;
     let wheel = random_chain(&mut random, 5, polynomials)?;
     let pose = [random.between(-8.0, 8.0), random.between(-yaw, yaw), random.between(-roll, roll)];
@@ -194,7 +181,7 @@ fn first_touch_agrees_with_dense_samples_of_random_scenes() -> Result<()> {
 
 #[test]
 fn first_touch_agrees_with_dense_samples_of_standard_profiles() -> Result<()> {
-    let mut random = Random(7);
+    let mut random = Random::new(7);
     let rails: Vec<&str> = standards::rail_names().collect();
     for name in standards::wheel_names() {
         for _ in 0..3 {
@@ -215,7 +202,7 @@ fn first_touch_agrees_with_dense_samples_of_standard_profiles() -> Result<()> {
 fn every_local_minimum_of_the_gap_is_reported() -> Result<()> {
     let (step, within) = (2e-3, 30.0);
     for seed in 0..60 {
-        let mut random = Random(1000 + seed);
+        let mut random = Random::new(1000 + seed);
         let rail = random_chain(&mut random, 4, seed % 2 == 0)?;
         let wheel = random_chain(&mut random, 5, seed % 2 == 0)?;
         let offset = random.between(-8.0, 8.0);
