@@ -66,7 +66,7 @@ pub struct GridGroup {
 }
 
 /// The components of a patch, which is to be that over the whole plane, in groups closer to each other than `merge`
-/// \[mm\]; at 0 or NaN each on its own but for those that the grid of another, of this spacing (as for [`Group::axes`]), would
+/// \[mm\]; at 0 or NaN each on its own but for those that the grid of another, of this spacing (as for [`GridGroup::axes`]), would
 /// cut. The group that holds C comes first, then the deepest; none for an empty patch.
 ///
 /// # Examples
