@@ -13,7 +13,7 @@
 //! | Report FRA/ORD-78/41 | what it is | here |
 //! |---|---|---|
 //! | (3.2) | lines and arcs | [`Arc`]; polynomials [`Polynomial`], chains [`Profile`] |
-//! | App. A | smooth chains from drawing data | [`profile::Builder`] |
+//! | App. A | smooth chains from drawing data | [`profile::ChainBuilder`] |
 //! | (4.1) | feasibility of a contact point | [`load::feasibility`](fn@load::feasibility) |
 //! | (4.2), (4.3) | a point seen from a frame | [`Station`] |
 //! | (4.4)–(4.8) | the transformed profile ζ(ξ) | [`profile::Section`] |
@@ -80,7 +80,7 @@ pub mod separation;
 pub use case::{Case, Run};
 pub use error::{Error, ErrorKind, Result};
 pub use load::{Feasibility, feasibility};
-pub use mesh::{Axes, Counts, StripMesh};
+pub use mesh::{Axes, StripCounts, StripMesh};
 /// Points, normals, rotations and frames of the public API are of this version of nalgebra.
 pub use nalgebra;
 pub use patch::{Component, Patch, Window};

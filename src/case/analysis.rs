@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::input::Question;
 use super::site::Site;
 use crate::error::{Error, Result};
-use crate::mesh::{Counts, StripMesh};
+use crate::mesh::{StripCounts, StripMesh};
 use crate::patch::Patch;
 use crate::placement::Placement;
 use crate::separation::methods::quadratic::quadratic_form;
@@ -62,7 +62,7 @@ impl Analysis {
         let filled = Instant::now();
         let patch = site.patch();
         let cut = Instant::now();
-        let mesh = |patch: &Patch| StripMesh::new(placement, patch, Counts::default());
+        let mesh = |patch: &Patch| StripMesh::new(placement, patch, StripCounts::default());
         let strips = patch.as_ref().map(mesh).transpose()?;
         let timings = Timings {
             load_s: site.contact.load_s,

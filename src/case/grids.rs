@@ -3,7 +3,7 @@
 use super::input::{AskedAxes, OutputFormat, Outputs};
 use super::places::{MOST_PARTS, Placed};
 use crate::error::{Error, Result};
-use crate::mesh::{Axes, Group, MOST_POINTS, groups};
+use crate::mesh::{Axes, GridGroup, MOST_POINTS, groups};
 
 /// The axes of one grid.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,7 +50,7 @@ pub(super) fn grids(asked: &AskedAxes, place: &Placed) -> Result<Vec<Grid>> {
         let advice = "smooth the profiles, give grid.merge, or from, to and n";
         return Err(Error::new("grid", found, expected, advice));
     }
-    let grid = |group: &Group| {
+    let grid = |group: &GridGroup| {
         let automatic = group.axes(*spacing)?;
         let warning = stretched(&automatic);
         let (xi, eta) = (xi.clone().unwrap_or(automatic.xi), eta.clone().unwrap_or(automatic.eta));

@@ -38,6 +38,23 @@ impl Run {
     /// # Errors
     /// No contact; grids that cannot be sized or take more memory than there is; a method without a formula for the
     /// pair. An infeasible contact or an empty patch is a result: [`Run::refusals`].
+    ///
+    /// # Examples
+    /// ```
+    /// use wheelrail::case::{Run, SILENT};
+    /// use wheelrail::scene::{self, Scene};
+    ///
+    /// let text = r#"
+    /// rail.profile = "60E1"
+    /// wheel = { profile = "S1002", radius = 460.0 }
+    /// contact = { rail_x = 0.0, wheel_x = 0.0 }
+    /// patch = { approach = 0.05 }
+    /// "#;
+    /// let scene: Scene = scene::parse(text, false)?;
+    /// let run = Run::new(scene::resolve(&scene, ".".as_ref(), "example")?, SILENT)?;
+    /// assert_eq!(run.parts.len(), 1);
+    /// # Ok::<(), wheelrail::Error>(())
+    /// ```
     pub fn new(case: Case, tell: Tell<'_>) -> Result<Self> {
         tell("contacts".into());
         let sites = sites(&case)?;

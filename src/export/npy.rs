@@ -12,6 +12,15 @@ const RUN: usize = 1 << 12;
 ///
 /// # Errors
 /// The errors of the sink; `InvalidInput` if the shape does not have as many elements as `values`.
+///
+/// # Examples
+/// ```
+/// let mut file = Vec::new();
+/// wheelrail::export::array_npy(&mut file, &[2, 3], &[0.0; 6])?;
+/// assert_eq!(file.len(), 128 + 6 * 8);
+/// assert!(wheelrail::export::array_npy(&mut Vec::new(), &[7], &[0.0; 6]).is_err());
+/// # Ok::<(), std::io::Error>(())
+/// ```
 pub fn array_npy(sink: &mut dyn Write, shape: &[u64], values: &[f64]) -> io::Result<()> {
     if shape.iter().product::<u64>() != values.len() as u64 {
         let text = format!("{} values for an array of shape {shape:?}", values.len());

@@ -32,7 +32,7 @@ pub use options::{
 };
 pub use place::{Step, Transform};
 pub use read::format::Format;
-pub use read::points::{Element, ElementShape, MOST_ELEMENTS, MOST_POINTS, Note, Point, Points};
+pub use read::points::{DesignElement, ElementShape, MOST_ELEMENTS, MOST_POINTS, Note, Point, Points};
 pub use read::scan::LARGEST_FILE;
 pub use unit::Unit;
 
@@ -82,6 +82,24 @@ pub struct Measured {
 /// # Errors
 /// Anything wrong with the options, the file or its points, with the place: see [`Options`],
 /// [`Format`], [`Transform`], [`Check`].
+///
+/// # Examples
+/// ```
+/// use wheelrail::Side;
+/// use wheelrail::measured::{CurveKind, Options, profile};
+///
+/// let file = (0..=40).map(|k| f64::from(k) - 20.0).map(|x| format!("{x},{}\n", -x * x / 600.0)).collect::<String>();
+/// let options = Options {
+///     mirror: Some(false),
+///     flip_z: Some(false),
+///     curve: Some(CurveKind::Interpolation),
+///     ..Options::default()
+/// };
+/// let measured = profile("crown.csv", file.as_bytes(), Side::Rail, &options)?;
+/// assert_eq!(measured.record.points_used, 41);
+/// assert_eq!(measured.profile.segments().len(), 40);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 pub fn profile(file: &str, bytes: &[u8], side: Side, options: &Options) -> Result<Measured> {
     options.validate()?;
     let format = match options.format {
@@ -125,7 +143,7 @@ fn build(file: &str, read: Points, side: Side, options: &Options) -> Result<Meas
     let findings = clean::checks::findings(&points, side, options.gauge_height());
     clean::checks::reject(&findings)?;
     let warnings = findings.into_iter().chain(turned).collect();
-    let placed: Vec<Element> = read.elements.iter().map(|element| transform.element(element)).collect();
+    let placed: Vec<DesignElement> = read.elements.iter().map(|element| transform.element(element)).collect();
     let (segments, curve) = fit::curve::curve(&points, &placed, options, elements_alone)?;
     let source = format!("{} file {file}", format_title(read.format));
     let profile = Profile::new(file, source, segments)?;

@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::Format;
 use super::clean::checks::{Finding, reject_width};
 use super::options::{NamedOrigin, Options, Origin};
-use super::read::points::{Element, ElementShape, Point, Points};
+use super::read::points::{DesignElement, ElementShape, Point, Points};
 use super::shape::{flange_side, gauge_depth, gauge_side, has_flange_back, head_up, running_head, top};
 use crate::error::{Error, Result};
 use crate::profile::Side;
@@ -196,7 +196,7 @@ impl Transform {
     }
 
     /// Turns a design element into profile axes; an arc stays counter-clockwise.
-    pub fn element(&self, element: &Element) -> Element {
+    pub fn element(&self, element: &DesignElement) -> DesignElement {
         let shape = match element.shape {
             ElementShape::Line { from, to } => {
                 ElementShape::Line { from: self.apply(from), to: self.apply(to) }
@@ -212,7 +212,7 @@ impl Transform {
                 ElementShape::Arc { center: self.apply(center), radius, angles }
             }
         };
-        Element { shape, line: element.line }
+        DesignElement { shape, line: element.line }
     }
 
     /// Makes the path go from left to right.

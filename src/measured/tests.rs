@@ -3,11 +3,10 @@
 use super::*;
 use crate::error::Error;
 use crate::profile::{Section, standards};
+use wheelrail_report::random::Random;
 
 mod curves;
 mod mutations;
-
-use mutations::Random;
 
 const FILES: [(&str, &[u8], Side); 9] = [
     ("new-style.ban", include_bytes!("../../tests/profiles/new-style.ban"), Side::Rail),
@@ -291,7 +290,7 @@ fn each_defect_is_named_at_its_place_and_mended_by_its_repair() {
 #[test]
 fn a_tall_spike_among_dense_noisy_points_is_one_and_goes() -> Result<()> {
     let rail = standards::rail("60E1")?;
-    let mut random = Random(7);
+    let mut random = Random::new(7);
     // About normal, 8 µm.
     let mut noise = || 0.008 * ((0..12).map(|_| random.below(1_000_000) as f64 / 1e6).sum::<f64>() - 6.0);
     let points: Vec<[f64; 2]> =

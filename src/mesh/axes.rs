@@ -54,7 +54,7 @@ pub fn equal_steps(a: f64, b: f64, n: usize) -> Vec<f64> {
 
 /// Components of a patch that share a grid.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Group {
+pub struct GridGroup {
     /// Their indices in the patch, ascending.
     pub components: Vec<usize>,
     /// The box around them.
@@ -66,15 +66,30 @@ pub struct Group {
 }
 
 /// The components of a patch, which is to be that over the whole plane, in groups closer to each other than `merge`
-/// \[mm\]; at 0 or NaN each on its own but for those that the grid of another, of this spacing (as for [`Group::axes`]), would
+/// \[mm\]; at 0 or NaN each on its own but for those that the grid of another, of this spacing (as for [`GridGroup::axes`]), would
 /// cut. The group that holds C comes first, then the deepest; none for an empty patch.
-pub fn groups(patch: &Patch, merge: f64, spacing: Option<[f64; 2]>) -> Vec<Group> {
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
+/// use wheelrail::{Patch, Window, mesh::groups};
+/// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+/// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+/// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+/// # let pair = Pair::new(rail, wheel, 460.0)?;
+/// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
+/// let patch = Patch::new(&placement, 0.05, &Window::UNBOUNDED);
+/// let axes = groups(&patch, 0.0, None)[0].axes(Some([0.5, 0.5]))?;
+/// assert!(axes.xi.contains(&0.0) && axes.xi[0] < patch.components[0].xi[0]);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
+pub fn groups(patch: &Patch, merge: f64, spacing: Option<[f64; 2]>) -> Vec<GridGroup> {
     let components = &patch.components;
-    let mut groups: Vec<Group> = Vec::new();
+    let mut groups: Vec<GridGroup> = Vec::new();
     for (index, component) in components.iter().enumerate() {
-        let mut group = Group::of(index, component);
+        let mut group = GridGroup::of(index, component);
         // A new part may link groups that were apart: all that are near are joined.
-        let belongs = |group: &Group, other: &Group| {
+        let belongs = |group: &GridGroup, other: &GridGroup| {
             let apart = distance(&group.extent, &other.extent);
             apart < merge || group.cuts(other, spacing) || other.cuts(group, spacing)
         };
@@ -83,12 +98,12 @@ pub fn groups(patch: &Patch, merge: f64, spacing: Option<[f64; 2]>) -> Vec<Group
         }
         groups.push(group);
     }
-    let away = |group: &Group| !group.components.iter().any(|&k| holds_contact(&components[k]));
+    let away = |group: &GridGroup| !group.components.iter().any(|&k| holds_contact(&components[k]));
     groups.sort_by(|a, b| away(a).cmp(&away(b)).then(a.least.total_cmp(&b.least)));
     groups
 }
 
-impl Group {
+impl GridGroup {
     /// Cell centres over the group with a margin of two cells on each side; `spacing` = \[Δξ, Δη\] \[mm\], by default
     /// square cells, 16 over the short side of its largest component, stretched along the group's longer side where they
     /// would be more than 10⁵. A group that is cut by the end of a profile has cells without a separation beyond it.

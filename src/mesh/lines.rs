@@ -57,7 +57,7 @@ fn carry(bands: &[Band], shares: &mut [Vec<f64>], (from, end): (usize, usize), (
 }
 
 /// The points at which bands meet.
-pub(super) struct Meeting {
+pub(super) struct BandMeeting {
     /// Where \[mm\].
     pub(super) xi: f64,
     /// η \[mm\] of its points, ascending.
@@ -66,7 +66,7 @@ pub(super) struct Meeting {
     points: Vec<Option<usize>>,
 }
 
-impl Meeting {
+impl BandMeeting {
     /// All meetings of some bands with these lines.
     pub(super) fn all(bands: &[Band], shares: &[Vec<f64>]) -> Vec<Self> {
         let mut meetings: Vec<Self> = Vec::new();

@@ -7,7 +7,7 @@ mod strips;
 mod surfaces;
 mod trace;
 
-pub use axes::{Axes, Group, MOST_ON_AXIS, MOST_POINTS, equal_steps, groups};
+pub use axes::{Axes, GridGroup, MOST_ON_AXIS, MOST_POINTS, equal_steps, groups};
 pub use quality::{Quality, Spread};
-pub use strips::{Cell, Counts, StripMesh};
+pub use strips::{Cell, StripCounts, StripMesh};
 pub use surfaces::Surface;

@@ -41,7 +41,7 @@ impl Quality {
         let flat = |&k: &usize| Point3::new(mesh.points[k].x, mesh.points[k].y, 0.0);
         let shape = |corners: &[usize]| {
             let corners: Vec<_> = corners.iter().map(flat).collect();
-            Shape::new(&corners, &Vector3::z())
+            CellShape::new(&corners, &Vector3::z())
         };
         Self::of(mesh.cells.iter().map(|cell| shape(cell.vertices())))
     }
@@ -56,12 +56,12 @@ impl Quality {
         // Two triangles of every quadrangle, whose normal says which way they should turn.
         let normals = outside.flat_map(|normal| [normal; 2]);
         let triangles = surface.triangles().into_iter().zip(normals);
-        Self::of(triangles.map(|(triangle, normal)| Shape::new(&corners(&triangle), &normal)))
+        Self::of(triangles.map(|(triangle, normal)| CellShape::new(&corners(&triangle), &normal)))
     }
 
-    fn of(shapes: impl Iterator<Item = Shape>) -> Option<Self> {
-        let shapes: Vec<Shape> = shapes.collect();
-        let spread = |value: fn(&Shape) -> f64| Spread {
+    fn of(shapes: impl Iterator<Item = CellShape>) -> Option<Self> {
+        let shapes: Vec<CellShape> = shapes.collect();
+        let spread = |value: fn(&CellShape) -> f64| Spread {
             min: shapes.iter().map(value).fold(f64::INFINITY, f64::min),
             max: shapes.iter().map(value).fold(f64::NEG_INFINITY, f64::max),
             mean: shapes.iter().map(value).sum::<f64>() / shapes.len() as f64,
@@ -78,7 +78,7 @@ impl Quality {
 }
 
 /// One cell.
-struct Shape {
+struct CellShape {
     triangle: bool,
     inverted: bool,
     aspect_ratio: f64,
@@ -86,7 +86,7 @@ struct Shape {
     smallest_angle: f64,
 }
 
-impl Shape {
+impl CellShape {
     /// Measures a cell with these corners, counter-clockwise about `normal` of any length.
     fn new(corners: &[Point3<f64>], normal: &Vector3<f64>) -> Self {
         let n = corners.len();
@@ -120,16 +120,16 @@ mod tests {
     fn a_square_a_triangle_and_a_bow_tie() {
         let up = Vector3::z();
         let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| Point3::new(x, y, 0.0));
-        let shape = Shape::new(&square, &up);
+        let shape = CellShape::new(&square, &up);
         assert!(!shape.inverted && !shape.triangle);
         assert_eq!([shape.aspect_ratio, shape.skewness, shape.smallest_angle], [1.0, 0.0, FRAC_PI_2]);
-        let half = Shape::new(&square[..3], &up);
+        let half = CellShape::new(&square[..3], &up);
         assert!(half.triangle && !half.inverted);
         assert!((half.smallest_angle - FRAC_PI_4).abs() < 1e-15 && (half.skewness - 0.25).abs() < 1e-15);
         let bow_tie = [square[0], square[1], square[3], square[2]];
-        assert!(Shape::new(&bow_tie, &up).inverted);
+        assert!(CellShape::new(&bow_tie, &up).inverted);
         let mut reversed = square;
         reversed.reverse();
-        assert!(Shape::new(&reversed, &up).inverted);
+        assert!(CellShape::new(&reversed, &up).inverted);
     }
 }

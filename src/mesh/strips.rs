@@ -14,7 +14,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::Point3;
 
-use super::lines::{Meeting, between, lines};
+use super::lines::{BandMeeting, between, lines};
 use crate::error::{Error, ErrorKind, Result};
 use crate::patch::{Band, Component, Outline, Patch};
 use crate::placement::Placement;
@@ -34,14 +34,14 @@ const CENTROID_DEMAND: f64 = 1e-9;
 
 /// How many cells a component gets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Counts {
+pub struct StripCounts {
     /// Strips along ξ, at least 2; corners of the boundary may add some.
     pub strips: usize,
     /// Cells of a strip, along η, at least 1.
     pub across: usize,
 }
 
-impl Default for Counts {
+impl Default for StripCounts {
     /// 32 strips of 16 cells: cells along the boundary are then a tenth as wide as in the middle, strips at the tips a
     /// twentieth.
     fn default() -> Self {
@@ -74,6 +74,23 @@ impl Cell {
 }
 
 /// The mesh of all components.
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
+/// use wheelrail::{Patch, StripCounts, StripMesh, Window, mesh::Quality};
+/// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+/// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+/// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+/// # let pair = Pair::new(rail, wheel, 460.0)?;
+/// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
+/// let patch = Patch::new(&placement, 0.05, &Window::UNBOUNDED);
+/// let mesh = StripMesh::new(&placement, &patch, StripCounts::default())?;
+/// let quality = Quality::of_strips(&mesh).expect("a mesh with cells");
+/// assert_eq!((quality.cells, quality.inverted), (mesh.cells.len(), 0));
+/// assert!(mesh.cells.len() >= 32 * 16);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct StripMesh {
     /// Points (ξ, η, ζ^R) \[mm\] on the rail.
@@ -87,9 +104,9 @@ impl StripMesh {
     ///
     /// # Errors
     /// Fewer than 2 strips or no cell across; more than 10⁷ cells.
-    pub fn new(placement: &Placement, patch: &Patch, counts: Counts) -> Result<Self> {
+    pub fn new(placement: &Placement, patch: &Patch, counts: StripCounts) -> Result<Self> {
         counts.check()?;
-        let mut builder = Builder {
+        let mut builder = StripBuilder {
             placement,
             outline: Outline::new(placement, patch.approach, &patch.window),
             shares: shares(counts.across),
@@ -104,7 +121,7 @@ impl StripMesh {
     }
 }
 
-impl Counts {
+impl StripCounts {
     fn check(self) -> Result<()> {
         let found = format!("{} strips of {} cells", self.strips, self.across);
         if self.strips < 2 || self.across < 1 {
@@ -124,7 +141,7 @@ fn shares(across: usize) -> Vec<f64> {
     (0..=across).map(|j| (FRAC_PI_2 * (2.0 * j as f64 - across as f64) / across as f64).sin()).collect()
 }
 
-struct Builder<'a> {
+struct StripBuilder<'a> {
     placement: &'a Placement,
     outline: Outline<'a>,
     /// c of the points across a band of its own.
@@ -135,11 +152,11 @@ struct Builder<'a> {
     separation: Vec<f64>,
 }
 
-impl Builder<'_> {
+impl StripBuilder<'_> {
     fn component(&mut self, index: usize, component: &Component, strips: usize) {
         let bands = &component.bands;
         let shares = lines(bands, &self.shares);
-        let mut meetings: Vec<Meeting> = Meeting::all(bands, &shares);
+        let mut meetings: Vec<BandMeeting> = BandMeeting::all(bands, &shares);
         let whole = component.xi[1] - component.xi[0];
         let mut first_strip = 0;
         for (band, shares) in bands.iter().zip(&shares) {

@@ -28,6 +28,22 @@ const FACET_LIMITS: [f64; 2] = [1e-6, 1e-4];
 const WIDEST: f64 = 0.5;
 
 /// A structured surface.
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
+/// use wheelrail::{Window, mesh::Surface};
+/// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+/// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+/// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+/// # let pair = Pair::new(rail, wheel, 460.0)?;
+/// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
+/// let window = Window { xi: [-5.0, 5.0], eta: [-8.0, 8.0] };
+/// let [rail, wheel] = Surface::around(&placement, &window, Some(0.05))?;
+/// assert_eq!(rail.points.len(), rail.n[0] * rail.n[1]);
+/// assert!(wheel.points.iter().any(|point| point.coords.norm() == 0.0)); // C is a point of the mesh
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
     /// Whose it is.

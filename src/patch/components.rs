@@ -2,7 +2,7 @@
 
 use super::band::Band;
 use super::corners;
-use super::corners::Row;
+use super::corners::BandRow;
 use super::loops;
 use super::loops::Rows;
 use super::measure::area_and_length;
@@ -52,6 +52,23 @@ pub struct Component {
 }
 
 /// The patch {s < δ} inside a window.
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
+/// use wheelrail::{Patch, Window};
+/// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+/// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+/// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+/// # let pair = Pair::new(rail, wheel, 460.0)?;
+/// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
+/// let patch = Patch::new(&placement, 0.05, &Window::UNBOUNDED);
+/// let component = &patch.components[0];
+/// let half = f64::sqrt(300.0 * 300.0 - 299.95 * 299.95);
+/// assert!((component.xi[1] - half).abs() < 1e-11);
+/// assert!((patch.area() / (std::f64::consts::PI * half * component.eta[1]) - 1.0).abs() < 1e-3); // nearly an ellipse
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Patch {
     /// Approach δ \[mm\].
@@ -240,7 +257,7 @@ impl Region {
             sort(&mut corners);
             band.corners = corners;
             let nodes = graded(band, b - a);
-            let mut rows: Vec<Row> = nodes.into_iter().map(|xi| row(outline, band, xi)).collect();
+            let mut rows: Vec<BandRow> = nodes.into_iter().map(|xi| row(outline, band, xi)).collect();
             let mut more = Vec::new();
             if skewed {
                 let eta = rows.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], row| {
@@ -296,13 +313,13 @@ impl Region {
 }
 
 /// Returns both edges of a band at ξ.
-fn row(outline: &mut Outline<'_>, band: &Band, xi: f64) -> Row {
+fn row(outline: &mut Outline<'_>, band: &Band, xi: f64) -> BandRow {
     let Slice { eta } = band.slice(outline, xi);
-    Row { xi, edges: eta.map(|eta| Edge { eta, ledge: false }) }
+    BandRow { xi, edges: eta.map(|eta| Edge { eta, ledge: false }) }
 }
 
 /// Adds the rows at which a branch turns and is farthest out in η.
-fn add_farthest(outline: &mut Outline<'_>, band: &Band, rows: &mut Vec<Row>) {
+fn add_farthest(outline: &mut Outline<'_>, band: &Band, rows: &mut Vec<BandRow>) {
     let symmetric = outline.slicer.skewed.is_none() && outline.window.eta[0] == -outline.window.eta[1];
     let branches: &[usize] = if symmetric { &[1] } else { &[0, 1] };
     let mut more = Vec::new();

@@ -18,7 +18,7 @@ const DOUBLINGS: usize = 40;
 
 /// Both edges of a band at one ξ.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Row {
+pub(super) struct BandRow {
     pub(super) xi: f64,
     pub(super) edges: [Edge; 2],
 }
@@ -79,7 +79,7 @@ pub(super) fn skewed(outline: &Outline<'_>, band: &Band, eta: [f64; 2], corners:
 }
 
 /// Appends the ξ between two rows at which a branch meets the edge of the window.
-pub(super) fn at_window(outline: &mut Outline<'_>, band: &Band, rows: &[Row], corners: &mut Vec<f64>) {
+pub(super) fn at_window(outline: &mut Outline<'_>, band: &Band, rows: &[BandRow], corners: &mut Vec<f64>) {
     let window = outline.window.eta;
     for pair in rows.windows(2) {
         for branch in 0..2 {

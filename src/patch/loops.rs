@@ -8,7 +8,7 @@ use super::band::Band;
 
 /// A side of a band, as part of a loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Side {
+struct BandSide {
     band: usize,
     /// 0 is the lower side, along which a loop runs with ξ; 1 is the upper side, along which it runs back.
     branch: usize,
@@ -20,8 +20,8 @@ pub(super) type Rows = Vec<[f64; 3]>;
 /// Returns loops of \[ξ, η\] \[mm\] around the bands, with the patch on the left: outer loops are
 /// counter-clockwise, holes clockwise. The first point is not repeated; no two neighbours are the same.
 pub(super) fn loops(bands: &[Band], rows: &[Rows]) -> Vec<Vec<[f64; 2]>> {
-    let mut free: Vec<Side> =
-        (0..bands.len()).flat_map(|band| [0, 1].map(|branch| Side { band, branch })).collect();
+    let mut free: Vec<BandSide> =
+        (0..bands.len()).flat_map(|band| [0, 1].map(|branch| BandSide { band, branch })).collect();
     let mut loops = Vec::new();
     while let Some(first) = free.pop() {
         let (mut points, mut side) = (Vec::new(), first);
@@ -52,7 +52,7 @@ pub(super) fn loops(bands: &[Band], rows: &[Rows]) -> Vec<Vec<[f64; 2]>> {
 }
 
 /// Returns the side on which a loop continues after another side.
-fn next(bands: &[Band], Side { band, branch }: Side) -> Side {
+fn next(bands: &[Band], BandSide { band, branch }: BandSide) -> BandSide {
     let (end, here) = (1 - branch, &bands[band]);
     let (xi, eta) = (here.xi[end], here.sides[end][branch]);
     // Bands that lie on the other side of the line ξ, and bands that lie on the same side.
@@ -72,7 +72,7 @@ fn next(bands: &[Band], Side { band, branch }: Side) -> Side {
             let own = (0..bands.len()).filter(|&k| along(k) && k != band);
             let before = own.filter(|k| last(k) <= start && last(k) > near(beside));
             let before = before.max_by(|p, q| last(p).total_cmp(&last(q)));
-            before.map_or(Side { band: beside, branch }, |band| Side { band, branch: 1 - branch })
+            before.map_or(BandSide { band: beside, branch }, |band| BandSide { band, branch: 1 - branch })
         }
         // No band on the other side is here: move on to the band's own other side, or to a band on the other
         // side before that.
@@ -80,7 +80,7 @@ fn next(bands: &[Band], Side { band, branch }: Side) -> Side {
             let limit = up(here.sides[end][1 - branch]);
             let before = others().filter(|&k| start <= near(k) && near(k) < limit);
             let before = before.min_by(|&p, &q| near(p).total_cmp(&near(q)));
-            before.map_or(Side { band, branch: 1 - branch }, |band| Side { band, branch })
+            before.map_or(BandSide { band, branch: 1 - branch }, |band| BandSide { band, branch })
         }
     }
 }

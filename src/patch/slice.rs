@@ -20,13 +20,27 @@ pub struct Slice {
 
 /// The upper end of a slice without skew, and the wheel point at that end.
 #[derive(Debug, Clone, Copy)]
-struct Half {
+struct UpperEnd {
     edge: Edge,
     span: Span,
     foot: SagittaPoint,
 }
 
 /// Finds the slices of a placed pair at one approach.
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
+/// use wheelrail::patch::Slicer;
+/// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+/// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+/// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+/// # let pair = Pair::new(rail, wheel, 460.0)?;
+/// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
+/// let slice = Slicer::new(&placement, 0.05).slice(0.0).expect("inside the patch");
+/// assert!((slice.eta[1] - f64::sqrt(460.0 * 460.0 - 459.95 * 459.95)).abs() < 1e-11);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct Slicer<'a> {
     pub(super) placement: &'a Placement,
@@ -83,7 +97,7 @@ impl<'a> Slicer<'a> {
         if let (Some(skewed), Some(valley)) = (&mut self.skewed, valley) {
             return skewed.edges(xi, valley);
         }
-        let Half { edge, .. } = self.half(xi)?;
+        let UpperEnd { edge, .. } = self.half(xi)?;
         Some([Edge { eta: -edge.eta, ..edge }, edge])
     }
 
@@ -107,7 +121,7 @@ impl<'a> Slicer<'a> {
     }
 
     /// Returns the upper end of the slice at ξ without skew, or `None` outside the patch.
-    fn half(&mut self, xi: f64) -> Option<Half> {
+    fn half(&mut self, xi: f64) -> Option<UpperEnd> {
         let depth = self.approach - midplane_gap(self.placement, xi);
         if depth.is_nan() || depth < 0.0 {
             return None;
@@ -119,7 +133,7 @@ impl<'a> Slicer<'a> {
 
     /// Returns dη/dξ of the branch η > 0 without skew: −s_ξ/s_η, or the slope of the wheel's circle on a
     /// ledge.
-    fn half_slope(&self, xi: f64, Half { edge, span, foot }: &Half) -> f64 {
+    fn half_slope(&self, xi: f64, UpperEnd { edge, span, foot }: &UpperEnd) -> f64 {
         if edge.ledge {
             return foot.w / (edge.eta * self.placement.wheel().section.frame.sin);
         }
@@ -131,9 +145,9 @@ impl<'a> Slicer<'a> {
 
     /// Returns the wheel point that lies `depth` above the midplane point at ξ, or the point before that at
     /// which the surface ends or steps. `None` where η² would exceed `u_max`.
-    fn foot_lifted(&mut self, xi: f64, depth: f64, u_max: f64) -> Option<Half> {
+    fn foot_lifted(&mut self, xi: f64, depth: f64, u_max: f64) -> Option<UpperEnd> {
         self.wheel.spans(xi, u_max, &mut self.spans);
-        let half = |foot: SagittaPoint, span: &Span, ledge: bool| Half {
+        let half = |foot: SagittaPoint, span: &Span, ledge: bool| UpperEnd {
             edge: Edge { eta: foot.u.max(0.0).sqrt(), ledge },
             span: *span,
             foot,

@@ -34,6 +34,19 @@ pub struct Body {
 /// the common normal from rail to wheel. The wheel's meridian through C may be turned about ζ by the skew χ
 /// (yaw); then the wheel's own coordinates in the tangent plane are ξ′ = ξ cos χ + η sin χ,
 /// η′ = η cos χ − ξ sin χ.
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
+/// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+/// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+/// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+/// let pair = Pair::new(rail, wheel, 460.0)?; // a crown of 300 mm below a cylinder of 460 mm
+/// let placement = pair.placed(10.0, 0.0, 0.0)?;
+/// assert!((placement.rail().contact_angle().sin() + 10.0 / 300.0).abs() < 1e-15);
+/// assert_eq!(placement.rolling_radius(), 460.0);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Placement {
     rail: Body,

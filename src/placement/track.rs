@@ -43,18 +43,18 @@ pub enum WheelDistance {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Track {
     /// Abscissa of the origin \[mm\], positive; the left-hand one has the negative.
-    pub rail_x: f64,
+    pub(crate) rail_x: f64,
     /// Height of the origin \[mm\], relative to the top of rail, + up: minus the profile's highest z.
-    pub rail_z: f64,
+    pub(crate) rail_z: f64,
 }
 
 /// A wheelset: its two wheels on a rigid axle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wheelset {
     /// Distance \[mm\] of the right-hand wheel's profile origin from the middle of the axle, along the axle.
-    pub wheel_x: f64,
+    pub(crate) wheel_x: f64,
     /// Nominal rolling radius R \[mm\] of both wheels.
-    pub radius: f64,
+    pub(crate) radius: f64,
 }
 
 impl Track {
@@ -83,6 +83,16 @@ impl Track {
         };
         Ok(Self { rail_x, rail_z: -top })
     }
+
+    /// Returns the abscissa \[mm\] of the right-hand profile origin, positive; the left-hand one has the negative.
+    pub fn rail_x(&self) -> f64 {
+        self.rail_x
+    }
+
+    /// Returns the height \[mm\] of the profile origin, relative to the top of rail, + up.
+    pub fn rail_z(&self) -> f64 {
+        self.rail_z
+    }
 }
 
 impl Wheelset {
@@ -100,6 +110,16 @@ impl Wheelset {
         };
         positive("wheelset: distance of the wheels' profile origins", wheel_x)?;
         Ok(Self { wheel_x, radius: positive("wheel: radius", radius)? })
+    }
+
+    /// Returns the distance \[mm\] of the right-hand profile origin from the middle of the axle, along the axle.
+    pub fn wheel_x(&self) -> f64 {
+        self.wheel_x
+    }
+
+    /// Returns the nominal rolling radius R \[mm\] of both wheels.
+    pub fn radius(&self) -> f64 {
+        self.radius
     }
 }
 

@@ -19,6 +19,16 @@ pub enum Half {
 }
 
 /// A line (infinite radius) or a circular arc of at most half a turn.
+///
+/// # Examples
+/// ```
+/// use wheelrail::{Arc, Half};
+///
+/// let crown = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-30.0, 40.0])?;
+/// assert_eq!(crown.curvature(), -1.0 / 300.0);
+/// assert!((crown.start().sin - 0.1).abs() < 1e-15); // it rises by a tenth at x = −30 mm
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Arc {
     /// Station at the beginning.

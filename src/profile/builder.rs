@@ -8,13 +8,25 @@ use super::{Arc, Half, Segment, Station};
 use crate::error::{Error, Result, finite};
 
 /// A chain under construction.
+///
+/// # Examples
+/// ```
+/// use wheelrail::profile::{ChainBuilder, Half, Profile};
+///
+/// let mut chain = ChainBuilder::starting_at([-10.0, 0.0])?;
+/// chain.line_to(Some(0.0), 0.0)?;
+/// chain.arc_to(50.0, Half::Upper, 30.0)?; // smooth: it leaves the line along its tangent
+/// let profile = Profile::new("crown", "", chain.finish())?;
+/// assert!((profile.segments()[1].end().z + 10.0).abs() < 1e-13);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug, Clone, Default)]
-pub struct Builder {
+pub struct ChainBuilder {
     point: Option<[f64; 2]>,
     segments: Vec<Segment>,
 }
 
-impl Builder {
+impl ChainBuilder {
     /// Begins an empty chain.
     pub fn new() -> Self {
         Self::default()
@@ -99,7 +111,7 @@ fn nothing_before(found: &str) -> Error {
 mod tests {
     use super::*;
 
-    fn centre_of_last(builder: &Builder) -> [f64; 2] {
+    fn centre_of_last(builder: &ChainBuilder) -> [f64; 2] {
         match builder.segments.last().map(|s| &s.shape) {
             Some(super::super::Shape::Arc(arc)) => arc.centre().unwrap_or([f64::NAN; 2]),
             _ => [f64::NAN; 2],
@@ -115,7 +127,7 @@ mod tests {
     #[test]
     fn line_to_arc_follows_a3_and_a4() -> Result<()> {
         let (slope, x, radius) = (0.35, 12.0, 80.0);
-        let mut builder = Builder::starting_at([-3.0, 1.0])?;
+        let mut builder = ChainBuilder::starting_at([-3.0, 1.0])?;
         builder.line_to(Some(slope), x)?;
         builder.arc_to(radius, Half::Upper, 30.0)?;
         let z = 1.0 + slope * (x + 3.0);
@@ -127,7 +139,7 @@ mod tests {
     #[test]
     fn arc_to_arc_follows_a8_to_a10() -> Result<()> {
         let (centre, before, after, x): ([f64; 2], f64, f64, f64) = ([1.0, -300.0], 300.0, 80.0, 10.0);
-        let mut builder = Builder::new();
+        let mut builder = ChainBuilder::new();
         builder.push(Segment::arc(Arc::about(centre, before, Half::Upper, [-10.0, x])?));
         builder.arc_to(after, Half::Upper, 26.0)?;
         let z = centre[1] + (before * before - (x - centre[0]).powi(2)).sqrt();
@@ -140,7 +152,7 @@ mod tests {
     #[test]
     fn arc_to_line_follows_a11_to_a13() -> Result<()> {
         let (centre, radius, x): ([f64; 2], f64, f64) = ([0.0, -13.0], 13.0, 9.0);
-        let mut builder = Builder::new();
+        let mut builder = ChainBuilder::new();
         builder.push(Segment::arc(Arc::about(centre, radius, Half::Upper, [0.0, x])?));
         builder.line_to(None, 12.0)?;
         let z = centre[1] + (radius * radius - (x - centre[0]).powi(2)).sqrt();
@@ -157,9 +169,9 @@ mod tests {
 
     #[test]
     fn nothing_to_go_on_from_is_an_error() -> Result<()> {
-        assert!(Builder::new().line_to(Some(0.0), 1.0).is_err());
-        assert!(Builder::new().arc_to(1.0, Half::Upper, 1.0).is_err());
-        assert!(Builder::starting_at([0.0, 0.0])?.line_to(None, 1.0).is_err());
+        assert!(ChainBuilder::new().line_to(Some(0.0), 1.0).is_err());
+        assert!(ChainBuilder::new().arc_to(1.0, Half::Upper, 1.0).is_err());
+        assert!(ChainBuilder::starting_at([0.0, 0.0])?.line_to(None, 1.0).is_err());
         Ok(())
     }
 
@@ -167,8 +179,8 @@ mod tests {
     fn what_is_not_finite_is_named() -> Result<()> {
         let place = |result: Result<()>| result.err().map(|e| e.place).unwrap_or_default();
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            assert!(Builder::starting_at([0.0, bad]).is_err_and(|e| e.place == "start"));
-            let mut builder = Builder::starting_at([0.0, 0.0])?;
+            assert!(ChainBuilder::starting_at([0.0, bad]).is_err_and(|e| e.place == "start"));
+            let mut builder = ChainBuilder::starting_at([0.0, 0.0])?;
             assert_eq!(place(builder.line_to(Some(bad), 1.0)), "line: slope");
             assert_eq!(place(builder.line_to(Some(0.0), bad)), "line: to_x");
             builder.line_to(Some(0.0), 1.0)?;

@@ -14,6 +14,18 @@ use crate::error::{Error, Result};
 ///
 /// Neighbours share their joint point, to rounding: a drawing's rounded coordinates are closed when the chain is made, by one
 /// rule: see [`Closing`].
+///
+/// # Examples
+/// ```
+/// use wheelrail::{Arc, Half, Profile, Segment};
+///
+/// let flank = Arc::line([-20.0, -1.0], [-10.0, 0.0])?;
+/// let crown = Arc::about([0.0, -50.0], 50.990_195_135_927_85, Half::Upper, [-10.0, 10.0])?;
+/// let rail = Profile::new("head", "a sketch", vec![Segment::arc(flank), Segment::arc(crown)])?;
+/// assert_eq!(rail.segments().len(), 2);
+/// assert_eq!(rail.mirrored().segments()[1].end().x, 20.0);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
     /// Name of the standard, or of the file.

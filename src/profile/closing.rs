@@ -81,7 +81,7 @@ pub(super) fn close(segments: &[Segment], extent: f64) -> Result<(Vec<Segment>, 
             continue;
         };
         let longest = SHARE * lengths[index - 1].min(lengths[index]);
-        let (left, right) = (Edge::end(&last), Edge::start(next));
+        let (left, right) = (JointSide::end(&last), JointSide::start(next));
         let rounding = ONE_JOINT * (extent + left.station.x.abs() + left.station.z.abs());
         let misfit = Misfit { left, right, chain, longest, rounding };
         let closed = misfit.closed().ok_or_else(|| misfit.refusal(next.place(index)))?;
@@ -105,7 +105,7 @@ fn chord(segment: &Segment) -> f64 {
 /// A segment at the joint to be closed. A distance s \[mm\] along it counts from its drawn end at the joint,
 /// positive to the right.
 #[derive(Debug, Clone, Copy)]
-struct Edge<'a> {
+struct JointSide<'a> {
     segment: &'a Segment,
     station: Station,
     /// +1 if the segment ends at the joint, −1 if it begins there.
@@ -121,7 +121,7 @@ struct Bent {
     change: f64,
 }
 
-impl<'a> Edge<'a> {
+impl<'a> JointSide<'a> {
     fn end(segment: &'a Segment) -> Self {
         Self { segment, station: segment.end(), outward: 1.0 }
     }
@@ -210,8 +210,8 @@ fn graphed(from: &Station, curvature: f64, s: f64) -> Station {
 /// Two neighbours whose ends must become one.
 #[derive(Debug)]
 struct Misfit<'a> {
-    left: Edge<'a>,
-    right: Edge<'a>,
+    left: JointSide<'a>,
+    right: JointSide<'a>,
     /// Length of the chain \[mm\].
     chain: f64,
     /// Longest stretch \[mm\] that may be changed.
@@ -253,7 +253,7 @@ impl Misfit<'_> {
         }
         let share = self.share();
         let (left, right) = (self.left.cut(share * along), self.right.cut((share - 1.0) * along));
-        let met = Misfit { left: Edge::end(&left), right: Edge::start(&right), ..*self };
+        let met = Misfit { left: JointSide::end(&left), right: JointSide::start(&right), ..*self };
         let [along, across, kink] = Self::miss(&met.left.station, &met.right.station);
         if along.hypot(across) <= self.rounding {
             return Some(Closed::met(left.clone(), right.clone()));

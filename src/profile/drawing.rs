@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::builder::Builder;
+use super::builder::ChainBuilder;
 use super::{Arc, Half, Polynomial, Profile, Segment, Shape};
 use crate::error::{Error, Result, given};
 
@@ -93,7 +93,7 @@ pub fn drawn_profile(
     start: Option<[f64; 2]>,
     data: &[SegmentData],
 ) -> Result<Profile> {
-    let mut builder = start.map_or_else(|| Ok(Builder::new()), Builder::starting_at)?;
+    let mut builder = start.map_or_else(|| Ok(ChainBuilder::new()), ChainBuilder::starting_at)?;
     let mut labels = Vec::with_capacity(data.len());
     for (index, segment) in data.iter().enumerate() {
         let label = segment.label.clone().unwrap_or_default();
@@ -110,7 +110,7 @@ pub fn drawn_profile(
     Profile::new(name, source, segments)
 }
 
-fn append(builder: &mut Builder, data: &SegmentData) -> Result<()> {
+fn append(builder: &mut ChainBuilder, data: &SegmentData) -> Result<()> {
     let plain = |shape| Segment { label: String::new(), shape };
     match (&data.line, &data.arc, &data.polynomial) {
         (Some(LineData { from: Some(from), to: Some(to), slope: None, to_x: None }), None, None) => {

@@ -18,7 +18,7 @@ mod station;
 mod trace;
 
 pub use arc::{Arc, Half};
-pub use builder::Builder;
+pub use builder::ChainBuilder;
 pub use chain::Profile;
 pub use closing::Closing;
 pub(crate) use closing::ONE_JOINT;

@@ -7,6 +7,16 @@ use crate::numerics::twice::Twice;
 
 /// A curve (x(t), z(t)) with polynomial coordinates. They are kept in twice the working precision about a
 /// point of the curve's own: a standard's power form about x = 0 cancels from thousands of mm.
+///
+/// # Examples
+/// ```
+/// use wheelrail::Polynomial;
+///
+/// let parabola = Polynomial::graph(&[1.0, 0.0, 0.5], [-1.0, 2.0])?; // z = 1 + x²/2
+/// let [_, end] = parabola.range().map(|t| parabola.station(t));
+/// assert_eq!((end.x, end.z), (2.0, 3.0));
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Polynomial {
     /// Range of the parameter, ascending \[mm or the spline's unit\].

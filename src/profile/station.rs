@@ -1,6 +1,16 @@
 //! A point with a direction: frames, and points of profiles seen from them (Report (4.2), (4.3)).
 
 /// A point of a profile with its unit tangent in the direction of travel (towards larger x on a graph).
+///
+/// # Examples
+/// ```
+/// use wheelrail::Station;
+///
+/// let frame = Station { x: 3.0, z: 4.0, cos: 0.8, sin: 0.6 };
+/// let origin = Station::AXES.seen_from(&frame);
+/// assert!((origin.x + 4.8).abs() < 1e-15 && (origin.z + 1.4).abs() < 1e-15);
+/// assert!((origin.placed_by(&frame).x).abs() < 1e-15);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Station {
     /// Lateral coordinate \[mm\].

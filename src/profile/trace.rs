@@ -30,6 +30,16 @@ pub struct Beside {
 ///
 /// Accuracy: arc length is exact on arcs; on polynomials it is by chords of `step`, to 1e-5 of it for 0.1 mm
 /// on a 3 mm radius.
+///
+/// # Examples
+/// ```
+/// use wheelrail::profile::{beside, standards, trace};
+///
+/// let marks = trace(&standards::rail("60E1")?, 0.1);
+/// let top = beside(&marks, [0.0, 1.0], 0).expect("a trace with marks"); // 1 mm above the crown
+/// assert!((top.across - 1.0).abs() < 1e-6);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 pub fn trace(profile: &Profile, step: f64) -> Vec<Mark> {
     let mut marks: Vec<Mark> = Vec::new();
     for (index, segment) in profile.segments().iter().enumerate() {
@@ -48,13 +58,13 @@ pub fn trace(profile: &Profile, step: f64) -> Vec<Mark> {
 ///
 /// Method: the circle of curvature at the nearest mark, accurate to κ′a³/6 with a half the distance of marks,
 /// about 1e-6 mm for 0.1 mm. Cost: the marks between hint and foot. Of several feet it finds the first one
-/// from the hint.
-pub fn beside(marks: &[Mark], [x, z]: [f64; 2], hint: usize) -> Beside {
+/// from the hint; `None` of an empty trace.
+pub fn beside(marks: &[Mark], [x, z]: [f64; 2], hint: usize) -> Option<Beside> {
     let square = |k: usize| {
         let at = &marks[k].station;
         (at.x - x).powi(2) + (at.z - z).powi(2)
     };
-    let mut best = hint.min(marks.len() - 1);
+    let mut best = hint.min(marks.len().checked_sub(1)?);
     for forward in [true, false] {
         // Both marks of a joint are at one place; noise and bends may hide the next dip: look a little
         // further.
@@ -77,7 +87,7 @@ pub fn beside(marks: &[Mark], [x, z]: [f64; 2], hint: usize) -> Beside {
     let curvature = mark.curvature;
     let to_centre = (curvature * at.x).hypot(1.0 - curvature * at.z);
     let across = (2.0 * at.z - curvature * (at.x * at.x + at.z * at.z)) / (1.0 + to_centre);
-    Beside { mark: best, s: mark.s + at.x, across }
+    Some(Beside { mark: best, s: mark.s + at.x, across })
 }
 
 /// Number of marks looked at beyond the nearest so far.
@@ -136,7 +146,7 @@ mod tests {
         for k in 1..80 {
             let angle = (f64::from(k) / 80.0 - 0.5) * 2.0 * 0.8f64.asin();
             let radius = 50.0 + 0.01 * f64::from(k % 3 - 1);
-            let found = beside(&marks, [radius * angle.sin(), radius * angle.cos()], hint);
+            let found = beside(&marks, [radius * angle.sin(), radius * angle.cos()], hint).expect("marks");
             hint = found.mark;
             assert!((found.across - (radius - 50.0)).abs() < 1e-12, "{k}: {found:?}");
             assert!((found.s - 50.0 * angle - 0.5 * whole).abs() < 1e-4, "{k}: {found:?}");

@@ -42,6 +42,23 @@ pub struct SweepRow {
 }
 
 /// Sweeps over positions; keeps its buffers.
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Pair, Profile, RailDistance, Segment, WheelDistance, standards};
+/// use wheelrail::{Conicity, ONE_CONTACT, Position, Roll, Selection, Sweep, WheelsetOnTrack};
+/// # let cone = Profile::new("cone", "", vec![Segment::arc(Arc::line([-60.0, -3.0], [60.0, 3.0])?)])?;
+/// # let pair = Pair::new(standards::rail("60E1")?, cone, 460.0)?;
+/// let system = WheelsetOnTrack::new(&pair, RailDistance::Spacing(1500.0), WheelDistance::Spacing(1500.0))?; // cones 1:20
+/// let conicity = Conicity::new(&system, 3.0, Roll::Neglect)?;
+/// let mut sweep = Sweep::new(&system, Selection { within: 0.0, apart: ONE_CONTACT }, Some(&conicity));
+/// let mut rows = Vec::new();
+/// sweep.position(&Position { lateral: 3.0, yaw: 0.0, roll: Roll::Neglect }, &mut rows)?;
+/// assert_eq!(rows.len(), 2); // left, right
+/// assert!((rows[1].delta_r - 0.3).abs() < 1e-9);
+/// assert!(rows[1].conicity.is_ok_and(|found| (found.conicity - 0.05).abs() < 1e-4));
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Sweep<'a> {
     search: WheelsetSearch<'a>,

@@ -2,7 +2,7 @@
 
 use nalgebra::{Rotation3, Vector3};
 
-use super::body::Body;
+use super::body::SearchBody;
 use super::candidates::{Candidate, Meeting, Search};
 use super::locus::Attitude;
 use super::walk::Walk;
@@ -22,8 +22,8 @@ const LARGEST_ANGLE: f64 = 0.5;
 /// A rail and a wheel profile, prepared for searches.
 #[derive(Debug, Clone)]
 pub struct ProfilePair {
-    rail: Body,
-    wheel: Body,
+    rail: SearchBody,
+    wheel: SearchBody,
     radius: f64,
     /// Size against which rounding is judged: the sum of both extents \[mm\].
     extent: f64,
@@ -131,7 +131,7 @@ impl ProfilePair {
     /// A profile has no part that faces the other body.
     pub fn new(pair: &Pair) -> Result<Self> {
         let body = |profile: &Profile, section: &Section, side| {
-            Body::new(section, profile.extent(), side).ok_or_else(|| {
+            SearchBody::new(section, profile.extent(), side).ok_or_else(|| {
                 let expected = "a profile travelled from left to right";
                 Error::new(&profile.name, "no surface", expected, "reverse or mirror it")
             })

@@ -35,14 +35,28 @@ pub struct Position {
 }
 
 /// A profile pair on both sides of a track, the left side mirrored.
+///
+/// # Examples
+/// ```
+/// use wheelrail::{ONE_CONTACT, Pair, Position, RailDistance, Roll, Selection, WheelDistance, WheelsetOnTrack, standards};
+///
+/// let pair = Pair::new(standards::rail("60E1")?, standards::wheel("S1002")?, 460.0)?;
+/// let system = WheelsetOnTrack::new(&pair, RailDistance::Spacing(1500.0), WheelDistance::Spacing(1500.0))?;
+/// let mut search = system.search();
+/// let centred = Position { lateral: 0.0, yaw: 0.0, roll: Roll::Solve };
+/// let touch = search.touch(&centred, &Selection { within: 0.0, apart: ONE_CONTACT })?.expect("both wheels touch");
+/// let [left, right] = touch.sides.map(|side| side.touch.contacts[0].rolling_radius);
+/// assert!((left - right).abs() < 1e-9);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct WheelsetOnTrack {
     /// The prepared profiles, in the right side's axes.
-    pub pair: ProfilePair,
+    pub(crate) pair: ProfilePair,
     /// The positions of the rails.
-    pub track: Track,
+    pub(crate) track: Track,
     /// The positions of the wheels.
-    pub wheelset: Wheelset,
+    pub(crate) wheelset: Wheelset,
 }
 
 impl Position {
@@ -64,6 +78,16 @@ impl WheelsetOnTrack {
             track: Track::new(pair.rail(), rails)?,
             wheelset: Wheelset::new(wheels, pair.wheel_radius())?,
         })
+    }
+
+    /// Returns the positions of the rails.
+    pub fn track(&self) -> &Track {
+        &self.track
+    }
+
+    /// Returns the positions of the wheels on their axle.
+    pub fn wheelset(&self) -> &Wheelset {
+        &self.wheelset
     }
 }
 
@@ -116,7 +140,7 @@ const FOLLOWED: u32 = 6;
 
 /// Both sides lowered at one roll; arrays are \[left, right\].
 #[derive(Debug, Clone, Copy)]
-struct Level {
+struct Lowered {
     roll: f64,
     attitudes: [Attitude; 2],
     /// Heights of the wheel's profile origin over the rail's \[mm\].
@@ -177,7 +201,7 @@ impl WheelsetSearch<'_> {
                 level => level,
             },
         };
-        let Some(Level { roll, z, heights, attitudes, .. }) = level else { return Ok(None) };
+        let Some(Lowered { roll, z, heights, attitudes, .. }) = level else { return Ok(None) };
         let [left, right] = &mut self.sides;
         let sides = [
             SideTouch { z: z[0], touch: left.collect(&attitudes[0], heights[0], selection) },
@@ -191,7 +215,7 @@ impl WheelsetSearch<'_> {
     /// Method: Newton's, with the places of contact kept until their heights agree. Then both sides are
     /// lowered, which confirms the places or shows the next ones. Once the sign has changed, the root is
     /// bracketed.
-    fn solve_roll(&mut self, position: &Position) -> Option<Level> {
+    fn solve_roll(&mut self, position: &Position) -> Option<Lowered> {
         let mut ends = [None, None];
         let mut level = self.level(position, 0.0, 0.0)?;
         let mut far = None;
@@ -221,7 +245,13 @@ impl WheelsetSearch<'_> {
 
     /// Returns the next roll to try before any change of sign: Newton's, or a far one once Newton's has
     /// failed.
-    fn outward(&self, position: &Position, level: &Level, far: &mut Option<Far>, count: u32) -> Option<f64> {
+    fn outward(
+        &self,
+        position: &Position,
+        level: &Lowered,
+        far: &mut Option<Far>,
+        count: u32,
+    ) -> Option<f64> {
         if far.is_none() {
             let next = self.follow(position, level);
             if count < NEWTON_LEVELS && next.abs() <= LARGEST_ROLL && next != level.roll {
@@ -234,7 +264,7 @@ impl WheelsetSearch<'_> {
     /// Returns the next roll to try between two rolls with different signs of the height difference: the root
     /// with the places of contact kept from the end that is nearer to touching, or else from the other end,
     /// or else the middle. Every fourth roll is the middle.
-    fn between(&self, position: &Position, ends: [Level; 2], last: &Level, count: u32) -> Option<f64> {
+    fn between(&self, position: &Position, ends: [Lowered; 2], last: &Lowered, count: u32) -> Option<f64> {
         let [a, b] = ends.map(|end| end.roll);
         let middle = a + (b - a) / 2.0;
         if middle == a || middle == b {
@@ -254,7 +284,7 @@ impl WheelsetSearch<'_> {
 
     /// Returns the roll at which both wheels touch with the places of contact of a level, or the roll at
     /// which these leave their elements on the way; NaN if there is none.
-    fn follow(&self, position: &Position, level: &Level) -> f64 {
+    fn follow(&self, position: &Position, level: &Lowered) -> f64 {
         let (mut roll, mut difference, mut slope) = (level.roll, level.difference(), level.slope);
         for _ in 0..FOLLOWED {
             let next = roll - difference / slope;
@@ -284,7 +314,7 @@ impl WheelsetSearch<'_> {
 
     /// Lowers both sides at a given roll, and leaves the candidates up to `within` above first touch in their
     /// buffers.
-    fn level(&mut self, position: &Position, roll: f64, within: f64) -> Option<Level> {
+    fn level(&mut self, position: &Position, roll: f64, within: f64) -> Option<Lowered> {
         let placed = SIGNS.map(|sign| self.system.attitude(position, roll, sign));
         let attitudes = placed.map(|(attitude, _)| attitude);
         let (mut heights, mut z, mut slope) = ([0.0; 2], [0.0; 2], 0.0);
@@ -297,7 +327,7 @@ impl WheelsetSearch<'_> {
             lowest[k] = Some(candidate.meeting);
         }
         let [left, right] = lowest;
-        Some(Level { roll, attitudes, heights, z, slope, meetings: [left?, right?] })
+        Some(Lowered { roll, attitudes, heights, z, slope, meetings: [left?, right?] })
     }
 
     /// Returns the part of one side in the derivative of the difference of heights with respect to the roll
@@ -319,7 +349,7 @@ impl WheelsetSearch<'_> {
     }
 }
 
-impl Level {
+impl Lowered {
     /// Returns the height of the right side less that of the left \[mm\].
     fn difference(&self) -> f64 {
         self.z[1] - self.z[0]

@@ -8,15 +8,15 @@ use super::values::{LINE, Values};
 #[derive(Debug, Clone)]
 pub struct EtaAxis {
     /// η \[mm\], ascending.
-    pub eta: Vec<f64>,
+    pub(crate) eta: Vec<f64>,
     /// η² \[mm²\].
-    pub u: Values,
+    pub(crate) u: Values,
     /// Index of the first η ≥ 0.
-    pub first_positive: usize,
+    pub(crate) first_positive: usize,
     /// η_i = −η_{n−1−i} for all i.
-    pub symmetric: bool,
+    pub(crate) symmetric: bool,
     /// Largest |η| \[mm\].
-    pub reach: f64,
+    pub(crate) reach: f64,
 }
 
 impl EtaAxis {
@@ -36,9 +36,14 @@ impl EtaAxis {
         }
     }
 
+    /// Returns η \[mm\], ascending.
+    pub fn eta(&self) -> &[f64] {
+        &self.eta
+    }
+
     /// Gives the index ranges whose u lies in (u0, u1], or in \[u0, u1\] for u0 = 0: first for η ≥ 0, then for η < 0. The second is
     /// empty where it is the mirror image of the first.
-    pub fn ranges(&self, u: [f64; 2]) -> [Range<usize>; 2] {
+    pub(crate) fn ranges(&self, u: [f64; 2]) -> [Range<usize>; 2] {
         let right = &self.u[self.first_positive..];
         let ends = u.map(|end| right.partition_point(|&u| u <= end));
         let begin = if u[0] == 0.0 { 0 } else { ends[0] };
@@ -48,13 +53,13 @@ impl EtaAxis {
 
     /// Tells whether the last η ≥ 0 before the index `end` has at most this u \[mm²\], or there is no such η.
     #[inline(always)]
-    pub fn is_end(&self, u: f64, end: usize) -> bool {
+    pub(crate) fn is_end(&self, u: f64, end: usize) -> bool {
         end == self.first_positive || self.u[end - 1] <= u
     }
 
     /// Finds the index after the last η ≥ 0 up to u \[mm²\], from the index `near` for another u nearby.
     #[inline(always)]
-    pub fn end(&self, u: f64, near: usize) -> usize {
+    pub(crate) fn end(&self, u: f64, near: usize) -> usize {
         let mut end = near;
         while end < self.u.len() && self.u[end] <= u {
             end += 1;
@@ -67,7 +72,7 @@ impl EtaAxis {
 
     /// Finds the index of the first η < 0 up to u \[mm²\], where `end` is the index after the last η ≥ 0 up to u.
     #[inline(always)]
-    pub fn begin(&self, u: f64, end: usize) -> usize {
+    pub(crate) fn begin(&self, u: f64, end: usize) -> usize {
         if self.symmetric {
             return self.u.len() - end;
         }

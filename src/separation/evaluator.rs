@@ -16,6 +16,24 @@ pub struct Normals {
 }
 
 /// Evaluates single points over a placed pair. It holds the memory for the spans of one column.
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
+/// use wheelrail::Evaluator;
+/// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+/// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+/// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+/// # let pair = Pair::new(rail, wheel, 460.0)?;
+/// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
+/// let mut evaluator = Evaluator::new(&placement);
+/// let across = 300.0 - f64::sqrt(300.0 * 300.0 - 2.0 * 2.0);
+/// let along = 460.0 - f64::sqrt(460.0 * 460.0 - 5.0 * 5.0);
+/// assert!((evaluator.separation(2.0, 0.0) - across).abs() < 1e-13);
+/// assert!((evaluator.separation(0.0, 5.0) - along).abs() < 1e-13);
+/// assert!(evaluator.separation(36.0, 0.0).is_nan()); // off the rail
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct Evaluator<'a> {
     pub(super) placement: &'a Placement,

@@ -61,6 +61,21 @@ pub fn transformed_parameters(body: &Body) -> Vec<Transformed> {
 }
 
 /// Computes the midplane table at these ξ \[mm\].
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
+/// use wheelrail::separation::{midplane_rows, transformed_parameters};
+/// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+/// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+/// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+/// # let pair = Pair::new(rail, wheel, 460.0)?;
+/// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
+/// let row = midplane_rows(&placement, &[2.0])[0];
+/// assert!((row.gap - (300.0 - f64::sqrt(300.0 * 300.0 - 2.0 * 2.0))).abs() < 1e-13);
+/// assert_eq!(transformed_parameters(placement.rail())[0].alpha_beta, Some([0.0, -300.0]));
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 pub fn midplane_rows(placement: &Placement, xi: &[f64]) -> Vec<MidplaneRow> {
     let row = |&xi: &f64| MidplaneRow {
         xi,

@@ -66,6 +66,25 @@ impl Plan {
 /// The estimate: spectral columns measure their truncation in every strip, at the strip's nodes and between them, and in some of the
 /// columns that are in none. Other methods are compared with single points at some hundred columns. Cost: about that of the fill for
 /// spectral columns.
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
+/// use wheelrail::separation::{EtaAxis, FULL_PRECISION, Values, plan};
+/// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+/// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+/// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+/// # let pair = Pair::new(rail, wheel, 460.0)?;
+/// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
+/// let (xi, eta) = (vec![0.0, 2.0], EtaAxis::new(&[-5.0, 0.0, 5.0]));
+/// let mut plan = plan(&placement, &xi, &eta, FULL_PRECISION, None);
+/// let mut s = Values::new(6);
+/// plan.fill(&placement, &xi, &eta, &mut s);
+/// assert_eq!(s[1], 0.0); // C itself: ξ = η = 0
+/// assert!((s[2] - (460.0 - f64::sqrt(460.0 * 460.0 - 5.0 * 5.0))).abs() < 1e-13);
+/// assert!(plan.error < FULL_PRECISION);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 pub fn plan(
     placement: &Placement,
     xi: &[f64],

@@ -2,7 +2,7 @@
 
 use crate::common::{approached_references, two_crowns};
 use wheelrail::Result;
-use wheelrail::mesh::{self, Axes, Counts, Group, Quality, StripMesh, Surface};
+use wheelrail::mesh::{self, Axes, GridGroup, Quality, StripCounts, StripMesh, Surface};
 use wheelrail::nalgebra::Point3;
 use wheelrail::patch::{Patch, Window};
 use wheelrail::placement::{Pair, Placement};
@@ -33,7 +33,11 @@ fn areas_of_cells_sum_up_to_the_patch() {
     for (name, placement, delta) in cases() {
         let patch = whole(&placement, delta);
         assert!(!patch.components.is_empty(), "{name}");
-        for counts in [Counts::default(), Counts { strips: 5, across: 3 }, Counts { strips: 2, across: 1 }] {
+        for counts in [
+            StripCounts::default(),
+            StripCounts { strips: 5, across: 3 },
+            StripCounts { strips: 2, across: 1 },
+        ] {
             let mesh = StripMesh::new(&placement, &patch, counts).expect("a mesh");
             for (index, component) in patch.components.iter().enumerate() {
                 let own = mesh.cells.iter().filter(|cell| cell.component == index);
@@ -49,7 +53,7 @@ fn areas_of_cells_sum_up_to_the_patch() {
 fn cells_are_sound_and_share_their_sides() {
     for (name, placement, delta) in cases() {
         let patch = whole(&placement, delta);
-        let mesh = StripMesh::new(&placement, &patch, Counts::default()).expect("a mesh");
+        let mesh = StripMesh::new(&placement, &patch, StripCounts::default()).expect("a mesh");
         let quality = Quality::of_strips(&mesh).expect("cells");
         assert_eq!(quality.inverted, 0, "{name}: {quality:?}");
         assert!(mesh.cells.iter().all(|cell| cell.area > 0.0), "{name}");
@@ -83,7 +87,7 @@ fn cells_are_sound_and_share_their_sides() {
 fn centroids_are_inside_and_give_the_first_moment() {
     for (name, placement, delta) in cases() {
         let patch = whole(&placement, delta);
-        let [coarse, fine] = [Counts { strips: 6, across: 3 }, Counts { strips: 40, across: 20 }]
+        let [coarse, fine] = [StripCounts { strips: 6, across: 3 }, StripCounts { strips: 40, across: 20 }]
             .map(|counts| StripMesh::new(&placement, &patch, counts).expect("a mesh"));
         for cell in &coarse.cells {
             assert!(cell.separation < delta, "{name}: s = {} at the centroid", cell.separation);
@@ -112,7 +116,7 @@ fn boundary_cells_include_the_curved_edge() -> Result<()> {
     let cylinder = Profile::new("wheel", "test", vec![Segment::arc(Arc::line([-40.0, 0.0], [40.0, 0.0])?)])?;
     let placement = Pair::new(crown, cylinder, 460.0)?.placed(0.0, 0.0, 0.0)?;
     let patch = whole(&placement, 0.05);
-    let mesh = StripMesh::new(&placement, &patch, Counts { strips: 8, across: 4 })?;
+    let mesh = StripMesh::new(&placement, &patch, StripCounts { strips: 8, across: 4 })?;
     let polygon: f64 = mesh
         .cells
         .iter()
@@ -138,25 +142,26 @@ fn windows_cut_the_mesh_too() {
     let (_, placement, delta) = cases().swap_remove(0);
     for eta in [[-1.0, 2.0], [0.5, 20.0]] {
         let patch = Patch::new(&placement, delta, &Window { xi: [-4.0, 30.0], eta });
-        let mesh = StripMesh::new(&placement, &patch, Counts::default()).expect("a mesh");
+        let mesh = StripMesh::new(&placement, &patch, StripCounts::default()).expect("a mesh");
         let sum: f64 = mesh.cells.iter().map(|cell| cell.area).sum();
         assert!((sum / patch.area() - 1.0).abs() < 1e-10);
         assert_eq!(Quality::of_strips(&mesh).map(|q| q.inverted), Some(0));
         assert!(mesh.points.iter().all(|p| p[0] >= -4.0 && p[1] >= eta[0] && p[1] <= eta[1]));
     }
-    let empty = StripMesh::new(&placement, &whole(&placement, 0.0), Counts::default()).expect("no cells");
+    let empty =
+        StripMesh::new(&placement, &whole(&placement, 0.0), StripCounts::default()).expect("no cells");
     assert!(empty.cells.is_empty() && Quality::of_strips(&empty).is_none());
     for counts in [
-        Counts { strips: 1, across: 4 },
-        Counts { strips: 4, across: 0 },
-        Counts { strips: 1 << 20, across: 1 << 20 },
+        StripCounts { strips: 1, across: 4 },
+        StripCounts { strips: 4, across: 0 },
+        StripCounts { strips: 1 << 20, across: 1 << 20 },
     ] {
         assert!(StripMesh::new(&placement, &whole(&placement, delta), counts).is_err());
     }
 }
 
 /// Whether the cells of the two outermost rows and columns are empty and all of the group inside.
-fn covers(placement: &Placement, delta: f64, group: &Group, axes: &Axes) -> bool {
+fn covers(placement: &Placement, delta: f64, group: &GridGroup, axes: &Axes) -> bool {
     let mut evaluator = Evaluator::new(placement);
     let (xi, eta) = (&axes.xi, &axes.eta);
     let (n, m) = (xi.len(), eta.len());

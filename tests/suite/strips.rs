@@ -27,7 +27,7 @@ fn difference(placement: &Placement, [half, reach]: [f64; 2], points: usize) -> 
     let mut plans = [Method::Spectral, Method::Pointwise]
         .map(|method| plan(placement, &xi, &axis, FULL_PRECISION, Some(method)));
     let [spectral, pointwise] = plans.each_mut().map(|plan| {
-        let mut s = vec![0.0; xi.len() * axis.eta.len()];
+        let mut s = vec![0.0; xi.len() * axis.eta().len()];
         plan.fill(placement, &xi, &axis, &mut s);
         s
     });

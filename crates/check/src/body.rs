@@ -1,9 +1,9 @@
 //! One body as a coarse mesh: finds the segments that a ray meets first, and the heights measured there.
 
-use super::meshes::{Hit, Mesh, Origin, Vector};
-use super::patch::{Patch, Place};
+use super::meshes::{Hit, Mesh, RayOrigin, Vector};
+use super::patch::{CurveMesh, SurfacePoint};
 use super::ray::{Height, foot, height};
-use super::sampler::Surface;
+use super::sampler::SampledSurface;
 
 /// Cells of the coarse mesh per local scale.
 const CELLS_PER_SCALE: f64 = 8.0;
@@ -27,10 +27,10 @@ pub(super) const STEEPEST: f64 = 0.02;
 /// A body with its coarse mesh, which has only triangles that face the other body.
 pub(super) struct Solid {
     /// The surface of the body.
-    pub surface: Surface,
+    pub surface: SampledSurface,
     /// Largest distance from the origin that is meshed \[mm\].
     pub reach: f64,
-    patches: Vec<Patch>,
+    patches: Vec<CurveMesh>,
     mesh: Option<Mesh>,
     /// For each triangle of the mesh, its curve and its index in the patch.
     owners: Vec<(usize, usize)>,
@@ -38,7 +38,7 @@ pub(super) struct Solid {
 
 /// The result along a line parallel to ζ.
 #[derive(Debug, Clone)]
-pub(super) enum Found {
+pub(super) enum AlongZeta {
     /// Heights of all sheets that may be the outer one: one, or two at a joint.
     Heights(Vec<Height>),
     /// There is no surface.
@@ -52,14 +52,14 @@ pub(super) enum Found {
 impl Solid {
     /// Meshes a body around the ξ–η window, up to the given distance from the origin \[mm\]; `None` if its
     /// profile has a point that is not finite.
-    pub fn new(surface: Surface, reach: f64) -> Option<Self> {
+    pub fn new(surface: SampledSurface, reach: f64) -> Option<Self> {
         let v = surface.v_reach(reach);
         let mut patches = Vec::with_capacity(surface.curves.len());
         let (mut vertices, mut owners) = (Vec::new(), Vec::new());
         for (index, curve) in surface.curves.iter().enumerate() {
             let n = LEAST_CELLS.max((CELLS_PER_SCALE * curve.length / curve.scale).ceil() as usize);
             let patch =
-                Patch::new(&surface, index, spread(0.0, curve.length, n), spread(-v, v, CELLS_AROUND))?;
+                CurveMesh::new(&surface, index, spread(0.0, curve.length, n), spread(-v, v, CELLS_AROUND))?;
             for triangle in (0..patch.mesh.len()).filter(|&k| patch.mesh.normal(k).z > 0.0) {
                 vertices.extend(patch.mesh.corners(triangle));
                 owners.push((index, triangle));
@@ -72,7 +72,7 @@ impl Solid {
     }
 
     /// Returns the heights that the line through (ξ, η) meets first.
-    pub fn along_zeta(&self, xi: f64, eta: f64) -> Found {
+    pub fn along_zeta(&self, xi: f64, eta: f64) -> AlongZeta {
         let guesses = match self.coarse(xi, eta) {
             Some(coarse) => self.candidates(&coarse),
             None => self.all_ends(eta),
@@ -92,10 +92,10 @@ impl Solid {
             }
         }
         match (steep, found.is_empty()) {
-            (true, _) => Found::Steep,
-            (false, false) => Found::Heights(self.outermost(found)),
-            (false, true) if near => Found::Unresolved,
-            (false, true) => Found::Nothing,
+            (true, _) => AlongZeta::Steep,
+            (false, false) => AlongZeta::Heights(self.outermost(found)),
+            (false, true) if near => AlongZeta::Unresolved,
+            (false, true) => AlongZeta::Nothing,
         }
     }
 
@@ -111,13 +111,13 @@ impl Solid {
     }
 
     /// Returns guesses on every curve, for lines that miss the coarse mesh near a silhouette or an end.
-    fn all_ends(&self, eta: f64) -> Vec<Place> {
+    fn all_ends(&self, eta: f64) -> Vec<SurfacePoint> {
         let curves = self.surface.curves.iter().enumerate();
-        curves.flat_map(|(curve, c)| [0.0, c.length].map(|t| Place { curve, t, v: eta })).collect()
+        curves.flat_map(|(curve, c)| [0.0, c.length].map(|t| SurfacePoint { curve, t, v: eta })).collect()
     }
 
-    fn coarse(&self, xi: f64, eta: f64) -> Option<Place> {
-        let origin = if self.surface.is_wheel() { Origin::Below } else { Origin::Above };
+    fn coarse(&self, xi: f64, eta: f64) -> Option<SurfacePoint> {
+        let origin = if self.surface.is_wheel() { RayOrigin::Below } else { RayOrigin::Above };
         let mesh = self.mesh.as_ref()?;
         // Rays through an edge or vertex of the mesh may miss it: then look beside it.
         let nudge = self.surface.size * f64::EPSILON.sqrt();
@@ -128,7 +128,7 @@ impl Solid {
     }
 
     /// Returns the coarse place, and the near ends of its neighbours if it is close to an end.
-    fn candidates(&self, coarse: &Place) -> Vec<Place> {
+    fn candidates(&self, coarse: &SurfacePoint) -> Vec<SurfacePoint> {
         let curves = &self.surface.curves;
         let mut all = vec![*coarse];
         let cell = |i: usize| {
@@ -141,7 +141,7 @@ impl Solid {
             if left > near {
                 break;
             }
-            all.push(Place { curve: i, t: curves[i].length, v: coarse.v });
+            all.push(SurfacePoint { curve: i, t: curves[i].length, v: coarse.v });
             left += curves[i].length * curves[i].speed(0.0);
         }
         let mut right = (curves[coarse.curve].length - coarse.t) * curves[coarse.curve].speed(0.0);
@@ -149,31 +149,31 @@ impl Solid {
             if right > near {
                 break;
             }
-            all.push(Place { curve: i, t: 0.0, v: coarse.v });
+            all.push(SurfacePoint { curve: i, t: 0.0, v: coarse.v });
             right += curve.length * curve.speed(0.0);
         }
         all
     }
 
-    fn on_curve(&self, place: &Place) -> bool {
+    fn on_curve(&self, place: &SurfacePoint) -> bool {
         let curve = &self.surface.curves[place.curve];
         let slack = self.slack(place);
         place.t >= -slack && place.t <= curve.length + slack
     }
 
     /// Returns whether a place is the end of its curve, up to rounding.
-    pub fn at_joint(&self, place: &Place) -> bool {
+    pub fn at_joint(&self, place: &SurfacePoint) -> bool {
         let curve = &self.surface.curves[place.curve];
         let slack = self.slack(place);
         place.t <= slack || place.t >= curve.length - slack
     }
 
-    fn slack(&self, place: &Place) -> f64 {
+    fn slack(&self, place: &SurfacePoint) -> f64 {
         JOINT * self.surface.size / self.surface.curves[place.curve].speed(place.t)
     }
 
     /// Returns whether a place is an end of the whole chain, up to rounding.
-    pub fn at_end(&self, place: &Place) -> bool {
+    pub fn at_end(&self, place: &SurfacePoint) -> bool {
         let last = self.surface.curves.len() - 1;
         let slack = self.slack(place);
         (place.curve == 0 && place.t <= slack)
@@ -181,13 +181,13 @@ impl Solid {
     }
 
     /// Returns the places on the coarse mesh, and on the curves around, that are closest to `point`.
-    pub fn near(&self, point: Vector) -> Vec<Place> {
+    pub fn near(&self, point: Vector) -> Vec<SurfacePoint> {
         let Some(mesh) = &self.mesh else { return Vec::new() };
         let place = self.own_place(mesh.closest_to(point));
         self.candidates(&place)
     }
 
-    fn own_place(&self, hit: Hit) -> Place {
+    fn own_place(&self, hit: Hit) -> SurfacePoint {
         let (curve, triangle) = self.owners[hit.triangle];
         self.patches[curve].place(&Hit { triangle, ..hit })
     }

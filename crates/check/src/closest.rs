@@ -2,8 +2,8 @@
 
 use super::body::{Solid, spread};
 use super::meshes::Vector;
-use super::patch::{Patch, Place};
-use super::sampler::Surface;
+use super::patch::{CurveMesh, SurfacePoint};
+use super::sampler::SampledSurface;
 
 /// First cell, as a share of the local scale.
 const FIRST_CELL: f64 = 1.0 / 16.0;
@@ -29,7 +29,7 @@ const ALTERNATIONS: usize = 4;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Closest {
     /// Place on the body.
-    pub place: Place,
+    pub place: SurfacePoint,
     /// Coordinates of the point \[mm\].
     pub point: Vector,
     /// Distance of the point \[mm\].
@@ -45,8 +45,8 @@ pub(super) fn to_point(solid: &Solid, point: Vector) -> Option<Closest> {
         .min_by(|a, b| a.distance.total_cmp(&b.distance))
 }
 
-fn on_curve(surface: &Surface, start: Place, point: Vector) -> Option<Closest> {
-    let mut window = Closing::new(start, FIRST_CELL);
+fn on_curve(surface: &SampledSurface, start: SurfacePoint, point: Vector) -> Option<Closest> {
+    let mut window = ClosingWindow::new(start, FIRST_CELL);
     for _ in 0..MOST_MESHES {
         let patch = window.patch(surface)?;
         let hit = patch.mesh.closest_to(point);
@@ -61,8 +61,8 @@ fn on_curve(surface: &Surface, start: Place, point: Vector) -> Option<Closest> {
 }
 
 /// Returns the closest points of the two bodies near a pair of places: \[on the rail, on the wheel\].
-pub(super) fn of_bodies(rail: &Solid, wheel: &Solid, start: [Place; 2]) -> Option<[Closest; 2]> {
-    let mut windows = start.map(|place| Closing::new(place, FIRST_CELL));
+pub(super) fn of_bodies(rail: &Solid, wheel: &Solid, start: [SurfacePoint; 2]) -> Option<[Closest; 2]> {
+    let mut windows = start.map(|place| ClosingWindow::new(place, FIRST_CELL));
     let surfaces = [&rail.surface, &wheel.surface];
     for _ in 0..MOST_MESHES {
         let patches = [windows[0].patch(surfaces[0])?, windows[1].patch(surfaces[1])?];
@@ -95,35 +95,35 @@ pub(super) fn of_bodies(rail: &Solid, wheel: &Solid, start: [Place; 2]) -> Optio
 }
 
 /// A window of cells that closes in on a place.
-struct Closing {
-    place: Place,
+struct ClosingWindow {
+    place: SurfacePoint,
     cell: f64,
 }
 
-impl Closing {
-    fn new(place: Place, cell: f64) -> Self {
+impl ClosingWindow {
+    fn new(place: SurfacePoint, cell: f64) -> Self {
         Self { place, cell }
     }
 
     /// Returns the cell sizes in t and v.
-    fn cells(&self, surface: &Surface) -> [f64; 2] {
+    fn cells(&self, surface: &SampledSurface) -> [f64; 2] {
         let h = self.cell * surface.curves[self.place.curve].scale;
         [h, surface.v_cell(self.place.curve, self.place.t, h)]
     }
 
-    fn patch(&self, surface: &Surface) -> Option<Patch> {
+    fn patch(&self, surface: &SampledSurface) -> Option<CurveMesh> {
         let [h, k] = self.cells(surface);
-        let (Place { curve, t, v }, half) = (self.place, CELLS as f64 / 2.0);
+        let (SurfacePoint { curve, t, v }, half) = (self.place, CELLS as f64 / 2.0);
         let length = surface.curves[curve].length;
         let t = spread((t - half * h).max(0.0), (t + half * h).min(length), CELLS);
-        Patch::new(surface, curve, t, spread(v - half * k, v + half * k, CELLS))
+        CurveMesh::new(surface, curve, t, spread(v - half * k, v + half * k, CELLS))
     }
 
     /// Moves to a place of the patch; closes in if the place is inside, and returns whether it is.
-    fn move_to(&mut self, surface: &Surface, patch: &Patch, place: Place) -> bool {
+    fn move_to(&mut self, surface: &SampledSurface, patch: &CurveMesh, place: SurfacePoint) -> bool {
         let length = surface.curves[place.curve].length;
         let inside = !patch.at_border(&place, length);
-        self.place = Place { t: place.t.clamp(0.0, length), ..place };
+        self.place = SurfacePoint { t: place.t.clamp(0.0, length), ..place };
         if inside {
             self.cell *= CLOSER;
         }

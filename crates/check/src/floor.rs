@@ -5,10 +5,10 @@
 
 use serde::Serialize;
 
-use super::body::{Found, Solid};
+use super::body::{AlongZeta, Solid};
 use super::closest::to_point;
 use super::meshes::Vector;
-use super::sampler::Surface;
+use super::sampler::SampledSurface;
 use wheelrail::error::Result;
 use wheelrail::internal::{Twice, largest};
 use wheelrail::placement::{Pair, Placement};
@@ -59,7 +59,7 @@ pub(super) fn floors(radius: f64, wheel_radius: f64) -> Result<Vec<Floor>> {
     for (forms, arcs, x) in pairs {
         let profile = |k: usize| Profile::new(forms[k], "closed form", vec![Segment::arc(arcs[k])]);
         let placement = Pair::new(profile(0)?, profile(1)?, wheel_radius)?.placed(x, x, 0.0)?;
-        let bodies = [Surface::rail(&placement), Surface::wheel(&placement)];
+        let bodies = [SampledSurface::rail(&placement), SampledSurface::wheel(&placement)];
         for (k, surface) in bodies.into_iter().enumerate() {
             let exact = Implicit::new(&placement, surface.is_wheel(), arcs[k]);
             out.extend(
@@ -76,7 +76,7 @@ fn measure(solid: &Solid, exact: &Implicit, form: &'static str, reach: f64) -> F
     for i in 0..RAYS * RAYS {
         let at = |k: i32| reach * f64::from(2 * k - RAYS + 1) / f64::from(RAYS - 1);
         let (xi, eta) = (at(i / RAYS), at(i % RAYS));
-        let Found::Heights(heights) = solid.along_zeta(xi, eta) else {
+        let AlongZeta::Heights(heights) = solid.along_zeta(xi, eta) else {
             floor.ray_mm = f64::INFINITY;
             continue;
         };

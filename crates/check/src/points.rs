@@ -1,7 +1,7 @@
 //! Chooses the points of the check: window, joints, tips, boundary and deepest points.
 
 use super::request::Request;
-use super::sampler::Surface;
+use super::sampler::SampledSurface;
 use wheelrail::internal::{bracketed, turning_points};
 use wheelrail::patch::Slicer;
 use wheelrail::placement::Placement;
@@ -18,8 +18,8 @@ const LOOP_POINTS: usize = 8;
 pub(super) fn spread_points(
     placement: &Placement,
     request: &Request,
-    rail: &Surface,
-    wheel: &Surface,
+    rail: &SampledSurface,
+    wheel: &SampledSurface,
 ) -> Vec<[f64; 2]> {
     let window = &request.window;
     let at = |[a, b]: [f64; 2], k: usize, n: usize| {
@@ -74,7 +74,7 @@ fn boundary(placement: &Placement, request: &Request) -> Vec<[f64; 2]> {
 }
 
 /// Returns points over the joints of one body, in the midplane and towards both edges of the window.
-fn joints(surface: &Surface, eta: [f64; 2]) -> Vec<[f64; 2]> {
+fn joints(surface: &SampledSurface, eta: [f64; 2]) -> Vec<[f64; 2]> {
     let ends = surface.curves.iter().enumerate().flat_map(|(k, c)| [(k, 0.0), (k, c.length)]);
     ends.flat_map(|(curve, t)| {
         [0.0, 0.5 * eta[0], 0.75 * eta[1]].map(|v| {

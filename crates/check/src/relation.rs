@@ -9,8 +9,8 @@
 use super::body::Solid;
 use super::closest::Closest;
 use super::meshes::Vector;
-use super::patch::Place;
-use super::sampler::{Curve, Surface};
+use super::patch::SurfacePoint;
+use super::sampler::{SampledCurve, SampledSurface};
 
 /// The relation in words.
 pub const RELATION: &str = "s·min n ≤ d ≤ s·max n, where n are the ζ components of the body's unit normals up to \
@@ -31,7 +31,7 @@ pub(super) struct Above {
     /// Coordinates of the point \[mm\].
     pub point: Vector,
     /// The foot along ζ on the other body.
-    pub foot: Place,
+    pub foot: SurfacePoint,
 }
 
 /// Returns \[least, largest\] n between the foot of `above` and the closest point of `solid`.
@@ -54,9 +54,9 @@ pub(super) fn normals_between(solid: &Solid, above: &Above, closest: &Closest, r
 }
 
 /// Returns \[least, largest\] ζ component of the unit normals of all points up to `reach` from a place.
-fn normals_within(surface: &Surface, foot: &Place, reach: f64) -> [f64; 2] {
+fn normals_within(surface: &SampledSurface, foot: &SurfacePoint, reach: f64) -> [f64; 2] {
     let centre = surface.curves[foot.curve].point(foot.t);
-    let near = Near { centre, reach };
+    let near = Disc { centre, reach };
     let own = [surface.curves[foot.curve].angle(foot.t); 2];
     let curves = surface.curves.iter().filter(|curve| near.may_hold(curve));
     let tilts = curves.fold(own, |hull, curve| near.tilts(curve, [0.0, curve.length], HALVINGS, hull));
@@ -64,23 +64,23 @@ fn normals_within(surface: &Surface, foot: &Place, reach: f64) -> [f64; 2] {
 }
 
 /// The disc of a profile's plane in which points are looked for.
-struct Near {
+struct Disc {
     centre: [f64; 2],
     reach: f64,
 }
 
-impl Near {
+impl Disc {
     fn distance(&self, [x, z]: [f64; 2]) -> f64 {
         (x - self.centre[0]).hypot(z - self.centre[1])
     }
 
-    fn may_hold(&self, curve: &Curve) -> bool {
+    fn may_hold(&self, curve: &SampledCurve) -> bool {
         self.distance(curve.point(0.0)) <= self.reach + curve.longest
     }
 
     /// Returns the hull widened by the tangent angles \[rad\] of the curve inside the disc, from parameter a
     /// to b.
-    fn tilts(&self, curve: &Curve, [a, b]: [f64; 2], halvings: u32, hull: [f64; 2]) -> [f64; 2] {
+    fn tilts(&self, curve: &SampledCurve, [a, b]: [f64; 2], halvings: u32, hull: [f64; 2]) -> [f64; 2] {
         let (middle, half) = (f64::midpoint(a, b), (b - a) / 2.0);
         let bend = curve.bend(middle, half);
         let speed = curve.speed(middle);
@@ -117,8 +117,8 @@ mod tests {
         let wheel = Profile::new("arc", "test", vec![Segment::arc(wheel)]);
         let pair = Pair::new(rail?, wheel?, 460.0)?;
         let placement = pair.placed(1.0, 0.0, 0.0)?;
-        let surface = Surface::rail(&placement);
-        let foot = Place { curve: 0, t: surface.curves[0].length / 2.0, v: 0.0 };
+        let surface = SampledSurface::rail(&placement);
+        let foot = SurfacePoint { curve: 0, t: surface.curves[0].length / 2.0, v: 0.0 };
         for reach in [0.3, 0.9] {
             let [least, most] = normals_within(&surface, &foot, reach);
             let component = |x: f64| 1.0 / (1.0 + (0.03 * x * x - 0.03).powi(2)).sqrt();

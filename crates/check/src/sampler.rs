@@ -12,7 +12,7 @@ use wheelrail::profile::{Polynomial, Segment, Shape, Station};
 
 /// One segment as a curve (x − x_C, z − z_C)(t), 0 ≤ t ≤ length.
 #[derive(Debug, Clone)]
-pub(super) struct Curve {
+pub(super) struct SampledCurve {
     shape: Form,
     /// Largest parameter: \[mm\] along arcs and lines, else in the polynomial's own unit.
     pub length: f64,
@@ -28,7 +28,7 @@ enum Form {
     Polynomial { polynomial: Polynomial, origin: [f64; 2] },
 }
 
-impl Curve {
+impl SampledCurve {
     /// Makes the curve of a segment, seen from `origin`; `longest` bounds the scale \[mm\].
     pub fn of_segment(segment: &Segment, origin: [f64; 2], longest: f64) -> Self {
         match &segment.shape {
@@ -134,9 +134,9 @@ impl Curve {
 /// One body's surface over the contact frame, by (curve, t, v); v is the length along y or around the wheel
 /// at the distance of C from the axle \[mm\]. ∂X/∂t × ∂X/∂v points up where the surface faces the other body.
 #[derive(Debug, Clone)]
-pub(super) struct Surface {
+pub(super) struct SampledSurface {
     /// The curves, in order of the chain.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<SampledCurve>,
     cos: f64,
     sin: f64,
     /// Distance of C from the axle, with sin χ and cos χ; `None` for the rail.
@@ -153,7 +153,7 @@ struct Wheel {
     skew: (f64, f64),
 }
 
-impl Surface {
+impl SampledSurface {
     /// Makes the extruded rail of a placed pair.
     pub fn rail(placement: &Placement) -> Self {
         Self::new(placement.rail(), None)
@@ -170,7 +170,7 @@ impl Surface {
         let origin = [c.x, c.z];
         let extent = body.profile().extent();
         let segments = body.profile().segments().iter();
-        let curves = segments.map(|segment| Curve::of_segment(segment, origin, extent)).collect();
+        let curves = segments.map(|segment| SampledCurve::of_segment(segment, origin, extent)).collect();
         let size = extent + c.x.abs() + c.z.abs();
         Self { curves, cos: c.cos, sin: c.sin, wheel, lift: 0.0, size }
     }

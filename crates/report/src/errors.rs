@@ -8,7 +8,7 @@ use wheelrail::separation::{Choice, EtaAxis};
 
 /// One compared point.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point {
+pub struct ComparedPoint {
     /// ξ \[mm\].
     pub xi: f64,
     /// η \[mm\].
@@ -23,7 +23,7 @@ pub struct Point {
     pub inside_contact: bool,
 }
 
-impl Point {
+impl ComparedPoint {
     /// Returns |found − expected| \[mm\]: 0 if there is no surface and none was found, NaN if only one of the
     /// two has a value.
     pub fn error(&self) -> f64 {
@@ -47,7 +47,12 @@ impl Point {
 /// The η values are those of the file, so that spectral columns reach as far, and are the same polynomials,
 /// as on any grid with the same largest |η|. Strips are made if there are many columns: with as many as a
 /// grid has, the comparison is of that grid's own strips.
-pub fn compare(reference: &Reference, placement: &Placement, choice: &Choice, columns: usize) -> Vec<Point> {
+pub fn compare(
+    reference: &Reference,
+    placement: &Placement,
+    choice: &Choice,
+    columns: usize,
+) -> Vec<ComparedPoint> {
     let [mut xi, eta] = reference.scene.axes();
     if let (Some(&first), Some(&last)) = (xi.first(), xi.last()) {
         xi.extend(equal_steps(first, last, columns));
@@ -57,7 +62,7 @@ pub fn compare(reference: &Reference, placement: &Placement, choice: &Choice, co
     let mut values = vec![0.0; xi.len() * eta.len()];
     choice.fill(placement, &xi, &axis, &mut values);
     let index = |values: &[f64], v: f64| values.partition_point(|&w| w < v);
-    let points = reference.separation.iter().map(|(x, y, value)| Point {
+    let points = reference.separation.iter().map(|(x, y, value)| ComparedPoint {
         xi: *x,
         eta: *y,
         found: values[index(&xi, *x) * eta.len() + index(&eta, *y)],
@@ -112,16 +117,17 @@ pub struct Errors {
 
 impl Errors {
     /// Calculates the largest errors and quantiles of some points.
-    pub fn of(points: &[Point]) -> Self {
+    pub fn of(points: &[ComparedPoint]) -> Self {
         let worst = points.iter().max_by(|p, q| p.error().total_cmp(&q.error()));
-        let mut relative: Vec<f64> = points.iter().filter_map(Point::relative).map(f64::abs).collect();
+        let mut relative: Vec<f64> =
+            points.iter().filter_map(ComparedPoint::relative).map(f64::abs).collect();
         relative.sort_by(f64::total_cmp);
         let quantile = |share: f64| {
             let rank = (share * relative.len() as f64).ceil() as usize;
             rank.checked_sub(1).and_then(|k| relative.get(k)).copied().unwrap_or(0.0)
         };
         Self {
-            max_abs: worst.map_or(0.0, Point::error),
+            max_abs: worst.map_or(0.0, ComparedPoint::error),
             max_rel: quantile(1.0),
             q99_rel: quantile(0.99),
             worst: worst.map_or([0.0; 2], |point| [point.xi, point.eta]),

@@ -33,4 +33,4 @@ pub mod table;
 pub mod verification;
 pub mod whole_case;
 
-pub use hard_checks::{BOUNDS, Check};
+pub use hard_checks::{BOUNDS, HardCheck};

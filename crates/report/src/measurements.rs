@@ -7,13 +7,13 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::errors::{Errors, compare};
 use super::hard_case::hard_cases;
-use super::hard_run::{self, Outcome};
+use super::hard_run::{self, HardOutcome};
 use super::loads::{self, ApproachError, Carried};
 use super::measured;
 use super::practice::{self, PracticeRow};
 use super::rates::{Extent, Rate, rates};
 use super::reference::{Reference, references};
-use super::speed::{LEAST_RUNS, Timing, Track, Work, race};
+use super::speed::{LEAST_RUNS, RaceTrack, TimedWork, Timing, race};
 use super::spline_cost::{SplineCost, spline_costs};
 use super::verification::{Subject, Verified, built_in_pairs, verify};
 use super::whole_case::{RunCost, WholeCase, run_cost, whole_cases};
@@ -74,7 +74,7 @@ impl Effort {
 
 /// One row of accuracy.csv.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct AccuracyRow {
     /// Name of the reference scene.
     pub scene: String,
     /// Name of the method, or "store".
@@ -89,7 +89,7 @@ pub struct Row {
     pub errors: Option<Errors>,
 }
 
-impl Row {
+impl AccuracyRow {
     /// Returns the number of points of the grid.
     pub fn points(&self) -> usize {
         self.side * self.side
@@ -129,7 +129,7 @@ pub struct Threads {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measurements {
     /// Rows for every scene × method × tolerance × grid.
-    pub rows: Vec<Row>,
+    pub rows: Vec<AccuracyRow>,
     /// Least, median and largest time for choosing a method at full precision \[s\], over the scenes and
     /// grids of the rows.
     pub planning: [f64; 3],
@@ -147,7 +147,7 @@ pub struct Measurements {
     /// [`Effort::sweeps`].
     pub run: Option<RunCost>,
     /// Results of the hard cases.
-    pub hard_cases: Vec<Outcome>,
+    pub hard_cases: Vec<HardOutcome>,
     /// Results of the practice cases against brute force.
     pub practice: Vec<PracticeRow>,
     /// Errors of approaches under loads.
@@ -156,7 +156,7 @@ pub struct Measurements {
     /// built-in pairs.
     pub verified: [Vec<Verified>; 2],
     /// Effects of sampling, noise and the choice of curve on measured profiles.
-    pub evidence: Vec<measured::Row>,
+    pub evidence: Vec<measured::MeasuredRow>,
 }
 
 /// Measures everything; `progress` gets the name of each part when it begins.
@@ -234,11 +234,11 @@ fn example(references: &[Reference]) -> Result<&Reference> {
 
 /// Returns the grid over the window of the scene's own points, so that spectral columns are the same
 /// polynomials as at these points.
-fn track<'a>(reference: &Reference, placement: &'a Placement, side: usize) -> Track<'a> {
+fn track<'a>(reference: &Reference, placement: &'a Placement, side: usize) -> RaceTrack<'a> {
     let [xi, eta] = reference.scene.axes();
     let reach = eta.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
     let ends = [xi.first(), xi.last()].map(|v| v.copied().unwrap_or(0.0));
-    Track::new(placement, ends, reach, side)
+    RaceTrack::new(placement, ends, reach, side)
 }
 
 /// Returns every method and tolerance as (name, tolerance, method), the store first.
@@ -260,7 +260,7 @@ fn scene_races(
     effort: &Effort,
     one: &ThreadPool,
     progress: &mut dyn FnMut(&str),
-) -> Result<(Vec<Row>, [f64; 3])> {
+) -> Result<(Vec<AccuracyRow>, [f64; 3])> {
     let placements = references.iter().map(Reference::placement).collect::<Result<Vec<_>>>()?;
     let (mut rows, mut planning) = (Vec::new(), Vec::new());
     for &side in &effort.sides {
@@ -288,9 +288,9 @@ struct SceneRace<'a> {
     reference: &'a Reference,
     placement: &'a Placement,
     side: usize,
-    works: Vec<Work>,
+    works: Vec<TimedWork>,
     /// One row for each contestant, with the times of its runs so far.
-    rows: Vec<Row>,
+    rows: Vec<AccuracyRow>,
     /// Time for choosing a method at full precision \[s\].
     planning: f64,
 }
@@ -303,8 +303,8 @@ impl<'a> SceneRace<'a> {
         let (mut works, mut rows) = (Vec::new(), Vec::new());
         for (name, tolerance, method) in contestants() {
             let choice = method.map(|method| planned(tolerance.unwrap_or(FULL_PRECISION), Some(method)));
-            works.push(choice.map_or(Work::Store, Work::Fill));
-            rows.push(Row {
+            works.push(choice.map_or(TimedWork::Store, TimedWork::Fill));
+            rows.push(AccuracyRow {
                 scene: reference.name.clone(),
                 method: name,
                 tolerance,
@@ -337,7 +337,7 @@ fn growth(reference: &Reference, effort: &Effort) -> Result<Vec<Growth>> {
         .map(|track| {
             let method = Some(Method::Spectral);
             let plan = plan(&placement, track.xi(), track.axis(), FULL_PRECISION, method);
-            [Work::Store, Work::Fill(plan.choice)]
+            [TimedWork::Store, TimedWork::Fill(plan.choice)]
         })
         .collect();
     let mut timings = vec![Timing::NONE; 2 * works.len()];
@@ -362,11 +362,11 @@ fn threads(reference: &Reference, effort: &Effort) -> Result<Vec<Threads>> {
         let mut timings = [Timing::NONE; 2];
         race(&mut timings, effort.seconds, LEAST_RUNS, |k| {
             let start = Instant::now();
-            pools[k].install(|| track.run(Work::Fill(choice)));
+            pools[k].install(|| track.run(TimedWork::Fill(choice)));
             start.elapsed().as_secs_f64()
         });
         let [one, two] = [0, 1].map(|k| {
-            pools[k].install(|| track.run(Work::Fill(choice)));
+            pools[k].install(|| track.run(TimedWork::Fill(choice)));
             track.values().iter().map(|s| s.to_bits()).collect::<Vec<_>>()
         });
         let same_bits = one == two;

@@ -1,6 +1,6 @@
 //! The ratios that the project requires of itself, and whether a run met them.
 
-use super::measurements::{Growth, Measurements, Row, median};
+use super::measurements::{AccuracyRow, Growth, Measurements, median};
 use super::rates::{Motion, Rate};
 use super::spline_cost::SplineCost;
 use wheelrail::separation::{FULL_PRECISION, Method};
@@ -165,7 +165,7 @@ pub(super) fn ratios<'m>(
     other: &'m str,
     side: usize,
 ) -> impl Iterator<Item = (&'m str, f64)> {
-    let at = move |row: &&Row, name: &str| row.method == name && row.side == side;
+    let at = move |row: &&AccuracyRow, name: &str| row.method == name && row.side == side;
     let mine = m.rows.iter().filter(move |row| at(row, method) && row.tolerance == tolerance);
     mine.filter_map(move |row| {
         let other = m.rows.iter().find(|o| at(o, other) && o.scene == row.scene)?;

@@ -24,7 +24,7 @@ const STORED: f64 = 0.1;
 
 /// The work that is timed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Work {
+pub enum TimedWork {
     /// Writes one value to the whole array, column by column.
     Store,
     /// Fills the array by a method.
@@ -36,7 +36,7 @@ pub enum Work {
 /// The times of one contestant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Timing {
-    /// Time of the shortest run \[s\]: [`Track::timed`] on one thread, time on the wall on several.
+    /// Time of the shortest run \[s\]: [`RaceTrack::timed`] on one thread, time on the wall on several.
     pub best: f64,
     /// Sum of the times of all runs \[s\].
     pub spent: f64,
@@ -51,14 +51,14 @@ impl Timing {
 
 /// The grid that is filled: one array for all contestants, with its pages touched before the first run.
 #[derive(Debug)]
-pub struct Track<'a> {
+pub struct RaceTrack<'a> {
     placement: &'a Placement,
     xi: Vec<f64>,
     axis: EtaAxis,
     out: Values,
 }
 
-impl<'a> Track<'a> {
+impl<'a> RaceTrack<'a> {
     /// Makes a grid of n × n points over \[ξ_0, ξ_1\] × \[−reach, reach\] \[mm\].
     pub fn new(placement: &'a Placement, [a, b]: [f64; 2], reach: f64, n: usize) -> Self {
         let xi = equal_steps(a, b, n);
@@ -84,18 +84,18 @@ impl<'a> Track<'a> {
     }
 
     /// Runs once, on the threads of the present rayon pool.
-    pub fn run(&mut self, work: Work) {
+    pub fn run(&mut self, work: TimedWork) {
         match work {
-            Work::Store => {
+            TimedWork::Store => {
                 let value = black_box(STORED);
-                for column in self.out.chunks_mut(self.axis.eta.len().max(1)) {
+                for column in self.out.chunks_mut(self.axis.eta().len().max(1)) {
                     column.fill(value);
                 }
             }
-            Work::Fill(choice) => {
+            TimedWork::Fill(choice) => {
                 choice.fill(self.placement, &self.xi, &self.axis, &mut self.out);
             }
-            Work::PlanAndFill => {
+            TimedWork::PlanAndFill => {
                 let mut plan = plan(self.placement, &self.xi, &self.axis, FULL_PRECISION, None);
                 plan.fill(self.placement, &self.xi, &self.axis, &mut self.out);
             }
@@ -104,7 +104,7 @@ impl<'a> Track<'a> {
     }
 
     /// Returns the time of one run \[s\], measured by [`timed`].
-    pub fn timed(&mut self, work: Work) -> f64 {
+    pub fn timed(&mut self, work: TimedWork) -> f64 {
         timed(|| self.run(work))
     }
 }

@@ -8,7 +8,7 @@ use super::speed::{LEAST_RUNS, Timing, race, timed};
 use wheelrail::case::{Profiles, Run, SILENT};
 use wheelrail::error::{Error, Result};
 use wheelrail::measured::Format;
-use wheelrail::mesh::{Counts, StripMesh, equal_steps};
+use wheelrail::mesh::{StripCounts, StripMesh, equal_steps};
 use wheelrail::patch::{Patch, Window};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Profile, inclination, standards};
@@ -142,7 +142,7 @@ fn parts(pair: &Pair, side: usize, seconds: f64) -> Result<[f64; PARTS.len()]> {
     let mut values = Values::new(side * side);
     values.fill(0.0);
     let mut patch = Patch::new(&placement, APPROACH, &window);
-    StripMesh::new(&placement, &patch, Counts::default())?;
+    StripMesh::new(&placement, &patch, StripCounts::default())?;
     let mut timings = [Timing::NONE; PARTS.len()];
     race(&mut timings, seconds, LEAST_RUNS, |part| {
         timed(|| match PARTS[part] {
@@ -153,7 +153,7 @@ fn parts(pair: &Pair, side: usize, seconds: f64) -> Result<[f64; PARTS.len()]> {
             "plan" => planned = plan(&placement, &xi, &axis, FULL_PRECISION, None),
             "fill" => planned.fill(&placement, &xi, &axis, &mut values),
             "patch" => patch = Patch::new(&placement, APPROACH, &window),
-            _ => drop(StripMesh::new(&placement, &patch, Counts::default())),
+            _ => drop(StripMesh::new(&placement, &patch, StripCounts::default())),
         })
     });
     Ok(timings.map(|timing| timing.best))

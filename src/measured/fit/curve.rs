@@ -5,10 +5,10 @@ use serde::Serialize;
 use super::biarc;
 use super::elements;
 use super::kinks::{Kink, kinks};
-use super::spline::{Piece, pieces};
+use super::spline::{SplinePiece, pieces};
 use crate::error::{Error, Result};
 use crate::measured::options::{ARC_CUTOFFS, CUTOFF_WAVELENGTH, CurveKind, Options};
-use crate::measured::read::points::{Element, Point};
+use crate::measured::read::points::{DesignElement, Point};
 use crate::profile::Segment;
 
 /// Share of an arc chain's tolerance that the smoothing under it may use.
@@ -59,7 +59,7 @@ pub struct CurveRecord {
 /// A curve of elements for a file without elements; an arc chain that cannot keep its tolerance.
 pub(in crate::measured) fn curve(
     points: &[Point],
-    elements: &[Element],
+    elements: &[DesignElement],
     options: &Options,
     without_points: bool,
 ) -> Result<(Vec<Segment>, CurveRecord)> {
@@ -110,7 +110,7 @@ fn residual(residuals: &[f64], points: &[Point]) -> Option<Residual> {
 }
 
 /// Draws the elements themselves.
-fn design(elements: &[Element]) -> Result<(Vec<Segment>, CurveRecord)> {
+fn design(elements: &[DesignElement]) -> Result<(Vec<Segment>, CurveRecord)> {
     if elements.is_empty() {
         let advice = "choose \"smoothing\", \"interpolation\" or \"arcs\"";
         let expected = "a file with design elements (MPD1=…)";
@@ -129,7 +129,7 @@ fn design(elements: &[Element]) -> Result<(Vec<Segment>, CurveRecord)> {
 }
 
 /// Returns the distance of each point from the spline, across its tangent at the point's own knot \[mm\].
-fn spline_residuals(pieces: &[Piece], points: &[Point]) -> Vec<f64> {
+fn spline_residuals(pieces: &[SplinePiece], points: &[Point]) -> Vec<f64> {
     let mut residuals = vec![0.0; points.len()];
     for piece in pieces {
         for k in 0..piece.knots() {
@@ -148,7 +148,7 @@ type Arcs = (Vec<Segment>, Vec<f64>, Option<f64>);
 fn arcs(points: &[Point], corners: &[usize], options: &Options) -> Result<Arcs> {
     let tolerance = options.arc_tolerance();
     let fit = |cutoff: Option<f64>| (pieces(points, corners, cutoff), cutoff);
-    let near = |(pieces, _): &(Vec<Piece>, Option<f64>)| {
+    let near = |(pieces, _): &(Vec<SplinePiece>, Option<f64>)| {
         let worst = spline_residuals(pieces, points).into_iter().fold(0.0, f64::max);
         worst <= SMOOTHING_SHARE * tolerance
     };

@@ -1,7 +1,7 @@
 //! Turns the design elements of a file into a chain of arcs and lines.
 
 use crate::error::Result;
-use crate::measured::read::points::{Element, ElementShape, Point};
+use crate::measured::read::points::{DesignElement, ElementShape, Point};
 use crate::profile::{Arc, Segment, Station};
 
 /// Distance \[mm\] of the points that represent elements in the checks and in the search for orientation.
@@ -16,12 +16,12 @@ const LARGEST_TURN: f64 = 3.0;
 /// An element with its direction of travel.
 #[derive(Debug, Clone, Copy)]
 struct Directed {
-    element: Element,
+    element: DesignElement,
     backwards: bool,
 }
 
 /// Gives the elements directions so that each begins where the one before ends; the order is the file's.
-fn directed(elements: &[Element]) -> Vec<Directed> {
+fn directed(elements: &[DesignElement]) -> Vec<Directed> {
     let mut out: Vec<Directed> = Vec::with_capacity(elements.len());
     for (k, &element) in elements.iter().enumerate() {
         let [a, b] = ends(&element);
@@ -47,7 +47,7 @@ fn on_circle(center: [f64; 2], radius: f64, angle: f64) -> [f64; 2] {
     [center[0] + radius * angle.cos(), center[1] + radius * angle.sin()]
 }
 
-fn ends(element: &Element) -> [[f64; 2]; 2] {
+fn ends(element: &DesignElement) -> [[f64; 2]; 2] {
     match element.shape {
         ElementShape::Line { from, to } => [from, to],
         ElementShape::Arc { center, radius, angles } => angles.map(|angle| on_circle(center, radius, angle)),
@@ -109,7 +109,7 @@ impl Directed {
 }
 
 /// Returns points every [`STEP`] along the elements, numbered by element.
-pub(in crate::measured) fn points(elements: &[Element]) -> Vec<Point> {
+pub(in crate::measured) fn points(elements: &[DesignElement]) -> Vec<Point> {
     let mut out: Vec<Point> = Vec::new();
     for (k, directed) in directed(elements).iter().enumerate() {
         let own = directed.points(k + 1);
@@ -125,7 +125,7 @@ pub(in crate::measured) fn points(elements: &[Element]) -> Vec<Point> {
 ///
 /// # Errors
 /// A line element with two equal ends, with its line in the file.
-pub(in crate::measured) fn segments(elements: &[Element]) -> Result<Vec<Segment>> {
+pub(in crate::measured) fn segments(elements: &[DesignElement]) -> Result<Vec<Segment>> {
     let mut chain = directed(elements);
     let first = chain.first().map(|first| ends(&first.element)[usize::from(first.backwards)]);
     if let (Some(first), Some(last)) = (first, chain.last())

@@ -26,7 +26,7 @@ pub(in crate::measured) struct Smoother<'a> {
 
 /// A natural cubic spline, given at its knots.
 #[derive(Debug, Clone)]
-pub(in crate::measured) struct Fit {
+pub(in crate::measured) struct CubicSpline {
     /// Values f at the knots.
     pub value: Vec<Twice>,
     /// Second derivatives γ at the knots, 0 at the ends.
@@ -81,13 +81,13 @@ impl<'a> Smoother<'a> {
     }
 
     /// Fits the spline to values, with natural ends.
-    pub fn fit(&self, y: &[f64]) -> Fit {
+    pub fn fit(&self, y: &[f64]) -> CubicSpline {
         self.fit_between(y, [Twice::ZERO; 2])
     }
 
     /// Fits the spline to values, with given second derivatives at its ends; if these are not 0, it must be
     /// an interpolation.
-    pub fn fit_between(&self, y: &[f64], ends: [Twice; 2]) -> Fit {
+    pub fn fit_between(&self, y: &[f64], ends: [Twice; 2]) -> CubicSpline {
         let n = y.len();
         let mut second = vec![Twice::ZERO; n];
         (second[0], second[n - 1]) = (ends[0], ends[1]);
@@ -126,11 +126,11 @@ impl<'a> Smoother<'a> {
                 value[j + k] -= slack * q * second[j + 1];
             }
         }
-        Fit { value, second }
+        CubicSpline { value, second }
     }
 }
 
-impl Fit {
+impl CubicSpline {
     /// Returns the coefficients of the cubic from knot k to k + 1, about knot k.
     pub fn cubic(&self, k: usize, step: f64) -> [f64; 4] {
         let (f, g) = (&self.value, &self.second);

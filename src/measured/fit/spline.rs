@@ -1,7 +1,7 @@
 //! Fits parametric cubic splines through or near points, in pieces between corners.
 
 use super::parabola::Parabola;
-use super::smoothing::{Fit, Smoother, penalty};
+use super::smoothing::{CubicSpline, Smoother, penalty};
 use crate::error::Result;
 use crate::measured::clean::checks::distance;
 use crate::measured::read::points::Point;
@@ -17,24 +17,28 @@ const KNOTS: f64 = 0.1;
 /// κ (λ_c/2π)², 30 µm on a 20 mm radius at λ_c = 5 mm. So a smoothing spline is fitted beyond its ends too,
 /// to points on the parabolas that best fit its last λ_c, and is cut off there.
 #[derive(Debug, Clone)]
-pub(in crate::measured) struct Piece {
+pub(in crate::measured) struct SplinePiece {
     /// Index of the first point of the piece among all points.
     pub from: usize,
     steps: Vec<f64>,
-    x: Fit,
-    z: Fit,
+    x: CubicSpline,
+    z: CubicSpline,
 }
 
 /// Fits the pieces between `corners` (indices of points); a cut-off wavelength of `None` interpolates.
 ///
 /// At a corner both pieces end in one point: the mean of the points where each would end alone.
-pub(in crate::measured) fn pieces(points: &[Point], corners: &[usize], cutoff: Option<f64>) -> Vec<Piece> {
+pub(in crate::measured) fn pieces(
+    points: &[Point],
+    corners: &[usize],
+    cutoff: Option<f64>,
+) -> Vec<SplinePiece> {
     let mut ends = vec![0];
     ends.extend(corners);
     ends.push(points.len() - 1);
     let ranges: Vec<[usize; 2]> = ends.windows(2).map(|pair| [pair[0], pair[1]]).collect();
-    let free = ranges.iter().map(|&range| Piece::new(points, range, cutoff, [None, None]));
-    let free: Vec<Piece> = free.collect();
+    let free = ranges.iter().map(|&range| SplinePiece::new(points, range, cutoff, [None, None]));
+    let free: Vec<SplinePiece> = free.collect();
     if corners.is_empty() || cutoff.is_none() {
         return free;
     }
@@ -47,7 +51,7 @@ pub(in crate::measured) fn pieces(points: &[Point], corners: &[usize], cutoff: O
         .collect();
     let joint = |k: Option<usize>| k.and_then(|k| joints.get(k).copied());
     let pinned = |(k, &range): (usize, &[usize; 2])| {
-        Piece::new(points, range, cutoff, [joint(k.checked_sub(1)), joint(Some(k))])
+        SplinePiece::new(points, range, cutoff, [joint(k.checked_sub(1)), joint(Some(k))])
     };
     ranges.iter().enumerate().map(pinned).collect()
 }
@@ -90,7 +94,7 @@ fn beyond(points: impl Iterator<Item = Point>, reach: f64) -> Vec<Point> {
     (1..near.len()).map(at).collect()
 }
 
-impl Piece {
+impl SplinePiece {
     /// Fits the piece in two passes: over the chords of the points, which noise makes too long, then over the
     /// chords of the first pass. If noise is as large as the distance of the points, the first pass brings
     /// two neighbours within a tenth of their chord, and its own chords measure nothing. Then the first pass

@@ -29,7 +29,7 @@ enum Style {
 
 /// What the present header says.
 #[derive(Debug, Clone)]
-struct Header {
+struct MiniProfHeader {
     /// Indices of X and Y among the columns.
     columns: [usize; 2],
     /// Number of columns that `ColumnDef` names.
@@ -47,7 +47,7 @@ struct Header {
 struct Reader {
     style: Style,
     points: Points,
-    header: Header,
+    header: MiniProfHeader,
     in_data: bool,
     /// Index of the first point under the present header.
     from: usize,
@@ -62,7 +62,7 @@ pub(in crate::measured) fn read(text: &str) -> Result<Points> {
     let old_data = if style == Style::Old { first_old_row(text) } else { 0 };
     let points = Points::new(Format::MiniProf, Some(1.0));
     let in_data = style == Style::Old;
-    let mut reader = Reader { style, points, header: Header::default(), in_data, from: 0 };
+    let mut reader = Reader { style, points, header: MiniProfHeader::default(), in_data, from: 0 };
     for line in lines(text).filter(|line| line.number >= old_data) {
         reader.line(line)?;
     }
@@ -147,7 +147,7 @@ impl Reader {
             if self.points.at.len() > self.from {
                 self.points.sections.push(self.points.at.len());
             }
-            (self.header, self.from, self.in_data) = (Header::default(), self.points.at.len(), false);
+            (self.header, self.from, self.in_data) = (MiniProfHeader::default(), self.points.at.len(), false);
         } else {
             let expected = "[FileInfo], [Profile1Info], [Profile1Points], …";
             return Err(line.error(line.text, expected, "delete the section"));
@@ -190,14 +190,14 @@ fn moved(shape: ElementShape, dx: f64, dz: f64) -> ElementShape {
     }
 }
 
-impl Default for Header {
+impl Default for MiniProfHeader {
     fn default() -> Self {
         let (elements, element_count) = (Vec::new(), None);
         Self { columns: [0, 1], width: 2, offset: [0.0; 2], count: None, elements, element_count }
     }
 }
 
-impl Header {
+impl MiniProfHeader {
     fn set(&mut self, line: Line, key: &str, value: &str) -> Result<()> {
         // Keys come in several spellings: XOffset, Xoffset.
         let key = key.to_lowercase();

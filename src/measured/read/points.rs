@@ -41,7 +41,7 @@ impl Point {
 
 /// One element of a design profile (MiniProf `MPDk=`), in the file's own axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Element {
+pub struct DesignElement {
     /// Shape of the element.
     pub shape: ElementShape,
     /// Line of the element in the file, from 1.
@@ -92,7 +92,7 @@ pub struct Points {
     /// Index of the first point of each section; one section unless the format has several.
     pub sections: Vec<usize>,
     /// Design elements, in the file's numbering.
-    pub elements: Vec<Element>,
+    pub elements: Vec<DesignElement>,
     /// Notes on oddities.
     pub notes: Vec<Note>,
 }
@@ -129,7 +129,7 @@ impl Points {
             let error = line.error("one more element", expected, "give the points instead");
             return Err(error.of_kind(ErrorKind::Limit));
         }
-        self.elements.push(Element { shape, line: line.number });
+        self.elements.push(DesignElement { shape, line: line.number });
         Ok(())
     }
 

@@ -1,19 +1,7 @@
 //! Readers meet bytes that no instrument wrote.
 
 use super::*;
-
-/// splitmix64.
-pub(super) struct Random(pub(super) u64);
-
-impl Random {
-    pub(super) fn below(&mut self, n: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) % n.max(1) as u64) as usize
-    }
-}
+use wheelrail_report::random::Random;
 
 const SNIPPETS: [&str; 18] = [
     "\n",
@@ -62,7 +50,7 @@ fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
 #[test]
 fn every_reader_survives_a_hundred_thousand_mutations() {
     const ROUNDS: usize = 100_008;
-    let mut random = Random(2026);
+    let mut random = Random::new(2026);
     let (mut good, mut whole) = (0, 0);
     for round in 0..ROUNDS {
         let (name, original, side) = FILES[round % FILES.len()];

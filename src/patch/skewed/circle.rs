@@ -37,7 +37,7 @@ pub(super) struct Circle {
 
 /// A point of the tangent plane, \[mm\].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Place {
+pub(super) struct PlanePoint {
     pub(super) xi: f64,
     pub(super) eta: f64,
 }
@@ -104,12 +104,12 @@ impl<'a> Turned<'a> {
     }
 
     /// Returns the place at t on a circle.
-    pub(super) fn place(&self, circle: &Circle, t: f64) -> Place {
+    pub(super) fn place(&self, circle: &Circle, t: f64) -> PlanePoint {
         let share = 2.0 / (1.0 + t * t);
         let along = circle.p + circle.radius * share * t * t * self.tilt.im;
         let across = circle.radius * share * t;
         let turned = self.skew * Vector2::new(along, across);
-        Place { xi: turned.x, eta: turned.y }
+        PlanePoint { xi: turned.x, eta: turned.y }
     }
 
     /// Returns ζ of the wheel at t on a circle \[mm\].

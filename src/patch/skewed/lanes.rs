@@ -24,13 +24,13 @@ const INSIDE: f64 = 1e-6;
 const XI_ROUNDINGS: f64 = 64.0;
 
 /// The valleys of one interval, the deepest first.
-type Group = Vec<usize>;
+type ValleyGroup = Vec<usize>;
 
 /// A band that is not finished yet.
 struct Lane {
     band: Band,
     /// The valleys of its interval over the last stretch.
-    group: Group,
+    group: ValleyGroup,
     /// The interval of η near the end of the last stretch \[mm\].
     edge: [f64; 2],
 }
@@ -46,7 +46,7 @@ struct Inside {
 }
 
 /// Walks over the stretches by ascending ξ and builds the bands.
-struct Walk<'w, 'a> {
+struct LaneWalk<'w, 'a> {
     outline: &'w mut Outline<'a>,
     events: Events,
     lanes: Vec<Lane>,
@@ -64,7 +64,7 @@ pub(in crate::patch) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<(usi
     let mut all = [&events.xi[..], &rail_steps, &[a, b]].concat();
     all.sort_by(f64::total_cmp);
     all.dedup();
-    let mut walk = Walk { outline, events, lanes: Vec::new(), done: Vec::new() };
+    let mut walk = LaneWalk { outline, events, lanes: Vec::new(), done: Vec::new() };
     let shortest = XI_ROUNDINGS * f64::EPSILON * placement.rolling_radius();
     for pair in all.windows(2).filter(|pair| pair[1] - pair[0] > shortest) {
         let groups = groups(walk.outline, pair[0] + (pair[1] - pair[0]) / 2.0);
@@ -87,7 +87,7 @@ fn searched(outline: &Outline<'_>) -> Option<[f64; 2]> {
 }
 
 /// Returns the valleys inside the patch at ξ, grouped by interval, the groups by ascending η.
-fn groups(outline: &mut Outline<'_>, xi: f64) -> Vec<Group> {
+fn groups(outline: &mut Outline<'_>, xi: f64) -> Vec<ValleyGroup> {
     let near = TOUCH * outline.slicer.placement().rolling_radius();
     let Some(skewed) = &outline.slicer.skewed else { return Vec::new() };
     let valleys = &skewed.valleys;
@@ -120,10 +120,10 @@ fn groups(outline: &mut Outline<'_>, xi: f64) -> Vec<Group> {
     groups.into_iter().map(deepest_first).collect()
 }
 
-impl Walk<'_, '_> {
+impl LaneWalk<'_, '_> {
     /// Handles the event at the beginning of a stretch, and continues or opens a band for each of the
     /// stretch's groups.
-    fn step(&mut self, [from, to]: [f64; 2], groups: Vec<Group>, rail_steps: bool) {
+    fn step(&mut self, [from, to]: [f64; 2], groups: Vec<ValleyGroup>, rail_steps: bool) {
         let inside = INSIDE * (to - from);
         let begins: Vec<[f64; 2]> = groups.iter().map(|group| self.interval(group, from + inside)).collect();
         let lanes = std::mem::take(&mut self.lanes);
@@ -174,7 +174,7 @@ impl Walk<'_, '_> {
     }
 
     /// Returns the interval of a group at ξ \[mm\]; NaN outside the patch.
-    fn interval(&mut self, group: &Group, xi: f64) -> [f64; 2] {
+    fn interval(&mut self, group: &ValleyGroup, xi: f64) -> [f64; 2] {
         let edges = self.outline.edges(group.first().copied(), xi);
         edges.map_or([f64::NAN; 2], |edges| edges.map(|edge| edge.eta))
     }
@@ -185,7 +185,7 @@ impl Walk<'_, '_> {
         &mut self,
         xi: f64,
         lanes: &[Lane],
-        groups: &[Group],
+        groups: &[ValleyGroup],
         begins: &[[f64; 2]],
         links: &[[usize; 2]],
     ) -> Vec<(usize, usize, [f64; 2])> {
@@ -219,7 +219,7 @@ impl Walk<'_, '_> {
     }
 
     /// Returns the lower (0) or upper (1) edge of a group at ξ \[mm\].
-    fn outer(&mut self, group: &Group, xi: f64, side: usize) -> Option<f64> {
+    fn outer(&mut self, group: &ValleyGroup, xi: f64, side: usize) -> Option<f64> {
         self.outline.edges(group.first().copied(), xi).map(|edges| edges[side].eta)
     }
 
@@ -246,7 +246,7 @@ impl Walk<'_, '_> {
     }
 
     /// Returns a new band that begins at ξ. Its slice is taken at `at`, which is ξ or the next number.
-    fn opened(&mut self, group: &Group, xi: f64, fork: Option<[f64; 2]>, at: f64) -> Band {
+    fn opened(&mut self, group: &ValleyGroup, xi: f64, fork: Option<[f64; 2]>, at: f64) -> Band {
         let (side, end) = self.end(group, xi, at, [f64::NAN; 2]);
         Band {
             xi: [xi; 2],
@@ -258,7 +258,7 @@ impl Walk<'_, '_> {
     }
 
     /// Returns the side of a band that begins or ends at ξ without a fork, and what bounds the band.
-    fn end(&mut self, group: &Group, xi: f64, at: f64, inside: [f64; 2]) -> ([f64; 2], End) {
+    fn end(&mut self, group: &ValleyGroup, xi: f64, at: f64, inside: [f64; 2]) -> ([f64; 2], End) {
         let valley = group.first().copied();
         let end = self.end_at(xi);
         let edges = self.outline.edges(valley, at).filter(|_| end != End::Tip);

@@ -27,7 +27,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
 /// s and its slope at one place of a valley or ridge.
 #[derive(Debug, Clone, Copy)]
-struct Sample {
+struct ValleySample {
     /// Profile abscissa \[mm\], or t on a circle.
     at: f64,
     xi: f64,
@@ -38,7 +38,7 @@ struct Sample {
 }
 
 /// One leg over one branch of the rail.
-struct Stretch<'v> {
+struct RailStretch<'v> {
     valleys: &'v Valleys<'v>,
     leg: &'v Leg,
     rail: &'v Branch,
@@ -71,7 +71,7 @@ pub(crate) fn monotone(
         let joints = rail.joints([a, b]).map(|(xi, _)| xi).filter(inside);
         for right in joints.chain([b]) {
             let branch = rail.branch_at(left + (right - left) / 2.0).filter(|_| right > left);
-            let stretch = branch.map(|rail| Stretch { valleys, leg, rail });
+            let stretch = branch.map(|rail| RailStretch { valleys, leg, rail });
             turns.clear();
             if stretch.is_some_and(|stretch| stretch.turns([left, right], &matters, &mut turns)) {
                 turns.retain(|turn| left < *turn && *turn < right);
@@ -86,7 +86,7 @@ pub(crate) fn monotone(
     }
 }
 
-impl Stretch<'_> {
+impl RailStretch<'_> {
     /// Returns whether the stretch matters; if it does, appends the ξ inside it at which s turns.
     fn turns(&self, xi: [f64; 2], matters: &impl Fn([f64; 2]) -> bool, turns: &mut Vec<f64>) -> bool {
         let ends = xi.map(|xi| self.sample(self.place_at(xi)));
@@ -122,7 +122,7 @@ impl Stretch<'_> {
     }
 
     /// Appends the two ξ at which the slope changes sign around the least |slope|, if it does.
-    fn hidden_roots(&self, [before, here, after]: [Sample; 3], turns: &mut Vec<f64>) {
+    fn hidden_roots(&self, [before, here, after]: [ValleySample; 3], turns: &mut Vec<f64>) {
         let sign = here.slope.signum();
         let [p, q, r] = [before, here, after].map(|sample| sign * sample.slope);
         // All have one sign, the middle one is nearest to 0, and the parabola through them nearer still.
@@ -168,7 +168,7 @@ impl Stretch<'_> {
         }
     }
 
-    fn sample(&self, at: f64) -> Sample {
+    fn sample(&self, at: f64) -> ValleySample {
         let turned = &self.valleys.turned;
         let (circle, t, slope) = match self.leg.piece {
             Some(piece) => {
@@ -179,6 +179,6 @@ impl Stretch<'_> {
         };
         let xi = turned.place(&circle, t).xi;
         let gap = turned.height(&circle, t) - self.rail.height(xi);
-        Sample { at, xi, gap, slope: slope - self.rail.chord_slope(xi, xi) }
+        ValleySample { at, xi, gap, slope: slope - self.rail.chord_slope(xi, xi) }
     }
 }

@@ -42,7 +42,7 @@ impl Leg {
 }
 
 /// The path over one run of pieces.
-pub(super) struct Path {
+pub(super) struct ValleyPath {
     legs: Vec<Leg>,
     /// Valleys that are not part of the path: they lie behind ends that lines of constant ξ leave and enter
     /// again.
@@ -51,7 +51,7 @@ pub(super) struct Path {
     pub(super) ends: [Circle; 2],
 }
 
-impl Path {
+impl ValleyPath {
     /// Makes the path over a run of pieces, from the left end of its surface to the right end.
     pub(super) fn new(turned: &Turned<'_>, run: &Range<usize>) -> Self {
         let pieces = &turned.section.pieces;

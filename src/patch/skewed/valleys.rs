@@ -17,8 +17,8 @@
 
 use std::ops::Range;
 
-use super::circle::{Circle, FARTHEST, Place, Turned};
-use super::path::{Leg, Path, circle_legs};
+use super::circle::{Circle, FARTHEST, PlanePoint, Turned};
+use super::path::{Leg, ValleyPath, circle_legs};
 use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
 use crate::separation::Evaluator;
@@ -65,7 +65,7 @@ impl<'a> Valleys<'a> {
         let (mut creases, mut rims) = (Vec::new(), Vec::new());
         let runs = runs(&turned);
         for (k, run) in runs.iter().enumerate() {
-            let path = Path::new(&turned, run);
+            let path = ValleyPath::new(&turned, run);
             let chains = path.monotone(turned.rounding()).into_iter();
             creases.extend(chains.map(|(legs, is_valley)| Crease::new(legs, is_valley)));
             rims.extend(path.ends);
@@ -154,7 +154,7 @@ impl<'a> Valleys<'a> {
 
     /// Returns dη/dξ of the end or step of the wheel's surface that is next to a point; NaN if there is none.
     pub(crate) fn rim_slope(&self, xi: f64, eta: f64) -> f64 {
-        let off = |place: &Place| (place.eta - eta).abs();
+        let off = |place: &PlanePoint| (place.eta - eta).abs();
         let nearest = self.crossings(xi).min_by(|(p, _), (q, _)| off(p).total_cmp(&off(q)));
         nearest.map_or(f64::NAN, |(_, t)| self.turned.rim_slope(t))
     }
@@ -184,7 +184,7 @@ impl<'a> Valleys<'a> {
     }
 
     /// Returns the places where the line of constant ξ meets ends and steps, with t.
-    fn crossings(&self, xi: f64) -> impl Iterator<Item = (Place, f64)> {
+    fn crossings(&self, xi: f64) -> impl Iterator<Item = (PlanePoint, f64)> {
         self.rims.iter().flat_map(move |rim| {
             let near = self.turned.crossings(rim, xi).into_iter().filter(|t| t.abs() <= FARTHEST);
             near.map(|t| (self.turned.place(rim, t), t))

@@ -28,7 +28,7 @@ fn apart(one: &Profile, other: &Profile, beyond: f64) -> [f64; 2] {
     let (mut hint, mut most, mut outside) = (0, 0f64, 0f64);
     for mark in trace(one, 0.0371) {
         let at = mark.station;
-        let found = beside(&marks, [at.x, at.z], hint);
+        let found = beside(&marks, [at.x, at.z], hint).expect("marks");
         hint = found.mark;
         most = most.max(found.across.abs());
         if at.x.abs() > beyond {

@@ -25,11 +25,11 @@ pub struct Branch {
     pub shape: BranchShape,
     pub(super) begins_segment: bool,
     pub(super) ends_segment: bool,
-    kind: Kind,
+    kind: BranchKind,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum BranchKind {
     Contact,
     Plain,
 }
@@ -212,7 +212,7 @@ impl Branch {
             let rise = run * ((known.sin + sin) / (known.cos + cos));
             ArcBranch { anchor: [known.x + run, known.z + rise], sin, cos, radius: arc.radius, curvature }
         };
-        let kind = if contact { Kind::Contact } else { Kind::Plain };
+        let kind = if contact { BranchKind::Contact } else { BranchKind::Plain };
         let shape = BranchShape::Arc(shape);
         let mut branch = Self { xi, segment, shape, begins_segment: begins, ends_segment: ends, kind };
         branch.keep_ends([start.z, end.z]);
@@ -234,7 +234,7 @@ impl Branch {
     fn keep_ends(&mut self, [from, to]: [f64; 2]) {
         let [a, b] = self.xi;
         if let BranchShape::Arc(line) = &mut self.shape
-            && self.kind == Kind::Plain
+            && self.kind == BranchKind::Plain
             && line.curvature == 0.0
             && line.cos < STEEP_LINE
         {
@@ -256,9 +256,9 @@ impl Branch {
             None => seen_from(polynomial, frame),
         };
         let [xi, zeta] = [&exact[0], &exact[1]].map(|c| c.iter().map(|c| c.high).collect::<Vec<_>>());
-        let kind = if contact.is_some() { Kind::Contact } else { Kind::Plain };
+        let kind = if contact.is_some() { BranchKind::Contact } else { BranchKind::Plain };
         let mut parts = rising_parts([&xi, &zeta], range);
-        parts.retain(|[a, b]| kind == Kind::Plain || (*a <= 0.0 && *b >= 0.0));
+        parts.retain(|[a, b]| kind == BranchKind::Plain || (*a <= 0.0 && *b >= 0.0));
         let whole = PolynomialBranch { xi, zeta, t: range, ends: [f64::NAN; 2], exact };
         let branch = |t: [f64; 2], whole: PolynomialBranch| {
             let ends = t.map(|t| value(&whole.xi, t));
@@ -274,7 +274,7 @@ impl Branch {
     }
 
     pub(super) fn is_contact(&self, segment: usize) -> bool {
-        self.kind == Kind::Contact && self.segment == segment
+        self.kind == BranchKind::Contact && self.segment == segment
     }
 
     /// Computes ζ(ξ) \[mm\].

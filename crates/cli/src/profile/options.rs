@@ -11,18 +11,18 @@ use wheelrail::scene;
 
 /// Rail or wheel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum Body {
+pub(super) enum BodyOption {
     /// Material below.
     Rail,
     /// Material above.
     Wheel,
 }
 
-impl From<Body> for Side {
-    fn from(body: Body) -> Self {
+impl From<BodyOption> for Side {
+    fn from(body: BodyOption) -> Self {
         match body {
-            Body::Rail => Self::Rail,
-            Body::Wheel => Self::Wheel,
+            BodyOption::Rail => Self::Rail,
+            BodyOption::Wheel => Self::Wheel,
         }
     }
 }

@@ -65,9 +65,9 @@ fn about(source: &Source) -> String {
 fn residual(marks: &[Mark], points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut hint = 0;
     let residual = |point: &[f64; 2]| {
-        let found = beside(marks, *point, hint);
+        let found = beside(marks, *point, hint)?;
         hint = found.mark;
-        [found.s, found.across]
+        Some([found.s, found.across])
     };
-    points.iter().map(residual).collect()
+    points.iter().filter_map(residual).collect()
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::options::{Body, MeasuredArguments};
+use super::options::{BodyOption, MeasuredArguments};
 use crate::output::refuse_taken;
 use wheelrail::error::{Error, Result};
 use wheelrail::files::read_bytes;
@@ -20,7 +20,7 @@ pub(crate) struct SourceArguments {
     profile: String,
     /// Which body it is of; a built-in name says so itself, and so do files such as .ban, .whl, .prr, .prw.
     #[arg(long, ignore_case = true)]
-    side: Option<Body>,
+    side: Option<BodyOption>,
     #[command(flatten)]
     measured: MeasuredArguments,
 }
@@ -116,7 +116,8 @@ impl SourceArguments {
             return Err(Error::new(&self.profile, "no file and no built-in profile", expected, advice));
         }
         self.measured.reject(&self.profile)?;
-        let (side, body) = if rail { (Side::Rail, Body::Rail) } else { (Side::Wheel, Body::Wheel) };
+        let (side, body) =
+            if rail { (Side::Rail, BodyOption::Rail) } else { (Side::Wheel, BodyOption::Wheel) };
         if self.side.is_some_and(|given| given != body) {
             let found = if rail { "the name of a rail" } else { "the name of a wheel" };
             return Err(Error::new(

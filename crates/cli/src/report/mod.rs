@@ -21,7 +21,7 @@ pub(super) fn report(out: Option<&Path>, splice: Option<&Path>) -> Result<Outcom
     let target = out.unwrap_or(Path::new("output/report"));
     // Whatever is wrong with the targets is to be known before two minutes of measuring.
     let folder = Folder::create(target, REPORT_FOLDER)?;
-    let splice = splice.map(splice::Target::open).transpose()?;
+    let splice = splice.map(splice::SplicedFile::open).transpose()?;
     let origin = origin::origin();
     let progress = Progress::of("report", "measurements");
     let measurements = measure(&Effort::full(), &mut |step| progress.at(step))?;

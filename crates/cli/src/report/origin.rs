@@ -5,7 +5,7 @@ use std::process::Command;
 use std::thread::available_parallelism;
 
 use wheelrail::files::read_text;
-use wheelrail_report::page::Origin;
+use wheelrail_report::page::PageOrigin;
 
 /// Load from which other processes disturb what is measured: one of two cores taken half of the time.
 const QUIET: f64 = 0.5;
@@ -14,7 +14,7 @@ const QUIET: f64 = 0.5;
 const LARGEST_FILE: usize = 1 << 24;
 
 /// Machine, compiler, commit and command.
-pub(super) fn origin() -> Origin {
+pub(super) fn origin() -> PageOrigin {
     vec![
         ("command", command()),
         ("version", format!("wheelrail {}", env!("CARGO_PKG_VERSION"))),

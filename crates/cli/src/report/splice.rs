@@ -14,11 +14,11 @@ const LARGEST_PAGE: usize = 1 << 26;
 
 /// A file with both markers.
 #[derive(Debug)]
-pub(super) struct Target {
+pub(super) struct SplicedFile {
     path: PathBuf,
 }
 
-impl Target {
+impl SplicedFile {
     /// Checks that the file can be read and has its markers.
     ///
     /// # Errors
@@ -31,7 +31,7 @@ impl Target {
     /// Replaces what stands between the markers: the file is read anew, and replaced in one step.
     ///
     /// # Errors
-    /// Those of [`Target::open`]; the folder cannot be written.
+    /// Those of [`SplicedFile::open`]; the folder cannot be written.
     pub(super) fn replace(&self, generated: &str) -> Result<()> {
         write_file(&self.path, self.spliced(generated)?.as_bytes())
     }

@@ -1,6 +1,6 @@
 //! The usual curves of a sweep as a picture.
 
-use super::table::Table;
+use super::table::SweepTable;
 use crate::answer::counted;
 use wheelrail::error::{Error, Result};
 use wheelrail::export::{CurvesPanel, CurvesPicture, PlottedCurve, jumps};
@@ -32,7 +32,7 @@ const OF_SIDE: [(&str, &str, Value); 3] = [
 ];
 
 /// Makes the picture of a table's positions, whose lateral displacements have to ascend.
-pub(super) fn picture(table: &Table, title: &str) -> Result<CurvesPicture> {
+pub(super) fn picture(table: &SweepTable, title: &str) -> Result<CurvesPicture> {
     let all = &table.positions;
     if let Some(pair) = all.windows(2).find(|pair| pair[0].lateral >= pair[1].lateral) {
         let found = format!("{} mm after {} mm", pair[1].lateral, pair[0].lateral);
@@ -78,7 +78,7 @@ pub(super) fn picture(table: &Table, title: &str) -> Result<CurvesPicture> {
 }
 
 /// Finds lateral displacement \[mm\] and lowest contact of each side, at evenly chosen positions.
-fn lowest(table: &Table) -> Result<Vec<(f64, Vec<SweepRow>)>> {
+fn lowest(table: &SweepTable) -> Result<Vec<(f64, Vec<SweepRow>)>> {
     let stride = table.positions.len().div_ceil(MOST_DRAWN).max(1);
     let mut sweep = Sweep::new(table.system, table.selection, table.conicity.as_ref());
     let mut rows_at = |position: &Position| {

@@ -14,7 +14,7 @@ use super::output::{PictureFormat, refuse_taken};
 use super::progress::Progress;
 use crate::answer::{Outcome, complain, folder_of, print_to_reader};
 use positions::{lateral_range, read_positions};
-use table::Table;
+use table::SweepTable;
 use wheelrail::case::{Case, Place};
 use wheelrail::error::{Error, Result};
 use wheelrail::files::{Folder, NewFile, PATCHES_FOLDER};
@@ -61,13 +61,13 @@ impl SweepArguments {
 }
 
 /// What a sweep writes besides stdout, all of it under temporary names until the sweep has ended.
-struct Outputs {
+struct SweepOutputs {
     table: Option<NewFile>,
     picture: Option<(PictureFormat, NewFile)>,
     patches: Option<Folder>,
 }
 
-impl Outputs {
+impl SweepOutputs {
     /// Opens the outputs: what is wrong with them is to be known before an hour's work.
     ///
     /// # Errors
@@ -108,7 +108,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     let progress = Progress::of("sweep", "scene");
     let path = arguments.scene.as_path();
     let scene = scene::load(path)?;
-    let mut outputs = Outputs::create(arguments, &scene)?;
+    let mut outputs = SweepOutputs::create(arguments, &scene)?;
     let in_scene = |error: Error| error.within(path.display());
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let case = scene::resolve(&scene, folder_of(path), &name).map_err(in_scene)?.read_from(path);
@@ -121,7 +121,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     let asked = case.question();
     let ellipses = asked.approach.map(|approach| (approach, asked.modulus()));
     let selection = Selection { within: case.standing().within, apart: ONE_CONTACT };
-    let table = Table { system, conicity, selection, positions, ellipses };
+    let table = SweepTable { system, conicity, selection, positions, ellipses };
     if let Some(folder) = &outputs.patches {
         patches::write(folder, &scene, &case, &table, &progress)?;
     }

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::super::png::png;
 use super::super::progress::Progress;
-use super::table::Table;
+use super::table::SweepTable;
 use crate::answer::{complain, counted};
 use wheelrail::case::{self, Case, Place, Run, SILENT, Standing};
 use wheelrail::error::{Error, Result};
@@ -33,7 +33,7 @@ pub(super) fn write(
     folder: &Folder,
     scene: &Scene,
     case: &Case,
-    table: &Table,
+    table: &SweepTable,
     progress: &Progress,
 ) -> Result<()> {
     let positions = &table.positions;
@@ -67,7 +67,7 @@ fn patch(
     folder: &Folder,
     scene: &Scene,
     case: &Case,
-    table: &Table,
+    table: &SweepTable,
     position: &Position,
     name: &str,
 ) -> Result<Written> {

@@ -26,7 +26,7 @@ const BLOCK: usize = 8192;
 const CHUNK: usize = 256;
 
 /// A sweep ready to run.
-pub(super) struct Table<'a> {
+pub(super) struct SweepTable<'a> {
     pub system: &'a Arc<WheelsetOnTrack>,
     pub conicity: Option<Conicity>,
     pub selection: Selection,
@@ -35,7 +35,7 @@ pub(super) struct Table<'a> {
     pub ellipses: Option<(ApproachBy, f64)>,
 }
 
-impl Table<'_> {
+impl SweepTable<'_> {
     /// Hands the table's text to `sink`, block by block, as long as it wants more.
     pub(super) fn blocks(
         &self,

@@ -95,11 +95,7 @@ fn approaches_under_load_are_those_of_tamaas() {
         let approach = solved[&format!("{number:03}")];
         let key = region.loaded.key(region.contact());
         let error = (region.site.approach() / approach - 1.0).abs();
-        assert!(
-            error <= BOUNDS[usize::from(region.joined())],
-            "{key}: {} is not {approach}",
-            region.site.approach()
-        );
+        assert!(error <= BOUND, "{key}: {} is not {approach}", region.site.approach());
         let known = region.solved;
         assert!(
             (known / approach - 1.0).abs() < 1e-4,

@@ -1,7 +1,7 @@
 //! Random rough pairs, from their seeds.
 
-use super::super::brute::Random;
 use super::*;
+use wheelrail_report::random::Random;
 
 /// A path that is sampled: its direction turns by a curvature over each length.
 struct Path {
@@ -145,7 +145,7 @@ pub(super) struct Pair3 {
 }
 
 pub(super) fn random_pair(seed: u64) -> Result<Pair3> {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let noise = 1e-3 * [0.0, 1.0, 5.0, 20.0][random.between(0.0, 4.0) as usize];
     let spacing = [0.05, 0.1, 0.3, 1.0][random.between(0.0, 4.0) as usize];
     let straight = random.between(0.0, 1.0) < 0.2;
