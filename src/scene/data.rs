@@ -243,7 +243,7 @@ pub struct WheelsetData {
     /// "solve": both wheels touch; "neglect": 0; or rad about the track's y axis, > 0 lowers the right-hand wheel.
     #[serde(default)]
     pub roll: RollData,
-    /// Vertical load of the axle, N, in the place of [patch]: both wheels sink alike, and δ is an estimate.
+    /// Vertical load of the axle, N, in the place of `[patch]`: both wheels sink alike, and δ is an estimate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load: Option<f64>,
     /// Near misses up to this vertical gap, mm, are reported.
