@@ -26,13 +26,40 @@ pub struct Case {
     pub(crate) file: Option<PathBuf>,
 }
 
-/// Both profiles, and what was done to measured ones.
+/// The profiles of both sides, the right-hand one's first; a single wheel and a symmetric wheelset have one pair.
 #[derive(Debug, Clone)]
 pub struct Profiles {
+    /// The right-hand side's, or both sides'.
+    pub right: SideProfiles,
+    /// The left-hand side's where they are others.
+    pub left: Option<SideProfiles>,
+}
+
+/// Rail and wheel of one side, and what was done to measured ones.
+#[derive(Debug, Clone)]
+pub struct SideProfiles {
     /// Rail and wheel.
     pub pair: Pair,
     /// The records of rail and wheel; `None` for a drawn profile.
     pub measured: [Option<Record>; 2],
+}
+
+impl Profiles {
+    /// Makes the profiles of both sides from a pair that nothing was measured of.
+    pub fn drawn(pair: Pair) -> Self {
+        Self { right: SideProfiles { pair, measured: [None, None] }, left: None }
+    }
+
+    /// Gives those of a side, "left" or any other.
+    pub fn on(&self, side: &str) -> &SideProfiles {
+        self.left.as_ref().filter(|_| side == "left").unwrap_or(&self.right)
+    }
+
+    /// Gives all there are, with the name of the side where both have their own.
+    pub fn sides(&self) -> impl Iterator<Item = (Option<&'static str>, &SideProfiles)> {
+        let name = self.left.as_ref().map(|_| "right");
+        [(name, &self.right)].into_iter().chain(self.left.iter().map(|left| (Some("left"), left)))
+    }
 }
 
 /// Where the bodies stand, and how far near misses are looked for.
@@ -202,8 +229,8 @@ impl Case {
         &self.echo
     }
 
-    /// Gives what was done to measured profiles of rail and wheel.
+    /// Gives what was done to measured profiles of rail and wheel, of the right-hand side or both.
     pub fn measured(&self) -> &[Option<Record>; 2] {
-        &self.profiles.measured
+        &self.profiles.right.measured
     }
 }

@@ -121,13 +121,13 @@ pub fn contacts(case: &Case) -> Result<Vec<(String, Placement)>> {
 pub(super) fn find(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<Placed>> {
     let modulus = case.question.modulus();
     let Place::Points { rail_x, wheel_x } = &case.standing.place else { return search(case, approach) };
-    let placement = case.profiles.pair.placed(*rail_x, *wheel_x, 0.0)?;
+    let placement = case.profiles.right.pair.placed(*rail_x, *wheel_x, 0.0)?;
     let start = Instant::now();
     let contact = match approach {
         None => PlacedContact::new(placement, None, modulus)?,
         Some(ApproachBy::Given(approach)) => PlacedContact::new(placement, Some(approach), modulus)?,
         Some(ApproachBy::WheelLoad(load) | ApproachBy::AxleLoad(load)) => {
-            let wheel = Wheel::at_points(&case.profiles.pair, placement, joining(case, true));
+            let wheel = Wheel::at_points(&case.profiles.right.pair, placement, joining(case, true));
             let [.., most] = SEARCHED_GAPS;
             let mut carried = carry(&mut [wheel], load, modulus, most)?.ok_or_else(|| too_heavy(case, ""))?;
             PlacedContact::of(carried.swap_remove(0).swap_remove(0), modulus, start.elapsed().as_secs_f64())?
@@ -199,7 +199,7 @@ type Carried = std::result::Result<Vec<Vec<Region>>, &'static str>;
 /// Finds the regions of every side under an approach; each wheel sinks by at most `most` \[mm\] under a load.
 fn regions(case: &Case, sides: &[Side], approach: Option<ApproachBy>, most: f64) -> Result<Carried> {
     let joining = joining(case, false);
-    let wheel = |side: &Side| Wheel::over(&case.profiles.pair, &side.places, joining);
+    let wheel = |side: &Side| Wheel::over(&case.profiles.on(side.name).pair, &side.places, joining);
     let modulus = case.question.modulus();
     let mut all = Vec::new();
     match approach {
@@ -257,7 +257,8 @@ impl Side {
         let mut placed = Vec::new();
         if regions.is_empty() {
             for place in self.places.iter().take_while(|place| place.gap <= within) {
-                let contact = PlacedContact::new(place.placed(&case.profiles.pair)?, None, modulus)?;
+                let contact =
+                    PlacedContact::new(place.placed(&case.profiles.on(self.name).pair)?, None, modulus)?;
                 placed.push(self.placed(placed.len() + 1, place, contact)?);
             }
             return Ok(placed);

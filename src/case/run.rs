@@ -86,9 +86,12 @@ impl Run {
 
     /// Lists what a user should know before using the files.
     pub fn warnings(&self) -> Vec<String> {
-        let findings = self.case.profiles.measured.iter().flatten().flat_map(|record| &record.warnings);
-        let mut out: Vec<String> =
-            findings.map(|finding| format!("{}: {}", finding.place, finding.found)).collect();
+        let mut out = Vec::new();
+        for (side, profiles) in self.case.profiles.sides() {
+            let findings = profiles.measured.iter().flatten().flat_map(|record| &record.warnings);
+            let place = side.map_or_else(String::new, |side| format!("{side} side: "));
+            out.extend(findings.map(|finding| format!("{place}{}: {}", finding.place, finding.found)));
+        }
         for part in &self.parts {
             let folder = &part.site.folder;
             let place = if folder.is_empty() { String::new() } else { format!("{folder}: ") };

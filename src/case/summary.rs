@@ -50,7 +50,7 @@ pub(super) fn summary(
     skipped: &[String],
 ) -> Vec<u8> {
     let (Part { site, analysis }, Case { echo, file, profiles, .. }) = (part, &run.case);
-    let contact = &site.contact;
+    let (contact, own) = (&site.contact, profiles.on(site.side().unwrap_or_default()));
     let placement = &contact.placement;
     let value = json!({
         "program": "wheelrail",
@@ -62,8 +62,8 @@ pub(super) fn summary(
         "conventions": "mm, rad; s > 0 apart; contact frame: origin C, xi along the common tangent, eta along the rail, zeta from rail to wheel; grids [i_xi][i_eta]",
         "rail": body(placement.rail()),
         "wheel": body(placement.wheel()),
-        "measured_rail": profiles.measured[0],
-        "measured_wheel": profiles.measured[1],
+        "measured_rail": own.measured[0],
+        "measured_wheel": own.measured[1],
         "wheel_radius_mm": placement.wheel_radius(),
         "rolling_radius_mm": placement.rolling_radius(),
         "skew_rad": placement.skew(),

@@ -84,6 +84,19 @@ impl Track {
         Ok(Self { rail_x, rail_z: -top })
     }
 
+    /// Moves the rail of this side outwards and up \[mm\].
+    ///
+    /// # Errors
+    /// Moves that are not finite; a rail that would be at the middle of the track or beyond.
+    pub fn moved(&self, outwards: f64, up: f64) -> Result<Self> {
+        let rail_x = self.rail_x + finite("lateral", outwards)?;
+        if rail_x <= 0.0 {
+            let expected = format!("a rail on its side of the track, {} mm from the middle", self.rail_x);
+            return Err(Error::new("lateral", outwards.to_string(), expected, "give it in mm"));
+        }
+        Ok(Self { rail_x, rail_z: self.rail_z + finite("vertical", up)? })
+    }
+
     /// Returns the abscissa \[mm\] of the right-hand profile origin, positive; the left-hand one has the negative.
     pub fn rail_x(&self) -> f64 {
         self.rail_x

@@ -20,10 +20,18 @@ pub struct Scene {
     /// Title for pictures and file headers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
-    /// The rail profile.
+    /// The rail profile; of both sides, mirrored on the left, unless `left` or `right` has its own.
+    #[serde(default, skip_serializing_if = "ProfileData::is_empty")]
     pub rail: ProfileData,
-    /// The wheel profile and its rolling radius.
+    /// The wheel profile and its rolling radius; of both sides likewise.
+    #[serde(default, skip_serializing_if = "ProfileData::is_empty")]
     pub wheel: ProfileData,
+    /// What is different on the left side of a wheelset.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub left: Option<SideData>,
+    /// What is different on the right side of a wheelset.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub right: Option<SideData>,
     /// Where the two touch, for one wheel on one rail.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact: Option<ContactData>,
@@ -53,6 +61,13 @@ pub fn schema() -> schemars::Schema {
 }
 
 impl Scene {
+    /// Lists the profiles that it describes, those of both sides and those of one.
+    pub fn profiles(&self) -> impl Iterator<Item = &ProfileData> {
+        let sides = [&self.left, &self.right].into_iter().flatten();
+        let own = sides.flat_map(|side| [&side.rail, &side.wheel]).flatten();
+        [&self.rail, &self.wheel].into_iter().chain(own)
+    }
+
     /// Gives the same scene with its wheelset at another position; a scene without a wheelset as it is.
     #[must_use]
     pub fn at(&self, position: &Position) -> Self {
@@ -65,6 +80,33 @@ impl Scene {
         let moved = |wheelset: &WheelsetData| WheelsetData { lateral, yaw, roll, ..wheelset.clone() };
         Self { wheelset: self.wheelset.as_ref().map(moved), ..self.clone() }
     }
+}
+
+/// One side of a wheelset, described as a right-hand side: the left one is its mirror image.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SideData {
+    /// The rail profile of this side.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rail: Option<ProfileData>,
+    /// The wheel profile of this side; without `radius` it has that of `[wheel]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wheel: Option<ProfileData>,
+    /// How this side's rail deviates from its place on the track.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub deviation: Option<DeviationData>,
+}
+
+/// How a rail deviates from its nominal place, in track axes; gauge and top of rail are those of the nominal place.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct DeviationData {
+    /// To the right, mm.
+    pub lateral: f64,
+    /// Up, mm.
+    pub vertical: f64,
+    /// About the track's y axis through the profile's origin, rad, right-handed: > 0 lowers what is to the right.
+    pub roll: f64,
 }
 
 /// A profile: exactly one of `profile`, `file`, `segments`; then `mirror`, `rotate`, `shift`, in this order.
@@ -141,6 +183,11 @@ pub struct ProfileData {
 }
 
 impl ProfileData {
+    /// Tells whether nothing is given.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
     /// Gives the keys of a measured file.
     pub fn measured(&self) -> measured::Options {
         measured::Options {

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use nalgebra::UnitComplex;
 
-use super::data::{ProfileData, Rotation, Scene};
+use super::data::{ProfileData, Rotation, Scene, SideData};
 use super::read::parse;
 use super::words::nearest;
-use crate::case::Profiles;
+use crate::case::{Profiles, SideProfiles};
 use crate::error::{Error, Result, finite, given};
 use crate::files::{read_bytes, read_text};
 use crate::measured::{self, Measured, Options, Record};
@@ -30,28 +30,56 @@ struct ProfileFile {
     segments: Vec<SegmentData>,
 }
 
-/// Gives rail and wheel of a scene, turned and shifted as it says; files are relative to `folder`. Opens each file once.
+/// Gives rails and wheels of a scene, turned and shifted as it says; files are relative to `folder`. A side with a profile of its own
+/// reads its files apart from the other's.
 ///
 /// # Errors
-/// Whatever is wrong with a profile, by key.
+/// Whatever is wrong with a profile, by side and key.
 pub(super) fn profiles(scene: &Scene, folder: &Path) -> Result<Profiles> {
-    let rail = profile(&scene.rail, folder, Side::Rail).map_err(|e| e.within("rail"))?;
-    if let Some(radius) = scene.rail.radius {
-        let expected = "a radius only for the wheel";
-        return Err(Error::new("rail: radius", radius.to_string(), expected, "remove it"));
+    let both = || of_side([&scene.rail, &scene.wheel], ["rail", "wheel"], scene.wheel.radius, folder);
+    let own = |name: &str, side: &Option<SideData>| {
+        let Some(SideData { rail, wheel, .. }) = side else { return Ok(None) };
+        if rail.is_none() && wheel.is_none() {
+            return Ok(None);
+        }
+        let places = [("rail", rail.is_some()), ("wheel", wheel.is_some())]
+            .map(|(body, own)| if own { format!("{name}: {body}") } else { body.into() });
+        let data = [rail.as_ref().unwrap_or(&scene.rail), wheel.as_ref().unwrap_or(&scene.wheel)];
+        let places = places.each_ref().map(String::as_str);
+        of_side(data, places, scene.wheel.radius, folder).map(Some)
+    };
+    let (right, left) = (own("right", &scene.right)?, own("left", &scene.left)?);
+    match (right, left) {
+        (Some(right), Some(left)) => Ok(Profiles { right, left: Some(left) }),
+        (Some(right), None) => Ok(Profiles { right, left: Some(both()?) }),
+        (None, left) => Ok(Profiles { right: both()?, left }),
     }
-    let wheel = profile(&scene.wheel, folder, Side::Wheel).map_err(|e| e.within("wheel"))?;
-    let radius = scene
-        .wheel
+}
+
+/// Gives rail and wheel of one side; `places` are their keys, `radius` is that of a wheel that has none of its own.
+fn of_side(
+    data: [&ProfileData; 2],
+    places: [&str; 2],
+    radius: Option<f64>,
+    folder: &Path,
+) -> Result<SideProfiles> {
+    let rail = profile(data[0], folder, Side::Rail).map_err(|e| e.within(places[0]))?;
+    if let Some(radius) = data[0].radius {
+        let expected = "a radius only for the wheel";
+        return Err(Error::new(format!("{}: radius", places[0]), radius.to_string(), expected, "remove it"));
+    }
+    let wheel = profile(data[1], folder, Side::Wheel).map_err(|e| e.within(places[1]))?;
+    let radius = data[1]
         .radius
-        .ok_or_else(|| Error::new("wheel", "no `radius`", "the nominal rolling radius in mm", "add it"))?;
+        .or(radius)
+        .ok_or_else(|| Error::new(places[1], "no `radius`", "the nominal rolling radius in mm", "add it"))?;
     if radius > FARTHEST {
         let expected = format!("at most {FARTHEST:e} mm");
         let found = format!("{radius:e}");
-        return Err(Error::new("wheel: radius", found, expected, "take a plane for a rail"));
+        return Err(Error::new(format!("{}: radius", places[1]), found, expected, "take a plane for a rail"));
     }
     let pair = Pair::new(rail.profile, wheel.profile, radius)?;
-    Ok(Profiles { pair, measured: [rail.measured, wheel.measured] })
+    Ok(SideProfiles { pair, measured: [rail.measured, wheel.measured] })
 }
 
 /// Gives a profile as the scene places it, and the record of a measured one.

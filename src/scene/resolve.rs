@@ -37,8 +37,7 @@ pub fn with_profiles(scene: &Scene, profiles: Profiles, name: &str) -> Result<Ca
 fn case(scene: &Scene, name: &str, profiles: impl FnOnce() -> Result<Profiles>) -> Result<Case> {
     let question = question(scene)?;
     let axes = asked_axes(&scene.grid)?;
-    let profiles = profiles()?;
-    let standing = standing(scene, &profiles.pair)?;
+    let (standing, profiles) = standing(scene, profiles()?)?;
     let (outputs, echo) = (outputs(scene), echo(scene, name));
     Ok(Case { profiles, standing, question, axes, outputs, echo, file: None })
 }

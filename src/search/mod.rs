@@ -41,10 +41,11 @@ mod walk;
 mod wheelset;
 
 pub use sweep::{ACCURACY, Conicity, Equivalent, NoConicity, Sweep, SweepRow, TrackSide};
+pub(crate) use touch::small_angle;
 pub use touch::{
     Contact, ContactSearch, ONE_CONTACT, Pose, ProfilePair, Selection, Touch, Work, wheel_rotation,
 };
-pub use wheelset::{Position, Roll, SideTouch, WheelsetOnTrack, WheelsetSearch, WheelsetTouch};
+pub use wheelset::{Position, Roll, SideOnTrack, SideTouch, WheelsetOnTrack, WheelsetSearch, WheelsetTouch};
 
 #[cfg(test)]
 mod tests;

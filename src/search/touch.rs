@@ -193,7 +193,7 @@ pub fn wheel_rotation(yaw: f64, roll: f64) -> Rotation3<f64> {
 }
 
 /// Returns the angle, or an error if it is one that no wheel has.
-pub(super) fn small_angle(place: &str, angle: f64) -> Result<f64> {
+pub(crate) fn small_angle(place: &str, angle: f64) -> Result<f64> {
     if finite(place, angle)?.abs() <= LARGEST_ANGLE {
         return Ok(angle);
     }

@@ -4,6 +4,8 @@
 //! c + A p, with A of [`wheel_rotation`]. So the right-hand profile origin, S out along the axle and R below it, is at
 //! c + (S cosψ cosφ − R sinφ, S sinψ, −S cosψ sinφ − R cosφ).
 
+use std::sync::Arc;
+
 use super::candidates::{Candidate, Meeting};
 use super::locus::Attitude;
 use nalgebra::Rotation3;
@@ -34,7 +36,9 @@ pub struct Position {
     pub roll: Roll,
 }
 
-/// A profile pair on both sides of a track, the left side mirrored.
+/// A wheelset on its track: a profile pair on both sides, each in its own axes.
+///
+/// The axes of both sides are those of a right-hand side, so that the left side is the mirror image of what is described.
 ///
 /// # Examples
 /// ```
@@ -51,12 +55,41 @@ pub struct Position {
 /// ```
 #[derive(Debug, Clone)]
 pub struct WheelsetOnTrack {
-    /// The prepared profiles, in the right side's axes.
-    pub(crate) pair: ProfilePair,
-    /// The positions of the rails.
-    pub(crate) track: Track,
-    /// The positions of the wheels.
-    pub(crate) wheelset: Wheelset,
+    /// Left and right side.
+    pub(super) sides: [SideOnTrack; 2],
+    /// Whether the left side is the mirror image of the right one.
+    symmetric: bool,
+}
+
+/// One side of a wheelset on its track, in the side's own axes: those of a right-hand side.
+#[derive(Debug, Clone)]
+pub struct SideOnTrack {
+    /// The prepared profiles.
+    pub(super) pair: Arc<ProfilePair>,
+    /// The position of the rail.
+    pub(super) track: Track,
+    /// The position of the wheel.
+    pub(super) wheelset: Wheelset,
+}
+
+impl SideOnTrack {
+    /// Prepares the profiles of one side; `track` and `wheelset` say where they are.
+    ///
+    /// # Errors
+    /// The errors of [`ProfilePair::new`].
+    pub fn new(pair: &Pair, track: Track, wheelset: Wheelset) -> Result<Self> {
+        Ok(Self { pair: Arc::new(ProfilePair::new(pair)?), track, wheelset })
+    }
+
+    /// Returns the position of the rail.
+    pub fn track(&self) -> &Track {
+        &self.track
+    }
+
+    /// Returns the position of the wheel on its axle.
+    pub fn wheelset(&self) -> &Wheelset {
+        &self.wheelset
+    }
 }
 
 impl Position {
@@ -68,26 +101,39 @@ impl Position {
 }
 
 impl WheelsetOnTrack {
-    /// Prepares a pair of profiles on both sides of a track.
+    /// Prepares a pair of profiles on both sides of a track, the left side being the mirror image.
     ///
     /// # Errors
     /// The errors of [`ProfilePair::new`], [`Track::new`] and [`Wheelset::new`].
     pub fn new(pair: &Pair, rails: RailDistance, wheels: WheelDistance) -> Result<Self> {
-        Ok(Self {
-            pair: ProfilePair::new(pair)?,
-            track: Track::new(pair.rail(), rails)?,
-            wheelset: Wheelset::new(wheels, pair.wheel_radius())?,
-        })
+        let track = Track::new(pair.rail(), rails)?;
+        let right = SideOnTrack::new(pair, track, Wheelset::new(wheels, pair.wheel_radius())?)?;
+        Ok(Self { sides: [right.clone(), right], symmetric: true })
     }
 
-    /// Returns the positions of the rails.
-    pub fn track(&self) -> &Track {
-        &self.track
+    /// Joins two different sides, each in its own axes.
+    pub fn of_sides(left: SideOnTrack, right: SideOnTrack) -> Self {
+        Self { sides: [left, right], symmetric: false }
     }
 
-    /// Returns the positions of the wheels on their axle.
-    pub fn wheelset(&self) -> &Wheelset {
-        &self.wheelset
+    /// Returns whether the left side is the mirror image of the right one, so that Δr is odd.
+    pub fn symmetric(&self) -> bool {
+        self.symmetric
+    }
+
+    /// Returns the right-hand side, which a symmetric wheelset has on both.
+    pub fn right(&self) -> &SideOnTrack {
+        &self.sides[1]
+    }
+
+    /// Returns the left-hand side.
+    pub fn left(&self) -> &SideOnTrack {
+        &self.sides[0]
+    }
+
+    /// Returns the nominal rolling radius \[mm\] from which heights of the axle's middle count: the right-hand wheel's.
+    pub(super) fn reference_radius(&self) -> f64 {
+        self.sides[1].wheelset.radius
     }
 }
 
@@ -156,21 +202,22 @@ struct Lowered {
 impl WheelsetOnTrack {
     /// Makes a search over this system.
     pub fn search(&self) -> WheelsetSearch<'_> {
-        WheelsetSearch { system: self, sides: [self.pair.search(), self.pair.search()] }
+        WheelsetSearch { system: self, sides: self.sides.each_ref().map(|side| side.pair.search()) }
     }
 
-    /// Returns the attitude of one side (sign −1 left, +1 right), and the height of the axle's middle above R
-    /// over the top of rail when the wheel's profile origin is level with the rail's \[mm\].
-    pub(super) fn attitude(&self, position: &Position, roll: f64, sign: f64) -> (Attitude, f64) {
-        let (radius, half) = (self.wheelset.radius, self.wheelset.wheel_x);
+    /// Returns the attitude of one side (0 left, 1 right), and the height of the axle's middle above R over the
+    /// top of rail when the wheel's profile origin is level with the rail's \[mm\].
+    pub(super) fn attitude(&self, position: &Position, roll: f64, side: usize) -> (Attitude, f64) {
+        let SideOnTrack { track, wheelset, .. } = &self.sides[side];
+        let (sign, radius, half) = (SIGNS[side], wheelset.radius, wheelset.wheel_x);
         let mut attitude = Attitude::new(0.0, sign * position.yaw, sign * roll, radius);
         let along = half * attitude.cos_yaw;
-        attitude.offset = sign * position.lateral - self.track.rail_x + along * attitude.cos_roll
-            - radius * attitude.sin_roll;
+        attitude.offset =
+            sign * position.lateral - track.rail_x + along * attitude.cos_roll - radius * attitude.sin_roll;
         // c_z − R with R(1 − cos) free of cancellation.
         let half_sine = (sign * roll / 2.0).sin();
-        let level = self.track.rail_z + along * attitude.sin_roll - 2.0 * radius * half_sine * half_sine;
-        (attitude, level)
+        let level = track.rail_z + along * attitude.sin_roll - 2.0 * radius * half_sine * half_sine;
+        (attitude, level + (radius - self.reference_radius()))
     }
 }
 
@@ -292,7 +339,7 @@ impl WheelsetSearch<'_> {
                 return next;
             }
             roll = next;
-            let attitudes = SIGNS.map(|sign| self.system.attitude(position, roll, sign));
+            let attitudes = [0, 1].map(|side| self.system.attitude(position, roll, side));
             let (mut z, mut sum) = ([0.0; 2], 0.0);
             for (k, (attitude, datum)) in attitudes.iter().enumerate() {
                 let Some(candidate) = self.sides[k].follow(attitude, &level.meetings[k]) else { return roll };
@@ -309,13 +356,14 @@ impl WheelsetSearch<'_> {
 
     /// Returns the rounding of a difference of heights \[mm\].
     fn rounding(&self) -> f64 {
-        2.0 * f64::EPSILON * (self.system.wheelset.wheel_x + self.system.wheelset.radius)
+        let size = |side: &SideOnTrack| side.wheelset.wheel_x + side.wheelset.radius;
+        2.0 * f64::EPSILON * self.system.sides.iter().map(size).fold(0.0, f64::max)
     }
 
     /// Lowers both sides at a given roll, and leaves the candidates up to `within` above first touch in their
     /// buffers.
     fn level(&mut self, position: &Position, roll: f64, within: f64) -> Option<Lowered> {
-        let placed = SIGNS.map(|sign| self.system.attitude(position, roll, sign));
+        let placed = [0, 1].map(|side| self.system.attitude(position, roll, side));
         let attitudes = placed.map(|(attitude, _)| attitude);
         let (mut heights, mut z, mut slope) = ([0.0; 2], [0.0; 2], 0.0);
         let mut lowest = [None; 2];
@@ -338,8 +386,9 @@ impl WheelsetSearch<'_> {
     /// parts add.
     fn lever(&self, position: &Position, side: usize, z: f64, candidate: &Candidate) -> f64 {
         let rail = &candidate.rail;
-        let x = rail.x + self.system.track.rail_x - SIGNS[side] * position.lateral;
-        let down = rail.z + self.system.track.rail_z - z - self.system.wheelset.radius;
+        let track = &self.system.sides[side].track;
+        let x = rail.x + track.rail_x - SIGNS[side] * position.lateral;
+        let down = rail.z + track.rail_z - z - self.system.reference_radius();
         x + down * rail.sin / rail.cos
     }
 

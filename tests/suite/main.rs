@@ -27,4 +27,5 @@ mod reference_values;
 mod reference_yawed;
 mod report;
 mod strips;
+mod two_sides;
 mod yawed_patches;

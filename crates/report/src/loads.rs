@@ -90,11 +90,7 @@ impl Loaded {
             "[rail]\nprofile = \"60E1\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n[contact]\noffset = {offset:?}\n\
              yaw = {yaw:?}\n[patch]\nload = {load:?}\n"
         );
-        with_profiles(
-            &parse(&scene, false)?,
-            Profiles { pair: pair.clone(), measured: [None, None] },
-            self.pair,
-        )
+        with_profiles(&parse(&scene, false)?, Profiles::drawn(pair.clone()), self.pair)
     }
 
     /// Names the position and a contact of it, as the data does.

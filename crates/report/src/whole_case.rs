@@ -111,7 +111,7 @@ const WHEELSET: &str = "[rail]\nprofile = \"60E1\"\n[wheel]\nprofile = \"S1002\"
 /// A scene that cannot be computed, which is a fault of this program.
 pub fn run_cost(seconds: f64) -> Result<RunCost> {
     let scene = parse(WHEELSET, false)?;
-    let profiles = Profiles { pair: pair(measured()?)?, measured: [None, None] };
+    let profiles = Profiles::drawn(pair(measured()?)?);
     let run = || Run::new(with_profiles(&scene, profiles.clone(), "measured")?, SILENT);
     run()?;
     let mut timings = [Timing::NONE; 2];

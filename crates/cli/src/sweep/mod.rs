@@ -76,8 +76,11 @@ impl SweepOutputs {
         let picture = arguments.picture.as_deref();
         let format = picture.map(|file| PictureFormat::of_file("--picture", file)).transpose()?;
         let folder = folder_of(&arguments.scene);
-        let profiles = [&scene.rail.file, &scene.wheel.file].into_iter().flatten();
-        let mut taken: Vec<PathBuf> = profiles.map(|file| folder.join(file)).collect();
+        let mut taken: Vec<PathBuf> = scene
+            .profiles()
+            .filter_map(|profile| profile.file.as_ref())
+            .map(|file| folder.join(file))
+            .collect();
         taken.extend(arguments.positions.clone().into_iter().chain([arguments.scene.clone()]));
         for (option, file) in [("--out", &arguments.out), ("--picture", &arguments.picture)] {
             let Some(file) = file else { continue };

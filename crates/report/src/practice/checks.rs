@@ -113,9 +113,9 @@ pub(super) fn sweep(
 /// image.
 fn standing(system: &WheelsetOnTrack, position: &Position, roll: f64, sign: f64) -> Stance {
     let (yaw, roll) = (sign * position.yaw, sign * roll);
-    let along =
-        system.wheelset().wheel_x() * yaw.cos() * roll.cos() - system.wheelset().radius() * roll.sin();
-    Stance { offset: sign * position.lateral + along - system.track().rail_x(), yaw, roll }
+    let along = system.right().wheelset().wheel_x() * yaw.cos() * roll.cos()
+        - system.right().wheelset().radius() * roll.sin();
+    Stance { offset: sign * position.lateral + along - system.right().track().rail_x(), yaw, roll }
 }
 
 /// Compares height, contacts and near misses of one side.
