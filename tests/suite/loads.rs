@@ -11,7 +11,7 @@ const SUM: f64 = 1e-10;
 
 fn wheelset(lateral: f64, rest: &str) -> String {
     format!(
-        "[rail]\nprofile = \"60E1\"\nrotate = \"1:40\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n[track]\ngauge = 1435.0\n\
+        "[rail]\nprofile = \"UIC60\"\nrotate = \"1:20\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n[track]\ngauge = 1435.0\n\
          [wheelset]\nback_to_back = 1360.0\nflange_back_x = -70.0\nlateral = {lateral:?}\n{rest}"
     )
 }
@@ -32,8 +32,8 @@ fn sum(sites: &[Site], side: &str) -> f64 {
 #[test]
 fn the_contacts_of_every_wheel_carry_its_load() -> Result<()> {
     let (mut shared, mut alone) = (0, 0);
-    for lateral in [0.0, 3.0, 4.5, 5.2, 6.0, -5.0] {
-        let sites = found(&wheelset(lateral, "yaw = 0.004\n[patch]\nload = 60000.0\n"))?;
+    for lateral in [0.0, 3.0, 5.5, 6.0, 6.2, -5.5] {
+        let sites = found(&wheelset(lateral, "[patch]\nload = 60000.0\n"))?;
         for side in ["left", "right"] {
             let total = sum(&sites, side);
             assert!((total / 60e3 - 1.0).abs() < SUM, "{lateral} {side}: {total}");
@@ -41,7 +41,7 @@ fn the_contacts_of_every_wheel_carry_its_load() -> Result<()> {
             if count > 1 { shared += 1 } else { alone += 1 }
         }
     }
-    assert!(shared >= 1 && alone >= 6, "{shared} {alone}");
+    assert!(shared >= 3 && alone >= 6, "{shared} {alone}");
     Ok(())
 }
 

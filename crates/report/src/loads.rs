@@ -4,7 +4,6 @@
 //! The solved approaches are data, `data/loads.csv`: the tests of the program's clients make them with Tamaas, and fail
 //! where they are not what it gives.
 
-use super::table::markdown;
 use super::whole_case;
 use wheelrail::case::{Case, Profiles, Site, sites};
 use wheelrail::error::{Error, Result};
@@ -168,25 +167,4 @@ fn solved(key: &str) -> Result<Option<Row>> {
         Ok([number(row, cells.next())?, number(row, cells.next())?])
     })
     .transpose()
-}
-
-/// Returns a table of the errors of δ: median, 90 % and largest, by how it was estimated.
-pub fn distribution(errors: &[ApproachError]) -> String {
-    let classes = [
-        ("Hertz", Estimate::Hertz, false),
-        ("half-space, one place", Estimate::HalfSpace, false),
-        ("half-space, places or parts joined", Estimate::HalfSpace, true),
-    ];
-    let rows = classes.map(|(name, estimate, joined)| {
-        let of_class = |one: &&ApproachError| one.estimate == Some(estimate) && one.joined == joined;
-        let mut errors: Vec<f64> =
-            errors.iter().filter(of_class).map(|one| 100.0 * one.error.abs()).collect();
-        errors.sort_by(f64::total_cmp);
-        let at = |share: f64| {
-            let index = (share * errors.len() as f64).ceil() as usize;
-            errors.get(index.saturating_sub(1)).map_or_else(String::new, |error| format!("{error:.2} %"))
-        };
-        vec![name.into(), errors.len().to_string(), at(0.5), at(0.9), at(1.0)]
-    });
-    markdown(&["δ estimated by", "regions", "median error", "90 % below", "largest"], 5, &rows)
 }

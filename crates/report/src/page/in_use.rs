@@ -1,12 +1,13 @@
 //! Builds the sections on what users wait for: positions of a wheelset, and whole cases.
 
 use super::section::PageSection;
-use crate::loads::distribution;
+use crate::loads::ApproachError;
 use crate::measurements::Measurements;
 use crate::practice::PracticeRow;
 use crate::rates::{Motion, Rate};
 use crate::table::{cases_csv, markdown, positions_csv, practice_csv};
 use crate::whole_case::{PARTS, WholeCase};
+use wheelrail::load::Estimate;
 
 /// Returns the section on positions of wheelsets a second.
 pub(super) fn positions(m: &Measurements) -> PageSection {
@@ -125,4 +126,25 @@ pub(super) fn case_note(m: &Measurements) -> String {
         );
     }
     note
+}
+
+/// Returns a table of the errors of δ: median, 90 % and largest, by how it was estimated.
+fn distribution(errors: &[ApproachError]) -> String {
+    let classes = [
+        ("Hertz", Estimate::Hertz, false),
+        ("half-space, one place", Estimate::HalfSpace, false),
+        ("half-space, places or parts joined", Estimate::HalfSpace, true),
+    ];
+    let rows = classes.map(|(name, estimate, joined)| {
+        let of_class = |one: &&ApproachError| one.estimate == Some(estimate) && one.joined == joined;
+        let mut errors: Vec<f64> =
+            errors.iter().filter(of_class).map(|one| 100.0 * one.error.abs()).collect();
+        errors.sort_by(f64::total_cmp);
+        let at = |share: f64| {
+            let index = (share * errors.len() as f64).ceil() as usize;
+            errors.get(index.saturating_sub(1)).map_or_else(String::new, |error| format!("{error:.2} %"))
+        };
+        vec![name.into(), errors.len().to_string(), at(0.5), at(0.9), at(1.0)]
+    });
+    markdown(&["δ estimated by", "regions", "median error", "90 % below", "largest"], 5, &rows)
 }
