@@ -22,6 +22,7 @@ use crate::files::{Folder, FolderPart};
 use crate::mesh::strips::StripMesh;
 use crate::mesh::surfaces::Surface;
 use crate::patch::Outline;
+use crate::placement::motion::Creepages;
 use crate::profile::Station;
 use crate::separation::midplane;
 
@@ -47,6 +48,7 @@ fn write_part(run: &Run, part: &Part, folder: &Folder, png: Option<Rasterise>, t
     let rail = RailColumns::new(part);
     let axes = &part.site.grid;
     let grid = GridFields::new(&axes.xi, &axes.eta, &part.analysis.separation, &rail.height, &rail.normal)?;
+    let creepages = run.creepages(part)?;
     let deck = possible(outputs, "decks", &OutputFormat::DECKS, || Deck::new(&header, &grid), &mut skipped)?;
     let netcdf = || NetCdf::new(&header, &grid);
     let netcdf = possible(outputs, "separation.nc", &[OutputFormat::Netcdf], netcdf, &mut skipped)?;
@@ -66,13 +68,14 @@ fn write_part(run: &Run, part: &Part, folder: &Folder, png: Option<Rasterise>, t
         stream(&mut jobs, "separation.nc", move |file| netcdf.write(file));
     }
     if let Some(deck) = &deck {
-        decks(&mut jobs, run, part, deck, strips.as_ref());
+        let settings = contact_settings(run, part, creepages);
+        decks(&mut jobs, run, deck, strips.as_ref(), settings);
     }
     let folder = folder.part(&part.site.folder)?;
     let names = write_jobs(&jobs, &folder, |done| {
         tell(format!("{}: {done} of {} files written", part.site.name(), jobs.len()));
     })?;
-    folder.write("summary.json", &summary(run, part, &folder, bodies.as_ref(), &names, &skipped))
+    folder.write("summary.json", &summary(run, part, &folder, creepages, bodies.as_ref(), &names, &skipped))
 }
 
 /// Writes files on all threads, tells how many are done, and gives their names in order.
@@ -144,11 +147,13 @@ fn remarks(run: &Run, part: &Part) -> Vec<String> {
     let mut out = part.refusals();
     out.extend(run.shared_load(part));
     if part.site.side() == Some("left") {
-        out.push(
-            "left side of a wheelset, as its mirror image: x to the left, y forward, z up; lateral creepage, spin \
-             and skew change sign"
-                .into(),
-        );
+        let signs = match run.case.question.motion {
+            Some(_) => "creepages are those of the mirror image",
+            None => "lateral creepage, spin and skew change sign",
+        };
+        out.push(format!(
+            "left side of a wheelset, as its mirror image: x to the left, y forward, z up; {signs}"
+        ));
     }
     out
 }
@@ -301,9 +306,9 @@ fn stream<'a>(
 fn decks<'a>(
     jobs: &mut Vec<Job<'a>>,
     run: &Run,
-    part: &Part,
     deck: &'a Deck<'a>,
     strips: Option<&'a QuadMesh>,
+    settings: Option<Settings>,
 ) {
     if run.case.outputs.any(&[OutputFormat::Text]) {
         stream(jobs, "separation.wrp", move |file| wrp::separation(deck, file));
@@ -314,22 +319,22 @@ fn decks<'a>(
     if let (true, Some(strips)) = (run.case.outputs.any(&[OutputFormat::Countact]), strips) {
         stream(jobs, "countact.wrp", move |file| wrp::countact(deck, strips, file));
     }
-    if let (true, Some(settings)) =
-        (run.case.outputs.any(&[OutputFormat::Contact]), contact_settings(run, part))
-    {
+    if let (true, Some(settings)) = (run.case.outputs.any(&[OutputFormat::Contact]), settings) {
         stream(jobs, "contact.inp", move |file| contact(deck, &settings, file));
     }
 }
 
 /// Gives CONTACT's control numbers; `None` without an approach. A load is the force of a contact only where it is the only one of
 /// its wheel.
-fn contact_settings(run: &Run, part: &Part) -> Option<Settings> {
+fn contact_settings(run: &Run, part: &Part, creepages: Option<Creepages>) -> Option<Settings> {
     let (approach, _) = part.site.contact.approach.filter(|(approach, _)| *approach > 0.0)?;
     let load = run.case.question.load().filter(|_| !run.shares_load(part));
     let bodies = run.case.question.material;
     Some(Settings {
         poisson: bodies.map(|body| body.poissons_ratio),
         shear_modulus: bodies.map(|body| body.youngs_modulus / (2.0 * (1.0 + body.poissons_ratio))),
-        ..Settings::steel(load.map_or(Normal::Approach(approach), Normal::Force))
+        friction: [run.case.question.friction.at_rest, run.case.question.friction.sliding],
+        creepages,
+        normal: load.map_or(Normal::Approach(approach), Normal::Force),
     })
 }

@@ -19,7 +19,7 @@ pub use contact::{Contact, EllipseUnder};
 pub use files::{Rasterise, write};
 pub use grids::Grid;
 pub use input::{
-    ApproachBy, AskedAxes, Case, Echo, OutputFormat, Outputs, Place, Profiles, Question, Standing,
+    ApproachBy, AskedAxes, Case, Echo, Friction, OutputFormat, Outputs, Place, Profiles, Question, Standing,
 };
 pub use places::{Found, PlaceOfContact, contacts};
 pub use run::{Part, Run, SILENT, Tell};

@@ -1,5 +1,6 @@
 //! A placed pair: contact frame ξηζ and both profiles in it (Report Sec. 4).
 
+pub mod motion;
 pub mod track;
 
 use std::sync::Arc;

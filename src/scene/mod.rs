@@ -4,6 +4,7 @@
 mod axes;
 mod data;
 mod method_or_auto;
+mod motion;
 mod profiles;
 mod read;
 mod resolve;
@@ -11,8 +12,9 @@ mod standing;
 mod words;
 
 pub use data::{
-    AxisData, ContactData, GridData, MaterialData, OutputData, PatchData, ProfileData, RollData, RollWord,
-    Rotation, Scene, Spacing, TrackData, WheelsetData, schema,
+    AxisData, ContactData, FrictionData, GridData, MaterialData, MotionData, OutputData, PatchData,
+    PitchData, PitchWord, ProfileData, RollData, RollWord, Rotation, Scene, Spacing, TrackData, WheelsetData,
+    schema,
 };
 pub use profiles::{is_chain_file, profile_from_file};
 pub use read::{load, parse};
