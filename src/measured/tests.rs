@@ -6,6 +6,7 @@ use crate::profile::{Section, standards};
 
 mod curves;
 mod mutations;
+mod slices;
 
 use mutations::Random;
 

@@ -111,6 +111,12 @@ pub struct ProfileData {
     /// Of an .mpt file: which section, from 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub section: Option<usize>,
+    /// Of an .slcs file: place of the section along the track, mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub along: Option<f64>,
+    /// Of an .slcw file: place of the section around the wheel, rad.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub angle: Option<f64>,
     /// Of a measured file: whether its second axis points down.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub flip_z: Option<bool>,
@@ -153,6 +159,8 @@ impl ProfileData {
             format: self.format,
             columns: self.columns.clone(),
             section: self.section,
+            along: self.along,
+            angle: self.angle,
             mirror: self.mirror,
             flip_z: self.flip_z,
             unit: self.unit,

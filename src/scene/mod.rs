@@ -16,7 +16,7 @@ pub use data::{
     PitchData, PitchWord, ProfileData, RollData, RollWord, Rotation, Scene, Spacing, TrackData, WheelsetData,
     schema,
 };
-pub use profiles::{is_chain_file, profile_from_file};
+pub use profiles::{is_chain_file, profile_from_file, section_from_files};
 pub use read::{load, parse};
 pub use resolve::{echo, resolve, with_profiles};
 pub use words::perhaps;

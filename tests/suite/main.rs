@@ -25,5 +25,6 @@ mod promises;
 mod reference_values;
 mod reference_yawed;
 mod report;
+mod slices;
 mod strips;
 mod yawed_patches;
