@@ -20,6 +20,7 @@ use crate::export::{
 use crate::files::{Folder, FolderPart};
 use crate::mesh::{StripMesh, Surface};
 use crate::patch::Outline;
+use crate::placement::Creepages;
 use crate::profile::Station;
 use crate::separation::midplane_table;
 
@@ -45,6 +46,7 @@ fn write_part(run: &Run, part: &Part, folder: &Folder, png: Option<Rasterise>, t
     let rail = RailColumns::new(part);
     let axes = &part.site.grid;
     let grid = GridFields::new(&axes.xi, &axes.eta, &part.analysis.separation, &rail.height, &rail.normal)?;
+    let creepages = run.creepages(part)?;
     let deck = possible(outputs, "decks", &OutputFormat::DECKS, || Deck::new(&header, &grid), &mut skipped)?;
     let netcdf = || NetCdf::new(&header, &grid);
     let netcdf = possible(outputs, "separation.nc", &[OutputFormat::Netcdf], netcdf, &mut skipped)?;
@@ -64,13 +66,14 @@ fn write_part(run: &Run, part: &Part, folder: &Folder, png: Option<Rasterise>, t
         stream(&mut jobs, "separation.nc", move |file| netcdf.write(file));
     }
     if let Some(deck) = &deck {
-        decks(&mut jobs, run, part, deck, strips.as_ref());
+        let settings = contact_settings(run, part, creepages);
+        decks(&mut jobs, run, deck, strips.as_ref(), settings);
     }
     let folder = folder.part(&part.site.folder)?;
     let names = write_jobs(&jobs, &folder, |done| {
         tell(format!("{}: {done} of {} files written", part.site.name(), jobs.len()));
     })?;
-    folder.write("summary.json", &summary(run, part, &folder, bodies.as_ref(), &names, &skipped))
+    folder.write("summary.json", &summary(run, part, &folder, creepages, bodies.as_ref(), &names, &skipped))
 }
 
 /// Writes files on all threads, tells how many are done, and gives their names in order.
@@ -133,19 +136,21 @@ fn header(run: &Run, part: &Part) -> Header {
         scene_hash: run.case.echo.hash.clone(),
         approach: part.site.approach(),
         frame: Frame::from(&part.site.contact.placement.rail().contact_frame()),
-        remarks: remarks(part),
+        remarks: remarks(run, part),
     }
 }
 
 /// Lists what the reader of a file of this part must know.
-fn remarks(part: &Part) -> Vec<String> {
+fn remarks(run: &Run, part: &Part) -> Vec<String> {
     let mut out = part.refusals();
     if part.site.side() == Some("left") {
-        out.push(
-            "left side of a wheelset, as its mirror image: x to the left, y forward, z up; lateral creepage, spin \
-             and skew change sign"
-                .into(),
-        );
+        let signs = match run.case.question.motion {
+            Some(_) => "creepages are those of the mirror image",
+            None => "lateral creepage, spin and skew change sign",
+        };
+        out.push(format!(
+            "left side of a wheelset, as its mirror image: x to the left, y forward, z up; {signs}"
+        ));
     }
     out
 }
@@ -298,9 +303,9 @@ fn stream<'a>(
 fn decks<'a>(
     jobs: &mut Vec<Job<'a>>,
     run: &Run,
-    part: &Part,
     deck: &'a Deck<'a>,
     strips: Option<&'a QuadMesh>,
+    settings: Option<ContactSettings>,
 ) {
     if run.case.outputs.any(&[OutputFormat::Text]) {
         stream(jobs, "separation.wrp", move |file| separation_wrp(deck, file));
@@ -311,22 +316,22 @@ fn decks<'a>(
     if let (true, Some(strips)) = (run.case.outputs.any(&[OutputFormat::Countact]), strips) {
         stream(jobs, "countact.wrp", move |file| countact_wrp(deck, strips, file));
     }
-    if let (true, Some(settings)) =
-        (run.case.outputs.any(&[OutputFormat::Contact]), contact_settings(run, part))
-    {
+    if let (true, Some(settings)) = (run.case.outputs.any(&[OutputFormat::Contact]), settings) {
         stream(jobs, "contact.inp", move |file| contact_inp(deck, &settings, file));
     }
 }
 
 /// Gives CONTACT's control numbers: the contact's own normal force, or the approach where no load was asked for; `None` without
 /// either.
-fn contact_settings(run: &Run, part: &Part) -> Option<ContactSettings> {
+fn contact_settings(run: &Run, part: &Part, creepages: Option<Creepages>) -> Option<ContactSettings> {
     let (approach, _) = part.site.contact.approach.filter(|(approach, _)| *approach > 0.0)?;
     let load = part.site.normal_load.filter(|load| *load > 0.0);
     let bodies = run.case.question.material;
     Some(ContactSettings {
         poisson: bodies.map(|body| body.poissons_ratio),
         shear_modulus: bodies.map(|body| body.youngs_modulus / (2.0 * (1.0 + body.poissons_ratio))),
-        ..ContactSettings::steel(load.map_or(Prescribed::Approach(approach), Prescribed::Force))
+        friction: [run.case.question.friction.at_rest, run.case.question.friction.sliding],
+        creepages,
+        normal: load.map_or(Prescribed::Approach(approach), Prescribed::Force),
     })
 }

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::load::{Elastic, effective_modulus};
 use crate::measured::Record;
+use crate::placement::Motion;
 use crate::placement::Pair;
 use crate::search::{Pose, Position, ProfilePair, WheelsetOnTrack};
 use crate::separation::Method;
@@ -113,12 +114,31 @@ pub enum ApproachBy {
 pub struct Question {
     /// The approach; `None` asks for the geometry only.
     pub approach: Option<ApproachBy>,
+    /// How the wheels move, for the creepages; `None` asks for none.
+    pub motion: Option<Motion>,
     /// Elastic constants of rail and wheel.
     pub material: [Elastic; 2],
+    /// Friction between them; it enters solver decks only.
+    pub friction: Friction,
     /// Absolute tolerance on s \[mm\]; 1e-12 asks for all digits.
     pub tolerance: f64,
     /// A method of the accuracy ladder; `None` takes the cheapest within the tolerance.
     pub method: Option<Method>,
+}
+
+/// Coulomb's friction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Friction {
+    /// Coefficient where surfaces stick \[–\], positive, typically 0.3.
+    pub at_rest: f64,
+    /// Coefficient where they slide \[–\], positive, at most the other.
+    pub sliding: f64,
+}
+
+impl Default for Friction {
+    fn default() -> Self {
+        Self { at_rest: 0.3, sliding: 0.3 }
+    }
 }
 
 impl Question {

@@ -19,8 +19,8 @@ pub use contact::{EllipseUnder, PlacedContact};
 pub use files::{Rasterise, write};
 pub use grids::Grid;
 pub use input::{
-    ApproachBy, AskedAxes, Case, Echo, OutputFormat, Outputs, Place, Profiles, Question, SideProfiles,
-    Standing,
+    ApproachBy, AskedAxes, Case, Echo, Friction, OutputFormat, Outputs, Place, Profiles, Question,
+    SideProfiles, Standing,
 };
 pub use places::{Found, PlaceOfContact, contacts};
 pub use run::{Part, Run, SILENT, Tell};

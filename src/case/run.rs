@@ -2,10 +2,11 @@
 
 use super::analysis::Analysis;
 use super::grids::check_memory;
-use super::input::Case;
+use super::input::{Case, Place};
 use super::site::{Site, sites};
 use crate::error::Result;
 use crate::patch::Patch;
+use crate::placement::Creepages;
 use crate::separation::Plan;
 
 /// Is told the step that a run is at, from several threads.
@@ -113,6 +114,35 @@ impl Run {
             ));
         }
         out
+    }
+
+    /// Finds the creepages of a part, in its contact frame and, on a left side, in the axes of its mirror image; `None` for
+    /// a case without a motion.
+    ///
+    /// # Errors
+    /// A wheel at rest where it touches.
+    pub fn creepages(&self, part: &Part) -> Result<Option<Creepages>> {
+        let Some(motion) = self.case.question.motion else { return Ok(None) };
+        let left = part.site.side() == Some("left");
+        let half = match &self.case.standing.place {
+            Place::Wheelset { system, .. } if left => system.left().wheelset().wheel_x(),
+            Place::Wheelset { system, .. } => system.right().wheelset().wheel_x(),
+            Place::Points { .. } | Place::Wheel { .. } => 0.0,
+        };
+        let motion = if left { motion.mirrored() } else { motion };
+        motion.creepages(&part.site.contact.placement, half, self.free_radius()).map(Some)
+    }
+
+    /// Gives the rolling radius \[mm\] of a wheelset that rolls freely: the mean of its sides' first contacts.
+    fn free_radius(&self) -> f64 {
+        let mut sides: Vec<(Option<&str>, f64)> = Vec::new();
+        for Part { site, .. } in &self.parts {
+            let known = sides.iter().any(|(side, _)| *side == site.side());
+            if !known && site.found.as_ref().is_none_or(|found| found.contact == 1) {
+                sides.push((site.side(), site.contact.placement.rolling_radius()));
+            }
+        }
+        sides.iter().map(|(_, radius)| radius).sum::<f64>() / sides.len() as f64
     }
 }
 

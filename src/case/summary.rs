@@ -8,7 +8,7 @@ use super::run::{Part, Run};
 use crate::files::FolderPart;
 use crate::mesh::{Quality, Surface};
 use crate::patch::{Component, Patch};
-use crate::placement::Body;
+use crate::placement::{Body, Creepages};
 use crate::profile::{Closing, Joint};
 
 /// One body in the summary.
@@ -45,6 +45,7 @@ pub(super) fn summary(
     run: &Run,
     part: &Part,
     folder: &FolderPart<'_>,
+    creepages: Option<Creepages>,
     surfaces: Option<&[Surface; 2]>,
     files: &[String],
     skipped: &[String],
@@ -68,6 +69,7 @@ pub(super) fn summary(
         "rolling_radius_mm": placement.rolling_radius(),
         "skew_rad": placement.skew(),
         "found": site.found,
+        "creepages": creepages.map(relative_motion),
         "feasibility": contact.feasibility,
         "curvatures": contact.curvatures,
         "approach_mm": contact.approach.map(|(approach, _)| approach),
@@ -122,6 +124,17 @@ fn body(body: &Body) -> BodySummary<'_> {
         largest_closing: body.profile().largest_closing().map(closing),
         kinks: body.profile().continuity().into_iter().filter(|joint| joint.kink.abs() > SMOOTH).collect(),
     }
+}
+
+fn relative_motion(creepages: Creepages) -> Value {
+    json!({
+        "longitudinal": creepages.longitudinal,
+        "lateral": creepages.lateral,
+        "spin_rad_per_mm": creepages.spin,
+        "rolling_speed_mm_per_s": creepages.rolling_speed,
+        "forward": creepages.forward,
+        "pitch_rad_per_s": creepages.pitch,
+    })
 }
 
 fn patch(patch: &Patch) -> Value {

@@ -6,6 +6,7 @@
 mod complaint;
 mod file;
 mod folder;
+mod foreign;
 mod names;
 mod read;
 mod system;

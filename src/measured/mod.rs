@@ -5,6 +5,9 @@
 //!                   (miniprof, simpack, columns)  (options)         └ smoothing spline, interpolation, arcs
 //! ```
 //!
+//! A rail that varies along the track, or a wheel that varies around its circumference, is a list of slices, each with a
+//! file of its own: [`SliceList`], [`Cut`], [`section`].
+//!
 //! Nothing is guessed and nothing is repaired in silence. An option decides, or else the format's definition,
 //! or else the shape; a question that none of them answers is an error that lists the choices. Every decision
 //! is in the [`Record`]. This module does not access the disk.
@@ -16,6 +19,7 @@ mod options;
 mod place;
 mod read;
 mod shape;
+mod slice;
 mod unit;
 pub mod write;
 
@@ -34,11 +38,13 @@ pub use place::{Step, Transform};
 pub use read::format::Format;
 pub use read::points::{DesignElement, ElementShape, MOST_ELEMENTS, MOST_POINTS, Note, Point, Points};
 pub use read::scan::LARGEST_FILE;
+pub use read::slices::{MOST_SLICES, Slice, SliceList, listed_body};
+pub use slice::{Cut, CutRecord, Share};
 pub use unit::Unit;
 
 use serde::Serialize;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::profile::{Profile, Side};
 
 /// What was read, decided, repaired and fitted; written to summary.json.
@@ -62,6 +68,9 @@ pub struct Record {
     pub warnings: Vec<Finding>,
     /// The curve that was drawn.
     pub curve: CurveRecord,
+    /// Where the section was cut; `None` for a profile that is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cut: Option<CutRecord>,
 }
 
 /// A measured profile with its points and its record.
@@ -127,7 +136,99 @@ pub fn body(file: &str, bytes: &[u8], options: &Options) -> Result<Option<Side>>
     }
 }
 
+/// Makes the profile of a section between slices. `file` is the name of the list, and `contents` gives the bytes of a
+/// slice by its name in [`Cut::files`], which is asked for once.
+///
+/// Options hold for every slice. See [`Cut`] for the place; the accuracy is in `docs/measured-files.md`.
+///
+/// # Errors
+/// The errors of [`profile`] for each slice, with its name; slices that are turned differently, have an origin of their
+/// own each, or have no part in common.
+pub fn section(
+    file: &str,
+    cut: &Cut<'_>,
+    contents: &[(&str, Vec<u8>)],
+    side: Side,
+    options: &Options,
+) -> Result<Measured> {
+    let options = Options { along: None, angle: None, ..options.clone() };
+    options.validate()?;
+    let whole = || -> Result<Measured> {
+        if matches!(options.origin, Some(Origin::Named(NamedOrigin::GaugePoint | NamedOrigin::TapeLine))) {
+            let expected = "one origin for all slices, \"as-is\" or a point [x, z]";
+            return Err(Error::new("origin", "an origin that each slice finds", expected, "choose another"));
+        }
+        let slices: Vec<(&str, Placed)> = contents
+            .iter()
+            .map(|(name, bytes)| Ok((*name, slice(name, bytes, side, &options).map_err(|e| e.within(name))?)))
+            .collect::<Result<_>>()?;
+        same_turn(&slices)?;
+        let of = |name: &str| slices.iter().find(|(own, _)| *own == name).map(|(_, placed)| placed);
+        let missing = |name: &str| Error::new(name, "no content", "the bytes of the slice", "read its file");
+        let (points, record) = cut
+            .interpolate(|name| of(name).map(|placed| placed.points.clone()).ok_or_else(|| missing(name)))?;
+        let model = of(&record.points_of).ok_or_else(|| missing(&record.points_of))?;
+        let all =
+            |list: fn(&Placed) -> &[Note]| slices.iter().flat_map(|(_, own)| list(own).to_vec()).collect();
+        let placed = Placed {
+            points,
+            elements: Vec::new(),
+            elements_alone: false,
+            notes: all(|own| &own.notes),
+            repairs: slices.iter().flat_map(|(_, own)| own.repairs.clone()).collect(),
+            ..model.clone()
+        };
+        let source = format!("{} of slices {file}", cut.place());
+        let within = format!("{} with the points of {}", cut.place(), record.points_of);
+        drawn(file, source, placed, side, &options, Some(record)).map_err(|error| error.within(within))
+    };
+    whole().map_err(|error| error.within(file))
+}
+
+/// Reads and places one slice, and rejects points that no curve can be drawn through.
+fn slice(name: &str, bytes: &[u8], side: Side, options: &Options) -> Result<Placed> {
+    let format = options.format.map_or_else(|| Format::of_file(name), Ok)?;
+    let placed = placed(read::reader::read(bytes, format, options.columns.as_ref())?, side, options)?;
+    clean::checks::reject(&clean::checks::findings(&placed.points, side, options.gauge_height()))?;
+    Ok(placed)
+}
+
+/// Rejects slices whose shapes or formats turn them differently.
+fn same_turn(slices: &[(&str, Placed)]) -> Result<()> {
+    let [(a, first), (b, second)] = slices else { return Ok(()) };
+    if first.transform.scale == second.transform.scale {
+        return Ok(());
+    }
+    let found = format!(
+        "scales {:?} of {a} and {:?} of {b}, as their formats and shapes have it",
+        first.transform.scale, second.transform.scale
+    );
+    Err(Error::new("mirror", found, "slices turned alike", "give `mirror`, `flip_z` and `unit`"))
+}
+
+/// The points of one file in profile axes, and how they came there.
+#[derive(Debug, Clone)]
+struct Placed {
+    format: Format,
+    points_read: usize,
+    points: Vec<Point>,
+    elements: Vec<DesignElement>,
+    /// Whether the file has design elements only.
+    elements_alone: bool,
+    notes: Vec<Note>,
+    transform: Transform,
+    /// Findings about the orientation.
+    turned: Vec<Finding>,
+    repairs: Vec<Repaired>,
+}
+
 fn build(file: &str, read: Points, side: Side, options: &Options) -> Result<Measured> {
+    let source = format!("{} file {file}", format_title(read.format));
+    drawn(file, source, placed(read, side, options)?, side, options, None)
+}
+
+/// Turns the points of a file into profile axes and repairs them.
+fn placed(read: Points, side: Side, options: &Options) -> Result<Placed> {
     let mut read = match options.section {
         Some(number) => read.section(number)?,
         None => read,
@@ -140,23 +241,37 @@ fn build(file: &str, read: Points, side: Side, options: &Options) -> Result<Meas
     let (transform, turned) = place::resolve(&read, side, options)?;
     let mut points = transform.points(&read.at);
     let repairs = clean::repairs::repair(&mut points, &options.repair);
+    let elements = read.elements.iter().map(|element| transform.element(element)).collect();
+    let (format, points_read, notes) = (read.format, read.at.len(), read.notes);
+    Ok(Placed { format, points_read, points, elements, elements_alone, notes, transform, turned, repairs })
+}
+
+/// Checks placed points and draws the curve through them.
+fn drawn(
+    name: &str,
+    source: String,
+    placed: Placed,
+    side: Side,
+    options: &Options,
+    cut: Option<CutRecord>,
+) -> Result<Measured> {
+    let Placed { points, elements, elements_alone, .. } = placed;
     let findings = clean::checks::findings(&points, side, options.gauge_height());
     clean::checks::reject(&findings)?;
-    let warnings = findings.into_iter().chain(turned).collect();
-    let placed: Vec<DesignElement> = read.elements.iter().map(|element| transform.element(element)).collect();
-    let (segments, curve) = fit::curve::curve(&points, &placed, options, elements_alone)?;
-    let source = format!("{} file {file}", format_title(read.format));
-    let profile = Profile::new(file, source, segments)?;
+    let warnings = findings.into_iter().chain(placed.turned).collect();
+    let (segments, curve) = fit::curve::curve(&points, &elements, options, elements_alone)?;
+    let profile = Profile::new(name, source, segments)?;
     let record = Record {
-        format: read.format,
-        points_read: read.at.len(),
+        format: placed.format,
+        points_read: placed.points_read,
         points_used: points.len(),
-        notes: read.notes,
-        transform,
+        notes: placed.notes,
+        transform: placed.transform,
         already_inclined: options.already_inclined,
-        repairs,
+        repairs: placed.repairs,
         warnings,
         curve,
+        cut,
     };
     Ok(Measured { profile, points, record })
 }

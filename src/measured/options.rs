@@ -39,6 +39,12 @@ pub struct Options {
     /// Section of an .mpt file to use, from 1; all sections in a row if not given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub section: Option<usize>,
+    /// Of an `.slcs` file: place of the section along the track, mm, between the first slice and the last.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub along: Option<f64>,
+    /// Of an `.slcw` file: place of the section around the wheel, rad; a wheel is periodic.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub angle: Option<f64>,
     /// Whether the file's first axis points to the centre of the track (x = −first). Profiles are right-hand:
     /// flange and gauge corner at negative x.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -215,6 +221,8 @@ impl Options {
         reject_idle(&[
             ("columns", self.columns.is_some() && !table, "a text or CSV file"),
             ("section", self.section.is_some() && format != Format::MiniProf, "an .mpt file"),
+            ("along", self.along.is_some(), "an .slcs file"),
+            ("angle", self.angle.is_some(), "an .slcw file"),
             ("gauge_height", self.gauge_height.is_some() && wheel, "a rail"),
             ("already_inclined", self.already_inclined && wheel, "a rail"),
             ("kink_angle", self.kink_angle.is_some() && as_drawn, fitted),

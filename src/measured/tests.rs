@@ -7,6 +7,7 @@ use wheelrail_report::random::Random;
 
 mod curves;
 mod mutations;
+mod slices;
 
 const FILES: [(&str, &[u8], Side); 9] = [
     ("new-style.ban", include_bytes!("../../tests/profiles/new-style.ban"), Side::Rail),

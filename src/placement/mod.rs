@@ -1,7 +1,9 @@
 //! A placed pair: contact frame ξηζ and both profiles in it (Report Sec. 4).
 
+mod motion;
 mod track;
 
+pub use motion::{Creepages, Motion, Pitch, Rates};
 pub use track::{RailDistance, Track, WheelDistance, Wheelset};
 
 use std::sync::Arc;

@@ -4,6 +4,7 @@
 mod axes;
 mod data;
 mod method_or_auto;
+mod motion;
 mod profiles;
 mod read;
 mod resolve;
@@ -11,9 +12,10 @@ mod standing;
 pub(crate) mod words;
 
 pub use data::{
-    AxisData, ContactData, GridData, MaterialData, OutputData, PatchData, ProfileData, RollData, RollWord,
-    Rotation, Scene, Spacing, TrackData, WheelsetData, schema,
+    AxisData, ContactData, FrictionData, GridData, MaterialData, MotionData, OutputData, PatchData,
+    PitchData, PitchWord, ProfileData, RollData, RollWord, Rotation, Scene, Spacing, TrackData, WheelsetData,
+    schema,
 };
-pub use profiles::{is_chain_file, profile_from_file};
+pub use profiles::{is_chain_file, profile_from_file, section_from_files};
 pub use read::{load, parse};
 pub use resolve::{echo, resolve, with_profiles};

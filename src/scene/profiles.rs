@@ -10,7 +10,7 @@ use super::words::nearest;
 use crate::case::{Profiles, SideProfiles};
 use crate::error::{Error, Result, finite, given};
 use crate::files::{read_bytes, read_text};
-use crate::measured::{self, Measured, Options, Record};
+use crate::measured::{self, Cut, Measured, Options, Record, SliceList};
 use crate::placement::Pair;
 use crate::profile::{Profile, SegmentData, Side, drawn_profile, inclination, standards};
 
@@ -127,10 +127,39 @@ fn in_file(data: &ProfileData, path: &Path, side: Side) -> Result<Resolved> {
     if data.format.is_none() && is_chain_file(path) {
         return profile_from_file(path).map(Resolved::drawn);
     }
-    let place = path.display().to_string();
-    let bytes = read_bytes(path, measured::LARGEST_FILE)?;
-    let Measured { profile, record, .. } = measured::profile(&place, &bytes, side, &data.measured())?;
+    let options = data.measured();
+    let Measured { profile, record, .. } = match measured::listed_body(&path.display().to_string()) {
+        Some(_) => section_from_files(path, side, &options)?,
+        None => {
+            let bytes = read_bytes(path, measured::LARGEST_FILE)?;
+            measured::profile(&path.display().to_string(), &bytes, side, &options)?
+        }
+    };
     Ok(Resolved { profile, measured: Some(record) })
+}
+
+/// Reads a list of slices, `.slcs` or `.slcw`, and cuts the section that the options name. The slices' files are relative
+/// to the list; those beside the section are opened, each once.
+///
+/// # Errors
+/// A list of the other body; an unreadable file; whatever is wrong with the list, the place or a slice.
+pub fn section_from_files(path: &Path, side: Side, options: &Options) -> Result<Measured> {
+    let place = path.display().to_string();
+    if measured::listed_body(&place).is_some_and(|listed| listed != side) {
+        let [found, expected] = match side {
+            Side::Rail => ["slices of a wheel", "slices of a rail, in a file .slcs"],
+            Side::Wheel => ["slices of a rail", "slices of a wheel, in a file .slcw"],
+        };
+        return Err(Error::new(place, found, expected, "give the other file"));
+    }
+    let bytes = read_bytes(path, measured::LARGEST_FILE)?;
+    let list = SliceList::read(&bytes, side).map_err(|error| error.within(&place))?;
+    let cut = Cut::new(&list, options).map_err(|error| error.within(&place))?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let slice = |name| Ok((name, read_bytes(&folder.join(name), measured::LARGEST_FILE)?));
+    let contents: Vec<(&str, Vec<u8>)> =
+        cut.files().into_iter().map(slice).collect::<Result<_>>().map_err(|error| error.within(&place))?;
+    measured::section(&place, &cut, &contents, side, options)
 }
 
 /// Refuses keys that mean nothing for a drawn profile.

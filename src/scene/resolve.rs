@@ -6,9 +6,10 @@ use sha2::{Digest, Sha256};
 
 use super::axes::asked_axes;
 use super::data::{MaterialData, Scene};
+use super::motion::{friction, motion};
 use super::profiles::profiles;
 use super::standing::standing;
-use crate::case::{ApproachBy, Case, Echo, OutputFormat, Outputs, Profiles, Question};
+use crate::case::{ApproachBy, Case, Echo, Friction, OutputFormat, Outputs, Profiles, Question};
 use crate::error::{Error, Result, finite};
 use crate::load::Elastic;
 
@@ -65,12 +66,14 @@ fn outputs(scene: &Scene) -> Outputs {
 fn question(scene: &Scene) -> Result<Question> {
     let tolerance = scene.grid.tolerance;
     let approach = approach(scene)?;
+    let motion = scene.motion.as_ref().map(motion).transpose()?;
     let material = elastic(&scene.material)?;
+    let friction = scene.friction.as_ref().map_or_else(|| Ok(Friction::default()), friction)?;
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         let (found, expected) = (tolerance.to_string(), "a positive length in mm");
         return Err(Error::new("grid: tolerance", found, expected, "1e-12 gives all digits"));
     }
-    Ok(Question { approach, material, tolerance, method: scene.grid.method })
+    Ok(Question { approach, motion, material, friction, tolerance, method: scene.grid.method })
 }
 
 /// Gives the approach, or the load that it is estimated from, of `[patch]` or `[wheelset]`.

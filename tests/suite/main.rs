@@ -26,6 +26,7 @@ mod promises;
 mod reference_values;
 mod reference_yawed;
 mod report;
+mod slices;
 mod strips;
 mod two_sides;
 mod yawed_patches;

@@ -12,7 +12,7 @@ use crate::measured::unit::Unit;
 use crate::profile::Side;
 
 /// Distance \[mm\] below which two points are one: a nanometre is less than any instrument or file resolves.
-const SAME_POINT: f64 = 1e-6;
+pub(in crate::measured) const SAME_POINT: f64 = 1e-6;
 /// Cosine of the turn at a point beyond which the path runs back, 120°: sharp edges of profiles turn by less
 /// than 100°, points in the wrong order by about 180°.
 const BACKWARDS: f64 = -0.5;

@@ -48,8 +48,8 @@ impl Format {
     pub fn body_of_file(name: &str) -> Option<Side> {
         let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension).to_lowercase();
         match extension.as_str() {
-            "ban" | "prr" | "rail" => Some(Side::Rail),
-            "whl" | "prw" | "wheel" => Some(Side::Wheel),
+            "ban" | "prr" | "rail" | "slcs" => Some(Side::Rail),
+            "whl" | "prw" | "wheel" | "slcw" => Some(Side::Wheel),
             _ => None,
         }
     }

@@ -8,3 +8,4 @@ pub mod points;
 pub mod reader;
 pub mod scan;
 mod simpack;
+pub mod slices;

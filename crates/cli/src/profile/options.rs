@@ -40,6 +40,12 @@ pub(super) struct MeasuredArguments {
     /// Section of an .mpt file, from 1.
     #[arg(long, allow_negative_numbers = true)]
     section: Option<usize>,
+    /// Place of the section along the track of an .slcs file, mm.
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    along: Option<f64>,
+    /// Place of the section around the wheel of an .slcw file, rad.
+    #[arg(long, value_name = "RAD", allow_negative_numbers = true)]
+    angle: Option<f64>,
     /// Whether the first axis points to the centre of the track.
     #[arg(long, value_name = "true|false", num_args = 0..=1, default_missing_value = "true")]
     mirror: Option<bool>,
@@ -85,6 +91,8 @@ impl MeasuredArguments {
             format: word("--format", self.format.as_deref())?,
             columns: self.columns.as_deref().map(columns).transpose()?,
             section: self.section,
+            along: self.along,
+            angle: self.angle,
             mirror: self.mirror,
             flip_z: self.flip_z,
             unit: word("--unit", self.unit.as_deref())?,

@@ -95,6 +95,11 @@ impl SourceArguments {
             return Ok(Source { side, content: Content::Drawn(scene::profile_from_file(path)?) });
         }
         let options = Options { curve: options.curve.or(curve), ..options };
+        if let Some(listed) = measured::listed_body(&self.profile) {
+            let known = side.unwrap_or(listed);
+            let measured = scene::section_from_files(path, known, &options)?;
+            return Ok(Source { side: Some(known), content: Content::Measured(Box::new(measured)) });
+        }
         let bytes = read_bytes(path, measured::LARGEST_FILE)?;
         let Some(known) =
             side.map_or_else(|| measured::body(&self.profile, &bytes, &options), |side| Ok(Some(side)))?

@@ -12,6 +12,9 @@ const HERTZ: [&str; 3] = ["113932", "1139.19", "0.0904879"];
 /// Every format that a scene may ask for.
 const ALL_FORMATS: &str = "[output]\nformats = [\"vtk\", \"npy\", \"netcdf\", \"text\", \"conform\", \"countact\", \"contact\", \"png\"]\n";
 
+/// What a solver of rolling contact needs besides.
+const ROLLING: &str = "[motion]\nspeed = 30.0\n[friction]\nstatic = 0.35\nkinetic = 0.25\n";
+
 /// What may lie in a run's folder and is not of the run: the collection is a sweep's, the other one is Python's.
 const NOT_OF_A_RUN: [&str; 2] = ["surface.pvd", "__pycache__"];
 
@@ -86,7 +89,8 @@ fn every_reader_reads_what_runs_write() {
 
 #[test]
 fn every_reader_reads_each_contact_of_a_wheelset() {
-    let dir = run("wheelset", include_str!("../../../../examples/scenes/wheelset.toml"));
+    let text = include_str!("../../../../examples/scenes/wheelset.toml");
+    let dir = run("wheelset", &format!("{text}{ROLLING}"));
     check_run(&dir);
     let parts = std::fs::read_dir(&dir).unwrap().map(|entry| entry.unwrap().path());
     let parts: Vec<_> = parts.filter(|path| path.is_dir()).collect();
