@@ -1,4 +1,4 @@
-//! `[rail]` and `[wheel]`: the profiles, built in, inline or from files.
+//! Makes the profiles of `[rail]` and `[wheel]`: built in, inline or from files.
 
 use std::path::Path;
 
@@ -14,10 +14,10 @@ use crate::measured::{self, Measured, Options, Record};
 use crate::placement::Pair;
 use crate::profile::{Profile, SegmentData, Side, drawn_profile, inclination, standards};
 
-/// Largest rolling radius \[mm\]: a kilometre times a thousand, whose square is far from overflowing.
+/// Largest rolling radius \[mm\]: a thousand kilometres. Its square is far from overflowing.
 const FARTHEST: f64 = 1e9;
 
-/// A profile file: the same keys as inline.
+/// A profile file. Its keys are those of an inline profile.
 #[derive(Debug, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ProfileFile {
@@ -30,10 +30,11 @@ struct ProfileFile {
     segments: Vec<SegmentData>,
 }
 
-/// Gives rail and wheel of a scene, turned and shifted as it says; files are relative to `folder`. Opens each file once.
+/// Returns the rail and the wheel of a scene, turned and shifted as the scene says. Files are relative to `folder`; each
+/// one is opened once.
 ///
 /// # Errors
-/// Whatever is wrong with a profile, by key.
+/// Anything that is wrong with a profile; the error names the key.
 pub(super) fn profiles(scene: &Scene, folder: &Path) -> Result<Profiles> {
     let rail = profile(&scene.rail, folder, Side::Rail).map_err(|e| e.within("rail"))?;
     if let Some(radius) = scene.rail.radius {
@@ -54,7 +55,7 @@ pub(super) fn profiles(scene: &Scene, folder: &Path) -> Result<Profiles> {
     Ok(Profiles { pair, measured: [rail.measured, wheel.measured] })
 }
 
-/// Gives a profile as the scene places it, and the record of a measured one.
+/// Returns a profile as the scene places it, and the record of a measured one.
 fn profile(data: &ProfileData, folder: &Path, side: Side) -> Result<Resolved> {
     let Resolved { mut profile, measured } = match (&data.profile, &data.file, &data.segments) {
         (Some(name), None, None) => Resolved::drawn(built_in(name, side)?),
@@ -105,7 +106,7 @@ fn in_file(data: &ProfileData, path: &Path, side: Side) -> Result<Resolved> {
     Ok(Resolved { profile, measured: Some(record) })
 }
 
-/// Refuses keys that mean nothing for a drawn profile.
+/// Rejects keys that mean nothing for a drawn profile.
 fn reject_measured_keys(data: &ProfileData) -> Result<()> {
     let keys = Options { mirror: None, ..data.measured() }.given();
     if keys.is_empty() {
@@ -128,7 +129,7 @@ impl Resolved {
     }
 }
 
-/// Gives a built-in profile of the right body by name.
+/// Returns the built-in profile with this name, which must be of the right body.
 fn built_in(name: &str, side: Side) -> Result<Profile> {
     let (of_other, own, other) = match side {
         Side::Rail => (standards::wheel_names().any(|known| known == name), "rail", "wheel"),
@@ -148,12 +149,12 @@ fn built_in(name: &str, side: Side) -> Result<Profile> {
     })
 }
 
-/// Tells whether a file's extension is that of a chain of segments.
+/// Returns whether a file's extension is that of a chain of segments.
 pub fn is_chain_file(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml") || e.eq_ignore_ascii_case("json"))
 }
 
-/// Gives the rotation that is written.
+/// Returns the rotation that the scene gives.
 fn turn(rotation: &Rotation) -> Result<UnitComplex<f64>> {
     let bad = |found: String| Error::new("", found, "rad, or \"1:n\" with n ≠ 0", "correct it");
     match rotation {
@@ -169,10 +170,10 @@ fn turn(rotation: &Rotation) -> Result<UnitComplex<f64>> {
     }
 }
 
-/// Reads a profile file with `segments` and perhaps `name`, `source`, `start`.
+/// Reads a profile file: `segments`, and optionally `name`, `source` and `start`.
 ///
 /// # Errors
-/// An unreadable file; whatever is wrong with its segments.
+/// An unreadable file; anything that is wrong with its segments.
 pub fn profile_from_file(path: &Path) -> Result<Profile> {
     let place = path.display().to_string();
     let text = read_text(path, measured::LARGEST_FILE)?;

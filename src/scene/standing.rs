@@ -1,4 +1,4 @@
-//! `[contact]`, `[track]` and `[wheelset]`: where the bodies stand.
+//! Reads where the bodies stand: `[contact]`, `[track]` and `[wheelset]`.
 
 use std::sync::Arc;
 
@@ -8,13 +8,14 @@ use crate::error::{Error, Result, finite, given};
 use crate::placement::{Pair, RailDistance, WheelDistance};
 use crate::search::{Pose, Position, ProfilePair, Roll, WheelsetOnTrack};
 
-/// Depth below the top of rail at which gauge is measured unless the scene says otherwise \[mm\].
+/// Depth \[mm\] below the top of rail at which the gauge is measured, if the scene gives no other.
 const GAUGE_HEIGHT: f64 = 14.0;
 
 /// Finds where the bodies stand, and prepares the search over them.
 ///
 /// # Errors
-/// None or several of the ways to say so; missing or contradictory keys; profiles that cannot be searched.
+/// No table or several tables that say where the bodies stand; missing or contradictory keys; profiles that cannot be
+/// searched.
 pub(super) fn standing(scene: &Scene, pair: &Pair) -> Result<Standing> {
     match (&scene.contact, &scene.track, &scene.wheelset) {
         (Some(contact), None, None) => single(contact, pair),
