@@ -1,9 +1,9 @@
 //! Writes `contact.inp`: a deck for Vollebregt's CONTACT, module 3 (one point of contact), with the
 //! undeformed distance given point by point (IBASE = 9).
 //!
-//! CONTACT's axes are x rolling, y lateral, z down: (x, y, z) = ours (η, ξ, −ζ). Its elements are our cells,
-//! and its distances belong to their centres, x fastest, which is our order too. The program exits with 0
-//! even when it rejects its input, so read its output.
+//! CONTACT's axes are x rolling, y lateral and z down: its (x, y, z) is our (η, ξ, −ζ). Its elements are our cells. Its
+//! distances belong to their centres and run x fastest, which is our order, too. CONTACT exits with 0 even when it rejects
+//! its input; only its output tells.
 
 use super::super::block::Block;
 use super::number::WIDTH;
@@ -14,8 +14,8 @@ use std::io::{self, Write};
 /// Largest number of elements that CONTACT takes (NPOT_MAX); beyond it CONTACT coarsens the grid.
 pub const ELEMENT_LIMIT: usize = 20_000;
 
-/// Numbers on a line: CONTACT takes lines of up to 256 characters and 50 items; three numbers keep a line
-/// under 80.
+/// Numbers on a line. CONTACT takes lines of up to 256 characters and 50 items; with three numbers a line stays under 80
+/// characters.
 const PER_LINE: usize = 3;
 
 /// The quantity prescribed along the normal.
@@ -36,7 +36,7 @@ pub struct ContactSettings {
     pub poisson: [f64; 2],
     /// Shear moduli of rail and wheel \[N/mm²\], typically 82,000.
     pub shear_modulus: [f64; 2],
-    /// Coefficient of friction, static and kinetic, typically 0.3; it does not enter the normal problem.
+    /// Coefficient of friction, static and kinetic, typically 0.3. It has no influence on the normal problem.
     pub friction: f64,
 }
 
@@ -95,7 +95,7 @@ fn control(deck: &Deck<'_>, settings: &ContactSettings) -> String {
     );
     text += "  022020       L-D-C-M-Z-E\n 0002221       H-G-I-A-O-W-R\n";
     text += "   999 100 30 1 1.0e-8           MAXGS MAXIN MAXNR MAXOUT EPS\n";
-    // `{:?}` writes every f64 with a point or an exponent, in the shortest form that reads back the same.
+    // `{:?}` writes every f64 with a point or an exponent, in the shortest form that reads back as the same number.
     let _ = writeln!(text, "   {normal:?} 0.0 0.0 0.0           {}", ["PEN", "FN"][force]);
     let _ = writeln!(text, "   {0:?} {0:?}           FSTAT FKIN", settings.friction);
     let _ = writeln!(text, "   {nu_r:?} {nu_w:?} {g_r:?} {g_w:?}           POISS 1,2  GG 1,2");
