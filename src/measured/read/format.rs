@@ -43,8 +43,8 @@ impl Format {
         })
     }
 
-    /// Returns the body that a file's extension stands for. Upper and lower case are the same. Returns `None` for an
-    /// extension of both bodies.
+    /// Returns the body that a file's extension stands for. Upper and lower case are the same. Returns `None` if
+    /// the extension does not tell the body.
     pub fn body_of_file(name: &str) -> Option<Side> {
         let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension).to_lowercase();
         match extension.as_str() {
