@@ -1,11 +1,11 @@
-//! Writes `boundary.csv` and `interpen.csv`: a header line, then numbers in mm, in the shortest form that
-//! reads back the same.
+//! Writes `boundary.csv` and `interpen.csv`: a header line, then numbers in mm, in the shortest form that reads back as the
+//! same number.
 
 use super::model::{Interval, Loop};
 use std::fmt::Write;
 
-/// Writes `boundary.csv`: component, xi, eta. Loop after loop, counter-clockwise (clockwise around holes),
-/// each closed by its first point.
+/// Writes `boundary.csv` with the columns component, xi and eta. The loops follow each other; each is counter-clockwise
+/// (clockwise around holes) and ends with its first point.
 pub fn boundary_csv(loops: &[Loop]) -> String {
     let mut text = String::from("component,xi,eta\n");
     for ring in loops {
@@ -17,8 +17,8 @@ pub fn boundary_csv(loops: &[Loop]) -> String {
     text
 }
 
-/// Writes `interpen.csv`, INTERPEN's own table: for each grid ξ inside the patch, xi, component, eta_min,
-/// eta_max.
+/// Writes `interpen.csv`, INTERPEN's own table, with the columns xi, component, eta_min and eta_max: one row for each
+/// interval of each grid ξ inside the patch.
 pub fn interpen_csv(intervals: &[Interval]) -> String {
     let mut text = String::from("xi,component,eta_min,eta_max\n");
     for Interval { xi, component, eta: [low, high] } in intervals {

@@ -1,5 +1,5 @@
-//! Writes NumPy arrays (`.npy`): f64, little-endian, C order. `npyz` writes the header. Its body, value by
-//! value, runs at half the speed of the disk's cache, so the body is written here.
+//! Writes NumPy arrays (`.npy`): f64, little-endian, C order. `npyz` writes the header. It would write the body value by
+//! value, at half the speed of the disk's cache; this file writes it in blocks.
 
 use super::block::{Block, put_f64};
 use npyz::WriterBuilder;

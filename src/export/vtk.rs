@@ -1,11 +1,11 @@
 //! Writes VTK files with `vtkio` 0.7.0-rc2: boundaries, patches and surfaces. Grids are written by
 //! [`vts`](super::vts) and [`legacy`](super::legacy).
 //!
-//! `vtkio` has traps; each is avoided here. It reports partial writes as success (so encode to memory). It
-//! does not check array lengths (checked here). It leaves out counts of zero, so that empty files are
-//! unreadable (put in here). It drops FieldData from XML (inserted as text). Its node numbers are unsigned,
-//! which meshio turns into floating-point numbers (declared as signed). Blanks in array names break readers
-//! (no name has one). Only the version and the cell kinds that meshio reads are used: XML 1.0.
+//! `vtkio` has five faults, and each is avoided here. It reports partial writes as success (files are encoded in memory).
+//! It does not check lengths of arrays (they are checked here). It leaves out counts of zero, which makes empty files
+//! unreadable (they are put in here). It drops FieldData from XML (it is inserted as text). Its node numbers are unsigned,
+//! which meshio turns into floating-point numbers (they are declared as signed). Array names contain no blanks, which break
+//! readers. Only the version and the cell kinds that meshio reads are used: XML 1.0.
 
 use super::model::{Header, Loop, QuadMesh, SurfaceMesh, same_length};
 use super::vts::{comment, field_data};
@@ -16,7 +16,7 @@ use vtkio::model::{
     PolyDataPiece, UnstructuredGridPiece, Version, VertexNumbers, Vtk,
 };
 
-/// The counts of an empty PolyData piece, which `vtkio` leaves out; no reader takes a file without them.
+/// The counts of an empty PolyData piece. `vtkio` leaves them out, and no reader takes a file without them.
 const EMPTY_POLYDATA: &str = "<Piece NumberOfPoints=\"0\" NumberOfVerts=\"0\" NumberOfLines=\"0\" \
     NumberOfStrips=\"0\" NumberOfPolys=\"0\">";
 
@@ -74,8 +74,8 @@ pub fn surface_vtp(header: &Header, mesh: &SurfaceMesh) -> Result<Vec<u8>> {
     unstructured(header, &mesh.points, &cells, Vec::new())
 }
 
-/// Writes `surface.pvd`: the files of a sweep on one time axis, which ParaView plays. `steps` are (time,
-/// part, path), with paths as the program makes them.
+/// Writes `surface.pvd`: the files of a sweep on one time axis, which ParaView plays. `steps` are (time, part, path), with
+/// the paths as they are to be written.
 pub fn collection_pvd(steps: &[(f64, usize, String)]) -> String {
     let set = |(time, part, path): &(f64, usize, String)| {
         format!("    <DataSet timestep=\"{time:?}\" group=\"\" part=\"{part}\" file=\"{path}\"/>\n")
@@ -110,7 +110,7 @@ fn unstructured(
     xml(header, DataSet::inline(piece), EMPTY_UNSTRUCTURED)
 }
 
-/// Coordinates one after another.
+/// Returns the coordinates of points one after another.
 fn coordinates<'a>(points: impl IntoIterator<Item = &'a Point3<f64>>) -> IOBuffer {
     points.into_iter().flat_map(|point| point.coords.as_slice()).copied().collect::<Vec<f64>>().into()
 }
@@ -137,7 +137,7 @@ fn xml(header: &Header, data: DataSet, empty_piece: &str) -> Result<Vec<u8>> {
     let file = Vtk { version, title: String::new(), byte_order, file_path: None, data };
     file.write_xml(&mut bytes).map_err(refused)?;
     let text = String::from_utf8(bytes).map_err(refused)?;
-    // Numbers of nodes are far below 2⁶³, so the bytes are the same.
+    // Node numbers are far below 2⁶³, so that their bytes are the same in both types.
     let text = text.replace("<DataArray type=\"UInt64\"", "<DataArray type=\"Int64\"");
     Ok(annotate(text.replacen("<Piece>", empty_piece, 1), header))
 }

@@ -1,11 +1,10 @@
 //! Writes VTK structured grids (`.vts`): XML with the arrays appended raw, little-endian, in one pass.
 //!
-//! The writer is our own: `vtkio` cannot append raw data, and its base64 runs at 75 MB/s, a thirtieth of what
-//! the disk's cache takes. Points are (ξ, η, ζ) in the contact frame. VTK's first index runs fastest, so it
-//! is η.
+//! The writer is our own: `vtkio` cannot append raw data, and its base64 runs at 75 MB/s, a thirtieth of the speed of the
+//! disk's cache. Points are (ξ, η, ζ) in the contact frame. The first index of VTK runs fastest, so that it is η.
 //!
-//! Where a body has no surface, a point still needs coordinates: ζ is 0 there, and VTK's own array
-//! `vtkGhostType` hides the point. The array is written only if there are such points.
+//! A point where a body has no surface still needs coordinates: ζ is 0 there, and VTK's own array `vtkGhostType` hides the
+//! point. This array is written only if there are such points.
 
 use super::block::{Block, put_bytes, put_f64, put_vectors};
 use super::model::{GridFields, Header, known};
@@ -18,7 +17,7 @@ const HIDDEN: u8 = 2;
 /// A function that fills the bytes of column i.
 type FillColumn<'a> = Box<dyn Fn(usize, &mut [u8]) + 'a>;
 
-/// One array of a grid, given column by column (a column: constant ξ).
+/// One array of a grid, given column by column; ξ is constant in a column.
 struct Array<'a> {
     name: &'a str,
     kind: &'a str,
@@ -46,10 +45,9 @@ impl<'a> Array<'a> {
     }
 }
 
-/// Writes `separation.vts`: the grid on the rail's surface with separation \[mm\], interpenetration max(δ −
-/// s, 0) \[mm\], gap_vector s·e_ζ \[mm\] (for Warp By Vector: the rail warped by it is the wheel),
-/// rail_normal and mask (1 where s is defined). Undefined values are NaN; in gap_vector they are 0, as a NaN
-/// would destroy the picture.
+/// Writes `separation.vts`: the grid on the rail's surface with separation \[mm\], interpenetration max(δ − s, 0) \[mm\],
+/// gap_vector s·e_ζ \[mm\] (Warp By Vector moves the rail onto the wheel by it), rail_normal and mask (1 where s is
+/// defined). Undefined values are NaN; in gap_vector they are 0, because a NaN would destroy the picture.
 ///
 /// # Errors
 /// The errors of the sink.
@@ -163,7 +161,7 @@ pub(super) fn comment(header: &Header) -> String {
     text + "  -->\n"
 }
 
-/// Returns δ and the frame as numeric field data. Strings there would make a file unreadable to meshio.
+/// Returns δ and the frame as numeric field data. Text there would make a file unreadable to meshio.
 pub(super) fn field_data(header: &Header) -> String {
     let frame = &header.frame;
     let mut text = String::from("    <FieldData>\n");

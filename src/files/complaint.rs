@@ -1,11 +1,11 @@
-//! What is wrong with a path.
+//! Makes errors about paths.
 
 use std::io;
 use std::path::Path;
 
 use crate::error::{Error, ErrorKind};
 
-/// Makes the complaint about a path.
+/// Makes the error about a path.
 pub(super) fn bad(path: &Path, found: &str, expected: &str, advice: &str) -> Error {
     Error::new(path.display().to_string(), found, expected, advice).of_kind(ErrorKind::Io)
 }

@@ -1,7 +1,7 @@
 //! Puts the output folder onto the disk.
 //!
-//! A run writes into a temporary folder beside DIR and puts it in DIR's place in one step at the end. So
-//! every reader of DIR finds the whole old folder or the whole new one, whenever the run is killed.
+//! A run writes into a temporary folder beside DIR and puts it in DIR's place in one step at the end. Every reader of DIR
+//! therefore finds the whole old folder or the whole new one, even if the run is killed.
 //!
 //! - **The step.** A plain `rename` if DIR is missing or empty; otherwise the kernel's exchange of two names
 //!   (`renameat2` with `RENAME_EXCHANGE`), after which the old folder has the temporary name and is deleted.
@@ -29,12 +29,11 @@ use std::path::{Component, Path, PathBuf};
 /// Name of the old folder while two folders are swapped on a file system without the exchange of names.
 const ASIDE: &str = ".wheelrail-old.";
 
-/// Most attempts to put the new folder in place; an attempt fails only if another run does the same at that
-/// moment.
+/// Most attempts to put the new folder in place. An attempt fails only if another run does the same at that moment.
 const SWAPS_TRIED: u32 = 100;
 
-/// A folder being written: nothing appears in DIR before [`Folder::commit`], and nothing remains if it is
-/// dropped without a commit.
+/// A folder being written. Nothing appears in DIR before [`Folder::commit`]; nothing remains if it is dropped without a
+/// commit.
 #[derive(Debug)]
 pub struct Folder {
     target: PathBuf,
@@ -77,7 +76,7 @@ impl Folder {
         Ok(Self { target, temporary, names, _lock: lock })
     }
 
-    /// Makes a subfolder with files of the same names at once; an empty `name` is the folder itself.
+    /// Makes a subfolder whose files have the same names. An empty `name` is the folder itself.
     ///
     /// # Errors
     /// Any error of the disk.
@@ -111,10 +110,10 @@ impl Folder {
     pub fn commit(self) -> Result<()> {
         use ErrorKind::{AlreadyExists, DirectoryNotEmpty, PermissionDenied};
         for _ in 0..SWAPS_TRIED {
-            // Replaces an empty folder too.
+            // The rename also replaces an empty folder.
             match fs::rename(&self.temporary, &self.target) {
                 Ok(()) => return Ok(()),
-                // What systems say of a folder that is in the way.
+                // Systems report one of these errors if a folder is in the way.
                 Err(e) if matches!(e.kind(), DirectoryNotEmpty | AlreadyExists | PermissionDenied) => {}
                 Err(e) => return Err(unwritable(&self.target, e)),
             }
@@ -198,17 +197,18 @@ impl FolderPart<'_> {
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        // A failure leaves a stale folder, which the next run removes. After a plain rename there is none.
+        // A failure here leaves a stale folder, which the next run removes. After a plain rename there is nothing to
+        // remove.
         drop(fs::remove_dir_all(&self.temporary));
     }
 }
 
-/// Returns `dir` without symbolic links, absolute; its last parts may be missing.
+/// Returns `dir` as an absolute path without symbolic links. Its last parts need not exist.
 fn resolve(dir: &Path) -> Result<PathBuf> {
     if let Ok(real) = dir.canonicalize() {
         return Ok(real);
     }
-    // If another run has made it since, it is no link.
+    // If another run has made the folder since, it is no link.
     if dir.symlink_metadata().is_ok_and(|found| found.is_symlink()) {
         return Err(bad(
             dir,
@@ -221,7 +221,7 @@ fn resolve(dir: &Path) -> Result<PathBuf> {
         return Err(bad(dir, "a path without a name at its end", "a folder's name", "give one with a name"));
     }
     let dir = std::path::absolute(dir).map_err(|e| unwritable(dir, e))?;
-    // Folders missing below the nearest one that exists will be made, and contain no links.
+    // Missing folders will be made below the nearest existing one, and contain no links.
     let real = dir.ancestors().find_map(|above| {
         let missing = dir.strip_prefix(above).ok()?;
         above.canonicalize().ok().map(|above| above.join(missing))
@@ -293,7 +293,7 @@ fn exchange_in_two(new: &Path, old: &Path) -> io::Result<()> {
     }
 }
 
-/// Undoes an [`exchange_in_two`] that was killed half-way; the next run tries a refused rename again.
+/// Undoes an [`exchange_in_two`] that was killed half-way. If a rename is refused, the next run tries again.
 fn put_back(target: &Path) {
     let aside = aside_of(target);
     if !aside.is_dir() {

@@ -1,4 +1,4 @@
-//! Reads whole files of a bounded size, with errors in the house form.
+//! Reads whole files of a limited size. The errors name the file.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -7,7 +7,7 @@ use std::path::Path;
 use super::complaint::bad;
 use crate::error::{Error, ErrorKind, Result};
 
-/// Returns the bytes of a file of at most `largest` bytes; it reads no more from a pipe or device either.
+/// Returns the bytes of a file of at most `largest` bytes. From a pipe or device it reads no more than that, either.
 ///
 /// # Errors
 /// An unreadable or larger file.

@@ -1,16 +1,13 @@
-//! Turns an instrument's file of measured points into a profile, a chain of segments.
+//! Turns an instrument's file of measured points into a profile.
 //!
 //! ```text
 //! bytes ─ scan ─ reader of the format ─ placing ─ repairs ─ checks ─ curve ─ Profile
 //!                   (miniprof, simpack, columns)  (options)         └ smoothing spline, interpolation, arcs
 //! ```
 //!
-//! A rail that varies along the track, or a wheel that varies around its circumference, is a list of slices, each with a
-//! file of its own: [`SliceList`], [`Cut`], [`section`].
-//!
-//! Nothing is guessed and nothing is repaired in silence. An option decides, or else the format's definition,
-//! or else the shape; a question that none of them answers is an error that lists the choices. Every decision
-//! is in the [`Record`]. This module does not access the disk.
+//! Nothing is guessed, and nothing is repaired in silence. An option decides first, then the definition of the format, then
+//! the shape. A question that none of them answers is an error that lists the choices. Every decision is in the [`Record`].
+//! This module does not access the disk.
 
 mod clean;
 mod column;
@@ -47,24 +44,24 @@ use serde::Serialize;
 use crate::error::{Error, Result};
 use crate::profile::{Profile, Side};
 
-/// What was read, decided, repaired and fitted; written to summary.json.
+/// The decisions, repairs and fit that made a profile from a file. A run writes them to summary.json.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Record {
     /// The file's format.
     pub format: Format,
-    /// Number of points in the file, or in the section chosen.
+    /// Number of points in the file, or in the chosen section.
     pub points_read: usize,
-    /// Number of points under the curve.
+    /// Number of points through or near which the curve is drawn.
     pub points_used: usize,
-    /// Oddities of the file.
+    /// Oddities of the file that did not prevent reading it.
     pub notes: Vec<Note>,
-    /// Transformation from the file's axes to the profile's.
+    /// Transformation from the file's axes to those of the profile.
     pub transform: Transform,
     /// Whether the points already contain the rail's inclination.
     pub already_inclined: bool,
     /// The repairs that were made.
     pub repairs: Vec<Repaired>,
-    /// Findings that remain and that a user should know of.
+    /// Findings that were neither fatal nor repaired.
     pub warnings: Vec<Finding>,
     /// The curve that was drawn.
     pub curve: CurveRecord,
@@ -78,19 +75,19 @@ pub struct Record {
 pub struct Measured {
     /// The profile.
     pub profile: Profile,
-    /// The points under the curve \[mm\], in profile axes, from left to right.
+    /// The points \[mm\] through or near which the curve is drawn, in profile axes, from left to right.
     pub points: Vec<Point>,
-    /// How the profile was made.
+    /// Record of how the profile was made.
     pub record: Record,
 }
 
-/// Makes the profile of a file of measured points. `file` is its name, for the format and for messages.
+/// Makes the profile from the bytes of a file. `file` is its name; the name tells the format and appears in messages.
 ///
-/// Cost: about 5 µs a point for usual files, 20 µs a point for a million, most of it for the spline.
+/// Cost: about 5 µs a point for usual files, 20 µs a point for a million points; the spline takes most of it.
 ///
 /// # Errors
-/// Anything wrong with the options, the file or its points, with the place: see [`Options`],
-/// [`Format`], [`Transform`], [`Check`].
+/// Anything wrong with the options, the file or its points, with the place. See [`Options`], [`Format`], [`Transform`] and
+/// [`Check`].
 ///
 /// # Examples
 /// ```
@@ -120,10 +117,10 @@ pub fn profile(file: &str, bytes: &[u8], side: Side, options: &Options) -> Resul
     build(file, points, side, options).map_err(|error| error.within(file))
 }
 
-/// Returns the body that a file describes, by its extension or its header; `None` if neither says.
+/// Returns the body that a file describes, by its extension or its header. Returns `None` if neither tells.
 ///
 /// # Errors
-/// The errors of [`Format::of_file`], and of a file that is not of its format.
+/// The errors of [`Format::of_file`]; a file that is not of its format.
 pub fn body(file: &str, bytes: &[u8], options: &Options) -> Result<Option<Side>> {
     if let Some(side) = Format::body_of_file(file) {
         return Ok(Some(side));

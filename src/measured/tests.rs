@@ -60,7 +60,7 @@ fn every_wheel_file_becomes_the_same_right_hand_wheel() -> Result<()> {
         let found = measured(name, options)?;
         assert_eq!(found.record.transform.scale, [mirror, flip], "{name}");
         assert!(found.record.warnings.is_empty(), "{name}: {:?}", found.record.warnings);
-        // Points every 3 mm and curvature jumps of 1/13 mm: h²Δκ/16.
+        // The points are 3 mm apart and the curvature jumps by 1/13 per mm: the error is h²Δκ/16.
         let worst = difference(&found.profile, &wheel, Side::Wheel, [-69.0, 59.0]);
         assert!(worst < 0.05, "{name}: {worst}");
     }
@@ -93,8 +93,7 @@ fn every_rail_file_becomes_the_same_right_hand_rail() -> Result<()> {
 fn what_the_file_does_not_prove_is_an_error_with_the_choices() {
     let error = measured("new-style.ban", "").err().map(|e| e.to_string()).unwrap_or_default();
     assert!(error.contains("mirror = true") && error.contains("mirror = false"), "{error}");
-    // SIMPACK's definition decides what the symmetric head does not; rail.csv is decided only by its single
-    // side face.
+    // SIMPACK's definition decides what the symmetric head leaves open. Only the single side face decides for rail.csv.
     assert!(measured("rail.prr", "").is_ok_and(|m| m.record.transform.steps.len() == 3));
     let one_sided = measured("rail.csv", "unit = 'm'\ncolumns = [2, 3]");
     assert!(one_sided.is_ok_and(|m| m.record.transform.scale == [-1e3, 1e3]));
@@ -114,7 +113,7 @@ fn what_the_file_does_not_prove_is_an_error_with_the_choices() {
     }
 }
 
-/// Returns a rail on its head in a file of each format, with both side faces.
+/// Returns a rail on its head, with both side faces, as a file of this format.
 fn upside_down(format: Format) -> String {
     let head = [[-36.0, -30.0], [-36.0, -3.0], [0.0, 0.0], [34.0, -3.0], [34.0, -30.0]];
     write::points(&head.map(|[x, z]| [x, -z]), format, Side::Rail, "on its head")
@@ -128,7 +127,7 @@ fn an_option_holds_then_the_definition_and_the_shape_only_where_neither_says() -
         let options = Options { mirror, flip_z, curve, ..Options::default() };
         profile(name, upside_down(format).as_bytes(), Side::Rail, &options)
     };
-    // SIMPACK and GENSYS define z: the profile stays on its head, and the finding names the option.
+    // SIMPACK and GENSYS define z, so that the profile stays on its head, and the finding names the option.
     for (format, name, sign) in [(Format::Simpack, "a.prr", -1.0), (Format::Gensys, "a.rail", -1.0)] {
         let found = turned(format, name, None)?;
         assert_eq!(found.record.transform.scale[1], sign, "{name}");
@@ -141,7 +140,7 @@ fn an_option_holds_then_the_definition_and_the_shape_only_where_neither_says() -
             assert_eq!(given.transform.scale[1], if flip { -1.0 } else { 1.0 });
         }
     }
-    // MiniProf and text define no sign for rails: the side faces decide.
+    // MiniProf and text files define no sign for rails, so that the side faces decide.
     for (format, name) in [(Format::MiniProf, "a.ban"), (Format::Text, "a.txt")] {
         assert_eq!(turned(format, name, None)?.record.transform.scale[1], -1.0, "{name}");
     }
@@ -179,7 +178,8 @@ fn simpack_files_have_the_material_to_the_right_of_their_path_and_points_apart()
             let text = write::points(&points, Format::Simpack, side, "");
             assert!(text.contains("inversion      =  0"));
             let read = read::reader::read(text.as_bytes(), Format::Simpack, None)?.at;
-            // Where the surface faces the other body the path of a wheel goes to smaller y, that of a rail to larger.
+            // The path of a wheel goes to smaller y where its surface faces the other body; the path of a rail goes to
+            // larger y.
             let lowest = match side {
                 Side::Wheel => (1..read.len() - 1).max_by(|&a, &b| read[a].z.total_cmp(&read[b].z)),
                 Side::Rail => (1..read.len() - 1).min_by(|&a, &b| read[a].z.total_cmp(&read[b].z)),
@@ -206,7 +206,7 @@ fn the_gauge_point_of_a_grooved_rail_is_on_its_head() -> Result<()> {
     let options = "mirror = false\norigin = 'gauge-point'\ncurve = 'interpolation'";
     let options = toml::from_str(options).map_err(|e| Error::new("options", e.to_string(), "", ""))?;
     let found = profile("rail.txt", rail.as_bytes(), Side::Rail, &options)?;
-    // 11 mm of 44 mm down the gauge face, which runs 4 mm out.
+    // 11 mm down a gauge face that is 44 mm high and runs 4 mm out.
     assert_eq!(found.record.transform.shift, [37.0, 0.0]);
     Ok(())
 }
@@ -222,7 +222,7 @@ fn origins_go_where_they_are_asked() -> Result<()> {
     Ok(())
 }
 
-/// Points of a sine wave on a flat, 60 mm wide.
+/// Returns points of a wave on a flat line 60 mm wide.
 fn flat(wave: impl Fn(f64) -> f64) -> Vec<Point> {
     (0..300)
         .map(|k| {
@@ -292,11 +292,11 @@ fn each_defect_is_named_at_its_place_and_mended_by_its_repair() {
 fn a_tall_spike_among_dense_noisy_points_is_one_and_goes() -> Result<()> {
     let rail = standards::rail("60E1")?;
     let mut random = Random::new(7);
-    // About normal, 8 µm.
+    // The noise is nearly normal, with a deviation of 8 µm.
     let mut noise = || 0.008 * ((0..12).map(|_| random.below(1_000_000) as f64 / 1e6).sum::<f64>() - 6.0);
     let points: Vec<[f64; 2]> =
         write::sample(&rail, 0.1)?.into_iter().map(|[x, z]| [x + noise(), z + noise()]).collect();
-    // At the corners a small spike reaches as far along as across, and its neighbour is equally a spike.
+    // At the corners a small spike reaches as far along the path as across it, and its neighbour looks like a spike, too.
     let crown: Vec<usize> = (0..points.len()).filter(|&k| points[k][0].abs() < 25.0).collect();
     for (n, &at) in crown.iter().step_by(23).enumerate() {
         for height in [0.2, 0.5, 1.0, -0.7] {
@@ -311,7 +311,7 @@ fn a_tall_spike_among_dense_noisy_points_is_one_and_goes() -> Result<()> {
                 place.contains(&number) && advice.contains("remove-spikes"),
                 "{at} {height}: {place}: {advice}"
             );
-            // The fit takes most of the time.
+            // The fit takes most of the time, so that only every tenth round makes it.
             if n % 10 == 0 {
                 options.repair = vec![Repair::RemoveSpikes];
                 let repairs = profile("rail.csv", text.as_bytes(), Side::Rail, &options)?.record.repairs;
@@ -400,7 +400,7 @@ fn segments_written_are_segments_read() -> Result<()> {
         _ => 0.0,
     };
     let largest = arcs.segments().iter().map(radius).fold(0.0, f64::max);
-    // The drawn profile comes back, and is closed by arcs that start from rounded ends. A fitted arc is
+    // The drawn profile comes back to rounding, because the arcs that close it start from rounded ends. A fitted arc is
     // written by its rounded centre.
     for (profile, bound) in [(&wheel, 2e-15), (&arcs, 0.5 * f64::EPSILON * largest)] {
         let written = write::segments(profile)?;

@@ -1,4 +1,4 @@
-//! Solver meshes over the patch, surfaces around it, and how good they are.
+//! Solver meshes over the patch, surfaces around it, and measures of their quality.
 
 mod axes;
 mod lines;

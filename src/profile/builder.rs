@@ -1,8 +1,7 @@
-//! Appendix A of the Report: builds smooth chains from drawing data.
+//! Builds smooth chains from drawing data: Appendix A of the Report.
 //!
-//! A segment is given by its slope or radius and the abscissa where it ends; it leaves the segment before
-//! along its tangent. Equations –(A-13) are one rule in the form used here: the new centre is on the
-//! normal of the joint.
+//! A segment is given by its slope or radius and by the abscissa where it ends. It leaves the previous segment along its
+//! tangent. Equations –(A-13) become one rule here: the new centre lies on the normal of the joint.
 
 use super::{Arc, Half, Segment, Station};
 use crate::error::{Error, Result, finite};
@@ -27,12 +26,12 @@ pub struct ChainBuilder {
 }
 
 impl ChainBuilder {
-    /// Begins an empty chain.
+    /// Makes an empty chain. Its first segment must be given in full.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Begins an empty chain whose first segment, a line, starts at this point \[mm\].
+    /// Makes an empty chain whose first segment is a line that starts at this point \[mm\].
     ///
     /// # Errors
     /// A point that is not finite.
@@ -43,17 +42,16 @@ impl ChainBuilder {
         Ok(Self { point: Some(point), segments: Vec::new() })
     }
 
-    /// Appends a segment that is fully given.
+    /// Appends a segment that is given in full.
     pub fn push(&mut self, segment: Segment) {
         self.segments.push(segment);
     }
 
-    /// Appends a line to abscissa `to_x`: with the given slope, or along the tangent of the segment before
-    ///
+    /// Appends a line to abscissa `to_x` \[mm\]. With a slope the line has that slope; otherwise it continues the tangent
+    /// of the previous segment, (A-12).
     ///
     /// # Errors
-    /// No beginning or no slope to continue from; values that are not finite; `to_x` not beyond the
-    /// beginning.
+    /// No point or no slope to continue from; values that are not finite; a `to_x` that is not beyond the beginning.
     pub fn line_to(&mut self, slope: Option<f64>, to_x: f64) -> Result<()> {
         let slope = slope.map(|slope| finite("line: slope", slope)).transpose()?;
         finite("line: to_x", to_x)?;
@@ -71,8 +69,8 @@ impl ChainBuilder {
         Ok(())
     }
 
-    /// Appends an arc to abscissa `to_x`, smooth with the segment before, (A-4) after a line, (A-8),
-    /// after an arc.
+    /// Appends an arc to abscissa `to_x` \[mm\], smooth with the previous segment, (A-4) after a line, (A-8), (A-9)
+    /// after an arc.
     ///
     /// # Errors
     /// No segment to continue from; values that are not finite; a radius that is not positive; a `to_x` that
@@ -91,7 +89,7 @@ impl ChainBuilder {
         Ok(())
     }
 
-    /// Returns the chain.
+    /// Returns the segments from left to right.
     pub fn finish(self) -> Vec<Segment> {
         self.segments
     }

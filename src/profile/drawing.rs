@@ -1,4 +1,4 @@
-//! Reads segments in the form of scenes and data files.
+//! Reads segments in the form in which scenes and data files give them.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -35,7 +35,7 @@ pub struct LineData {
     /// Last point [x, z], mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub to: Option<[f64; 2]>,
-    /// Slope dz/dx; without it the line leaves the segment before along its tangent.
+    /// Slope dz/dx. Without it the line continues the tangent of the previous segment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub slope: Option<f64>,
     /// Abscissa of the end, mm.
@@ -82,11 +82,10 @@ pub struct PolynomialData {
     pub coefficients: Vec<f64>,
 }
 
-/// Makes the profile of a chain of segments; `start` is the first point of a chain that begins in the form of
-/// Appendix A.
+/// Makes the profile of a chain of segments. `start` is the first point of a chain that begins in the form of Appendix A.
 ///
 /// # Errors
-/// A wrong segment, with its name and what is wrong with it; steps between segments as in [`Profile::new`].
+/// A wrong segment, with its name and what is wrong with it; the errors of [`Profile::new`].
 pub fn drawn_profile(
     name: &str,
     source: &str,

@@ -5,8 +5,8 @@ use crate::error::{Error, Result, finite};
 use crate::numerics::polynomial::{exact_slope, exact_value, recentred};
 use crate::numerics::twice::Twice;
 
-/// A curve (x(t), z(t)) with polynomial coordinates. They are kept in twice the working precision about a
-/// point of the curve's own: a standard's power form about x = 0 cancels from thousands of mm.
+/// A curve (x(t), z(t)) with polynomial coordinates. The coefficients are about a point of the curve itself and have twice
+/// the working precision, because a standard's power form about x = 0 cancels from thousands of mm.
 ///
 /// # Examples
 /// ```
@@ -28,10 +28,10 @@ pub struct Polynomial {
 }
 
 impl Polynomial {
-    /// Makes z = Σ c_k x^k between two abscissae, as standards print it.
+    /// Makes the curve z = Σ c_k x^k between two abscissae \[mm\], the form in which standards print it.
     ///
     /// # Errors
-    /// No coefficient, values that are not finite, abscissae out of order.
+    /// No coefficient; values that are not finite; abscissae out of order.
     pub fn graph(c: &[f64], x: [f64; 2]) -> Result<Self> {
         for &v in c.iter().chain(&x) {
             finite("polynomial", v)?;
@@ -65,7 +65,7 @@ impl Polynomial {
         Ok(Self { t, x: exact(x), z: exact(z) })
     }
 
-    /// Returns the coefficients of x(t) and of z(t) \[mm\], each as a sum of two numbers: the rounded one and
+    /// Returns the coefficients of x(t) and of z(t) \[mm\]. Each coefficient is a sum of two numbers: the rounded value and
     /// the rest.
     pub fn coefficients(&self) -> [Vec<[f64; 2]>; 2] {
         [&self.x, &self.z].map(|c| c.iter().map(|c| [c.high, c.low]).collect())
@@ -109,9 +109,9 @@ impl Polynomial {
         dx.hypot(dz)
     }
 
-    /// Returns the curve plus a parabola that begins at t = `near` and adds `change` \[1/mm\] to the
-    /// curvature, exactly at t = `at`. The parabola is along z for a graph z(x), which stays a graph; else
-    /// along the normal at `at`.
+    /// Returns the curve plus a parabola. The parabola begins at t = `near` and adds `change` \[1/mm\] to the curvature;
+    /// this is exact at t = `at`. It is along z for a graph z(x), so that the sum stays a graph; otherwise it is along the
+    /// normal at `at`.
     pub(super) fn curved(&self, near: f64, at: f64, change: f64) -> Self {
         let [dx, dz] = self.rates(at);
         let speed = dx.hypot(dz);

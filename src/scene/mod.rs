@@ -1,5 +1,5 @@
-//! Scenes: what the user writes, read and then resolved once into a [`Case`](crate::case::Case) of checked values, in mm and
-//! rad.
+//! Scenes: what the user writes. A scene is read, then resolved once into a [`Case`](crate::case::Case) of checked values
+//! in mm and rad.
 
 mod axes;
 mod data;

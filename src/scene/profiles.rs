@@ -1,4 +1,4 @@
-//! `[rail]` and `[wheel]`: the profiles, built in, inline or from files.
+//! Makes the profiles of `[rail]` and `[wheel]`: built in, inline or from files.
 
 use std::path::Path;
 
@@ -14,10 +14,10 @@ use crate::measured::{self, Cut, Measured, Options, Record, SliceList};
 use crate::placement::Pair;
 use crate::profile::{Profile, SegmentData, Side, drawn_profile, inclination, standards};
 
-/// Largest rolling radius \[mm\]: a kilometre times a thousand, whose square is far from overflowing.
+/// Largest rolling radius \[mm\]: a thousand kilometres. Its square is far from overflowing.
 const FARTHEST: f64 = 1e9;
 
-/// A profile file: the same keys as inline.
+/// A profile file. Its keys are those of an inline profile.
 #[derive(Debug, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ProfileFile {
@@ -30,11 +30,11 @@ struct ProfileFile {
     segments: Vec<SegmentData>,
 }
 
-/// Gives rails and wheels of a scene, turned and shifted as it says; files are relative to `folder`. A side with a profile of its own
-/// reads its files apart from the other's.
+/// Returns the rail and the wheel of a scene, turned and shifted as the scene says. Files are relative to `folder`; each
+/// one is opened once.
 ///
 /// # Errors
-/// Whatever is wrong with a profile, by side and key.
+/// Anything that is wrong with a profile; the error names the key.
 pub(super) fn profiles(scene: &Scene, folder: &Path) -> Result<Profiles> {
     let both = || of_side([&scene.rail, &scene.wheel], ["rail", "wheel"], scene.wheel.radius, folder);
     let own = |name: &str, side: &Option<SideData>| {
@@ -82,7 +82,7 @@ fn of_side(
     Ok(SideProfiles { pair, measured: [rail.measured, wheel.measured] })
 }
 
-/// Gives a profile as the scene places it, and the record of a measured one.
+/// Returns a profile as the scene places it, and the record of a measured one.
 fn profile(data: &ProfileData, folder: &Path, side: Side) -> Result<Resolved> {
     let Resolved { mut profile, measured } = match (&data.profile, &data.file, &data.segments) {
         (Some(name), None, None) => Resolved::drawn(built_in(name, side)?),
@@ -185,7 +185,7 @@ impl Resolved {
     }
 }
 
-/// Gives a built-in profile of the right body by name.
+/// Returns the built-in profile with this name, which must be of the right body.
 fn built_in(name: &str, side: Side) -> Result<Profile> {
     let (of_other, own, other) = match side {
         Side::Rail => (standards::wheel_names().any(|known| known == name), "rail", "wheel"),
@@ -205,12 +205,12 @@ fn built_in(name: &str, side: Side) -> Result<Profile> {
     })
 }
 
-/// Tells whether a file's extension is that of a chain of segments.
+/// Returns whether a file's extension is that of a chain of segments.
 pub fn is_chain_file(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml") || e.eq_ignore_ascii_case("json"))
 }
 
-/// Gives the rotation that is written.
+/// Returns the rotation that the scene gives.
 fn turn(rotation: &Rotation) -> Result<UnitComplex<f64>> {
     let bad = |found: String| Error::new("", found, "rad, or \"1:n\" with n ≠ 0", "correct it");
     match rotation {
@@ -226,10 +226,10 @@ fn turn(rotation: &Rotation) -> Result<UnitComplex<f64>> {
     }
 }
 
-/// Reads a profile file with `segments` and perhaps `name`, `source`, `start`.
+/// Reads a profile file: `segments`, and optionally `name`, `source` and `start`.
 ///
 /// # Errors
-/// An unreadable file; whatever is wrong with its segments.
+/// An unreadable file; anything that is wrong with its segments.
 pub fn profile_from_file(path: &Path) -> Result<Profile> {
     let place = path.display().to_string();
     let text = read_text(path, measured::LARGEST_FILE)?;

@@ -1,4 +1,4 @@
-//! A scene becomes a case: everything in it is checked, once.
+//! Resolves a scene into a case: everything in the scene is checked, once.
 
 use std::path::Path;
 
@@ -13,24 +13,25 @@ use crate::case::{ApproachBy, Case, Echo, Friction, OutputFormat, Outputs, Profi
 use crate::error::{Error, Result, finite};
 use crate::load::Elastic;
 
-/// Smallest approach other than 0 \[mm\] and smallest load \[N\]: below any that is meant, and its powers do not underflow.
+/// Smallest approach other than 0 \[mm\], and smallest load \[N\]. They are far below any real ones, and their powers do
+/// not underflow.
 const SMALLEST: f64 = 1e-60;
 
-/// Resolves a scene: reads its profiles, prepares the search, and checks every value. The scene's own files are relative
-/// to `folder`; `name` is the title of a scene without one.
+/// Resolves a scene: reads its profiles, prepares the search and checks every value. Paths in the scene are relative to
+/// `folder`. `name` is the title of a scene without a title.
 ///
-/// Cost: each profile's file is read and fitted once; whoever has the case needs neither again.
+/// Cost: each profile's file is read and fitted once. The case keeps the profiles.
 ///
 /// # Errors
-/// Whatever is wrong, by key: values before profiles, and profiles before placement.
+/// Anything that is wrong; the error names the key. Values are checked before profiles, and profiles before placement.
 pub fn resolve(scene: &Scene, folder: &Path, name: &str) -> Result<Case> {
     case(scene, name, || profiles(scene, folder))
 }
 
-/// Resolves a scene over profiles that are there already, in the place of its own: opens no file.
+/// Resolves a scene over given profiles, which replace those of the scene. No file is opened.
 ///
 /// # Errors
-/// Whatever is wrong but for the profiles, by key.
+/// Anything that is wrong except for the profiles; the error names the key.
 pub fn with_profiles(scene: &Scene, profiles: Profiles, name: &str) -> Result<Case> {
     case(scene, name, || Ok(profiles))
 }
@@ -43,8 +44,8 @@ fn case(scene: &Scene, name: &str, profiles: impl FnOnce() -> Result<Profiles>) 
     Ok(Case { profiles, standing, question, axes, outputs, echo, file: None })
 }
 
-/// Gives what files say of a scene: its title, or else `name`, and the scene itself with its SHA-256. Equal scenes have equal
-/// hashes whatever their comments.
+/// Returns what output files say about a scene: its title or else `name`, and the scene itself with its SHA-256. Scenes
+/// that differ only in comments have equal hashes.
 pub fn echo(scene: &Scene, name: &str) -> Echo {
     let canonical = serde_json::to_vec(scene).unwrap_or_default();
     Echo {
@@ -54,7 +55,7 @@ pub fn echo(scene: &Scene, name: &str) -> Echo {
     }
 }
 
-/// Gives the formats to write: all but PNG where the scene names none.
+/// Returns the formats to write. If the scene names none, these are all but PNG.
 fn outputs(scene: &Scene) -> Outputs {
     use OutputFormat::{Conform, Contact, Countact, Netcdf, Npy, Text, Vtk};
     let named = scene.output.formats.clone();
@@ -76,7 +77,7 @@ fn question(scene: &Scene) -> Result<Question> {
     Ok(Question { approach, motion, material, friction, tolerance, method: scene.grid.method })
 }
 
-/// Gives the approach, or the load that it is estimated from, of `[patch]` or `[wheelset]`.
+/// Returns the approach, or the load from which it is estimated, of `[patch]` or `[wheelset]`.
 fn approach(scene: &Scene) -> Result<Option<ApproachBy>> {
     let expected = "exactly one of `approach` and `load`";
     let of_axle = scene.wheelset.as_ref().and_then(|wheelset| wheelset.load);
@@ -133,7 +134,7 @@ mod tests {
     use super::super::read::parse;
     use super::*;
 
-    /// The complaint about a scene of these tables.
+    /// Returns the error text of a scene with these tables.
     fn complaint(rail: &str, rest: &str) -> Result<String> {
         let text = format!("[rail]\n{rail}\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n{rest}");
         let scene: Scene = parse(&text, false)?;

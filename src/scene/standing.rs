@@ -1,4 +1,4 @@
-//! `[contact]`, `[track]` and `[wheelset]`: where the bodies stand.
+//! Reads where the bodies stand: `[contact]`, `[track]` and `[wheelset]`.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use crate::error::{Error, Result, finite, given};
 use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
 use crate::search::{Pose, Position, ProfilePair, Roll, SideOnTrack, WheelsetOnTrack, small_angle};
 
-/// Depth below the top of rail at which gauge is measured unless the scene says otherwise \[mm\].
+/// Depth \[mm\] below the top of rail at which the gauge is measured, if the scene gives no other.
 const GAUGE_HEIGHT: f64 = 14.0;
 
 /// Finds where the bodies stand, and prepares the search over them; turns the profile of a rail that deviates.

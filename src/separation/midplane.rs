@@ -9,32 +9,32 @@ use crate::profile::{Shape, Station};
 /// The parameters α, β and ξ_i of one segment in the contact frame, (4.6)–(4.8).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transformed {
-    /// The segment's name in the drawing; empty where it has none.
+    /// Name of the segment in the drawing, or empty.
     pub label: String,
     /// "line", "arc" or "polynomial".
     pub kind: &'static str,
-    /// α and β: the centre of an arc \[mm\], or slope and intercept of a line \[1, mm\]. A polynomial has none.
+    /// α and β: the centre of an arc \[mm\], or slope and intercept of a line \[1, mm\]; `None` for a polynomial.
     pub alpha_beta: Option<[f64; 2]>,
-    /// Signed radius \[mm\] of an arc, positive where the hollow side is up.
+    /// Signed radius of an arc \[mm\], positive where the hollow side is up; `None` for other segments.
     pub radius: Option<f64>,
-    /// ξ of its two ends \[mm\].
+    /// ξ of the two ends \[mm\].
     pub xi: [f64; 2],
 }
 
-/// What the midplane table tells about one ξ.
+/// One row of the midplane table: the heights and the gap at one ξ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MidplaneRow {
     /// ξ \[mm\].
     pub xi: f64,
-    /// ζ^R \[mm\], NaN off the rail.
+    /// ζ^R \[mm\]; NaN off the rail.
     pub rail: f64,
-    /// ζ^W \[mm\] at η = 0, NaN off the wheel.
+    /// ζ^W at η = 0 \[mm\]; NaN off the wheel.
     pub wheel: f64,
-    /// Δζ = ζ^W − ζ^R \[mm\].
+    /// Δζ = ζ^W − ζ^R \[mm\]; NaN off either body.
     pub gap: f64,
 }
 
-/// Computes the transformed parameters of every segment, as RAIL0 and WHEEL0 of the Report do.
+/// Computes the transformed parameters of every segment: RAIL0 and WHEEL0 of the Report.
 pub fn transformed_parameters(body: &Body) -> Vec<Transformed> {
     let frame = &body.section.frame;
     body.profile()
@@ -86,7 +86,7 @@ pub fn midplane_rows(placement: &Placement, xi: &[f64]) -> Vec<MidplaneRow> {
     xi.iter().map(row).collect()
 }
 
-/// Writes what MIDSEP printed as a table that a person can read.
+/// Returns the table of MIDSEP as readable text: transformed parameters of both bodies, then the midplane.
 pub fn midplane_table(placement: &Placement, xi: &[f64]) -> String {
     let mut out = String::from("# MIDSEP: midplane separation, Report FRA/ORD-78/41, Sec. 5\n");
     out += "# Lengths in mm, angles in rad; contact frame: origin C, xi along the tangent, zeta from rail to wheel.\n";

@@ -1,4 +1,4 @@
-//! The choice of the cheapest method that meets a tolerance, with an estimate of its error.
+//! Chooses the cheapest method that meets a tolerance, and estimates its error.
 
 use super::axis::EtaAxis;
 use super::columns::fit::Fitter;
@@ -14,40 +14,42 @@ use super::samples::{Samples, difference, places, thinned};
 use crate::numerics::nan_max;
 use crate::placement::Placement;
 
-/// Columns in no strip whose truncation errors are measured, evenly spread. The others are measured when the grid is filled.
+/// Number of columns in no strip whose truncation errors are measured, evenly spread. The others are measured while the
+/// grid is filled.
 const COLUMNS_ALONE: usize = 32;
 
-/// Columns of a skewed wheel that are filled for their errors.
+/// Number of columns of a skewed wheel that are filled to measure their errors.
 const SKEWED_COLUMNS: usize = 17;
 
-/// Values of η at which these columns are compared with single points.
+/// Number of η in these columns at which they are compared with single points.
 const SKEWED_ETA: usize = 5;
 
-/// Values along either axis at which the quadratic form is tried before anything else: the ends and the middle.
+/// Number of values along each axis at which the quadratic form is tried first: the ends and the middle.
 const PROBED: usize = 3;
 
-/// Factor on the sampled maximum, for what lies between the samples.
+/// Factor on the largest sampled error, for the places between the samples.
 const BETWEEN_SAMPLES: f64 = 1.5;
 
-/// A choice, why it was made, and the error to expect.
+/// A chosen method, the reason for it, and its estimated error.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
-    /// What to run.
+    /// The method to run and its accuracy.
     pub choice: Choice,
-    /// Estimated largest error of s over the grid \[mm\], truncation and rounding.
+    /// Estimated largest error of s over the grid \[mm\]: truncation and rounding.
     pub error: f64,
-    /// The share of rounding in `error` \[mm\].
+    /// The part of `error` that is rounding \[mm\].
     pub rounding: f64,
-    /// Largest error asked for \[mm\].
+    /// Largest error that was asked for \[mm\].
     pub tolerance: f64,
-    /// One sentence for the summary.
+    /// Reason for the choice: one sentence for the summary.
     pub reason: String,
     /// The strips of spectral columns.
     strips: Vec<Strip>,
 }
 
 impl Plan {
-    /// Fills the grid that the plan is for, and raises the estimate to the truncation errors that are measured on the way.
+    /// Fills the grid for which the plan was made. If larger truncation errors are measured meanwhile, the estimate is
+    /// raised to them.
     pub fn fill(&mut self, placement: &Placement, xi: &[f64], axis: &EtaAxis, out: &mut [f64]) {
         let truncation = match self.choice.method {
             Method::Spectral => self.choice.fill_by_strips(placement, xi, axis, &self.strips, out),
@@ -59,13 +61,13 @@ impl Plan {
 
 /// Finds the cheapest method whose estimated error over the grid is below `tolerance` \[mm\], or plans the `forced` one.
 ///
-/// The candidates are the quadratic form and spectral columns. What lies between them on the ladder errs more than spectral columns
-/// and takes no less time: every column has a gap of its own, and under a skewed wheel every point. At [`FULL_PRECISION`] and
-/// below the quadratic form is taken only where it is exact to rounding.
+/// The candidates are the quadratic form and spectral columns. The methods between them on the ladder have larger errors
+/// than spectral columns and take no less time, because every column (under a skewed wheel every point) needs a gap of its
+/// own. At [`FULL_PRECISION`] and below, the quadratic form is chosen only if it is exact to rounding.
 ///
-/// The estimate: spectral columns measure their truncation in every strip, at the strip's nodes and between them, and in some of the
-/// columns that are in none. Other methods are compared with single points at some hundred columns. Cost: about that of the fill for
-/// spectral columns.
+/// The estimate: spectral columns measure their truncation error in every strip, at its nodes and between them, and in some
+/// of the columns outside strips. Other methods are compared with single points in some hundred columns. Cost: for spectral
+/// columns about that of filling the grid.
 ///
 /// # Examples
 /// ```
@@ -100,7 +102,7 @@ pub fn plan(
     }
 }
 
-/// What a plan is made for.
+/// The grid for which a plan is made, with its tolerance.
 struct Planned<'a> {
     placement: &'a Placement,
     xi: &'a [f64],
@@ -154,8 +156,8 @@ impl Planned<'_> {
         Plan { choice, error, rounding, tolerance: self.tolerance, reason, strips }
     }
 
-    /// Makes the strips. Gives them, the number of coefficients that columns in no strip are to start with, which is enough for two
-    /// thirds of them, and the largest measured truncation error \[mm\].
+    /// Makes the strips. Returns them, the number of coefficients with which columns in no strip start (enough for two
+    /// thirds of them), and the largest measured truncation error \[mm\].
     fn measured(&self, fitter: &mut Fitter<'_>) -> (Vec<Strip>, usize, f64) {
         let u_max = self.axis.reach * self.axis.reach;
         let strips = strips(fitter, self.placement, self.xi, u_max);
@@ -170,7 +172,7 @@ impl Planned<'_> {
         (strips, needed.get(needed.len() * 2 / 3).copied().unwrap_or(1), most)
     }
 
-    /// Measures the largest error \[mm\] of some columns of a skewed wheel.
+    /// Measures the largest error \[mm\] in some columns of a skewed wheel.
     fn skewed(&self, fitter: &mut Fitter<'_>) -> f64 {
         let eta = &self.axis.eta;
         let Fitter { evaluator, arch, demand, .. } = fitter;
@@ -200,7 +202,7 @@ fn alone(strips: &[Strip], xi: &[f64]) -> Vec<f64> {
     alone
 }
 
-/// What a few places of the grid tell: the ends and the middle of both axes.
+/// Errors at a few places of the grid: the ends and the middle of both axes.
 struct Probe {
     /// Largest error of the quadratic form \[mm\].
     quadratic: f64,

@@ -1,4 +1,4 @@
-//! One body as a coarse mesh: finds the segments that a ray meets first, and the heights measured there.
+//! A body as a coarse mesh. Finds the segments that a ray meets first, and the heights measured there.
 
 use super::meshes::{Hit, Mesh, RayOrigin, Vector};
 use super::patch::{CurveMesh, SurfacePoint};
@@ -12,7 +12,7 @@ const LEAST_CELLS: usize = 2;
 /// Cells of the coarse mesh around the axle, or along the rail.
 const CELLS_AROUND: usize = 12;
 
-/// Distance from a segment's end within which the neighbour counts too, as a share of the body's size:
+/// Distance from a segment's end, as a share of the body's size, within which the neighbour counts as well. It covers the
 /// rounding of the foot's position, which grows with the slope.
 pub(super) const JOINT: f64 = 1e-11;
 
@@ -20,8 +20,8 @@ pub(super) const JOINT: f64 = 1e-11;
 /// or end there.
 const NEARBY_CELLS: f64 = 2.0;
 
-/// Least ζ component of the normal: below it a ray is practically tangent, heights lose two digits, and
-/// neighbouring sheets cannot be distinguished.
+/// Least ζ component of the normal. Below it a ray is practically tangent, heights lose two digits, and neighbouring sheets
+/// cannot be distinguished.
 pub(super) const STEEPEST: f64 = 0.02;
 
 /// A body with its coarse mesh, which has only triangles that face the other body.
@@ -103,7 +103,7 @@ impl Solid {
     fn outermost(&self, mut found: Vec<Height>) -> Vec<Height> {
         let sign = if self.surface.is_wheel() { 1.0 } else { -1.0 };
         found.sort_by(|a, b| (sign * a.zeta).total_cmp(&(sign * b.zeta)));
-        // At a joint the outermost height may be there by rounding only: then the next one counts too.
+        // The outermost height may be outermost only by rounding at a joint; the next one then counts, too.
         if let Some(inner) = found.iter().position(|height| !self.at_joint(&height.place)) {
             found.truncate(inner + 1);
         }
@@ -119,7 +119,7 @@ impl Solid {
     fn coarse(&self, xi: f64, eta: f64) -> Option<SurfacePoint> {
         let origin = if self.surface.is_wheel() { RayOrigin::Below } else { RayOrigin::Above };
         let mesh = self.mesh.as_ref()?;
-        // Rays through an edge or vertex of the mesh may miss it: then look beside it.
+        // Rays through an edge or vertex of the mesh may miss it, so that places beside it are tried.
         let nudge = self.surface.size * f64::EPSILON.sqrt();
         let beside = [[0.0, 0.0], [1.0, 0.7], [-0.7, 1.0], [-1.0, -0.6], [0.6, -1.0]];
         let hit =

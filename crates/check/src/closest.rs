@@ -1,4 +1,5 @@
-//! Finds closest points, of a point and a body and of the two bodies, by parry on meshes that close in.
+//! Finds the points closest to each other, of a point and a body and of two bodies, with parry on meshes that shrink around
+//! them.
 
 use super::body::{Solid, spread};
 use super::meshes::Vector;
@@ -11,8 +12,7 @@ const FIRST_CELL: f64 = 1.0 / 16.0;
 const LAST_CELL: f64 = 1e-6;
 /// Number of cells a side.
 const CELLS: usize = 4;
-/// Factor from the cells of one mesh to those of the next: the place found on one mesh is then well inside
-/// the next.
+/// Factor from the cells of one mesh to those of the next. The place found on one mesh is then well inside the next one.
 const CLOSER: f64 = 0.125;
 
 /// Most meshes on the way in, moves sideways included.
@@ -22,7 +22,7 @@ const MOST_MESHES: usize = 200;
 /// tolerance shows below this size.
 const LAST_PAIR_CELL: f64 = 1e-5;
 
-/// Number of times that the feet of a pair are found anew from each other.
+/// Number of times that each foot of a pair is found anew from the other foot.
 const ALTERNATIONS: usize = 4;
 
 /// A closest point on a body.
@@ -38,7 +38,7 @@ pub(super) struct Closest {
     pub error: f64,
 }
 
-/// Returns the point of a body closest to `point`, over all curves around the coarse answer.
+/// Returns the point of a body that is closest to `point`, over all curves near the coarse result.
 pub(super) fn to_point(solid: &Solid, point: Vector) -> Option<Closest> {
     let near = solid.near(point).into_iter();
     near.filter_map(|start| on_curve(&solid.surface, start, point))
@@ -94,7 +94,7 @@ pub(super) fn of_bodies(rail: &Solid, wheel: &Solid, start: [SurfacePoint; 2]) -
     feet
 }
 
-/// A window of cells that closes in on a place.
+/// A window of cells around a place. It shrinks from mesh to mesh.
 struct ClosingWindow {
     place: SurfacePoint,
     cell: f64,
@@ -119,7 +119,8 @@ impl ClosingWindow {
         CurveMesh::new(surface, curve, t, spread(v - half * k, v + half * k, CELLS))
     }
 
-    /// Moves to a place of the patch; closes in if the place is inside, and returns whether it is.
+    /// Moves the window to a place of the patch. If the place is inside the patch, the window shrinks. Returns whether it
+    /// was inside.
     fn move_to(&mut self, surface: &SampledSurface, patch: &CurveMesh, place: SurfacePoint) -> bool {
         let length = surface.curves[place.curve].length;
         let inside = !patch.at_border(&place, length);

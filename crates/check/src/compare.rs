@@ -19,15 +19,15 @@ use wheelrail::internal::largest;
 use wheelrail::placement::{Body, Placement};
 use wheelrail::profile::Shape;
 
-/// Largest difference that counts as agreement, as a multiple of the larger of floor and own estimate: maxima
-/// over a few dozen points of the closed forms represent those over all points.
+/// Largest difference that counts as agreement, as a multiple of the larger one of floor and own estimate. The maxima over
+/// a few dozen points of the closed forms stand for those over all points.
 const SAFETY: f64 = 4.0;
 
 /// Error that the program itself may have, in roundings of the largest coordinate: it promises 2e-12 mm on
 /// profiles of 150 mm, 60 roundings.
 const ROUNDINGS: f64 = 64.0;
 
-/// Largest own estimate that can decide, as a share of the body's size \[1\].
+/// Largest error estimate of the checker, as a share of the body's size, with which it can decide.
 const RESOLVED: f64 = 1e-11;
 
 /// Number of points at which closest distances are taken.
@@ -89,8 +89,8 @@ fn smallest_radius(placement: &Placement) -> f64 {
     radii.fold(placement.rolling_radius() / 8.0, f64::min)
 }
 
-/// Returns the distance of C from the profile \[mm\] and the angle between the frame's ξ axis and its tangent
-/// \[rad\]; at an edge ξ is no tangent, and the angle is 0.
+/// Returns the distance \[mm\] of C from the profile, and the angle \[rad\] between the frame's ξ axis and the profile's
+/// tangent. At an edge ξ is no tangent, and the angle is 0.
 fn contact_point(body: &Body) -> [f64; 2] {
     let frame = body.point().station;
     let segment = &body.profile().segments()[body.point().segment];
@@ -230,7 +230,7 @@ impl<'a> Tally<'a> {
     fn compare_normals(&mut self, solid: &Solid, at: [f64; 2], normal: Vector, heights: &[Height]) {
         let floor = self.floor(|f| f.normal);
         let differences = heights.iter().map(|h| {
-            // Directions are differences: those of a short curve have lost as many digits as it is shorter.
+            // A direction is a difference of points. The shorter its curve, the more digits it has lost.
             let digits = 1.0 + solid.surface.size / solid.surface.curves[h.place.curve].scale;
             let rounding = ROUNDINGS * f64::EPSILON * digits / h.normal.z;
             let allowed = SAFETY * floor.max(h.normal_error) + rounding;

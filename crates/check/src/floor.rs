@@ -1,7 +1,7 @@
 //! Measures the checker's own error on closed forms, before it judges anything.
 //!
-//! A plane and a cylinder take the rail's way through the checker, a cone and a torus the wheel's. Their
-//! implicit equations, evaluated in twice the working precision, give the error of every measured point.
+//! A plane and a cylinder pass through the checker as rails, a cone and a torus as wheels. Their implicit equations,
+//! evaluated in twice the working precision, give the error of every measured point.
 
 use serde::Serialize;
 
@@ -85,7 +85,7 @@ fn measure(solid: &Solid, exact: &Implicit, form: &'static str, reach: f64) -> F
         let (distance, normal) = exact.distance_and_normal(point);
         worse(&mut floor.ray_mm, distance.abs());
         worse(&mut floor.normal, height.normal.distance(normal));
-        // Off the surface, on the side of the other body.
+        // The point lies off the surface, on the side of the other body.
         let away = if solid.surface.is_wheel() { -normal } else { normal };
         let point = point + away * (reach / 64.0);
         let error = to_point(solid, point)
@@ -115,7 +115,7 @@ impl Implicit {
         let along = two(point.x, cos) - two(point.z, sin) + x;
         let up = two(point.x, sin) + two(point.z, cos) + z;
         let w = self.axle.map(|r| -up + r);
-        // The meridian's height of this point.
+        // Height of the meridian's point that makes this point of the surface.
         let meridian = match (self.axle, w) {
             (Some(r), Some(w)) => -(w * w + two(point.y, point.y)).sqrt() + r,
             _ => up,

@@ -1,8 +1,7 @@
 //! The one module that uses parry3d: triangle meshes, rays along ζ, closest points.
 //!
-//! It uses the f64 build, because f32 has 5e-5 mm of noise at the axle's distance, and its triangle–triangle
-//! distance was found to return a false 0. parry gives nonsense for meshes with NaN (distance 0), so none is
-//! ever built.
+//! It uses parry's f64 build: f32 has 5e-5 mm of noise at the axle's distance, and its distance between triangles was found
+//! to return a false 0. For meshes with NaN parry returns nonsense (distance 0), so that no such mesh is ever built.
 
 use parry3d_f64::math::Pose;
 use parry3d_f64::query::details::local_ray_intersection_with_triangle;

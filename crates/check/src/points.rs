@@ -42,7 +42,7 @@ fn within(value: f64, [low, high]: [f64; 2]) -> bool {
 
 /// Returns the deepest midplane point, the tips, and points of the boundary s = δ as the program finds them.
 ///
-/// Slices are enough: loops with their areas cost far more than the check itself if the wheel is yawed.
+/// Slices are enough. If the wheel is yawed, loops with their areas cost far more than the whole check.
 fn boundary(placement: &Placement, request: &Request) -> Vec<[f64; 2]> {
     let Some([first, last]) = placement.overlap() else { return Vec::new() };
     let [from, to] = request.window.xi;

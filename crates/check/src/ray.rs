@@ -1,9 +1,9 @@
 //! Measures the height of a surface over (ξ, η) by rays on meshes.
 //!
-//! A coarse mesh of the whole body gives the segment that is met, and about where. The foot is then meshed
-//! anew with cells that halve from level to level, while the ray keeps its relative position inside the cell.
-//! The chordal error is then a power series c₂h² + c₃h³ + …, and Richardson's table removes it. One last mesh
-//! of very small cells gives a rigorous bracket.
+//! A coarse mesh of the whole body tells the segment that is met, and the approximate place. The foot is then meshed anew
+//! with cells that halve from level to level, while the ray keeps its relative position inside its cell. The chordal error
+//! is then a power series c₂h² + c₃h³ + …, which Richardson's table removes. A last mesh of very small cells gives a
+//! rigorous bracket.
 
 use super::meshes::{RayOrigin, Vector};
 use super::patch::{CurveMesh, SurfacePoint};
@@ -12,14 +12,14 @@ use super::sampler::SampledSurface;
 /// Cells of the first level, as a share of the local scale (radius or length). Larger cells leave terms of
 /// high order, smaller ones rounding.
 pub(super) const FIRST_CELL: f64 = 1.0 / 32.0;
-/// Number of levels; the cells of each are half of those of the level before.
+/// Number of levels. The cells of each level are half as large as those of the previous one.
 const LEVELS: usize = 5;
 
 /// Most times that the first cell is divided by four while the table has not converged.
 const REFINEMENTS: i32 = 3;
 
-/// Cell of the bracket's mesh, as a share of the local scale: its chordal bound, about a quarter of the
-/// square, is then near rounding, and the cell itself still has seven digits.
+/// Cell of the bracket's mesh, as a share of the local scale. Its chordal bound, about a quarter of the square, is near
+/// rounding, and the cell itself still has seven digits.
 const BRACKET_CELL: f64 = 1e-6;
 
 /// Position of the ray inside its cell: off the diagonal and off every symmetry, where the error has no h².
@@ -59,7 +59,7 @@ pub(super) fn foot(surface: &SampledSurface, guess: SurfacePoint, xi: f64, eta: 
         let determinant = along.x * around.y - along.y * around.x;
         let dt = (dx * around.y - dy * around.x) / determinant;
         let dv = (dy * along.x - dx * along.y) / determinant;
-        // A sheet turns by about one over its scale: longer steps leave it.
+        // A sheet turns by about one radian over its scale; longer steps would leave it.
         let limit = 0.5 * curve.scale;
         let step = dt.clamp(-limit, limit);
         (place.t, place.v) = (place.t + step, place.v + dv);
@@ -67,7 +67,7 @@ pub(super) fn foot(surface: &SampledSurface, guess: SurfacePoint, xi: f64, eta: 
         if !size.is_finite() {
             return None;
         }
-        // Below this size steps are rounding and no longer shrink.
+        // Steps below this size are rounding, and no longer shrink.
         if size < 1e3 * f64::EPSILON && size >= 0.5 * last || size == 0.0 {
             return Some(place);
         }
@@ -147,7 +147,7 @@ fn bracket(surface: &SampledSurface, place: SurfacePoint, xi: f64, eta: f64) -> 
     let patch = around(surface, place, [h, k])?;
     let hit = patch.mesh.along_zeta(xi, eta, RayOrigin::Below)?;
     let [apart, turn] = surface.chordal_bound(place.curve, place.t, [h, k]);
-    // The normal turns by less than three cells' worth over the patch.
+    // Over the patch the normal turns by less than it can turn over three cells.
     let least = patch.mesh.normal(hit.triangle).z - 3.0 * turn;
     if least.is_nan() || least <= 0.0 {
         return None;

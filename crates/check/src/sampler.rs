@@ -1,5 +1,4 @@
-//! Samples points of both bodies from the profiles' own parametrisation: nothing here uses the separation
-//! code.
+//! Samples points of both bodies from the profiles' own parametrisation. Nothing here uses the separation code.
 //!
 //! Points of a curve come from turning its start station (arcs, lines) or from its parameter (polynomials).
 //! The rail is the curve moved along y, the wheel the curve turned about the axle. All coordinates are
@@ -69,7 +68,7 @@ impl SampledCurve {
     pub fn point(&self, t: f64) -> [f64; 2] {
         match &self.shape {
             Form::Turning { start, curvature } => {
-                // Half the turn: the chord has the mean of its end tangents' angles.
+                // Half the turn: the chord has the mean angle of its two end tangents.
                 let half = t * curvature / 2.0;
                 let chord = if half == 0.0 { t } else { t * (half.sin() / half) };
                 let (sin, cos) = half.sin_cos();
@@ -209,7 +208,7 @@ impl SampledSurface {
         ]
     }
 
-    /// Returns the length over which v turns the surface: the axle distance; any length for the rail.
+    /// Returns the length over which v turns the surface: the axle distance; for the rail, which does not turn, any length.
     pub fn round_scale(&self) -> f64 {
         self.wheel.map_or(self.size, |wheel| wheel.axle)
     }

@@ -11,10 +11,10 @@ use wheelrail::placement::Placement;
 use wheelrail::scene;
 use wheelrail::separation::midplane_table;
 
-/// Values of ξ when the scene leaves the axis to the program.
+/// Number of values of ξ if the scene leaves the axis to the program.
 const DEFAULT_ROWS: usize = 101;
 
-/// Prints a table for every contact of a scene, under its name where there are several.
+/// Prints a table for every contact of a scene. Several contacts get their names as headings.
 pub(super) fn midsep(path: &Path) -> Result<Outcome> {
     let _progress = Progress::of("midsep", "contacts");
     let scene = scene::load(path)?;
@@ -29,7 +29,7 @@ pub(super) fn midsep(path: &Path) -> Result<Outcome> {
     print(&tables.collect::<Vec<_>>().join("\n"))
 }
 
-/// Gives equal steps over both bodies.
+/// Returns equal steps of ξ \[mm\] over both bodies.
 fn over(placement: &Placement) -> Vec<f64> {
     placement.overlap().map_or_else(Vec::new, |[a, b]| equal_steps(a, b, DEFAULT_ROWS))
 }

@@ -34,8 +34,8 @@ impl ComparedPoint {
         }
     }
 
-    /// Returns the error relative to s, NaN if only one of the two has a value; `None` at C itself, where s =
-    /// 0 has no relative error, and where there is no surface.
+    /// Returns the error relative to s; NaN if only one of the two has a value. Returns `None` at C itself, where s = 0 has
+    /// no relative error, and where there is no surface.
     pub fn relative(&self) -> Option<f64> {
         self.expected.filter(|&expected| expected != 0.0).map(|expected| self.error() / expected.abs())
     }
@@ -44,9 +44,9 @@ impl ComparedPoint {
 /// Evaluates a choice at all points of a scene's file, in the file's order, on a grid with `columns` equally
 /// spaced columns between them.
 ///
-/// The η values are those of the file, so that spectral columns reach as far, and are the same polynomials,
-/// as on any grid with the same largest |η|. Strips are made if there are many columns: with as many as a
-/// grid has, the comparison is of that grid's own strips.
+/// The η values are those of the file. Spectral columns then reach as far, and are the same polynomials, as on any grid
+/// with the same largest |η|. Strips are made if there are many columns. With as many columns as a grid has, the comparison
+/// is of that grid's own strips.
 pub fn compare(
     reference: &Reference,
     placement: &Placement,
@@ -73,18 +73,18 @@ pub fn compare(
     points.collect()
 }
 
-/// Returns whether (ξ, η) and the wheel's foot below it, at ξ′ − e sinθ with e ≈ η′²/2R, are over both
-/// contact segments.
+/// Returns whether (ξ, η) lies over the rail's contact segment, and the wheel's foot below it over the wheel's. The foot is
+/// at ξ′ − e sinθ, with e ≈ η′²/2R.
 pub fn over_contact(placement: &Placement, xi: f64, eta: f64) -> bool {
     on_contact(placement, xi, eta, 0.0)
 }
 
-/// Rounding of the ends of segments in the contact frame, from their abscissae, as a share of the profiles'
-/// extent.
+/// Rounding of the ends of segments in the contact frame, as a share of the profiles' extent. It comes from their
+/// abscissae.
 const END_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// Returns whether a point is [`over_contact`], and not within rounding of an end: there the point belongs to
-/// the neighbour too, on which s has only absolute accuracy.
+/// Returns whether a point is [`over_contact`] and not within rounding of an end. Nearer to an end, the point belongs to
+/// the neighbour as well, where s has only absolute accuracy.
 pub fn inside_contact(placement: &Placement, xi: f64, eta: f64) -> bool {
     let extent = placement.rail().profile().extent().max(placement.wheel().profile().extent());
     on_contact(placement, xi, eta, END_ROUNDING * extent)

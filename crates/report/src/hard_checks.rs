@@ -8,9 +8,9 @@ use wheelrail::patch::{Component, End, Patch, Slicer, Window};
 use wheelrail::placement::Placement;
 use wheelrail::separation::{Choice, Evaluator, Method};
 
-/// The bounds of the methods that promise digits: relative over the contact segments, absolute \[mm\]
-/// elsewhere, the latter × unit × max(1, R_max/300 mm). They are measured over all cases; if less than a
-/// quarter of one is used, the suite fails.
+/// The bounds of the methods that promise digits: the relative error over the contact segments, and the absolute error
+/// \[mm\] elsewhere, the latter × unit × max(1, R_max/300 mm). They are measured over all cases. If less than a quarter of
+/// one is used, the suite fails.
 pub const BOUNDS: [(Method, f64, f64); 2] =
     [(Method::Spectral, 5e-15, 2e-14), (Method::Pointwise, 2e-15, 2e-14)];
 
@@ -268,7 +268,8 @@ impl Bench<'_> {
         })?;
         let placement = base.reference.placement()?;
         let checks = BOUNDS.iter().map(|(method, _, absolute)| {
-            // Every column on its own: the number of coefficients to start with is no matter of geometry.
+            // Every column is computed on its own: the number of coefficients to start with does not depend on the
+            // geometry.
             let choice = |case: &HardCase, placement: &Placement| Choice {
                 coefficients: 1,
                 ..case.choice(placement, *method)
@@ -303,7 +304,7 @@ impl Bench<'_> {
                 || p.found.is_nan() && other.is_nan()
                 || !same_bits && (p.found - other).abs() <= bound
         };
-        // On an axis that is not symmetric some η have no partner.
+        // On an axis that is not symmetric, some η have no partner.
         let pairs: Vec<_> = mine.iter().filter_map(|p| Some((p, partner(p)?))).collect();
         let wrong = pairs.iter().find(|(p, other)| !agrees(p, *other));
         HardCheck::new(

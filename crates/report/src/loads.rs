@@ -1,8 +1,8 @@
 //! Compares approaches that `load` estimates with those that a boundary-element solver finds for the same regions: 60
 //! positions of five pairs, on treads, in flange roots, on flanges, with yaw, in two places at once.
 //!
-//! The solved approaches are data, `data/loads.csv`: the tests of the program's clients make them with Tamaas, and fail
-//! where they are not what it gives.
+//! The solved approaches are the data of `data/loads.csv`. The tests of the program's clients compute them anew with
+//! Tamaas, and fail if they differ from the data.
 
 use super::whole_case;
 use wheelrail::case::{Case, Profiles, Site, sites};
@@ -60,7 +60,7 @@ pub struct Carried {
     pub loaded: Loaded,
     /// Placement, patch, normal force and estimate.
     pub site: Site,
-    /// δ \[mm\] of Tamaas under the same normal force; NaN where the data has none.
+    /// δ \[mm\] that Tamaas finds for the same normal force; NaN if the data have none.
     pub solved: f64,
 }
 
@@ -81,10 +81,10 @@ pub struct ApproachError {
 type Row = [f64; 2];
 
 impl Loaded {
-    /// Resolves the case over a pair.
+    /// Resolves the case of this position over a pair.
     fn case(&self, pair: &Pair) -> Result<Case> {
         let Self { offset, yaw, load, .. } = self;
-        // The profiles named here are not read: the pair is given.
+        // The profiles named here are not read, because the pair is given.
         let scene = format!(
             "[rail]\nprofile = \"60E1\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n[contact]\noffset = {offset:?}\n\
              yaw = {yaw:?}\n[patch]\nload = {load:?}\n"
@@ -92,7 +92,7 @@ impl Loaded {
         with_profiles(&parse(&scene, false)?, Profiles::drawn(pair.clone()), self.pair)
     }
 
-    /// Names the position and a contact of it, as the data does.
+    /// Returns the name of the position and one of its contacts, as in the data.
     pub fn key(&self, contact: usize) -> String {
         let Self { pair, offset, yaw, load } = self;
         format!("{pair},{offset:?},{yaw:?},{load:?},{contact}")
@@ -138,7 +138,7 @@ fn pairs() -> Result<Vec<Pair>> {
     ])
 }
 
-/// Lets all wheels sink, and gives the regions of contact that carry them.
+/// Computes the regions of contact that carry every wheel's load.
 ///
 /// # Errors
 /// A position without contact, which is a fault of this program.
@@ -157,7 +157,7 @@ pub fn carried() -> Result<Vec<Carried>> {
     Ok(out)
 }
 
-/// Looks up a row of the data.
+/// Returns the row of the data with this name; `None` if there is none.
 fn solved(key: &str) -> Result<Option<Row>> {
     let row = SOLVED.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(','));
     let bad = |row: &str| Error::new("loads.csv", row, "two numbers", "let the tests make it anew");

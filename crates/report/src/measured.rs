@@ -20,7 +20,7 @@ pub const SPACINGS: [f64; 4] = [0.1, 0.5, 1.0, 2.0];
 /// Standard deviations of the noise across the profile \[µm\]; it is normal and independent from point to
 /// point.
 pub const NOISES: [f64; 4] = [0.0, 0.1, 1.0, 10.0];
-/// Seed of the noise: the same for every row of one body, so that rows differ only by their curves.
+/// Seed of the noise. It is equal for all rows of one body, so that rows differ only by their curves.
 const SEED: u64 = 0x60E1_51002;
 
 /// Nominal rolling radius R of the comparison \[mm\].
@@ -31,18 +31,18 @@ const APPROACH: f64 = 0.08;
 const LOAD: f64 = 1e5;
 const STEEL: Elastic = Elastic { youngs_modulus: 2.1e5, poissons_ratio: 0.28 };
 
-/// Range of x in which rails are compared \[mm\]: the running surface. A patch of a tread is never below the
-/// gauge corner.
+/// Range of x in which rails are compared \[mm\]: the running surface. A patch on a tread never lies below the gauge
+/// corner.
 const RAIL_ZONE: [f64; 2] = [-33.0, 33.0];
-/// Range of x in which wheels are compared \[mm\]: a patch of a tread is never on the flange.
+/// Range of x in which wheels are compared \[mm\]. A patch on a tread never lies on the flange.
 const WHEEL_ZONE: [f64; 2] = [-38.0, 50.0];
 /// Distance of the marks that are compared \[mm\]; not a multiple of a spacing.
 const MARKS: f64 = 0.071;
-/// Least curvature by which errors of curvature are divided \[1/mm\], that of the crown: a tread has places
-/// without curvature.
+/// Least curvature \[1/mm\] by which errors of curvature are divided: that of the crown. A tread has places without
+/// curvature.
 const LEAST_CURVATURE: f64 = 1.0 / 300.0;
-/// Share of the places whose errors are below the reported one: at a joint of a drawing the curvature jumps,
-/// and every smooth curve is wrong there.
+/// Share of the places whose errors are below the reported one. At a joint of a drawing the curvature jumps, and every
+/// smooth curve is wrong there.
 const QUANTILE: f64 = 0.95;
 /// Half the number of columns and rows at which s is compared.
 const GRID: i32 = 20;
@@ -105,7 +105,7 @@ impl CurveChoice {
             Self::Interpolation => Options { curve: Some(CurveKind::Interpolation), ..base },
             Self::Smoothing(cutoff) => Options { cutoff_wavelength: Some(cutoff), ..base },
             Self::Arcs => {
-                // Of some thousand points the farthest is three to four deviations off.
+                // Of some thousand points the farthest is three to four standard deviations off.
                 let tolerance = measured::ARC_TOLERANCE.max(4.5e-3 * noise);
                 Options { curve: Some(CurveKind::Arcs), arc_tolerance: Some(tolerance), ..base }
             }
@@ -311,7 +311,7 @@ pub fn section(rows: &[MeasuredRow]) -> String {
     out + &recommendation(rows)
 }
 
-/// Error of the pressure in the summary where s is not convex: wrong altogether.
+/// Error of the pressure in the summary if s is not convex: 100 %.
 const NO_ELLIPSE: f64 = 1.0;
 
 /// Returns the largest errors \[of pressure, relative; of s, mm\] of a curve on rows with points up to

@@ -27,11 +27,11 @@ pub const TOLERANCES: [f64; 4] = [1e-3, 1e-6, 1e-9, FULL_PRECISION];
 /// The scene on which growth and threads are measured: a plain tread contact with arcs on both bodies.
 const EXAMPLE: &str = "hollow_tread";
 
-/// Factor by which the contestants of growth run longer: the largest grids take a tenth of a second, and
-/// memory is disturbed most.
+/// Factor by which the contestants of growth run longer. The largest grids take a tenth of a second, and memory is
+/// disturbed most.
 const GROWTH_SHARES: f64 = 4.0;
 
-/// Number of times that the scenes' races are taken up: a disturbance of a machine may last for seconds.
+/// Number of passes over the races of the scenes. A disturbance of the machine may last for seconds.
 pub const PASSES: usize = 6;
 
 /// The amount of measuring.

@@ -28,8 +28,8 @@ const RUN: f64 = 0.1;
 const WHOLE_CASES: [(&str, f64); 2] = [("drawn", 1e-4), ("measured", 3e-4)];
 /// Largest time of a plan over that of the fill.
 const PLAN_OVER_FILL: f64 = 2.0;
-/// Largest distance of d log time/d log points from 1 at which growth counts as linear: a factor of 1.6 over
-/// four decades.
+/// Largest distance of d log time/d log points from 1 at which growth counts as linear. It is a factor of 1.6 over four
+/// decades.
 const LINEAR: f64 = 0.05;
 
 /// One requirement.

@@ -15,11 +15,11 @@ pub const LEAST_RUNS: usize = 3;
 /// Length of a run, as a multiple of its contestant's share of time, above which it is not repeated.
 const TOO_LONG: f64 = 10.0;
 
-/// Longest run \[s\] that is timed on the wall: the shortest of many runs is not disturbed. For such runs the
-/// clock of a thread's processor time was seen to stand still, during one of some million.
+/// Longest run \[s\] that is timed on the wall, where the shortest of many runs is undisturbed. The clock of a thread's
+/// processor time was seen to stand still during one of some million such runs.
 const SHORT: f64 = 1e-3;
 
-/// The value that is stored: not a pattern of equal bytes, which a compiler could turn into `memset`.
+/// The value that is stored. It is not a pattern of equal bytes, which a compiler could turn into `memset`.
 const STORED: f64 = 0.1;
 
 /// The work that is timed.
@@ -124,11 +124,11 @@ fn processor_time() -> f64 {
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
 
-/// Runs contestants until each has had `seconds`, earlier races included, and `least` runs; `run` returns the
-/// seconds of one run.
+/// Runs contestants until each has had `seconds`, earlier races included, and `least` runs. `run` returns the seconds of
+/// one run.
 ///
-/// The contestant with the least time so far is next. So all are spread over the same stretch of time and
-/// meet the same disturbances, and ratios hold even where times do not.
+/// The next contestant is the one with the least time so far. All runs are therefore spread over the same stretch of time
+/// and meet the same disturbances, so that ratios hold even if times do not.
 pub fn race(timings: &mut [Timing], seconds: f64, least: usize, mut run: impl FnMut(usize) -> f64) {
     let waits = |timing: &Timing| {
         let long = timing.best > TOO_LONG * seconds;

@@ -1,4 +1,4 @@
-//! Times what a caller waits for: from a pair of profiles to a meshed patch, part by part, and all that `run`
+//! Times what a caller waits for: each part of the way from a pair of profiles to a meshed patch, and everything that `run`
 //! computes.
 
 use std::hint::black_box;
@@ -100,7 +100,7 @@ impl RunCost {
     }
 }
 
-/// The scene of [`RunCost`]; its profiles are passed as such, not read by their names.
+/// The scene of [`RunCost`]. Its profiles are passed in, not read by their names.
 const WHEELSET: &str = "[rail]\nprofile = \"60E1\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n\
                         [track]\ngauge = 1435.0\n[wheelset]\nback_to_back = 1360.0\nflange_back_x = -70.0\n\
                         lateral = 3.0\n[patch]\nload = 60000.0\n";

@@ -1,9 +1,9 @@
 //! Writes `contact.inp`: a deck for Vollebregt's CONTACT, module 3 (one point of contact), with the
 //! undeformed distance given point by point (IBASE = 9).
 //!
-//! CONTACT's axes are x rolling, y lateral, z down: (x, y, z) = ours (η, ξ, −ζ). Its elements are our cells,
-//! and its distances belong to their centres, x fastest, which is our order too. The program exits with 0
-//! even when it rejects its input, so read its output.
+//! CONTACT's axes are x rolling, y lateral and z down: its (x, y, z) is our (η, ξ, −ζ). Its elements are our cells. Its
+//! distances belong to their centres and run x fastest, which is our order, too. CONTACT exits with 0 even when it rejects
+//! its input; only its output tells.
 
 use super::super::block::Block;
 use super::number::WIDTH;

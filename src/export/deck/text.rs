@@ -17,10 +17,10 @@ pub struct Deck<'a> {
 }
 
 impl<'a> Deck<'a> {
-    /// Formats the grid. It takes 25 bytes a point.
+    /// Formats the numbers of a grid. The texts take 25 bytes a point.
     ///
     /// # Errors
-    /// A grid of unequal steps, or of one row or column: a deck cannot say where its points are.
+    /// A grid of unequal steps, or of one row or column, because a deck has no field for the places of its points.
     pub fn new(header: &'a Header, grid: &'a GridFields<'a>) -> Result<Self> {
         let fill = grid.fill_value();
         let number = |&s: &f64| field(if s.is_nan() { fill } else { s });

@@ -23,7 +23,7 @@
 //! component p1 p2 p3 p4 area                 (i4,4i8,e25.16) n_cells cells; nodes counted from 1
 //! ```
 //!
-//! Where m = 0, the number in the column of s is 10 × the largest |s|. A normal that does not exist is 0 0.
+//! If m = 0, the number in the column of s is 10 × the largest |s|. A normal that does not exist is 0 0.
 
 use super::super::block::Block;
 use super::super::model::QuadMesh;

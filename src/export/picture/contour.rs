@@ -17,8 +17,8 @@ pub struct Nodes<'a> {
 }
 
 impl Nodes<'_> {
-    /// Returns the lines on which the function equals `level`, as polylines in (ξ, η); closed ones end where
-    /// they begin. Cells with an undefined corner have none. Cost: linear in the number of nodes.
+    /// Returns the lines on which the function equals `level`, as polylines in (ξ, η). A closed line ends where it begins.
+    /// Cells with an undefined corner have no lines. Cost: linear in the number of nodes.
     pub(super) fn lines(&self, level: f64) -> Vec<Vec<[f64; 2]>> {
         let mut links: HashMap<CellEdge, Vec<CellEdge>> = HashMap::new();
         for i in 1..self.xi.len() {
@@ -29,7 +29,7 @@ impl Nodes<'_> {
                 }
             }
         }
-        // Open lines first, from their ends; the rest is closed. Sorted, so that every run writes the same
+        // Open lines come first, from their ends; the others are closed. They are sorted, so that every run writes the same
         // file.
         let mut starts: Vec<CellEdge> = links.keys().copied().collect();
         starts.sort_by_key(|edge| (links[edge].len(), *edge));
@@ -41,7 +41,7 @@ impl Nodes<'_> {
     fn segments(&self, i: usize, j: usize, level: f64) -> [Option<[CellEdge; 2]>; 2] {
         let n = self.eta.len();
         let node = i * n + j;
-        // Counter-clockwise in (ξ, η).
+        // The corners are counter-clockwise in (ξ, η).
         let corners = [node, node + n, node + n + 1, node + 1].map(|k| self.values[k]);
         if corners.iter().any(|value| value.is_nan()) {
             return [None; 2];
@@ -51,7 +51,7 @@ impl Nodes<'_> {
         let mut crossed = (0..4).filter(|&k| above[k] != above[(k + 1) % 4]);
         match [crossed.next(), crossed.next(), crossed.next(), crossed.next()] {
             [Some(a), Some(b), None, _] => [Some([edges[a], edges[b]]), None],
-            // A saddle: the mean decides which opposite corners are joined.
+            // On a saddle the mean of the corners decides which opposite corners are joined.
             [Some(_), Some(_), Some(_), Some(_)] => {
                 if (corners.iter().sum::<f64>() / 4.0 > level) == above[0] {
                     [Some([edges[0], edges[1]]), Some([edges[2], edges[3]])]
@@ -112,7 +112,7 @@ mod tests {
         let circle = lines(|x, y| x * x + y * y, 1.0);
         assert_eq!(circle.len(), 1);
         assert_eq!(circle[0].first(), circle[0].last());
-        // The chord's error of linear interpolation: h²/8 × second derivative / slope.
+        // The error of linear interpolation along a chord is h²/8 × second derivative / slope.
         assert!(circle[0].iter().all(|p| (p[0].hypot(p[1]) - 1.0).abs() < 0.1 * 0.1 / 8.0 * 2.0));
     }
 

@@ -20,7 +20,7 @@ const JUMP: f64 = 6.0;
 /// Least jump of a contact, as a share of the range of the values.
 const JUMP_SHARE: f64 = 0.02;
 
-/// Number of changes to either side that count as beside: even two more jumps among them do not hide a jump.
+/// Number of changes on each side of a jump that are compared with it. Even two other jumps among them do not hide it.
 const BESIDE: usize = 3;
 
 /// Radius of the dot that represents a point without a line \[page units\].
@@ -117,8 +117,8 @@ fn dots(panel: &Panel, points: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
     (0..points.len()).filter(alone).map(|k| polygon(panel.point(points[k]), DOT, 12, 0.0)).collect()
 }
 
-/// Returns the indices k after which a contact jumps: between k and k + 1 one of its abscissae changes by far
-/// more than around.
+/// Returns the indices k after which a contact jumps: one of its abscissae changes between k and k + 1 by far more than
+/// between the neighbouring points.
 pub fn jumps(abscissae: &[&[f64]]) -> Vec<usize> {
     let mut all: Vec<usize> = abscissae.iter().flat_map(|values| jumps_of(values)).collect();
     all.sort_unstable();
@@ -171,7 +171,7 @@ mod tests {
 
     #[test]
     fn a_point_between_two_jumps_is_a_dot_and_each_jump_parts() {
-        // There and, one position later, on: the one jump does not hide the other.
+        // The contact jumps away, and one position later it jumps on: neither jump hides the other.
         let x: Vec<f64> =
             (0..20).map(|k| f64::from(k) * 0.1 + [0.0, 5.0, 12.0][(k.max(9) - 9).min(2) as usize]).collect();
         let still = vec![0.0; 20];

@@ -1,20 +1,19 @@
-//! Finds where a chain of points crosses itself, by a tree of boxes. Cost: n log n for anything like a
-//! profile.
+//! Finds where a chain of points crosses itself, by a tree of boxes. Cost: n log n for chains like profiles.
 
 use crate::measured::read::points::Point;
 
 /// Most crossings that are reported.
 const MOST_CROSSINGS: usize = 100;
-/// Number of box comparisons after which the search ends: a profile of a million points takes a tenth of it;
-/// points that wind around one place take up to n², which would be hours.
+/// Number of box comparisons after which the search ends. A profile of a million points takes a tenth of it. Points that
+/// wind around one place take up to n², which would last hours.
 const MOST_COMPARISONS: usize = 100_000_000;
 
 /// The result of a search for crossings.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(in crate::measured) struct Crossings {
-    /// Pairs of edges \[i, j\], i < j, where i → i + 1 crosses j → j + 1; at most [`MOST_CROSSINGS`].
+    /// Pairs of edges \[i, j\], i < j, where edge i → i + 1 crosses edge j → j + 1. At most [`MOST_CROSSINGS`].
     pub edges: Vec<[usize; 2]>,
-    /// Whether the search ended at [`MOST_COMPARISONS`], so that there may be other crossings.
+    /// Whether the search ended at its limit of comparisons, so that there may be other crossings.
     pub cut_short: bool,
 }
 
@@ -39,7 +38,7 @@ struct EdgeBox {
     high: [f64; 2],
 }
 
-/// The edges `from`..`to` and the index of their box; the children of box k are 2k and 2k + 1.
+/// The edges `from`..`to` and the index of their box. The children of box k are the boxes 2k and 2k + 1.
 #[derive(Debug, Clone, Copy)]
 struct EdgeRange {
     index: usize,

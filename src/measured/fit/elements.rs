@@ -4,13 +4,13 @@ use crate::error::Result;
 use crate::measured::read::points::{DesignElement, ElementShape, Point};
 use crate::profile::{Arc, Segment, Station};
 
-/// Distance \[mm\] of the points that represent elements in the checks and in the search for orientation.
+/// Distance \[mm\] of the points that stand for elements in the checks and in the search for the orientation.
 const STEP: f64 = 0.5;
-/// Most steps over one element: 200 mm.
+/// Most steps over one element. With [`STEP`] that is 200 mm.
 const MOST_STEPS: f64 = 400.0;
-/// Distance \[mm\] below which two ends are one joint: drawings print 1e-4 mm.
+/// Distance \[mm\] below which two ends are one joint. Drawings print 1e-4 mm.
 const JOINT: f64 = 1e-3;
-/// Largest turn of one arc \[rad\]: an arc of a chain turns by at most half a circle, rounding included.
+/// Largest turn of one arc \[rad\]. An arc of a chain turns by at most half a circle, and rounding must not exceed it.
 const LARGEST_TURN: f64 = 3.0;
 
 /// An element with its direction of travel.
@@ -20,7 +20,7 @@ struct Directed {
     backwards: bool,
 }
 
-/// Gives the elements directions so that each begins where the one before ends; the order is the file's.
+/// Returns the elements in the order of the file, each with the direction in which it begins where the previous one ends.
 fn directed(elements: &[DesignElement]) -> Vec<Directed> {
     let mut out: Vec<Directed> = Vec::with_capacity(elements.len());
     for (k, &element) in elements.iter().enumerate() {
@@ -59,7 +59,7 @@ impl Directed {
         ends(&self.element)[usize::from(!self.backwards)]
     }
 
-    /// Returns points along the element, both ends included.
+    /// Returns points along the element; both ends are included.
     fn points(&self, number: usize) -> Vec<Point> {
         let length = match self.element.shape {
             ElementShape::Line { from, to } => far(from, to),
@@ -108,7 +108,7 @@ impl Directed {
     }
 }
 
-/// Returns points every [`STEP`] along the elements, numbered by element.
+/// Returns points every [`STEP`] mm along the elements, with the number of their element.
 pub(in crate::measured) fn points(elements: &[DesignElement]) -> Vec<Point> {
     let mut out: Vec<Point> = Vec::new();
     for (k, directed) in directed(elements).iter().enumerate() {
@@ -121,10 +121,10 @@ pub(in crate::measured) fn points(elements: &[DesignElement]) -> Vec<Point> {
     out
 }
 
-/// Makes the chain of elements in profile axes, from left to right.
+/// Makes the chain of elements, in profile axes and from left to right.
 ///
 /// # Errors
-/// A line element with two equal ends, with its line in the file.
+/// A line element with two equal ends; the error gives its line in the file.
 pub(in crate::measured) fn segments(elements: &[DesignElement]) -> Result<Vec<Segment>> {
     let mut chain = directed(elements);
     let first = chain.first().map(|first| ends(&first.element)[usize::from(first.backwards)]);

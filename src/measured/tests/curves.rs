@@ -1,4 +1,4 @@
-//! What curves through and near measured points do to waves, noise and corners.
+//! Tests what curves through or near measured points do to waves, noise and corners.
 
 use super::*;
 
@@ -24,7 +24,7 @@ fn smoothing_halves_a_wave_of_the_cutoff_length_whatever_the_spacing() -> Result
         let options = Options { mirror: Some(false), ..Options::default() };
         let smooth = profile("wave.txt", text.as_bytes(), Side::Rail, &options)?.profile;
         let section = Section::own_axes(&smooth, Side::Rail);
-        // Crest and trough, 2.5 mm apart, around the parabola's own drop.
+        // The height between crest and trough, 2.5 mm apart, without the drop of the parabola.
         let height = section.height(0.0) - section.height(2.5) - 2.5f64.powi(2) / 600.0;
         assert!((height / 0.02 - 0.5).abs() < 0.015, "{spacing}: {height}");
     }
@@ -56,7 +56,7 @@ fn smoothing_keeps_clean_points_and_a_chain_of_arcs_its_tolerance() -> Result<()
     let text = write::points(&points, Format::Csv, Side::Wheel, "");
     let smooth = profile("s1002.csv", text.as_bytes(), Side::Wheel, &Options::default())?;
     assert!(smooth.record.curve.corners.is_empty(), "{:?}", smooth.record.curve);
-    // Curvature jumps of 1/13 + 1/20 mm⁻¹ on the 70° flank, (λ_c/2π)² = 0.63 mm².
+    // The curvature jumps by 1/13 + 1/20 mm⁻¹ on the 70° flank, and (λ_c/2π)² = 0.63 mm².
     let worst = difference(&smooth.profile, &wheel, Side::Wheel, [-60.0, 50.0]);
     assert!(worst < 0.03, "{worst} {:?}", smooth.record.curve);
     for tolerance in [0.001, 0.01, 0.05] {
@@ -66,7 +66,7 @@ fn smoothing_keeps_clean_points_and_a_chain_of_arcs_its_tolerance() -> Result<()
         let residual = found.record.curve.residual.as_ref().map_or(f64::NAN, |r| r.largest);
         assert!(residual <= tolerance, "{residual}");
         let worst = difference(&found.profile, &wheel, Side::Wheel, [-69.0, 59.0]);
-        // Height differences are the distance over the cosine of a 70° flank.
+        // A difference in height is the distance over the cosine of the slope, here that of a 70° flank.
         assert!(worst < 4.0 * tolerance, "{tolerance}: {worst}");
         let n = found.profile.segments().len();
         assert!(n <= if tolerance < 0.002 { 60 } else { 30 }, "{tolerance}: {n} segments");
@@ -79,7 +79,7 @@ fn smoothing_keeps_clean_points_and_a_chain_of_arcs_its_tolerance() -> Result<()
 
 #[test]
 fn noise_is_smoothed_and_the_corner_of_a_new_wheel_stays() -> Result<()> {
-    // A roof of 40°, noise of 5 µm from a linear congruential generator.
+    // A roof of 40° with noise of 5 µm from a linear congruential generator.
     let mut seed = 12_345u64;
     let mut noise = || {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

@@ -1,4 +1,4 @@
-//! Readers meet bytes that no instrument wrote.
+//! Tests that readers survive bytes that no instrument wrote.
 
 use super::*;
 use wheelrail_report::random::Random;
@@ -69,7 +69,7 @@ fn every_reader_survives_a_hundred_thousand_mutations() {
                 assert!(placed, "round {round}: {error}");
             }
         }
-        // The rest of the way for one in ten.
+        // One round in ten makes the rest of the profile, too.
         if round % 10 == 0 {
             let curve = [None, Some(CurveKind::Interpolation), Some(CurveKind::Arcs)][random.below(3)];
             let repair = vec![Repair::DropDuplicates, Repair::Sort, Repair::RemoveSpikes, Repair::CutLoops];

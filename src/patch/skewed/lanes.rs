@@ -1,26 +1,24 @@
 //! Finds the bands of a patch under a skewed wheel, where a line of constant ξ may meet the patch in several
 //! intervals of η.
 //!
-//! Every interval holds a valley of the wheel. An event is a ξ at which a valley or ridge begins, ends or
-//! passes s = δ, or at which the rail steps. The intervals do not change within a stretch of ξ between two
-//! events; at an event they continue, divide or join.
+//! Every interval holds a valley of the wheel. An event is a ξ at which a valley or ridge begins, ends or passes s = δ, or
+//! at which the rail steps. Between two events the intervals persist; at an event they continue, divide or join.
 
 use super::events::{Events, events};
 use crate::patch::band::{Band, overlap, steps};
 use crate::patch::outline::{End, Outline};
 
-/// Distance, as a share of R, within which a valley at the edge of an interval belongs to the interval: where
-/// lines of constant ξ only touch the wheel's end, the edge is known to the root of rounding, 1.5e-8. Nearer
-/// intervals count as one.
+/// Distance, as a share of R, within which a valley at the edge of an interval belongs to the interval, and within which
+/// two intervals are one. Where lines of constant ξ only touch the wheel's end, the edge is known only to the square root
+/// of rounding, 1.5e-8.
 const TOUCH: f64 = 1e-6;
 
-/// Distance from the ends of a stretch at which its intervals are taken, as a share of the stretch. Where two
-/// intervals meet at an end, their edges are square roots there, so that they are a thousandth of their width
-/// apart at this distance.
+/// Distance from the ends of a stretch, as a share of the stretch, at which its intervals are found. Where two intervals
+/// meet at an end, their edges are square roots: at this distance they are a thousandth of their width apart.
 const INSIDE: f64 = 1e-6;
 
-/// Distance, in roundings of R, below which events are one: between them rounding decides what is inside, and
-/// there may be no ξ.
+/// Distance, in roundings of R, below which two events are one. Between closer events rounding decides what is inside, and
+/// there may be no other ξ.
 const XI_ROUNDINGS: f64 = 64.0;
 
 /// The valleys of one interval, the deepest first.
@@ -99,7 +97,7 @@ fn groups(outline: &mut Outline<'_>, xi: f64) -> Vec<ValleyGroup> {
     let mut inside: Vec<Inside> = places.filter(|valley| valley.depth < 0.0).collect();
     inside.sort_by(|a, b| a.eta.total_cmp(&b.eta));
     let mut groups: Vec<Vec<Inside>> = Vec::new();
-    // Upper edge of the interval of the last group.
+    // This is the upper edge of the previous group's interval.
     let mut reached = f64::NEG_INFINITY;
     for valley in &inside {
         match groups.last_mut().filter(|_| valley.eta <= reached) {
@@ -121,8 +119,7 @@ fn groups(outline: &mut Outline<'_>, xi: f64) -> Vec<ValleyGroup> {
 }
 
 impl LaneWalk<'_, '_> {
-    /// Handles the event at the beginning of a stretch, and continues or opens a band for each of the
-    /// stretch's groups.
+    /// Handles the event at the beginning of a stretch. Continues or opens a band for each group of the stretch.
     fn step(&mut self, [from, to]: [f64; 2], groups: Vec<ValleyGroup>, rail_steps: bool) {
         let inside = INSIDE * (to - from);
         let begins: Vec<[f64; 2]> = groups.iter().map(|group| self.interval(group, from + inside)).collect();
@@ -179,8 +176,8 @@ impl LaneWalk<'_, '_> {
         edges.map_or([f64::NAN; 2], |edges| edges.map(|edge| edge.eta))
     }
 
-    /// Returns the sides of the lanes (0) and groups (1) that meet at an event where one interval divides
-    /// into several or several join. Neighbours meet there on a ridge or on the circle of an end.
+    /// Returns the sides of the lanes (0) and groups (1) that meet at an event where one interval divides or several join.
+    /// Neighbours meet there on a ridge or on the circle of an end.
     fn forks(
         &mut self,
         xi: f64,
@@ -223,7 +220,7 @@ impl LaneWalk<'_, '_> {
         self.outline.edges(group.first().copied(), xi).map(|edges| edges[side].eta)
     }
 
-    /// Returns where two intervals meet: on a ridge or the circle of an end between both, or half way.
+    /// Returns η at which two intervals meet: on a ridge or the circle of an end between them, or else half-way.
     fn meeting_point(&self, xi: f64, [from, to]: [f64; 2]) -> f64 {
         let middle = from + (to - from) / 2.0;
         let Some(skewed) = &self.outline.slicer.skewed else { return middle };

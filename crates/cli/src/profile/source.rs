@@ -1,4 +1,4 @@
-//! The profile that a command is about: a built-in one, a chain file, or a measured file.
+//! The profile that a command is about: a built-in one, a chain file or a measured file.
 
 use std::path::{Path, PathBuf};
 
@@ -13,27 +13,27 @@ use wheelrail::measured::{self, CurveKind, Measured, Options};
 use wheelrail::profile::{Profile, Side, standards};
 use wheelrail::scene;
 
-/// Which profile.
+/// The arguments that choose a profile.
 #[derive(Debug, Args)]
 pub(crate) struct SourceArguments {
     /// Name of a built-in profile, or a file: segments in TOML or JSON, or measured points.
     profile: String,
-    /// Which body it is of; a built-in name says so itself, and so do files such as .ban, .whl, .prr, .prw.
+    /// Body of the profile. Built-in names tell it, and so do files such as .ban, .whl, .prr, .prw.
     #[arg(long, ignore_case = true)]
     side: Option<BodyOption>,
     #[command(flatten)]
     measured: MeasuredArguments,
 }
 
-/// A profile with what is known of it.
+/// A profile, with what is known about it.
 #[derive(Debug)]
 pub(super) struct Source {
-    /// Which body it is of, where that is known.
+    /// Body of the profile, if it is known.
     pub side: Option<Side>,
     pub content: Content,
 }
 
-/// Where a profile comes from.
+/// The origin of a profile.
 #[derive(Debug)]
 pub(super) enum Content {
     /// Built in, or a file of segments.
@@ -59,7 +59,7 @@ impl Source {
 }
 
 impl SourceArguments {
-    /// Refuses to write over the profile's own file.
+    /// Rejects an output file that is the profile's own file.
     ///
     /// # Errors
     /// `out` is that file.
@@ -71,18 +71,18 @@ impl SourceArguments {
         }
     }
 
-    /// The profile.
+    /// Reads the profile.
     ///
     /// # Errors
-    /// A name that is none; whatever is wrong with a file or its options.
+    /// An unknown name; anything that is wrong with a file or its options.
     pub(super) fn read(&self) -> Result<Source> {
         self.read_as(None)
     }
 
-    /// The profile; a measured file as this kind of curve where no option names one.
+    /// Reads the profile. If no option names a curve, a measured file gets this kind of curve.
     ///
     /// # Errors
-    /// Those of [`SourceArguments::read`].
+    /// The errors of [`SourceArguments::read`].
     pub(super) fn read_as(&self, curve: Option<CurveKind>) -> Result<Source> {
         let path = Path::new(&self.profile);
         if !path.exists() {

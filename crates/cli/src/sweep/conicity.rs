@@ -1,15 +1,15 @@
-//! The equivalent conicity of a sweep's positions, and what a user should know of it.
+//! Computes the equivalent conicity of a sweep's positions, and the remarks that a user should read.
 
 use super::super::progress::Progress;
 use crate::answer::counted;
 use wheelrail::error::Result;
 use wheelrail::search::{ACCURACY, Conicity, Equivalent, NoConicity, Position, Roll, WheelsetOnTrack};
 
-/// Relative errors up to which conicities that are not converged are counted in classes.
+/// Relative errors that divide the conicities that have not converged into classes.
 const CLASSES: [f64; 2] = [1e-3, 1e-2];
 
-/// The equivalent conicity up to the largest amplitude of the positions whose roll is not given. All these rolls are found
-/// in one way, solved or neglected.
+/// Computes the equivalent conicity up to the largest amplitude of the positions without a given roll. The rolls of all
+/// these positions are found in one way: solved or neglected.
 pub(super) fn conicity(
     system: &WheelsetOnTrack,
     positions: &[Position],
@@ -27,7 +27,7 @@ fn free(positions: &[Position]) -> impl Iterator<Item = &Position> {
     positions.iter().filter(|position| !matches!(position.roll, Roll::Fixed(_)))
 }
 
-/// Remarks on the positions whose conicity is not accurate, or is not there although both wheels touch.
+/// Returns remarks on positions whose conicity is inaccurate, or missing although both wheels touch.
 pub(super) fn remarks(conicity: &Conicity, positions: &[Position]) -> Vec<String> {
     let found: Vec<ConicityFound> = free(positions).map(|position| conicity.at(position.lateral)).collect();
     let inaccurate = inaccurate(&found).map(|text| format!("{text}, after {} searches", conicity.searches()));

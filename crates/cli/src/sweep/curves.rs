@@ -1,4 +1,4 @@
-//! The usual curves of a sweep as a picture.
+//! Draws the usual curves of a sweep.
 
 use super::table::SweepTable;
 use crate::answer::counted;
@@ -6,13 +6,14 @@ use wheelrail::error::{Error, Result};
 use wheelrail::export::{CurvesPanel, CurvesPicture, PlottedCurve, jumps};
 use wheelrail::search::{Position, Sweep, SweepRow, TrackSide};
 
-/// At most so many positions are drawn, evenly chosen: more than a page has pixels.
+/// Most positions that are drawn, evenly chosen. A page has no more pixels.
 const MOST_DRAWN: usize = 2000;
 
-/// A quantity of a row.
+/// Reads one quantity from a row.
 type Value = fn(&SweepRow) -> f64;
 
-/// Quantities of a position, as its first row has them; whether they jump where a contact does.
+/// Quantities of a position, which its first row holds. The last entry tells whether the quantity jumps where a contact
+/// jumps.
 const OF_POSITION: [(&str, &str, Value, bool); 3] = [
     ("Rolling radius difference, right less left", "Δr [mm]", |row| row.delta_r, true),
     (
@@ -24,14 +25,14 @@ const OF_POSITION: [(&str, &str, Value, bool); 3] = [
     ("Roll", "roll [mrad]", |row| 1e3 * row.roll, false),
 ];
 
-/// Quantities of each side's lowest contact.
+/// Quantities of the lowest contact of each side.
 const OF_SIDE: [(&str, &str, Value); 3] = [
     ("Contact angle", "θ [°]", |row| row.contact.contact_angle.to_degrees()),
     ("Contact on the rail", "x on the rail [mm]", |row| row.contact.rail_x),
     ("Contact on the wheel", "x on the wheel [mm]", |row| row.contact.wheel_x),
 ];
 
-/// Makes the picture of a table's positions, whose lateral displacements have to ascend.
+/// Makes the picture of a table's positions. Their lateral displacements must ascend.
 pub(super) fn picture(table: &SweepTable, title: &str) -> Result<CurvesPicture> {
     let all = &table.positions;
     if let Some(pair) = all.windows(2).find(|pair| pair[0].lateral >= pair[1].lateral) {
@@ -44,7 +45,8 @@ pub(super) fn picture(table: &SweepTable, title: &str) -> Result<CurvesPicture> 
         let of = |rows: &[SweepRow]| rows.iter().find(|row| row.side == side).map_or(f64::NAN, value);
         found.iter().map(|(_, rows)| of(rows)).collect()
     };
-    // A side's contact jumps or not whatever quantity is drawn: all its panels are parted at the same positions.
+    // A side's contact jumps regardless of the quantity, so that all panels of a side are interrupted at the same
+    // positions.
     let jumps_of = |side: TrackSide| {
         jumps(&[&values(side, |row| row.contact.rail_x), &values(side, |row| row.contact.wheel_x)])
     };
@@ -77,7 +79,7 @@ pub(super) fn picture(table: &SweepTable, title: &str) -> Result<CurvesPicture> 
     })
 }
 
-/// Finds lateral displacement \[mm\] and lowest contact of each side, at evenly chosen positions.
+/// Finds the lateral displacement \[mm\] and the lowest contact of each side, at evenly chosen positions.
 fn lowest(table: &SweepTable) -> Result<Vec<(f64, Vec<SweepRow>)>> {
     let stride = table.positions.len().div_ceil(MOST_DRAWN).max(1);
     let mut sweep = Sweep::new(table.system, table.selection, table.conicity.as_ref());

@@ -1,5 +1,5 @@
-//! `wheelrail sweep`: the contact geometry of a wheelset at many positions, as CSV, and with files of
-//! every patch.
+//! `wheelrail sweep`: writes the contact geometry of a wheelset at many positions as CSV, and on request the files of every
+//! patch.
 
 mod conicity;
 mod curves;
@@ -21,30 +21,30 @@ use wheelrail::files::{Folder, NewFile, PATCHES_FOLDER};
 use wheelrail::scene::{self, Scene};
 use wheelrail::search::{ONE_CONTACT, Position, Selection, WheelsetOnTrack};
 
-/// What to sweep over and where to write.
+/// The scene, the positions, and the outputs.
 #[derive(Debug, clap::Args)]
 pub(super) struct SweepArguments {
     /// Scene file with [track] and [wheelset].
     scene: PathBuf,
-    /// Lateral displacements FROM:TO:STEP, mm; yaw and roll as in the scene.
+    /// Lateral displacements FROM:TO:STEP, mm; yaw and roll are those of the scene.
     #[arg(long, value_name = "FROM:TO:STEP", allow_hyphen_values = true)]
     lateral: Option<String>,
     /// CSV file with columns `lateral_mm`, `yaw_rad`, `roll_rad`; an empty roll is solved.
     #[arg(long, value_name = "FILE.csv", conflicts_with = "lateral")]
     positions: Option<PathBuf>,
-    /// File to write; by default stdout.
+    /// File to write; if not given, stdout.
     #[arg(long, value_name = "FILE.csv")]
     out: Option<PathBuf>,
-    /// Besides, for every position the files that `run` writes, as subfolders, and `surface.pvd` over all of them.
+    /// Folder that also gets the files of `run` for every position, in subfolders, and `surface.pvd` over all of them.
     #[arg(long, value_name = "DIR")]
     patches: Option<PathBuf>,
-    /// Besides, the usual curves over the lateral displacement, as SVG, or as PNG where the name ends so.
+    /// Picture of the usual curves over the lateral displacement, in addition: .svg or .png.
     #[arg(long, value_name = "FILE.svg")]
     picture: Option<PathBuf>,
 }
 
 impl SweepArguments {
-    /// Gives the positions, from the range or the file; yaw and roll of a range are those of `template`.
+    /// Returns the positions of the range or the file. Positions of a range have the yaw and roll of `template`.
     fn positions(&self, template: Position) -> Result<Vec<Position>> {
         match (&self.lateral, &self.positions) {
             (Some(range), None) => {
@@ -60,7 +60,7 @@ impl SweepArguments {
     }
 }
 
-/// What a sweep writes besides stdout, all of it under temporary names until the sweep has ended.
+/// The outputs of a sweep besides stdout. All have temporary names until the sweep has ended.
 struct SweepOutputs {
     table: Option<NewFile>,
     picture: Option<(PictureFormat, NewFile)>,
@@ -68,10 +68,10 @@ struct SweepOutputs {
 }
 
 impl SweepOutputs {
-    /// Opens the outputs: what is wrong with them is to be known before an hour's work.
+    /// Opens the outputs, so that their faults show before an hour's work.
     ///
     /// # Errors
-    /// A picture of no known format; a file that is read, or written twice; whatever the disk says.
+    /// A picture of an unknown format; a file that is read, or written twice; any error of the disk.
     fn create(arguments: &SweepArguments, scene: &Scene) -> Result<Self> {
         let picture = arguments.picture.as_deref();
         let format = picture.map(|file| PictureFormat::of_file("--picture", file)).transpose()?;
@@ -98,7 +98,7 @@ impl SweepOutputs {
         })
     }
 
-    /// Gives everything its name.
+    /// Gives all outputs their names.
     fn commit(self) -> Result<()> {
         self.patches.map_or(Ok(()), Folder::commit)?;
         self.picture.map_or(Ok(()), |(_, file)| file.commit())?;
@@ -141,7 +141,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// Gives the wheelset and track of a case, and the case's own position.
+/// Returns the wheelset and track of a case, and the position in the case.
 fn wheelset(case: &Case) -> Result<(&Arc<WheelsetOnTrack>, Position)> {
     let Place::Wheelset { system, position } = &case.standing().place else {
         let expected = "[track] and [wheelset]";

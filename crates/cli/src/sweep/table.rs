@@ -1,4 +1,4 @@
-//! The table of a sweep, block by block.
+//! Computes the table of a sweep block by block.
 
 use std::fmt::Write;
 use std::sync::Arc;
@@ -19,24 +19,24 @@ const HEADER: &str = "lateral_mm,yaw_rad,roll_rad,side,contact,z_mm,rail_x_mm,wh
                       rolling_radius_mm,delta_r_mm,conicity,gap_mm,skew_rad,rail_curvature_per_mm,\
                       wheel_curvature_per_mm,kink,hertz_xi_mm,hertz_eta_mm\n";
 
-/// Positions of one block: enough work for all threads, and little memory.
+/// Number of positions of one block: enough work for all threads, in little memory.
 const BLOCK: usize = 8192;
 
-/// Positions that one thread takes at a time.
+/// Number of positions that one thread takes at a time.
 const CHUNK: usize = 256;
 
-/// A sweep ready to run.
+/// The table of a sweep, ready to be computed.
 pub(super) struct SweepTable<'a> {
     pub system: &'a Arc<WheelsetOnTrack>,
     pub conicity: Option<Conicity>,
     pub selection: Selection,
     pub positions: Vec<Position>,
-    /// Approach or load, and E*, of the ellipses.
+    /// Approach or load, and E*, for the contact ellipses; `None` without them.
     pub ellipses: Option<(ApproachBy, f64)>,
 }
 
 impl SweepTable<'_> {
-    /// Hands the table's text to `sink`, block by block, as long as it wants more.
+    /// Passes the table's text to `sink`, block by block, until the sink wants no more.
     pub(super) fn blocks(
         &self,
         progress: &Progress,
@@ -61,7 +61,7 @@ impl SweepTable<'_> {
         Ok(())
     }
 
-    /// Gives the rows of a few positions as text; `before` positions come before them.
+    /// Returns the rows of some positions as text. `before` is the number of earlier positions.
     fn rows(&self, before: usize, positions: &[Position]) -> Result<String> {
         let mut sweep = Sweep::new(self.system, self.selection, self.conicity.as_ref());
         let (mut rows, mut text) = (Vec::new(), String::new());
@@ -78,7 +78,7 @@ impl SweepTable<'_> {
     }
 }
 
-/// Adds a row as text.
+/// Appends a row as text.
 fn append(out: &mut String, row: &SweepRow, ellipses: Option<(ApproachBy, f64)>) {
     let c = &row.contact;
     let side = match row.side {

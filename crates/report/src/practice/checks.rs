@@ -16,8 +16,8 @@ use wheelrail::separation::Evaluator;
 
 /// Gap \[mm\] up to which near misses are compared.
 const WITHIN: f64 = 0.2;
-/// Largest difference \[mm\] of a height or a gap from brute force: chords are off a lip of 1 mm radius by
-/// 1.3e-5 mm, and on a flange of 75° this is four times as much in height.
+/// Largest difference \[mm\] of a height or a gap from brute force. Chords are 1.3e-5 mm off a lip of 1 mm radius; on a
+/// flange of 75° this is four times as much in height.
 const HEIGHT: f64 = 1e-4;
 /// Largest difference \[mm\] of s from brute force, across the surface.
 const SEPARATION: f64 = 3e-5;
@@ -101,7 +101,7 @@ pub(super) fn sweep(
         row.failures.push(format!("the conicity took {searches} searches of at most {most}"));
     }
     match conicity.at(0.9 * amplitude) {
-        // Worn pairs reach 1; more is a fault. The movement of a hollow wheel may not come back at all.
+        // Worn pairs reach 1; a larger conicity is a fault. The movement of a hollow wheel may not return at all.
         Ok(found) if found.conicity > 0.0 && found.conicity < 2.0 => {}
         Err(NoConicity::NotRestoring) => {}
         other => row.failures.push(format!("conicity {other:?}")),
@@ -172,7 +172,7 @@ fn patch(
     if parts != fill.parts {
         row.failures.push(format!("{name}{parts} parts, {} by flood fill", fill.parts));
     }
-    // Where a surface ends between two points, the fill has half a cell too much or too little.
+    // At the end of a surface the flood fill has half a cell too much or too little.
     let ends = |part: &Component| part.ends.iter().filter(|end| **end == End::ProfileEnd).count() as f64;
     let beside = |part: &Component| 0.5 * fill.step * ends(part) * (part.eta[1] - part.eta[0]);
     let beside: f64 = patch.components.iter().map(beside).sum();
@@ -192,7 +192,7 @@ fn ring(placement: &Placement, approach: f64, grid: &mesh::Axes, name: &str, row
     for (k, &xi) in grid.xi.iter().enumerate() {
         for (l, &eta) in grid.eta.iter().enumerate() {
             let outermost = k == 0 || l == 0 || k + 1 == rows || l + 1 == columns;
-            // Beyond the end of a profile there is no s.
+            // There is no s beyond the end of a profile.
             if outermost && evaluator.separation(xi, eta) <= approach {
                 row.failures.push(format!("{name}the automatic grid cuts the patch at ({xi:.4}, {eta:.4})"));
                 return;

@@ -53,7 +53,7 @@ fn pictures_of_good_and_of_odd_data_are_drawn() {
                 {
                     let svg = picture(&sample, &header, &loops, &midplane, profiles).svg();
                     assert!(svg.contains("a &lt;b&gt; &amp; c") && svg.ends_with("</svg>\n"));
-                    // One blank of several is all that a reader of SVG shows.
+                    // Readers of SVG show several blanks as one.
                     assert!(svg.contains("left side, mirrored · contact 2 · ") && !svg.contains("    "));
                     assert!(!svg.contains("NaN") && !svg.contains("inf"), "{n:?}");
                 }
