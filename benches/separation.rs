@@ -5,10 +5,7 @@
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use wheelrail::placement::Placement;
-use wheelrail::separation::axis::EtaAxis;
-use wheelrail::separation::grid::Method;
-use wheelrail::separation::plan::plan;
-use wheelrail::separation::values::Values;
+use wheelrail::separation::{EtaAxis, Method, Values, plan};
 use wheelrail_report::reference::references;
 
 /// A tread, a standard pair with joints, a flange root.

@@ -3,7 +3,7 @@
 //!     cargo run --release --example 02_patch
 #![allow(clippy::print_stdout)]
 
-use wheelrail::load::feasibility::feasibility;
+use wheelrail::load::feasibility;
 use wheelrail::patch::{Patch, Window};
 use wheelrail::placement::Pair;
 use wheelrail::profile::standards;

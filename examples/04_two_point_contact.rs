@@ -3,11 +3,9 @@
 //!     cargo run --release --example 04_two_point_contact
 #![allow(clippy::print_stdout)]
 
-use wheelrail::placement::Pair;
-use wheelrail::placement::track::{RailDistance, WheelDistance};
+use wheelrail::placement::{Pair, RailDistance, WheelDistance};
 use wheelrail::profile::{inclination, standards};
-use wheelrail::search::Selection;
-use wheelrail::search::wheelset::{Position, Roll, WheelsetOnTrack};
+use wheelrail::search::{Position, Roll, Selection, WheelsetOnTrack};
 
 fn main() -> wheelrail::Result<()> {
     let rail = standards::rail("60E1")?.rotated(inclination(1.0, 40.0)?);

@@ -1,35 +1,35 @@
-//! The one error type: where → found → expected → what to do.
+//! The error type of the whole crate. Its text has four parts: where → found → expected → what to do.
 
 use std::sync::Arc;
 
 /// What kind of thing went wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Kind {
+pub enum ErrorKind {
     /// The input is malformed, contradictory or impossible.
     Input,
-    /// The bodies do not lie as the input supposes: a point off its profile, a wheel beside its rail.
+    /// The bodies do not lie as the input supposes. Examples: a point off its profile, a wheel beside its rail.
     Geometry,
-    /// The disk or a stream does not do what it is asked.
+    /// A disk or a stream did not do what it was asked.
     Io,
-    /// More is asked for than the program computes or reads: points, cells, bytes.
+    /// The input asks for more than the program computes or reads: points, cells, bytes.
     Limit,
 }
 
 /// An error in four parts: where, what was found, what was expected, and what to do.
 ///
-/// The command line ends with exit code 2 on each. A geometric "no" (an infeasible contact, an empty patch) is a result,
-/// not an error. Two errors are equal if their kinds and texts are.
+/// The command line ends with exit code 2 on every error. A geometric "no" (an infeasible contact, an empty patch) is a
+/// result, not an error. Two errors are equal if their kinds and their texts are equal.
 #[derive(Debug, Clone, thiserror::Error)]
 #[error("{place}: found {found}; expected {expected}; {advice}")]
 pub struct Error {
-    /// Kind of the error, for programs.
-    pub kind: Kind,
+    /// Kind of the error, for programs that decide by it.
+    pub kind: ErrorKind,
     /// Where: file, key, segment or line.
     pub place: String,
-    /// What stands there.
+    /// What was found there.
     pub found: String,
-    /// What could stand there.
+    /// What was expected there.
     pub expected: String,
     /// What the user can do about it.
     pub advice: String,
@@ -37,7 +37,7 @@ pub struct Error {
     source: Option<Arc<dyn std::error::Error + Send + Sync>>,
 }
 
-/// Result of everything that can fail.
+/// The result type of every function of this crate that can fail.
 pub type Result<T> = std::result::Result<T, Error>;
 
 impl PartialEq for Error {
@@ -69,7 +69,7 @@ impl Error {
         advice: impl Into<String>,
     ) -> Self {
         Self {
-            kind: Kind::Input,
+            kind: ErrorKind::Input,
             place: place.into(),
             found: found.into(),
             expected: expected.into(),
@@ -78,25 +78,25 @@ impl Error {
         }
     }
 
-    /// Makes it an error of another kind.
+    /// Returns this error with another kind.
     #[must_use]
-    pub fn of_kind(self, kind: Kind) -> Self {
+    pub fn of_kind(self, kind: ErrorKind) -> Self {
         Self { kind, ..self }
     }
 
-    /// Adds the error that it reports.
+    /// Returns this error with the error of another library that caused it.
     #[must_use]
     pub fn caused_by(self, source: impl std::error::Error + Send + Sync + 'static) -> Self {
         Self { source: Some(Arc::new(source)), ..self }
     }
 
-    /// Names another place instead of its own: the option, say, that a value came from.
+    /// Returns this error with another place: for example the option that a value came from.
     #[must_use]
     pub fn at(self, place: impl Into<String>) -> Self {
         Self { place: place.into(), ..self }
     }
 
-    /// Puts `outer` before the place: the error seen from one level further out.
+    /// Returns this error with `outer` put before its place: the error as one level further out sees it.
     #[must_use]
     pub fn within(mut self, outer: impl std::fmt::Display) -> Self {
         self.place =
@@ -105,10 +105,10 @@ impl Error {
     }
 }
 
-/// Rejects NaN and infinities, which no quantity of a scene may be.
+/// Returns `value` if it is finite. No quantity of a scene may be NaN or infinite.
 ///
 /// # Errors
-/// Names `place` when `value` is not finite.
+/// `value` is NaN or infinite; the error names `place`.
 pub fn finite(place: &str, value: f64) -> Result<f64> {
     if value.is_finite() {
         return Ok(value);
@@ -116,7 +116,8 @@ pub fn finite(place: &str, value: f64) -> Result<f64> {
     Err(Error::new(place, value.to_string(), "a finite number", "give a number"))
 }
 
-/// Names the keys that are given, for messages: "`from` and `slope`".
+/// Returns the names of the keys that are given, for messages: "`from` and `slope`". Each entry is (key, whether it is
+/// given).
 pub fn given(keys: &[(&str, bool)]) -> String {
     let given: Vec<String> =
         keys.iter().filter(|(_, given)| *given).map(|(key, _)| format!("`{key}`")).collect();

@@ -13,16 +13,16 @@
 //! | Report FRA/ORD-78/41 | what it is | here |
 //! |---|---|---|
 //! | (3.2) | lines and arcs | [`Arc`]; polynomials [`Polynomial`], chains [`Profile`] |
-//! | App. A | smooth chains from drawing data | [`profile::builder`] |
-//! | (4.1) | feasibility of a contact point | [`mod@load::feasibility`] |
+//! | App. A | smooth chains from drawing data | [`profile::ChainBuilder`] |
+//! | (4.1) | feasibility of a contact point | [`load::feasibility`](fn@load::feasibility) |
 //! | (4.2), (4.3) | a point seen from a frame | [`Station`] |
 //! | (4.4)–(4.8) | the transformed profile ζ(ξ) | [`profile::Section`] |
 //! | (4.9)–(4.12) | the contact frame of two points | [`placement`] |
-//! | MIDSEP, Sec. 5 | transformed parameters and Δζ on the midplane | [`separation::midplane`] |
-//! | INSEP, (6.1)–(6.12) | s(ξ, η) and unit normals | [`separation::wheel_surface`], [`Evaluator`]; over grids [`separation::plan`] |
-//! | (6.13)–(6.16) | the Report's own iteration | [`separation::methods::report_newton`] |
+//! | MIDSEP, Sec. 5 | transformed parameters and Δζ on the midplane | [`separation::midplane_table`], [`separation::transformed_parameters`] |
+//! | INSEP, (6.1)–(6.12) | s(ξ, η) and unit normals | [`Evaluator`]; over grids [`separation::plan`](fn@separation::plan), [`separation::Plan`] |
+//! | (6.13)–(6.16) | the Report's own iteration | [`separation::Method::ReportNewton`] |
 //! | INTERPEN, (7.1)–(7.3) | the boundary s = δ | [`patch::Slicer`], [`Patch`] |
-//! | CONFORM, COUNTACT | the solvers that read all this | [`export::deck`], [`mesh`] |
+//! | CONFORM, COUNTACT | the solvers that read all this | [`export::Deck`], [`mesh`] |
 //!
 //! The Report chooses contact points; [`search`] finds them. [`measured`] reads profiles from instruments' files.
 //!
@@ -67,7 +67,7 @@ pub mod files;
 pub mod load;
 pub mod measured;
 pub mod mesh;
-pub mod numerics;
+mod numerics;
 pub mod patch;
 pub mod placement;
 pub mod profile;
@@ -78,19 +78,31 @@ pub mod separation;
 
 #[cfg(feature = "files")]
 pub use case::{Case, Run};
-pub use error::{Error, Kind as ErrorKind, Result};
-pub use load::feasibility::{Feasibility, feasibility};
-pub use mesh::axes::Axes;
-pub use mesh::strips::{Counts, StripMesh};
+pub use error::{Error, ErrorKind, Result};
+pub use load::{Feasibility, feasibility};
+pub use mesh::{Axes, StripCounts, StripMesh};
 /// Points, normals, rotations and frames of the public API are of this version of nalgebra.
 pub use nalgebra;
 pub use patch::{Component, Patch, Window};
-pub use placement::track::{RailDistance, WheelDistance};
-pub use placement::{Body, Pair, Placement};
+pub use placement::{Body, Pair, Placement, RailDistance, WheelDistance};
 pub use profile::{Arc, Half, Polynomial, Profile, Segment, Shape, Side, Station, inclination, standards};
 #[cfg(feature = "files")]
 pub use scene::Scene;
-pub use search::sweep::{Conicity, Sweep};
-pub use search::wheelset::{Position, Roll, WheelsetOnTrack};
-pub use search::{ContactSearch, ONE_CONTACT, Pose, ProfilePair, Selection, Touch};
+pub use search::{
+    Conicity, ContactSearch, ONE_CONTACT, Pose, Position, ProfilePair, Roll, Selection, Sweep, Touch,
+    WheelsetOnTrack,
+};
 pub use separation::{Evaluator, Normals};
+
+/// What the crates of this workspace and the tests need besides the public API. Nothing here is promised: any release may
+/// change or remove it.
+#[doc(hidden)]
+pub mod internal {
+    pub use crate::numerics::lanes::MANY;
+    pub use crate::numerics::polynomial::recentred;
+    pub use crate::numerics::roots::bracketed;
+    pub use crate::numerics::twice::Twice;
+    pub use crate::numerics::{largest, nan_max};
+    pub use crate::patch::turning_points::turning_points;
+    pub use crate::separation::methods::report_newton::missing as missing_for_report_newton;
+}

@@ -7,20 +7,18 @@ use serde::Serialize;
 use super::input::Question;
 use super::site::Site;
 use crate::error::{Error, Result};
-use crate::mesh::strips::{Counts, StripMesh};
+use crate::mesh::{StripCounts, StripMesh};
 use crate::patch::Patch;
 use crate::placement::Placement;
-use crate::separation::axis::EtaAxis;
-use crate::separation::grid::Method;
 use crate::separation::methods::quadratic::quadratic_form;
 use crate::separation::methods::report_newton;
-use crate::separation::plan::{Plan, plan};
-use crate::separation::values::Values;
+use crate::separation::{EtaAxis, Method};
+use crate::separation::{Plan, Values, plan};
 
 /// Seconds spent in the parts of an analysis.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Timings {
-    /// Estimating the approach from the load; 0 for a given approach.
+    /// Estimating the approaches of the wheel from its load; 0 for a given approach.
     pub load_s: f64,
     /// Choosing the method.
     pub plan_s: f64,
@@ -64,7 +62,7 @@ impl Analysis {
         let filled = Instant::now();
         let patch = site.patch();
         let cut = Instant::now();
-        let mesh = |patch: &Patch| StripMesh::new(placement, patch, Counts::default());
+        let mesh = |patch: &Patch| StripMesh::new(placement, patch, StripCounts::default());
         let strips = patch.as_ref().map(mesh).transpose()?;
         let timings = Timings {
             load_s: site.contact.load_s,

@@ -1,9 +1,8 @@
 //! The table of a sweep in columns.
 
 use super::input::ApproachBy;
-use crate::load::hertz::curvatures_at;
-use crate::search::Contact;
-use crate::search::sweep::{Row, TrackSide};
+use crate::load::curvatures_at;
+use crate::search::{Contact, SweepRow, TrackSide};
 
 /// Contacts of a wheelset at many positions, a row each; all columns have the same length.
 ///
@@ -71,7 +70,7 @@ impl Columns {
 
     /// Appends the row of a contact at the position with this number; `ellipse` is approach or load, and E* \[N/mm²\], of
     /// Hertz's ellipses.
-    pub fn push(&mut self, position: usize, row: &Row, ellipse: Option<(ApproachBy, f64)>) {
+    pub fn push(&mut self, position: usize, row: &SweepRow, ellipse: Option<(ApproachBy, f64)>) {
         self.position.push(position as u64);
         self.right.push(row.side == TrackSide::Right);
         self.contact.push(row.number as u32 + 1);
@@ -102,7 +101,7 @@ impl Columns {
     }
 }
 
-fn quantities(row: &Row, ellipse: Option<(ApproachBy, f64)>) -> Quantities {
+fn quantities(row: &SweepRow, ellipse: Option<(ApproachBy, f64)>) -> Quantities {
     let c = &row.contact;
     let [conicity, error] = row.conicity.map_or([f64::NAN; 2], |found| [found.conicity, found.error]);
     let [xi, eta] = ellipse.and_then(|by| semi_axes(c, by)).unwrap_or([f64::NAN; 2]);
@@ -133,7 +132,10 @@ fn semi_axes(contact: &Contact, (by, modulus): (ApproachBy, f64)) -> Option<[f64
     let curvatures = curvatures_at(contact);
     let ellipse = match by {
         ApproachBy::Given(approach) => curvatures.under_approach(approach, modulus),
-        ApproachBy::Load(load) => curvatures.under_load(load, modulus),
+        ApproachBy::WheelLoad(load) => curvatures.under_load(load / contact.contact_angle.cos(), modulus),
+        ApproachBy::AxleLoad(load) => {
+            curvatures.under_load(load / 2.0 / contact.contact_angle.cos(), modulus)
+        }
     };
     Some(curvatures.along(&ellipse?))
 }

@@ -1,15 +1,12 @@
 //! A placed pair and what follows from it without a grid.
 
-use std::sync::OnceLock;
-use std::time::Instant;
+use std::sync::{Arc, OnceLock};
 
 use serde::Serialize;
 
-use super::input::ApproachBy;
+use super::wheel::Region;
 use crate::error::{Error, Result};
-use crate::load::feasibility::{Feasibility, feasibility};
-use crate::load::hertz::{Curvatures, Ellipse, curvatures};
-use crate::load::virtual_interpenetration::{Estimate, approach_under_load};
+use crate::load::{Curvatures, Ellipse, Estimate, Feasibility, curvatures, feasibility};
 use crate::patch::{Patch, Window};
 use crate::placement::Placement;
 
@@ -25,7 +22,7 @@ pub enum EllipseUnder {
 
 /// The contact point, its feasibility, curvatures and approach.
 #[derive(Debug, Clone)]
-pub struct Contact {
+pub struct PlacedContact {
     /// The placed pair.
     pub placement: Placement,
     /// Whether s ≥ 0 everywhere (4.1), with the least s.
@@ -34,44 +31,59 @@ pub struct Contact {
     pub curvatures: Curvatures,
     /// δ \[mm\], with the method of its estimate where it was estimated.
     pub approach: Option<(f64, Option<Estimate>)>,
-    /// Hertz's ellipse under the load or the approach; `None` without either, and where s is not convex at C.
+    /// Normal force \[N\] of every group of parts of the patch, in their order; empty unless a load was asked for.
+    pub normal_loads: Vec<f64>,
+    /// Hertz's ellipse under the normal force or the approach; `None` without either, and where s is not convex at C.
     pub ellipse: Option<Ellipse>,
     /// Which of the two the ellipse belongs to.
     pub ellipse_under: Option<EllipseUnder>,
-    /// Seconds spent on estimating the approach; 0 for a given one.
+    /// Seconds spent on estimating the approach of its wheel; 0 for a given one.
     pub load_s: f64,
     /// The patch over the whole plane, once it was asked for.
     whole_patch: OnceLock<Patch>,
 }
 
-impl Contact {
-    /// Finds feasibility, curvatures and approach of a placed pair; `modulus` is E* \[N/mm²\].
+impl PlacedContact {
+    /// Finds feasibility and curvatures of a placed pair, and Hertz's ellipse under an approach \[mm\]; `modulus` is
+    /// E* \[N/mm²\].
     ///
     /// # Errors
-    /// Bodies that nowhere lie over each other; a load that no approach carries.
-    pub fn new(placement: Placement, asked: Option<ApproachBy>, modulus: f64) -> Result<Self> {
+    /// Bodies that nowhere lie over each other.
+    pub fn new(placement: Placement, approach: Option<f64>, modulus: f64) -> Result<Self> {
         let Some(feasibility) = feasibility(&placement) else {
             let expected = "two profiles that lie over each other in the contact frame";
             return Err(Error::new("contact", "no common ξ", expected, "choose other contact points"));
         };
         let curvatures = curvatures(&placement);
-        let start = Instant::now();
-        let (approach, ellipse, under) = match asked {
-            None => (None, None, None),
-            Some(ApproachBy::Given(approach)) => {
-                let ellipse = curvatures.under_approach(approach, modulus);
-                (Some((approach, None)), ellipse, Some(EllipseUnder::Approach))
-            }
-            Some(ApproachBy::Load(load)) => {
-                let (approach, estimate) = approach_under_load(&placement, load, modulus)?;
-                let ellipse = curvatures.under_load(load, modulus);
-                (Some((approach, Some(estimate))), ellipse, Some(EllipseUnder::Load))
-            }
-        };
-        let load_s = if under == Some(EllipseUnder::Load) { start.elapsed().as_secs_f64() } else { 0.0 };
-        let ellipse_under = under.filter(|_| ellipse.is_some());
-        let whole_patch = OnceLock::new();
-        Ok(Self { placement, feasibility, curvatures, approach, ellipse, ellipse_under, load_s, whole_patch })
+        let ellipse = approach.and_then(|approach| curvatures.under_approach(approach, modulus));
+        Ok(Self {
+            placement,
+            feasibility,
+            curvatures,
+            approach: approach.map(|approach| (approach, None)),
+            normal_loads: Vec::new(),
+            ellipse,
+            ellipse_under: ellipse.map(|_| EllipseUnder::Approach),
+            load_s: 0.0,
+            whole_patch: OnceLock::new(),
+        })
+    }
+
+    /// Makes the contact of a region, with what it carries; `load_s` are the seconds that this took to find.
+    ///
+    /// # Errors
+    /// The errors of [`PlacedContact::new`].
+    pub(super) fn of(region: Region, modulus: f64, load_s: f64) -> Result<Self> {
+        let Region { placement, approach, patch, loads, estimate, .. } = region;
+        let mut contact = Self::new(Arc::unwrap_or_clone(placement), Some(approach), modulus)?;
+        if estimate.is_some() {
+            let ellipse = contact.curvatures.under_load(loads.iter().sum(), modulus);
+            (contact.ellipse, contact.ellipse_under) = (ellipse, ellipse.map(|_| EllipseUnder::Load));
+        }
+        contact.approach = Some((approach, estimate));
+        (contact.normal_loads, contact.load_s) = (loads, load_s);
+        contact.whole_patch = OnceLock::from(patch);
+        Ok(contact)
     }
 
     /// Gives the patch over the whole plane, found once; `None` without an approach.

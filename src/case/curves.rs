@@ -2,7 +2,7 @@
 
 use super::columns::Columns;
 use crate::error::{Error, Result};
-use crate::export::picture::curves::{Curve, CurvesPicture, Quantity, jumps};
+use crate::export::{CurvesPanel, CurvesPicture, PlottedCurve, jumps};
 
 /// Most positions that are drawn: more than a page has pixels.
 pub const MOST_DRAWN: usize = 2000;
@@ -53,10 +53,10 @@ pub fn curves(columns: &Columns, lateral: &[f64], title: &str, about: &str) -> R
     let [left, right] = sides.map(|(_, right)| jumps_of(right));
     let curve = |name: &str, values: Vec<f64>, jumps: &[usize]| {
         let points = lateral.iter().zip(values).map(|(&lateral, value)| [lateral, value]).collect();
-        Curve { name: name.into(), points, jumps: jumps.to_vec() }
+        PlottedCurve { name: name.into(), points, jumps: jumps.to_vec() }
     };
     let quantity =
-        |title: &str, axis: &str, curves| Quantity { title: title.into(), axis: axis.into(), curves };
+        |title: &str, axis: &str, curves| CurvesPanel { title: title.into(), axis: axis.into(), curves };
     let either = [left.as_slice(), right.as_slice()].concat();
     let of_position = OF_POSITION.map(|(title, axis, name, factor, jumps)| {
         let values = lowest.values(true, name).into_iter().map(|value| factor * value).collect();

@@ -4,17 +4,12 @@ use nalgebra::Point3;
 
 use super::run::Part;
 use super::site::ends;
-use super::steps::equal_steps;
-use crate::export::picture::{Nodes, Picture, SEPARATOR};
-use crate::export::{Frame, Header, Loop};
+use crate::export::{Frame, Header, Loop, Nodes, PatchPicture, SEPARATOR};
+use crate::mesh::equal_steps;
 use crate::patch::{Patch, Window};
 use crate::placement::Placement;
 use crate::profile::Section;
-use crate::separation::Evaluator;
-use crate::separation::axis::EtaAxis;
-use crate::separation::grid::{Choice, Method};
-use crate::separation::plan::demand;
-use crate::separation::values::Values;
+use crate::separation::{Choice, Demand, EtaAxis, Evaluator, Method, Values};
 
 /// Points of a picture along ξ and along η: a line of equal separation is smooth to the eye, and C is among them where
 /// the grid is symmetric about it.
@@ -63,8 +58,8 @@ impl Drawn {
         header: &'a Header,
         cells: [&'a [f64]; 2],
         loops: &'a [Loop],
-    ) -> Picture<'a> {
-        Picture {
+    ) -> PatchPicture<'a> {
+        PatchPicture {
             header,
             contact: &self.contact,
             cells,
@@ -86,7 +81,8 @@ pub fn patch_picture(
     cells: [&[f64]; 2],
 ) -> String {
     let window = Window { xi: ends(cells[0]), eta: ends(cells[1]) };
-    let choice = Choice { method: Method::Spectral, demand: demand(DRAWN_TOLERANCE), coefficients: 1 };
+    let choice =
+        Choice { method: Method::Spectral, demand: Demand::for_tolerance(DRAWN_TOLERANCE), coefficients: 1 };
     let drawn = Drawn::of(placement, &window, &choice, contact.into());
     let header = Header {
         title: title.into(),

@@ -10,19 +10,18 @@ use super::input::{OutputFormat, Outputs};
 use super::run::{Part, Run, Tell};
 use super::summary::summary;
 use crate::error::{Error, Result};
-use crate::export::deck::contact::{Normal, Settings, contact};
-use crate::export::deck::{Deck, wrp};
-use crate::export::netcdf::NetCdf;
-use crate::export::picture::Picture;
 use crate::export::{
-    Frame, GridFields, Header, Interval, Loop, QuadMesh, SurfaceMesh, VIEW_SCRIPT, csv, legacy, npy, vtk, vts,
+    ContactSettings, Deck, Frame, GridFields, Header, Interval, Loop, NetCdf, PatchPicture, Prescribed,
+    QuadMesh, SurfaceMesh, VIEW_SCRIPT, array_npy, boundary_csv, boundary_vtp, conform_wrp, contact_inp,
+    countact_wrp, interpen_csv, patch_vtu, rail_vts, separation_vtk, separation_vts, separation_wrp,
+    surface_vtp, wheel_vts,
 };
 use crate::files::{Folder, FolderPart};
-use crate::mesh::strips::StripMesh;
-use crate::mesh::surfaces::Surface;
+use crate::mesh::{StripMesh, Surface};
 use crate::patch::Outline;
+use crate::placement::Creepages;
 use crate::profile::Station;
-use crate::separation::midplane;
+use crate::separation::midplane_table;
 
 /// Turns a picture's SVG into PNG. The library draws no pixels: a caller who wants them brings this.
 pub type Rasterise = fn(&str) -> Result<Vec<u8>>;
@@ -46,6 +45,7 @@ fn write_part(run: &Run, part: &Part, folder: &Folder, png: Option<Rasterise>, t
     let rail = RailColumns::new(part);
     let axes = &part.site.grid;
     let grid = GridFields::new(&axes.xi, &axes.eta, &part.analysis.separation, &rail.height, &rail.normal)?;
+    let creepages = run.creepages(part)?;
     let deck = possible(outputs, "decks", &OutputFormat::DECKS, || Deck::new(&header, &grid), &mut skipped)?;
     let netcdf = || NetCdf::new(&header, &grid);
     let netcdf = possible(outputs, "separation.nc", &[OutputFormat::Netcdf], netcdf, &mut skipped)?;
@@ -65,13 +65,14 @@ fn write_part(run: &Run, part: &Part, folder: &Folder, png: Option<Rasterise>, t
         stream(&mut jobs, "separation.nc", move |file| netcdf.write(file));
     }
     if let Some(deck) = &deck {
-        decks(&mut jobs, run, part, deck, strips.as_ref());
+        let settings = contact_settings(run, part, creepages);
+        decks(&mut jobs, run, deck, strips.as_ref(), settings);
     }
     let folder = folder.part(&part.site.folder)?;
     let names = write_jobs(&jobs, &folder, |done| {
         tell(format!("{}: {done} of {} files written", part.site.name(), jobs.len()));
     })?;
-    folder.write("summary.json", &summary(run, part, &folder, bodies.as_ref(), &names, &skipped))
+    folder.write("summary.json", &summary(run, part, &folder, creepages, bodies.as_ref(), &names, &skipped))
 }
 
 /// Writes files on all threads, tells how many are done, and gives their names in order.
@@ -141,13 +142,14 @@ fn header(run: &Run, part: &Part) -> Header {
 /// Lists what the reader of a file of this part must know.
 fn remarks(run: &Run, part: &Part) -> Vec<String> {
     let mut out = part.refusals();
-    out.extend(run.shared_load(part));
     if part.site.side() == Some("left") {
-        out.push(
-            "left side of a wheelset, as its mirror image: x to the left, y forward, z up; lateral creepage, spin \
-             and skew change sign"
-                .into(),
-        );
+        let signs = match run.case.question.motion {
+            Some(_) => "creepages are those of the mirror image",
+            None => "lateral creepage, spin and skew change sign",
+        };
+        out.push(format!(
+            "left side of a wheelset, as its mirror image: x to the left, y forward, z up; {signs}"
+        ));
     }
     out
 }
@@ -182,10 +184,10 @@ fn intervals(part: &Part) -> Vec<Interval> {
 }
 
 fn tables<'a>(jobs: &mut Vec<Job<'a>>, part: &'a Part, loops: &'a [Loop]) {
-    bytes(jobs, "boundary.csv", move || Ok(csv::boundary(loops).into_bytes()));
-    bytes(jobs, "interpen.csv", move || Ok(csv::interpen(&intervals(part)).into_bytes()));
+    bytes(jobs, "boundary.csv", move || Ok(boundary_csv(loops).into_bytes()));
+    bytes(jobs, "interpen.csv", move || Ok(interpen_csv(&intervals(part)).into_bytes()));
     bytes(jobs, "midsep.txt", move || {
-        Ok(midplane::table(&part.site.contact.placement, &part.site.grid.xi).into_bytes())
+        Ok(midplane_table(&part.site.contact.placement, &part.site.grid.xi).into_bytes())
     });
 }
 
@@ -196,7 +198,7 @@ fn arrays<'a>(jobs: &mut Vec<Job<'a>>, outputs: &Outputs, part: &'a Part) {
     let axes = &part.site.grid;
     let (n, m) = (axes.xi.len() as u64, axes.eta.len() as u64);
     let mut add = |name: &'static str, shape: Vec<u64>, values: &'a [f64]| {
-        stream(jobs, name, move |file| npy::array(file, &shape, values));
+        stream(jobs, name, move |file| array_npy(file, &shape, values));
     };
     add("xi.npy", vec![n], &axes.xi);
     add("eta.npy", vec![m], &axes.eta);
@@ -207,7 +209,7 @@ fn arrays<'a>(jobs: &mut Vec<Job<'a>>, outputs: &Outputs, part: &'a Part) {
 fn pictures<'a>(
     jobs: &mut Vec<Job<'a>>,
     outputs: &Outputs,
-    picture: &'a Picture<'a>,
+    picture: &'a PatchPicture<'a>,
     png: Option<Rasterise>,
 ) -> Result<()> {
     bytes(jobs, "patch.svg", || Ok(picture.svg().into_bytes()));
@@ -248,10 +250,10 @@ fn surfaces<'a>(
 ) {
     type Writer = fn(&mut dyn Write, &Header, &GridFields<'_>) -> std::io::Result<()>;
     let writers: [(&'static str, Writer); 4] = [
-        ("separation.vts", vts::separation),
-        ("rail.vts", vts::rail),
-        ("wheel.vts", vts::wheel),
-        ("separation.vtk", legacy::separation),
+        ("separation.vts", separation_vts),
+        ("rail.vts", rail_vts),
+        ("wheel.vts", wheel_vts),
+        ("separation.vtk", separation_vtk),
     ];
     for (name, writer) in writers {
         stream(jobs, name, move |file| writer(file, header, grid));
@@ -259,13 +261,13 @@ fn surfaces<'a>(
     for (name, body) in ["rail.vtu", "wheel.vtu"].into_iter().zip(bodies.into_iter().flatten()) {
         bytes(jobs, name, move || {
             let mesh = SurfaceMesh { points: body.points.clone(), triangles: body.triangles() };
-            vtk::surface(header, &mesh)
+            surface_vtp(header, &mesh)
         });
     }
     if let Some(strips) = strips {
-        bytes(jobs, "patch.vtu", move || vtk::patch(header, strips));
+        bytes(jobs, "patch.vtu", move || patch_vtu(header, strips));
     }
-    bytes(jobs, "boundary.vtp", move || vtk::boundary(header, loops));
+    bytes(jobs, "boundary.vtp", move || boundary_vtp(header, loops));
     bytes(jobs, "view.py", || Ok(VIEW_SCRIPT.as_bytes().to_vec()));
 }
 
@@ -291,35 +293,35 @@ fn stream<'a>(
 fn decks<'a>(
     jobs: &mut Vec<Job<'a>>,
     run: &Run,
-    part: &Part,
     deck: &'a Deck<'a>,
     strips: Option<&'a QuadMesh>,
+    settings: Option<ContactSettings>,
 ) {
     if run.case.outputs.any(&[OutputFormat::Text]) {
-        stream(jobs, "separation.wrp", move |file| wrp::separation(deck, file));
+        stream(jobs, "separation.wrp", move |file| separation_wrp(deck, file));
     }
     if run.case.outputs.any(&[OutputFormat::Conform]) {
-        stream(jobs, "conform.wrp", move |file| wrp::conform(deck, file));
+        stream(jobs, "conform.wrp", move |file| conform_wrp(deck, file));
     }
     if let (true, Some(strips)) = (run.case.outputs.any(&[OutputFormat::Countact]), strips) {
-        stream(jobs, "countact.wrp", move |file| wrp::countact(deck, strips, file));
+        stream(jobs, "countact.wrp", move |file| countact_wrp(deck, strips, file));
     }
-    if let (true, Some(settings)) =
-        (run.case.outputs.any(&[OutputFormat::Contact]), contact_settings(run, part))
-    {
-        stream(jobs, "contact.inp", move |file| contact(deck, &settings, file));
+    if let (true, Some(settings)) = (run.case.outputs.any(&[OutputFormat::Contact]), settings) {
+        stream(jobs, "contact.inp", move |file| contact_inp(deck, &settings, file));
     }
 }
 
-/// Gives CONTACT's control numbers; `None` without an approach. A load is the force of a contact only where it is the only one of
-/// its wheel.
-fn contact_settings(run: &Run, part: &Part) -> Option<Settings> {
+/// Gives CONTACT's control numbers: the contact's own normal force, or the approach where no load was asked for; `None` without
+/// either.
+fn contact_settings(run: &Run, part: &Part, creepages: Option<Creepages>) -> Option<ContactSettings> {
     let (approach, _) = part.site.contact.approach.filter(|(approach, _)| *approach > 0.0)?;
-    let load = run.case.question.load().filter(|_| !run.shares_load(part));
+    let load = part.site.normal_load.filter(|load| *load > 0.0);
     let bodies = run.case.question.material;
-    Some(Settings {
+    Some(ContactSettings {
         poisson: bodies.map(|body| body.poissons_ratio),
         shear_modulus: bodies.map(|body| body.youngs_modulus / (2.0 * (1.0 + body.poissons_ratio))),
-        ..Settings::steel(load.map_or(Normal::Approach(approach), Normal::Force))
+        friction: [run.case.question.friction.at_rest, run.case.question.friction.sliding],
+        creepages,
+        normal: load.map_or(Prescribed::Approach(approach), Prescribed::Force),
     })
 }

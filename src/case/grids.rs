@@ -3,7 +3,7 @@
 use super::input::{AskedAxes, OutputFormat, Outputs};
 use super::places::{MOST_PARTS, Placed};
 use crate::error::{Error, Result};
-use crate::mesh::axes::{self, Axes, Group, MOST_POINTS};
+use crate::mesh::{Axes, GridGroup, MOST_POINTS, groups};
 
 /// The axes of one grid.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,7 +35,7 @@ pub(super) fn grids(asked: &AskedAxes, place: &Placed) -> Result<Vec<Grid>> {
         return Ok(vec![Grid { xi: xi.clone(), eta: eta.clone(), warning: None }]);
     }
     let patch = place.contact.whole_patch();
-    let mut groups = patch.map_or_else(Vec::new, |patch| axes::groups(patch, *merge, *spacing));
+    let mut groups = patch.map_or_else(Vec::new, |patch| groups(patch, *merge, *spacing));
     if groups.is_empty() {
         let expected = "values, or a patch that the axes can be sized by";
         let advice = "give from, to and n, or a larger approach";
@@ -50,7 +50,7 @@ pub(super) fn grids(asked: &AskedAxes, place: &Placed) -> Result<Vec<Grid>> {
         let advice = "smooth the profiles, give grid.merge, or from, to and n";
         return Err(Error::new("grid", found, expected, advice));
     }
-    let grid = |group: &Group| {
+    let grid = |group: &GridGroup| {
         let automatic = group.axes(*spacing)?;
         let warning = stretched(&automatic);
         let (xi, eta) = (xi.clone().unwrap_or(automatic.xi), eta.clone().unwrap_or(automatic.eta));

@@ -6,12 +6,12 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::load::hertz::{Elastic, effective_modulus};
+use crate::load::{Elastic, effective_modulus};
 use crate::measured::Record;
+use crate::placement::Motion;
 use crate::placement::Pair;
-use crate::search::wheelset::{Position, WheelsetOnTrack};
-use crate::search::{Pose, ProfilePair};
-use crate::separation::grid::Method;
+use crate::search::{Pose, Position, ProfilePair, WheelsetOnTrack};
+use crate::separation::Method;
 
 /// Two prepared profiles, where they stand, what is asked of them, and what is to be written.
 ///
@@ -27,13 +27,40 @@ pub struct Case {
     pub(crate) file: Option<PathBuf>,
 }
 
-/// Both profiles, and what was done to measured ones.
+/// The profiles of both sides, the right-hand one's first; a single wheel and a symmetric wheelset have one pair.
 #[derive(Debug, Clone)]
 pub struct Profiles {
+    /// The right-hand side's, or both sides'.
+    pub right: SideProfiles,
+    /// The left-hand side's where they are others.
+    pub left: Option<SideProfiles>,
+}
+
+/// Rail and wheel of one side, and what was done to measured ones.
+#[derive(Debug, Clone)]
+pub struct SideProfiles {
     /// Rail and wheel.
     pub pair: Pair,
     /// The records of rail and wheel; `None` for a drawn profile.
     pub measured: [Option<Record>; 2],
+}
+
+impl Profiles {
+    /// Makes the profiles of both sides from a pair that nothing was measured of.
+    pub fn drawn(pair: Pair) -> Self {
+        Self { right: SideProfiles { pair, measured: [None, None] }, left: None }
+    }
+
+    /// Gives those of a side, "left" or any other.
+    pub fn on(&self, side: &str) -> &SideProfiles {
+        self.left.as_ref().filter(|_| side == "left").unwrap_or(&self.right)
+    }
+
+    /// Gives all there are, with the name of the side where both have their own.
+    pub fn sides(&self) -> impl Iterator<Item = (Option<&'static str>, &SideProfiles)> {
+        let name = self.left.as_ref().map(|_| "right");
+        [(name, &self.right)].into_iter().chain(self.left.iter().map(|left| (Some("left"), left)))
+    }
 }
 
 /// Where the bodies stand, and how far near misses are looked for.
@@ -76,8 +103,10 @@ pub enum Place {
 pub enum ApproachBy {
     /// δ is given \[mm\].
     Given(f64),
-    /// δ is estimated from a normal load \[N\].
-    Load(f64),
+    /// δ of every contact is estimated from the vertical load of each wheel \[N\].
+    WheelLoad(f64),
+    /// δ of every contact is estimated from the vertical load of the axle \[N\]: both wheels sink alike.
+    AxleLoad(f64),
 }
 
 /// What is asked of every contact.
@@ -85,12 +114,31 @@ pub enum ApproachBy {
 pub struct Question {
     /// The approach; `None` asks for the geometry only.
     pub approach: Option<ApproachBy>,
+    /// How the wheels move, for the creepages; `None` asks for none.
+    pub motion: Option<Motion>,
     /// Elastic constants of rail and wheel.
     pub material: [Elastic; 2],
+    /// Friction between them; it enters solver decks only.
+    pub friction: Friction,
     /// Absolute tolerance on s \[mm\]; 1e-12 asks for all digits.
     pub tolerance: f64,
     /// A method of the accuracy ladder; `None` takes the cheapest within the tolerance.
     pub method: Option<Method>,
+}
+
+/// Coulomb's friction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Friction {
+    /// Coefficient where surfaces stick \[–\], positive, typically 0.3.
+    pub at_rest: f64,
+    /// Coefficient where they slide \[–\], positive, at most the other.
+    pub sliding: f64,
+}
+
+impl Default for Friction {
+    fn default() -> Self {
+        Self { at_rest: 0.3, sliding: 0.3 }
+    }
 }
 
 impl Question {
@@ -98,14 +146,6 @@ impl Question {
     pub fn modulus(&self) -> f64 {
         let [rail, wheel] = &self.material;
         effective_modulus(rail, wheel)
-    }
-
-    /// Gives the load on a wheel \[N\], where the approach is estimated from it.
-    pub fn load(&self) -> Option<f64> {
-        match self.approach {
-            Some(ApproachBy::Load(load)) => Some(load),
-            _ => None,
-        }
     }
 }
 
@@ -209,8 +249,8 @@ impl Case {
         &self.echo
     }
 
-    /// Gives what was done to measured profiles of rail and wheel.
+    /// Gives what was done to measured profiles of rail and wheel, of the right-hand side or both.
     pub fn measured(&self) -> &[Option<Record>; 2] {
-        &self.profiles.measured
+        &self.profiles.right.measured
     }
 }

@@ -13,20 +13,20 @@ mod input;
 mod places;
 mod run;
 mod site;
-mod steps;
 mod summary;
+mod wheel;
 
 pub use analysis::{Analysis, Timings, check_method};
 pub use columns::Columns;
-pub use contact::{Contact, EllipseUnder};
+pub use contact::{EllipseUnder, PlacedContact};
 pub use curves::{MOST_DRAWN, ascending, curves};
 pub use drawn::patch_picture;
 pub use files::{Rasterise, write};
 pub use grids::Grid;
 pub use input::{
-    ApproachBy, AskedAxes, Case, Echo, OutputFormat, Outputs, Place, Profiles, Question, Standing,
+    ApproachBy, AskedAxes, Case, Echo, Friction, OutputFormat, Outputs, Place, Profiles, Question,
+    SideProfiles, Standing,
 };
-pub use places::{Found, PlaceOfContact, contacts};
+pub use places::{Found, PlaceOfContact, approach_under_load, contacts};
 pub use run::{Part, Run, SILENT, Tell};
 pub use site::{Site, sites};
-pub use steps::equal_steps;

@@ -1,20 +1,21 @@
 //! The contacts of a case: the chosen one, or those that a search finds.
 
-use std::cell::OnceCell;
+use std::time::Instant;
 
-use nalgebra::Point2;
 use serde::Serialize;
 
-use super::contact::Contact;
+use super::contact::PlacedContact;
 use super::input::{ApproachBy, Case, Place};
+use super::wheel::{Joining, Region, Wheel, carry};
 use crate::error::{Error, Result};
-use crate::mesh::axes;
+use crate::load::Estimate;
 use crate::placement::Placement;
 use crate::search;
-use crate::search::{ONE_CONTACT, Selection, Touch};
+use crate::search::{ONE_CONTACT, Selection};
 
-/// Vertical gap \[mm\] up to which places of contact are looked for at least: any approach that a load makes.
-const SEARCHED_GAP: f64 = 1.0;
+/// Vertical gaps \[mm\] up to which places of contact are looked for at least, one after the other until a load is carried:
+/// what most loads close, and what none does that steel bears.
+const SEARCHED_GAPS: [f64; 2] = [1.0, 10.0];
 
 /// What a wheel sinks by for an approach of 1 along the normal of a flange of 75°; flanges are not steeper.
 const STEEPEST: f64 = 4.0;
@@ -27,9 +28,7 @@ pub(super) struct Placed {
     /// Subfolder of its files.
     pub folder: String,
     pub found: Option<Found>,
-    pub contact: Contact,
-    /// ξ \[mm\] over which the part of its patch around C extends, with what is merged into it, once it was asked for.
-    extent: OnceCell<Option<[f64; 2]>>,
+    pub contact: PlacedContact,
 }
 
 /// How a contact was found.
@@ -46,6 +45,8 @@ pub struct Found {
     pub contact: usize,
     /// This contact.
     pub place: PlaceOfContact,
+    /// Places whose patches overlap that of this contact, or are merged with it: they are one region with it.
+    pub merged: Vec<PlaceOfContact>,
     /// Other places on this side within `within` that are no contact of their own.
     pub near_misses: Vec<PlaceOfContact>,
 }
@@ -93,12 +94,13 @@ impl From<&search::Contact> for PlaceOfContact {
     }
 }
 
-/// First touch of one side.
-struct Side<'a> {
+/// A side of the track, or a single wheel, at first touch.
+struct Side {
     name: &'static str,
     height: f64,
     roll: f64,
-    touch: Touch<'a>,
+    /// The places of contact, the lowest gap first.
+    places: Vec<search::Contact>,
 }
 
 /// Places the pair at every contact of a case, the first one first, with their names; computes no grid and no patch but
@@ -113,29 +115,87 @@ pub fn contacts(case: &Case) -> Result<Vec<(String, Placement)>> {
     Ok(placed.into_iter().map(|place| (place.name(), place.contact.placement)).collect())
 }
 
+/// Returns the approach \[mm\] along the normal of a contact that carries a vertical load \[N\] alone, with all parts of its patch,
+/// and how it was estimated; `modulus` is E* \[N/mm²\].
+///
+/// # Errors
+/// A load that no approach carries.
+pub fn approach_under_load(
+    placement: &Placement,
+    load: f64,
+    modulus: f64,
+) -> Result<(f64, Option<Estimate>)> {
+    let pair = placement.pair();
+    let joining = Joining { merge: 0.0, spacing: None, alone: true };
+    let wheel = Wheel::at_points(&pair, placement.clone(), joining);
+    let [.., most] = SEARCHED_GAPS;
+    let carried = carry(&mut [wheel], load, modulus, most)?;
+    let first = carried.and_then(|mut wheels| wheels.pop()?.pop());
+    first.map(|region| (region.approach, region.estimate)).ok_or_else(|| unborne("load", load, ""))
+}
+
 /// Finds all contacts of a case under an approach, the first one first.
 ///
 /// # Errors
 /// No contact, or more than anybody looks through; a load that no approach carries.
 pub(super) fn find(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<Placed>> {
-    let sunk = match approach {
+    let modulus = case.question.modulus();
+    let Place::Points { rail_x, wheel_x } = &case.standing.place else { return search(case, approach) };
+    let placement = case.profiles.right.pair.placed(*rail_x, *wheel_x, 0.0)?;
+    let start = Instant::now();
+    let contact = match approach {
+        None => PlacedContact::new(placement, None, modulus)?,
+        Some(ApproachBy::Given(approach)) => PlacedContact::new(placement, Some(approach), modulus)?,
+        Some(ApproachBy::WheelLoad(load) | ApproachBy::AxleLoad(load)) => {
+            let wheel = Wheel::at_points(&case.profiles.right.pair, placement, joining(case, true));
+            let [.., most] = SEARCHED_GAPS;
+            let mut carried = carry(&mut [wheel], load, modulus, most)?.ok_or_else(|| too_heavy(case, ""))?;
+            PlacedContact::of(carried.swap_remove(0).swap_remove(0), modulus, start.elapsed().as_secs_f64())?
+        }
+    };
+    Ok(vec![Placed { folder: String::new(), found: None, contact }])
+}
+
+/// Lets a search find the contacts of a wheel or a wheelset.
+fn search(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<Placed>> {
+    let nearest = case.standing.within.max(match approach {
         Some(ApproachBy::Given(approach)) => STEEPEST * approach,
         _ => 0.0,
-    };
-    let within = SEARCHED_GAP.max(case.standing.within).max(sunk);
+    });
+    let mut heavy = "";
+    for most in SEARCHED_GAPS {
+        let sides = sides(case, most.max(nearest))?;
+        let start = Instant::now();
+        match regions(case, &sides, approach, most)? {
+            Ok(regions) => {
+                let load_s = if matches!(approach, Some(ApproachBy::WheelLoad(_) | ApproachBy::AxleLoad(_))) {
+                    start.elapsed().as_secs_f64()
+                } else {
+                    0.0
+                };
+                let contacts =
+                    sides.iter().zip(regions).map(|(side, regions)| side.contacts(case, regions, load_s));
+                return contacts.collect::<Result<Vec<_>>>().map(|all| all.into_iter().flatten().collect());
+            }
+            Err(side) => heavy = side,
+        }
+    }
+    Err(too_heavy(case, heavy))
+}
+
+/// Lowers a wheel or a wheelset, and gives the places of contact with vertical gaps up to `within` \[mm\]. The right-hand
+/// side, which is the one that is described, comes first.
+fn sides(case: &Case, within: f64) -> Result<Vec<Side>> {
     let selection = Selection { within, apart: ONE_CONTACT };
     match &case.standing.place {
-        Place::Points { rail_x, wheel_x } => {
-            let placement = case.profiles.pair.placed(*rail_x, *wheel_x, 0.0)?;
-            let contact = Contact::new(placement, approach, case.question.modulus())?;
-            Ok(vec![Placed { folder: String::new(), found: None, contact, extent: OnceCell::new() }])
-        }
+        Place::Points { .. } => Ok(Vec::new()),
         Place::Wheel { profiles, pose } => {
             let mut search = profiles.search();
             let Some(touch) = search.touch(pose, &selection) else {
                 return Err(no_touch("contact: offset", "a wheel over its rail", "check offset and signs"));
             };
-            Side { name: "single", height: touch.height, roll: pose.roll(), touch }.contacts(case, approach)
+            let places = touch.contacts.to_vec();
+            Ok(vec![Side { name: "single", height: touch.height, roll: pose.roll(), places }])
         }
         Place::Wheelset { system, position } => {
             let mut search = system.search();
@@ -144,102 +204,129 @@ pub(super) fn find(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<Plac
                     "wheels over their rails, and a roll within ±0.1 rad at which both sides touch";
                 return Err(no_touch("wheelset: lateral", expected, "check lateral, gauge and signs"));
             };
-            let mut all = Vec::new();
-            // The right-hand side is the one that is described.
-            for (name, side) in [("right", touch.sides[1]), ("left", touch.sides[0])] {
-                let side = Side { name, height: side.z, roll: touch.roll, touch: side.touch };
-                all.extend(side.contacts(case, approach)?);
-            }
-            Ok(all)
+            let side = |name, k: usize| {
+                let side = &touch.sides[k];
+                Side { name, height: side.z, roll: touch.roll, places: side.touch.contacts.to_vec() }
+            };
+            Ok(vec![side("right", 1), side("left", 0)])
         }
     }
+}
+
+/// The regions of every side, or the name of a side that does not carry its load.
+type Carried = std::result::Result<Vec<Vec<Region>>, &'static str>;
+
+/// Finds the regions of every side under an approach; each wheel sinks by at most `most` \[mm\] under a load.
+fn regions(case: &Case, sides: &[Side], approach: Option<ApproachBy>, most: f64) -> Result<Carried> {
+    let joining = joining(case, false);
+    let wheel = |side: &Side| Wheel::over(&case.profiles.on(side.name).pair, &side.places, joining);
+    let modulus = case.question.modulus();
+    let mut all = Vec::new();
+    match approach {
+        None => return Ok(Ok(vec![Vec::new(); sides.len()])),
+        Some(ApproachBy::Given(approach)) => {
+            for side in sides {
+                all.push(wheel(side).regions(approach)?);
+            }
+        }
+        Some(ApproachBy::WheelLoad(load)) => {
+            for side in sides {
+                let Some(carried) = carry(&mut [wheel(side)], load, modulus, most)? else {
+                    return Ok(Err(side.name));
+                };
+                all.extend(carried);
+            }
+        }
+        Some(ApproachBy::AxleLoad(load)) => {
+            let mut wheels: Vec<_> = sides.iter().map(wheel).collect();
+            let Some(carried) = carry(&mut wheels, load, modulus, most)? else { return Ok(Err("")) };
+            all = carried;
+        }
+    }
+    Ok(Ok(all))
+}
+
+fn joining(case: &Case, alone: bool) -> Joining {
+    Joining { merge: case.axes.merge, spacing: case.axes.spacing, alone }
 }
 
 fn no_touch(place: &str, expected: &str, advice: &str) -> Error {
     Error::new(place, "no contact", expected, advice)
 }
 
-impl Side<'_> {
-    /// Places the first touch, and every other place that the approach closes and that is not in the patch of one before.
-    fn contacts(&self, case: &Case, asked: Option<ApproachBy>) -> Result<Vec<Placed>> {
+/// Says that no approach carries the load of a case.
+fn too_heavy(case: &Case, side: &str) -> Error {
+    let (key, load) = match case.question.approach {
+        Some(ApproachBy::AxleLoad(load)) => ("wheelset: load", load),
+        Some(ApproachBy::WheelLoad(load)) => ("patch: load", load),
+        Some(ApproachBy::Given(_)) | None => ("patch", 0.0),
+    };
+    unborne(key, load, side)
+}
+
+fn unborne(key: &str, load: f64, side: &str) -> Error {
+    let on = if side.is_empty() || side == "single" { String::new() } else { format!(" on the {side} side") };
+    let [.., most] = SEARCHED_GAPS;
+    let expected = format!("a load that a wheel carries which sinks by at most {most} mm");
+    let advice = "check the unit of the load and the place of contact";
+    Error::new(key, format!("{load} N{on}"), expected, advice)
+}
+
+impl Side {
+    /// Makes contacts of the regions; without any, which is without an approach, of the places within reach.
+    fn contacts(&self, case: &Case, regions: Vec<Region>, load_s: f64) -> Result<Vec<Placed>> {
         let within = case.standing.within;
-        let mut placed: Vec<Placed> = Vec::new();
-        let mut missed = Vec::new();
-        for place in self.touch.contacts {
-            let approach = match placed.first() {
-                None => asked,
-                Some(first) => {
-                    let approach = approach_left(first, place);
-                    if approach.is_some_and(|approach| approach <= 0.0)
-                        || placed.iter().any(|p| p.holds(place, case.axes.merge))
-                    {
-                        missed.push(PlaceOfContact::from(place));
-                        continue;
-                    }
-                    approach.map(ApproachBy::Given)
-                }
-            };
-            if asked.is_some() || place.gap <= within {
-                placed.push(self.contact(case, place, placed.len() + 1, approach)?);
+        let modulus = case.question.modulus();
+        let of = |indices: &[usize]| indices.iter().map(|&k| PlaceOfContact::from(&self.places[k])).collect();
+        let mut placed = Vec::new();
+        if regions.is_empty() {
+            for place in self.places.iter().take_while(|place| place.gap <= within) {
+                let contact =
+                    PlacedContact::new(place.placed(&case.profiles.on(self.name).pair)?, None, modulus)?;
+                placed.push(self.placed(placed.len() + 1, place, contact)?);
             }
+            return Ok(placed);
         }
-        missed.retain(|place| place.gap_mm <= within);
-        for found in placed.iter_mut().filter_map(|place| place.found.as_mut()) {
-            found.near_misses.clone_from(&missed);
+        let own: Vec<usize> = regions.iter().map(|region| region.place).collect();
+        let missed = (0..self.places.len()).filter(|k| !own.contains(k) && self.places[*k].gap <= within);
+        let missed: Vec<PlaceOfContact> = of(&missed.collect::<Vec<_>>());
+        for region in regions {
+            let (place, merged) = (&self.places[region.place], of(&region.merged));
+            let contact = PlacedContact::of(region, modulus, load_s)?;
+            let mut one = self.placed(placed.len() + 1, place, contact)?;
+            if let Some(found) = &mut one.found {
+                (found.merged, found.near_misses) = (merged, missed.clone());
+            }
+            placed.push(one);
         }
         Ok(placed)
     }
 
-    /// Places the contact with this number, from 1.
-    fn contact(
-        &self,
-        case: &Case,
-        place: &search::Contact,
-        number: usize,
-        approach: Option<ApproachBy>,
-    ) -> Result<Placed> {
+    /// Names the contact with this number, from 1.
+    fn placed(&self, number: usize, place: &search::Contact, contact: PlacedContact) -> Result<Placed> {
         if number > MOST_PARTS {
             let found = format!("more than {MOST_PARTS} places of contact of one wheel");
             let advice = "smooth the profiles, or give grid.merge";
             return Err(Error::new("contact", found, format!("at most {MOST_PARTS}"), advice));
         }
-        let placement = place.placed(&case.profiles.pair)?;
         let found = Found {
             side: self.name,
             height_mm: self.height,
             roll_rad: self.roll,
             contact: number,
             place: place.into(),
+            merged: Vec::new(),
             near_misses: Vec::new(),
         };
         let folder =
             if number == 1 { self.name.to_string() } else { format!("{}-contact-{number}", self.name) };
-        let contact = Contact::new(placement, approach, case.question.modulus())?;
-        Ok(Placed { folder, found: Some(found), contact, extent: OnceCell::new() })
+        Ok(Placed { folder, found: Some(found), contact })
     }
-}
-
-/// Gives δ \[mm\] at another place of a side when the first contact approaches by its own δ₁ along its normal: the wheel sinks
-/// by δ₁/cosθ₁, closes the gap at the place, and the rest counts along the place's normal. `None` without an approach.
-fn approach_left(first: &Placed, place: &search::Contact) -> Option<f64> {
-    let (approach, _) = first.contact.approach?;
-    let sunk = approach / first.contact.placement.rail().point.station.cos;
-    Some((sunk - place.gap) * place.contact_angle.cos())
 }
 
 impl Placed {
     /// Names the contact as messages call it: by side and number, or "contact" for a chosen one.
     pub(super) fn name(&self) -> String {
         self.found.as_ref().map_or_else(|| "contact".into(), Found::name)
-    }
-
-    /// Tells whether the part of this contact's patch around C, with what is merged into it, holds another place.
-    fn holds(&self, place: &search::Contact, merge: f64) -> bool {
-        let Some(patch) = self.contact.whole_patch() else { return false };
-        let placement = &self.contact.placement;
-        let frame = placement.rail().contact_frame();
-        let xi = frame.inverse_transform_point(&Point2::new(place.rail_x, place.rail_z)).x;
-        let around = || axes::groups(patch, merge, None).first().map(|group| group.extent.xi);
-        self.extent.get_or_init(around).is_some_and(|[from, to]| from <= xi && xi <= to)
     }
 }

@@ -2,11 +2,12 @@
 
 use super::analysis::Analysis;
 use super::grids::check_memory;
-use super::input::Case;
+use super::input::{Case, Place};
 use super::site::{Site, sites};
 use crate::error::Result;
 use crate::patch::Patch;
-use crate::separation::plan::Plan;
+use crate::placement::Creepages;
+use crate::separation::Plan;
 
 /// Is told the step that a run is at, from several threads.
 pub type Tell<'a> = &'a (dyn Fn(String) + Sync);
@@ -38,6 +39,23 @@ impl Run {
     /// # Errors
     /// No contact; grids that cannot be sized or take more memory than there is; a method without a formula for the
     /// pair. An infeasible contact or an empty patch is a result: [`Run::refusals`].
+    ///
+    /// # Examples
+    /// ```
+    /// use wheelrail::case::{Run, SILENT};
+    /// use wheelrail::scene::{self, Scene};
+    ///
+    /// let text = r#"
+    /// rail.profile = "60E1"
+    /// wheel = { profile = "S1002", radius = 460.0 }
+    /// contact = { rail_x = 0.0, wheel_x = 0.0 }
+    /// patch = { approach = 0.05 }
+    /// "#;
+    /// let scene: Scene = scene::parse(text, false)?;
+    /// let run = Run::new(scene::resolve(&scene, ".".as_ref(), "example")?, SILENT)?;
+    /// assert_eq!(run.parts.len(), 1);
+    /// # Ok::<(), wheelrail::Error>(())
+    /// ```
     pub fn new(case: Case, tell: Tell<'_>) -> Result<Self> {
         tell("contacts".into());
         let sites = sites(&case)?;
@@ -69,21 +87,23 @@ impl Run {
 
     /// Lists what a user should know before using the files.
     pub fn warnings(&self) -> Vec<String> {
-        let findings = self.case.profiles.measured.iter().flatten().flat_map(|record| &record.warnings);
-        let mut out: Vec<String> =
-            findings.map(|finding| format!("{}: {}", finding.place, finding.found)).collect();
+        let mut out = Vec::new();
+        for (side, profiles) in self.case.profiles.sides() {
+            let findings = profiles.measured.iter().flatten().flat_map(|record| &record.warnings);
+            let place = side.map_or_else(String::new, |side| format!("{side} side: "));
+            out.extend(findings.map(|finding| format!("{place}{}: {}", finding.place, finding.found)));
+        }
         for part in &self.parts {
             let folder = &part.site.folder;
             let place = if folder.is_empty() { String::new() } else { format!("{folder}: ") };
-            out.extend(self.warnings_of(part).into_iter().map(|warning| format!("{place}{warning}")));
+            out.extend(Self::warnings_of(part).into_iter().map(|warning| format!("{place}{warning}")));
         }
         out
     }
 
     /// Lists what a user should know before using the files of one part.
-    pub(super) fn warnings_of(&self, part: &Part) -> Vec<String> {
-        let mut out = Vec::from_iter(self.shared_load(part));
-        out.extend(part.site.grid.warning.clone());
+    pub(super) fn warnings_of(part: &Part) -> Vec<String> {
+        let mut out = Vec::from_iter(part.site.grid.warning.clone());
         if part.analysis.patch.as_ref().is_some_and(Patch::cut_by_window) {
             out.push("the window of the grid cuts the patch: solvers would overestimate the pressure".into());
         }
@@ -96,19 +116,33 @@ impl Run {
         out
     }
 
-    /// Tells whether other parts of the same wheel carry some of its load.
-    pub(super) fn shares_load(&self, part: &Part) -> bool {
-        let same_wheel = |other: &&Part| other.site.side() == part.site.side();
-        self.case.question.load().is_some() && self.parts.iter().filter(same_wheel).count() > 1
+    /// Finds the creepages of a part, in its contact frame and, on a left side, in the axes of its mirror image; `None` for
+    /// a case without a motion.
+    ///
+    /// # Errors
+    /// A wheel at rest where it touches.
+    pub fn creepages(&self, part: &Part) -> Result<Option<Creepages>> {
+        let Some(motion) = self.case.question.motion else { return Ok(None) };
+        let left = part.site.side() == Some("left");
+        let half = match &self.case.standing.place {
+            Place::Wheelset { system, .. } if left => system.left().wheelset().wheel_x(),
+            Place::Wheelset { system, .. } => system.right().wheelset().wheel_x(),
+            Place::Points { .. } | Place::Wheel { .. } => 0.0,
+        };
+        let motion = if left { motion.mirrored() } else { motion };
+        motion.creepages(&part.site.contact.placement, half, self.free_radius()).map(Some)
     }
 
-    /// Says what a shared load means for the part's files.
-    pub(super) fn shared_load(&self, part: &Part) -> Option<String> {
-        let load = self.case.question.load().filter(|_| self.shares_load(part))?;
-        Some(format!(
-            "the load of {load} N is shared with other contacts of this wheel, each in files of its own: contact.inp gives \
-             the approach instead"
-        ))
+    /// Gives the rolling radius \[mm\] of a wheelset that rolls freely: the mean of its sides' first contacts.
+    fn free_radius(&self) -> f64 {
+        let mut sides: Vec<(Option<&str>, f64)> = Vec::new();
+        for Part { site, .. } in &self.parts {
+            let known = sides.iter().any(|(side, _)| *side == site.side());
+            if !known && site.found.as_ref().is_none_or(|found| found.contact == 1) {
+                sides.push((site.side(), site.contact.placement.rolling_radius()));
+            }
+        }
+        sides.iter().map(|(_, radius)| radius).sum::<f64>() / sides.len() as f64
     }
 }
 

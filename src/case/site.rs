@@ -1,6 +1,6 @@
 //! Contacts with the axes of their grids: all that is known of a case before a grid is filled.
 
-use super::contact::Contact;
+use super::contact::PlacedContact;
 use super::grids::{Grid, grids};
 use super::input::Case;
 use super::places::{Found, find};
@@ -15,9 +15,11 @@ pub struct Site {
     /// How the contact was found; `None` for a chosen one.
     pub found: Option<Found>,
     /// The placed pair.
-    pub contact: Contact,
+    pub contact: PlacedContact,
     /// The axes.
     pub grid: Grid,
+    /// Normal force \[N\] of what the grid covers; `None` unless a load was asked for.
+    pub normal_load: Option<f64>,
 }
 
 /// Finds the sites of a case, the first contact's first; a patch of several parts has a site for each.
@@ -28,6 +30,7 @@ pub fn sites(case: &Case) -> Result<Vec<Site>> {
     let places = find(case, case.question.approach)?;
     let grids = places.iter().map(|place| grids(&case.axes, place)).collect::<Result<Vec<_>>>()?;
     let mut sites: Vec<Site> = Vec::new();
+    let one_grid = case.axes.xi.is_some() && case.axes.eta.is_some();
     for (place, grids) in places.into_iter().zip(grids) {
         for (number, grid) in grids.into_iter().enumerate() {
             let folder = match (sites.is_empty(), number) {
@@ -37,7 +40,13 @@ pub fn sites(case: &Case) -> Result<Vec<Site>> {
                 (false, _) => format!("{}-patch-{}", place.folder, number + 1),
             };
             let (found, contact) = (place.found.clone(), place.contact.clone());
-            sites.push(Site { folder, found, contact, grid });
+            let normal_load = match contact.normal_loads.as_slice() {
+                [] => None,
+                // Axes that the scene gives are one grid for all groups of parts.
+                loads if one_grid => Some(loads.iter().sum()),
+                loads => loads.get(number).copied(),
+            };
+            sites.push(Site { folder, found, contact, grid, normal_load });
         }
     }
     Ok(sites)

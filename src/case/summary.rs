@@ -6,12 +6,10 @@ use serde_json::{Value, json};
 use super::input::Case;
 use super::run::{Part, Run};
 use crate::files::FolderPart;
-use crate::mesh::quality::Quality;
-use crate::mesh::surfaces::Surface;
+use crate::mesh::{Quality, Surface};
 use crate::patch::{Component, Patch};
-use crate::placement::Body;
-use crate::profile::closing::Closing;
-use crate::profile::continuity::Joint;
+use crate::placement::{Body, Creepages};
+use crate::profile::{Closing, Joint};
 
 /// One body in the summary.
 #[derive(Debug, Serialize)]
@@ -47,12 +45,13 @@ pub(super) fn summary(
     run: &Run,
     part: &Part,
     folder: &FolderPart<'_>,
+    creepages: Option<Creepages>,
     surfaces: Option<&[Surface; 2]>,
     files: &[String],
     skipped: &[String],
 ) -> Vec<u8> {
     let (Part { site, analysis }, Case { echo, file, profiles, .. }) = (part, &run.case);
-    let contact = &site.contact;
+    let (contact, own) = (&site.contact, profiles.on(site.side().unwrap_or_default()));
     let placement = &contact.placement;
     let value = json!({
         "program": "wheelrail",
@@ -64,16 +63,19 @@ pub(super) fn summary(
         "conventions": "mm, rad; s > 0 apart; contact frame: origin C, xi along the common tangent, eta along the rail, zeta from rail to wheel; grids [i_xi][i_eta]",
         "rail": body(placement.rail()),
         "wheel": body(placement.wheel()),
-        "measured_rail": profiles.measured[0],
-        "measured_wheel": profiles.measured[1],
+        "measured_rail": own.measured[0],
+        "measured_wheel": own.measured[1],
         "wheel_radius_mm": placement.wheel_radius(),
         "rolling_radius_mm": placement.rolling_radius(),
         "skew_rad": placement.skew(),
         "found": site.found,
+        "creepages": creepages.map(relative_motion),
         "feasibility": contact.feasibility,
         "curvatures": contact.curvatures,
         "approach_mm": contact.approach.map(|(approach, _)| approach),
         "approach_estimated_by": contact.approach.and_then(|(_, estimate)| estimate),
+        "normal_load_n": site.normal_load,
+        "vertical_load_n": site.normal_load.map(|load| load * placement.rail().point.station.cos),
         "hertz_ellipse": contact.ellipse,
         "hertz_ellipse_under": contact.ellipse_under,
         "patch": analysis.patch.as_ref().map(patch),
@@ -92,7 +94,7 @@ pub(super) fn summary(
             "reason": analysis.plan.reason,
         },
         "refusals": part.refusals(),
-        "warnings": run.warnings_of(part),
+        "warnings": Run::warnings_of(part),
         "other_parts": run.parts.iter().map(|p| &p.site.folder).filter(|f| **f != site.folder).collect::<Vec<_>>(),
         "files": files,
         "files_skipped": skipped,
@@ -122,6 +124,17 @@ fn body(body: &Body) -> BodySummary<'_> {
         largest_closing: body.profile().largest_closing().map(closing),
         kinks: body.profile().continuity().into_iter().filter(|joint| joint.kink.abs() > SMOOTH).collect(),
     }
+}
+
+fn relative_motion(creepages: Creepages) -> Value {
+    json!({
+        "longitudinal": creepages.longitudinal,
+        "lateral": creepages.lateral,
+        "spin_rad_per_mm": creepages.spin,
+        "rolling_speed_mm_per_s": creepages.rolling_speed,
+        "forward": creepages.forward,
+        "pitch_rad_per_s": creepages.pitch,
+    })
 }
 
 fn patch(patch: &Patch) -> Value {

@@ -1,5 +1,5 @@
-//! Background: conventions, measured files, the numerics with their derivation, the Report's errata, sweeps, clients,
-//! Python, references.
+//! Background: conventions, measured files, the numerics with their derivation, the Report's errata, sweeps, loads, clients,
+//! references.
 
 #[doc = include_str!("conventions.md")]
 pub mod conventions {}
@@ -15,6 +15,9 @@ pub mod errata {}
 
 #[doc = include_str!("sweeps.md")]
 pub mod sweeps {}
+
+#[doc = include_str!("loads.md")]
+pub mod loads {}
 
 #[doc = include_str!("clients.md")]
 pub mod clients {}

@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
-/// Size in bytes at which a block is passed to the sink: it stays inside the second-level cache, and the cost
-/// of the call is nothing compared with its content.
+/// Size in bytes at which a block is passed to the sink. It stays inside the second-level cache, and one call costs little
+/// compared with its content.
 const BLOCK: usize = 1 << 18;
 
 /// Gathers bytes into blocks for a sink.
@@ -39,7 +39,7 @@ impl<'a> Block<'a> {
         Ok(self.bytes.len())
     }
 
-    /// Passes the rest to the sink.
+    /// Passes the remaining bytes to the sink.
     pub(super) fn finish(self) -> io::Result<()> {
         self.sink.write_all(&self.bytes)
     }

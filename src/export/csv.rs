@@ -1,12 +1,12 @@
-//! Writes `boundary.csv` and `interpen.csv`: a header line, then numbers in mm, in the shortest form that
-//! reads back the same.
+//! Writes `boundary.csv` and `interpen.csv`: a header line, then numbers in mm, in the shortest form that reads back as the
+//! same number.
 
 use super::model::{Interval, Loop};
 use std::fmt::Write;
 
-/// Writes `boundary.csv`: component, xi, eta. Loop after loop, counter-clockwise (clockwise around holes),
-/// each closed by its first point.
-pub fn boundary(loops: &[Loop]) -> String {
+/// Writes `boundary.csv` with the columns component, xi and eta. The loops follow each other; each is counter-clockwise
+/// (clockwise around holes) and ends with its first point.
+pub fn boundary_csv(loops: &[Loop]) -> String {
     let mut text = String::from("component,xi,eta\n");
     for ring in loops {
         for point in ring.points.iter().chain(ring.points.first()) {
@@ -17,9 +17,9 @@ pub fn boundary(loops: &[Loop]) -> String {
     text
 }
 
-/// Writes `interpen.csv`, INTERPEN's own table: for each grid ξ inside the patch, xi, component, eta_min,
-/// eta_max.
-pub fn interpen(intervals: &[Interval]) -> String {
+/// Writes `interpen.csv`, INTERPEN's own table, with the columns xi, component, eta_min and eta_max: one row for each
+/// interval of each grid ξ inside the patch.
+pub fn interpen_csv(intervals: &[Interval]) -> String {
     let mut text = String::from("xi,component,eta_min,eta_max\n");
     for Interval { xi, component, eta: [low, high] } in intervals {
         let _ = writeln!(text, "{xi:?},{component},{low:?},{high:?}");
@@ -34,11 +34,11 @@ mod tests {
 
     #[test]
     fn loops_are_closed_and_numbers_read_back() {
-        let text = boundary(&[square()]);
+        let text = boundary_csv(&[square()]);
         let lines: Vec<_> = text.lines().collect();
         assert_eq!((lines.len(), lines[1], lines[5]), (6, "0,-1.0,-1.0", "0,-1.0,-1.0"));
         let row = Interval { xi: 0.1 + 0.2, component: 1, eta: [-1e-9, 2.0] };
-        assert_eq!(interpen(&[row]), "xi,component,eta_min,eta_max\n0.30000000000000004,1,-1e-9,2.0\n");
-        assert_eq!(boundary(&[]), "component,xi,eta\n");
+        assert_eq!(interpen_csv(&[row]), "xi,component,eta_min,eta_max\n0.30000000000000004,1,-1e-9,2.0\n");
+        assert_eq!(boundary_csv(&[]), "component,xi,eta\n");
     }
 }

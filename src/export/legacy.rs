@@ -13,7 +13,7 @@ use std::io::{self, Write};
 ///
 /// # Errors
 /// The errors of the sink.
-pub fn separation(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io::Result<()> {
+pub fn separation_vtk(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io::Result<()> {
     let (n_xi, n_eta) = (grid.xi().len(), grid.eta().len());
     let count = n_xi * n_eta;
     // The format has one line for remarks.
@@ -61,7 +61,7 @@ mod tests {
     fn arrays_are_big_endian_bit_for_bit_and_the_remark_says_what_they_are() {
         let sample = Sample::new(3, 4);
         let mut file = Vec::new();
-        separation(&mut file, &header(), &sample.fields()).unwrap();
+        separation_vtk(&mut file, &header(), &sample.fields()).unwrap();
         let remark =
             "# vtk DataFile Version 4.2\nwheelrail 0.0.0; mm; s > 0 apart; delta 0.05; scene 0123abcd\n";
         assert!(file.starts_with(remark.as_bytes()));

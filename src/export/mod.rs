@@ -5,17 +5,28 @@
 //! in mm. [`Header::statements`] is the one place that describes frame, signs, order and mask in words.
 
 mod block;
-pub mod csv;
-pub mod deck;
-pub mod legacy;
+mod csv;
+mod deck;
+mod legacy;
 mod model;
-pub mod netcdf;
-pub mod npy;
-pub mod picture;
-pub mod vtk;
-pub mod vts;
+mod netcdf;
+mod npy;
+mod picture;
+mod vtk;
+mod vts;
 
+pub use csv::{boundary_csv, interpen_csv};
+pub use deck::{ContactSettings, Deck, Prescribed, conform_wrp, contact_inp, countact_wrp, separation_wrp};
+pub use legacy::separation_vtk;
 pub use model::{Frame, GridFields, Header, Interval, Loop, QuadMesh, SurfaceMesh};
+pub use netcdf::NetCdf;
+pub use npy::array_npy;
+pub use picture::{
+    Chart, CurvesPanel, CurvesPicture, Nodes, PatchPicture, PlottedCurve, ProfilePicture, SEPARATOR, Series,
+    jumps,
+};
+pub use vtk::{boundary_vtp, collection_pvd, patch_vtu, surface_vtp};
+pub use vts::{rail_vts, separation_vts, wheel_vts};
 
 /// The ParaView script that opens its own folder: coloured separation, the boundary, gap vectors.
 pub const VIEW_SCRIPT: &str = include_str!("view.py");

@@ -4,10 +4,9 @@ use nalgebra::{Isometry2, Point3, Unit, Vector3};
 
 use crate::error::{Error, Result};
 
-/// Largest difference of the steps of an evenly spaced grid, as a multiple of the largest |coordinate|: two
-/// roundings of `from + i·step` at each end. A smaller factor would refuse grids that are even as far as f64
-/// can say; a larger one would accept values that are off the points of the spacing, which is all that a
-/// solver sees.
+/// Largest difference of the steps of an evenly spaced grid, as a multiple of the largest |coordinate|: two roundings of
+/// `from + i·step` at each end. A smaller factor would refuse grids that are even to rounding. A larger one would accept
+/// values away from the even spacing, which is all that a solver sees.
 const STEP_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// The contact frame ξηζ in the rail profile's axes (x lateral, y rolling direction, z up) \[mm\].
@@ -24,8 +23,8 @@ pub struct Frame {
 }
 
 impl From<&Isometry2<f64>> for Frame {
-    /// Puts the contact frame of the rail's plane (x, z), as [`Body::contact_frame`](crate::placement::Body::contact_frame)
-    /// gives it, into space: eqs. (4.2). ξ × η = ζ.
+    /// Makes the frame in space from the contact frame of the rail's plane (x, z), which
+    /// [`Body::contact_frame`](crate::placement::Body::contact_frame) returns: eqs. (4.2). ξ × η = ζ.
     fn from(in_plane: &Isometry2<f64>) -> Self {
         let (origin, turn) = (in_plane.translation.vector, in_plane.rotation);
         Self {
@@ -115,9 +114,9 @@ pub struct GridFields<'a> {
 impl<'a> GridFields<'a> {
     /// Makes the fields from arrays whose lengths must agree.
     ///
-    /// `xi`, `eta`: ascending grid coordinates \[mm\]. `separation`: s \[mm\] at `i_xi * n_eta + i_eta`, NaN
-    /// where undefined. `rail_height`: ζ^R(ξ) \[mm\] per ξ, NaN where the rail has no surface. `rail_normal`:
-    /// the rail's outward (upward) unit normal (n_ξ, n_ζ) per ξ.
+    /// `xi`, `eta`: ascending grid coordinates \[mm\]. `separation`: s \[mm\] at `i_xi * n_eta + i_eta`, NaN where
+    /// undefined. `rail_height`: ζ^R(ξ) \[mm\] for each ξ, NaN where the rail has no surface. `rail_normal`: the rail's
+    /// outward (upward) unit normal (n_ξ, n_ζ) for each ξ.
     ///
     /// # Errors
     /// An empty axis, or lengths that do not agree.
@@ -167,8 +166,8 @@ impl<'a> GridFields<'a> {
         self.rail_height
     }
 
-    /// Returns the points \[ξ, η, ζ^R\] \[mm\] of the rail's surface under the column of ξ number `i`. Where
-    /// there is no surface ζ is 0, as a point must have coordinates.
+    /// Returns the points \[ξ, η, ζ^R\] \[mm\] of the rail's surface under the column of ξ number `i`. ζ is 0 where there
+    /// is no surface, because a point must have coordinates.
     pub(super) fn rail_points(&self, i: usize) -> impl Iterator<Item = [f64; 3]> + 'a {
         let (xi, zeta) = (self.xi[i], known(self.rail_height[i]));
         self.eta.iter().map(move |&eta| [xi, eta, zeta])
@@ -179,7 +178,7 @@ impl<'a> GridFields<'a> {
         self.column(i).iter().map(|s| u8::from(!s.is_nan()))
     }
 
-    /// Returns the rail's outward unit normal (n_ξ, n_ζ) per ξ.
+    /// Returns the rail's outward unit normal (n_ξ, n_ζ) for each ξ.
     pub fn rail_normal(&self) -> &'a [[f64; 2]] {
         self.rail_normal
     }
@@ -187,13 +186,13 @@ impl<'a> GridFields<'a> {
     /// Returns the steps \[d_ξ, d_η\] \[mm\] of a grid of equal steps.
     ///
     /// # Errors
-    /// Unequal steps, or an axis of one point: `format` cannot say where the points are.
+    /// Unequal steps, or an axis of one point, because `format` has no field for the places of the points.
     pub fn steps(&self, format: &str) -> Result<[f64; 2]> {
         Ok([even_step(format, "xi", self.xi)?, even_step(format, "eta", self.eta)?])
     }
 
-    /// Returns the number that represents s at undefined points in formats that need one: 10 × the largest
-    /// |s|. Much larger values spoil a solver's result without a warning.
+    /// Returns the number that replaces an undefined s in formats that need a number: 10 × the largest |s|. Much larger
+    /// values spoil a solver's result without a warning.
     pub fn fill_value(&self) -> f64 {
         // `max` ignores NaN.
         10.0 * self.separation.iter().fold(0.0, |largest: f64, s| largest.max(s.abs()))

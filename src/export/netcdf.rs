@@ -1,10 +1,9 @@
-//! Writes `separation.nc`: NetCDF-3 classic, the one format that gives sizes, units and mask to
-//! SurfaceTopography and ContactMechanics.
+//! Writes `separation.nc` in NetCDF-3 classic. It is the one format that tells sizes, units and mask to SurfaceTopography
+//! and ContactMechanics.
 //!
-//! Dimensions x (= ξ) and y (= η); variables `x`, `y` \[mm\] (cell centres), `heights(x, y)` = −s \[mm\],
-//! and, if a body has no surface somewhere, `mask(x, y)` (1 = undefined). The sign of −s is right because
-//! those programs press a rigid flat down onto `heights`. The writer is our own: the format is small, and the
-//! crates for it write only to paths.
+//! Dimensions x (= ξ) and y (= η); variables `x`, `y` \[mm\] (cell centres), `heights(x, y)` = −s \[mm\] and, if a body has
+//! no surface somewhere, `mask(x, y)` (1 = undefined). The sign of −s is right because those programs press a rigid flat
+//! down onto `heights`. The writer is our own: the format is small, and the crates for it write only to paths.
 
 use super::block::{Block, put_f64_be};
 use super::model::{GridFields, Header};
@@ -48,7 +47,7 @@ impl<'a> NetCdf<'a> {
     /// Prepares the file.
     ///
     /// # Errors
-    /// A grid of unequal steps, or of one row or column: the format gives sizes, not places.
+    /// A grid of unequal steps, or of one row or column, because the format has fields for sizes but not for places.
     pub fn new(header: &Header, grid: &'a GridFields<'a>) -> Result<Self> {
         let steps = grid.steps("netcdf")?;
         let masked = grid.separation().iter().any(|s| s.is_nan());
@@ -89,7 +88,7 @@ fn head(header: &Header, grid: &GridFields, steps: [f64; 2], masked: bool) -> Ve
     let total: u64 = variables.iter().map(|v| v.size + padding(v.size)).sum();
     let mut bytes = first_part(header, grid);
     let entries = |wide: bool, begin: u64| entries(&variables, wide, begin);
-    // The offsets' width decides the header's length, and the header's length the offsets.
+    // The width of the offsets decides the length of the header, and the length of the header decides the offsets.
     let narrow = bytes.len() as u64 + entries(false, 0).len() as u64;
     let wide = narrow + total > CLASSIC_LIMIT;
     let begin = bytes.len() as u64 + entries(wide, 0).len() as u64;
@@ -114,7 +113,7 @@ fn first_part(header: &Header, grid: &GridFields) -> Vec<u8> {
     bytes
 }
 
-/// Returns what the format has no field for, as the readers' `info` dictionary.
+/// Returns the statements for which the format has no field, as the readers' `info` dictionary.
 fn information(header: &Header) -> String {
     let frame = &header.frame;
     json!({
@@ -137,7 +136,7 @@ fn information(header: &Header) -> String {
 fn variables(grid: &GridFields, steps: [f64; 2], masked: bool) -> Vec<Variable> {
     let axis = |name, dimensions, values: &[f64], step: f64| {
         let mut attributes = Vec::new();
-        // The size of a grid of cells, not the distance of its outer points.
+        // The size is that of a grid of cells, not the distance of its outer points.
         put_double(&mut attributes, "length", values.len() as f64 * step);
         put_text(&mut attributes, "unit", "mm");
         put_int(&mut attributes, "periodic", 0);
@@ -166,7 +165,7 @@ fn variables(grid: &GridFields, steps: [f64; 2], masked: bool) -> Vec<Variable> 
     variables
 }
 
-/// Returns the list of variables; the data of the first are at `begin`.
+/// Returns the list of variables. The data of the first variable are at offset `begin`.
 fn entries(variables: &[Variable], wide: bool, mut begin: u64) -> Vec<u8> {
     let mut bytes = Vec::new();
     put(&mut bytes, VARIABLE);
@@ -180,7 +179,7 @@ fn entries(variables: &[Variable], wide: bool, mut begin: u64) -> Vec<u8> {
         bytes.extend(&variable.attributes);
         put(&mut bytes, variable.kind);
         let padded = variable.size + padding(variable.size);
-        // The format's own way to say "too long for this field": readers take the dimensions.
+        // The format's own value for "too long for this field": readers then use the dimensions.
         put(&mut bytes, u32::try_from(padded).unwrap_or(u32::MAX));
         if wide {
             bytes.extend(begin.to_be_bytes());

@@ -1,5 +1,5 @@
-//! Writes NumPy arrays (`.npy`): f64, little-endian, C order. `npyz` writes the header. Its body, value by
-//! value, runs at half the speed of the disk's cache, so the body is written here.
+//! Writes NumPy arrays (`.npy`): f64, little-endian, C order. `npyz` writes the header. It would write the body value by
+//! value, at half the speed of the disk's cache; this file writes it in blocks.
 
 use super::block::{Block, put_f64};
 use npyz::WriterBuilder;
@@ -12,7 +12,16 @@ const RUN: usize = 1 << 12;
 ///
 /// # Errors
 /// The errors of the sink; `InvalidInput` if the shape does not have as many elements as `values`.
-pub fn array(sink: &mut dyn Write, shape: &[u64], values: &[f64]) -> io::Result<()> {
+///
+/// # Examples
+/// ```
+/// let mut file = Vec::new();
+/// wheelrail::export::array_npy(&mut file, &[2, 3], &[0.0; 6])?;
+/// assert_eq!(file.len(), 128 + 6 * 8);
+/// assert!(wheelrail::export::array_npy(&mut Vec::new(), &[7], &[0.0; 6]).is_err());
+/// # Ok::<(), std::io::Error>(())
+/// ```
+pub fn array_npy(sink: &mut dyn Write, shape: &[u64], values: &[f64]) -> io::Result<()> {
     if shape.iter().product::<u64>() != values.len() as u64 {
         let text = format!("{} values for an array of shape {shape:?}", values.len());
         return Err(io::Error::new(io::ErrorKind::InvalidInput, text));
@@ -40,12 +49,12 @@ mod tests {
     fn values_come_back_bit_for_bit() {
         let values = [1.0, -0.0, f64::NAN, 5e-324, 0.1, 2.0];
         let mut file = Vec::new();
-        array(&mut file, &[2, 3], &values).unwrap();
+        array_npy(&mut file, &[2, 3], &values).unwrap();
         let read = npyz::NpyFile::new(&file[..]).unwrap();
         assert_eq!(read.shape(), [2, 3]);
         let back: Vec<f64> = read.into_vec().unwrap();
         assert_eq!(back.map_bits(), values.to_vec().map_bits());
-        assert!(array(&mut Vec::new(), &[7], &values).is_err());
+        assert!(array_npy(&mut Vec::new(), &[7], &values).is_err());
     }
 
     trait Bits {

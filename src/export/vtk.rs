@@ -1,11 +1,11 @@
 //! Writes VTK files with `vtkio` 0.7.0-rc2: boundaries, patches and surfaces. Grids are written by
 //! [`vts`](super::vts) and [`legacy`](super::legacy).
 //!
-//! `vtkio` has traps; each is avoided here. It reports partial writes as success (so encode to memory). It
-//! does not check array lengths (checked here). It leaves out counts of zero, so that empty files are
-//! unreadable (put in here). It drops FieldData from XML (inserted as text). Its node numbers are unsigned,
-//! which meshio turns into floating-point numbers (declared as signed). Blanks in array names break readers
-//! (no name has one). Only the version and the cell kinds that meshio reads are used: XML 1.0.
+//! `vtkio` has five faults, and each is avoided here. It reports partial writes as success (files are encoded in memory).
+//! It does not check lengths of arrays (they are checked here). It leaves out counts of zero, which makes empty files
+//! unreadable (they are put in here). It drops FieldData from XML (it is inserted as text). Its node numbers are unsigned,
+//! which meshio turns into floating-point numbers (they are declared as signed). Array names contain no blanks, which break
+//! readers. Only the version and the cell kinds that meshio reads are used: XML 1.0.
 
 use super::model::{Header, Loop, QuadMesh, SurfaceMesh, same_length};
 use super::vts::{comment, field_data};
@@ -16,7 +16,7 @@ use vtkio::model::{
     PolyDataPiece, UnstructuredGridPiece, Version, VertexNumbers, Vtk,
 };
 
-/// The counts of an empty PolyData piece, which `vtkio` leaves out; no reader takes a file without them.
+/// The counts of an empty PolyData piece. `vtkio` leaves them out, and no reader takes a file without them.
 const EMPTY_POLYDATA: &str = "<Piece NumberOfPoints=\"0\" NumberOfVerts=\"0\" NumberOfLines=\"0\" \
     NumberOfStrips=\"0\" NumberOfPolys=\"0\">";
 
@@ -28,7 +28,7 @@ const EMPTY_UNSTRUCTURED: &str = "<Piece NumberOfPoints=\"0\" NumberOfCells=\"0\
 ///
 /// # Errors
 /// Data that `vtkio` refuses, which would be a fault of this program.
-pub fn boundary(header: &Header, loops: &[Loop]) -> Result<Vec<u8>> {
+pub fn boundary_vtp(header: &Header, loops: &[Loop]) -> Result<Vec<u8>> {
     let loops: Vec<_> = loops.iter().filter(|ring| !ring.points.is_empty()).collect();
     let (mut connectivity, mut offsets, mut first) = (Vec::new(), Vec::new(), 0);
     for ring in &loops {
@@ -53,7 +53,7 @@ pub fn boundary(header: &Header, loops: &[Loop]) -> Result<Vec<u8>> {
 ///
 /// # Errors
 /// A mesh that contradicts itself.
-pub fn patch(header: &Header, mesh: &QuadMesh) -> Result<Vec<u8>> {
+pub fn patch_vtu(header: &Header, mesh: &QuadMesh) -> Result<Vec<u8>> {
     mesh.validate()?;
     let components: Vec<i32> = mesh.component.iter().map(|&c| c as i32).collect();
     let cell = vec![
@@ -68,15 +68,15 @@ pub fn patch(header: &Header, mesh: &QuadMesh) -> Result<Vec<u8>> {
 ///
 /// # Errors
 /// A mesh that contradicts itself.
-pub fn surface(header: &Header, mesh: &SurfaceMesh) -> Result<Vec<u8>> {
+pub fn surface_vtp(header: &Header, mesh: &SurfaceMesh) -> Result<Vec<u8>> {
     mesh.validate()?;
     let cells: Vec<Vec<usize>> = mesh.triangles.iter().map(|triangle| triangle.to_vec()).collect();
     unstructured(header, &mesh.points, &cells, Vec::new())
 }
 
-/// Writes `surface.pvd`: the files of a sweep on one time axis, which ParaView plays. `steps` are (time,
-/// part, path), with paths as the program makes them.
-pub fn collection(steps: &[(f64, usize, String)]) -> String {
+/// Writes `surface.pvd`: the files of a sweep on one time axis, which ParaView plays. `steps` are (time, part, path), with
+/// the paths as they are to be written.
+pub fn collection_pvd(steps: &[(f64, usize, String)]) -> String {
     let set = |(time, part, path): &(f64, usize, String)| {
         format!("    <DataSet timestep=\"{time:?}\" group=\"\" part=\"{part}\" file=\"{path}\"/>\n")
     };
@@ -110,7 +110,7 @@ fn unstructured(
     xml(header, DataSet::inline(piece), EMPTY_UNSTRUCTURED)
 }
 
-/// Coordinates one after another.
+/// Returns the coordinates of points one after another.
 fn coordinates<'a>(points: impl IntoIterator<Item = &'a Point3<f64>>) -> IOBuffer {
     points.into_iter().flat_map(|point| point.coords.as_slice()).copied().collect::<Vec<f64>>().into()
 }
@@ -137,7 +137,7 @@ fn xml(header: &Header, data: DataSet, empty_piece: &str) -> Result<Vec<u8>> {
     let file = Vtk { version, title: String::new(), byte_order, file_path: None, data };
     file.write_xml(&mut bytes).map_err(refused)?;
     let text = String::from_utf8(bytes).map_err(refused)?;
-    // Numbers of nodes are far below 2⁶³, so the bytes are the same.
+    // Node numbers are far below 2⁶³, so that their bytes are the same in both types.
     let text = text.replace("<DataArray type=\"UInt64\"", "<DataArray type=\"Int64\"");
     Ok(annotate(text.replacen("<Piece>", empty_piece, 1), header))
 }
@@ -164,10 +164,10 @@ mod tests {
     #[test]
     fn xml_files_carry_frame_and_statements() {
         for file in [
-            boundary(&header(), &[square()]).unwrap(),
-            boundary(&header(), &[]).unwrap(),
-            patch(&header(), &mesh()).unwrap(),
-            patch(&header(), &QuadMesh::default()).unwrap(),
+            boundary_vtp(&header(), &[square()]).unwrap(),
+            boundary_vtp(&header(), &[]).unwrap(),
+            patch_vtu(&header(), &mesh()).unwrap(),
+            patch_vtu(&header(), &QuadMesh::default()).unwrap(),
         ] {
             let text = text(&file);
             assert!(text.contains("approach_mm") && text.contains("scene 0123abcd"), "{text}");
@@ -178,7 +178,7 @@ mod tests {
 
     #[test]
     fn what_is_written_reads_back() {
-        let file = Vtk::parse_xml(&patch(&header(), &mesh()).unwrap()[..]).unwrap();
+        let file = Vtk::parse_xml(&patch_vtu(&header(), &mesh()).unwrap()[..]).unwrap();
         let DataSet::UnstructuredGrid { pieces, .. } = file.data else { panic!("{file:?}") };
         let piece = pieces[0].clone().into_loaded_piece_data(None).unwrap();
         let points: Vec<f64> = piece.points.cast_into().unwrap();
@@ -197,8 +197,8 @@ mod tests {
     fn arrays_and_meshes_that_do_not_fit_are_refused() {
         let mut broken = mesh();
         broken.area.pop();
-        assert!(patch(&header(), &broken).unwrap_err().place.contains("areas"));
+        assert!(patch_vtu(&header(), &broken).unwrap_err().place.contains("areas"));
         let surface_mesh = SurfaceMesh { points: vec![Point3::origin(); 3], triangles: vec![[0, 1, 3]] };
-        assert!(surface(&header(), &surface_mesh).is_err());
+        assert!(surface_vtp(&header(), &surface_mesh).is_err());
     }
 }

@@ -1,11 +1,10 @@
 //! Writes VTK structured grids (`.vts`): XML with the arrays appended raw, little-endian, in one pass.
 //!
-//! The writer is our own: `vtkio` cannot append raw data, and its base64 runs at 75 MB/s, a thirtieth of what
-//! the disk's cache takes. Points are (ξ, η, ζ) in the contact frame. VTK's first index runs fastest, so it
-//! is η.
+//! The writer is our own: `vtkio` cannot append raw data, and its base64 runs at 75 MB/s, a thirtieth of the speed of the
+//! disk's cache. Points are (ξ, η, ζ) in the contact frame. The first index of VTK runs fastest, so that it is η.
 //!
-//! Where a body has no surface, a point still needs coordinates: ζ is 0 there, and VTK's own array
-//! `vtkGhostType` hides the point. The array is written only if there are such points.
+//! A point where a body has no surface still needs coordinates: ζ is 0 there, and VTK's own array `vtkGhostType` hides the
+//! point. This array is written only if there are such points.
 
 use super::block::{Block, put_bytes, put_f64, put_vectors};
 use super::model::{GridFields, Header, known};
@@ -18,7 +17,7 @@ const HIDDEN: u8 = 2;
 /// A function that fills the bytes of column i.
 type FillColumn<'a> = Box<dyn Fn(usize, &mut [u8]) + 'a>;
 
-/// One array of a grid, given column by column (a column: constant ξ).
+/// One array of a grid, given column by column; ξ is constant in a column.
 struct Array<'a> {
     name: &'a str,
     kind: &'a str,
@@ -46,14 +45,13 @@ impl<'a> Array<'a> {
     }
 }
 
-/// Writes `separation.vts`: the grid on the rail's surface with separation \[mm\], interpenetration max(δ −
-/// s, 0) \[mm\], gap_vector s·e_ζ \[mm\] (for Warp By Vector: the rail warped by it is the wheel),
-/// rail_normal and mask (1 where s is defined). Undefined values are NaN; in gap_vector they are 0, as a NaN
-/// would destroy the picture.
+/// Writes `separation.vts`: the grid on the rail's surface with separation \[mm\], interpenetration max(δ − s, 0) \[mm\],
+/// gap_vector s·e_ζ \[mm\] (Warp By Vector moves the rail onto the wheel by it), rail_normal and mask (1 where s is
+/// defined). Undefined values are NaN; in gap_vector they are 0, because a NaN would destroy the picture.
 ///
 /// # Errors
 /// The errors of the sink.
-pub fn separation(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io::Result<()> {
+pub fn separation_vts(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io::Result<()> {
     let delta = header.approach;
     let depth = move |s: f64| if s > delta { 0.0 } else { delta - s };
     let arrays = vec![
@@ -73,7 +71,7 @@ pub fn separation(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> i
 ///
 /// # Errors
 /// The errors of the sink.
-pub fn rail(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io::Result<()> {
+pub fn rail_vts(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io::Result<()> {
     structured_grid(sink, header, grid, rail_points(grid), vec![separation_array(grid)])
 }
 
@@ -81,7 +79,7 @@ pub fn rail(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io::Res
 ///
 /// # Errors
 /// The errors of the sink.
-pub fn wheel(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io::Result<()> {
+pub fn wheel_vts(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io::Result<()> {
     let points = Array::vector("Points", |i| {
         let (xi, rail) = (grid.xi()[i], grid.rail_height()[i]);
         grid.eta().iter().zip(grid.column(i)).map(move |(&eta, s)| [xi, eta, known(rail + s)])
@@ -163,7 +161,7 @@ pub(super) fn comment(header: &Header) -> String {
     text + "  -->\n"
 }
 
-/// Returns δ and the frame as numeric field data. Strings there would make a file unreadable to meshio.
+/// Returns δ and the frame as numeric field data. Text there would make a file unreadable to meshio.
 pub(super) fn field_data(header: &Header) -> String {
     let frame = &header.frame;
     let mut text = String::from("    <FieldData>\n");
@@ -205,7 +203,7 @@ mod tests {
     fn arrays_lie_where_the_head_says_bit_for_bit() {
         let sample = Sample::new(3, 4);
         let mut file = Vec::new();
-        separation(&mut file, &header(), &sample.fields()).unwrap();
+        separation_vts(&mut file, &header(), &sample.fields()).unwrap();
         let points = appended(&file, 0);
         let last: Vec<f64> =
             points[11 * 24..].chunks_exact(8).map(|c| f64::from_le_bytes(c.try_into().unwrap())).collect();
@@ -222,7 +220,7 @@ mod tests {
     fn grids_without_undefined_points_hide_none() {
         let mut sample = Sample::new(2, 2);
         sample.separation[0] = 0.5;
-        for writer in [separation, rail, wheel] {
+        for writer in [separation_vts, rail_vts, wheel_vts] {
             let mut file = Vec::new();
             writer(&mut file, &header(), &sample.fields()).unwrap();
             assert!(!String::from_utf8_lossy(&file).contains("vtkGhostType"));

@@ -8,8 +8,8 @@ use super::complaint::bad;
 use super::temporary;
 use crate::error::{Error, Result};
 
-/// A file being written: nothing appears under its name before [`NewFile::commit`], and nothing remains if it
-/// is dropped without a commit. A pipe or a device takes the bytes at once.
+/// A file being written. Nothing appears under its name before [`NewFile::commit`]; nothing remains if it is dropped
+/// without a commit. A pipe or a device gets the bytes at once.
 #[derive(Debug)]
 pub struct NewFile {
     target: PathBuf,
@@ -47,7 +47,7 @@ impl NewFile {
         self.sink.write_all(bytes).map_err(|error| unwritable(&self.target, error))
     }
 
-    /// Gives the file its name: every reader finds the whole old content or the whole new one.
+    /// Gives the file its name. Every reader finds either the whole old content or the whole new one.
     ///
     /// # Errors
     /// Any error of the disk; the old file is then as it was.
@@ -59,7 +59,7 @@ impl NewFile {
 
 impl Drop for NewFile {
     fn drop(&mut self) {
-        // After a commit there is no such file. The next process removes what cannot be removed here.
+        // After a commit the temporary file is gone. The next process removes a file that cannot be removed here.
         self.temporary.iter().for_each(|temporary| drop(fs::remove_file(temporary)));
     }
 }
@@ -81,8 +81,10 @@ fn beside(target: &Path) -> io::Result<(PathBuf, File)> {
     temporary::locked(&target, |name| File::create_new(name))
 }
 
-/// Returns the file behind a symbolic link, or any other path as it is. A link to nothing is an error: its
-/// purpose is unknown.
+/// Returns the file behind a symbolic link, and any other path unchanged.
+///
+/// # Errors
+/// A link to nothing, because its purpose is unknown.
 fn behind_links(path: &Path) -> Result<PathBuf> {
     match path.canonicalize() {
         Ok(real) if path.is_symlink() => Ok(real),

@@ -1,7 +1,7 @@
 //! Puts the output folder onto the disk.
 //!
-//! A run writes into a temporary folder beside DIR and puts it in DIR's place in one step at the end. So
-//! every reader of DIR finds the whole old folder or the whole new one, whenever the run is killed.
+//! A run writes into a temporary folder beside DIR and puts it in DIR's place in one step at the end. Every reader of DIR
+//! therefore finds the whole old folder or the whole new one, even if the run is killed.
 //!
 //! - **The step.** A plain `rename` if DIR is missing or empty; otherwise the kernel's exchange of two names
 //!   (`renameat2` with `RENAME_EXCHANGE`), after which the old folder has the temporary name and is deleted.
@@ -12,13 +12,16 @@
 //!   that lock folders, the next run into the same parent removes what a killed run left.
 //! - **No fsync.** Twenty of them cost more than the whole run. The promise holds for a kill of the process,
 //!   not for a power cut: the END lines and the sizes in the headers show that a folder is incomplete.
-//! - **Foreign files.** A folder is replaced only if it is empty or contains our own summary. Files in it
-//!   that are not ours (notes, pictures) are hard-linked into the new folder; foreign subfolders are refused.
+//! - **Foreign files.** A folder is replaced only if it is empty or contains our own summary. What is in it and
+//!   is not ours (a solver's output, notes, pictures, whole subfolders) gets a second name in the new folder
+//!   before the step, at the same path, by hard links: at every moment it is in DIR, whole, and a program that
+//!   is writing to it goes on. What came into the old folder during the step is linked after it.
 
-use super::complaint::bad;
+use super::complaint::{bad, unwritable};
+use super::foreign::{Foreign, foreign, keep, marked};
 use super::names::Names;
 use super::{system, temporary};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Component, Path, PathBuf};
@@ -26,12 +29,11 @@ use std::path::{Component, Path, PathBuf};
 /// Name of the old folder while two folders are swapped on a file system without the exchange of names.
 const ASIDE: &str = ".wheelrail-old.";
 
-/// Most attempts to put the new folder in place; an attempt fails only if another run does the same at that
-/// moment.
+/// Most attempts to put the new folder in place. An attempt fails only if another run does the same at that moment.
 const SWAPS_TRIED: u32 = 100;
 
-/// A folder being written: nothing appears in DIR before [`Folder::commit`], and nothing remains if it is
-/// dropped without a commit.
+/// A folder being written. Nothing appears in DIR before [`Folder::commit`]; nothing remains if it is dropped without a
+/// commit.
 #[derive(Debug)]
 pub struct Folder {
     target: PathBuf,
@@ -64,7 +66,7 @@ impl Folder {
         temporary::remove_stale(parent);
         if target.exists() {
             reject_unsafe(&target)?;
-            foreign_files(&target, names)?;
+            entries_not_ours(&target, names)?;
         }
         let made = temporary::locked(&target, |path| {
             fs::create_dir(path)?;
@@ -74,7 +76,7 @@ impl Folder {
         Ok(Self { target, temporary, names, _lock: lock })
     }
 
-    /// Makes a subfolder with files of the same names at once; an empty `name` is the folder itself.
+    /// Makes a subfolder whose files have the same names. An empty `name` is the folder itself.
     ///
     /// # Errors
     /// Any error of the disk.
@@ -108,17 +110,20 @@ impl Folder {
     pub fn commit(self) -> Result<()> {
         use ErrorKind::{AlreadyExists, DirectoryNotEmpty, PermissionDenied};
         for _ in 0..SWAPS_TRIED {
-            // Replaces an empty folder too.
+            // The rename also replaces an empty folder.
             match fs::rename(&self.temporary, &self.target) {
                 Ok(()) => return Ok(()),
-                // What systems say of a folder that is in the way.
+                // Systems report one of these errors if a folder is in the way.
                 Err(e) if matches!(e.kind(), DirectoryNotEmpty | AlreadyExists | PermissionDenied) => {}
                 Err(e) => return Err(unwritable(&self.target, e)),
             }
-            self.keep(&foreign_files(&self.target, self.names)?)?;
+            let foreign = entries_not_ours(&self.target, self.names)?;
+            keep(&foreign, &self.target, &self.temporary)?;
+            // The lock keeps other runs from taking the old folder for stale before it is left.
+            let old = system::open_folder(&self.target);
+            let _lock = old.as_ref().map(File::try_lock);
             match exchange(&self.temporary, &self.target) {
-                // Dropping self deletes what now has the temporary name: the old folder.
-                Ok(()) => return Ok(()),
+                Ok(()) => return self.leave(),
                 // Another run has just moved DIR.
                 Err(e) if e.kind() == ErrorKind::NotFound => {}
                 Err(e) => return Err(unwritable(&self.target, e)),
@@ -132,25 +137,22 @@ impl Folder {
         ))
     }
 
-    /// Gives the user's own files a second name in the new folder, so that they are never only in a place
-    /// where a kill or another run could remove them.
-    fn keep(&self, foreign: &[PathBuf]) -> Result<()> {
-        for path in foreign {
-            let Some(name) = path.file_name() else { continue };
-            let kept = self.temporary.join(name);
-            if kept.is_dir() {
-                let found = "a file named like a folder of this run";
-                return Err(bad(path, found, "another name", "rename it or give another folder"));
+    /// Takes over what came into the old folder, which now has the temporary name, while the two were
+    /// exchanged. Dropping self then deletes the old folder; where something in it cannot be taken over, the old
+    /// folder gets a name of its own instead.
+    fn leave(self) -> Result<()> {
+        let late = match foreign(&self.temporary, self.names) {
+            // Another run has cleaned up.
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
+            late => late.map_err(|error| unwritable(&self.temporary, error)),
+        };
+        late.and_then(|late| keep(&late, &self.temporary, &self.target)).map_err(|error| {
+            let aside = self.target.with_file_name(left_name(&self.target));
+            match fs::rename(&self.temporary, &aside) {
+                Ok(()) => error.within(format!("{}, the old folder", aside.display())),
+                Err(_) => error,
             }
-            match fs::hard_link(path, &kept) {
-                Ok(()) => {}
-                Err(e) if matches!(e.kind(), ErrorKind::NotFound | ErrorKind::AlreadyExists) => {}
-                Err(_) => {
-                    fs::copy(path, &kept).map_err(|e| unwritable(path, e))?;
-                }
-            }
-        }
-        Ok(())
+        })
     }
 }
 
@@ -195,17 +197,18 @@ impl FolderPart<'_> {
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        // A failure leaves a stale folder, which the next run removes. After a plain rename there is none.
+        // A failure here leaves a stale folder, which the next run removes. After a plain rename there is nothing to
+        // remove.
         drop(fs::remove_dir_all(&self.temporary));
     }
 }
 
-/// Returns `dir` without symbolic links, absolute; its last parts may be missing.
+/// Returns `dir` as an absolute path without symbolic links. Its last parts need not exist.
 fn resolve(dir: &Path) -> Result<PathBuf> {
     if let Ok(real) = dir.canonicalize() {
         return Ok(real);
     }
-    // If another run has made it since, it is no link.
+    // If another run has made the folder since, it is no link.
     if dir.symlink_metadata().is_ok_and(|found| found.is_symlink()) {
         return Err(bad(
             dir,
@@ -218,7 +221,7 @@ fn resolve(dir: &Path) -> Result<PathBuf> {
         return Err(bad(dir, "a path without a name at its end", "a folder's name", "give one with a name"));
     }
     let dir = std::path::absolute(dir).map_err(|e| unwritable(dir, e))?;
-    // Folders missing below the nearest one that exists will be made, and contain no links.
+    // Missing folders will be made below the nearest existing one, and contain no links.
     let real = dir.ancestors().find_map(|above| {
         let missing = dir.strip_prefix(above).ok()?;
         above.canonicalize().ok().map(|above| above.join(missing))
@@ -246,16 +249,14 @@ fn reject_unsafe(target: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Returns the files in `target` that are the user's own.
-fn foreign_files(target: &Path, names: Names) -> Result<Vec<PathBuf>> {
-    let entries = fs::read_dir(target).and_then(|list| list.collect::<io::Result<Vec<_>>>());
-    let entries = entries.map_err(|e| unwritable(target, e))?;
-    if entries.is_empty() {
-        return Ok(Vec::new());
-    }
-    let marker = fs::read(target.join(names.marker)).unwrap_or_default();
-    if !marker.windows(9).any(|word| word == b"wheelrail") {
-        let found = format!("a folder with {} entries and no {} of ours", entries.len(), names.marker);
+/// Returns what is in `target` and is not ours.
+///
+/// # Errors
+/// A folder that is neither empty nor ours; one that cannot be read.
+fn entries_not_ours(target: &Path, names: Names) -> Result<Vec<Foreign>> {
+    let count = fs::read_dir(target).map_err(|e| unwritable(target, e))?.count();
+    if count > 0 && !marked(target, names) {
+        let found = format!("a folder with {count} entries and no {} of ours", names.marker);
         return Err(bad(
             target,
             &found,
@@ -263,23 +264,17 @@ fn foreign_files(target: &Path, names: Names) -> Result<Vec<PathBuf>> {
             "give another folder: the folder would be replaced",
         ));
     }
-    let is_foreign = |entry: &fs::DirEntry| !names.files.iter().any(|name| entry.file_name() == **name);
-    let foreign: Vec<_> = entries.iter().filter(|entry| is_foreign(entry)).collect();
-    // Subfolders are ours if they are named like ours, are folders of the same kind and contain nothing else.
-    let is_folder = |entry: &fs::DirEntry| entry.file_type().is_ok_and(|kind| kind.is_dir());
-    let is_part = |entry: &fs::DirEntry| {
-        let named = entry.file_name().to_str().is_some_and(names.is_part);
-        let marked = named && is_folder(entry) && entry.path().join(names.marker).exists();
-        marked && foreign_files(&entry.path(), names).is_ok_and(|files| files.is_empty())
-    };
-    let foreign: Vec<_> = foreign.into_iter().filter(|entry| !is_part(entry)).collect();
-    if let Some(folder) = foreign.iter().find(|entry| is_folder(entry)) {
-        let found =
-            format!("a folder {} with files of others, or of another run", folder.file_name().display());
-        let expected = "nothing beside this command's own files and subfolders";
-        return Err(bad(target, &found, expected, "move it elsewhere or give another folder"));
+    foreign(target, names).map_err(|e| unwritable(target, e))
+}
+
+/// Returns a free name beside `target` for an old folder that could not be taken over.
+fn left_name(target: &Path) -> String {
+    let name = target.file_name().unwrap_or_default().to_string_lossy();
+    let mut number = 1_u32;
+    while target.with_file_name(format!("{name}.old-{number}")).exists() {
+        number += 1;
     }
-    Ok(foreign.into_iter().map(fs::DirEntry::path).collect())
+    format!("{name}.old-{number}")
 }
 
 /// Exchanges the names of two folders.
@@ -298,7 +293,7 @@ fn exchange_in_two(new: &Path, old: &Path) -> io::Result<()> {
     }
 }
 
-/// Undoes an [`exchange_in_two`] that was killed half-way; the next run tries a refused rename again.
+/// Undoes an [`exchange_in_two`] that was killed half-way. If a rename is refused, the next run tries again.
 fn put_back(target: &Path) {
     let aside = aside_of(target);
     if !aside.is_dir() {
@@ -314,16 +309,6 @@ fn put_back(target: &Path) {
 fn aside_of(target: &Path) -> PathBuf {
     let name = target.file_name().unwrap_or_default().to_string_lossy();
     parent_of(target).join(format!("{ASIDE}{name}"))
-}
-
-fn unwritable(path: &Path, error: io::Error) -> Error {
-    bad(
-        path,
-        &error.to_string(),
-        "a folder that can be written",
-        "check its permissions or give another folder",
-    )
-    .caused_by(error)
 }
 
 #[cfg(test)]

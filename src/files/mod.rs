@@ -1,4 +1,4 @@
-//! The disk: the files that the program reads and those that it leaves. No other room opens a file.
+//! The disk: the files that the program reads and writes. No other room opens a file.
 //!
 //! A written file or folder appears whole or not at all: a single file by [`NewFile`], a folder of files by
 //! [`Folder`].
@@ -6,6 +6,7 @@
 mod complaint;
 mod file;
 mod folder;
+mod foreign;
 mod names;
 mod read;
 mod system;

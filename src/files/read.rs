@@ -1,13 +1,13 @@
-//! Reads whole files of a bounded size, with errors in the house form.
+//! Reads whole files of a limited size. The errors name the file.
 
 use std::fs::File;
-use std::io::{ErrorKind, Read};
+use std::io::{self, Read};
 use std::path::Path;
 
 use super::complaint::bad;
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, ErrorKind, Result};
 
-/// Returns the bytes of a file of at most `largest` bytes; it reads no more from a pipe or device either.
+/// Returns the bytes of a file of at most `largest` bytes. From a pipe or device it reads no more than that, either.
 ///
 /// # Errors
 /// An unreadable or larger file.
@@ -16,16 +16,16 @@ pub fn read_bytes(path: &Path, largest: usize) -> Result<Vec<u8>> {
     let read = File::open(path).and_then(|file| file.take(largest as u64 + 1).read_to_end(&mut bytes));
     read.map_err(|error| {
         let found = match error.kind() {
-            ErrorKind::NotFound => "no such file".to_owned(),
-            ErrorKind::PermissionDenied => "a file that you may not read".to_owned(),
-            ErrorKind::IsADirectory => "a folder".to_owned(),
+            io::ErrorKind::NotFound => "no such file".to_owned(),
+            io::ErrorKind::PermissionDenied => "a file that you may not read".to_owned(),
+            io::ErrorKind::IsADirectory => "a folder".to_owned(),
             _ => error.to_string(),
         };
         bad(path, &found, "a readable file", "check the path").caused_by(error)
     })?;
     if bytes.len() > largest {
         let (found, expected) = (format!("more than {largest} bytes"), format!("at most {largest} bytes"));
-        return Err(bad(path, &found, &expected, "is this the right file?").of_kind(Kind::Limit));
+        return Err(bad(path, &found, &expected, "is this the right file?").of_kind(ErrorKind::Limit));
     }
     Ok(bytes)
 }

@@ -1,6 +1,6 @@
-//! Makes temporary names beside what will be replaced. The process that uses a name locks it (`flock`), and
-//! the kernel drops the lock with the process: a name without a lock was left by a process that was killed.
-//! The next process that writes into the same folder removes it.
+//! Makes temporary names beside what will be replaced. A process locks the name that it uses (`flock`), and the kernel
+//! drops the lock when the process ends. A name without a lock therefore belonged to a process that was killed; the next
+//! process that writes into the same folder removes it.
 
 use super::system;
 use std::fs::{self, File, TryLockError};
@@ -12,21 +12,20 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Beginning of every temporary name, followed by `NAME.PID.NUMBER`.
 pub(super) const TEMPORARY: &str = ".wheelrail-tmp.";
 
-/// Most names tried: a name is lost only to a run that cleans up at that very instant, or to a killed process
-/// that had the same number.
+/// Most names tried. A name is lost only to a run that cleans up at that very instant, or to a killed process that had the
+/// same number.
 const NAMES_TRIED: u32 = 100;
 
-/// Characters of a temporary name that tell what it is for; the limit keeps the name within what file systems
-/// allow.
+/// Most characters of the target's name in a temporary name. File systems limit the length of names.
 const NAME_SHOWN: usize = 40;
 
-/// Numbers the temporary names of this process. No number is used twice: the owner of a name deletes it after
-/// its content has been moved, and must not meet another thread's content there.
+/// Number of the next temporary name of this process. No number is used twice: the owner of a name deletes it after its
+/// content has moved away, and must not find another thread's content there.
 static NUMBER: AtomicU64 = AtomicU64::new(0);
 
-/// Makes a new folder or file beside `target` with `make`, open and locked. The lock comes a moment after the
-/// name. A process that cleans up in between takes the name for stale; then the lock is lost or the name is
-/// gone, and the next name is tried.
+/// Makes a new folder or file beside `target` with `make`, open and locked. The lock comes a moment after the name. If
+/// another process cleans up in between, it takes the name for stale: then the lock is refused or the name is gone, and the
+/// next name is tried.
 ///
 /// # Errors
 /// The errors of `make`; too many names in use.
@@ -40,14 +39,14 @@ pub(super) fn locked(target: &Path, make: impl Fn(&Path) -> io::Result<File>) ->
         let path = target.with_file_name(format!("{TEMPORARY}{name}.{}.{number}", process::id()));
         let made = match make(&path) {
             Ok(made) => made,
-            // A folder that was made may be gone before it is open.
+            // Another process may have removed a folder between its making and its opening.
             Err(e) if matches!(e.kind(), ErrorKind::AlreadyExists | ErrorKind::NotFound) => {
                 error = e;
                 continue;
             }
             Err(e) => return Err(e),
         };
-        // A file system without locks (Error) has no cleaning either.
+        // A file system without locks (`Error`) is never cleaned up.
         let lost = matches!(made.try_lock(), Err(TryLockError::WouldBlock));
         if !lost && system::is_at(&made, &path) {
             return Ok((path, made));
@@ -56,13 +55,13 @@ pub(super) fn locked(target: &Path, make: impl Fn(&Path) -> io::Result<File>) ->
     Err(error)
 }
 
-/// Removes what dead processes have left in a folder. What cannot be removed belongs to somebody else, or the
-/// next process tries again.
+/// Removes what killed processes have left in a folder. What cannot be removed belongs to another user, or the next process
+/// tries again.
 pub(super) fn remove_stale(parent: &Path) {
     for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
         let ours = entry.file_name().to_string_lossy().starts_with(TEMPORARY);
         let Ok(kind) = entry.file_type() else { continue };
-        // A pipe of that name would block.
+        // Opening a pipe of that name would wait for a writer.
         if !ours || !(kind.is_dir() || kind.is_file()) {
             continue;
         }

@@ -6,8 +6,7 @@ use crate::patch::skewed::monotone::monotone;
 use crate::patch::skewed::valleys::Valleys;
 use crate::patch::turning_points;
 use crate::placement::Placement;
-use crate::separation::Evaluator;
-use crate::separation::gap::midplane_gap;
+use crate::separation::{Evaluator, midplane_gap};
 
 /// Overlap, as a share of the profiles' extent, up to which a contact counts as feasible: rounding of the
 /// profile and of its drawing's tangents (1e-10 mm on a wheel), far below what any solver resolves.
@@ -38,6 +37,20 @@ pub struct Feasibility {
 /// numerics.
 ///
 /// Cost: some ten nanoseconds a joint without skew, some hundred with it.
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
+/// use wheelrail::feasibility;
+/// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+/// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+/// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+/// # let pair = Pair::new(rail, wheel, 460.0)?;
+/// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
+/// let found = feasibility(&placement).expect("bodies that lie over each other");
+/// assert!(found.feasible);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 pub fn feasibility(placement: &Placement) -> Option<Feasibility> {
     let (least_separation_mm, at_xi_mm, at_eta_mm) =
         if placement.skew() == 0.0 { least_in_midplane(placement)? } else { least_under_skew(placement)? };

@@ -50,6 +50,26 @@ pub struct Ellipse {
 }
 
 /// The principal curvatures of s at C.
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
+/// use wheelrail::load::{Elastic, curvatures, effective_modulus};
+/// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+/// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+/// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+/// # let pair = Pair::new(rail, wheel, 460.0)?;
+/// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
+/// let curvatures = curvatures(&placement);
+/// assert!((curvatures.a_per_mm * 920.0 - 1.0).abs() < 1e-12 && (curvatures.b_per_mm * 600.0 - 1.0).abs() < 1e-12);
+///
+/// let steel = Elastic { youngs_modulus: 210_000.0, poissons_ratio: 0.28 };
+/// let modulus = effective_modulus(&steel, &steel);
+/// assert!((modulus - 113_932.3).abs() < 0.1);
+/// let ellipse = curvatures.under_load(80_000.0, modulus).expect("a convex gap");
+/// assert!((ellipse.approach_mm - 0.090_487_9).abs() < 1e-6);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 pub fn curvatures(placement: &Placement) -> Curvatures {
     principal(quadratic_form(placement))
 }

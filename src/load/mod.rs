@@ -1,5 +1,11 @@
-//! From a normal load to an approach δ, and whether a chosen contact can stand at all.
+//! From a load to approaches δ and back, and whether a chosen contact can stand at all.
 
-pub mod feasibility;
-pub mod hertz;
-pub mod virtual_interpenetration;
+mod approach;
+mod feasibility;
+mod half_space;
+mod hertz;
+
+pub use approach::{Estimate, hertz_holds, under_total};
+pub use feasibility::{Feasibility, feasibility};
+pub use half_space::HalfSpace;
+pub use hertz::{Curvatures, Elastic, Ellipse, curvatures, curvatures_at, effective_modulus};

@@ -1,4 +1,4 @@
-//! Columns of tables, as a user names them.
+//! A column of a table, as a user names it.
 
 use std::fmt;
 

@@ -1,13 +1,13 @@
-//! Turns an instrument's file of measured points into a profile, a chain of segments.
+//! Turns an instrument's file of measured points into a profile.
 //!
 //! ```text
 //! bytes ─ scan ─ reader of the format ─ placing ─ repairs ─ checks ─ curve ─ Profile
 //!                   (miniprof, simpack, columns)  (options)         └ smoothing spline, interpolation, arcs
 //! ```
 //!
-//! Nothing is guessed and nothing is repaired in silence. An option decides, or else the format's definition,
-//! or else the shape; a question that none of them answers is an error that lists the choices. Every decision
-//! is in the [`Record`]. This module does not access the disk.
+//! Nothing is guessed, and nothing is repaired in silence. An option decides first, then the definition of the format, then
+//! the shape. A question that none of them answers is an error that lists the choices. Every decision is in the [`Record`].
+//! This module does not access the disk.
 
 mod clean;
 mod column;
@@ -16,6 +16,7 @@ mod options;
 mod place;
 mod read;
 mod shape;
+mod slice;
 mod unit;
 pub mod write;
 
@@ -32,36 +33,41 @@ pub use options::{
 };
 pub use place::{Step, Transform};
 pub use read::format::Format;
-pub use read::points::{Element, ElementShape, MOST_ELEMENTS, MOST_POINTS, Note, Point, Points};
+pub use read::points::{DesignElement, ElementShape, MOST_ELEMENTS, MOST_POINTS, Note, Point, Points};
 pub use read::scan::LARGEST_FILE;
+pub use read::slices::{MOST_SLICES, Slice, SliceList, listed_body};
+pub use slice::{Cut, CutRecord, Share};
 pub use unit::Unit;
 
 use serde::Serialize;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::profile::{Profile, Side};
 
-/// What was read, decided, repaired and fitted; written to summary.json.
+/// The decisions, repairs and fit that made a profile from a file. A run writes them to summary.json.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Record {
     /// The file's format.
     pub format: Format,
-    /// Number of points in the file, or in the section chosen.
+    /// Number of points in the file, or in the chosen section.
     pub points_read: usize,
-    /// Number of points under the curve.
+    /// Number of points through or near which the curve is drawn.
     pub points_used: usize,
-    /// Oddities of the file.
+    /// Oddities of the file that did not prevent reading it.
     pub notes: Vec<Note>,
-    /// Transformation from the file's axes to the profile's.
+    /// Transformation from the file's axes to those of the profile.
     pub transform: Transform,
     /// Whether the points already contain the rail's inclination.
     pub already_inclined: bool,
     /// The repairs that were made.
     pub repairs: Vec<Repaired>,
-    /// Findings that remain and that a user should know of.
+    /// Findings that were neither fatal nor repaired.
     pub warnings: Vec<Finding>,
     /// The curve that was drawn.
     pub curve: CurveRecord,
+    /// Where the section was cut; `None` for a profile that is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cut: Option<CutRecord>,
 }
 
 /// A measured profile with its points and its record.
@@ -69,19 +75,37 @@ pub struct Record {
 pub struct Measured {
     /// The profile.
     pub profile: Profile,
-    /// The points under the curve \[mm\], in profile axes, from left to right.
+    /// The points \[mm\] through or near which the curve is drawn, in profile axes, from left to right.
     pub points: Vec<Point>,
-    /// How the profile was made.
+    /// Record of how the profile was made.
     pub record: Record,
 }
 
-/// Makes the profile of a file of measured points. `file` is its name, for the format and for messages.
+/// Makes the profile from the bytes of a file. `file` is its name; the name tells the format and appears in messages.
 ///
-/// Cost: about 5 µs a point for usual files, 20 µs a point for a million, most of it for the spline.
+/// Cost: about 5 µs a point for usual files, 20 µs a point for a million points; the spline takes most of it.
 ///
 /// # Errors
-/// Anything wrong with the options, the file or its points, with the place: see [`Options`],
-/// [`Format`], [`Transform`], [`Check`].
+/// Anything wrong with the options, the file or its points, with the place. See [`Options`], [`Format`], [`Transform`] and
+/// [`Check`].
+///
+/// # Examples
+/// ```
+/// use wheelrail::Side;
+/// use wheelrail::measured::{CurveKind, Options, profile};
+///
+/// let file = (0..=40).map(|k| f64::from(k) - 20.0).map(|x| format!("{x},{}\n", -x * x / 600.0)).collect::<String>();
+/// let options = Options {
+///     mirror: Some(false),
+///     flip_z: Some(false),
+///     curve: Some(CurveKind::Interpolation),
+///     ..Options::default()
+/// };
+/// let measured = profile("crown.csv", file.as_bytes(), Side::Rail, &options)?;
+/// assert_eq!(measured.record.points_used, 41);
+/// assert_eq!(measured.profile.segments().len(), 40);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 pub fn profile(file: &str, bytes: &[u8], side: Side, options: &Options) -> Result<Measured> {
     options.validate()?;
     let format = match options.format {
@@ -93,10 +117,10 @@ pub fn profile(file: &str, bytes: &[u8], side: Side, options: &Options) -> Resul
     build(file, points, side, options).map_err(|error| error.within(file))
 }
 
-/// Returns the body that a file describes, by its extension or its header; `None` if neither says.
+/// Returns the body that a file describes, by its extension or its header. Returns `None` if neither tells.
 ///
 /// # Errors
-/// The errors of [`Format::of_file`], and of a file that is not of its format.
+/// The errors of [`Format::of_file`]; a file that is not of its format.
 pub fn body(file: &str, bytes: &[u8], options: &Options) -> Result<Option<Side>> {
     if let Some(side) = Format::body_of_file(file) {
         return Ok(Some(side));
@@ -109,7 +133,99 @@ pub fn body(file: &str, bytes: &[u8], options: &Options) -> Result<Option<Side>>
     }
 }
 
+/// Makes the profile of a section between slices. `file` is the name of the list, and `contents` gives the bytes of a
+/// slice by its name in [`Cut::files`], which is asked for once.
+///
+/// Options hold for every slice. See [`Cut`] for the place; the accuracy is in `docs/measured-files.md`.
+///
+/// # Errors
+/// The errors of [`profile`] for each slice, with its name; slices that are turned differently, have an origin of their
+/// own each, or have no part in common.
+pub fn section(
+    file: &str,
+    cut: &Cut<'_>,
+    contents: &[(&str, Vec<u8>)],
+    side: Side,
+    options: &Options,
+) -> Result<Measured> {
+    let options = Options { along: None, angle: None, ..options.clone() };
+    options.validate()?;
+    let whole = || -> Result<Measured> {
+        if matches!(options.origin, Some(Origin::Named(NamedOrigin::GaugePoint | NamedOrigin::TapeLine))) {
+            let expected = "one origin for all slices, \"as-is\" or a point [x, z]";
+            return Err(Error::new("origin", "an origin that each slice finds", expected, "choose another"));
+        }
+        let slices: Vec<(&str, Placed)> = contents
+            .iter()
+            .map(|(name, bytes)| Ok((*name, slice(name, bytes, side, &options).map_err(|e| e.within(name))?)))
+            .collect::<Result<_>>()?;
+        same_turn(&slices)?;
+        let of = |name: &str| slices.iter().find(|(own, _)| *own == name).map(|(_, placed)| placed);
+        let missing = |name: &str| Error::new(name, "no content", "the bytes of the slice", "read its file");
+        let (points, record) = cut
+            .interpolate(|name| of(name).map(|placed| placed.points.clone()).ok_or_else(|| missing(name)))?;
+        let model = of(&record.points_of).ok_or_else(|| missing(&record.points_of))?;
+        let all =
+            |list: fn(&Placed) -> &[Note]| slices.iter().flat_map(|(_, own)| list(own).to_vec()).collect();
+        let placed = Placed {
+            points,
+            elements: Vec::new(),
+            elements_alone: false,
+            notes: all(|own| &own.notes),
+            repairs: slices.iter().flat_map(|(_, own)| own.repairs.clone()).collect(),
+            ..model.clone()
+        };
+        let source = format!("{} of slices {file}", cut.place());
+        let within = format!("{} with the points of {}", cut.place(), record.points_of);
+        drawn(file, source, placed, side, &options, Some(record)).map_err(|error| error.within(within))
+    };
+    whole().map_err(|error| error.within(file))
+}
+
+/// Reads and places one slice, and rejects points that no curve can be drawn through.
+fn slice(name: &str, bytes: &[u8], side: Side, options: &Options) -> Result<Placed> {
+    let format = options.format.map_or_else(|| Format::of_file(name), Ok)?;
+    let placed = placed(read::reader::read(bytes, format, options.columns.as_ref())?, side, options)?;
+    clean::checks::reject(&clean::checks::findings(&placed.points, side, options.gauge_height()))?;
+    Ok(placed)
+}
+
+/// Rejects slices whose shapes or formats turn them differently.
+fn same_turn(slices: &[(&str, Placed)]) -> Result<()> {
+    let [(a, first), (b, second)] = slices else { return Ok(()) };
+    if first.transform.scale == second.transform.scale {
+        return Ok(());
+    }
+    let found = format!(
+        "scales {:?} of {a} and {:?} of {b}, as their formats and shapes have it",
+        first.transform.scale, second.transform.scale
+    );
+    Err(Error::new("mirror", found, "slices turned alike", "give `mirror`, `flip_z` and `unit`"))
+}
+
+/// The points of one file in profile axes, and how they came there.
+#[derive(Debug, Clone)]
+struct Placed {
+    format: Format,
+    points_read: usize,
+    points: Vec<Point>,
+    elements: Vec<DesignElement>,
+    /// Whether the file has design elements only.
+    elements_alone: bool,
+    notes: Vec<Note>,
+    transform: Transform,
+    /// Findings about the orientation.
+    turned: Vec<Finding>,
+    repairs: Vec<Repaired>,
+}
+
 fn build(file: &str, read: Points, side: Side, options: &Options) -> Result<Measured> {
+    let source = format!("{} file {file}", format_title(read.format));
+    drawn(file, source, placed(read, side, options)?, side, options, None)
+}
+
+/// Turns the points of a file into profile axes and repairs them.
+fn placed(read: Points, side: Side, options: &Options) -> Result<Placed> {
     let mut read = match options.section {
         Some(number) => read.section(number)?,
         None => read,
@@ -122,23 +238,37 @@ fn build(file: &str, read: Points, side: Side, options: &Options) -> Result<Meas
     let (transform, turned) = place::resolve(&read, side, options)?;
     let mut points = transform.points(&read.at);
     let repairs = clean::repairs::repair(&mut points, &options.repair);
+    let elements = read.elements.iter().map(|element| transform.element(element)).collect();
+    let (format, points_read, notes) = (read.format, read.at.len(), read.notes);
+    Ok(Placed { format, points_read, points, elements, elements_alone, notes, transform, turned, repairs })
+}
+
+/// Checks placed points and draws the curve through them.
+fn drawn(
+    name: &str,
+    source: String,
+    placed: Placed,
+    side: Side,
+    options: &Options,
+    cut: Option<CutRecord>,
+) -> Result<Measured> {
+    let Placed { points, elements, elements_alone, .. } = placed;
     let findings = clean::checks::findings(&points, side, options.gauge_height());
     clean::checks::reject(&findings)?;
-    let warnings = findings.into_iter().chain(turned).collect();
-    let placed: Vec<Element> = read.elements.iter().map(|element| transform.element(element)).collect();
-    let (segments, curve) = fit::curve::curve(&points, &placed, options, elements_alone)?;
-    let source = format!("{} file {file}", format_title(read.format));
-    let profile = Profile::new(file, source, segments)?;
+    let warnings = findings.into_iter().chain(placed.turned).collect();
+    let (segments, curve) = fit::curve::curve(&points, &elements, options, elements_alone)?;
+    let profile = Profile::new(name, source, segments)?;
     let record = Record {
-        format: read.format,
-        points_read: read.at.len(),
+        format: placed.format,
+        points_read: placed.points_read,
         points_used: points.len(),
-        notes: read.notes,
-        transform,
+        notes: placed.notes,
+        transform: placed.transform,
         already_inclined: options.already_inclined,
-        repairs,
+        repairs: placed.repairs,
         warnings,
         curve,
+        cut,
     };
     Ok(Measured { profile, points, record })
 }

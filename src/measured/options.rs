@@ -9,44 +9,50 @@ use super::unit::Unit;
 use crate::error::{Error, Result, finite};
 use crate::profile::Side;
 
-/// Default cut-off wavelength \[mm\] of smoothing: below the shortest features that carry load (a 13 mm gauge
-/// corner turns a right angle over 20 mm), above the waves of measuring noise.
+/// Default cut-off wavelength \[mm\] of smoothing. It is shorter than the shortest features that carry load (a 13 mm gauge
+/// corner turns a right angle over 20 mm), and longer than the waves of measuring noise.
 pub const CUTOFF_WAVELENGTH: f64 = 5.0;
-/// Cut-off wavelengths \[mm\] tried under a chain of arcs; the first with a residual small enough for the
-/// tolerance is taken, else interpolation.
+/// Cut-off wavelengths \[mm\] tried before a chain of arcs. The first one with a residual small enough for the tolerance is
+/// used; if there is none, the points are interpolated.
 pub(super) const ARC_CUTOFFS: [f64; 4] = [5.0, 2.5, 1.25, 0.625];
-/// Default kink angle \[rad\], 30°: worn fillets turn less within half a cut-off wavelength; edges of plastic
-/// flow and of drawings turn more.
+/// Default kink angle \[rad\], 30°. Worn fillets turn by less within half a cut-off wavelength; edges of plastic flow and
+/// of drawings turn by more.
 pub const KINK_ANGLE: f64 = std::f64::consts::FRAC_PI_6;
-/// Default tolerance of an arc chain \[mm\]: the accuracy of hand-held instruments.
+/// Default tolerance of a chain of arcs \[mm\]: the accuracy of hand-held instruments.
 pub const ARC_TOLERANCE: f64 = 0.01;
 /// Default depth of the gauge point below the top of rail \[mm\] (EN 13848: 14).
 pub const GAUGE_HEIGHT: f64 = 14.0;
 /// Default distance of the taping line from the flange back \[mm\] (EN 13715: 70).
 pub const TAPE_DISTANCE: f64 = 70.0;
 
-/// How a measured file becomes a profile. Every option may be left out. Then the definition of the file's
-/// format decides; if it says nothing, the shape decides; if the shape proves nothing, this is an error.
+/// How a measured file becomes a profile. Every option may be left out. The definition of the file's format then decides;
+/// if it says nothing, the shape decides; if the shape proves nothing, this is an error.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Options {
-    /// Format of the file; by the file's extension if not given.
+    /// Format of the file; if not given, its extension tells.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub format: Option<Format>,
     /// Columns of x and z in a text or CSV file: numbers from 1, or names in its first row.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub columns: Option<[Column; 2]>,
-    /// Section of an .mpt file to use, from 1; all sections in a row if not given.
+    /// Section of an .mpt file to use, from 1; if not given, all sections in a row.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub section: Option<usize>,
+    /// Of an `.slcs` file: place of the section along the track, mm, between the first slice and the last.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub along: Option<f64>,
+    /// Of an `.slcw` file: place of the section around the wheel, rad; a wheel is periodic.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub angle: Option<f64>,
     /// Whether the file's first axis points to the centre of the track (x = −first). Profiles are right-hand:
     /// flange and gauge corner at negative x.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mirror: Option<bool>,
-    /// Whether the file's second axis points down (z = −second).
+    /// Whether the file's second axis points down, so that z = −second.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flip_z: Option<bool>,
-    /// Unit of the file's coordinates; mm if neither the option nor the file states it.
+    /// Unit of the file's coordinates; if neither the option nor the file states it, mm.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unit: Option<Unit>,
     /// Point of the file that becomes the origin.
@@ -58,25 +64,23 @@ pub struct Options {
     /// Distance of the taping line from the flange back, mm; 70 if not given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tape_distance: Option<f64>,
-    /// Whether the rail was measured as it lies, so that the points already contain its inclination and it is
-    /// not applied again.
+    /// Whether the rail was measured as it lies. Its points then contain its inclination already, which is not applied
+    /// again.
     pub already_inclined: bool,
     /// Repairs that may be made; the summary lists each repair that was made.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub repair: Vec<Repair>,
-    /// Kind of curve through the points; if not given "smoothing", or "elements" for a file with design
-    /// elements only.
+    /// Kind of curve through the points. If not given: "smoothing", or "elements" for a file that has only design elements.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub curve: Option<CurveKind>,
-    /// Wavelength that smoothing halves, mm; 5 if not given. For arcs it smooths the tangents; if not given,
-    /// the tolerance decides.
+    /// Wavelength whose waves smoothing halves, mm; 5 if not given. Before a chain of arcs it smooths the tangents; if not
+    /// given, the tolerance decides there.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cutoff_wavelength: Option<f64>,
-    /// Largest kink that smoothing may round off, rad; larger kinks stay corners. π/6 if not given; π for no
-    /// corners.
+    /// Largest kink that smoothing may round off, rad; larger kinks stay corners. π/6 if not given; π means no corners.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub kink_angle: Option<f64>,
-    /// Largest distance of a point from the arc chain, mm; 0.01 if not given.
+    /// Largest distance of a point from the chain of arcs, mm; 0.01 if not given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub arc_tolerance: Option<f64>,
 }
@@ -87,19 +91,19 @@ pub struct Options {
 pub enum Origin {
     /// An origin with a name.
     Named(NamedOrigin),
-    /// This point \[x, z\], mm, of the file after its axes are turned into the profile's.
+    /// This point \[x, z\] of the file, mm, after its axes are turned into those of the profile.
     At([f64; 2]),
 }
 
-/// An origin with a name.
+/// The origins that have a name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum NamedOrigin {
-    /// The file's own origin.
+    /// The origin of the file.
     AsIs,
-    /// For a rail: x of the innermost point down to the gauge height, z of the top of rail.
+    /// For a rail: x of the innermost point down to the gauge height; z of the top of rail.
     GaugePoint,
-    /// For a wheel: the tread at the taping distance from the flange back.
+    /// For a wheel: the point of the tread at the taping distance from the flange back.
     TapeLine,
 }
 
@@ -109,7 +113,7 @@ pub enum NamedOrigin {
 pub enum Repair {
     /// Keeps one of several coinciding points.
     DropDuplicates,
-    /// Sorts points between two reversals along the direction across them.
+    /// Sorts the points between two reversals along the direction across them.
     Sort,
     /// Drops points that stick out.
     RemoveSpikes,
@@ -123,7 +127,7 @@ pub enum Repair {
 pub enum CurveKind {
     /// A cubic smoothing spline, C² between corners.
     Smoothing,
-    /// A cubic spline through every point, C² between corners.
+    /// A cubic interpolating spline through every point, C² between corners.
     Interpolation,
     /// A chain of arcs, G¹ between corners.
     Arcs,
@@ -132,22 +136,22 @@ pub enum CurveKind {
 }
 
 impl Options {
-    /// Returns the depth of the gauge point below the top of rail \[mm\].
+    /// Returns the depth of the gauge point below the top of rail \[mm\], given or default.
     pub fn gauge_height(&self) -> f64 {
         self.gauge_height.unwrap_or(GAUGE_HEIGHT)
     }
 
-    /// Returns the distance of the taping line from the flange back \[mm\].
+    /// Returns the distance of the taping line from the flange back \[mm\], given or default.
     pub fn tape_distance(&self) -> f64 {
         self.tape_distance.unwrap_or(TAPE_DISTANCE)
     }
 
-    /// Returns the kink angle \[rad\].
+    /// Returns the kink angle \[rad\], given or default.
     pub fn kink_angle(&self) -> f64 {
         self.kink_angle.unwrap_or(KINK_ANGLE)
     }
 
-    /// Returns the tolerance of an arc chain \[mm\].
+    /// Returns the tolerance of a chain of arcs \[mm\], given or default.
     pub fn arc_tolerance(&self) -> f64 {
         self.arc_tolerance.unwrap_or(ARC_TOLERANCE)
     }
@@ -160,10 +164,10 @@ impl Options {
         of.filter(|(key, value)| default.get(key) != Some(value)).map(|(key, _)| key.clone()).collect()
     }
 
-    /// Rejects meaningless numbers, and options that contradict each other.
+    /// Rejects numbers without meaning, and options that contradict each other.
     ///
     /// # Errors
-    /// A meaningless or contradicted option, with its name.
+    /// An option without meaning, or one that contradicts another; the error names it.
     pub fn validate(&self) -> Result<()> {
         let lengths = [
             ("gauge_height", self.gauge_height),
@@ -202,11 +206,11 @@ impl Options {
         ])
     }
 
-    /// Rejects options that have no effect for a file of this body and format; `drawn` tells that the file
-    /// has design elements only.
+    /// Rejects options that have no effect for a file of this body and format. `drawn` is true for a file that has only
+    /// design elements.
     ///
     /// # Errors
-    /// An option without effect, with its name.
+    /// An option without effect; the error names it.
     pub(super) fn validate_for(&self, side: Side, format: Format, drawn: bool) -> Result<()> {
         let table = matches!(format, Format::Text | Format::Csv);
         let wheel = side == Side::Wheel;
@@ -215,18 +219,20 @@ impl Options {
         reject_idle(&[
             ("columns", self.columns.is_some() && !table, "a text or CSV file"),
             ("section", self.section.is_some() && format != Format::MiniProf, "an .mpt file"),
+            ("along", self.along.is_some(), "an .slcs file"),
+            ("angle", self.angle.is_some(), "an .slcw file"),
             ("gauge_height", self.gauge_height.is_some() && wheel, "a rail"),
             ("already_inclined", self.already_inclined && wheel, "a rail"),
             ("kink_angle", self.kink_angle.is_some() && as_drawn, fitted),
             ("cutoff_wavelength", self.cutoff_wavelength.is_some() && as_drawn, fitted),
-            // If a file has points too, repairs decide whether its points pass the checks.
+            // If a file has points besides its elements, repairs decide whether its points pass the checks.
             ("repair", !self.repair.is_empty() && drawn && as_drawn, fitted),
         ])
     }
 }
 
-/// Rejects the first option that has no effect; each entry is (option, whether it is given and has no effect,
-/// what it belongs to).
+/// Rejects the first option that is given and has no effect. Each entry is (option, whether it is given without effect, the
+/// kind of file or curve that it belongs to).
 fn reject_idle(options: &[(&str, bool, &str)]) -> Result<()> {
     match options.iter().find(|(_, idle, _)| *idle) {
         None => Ok(()),

@@ -1,4 +1,4 @@
-//! Turns points from the file's axes into the profile's: x to the field side, z up, mm, right-hand, from left
+//! Turns points from the file's axes into those of the profile: x to the field side, z up, mm, right-hand, points from left
 //! to right.
 
 use serde::Serialize;
@@ -6,19 +6,19 @@ use serde::Serialize;
 use super::Format;
 use super::clean::checks::{Finding, reject_width};
 use super::options::{NamedOrigin, Options, Origin};
-use super::read::points::{Element, ElementShape, Point, Points};
+use super::read::points::{DesignElement, ElementShape, Point, Points};
 use super::shape::{flange_side, gauge_depth, gauge_side, has_flange_back, head_up, running_head, top};
 use crate::error::{Error, Result};
 use crate::profile::Side;
 
-/// One decision on the way from the file to the profile.
+/// A decision on the way from the file to the profile.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Step {
-    /// Subject of the decision: "unit", "mirror", "flip_z", "origin" or "order".
+    /// What is decided: "unit", "mirror", "flip_z", "origin" or "order".
     pub what: &'static str,
     /// What was done.
     pub done: String,
-    /// Reason: an option, the format, or a proof from the shape.
+    /// Reason: an option, the definition of the format, or a proof from the shape.
     pub because: String,
 }
 
@@ -35,8 +35,8 @@ pub struct Transform {
     pub steps: Vec<Step>,
 }
 
-/// Returns what the format defines: whether x = −first and whether z = −second, `None` where it says nothing.
-/// The sources are in `docs/measured-files.md`.
+/// Returns the axes that the format defines: whether x = −first, and whether z = −second. `None` means that the format
+/// defines nothing. The sources are in `src/docs/measured-files.md`.
 fn definition(format: Format, side: Side) -> [Option<bool>; 2] {
     match (format, side) {
         // Instruments and converters write rails with either sign.
@@ -48,13 +48,13 @@ fn definition(format: Format, side: Side) -> [Option<bool>; 2] {
     }
 }
 
-/// Finds the transformation from options, format and shape, in this order: an option always holds, else the
-/// format's definition; the shape decides only what the format leaves open. The findings are definitions that
-/// the shape contradicts, with the option that would reverse them; they change nothing.
+/// Finds the transformation from options, format and shape. An option always decides; without it the definition of the
+/// format decides; the shape decides only what the format leaves open. The findings are definitions that the shape
+/// contradicts, each with the option that would reverse it; they change nothing.
 ///
 /// # Errors
-/// A body other than the file's own; an orientation that neither option, format nor shape decides, with the
-/// choices; an origin that the points do not reach.
+/// A body other than the file's own. An orientation that neither option, format nor shape decides; the error lists the
+/// choices. An origin that the points do not reach.
 pub fn resolve(points: &Points, side: Side, options: &Options) -> Result<(Transform, Vec<Finding>)> {
     if let Some(body) = points.body.filter(|body| *body != side) {
         let (found, expected) = (format!("a {} profile", name(body)), format!("a {} profile", name(side)));
@@ -110,7 +110,7 @@ fn unit(points: &Points, options: &Options, steps: &mut Vec<Step>) -> Result<f64
     Ok(unit)
 }
 
-/// One of the two questions of orientation: `mirror` or `flip_z`.
+/// One of the two questions about the orientation: `mirror` or `flip_z`.
 struct Axis {
     what: &'static str,
     option: Option<bool>,
@@ -138,8 +138,8 @@ impl Axis {
         Ok(turn)
     }
 
-    /// Returns a finding if the definition that was followed contradicts what the shape shows; none if an
-    /// option decided, which is the user's knowledge.
+    /// Returns a finding if the shape contradicts the format's definition that was followed. There is none if an option
+    /// decided, because the user knows better.
     fn contradiction(&self, proof: Option<&(bool, String)>, at: &[Point]) -> Option<Finding> {
         let defined = self.definition.filter(|_| self.option.is_none())?;
         let (proven, why) = proof.filter(|(proven, _)| *proven != defined)?;
@@ -186,7 +186,7 @@ impl Transform {
         [self.scale[0] * x + self.shift[0], self.scale[1] * z + self.shift[1]]
     }
 
-    /// Turns points into profile axes, from left to right.
+    /// Turns points into profile axes, in order from left to right.
     pub fn points(&self, at: &[Point]) -> Vec<Point> {
         let place = |point: &Point| {
             let [x, z] = self.apply(point.xz());
@@ -195,8 +195,8 @@ impl Transform {
         if self.reversed { at.iter().rev().map(place).collect() } else { at.iter().map(place).collect() }
     }
 
-    /// Turns a design element into profile axes; an arc stays counter-clockwise.
-    pub fn element(&self, element: &Element) -> Element {
+    /// Turns a design element into profile axes. An arc stays counter-clockwise.
+    pub fn element(&self, element: &DesignElement) -> DesignElement {
         let shape = match element.shape {
             ElementShape::Line { from, to } => {
                 ElementShape::Line { from: self.apply(from), to: self.apply(to) }
@@ -212,10 +212,10 @@ impl Transform {
                 ElementShape::Arc { center: self.apply(center), radius, angles }
             }
         };
-        Element { shape, line: element.line }
+        DesignElement { shape, line: element.line }
     }
 
-    /// Makes the path go from left to right.
+    /// Reverses the order of the points if they go from right to left.
     fn reverse(&mut self, at: &[Point]) {
         if let [first, .., last] = at
             && self.apply(last.xz())[0] < self.apply(first.xz())[0]
@@ -255,7 +255,7 @@ impl Transform {
     }
 }
 
-/// Returns the gauge point: x of the innermost point of the running head within `depth` of its top, z of the
+/// Returns the gauge point: x of the innermost point of the running head down to `depth` \[mm\] below its top, and z of the
 /// top.
 fn gauge_point(points: &[Point], depth: f64) -> Result<([f64; 2], String)> {
     let measured = gauge_depth(points);
@@ -281,7 +281,7 @@ fn gauge_point(points: &[Point], depth: f64) -> Result<([f64; 2], String)> {
     Ok(([innermost, top], because))
 }
 
-/// Returns the point of the tread at `distance` from the flange back.
+/// Returns the point of the tread at `distance` \[mm\] from the flange back.
 fn tape_line(points: &[Point], distance: f64) -> Result<([f64; 2], String)> {
     let back = points.iter().map(|p| p.x).fold(f64::INFINITY, f64::min);
     let x = back + distance;
@@ -289,7 +289,7 @@ fn tape_line(points: &[Point], distance: f64) -> Result<([f64; 2], String)> {
         let [a, b] = [pair[0], pair[1]];
         if b.x == a.x { a.z.min(b.z) } else { a.z + (b.z - a.z) * ((x - a.x) / (b.x - a.x)) }
     });
-    // The tread is the lowest surface there, as the material is above.
+    // The material of a wheel is above, so that the tread is the lowest surface there.
     let z = heights.fold(f64::INFINITY, f64::min);
     if !has_flange_back(points) || z.is_infinite() {
         let found = format!("no flange back, or no tread {distance} mm from it");

@@ -1,47 +1,47 @@
 //! Decides the orientation of a profile from its shape: foot, groove and flange.
 //!
-//! This is used where neither an option nor the format's definition decides. A shape that looks like a body
-//! both ways up proves nothing: a groove cut off on both its tops is an upside-down head.
+//! This is used where neither an option nor the format's definition decides. A shape that looks like a body both ways up
+//! proves nothing. Example: a groove that is cut off on both its tops is an upside-down head.
 
 use std::ops::RangeInclusive;
 
 use super::read::points::Point;
 use crate::profile::{Side, last_groove};
 
-/// Least ratio of the end drops of a wheel's true upper side to those of the wrong one: 4 leaves room for
+/// Least ratio between the end drops of a wheel's true upper side and those of the wrong one. The value 4 leaves room for
 /// hollow wear and for edges that curl.
 const PLAIN: f64 = 4.0;
-/// Least drop \[mm\] of both ends from a rail's top, or from a flange's tip, that counts as a shape and not
-/// as wear or noise.
+/// Least drop \[mm\] of both ends from a rail's top, or from a flange's tip. A smaller drop may be wear or noise.
 const LEAST_DROP: f64 = 0.5;
 /// Heights \[mm\] of a flange tip over the tread, from tram flanges to fully worn railway flanges.
 const FLANGE_HEIGHTS: RangeInclusive<f64> = 10.0..=60.0;
 /// Least depth \[mm\] of a side face below the top of rail; gauge faces are measured at 14.
 const SIDE_FACE: f64 = 10.0;
-/// Least inclination of a side face: a fall of sin 30° of the length along it. Crowns end at less than 20°;
-/// the flattest worn gauge faces are at 50°.
+/// Least inclination of a side face: over a length l it falls by l sin 30°. Crowns end at less than 20°; the flattest worn
+/// gauge faces are at 50°.
 const FACE_SINE: f64 = 0.5;
-/// Length \[mm\] of an end along the path that is tested for being a face: longer than the hooks and lips at
-/// its end.
+/// Length \[mm\] along the path of an end that is tested for being a face. It is longer than the hooks and lips at the end
+/// of a face.
 const END: f64 = 6.0;
-/// Number of chords into which a path is cut to see how it turns: long against noise, short against a head.
+/// Number of chords into which a path is cut to see how it turns. Such chords are long against noise and short against a
+/// head.
 const CHORDS: usize = 16;
-/// Least turn \[rad\] of a rail's crown from end to end that counts as a shape: 75 mm of a radius of 300 mm.
+/// Least turn \[rad\] of a rail's crown from end to end: 75 mm of a radius of 300 mm. A smaller turn proves nothing.
 const LEAST_TURN: f64 = 0.25;
-/// Largest turn the other way, as a share of the turn, in an outline that bulges throughout: waves of wear
-/// and noise.
+/// Largest turn the other way, as a share of the turn, of an outline that bulges throughout. It leaves room for waves of
+/// wear and noise.
 const OTHER_WAY: f64 = 0.25;
 /// Least distance of a flange tip from the middle of the profile, as a share of its width.
 const OFF_MIDDLE: f64 = 0.15;
 /// Drop \[mm\] from the tip that shows that the flange back was measured.
 const FLANGE_BACK: f64 = 5.0;
 
-/// Returns the largest height.
+/// Returns the largest z of the points \[mm\].
 pub(super) fn top(points: &[Point]) -> f64 {
     points.iter().map(|p| p.z).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Returns the index of the extreme towards `sign`·z, and the smaller of the two drops from it to the ends.
+/// Returns the index of the extreme point towards `sign`·z, and the smaller one of its two drops to the ends.
 fn extreme(points: &[Point], sign: f64) -> Option<(usize, f64)> {
     let height = |k: usize| sign * points[k].z;
     let best = (0..points.len()).max_by(|&a, &b| height(a).total_cmp(&height(b)))?;
@@ -49,7 +49,7 @@ fn extreme(points: &[Point], sign: f64) -> Option<(usize, f64)> {
     Some((best, drop(0).min(drop(points.len() - 1))))
 }
 
-/// Returns whether z points up as given, with the reason; `None` if the shape does not prove it.
+/// Returns whether z already points up, with the reason. Returns `None` if the shape does not prove it.
 pub(super) fn head_up(points: &[Point], side: Side) -> Option<(bool, String)> {
     match side {
         Side::Rail => foot_down(points),
@@ -57,13 +57,13 @@ pub(super) fn head_up(points: &[Point], side: Side) -> Option<(bool, String)> {
     }
 }
 
-/// Returns whether a rail's foot is down, with the reason. An upright rail ends in two side faces that fall
-/// outwards, whatever grooves are between, or it bulges upwards throughout.
+/// Returns whether a rail's foot is down, with the reason. An upright rail ends in two side faces that fall outwards,
+/// whatever grooves are between them; or its outline bulges upwards throughout.
 fn foot_down(points: &[Point]) -> Option<(bool, String)> {
     let falls = [end_fall(points, false)?, end_fall(points, true)?];
     let face = |fall: f64| fall.abs() >= FACE_SINE;
     if falls.iter().all(|&fall| face(fall)) {
-        // Faces that disagree belong to a step, which looks alike both ways up.
+        // If one face rises and the other falls, the shape is a step, which looks alike both ways up.
         let up = falls[0] > 0.0;
         return (up == (falls[1] > 0.0)).then(|| {
             let way = if up { "falls" } else { "rises" };
@@ -79,7 +79,7 @@ fn foot_down(points: &[Point]) -> Option<(bool, String)> {
     })
 }
 
-/// Returns the fall towards an end \[mm/mm\], over [`END`] along the path; negative if the path rises.
+/// Returns the fall of the path towards an end \[mm/mm\], over the last [`END`] mm; negative if the path rises.
 fn end_fall(points: &[Point], last: bool) -> Option<f64> {
     let n = points.len();
     let at = |k: usize| if last { points[n - 1 - k] } else { points[k] };
@@ -97,7 +97,7 @@ fn distance(a: Point, b: Point) -> f64 {
     (b.x - a.x).hypot(b.z - a.z)
 }
 
-/// Returns the turn \[rad\] from the first chord to the last, negative clockwise on the way to larger x;
+/// Returns the turn \[rad\] from the first chord to the last, negative if it is clockwise on the way to larger x. Returns
 /// `None` if the path turns both ways or hardly turns.
 fn bulge(points: &[Point]) -> Option<f64> {
     let chain = evenly(points)?;
@@ -116,7 +116,7 @@ fn bulge(points: &[Point]) -> Option<f64> {
     (turn.abs() >= LEAST_TURN && less <= OTHER_WAY * more).then_some(turn)
 }
 
-/// Returns [`CHORDS`] + 1 points at equal distances along the path, towards larger x.
+/// Returns [`CHORDS`] + 1 points at equal distances along the path, towards larger x. Returns `None` without points.
 fn evenly(points: &[Point]) -> Option<Vec<[f64; 2]>> {
     let whole: f64 = points.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
     let (first, last) = (points.first()?, points.last()?);
@@ -142,8 +142,8 @@ fn evenly(points: &[Point]) -> Option<Vec<[f64; 2]>> {
     (out.len() == CHORDS + 1).then_some(out)
 }
 
-/// Returns whether a wheel's flange is down, with the reason. The flange tip is lower than both back and
-/// tread; the wrong extreme is at an end of the profile, or near it.
+/// Returns whether a wheel's flange is down, with the reason. The tip of the flange is lower than both the flange back and
+/// the tread. The extreme on the other side is at an end of the profile, or near one.
 fn flange_down(points: &[Point]) -> Option<(bool, String)> {
     let up = extreme(points, 1.0)?;
     let down = extreme(points, -1.0)?;
@@ -156,7 +156,7 @@ fn flange_down(points: &[Point]) -> Option<(bool, String)> {
     flange.then(|| (!tip_up, format!("flange tip, {height:.1} mm from the tread, at {place}")))
 }
 
-/// Returns the height of the tip over the median height of the profile, which is on the tread.
+/// Returns the height \[mm\] of the tip over the median height of the profile, which is on the tread.
 fn flange_height(points: &[Point], tip: usize) -> f64 {
     let mut heights: Vec<(f64, f64)> = points
         .windows(2)
@@ -183,8 +183,8 @@ pub(super) fn flange_side(points: &[Point]) -> Option<(bool, String)> {
         .then(|| (off < 0.0, format!("flange tip at {}", points[tip].place())))
 }
 
-/// Returns whether the gauge corner of an upright rail is at smaller x, with the reason: the only side face
-/// that was measured is the gauge face, or that of a groove.
+/// Returns whether the gauge corner of an upright rail is at smaller x, with the reason. If only one side face was
+/// measured, it is the gauge face, or the face of a groove on that side.
 pub(super) fn gauge_side(points: &[Point]) -> Option<(bool, String)> {
     let [left, right] = side_depths(points)?;
     let (is_left, name, depth) = match (left >= SIDE_FACE, right >= SIDE_FACE) {
@@ -196,7 +196,7 @@ pub(super) fn gauge_side(points: &[Point]) -> Option<(bool, String)> {
         .then(|| (is_left, format!("only the side face at {name} values is there, {depth:.1} mm deep")))
 }
 
-/// Returns whether an upright rail falls by [`SIDE_FACE`] over a face, to this side of its top.
+/// Returns whether an upright rail falls by [`SIDE_FACE`] over a face on this side of its top.
 fn has_face(points: &[Point], left: bool) -> bool {
     let Some((best, _)) = extreme(points, 1.0) else { return false };
     let top = points[best];
@@ -220,8 +220,8 @@ fn side_depths(points: &[Point]) -> Option<[f64; 2]> {
     Some([depth(true), depth(false)])
 }
 
-/// Returns the part of an upright right-hand rail, from left to right, on which wheels run: right of its last
-/// groove.
+/// Returns the part of an upright right-hand rail on which wheels run, right of its last groove. The points are from left
+/// to right.
 pub(super) fn running_head(points: &[Point]) -> &[Point] {
     let heights: Vec<f64> = points.iter().map(|p| p.z).collect();
     &points[last_groove(&heights).unwrap_or(0)..]

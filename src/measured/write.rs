@@ -1,24 +1,26 @@
-//! Writes points in profile axes as the text of a file, in the axes of its format (see the readers).
+//! Writes points in profile axes as the text of a file, in the axes of its format.
 //!
-//! Numbers are written with the fewest digits that read back as the same number.
+//! A number is written with the fewest digits that read back as the same number.
 
 use std::fmt::Write as _;
 
 use serde::Serialize;
 
 use super::Format;
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::numerics::polynomial::recentred;
-use crate::profile::drawing::{ArcData, HalfData, LineData, PolynomialData, SegmentData};
-use crate::profile::{Arc, Polynomial, Profile, Segment, Shape, Side, Station};
+use crate::profile::{
+    Arc, ArcData, HalfData, LineData, Polynomial, PolynomialData, Profile, Segment, SegmentData, Shape, Side,
+    Station,
+};
 
-/// Returns the text of a file with these points \[mm\], x to the field side, z up, from left to right; `name`
-/// goes into its header.
+/// Returns the text of a file with these points \[mm\]: x to the field side, z up, from left to right. `name` goes into its
+/// header.
 ///
-/// The gauge side of a MiniProf rail is at positive X, as instruments have it, so that reading it needs
+/// The gauge side of a MiniProf rail is written at positive X, as instruments have it. Reading the file therefore needs
 /// `mirror = true`.
 pub fn points(points: &[[f64; 2]], format: Format, side: Side, name: &str) -> String {
-    // A name must not end its line or its quotes.
+    // A control character or quote in the name would end its line or its string.
     let name: String = name.chars().filter(|c| !c.is_control() && !"'\"!".contains(*c)).collect();
     match format {
         Format::MiniProf => miniprof(points, side, &name),
@@ -34,7 +36,7 @@ pub fn points(points: &[[f64; 2]], format: Format, side: Side, name: &str) -> St
 fn rows(points: impl Iterator<Item = [f64; 2]>, separator: &str) -> String {
     let mut out = String::new();
     for [a, b] in points {
-        // + 0.0 turns −0 into 0. Writing to a string cannot fail.
+        // Adding 0.0 turns −0 into 0. Writing to a string cannot fail.
         let _ = writeln!(out, "{}{separator}{}", a + 0.0, b + 0.0);
     }
     out
@@ -55,8 +57,8 @@ fn miniprof(points: &[[f64; 2]], side: Side, name: &str) -> String {
     out + &rows(turned, " ")
 }
 
-/// Returns a SIMPACK file with the material to the right of the path, as CONTACT needs it: rails from left to
-/// right, wheels from right to left.
+/// Returns a SIMPACK file with the material to the right of the path, as CONTACT needs it: rails go from left to right,
+/// wheels from right to left.
 fn simpack(points: &[[f64; 2]], side: Side, name: &str) -> String {
     let body = match side {
         Side::Rail => 0,
@@ -94,16 +96,15 @@ fn simpack(points: &[[f64; 2]], side: Side, name: &str) -> String {
     out + "    point.end\n  spline.end\n"
 }
 
-/// Least distance \[mm\] of neighbours in files for other programs: CONTACT's spline loses whole contacts
-/// where points are some micrometres apart, and no instrument resolves this.
+/// Least distance \[mm\] of neighbours in files for other programs. CONTACT's spline loses whole contacts where points are
+/// some micrometres apart, and no instrument resolves less.
 pub const LEAST_DISTANCE: f64 = 0.01;
 
 fn near(a: [f64; 2], b: [f64; 2]) -> bool {
     (a[0] - b[0]).hypot(a[1] - b[1]) < LEAST_DISTANCE
 }
 
-/// Returns the points without those nearer than [`LEAST_DISTANCE`] to the last one kept; the first and the
-/// last point stay.
+/// Returns the points without those nearer than [`LEAST_DISTANCE`] to the last kept one. The first and the last point stay.
 pub fn spaced(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut out: Vec<[f64; 2]> = Vec::with_capacity(points.len());
     for &point in points {
@@ -122,10 +123,10 @@ pub fn spaced(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     out
 }
 
-/// Returns points \[mm\] at most `step` \[mm\] apart along a profile, with all joints.
+/// Returns points \[mm\] at most `step` \[mm\] apart along a profile, all joints included.
 ///
 /// # Errors
-/// A step that is not positive, or that takes more than 100 000 points over one segment.
+/// A step that is not positive, or that gives more than 100 000 points on one segment.
 pub fn sample(profile: &Profile, step: f64) -> Result<Vec<[f64; 2]>> {
     if !(step > 0.0 && step.is_finite()) {
         return Err(Error::new("step", step.to_string(), "a positive number of mm", "correct it"));
@@ -136,17 +137,17 @@ pub fn sample(profile: &Profile, step: f64) -> Result<Vec<[f64; 2]>> {
             Shape::Arc(arc) => along_arc(arc, step)?,
             Shape::Polynomial(polynomial) => along_polynomial(polynomial, step)?,
         };
-        // A joint is one point.
+        // The end of one segment and the start of the next one are one point.
         let joint = out.last().zip(own.first()).is_some_and(|(a, b)| near(*a, *b));
         out.extend(own.into_iter().skip(usize::from(joint)));
     }
     Ok(out)
 }
 
-/// Most points of one segment.
+/// Most points on one segment.
 const MOST_SAMPLES: f64 = 1e5;
 
-/// Returns the number of steps of at most `step` over a length.
+/// Returns the number of steps of at most `step` over a length, at least 1.
 fn steps_over(length: f64, step: f64) -> Result<usize> {
     let n = (length / step).ceil().max(1.0);
     if n <= MOST_SAMPLES {
@@ -154,7 +155,7 @@ fn steps_over(length: f64, step: f64) -> Result<usize> {
     }
     let found = format!("{step} mm, which takes {n:e} points over {length:.3} mm");
     Err(Error::new("step", found, format!("at most {MOST_SAMPLES:e} points a segment"), "take a larger step")
-        .of_kind(Kind::Limit))
+        .of_kind(ErrorKind::Limit))
 }
 
 fn along_arc(arc: &Arc, step: f64) -> Result<Vec<[f64; 2]>> {
@@ -173,7 +174,7 @@ fn along_polynomial(polynomial: &Polynomial, step: f64) -> Result<Vec<[f64; 2]>>
         let station = polynomial.station(t0 + share * (t1 - t0));
         [station.x, station.z]
     };
-    // Number of chords that measure the arc length: the parts are smooth and short.
+    // Number of chords that measure the arc length. The parts are smooth and short.
     const CHORDS: usize = 64;
     let coarse: Vec<[f64; 2]> = (0..=CHORDS).map(|k| at(k as f64 / CHORDS as f64)).collect();
     let longest = coarse.windows(2).map(|p| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1])).fold(0.0, f64::max);
@@ -186,15 +187,15 @@ fn along_polynomial(polynomial: &Polynomial, step: f64) -> Result<Vec<[f64; 2]>>
 pub struct Segments {
     /// The `[[segments]]` tables in TOML.
     pub toml: String,
-    /// What was cut off at the two ends: side faces beyond the vertical, which a graph z(x) cannot hold.
+    /// Texts on what was cut off at the two ends: side faces beyond the vertical, which a graph z(x) cannot hold.
     pub cut: Vec<String>,
 }
 
-/// Writes the profile as `[[segments]]` of a scene, up to where its side faces are vertical.
+/// Writes the profile as `[[segments]]` of a scene. Side faces are cut off where they are vertical.
 ///
 /// # Errors
-/// Segments between the ends that are no graph z(x), with their place: undercuts, and the spans of a spline,
-/// which are parametric. `curve = "arcs"` gives segments that can be written.
+/// Segments between the ends that are no graph z(x), with their place: undercuts, and the parametric spans of a spline. A
+/// profile made with `curve = "arcs"` can be written.
 pub fn segments(profile: &Profile) -> Result<Segments> {
     #[derive(Serialize)]
     struct Scene {
@@ -233,7 +234,7 @@ fn labelled(segment: &Segment, data: SegmentData) -> SegmentData {
 
 const NOTHING: SegmentData = SegmentData { label: None, line: None, arc: None, polynomial: None };
 
-/// Returns the data of an arc; an end that `clip` allows is cut off at its vertical tangent.
+/// Returns the data of an arc. An end that `clip` allows is cut off where its tangent is vertical.
 fn arc_data(arc: &Arc, clip: [bool; 2]) -> Result<SegmentData> {
     let (start, end) = (arc.start, arc.end);
     let vertical = |side: f64| arc.centre().map_or(f64::NAN, |[a, _]| a + side * arc.radius.abs());
@@ -247,7 +248,7 @@ fn arc_data(arc: &Arc, clip: [bool; 2]) -> Result<SegmentData> {
     let chord = (end.x - start.x).hypot(end.z - start.z);
     let sagitta = chord * chord / (8.0 * arc.radius.abs());
     let data = match arc.centre() {
-        // If the centre is too far away, a height about it has fewer digits than the arc is high.
+        // If the centre is very far away, a height relative to it has fewer digits than the arc is high.
         Some(center) if sagitta > 4.0 * f64::EPSILON * arc.radius.abs() => {
             let half = if arc.radius < 0.0 { HalfData::Upper } else { HalfData::Lower };
             let x = Some([x0, x1]);
@@ -262,7 +263,7 @@ fn arc_data(arc: &Arc, clip: [bool; 2]) -> Result<SegmentData> {
     Ok(data)
 }
 
-/// Returns z(x) in powers of x about 0, as standards print it: what was read in that form comes back bit for
+/// Returns z(x) in powers of x about 0, as standards print it. A polynomial that was read in that form comes back bit for
 /// bit.
 fn polynomial_data(polynomial: &Polynomial) -> Result<SegmentData> {
     let graph = polynomial.x.len() == 2 && f64::from(polynomial.x[1]) == 1.0;

@@ -1,25 +1,26 @@
-//! The rectangular solver grid: cell centres over the potential contact area, sized from the interpenetration box.
+//! The rectangular solver grid: cell centres over the potential contact area, whose size follows from the box around the
+//! patch.
 //!
-//! Centres lie on the lattice (i Δξ, j Δη) about C: C itself is a centre, the η axis is symmetric to the last bit
+//! Centres lie on the lattice (i Δξ, j Δη) about C. C itself is therefore a centre, the η axis is symmetric to the last bit
 //! over a symmetric patch, and grids of one spacing for several parts or approaches share their centres.
 
-use crate::error::{Error, Kind, Result, finite};
+use crate::error::{Error, ErrorKind, Result, finite};
 use crate::patch::{Component, Patch, Window};
 
-/// Cells over the short side of the box when no spacing is given: peak pressures of the two solvers are then within 0.5 %.
+/// Cells over the short side of the box if no spacing is given. The peak pressures of both solvers are then within 0.5 %.
 const CELLS_ACROSS: f64 = 16.0;
 
-/// Empty rows and columns on each side of the box, which boundary-element solvers want.
+/// Empty rows and columns on each side of the box. Boundary-element solvers need them.
 const MARGIN_CELLS: f64 = 2.0;
 
-/// Cells of a grid that nobody has sized: five times what CONTACT takes, 50 MB of files. With square ones the patch would
-/// be some 300 times as long as wide.
+/// Most cells of a grid without a given spacing: five times what CONTACT takes, 50 MB of files. With square cells the patch
+/// would be some 300 times as long as wide.
 const MOST_UNASKED: f64 = 1e5;
 
-/// Points of all grids of a run together: 3.3 GB of memory with the text decks, 50 GB of files with all formats.
+/// Most points of all grids of a run together: 3.3 GB of memory with the text decks, 50 GB of files with all formats.
 pub const MOST_POINTS: f64 = 1e8;
 
-/// Values of one axis: a column of text, which several writers hold at once, takes 100 MB.
+/// Most values of one axis. Several writers hold a column as text at once, which takes 100 MB.
 pub const MOST_ON_AXIS: f64 = 1e6;
 
 /// The axes of one grid of cell centres.
@@ -31,12 +32,12 @@ pub struct Axes {
     pub eta: Vec<f64>,
     /// \[Δξ, Δη\] \[mm\].
     pub spacing: [f64; 2],
-    /// Cells that there would have been, had they not been stretched: more than a grid has unasked.
+    /// Number of square cells that the grid would have; `None` if its cells were not stretched to save cells.
     pub square_cells: Option<f64>,
 }
 
 impl Axes {
-    /// The rectangle that the cells cover: half a step beyond the outermost centres.
+    /// Returns the rectangle that the cells cover: half a step beyond the outermost centres.
     pub fn window(&self) -> Window {
         let edges = |values: &[f64], step: f64| match values {
             [first, .., last] => [first - step / 2.0, last + step / 2.0],
@@ -46,29 +47,51 @@ impl Axes {
     }
 }
 
+/// Returns n ≥ 2 values from a to b in equal steps, both ends included; symmetric to the last bit if a = −b.
+pub fn equal_steps(a: f64, b: f64, n: usize) -> Vec<f64> {
+    let last = n as f64 - 1.0;
+    (0..n).map(|k| (a * (last - k as f64) + b * k as f64) / last).collect()
+}
+
 /// Components of a patch that share a grid.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Group {
-    /// Their indices in the patch, ascending.
+pub struct GridGroup {
+    /// Indices of the components in the patch, ascending.
     pub components: Vec<usize>,
-    /// The box around them.
+    /// The box around the components \[mm\].
     pub extent: Window,
-    /// Smallest s on them \[mm\].
+    /// Smallest s on the components \[mm\].
     pub least: f64,
-    /// The shorter side of the largest of their boxes \[mm\].
+    /// The shorter side of the box around the largest component \[mm\].
     pub short_side: f64,
 }
 
-/// The components of a patch, which is to be that over the whole plane, in groups closer to each other than `merge`
-/// \[mm\]; at 0 or NaN each on its own but for those that the grid of another, of this spacing (as for [`Group::axes`]), would
-/// cut. The group that holds C comes first, then the deepest; none for an empty patch.
-pub fn groups(patch: &Patch, merge: f64, spacing: Option<[f64; 2]>) -> Vec<Group> {
+/// Divides the components of a patch into groups; the patch must be that over the whole plane. Components closer to each
+/// other than `merge` \[mm\] share a group. If `merge` is 0 or NaN, each component has a group of its own, unless the grid
+/// of one would cut another one; `spacing` is that of [`GridGroup::axes`]. The group that holds C comes first, the others
+/// follow by their depth. An empty patch has no group.
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
+/// use wheelrail::{Patch, Window, mesh::groups};
+/// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+/// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+/// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+/// # let pair = Pair::new(rail, wheel, 460.0)?;
+/// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
+/// let patch = Patch::new(&placement, 0.05, &Window::UNBOUNDED);
+/// let axes = groups(&patch, 0.0, None)[0].axes(Some([0.5, 0.5]))?;
+/// assert!(axes.xi.contains(&0.0) && axes.xi[0] < patch.components[0].xi[0]);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
+pub fn groups(patch: &Patch, merge: f64, spacing: Option<[f64; 2]>) -> Vec<GridGroup> {
     let components = &patch.components;
-    let mut groups: Vec<Group> = Vec::new();
+    let mut groups: Vec<GridGroup> = Vec::new();
     for (index, component) in components.iter().enumerate() {
-        let mut group = Group::of(index, component);
-        // A new part may link groups that were apart: all that are near are joined.
-        let belongs = |group: &Group, other: &Group| {
+        let mut group = GridGroup::of(index, component);
+        // A new part may link groups that were apart: all groups near it are joined.
+        let belongs = |group: &GridGroup, other: &GridGroup| {
             let apart = distance(&group.extent, &other.extent);
             apart < merge || group.cuts(other, spacing) || other.cuts(group, spacing)
         };
@@ -77,18 +100,19 @@ pub fn groups(patch: &Patch, merge: f64, spacing: Option<[f64; 2]>) -> Vec<Group
         }
         groups.push(group);
     }
-    let away = |group: &Group| !group.components.iter().any(|&k| holds_contact(&components[k]));
+    let away = |group: &GridGroup| !group.components.iter().any(|&k| holds_contact(&components[k]));
     groups.sort_by(|a, b| away(a).cmp(&away(b)).then(a.least.total_cmp(&b.least)));
     groups
 }
 
-impl Group {
-    /// Cell centres over the group with a margin of two cells on each side; `spacing` = \[Δξ, Δη\] \[mm\], by default
-    /// square cells, 16 over the short side of its largest component, stretched along the group's longer side where they
-    /// would be more than 10⁵. A group that is cut by the end of a profile has cells without a separation beyond it.
+impl GridGroup {
+    /// Makes the grid of cell centres over the group, with a margin of two cells on each side. `spacing` is \[Δξ, Δη\]
+    /// \[mm\]. If it is not given, cells are square, 16 over the short side of the largest component; they are stretched
+    /// along the group's longer side if there would be more than 10⁵. If the end of a profile cuts the group, cells beyond
+    /// that end have no separation.
     ///
     /// # Errors
-    /// A spacing that is not positive, or for which the grid would not fit into memory.
+    /// A spacing that is not positive, or a grid that does not fit into memory.
     pub fn axes(&self, spacing: Option<[f64; 2]>) -> Result<Axes> {
         match spacing {
             Some(spacing) => lattice(&self.extent, spacing),
@@ -96,7 +120,8 @@ impl Group {
         }
     }
 
-    /// Whether the automatic grid over it reaches into another one: part of its ring would lie in that patch.
+    /// Returns whether the automatic grid over this group reaches into another group. Part of its margin would lie in that
+    /// group's patch.
     fn cuts(&self, other: &Self, spacing: Option<[f64; 2]>) -> bool {
         self.axes(spacing).is_ok_and(|axes| distance(&axes.window(), &other.extent) <= 0.0)
     }
@@ -129,22 +154,22 @@ fn holds_contact(component: &Component) -> bool {
     [component.xi, component.eta].iter().all(|[from, to]| *from <= 0.0 && *to >= 0.0)
 }
 
-/// The shorter side of the box and the longer one \[mm\].
+/// Returns the shorter and the longer side of the component's box \[mm\].
 fn sides(component: &Component) -> [f64; 2] {
     let [along, across] = [component.xi, component.eta].map(|[a, b]| b - a);
     [along.min(across), along.max(across)]
 }
 
-/// Distance of two boxes \[mm\], 0 where they meet.
+/// Returns the distance of two boxes \[mm\]; 0 if they meet.
 fn distance(a: &Window, b: &Window) -> f64 {
     let gap = |a: [f64; 2], b: [f64; 2]| (a[0] - b[1]).max(b[0] - a[1]).max(0.0);
     gap(a.xi, b.xi).hypot(gap(a.eta, b.eta))
 }
 
-/// Square cells of this size, stretched where they are too many: the shorter side keeps its own as long as there are more
-/// along the longer one.
+/// Makes the grid of square cells of this size. If they are too many, they are stretched: first along the longer side,
+/// until both sides have the same number of cells.
 fn unasked(window: &Window, step: f64) -> Result<Axes> {
-    // The lattice has its margins, and a cell more at each end that the window cuts.
+    // The lattice has margins, and one more cell at each end that the window cuts.
     let more = 2.0 * MARGIN_CELLS + 2.0;
     let sides = [window.xi, window.eta].map(|[a, b]| b - a);
     let counts = sides.map(|side| side / step + more);
@@ -177,7 +202,9 @@ fn lattice(window: &Window, spacing: [f64; 2]) -> Result<Axes> {
     if !fits {
         let found = format!("{along:e} x {across:e} cells over the patch");
         let expected = format!("at most {MOST_POINTS:e}, and {MOST_ON_AXIS:e} on an axis");
-        return Err(Error::new("grid: spacing", found, expected, "take a larger step").of_kind(Kind::Limit));
+        return Err(
+            Error::new("grid: spacing", found, expected, "take a larger step").of_kind(ErrorKind::Limit)
+        );
     }
     let centres = |[first, last]: [f64; 2], step: f64| {
         (first as i64..=last as i64).map(|i| i as f64 * step).collect::<Vec<f64>>()
@@ -216,7 +243,7 @@ mod tests {
             let cells = (axes.xi.len() * axes.eta.len()) as f64;
             assert!(cells <= MOST_UNASKED && cells > 0.8 * MOST_UNASKED, "{sides:?}: {cells}");
             assert_eq!(axes.square_cells.is_some(), axes.spacing != [step; 2], "{sides:?}");
-            // The thin ones keep their cells across.
+            // Thin boxes keep their cells across.
             assert!(
                 sides[0].min(sides[1]) > 10.0 || axes.spacing.contains(&step),
                 "{sides:?}: {:?}",

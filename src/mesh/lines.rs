@@ -1,16 +1,16 @@
-//! The lines of a strip mesh along ξ, which go on from band to band where these meet.
+//! The lines of a strip mesh along ξ. They continue from band to band where bands meet.
 
 use nalgebra::Point3;
 
 use crate::patch::Band;
 use crate::placement::Placement;
 
-/// Two lines closer than this share of a band's width are one: far above what rounding makes of one line on both sides of a
-/// meeting, far below a cell.
+/// Distance of two lines, as a share of a band's width, below which they are one. It is far above the rounding of one line
+/// on both sides of a meeting, and far below a cell.
 const ONE_LINE: f64 = 1e-7;
 
-/// c = −1 … 1 of the lines of every band, ascending. A band of its own has those given; one that is wider than a band it meets
-/// takes that one's, and every line goes on as far as there are bands.
+/// Returns c = −1 … 1 of the lines of every band, ascending. A band that meets narrower ones takes over their lines; every
+/// other band begins with the lines `own`. Every line continues as far as there are bands.
 pub(super) fn lines(bands: &[Band], own: &[f64]) -> Vec<Vec<f64>> {
     if bands.len() == 1 {
         return vec![own.to_vec()];
@@ -40,7 +40,7 @@ pub(super) fn lines(bands: &[Band], own: &[f64]) -> Vec<Vec<f64>> {
     shares
 }
 
-/// Adds the lines of a band at one of its ends to another one that meets it there.
+/// Adds the lines of a band at one of its ends to another band that meets it there.
 fn carry(bands: &[Band], shares: &mut [Vec<f64>], (from, end): (usize, usize), (to, side): (usize, usize)) {
     let [low, high] = bands[to].sides[side];
     let places: Vec<f64> = shares[from].iter().map(|&share| between(bands[from].sides[end], share)).collect();
@@ -49,25 +49,25 @@ fn carry(bands: &[Band], shares: &mut [Vec<f64>], (from, end): (usize, usize), (
         let share = 2.0 * (eta - low) / (high - low) - 1.0;
         let k = shares.partition_point(|&other| other < share);
         let near = |other: Option<&f64>| other.is_some_and(|other| (other - share).abs() <= 2.0 * ONE_LINE);
-        // Of two lines that are one, the side's own is kept.
+        // If two lines are one, the line of the receiving band is kept.
         if share > -1.0 && share < 1.0 && !near(shares.get(k)) && !near(shares.get(k.wrapping_sub(1))) {
             shares.insert(k, share);
         }
     }
 }
 
-/// The points at which bands meet.
-pub(super) struct Meeting {
-    /// Where \[mm\].
+/// The points at which bands meet at one ξ.
+pub(super) struct BandMeeting {
+    /// ξ of the meeting \[mm\].
     pub(super) xi: f64,
-    /// η \[mm\] of its points, ascending.
+    /// η \[mm\] of the points, ascending.
     eta: Vec<f64>,
-    /// Their indices, once they are in the mesh.
+    /// Indices of the points in the mesh; `None` until they are added to it.
     points: Vec<Option<usize>>,
 }
 
-impl Meeting {
-    /// All meetings of some bands with these lines.
+impl BandMeeting {
+    /// Returns all meetings of some bands with these lines.
     pub(super) fn all(bands: &[Band], shares: &[Vec<f64>]) -> Vec<Self> {
         let mut meetings: Vec<Self> = Vec::new();
         for band in bands {
@@ -91,7 +91,7 @@ impl Meeting {
         meetings
     }
 
-    /// Indices of the points of a band that ends or begins here; new ones are added to the mesh.
+    /// Returns the indices of the points of a band that ends or begins here. New points are added to the mesh.
     pub(super) fn row(
         &mut self,
         points: &mut Vec<Point3<f64>>,
@@ -117,7 +117,7 @@ impl Meeting {
     }
 }
 
-/// η at a share of a slice, −1 … 1.
+/// Returns η at a share of a slice; the share is −1 at its lower end and 1 at its upper end.
 pub(super) fn between([low, high]: [f64; 2], share: f64) -> f64 {
     if share == -1.0 {
         low

@@ -1,8 +1,13 @@
-//! Solver meshes over the patch, surfaces around it, and how good they are.
+//! Solver meshes over the patch, surfaces around it, and measures of their quality.
 
-pub mod axes;
+mod axes;
 mod lines;
-pub mod quality;
-pub mod strips;
-pub mod surfaces;
+mod quality;
+mod strips;
+mod surfaces;
 mod trace;
+
+pub use axes::{Axes, GridGroup, MOST_ON_AXIS, MOST_POINTS, equal_steps, groups};
+pub use quality::{Quality, Spread};
+pub use strips::{Cell, StripCounts, StripMesh};
+pub use surfaces::Surface;

@@ -1,4 +1,4 @@
-//! How well shaped the cells of a mesh are: what mesh generators report, for summary.json.
+//! Measures how well shaped the cells of a mesh are, by the numbers that mesh generators report.
 
 use nalgebra::{Point3, Vector3};
 use serde::Serialize;
@@ -6,62 +6,62 @@ use serde::Serialize;
 use super::strips::StripMesh;
 use super::surfaces::Surface;
 
-/// Least, largest and mean value over all cells.
+/// The least, largest and mean value over all cells.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Spread {
-    /// Least.
+    /// Least value.
     pub min: f64,
-    /// Largest.
+    /// Largest value.
     pub max: f64,
-    /// Mean over the cells.
+    /// Mean value.
     pub mean: f64,
 }
 
-/// Shape of the straight-sided cells of a mesh.
+/// The shape of the straight-sided cells of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Quality {
-    /// Cells, triangles included.
+    /// Number of cells, triangles included.
     pub cells: usize,
-    /// Cells with three corners.
+    /// Number of cells with three corners.
     pub triangles: usize,
-    /// Cells with a corner that turns the wrong way or not at all; 0 in a sound mesh.
+    /// Number of cells with a corner that turns the wrong way or not at all; 0 in a sound mesh.
     pub inverted: usize,
-    /// Longest over shortest side, from 1.
+    /// Longest side over shortest side, at least 1.
     pub aspect_ratio: Spread,
-    /// Equiangle skew, 0 (square, equilateral) to 1 (flat): the larger of (θ_max − θ_e)/(π − θ_e) and
-    /// (θ_e − θ_min)/θ_e, with θ_e = π/2 or π/3.
+    /// Equiangle skewness, from 0 (square, equilateral) to 1 (flat): the larger of (θ_max − θ_e)/(π − θ_e) and (θ_e −
+    /// θ_min)/θ_e, with θ_e = π/2 for quads or π/3 for triangles.
     pub skewness: Spread,
     /// Smallest angle of a cell \[rad\], up to π/2.
     pub smallest_angle_rad: Spread,
 }
 
 impl Quality {
-    /// The cells of a strip mesh, in the ξ–η plane; `None` without cells.
+    /// Measures the cells of a strip mesh in the ξ–η plane. Returns `None` without cells.
     pub fn of_strips(mesh: &StripMesh) -> Option<Self> {
         let flat = |&k: &usize| Point3::new(mesh.points[k].x, mesh.points[k].y, 0.0);
         let shape = |corners: &[usize]| {
             let corners: Vec<_> = corners.iter().map(flat).collect();
-            Shape::new(&corners, &Vector3::z())
+            CellShape::new(&corners, &Vector3::z())
         };
         Self::of(mesh.cells.iter().map(|cell| shape(cell.vertices())))
     }
 
-    /// The triangles of a surface; `None` without any.
+    /// Measures the triangles of a surface. Returns `None` without triangles.
     pub fn of_surface(surface: &Surface) -> Option<Self> {
         let corners = |facet: &[usize]| facet.iter().map(|&k| surface.points[k]).collect::<Vec<_>>();
         let outside = surface.quads().into_iter().map(|quad| {
             let [a, b, c, d] = quad.map(|k| surface.points[k]);
             (c - a).cross(&(d - b))
         });
-        // Two triangles of every quadrangle, whose normal says which way they should turn.
+        // Each facet makes two triangles; its normal tells the sense in which they should turn.
         let normals = outside.flat_map(|normal| [normal; 2]);
         let triangles = surface.triangles().into_iter().zip(normals);
-        Self::of(triangles.map(|(triangle, normal)| Shape::new(&corners(&triangle), &normal)))
+        Self::of(triangles.map(|(triangle, normal)| CellShape::new(&corners(&triangle), &normal)))
     }
 
-    fn of(shapes: impl Iterator<Item = Shape>) -> Option<Self> {
-        let shapes: Vec<Shape> = shapes.collect();
-        let spread = |value: fn(&Shape) -> f64| Spread {
+    fn of(shapes: impl Iterator<Item = CellShape>) -> Option<Self> {
+        let shapes: Vec<CellShape> = shapes.collect();
+        let spread = |value: fn(&CellShape) -> f64| Spread {
             min: shapes.iter().map(value).fold(f64::INFINITY, f64::min),
             max: shapes.iter().map(value).fold(f64::NEG_INFINITY, f64::max),
             mean: shapes.iter().map(value).sum::<f64>() / shapes.len() as f64,
@@ -77,8 +77,8 @@ impl Quality {
     }
 }
 
-/// One cell.
-struct Shape {
+/// The shape of one cell.
+struct CellShape {
     triangle: bool,
     inverted: bool,
     aspect_ratio: f64,
@@ -86,7 +86,7 @@ struct Shape {
     smallest_angle: f64,
 }
 
-impl Shape {
+impl CellShape {
     /// Measures a cell with these corners, counter-clockwise about `normal` of any length.
     fn new(corners: &[Point3<f64>], normal: &Vector3<f64>) -> Self {
         let n = corners.len();
@@ -99,7 +99,7 @@ impl Shape {
             let (back, on) = (-sides[(k + n - 1) % n], sides[k]);
             let area = on.cross(&back);
             let turn = area.dot(normal);
-            // A NaN counts as inverted too.
+            // A NaN counts as inverted.
             inverted |= turn.is_nan() || turn <= 0.0;
             let angle = area.norm().atan2(on.dot(&back));
             (smallest, largest) = (smallest.min(angle), largest.max(angle));
@@ -120,16 +120,16 @@ mod tests {
     fn a_square_a_triangle_and_a_bow_tie() {
         let up = Vector3::z();
         let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| Point3::new(x, y, 0.0));
-        let shape = Shape::new(&square, &up);
+        let shape = CellShape::new(&square, &up);
         assert!(!shape.inverted && !shape.triangle);
         assert_eq!([shape.aspect_ratio, shape.skewness, shape.smallest_angle], [1.0, 0.0, FRAC_PI_2]);
-        let half = Shape::new(&square[..3], &up);
+        let half = CellShape::new(&square[..3], &up);
         assert!(half.triangle && !half.inverted);
         assert!((half.smallest_angle - FRAC_PI_4).abs() < 1e-15 && (half.skewness - 0.25).abs() < 1e-15);
         let bow_tie = [square[0], square[1], square[3], square[2]];
-        assert!(Shape::new(&bow_tie, &up).inverted);
+        assert!(CellShape::new(&bow_tie, &up).inverted);
         let mut reversed = square;
         reversed.reverse();
-        assert!(Shape::new(&reversed, &up).inverted);
+        assert!(CellShape::new(&reversed, &up).inverted);
     }
 }

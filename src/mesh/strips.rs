@@ -1,95 +1,113 @@
-//! The boundary-fitted mesh of COUNTACT and CONFORM: strips across ξ, cells between the two boundary branches.
+//! The boundary-fitted mesh of COUNTACT and CONFORM: strips across ξ, divided into cells between the two boundary branches.
 //!
-//! Every band of a component (a range of ξ with one interval of η, mostly all of it) is the image of a rectangle: ξ runs from
-//! end to end in strips, and η = (η_l + η_u)/2 + c (η_u − η_l)/2 from the lower branch at c = −1 to the upper at c = 1. Where
-//! bands meet they have the same points: one that divides takes the lines of those that it divides into. Cells are the images
-//! of equal steps of an angle in both directions (Chebyshev points), so that they become small with the square of
-//! their number towards the boundary, where pressure varies fastest. Sides of constant ξ are straight, sides of
-//! constant c follow the boundary; the outermost are the boundary itself. Areas and centroids are those of
-//! such a cell, not of the polygon of its corners. A quad cannot invert: it has two parallel sides, both run
-//! upwards. At a tip the cells are triangles that share it: quads with one corner repeated, so that
-//! neighbours share all their sides and the mesh has neither gaps nor hanging points.
+//! A band of a component is a range of ξ with one interval of η; mostly it is the whole component. Each band is the image
+//! of a rectangle: ξ runs from end to end in strips, and η = (η_l + η_u)/2 + c (η_u − η_l)/2 runs from the lower branch at
+//! c = −1 to the upper branch at c = 1. Bands have the same points where they meet: a band that divides takes the lines of
+//! the bands into which it divides. Cells are the images of equal steps of an angle in both directions (Chebyshev points).
+//! Towards the boundary, where pressure varies fastest, their size falls with the square of their number. Sides of constant
+//! ξ are straight; sides of constant c follow the boundary, and the outermost are the boundary itself. Areas and centroids
+//! are those of such curved cells, not of the polygons of their corners. A quad cannot invert, because two of its sides are
+//! parallel and both run upwards. At a tip the cells are triangles that share it: quads with one corner repeated.
+//! Neighbours therefore share whole sides, and the mesh has neither gaps nor hanging points.
 
 use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::Point3;
 
-use super::lines::{Meeting, between, lines};
-use crate::error::{Error, Kind, Result};
+use super::lines::{BandMeeting, between, lines};
+use crate::error::{Error, ErrorKind, Result};
 use crate::patch::{Band, Component, Outline, Patch};
 use crate::placement::Placement;
 
-/// Cells beyond which a mesh is a mistake: the patch itself is known to fewer digits.
+/// Most cells of a mesh. With more, cells are smaller than the accuracy of the patch, which can only be a mistake.
 const MOST_CELLS: f64 = 1e7;
 
-/// A corner of the boundary closer than this share of a strip to another one, or to an end, does not get a strip's
-/// edge of its own: areas do not need it, and the strip would be a sliver.
+/// Least distance of a corner of the boundary from another corner or an end, as a share of a strip, at which it gets a
+/// strip edge of its own. Areas do not need the edge, and a closer one would make a sliver.
 const LEAST_STRIP: f64 = 0.25;
 
-/// Demand on the areas, relative.
+/// Relative accuracy demanded of the areas.
 const AREA_DEMAND: f64 = 1e-12;
 
-/// Demand on the centroids, relative to the extents of the component.
+/// Accuracy demanded of the centroids, relative to the extents of the component.
 const CENTROID_DEMAND: f64 = 1e-9;
 
-/// How many cells a component gets.
+/// The number of cells of each component.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Counts {
-    /// Strips along ξ, at least 2; corners of the boundary may add some.
+pub struct StripCounts {
+    /// Number of strips along ξ, at least 2. Corners of the boundary may add some.
     pub strips: usize,
-    /// Cells of a strip, along η, at least 1.
+    /// Number of cells of a strip along η, at least 1.
     pub across: usize,
 }
 
-impl Default for Counts {
-    /// 32 strips of 16 cells: cells along the boundary are then a tenth as wide as in the middle, strips at the tips a
-    /// twentieth.
+impl Default for StripCounts {
+    /// Returns 32 strips of 16 cells. Cells along the boundary are then a tenth as wide as in the middle, and strips at the
+    /// tips a twentieth.
     fn default() -> Self {
         Self { strips: 32, across: 16 }
     }
 }
 
-/// One cell.
+/// A cell of a strip mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cell {
-    /// Index of its component.
+    /// Index of the cell's component.
     pub component: usize,
-    /// Strip within the component, from 0, band by band by ascending ξ, and place along η in it, from 0 and ascending.
+    /// Index of the strip within the component, from 0, band by band by ascending ξ; index of the cell within the strip,
+    /// from 0, by ascending η.
     pub place: [usize; 2],
-    /// Indices of its corners, counter-clockwise seen from +ζ; at a tip the last repeats the first.
+    /// Indices of the four corners, counter-clockwise seen from +ζ. At a tip the last corner repeats the first.
     pub corners: [usize; 4],
-    /// Area in the ξ–η plane \[mm²\] with its curved sides, to 1e-12 relative.
+    /// Area in the ξ–η plane with the curved sides \[mm²\], to 1e-12 relative.
     pub area: f64,
-    /// Centroid \[ξ, η\] \[mm\] with its curved sides, to 1e-9 of the component's extents.
+    /// Centroid \[ξ, η\] of the cell with its curved sides \[mm\], to 1e-9 of the component's extents.
     pub centroid: [f64; 2],
     /// s at the centroid \[mm\].
     pub separation: f64,
 }
 
 impl Cell {
-    /// The corners without repetition: four, or three at a tip.
+    /// Returns the corners without repetition: four, or three at a tip.
     pub fn vertices(&self) -> &[usize] {
         if self.corners[0] == self.corners[3] { &self.corners[..3] } else { &self.corners }
     }
 }
 
-/// The mesh of all components.
+/// The boundary-fitted mesh of all components of a patch.
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
+/// use wheelrail::{Patch, StripCounts, StripMesh, Window, mesh::Quality};
+/// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+/// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+/// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+/// # let pair = Pair::new(rail, wheel, 460.0)?;
+/// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
+/// let patch = Patch::new(&placement, 0.05, &Window::UNBOUNDED);
+/// let mesh = StripMesh::new(&placement, &patch, StripCounts::default())?;
+/// let quality = Quality::of_strips(&mesh).expect("a mesh with cells");
+/// assert_eq!((quality.cells, quality.inverted), (mesh.cells.len(), 0));
+/// assert!(mesh.cells.len() >= 32 * 16);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct StripMesh {
-    /// Points (ξ, η, ζ^R) \[mm\] on the rail.
+    /// Points (ξ, η, ζ^R) \[mm\] on the rail's surface.
     pub points: Vec<Point3<f64>>,
-    /// Component by component, strip by strip, η fastest.
+    /// Cells by component, then by strip, then by η.
     pub cells: Vec<Cell>,
 }
 
 impl StripMesh {
-    /// The mesh of a patch of this placed pair. Empty for an empty patch.
+    /// Makes the mesh of a patch of this placed pair. An empty patch gives an empty mesh.
     ///
     /// # Errors
-    /// Fewer than 2 strips or no cell across; more than 10⁷ cells.
-    pub fn new(placement: &Placement, patch: &Patch, counts: Counts) -> Result<Self> {
+    /// Fewer than 2 strips; no cell across; more than 10⁷ cells.
+    pub fn new(placement: &Placement, patch: &Patch, counts: StripCounts) -> Result<Self> {
         counts.check()?;
-        let mut builder = Builder {
+        let mut builder = StripBuilder {
             placement,
             outline: Outline::new(placement, patch.approach, &patch.window),
             shares: shares(counts.across),
@@ -104,7 +122,7 @@ impl StripMesh {
     }
 }
 
-impl Counts {
+impl StripCounts {
     fn check(self) -> Result<()> {
         let found = format!("{} strips of {} cells", self.strips, self.across);
         if self.strips < 2 || self.across < 1 {
@@ -113,33 +131,33 @@ impl Counts {
         }
         if self.strips as f64 * self.across as f64 > MOST_CELLS {
             let expected = format!("at most {MOST_CELLS:e} cells a component");
-            return Err(Error::new("mesh", found, expected, "ask for fewer").of_kind(Kind::Limit));
+            return Err(Error::new("mesh", found, expected, "ask for fewer").of_kind(ErrorKind::Limit));
         }
         Ok(())
     }
 }
 
-/// c of the points across: Chebyshev points, symmetric to the last bit.
+/// Returns c of the points across a strip: Chebyshev points, symmetric to the last bit.
 fn shares(across: usize) -> Vec<f64> {
     (0..=across).map(|j| (FRAC_PI_2 * (2.0 * j as f64 - across as f64) / across as f64).sin()).collect()
 }
 
-struct Builder<'a> {
+struct StripBuilder<'a> {
     placement: &'a Placement,
     outline: Outline<'a>,
-    /// c of the points across a band of its own.
+    /// c of the points across a band that meets no narrower one.
     shares: Vec<f64>,
     mesh: StripMesh,
-    /// η and s of a strip's centroids.
+    /// η and s of the centroids of a strip \[mm\].
     eta: Vec<f64>,
     separation: Vec<f64>,
 }
 
-impl Builder<'_> {
+impl StripBuilder<'_> {
     fn component(&mut self, index: usize, component: &Component, strips: usize) {
         let bands = &component.bands;
         let shares = lines(bands, &self.shares);
-        let mut meetings: Vec<Meeting> = Meeting::all(bands, &shares);
+        let mut meetings: Vec<BandMeeting> = BandMeeting::all(bands, &shares);
         let whole = component.xi[1] - component.xi[0];
         let mut first_strip = 0;
         for (band, shares) in bands.iter().zip(&shares) {
@@ -167,7 +185,7 @@ impl Builder<'_> {
         }
     }
 
-    /// The cells between two rows of points; `place` is the component's index and the strip's.
+    /// Appends the cells between two rows of points. `place` holds the indices of the component and of the strip.
     fn strip(
         &mut self,
         band: &Band,
@@ -189,7 +207,7 @@ impl Builder<'_> {
                     component,
                     place: [strip, j],
                     corners,
-                    // Its share of the width is the same all along.
+                    // The share of the strip's width is constant along ξ.
                     area: moments.area * (shares[j + 1] - shares[j]) / 2.0,
                     centroid: [moments.xi, self.eta[j]],
                     separation: self.separation[j],
@@ -198,7 +216,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Indices of the points of one strip edge, ascending in η; all the same where it has no width.
+    /// Returns the indices of the points of one strip edge, ascending in η. They are equal if the edge has no width.
     fn row(&mut self, band: &Band, shares: &[f64], xi: f64) -> Vec<usize> {
         let eta = band.slice(&mut self.outline, xi).eta;
         let zeta = self.placement.rail().section.height(xi);
@@ -212,13 +230,15 @@ impl Builder<'_> {
         (first..first + shares.len()).collect()
     }
 
-    /// Moments of a strip's width, over its pieces between all corners: also those that have no edge.
+    /// Computes the moments of a strip's width, over the pieces between all corners of the boundary, even those without a
+    /// strip edge.
     fn moments(&mut self, band: &Band, xi: [f64; 2]) -> Moments {
-        // Means of quantities that change sign are taken from an offset, to whose size the demand then refers.
+        // A mean of values that change sign is computed from an offset. The demanded accuracy then refers to the size of
+        // the offset.
         let offset = band.sides.into_iter().flatten().fold(xi[1] - xi[0], |most, eta| eta.abs().max(most));
         let grading = band.grading();
         let inside = band.corners.iter().copied().filter(|&corner| corner > xi[0] && corner < xi[1]);
-        // The ends are 0 and 1, whatever rounding makes of them.
+        // The ends of the parameter are exactly 0 and 1, in spite of rounding.
         let parameter = |x: f64| match x {
             x if x == band.xi[0] => 0.0,
             x if x == band.xi[1] => 1.0,
@@ -244,19 +264,20 @@ impl Builder<'_> {
     }
 }
 
-/// What the cells of a strip share: means are weighted by the width.
+/// The moments that the cells of a strip share. Means are weighted by the width.
 struct Moments {
     /// Area of the strip \[mm²\].
     area: f64,
-    /// Mean ξ.
+    /// Mean ξ \[mm\].
     xi: f64,
-    /// Mean η of the middle between the branches.
+    /// Mean η of the middle between the branches \[mm\].
     middle: f64,
-    /// Mean of half the width.
+    /// Mean of half the width \[mm\].
     half: f64,
 }
 
-/// A quad with a side of no length as a triangle that begins and ends there; `None` with two such sides.
+/// Returns a quad that has one side without length as a triangle whose first and last corners are that side. Returns `None`
+/// for a quad with two such sides.
 fn tip_first(quad @ [a, b, c, d]: [usize; 4]) -> Option<[usize; 4]> {
     match (a == d, b == c) {
         (false, true) => Some([b, d, a, b]),
@@ -265,7 +286,8 @@ fn tip_first(quad @ [a, b, c, d]: [usize; 4]) -> Option<[usize; 4]> {
     }
 }
 
-/// ξ of the edges of a band's strips, so many per mm: equal steps of the angle between corners, which are edges themselves.
+/// Returns ξ of the strip edges of a band \[mm\], so many strips per mm. Corners of the boundary are edges; between two
+/// corners the edges are equal steps of the angle.
 fn strip_edges(band: &Band, strips_per_mm: f64) -> Vec<f64> {
     let grading = band.grading();
     let strips = (strips_per_mm * (band.xi[1] - band.xi[0])).round().max(2.0);
@@ -281,7 +303,7 @@ fn strip_edges(band: &Band, strips_per_mm: f64) -> Vec<f64> {
     let mut edges = vec![band.xi[0]];
     for pair in kept.windows(2) {
         let [(from, _), (to, xi)] = [pair[0], pair[1]];
-        // A band without corners always gets two strips: two tips cannot share one.
+        // A band without corners always gets two strips, because two tips cannot share one.
         let least = if kept.len() == 2 { 2.0 } else { 1.0 };
         let n = (strips * (to - from)).round().max(least) as usize;
         edges.extend((1..n).map(|k| grading.xi(from + (to - from) * k as f64 / n as f64)));

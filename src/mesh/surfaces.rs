@@ -1,49 +1,66 @@
-//! The two bodies' surfaces around the patch, for inspection and finite elements.
+//! The surfaces of both bodies around the patch, for inspection and finite elements.
 //!
-//! Both are structured: index i along the profile, j along the rolling direction. They use the bodies' own
-//! parameters – profile × extrusion, profile × rotation about the axle – and so show walls and overhangs that
-//! s(ξ, η) cannot.
+//! Both surfaces are structured: index i runs along the profile, j along the rolling direction. They use the bodies' own
+//! parameters (profile × extrusion, profile × rotation about the axle), and therefore show walls and overhangs that s(ξ, η)
+//! cannot show.
 
 use nalgebra::{Point2, Point3, Vector2, distance_squared};
 
-use crate::error::{Error, Kind, Result, finite};
+use crate::error::{Error, ErrorKind, Result, finite};
 use crate::patch::Window;
 use crate::placement::Placement;
 use crate::profile::{Side, Station};
 
 use super::trace::{arc_step, trace};
 
-/// Points beyond which a surface is a mistake: a gigabyte of file.
+/// Most points of a surface: a gigabyte of file. More can only be a mistake.
 const MOST_POINTS: f64 = 3e7;
 
-/// Facets around a patch depart from the surfaces by at most this share of the approach, so that the gap between two of
-/// them is seen …
+/// Largest distance of facets from the surfaces around a patch, as a share of the approach. The gap between two surfaces is
+/// then visible.
 const FACET_SHARE: f64 = 0.01;
 
-/// … but by no less than the first of these shares of the window's longer side, below which a file has a million
-/// facets, and by no more than the second, above which they are seen as such.
+/// Limits of that distance, as shares of the window's longer side. Below the first one a file has a million facets; above
+/// the second one the facets are visible.
 const FACET_LIMITS: [f64; 2] = [1e-6, 1e-4];
 
-/// A wheel is shown to at most this share of its rolling radius before and behind C: its sides stand upright.
+/// Largest distance of the wheel's surface before and behind C, as a share of the rolling radius. Towards the whole radius
+/// the surface becomes vertical.
 const WIDEST: f64 = 0.5;
 
-/// A structured surface.
+/// The structured surface of one body.
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
+/// use wheelrail::{Window, mesh::Surface};
+/// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+/// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+/// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+/// # let pair = Pair::new(rail, wheel, 460.0)?;
+/// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
+/// let window = Window { xi: [-5.0, 5.0], eta: [-8.0, 8.0] };
+/// let [rail, wheel] = Surface::around(&placement, &window, Some(0.05))?;
+/// assert_eq!(rail.points.len(), rail.n[0] * rail.n[1]);
+/// assert!(wheel.points.iter().any(|point| point.coords.norm() == 0.0)); // C is a point of the mesh
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
-    /// Whose it is.
+    /// The body.
     pub side: Side,
-    /// Points \[along the profile, along the rolling direction\].
+    /// Numbers of points \[along the profile, along the rolling direction\].
     pub n: [usize; 2],
-    /// Points \[mm\], index i · n\[1\] + j; (ξ, η, ζ) of the contact frame unless moved.
+    /// Points \[mm\] at index i · n\[1\] + j: (ξ, η, ζ) of the contact frame, unless the surface was moved to other axes.
     pub points: Vec<Point3<f64>>,
 }
 
 impl Surface {
-    /// Rail and wheel over the window of a grid, as fine as the approach \[mm\] asks for if there is one; along η at most
-    /// half a rolling radius to either side.
+    /// Makes the surfaces of rail and wheel over the window of a grid. The approach \[mm\], if given, decides how fine they
+    /// are. Along η they reach at most half a rolling radius to either side.
     ///
     /// # Errors
-    /// As [`Surface::rail`].
+    /// A window that is not finite or wider than the wheel; a surface of too many points.
     pub fn around(placement: &Placement, window: &Window, approach: Option<f64>) -> Result<[Self; 2]> {
         let reach = WIDEST * placement.rolling_radius();
         let window = Window { eta: window.eta.map(|eta| eta.clamp(-reach, reach)), ..*window };
@@ -55,8 +72,8 @@ impl Surface {
         Ok([Self::rail(placement, &window, tolerance)?, Self::wheel(placement, &window, tolerance)?])
     }
 
-    /// The rail over a window of the contact frame, widened to hold C, as far as its profile goes; C is one of the
-    /// points. Along η, where it is straight, it is divided as the wheel is.
+    /// Makes the rail's surface over a window of the contact frame, as far as its profile goes. The window is widened to
+    /// hold C, which is one of the points. Along η the rail is straight and is divided like the wheel.
     ///
     /// `tolerance` \[mm\]: largest distance of the surface from the facets between its points.
     ///
@@ -78,12 +95,12 @@ impl Surface {
         Self::of(Side::Rail, &stations, along.len(), points)
     }
 
-    /// The wheel over the same window, before any approach, as far as its profile goes; C is one of the points. All of the
-    /// profile is turned by the angle at which the smallest circle spans the window.
-    /// Half of the tolerance goes to the profile, half to the rotation.
+    /// Makes the wheel's surface, before any approach, over a window of the contact frame, as far as its profile goes. C is
+    /// one of the points. The whole profile is turned by the angle at which its smallest circle spans the window. Half of
+    /// `tolerance` \[mm\] goes to the profile, half to the rotation.
     ///
     /// # Errors
-    /// As [`Surface::rail`].
+    /// A window that is not finite or wider than the wheel; a tolerance that is not positive, or takes too many points.
     pub fn wheel(placement: &Placement, window: &Window, tolerance: f64) -> Result<Self> {
         check(placement, window, tolerance)?;
         let own = in_wheel_directions(placement, window);
@@ -112,12 +129,12 @@ impl Surface {
                 expected,
                 "take a coarser tolerance",
             )
-            .of_kind(Kind::Limit));
+            .of_kind(ErrorKind::Limit));
         }
         Ok(Self { side, n, points: stations.iter().flat_map(points).collect() })
     }
 
-    /// The same points in the rail profile's axes (x, y, z), y = η.
+    /// Returns this surface with its points in the rail profile's axes (x, y, z), y = η.
     #[must_use]
     pub fn in_rail_axes(&self, placement: &Placement) -> Self {
         let frame = placement.rail().contact_frame();
@@ -125,18 +142,18 @@ impl Surface {
         Self { points: self.points.iter().map(moved).collect(), ..self.clone() }
     }
 
-    /// Corners of the facets, counter-clockwise seen from outside the body.
+    /// Returns the corners of the facets, counter-clockwise seen from outside the body.
     pub fn quads(&self) -> Vec<[usize; 4]> {
         let [n_i, n_j] = self.n;
         let quad = |i: usize, j: usize| {
             let [a, b, c, d] = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(|[i, j]| i * n_j + j);
-            // i × j points up: out of the rail, into the wheel.
+            // i × j points up: out of the rail and into the wheel.
             if self.side == Side::Rail { [a, b, c, d] } else { [a, d, c, b] }
         };
         (1..n_i).flat_map(|i| (1..n_j).map(move |j| quad(i - 1, j - 1))).collect()
     }
 
-    /// Every facet as two triangles along its shorter diagonal, counter-clockwise seen from outside the body.
+    /// Returns every facet as two triangles along its shorter diagonal, counter-clockwise seen from outside the body.
     pub fn triangles(&self) -> Vec<[usize; 3]> {
         let apart = |p: usize, q: usize| distance_squared(&self.points[p], &self.points[q]);
         let split = |[a, b, c, d]: [usize; 4]| {
@@ -163,7 +180,8 @@ fn check(placement: &Placement, window: &Window, tolerance: f64) -> Result<()> {
     Ok(())
 }
 
-/// The window in the wheel's own ξ′ and η′, widened in ξ′ by what the profile moves sideways as it turns: e sinθ.
+/// Returns the window in the wheel's own ξ′ and η′. It is widened in ξ′ by e sinθ, the distance by which the profile moves
+/// sideways as it turns.
 fn in_wheel_directions(placement: &Placement, window: &Window) -> Window {
     let skew = placement.skew_rotation();
     let corners = window.xi.into_iter().flat_map(|xi| window.eta.map(|eta| Vector2::new(xi, eta)));
@@ -177,8 +195,8 @@ fn in_wheel_directions(placement: &Placement, window: &Window) -> Window {
     Window { xi: [xi[0] - aside.max(0.0), xi[1] - aside.min(0.0)], eta }
 }
 
-/// Angles about the axle at which a point at this radius reaches from `eta[0]` to `eta[1]`, 0 among them if it is
-/// between, in equal steps whose chords on the largest radius keep the tolerance.
+/// Returns the angles about the axle, in equal steps, at which a point at this radius reaches from `eta[0]` to `eta[1]`. 0
+/// is one of them if it is between. The chords of the steps keep the tolerance on the largest radius.
 fn angles(eta: [f64; 2], radius: f64, largest: f64, tolerance: f64) -> Vec<f64> {
     let [from, to] = eta.map(|eta| (eta / radius).clamp(-1.0, 1.0).asin());
     let step = arc_step(largest, tolerance);
@@ -196,15 +214,15 @@ fn angles(eta: [f64; 2], radius: f64, largest: f64, tolerance: f64) -> Vec<f64> 
     angles
 }
 
-/// The point of space over a point of the midplane (ξ, ζ) or (x, z), at η \[mm\].
+/// Returns the point of space \[mm\] over a point (ξ, ζ) or (x, z) of the midplane, at η.
 fn in_space(in_plane: Point2<f64>, eta: f64) -> Point3<f64> {
     Point3::new(in_plane.x, eta, in_plane.y)
 }
 
-/// Gives (ξ, η, ζ) of a profile point turned about the axle by ψ.
+/// Returns (ξ, η, ζ) \[mm\] of a profile point turned about the axle by ψ \[rad\].
 fn wheel_point(placement: &Placement, station: &Station, psi: f64) -> Point3<f64> {
     let w = placement.wheel_radius() - station.z;
-    // R − w cosψ without cancellation.
+    // This computes R − w cosψ without cancellation.
     let turned = Point2::new(station.x, station.z + 2.0 * w * (psi / 2.0).sin().powi(2));
     let own = placement.wheel().contact_frame().inverse_transform_point(&turned);
     let tangential = placement.skew_rotation() * Vector2::new(own.x, w * psi.sin());

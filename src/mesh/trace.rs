@@ -1,5 +1,5 @@
-//! A profile as a polygon through its contact point, within a chordal tolerance, in the profile's own parameters:
-//! walls and overhangs, which are no function of ξ, are traced like the rest.
+//! A profile as a polygon through its contact point, within a chordal tolerance. It follows the profile's own parameters,
+//! so that walls and overhangs, where ζ is no function of ξ, are traced too.
 
 use nalgebra::{Point2, Vector2};
 
@@ -8,18 +8,18 @@ use crate::numerics::roots::bracketed;
 use crate::placement::Body;
 use crate::profile::{Arc, Polynomial, Segment, Shape, Station};
 
-/// Points beyond which a polygon is a mistake: 1e5 on a 100 mm profile are a micrometre apart.
+/// Most points of a polygon. 1e5 points on a 100 mm profile are a micrometre apart; more can only be a mistake.
 const MOST_POINTS: usize = 100_000;
 
-/// Intervals of a segment in which the contact point is looked for; a segment that faces the other body passes
-/// its ξ once, a wavy polynomial a few times.
+/// Intervals of a segment in which the contact point is sought. A segment that faces the other body passes its ξ once, a
+/// wavy polynomial a few times.
 const SEARCHED_INTERVALS: usize = 64;
 
-/// Halvings of a polynomial's parameter: with them all it has [`MOST_POINTS`] by far.
+/// Most halvings of a polynomial's parameter. With all of them it would have far more than [`MOST_POINTS`].
 const DEEPEST: u32 = 20;
 
-/// Stations in profile axes, ascending along the chain: from C in both directions until ξ leaves the interval `xi` of
-/// the contact frame, which is widened to hold C; C is one of them. The chord between two neighbours is within
+/// Returns stations in profile axes, in the order of the chain: from C in both directions until ξ leaves the interval `xi`
+/// of the contact frame, which is widened to hold C. C is one of them. The chord between two neighbours is within
 /// `tolerance` \[mm\] of the profile.
 ///
 /// # Errors
@@ -48,12 +48,12 @@ impl Tracer<'_> {
         &self.body.profile().segments()[index]
     }
 
-    /// ξ of a station.
+    /// Returns ξ of a station \[mm\].
     fn xi(&self, station: &Station) -> f64 {
         station.seen_from(&self.body.section.frame).x
     }
 
-    /// Where on its segment the contact point is: of all places with ξ = 0 the one nearest to ζ = 0.
+    /// Returns the share of the contact segment at which C lies: of all places with ξ = 0 the one nearest to ζ = 0.
     fn contact_share(&self) -> f64 {
         let segment = self.segment(self.body.point.segment);
         let xi = |share: f64| self.xi(&at(segment, share));
@@ -61,11 +61,11 @@ impl Tracer<'_> {
         let roots = (0..SEARCHED_INTERVALS).filter_map(|k| bracketed(xi, step(k), step(k + 1)));
         let height = |share: f64| at(segment, share).seen_from(&self.body.section.frame).z.abs();
         let nearest = roots.min_by(|a, b| height(*a).total_cmp(&height(*b)));
-        // C at an end, moved off the segment by rounding.
+        // C is an end of the segment, and rounding has moved it off the segment.
         nearest.unwrap_or(if xi(0.0).abs() <= xi(1.0).abs() { 0.0 } else { 1.0 })
     }
 
-    /// Stations beyond C, C not included, until ξ passes `limit` or the chain ends.
+    /// Returns the stations beyond C, without C, until ξ passes `limit` or the chain ends.
     fn walk(&self, contact: f64, limit: f64, forward: bool) -> Result<Vec<Station>> {
         let (index, n) = (self.body.point.segment, self.body.profile().segments().len());
         let order: Vec<usize> = if forward { (index..n).collect() } else { (0..=index).rev().collect() };
@@ -97,7 +97,7 @@ impl Tracer<'_> {
         Ok(stations)
     }
 
-    /// Shares after `from` up to `to` whose chords keep the tolerance; none where the two are equal.
+    /// Returns the shares after `from` up to `to` whose chords keep the tolerance. There are none if the two are equal.
     fn subdivided(&self, segment: &Segment, from: f64, to: f64) -> Result<Vec<f64>> {
         if from == to {
             return Ok(Vec::new());
@@ -136,7 +136,7 @@ impl Tracer<'_> {
     }
 }
 
-/// The place (x, z) of a station \[mm\].
+/// Returns the place (x, z) of a station \[mm\].
 fn point(station: &Station) -> Point2<f64> {
     Point2::new(station.x, station.z)
 }
@@ -151,14 +151,14 @@ fn too_many(tolerance: f64) -> Error {
     )
 }
 
-/// The angle \[rad\] over which an arc of this radius departs from its chord by the tolerance:
-/// r (1 − cos(Δ/2)) = t.
+/// Returns the angle Δ \[rad\] over which an arc of this radius departs from its chord by the tolerance: r (1 − cos(Δ/2)) =
+/// t.
 pub(super) fn arc_step(radius: f64, tolerance: f64) -> f64 {
     if radius.is_finite() { 4.0 * (tolerance / (2.0 * radius)).sqrt().min(1.0).asin() } else { f64::INFINITY }
 }
 
-/// The station at a share of a segment: of the angle on an arc, of the length on a line, of the parameter on a
-/// polynomial.
+/// Returns the station at a share of a segment: a share of the angle on an arc, of the length on a line, of the parameter
+/// on a polynomial.
 fn at(segment: &Segment, share: f64) -> Station {
     match &segment.shape {
         Shape::Arc(arc) => on_arc(arc, share),

@@ -2,7 +2,7 @@
 
 use super::band::Band;
 use super::corners;
-use super::corners::Row;
+use super::corners::BandRow;
 use super::loops;
 use super::loops::Rows;
 use super::measure::area_and_length;
@@ -13,9 +13,9 @@ use super::skewed::slicer::Edge;
 use super::slice::Slice;
 use crate::placement::Placement;
 
-/// Number of points on each of the two sides of a loop: the polygon then lies within 1e-4 of the patch's
-/// width of the curve. A piece between two corners gets a share in proportion to its angle on an ellipse as
-/// long as the component.
+/// Number of points on each of the two sides of a loop. The polygon then lies within 1e-4 of the patch's width of the
+/// curve. Pieces between corners share the points: on an ellipse as long as the component, each piece would get points in
+/// proportion to its angle.
 const POINTS_PER_SIDE: usize = 128;
 
 /// Least number of points on a piece of a loop between two corners.
@@ -40,9 +40,9 @@ pub struct Component {
     pub boundary: Vec<[f64; 2]>,
     /// Boundaries of the holes: closed loops of \[ξ, η\] \[mm\], clockwise. Only a skewed wheel makes holes.
     pub holes: Vec<Vec<[f64; 2]>>,
-    /// Area \[mm²\], to about 1e-12 relative, or to the rounding of s over δ where that is larger.
+    /// Area \[mm²\], with a relative accuracy of about 1e-12, or of the rounding of s over δ if that is larger.
     pub area: f64,
-    /// Length of all loops \[mm\], to about 1e-10 relative; to 1e-7 where the end of a tilted wheel profile
+    /// Length of all loops \[mm\], with a relative accuracy of about 1e-10; 1e-7 where the end of a tilted wheel profile
     /// rounds the boundary.
     pub perimeter: f64,
     /// \[s, ξ, η\] of the point with the smallest s \[mm\].
@@ -52,6 +52,23 @@ pub struct Component {
 }
 
 /// The patch {s < δ} inside a window.
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
+/// use wheelrail::{Patch, Window};
+/// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+/// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+/// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+/// # let pair = Pair::new(rail, wheel, 460.0)?;
+/// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
+/// let patch = Patch::new(&placement, 0.05, &Window::UNBOUNDED);
+/// let component = &patch.components[0];
+/// let half = f64::sqrt(300.0 * 300.0 - 299.95 * 299.95);
+/// assert!((component.xi[1] - half).abs() < 1e-11);
+/// assert!((patch.area() / (std::f64::consts::PI * half * component.eta[1]) - 1.0).abs() < 1e-3); // nearly an ellipse
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Patch {
     /// Approach δ \[mm\].
@@ -63,13 +80,13 @@ pub struct Patch {
 }
 
 impl Patch {
-    /// Finds all components inside the window. Without skew a line of constant ξ meets a component in one
-    /// interval of η; with skew in one or several, and a component may have holes.
+    /// Finds all components inside the window. Without skew a line of constant ξ meets a component in one interval of η.
+    /// With skew it may meet it in several, and a component may have holes.
     ///
-    /// Degenerate: empty if s < δ nowhere, at a mere touch with δ = 0, and for δ = NaN. With skew two parts
-    /// can be missed (see the docs on numerics): one between two turns of s along a valley that are closer
-    /// than a quarter of the distance between two joints, and, where the valley is outside the window, one
-    /// shorter than 1/64 of that distance.
+    /// Degenerate cases: the patch is empty if s < δ nowhere, at a mere touch with δ = 0, and for δ = NaN. With skew two
+    /// kinds of parts can be missed (see the docs on numerics). One lies between two turns of s along a valley that are
+    /// closer than a quarter of the distance between two joints. The other is shorter than 1/64 of that distance, with its
+    /// valley outside the window.
     pub fn new(placement: &Placement, approach: f64, window: &Window) -> Self {
         let mut outline = Outline::new(placement, approach, window);
         let components =
@@ -92,9 +109,8 @@ impl Patch {
         Some(Self { approach: self.approach, window: *window, components })
     }
 
-    /// Returns the intervals of η of the patch at ξ, each with the index of its component, in no order. Where
-    /// some intervals end and others begin, it returns those on the left. `outline` must be that of the same
-    /// placed pair.
+    /// Returns the intervals of η of the patch at ξ, each with the index of its component, in no order. If some intervals
+    /// end at ξ and others begin there, it returns those on the left. `outline` must belong to the same placed pair.
     pub fn slices(&self, outline: &mut Outline<'_>, xi: f64) -> Vec<(usize, Slice)> {
         let mut slices = Vec::new();
         for (index, component) in self.components.iter().enumerate() {
@@ -131,7 +147,7 @@ impl Patch {
 /// The bands of one component, before it is measured.
 struct Region {
     bands: Vec<Band>,
-    /// \[valley, ξ\] at which s may be least; no valley without skew.
+    /// Pairs \[valley, ξ\] at which s may be least. The valley is `None` without skew.
     turns: Vec<(Option<usize>, f64)>,
 }
 
@@ -149,7 +165,7 @@ fn regions(outline: &mut Outline<'_>) -> Vec<Region> {
         .flat_map(|i| (0..bands.len()).map(move |j| [i, j]))
         .filter(|&[i, j]| bands[i].meets(&bands[j]))
         .collect();
-    // For each band, the index of the first band of its component.
+    // For each band, this holds the index of the first band of its component.
     let mut first: Vec<usize> = (0..bands.len()).collect();
     for [i, j] in meeting {
         (bands[i].ends[1], bands[j].ends[0]) = (None, None);
@@ -194,7 +210,7 @@ impl Region {
         let cut_by_window = self.bands.iter().any(|band| band.ends.contains(&Some(End::Window)))
             || rows.iter().flatten().any(at_window);
         let mut loops = loops::loops(&self.bands, &rows);
-        // The outer loop is the largest.
+        // The outer loop is the one with the largest area.
         loops.sort_by(|a, b| loops::enclosed(b).total_cmp(&loops::enclosed(a)));
         let mut loops = loops.into_iter();
         let boundary = loops.next().unwrap_or_default();
@@ -221,8 +237,8 @@ impl Region {
         }
     }
 
-    /// Finds the corners of every band, and its slices at the points of the loops: at every corner, at ξ
-    /// between two corners that crowd towards round ends, and where each branch is farthest out in η.
+    /// Finds the corners of every band, and its slices at the points of the loops. These are every corner, the ξ between
+    /// two corners (they crowd towards round ends), and the ξ where each branch is farthest out in η.
     fn rows(&mut self, outline: &mut Outline<'_>) -> Vec<Rows> {
         let [a, b] = self.xi();
         let skewed = outline.slicer.skewed.is_some();
@@ -240,7 +256,7 @@ impl Region {
             sort(&mut corners);
             band.corners = corners;
             let nodes = graded(band, b - a);
-            let mut rows: Vec<Row> = nodes.into_iter().map(|xi| row(outline, band, xi)).collect();
+            let mut rows: Vec<BandRow> = nodes.into_iter().map(|xi| row(outline, band, xi)).collect();
             let mut more = Vec::new();
             if skewed {
                 let eta = rows.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], row| {
@@ -260,8 +276,8 @@ impl Region {
         all
     }
 
-    /// Returns \[s, ξ, η\] of the smallest s. It looks where s turns along the valleys of the component, at C
-    /// and at the component's ends; where the window cuts a valley off, also at the points of the loops.
+    /// Returns \[s, ξ, η\] of the smallest s. The candidates are the places where s turns along the valleys of the
+    /// component, C, and the component's ends; if the window cuts a valley off, also the points of the loops.
     fn deepest(&self, outline: &mut Outline<'_>, rows: &[Rows]) -> [f64; 3] {
         let mut least = [f64::NAN, self.xi()[0], 0.0];
         let mut take = |found: [f64; 3]| {
@@ -272,7 +288,7 @@ impl Region {
         for (k, band) in self.bands.iter().enumerate() {
             let holds = |xi: f64| band.xi[0] <= xi && xi <= band.xi[1];
             let mut places = Vec::new();
-            // C is first, so that it wins among the points whose s² underflows.
+            // C is the first candidate, so that it is chosen if s² underflows at several.
             places.extend(holds(0.0).then_some(0.0));
             places.extend(band.xi);
             let cut = outline.window.eta.into_iter().any(f64::is_finite) && !band.valleys.is_empty();
@@ -296,13 +312,13 @@ impl Region {
 }
 
 /// Returns both edges of a band at ξ.
-fn row(outline: &mut Outline<'_>, band: &Band, xi: f64) -> Row {
+fn row(outline: &mut Outline<'_>, band: &Band, xi: f64) -> BandRow {
     let Slice { eta } = band.slice(outline, xi);
-    Row { xi, edges: eta.map(|eta| Edge { eta, ledge: false }) }
+    BandRow { xi, edges: eta.map(|eta| Edge { eta, ledge: false }) }
 }
 
 /// Adds the rows at which a branch turns and is farthest out in η.
-fn add_farthest(outline: &mut Outline<'_>, band: &Band, rows: &mut Vec<Row>) {
+fn add_farthest(outline: &mut Outline<'_>, band: &Band, rows: &mut Vec<BandRow>) {
     let symmetric = outline.slicer.skewed.is_none() && outline.window.eta[0] == -outline.window.eta[1];
     let branches: &[usize] = if symmetric { &[1] } else { &[0, 1] };
     let mut more = Vec::new();
@@ -330,8 +346,8 @@ fn across(rows: &[Rows]) -> [f64; 2] {
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], row| [low.min(row[1]), high.max(row[2])])
 }
 
-/// Returns every corner of a band, and ξ between two corners that crowd towards round ends. `whole` is the
-/// length of the component in ξ.
+/// Returns every corner of a band, and ξ between two corners, which crowd towards round ends. `whole` is the length of the
+/// component along ξ.
 fn graded(band: &Band, whole: f64) -> Vec<f64> {
     let (grading, share) = (band.grading(), (band.xi[1] - band.xi[0]) / whole);
     let mut nodes = Vec::with_capacity(2 * POINTS_PER_SIDE);

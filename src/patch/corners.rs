@@ -5,12 +5,11 @@ use super::outline::Outline;
 use super::skewed::slicer::Edge;
 use crate::numerics::roots::{bracketed, last_where};
 
-/// Distance from a band up to which joints of the wheel are looked at, as a multiple of the band's depth ×
-/// sinθ: enough for slopes up to 80°. A joint that is missed beyond it only costs the quadrature some panels.
+/// Distance from a band up to which joints of the wheel are examined, as a multiple of the band's depth × sinθ. It is
+/// enough for slopes up to 80°. A joint beyond it that is missed only costs the quadrature some panels.
 const FAR_JOINTS: f64 = 16.0;
 
-/// Number of intervals of a circle in which a root of s = δ is looked for: two roots within one interval are
-/// missed.
+/// Number of intervals of a circle in which a root of s = δ is sought. Two roots within one interval are missed.
 const CIRCLE_INTERVALS: usize = 8;
 
 /// Most doublings of the bracket of a sagitta.
@@ -18,7 +17,7 @@ const DOUBLINGS: usize = 40;
 
 /// Both edges of a band at one ξ.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Row {
+pub(super) struct BandRow {
     pub(super) xi: f64,
     pub(super) edges: [Edge; 2],
 }
@@ -26,8 +25,8 @@ pub(super) struct Row {
 /// Appends the ξ inside a band where, without skew, its boundary crosses a joint or the end of the wheel's
 /// surface. The two branches mirror each other.
 ///
-/// Method: closed form except for one root per joint. The point over the joint at p lies at ξ = p + e sinθ and
-/// height h(p) + e cosθ; that height must equal ζ^R(ξ) + δ.
+/// Method: closed form except for one root at each joint. The point over the joint at p lies at ξ = p + e sinθ and height
+/// h(p) + e cosθ; that height must equal ζ^R(ξ) + δ.
 pub(super) fn plain(outline: &Outline<'_>, band: &Band, deepest: f64, corners: &mut Vec<f64>) {
     let placement = outline.slicer.placement();
     let (approach, rail) = (outline.slicer.approach(), &placement.rail().section);
@@ -79,7 +78,7 @@ pub(super) fn skewed(outline: &Outline<'_>, band: &Band, eta: [f64; 2], corners:
 }
 
 /// Appends the ξ between two rows at which a branch meets the edge of the window.
-pub(super) fn at_window(outline: &mut Outline<'_>, band: &Band, rows: &[Row], corners: &mut Vec<f64>) {
+pub(super) fn at_window(outline: &mut Outline<'_>, band: &Band, rows: &[BandRow], corners: &mut Vec<f64>) {
     let window = outline.window.eta;
     for pair in rows.windows(2) {
         for branch in 0..2 {
@@ -93,7 +92,7 @@ pub(super) fn at_window(outline: &mut Outline<'_>, band: &Band, rows: &[Row], co
     }
 }
 
-/// Returns the ξ between two rows at which a branch turns, farthest out in η; `None` if it does not turn.
+/// Returns the ξ between two rows at which a branch turns and is farthest out in η. Returns `None` if it does not turn.
 pub(super) fn turn_of_branch(
     outline: &mut Outline<'_>,
     band: &Band,

@@ -1,20 +1,20 @@
-//! Maps a parameter to ξ so that the width of a patch, a square root at its tips, is smooth in the parameter.
+//! Maps a parameter to ξ so that the width of a patch, which is a square root at its tips, is smooth in the parameter.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::numerics::quadrature::{integral, smooth_integrals};
+use crate::numerics::quadrature::smooth_integrals;
 
 /// Longest piece, as a share of a band, that is tried with few nodes first.
 const SHORT: f64 = 0.1;
 
-/// ξ as a function of t in \[0, 1\]: equal steps of t crowd towards round ends like equal angles of an
-/// ellipse, so that the width of a patch is smooth in t.
+/// ξ as a function of t in \[0, 1\] in which the width of a patch is smooth. Equal steps of t crowd towards round ends,
+/// like equal angles of an ellipse.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Grading {
     /// Ends of the range of ξ \[mm\].
     pub(crate) xi: [f64; 2],
-    /// Which ends are round: tips, and ends of a profile, which a tilted wheel's columns reach as a square
-    /// root too.
+    /// Whether each end is round. Tips are; ends of a profile are too, because the columns of a tilted wheel reach them as
+    /// a square root.
     pub(crate) round: [bool; 2],
 }
 
@@ -51,7 +51,7 @@ impl Grading {
         (self.xi[0] + length * share, length * slope)
     }
 
-    /// Returns t of ξ.
+    /// Returns the parameter t of ξ.
     pub(crate) fn parameter(&self, xi: f64) -> f64 {
         let share = (xi - self.xi[0]) / (self.xi[1] - self.xi[0]);
         match self.round {
@@ -62,8 +62,8 @@ impl Grading {
         }
     }
 
-    /// Returns ∫ f dξ between two values of t, for several functions at the same places, each to its own
-    /// relative accuracy. The functions must be smooth there.
+    /// Returns ∫ f dξ between two values of t for several functions, which are evaluated at the same places. Each integral
+    /// has its own relative accuracy. The functions must be smooth in between.
     pub(crate) fn integrals<const N: usize>(
         &self,
         t: [f64; 2],
@@ -75,15 +75,6 @@ impl Grading {
             f(xi).map(|value| value * slope)
         };
         smooth_integrals(&mut weighted, t, relative, t[1] - t[0] <= SHORT)
-    }
-
-    /// Returns ∫ f dξ over the whole range, for a function that may have kinks.
-    pub(crate) fn integral(&self, f: &mut impl FnMut(f64) -> f64, relative: f64) -> f64 {
-        let mut weighted = |t: f64| {
-            let (xi, slope) = self.xi_and_slope(t);
-            f(xi) * slope
-        };
-        integral(&mut weighted, 0.0, 1.0, relative)
     }
 }
 

@@ -1,27 +1,27 @@
 //! Joins the sides of bands that touch into closed loops.
 //!
-//! At every ξ where bands end or begin, the loop continues from a side of one band to a side of another, if
-//! need be along the line of constant ξ: up where the patch is only on its left, down where it is only on its
+//! At every ξ where bands end or begin, the loop continues from a side of one band to a side of another. If need be it
+//! follows the line of constant ξ: upwards if the patch is only on the left of the line, downwards if it is only on the
 //! right.
 
 use super::band::Band;
 
 /// A side of a band, as part of a loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Side {
+struct BandSide {
     band: usize,
-    /// 0 is the lower side, along which a loop runs with ξ; 1 is the upper side, along which it runs back.
+    /// 0 for the lower side, along which a loop runs with ξ; 1 for the upper side, along which it runs back.
     branch: usize,
 }
 
-/// The slices of one band at ascending ξ, both ends included: \[ξ, lower η, upper η\] \[mm\].
+/// The slices of one band as \[ξ, lower η, upper η\] \[mm\], by ascending ξ, both ends included.
 pub(super) type Rows = Vec<[f64; 3]>;
 
-/// Returns loops of \[ξ, η\] \[mm\] around the bands, with the patch on the left: outer loops are
-/// counter-clockwise, holes clockwise. The first point is not repeated; no two neighbours are the same.
+/// Returns loops of \[ξ, η\] \[mm\] around the bands, with the patch on the left: outer loops are counter-clockwise, holes
+/// clockwise. The first point is not repeated, and neighbouring points differ.
 pub(super) fn loops(bands: &[Band], rows: &[Rows]) -> Vec<Vec<[f64; 2]>> {
-    let mut free: Vec<Side> =
-        (0..bands.len()).flat_map(|band| [0, 1].map(|branch| Side { band, branch })).collect();
+    let mut free: Vec<BandSide> =
+        (0..bands.len()).flat_map(|band| [0, 1].map(|branch| BandSide { band, branch })).collect();
     let mut loops = Vec::new();
     while let Some(first) = free.pop() {
         let (mut points, mut side) = (Vec::new(), first);
@@ -38,7 +38,7 @@ pub(super) fn loops(bands: &[Band], rows: &[Rows]) -> Vec<Vec<[f64; 2]>> {
             }
             match free.iter().position(|other| *other == side) {
                 Some(place) => free.swap_remove(place),
-                // By rounding two intervals overlap at one ξ: the loop is closed here.
+                // Two intervals at one ξ overlap only by rounding. The loop is closed here.
                 None => break,
             };
         }
@@ -51,11 +51,11 @@ pub(super) fn loops(bands: &[Band], rows: &[Rows]) -> Vec<Vec<[f64; 2]>> {
     loops
 }
 
-/// Returns the side on which a loop continues after another side.
-fn next(bands: &[Band], Side { band, branch }: Side) -> Side {
+/// Returns the side on which a loop continues after the given side.
+fn next(bands: &[Band], BandSide { band, branch }: BandSide) -> BandSide {
     let (end, here) = (1 - branch, &bands[band]);
     let (xi, eta) = (here.xi[end], here.sides[end][branch]);
-    // Bands that lie on the other side of the line ξ, and bands that lie on the same side.
+    // `across` finds bands on the other side of the line ξ, `along` those on the same side.
     let across = |k: usize| bands[k].xi[1 - end] == xi;
     let along = |k: usize| bands[k].xi[end] == xi;
     // Turns η so that the loop moves upwards along the line ξ.
@@ -65,22 +65,22 @@ fn next(bands: &[Band], Side { band, branch }: Side) -> Side {
     let start = up(eta);
     let others = || (0..bands.len()).filter(|&k| across(k));
     match others().find(|&k| near(k) <= start && start < far(k)) {
-        // A band on the other side is here: move back along it to its own edge, or to a band on this side
-        // before that.
+        // A band on the other side is here. The loop moves back along it, to its own edge or to the first band that it
+        // meets on this side.
         Some(beside) => {
             let last = |k: &usize| up(bands[*k].sides[end][1 - branch]);
             let own = (0..bands.len()).filter(|&k| along(k) && k != band);
             let before = own.filter(|k| last(k) <= start && last(k) > near(beside));
             let before = before.max_by(|p, q| last(p).total_cmp(&last(q)));
-            before.map_or(Side { band: beside, branch }, |band| Side { band, branch: 1 - branch })
+            before.map_or(BandSide { band: beside, branch }, |band| BandSide { band, branch: 1 - branch })
         }
-        // No band on the other side is here: move on to the band's own other side, or to a band on the other
-        // side before that.
+        // No band on the other side is here. The loop moves on, to the other side of its own band or to the first band
+        // that it meets on the other side of the line.
         None => {
             let limit = up(here.sides[end][1 - branch]);
             let before = others().filter(|&k| start <= near(k) && near(k) < limit);
             let before = before.min_by(|&p, &q| near(p).total_cmp(&near(q)));
-            before.map_or(Side { band, branch: 1 - branch }, |band| Side { band, branch })
+            before.map_or(BandSide { band, branch: 1 - branch }, |band| BandSide { band, branch })
         }
     }
 }
@@ -92,8 +92,8 @@ pub(super) fn enclosed(points: &[[f64; 2]]) -> f64 {
     pairs.map(|(p, q)| ((p[0] - x) * (q[1] - y) - (q[0] - x) * (p[1] - y)) / 2.0).sum()
 }
 
-/// Returns the length of the boundary along lines of constant ξ where bands end or begin and no other band
-/// continues \[mm\].
+/// Returns the length \[mm\] of the boundary along lines of constant ξ: there bands end or begin and no other band
+/// continues.
 pub(super) fn walls(bands: &[Band]) -> f64 {
     let width = |[low, high]: [f64; 2]| (high - low).max(0.0);
     let sides = bands.iter().flat_map(|band| band.sides).map(width).sum::<f64>();

@@ -16,7 +16,7 @@ pub(super) fn area_and_length(outline: &mut Outline<'_>, band: &Band) -> [f64; 2
     for t in band.pieces() {
         let width_and_speed = |xi: f64| match outline.edges_and_slopes(band.valley(xi), xi) {
             Some(([low, high], slopes)) => {
-                // A slope is infinite only where ξ has been rounded onto a round end, which has no measure.
+                // A slope is infinite only where rounding has moved ξ onto a round end, which contributes nothing.
                 let speeds = slopes.map(|slope| if slope.is_finite() { 1f64.hypot(slope) } else { 0.0 });
                 [high.eta - low.eta, speeds[0] + speeds[1]]
             }

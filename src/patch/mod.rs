@@ -10,11 +10,10 @@ mod outline;
 mod plain;
 pub(crate) mod skewed;
 mod slice;
-mod turning_points;
+pub(crate) mod turning_points;
 
 pub(crate) use band::Band;
 pub use components::{Component, Patch};
-pub(crate) use grading::Grading;
 pub use outline::{End, Outline, Window};
 pub use slice::{Slice, Slicer};
-pub use turning_points::turning_points;
+pub(crate) use turning_points::turning_points;

@@ -1,4 +1,4 @@
-//! Cuts the slices of a patch off at the edges of a window.
+//! Cuts off the slices of a patch at the edges of a window.
 
 use serde::Serialize;
 
@@ -6,7 +6,7 @@ use super::skewed::slicer::Edge;
 use super::slice::Slicer;
 use crate::placement::Placement;
 
-/// A rectangle of the ξ–η plane \[mm\], inside which a patch is searched for.
+/// A rectangle of the ξ–η plane \[mm\] inside which a patch is sought.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Window {
     /// Range of ξ \[mm\].
@@ -46,15 +46,15 @@ impl<'a> Outline<'a> {
         Self { slicer: Slicer::new(placement, approach), window: *window }
     }
 
-    /// Returns both ends of the slice at ξ, with skew of the slice that holds `valley`; `None` outside the
-    /// patch or the window.
+    /// Returns both ends of the slice at ξ; with skew, of the slice that holds `valley`. Returns `None` outside the patch
+    /// or the window.
     pub(crate) fn edges(&mut self, valley: Option<usize>, xi: f64) -> Option<[Edge; 2]> {
         let edges = self.slicer.edges(xi, valley)?;
         self.clipped(edges)
     }
 
-    /// Returns both ends of the slice at ξ and dη/dξ of both branches there, 0 along the window. With skew,
-    /// the slice is the one that holds `valley`.
+    /// Returns both ends of the slice at ξ, and dη/dξ of both branches there, which is 0 along the window. With skew the
+    /// slice is the one that holds `valley`.
     pub(super) fn edges_and_slopes(
         &mut self,
         valley: Option<usize>,
@@ -76,11 +76,11 @@ impl<'a> Outline<'a> {
         (low.eta <= high.eta).then_some([low, high])
     }
 
-    /// Returns η of the least s at ξ within the window \[mm\]: the place of the valley (η = 0 without skew),
-    /// or the window's edge next to it, since s only rises to both sides.
+    /// Returns η \[mm\] of the least s at ξ within the window. It is the place of the valley (η = 0 without skew), or the
+    /// window's edge next to it, because s rises away from the valley.
     pub(super) fn floor(&self, valley: Option<usize>, xi: f64) -> f64 {
         let ([from, to], lowest) = (self.window.eta, self.slicer.valley(valley, xi));
-        // NaN, where there is no surface, stays NaN.
+        // NaN stays NaN: there is no surface.
         if lowest < from {
             from
         } else if lowest > to {
@@ -90,8 +90,8 @@ impl<'a> Outline<'a> {
         }
     }
 
-    /// Returns s − δ at the place of a valley, or at the window's edge next to it \[mm\]; infinite if s rises
-    /// above δ between the valley and that edge.
+    /// Returns s − δ \[mm\] at the place of a valley, or at the window's edge next to it. It is infinite if s rises above δ
+    /// between the valley and that edge.
     pub(super) fn depth(&mut self, valley: Option<usize>, xi: f64) -> f64 {
         let floor = self.floor(valley, xi);
         match (&mut self.slicer.skewed, valley) {
@@ -112,7 +112,7 @@ impl<'a> Outline<'a> {
         self.slicer.separation(xi, floor) - self.slicer.approach()
     }
 
-    /// Returns \[s, ξ, η\] of the least s at ξ within the window, with skew over `valley`.
+    /// Returns \[s, ξ, η\] of the least s at ξ within the window; with skew, over `valley`.
     pub(super) fn lowest(&mut self, valley: Option<usize>, xi: f64) -> [f64; 3] {
         let floor = self.floor(valley, xi);
         let eta = self.slicer.on_surface(xi, floor);

@@ -1,19 +1,18 @@
-//! Finds the bands of a patch without skew, where a line of constant ξ meets the patch in one interval at
-//! most.
+//! Finds the bands of a patch without skew. A line of constant ξ then meets the patch in at most one interval.
 
 use super::band::{Band, steps};
 use super::outline::{End, Outline};
 use crate::numerics::roots::{bracketed, last_where};
 use crate::patch::turning_points;
 
-/// Number of intervals in which the depth along the window's edge is searched for turns, if the midplane is
-/// outside the window: a part is missed only if it begins and ends within one of them.
+/// Number of intervals in which turns of the depth along the window's edge are sought if the midplane is outside the
+/// window. A part is missed only if it begins and ends within one of them.
 const WINDOW_INTERVALS: usize = 512;
 
 /// Returns the bands by ascending ξ, and the ξ at which s may be least \[mm\].
 ///
-/// At a joint the gap may step (an overhang). So every interval between turning points is judged by the
-/// values at its own two ends.
+/// At a joint the gap may step (an overhang). Every interval between turning points is therefore judged by the values at
+/// its own two ends.
 pub(super) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<f64>) {
     let placement = outline.slicer.placement();
     let Some([first, last]) = placement.overlap() else { return (Vec::new(), Vec::new()) };
@@ -67,8 +66,8 @@ fn closed(
     (from, begin): (f64, Option<End>),
     (to, end): (f64, Option<End>),
 ) -> Band {
-    // A joint belongs to the left. Where the surface steps or begins at a joint, the slice on its right is
-    // the next number.
+    // A joint belongs to the left piece. If the surface steps or begins at a joint, the slice on its right is taken at the
+    // next number.
     let beside = begin.is_none() || outline.depth(None, from).is_nan();
     let places = [(begin, if beside { from.next_up() } else { from }), (end, to)];
     let sides = places.map(|(end, xi)| {
@@ -78,8 +77,8 @@ fn closed(
     Band { xi: [from, to], ends: [begin, end], sides, valleys: Vec::new(), corners: Vec::new() }
 }
 
-/// Returns a, b and all ξ between them where the depth may turn, joints and stationary points: between
-/// neighbours the depth is monotone.
+/// Returns a, b, and all ξ between them where the depth may turn: joints and stationary points. The depth is monotone
+/// between neighbours.
 fn turns_of_depth(outline: &mut Outline<'_>, a: f64, b: f64) -> Vec<f64> {
     let mut points = turning_points(outline.slicer.placement(), a, b);
     let floor = outline.floor(None, a);
@@ -99,12 +98,12 @@ fn turns_of_depth(outline: &mut Outline<'_>, a: f64, b: f64) -> Vec<f64> {
     points
 }
 
-/// Returns where the patch ends between p and q, one of which is inside it, and what bounds it there.
+/// Returns the end of the patch between p and q, one of which is inside the patch, and what bounds it there.
 fn part_end(outline: &mut Outline<'_>, [p, q]: [f64; 2], first_inside: bool) -> (f64, End) {
     if let Some(tip) = bracketed(|xi| outline.depth(None, xi), p, q) {
         return (tip, if outline.floor(None, tip) == 0.0 { End::Tip } else { End::Window });
     }
-    // There is no surface on one side: take the last ξ with one.
+    // If one side has no surface, the end is the last ξ with a surface.
     let (on, off) = if first_inside { (p, q) } else { (q, p) };
     (last_where(|xi| outline.depth(None, xi) < 0.0, on, off), End::ProfileEnd)
 }

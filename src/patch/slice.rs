@@ -1,13 +1,12 @@
-//! Finds the patch at one ξ: the interval of η with s(ξ, η) < δ.
+//! Finds the slices of the patch: the interval of η with s(ξ, η) < δ at one ξ.
 //!
-//! Without skew (7.2)–(7.3) become: the wheel must rise by δ − g(ξ), which gives the sagitta e, and η =
-//! ±√(e(2w + e)). This is exact at the tips, where (7.3) cancels.
+//! Without skew the wheel must rise by δ − g(ξ). This gives the sagitta e, and η = ±√(e(2w + e)) takes the place of
+//! (7.2)–(7.3). It is exact at the tips, where (7.3) cancels.
 
 use super::skewed::slicer::{Edge, STEP_ROUNDINGS, Skewed};
 use crate::placement::Placement;
-use crate::separation::Evaluator;
-use crate::separation::gap::midplane_gap;
 use crate::separation::wheel_surface::{SagittaPoint, Span, WheelSurface};
+use crate::separation::{Evaluator, midplane_gap};
 
 /// Most contractions of the sagitta step; each gains at least three digits away from vertical tangents.
 const CONTRACTIONS: usize = 24;
@@ -21,13 +20,27 @@ pub struct Slice {
 
 /// The upper end of a slice without skew, and the wheel point at that end.
 #[derive(Debug, Clone, Copy)]
-struct Half {
+struct UpperEnd {
     edge: Edge,
     span: Span,
     foot: SagittaPoint,
 }
 
 /// Finds the slices of a placed pair at one approach.
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
+/// use wheelrail::patch::Slicer;
+/// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+/// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+/// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+/// # let pair = Pair::new(rail, wheel, 460.0)?;
+/// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
+/// let slice = Slicer::new(&placement, 0.05).slice(0.0).expect("inside the patch");
+/// assert!((slice.eta[1] - f64::sqrt(460.0 * 460.0 - 459.95 * 459.95)).abs() < 1e-11);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct Slicer<'a> {
     pub(super) placement: &'a Placement,
@@ -57,8 +70,8 @@ impl<'a> Slicer<'a> {
         self.approach
     }
 
-    /// Returns the minimum over η of s(ξ, η) − δ \[mm\]: negative inside the patch, zero at its tips, NaN off
-    /// the bodies.
+    /// Returns the minimum over η of s(ξ, η) − δ \[mm\]. It is negative inside the patch, zero at its tips, and NaN off the
+    /// bodies.
     pub fn depth(&mut self, xi: f64) -> f64 {
         match &mut self.skewed {
             Some(skewed) => skewed.lowest_valley(xi).map_or(f64::NAN, |valley| skewed.depth(valley, xi)),
@@ -66,9 +79,8 @@ impl<'a> Slicer<'a> {
         }
     }
 
-    /// Returns the interval of η at ξ, or `None` outside the patch; with skew, the deepest of several
-    /// intervals. At a tip the interval has no width. It ends where the wheel's surface ends along η, if that
-    /// is before s reaches δ.
+    /// Returns the interval of η at ξ, or `None` outside the patch. With skew it is the deepest of several intervals. The
+    /// interval has no width at a tip. It ends where the wheel's surface ends along η, if that is before s reaches δ.
     ///
     /// Accuracy: |Δη| ≤ (R/η) × the accuracy of s.
     pub fn slice(&mut self, xi: f64) -> Option<Slice> {
@@ -84,12 +96,12 @@ impl<'a> Slicer<'a> {
         if let (Some(skewed), Some(valley)) = (&mut self.skewed, valley) {
             return skewed.edges(xi, valley);
         }
-        let Half { edge, .. } = self.half(xi)?;
+        let UpperEnd { edge, .. } = self.half(xi)?;
         Some([Edge { eta: -edge.eta, ..edge }, edge])
     }
 
-    /// Returns both ends of the slice at ξ and dη/dξ of both branches there, infinite at a tip. With skew,
-    /// the slice is the one that holds `valley`.
+    /// Returns both ends of the slice at ξ, and dη/dξ of both branches there, which is infinite at a tip. With skew the
+    /// slice is the one that holds `valley`.
     pub(super) fn edges_and_slopes(
         &mut self,
         xi: f64,
@@ -108,33 +120,32 @@ impl<'a> Slicer<'a> {
     }
 
     /// Returns the upper end of the slice at ξ without skew, or `None` outside the patch.
-    fn half(&mut self, xi: f64) -> Option<Half> {
+    fn half(&mut self, xi: f64) -> Option<UpperEnd> {
         let depth = self.approach - midplane_gap(self.placement, xi);
         if depth.is_nan() || depth < 0.0 {
             return None;
         }
-        // This is enough for slopes up to 80°; steeper ones take the whole profile.
+        // This is enough for slopes up to 80°. Steeper ones need the whole profile.
         let likely = 16.0 * self.placement.rolling_radius() * depth;
         self.foot_lifted(xi, depth, likely).or_else(|| self.foot_lifted(xi, depth, f64::INFINITY))
     }
 
-    /// Returns dη/dξ of the branch η > 0 without skew: −s_ξ/s_η, or the slope of the wheel's circle on a
-    /// ledge.
-    fn half_slope(&self, xi: f64, Half { edge, span, foot }: &Half) -> f64 {
+    /// Returns dη/dξ of the branch η > 0 without skew: −s_ξ/s_η, or on a ledge the slope of the wheel's circle.
+    fn half_slope(&self, xi: f64, UpperEnd { edge, span, foot }: &UpperEnd) -> f64 {
         if edge.ledge {
             return foot.w / (edge.eta * self.placement.wheel().section.frame.sin);
         }
         let normal = self.wheel.normal(xi, edge.eta, span, foot);
         let rail = self.evaluator.rail_slope(xi);
-        // s_ξ = −n_ξ/n_ζ − the rail's slope, s_η = −n_η/n_ζ.
+        // s_ξ = −n_ξ/n_ζ − slope of the rail, and s_η = −n_η/n_ζ.
         -(normal.x + rail * normal.z) / normal.y
     }
 
-    /// Returns the wheel point that lies `depth` above the midplane point at ξ, or the point before that at
-    /// which the surface ends or steps. `None` where η² would exceed `u_max`.
-    fn foot_lifted(&mut self, xi: f64, depth: f64, u_max: f64) -> Option<Half> {
+    /// Returns the wheel point that lies `depth` \[mm\] above the midplane point at ξ, or an earlier point at which the
+    /// surface ends or steps. Returns `None` if η² would exceed `u_max`.
+    fn foot_lifted(&mut self, xi: f64, depth: f64, u_max: f64) -> Option<UpperEnd> {
         self.wheel.spans(xi, u_max, &mut self.spans);
-        let half = |foot: SagittaPoint, span: &Span, ledge: bool| Half {
+        let half = |foot: SagittaPoint, span: &Span, ledge: bool| UpperEnd {
             edge: Edge { eta: foot.u.max(0.0).sqrt(), ledge },
             span: *span,
             foot,
@@ -153,7 +164,7 @@ impl<'a> Slicer<'a> {
         Some(half(self.wheel.point(xi, last, last.e[1]), last, true))
     }
 
-    /// Returns η of the least s at ξ \[mm\]: 0 without skew, else where the wheel is parallel to η or its
+    /// Returns η \[mm\] of the least s at ξ. It is 0 without skew, else the place where the wheel is parallel to η or its
     /// surface ends; NaN where the wheel has no surface.
     pub fn lowest(&mut self, xi: f64) -> f64 {
         let Some(skewed) = &mut self.skewed else { return 0.0 };
@@ -166,12 +177,12 @@ impl<'a> Slicer<'a> {
         places.map_or(0.0, |(skewed, valley)| skewed.valleys.spot(valley, xi).eta)
     }
 
-    /// Returns η, or a place next to it if rounding ends the surface too early.
+    /// Returns η. If rounding ends the surface too early, it returns a place on the surface next to η.
     pub(super) fn on_surface(&mut self, xi: f64, eta: f64) -> f64 {
         self.skewed.as_mut().map_or(eta, |skewed| skewed.on_surface(xi, eta))
     }
 
-    /// Returns dη/dξ at a point of the boundary: −s_ξ/s_η, infinite at a tip.
+    /// Returns dη/dξ at a point of the boundary: −s_ξ/s_η, which is infinite at a tip.
     pub fn boundary_slope(&mut self, xi: f64, eta: f64) -> f64 {
         let [along, across] = self.gradient(xi, eta);
         -along / across
@@ -184,8 +195,7 @@ impl<'a> Slicer<'a> {
         [along - rail, across]
     }
 
-    /// Returns dη/dξ along the end or step of a skewed wheel's surface that is next to a point; NaN without
-    /// skew.
+    /// Returns dη/dξ along the end or step of a skewed wheel's surface that is nearest to a point; NaN without skew.
     fn ledge_slope(&self, xi: f64, eta: f64) -> f64 {
         self.skewed.as_ref().map_or(f64::NAN, |skewed| skewed.valleys.rim_slope(xi, eta))
     }

@@ -1,9 +1,9 @@
-//! Finds where the gap of the midplane may turn.
+//! Finds where the midplane gap may turn.
 
 use crate::placement::Placement;
 use crate::profile::stationary_points;
 
-/// Finds a, b and all ξ between them \[mm\] where the midplane gap may turn: joints and stationary points, ascending.
+/// Finds a, b, and all ξ between them \[mm\] where the midplane gap may turn, ascending: joints and stationary points.
 ///
 /// Between two neighbours the gap is monotone, or undefined throughout.
 pub fn turning_points(placement: &Placement, a: f64, b: f64) -> Vec<f64> {

@@ -1,6 +1,10 @@
 //! A placed pair: contact frame ξηζ and both profiles in it (Report Sec. 4).
 
-pub mod track;
+mod motion;
+mod track;
+
+pub use motion::{Creepages, Motion, Pitch, Rates};
+pub use track::{RailDistance, Track, WheelDistance, Wheelset};
 
 use std::sync::Arc;
 
@@ -21,9 +25,9 @@ struct Prepared {
 pub struct Body {
     prepared: Arc<Prepared>,
     /// The contact point C on it; its tangent gives θ_C.
-    pub point: ProfilePoint,
+    pub(crate) point: ProfilePoint,
     /// The profile in the contact frame.
-    pub section: Section,
+    pub(crate) section: Section,
 }
 
 /// A rail and a wheel that share the contact point C and the common normal there.
@@ -32,6 +36,19 @@ pub struct Body {
 /// the common normal from rail to wheel. The wheel's meridian through C may be turned about ζ by the skew χ
 /// (yaw); then the wheel's own coordinates in the tangent plane are ξ′ = ξ cos χ + η sin χ,
 /// η′ = η cos χ − ξ sin χ.
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
+/// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+/// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+/// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+/// let pair = Pair::new(rail, wheel, 460.0)?; // a crown of 300 mm below a cylinder of 460 mm
+/// let placement = pair.placed(10.0, 0.0, 0.0)?;
+/// assert!((placement.rail().contact_angle().sin() + 10.0 / 300.0).abs() < 1e-15);
+/// assert_eq!(placement.rolling_radius(), 460.0);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Placement {
     rail: Body,
@@ -172,6 +189,16 @@ impl Body {
     /// The profile in its own axes.
     pub fn profile(&self) -> &Profile {
         &self.prepared.profile
+    }
+
+    /// The contact point C on it; its tangent gives θ_C.
+    pub fn point(&self) -> &ProfilePoint {
+        &self.point
+    }
+
+    /// The profile in the contact frame.
+    pub fn section(&self) -> &Section {
+        &self.section
     }
 
     /// The contact frame in the profile's own axes (x, z): its translation is C \[mm\], its rotation θ_C.

@@ -7,8 +7,7 @@
 //! `docs::conventions`.
 
 use crate::error::{Error, Result, finite};
-use crate::profile::trace::trace;
-use crate::profile::{Branch, Profile, Section, Segment, Side, Station, last_groove};
+use crate::profile::{Branch, Profile, Section, Segment, Side, Station, last_groove, trace};
 
 /// Where the rails are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,18 +43,18 @@ pub enum WheelDistance {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Track {
     /// Abscissa of the origin \[mm\], positive; the left-hand one has the negative.
-    pub rail_x: f64,
+    pub(crate) rail_x: f64,
     /// Height of the origin \[mm\], relative to the top of rail, + up: minus the profile's highest z.
-    pub rail_z: f64,
+    pub(crate) rail_z: f64,
 }
 
 /// A wheelset: its two wheels on a rigid axle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wheelset {
     /// Distance \[mm\] of the right-hand wheel's profile origin from the middle of the axle, along the axle.
-    pub wheel_x: f64,
+    pub(crate) wheel_x: f64,
     /// Nominal rolling radius R \[mm\] of both wheels.
-    pub radius: f64,
+    pub(crate) radius: f64,
 }
 
 impl Track {
@@ -84,6 +83,29 @@ impl Track {
         };
         Ok(Self { rail_x, rail_z: -top })
     }
+
+    /// Moves the rail of this side outwards and up \[mm\].
+    ///
+    /// # Errors
+    /// Moves that are not finite; a rail that would be at the middle of the track or beyond.
+    pub fn moved(&self, outwards: f64, up: f64) -> Result<Self> {
+        let rail_x = self.rail_x + finite("lateral", outwards)?;
+        if rail_x <= 0.0 {
+            let expected = format!("a rail on its side of the track, {} mm from the middle", self.rail_x);
+            return Err(Error::new("lateral", outwards.to_string(), expected, "give it in mm"));
+        }
+        Ok(Self { rail_x, rail_z: self.rail_z + finite("vertical", up)? })
+    }
+
+    /// Returns the abscissa \[mm\] of the right-hand profile origin, positive; the left-hand one has the negative.
+    pub fn rail_x(&self) -> f64 {
+        self.rail_x
+    }
+
+    /// Returns the height \[mm\] of the profile origin, relative to the top of rail, + up.
+    pub fn rail_z(&self) -> f64 {
+        self.rail_z
+    }
 }
 
 impl Wheelset {
@@ -101,6 +123,16 @@ impl Wheelset {
         };
         positive("wheelset: distance of the wheels' profile origins", wheel_x)?;
         Ok(Self { wheel_x, radius: positive("wheel: radius", radius)? })
+    }
+
+    /// Returns the distance \[mm\] of the right-hand profile origin from the middle of the axle, along the axle.
+    pub fn wheel_x(&self) -> f64 {
+        self.wheel_x
+    }
+
+    /// Returns the nominal rolling radius R \[mm\] of both wheels.
+    pub fn radius(&self) -> f64 {
+        self.radius
     }
 }
 

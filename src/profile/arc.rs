@@ -1,4 +1,4 @@
-//! Lines and circular arcs in curvature form: Report (3.2), with a signed radius (erratum 2).
+//! Lines and circular arcs in curvature form: Report (3.2) with a signed radius (erratum 2).
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -7,8 +7,8 @@ use crate::error::{Error, Result, finite};
 use crate::numerics::cosine;
 use crate::numerics::twice::Twice;
 
-/// Distance beyond the vertical tangent, in roundings of the radius, at which an arc of a drawing may end:
-/// its coordinates are rounded. More means a drawing that does not close.
+/// Largest distance of an arc's end beyond the vertical tangent, in roundings of the radius. The coordinates of a drawing
+/// are rounded, so that an end can lie a little beyond. An end farther out belongs to a drawing that does not close.
 const VERTICAL_END_ROUNDINGS: f64 = 64.0;
 
 /// The half of its circle on which an arc is.
@@ -21,16 +21,26 @@ pub enum Half {
 }
 
 /// A line (infinite radius) or a circular arc of at most half a turn.
+///
+/// # Examples
+/// ```
+/// use wheelrail::{Arc, Half};
+///
+/// let crown = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-30.0, 40.0])?;
+/// assert_eq!(crown.curvature(), -1.0 / 300.0);
+/// assert!((crown.start().sin - 0.1).abs() < 1e-15); // it rises by a tenth at x = −30 mm
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Arc {
     /// Station at the beginning.
-    pub start: Station,
+    pub(crate) start: Station,
     /// Station at the end.
-    pub end: Station,
-    /// Signed radius \[mm\]: positive if the arc turns counter-clockwise (lower half), ∞ for a line. The
-    /// radius is kept, not the curvature, since differences of nearly equal radii are then exact.
+    pub(crate) end: Station,
+    /// Signed radius \[mm\]: positive if the arc turns counter-clockwise (lower half), ∞ for a line. The radius is stored
+    /// and not the curvature, because the difference of two nearly equal radii is exact.
     #[serde(serialize_with = "finite_or_none", deserialize_with = "infinite_where_none")]
-    pub radius: f64,
+    pub(crate) radius: f64,
 }
 
 /// Stores the radius of a line as nothing: JSON has no infinity.
@@ -62,7 +72,7 @@ impl Arc {
         Ok(Self { start: at(from), end: at(to), radius: f64::INFINITY })
     }
 
-    /// Makes the arc about `centre` (a, b) between two abscissae, (3.2-a).
+    /// Makes the arc about `centre` (a, b) between two abscissae \[mm\]: (3.2-a).
     ///
     /// # Errors
     /// Values that are not finite, a radius that is not positive, abscissae out of order or off the circle.
@@ -83,8 +93,8 @@ impl Arc {
         Ok(Self { start: at(x[0])?, end: at(x[1])?, radius: signed })
     }
 
-    /// Makes the arc or line that leaves `start` along its tangent and ends at abscissa `to_x` (Appendix A:
-    /// smooth transitions); `radius` is signed, ∞ for a line.
+    /// Makes the arc or line that leaves `start` along its tangent and ends at abscissa `to_x` \[mm\] (Appendix A: smooth
+    /// transitions). `radius` \[mm\] is signed; it is ∞ for a line.
     ///
     /// # Errors
     /// A `to_x` that is not beyond the start, or not reached before the tangent is vertical.
@@ -105,6 +115,21 @@ impl Arc {
         let cos = cosine(sin);
         let z = start.z + run * (start.sin + sin) / (start.cos + cos);
         Ok(Self { start, end: Station { x: to_x, z, cos, sin }, radius })
+    }
+
+    /// Returns the station at the beginning.
+    pub fn start(&self) -> Station {
+        self.start
+    }
+
+    /// Returns the station at the end.
+    pub fn end(&self) -> Station {
+        self.end
+    }
+
+    /// Returns the signed radius \[mm\]: positive if the arc turns counter-clockwise (lower half), ∞ for a line.
+    pub fn radius(&self) -> f64 {
+        self.radius
     }
 
     /// Returns the signed curvature \[1/mm\], 0 for a line.
@@ -132,10 +157,10 @@ impl Arc {
         if self.radius.is_finite() { (self.turn() * self.radius).abs() } else { chord }
     }
 
-    /// Returns the station at a share (0 to 1) of the length.
+    /// Returns the station at a share (0 to 1) of the arc's length.
     pub fn station_at(&self, share: f64) -> Station {
-        // The chord of the part has the direction of the mean tangent; its length is that of the arc times
-        // sinc.
+        // The chord of the part has the direction of the mean tangent. Its length is the length of the part times sinc of
+        // half the turn.
         let turn = share * self.turn();
         let half = 0.5 * turn;
         let chord = share * self.length() * if half == 0.0 { 1.0 } else { half.sin() / half };
@@ -152,8 +177,8 @@ impl Arc {
     }
 }
 
-/// Returns the point of a circle at abscissa x; `radius` is negative for the upper half. The height is
-/// rounded once only: b and r may be thousands of times larger than their sum.
+/// Returns the station of a circle at abscissa x; `radius` is negative for the upper half. The height is rounded only once,
+/// because b and r may be thousands of times larger than their sum.
 fn station_on_circle([a, b]: [f64; 2], radius: f64, x: f64) -> Result<Station> {
     let beyond = (x - a).abs() - radius.abs();
     if beyond > VERTICAL_END_ROUNDINGS * f64::EPSILON * (radius.abs() + a.abs()) {

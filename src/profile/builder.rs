@@ -1,26 +1,37 @@
-//! Appendix A of the Report: builds smooth chains from drawing data.
+//! Builds smooth chains from drawing data: Appendix A of the Report.
 //!
-//! A segment is given by its slope or radius and the abscissa where it ends; it leaves the segment before
-//! along its tangent. Equations (A-1)–(A-13) are one rule in the form used here: the new centre is on the
-//! normal of the joint.
+//! A segment is given by its slope or radius and by the abscissa where it ends. It leaves the previous segment along its
+//! tangent. Equations (A-1)–(A-13) become one rule here: the new centre lies on the normal of the joint.
 
 use super::{Arc, Half, Segment, Station};
 use crate::error::{Error, Result, finite};
 
 /// A chain under construction.
+///
+/// # Examples
+/// ```
+/// use wheelrail::profile::{ChainBuilder, Half, Profile};
+///
+/// let mut chain = ChainBuilder::starting_at([-10.0, 0.0])?;
+/// chain.line_to(Some(0.0), 0.0)?;
+/// chain.arc_to(50.0, Half::Upper, 30.0)?; // smooth: it leaves the line along its tangent
+/// let profile = Profile::new("crown", "", chain.finish())?;
+/// assert!((profile.segments()[1].end().z + 10.0).abs() < 1e-13);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug, Clone, Default)]
-pub struct Builder {
+pub struct ChainBuilder {
     point: Option<[f64; 2]>,
     segments: Vec<Segment>,
 }
 
-impl Builder {
-    /// Begins an empty chain.
+impl ChainBuilder {
+    /// Makes an empty chain. Its first segment must be given in full.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Begins an empty chain whose first segment, a line, starts at this point \[mm\].
+    /// Makes an empty chain whose first segment is a line that starts at this point \[mm\].
     ///
     /// # Errors
     /// A point that is not finite.
@@ -31,17 +42,16 @@ impl Builder {
         Ok(Self { point: Some(point), segments: Vec::new() })
     }
 
-    /// Appends a segment that is fully given.
+    /// Appends a segment that is given in full.
     pub fn push(&mut self, segment: Segment) {
         self.segments.push(segment);
     }
 
-    /// Appends a line to abscissa `to_x`: with the given slope, or along the tangent of the segment before
-    /// (A-11), (A-12).
+    /// Appends a line to abscissa `to_x` \[mm\]. With a slope the line has that slope; otherwise it continues the tangent
+    /// of the previous segment: (A-11), (A-12).
     ///
     /// # Errors
-    /// No beginning or no slope to continue from; values that are not finite; `to_x` not beyond the
-    /// beginning.
+    /// No point or no slope to continue from; values that are not finite; a `to_x` that is not beyond the beginning.
     pub fn line_to(&mut self, slope: Option<f64>, to_x: f64) -> Result<()> {
         let slope = slope.map(|slope| finite("line: slope", slope)).transpose()?;
         finite("line: to_x", to_x)?;
@@ -59,8 +69,8 @@ impl Builder {
         Ok(())
     }
 
-    /// Appends an arc to abscissa `to_x`, smooth with the segment before: (A-3), (A-4) after a line, (A-8),
-    /// (A-9) after an arc.
+    /// Appends an arc to abscissa `to_x` \[mm\], smooth with the previous segment: (A-3), (A-4) after a line, (A-8), (A-9)
+    /// after an arc.
     ///
     /// # Errors
     /// No segment to continue from; values that are not finite; a radius that is not positive; a `to_x` that
@@ -79,7 +89,7 @@ impl Builder {
         Ok(())
     }
 
-    /// Returns the chain.
+    /// Returns the segments from left to right.
     pub fn finish(self) -> Vec<Segment> {
         self.segments
     }
@@ -99,7 +109,7 @@ fn nothing_before(found: &str) -> Error {
 mod tests {
     use super::*;
 
-    fn centre_of_last(builder: &Builder) -> [f64; 2] {
+    fn centre_of_last(builder: &ChainBuilder) -> [f64; 2] {
         match builder.segments.last().map(|s| &s.shape) {
             Some(super::super::Shape::Arc(arc)) => arc.centre().unwrap_or([f64::NAN; 2]),
             _ => [f64::NAN; 2],
@@ -115,7 +125,7 @@ mod tests {
     #[test]
     fn line_to_arc_follows_a3_and_a4() -> Result<()> {
         let (slope, x, radius) = (0.35, 12.0, 80.0);
-        let mut builder = Builder::starting_at([-3.0, 1.0])?;
+        let mut builder = ChainBuilder::starting_at([-3.0, 1.0])?;
         builder.line_to(Some(slope), x)?;
         builder.arc_to(radius, Half::Upper, 30.0)?;
         let z = 1.0 + slope * (x + 3.0);
@@ -127,7 +137,7 @@ mod tests {
     #[test]
     fn arc_to_arc_follows_a8_to_a10() -> Result<()> {
         let (centre, before, after, x): ([f64; 2], f64, f64, f64) = ([1.0, -300.0], 300.0, 80.0, 10.0);
-        let mut builder = Builder::new();
+        let mut builder = ChainBuilder::new();
         builder.push(Segment::arc(Arc::about(centre, before, Half::Upper, [-10.0, x])?));
         builder.arc_to(after, Half::Upper, 26.0)?;
         let z = centre[1] + (before * before - (x - centre[0]).powi(2)).sqrt();
@@ -140,7 +150,7 @@ mod tests {
     #[test]
     fn arc_to_line_follows_a11_to_a13() -> Result<()> {
         let (centre, radius, x): ([f64; 2], f64, f64) = ([0.0, -13.0], 13.0, 9.0);
-        let mut builder = Builder::new();
+        let mut builder = ChainBuilder::new();
         builder.push(Segment::arc(Arc::about(centre, radius, Half::Upper, [0.0, x])?));
         builder.line_to(None, 12.0)?;
         let z = centre[1] + (radius * radius - (x - centre[0]).powi(2)).sqrt();
@@ -157,9 +167,9 @@ mod tests {
 
     #[test]
     fn nothing_to_go_on_from_is_an_error() -> Result<()> {
-        assert!(Builder::new().line_to(Some(0.0), 1.0).is_err());
-        assert!(Builder::new().arc_to(1.0, Half::Upper, 1.0).is_err());
-        assert!(Builder::starting_at([0.0, 0.0])?.line_to(None, 1.0).is_err());
+        assert!(ChainBuilder::new().line_to(Some(0.0), 1.0).is_err());
+        assert!(ChainBuilder::new().arc_to(1.0, Half::Upper, 1.0).is_err());
+        assert!(ChainBuilder::starting_at([0.0, 0.0])?.line_to(None, 1.0).is_err());
         Ok(())
     }
 
@@ -167,8 +177,8 @@ mod tests {
     fn what_is_not_finite_is_named() -> Result<()> {
         let place = |result: Result<()>| result.err().map(|e| e.place).unwrap_or_default();
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            assert!(Builder::starting_at([0.0, bad]).is_err_and(|e| e.place == "start"));
-            let mut builder = Builder::starting_at([0.0, 0.0])?;
+            assert!(ChainBuilder::starting_at([0.0, bad]).is_err_and(|e| e.place == "start"));
+            let mut builder = ChainBuilder::starting_at([0.0, 0.0])?;
             assert_eq!(place(builder.line_to(Some(bad), 1.0)), "line: slope");
             assert_eq!(place(builder.line_to(Some(0.0), bad)), "line: to_x");
             builder.line_to(Some(0.0), 1.0)?;

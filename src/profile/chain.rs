@@ -13,8 +13,21 @@ use crate::error::{Error, Result};
 
 /// A chain of segments, travelled from left to right, with its name and source.
 ///
-/// Neighbours share their joint point, to rounding: a drawing's rounded coordinates are closed when the chain is made, by the
-/// rule of [`closing`]. A stored profile (`serde`) is read back to the same bits; what is no chain is refused.
+/// Neighbours share their joint point, to rounding. The rounded coordinates of a drawing leave small steps; they are closed
+/// when the chain is made, by the rule that [`Closing`] describes. A stored profile (`serde`) is read back to the same bits;
+/// what is no chain is refused.
+///
+/// # Examples
+/// ```
+/// use wheelrail::{Arc, Half, Profile, Segment};
+///
+/// let flank = Arc::line([-20.0, -1.0], [-10.0, 0.0])?;
+/// let crown = Arc::about([0.0, -50.0], 50.990_195_135_927_85, Half::Upper, [-10.0, 10.0])?;
+/// let rail = Profile::new("head", "a sketch", vec![Segment::arc(flank), Segment::arc(crown)])?;
+/// assert_eq!(rail.segments().len(), 2);
+/// assert_eq!(rail.mirrored().segments()[1].end().x, 20.0);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Stored")]
 pub struct Profile {
@@ -24,7 +37,7 @@ pub struct Profile {
     pub source: String,
     /// At least one segment.
     segments: Vec<Segment>,
-    /// The segments before the chain was closed; empty if closing changed nothing but roundings.
+    /// The segments before the chain was closed; empty if closing changed only roundings.
     drawn: Vec<Segment>,
     closings: Vec<Closing>,
     /// The larger side of the box around the segments' ends \[mm\].
@@ -60,13 +73,13 @@ impl TryFrom<Stored> for Profile {
 }
 
 impl Profile {
-    /// Makes a chain of at least one segment that nowhere jumps, and closes it by the rule of [`closing`].
+    /// Makes a chain of at least one segment and closes its small steps: see [`Closing`].
     ///
     /// Kinks are allowed at any angle: see [`Profile::continuity`].
     ///
     /// # Errors
-    /// An empty chain; a joint with a step larger than [`continuity::LARGEST_STEP`] × the chain's extent, or than the short
-    /// segment beside it can take, with its place and size.
+    /// An empty chain. A step larger than 1e-4 × the chain's extent, or too large for the short segment beside it; the
+    /// error gives its place and size.
     pub fn new(name: impl Into<String>, source: impl Into<String>, drawn: Vec<Segment>) -> Result<Self> {
         if drawn.is_empty() {
             return Err(Error::new(
@@ -103,13 +116,13 @@ impl Profile {
         if self.drawn.is_empty() { &self.segments } else { &self.drawn }
     }
 
-    /// Returns the places where the drawn chain was changed to close it, and by how much, from left to right.
+    /// Returns the places where closing changed the drawn chain, and by how much, from left to right.
     pub fn closings(&self) -> &[Closing] {
         &self.closings
     }
 
-    /// Returns the closing that moved the drawn surface most, with its joint \[x, z\] \[mm\]; `None` for a chain drawn without
-    /// steps.
+    /// Returns the closing that moved the drawn surface most, with its joint \[x, z\] \[mm\]. Returns `None` for a chain
+    /// that was drawn without steps.
     pub fn largest_closing(&self) -> Option<(Closing, [f64; 2])> {
         let largest = self.closings.iter().max_by(|a, b| a.moved.total_cmp(&b.moved))?;
         let joint = self.segments[largest.left].end();
@@ -121,13 +134,14 @@ impl Profile {
         continuity::joints(&self.segments)
     }
 
-    /// Returns the larger side of the box around the ends of all segments \[mm\]: the scale by which rounding is judged.
+    /// Returns the larger side of the box around the ends of all segments \[mm\]. It is the scale by which rounding is
+    /// judged.
     pub fn extent(&self) -> f64 {
         self.extent
     }
 
-    /// Returns the profile turned about its origin, counter-clockwise from x to z. For 1:n see
-    /// [`inclination`](super::inclination()).
+    /// Returns the profile turned about its origin, counter-clockwise from x to z. [`inclination`](super::inclination())
+    /// makes the turn of 1:n.
     #[must_use]
     pub fn rotated(&self, turn: UnitComplex<f64>) -> Self {
         self.placed(&Station { x: 0.0, z: 0.0, cos: turn.re, sin: turn.im })
@@ -147,7 +161,7 @@ impl Profile {
         mirrored.drawn.reverse();
         mirrored.closings.reverse();
         for closing in &mut mirrored.closings {
-            // The segment on the other side of the same joint.
+            // Mirroring puts the joint's other segment on the left.
             closing.left = self.segments.len() - 2 - closing.left;
         }
         mirrored
@@ -163,7 +177,7 @@ impl Profile {
     }
 }
 
-/// The larger side of the box around all segment ends \[mm\].
+/// Returns the larger side of the box around all segment ends \[mm\].
 fn extent(segments: &[Segment]) -> f64 {
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for station in segments.iter().flat_map(|s| [s.start(), s.end()]) {

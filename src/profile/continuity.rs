@@ -1,5 +1,5 @@
-//! Measures how well a chain closes: gap, kink and curvature jump at every joint; rejects steps too large for
-//! a drawing.
+//! Measures how well a chain closes, by the gap, kink and curvature jump at every joint. Rejects steps that are too large
+//! for a drawing.
 
 use serde::Serialize;
 
@@ -20,7 +20,7 @@ pub struct Joint {
     pub left: usize,
     /// Abscissa of the left segment's end \[mm\].
     pub x: f64,
-    /// Distance between the two ends \[mm\]; some roundings in a profile's chain.
+    /// Distance between the two ends \[mm\]; a few roundings in a profile's closed chain.
     pub gap: f64,
     /// Change of tangent angle \[rad\], positive counter-clockwise.
     pub kink: f64,
@@ -28,7 +28,7 @@ pub struct Joint {
     pub curvature_jump: f64,
 }
 
-/// Returns the joints of a chain, from left to right.
+/// Returns the joints of a chain, from left to right. A joint lies between each segment and its right neighbour.
 pub fn joints(segments: &[Segment]) -> Vec<Joint> {
     let joint = |(left, pair): (usize, &[Segment])| {
         let (end, start) = (pair[0].end(), pair[1].start());
@@ -43,16 +43,15 @@ pub fn joints(segments: &[Segment]) -> Vec<Joint> {
     segments.windows(2).enumerate().map(joint).collect()
 }
 
-/// Returns the part \[mm\] of a drawing's gap that rounded coordinates explain least: its run in x or its
-/// part across the steeper tangent, whichever is larger. Next to a vertical tangent the gap itself can be a
-/// hundred times that.
+/// Returns the part \[mm\] of a drawing's gap that rounded coordinates cannot explain: the larger of its run in x and its
+/// part across the steeper tangent. Beside a vertical tangent the gap itself can be a hundred times larger.
 fn step(end: &Station, start: &Station) -> f64 {
     let steeper = if end.cos < start.cos { end } else { start };
     let frame = Station { x: end.x, z: end.z, ..*steeper };
     (start.x - end.x).abs().max(start.seen_from(&frame).z.abs())
 }
 
-/// Rejects steps between drawn segments that no rounding explains; `extent` \[mm\] is that of the profile.
+/// Rejects steps between drawn segments that rounding cannot explain. `extent` \[mm\] is the extent of the profile.
 ///
 /// # Errors
 /// The first such step, with its place and size.

@@ -1,9 +1,9 @@
-//! Reads segments in the form of scenes and data files.
+//! Reads segments in the form in which scenes and data files give them.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::builder::Builder;
+use super::builder::ChainBuilder;
 use super::{Arc, Half, Polynomial, Profile, Segment, Shape};
 use crate::error::{Error, Result, given};
 
@@ -35,7 +35,7 @@ pub struct LineData {
     /// Last point [x, z], mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub to: Option<[f64; 2]>,
-    /// Slope dz/dx; without it the line leaves the segment before along its tangent.
+    /// Slope dz/dx. Without it the line continues the tangent of the previous segment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub slope: Option<f64>,
     /// Abscissa of the end, mm.
@@ -82,13 +82,17 @@ pub struct PolynomialData {
     pub coefficients: Vec<f64>,
 }
 
-/// Makes the profile of a chain of segments; `start` is the first point of a chain that begins in the form of
-/// Appendix A.
+/// Makes the profile of a chain of segments. `start` is the first point of a chain that begins in the form of Appendix A.
 ///
 /// # Errors
-/// A wrong segment, with its name and what is wrong with it; steps between segments as in [`Profile::new`].
-pub fn chain(name: &str, source: &str, start: Option<[f64; 2]>, data: &[SegmentData]) -> Result<Profile> {
-    let mut builder = start.map_or_else(|| Ok(Builder::new()), Builder::starting_at)?;
+/// A wrong segment, with its name and what is wrong with it; the errors of [`Profile::new`].
+pub fn drawn_profile(
+    name: &str,
+    source: &str,
+    start: Option<[f64; 2]>,
+    data: &[SegmentData],
+) -> Result<Profile> {
+    let mut builder = start.map_or_else(|| Ok(ChainBuilder::new()), ChainBuilder::starting_at)?;
     let mut labels = Vec::with_capacity(data.len());
     for (index, segment) in data.iter().enumerate() {
         let label = segment.label.clone().unwrap_or_default();
@@ -105,7 +109,7 @@ pub fn chain(name: &str, source: &str, start: Option<[f64; 2]>, data: &[SegmentD
     Profile::new(name, source, segments)
 }
 
-fn append(builder: &mut Builder, data: &SegmentData) -> Result<()> {
+fn append(builder: &mut ChainBuilder, data: &SegmentData) -> Result<()> {
     let plain = |shape| Segment { label: String::new(), shape };
     match (&data.line, &data.arc, &data.polynomial) {
         (Some(LineData { from: Some(from), to: Some(to), slope: None, to_x: None }), None, None) => {
@@ -187,7 +191,7 @@ mod tests {
             segments: Vec<SegmentData>,
         }
         let drawn: Drawn = toml::from_str(segments)?;
-        let error = chain("drawn", "", drawn.start, &drawn.segments).err();
+        let error = drawn_profile("drawn", "", drawn.start, &drawn.segments).err();
         Ok(error.map(|e| e.to_string()).unwrap_or_default())
     }
 

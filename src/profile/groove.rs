@@ -1,12 +1,12 @@
-//! Finds grooves, and so the head of a grooved rail, a crossing or a guarded rail on which wheels run.
+//! Finds grooves, and so the part on which wheels run of a grooved rail, a crossing or a guarded rail.
 
-/// Least depth \[mm\] of a groove below both its tops. Flangeways are 38 mm deep and more; hollow crowns,
-/// worn ones too, stay below 5.
+/// Least depth \[mm\] of a groove below both its tops. Flangeways are at least 38 mm deep; hollow crowns, worn ones too,
+/// are less than 5 mm deep.
 const LEAST_DEPTH: f64 = 10.0;
 
-/// Returns the index of the bottom of the last groove along a profile's heights \[mm\], in order of x; `None`
-/// for a single head. Right of it is the head on which wheels run; left of it is a keeper, check or wing,
-/// however high.
+/// Returns the index of the bottom of the last groove in a profile's heights \[mm\], which are in order of x. Returns
+/// `None` for a single head. On the right of it is the head on which wheels run; on the left is a keeper, check rail or
+/// wing rail, which may be higher than the head.
 ///
 /// Cost: one pass.
 pub fn last_groove(heights: &[f64]) -> Option<usize> {

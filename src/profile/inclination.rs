@@ -1,12 +1,12 @@
-//! Inclinations as drawings give them: 1:40.
+//! Makes rotations from inclinations as drawings give them: 1:40.
 
 use nalgebra::UnitComplex;
 
 use crate::error::{Error, Result, finite};
 
-/// Makes the rotation whose tangent is rise/run, counter-clockwise for a positive quotient, within ±90°.
+/// Makes the rotation whose tangent is rise/run, within ±90°. It is counter-clockwise for a positive quotient.
 ///
-/// Cosine and sine come from the two lengths and not from an angle: both are exact to a rounding.
+/// Cosine and sine come from the two lengths and not from an angle; both are exact to a rounding.
 ///
 /// # Errors
 /// Numbers that are not finite; a run of 0.

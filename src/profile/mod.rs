@@ -2,11 +2,11 @@
 //! define them, in profile axes (x lateral, z up, mm).
 
 mod arc;
-pub mod builder;
+mod builder;
 mod chain;
-pub mod closing;
-pub mod continuity;
-pub mod drawing;
+mod closing;
+mod continuity;
+mod drawing;
 mod groove;
 mod inclination;
 mod polynomial;
@@ -15,18 +15,24 @@ mod segment;
 mod side;
 pub mod standards;
 mod station;
-pub mod trace;
+mod trace;
 
 pub use arc::{Arc, Half};
+pub use builder::ChainBuilder;
 pub use chain::Profile;
-pub use closing::ONE_JOINT;
-pub use groove::last_groove;
+pub use closing::Closing;
+pub(crate) use closing::ONE_JOINT;
+pub use continuity::Joint;
+pub use drawing::{ArcData, HalfData, LineData, PolynomialData, SegmentData, drawn_profile};
+pub(crate) use groove::last_groove;
 pub use inclination::inclination;
 pub use polynomial::Polynomial;
-pub use section::{
+pub(crate) use section::{
     ArcBranch, Branch, BranchPoint, BranchPoints, BranchShape, Branches, Piece, PolynomialBranch,
-    ProfilePoint, Section, stationary_points,
+    stationary_points,
 };
+pub use section::{ProfilePoint, Section};
 pub use segment::{Segment, Shape};
 pub use side::Side;
 pub use station::Station;
+pub use trace::{Beside, Mark, beside, trace};

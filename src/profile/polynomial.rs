@@ -7,12 +7,22 @@ use crate::error::{Error, Result, finite};
 use crate::numerics::polynomial::{exact_slope, exact_value, recentred};
 use crate::numerics::twice::Twice;
 
-/// A curve (x(t), z(t)) with polynomial coordinates. They are kept in twice the working precision about a
-/// point of the curve's own: a standard's power form about x = 0 cancels from thousands of mm.
+/// A curve (x(t), z(t)) with polynomial coordinates. The coefficients are about a point of the curve itself and have twice
+/// the working precision, because a standard's power form about x = 0 cancels from thousands of mm.
+///
+/// # Examples
+/// ```
+/// use wheelrail::Polynomial;
+///
+/// let parabola = Polynomial::graph(&[1.0, 0.0, 0.5], [-1.0, 2.0])?; // z = 1 + x²/2
+/// let [_, end] = parabola.range().map(|t| parabola.station(t));
+/// assert_eq!((end.x, end.z), (2.0, 3.0));
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Polynomial {
     /// Range of the parameter, ascending \[mm or the spline's unit\].
-    pub t: [f64; 2],
+    pub(crate) t: [f64; 2],
     /// Coefficients of x(t) \[mm\].
     pub(crate) x: Vec<Twice>,
     /// Coefficients of z(t) \[mm\].
@@ -20,10 +30,10 @@ pub struct Polynomial {
 }
 
 impl Polynomial {
-    /// Makes z = Σ c_k x^k between two abscissae, as standards print it.
+    /// Makes the curve z = Σ c_k x^k between two abscissae \[mm\], the form in which standards print it.
     ///
     /// # Errors
-    /// No coefficient, values that are not finite, abscissae out of order.
+    /// No coefficient; values that are not finite; abscissae out of order.
     pub fn graph(c: &[f64], x: [f64; 2]) -> Result<Self> {
         for &v in c.iter().chain(&x) {
             finite("polynomial", v)?;
@@ -57,12 +67,12 @@ impl Polynomial {
         Ok(Self { t, x: exact(x), z: exact(z) })
     }
 
-    /// Tells whether it has a range and enough coefficients.
+    /// Tells whether the curve has a range and enough coefficients.
     pub(super) fn is_sound(&self) -> bool {
         self.t[0] < self.t[1] && self.x.len() >= 2 && !self.z.is_empty()
     }
 
-    /// Returns the coefficients of x(t) and of z(t) \[mm\], each as a sum of two numbers: the rounded one and
+    /// Returns the coefficients of x(t) and of z(t) \[mm\]. Each coefficient is a sum of two numbers: the rounded value and
     /// the rest.
     pub fn coefficients(&self) -> [Vec<[f64; 2]>; 2] {
         [&self.x, &self.z].map(|c| c.iter().map(|c| [c.high, c.low]).collect())
@@ -71,6 +81,11 @@ impl Polynomial {
     /// Returns \[dx/dt, dz/dt\] at parameter t.
     pub(super) fn rates(&self, t: f64) -> [f64; 2] {
         [&self.x, &self.z].map(|c| exact_slope(c, t.into()).into())
+    }
+
+    /// Returns the range of the parameter, ascending \[mm or the spline's unit\].
+    pub fn range(&self) -> [f64; 2] {
+        self.t
     }
 
     /// Returns the station at parameter t.
@@ -101,9 +116,9 @@ impl Polynomial {
         dx.hypot(dz)
     }
 
-    /// Returns the curve plus a parabola that begins at t = `near` and adds `change` \[1/mm\] to the
-    /// curvature, exactly at t = `at`. The parabola is along z for a graph z(x), which stays a graph; else
-    /// along the normal at `at`.
+    /// Returns the curve plus a parabola. The parabola begins at t = `near` and adds `change` \[1/mm\] to the curvature;
+    /// this is exact at t = `at`. It is along z for a graph z(x), so that the sum stays a graph; otherwise it is along the
+    /// normal at `at`.
     pub(super) fn curved(&self, near: f64, at: f64, change: f64) -> Self {
         let [dx, dz] = self.rates(at);
         let speed = dx.hypot(dz);

@@ -18,7 +18,7 @@ pub enum Shape {
 /// A segment of a chain: a curve with a name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Segment {
-    /// The drawing's name of the segment, or empty.
+    /// Name of the segment in the drawing, or empty.
     pub label: String,
     /// The curve.
     pub shape: Shape,
@@ -64,7 +64,7 @@ impl Segment {
         }
     }
 
-    /// Names the segment with this index for messages: "segment 3 (R80)", counted from 1.
+    /// Returns the name of the segment with this index for messages: "segment 3 (R80)", counted from 1.
     pub fn place(&self, index: usize) -> String {
         let number = index + 1;
         if self.label.is_empty() {

@@ -1,10 +1,10 @@
-//! Rail or wheel.
+//! The two bodies: rail and wheel.
 
-/// The body that a profile bounds; it decides which of several heights at one ξ is the outer one.
+/// The body that a profile bounds. It decides which of several heights at one ξ is the outer one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
-    /// Rail, with the material below: the highest branch counts.
+    /// The rail. Its material is below, so that the highest branch counts.
     Rail,
-    /// Wheel, with the material above: the lowest branch counts.
+    /// The wheel. Its material is above, so that the lowest branch counts.
     Wheel,
 }

@@ -1,15 +1,25 @@
-//! A point with a direction: frames, and points of profiles seen from them (Report (4.2), (4.3)).
+//! Points with a direction. They serve as frames, and as points of profiles seen from frames: Report (4.2), (4.3).
 
 use serde::{Deserialize, Serialize};
 
-/// A point of a profile with its unit tangent in the direction of travel (towards larger x on a graph).
+/// A point of a profile with its unit tangent in the direction of travel, which on a graph z(x) is towards larger x.
+///
+/// # Examples
+/// ```
+/// use wheelrail::Station;
+///
+/// let frame = Station { x: 3.0, z: 4.0, cos: 0.8, sin: 0.6 };
+/// let origin = Station::AXES.seen_from(&frame);
+/// assert!((origin.x + 4.8).abs() < 1e-15 && (origin.z + 1.4).abs() < 1e-15);
+/// assert!((origin.placed_by(&frame).x).abs() < 1e-15);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Station {
     /// Lateral coordinate \[mm\].
     pub x: f64,
     /// Height \[mm\].
     pub z: f64,
-    /// cos φ, φ the tangent's angle from x to z.
+    /// cos φ; φ is the angle of the tangent from x to z.
     pub cos: f64,
     /// sin φ.
     pub sin: f64,
@@ -24,7 +34,7 @@ impl Station {
         self.sin.atan2(self.cos)
     }
 
-    /// Returns this station as seen from the frame whose origin and first axis are `frame`: eqs. (4.2-a, b).
+    /// Returns this station as seen from `frame`, which gives the origin and the first axis: eqs. (4.2-a, b).
     #[must_use]
     pub fn seen_from(&self, frame: &Self) -> Self {
         let (dx, dz) = (self.x - frame.x, self.z - frame.z);
@@ -36,8 +46,8 @@ impl Station {
         }
     }
 
-    /// Returns this station, given in the axes of `frame`, in the axes in which `frame` is given: eqs. (4.3-a, b). It is the
-    /// inverse of [`Station::seen_from`].
+    /// Returns this station in the axes in which `frame` is given, if it is now given in the axes of `frame`: eqs. (4.3-a,
+    /// b). It is the inverse of [`Station::seen_from`].
     #[must_use]
     pub fn placed_by(&self, frame: &Self) -> Self {
         Self {
@@ -48,7 +58,7 @@ impl Station {
         }
     }
 
-    /// Returns the mirror image under x → −x, still travelled towards larger x.
+    /// Returns the mirror image under x → −x. Its tangent still points towards larger x.
     #[must_use]
     pub fn mirrored(&self) -> Self {
         Self { x: -self.x, z: self.z, cos: self.cos, sin: -self.sin }

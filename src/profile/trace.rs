@@ -5,7 +5,7 @@ use super::{Profile, Segment, Shape, Station};
 /// A station with its distance along the profile.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mark {
-    /// Arc length from the profile's left end \[mm\]; the steps of a drawing count as their length.
+    /// Arc length from the profile's left end \[mm\]. A step of a drawing counts by its length.
     pub s: f64,
     /// Point and tangent.
     pub station: Station,
@@ -26,10 +26,20 @@ pub struct Beside {
     pub across: f64,
 }
 
-/// Returns marks at most `step` \[mm\] apart, by ascending s; both sides of every joint are among them.
+/// Returns marks at most `step` \[mm\] apart, in order of ascending s. Each joint has a mark on either side.
 ///
-/// Accuracy: arc length is exact on arcs; on polynomials it is by chords of `step`, to 1e-5 of it for 0.1 mm
-/// on a 3 mm radius.
+/// Accuracy: the arc length is exact on arcs. On polynomials it is a sum over chords of `step`, with a relative error of
+/// 1e-5 for 0.1 mm on a 3 mm radius.
+///
+/// # Examples
+/// ```
+/// use wheelrail::profile::{beside, standards, trace};
+///
+/// let marks = trace(&standards::rail("60E1")?, 0.1);
+/// let top = beside(&marks, [0.0, 1.0], 0).expect("a trace with marks"); // 1 mm above the crown
+/// assert!((top.across - 1.0).abs() < 1e-6);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 pub fn trace(profile: &Profile, step: f64) -> Vec<Mark> {
     let mut marks: Vec<Mark> = Vec::new();
     for (index, segment) in profile.segments().iter().enumerate() {
@@ -43,21 +53,21 @@ pub fn trace(profile: &Profile, step: f64) -> Vec<Mark> {
     marks
 }
 
-/// Finds the foot of a point \[mm\] on a trace, from mark `hint` on; pass the mark found for the point
-/// before.
+/// Finds the foot of a point \[mm\] on a trace. The search begins at mark `hint`: for points in a row, pass the mark found
+/// for the previous point.
 ///
-/// Method: the circle of curvature at the nearest mark, accurate to κ′a³/6 with a half the distance of marks,
-/// about 1e-6 mm for 0.1 mm. Cost: the marks between hint and foot. Of several feet it finds the first one
-/// from the hint.
-pub fn beside(marks: &[Mark], [x, z]: [f64; 2], hint: usize) -> Beside {
+/// Method: the circle of curvature at the nearest mark. The accuracy is κ′a³/6, with a half the distance of marks: about
+/// 1e-6 mm for 0.1 mm. Cost: the marks between hint and foot. Of several feet it finds the first one from the hint. Returns
+/// `None` for an empty trace.
+pub fn beside(marks: &[Mark], [x, z]: [f64; 2], hint: usize) -> Option<Beside> {
     let square = |k: usize| {
         let at = &marks[k].station;
         (at.x - x).powi(2) + (at.z - z).powi(2)
     };
-    let mut best = hint.min(marks.len() - 1);
+    let mut best = hint.min(marks.len().checked_sub(1)?);
     for forward in [true, false] {
-        // Both marks of a joint are at one place; noise and bends may hide the next dip: look a little
-        // further.
+        // The search continues a little beyond a minimum: both marks of a joint are at one place, and noise or a bend may
+        // hide the next minimum.
         let mut k = best;
         let mut idle = 0;
         while let Some(next) =
@@ -77,13 +87,13 @@ pub fn beside(marks: &[Mark], [x, z]: [f64; 2], hint: usize) -> Beside {
     let curvature = mark.curvature;
     let to_centre = (curvature * at.x).hypot(1.0 - curvature * at.z);
     let across = (2.0 * at.z - curvature * (at.x * at.x + at.z * at.z)) / (1.0 + to_centre);
-    Beside { mark: best, s: mark.s + at.x, across }
+    Some(Beside { mark: best, s: mark.s + at.x, across })
 }
 
-/// Number of marks looked at beyond the nearest so far.
+/// Most marks that are looked at beyond the nearest one so far.
 const LOOKED_ON: usize = 16;
 
-/// Returns station and curvature at a share (0 to 1) of a segment's length, or of a polynomial's parameter.
+/// Returns station and curvature at a share (0 to 1) of an arc's length or of a polynomial's range of the parameter.
 fn at_share(segment: &Segment, share: f64) -> (Station, f64) {
     match &segment.shape {
         Shape::Arc(arc) if share == 1.0 => (arc.end, arc.curvature()),
@@ -96,7 +106,7 @@ fn at_share(segment: &Segment, share: f64) -> (Station, f64) {
     }
 }
 
-/// Returns the length of a segment \[mm\]; of a polynomial by chords, at most a few per cent too short.
+/// Returns the length of a segment \[mm\]. A polynomial is measured by chords, which are at most a few per cent too short.
 fn segment_length(segment: &Segment) -> f64 {
     const CHORDS: usize = 8;
     match &segment.shape {
@@ -110,7 +120,7 @@ fn segment_length(segment: &Segment) -> f64 {
     }
 }
 
-/// Returns the length of the circular arc over a chord \[mm\].
+/// Returns the length \[mm\] of the circular arc over a chord, to the second order of chord × curvature.
 fn chord(a: &Station, b: &Station, curvature: f64) -> f64 {
     let chord = (b.x - a.x).hypot(b.z - a.z);
     chord * (1.0 + (chord * curvature).powi(2) / 24.0)
@@ -136,7 +146,7 @@ mod tests {
         for k in 1..80 {
             let angle = (f64::from(k) / 80.0 - 0.5) * 2.0 * 0.8f64.asin();
             let radius = 50.0 + 0.01 * f64::from(k % 3 - 1);
-            let found = beside(&marks, [radius * angle.sin(), radius * angle.cos()], hint);
+            let found = beside(&marks, [radius * angle.sin(), radius * angle.cos()], hint).expect("marks");
             hint = found.mark;
             assert!((found.across - (radius - 50.0)).abs() < 1e-12, "{k}: {found:?}");
             assert!((found.s - 50.0 * angle - 0.5 * whole).abs() < 1e-4, "{k}: {found:?}");

@@ -1,21 +1,21 @@
-//! `[grid]`: the axes of the grids.
+//! Reads the axes of the grids: `[grid]`.
 
 use super::data::{AxisData, GridData, Spacing};
-use crate::case::{AskedAxes, equal_steps};
+use crate::case::AskedAxes;
 use crate::error::{Error, Result, finite};
-use crate::mesh::axes::MOST_ON_AXIS;
+use crate::mesh::{MOST_ON_AXIS, equal_steps};
 
-/// Largest ξ and η \[mm\]: a thousand kilometres, whose squares are far from overflowing.
+/// Largest |ξ| and |η| \[mm\]: a thousand kilometres. Its square is far from overflowing.
 const FARTHEST: f64 = 1e9;
 
-/// Smallest extent of an axis \[mm\]: below any length, and its powers do not underflow.
+/// Smallest extent of an axis \[mm\]. It is far below any real length, and its powers do not underflow.
 const SMALLEST: f64 = 1e-60;
 
-/// Checks the axes, and how automatic ones are laid.
+/// Returns the axes that are asked for, and how automatic axes are laid.
 ///
 /// # Errors
-/// Values that are not finite, not ascending, too many or too near; a step that is not positive, a negative distance;
-/// either of these beside two given axes.
+/// Values that are not finite, not ascending, too many or too near each other; a step that is not positive; a negative
+/// distance; a step or distance beside two given axes.
 pub(super) fn asked_axes(grid: &GridData) -> Result<AskedAxes> {
     let (xi, eta) = (axis("grid: xi", &grid.xi)?, axis("grid: eta", &grid.eta)?);
     let (spacing, merge) = (grid.spacing.map(steps).transpose()?, distance(grid.merge.unwrap_or(0.0))?);
@@ -29,7 +29,7 @@ pub(super) fn asked_axes(grid: &GridData) -> Result<AskedAxes> {
     }
 }
 
-/// Gives the values of an axis, or `None` for "auto".
+/// Returns the values of an axis, or `None` for "auto".
 fn axis(place: &str, axis: &AxisData) -> Result<Option<Vec<f64>>> {
     let values = match axis {
         AxisData::Word(_) => return Ok(None),
@@ -93,7 +93,7 @@ fn check_length(place: &str, values: f64) -> Result<()> {
     Err(Error::new(place, format!("{values:e} values"), expected, "take fewer, or a smaller window"))
 }
 
-/// Gives \[Δξ, Δη\] of automatic axes.
+/// Returns the steps \[Δξ, Δη\] \[mm\] of automatic axes.
 fn steps(spacing: Spacing) -> Result<[f64; 2]> {
     let steps = match spacing {
         Spacing::Both(step) => [step; 2],
@@ -108,7 +108,7 @@ fn steps(spacing: Spacing) -> Result<[f64; 2]> {
     Ok(steps)
 }
 
-/// Gives the distance below which parts of the patch share a grid.
+/// Returns the distance \[mm\] below which parts of the patch share a grid.
 fn distance(merge: f64) -> Result<f64> {
     if finite("grid: merge", merge)? >= 0.0 {
         return Ok(merge);

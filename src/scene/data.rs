@@ -11,51 +11,71 @@ use super::method_or_auto;
 use crate::case::OutputFormat;
 use crate::error::{Error, Result, finite};
 use crate::measured;
-use crate::profile::drawing::SegmentData;
-use crate::profile::inclination;
-use crate::search::wheelset::{Position, Roll};
-use crate::separation::grid::Method;
+use crate::profile::{SegmentData, inclination};
+use crate::search::{Position, Roll};
+use crate::separation::Method;
 
-/// A scene: a wheel on a rail or a wheelset on a track, what is asked of it, and what is to be written.
+/// A scene: a wheel on a rail or a wheelset on a track, the questions about it, and the files to write.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
     /// Title for pictures and file headers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
-    /// The rail profile.
+    /// The rail profile; of both sides, mirrored on the left, unless `left` or `right` has its own.
+    #[serde(default, skip_serializing_if = "ProfileData::is_empty")]
     pub rail: ProfileData,
-    /// The wheel profile and its rolling radius.
+    /// The wheel profile and its rolling radius; of both sides likewise.
+    #[serde(default, skip_serializing_if = "ProfileData::is_empty")]
     pub wheel: ProfileData,
+    /// What is different on the left side of a wheelset.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub left: Option<SideData>,
+    /// What is different on the right side of a wheelset.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub right: Option<SideData>,
     /// Where the two touch, for one wheel on one rail.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact: Option<ContactData>,
     /// The track, for a wheelset.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub track: Option<TrackData>,
-    /// The wheelset on it.
+    /// The wheelset on the track.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wheelset: Option<WheelsetData>,
-    /// How far they approach.
+    /// How far the bodies approach, or the load that presses them together.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub patch: Option<PatchData>,
     /// Elastic constants, for `load` and for solver decks.
     #[serde(default)]
     pub material: MaterialData,
-    /// Where s is evaluated.
+    /// Where s is evaluated, and how accurately.
     #[serde(default)]
     pub grid: GridData,
-    /// What is written.
+    /// Which files are written.
     #[serde(default)]
     pub output: OutputData,
+    /// How the wheels move, for creepages.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion: Option<MotionData>,
+    /// Friction, for solver decks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction: Option<FrictionData>,
 }
 
-/// Gives the JSON Schema of a scene.
+/// Returns the JSON Schema of a scene.
 pub fn schema() -> schemars::Schema {
     schemars::schema_for!(Scene)
 }
 
 impl Scene {
+    /// Lists the profiles that it describes, those of both sides and those of one.
+    pub fn profiles(&self) -> impl Iterator<Item = &ProfileData> {
+        let sides = [&self.left, &self.right].into_iter().flatten();
+        let own = sides.flat_map(|side| [&side.rail, &side.wheel]).flatten();
+        [&self.rail, &self.wheel].into_iter().chain(own)
+    }
+
     /// Gives the same scene with its wheelset at another position; a scene without a wheelset as it is.
     #[must_use]
     pub fn at(&self, position: &Position) -> Self {
@@ -70,17 +90,44 @@ impl Scene {
     }
 }
 
+/// One side of a wheelset, described as a right-hand side: the left one is its mirror image.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SideData {
+    /// The rail profile of this side.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rail: Option<ProfileData>,
+    /// The wheel profile of this side; without `radius` it has that of `[wheel]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wheel: Option<ProfileData>,
+    /// How this side's rail deviates from its place on the track.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub deviation: Option<DeviationData>,
+}
+
+/// How a rail deviates from its nominal place, in track axes; gauge and top of rail are those of the nominal place.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct DeviationData {
+    /// To the right, mm.
+    pub lateral: f64,
+    /// Up, mm.
+    pub vertical: f64,
+    /// About the track's y axis through the profile's origin, rad, right-handed: > 0 lowers what is to the right.
+    pub roll: f64,
+}
+
 /// A profile: exactly one of `profile`, `file`, `segments`; then `mirror`, `rotate`, `shift`, in this order.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ProfileData {
-    /// Of a wheel: nominal rolling radius R, mm, the distance from the axle to the profile's origin.
+    /// Nominal rolling radius R of a wheel, mm: the distance from the axle to the profile's origin.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub radius: Option<f64>,
     /// Name of a built-in profile (`wheelrail profile list`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub profile: Option<String>,
-    /// File relative to the scene: `segments` (TOML or JSON), or a measured profile.
+    /// File with `segments` (TOML or JSON) or with a measured profile; its path is relative to the scene.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<PathBuf>,
     /// Segments in order of x.
@@ -89,8 +136,8 @@ pub struct ProfileData {
     /// First point [x, z], mm, of segments in the drawing form of the Report's Appendix A.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<[f64; 2]>,
-    /// Mirror image under x → −x, before anything else; of a measured profile: its first axis points to the centre
-    /// of the track.
+    /// Mirror image under x → −x, before `rotate` and `shift`. For a measured profile: whether its first axis points to the
+    /// centre of the track.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mirror: Option<bool>,
     /// Turn about the profile's origin, counter-clockwise seen with x to the right and z up: rad, or "1:n".
@@ -99,57 +146,70 @@ pub struct ProfileData {
     /// Shift [x, z], mm, after the turn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shift: Option<[f64; 2]>,
-    /// Of a measured file: its format; by the extension if not given.
+    /// Format of a measured file; if not given, its extension tells.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub format: Option<measured::Format>,
-    /// Of a text or CSV file: the columns of x and z, by number from 1 or by name.
+    /// Columns of x and z in a text or CSV file, by number from 1 or by name.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub columns: Option<[measured::Column; 2]>,
-    /// Of an .mpt file: which section, from 1.
+    /// Section of an .mpt file, from 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub section: Option<usize>,
+    /// Of an .slcs file: place of the section along the track, mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub along: Option<f64>,
+    /// Of an .slcw file: place of the section around the wheel, rad.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub angle: Option<f64>,
     /// Of a measured file: whether its second axis points down.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub flip_z: Option<bool>,
-    /// Of a measured file: unit of its coordinates.
+    /// Unit of the coordinates of a measured file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<measured::Unit>,
-    /// Of a measured file: where the origin goes.
+    /// Point of a measured file that becomes the origin.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub origin: Option<measured::Origin>,
-    /// Of a measured rail: depth of the gauge point under the top of rail, mm.
+    /// Depth of a measured rail's gauge point below the top of rail, mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gauge_height: Option<f64>,
-    /// Of a measured wheel: distance of the taping line from the flange back, mm.
+    /// Distance of a measured wheel's taping line from the flange back, mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tape_distance: Option<f64>,
-    /// Of a measured rail: its inclination is in the points already.
+    /// Whether the points of a measured rail contain its inclination already.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub already_inclined: bool,
-    /// Of a measured file: repairs that may be made.
+    /// Repairs that may be made to a measured file.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub repair: Vec<measured::Repair>,
-    /// Of a measured file: the curve through its points.
+    /// Kind of curve through the points of a measured file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub curve: Option<measured::CurveKind>,
-    /// Of a measured file: wavelength that smoothing halves, mm.
+    /// Wavelength that smoothing of a measured file halves, mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cutoff_wavelength: Option<f64>,
-    /// Of a measured file: kinks above this angle stay corners, rad.
+    /// Kink angle of a measured file, rad; sharper kinks stay corners.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kink_angle: Option<f64>,
-    /// Of a measured file: largest distance of a point from an arc chain, mm.
+    /// Largest distance of a point of a measured file from a chain of arcs, mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub arc_tolerance: Option<f64>,
 }
 
 impl ProfileData {
+    /// Tells whether nothing is given.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
     /// Gives the keys of a measured file.
     pub fn measured(&self) -> measured::Options {
         measured::Options {
             format: self.format,
             columns: self.columns.clone(),
             section: self.section,
+            along: self.along,
+            angle: self.angle,
             mirror: self.mirror,
             flip_z: self.flip_z,
             unit: self.unit,
@@ -166,13 +226,13 @@ impl ProfileData {
     }
 }
 
-/// An angle.
+/// An angle, in radians or as an inclination.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "expected an angle in rad, or a ratio such as \"1:40\"")]
 pub enum Rotation {
     /// Radians.
     Radians(f64),
-    /// "1:n", atan(1/n); "-1:n" the other way.
+    /// The inclination "1:n", which is atan(1/n); "-1:n" turns the other way.
     Ratio(String),
 }
 
@@ -216,7 +276,7 @@ pub struct ContactData {
     /// Abscissa of C on the wheel profile, mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wheel_x: Option<f64>,
-    /// Lateral offset of the wheel profile's origin from the rail's, mm, + to the field side.
+    /// Lateral offset of the wheel profile's origin from that of the rail profile, mm, + to the field side.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub offset: Option<f64>,
     /// Roll of the wheel about the track's y axis, rad, right-handed, applied second.
@@ -225,27 +285,27 @@ pub struct ContactData {
     /// Yaw of the wheel about z, rad, right-handed, applied first.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub yaw: Option<f64>,
-    /// Near misses up to this vertical gap, mm, are reported.
+    /// Largest vertical gap, mm, up to which near misses are reported.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub within: Option<f64>,
 }
 
-/// Two rails: the right one as described, the left one its mirror image.
+/// A track of two rails: the right one is as described, the left one is its mirror image.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TrackData {
     /// Distance between the rails' inner faces, mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gauge: Option<f64>,
-    /// Depth below the top of rail down to which the gauge is measured, mm; 14 by default.
+    /// Depth below the top of rail down to which the gauge is measured, mm; 14 if not given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gauge_height: Option<f64>,
-    /// Instead of the gauge: distance between the rail profiles' origins, mm.
+    /// Distance between the origins of the rail profiles, mm; instead of the gauge.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spacing: Option<f64>,
 }
 
-/// Two wheels on an axle: the right one as described, the left one its mirror image.
+/// A wheelset of two wheels on an axle: the right one is as described, the left one is its mirror image.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WheelsetData {
@@ -255,19 +315,23 @@ pub struct WheelsetData {
     /// Abscissa of the flange back on the wheel profile, mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub flange_back_x: Option<f64>,
-    /// Instead of both: distance between the wheel profiles' origins, mm.
+    /// Distance between the origins of the wheel profiles, mm; instead of `back_to_back` and `flange_back_x`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spacing: Option<f64>,
     /// Lateral displacement, mm, + to the right.
     #[serde(default)]
     pub lateral: f64,
-    /// Yaw about z, rad, applied first; > 0 moves the right-hand wheel forward.
+    /// Yaw about z, rad, applied first; a positive yaw moves the right-hand wheel forward.
     #[serde(default)]
     pub yaw: f64,
-    /// "solve": both wheels touch; "neglect": 0; or rad about the track's y axis, > 0 lowers the right-hand wheel.
+    /// Roll: "solve" (both wheels touch), "neglect" (0), or rad about the track's y axis; a positive roll lowers the
+    /// right-hand wheel.
     #[serde(default)]
     pub roll: RollData,
-    /// Near misses up to this vertical gap, mm, are reported.
+    /// Vertical load of the axle, N, instead of `[patch]`: both wheels sink by the same distance, and δ is an estimate.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub load: Option<f64>,
+    /// Largest vertical gap, mm, up to which near misses are reported.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub within: Option<f64>,
 }
@@ -276,9 +340,9 @@ pub struct WheelsetData {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "expected \"solve\", \"neglect\" or an angle in rad")]
 pub enum RollData {
-    /// A word.
+    /// One of the words.
     Word(RollWord),
-    /// rad.
+    /// The roll, rad.
     Radians(f64),
 }
 
@@ -292,25 +356,86 @@ impl Default for RollData {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum RollWord {
-    /// Both wheels touch.
+    /// Both wheels touch: the roll is sought.
     Solve,
-    /// 0, each side lowered on its own.
+    /// The roll is 0; each side is lowered on its own.
     Neglect,
+}
+
+/// Speed and rates of a wheelset, or of a wheel alone, against the track at rest.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MotionData {
+    /// Forward speed, m/s; negative backwards.
+    pub speed: f64,
+    /// Lateral velocity of the axle's middle, m/s, + to the right.
+    #[serde(default)]
+    pub lateral: f64,
+    /// Vertical velocity of the axle's middle, m/s, + up.
+    #[serde(default)]
+    pub vertical: f64,
+    /// Rate of yaw, rad/s, + moves the right-hand wheel forward; speed/radius in a steady curve to the left.
+    #[serde(default)]
+    pub yaw: f64,
+    /// Rate of roll, rad/s, + lowers the right-hand wheel.
+    #[serde(default)]
+    pub roll: f64,
+    /// "rolling": neither braked nor driven; "nominal": −speed/R; or rad/s about the axle to the right, < 0 forward.
+    #[serde(default)]
+    pub pitch: PitchData,
+}
+
+/// How fast a wheel turns about its axle.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "expected \"rolling\", \"nominal\" or a rate in rad/s")]
+pub enum PitchData {
+    /// A word.
+    Word(PitchWord),
+    /// rad/s.
+    Rate(f64),
+}
+
+impl Default for PitchData {
+    fn default() -> Self {
+        Self::Word(PitchWord::Rolling)
+    }
+}
+
+/// The words for a rate of pitch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum PitchWord {
+    /// −speed/r, r the mean of both wheels' rolling radii where they touch first.
+    Rolling,
+    /// −speed/R, R the nominal rolling radius.
+    Nominal,
+}
+
+/// Coefficients of friction between rail and wheel.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FrictionData {
+    /// Where surfaces stick; 0.3 by default.
+    #[serde(rename = "static", default, skip_serializing_if = "Option::is_none")]
+    pub at_rest: Option<f64>,
+    /// Where they slide; the static one by default.
+    #[serde(rename = "kinetic", default, skip_serializing_if = "Option::is_none")]
+    pub sliding: Option<f64>,
 }
 
 /// The approach δ, or the load that it is estimated from.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PatchData {
-    /// δ, mm.
+    /// Approach δ, mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub approach: Option<f64>,
-    /// Normal load, N; δ is then an estimate.
+    /// Vertical load of each wheel, N; all its contacts share it. δ is then an estimate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load: Option<f64>,
 }
 
-/// Elastic constants of both bodies; by default steel.
+/// Elastic constants of both bodies; steel if not given.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct MaterialData {
@@ -335,7 +460,7 @@ impl Default for MaterialData {
     }
 }
 
-/// Where and how well s is evaluated.
+/// The grid of points on which s is evaluated, and its accuracy.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct GridData {
@@ -343,15 +468,17 @@ pub struct GridData {
     pub xi: AxisData,
     /// Values of η.
     pub eta: AxisData,
-    /// Step of automatic axes, mm: one for both, or [Δξ, Δη]. Without it 16 cells over the patch's short axis.
+    /// Step of automatic axes, mm: one number for both axes, or [Δξ, Δη]. If not given, 16 cells over the patch's short
+    /// axis.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spacing: Option<Spacing>,
-    /// Parts of the patch closer than this, mm, share one automatic grid; without it each has its own.
+    /// Parts of the patch closer to each other than this, mm, share one automatic grid. If not given, each part has a grid
+    /// of its own.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub merge: Option<f64>,
     /// Absolute tolerance on s, mm.
     pub tolerance: f64,
-    /// A method of the accuracy ladder; "auto" takes the cheapest within the tolerance.
+    /// Method of the accuracy ladder. "auto" takes the cheapest one within the tolerance.
     #[serde(with = "method_or_auto")]
     #[schemars(schema_with = "method_or_auto::schema")]
     pub method: Option<Method>,
@@ -374,11 +501,11 @@ impl Default for GridData {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "expected \"auto\", { from = …, to = …, n = … } or { values = […] }")]
 pub enum AxisData {
-    /// "auto": the patch and a margin.
+    /// The word "auto": the patch and a margin.
     Word(Auto),
-    /// n equal steps.
+    /// Equal steps.
     Steps(StepsData),
-    /// Any ascending values.
+    /// A list of ascending values.
     Values(ValuesData),
 }
 
@@ -386,11 +513,11 @@ pub enum AxisData {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Auto {
-    /// "auto".
+    /// The axis covers the patch and a margin.
     Auto,
 }
 
-/// n values from `from` to `to`, both included.
+/// The `n` values from `from` to `to` at equal steps, both ends included.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StepsData {
@@ -398,7 +525,7 @@ pub struct StepsData {
     pub from: f64,
     /// Last value, mm.
     pub to: f64,
-    /// How many values.
+    /// Number of values.
     pub n: u64,
 }
 
@@ -410,21 +537,21 @@ pub struct ValuesData {
     pub values: Vec<f64>,
 }
 
-/// Step of automatic axes.
+/// The step of automatic axes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "expected a step in mm, or [Δξ, Δη]")]
 pub enum Spacing {
-    /// The same for both axes.
+    /// One step for both axes.
     Both(f64),
-    /// [Δξ, Δη].
+    /// The steps [Δξ, Δη].
     Each([f64; 2]),
 }
 
-/// What is written besides summary.json, the tables and the picture.
+/// The files that are written besides summary.json, the tables and the picture.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputData {
-    /// Formats; all but "png" by default.
+    /// Formats; if not given, all but "png".
     #[serde(skip_serializing_if = "Option::is_none")]
     pub formats: Option<Vec<OutputFormat>>,
 }

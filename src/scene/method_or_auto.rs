@@ -1,10 +1,10 @@
-//! The method of a grid in a scene: its name, or "auto" for `None`.
+//! Reads and writes the method of a grid in a scene: its name, or "auto" for `None`.
 
 use schemars::{Schema, SchemaGenerator, json_schema};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serializer};
 
-use crate::separation::grid::Method;
+use crate::separation::Method;
 
 const AUTO: &str = "auto";
 
@@ -12,7 +12,7 @@ fn words() -> Vec<&'static str> {
     std::iter::once(AUTO).chain(Method::ALL.map(Method::name)).collect()
 }
 
-// The signature is serde's.
+// serde prescribes the reference to an option.
 pub(super) fn serialize<S: Serializer>(method: &Option<Method>, to: S) -> Result<S::Ok, S::Error> {
     to.serialize_str(method.map_or(AUTO, Method::name))
 }

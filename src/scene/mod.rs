@@ -1,21 +1,23 @@
-//! Scenes: what the user writes, read and then resolved once into a [`Case`](crate::case::Case) of checked values, in mm and
-//! rad.
+//! Scenes: what the user writes. A scene is read, then resolved once into a [`Case`](crate::case::Case) of checked values
+//! in mm and rad.
 
 mod axes;
 mod data;
 mod method_or_auto;
+mod motion;
 mod profiles;
 mod read;
 mod resolve;
 mod standing;
-mod words;
+pub(crate) mod words;
 
 pub use axes::check_axis;
 pub use data::{
-    AxisData, ContactData, GridData, MaterialData, OutputData, PatchData, ProfileData, RollData, RollWord,
-    Rotation, Scene, Spacing, TrackData, WheelsetData, schema,
+    AxisData, ContactData, FrictionData, GridData, MaterialData, MotionData, OutputData, PatchData,
+    PitchData, PitchWord, ProfileData, RollData, RollWord, Rotation, Scene, Spacing, TrackData, WheelsetData,
+    schema,
 };
-pub use profiles::{ProfileSource, is_chain_file, profile_from_file, read_profile};
+pub use profiles::{ProfileSource, is_chain_file, profile_from_file, read_profile, section_from_files};
 pub use read::{load, parse};
 pub use resolve::{approach, echo, modulus, resolve, with_profiles};
 pub use words::perhaps;

@@ -1,22 +1,21 @@
-//! `[rail]` and `[wheel]`: the profiles, built in, inline or from files.
+//! Makes the profiles of `[rail]` and `[wheel]`: built in, inline or from files.
 
 use std::path::Path;
 
-use super::data::{ProfileData, Scene};
+use super::data::{ProfileData, Scene, SideData};
 use super::read::parse;
 use super::words::nearest;
-use crate::case::Profiles;
+use crate::case::{Profiles, SideProfiles};
 use crate::error::{Error, Result, finite, given};
 use crate::files::{read_bytes, read_text};
-use crate::measured::{self, Measured, Options, Record};
+use crate::measured::{self, Cut, Measured, Options, Record, SliceList};
 use crate::placement::Pair;
-use crate::profile::drawing::{SegmentData, chain};
-use crate::profile::{Profile, Side, standards};
+use crate::profile::{Profile, SegmentData, Side, drawn_profile, standards};
 
-/// Largest rolling radius \[mm\]: a kilometre times a thousand, whose square is far from overflowing.
+/// Largest rolling radius \[mm\]: a thousand kilometres. Its square is far from overflowing.
 const FARTHEST: f64 = 1e9;
 
-/// A profile file: the same keys as inline.
+/// A profile file. Its keys are those of an inline profile.
 #[derive(Debug, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ProfileFile {
@@ -29,36 +28,66 @@ struct ProfileFile {
     segments: Vec<SegmentData>,
 }
 
-/// Gives rail and wheel of a scene, turned and shifted as it says; files are relative to `folder`. Opens each file once.
+/// Returns the rail and the wheel of a scene, turned and shifted as the scene says. Files are relative to `folder`; each
+/// one is opened once.
 ///
 /// # Errors
-/// Whatever is wrong with a profile, by key.
+/// Anything that is wrong with a profile; the error names the key.
 pub(super) fn profiles(scene: &Scene, folder: &Path) -> Result<Profiles> {
-    let rail = profile(&scene.rail, folder, Side::Rail).map_err(|e| e.within("rail"))?;
-    if let Some(radius) = scene.rail.radius {
-        let expected = "a radius only for the wheel";
-        return Err(Error::new("rail: radius", radius.to_string(), expected, "remove it"));
+    let both = || of_side([&scene.rail, &scene.wheel], ["rail", "wheel"], scene.wheel.radius, folder);
+    let own = |name: &str, side: &Option<SideData>| {
+        let Some(SideData { rail, wheel, .. }) = side else { return Ok(None) };
+        if rail.is_none() && wheel.is_none() {
+            return Ok(None);
+        }
+        let places = [("rail", rail.is_some()), ("wheel", wheel.is_some())]
+            .map(|(body, own)| if own { format!("{name}: {body}") } else { body.into() });
+        let data = [rail.as_ref().unwrap_or(&scene.rail), wheel.as_ref().unwrap_or(&scene.wheel)];
+        let places = places.each_ref().map(String::as_str);
+        of_side(data, places, scene.wheel.radius, folder).map(Some)
+    };
+    let (right, left) = (own("right", &scene.right)?, own("left", &scene.left)?);
+    match (right, left) {
+        (Some(right), Some(left)) => Ok(Profiles { right, left: Some(left) }),
+        (Some(right), None) => Ok(Profiles { right, left: Some(both()?) }),
+        (None, left) => Ok(Profiles { right: both()?, left }),
     }
-    let wheel = profile(&scene.wheel, folder, Side::Wheel).map_err(|e| e.within("wheel"))?;
-    let radius = scene
-        .wheel
+}
+
+/// Gives rail and wheel of one side; `places` are their keys, `radius` is that of a wheel that has none of its own.
+fn of_side(
+    data: [&ProfileData; 2],
+    places: [&str; 2],
+    radius: Option<f64>,
+    folder: &Path,
+) -> Result<SideProfiles> {
+    let rail = profile(data[0], folder, Side::Rail).map_err(|e| e.within(places[0]))?;
+    if let Some(radius) = data[0].radius {
+        let expected = "a radius only for the wheel";
+        return Err(Error::new(format!("{}: radius", places[0]), radius.to_string(), expected, "remove it"));
+    }
+    let wheel = profile(data[1], folder, Side::Wheel).map_err(|e| e.within(places[1]))?;
+    let radius = data[1]
         .radius
-        .ok_or_else(|| Error::new("wheel", "no `radius`", "the nominal rolling radius in mm", "add it"))?;
+        .or(radius)
+        .ok_or_else(|| Error::new(places[1], "no `radius`", "the nominal rolling radius in mm", "add it"))?;
     if radius > FARTHEST {
         let expected = format!("at most {FARTHEST:e} mm");
         let found = format!("{radius:e}");
-        return Err(Error::new("wheel: radius", found, expected, "take a plane for a rail"));
+        return Err(Error::new(format!("{}: radius", places[1]), found, expected, "take a plane for a rail"));
     }
     let pair = Pair::new(rail.profile, wheel.profile, radius)?;
-    Ok(Profiles { pair, measured: [rail.measured, wheel.measured] })
+    Ok(SideProfiles { pair, measured: [rail.measured, wheel.measured] })
 }
 
-/// Gives a profile as the scene places it, and the record of a measured one.
+/// Returns a profile as the scene places it, and the record of a measured one.
 fn profile(data: &ProfileData, folder: &Path, side: Side) -> Result<Resolved> {
     let Resolved { mut profile, measured } = match (&data.profile, &data.file, &data.segments) {
         (Some(name), None, None) => Resolved::drawn(built_in(name, side)?),
         (None, Some(file), None) => in_file(data, &folder.join(file), side)?,
-        (None, None, Some(segments)) => Resolved::drawn(chain("inline", "scene", data.start, segments)?),
+        (None, None, Some(segments)) => {
+            Resolved::drawn(drawn_profile("inline", "scene", data.start, segments)?)
+        }
         _ => {
             let expected = "exactly one of `profile`, `file`, `segments`";
             let found = given(&[
@@ -144,6 +173,9 @@ pub fn read_profile(path: &Path, side: Option<Side>, options: &Options) -> Resul
 
 fn measured_file(path: &Path, side: Option<Side>, options: &Options) -> Result<Measured> {
     let place = path.display().to_string();
+    if let Some(listed) = measured::listed_body(&place) {
+        return section_from_files(path, side.unwrap_or(listed), options);
+    }
     let bytes = read_bytes(path, measured::LARGEST_FILE)?;
     let Some(known) = side.map_or_else(|| measured::body(&place, &bytes, options), |side| Ok(Some(side)))?
     else {
@@ -156,6 +188,30 @@ fn measured_file(path: &Path, side: Option<Side>, options: &Options) -> Result<M
         ));
     };
     measured::profile(&place, &bytes, known, options)
+}
+
+/// Reads a list of slices, `.slcs` or `.slcw`, and cuts the section that the options name. The slices' files are relative
+/// to the list; those beside the section are opened, each once.
+///
+/// # Errors
+/// A list of the other body; an unreadable file; whatever is wrong with the list, the place or a slice.
+pub fn section_from_files(path: &Path, side: Side, options: &Options) -> Result<Measured> {
+    let place = path.display().to_string();
+    if measured::listed_body(&place).is_some_and(|listed| listed != side) {
+        let [found, expected] = match side {
+            Side::Rail => ["slices of a wheel", "slices of a rail, in a file .slcs"],
+            Side::Wheel => ["slices of a rail", "slices of a wheel, in a file .slcw"],
+        };
+        return Err(Error::new(place, found, expected, "give the other file"));
+    }
+    let bytes = read_bytes(path, measured::LARGEST_FILE)?;
+    let list = SliceList::read(&bytes, side).map_err(|error| error.within(&place))?;
+    let cut = Cut::new(&list, options).map_err(|error| error.within(&place))?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let slice = |name| Ok((name, read_bytes(&folder.join(name), measured::LARGEST_FILE)?));
+    let contents: Vec<(&str, Vec<u8>)> =
+        cut.files().into_iter().map(slice).collect::<Result<_>>().map_err(|error| error.within(&place))?;
+    measured::section(&place, &cut, &contents, side, options)
 }
 
 /// Refuses keys that mean nothing for a drawn profile.
@@ -181,7 +237,7 @@ impl Resolved {
     }
 }
 
-/// Gives a built-in profile of the right body by name.
+/// Returns the built-in profile with this name, which must be of the right body.
 fn built_in(name: &str, side: Side) -> Result<Profile> {
     let (of_other, own, other) = match side {
         Side::Rail => (standards::wheel_names().any(|known| known == name), "rail", "wheel"),
@@ -201,15 +257,15 @@ fn built_in(name: &str, side: Side) -> Result<Profile> {
     })
 }
 
-/// Tells whether a file's extension is that of a chain of segments.
+/// Returns whether a file's extension is that of a chain of segments.
 pub fn is_chain_file(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml") || e.eq_ignore_ascii_case("json"))
 }
 
-/// Reads a profile file with `segments` and perhaps `name`, `source`, `start`.
+/// Reads a profile file: `segments`, and optionally `name`, `source` and `start`.
 ///
 /// # Errors
-/// An unreadable file; whatever is wrong with its segments.
+/// An unreadable file; anything that is wrong with its segments.
 pub fn profile_from_file(path: &Path) -> Result<Profile> {
     let place = path.display().to_string();
     let text = read_text(path, measured::LARGEST_FILE)?;
@@ -217,5 +273,5 @@ pub fn profile_from_file(path: &Path) -> Result<Profile> {
     let file: ProfileFile = parse(&text, json).map_err(|e| e.within(&place))?;
     let name = file.name.unwrap_or_else(|| place.clone());
     let source = file.source.unwrap_or_else(|| place.clone());
-    chain(&name, &source, file.start, &file.segments).map_err(|e| e.within(&place))
+    drawn_profile(&name, &source, file.start, &file.segments).map_err(|e| e.within(&place))
 }

@@ -1,4 +1,4 @@
-//! Text → scene, with every complaint in the house form.
+//! Reads scenes from text. Every error has four parts: where → found → expected → what to do.
 
 use std::path::Path;
 
@@ -23,13 +23,13 @@ pub fn load(path: &Path) -> Result<Scene> {
     parse(&text, json).map_err(|error| error.within(place))
 }
 
-/// Reads a scene, or another table of keys, from text.
+/// Reads a scene, or any other table of keys, from TOML or JSON text.
 ///
 /// # Errors
 /// Syntax, unknown keys and wrong types, each with its line.
 pub fn parse<T: DeserializeOwned + Serialize>(text: &str, json: bool) -> Result<T> {
     let (read, value): (T, Value) = if json { from_json(text)? } else { from_toml(text)? };
-    // `serde` takes a list for a table, its items in the order of the keys.
+    // `serde` accepts a list instead of a table, with its items in the order of the keys.
     let again = serde_json::to_value(&read).unwrap_or_default();
     match list_for_table(&value, &again, "") {
         None => Ok(read),
@@ -55,7 +55,8 @@ fn from_toml<T: DeserializeOwned>(text: &str) -> Result<(T, Value)> {
         house_form(place, error.message(), found.map(|found| shortened(found, Keep::Beginning)))
     };
     let read = toml::from_str(text).map_err(complaint)?;
-    // `toml` drops what an array has too much, `serde_json` does not; what is not finite is null there, and found later.
+    // `toml` drops the surplus items of an array, `serde_json` does not. Numbers that are not finite become null here and
+    // are found later.
     let value: Value = toml::from_str(text).map_err(complaint)?;
     if !has_null(&value) {
         serde_json::from_value::<T>(value.clone())
@@ -64,7 +65,7 @@ fn from_toml<T: DeserializeOwned>(text: &str) -> Result<(T, Value)> {
     Ok((read, value))
 }
 
-/// Finds the first key at which a list was read as a table.
+/// Finds the first key whose list was read as a table.
 fn list_for_table(given: &Value, read: &Value, key: &str) -> Option<String> {
     match (given, read) {
         (Value::Array(_), Value::Object(_)) => Some(key.to_string()),
@@ -88,23 +89,23 @@ fn has_null(value: &Value) -> bool {
     }
 }
 
-/// Advice where there is none in particular.
+/// Advice for errors that have no better one.
 const SEE_ALSO: &str = "see `wheelrail schema` and the README";
 
 fn without_position(message: &str) -> String {
     message.split(" at line ").next().unwrap_or(message).to_string()
 }
 
-/// Which part of a long text is shown.
+/// The part of a long text that is shown.
 #[derive(Clone, Copy)]
 enum Keep {
     Beginning,
     End,
 }
 
-/// Gives a text on one line, as much of it as helps to find it.
+/// Returns a text on one line, shortened to the part that helps to find it.
 fn shortened(text: &str, keep: Keep) -> String {
-    /// Characters that are shown.
+    /// Number of characters that are shown.
     const SHOWN: usize = 60;
     let words: Vec<&str> = text.split_whitespace().collect();
     let line: Vec<char> = words.join(" ").chars().collect();
@@ -115,8 +116,9 @@ fn shortened(text: &str, keep: Keep) -> String {
     }
 }
 
-/// Splits Serde's "unknown field `x`, expected one of `a`, `b`" and its kin into what stands there and what
-/// could. Where a message says only what could, as those of keys with several forms do, `found` is what stands there.
+/// Turns a message of serde ("unknown field `x`, expected one of `a`, `b`" and similar) into an error that tells what was
+/// found and what was expected. Keys with several forms give messages that tell only what was expected; `found` is then
+/// what stands there.
 fn house_form(place: String, message: &str, found: Option<String>) -> Error {
     let message = message.trim();
     if let Some(expected) = message.strip_prefix("expected ").or(message.strip_prefix("wanted ")) {
@@ -134,7 +136,7 @@ fn house_form(place: String, message: &str, found: Option<String>) -> Error {
         return Error::new(place, format!("no `{key}`"), format!("the key `{key}`"), "add it");
     }
     if let Some((found, expected)) = message.split_once(", expected ") {
-        // A list of the wrong length for a table whose keys it could have stood for.
+        // The list has the wrong length for a table that lists can stand for.
         let list = message.starts_with("invalid length") && expected.starts_with("struct");
         let found = if list { "a list" } else { found };
         let expected = match expected {
@@ -152,7 +154,7 @@ fn house_form(place: String, message: &str, found: Option<String>) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::separation::grid::Method;
+    use crate::separation::Method;
 
     const SCENE: &str = "[rail]\nprofile = \"60E1\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n\
                          [contact]\nrail_x = 0.0\nwheel_x = 0.0\n";
@@ -191,7 +193,7 @@ mod tests {
                 "rail: segments: line",
             ),
             ("[null, {}, {}, null, null, null, null, {}, {}, {}]".into(), true, ""),
-            ("[]".into(), true, "line 1"),
+            ("[]".into(), true, ""),
         ] {
             let error = parse::<Scene>(&text, json).err().map(|e| e.to_string()).unwrap_or_default();
             let expected = format!("{place}: found a list; expected a table of keys and values;");

@@ -1,4 +1,4 @@
-//! A scene becomes a case: everything in it is checked, once.
+//! Resolves a scene into a case: everything in the scene is checked, once.
 
 use std::path::Path;
 
@@ -6,30 +6,32 @@ use sha2::{Digest, Sha256};
 
 use super::axes::asked_axes;
 use super::data::{MaterialData, PatchData, Scene};
+use super::motion::{friction, motion};
 use super::profiles::profiles;
 use super::standing::standing;
-use crate::case::{ApproachBy, Case, Echo, OutputFormat, Outputs, Profiles, Question};
+use crate::case::{ApproachBy, Case, Echo, Friction, OutputFormat, Outputs, Profiles, Question};
 use crate::error::{Error, Result, finite};
-use crate::load::hertz::{Elastic, effective_modulus};
+use crate::load::{Elastic, effective_modulus};
 
-/// Smallest approach other than 0 \[mm\] and smallest load \[N\]: below any that is meant, and its powers do not underflow.
+/// Smallest approach other than 0 \[mm\], and smallest load \[N\]. They are far below any real ones, and their powers do
+/// not underflow.
 const SMALLEST: f64 = 1e-60;
 
-/// Resolves a scene: reads its profiles, prepares the search, and checks every value. The scene's own files are relative
-/// to `folder`; `name` is the title of a scene without one.
+/// Resolves a scene: reads its profiles, prepares the search and checks every value. Paths in the scene are relative to
+/// `folder`. `name` is the title of a scene without a title.
 ///
-/// Cost: each profile's file is read and fitted once; whoever has the case needs neither again.
+/// Cost: each profile's file is read and fitted once. The case keeps the profiles.
 ///
 /// # Errors
-/// Whatever is wrong, by key: values before profiles, and profiles before placement.
+/// Anything that is wrong; the error names the key. Values are checked before profiles, and profiles before placement.
 pub fn resolve(scene: &Scene, folder: &Path, name: &str) -> Result<Case> {
     case(scene, name, || profiles(scene, folder))
 }
 
-/// Resolves a scene over profiles that are there already, in the place of its own: opens no file.
+/// Resolves a scene over given profiles, which replace those of the scene. No file is opened.
 ///
 /// # Errors
-/// Whatever is wrong but for the profiles, by key.
+/// Anything that is wrong except for the profiles; the error names the key.
 pub fn with_profiles(scene: &Scene, profiles: Profiles, name: &str) -> Result<Case> {
     case(scene, name, || Ok(profiles))
 }
@@ -37,14 +39,13 @@ pub fn with_profiles(scene: &Scene, profiles: Profiles, name: &str) -> Result<Ca
 fn case(scene: &Scene, name: &str, profiles: impl FnOnce() -> Result<Profiles>) -> Result<Case> {
     let question = question(scene)?;
     let axes = asked_axes(&scene.grid)?;
-    let profiles = profiles()?;
-    let standing = standing(scene, &profiles.pair)?;
+    let (standing, profiles) = standing(scene, profiles()?)?;
     let (outputs, echo) = (outputs(scene), echo(scene, name));
     Ok(Case { profiles, standing, question, axes, outputs, echo, file: None })
 }
 
-/// Gives what files say of a scene: its title, or else `name`, and the scene itself with its SHA-256. Equal scenes have equal
-/// hashes whatever their comments.
+/// Returns what output files say about a scene: its title or else `name`, and the scene itself with its SHA-256. Scenes
+/// that differ only in comments have equal hashes.
 pub fn echo(scene: &Scene, name: &str) -> Echo {
     let canonical = serde_json::to_vec(scene).unwrap_or_default();
     Echo {
@@ -54,7 +55,7 @@ pub fn echo(scene: &Scene, name: &str) -> Echo {
     }
 }
 
-/// Gives the formats to write: all but PNG where the scene names none.
+/// Returns the formats to write. If the scene names none, these are all but PNG.
 fn outputs(scene: &Scene) -> Outputs {
     use OutputFormat::{Conform, Contact, Countact, Netcdf, Npy, Text, Vtk};
     let named = scene.output.formats.clone();
@@ -65,27 +66,48 @@ fn outputs(scene: &Scene) -> Outputs {
 
 fn question(scene: &Scene) -> Result<Question> {
     let tolerance = scene.grid.tolerance;
-    let approach = scene.patch.as_ref().map(approach).transpose()?;
+    let approach = approach_of(scene)?;
+    let motion = scene.motion.as_ref().map(motion).transpose()?;
     let material = elastic(&scene.material)?;
+    let friction = scene.friction.as_ref().map_or_else(|| Ok(Friction::default()), friction)?;
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         let (found, expected) = (tolerance.to_string(), "a positive length in mm");
         return Err(Error::new("grid: tolerance", found, expected, "1e-12 gives all digits"));
     }
-    Ok(Question { approach, material, tolerance, method: scene.grid.method })
+    Ok(Question { approach, motion, material, friction, tolerance, method: scene.grid.method })
 }
 
-/// Checks how far the bodies approach: a length or a load.
+/// Returns the approach, or the load from which it is estimated, of `[patch]` or `[wheelset]`.
+fn approach_of(scene: &Scene) -> Result<Option<ApproachBy>> {
+    let of_axle = scene.wheelset.as_ref().and_then(|wheelset| wheelset.load);
+    match (&scene.patch, of_axle) {
+        (None, None) => Ok(None),
+        (Some(patch), None) => approach(patch).map(Some),
+        (None, Some(load)) => checked("wheelset: load", load, ApproachBy::AxleLoad(load)).map(Some),
+        (Some(_), Some(load)) => {
+            let expected = "the axle's load without [patch], or [patch] without it";
+            let found = format!("{load} beside [patch]");
+            Err(Error::new("wheelset: load", found, expected, "remove one"))
+        }
+    }
+}
+
+/// Returns the approach of `[patch]`, or the load from which it is estimated.
 ///
 /// # Errors
 /// None or both of them; values that are not finite, negative, or too small to be meant.
 pub fn approach(patch: &PatchData) -> Result<ApproachBy> {
     let expected = "exactly one of `approach` and `load`";
-    let (key, value, by) = match (patch.approach, patch.load) {
-        (Some(approach), None) => ("patch: approach", approach, ApproachBy::Given(approach)),
-        (None, Some(load)) => ("patch: load", load, ApproachBy::Load(load)),
-        (Some(_), Some(_)) => return Err(Error::new("patch", "both", expected, "remove one")),
-        (None, None) => return Err(Error::new("patch", "neither", expected, "give one")),
-    };
+    match (patch.approach, patch.load) {
+        (Some(approach), None) => checked("patch: approach", approach, ApproachBy::Given(approach)),
+        (None, Some(load)) => checked("patch: load", load, ApproachBy::WheelLoad(load)),
+        (Some(_), Some(_)) => Err(Error::new("patch", "both", expected, "remove one")),
+        (None, None) => Err(Error::new("patch", "neither", expected, "give one")),
+    }
+}
+
+/// Returns `by` if its value is one that can be meant.
+fn checked(key: &str, value: f64, by: ApproachBy) -> Result<ApproachBy> {
     if finite(key, value)? < 0.0 {
         return Err(Error::new(key, value.to_string(), "a value ≥ 0", "correct the sign"));
     }
@@ -129,7 +151,7 @@ mod tests {
     use super::super::read::parse;
     use super::*;
 
-    /// The complaint about a scene of these tables.
+    /// Returns the error text of a scene with these tables.
     fn complaint(rail: &str, rest: &str) -> Result<String> {
         let text = format!("[rail]\n{rail}\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n{rest}");
         let scene: Scene = parse(&text, false)?;

@@ -1,26 +1,34 @@
-//! `[contact]`, `[track]` and `[wheelset]`: where the bodies stand.
+//! Reads where the bodies stand: `[contact]`, `[track]` and `[wheelset]`.
 
 use std::sync::Arc;
 
-use super::data::{ContactData, RollData, RollWord, Scene, TrackData, WheelsetData};
-use crate::case::{Place, Standing};
-use crate::error::{Error, Result, finite, given};
-use crate::placement::Pair;
-use crate::placement::track::{RailDistance, WheelDistance};
-use crate::search::wheelset::{Position, Roll, WheelsetOnTrack};
-use crate::search::{Pose, ProfilePair};
+use nalgebra::UnitComplex;
 
-/// Depth below the top of rail at which gauge is measured unless the scene says otherwise \[mm\].
+use super::data::{ContactData, DeviationData, RollData, RollWord, Scene, SideData, TrackData, WheelsetData};
+use crate::case::{Place, Profiles, Standing};
+use crate::error::{Error, Result, finite, given};
+use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
+use crate::search::{Pose, Position, ProfilePair, Roll, SideOnTrack, WheelsetOnTrack, small_angle};
+
+/// Depth \[mm\] below the top of rail at which the gauge is measured, if the scene gives no other.
 const GAUGE_HEIGHT: f64 = 14.0;
 
-/// Finds where the bodies stand, and prepares the search over them.
+/// Finds where the bodies stand, and prepares the search over them; turns the profile of a rail that deviates.
 ///
 /// # Errors
 /// None or several of the ways to say so; missing or contradictory keys; profiles that cannot be searched.
-pub(super) fn standing(scene: &Scene, pair: &Pair) -> Result<Standing> {
-    match (&scene.contact, &scene.track, &scene.wheelset) {
-        (Some(contact), None, None) => single(contact, pair),
-        (None, Some(track), Some(wheelset)) => on_track(track, wheelset, pair),
+pub(super) fn standing(scene: &Scene, mut profiles: Profiles) -> Result<(Standing, Profiles)> {
+    let standing = match (&scene.contact, &scene.track, &scene.wheelset) {
+        (Some(contact), None, None) => {
+            for (side, data) in [("left", &scene.left), ("right", &scene.right)] {
+                if data.is_some() {
+                    let expected = "sides only of a wheelset: with [track] and [wheelset]";
+                    return Err(Error::new(side, "a side beside [contact]", expected, "remove it"));
+                }
+            }
+            single(contact, &profiles.right.pair)
+        }
+        (None, Some(track), Some(wheelset)) => on_track(scene, track, wheelset, &mut profiles),
         (None, None, None) => {
             let expected = "[contact], or [track] and [wheelset]";
             Err(Error::new("", "no placement", expected, "say where the bodies stand"))
@@ -34,18 +42,56 @@ pub(super) fn standing(scene: &Scene, pair: &Pair) -> Result<Standing> {
             ]);
             Err(Error::new("", found, expected, "keep one placement, with all it needs"))
         }
-    }
+    };
+    Ok((standing?, profiles))
 }
 
-fn on_track(track: &TrackData, wheelset: &WheelsetData, pair: &Pair) -> Result<Standing> {
+fn on_track(
+    scene: &Scene,
+    track: &TrackData,
+    wheelset: &WheelsetData,
+    profiles: &mut Profiles,
+) -> Result<Standing> {
     let position = Position {
         lateral: finite("wheelset: lateral", wheelset.lateral)?,
         yaw: finite("wheelset: yaw", wheelset.yaw)?,
         roll: roll(wheelset.roll)?,
     };
     let (rails, wheels, within) = (rails(track)?, wheels(wheelset)?, within(wheelset.within)?);
-    let system = Arc::new(WheelsetOnTrack::new(pair, rails, wheels)?);
-    Ok(Standing { place: Place::Wheelset { system, position }, within })
+    let deviation = |side: &Option<SideData>| side.as_ref().and_then(|side| side.deviation);
+    let deviations = [&scene.left, &scene.right].map(deviation);
+    let system = if profiles.left.is_none() && deviations == [None, None] {
+        WheelsetOnTrack::new(&profiles.right.pair, rails, wheels)?
+    } else {
+        let left = profiles.left.get_or_insert_with(|| profiles.right.clone());
+        let own = |pair: &mut Pair, deviation: Option<DeviationData>, name: &str, sign: f64| {
+            let side = side(pair, (rails, wheels), deviation.unwrap_or_default(), sign);
+            side.map_err(|error| error.within(name))
+        };
+        let [off_left, off_right] = deviations;
+        let left = own(&mut left.pair, off_left, "left", -1.0)?;
+        WheelsetOnTrack::of_sides(left, own(&mut profiles.right.pair, off_right, "right", 1.0)?)
+    };
+    Ok(Standing { place: Place::Wheelset { system: Arc::new(system), position }, within })
+}
+
+/// Places one side, whose x is the track's times `sign`: by its nominal rail, which then deviates.
+fn side(
+    pair: &mut Pair,
+    (rails, wheels): (RailDistance, WheelDistance),
+    deviation: DeviationData,
+    sign: f64,
+) -> Result<SideOnTrack> {
+    let within = |error: Error| error.within("deviation");
+    let nominal = Track::new(pair.rail(), rails)?;
+    let track = nominal.moved(sign * deviation.lateral, deviation.vertical).map_err(within)?;
+    let roll = small_angle("roll", deviation.roll).map_err(within)?;
+    if roll != 0.0 {
+        // Profiles turn counter-clockwise, and the right-hand side's roll is clockwise.
+        let rail = pair.rail().clone().rotated(UnitComplex::new(-sign * roll));
+        *pair = Pair::new(rail, pair.wheel().clone(), pair.wheel_radius())?;
+    }
+    SideOnTrack::new(pair, track, Wheelset::new(wheels, pair.wheel_radius())?)
 }
 
 fn single(contact: &ContactData, pair: &Pair) -> Result<Standing> {

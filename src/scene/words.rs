@@ -1,14 +1,14 @@
-//! Advice for words that are not known.
+//! Finds the word that a misspelt word may mean.
 
-/// Gives advice for a word that is not known: the nearest one that is, where one is near.
+/// Returns advice for an unknown word: the most similar known word, or no advice if none is similar.
 pub fn perhaps(found: &str, known: &[&str]) -> String {
     nearest(found, known).unwrap_or_else(|| "correct or remove it".into())
 }
 
-/// Gives the nearest known word as advice, in upper or lower case; `None` where none is near.
+/// Returns the most similar known word as advice; upper and lower case are the same. Returns `None` if none is similar.
 pub(super) fn nearest(found: &str, known: &[&str]) -> Option<String> {
-    /// Likeness from which two words look like one misspelt: `yaw` and `yaw_rad` have 0.87, words of a letter or two in
-    /// common 0.6.
+    /// Least similarity of two words of which one may be a misspelling: `yaw` and `yaw_rad` have 0.87; words with a letter
+    /// or two in common have 0.6.
     const ALIKE: f64 = 0.7;
     let lower = found.to_lowercase();
     let likeness = |known: &str| strsim::jaro_winkler(&known.to_lowercase(), &lower);

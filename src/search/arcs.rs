@@ -2,7 +2,7 @@
 //! yawed torus.
 
 use super::candidates::{Foot, Search};
-use super::element::{ArcElement, Element, SINE_ROUNDING, Shape, between};
+use super::element::{ArcElement, Element, ElementCurve, SINE_ROUNDING, between};
 use super::locus::Attitude;
 use crate::numerics::cosine;
 use crate::profile::Station;
@@ -11,19 +11,21 @@ use crate::profile::Station;
 pub(super) fn meet(search: &mut Search, elements: [u32; 2]) -> bool {
     let [wheel, rail] = search.elements(elements);
     let yawed = search.attitude.sin_yaw != 0.0;
-    let mut pair = Pair { elements, search };
+    let mut pair = ArcPair { elements, search };
     match (&wheel.shape, &rail.shape) {
-        (Shape::Arc(arc), Shape::Arc(below)) if !yawed => pair.arc_on_arc((arc, wheel), (below, rail)),
-        (Shape::Line, Shape::Arc(below)) => pair.line_on_arc(&wheel.ends, (below, rail)),
-        (Shape::Arc(arc), Shape::Line) => pair.arc_on_line((arc, wheel), &rail.ends),
-        (Shape::Line, Shape::Line) => pair.line_on_line(&wheel.ends, &rail.ends),
+        (ElementCurve::Arc(arc), ElementCurve::Arc(below)) if !yawed => {
+            pair.arc_on_arc((arc, wheel), (below, rail))
+        }
+        (ElementCurve::Line, ElementCurve::Arc(below)) => pair.line_on_arc(&wheel.ends, (below, rail)),
+        (ElementCurve::Arc(arc), ElementCurve::Line) => pair.arc_on_line((arc, wheel), &rail.ends),
+        (ElementCurve::Line, ElementCurve::Line) => pair.line_on_line(&wheel.ends, &rail.ends),
         _ => return false,
     }
     true
 }
 
 /// Two elements while they are solved.
-struct Pair<'s, 'a> {
+struct ArcPair<'s, 'a> {
     elements: [u32; 2],
     search: &'s mut Search<'a>,
 }
@@ -64,7 +66,7 @@ fn steepest_seen(attitude: &Attitude, arc: &ArcElement) -> Option<f64> {
     (cube < 1.0).then(|| cosine(cube.cbrt()).min(attitude.cos_yaw))
 }
 
-impl Pair<'_, '_> {
+impl ArcPair<'_, '_> {
     /// Solves an arc or fan of the unyawed wheel over an arc or fan of the rail: both abscissae are linear in
     /// the sine of the tangent.
     fn arc_on_arc(&mut self, (arc, wheel): (&ArcElement, &Element), (below, rail): (&ArcElement, &Element)) {

@@ -4,7 +4,7 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::bounds::{Bounds, Reach};
-use super::element::{ArcElement, Element, Shape, Stretch};
+use super::element::{ArcElement, Element, ElementCurve, Stretch};
 use crate::numerics::polynomial::bernstein;
 use crate::profile::{
     Branch, BranchPoint, BranchShape, ONE_JOINT, Piece, PolynomialBranch, Section, Side, Station,
@@ -30,13 +30,13 @@ const CORNER_TURN: f64 = 0.125;
 
 /// The outer surface of one body, prepared for searches.
 #[derive(Debug, Clone)]
-pub(super) struct Body {
+pub(super) struct SearchBody {
     /// The elements, from left to right.
     pub elements: Vec<Element>,
     /// Coefficients \[x, z\] of all stretches.
     pub coefficients: Vec<[f64; 2]>,
     /// The tree over the elements: the root is first, a left child follows its parent.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<TreeNode>,
     /// Rounding of a bound \[mm\].
     pub rounding: f64,
     /// Bounds of x and of z of the whole surface \[mm\].
@@ -45,7 +45,7 @@ pub(super) struct Body {
 
 /// A node of the tree: a range of elements.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Node {
+pub(super) struct TreeNode {
     /// Bounds of all elements of the node.
     pub bounds: Bounds,
     /// Index of the right child, or 0 for a leaf.
@@ -56,14 +56,14 @@ pub(super) struct Node {
     pub size: f64,
 }
 
-impl Body {
+impl SearchBody {
     /// Prepares the part of a profile that faces the other body in its own axes; `extent` is the profile's
     /// extent \[mm\]. `None` if no part faces the other body.
     ///
     /// Cost: n log n for n elements; some microseconds each.
     pub fn new(section: &Section, extent: f64, side: Side) -> Option<Self> {
         let rounding = BOUND_ROUNDINGS * f64::EPSILON * extent;
-        let mut builder = Builder {
+        let mut builder = TreeBuilder {
             side,
             rounding,
             elements: Vec::new(),
@@ -78,7 +78,7 @@ impl Body {
             return None;
         }
         builder.tree(0, builder.elements.len(), &mut nodes);
-        let Builder { elements, coefficients, .. } = builder;
+        let TreeBuilder { elements, coefficients, .. } = builder;
         let whole = &nodes[0].bounds;
         let extent = [whole.x, whole.z];
         Some(Self { elements, coefficients, nodes, rounding, extent })
@@ -91,7 +91,7 @@ impl Body {
     }
 }
 
-struct Builder {
+struct TreeBuilder {
     side: Side,
     rounding: f64,
     elements: Vec<Element>,
@@ -102,7 +102,7 @@ struct Builder {
     firsts: Vec<usize>,
 }
 
-impl Builder {
+impl TreeBuilder {
     /// Appends all elements, from left to right.
     fn surface(&mut self, section: &Section, joint: f64) {
         let (material_left, material_right) = match self.side {
@@ -162,7 +162,7 @@ impl Builder {
             Side::Wheel => f64::INFINITY,
             Side::Rail => f64::NEG_INFINITY,
         };
-        let shape = Shape::Arc(ArcElement::fan(point, self.side));
+        let shape = ElementCurve::Arc(ArcElement::fan(point, self.side));
         let sines = ends.map(|end| end.sin);
         self.push(shape, sines, ends, &[at], [at; 2], [sines, [curvature; 2]]);
     }
@@ -172,14 +172,14 @@ impl Builder {
         match (&branch.shape, piece.ends.map(|end| end.0)) {
             (BranchShape::Arc(arc), _) if arc.curvature == 0.0 => {
                 let sines = ends.map(|end| end.sin);
-                self.push(Shape::Line, piece.xi, ends, &outer, outer, [sines, [0.0; 2]]);
+                self.push(ElementCurve::Line, piece.xi, ends, &outer, outer, [sines, [0.0; 2]]);
             }
             (BranchShape::Arc(arc), _) => {
                 let hull = tangents(&ends, arc.radius);
                 if ends[0].sin > ends[1].sin {
                     ends.swap(0, 1);
                 }
-                let shape = Shape::Arc(ArcElement::of(arc));
+                let shape = ElementCurve::Arc(ArcElement::of(arc));
                 let sines = ends.map(|end| end.sin);
                 self.push(shape, sines, ends, &hull, outer, [sines, [arc.curvature; 2]]);
             }
@@ -217,7 +217,7 @@ impl Builder {
         });
         let hull: Vec<[f64; 2]> = x.into_iter().zip(z).map(|(x, z)| [x, z]).collect();
         let stretch = Stretch { first, count, reach };
-        let shape = Shape::Stretch(stretch);
+        let shape = ElementCurve::Stretch(stretch);
         let ends = [a, b].map(|t| stretch.place(&self.coefficients, t).station);
         let outer = ends.map(|end| [end.x, end.z]);
         self.push(shape, [a, b], ends, &hull, outer, [reach.sine, reach.curvature]);
@@ -225,7 +225,7 @@ impl Builder {
 
     fn push(
         &mut self,
-        shape: Shape,
+        shape: ElementCurve,
         range: [f64; 2],
         ends: [Station; 2],
         hull: &[[f64; 2]],
@@ -240,11 +240,11 @@ impl Builder {
     }
 
     /// Appends the tree over a range of elements, the parent first; returns the index of its root.
-    fn tree(&self, from: usize, to: usize, nodes: &mut Vec<Node>) -> u32 {
+    fn tree(&self, from: usize, to: usize, nodes: &mut Vec<TreeNode>) -> u32 {
         let own = nodes.len();
         let bounds = if to - from == 1 { self.elements[from].bounds } else { self.joined(from, to) };
         let size = (bounds.x[1] - bounds.x[0]).max(bounds.z[1] - bounds.z[0]);
-        nodes.push(Node { bounds, right: 0, element: from as u32, size });
+        nodes.push(TreeNode { bounds, right: 0, element: from as u32, size });
         if to - from > 1 {
             let middle = self.middle(from, to);
             self.tree(from, middle, nodes);
@@ -316,7 +316,7 @@ mod tests {
     #[test]
     fn fans_stand_at_ends_and_at_outward_kinks_only() -> Result<()> {
         let profile = standards::wheel("EN15302-A")?;
-        let body = Body::new(&Section::own_axes(&profile, Side::Wheel), profile.extent(), Side::Wheel)
+        let body = SearchBody::new(&Section::own_axes(&profile, Side::Wheel), profile.extent(), Side::Wheel)
             .expect("a wheel");
         let fans: Vec<f64> =
             body.elements.iter().map(|e| e.bounds.x).filter(|x| x[0] == x[1]).map(|x| x[0]).collect();
@@ -331,7 +331,7 @@ mod tests {
     #[test]
     fn polynomials_are_cut_into_few_stretches_without_gaps() -> Result<()> {
         let profile = standards::wheel("S1002")?;
-        let body = Body::new(&Section::own_axes(&profile, Side::Wheel), profile.extent(), Side::Wheel)
+        let body = SearchBody::new(&Section::own_axes(&profile, Side::Wheel), profile.extent(), Side::Wheel)
             .expect("a wheel");
         assert!(body.elements.len() < 200, "{}", body.elements.len());
         for pair in body.elements.windows(2) {
@@ -345,8 +345,8 @@ mod tests {
     fn bounds_hold() -> Result<()> {
         for (name, side) in [("S1002", Side::Wheel), ("EN15302-A", Side::Wheel), ("60E1", Side::Rail)] {
             let profile = if side == Side::Rail { standards::rail(name)? } else { standards::wheel(name)? };
-            let body =
-                Body::new(&Section::own_axes(&profile, side), profile.extent(), side).expect("a surface");
+            let body = SearchBody::new(&Section::own_axes(&profile, side), profile.extent(), side)
+                .expect("a surface");
             let mut checked = 0;
             for (index, node) in body.nodes.iter().enumerate() {
                 let next = if node.right == 0 {

@@ -1,6 +1,6 @@
 //! Candidates: the places of contact that a search collects.
 
-use super::body::Body;
+use super::body::SearchBody;
 use super::bounds::STEEPEST_SLOPE;
 use super::element::Element;
 use super::locus::Attitude;
@@ -57,7 +57,7 @@ pub(super) struct Foot {
 /// A search at one attitude: both bodies, and the candidates found so far.
 pub(super) struct Search<'a> {
     /// The wheel and the rail.
-    pub bodies: [&'a Body; 2],
+    pub bodies: [&'a SearchBody; 2],
     /// The wheel's attitude.
     pub attitude: &'a Attitude,
     /// Size against which rounding is judged: the sum of both profiles' extents and of the offset \[mm\].

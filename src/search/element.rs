@@ -14,20 +14,20 @@ pub(super) const SINE_ROUNDING: f64 = 4.0 * f64::EPSILON;
 #[derive(Debug, Clone)]
 pub(super) struct Element {
     /// Kind of curve, with its data.
-    pub shape: Shape,
+    pub shape: ElementCurve,
     /// Range of the parameter, ascending: sinφ of an arc or fan, x \[mm\] of a line, t of a stretch.
     pub range: [f64; 2],
     /// The points at the ends of `range`.
     pub ends: [Station; 2],
     /// The point in the middle of `range`.
-    pub middle: Place,
+    pub middle: ElementPoint,
     /// Guaranteed bounds of the element.
     pub bounds: Bounds,
 }
 
 /// The kinds of curve that the search distinguishes.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Shape {
+pub(super) enum ElementCurve {
     /// An arc; a fan is an arc of radius 0.
     Arc(ArcElement),
     /// A line.
@@ -62,7 +62,7 @@ pub(super) struct Stretch {
 
 /// A point of an element, with its derivatives with respect to the element's parameter.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct ElementPoint {
     /// The point and its tangent.
     pub station: Station,
     /// Derivative of x with respect to the parameter.
@@ -103,19 +103,22 @@ impl ArcElement {
     }
 }
 
-impl Shape {
+impl ElementCurve {
     /// Returns the point at a parameter; `start` is a point of the line, if the shape is one.
     #[inline]
-    pub fn place(&self, start: &Station, coefficients: &[[f64; 2]], p: f64) -> Place {
+    pub fn place(&self, start: &Station, coefficients: &[[f64; 2]], p: f64) -> ElementPoint {
         match self {
-            Shape::Arc(arc) => {
-                Place { station: arc.at(p, cosine(p)), run: arc.radius, turn: 1.0, curvature: arc.curvature }
-            }
-            Shape::Line => {
+            ElementCurve::Arc(arc) => ElementPoint {
+                station: arc.at(p, cosine(p)),
+                run: arc.radius,
+                turn: 1.0,
+                curvature: arc.curvature,
+            },
+            ElementCurve::Line => {
                 let z = start.z + (p - start.x) * (start.sin / start.cos);
-                Place { station: Station { x: p, z, ..*start }, run: 1.0, turn: 0.0, curvature: 0.0 }
+                ElementPoint { station: Station { x: p, z, ..*start }, run: 1.0, turn: 0.0, curvature: 0.0 }
             }
-            Shape::Stretch(stretch) => stretch.place(coefficients, p),
+            ElementCurve::Stretch(stretch) => stretch.place(coefficients, p),
         }
     }
 }
@@ -124,16 +127,16 @@ impl Element {
     /// Returns the point at a parameter, inside the element or beyond it; `coefficients` are those of the
     /// whole body.
     #[inline]
-    pub fn place(&self, coefficients: &[[f64; 2]], p: f64) -> Place {
+    pub fn place(&self, coefficients: &[[f64; 2]], p: f64) -> ElementPoint {
         self.shape.place(&self.ends[0], coefficients, p)
     }
 
     /// Returns the signed radius \[mm\] of the profile at a point of this element.
-    pub fn radius(&self, place: &Place) -> f64 {
+    pub fn radius(&self, place: &ElementPoint) -> f64 {
         match &self.shape {
-            Shape::Arc(arc) => arc.radius,
-            Shape::Line => f64::INFINITY,
-            Shape::Stretch(_) => place.curvature.recip(),
+            ElementCurve::Arc(arc) => arc.radius,
+            ElementCurve::Line => f64::INFINITY,
+            ElementCurve::Stretch(_) => place.curvature.recip(),
         }
     }
 
@@ -142,9 +145,9 @@ impl Element {
     /// Accuracy: rounding. Cost for a stretch: three or four Newton steps, safeguarded by a bracket.
     pub fn parameter_at(&self, coefficients: &[[f64; 2]], x: f64) -> f64 {
         match &self.shape {
-            Shape::Arc(arc) => arc.sine_at(x).clamp(self.range[0], self.range[1]),
-            Shape::Line => x,
-            Shape::Stretch(_) => {
+            ElementCurve::Arc(arc) => arc.sine_at(x).clamp(self.range[0], self.range[1]),
+            ElementCurve::Line => x,
+            ElementCurve::Stretch(_) => {
                 let ends = self.ends.map(|end| end.x);
                 rising_root(self.range, ends, x, |p| {
                     let place = self.place(coefficients, p);
@@ -199,7 +202,7 @@ pub(super) fn rising_root(ends: [f64; 2], values: [f64; 2], value: f64, f: impl 
 impl Stretch {
     /// Returns the point at a parameter.
     #[inline]
-    pub fn place(&self, coefficients: &[[f64; 2]], t: f64) -> Place {
+    pub fn place(&self, coefficients: &[[f64; 2]], t: f64) -> ElementPoint {
         let ([mut x, mut dx, mut hx], [mut z, mut dz, mut hz]) = ([0.0; 3], [0.0; 3]);
         for c in coefficients[self.first..self.first + self.count].iter().rev() {
             (hx, hz) = (hx * t + 2.0 * dx, hz * t + 2.0 * dz);
@@ -209,7 +212,7 @@ impl Stretch {
         let slowness = (dx * dx + dz * dz).sqrt().recip();
         let (cos, sin) = (dx * slowness, dz * slowness);
         let curvature = (cos * hz - sin * hx) * (slowness * slowness);
-        Place { station: Station { x, z, cos, sin }, run: dx, turn: curvature * dx, curvature }
+        ElementPoint { station: Station { x, z, cos, sin }, run: dx, turn: curvature * dx, curvature }
     }
 }
 

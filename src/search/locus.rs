@@ -23,7 +23,7 @@
 //! which is monotone in |Θ|; therefore the search over arcs is complete. r = 0 is the ring of a kink or end
 //! under its fan of normals, r = ∞ a cone.
 
-use super::element::Place;
+use super::element::ElementPoint;
 use crate::profile::Station;
 
 /// The attitude of a wheel over its rail, without the height: the trigonometry of one position, done once.
@@ -124,10 +124,10 @@ impl Attitude {
     /// Returns the outline point of a wheel profile point, with its derivatives with respect to the same
     /// parameter; NaN where there is no outline.
     #[inline]
-    pub fn outline_place(&self, place: &Place) -> Place {
+    pub fn outline_place(&self, place: &ElementPoint) -> ElementPoint {
         let station = self.outline(&place.station);
         if self.sin_yaw == 0.0 && self.sin_roll == 0.0 {
-            return Place { station, ..*place };
+            return ElementPoint { station, ..*place };
         }
         let Station { x: _, z, cos, sin } = place.station;
         let slope = sin / cos;
@@ -138,7 +138,7 @@ impl Attitude {
         let sin = sin / self.cos_yaw;
         let tangent = sin / ((1.0 - sin) * (1.0 + sin)).sqrt();
         let turned = self.cos_roll + tangent * self.sin_roll;
-        Place { station, run: run * turned, turn: place.turn / self.cos_yaw * turned, ..*place }
+        ElementPoint { station, run: run * turned, turn: place.turn / self.cos_yaw * turned, ..*place }
     }
 
     /// Returns the outline's signed radius of curvature ϱ_c \[mm\] at a profile point of signed radius

@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::Selection;
-use super::sweep::{Conicity, Row, Sweep};
+use super::sweep::{Conicity, Sweep, SweepRow};
+use super::touch::Selection;
 use super::wheelset::{Position, Roll, WheelsetOnTrack};
 use crate::error::Result;
 
@@ -39,7 +39,7 @@ impl ParallelSweep<'_> {
     /// The errors of `make` and `sink`; a position with values that are not finite, or angles beyond ±0.5 rad.
     pub fn blocks<T: Send + Default>(
         &self,
-        make: impl Fn(&mut T, usize, &[Row]) -> Result<()> + Sync,
+        make: impl Fn(&mut T, usize, &[SweepRow]) -> Result<()> + Sync,
         mut sink: impl FnMut(usize, Vec<T>) -> Result<bool>,
     ) -> Result<()> {
         let mut done = 0;
@@ -59,7 +59,7 @@ impl ParallelSweep<'_> {
         &self,
         before: usize,
         positions: &[Position],
-        make: impl Fn(&mut T, usize, &[Row]) -> Result<()>,
+        make: impl Fn(&mut T, usize, &[SweepRow]) -> Result<()>,
     ) -> Result<T> {
         let mut sweep = Sweep::new(self.system, self.selection, self.conicity);
         let (mut rows, mut made) = (Vec::new(), T::default());

@@ -16,7 +16,7 @@ use crate::numerics::cosine;
 
 /// Bounds in the rail's axes: of a part of the rail, or of the outline of a part of the wheel.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Placed {
+pub(super) struct PlacedBounds {
     /// Least and largest abscissa \[mm\].
     pub x: [f64; 2],
     /// Least and largest sine of the tangents; ∓1 for tangents beyond the vertical.
@@ -25,7 +25,7 @@ pub(super) struct Placed {
     pub line: [f64; 2],
 }
 
-impl Placed {
+impl PlacedBounds {
     /// Bounds of a part without outline: no abscissa and no tangent.
     pub const HIDDEN: Self = Self {
         x: [f64::INFINITY, f64::NEG_INFINITY],
@@ -85,24 +85,24 @@ fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
-/// Places the bounds of a part of the wheel; [`Placed::HIDDEN`] if it has no outline that is seen.
+/// Places the bounds of a part of the wheel; [`PlacedBounds::HIDDEN`] if it has no outline that is seen.
 #[inline]
-pub fn placed_bounds(attitude: &Attitude, bounds: &Bounds) -> Placed {
+pub fn placed_bounds(attitude: &Attitude, bounds: &Bounds) -> PlacedBounds {
     if attitude.sin_yaw == 0.0 && attitude.sin_roll == 0.0 {
         let [level, slope] = bounds.line;
         let x = [bounds.x[0] + attitude.offset, bounds.x[1] + attitude.offset];
-        return Placed { x, sine: bounds.sine, line: [level - slope * attitude.offset, slope] };
+        return PlacedBounds { x, sine: bounds.sine, line: [level - slope * attitude.offset, slope] };
     }
     if attitude.sin_yaw == 0.0 {
         let Bounds { x, z, sine, cosine, chord, level, .. } = *bounds;
-        return rolled_bounds(attitude, &Outline { x, z, sine, cosine: [cosine; 2], chord, level });
+        return rolled_bounds(attitude, &OutlineBounds { x, z, sine, cosine: [cosine; 2], chord, level });
     }
-    yawed(attitude, bounds).map_or(Placed::HIDDEN, |outline| rolled_bounds(attitude, &outline))
+    yawed(attitude, bounds).map_or(PlacedBounds::HIDDEN, |outline| rolled_bounds(attitude, &outline))
 }
 
 /// Returns the bounds of the outline before the roll; `None` if it is hidden.
 #[inline]
-fn yawed(attitude: &Attitude, bounds: &Bounds) -> Option<Outline> {
+fn yawed(attitude: &Attitude, bounds: &Bounds) -> Option<OutlineBounds> {
     let steepest = attitude.steepest_tangent;
     if bounds.tangent[0] >= steepest || bounds.tangent[1] <= -steepest {
         return None;
@@ -133,7 +133,7 @@ fn yawed(attitude: &Attitude, bounds: &Bounds) -> Option<Outline> {
     let outline_cos = larger((1.0 - outline_sin) * (1.0 + outline_sin), 0.0).sqrt();
     // cosφ − cosΘ, free of cancellation.
     let nearer = outline_sin * outline_sin * attitude.sin_yaw_squared() / (cos + outline_cos);
-    Some(Outline {
+    Some(OutlineBounds {
         x,
         z,
         sine,
@@ -144,9 +144,9 @@ fn yawed(attitude: &Attitude, bounds: &Bounds) -> Option<Outline> {
 }
 
 #[inline]
-fn rolled_bounds(attitude: &Attitude, outline: &Outline) -> Placed {
+fn rolled_bounds(attitude: &Attitude, outline: &OutlineBounds) -> PlacedBounds {
     let (cos, sin) = (attitude.cos_roll, attitude.sin_roll);
-    let Outline { x, z, sine, cosine: [least, most], .. } = outline;
+    let OutlineBounds { x, z, sine, cosine: [least, most], .. } = outline;
     let (rising, falling) = if sin > 0.0 { (1, 0) } else { (0, 1) };
     let [chord_cos, chord_sin] = outline.chord;
     let turned = chord_cos * cos + chord_sin * sin;
@@ -162,7 +162,7 @@ fn rolled_bounds(attitude: &Attitude, outline: &Outline) -> Placed {
     let beyond = |end: usize| least[end] * cos + sine[end] * sin < 0.0;
     let first = if sine[0] < 0.0 && beyond(0) { -1.0 } else { sine[0] * cos - off[0] * sin };
     let last = if sine[1] > 0.0 && beyond(1) { 1.0 } else { sine[1] * cos - off[1] * sin };
-    Placed { x, sine: [first, last], line }
+    PlacedBounds { x, sine: [first, last], line }
 }
 
 /// Returns bounds of the outline's curvature where a part of the profile is seen, and the largest
@@ -205,7 +205,7 @@ pub fn outline_bounds(attitude: &Attitude, bounds: &Bounds) -> Option<([f64; 2],
 }
 
 /// Bounds of an outline before the roll.
-struct Outline {
+struct OutlineBounds {
     x: [f64; 2],
     z: [f64; 2],
     sine: [f64; 2],

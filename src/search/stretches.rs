@@ -14,8 +14,8 @@
 use super::body::LEAST_KINK;
 use super::bounds::Bounds;
 use super::candidates::{EQUAL_CURVATURES, Foot, Search};
-use super::element::{Element, Place, Shape, rising_root};
-use super::placed::{Placed, outline_bounds, placed_bounds};
+use super::element::{Element, ElementCurve, ElementPoint, rising_root};
+use super::placed::{PlacedBounds, outline_bounds, placed_bounds};
 use crate::numerics::cosine;
 use crate::numerics::roots::bracketed;
 use crate::profile::Side;
@@ -40,15 +40,15 @@ pub(super) const SAME_TANGENT: f64 = 2.0 * LEAST_KINK;
 
 /// A part of an element, placed in the rail's axes.
 #[derive(Clone, Copy)]
-struct Part {
+struct StretchPart {
     /// Range of the parameter.
     range: [f64; 2],
     /// Parameter of the middle.
     middle: f64,
     /// Point at the middle: of the wheel's outline, or of the rail.
-    place: Place,
+    place: ElementPoint,
     /// Bounds in the rail's axes.
-    placed: Placed,
+    placed: PlacedBounds,
     /// Least and largest curvature \[1/mm\]: of the wheel's outline where it is seen, or of the rail.
     curvature: [f64; 2],
     /// Number of halvings so far.
@@ -56,12 +56,12 @@ struct Part {
 }
 
 /// Two elements while they are solved.
-struct Pair<'s, 'a> {
+struct StretchPair<'s, 'a> {
     search: &'s mut Search<'a>,
     elements: [u32; 2],
     shapes: [&'a Element; 2],
     /// Both whole elements.
-    wholes: [&'s Part; 2],
+    wholes: [&'s StretchPart; 2],
     /// Number of pairs of parts that may still be looked at.
     parts_left: u32,
     /// Whether both elements have turned out to be one curve: their place of contact is then known.
@@ -81,7 +81,7 @@ enum Verdict {
 /// Looks for contact of two elements.
 ///
 /// `placed` holds the bounds of the whole outline of the wheel's element, if they are known.
-pub(super) fn meet(search: &mut Search, elements: [u32; 2], placed: Option<&Placed>) {
+pub(super) fn meet(search: &mut Search, elements: [u32; 2], placed: Option<&PlacedBounds>) {
     let [above, below] = search.elements(elements);
     search.solves += 1;
     let Some((curvature, _)) = outline_bounds(search.attitude, &above.bounds) else { return };
@@ -90,15 +90,15 @@ pub(super) fn meet(search: &mut Search, elements: [u32; 2], placed: Option<&Plac
     }
     let whole = |element: &Element, place, placed, curvature| {
         let [a, b] = element.range;
-        Part { range: [a, b], middle: a + (b - a) / 2.0, place, placed, curvature, depth: 0 }
+        StretchPart { range: [a, b], middle: a + (b - a) / 2.0, place, placed, curvature, depth: 0 }
     };
     let placed = placed.copied();
     let placed = placed
         .unwrap_or_else(|| placed_bounds(search.attitude, &above.bounds).widened(search.slack, SAME_TANGENT));
     let wheel = whole(above, search.attitude.outline_place(&above.middle), placed, curvature);
-    let rail = whole(below, below.middle, Placed::rail(&below.bounds), below.bounds.curvature);
+    let rail = whole(below, below.middle, PlacedBounds::rail(&below.bounds), below.bounds.curvature);
     let (shapes, wholes) = ([above, below], [&wheel, &rail]);
-    let mut pair = Pair { search, elements, shapes, wholes, parts_left: MOST_PARTS, are_one: false };
+    let mut pair = StretchPair { search, elements, shapes, wholes, parts_left: MOST_PARTS, are_one: false };
     pair.refine(&wheel, &rail);
 }
 
@@ -109,7 +109,7 @@ pub(super) fn follow(search: &Search, elements: [u32; 2], start: [f64; 2]) -> Op
     newton(search, shapes, start, shapes.map(|element| element.range))
 }
 
-impl Part {
+impl StretchPart {
     /// Returns whether there is at most one common tangent of this part of the wheel and a part of the rail,
     /// and it can only be a least gap.
     fn is_rounder(&self, rail: &Self) -> bool {
@@ -124,22 +124,22 @@ fn flatter(wheel: [f64; 2], rail: [f64; 2]) -> bool {
     above < below && below - above > EQUAL_CURVATURES * (above.abs() + below.abs())
 }
 
-impl Pair<'_, '_> {
+impl StretchPair<'_, '_> {
     /// Makes the part of an element over `range`; `None` if it has no outline.
-    fn half(&self, side: Side, range: [f64; 2], depth: u32) -> Option<Part> {
+    fn half(&self, side: Side, range: [f64; 2], depth: u32) -> Option<StretchPart> {
         let (element, body) = (self.shapes[index(side)], self.search.bodies[index(side)]);
         let half = (range[1] - range[0]) / 2.0;
         let middle = range[0] + half;
         let own = element.place(&body.coefficients, middle);
         let bounds = match &element.shape {
-            Shape::Stretch(stretch) => {
+            ElementCurve::Stretch(stretch) => {
                 stretch.reach.around(&own.station, own.curvature, half, side, body.rounding)
             }
-            Shape::Arc(arc) => {
+            ElementCurve::Arc(arc) => {
                 let ends = range.map(|sin| arc.at(sin, cosine(sin)));
                 Bounds::of_arc(&ends, &own.station, element.bounds.curvature, side, body.rounding)
             }
-            Shape::Line => element.bounds,
+            ElementCurve::Line => element.bounds,
         };
         let attitude = self.search.attitude;
         let (place, placed, curvature) = match side {
@@ -147,17 +147,17 @@ impl Pair<'_, '_> {
                 let place = attitude.outline_place(&own);
                 let (curvature, fastest) = outline_bounds(attitude, &bounds)?;
                 let mut placed = placed_bounds(attitude, &bounds).widened(self.search.slack, SAME_TANGENT);
-                if let Shape::Stretch(stretch) = &element.shape {
+                if let ElementCurve::Stretch(stretch) = &element.shape {
                     placed.narrow(place.station.x, half * stretch.reach.run * fastest + self.search.slack);
                 }
                 (place, placed, curvature)
             }
-            Side::Rail => (own, Placed::rail(&bounds), bounds.curvature),
+            Side::Rail => (own, PlacedBounds::rail(&bounds), bounds.curvature),
         };
-        Some(Part { range, middle, place, placed, curvature, depth })
+        Some(StretchPart { range, middle, place, placed, curvature, depth })
     }
 
-    fn refine(&mut self, wheel: &Part, rail: &Part) {
+    fn refine(&mut self, wheel: &StretchPart, rail: &StretchPart) {
         let shared = wheel.placed.shared(&rail.placed);
         let ranges = [wheel.range, rail.range];
         match self.look(wheel, rail, shared) {
@@ -201,7 +201,7 @@ impl Pair<'_, '_> {
     }
 
     /// Looks at two parts of which one is new, unless their bounds exclude contact.
-    fn further(&mut self, wheel: &Part, rail: &Part) {
+    fn further(&mut self, wheel: &StretchPart, rail: &StretchPart) {
         if self.are_one {
             return;
         }
@@ -218,26 +218,26 @@ impl Pair<'_, '_> {
 
     /// Returns a bound of the length of a part that can be halved \[mm\]; `None` if it cannot. The bounds of
     /// an arc leave nothing open, except the curvature of a yawed arc's outline.
-    fn length(&self, side: Side, part: &Part) -> Option<f64> {
+    fn length(&self, side: Side, part: &StretchPart) -> Option<f64> {
         let placed = part.placed.x[1] - part.placed.x[0];
         let length = match &self.shapes[index(side)].shape {
-            Shape::Stretch(stretch) => {
+            ElementCurve::Stretch(stretch) => {
                 placed.max((part.range[1] - part.range[0]) * stretch.reach.run.hypot(stretch.reach.rise))
             }
-            Shape::Arc(_) if side == Side::Wheel && self.search.attitude.sin_yaw != 0.0 => placed,
+            ElementCurve::Arc(_) if side == Side::Wheel && self.search.attitude.sin_yaw != 0.0 => placed,
             _ => return None,
         };
         (part.depth < DEEPEST).then_some(length)
     }
 
-    fn halves(&self, side: Side, part: &Part) -> [Option<Part>; 2] {
+    fn halves(&self, side: Side, part: &StretchPart) -> [Option<StretchPart>; 2] {
         let [a, b] = part.range;
         [[a, part.middle], [part.middle, b]].map(|range| self.half(side, range, part.depth + 1))
     }
 
     /// Returns what the middles and curvatures of two parts tell about the abscissae at which the tangents
     /// can be equal.
-    fn look(&self, wheel: &Part, rail: &Part, [low, high]: [f64; 2]) -> Verdict {
+    fn look(&self, wheel: &StretchPart, rail: &StretchPart, [low, high]: [f64; 2]) -> Verdict {
         let (above, below) = (&wheel.place.station, &rail.place.station);
         if above.sin.is_nan() {
             return Verdict::Open;
@@ -295,7 +295,7 @@ impl Pair<'_, '_> {
     /// Returns the parameters in the middle of the shared abscissae if the two parts have the same tangents
     /// there, at both ends and half way to them: more places than two curves of a drawing share by chance.
     /// `None` with yaw.
-    fn agree(&self, wheel: &Part, rail: &Part) -> Option<[f64; 2]> {
+    fn agree(&self, wheel: &StretchPart, rail: &StretchPart) -> Option<[f64; 2]> {
         let [low, high] = wheel.placed.shared(&rail.placed);
         let same = |share: f64| {
             let x = low + (high - low) * share;
@@ -316,7 +316,12 @@ impl Pair<'_, '_> {
     /// difference of their tangents changes sign between the ends of the abscissae that they share.
     ///
     /// `above` and `below` are the ranges of abscissae of the wheel's and the rail's part.
-    fn between_ends(&self, [wheel, rail]: [&Part; 2], above: [f64; 2], below: [f64; 2]) -> Option<[f64; 2]> {
+    fn between_ends(
+        &self,
+        [wheel, rail]: [&StretchPart; 2],
+        above: [f64; 2],
+        below: [f64; 2],
+    ) -> Option<[f64; 2]> {
         let (low, high) = (above[0].max(below[0]), above[1].min(below[1]));
         if low > high + self.search.slack {
             return None;
@@ -354,20 +359,20 @@ impl Pair<'_, '_> {
 
     /// Returns the abscissae of both ends of a part, ascending; `None` if one end of a yawed wheel's part has
     /// no outline.
-    fn ends(&self, side: Side, part: &Part) -> Option<[f64; 2]> {
+    fn ends(&self, side: Side, part: &StretchPart) -> Option<[f64; 2]> {
         let [a, b] = part.range.map(|p| self.at(side, p).station.x);
         if a <= b { Some([a, b]) } else { (b < a).then_some([b, a]) }
     }
 
     /// Returns the point at a parameter, in the rail's axes.
-    fn at(&self, side: Side, parameter: f64) -> Place {
+    fn at(&self, side: Side, parameter: f64) -> ElementPoint {
         let own = self.shapes[index(side)].place(&self.search.bodies[index(side)].coefficients, parameter);
         if side == Side::Wheel { self.search.attitude.outline_place(&own) } else { own }
     }
 
     /// Returns the parameter at an abscissa of the rail's axes, or that of the nearer end, for a part whose
     /// abscissae are monotone.
-    fn parameter_at(&self, side: Side, part: &Part, x: f64) -> f64 {
+    fn parameter_at(&self, side: Side, part: &StretchPart, x: f64) -> f64 {
         let at = |p: f64| {
             let place = self.at(side, p);
             [place.station.x, place.run]
@@ -382,7 +387,7 @@ impl Pair<'_, '_> {
     }
 
     /// Returns the points of both elements at two parameters, each in its own axes and in the rail's.
-    fn places(&self, parameters: [f64; 2]) -> [(Place, Place); 2] {
+    fn places(&self, parameters: [f64; 2]) -> [(ElementPoint, ElementPoint); 2] {
         places(self.search, self.shapes, parameters)
     }
 
@@ -404,7 +409,7 @@ fn index(side: Side) -> usize {
     }
 }
 
-fn foot(element: &Element, own: &Place, parameter: f64) -> Foot {
+fn foot(element: &Element, own: &ElementPoint, parameter: f64) -> Foot {
     Foot { station: own.station, radius: element.radius(own), parameter }
 }
 
@@ -418,21 +423,21 @@ fn apart(a: [f64; 2], b: [f64; 2]) -> bool {
     a[0] > b[1] + SAME_TANGENT || b[0] > a[1] + SAME_TANGENT
 }
 
-fn one_or_open(wheel: &Part, rail: &Part, x: f64) -> Verdict {
+fn one_or_open(wheel: &StretchPart, rail: &StretchPart, x: f64) -> Verdict {
     if wheel.is_rounder(rail) { Verdict::OneNear(x) } else { Verdict::Open }
 }
 
 /// Returns a parameter of a part to start from for an abscissa, by the part's tangent line; for a point, the
 /// parameter with the other part's tangent.
-fn towards(part: &Part, x: f64, other: &Part) -> f64 {
-    let Place { station, run, turn, .. } = part.place;
+fn towards(part: &StretchPart, x: f64, other: &StretchPart) -> f64 {
+    let ElementPoint { station, run, turn, .. } = part.place;
     let step =
         if run == 0.0 { (other.place.station.sin - station.sin) / turn } else { (x - station.x) / run };
     let p = part.middle + step;
     if p.is_nan() { part.middle } else { p.clamp(part.range[0], part.range[1]) }
 }
 
-fn places(search: &Search, shapes: [&Element; 2], [p, q]: [f64; 2]) -> [(Place, Place); 2] {
+fn places(search: &Search, shapes: [&Element; 2], [p, q]: [f64; 2]) -> [(ElementPoint, ElementPoint); 2] {
     let [wheel, rail] = shapes;
     let [above, below] = search.bodies;
     let own = wheel.place(&above.coefficients, p);
@@ -479,7 +484,7 @@ fn newton(
             // Beyond its end an element is continued, but by no more than its own length.
             let width = limits[k][1] - limits[k][0];
             let next = (p[k] + step[k]).clamp(limits[k][0] - width, limits[k][1] + width);
-            p[k] = if matches!(shapes[k].shape, Shape::Arc(_)) { next.clamp(-1.0, 1.0) } else { next };
+            p[k] = if matches!(shapes[k].shape, ElementCurve::Arc(_)) { next.clamp(-1.0, 1.0) } else { next };
         }
     }
     None

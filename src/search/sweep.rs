@@ -4,8 +4,8 @@ mod conicity;
 
 pub use conicity::{ACCURACY, Conicity, Equivalent, NoConicity};
 
+use super::touch::{Contact, Selection};
 use super::wheelset::{Position, Roll, WheelsetOnTrack, WheelsetSearch};
-use super::{Contact, Selection};
 use crate::error::Result;
 
 /// A side of the track.
@@ -19,7 +19,7 @@ pub enum TrackSide {
 
 /// One row of a sweep: a contact of one side at one position.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Row {
+pub struct SweepRow {
     /// Lateral displacement of the axle's middle \[mm\], + to the right.
     pub lateral: f64,
     /// Yaw \[rad\], + moves the right-hand wheel forward.
@@ -42,6 +42,23 @@ pub struct Row {
 }
 
 /// Sweeps over positions; keeps its buffers.
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Pair, Profile, RailDistance, Segment, WheelDistance, standards};
+/// use wheelrail::{Conicity, ONE_CONTACT, Position, Roll, Selection, Sweep, WheelsetOnTrack};
+/// # let cone = Profile::new("cone", "", vec![Segment::arc(Arc::line([-60.0, -3.0], [60.0, 3.0])?)])?;
+/// # let pair = Pair::new(standards::rail("60E1")?, cone, 460.0)?;
+/// let system = WheelsetOnTrack::new(&pair, RailDistance::Spacing(1500.0), WheelDistance::Spacing(1500.0))?; // cones 1:20
+/// let conicity = Conicity::new(&system, 3.0, Roll::Neglect)?;
+/// let mut sweep = Sweep::new(&system, Selection { within: 0.0, apart: ONE_CONTACT }, Some(&conicity));
+/// let mut rows = Vec::new();
+/// sweep.position(&Position { lateral: 3.0, yaw: 0.0, roll: Roll::Neglect }, &mut rows)?;
+/// assert_eq!(rows.len(), 2); // left, right
+/// assert!((rows[1].delta_r - 0.3).abs() < 1e-9);
+/// assert!(rows[1].conicity.is_ok_and(|found| (found.conicity - 0.05).abs() < 1e-4));
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Sweep<'a> {
     search: WheelsetSearch<'a>,
@@ -60,7 +77,7 @@ impl<'a> Sweep<'a> {
     ///
     /// # Errors
     /// Values that are not finite; angles beyond ±0.5 rad.
-    pub fn position(&mut self, position: &Position, rows: &mut Vec<Row>) -> Result<()> {
+    pub fn position(&mut self, position: &Position, rows: &mut Vec<SweepRow>) -> Result<()> {
         let Some(touch) = self.search.touch(position, &self.selection)? else { return Ok(()) };
         let [left, right] = touch.sides.map(|side| side.touch.contacts[0].rolling_radius);
         let conicity = match (position.roll, self.conicity) {
@@ -69,7 +86,7 @@ impl<'a> Sweep<'a> {
             (Roll::Solve | Roll::Neglect, Some(conicity)) => conicity.at(position.lateral),
         };
         for (side, found) in [TrackSide::Left, TrackSide::Right].into_iter().zip(touch.sides) {
-            rows.extend(found.touch.contacts.iter().enumerate().map(|(number, contact)| Row {
+            rows.extend(found.touch.contacts.iter().enumerate().map(|(number, contact)| SweepRow {
                 lateral: position.lateral,
                 yaw: position.yaw,
                 roll: touch.roll,
@@ -88,8 +105,7 @@ impl<'a> Sweep<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::placement::Pair;
-    use crate::placement::track::{RailDistance, WheelDistance};
+    use crate::placement::{Pair, RailDistance, WheelDistance};
     use crate::profile::standards;
 
     #[test]

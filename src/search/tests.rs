@@ -1,10 +1,10 @@
-use super::wheelset::{Position, Roll, WheelsetOnTrack};
+use super::locus::Attitude;
 use super::*;
-use crate::load::feasibility::feasibility;
-use crate::placement::Pair;
-use crate::placement::track::{RailDistance, Track, WheelDistance, Wheelset};
-use crate::profile::{Arc, Half, Polynomial, Section, Segment, Shape, inclination, standards};
-use nalgebra::{Point2, UnitComplex};
+use crate::error::{Error, Result};
+use crate::load::feasibility;
+use crate::placement::{Pair, RailDistance, WheelDistance};
+use crate::profile::{Arc, Half, Polynomial, Profile, Section, Segment, Shape, Side, inclination, standards};
+use nalgebra::{Point2, UnitComplex, Vector3};
 
 mod brute;
 mod reference;
@@ -23,11 +23,8 @@ fn manchester() -> Result<WheelsetOnTrack> {
 /// Makes the pair of EN 15302: wheel A over rail A, inclined by 0.05 rad.
 fn en_15302_a() -> Result<WheelsetOnTrack> {
     let rail = standards::rail("UIC60")?.rotated(UnitComplex::new(0.05)).shifted(2.60264, 0.14155);
-    Ok(WheelsetOnTrack {
-        pair: ProfilePair::new(&Pair::new(rail.clone(), standards::wheel("EN15302-A")?, 460.0)?)?,
-        track: Track::new(&rail, RailDistance::Spacing(1500.0))?,
-        wheelset: Wheelset::new(WheelDistance::Spacing(1500.0), 460.0)?,
-    })
+    let pair = Pair::new(rail, standards::wheel("EN15302-A")?, 460.0)?;
+    WheelsetOnTrack::new(&pair, RailDistance::Spacing(1500.0), WheelDistance::Spacing(1500.0))
 }
 
 #[test]
@@ -129,7 +126,7 @@ fn contact_jumps_pass_through_two_points_of_contact() -> Result<()> {
 #[test]
 fn attitudes_stand_where_the_rotation_puts_the_wheelset() -> Result<()> {
     let system = manchester()?;
-    let (out, radius) = (system.wheelset.wheel_x, system.wheelset.radius);
+    let (out, radius) = (system.right().wheelset.wheel_x, system.right().wheelset.radius);
     for (lateral, yaw, roll) in [(5.0, 0.012, -0.0004), (10.0, -0.3, -0.0113), (-6.0, 0.05, 0.2)] {
         let position = Position { lateral, yaw, roll: Roll::Fixed(roll) };
         let axle = position.rotation(roll) * Vector3::x();
@@ -137,13 +134,13 @@ fn attitudes_stand_where_the_rotation_puts_the_wheelset() -> Result<()> {
         assert!((axle - closed).norm() < 1e-15, "{axle} {closed}");
         assert_eq!(position.rotation(roll), Pose::new(lateral, yaw, roll)?.rotation());
         for sign in [-1.0, 1.0] {
-            let (attitude, level) = system.attitude(&position, roll, sign);
+            let (attitude, level) = system.attitude(&position, roll, usize::from(sign > 0.0));
             // The side's own axes, mirrored on the left: middle of the axle to the wheel profile's origin.
             let origin = wheel_rotation(sign * yaw, sign * roll) * Vector3::new(out, 0.0, -radius);
-            let x = sign * lateral + origin.x - system.track.rail_x;
+            let x = sign * lateral + origin.x - system.right().track.rail_x;
             assert!((attitude.offset - x).abs() < 1e-12, "{} {x}", attitude.offset);
             // With both origins level the axle's middle is `level` above R over the top of rail.
-            let z = radius + level + origin.z - system.track.rail_z;
+            let z = radius + level + origin.z - system.right().track.rail_z;
             assert!(z.abs() < 1e-12, "{z}");
         }
     }

@@ -10,9 +10,9 @@
 //! its own size. At most some multiple of n_W + n_R pairs are looked at, and with a good first gap some
 //! dozens.
 
-use super::body::Node;
+use super::body::TreeNode;
 use super::candidates::{Candidate, Meeting, Search};
-use super::placed::{Placed, placed_bounds};
+use super::placed::{PlacedBounds, placed_bounds};
 use super::stretches::SAME_TANGENT;
 use super::{arcs, stretches};
 
@@ -26,8 +26,8 @@ struct Pending {
 
 /// A node of the wheel as placed in the search of number `search`.
 #[derive(Debug, Clone, Copy)]
-struct Standing {
-    placed: Placed,
+struct StandingNode {
+    placed: PlacedBounds,
     search: u64,
 }
 
@@ -35,8 +35,8 @@ struct Standing {
 /// nothing.
 #[derive(Debug, Clone)]
 pub(super) struct Walk {
-    wheel: Vec<Standing>,
-    rail: Vec<Placed>,
+    wheel: Vec<StandingNode>,
+    rail: Vec<PlacedBounds>,
     links: [Vec<Link>; 2],
     /// Number of this search.
     search: u64,
@@ -62,7 +62,7 @@ struct Link {
 }
 
 impl Link {
-    fn of(node: &Node) -> Self {
+    fn of(node: &TreeNode) -> Self {
         Self { right: node.right, element: node.element, size: node.size }
     }
 
@@ -73,10 +73,10 @@ impl Link {
 
 impl Walk {
     /// Makes the walk over two trees.
-    pub fn new(wheel: &[Node], rail: &[Node]) -> Self {
+    pub fn new(wheel: &[TreeNode], rail: &[TreeNode]) -> Self {
         Self {
-            wheel: vec![Standing { placed: Placed::HIDDEN, search: 0 }; wheel.len()],
-            rail: rail.iter().map(|node| Placed::rail(&node.bounds)).collect(),
+            wheel: vec![StandingNode { placed: PlacedBounds::HIDDEN, search: 0 }; wheel.len()],
+            rail: rail.iter().map(|node| PlacedBounds::rail(&node.bounds)).collect(),
             links: [wheel, rail].map(|nodes| nodes.iter().map(Link::of).collect()),
             search: 0,
             waiting: [Pending { wheel: 0, rail: 0, bound: f64::NEG_INFINITY }; DEEPEST_WAIT],
@@ -137,14 +137,14 @@ impl Walk {
         if standing.search != self.search {
             let bounds = &search.bodies[0].nodes[wheel as usize].bounds;
             let placed = placed_bounds(search.attitude, bounds).widened(search.slack, SAME_TANGENT);
-            *standing = Standing { placed, search: self.search };
+            *standing = StandingNode { placed, search: self.search };
         }
         Pending { wheel, rail, bound: standing.placed.gap_over(&self.rail[rail as usize]) }
     }
 }
 
 /// Looks for contact of two elements; `placed` holds the bounds of the wheel's element, if they are known.
-fn meet(search: &mut Search, elements: [u32; 2], placed: Option<&Placed>) {
+fn meet(search: &mut Search, elements: [u32; 2], placed: Option<&PlacedBounds>) {
     if arcs::meet(search, elements) {
         search.solves += 1;
     } else {

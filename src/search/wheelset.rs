@@ -4,14 +4,15 @@
 //! c + A p, with A of [`wheel_rotation`]. So the right-hand profile origin, S out along the axle and R below it, is at
 //! c + (S cosψ cosφ − R sinφ, S sinψ, −S cosψ sinφ − R cosφ).
 
+use std::sync::Arc;
+
 use super::candidates::{Candidate, Meeting};
 use super::locus::Attitude;
 use nalgebra::Rotation3;
 
-use super::{ContactSearch, ProfilePair, Selection, Touch, Work, small_angle, wheel_rotation};
+use super::touch::{ContactSearch, ProfilePair, Selection, Touch, Work, small_angle, wheel_rotation};
 use crate::error::{Result, finite};
-use crate::placement::Pair;
-use crate::placement::track::{RailDistance, Track, WheelDistance, Wheelset};
+use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
 
 /// How the roll of a wheelset is found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,15 +36,60 @@ pub struct Position {
     pub roll: Roll,
 }
 
-/// A profile pair on both sides of a track, the left side mirrored.
+/// A wheelset on its track: a profile pair on both sides, each in its own axes.
+///
+/// The axes of both sides are those of a right-hand side, so that the left side is the mirror image of what is described.
+///
+/// # Examples
+/// ```
+/// use wheelrail::{ONE_CONTACT, Pair, Position, RailDistance, Roll, Selection, WheelDistance, WheelsetOnTrack, standards};
+///
+/// let pair = Pair::new(standards::rail("60E1")?, standards::wheel("S1002")?, 460.0)?;
+/// let system = WheelsetOnTrack::new(&pair, RailDistance::Spacing(1500.0), WheelDistance::Spacing(1500.0))?;
+/// let mut search = system.search();
+/// let centred = Position { lateral: 0.0, yaw: 0.0, roll: Roll::Solve };
+/// let touch = search.touch(&centred, &Selection { within: 0.0, apart: ONE_CONTACT })?.expect("both wheels touch");
+/// let [left, right] = touch.sides.map(|side| side.touch.contacts[0].rolling_radius);
+/// assert!((left - right).abs() < 1e-9);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct WheelsetOnTrack {
-    /// The prepared profiles, in the right side's axes.
-    pub pair: ProfilePair,
-    /// The positions of the rails.
-    pub track: Track,
-    /// The positions of the wheels.
-    pub wheelset: Wheelset,
+    /// Left and right side.
+    pub(super) sides: [SideOnTrack; 2],
+    /// Whether the left side is the mirror image of the right one.
+    symmetric: bool,
+}
+
+/// One side of a wheelset on its track, in the side's own axes: those of a right-hand side.
+#[derive(Debug, Clone)]
+pub struct SideOnTrack {
+    /// The prepared profiles.
+    pub(super) pair: Arc<ProfilePair>,
+    /// The position of the rail.
+    pub(super) track: Track,
+    /// The position of the wheel.
+    pub(super) wheelset: Wheelset,
+}
+
+impl SideOnTrack {
+    /// Prepares the profiles of one side; `track` and `wheelset` say where they are.
+    ///
+    /// # Errors
+    /// The errors of [`ProfilePair::new`].
+    pub fn new(pair: &Pair, track: Track, wheelset: Wheelset) -> Result<Self> {
+        Ok(Self { pair: Arc::new(ProfilePair::new(pair)?), track, wheelset })
+    }
+
+    /// Returns the position of the rail.
+    pub fn track(&self) -> &Track {
+        &self.track
+    }
+
+    /// Returns the position of the wheel on its axle.
+    pub fn wheelset(&self) -> &Wheelset {
+        &self.wheelset
+    }
 }
 
 impl Position {
@@ -55,16 +101,39 @@ impl Position {
 }
 
 impl WheelsetOnTrack {
-    /// Prepares a pair of profiles on both sides of a track.
+    /// Prepares a pair of profiles on both sides of a track, the left side being the mirror image.
     ///
     /// # Errors
     /// The errors of [`ProfilePair::new`], [`Track::new`] and [`Wheelset::new`].
     pub fn new(pair: &Pair, rails: RailDistance, wheels: WheelDistance) -> Result<Self> {
-        Ok(Self {
-            pair: ProfilePair::new(pair)?,
-            track: Track::new(pair.rail(), rails)?,
-            wheelset: Wheelset::new(wheels, pair.wheel_radius())?,
-        })
+        let track = Track::new(pair.rail(), rails)?;
+        let right = SideOnTrack::new(pair, track, Wheelset::new(wheels, pair.wheel_radius())?)?;
+        Ok(Self { sides: [right.clone(), right], symmetric: true })
+    }
+
+    /// Joins two different sides, each in its own axes.
+    pub fn of_sides(left: SideOnTrack, right: SideOnTrack) -> Self {
+        Self { sides: [left, right], symmetric: false }
+    }
+
+    /// Returns whether the left side is the mirror image of the right one, so that Δr is odd.
+    pub fn symmetric(&self) -> bool {
+        self.symmetric
+    }
+
+    /// Returns the right-hand side, which a symmetric wheelset has on both.
+    pub fn right(&self) -> &SideOnTrack {
+        &self.sides[1]
+    }
+
+    /// Returns the left-hand side.
+    pub fn left(&self) -> &SideOnTrack {
+        &self.sides[0]
+    }
+
+    /// Returns the nominal rolling radius \[mm\] from which heights of the axle's middle count: the right-hand wheel's.
+    pub(super) fn reference_radius(&self) -> f64 {
+        self.sides[1].wheelset.radius
     }
 }
 
@@ -107,7 +176,7 @@ const FAR: [f64; 3] = [0.025, 0.05, LARGEST_ROLL];
 /// Most times that both sides are lowered for one roll. Newton's method takes two to six; a contact beyond
 /// 73° makes it leave the root, and from the far side of the flange it takes as many again. Halving alone
 /// would take half of these, except where a wheel leaves its rail: there is no roll then.
-pub const MOST_LEVELS: u32 = 64;
+const MOST_LEVELS: u32 = 64;
 
 /// Number of Newton's levels without a change of sign before one is looked for.
 const NEWTON_LEVELS: u32 = 5;
@@ -117,7 +186,7 @@ const FOLLOWED: u32 = 6;
 
 /// Both sides lowered at one roll; arrays are \[left, right\].
 #[derive(Debug, Clone, Copy)]
-struct Level {
+struct Lowered {
     roll: f64,
     attitudes: [Attitude; 2],
     /// Heights of the wheel's profile origin over the rail's \[mm\].
@@ -133,21 +202,22 @@ struct Level {
 impl WheelsetOnTrack {
     /// Makes a search over this system.
     pub fn search(&self) -> WheelsetSearch<'_> {
-        WheelsetSearch { system: self, sides: [self.pair.search(), self.pair.search()] }
+        WheelsetSearch { system: self, sides: self.sides.each_ref().map(|side| side.pair.search()) }
     }
 
-    /// Returns the attitude of one side (sign −1 left, +1 right), and the height of the axle's middle above R
-    /// over the top of rail when the wheel's profile origin is level with the rail's \[mm\].
-    pub(super) fn attitude(&self, position: &Position, roll: f64, sign: f64) -> (Attitude, f64) {
-        let (radius, half) = (self.wheelset.radius, self.wheelset.wheel_x);
+    /// Returns the attitude of one side (0 left, 1 right), and the height of the axle's middle above R over the
+    /// top of rail when the wheel's profile origin is level with the rail's \[mm\].
+    pub(super) fn attitude(&self, position: &Position, roll: f64, side: usize) -> (Attitude, f64) {
+        let SideOnTrack { track, wheelset, .. } = &self.sides[side];
+        let (sign, radius, half) = (SIGNS[side], wheelset.radius, wheelset.wheel_x);
         let mut attitude = Attitude::new(0.0, sign * position.yaw, sign * roll, radius);
         let along = half * attitude.cos_yaw;
-        attitude.offset = sign * position.lateral - self.track.rail_x + along * attitude.cos_roll
-            - radius * attitude.sin_roll;
+        attitude.offset =
+            sign * position.lateral - track.rail_x + along * attitude.cos_roll - radius * attitude.sin_roll;
         // c_z − R with R(1 − cos) free of cancellation.
         let half_sine = (sign * roll / 2.0).sin();
-        let level = self.track.rail_z + along * attitude.sin_roll - 2.0 * radius * half_sine * half_sine;
-        (attitude, level)
+        let level = track.rail_z + along * attitude.sin_roll - 2.0 * radius * half_sine * half_sine;
+        (attitude, level + (radius - self.reference_radius()))
     }
 }
 
@@ -161,7 +231,7 @@ impl WheelsetSearch<'_> {
     /// reaches from zero roll, else the one between zero and a flange on top of its rail.
     /// Accuracy: heights and roll to rounding at the size of the wheelset, about 1e-13 mm and 1e-16 rad.
     /// Cost: the two sides are lowered two to four times on treads, about ten times at most where a flange is
-    /// steeper than 73°; never more than [`MOST_LEVELS`] times.
+    /// steeper than 73°; never more than 64 times.
     ///
     /// # Errors
     /// Values that are not finite; angles beyond ±0.5 rad.
@@ -178,7 +248,7 @@ impl WheelsetSearch<'_> {
                 level => level,
             },
         };
-        let Some(Level { roll, z, heights, attitudes, .. }) = level else { return Ok(None) };
+        let Some(Lowered { roll, z, heights, attitudes, .. }) = level else { return Ok(None) };
         let [left, right] = &mut self.sides;
         let sides = [
             SideTouch { z: z[0], touch: left.collect(&attitudes[0], heights[0], selection) },
@@ -192,7 +262,7 @@ impl WheelsetSearch<'_> {
     /// Method: Newton's, with the places of contact kept until their heights agree. Then both sides are
     /// lowered, which confirms the places or shows the next ones. Once the sign has changed, the root is
     /// bracketed.
-    fn solve_roll(&mut self, position: &Position) -> Option<Level> {
+    fn solve_roll(&mut self, position: &Position) -> Option<Lowered> {
         let mut ends = [None, None];
         let mut level = self.level(position, 0.0, 0.0)?;
         let mut far = None;
@@ -222,7 +292,13 @@ impl WheelsetSearch<'_> {
 
     /// Returns the next roll to try before any change of sign: Newton's, or a far one once Newton's has
     /// failed.
-    fn outward(&self, position: &Position, level: &Level, far: &mut Option<Far>, count: u32) -> Option<f64> {
+    fn outward(
+        &self,
+        position: &Position,
+        level: &Lowered,
+        far: &mut Option<Far>,
+        count: u32,
+    ) -> Option<f64> {
         if far.is_none() {
             let next = self.follow(position, level);
             if count < NEWTON_LEVELS && next.abs() <= LARGEST_ROLL && next != level.roll {
@@ -235,7 +311,7 @@ impl WheelsetSearch<'_> {
     /// Returns the next roll to try between two rolls with different signs of the height difference: the root
     /// with the places of contact kept from the end that is nearer to touching, or else from the other end,
     /// or else the middle. Every fourth roll is the middle.
-    fn between(&self, position: &Position, ends: [Level; 2], last: &Level, count: u32) -> Option<f64> {
+    fn between(&self, position: &Position, ends: [Lowered; 2], last: &Lowered, count: u32) -> Option<f64> {
         let [a, b] = ends.map(|end| end.roll);
         let middle = a + (b - a) / 2.0;
         if middle == a || middle == b {
@@ -255,7 +331,7 @@ impl WheelsetSearch<'_> {
 
     /// Returns the roll at which both wheels touch with the places of contact of a level, or the roll at
     /// which these leave their elements on the way; NaN if there is none.
-    fn follow(&self, position: &Position, level: &Level) -> f64 {
+    fn follow(&self, position: &Position, level: &Lowered) -> f64 {
         let (mut roll, mut difference, mut slope) = (level.roll, level.difference(), level.slope);
         for _ in 0..FOLLOWED {
             let next = roll - difference / slope;
@@ -263,7 +339,7 @@ impl WheelsetSearch<'_> {
                 return next;
             }
             roll = next;
-            let attitudes = SIGNS.map(|sign| self.system.attitude(position, roll, sign));
+            let attitudes = [0, 1].map(|side| self.system.attitude(position, roll, side));
             let (mut z, mut sum) = ([0.0; 2], 0.0);
             for (k, (attitude, datum)) in attitudes.iter().enumerate() {
                 let Some(candidate) = self.sides[k].follow(attitude, &level.meetings[k]) else { return roll };
@@ -280,13 +356,14 @@ impl WheelsetSearch<'_> {
 
     /// Returns the rounding of a difference of heights \[mm\].
     fn rounding(&self) -> f64 {
-        2.0 * f64::EPSILON * (self.system.wheelset.wheel_x + self.system.wheelset.radius)
+        let size = |side: &SideOnTrack| side.wheelset.wheel_x + side.wheelset.radius;
+        2.0 * f64::EPSILON * self.system.sides.iter().map(size).fold(0.0, f64::max)
     }
 
     /// Lowers both sides at a given roll, and leaves the candidates up to `within` above first touch in their
     /// buffers.
-    fn level(&mut self, position: &Position, roll: f64, within: f64) -> Option<Level> {
-        let placed = SIGNS.map(|sign| self.system.attitude(position, roll, sign));
+    fn level(&mut self, position: &Position, roll: f64, within: f64) -> Option<Lowered> {
+        let placed = [0, 1].map(|side| self.system.attitude(position, roll, side));
         let attitudes = placed.map(|(attitude, _)| attitude);
         let (mut heights, mut z, mut slope) = ([0.0; 2], [0.0; 2], 0.0);
         let mut lowest = [None; 2];
@@ -298,7 +375,7 @@ impl WheelsetSearch<'_> {
             lowest[k] = Some(candidate.meeting);
         }
         let [left, right] = lowest;
-        Some(Level { roll, attitudes, heights, z, slope, meetings: [left?, right?] })
+        Some(Lowered { roll, attitudes, heights, z, slope, meetings: [left?, right?] })
     }
 
     /// Returns the part of one side in the derivative of the difference of heights with respect to the roll
@@ -309,8 +386,9 @@ impl WheelsetSearch<'_> {
     /// parts add.
     fn lever(&self, position: &Position, side: usize, z: f64, candidate: &Candidate) -> f64 {
         let rail = &candidate.rail;
-        let x = rail.x + self.system.track.rail_x - SIGNS[side] * position.lateral;
-        let down = rail.z + self.system.track.rail_z - z - self.system.wheelset.radius;
+        let track = &self.system.sides[side].track;
+        let x = rail.x + track.rail_x - SIGNS[side] * position.lateral;
+        let down = rail.z + track.rail_z - z - self.system.reference_radius();
         x + down * rail.sin / rail.cos
     }
 
@@ -320,7 +398,7 @@ impl WheelsetSearch<'_> {
     }
 }
 
-impl Level {
+impl Lowered {
     /// Returns the height of the right side less that of the left \[mm\].
     fn difference(&self) -> f64 {
         self.z[1] - self.z[0]

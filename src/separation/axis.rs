@@ -1,22 +1,22 @@
-//! The η values of a grid, prepared once for all columns.
+//! The η values of a grid, prepared once for all its columns.
 
 use std::ops::Range;
 
 use super::values::{LINE, Values};
 
-/// η and u = η² of every column, and whether half of it is the mirror image of the other.
+/// η and u = η² of every column, and whether one half of the values is the mirror image of the other.
 #[derive(Debug, Clone)]
 pub struct EtaAxis {
     /// η \[mm\], ascending.
-    pub eta: Vec<f64>,
+    pub(crate) eta: Vec<f64>,
     /// η² \[mm²\].
-    pub u: Values,
+    pub(crate) u: Values,
     /// Index of the first η ≥ 0.
-    pub first_positive: usize,
-    /// η_i = −η_{n−1−i} for all i.
-    pub symmetric: bool,
+    pub(crate) first_positive: usize,
+    /// Whether η_i = −η_{n−1−i} for all i.
+    pub(crate) symmetric: bool,
     /// Largest |η| \[mm\].
-    pub reach: f64,
+    pub(crate) reach: f64,
 }
 
 impl EtaAxis {
@@ -36,9 +36,14 @@ impl EtaAxis {
         }
     }
 
-    /// Gives the index ranges whose u lies in (u0, u1], or in \[u0, u1\] for u0 = 0: first for η ≥ 0, then for η < 0. The second is
-    /// empty where it is the mirror image of the first.
-    pub fn ranges(&self, u: [f64; 2]) -> [Range<usize>; 2] {
+    /// Returns η \[mm\], ascending.
+    pub fn eta(&self) -> &[f64] {
+        &self.eta
+    }
+
+    /// Returns two ranges of indices whose u lies in (u0, u1], or in \[u0, u1\] for u0 = 0: the first for η ≥ 0, the second
+    /// for η < 0. On a symmetric axis the second range is empty, because the values are mirrored.
+    pub(crate) fn ranges(&self, u: [f64; 2]) -> [Range<usize>; 2] {
         let right = &self.u[self.first_positive..];
         let ends = u.map(|end| right.partition_point(|&u| u <= end));
         let begin = if u[0] == 0.0 { 0 } else { ends[0] };
@@ -46,15 +51,17 @@ impl EtaAxis {
         [positive, if self.symmetric { 0..0 } else { self.negative(u) }]
     }
 
-    /// Tells whether the last η ≥ 0 before the index `end` has at most this u \[mm²\], or there is no such η.
+    /// Returns whether the last η ≥ 0 before the index `end` has at most this u \[mm²\]. The answer is yes if there is no
+    /// such η.
     #[inline(always)]
-    pub fn is_end(&self, u: f64, end: usize) -> bool {
+    pub(crate) fn is_end(&self, u: f64, end: usize) -> bool {
         end == self.first_positive || self.u[end - 1] <= u
     }
 
-    /// Finds the index after the last η ≥ 0 up to u \[mm²\], from the index `near` for another u nearby.
+    /// Finds the index after the last η ≥ 0 with at most this u \[mm²\]. The search begins at the index `near`, the result
+    /// for a similar u.
     #[inline(always)]
-    pub fn end(&self, u: f64, near: usize) -> usize {
+    pub(crate) fn end(&self, u: f64, near: usize) -> usize {
         let mut end = near;
         while end < self.u.len() && self.u[end] <= u {
             end += 1;
@@ -65,16 +72,17 @@ impl EtaAxis {
         end
     }
 
-    /// Finds the index of the first η < 0 up to u \[mm²\], where `end` is the index after the last η ≥ 0 up to u.
+    /// Finds the index of the first η < 0 with at most this u \[mm²\]. `end` is the index after the last η ≥ 0 with at most
+    /// this u.
     #[inline(always)]
-    pub fn begin(&self, u: f64, end: usize) -> usize {
+    pub(crate) fn begin(&self, u: f64, end: usize) -> usize {
         if self.symmetric {
             return self.u.len() - end;
         }
         self.u[..self.first_positive].partition_point(|&value| value > u)
     }
 
-    /// Gives the second range of [`Self::ranges`].
+    /// Returns the second range of [`Self::ranges`].
     fn negative(&self, [u0, u1]: [f64; 2]) -> Range<usize> {
         let left = &self.u[..self.first_positive];
         let end = if u0 == 0.0 { left.len() } else { left.partition_point(|&u| u > u0) };
@@ -82,7 +90,7 @@ impl EtaAxis {
     }
 }
 
-/// Writes the mirror image of a column's end to its first `count` values, which are at most half of it.
+/// Writes the mirror image of a column's end to its first `count` values; `count` is at most half of the column.
 #[inline(always)]
 pub(super) fn mirror(column: &mut [f64], count: usize) {
     let (left, right) = column.split_at_mut(count);
@@ -90,7 +98,7 @@ pub(super) fn mirror(column: &mut [f64], count: usize) {
     let (lines, inner_left) = left.as_chunks_mut::<LINE>();
     let (inner_right, mirrored) = right.as_rchunks::<LINE>();
     for (left, right) in lines.iter_mut().zip(mirrored.iter().rev()) {
-        // All at once, which becomes one vector.
+        // Eight values are reversed at once, which becomes one vector operation.
         let [a, b, c, d, e, f, g, h] = *right;
         *left = [h, g, f, e, d, c, b, a];
     }

@@ -6,8 +6,8 @@ use crate::profile::{ArcBranch, Branch, BranchShape, Section};
 
 /// Computes g(ξ) \[mm\]; NaN where a body has no surface.
 ///
-/// Accuracy: a few roundings of g where ξ lies over both contact segments, even for arcs that conform to ten digits; a few
-/// roundings of the profile's extent elsewhere.
+/// Accuracy: where ξ lies over both contact segments, a few roundings of g, even for arcs whose radii agree to ten digits;
+/// elsewhere a few roundings of the profile's extent.
 pub fn midplane_gap(placement: &Placement, xi: f64) -> f64 {
     let (rail, wheel) = (&placement.rail().section, &placement.wheel().section);
     match (rail.piece_at(xi), wheel.piece_at(xi)) {
@@ -21,7 +21,8 @@ pub fn midplane_gap(placement: &Placement, xi: f64) -> f64 {
     }
 }
 
-/// A difference below this share of its terms has lost more than three bits, and is taken with 32 digits.
+/// Least size of a difference, as a share of its terms, at which working precision is enough. A smaller one has lost more
+/// than three bits and is computed with 32 digits.
 const UNCANCELLED: f64 = 0.125;
 
 /// Computes the gap \[mm\] between two branches through C that share their tangent there; `zeta_w` is ζ^W(ξ).
@@ -29,8 +30,8 @@ pub(super) fn contact_gap(rail: &Branch, wheel: &Branch, xi: f64, zeta_w: f64) -
     contact_gaps(rail, wheel, &[xi], &[zeta_w]).map_or(f64::NAN, |[gap]| gap)
 }
 
-/// Computes the gaps \[mm\] between two branches through C at N abscissae, from the wheel's ζ there. Where one gap needs 32 digits, all
-/// are taken with them. `None` for several abscissae where a point is not found.
+/// Computes the gaps \[mm\] between two branches through C at N abscissae; `zeta_w` is ζ^W there. If one gap needs 32
+/// digits, all are computed with them. Returns `None` if N > 1 and a point is not found.
 #[inline(always)]
 pub(super) fn contact_gaps<const N: usize>(
     rail: &Branch,
@@ -51,8 +52,9 @@ pub(super) fn contact_gaps<const N: usize>(
     Some(lanes(|k| (zeta_w[k] - zeta_r[k]).high))
 }
 
-/// Computes the gaps \[mm\] between two arcs through C: g = ξ² (κ_W − κ_R) [1 + (κ_W + κ_R)/(κ_W C_R + κ_R C_W)] / ((1 + C_W)(1 + C_R))
-/// for curvatures of one sign. For opposite ones it is the plain difference, which does not cancel then.
+/// Computes the gaps \[mm\] between two arcs through C. For curvatures of one sign, g = ξ² (κ_W − κ_R) [1 + (κ_W +
+/// κ_R)/(κ_W C_R + κ_R C_W)] / ((1 + C_W)(1 + C_R)). For opposite signs it is the plain difference, which then does not
+/// cancel.
 #[inline(always)]
 fn arc_gaps<const N: usize>(rail: &ArcBranch, wheel: &ArcBranch, xi: &Lanes<N>) -> Lanes<N> {
     let (k_r, k_w) = (rail.curvature, wheel.curvature);
@@ -74,7 +76,7 @@ fn arc_gaps<const N: usize>(rail: &ArcBranch, wheel: &ArcBranch, xi: &Lanes<N>) 
     gap
 }
 
-/// Computes κ_W − κ_R \[1/mm\] from the radii, whose difference is exact where they are close.
+/// Computes κ_W − κ_R \[1/mm\] from the radii. The difference of nearly equal radii is exact.
 fn curvature_difference(wheel_radius: f64, rail_radius: f64) -> f64 {
     if wheel_radius.is_finite() && rail_radius.is_finite() {
         (rail_radius - wheel_radius) / (rail_radius * wheel_radius)
@@ -83,8 +85,8 @@ fn curvature_difference(wheel_radius: f64, rail_radius: f64) -> f64 {
     }
 }
 
-/// Computes ζ^W(ξ + `shift`) − ζ^R(ξ) \[mm\] for a skewed wheel over both contact segments. It is the sum of the gap at ξ and of the
-/// wheel's rise from there, and neither cancels.
+/// Computes ζ^W(ξ + `shift`) − ζ^R(ξ) \[mm\] for a skewed wheel over both contact segments. It is the gap at ξ plus the
+/// wheel's rise from there; neither cancels.
 pub(super) fn skewed_gap(rail: &Branch, wheel: &Branch, xi: f64, shift: f64) -> f64 {
     let inside = |x: f64| x >= wheel.xi[0] && x <= wheel.xi[1];
     if !inside(xi) {
@@ -93,7 +95,7 @@ pub(super) fn skewed_gap(rail: &Branch, wheel: &Branch, xi: f64, shift: f64) -> 
     contact_gap(rail, wheel, xi, wheel.height(xi)) + shift * wheel.chord_slope(xi, xi + shift)
 }
 
-/// Gives κ_W − κ_R \[1/mm\] of two contact arcs; `None` where a polynomial is among them.
+/// Returns κ_W − κ_R \[1/mm\] of two contact arcs; `None` if one of them is a polynomial.
 pub(super) fn relative_curvature(placement: &Placement) -> Option<f64> {
     let arc = |section: &Section| match &section.branches[section.contact?].shape {
         BranchShape::Arc(arc) => Some(arc.radius),

@@ -1,4 +1,4 @@
-//! The accuracy ladder, and how a method of it fills a grid.
+//! The accuracy ladder, and how each of its methods fills a grid.
 
 use rayon::prelude::*;
 use schemars::JsonSchema;
@@ -19,23 +19,24 @@ use super::values::Residence;
 use crate::numerics::lanes::MANY;
 use crate::placement::Placement;
 
-/// Columns of one block, which is the unit of work of a thread.
+/// Number of columns of one block, which is the unit of work of a thread.
 const BLOCK: usize = MANY;
 
-/// Most points that are not worth waking another thread, some 50 µs: by methods that fill columns, and point by point.
+/// Most points of a grid that is filled by one thread, because waking another takes some 50 µs: for methods that fill
+/// columns, and for methods that work point by point.
 const FEW_POINTS: [usize; 2] = [65536, 4096];
 
-/// The accuracy ladder, from the simplest formula to the historical baseline.
+/// The methods of the accuracy ladder, from the simplest formula to the historical baseline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
-    /// Second-order expansion at C (Hertz).
+    /// Second-order expansion of s at C (Hertz).
     Quadratic,
     /// g(ξ) + η²/2R.
     ConstantRadius,
     /// g(ξ) + q(ξ, 0) η².
     Parabolic,
-    /// Polynomial columns to the tolerance.
+    /// Polynomial columns that keep the tolerance.
     Spectral,
     /// Sagitta iteration at every point.
     Pointwise,
@@ -54,7 +55,7 @@ impl Method {
         Self::ReportNewton,
     ];
 
-    /// Gives the name in scenes and reports.
+    /// Returns the name of the method in scenes and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Quadratic => "quadratic",
@@ -67,23 +68,23 @@ impl Method {
     }
 }
 
-/// A method ready to run to a tolerance.
+/// A method with the accuracy to which it runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Choice {
-    /// Which method.
+    /// The method.
     pub method: Method,
-    /// What s is held to. Its `absolute` is also the tolerance on the steps of the Report's method.
+    /// The accuracy demanded of s. Its `absolute` is also the tolerance on the steps of the Report's method.
     pub demand: Demand,
     /// Number of coefficients that spectral columns start with.
     pub coefficients: usize,
 }
 
 impl Choice {
-    /// Writes s \[mm\] over the grid, at index i_ξ · n_η + i_η; NaN where a body has no surface. The result is the largest truncation
-    /// error \[mm\] that was measured on the way, 0 where none is.
+    /// Writes s \[mm\] over the grid, at index i_ξ · n_η + i_η; NaN where a body has no surface. Returns the largest
+    /// truncation error \[mm\] that was measured meanwhile; 0 if none is measured.
     ///
-    /// It runs on the threads of the current rayon pool; any number of threads gives the same bits. It is fastest where `out` is
-    /// [`super::values::Values`].
+    /// It runs on the threads of the current rayon pool. Any number of threads gives the same bits. It is fastest if `out`
+    /// is [`super::values::Values`].
     pub fn fill(&self, placement: &Placement, xi: &[f64], axis: &EtaAxis, out: &mut [f64]) -> f64 {
         if axis.eta.is_empty() {
             return 0.0;
@@ -106,7 +107,7 @@ impl Choice {
         fill_in_blocks(kernel, xi, out)
     }
 
-    /// Fills the grid as [`Self::fill`] does, by spectral columns with the strips of this pair and grid.
+    /// Fills the grid by spectral columns, with given strips of this pair and grid.
     pub(super) fn fill_by_strips(
         &self,
         placement: &Placement,
@@ -132,13 +133,13 @@ impl Choice {
     }
 }
 
-/// Fills all columns by one kernel; gives the largest truncation error \[mm\].
+/// Fills all columns by one kernel. Returns the largest truncation error \[mm\].
 fn fill_with(kernel: &mut dyn Kernel, xi: &[f64], out: &mut [f64]) -> f64 {
     kernel.columns(xi, out);
     kernel.truncation()
 }
 
-/// Fills all columns by the threads' kernels; gives the largest truncation error \[mm\].
+/// Fills all columns by one kernel for each thread. Returns the largest truncation error \[mm\].
 fn fill_in_blocks<'k>(kernel: impl Fn() -> Box<dyn Kernel + 'k> + Sync, xi: &[f64], out: &mut [f64]) -> f64 {
     let length = out.len() / xi.len().max(1);
     let blocks = out.par_chunks_mut(BLOCK * length).zip(xi.par_chunks(BLOCK));

@@ -1,11 +1,11 @@
-//! What every method of the accuracy ladder can do: fill columns of constant ξ.
+//! The interface of every method of the accuracy ladder: it fills columns of constant ξ.
 
-/// A way to evaluate s over columns of constant ξ, whose η are those of an axis.
+/// A method that evaluates s over columns of constant ξ; their η are those of an axis.
 pub trait Kernel {
-    /// Writes s(ξ, η_j) \[mm\] for all η_j of the axis, and NaN where a body has no surface.
+    /// Writes s(ξ, η_j) \[mm\] for all η_j of the axis; NaN where a body has no surface.
     fn column(&mut self, xi: f64, out: &mut [f64]);
 
-    /// Writes neighbouring columns, one after the other; `xi` ascends.
+    /// Writes neighbouring columns one after the other; `xi` \[mm\] ascends.
     fn columns(&mut self, xi: &[f64], out: &mut [f64]) {
         let length = out.len() / xi.len().max(1);
         for (&xi, out) in xi.iter().zip(out.chunks_exact_mut(length)) {
@@ -13,7 +13,7 @@ pub trait Kernel {
         }
     }
 
-    /// Gives the largest truncation error \[mm\] that was measured so far, 0 where none is measured.
+    /// Returns the largest truncation error \[mm\] that was measured so far; 0 if none is measured.
     fn truncation(&self) -> f64 {
         0.0
     }

@@ -9,32 +9,32 @@ use crate::profile::{Shape, Station};
 /// The parameters α, β and ξ_i of one segment in the contact frame, (4.6)–(4.8).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transformed {
-    /// The segment's name in the drawing; empty where it has none.
+    /// Name of the segment in the drawing, or empty.
     pub label: String,
     /// "line", "arc" or "polynomial".
     pub kind: &'static str,
-    /// α and β: the centre of an arc \[mm\], or slope and intercept of a line \[1, mm\]. A polynomial has none.
+    /// α and β: the centre of an arc \[mm\], or slope and intercept of a line \[1, mm\]; `None` for a polynomial.
     pub alpha_beta: Option<[f64; 2]>,
-    /// Signed radius \[mm\] of an arc, positive where the hollow side is up.
+    /// Signed radius of an arc \[mm\], positive where the hollow side is up; `None` for other segments.
     pub radius: Option<f64>,
-    /// ξ of its two ends \[mm\].
+    /// ξ of the two ends \[mm\].
     pub xi: [f64; 2],
 }
 
-/// What the midplane table tells about one ξ.
+/// One row of the midplane table: the heights and the gap at one ξ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MidplaneRow {
     /// ξ \[mm\].
     pub xi: f64,
-    /// ζ^R \[mm\], NaN off the rail.
+    /// ζ^R \[mm\]; NaN off the rail.
     pub rail: f64,
-    /// ζ^W \[mm\] at η = 0, NaN off the wheel.
+    /// ζ^W at η = 0 \[mm\]; NaN off the wheel.
     pub wheel: f64,
-    /// Δζ = ζ^W − ζ^R \[mm\].
+    /// Δζ = ζ^W − ζ^R \[mm\]; NaN off either body.
     pub gap: f64,
 }
 
-/// Computes the transformed parameters of every segment, as RAIL0 and WHEEL0 of the Report do.
+/// Computes the transformed parameters of every segment: RAIL0 and WHEEL0 of the Report.
 pub fn transformed_parameters(body: &Body) -> Vec<Transformed> {
     let frame = &body.section.frame;
     body.profile()
@@ -61,7 +61,22 @@ pub fn transformed_parameters(body: &Body) -> Vec<Transformed> {
 }
 
 /// Computes the midplane table at these ξ \[mm\].
-pub fn rows(placement: &Placement, xi: &[f64]) -> Vec<MidplaneRow> {
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
+/// use wheelrail::separation::{midplane_rows, transformed_parameters};
+/// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+/// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+/// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+/// # let pair = Pair::new(rail, wheel, 460.0)?;
+/// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
+/// let row = midplane_rows(&placement, &[2.0])[0];
+/// assert!((row.gap - (300.0 - f64::sqrt(300.0 * 300.0 - 2.0 * 2.0))).abs() < 1e-13);
+/// assert_eq!(transformed_parameters(placement.rail())[0].alpha_beta, Some([0.0, -300.0]));
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
+pub fn midplane_rows(placement: &Placement, xi: &[f64]) -> Vec<MidplaneRow> {
     let row = |&xi: &f64| MidplaneRow {
         xi,
         rail: placement.rail().section.height(xi),
@@ -71,8 +86,8 @@ pub fn rows(placement: &Placement, xi: &[f64]) -> Vec<MidplaneRow> {
     xi.iter().map(row).collect()
 }
 
-/// Writes what MIDSEP printed as a table that a person can read.
-pub fn table(placement: &Placement, xi: &[f64]) -> String {
+/// Returns the table of MIDSEP as readable text: transformed parameters of both bodies, then the midplane.
+pub fn midplane_table(placement: &Placement, xi: &[f64]) -> String {
     let mut out = String::from("# MIDSEP: midplane separation, Report FRA/ORD-78/41, Sec. 5\n");
     out += "# Lengths in mm, angles in rad; contact frame: origin C, xi along the tangent, zeta from rail to wheel.\n";
     for (name, body) in [("rail", placement.rail()), ("wheel", placement.wheel())] {
@@ -80,7 +95,7 @@ pub fn table(placement: &Placement, xi: &[f64]) -> String {
     }
     out += "\n# midplane, eta = 0\n";
     let _ = writeln!(out, "# {:>22} {:>24} {:>24} {:>24}", "xi", "zeta_rail", "zeta_wheel", "separation");
-    for row in rows(placement, xi) {
+    for row in midplane_rows(placement, xi) {
         let _ =
             writeln!(out, "{:24.16e} {:24.16e} {:24.16e} {:24.16e}", row.xi, row.rail, row.wheel, row.gap);
     }

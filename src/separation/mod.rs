@@ -2,27 +2,34 @@
 //!
 //! | Equation | File |
 //! |---|---|
-//! | the wheel in sagitta form, u = e (2w + e) | [`wheel_surface`] |
-//! | g(ξ), the midplane gap | [`gap`] |
+//! | the wheel in sagitta form, u = e (2w + e) | `wheel_surface` |
+//! | g(ξ), the midplane gap | `gap` |
 //! | s and the normals at one point | [`Evaluator`] |
-//! | s over columns: the accuracy ladder | [`kernel`], [`methods`] |
+//! | s over columns: the accuracy ladder | `kernel`, `methods` |
 //! | s(ξ, ·) as polynomials in η² or η, many columns at once | `columns` |
-//! | s over a grid, and the cheapest method for it | [`grid`], [`plan`] |
-//! | the midplane table, MIDSEP (Sec. 5) | [`midplane`] |
+//! | s over a grid, and the cheapest method for it | `grid`: [`Method`], [`Choice`]; `plan`: [`Plan`] |
+//! | the midplane table, MIDSEP (Sec. 5) | `midplane`: [`midplane_table`] |
 
-pub mod axis;
+mod axis;
 mod columns;
-pub mod demand;
+mod demand;
 mod evaluator;
-pub mod gap;
-pub mod grid;
-pub mod kernel;
-pub mod methods;
-pub mod midplane;
-pub mod plan;
+mod gap;
+mod grid;
+mod kernel;
+pub(crate) mod methods;
+mod midplane;
+mod plan;
 mod rounding;
 mod samples;
-pub mod values;
-pub mod wheel_surface;
+mod values;
+pub(crate) mod wheel_surface;
 
+pub use axis::EtaAxis;
+pub use demand::{Demand, FULL_PRECISION};
 pub use evaluator::{Evaluator, Normals};
+pub(crate) use gap::midplane_gap;
+pub use grid::{Choice, Method};
+pub use midplane::{MidplaneRow, Transformed, midplane_rows, midplane_table, transformed_parameters};
+pub use plan::{Plan, plan};
+pub use values::Values;

@@ -1,11 +1,11 @@
-//! The choice of the cheapest method that meets a tolerance, with an estimate of its error.
+//! Chooses the cheapest method that meets a tolerance, and estimates its error.
 
 use super::axis::EtaAxis;
 use super::columns::fit::Fitter;
 use super::columns::strip::Strip;
 use super::columns::strips::strips;
 use super::columns::{skewed, truncation};
-use super::demand::Demand;
+use super::demand::{Demand, FULL_PRECISION};
 use super::evaluator::Evaluator;
 use super::grid::{Choice, Method};
 use super::methods::quadratic::quadratic_form;
@@ -14,48 +14,42 @@ use super::samples::{Samples, difference, places, thinned};
 use crate::numerics::nan_max;
 use crate::placement::Placement;
 
-/// At this tolerance \[mm\] and below, the relative accuracy near C is kept as well.
-///
-/// s falls below any absolute tolerance near C; someone who asks for 1e-12 mm asks for all digits.
-pub const FULL_PRECISION: f64 = 1e-12;
-
-/// Relative truncation allowed at full precision: a fiftieth of the promised 1e-13, some roundings.
-const FULL_RELATIVE: f64 = 2e-15;
-
-/// Columns in no strip whose truncation errors are measured, evenly spread. The others are measured when the grid is filled.
+/// Number of columns in no strip whose truncation errors are measured, evenly spread. The others are measured while the
+/// grid is filled.
 const COLUMNS_ALONE: usize = 32;
 
-/// Columns of a skewed wheel that are filled for their errors.
+/// Number of columns of a skewed wheel that are filled to measure their errors.
 const SKEWED_COLUMNS: usize = 17;
 
-/// Values of η at which these columns are compared with single points.
+/// Number of η in these columns at which they are compared with single points.
 const SKEWED_ETA: usize = 5;
 
-/// Values along either axis at which the quadratic form is tried before anything else: the ends and the middle.
+/// Number of values along each axis at which the quadratic form is tried first: the ends and the middle.
 const PROBED: usize = 3;
 
-/// Factor on the sampled maximum, for what lies between the samples.
+/// Factor on the largest sampled error, for the places between the samples.
 const BETWEEN_SAMPLES: f64 = 1.5;
 
-/// A choice, why it was made, and the error to expect.
+/// A chosen method, the reason for it, and its estimated error.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
-    /// What to run.
+    /// The method to run and its accuracy.
     pub choice: Choice,
-    /// Estimated largest error of s over the grid \[mm\], truncation and rounding.
+    /// Estimated largest error of s over the grid \[mm\]: truncation and rounding.
     pub error: f64,
-    /// The share of rounding in `error` \[mm\].
+    /// The part of `error` that is rounding \[mm\].
     pub rounding: f64,
-    /// Largest error asked for \[mm\].
+    /// Largest error that was asked for \[mm\].
     pub tolerance: f64,
-    /// One sentence for the summary.
+    /// Reason for the choice: one sentence for the summary.
     pub reason: String,
     /// The strips of spectral columns.
     strips: Vec<Strip>,
 }
 
 impl Plan {
-    /// Fills the grid that the plan is for, and raises the estimate to the truncation errors that are measured on the way.
+    /// Fills the grid for which the plan was made. If larger truncation errors are measured meanwhile, the estimate is
+    /// raised to them.
     pub fn fill(&mut self, placement: &Placement, xi: &[f64], axis: &EtaAxis, out: &mut [f64]) {
         let truncation = match self.choice.method {
             Method::Spectral => self.choice.fill_by_strips(placement, xi, axis, &self.strips, out),
@@ -65,21 +59,34 @@ impl Plan {
     }
 }
 
-/// Gives the demand on s for a tolerance \[mm\].
-pub fn demand(tolerance: f64) -> Demand {
-    let relative = if tolerance <= FULL_PRECISION { FULL_RELATIVE } else { f64::INFINITY };
-    Demand { absolute: tolerance, relative }
-}
-
 /// Finds the cheapest method whose estimated error over the grid is below `tolerance` \[mm\], or plans the `forced` one.
 ///
-/// The candidates are the quadratic form and spectral columns. What lies between them on the ladder errs more than spectral columns
-/// and takes no less time: every column has a gap of its own, and under a skewed wheel every point. At [`FULL_PRECISION`] and
-/// below the quadratic form is taken only where it is exact to rounding.
+/// The candidates are the quadratic form and spectral columns. The methods between them on the ladder have larger errors
+/// than spectral columns and take no less time, because every column (under a skewed wheel every point) needs a gap of its
+/// own. At [`FULL_PRECISION`] and below, the quadratic form is chosen only if it is exact to rounding.
 ///
-/// The estimate: spectral columns measure their truncation in every strip, at the strip's nodes and between them, and in some of the
-/// columns that are in none. Other methods are compared with single points at some hundred columns. Cost: about that of the fill for
-/// spectral columns.
+/// The estimate: spectral columns measure their truncation error in every strip, at its nodes and between them, and in some
+/// of the columns outside strips. Other methods are compared with single points in some hundred columns. Cost: for spectral
+/// columns about that of filling the grid.
+///
+/// # Examples
+/// ```
+/// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
+/// use wheelrail::separation::{EtaAxis, FULL_PRECISION, Values, plan};
+/// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+/// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+/// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+/// # let pair = Pair::new(rail, wheel, 460.0)?;
+/// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
+/// let (xi, eta) = (vec![0.0, 2.0], EtaAxis::new(&[-5.0, 0.0, 5.0]));
+/// let mut plan = plan(&placement, &xi, &eta, FULL_PRECISION, None);
+/// let mut s = Values::new(6);
+/// plan.fill(&placement, &xi, &eta, &mut s);
+/// assert_eq!(s[1], 0.0); // C itself: ξ = η = 0
+/// assert!((s[2] - (460.0 - f64::sqrt(460.0 * 460.0 - 5.0 * 5.0))).abs() < 1e-13);
+/// assert!(plan.error < FULL_PRECISION);
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
 pub fn plan(
     placement: &Placement,
     xi: &[f64],
@@ -95,7 +102,7 @@ pub fn plan(
     }
 }
 
-/// What a plan is made for.
+/// The grid for which a plan is made, with its tolerance.
 struct Planned<'a> {
     placement: &'a Placement,
     xi: &'a [f64],
@@ -129,14 +136,14 @@ impl Planned<'_> {
     /// Plans a method whose error is estimated by comparison with single points.
     fn sampled(&self, method: Method, probe: &Probe, reason: String) -> Plan {
         let samples = Samples::new(self.placement, self.xi, self.axis);
-        let choice = Choice { method, demand: demand(self.tolerance), coefficients: 1 };
+        let choice = Choice { method, demand: Demand::for_tolerance(self.tolerance), coefficients: 1 };
         let rounding = probe.rounding;
         let error = BETWEEN_SAMPLES * samples.difference(&choice) + rounding;
         Plan { choice, error, rounding, tolerance: self.tolerance, reason, strips: Vec::new() }
     }
 
     fn spectral(&self, probe: &Probe, reason: String) -> Plan {
-        let demand = demand(self.tolerance);
+        let demand = Demand::for_tolerance(self.tolerance);
         let mut fitter = Fitter::new(self.placement, demand, 1);
         let (strips, coefficients, truncation) = if self.placement.skew() == 0.0 {
             self.measured(&mut fitter)
@@ -149,8 +156,8 @@ impl Planned<'_> {
         Plan { choice, error, rounding, tolerance: self.tolerance, reason, strips }
     }
 
-    /// Makes the strips. Gives them, the number of coefficients that columns in no strip are to start with, which is enough for two
-    /// thirds of them, and the largest measured truncation error \[mm\].
+    /// Makes the strips. Returns them, the number of coefficients with which columns in no strip start (enough for two
+    /// thirds of them), and the largest measured truncation error \[mm\].
     fn measured(&self, fitter: &mut Fitter<'_>) -> (Vec<Strip>, usize, f64) {
         let u_max = self.axis.reach * self.axis.reach;
         let strips = strips(fitter, self.placement, self.xi, u_max);
@@ -165,7 +172,7 @@ impl Planned<'_> {
         (strips, needed.get(needed.len() * 2 / 3).copied().unwrap_or(1), most)
     }
 
-    /// Measures the largest error \[mm\] of some columns of a skewed wheel.
+    /// Measures the largest error \[mm\] in some columns of a skewed wheel.
     fn skewed(&self, fitter: &mut Fitter<'_>) -> f64 {
         let eta = &self.axis.eta;
         let Fitter { evaluator, arch, demand, .. } = fitter;
@@ -195,7 +202,7 @@ fn alone(strips: &[Strip], xi: &[f64]) -> Vec<f64> {
     alone
 }
 
-/// What a few places of the grid tell: the ends and the middle of both axes.
+/// Errors at a few places of the grid: the ends and the middle of both axes.
 struct Probe {
     /// Largest error of the quadratic form \[mm\].
     quadratic: f64,

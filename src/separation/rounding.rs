@@ -1,4 +1,4 @@
-//! The rounding error of s over a grid, from the sizes of what s is computed from.
+//! Estimates the rounding error of s over a grid, from the sizes of the terms from which s is computed.
 
 use super::axis::EtaAxis;
 use super::evaluator::Evaluator;
@@ -6,22 +6,25 @@ use super::wheel_surface::{WheelSurface, sagitta};
 use crate::placement::Placement;
 use crate::profile::{Branch, BranchShape, Piece, Section};
 
-/// Roundings of the terms of s: gap, rise, and their interpolation over ξ; under yaw, of the interpolation in powers of η.
+/// Number of roundings of the terms of s (gap, rise, and their interpolation over ξ): without yaw, and under yaw, where s
+/// is interpolated in powers of η.
 const OWN_ROUNDINGS: [f64; 2] = [16.0, 32.0];
 
-/// Roundings of the coordinates, which count beyond the contact segments. Of 2,700 random scenes one needed 2.6.
+/// Number of roundings of the coordinates, which count beyond the contact segments. The worst of 2,700 random scenes needed
+/// 2.6.
 const PLACE_ROUNDINGS: f64 = 4.0;
 
-/// Up to this slope the end of a piece counts as it is. At a steeper end, which may be vertical, the nearest column counts.
+/// Steepest slope at which the end of a piece itself counts. At a steeper end, which may be vertical, the nearest column
+/// counts.
 const STEEP: f64 = 1.0;
 
-/// Estimates the largest rounding error of s \[mm\] over a grid where the magnitudes of the terms of s add up to at most `largest`
-/// \[mm\].
+/// Estimates the largest rounding error of s \[mm\] over a grid. `largest` \[mm\] bounds the sum of the magnitudes of the
+/// terms of s.
 ///
-/// It is a few units of the last place of that sum. Beyond the contact segments there are three more terms: the roundings of the
-/// heights by which joints are placed in the frame, ζ = Δz cosθ − Δx sinθ, with z_C rounded in Δz; the error of the angle θ_C, which
-/// is the rounding of its sine over its cosine, times the distance from C; and the roundings of ξ and of the run to an arc's centre,
-/// times the slope.
+/// The estimate is a few units of the last place of that sum. Beyond the contact segments three terms are added. The first
+/// is the rounding of the heights by which joints are placed in the frame, ζ = Δz cosθ − Δx sinθ, with z_C rounded in Δz.
+/// The second is the error of the angle θ_C (the rounding of its sine over its cosine) times the distance from C. The third
+/// is the rounding of ξ and of the run to an arc's centre, times the slope.
 pub fn rounding(placement: &Placement, xi: &[f64], axis: &EtaAxis, largest: f64) -> f64 {
     let bodies = [Reached::of_rail(placement, xi), Reached::of_wheel(placement, xi, axis)];
     let of_sum = OWN_ROUNDINGS[usize::from(placement.skew() != 0.0)] * f64::EPSILON * largest;
@@ -31,11 +34,11 @@ pub fn rounding(placement: &Placement, xi: &[f64], axis: &EtaAxis, largest: f64)
     of_sum + PLACE_ROUNDINGS * f64::EPSILON * (bodies[0].coordinates + bodies[1].coordinates)
 }
 
-/// The part of a profile that a grid lies over.
+/// The part of a profile over which a grid lies.
 struct Reached {
-    /// Whether this is nothing but the contact segment.
+    /// Whether this part is only the contact segment.
     contact: bool,
-    /// Size of the coordinates that heights are computed from \[mm\], with the slope's share.
+    /// Size \[mm\] of the coordinates from which heights are computed, with the slope's share.
     coordinates: f64,
 }
 
@@ -44,20 +47,20 @@ impl Reached {
         Self::new(&placement.rail().section, xi, &[0.0], |xi, _| xi)
     }
 
-    /// Finds the part of the wheel; beside the midplane, columns lie over other places of its profile.
+    /// Finds the part of the wheel. Away from the midplane, columns lie over other places of its profile.
     fn of_wheel(placement: &Placement, xi: &[f64], axis: &EtaAxis) -> Self {
         let evaluator = Evaluator::new(placement);
         let wheel = WheelSurface::new(placement);
         let below = |xi: f64, eta: f64| {
             let [shift, eta_w] = evaluator.wheel_coordinates(xi, eta);
-            // The axle distance at C will do: e varies by its thousandths.
+            // The axle distance at C is accurate enough, because e varies by thousandths of itself.
             wheel.abscissa(xi + shift, sagitta(wheel.axle, eta_w * eta_w))
         };
         let ends = [axis.eta.first(), axis.eta.last()].map(|eta| eta.copied().unwrap_or(0.0));
         Self::new(&placement.wheel().section, xi, &[0.0, ends[0], ends[1]], below)
     }
 
-    /// Finds the part of a section over the abscissae that columns reach at some η.
+    /// Finds the part of a section over the abscissae that the columns reach at some η.
     fn new(section: &Section, xi: &[f64], eta: &[f64], abscissa: impl Fn(f64, f64) -> f64) -> Self {
         let mut reached = Self { contact: true, coordinates: 0.0 };
         let (Some(&first), Some(&last)) = (xi.first(), xi.last()) else { return reached };
@@ -66,7 +69,7 @@ impl Reached {
         let to = ends(first).chain(ends(last)).fold(f64::NEG_INFINITY, f64::max);
         let curves = reached_pieces(section, [from, to]).all(|piece| is_curve(section, piece));
         let reach = from.abs().max(to.abs());
-        // Curves are turned into the frame in twice the working precision.
+        // Polynomials are turned into the frame in twice the working precision.
         let width = if curves { reach } else { reach + section.frame.x.abs() };
         let (mut height, mut climb) = (0f64, 0f64);
         for piece in reached_pieces(section, [from, to]) {
@@ -93,7 +96,7 @@ impl Reached {
                 climb = climb.max((width + run_to_centre(branch, slope)) * slope);
             }
         }
-        // An arc's angle at C is that of its rounded sine.
+        // The angle of an arc at C is that of its rounded sine.
         let sine = section.frame.sin.abs();
         let turn = if curves { sine } else { sine / section.frame.cos };
         reached.coordinates = section.frame.z.abs() + height + climb.max(turn * width);
@@ -101,7 +104,7 @@ impl Reached {
     }
 }
 
-/// Gives the pieces that an interval touches.
+/// Returns the pieces that touch an interval.
 fn reached_pieces(section: &Section, [from, to]: [f64; 2]) -> impl Iterator<Item = &Piece> {
     section.pieces_from(from).iter().take_while(move |piece| piece.xi[0] <= to)
 }
@@ -110,8 +113,8 @@ fn is_curve(section: &Section, piece: &Piece) -> bool {
     matches!(section.branches[piece.branch].shape, BranchShape::Polynomial(_))
 }
 
-/// Computes the run in ξ \[mm\] from a point of an arc with this slope to the centre: the sine of the tangent's angle, which is rounded,
-/// times the radius. It is 0 for a line or polynomial.
+/// Computes the run in ξ \[mm\] from a point of an arc with this slope to the centre: the radius times the sine of the
+/// tangent's angle, which is rounded. It is 0 for a line or polynomial.
 fn run_to_centre(branch: &Branch, slope: f64) -> f64 {
     match &branch.shape {
         BranchShape::Arc(arc) if arc.radius.is_finite() => arc.radius.abs() * slope / 1f64.hypot(slope),
@@ -119,7 +122,7 @@ fn run_to_centre(branch: &Branch, slope: f64) -> f64 {
     }
 }
 
-/// Finds the abscissa inside a piece that is nearest to one of its ends, of columns whose abscissae ascend.
+/// Finds the abscissa inside a piece that is nearest to one end of the piece. The abscissae of the columns ascend.
 fn nearest(piece: &Piece, end: usize, xi: &[f64], abscissa: impl Fn(f64) -> f64) -> Option<f64> {
     let index = if end == 0 {
         xi.partition_point(|&xi| abscissa(xi) < piece.xi[0])

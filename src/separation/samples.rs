@@ -1,4 +1,5 @@
-//! The error of a method without an estimate of its own: a comparison with single points at some columns of a grid.
+//! Measures the error of a method that has no estimate of its own: it is compared with single points in some columns of a
+//! grid.
 
 use super::axis::EtaAxis;
 use super::evaluator::Evaluator;
@@ -6,14 +7,14 @@ use super::grid::Choice;
 use crate::numerics::nan_max;
 use crate::placement::Placement;
 
-/// Columns of the grid at which an approximate method is compared with the point-wise one, evenly spread. Its error is smooth between
-/// joints; the columns next to joints and half way between them are taken as well.
+/// Number of columns, evenly spread, in which a method is compared with single points. The error is smooth between joints;
+/// the columns next to joints and half way between them are compared as well.
 const SAMPLED_COLUMNS: usize = 65;
 
-/// Values of η at which it is compared in these columns.
+/// Number of η that are compared in these columns.
 const SAMPLED_ETA: usize = 9;
 
-/// Point-wise values at a few columns.
+/// Values at single points of a few columns.
 pub(super) struct Samples<'a> {
     placement: &'a Placement,
     xi: Vec<f64>,
@@ -34,7 +35,8 @@ impl<'a> Samples<'a> {
         Self { placement, xi: columns, axis, exact }
     }
 
-    /// Computes the largest difference \[mm\] of a method from the point-wise values; NaN where only one of them has a value.
+    /// Computes the largest difference \[mm\] of a method from the values at single points; NaN if only one of the two has
+    /// a value somewhere.
     pub fn difference(&self, choice: &Choice) -> f64 {
         let mut values = vec![f64::NAN; self.exact.len()];
         choice.fill(self.placement, &self.xi, &self.axis, &mut values);
@@ -42,13 +44,15 @@ impl<'a> Samples<'a> {
     }
 }
 
-/// Computes the largest difference; NaN where only one has a value, since a number off the surface is as wrong as none on it.
+/// Computes the largest difference of two lists. It is NaN if only one has a value at some place: a number off the surface
+/// is as wrong as a missing one on it.
 pub(super) fn difference(values: &[f64], exact: &[f64]) -> f64 {
     let differences = values.iter().zip(exact).filter(|(s, exact)| !(s.is_nan() && exact.is_nan()));
     differences.map(|(s, exact)| (s - exact).abs()).fold(0.0, nan_max)
 }
 
-/// Chooses columns of the grid: some evenly spread, and those next to the joints of both bodies and to the middle between two joints.
+/// Chooses columns of the grid: some evenly spread, and those next to the joints of both bodies and to the middle between
+/// two joints.
 fn sampled_columns(placement: &Placement, xi: &[f64]) -> Vec<f64> {
     let mut columns = thinned(xi, SAMPLED_COLUMNS);
     let (Some(&first), Some(&last)) = (xi.first(), xi.last()) else { return columns };
@@ -57,7 +61,7 @@ fn sampled_columns(placement: &Placement, xi: &[f64]) -> Vec<f64> {
         let middles = joints.windows(2).map(|pair| pair[0] + (pair[1] - pair[0]) / 2.0);
         for place in joints.iter().copied().chain(middles) {
             let beyond = xi.partition_point(|&xi| xi < place);
-            // On both sides of a column that is on the joint.
+            // If a column is on the joint, both its neighbours are chosen, too.
             columns.extend(&xi[beyond.saturating_sub(1)..xi.len().min(beyond + 2)]);
         }
         columns.sort_by(f64::total_cmp);
@@ -66,12 +70,12 @@ fn sampled_columns(placement: &Placement, xi: &[f64]) -> Vec<f64> {
     columns
 }
 
-/// Gives at most `n` of the values, evenly spread, ends included.
+/// Returns at most `n` of the values, evenly spread, both ends included.
 pub(super) fn thinned(values: &[f64], n: usize) -> Vec<f64> {
     places(values.len(), n).map(|k| values[k]).collect()
 }
 
-/// Gives at most `n` indices of so many values, evenly spread, ends included.
+/// Returns at most `n` of the indices below `count`, evenly spread, both ends included.
 pub(super) fn places(count: usize, n: usize) -> impl Iterator<Item = usize> {
     let n = n.min(count);
     (0..n).map(move |k| if n == 1 { 0 } else { k * (count - 1) / (n - 1) })

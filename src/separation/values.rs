@@ -1,32 +1,32 @@
-//! Memory for the values of a grid, and where in a machine it is.
+//! Memory for the values of a grid, and the part of the machine's memory in which it is.
 
 use std::ops::{Deref, DerefMut};
 
-/// The number of values in a line of the cache.
+/// Number of values in a cache line.
 pub(super) const LINE: usize = 8;
 
-/// Arrays of so many values, 1 MiB, have room in the second cache of a core.
+/// Most values of an array that fits into the second cache of a core: 1 MiB.
 const SECOND_CACHE: usize = 1 << 17;
 
-/// Arrays of so many values or more, 64 MiB, are larger than one user's share of the last cache.
+/// Least number of values of an array that is larger than one user's share of the last cache: 64 MiB.
 const BEYOND_CACHES: usize = 1 << 23;
 
-/// Arrays of so many values or more, 4 MiB, hold a whole one of the system's large pages of 2 MiB, wherever they begin.
+/// Least number of values of an array that holds a whole large page of the system (2 MiB), wherever it begins: 4 MiB.
 const LARGE_PAGES: usize = 1 << 19;
 
-/// Where an array is while it is filled.
+/// The memory in which an array is while it is filled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Residence {
-    /// In a core's second cache.
+    /// The second cache of a core.
     SecondCache,
-    /// In the last cache.
+    /// The last cache.
     LastCache,
-    /// Past the caches.
+    /// Memory beyond the caches.
     Memory,
 }
 
 impl Residence {
-    /// Tells where an array of so many values is.
+    /// Returns where an array of so many values is.
     pub fn of(count: usize) -> Self {
         match count {
             0..=SECOND_CACHE => Self::SecondCache,
@@ -36,7 +36,7 @@ impl Residence {
     }
 }
 
-/// Numbers of which the first begins a line of the cache: a store across two lines takes twice as long.
+/// An array whose first value begins a cache line, because a store across two lines takes twice as long.
 #[derive(Debug)]
 pub struct Values {
     memory: Vec<f64>,
@@ -45,7 +45,7 @@ pub struct Values {
 }
 
 impl Values {
-    /// Makes so many zeros.
+    /// Makes an array of `count` zeros.
     pub fn new(count: usize) -> Self {
         let memory = vec![0.0; count + LINE - 1];
         if count >= LARGE_PAGES {
@@ -77,8 +77,8 @@ impl DerefMut for Values {
     }
 }
 
-/// Asks the system for large pages, which are mapped in a third of the time when they are first written: 4·10⁶ values take 5 ms
-/// instead of 14, and computing s of them takes 5 ms. The system may have none.
+/// Asks the system for large pages. They are mapped in a third of the time at the first write: 4·10⁶ values take 5 ms
+/// instead of 14, and computing s takes 5 ms. The system may refuse.
 #[cfg(target_os = "linux")]
 #[allow(unsafe_code, reason = "no safe call gives this advice")]
 fn ask_for_large_pages(memory: &[f64]) {
@@ -89,14 +89,14 @@ fn ask_for_large_pages(memory: &[f64]) {
     let begin = pages.start.addr().next_multiple_of(page_size());
     let length = pages.end.addr().saturating_sub(begin);
     let address = pages.start.with_addr(begin).cast_mut().cast();
-    // SAFETY: The pages lie inside an allocation that is borrowed here; the advice leaves what they hold as it is.
+    // SAFETY: The pages lie inside an allocation that is borrowed here. The advice does not change their content.
     let _ = unsafe { madvise(address, length, Advice::LinuxHugepage) };
 }
 
 #[cfg(not(target_os = "linux"))]
 fn ask_for_large_pages(_: &[f64]) {}
 
-/// Counts the values before the first one that begins a line of the cache.
+/// Returns the number of values before the first one that begins a cache line.
 #[inline(always)]
 pub(super) fn lead(values: &[f64]) -> usize {
     values.as_ptr().align_offset(LINE * size_of::<f64>()).min(LINE - 1)

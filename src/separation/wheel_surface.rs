@@ -7,9 +7,9 @@
 //! ζ = h(ξ − e sinθ) + e cosθ,   w = R − z_C − ξ sinθ − ζ cosθ,   u = η² = e (2w + e).
 //! ```
 //!
-//! Given e, ζ and u follow with no iteration. Given u, the step e ← u/(w + √(w² + u)) contracts by about e/w. The profile abscissa
-//! ξ − e sinθ moves along the column, so that one column can cross joints (erratum 6). The formulas are written for N columns at
-//! once; one column is N = 1.
+//! Given e, both ζ and u follow without iteration. Given u, the step e ← u/(w + √(w² + u)) contracts by about e/w. The
+//! profile abscissa ξ − e sinθ moves along the column, so that one column can cross joints (erratum 6). The formulas are
+//! written for N columns at once; a single column is N = 1.
 
 use nalgebra::{Unit, UnitComplex, Vector2, Vector3};
 
@@ -18,25 +18,27 @@ use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
 use crate::profile::{Branch, BranchPoint, BranchPoints, Branches, Piece, Section};
 
-/// Most steps by which a point is found; each gains some six digits. A branch that needs more is steep there.
+/// Most steps in which a point is found. Each step gains some six digits; a branch that needs more steps is steep there.
 const STEPS: usize = 8;
 
-/// A step below so many roundings of w is followed by one that is smaller by e/w and by the difference of chord and tangent.
+/// Size of a step, in roundings of w, after which the iteration ends. The next step would be smaller by the factor e/w and
+/// the difference of chord and tangent.
 const LAST_STEP: f64 = 16.0 * f64::EPSILON;
 
-/// Share of the window's u that nodes must cover. Where a polynomial is continued beyond them its error grows by some per cent.
+/// Share of the window's u that the nodes must cover. Beyond them a polynomial is continued, and its error grows by some
+/// per cent.
 const NEARLY_COVERED: f64 = 0.9999;
 
-/// A branch that goes on to this many times the sagitta that the window needs is taken to cover it. Between there and the end only
-/// a profile that falls towards the axle could bring u back.
+/// Multiple of the sagitta that the window needs, up to which a branch must continue to count as covering the window.
+/// Beyond it, only a profile that falls towards the axle could make u fall again.
 const FAR_END: f64 = 4.0;
 
-/// The wheel as a surface over the contact frame of its own meridian.
+/// The wheel as a surface over the contact frame of its own meridian plane.
 #[derive(Debug, Clone, Copy)]
 pub struct WheelSurface<'a> {
     /// The wheel profile in the contact frame.
     pub section: &'a Section,
-    /// R − z_C \[mm\].
+    /// Axle distance of C: R − z_C \[mm\].
     pub(super) axle: f64,
     cos: f64,
     pub(super) sin: f64,
@@ -53,20 +55,20 @@ pub struct Span {
     pub branch: usize,
     /// Index of the piece of the envelope.
     pub(super) piece: usize,
-    /// ζ of the wheel at the beginning \[mm\].
+    /// ζ of the wheel at the beginning of the span \[mm\].
     pub height: f64,
-    /// Axle distance w at the beginning \[mm\].
+    /// Axle distance w at the beginning of the span \[mm\].
     pub w: f64,
-    /// The profile point at the beginning.
+    /// The profile point at the beginning of the span.
     begin: BranchPoint,
 }
 
-/// A point of the wheel by its sagitta, over one span of a column.
+/// A point of the wheel over one span of a column, found by its sagitta.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SagittaPoint {
     /// Sagitta e \[mm\].
     pub e: f64,
-    /// ζ less ζ at the beginning of the span \[mm\].
+    /// ζ above its value at the beginning of the span \[mm\].
     pub rise: f64,
     /// Axle distance w \[mm\].
     pub w: f64,
@@ -74,16 +76,16 @@ pub struct SagittaPoint {
     pub u: f64,
 }
 
-/// One span of N columns, from where they enter the branches below it to where they leave them.
+/// One span of N columns. Each begins where its column enters its branch and ends where it leaves it.
 #[derive(Debug)]
 pub struct SpanLanes<'a, const N: usize> {
-    /// The branches.
+    /// The branches over which the columns lie.
     pub branches: Branches<'a, N>,
-    /// The profile points at the beginning.
+    /// The profile points at the beginning of the span.
     pub points: BranchPoints<N>,
-    /// ζ of the wheel at the beginning \[mm\].
+    /// ζ of the wheel at the beginning of the span \[mm\].
     pub height: Lanes<N>,
-    /// Axle distance at the beginning \[mm\].
+    /// Axle distance at the beginning of the span \[mm\].
     pub w: Lanes<N>,
     /// Range of e \[mm\]; the end may be infinite.
     pub e: [Lanes<N>; 2],
@@ -91,17 +93,17 @@ pub struct SpanLanes<'a, const N: usize> {
     pub u: [Lanes<N>; 2],
 }
 
-/// Points of the wheel by their sagittae, one over each of N columns.
+/// Points of the wheel by their sagittae, one for each of N columns.
 pub struct SagittaPoints<const N: usize> {
     /// Sagitta \[mm\].
     pub e: Lanes<N>,
-    /// ζ less ζ at the beginning of the span \[mm\].
+    /// ζ above its value at the beginning of the span \[mm\].
     pub rise: Lanes<N>,
     /// Axle distance \[mm\].
     pub w: Lanes<N>,
     /// u \[mm²\].
     pub u: Lanes<N>,
-    /// u less u at the beginning of the span, to its own roundings \[mm²\].
+    /// u less its value at the beginning of the span \[mm²\]; the difference does not cancel.
     pub v: Lanes<N>,
 }
 
@@ -124,8 +126,8 @@ impl<'a> WheelSurface<'a> {
         &self.section.branches[span.branch]
     }
 
-    /// Finds the spans of the column at ξ from η = 0 until u reaches `u_max` \[mm²\], in order of u. `spans` is overwritten; it is
-    /// empty where the wheel has no surface.
+    /// Finds the spans of the column at ξ from η = 0 until u reaches `u_max` \[mm²\], in order of u. They overwrite
+    /// `spans`, which is empty if the wheel has no surface there.
     pub fn spans(&self, xi: f64, u_max: f64, spans: &mut Vec<Span>) {
         spans.clear();
         let pieces = &self.section.pieces;
@@ -140,10 +142,10 @@ impl<'a> WheelSurface<'a> {
             }
             let mut span = self.span(xi, index, [begin, end], u_max);
             if let Some(last) = spans.last().filter(|last| last.e[1] == begin) {
-                // One joint: the ranges meet, whatever rounding makes of them.
+                // Two ranges meet at one joint, in spite of rounding.
                 span.u[0] = last.u[1];
             }
-            // Near the axle's height u may fall along the column: such a span holds nothing.
+            // Near the axle's height u may fall along the column. Such a span is empty.
             span.u[1] = span.u[1].max(span.u[0]);
             let done = span.u[1] >= u_max || self.sin == 0.0;
             if span.u[0] <= u_max {
@@ -156,7 +158,8 @@ impl<'a> WheelSurface<'a> {
         }
     }
 
-    /// Finds the index of the piece over which the column at ξ begins, or would begin if there were no gap.
+    /// Finds the index of the piece over which the column at ξ begins. In a gap it is the piece that the column would meet
+    /// first.
     pub(super) fn first_piece(&self, xi: f64) -> Option<usize> {
         let pieces = &self.section.pieces;
         if self.sin > 0.0 {
@@ -167,7 +170,7 @@ impl<'a> WheelSurface<'a> {
         Some(index).filter(|&i| i < pieces.len()).or(self.at_end(xi))
     }
 
-    /// Gives the index of the piece that a column passes next; `None` at the end of the profile.
+    /// Returns the index of the piece that a column passes next; `None` at the end of the profile.
     pub(super) fn next_piece(&self, index: usize) -> Option<usize> {
         if self.sin > 0.0 {
             index.checked_sub(1)
@@ -176,19 +179,19 @@ impl<'a> WheelSurface<'a> {
         }
     }
 
-    /// Gives the index of the first or last piece whose outer end is ξ.
+    /// Returns the index of the first or last piece whose outer end is ξ.
     fn at_end(&self, xi: f64) -> Option<usize> {
         let pieces = &self.section.pieces;
         let last = pieces.len().checked_sub(1)?;
         if pieces[0].xi[0] == xi { Some(0) } else { (pieces[last].xi[1] == xi).then_some(last) }
     }
 
-    /// Gives the ends of a piece by which a column enters and leaves it, 0 for the end at smaller ξ.
+    /// Returns the ends of a piece by which a column enters and leaves it; 0 is the end at smaller ξ.
     pub(super) fn sides(&self) -> [usize; 2] {
         if self.sin > 0.0 { [1, 0] } else { [0, 1] }
     }
 
-    /// Makes the span over one piece between two sagittae.
+    /// Makes the span over one piece between two sagittae \[mm\].
     fn span(&self, xi: f64, index: usize, e: [f64; 2], u_max: f64) -> Span {
         let (piece, near) = (&self.section.pieces[index], self.sides()[0]);
         let branch = &self.section.branches[piece.branch];
@@ -200,13 +203,13 @@ impl<'a> WheelSurface<'a> {
             return span;
         }
         let [_, u1] = self.leaves(xi, piece);
-        // Where the ring of the column closes before the profile's end, that is never met.
+        // If the column leaves the wheel before the profile ends, that end is never met.
         let e1 = if u1.is_finite() { e[1] } else { f64::INFINITY };
         Span { e: [e[0], e1], u: [u0, u1], ..span }
     }
 
-    /// Makes the spans that begin at points of a branch with these heights \[mm\], where the sagittae are e_0 \[mm\]. Their ends are
-    /// not known yet: e is infinite and u NaN there.
+    /// Makes the spans that begin at points of a branch with these heights \[mm\] and sagittae e_0 \[mm\]. Their ends are
+    /// not known yet: e is infinite and u is NaN there.
     #[inline(always)]
     pub(super) fn span_from<const N: usize>(
         &self,
@@ -221,7 +224,7 @@ impl<'a> WheelSurface<'a> {
         SpanLanes { branches: Branches::One(branch), points, height, w, e: [e0, [f64::INFINITY; N]], u }
     }
 
-    /// Gives one span as lanes, of which there is one.
+    /// Returns one span as lanes with N = 1.
     #[inline(always)]
     pub(super) fn lane(&self, span: &Span) -> SpanLanes<'a, 1> {
         SpanLanes {
@@ -234,7 +237,7 @@ impl<'a> WheelSurface<'a> {
         }
     }
 
-    /// Gives e \[mm\] and u \[mm²\] at which the column at ξ leaves a piece. u is infinite where that is beyond the axle's height.
+    /// Returns e \[mm\] and u \[mm²\] at which the column at ξ leaves a piece. u is infinite beyond the axle's height.
     #[inline(always)]
     pub(super) fn leaves(&self, xi: f64, piece: &Piece) -> [f64; 2] {
         let far = self.sides()[1];
@@ -243,7 +246,7 @@ impl<'a> WheelSurface<'a> {
         [e, if w > 0.0 { e * (2.0 * w + e) } else { f64::INFINITY }]
     }
 
-    /// Gives w \[mm\] of a point of the column at ξ with this ζ \[mm\].
+    /// Returns w \[mm\] of the point with height ζ = `height` \[mm\] of the column at ξ.
     #[inline(always)]
     pub(super) fn axle_distance(&self, xi: f64, height: f64) -> f64 {
         self.axle - xi * self.sin - height * self.cos
@@ -256,7 +259,7 @@ impl<'a> WheelSurface<'a> {
         self.points(&[xi], &self.lane(span), &[e]).map_or(nowhere, SagittaPoint::from)
     }
 
-    /// Finds the points with sagittae e \[mm\]. `None` for several lanes where Newton's steps on a polynomial do not settle.
+    /// Finds the points with sagittae e \[mm\]. Returns `None` if N > 1 and Newton's steps on a polynomial do not settle.
     #[inline(always)]
     fn points<const N: usize>(
         &self,
@@ -270,8 +273,8 @@ impl<'a> WheelSurface<'a> {
         Some(self.points_above(span, &runs, rise))
     }
 
-    /// Finds points whose sagittae are larger by about `runs` \[mm\] than at the span's beginning. No root is taken, which is why
-    /// the runs are not exact. NaN near a vertical tangent.
+    /// Finds points whose sagittae are about `runs` \[mm\] larger than at the beginning of the span. The runs are not met
+    /// exactly, because no root is sought. The results are NaN near a vertical tangent.
     #[inline(always)]
     pub(super) fn points_by<const N: usize>(
         &self,
@@ -283,7 +286,8 @@ impl<'a> WheelSurface<'a> {
         self.points_above(span, &lanes(|k| runs[k] * stretch[k]), rise)
     }
 
-    /// Completes the points that lie `rise` \[mm\] above the span's beginning, with sagittae larger by `runs` \[mm\].
+    /// Completes the points that lie `rise` \[mm\] above the beginning of the span and have sagittae larger by `runs`
+    /// \[mm\].
     #[inline(always)]
     fn points_above<const N: usize>(
         &self,
@@ -294,7 +298,7 @@ impl<'a> WheelSurface<'a> {
         let e = lanes(|k| span.e[0][k] + runs[k]);
         let w = lanes(|k| span.w[k] - rise[k] * self.cos);
         let u = lanes(|k| e[k] * (2.0 * w[k] + e[k]));
-        // u − u_0 without a difference of what is nearly equal: w falls by rise cosθ.
+        // u − u_0 is computed without a difference of nearly equal numbers: w falls by rise cosθ.
         let v = lanes(|k| {
             let [e0, e1] = [span.e[0][k], e[k]];
             runs[k] * (2.0 * w[k] + (e0 + e1)) - 2.0 * e0 * (rise[k] * self.cos)
@@ -302,8 +306,8 @@ impl<'a> WheelSurface<'a> {
         SagittaPoints { e, rise, w, u, v }
     }
 
-    /// Finds points near u \[mm²\] by the contraction of the sagitta step, and the runs \[mm\] by which [`Self::points_by`] finds
-    /// them. `None` where one is not found, or has no axle distance left.
+    /// Finds points near u \[mm²\] by the contraction of the sagitta step, and the runs \[mm\] that [`Self::points_by`]
+    /// needs for them. Returns `None` if a point is not found or its axle distance is not positive.
     #[inline(always)]
     pub(super) fn points_near<const N: usize>(
         &self,
@@ -311,7 +315,7 @@ impl<'a> WheelSurface<'a> {
         u: &Lanes<N>,
     ) -> Option<(SagittaPoints<N>, Lanes<N>)> {
         let [low, high] = &span.e;
-        // The first is as good as if the profile were level: only its slope is then to be found.
+        // The first step treats the profile as level; the next ones add its slope.
         let mut w = lanes(|k| span.w[k] - (sagitta(span.w[k], u[k]) - low[k]) * self.cos * self.cos);
         let mut shrink = [1.0; N];
         for _ in 0..=STEPS {
@@ -328,9 +332,11 @@ impl<'a> WheelSurface<'a> {
         None
     }
 
-    /// Finds the points at u = η² \[mm²\]; `None` where the steps do not settle. w is not positive where η is beyond the ring.
+    /// Finds the points at u = η² \[mm²\]. Returns `None` if the steps do not settle. w is not positive if η is beyond the
+    /// wheel.
     ///
-    /// Method: Newton's step on u(e) = e (2w + e), with the slope of the chord, which is off by e × curvature.
+    /// Method: Newton's step on u(e) = e (2w + e), with the slope of the chord, which differs from that of the tangent by e
+    /// × curvature.
     #[inline(always)]
     pub(super) fn points_at<const N: usize>(
         &self,
@@ -360,9 +366,9 @@ impl<'a> WheelSurface<'a> {
         None
     }
 
-    /// Finds the point at u = η² \[mm²\] over a span; `None` where η is beyond the ring.
+    /// Finds the point at u = η² \[mm²\] over a span. Returns `None` if η is beyond the wheel.
     ///
-    /// Method: Newton's step on u(e) = e (2w + e); where it does not settle, a bracketed root.
+    /// Method: Newton's step on u(e) = e (2w + e); if it does not settle, a bracketed root.
     pub fn point_at(&self, xi: f64, span: &Span, u: f64) -> Option<SagittaPoint> {
         let point = match self.points_at(&[xi], &self.lane(span), &[u]) {
             Some(points) => points.into(),
@@ -373,15 +379,15 @@ impl<'a> WheelSurface<'a> {
         Some(point).filter(|point| point.w > 0.0)
     }
 
-    /// Gives a sagitta \[mm\] beyond which a span has no point.
+    /// Returns a sagitta \[mm\] beyond which a span has no point.
     fn end(&self, span: &Span) -> f64 {
         if span.e[1].is_finite() { span.e[1] } else { self.axle }
     }
 
-    /// Finds the point that lies `rise` \[mm\] above the span's beginning.
+    /// Finds the point that lies `rise` \[mm\] above the beginning of the span.
     ///
-    /// Method: at most `contractions` steps e ← e_0 + rise/(cosθ − sinθ × chord slope), which contract by e × curvature; then a
-    /// bracketed root. Degenerate: the last step, where there is no root.
+    /// Method: at most `contractions` steps e ← e_0 + rise/(cosθ − sinθ × chord slope), which contract by e × curvature;
+    /// then a bracketed root. Degenerate case: if there is no root, the result is that of the last step.
     pub fn point_with_rise(&self, xi: f64, span: &Span, rise: f64, contractions: usize) -> SagittaPoint {
         let mut point = self.point(xi, span, span.e[0]);
         for _ in 0..contractions {
@@ -397,13 +403,13 @@ impl<'a> WheelSurface<'a> {
         root.map_or(point, |e| self.point(xi, span, e))
     }
 
-    /// Gives the profile abscissa ξ − e sinθ \[mm\] under the point with sagitta e.
+    /// Returns the profile abscissa ξ − e sinθ \[mm\] under the point with sagitta e \[mm\].
     #[inline(always)]
     pub fn abscissa(&self, xi: f64, e: f64) -> f64 {
         xi - e * self.sin
     }
 
-    /// Computes q(ξ, 0) = (cosθ − h′(ξ) sinθ)/2w \[1/mm\], the growth of ζ with η², for a span from η = 0.
+    /// Computes q(ξ, 0) = (cosθ − h′(ξ) sinθ)/2w \[1/mm\], the growth of ζ with η², for a span that begins at η = 0.
     pub fn opening(&self, xi: f64, span: &Span) -> f64 {
         let slope = self.branch(span).chord_from(&span.begin, xi);
         (self.cos - self.sin * slope) / (2.0 * span.w)
@@ -418,7 +424,7 @@ impl<'a> WheelSurface<'a> {
     /// Computes the outward unit normal (towards the rail) in (ξ, η, ζ) at a point with lateral offset η \[mm\].
     pub fn normal(&self, xi: f64, eta: f64, span: &Span, point: &SagittaPoint) -> Unit<Vector3<f64>> {
         let tangent = self.branch(span).station(self.abscissa(xi, point.e));
-        // Profile angle φ = ψ + θ in the wheel's own axes; the meridian plane is turned by atan(η/w).
+        // The profile angle is φ = ψ + θ in the wheel's own axes; the meridian plane is turned by atan(η/w).
         let tilt = UnitComplex::from_cos_sin_unchecked(self.cos, self.sin);
         let own = tilt * Vector2::new(tangent.cos, tangent.sin);
         let rho = point.w.hypot(eta);

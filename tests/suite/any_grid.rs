@@ -6,10 +6,7 @@ use crate::common::holds;
 use proptest::prelude::*;
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::standards;
-use wheelrail::separation::axis::EtaAxis;
-use wheelrail::separation::grid::Method;
-use wheelrail::separation::plan::{FULL_PRECISION, plan};
-use wheelrail::separation::values::Values;
+use wheelrail::separation::{EtaAxis, FULL_PRECISION, Method, Values, plan};
 use wheelrail_report::verification::built_in_pairs;
 
 const CASES: u32 = 3000;
@@ -46,7 +43,7 @@ fn within_estimate(
 ) -> Result<f64, String> {
     let filled = |tolerance, method| {
         let mut plan = plan(placement, xi, axis, tolerance, method);
-        let mut s = Values::new(xi.len() * axis.eta.len());
+        let mut s = Values::new(xi.len() * axis.eta().len());
         s.fill(f64::INFINITY);
         plan.fill(placement, xi, axis, &mut s);
         (s, plan.error)
@@ -54,7 +51,7 @@ fn within_estimate(
     let (s, estimate) = filled(tolerance, method);
     let (exact, rounding) = filled(FULL_PRECISION, Some(Method::Pointwise));
     for (k, (s, exact)) in s.iter().zip(exact.iter()).enumerate() {
-        let place = [xi[k / axis.eta.len()], axis.eta[k % axis.eta.len()]];
+        let place = [xi[k / axis.eta().len()], axis.eta()[k % axis.eta().len()]];
         let right = (s - exact).abs() <= estimate + rounding || s.is_nan() && exact.is_nan();
         if !right {
             return Err(format!("{s} for {exact} at {place:?}, estimate {estimate:e}"));

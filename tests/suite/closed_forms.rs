@@ -4,7 +4,7 @@
 //! form are in its own test.
 
 use twofloat::TwoFloat;
-use wheelrail::load::hertz::curvatures;
+use wheelrail::load::curvatures;
 use wheelrail::patch::{Patch, Slicer, Window};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Half, Profile, Segment};

@@ -3,10 +3,10 @@
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use wheelrail::Result;
-use wheelrail::numerics::roots::bracketed;
+use wheelrail::internal::bracketed;
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Polynomial, Profile, Segment, Shape};
-use wheelrail_report::errors::Point;
+use wheelrail_report::errors::ComparedPoint;
 pub use wheelrail_report::reference::{Reference, ReferenceSegment};
 
 /// All reference scenes; they are part of the program, in `crates/report/src/reference`.
@@ -64,7 +64,7 @@ pub struct Worst {
 
 impl Worst {
     /// The largest errors of a method; fails where a value is missing or should be.
-    pub fn of(name: &str, points: &[Point]) -> Self {
+    pub fn of(name: &str, points: &[ComparedPoint]) -> Self {
         let mut worst = Self::default();
         for point in points {
             let error = point.error();

@@ -3,14 +3,12 @@
 
 use rayon::prelude::*;
 use wheelrail::case::contacts;
-use wheelrail::mesh::axes;
+use wheelrail::mesh;
 use wheelrail::patch::{Component, End, Outline, Patch, Window};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Profile, standards};
 use wheelrail::scene;
-use wheelrail::separation::axis::EtaAxis;
-use wheelrail::separation::grid::{Choice, Method};
-use wheelrail::separation::plan::demand;
+use wheelrail::separation::{Choice, Demand, EtaAxis, Method};
 use wheelrail_report::random::Random;
 
 /// Random pairs, as many as `WHEELRAIL_PATCHES` says instead; each seeded by its number.
@@ -98,7 +96,8 @@ impl Case {
 
 fn depths(placement: &Placement, xi: &[f64], eta: &[f64], approach: f64) -> Vec<f64> {
     let mut s = vec![f64::NAN; xi.len() * eta.len()];
-    let choice = Choice { method: Method::Spectral, demand: demand(TOLERANCE), coefficients: 3 };
+    let choice =
+        Choice { method: Method::Spectral, demand: Demand::for_tolerance(TOLERANCE), coefficients: 3 };
     choice.fill(placement, xi, &EtaAxis::new(eta), &mut s);
     // Without skew the patch is that over the midplane.
     let over =
@@ -289,7 +288,7 @@ fn check(case: &Case) -> Open {
 /// of its window.
 fn check_rings(case: &Case) {
     let whole = Patch::new(&case.placement, case.approach, &Window::UNBOUNDED);
-    for group in axes::groups(&whole, 0.0, None) {
+    for group in mesh::groups(&whole, 0.0, None) {
         let axes = group.axes(None).expect("axes");
         let (n, m) = (axes.xi.len(), axes.eta.len());
         let depth = depths(&case.placement, &axes.xi, &axes.eta, case.approach);

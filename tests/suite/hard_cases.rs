@@ -3,12 +3,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use wheelrail_report::hard_case::{FILES, METHODS, Status, hard_cases};
-use wheelrail_report::hard_run::{self, Outcome};
+use wheelrail_report::hard_run::{self, HardOutcome};
 
 /// A bound of which all cases together use less than this share fails as "tighten me".
 const LEAST_USE: f64 = 0.25;
 
-fn outcomes() -> Vec<Outcome> {
+fn outcomes() -> Vec<HardOutcome> {
     let cases = hard_cases().expect("hard cases in their format");
     cases.iter().map(|case| hard_run::run(case, &cases).expect("a case that can be run")).collect()
 }

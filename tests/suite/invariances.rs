@@ -5,15 +5,12 @@
 
 use crate::common::holds;
 use proptest::prelude::*;
-use wheelrail::load::feasibility::feasibility;
+use wheelrail::load::feasibility;
 use wheelrail::nalgebra::UnitComplex;
 use wheelrail::patch::{Patch, Slicer, Window};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Polynomial, Profile, Segment, Shape, Station, standards};
-use wheelrail::separation::Evaluator;
-use wheelrail::separation::axis::EtaAxis;
-use wheelrail::separation::demand::Demand;
-use wheelrail::separation::grid::{Choice, Method};
+use wheelrail::separation::{Choice, Demand, EtaAxis, Evaluator, Method};
 
 const CASES: u32 = 128;
 
@@ -187,7 +184,7 @@ fn kinked(at: Station, tan: f64) -> Station {
 
 fn arc(at: Station, radius: f64, to_x: f64) -> Option<Shape> {
     let arc = Arc::tangent_at(at, radius, to_x).ok()?;
-    (arc.end.cos > 0.3).then_some(Shape::Arc(arc))
+    (arc.end().cos > 0.3).then_some(Shape::Arc(arc))
 }
 
 fn cubic(at: Station, [a, b]: [f64; 2], to_x: f64) -> Option<Shape> {
@@ -199,7 +196,7 @@ fn cubic(at: Station, [a, b]: [f64; 2], to_x: f64) -> Option<Shape> {
         b,
     ];
     let polynomial = Polynomial::graph(&c, [x, to_x]).ok()?;
-    let [t0, t1] = polynomial.t;
+    let [t0, t1] = polynomial.range();
     let flat = (0..=8).all(|k| polynomial.station(t0 + (t1 - t0) * f64::from(k) / 8.0).cos > 0.3);
     // A span of a nm holds a polynomial that has lost its digits: a drawing has no such thing.
     (flat && to_x - x > 1e-5 * x.abs()).then_some(Shape::Polynomial(polynomial))
@@ -426,9 +423,12 @@ fn splitting_arcs_changes_nothing() {
 /// The two parts of an arc, or the segment as it is.
 fn halves(segment: &Segment, share: f64) -> Vec<Segment> {
     let Shape::Arc(arc) = &segment.shape else { return vec![segment.clone()] };
-    let middle = arc.start.x + (arc.end.x - arc.start.x) * share;
-    let Ok(first) = Arc::tangent_at(arc.start, arc.radius, middle) else { return vec![segment.clone()] };
-    vec![Segment::arc(first), Segment::arc(Arc { start: first.end, ..*arc })]
+    let middle = arc.start().x + (arc.end().x - arc.start().x) * share;
+    let Ok(first) = Arc::tangent_at(arc.start(), arc.radius(), middle) else { return vec![segment.clone()] };
+    let Ok(second) = Arc::tangent_at(first.end(), arc.radius(), arc.end().x) else {
+        return vec![segment.clone()];
+    };
+    vec![Segment::arc(first), Segment::arc(second)]
 }
 
 #[test]
@@ -440,13 +440,13 @@ fn a_rigid_motion_of_the_profiles_changes_nothing() {
         let rail = one.rail().profile().rotated(turn).shifted(x, z);
         // The wheel may only move along its axle, and with it.
         let wheel = one.wheel().profile().shifted(wheel_x, wheel_z);
-        let c = one.rail().point.station;
+        let c = one.rail().point().station;
         let turned = c.placed_by(&Station { x, z, cos: turn.re, sin: turn.im });
         prop_assume!(turned.cos > STEEP);
         // A point next to a joint may come to lie on its other side.
         prop_assume!(case.contacts_off_joints());
         let pair = Pair::new(rail, wheel, one.wheel_radius() + wheel_z).expect("a pair");
-        let placed = pair.placed(turned.x, one.wheel().point.station.x + wheel_x, 0.0);
+        let placed = pair.placed(turned.x, one.wheel().point().station.x + wheel_x, 0.0);
         let other = placed.expect("the same contact");
         // C itself is rounded at coordinates of up to 300 mm, and with it the frame.
         let frame = 64.0 * f64::EPSILON * 300.0;

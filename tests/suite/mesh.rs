@@ -2,10 +2,7 @@
 
 use crate::common::{approached_references, two_crowns};
 use wheelrail::Result;
-use wheelrail::mesh::axes::{self, Axes, Group};
-use wheelrail::mesh::quality::Quality;
-use wheelrail::mesh::strips::{Counts, StripMesh};
-use wheelrail::mesh::surfaces::Surface;
+use wheelrail::mesh::{self, Axes, GridGroup, Quality, StripCounts, StripMesh, Surface};
 use wheelrail::nalgebra::Point3;
 use wheelrail::patch::{Patch, Window};
 use wheelrail::placement::{Pair, Placement};
@@ -36,7 +33,11 @@ fn areas_of_cells_sum_up_to_the_patch() {
     for (name, placement, delta) in cases() {
         let patch = whole(&placement, delta);
         assert!(!patch.components.is_empty(), "{name}");
-        for counts in [Counts::default(), Counts { strips: 5, across: 3 }, Counts { strips: 2, across: 1 }] {
+        for counts in [
+            StripCounts::default(),
+            StripCounts { strips: 5, across: 3 },
+            StripCounts { strips: 2, across: 1 },
+        ] {
             let mesh = StripMesh::new(&placement, &patch, counts).expect("a mesh");
             for (index, component) in patch.components.iter().enumerate() {
                 let own = mesh.cells.iter().filter(|cell| cell.component == index);
@@ -52,7 +53,7 @@ fn areas_of_cells_sum_up_to_the_patch() {
 fn cells_are_sound_and_share_their_sides() {
     for (name, placement, delta) in cases() {
         let patch = whole(&placement, delta);
-        let mesh = StripMesh::new(&placement, &patch, Counts::default()).expect("a mesh");
+        let mesh = StripMesh::new(&placement, &patch, StripCounts::default()).expect("a mesh");
         let quality = Quality::of_strips(&mesh).expect("cells");
         assert_eq!(quality.inverted, 0, "{name}: {quality:?}");
         assert!(mesh.cells.iter().all(|cell| cell.area > 0.0), "{name}");
@@ -86,7 +87,7 @@ fn cells_are_sound_and_share_their_sides() {
 fn centroids_are_inside_and_give_the_first_moment() {
     for (name, placement, delta) in cases() {
         let patch = whole(&placement, delta);
-        let [coarse, fine] = [Counts { strips: 6, across: 3 }, Counts { strips: 40, across: 20 }]
+        let [coarse, fine] = [StripCounts { strips: 6, across: 3 }, StripCounts { strips: 40, across: 20 }]
             .map(|counts| StripMesh::new(&placement, &patch, counts).expect("a mesh"));
         for cell in &coarse.cells {
             assert!(cell.separation < delta, "{name}: s = {} at the centroid", cell.separation);
@@ -115,7 +116,7 @@ fn boundary_cells_include_the_curved_edge() -> Result<()> {
     let cylinder = Profile::new("wheel", "test", vec![Segment::arc(Arc::line([-40.0, 0.0], [40.0, 0.0])?)])?;
     let placement = Pair::new(crown, cylinder, 460.0)?.placed(0.0, 0.0, 0.0)?;
     let patch = whole(&placement, 0.05);
-    let mesh = StripMesh::new(&placement, &patch, Counts { strips: 8, across: 4 })?;
+    let mesh = StripMesh::new(&placement, &patch, StripCounts { strips: 8, across: 4 })?;
     let polygon: f64 = mesh
         .cells
         .iter()
@@ -141,25 +142,26 @@ fn windows_cut_the_mesh_too() {
     let (_, placement, delta) = cases().swap_remove(0);
     for eta in [[-1.0, 2.0], [0.5, 20.0]] {
         let patch = Patch::new(&placement, delta, &Window { xi: [-4.0, 30.0], eta });
-        let mesh = StripMesh::new(&placement, &patch, Counts::default()).expect("a mesh");
+        let mesh = StripMesh::new(&placement, &patch, StripCounts::default()).expect("a mesh");
         let sum: f64 = mesh.cells.iter().map(|cell| cell.area).sum();
         assert!((sum / patch.area() - 1.0).abs() < 1e-10);
         assert_eq!(Quality::of_strips(&mesh).map(|q| q.inverted), Some(0));
         assert!(mesh.points.iter().all(|p| p[0] >= -4.0 && p[1] >= eta[0] && p[1] <= eta[1]));
     }
-    let empty = StripMesh::new(&placement, &whole(&placement, 0.0), Counts::default()).expect("no cells");
+    let empty =
+        StripMesh::new(&placement, &whole(&placement, 0.0), StripCounts::default()).expect("no cells");
     assert!(empty.cells.is_empty() && Quality::of_strips(&empty).is_none());
     for counts in [
-        Counts { strips: 1, across: 4 },
-        Counts { strips: 4, across: 0 },
-        Counts { strips: 1 << 20, across: 1 << 20 },
+        StripCounts { strips: 1, across: 4 },
+        StripCounts { strips: 4, across: 0 },
+        StripCounts { strips: 1 << 20, across: 1 << 20 },
     ] {
         assert!(StripMesh::new(&placement, &whole(&placement, delta), counts).is_err());
     }
 }
 
 /// Whether the cells of the two outermost rows and columns are empty and all of the group inside.
-fn covers(placement: &Placement, delta: f64, group: &Group, axes: &Axes) -> bool {
+fn covers(placement: &Placement, delta: f64, group: &GridGroup, axes: &Axes) -> bool {
     let mut evaluator = Evaluator::new(placement);
     let (xi, eta) = (&axes.xi, &axes.eta);
     let (n, m) = (xi.len(), eta.len());
@@ -182,7 +184,7 @@ fn grids_never_cut_the_patch() {
     for (name, placement, delta) in cases() {
         for spacing in [None, Some([0.37, 0.53])] {
             let patch = whole(&placement, delta);
-            let groups = axes::groups(&patch, 0.0, spacing);
+            let groups = mesh::groups(&patch, 0.0, spacing);
             assert_eq!(groups.iter().map(|g| g.components.len()).sum::<usize>(), patch.components.len());
             for group in &groups {
                 let axes = group.axes(spacing).expect("axes");
@@ -205,17 +207,17 @@ fn grids_never_cut_the_patch() {
 fn parts_are_merged_by_a_stated_distance_and_c_comes_first() -> Result<()> {
     let placement = two_crowns(-1e-3, 0.0)?;
     let patch = whole(&placement, 0.08);
-    let apart = axes::groups(&patch, 0.0, None);
+    let apart = mesh::groups(&patch, 0.0, None);
     assert_eq!(patch.components.len(), 2);
     assert_eq!(apart.iter().map(|g| g.components.clone()).collect::<Vec<_>>(), [vec![1], vec![0]]);
     let gap = patch.components[1].xi[0] - patch.components[0].xi[1];
-    assert_eq!(axes::groups(&patch, 0.99 * gap, None).len(), 2);
-    let merged = axes::groups(&patch, 1.01 * gap, None);
+    assert_eq!(mesh::groups(&patch, 0.99 * gap, None).len(), 2);
+    let merged = mesh::groups(&patch, 1.01 * gap, None);
     assert_eq!(merged.len(), 1);
     assert_eq!(merged[0].components, [0, 1]);
     assert_eq!(Some(merged[0].extent), patch.extent());
     assert_eq!(merged[0].axes(None)?.spacing, apart[0].axes(None)?.spacing);
-    assert!(axes::groups(&whole(&placement, 0.0), 0.0, None).is_empty());
+    assert!(mesh::groups(&whole(&placement, 0.0), 0.0, None).is_empty());
     assert!(apart[0].axes(Some([1e-4, 1e-4])).is_err());
     Ok(())
 }
@@ -225,7 +227,7 @@ fn departures(placement: &Placement, surface: &Surface) -> [f64; 2] {
     let mut evaluator = Evaluator::new(placement);
     let mut off = |point: Point3<f64>| {
         let (xi, eta, zeta) = (point.x, point.y, point.z);
-        let rail = placement.rail().section.height(xi);
+        let rail = placement.rail().section().height(xi);
         match surface.side {
             wheelrail::profile::Side::Rail => zeta - rail,
             wheelrail::profile::Side::Wheel => zeta - (rail + evaluator.separation(xi, eta)),
@@ -282,7 +284,7 @@ fn surfaces_face_outwards_and_move_into_rail_axes() {
                 assert!(sign * up.z > 0.0, "{name} {:?}", surface.side);
             }
         }
-        let own = &placement.rail().section.frame;
+        let own = &placement.rail().point().station;
         let moved = rail.in_rail_axes(&placement);
         let profile =
             wheelrail::profile::Section::own_axes(placement.rail().profile(), wheelrail::profile::Side::Rail);

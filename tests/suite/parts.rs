@@ -188,7 +188,7 @@ fn a_joint_of_the_drawing_is_no_second_contact() {
             );
             let run = computed(&text).expect("a contact");
             let places: Vec<f64> =
-                run.parts.iter().map(|part| part.site.contact.placement.wheel().point.station.x).collect();
+                run.parts.iter().map(|part| part.site.contact.placement.wheel().point().station.x).collect();
             for (i, a) in places.iter().enumerate() {
                 nearest = nearest.min((a + 26.0).abs());
                 // Contacts of one wheel are on different curves of it: nearer ones are one patch twice.

@@ -7,14 +7,11 @@ mod exact;
 mod twice;
 
 use exact::{Exact, Found, doubled};
-use wheelrail::case::equal_steps;
+use wheelrail::mesh::equal_steps;
 use wheelrail::nalgebra::Vector2;
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Profile, Shape, Side, standards};
-use wheelrail::separation::axis::EtaAxis;
-use wheelrail::separation::grid::Method;
-use wheelrail::separation::plan::{FULL_PRECISION, plan};
-use wheelrail::separation::values::Values;
+use wheelrail::separation::{EtaAxis, FULL_PRECISION, Method, Values, plan};
 use wheelrail_report::errors::{inside_contact, over_contact};
 use wheelrail_report::random::Random;
 use wheelrail_report::reference::Reference;
@@ -123,7 +120,7 @@ impl<'a> Scene<'a> {
     /// s over the grid and its estimate \[mm\].
     fn filled(&self, tolerance: f64, method: Option<Method>) -> (Values, f64) {
         let mut plan = plan(&self.placement, &self.xi, &self.axis, tolerance, method);
-        let mut s = Values::new(self.xi.len() * self.axis.eta.len());
+        let mut s = Values::new(self.xi.len() * self.axis.eta().len());
         s.fill(f64::INFINITY);
         plan.fill(&self.placement, &self.xi, &self.axis, &mut s);
         (s, plan.error)
@@ -131,12 +128,12 @@ impl<'a> Scene<'a> {
 
     /// ξ and η of a point of the grid \[mm\].
     fn place(&self, index: usize) -> [f64; 2] {
-        [self.xi[index / self.axis.eta.len()], self.axis.eta[index % self.axis.eta.len()]]
+        [self.xi[index / self.axis.eta().len()], self.axis.eta()[index % self.axis.eta().len()]]
     }
 
     /// Whether s leads from the rail to the wheel.
     fn on_both(&self, place: [f64; 2], s: f64) -> bool {
-        self.exact.on_both(place, self.placement.rail().section.height(place[0]), s)
+        self.exact.on_both(place, self.placement.rail().section().height(place[0]), s)
     }
 
     /// Sum of the magnitudes of what s is the sum of \[mm\]: midplane gap, climb of the wheel along ξ′ − ξ, its rise across.
@@ -174,7 +171,7 @@ impl<'a> Scene<'a> {
 fn scale(placement: &Placement) -> f64 {
     let segments = placement.rail().profile().segments().iter().chain(placement.wheel().profile().segments());
     let radius = |shape: &Shape| match shape {
-        Shape::Arc(arc) if arc.radius.is_finite() => arc.radius.abs(),
+        Shape::Arc(arc) if arc.radius().is_finite() => arc.radius().abs(),
         _ => 0.0,
     };
     segments.map(|segment| radius(&segment.shape)).fold(300.0, f64::max) / 300.0
@@ -217,9 +214,10 @@ impl Tally {
         let (pointwise, spectral) = (&grids[0].2.0, &grids[1].2.0);
         let count = pointwise.len();
         let mut places: Vec<usize> = (0..COMPARED).map(|_| dice.below(count)).collect();
-        places.extend([0, scene.axis.eta.len() - 1, count - scene.axis.eta.len(), count - 1]);
-        let at_c = scene.xi.partition_point(|&xi| xi < 0.0).min(scene.xi.len() - 1) * scene.axis.eta.len();
-        places.push(at_c + scene.axis.first_positive.min(scene.axis.eta.len() - 1));
+        places.extend([0, scene.axis.eta().len() - 1, count - scene.axis.eta().len(), count - 1]);
+        let at_c = scene.xi.partition_point(|&xi| xi < 0.0).min(scene.xi.len() - 1) * scene.axis.eta().len();
+        places
+            .push(at_c + scene.axis.eta().partition_point(|&eta| eta < 0.0).min(scene.axis.eta().len() - 1));
         // A value beside none.
         let ends = (1..count).filter(|&k| pointwise[k].is_nan() != pointwise[k - 1].is_nan());
         places.extend(ends.take(COMPARED / 4).flat_map(|k| [k - 1, k]));

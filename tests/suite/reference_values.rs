@@ -1,11 +1,10 @@
 //! Every scene of `crates/report/src/reference` and `tests/reference_spline` against its 60-digit values: the one table of accuracy bounds.
 
 use crate::common::{Reference, Worst, references, references_in};
+use wheelrail::internal::missing_for_report_newton;
 use wheelrail::patch::Slicer;
-use wheelrail::separation::axis::EtaAxis;
-use wheelrail::separation::grid::Method;
-use wheelrail::separation::methods::report_newton;
-use wheelrail::separation::plan::{self, FULL_PRECISION};
+use wheelrail::separation::{EtaAxis, Method};
+use wheelrail::separation::{FULL_PRECISION, plan};
 use wheelrail_report::errors::{compare, over_contact};
 use wheelrail_report::reference::exact;
 
@@ -49,7 +48,7 @@ fn scale(reference: &Reference) -> f64 {
 fn errors(reference: &Reference, method: Option<Method>, tolerance: f64) -> (Worst, f64) {
     let placement = reference.placement().expect("a placement");
     let [xi, eta] = reference.scene.axes();
-    let plan = plan::plan(&placement, &xi, &EtaAxis::new(&eta), tolerance, method);
+    let plan = plan(&placement, &xi, &EtaAxis::new(&eta), tolerance, method);
     // Few columns are computed one by one, many by strips.
     let points = [0, 200, 2000].map(|columns| compare(reference, &placement, &plan.choice, columns)).concat();
     (Worst::of(&reference.name, &points), plan.error)
@@ -65,7 +64,7 @@ fn separation_keeps_its_digits() {
         let (mut relative, mut absolute) = (0f64, 0f64);
         for reference in &references {
             let placement = reference.placement().expect("a placement");
-            if method == Method::ReportNewton && report_newton::missing(&placement).is_some() {
+            if method == Method::ReportNewton && missing_for_report_newton(&placement).is_some() {
                 continue;
             }
             let (worst, _) = errors(reference, Some(method), FULL_PRECISION);
@@ -87,7 +86,7 @@ fn the_estimate_bounds_the_error_and_is_not_idle() {
     let forced = Method::ALL.map(|method| (Some(method), FULL_PRECISION));
     for reference in all_references() {
         let placement = reference.placement().expect("a placement");
-        let incomplete = report_newton::missing(&placement).is_some();
+        let incomplete = missing_for_report_newton(&placement).is_some();
         let methods = chosen.into_iter().chain(forced);
         for (method, tolerance) in
             methods.filter(|(method, _)| !(incomplete && *method == Some(Method::ReportNewton)))

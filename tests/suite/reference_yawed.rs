@@ -3,9 +3,7 @@
 use crate::common::{Reference, Worst, folder};
 use wheelrail::patch::Slicer;
 use wheelrail::placement::Placement;
-use wheelrail::separation::axis::EtaAxis;
-use wheelrail::separation::grid::Method;
-use wheelrail::separation::plan::{FULL_PRECISION, plan};
+use wheelrail::separation::{EtaAxis, FULL_PRECISION, Method, plan};
 use wheelrail_report::errors::{compare, over_contact};
 
 /// Largest relative error over both contact segments, and absolute error \[mm\] elsewhere.

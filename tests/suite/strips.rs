@@ -1,9 +1,7 @@
 //! Whole grids against points one by one, on every built-in pair: strips, joints on columns, masks, estimate.
 
 use wheelrail::placement::Placement;
-use wheelrail::separation::axis::EtaAxis;
-use wheelrail::separation::grid::Method;
-use wheelrail::separation::plan::{FULL_PRECISION, plan};
+use wheelrail::separation::{EtaAxis, FULL_PRECISION, Method, plan};
 use wheelrail_report::verification::built_in_pairs;
 
 /// Half widths \[mm\] of windows inside one segment, over some joints, and over most of the profile; and columns.
@@ -20,8 +18,8 @@ fn steps(a: f64, b: f64, n: usize) -> Vec<f64> {
 /// Largest |spectral − pointwise| \[mm\] over a window with columns on every joint, and the estimate for the former.
 fn difference(placement: &Placement, [half, reach]: [f64; 2], points: usize) -> (f64, f64) {
     let mut xi = steps(-0.9 * half, 1.1 * half, COLUMNS);
-    let sections = [&placement.rail().section, &placement.wheel().section];
-    let joints = sections.into_iter().flat_map(|section| &section.pieces).flat_map(|piece| piece.xi);
+    let sections = [placement.rail().section(), placement.wheel().section()];
+    let joints = sections.into_iter().flat_map(|section| section.joints([-half, half])).map(|(xi, _)| xi);
     xi.extend(joints.filter(|xi| xi.abs() < half));
     xi.sort_by(f64::total_cmp);
     xi.dedup();
@@ -29,7 +27,7 @@ fn difference(placement: &Placement, [half, reach]: [f64; 2], points: usize) -> 
     let mut plans = [Method::Spectral, Method::Pointwise]
         .map(|method| plan(placement, &xi, &axis, FULL_PRECISION, Some(method)));
     let [spectral, pointwise] = plans.each_mut().map(|plan| {
-        let mut s = vec![0.0; xi.len() * axis.eta.len()];
+        let mut s = vec![0.0; xi.len() * axis.eta().len()];
         plan.fill(placement, &xi, &axis, &mut s);
         s
     });

@@ -5,9 +5,9 @@ use std::time::{Duration, Instant};
 
 use crate::common::{profile, references};
 use wheelrail::case::{Run, SILENT};
-use wheelrail::load::feasibility::feasibility;
-use wheelrail::mesh::strips::{Counts, StripMesh};
-use wheelrail::numerics::roots::bracketed;
+use wheelrail::internal::bracketed;
+use wheelrail::load::feasibility;
+use wheelrail::mesh::{StripCounts, StripMesh};
 use wheelrail::patch::{End, Outline, Patch, Window};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Half, Profile, Section, Side, standards};
@@ -95,7 +95,7 @@ fn check(name: &str, placement: &Placement, delta: f64) -> Patch {
         assert!((enclosed - c.area).abs() < 2e-3 * area, "{name}: loops around {enclosed} of {}", c.area);
         assert!(c.holes.iter().all(|hole| shoelace(hole) < 0.0), "{name}: a hole that runs the other way");
     }
-    let mesh = StripMesh::new(placement, &patch, Counts::default()).expect("a mesh");
+    let mesh = StripMesh::new(placement, &patch, StripCounts::default()).expect("a mesh");
     let meshed: f64 = mesh.cells.iter().map(|cell| cell.area).sum();
     assert!((meshed / patch.area() - 1.0).abs() < 1e-6, "{name}: mesh of {meshed} over {}", patch.area());
     patch

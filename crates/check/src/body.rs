@@ -1,9 +1,9 @@
-//! One body as a coarse mesh: finds the segments that a ray meets first, and the heights measured there.
+//! A body as a coarse mesh. Finds the segments that a ray meets first, and the heights measured there.
 
-use super::meshes::{Hit, Mesh, Origin, Vector};
-use super::patch::{Patch, Place};
+use super::meshes::{Hit, Mesh, RayOrigin, Vector};
+use super::patch::{CurveMesh, SurfacePoint};
 use super::ray::{Height, foot, height};
-use super::sampler::Surface;
+use super::sampler::SampledSurface;
 
 /// Cells of the coarse mesh per local scale.
 const CELLS_PER_SCALE: f64 = 8.0;
@@ -12,7 +12,7 @@ const LEAST_CELLS: usize = 2;
 /// Cells of the coarse mesh around the axle, or along the rail.
 const CELLS_AROUND: usize = 12;
 
-/// Distance from a segment's end within which the neighbour counts too, as a share of the body's size:
+/// Distance from a segment's end, as a share of the body's size, within which the neighbour counts as well. It covers the
 /// rounding of the foot's position, which grows with the slope.
 pub(super) const JOINT: f64 = 1e-11;
 
@@ -20,17 +20,17 @@ pub(super) const JOINT: f64 = 1e-11;
 /// or end there.
 const NEARBY_CELLS: f64 = 2.0;
 
-/// Least ζ component of the normal: below it a ray is practically tangent, heights lose two digits, and
-/// neighbouring sheets cannot be distinguished.
+/// Least ζ component of the normal. Below it a ray is practically tangent, heights lose two digits, and neighbouring sheets
+/// cannot be distinguished.
 pub(super) const STEEPEST: f64 = 0.02;
 
 /// A body with its coarse mesh, which has only triangles that face the other body.
 pub(super) struct Solid {
     /// The surface of the body.
-    pub surface: Surface,
+    pub surface: SampledSurface,
     /// Largest distance from the origin that is meshed \[mm\].
     pub reach: f64,
-    patches: Vec<Patch>,
+    patches: Vec<CurveMesh>,
     mesh: Option<Mesh>,
     /// For each triangle of the mesh, its curve and its index in the patch.
     owners: Vec<(usize, usize)>,
@@ -38,7 +38,7 @@ pub(super) struct Solid {
 
 /// The result along a line parallel to ζ.
 #[derive(Debug, Clone)]
-pub(super) enum Found {
+pub(super) enum AlongZeta {
     /// Heights of all sheets that may be the outer one: one, or two at a joint.
     Heights(Vec<Height>),
     /// There is no surface.
@@ -52,14 +52,14 @@ pub(super) enum Found {
 impl Solid {
     /// Meshes a body around the ξ–η window, up to the given distance from the origin \[mm\]; `None` if its
     /// profile has a point that is not finite.
-    pub fn new(surface: Surface, reach: f64) -> Option<Self> {
+    pub fn new(surface: SampledSurface, reach: f64) -> Option<Self> {
         let v = surface.v_reach(reach);
         let mut patches = Vec::with_capacity(surface.curves.len());
         let (mut vertices, mut owners) = (Vec::new(), Vec::new());
         for (index, curve) in surface.curves.iter().enumerate() {
             let n = LEAST_CELLS.max((CELLS_PER_SCALE * curve.length / curve.scale).ceil() as usize);
             let patch =
-                Patch::new(&surface, index, spread(0.0, curve.length, n), spread(-v, v, CELLS_AROUND))?;
+                CurveMesh::new(&surface, index, spread(0.0, curve.length, n), spread(-v, v, CELLS_AROUND))?;
             for triangle in (0..patch.mesh.len()).filter(|&k| patch.mesh.normal(k).z > 0.0) {
                 vertices.extend(patch.mesh.corners(triangle));
                 owners.push((index, triangle));
@@ -72,7 +72,7 @@ impl Solid {
     }
 
     /// Returns the heights that the line through (ξ, η) meets first.
-    pub fn along_zeta(&self, xi: f64, eta: f64) -> Found {
+    pub fn along_zeta(&self, xi: f64, eta: f64) -> AlongZeta {
         let guesses = match self.coarse(xi, eta) {
             Some(coarse) => self.candidates(&coarse),
             None => self.all_ends(eta),
@@ -92,10 +92,10 @@ impl Solid {
             }
         }
         match (steep, found.is_empty()) {
-            (true, _) => Found::Steep,
-            (false, false) => Found::Heights(self.outermost(found)),
-            (false, true) if near => Found::Unresolved,
-            (false, true) => Found::Nothing,
+            (true, _) => AlongZeta::Steep,
+            (false, false) => AlongZeta::Heights(self.outermost(found)),
+            (false, true) if near => AlongZeta::Unresolved,
+            (false, true) => AlongZeta::Nothing,
         }
     }
 
@@ -103,7 +103,7 @@ impl Solid {
     fn outermost(&self, mut found: Vec<Height>) -> Vec<Height> {
         let sign = if self.surface.is_wheel() { 1.0 } else { -1.0 };
         found.sort_by(|a, b| (sign * a.zeta).total_cmp(&(sign * b.zeta)));
-        // At a joint the outermost height may be there by rounding only: then the next one counts too.
+        // The outermost height may be outermost only by rounding at a joint; the next one then counts, too.
         if let Some(inner) = found.iter().position(|height| !self.at_joint(&height.place)) {
             found.truncate(inner + 1);
         }
@@ -111,15 +111,15 @@ impl Solid {
     }
 
     /// Returns guesses on every curve, for lines that miss the coarse mesh near a silhouette or an end.
-    fn all_ends(&self, eta: f64) -> Vec<Place> {
+    fn all_ends(&self, eta: f64) -> Vec<SurfacePoint> {
         let curves = self.surface.curves.iter().enumerate();
-        curves.flat_map(|(curve, c)| [0.0, c.length].map(|t| Place { curve, t, v: eta })).collect()
+        curves.flat_map(|(curve, c)| [0.0, c.length].map(|t| SurfacePoint { curve, t, v: eta })).collect()
     }
 
-    fn coarse(&self, xi: f64, eta: f64) -> Option<Place> {
-        let origin = if self.surface.is_wheel() { Origin::Below } else { Origin::Above };
+    fn coarse(&self, xi: f64, eta: f64) -> Option<SurfacePoint> {
+        let origin = if self.surface.is_wheel() { RayOrigin::Below } else { RayOrigin::Above };
         let mesh = self.mesh.as_ref()?;
-        // Rays through an edge or vertex of the mesh may miss it: then look beside it.
+        // Rays through an edge or vertex of the mesh may miss it, so that places beside it are tried.
         let nudge = self.surface.size * f64::EPSILON.sqrt();
         let beside = [[0.0, 0.0], [1.0, 0.7], [-0.7, 1.0], [-1.0, -0.6], [0.6, -1.0]];
         let hit =
@@ -128,7 +128,7 @@ impl Solid {
     }
 
     /// Returns the coarse place, and the near ends of its neighbours if it is close to an end.
-    fn candidates(&self, coarse: &Place) -> Vec<Place> {
+    fn candidates(&self, coarse: &SurfacePoint) -> Vec<SurfacePoint> {
         let curves = &self.surface.curves;
         let mut all = vec![*coarse];
         let cell = |i: usize| {
@@ -141,7 +141,7 @@ impl Solid {
             if left > near {
                 break;
             }
-            all.push(Place { curve: i, t: curves[i].length, v: coarse.v });
+            all.push(SurfacePoint { curve: i, t: curves[i].length, v: coarse.v });
             left += curves[i].length * curves[i].speed(0.0);
         }
         let mut right = (curves[coarse.curve].length - coarse.t) * curves[coarse.curve].speed(0.0);
@@ -149,31 +149,31 @@ impl Solid {
             if right > near {
                 break;
             }
-            all.push(Place { curve: i, t: 0.0, v: coarse.v });
+            all.push(SurfacePoint { curve: i, t: 0.0, v: coarse.v });
             right += curve.length * curve.speed(0.0);
         }
         all
     }
 
-    fn on_curve(&self, place: &Place) -> bool {
+    fn on_curve(&self, place: &SurfacePoint) -> bool {
         let curve = &self.surface.curves[place.curve];
         let slack = self.slack(place);
         place.t >= -slack && place.t <= curve.length + slack
     }
 
     /// Returns whether a place is the end of its curve, up to rounding.
-    pub fn at_joint(&self, place: &Place) -> bool {
+    pub fn at_joint(&self, place: &SurfacePoint) -> bool {
         let curve = &self.surface.curves[place.curve];
         let slack = self.slack(place);
         place.t <= slack || place.t >= curve.length - slack
     }
 
-    fn slack(&self, place: &Place) -> f64 {
+    fn slack(&self, place: &SurfacePoint) -> f64 {
         JOINT * self.surface.size / self.surface.curves[place.curve].speed(place.t)
     }
 
     /// Returns whether a place is an end of the whole chain, up to rounding.
-    pub fn at_end(&self, place: &Place) -> bool {
+    pub fn at_end(&self, place: &SurfacePoint) -> bool {
         let last = self.surface.curves.len() - 1;
         let slack = self.slack(place);
         (place.curve == 0 && place.t <= slack)
@@ -181,13 +181,13 @@ impl Solid {
     }
 
     /// Returns the places on the coarse mesh, and on the curves around, that are closest to `point`.
-    pub fn near(&self, point: Vector) -> Vec<Place> {
+    pub fn near(&self, point: Vector) -> Vec<SurfacePoint> {
         let Some(mesh) = &self.mesh else { return Vec::new() };
         let place = self.own_place(mesh.closest_to(point));
         self.candidates(&place)
     }
 
-    fn own_place(&self, hit: Hit) -> Place {
+    fn own_place(&self, hit: Hit) -> SurfacePoint {
         let (curve, triangle) = self.owners[hit.triangle];
         self.patches[curve].place(&Hit { triangle, ..hit })
     }

@@ -1,9 +1,10 @@
-//! Finds closest points, of a point and a body and of the two bodies, by parry on meshes that close in.
+//! Finds the points closest to each other, of a point and a body and of two bodies, with parry on meshes that shrink around
+//! them.
 
 use super::body::{Solid, spread};
 use super::meshes::Vector;
-use super::patch::{Patch, Place};
-use super::sampler::Surface;
+use super::patch::{CurveMesh, SurfacePoint};
+use super::sampler::SampledSurface;
 
 /// First cell, as a share of the local scale.
 const FIRST_CELL: f64 = 1.0 / 16.0;
@@ -11,8 +12,7 @@ const FIRST_CELL: f64 = 1.0 / 16.0;
 const LAST_CELL: f64 = 1e-6;
 /// Number of cells a side.
 const CELLS: usize = 4;
-/// Factor from the cells of one mesh to those of the next: the place found on one mesh is then well inside
-/// the next.
+/// Factor from the cells of one mesh to those of the next. The place found on one mesh is then well inside the next one.
 const CLOSER: f64 = 0.125;
 
 /// Most meshes on the way in, moves sideways included.
@@ -22,14 +22,14 @@ const MOST_MESHES: usize = 200;
 /// tolerance shows below this size.
 const LAST_PAIR_CELL: f64 = 1e-5;
 
-/// Number of times that the feet of a pair are found anew from each other.
+/// Number of times that each foot of a pair is found anew from the other foot.
 const ALTERNATIONS: usize = 4;
 
 /// A closest point on a body.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Closest {
     /// Place on the body.
-    pub place: Place,
+    pub place: SurfacePoint,
     /// Coordinates of the point \[mm\].
     pub point: Vector,
     /// Distance of the point \[mm\].
@@ -38,15 +38,15 @@ pub(super) struct Closest {
     pub error: f64,
 }
 
-/// Returns the point of a body closest to `point`, over all curves around the coarse answer.
+/// Returns the point of a body that is closest to `point`, over all curves near the coarse result.
 pub(super) fn to_point(solid: &Solid, point: Vector) -> Option<Closest> {
     let near = solid.near(point).into_iter();
     near.filter_map(|start| on_curve(&solid.surface, start, point))
         .min_by(|a, b| a.distance.total_cmp(&b.distance))
 }
 
-fn on_curve(surface: &Surface, start: Place, point: Vector) -> Option<Closest> {
-    let mut window = Closing::new(start, FIRST_CELL);
+fn on_curve(surface: &SampledSurface, start: SurfacePoint, point: Vector) -> Option<Closest> {
+    let mut window = ClosingWindow::new(start, FIRST_CELL);
     for _ in 0..MOST_MESHES {
         let patch = window.patch(surface)?;
         let hit = patch.mesh.closest_to(point);
@@ -61,8 +61,8 @@ fn on_curve(surface: &Surface, start: Place, point: Vector) -> Option<Closest> {
 }
 
 /// Returns the closest points of the two bodies near a pair of places: \[on the rail, on the wheel\].
-pub(super) fn of_bodies(rail: &Solid, wheel: &Solid, start: [Place; 2]) -> Option<[Closest; 2]> {
-    let mut windows = start.map(|place| Closing::new(place, FIRST_CELL));
+pub(super) fn of_bodies(rail: &Solid, wheel: &Solid, start: [SurfacePoint; 2]) -> Option<[Closest; 2]> {
+    let mut windows = start.map(|place| ClosingWindow::new(place, FIRST_CELL));
     let surfaces = [&rail.surface, &wheel.surface];
     for _ in 0..MOST_MESHES {
         let patches = [windows[0].patch(surfaces[0])?, windows[1].patch(surfaces[1])?];
@@ -94,36 +94,37 @@ pub(super) fn of_bodies(rail: &Solid, wheel: &Solid, start: [Place; 2]) -> Optio
     feet
 }
 
-/// A window of cells that closes in on a place.
-struct Closing {
-    place: Place,
+/// A window of cells around a place. It shrinks from mesh to mesh.
+struct ClosingWindow {
+    place: SurfacePoint,
     cell: f64,
 }
 
-impl Closing {
-    fn new(place: Place, cell: f64) -> Self {
+impl ClosingWindow {
+    fn new(place: SurfacePoint, cell: f64) -> Self {
         Self { place, cell }
     }
 
     /// Returns the cell sizes in t and v.
-    fn cells(&self, surface: &Surface) -> [f64; 2] {
+    fn cells(&self, surface: &SampledSurface) -> [f64; 2] {
         let h = self.cell * surface.curves[self.place.curve].scale;
         [h, surface.v_cell(self.place.curve, self.place.t, h)]
     }
 
-    fn patch(&self, surface: &Surface) -> Option<Patch> {
+    fn patch(&self, surface: &SampledSurface) -> Option<CurveMesh> {
         let [h, k] = self.cells(surface);
-        let (Place { curve, t, v }, half) = (self.place, CELLS as f64 / 2.0);
+        let (SurfacePoint { curve, t, v }, half) = (self.place, CELLS as f64 / 2.0);
         let length = surface.curves[curve].length;
         let t = spread((t - half * h).max(0.0), (t + half * h).min(length), CELLS);
-        Patch::new(surface, curve, t, spread(v - half * k, v + half * k, CELLS))
+        CurveMesh::new(surface, curve, t, spread(v - half * k, v + half * k, CELLS))
     }
 
-    /// Moves to a place of the patch; closes in if the place is inside, and returns whether it is.
-    fn move_to(&mut self, surface: &Surface, patch: &Patch, place: Place) -> bool {
+    /// Moves the window to a place of the patch. If the place is inside the patch, the window shrinks. Returns whether it
+    /// was inside.
+    fn move_to(&mut self, surface: &SampledSurface, patch: &CurveMesh, place: SurfacePoint) -> bool {
         let length = surface.curves[place.curve].length;
         let inside = !patch.at_border(&place, length);
-        self.place = Place { t: place.t.clamp(0.0, length), ..place };
+        self.place = SurfacePoint { t: place.t.clamp(0.0, length), ..place };
         if inside {
             self.cell *= CLOSER;
         }

@@ -3,31 +3,31 @@
 use std::time::Instant;
 use wheelrail::nalgebra::{Unit, Vector3};
 
-use super::body::{Found, JOINT, STEEPEST, Solid};
+use super::body::{AlongZeta, JOINT, STEEPEST, Solid};
 use super::closest::{of_bodies, to_point};
 use super::floor::{Floor, floors};
 use super::meshes::Vector;
-use super::patch::Place;
+use super::patch::SurfacePoint;
 use super::points::spread_points;
 use super::ray::{FIRST_CELL, Height, extrapolated};
 use super::relation::{Above, RELATION, normals_between};
 use super::report::{Counts, Differences, Distances, Orders, Report};
 use super::request::{Answer, Request};
-use super::sampler::{Curve, Surface};
+use super::sampler::{SampledCurve, SampledSurface};
 use wheelrail::error::{Error, Result};
-use wheelrail::numerics::largest;
+use wheelrail::internal::largest;
 use wheelrail::placement::{Body, Placement};
 use wheelrail::profile::Shape;
 
-/// Largest difference that counts as agreement, as a multiple of the larger of floor and own estimate: maxima
-/// over a few dozen points of the closed forms represent those over all points.
+/// Largest difference that counts as agreement, as a multiple of the larger one of floor and own estimate. The maxima over
+/// a few dozen points of the closed forms stand for those over all points.
 const SAFETY: f64 = 4.0;
 
 /// Error that the program itself may have, in roundings of the largest coordinate: it promises 2e-12 mm on
 /// profiles of 150 mm, 60 roundings.
 const ROUNDINGS: f64 = 64.0;
 
-/// Largest own estimate that can decide, as a share of the body's size \[1\].
+/// Largest error estimate of the checker, as a share of the body's size, with which it can decide.
 const RESOLVED: f64 = 1e-11;
 
 /// Number of points at which closest distances are taken.
@@ -60,7 +60,7 @@ pub fn check(
         let expected = "finite points over a finite window";
         Error::new("check: profiles", "points that are not finite", expected, "check profiles and grid")
     };
-    let [rail, wheel] = [Surface::rail(placement), Surface::wheel(placement)]
+    let [rail, wheel] = [SampledSurface::rail(placement), SampledSurface::wheel(placement)]
         .map(|surface| Solid::new(surface, reach).filter(|_| reach.is_finite()).ok_or_else(not_finite));
     let (rail, wheel) = (rail?, wheel?);
     let floors = floors(smallest_radius(placement), placement.rolling_radius())?;
@@ -83,18 +83,18 @@ fn smallest_radius(placement: &Placement) -> f64 {
     let segments =
         [placement.rail(), placement.wheel()].into_iter().flat_map(|body| body.profile().segments());
     let radii = segments.filter_map(|segment| match &segment.shape {
-        Shape::Arc(arc) => Some(arc.radius.abs()),
+        Shape::Arc(arc) => Some(arc.radius().abs()),
         Shape::Polynomial(_) => None,
     });
     radii.fold(placement.rolling_radius() / 8.0, f64::min)
 }
 
-/// Returns the distance of C from the profile \[mm\] and the angle between the frame's ξ axis and its tangent
-/// \[rad\]; at an edge ξ is no tangent, and the angle is 0.
+/// Returns the distance \[mm\] of C from the profile, and the angle \[rad\] between the frame's ξ axis and the profile's
+/// tangent. At an edge ξ is no tangent, and the angle is 0.
 fn contact_point(body: &Body) -> [f64; 2] {
-    let frame = body.point.station;
-    let segment = &body.profile().segments()[body.point.segment];
-    let curve = Curve::of_segment(segment, [frame.x, frame.z], body.profile().extent());
+    let frame = body.point().station;
+    let segment = &body.profile().segments()[body.point().segment];
+    let curve = SampledCurve::of_segment(segment, [frame.x, frame.z], body.profile().extent());
     let mut t = curve.nearest_to_origin();
     for _ in 0..CONTACT_STEPS {
         let [x, z] = curve.point(t);
@@ -125,7 +125,7 @@ struct Tally<'a> {
     bracket: f64,
     outside: usize,
     estimate: f64,
-    near: Vec<Near>,
+    near: Vec<ComparedFeet>,
 }
 
 /// A difference, the allowed difference, and (ξ, η).
@@ -133,12 +133,12 @@ type Compared = (f64, f64, [f64; 2]);
 
 /// A compared point whose feet are inside their segments.
 #[derive(Clone, Copy)]
-struct Near {
+struct ComparedFeet {
     at: [f64; 2],
     /// The program's s \[mm\].
     separation: f64,
     /// Places on the rail and on the wheel.
-    places: [Place; 2],
+    places: [SurfacePoint; 2],
     /// Points at these places \[mm\].
     points: [Vector; 2],
 }
@@ -176,11 +176,11 @@ impl<'a> Tally<'a> {
         self.counts.points += 1;
         let missing = answer.separation.is_nan();
         match (self.rail.along_zeta(xi, eta), self.wheel.along_zeta(xi, eta)) {
-            (Found::Unresolved, _) | (_, Found::Unresolved) => self.counts.unresolved += 1,
-            (Found::Steep, _) | (_, Found::Steep) => self.counts.steep_or_end += 1,
-            (Found::Nothing, _) | (_, Found::Nothing) if missing => self.counts.no_surface += 1,
-            (Found::Nothing, _) | (_, Found::Nothing) => self.counts.surface_disputed += 1,
-            (Found::Heights(rail), Found::Heights(wheel)) => {
+            (AlongZeta::Unresolved, _) | (_, AlongZeta::Unresolved) => self.counts.unresolved += 1,
+            (AlongZeta::Steep, _) | (_, AlongZeta::Steep) => self.counts.steep_or_end += 1,
+            (AlongZeta::Nothing, _) | (_, AlongZeta::Nothing) if missing => self.counts.no_surface += 1,
+            (AlongZeta::Nothing, _) | (_, AlongZeta::Nothing) => self.counts.surface_disputed += 1,
+            (AlongZeta::Heights(rail), AlongZeta::Heights(wheel)) => {
                 let ends = |solid: &Solid, all: &[Height]| all.iter().all(|h| solid.at_end(&h.place));
                 if ends(self.rail, &rail) || ends(self.wheel, &wheel) {
                     self.counts.steep_or_end += 1;
@@ -218,7 +218,7 @@ impl<'a> Tally<'a> {
         if let ([rail], [wheel]) = (rail, wheel) {
             self.bracket = self.bracket.max(bracket[1] - bracket[0]);
             let points = [rail, wheel].map(|h| Vector::new(at[0], at[1], h.zeta));
-            self.near.push(Near { at, separation: s, places: [rail.place, wheel.place], points });
+            self.near.push(ComparedFeet { at, separation: s, places: [rail.place, wheel.place], points });
         }
         let vector = |normal: Option<_>| {
             normal.map_or(Vector::NAN, |n: Unit<Vector3<f64>>| Vector::from_array(n.into_inner().into()))
@@ -230,7 +230,7 @@ impl<'a> Tally<'a> {
     fn compare_normals(&mut self, solid: &Solid, at: [f64; 2], normal: Vector, heights: &[Height]) {
         let floor = self.floor(|f| f.normal);
         let differences = heights.iter().map(|h| {
-            // Directions are differences: those of a short curve have lost as many digits as it is shorter.
+            // A direction is a difference of points. The shorter its curve, the more digits it has lost.
             let digits = 1.0 + solid.surface.size / solid.surface.curves[h.place.curve].scale;
             let rounding = ROUNDINGS * f64::EPSILON * digits / h.normal.z;
             let allowed = SAFETY * floor.max(h.normal_error) + rounding;
@@ -248,15 +248,15 @@ impl<'a> Tally<'a> {
         answer: &mut dyn FnMut(f64, f64) -> Answer,
     ) -> Distances {
         let none = Distances { bodies_mm: f64::NAN, ..Distances::default() };
-        let close = |n: &&Near| n.separation.abs() <= NEARBY * wheel_radius;
-        let near: Vec<&Near> = self.near.iter().filter(close).collect();
+        let close = |n: &&ComparedFeet| n.separation.abs() <= NEARBY * wheel_radius;
+        let near: Vec<&ComparedFeet> = self.near.iter().filter(close).collect();
         let Some(least) = near.iter().min_by(|a, b| a.separation.total_cmp(&b.separation)) else {
             return none;
         };
         let lift = approach + LIFT * wheel_radius - least.separation.min(0.0);
         let surface = self.wheel.surface.lifted(lift);
         let Some(wheel) = Solid::new(surface, self.wheel.reach) else { return none };
-        let mut relation = Relation { tally: self, all: Vec::new(), widest: 0.0 };
+        let mut relation = DistanceRelation { tally: self, all: Vec::new(), widest: 0.0 };
         let every = near.len().div_ceil(DISTANCES);
         for n in near.iter().step_by(every) {
             let separation = n.separation + lift;
@@ -272,7 +272,7 @@ impl<'a> Tally<'a> {
             out.bodies_separation_mm = answer(at[0], at[1]).separation + lift;
             // At the end of a body the foot along ζ depends on rounding.
             let foot = match self.rail.along_zeta(at[0], at[1]) {
-                Found::Heights(rail) if !wheel.at_end(&above.place) => Some(rail[0].place),
+                AlongZeta::Heights(rail) if !wheel.at_end(&above.place) => Some(rail[0].place),
                 _ => None,
             };
             if let Some(foot) = foot.filter(|foot| !self.rail.at_end(foot)) {
@@ -309,13 +309,13 @@ impl<'a> Tally<'a> {
 }
 
 /// The relation between distances along ζ and closest distances, point by point.
-struct Relation<'a> {
+struct DistanceRelation<'a> {
     tally: &'a Tally<'a>,
     all: Vec<Compared>,
     widest: f64,
 }
 
-impl Relation<'_> {
+impl DistanceRelation<'_> {
     /// Checks s·min n ≤ d ≤ s·max n between a point and the body `solid`.
     fn hold(&mut self, solid: &Solid, above: &Above) {
         let Some(closest) = to_point(solid, above.point) else {

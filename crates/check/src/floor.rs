@@ -1,17 +1,16 @@
 //! Measures the checker's own error on closed forms, before it judges anything.
 //!
-//! A plane and a cylinder take the rail's way through the checker, a cone and a torus the wheel's. Their
-//! implicit equations, evaluated in twice the working precision, give the error of every measured point.
+//! A plane and a cylinder pass through the checker as rails, a cone and a torus as wheels. Their implicit equations,
+//! evaluated in twice the working precision, give the error of every measured point.
 
 use serde::Serialize;
 
-use super::body::{Found, Solid};
+use super::body::{AlongZeta, Solid};
 use super::closest::to_point;
 use super::meshes::Vector;
-use super::sampler::Surface;
+use super::sampler::SampledSurface;
 use wheelrail::error::Result;
-use wheelrail::numerics::largest;
-use wheelrail::numerics::twice::Twice;
+use wheelrail::internal::{Twice, largest};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Half, Profile, Segment, Station};
 
@@ -60,7 +59,7 @@ pub(super) fn floors(radius: f64, wheel_radius: f64) -> Result<Vec<Floor>> {
     for (forms, arcs, x) in pairs {
         let profile = |k: usize| Profile::new(forms[k], "closed form", vec![Segment::arc(arcs[k])]);
         let placement = Pair::new(profile(0)?, profile(1)?, wheel_radius)?.placed(x, x, 0.0)?;
-        let bodies = [Surface::rail(&placement), Surface::wheel(&placement)];
+        let bodies = [SampledSurface::rail(&placement), SampledSurface::wheel(&placement)];
         for (k, surface) in bodies.into_iter().enumerate() {
             let exact = Implicit::new(&placement, surface.is_wheel(), arcs[k]);
             out.extend(
@@ -77,7 +76,7 @@ fn measure(solid: &Solid, exact: &Implicit, form: &'static str, reach: f64) -> F
     for i in 0..RAYS * RAYS {
         let at = |k: i32| reach * f64::from(2 * k - RAYS + 1) / f64::from(RAYS - 1);
         let (xi, eta) = (at(i / RAYS), at(i % RAYS));
-        let Found::Heights(heights) = solid.along_zeta(xi, eta) else {
+        let AlongZeta::Heights(heights) = solid.along_zeta(xi, eta) else {
             floor.ray_mm = f64::INFINITY;
             continue;
         };
@@ -86,7 +85,7 @@ fn measure(solid: &Solid, exact: &Implicit, form: &'static str, reach: f64) -> F
         let (distance, normal) = exact.distance_and_normal(point);
         worse(&mut floor.ray_mm, distance.abs());
         worse(&mut floor.normal, height.normal.distance(normal));
-        // Off the surface, on the side of the other body.
+        // The point lies off the surface, on the side of the other body.
         let away = if solid.surface.is_wheel() { -normal } else { normal };
         let point = point + away * (reach / 64.0);
         let error = to_point(solid, point)
@@ -107,7 +106,7 @@ struct Implicit {
 impl Implicit {
     fn new(placement: &Placement, wheel: bool, arc: Arc) -> Self {
         let body = if wheel { placement.wheel() } else { placement.rail() };
-        Self { frame: body.point.station, axle: wheel.then_some(placement.wheel_radius()), arc }
+        Self { frame: body.point().station, axle: wheel.then_some(placement.wheel_radius()), arc }
     }
 
     fn distance_and_normal(&self, point: Vector) -> (f64, Vector) {
@@ -116,7 +115,7 @@ impl Implicit {
         let along = two(point.x, cos) - two(point.z, sin) + x;
         let up = two(point.x, sin) + two(point.z, cos) + z;
         let w = self.axle.map(|r| -up + r);
-        // The meridian's height of this point.
+        // Height of the meridian's point that makes this point of the surface.
         let meridian = match (self.axle, w) {
             (Some(r), Some(w)) => -(w * w + two(point.y, point.y)).sqrt() + r,
             _ => up,
@@ -130,7 +129,7 @@ impl Implicit {
     }
 
     fn meridian(&self, x: Twice, z: Twice) -> (f64, [f64; 2]) {
-        let start = self.arc.start;
+        let start = self.arc.start();
         let Some([a, b]) = self.arc.centre() else {
             let distance = (z - start.z) * start.cos - (x - start.x) * start.sin;
             return (distance.into(), [-start.sin, start.cos]);
@@ -138,6 +137,6 @@ impl Implicit {
         let (dx, dz) = (x - a, z - b);
         let distance = (dx * dx + dz * dz).sqrt();
         let unit = [f64::from(dx / distance), f64::from(dz / distance)];
-        (f64::from(distance - self.arc.radius.abs()), unit)
+        (f64::from(distance - self.arc.radius().abs()), unit)
     }
 }

@@ -1,8 +1,7 @@
 //! The one module that uses parry3d: triangle meshes, rays along ζ, closest points.
 //!
-//! It uses the f64 build, because f32 has 5e-5 mm of noise at the axle's distance, and its triangle–triangle
-//! distance was found to return a false 0. parry gives nonsense for meshes with NaN (distance 0), so none is
-//! ever built.
+//! It uses parry's f64 build: f32 has 5e-5 mm of noise at the axle's distance, and its distance between triangles was found
+//! to return a false 0. For meshes with NaN parry returns nonsense (distance 0), so that no such mesh is ever built.
 
 use parry3d_f64::math::Pose;
 use parry3d_f64::query::details::local_ray_intersection_with_triangle;
@@ -28,7 +27,7 @@ pub(super) struct Hit {
 
 /// The end of ζ from which a ray starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Origin {
+pub(super) enum RayOrigin {
     /// Below everything: the ray goes up and meets the lowest sheet.
     Below,
     /// Above everything: the ray goes down and meets the highest sheet.
@@ -47,12 +46,12 @@ impl Mesh {
     /// Returns the first triangle that the line (ξ, η) meets from the origin; `None` beside the mesh.
     ///
     /// The ray starts close to the mesh's box, so that its length costs no digits.
-    pub fn along_zeta(&self, xi: f64, eta: f64, origin: Origin) -> Option<Hit> {
+    pub fn along_zeta(&self, xi: f64, eta: f64, origin: RayOrigin) -> Option<Hit> {
         let bounds = self.0.local_aabb();
         let margin = bounds.extents().max_element();
         let (start, direction) = match origin {
-            Origin::Below => (bounds.mins.z - margin, Vector::Z),
-            Origin::Above => (bounds.maxs.z + margin, -Vector::Z),
+            RayOrigin::Below => (bounds.mins.z - margin, Vector::Z),
+            RayOrigin::Above => (bounds.maxs.z + margin, -Vector::Z),
         };
         let ray = Ray::new(Vector::new(xi, eta, start), direction);
         let triangle = self.0.cast_local_ray_and_get_normal(&ray, f64::MAX, false)?.subshape as usize;

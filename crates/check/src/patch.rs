@@ -1,10 +1,10 @@
 //! Meshes over the parameter plane of one curve: rectangular cells of two triangles each.
 
 use super::meshes::{Hit, Mesh, Vector};
-use super::sampler::Surface;
+use super::sampler::SampledSurface;
 
 /// A mesh over the product of ascending parameter values.
-pub(super) struct Patch {
+pub(super) struct CurveMesh {
     /// The mesh of the cells.
     pub mesh: Mesh,
     curve: usize,
@@ -14,7 +14,7 @@ pub(super) struct Patch {
 
 /// A point of a surface, given by its parameters.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct SurfacePoint {
     /// Index of the curve.
     pub curve: usize,
     /// Parameter along the curve.
@@ -23,9 +23,9 @@ pub(super) struct Place {
     pub v: f64,
 }
 
-impl Patch {
+impl CurveMesh {
     /// Makes the patch over t × v; `None` if a point is not finite.
-    pub fn new(surface: &Surface, curve: usize, t: Vec<f64>, v: Vec<f64>) -> Option<Self> {
+    pub fn new(surface: &SampledSurface, curve: usize, t: Vec<f64>, v: Vec<f64>) -> Option<Self> {
         let vertices: Vec<Vector> =
             t.iter().flat_map(|&t| v.iter().map(move |&v| surface.point(curve, t, v))).collect();
         let triangles = cells(t.len(), v.len());
@@ -33,7 +33,7 @@ impl Patch {
     }
 
     /// Returns the parameters of a hit.
-    pub fn place(&self, hit: &Hit) -> Place {
+    pub fn place(&self, hit: &Hit) -> SurfacePoint {
         let columns = self.v.len() - 1;
         let (cell, second) = (hit.triangle / 2, hit.triangle % 2);
         let (i, j) = (cell / columns, cell % columns);
@@ -41,12 +41,12 @@ impl Patch {
         // Corners (0,0), (1,0), (1,1) or (0,0), (1,1), (0,1).
         let (a, across) = if second == 0 { (b + c, c) } else { (b, b + c) };
         let between = |x: &[f64], k: usize, share: f64| x[k] + (x[k + 1] - x[k]) * share;
-        Place { curve: self.curve, t: between(&self.t, i, a), v: between(&self.v, j, across) }
+        SurfacePoint { curve: self.curve, t: between(&self.t, i, a), v: between(&self.v, j, across) }
     }
 
     /// Returns whether a place is in the outer ring of cells, so that the true place may be outside; ends of
     /// the curve (0 and `length`) are no border.
-    pub fn at_border(&self, place: &Place, length: f64) -> bool {
+    pub fn at_border(&self, place: &SurfacePoint, length: f64) -> bool {
         let outer = |x: &[f64], value: f64, ends: [f64; 2]| {
             let last = x.len() - 1;
             (value < x[1] && x[0] > ends[0]) || (value > x[last - 1] && x[last] < ends[1])

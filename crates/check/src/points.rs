@@ -1,10 +1,9 @@
 //! Chooses the points of the check: window, joints, tips, boundary and deepest points.
 
 use super::request::Request;
-use super::sampler::Surface;
-use wheelrail::numerics::roots::bracketed;
+use super::sampler::SampledSurface;
+use wheelrail::internal::{bracketed, turning_points};
 use wheelrail::patch::Slicer;
-use wheelrail::patch::turning_points;
 use wheelrail::placement::Placement;
 
 /// Numbers of lines of the regular grid in ξ and η, with the edges of the window.
@@ -19,8 +18,8 @@ const LOOP_POINTS: usize = 8;
 pub(super) fn spread_points(
     placement: &Placement,
     request: &Request,
-    rail: &Surface,
-    wheel: &Surface,
+    rail: &SampledSurface,
+    wheel: &SampledSurface,
 ) -> Vec<[f64; 2]> {
     let window = &request.window;
     let at = |[a, b]: [f64; 2], k: usize, n: usize| {
@@ -43,7 +42,7 @@ fn within(value: f64, [low, high]: [f64; 2]) -> bool {
 
 /// Returns the deepest midplane point, the tips, and points of the boundary s = δ as the program finds them.
 ///
-/// Slices are enough: loops with their areas cost far more than the check itself if the wheel is yawed.
+/// Slices are enough. If the wheel is yawed, loops with their areas cost far more than the whole check.
 fn boundary(placement: &Placement, request: &Request) -> Vec<[f64; 2]> {
     let Some([first, last]) = placement.overlap() else { return Vec::new() };
     let [from, to] = request.window.xi;
@@ -75,7 +74,7 @@ fn boundary(placement: &Placement, request: &Request) -> Vec<[f64; 2]> {
 }
 
 /// Returns points over the joints of one body, in the midplane and towards both edges of the window.
-fn joints(surface: &Surface, eta: [f64; 2]) -> Vec<[f64; 2]> {
+fn joints(surface: &SampledSurface, eta: [f64; 2]) -> Vec<[f64; 2]> {
     let ends = surface.curves.iter().enumerate().flat_map(|(k, c)| [(k, 0.0), (k, c.length)]);
     ends.flat_map(|(curve, t)| {
         [0.0, 0.5 * eta[0], 0.75 * eta[1]].map(|v| {

@@ -1,25 +1,25 @@
 //! Measures the height of a surface over (ξ, η) by rays on meshes.
 //!
-//! A coarse mesh of the whole body gives the segment that is met, and about where. The foot is then meshed
-//! anew with cells that halve from level to level, while the ray keeps its relative position inside the cell.
-//! The chordal error is then a power series c₂h² + c₃h³ + …, and Richardson's table removes it. One last mesh
-//! of very small cells gives a rigorous bracket.
+//! A coarse mesh of the whole body tells the segment that is met, and the approximate place. The foot is then meshed anew
+//! with cells that halve from level to level, while the ray keeps its relative position inside its cell. The chordal error
+//! is then a power series c₂h² + c₃h³ + …, which Richardson's table removes. A last mesh of very small cells gives a
+//! rigorous bracket.
 
-use super::meshes::{Origin, Vector};
-use super::patch::{Patch, Place};
-use super::sampler::Surface;
+use super::meshes::{RayOrigin, Vector};
+use super::patch::{CurveMesh, SurfacePoint};
+use super::sampler::SampledSurface;
 
 /// Cells of the first level, as a share of the local scale (radius or length). Larger cells leave terms of
 /// high order, smaller ones rounding.
 pub(super) const FIRST_CELL: f64 = 1.0 / 32.0;
-/// Number of levels; the cells of each are half of those of the level before.
+/// Number of levels. The cells of each level are half as large as those of the previous one.
 const LEVELS: usize = 5;
 
 /// Most times that the first cell is divided by four while the table has not converged.
 const REFINEMENTS: i32 = 3;
 
-/// Cell of the bracket's mesh, as a share of the local scale: its chordal bound, about a quarter of the
-/// square, is then near rounding, and the cell itself still has seven digits.
+/// Cell of the bracket's mesh, as a share of the local scale. Its chordal bound, about a quarter of the square, is near
+/// rounding, and the cell itself still has seven digits.
 const BRACKET_CELL: f64 = 1e-6;
 
 /// Position of the ray inside its cell: off the diagonal and off every symmetry, where the error has no h².
@@ -32,7 +32,7 @@ const NEWTON: usize = 40;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Height {
     /// Place on the surface.
-    pub place: Place,
+    pub place: SurfacePoint,
     /// Extrapolated ζ \[mm\].
     pub zeta: f64,
     /// Estimated error of the extrapolation \[mm\].
@@ -48,7 +48,7 @@ pub(super) struct Height {
 }
 
 /// Returns the foot on one curve or its continuation: solves (ξ, η) of X(t, v) by Newton steps from a guess.
-pub(super) fn foot(surface: &Surface, guess: Place, xi: f64, eta: f64) -> Option<Place> {
+pub(super) fn foot(surface: &SampledSurface, guess: SurfacePoint, xi: f64, eta: f64) -> Option<SurfacePoint> {
     let mut place = guess;
     let curve = &surface.curves[place.curve];
     let mut last = f64::INFINITY;
@@ -59,7 +59,7 @@ pub(super) fn foot(surface: &Surface, guess: Place, xi: f64, eta: f64) -> Option
         let determinant = along.x * around.y - along.y * around.x;
         let dt = (dx * around.y - dy * around.x) / determinant;
         let dv = (dy * along.x - dx * along.y) / determinant;
-        // A sheet turns by about one over its scale: longer steps leave it.
+        // A sheet turns by about one radian over its scale; longer steps would leave it.
         let limit = 0.5 * curve.scale;
         let step = dt.clamp(-limit, limit);
         (place.t, place.v) = (place.t + step, place.v + dv);
@@ -67,7 +67,7 @@ pub(super) fn foot(surface: &Surface, guess: Place, xi: f64, eta: f64) -> Option
         if !size.is_finite() {
             return None;
         }
-        // Below this size steps are rounding and no longer shrink.
+        // Steps below this size are rounding, and no longer shrink.
         if size < 1e3 * f64::EPSILON && size >= 0.5 * last || size == 0.0 {
             return Some(place);
         }
@@ -77,13 +77,14 @@ pub(super) fn foot(surface: &Surface, guess: Place, xi: f64, eta: f64) -> Option
 }
 
 /// Returns the height at a foot; `None` if the sheet is vertical there.
-pub(super) fn height(surface: &Surface, place: Place, xi: f64, eta: f64) -> Option<Height> {
+pub(super) fn height(surface: &SampledSurface, place: SurfacePoint, xi: f64, eta: f64) -> Option<Height> {
     let bracket = bracket(surface, place, xi, eta)?;
     let rounding = rounding(surface, bracket.1);
-    let mut best: Option<Table> = None;
+    let mut best: Option<RichardsonTable> = None;
     for refinement in 0..=REFINEMENTS {
         let first = FIRST_CELL / 4f64.powi(refinement);
-        let Some(table) = heights(surface, place, xi, eta, first).map(|z| Table::new(&z, rounding)) else {
+        let Some(table) = heights(surface, place, xi, eta, first).map(|z| RichardsonTable::new(&z, rounding))
+        else {
             continue;
         };
         if best.as_ref().is_none_or(|b| table.error < b.error) {
@@ -107,40 +108,46 @@ pub(super) fn height(surface: &Surface, place: Place, xi: f64, eta: f64) -> Opti
 }
 
 /// Returns the rounding of a height \[mm\]: that of coordinates as large as the profile, over a slope.
-fn rounding(surface: &Surface, normal_zeta: f64) -> f64 {
+fn rounding(surface: &SampledSurface, normal_zeta: f64) -> f64 {
     f64::EPSILON * surface.size / normal_zeta
 }
 
 /// Returns the heights on meshes of 3 × 3 cells, with the foot at the same relative position in the middle
 /// cell.
-fn heights(surface: &Surface, place: Place, xi: f64, eta: f64, first: f64) -> Option<[f64; LEVELS]> {
+fn heights(
+    surface: &SampledSurface,
+    place: SurfacePoint,
+    xi: f64,
+    eta: f64,
+    first: f64,
+) -> Option<[f64; LEVELS]> {
     let h = first * surface.curves[place.curve].scale;
     let k = surface.v_cell(place.curve, place.t, h);
     let mut out = [f64::NAN; LEVELS];
     for (level, zeta) in out.iter_mut().enumerate() {
         let share = 0.5f64.powi(level as i32);
         let patch = around(surface, place, [h * share, k * share])?;
-        *zeta = patch.mesh.along_zeta(xi, eta, Origin::Below)?.point.z;
+        *zeta = patch.mesh.along_zeta(xi, eta, RayOrigin::Below)?.point.z;
     }
     Some(out)
 }
 
 /// Returns 3 × 3 cells with the place inside the middle one.
-fn around(surface: &Surface, place: Place, [h, k]: [f64; 2]) -> Option<Patch> {
+fn around(surface: &SampledSurface, place: SurfacePoint, [h, k]: [f64; 2]) -> Option<CurveMesh> {
     let nodes = |x: f64, cell: f64, inside: f64| {
         [-1.0, 0.0, 1.0, 2.0].iter().map(|i| x + (i - inside) * cell).collect()
     };
-    Patch::new(surface, place.curve, nodes(place.t, h, INSIDE[0]), nodes(place.v, k, INSIDE[1]))
+    CurveMesh::new(surface, place.curve, nodes(place.t, h, INSIDE[0]), nodes(place.v, k, INSIDE[1]))
 }
 
 /// Returns a rigorous bracket of ζ, and the least ζ component of the normal around the foot.
-fn bracket(surface: &Surface, place: Place, xi: f64, eta: f64) -> Option<([f64; 2], f64)> {
+fn bracket(surface: &SampledSurface, place: SurfacePoint, xi: f64, eta: f64) -> Option<([f64; 2], f64)> {
     let h = BRACKET_CELL * surface.curves[place.curve].scale;
     let k = surface.v_cell(place.curve, place.t, h);
     let patch = around(surface, place, [h, k])?;
-    let hit = patch.mesh.along_zeta(xi, eta, Origin::Below)?;
+    let hit = patch.mesh.along_zeta(xi, eta, RayOrigin::Below)?;
     let [apart, turn] = surface.chordal_bound(place.curve, place.t, [h, k]);
-    // The normal turns by less than three cells' worth over the patch.
+    // Over the patch the normal turns by less than it can turn over three cells.
     let least = patch.mesh.normal(hit.triangle).z - 3.0 * turn;
     if least.is_nan() || least <= 0.0 {
         return None;
@@ -151,7 +158,7 @@ fn bracket(surface: &Surface, place: Place, xi: f64, eta: f64) -> Option<([f64; 
 
 /// Returns the normal of the cell centred on the place, its diagonals' cross product: it is even in h, so
 /// that the errors in h², h⁴, … can be removed.
-fn normal(surface: &Surface, place: Place) -> (Vector, f64) {
+fn normal(surface: &SampledSurface, place: SurfacePoint) -> (Vector, f64) {
     let h = FIRST_CELL * surface.curves[place.curve].scale;
     let k = surface.v_cell(place.curve, place.t, h);
     let of_cell = |share: f64| {
@@ -177,13 +184,13 @@ pub(super) fn extrapolated(direction: impl Fn(f64) -> Vector) -> (Vector, f64) {
 }
 
 /// Richardson's table for errors c₂h² + c₃h³ + … at halved cells.
-struct Table {
+struct RichardsonTable {
     value: f64,
     error: f64,
     order: Option<f64>,
 }
 
-impl Table {
+impl RichardsonTable {
     fn new(values: &[f64; LEVELS], rounding: f64) -> Self {
         let mut row = values.to_vec();
         let order = observed_order(values, rounding);

@@ -1,16 +1,16 @@
 //! Compares the closest distance with the separation.
 //!
-//! When a point rises from its foot F along ζ, its distance grows by the ζ component n of the unit normal at
-//! its closest point: d = ∫ n dζ. The closest point rises with it, from F by h in all, and stays inside the
-//! sphere of radius s around the end of the way. So it is never farther than √(2sh) from F, and the extremes
-//! of n within that distance bracket d. They are enclosed piece by piece, with the largest turn of the
-//! profile inside a piece, so that an inflection between two samples is not missed.
+//! When a point rises along ζ from its foot F, its distance from the body grows by the ζ component n of the unit normal at
+//! its closest point: d = ∫ n dζ. The closest point moves, too. Let h be the height by which it has risen above F when the
+//! point has risen by s. It stays inside the sphere of radius s around the final position of the point, and therefore
+//! within √(2sh) of F. The extremes of n within that distance bracket d. They are enclosed piece by piece, with the largest
+//! turn of the profile inside a piece, so that an inflection between two samples is not missed.
 
 use super::body::Solid;
 use super::closest::Closest;
 use super::meshes::Vector;
-use super::patch::Place;
-use super::sampler::{Curve, Surface};
+use super::patch::SurfacePoint;
+use super::sampler::{SampledCurve, SampledSurface};
 
 /// The relation in words.
 pub const RELATION: &str = "s·min n ≤ d ≤ s·max n, where n are the ζ components of the body's unit normals up to \
@@ -22,7 +22,7 @@ const PIECE: f64 = 1.0 / 16.0;
 /// Most halvings: a range of the parameter has no more bits.
 const HALVINGS: u32 = 52;
 
-/// A point of one body over (or under) the other.
+/// A point of one body above or below the other body.
 pub(super) struct Above {
     /// Coordinates (ξ, η) \[mm\].
     pub at: [f64; 2],
@@ -31,14 +31,13 @@ pub(super) struct Above {
     /// Coordinates of the point \[mm\].
     pub point: Vector,
     /// The foot along ζ on the other body.
-    pub foot: Place,
+    pub foot: SurfacePoint,
 }
 
 /// Returns \[least, largest\] n between the foot of `above` and the closest point of `solid`.
 ///
-/// If the closest point is a joint or an end, the direction to it counts too: any direction between the
-/// neighbours' normals can be the closest one's. An end that the closest point only passes on its way is not
-/// seen.
+/// If the closest point is a joint or an end, the direction to it counts as well, because any direction between the normals
+/// of the neighbours can be the closest one's. An end that the closest point only passes on its way is not seen.
 pub(super) fn normals_between(solid: &Solid, above: &Above, closest: &Closest, rounding: f64) -> [f64; 2] {
     let surface = &solid.surface;
     let foot = surface.point(above.foot.curve, above.foot.t, above.foot.v);
@@ -49,38 +48,38 @@ pub(super) fn normals_between(solid: &Solid, above: &Above, closest: &Closest, r
         return [least, most];
     }
     let direct = (above.point.z - closest.point.z).abs() / closest.distance;
-    // NaN, of a distance 0, stays NaN.
+    // The direction of a distance of 0 is NaN and stays NaN.
     if direct.is_nan() { [f64::NAN; 2] } else { [least.min(direct), most.max(direct)] }
 }
 
 /// Returns \[least, largest\] ζ component of the unit normals of all points up to `reach` from a place.
-fn normals_within(surface: &Surface, foot: &Place, reach: f64) -> [f64; 2] {
+fn normals_within(surface: &SampledSurface, foot: &SurfacePoint, reach: f64) -> [f64; 2] {
     let centre = surface.curves[foot.curve].point(foot.t);
-    let near = Near { centre, reach };
+    let near = Disc { centre, reach };
     let own = [surface.curves[foot.curve].angle(foot.t); 2];
     let curves = surface.curves.iter().filter(|curve| near.may_hold(curve));
     let tilts = curves.fold(own, |hull, curve| near.tilts(curve, [0.0, curve.length], HALVINGS, hull));
     surface.normals_between(tilts, foot.v, centre[1], reach)
 }
 
-/// The disc of a profile's plane in which points are looked for.
-struct Near {
+/// The disc in a profile's plane in which points are sought.
+struct Disc {
     centre: [f64; 2],
     reach: f64,
 }
 
-impl Near {
+impl Disc {
     fn distance(&self, [x, z]: [f64; 2]) -> f64 {
         (x - self.centre[0]).hypot(z - self.centre[1])
     }
 
-    fn may_hold(&self, curve: &Curve) -> bool {
+    fn may_hold(&self, curve: &SampledCurve) -> bool {
         self.distance(curve.point(0.0)) <= self.reach + curve.longest
     }
 
     /// Returns the hull widened by the tangent angles \[rad\] of the curve inside the disc, from parameter a
     /// to b.
-    fn tilts(&self, curve: &Curve, [a, b]: [f64; 2], halvings: u32, hull: [f64; 2]) -> [f64; 2] {
+    fn tilts(&self, curve: &SampledCurve, [a, b]: [f64; 2], halvings: u32, hull: [f64; 2]) -> [f64; 2] {
         let (middle, half) = (f64::midpoint(a, b), (b - a) / 2.0);
         let bend = curve.bend(middle, half);
         let speed = curve.speed(middle);
@@ -104,7 +103,7 @@ mod tests {
     use wheelrail::placement::Pair;
     use wheelrail::profile::{Arc, Half, Polynomial, Profile, Segment, Shape};
 
-    /// A wave z = a(x³ − 3x) under a wheel, with an inflection at 0 between extremes at ±1.
+    /// A wave z = a(x³ − 3x) under a wheel has an inflection at 0, between extremes at ±1.
     #[test]
     fn an_inflection_inside_a_piece_is_seen() -> wheelrail::error::Result<()> {
         let wave = Polynomial::graph(&[0.0, -0.03, 0.0, 0.01], [-2.0, 2.0])?;
@@ -117,12 +116,12 @@ mod tests {
         let wheel = Profile::new("arc", "test", vec![Segment::arc(wheel)]);
         let pair = Pair::new(rail?, wheel?, 460.0)?;
         let placement = pair.placed(1.0, 0.0, 0.0)?;
-        let surface = Surface::rail(&placement);
-        let foot = Place { curve: 0, t: surface.curves[0].length / 2.0, v: 0.0 };
+        let surface = SampledSurface::rail(&placement);
+        let foot = SurfacePoint { curve: 0, t: surface.curves[0].length / 2.0, v: 0.0 };
         for reach in [0.3, 0.9] {
             let [least, most] = normals_within(&surface, &foot, reach);
             let component = |x: f64| 1.0 / (1.0 + (0.03 * x * x - 0.03).powi(2)).sqrt();
-            // Steepest at the inflection: neither the ends nor any place but x = 0 shows it.
+            // The wave is steepest at its inflection. Only x = 0 shows it, and neither end does.
             assert!(least <= component(0.0) && least > component(0.0) - 1e-4, "{least}");
             assert!(most >= component(0.999 * reach) && most < component(reach) + 1e-4, "{most}");
         }

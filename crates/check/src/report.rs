@@ -5,14 +5,14 @@ use std::fmt;
 use serde::Serialize;
 
 use super::floor::Floor;
-use wheelrail::numerics::largest;
+use wheelrail::internal::largest;
 
 /// Expected order at which chordal errors fall.
 const EXPECTED_ORDER: f64 = 2.0;
 const ORDER_SPREAD: f64 = 0.1;
 
-/// Largest angle \[rad\] between ξ and the profile's tangent at C: a tangent of a drawing with ten digits,
-/// and far above rounding.
+/// Largest angle \[rad\] between ξ and the profile's tangent at C. It allows tangents of drawings with ten digits, and is
+/// far above rounding.
 const TANGENT: f64 = 1e-12;
 
 /// Statistics of the differences between two measurements of the same quantity.
@@ -88,7 +88,7 @@ pub struct Report {
     pub agrees: bool,
     /// The objections; empty if all values agree.
     pub objections: Vec<String>,
-    /// Numbers of points by what became of them.
+    /// Numbers of points, by what was found at them.
     pub counts: Counts,
     /// The checker's own errors on closed forms of the scene's size.
     pub floors: Vec<Floor>,
@@ -116,7 +116,7 @@ pub struct Report {
 }
 
 impl Differences {
-    /// Calculates the statistics of (difference, allowed, (ξ, η)); NaN counts as larger than any difference.
+    /// Computes the statistics of (difference, allowed, (ξ, η)). NaN counts as larger than any difference.
     pub(super) fn of(all: &[(f64, f64, [f64; 2])]) -> Self {
         let number = |difference: f64| if difference.is_nan() { f64::INFINITY } else { difference };
         let all: Vec<_> = all.iter().map(|d| (number(d.0), d.1, d.2)).collect();
@@ -168,8 +168,8 @@ impl Orders {
 }
 
 impl Report {
-    /// Lists every objection; the pair agrees if there is none. `resolved` is the largest error \[mm\] that
-    /// the checker itself may have, `rounding` that of coordinates \[mm\].
+    /// Lists every objection; the pair agrees if there is none. `resolved` \[mm\] is the largest error that the checker
+    /// itself may have; `rounding` \[mm\] is that of coordinates.
     pub(super) fn judge(&mut self, resolved: f64, rounding: f64) {
         let counts = self.counts;
         let mut objections: Vec<String> = [

@@ -1,19 +1,17 @@
-//! Samples points of both bodies from the profiles' own parametrisation: nothing here uses the separation
-//! code.
+//! Samples points of both bodies from the profiles' own parametrisation. Nothing here uses the separation code.
 //!
 //! Points of a curve come from turning its start station (arcs, lines) or from its parameter (polynomials).
 //! The rail is the curve moved along y, the wheel the curve turned about the axle. All coordinates are
 //! measured from the contact point, so that the axle's distance costs no digits.
 
 use super::meshes::Vector;
-use wheelrail::numerics::polynomial::recentred;
-use wheelrail::numerics::twice::Twice;
+use wheelrail::internal::{Twice, recentred};
 use wheelrail::placement::{Body, Placement};
 use wheelrail::profile::{Polynomial, Segment, Shape, Station};
 
 /// One segment as a curve (x − x_C, z − z_C)(t), 0 ≤ t ≤ length.
 #[derive(Debug, Clone)]
-pub(super) struct Curve {
+pub(super) struct SampledCurve {
     shape: Form,
     /// Largest parameter: \[mm\] along arcs and lines, else in the polynomial's own unit.
     pub length: f64,
@@ -29,17 +27,17 @@ enum Form {
     Polynomial { polynomial: Polynomial, origin: [f64; 2] },
 }
 
-impl Curve {
+impl SampledCurve {
     /// Makes the curve of a segment, seen from `origin`; `longest` bounds the scale \[mm\].
     pub fn of_segment(segment: &Segment, origin: [f64; 2], longest: f64) -> Self {
         match &segment.shape {
             Shape::Arc(arc) => {
                 let length = arc.length();
-                let scale = if arc.radius.is_finite() { arc.radius.abs() } else { length };
-                Self::turning(&arc.start, arc.curvature(), length, scale.min(longest), origin)
+                let scale = if arc.radius().is_finite() { arc.radius().abs() } else { length };
+                Self::turning(&arc.start(), arc.curvature(), length, scale.min(longest), origin)
             }
             Shape::Polynomial(polynomial) => {
-                let length = polynomial.t[1] - polynomial.t[0];
+                let length = polynomial.range()[1] - polynomial.range()[0];
                 let shape = Form::Polynomial { polynomial: polynomial.clone(), origin };
                 let curve = Self { shape, length, scale: length, longest: length };
                 curve.with_scale_of_polynomial(polynomial)
@@ -55,7 +53,7 @@ impl Curve {
     /// Sets the scale to the smaller of the parameter range and the sharpest of nine radii, in units of the
     /// parameter.
     fn with_scale_of_polynomial(mut self, polynomial: &Polynomial) -> Self {
-        let [a, b] = polynomial.t;
+        let [a, b] = polynomial.range();
         for k in 0..=8 {
             let t = a + (b - a) * f64::from(k) / 8.0;
             let speed = self.speed(t - a);
@@ -70,7 +68,7 @@ impl Curve {
     pub fn point(&self, t: f64) -> [f64; 2] {
         match &self.shape {
             Form::Turning { start, curvature } => {
-                // Half the turn: the chord has the mean of its end tangents' angles.
+                // Half the turn: the chord has the mean angle of its two end tangents.
                 let half = t * curvature / 2.0;
                 let chord = if half == 0.0 { t } else { t * (half.sin() / half) };
                 let (sin, cos) = half.sin_cos();
@@ -80,7 +78,7 @@ impl Curve {
                 ]
             }
             Form::Polynomial { polynomial, origin } => {
-                let station = polynomial.station(polynomial.t[0] + t);
+                let station = polynomial.station(polynomial.range()[0] + t);
                 [station.x - origin[0], station.z - origin[1]]
             }
         }
@@ -90,7 +88,7 @@ impl Curve {
     pub fn angle(&self, t: f64) -> f64 {
         match &self.shape {
             Form::Turning { start, curvature } => start.angle() + t * curvature,
-            Form::Polynomial { polynomial, .. } => polynomial.station(polynomial.t[0] + t).angle(),
+            Form::Polynomial { polynomial, .. } => polynomial.station(polynomial.range()[0] + t).angle(),
         }
     }
 
@@ -116,7 +114,7 @@ impl Curve {
             Form::Polynomial { polynomial, .. } => {
                 let bound = |c: &[[f64; 2]]| -> f64 {
                     let exact: Vec<Twice> = c.iter().map(|[high, low]| Twice::sum(*high, *low)).collect();
-                    let local = recentred(&exact, (polynomial.t[0] + t).into());
+                    let local = recentred(&exact, (polynomial.range()[0] + t).into());
                     let terms = local.iter().enumerate().skip(2);
                     terms
                         .map(|(k, &c)| {
@@ -135,9 +133,9 @@ impl Curve {
 /// One body's surface over the contact frame, by (curve, t, v); v is the length along y or around the wheel
 /// at the distance of C from the axle \[mm\]. ∂X/∂t × ∂X/∂v points up where the surface faces the other body.
 #[derive(Debug, Clone)]
-pub(super) struct Surface {
+pub(super) struct SampledSurface {
     /// The curves, in order of the chain.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<SampledCurve>,
     cos: f64,
     sin: f64,
     /// Distance of C from the axle, with sin χ and cos χ; `None` for the rail.
@@ -154,7 +152,7 @@ struct Wheel {
     skew: (f64, f64),
 }
 
-impl Surface {
+impl SampledSurface {
     /// Makes the extruded rail of a placed pair.
     pub fn rail(placement: &Placement) -> Self {
         Self::new(placement.rail(), None)
@@ -162,16 +160,16 @@ impl Surface {
 
     /// Makes the revolved wheel of a placed pair, turned about ζ by the skew.
     pub fn wheel(placement: &Placement) -> Self {
-        let axle = placement.wheel_radius() - placement.wheel().point.station.z;
+        let axle = placement.wheel_radius() - placement.wheel().point().station.z;
         Self::new(placement.wheel(), Some(Wheel { axle, skew: placement.skew().sin_cos() }))
     }
 
     fn new(body: &Body, wheel: Option<Wheel>) -> Self {
-        let c = body.point.station;
+        let c = body.point().station;
         let origin = [c.x, c.z];
         let extent = body.profile().extent();
         let segments = body.profile().segments().iter();
-        let curves = segments.map(|segment| Curve::of_segment(segment, origin, extent)).collect();
+        let curves = segments.map(|segment| SampledCurve::of_segment(segment, origin, extent)).collect();
         let size = extent + c.x.abs() + c.z.abs();
         Self { curves, cos: c.cos, sin: c.sin, wheel, lift: 0.0, size }
     }
@@ -210,7 +208,7 @@ impl Surface {
         ]
     }
 
-    /// Returns the length over which v turns the surface: the axle distance; any length for the rail.
+    /// Returns the length over which v turns the surface: the axle distance; for the rail, which does not turn, any length.
     pub fn round_scale(&self) -> f64 {
         self.wheel.map_or(self.size, |wheel| wheel.axle)
     }

@@ -1,4 +1,4 @@
-//! What a command answers: data on stdout, complaints on stderr, and its outcome.
+//! The answer of a command: data on stdout, messages on stderr, and the outcome.
 
 use std::path::Path;
 
@@ -7,18 +7,18 @@ use wheelrail::{Error, Result};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
-    /// The command did what was asked for.
+    /// The command did what it was asked to do.
     Done,
     /// A geometric "no".
     No,
 }
 
-/// Writes data to stdout; a reader that went away early (`| head`) is not an error.
+/// Writes data to stdout. A reader that has gone away early (`| head`) is not an error.
 pub fn print(text: &str) -> Result<Outcome> {
     print_to_reader(text).map(|_| Outcome::Done)
 }
 
-/// Writes data to stdout and tells whether the reader is still there.
+/// Writes data to stdout. Returns whether the reader is still there.
 pub fn print_to_reader(text: &str) -> Result<bool> {
     use std::io::Write;
     match std::io::stdout().lock().write_all(text.as_bytes()) {
@@ -30,18 +30,18 @@ pub fn print_to_reader(text: &str) -> Result<bool> {
     }
 }
 
-/// Says every geometric "no" on stderr; the outcome is [`Outcome::No`] where there is one.
+/// Writes every geometric "no" to stderr. Returns [`Outcome::No`] if there is one.
 pub fn outcome(noes: impl IntoIterator<Item = String>) -> Outcome {
     let said = noes.into_iter().map(|no| complain(&format!("no: {no}"))).count();
     if said == 0 { Outcome::Done } else { Outcome::No }
 }
 
-/// Puts a number of things in words: "1 point", "2 points".
+/// Returns a number of things in words: "1 point", "2 points".
 pub fn counted(n: usize, thing: &str) -> String {
     format!("{n} {thing}{}", if n == 1 { "" } else { "s" })
 }
 
-/// Writes a line to stderr; there is nobody to tell when that fails.
+/// Writes a line to stderr. A failure is ignored, because it could not be reported.
 pub fn complain(text: &str) {
     use std::io::Write;
     let _ = writeln!(std::io::stderr().lock(), "{text}");

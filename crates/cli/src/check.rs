@@ -1,4 +1,4 @@
-//! `wheelrail check`: every contact of a scene against triangle meshes measured by parry3d.
+//! `wheelrail check`: compares every contact of a scene with triangle meshes that parry3d measures.
 
 use std::path::Path;
 
@@ -10,8 +10,8 @@ use wheelrail::scene;
 use wheelrail::separation::Evaluator;
 use wheelrail_check::{Answer, Report, Request, check as compare};
 
-/// Checks a scene, whose grids are not filled. The exit code is 1 where something disagrees, and where `run` says no: then
-/// there is nothing worth agreeing on.
+/// Checks a scene without filling its grids. The exit code is 1 if something disagrees. It is also 1 where `run` answers
+/// "no", because there is then nothing to compare.
 pub(super) fn check(path: &Path) -> Result<Outcome> {
     let progress = Progress::of("check", "scene");
     let scene = scene::load(path)?;

@@ -1,7 +1,7 @@
-//! The command line: one file per command.
+//! The command line, with one file for each command.
 //!
-//! Exit codes: 0 done, 1 a geometric "no" (infeasible contact, empty patch, failed check), 2 bad input. Data goes
-//! to stdout, progress and complaints to stderr.
+//! Exit codes: 0 done, 1 a geometric "no" (infeasible contact, empty patch, failed check), 2 bad input. Data go to stdout,
+//! progress and messages to stderr.
 
 #![cfg_attr(not(test), warn(unused_crate_dependencies))]
 
@@ -28,7 +28,7 @@ use wheelrail::{Error, Result};
 #[derive(Debug, Parser)]
 #[command(version, about)]
 struct Arguments {
-    /// Threads to compute on; 0 takes all cores.
+    /// Number of threads; 0 takes all cores.
     #[arg(long, global = true, default_value_t = 0, allow_negative_numbers = true)]
     threads: usize,
     #[command(subcommand)]
@@ -55,7 +55,7 @@ enum Command {
         /// Scene file, TOML or JSON.
         scene: PathBuf,
     },
-    /// Sweep a wheelset over its track and print a row per position, side and contact.
+    /// Sweep a wheelset over its track and print a row for each position, side and contact.
     Sweep(sweep::SweepArguments),
     /// Measure speed against error and run the hard cases; takes about two minutes.
     Report {
@@ -66,19 +66,19 @@ enum Command {
         #[arg(long)]
         splice: Option<PathBuf>,
     },
-    /// Look at profiles.
+    /// List, show, plot and convert profiles.
     #[command(subcommand)]
     Profile(Box<profile::ProfileCommand>),
     /// Print the JSON Schema of a scene.
     Schema,
 }
 
-/// The answer of a command that ran to its end.
+/// Runs the command and returns its exit code.
 fn main() -> ExitCode {
     let outcome = match Arguments::try_parse() {
         Ok(arguments) => on_threads(arguments),
         Err(message) if message.use_stderr() => message.exit(),
-        // Help or the version.
+        // The text is the help or the version.
         Err(message) => print(&message.render().to_string()),
     };
     match outcome {
@@ -91,7 +91,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Threads beyond which starting them takes longer than any work for them.
+/// Most threads. Starting more takes longer than any work for them.
 const MOST_THREADS: usize = 4096;
 
 fn on_threads(arguments: Arguments) -> Result<Outcome> {

@@ -4,16 +4,17 @@ use std::path::Path;
 
 use super::progress::Progress;
 use crate::answer::{Outcome, folder_of, print};
-use wheelrail::case::{contacts, equal_steps};
+use wheelrail::case::contacts;
 use wheelrail::error::Result;
+use wheelrail::mesh::equal_steps;
 use wheelrail::placement::Placement;
 use wheelrail::scene;
-use wheelrail::separation::midplane::table;
+use wheelrail::separation::midplane_table;
 
-/// Values of ξ when the scene leaves the axis to the program.
+/// Number of values of ξ if the scene leaves the axis to the program.
 const DEFAULT_ROWS: usize = 101;
 
-/// Prints a table for every contact of a scene, under its name where there are several.
+/// Prints a table for every contact of a scene. Several contacts get their names as headings.
 pub(super) fn midsep(path: &Path) -> Result<Outcome> {
     let _progress = Progress::of("midsep", "contacts");
     let scene = scene::load(path)?;
@@ -23,12 +24,12 @@ pub(super) fn midsep(path: &Path) -> Result<Outcome> {
     let tables = contacts.iter().map(|(name, placement)| {
         let xi = case.axes().xi.clone().unwrap_or_else(|| over(placement));
         let head = if contacts.len() > 1 { format!("# {name}\n") } else { String::new() };
-        head + &table(placement, &xi)
+        head + &midplane_table(placement, &xi)
     });
     print(&tables.collect::<Vec<_>>().join("\n"))
 }
 
-/// Gives equal steps over both bodies.
+/// Returns equal steps of ξ \[mm\] over both bodies.
 fn over(placement: &Placement) -> Vec<f64> {
     placement.overlap().map_or_else(Vec::new, |[a, b]| equal_steps(a, b, DEFAULT_ROWS))
 }

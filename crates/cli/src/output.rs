@@ -1,4 +1,5 @@
-//! What a command writes: no file that it reads, nobody else's results unasked, pictures in the format of their name.
+//! Checks what a command may write: never a file that it reads, and never over the results of another scene unasked.
+//! Chooses the format of a picture.
 
 use std::path::{Path, PathBuf};
 
@@ -6,13 +7,13 @@ use super::png::png;
 use wheelrail::error::{Error, Result};
 use wheelrail::files::read_bytes;
 
-/// Largest summary \[bytes\] that is looked into: many times one of a run with a hundred contacts.
+/// Largest summary that is read \[bytes\]: many times that of a run with a hundred contacts.
 const LARGEST_SUMMARY: usize = 1 << 28;
 
-/// Refuses to write a file that the command reads or has another use for.
+/// Rejects an output file that the command reads or uses in another way.
 ///
 /// # Errors
-/// `out` is one of `taken`, by whatever path; a file that does not exist yet is compared by its name in its folder.
+/// `out` is one of `taken`, by whatever path. A file that does not exist yet is compared by its name in its folder.
 pub(super) fn refuse_taken(option: &str, out: &Path, taken: &[PathBuf]) -> Result<()> {
     let Some(own) = real(out) else { return Ok(()) };
     match taken.iter().find(|other| real(other).is_some_and(|other| other == own)) {
@@ -24,11 +25,11 @@ pub(super) fn refuse_taken(option: &str, out: &Path, taken: &[PathBuf]) -> Resul
     }
 }
 
-/// Refuses a folder that the program has chosen and that holds the results of another scene file, which still exists:
-/// two of one name in different folders.
+/// Rejects a default folder that holds the results of another scene file, if that file still exists: two scene files can
+/// have one name in different folders.
 ///
 /// # Errors
-/// The folder's summary names another file.
+/// The folder's summary names another scene file.
 pub(super) fn refuse_results_of_another(folder: &Path, scene: &Path) -> Result<()> {
     let summary = read_bytes(&folder.join("summary.json"), LARGEST_SUMMARY).unwrap_or_default();
     let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap_or_default();
@@ -43,10 +44,10 @@ pub(super) fn refuse_results_of_another(folder: &Path, scene: &Path) -> Result<(
     }
 }
 
-/// The path without links; `None` where even its folder is missing.
+/// Returns the path without links; `None` if even its folder is missing.
 fn real(path: &Path) -> Option<PathBuf> {
     path.canonicalize().ok().or_else(|| {
-        // The folder of a bare name is the empty path.
+        // The folder of a bare name is the empty path, which means the working folder.
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         Some(folder.canonicalize().ok()?.join(path.file_name()?))
     })
@@ -55,17 +56,17 @@ fn real(path: &Path) -> Option<PathBuf> {
 /// The format of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum PictureFormat {
-    /// Vectors.
+    /// SVG: vectors.
     Svg,
-    /// Pixels.
+    /// PNG: pixels.
     Png,
 }
 
 impl PictureFormat {
-    /// The format that a file's name ends in, in upper or lower case.
+    /// Returns the format that the end of a file's name tells. Upper and lower case are the same.
     ///
     /// # Errors
-    /// Any other end.
+    /// Any other end of the name.
     pub(super) fn of_file(option: &str, file: &Path) -> Result<Self> {
         let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         match extension.as_str() {
@@ -78,10 +79,10 @@ impl PictureFormat {
         }
     }
 
-    /// A picture in this format.
+    /// Returns a picture in this format, from its SVG.
     ///
     /// # Errors
-    /// What the renderer of PNG refuses.
+    /// SVG that the renderer of PNG rejects.
     pub(super) fn bytes(self, svg: String) -> Result<Vec<u8>> {
         match self {
             Self::Svg => Ok(svg.into_bytes()),

@@ -1,22 +1,22 @@
-//! A picture's SVG as PNG. Words are drawn in a font that the program carries, so that a picture is the same on every
-//! machine.
+//! Renders a picture's SVG as PNG. The program carries its own font, so that a picture looks the same on every machine.
 
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
 
 use wheelrail::error::{Error, Result};
 
-/// DejaVu Sans without hints: Latin, Greek, Cyrillic and signs of mathematics. Its licence lies beside it.
+/// DejaVu Sans without hinting: Latin, Greek, Cyrillic and mathematical signs. Its licence lies beside it.
 const FONT: &[u8] = include_bytes!("png/DejaVuSans-subset.ttf");
 const FAMILY: &str = "DejaVu Sans";
 
-/// Pixels to the page unit.
+/// Pixels of one page unit.
 const SCALE: f32 = 2.0;
 
-/// The PNG of an SVG document, two pixels to its unit. A character that the font lacks is drawn as an empty box.
+/// Returns the PNG of an SVG document, with two pixels for each of its units. A character that the font lacks becomes an
+/// empty box.
 ///
 /// # Errors
-/// SVG that the renderer does not take, or a page without extent: a fault of this program.
+/// SVG that the renderer rejects, or a page without extent; both are faults of this program.
 pub(super) fn png(svg: &str) -> Result<Vec<u8>> {
     let mut options = Options::default();
     options.fontdb_mut().load_font_data(FONT.to_vec());
@@ -38,7 +38,7 @@ fn refused(found: &str) -> Error {
 mod tests {
     use super::*;
 
-    /// Pixels of a page of 20 × 20 units with these words that are not white.
+    /// Returns the number of pixels that are not white on a page of 20 × 20 units with these words.
     fn inked(words: &str) -> usize {
         let svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"20\" height=\"20\"><rect width=\"20\" height=\"20\" \

@@ -1,4 +1,4 @@
-//! Progress on stderr: the step that a long command is at.
+//! Progress on stderr: names the step at which a long command is.
 
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -7,20 +7,20 @@ use std::time::{Duration, Instant};
 
 use crate::answer::complain;
 
-/// Silence on stderr after which progress is reported; a command that ends before says nothing.
+/// Time without output after which progress is reported. A command that ends earlier reports nothing.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Tells what a command is at until it is dropped. It has a thread of its own: one step may take longer than anybody's
-/// patience.
+/// Reports the progress of a command until it is dropped. It has a thread of its own, because a single step may take longer
+/// than users want to wait.
 #[derive(Debug)]
 pub(super) struct Progress {
     at: Arc<Mutex<String>>,
-    /// The teller waits for its end, and stops when it is dropped.
+    /// The reporting thread stops when this is dropped.
     _at_work: Sender<()>,
 }
 
 impl Progress {
-    /// Starts to tell of the command with this name, which is at its first step.
+    /// Starts to report on the command with this name, which is at its first step.
     pub(super) fn of(command: &'static str, step: &str) -> Self {
         Self::told(PATIENCE, step, move |line| complain(&format!("{command}: {line}")))
     }
@@ -35,12 +35,12 @@ impl Progress {
                 tell(&format!("{at} ({} s)", start.elapsed().as_secs()));
             }
         };
-        // A system that grants no thread gets the work done in silence.
+        // If the system grants no thread, the work is done without reports.
         drop(thread::Builder::new().name("progress".into()).spawn(teller));
         Self { at, _at_work: at_work }
     }
 
-    /// Names the step that the command is at from now on.
+    /// Names the step at which the command is from now on.
     pub(super) fn at(&self, step: impl Into<String>) {
         *self.at.lock().unwrap_or_else(PoisonError::into_inner) = step.into();
     }
@@ -50,7 +50,7 @@ impl Progress {
 mod tests {
     use super::*;
 
-    /// Lines told of two steps that take 300 ms each.
+    /// Returns the lines reported on two steps that take 300 ms each.
     fn lines(patience: Duration) -> Vec<String> {
         let lines = Arc::new(Mutex::new(Vec::new()));
         let told = Arc::clone(&lines);

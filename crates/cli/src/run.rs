@@ -1,4 +1,4 @@
-//! `wheelrail run`: the whole pipeline, and the folder it writes.
+//! `wheelrail run`: computes the whole pipeline and writes its folder.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use wheelrail::error::Result;
 use wheelrail::files::{Folder, RUN_FOLDER};
 use wheelrail::scene;
 
-/// Runs a scene; exit code 1 for an infeasible contact or an empty patch, whose files are written all the same.
+/// Runs a scene. The exit code is 1 for an infeasible contact or an empty patch; their files are written all the same.
 pub(super) fn run(path: &Path, out: Option<&Path>) -> Result<Outcome> {
     let progress = Progress::of("run", "scene");
     let tell = |step| progress.at(step);

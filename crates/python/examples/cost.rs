@@ -8,10 +8,8 @@ use std::time::Instant;
 
 use wheelrail::case::Columns;
 use wheelrail::search::ONE_CONTACT;
-use wheelrail::search::parallel::ParallelSweep;
-use wheelrail::separation::axis::EtaAxis;
-use wheelrail::separation::plan::plan;
-use wheelrail::separation::values::Values;
+use wheelrail::search::ParallelSweep;
+use wheelrail::separation::{EtaAxis, Values, plan};
 use wheelrail::{
     Pair, Position, RailDistance, Roll, Selection, WheelDistance, WheelsetOnTrack, inclination, standards,
 };
@@ -40,7 +38,7 @@ fn grid(pair: &Pair) -> wheelrail::Result<f64> {
         .map(|_| {
             let start = Instant::now();
             let axis = EtaAxis::new(&eta);
-            let mut values = Values::new(xi.len() * axis.eta.len());
+            let mut values = Values::new(xi.len() * axis.eta().len());
             plan(&placement, &xi, &axis, 1e-12, None).fill(&placement, &xi, &axis, &mut values);
             black_box(&values);
             1e6 * start.elapsed().as_secs_f64()

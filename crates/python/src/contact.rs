@@ -5,14 +5,11 @@ use std::sync::OnceLock;
 use numpy::{PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use wheelrail::case::{ApproachBy, check_method};
-use wheelrail::load::feasibility;
-use wheelrail::load::hertz::{Curvatures, Ellipse, curvatures};
-use wheelrail::numerics::lanes::MANY;
+use wheelrail::internal::MANY;
+use wheelrail::load::{Curvatures, Ellipse, curvatures, feasibility};
 use wheelrail::scene::{self, MaterialData, PatchData};
 use wheelrail::search;
-use wheelrail::separation::axis::EtaAxis;
-use wheelrail::separation::grid::Method;
-use wheelrail::separation::plan::{Plan, plan};
+use wheelrail::separation::{EtaAxis, Method, Plan, plan};
 use wheelrail::{Error, Placement};
 
 use crate::arrays::{Numbers, values};
@@ -105,7 +102,7 @@ impl Contact {
     fn rail_point(&self) -> PyResult<(f64, f64)> {
         let station = match &self.found {
             Some(found) => return Ok((found.rail_x, found.rail_z)),
-            None => self.placement()?.rail().point.station,
+            None => self.placement()?.rail().point().station,
         };
         Ok((station.x, station.z))
     }
@@ -115,7 +112,7 @@ impl Contact {
     fn wheel_point(&self) -> PyResult<(f64, f64)> {
         let station = match &self.found {
             Some(found) => return Ok((found.wheel_x, found.wheel_z)),
-            None => self.placement()?.wheel().point.station,
+            None => self.placement()?.wheel().point().station,
         };
         Ok((station.x, station.z))
     }
@@ -198,17 +195,20 @@ impl Contact {
         Ok(array)
     }
 
-    /// Compute Hertz's elliptic contact under a load in N or an approach in mm; `modulus` is E* in N/mm2, steel on steel if
+    /// Compute Hertz's elliptic contact under a vertical load in N, which this contact carries alone, or an approach in mm; `modulus` is E* in N/mm2, steel on steel if
     /// None.
     ///
     /// Raises InputError for neither or both of load and approach; GeometryError where s is not convex at C, at kinks.
     #[pyo3(signature = (*, load = None, approach = None, modulus = None))]
     fn hertz(&self, load: Option<f64>, approach: Option<f64>, modulus: Option<f64>) -> PyResult<Hertz> {
         let (by, modulus) = asked(load, approach, modulus)?;
-        let curvatures = curvatures(self.placement()?);
+        let placement = self.placement()?;
+        let (curvatures, cos) = (curvatures(placement), placement.rail().point().station.cos);
         let ellipse = match by {
             ApproachBy::Given(approach) => curvatures.under_approach(approach, modulus),
-            ApproachBy::Load(load) => curvatures.under_load(load, modulus),
+            ApproachBy::WheelLoad(load) | ApproachBy::AxleLoad(load) => {
+                curvatures.under_load(load / cos, modulus)
+            }
         };
         let no_ellipse = || {
             let expected = "a smooth contact at which the separation is convex, and a load";
@@ -218,7 +218,8 @@ impl Contact {
         ellipse.map(|ellipse| Hertz { ellipse, curvatures }).ok_or_else(no_ellipse)
     }
 
-    /// Find the patch s < approach under an approach in mm, or under the approach that a load in N is estimated to cause:
+    /// Find the patch s < approach under an approach in mm, or under the approach that a vertical load in N, which this
+    /// contact carries alone, is estimated to cause:
     /// its boundary, area and perimeter. `modulus` is E* in N/mm2, steel on steel if None.
     ///
     /// The patch is where rigid bodies would overlap: about twice the true contact area.
@@ -243,7 +244,7 @@ impl Contact {
     /// Raises GeometryError for bodies that nowhere lie over each other.
     fn feasibility(&self, py: Python<'_>) -> PyResult<Feasibility> {
         let placement = self.placement()?;
-        let found = py.detach(|| feasibility::feasibility(placement)).ok_or_else(|| {
+        let found = py.detach(|| feasibility(placement)).ok_or_else(|| {
             let expected = "two profiles that lie over each other";
             let error = Error::new("contact", "no common xi", expected, "choose other contact points");
             exception(error.of_kind(wheelrail::ErrorKind::Geometry))
@@ -287,8 +288,8 @@ fn fill(
         py.detach(|| plan.fill(placement, xi, axis, out));
         return Ok(());
     }
-    let columns = (PART / axis.eta.len()).next_multiple_of(MANY);
-    for (xi, out) in xi.chunks(columns).zip(out.chunks_mut(columns * axis.eta.len())) {
+    let columns = (PART / axis.eta().len()).next_multiple_of(MANY);
+    for (xi, out) in xi.chunks(columns).zip(out.chunks_mut(columns * axis.eta().len())) {
         py.detach(|| plan.fill(placement, xi, axis, out));
         py.check_signals()?;
     }

@@ -2,9 +2,10 @@
 
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
+use wheelrail::case::approach_under_load;
 use wheelrail::case::{ApproachBy, patch_picture};
-use wheelrail::load::virtual_interpenetration::{Estimate, approach_under_load};
-use wheelrail::mesh::axes;
+use wheelrail::load::Estimate;
+use wheelrail::mesh::{Axes, GridGroup, groups};
 use wheelrail::{Error, Placement, Window};
 
 use crate::arrays;
@@ -34,9 +35,9 @@ impl Patch {
     ) -> wheelrail::Result<Self> {
         let (approach, load, estimate) = match by {
             ApproachBy::Given(approach) => (approach, None, None),
-            ApproachBy::Load(load) => {
+            ApproachBy::WheelLoad(load) | ApproachBy::AxleLoad(load) => {
                 let (approach, estimate) = approach_under_load(placement, load, modulus)?;
-                (approach, Some(load), Some(estimate))
+                (approach, Some(load), estimate)
             }
         };
         let patch = wheelrail::Patch::new(placement, approach, &Window::UNBOUNDED);
@@ -44,10 +45,10 @@ impl Patch {
     }
 
     /// Gives the axes of the solver's grid over the part of the patch around C.
-    fn grid(&self, spacing: Option<[f64; 2]>) -> wheelrail::Result<axes::Axes> {
-        let groups = axes::groups(&self.patch, 0.0, spacing);
+    fn grid(&self, spacing: Option<[f64; 2]>) -> wheelrail::Result<Axes> {
+        let groups = groups(&self.patch, 0.0, spacing);
         // The part that holds C, or else the first.
-        let holds = |group: &&axes::Group| group.extent.xi[0] <= 0.0 && 0.0 <= group.extent.xi[1];
+        let holds = |group: &&GridGroup| group.extent.xi[0] <= 0.0 && 0.0 <= group.extent.xi[1];
         let Some(group) = groups.iter().find(holds).or(groups.first()) else {
             let (found, expected) = ("an empty patch", "a patch that the axes can be sized by");
             return Err(Error::new("patch", found, expected, "give a larger approach, or axes of your own"));
@@ -70,12 +71,12 @@ impl Patch {
         self.load
     }
 
-    /// How the approach was estimated from the load: "hertz" or "virtual-interpenetration"; None for a given one.
+    /// How the approach was estimated from the load: "hertz" or "half-space"; None for a given one.
     #[getter]
     fn estimate(&self) -> Option<&'static str> {
         self.estimate.map(|estimate| match estimate {
             Estimate::Hertz => "hertz",
-            Estimate::VirtualInterpenetration => "virtual-interpenetration",
+            Estimate::HalfSpace => "half-space",
         })
     }
 

@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 use wheelrail::Error;
-use wheelrail::search::wheelset::{Position, Roll};
+use wheelrail::search::{Position, Roll};
 
 use crate::arrays::{Numbers, values};
 use crate::errors::exception;

@@ -108,7 +108,7 @@ impl Profile {
             let expected = format!("a step of {least:e} mm or more");
             return Err(exception(Error::new("points: step", step.to_string(), expected, "correct it")));
         }
-        let marks = trace::trace(&self.profile, step);
+        let marks = trace(&self.profile, step);
         let points: Vec<[f64; 2]> = marks.iter().map(|mark| [mark.station.x, mark.station.z]).collect();
         arrays::points(py, &points)
     }

@@ -4,9 +4,8 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use wheelrail::case::{ApproachBy, Columns, MOST_DRAWN, curves};
-use wheelrail::search::parallel::{ParallelSweep, conicity_over};
-use wheelrail::search::wheelset::{Position, WheelsetOnTrack};
 use wheelrail::search::{ONE_CONTACT, Selection};
+use wheelrail::search::{ParallelSweep, Position, WheelsetOnTrack, conicity_over};
 
 use crate::arrays::{Numbers, values};
 use crate::errors::OrRaise;

@@ -6,8 +6,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use wheelrail::Error;
 use wheelrail::measured::GAUGE_HEIGHT;
-use wheelrail::search::wheelset::{Position, WheelsetOnTrack};
 use wheelrail::search::{ONE_CONTACT, Selection};
+use wheelrail::search::{Position, WheelsetOnTrack};
 use wheelrail::{RailDistance, WheelDistance};
 
 use crate::contact::{Contact, Place, asked, checked_modulus};

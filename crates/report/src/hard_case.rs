@@ -7,11 +7,9 @@ use serde::Deserialize;
 use super::reference::{Reference, embedded, malformed};
 use wheelrail::error::Result;
 use wheelrail::placement::Placement;
-use wheelrail::separation::axis::EtaAxis;
-use wheelrail::separation::grid::{Choice, Method};
-use wheelrail::separation::plan::{FULL_PRECISION, plan};
+use wheelrail::separation::{Choice, EtaAxis, FULL_PRECISION, Method, plan};
 
-/// The methods that a case is run with, in the order of [`Outcome::errors`](super::hard_run::Outcome::errors).
+/// The methods that a case is run with, in the order of [`Outcome::errors`](super::hard_run::HardOutcome::errors).
 pub const METHODS: [Method; 3] = [Method::Spectral, Method::Pointwise, Method::ReportNewton];
 
 /// Numbers of columns between those of a case: none, and as many as make strips.

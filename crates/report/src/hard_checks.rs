@@ -1,17 +1,16 @@
 //! The checks of every hard case.
 
-use super::errors::{Point, compare, inside_contact};
+use super::errors::{ComparedPoint, compare, inside_contact};
 use super::hard_case::{COLUMNS, HardCase, METHODS, RelationKind, StatedComponent, StatedPatch};
 use super::reference::exact;
 use wheelrail::error::{Error, Result};
 use wheelrail::patch::{Component, End, Patch, Slicer, Window};
 use wheelrail::placement::Placement;
-use wheelrail::separation::Evaluator;
-use wheelrail::separation::grid::{Choice, Method};
+use wheelrail::separation::{Choice, Evaluator, Method};
 
-/// The bounds of the methods that promise digits: relative over the contact segments, absolute \[mm\]
-/// elsewhere, the latter × unit × max(1, R_max/300 mm). They are measured over all cases; if less than a
-/// quarter of one is used, the suite fails.
+/// The bounds of the methods that promise digits: the relative error over the contact segments, and the absolute error
+/// \[mm\] elsewhere, the latter × unit × max(1, R_max/300 mm). They are measured over all cases. If less than a quarter of
+/// one is used, the suite fails.
 pub const BOUNDS: [(Method, f64, f64); 2] =
     [(Method::Spectral, 5e-15, 2e-14), (Method::Pointwise, 2e-15, 2e-14)];
 
@@ -28,7 +27,7 @@ const MOST_SLACK: f64 = 4.0;
 
 /// One check of one case.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Check {
+pub struct HardCheck {
     /// Subject of the check.
     pub what: String,
     /// The worst input.
@@ -43,7 +42,7 @@ pub struct Check {
     pub share: Option<(String, f64)>,
 }
 
-impl Check {
+impl HardCheck {
     fn new(what: impl Into<String>, input: String, found: String, expected: String, passed: bool) -> Self {
         Self { what: what.into(), input, found, expected, passed, share: None }
     }
@@ -61,9 +60,9 @@ struct Bench<'a> {
 pub(super) fn all(
     case: &HardCase,
     placement: &Placement,
-    points: &[Vec<Point>; 3],
+    points: &[Vec<ComparedPoint>; 3],
     cases: &[HardCase],
-) -> Result<Vec<Check>> {
+) -> Result<Vec<HardCheck>> {
     let scale = case.unit * (case.reference.largest_radius() / case.unit / 300.0).max(1.0);
     let bench = Bench { case, placement, scale };
     let mut checks = Vec::new();
@@ -84,14 +83,20 @@ pub(super) fn all(
 
 impl Bench<'_> {
     /// Checks the mask, the relative error over the contact segments and the absolute error elsewhere.
-    fn digits(&self, method: Method, points: &[Point], relative: f64, absolute: f64) -> Vec<Check> {
+    fn digits(
+        &self,
+        method: Method,
+        points: &[ComparedPoint],
+        relative: f64,
+        absolute: f64,
+    ) -> Vec<HardCheck> {
         let name = method.name();
-        let worst = |measure: &dyn Fn(&Point) -> Option<f64>| {
+        let worst = |measure: &dyn Fn(&ComparedPoint) -> Option<f64>| {
             let measured = points.iter().filter_map(|p| Some((measure(p)?, p)));
             measured.max_by(|a, b| a.0.total_cmp(&b.0))
         };
         let masked = points.iter().find(|p| p.error().is_nan());
-        let mut checks = vec![Check::new(
+        let mut checks = vec![HardCheck::new(
             format!("{name}: values exactly where both bodies have a surface"),
             masked.map_or("all points".into(), at),
             masked.map_or("so".into(), |p| p.found.to_string()),
@@ -99,7 +104,7 @@ impl Bench<'_> {
             masked.is_none(),
         )];
         let over = worst(&|p| p.relative().filter(|e| p.inside_contact && !e.is_nan()));
-        let elsewhere = |p: &Point| (!p.inside_contact || p.expected == Some(0.0)).then(|| p.error());
+        let elsewhere = |p: &ComparedPoint| (!p.inside_contact || p.expected == Some(0.0)).then(|| p.error());
         let beside = worst(&|p| elsewhere(p).filter(|e| !e.is_nan()));
         let rows = [
             ("relative error over the contact segments", over, relative),
@@ -111,26 +116,29 @@ impl Bench<'_> {
             let found = format!("{error:.2e} (s = {:e})", point.found);
             let expected = format!("at most {bound:.2e} (s = {value:e})");
             let share = Some((what.clone(), error / bound));
-            checks.push(Check { share, ..Check::new(what, at(point), found, expected, error <= bound) });
+            checks.push(HardCheck {
+                share,
+                ..HardCheck::new(what, at(point), found, expected, error <= bound)
+            });
         }
         checks
     }
 
     /// Checks that the file's statement about the Report's method holds, and is not slack.
-    fn report_newton(&self, points: &[Point]) -> Check {
+    fn report_newton(&self, points: &[ComparedPoint]) -> HardCheck {
         let stated = &self.case.report_newton;
         let undefined = points.iter().filter(|p| p.error().is_nan()).count();
         let largest = |values: &mut dyn Iterator<Item = f64>| {
             values.filter(|v| !v.is_nan()).fold(0.0, |m: f64, v| m.max(v))
         };
-        let absolute = largest(&mut points.iter().map(Point::error)) / self.case.unit;
-        let relative = largest(&mut points.iter().filter_map(Point::relative));
+        let absolute = largest(&mut points.iter().map(ComparedPoint::error)) / self.case.unit;
+        let relative = largest(&mut points.iter().filter_map(ComparedPoint::relative));
         let fits =
             |found: f64, stated: f64| found <= stated && stated <= MOST_SLACK * found || found == stated;
         let passed = undefined == stated.undefined
             && fits(absolute, stated.max_abs_error_mm)
             && fits(relative, stated.max_rel_error);
-        Check::new(
+        HardCheck::new(
             "report-newton: as stated",
             "all points".into(),
             format!("{undefined} undefined, errors {absolute:.1e} mm and {relative:.1e}"),
@@ -143,7 +151,7 @@ impl Bench<'_> {
     }
 
     /// Checks that s rises with |η| along every column, so that every slice of the patch is one interval.
-    fn rising(&self) -> Check {
+    fn rising(&self) -> HardCheck {
         let [xi, eta] = self.case.reference.scene.axes();
         let reach = eta.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
         let mut evaluator = Evaluator::new(self.placement);
@@ -161,7 +169,7 @@ impl Bench<'_> {
         }
         let bound = PROMISED_ABSOLUTE * self.scale;
         let expected = format!("a fall of at most {bound:.1e} mm");
-        Check::new(
+        HardCheck::new(
             "s rises with |eta|",
             worst.1,
             format!("a fall of {:.1e} mm", worst.0),
@@ -180,8 +188,8 @@ impl Bench<'_> {
     }
 
     /// Checks η(ξ) of s = δ: |Δη| ≤ R/η × the bound on s, and rounding.
-    fn boundary(&self) -> Option<Check> {
-        let mut worst: Option<(f64, Check)> = None;
+    fn boundary(&self) -> Option<HardCheck> {
+        let mut worst: Option<(f64, HardCheck)> = None;
         for (delta, xi, value) in &self.case.reference.boundary {
             let found = Slicer::new(self.placement, *delta).slice(*xi).map(|slice| slice.eta[1]);
             let expected = value.as_deref().map(exact);
@@ -199,18 +207,18 @@ impl Bench<'_> {
                 let input = format!("delta = {delta}, xi = {xi}");
                 let passed = share <= 1.0;
                 let (found, expected) = (format!("{found:?}"), format!("{expected:?}"));
-                worst = Some((share, Check::new("boundary eta(xi)", input, found, expected, passed)));
+                worst = Some((share, HardCheck::new("boundary eta(xi)", input, found, expected, passed)));
             }
         }
         worst.map(|(_, check)| check)
     }
 
-    fn patch(&self, stated: &StatedPatch) -> Vec<Check> {
+    fn patch(&self, stated: &StatedPatch) -> Vec<HardCheck> {
         let window = Window { xi: stated.window.xi, eta: stated.window.eta };
         let patch = Patch::new(self.placement, stated.delta, &window);
         let input = format!("delta = {}, {window:?}", stated.delta);
         let (found, expected) = (patch.components.len(), stated.components.len());
-        let mut checks = vec![Check::new(
+        let mut checks = vec![HardCheck::new(
             "parts of the patch",
             input.clone(),
             found.to_string(),
@@ -223,7 +231,7 @@ impl Bench<'_> {
             let passed = ends == expected.ends.each_ref().map(String::as_str)
                 && found.cut_by_window == expected.cut_by_window
                 && self.same_extent(found, expected, stated.delta);
-            checks.push(Check::new(
+            checks.push(HardCheck::new(
                 "extent of a part",
                 input.clone(),
                 describe(format!("{:?}", found.xi), ends, found.cut_by_window),
@@ -252,7 +260,7 @@ impl Bench<'_> {
         })
     }
 
-    fn relation(&self, cases: &[HardCase]) -> Result<Vec<Check>> {
+    fn relation(&self, cases: &[HardCase]) -> Result<Vec<HardCheck>> {
         let Some(relation) = &self.case.relation else { return Ok(Vec::new()) };
         let base = cases.iter().find(|case| case.reference.name == relation.to).ok_or_else(|| {
             let place = format!("{}: relation", self.case.reference.name);
@@ -260,7 +268,8 @@ impl Bench<'_> {
         })?;
         let placement = base.reference.placement()?;
         let checks = BOUNDS.iter().map(|(method, _, absolute)| {
-            // Every column on its own: the number of coefficients to start with is no matter of geometry.
+            // Every column is computed on its own: the number of coefficients to start with does not depend on the
+            // geometry.
             let choice = |case: &HardCase, placement: &Placement| Choice {
                 coefficients: 1,
                 ..case.choice(placement, *method)
@@ -279,26 +288,26 @@ impl Bench<'_> {
         &self,
         method: Method,
         kind: RelationKind,
-        mine: &[Point],
-        other: &[Point],
+        mine: &[ComparedPoint],
+        other: &[ComparedPoint],
         bound: f64,
-    ) -> Check {
+    ) -> HardCheck {
         let unit = if kind == RelationKind::Scaled { self.case.unit } else { 1.0 };
-        let partner = |p: &Point| {
+        let partner = |p: &ComparedPoint| {
             let xi = if kind == RelationKind::Mirrored { -p.xi } else { p.xi / unit };
             let eta = if kind == RelationKind::EtaReversed { -p.eta } else { p.eta / unit };
             other.iter().find(|q| q.xi == xi && q.eta == eta).map(|q| q.found * unit)
         };
         let same_bits = matches!(kind, RelationKind::Scaled | RelationKind::EtaReversed);
-        let agrees = |p: &Point, other: f64| {
+        let agrees = |p: &ComparedPoint, other: f64| {
             p.found == other
                 || p.found.is_nan() && other.is_nan()
                 || !same_bits && (p.found - other).abs() <= bound
         };
-        // On an axis that is not symmetric some η have no partner.
+        // On an axis that is not symmetric, some η have no partner.
         let pairs: Vec<_> = mine.iter().filter_map(|p| Some((p, partner(p)?))).collect();
         let wrong = pairs.iter().find(|(p, other)| !agrees(p, *other));
-        Check::new(
+        HardCheck::new(
             format!("{}: {kind:?}", method.name()),
             wrong.map_or(format!("{} points", pairs.len()), |(p, _)| at(p)),
             wrong.map_or("the same".into(), |(p, _)| format!("{:e}", p.found)),
@@ -308,8 +317,8 @@ impl Bench<'_> {
     }
 }
 
-fn at(point: &Point) -> String {
-    let Point { xi, eta, .. } = point;
+fn at(point: &ComparedPoint) -> String {
+    let ComparedPoint { xi, eta, .. } = point;
     format!("xi = {xi:e} (bits {:016x}), eta = {eta:e} (bits {:016x})", xi.to_bits(), eta.to_bits())
 }
 

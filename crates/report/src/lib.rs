@@ -1,15 +1,14 @@
-//! Measures speed against error: times every method of the ladder, compares it with 60-digit values, and runs
-//! the hard cases.
+//! Measures speed against error: times every method of the ladder, compares it with 60-digit values, and runs the hard
+//! cases.
 //!
-//! [`mod@reference`] reads the 60-digit files, which are part of the program; [`errors`] compares a method
-//! with them. [`speed`] races methods against a plain store of the same array, [`spline_cost`] splines
-//! against arcs. [`hard_case`] runs the cases of `tests/hard_cases`; [`verification`] checks them by
-//! parry3d's meshes. [`measured`] compares curves through points with the drawing from which the points are;
-//! [`specimen`] makes worn profiles as instruments measure them. [`rates`] counts positions of a wheelset a
-//! second over them, [`whole_case`] times a case from first touch to its mesh. [`measurements`] does all of
-//! this to a given effort; [`requirements`] judges the ratios; [`practice`] compares whole cases of engineers
-//! with brute force. [`page`] and [`table`] turn the numbers into Markdown, CSV and charts. Nothing here
-//! touches the disk.
+//! [`mod@reference`] reads the 60-digit files, which are part of the program; [`errors`] compares a method with them.
+//! [`speed`] races methods against a plain store of the same array, [`spline_cost`] splines against arcs. [`hard_case`]
+//! runs the cases of `tests/hard_cases`; [`verification`] checks placed pairs by parry3d's meshes. [`measured`] compares
+//! curves through points with the drawing from which the points come; [`specimen`] makes worn profiles as instruments
+//! measure them. [`rates`] counts positions of a wheelset a second over them, [`loads`] compares approaches under load with
+//! solved ones, [`whole_case`] times a case from first touch to its mesh. [`measurements`] does all of this with a given
+//! effort; [`requirements`] judges the ratios; [`practice`] compares whole cases of engineers with brute force. [`page`]
+//! and [`table`] turn the numbers into Markdown, CSV and charts. Nothing here touches the disk.
 
 #![cfg_attr(not(test), warn(unused_crate_dependencies))]
 
@@ -17,6 +16,7 @@ pub mod errors;
 pub mod hard_case;
 mod hard_checks;
 pub mod hard_run;
+pub mod loads;
 pub mod measured;
 pub mod measurements;
 pub mod page;
@@ -32,4 +32,4 @@ pub mod table;
 pub mod verification;
 pub mod whole_case;
 
-pub use hard_checks::{BOUNDS, Check};
+pub use hard_checks::{BOUNDS, HardCheck};

@@ -7,12 +7,11 @@ use rayon::prelude::*;
 
 use super::random::Random;
 use wheelrail::error::{Error, Result};
-use wheelrail::load::hertz::{Elastic, curvatures, effective_modulus};
+use wheelrail::load::{Elastic, curvatures, effective_modulus};
 use wheelrail::measured::{self, CUTOFF_WAVELENGTH, CurveKind, Format, Options, write};
 use wheelrail::patch::{Patch, Window};
 use wheelrail::placement::{Body, Pair, Placement};
-use wheelrail::profile::trace::{Mark, beside, trace};
-use wheelrail::profile::{Profile, Side, inclination, standards};
+use wheelrail::profile::{Mark, Profile, Side, beside, inclination, standards, trace};
 use wheelrail::search::{Pose, ProfilePair, Selection};
 use wheelrail::separation::Evaluator;
 
@@ -21,7 +20,7 @@ pub const SPACINGS: [f64; 4] = [0.1, 0.5, 1.0, 2.0];
 /// Standard deviations of the noise across the profile \[µm\]; it is normal and independent from point to
 /// point.
 pub const NOISES: [f64; 4] = [0.0, 0.1, 1.0, 10.0];
-/// Seed of the noise: the same for every row of one body, so that rows differ only by their curves.
+/// Seed of the noise. It is equal for all rows of one body, so that rows differ only by their curves.
 const SEED: u64 = 0x60E1_51002;
 
 /// Nominal rolling radius R of the comparison \[mm\].
@@ -32,25 +31,25 @@ const APPROACH: f64 = 0.08;
 const LOAD: f64 = 1e5;
 const STEEL: Elastic = Elastic { youngs_modulus: 2.1e5, poissons_ratio: 0.28 };
 
-/// Range of x in which rails are compared \[mm\]: the running surface. A patch of a tread is never below the
-/// gauge corner.
+/// Range of x in which rails are compared \[mm\]: the running surface. A patch on a tread never lies below the gauge
+/// corner.
 const RAIL_ZONE: [f64; 2] = [-33.0, 33.0];
-/// Range of x in which wheels are compared \[mm\]: a patch of a tread is never on the flange.
+/// Range of x in which wheels are compared \[mm\]. A patch on a tread never lies on the flange.
 const WHEEL_ZONE: [f64; 2] = [-38.0, 50.0];
 /// Distance of the marks that are compared \[mm\]; not a multiple of a spacing.
 const MARKS: f64 = 0.071;
-/// Least curvature by which errors of curvature are divided \[1/mm\], that of the crown: a tread has places
-/// without curvature.
+/// Least curvature \[1/mm\] by which errors of curvature are divided: that of the crown. A tread has places without
+/// curvature.
 const LEAST_CURVATURE: f64 = 1.0 / 300.0;
-/// Share of the places whose errors are below the reported one: at a joint of a drawing the curvature jumps,
-/// and every smooth curve is wrong there.
+/// Share of the places whose errors are below the reported one. At a joint of a drawing the curvature jumps, and every
+/// smooth curve is wrong there.
 const QUANTILE: f64 = 0.95;
 /// Half the number of columns and rows at which s is compared.
 const GRID: i32 = 20;
 
 /// A kind of curve through the points.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Curve {
+pub enum CurveChoice {
     /// A spline through every point.
     Interpolation,
     /// A smoothing spline with this cut-off wavelength \[mm\].
@@ -60,26 +59,31 @@ pub enum Curve {
 }
 
 /// The curves that are compared.
-pub const CURVES: [Curve; 5] =
-    [Curve::Interpolation, Curve::Smoothing(3.0), Curve::Smoothing(5.0), Curve::Smoothing(10.0), Curve::Arcs];
+pub const CURVES: [CurveChoice; 5] = [
+    CurveChoice::Interpolation,
+    CurveChoice::Smoothing(3.0),
+    CurveChoice::Smoothing(5.0),
+    CurveChoice::Smoothing(10.0),
+    CurveChoice::Arcs,
+];
 
 /// One row of the table.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct MeasuredRow {
     /// Distance of the points \[mm\].
     pub spacing: f64,
     /// Standard deviation of the noise \[µm\].
     pub noise: f64,
     /// Kind of curve.
-    pub curve: Curve,
+    pub curve: CurveChoice,
     /// The errors, or why there is no curve.
-    pub errors: std::result::Result<Errors, String>,
+    pub errors: std::result::Result<MeasuredErrors, String>,
 }
 
 /// Differences of a pair of fitted profiles from the drawn one; each of the first three is the larger one of
 /// rail and wheel.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Errors {
+pub struct MeasuredErrors {
     /// 95 % quantile of the distance across the profile \[mm\].
     pub profile: f64,
     /// 95 % quantile of the error of the tangent angle \[rad\].
@@ -94,14 +98,14 @@ pub struct Errors {
     pub pressure: Option<f64>,
 }
 
-impl Curve {
+impl CurveChoice {
     fn options(self, noise: f64) -> Options {
         let base = Options { mirror: Some(false), flip_z: Some(false), ..Options::default() };
         match self {
             Self::Interpolation => Options { curve: Some(CurveKind::Interpolation), ..base },
             Self::Smoothing(cutoff) => Options { cutoff_wavelength: Some(cutoff), ..base },
             Self::Arcs => {
-                // Of some thousand points the farthest is three to four deviations off.
+                // Of some thousand points the farthest is three to four standard deviations off.
                 let tolerance = measured::ARC_TOLERANCE.max(4.5e-3 * noise);
                 Options { curve: Some(CurveKind::Arcs), arc_tolerance: Some(tolerance), ..base }
             }
@@ -118,14 +122,14 @@ impl Curve {
 }
 
 /// One drawn body with its marks.
-struct Drawn {
+struct DrawnBody {
     profile: Profile,
     side: Side,
     marks: Vec<Mark>,
     fine: Vec<Mark>,
 }
 
-impl Drawn {
+impl DrawnBody {
     fn new(profile: Profile, side: Side) -> Self {
         let zone = if side == Side::Rail { RAIL_ZONE } else { WHEEL_ZONE };
         let inside = |mark: &Mark| (zone[0]..=zone[1]).contains(&mark.station.x) && mark.station.cos > 0.2;
@@ -161,7 +165,8 @@ impl Drawn {
         let mut hint = 0;
         let mut errors: [Vec<f64>; 3] = Default::default();
         for exact in &self.marks {
-            let found = beside(&marks, [exact.station.x, exact.station.z], hint);
+            let at = [exact.station.x, exact.station.z];
+            let Some(found) = beside(&marks, at, hint) else { continue };
             hint = found.mark;
             let near = &marks[found.mark];
             // The nearest mark is up to half a step away from the foot.
@@ -179,8 +184,8 @@ impl Drawn {
 }
 
 /// The drawn pair in contact, with all data for the comparison with fitted pairs.
-struct Reference {
-    bodies: [Drawn; 2],
+struct DrawnPair {
+    bodies: [DrawnBody; 2],
     placement: Placement,
     window: Window,
     points: Vec<[f64; 3]>,
@@ -188,10 +193,11 @@ struct Reference {
     pressure: f64,
 }
 
-impl Reference {
+impl DrawnPair {
     fn new() -> Result<Self> {
         let rail = standards::rail("60E1")?;
-        let bodies = [Drawn::new(rail, Side::Rail), Drawn::new(standards::wheel("S1002")?, Side::Wheel)];
+        let bodies =
+            [DrawnBody::new(rail, Side::Rail), DrawnBody::new(standards::wheel("S1002")?, Side::Wheel)];
         let pair = pair(&bodies[0].profile, &bodies[1].profile)?;
         let search = ProfilePair::new(&pair)?;
         let mut search = search.search();
@@ -207,10 +213,10 @@ impl Reference {
         Ok(Self { bodies, placement, window, points, area: patch.area(), pressure })
     }
 
-    fn errors(&self, spacing: f64, noise: f64, curve: Curve) -> Result<Errors> {
+    fn errors(&self, spacing: f64, noise: f64, curve: CurveChoice) -> Result<MeasuredErrors> {
         let options = curve.options(noise);
         let [rail, wheel] = &self.bodies;
-        let fit = |body: &Drawn| body.fitted(&body.points(spacing, noise), &options);
+        let fit = |body: &DrawnBody| body.fitted(&body.points(spacing, noise), &options);
         let (fitted_rail, fitted_wheel) = (fit(rail)?, fit(wheel)?);
         let (a, b) = (rail.compare(&fitted_rail), wheel.compare(&fitted_wheel));
         let pair = pair(&fitted_rail, &fitted_wheel)?;
@@ -222,11 +228,11 @@ impl Reference {
         let off = found.iter().zip(&self.points).map(|(s, [.., exact])| (s - lowest - exact).abs());
         let separation = off.fold(0.0, f64::max);
         let area = Patch::new(&placed, APPROACH + lowest, &self.window).area() / self.area - 1.0;
-        let at_contact = |body: &Body| body.point.station.x;
+        let at_contact = |body: &Body| body.point().station.x;
         let own = pair.placed(at_contact(self.placement.rail()), at_contact(self.placement.wheel()), 0.0)?;
         let pressure = pressure(&own).map(|pressure| pressure / self.pressure - 1.0);
         let [profile, slope, curvature] = [0, 1, 2].map(|k: usize| a[k].max(b[k]));
-        Ok(Errors { profile, slope, curvature, separation, area, pressure })
+        Ok(MeasuredErrors { profile, slope, curvature, separation, area, pressure })
     }
 }
 
@@ -261,22 +267,22 @@ fn pressure(placement: &Placement) -> Option<f64> {
 ///
 /// # Errors
 /// Built-in profiles that do not touch, which is a fault of this program.
-pub fn rows(spacings: &[f64]) -> Result<Vec<Row>> {
-    let reference = Reference::new()?;
-    let cases: Vec<(f64, f64, Curve)> = spacings
+pub fn rows(spacings: &[f64]) -> Result<Vec<MeasuredRow>> {
+    let reference = DrawnPair::new()?;
+    let cases: Vec<(f64, f64, CurveChoice)> = spacings
         .iter()
         .flat_map(|&spacing| NOISES.map(|noise| (spacing, noise)))
         .flat_map(|(spacing, noise)| CURVES.map(|curve| (spacing, noise, curve)))
         .collect();
-    let row = |&(spacing, noise, curve): &(f64, f64, Curve)| {
+    let row = |&(spacing, noise, curve): &(f64, f64, CurveChoice)| {
         let errors = reference.errors(spacing, noise, curve).map_err(|error| error.to_string());
-        Row { spacing, noise, curve, errors }
+        MeasuredRow { spacing, noise, curve, errors }
     };
     Ok(cases.par_iter().map(row).collect())
 }
 
 /// Returns the section of the report.
-pub fn section(rows: &[Row]) -> String {
+pub fn section(rows: &[MeasuredRow]) -> String {
     let mut out = format!(
         "60E1 (1:40) under S1002, R = {RADIUS} mm, sampled from the drawings at equal arc lengths, with normal noise \
          across the profile (fixed seed), read back as files and compared with the drawings. Profile, slope and \
@@ -305,12 +311,12 @@ pub fn section(rows: &[Row]) -> String {
     out + &recommendation(rows)
 }
 
-/// Error of the pressure in the summary where s is not convex: wrong altogether.
+/// Error of the pressure in the summary if s is not convex: 100 %.
 const NO_ELLIPSE: f64 = 1.0;
 
 /// Returns the largest errors \[of pressure, relative; of s, mm\] of a curve on rows with points up to
 /// `spacing` mm apart and this noise \[µm\]; infinite if there is no curve.
-pub fn worst(rows: &[Row], curve: Curve, spacing: f64, noise: f64) -> [f64; 2] {
+pub fn worst(rows: &[MeasuredRow], curve: CurveChoice, spacing: f64, noise: f64) -> [f64; 2] {
     let counted = rows.iter().filter(|r| r.curve == curve && r.spacing <= spacing && r.noise == noise);
     counted.fold([0.0f64; 2], |[pressure, s], row| match &row.errors {
         Ok(e) => [pressure.max(e.pressure.map_or(NO_ELLIPSE, f64::abs)), s.max(e.separation)],
@@ -318,7 +324,7 @@ pub fn worst(rows: &[Row], curve: Curve, spacing: f64, noise: f64) -> [f64; 2] {
     })
 }
 
-fn recommendation(rows: &[Row]) -> String {
+fn recommendation(rows: &[MeasuredRow]) -> String {
     let mut out = String::from(
         "\nThe largest errors with points up to 1 mm apart, pressure \\[%\\] (100: none) / s \\[µm\\]:\n\n| curve |",
     );
@@ -352,12 +358,12 @@ mod tests {
 
     #[test]
     fn noise_ruins_interpolation_and_not_the_default() -> Result<()> {
-        let reference = Reference::new()?;
+        let reference = DrawnPair::new()?;
         let pressure = |curve| -> Result<f64> {
             Ok(reference.errors(0.5, 1.0, curve)?.pressure.map_or(NO_ELLIPSE, f64::abs))
         };
         let (interpolated, smoothed) =
-            (pressure(Curve::Interpolation)?, pressure(Curve::Smoothing(CUTOFF_WAVELENGTH))?);
+            (pressure(CurveChoice::Interpolation)?, pressure(CurveChoice::Smoothing(CUTOFF_WAVELENGTH))?);
         assert!(smoothed < 0.1 && interpolated > 3.0 * smoothed, "off by {interpolated} and {smoothed}");
         Ok(())
     }

@@ -7,19 +7,19 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::errors::{Errors, compare};
 use super::hard_case::hard_cases;
-use super::hard_run::{self, Outcome};
+use super::hard_run::{self, HardOutcome};
+use super::loads::{self, ApproachError, Carried};
 use super::measured;
 use super::practice::{self, PracticeRow};
 use super::rates::{Extent, Rate, rates};
 use super::reference::{Reference, references};
-use super::speed::{LEAST_RUNS, Timing, Track, Work, race};
+use super::speed::{LEAST_RUNS, RaceTrack, TimedWork, Timing, race};
 use super::spline_cost::{SplineCost, spline_costs};
 use super::verification::{Subject, Verified, built_in_pairs, verify};
 use super::whole_case::{RunCost, WholeCase, run_cost, whole_cases};
 use wheelrail::error::{Error, Result};
 use wheelrail::placement::Placement;
-use wheelrail::separation::grid::Method;
-use wheelrail::separation::plan::{FULL_PRECISION, plan};
+use wheelrail::separation::{FULL_PRECISION, Method, plan};
 
 /// Tolerances \[mm\] at which spectral columns are measured.
 pub const TOLERANCES: [f64; 4] = [1e-3, 1e-6, 1e-9, FULL_PRECISION];
@@ -27,11 +27,11 @@ pub const TOLERANCES: [f64; 4] = [1e-3, 1e-6, 1e-9, FULL_PRECISION];
 /// The scene on which growth and threads are measured: a plain tread contact with arcs on both bodies.
 const EXAMPLE: &str = "hollow_tread";
 
-/// Factor by which the contestants of growth run longer: the largest grids take a tenth of a second, and
-/// memory is disturbed most.
+/// Factor by which the contestants of growth run longer. The largest grids take a tenth of a second, and memory is
+/// disturbed most.
 const GROWTH_SHARES: f64 = 4.0;
 
-/// Number of times that the scenes' races are taken up: a disturbance of a machine may last for seconds.
+/// Number of passes over the races of the scenes. A disturbance of the machine may last for seconds.
 pub const PASSES: usize = 6;
 
 /// The amount of measuring.
@@ -74,7 +74,7 @@ impl Effort {
 
 /// One row of accuracy.csv.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct AccuracyRow {
     /// Name of the reference scene.
     pub scene: String,
     /// Name of the method, or "store".
@@ -89,7 +89,7 @@ pub struct Row {
     pub errors: Option<Errors>,
 }
 
-impl Row {
+impl AccuracyRow {
     /// Returns the number of points of the grid.
     pub fn points(&self) -> usize {
         self.side * self.side
@@ -129,7 +129,7 @@ pub struct Threads {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measurements {
     /// Rows for every scene × method × tolerance × grid.
-    pub rows: Vec<Row>,
+    pub rows: Vec<AccuracyRow>,
     /// Least, median and largest time for choosing a method at full precision \[s\], over the scenes and
     /// grids of the rows.
     pub planning: [f64; 3],
@@ -147,14 +147,16 @@ pub struct Measurements {
     /// [`Effort::sweeps`].
     pub run: Option<RunCost>,
     /// Results of the hard cases.
-    pub hard_cases: Vec<Outcome>,
+    pub hard_cases: Vec<HardOutcome>,
     /// Results of the practice cases against brute force.
     pub practice: Vec<PracticeRow>,
+    /// Errors of approaches under loads.
+    pub loads: Vec<ApproachError>,
     /// Results of the check by parry3d's meshes: of the reference scenes, with and without skew, and of the
     /// built-in pairs.
     pub verified: [Vec<Verified>; 2],
     /// Effects of sampling, noise and the choice of curve on measured profiles.
-    pub evidence: Vec<measured::Row>,
+    pub evidence: Vec<measured::MeasuredRow>,
 }
 
 /// Measures everything; `progress` gets the name of each part when it begins.
@@ -184,6 +186,8 @@ pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measur
     progress("practice cases against brute force");
     let cases: Vec<_> = practice::cases()?.into_iter().step_by(effort.every_case).collect();
     let practice = cases.par_iter().map(practice::run).collect();
+    progress("loads");
+    let loads = loads::carried()?.iter().map(Carried::compared).collect();
     progress("the check by parry3d's meshes");
     let verified = verified(&references, effort.every_pair)?;
     progress("measured profiles");
@@ -199,6 +203,7 @@ pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measur
         run,
         hard_cases,
         practice,
+        loads,
         verified,
         evidence,
     })
@@ -229,11 +234,11 @@ fn example(references: &[Reference]) -> Result<&Reference> {
 
 /// Returns the grid over the window of the scene's own points, so that spectral columns are the same
 /// polynomials as at these points.
-fn track<'a>(reference: &Reference, placement: &'a Placement, side: usize) -> Track<'a> {
+fn track<'a>(reference: &Reference, placement: &'a Placement, side: usize) -> RaceTrack<'a> {
     let [xi, eta] = reference.scene.axes();
     let reach = eta.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
     let ends = [xi.first(), xi.last()].map(|v| v.copied().unwrap_or(0.0));
-    Track::new(placement, ends, reach, side)
+    RaceTrack::new(placement, ends, reach, side)
 }
 
 /// Returns every method and tolerance as (name, tolerance, method), the store first.
@@ -255,7 +260,7 @@ fn scene_races(
     effort: &Effort,
     one: &ThreadPool,
     progress: &mut dyn FnMut(&str),
-) -> Result<(Vec<Row>, [f64; 3])> {
+) -> Result<(Vec<AccuracyRow>, [f64; 3])> {
     let placements = references.iter().map(Reference::placement).collect::<Result<Vec<_>>>()?;
     let (mut rows, mut planning) = (Vec::new(), Vec::new());
     for &side in &effort.sides {
@@ -283,9 +288,9 @@ struct SceneRace<'a> {
     reference: &'a Reference,
     placement: &'a Placement,
     side: usize,
-    works: Vec<Work>,
+    works: Vec<TimedWork>,
     /// One row for each contestant, with the times of its runs so far.
-    rows: Vec<Row>,
+    rows: Vec<AccuracyRow>,
     /// Time for choosing a method at full precision \[s\].
     planning: f64,
 }
@@ -298,8 +303,8 @@ impl<'a> SceneRace<'a> {
         let (mut works, mut rows) = (Vec::new(), Vec::new());
         for (name, tolerance, method) in contestants() {
             let choice = method.map(|method| planned(tolerance.unwrap_or(FULL_PRECISION), Some(method)));
-            works.push(choice.map_or(Work::Store, Work::Fill));
-            rows.push(Row {
+            works.push(choice.map_or(TimedWork::Store, TimedWork::Fill));
+            rows.push(AccuracyRow {
                 scene: reference.name.clone(),
                 method: name,
                 tolerance,
@@ -332,7 +337,7 @@ fn growth(reference: &Reference, effort: &Effort) -> Result<Vec<Growth>> {
         .map(|track| {
             let method = Some(Method::Spectral);
             let plan = plan(&placement, track.xi(), track.axis(), FULL_PRECISION, method);
-            [Work::Store, Work::Fill(plan.choice)]
+            [TimedWork::Store, TimedWork::Fill(plan.choice)]
         })
         .collect();
     let mut timings = vec![Timing::NONE; 2 * works.len()];
@@ -357,11 +362,11 @@ fn threads(reference: &Reference, effort: &Effort) -> Result<Vec<Threads>> {
         let mut timings = [Timing::NONE; 2];
         race(&mut timings, effort.seconds, LEAST_RUNS, |k| {
             let start = Instant::now();
-            pools[k].install(|| track.run(Work::Fill(choice)));
+            pools[k].install(|| track.run(TimedWork::Fill(choice)));
             start.elapsed().as_secs_f64()
         });
         let [one, two] = [0, 1].map(|k| {
-            pools[k].install(|| track.run(Work::Fill(choice)));
+            pools[k].install(|| track.run(TimedWork::Fill(choice)));
             track.values().iter().map(|s| s.to_bits()).collect::<Vec<_>>()
         });
         let same_bits = one == two;

@@ -3,21 +3,21 @@
 mod in_use;
 mod section;
 
-pub use section::Section;
+pub use section::PageSection;
 
-use super::hard_run::Outcome;
+use super::hard_run::HardOutcome;
 use super::measured;
-use super::measurements::{Growth, Measurements, PASSES, Row, median};
+use super::measurements::{AccuracyRow, Growth, Measurements, PASSES, median};
 use super::requirements;
 use super::spline_cost::SplineCost;
 use super::table::{accuracy_csv, growth_csv, hard_cases_csv, markdown, verification_csv};
 use super::verification::{Verified, floors};
-use wheelrail::export::picture::chart::{Chart, Series};
-use wheelrail::numerics::nan_max;
+use wheelrail::export::{Chart, Series};
+use wheelrail::internal::nan_max;
 use wheelrail_check::{RELATION, Report};
 
 /// Where, with what and how the numbers were made, as (name, value) for the head of the page.
-pub type Origin = Vec<(&'static str, String)>;
+pub type PageOrigin = Vec<(&'static str, String)>;
 
 /// Name of the page's own file.
 pub const PAGE: &str = "report.md";
@@ -38,7 +38,7 @@ pub const FILES: [&str; 11] = [
 ];
 
 /// Returns the sections of the report, in order.
-pub fn sections(m: &Measurements) -> Vec<Section> {
+pub fn sections(m: &Measurements) -> Vec<PageSection> {
     vec![
         requirements_section(m),
         speed_and_error(m),
@@ -49,6 +49,7 @@ pub fn sections(m: &Measurements) -> Vec<Section> {
         in_use::cases(m),
         hard_cases(m),
         in_use::practice(m),
+        in_use::loads(m),
         verification(m),
         measured_profiles(m),
         method(m),
@@ -56,7 +57,7 @@ pub fn sections(m: &Measurements) -> Vec<Section> {
 }
 
 /// Returns the page: head, origin, sections.
-pub fn page(origin: &Origin, sections: &[Section]) -> String {
+pub fn page(origin: &PageOrigin, sections: &[PageSection]) -> String {
     let mut out = String::from("# wheelrail: speed against error\n\n");
     let rows: Vec<Vec<String>> =
         origin.iter().map(|(name, value)| vec![(*name).into(), value.clone()]).collect();
@@ -68,7 +69,7 @@ pub fn page(origin: &Origin, sections: &[Section]) -> String {
 }
 
 /// Returns the table for a README, with the command that made it.
-pub fn excerpt(m: &Measurements, origin: &Origin) -> String {
+pub fn excerpt(m: &Measurements, origin: &PageOrigin) -> String {
     let value = |name: &str| origin.iter().find(|(n, _)| *n == name).map_or("unknown", |(_, v)| v.as_str());
     format!(
         "{}\nErrors over all reference scenes against 60-digit values, relative ones over all points but C itself: beyond the \
@@ -84,11 +85,11 @@ pub fn excerpt(m: &Measurements, origin: &Origin) -> String {
     )
 }
 
-fn plain(title: &'static str, body: String) -> Section {
-    Section { title, body, files: Vec::new() }
+fn plain(title: &'static str, body: String) -> PageSection {
+    PageSection { title, body, files: Vec::new() }
 }
 
-fn requirements_section(m: &Measurements) -> Section {
+fn requirements_section(m: &Measurements) -> PageSection {
     let rows: Vec<Vec<String>> = requirements::all(m)
         .into_iter()
         .map(|r| vec![r.what, r.least, r.found, r.remark, if r.met { "pass" } else { "**miss**" }.into()])
@@ -118,7 +119,11 @@ fn sides(m: &Measurements) -> Vec<usize> {
     sides
 }
 
-fn of<'m>(m: &'m Measurements, kind: (&str, Option<f64>), side: usize) -> impl Iterator<Item = &'m Row> {
+fn of<'m>(
+    m: &'m Measurements,
+    kind: (&str, Option<f64>),
+    side: usize,
+) -> impl Iterator<Item = &'m AccuracyRow> {
     m.rows.iter().filter(move |row| (row.method, row.tolerance, row.side) == (kind.0, kind.1, side))
 }
 
@@ -134,8 +139,9 @@ fn summary(m: &Measurements) -> String {
         .into_iter()
         .map(|kind| {
             let mut cells = vec![kind.0.to_string(), kind.1.map_or_else(|| "–".into(), |t| format!("{t:e}"))];
-            cells
-                .extend(sides.iter().map(|&side| format!("{:.0}", median(of(m, kind, side).map(Row::rate)))));
+            cells.extend(
+                sides.iter().map(|&side| format!("{:.0}", median(of(m, kind, side).map(AccuracyRow::rate)))),
+            );
             for other in ["store", "report-newton"] {
                 cells.push(format!(
                     "{:.2}",
@@ -156,7 +162,7 @@ fn summary(m: &Measurements) -> String {
     markdown(&head.iter().map(String::as_str).collect::<Vec<_>>(), 2, &rows)
 }
 
-fn speed_and_error(m: &Measurements) -> Section {
+fn speed_and_error(m: &Measurements) -> PageSection {
     let mut body = format!(
         "Median over the reference scenes; one thread; ratios at the largest grid.\n\n{}\n\
          All rows: [accuracy.csv](accuracy.csv).\n",
@@ -167,7 +173,7 @@ fn speed_and_error(m: &Measurements) -> Section {
         body += &format!("\n![error against speed, {side} × {side} points]({name})\n");
         files.push((name, work_error(m, side).svg().into_bytes()));
     }
-    Section { title: "Speed against error", body, files }
+    PageSection { title: "Speed against error", body, files }
 }
 
 /// Returns the chart of error over rate: a faint mark for each scene, strong ones for the medians, with the
@@ -185,7 +191,7 @@ fn work_error(m: &Measurements, side: usize) -> Chart {
             last.line.push(middle);
         }
     }
-    let store = median(of(m, ("store", None), side).map(Row::rate));
+    let store = median(of(m, ("store", None), side).map(AccuracyRow::rate));
     Chart {
         title: format!("Largest error of s over speed, {side} × {side} points, one thread"),
         labels: ["Mpoints/s".into(), "largest error of s, mm".into()],
@@ -194,9 +200,9 @@ fn work_error(m: &Measurements, side: usize) -> Chart {
     }
 }
 
-fn scenes(m: &Measurements) -> Section {
+fn scenes(m: &Measurements) -> PageSection {
     let side = sides(m).last().copied().unwrap_or(0);
-    let full = Some(wheelrail::separation::plan::FULL_PRECISION);
+    let full = Some(wheelrail::separation::FULL_PRECISION);
     let kinds = [("store", None), ("spectral", full), ("pointwise", None), ("report-newton", full)];
     let mut names: Vec<&str> = m.rows.iter().map(|row| row.scene.as_str()).collect();
     names.dedup();
@@ -235,7 +241,7 @@ fn scenes(m: &Measurements) -> Section {
     )
 }
 
-fn growth(m: &Measurements) -> Section {
+fn growth(m: &Measurements) -> PageSection {
     let rows: Vec<Vec<String>> = m
         .growth
         .iter()
@@ -255,7 +261,7 @@ fn growth(m: &Measurements) -> Section {
         ("scaling.csv", growth_csv(&m.growth).into_bytes()),
         ("scaling.svg", growth_chart(&m.growth).svg().into_bytes()),
     ];
-    Section { title: "Growth of cost", body, files }
+    PageSection { title: "Growth of cost", body, files }
 }
 
 fn growth_chart(rows: &[Growth]) -> Chart {
@@ -272,7 +278,7 @@ fn growth_chart(rows: &[Growth]) -> Chart {
     }
 }
 
-fn threads(m: &Measurements) -> Section {
+fn threads(m: &Measurements) -> PageSection {
     let rows: Vec<Vec<String>> = m
         .threads
         .iter()
@@ -295,7 +301,7 @@ fn threads(m: &Measurements) -> Section {
     plain("Threads", markdown(&head, 1, &rows))
 }
 
-fn hard_cases(m: &Measurements) -> Section {
+fn hard_cases(m: &Measurements) -> PageSection {
     let rows: Vec<Vec<String>> = m.hard_cases.iter().map(hard_case).collect();
     let head = ["case", "status", "as stated", "spectral, mm", "pointwise, mm", "report-newton, mm", "why"];
     let body = format!(
@@ -305,10 +311,10 @@ fn hard_cases(m: &Measurements) -> Section {
         markdown(&head, 7, &rows)
     );
     let files = vec![("hard_cases.csv", hard_cases_csv(&m.hard_cases).into_bytes())];
-    Section { title: "Hard cases", body, files }
+    PageSection { title: "Hard cases", body, files }
 }
 
-fn hard_case(outcome: &Outcome) -> Vec<String> {
+fn hard_case(outcome: &HardOutcome) -> Vec<String> {
     let case = &outcome.case;
     let errors = outcome.errors.map(|e| match e.wrongly_masked {
         0 => format!("{:.1e}", e.max_abs),
@@ -321,7 +327,7 @@ fn hard_case(outcome: &Outcome) -> Vec<String> {
     cells
 }
 
-fn measured_profiles(m: &Measurements) -> Section {
+fn measured_profiles(m: &Measurements) -> PageSection {
     let row = |cost: &SplineCost| {
         let [splines, arcs] = cost.seconds;
         let figures = [
@@ -346,7 +352,7 @@ fn measured_profiles(m: &Measurements) -> Section {
     )
 }
 
-fn verification(m: &Measurements) -> Section {
+fn verification(m: &Measurements) -> PageSection {
     let floors: Vec<Vec<String>> = floors(m.verified.iter().flatten())
         .into_iter()
         .map(|floor| {
@@ -384,7 +390,7 @@ fn verification(m: &Measurements) -> Section {
         body += &format!("\n**{}**: {}\n", verified.name, verified.report.objections.join("; "));
     }
     let files = vec![("verification.csv", verification_csv(&m.verified).into_bytes())];
-    Section { title: "Checked by triangle meshes", body, files }
+    PageSection { title: "Checked by triangle meshes", body, files }
 }
 
 /// Returns one row: how many agree, and the figures of all of them together.
@@ -406,7 +412,7 @@ fn agreement(name: &str, all: &[Verified]) -> Vec<String> {
     ]
 }
 
-fn method(m: &Measurements) -> Section {
+fn method(m: &Measurements) -> PageSection {
     let [least, middle, most] = m.planning.map(|seconds| seconds * 1e6);
     let scenes = m.rows.iter().filter(|row| row.method == "store").count() / sides(m).len().max(1);
     plain(

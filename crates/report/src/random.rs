@@ -1,11 +1,11 @@
-//! Random numbers from a seed, equal on every machine and in every run.
+//! Random numbers from a seed. They are equal on every machine and in every run.
 
-/// A stream of random numbers: SplitMix64, with Box–Muller for normal ones.
+/// A stream of random numbers by SplitMix64; normal ones are made by Box–Muller.
 #[derive(Debug, Clone)]
 pub struct Random(u64);
 
 impl Random {
-    /// Begins the stream of a seed; every seed gives another stream.
+    /// Makes the stream of a seed. Every seed gives another stream.
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }
@@ -19,12 +19,12 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// A whole number below n, 0 where n is 0.
+    /// Returns a whole number below n, or 0 if n is 0.
     pub fn below(&mut self, n: usize) -> usize {
         (self.bits() % n.max(1) as u64) as usize
     }
 
-    /// One of several.
+    /// Returns one of several items.
     pub fn pick<'a, T>(&mut self, all: &'a [T]) -> &'a T {
         &all[self.below(all.len())]
     }

@@ -5,12 +5,9 @@ use super::specimen::{Instrument, Specimen, SpecimenKind};
 use super::speed::{LEAST_RUNS, Timing, race, timed};
 use wheelrail::error::Result;
 use wheelrail::measured::{CurveKind, Format, Options};
-use wheelrail::placement::Pair;
-use wheelrail::placement::track::{RailDistance, WheelDistance};
+use wheelrail::placement::{Pair, RailDistance, WheelDistance};
 use wheelrail::profile::{Profile, inclination, standards};
-use wheelrail::search::Selection;
-use wheelrail::search::sweep::{Conicity, Sweep};
-use wheelrail::search::wheelset::{Position, Roll, WheelsetOnTrack};
+use wheelrail::search::{Conicity, Position, Roll, Selection, Sweep, WheelsetOnTrack};
 
 /// Largest displacement of the wheelset to either side \[mm\].
 pub const AMPLITUDE: f64 = 10.0;

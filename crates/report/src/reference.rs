@@ -7,8 +7,8 @@ use wheelrail::error::{Error, Result};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Half, Polynomial, Profile, Segment, Shape};
 
-/// Largest residue that counts as zero \[mm\]: 60-digit arithmetic leaves residues of about 1e-59 mm where s
-/// is zero, and no true value of a file is this small.
+/// Largest residue \[mm\] that counts as zero. 60-digit arithmetic leaves residues of about 1e-59 mm where s is zero, and
+/// no true value of a file is this small.
 const RESIDUE: f64 = 1e-40;
 
 /// A scene and its values, from one file.
@@ -25,8 +25,8 @@ pub struct Reference {
     pub boundary: Vec<(f64, f64, Option<String>)>,
 }
 
-/// A pair in contact, in the format of the reference program. Lengths are in mm; every number is the exact
-/// binary value that a program reads.
+/// A pair in contact, in the format of the reference program. Lengths are in mm. Every number is the exact binary value
+/// that a program reads.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct ReferenceScene {
     /// Rail segments from left to right.

@@ -1,10 +1,9 @@
 //! The ratios that the project requires of itself, and whether a run met them.
 
-use super::measurements::{Growth, Measurements, Row, median};
+use super::measurements::{AccuracyRow, Growth, Measurements, median};
 use super::rates::{Motion, Rate};
 use super::spline_cost::SplineCost;
-use wheelrail::separation::grid::Method;
-use wheelrail::separation::plan::FULL_PRECISION;
+use wheelrail::separation::{FULL_PRECISION, Method};
 
 /// Least rate of spectral columns at full precision over the Report's Newton.
 const OVER_REPORT: f64 = 20.0;
@@ -29,8 +28,8 @@ const RUN: f64 = 0.1;
 const WHOLE_CASES: [(&str, f64); 2] = [("drawn", 1e-4), ("measured", 3e-4)];
 /// Largest time of a plan over that of the fill.
 const PLAN_OVER_FILL: f64 = 2.0;
-/// Largest distance of d log time/d log points from 1 at which growth counts as linear: a factor of 1.6 over
-/// four decades.
+/// Largest distance of d log time/d log points from 1 at which growth counts as linear. It is a factor of 1.6 over four
+/// decades.
 const LINEAR: f64 = 0.05;
 
 /// One requirement.
@@ -166,7 +165,7 @@ pub(super) fn ratios<'m>(
     other: &'m str,
     side: usize,
 ) -> impl Iterator<Item = (&'m str, f64)> {
-    let at = move |row: &&Row, name: &str| row.method == name && row.side == side;
+    let at = move |row: &&AccuracyRow, name: &str| row.method == name && row.side == side;
     let mine = m.rows.iter().filter(move |row| at(row, method) && row.tolerance == tolerance);
     mine.filter_map(move |row| {
         let other = m.rows.iter().find(|o| at(o, other) && o.scene == row.scene)?;

@@ -5,12 +5,9 @@ use std::time::Instant;
 
 use rustix::time::{ClockId, clock_gettime};
 
-use wheelrail::case::equal_steps;
+use wheelrail::mesh::equal_steps;
 use wheelrail::placement::Placement;
-use wheelrail::separation::axis::EtaAxis;
-use wheelrail::separation::grid::Choice;
-use wheelrail::separation::plan::{FULL_PRECISION, plan};
-use wheelrail::separation::values::Values;
+use wheelrail::separation::{Choice, EtaAxis, FULL_PRECISION, Values, plan};
 
 /// Least number of runs of one contestant in all its races: three show a disturbed one.
 pub const LEAST_RUNS: usize = 3;
@@ -18,16 +15,16 @@ pub const LEAST_RUNS: usize = 3;
 /// Length of a run, as a multiple of its contestant's share of time, above which it is not repeated.
 const TOO_LONG: f64 = 10.0;
 
-/// Longest run \[s\] that is timed on the wall: the shortest of many runs is not disturbed. For such runs the
-/// clock of a thread's processor time was seen to stand still, during one of some million.
+/// Longest run \[s\] that is timed on the wall, where the shortest of many runs is undisturbed. The clock of a thread's
+/// processor time was seen to stand still during one of some million such runs.
 const SHORT: f64 = 1e-3;
 
-/// The value that is stored: not a pattern of equal bytes, which a compiler could turn into `memset`.
+/// The value that is stored. It is not a pattern of equal bytes, which a compiler could turn into `memset`.
 const STORED: f64 = 0.1;
 
 /// The work that is timed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Work {
+pub enum TimedWork {
     /// Writes one value to the whole array, column by column.
     Store,
     /// Fills the array by a method.
@@ -39,7 +36,7 @@ pub enum Work {
 /// The times of one contestant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Timing {
-    /// Time of the shortest run \[s\]: [`Track::timed`] on one thread, time on the wall on several.
+    /// Time of the shortest run \[s\]: [`RaceTrack::timed`] on one thread, time on the wall on several.
     pub best: f64,
     /// Sum of the times of all runs \[s\].
     pub spent: f64,
@@ -54,14 +51,14 @@ impl Timing {
 
 /// The grid that is filled: one array for all contestants, with its pages touched before the first run.
 #[derive(Debug)]
-pub struct Track<'a> {
+pub struct RaceTrack<'a> {
     placement: &'a Placement,
     xi: Vec<f64>,
     axis: EtaAxis,
     out: Values,
 }
 
-impl<'a> Track<'a> {
+impl<'a> RaceTrack<'a> {
     /// Makes a grid of n × n points over \[ξ_0, ξ_1\] × \[−reach, reach\] \[mm\].
     pub fn new(placement: &'a Placement, [a, b]: [f64; 2], reach: f64, n: usize) -> Self {
         let xi = equal_steps(a, b, n);
@@ -87,18 +84,18 @@ impl<'a> Track<'a> {
     }
 
     /// Runs once, on the threads of the present rayon pool.
-    pub fn run(&mut self, work: Work) {
+    pub fn run(&mut self, work: TimedWork) {
         match work {
-            Work::Store => {
+            TimedWork::Store => {
                 let value = black_box(STORED);
-                for column in self.out.chunks_mut(self.axis.eta.len().max(1)) {
+                for column in self.out.chunks_mut(self.axis.eta().len().max(1)) {
                     column.fill(value);
                 }
             }
-            Work::Fill(choice) => {
+            TimedWork::Fill(choice) => {
                 choice.fill(self.placement, &self.xi, &self.axis, &mut self.out);
             }
-            Work::PlanAndFill => {
+            TimedWork::PlanAndFill => {
                 let mut plan = plan(self.placement, &self.xi, &self.axis, FULL_PRECISION, None);
                 plan.fill(self.placement, &self.xi, &self.axis, &mut self.out);
             }
@@ -107,7 +104,7 @@ impl<'a> Track<'a> {
     }
 
     /// Returns the time of one run \[s\], measured by [`timed`].
-    pub fn timed(&mut self, work: Work) -> f64 {
+    pub fn timed(&mut self, work: TimedWork) -> f64 {
         timed(|| self.run(work))
     }
 }
@@ -127,11 +124,11 @@ fn processor_time() -> f64 {
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
 
-/// Runs contestants until each has had `seconds`, earlier races included, and `least` runs; `run` returns the
-/// seconds of one run.
+/// Runs contestants until each has had `seconds`, earlier races included, and `least` runs. `run` returns the seconds of
+/// one run.
 ///
-/// The contestant with the least time so far is next. So all are spread over the same stretch of time and
-/// meet the same disturbances, and ratios hold even where times do not.
+/// The next contestant is the one with the least time so far. All runs are therefore spread over the same stretch of time
+/// and meet the same disturbances, so that ratios hold even if times do not.
 pub fn race(timings: &mut [Timing], seconds: f64, least: usize, mut run: impl FnMut(usize) -> f64) {
     let waits = |timing: &Timing| {
         let long = timing.best > TOO_LONG * seconds;

@@ -1,12 +1,12 @@
 //! Measures the cost of a grid over measured profiles: splines through points of 60E1 and S1002 against
 //! chains of arcs.
 
-use super::speed::{LEAST_RUNS, Timing, Track, Work, race};
+use super::speed::{LEAST_RUNS, RaceTrack, TimedWork, Timing, race};
 use wheelrail::error::Result;
 use wheelrail::measured::{self, CurveKind, Format, Options, write};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Profile, Side, standards};
-use wheelrail::separation::plan::{FULL_PRECISION, plan};
+use wheelrail::separation::{FULL_PRECISION, plan};
 
 /// Distances of the points through which splines are drawn \[mm\].
 const SPACINGS: [f64; 3] = [0.1, 0.5, 1.0];
@@ -54,16 +54,16 @@ pub fn spline_costs(sides: &[usize], seconds: f64) -> Result<Vec<SplineCost>> {
             let pair = [&splines, &arcs];
             let mut tracks = pair.map(|placement| {
                 let [xi, eta] = HALF_WIDTHS;
-                Track::new(placement, [-xi, xi], eta, side)
+                RaceTrack::new(placement, [-xi, xi], eta, side)
             });
             let works = [0, 1].map(|k| {
                 let (xi, axis) = (tracks[k].xi(), tracks[k].axis());
-                Work::Fill(plan(pair[k], xi, axis, FULL_PRECISION, None).choice)
+                TimedWork::Fill(plan(pair[k], xi, axis, FULL_PRECISION, None).choice)
             });
             let mut timings = [Timing::NONE; 3];
             race(&mut timings, seconds, LEAST_RUNS, |k| match k {
                 0 | 1 => tracks[k].timed(works[k]),
-                _ => tracks[0].timed(Work::PlanAndFill),
+                _ => tracks[0].timed(TimedWork::PlanAndFill),
             });
             let [splines, arcs, with_plan] = timings.map(|timing| timing.best);
             costs.push(SplineCost { side, spacing, seconds: [splines, arcs], with_plan });

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::hard_case::METHODS;
-use super::hard_run::Outcome;
-use super::measurements::{Growth, Row};
+use super::hard_run::HardOutcome;
+use super::measurements::{AccuracyRow, Growth};
 use super::practice::PracticeRow;
 use super::rates::Rate;
 use super::verification::Verified;
@@ -13,7 +13,7 @@ use wheelrail_check::Floor;
 
 /// Returns accuracy.csv. Lengths are in mm, times in s. The largest errors are NaN if a method misses a
 /// surface, or finds one where there is none.
-pub fn accuracy_csv(rows: &[Row]) -> String {
+pub fn accuracy_csv(rows: &[AccuracyRow]) -> String {
     let mut out = String::from(
         "scene,method,tolerance_mm,points,seconds,mpoints_per_s,max_abs_error_mm,max_rel_error,q99_rel_error,\
          worst_xi,worst_eta\n",
@@ -39,7 +39,7 @@ pub fn accuracy_csv(rows: &[Row]) -> String {
 
 /// Returns hard_cases.csv: for each case and method the errors where there is a value, and the number of
 /// points that wrongly have a value or have none.
-pub fn hard_cases_csv(outcomes: &[Outcome]) -> String {
+pub fn hard_cases_csv(outcomes: &[HardOutcome]) -> String {
     let mut out = String::from(
         "case,title,status,as_stated,method,points,wrongly_masked,max_abs_error_mm,max_rel_error,failed_checks,\
          report_newton_remark,provenance\n",

@@ -53,10 +53,10 @@ impl Subject {
         Ok(Self { name: reference.name.clone(), placement: reference.placement()?, request })
     }
 
-    /// This pair under other skews.
+    /// Returns this pair under other skews.
     ///
     /// # Errors
-    /// As [`Placement::with_skew`].
+    /// The errors of [`Placement::with_skew`].
     pub fn skewed(&self) -> Result<Vec<Self>> {
         let skewed = |skew: f64| {
             let name = format!("{}, skew {skew}", self.name);

@@ -1,22 +1,20 @@
-//! Times what a caller waits for: from a pair of profiles to a meshed patch, part by part, and all that `run`
+//! Times what a caller waits for: each part of the way from a pair of profiles to a meshed patch, and everything that `run`
 //! computes.
 
 use std::hint::black_box;
 
 use super::specimen::{Instrument, Specimen, SpecimenKind};
 use super::speed::{LEAST_RUNS, Timing, race, timed};
-use wheelrail::case::{Profiles, Run, SILENT, equal_steps};
+use wheelrail::case::{Profiles, Run, SILENT};
 use wheelrail::error::{Error, Result};
 use wheelrail::measured::Format;
-use wheelrail::mesh::strips::{Counts, StripMesh};
+use wheelrail::mesh::{StripCounts, StripMesh, equal_steps};
 use wheelrail::patch::{Patch, Window};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Profile, inclination, standards};
 use wheelrail::scene::{parse, with_profiles};
 use wheelrail::search::{ONE_CONTACT, Pose, ProfilePair, Selection};
-use wheelrail::separation::axis::EtaAxis;
-use wheelrail::separation::plan::{FULL_PRECISION, plan};
-use wheelrail::separation::values::Values;
+use wheelrail::separation::{EtaAxis, FULL_PRECISION, Values, plan};
 
 /// Nominal rolling radius R \[mm\].
 const RADIUS: f64 = 460.0;
@@ -78,7 +76,7 @@ fn pair([rail, wheel]: [Profile; 2]) -> Result<Pair> {
 }
 
 /// Writes a worn rail and a worn wheel as files, reads and smooths them.
-fn measured() -> Result<[Profile; 2]> {
+pub(super) fn measured() -> Result<[Profile; 2]> {
     let profile = |kind| {
         let specimen = Specimen::new(kind, Instrument::new(SPACING, NOISE, SEED))?;
         specimen.measured(Format::Csv).map(|measured| measured.profile)
@@ -102,7 +100,7 @@ impl RunCost {
     }
 }
 
-/// The scene of [`RunCost`]; its profiles are passed as such, not read by their names.
+/// The scene of [`RunCost`]. Its profiles are passed in, not read by their names.
 const WHEELSET: &str = "[rail]\nprofile = \"60E1\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n\
                         [track]\ngauge = 1435.0\n[wheelset]\nback_to_back = 1360.0\nflange_back_x = -70.0\n\
                         lateral = 3.0\n[patch]\nload = 60000.0\n";
@@ -113,7 +111,7 @@ const WHEELSET: &str = "[rail]\nprofile = \"60E1\"\n[wheel]\nprofile = \"S1002\"
 /// A scene that cannot be computed, which is a fault of this program.
 pub fn run_cost(seconds: f64) -> Result<RunCost> {
     let scene = parse(WHEELSET, false)?;
-    let profiles = Profiles { pair: pair(measured()?)?, measured: [None, None] };
+    let profiles = Profiles::drawn(pair(measured()?)?);
     let run = || Run::new(with_profiles(&scene, profiles.clone(), "measured")?, SILENT);
     run()?;
     let mut timings = [Timing::NONE; 2];
@@ -144,7 +142,7 @@ fn parts(pair: &Pair, side: usize, seconds: f64) -> Result<[f64; PARTS.len()]> {
     let mut values = Values::new(side * side);
     values.fill(0.0);
     let mut patch = Patch::new(&placement, APPROACH, &window);
-    StripMesh::new(&placement, &patch, Counts::default())?;
+    StripMesh::new(&placement, &patch, StripCounts::default())?;
     let mut timings = [Timing::NONE; PARTS.len()];
     race(&mut timings, seconds, LEAST_RUNS, |part| {
         timed(|| match PARTS[part] {
@@ -155,7 +153,7 @@ fn parts(pair: &Pair, side: usize, seconds: f64) -> Result<[f64; PARTS.len()]> {
             "plan" => planned = plan(&placement, &xi, &axis, FULL_PRECISION, None),
             "fill" => planned.fill(&placement, &xi, &axis, &mut values),
             "patch" => patch = Patch::new(&placement, APPROACH, &window),
-            _ => drop(StripMesh::new(&placement, &patch, Counts::default())),
+            _ => drop(StripMesh::new(&placement, &patch, StripCounts::default())),
         })
     });
     Ok(timings.map(|timing| timing.best))

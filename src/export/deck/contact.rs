@@ -1,17 +1,16 @@
 //! Writes `contact.inp`: a deck for Vollebregt's CONTACT, module 3 (one point of contact), with the
 //! undeformed distance given point by point (IBASE = 9).
 //!
-//! CONTACT's axes are x rolling, y lateral, z down: (x, y, z) = ours (η, ξ, −ζ). Its elements are our cells,
-//! and its distances belong to their centres, x fastest, which is our order too. The program exits with 0
-//! even when it rejects its input, so read its output.
+//! CONTACT's axes are x rolling, y lateral and z down: its (x, y, z) is our (η, ξ, −ζ). Its elements are our cells. Its
+//! distances belong to their centres and run x fastest, which is our order, too. CONTACT exits with 0 even when it rejects
+//! its input; only its output tells.
 
 use super::super::block::Block;
-use super::{Deck, WIDTH, line};
+use super::number::WIDTH;
+use super::text::{Deck, line};
+use crate::placement::Creepages;
 use std::fmt::Write as _;
 use std::io::{self, Write};
-
-/// Largest number of elements that CONTACT takes (NPOT_MAX); beyond it CONTACT coarsens the grid.
-pub const ELEMENT_LIMIT: usize = 20_000;
 
 /// Numbers on a line: CONTACT takes lines of up to 256 characters and 50 items; three numbers keep a line
 /// under 80.
@@ -19,7 +18,7 @@ const PER_LINE: usize = 3;
 
 /// The quantity prescribed along the normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Normal {
+pub enum Prescribed {
     /// Total normal force \[N\], > 0.
     Force(f64),
     /// Approach δ \[mm\], > 0.
@@ -28,22 +27,24 @@ pub enum Normal {
 
 /// The data that CONTACT needs besides the geometry.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub struct ContactSettings {
     /// Prescribed force or approach.
-    pub normal: Normal,
+    pub normal: Prescribed,
     /// Poisson's ratios of rail and wheel, typically 0.28.
     pub poisson: [f64; 2],
     /// Shear moduli of rail and wheel \[N/mm²\], typically 82,000.
     pub shear_modulus: [f64; 2],
-    /// Coefficient of friction, static and kinetic, typically 0.3; it does not enter the normal problem.
-    pub friction: f64,
+    /// Coefficients of friction, static and kinetic, typically 0.3; they do not enter the normal problem.
+    pub friction: [f64; 2],
+    /// Creepages of steady rolling; `None` asks for the normal problem alone, without friction.
+    pub creepages: Option<Creepages>,
 }
 
-impl Settings {
-    /// Returns the settings for steel on steel: E = 210,000 N/mm², ν = 0.28, friction 0.3.
-    pub fn steel(normal: Normal) -> Self {
+impl ContactSettings {
+    /// Returns the settings for steel on steel without motion: E = 210,000 N/mm², ν = 0.28, friction 0.3.
+    pub fn steel(normal: Prescribed) -> Self {
         let shear = 210_000.0 / (2.0 * (1.0 + 0.28));
-        Self { normal, poisson: [0.28; 2], shear_modulus: [shear; 2], friction: 0.3 }
+        Self { normal, poisson: [0.28; 2], shear_modulus: [shear; 2], friction: [0.3; 2], creepages: None }
     }
 }
 
@@ -51,9 +52,9 @@ impl Settings {
 ///
 /// # Errors
 /// The errors of the sink.
-pub fn contact(deck: &Deck<'_>, settings: &Settings, sink: &mut dyn Write) -> io::Result<()> {
+pub fn contact_inp(deck: &Deck<'_>, settings: &ContactSettings, sink: &mut dyn Write) -> io::Result<()> {
     let mut block = Block::new(sink);
-    block.bytes(comments(deck).as_bytes())?;
+    block.bytes(comments(deck, settings).as_bytes())?;
     block.bytes(control(deck, settings).as_bytes())?;
     for i in 0..deck.xi.len() {
         for run in deck.column(i).chunks(PER_LINE) {
@@ -68,35 +69,49 @@ pub fn contact(deck: &Deck<'_>, settings: &Settings, sink: &mut dyn Write) -> io
     block.finish()
 }
 
-fn comments(deck: &Deck<'_>) -> String {
+fn comments(deck: &Deck<'_>, settings: &ContactSettings) -> String {
     let mut lines = deck.header.statements();
     lines.push("CONTACT's axes: x = eta (rolling), y = xi (lateral), z = -zeta (down)".into());
     lines.push("h(1) ... h(MX*MY) = s at element centres, ix (eta) fastest, then iy (xi)".into());
     let undefined = deck.grid.separation().iter().filter(|s| s.is_nan()).count();
     lines.push(format!("undefined elements, filled with 10 x the largest |s|: {undefined}"));
-    let count = deck.separation.len();
-    if count > ELEMENT_LIMIT {
-        lines.push(format!("{count} elements: above CONTACT's default NPOT_MAX = {ELEMENT_LIMIT},"));
-        lines.push("beyond which it coarsens the grid; use a coarser one or raise NPOT_MAX".into());
+    if settings.creepages.is_some() {
+        lines.push("creepages: velocity of the rail (body 1) minus that of the wheel, over VELOC".into());
     }
     lines.iter().map(|line| format!("% {line}\n")).collect()
 }
 
-fn control(deck: &Deck<'_>, settings: &Settings) -> String {
+fn control(deck: &Deck<'_>, settings: &ContactSettings) -> String {
     let (force, normal) = match settings.normal {
-        Normal::Force(force) => (1, force),
-        Normal::Approach(approach) => (0, approach),
+        Prescribed::Force(force) => (1, force),
+        Prescribed::Approach(approach) => (0, approach),
     };
     let ([nu_r, nu_w], [g_r, g_w]) = (settings.poisson, settings.shear_modulus);
+    let ([at_rest, sliding], tangential) =
+        (settings.friction, if settings.creepages.is_some() { 3 } else { 0 });
     let mut text = format!(
-        " 3  MODULE\n  200{force}00       P-B-T-N-F-S     % N = {force}: {} prescribed\n",
+        " 3  MODULE\n  20{tangential}{force}00       P-B-T-N-F-S     % N = {force}: {} prescribed\n",
         if force == 1 { "normal force [N]" } else { "approach [mm]" }
     );
     text += "  022020       L-D-C-M-Z-E\n 0002221       H-G-I-A-O-W-R\n";
     text += "   999 100 30 1 1.0e-8           MAXGS MAXIN MAXNR MAXOUT EPS\n";
     // `{:?}` writes every f64 with a point or an exponent, in the shortest form that reads back the same.
-    let _ = writeln!(text, "   {normal:?} 0.0 0.0 0.0           {}", ["PEN", "FN"][force]);
-    let _ = writeln!(text, "   {0:?} {0:?}           FSTAT FKIN", settings.friction);
+    let normal_name = ["PEN", "FN"][force];
+    match settings.creepages {
+        Some(Creepages { longitudinal, lateral, spin, .. }) => {
+            let _ = write!(text, "   {normal:?} {longitudinal:?} {lateral:?} {spin:?}           ");
+            let _ = writeln!(text, "{normal_name} CKSI CETA CPHI");
+        }
+        None => {
+            let _ = writeln!(text, "   {normal:?} 0.0 0.0 0.0           {normal_name}");
+        }
+    }
+    let _ = writeln!(text, "   {at_rest:?} {sliding:?}           FSTAT FKIN");
+    if let Some(Creepages { rolling_speed, forward, .. }) = settings.creepages {
+        // A step of one element along the rolling direction.
+        let (direction, step) = (if forward { "0.0" } else { "180.0d" }, deck.steps[1]);
+        let _ = writeln!(text, "   {direction} {step:?} {rolling_speed:?}           CHI DQ VELOC");
+    }
     let _ = writeln!(text, "   {nu_r:?} {nu_w:?} {g_r:?} {g_w:?}           POISS 1,2  GG 1,2");
     text += "   3           IPOTCN\n";
     let _ = write!(text, "   {} {} ", deck.eta.len(), deck.xi.len());
@@ -110,18 +125,22 @@ mod tests {
     use super::*;
     use crate::export::sample::{Sample, header};
 
-    fn deck(sample: &Sample, normal: Normal) -> String {
+    fn deck(sample: &Sample, normal: Prescribed) -> String {
+        deck_with(sample, &ContactSettings::steel(normal))
+    }
+
+    fn deck_with(sample: &Sample, settings: &ContactSettings) -> String {
         let (header, grid) = (header(), sample.fields());
         let mut bytes = Vec::new();
         let deck = Deck::new(&header, &grid).unwrap();
-        contact(&deck, &Settings::steel(normal), &mut bytes).unwrap();
+        contact_inp(&deck, settings, &mut bytes).unwrap();
         String::from_utf8(bytes).unwrap()
     }
 
     #[test]
     fn lines_stand_in_contacts_order() {
         let sample = Sample::new(3, 4);
-        let text = deck(&sample, Normal::Approach(0.05));
+        let text = deck(&sample, Prescribed::Approach(0.05));
         let lines: Vec<_> = text.lines().filter(|line| !line.starts_with('%')).collect();
         let begins = |k: usize, words: &str| {
             assert!(lines[k].trim_start().starts_with(words), "line {k}: {}", lines[k]);
@@ -145,9 +164,28 @@ mod tests {
     }
 
     #[test]
-    fn force_and_size_are_said() {
-        assert!(deck(&Sample::new(2, 2), Normal::Force(8e4)).contains("200100"));
-        assert!(deck(&Sample::new(201, 101), Normal::Force(8e4)).contains("above CONTACT's default"));
-        assert!(!deck(&Sample::new(20, 10), Normal::Force(8e4)).contains("above CONTACT's default"));
+    fn a_force_is_said_and_rolling_has_its_cards() {
+        let sample = Sample::new(2, 2);
+        assert!(deck(&sample, Prescribed::Force(8e4)).contains("200100"));
+        let creepages = Creepages {
+            longitudinal: 1e-3,
+            lateral: -2e-3,
+            spin: 3e-4,
+            rolling_speed: 2e4,
+            forward: true,
+            pitch: -43.0,
+        };
+        let steel = ContactSettings::steel(Prescribed::Force(8e4));
+        let rolling = ContactSettings { friction: [0.4, 0.3], creepages: Some(creepages), ..steel };
+        let text = deck_with(&sample, &rolling);
+        let lines: Vec<_> = text.lines().filter(|line| !line.starts_with('%')).map(str::trim_start).collect();
+        assert!(lines[1].starts_with("203100 "), "{text}");
+        assert!(lines[5].starts_with("80000.0 0.001 -0.002 0.0003 "), "{text}");
+        assert!(lines[6].starts_with("0.4 0.3 "), "{text}");
+        let step = sample.fields().steps("a test").unwrap()[1];
+        assert!(lines[7].starts_with(&format!("0.0 {step:?} 20000.0 ")), "{text}");
+        assert!(lines[8].starts_with("0.28 0.28 "), "{text}");
+        let back = ContactSettings { creepages: Some(Creepages { forward: false, ..creepages }), ..rolling };
+        assert!(deck_with(&sample, &back).contains("   180.0d "));
     }
 }

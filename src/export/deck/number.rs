@@ -1,8 +1,7 @@
-//! Writes numbers as Fortran reads them: `E25.16`, that is 17 significant digits, right-aligned in 25
-//! columns.
+//! Writes numbers as Fortran reads them: `E25.16`, which is 17 significant digits, right-aligned in 25 columns.
 //!
-//! 17 digits give back every f64 bit for bit. The decimal point is always there: Fortran reads `5e0` under
-//! E25.16 as 5·10⁻¹⁶ without complaint.
+//! 17 digits give back every f64 bit for bit. The decimal point is never left out, because Fortran reads `5e0` under E25.16
+//! as 5·10⁻¹⁶ without an error.
 
 use std::io::Write;
 
@@ -27,8 +26,8 @@ const TEN_16: u64 = 10_000_000_000_000_000;
 
 /// Returns the text of `format!("{x:>25.16E}")`, for finite x.
 ///
-/// Method: for 1e-11 ≤ |x| < 1e17 the 17 digits are the integer part of m·5ᵏ·2ᵉ⁺ᵏ, exact in 128 bits and
-/// rounded half to even. This is ten times faster than the standard library, which formats all other numbers.
+/// Method: for 1e-11 ≤ |x| < 1e17 the 17 digits are the integer part of m·5ᵏ·2ᵉ⁺ᵏ, exact in 128 bits and rounded half to
+/// even. This is ten times faster than the standard library, which formats all other numbers.
 pub(super) fn field(x: f64) -> Field {
     let mut text = [b' '; WIDTH];
     let Some((digits, exponent)) = decimal(x.abs()) else {
@@ -53,7 +52,7 @@ pub(super) fn field(x: f64) -> Field {
         put(b'-');
     }
     put(b'E');
-    // Two halves: 32-bit divisions are cheaper, and the halves do not wait for each other.
+    // The digits are divided as two halves: 32-bit divisions are cheaper, and the halves do not wait for each other.
     let (high, low) = ((digits % TEN_16 / 100_000_000) as u32, (digits % 100_000_000) as u32);
     for mut half in [low, high] {
         for _ in 0..8 {
@@ -81,8 +80,8 @@ fn decimal(x: f64) -> Option<(u64, i32)> {
     let bits = x.to_bits();
     let mantissa = (bits & ((1 << 52) - 1)) | (1 << 52);
     let binary = (bits >> 52) as i32 - 1075;
-    // log10 of the power of two below x, rounded down: that of x itself or one less. 1233/4096 is log10(2) to
-    // 5e-6, enough for the 94 binary exponents of the range.
+    // This is log10 of the power of two below x, rounded down: the exponent of x itself or one less. 1233/4096 is log10(2)
+    // to 5e-6, enough for the 94 binary exponents of the range.
     let mut exponent = ((binary + 52) * 1233) >> 12;
     let mut digits = scaled(mantissa, binary, 16 - exponent)?;
     if digits >= 10 * TEN_16 {

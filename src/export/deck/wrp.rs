@@ -23,12 +23,13 @@
 //! component p1 p2 p3 p4 area                 (i4,4i8,e25.16) n_cells cells; nodes counted from 1
 //! ```
 //!
-//! Where m = 0, the number in the column of s is 10 × the largest |s|. A normal that does not exist is 0 0.
+//! If m = 0, the number in the column of s is 10 × the largest |s|. A normal that does not exist is 0 0.
 
 use super::super::block::Block;
 use super::super::model::QuadMesh;
-use super::{Deck, Field, WIDTH, field, line};
-use crate::error::{Error, Kind, Result};
+use super::number::{Field, WIDTH, field};
+use super::text::{Deck, line};
+use crate::error::{Error, ErrorKind, Result};
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
@@ -60,7 +61,7 @@ const COUNTACT_NOTES: [&str; 4] = [
 ///
 /// # Errors
 /// The errors of the sink.
-pub fn separation(deck: &Deck<'_>, sink: &mut dyn Write) -> io::Result<()> {
+pub fn separation_wrp(deck: &Deck<'_>, sink: &mut dyn Write) -> io::Result<()> {
     let mut block = Block::new(sink);
     block.bytes(head(deck, "WRPATCH", &[]).as_bytes())?;
     records(deck, &mut block)?;
@@ -72,7 +73,7 @@ pub fn separation(deck: &Deck<'_>, sink: &mut dyn Write) -> io::Result<()> {
 ///
 /// # Errors
 /// The errors of the sink.
-pub fn conform(deck: &Deck<'_>, sink: &mut dyn Write) -> io::Result<()> {
+pub fn conform_wrp(deck: &Deck<'_>, sink: &mut dyn Write) -> io::Result<()> {
     let mut block = Block::new(sink);
     block.bytes(head(deck, "CONFORM", &CONFORM_NOTES).as_bytes())?;
     for i in 0..deck.xi.len() {
@@ -96,7 +97,7 @@ pub fn conform(deck: &Deck<'_>, sink: &mut dyn Write) -> io::Result<()> {
 /// # Errors
 /// `InvalidInput` for a mesh that contradicts itself, or is too large for the columns; the errors of the
 /// sink.
-pub fn countact(deck: &Deck<'_>, mesh: &QuadMesh, sink: &mut dyn Write) -> io::Result<()> {
+pub fn countact_wrp(deck: &Deck<'_>, mesh: &QuadMesh, sink: &mut dyn Write) -> io::Result<()> {
     let cells = cells(mesh).map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error))?;
     let mut block = Block::new(sink);
     block.bytes(head(deck, "COUNTACT", &COUNTACT_NOTES).as_bytes())?;
@@ -155,7 +156,7 @@ fn cells(mesh: &QuadMesh) -> Result<String> {
     if mesh.points.len().max(mesh.quads.len()) > LARGEST {
         let found = format!("{} nodes, {} cells", mesh.points.len(), mesh.quads.len());
         return Err(Error::new("countact.wrp", found, format!("at most {LARGEST}"), "use a coarser mesh")
-            .of_kind(Kind::Limit));
+            .of_kind(ErrorKind::Limit));
     }
     let mut text = format!("{:>8}{:>8}\n", mesh.points.len(), mesh.quads.len());
     mesh.points.iter().for_each(|point| text += &line(point.coords.as_slice()));
@@ -186,7 +187,7 @@ mod tests {
     #[test]
     fn separation_follows_its_grammar() {
         let sample = Sample::new(3, 4);
-        let text = text(|deck, out| separation(deck, out).unwrap(), &sample);
+        let text = text(|deck, out| separation_wrp(deck, out).unwrap(), &sample);
         assert!(text.is_ascii() && text.lines().all(|line| line.len() < 80), "{text}");
         assert!(text.starts_with("WRPATCH    1 mm      \n"), "{text}");
         let lines: Vec<_> = text.lines().collect();
@@ -209,14 +210,14 @@ mod tests {
     #[test]
     fn conform_adds_the_normal_and_countact_the_cells() {
         let sample = Sample::new(3, 4);
-        let conform = text(|deck, out| conform(deck, out).unwrap(), &sample);
+        let conform = text(|deck, out| conform_wrp(deck, out).unwrap(), &sample);
         assert!(conform.lines().all(|line| line.len() < 80));
         let lines: Vec<_> = conform.lines().collect();
         let last = lines.len() - 3;
         assert_eq!(numbers(lines[last]), [1.0, sample.xi[2], sample.eta[3], sample.separation[11]]);
         assert_eq!(numbers(lines[last + 1]), sample.rail_normal[2]);
 
-        let written = text(|deck, out| countact(deck, &mesh(), out).unwrap(), &sample);
+        let written = text(|deck, out| countact_wrp(deck, &mesh(), out).unwrap(), &sample);
         assert!(written.lines().all(|line| line.len() < 80));
         let lines: Vec<_> = written.lines().collect();
         let cells = lines.iter().position(|line| *line == "       9       4").unwrap();
@@ -228,13 +229,13 @@ mod tests {
         broken.quads[0][0] = 9;
         let (header, grid) = (header(), sample.fields());
         let deck = Deck::new(&header, &grid).unwrap();
-        assert!(countact(&deck, &broken, &mut Vec::new()).unwrap_err().to_string().contains("node 9"));
+        assert!(countact_wrp(&deck, &broken, &mut Vec::new()).unwrap_err().to_string().contains("node 9"));
     }
 
     #[test]
     fn an_empty_patch_is_a_deck_too() {
         let written =
-            text(|deck, out| countact(deck, &QuadMesh::default(), out).unwrap(), &Sample::new(2, 2));
+            text(|deck, out| countact_wrp(deck, &QuadMesh::default(), out).unwrap(), &Sample::new(2, 2));
         assert!(written.ends_with("       0       0\nEND\n"));
     }
 }

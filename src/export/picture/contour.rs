@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 /// An edge of the grid: its lower node, and whether it runs along ξ.
-type Edge = (usize, bool);
+type CellEdge = (usize, bool);
 
 /// A function on the nodes of a rectangular grid, at `i * eta.len() + j`.
 #[derive(Debug, Clone, Copy)]
@@ -17,10 +17,10 @@ pub struct Nodes<'a> {
 }
 
 impl Nodes<'_> {
-    /// Returns the lines on which the function equals `level`, as polylines in (ξ, η); closed ones end where
-    /// they begin. Cells with an undefined corner have none. Cost: linear in the number of nodes.
+    /// Returns the lines on which the function equals `level`, as polylines in (ξ, η). A closed line ends where it begins.
+    /// Cells with an undefined corner have no lines. Cost: linear in the number of nodes.
     pub(super) fn lines(&self, level: f64) -> Vec<Vec<[f64; 2]>> {
-        let mut links: HashMap<Edge, Vec<Edge>> = HashMap::new();
+        let mut links: HashMap<CellEdge, Vec<CellEdge>> = HashMap::new();
         for i in 1..self.xi.len() {
             for j in 1..self.eta.len() {
                 for [a, b] in self.segments(i - 1, j - 1, level).into_iter().flatten() {
@@ -29,29 +29,29 @@ impl Nodes<'_> {
                 }
             }
         }
-        // Open lines first, from their ends; the rest is closed. Sorted, so that every run writes the same
+        // Open lines come first, from their ends; the others are closed. They are sorted, so that every run writes the same
         // file.
-        let mut starts: Vec<Edge> = links.keys().copied().collect();
+        let mut starts: Vec<CellEdge> = links.keys().copied().collect();
         starts.sort_by_key(|edge| (links[edge].len(), *edge));
         starts.into_iter().filter_map(|start| self.chain(&mut links, start, level)).collect()
     }
 
     /// Returns the pieces of the line inside the cell whose lowest node is (i, j): none, one or, on a saddle,
     /// two.
-    fn segments(&self, i: usize, j: usize, level: f64) -> [Option<[Edge; 2]>; 2] {
+    fn segments(&self, i: usize, j: usize, level: f64) -> [Option<[CellEdge; 2]>; 2] {
         let n = self.eta.len();
         let node = i * n + j;
-        // Counter-clockwise in (ξ, η).
+        // The corners are counter-clockwise in (ξ, η).
         let corners = [node, node + n, node + n + 1, node + 1].map(|k| self.values[k]);
         if corners.iter().any(|value| value.is_nan()) {
             return [None; 2];
         }
         let above = corners.map(|value| value > level);
-        let edges: [Edge; 4] = [(node, true), (node + n, false), (node + 1, true), (node, false)];
+        let edges: [CellEdge; 4] = [(node, true), (node + n, false), (node + 1, true), (node, false)];
         let mut crossed = (0..4).filter(|&k| above[k] != above[(k + 1) % 4]);
         match [crossed.next(), crossed.next(), crossed.next(), crossed.next()] {
             [Some(a), Some(b), None, _] => [Some([edges[a], edges[b]]), None],
-            // A saddle: the mean decides which opposite corners are joined.
+            // On a saddle the mean of the corners decides which opposite corners are joined.
             [Some(_), Some(_), Some(_), Some(_)] => {
                 if (corners.iter().sum::<f64>() / 4.0 > level) == above[0] {
                     [Some([edges[0], edges[1]]), Some([edges[2], edges[3]])]
@@ -64,7 +64,12 @@ impl Nodes<'_> {
     }
 
     /// Follows the links from `start` to their end, and removes them.
-    fn chain(&self, links: &mut HashMap<Edge, Vec<Edge>>, start: Edge, level: f64) -> Option<Vec<[f64; 2]>> {
+    fn chain(
+        &self,
+        links: &mut HashMap<CellEdge, Vec<CellEdge>>,
+        start: CellEdge,
+        level: f64,
+    ) -> Option<Vec<[f64; 2]>> {
         let mut line = vec![self.crossing(start, level)];
         let mut here = start;
         while let Some(next) = links.get_mut(&here).and_then(Vec::pop) {
@@ -78,7 +83,7 @@ impl Nodes<'_> {
         (line.len() > 1).then_some(line)
     }
 
-    fn crossing(&self, (node, along_xi): Edge, level: f64) -> [f64; 2] {
+    fn crossing(&self, (node, along_xi): CellEdge, level: f64) -> [f64; 2] {
         let n = self.eta.len();
         let (i, j) = (node / n, node % n);
         let other = if along_xi { node + n } else { node + 1 };
@@ -107,7 +112,7 @@ mod tests {
         let circle = lines(|x, y| x * x + y * y, 1.0);
         assert_eq!(circle.len(), 1);
         assert_eq!(circle[0].first(), circle[0].last());
-        // The chord's error of linear interpolation: h²/8 × second derivative / slope.
+        // The error of linear interpolation along a chord is h²/8 × second derivative / slope.
         assert!(circle[0].iter().all(|p| (p[0].hypot(p[1]) - 1.0).abs() < 0.1 * 0.1 / 8.0 * 2.0));
     }
 

@@ -20,7 +20,7 @@ const JUMP: f64 = 6.0;
 /// Least jump of a contact, as a share of the range of the values.
 const JUMP_SHARE: f64 = 0.02;
 
-/// Number of changes to either side that count as beside: even two more jumps among them do not hide a jump.
+/// Number of changes on each side of a jump that are compared with it. Even two other jumps among them do not hide it.
 const BESIDE: usize = 3;
 
 /// Radius of the dot that represents a point without a line \[page units\].
@@ -28,7 +28,7 @@ const DOT: f64 = 2.2;
 
 /// One curve.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Curve {
+pub struct PlottedCurve {
     /// Name in the legend; empty for the only curve of a panel.
     pub name: String,
     /// Points \[abscissa, value\] by ascending abscissa; NaN where there is no value.
@@ -39,13 +39,13 @@ pub struct Curve {
 
 /// The curves of one quantity.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Quantity {
+pub struct CurvesPanel {
     /// Heading of the panel.
     pub title: String,
     /// Name of the axis, with its unit.
     pub axis: String,
     /// The curves, at most two.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<PlottedCurve>,
 }
 
 /// The content of the picture.
@@ -58,7 +58,7 @@ pub struct CurvesPicture {
     /// Name of the abscissa, with its unit.
     pub abscissa: String,
     /// The panels, row by row, two in a row.
-    pub quantities: Vec<Quantity>,
+    pub quantities: Vec<CurvesPanel>,
 }
 
 impl CurvesPicture {
@@ -75,7 +75,7 @@ impl CurvesPicture {
         page.finish(height, &super::page::foot())
     }
 
-    fn panel(&self, page: &mut Page, place: [f64; 4], u: [f64; 2], quantity: &Quantity) {
+    fn panel(&self, page: &mut Page, place: [f64; 4], u: [f64; 2], quantity: &CurvesPanel) {
         page.heading(place, &quantity.title);
         let values = quantity.curves.iter().flat_map(|curve| &curve.points).map(|p| p[1]);
         let [low, high] = range(values);
@@ -96,7 +96,7 @@ impl CurvesPicture {
     }
 }
 
-impl Curve {
+impl PlottedCurve {
     /// Returns the points, with an undefined point in every jump.
     fn parted(&self) -> Vec<[f64; 2]> {
         let mut out = Vec::with_capacity(self.points.len() + self.jumps.len());
@@ -117,8 +117,8 @@ fn dots(panel: &Panel, points: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
     (0..points.len()).filter(alone).map(|k| polygon(panel.point(points[k]), DOT, 12, 0.0)).collect()
 }
 
-/// Returns the indices k after which a contact jumps: between k and k + 1 one of its abscissae changes by far
-/// more than around.
+/// Returns the indices k after which a contact jumps: one of its abscissae changes between k and k + 1 by far more than
+/// between the neighbouring points.
 pub fn jumps(abscissae: &[&[f64]]) -> Vec<usize> {
     let mut all: Vec<usize> = abscissae.iter().flat_map(|values| jumps_of(values)).collect();
     all.sort_unstable();
@@ -145,8 +145,8 @@ mod tests {
     use super::*;
 
     fn picture(points: Vec<[f64; 2]>, jumps: Vec<usize>) -> CurvesPicture {
-        let curves = vec![Curve { name: "left".into(), points, jumps }];
-        let quantity = Quantity { title: "Radius".into(), axis: "r [mm]".into(), curves };
+        let curves = vec![PlottedCurve { name: "left".into(), points, jumps }];
+        let quantity = CurvesPanel { title: "Radius".into(), axis: "r [mm]".into(), curves };
         CurvesPicture {
             title: "A sweep".into(),
             about: String::new(),
@@ -171,7 +171,7 @@ mod tests {
 
     #[test]
     fn a_point_between_two_jumps_is_a_dot_and_each_jump_parts() {
-        // There and, one position later, on: the one jump does not hide the other.
+        // The contact jumps away, and one position later it jumps on: neither jump hides the other.
         let x: Vec<f64> =
             (0..20).map(|k| f64::from(k) * 0.1 + [0.0, 5.0, 12.0][(k.max(9) - 9).min(2) as usize]).collect();
         let still = vec![0.0; 20];

@@ -4,8 +4,8 @@ use super::contour::Nodes;
 use super::page::{Colour, INSIDE, Page, Pen, WHITE, Words};
 use super::panel::{Panel, extremes, number, round_below};
 
-/// Largest level drawn, as a multiple of the approach: near a flange s grows to many times as much, which
-/// does not matter for the patch.
+/// Largest level drawn, as a multiple of the approach. Near a flange s grows to many times the approach, which does not
+/// matter for the patch.
 const SHOWN: f64 = 5.0;
 
 /// Number of lines of equal separation aimed at.
@@ -19,11 +19,11 @@ const DIGIT: f64 = 0.64;
 /// Number of places on one level that are tried for its number.
 const TRIED: usize = 48;
 
-/// Least distance of a number from other lines \[page units\]; a number without such a place is left out, as
-/// the key has it too.
+/// Least distance of a number from other lines \[page units\]. A number without such a place is left out; the key shows it,
+/// too.
 const CLEAR: f64 = 9.0;
 
-/// Distance of numbers \[page units\] beyond which more is no better.
+/// Distance of numbers from each other \[page units\] above which a larger one is no better.
 const APART: f64 = 60.0;
 
 /// The lines of one level.
@@ -35,8 +35,8 @@ pub(super) struct Level {
     pub(super) lines: Vec<Vec<[f64; 2]>>,
 }
 
-/// Returns round levels up to the largest value, or up to [`SHOWN`] times the approach if that is lower and
-/// above the least value.
+/// Returns round levels. They go up to the largest value, or up to [`SHOWN`] times the approach if that is lower and above
+/// the least value.
 pub(super) fn levels(nodes: &Nodes<'_>, approach: f64, panel: &Panel) -> Vec<Level> {
     let [low, high] = extremes(nodes.values.iter().copied());
     let shown = SHOWN * approach;
@@ -45,11 +45,11 @@ pub(super) fn levels(nodes: &Nodes<'_>, approach: f64, panel: &Panel) -> Vec<Lev
         return Vec::new();
     }
     let step = round_below(1.5 * (high - low) / LEVELS);
-    // There are no round numbers below all normal ones.
+    // There are no round numbers below the normal ones.
     if !step.is_normal() {
         return Vec::new();
     }
-    // The lowest value itself is no line: it would be a point.
+    // The lowest value itself has no line; it would be a point.
     let (first, last) = ((low / step).floor() as i64 + 1, (high / step).floor() as i64);
     let level = |k: i64| {
         let value = k as f64 * step;

@@ -1,15 +1,18 @@
 //! Draws pictures as SVG: of a patch, of a sweep, of a profile, and the charts of the report. All use one
 //! kind of page and one kind of panel.
 
-pub mod chart;
+mod chart;
 mod contour;
-pub mod curves;
+mod curves;
 mod levels;
 mod page;
 mod panel;
 mod patch;
-pub mod profile;
+mod profile;
 
+pub use chart::{Chart, Series};
 pub use contour::Nodes;
+pub use curves::{CurvesPanel, CurvesPicture, PlottedCurve, jumps};
 pub use page::SEPARATOR;
-pub use patch::Picture;
+pub use patch::PatchPicture;
+pub use profile::ProfilePicture;

@@ -68,7 +68,7 @@ impl Panel {
             to = to.min(ends[0].max(ends[1]));
         }
         let at = |t: f64| [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
-        // Ends inside keep their bits, so that neighbouring pieces are seen to meet.
+        // Ends inside the panel keep their bits, so that neighbouring pieces meet exactly.
         let ends = [if from == 0.0 { a } else { at(from) }, if to == 1.0 { b } else { at(to) }];
         let known = ends.iter().flatten().chain(&a).chain(&b).all(|x| x.is_finite());
         (known && from < to).then_some(ends)
@@ -147,8 +147,8 @@ pub(super) fn extremes(values: impl Iterator<Item = f64>) -> [f64; 2] {
     finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
 }
 
-/// Returns a range with free space at both ends: `share` of its length, or `least` if that is more. A
-/// constant with rounding is then a line, not a picture of rounding.
+/// Returns a range with free space at both ends: `share` of its length, or `least` if that is more. A constant with
+/// rounding errors then appears as a line.
 pub(super) fn airy([low, high]: [f64; 2], share: f64, least: f64) -> [f64; 2] {
     let air = (share * (high - low)).max(least);
     [low - air, high + air]
@@ -157,7 +157,7 @@ pub(super) fn airy([low, high]: [f64; 2], share: f64, least: f64) -> [f64; 2] {
 /// Returns the largest of …, 1, 2, 5, 10, … that is not above x > 0.
 pub(super) fn round_below(x: f64) -> f64 {
     let power = 10f64.powf(x.log10().floor());
-    // Factors slightly low, so that 5 is not missed for 4.999….
+    // The factors are slightly low, so that 5 is not missed for 4.999….
     [10.0, 5.0, 2.0].into_iter().find(|f| x >= 0.999_999 * f * power).unwrap_or(1.0) * power
 }
 
@@ -169,13 +169,13 @@ pub(super) fn number(x: f64, step: f64) -> String {
     if zero { "0".into() } else { text.replace('-', "\u{2212}") }
 }
 
-/// Returns round values inside a range with their labels: about `most` of them, and at least two, or there is
-/// no scale.
+/// Returns round values inside a range with their labels. There are about `most` of them, and at least two, because one
+/// tick gives no scale.
 fn ticks_of(range: [f64; 2], most: f64) -> Ticks {
-    // Rounding takes off up to a factor of 2.5.
+    // Rounding down takes off up to a factor of 2.5.
     let mut step = round_below(2.5 * (range[1] - range[0]) / most);
     let mut values = multiples(range, step);
-    // Half the range has two multiples in it: at most three or four steps down the ladder 1, 2, 5.
+    // Half the range contains two multiples, which is at most three or four steps down the ladder 1, 2, 5.
     for _ in 0..LADDER {
         if values.len() >= 2 {
             break;
@@ -186,7 +186,7 @@ fn ticks_of(range: [f64; 2], most: f64) -> Ticks {
     values.into_iter().map(|value| (value, number(value, step))).collect()
 }
 
-/// Most steps down from a first tick's distance, which is at most some times the range.
+/// Most steps down from the first distance of ticks, which is at most a few times the range.
 const LADDER: usize = 6;
 
 fn multiples([low, high]: [f64; 2], step: f64) -> Vec<f64> {

@@ -15,10 +15,10 @@ const APPROACH: Pen = Pen::new(RED, 1.0).dashed([5.0, 3.0]);
 const CELL: Pen = Pen::new([226, 220, 218], 0.6);
 const WINDOW: Colour = [240, 240, 240];
 
-/// Shortest side \[page units\] of cells that are drawn: borders of smaller cells would be a tint.
+/// Shortest side \[page units\] of cells that are drawn. The borders of smaller cells would look like a grey area.
 const SMALLEST_CELL: f64 = 5.0;
 
-/// Largest gap shown, as a multiple of the approach: near a flange s grows to many times as much.
+/// Largest gap shown, as a multiple of the approach. Near a flange s grows to many times the approach.
 const SHOWN_GAP: f64 = 3.0;
 
 /// Length of the frame's axes at C \[page units\].
@@ -31,14 +31,14 @@ const HEIGHT: f64 = 1040.0;
 
 /// The content of the picture.
 #[derive(Debug, Clone, Copy)]
-pub struct Picture<'a> {
+pub struct PatchPicture<'a> {
     /// Header with title, approach and version.
     pub header: &'a Header,
     /// Side and number of the contact, which distinguish the pictures of one run; empty for a single contact.
     pub contact: &'a str,
     /// Centres ξ and η of the solver's cells \[mm\], ascending.
     pub cells: [&'a [f64]; 2],
-    /// s \[mm\] over the window of the cells, on as many points as a smooth line takes.
+    /// s \[mm\] over the window of the cells, on as many points as smooth lines need.
     pub separation: Nodes<'a>,
     /// Points \[ξ, s(ξ, 0)\] \[mm\] over the window of the cells.
     pub midplane: &'a [[f64; 2]],
@@ -51,7 +51,7 @@ pub struct Picture<'a> {
     pub wheel: &'a [[f64; 2]],
 }
 
-impl Picture<'_> {
+impl PatchPicture<'_> {
     /// Returns the picture as SVG.
     pub fn svg(&self) -> String {
         let header = self.header;
@@ -72,7 +72,7 @@ impl Picture<'_> {
         page.finish(HEIGHT, &format!("wheelrail {}, scene {}", header.version, header.scene_hash))
     }
 
-    /// Draws both profiles at true scale, and which part of them the other panels show.
+    /// Draws both profiles at true scale, and marks the part of them that the other panels show.
     fn profiles(&self, page: &mut Page, room: [f64; 4]) {
         page.heading(room, "Profiles in the contact frame, true scale");
         let points = || self.rail.iter().chain(self.wheel).filter(|p| p[0].is_finite() && p[1].is_finite());
@@ -80,7 +80,7 @@ impl Picture<'_> {
             return;
         }
         let (u, v) = (range(points().map(|p| p[0])), range(points().map(|p| p[1])));
-        // C may be at the very top, as at a flange: ζ and its letter must stay below the heading.
+        // C may be at the very top, as on a flange. The ζ axis and its letter must stay below the heading.
         let above = Panel::true_scale(room, u, v).point([0.0, 0.0])[1] - room[1];
         let lower = (AXIS_ROOM - above).clamp(0.0, AXIS_ROOM);
         let room = [room[0], room[1] + lower, room[2], room[3] - lower];
@@ -189,8 +189,8 @@ impl Picture<'_> {
         }
     }
 
-    /// Draws the borders of the solver's cells, half-way between their centres; for small cells the key gives
-    /// number and size.
+    /// Draws the borders of the solver's cells, half-way between their centres. Small cells are not drawn; the key gives
+    /// their number and size.
     fn cells(&self, page: &mut Page, panel: &Panel) {
         let [x, y, w, h] = panel.place;
         let [xi, eta] = self.cells;
@@ -206,7 +206,7 @@ impl Picture<'_> {
     }
 }
 
-/// Returns the step of equally spaced values, as far as three digits show; `None` if the steps differ.
+/// Returns the step of values that are equally spaced to three digits; `None` if the steps differ.
 fn even_step(values: &[f64]) -> Option<f64> {
     if values.len() < 2 {
         return None;

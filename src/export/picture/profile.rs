@@ -15,7 +15,7 @@ const WIDTH: f64 = 770.0;
 /// Half the length of a cross's arms \[page units\].
 const ARM: f64 = 2.0;
 
-/// Most points of a panel that are marked, evenly chosen: more are a smear, and a large file.
+/// Most points of a panel that are marked, evenly chosen. More of them would be a smear, and a large file.
 const MOST_CROSSES: usize = 4000;
 
 /// The content of the picture.
@@ -48,8 +48,7 @@ impl ProfilePicture<'_> {
         page.finish(top + 20.0, &super::page::foot())
     }
 
-    /// Draws points and curve at true scale, as high as the profile's proportions need; returns the next
-    /// panel's top.
+    /// Draws points and curve at true scale, as high as the profile's proportions need. Returns the top of the next panel.
     fn shape(&self, page: &mut Page, top: f64) -> f64 {
         let both = || self.curve.iter().chain(self.points);
         let (u, v) = (range(both().map(|p| p[0])), range(both().map(|p| p[1])));
@@ -58,7 +57,7 @@ impl ProfilePicture<'_> {
         let room = [LEFT, top, WIDTH, height];
         page.heading(room, "Profile, true scale");
         let panel = Panel::true_scale(room, u, v);
-        // The curve is drawn over its points, or they would hide it.
+        // The curve is drawn over the points, which would hide it otherwise.
         crosses(page, &panel, self.points);
         page.lines(&panel.curve(self.curve), CURVE);
         panel.axes(page, ["x [mm]", "z [mm]"]);
@@ -72,7 +71,7 @@ impl ProfilePicture<'_> {
         top + height + 84.0
     }
 
-    /// Draws the distance of the points from the curve in µm; returns the next panel's top.
+    /// Draws the distance of the points from the curve in µm. Returns the top of the next panel.
     fn residuals(&self, page: &mut Page, top: f64, u: [f64; 2]) -> f64 {
         let micrometres: Vec<[f64; 2]> = self.residual.iter().map(|[s, r]| [*s, 1e3 * r]).collect();
         let v = about_zero(range(micrometres.iter().map(|p| p[1])));
@@ -84,7 +83,7 @@ impl ProfilePicture<'_> {
         top + 170.0 + 84.0
     }
 
-    /// Draws the curvature in 1/m, with the radii of its extremes in words; returns the next panel's top.
+    /// Draws the curvature in 1/m, with the radii of its extremes in words. Returns the top of the next panel.
     fn curvatures(&self, page: &mut Page, top: f64, u: [f64; 2]) -> f64 {
         let per_metre: Vec<[f64; 2]> = self.curvature.iter().map(|[s, k]| [*s, 1e3 * k]).collect();
         let [least, most] = range(per_metre.iter().map(|p| p[1]));
@@ -107,7 +106,7 @@ impl ProfilePicture<'_> {
     }
 }
 
-/// Returns a range that contains 0, with 5 % of free space; µm and 1/m have no digits beyond the sixth.
+/// Returns a range that contains 0, with 5 % of free space. Values in µm and 1/m have no digits beyond the sixth.
 fn about_zero([low, high]: [f64; 2]) -> [f64; 2] {
     airy([low.min(0.0), high.max(0.0)], 0.05, 1e-6)
 }

@@ -108,8 +108,71 @@ fn what_is_not_ours_is_refused_or_kept() {
     written(&dir, "b.npy").unwrap();
     assert_eq!(listing(&dir), ["b.npy", "notes.txt", "summary.json"]);
     assert_eq!(fs::read(dir.join("notes.txt")).unwrap(), b"mine");
-    fs::create_dir(dir.join("frames")).unwrap();
-    assert!(Folder::create(&dir, NAMES).unwrap_err().found.contains("frames"));
+}
+
+#[test]
+fn a_solvers_output_stays_wherever_it_was_written() {
+    let root = tempfile::tempdir().unwrap();
+    let dir = root.path().join("out");
+    let with_part = |name: &str| {
+        let folder = Folder::create(&dir, NAMES)?;
+        folder.write("summary.json", SUMMARY)?;
+        let part = folder.part(name)?;
+        part.write("summary.json", SUMMARY)?;
+        part.write("a.npy", b"data")?;
+        folder.commit()
+    };
+    with_part("part-1").unwrap();
+    for file in ["contact.out", "part-1/contact.out", "part-1/frames/1.png", "frames/deep/2.png"] {
+        let path = dir.join(file);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, file).unwrap();
+    }
+    std::os::unix::fs::symlink("nowhere", dir.join("link")).unwrap();
+    // A solver that is still writing goes on in the new folder.
+    let mut open = File::options().append(true).open(dir.join("part-1/contact.out")).unwrap();
+    // The part stays for the sake of what is in it, though the next run has none of that name.
+    for (part, first) in [
+        ("part-1", &["a.npy", "contact.out", "frames", "summary.json"][..]),
+        ("part-2", &["contact.out", "frames"]),
+    ] {
+        with_part(part).unwrap();
+        assert_eq!(listing(&dir.join("part-1")), first);
+        assert_eq!(listing(&dir.join(part))[0], "a.npy");
+    }
+    with_part("part-1").unwrap();
+    assert_eq!(listing(&dir), ["contact.out", "frames", "link", "part-1", "summary.json"]);
+    assert_eq!(listing(&dir.join("part-1")), ["a.npy", "contact.out", "frames", "summary.json"]);
+    assert_eq!(fs::read(dir.join("frames/deep/2.png")).unwrap(), b"frames/deep/2.png");
+    assert_eq!(fs::read_link(dir.join("link")).unwrap(), Path::new("nowhere"));
+    open.write_all(b", later").unwrap();
+    assert_eq!(fs::read(dir.join("part-1/contact.out")).unwrap(), b"part-1/contact.out, later");
+    assert_eq!(listing(root.path()), ["out"]);
+}
+
+#[test]
+fn what_comes_during_the_exchange_is_taken_over_after_it() {
+    let root = tempfile::tempdir().unwrap();
+    let dir = root.path().join("out");
+    written(&dir, "a.npy").unwrap();
+    let folder = Folder::create(&dir, NAMES).unwrap();
+    folder.write("summary.json", SUMMARY).unwrap();
+    // As `commit` would, but for a solver that ends between its two steps.
+    fs::write(dir.join("contact.out"), "late").unwrap();
+    exchange(&folder.temporary, &dir).unwrap();
+    assert_eq!(listing(&dir), ["summary.json"]);
+    folder.leave().unwrap();
+    assert_eq!(listing(&dir), ["contact.out", "summary.json"]);
+    assert_eq!(listing(root.path()), ["out"]);
+    // What cannot be taken over keeps its folder.
+    let folder = Folder::create(&dir, NAMES).unwrap();
+    folder.write("summary.json", SUMMARY).unwrap();
+    fs::create_dir(folder.temporary.join("later")).unwrap();
+    fs::write(dir.join("later"), "a file").unwrap();
+    exchange(&folder.temporary, &dir).unwrap();
+    let error = folder.leave().unwrap_err();
+    assert!(error.place.contains("out.old-1"), "{error}");
+    assert_eq!(listing(&root.path().join("out.old-1")), ["contact.out", "later", "summary.json"]);
 }
 
 #[test]
@@ -123,12 +186,13 @@ fn results_and_files_of_others_inside_are_never_replaced() {
         folder.commit()
     };
     with_part("part-1").unwrap();
-    // A part of the last run is removed with it; another run's folder, filed here by the user, is not.
+    // A part of the last run is removed with it; another run's folder, filed here by the user, stays whole.
     with_part("part-2").unwrap();
     assert_eq!(listing(&dir), ["part-2", "summary.json"]);
     written(&dir.join("archive"), "a.npy").unwrap();
-    assert!(with_part("part-2").unwrap_err().found.contains("archive"));
-    fs::rename(dir.join("archive"), root.path().join("archive")).unwrap();
+    with_part("part-2").unwrap();
+    assert_eq!(listing(&dir), ["archive", "part-2", "summary.json"]);
+    assert_eq!(listing(&dir.join("archive")), ["a.npy", "summary.json"]);
     fs::write(dir.join("part-3"), "mine").unwrap();
     assert!(with_part("part-3").unwrap_err().found.contains("named like a folder"));
     assert_eq!(fs::read(dir.join("part-3")).unwrap(), b"mine");

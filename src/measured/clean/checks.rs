@@ -1,4 +1,4 @@
-//! Checks measured points in profile axes, from left to right; each finding has its place in the file.
+//! Checks measured points in profile axes, from left to right. Each finding names its place in the file.
 
 use std::ops::RangeInclusive;
 
@@ -12,36 +12,35 @@ use crate::measured::unit::Unit;
 use crate::profile::Side;
 
 /// Distance \[mm\] below which two points are one: a nanometre is less than any instrument or file resolves.
-const SAME_POINT: f64 = 1e-6;
+pub(in crate::measured) const SAME_POINT: f64 = 1e-6;
 /// Cosine of the turn at a point beyond which the path runs back, 120°: sharp edges of profiles turn by less
 /// than 100°, points in the wrong order by about 180°.
 const BACKWARDS: f64 = -0.5;
-/// Least height of a spike, as a multiple of its neighbourhood's median: ten is beyond noise (normal noise:
+/// Least height of a spike, as a multiple of the median of its neighbourhood. Ten is beyond noise (normal noise reaches it
 /// once in 10⁹ points) and below what a speck of dirt gives.
 const SPIKE_RATIO: f64 = 10.0;
-/// Least height of a spike \[mm\]: smoothing removes smaller roughness.
+/// Least height of a spike \[mm\]. Smoothing removes smaller roughness.
 const SPIKE_HEIGHT: f64 = 0.02;
 /// Number of points on each side that make a spike's neighbourhood.
 const NEIGHBOURHOOD: usize = 10;
-/// Least length of a gap, as a multiple of the median distance of neighbours; it is at least [`GAP`] too.
+/// Least length of a gap, as a multiple of the median distance of neighbours. A gap is also at least [`GAP`] long.
 const GAP_RATIO: f64 = 10.0;
 /// Least length of a gap \[mm\]: the length of a contact patch.
 const GAP: f64 = 5.0;
-/// Widths \[mm\] that a profile may have; other widths mean a wrong unit (0.14: metres; 5500: thousandths of
-/// an inch).
+/// Widths \[mm\] that a profile may have. Other widths mean a wrong unit (0.14: metres; 5500: thousandths of an inch).
 const WIDTHS: RangeInclusive<f64> = 5.0..=500.0;
 
-/// A fault that measured points can have.
+/// A kind of fault of measured points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Check {
-    /// Two points are in one place.
+    /// Two points are at one place.
     Duplicate,
     /// A single point is in the wrong place of the order.
     OutOfOrder,
-    /// A stretch runs back over the one before, as stitched sections do.
+    /// A stretch runs back over the previous one, as in stitched sections.
     ZigZag,
-    /// The path turns back and does not return: a point was added or left at an end.
+    /// The path turns back and does not return. A point was added or left over at an end.
     TurnsBack,
     /// A single point is off the curve.
     Spike,
@@ -51,16 +50,16 @@ pub enum Check {
     Gap,
     /// The gauge face of a rail or the flange back of a wheel was not measured.
     MissingSideFace,
-    /// The definition of the format, which was followed, turned the profile against what its shape shows.
+    /// The profile's shape contradicts its orientation, which follows from the definition of the format.
     Orientation,
 }
 
-/// One fault that was found.
+/// A fault that was found.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Finding {
     /// The kind of fault.
     pub check: Check,
-    /// Whether no curve can be drawn through the points as they are.
+    /// Whether the points cannot carry a curve as they are.
     pub fatal: bool,
     /// Place in the file: "point 12 (line 40)".
     pub place: String,
@@ -74,7 +73,7 @@ impl Finding {
         Self { check, fatal, place: point.place(), found: found.into() }
     }
 
-    /// Makes the finding that the shape contradicts the format's definition, at the file's first point.
+    /// Makes the finding that the shape contradicts the definition of the format. Its place is the file's first point.
     pub(in crate::measured) fn orientation(first: &Point, found: String) -> Self {
         Self::new(Check::Orientation, first, found)
     }
@@ -94,10 +93,10 @@ impl Finding {
     }
 }
 
-/// Rejects a width outside 5–500 mm, which means a wrong unit.
+/// Rejects a width outside [`WIDTHS`], which means a wrong unit.
 ///
 /// # Errors
-/// A width outside that range; the message names the units that would give a possible width.
+/// A width outside that range. The message names the units that would give a possible width.
 pub(in crate::measured) fn reject_width(points: &[Point], unit: f64) -> Result<()> {
     let [low, high] = width(points);
     if WIDTHS.contains(&(high - low)) {
@@ -113,7 +112,7 @@ pub(in crate::measured) fn reject_width(points: &[Point], unit: f64) -> Result<(
     Err(Error::new("unit", found, expected, advice))
 }
 
-/// Finds everything that is wrong, in the order of [`Check`].
+/// Finds all faults, in the order of [`Check`].
 pub fn findings(points: &[Point], side: Side, gauge_height: f64) -> Vec<Finding> {
     let mut out = Vec::new();
     let found = |k: usize| format!("the same place as {}", points[k - 1].place());
@@ -123,7 +122,7 @@ pub fn findings(points: &[Point], side: Side, gauge_height: f64) -> Vec<Finding>
         let found = format!("a point {:.3} mm off the line of its neighbours", spike.height);
         Finding { fatal: spike.backwards, ..Finding::new(Check::Spike, &points[spike.at], found) }
     }));
-    // A path that runs back crosses itself everywhere, so only its own findings are given.
+    // A path that runs back crosses itself everywhere, so that only its fatal findings are returned.
     if !out.iter().any(|finding| finding.fatal) {
         out.extend(crossings(points));
     }
@@ -146,7 +145,7 @@ fn crossings(points: &[Point]) -> Vec<Finding> {
     out
 }
 
-/// Returns the first fatal finding as an error that counts the others.
+/// Rejects points with a fatal finding. The error names the first one and counts the others.
 ///
 /// # Errors
 /// At least one finding is fatal.
@@ -163,7 +162,7 @@ pub fn reject(findings: &[Finding]) -> Result<()> {
     Err(Error::new(first.place.clone(), found, expected, advice))
 }
 
-/// Returns the indices of points at the place of the point before.
+/// Returns the indices of points that are at the place of the previous point.
 pub(in crate::measured) fn duplicates(points: &[Point]) -> impl Iterator<Item = usize> {
     points.windows(2).enumerate().filter(|(_, pair)| same(&pair[0], &pair[1])).map(|(k, _)| k + 1)
 }
@@ -176,7 +175,7 @@ pub(in crate::measured) fn distance(a: &Point, b: &Point) -> f64 {
     (b.x - a.x).hypot(b.z - a.z)
 }
 
-/// A stretch of points `from`..=`to` between two reversals of the path; a single reversal has `from == to`.
+/// The stretch of points `from`..=`to` between two reversals of the path. A single reversal has `from == to`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::measured) struct Fold {
     pub from: usize,
@@ -184,7 +183,7 @@ pub(in crate::measured) struct Fold {
 }
 
 impl Fold {
-    /// Returns the number of points before the fold over which the path runs back.
+    /// Returns the number of points, before the fold, over which the path runs back.
     fn overrun(&self, points: &[Point]) -> usize {
         let [a, b] = [points[self.from], points[self.to]];
         let along = |p: &Point| (p.x - b.x) * (a.x - b.x) + (p.z - b.z) * (a.z - b.z);
@@ -203,7 +202,7 @@ impl Fold {
     }
 }
 
-/// Finds where the path runs back, apart from spikes.
+/// Finds where the path runs back. Reversals at spikes do not count.
 pub(in crate::measured) fn folds(points: &[Point]) -> Vec<Fold> {
     let spikes: Vec<usize> = spikes(points).iter().filter(|s| s.backwards).map(|s| s.at).collect();
     let beside = |k: usize| {
@@ -222,7 +221,7 @@ pub(in crate::measured) fn folds(points: &[Point]) -> Vec<Fold> {
     out
 }
 
-/// Returns the points where the path turns by more than 120°; it passes over coinciding points.
+/// Returns the points where the path turns by more than 120°. Coinciding points are passed over.
 fn reversals(points: &[Point]) -> Vec<usize> {
     let mut out = Vec::new();
     let mut before: Option<[f64; 2]> = None;
@@ -245,18 +244,18 @@ fn reversals(points: &[Point]) -> Vec<usize> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::measured) struct Spike {
     pub at: usize,
-    /// Distance from the line through its two neighbours \[mm\].
+    /// Distance of the point from the line through its two neighbours \[mm\].
     pub height: f64,
     /// Whether the path turns by more than 120° at the point or beside it.
     pub backwards: bool,
 }
 
-/// Finds points off the line of their neighbours, while their neighbours are off to the other side: this is
-/// the pattern of a single wrong point, which an edge does not have.
+/// Finds points off the line of their neighbours whose neighbours are off to the other side. A single wrong point has this
+/// pattern; an edge has not.
 pub(in crate::measured) fn spikes(points: &[Point]) -> Vec<Spike> {
-    /// Share of the expected distance by which a neighbour must be off to the other side. A single point off
-    /// by h puts a neighbour off by h·d/l, with d from the neighbour to the next but one and l from there to
-    /// the point; −h/2 where h is small. Half of that is enough.
+    /// Share of the expected distance by which a neighbour must be off to the other side. Let the point be off by h, and
+    /// let o be the point beyond the neighbour. The neighbour is then off by −h·d/l, where d is its distance from o and l
+    /// the distance of the point from o. For equal steps and small h that is −h/2. Half of the expected distance is enough.
     const ANSWER: f64 = 0.5;
     let n = points.len();
     let off: Vec<f64> = (0..n).map(|k| if k == 0 || k + 1 >= n { 0.0 } else { offset(points, k) }).collect();
@@ -268,7 +267,7 @@ pub(in crate::measured) fn spikes(points: &[Point]) -> Vec<Spike> {
             let share = distance(&points[outer], &points[j]) / distance(&points[outer], &points[k]);
             off[j] * off[k].signum() < -ANSWER * share * height
         };
-        // The points at the ends have no line of neighbours.
+        // The end points of the path have no line of neighbours, so that nothing is asked of them.
         let before = k == 1 || answers(k - 1, k - 2);
         let after = k + 2 == n || answers(k + 1, k + 2);
         if height <= SPIKE_HEIGHT || !before || !after {

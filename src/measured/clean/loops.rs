@@ -1,20 +1,19 @@
-//! Finds where a chain of points crosses itself, by a tree of boxes. Cost: n log n for anything like a
-//! profile.
+//! Finds where a chain of points crosses itself, by a tree of boxes. Cost: n log n for chains like profiles.
 
 use crate::measured::read::points::Point;
 
 /// Most crossings that are reported.
 const MOST_CROSSINGS: usize = 100;
-/// Number of box comparisons after which the search ends: a profile of a million points takes a tenth of it;
-/// points that wind around one place take up to n², which would be hours.
+/// Number of box comparisons after which the search ends. A profile of a million points takes a tenth of it. Points that
+/// wind around one place take up to n², which would last hours.
 const MOST_COMPARISONS: usize = 100_000_000;
 
 /// The result of a search for crossings.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(in crate::measured) struct Crossings {
-    /// Pairs of edges \[i, j\], i < j, where i → i + 1 crosses j → j + 1; at most [`MOST_CROSSINGS`].
+    /// Pairs of edges \[i, j\], i < j, where edge i → i + 1 crosses edge j → j + 1. At most [`MOST_CROSSINGS`].
     pub edges: Vec<[usize; 2]>,
-    /// Whether the search ended at [`MOST_COMPARISONS`], so that there may be other crossings.
+    /// Whether the search ended at its limit of comparisons, so that there may be other crossings.
     pub cut_short: bool,
 }
 
@@ -27,27 +26,27 @@ fn crossings_within(points: &[Point], most_comparisons: usize) -> Crossings {
     if points.len() < 4 {
         return Crossings { edges: Vec::new(), cut_short: false };
     }
-    let mut search = Search::new(points, most_comparisons);
-    search.inside(Node { index: 1, from: 0, to: points.len() - 1 });
+    let mut search = CrossingSearch::new(points, most_comparisons);
+    search.inside(EdgeRange { index: 1, from: 0, to: points.len() - 1 });
     search.found.sort_unstable();
     Crossings { edges: search.found, cut_short: search.comparisons > most_comparisons }
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Bounds {
+struct EdgeBox {
     low: [f64; 2],
     high: [f64; 2],
 }
 
-/// The edges `from`..`to` and the index of their box; the children of box k are 2k and 2k + 1.
+/// The edges `from`..`to` and the index of their box. The children of box k are the boxes 2k and 2k + 1.
 #[derive(Debug, Clone, Copy)]
-struct Node {
+struct EdgeRange {
     index: usize,
     from: usize,
     to: usize,
 }
 
-impl Node {
+impl EdgeRange {
     fn halves(self) -> Option<[Self; 2]> {
         let middle = self.from + (self.to - self.from) / 2;
         let half = |index, from, to| Self { index, from, to };
@@ -56,42 +55,42 @@ impl Node {
     }
 }
 
-struct Search<'a> {
+struct CrossingSearch<'a> {
     points: &'a [Point],
-    boxes: Vec<Bounds>,
+    boxes: Vec<EdgeBox>,
     found: Vec<[usize; 2]>,
     comparisons: usize,
     most_comparisons: usize,
 }
 
-impl<'a> Search<'a> {
+impl<'a> CrossingSearch<'a> {
     fn new(points: &'a [Point], most_comparisons: usize) -> Self {
-        let empty = Bounds { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
+        let empty = EdgeBox { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
         let boxes = vec![empty; 4 * points.len()];
         let mut search = Self { points, boxes, found: Vec::new(), comparisons: 0, most_comparisons };
-        search.build(Node { index: 1, from: 0, to: points.len() - 1 });
+        search.build(EdgeRange { index: 1, from: 0, to: points.len() - 1 });
         search
     }
 
-    fn build(&mut self, node: Node) -> Bounds {
+    fn build(&mut self, node: EdgeRange) -> EdgeBox {
         let bounds = match node.halves() {
             Some([a, b]) => {
                 let (a, b) = (self.build(a), self.build(b));
-                Bounds {
+                EdgeBox {
                     low: [a.low[0].min(b.low[0]), a.low[1].min(b.low[1])],
                     high: [a.high[0].max(b.high[0]), a.high[1].max(b.high[1])],
                 }
             }
             None => {
                 let (a, b) = (self.points[node.from], self.points[node.from + 1]);
-                Bounds { low: [a.x.min(b.x), a.z.min(b.z)], high: [a.x.max(b.x), a.z.max(b.z)] }
+                EdgeBox { low: [a.x.min(b.x), a.z.min(b.z)], high: [a.x.max(b.x), a.z.max(b.z)] }
             }
         };
         self.boxes[node.index] = bounds;
         bounds
     }
 
-    fn inside(&mut self, node: Node) {
+    fn inside(&mut self, node: EdgeRange) {
         if let Some([a, b]) = node.halves() {
             self.inside(a);
             self.inside(b);
@@ -99,7 +98,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn between(&mut self, a: Node, b: Node) {
+    fn between(&mut self, a: EdgeRange, b: EdgeRange) {
         self.comparisons += 1;
         if self.comparisons > self.most_comparisons
             || self.found.len() >= MOST_CROSSINGS
@@ -129,7 +128,7 @@ fn turn(a: Point, b: Point, c: Point) -> f64 {
     ((b.x - a.x) * (c.z - a.z) - (b.z - a.z) * (c.x - a.x)).signum()
 }
 
-fn apart(a: &Bounds, b: &Bounds) -> bool {
+fn apart(a: &EdgeBox, b: &EdgeBox) -> bool {
     (0..2).any(|k| a.high[k] < b.low[k] || b.high[k] < a.low[k])
 }
 
@@ -158,8 +157,8 @@ mod tests {
             })
             .collect();
         let points = chain(&circle);
-        let mut search = Search::new(&points, MOST_COMPARISONS);
-        search.inside(Node { index: 1, from: 0, to: points.len() - 1 });
+        let mut search = CrossingSearch::new(&points, MOST_COMPARISONS);
+        search.inside(EdgeRange { index: 1, from: 0, to: points.len() - 1 });
         assert!(search.found.is_empty() && search.comparisons < 20 * points.len(), "{}", search.comparisons);
     }
 }

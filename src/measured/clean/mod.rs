@@ -1,4 +1,4 @@
-//! Checks measured points, and makes the repairs that an option allows.
+//! Checks measured points, and makes the repairs that the options allow.
 
 pub mod checks;
 mod loops;

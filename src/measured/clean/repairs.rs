@@ -1,4 +1,4 @@
-//! Makes the repairs that an option allows, and lists the places that they touched.
+//! Makes the repairs that the options allow, and lists the places that they touched.
 
 use serde::Serialize;
 
@@ -7,12 +7,12 @@ use super::loops;
 use crate::measured::options::Repair;
 use crate::measured::read::points::Point;
 
-/// Largest loop that `cut-loops` cuts, as a share of the whole path: a larger loop is no slip of the probe,
-/// and it is unknown which part is the profile.
+/// Largest loop that `cut-loops` cuts, as a share of the whole path. A larger loop is no slip of the probe: nobody knows
+/// which of its parts is the profile.
 const LARGEST_LOOP: f64 = 0.1;
 /// Most places that the record lists; the count is always complete.
 const LISTED: usize = 20;
-/// Most rounds of a repair: each round removes what the last one uncovered.
+/// Most rounds of one repair. Each round removes faults that the previous round uncovered.
 const ROUNDS: usize = 10;
 
 /// A repair that was made.
@@ -20,13 +20,13 @@ const ROUNDS: usize = 10;
 pub struct Repaired {
     /// The kind of repair.
     pub repair: Repair,
-    /// Number of points that it dropped, or moved in the order.
+    /// Number of points that it dropped or moved in the order.
     pub points: usize,
-    /// Places of the first of these points in the file.
+    /// Places of the first of these points in the file, at most 20.
     pub places: Vec<String>,
 }
 
-/// Makes the allowed repairs, duplicates first and loops last, and lists them.
+/// Makes the allowed repairs, duplicates first and loops last. Returns those that touched a point.
 pub fn repair(points: &mut Vec<Point>, allowed: &[Repair]) -> Vec<Repaired> {
     let order = [Repair::DropDuplicates, Repair::Sort, Repair::RemoveSpikes, Repair::CutLoops];
     let mut done = Vec::new();
@@ -75,8 +75,8 @@ fn sort(points: &mut [Point]) -> Vec<Point> {
     moved
 }
 
-/// Sorts the points of one fold, and those that it runs back over, along the direction of travel across the
-/// fold. Returns the index after the last sorted point.
+/// Sorts the points of one fold, and the points over which it runs back, along the direction of travel across the fold.
+/// Returns the index after the last sorted point.
 fn sort_fold(points: &mut [Point], fold: Fold, moved: &mut Vec<Point>) -> usize {
     let reach = fold.to - fold.from + 1;
     let (mut low, mut high) = (fold.from.saturating_sub(reach), (fold.to + reach).min(points.len() - 1));

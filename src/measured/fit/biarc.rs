@@ -1,14 +1,13 @@
-//! Fits G¹ chains of arcs and lines to points within a tolerance.
+//! Fits smooth chains of arcs and lines to points within a tolerance.
 //!
-//! Two stations are joined by a pair of arcs with equal tangent lengths [Bolton1975]. A chain of such pairs
-//! is built greedily: doubling and bisection find how long each pair can be within the tolerance of every
-//! point.
+//! A pair of arcs with equal tangent lengths joins two stations [Bolton1975]. A chain of such pairs is built from left to
+//! right. Doubling and bisection find how long each pair can be while all its points stay within the tolerance.
 
 use crate::error::{Error, Result};
 use crate::measured::read::points::Point;
 use crate::profile::{Arc, Station};
 
-/// Largest cross product of coordinates, in roundings of them, that counts as straight.
+/// Largest cross product of coordinates, in roundings of them, that counts as 0: three points are then in a line.
 const STRAIGHT_ROUNDINGS: f64 = 8.0;
 
 /// A chain of pairs of arcs.
@@ -19,11 +18,11 @@ pub(in crate::measured) struct Chain {
     pub residuals: Vec<f64>,
 }
 
-/// Fits arcs from the first to the last of `stations`, each within `tolerance` \[mm\] of the `points`
-/// between; point k belongs to station k.
+/// Fits pairs of arcs from the first to the last of `stations`. Point k belongs to station k; all points are within
+/// `tolerance` \[mm\] of their pair.
 ///
 /// # Errors
-/// Neighbouring points that a pair of arcs cannot join within the tolerance, with their place.
+/// Two neighbouring points that no pair of arcs joins within the tolerance, with their place.
 pub(in crate::measured) fn chain(stations: &[Station], points: &[Point], tolerance: f64) -> Result<Chain> {
     let mut chain = Chain::default();
     let mut from = 0;
@@ -55,14 +54,14 @@ pub(in crate::measured) fn chain(stations: &[Station], points: &[Point], toleran
     Ok(chain)
 }
 
-/// Returns the two arcs from station to station with equal tangent lengths; `None` if one would turn by a
+/// Returns the two arcs from station to station with equal tangent lengths. Returns `None` if one of them would turn by a
 /// right angle or more.
 fn pair(a: &Station, b: &Station) -> Option<[Arc; 2]> {
     let [vx, vz] = [b.x - a.x, b.z - a.z];
     let along = vx * (a.cos + b.cos) + vz * (a.sin + b.sin);
     let apart = (b.cos - a.cos).powi(2) + (b.sin - a.sin).powi(2);
     let square = vx * vx + vz * vz;
-    // Root of apart·d² + 2·along·d = square, in the form that does not cancel.
+    // This is the root of apart·d² + 2·along·d = square, in the form that does not cancel.
     let d = square / (along + (along * along + apart * square).sqrt());
     if !(along > 0.0 && d > 0.0) {
         return None;
@@ -75,7 +74,7 @@ fn pair(a: &Station, b: &Station) -> Option<[Arc; 2]> {
     (forward(a) && forward(b)).then(|| [arc(*a, middle), arc(middle, *b)])
 }
 
-/// Returns the arc with these two stations, which must lie on one.
+/// Returns the arc between these two stations. Both must lie on one arc or line.
 fn arc(start: Station, end: Station) -> Arc {
     let [cx, cz] = [end.x - start.x, end.z - start.z];
     let cross = start.cos * cz - start.sin * cx;
@@ -92,16 +91,14 @@ fn arc(start: Station, end: Station) -> Arc {
     Arc { start, end, radius: (cx * cx + cz * cz) / (2.0 * cross) }
 }
 
-/// Returns the distance \[mm\] of a point from a pair of arcs: from the arc on whose side of their joint it
-/// lies.
+/// Returns the distance \[mm\] of a point from a pair of arcs. Its side of their joint decides which arc counts.
 fn distance(pair: &[Arc; 2], point: &Point) -> f64 {
     let joint = &pair[0].end;
     let beyond = (point.x - joint.x) * joint.cos + (point.z - joint.z) * joint.sin > 0.0;
     distance_from(&pair[usize::from(beyond)], point)
 }
 
-/// Returns the distance \[mm\] of a point from the circle or line of an arc, without cancellation for any
-/// radius.
+/// Returns the distance \[mm\] of a point from the circle or line of an arc. Nothing cancels for any radius.
 fn distance_from(arc: &Arc, point: &Point) -> f64 {
     let at = Station { x: point.x, z: point.z, ..Station::AXES }.seen_from(&arc.start);
     let curvature = arc.curvature();
@@ -123,7 +120,7 @@ mod tests {
             let (a, b) = (station(1.0, 2.0, angle_a), station(9.0, 3.5, angle_b));
             let Some([first, second]) = pair(&a, &b) else { unreachable!("{angle_a} {angle_b}") };
             for arc in [first, second] {
-                // The end lies on the circle, and its tangent is the circle's.
+                // The end lies on the circle, and its tangent is that of the circle.
                 let end = arc.end.seen_from(&arc.start);
                 let point = Point { x: arc.end.x, z: arc.end.z, weight: 1.0, number: 1, line: 1 };
                 assert!(distance_from(&arc, &point) < 1e-14, "{arc:?}");

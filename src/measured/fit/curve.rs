@@ -1,17 +1,17 @@
-//! Draws the curve through points or elements, as segments of a chain.
+//! Draws the curve through points or design elements, as segments of a chain.
 
 use serde::Serialize;
 
 use super::biarc;
 use super::elements;
 use super::kinks::{Kink, kinks};
-use super::spline::{Piece, pieces};
+use super::spline::{SplinePiece, pieces};
 use crate::error::{Error, Result};
 use crate::measured::options::{ARC_CUTOFFS, CUTOFF_WAVELENGTH, CurveKind, Options};
-use crate::measured::read::points::{Element, Point};
+use crate::measured::read::points::{DesignElement, Point};
 use crate::profile::Segment;
 
-/// Share of an arc chain's tolerance that the smoothing under it may use.
+/// Share of an arc chain's tolerance that the smoothing before it may use.
 const SMOOTHING_SHARE: f64 = 0.5;
 
 /// A corner of the curve.
@@ -25,7 +25,7 @@ pub struct Corner {
     pub angle: f64,
 }
 
-/// Distances \[mm\] of the points from the curve, across it.
+/// Distances \[mm\] of the points from the curve, across its tangent.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Residual {
     /// Largest distance.
@@ -36,14 +36,14 @@ pub struct Residual {
     pub worst: String,
 }
 
-/// The curve that was drawn, and how close to the points it is.
+/// The curve that was drawn, and its distance from the points.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CurveRecord {
     /// Kind of curve.
     pub kind: CurveKind,
-    /// Wavelength that the smoothing halves \[mm\].
+    /// Wavelength \[mm\] whose waves smoothing halves; `None` without smoothing.
     pub cutoff_wavelength: Option<f64>,
-    /// Tolerance of a chain of arcs \[mm\].
+    /// Tolerance of a chain of arcs \[mm\]; `None` for other curves.
     pub tolerance: Option<f64>,
     /// Number of segments.
     pub segments: usize,
@@ -53,13 +53,13 @@ pub struct CurveRecord {
     pub residual: Option<Residual>,
 }
 
-/// Draws the curve that the options ask for; returns its segments and its record.
+/// Draws the curve that the options ask for. Returns its segments and its record.
 ///
 /// # Errors
-/// A curve of elements for a file without elements; an arc chain that cannot keep its tolerance.
+/// A curve of elements for a file without elements; a chain of arcs that cannot keep its tolerance.
 pub(in crate::measured) fn curve(
     points: &[Point],
-    elements: &[Element],
+    elements: &[DesignElement],
     options: &Options,
     without_points: bool,
 ) -> Result<(Vec<Segment>, CurveRecord)> {
@@ -109,8 +109,8 @@ fn residual(residuals: &[f64], points: &[Point]) -> Option<Residual> {
     Some(Residual { largest: residuals[worst], rms, worst: points[worst].place() })
 }
 
-/// Draws the elements themselves.
-fn design(elements: &[Element]) -> Result<(Vec<Segment>, CurveRecord)> {
+/// Draws the design elements themselves.
+fn design(elements: &[DesignElement]) -> Result<(Vec<Segment>, CurveRecord)> {
     if elements.is_empty() {
         let advice = "choose \"smoothing\", \"interpolation\" or \"arcs\"";
         let expected = "a file with design elements (MPD1=…)";
@@ -128,8 +128,8 @@ fn design(elements: &[Element]) -> Result<(Vec<Segment>, CurveRecord)> {
     Ok((segments, record))
 }
 
-/// Returns the distance of each point from the spline, across its tangent at the point's own knot \[mm\].
-fn spline_residuals(pieces: &[Piece], points: &[Point]) -> Vec<f64> {
+/// Returns the distance \[mm\] of each point from the spline, across the tangent at the point's own knot.
+fn spline_residuals(pieces: &[SplinePiece], points: &[Point]) -> Vec<f64> {
     let mut residuals = vec![0.0; points.len()];
     for piece in pieces {
         for k in 0..piece.knots() {
@@ -143,12 +143,12 @@ fn spline_residuals(pieces: &[Piece], points: &[Point]) -> Vec<f64> {
 
 type Arcs = (Vec<Segment>, Vec<f64>, Option<f64>);
 
-/// Fits a chain of arcs to the tangents of a spline: with the given smoothing, or with the strongest one that
-/// uses no more than half of the tolerance.
+/// Fits a chain of arcs to the tangents of a spline. The spline has the smoothing that the options give; otherwise it has
+/// the strongest smoothing that uses no more than half of the tolerance, or none.
 fn arcs(points: &[Point], corners: &[usize], options: &Options) -> Result<Arcs> {
     let tolerance = options.arc_tolerance();
     let fit = |cutoff: Option<f64>| (pieces(points, corners, cutoff), cutoff);
-    let near = |(pieces, _): &(Vec<Piece>, Option<f64>)| {
+    let near = |(pieces, _): &(Vec<SplinePiece>, Option<f64>)| {
         let worst = spline_residuals(pieces, points).into_iter().fold(0.0, f64::max);
         worst <= SMOOTHING_SHARE * tolerance
     };

@@ -1,27 +1,27 @@
 //! Turns the design elements of a file into a chain of arcs and lines.
 
 use crate::error::Result;
-use crate::measured::read::points::{Element, ElementShape, Point};
+use crate::measured::read::points::{DesignElement, ElementShape, Point};
 use crate::profile::{Arc, Segment, Station};
 
-/// Distance \[mm\] of the points that represent elements in the checks and in the search for orientation.
+/// Distance \[mm\] of the points that stand for elements in the checks and in the search for the orientation.
 const STEP: f64 = 0.5;
-/// Most steps over one element: 200 mm.
+/// Most steps over one element. With [`STEP`] that is 200 mm.
 const MOST_STEPS: f64 = 400.0;
-/// Distance \[mm\] below which two ends are one joint: drawings print 1e-4 mm.
+/// Distance \[mm\] below which two ends are one joint. Drawings print 1e-4 mm.
 const JOINT: f64 = 1e-3;
-/// Largest turn of one arc \[rad\]: an arc of a chain turns by at most half a circle, rounding included.
+/// Largest turn of one arc \[rad\]. An arc of a chain turns by at most half a circle, and rounding must not exceed it.
 const LARGEST_TURN: f64 = 3.0;
 
 /// An element with its direction of travel.
 #[derive(Debug, Clone, Copy)]
 struct Directed {
-    element: Element,
+    element: DesignElement,
     backwards: bool,
 }
 
-/// Gives the elements directions so that each begins where the one before ends; the order is the file's.
-fn directed(elements: &[Element]) -> Vec<Directed> {
+/// Returns the elements in the order of the file, each with the direction in which it begins where the previous one ends.
+fn directed(elements: &[DesignElement]) -> Vec<Directed> {
     let mut out: Vec<Directed> = Vec::with_capacity(elements.len());
     for (k, &element) in elements.iter().enumerate() {
         let [a, b] = ends(&element);
@@ -47,7 +47,7 @@ fn on_circle(center: [f64; 2], radius: f64, angle: f64) -> [f64; 2] {
     [center[0] + radius * angle.cos(), center[1] + radius * angle.sin()]
 }
 
-fn ends(element: &Element) -> [[f64; 2]; 2] {
+fn ends(element: &DesignElement) -> [[f64; 2]; 2] {
     match element.shape {
         ElementShape::Line { from, to } => [from, to],
         ElementShape::Arc { center, radius, angles } => angles.map(|angle| on_circle(center, radius, angle)),
@@ -59,7 +59,7 @@ impl Directed {
         ends(&self.element)[usize::from(!self.backwards)]
     }
 
-    /// Returns points along the element, both ends included.
+    /// Returns points along the element; both ends are included.
     fn points(&self, number: usize) -> Vec<Point> {
         let length = match self.element.shape {
             ElementShape::Line { from, to } => far(from, to),
@@ -108,8 +108,8 @@ impl Directed {
     }
 }
 
-/// Returns points every [`STEP`] along the elements, numbered by element.
-pub(in crate::measured) fn points(elements: &[Element]) -> Vec<Point> {
+/// Returns points every [`STEP`] mm along the elements, with the number of their element.
+pub(in crate::measured) fn points(elements: &[DesignElement]) -> Vec<Point> {
     let mut out: Vec<Point> = Vec::new();
     for (k, directed) in directed(elements).iter().enumerate() {
         let own = directed.points(k + 1);
@@ -121,11 +121,11 @@ pub(in crate::measured) fn points(elements: &[Element]) -> Vec<Point> {
     out
 }
 
-/// Makes the chain of elements in profile axes, from left to right.
+/// Makes the chain of elements, in profile axes and from left to right.
 ///
 /// # Errors
-/// A line element with two equal ends, with its line in the file.
-pub(in crate::measured) fn segments(elements: &[Element]) -> Result<Vec<Segment>> {
+/// A line element with two equal ends; the error gives its line in the file.
+pub(in crate::measured) fn segments(elements: &[DesignElement]) -> Result<Vec<Segment>> {
     let mut chain = directed(elements);
     let first = chain.first().map(|first| ends(&first.element)[usize::from(first.backwards)]);
     if let (Some(first), Some(last)) = (first, chain.last())

@@ -1,13 +1,13 @@
-//! Finds corners: points where the tangents before and after differ by more than a curve explains.
+//! Finds corners: points where the tangents before and after differ by more than a smooth curve explains.
 
 use super::parabola::Parabola;
 use crate::measured::clean::checks::distance;
 use crate::measured::read::points::Point;
 
-/// Most steps of a window that are used, evenly picked: more do not sharpen a tangent, and windows over dense
-/// points would cost n².
+/// Most steps of a window that are used, evenly picked. More steps do not sharpen a tangent, and windows over dense points
+/// would cost n².
 const MOST_IN_WINDOW: usize = 48;
-/// Fewest points for a tangent: a parabola needs three.
+/// Fewest points for a tangent, because a parabola needs three.
 const LEAST_IN_WINDOW: usize = 3;
 
 /// A corner at a point.
@@ -20,9 +20,9 @@ pub(in crate::measured) struct Kink {
 
 /// Finds points with a corner sharper than `least` \[rad\].
 ///
-/// Method: fits one parabola over `window` \[mm\] of path on each side, each through points of its own side
-/// only. An arc of radius r biases each tangent by (window/r)²/10, noise σ on m points by about 14 σ/(window
-/// √m). Of several corners within a window only the sharpest counts.
+/// Method: on each side a parabola is fitted to the points of that side over `window` \[mm\] of path. An arc of radius r
+/// biases each tangent by (window/r)²/10. Noise σ on m points moves it by about 14 σ/(window √m). Of several corners within
+/// a window only the sharpest counts.
 pub(in crate::measured) fn kinks(points: &[Point], least: f64, window: f64) -> Vec<Kink> {
     let inner = LEAST_IN_WINDOW - 1..points.len().saturating_sub(LEAST_IN_WINDOW - 1);
     let mut path = vec![0.0];
@@ -50,7 +50,7 @@ pub(in crate::measured) fn kinks(points: &[Point], least: f64, window: f64) -> V
     out
 }
 
-/// Returns the direction of travel at a point from the points on one side; `path` is the arc length at each
+/// Returns the direction of travel at a point, from the points on one side of it. `path` holds the arc length at each
 /// point.
 fn tangent(points: &[Point], path: &[f64], at: usize, forward: bool, window: f64) -> [f64; 2] {
     let far = if forward {
@@ -90,7 +90,7 @@ mod tests {
     #[test]
     fn an_edge_is_found_at_its_point_and_small_radii_are_none() {
         for spacing in [0.02, 0.25, 1.0] {
-            // 40° at s = 20.
+            // The edge turns by 40° at s = 20.
             let edge = path(spacing, |s| {
                 let after = (s - 20.0).max(0.0);
                 [s.min(20.0) + after * 40f64.to_radians().cos(), after * 40f64.to_radians().sin()]
@@ -99,7 +99,7 @@ mod tests {
             assert_eq!(found.len(), 1, "{spacing}: {found:?}");
             assert!((found[0].angle - 40f64.to_radians()).abs() < 1e-9, "{found:?}");
             assert!((edge[found[0].at].x - 20.0).abs() < 1e-9);
-            // A line that goes over into radius 6, as at the edge of a flange tip.
+            // A line continues into a radius of 6 mm, as at the edge of a flange tip.
             let fillet = path(spacing, |s| {
                 let angle = (s - 20.0).max(0.0) / 6.0;
                 [s.min(20.0) + 6.0 * angle.sin(), 6.0 * (1.0 - angle.cos())]

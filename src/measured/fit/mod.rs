@@ -1,4 +1,4 @@
-//! Draws the curve through measured points: a smoothing or interpolating spline, arcs, or the file's own
+//! Draws the curve through measured points: a smoothing spline, an interpolating spline, arcs, or the file's own design
 //! elements.
 
 mod biarc;

@@ -1,14 +1,13 @@
-//! Fits least-squares parabolas, for tangents and curvatures of noisy points.
+//! Fits parabolas by least squares, for tangents and curvatures of noisy points.
 
 /// The parabola c₀ + c₁ s + c₂ s².
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::measured) struct Parabola([f64; 3]);
 
 impl Parabola {
-    /// Fits a parabola to (s, value) samples, of which at least three must have different s.
+    /// Fits a parabola to (s, value) samples. At least three of them must have different s.
     ///
-    /// Method: normal equations in s scaled to 1, whose condition is about 500, so that no digit above the
-    /// noise is lost.
+    /// Method: normal equations in s scaled to 1. Their condition is about 500, so that no digit above the noise is lost.
     pub fn fit(samples: impl Iterator<Item = (f64, f64)> + Clone) -> Self {
         let scale = samples.clone().map(|(s, _)| s.abs()).fold(0.0, f64::max);
         let (mut m, mut r) = ([0.0; 5], [0.0; 3]);
@@ -23,7 +22,7 @@ impl Parabola {
                 power *= s;
             }
         }
-        // Cramer's rule.
+        // The system is solved by Cramer's rule.
         let columns = [[m[0], m[1], m[2]], [m[1], m[2], m[3]], [m[2], m[3], m[4]]];
         let whole = determinant(columns);
         let unknown = |k: usize| {

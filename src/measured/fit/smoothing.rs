@@ -1,21 +1,20 @@
 //! Fits cubic smoothing splines to one coordinate over arc length.
 //!
-//! f minimises Σ wᵢ (yᵢ − f(sᵢ))² + Λ ∫ f″² ds. Reinsch's band system [Reinsch1967] is (R + Λ Qᵀ D Q) γ = Qᵀ
-//! y, f = y − Λ D Q γ, with D = diag(1/wᵢ) and γ the second derivatives. If wᵢ is the local spacing, the sum
-//! is the integral ∫ (y − f)² ds, and a wave of length λ keeps the share 1/(1 + Λ (2π/λ)⁴) of its height,
-//! whatever the spacing.
+//! The spline f minimises Σ wᵢ (yᵢ − f(sᵢ))² + Λ ∫ f″² ds. Reinsch's band system [Reinsch1967] is (R + Λ Qᵀ D Q) γ = Qᵀ y,
+//! f = y − Λ D Q γ, with D = diag(1/wᵢ) and γ the second derivatives. If wᵢ is the local spacing, the sum is the integral ∫
+//! (y − f)² ds. A wave of length λ then keeps the share 1/(1 + Λ (2π/λ)⁴) of its height, whatever the spacing.
 
 use crate::numerics::twice::Twice;
 
-/// Returns the penalty Λ \[mm⁴\] that halves a wave of this length \[mm\].
+/// Returns the penalty Λ \[mm⁴\] that halves waves of this length \[mm\].
 pub(in crate::measured) fn penalty(cutoff_wavelength: f64) -> f64 {
     (cutoff_wavelength / std::f64::consts::TAU).powi(4)
 }
 
-/// The factored band system for given knots; one serves for x and z.
+/// The factored band system for given knots. One system serves for x and z.
 ///
-/// It is kept in twice the working precision, as the condition grows as (cut-off wavelength / spacing)⁴: 1e13
-/// for 5 mm over points every 0.5 µm. Cost: linear, about 0.5 µs a knot.
+/// It has twice the working precision, because its condition grows as (cut-off wavelength / spacing)⁴: 1e13 for 5 mm over
+/// points every 0.5 µm. Cost: linear, about 0.5 µs a knot.
 pub(in crate::measured) struct Smoother<'a> {
     steps: &'a [f64],
     slack: &'a [f64],
@@ -24,18 +23,18 @@ pub(in crate::measured) struct Smoother<'a> {
     factor: Vec<[Twice; 3]>,
 }
 
-/// A natural cubic spline, given at its knots.
+/// A natural cubic spline, given by its values and second derivatives at the knots.
 #[derive(Debug, Clone)]
-pub(in crate::measured) struct Fit {
-    /// Values f at the knots.
+pub(in crate::measured) struct CubicSpline {
+    /// Values f at the knots \[mm\].
     pub value: Vec<Twice>,
-    /// Second derivatives γ at the knots, 0 at the ends.
+    /// Second derivatives γ at the knots \[1/mm\]; 0 at the ends of a natural spline.
     pub second: Vec<Twice>,
 }
 
 impl<'a> Smoother<'a> {
-    /// Factors the system for knots `steps` \[mm\] apart, all positive. `slack` is 1/wᵢ for each knot; 0
-    /// makes the spline pass through the value there. A penalty of 0 interpolates.
+    /// Factors the system for knots `steps` \[mm\] apart; all steps are positive. `slack` is 1/wᵢ for each knot; where it
+    /// is 0 the spline passes through the value. A penalty of 0 interpolates.
     pub fn new(steps: &'a [f64], slack: &'a [f64], penalty: f64) -> Self {
         let inner = steps.len().saturating_sub(1);
         let mut smoother = Self { steps, slack, penalty, factor: Vec::with_capacity(inner) };
@@ -46,7 +45,7 @@ impl<'a> Smoother<'a> {
         smoother
     }
 
-    /// Returns the three entries of column j of Q, for knots j, j + 1, j + 2.
+    /// Returns the three entries of column j of Q; they belong to the knots j, j + 1 and j + 2.
     fn second_difference(&self, j: usize) -> [Twice; 3] {
         let (a, b) = (Twice::from(1.0) / self.steps[j], Twice::from(1.0) / self.steps[j + 1]);
         [a, -(a + b), b]
@@ -80,14 +79,14 @@ impl<'a> Smoother<'a> {
         [d, l1, l2]
     }
 
-    /// Fits the spline to values, with natural ends.
-    pub fn fit(&self, y: &[f64]) -> Fit {
+    /// Fits the spline to values, with second derivatives of 0 at its ends.
+    pub fn fit(&self, y: &[f64]) -> CubicSpline {
         self.fit_between(y, [Twice::ZERO; 2])
     }
 
-    /// Fits the spline to values, with given second derivatives at its ends; if these are not 0, it must be
-    /// an interpolation.
-    pub fn fit_between(&self, y: &[f64], ends: [Twice; 2]) -> Fit {
+    /// Fits the spline to values, with given second derivatives at its ends. Second derivatives other than 0 are allowed
+    /// only for interpolation.
+    pub fn fit_between(&self, y: &[f64], ends: [Twice; 2]) -> CubicSpline {
         let n = y.len();
         let mut second = vec![Twice::ZERO; n];
         (second[0], second[n - 1]) = (ends[0], ends[1]);
@@ -126,12 +125,12 @@ impl<'a> Smoother<'a> {
                 value[j + k] -= slack * q * second[j + 1];
             }
         }
-        Fit { value, second }
+        CubicSpline { value, second }
     }
 }
 
-impl Fit {
-    /// Returns the coefficients of the cubic from knot k to k + 1, about knot k.
+impl CubicSpline {
+    /// Returns the coefficients of the cubic from knot k to knot k + 1, in powers of the distance from knot k.
     pub fn cubic(&self, k: usize, step: f64) -> [f64; 4] {
         let (f, g) = (&self.value, &self.second);
         let slope = (f[k + 1] - f[k]) / step - (g[k] * 2.0 + g[k + 1]) * step / 6.0;
@@ -156,7 +155,7 @@ mod tests {
     use super::*;
     use std::f64::consts::{PI, TAU};
 
-    /// Returns the share of a wave of length `wavelength` that is left in the middle of 200 mm.
+    /// Returns the share of a wave's height that is left in the middle of 200 mm.
     fn share(cutoff: f64, wavelength: f64, spacing: f64) -> f64 {
         let n = (200.0 / spacing) as usize + 1;
         let y: Vec<f64> = (0..n).map(|k| (TAU * k as f64 * spacing / wavelength).sin()).collect();
@@ -173,7 +172,7 @@ mod tests {
             for ratio in [0.5, 1.0, 2.0, 5.0] {
                 let expected = (1.0 + f64::powi(ratio, -4)).recip();
                 let found = share(5.0, 5.0 * ratio, spacing);
-                // The sum is an integral to (spacing/wavelength)².
+                // The sum is the integral to an error of (spacing/wavelength)².
                 let bound = 1e-6 + (PI * spacing / (5.0 * ratio)).powi(2);
                 assert!((found - expected).abs() < bound, "{spacing} {ratio}: {found} not {expected}");
             }

@@ -1,40 +1,44 @@
-//! Fits parametric cubic splines through or near points, in pieces between corners.
+//! Fits parametric cubic splines through points or near them, one piece between two corners.
 
 use super::parabola::Parabola;
-use super::smoothing::{Fit, Smoother, penalty};
+use super::smoothing::{CubicSpline, Smoother, penalty};
 use crate::error::Result;
 use crate::measured::clean::checks::distance;
 use crate::measured::read::points::Point;
 use crate::profile::{Polynomial, Segment, Shape, Station};
 
-/// Distance of a smoothed curve's knots, as a share of the cut-off wavelength: a cubic through them is off by
-/// (2π/10)⁴/384 of the amplitude at that wavelength, 0.2 nm on a 13 mm radius for 5 mm.
+/// Distance of a smoothed curve's knots, as a share of the cut-off wavelength. A cubic through these knots is off by
+/// (2π/10)⁴/384 of the amplitude of a wave of that length: 0.2 nm on a 13 mm radius for 5 mm.
 const KNOTS: f64 = 0.1;
 
-/// One piece of the curve: C² over its own arc length.
+/// One piece of the curve. It is C² over its own arc length.
 ///
-/// An interpolation has natural ends (curvature 0). A natural end of a smoothing spline would be off by about
-/// κ (λ_c/2π)², 30 µm on a 20 mm radius at λ_c = 5 mm. So a smoothing spline is fitted beyond its ends too,
-/// to points on the parabolas that best fit its last λ_c, and is cut off there.
+/// An interpolation has natural ends (curvature 0). A smoothing spline with natural ends would be off there by about κ
+/// (λ_c/2π)²: 30 µm on a 20 mm radius at λ_c = 5 mm. It is therefore fitted beyond its ends too, to points on the parabolas
+/// that best fit its last λ_c, and cut at its ends.
 #[derive(Debug, Clone)]
-pub(in crate::measured) struct Piece {
+pub(in crate::measured) struct SplinePiece {
     /// Index of the first point of the piece among all points.
     pub from: usize,
     steps: Vec<f64>,
-    x: Fit,
-    z: Fit,
+    x: CubicSpline,
+    z: CubicSpline,
 }
 
-/// Fits the pieces between `corners` (indices of points); a cut-off wavelength of `None` interpolates.
+/// Fits the pieces between `corners`, which are indices of points. A cut-off wavelength of `None` interpolates.
 ///
-/// At a corner both pieces end in one point: the mean of the points where each would end alone.
-pub(in crate::measured) fn pieces(points: &[Point], corners: &[usize], cutoff: Option<f64>) -> Vec<Piece> {
+/// At a corner both pieces end in one point: the mean of the two points where each piece would end alone.
+pub(in crate::measured) fn pieces(
+    points: &[Point],
+    corners: &[usize],
+    cutoff: Option<f64>,
+) -> Vec<SplinePiece> {
     let mut ends = vec![0];
     ends.extend(corners);
     ends.push(points.len() - 1);
     let ranges: Vec<[usize; 2]> = ends.windows(2).map(|pair| [pair[0], pair[1]]).collect();
-    let free = ranges.iter().map(|&range| Piece::new(points, range, cutoff, [None, None]));
-    let free: Vec<Piece> = free.collect();
+    let free = ranges.iter().map(|&range| SplinePiece::new(points, range, cutoff, [None, None]));
+    let free: Vec<SplinePiece> = free.collect();
     if corners.is_empty() || cutoff.is_none() {
         return free;
     }
@@ -47,7 +51,7 @@ pub(in crate::measured) fn pieces(points: &[Point], corners: &[usize], cutoff: O
         .collect();
     let joint = |k: Option<usize>| k.and_then(|k| joints.get(k).copied());
     let pinned = |(k, &range): (usize, &[usize; 2])| {
-        Piece::new(points, range, cutoff, [joint(k.checked_sub(1)), joint(Some(k))])
+        SplinePiece::new(points, range, cutoff, [joint(k.checked_sub(1)), joint(Some(k))])
     };
     ranges.iter().enumerate().map(pinned).collect()
 }
@@ -57,12 +61,11 @@ fn chords(at: impl Iterator<Item = [f64; 2]>) -> Vec<f64> {
     at.windows(2).map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1])).collect()
 }
 
-/// Returns points beyond the first of some points, nearest first: on the parabola that best fits their first
-/// `reach` \[mm\], with the same spacing and over the same length. Returns none if there are too few points
-/// for a curvature.
+/// Returns points that continue some points beyond their first one, nearest first. They lie on the parabola that best fits
+/// the first `reach` \[mm\], with the same spacing and over the same length. There are none if too few points fix a
+/// curvature.
 fn beyond(points: impl Iterator<Item = Point>, reach: f64) -> Vec<Point> {
-    /// Fewest points for the parabola: it has three unknowns, and twice as many points keep noise out of its
-    /// curvature.
+    /// Fewest points for the parabola. It has three unknowns; twice as many points keep noise out of its curvature.
     const LEAST: usize = 6;
     let mut near: Vec<Point> = Vec::new();
     let mut path: Vec<f64> = Vec::new();
@@ -90,11 +93,11 @@ fn beyond(points: impl Iterator<Item = Point>, reach: f64) -> Vec<Point> {
     (1..near.len()).map(at).collect()
 }
 
-impl Piece {
-    /// Fits the piece in two passes: over the chords of the points, which noise makes too long, then over the
-    /// chords of the first pass. If noise is as large as the distance of the points, the first pass brings
-    /// two neighbours within a tenth of their chord, and its own chords measure nothing. Then the first pass
-    /// is the result: its chords are too long, so its cut-off wavelength is too short by as much.
+impl SplinePiece {
+    /// Fits the piece in two passes. The first pass uses the chords of the points as arc length; noise makes them too long.
+    /// The second pass uses the chords of the first result. Where noise is as large as the distance of the points, the
+    /// first result has chords below a tenth of the points' chords, which measure nothing. The first result is then kept:
+    /// its arc length is too long, so that its cut-off wavelength is too short by the same factor.
     fn new(
         points: &[Point],
         [from, to]: [usize; 2],
@@ -118,7 +121,7 @@ impl Piece {
         piece
     }
 
-    /// Drops this many knots at the beginning and at the end.
+    /// Drops the given numbers of knots at the beginning and at the end.
     fn cut(&mut self, [before, after]: [usize; 2]) {
         self.steps.drain(..before);
         self.steps.truncate(self.steps.len() - after);
@@ -161,18 +164,17 @@ impl Piece {
         self.steps.len() + 1
     }
 
-    /// Returns the point and tangent at a knot.
+    /// Returns the station at a knot.
     pub fn station(&self, k: usize) -> Station {
         let (dx, dz) = (self.x.slope(k, &self.steps), self.z.slope(k, &self.steps));
         let norm = dx.hypot(dz);
         Station { x: self.x.value[k].into(), z: self.z.value[k].into(), cos: dx / norm, sin: dz / norm }
     }
 
-    /// Returns one segment per span; its parameter is the arc length from its start.
+    /// Returns one segment for each span. Its parameter is the arc length from its start \[mm\].
     ///
-    /// A smoothed curve has no detail shorter than its cut-off wavelength, so that it is moved to knots
-    /// [`KNOTS`] of that wavelength apart: thousands of an instrument's points would slow down every later
-    /// step.
+    /// A smoothed curve has no detail shorter than its cut-off wavelength. It is therefore moved to knots at least
+    /// [`KNOTS`] of that wavelength apart, because thousands of an instrument's points would slow down every later step.
     pub fn segments(&self, cutoff: Option<f64>) -> Result<Vec<Segment>> {
         let thinned = cutoff.map(|wavelength| self.thinned(KNOTS * wavelength));
         let Self { steps, x, z, .. } = thinned.as_ref().unwrap_or(self);
@@ -183,8 +185,8 @@ impl Piece {
         steps.iter().enumerate().map(span).collect()
     }
 
-    /// Returns the spline through the values at knots at least `apart` \[mm\] apart, with the same curvature
-    /// at both ends.
+    /// Returns the spline through the values at knots at least `apart` \[mm\] apart. It has the same curvature at both
+    /// ends.
     fn thinned(&self, apart: f64) -> Self {
         let (mut kept, mut steps, mut walked) = (vec![0], Vec::new(), 0.0);
         for (k, step) in self.steps.iter().enumerate() {

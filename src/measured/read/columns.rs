@@ -1,4 +1,4 @@
-//! Reads files of columns: GENSYS, plain text, CSV.
+//! Reads files of columns: GENSYS, plain text and CSV.
 //!
 //! | format | axes | source |
 //! |---|---|---|
@@ -11,10 +11,10 @@ use crate::error::{Error, Result};
 use crate::measured::Format;
 use crate::measured::column::Column;
 
-/// Reads two columns, y towards the track centre and z down, in mm.
+/// Reads two columns in mm: y towards the centre of the track, and z down.
 ///
 /// # Errors
-/// A row that is not two numbers, with its line.
+/// A row that is not two numbers; the error gives its line.
 pub(in crate::measured) fn read_gensys(text: &str) -> Result<Points> {
     let mut points = Points::new(Format::Gensys, Some(1.0));
     for line in lines(text).map(|line| line.without_comment(&['#', '!'])) {
@@ -27,12 +27,12 @@ pub(in crate::measured) fn read_gensys(text: &str) -> Result<Points> {
     points.finish(text)
 }
 
-/// Reads two columns of a table, by number or by the name in its first row.
+/// Reads two columns of a table, by their numbers or by their names in its first row.
 ///
-/// `#`, `!`, `%` and `//` begin comments. Without `wanted` the table must have two columns.
+/// Comments begin with `#`, `!`, `%` or `//`. Without `wanted` the table must have two columns.
 ///
 /// # Errors
-/// A wanted column that the table does not have, or a row without a number in it, with the line.
+/// A wanted column that the table does not have; a row without a number in it. The error gives the line.
 pub(in crate::measured) fn read_table(
     text: &str,
     format: Format,

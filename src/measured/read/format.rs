@@ -1,4 +1,4 @@
-//! The file formats of measured profiles, and how a file's format is found.
+//! The formats of measured profiles, and how the format of a file is found.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -11,15 +11,15 @@ use crate::profile::Side;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Format {
-    /// MiniProf `.ban`, `.whl`, `.mpt`.
+    /// MiniProf: `.ban`, `.whl`, `.mpt`.
     MiniProf,
-    /// SIMPACK `.prr`, `.prw`.
+    /// SIMPACK: `.prr`, `.prw`.
     Simpack,
-    /// GENSYS `.rail`, `.wheel`.
+    /// GENSYS: `.rail`, `.wheel`.
     Gensys,
-    /// Columns between white space.
+    /// Columns separated by white space.
     Text,
-    /// Columns between commas or semicolons.
+    /// Columns separated by commas or semicolons.
     Csv,
 }
 
@@ -27,10 +27,10 @@ impl Format {
     /// All formats.
     pub const ALL: [Self; 5] = [Self::MiniProf, Self::Simpack, Self::Gensys, Self::Text, Self::Csv];
 
-    /// Returns the format that a file's extension stands for, in upper or lower case.
+    /// Returns the format that a file's extension stands for. Upper and lower case are the same.
     ///
     /// # Errors
-    /// An extension of no format; the message lists `format = …`.
+    /// An extension of no format; the message tells to give `format = …`.
     pub fn of_file(name: &str) -> Result<Self> {
         let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension).to_lowercase();
         let known = Self::ALL.into_iter().find(|format| format.extensions().contains(&extension.as_str()));
@@ -43,13 +43,13 @@ impl Format {
         })
     }
 
-    /// Returns the body that a file's extension stands for, in upper or lower case; `None` for an extension
-    /// of either body.
+    /// Returns the body that a file's extension stands for. Upper and lower case are the same. Returns `None` if
+    /// the extension does not tell the body.
     pub fn body_of_file(name: &str) -> Option<Side> {
         let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension).to_lowercase();
         match extension.as_str() {
-            "ban" | "prr" | "rail" => Some(Side::Rail),
-            "whl" | "prw" | "wheel" => Some(Side::Wheel),
+            "ban" | "prr" | "rail" | "slcs" => Some(Side::Rail),
+            "whl" | "prw" | "wheel" | "slcw" => Some(Side::Wheel),
             _ => None,
         }
     }
@@ -65,7 +65,7 @@ impl Format {
         }
     }
 
-    /// Returns the value of `format = …`.
+    /// Returns the name of the format in scenes: the value of `format = …`.
     pub fn name(self) -> &'static str {
         match self {
             Self::MiniProf => "miniprof",
@@ -76,7 +76,7 @@ impl Format {
         }
     }
 
-    /// Returns the name of the format in a sentence.
+    /// Returns the name of the format for sentences.
     pub fn title(self) -> &'static str {
         match self {
             Self::MiniProf => "MiniProf",

@@ -1,8 +1,8 @@
-//! Reads MiniProf files (Greenwood Engineering): `.ban` rails, `.whl` wheels, `.mpt` several sections.
+//! Reads MiniProf files (Greenwood Engineering): `.ban` rails, `.whl` wheels, `.mpt` files of several sections.
 //!
-//! Coordinates are mm; the points are moved by `Xoffset`, `Yoffset`. Axes (`docs/measured-files.md`): for
-//! wheels X goes from the flange back to the field side and Y towards the flange tip, so downwards. For rails
-//! neither sign is defined, though most files have the foot at negative Y.
+//! Coordinates are in mm; `Xoffset` and `Yoffset` are added to the points. Axes (`src/docs/measured-files.md`): for wheels
+//! X goes from the flange back to the field side, and Y towards the flange tip, so downwards. For rails neither sign is
+//! defined, but most files have the foot at negative Y.
 //!
 //! | style | told by | header | points |
 //! |---|---|---|---|
@@ -10,8 +10,8 @@
 //! | old | `MINIPROF` in the first three lines | a line each, `32.58 37.11 14.71 (Sd/Sh/qR)` | after a blank line |
 //! | sections | `[FileInfo]`, `[Profile1Info]` | as new | after `[Profile1Points]` |
 //!
-//! A line that begins with `"`, `!`, `%` or `#` is a comment, and so is what follows a number. Design profiles
-//! give `MPDk=A x y radius from to` (degrees, counter-clockwise) and `MPDk=L x y x y`.
+//! A line that begins with `"`, `!`, `%` or `#` is a comment. Text after a number is a comment too. Design profiles give
+//! `MPDk=A x y radius from to` (degrees, counter-clockwise) and `MPDk=L x y x y`.
 
 use super::points::{ElementShape, Points};
 use super::scan::{Line, clipped, is_number, lines, unquoted};
@@ -27,19 +27,19 @@ enum Style {
     Sections,
 }
 
-/// What the present header says.
+/// The content of the present header.
 #[derive(Debug, Clone)]
-struct Header {
+struct MiniProfHeader {
     /// Indices of X and Y among the columns.
     columns: [usize; 2],
     /// Number of columns that `ColumnDef` names.
     width: usize,
     offset: [f64; 2],
-    /// `XYPoints` and its line.
+    /// Value of `XYPoints`, and its line.
     count: Option<(usize, usize)>,
     /// Design elements as (k, line, shape).
     elements: Vec<(usize, usize, ElementShape)>,
-    /// `MPDC` and its line.
+    /// Value of `MPDC`, and its line.
     element_count: Option<(usize, usize)>,
 }
 
@@ -47,7 +47,7 @@ struct Header {
 struct Reader {
     style: Style,
     points: Points,
-    header: Header,
+    header: MiniProfHeader,
     in_data: bool,
     /// Index of the first point under the present header.
     from: usize,
@@ -56,13 +56,13 @@ struct Reader {
 /// Reads a MiniProf file of any of the three styles.
 ///
 /// # Errors
-/// A row without two numbers, a bad `ColumnDef`, offset or element, or a key after points, with its line.
+/// A row without two numbers; a bad `ColumnDef`, offset or element; a key after points. The error gives the line.
 pub(in crate::measured) fn read(text: &str) -> Result<Points> {
     let style = style(text);
     let old_data = if style == Style::Old { first_old_row(text) } else { 0 };
     let points = Points::new(Format::MiniProf, Some(1.0));
     let in_data = style == Style::Old;
-    let mut reader = Reader { style, points, header: Header::default(), in_data, from: 0 };
+    let mut reader = Reader { style, points, header: MiniProfHeader::default(), in_data, from: 0 };
     for line in lines(text).filter(|line| line.number >= old_data) {
         reader.line(line)?;
     }
@@ -81,8 +81,8 @@ fn style(text: &str) -> Style {
     }
 }
 
-/// Returns the line number where the points of an old file begin: at the first row of numbers after a blank
-/// line. Without a blank line: at the first row of numbers that no `(Sd/Sh/qR)` follows.
+/// Returns the number of the line where the points of an old file begin: the first row of numbers after a blank line.
+/// Without a blank line it is the first row of numbers that no `(Sd/Sh/qR)` follows.
 fn first_old_row(text: &str) -> usize {
     let rows: Vec<Line> = lines(text).collect();
     let numeric = |k: usize| {
@@ -102,11 +102,11 @@ impl Reader {
             return self.section(line);
         }
         if line.text.is_empty() {
-            // `.mpt` names its points; in other files the blank line begins them.
+            // In `.mpt` files a section name begins the points; in other files a blank line does.
             self.in_data |= self.style != Style::Sections && line.number > 1;
             return Ok(());
         }
-        // A header line may be quoted as a whole.
+        // A header line may have quotes around the whole of it.
         let whole = unquoted(line.text);
         let line = if whole.contains('=') { Line { text: whole, ..line } } else { line };
         if line.text.starts_with(COMMENTS) {
@@ -126,7 +126,7 @@ impl Reader {
         self.points.push(line, point, 1.0)
     }
 
-    /// Begins the points if no blank line precedes them.
+    /// Begins the points where no blank line precedes them.
     fn begin_data(&mut self, line: Line) -> Result<()> {
         let fields = line.without_comment(&COMMENTS).fields()?;
         if fields.len() < 2 || !fields[..2].iter().all(|field| is_number(field)) {
@@ -147,7 +147,7 @@ impl Reader {
             if self.points.at.len() > self.from {
                 self.points.sections.push(self.points.at.len());
             }
-            (self.header, self.from, self.in_data) = (Header::default(), self.points.at.len(), false);
+            (self.header, self.from, self.in_data) = (MiniProfHeader::default(), self.points.at.len(), false);
         } else {
             let expected = "[FileInfo], [Profile1Info], [Profile1Points], …";
             return Err(line.error(line.text, expected, "delete the section"));
@@ -155,7 +155,7 @@ impl Reader {
         Ok(())
     }
 
-    /// Ends a header: moves the points by its offset, keeps its elements, compares its counts.
+    /// Ends a header: moves the points by its offset, keeps its elements, and compares its counts.
     fn close_header(&mut self) -> Result<()> {
         let header = std::mem::take(&mut self.header);
         for point in &mut self.points.at[self.from..] {
@@ -190,16 +190,16 @@ fn moved(shape: ElementShape, dx: f64, dz: f64) -> ElementShape {
     }
 }
 
-impl Default for Header {
+impl Default for MiniProfHeader {
     fn default() -> Self {
         let (elements, element_count) = (Vec::new(), None);
         Self { columns: [0, 1], width: 2, offset: [0.0; 2], count: None, elements, element_count }
     }
 }
 
-impl Header {
+impl MiniProfHeader {
     fn set(&mut self, line: Line, key: &str, value: &str) -> Result<()> {
-        // Keys come in several spellings: XOffset, Xoffset.
+        // Keys have several spellings: XOffset, Xoffset.
         let key = key.to_lowercase();
         match key.as_str() {
             "columndef" if !value.is_empty() => self.set_columns(line, value)?,
@@ -230,7 +230,7 @@ impl Header {
         Ok(())
     }
 
-    /// Returns X and Y of a row; text after the columns' numbers is a comment.
+    /// Returns X and Y of a row. Text after the numbers of the columns is a comment.
     fn point(&self, line: Line) -> Result<[f64; 2]> {
         let row = line.without_comment(&COMMENTS);
         let fields = row.fields()?;
@@ -251,7 +251,7 @@ impl Header {
     }
 }
 
-/// Reads a number that may be left out.
+/// Reads a number that may be left out; it is then 0.
 fn optional(line: Line, value: &str) -> Result<f64> {
     let value = Line { text: value, ..line }.without_comment(&COMMENTS).text;
     if value.is_empty() { Ok(0.0) } else { line.number(value, "offset") }
@@ -266,7 +266,7 @@ fn count(line: Line, value: &str) -> Result<Option<(usize, usize)>> {
     Ok(Some((count, line.number)))
 }
 
-/// Reads `A x y radius from to` in degrees, or `L x y x y`.
+/// Reads `A x y radius from to` with angles in degrees, or `L x y x y`.
 fn element(line: Line, value: &str) -> Result<ElementShape> {
     let fields = Line { text: value, ..line }.fields()?;
     let kind = fields.first().copied().unwrap_or_default().to_uppercase();
@@ -298,7 +298,7 @@ mod tests {
     fn new_style_with_its_quirks() -> Result<()> {
         let points = read(RAIL)?;
         assert_eq!(points.at.len(), 53);
-        // Yoffset=1.5 is added; a quoted ColumnDef counts until the plain one; the quoted row does not.
+        // Yoffset=1.5 is added. The quoted ColumnDef counts until the plain one; the quoted row does not count.
         assert_eq!(points.at[0].xz(), [-37.0621, -36.602 + 1.5]);
         assert_eq!(points.at[3].line, 26);
         assert_eq!(points.notes.len(), 1, "{:?}", points.notes);

@@ -1,5 +1,5 @@
-//! Reads an instrument's file: bytes become points, design elements and notes on oddities. There is one
-//! reader a format.
+//! Reads an instrument's file: bytes become points, design elements and notes on oddities. Each format has a reader of its
+//! own.
 
 mod columns;
 pub mod format;
@@ -8,3 +8,4 @@ pub mod points;
 pub mod reader;
 pub mod scan;
 mod simpack;
+pub mod slices;

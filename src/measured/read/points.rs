@@ -3,11 +3,11 @@
 use serde::Serialize;
 
 use super::scan::{Line, last_place};
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::measured::Format;
 use crate::profile::Side;
 
-/// Most points of one file. A profile of 200 mm would have one every 0.2 µm; more is not a profile.
+/// Most points of one file. A profile of 200 mm would have a point every 0.2 µm; a file with more points is not a profile.
 pub const MOST_POINTS: usize = 1_000_000;
 /// Most design elements of one file.
 pub const MOST_ELEMENTS: usize = 10_000;
@@ -15,11 +15,11 @@ pub const MOST_ELEMENTS: usize = 10_000;
 /// One measured point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
-    /// Lateral coordinate: as in the file; \[mm\] in profile axes once placed.
+    /// Lateral coordinate: as in the file before placing, \[mm\] in profile axes after it.
     pub x: f64,
-    /// Height: as in the file; \[mm\] in profile axes once placed.
+    /// Height: as in the file before placing, \[mm\] in profile axes after it.
     pub z: f64,
-    /// Relative weight in a smoothing fit, 1 unless the file says otherwise; typical 0.1–10.
+    /// Relative weight in a smoothing fit; 1 unless the file gives one; typical 0.1–10.
     pub weight: f64,
     /// Number of the point in the file, from 1.
     pub number: usize,
@@ -28,12 +28,12 @@ pub struct Point {
 }
 
 impl Point {
-    /// Returns the array \[x, z\].
+    /// Returns the coordinates \[x, z\].
     pub fn xz(&self) -> [f64; 2] {
         [self.x, self.z]
     }
 
-    /// Returns the place in words: "point 12 (line 40)".
+    /// Returns the place of the point in the file: "point 12 (line 40)".
     pub fn place(&self) -> String {
         format!("point {} (line {})", self.number, self.line)
     }
@@ -41,7 +41,7 @@ impl Point {
 
 /// One element of a design profile (MiniProf `MPDk=`), in the file's own axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Element {
+pub struct DesignElement {
     /// Shape of the element.
     pub shape: ElementShape,
     /// Line of the element in the file, from 1.
@@ -69,7 +69,7 @@ pub enum ElementShape {
     },
 }
 
-/// Something odd in a file that was read all the same.
+/// An oddity in a file that was read all the same.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Note {
     /// Line in the file, from 1.
@@ -85,14 +85,14 @@ pub struct Points {
     pub format: Format,
     /// Body that the file names; `None` if it names none.
     pub body: Option<Side>,
-    /// Unit of the coordinates \[mm\], if the format or the file states it.
+    /// Length \[mm\] of the unit of the coordinates; `None` if neither the format nor the file states it.
     pub unit: Option<f64>,
     /// The measured points.
     pub at: Vec<Point>,
-    /// Index of the first point of each section; one section unless the format has several.
+    /// Index of the first point of each section. Formats without sections have one.
     pub sections: Vec<usize>,
-    /// Design elements, in the file's numbering.
-    pub elements: Vec<Element>,
+    /// Design elements, in the numbering of the file.
+    pub elements: Vec<DesignElement>,
     /// Notes on oddities.
     pub notes: Vec<Note>,
 }
@@ -127,9 +127,9 @@ impl Points {
         if self.elements.len() >= MOST_ELEMENTS {
             let expected = format!("{MOST_ELEMENTS} elements at most");
             let error = line.error("one more element", expected, "give the points instead");
-            return Err(error.of_kind(Kind::Limit));
+            return Err(error.of_kind(ErrorKind::Limit));
         }
-        self.elements.push(Element { shape, line: line.number });
+        self.elements.push(DesignElement { shape, line: line.number });
         Ok(())
     }
 
@@ -137,7 +137,10 @@ impl Points {
         self.notes.push(Note { line, text: text.into() });
     }
 
-    /// Ends the reading; an error if there are not enough points for a profile.
+    /// Ends the reading.
+    ///
+    /// # Errors
+    /// Fewer than two points and no design element; coordinates that overflowed.
     pub(in crate::measured) fn finish(self, text: &str) -> Result<Self> {
         if self.at.len() < 2 && self.elements.is_empty() {
             let found = format!("{} points up to the end of the file", self.at.len());
@@ -151,7 +154,7 @@ impl Points {
         Ok(self)
     }
 
-    /// Keeps one section only, counted from 1.
+    /// Keeps only one section, counted from 1.
     ///
     /// # Errors
     /// A section that the file does not have.

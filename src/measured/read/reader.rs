@@ -1,4 +1,4 @@
-//! Reads a file by the reader of its format.
+//! Calls the reader of a file's format.
 
 use super::format::Format;
 use super::points::Points;
@@ -6,7 +6,7 @@ use super::{columns, miniprof, scan, simpack};
 use crate::error::Result;
 use crate::measured::column::Column;
 
-/// Reads a file of a format; `free` names the two columns in formats with free columns.
+/// Reads a file of a format. `free` names the two columns in formats whose columns are free.
 ///
 /// # Errors
 /// Anything that is not of the format, with its line; more than [`super::points::MOST_POINTS`] points.

@@ -1,22 +1,21 @@
-//! Scans an instrument's file: bytes become numbered lines, fields and numbers. All readers use this scanner.
+//! Scans an instrument's file: bytes become numbered lines, fields and numbers. Every reader uses it.
 
 use std::borrow::Cow;
 
 use crate::error::{Error, Result};
 
-/// Largest file that is read \[bytes\]: a million points at 64 characters a line. Larger files are not
-/// profiles.
+/// Largest file that is read \[bytes\]: a million points at 64 characters a line. A larger file is not a profile.
 pub const LARGEST_FILE: usize = 64 << 20;
 
-/// One line of a file, trimmed, numbered from 1.
+/// One line of a file, without the white space around it, numbered from 1.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::measured) struct Line<'a> {
     pub number: usize,
     pub text: &'a str,
 }
 
-/// Decodes the text of a file: UTF-8, UTF-16 with its byte order mark, otherwise Latin-1, which instruments
-/// of the nineties write (`Chars=Win`). Line numbers keep their places.
+/// Decodes the text of a file: UTF-8, or UTF-16 with its byte order mark, otherwise Latin-1, which instruments of the
+/// nineties write (`Chars=Win`). The numbers of lines do not change.
 ///
 /// # Errors
 /// A file over [`LARGEST_FILE`]; zero bytes, which mean that it is not text; broken UTF-16.
@@ -56,7 +55,7 @@ fn utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Result<String> {
     Ok(text)
 }
 
-/// Splits a text into lines that end with \n, \r\n, or \r if there is no \n; an end-of-file mark (Ctrl-Z) is
+/// Splits a text into lines. They end with \n or \r\n, or with \r if the text has no \n. An end-of-file mark (Ctrl-Z) is
 /// dropped.
 pub(in crate::measured) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     let end = if text.contains('\n') { '\n' } else { '\r' };
@@ -66,28 +65,28 @@ pub(in crate::measured) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     })
 }
 
-/// Returns the last line as the place of what is missing from a text.
+/// Returns the last line of a text, for messages: the place of what is missing.
 pub(in crate::measured) fn last_place(text: &str) -> String {
     format!("line {}", lines(text).count())
 }
 
 impl<'a> Line<'a> {
-    /// Returns the line up to the first of some comment marks.
+    /// Returns the line up to the first comment mark of `marks`.
     pub fn without_comment(self, marks: &[char]) -> Self {
         let text = self.text.find(marks).map_or(self.text, |at| self.text[..at].trim_end());
         Self { text, ..self }
     }
 
-    /// Returns (key, value) of `key = value`, if the key begins with a letter; quotes around the value are
-    /// dropped.
+    /// Returns (key, value) of `key = value`. Returns `None` if the key does not begin with a letter. Quotes around the
+    /// value are dropped.
     pub fn key_value(self) -> Option<(&'a str, &'a str)> {
         let (key, value) = self.text.split_once('=')?;
         let key = key.trim();
         key.starts_with(|c: char| c.is_alphabetic()).then(|| (key, unquoted(value.trim())))
     }
 
-    /// Splits a row into fields. Separators are semicolons, else commas, else white space. Commas are decimal
-    /// if semicolons separate, or if tabs do and there is no decimal point.
+    /// Splits a row into fields. Fields are separated by semicolons if there are any, else by commas, else by white space.
+    /// Commas are decimal if semicolons separate the fields, or if tabs do and there is no decimal point.
     ///
     /// # Errors
     /// A row like "1,5 2,5", whose commas may separate or be decimal.
@@ -119,24 +118,24 @@ impl<'a> Line<'a> {
         Ok(fields)
     }
 
-    /// Reads the number in a field: decimal point or comma, exponent with e or Fortran's d; `what` names it
-    /// in an error.
+    /// Reads the number in a field: with decimal point or comma, and with an exponent after e or Fortran's d. `what` names
+    /// the number in an error.
     ///
     /// # Errors
-    /// Anything else, infinities and NaN included.
+    /// Any other text, infinities and NaN included.
     pub fn number(self, field: &str, what: &str) -> Result<f64> {
         number(field).ok_or_else(|| {
             self.error(format!("{what} \"{}\"", clipped(field)), "a number", "correct or delete the line")
         })
     }
 
-    /// Makes an error at this line; `found` is clipped to a readable length.
+    /// Makes an error whose place is this line. `found` is clipped to a readable length.
     pub fn error(self, found: impl AsRef<str>, expected: impl Into<String>, advice: &str) -> Error {
         Error::new(format!("line {}", self.number), clipped(found.as_ref()), expected, advice)
     }
 }
 
-/// Returns whether a field is a number that [`Line::number`] reads.
+/// Returns whether [`Line::number`] can read a field.
 pub(in crate::measured) fn is_number(field: &str) -> bool {
     number(field).is_some()
 }
@@ -146,7 +145,7 @@ fn number(field: &str) -> Option<f64> {
     let value: f64 = if plain {
         field.parse().ok()?
     } else {
-        // `parse` would take "inf" and "nan" too.
+        // `parse` alone would accept "inf" and "nan" too.
         if !field.bytes().all(|b| b.is_ascii_digit() || b"+-.,eEdD".contains(&b)) {
             return None;
         }
@@ -161,8 +160,8 @@ pub(in crate::measured) fn unquoted(text: &str) -> &str {
     without('"').or_else(|| without('\'')).unwrap_or(text).trim()
 }
 
-/// Returns at most two hundred characters of a text, for messages: any line of a profile's file is shorter, a
-/// file without line ends is not.
+/// Returns at most two hundred characters of a text, for messages. A line of a profile's file is shorter; a file without
+/// line ends is not.
 pub(in crate::measured) fn clipped(text: &str) -> String {
     const LONGEST: usize = 200;
     let mut out: String = text.chars().take(LONGEST).collect();

@@ -1,19 +1,19 @@
-//! Reads SIMPACK profiles: `.prr` rails, `.prw` wheels.
+//! Reads SIMPACK profiles: `.prr` rails and `.prw` wheels.
 //!
-//! A `header` with the body's type (0 rail, 1 wheel), a `spline` with keys that change the points, and the
-//! points (y, z, optional weight), in units of `units.len.f` per metre. Axes: y to the right, z down (comments
-//! of SIMPACK's own files; reader and guide of CONTACT). The keys act in the order of the numbers in those
+//! A file has a `header` with the body's type (0 rail, 1 wheel), a `spline` with keys that change the points, and the
+//! points (y, z, optional weight). Lengths are in a unit of which `units.len.f` make a metre. Axes: y to the right, z down
+//! (comments of SIMPACK's own files; reader and guide of CONTACT). The keys act in the order of the numbers in those
 //! comments:
 //!
-//! 1. `point.dist.min`: a point nearer than this to the one kept before is dropped;
+//! 1. `point.dist.min`: a point nearer than this to the last kept point is dropped;
 //! 2. `shift.y`, `shift.z`;
 //! 3. `rotate` about the origin, from y to z;
 //! 4. `bound.*`: points outside are dropped, where min < max;
 //! 5. `mirror.y`, `mirror.z`;
 //! 6. `inversion` of the order;
-//! 7. units, to mm.
+//! 7. units: the points become mm.
 //!
-//! `approx.smooth` is SIMPACK's own smoothing and is not used: see `cutoff_wavelength`.
+//! `approx.smooth` is SIMPACK's own smoothing and is not used; see `cutoff_wavelength`.
 
 use std::collections::BTreeMap;
 
@@ -24,7 +24,7 @@ use crate::measured::Format;
 use crate::measured::unit::Unit;
 use crate::profile::Side;
 
-/// Keys of the spline that are read, each at most once; all but the first have an effect.
+/// Keys of the spline that are read, each at most once. All but the first one have an effect.
 const KEYS: [&str; 16] = [
     "approx.smooth",
     "point.dist.min",
@@ -45,7 +45,7 @@ const KEYS: [&str; 16] = [
 ];
 /// Keys that do not change the points.
 const SILENT: [&str; 5] = ["version", "file", "file.mtime", "comment", "type"];
-/// Beginning of the header's keys about measuring positions on the wheel, which do not change the points.
+/// Beginning of the header's keys for measuring positions on the wheel. They do not change the points.
 const MEASURING: &str = "meas.pos.";
 
 #[derive(Debug, Default)]
@@ -56,10 +56,10 @@ struct Keys<'a> {
 /// Reads a SIMPACK file and applies its keys: y to the right, z down, mm.
 ///
 /// # Errors
-/// Unknown sections, keys outside a section, values and points that are not numbers, or a missing end, with
-/// its line.
+/// Unknown sections; keys outside a section; values and points that are not numbers; a missing end. The error gives the
+/// line.
 pub(in crate::measured) fn read(text: &str) -> Result<Points> {
-    // The unit after step 7.
+    // The points are in mm after step 7.
     let mut points = Points::new(Format::Simpack, Some(1.0));
     let mut keys = Keys::default();
     let mut open: Vec<&str> = Vec::new();
@@ -90,8 +90,8 @@ pub(in crate::measured) fn read(text: &str) -> Result<Points> {
     points.finish(text)
 }
 
-/// Returns the line up to the first `!` outside quotes; files of CONTACT also have lines that begin with `%`,
-/// `#` or `"`.
+/// Returns the line up to the first `!` outside quotes. Files of CONTACT also have comment lines, which begin with `%`, `#`
+/// or `"`.
 fn without_comment(line: Line) -> Line {
     if line.text.starts_with(['%', '#', '"']) {
         return Line { text: "", ..line };
@@ -173,7 +173,7 @@ impl<'a> Keys<'a> {
         }
     }
 
-    /// Returns the length of the unit \[mm\].
+    /// Returns the length of the file's unit \[mm\].
     fn length_unit(&self) -> Result<f64> {
         let per_metre = self.number("units.len.f", 1.0)?;
         let stated = self.values.get("units.len.f");
@@ -186,7 +186,7 @@ impl<'a> Keys<'a> {
         let unit = Unit::named(name)
             .ok_or_else(|| line.error(line.text, "m, cm, mm, um, in or ft", "correct the unit"))?
             .millimetres();
-        // Largest relative error of a factor that still names the unit: six figures are enough.
+        // Largest relative error of a factor that still names the unit. Files with six figures must pass.
         const ROUNDED: f64 = 1e-5;
         if stated.is_some() && (unit * per_metre - 1e3).abs() > ROUNDED * 1e3 {
             let found = format!("units.len = {name} with units.len.f = {per_metre}");
@@ -221,7 +221,8 @@ impl<'a> Keys<'a> {
         self.turn_and_scale(points)
     }
 
-    /// Notes how many points the keys that begin with `keys` dropped, at the line of the first of them.
+    /// Adds a note on how many points were dropped by the keys that begin with `keys`. Its line is that of the first such
+    /// key.
     fn note_dropped(&self, points: &mut Points, before: usize, keys: &str) {
         let dropped = before - points.at.len();
         let of_keys = self.values.iter().filter(|(key, _)| key.starts_with(keys));
@@ -233,7 +234,7 @@ impl<'a> Keys<'a> {
         }
     }
 
-    /// Returns the rotation \[rad\].
+    /// Returns the angle of rotation \[rad\].
     fn angle(&self) -> Result<f64> {
         let factor = self.number("units.ang.f", 1.0)?;
         let degrees = self.values.get("units.ang").is_some_and(|(_, unit)| unit.starts_with("deg"));

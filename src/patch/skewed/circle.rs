@@ -1,13 +1,13 @@
-//! The circles that the points of a wheel's profile describe about the axle, seen in the tangent plane of a
-//! skewed placement.
+//! The circles that the points of a wheel's profile describe about the axle, as seen in the tangent plane of a skewed
+//! placement.
 
 use nalgebra::{UnitComplex, Vector2};
 
 use crate::placement::Placement;
 use crate::profile::Section;
 
-/// Farthest place from the midplane that is looked at, as tan(v/2): |η′| = 0.65 ρ. A tilted wheel is taken to
-/// end at 0.7 ρ.
+/// Farthest place from the midplane that is examined, as tan(v/2): |η′| = 0.65 ρ. A tilted wheel is treated as if it ended
+/// at 0.7 ρ.
 pub(super) const FARTHEST: f64 = 0.369;
 
 /// Share of a range of η by which that range is widened on either side.
@@ -37,7 +37,7 @@ pub(super) struct Circle {
 
 /// A point of the tangent plane, \[mm\].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Place {
+pub(super) struct PlanePoint {
     pub(super) xi: f64,
     pub(super) eta: f64,
 }
@@ -73,8 +73,8 @@ impl<'a> Turned<'a> {
         Circle { p, height, radius: self.axle - p * self.tilt.im - height * self.tilt.re }
     }
 
-    /// Returns the circle of a profile point and t of its place that is parallel to η, or ±[`FARTHEST`] if
-    /// that place is farther.
+    /// Returns the circle of a profile point, and the t at which it is parallel to η. If that place is farther away, t is
+    /// ±[`FARTHEST`].
     pub(super) fn parallel(&self, piece: usize, p: f64) -> (Circle, f64) {
         let Parallel { circle, t, .. } = self.parallel_with_slope(piece, p);
         (circle, t)
@@ -83,7 +83,7 @@ impl<'a> Turned<'a> {
     /// Returns the place of a profile point that is parallel to η, with the slope of the surface there.
     pub(super) fn parallel_with_slope(&self, piece: usize, p: f64) -> Parallel {
         let tangent = self.section.branches[self.section.pieces[piece].branch].station(p);
-        // The tangent (cos φ, sin φ) in the profile's own axes.
+        // The tangent is (cos φ, sin φ) in the profile's own axes.
         let own = self.tilt * Vector2::new(tangent.cos, tangent.sin);
         let half = own.x * self.skew.re;
         let constant = self.skew.im * tangent.sin;
@@ -93,8 +93,7 @@ impl<'a> Turned<'a> {
         let far = FARTHEST.copysign(-constant * half);
         let t = if nearest.abs() <= FARTHEST { nearest } else { far };
         let share = 2.0 / (1.0 + t * t);
-        // The normal in the wheel's own directions: the one in the midplane, and what the turn by v adds to
-        // it.
+        // The normal in the wheel's own directions is that in the midplane plus what the turn by v adds to it.
         let lifted = own.x * share * t * t;
         let along = tangent.sin + lifted * self.tilt.im;
         let across = own.x * share * t;
@@ -104,12 +103,12 @@ impl<'a> Turned<'a> {
     }
 
     /// Returns the place at t on a circle.
-    pub(super) fn place(&self, circle: &Circle, t: f64) -> Place {
+    pub(super) fn place(&self, circle: &Circle, t: f64) -> PlanePoint {
         let share = 2.0 / (1.0 + t * t);
         let along = circle.p + circle.radius * share * t * t * self.tilt.im;
         let across = circle.radius * share * t;
         let turned = self.skew * Vector2::new(along, across);
-        Place { xi: turned.x, eta: turned.y }
+        PlanePoint { xi: turned.x, eta: turned.y }
     }
 
     /// Returns ζ of the wheel at t on a circle \[mm\].
@@ -144,21 +143,20 @@ impl<'a> Turned<'a> {
         let most = 2.0 * FARTHEST / (1.0 + FARTHEST * FARTHEST);
         let margin = MARGIN * (eta[1] - eta[0]);
         [eta[0] - margin, eta[1] + margin].map(|eta| {
-            // This leaves out how far the circle moves along the profile as it turns: the margin makes up for
-            // that.
+            // The circle also moves along the profile as it turns. This is left out, and the margin covers it.
             let sin = (eta - circle.p * self.skew.im) / (self.skew.re * circle.radius);
             let sin = sin.clamp(-most, most);
             sin / (1.0 + (1.0 - sin * sin).sqrt())
         })
     }
 
-    /// Returns whether lines of constant ξ leave the wheel over the left end (0) or right end (1) of its
-    /// profile and enter it again.
+    /// Returns whether lines of constant ξ leave the wheel over one end of its profile, the left (0) or the right (1), and
+    /// enter it again.
     pub(super) fn is_hollow(&self, end: usize) -> bool {
         if end == 0 { self.tilt.im < 0.0 } else { self.tilt.im > 0.0 }
     }
 
-    /// Returns both t at which the line of constant ξ meets a circle; NaN where it does not.
+    /// Returns both t at which the line of constant ξ meets a circle; NaN if it does not meet it.
     pub(super) fn crossings(&self, circle: &Circle, xi: f64) -> [f64; 2] {
         let constant = circle.p * self.skew.re - xi;
         let square = constant + 2.0 * circle.radius * self.tilt.im * self.skew.re;

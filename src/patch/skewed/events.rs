@@ -4,8 +4,8 @@ use super::monotone::monotone;
 use crate::numerics::roots::{bracketed, last_where};
 use crate::patch::outline::Outline;
 
-/// Number of intervals of a monotone stretch in which the window's edge is searched, if the valley is outside
-/// the window: a part of the patch is missed if it begins and ends within one of them.
+/// Number of intervals of a monotone stretch in which the window's edge is searched if the valley is outside the window. A
+/// part of the patch is missed if it begins and ends within one of them.
 const WINDOW_INTERVALS: usize = 64;
 
 /// Values of ξ at which the intervals of η may change \[mm\], in no order.
@@ -33,7 +33,7 @@ pub(in crate::patch) fn events(outline: &mut Outline<'_>, range: [f64; 2]) -> Ev
         let Some(skewed) = &mut outline.slicer.skewed else { break };
         let is_valley = skewed.valleys.creases[crease].is_valley;
         for xi in skewed.valleys.creases[crease].xi {
-            // Above δ nothing begins or ends.
+            // Where s is above δ, nothing begins or ends.
             let above = skewed.depth(crease, xi) > 0.0;
             events.xi.extend((!above && range[0] < xi && xi < range[1]).then_some(xi));
         }
@@ -80,8 +80,8 @@ fn passes(outline: &mut Outline<'_>, crease: usize, ends: [f64; 2], events: &mut
     }
 }
 
-/// Adds the events of a valley or ridge that leaves the window: where s at its place, or at the window's edge
-/// next to it, passes δ.
+/// Adds the events of a valley or ridge that leaves the window: there s at its place, or at the window's edge next to it,
+/// passes δ.
 fn passes_beside_window(outline: &mut Outline<'_>, crease: usize, [from, to]: [f64; 2], events: &mut Events) {
     let at = |k: usize| {
         if k == WINDOW_INTERVALS { to } else { from + (to - from) * k as f64 / WINDOW_INTERVALS as f64 }

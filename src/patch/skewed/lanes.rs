@@ -1,36 +1,34 @@
 //! Finds the bands of a patch under a skewed wheel, where a line of constant ξ may meet the patch in several
 //! intervals of η.
 //!
-//! Every interval holds a valley of the wheel. An event is a ξ at which a valley or ridge begins, ends or
-//! passes s = δ, or at which the rail steps. The intervals do not change within a stretch of ξ between two
-//! events; at an event they continue, divide or join.
+//! Every interval holds a valley of the wheel. An event is a ξ at which a valley or ridge begins, ends or passes s = δ, or
+//! at which the rail steps. Between two events the intervals persist; at an event they continue, divide or join.
 
 use super::events::{Events, events};
 use crate::patch::band::{Band, overlap, steps};
 use crate::patch::outline::{End, Outline};
 
-/// Distance, as a share of R, within which a valley at the edge of an interval belongs to the interval: where
-/// lines of constant ξ only touch the wheel's end, the edge is known to the root of rounding, 1.5e-8. Nearer
-/// intervals count as one.
+/// Distance, as a share of R, within which a valley at the edge of an interval belongs to the interval, and within which
+/// two intervals are one. Where lines of constant ξ only touch the wheel's end, the edge is known only to the square root
+/// of rounding, 1.5e-8.
 const TOUCH: f64 = 1e-6;
 
-/// Distance from the ends of a stretch at which its intervals are taken, as a share of the stretch. Where two
-/// intervals meet at an end, their edges are square roots there, so that they are a thousandth of their width
-/// apart at this distance.
+/// Distance from the ends of a stretch, as a share of the stretch, at which its intervals are found. Where two intervals
+/// meet at an end, their edges are square roots: at this distance they are a thousandth of their width apart.
 const INSIDE: f64 = 1e-6;
 
-/// Distance, in roundings of R, below which events are one: between them rounding decides what is inside, and
-/// there may be no ξ.
+/// Distance, in roundings of R, below which two events are one. Between closer events rounding decides what is inside, and
+/// there may be no other ξ.
 const XI_ROUNDINGS: f64 = 64.0;
 
 /// The valleys of one interval, the deepest first.
-type Group = Vec<usize>;
+type ValleyGroup = Vec<usize>;
 
 /// A band that is not finished yet.
 struct Lane {
     band: Band,
     /// The valleys of its interval over the last stretch.
-    group: Group,
+    group: ValleyGroup,
     /// The interval of η near the end of the last stretch \[mm\].
     edge: [f64; 2],
 }
@@ -46,7 +44,7 @@ struct Inside {
 }
 
 /// Walks over the stretches by ascending ξ and builds the bands.
-struct Walk<'w, 'a> {
+struct LaneWalk<'w, 'a> {
     outline: &'w mut Outline<'a>,
     events: Events,
     lanes: Vec<Lane>,
@@ -64,7 +62,7 @@ pub(in crate::patch) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<(usi
     let mut all = [&events.xi[..], &rail_steps, &[a, b]].concat();
     all.sort_by(f64::total_cmp);
     all.dedup();
-    let mut walk = Walk { outline, events, lanes: Vec::new(), done: Vec::new() };
+    let mut walk = LaneWalk { outline, events, lanes: Vec::new(), done: Vec::new() };
     let shortest = XI_ROUNDINGS * f64::EPSILON * placement.rolling_radius();
     for pair in all.windows(2).filter(|pair| pair[1] - pair[0] > shortest) {
         let groups = groups(walk.outline, pair[0] + (pair[1] - pair[0]) / 2.0);
@@ -87,7 +85,7 @@ fn searched(outline: &Outline<'_>) -> Option<[f64; 2]> {
 }
 
 /// Returns the valleys inside the patch at ξ, grouped by interval, the groups by ascending η.
-fn groups(outline: &mut Outline<'_>, xi: f64) -> Vec<Group> {
+fn groups(outline: &mut Outline<'_>, xi: f64) -> Vec<ValleyGroup> {
     let near = TOUCH * outline.slicer.placement().rolling_radius();
     let Some(skewed) = &outline.slicer.skewed else { return Vec::new() };
     let valleys = &skewed.valleys;
@@ -99,7 +97,7 @@ fn groups(outline: &mut Outline<'_>, xi: f64) -> Vec<Group> {
     let mut inside: Vec<Inside> = places.filter(|valley| valley.depth < 0.0).collect();
     inside.sort_by(|a, b| a.eta.total_cmp(&b.eta));
     let mut groups: Vec<Vec<Inside>> = Vec::new();
-    // Upper edge of the interval of the last group.
+    // This is the upper edge of the previous group's interval.
     let mut reached = f64::NEG_INFINITY;
     for valley in &inside {
         match groups.last_mut().filter(|_| valley.eta <= reached) {
@@ -120,10 +118,9 @@ fn groups(outline: &mut Outline<'_>, xi: f64) -> Vec<Group> {
     groups.into_iter().map(deepest_first).collect()
 }
 
-impl Walk<'_, '_> {
-    /// Handles the event at the beginning of a stretch, and continues or opens a band for each of the
-    /// stretch's groups.
-    fn step(&mut self, [from, to]: [f64; 2], groups: Vec<Group>, rail_steps: bool) {
+impl LaneWalk<'_, '_> {
+    /// Handles the event at the beginning of a stretch. Continues or opens a band for each group of the stretch.
+    fn step(&mut self, [from, to]: [f64; 2], groups: Vec<ValleyGroup>, rail_steps: bool) {
         let inside = INSIDE * (to - from);
         let begins: Vec<[f64; 2]> = groups.iter().map(|group| self.interval(group, from + inside)).collect();
         let lanes = std::mem::take(&mut self.lanes);
@@ -174,18 +171,18 @@ impl Walk<'_, '_> {
     }
 
     /// Returns the interval of a group at ξ \[mm\]; NaN outside the patch.
-    fn interval(&mut self, group: &Group, xi: f64) -> [f64; 2] {
+    fn interval(&mut self, group: &ValleyGroup, xi: f64) -> [f64; 2] {
         let edges = self.outline.edges(group.first().copied(), xi);
         edges.map_or([f64::NAN; 2], |edges| edges.map(|edge| edge.eta))
     }
 
-    /// Returns the sides of the lanes (0) and groups (1) that meet at an event where one interval divides
-    /// into several or several join. Neighbours meet there on a ridge or on the circle of an end.
+    /// Returns the sides of the lanes (0) and groups (1) that meet at an event where one interval divides or several join.
+    /// Neighbours meet there on a ridge or on the circle of an end.
     fn forks(
         &mut self,
         xi: f64,
         lanes: &[Lane],
-        groups: &[Group],
+        groups: &[ValleyGroup],
         begins: &[[f64; 2]],
         links: &[[usize; 2]],
     ) -> Vec<(usize, usize, [f64; 2])> {
@@ -219,11 +216,11 @@ impl Walk<'_, '_> {
     }
 
     /// Returns the lower (0) or upper (1) edge of a group at ξ \[mm\].
-    fn outer(&mut self, group: &Group, xi: f64, side: usize) -> Option<f64> {
+    fn outer(&mut self, group: &ValleyGroup, xi: f64, side: usize) -> Option<f64> {
         self.outline.edges(group.first().copied(), xi).map(|edges| edges[side].eta)
     }
 
-    /// Returns where two intervals meet: on a ridge or the circle of an end between both, or half way.
+    /// Returns η at which two intervals meet: on a ridge or the circle of an end between them, or else half-way.
     fn meeting_point(&self, xi: f64, [from, to]: [f64; 2]) -> f64 {
         let middle = from + (to - from) / 2.0;
         let Some(skewed) = &self.outline.slicer.skewed else { return middle };
@@ -246,7 +243,7 @@ impl Walk<'_, '_> {
     }
 
     /// Returns a new band that begins at ξ. Its slice is taken at `at`, which is ξ or the next number.
-    fn opened(&mut self, group: &Group, xi: f64, fork: Option<[f64; 2]>, at: f64) -> Band {
+    fn opened(&mut self, group: &ValleyGroup, xi: f64, fork: Option<[f64; 2]>, at: f64) -> Band {
         let (side, end) = self.end(group, xi, at, [f64::NAN; 2]);
         Band {
             xi: [xi; 2],
@@ -258,7 +255,7 @@ impl Walk<'_, '_> {
     }
 
     /// Returns the side of a band that begins or ends at ξ without a fork, and what bounds the band.
-    fn end(&mut self, group: &Group, xi: f64, at: f64, inside: [f64; 2]) -> ([f64; 2], End) {
+    fn end(&mut self, group: &ValleyGroup, xi: f64, at: f64, inside: [f64; 2]) -> ([f64; 2], End) {
         let valley = group.first().copied();
         let end = self.end_at(xi);
         let edges = self.outline.edges(valley, at).filter(|_| end != End::Tip);

@@ -1,5 +1,4 @@
-//! The patch under a skewed wheel, where a line of constant ξ may meet it in several intervals: each is found
-//! from a valley.
+//! The patch under a skewed wheel. A line of constant ξ may meet it in several intervals; each is found from a valley.
 
 mod circle;
 pub(super) mod events;

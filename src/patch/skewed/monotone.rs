@@ -5,18 +5,18 @@ use super::valleys::Valleys;
 use crate::numerics::roots::bracketed;
 use crate::profile::{Branch, Section};
 
-/// Number of intervals of a stretch between two joints at whose ends the slope of s is taken.
+/// Number of intervals of a stretch between two joints. The slope of s is computed at their ends.
 ///
-/// The slopes of two arcs agree at one place at most, those of two cubics at two. Both places are found
-/// directly if they lie in two of these intervals, and by the least |slope| if they lie in one.
+/// The slopes of two arcs agree at one place at most, those of two cubics at two places. Two places in different intervals
+/// are found by a change of sign; two in one interval are found by the least |slope|.
 const INTERVALS: usize = 4;
 
-/// Factor by which the slope inside a stretch may exceed those at its ends. Arcs are steepest at their ends;
-/// a cubic of a smooth profile turns too little between two of its joints.
+/// Factor by which the slope inside a stretch may exceed the slopes at its ends. Arcs are steepest at their ends; a cubic
+/// of a smooth profile turns too little between two joints to exceed it.
 const STEEPER: f64 = 2.0;
 
-/// Share of the smallest |slope| found above which the least value of the parabola through the three slopes
-/// around it is left alone: there is no root near.
+/// Least value of the parabola through three slopes, as a share of the smallest |slope|, from which no root is sought: the
+/// slopes then stay away from 0.
 const NEAR_ROOT: f64 = 0.5;
 
 /// Steps of the golden section, which leave 1e-6 of an interval.
@@ -27,7 +27,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
 /// s and its slope at one place of a valley or ridge.
 #[derive(Debug, Clone, Copy)]
-struct Sample {
+struct ValleySample {
     /// Profile abscissa \[mm\], or t on a circle.
     at: f64,
     xi: f64,
@@ -38,20 +38,20 @@ struct Sample {
 }
 
 /// One leg over one branch of the rail.
-struct Stretch<'v> {
+struct RailStretch<'v> {
     valleys: &'v Valleys<'v>,
     leg: &'v Leg,
     rail: &'v Branch,
 }
 
-/// Appends, in order of ξ \[mm\], the intervals of a valley or ridge inside a range of ξ over which s is
-/// monotone. They end at joints of both bodies and where s turns. A stretch between joints is left out if
-/// `matters` is false for bounds of its least and largest s.
+/// Appends the intervals of ξ \[mm\], in order, over which s along a valley or ridge is monotone inside a given range. They
+/// end at joints of both bodies and where s turns. A stretch between joints is left out if `matters` is false for bounds of
+/// its least and largest s.
 ///
-/// Method: takes the slope of the surface where it is parallel to η less the slope of the rail, in closed
-/// form, at some places of every stretch. Two turns inside a quarter of a stretch are missed if |slope|
-/// shows no minimum there: s changes between them by less than that slope × their distance.
-/// Cost: two places for a stretch that does not matter, five and a root each for others.
+/// Method: the slope of the surface where it is parallel to η less the slope of the rail, in closed form, at a few places
+/// of every stretch. Two turns inside a quarter of a stretch are missed if |slope| shows no minimum there; s changes
+/// between them by less than that slope × their distance. Cost: two places for a stretch that does not matter; five places
+/// and a root for each turn for any other.
 pub(crate) fn monotone(
     valleys: &Valleys<'_>,
     rail: &Section,
@@ -71,7 +71,7 @@ pub(crate) fn monotone(
         let joints = rail.joints([a, b]).map(|(xi, _)| xi).filter(inside);
         for right in joints.chain([b]) {
             let branch = rail.branch_at(left + (right - left) / 2.0).filter(|_| right > left);
-            let stretch = branch.map(|rail| Stretch { valleys, leg, rail });
+            let stretch = branch.map(|rail| RailStretch { valleys, leg, rail });
             turns.clear();
             if stretch.is_some_and(|stretch| stretch.turns([left, right], &matters, &mut turns)) {
                 turns.retain(|turn| left < *turn && *turn < right);
@@ -86,14 +86,14 @@ pub(crate) fn monotone(
     }
 }
 
-impl Stretch<'_> {
+impl RailStretch<'_> {
     /// Returns whether the stretch matters; if it does, appends the ξ inside it at which s turns.
     fn turns(&self, xi: [f64; 2], matters: &impl Fn([f64; 2]) -> bool, turns: &mut Vec<f64>) -> bool {
         let ends = xi.map(|xi| self.sample(self.place_at(xi)));
         let steepest = ends[0].slope.abs().max(ends[1].slope.abs());
         let reach = STEEPER * steepest * (ends[1].xi - ends[0].xi);
         let [low, high] = [ends[0].gap.min(ends[1].gap), ends[0].gap.max(ends[1].gap)];
-        // A slope that is not a number decides nothing.
+        // A slope of NaN decides nothing.
         if !reach.is_nan() && !matters([low - reach, high + reach]) {
             return false;
         }
@@ -122,10 +122,10 @@ impl Stretch<'_> {
     }
 
     /// Appends the two ξ at which the slope changes sign around the least |slope|, if it does.
-    fn hidden_roots(&self, [before, here, after]: [Sample; 3], turns: &mut Vec<f64>) {
+    fn hidden_roots(&self, [before, here, after]: [ValleySample; 3], turns: &mut Vec<f64>) {
         let sign = here.slope.signum();
         let [p, q, r] = [before, here, after].map(|sample| sign * sample.slope);
-        // All have one sign, the middle one is nearest to 0, and the parabola through them nearer still.
+        // All three slopes have one sign, and the middle one is nearest to 0. The parabola through them comes still nearer.
         let dips = p > q && r > q && q > 0.0;
         if !dips || q - (r - p) * (r - p) / (8.0 * (p - 2.0 * q + r)) > NEAR_ROOT * q {
             return;
@@ -168,7 +168,7 @@ impl Stretch<'_> {
         }
     }
 
-    fn sample(&self, at: f64) -> Sample {
+    fn sample(&self, at: f64) -> ValleySample {
         let turned = &self.valleys.turned;
         let (circle, t, slope) = match self.leg.piece {
             Some(piece) => {
@@ -179,6 +179,6 @@ impl Stretch<'_> {
         };
         let xi = turned.place(&circle, t).xi;
         let gap = turned.height(&circle, t) - self.rail.height(xi);
-        Sample { at, xi, gap, slope: slope - self.rail.chord_slope(xi, xi) }
+        ValleySample { at, xi, gap, slope: slope - self.rail.chord_slope(xi, xi) }
     }
 }

@@ -5,20 +5,18 @@ use std::ops::Range;
 
 use super::circle::{Circle, FARTHEST, Turned};
 
-/// Length of the steps in which a piece is searched for folds of ξ \[mm\]: a fold is missed only if it begins
-/// and ends within one step. A fold takes a curvature of about 1/(R χ²), and so turns the profile by a large
-/// angle.
+/// Length \[mm\] of the steps in which a piece is searched for folds of ξ. A fold is missed only if it begins and ends
+/// within one step. A fold takes a curvature of about 1/(R χ²), which would turn the profile by a large angle.
 const STEP: f64 = 0.5;
 
 /// Fewest and most steps of a piece.
 const STEPS: [usize; 2] = [2, 16];
 
-/// Number of times that the bracket of a fold is cut by a third; ξ there is off by the square of what is
-/// left.
+/// Number of times that the bracket of a fold is shortened by a third. The error of ξ is the square of what remains.
 const THIRDS: usize = 60;
 
-/// Turn about the axle below which a kink makes no fold: its ridge would be ρ t²/2 above its valleys, less
-/// than rounding.
+/// Turn about the axle below which a kink makes no fold. Its ridge would be ρ t²/2 above its valleys, which is less than
+/// rounding.
 const LEAST_TURN: f64 = 1e-8;
 
 /// A part of the path over which ξ is monotone.
@@ -42,16 +40,16 @@ impl Leg {
 }
 
 /// The path over one run of pieces.
-pub(super) struct Path {
+pub(super) struct ValleyPath {
     legs: Vec<Leg>,
-    /// Valleys that are not part of the path: they lie behind ends that lines of constant ξ leave and enter
-    /// again.
+    /// Valleys that are not part of the path. They lie behind ends over which lines of constant ξ leave the wheel and enter
+    /// it again.
     apart: Vec<Leg>,
     /// The circles at both ends of the run.
     pub(super) ends: [Circle; 2],
 }
 
-impl Path {
+impl ValleyPath {
     /// Makes the path over a run of pieces, from the left end of its surface to the right end.
     pub(super) fn new(turned: &Turned<'_>, run: &Range<usize>) -> Self {
         let pieces = &turned.section.pieces;
@@ -72,11 +70,11 @@ impl Path {
         path
     }
 
-    /// Appends the circle at the left end (0) up to the place `t` of the end point, or at the right end (1)
-    /// from there.
+    /// Appends the circle of an end: at the left end (0) up to the place `t` of the end point, at the right end (1) from
+    /// there on.
     fn end(&mut self, turned: &Turned<'_>, end: usize, t: f64) {
         let circle = self.ends[end];
-        // Outward tangents turn the place against the skew on the right, and with it on the left.
+        // The outward tangents turn the place against the skew on the right end, and with it on the left end.
         let side = if end == 0 { turned.skew.im } else { -turned.skew.im };
         let (mut limit, touching) = (FARTHEST.copysign(side), turned.touching());
         if touching.abs() < FARTHEST {
@@ -128,15 +126,15 @@ impl Path {
         }));
     }
 
-    /// Returns the chains of legs along which ξ only grows (valleys, true) or only falls (ridges, false).
-    /// Ridges are reversed, so that ξ grows along every chain.
+    /// Returns the chains of legs along which ξ only grows (valleys, true) or only falls (ridges, false). Ridges are
+    /// reversed, so that ξ grows along every chain.
     pub(super) fn monotone(&self, rounding: f64) -> Vec<(Vec<Leg>, bool)> {
         let mut chains: Vec<(Vec<Leg>, bool)> = self.apart.iter().map(|leg| (vec![*leg], true)).collect();
         let mut chain: Vec<Leg> = Vec::new();
         let mut grows = true;
         for leg in &self.legs {
             let up = leg.xi[1] > leg.xi[0];
-            // A leg no longer than rounding has no direction.
+            // A leg that is no longer than rounding has no direction.
             if !chain.is_empty() && up != grows && (leg.xi[1] - leg.xi[0]).abs() <= rounding {
                 continue;
             }

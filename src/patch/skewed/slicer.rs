@@ -1,40 +1,40 @@
-//! Finds the slices under a skewed wheel: from a valley outwards to s = δ.
+//! Finds the slices under a skewed wheel, from a valley outwards to s = δ.
 //!
-//! Along a line of constant ξ, s is monotone between the lowest and highest points of the wheel and the ends
-//! and steps of its surface. All these places are known, and the search moves outwards from one to the next.
+//! Along a line of constant ξ, s is monotone between neighbouring special places: the lowest and highest points of the
+//! wheel, and the ends and steps of its surface. All these places are known, and the search moves outwards from one to the
+//! next.
 
 use super::valleys::{Spot, Valleys};
 use crate::numerics::roots::{bracketed, last_where};
 use crate::placement::Placement;
 use crate::separation::Evaluator;
 
-/// Least step of the wheel along a column, in roundings of its height; a smaller one is a smooth joint whose
-/// two sides round differently.
+/// Least step of the wheel along a column, in roundings of its height. A smaller one is a smooth joint whose two sides
+/// round differently.
 pub(in crate::patch) const STEP_ROUNDINGS: f64 = 64.0;
 
 /// Most Newton steps to s = δ.
 const NEWTON_STEPS: usize = 6;
 
-/// Newton step, as a share of η's distance from the start, after which the error, its square, is nothing.
+/// Newton step, as a share of η's distance from the start, after which iteration ends: the error is its square.
 const QUADRATIC: f64 = 1e-8;
 
 /// Half the interval, in roundings of η, in which Newton's result is confirmed by a change of sign.
 const NEWTON_ROUNDINGS: f64 = 64.0;
 
-/// Distance of a point beside an end or step, as a share of R: a million roundings, and less than any
-/// segment.
+/// Distance of a point beside an end or step, as a share of R. It is a million roundings, and less than any segment.
 const BESIDE: f64 = 1e-9;
 
-/// Number of fourfold steps in which a point on the surface is looked for next to its end: up to the root of
+/// Number of fourfold steps in which a point on the surface is sought next to its end. They reach the square root of
 /// rounding, which is the error where lines of constant ξ only touch the end.
 const NUDGES: i32 = 14;
 
 /// One end of a slice.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Edge {
-    /// η \[mm\].
+    /// η of the end \[mm\].
     pub(crate) eta: f64,
-    /// Whether the wheel's surface ends or steps here, so that s jumps past δ.
+    /// Whether the wheel's surface ends or steps here, so that s jumps over δ.
     pub(in crate::patch) ledge: bool,
 }
 
@@ -47,7 +47,7 @@ pub(in crate::patch) struct Skewed<'a> {
     pub(in crate::patch) valleys: Valleys<'a>,
     /// Approach δ \[mm\].
     approach: f64,
-    /// The η at which s may turn or end along the present line of constant ξ \[mm\].
+    /// The η \[mm\] at which s may turn or end along the present line of constant ξ.
     stops: Vec<f64>,
 }
 
@@ -102,7 +102,7 @@ impl<'a> Skewed<'a> {
         }
         let mut stops = std::mem::take(&mut self.stops);
         self.stops_at(xi, &mut stops);
-        // The wheel rises by about η²/2R: twice that width is enough except for steep profiles.
+        // The wheel rises by about η²/2R. Twice that width is enough except for steep profiles.
         let radius = self.placement.rolling_radius();
         let reach = (2.0 * (2.0 * radius * depth).sqrt()).max(STEP_ROUNDINGS * f64::EPSILON * radius);
         let edges = [-1.0, 1.0].map(|side| self.outward(xi, spot.eta, side * reach, &mut stops));
@@ -110,7 +110,7 @@ impl<'a> Skewed<'a> {
         Some(edges)
     }
 
-    /// Collects the η at which s may turn or end; none if there is only one valley at ξ.
+    /// Collects the η at which s may turn or end. There are none if only one valley is at ξ.
     fn stops_at(&self, xi: f64, stops: &mut Vec<f64>) {
         stops.clear();
         let valleys = &self.valleys;
@@ -150,7 +150,7 @@ impl<'a> Skewed<'a> {
     fn edge(&mut self, xi: f64, from: f64, mut reach: f64, limit: f64) -> Edge {
         let clipped = |reach: f64| if (from + reach - limit) * reach > 0.0 { limit } else { from + reach };
         let (mut far, mut there) = (clipped(reach), self.evaluator.separation(xi, clipped(reach)));
-        // Ends at the latest where the column leaves the wheel's own ring.
+        // The search ends at the latest where the column leaves the wheel.
         while there < self.approach {
             reach *= 2.0;
             far = clipped(reach);
@@ -176,9 +176,9 @@ impl<'a> Skewed<'a> {
 
     /// Returns η with s(ξ, η) = δ between `from` and `far`, where s − δ must have different signs.
     ///
-    /// Method: s is nearly a parabola and convex, so that Newton's steps from half way come from outside and
-    /// reach rounding within four. The result is taken if s − δ changes sign within some roundings of it. A
-    /// bracketed root replaces a result that a joint has misled.
+    /// Method: s is nearly a parabola and convex. Newton's steps from half-way therefore come from outside and reach
+    /// rounding within four. The result is accepted if s − δ changes its sign within a few roundings of it. Otherwise a
+    /// joint has misled the steps, and a bracketed root replaces the result.
     fn level(&mut self, xi: f64, from: f64, far: f64) -> Option<f64> {
         let approach = self.approach;
         let mut eta = from + (far - from) / 2.0;

@@ -9,24 +9,24 @@
 //! sinχ sin(ψ + 2θ) t² + 2 cosχ cosφ t + sinχ sinψ = 0.
 //! ```
 //!
-//! One of the two roots is on the side of the rail, so that every profile point has one such place. Where its
-//! ξ grows with p, the place is the lowest of its line of constant ξ (a valley); where ξ falls, the highest
-//! (a ridge). At kinks and ends the profile point is held and φ turns: the valley follows the point's circle,
-//! the rim. If lines of constant ξ leave the wheel over a rim and enter it again, there is a second valley
-//! where they do.
+//! One of the two roots is on the side of the rail, so that every profile point has one such place. If its ξ grows with p,
+//! the place is the lowest of its line of constant ξ (a valley); if ξ falls, it is the highest (a ridge). At kinks and ends
+//! p is constant and φ turns: the valley follows the point's circle, the rim. If lines of constant ξ leave the wheel over a
+//! rim and enter it again, they have a second valley where they enter.
 
 use std::ops::Range;
 
-use super::circle::{Circle, FARTHEST, Place, Turned};
-use super::path::{Leg, Path, circle_legs};
+use super::circle::{Circle, FARTHEST, PlanePoint, Turned};
+use super::path::{Leg, ValleyPath, circle_legs};
 use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
 use crate::separation::Evaluator;
 
-/// Largest miss of ξ, as a share of ξ, with which a root is taken.
+/// Largest error of ξ, as a share of ξ, with which a root is accepted.
 const ROOT_SHARE: f64 = 4.0 * f64::EPSILON;
 
-/// Most secant steps to the profile point whose place is at ξ; ξ is nearly linear in its abscissa.
+/// Most secant steps to the profile point whose place is at ξ. The number is small because ξ is nearly linear in the
+/// point's abscissa.
 const SECANTS: usize = 8;
 
 /// The place of a valley or ridge at one ξ.
@@ -65,11 +65,11 @@ impl<'a> Valleys<'a> {
         let (mut creases, mut rims) = (Vec::new(), Vec::new());
         let runs = runs(&turned);
         for (k, run) in runs.iter().enumerate() {
-            let path = Path::new(&turned, run);
+            let path = ValleyPath::new(&turned, run);
             let chains = path.monotone(turned.rounding()).into_iter();
             creases.extend(chains.map(|(legs, is_valley)| Crease::new(legs, is_valley)));
             rims.extend(path.ends);
-            // A line of constant ξ continues over a step, if the upper side is below δ too.
+            // A line of constant ξ continues over a step if the upper side is below δ, too.
             let steps = [k > 0, k + 1 < runs.len()].into_iter().zip(path.ends).filter(|(step, _)| *step);
             let brinks = steps.flat_map(|(_, circle)| circle_legs(&turned, circle));
             creases.extend(brinks.map(|leg| Crease::new(vec![leg], false)));
@@ -100,7 +100,7 @@ impl<'a> Valleys<'a> {
         let [low, high] = [leg.range[0].min(leg.range[1]), leg.range[0].max(leg.range[1])];
         let outside = |t: &f64| (low - t).max(t - high);
         let [one, other] = self.turned.crossings(&leg.circle, xi);
-        // By rounding the line may miss a circle that it touches.
+        // Rounding may move the line off a circle that it touches.
         let t = if outside(&one) <= outside(&other) { one } else { other };
         if t.is_nan() { self.turned.touching() } else { t }.clamp(low, high)
     }
@@ -108,21 +108,21 @@ impl<'a> Valleys<'a> {
     /// Returns s(ξ, η) of a placed pair at the place of a valley or ridge \[mm\].
     pub(crate) fn separation(&self, evaluator: &mut Evaluator<'_>, xi: f64, spot: &Spot) -> f64 {
         match spot.rim {
-            // By rounding the surface may end a little before this place.
+            // Rounding may end the surface a little before this place.
             Some([height, _]) => height - evaluator.rail_height(xi),
             None => evaluator.separation(xi, spot.eta),
         }
     }
 
-    /// Returns the profile abscissa of a piece whose place is at ξ \[mm\], or the end of `[from, to]` that is
-    /// nearest to it.
+    /// Returns the profile abscissa \[mm\] of a piece whose place is at ξ. If there is none, it returns the end of `[from,
+    /// to]` that is nearest to it.
     pub(super) fn abscissa(&self, piece: usize, [from, to]: [f64; 2], xi: f64) -> f64 {
         let miss = |p: f64| {
             let (circle, t) = self.turned.parallel(piece, p);
             let miss = self.turned.place(&circle, t).xi - xi;
             if miss.abs() <= ROOT_SHARE * xi.abs() { 0.0 } else { miss }
         };
-        // C itself: towards 0 the bracket would be halved a thousand times.
+        // The place is C itself. A bracket with an end at 0 would be halved a thousand times.
         if xi == 0.0 && from.min(to) <= 0.0 && from.max(to) >= 0.0 && miss(0.0) == 0.0 {
             return 0.0;
         }
@@ -154,13 +154,13 @@ impl<'a> Valleys<'a> {
 
     /// Returns dη/dξ of the end or step of the wheel's surface that is next to a point; NaN if there is none.
     pub(crate) fn rim_slope(&self, xi: f64, eta: f64) -> f64 {
-        let off = |place: &Place| (place.eta - eta).abs();
+        let off = |place: &PlanePoint| (place.eta - eta).abs();
         let nearest = self.crossings(xi).min_by(|(p, _), (q, _)| off(p).total_cmp(&off(q)));
         nearest.map_or(f64::NAN, |(_, t)| self.turned.rim_slope(t))
     }
 
-    /// Calls `visit` for the circle of every joint and end of the wheel that may meet a box of the ξ–η plane.
-    /// The arguments of `visit` are \[ξ, ζ\] as a function of t along the circle, and the range of t.
+    /// Calls `visit` for the circle of every joint and end of the wheel that may meet a box of the ξ–η plane. The arguments
+    /// are \[ξ, ζ\] as a function of t along the circle, and the range of t.
     pub(crate) fn circles(
         &self,
         [a, b]: [f64; 2],
@@ -184,7 +184,7 @@ impl<'a> Valleys<'a> {
     }
 
     /// Returns the places where the line of constant ξ meets ends and steps, with t.
-    fn crossings(&self, xi: f64) -> impl Iterator<Item = (Place, f64)> {
+    fn crossings(&self, xi: f64) -> impl Iterator<Item = (PlanePoint, f64)> {
         self.rims.iter().flat_map(move |rim| {
             let near = self.turned.crossings(rim, xi).into_iter().filter(|t| t.abs() <= FARTHEST);
             near.map(|t| (self.turned.place(rim, t), t))

@@ -1,4 +1,4 @@
-//! Closed chains: what is changed, what is not, and in which ways the rule has no preference.
+//! Tests which parts of a closed chain change, which do not, and that the rule has no preferred direction, axes or unit.
 
 use super::*;
 use crate::numerics::twice::Twice;
@@ -21,14 +21,15 @@ fn polynomials(step: f64) -> Result<Vec<Segment>> {
     Ok(vec![graph(&[0.0, 0.3, -0.01], [-20.0, 0.0])?, graph(&[step, 0.3, -0.005, 1e-4], [0.0, 20.0])?])
 }
 
-/// Largest distance \[mm\] across the tangent of the points of one chain from another, and of those `beyond` \[mm\] away from x = 0.
+/// Returns the largest distance \[mm\] across the tangent of one chain's points from another chain, and the largest one of
+/// the points more than `beyond` \[mm\] away from x = 0.
 fn apart(one: &Profile, other: &Profile, beyond: f64) -> [f64; 2] {
     use crate::profile::trace::{beside, trace};
     let marks = trace(other, 1e-3);
     let (mut hint, mut most, mut outside) = (0, 0f64, 0f64);
     for mark in trace(one, 0.0371) {
         let at = mark.station;
-        let found = beside(&marks, [at.x, at.z], hint);
+        let found = beside(&marks, [at.x, at.z], hint).expect("marks");
         hint = found.mark;
         most = most.max(found.across.abs());
         if at.x.abs() > beyond {
@@ -52,7 +53,7 @@ fn a_bend_closes_a_step_and_leaves_the_rest_alone() -> Result<()> {
             for joint in &joints {
                 assert!(joint.gap < 1e-14 && joint.kink.abs() < SMOOTH, "{step}: {joint:?}");
             }
-            // The bend leaves its segment, the joint comes between, the bend enters the next.
+            // Joints from left to right: segment to bend, bend to bend, bend to segment.
             let bent = joints[0].curvature_jump.abs().max(joints[2].curvature_jump.abs());
             assert!(bent < 2.0 * most, "{step}: {bent:e} of {most:e}");
             let alone = |k: usize| Profile::new("drawn", "", vec![drawn[k].clone()]);
@@ -129,7 +130,7 @@ fn same(one: &[Segment], other: &[Segment]) {
     assert_eq!(one.len(), other.len());
     for (a, b) in one.iter().zip(other) {
         let (a, b) = (a.end(), b.end());
-        // Where tangents are alike a step's rounding moves its closing along by the root of it.
+        // Where the tangents are nearly parallel, a rounding of the step moves the crossing by its square root.
         assert!((a.x - b.x).hypot(a.z - b.z) < 1e-6, "{a:?} {b:?}");
         assert!(a.seen_from(&b).z.abs() < 1e-12, "{a:?} {b:?}");
     }

@@ -1,23 +1,23 @@
-//! Finds where two branches are parallel: the stationary points of the gap between them.
+//! Finds the abscissae where two branches are parallel: the stationary points of the gap between them.
 
 use super::branch::{ArcBranch, Branch, BranchShape};
 use crate::numerics::roots::bracketed;
 
-/// Most bisections of an interval on which neither bound decides: 2⁻⁴⁸ of it is below rounding.
+/// Most bisections of an interval in which the bounds decide nothing. 2⁻⁴⁸ of the interval is below rounding.
 const DEEPEST: u32 = 48;
 
-/// Number of points at which slopes are compared, and of roundings by which equal slopes may differ:
-/// polynomials in two frames are rounded a few times each.
+/// Number of points at which slopes are compared. It is also the number of roundings by which equal slopes may differ,
+/// because polynomials in two frames are rounded a few times each.
 const SAMPLES: u32 = 8;
 const SLOPE_ROUNDINGS: f64 = 8.0;
 
-/// Returns all ξ inside (a, b) where ζ^W(ξ) − ζ^R(ξ) is stationary, ascending. `a` and `b` must be within
-/// both branches.
+/// Returns all ξ inside (a, b) where ζ^W(ξ) − ζ^R(ξ) is stationary, ascending. `a` and `b` \[mm\] must be within both
+/// branches.
 ///
-/// Method: for lines and arcs the sines of the two tangent angles are linear in ξ, so that there is at most
-/// one point, in closed form. Otherwise interval bounds of both derivatives decide between no point, exactly
-/// one, and bisection, so that none is missed. Degenerate: if the gap changes by less than its rounding, the
-/// middle of the interval is the result. Cost: nearly equal polynomials take up to some 10⁴ bisections.
+/// Method: for lines and arcs the sines of the two tangent angles are linear in ξ, so that there is at most one such point,
+/// in closed form. Otherwise interval bounds of both derivatives prove that there is no point or exactly one; where they
+/// prove neither, the interval is bisected, so that no point is missed. Degenerate case: if the gap changes by less than
+/// its rounding, the result is the middle of the interval. Cost: nearly equal polynomials take up to some 10⁴ bisections.
 pub fn stationary_points(rail: &Branch, wheel: &Branch, a: f64, b: f64) -> Vec<f64> {
     if let (BranchShape::Arc(rail), BranchShape::Arc(wheel)) = (&rail.shape, &wheel.shape) {
         return parallel(rail, wheel).filter(|&xi| xi > a && xi < b).into_iter().collect();
@@ -37,7 +37,7 @@ fn parallel(rail: &ArcBranch, wheel: &ArcBranch) -> Option<f64> {
     if turn == 0.0 {
         return None;
     }
-    // Measured from the rail's anchor, so that two anchors at C give exactly 0.
+    // The abscissa is measured from the rail's anchor, so that two anchors at C give exactly 0.
     let apart = wheel.anchor[0] - rail.anchor[0];
     Some(rail.anchor[0] + (rail.sin - wheel.sin + wheel.curvature * apart) / turn)
 }
@@ -58,8 +58,8 @@ fn search(rail: &Branch, wheel: &Branch, [a, b]: [f64; 2], depth: u32, rounding:
         found.push(middle);
         return;
     }
-    // The mean value theorem about the middle: its bounds shrink with the square of the width. The bounds of
-    // the two slopes themselves overlap for any two curves that run alongside each other.
+    // The mean value theorem about the middle gives bounds that shrink with the square of the width. Plain bounds of the
+    // two slopes would overlap for any two curves that run alongside each other.
     let (here, half) = (slope(middle).abs(), (b - a) / 2.0);
     let change = half * (second_w[1] - second_r[0]).max(second_r[1] - second_w[0]);
     if here > change {
@@ -76,9 +76,9 @@ fn search(rail: &Branch, wheel: &Branch, [a, b]: [f64; 2], depth: u32, rounding:
     search(rail, wheel, [middle, b], depth - 1, rounding, found);
 }
 
-/// Returns whether the two slopes agree to rounding all over \[a, b\]: at more points than two different
-/// curves of a drawing can share. Without this test the same polynomial on both bodies would be bisected to
-/// the end everywhere.
+/// Returns whether the two slopes agree to rounding all over \[a, b\]. They are compared at more points than two different
+/// curves of a drawing can share. Without this test, equal polynomials on both bodies would be bisected down to the last
+/// level everywhere.
 fn agree(rail: &Branch, wheel: &Branch, a: f64, b: f64) -> bool {
     (0..=SAMPLES).all(|k| {
         let xi = a + (b - a) * f64::from(k) / f64::from(SAMPLES);

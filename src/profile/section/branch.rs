@@ -1,4 +1,5 @@
-//! One segment, or the part of it that faces the other body, as a function ζ(ξ): points and chords for N abscissae at once.
+//! One segment, or the part of it that faces the other body, as a function ζ(ξ). Computes points and chords at N abscissae
+//! at once.
 
 use super::points::{self, BranchPoint, BranchPoints, repeated};
 use super::turned::{rising_parts, seen_from, seen_from_own_point};
@@ -10,56 +11,58 @@ use crate::profile::arc::Arc;
 use crate::profile::polynomial::Polynomial;
 use crate::profile::station::Station;
 
-/// A line whose tangent has a smaller cosine is kept by its ends: at 1e-3 a rounding of ξ is 1e-11 mm of ζ. Gentler lines are
-/// kept by their angle, which has more digits than a difference of ends that may be near each other.
+/// Least cosine of the tangent of a line that is stored by its angle. A steeper line is stored by its ends: at 1e-3 a
+/// rounding of ξ is 1e-11 mm of ζ. The angle of a gentler line has more digits than a difference of ends that may be near
+/// each other.
 const STEEP_LINE: f64 = 1e-3;
 
 /// A branch ζ(ξ) over a closed interval of ξ.
 #[derive(Debug, Clone)]
 pub struct Branch {
-    /// Its interval of ξ \[mm\].
+    /// Interval of ξ \[mm\].
     pub xi: [f64; 2],
-    /// Index of the segment it belongs to.
+    /// Index of the segment that the branch is a part of.
     pub segment: usize,
-    /// Its shape.
+    /// The curve.
     pub shape: BranchShape,
     pub(super) begins_segment: bool,
     pub(super) ends_segment: bool,
-    kind: Kind,
+    kind: BranchKind,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum BranchKind {
     Contact,
     Plain,
 }
 
-/// The two shapes of [`super::super::Shape`], transformed.
+/// The curve of a branch, in the frame: one variant for each variant of [`super::super::Shape`].
 #[derive(Debug, Clone)]
 pub enum BranchShape {
-    /// Line or arc.
+    /// A line or an arc.
     Arc(ArcBranch),
-    /// Polynomial.
+    /// A polynomial curve.
     Polynomial(Box<PolynomialBranch>),
 }
 
-/// A line or arc, ζ = ζ_a + Δξ (S_a + S)/(C_a + C) with S = S_a + κΔξ and C = √(1 − S²). The slope of a chord is the tangent of
-/// its mean angle. Nothing cancels for any radius, lines included.
+/// A line or arc: ζ = ζ_a + Δξ (S_a + S)/(C_a + C) with S = S_a + κΔξ and C = √(1 − S²). The slope of a chord is the
+/// tangent of its mean angle. Nothing cancels for any radius, and lines need no case of their own.
 #[derive(Debug, Clone, Copy)]
 pub struct ArcBranch {
-    /// Anchor (ξ_a, ζ_a): the contact point, or where the branch is flattest.
+    /// Anchor (ξ_a, ζ_a) \[mm\]: the contact point, or else the flattest point of the branch.
     pub anchor: [f64; 2],
     /// S_a, sine of the tangent angle at the anchor.
     pub sin: f64,
-    /// C_a, its cosine.
+    /// C_a, cosine of the tangent angle at the anchor.
     pub cos: f64,
-    /// Signed radius \[mm\].
+    /// Signed radius \[mm\], ∞ for a line.
     pub radius: f64,
-    /// κ = 1/radius \[1/mm\].
+    /// κ = 1/radius \[1/mm\], 0 for a line.
     pub curvature: f64,
 }
 
-/// A curve (ξ(t), ζ(t)). With the contact point at t = 0, ζ has neither a constant nor a linear term, and keeps its digits down to C.
+/// A curve (ξ(t), ζ(t)). If the contact point is at t = 0, ζ has neither a constant nor a linear term; it then keeps its
+/// digits down to C.
 #[derive(Debug, Clone)]
 pub struct PolynomialBranch {
     /// Coefficients of ξ(t).
@@ -73,7 +76,7 @@ pub struct PolynomialBranch {
 }
 
 impl ArcBranch {
-    /// Gives (S, C) at ξ. A line has its own C, because √(1 − S²) is 0 to rounding for S = 1 − 1e-17.
+    /// Returns (S, C) at ξ. A line has a C of its own, because √(1 − S²) is 0 to rounding for S = 1 − 1e-17.
     #[inline(always)]
     pub fn sine_cosine(&self, xi: f64) -> (f64, f64) {
         let sin = self.sin + self.curvature * (xi - self.anchor[0]);
@@ -92,9 +95,11 @@ impl ArcBranch {
         self.anchor[1] + (xi - self.anchor[0]) * ((self.sin + sin) / (self.cos + cos))
     }
 
-    /// Computes ζ and ξ along chords as [`Branch::chords_near`] does, from points with sines S and secants 1/C.
+    /// Computes ζ and ξ along chords, as multiples of `runs`, from points with sines S and secants 1/C. A multiple of ξ is
+    /// NaN if the chord may end beyond a vertical tangent.
     ///
-    /// A chord that turns by an angle α has the length 2R sin α, and its direction is that of the tangent and α; tan α = runs/2RC.
+    /// A chord over which the tangent turns by 2α has the length 2R sin α, and its angle to the tangent is α; tan α =
+    /// runs/2RC.
     #[inline(always)]
     fn chords_near<const N: usize>(&self, [sin, secant]: [&Lanes<N>; 2], runs: &Lanes<N>) -> [Lanes<N>; 2] {
         let [mut climb, mut stretch] = [[0.0; N]; 2];
@@ -128,20 +133,20 @@ impl ArcBranch {
 }
 
 impl PolynomialBranch {
-    /// Gives the coefficients of ξ(t) and of ζ(t).
+    /// Returns the coefficients of ξ(t) and of ζ(t).
     #[inline(always)]
     fn coefficients(&self) -> [&[f64]; 2] {
         [&self.xi, &self.zeta]
     }
 
-    /// Finds t with ξ(t) = ξ; where ξ is beyond the branch, its nearer end.
+    /// Finds t with ξ(t) = ξ. If ξ is beyond the branch, t is that of the nearer end.
     pub fn parameter(&self, xi: f64) -> f64 {
         let (range, ends) = (repeated(self.t), repeated(self.ends));
         let guess = points::guess(range, ends, &[xi]);
         points::parameters(self.xi.as_slice(), range, &[xi], guess).map_or(f64::NAN, |[t]| t)
     }
 
-    /// Finds t with ξ(t) = ξ in twice the working precision, from t in the working one.
+    /// Refines t with ξ(t) = ξ from working precision to twice the working precision.
     #[inline(always)]
     pub(super) fn exact_parameters<const N: usize>(&self, xi: &Lanes<N>, t: &Lanes<N>) -> [Twice; N] {
         let mut exact = [Twice::ZERO; N];
@@ -150,7 +155,7 @@ impl PolynomialBranch {
         }
         let (abscissa, slope) = exact_values(&self.exact[0], &exact);
         for k in 0..N {
-            // One Newton step more, which doubles the digits whatever the rounding of its slope.
+            // One more Newton step doubles the digits, whatever the rounding of its slope.
             let miss = abscissa[k] - xi[k];
             exact[k] = Twice::sum(t[k], -(miss.high / slope[k]));
         }
@@ -175,7 +180,8 @@ impl PolynomialBranch {
 }
 
 impl Branch {
-    /// Makes the branch of the part of an arc that faces the other body; `None` where the tangent nowhere points to larger ξ.
+    /// Makes the branch from the part of an arc that faces the other body. Returns `None` if the tangent nowhere points to
+    /// larger ξ.
     pub(super) fn of_arc(segment: usize, arc: &Arc, frame: &Station, contact: bool) -> Option<Self> {
         let (start, end) = (arc.start.seen_from(frame), arc.end.seen_from(frame));
         let (begins, ends) = (start.cos >= 0.0, end.cos >= 0.0);
@@ -205,22 +211,23 @@ impl Branch {
             } else {
                 cosine(sin)
             };
-            // From the end that is nearer in angle: often that is the flattest point itself, and often the joint nearest to C.
+            // The anchor is reached from the end that is nearer in angle. Often that end is the flattest point itself, and
+            // often it is the joint nearest to C.
             let from_end = ends && (!begins || (sin - end.sin).abs() < (sin - start.sin).abs());
             let known = if from_end { end } else { start };
             let run = if curvature == 0.0 || sin == known.sin { 0.0 } else { (sin - known.sin) * arc.radius };
             let rise = run * ((known.sin + sin) / (known.cos + cos));
             ArcBranch { anchor: [known.x + run, known.z + rise], sin, cos, radius: arc.radius, curvature }
         };
-        let kind = if contact { Kind::Contact } else { Kind::Plain };
+        let kind = if contact { BranchKind::Contact } else { BranchKind::Plain };
         let shape = BranchShape::Arc(shape);
         let mut branch = Self { xi, segment, shape, begins_segment: begins, ends_segment: ends, kind };
         branch.keep_ends([start.z, end.z]);
         Some(branch)
     }
 
-    /// Makes the branch begin where the one before it ends. A joint is rounded on either segment, and the smallest gap between two
-    /// pieces would be an end of the profile.
+    /// Makes the branch begin at `joint`, where its left neighbour ends. The two segments round a common joint differently,
+    /// and the smallest gap between two pieces would be an end of the profile.
     pub(super) fn begin_at(&mut self, joint: f64) {
         if joint < self.xi[1] {
             let heights = self.xi.map(|xi| self.height(xi));
@@ -229,12 +236,12 @@ impl Branch {
         }
     }
 
-    /// Makes a steep line run through the heights of its ends. By its angle it would miss them by the rounding of ξ times its slope,
-    /// which is its whole length where it is vertical to rounding.
+    /// Makes a steep line run through the heights of its ends. A line by its angle misses them by the rounding of ξ times
+    /// the slope. On a line that is vertical to rounding, that is the whole length.
     fn keep_ends(&mut self, [from, to]: [f64; 2]) {
         let [a, b] = self.xi;
         if let BranchShape::Arc(line) = &mut self.shape
-            && self.kind == Kind::Plain
+            && self.kind == BranchKind::Plain
             && line.curvature == 0.0
             && line.cos < STEEP_LINE
         {
@@ -243,8 +250,8 @@ impl Branch {
         }
     }
 
-    /// Makes the branches of a polynomial segment: the parts that face the other body. `contact` is the parameter of the contact
-    /// point, where that is on the segment; only the part through it then counts.
+    /// Makes the branches of a polynomial segment: the parts that face the other body. `contact` is the parameter of the
+    /// contact point, if that point is on the segment; only the part through it is then returned.
     pub(super) fn of_polynomial(
         segment: usize,
         polynomial: &Polynomial,
@@ -256,9 +263,9 @@ impl Branch {
             None => seen_from(polynomial, frame),
         };
         let [xi, zeta] = [&exact[0], &exact[1]].map(|c| c.iter().map(|c| c.high).collect::<Vec<_>>());
-        let kind = if contact.is_some() { Kind::Contact } else { Kind::Plain };
+        let kind = if contact.is_some() { BranchKind::Contact } else { BranchKind::Plain };
         let mut parts = rising_parts([&xi, &zeta], range);
-        parts.retain(|[a, b]| kind == Kind::Plain || (*a <= 0.0 && *b >= 0.0));
+        parts.retain(|[a, b]| kind == BranchKind::Plain || (*a <= 0.0 && *b >= 0.0));
         let whole = PolynomialBranch { xi, zeta, t: range, ends: [f64::NAN; 2], exact };
         let branch = |t: [f64; 2], whole: PolynomialBranch| {
             let ends = t.map(|t| value(&whole.xi, t));
@@ -266,7 +273,7 @@ impl Branch {
             let (begins_segment, ends_segment) = (t[0] == range[0], t[1] == range[1]);
             Self { xi: ends, segment, shape, begins_segment, ends_segment, kind }
         };
-        // The last part takes the coefficients themselves: nearly always there is only one.
+        // The last part takes over the coefficients, because nearly always there is only one part.
         let Some(last) = parts.pop() else { return Vec::new() };
         let mut branches: Vec<Self> = parts.into_iter().map(|t| branch(t, whole.clone())).collect();
         branches.push(branch(last, whole));
@@ -274,7 +281,7 @@ impl Branch {
     }
 
     pub(super) fn is_contact(&self, segment: usize) -> bool {
-        self.kind == Kind::Contact && self.segment == segment
+        self.kind == BranchKind::Contact && self.segment == segment
     }
 
     /// Computes ζ(ξ) \[mm\].
@@ -286,8 +293,8 @@ impl Branch {
         }
     }
 
-    /// Computes ζ at points of this branch in twice the working precision, for differences between closely conforming branches. The
-    /// result is NaN for points of another branch.
+    /// Computes ζ \[mm\] at points of this branch in twice the working precision, for differences between closely
+    /// conforming branches. The result is NaN for points of another branch.
     #[inline(always)]
     pub fn exact_heights<const N: usize>(&self, xi: &Lanes<N>, points: &BranchPoints<N>) -> [Twice; N] {
         match (&self.shape, points) {
@@ -299,7 +306,8 @@ impl Branch {
         }
     }
 
-    /// Finds the points at N abscissae and their ζ \[mm\]. `None` for several where Newton's steps on a polynomial do not settle.
+    /// Finds the points at N abscissae and their ζ \[mm\]. Returns `None` if N > 1 and Newton's steps on a polynomial do
+    /// not settle.
     #[inline(always)]
     pub fn points<const N: usize>(&self, xi: &Lanes<N>) -> Option<(BranchPoints<N>, Lanes<N>)> {
         match &self.shape {
@@ -327,8 +335,9 @@ impl Branch {
         (point, height)
     }
 
-    /// Computes the slopes (ζ(to) − ζ(from))/(to − from) of chords from points of this branch. It is the tangent's slope where the
-    /// two are equal; nothing cancels. `None` for points of another branch, and as for [`Self::points`].
+    /// Computes the slopes (ζ(to) − ζ(from))/(to − from) of chords from points of this branch. The slope is that of the
+    /// tangent where the two abscissae are equal; nothing cancels. Returns `None` for points of another branch, and if N >
+    /// 1 and Newton's steps on a polynomial do not settle.
     #[inline(always)]
     pub fn chords_from<const N: usize>(&self, from: &BranchPoints<N>, to: &Lanes<N>) -> Option<Lanes<N>> {
         match (&self.shape, from) {
@@ -347,21 +356,23 @@ impl Branch {
         }
     }
 
-    /// Computes the slope of the chord from a point of this branch to the abscissa `to`; NaN for a point of another branch.
+    /// Computes the slope of the chord from a point of this branch to the abscissa `to` \[mm\]. The result is NaN for a
+    /// point of another branch.
     #[inline]
     pub fn chord_from(&self, from: &BranchPoint, to: f64) -> f64 {
         self.chords_from(from, &[to]).map_or(f64::NAN, |[slope]| slope)
     }
 
-    /// Computes the slope of the chord from ξ = a to ξ = b, which is ζ′(a) for a = b. Nothing cancels.
+    /// Computes the slope of the chord from ξ = a to ξ = b \[mm\]; it is ζ′(a) for a = b. Nothing cancels.
     pub fn chord_slope(&self, a: f64, b: f64) -> f64 {
         self.chord_from(&self.point(a).0, b)
     }
 
     /// Computes ζ and ξ along chords from points of this branch, as multiples of `runs`. The multiple of ξ is about 1.
     ///
-    /// There is no iteration, and at most one division. On a polynomial the other end of a chord is where t has changed by
-    /// runs × dt/dξ; on an arc it is found by the angle of the chord with the tangent. NaN where that may be beyond a vertical tangent.
+    /// There is no iteration and at most one division. The other end of a chord on a polynomial is where t has changed by
+    /// runs × dt/dξ; on an arc it follows from the angle between chord and tangent. The results are NaN for points of
+    /// another branch. The multiple of ξ is NaN if the chord may end beyond a vertical tangent.
     #[inline(always)]
     pub fn chords_near<const N: usize>(&self, from: &BranchPoints<N>, runs: &Lanes<N>) -> [Lanes<N>; 2] {
         match (&self.shape, from) {
@@ -376,7 +387,8 @@ impl Branch {
         }
     }
 
-    /// Computes dζ/dξ at a point of this branch; infinite or NaN where it is vertical, and NaN for a point of another branch.
+    /// Computes dζ/dξ at a point of this branch. It is infinite or NaN where the branch is vertical, and NaN for a point of
+    /// another branch.
     #[inline]
     pub fn slope_from(&self, point: &BranchPoint) -> f64 {
         match (&self.shape, point) {
@@ -388,7 +400,7 @@ impl Branch {
         }
     }
 
-    /// Finds the point at ξ with its unit tangent, in the frame.
+    /// Finds the point at ξ \[mm\] with its unit tangent, in the frame.
     pub fn station(&self, xi: f64) -> Station {
         match &self.shape {
             BranchShape::Arc(arc) => {
@@ -404,7 +416,7 @@ impl Branch {
         }
     }
 
-    /// Computes the curvature \[1/mm\] at ξ, which is positive where the hollow side is up.
+    /// Computes the curvature \[1/mm\] at ξ \[mm\], positive where the hollow side is up.
     pub fn curvature(&self, xi: f64) -> f64 {
         match &self.shape {
             BranchShape::Arc(arc) => arc.curvature,
@@ -416,12 +428,13 @@ impl Branch {
         }
     }
 
-    /// Computes bounds of ζ′ and of ζ″ over \[a, b\] that miss no value. They are infinite where the branch is vertical.
+    /// Computes bounds of ζ′ and of ζ″ \[1/mm\] over \[a, b\] that enclose every value. They are infinite where the branch
+    /// is vertical.
     pub fn derivative_bounds(&self, a: f64, b: f64) -> [[f64; 2]; 2] {
         match &self.shape {
             BranchShape::Arc(arc) => {
                 let ((sin_a, cos_a), (sin_b, cos_b)) = (arc.sine_cosine(a), arc.sine_cosine(b));
-                // The flattest point bounds ζ″ = κ/C³ from one side, the steeper end from the other.
+                // The flattest point bounds ζ″ = κ/C³ from one side and the steeper end from the other side.
                 let flat = cosine(flattest([sin_a, sin_b]));
                 let steep = cos_a.min(cos_b);
                 let second = [arc.curvature / flat.powi(3), arc.curvature / steep.powi(3)];
@@ -446,13 +459,13 @@ fn quotient(a: [f64; 2], positive: [f64; 2]) -> [f64; 2] {
     product(a, [positive[1].recip(), positive[0].recip()])
 }
 
-/// Adds two intervals; the ends of b may be swapped, as by a change of sign.
+/// Adds two intervals. The ends of b may be swapped, as a change of sign swaps them.
 fn add(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     let b = ordered(b[0], b[1]);
     [a[0] + b[0], a[1] + b[1]]
 }
 
-/// Gives the sine of smallest size between two.
+/// Returns the sine of smallest size between two sines.
 fn flattest([a, b]: [f64; 2]) -> f64 {
     if a * b <= 0.0 {
         0.0
@@ -469,7 +482,7 @@ mod tests {
 
     #[test]
     fn a_chord_past_a_vertical_tangent_is_no_number() {
-        // The lower half of a circle from its lowest point, where tan α = 0.2 and 1.1.
+        // The lower half of a circle is tested from its lowest point, with tan α = 0.2 and 1.1.
         let arc = ArcBranch { anchor: [0.0; 2], sin: 0.0, cos: 1.0, radius: 1.0, curvature: 1.0 };
         let [climb, stretch] = arc.chords_near([&[0.0; 2], &[1.0; 2]], &[0.4, 2.2]);
         let [xi, zeta] = [0.4 * stretch[0], 0.4 * climb[0]];

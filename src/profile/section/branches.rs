@@ -1,15 +1,15 @@
-//! The branches that N columns lie over: one for all, or a cubic for each.
+//! The branches over which N columns lie: one branch for all, or a cubic for each.
 
 use super::branch::{Branch, BranchShape};
 use super::points::{self, BranchPoints};
 use crate::numerics::lanes::Lanes;
 
-/// Branches of N columns.
+/// The branches of N columns.
 #[derive(Debug)]
 pub enum Branches<'a, const N: usize> {
-    /// All columns have this one.
+    /// One branch is common to all columns.
     One(&'a Branch),
-    /// Each column has a cubic of its own, as over a spline.
+    /// Each column has a cubic branch of its own, as over a spline.
     Cubics(Box<Cubics<N>>),
 }
 
@@ -22,7 +22,7 @@ pub struct Cubics<const N: usize> {
     ends: [Lanes<N>; 2],
 }
 
-/// The number of coefficients of a cubic.
+/// Number of coefficients of a cubic.
 const CUBIC: usize = 4;
 
 impl<const N: usize> Cubics<N> {
@@ -31,10 +31,10 @@ impl<const N: usize> Cubics<N> {
 }
 
 impl<'a, const N: usize> Branches<'a, N> {
-    /// Collects the branches of N columns. `None` unless all are the same one, or all are cubics.
+    /// Collects the branches of N columns. Returns `None` unless all branches are the same one, or all are cubics.
     ///
-    /// `others` are branches that are no longer needed; their memory is used again. Asking for it anew took a tenth of the time of a
-    /// grid over splines.
+    /// `others` are branches that are no longer needed; their memory is used again. Allocating it anew took a tenth of the
+    /// time of a grid over splines.
     pub fn of(branches: [&'a Branch; N], others: Option<Self>) -> Option<Self> {
         if branches.iter().all(|branch| std::ptr::eq(*branch, branches[0])) {
             return Some(Self::One(branches[0]));
@@ -60,7 +60,7 @@ impl<'a, const N: usize> Branches<'a, N> {
         Some(Self::Cubics(all))
     }
 
-    /// Finds the points at N abscissae and their ζ \[mm\], as [`Branch::points`] does.
+    /// Finds the points at N abscissae and their ζ \[mm\]. Returns `None` if N > 1 and Newton's steps do not settle.
     #[inline(always)]
     pub fn points(&self, xi: &Lanes<N>) -> Option<(BranchPoints<N>, Lanes<N>)> {
         match self {
@@ -69,7 +69,8 @@ impl<'a, const N: usize> Branches<'a, N> {
         }
     }
 
-    /// Computes the slopes of chords, as [`Branch::chords_from`] does.
+    /// Computes the slopes of chords from points of these branches to the abscissae `to` \[mm\]. Returns `None` for points
+    /// of another shape, and if N > 1 and Newton's steps do not settle.
     #[inline(always)]
     pub fn chords_from(&self, from: &BranchPoints<N>, to: &Lanes<N>) -> Option<Lanes<N>> {
         match (self, from) {
@@ -81,7 +82,8 @@ impl<'a, const N: usize> Branches<'a, N> {
         }
     }
 
-    /// Computes ζ and ξ along chords as multiples of `runs`, as [`Branch::chords_near`] does.
+    /// Computes ζ and ξ along chords as multiples of `runs`; [`Branch::chords_near`] describes the method and the cases of
+    /// NaN.
     #[inline(always)]
     pub fn chords_near(&self, from: &BranchPoints<N>, runs: &Lanes<N>) -> [Lanes<N>; 2] {
         match (self, from) {
@@ -98,7 +100,8 @@ impl<'a, const N: usize> Branches<'a, N> {
 mod tests {
     use crate::profile::{Profile, Section, Side, standards};
 
-    /// The largest relative difference of points and chords between three lanes and one, and how many were compared.
+    /// Returns the largest relative difference of points and chords between three lanes and one, and the number of
+    /// comparisons.
     fn differences(profile: &Profile, side: Side) -> (f64, usize) {
         let section = Section::own_axes(profile, side);
         let (mut worst, mut compared) = (0f64, 0);

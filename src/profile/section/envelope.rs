@@ -12,7 +12,7 @@ pub struct Piece {
     pub xi: [f64; 2],
     /// Index of the outer branch.
     pub branch: usize,
-    /// Both ends of the interval on the branch, with their ζ \[mm\].
+    /// The two ends of the interval as points of the branch, with their ζ \[mm\].
     pub ends: [(BranchPoint, f64); 2],
 }
 
@@ -23,7 +23,7 @@ pub(super) fn pieces(branches: &[Branch], side: Side) -> Vec<Piece> {
     intervals(branches, side).into_iter().map(with_ends).collect()
 }
 
-/// Returns the intervals, with the index of the outer branch over each.
+/// Returns the intervals in order of ξ, each with the index of the outer branch over it.
 fn intervals(branches: &[Branch], side: Side) -> Vec<([f64; 2], usize)> {
     let mut ends: Vec<f64> = branches.iter().flat_map(|b| b.xi).collect();
     ends.sort_by(f64::total_cmp);
@@ -45,7 +45,7 @@ fn intervals(branches: &[Branch], side: Side) -> Vec<([f64; 2], usize)> {
     out
 }
 
-/// Splits one interval, which every active branch spans, where the outer branch changes.
+/// Splits one interval, which every active branch spans, at the abscissae where the outer branch changes.
 fn outermost(
     branches: &[Branch],
     active: &[usize],
@@ -65,8 +65,7 @@ fn outermost(
         return push(out, [a, b], first);
     }
     if first == last {
-        // Sheets of a chain that does not cross itself keep their order; at an end where they meet, rounding
-        // decides.
+        // Sheets of a chain that does not cross itself keep their order. Where they meet at an end, rounding decides.
         return push(out, [a, b], outer(middle).unwrap_or(first));
     }
     let difference = |xi: f64| branches[first].height(xi) - branches[last].height(xi);
@@ -75,7 +74,7 @@ fn outermost(
     push(out, [cut, b], last);
 }
 
-/// Appends an interval, or extends the last piece by it.
+/// Appends an interval. If the last interval has the same branch and ends there, it is extended instead.
 fn push(out: &mut Vec<([f64; 2], usize)>, xi: [f64; 2], branch: usize) {
     match out.last_mut() {
         Some((before, last)) if *last == branch && before[1] == xi[0] => before[1] = xi[1],

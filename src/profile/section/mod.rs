@@ -25,7 +25,7 @@ use crate::numerics::twice::Twice;
 pub struct ProfilePoint {
     /// Point and unit tangent.
     pub station: Station,
-    /// Index of the segment. A joint belongs to both neighbours; here to the left one.
+    /// Index of the segment. A joint belongs to both neighbours; this is the left one.
     pub segment: usize,
     /// Parameter on a polynomial segment; 0 on an arc.
     parameter: Twice,
@@ -33,19 +33,19 @@ pub struct ProfilePoint {
 
 /// The part of a profile that faces the other body, as a function ζ(ξ) in a frame.
 ///
-/// All quantities are in the frame's axes: ξ along its tangent, ζ along its normal \[mm\]. Where the profile
-/// overhangs in ξ, the outer of the sheets that face the other body counts; where no sheet does, the height
-/// is undefined.
+/// All quantities are in the axes of the frame: ξ along its tangent, ζ along its normal \[mm\]. The profile may overhang in
+/// ξ. The outer one of the sheets that face the other body then counts. The height is undefined where no sheet faces the
+/// other body.
 #[derive(Debug, Clone)]
 pub struct Section {
     /// The frame, in profile axes.
-    pub frame: Station,
+    pub(crate) frame: Station,
     /// All branches, in the order of the chain.
-    pub branches: Vec<Branch>,
+    pub(crate) branches: Vec<Branch>,
     /// The outer envelope: the outer branch over disjoint closed intervals of ascending ξ.
-    pub pieces: Vec<Piece>,
+    pub(crate) pieces: Vec<Piece>,
     /// Index of the branch through the frame's origin, if the frame is that of a contact point.
-    pub contact: Option<usize>,
+    pub(crate) contact: Option<usize>,
 }
 
 impl Section {
@@ -54,13 +54,14 @@ impl Section {
         Self::build(profile, Station::AXES, None, side)
     }
 
-    /// Makes the section in the contact frame of a point of the profile: origin there, ξ along the tangent.
-    pub fn at_contact(profile: &Profile, point: &ProfilePoint, side: Side) -> Self {
+    /// Makes the section in the contact frame of a point of the profile: its origin is the point, ξ is along the tangent.
+    pub(crate) fn at_contact(profile: &Profile, point: &ProfilePoint, side: Side) -> Self {
         Self::build(profile, point.station, Some(point), side)
     }
 
-    /// Makes the section in any frame: for a kink, where the common normal is not that of a tangent.
-    pub fn in_frame(profile: &Profile, frame: Station, side: Side) -> Self {
+    /// Makes the section in any frame. A contact at a kink needs this, because the common normal there is not the normal of
+    /// a tangent.
+    pub(crate) fn in_frame(profile: &Profile, frame: Station, side: Side) -> Self {
         Self::build(profile, frame, None, side)
     }
 
@@ -83,8 +84,8 @@ impl Section {
             }
             goes_on = match branches.last().filter(|branch| branch.segment == index) {
                 Some(branch) => branch.ends_segment,
-                // Vertical to rounding: whether it has a narrow branch or none, the surface continues beyond
-                // it.
+                // The segment is vertical to rounding. The surface continues beyond it, whether it has a narrow branch or
+                // none.
                 None => goes_on && run(segment, &frame).abs() <= rounding,
             };
         }
@@ -93,23 +94,30 @@ impl Section {
         Self { frame, branches, pieces, contact }
     }
 
-    /// Returns the outer branch at ξ, or `None` where the body has no surface. At a joint it is the left one.
-    pub fn branch_at(&self, xi: f64) -> Option<&Branch> {
+    /// Returns the outer branch at ξ, or `None` where the body has no surface. At a joint it is the left branch.
+    pub(crate) fn branch_at(&self, xi: f64) -> Option<&Branch> {
         self.piece_at(xi).map(|piece| &self.branches[piece.branch])
     }
 
     /// Returns the piece of the envelope that holds ξ.
-    pub fn piece_at(&self, xi: f64) -> Option<&Piece> {
+    pub(crate) fn piece_at(&self, xi: f64) -> Option<&Piece> {
         self.pieces_from(xi).first().filter(|piece| piece.xi[0] <= xi)
     }
 
     /// Returns the pieces of the envelope that do not end before ξ.
-    pub fn pieces_from(&self, xi: f64) -> &[Piece] {
+    pub(crate) fn pieces_from(&self, xi: f64) -> &[Piece] {
         &self.pieces[self.pieces.partition_point(|piece| piece.xi[1] < xi)..]
     }
 
-    /// Returns the ends of the envelope's pieces that touch an interval, with their ζ, in order of ξ; twice
-    /// where two pieces meet.
+    /// Returns whether ξ \[mm\] lies on the segment through C, at least `margin` \[mm\] inside the ends of its outer part.
+    pub fn on_contact_segment(&self, xi: f64, margin: f64) -> bool {
+        self.piece_at(xi).is_some_and(|piece| {
+            self.contact == Some(piece.branch) && piece.xi[0] + margin <= xi && xi <= piece.xi[1] - margin
+        })
+    }
+
+    /// Returns the ends of the envelope's pieces that touch an interval of ξ \[mm\], with their ζ \[mm\], in order of ξ. A
+    /// joint of two pieces comes twice.
     pub fn joints(&self, [from, to]: [f64; 2]) -> impl Iterator<Item = (f64, f64)> {
         let pieces = self.pieces_from(from).iter().take_while(move |piece| piece.xi[0] <= to);
         pieces.flat_map(|piece| [0, 1].map(|end| (piece.xi[end], piece.ends[end].1)))
@@ -117,8 +125,7 @@ impl Section {
 
     /// Returns ζ(ξ) of (4.5) \[mm\], or NaN where the body has no surface.
     ///
-    /// Accuracy: rounding at the size of ζ near the origin of a contact frame, of the profile's extent
-    /// elsewhere.
+    /// Accuracy: near the origin of a contact frame, a rounding of ζ; elsewhere, a rounding of the profile's extent.
     pub fn height(&self, xi: f64) -> f64 {
         self.branch_at(xi).map_or(f64::NAN, |branch| branch.height(xi))
     }
@@ -128,8 +135,8 @@ impl Section {
         Some([self.pieces.first()?.xi[0], self.pieces.last()?.xi[1]])
     }
 
-    /// Returns the point of the profile at abscissa x \[mm\], for a section in the profile's own axes:
-    /// (4.9)–(4.12). At a joint it is on the left segment; `None` where the body has no surface.
+    /// Returns the point of the profile at abscissa x \[mm\], (4.9)–(4.12); the section must be in the profile's own axes.
+    /// At a joint the point is on the left segment. Returns `None` where the body has no surface.
     pub fn point(&self, profile: &Profile, x: f64) -> Option<ProfilePoint> {
         Some(Self::point_on(self.branch_at(x)?, profile, x))
     }

@@ -1,19 +1,21 @@
-//! Points of branches, and chords of polynomial curves, at N abscissae at once, so that none waits for another.
+//! Points of branches and chords of polynomial curves, at N abscissae at once, so that the processor computes them side by
+//! side.
 //!
-//! A curve is given by the coefficients of ξ(t) and ζ(t) in lanes: one curve for all, or one for each.
+//! A curve is given by the coefficients of ξ(t) and ζ(t) in lanes: one curve for all lanes, or one for each.
 
 use crate::numerics::lanes::Lanes;
 use crate::numerics::polynomial::{Coefficients, divided_differences, values_and_slopes};
 use crate::numerics::roots::bracketed;
 
-/// A Newton step below this share of the range and of the step before, and below t, leaves an error of t of about its square. That
-/// is none, down to the contact point at t = 0.
+/// Bound of a Newton step after which t is exact to rounding: the step is below this share of the range and of the previous
+/// step, and below t. The error that remains is about the square of the step. This holds down to the contact point at t =
+/// 0.
 const QUADRATIC: f64 = 1e-4 * 1e-4;
 
-/// Newton's method is given up after this many steps: the branch is nearly vertical somewhere.
+/// Most Newton steps. More are needed only where the branch is nearly vertical.
 const STEPS: usize = 10;
 
-/// A chord of a parabola to its vertex is half as long as the tangent promises.
+/// Least multiple of ξ along a chord. The chord of a parabola to its vertex is half as long as the tangent promises.
 const LEAST_STRETCH: f64 = 0.5;
 
 /// N points of branches of one shape, from which chords are drawn.
@@ -39,11 +41,11 @@ pub enum BranchPoints<const N: usize> {
     },
 }
 
-/// One point of a branch.
+/// A single point of a branch.
 pub type BranchPoint = BranchPoints<1>;
 
 impl BranchPoint {
-    /// Gives this point N times.
+    /// Returns this point N times.
     #[inline(always)]
     pub fn repeated<const N: usize>(&self) -> BranchPoints<N> {
         match *self {
@@ -57,15 +59,16 @@ impl BranchPoint {
     }
 }
 
-/// Gives each of two numbers N times. It is spelled out, because `array::map` may be left out of line.
+/// Returns each of two numbers N times. The arrays are written out, because the compiler may not inline `array::map`.
 #[inline(always)]
 pub(super) fn repeated<const N: usize>([a, b]: [f64; 2]) -> [Lanes<N>; 2] {
     [[a; N], [b; N]]
 }
 
-/// Finds the points of curves at these ξ, and their ζ \[mm\]. The curves run over ranges of t, at the ends of which ξ is `ends`.
+/// Finds the points of curves at abscissae `xi`, and their ζ \[mm\]. The curves have ranges of t; `ends` holds ξ at the
+/// ends of each range.
 ///
-/// `None` for several lanes where Newton's steps do not settle; one lane always has a point.
+/// Returns `None` if N > 1 and Newton's steps do not settle; one lane always has a point.
 #[inline(always)]
 pub(super) fn points<const N: usize>(
     [c_xi, c_zeta]: [impl Coefficients<N>; 2],
@@ -81,7 +84,7 @@ pub(super) fn points<const N: usize>(
     Some((BranchPoints::Polynomial { xi: *xi, t, rate }, zeta))
 }
 
-/// Gives the t at which ξ is on the line through the ends of the curve.
+/// Returns the t at which the straight line through the ends of the curve has the abscissa ξ.
 #[inline(always)]
 pub(super) fn guess<const N: usize>(range: [Lanes<N>; 2], ends: [Lanes<N>; 2], xi: &Lanes<N>) -> Lanes<N> {
     let mut guess = [0.0; N];
@@ -92,10 +95,10 @@ pub(super) fn guess<const N: usize>(range: [Lanes<N>; 2], ends: [Lanes<N>; 2], x
     guess
 }
 
-/// Finds t with ξ(t) = ξ, where ξ rises with t over a range. Where ξ is beyond the range, t is its nearer end.
+/// Finds t with ξ(t) = ξ, where ξ rises with t over a range. If ξ is beyond the range, t is that of the nearer end.
 ///
-/// Method: Newton's steps from a guess, held within the range; for one lane, where they do not settle, bisection. `None` for
-/// several lanes of which one does not settle.
+/// Method: Newton's steps from a guess, held within the range. If they do not settle, a single lane is bisected and several
+/// lanes give `None`.
 #[inline(always)]
 pub(super) fn parameters<const N: usize>(
     c: impl Coefficients<N>,
@@ -117,7 +120,8 @@ pub(super) fn parameters<const N: usize>(
             let step = (next - t[k]).abs();
             let done = (QUADRATIC * (high[k] - low[k])).min(next.abs());
             let small = step <= 2.0 * f64::EPSILON * next.abs();
-            // At a vertical end the slope may be rounded to a fall, and the step then leads out of the range, away from the root.
+            // At a vertical end the slope may be rounded to a negative number. The step then leads out of the range, away
+            // from the root.
             let rises = (slope[k] > 0.0) | (miss == 0.0);
             settled[k] |= u64::from((small | ((step <= done) & (step <= QUADRATIC * last[k]))) & rises);
             (t[k], last[k]) = (next, step);
@@ -129,7 +133,7 @@ pub(super) fn parameters<const N: usize>(
     (N == 1).then(|| bisected(c, [low, high], xi))
 }
 
-/// Finds t as [`parameters`] does, lane by lane and by a bracket.
+/// Finds t with ξ(t) = ξ for each lane by bracketing. If ξ is beyond the range, t is that of the nearer end.
 #[cold]
 fn bisected<const N: usize>(c: impl Coefficients<N>, [low, high]: [Lanes<N>; 2], xi: &Lanes<N>) -> Lanes<N> {
     let mut t = high;
@@ -141,14 +145,15 @@ fn bisected<const N: usize>(c: impl Coefficients<N>, [low, high]: [Lanes<N>; 2],
     t
 }
 
-/// Gives the value, or the end that it is beyond; NaN stays NaN. `f64::clamp` checks its ends, which is no vector code.
+/// Returns the value, limited to \[low, high\]; NaN stays NaN. `f64::clamp` checks its limits, which prevents vector code.
 #[inline(always)]
 fn within(value: f64, low: f64, high: f64) -> f64 {
     let above = if value < low { low } else { value };
     if above > high { high } else { above }
 }
 
-/// Computes the slopes of chords from points (ξ, t, dt/dξ) of curves to the abscissae `to`. `None` as for [`points`].
+/// Computes the slopes of chords from points (ξ, t, dt/dξ) of curves to the abscissae `to`. Returns `None` if N > 1 and
+/// Newton's steps do not settle.
 #[inline(always)]
 pub(super) fn chords<const N: usize>(
     [c_xi, c_zeta]: [impl Coefficients<N>; 2],
@@ -168,9 +173,9 @@ pub(super) fn chords<const N: usize>(
     Some(rise)
 }
 
-/// Computes ζ and ξ along chords from points (t, dt/dξ) of curves, as multiples of `runs`, without a root: the other end of a chord
-/// is where t has changed by runs × dt/dξ. The multiple of ξ is about 1; it is NaN where the chord may end beyond a vertical
-/// tangent.
+/// Computes ζ and ξ along chords from points (t, dt/dξ) of curves, as multiples of `runs`. No root is sought: the other end
+/// of a chord is where t has changed by runs × dt/dξ. The multiple of ξ is about 1; it is NaN if the chord may end beyond a
+/// vertical tangent.
 #[inline(always)]
 pub(super) fn chords_near<const N: usize>(
     [c_xi, c_zeta]: [impl Coefficients<N>; 2],
@@ -197,7 +202,7 @@ mod tests {
 
     #[test]
     fn a_chord_past_a_vertical_tangent_is_no_number() {
-        // ξ = t − t²/2, vertical at t = 1; ζ = t/10.
+        // ξ = t − t²/2 is vertical at t = 1; ζ = t/10.
         let curve = [&[0.0, 1.0, -0.5][..], &[0.0, 0.1][..]];
         let [climb, stretch] = chords_near(curve, [&[0.0; 2], &[1.0; 2]], &[0.4, 1.2]);
         assert!((stretch[0] - 0.8).abs() < 1e-15 && (climb[0] - 0.1).abs() < 1e-15);
@@ -206,7 +211,7 @@ mod tests {
 
     #[test]
     fn one_lane_has_a_parameter_where_newton_fails() {
-        // ξ = t³ − 3t² + 3t = 1 + (t − 1)³ is level at t = 1, and at its end ξ = t − t²/2 is vertical.
+        // ξ = t³ − 3t² + 3t = 1 + (t − 1)³ is level at t = 1. ξ = t − t²/2 is vertical at its end.
         let level = [0.0, 3.0, -3.0, 1.0];
         for (c, high, xi) in [(&level[..], 2.0, 1.0 + 1e-12), (&[0.0, 1.0, -0.5][..], 1.0, 0.5 - 1e-12)] {
             let [t] = parameters(c, repeated([0.0, high]), &[xi], [high]).unwrap();

@@ -1,4 +1,4 @@
-//! A polynomial segment seen from a frame, and the parts of it that face the other body.
+//! Turns a polynomial segment into a frame, and finds the parts of it that face the other body.
 
 use crate::numerics::polynomial::{derivative, exact_slope, exact_value, range, recentred, value};
 use crate::numerics::roots::bracketed;
@@ -6,12 +6,12 @@ use crate::numerics::twice::Twice;
 use crate::profile::polynomial::{Polynomial, turned};
 use crate::profile::station::Station;
 
-/// Share of a curve's speed below which its run along ξ is the rounding of a vertical: the direction of a straight wall is
-/// known no better, and its run changes sign all along.
+/// Run of a curve along ξ, as a share of its speed, below which the curve is vertical to rounding. The direction of a
+/// straight wall is known to this accuracy only, so that the sign of a smaller run means nothing.
 const VERTICAL: f64 = 16.0 * f64::EPSILON;
 
-/// Finds the parts of \[t0, t1\] where ξ(t) rises, from the coefficients of ξ and ζ. There are none where ξ rises by no more than
-/// rounding. Method: a bound of the slope that costs a sum, true of most spans; otherwise bisection down to 2⁻⁴⁰ of the range.
+/// Finds the parts of \[t0, t1\] where ξ(t) rises by more than rounding, from the coefficients of ξ and ζ. Method: a bound
+/// of the slope that costs one sum settles most spans; the others are bisected down to 2⁻⁴⁰ of the range.
 pub(super) fn rising_parts([xi, zeta]: [&[f64]; 2], [t0, t1]: [f64; 2]) -> Vec<[f64; 2]> {
     if rises_throughout(xi, [t0, t1]) {
         return vec![[t0, t1]];
@@ -21,7 +21,8 @@ pub(super) fn rising_parts([xi, zeta]: [&[f64]; 2], [t0, t1]: [f64; 2]) -> Vec<[
     rising_intervals(&run, VERTICAL * fastest.fold(0.0, f64::max), [t0, t1])
 }
 
-/// Tells whether a polynomial plainly has a positive derivative all over \[t0, t1\]. Where this is false it may rise all the same.
+/// Returns whether one sum proves that a polynomial has a positive derivative all over \[t0, t1\]. If not, the polynomial
+/// may rise all the same.
 fn rises_throughout(c: &[f64], [t0, t1]: [f64; 2]) -> bool {
     let farthest = t0.abs().max(t1.abs());
     let Some(first) = c.get(1) else { return false };
@@ -30,11 +31,12 @@ fn rises_throughout(c: &[f64], [t0, t1]: [f64; 2]) -> bool {
         power *= farthest;
         others += k as f64 * c.abs() * power;
     }
-    // Far above the rounding of a slope.
+    // The slope is then at least half its constant term, which is far above rounding.
     0.5 * first > others
 }
 
-/// Finds the parts of \[t0, t1\] where the polynomial `slope` is positive; there are none where it is nowhere larger than `rounding`.
+/// Finds the parts of \[t0, t1\] where the polynomial `slope` is positive. There are none if it is nowhere larger than
+/// `rounding`.
 fn rising_intervals(slope: &[f64], rounding: f64, [t0, t1]: [f64; 2]) -> Vec<[f64; 2]> {
     let mut parts = Vec::new();
     if range(slope, t0, t1)[1] <= rounding {
@@ -52,7 +54,7 @@ fn rising_intervals(slope: &[f64], rounding: f64, [t0, t1]: [f64; 2]) -> Vec<[f6
     parts
 }
 
-/// Appends the places where a polynomial changes its sign, except in parts where it is no larger than `rounding`.
+/// Appends the places where a polynomial changes its sign. Parts where it is no larger than `rounding` are passed over.
 fn sign_changes(c: &[f64], rounding: f64, [a, b]: [f64; 2], depth: u32, out: &mut Vec<f64>) {
     let [low, high] = range(c, a, b);
     if low > 0.0 || high < 0.0 || depth == 0 || (low >= -rounding && high <= rounding) {
@@ -71,14 +73,15 @@ fn sign_changes(c: &[f64], rounding: f64, [a, b]: [f64; 2], depth: u32, out: &mu
     sign_changes(c, rounding, [middle, b], depth - 1, out);
 }
 
-/// Turns a segment into a frame: gives the coefficients of ξ(t) and of ζ(t), and the range of t.
+/// Turns a segment into a frame. Returns the coefficients of ξ(t) and of ζ(t), and the range of t.
 pub(super) fn seen_from(polynomial: &Polynomial, frame: &Station) -> ([Vec<Twice>; 2], [f64; 2]) {
     let (mut x, mut z) = (polynomial.x.clone(), polynomial.z.clone());
     (x[0], z[0]) = (x[0] - frame.x, z[0] - frame.z);
     (turned([&x, &z], frame.cos, frame.sin), polynomial.t)
 }
 
-/// Turns a segment into the contact frame of its own point t = `origin`. ζ then has no constant and no linear term, exactly.
+/// Turns a segment into the contact frame of its own point t = `origin`. ζ(t) then has no constant and no linear term,
+/// exactly.
 pub(super) fn seen_from_own_point(polynomial: &Polynomial, origin: Twice) -> ([Vec<Twice>; 2], [f64; 2]) {
     let [mut x, mut z] = [&polynomial.x, &polynomial.z].map(|c| recentred(c, origin));
     z.resize(z.len().max(2), Twice::ZERO);
@@ -89,7 +92,7 @@ pub(super) fn seen_from_own_point(polynomial: &Polynomial, origin: Twice) -> ([V
     ([xi, zeta], polynomial.t.map(|t| (Twice::from(t) - origin).into()))
 }
 
-/// Gives the station of a segment, in profile axes, at a parameter in twice the working precision.
+/// Returns the station of a segment, in profile axes, at a parameter in twice the working precision.
 pub(super) fn station_at(polynomial: &Polynomial, t: Twice) -> Station {
     let (x, z) = (&polynomial.x, &polynomial.z);
     let (dx, dz) = (exact_slope(x, t), exact_slope(z, t));

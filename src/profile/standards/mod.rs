@@ -24,13 +24,13 @@ struct WheelFile {
 struct RailData {
     /// Radii from the crown outwards \[mm\].
     crown_to_corner_radii: Vec<f64>,
-    /// |x| of the joints between them \[mm\].
+    /// |x| of the joints between these arcs \[mm\].
     tangent_x: Vec<f64>,
     /// Flank inclination, 0 for vertical.
     flank_dx_per_dz: f64,
     /// Radius between flank and underside \[mm\].
     lower_fillet_radius: f64,
-    /// The underside is z = `underside_apex_z` + |x|/this.
+    /// Run per unit of fall of the underside: z = `underside_apex_z` + |x|/this.
     underside_1_to: f64,
     /// Where the two undersides meet \[mm\].
     underside_apex_z: f64,
@@ -47,7 +47,7 @@ struct RailData {
 struct RailCheck {
     /// |x| where the corner arc meets the flank \[mm\].
     half_width_at_flank_tangent: f64,
-    /// z there \[mm\].
+    /// z of that point \[mm\].
     z_at_flank_tangent: Option<f64>,
 }
 
@@ -58,7 +58,7 @@ struct WheelData {
     segments: Vec<SegmentData>,
 }
 
-// The two files are part of the program: the tests read every entry.
+// The two files are compiled into the program, and the tests read every entry: they cannot fail to parse.
 static RAILS: LazyLock<BTreeMap<String, RailData>> = LazyLock::new(|| {
     serde_json::from_str::<RailFile>(include_str!("rails.json")).map(|file| file.rails).unwrap_or_default()
 });
@@ -66,42 +66,44 @@ static WHEELS: LazyLock<BTreeMap<String, WheelData>> = LazyLock::new(|| {
     serde_json::from_str::<WheelFile>(include_str!("wheels.json")).map(|file| file.wheels).unwrap_or_default()
 });
 
-/// Names of the built-in rails, in alphabetical order.
+/// Returns the names of the built-in rails, in alphabetical order.
 pub fn rail_names() -> impl Iterator<Item = &'static str> {
     RAILS.keys().map(String::as_str)
 }
 
-/// Names of the built-in wheels, in alphabetical order.
+/// Returns the names of the built-in wheels, in alphabetical order.
 pub fn wheel_names() -> impl Iterator<Item = &'static str> {
     WHEELS.keys().map(String::as_str)
 }
 
-/// A built-in rail head: upright, symmetric, origin at the crown apex; with the flanks where they are inclined.
+/// Returns a built-in rail head: upright, symmetric, origin at the crown's apex. It includes the flanks where they are
+/// inclined.
 ///
 /// # Errors
-/// An unknown name, with the nearest known one.
+/// An unknown name; the error offers the nearest known one.
 pub fn rail(name: &str) -> Result<Profile> {
     let data = RAILS.get(name).ok_or_else(|| unknown(name, "rail", rail_names()))?;
     head(name, data)
 }
 
-/// A built-in wheel: right-hand, flange at negative x, origin as its source says.
+/// Returns a built-in wheel: right-hand, flange at negative x, origin as its source says.
 ///
 /// # Errors
-/// An unknown name, with the nearest known one.
+/// An unknown name; the error offers the nearest known one.
 pub fn wheel(name: &str) -> Result<Profile> {
     let data = WHEELS.get(name).ok_or_else(|| unknown(name, "wheel", wheel_names()))?;
-    drawing::chain(name, &format!("{}; origin: {}", data.source, data.origin), None, &data.segments)
+    drawing::drawn_profile(name, &format!("{}; origin: {}", data.source, data.origin), None, &data.segments)
 }
 
-/// Crown, then arcs smooth with each other down to the flank tangent, then the flank to the lower fillet.
+/// Makes a rail head: the crown, then arcs smooth with each other down to the flank tangent, then the flank down to the
+/// lower fillet; mirrored for the left half.
 fn head(name: &str, data: &RailData) -> Result<Profile> {
     let crown = data.crown_to_corner_radii[0];
     let first = data.tangent_x[0];
     let crown = Arc::about([0.0, -crown], crown, Half::Upper, [-first, first])?;
     let mut right = Vec::new();
     let mut end = crown.end;
-    // Sine of the corner arc's last tangent: that of the flank, dz/dx = −1/flank_dx_per_dz.
+    // The corner arc ends with the tangent of the flank, dz/dx = −1/flank_dx_per_dz. This is the sine of its angle.
     let flank = -data.flank_dx_per_dz.hypot(1.0).recip();
     for (k, &radius) in data.crown_to_corner_radii.iter().enumerate().skip(1) {
         let to_x = data.tangent_x.get(k).copied().unwrap_or(end.x + (end.sin - flank) * radius);
@@ -120,13 +122,13 @@ fn head(name: &str, data: &RailData) -> Result<Profile> {
     Profile::new(name, &data.source, segments)
 }
 
-/// Run in x \[mm\] of the flank from (x, z) to where the fillet to the underside begins.
+/// Returns the run in x \[mm\] of the flank from (x, z) to where the fillet to the underside begins.
 fn flank_run(data: &RailData, x: f64, z: f64) -> f64 {
     let inclination = data.flank_dx_per_dz;
-    // Drop to the underside: z − d = apex + (x + inclination·d)/n.
+    // The drop d to the underside solves z − d = apex + (x + inclination·d)/n.
     let n = data.underside_1_to;
     let drop = (z - data.underside_apex_z - x / n) / (1.0 + inclination / n);
-    // The flank turns into the underside by this angle; the fillet takes r·tan(half of it) of each.
+    // The flank turns into the underside by `turn`. The fillet takes r·tan(turn/2) of each.
     let turn = std::f64::consts::FRAC_PI_2 + inclination.atan() - n.recip().atan();
     let taken = data.lower_fillet_radius * (turn / 2.0).tan() / inclination.hypot(1.0);
     inclination * (drop - taken)
@@ -174,7 +176,8 @@ mod tests {
         assert_eq!(wheel_names().count(), 14);
         for name in wheel_names() {
             let profile = wheel(name)?;
-            // Coordinates are in 1e-3 mm (EN) and 1e-4 inch (APTA); half a step, at APTA-120's kink the whole one.
+            // Coordinates are printed to 1e-3 mm (EN) and 1e-4 inch (APTA). A rounding is half a step; at APTA-120's kink
+            // it is a whole one.
             let moved = profile.largest_closing().map_or(0.0, |(largest, _)| largest.moved);
             assert!(moved < if name.starts_with("APTA") { 2e-3 } else { 6e-4 }, "{name}: {moved}");
             let gap = profile.continuity().iter().map(|joint| joint.gap).fold(0.0, f64::max);

@@ -9,8 +9,10 @@
 //! λ = 4 √(e r₀) T,   T = ∫_0^ŷ dy/v        tanγ_e = π²/(8 T²)
 //! ```
 //!
-//! which is free of e and r₀. Both wheels are alike and the yaw is neglected, so Δr is odd and a quarter of
-//! the movement is enough.
+//! which is free of e and r₀. The yaw is neglected. Where both sides are alike Δr is odd, and a quarter of the movement is
+//! enough. Where they are not, the wheelset swings about the displacement y₀ at which Δr = 0, between turning points
+//! of equal energy, and ŷ is half their distance, the convention of EN 15302. T is then the mean of the two
+//! quarters on either side of y₀.
 //!
 //! # Effect of errors of Δr
 //!
@@ -33,15 +35,20 @@ use movement::{Movement, Quarter};
 use refine::{LEAST_AMPLITUDE, Table, most_searches};
 
 use crate::error::{Error, Result, finite};
+use crate::numerics::roots::last_where;
 use crate::search::wheelset::{Roll, WheelsetOnTrack};
 
 /// Relative accuracy demanded of a conicity.
 pub const ACCURACY: f64 = 1e-4;
 
-/// Most rounds that refine the table, each to a quarter of the last influence, while the estimated error is
+/// Most rounds that refine the table, each to half of the last influence, while the estimated error is
 /// too large. Amplitudes at which the movement barely comes back never become accurate; they must not use up
 /// all searches of the others.
-const ROUNDS: u32 = 4;
+const ROUNDS: u32 = 7;
+
+/// Reach of the tables to each side, as a share of the largest amplitude, where Δr is not odd: one turning point is
+/// farther from the centre than the other.
+const ASYMMETRY: f64 = 1.5;
 
 /// Points in √(y − y_k) of a cell at which T is tabulated: Chebyshev's on \[0, 1\].
 const POINTS: [f64; 5] = [
@@ -60,10 +67,21 @@ const AGREEMENT: f64 = 1e-2 * ACCURACY;
 /// The equivalent conicity of a wheelset on its track over the lateral amplitude.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Conicity {
+    /// The displacement about which the wheelset swings \[mm\]; `None` if there is none.
+    centre: Option<f64>,
+    /// The movement to the right of the centre; of both sides where Δr is odd.
+    right: Swing,
+    /// The movement to the left where Δr is not odd.
+    left: Option<Swing>,
+    searches: usize,
+}
+
+/// The movement from the centre to one side.
+#[derive(Debug, Clone, PartialEq)]
+struct Swing {
     movement: Movement,
     /// For each cell T as a polynomial; `None` where T is no smooth curve.
     fits: Vec<Option<Fit>>,
-    searches: usize,
 }
 
 /// An equivalent conicity with its error.
@@ -80,7 +98,7 @@ pub struct Equivalent {
 pub enum NoConicity {
     /// It was not asked for.
     NotAsked,
-    /// The roll is given, so that Δr is not odd.
+    /// The roll is given: the wheelset is held.
     GivenRoll,
     /// The displacement is 0, which is no amplitude.
     NoAmplitude,
@@ -120,11 +138,12 @@ impl Conicity {
     /// `roll`: [`Roll::Neglect`] is the standard's convention, [`Roll::Solve`] the exact geometry.
     /// Accuracy: 1e-4 of the conicity at amplitudes from 0.1 mm on; [`Equivalent::error`] says what was
     /// reached.
-    /// Cost: at most [`Conicity::most_searches`], of which a drawn pair takes a fifth; every search of a
+    /// Cost: at most [`Conicity::most_searches`], of which a drawn pair takes a fifth, and three times as many where the sides
+    /// differ; every search of a
     /// rolling wheelset solves its roll.
     ///
     /// # Errors
-    /// An amplitude that is not a positive number; a given roll, at which Δr is not odd.
+    /// An amplitude that is not a positive number; a given roll, by which the wheelset is held.
     pub fn new(system: &WheelsetOnTrack, amplitude: f64, roll: Roll) -> Result<Self> {
         Self::told(system, amplitude, roll, &mut |_, _| {})
     }
@@ -149,8 +168,35 @@ impl Conicity {
             return Err(Error::new("conicity: roll", angle.to_string(), expected, "leave conicity out"));
         }
         let mut searched = Searched::new(system, roll);
-        let table = Table::new(|y, sides| searched.at(y, sides), amplitude, ACCURACY)?;
-        Self::refined(table, progress)
+        if system.symmetric() {
+            let table = Table::new(|y, sides| searched.at(y, sides), amplitude, ACCURACY)?;
+            return Self::refined(table, progress);
+        }
+        Self::about_centre(&mut searched, amplitude, progress)
+    }
+
+    /// Tabulates a Δr that is not odd to both sides of the displacement at which it vanishes.
+    fn about_centre(
+        searched: &mut Searched<'_>,
+        amplitude: f64,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<Self> {
+        let centre = searched.centre(amplitude)?;
+        let y_0 = centre.unwrap_or(0.0);
+        let reach = ASYMMETRY * amplitude;
+        let table = Table::new(|u, sides| searched.at(y_0 + u, sides), reach, ACCURACY)?;
+        let Self { right, searches, .. } = Self::refined(table, progress)?;
+        let mirrored = |u: f64, sides: &mut branches::Sides| searched.mirrored(y_0 - u, sides);
+        let left = Self::refined(Table::new(mirrored, reach, ACCURACY)?, &mut |done, most| {
+            progress(searches + done, searches + most);
+        })?;
+        Ok(Self { centre, right, left: Some(left.right), searches: searches + left.searches })
+    }
+
+    /// Returns the displacement about which the wheelset swings \[mm\], 0 where both sides are alike; `None` if Δr vanishes at
+    /// none within the largest amplitude.
+    pub fn centre(&self) -> Option<f64> {
+        self.centre
     }
 
     /// Returns the most searches that a table up to an amplitude \[mm\] takes: 15 for every tenth of a
@@ -168,7 +214,7 @@ impl Conicity {
     ///
     /// Method: Δr is straight between the table's displacements. T of such a Δr is a polynomial over each
     /// cell, within 1e-6 of the sum over all cells; where there is no such polynomial, the sum itself is
-    /// used. Cost: some ten nanoseconds, or a microsecond.
+    /// used. Cost: some ten nanoseconds, or a microsecond; where Δr is not odd, some microseconds.
     ///
     /// # Errors
     /// An amplitude of 0 or beyond the table; a movement that does not come back.
@@ -177,12 +223,27 @@ impl Conicity {
         if amplitude == 0.0 {
             return Err(NoConicity::NoAmplitude);
         }
-        let cell = self.movement.cell(amplitude).ok_or(NoConicity::OffTrack)?;
-        let quarter = match &self.fits[cell] {
-            Some(fit) => Some(fit.at(share(self.movement.ends(cell), amplitude))),
-            None => self.movement.quarter(cell, amplitude),
+        if self.centre.is_none() {
+            return Err(NoConicity::NotRestoring);
+        }
+        let Some(left) = &self.left else { return self.right.quarter(amplitude).map(Equivalent::of) };
+        // Turning points of equal energy, 2 ŷ apart.
+        let too_far = |to_right: f64| {
+            let energies = [
+                self.right.movement.energy_at(to_right),
+                left.movement.energy_at(2.0 * amplitude - to_right),
+            ];
+            match energies {
+                [Some(right), Some(left)] => right > left,
+                [None, _] => true,
+                [_, None] => false,
+            }
         };
-        quarter.map(Equivalent::of).ok_or(NoConicity::NotRestoring)
+        let to_right = last_where(|to_right| !too_far(to_right), 0.0, 2.0 * amplitude);
+        let [right, left] = [self.right.quarter(to_right)?, left.quarter(2.0 * amplitude - to_right)?];
+        let time = (right.time + left.time) / 2.0;
+        let error = (right.time * right.error).hypot(left.time * left.error) / (2.0 * time);
+        Ok(Equivalent::of(Quarter { time, error }))
     }
 
     /// Refines the table round by round until all conicities are accurate, or its searches are used up.
@@ -202,10 +263,22 @@ impl Conicity {
             let converged =
                 fits.iter().enumerate().all(|(cell, fit)| !served(cell) || fit.as_ref().is_none_or(fine));
             if converged || searches >= most || rounds.next().is_none() {
-                return Ok(Self { movement, fits, searches });
+                return Ok(Self { centre: Some(0.0), right: Swing { movement, fits }, left: None, searches });
             }
-            influence /= 4.0;
+            influence /= 2.0;
         }
+    }
+}
+
+impl Swing {
+    /// Returns the time of a quarter of the movement with this amplitude \[mm\].
+    fn quarter(&self, amplitude: f64) -> std::result::Result<Quarter, NoConicity> {
+        let cell = self.movement.cell(amplitude).ok_or(NoConicity::OffTrack)?;
+        let quarter = match &self.fits[cell] {
+            Some(fit) => Some(fit.at(share(self.movement.ends(cell), amplitude))),
+            None => self.movement.quarter(cell, amplitude),
+        };
+        quarter.ok_or(NoConicity::NotRestoring)
     }
 }
 

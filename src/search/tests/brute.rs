@@ -2,16 +2,17 @@
 
 use super::*;
 use nalgebra::UnitComplex;
+use wheelrail_report::random::Random;
 
 /// A surface sampled in space: the wheel's points in track axes with their gap over the rail.
-struct Scene {
+struct RandomScene {
     rail: Profile,
     wheel: Profile,
     radius: f64,
     pose: [f64; 3],
 }
 
-impl Scene {
+impl RandomScene {
     /// Returns the wheel's point at profile abscissa x and angle ω about the axle, with the profile origin at
     /// height 0.
     fn point(&self, section: &Section, x: f64, omega: f64) -> [f64; 3] {
@@ -64,10 +65,10 @@ impl Scene {
     }
 }
 
-type Cell = (f64, [f64; 2], [f64; 2]);
+type Square = (f64, [f64; 2], [f64; 2]);
 
 /// Returns the twelve lowest local minima of a grid, each with the interval of its neighbours.
-fn best_cells(gap: &impl Fn(f64, f64) -> f64, x: [f64; 2], omega: [f64; 2], n: [usize; 2]) -> Vec<Cell> {
+fn best_cells(gap: &impl Fn(f64, f64) -> f64, x: [f64; 2], omega: [f64; 2], n: [usize; 2]) -> Vec<Square> {
     let at = |range: [f64; 2], k: usize, n: usize| range[0] + (range[1] - range[0]) * k as f64 / n as f64;
     let values: Vec<Vec<f64>> =
         (0..=n[0]).map(|i| (0..=n[1]).map(|j| gap(at(x, i, n[0]), at(omega, j, n[1]))).collect()).collect();
@@ -90,20 +91,6 @@ fn best_cells(gap: &impl Fn(f64, f64) -> f64, x: [f64; 2], omega: [f64; 2], n: [
     cells.sort_by(|a, b| a.0.total_cmp(&b.0));
     cells.truncate(12);
     cells
-}
-
-/// SplitMix64 on a printed seed.
-pub(super) struct Random(pub u64);
-
-impl Random {
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        let unit = ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64;
-        low + (high - low) * unit
-    }
 }
 
 /// Makes a chain of lines, arcs of either half and cubics with a kink at every joint.
@@ -147,14 +134,14 @@ pub(super) fn random_chain(random: &mut Random, n: usize, polynomials: bool) -> 
 }
 
 fn compare(seed: u64, polynomials: bool, yaw: f64, roll: f64) -> Result<()> {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let rail = random_chain(&mut random, 4, polynomials)?;
     let wheel = random_chain(&mut random, 5, polynomials)?;
     let pose = [random.between(-8.0, 8.0), random.between(-yaw, yaw), random.between(-roll, roll)];
-    compare_scene(&format!("seed {seed}"), Scene { rail, wheel, radius: 300.0, pose })
+    compare_scene(&format!("seed {seed}"), RandomScene { rail, wheel, radius: 300.0, pose })
 }
 
-fn compare_scene(name: &str, scene: Scene) -> Result<()> {
+fn compare_scene(name: &str, scene: RandomScene) -> Result<()> {
     let pose = scene.pose;
     let pair = ProfilePair::new(&Pair::new(scene.rail.clone(), scene.wheel.clone(), scene.radius)?)?;
     let [sampled, x, omega] = scene.lowest_gap();
@@ -194,7 +181,7 @@ fn first_touch_agrees_with_dense_samples_of_random_scenes() -> Result<()> {
 
 #[test]
 fn first_touch_agrees_with_dense_samples_of_standard_profiles() -> Result<()> {
-    let mut random = Random(7);
+    let mut random = Random::new(7);
     let rails: Vec<&str> = standards::rail_names().collect();
     for name in standards::wheel_names() {
         for _ in 0..3 {
@@ -202,7 +189,7 @@ fn first_touch_agrees_with_dense_samples_of_standard_profiles() -> Result<()> {
             let turn = UnitComplex::new(random.between(0.0, 0.06));
             let pose = [random.between(-14.0, 8.0), random.between(-0.04, 0.04), random.between(-0.02, 0.02)];
             let (rail_profile, wheel) = (standards::rail(rail)?.rotated(turn), standards::wheel(name)?);
-            let scene = Scene { rail: rail_profile, wheel, radius: 460.0, pose };
+            let scene = RandomScene { rail: rail_profile, wheel, radius: 460.0, pose };
             compare_scene(&format!("{name} on {rail} at {pose:?}"), scene)?;
         }
     }
@@ -215,7 +202,7 @@ fn first_touch_agrees_with_dense_samples_of_standard_profiles() -> Result<()> {
 fn every_local_minimum_of_the_gap_is_reported() -> Result<()> {
     let (step, within) = (2e-3, 30.0);
     for seed in 0..60 {
-        let mut random = Random(1000 + seed);
+        let mut random = Random::new(1000 + seed);
         let rail = random_chain(&mut random, 4, seed % 2 == 0)?;
         let wheel = random_chain(&mut random, 5, seed % 2 == 0)?;
         let offset = random.between(-8.0, 8.0);

@@ -1,8 +1,9 @@
-//! q(ξ, ·) over one span as a polynomial in v = u − u_0, for N columns at once, to a demand.
+//! Fits q(ξ, ·) over one span as a polynomial in v = u − u_0, for N columns at once, to a demanded accuracy.
 //!
-//! Over one branch of the wheel s = s_0 + v q(v), with s_0 at the beginning of the span and q analytic. q is interpolated, not s: the
-//! relative accuracy of both terms survives. The nodes are Chebyshev points in the sagitta e, of which u is nearly a multiple:
-//! ζ and u follow from e with no iteration.
+//! Over one branch of the wheel s = s_0 + v q(v), with s_0 the value at the beginning of the span and q analytic. Not s but
+//! q is interpolated, so that both terms keep their relative accuracy. The nodes are Chebyshev points in the sagitta e.
+//! Because u is nearly a multiple of e, they are nearly Chebyshev points in u, too; and ζ and u follow from e without
+//! iteration.
 
 use super::horner::{ColumnPolynomial, MOST_COEFFICIENTS};
 use super::neighbours::{MOST_SPANS, Neighbours};
@@ -14,26 +15,26 @@ use crate::separation::demand::{Demand, first_count};
 use crate::separation::evaluator::Evaluator;
 use crate::separation::wheel_surface::{SagittaPoints, Span, SpanLanes, WheelSurface};
 
-/// Fits polynomials to columns of a placed pair, for strips, for columns in none, and for the measurement of errors.
+/// Fits polynomials to columns of a placed pair: for strips, for columns in no strip, and for the measurement of errors.
 #[derive(Debug)]
 pub struct Fitter<'a> {
     pub evaluator: Evaluator<'a>,
     pub neighbours: Neighbours<'a>,
-    /// What truncation is held to.
+    /// The accuracy that truncation must keep.
     pub demand: Demand,
-    /// The number of coefficients that every column starts with.
+    /// Number of coefficients that every column starts with.
     pub least: usize,
-    /// Coefficients of columns that are fitted at once.
+    /// Coefficients of several columns that were fitted at once.
     pub rows: Vec<Lanes>,
     pub spans: Vec<Span>,
     /// Coefficients of a single column.
     pub single: Vec<Lanes<1>>,
-    /// The kind of machine that work on lanes is compiled for.
+    /// The vector instructions of this machine, for which work on lanes is compiled.
     pub arch: pulp::Arch,
 }
 
 impl<'a> Fitter<'a> {
-    /// Makes a fitter for a demand on s. Every column starts with `least` coefficients and takes more where it needs them.
+    /// Makes a fitter for a demand on s. Every column starts with `least` coefficients and takes more if it needs them.
     pub fn new(placement: &'a Placement, demand: Demand, least: usize) -> Self {
         let evaluator = Evaluator::new(placement);
         Self {
@@ -48,7 +49,8 @@ impl<'a> Fitter<'a> {
         }
     }
 
-    /// Fits the column at ξ over one span up to `u_max` \[mm²\], without skew. `None` where no degree reaches the demand.
+    /// Fits the column at ξ \[mm\] over one span up to `u_max` \[mm²\], without skew. Returns `None` if no degree reaches
+    /// the demand.
     pub fn column(&mut self, xi: f64, span: &Span, u_max: f64) -> Option<ColumnPolynomial> {
         let wheel = &self.evaluator.wheel;
         let mut lane = wheel.lane(span);
@@ -60,10 +62,11 @@ impl<'a> Fitter<'a> {
         Some(ColumnPolynomial { base: self.evaluator.base(xi, 0.0, span), u0: span.u[0], c, n, error })
     }
 
-    /// Fits columns in no strip at once up to `u_max` \[mm²\], at most [`MANY`], each over one span; their coefficients are in `rows`.
+    /// Fits several columns in no strip at once, up to `u_max` \[mm²\]: at most [`MANY`], each over one span. Their
+    /// coefficients are in `rows`.
     ///
-    /// The result tells which columns are fitted, with how many coefficients, and the largest measured error \[mm\]. `None` where no
-    /// column is.
+    /// Returns which columns were fitted, their number of coefficients, and the largest measured error \[mm\]. Returns
+    /// `None` if no column was fitted.
     #[inline(always)]
     pub fn columns(&mut self, u_max: f64, xi: &[f64]) -> Option<([bool; MANY], usize, f64)> {
         let Self { evaluator, neighbours, demand, least, rows, .. } = self;
@@ -75,10 +78,11 @@ impl<'a> Fitter<'a> {
     }
 }
 
-/// Appends the coefficients of q over one span in powers of v, at least so many; for columns up to `u_max` \[mm²\].
+/// Appends the coefficients of q over one span in powers of v: at least `least` of them. The columns end at `u_max`
+/// \[mm²\].
 ///
-/// The result is their number and the largest error \[mm\], which is measured at the end of the span and between its nodes. `None`
-/// where no degree reaches the demand; the span is then close to a vertical tangent.
+/// Returns their number and the largest error \[mm\], measured at the end of the span and between its nodes. Returns `None`
+/// if no degree reaches the demand; the span is then close to a vertical tangent.
 #[inline(always)]
 pub fn polynomials<const N: usize>(
     wheel: &WheelSurface<'_>,
@@ -106,7 +110,7 @@ pub fn polynomials<const N: usize>(
             let inner = error(q, &wheel.points_by(span, &lanes(|k| run[k] * share)));
             errors = lanes(|k| nan_max(errors[k], inner[k]));
         }
-        // An error that is no number is within no demand.
+        // The comparison is false for an error that is NaN.
         if every::<N>(|k| errors[k] <= allowed[k]) {
             return Some((n, largest(&errors)));
         }

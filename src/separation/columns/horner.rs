@@ -1,15 +1,16 @@
-//! Polynomials of single columns, and runs of a column by Horner's rule with the widest vectors of the machine.
+//! Polynomials of single columns, and their evaluation over parts of a column by Horner's rule, with the widest vectors of
+//! the machine.
 
 use super::stream;
 use crate::numerics::chebyshev::MOST_POINTS;
 use crate::numerics::polynomial;
 use crate::separation::values::{LINE, lead};
 
-/// Most coefficients of a column. A span that needs more is close to a vertical tangent, and is evaluated point by point.
+/// Most coefficients of a column. A span that needs more is close to a vertical tangent and is evaluated point by point.
 pub const MOST_COEFFICIENTS: usize = MOST_POINTS;
 
-/// Runs of so many values or more, of arrays in the caches and past them, are stored line by line of the cache. Grids of shorter runs
-/// are in the second cache, where that gains nothing.
+/// Least number of values of a run that is stored whole cache line by cache line: for arrays in the caches, and for larger
+/// ones. Grids with shorter runs fit into the second cache, where nothing is gained.
 const LONG_RUNS: [usize; 2] = [512, 64];
 
 /// A polynomial s = base + v Σ c_k v^k over one span of a column, v = u − u_0.
@@ -21,27 +22,27 @@ pub struct ColumnPolynomial {
     pub u0: f64,
     /// Coefficients of q.
     pub c: [f64; MOST_COEFFICIENTS],
-    /// How many of them count.
+    /// Number of coefficients in use.
     pub n: usize,
     /// Largest measured error of s \[mm\].
     pub error: f64,
 }
 
 impl ColumnPolynomial {
-    /// Computes ζ of the wheel above the beginning of the span \[mm\].
+    /// Computes ζ of the wheel above its value at the beginning of the span \[mm\], at u \[mm²\].
     pub fn rise(&self, u: f64) -> f64 {
         let v = u - self.u0;
         v * polynomial::value(&self.c[..self.n], v)
     }
 }
 
-/// Work that is compiled for each number of coefficients, so that its innermost loop is unrolled.
+/// Work that is compiled for each number of coefficients, so that the compiler unrolls its innermost loop.
 pub trait PerDegree {
     /// Does the work with N coefficients.
     fn run<const N: usize>(self);
 }
 
-/// Does the work for n coefficients, at most [`MOST_COEFFICIENTS`].
+/// Calls `work` compiled for n coefficients; n is at most [`MOST_COEFFICIENTS`].
 #[inline(always)]
 pub fn per_degree(n: usize, work: impl PerDegree) {
     match n {
@@ -60,7 +61,7 @@ pub fn per_degree(n: usize, work: impl PerDegree) {
     }
 }
 
-/// A run of a column's u, which lies over one span; compiled for each kind of machine.
+/// The part of a column's u that lies over one span. Its evaluation is compiled for each kind of machine.
 pub struct SpanRun<'a> {
     pub fit: &'a ColumnPolynomial,
     pub u: &'a [f64],
@@ -78,12 +79,12 @@ impl pulp::WithSimd for SpanRun<'_> {
     }
 }
 
-/// A run of values by one polynomial.
+/// The evaluation of one polynomial over a run of values.
 pub struct OneRun<'a, S> {
     pub simd: S,
-    /// base and u_0.
+    /// s at the beginning \[mm\], and u_0 \[mm²\].
     pub begin: [f64; 2],
-    /// Coefficients, at least as many as the work is compiled for.
+    /// Coefficients: at least as many as the compiled work uses.
     pub c: &'a [f64],
     pub u: &'a [f64],
     pub out: &'a mut [f64],
@@ -98,10 +99,10 @@ impl<S: pulp::Simd> PerDegree for OneRun<'_, S> {
     }
 }
 
-/// Computes base + (u − u_0) Σ c_k (u − u_0)^k by Horner's rule over a run of u. u_0 is zero if `FIRST`.
+/// Computes base + (u − u_0) Σ c_k (u − u_0)^k over a run of u by Horner's rule. If `FIRST`, u_0 is zero.
 ///
-/// Multiply-adds are fused on every machine, in software where it must be: the bits are the same everywhere. Long runs are stored
-/// past the caches if `PAST`.
+/// Multiply-adds are fused on every machine (by software if need be), so that all machines give the same bits. If `PAST`,
+/// long runs are stored past the caches.
 #[inline(always)]
 pub fn horner<S: pulp::Simd, const N: usize, const FIRST: bool, const PAST: bool>(
     simd: S,
@@ -114,12 +115,13 @@ pub fn horner<S: pulp::Simd, const N: usize, const FIRST: bool, const PAST: bool
         return singly([base, u0], c, u, out);
     };
     let (begin, splat) = splats(simd, [base, u0], c);
-    // Long runs are stored where lines of the cache begin: a store across two takes twice as long. The vectors at both
-    // ends, as many as reach there, may overlap the others.
+    // Stores of long runs begin at cache lines, because a store across two lines takes twice as long. The vectors that fill
+    // the two ends may overlap the others.
     let (end, long) = (u.len(), u.len() >= LONG_RUNS[usize::from(PAST)]);
     let begin_lines = if long { lead(out) } else { 0 };
     if PAST && long {
-        // Lines that are in part a neighbouring column's go through the caches, and no others: each line but one way.
+        // Lines that partly belong to a neighbouring column are stored through the caches; all others past them. No line is
+        // stored in both ways.
         let end_lines = end - (end - begin_lines) % LINE;
         for part in [0..begin_lines, end_lines..end] {
             singly([base, u0], c, &u[part.clone()], &mut out[part]);
@@ -142,7 +144,8 @@ pub fn horner<S: pulp::Simd, const N: usize, const FIRST: bool, const PAST: bool
     }
 }
 
-/// Computes what [`horner`] does over whole vectors. Values up to u_0 in the first one stay, unless u_0 is zero by `FIRST`.
+/// Computes Horner's rule over whole vectors. Values up to u_0 in the first vector stay unchanged, unless `FIRST` (u_0 is
+/// zero).
 #[inline(always)]
 pub fn whole_vectors<S: pulp::Simd, const N: usize, const FIRST: bool>(
     simd: S,
@@ -162,7 +165,7 @@ pub fn whole_vectors<S: pulp::Simd, const N: usize, const FIRST: bool>(
     }
 }
 
-/// Makes vectors of base and u_0, and of the coefficients. It is a loop, because closures may be left out of line.
+/// Makes vectors of base, of u_0 and of the coefficients. This is a loop, because the compiler may not inline closures.
 #[inline(always)]
 fn splats<S: pulp::Simd, const N: usize>(
     simd: S,
@@ -176,7 +179,7 @@ fn splats<S: pulp::Simd, const N: usize>(
     ([simd.splat_f64s(base), simd.splat_f64s(u0)], splat)
 }
 
-/// Computes what [`horner`] does, value by value.
+/// Computes Horner's rule value by value.
 #[inline(always)]
 fn singly<const N: usize>([base, u0]: [f64; 2], c: &[f64; N], u: &[f64], out: &mut [f64]) {
     for (s, u) in out.iter_mut().zip(u) {
@@ -185,7 +188,7 @@ fn singly<const N: usize>([base, u0]: [f64; 2], c: &[f64; N], u: &[f64], out: &m
     }
 }
 
-/// Computes one vector of [`horner`]. It is a function, because closures may be left out of line.
+/// Computes one vector of values. This is a function, because the compiler may not inline closures.
 #[inline(always)]
 fn value<S: pulp::Simd, const N: usize, const FIRST: bool>(
     simd: S,

@@ -1,4 +1,4 @@
-//! Columns s(ξ, ·) as polynomials: how they are fitted, and how they are evaluated by many.
+//! Columns s(ξ, ·) as polynomials: how they are fitted, and how many of them are evaluated at once.
 
 pub(super) mod fit;
 pub(super) mod horner;

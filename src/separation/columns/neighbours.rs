@@ -1,4 +1,4 @@
-//! Neighbouring columns at once: which branches they pass, and what they begin with.
+//! Several neighbouring columns at once: the branches that they pass, and their values at the beginning of each.
 
 use crate::numerics::lanes::{Lanes, MANY, every, lanes};
 use crate::profile::{Branches, Piece, Section};
@@ -6,10 +6,11 @@ use crate::separation::evaluator::Evaluator;
 use crate::separation::gap::{contact_gap, contact_gaps};
 use crate::separation::wheel_surface::{SpanLanes, WheelSurface};
 
-/// Most spans of columns that are computed at once.
+/// Most spans of a column that are computed for several columns at once.
 pub const MOST_SPANS: usize = 3;
 
-/// [`MANY`] columns that pass the same branches in the same order, or that have one span each over branches of their own.
+/// [`MANY`] neighbouring columns. They pass the same branches in the same order, or each has one span over a branch of its
+/// own.
 #[derive(Debug)]
 pub struct Neighbours<'a> {
     /// The wheel below the columns.
@@ -20,21 +21,21 @@ pub struct Neighbours<'a> {
     pub contact: bool,
     /// The spans in order of u.
     pub spans: Vec<SpanColumns<'a>>,
-    /// The rail's branches of columns that each have their own; kept for their memory.
+    /// The rail's branches, if each column has its own. They are kept so that their memory is used again.
     rail_branches: Option<Branches<'a, MANY>>,
 }
 
 /// One span of [`MANY`] columns.
 #[derive(Debug)]
 pub struct SpanColumns<'a> {
-    /// The span on the wheel. Its last u is that of the window's end.
+    /// The span on the wheel. The last span ends at the window's u.
     pub wheel: SpanLanes<'a, MANY>,
-    /// s at the beginning \[mm\].
+    /// s at the beginning of the span \[mm\].
     pub base: Lanes,
 }
 
 impl<'a> Neighbours<'a> {
-    /// Makes a place for columns, without columns.
+    /// Makes an empty set of columns.
     pub fn new(wheel: WheelSurface<'a>) -> Self {
         Self {
             wheel,
@@ -45,8 +46,8 @@ impl<'a> Neighbours<'a> {
         }
     }
 
-    /// Takes the columns at ξ up to u = `u_max` \[mm²\]. `None` where they do not pass the same branches, pass more than
-    /// [`MOST_SPANS`], or are not whole.
+    /// Takes over the columns at ξ, up to u = `u_max` \[mm²\]. Returns `None` if they do not pass the same branches, pass
+    /// more than [`MOST_SPANS`], or have parts without a surface.
     #[inline(always)]
     pub fn take(&mut self, evaluator: &Evaluator<'a>, u_max: f64, xi: Lanes) -> Option<()> {
         let (wheel, section) = (&self.wheel, &evaluator.placement.rail().section);
@@ -67,7 +68,7 @@ impl<'a> Neighbours<'a> {
             let piece = &wheel.section.pieces[index];
             let mut here = span_over(wheel, &xi, piece, self.spans.is_empty())?;
             if let Some(before) = self.spans.last_mut() {
-                // One joint: the spans meet, whatever rounding makes of it.
+                // The spans meet at one joint, in spite of rounding.
                 before.wheel.u[1] = here.u[0];
                 if !every::<MANY>(|k| before.wheel.u[0][k] < before.wheel.u[1][k]) {
                     return None;
@@ -78,7 +79,7 @@ impl<'a> Neighbours<'a> {
             if last {
                 *u1 = [u_max; MANY];
             }
-            // A span that only some of the columns leave is the end of one shape of columns.
+            // If only some columns leave a span, the columns differ in what they pass.
             if !every::<MANY>(|k| (u0[k] < u1[k]) & (u1[k] <= u_max)) || self.spans.len() == MOST_SPANS {
                 return None;
             }
@@ -98,10 +99,11 @@ impl<'a> Neighbours<'a> {
         }
     }
 
-    /// Takes columns each over its own branches, if all are over the same one or all over cubics, as of splines.
+    /// Takes over columns that have a branch of their own each, if all lie over one branch or all over cubics, as over
+    /// splines.
     ///
-    /// The result tells for each column whether it is taken, which it is where it lies over one branch of either body. In the lane of
-    /// a column that is not taken there is a copy of one that is. `None` where none is taken.
+    /// Returns for each column whether it was taken, which means that it lies over one branch of each body. The lane of a
+    /// column that was not taken holds a copy of one that was. Returns `None` if none was taken.
     #[inline(always)]
     pub fn take_each(&mut self, evaluator: &Evaluator<'a>, u_max: f64, xi: &[f64]) -> Option<[bool; MANY]> {
         let (rail, wheel) = (&evaluator.placement.rail().section, &self.wheel);
@@ -140,14 +142,14 @@ impl<'a> Neighbours<'a> {
     }
 }
 
-/// Finds the piece that holds ξ inside, and removes the pieces before it from `rest`.
+/// Finds the piece that holds ξ in its interior, and removes earlier pieces from `rest`.
 fn piece_inside<'a>(rest: &mut &'a [Piece], xi: f64) -> Option<&'a Piece> {
     let before = rest.iter().take_while(|piece| piece.xi[1] < xi).count();
     *rest = &rest[before..];
     rest.first().filter(|piece| piece.xi[0] < xi && xi < piece.xi[1])
 }
 
-/// Finds the pieces of rail and wheel at each ξ where the column lies over one piece of either.
+/// Finds the pieces of rail and wheel for each ξ whose column lies over one piece of each body.
 fn pieces_under<'r, 'w>(
     wheel: &WheelSurface<'w>,
     rail: &'r Section,
@@ -163,7 +165,8 @@ fn pieces_under<'r, 'w>(
     found
 }
 
-/// Makes one span of all columns to the end of its piece. The `first` one begins in the midplane. `None` where a point is not found.
+/// Makes one span of all columns to the end of its piece. If `first`, it begins in the midplane. Returns `None` if a point
+/// is not found.
 #[inline(always)]
 fn span_over<'a>(
     wheel: &WheelSurface<'a>,

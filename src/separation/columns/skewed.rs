@@ -1,8 +1,9 @@
-//! Columns of a skewed wheel: s(ξ, ·) as polynomials in η, of both parities.
+//! Columns of a skewed wheel: s(ξ, ·) as polynomials in η, with even and odd powers.
 //!
-//! Along a column the wheel's own ξ′ = ξ cos χ + η sin χ moves too, so that s is no function of η². Over one branch of the wheel s is
-//! analytic in η. It is interpolated from 16 Chebyshev points, and an interval where that fails is halved. Interpolation keeps the
-//! accuracy of the interval's largest s; where s is much smaller, near C, it is done anew.
+//! Along a column the wheel's own ξ′ = ξ cos χ + η sin χ moves, so that s is no function of η². Over one branch of the
+//! wheel s is analytic in η. It is interpolated from 16 Chebyshev points; an interval where that is not accurate enough is
+//! halved. The absolute error of the interpolant is a share of the interval's largest s. Intervals in which s is much
+//! smaller somewhere, near C, are therefore divided or computed point by point.
 
 use super::horner::{MOST_COEFFICIENTS, OneRun, per_degree};
 use crate::numerics::chebyshev::{self, PROOF};
@@ -13,11 +14,11 @@ use crate::separation::evaluator::Evaluator;
 use crate::separation::gap::contact_gap;
 use crate::separation::wheel_surface::{SpanLanes, WheelSurface};
 
-/// Values below this share of an interval's largest |s| would not have the promised thirteen digits by its interpolant.
+/// Share of an interval's largest |s| below which an interpolated s would not have the promised thirteen digits.
 const SMALL_SHARE: f64 = 1.0 / 64.0;
 
-/// Writes s \[mm\] of the column at ξ over ascending η, held to a demand; NaN where a body has no surface. The result is the largest
-/// truncation error \[mm\].
+/// Writes s \[mm\] of the column at ξ over ascending η to a demanded accuracy; NaN where a body has no surface. Returns the
+/// largest truncation error \[mm\].
 pub fn fill(
     evaluator: &mut Evaluator<'_>,
     (arch, demand): (pulp::Arch, Demand),
@@ -43,12 +44,12 @@ struct SkewedColumn<'s, 'a> {
     error: f64,
 }
 
-/// What s is computed from where ξ lies over both contact segments.
+/// The values from which s is computed if ξ lies over both contact segments.
 #[derive(Debug, Clone, Copy)]
 struct ContactBeginning {
     /// g(ξ) \[mm\].
     gap: f64,
-    /// The wheel's profile point at ξ.
+    /// The point of the wheel's profile at ξ.
     from: BranchPoints<MANY>,
 }
 
@@ -71,7 +72,7 @@ impl<'s, 'a> SkewedColumn<'s, 'a> {
         Self { evaluator, arch, demand, xi, rail_height, contact, error: 0.0 }
     }
 
-    /// Writes s at ascending η.
+    /// Writes s \[mm\] at ascending η.
     fn fill(&mut self, eta: &[f64], out: &mut [f64]) {
         if self.rail_height.is_nan() {
             return out.fill(f64::NAN);
@@ -88,7 +89,7 @@ impl<'s, 'a> SkewedColumn<'s, 'a> {
             return self.fill(eta.1, out.1);
         };
         let is_small = |s: &f64| s.abs() < SMALL_SHARE * size.largest;
-        // Between Chebyshev points a parabola falls by less than that share.
+        // A parabola falls by less than that share between two Chebyshev points.
         if few || size.least > 2.0 * SMALL_SHARE * size.largest {
             return;
         }
@@ -110,7 +111,7 @@ struct Size {
     least: f64,
 }
 
-/// An interval of η of a column to be filled; compiled for each kind of machine.
+/// An interval of η of a column that is to be filled. The work is compiled for each kind of machine.
 struct EtaInterval<'c, 's, 'a> {
     column: &'c mut SkewedColumn<'s, 'a>,
     ends: [f64; 2],
@@ -121,7 +122,8 @@ struct EtaInterval<'c, 's, 'a> {
 impl pulp::WithSimd for EtaInterval<'_, '_, '_> {
     type Output = Option<Size>;
 
-    /// Fills the interval. `None` where s is not over one branch, or its interpolant has too few coefficients that are rounding.
+    /// Fills the interval. Returns `None` if s does not lie over one branch, or if too few Chebyshev coefficients are as
+    /// small as rounding.
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) -> Option<Size> {
         let Self { column, ends: [a, b], eta, out } = self;
@@ -152,7 +154,7 @@ impl pulp::WithSimd for EtaInterval<'_, '_, '_> {
             *c *= shrink;
         }
         let c = &powers[1..kept.max(2)];
-        // Powers of a tiny interval may be beyond all numbers.
+        // Powers of a tiny interval may overflow.
         if c.len() > MOST_COEFFICIENTS || !c.iter().all(|c| c.is_finite()) {
             return None;
         }
@@ -162,8 +164,8 @@ impl pulp::WithSimd for EtaInterval<'_, '_, '_> {
     }
 }
 
-/// Gives the number of Chebyshev coefficients that are needed, and the sum of the others. Each of the others is rounding, or all are
-/// within the demand together. `None` where there are too few others.
+/// Returns the number of Chebyshev coefficients that are needed, and the sum of the others. The others are all as small as
+/// rounding, or their sum is within the demand. Returns `None` if there are too few others.
 #[inline(always)]
 fn kept(c: &Lanes, demand: f64, rounding: f64) -> Option<(usize, f64)> {
     let (mut kept, mut dropped) = (MANY, 0.0);
@@ -175,8 +177,8 @@ fn kept(c: &Lanes, demand: f64, rounding: f64) -> Option<(usize, f64)> {
 }
 
 impl SkewedColumn<'_, '_> {
-    /// Computes s \[mm\] at η over one branch of the wheel, and its rounding \[mm\]. `None` where not all η are over one branch, or,
-    /// if `between` is set, where those between neighbours may not be.
+    /// Computes s \[mm\] at η over one branch of the wheel, and its rounding \[mm\]. Returns `None` if not all η lie over
+    /// one branch. If `between`, this also covers all places between neighbouring η.
     #[inline(always)]
     fn separations(&mut self, eta: &Lanes, between: bool) -> Option<(Lanes, f64)> {
         let (xi, evaluator) = (self.xi, &mut *self.evaluator);
@@ -216,8 +218,8 @@ impl SkewedColumn<'_, '_> {
     }
 }
 
-/// Makes the spans of columns at ξ over one piece, each from where it enters the piece; their ends are not known. `None` where a point
-/// is not found.
+/// Makes the spans of columns at ξ over one piece. Each begins where its column enters the piece; the ends are not known.
+/// Returns `None` if a point is not found.
 #[inline(always)]
 fn spans_over<'a>(wheel: &WheelSurface<'a>, xi: &Lanes, piece: &Piece) -> Option<SpanLanes<'a, MANY>> {
     let branch = &wheel.section.branches[piece.branch];
@@ -227,8 +229,9 @@ fn spans_over<'a>(wheel: &WheelSurface<'a>, xi: &Lanes, piece: &Piece) -> Option
     Some(wheel.span_from(xi, branch, e0, branch.points(&begin)?))
 }
 
-/// Tells whether columns that enter a piece where the envelope jumps from sheet to sheet are beyond what the piece before covers; if
-/// `between` is set, also all between them. Where both pieces have a point, the piece before counts.
+/// Returns whether columns have left the previous piece when they enter this one. The envelope jumps from sheet to sheet
+/// between the two; where both pieces have a point, the previous one counts. If `between`, this also covers all columns
+/// between neighbouring ones.
 #[inline(always)]
 fn beyond_step(wheel: &WheelSurface<'_>, index: usize, [xi, u]: [&Lanes; 2], between: bool) -> bool {
     let ([near, far], pieces) = (wheel.sides(), &wheel.section.pieces);
@@ -236,7 +239,7 @@ fn beyond_step(wheel: &WheelSurface<'_>, index: usize, [xi, u]: [&Lanes; 2], bet
     let piece = &pieces[index];
     let joined = neighbour.and_then(|k| pieces.get(k)).filter(|before| before.xi[far] == piece.xi[near]);
     let Some(before) = joined.filter(|before| before.ends[far].1 != piece.ends[near].1) else { return true };
-    // A column that begins on the piece, or on neither's side of the joint, leaves the other at e ≤ 0.
+    // A column that begins on this piece, or on neither side of the joint, leaves the previous piece at e ≤ 0.
     let beyond = lanes(|k| match wheel.leaves(xi[k], before) {
         [e, u_joint] if e > 0.0 => u[k] - u_joint,
         _ => f64::INFINITY,
@@ -245,14 +248,15 @@ fn beyond_step(wheel: &WheelSurface<'_>, index: usize, [xi, u]: [&Lanes; 2], bet
     beyond.iter().all(|&beyond| beyond >= margin)
 }
 
-/// Gives the largest difference of neighbouring values; infinities count only beside numbers.
+/// Returns the largest difference of neighbouring values. An infinite value counts only beside a number.
 #[inline(always)]
 fn widest_step(values: &Lanes) -> f64 {
     values.windows(2).fold(0.0, |widest, pair| (pair[1] - pair[0]).abs().max(widest))
 }
 
-/// Tells whether abscissae of the profile are inside one piece; if `between` is set, also all between them. The abscissa is a parabola
-/// up to terms of fourth order, which turns between two points by less than it moves between others.
+/// Returns whether abscissae of the profile are inside one piece. If `between`, this also covers all places between
+/// neighbouring ones: the abscissa is a parabola up to terms of fourth order, so that a turn between two points moves it by
+/// less than the step between two others.
 #[inline(always)]
 fn inside(piece: &Piece, abscissae: &Lanes, between: bool) -> bool {
     let margin = if between { widest_step(abscissae) } else { 0.0 };

@@ -1,11 +1,11 @@
-//! Stores past the caches, for arrays that do not fit into them.
+//! Stores past the caches, for arrays that are larger than the caches.
 //!
-//! An ordinary store first reads the line of memory that it is going to overwrite. For such arrays that takes most of the time: 10⁸
-//! points take a third of the time without it (`wheelrail report`, growth of cost).
+//! An ordinary store first reads the line of memory that it will overwrite. For large arrays that takes most of the time:
+//! 10⁸ points take a third of the time without it (`wheelrail report`, growth of cost).
 
 use pulp::bytemuck::Pod;
 
-/// Writes vectors of f64, past the caches where they begin at a multiple of 16 bytes.
+/// Writes vectors of f64. Those that begin at a multiple of 16 bytes are stored past the caches.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 #[allow(unsafe_code, reason = "no safe store leaves the caches out")]
@@ -28,7 +28,7 @@ pub fn write<V: Pod>(out: &mut [V], values: impl Iterator<Item = V>) {
             unsafe { _mm_stream_pd(out.as_mut_ptr(), _mm_set_pd(pair[1], pair[0])) };
         }
     }
-    // These stores are not ordered with others: here they have arrived, before the borrow of `out` ends.
+    // Such stores are not ordered with others. The fence makes them visible before the borrow of `out` ends.
     // SAFETY: SSE is part of x86_64.
     unsafe { _mm_sfence() };
 }
@@ -57,7 +57,7 @@ mod tests {
             }
             assert!(numbers[..begin].iter().all(|&value| value == -1.0));
         }
-        // Vectors of one number are no pairs.
+        // A vector of one number is no pair.
         let mut numbers = [0.0; 3];
         write(&mut numbers, [1.0, 2.0, 3.0].into_iter());
         assert_eq!(numbers, [1.0, 2.0, 3.0]);

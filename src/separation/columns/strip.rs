@@ -1,4 +1,5 @@
-//! One strip of neighbouring columns: its quantities, and s from them, for many columns at once.
+//! A strip of neighbouring columns whose quantities are polynomials in ξ, and the evaluation of s for many of its columns
+//! at once.
 
 use super::horner::{MOST_COEFFICIENTS, PerDegree, horner, per_degree, whole_vectors};
 use super::neighbours::MOST_SPANS;
@@ -7,8 +8,8 @@ use crate::placement::Placement;
 use crate::separation::axis::{EtaAxis, mirror};
 use crate::separation::gap::midplane_gap;
 
-/// Columns over an interval of ξ that are made up of the same quantities. These are, for every span, the coefficients of q, s at the
-/// beginning and u_0. All are polynomials in ξ.
+/// Columns over an interval of ξ in which the same quantities determine s. For every span these are the coefficients of q,
+/// s at the beginning, and u_0. All are polynomials in ξ.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Strip {
     /// The open interval of ξ \[mm\].
@@ -19,10 +20,10 @@ pub struct Strip {
     pub spans: usize,
     /// Number of coefficients of q.
     pub coefficients: usize,
-    /// The coefficients of t^(kept−1), …, t⁰ of every quantity, where t runs from −1 to 1 over the interval. First come the
+    /// Coefficients of t^(kept−1), …, t⁰ of every quantity; t runs from −1 to 1 over the interval. The order is: the
     /// coefficients of q, span by span; then s of the first span; then u_0 and s of each further span.
     pub(super) powers: Vec<f64>,
-    /// The number of powers of each coefficient of q, by spans. u_0 and s have as many as the first span.
+    /// Number of powers of t for each coefficient of q, by spans. u_0 and s have as many powers as the first span.
     pub(super) kept: [usize; MOST_SPANS],
     /// Largest measured truncation error of the columns \[mm\].
     pub truncation: f64,
@@ -31,20 +32,20 @@ pub struct Strip {
 /// How s at the beginning of a strip's columns is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Gap {
-    /// s is interpolated.
+    /// s is interpolated in ξ.
     Plain,
-    /// g/ξ² is interpolated.
+    /// g/ξ² is interpolated in ξ.
     Relative,
-    /// g is computed for every column, because g/ξ² varies too much for its smallest values to keep their digits.
+    /// g is computed for every column, because too few Chebyshev coefficients of its interpolant would be as small as rounding.
     Computed,
 }
 
-/// The polynomials s = base + v Σ c_k v^k of neighbouring columns over one span, v = u − u_0.
+/// Polynomials s = base + v Σ c_k v^k of several neighbouring columns over one span, with v = u − u_0.
 #[derive(Debug, Clone)]
 pub struct ColumnPolynomials {
     /// Coefficients of q.
     c: [Lanes; MOST_COEFFICIENTS],
-    /// s at u_0 \[mm\].
+    /// s at the beginning of the span \[mm\].
     base: Lanes,
     /// u_0 \[mm²\].
     pub(super) u0: Lanes,
@@ -54,14 +55,14 @@ impl ColumnPolynomials {
     /// Zero polynomials.
     pub const ZERO: Self = Self { c: [[0.0; MANY]; _], base: [0.0; MANY], u0: [0.0; MANY] };
 
-    /// Makes these the polynomials of columns that have one span.
+    /// Sets the polynomials of columns that have one span, which begins at u_0 = 0.
     #[inline(always)]
     pub fn set(&mut self, c: &[Lanes], base: &Lanes) {
         self.c[..c.len()].copy_from_slice(c);
         (self.base, self.u0) = (*base, [0.0; MANY]);
     }
 
-    /// Computes s \[mm\] of each column at its own v \[mm²\], by so many coefficients.
+    /// Computes s \[mm\] of each column at its own v \[mm²\], with the given number of coefficients.
     #[inline(always)]
     pub fn values(&self, coefficients: usize, v: &Lanes) -> Lanes {
         let mut q = [0.0f64; MANY];
@@ -71,7 +72,7 @@ impl ColumnPolynomials {
         lanes(|k| q[k].mul_add(v[k], self.base[k]))
     }
 
-    /// Gives s and u_0 at the beginning of the k-th column's span, and its N coefficients.
+    /// Returns s and u_0 at the beginning of the k-th column's span, and its N coefficients.
     #[inline(always)]
     fn column<const N: usize>(&self, k: usize) -> ([f64; 2], [f64; N]) {
         let mut c = [0.0; N];
@@ -82,16 +83,18 @@ impl ColumnPolynomials {
     }
 }
 
-/// Neighbouring columns of one strip to be evaluated; compiled for each kind of machine. They are stored past the caches if `PAST`.
+/// Neighbouring columns of one strip that are to be evaluated. The work is compiled for each kind of machine. If `PAST`,
+/// values are stored past the caches.
 ///
-/// It is a struct, because closures may be left out of line, and so without the machine's widest vectors.
+/// This is a struct and not a closure: the compiler may not inline a closure, which would then lack the machine's widest
+/// vectors.
 pub struct StripColumns<'a, const PAST: bool> {
     pub placement: &'a Placement,
     pub strip: &'a Strip,
     /// ξ of the columns \[mm\], at most [`MANY`].
     pub xi: &'a [f64],
     pub axis: &'a EtaAxis,
-    /// Whether one half of a column is the other's mirror image, and columns are whole vectors.
+    /// Whether one half of each column is the mirror image of the other, and columns consist of whole vectors.
     pub mirrored: bool,
     /// Memory for the polynomials of every span, overwritten.
     pub scratch: &'a mut Vec<ColumnPolynomials>,
@@ -116,7 +119,7 @@ impl<const PAST: bool> pulp::WithSimd for StripColumns<'_, PAST> {
     }
 }
 
-/// Computes Σ c t^k at each t, from coefficients with the highest power first.
+/// Computes Σ c t^k at each t. The coefficients begin with the highest power.
 #[inline(always)]
 fn at(powers: &[f64], t: &Lanes) -> Lanes {
     let mut sum = [0.0f64; MANY];
@@ -127,7 +130,7 @@ fn at(powers: &[f64], t: &Lanes) -> Lanes {
 }
 
 impl Strip {
-    /// Computes the polynomials over every span at each ξ \[mm\], at most [`MANY`]; `u_max` \[mm²\] is the end of the columns.
+    /// Computes the polynomials over every span at each ξ \[mm\], at most [`MANY`]. The columns end at `u_max` \[mm²\].
     #[inline(always)]
     pub fn polynomials(
         &self,
@@ -158,7 +161,7 @@ impl Strip {
             Gap::Relative => *base = lanes(|k| base[k] * (all[k] * all[k])),
             Gap::Computed => *base = all.map(|xi| midplane_gap(placement, xi)),
         }
-        // Of several spans q is interpolated in powers of τ.
+        // With several spans, q was interpolated in powers of τ and is converted to powers of v.
         let mut end = [u_max; MANY];
         for span in spans.iter_mut().rev().filter(|_| self.spans > 1) {
             let shrink: Lanes = lanes(|k| 1.0 / (end[k] - span.u0[k]));
@@ -172,13 +175,13 @@ impl Strip {
     }
 }
 
-/// Neighbouring columns to be evaluated from their polynomials over every span, of which there is one if `SINGLE`.
+/// Neighbouring columns that are to be evaluated from their polynomials over every span. If `SINGLE`, there is one span.
 pub struct Evaluation<'a, S, const SINGLE: bool, const PAST: bool> {
     pub simd: S,
     /// Polynomials of every span, in order of u.
     pub polynomials: &'a [ColumnPolynomials],
     pub axis: &'a EtaAxis,
-    /// Whether one half of a column is the other's mirror image, and columns are whole vectors.
+    /// Whether one half of each column is the mirror image of the other, and columns consist of whole vectors.
     pub mirrored: bool,
     /// s \[mm\], column by column, overwritten.
     pub out: &'a mut [f64],
@@ -196,13 +199,13 @@ impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> PerDegree for Evaluati
 }
 
 impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> Evaluation<'_, S, SINGLE, PAST> {
-    /// Writes columns from the vector on that holds the first η ≥ 0, in whole vectors, and then their mirror images.
+    /// Writes columns in whole vectors, from the vector that holds the first η ≥ 0 outwards, and then their mirror images.
     #[inline(always)]
     fn outwards<const N: usize>(self) {
         let Self { simd, polynomials: spans, axis, out, .. } = self;
         let (count, lanes) = (axis.eta.len(), S::F64_LANES);
         let half = axis.first_positive - axis.first_positive % lanes;
-        // Where the vectors begin that hold both a span's beginning and the end of the span before.
+        // The first vector of each span: it holds the span's beginning, and also the end of the previous span.
         let mut begins = [half; MOST_SPANS];
         for (k, out) in out.chunks_exact_mut(count).enumerate() {
             if SINGLE {
@@ -210,7 +213,8 @@ impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> Evaluation<'_, S, SING
                 whole_vectors::<S, N, true>(simd, begin, &c, &axis.u[half..], &mut out[half..]);
             } else {
                 for (index, span) in spans.iter().enumerate().skip(1) {
-                    // Seldom another vector than in the column before: a loop whose end no processor foresees takes longer.
+                    // The vector is mostly that of the previous column. A loop with an end that processors cannot predict
+                    // takes longer.
                     let least = begins[index - 1];
                     let mut begin = begins[index].max(least);
                     while begin > least && axis.u[begin] > span.u0[k] {
@@ -249,7 +253,7 @@ impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> Evaluation<'_, S, SING
                 continue;
             }
             for (index, span) in spans.iter().enumerate().skip(1).rev() {
-                // A short span is mostly between two values; others end near where they do in the column before.
+                // A short span mostly lies between two values. Other spans end near their end in the previous column.
                 let (u, beyond) = (span.u0[k], ends[index]);
                 let near = if axis.is_end(u, beyond) { beyond } else { ends[index - 1] };
                 ends[index - 1] = axis.end(u, near).min(beyond);
@@ -262,7 +266,7 @@ impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> Evaluation<'_, S, SING
                 if end <= begin {
                     continue;
                 }
-                // Whole vectors: what they hold beyond the span's end is overwritten by the next one.
+                // Only whole vectors are written. The next span overwrites the values beyond the end of this one.
                 let whole = begin + (end - begin).next_multiple_of(S::F64_LANES);
                 let run = begin..if whole <= count { whole } else { end };
                 let (beginning, c) = spans[index].column(k);

@@ -1,9 +1,10 @@
-//! How strips are made: neighbouring columns that pass the same branches in the same order, as polynomials in ξ.
+//! Makes strips: neighbouring columns that pass the same branches in the same order, as polynomials in ξ.
 //!
-//! Between the ξ at which a joint of either body enters or leaves the window, all that makes up a spectral column is analytic in ξ.
-//! For every span this is s at the beginning (over both contact segments as g/ξ², which keeps its relative accuracy down to C), u_0,
-//! and the coefficients of q in powers of τ = (u − u_0)/(u_1 − u_0). They are interpolated to rounding from columns at 16 Chebyshev
-//! points in ξ. A strip where that fails is halved; one with few columns is left to its columns.
+//! All quantities of a spectral column are analytic in ξ, except where a joint of either body enters or leaves the window.
+//! For every span these quantities are s at the beginning (over both contact segments g/ξ², which keeps its relative
+//! accuracy down to C), u_0, and the coefficients of q in powers of τ = (u − u_0)/(u_1 − u_0). They are interpolated to
+//! rounding from columns at 16 Chebyshev points in ξ. A strip where that fails is halved; a strip of few columns is given
+//! up, and its columns are fitted one by one.
 
 use super::fit::{Fitter, polynomials};
 use super::neighbours::{MOST_SPANS, Neighbours};
@@ -15,22 +16,22 @@ use crate::separation::demand::ROUNDING_LEVEL;
 use crate::separation::evaluator::Evaluator;
 use crate::separation::wheel_surface::WheelSurface;
 
-/// The number of columns that a strip must have. Making it takes as long as about so many single columns.
+/// Least number of columns of a strip. Making a strip takes as long as about so many single columns.
 const LEAST_COLUMNS: usize = 8;
 
-/// Where g/ξ² varies much, this share of its smallest value is rounding: a thirtieth of the promised relative error.
+/// Largest rounding that is allowed in g/ξ², as a share of its smallest value: a thirtieth of the promised relative error.
 const MOST_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// Places in 0 ≤ τ ≤ 1 at which changes of q are judged.
+/// Places in 0 ≤ τ ≤ 1 at which changes of q are compared with rounding.
 const JUDGED: [f64; 4] = [0.0, 0.3, 0.7, 1.0];
 
-/// Makes the strips of a grid up to u = `u_max` \[mm²\], in order of ξ. There are none for a skewed wheel or few columns.
+/// Makes the strips of a grid up to u = `u_max` \[mm²\], in order of ξ. A skewed wheel or a grid of few columns has none.
 pub fn strips(fitter: &mut Fitter<'_>, placement: &Placement, xi: &[f64], u_max: f64) -> Vec<Strip> {
     let (Some(&first), Some(&last)) = (xi.first(), xi.last()) else { return Vec::new() };
     if placement.skew() != 0.0 || u_max == 0.0 {
         return Vec::new();
     }
-    // What is no break belongs to the strip.
+    // The ends of the window are widened by one number, so that the first and last columns lie inside.
     let window = [first.next_down(), last.next_up()];
     let least = fitter.least;
     let mut maker = Maker { fitter, u_max, least, strips: Vec::new() };
@@ -44,7 +45,7 @@ pub fn strips(fitter: &mut Fitter<'_>, placement: &Placement, xi: &[f64], u_max:
     maker.strips
 }
 
-/// Counts the first columns for which a property holds. Most of a spline's many intervals have one column or none.
+/// Counts the leading columns that have a property. Most intervals of a spline have one column or none.
 fn leading(xi: &[f64], holds: impl Fn(f64) -> bool) -> usize {
     if xi.get(LEAST_COLUMNS).is_some_and(|&xi| holds(xi)) {
         return xi.partition_point(|&xi| holds(xi));
@@ -52,16 +53,17 @@ fn leading(xi: &[f64], holds: impl Fn(f64) -> bool) -> usize {
     xi.iter().take_while(|&&xi| holds(xi)).count()
 }
 
-/// Finds the ξ \[mm\] at which a joint of either body enters or leaves the columns, and the window's own ends, in order.
+/// Finds the ξ \[mm\] at which a joint of either body enters or leaves the columns, in order, with the window's two ends.
 fn breaks(placement: &Placement, u_max: f64, window: [f64; 2]) -> Vec<f64> {
     let (rail, wheel) = (&placement.rail().section, WheelSurface::new(placement));
     let leaving = |(joint, height): (f64, f64)| {
         let w = wheel.axle_distance(joint, height);
-        // u = e (2w − e): the joint's own ring meets the window's edge; it has no such point where that is NaN.
+        // From u = e (2w − e): the joint's circle meets the edge of the window here. The result is NaN if the circle does
+        // not reach the edge.
         joint + wheel.sin * u_max / (w + (w * w - u_max).sqrt())
     };
     let inside = |xi: &f64| window[0] < *xi && *xi < window[1];
-    // e ≤ w, so that e² ≤ u: no joint leaves further than this from where it enters.
+    // Because e ≤ w, e² ≤ u: no joint moves farther than this along ξ before it leaves.
     let far = wheel.sin.abs() * u_max.sqrt();
     let mut ends = Vec::with_capacity(MANY);
     ends.push(window[0]);
@@ -69,29 +71,29 @@ fn breaks(placement: &Placement, u_max: f64, window: [f64; 2]) -> Vec<f64> {
     ends.extend(wheel.section.joints(window).map(|(xi, _)| xi).filter(inside));
     ends.extend(wheel.section.joints([window[0] - far, window[1] + far]).map(leaving).filter(inside));
     ends.push(window[1]);
-    // Four runs in order, which a stable sort merges.
+    // The list consists of four sorted runs, which a stable sort merges.
     ends.sort_by(f64::total_cmp);
     ends
 }
 
-/// The strips made so far, and what they are made with.
+/// The strips made so far, and what is needed to make more.
 struct Maker<'s, 'a> {
     fitter: &'s mut Fitter<'a>,
     u_max: f64,
-    /// The number of coefficients that the next strip starts with: one less than the last one needed.
+    /// Number of coefficients that the next strip starts with: one less than the last strip needed.
     least: usize,
     strips: Vec<Strip>,
 }
 
 impl Maker<'_, '_> {
-    /// Appends strips for columns inside an interval without breaks.
+    /// Appends strips for the columns inside an interval without breaks.
     fn divide(&mut self, [a, b]: [f64; 2], columns: &[f64]) {
         let middle = a + (b - a) / 2.0;
-        // An interval of two neighbouring numbers has no halves.
+        // An interval between two neighbouring numbers has no halves.
         if columns.len() < LEAST_COLUMNS || middle <= a || middle >= b {
             return;
         }
-        // Halves of an interval that is so short would have no strips.
+        // The halves of such a short interval would have too few columns for strips.
         let short = columns.len() < 2 * LEAST_COLUMNS;
         let arch = self.fitter.arch;
         let attempt =
@@ -110,14 +112,14 @@ impl Maker<'_, '_> {
     }
 }
 
-/// Gives ξ \[mm\] at places t, which run from −1 to 1 over an interval.
+/// Returns ξ \[mm\] at places t, which run from −1 to 1 over an interval.
 #[inline(always)]
 pub fn inside([a, b]: [f64; 2], t: &Lanes) -> Lanes {
     let half = (b - a) / 2.0;
     lanes(|k| a + half + half * t[k])
 }
 
-/// The attempt to make one strip over an interval; compiled for each kind of machine.
+/// The attempt to make one strip over an interval. It is compiled for each kind of machine.
 struct Attempt<'s, 'a> {
     fitter: &'s mut Fitter<'a>,
     u_max: f64,
@@ -139,9 +141,9 @@ impl pulp::WithSimd for Attempt<'_, '_> {
 }
 
 impl Attempt<'_, '_> {
-    /// Makes the strip through the columns last taken, which are at its Chebyshev points. `None` where there are too many spans,
-    /// where something is not finite, or where a quantity has too few coefficients that are rounding. The gap of a `short` strip may
-    /// have too few.
+    /// Makes the strip through the columns taken last, which are at its Chebyshev points. Returns `None` if there are too
+    /// many spans, if a value is not finite, or if too few coefficients of a quantity are as small as rounding. The gap of
+    /// a `short` strip is exempt from the last condition.
     #[inline(always)]
     fn strip(self) -> Option<Strip> {
         let Self { fitter, u_max, xi, least, short } = self;
@@ -164,11 +166,12 @@ impl Attempt<'_, '_> {
                 }
             }
             let relative = ROUNDING_LEVEL * q[0][0].abs();
-            // Beyond the contact segments q need not be better than s at the beginning, over the span's length.
+            // Beyond the contact segments q needs the absolute accuracy of s at the beginning, divided by the span's
+            // length.
             let contact = columns.contact && k == 0;
             let allowed =
                 if contact { relative } else { relative.max(beginnings.rounding[k] / largest(&length)) };
-            // u at τ = 1 where there is one span and its q is left in powers of u.
+            // This is u at τ = 1. A single span keeps q in powers of u.
             let end = if single { length[0] } else { 1.0 };
             let mut judged = Judged::default();
             for tau in JUDGED {
@@ -187,7 +190,7 @@ impl Attempt<'_, '_> {
         let mut powers = vec![0.0; coefficients * kept.iter().sum::<usize>() + at_beginnings];
         let (mut rest, mut rows) = (&mut powers[..], rows.iter());
         for (n, kept) in counts.into_iter().zip(kept).take(spans) {
-            // Columns are evaluated with as many coefficients for every span.
+            // Columns are evaluated with the same number of coefficients for every span.
             let (of_q, others) = rest.split_at_mut(coefficients * kept);
             for (powers, row) in of_q.chunks_exact_mut(kept).zip(rows.by_ref().take(n)) {
                 write(powers, row);
@@ -201,7 +204,7 @@ impl Attempt<'_, '_> {
     }
 }
 
-/// Writes the coefficients of t^(kept−1), …, t⁰ of an interpolant with these Chebyshev coefficients.
+/// Writes the coefficients of t^(kept−1), …, t⁰ of the interpolant that has these Chebyshev coefficients.
 #[inline(always)]
 fn write(powers: &mut [f64], row: &Lanes) {
     let values = chebyshev::to_powers(row, powers.len());
@@ -210,20 +213,20 @@ fn write(powers: &mut [f64], row: &Lanes) {
     }
 }
 
-/// What the spans of a strip's columns begin with. Most intervals that are too long are found out by it.
+/// The values at the beginnings of the spans of a strip's columns. They reveal most of the intervals that are too long.
 struct Beginnings {
     gap: Gap,
-    /// The Chebyshev series of u_0 and of s, of every span.
+    /// The Chebyshev series of u_0 and of s, for every span.
     series: [[Lanes; 2]; MOST_SPANS],
-    /// The number of coefficients of these that are more than rounding.
+    /// Number of leading coefficients of these series that are larger than rounding.
     kept: usize,
-    /// The rounding of s, of every span \[mm, or 1/mm for g/ξ²\].
+    /// The rounding of s, for every span \[mm, or 1/mm for g/ξ²\].
     rounding: [f64; MOST_SPANS],
 }
 
 impl Beginnings {
-    /// Judges the beginnings of the columns last taken. `None` where u_0 or s has too few coefficients that are rounding; s of a
-    /// `short` strip may have too few over the contact segments.
+    /// Judges the beginnings of the columns taken last. Returns `None` if too few coefficients of u_0 or s are as small as
+    /// rounding. The first span of a `short` strip is exempt for s, which is then computed for every column.
     #[inline(always)]
     fn new(evaluator: &Evaluator<'_>, columns: &Neighbours<'_>, short: bool) -> Option<Self> {
         let mut gap = if columns.contact { Gap::Relative } else { Gap::Plain };
@@ -234,8 +237,8 @@ impl Beginnings {
             let mut s = span.base;
             rounding[k] = if columns.contact && k == 0 {
                 s = lanes(|k| s[k] / (columns.xi[k] * columns.xi[k]));
-                // What is relatively accurate must stay so where it is smallest; where it varies much, the largest
-                // values' rounding is more.
+                // A value with relative accuracy must keep it where it is smallest. If it varies much, the rounding of its
+                // largest values is larger than that.
                 let least = smallest(&s);
                 let rounding = (0.5 * f64::EPSILON * largest(&s)).min(MOST_ROUNDING * least);
                 rounding.max(ROUNDING_LEVEL * least)
@@ -255,12 +258,12 @@ impl Beginnings {
     }
 }
 
-/// Tells by entries that are not 0 which Chebyshev coefficients are more than rounding, or not finite.
+/// Which Chebyshev coefficients are larger than rounding or not finite: their entries are not 0.
 #[derive(Debug, Default, Clone, Copy)]
 struct Judged([u64; MANY]);
 
 impl Judged {
-    /// Judges one more series, of which coefficients up to `allowed` are rounding.
+    /// Adds one more series, in which coefficients up to `allowed` count as rounding.
     #[inline(always)]
     fn with(&mut self, row: &Lanes, allowed: f64) {
         for (more, c) in self.0.iter_mut().zip(row) {
@@ -269,7 +272,8 @@ impl Judged {
         }
     }
 
-    /// Gives the number of coefficients up to the last one that is more than rounding; `None` where too few are rounding.
+    /// Returns the number of coefficients up to the last one larger than rounding. Returns `None` if too few are as small
+    /// as rounding.
     fn kept(&self) -> Option<usize> {
         let kept = self.0.iter().rposition(|&more| more != 0).map_or(1, |last| last + 1);
         (kept + PROOF <= MANY).then_some(kept)

@@ -1,4 +1,4 @@
-//! How far columns are from what they interpolate, measured where they were not made from it.
+//! Measures the truncation error of columns, at places between the nodes of their interpolation.
 
 use std::sync::LazyLock;
 
@@ -11,44 +11,48 @@ use crate::numerics::lanes::{Lanes, MANY, lanes};
 use crate::numerics::nan_max;
 use crate::separation::wheel_surface::{SagittaPoints, WheelSurface};
 
-/// Places in a span, as shares of its u, at which the truncation error of a single column is measured beside the end.
+/// Places in a span, as shares of its u, at which the truncation error of a single column is measured. The end of the span
+/// is measured, too.
 const MEASURED: [f64; 4] = [0.1, 0.3, 0.55, 0.8];
 
-/// (√5 − 1)/2: the fractions of its multiples are spread evenly, however many are taken.
+/// The golden ratio (√5 − 1)/2. The fractional parts of its multiples are spread evenly, however many are taken.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
-/// Places half way between the nodes of an interval, the last one to its middle; and shares of spans by the golden ratio.
+/// Places half way between the nodes of an interval, the last one half way to its middle; and shares of spans by the golden
+/// ratio.
 static BETWEEN: LazyLock<(Lanes, Lanes)> = LazyLock::new(|| {
     let nodes = &*chebyshev::NODES;
     let places = lanes(|k| 0.5 * (nodes[k] + if k + 1 < MANY { nodes[k + 1] } else { -1.0 }));
     (places, lanes(|k| (GOLDEN * (k + 1) as f64).fract()))
 });
 
-/// Measures the largest difference \[mm\] of a strip's columns from the same columns fitted at once, up to u = `u_max` \[mm²\]. It is
-/// taken between the strip's nodes in ξ, and at another place in every span for each.
+/// Measures the largest difference \[mm\] of a strip's columns from the same columns fitted directly, up to u = `u_max`
+/// \[mm²\]. The places lie between the strip's nodes in ξ; each has another share of every span.
 pub fn of_strip(fitter: &mut Fitter<'_>, strip: &Strip, u_max: f64) -> f64 {
     fitter.arch.dispatch(StripDifference { fitter, strip, u_max })
 }
 
-/// Measures the largest truncation error \[mm\] of columns in no strip. Appends the numbers of coefficients that they need.
+/// Measures the largest truncation error \[mm\] of columns in no strip. Appends the numbers of coefficients that they need
+/// to `needed`.
 pub fn of_columns(fitter: &mut Fitter<'_>, xi: &[f64], u_max: f64, needed: &mut Vec<usize>) -> f64 {
     let arch = fitter.arch;
     let columns = |xi| arch.dispatch(LoneColumns { fitter: &mut *fitter, xi, u_max, needed: &mut *needed });
     xi.chunks(MANY).map(columns).fold(0.0, nan_max)
 }
 
-/// Measures the largest truncation error \[mm\] of one column as [`of_columns`] does.
+/// Measures the largest truncation error \[mm\] of one column in no strip. Appends the number of coefficients that it needs
+/// to `needed`.
 fn of_column(fitter: &mut Fitter<'_>, xi: f64, u_max: f64, needed: &mut Vec<usize>) -> f64 {
     let mut spans = std::mem::take(&mut fitter.spans);
     fitter.evaluator.wheel.spans(xi, u_max, &mut spans);
     let mut truncation = 0f64;
     for span in &spans {
-        // A span without a polynomial is evaluated point by point, without truncation.
+        // A span without a polynomial is evaluated point by point and has no truncation error.
         let Some(fit) = fitter.column(xi, span, u_max) else { continue };
         needed.push(fit.n);
         let run = span.u[1].min(u_max) - span.u[0];
         let error = |u: f64| {
-            // Where the wheel has no point there is no error.
+            // A place without a point on the wheel has no error.
             let point = fitter.evaluator.wheel.point_at(xi, span, u);
             point.map_or(0.0, |point| (fit.rise(u) - point.rise).abs())
         };
@@ -59,14 +63,14 @@ fn of_column(fitter: &mut Fitter<'_>, xi: f64, u_max: f64, needed: &mut Vec<usiz
     truncation
 }
 
-/// Finds the points of columns at about these shares of one span's sagittae. `None` near a vertical tangent.
+/// Finds points of columns near these shares of one span's sagittae. Returns `None` near a vertical tangent.
 #[inline(always)]
 fn points(wheel: &WheelSurface<'_>, span: &SpanColumns<'_>, shares: &Lanes) -> Option<SagittaPoints<MANY>> {
     let (_, run) = wheel.points_near(&span.wheel, &span.wheel.u[1])?;
     Some(wheel.points_by(&span.wheel, &lanes(|k| run[k] * shares[k])))
 }
 
-/// The measurement of [`of_strip`]; compiled for each kind of machine.
+/// The work of [`of_strip`], compiled for each kind of machine.
 struct StripDifference<'s, 'a> {
     fitter: &'s mut Fitter<'a>,
     strip: &'s Strip,
@@ -86,7 +90,7 @@ impl pulp::WithSimd for StripDifference<'_, '_> {
         let mut most = 0.0;
         let mut compare = |polynomial: &ColumnPolynomials, [u, s]: [&Lanes; 2]| {
             let found = polynomial.values(strip.coefficients, &lanes(|k| u[k] - polynomial.u0[k]));
-            // Those that lie over this polynomial.
+            // Only places over this polynomial count.
             let over = |k: usize| u[k] >= polynomial.u0[k];
             let differences: Lanes = lanes(|k| if over(k) { (found[k] - s[k]).abs() } else { 0.0 });
             most = differences.into_iter().fold(most, nan_max);
@@ -99,7 +103,7 @@ impl pulp::WithSimd for StripDifference<'_, '_> {
                 Some((base, points)) => {
                     compare(polynomial, [&points.u, &lanes(|k| base[k] + points.rise[k])])
                 }
-                // Near a vertical tangent not all are found at once.
+                // Near a vertical tangent not all points are found at once; they are computed one by one.
                 None => {
                     let [begin, next] = [Some(polynomial), polynomials.get(index + 1)]
                         .map(|polynomial| polynomial.map_or([u_max; MANY], |polynomial| polynomial.u0));
@@ -116,7 +120,7 @@ impl pulp::WithSimd for StripDifference<'_, '_> {
     }
 }
 
-/// The measurement of [`of_columns`] for at most [`MANY`] columns, at once where it can be; compiled for each kind of machine.
+/// The work of [`of_columns`] for at most [`MANY`] columns, at once if possible; compiled for each kind of machine.
 struct LoneColumns<'s, 'a> {
     fitter: &'s mut Fitter<'a>,
     xi: &'s [f64],

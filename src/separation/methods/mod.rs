@@ -1,4 +1,4 @@
-//! The methods of the accuracy ladder, one file each.
+//! The methods of the accuracy ladder, one file for each.
 
 pub mod parabolic;
 pub mod pointwise;

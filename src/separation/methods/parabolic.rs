@@ -1,11 +1,11 @@
-//! Parabolas across the midplane, with one coefficient for all columns or one for each.
+//! Parabolas across the midplane, with one coefficient for all columns or one for each column.
 
 use crate::placement::Placement;
 use crate::separation::axis::EtaAxis;
 use crate::separation::evaluator::Evaluator;
 use crate::separation::kernel::Kernel;
 
-/// The parabolas s ≈ g(ξ) + η²/2R or s ≈ g(ξ) + q(ξ, 0) η². Under skew, g is taken at ξ′ and η is η′.
+/// The parabolas s ≈ g(ξ) + η²/2R or s ≈ g(ξ) + q(ξ, 0) η². Under skew the wheel's ξ′ and η′ replace ξ and η.
 #[derive(Debug)]
 pub struct Parabolic<'a> {
     arch: pulp::Arch,

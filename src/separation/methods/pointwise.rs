@@ -1,4 +1,4 @@
-//! Every point of a grid by its own sagitta iteration.
+//! Evaluates every point of a grid by its own sagitta iteration.
 
 use crate::placement::Placement;
 use crate::separation::axis::EtaAxis;

@@ -24,7 +24,7 @@ impl<'a> Quadratic<'a> {
 
 /// Computes the coefficients of ξ², ξη and η² \[1/mm\] in the second-order expansion of s at C.
 ///
-/// At a joint the curvatures are those of the contact segments. The result is NaN where a body touches with a kink.
+/// At a joint the curvatures are those of the contact segments. The result is NaN if a body touches with a kink.
 pub fn quadratic_form(placement: &Placement) -> [f64; 3] {
     if !(placement.rail().is_smooth() && placement.wheel().is_smooth()) {
         return [f64::NAN; 3];
@@ -39,7 +39,8 @@ pub fn quadratic_form(placement: &Placement) -> [f64; 3] {
     }
 }
 
-/// Computes the coefficients from the curvatures of rail and wheel profile and cosθ_W/ϱ \[1/mm\], and the skew χ \[rad\].
+/// Computes the coefficients \[1/mm\] from the profile curvatures of rail and wheel, cosθ_W/ϱ \[1/mm\] and the skew χ
+/// \[rad\].
 pub fn form([k_r, k_w]: [f64; 2], around: f64, skew: f64) -> [f64; 3] {
     let (sin, cos) = skew.sin_cos();
     let along = k_w * cos * cos + around * sin * sin - k_r;

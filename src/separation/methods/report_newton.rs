@@ -1,8 +1,8 @@
 //! The Report's own INSEP: Newton–Raphson on (6.13), kept as the historical baseline.
 //!
-//! It is written as printed, in centre form, with its cancellation: F = (z − R)² − (ρ² − η²) leaves an absolute error of about
-//! 1e-13 mm whatever the size of s (erratum 7). The segment is found anew from x at every iterate (erratum 6). An iterate that
-//! leaves the profile, or an arc, gives NaN.
+//! It follows the printed text, in centre form, with its cancellation: F = (z − R)² − (ρ² − η²) leaves an absolute error of
+//! about 1e-13 mm whatever the size of s (erratum 7). The segment is found anew from x at every iterate (erratum 6). An
+//! iterate that leaves the profile or an arc gives NaN.
 
 use crate::numerics::polynomial::derivatives;
 use crate::placement::{Body, Placement};
@@ -10,21 +10,22 @@ use crate::profile::{Shape, Station};
 use crate::separation::axis::EtaAxis;
 use crate::separation::kernel::Kernel;
 
-/// After so many iterations the Report's method is taken not to converge. It needs 2 to 5 where it does.
+/// Most iterations before the Report's method counts as not convergent. It needs 2 to 5 if it converges.
 const MOST_ITERATIONS: usize = 50;
 
 /// A segment as (3.2) writes it.
 #[derive(Debug, Clone)]
 enum Printed {
-    /// z = b ± √(R² − (x − a)²), the sign carried for erratum 2.
+    /// z = b ± √(R² − (x − a)²); the sign is stored because of erratum 2.
     Arc { a: f64, b: f64, radius: f64, sign: f64 },
     /// z = a x + b.
     Line { a: f64, b: f64 },
-    /// z = Σ c_k (x − x_m)^k, which the Report does not have.
+    /// z = Σ c_k (x − x_m)^k. The Report has no polynomials.
     Polynomial { middle: f64, c: Vec<f64> },
 }
 
-/// Names what of a placed pair the Report's method has no formula for; its values are NaN there. `None` where it has them all.
+/// Names the feature of a placed pair for which the Report's method has no formula; its values are then NaN. Returns `None`
+/// if it has formulas for everything.
 pub fn missing(placement: &Placement) -> Option<&'static str> {
     if placement.skew() != 0.0 {
         return Some("yaw");
@@ -112,7 +113,7 @@ impl<'a> ReportNewton<'a> {
         Some(self.wheel[self.last].1.profile(x))
     }
 
-    /// Computes ζ^W \[mm\] by the steps a to h of Sec. 6.2; NaN where they do not converge.
+    /// Computes ζ^W \[mm\] by steps a to h of Sec. 6.2; NaN if they do not converge.
     fn wheel_height(&mut self, xi: f64, eta: f64, guess: f64) -> f64 {
         let Station { x: x_c, z: z_c, cos, sin } = self.placement.wheel().section.frame;
         let radius = self.placement.wheel_radius();

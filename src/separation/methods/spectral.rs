@@ -1,4 +1,5 @@
-//! Spectral columns: q(ξ, ·) as a polynomial in u = η², by strips, by neighbouring columns, or by single columns.
+//! Spectral columns: q(ξ, ·) as a polynomial in u = η². They are computed by strips, by several neighbouring columns, or
+//! one by one.
 
 use crate::numerics::lanes::MANY;
 use crate::separation::axis::{EtaAxis, mirror};
@@ -11,7 +12,7 @@ use crate::separation::kernel::Kernel;
 use crate::separation::values::{LINE, Residence, lead};
 use crate::separation::wheel_surface::Span;
 
-/// Columns by interpolation to a demand.
+/// Spectral columns that keep a demanded accuracy.
 #[derive(Debug)]
 pub struct Spectral<'a> {
     fitter: Fitter<'a>,
@@ -25,14 +26,14 @@ pub struct Spectral<'a> {
 }
 
 impl<'a> Spectral<'a> {
-    /// Makes the method by a fitter, with strips for some of the columns, for an array in one kind of memory.
+    /// Makes the method from a fitter, the strips of some of the columns, and the kind of memory in which the array is.
     pub fn new(fitter: Fitter<'a>, axis: &'a EtaAxis, strips: &'a [Strip], residence: Residence) -> Self {
         let polynomials = Vec::with_capacity(MOST_SPANS);
         Self { fitter, axis, strips, polynomials, residence, truncation: 0.0 }
     }
 }
 
-/// Tells whether spans are all of the column up to `u_max` \[mm²\].
+/// Returns whether the spans cover the whole column up to `u_max` \[mm²\].
 fn is_whole(spans: &[Span], u_max: f64) -> bool {
     spans.first().is_some_and(|span| span.e[0] == 0.0)
         && spans.last().is_some_and(|span| span.u[1] >= u_max)
@@ -79,10 +80,10 @@ impl Kernel for Spectral<'_> {
     }
 }
 
-/// Neighbouring columns that are in no strip, fitted at once where they can be; compiled for each kind of machine.
+/// Neighbouring columns in no strip, fitted at once if possible. The work is compiled for each kind of machine.
 struct EachColumn<'s, 'a> {
     spectral: &'s mut Spectral<'a>,
-    /// At most [`MANY`].
+    /// ξ of the columns \[mm\], at most [`MANY`].
     xi: &'s [f64],
     out: &'s mut [f64],
 }
@@ -111,14 +112,15 @@ impl pulp::WithSimd for EachColumn<'_, '_> {
 }
 
 impl Spectral<'_> {
-    /// Tells whether half of such columns is to be evaluated: where they are whole lines of the cache. A store across two lines takes
-    /// longer than that saves, and farther off than the second cache one that goes backwards does.
+    /// Returns whether only one half of these columns is to be evaluated and then mirrored. This needs columns of whole
+    /// cache lines, because stores across two lines take longer than the mirroring saves. It also needs an array inside the
+    /// second cache: beyond it, storing backwards takes longer.
     fn mirrored(&self, columns: &[f64]) -> bool {
         let lines = self.axis.eta.len().is_multiple_of(LINE) && lead(columns) == 0;
         self.axis.symmetric && lines && self.residence == Residence::SecondCache
     }
 
-    /// Writes at most [`MANY`] neighbouring columns, of one strip or of none.
+    /// Writes at most [`MANY`] neighbouring columns, all of one strip or all of none.
     fn neighbours(&mut self, strip: Option<&Strip>, xi: &[f64], out: &mut [f64]) {
         let (arch, placement, axis) = (self.fitter.arch, self.fitter.evaluator.placement, self.axis);
         let (mirrored, scratch) = (self.mirrored(out), &mut self.polynomials);
@@ -140,7 +142,7 @@ impl Spectral<'_> {
         }
     }
 
-    /// Writes a column that is in no strip; of a symmetric axis the half η ≥ 0.
+    /// Writes a column that is in no strip. On a symmetric axis it writes the half η ≥ 0.
     fn single_column(&mut self, xi: f64, u_max: f64, out: &mut [f64]) {
         let mut spans = std::mem::take(&mut self.fitter.spans);
         self.fitter.evaluator.wheel.spans(xi, u_max, &mut spans);
@@ -170,15 +172,16 @@ mod tests {
     use crate::placement::{Pair, Placement};
     use crate::profile::{Profile, Side, standards};
     use crate::separation::columns::strips::strips;
-    use crate::separation::plan::{FULL_PRECISION, demand};
     use crate::separation::values::Residence::{LastCache, Memory, SecondCache};
     use crate::separation::values::Values;
+    use crate::separation::{Demand, FULL_PRECISION};
 
-    /// A spline has more: so many columns beside them would be in strips.
+    /// Most joints beside which columns are placed. A spline has more joints, and so many columns would be in strips.
     const FEW_JOINTS: usize = 24;
 
-    /// Fills a window, with columns beside its joints, by code for one kind of machine; the array is taken to be in one kind of
-    /// memory, so many values behind the beginning of a line. The result is s and the largest number of spans of the strips' columns.
+    /// Fills a window, with columns beside its joints, by code for one kind of machine. The array is treated as being in
+    /// one kind of memory, so many values after the beginning of a cache line. Returns s and the largest number of spans of
+    /// the strips' columns.
     fn filled(
         placement: &Placement,
         count: i32,
@@ -188,7 +191,7 @@ mod tests {
         let steps =
             |reach: f64, n: i32| (0..n).map(move |k| reach * f64::from(2 * k - n + 1) / f64::from(n - 1));
         let mut xi: Vec<f64> = steps(12.0, 101).collect();
-        // Columns in which a joint is near η = 0.
+        // In these columns a joint is near η = 0.
         let beside = |joint: f64| (0..16).map(move |k| joint - 1e-6 * 1.6f64.powi(k));
         let joints = placement.joints(-12.0, 12.0);
         if joints.len() <= FEW_JOINTS {
@@ -196,14 +199,14 @@ mod tests {
         }
         xi.sort_by(f64::total_cmp);
         let axis = EtaAxis::new(&steps(15.0, count).collect::<Vec<_>>());
-        let fitter = || Fitter { arch, ..Fitter::new(placement, demand(FULL_PRECISION), 4) };
+        let fitter = || Fitter { arch, ..Fitter::new(placement, Demand::for_tolerance(FULL_PRECISION), 4) };
         let strips = strips(&mut fitter(), placement, &xi, axis.reach * axis.reach);
         let mut out = Values::new(behind + xi.len() * axis.eta.len());
         Spectral::new(fitter(), &axis, &strips, residence).columns(&xi, &mut out[behind..]);
         (out[behind..].to_vec(), strips.iter().map(|strip| strip.spans).max().unwrap_or(0))
     }
 
-    /// A spline through points of a profile.
+    /// Returns a spline through points of a profile.
     fn spline(profile: &Profile, side: Side) -> Result<Profile> {
         let text = write::points(&write::sample(profile, 0.5)?, Format::Csv, side, "sample");
         let [mirror, flip_z] = [Some(false); 2];
@@ -215,7 +218,7 @@ mod tests {
     fn every_machine_gives_the_same_bits() -> Result<()> {
         let rail = standards::rail("UIC60")?;
         let splines = [spline(&rail, Side::Rail)?, spline(&standards::wheel("S1002")?, Side::Wheel)?];
-        // A kink; and the closing of a drawing, 0.06 mm wide.
+        // One pair has a kink; the other has the closing of a drawing, 0.06 mm wide.
         let drawings = [rail.clone(), standards::wheel("APTA-120")?];
         let closed = [rail, standards::wheel("EN15302-A")?];
         let cases = [
@@ -226,7 +229,7 @@ mod tests {
         ];
         for ([rail, wheel], wheel_x, yaw, most_spans) in cases {
             let placement = Pair::new(rail, wheel, 460.0)?.placed(-11.0, wheel_x, yaw)?;
-            // The columns of the second are whole lines: one half is the other's mirror image.
+            // The columns of the second count are whole cache lines, so that one half is the mirror image of the other.
             for count in [253, 248] {
                 let (plain, spans) = filled(&placement, count, pulp::Arch::Scalar, (LastCache, 1));
                 assert_eq!(spans, most_spans);

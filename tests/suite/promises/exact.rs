@@ -56,15 +56,15 @@ pub fn doubled(profile: &Profile) -> Option<(Profile, Exact)> {
         let (shape, graph) = match &segment.shape {
             Shape::Arc(arc) => match arc.centre() {
                 None => {
-                    let slope = (Twice::from(arc.end.z) - Twice::from(arc.start.z))
+                    let slope = (Twice::from(arc.end().z) - Twice::from(arc.start().z))
                         / (Twice::from(x[1]) - Twice::from(x[0]));
-                    let line = Arc::line([x[0], arc.start.z], [x[1], arc.end.z]).ok()?;
-                    (Shape::Arc(line), Graph::Line { z0: arc.start.z, slope })
+                    let line = Arc::line([x[0], arc.start().z], [x[1], arc.end().z]).ok()?;
+                    (Shape::Arc(line), Graph::Line { z0: arc.start().z, slope })
                 }
                 Some([a, b]) => {
-                    let radius = arc.radius.abs();
+                    let radius = arc.radius().abs();
                     let (half, sign) =
-                        if arc.radius < 0.0 { (Half::Upper, 1.0) } else { (Half::Lower, -1.0) };
+                        if arc.radius() < 0.0 { (Half::Upper, 1.0) } else { (Half::Lower, -1.0) };
                     (Shape::Arc(Arc::about([a, b], radius, half, x).ok()?), Graph::Arc { a, b, radius, sign })
                 }
             },
@@ -74,7 +74,7 @@ pub fn doubled(profile: &Profile) -> Option<(Profile, Exact)> {
                 }
                 let [x, z] =
                     p.coefficients().map(|c| c.into_iter().map(|[high, low]| Twice { high, low }).collect());
-                (segment.shape.clone(), Graph::Curve { t: p.t, x, z })
+                (segment.shape.clone(), Graph::Curve { t: p.range(), x, z })
             }
         };
         rebuilt.push(ProfileSegment { label: String::new(), shape });
@@ -85,7 +85,7 @@ pub fn doubled(profile: &Profile) -> Option<(Profile, Exact)> {
 
 /// Whether x grows along a curve, at places close enough for the cubics of a spline: one that turns back is no graph.
 fn ascends(curve: &Polynomial) -> bool {
-    let [first, last] = curve.t;
+    let [first, last] = curve.range();
     let stations = (0..=64).map(|k| curve.station(first + (last - first) * f64::from(k) / 64.0));
     stations.into_iter().all(|station| station.cos > 0.0)
 }

@@ -1,29 +1,28 @@
-//! `wheelrail profile convert`.
+//! `wheelrail profile convert`: writes a profile in another format.
 
 use std::path::PathBuf;
 
 use clap::Args;
 
 use super::source::{Source, SourceArguments};
-use crate::answer::{Outcome, put};
-use crate::answer::{complain, counted};
+use crate::answer::{Outcome, complain, counted, put};
 use wheelrail::error::{Error, Result};
 use wheelrail::measured::{CurveKind, Format, write};
 use wheelrail::profile::{Profile, Side};
 use wheelrail::scene::ProfileSource;
 
-/// Distance of points \[mm\] along a drawn profile if none is given: that of hand-held instruments.
+/// Default distance \[mm\] of points along a drawn profile: that of hand-held instruments.
 const STEP: f64 = 0.2;
 
-/// What to convert to what.
+/// The profile to convert, and the format.
 #[derive(Debug, Args)]
 pub(crate) struct ConvertArguments {
     #[command(flatten)]
     source: SourceArguments,
-    /// miniprof, simpack, gensys, text, csv: points; toml: the segments of a chain.
+    /// Format: miniprof, simpack, gensys, text or csv for points; toml for the segments of a chain.
     #[arg(long)]
     to: String,
-    /// Distance of points along the curve, mm. If not given: 0.2 of a drawn profile, the measured points of a
+    /// Distance of points along the curve, mm. If not given: 0.2 for a drawn profile; the measured points themselves for a
     /// measured one.
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     step: Option<f64>,
@@ -35,7 +34,7 @@ pub(crate) struct ConvertArguments {
 /// Converts a profile.
 ///
 /// # Errors
-/// A format that is none, a body that only --side can tell, segments that no chain file can hold.
+/// An unknown format; a body that only --side can tell; segments that no chain file can hold.
 pub(super) fn convert(arguments: &ConvertArguments) -> Result<Outcome> {
     arguments.source.refuse_output(arguments.out.as_deref())?;
     let text = if arguments.to == "toml" { toml(arguments)? } else { points(arguments)? };
@@ -56,7 +55,7 @@ fn points(arguments: &ConvertArguments) -> Result<String> {
     };
     let side = match (source.side, format) {
         (Some(side), _) => side,
-        // These have no place for the body, nor axes that depend on it.
+        // These formats do not name the body, and their axes do not depend on it.
         (None, Format::Gensys | Format::Text | Format::Csv) => Side::Rail,
         (None, _) => {
             let expected = format!("the body, which sets the axes of {}", format.title());
@@ -68,7 +67,7 @@ fn points(arguments: &ConvertArguments) -> Result<String> {
     Ok(write::points(&points, format, side, &source.profile().name))
 }
 
-/// The points that other programs can tell apart; those left out are counted on stderr.
+/// Returns the points that other programs can tell apart. The number of the others goes to stderr.
 fn spaced(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let kept = write::spaced(&points);
     if kept.len() < points.len() {
@@ -78,7 +77,7 @@ fn spaced(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     kept
 }
 
-/// A chain file. A spline cannot be one: a measured file without a --curve becomes a chain of arcs.
+/// Returns a chain file. It cannot hold a spline: a measured file without --curve becomes a chain of arcs.
 fn toml(arguments: &ConvertArguments) -> Result<String> {
     if let Some(step) = arguments.step {
         let expected = "no --step beside --to toml, which writes segments";
@@ -105,7 +104,7 @@ fn chosen(source: &Source) {
     }
 }
 
-/// `name` and `source`, as TOML quotes them.
+/// Returns the lines `name` and `source`, quoted for TOML.
 fn head(profile: &Profile) -> String {
     let quoted = |text: &str| toml::Value::from(text).to_string();
     format!("name = {}\nsource = {}\n\n", quoted(&profile.name), quoted(&profile.source))

@@ -17,13 +17,13 @@ use source::SourceArguments;
 use wheelrail::error::Result;
 use wheelrail::profile::standards;
 
-/// What to do with profiles.
+/// The work to do with profiles.
 #[derive(Debug, Subcommand)]
 pub(super) enum ProfileCommand {
-    /// Names and sources of the built-in profiles.
+    /// List the names and sources of the built-in profiles.
     List,
-    /// What a profile is made of: segments and joints; of a measured file how it was read and fitted, and those of its
-    /// arcs or elements, not the spans of a spline.
+    /// Show the segments and joints of a profile; for a measured file also how it was read and fitted. The spans of a
+    /// spline are left out.
     Show {
         #[command(flatten)]
         source: SourceArguments,

@@ -1,4 +1,4 @@
-//! The options of measured files on the command line: those of a scene, with the same words.
+//! The options of measured files on the command line. They have the names and words of a scene.
 
 use clap::{Args, ValueEnum};
 use serde::Serialize;
@@ -11,35 +11,41 @@ use wheelrail::scene;
 
 /// Rail or wheel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum Body {
-    /// Material below.
+pub(super) enum BodyOption {
+    /// The profile is a rail, with the material below.
     Rail,
-    /// Material above.
+    /// The profile is a wheel, with the material above.
     Wheel,
 }
 
-impl From<Body> for Side {
-    fn from(body: Body) -> Self {
+impl From<BodyOption> for Side {
+    fn from(body: BodyOption) -> Self {
         match body {
-            Body::Rail => Self::Rail,
-            Body::Wheel => Self::Wheel,
+            BodyOption::Rail => Self::Rail,
+            BodyOption::Wheel => Self::Wheel,
         }
     }
 }
 
-/// How a measured file is read; the words and defaults are those of a scene.
+/// How a measured file is read. Words and defaults are those of a scene.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Measured files")]
 pub(super) struct MeasuredArguments {
-    /// Format: miniprof, simpack, gensys, text, csv; by the extension if not given.
+    /// Format: miniprof, simpack, gensys, text or csv; if not given, the extension tells.
     #[arg(long)]
     format: Option<String>,
-    /// Columns of x and z of a text or CSV file: numbers from 1, or names, as 2,3.
+    /// Columns of x and z of a text or CSV file: numbers from 1, or names; for example 2,3.
     #[arg(long, value_name = "X,Z")]
     columns: Option<String>,
     /// Section of an .mpt file, from 1.
     #[arg(long, allow_negative_numbers = true)]
     section: Option<usize>,
+    /// Place of the section along the track of an .slcs file, mm.
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    along: Option<f64>,
+    /// Place of the section around the wheel of an .slcw file, rad.
+    #[arg(long, value_name = "RAD", allow_negative_numbers = true)]
+    angle: Option<f64>,
     /// Whether the first axis points to the centre of the track.
     #[arg(long, value_name = "true|false", num_args = 0..=1, default_missing_value = "true")]
     mirror: Option<bool>,
@@ -52,46 +58,48 @@ pub(super) struct MeasuredArguments {
     /// Origin: as-is, gauge-point, tape-line, or a point X,Z in mm.
     #[arg(long, allow_hyphen_values = true)]
     origin: Option<String>,
-    /// Depth of the gauge point under the top of rail, mm.
+    /// Depth of the gauge point below the top of rail, mm.
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     gauge_height: Option<f64>,
     /// Distance of the taping line from the flange back, mm.
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     tape_distance: Option<f64>,
-    /// Repairs, any of drop-duplicates, sort, remove-spikes, cut-loops, as sort,cut-loops.
+    /// Repairs: any of drop-duplicates, sort, remove-spikes and cut-loops; for example sort,cut-loops.
     #[arg(long, value_delimiter = ',')]
     repair: Vec<String>,
-    /// Curve: smoothing, interpolation, arcs, elements.
+    /// Curve: smoothing, interpolation, arcs or elements.
     #[arg(long)]
     curve: Option<String>,
-    /// Wavelength that smoothing halves, mm.
+    /// Wavelength whose waves smoothing halves, mm.
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     cutoff_wavelength: Option<f64>,
     /// Kinks above this angle stay corners, rad.
     #[arg(long, value_name = "RAD", allow_negative_numbers = true)]
     kink_angle: Option<f64>,
-    /// Largest distance of a point from an arc chain, mm.
+    /// Largest distance of a point from a chain of arcs, mm.
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     arc_tolerance: Option<f64>,
 }
 
 impl MeasuredArguments {
-    /// The options that they stand for.
+    /// Returns the options for a measured file.
     ///
     /// # Errors
-    /// A word that an option does not know, with those it does.
+    /// An unknown word of an option; the error lists the known ones.
     pub(super) fn options(&self) -> Result<Options> {
         Ok(Options {
             format: word("--format", self.format.as_deref())?,
             columns: self.columns.as_deref().map(columns).transpose()?,
             section: self.section,
+            along: self.along,
+            angle: self.angle,
             mirror: self.mirror,
             flip_z: self.flip_z,
             unit: word("--unit", self.unit.as_deref())?,
             origin: self.origin.as_deref().map(origin).transpose()?,
             gauge_height: self.gauge_height,
             tape_distance: self.tape_distance,
-            // An inclination is a scene's: nothing here applies one.
+            // The inclination belongs to a scene. These commands apply none.
             already_inclined: false,
             repair: self.repair.iter().map(|name| one_of("--repair", name)).collect::<Result<_>>()?,
             curve: word("--curve", self.curve.as_deref())?,
@@ -101,10 +109,10 @@ impl MeasuredArguments {
         })
     }
 
-    /// Rejects options that a profile without points does not know.
+    /// Rejects all options if the profile has no measured points.
     ///
     /// # Errors
-    /// Any option given.
+    /// Any option that is given.
     pub(super) fn reject(&self, name: &str) -> Result<()> {
         let given: Vec<String> = self.options()?.given().iter().map(|key| key.replace('_', "-")).collect();
         if given.is_empty() {
@@ -120,13 +128,13 @@ fn word<T: DeserializeOwned + Serialize>(option: &str, text: Option<&str>) -> Re
     text.map(|text| one_of(option, text)).transpose()
 }
 
-/// A word as a scene spells it; the complaint lists what could stand there.
+/// Reads a word as scenes spell it. The error lists the known words.
 pub(super) fn one_of<T: DeserializeOwned + Serialize>(option: &str, text: &str) -> Result<T> {
     let quoted = serde_json::Value::from(text).to_string();
     scene::parse(&quoted, true).map_err(|error| error.at(option))
 }
 
-/// "2,3" or "y,z".
+/// Reads two columns: "2,3" or "y,z".
 fn columns(text: &str) -> Result<[Column; 2]> {
     let column = |name: &str| {
         let name = name.trim();
@@ -138,7 +146,7 @@ fn columns(text: &str) -> Result<[Column; 2]> {
     }
 }
 
-/// A name, or "x,z".
+/// Reads an origin: a name, or a point "x,z".
 fn origin(text: &str) -> Result<Origin> {
     let numbers: Option<Vec<f64>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
     if let Some([x, z]) = numbers.as_deref() {

@@ -1,4 +1,4 @@
-//! `wheelrail profile plot`: what the picture shows.
+//! `wheelrail profile plot`: draws the picture of a profile.
 
 use std::path::Path;
 
@@ -6,13 +6,12 @@ use super::source::{Source, SourceArguments};
 use crate::answer::{Outcome, print};
 use crate::output::PictureFormat;
 use wheelrail::error::Result;
-use wheelrail::export::picture::SEPARATOR;
-use wheelrail::export::picture::profile::ProfilePicture;
+use wheelrail::export::{ProfilePicture, SEPARATOR};
 use wheelrail::files::write_file;
 use wheelrail::measured::{CurveRecord, Measured};
-use wheelrail::profile::trace::{Mark, beside, trace};
+use wheelrail::profile::{Mark, beside, trace};
 
-/// Distance of the curve's marks \[mm\]: 1500 over a profile, finer than a page shows.
+/// Distance of the curve's marks \[mm\]: 1500 on a profile, finer than a page can show.
 const STEP: f64 = 0.1;
 
 /// Draws the picture into a file, or as SVG to stdout.
@@ -62,13 +61,13 @@ fn about(source: &Source) -> String {
     out + &format!("{SEPARATOR}{segments} segments")
 }
 
-/// \[s, distance of the point to the left of the curve\] \[mm\] for every point.
+/// Returns \[s, distance of the point to the left of the curve\] \[mm\] for every point.
 fn residual(marks: &[Mark], points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut hint = 0;
     let residual = |point: &[f64; 2]| {
-        let found = beside(marks, *point, hint);
+        let found = beside(marks, *point, hint)?;
         hint = found.mark;
-        [found.s, found.across]
+        Some([found.s, found.across])
     };
-    points.iter().map(residual).collect()
+    points.iter().filter_map(residual).collect()
 }

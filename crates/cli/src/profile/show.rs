@@ -1,4 +1,4 @@
-//! `wheelrail profile show`.
+//! `wheelrail profile show`: describes a profile.
 
 use std::fmt::Write;
 
@@ -7,11 +7,11 @@ use crate::answer::counted;
 use wheelrail::measured::{CurveKind, CurveRecord, Measured, Record};
 use wheelrail::profile::{Profile, Shape};
 
-/// Describes a profile: name and source; how a measured file was read and fitted; segments and joints. The spans of a
-/// spline are left out: there are as many as points.
+/// Returns the description of a profile: name and source; how a measured file was read and fitted; segments and joints. The
+/// spans of a spline are left out, because there are as many as points.
 pub(super) fn show(source: &Source) -> String {
     let profile = source.profile();
-    // Writing to a string cannot fail, here and below.
+    // Writing to a string cannot fail, neither here nor below.
     let mut out = format!("# {}\n# {}\n", profile.name, profile.source);
     if let Some(measured) = source.measured() {
         record(&mut out, measured);
@@ -72,7 +72,7 @@ fn fitted(out: &mut String, curve: &CurveRecord) {
     }
 }
 
-/// A name as scenes and summaries spell it.
+/// Returns a name as scenes and summaries spell it.
 fn name(of: &impl serde::Serialize) -> String {
     serde_json::to_value(of).ok().and_then(|v| v.as_str().map(String::from)).unwrap_or_default()
 }
@@ -86,7 +86,7 @@ fn segments(out: &mut String, profile: &Profile) {
     for (index, segment) in profile.segments().iter().enumerate() {
         let label = if segment.label.is_empty() { (index + 1).to_string() } else { segment.label.clone() };
         let (kind, radius) = match &segment.shape {
-            Shape::Arc(arc) if arc.radius.is_finite() => ("arc", format!("{:.9}", arc.radius)),
+            Shape::Arc(arc) if arc.radius().is_finite() => ("arc", format!("{:.9}", arc.radius())),
             Shape::Arc(_) => ("line", "-".into()),
             Shape::Polynomial(_) => ("polynomial", "-".into()),
         };
@@ -118,7 +118,7 @@ fn joints(out: &mut String, profile: &Profile) {
     }
 }
 
-/// What was changed of a drawing so that its segments meet.
+/// Appends what was changed of a drawing so that its segments meet.
 fn closings(out: &mut String, profile: &Profile) {
     let Some((largest, [x, z])) = profile.largest_closing() else { return };
     let _ = writeln!(

@@ -1,32 +1,32 @@
-//! The profile that a command is about: a built-in one, a chain file, or a measured file.
+//! The profile that a command is about: a built-in one, a chain file or a measured file.
 
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::options::{Body, MeasuredArguments};
+use super::options::{BodyOption, MeasuredArguments};
 use crate::output::refuse_taken;
 use wheelrail::error::{Error, Result};
 use wheelrail::measured::{CurveKind, Measured, Options};
 use wheelrail::profile::{Profile, Side, standards};
 use wheelrail::scene::{self, ProfileSource};
 
-/// Which profile.
+/// The arguments that choose a profile.
 #[derive(Debug, Args)]
 pub(crate) struct SourceArguments {
     /// Name of a built-in profile, or a file: segments in TOML or JSON, or measured points.
     profile: String,
-    /// Which body it is of; a built-in name says so itself, and so do files such as .ban, .whl, .prr, .prw.
+    /// Body of the profile. Built-in names tell it, and so do files such as .ban, .whl, .prr, .prw.
     #[arg(long, ignore_case = true)]
-    side: Option<Body>,
+    side: Option<BodyOption>,
     #[command(flatten)]
     measured: MeasuredArguments,
 }
 
-/// A profile with what is known of it.
+/// A profile, with what is known about it.
 #[derive(Debug)]
 pub(super) struct Source {
-    /// Which body it is of, where that is known.
+    /// Body of the profile, if it is known.
     pub side: Option<Side>,
     pub content: ProfileSource,
 }
@@ -45,7 +45,7 @@ impl Source {
 }
 
 impl SourceArguments {
-    /// Refuses to write over the profile's own file.
+    /// Rejects an output file that is the profile's own file.
     ///
     /// # Errors
     /// `out` is that file.
@@ -57,18 +57,18 @@ impl SourceArguments {
         }
     }
 
-    /// The profile.
+    /// Reads the profile.
     ///
     /// # Errors
-    /// A name that is none; whatever is wrong with a file or its options.
+    /// An unknown name; anything that is wrong with a file or its options.
     pub(super) fn read(&self) -> Result<Source> {
         self.read_as(None)
     }
 
-    /// The profile; a measured file as this kind of curve where no option names one.
+    /// Reads the profile. If no option names a curve, a measured file gets this kind of curve.
     ///
     /// # Errors
-    /// Those of [`SourceArguments::read`].
+    /// The errors of [`SourceArguments::read`].
     pub(super) fn read_as(&self, curve: Option<CurveKind>) -> Result<Source> {
         let path = Path::new(&self.profile);
         if !path.exists() {
@@ -93,7 +93,8 @@ impl SourceArguments {
             return Err(Error::new(&self.profile, "no file and no built-in profile", expected, advice));
         }
         self.measured.reject(&self.profile)?;
-        let (side, body) = if rail { (Side::Rail, Body::Rail) } else { (Side::Wheel, Body::Wheel) };
+        let (side, body) =
+            if rail { (Side::Rail, BodyOption::Rail) } else { (Side::Wheel, BodyOption::Wheel) };
         if self.side.is_some_and(|given| given != body) {
             let found = if rail { "the name of a rail" } else { "the name of a wheel" };
             return Err(Error::new(

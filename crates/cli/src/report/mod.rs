@@ -1,4 +1,4 @@
-//! `wheelrail report`: speed against error, hard cases; Markdown, CSV, SVG.
+//! `wheelrail report`: speed against error, and the hard cases, as Markdown, CSV and SVG.
 
 mod origin;
 mod splice;
@@ -15,13 +15,14 @@ use wheelrail_report::page::{FILES, PAGE, excerpt, page, sections};
 /// The names by which a folder of `wheelrail report` is known.
 const REPORT_FOLDER: Names = Names { marker: PAGE, files: &FILES, is_part: |_| false };
 
-/// Measures, writes the folder, and puts the table into `splice` when there is one; exit code 1 when a hard case is
-/// not as its file states or parry3d's meshes disagree. The ratios decide nothing here: they depend on the machine.
+/// Measures, writes the folder, and puts the table into `splice` if given. The exit code is 1 if a hard case is not as its
+/// file states, or if parry3d's meshes disagree. Ratios of times have no influence on it, because they depend on the
+/// machine.
 pub(super) fn report(out: Option<&Path>, splice: Option<&Path>) -> Result<Outcome> {
     let target = out.unwrap_or(Path::new("output/report"));
-    // Whatever is wrong with the targets is to be known before two minutes of measuring.
+    // The outputs are opened first, so that their faults show before two minutes of measuring.
     let folder = Folder::create(target, REPORT_FOLDER)?;
-    let splice = splice.map(splice::Target::open).transpose()?;
+    let splice = splice.map(splice::SplicedFile::open).transpose()?;
     let origin = origin::origin();
     let progress = Progress::of("report", "measurements");
     let measurements = measure(&Effort::full(), &mut |step| progress.at(step))?;

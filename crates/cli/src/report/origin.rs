@@ -1,20 +1,20 @@
-//! Where and by what a report is made. What the system does not tell is "unknown".
+//! Finds where and by what a report was made. What the system does not tell is "unknown".
 
 use std::path::Path;
 use std::process::Command;
 use std::thread::available_parallelism;
 
 use wheelrail::files::read_text;
-use wheelrail_report::page::Origin;
+use wheelrail_report::page::PageOrigin;
 
-/// Load from which other processes disturb what is measured: one of two cores taken half of the time.
+/// Load from which other processes disturb the measurement: one of two cores is then taken half of the time.
 const QUIET: f64 = 0.5;
 
-/// Most of what is read of one of the system's files \[bytes\]: a thousand processors take less.
+/// Largest part of a system's file that is read \[bytes\]. A thousand processors take less.
 const LARGEST_FILE: usize = 1 << 24;
 
-/// Machine, compiler, commit and command.
-pub(super) fn origin() -> Origin {
+/// Returns machine, compiler, commit and command.
+pub(super) fn origin() -> PageOrigin {
     vec![
         ("command", command()),
         ("version", format!("wheelrail {}", env!("CARGO_PKG_VERSION"))),
@@ -27,7 +27,7 @@ pub(super) fn origin() -> Origin {
     ]
 }
 
-/// The command line, with the program's path left out.
+/// Returns the command line without the path of the program.
 fn command() -> String {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     format!("wheelrail {}", arguments.join(" "))
@@ -38,9 +38,9 @@ fn compiler() -> String {
     format!("{}{checks}", env!("WHEELRAIL_RUSTC"))
 }
 
-/// The commit that stands in the folder the program was built in, when that is still there.
+/// Returns the commit of the folder in which the program was built, if that folder still exists.
 ///
-/// Asked now and not when building: a build that follows the commit would build everything anew after each.
+/// It is looked up at run time. A build that follows the commit would compile everything anew after each commit.
 fn commit() -> String {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
     if !Path::new(folder).join(".git").exists() {
@@ -54,7 +54,7 @@ fn commit() -> String {
     }
 }
 
-/// Processes that were running already, over the last minute, 5 and 15 minutes.
+/// Returns the system's load: the number of running processes over the last minute, 5 and 15 minutes.
 fn load() -> String {
     let text = first_words("/proc/loadavg", 3);
     let last_minute = text.split(' ').next().and_then(|word| word.parse::<f64>().ok());
@@ -72,7 +72,7 @@ fn processor() -> String {
     format!("{}, {threads} threads", field("/proc/cpuinfo", "model name"))
 }
 
-/// The value of the first "name : value" line of a file.
+/// Returns the value of the first line "name : value" of a file.
 fn field(file: &str, name: &str) -> String {
     let text = read_text(Path::new(file), LARGEST_FILE).unwrap_or_default();
     let value = text.lines().find_map(|line| {

@@ -1,24 +1,24 @@
-//! The generated table inside a page that people write.
+//! Replaces the generated table inside a page that people write.
 
 use std::path::{Path, PathBuf};
 
 use wheelrail::error::{Error, Result};
 use wheelrail::files::{read_text, write_file};
 
-/// Lines between which everything is generated.
+/// First of the two marker lines. Everything between them is generated.
 const BEGIN: &str = "<!-- report:begin -->";
 const END: &str = "<!-- report:end -->";
 
-/// Largest page \[bytes\] that is taken for one.
+/// Largest page that is read \[bytes\].
 const LARGEST_PAGE: usize = 1 << 26;
 
-/// A file with both markers.
+/// A file that has both markers.
 #[derive(Debug)]
-pub(super) struct Target {
+pub(super) struct SplicedFile {
     path: PathBuf,
 }
 
-impl Target {
+impl SplicedFile {
     /// Checks that the file can be read and has its markers.
     ///
     /// # Errors
@@ -28,10 +28,10 @@ impl Target {
         target.spliced("").map(|_| target)
     }
 
-    /// Replaces what stands between the markers: the file is read anew, and replaced in one step.
+    /// Replaces the text between the markers. The file is read again, and replaced in one step.
     ///
     /// # Errors
-    /// Those of [`Target::open`]; the folder cannot be written.
+    /// The errors of [`SplicedFile::open`]; a folder that cannot be written.
     pub(super) fn replace(&self, generated: &str) -> Result<()> {
         write_file(&self.path, self.spliced(generated)?.as_bytes())
     }
@@ -42,7 +42,7 @@ impl Target {
     }
 }
 
-/// `text` with `generated` between its markers.
+/// Returns `text` with `generated` between its markers.
 fn spliced(text: &str, generated: &str) -> Result<String> {
     let parts = text.split_once(BEGIN).and_then(|(before, rest)| {
         let (_, after) = rest.split_once(END)?;

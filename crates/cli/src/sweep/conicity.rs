@@ -1,23 +1,21 @@
-//! The equivalent conicity of a sweep's positions, and what a user should know of it.
+//! Computes the equivalent conicity of a sweep's positions, and the remarks that a user should read.
 
 use crate::answer::counted;
-use wheelrail::search::parallel::free;
-use wheelrail::search::sweep::{ACCURACY, Conicity, Equivalent, NoConicity};
-use wheelrail::search::wheelset::Position;
+use wheelrail::search::{ACCURACY, Conicity, Equivalent, NoConicity, Position, free};
 
-/// Relative errors up to which conicities that are not converged are counted in classes.
+/// Relative errors that divide the conicities that have not converged into classes.
 const CLASSES: [f64; 2] = [1e-3, 1e-2];
 
-/// Remarks on the positions whose conicity is not accurate, or is not there although both wheels touch.
+/// Returns remarks on positions whose conicity is inaccurate, or missing although both wheels touch.
 pub(super) fn remarks(conicity: &Conicity, positions: &[Position]) -> Vec<String> {
-    let found: Vec<Found> = free(positions).map(|position| conicity.at(position.lateral)).collect();
+    let found: Vec<ConicityFound> = free(positions).map(|position| conicity.at(position.lateral)).collect();
     let inaccurate = inaccurate(&found).map(|text| format!("{text}, after {} searches", conicity.searches()));
     inaccurate.into_iter().chain(missing(&found)).collect()
 }
 
-type Found = std::result::Result<Equivalent, NoConicity>;
+type ConicityFound = std::result::Result<Equivalent, NoConicity>;
 
-fn inaccurate(found: &[Found]) -> Option<String> {
+fn inaccurate(found: &[ConicityFound]) -> Option<String> {
     let open = || found.iter().flatten().filter(|found| !found.converged());
     let class = |found: &Equivalent| CLASSES.iter().take_while(|limit| found.error > **limit).count();
     let names = CLASSES.map(|limit| format!("up to {limit:e}")).into_iter().chain(["more".into()]);
@@ -37,7 +35,7 @@ fn inaccurate(found: &[Found]) -> Option<String> {
     })
 }
 
-fn missing(found: &[Found]) -> Option<String> {
+fn missing(found: &[ConicityFound]) -> Option<String> {
     let stuck = found.iter().filter(|found| **found == Err(NoConicity::NotRestoring)).count();
     let positions = counted(stuck, "position");
     (stuck > 0).then(|| format!("no conicity at {positions}, from which the movement does not come back"))

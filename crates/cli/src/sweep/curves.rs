@@ -1,14 +1,14 @@
-//! The usual curves of a sweep as a picture.
+//! Draws the usual curves of a sweep.
 
-use super::table::Table;
+use super::table::SweepTable;
 use crate::answer::counted;
 use wheelrail::case::{Columns, MOST_DRAWN, ascending, curves};
 use wheelrail::error::{Error, Result};
-use wheelrail::export::picture::curves::CurvesPicture;
-use wheelrail::search::wheelset::Position;
+use wheelrail::export::CurvesPicture;
+use wheelrail::search::Position;
 
 /// Makes the picture of a table's positions, evenly chosen; their lateral displacements have to ascend.
-pub(super) fn picture(table: &Table, title: &str) -> Result<CurvesPicture> {
+pub(super) fn picture(table: &SweepTable, title: &str) -> Result<CurvesPicture> {
     let all = &table.positions;
     let lateral_of = |positions: &[Position]| -> Vec<f64> { positions.iter().map(|p| p.lateral).collect() };
     let of_picture = |error: Error| error.at("--picture");

@@ -1,5 +1,5 @@
-//! `wheelrail sweep`: the contact geometry of a wheelset at many positions, as CSV, and with files of
-//! every patch.
+//! `wheelrail sweep`: writes the contact geometry of a wheelset at many positions as CSV, and on request the files of every
+//! patch.
 
 mod conicity;
 mod curves;
@@ -14,39 +14,37 @@ use super::output::{PictureFormat, refuse_taken};
 use super::progress::Progress;
 use crate::answer::{Outcome, complain, folder_of, print_to_reader};
 use positions::{lateral_range, read_positions};
-use table::Table;
+use table::SweepTable;
 use wheelrail::case::{Case, Place};
 use wheelrail::error::{Error, Result};
 use wheelrail::files::{Folder, NewFile, PATCHES_FOLDER};
 use wheelrail::scene::{self, Scene};
-use wheelrail::search::parallel::conicity_over;
-use wheelrail::search::wheelset::{Position, WheelsetOnTrack};
-use wheelrail::search::{ONE_CONTACT, Selection};
+use wheelrail::search::{ONE_CONTACT, Position, Selection, WheelsetOnTrack, conicity_over};
 
-/// What to sweep over and where to write.
+/// The scene, the positions, and the outputs.
 #[derive(Debug, clap::Args)]
 pub(super) struct SweepArguments {
     /// Scene file with [track] and [wheelset].
     scene: PathBuf,
-    /// Lateral displacements FROM:TO:STEP, mm; yaw and roll as in the scene.
+    /// Lateral displacements FROM:TO:STEP, mm; yaw and roll are those of the scene.
     #[arg(long, value_name = "FROM:TO:STEP", allow_hyphen_values = true)]
     lateral: Option<String>,
     /// CSV file with columns `lateral_mm`, `yaw_rad`, `roll_rad`; an empty roll is solved.
     #[arg(long, value_name = "FILE.csv", conflicts_with = "lateral")]
     positions: Option<PathBuf>,
-    /// File to write; by default stdout.
+    /// File to write; if not given, stdout.
     #[arg(long, value_name = "FILE.csv")]
     out: Option<PathBuf>,
-    /// Besides, for every position the files that `run` writes, as subfolders, and `surface.pvd` over all of them.
+    /// Folder that also gets the files of `run` for every position, in subfolders, and `surface.pvd` over all of them.
     #[arg(long, value_name = "DIR")]
     patches: Option<PathBuf>,
-    /// Besides, the usual curves over the lateral displacement, as SVG, or as PNG where the name ends so.
+    /// Picture of the usual curves over the lateral displacement, in addition: .svg or .png.
     #[arg(long, value_name = "FILE.svg")]
     picture: Option<PathBuf>,
 }
 
 impl SweepArguments {
-    /// Gives the positions, from the range or the file; yaw and roll of a range are those of `template`.
+    /// Returns the positions of the range or the file. Positions of a range have the yaw and roll of `template`.
     fn positions(&self, template: Position) -> Result<Vec<Position>> {
         match (&self.lateral, &self.positions) {
             (Some(range), None) => {
@@ -62,24 +60,27 @@ impl SweepArguments {
     }
 }
 
-/// What a sweep writes besides stdout, all of it under temporary names until the sweep has ended.
-struct Outputs {
+/// The outputs of a sweep besides stdout. All have temporary names until the sweep has ended.
+struct SweepOutputs {
     table: Option<NewFile>,
     picture: Option<(PictureFormat, NewFile)>,
     patches: Option<Folder>,
 }
 
-impl Outputs {
-    /// Opens the outputs: what is wrong with them is to be known before an hour's work.
+impl SweepOutputs {
+    /// Opens the outputs, so that their faults show before an hour's work.
     ///
     /// # Errors
-    /// A picture of no known format; a file that is read, or written twice; whatever the disk says.
+    /// A picture of an unknown format; a file that is read, or written twice; any error of the disk.
     fn create(arguments: &SweepArguments, scene: &Scene) -> Result<Self> {
         let picture = arguments.picture.as_deref();
         let format = picture.map(|file| PictureFormat::of_file("--picture", file)).transpose()?;
         let folder = folder_of(&arguments.scene);
-        let profiles = [&scene.rail.file, &scene.wheel.file].into_iter().flatten();
-        let mut taken: Vec<PathBuf> = profiles.map(|file| folder.join(file)).collect();
+        let mut taken: Vec<PathBuf> = scene
+            .profiles()
+            .filter_map(|profile| profile.file.as_ref())
+            .map(|file| folder.join(file))
+            .collect();
         taken.extend(arguments.positions.clone().into_iter().chain([arguments.scene.clone()]));
         for (option, file) in [("--out", &arguments.out), ("--picture", &arguments.picture)] {
             let Some(file) = file else { continue };
@@ -97,7 +98,7 @@ impl Outputs {
         })
     }
 
-    /// Gives everything its name.
+    /// Gives all outputs their names.
     fn commit(self) -> Result<()> {
         self.patches.map_or(Ok(()), Folder::commit)?;
         self.picture.map_or(Ok(()), |(_, file)| file.commit())?;
@@ -110,7 +111,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     let progress = Progress::of("sweep", "scene");
     let path = arguments.scene.as_path();
     let scene = scene::load(path)?;
-    let mut outputs = Outputs::create(arguments, &scene)?;
+    let mut outputs = SweepOutputs::create(arguments, &scene)?;
     let in_scene = |error: Error| error.within(path.display());
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let case = scene::resolve(&scene, folder_of(path), &name).map_err(in_scene)?.read_from(path);
@@ -126,7 +127,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     let asked = case.question();
     let ellipses = asked.approach.map(|approach| (approach, asked.modulus()));
     let selection = Selection { within: case.standing().within, apart: ONE_CONTACT };
-    let table = Table { system, conicity, selection, positions, ellipses };
+    let table = SweepTable { system, conicity, selection, positions, ellipses };
     if let Some(folder) = &outputs.patches {
         patches::write(folder, &scene, &case, &table, &progress)?;
     }
@@ -143,7 +144,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// Gives the wheelset and track of a case, and the case's own position.
+/// Returns the wheelset and track of a case, and the position in the case.
 fn wheelset(case: &Case) -> Result<(&Arc<WheelsetOnTrack>, Position)> {
     let Place::Wheelset { system, position } = &case.standing().place else {
         let expected = "[track] and [wheelset]";

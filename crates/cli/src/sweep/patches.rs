@@ -1,4 +1,4 @@
-//! The patches of a sweep: what `wheelrail run` writes, position by position, and one collection of them.
+//! Writes the patches of a sweep: the files of `wheelrail run` for every position, and one collection of them.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -8,33 +8,32 @@ use serde_json::{Value, json};
 
 use super::super::png::png;
 use super::super::progress::Progress;
-use super::table::Table;
+use super::table::SweepTable;
 use crate::answer::{complain, counted};
 use wheelrail::case::{self, Case, Place, Run, SILENT, Standing};
 use wheelrail::error::{Error, Result};
-use wheelrail::export::vtk;
+use wheelrail::export::collection_pvd;
 use wheelrail::files::Folder;
 use wheelrail::scene::{self, Scene};
-use wheelrail::search::Selection;
-use wheelrail::search::wheelset::Position;
+use wheelrail::search::{Position, Selection};
 
-/// Most positions: each makes some forty files.
+/// Most positions. Each makes some forty files.
 const MOST_POSITIONS: usize = 5000;
 
-/// A position whose folders are written.
+/// A position whose folders have been written.
 struct Written {
     position: Position,
-    /// Empty for a position without contact.
+    /// Names of the folders; none for a position without contact.
     folders: Vec<String>,
 }
 
-/// Writes `position-0001/` and so on, `surface.pvd` and `summary.json` into a folder. The scene is only echoed: every position
-/// shares the case's profiles and search.
+/// Writes `position-0001/` and so on, `surface.pvd` and `summary.json` into a folder. All positions share the profiles and
+/// the search of the case; the scene is only copied into the summaries.
 pub(super) fn write(
     folder: &Folder,
     scene: &Scene,
     case: &Case,
-    table: &Table,
+    table: &SweepTable,
     progress: &Progress,
 ) -> Result<()> {
     let positions = &table.positions;
@@ -63,12 +62,12 @@ pub(super) fn write(
     Ok(())
 }
 
-/// Writes one position's folders.
+/// Writes the folders of one position.
 fn patch(
     folder: &Folder,
     scene: &Scene,
     case: &Case,
-    table: &Table,
+    table: &SweepTable,
     position: &Position,
     name: &str,
 ) -> Result<Written> {
@@ -83,8 +82,8 @@ fn patch(
     Ok(Written { position, folders: run.parts.into_iter().map(|part| part.site.folder).collect() })
 }
 
-/// Collects the separation of every part over time: the lateral displacement where it always grows, the number of the position
-/// elsewhere.
+/// Returns the collection of the separation of every part over time. Time is the lateral displacement if it always grows,
+/// else the number of the position.
 fn collection(written: &[Written]) -> String {
     let grows = written.windows(2).all(|pair| pair[0].position.lateral < pair[1].position.lateral);
     let mut steps = Vec::new();
@@ -93,7 +92,7 @@ fn collection(written: &[Written]) -> String {
         let parts = written.folders.iter().enumerate();
         steps.extend(parts.map(|(part, folder)| (time, part, format!("{folder}/separation.vts"))));
     }
-    vtk::collection(&steps)
+    collection_pvd(&steps)
 }
 
 fn summary(scene: &Scene, hash: &str, written: &[Written]) -> Vec<u8> {

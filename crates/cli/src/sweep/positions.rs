@@ -1,28 +1,29 @@
-//! The positions of a sweep: a range, or a table.
+//! Reads the positions of a sweep, from a range or a table.
 
 use std::path::Path;
 
 use wheelrail::error::{Error, Result, finite};
 use wheelrail::files::read_text;
-use wheelrail::scene;
-use wheelrail::search::wheelset::{Position, Roll};
+use wheelrail::scene::perhaps;
+use wheelrail::search::{Position, Roll};
 
-/// Most positions of one sweep: a GiB with all that is kept of them.
+/// Most positions of one sweep. They and their results take a GiB.
 const MOST_POSITIONS: usize = 10_000_000;
 
-/// Bytes of a table of so many positions, of a hundred each.
+/// Largest table of positions \[bytes\]: a hundred bytes for each position.
 const LARGEST_TABLE: usize = 100 * MOST_POSITIONS;
 
-/// Largest displacement \[mm\]: beyond any track, and its sums do not overflow.
+/// Largest displacement \[mm\]. It is far beyond any track, and its sums do not overflow.
 const FARTHEST: f64 = 1e9;
 
-/// Columns of a table of positions.
+/// Columns of a table of positions. The first is required.
 const COLUMNS: [&str; 3] = ["lateral_mm", "yaw_rad", "roll_rad"];
 
-/// Decimals up to which a number is looked at as a decimal; doubles of a mm and more have no more digits.
+/// Most decimals with which a number is treated as a decimal one. Doubles of a millimetre and more have no more digits.
 const MOST_DECIMALS: i32 = 15;
 
-/// FROM:TO:STEP, both ends included; each position is the double nearest to its decimal number, as printed.
+/// Reads FROM:TO:STEP, both ends included. Each position is the double nearest to its decimal number, so that it is printed
+/// as that number.
 pub(super) fn lateral_range(text: &str) -> Result<Vec<f64>> {
     let bad = || {
         let expected = format!("FROM:TO:STEP in mm with FROM <= TO within ±{FARTHEST:e} and STEP > 0");
@@ -35,17 +36,17 @@ pub(super) fn lateral_range(text: &str) -> Result<Vec<f64>> {
     if !(-FARTHEST <= from && from <= to && to <= FARTHEST && step.is_finite() && step > 0.0) {
         return Err(bad());
     }
-    // A last step that ends within a millionth of TO ends there.
+    // A last step that ends within a millionth of TO ends at TO.
     let steps = ((to - from) / step + 1e-6).floor();
     check_count("--lateral", steps + 1.0)?;
     let at = positions_of(from, step, to);
     Ok((0..=steps as usize).map(|k| at(k as f64).min(to)).collect())
 }
 
-/// from + k·step: one division of whole numbers where both are decimal numbers, so that no rounding shows; where they
-/// have too many digits, the sum as it rounds.
+/// Returns the function k ↦ from + k·step. If both are decimal numbers, it is one division of whole numbers, so that no
+/// rounding shows. If they have too many digits, it is the rounded sum.
 fn positions_of(from: f64, step: f64, to: f64) -> impl Fn(f64) -> f64 {
-    /// Whole numbers below are exact.
+    /// Whole numbers below this are exact doubles.
     const EXACT: f64 = 9_007_199_254_740_992.0;
     let decimal = |scale: f64| {
         let small = [from, step, to].iter().all(|v| (v * scale).abs() < EXACT);
@@ -66,7 +67,8 @@ fn check_count(place: &str, count: f64) -> Result<()> {
     Err(Error::new(place, format!("{count:e} positions"), expected, "take a larger step, or several sweeps"))
 }
 
-/// A table with columns `lateral_mm` and perhaps `yaw_rad` and `roll_rad`; without a yaw it is 0, without a roll solved.
+/// Reads a table with the column `lateral_mm` and optionally `yaw_rad` and `roll_rad`. A missing yaw is 0; a missing roll
+/// is solved.
 pub(super) fn read_positions(path: &Path) -> Result<Vec<Position>> {
     let table = read_text(path, LARGEST_TABLE)?;
     read_table(&path.display().to_string(), table.as_bytes())
@@ -118,13 +120,13 @@ fn read_table(place: &str, table: impl std::io::Read) -> Result<Vec<Position>> {
     Ok(positions)
 }
 
-/// Where each of [`COLUMNS`] stands in the first line; the first has to.
+/// Returns the place of each of [`COLUMNS`] in the first line. The first column is required.
 fn columns(place: &str, headers: &csv::StringRecord) -> Result<[Option<usize>; 3]> {
     let place = format!("{place}: line 1");
     let mut found = [None; COLUMNS.len()];
     for (at, header) in headers.iter().enumerate() {
         let Some(k) = COLUMNS.iter().position(|name| *name == header) else {
-            let advice = scene::perhaps(header, &COLUMNS);
+            let advice = perhaps(header, &COLUMNS);
             let expected = format!("columns {} only", COLUMNS.join(", "));
             return Err(Error::new(place, format!("a column \"{header}\""), expected, advice));
         };
@@ -158,7 +160,7 @@ mod tests {
             assert!(all.iter().zip(all.iter().rev()).all(|(a, b)| *a == -b), "{range}");
             assert!(all.iter().all(|v| v.to_string().len() <= 6), "{range}: {all:?}");
         }
-        // A third has no decimals, and ends at TO.
+        // A third has too many decimals. The range ends at TO all the same.
         let third = lateral_range("0:1:0.33333333333333333")?;
         assert!(third.len() == 4 && third[3] == 1.0 && (third[2] - 2.0 / 3.0).abs() < 1e-15, "{third:?}");
         Ok(())

@@ -1,4 +1,4 @@
-//! The table of a sweep, block by block.
+//! Computes the table of a sweep block by block.
 
 use std::fmt::Write;
 use std::sync::Arc;
@@ -7,10 +7,7 @@ use std::time::Instant;
 use super::super::progress::Progress;
 use wheelrail::case::{ApproachBy, Columns};
 use wheelrail::error::Result;
-use wheelrail::search::Selection;
-use wheelrail::search::parallel::ParallelSweep;
-use wheelrail::search::sweep::Conicity;
-use wheelrail::search::wheelset::{Position, WheelsetOnTrack};
+use wheelrail::search::{Conicity, ParallelSweep, Position, Selection, WheelsetOnTrack};
 
 /// Columns of the table.
 const HEADER: [&str; 20] = [
@@ -39,18 +36,18 @@ const HEADER: [&str; 20] = [
 /// Columns that are empty where there is no number: without a conicity or an ellipse.
 const PERHAPS_EMPTY: [&str; 3] = ["conicity", "hertz_xi_mm", "hertz_eta_mm"];
 
-/// A sweep ready to run.
-pub(super) struct Table<'a> {
+/// The table of a sweep, ready to be computed.
+pub(super) struct SweepTable<'a> {
     pub system: &'a Arc<WheelsetOnTrack>,
     pub conicity: Option<Conicity>,
     pub selection: Selection,
     pub positions: Vec<Position>,
-    /// Approach or load, and E*, of the ellipses.
+    /// Approach or load, and E*, for the contact ellipses; `None` without them.
     pub ellipses: Option<(ApproachBy, f64)>,
 }
 
-impl Table<'_> {
-    /// Hands the table's text to `sink`, block by block, as long as it wants more.
+impl SweepTable<'_> {
+    /// Passes the table's text to `sink`, block by block, until the sink wants no more.
     pub(super) fn blocks(
         &self,
         progress: &Progress,

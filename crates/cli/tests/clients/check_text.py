@@ -44,11 +44,18 @@ def read_contact(path):
     take = iter(lines).__next__
     assert int(take()[0]) == 3
     digits = take()[0]
-    assert len(digits) == 6 and digits[3] in "01"
+    assert len(digits) == 6 and digits[:2] == "20" and digits[2] in "03" and digits[3] in "01" and digits[4:] == "00"
     assert take()[0] == "022020" and take()[0] == "0002221"
     [int(word) for word in take()[:4]]
-    deck = {"force": digits[3] == "1", "normal": float(take()[0])}
-    take(), [float(word) for word in take()[:4]]
+    kinematics = [float(word) for word in take()[:4]]
+    deck = {"force": digits[3] == "1", "normal": kinematics[0], "creepages": kinematics[1:], "rolling": None}
+    deck["friction"] = [float(word) for word in take()[:2]]
+    if digits[2] == "3":
+        chi, step, speed = take()[:3]
+        degrees = chi.endswith("d")
+        chi = np.deg2rad(float(chi[:-1])) if degrees else float(chi)
+        deck["rolling"] = (chi, float(step), float(speed))
+    [float(word) for word in take()[:4]]
     assert int(take()[0]) == 3
     grid = take()
     deck |= {"n": (int(grid[0]), int(grid[1])), "first": [float(w) for w in grid[2:4]], "step": [float(w) for w in grid[4:6]]}
@@ -67,4 +74,27 @@ checks("contact.inp grid", deck["n"] == folder.s.shape[::-1] and deck["first"] =
        and deck["step"] == folder.steps[::-1])
 checks.same("contact.inp distances", deck["h"], filled)
 checks("contact.inp prescribes a force or an approach", deck["normal"] > 0, f"{deck['normal']}")
+summary = getattr(folder, "summary", {})
+static, kinetic = (summary.get("scene", {}).get("friction", {}).get(key) for key in ("static", "kinetic"))
+static = 0.3 if static is None else static
+checks("contact.inp friction", deck["friction"] == [static, static if kinetic is None else kinetic], f"{deck['friction']}")
+creepages = summary.get("creepages")
+checks("contact.inp rolls where the summary has creepages", (deck["rolling"] is None) == (creepages is None))
+if creepages:
+    names = ("longitudinal", "lateral", "spin_rad_per_mm")
+    speed = creepages["rolling_speed_mm_per_s"]
+    checks("contact.inp creepages", deck["creepages"] == [creepages[name] for name in names], f"{deck['creepages']}")
+    checks("contact.inp rolls by an element a step",
+           deck["rolling"] == (0.0 if creepages["forward"] else np.pi, folder.steps[1], speed), f"{deck['rolling']}")
+    if set(summary["scene"]["motion"]) <= {"speed", "lateral", "vertical", "yaw", "roll", "pitch"} and not any(
+            summary["scene"]["motion"].get(key) for key in ("lateral", "vertical", "yaw", "roll")):
+        # A wheel that only moves forward and turns, from the skew, the radius and the wheel's contact angle.
+        turned, skew = creepages["pitch_rad_per_s"] * summary["rolling_radius_mm"], summary["skew_rad"]
+        carried = 1000 * summary["scene"]["motion"]["speed"]
+        expected = [-(carried + turned * np.cos(skew)), turned * np.sin(skew),
+                    -creepages["pitch_rad_per_s"] * np.sin(summary["wheel"]["contact_angle_rad"])]
+        error = np.abs(np.array(expected) / speed - deck["creepages"]).max()
+        checks("contact.inp creepages are those of a turning wheel", error <= 1e-14, f"off by {error:.1e}")
+else:
+    checks("contact.inp without motion does not creep", deck["creepages"] == [0, 0, 0])
 checks.done()

@@ -1,19 +1,13 @@
-"""One row of the table of estimated against solved approaches: FOLDER NAME and what `clients_runs.rs` passes."""
+"""Solves regions of contact with Tamaas: load_table.py FOLDER E*. Prints the name of every subfolder and δ [mm]."""
 
+import pathlib
 import sys
 
-from folder import Folder
-from solve import tamaas_solution
+import numpy as np
+from solve import solved_by_tamaas
 
-path, name, *numbers, angle, chosen = sys.argv[1:]
-load, modulus, hertz_peak, *estimates = map(float, numbers)
-peak, approach = tamaas_solution(Folder(path), modulus, load)
-
-
-def against(estimate, solved, digits):
-    return f"{estimate:.{digits}f} ({round(100 * (estimate / solved - 1), 1) + 0.0:+.1f} %)"
-
-
-letter = {"Hertz": "H", "VirtualInterpenetration": "V"}[chosen]
-columns = [name, f"{angle}°", f"{load / 1e3:g}", f"{approach:.4f}", *(against(e, approach, 4) for e in estimates), letter]
-print("|", " | ".join([*columns, f"{peak:.0f}", against(hertz_peak, peak, 0)]), "|")
+folder, modulus = pathlib.Path(sys.argv[1]), float(sys.argv[2])
+for region in sorted(path for path in folder.iterdir() if path.is_dir()):
+    *steps, load = map(float, (region / "numbers.txt").read_text().split())
+    _, approach = solved_by_tamaas(np.load(region / "separation.npy"), steps, modulus, load)
+    print(region.name, repr(float(approach)))

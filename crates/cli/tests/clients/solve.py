@@ -16,10 +16,10 @@ from ContactMechanics import FreeFFTElasticHalfSpace, Systems
 from folder import Checks, Folder
 
 
-def tamaas_solution(folder, modulus, load):
-    """Peak pressure [MPa] and approach [mm] from separation.npy."""
-    s = np.where(np.isnan(folder.s), folder.fill, folder.s)
-    size = [n * d for n, d in zip(s.shape, folder.steps)]
+def solved_by_tamaas(s, steps, modulus, load):
+    """Peak pressure [MPa] and approach [mm] of a separation [mm], NaN where a body has no surface, on these steps [mm]."""
+    s = np.where(np.isnan(s), 10 * np.nanmax(np.abs(s)), s)
+    size = [n * d for n, d in zip(s.shape, steps)]
     tamaas.set_log_level(tamaas.LogLevel.error)
     model = tamaas.Model(tamaas.model_type.basic_2d, size, list(s.shape))
     model.E, model.nu = modulus, 0
@@ -39,8 +39,13 @@ def tamaas_solution(folder, modulus, load):
     return pressure.max(), np.mean((s + displacement)[touching])
 
 
+def tamaas_solution(folder, modulus, load):
+    """Peak pressure [MPa] and approach [mm] from separation.npy."""
+    return solved_by_tamaas(folder.s, folder.steps, modulus, load)
+
+
 def contact_mechanics_solution(folder, modulus, load):
-    """The same from separation.nc."""
+    """Peak pressure [MPa] and approach [mm] from separation.nc."""
     topography = SurfaceTopography.read_topography(str(folder / "separation.nc"))
     substrate = FreeFFTElasticHalfSpace(topography.nb_grid_pts, modulus, topography.physical_sizes)
     system = Systems.NonSmoothContactSystem(substrate, topography)

@@ -3,12 +3,11 @@
 
 use crate::programs::{check, check_all, folder};
 use std::path::Path;
-use wheelrail::export::deck::contact::{Normal, Settings, contact};
-use wheelrail::export::deck::{Deck, wrp};
-use wheelrail::export::netcdf::NetCdf;
-use wheelrail::export::picture::{Nodes, Picture};
 use wheelrail::export::{
-    Frame, GridFields, Header, Interval, Loop, QuadMesh, VIEW_SCRIPT, csv, legacy, npy, vtk, vts,
+    ContactSettings, Deck, Frame, GridFields, Header, Interval, Loop, NetCdf, Nodes, PatchPicture,
+    Prescribed, QuadMesh, VIEW_SCRIPT, array_npy, boundary_csv, boundary_vtp, collection_pvd, conform_wrp,
+    contact_inp, countact_wrp, interpen_csv, patch_vtu, rail_vts, separation_vtk, separation_vts,
+    separation_wrp, wheel_vts,
 };
 use wheelrail::files::{Folder, RUN_FOLDER};
 use wheelrail::nalgebra::{Isometry2, Point3, Translation2, UnitComplex, Vector2};
@@ -115,13 +114,13 @@ impl Scene {
         write_grid(&folder, &header, &grid);
         write_decks(&folder, &header, &grid, &self.mesh());
         let loops = self.loops();
-        folder.write("boundary.csv", csv::boundary(&loops).as_bytes()).unwrap();
+        folder.write("boundary.csv", boundary_csv(&loops).as_bytes()).unwrap();
         let row = Interval { xi: 0.0, component: 0, eta: [-1.0, 1.0] };
-        folder.write("interpen.csv", csv::interpen(&[row]).as_bytes()).unwrap();
-        folder.write("boundary.vtp", &vtk::boundary(&header, &loops).unwrap()).unwrap();
-        folder.write("patch.vtu", &vtk::patch(&header, &self.mesh()).unwrap()).unwrap();
+        folder.write("interpen.csv", interpen_csv(&[row]).as_bytes()).unwrap();
+        folder.write("boundary.vtp", &boundary_vtp(&header, &loops).unwrap()).unwrap();
+        folder.write("patch.vtu", &patch_vtu(&header, &self.mesh()).unwrap()).unwrap();
         let steps = [(0.0, 0, "rail.vts".into()), (0.5, 0, "wheel.vts".into())];
-        folder.write("surface.pvd", vtk::collection(&steps).as_bytes()).unwrap();
+        folder.write("surface.pvd", collection_pvd(&steps).as_bytes()).unwrap();
         folder.write("patch.svg", picture(&header, &grid, &loops).as_bytes()).unwrap();
         folder.write("view.py", VIEW_SCRIPT.as_bytes()).unwrap();
         folder.write("summary.json", b"{\"program\": \"wheelrail\"}\n").unwrap();
@@ -135,8 +134,17 @@ fn picture(header: &Header, grid: &GridFields, loops: &[Loop]) -> String {
     let midplane: Vec<[f64; 2]> = grid.xi().iter().map(|&x| [x, hertz(x, 0.0)]).collect();
     let separation = Nodes { xi: grid.xi(), eta: grid.eta(), values: grid.separation() };
     let cells = [grid.xi(), grid.eta()];
-    Picture { header, contact: "", cells, separation, midplane: &midplane, loops, rail: &rail, wheel: &wheel }
-        .svg()
+    PatchPicture {
+        header,
+        contact: "",
+        cells,
+        separation,
+        midplane: &midplane,
+        loops,
+        rail: &rail,
+        wheel: &wheel,
+    }
+    .svg()
 }
 
 fn rail_height(xi: f64) -> f64 {
@@ -146,26 +154,26 @@ fn rail_height(xi: f64) -> f64 {
 fn write_grid(folder: &Folder, header: &Header, grid: &GridFields) {
     let (xi, eta) = (grid.xi(), grid.eta());
     let shape = [xi.len() as u64, eta.len() as u64];
-    folder.stream("xi.npy", |sink| npy::array(sink, &shape[..1], xi)).unwrap();
-    folder.stream("eta.npy", |sink| npy::array(sink, &shape[1..], eta)).unwrap();
-    folder.stream("separation.npy", |sink| npy::array(sink, &shape, grid.separation())).unwrap();
-    folder.stream("separation.vts", |sink| vts::separation(sink, header, grid)).unwrap();
-    folder.stream("rail.vts", |sink| vts::rail(sink, header, grid)).unwrap();
-    folder.stream("wheel.vts", |sink| vts::wheel(sink, header, grid)).unwrap();
-    folder.stream("separation.vtk", |sink| legacy::separation(sink, header, grid)).unwrap();
+    folder.stream("xi.npy", |sink| array_npy(sink, &shape[..1], xi)).unwrap();
+    folder.stream("eta.npy", |sink| array_npy(sink, &shape[1..], eta)).unwrap();
+    folder.stream("separation.npy", |sink| array_npy(sink, &shape, grid.separation())).unwrap();
+    folder.stream("separation.vts", |sink| separation_vts(sink, header, grid)).unwrap();
+    folder.stream("rail.vts", |sink| rail_vts(sink, header, grid)).unwrap();
+    folder.stream("wheel.vts", |sink| wheel_vts(sink, header, grid)).unwrap();
+    folder.stream("separation.vtk", |sink| separation_vtk(sink, header, grid)).unwrap();
     let netcdf = NetCdf::new(header, grid).unwrap();
     folder.stream("separation.nc", |sink| netcdf.write(sink)).unwrap();
 }
 
 fn write_decks(folder: &Folder, header: &Header, grid: &GridFields, mesh: &QuadMesh) {
     let deck = Deck::new(header, grid).unwrap();
-    folder.stream("separation.wrp", |sink| wrp::separation(&deck, sink)).unwrap();
-    folder.stream("conform.wrp", |sink| wrp::conform(&deck, sink)).unwrap();
+    folder.stream("separation.wrp", |sink| separation_wrp(&deck, sink)).unwrap();
+    folder.stream("conform.wrp", |sink| conform_wrp(&deck, sink)).unwrap();
     let mut countact = Vec::new();
-    wrp::countact(&deck, mesh, &mut countact).unwrap();
+    countact_wrp(&deck, mesh, &mut countact).unwrap();
     folder.write("countact.wrp", &countact).unwrap();
-    let settings = Settings::steel(Normal::Force(LOAD));
-    folder.stream("contact.inp", |sink| contact(&deck, &settings, sink)).unwrap();
+    let settings = ContactSettings::steel(Prescribed::Force(LOAD));
+    folder.stream("contact.inp", |sink| contact_inp(&deck, &settings, sink)).unwrap();
 }
 
 #[test]

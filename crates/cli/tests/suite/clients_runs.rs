@@ -1,20 +1,19 @@
 //! Folders of `wheelrail run` itself, read and solved by the programs that they are for.
 
-use crate::programs::{check, check_run, folder, output_of};
+use crate::programs::{check, check_run, folder};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use wheelrail::case::{Run, SILENT};
 use wheelrail::files::RUN_FOLDER;
-use wheelrail::load::hertz::effective_modulus;
-use wheelrail::load::virtual_interpenetration::VirtualContact;
-use wheelrail::scene;
 
 /// The Hertz case of a 460 mm wheel on a 300 mm crown under 80 kN: E* \[N/mm²\], p₀ \[N/mm²\], δ \[mm\].
 const HERTZ: [&str; 3] = ["113932", "1139.19", "0.0904879"];
 
 /// Every format that a scene may ask for.
 const ALL_FORMATS: &str = "[output]\nformats = [\"vtk\", \"npy\", \"netcdf\", \"text\", \"conform\", \"countact\", \"contact\", \"png\"]\n";
+
+/// What a solver of rolling contact needs besides.
+const ROLLING: &str = "[motion]\nspeed = 30.0\n[friction]\nstatic = 0.35\nkinetic = 0.25\n";
 
 /// What may lie in a run's folder and is not of the run: the collection is a sweep's, the other one is Python's.
 const NOT_OF_A_RUN: [&str; 2] = ["surface.pvd", "__pycache__"];
@@ -90,7 +89,8 @@ fn every_reader_reads_what_runs_write() {
 
 #[test]
 fn every_reader_reads_each_contact_of_a_wheelset() {
-    let dir = run("wheelset", include_str!("../../../../examples/scenes/wheelset.toml"));
+    let text = include_str!("../../../../examples/scenes/wheelset.toml");
+    let dir = run("wheelset", &format!("{text}{ROLLING}"));
     check_run(&dir);
     let parts = std::fs::read_dir(&dir).unwrap().map(|entry| entry.unwrap().path());
     let parts: Vec<_> = parts.filter(|path| path.is_dir()).collect();
@@ -136,67 +136,4 @@ fn tamaas_and_contact_mechanics_agree_on_60e1_under_s1002() {
     check_run(&dir);
     check("solve.py", &dir, &["--modulus", HERTZ[0], "--load", "60000", "--within", "0.005"]);
     check("check_docs.py", &dir, &[DOCS]);
-}
-
-/// A case of the table: what it is called, its scene up to `[patch]`, its load \[N\].
-type Case = (&'static str, String, f64);
-
-fn cases() -> Vec<Case> {
-    let s1002 = |offset: f64| standard("60E1", "S1002", offset, "");
-    vec![
-        ("cylinder 460 mm on crown 300 mm", crown(0.0, 0.0, ""), 80e3),
-        ("crown 300 mm under a 1:20 cone", crown(0.05, -300.0 * 0.05f64.atan().sin(), ""), 60e3),
-        ("UIC60/EN15302-A tread", standard("UIC60", "EN15302-A", 0.0, ""), 60e3),
-        ("60E1/S1002 tread", s1002(0.0), 20e3),
-        ("60E1/S1002 tread", s1002(0.0), 40e3),
-        ("60E1/S1002 tread", s1002(0.0), 60e3),
-        ("60E1/S1002 tread", s1002(0.0), 100e3),
-        ("60E1/S1002, wheel 6 mm inwards", s1002(-6.0), 60e3),
-        ("60E1/S1002, over a jump of curvature", s1002(-3.0), 60e3),
-        ("60E1/S1002, reaching the flange root", s1002(2.0), 60e3),
-        ("60E1/S1002 gauge corner", s1002(3.0), 60e3),
-        ("60E1/S1002 flange root", s1002(3.5), 60e3),
-        ("60E1/S1002 flange", s1002(6.0), 60e3),
-    ]
-}
-
-/// The load, the estimates by Hertz (δ and p₀) and by virtual interpenetration, and which of them a run takes, as
-/// `load_table.py` takes them; and the step of the automatic grid.
-fn estimates(path: &Path, load: f64) -> (Vec<String>, f64) {
-    let case = scene::resolve(&scene::load(path).unwrap(), Path::new("."), "case").unwrap();
-    let run = Run::new(case, SILENT).unwrap();
-    let part = &run.parts[0];
-    let [rail, wheel] = &run.case.question().material;
-    let modulus = effective_modulus(rail, wheel);
-    let hertz = part.site.contact.ellipse.unwrap();
-    let placement = &part.site.contact.placement;
-    let contact = VirtualContact::under_load(placement, load, modulus).unwrap();
-    let approaches = [hertz.approach_mm, contact.published_approach_mm, contact.approach_mm];
-    let numbers = [load, modulus, hertz.pressure_n_per_mm2].into_iter().chain(approaches);
-    let angle = placement.rail().contact_angle().to_degrees();
-    let chosen = format!("{:?}", part.site.contact.approach.unwrap().1.unwrap());
-    let mut arguments: Vec<String> = numbers.map(|number| format!("{number:?}")).collect();
-    arguments.extend([format!("{angle:.1}"), chosen]);
-    (arguments, part.site.grid.xi[1] - part.site.grid.xi[0])
-}
-
-/// The table of `src/docs/clients.md` is what the program and Tamaas give today.
-#[test]
-fn the_load_table_in_the_docs_is_current() {
-    let mut table = String::new();
-    for (number, (name, scene, load)) in cases().into_iter().enumerate() {
-        let scene = format!("{scene}[patch]\nload = {load:?}\n");
-        let path = folder(&format!("load{number}.toml"));
-        std::fs::write(&path, &scene).unwrap();
-        let (arguments, step) = estimates(&path, load);
-        // Three times as fine as the automatic grid: 48 cells over the box's short side.
-        let fine = format!("{scene}[grid]\nspacing = {:?}\n", step / 3.0);
-        let dir = run(&format!("load{number}"), &fine);
-        let arguments: Vec<&str> =
-            std::iter::once(name).chain(arguments.iter().map(String::as_str)).collect();
-        let Some(rows) = output_of("load_table.py", &dir, &arguments) else { return };
-        table += &rows;
-    }
-    let docs = std::fs::read_to_string(DOCS).unwrap();
-    assert!(docs.contains(&table), "src/docs/clients.md has another table; put this one there:\n{table}");
 }

@@ -11,6 +11,7 @@
 mod clients;
 mod clients_runs;
 mod hostile;
+mod load_table;
 mod profile_cli;
 mod programs;
 mod python_package;

@@ -1,28 +1,30 @@
 //! Builds the sections on what users wait for: positions of a wheelset, and whole cases.
 
-use super::section::Section;
+use super::section::PageSection;
+use crate::loads::ApproachError;
 use crate::measurements::Measurements;
 use crate::practice::PracticeRow;
 use crate::rates::{Motion, Rate};
 use crate::table::{cases_csv, markdown, positions_csv, practice_csv};
 use crate::whole_case::{PARTS, WholeCase};
+use wheelrail::load::Estimate;
 
 /// Returns the section on positions of wheelsets a second.
-pub(super) fn positions(m: &Measurements) -> Section {
+pub(super) fn positions(m: &Measurements) -> PageSection {
     let body = format!("{}\n{}\nAll rows: [positions.csv](positions.csv).\n", rate_table(m), rate_note(m));
     let files = vec![("positions.csv", positions_csv(&m.rates).into_bytes())];
-    Section { title: "Positions of a wheelset", body, files }
+    PageSection { title: "Positions of a wheelset", body, files }
 }
 
 /// Returns the section on the time of a case, part by part.
-pub(super) fn cases(m: &Measurements) -> Section {
+pub(super) fn cases(m: &Measurements) -> PageSection {
     let body = format!("{}\n{}\nAll rows: [cases.csv](cases.csv).\n", case_table(m), case_note(m));
     let files = vec![("cases.csv", cases_csv(&m.whole_cases).into_bytes())];
-    Section { title: "Whole cases", body, files }
+    PageSection { title: "Whole cases", body, files }
 }
 
 /// Makes the section on whole cases as engineers have them, against brute force.
-pub(super) fn practice(m: &Measurements) -> Section {
+pub(super) fn practice(m: &Measurements) -> PageSection {
     let figure = |value: f64| if value.is_nan() { "–".into() } else { format!("{value:.1e}") };
     let row = |row: &PracticeRow| {
         let verdict = if row.failures.is_empty() { "yes" } else { "**no**" };
@@ -38,7 +40,20 @@ pub(super) fn practice(m: &Measurements) -> Section {
         markdown(&head, 2, &rows)
     );
     let files = vec![("practice.csv", practice_csv(&m.practice).into_bytes())];
-    Section { title: "Practice", body, files }
+    PageSection { title: "Practice", body, files }
+}
+
+/// Makes the section on approaches under load, against a boundary-element solver.
+pub(super) fn loads(m: &Measurements) -> PageSection {
+    let worst = m.loads.iter().max_by(|a, b| a.error.abs().total_cmp(&b.error.abs()));
+    let worst =
+        worst.map_or_else(String::new, |one| format!(" The largest error is that of {}.", one.region));
+    let body = format!(
+        "Errors of δ from a load, against Tamaas under the same normal force on cells three times as fine as the automatic \
+         grid's: treads, flange roots, flanges, yaw, several places, drawn and worn.{worst}\n\n{}",
+        distribution(&m.loads)
+    );
+    PageSection { title: "Approaches under load", body, files: Vec::new() }
 }
 
 /// Returns the table of rates, one row per pair: rates, and their ratio to that of drawn arcs.
@@ -111,4 +126,25 @@ pub(super) fn case_note(m: &Measurements) -> String {
         );
     }
     note
+}
+
+/// Returns a table of the errors of δ: median, 90 % and largest, by how it was estimated.
+fn distribution(errors: &[ApproachError]) -> String {
+    let classes = [
+        ("Hertz", Estimate::Hertz, false),
+        ("half-space, one place", Estimate::HalfSpace, false),
+        ("half-space, places or parts joined", Estimate::HalfSpace, true),
+    ];
+    let rows = classes.map(|(name, estimate, joined)| {
+        let of_class = |one: &&ApproachError| one.estimate == Some(estimate) && one.joined == joined;
+        let mut errors: Vec<f64> =
+            errors.iter().filter(of_class).map(|one| 100.0 * one.error.abs()).collect();
+        errors.sort_by(f64::total_cmp);
+        let at = |share: f64| {
+            let index = (share * errors.len() as f64).ceil() as usize;
+            errors.get(index.saturating_sub(1)).map_or_else(String::new, |error| format!("{error:.2} %"))
+        };
+        vec![name.into(), errors.len().to_string(), at(0.5), at(0.9), at(1.0)]
+    });
+    markdown(&["δ estimated by", "regions", "median error", "90 % below", "largest"], 5, &rows)
 }

@@ -2,7 +2,7 @@
 
 /// One section of the page. For a new one, add a function to those that the page calls.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Section {
+pub struct PageSection {
     /// Heading of the section.
     pub title: &'static str,
     /// Text of the section in Markdown.

@@ -5,19 +5,19 @@ use super::fill::filled;
 use super::row::PracticeRow;
 use crate::random::Random;
 use wheelrail::error::{Error, Result};
-use wheelrail::mesh::axes;
+use wheelrail::mesh;
 use wheelrail::patch::{Component, End, Patch, Window};
-use wheelrail::placement::track::{RailDistance, WheelDistance};
-use wheelrail::placement::{Pair, Placement};
-use wheelrail::search::sweep::{Conicity, NoConicity};
-use wheelrail::search::wheelset::{Position, Roll, WheelsetOnTrack};
-use wheelrail::search::{Contact, ONE_CONTACT, Pose, ProfilePair, Selection, Touch};
+use wheelrail::placement::{Pair, Placement, RailDistance, WheelDistance};
+use wheelrail::search::{
+    Conicity, Contact, NoConicity, ONE_CONTACT, Pose, Position, ProfilePair, Roll, Selection, Touch,
+    WheelsetOnTrack,
+};
 use wheelrail::separation::Evaluator;
 
 /// Gap \[mm\] up to which near misses are compared.
 const WITHIN: f64 = 0.2;
-/// Largest difference \[mm\] of a height or a gap from brute force: chords are off a lip of 1 mm radius by
-/// 1.3e-5 mm, and on a flange of 75° this is four times as much in height.
+/// Largest difference \[mm\] of a height or a gap from brute force. Chords are 1.3e-5 mm off a lip of 1 mm radius; on a
+/// flange of 75° this is four times as much in height.
 const HEIGHT: f64 = 1e-4;
 /// Largest difference \[mm\] of s from brute force, across the surface.
 const SEPARATION: f64 = 3e-5;
@@ -101,7 +101,7 @@ pub(super) fn sweep(
         row.failures.push(format!("the conicity took {searches} searches of at most {most}"));
     }
     match conicity.at(0.9 * amplitude) {
-        // Worn pairs reach 1; more is a fault. The movement of a hollow wheel may not come back at all.
+        // Worn pairs reach 1; a larger conicity is a fault. The movement of a hollow wheel may not return at all.
         Ok(found) if found.conicity > 0.0 && found.conicity < 2.0 => {}
         Err(NoConicity::NotRestoring) => {}
         other => row.failures.push(format!("conicity {other:?}")),
@@ -113,8 +113,9 @@ pub(super) fn sweep(
 /// image.
 fn standing(system: &WheelsetOnTrack, position: &Position, roll: f64, sign: f64) -> Stance {
     let (yaw, roll) = (sign * position.yaw, sign * roll);
-    let along = system.wheelset.wheel_x * yaw.cos() * roll.cos() - system.wheelset.radius * roll.sin();
-    Stance { offset: sign * position.lateral + along - system.track.rail_x, yaw, roll }
+    let along = system.right().wheelset().wheel_x() * yaw.cos() * roll.cos()
+        - system.right().wheelset().radius() * roll.sin();
+    Stance { offset: sign * position.lateral + along - system.right().track().rail_x(), yaw, roll }
 }
 
 /// Compares height, contacts and near misses of one side.
@@ -157,7 +158,7 @@ fn patch(
     let Some(c) = contact else { return Ok(()) };
     let placement = c.placed(pair)?;
     let whole = Patch::new(&placement, approach, &Window::UNBOUNDED);
-    let groups = axes::groups(&whole, 0.0, None);
+    let groups = mesh::groups(&whole, 0.0, None);
     let Some(group) = groups.first() else {
         row.failures.push(format!("{name}no patch at {approach} mm"));
         return Ok(());
@@ -171,7 +172,7 @@ fn patch(
     if parts != fill.parts {
         row.failures.push(format!("{name}{parts} parts, {} by flood fill", fill.parts));
     }
-    // Where a surface ends between two points, the fill has half a cell too much or too little.
+    // At the end of a surface the flood fill has half a cell too much or too little.
     let ends = |part: &Component| part.ends.iter().filter(|end| **end == End::ProfileEnd).count() as f64;
     let beside = |part: &Component| 0.5 * fill.step * ends(part) * (part.eta[1] - part.eta[0]);
     let beside: f64 = patch.components.iter().map(beside).sum();
@@ -185,13 +186,13 @@ fn patch(
 }
 
 /// Checks that the outermost cells of an automatic grid are outside the patch.
-fn ring(placement: &Placement, approach: f64, grid: &axes::Axes, name: &str, row: &mut PracticeRow) {
+fn ring(placement: &Placement, approach: f64, grid: &mesh::Axes, name: &str, row: &mut PracticeRow) {
     let mut evaluator = Evaluator::new(placement);
     let (rows, columns) = (grid.xi.len(), grid.eta.len());
     for (k, &xi) in grid.xi.iter().enumerate() {
         for (l, &eta) in grid.eta.iter().enumerate() {
             let outermost = k == 0 || l == 0 || k + 1 == rows || l + 1 == columns;
-            // Beyond the end of a profile there is no s.
+            // There is no s beyond the end of a profile.
             if outermost && evaluator.separation(xi, eta) <= approach {
                 row.failures.push(format!("{name}the automatic grid cuts the patch at ({xi:.4}, {eta:.4})"));
                 return;

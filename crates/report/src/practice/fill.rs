@@ -34,7 +34,7 @@ pub(super) fn filled(placement: &Placement, approach: f64, window: &Window) -> F
     let eta: Vec<f64> = (0..counts[1]).map(|k| at(window.eta, k, counts[1])).collect();
     let mut evaluator = Evaluator::new(placement);
     let mut s = vec![f64::NAN; counts[0] * counts[1]];
-    // Without skew the patch is over the midplane.
+    // Without skew the patch lies over the midplane's overlap.
     let over = if placement.skew() == 0.0 { placement.overlap() } else { Some(window.xi) };
     for (k, column) in s.chunks_exact_mut(counts[1]).enumerate() {
         let xi = at(window.xi, k, counts[0]);

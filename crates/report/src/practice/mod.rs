@@ -1,10 +1,10 @@
 //! Runs whole cases of engineers from their files to their grids, and checks them against brute force.
 //!
-//! The cases are `cases.toml`: profiles new and worn, from drawings and from files of every format, the
-//! position of the wheel, and the reason for the case. [`run`] makes the profiles, searches the contacts,
-//! cuts the patch out of an automatic grid, and compares: heights and gaps with both bodies as chords of 0.01
-//! mm, s with rays to those chords, number and area of the components with a flood fill, and the ring around
-//! the automatic grid with δ. Each disagreement is a failure of a [`PracticeRow`].
+//! The cases are in `cases.toml`: profiles new and worn, from drawings and from files of every format, the position of the
+//! wheel, and the reason for the case. [`run`] makes the profiles, searches the contacts, cuts the patch out of an
+//! automatic grid, and compares. Heights and gaps are compared with both bodies as chords of 0.01 mm, s with rays to those
+//! chords, number and area of the components with a flood fill, and the ring around the automatic grid with δ. Each
+//! disagreement is a failure of a [`PracticeRow`].
 
 mod brute;
 mod checks;

@@ -1,10 +1,9 @@
-//! Turns profiles into chains of chords, and finds where they are outermost: the data of brute force. Nothing
-//! here uses the sections, searches and kernels that it checks.
+//! Turns profiles into chains of chords, and finds their outermost heights: the data of brute force. Nothing here uses the
+//! sections, searches and kernels that it checks.
 
-use wheelrail::profile::Profile;
-use wheelrail::profile::trace::trace;
+use wheelrail::profile::{Profile, trace};
 
-/// Distance \[mm\] of a chain's points: its chords are off a radius of 1 mm, that of a lip, by 1.3e-5 mm.
+/// Distance \[mm\] of a chain's points. Its chords are 1.3e-5 mm off a radius of 1 mm, which is that of a lip.
 const STEP: f64 = 0.01;
 /// Width \[mm\] of the bins in which chords are looked up: some ten chords.
 const BIN: f64 = 0.05;

@@ -1,6 +1,6 @@
-//! How a specimen is measured.
+//! The instrument that measures a specimen.
 
-/// How a specimen is measured.
+/// The instrument that measures a specimen, and the damage of its surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Instrument {
     /// Distance of the points along the profile \[mm\]; each point is off its place by up to a fifth of it.

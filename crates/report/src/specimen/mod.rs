@@ -105,7 +105,7 @@ impl Specimen {
     /// # Errors
     /// A fault of the built-in profiles only.
     pub fn new(kind: SpecimenKind, instrument: Instrument) -> Result<Self> {
-        // The wear takes another stream than the noise, of the same seed.
+        // The wear takes its own stream of random numbers, not that of the noise.
         let mut wear = Random::new(!instrument.seed);
         let points = recorded(&outline(kind, &mut wear)?, kind.side(), &instrument);
         Ok(Self { kind, instrument, points })
@@ -297,7 +297,7 @@ mod tests {
         let off: Vec<f64> =
             clean.points.iter().zip(&noisy.points).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).collect();
         let rms = (off.iter().map(|d| d * d).sum::<f64>() / off.len() as f64).sqrt();
-        // Between two normal numbers the mean square of the line is two thirds of theirs.
+        // Averaged along a line between two normal numbers, the mean square is two thirds of theirs.
         assert!((rms - 0.020 * (2.0f64 / 3.0).sqrt()).abs() < 0.002, "{rms}");
         let other = Specimen::new(SpecimenKind::FullHead, Instrument::new(0.05, 20.0, 2))?;
         assert!(other.points != noisy.points);
@@ -314,7 +314,7 @@ mod tests {
         assert!(grooved.iter().any(|p| p[1] < -46.0 && (-70.0..-40.0).contains(&p[0])));
         let hollow = specimen(SpecimenKind::HollowWheel)?.points;
         let at = |x: f64| hollow.iter().find(|p| p[0] > x).map_or(f64::NAN, |p| p[1]);
-        // The material is above: the worn tread is higher than the field side.
+        // The material is above, so that the worn tread is higher than the field side.
         assert!(at(6.0) > at(40.0) + 1.0, "{} {}", at(6.0), at(40.0));
         Ok(())
     }

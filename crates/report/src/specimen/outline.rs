@@ -2,8 +2,7 @@
 
 use super::instrument::Instrument;
 use crate::random::Random;
-use wheelrail::profile::trace::trace;
-use wheelrail::profile::{Profile, Side};
+use wheelrail::profile::{Profile, Side, trace};
 
 /// Distance of an outline's points \[mm\]: its chords are off a 3 mm radius by 2e-5 mm, far less than any
 /// noise.

@@ -23,8 +23,8 @@ fn picture<'a>(
     loops: &'a [Loop],
     midplane: &'a [[f64; 2]],
     profiles: &'a [Vec<[f64; 2]>; 2],
-) -> Picture<'a> {
-    Picture {
+) -> PatchPicture<'a> {
+    PatchPicture {
         header,
         contact: "left side, mirrored · contact 2",
         cells: [&sample.xi, &sample.eta],
@@ -53,7 +53,7 @@ fn pictures_of_good_and_of_odd_data_are_drawn() {
                 {
                     let svg = picture(&sample, &header, &loops, &midplane, profiles).svg();
                     assert!(svg.contains("a &lt;b&gt; &amp; c") && svg.ends_with("</svg>\n"));
-                    // One blank of several is all that a reader of SVG shows.
+                    // Readers of SVG show several blanks as one.
                     assert!(svg.contains("left side, mirrored · contact 2 · ") && !svg.contains("    "));
                     assert!(!svg.contains("NaN") && !svg.contains("inf"), "{n:?}");
                 }

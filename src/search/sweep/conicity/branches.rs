@@ -1,6 +1,7 @@
 //! Finds the places of contact and near miss at one displacement, and how they change beside it.
 
 use crate::error::Result;
+use crate::numerics::roots::bracketed;
 use crate::search::wheelset::{Position, Roll, SideTouch, WheelsetOnTrack, WheelsetSearch};
 use crate::search::{Contact, Selection};
 
@@ -9,6 +10,9 @@ use crate::search::{Contact, Selection};
 /// misses. Places within 1 µm of each other are one: a hop that short changes Δr by less than 0.1 µm on a
 /// tread.
 const NEAR: Selection = Selection { within: 1e-3, apart: 1e-3 };
+
+/// Step at which the centre of the movement is looked for \[mm\].
+const STEP: f64 = 0.1;
 
 /// Signs of the left and the right side's own x axis along the track's.
 const SIGNS: [f64; 2] = [-1.0, 1.0];
@@ -50,7 +54,7 @@ impl<'a> Searched<'a> {
     pub(super) fn at(&mut self, lateral: f64, sides: &mut Sides) -> Result<bool> {
         let position = Position { lateral, yaw: 0.0, roll: self.roll };
         let Some(touch) = self.search.touch(&position, &NEAR)? else { return Ok(false) };
-        let arms = [0, 1].map(|k| Arm::new(self.system, lateral, SIGNS[k], &touch.sides[k]));
+        let arms = [0, 1].map(|k| Arm::new(self.system, lateral, k, &touch.sides[k]));
         let lowest = [0, 1].map(|k| arms[k].turning(&touch.sides[k].touch.contacts[0]));
         // With the roll solved both sides rise alike: the roll turns by this much with y.
         let turn = match self.roll {
@@ -65,6 +69,53 @@ impl<'a> Searched<'a> {
     }
 }
 
+impl Searched<'_> {
+    /// Finds the places at one displacement \[mm\] as the mirror image of the wheelset has them at the opposite one: sides
+    /// change places, and rates with the displacement their sign.
+    ///
+    /// # Errors
+    /// The errors of [`Searched::at`].
+    pub(super) fn mirrored(&mut self, lateral: f64, sides: &mut Sides) -> Result<bool> {
+        let found = self.at(lateral, sides)?;
+        sides.swap(0, 1);
+        for place in sides.iter_mut().flatten() {
+            (place.climb, place.growth) = (-place.climb, -place.growth);
+        }
+        Ok(found)
+    }
+
+    /// Finds the displacement nearest to 0 at which Δr vanishes or jumps through 0 while it grows \[mm\]; `None` if there is none
+    /// within the amplitude.
+    ///
+    /// # Errors
+    /// The errors of [`Searched::at`].
+    pub(super) fn centre(&mut self, amplitude: f64) -> Result<Option<f64>> {
+        let mut sides = Sides::default();
+        let mut failure = None;
+        let mut difference = |y: f64| match self.at(y, &mut sides) {
+            Ok(true) => sides[1][0].radius - sides[0][0].radius,
+            Ok(false) => f64::NAN,
+            Err(error) => {
+                failure = Some(error);
+                f64::NAN
+            }
+        };
+        let mut near = 0.0;
+        let mut at_near = difference(near);
+        let step = -STEP * at_near.signum();
+        let mut centre = (at_near == 0.0).then_some(0.0);
+        while centre.is_none() && near.abs() < amplitude && !at_near.is_nan() {
+            let far = near + step;
+            let at_far = difference(far);
+            if at_far == 0.0 || (at_far > 0.0) != (at_near > 0.0) && !at_far.is_nan() {
+                centre = bracketed(&mut difference, near, far);
+            }
+            (near, at_near) = (far, at_far);
+        }
+        failure.map_or(Ok(centre), Err)
+    }
+}
+
 /// Position of the axle's middle, seen from the profiles of one side.
 struct Arm {
     sign: f64,
@@ -74,9 +125,10 @@ struct Arm {
 }
 
 impl Arm {
-    fn new(system: &WheelsetOnTrack, lateral: f64, sign: f64, side: &SideTouch) -> Self {
-        let x = system.track.rail_x - sign * lateral;
-        let z = system.track.rail_z - side.z - system.wheelset.radius;
+    fn new(system: &WheelsetOnTrack, lateral: f64, index: usize, side: &SideTouch) -> Self {
+        let (sign, track) = (SIGNS[index], system.sides[index].track());
+        let x = track.rail_x() - sign * lateral;
+        let z = track.rail_z() - side.z - system.reference_radius();
         Self { sign, height: side.z, origin: [x, z] }
     }
 

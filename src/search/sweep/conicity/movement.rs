@@ -126,6 +126,15 @@ impl Movement {
         (above < self.knots.len()).then(|| above.checked_sub(1)).flatten()
     }
 
+    /// Returns E at an amplitude \[mm²\]; `None` beyond the last cell.
+    pub(super) fn energy_at(&self, amplitude: f64) -> Option<f64> {
+        let cell = self.cell(amplitude)?;
+        let [inner, outer] = [self.knots[cell], self.knots[cell + 1]];
+        let run = amplitude - inner.y;
+        let force = inner.force + run / (outer.y - inner.y) * (outer.force - inner.force);
+        Some(self.energy[cell] + run * (inner.force + force))
+    }
+
     /// Returns the quarter of the movement with its turning point ŷ in `cell`; `None` if the movement does
     /// not come back through 0.
     ///

@@ -1,0 +1,170 @@
+//! Compares approaches that `load` estimates with those that a boundary-element solver finds for the same regions: 60
+//! positions of five pairs, on treads, in flange roots, on flanges, with yaw, in two places at once.
+//!
+//! The solved approaches are the data of `data/loads.csv`. The tests of the program's clients compute them anew with
+//! Tamaas, and fail if they differ from the data.
+
+use super::whole_case;
+use wheelrail::case::{Case, Profiles, Site, sites};
+use wheelrail::error::{Error, Result};
+use wheelrail::load::Estimate;
+use wheelrail::placement::Pair;
+use wheelrail::profile::{Profile, inclination, standards};
+use wheelrail::scene::{parse, with_profiles};
+
+/// The solved approaches, by position and contact.
+const SOLVED: &str = include_str!("../data/loads.csv");
+
+/// Names of the pairs.
+const PAIRS: [&str; 5] = [
+    "60E1 1:40 under S1002",
+    "UIC60 1:20 under S1002",
+    "60E2 1:40 under EN13715-1:40",
+    "54E3 1:20 under EN15302-C",
+    "worn, measured",
+];
+
+/// Offset \[mm\], yaw \[rad\] and load \[N\] of the positions of every pair.
+const POSITIONS: [[f64; 3]; 12] = [
+    [-6.0, 0.0, 60e3],
+    [-3.0, 0.0, 60e3],
+    [-1.5, 0.01, 60e3],
+    [0.0, 0.0, 20e3],
+    [0.0, 0.0, 100e3],
+    [1.0, 0.0, 60e3],
+    [1.7, 0.0, 60e3],
+    [2.3, 0.0, 90e3],
+    [3.0, 0.01, 60e3],
+    [3.5, 0.0, 60e3],
+    [4.5, 0.0, 60e3],
+    [6.0, 0.015, 40e3],
+];
+
+/// A wheel on a rail under a load.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Loaded {
+    /// Name of the pair.
+    pub pair: &'static str,
+    /// Offset of the wheel \[mm\].
+    pub offset: f64,
+    /// Yaw \[rad\].
+    pub yaw: f64,
+    /// Vertical load \[N\].
+    pub load: f64,
+}
+
+/// One region of contact that carries a share of a load, with its approach estimated and solved.
+#[derive(Debug, Clone)]
+pub struct Carried {
+    /// The wheel.
+    pub loaded: Loaded,
+    /// Placement, patch, normal force and estimate.
+    pub site: Site,
+    /// δ \[mm\] that Tamaas finds for the same normal force; NaN if the data have none.
+    pub solved: f64,
+}
+
+/// The error of one estimated approach.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ApproachError {
+    /// Name of the region, as in the data.
+    pub region: String,
+    /// Method of the estimate.
+    pub estimate: Option<Estimate>,
+    /// Whether the patch has several parts or several places of contact.
+    pub joined: bool,
+    /// Error of δ relative to the solved one.
+    pub error: f64,
+}
+
+/// The normal force \[N\] and the solved δ \[mm\] of a row of the data.
+type Row = [f64; 2];
+
+impl Loaded {
+    /// Resolves the case of this position over a pair.
+    fn case(&self, pair: &Pair) -> Result<Case> {
+        let Self { offset, yaw, load, .. } = self;
+        // The profiles named here are not read, because the pair is given.
+        let scene = format!(
+            "[rail]\nprofile = \"60E1\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n[contact]\noffset = {offset:?}\n\
+             yaw = {yaw:?}\n[patch]\nload = {load:?}\n"
+        );
+        with_profiles(&parse(&scene, false)?, Profiles::drawn(pair.clone()), self.pair)
+    }
+
+    /// Returns the name of the position and one of its contacts, as in the data.
+    pub fn key(&self, contact: usize) -> String {
+        let Self { pair, offset, yaw, load } = self;
+        format!("{pair},{offset:?},{yaw:?},{load:?},{contact}")
+    }
+}
+
+impl Carried {
+    /// Returns the number of the contact, from 1.
+    pub fn contact(&self) -> usize {
+        self.site.found.as_ref().map_or(1, |found| found.contact)
+    }
+
+    /// Compares the estimated δ with the solved one.
+    pub fn compared(&self) -> ApproachError {
+        let merged = self.site.found.as_ref().is_some_and(|found| !found.merged.is_empty());
+        let parts = self.site.contact.whole_patch().map_or(0, |patch| patch.components.len());
+        ApproachError {
+            region: self.loaded.key(self.contact()),
+            estimate: self.estimate(),
+            joined: merged || parts > 1,
+            error: self.site.approach() / self.solved - 1.0,
+        }
+    }
+
+    /// Returns the method of the estimate.
+    pub fn estimate(&self) -> Option<Estimate> {
+        self.site.contact.approach.and_then(|(_, estimate)| estimate)
+    }
+}
+
+/// Makes the pairs, in the order of their names.
+fn pairs() -> Result<Vec<Pair>> {
+    let pair = |rail: Profile, run: f64, wheel: Profile, radius: f64| {
+        Pair::new(rail.rotated(inclination(1.0, run)?), wheel, radius)
+    };
+    let [worn_rail, worn_wheel] = whole_case::measured()?;
+    Ok(vec![
+        pair(standards::rail("60E1")?, 40.0, standards::wheel("S1002")?, 460.0)?,
+        pair(standards::rail("UIC60")?, 20.0, standards::wheel("S1002")?, 500.0)?,
+        pair(standards::rail("60E2")?, 40.0, standards::wheel("EN13715-1:40-h28-e32.5")?, 420.0)?,
+        pair(standards::rail("54E3")?, 20.0, standards::wheel("EN15302-C")?, 415.0)?,
+        pair(worn_rail, 40.0, worn_wheel, 460.0)?,
+    ])
+}
+
+/// Computes the regions of contact that carry every wheel's load.
+///
+/// # Errors
+/// A position without contact, which is a fault of this program.
+pub fn carried() -> Result<Vec<Carried>> {
+    let mut out = Vec::new();
+    for (name, pair) in PAIRS.into_iter().zip(pairs()?) {
+        for [offset, yaw, load] in POSITIONS {
+            let loaded = Loaded { pair: name, offset, yaw, load };
+            for site in sites(&loaded.case(&pair)?)? {
+                let mut one = Carried { loaded, site, solved: f64::NAN };
+                one.solved = solved(&loaded.key(one.contact()))?.map_or(f64::NAN, |[_, approach]| approach);
+                out.push(one);
+            }
+        }
+    }
+    Ok(out)
+}
+
+/// Returns the row of the data with this name; `None` if there is none.
+fn solved(key: &str) -> Result<Option<Row>> {
+    let row = SOLVED.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(','));
+    let bad = |row: &str| Error::new("loads.csv", row, "two numbers", "let the tests make it anew");
+    let number = |row: &str, cell: Option<&str>| cell.and_then(|c| c.parse().ok()).ok_or_else(|| bad(row));
+    row.map(|row| {
+        let mut cells = row.split(',');
+        Ok([number(row, cells.next())?, number(row, cells.next())?])
+    })
+    .transpose()
+}

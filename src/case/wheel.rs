@@ -1,0 +1,251 @@
+//! A wheel that sinks into its rail: the regions of contact that it makes, and the load that they carry.
+//!
+//! One unknown, how far the wheel sinks, gives every approach: a place of contact whose vertical gap at first touch is g
+//! closes by δ = (sunk − g) cosθ along its own normal. Places whose patches overlap are one region, in the frame of the one that
+//! touches first. The normal forces of all regions add up vertically: Σ F cosθ is the load.
+
+use std::sync::Arc;
+
+use nalgebra::Point2;
+
+use crate::error::Result;
+use crate::load::{Estimate, HalfSpace, curvatures, hertz_holds, under_total};
+use crate::mesh::groups;
+use crate::patch::{Patch, Window};
+use crate::placement::{Pair, Placement};
+use crate::profile::Station;
+use crate::search;
+
+/// An approach to begin with where a place has no ellipse \[mm\].
+const USUAL_APPROACH: f64 = 0.05;
+
+/// A wheel over its rail, with the places where it may touch.
+pub(super) struct Wheel<'a> {
+    pair: &'a Pair,
+    /// The first one touches first.
+    places: Vec<Reached>,
+    joining: Joining,
+}
+
+/// What makes parts of a patch one region.
+#[derive(Clone, Copy)]
+pub(super) struct Joining {
+    /// Parts closer than this \[mm\] are joined.
+    pub merge: f64,
+    /// Steps of the grids \[mm\]: parts that the grid of another one would cut are joined.
+    pub spacing: Option<[f64; 2]>,
+    /// Whether all parts of the patch of a place are its own: no other place stands for them.
+    pub alone: bool,
+}
+
+/// A place of contact that the wheel closes as it sinks.
+struct Reached {
+    /// (x, z) on the rail \[mm\].
+    rail: Point2<f64>,
+    /// Abscissa \[mm\] on rail and wheel, each with the angle of ξ in its own axes \[rad\].
+    along: [[f64; 2]; 2],
+    /// χ \[rad\].
+    skew: f64,
+    /// Vertical gap at first touch \[mm\].
+    gap: f64,
+    /// cosθ of its normal.
+    cos: f64,
+    /// The pair placed there, once it was asked for.
+    placement: Option<Arc<Placement>>,
+    /// The pressures of its groups of parts under the last approach.
+    cells: Vec<HalfSpace>,
+}
+
+/// The parts of a patch that are one contact.
+#[derive(Debug, Clone)]
+pub(super) struct Region {
+    /// Index of the place whose frame it has.
+    pub place: usize,
+    /// Indices of the other places inside.
+    pub merged: Vec<usize>,
+    pub placement: Arc<Placement>,
+    /// δ along the place's normal \[mm\].
+    pub approach: f64,
+    pub patch: Patch,
+    /// The boxes around its groups of parts.
+    extents: Vec<Window>,
+    /// Normal force of every group of parts \[N\]; empty unless a load was asked for.
+    pub loads: Vec<f64>,
+    pub estimate: Option<Estimate>,
+}
+
+impl Region {
+    /// Tells whether the group of parts around C holds a place of contact.
+    fn holds(&self, place: &Reached) -> bool {
+        let xi = self.placement.rail().contact_frame().inverse_transform_point(&place.rail).x;
+        self.extents.first().is_some_and(|extent| extent.xi[0] <= xi && xi <= extent.xi[1])
+    }
+
+    /// Gives the vertical force \[N\].
+    fn vertical(&self) -> f64 {
+        self.loads.iter().sum::<f64>() * self.placement.rail().point.station.cos
+    }
+}
+
+impl<'a> Wheel<'a> {
+    /// Makes a wheel of the places that a search found, the lowest gap first.
+    pub(super) fn over(pair: &'a Pair, places: &[search::Contact], joining: Joining) -> Self {
+        let reached = |place: &search::Contact| Reached {
+            rail: Point2::new(place.rail_x, place.rail_z),
+            along: [[place.rail_x, place.contact_angle], [place.wheel_x, place.wheel_angle]],
+            skew: place.skew,
+            gap: place.gap,
+            cos: place.contact_angle.cos(),
+            placement: None,
+            cells: Vec::new(),
+        };
+        Self { pair, places: places.iter().map(reached).collect(), joining }
+    }
+
+    /// Makes a wheel that touches at chosen points.
+    pub(super) fn at_points(pair: &'a Pair, placement: Placement, joining: Joining) -> Self {
+        let Station { x, z, cos, .. } = placement.rail().point.station;
+        let place = Reached {
+            rail: Point2::new(x, z),
+            along: [placement.rail(), placement.wheel()]
+                .map(|body| [body.point.station.x, body.contact_angle()]),
+            skew: placement.skew(),
+            gap: 0.0,
+            cos,
+            placement: Some(Arc::new(placement)),
+            cells: Vec::new(),
+        };
+        Self { pair, places: vec![place], joining }
+    }
+
+    /// Finds the regions under an approach δ \[mm\] of the first place; the first region is that place's.
+    ///
+    /// # Errors
+    /// A place at which the pair cannot be placed.
+    pub(super) fn regions(&mut self, first_approach: f64) -> Result<Vec<Region>> {
+        let mut regions: Vec<Region> = Vec::new();
+        let sunk = self.places.first().map_or(0.0, |first| first_approach / first.cos);
+        for index in 0..self.places.len() {
+            let place = &self.places[index];
+            let approach = if index == 0 { first_approach } else { (sunk - place.gap) * place.cos };
+            if index > 0 && approach <= 0.0 {
+                continue;
+            }
+            if let Some(region) = regions.iter_mut().find(|region| region.holds(place)) {
+                region.merged.push(index);
+                continue;
+            }
+            let placement = self.placement(index)?;
+            let patch = Patch::new(&placement, approach, &Window::UNBOUNDED);
+            let Joining { merge, spacing, alone } = self.joining;
+            let mut parts = groups(&patch, merge, spacing);
+            parts.truncate(if alone { parts.len() } else { 1 });
+            let extents = parts.into_iter().map(|group| group.extent).collect();
+            let (merged, loads) = (Vec::new(), Vec::new());
+            let region =
+                Region { place: index, merged, placement, approach, patch, extents, loads, estimate: None };
+            regions.push(region);
+        }
+        Ok(regions)
+    }
+
+    fn placement(&mut self, index: usize) -> Result<Arc<Placement>> {
+        let place = &mut self.places[index];
+        let placement = match place.placement.take() {
+            Some(placement) => placement,
+            None => Arc::new(self.pair.placed_along(place.along[0], place.along[1], place.skew)?),
+        };
+        Ok(Arc::clone(place.placement.insert(placement)))
+    }
+
+    /// Finds the regions under an approach of the first place with the normal forces that they carry.
+    fn pressed(&mut self, first_approach: f64, modulus: f64) -> Result<Vec<Region>> {
+        let mut regions = self.regions(first_approach)?;
+        for region in &mut regions {
+            let cells = &mut self.places[region.place].cells;
+            cells.resize_with(region.extents.len(), HalfSpace::default);
+            let loads = cells
+                .iter_mut()
+                .zip(&region.extents)
+                .map(|(cells, extent)| cells.load(&region.placement, extent, region.approach, modulus));
+            region.loads = loads.collect();
+            region.estimate = Some(Estimate::HalfSpace);
+        }
+        Ok(regions)
+    }
+
+    /// Gives the one region with Hertz's ellipse under a vertical load \[N\], where that ellipse holds and nothing else touches.
+    fn by_hertz(&mut self, load: f64, modulus: f64) -> Result<Option<Region>> {
+        let placement = self.placement(0)?;
+        let (curvatures, normal) = (curvatures(&placement), load / self.places[0].cos);
+        let Some(ellipse) = curvatures.under_load(normal, modulus) else { return Ok(None) };
+        let mut regions = self.regions(ellipse.approach_mm)?;
+        let alone = regions.len() == 1 && regions[0].merged.is_empty();
+        let Some(region) = regions.pop().filter(|region| alone && region.extents.len() == 1) else {
+            return Ok(None);
+        };
+        let holds = hertz_holds(&region.placement, &curvatures, &ellipse, &region.extents[0]);
+        Ok(holds.then(|| Region { loads: vec![normal], estimate: Some(Estimate::Hertz), ..region }))
+    }
+
+    /// Gives about what the wheel sinks by under a load \[N\]: after the first place's ellipse.
+    fn guess(&mut self, load: f64, modulus: f64) -> Result<f64> {
+        let ellipse = curvatures(&*self.placement(0)?).under_load(load, modulus);
+        Ok(ellipse.map_or(USUAL_APPROACH, |ellipse| ellipse.approach_mm) / self.places[0].cos)
+    }
+}
+
+/// Sinks wheels together until they carry a vertical load \[N\]; gives the regions of each, with forces that add up to the load.
+/// `None` if they would have to sink by more than `most` \[mm\].
+///
+/// Method: Hertz's closed form for a wheel with one region of constant curvature; otherwise secants over half-spaces of every
+/// region. Those of two regions do not act upon each other. The forces are scaled at the end by what the search leaves, 1e-6.
+/// Accuracy: see the table in the docs on clients. Cost: 10 µs, or some ten milliseconds a region.
+///
+/// # Errors
+/// A place at which the pair cannot be placed.
+pub(super) fn carry(
+    wheels: &mut [Wheel<'_>],
+    load: f64,
+    modulus: f64,
+    most: f64,
+) -> Result<Option<Vec<Vec<Region>>>> {
+    if load == 0.0 {
+        let untouched = |wheel: &mut Wheel<'_>| {
+            let mut regions = wheel.regions(0.0)?;
+            regions.truncate(1);
+            regions.iter_mut().for_each(|region| region.estimate = Some(Estimate::Hertz));
+            Ok(regions)
+        };
+        return wheels.iter_mut().map(untouched).collect::<Result<_>>().map(Some);
+    }
+    if let [wheel] = wheels
+        && let Some(region) = wheel.by_hertz(load, modulus)?
+    {
+        return Ok(Some(vec![vec![region]]));
+    }
+    let count = wheels.len() as f64;
+    let mut guess = 0.0;
+    for wheel in wheels.iter_mut() {
+        guess += wheel.guess(load / count, modulus)? / count;
+    }
+    let mut failure = None;
+    let mut sink = |sunk: f64| -> Vec<Vec<Region>> {
+        let pressed = wheels.iter_mut().map(|wheel| wheel.pressed(sunk * wheel.places[0].cos, modulus));
+        pressed.collect::<Result<_>>().unwrap_or_else(|error| {
+            failure = Some(error);
+            Vec::new()
+        })
+    };
+    let vertical = |all: &[Vec<Region>]| all.iter().flatten().map(Region::vertical).sum::<f64>();
+    let sunk = under_total(|sunk| vertical(&sink(sunk)), load, guess, most);
+    let regions = sunk.map(sink);
+    if let Some(error) = failure {
+        return Err(error);
+    }
+    Ok(regions.map(|mut all| {
+        let scale = load / vertical(&all);
+        all.iter_mut().flatten().flat_map(|region| &mut region.loads).for_each(|load| *load *= scale);
+        all
+    }))
+}

@@ -1,0 +1,266 @@
+//! Cuts a section out of a list of slices: finds the slices on both sides of it and interpolates between their points.
+
+use serde::Serialize;
+
+use super::clean::checks::{SAME_POINT, distance};
+use super::options::Options;
+use super::read::points::Point;
+use super::read::slices::{Slice, SliceList, unit};
+use crate::error::{Error, Result, finite};
+use crate::profile::Side;
+
+/// Distance from a slice \[mm or rad\] up to which a section is that slice: what the rounding of a position in another
+/// unit leaves.
+const SAME_PLACE: f64 = 1e-6;
+
+/// A section of a variable profile: where it lies, and what of the list belongs to it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cut<'a> {
+    side: Side,
+    /// Position along the track \[mm\] or around the wheel \[rad\], in [−π, π).
+    at: f64,
+    first: &'a Slice,
+    /// The slice after it, and its share in (0, 1).
+    second: Option<(&'a Slice, f64)>,
+}
+
+/// Where a section was cut, and what it was made of; written to summary.json.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CutRecord {
+    /// Position along the track \[mm\]; `None` for a wheel.
+    pub along: Option<f64>,
+    /// Position around the wheel \[rad\]; `None` for a rail.
+    pub angle: Option<f64>,
+    /// One slice or two.
+    pub slices: Vec<Share>,
+    /// File whose points are those of the section; numbers and lines of points are those of this file.
+    pub points_of: String,
+}
+
+/// The share of a slice in a section.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Share {
+    /// File of the slice, as the list has it.
+    pub file: String,
+    /// Position of the slice \[mm or rad\].
+    pub at: f64,
+    /// Its share; the shares of a section add up to 1.
+    pub share: f64,
+}
+
+/// Returns an angle in [−π, π).
+fn around(angle: f64) -> f64 {
+    use std::f64::consts::{PI, TAU};
+    if (-PI..PI).contains(&angle) { angle } else { (angle + PI).rem_euclid(TAU) - PI }
+}
+
+impl<'a> Cut<'a> {
+    /// Finds the slices around the place that the options name.
+    ///
+    /// A wheel is periodic; where its list leaves out a part of the circumference, the nearest slice at that end holds.
+    ///
+    /// # Errors
+    /// No place, or that of the other body; a place outside a rail's slices.
+    pub fn new(list: &'a SliceList, options: &Options) -> Result<Self> {
+        let (key, given, other, taken) = match list.side {
+            Side::Rail => ("along", options.along, "angle", options.angle.is_some()),
+            Side::Wheel => ("angle", options.angle, "along", options.along.is_some()),
+        };
+        let unit = unit(list.side);
+        let ends = match list.slices.as_slice() {
+            [first, .., last] => [first.at, last.at],
+            [only] => [only.at; 2],
+            [] => [f64::NAN; 2],
+        };
+        let range = format!("a place from {} to {} {unit}", ends[0], ends[1]);
+        if taken {
+            let expected = format!("`{key}` for these slices, {range}");
+            return Err(Error::new(other, "an option without effect", expected, "delete it"));
+        }
+        let Some(given) = given else {
+            let found = format!("no `{key}` for {} slices", list.slices.len());
+            return Err(Error::new(key, found, range, format!("give `{key}`, in {unit}")));
+        };
+        let mut at = finite(key, given)?;
+        let asked = if list.side == Side::Wheel { around(at) } else { at };
+        if list.side == Side::Wheel {
+            at = asked.clamp(ends[0], ends[1]);
+        } else if at < ends[0] - SAME_PLACE || at > ends[1] + SAME_PLACE {
+            return Err(Error::new(key, format!("{at} {unit}"), range, "choose one that the slices cover"));
+        }
+        let near = list.slices.iter().find(|slice| (slice.at - at).abs() <= SAME_PLACE);
+        let after = list.slices.partition_point(|slice| slice.at <= at);
+        let pair = after.checked_sub(1).and_then(|k| list.slices.get(k..k + 2));
+        let (first, second) = match (near, pair) {
+            (Some(slice), _) => (slice, None),
+            (None, Some([a, b])) => (a, Some((b, (at - a.at) / (b.at - a.at)))),
+            _ => return Err(Error::new(key, format!("{at} {unit}"), range, "choose another place")),
+        };
+        Ok(Self { side: list.side, at: asked, first, second })
+    }
+
+    /// The files to open, relative to the list; no file twice.
+    pub fn files(&self) -> Vec<&'a str> {
+        let second = self.second.map(|(slice, _)| slice.file.as_str());
+        let second = second.filter(|file| *file != self.first.file);
+        [self.first.file.as_str()].into_iter().chain(second).collect()
+    }
+
+    /// The place in words.
+    pub(super) fn place(&self) -> String {
+        format!("section at {} {}", self.at, unit(self.side))
+    }
+
+    /// Makes the points of the section from those of its slices, which `points_of` gives in profile axes from left to
+    /// right; returns them in that order with the record.
+    ///
+    /// Method: where the list has features, they divide each slice into parts; else it is one part. A point of the section
+    /// is the straight-line interpolation between the points of both slices at equal relative arc length in the same part,
+    /// the arc length being that of the polygon. The part's points are those of the slice that has more there. Parts that
+    /// only one of the slices has end at that slice.
+    /// Accuracy: h²κ/8 for the polygon of the other slice with a spacing h and a curvature κ, and d²/8 times the second
+    /// derivative along the track for slices d apart; at a slice both are 0.
+    ///
+    /// # Errors
+    /// Features that do not ascend along a slice; two slices without a common part.
+    pub(super) fn interpolate(
+        &self,
+        points_of: impl Fn(&str) -> Result<Vec<Point>>,
+    ) -> Result<(Vec<Point>, CutRecord)> {
+        let first = self.path(self.first, points_of(&self.first.file)?)?;
+        let (mut points, from) = match self.second {
+            None => (first.whole(), 0),
+            Some((slice, share)) => between(&first, &self.path(slice, points_of(&slice.file)?)?, share)
+                .ok_or_else(|| {
+                    let found = format!("no part that both {} and {} have", self.first.file, slice.file);
+                    let advice = "take a place at a slice, or add features";
+                    Error::new("", found, "a common part", advice)
+                })?,
+        };
+        if self.side == Side::Wheel {
+            points.reverse();
+        }
+        let share = |slice: &Slice, share| Share { file: slice.file.clone(), at: slice.at, share };
+        let rest = self.second.map_or(0.0, |(_, share)| share);
+        let slices: Vec<Share> = [share(self.first, 1.0 - rest)]
+            .into_iter()
+            .chain(self.second.map(|(slice, part)| share(slice, part)))
+            .collect();
+        let rail = self.side == Side::Rail;
+        let record = CutRecord {
+            along: rail.then_some(self.at),
+            angle: (!rail).then_some(self.at),
+            points_of: slices[from].file.clone(),
+            slices,
+        };
+        Ok((points, record))
+    }
+
+    /// Lays the features of a slice out along its points.
+    fn path(&self, slice: &Slice, mut points: Vec<Point>) -> Result<Path> {
+        if self.side == Side::Wheel {
+            points.reverse();
+        }
+        let mut arc = vec![0.0];
+        for pair in points.windows(2) {
+            arc.push(arc[arc.len() - 1] + distance(&pair[0], &pair[1]));
+        }
+        let length = arc[arc.len() - 1];
+        let mut breaks: Vec<f64> =
+            if slice.features.is_empty() { vec![0.0, length] } else { slice.features.clone() };
+        let present = |s: &f64| *s >= -SAME_POINT;
+        let ends = breaks.iter().position(present).zip(breaks.iter().rposition(present));
+        let Some((from, to)) = ends.filter(|(from, to)| from < to) else {
+            let found = format!("{} features", ends.map_or(0, |_| 1));
+            let (expected, advice) = ("two features at least, its ends", "give it arc lengths");
+            return Err(Error::new(&slice.file, found, expected, advice));
+        };
+        breaks[to] = breaks[to].min(length);
+        if let Some(k) = (from + 1..=to).find(|&k| breaks[k] - breaks[k - 1] <= SAME_POINT) {
+            let found = format!("feature {} at {} mm after one at {} mm", k + 1, breaks[k], breaks[k - 1]);
+            let expected = format!("ascending arc lengths within the {length:.3} mm of the slice");
+            return Err(Error::new(&slice.file, found, expected, "correct the list, or check the unit"));
+        }
+        Ok(Path { points, arc, breaks, parts: [from, to] })
+    }
+}
+
+/// A slice as a polygon, from the end at which arc lengths begin.
+struct Path {
+    points: Vec<Point>,
+    /// Arc length at each point \[mm\].
+    arc: Vec<f64>,
+    /// Arc lengths of the features \[mm\].
+    breaks: Vec<f64>,
+    /// The first and the last feature that the slice has.
+    parts: [usize; 2],
+}
+
+impl Path {
+    /// The indices of the points between two arc lengths and not at them.
+    fn inside(&self, [from, to]: [f64; 2]) -> std::ops::Range<usize> {
+        let first = self.arc.partition_point(|&s| s <= from + SAME_POINT);
+        let last = self.arc.partition_point(|&s| s < to - SAME_POINT);
+        first..last.max(first)
+    }
+
+    /// The point of the polygon at an arc length.
+    fn at(&self, s: f64) -> Point {
+        let k = self.arc.partition_point(|&other| other <= s).clamp(1, self.arc.len() - 1);
+        let (a, b) = (&self.points[k - 1], &self.points[k]);
+        let length = self.arc[k] - self.arc[k - 1];
+        let share = if length > 0.0 { ((s - self.arc[k - 1]) / length).clamp(0.0, 1.0) } else { 0.0 };
+        if share == 1.0 { *b } else { mixed(a, b, share) }
+    }
+
+    /// The points between the first and the last feature.
+    fn whole(&self) -> Vec<Point> {
+        let [from, to] = self.parts.map(|k| self.breaks[k]);
+        let inside = self.inside([from, to]);
+        [self.at(from)].into_iter().chain(self.points[inside].iter().copied()).chain([self.at(to)]).collect()
+    }
+
+    /// The arc lengths at both ends of a part.
+    fn part(&self, k: usize) -> [f64; 2] {
+        [self.breaks[k], self.breaks[k + 1]]
+    }
+}
+
+/// Interpolates between two slices, part by part; returns the number of the slice with most of the points, too. `None`
+/// without a common part.
+fn between(a: &Path, b: &Path, share: f64) -> Option<(Vec<Point>, usize)> {
+    let (from, to) = (a.parts[0].max(b.parts[0]), a.parts[1].min(b.parts[1]));
+    if from >= to {
+        return None;
+    }
+    let mut points = Vec::new();
+    let mut counts = [0, 0];
+    for k in from..to {
+        let (own, other) = (a.part(k), b.part(k));
+        let [inside_a, inside_b] = [a.inside(own), b.inside(other)];
+        let denser_b = inside_b.len() > inside_a.len();
+        counts[usize::from(denser_b)] += inside_a.len().max(inside_b.len());
+        if points.is_empty() {
+            points.push(mixed(&a.at(own[0]), &b.at(other[0]), share));
+        }
+        let scaled = |s: f64, [from, to]: [f64; 2], onto: [f64; 2]| {
+            onto[0] + (onto[1] - onto[0]) * ((s - from) / (to - from))
+        };
+        if denser_b {
+            let mix = |j: usize| {
+                let p = mixed(&a.at(scaled(b.arc[j], other, own)), &b.points[j], share);
+                Point { x: p.x, z: p.z, ..b.points[j] }
+            };
+            points.extend(inside_b.map(mix));
+        } else {
+            points.extend(inside_a.map(|j| mixed(&a.points[j], &b.at(scaled(a.arc[j], own, other)), share)));
+        }
+        points.push(mixed(&a.at(own[1]), &b.at(other[1]), share));
+    }
+    Some((points, usize::from(counts[1] > counts[0])))
+}
+
+/// The point between two; all but its place is that of the first.
+fn mixed(a: &Point, b: &Point, share: f64) -> Point {
+    Point { x: a.x + share * (b.x - a.x), z: a.z + share * (b.z - a.z), ..*a }
+}

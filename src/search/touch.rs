@@ -1,0 +1,351 @@
+//! Single wheels: finds where a wheel touches its rail, and how far it can be lowered.
+
+use nalgebra::{Rotation3, Vector3};
+
+use super::body::SearchBody;
+use super::candidates::{Candidate, Meeting, Search};
+use super::locus::Attitude;
+use super::walk::Walk;
+use crate::error::{Error, Result, finite};
+use crate::placement::{Pair, Placement};
+use crate::profile::{Profile, Section, Side};
+
+/// Distance below which two candidates are one point, as a share of the two profiles' extents. Candidates of
+/// one contact on a joint differ by up to 1e-8 of the extents; the closest contacts that a drawing can mean
+/// are 1e-4 apart.
+const SAME_POINT: f64 = 1e-7;
+
+/// Largest yaw and roll \[rad\] of a pose. It is far above the angles of any running gear; from about 1 rad
+/// on, the parts of a profile that face down are no longer those that do so in the profile's own axes.
+const LARGEST_ANGLE: f64 = 0.5;
+
+/// A rail and a wheel profile, prepared for searches.
+#[derive(Debug, Clone)]
+pub struct ProfilePair {
+    rail: SearchBody,
+    wheel: SearchBody,
+    radius: f64,
+    /// Size against which rounding is judged: the sum of both extents \[mm\].
+    extent: f64,
+}
+
+/// The place and attitude of a single wheel over its rail, without the height.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pose {
+    offset: f64,
+    yaw: f64,
+    roll: f64,
+}
+
+/// Distance below which two places count as one contact \[mm\]: steps and kinks of drawings make groups
+/// within 0.1 mm.
+pub const ONE_CONTACT: f64 = 0.5;
+
+/// Which places of contact a search reports.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Selection {
+    /// Vertical gap \[mm\] above first touch up to which near misses are reported; 0 reports only touching
+    /// places. Typically 0.1.
+    pub within: f64,
+    /// Distance along x on both profiles \[mm\] below which only the lower of two places is reported; 0
+    /// reports all. Usually [`ONE_CONTACT`].
+    pub apart: f64,
+}
+
+/// A place of contact or a near miss; x and angles are in the profile axes of its side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact {
+    /// Abscissa x_R on the rail profile \[mm\], from its origin, + to the field side.
+    pub rail_x: f64,
+    /// Abscissa x_W on the wheel profile \[mm\], from its origin, + to the field side (a flange has −38).
+    pub wheel_x: f64,
+    /// Height of the rail's point over the rail profile's origin \[mm\].
+    pub rail_z: f64,
+    /// Height of the wheel profile's point over the wheel profile's origin \[mm\].
+    pub wheel_z: f64,
+    /// Position along the rail, + forward \[mm\], from the vertical plane across the track through the
+    /// wheel's centre: sinψ (x_W − ϱ tanθ_W). Behind the centre at a flange when yaw > 0.
+    pub y: f64,
+    /// Contact angle θ_R \[rad\]: tangent angle of the common tangent in the rail's axes, + counter-clockwise
+    /// from x to z. A flange contact has 1.2.
+    pub contact_angle: f64,
+    /// Tangent angle θ_W \[rad\] of the wheel profile at the contact, in the wheel profile's axes. Without
+    /// yaw it is the contact angle plus the roll.
+    pub wheel_angle: f64,
+    /// Skew χ \[rad\]: angle about the common normal ζ, + from ξ to η, from the rail's contact frame (ξ along
+    /// its profile's tangent, η = y) to the wheel's (ξ' along its meridian tangent, η' along its
+    /// circumference, forward): ξ' = ξ cosχ + η sinχ, η' = η cosχ − ξ sinχ, ζ' = ζ. sinχ = sinψ/cosθ_W.
+    pub skew: f64,
+    /// Vertical gap left at first touch \[mm\]; 0 for the lowest contact.
+    pub gap: f64,
+    /// Actual rolling radius ϱ = R − z_W \[mm\].
+    pub rolling_radius: f64,
+    /// Curvature of the rail profile \[1/mm\], + hollow side up (a crown has −1/300); −∞ at a kink.
+    pub rail_curvature: f64,
+    /// Curvature of the wheel profile \[1/mm\], + hollow side up, −1/13 in a flange root; +∞ at a kink.
+    pub wheel_curvature: f64,
+    /// Whether the rail touches with a kink, step or end: the contact angle is then that of the common
+    /// normal, not of a tangent.
+    pub rail_kink: bool,
+    /// Whether the wheel touches with a kink, step or end: θ_W is then that of the common normal, not of a
+    /// tangent.
+    pub wheel_kink: bool,
+}
+
+/// First touch of a wheel and its rail.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Touch<'a> {
+    /// Height of the wheel's profile origin over the rail's at first touch \[mm\], + up.
+    pub height: f64,
+    /// The places of contact and near miss, the lowest gap first; never empty.
+    pub contacts: &'a [Contact],
+}
+
+/// Searches over one pair; keeps its buffers, so that a search allocates nothing.
+#[derive(Debug, Clone)]
+pub struct ContactSearch<'a> {
+    pair: &'a ProfilePair,
+    walk: Walk,
+    candidates: Vec<Candidate>,
+    contacts: Vec<Contact>,
+    /// The contact of the last search.
+    last: Option<Meeting>,
+    work: Work,
+}
+
+/// Counts what the searches have done so far.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Work {
+    /// Number of searches: each lowers a wheel onto its rail once.
+    pub searches: u64,
+    /// Number of pairs of tree nodes looked at.
+    pub pairs: u64,
+    /// Number of pairs of elements, or of parts of them, looked at for common tangents.
+    pub solves: u64,
+}
+
+impl ProfilePair {
+    /// Prepares a pair for searches; the rail is the one as placed (inclined).
+    ///
+    /// # Errors
+    /// A profile has no part that faces the other body.
+    pub fn new(pair: &Pair) -> Result<Self> {
+        let body = |profile: &Profile, section: &Section, side| {
+            SearchBody::new(section, profile.extent(), side).ok_or_else(|| {
+                let expected = "a profile travelled from left to right";
+                Error::new(&profile.name, "no surface", expected, "reverse or mirror it")
+            })
+        };
+        let ([rail, wheel], [below, above]) = ([pair.rail(), pair.wheel()], pair.sections());
+        Ok(Self {
+            rail: body(rail, below, Side::Rail)?,
+            wheel: body(wheel, above, Side::Wheel)?,
+            radius: pair.wheel_radius(),
+            extent: rail.extent() + wheel.extent(),
+        })
+    }
+
+    /// Returns the nominal rolling radius R \[mm\].
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Makes a search over this pair.
+    pub fn search(&self) -> ContactSearch<'_> {
+        ContactSearch {
+            pair: self,
+            walk: Walk::new(&self.wheel.nodes, &self.rail.nodes),
+            candidates: Vec::new(),
+            contacts: Vec::new(),
+            last: None,
+            work: Work::default(),
+        }
+    }
+}
+
+impl Pose {
+    /// Makes the pose of a wheel whose profile origin lies `offset` mm beside the rail's, + to the field
+    /// side. The wheel is turned about that origin by `yaw` and then `roll` \[rad\], right-handed about z and
+    /// y.
+    ///
+    /// # Errors
+    /// Values that are not finite; angles beyond ±0.5 rad.
+    pub fn new(offset: f64, yaw: f64, roll: f64) -> Result<Self> {
+        finite("offset", offset)?;
+        Ok(Self { offset, yaw: small_angle("yaw", yaw)?, roll: small_angle("roll", roll)? })
+    }
+
+    /// Returns the roll \[rad\].
+    pub fn roll(&self) -> f64 {
+        self.roll
+    }
+
+    /// The rotation of the wheel about its profile origin: see [`wheel_rotation`].
+    pub fn rotation(&self) -> Rotation3<f64> {
+        wheel_rotation(self.yaw, self.roll)
+    }
+}
+
+/// The rotation A = R_y(roll) · R_z(yaw) of a wheel or wheelset, angles in rad: the yaw is applied first, the roll
+/// second, about the unyawed y axis. It takes vectors (x, y, z) of the wheel, x along its axle, to the rail's axes.
+pub fn wheel_rotation(yaw: f64, roll: f64) -> Rotation3<f64> {
+    Rotation3::from_axis_angle(&Vector3::y_axis(), roll) * Rotation3::from_axis_angle(&Vector3::z_axis(), yaw)
+}
+
+/// Returns the angle, or an error if it is one that no wheel has.
+pub(crate) fn small_angle(place: &str, angle: f64) -> Result<f64> {
+    if finite(place, angle)?.abs() <= LARGEST_ANGLE {
+        return Ok(angle);
+    }
+    let expected = format!("an angle within ±{LARGEST_ANGLE} rad");
+    Err(Error::new(place, angle.to_string(), expected, "give angles in rad"))
+}
+
+impl ContactSearch<'_> {
+    /// Lowers a wheel until it touches; `None` if no part of it is over the rail.
+    ///
+    /// Accuracy: heights and gaps to a few roundings of the profiles' extents, whatever R; abscissae to that
+    /// over √(difference of curvatures), from the common tangent, not from a flat minimum.
+    /// Cost: about half a microsecond for arcs, a few for polynomials of any number; yaw doubles it. The
+    /// first search has no place to start from and costs some times more.
+    /// Degenerate: bodies that touch along a stretch (parallel lines, equal arcs) give its middle.
+    pub fn touch(&mut self, pose: &Pose, selection: &Selection) -> Option<Touch<'_>> {
+        let attitude = Attitude::new(pose.offset, pose.yaw, pose.roll, self.pair.radius);
+        let height = -self.lower(&attitude, selection.within)?.gap;
+        Some(self.collect(&attitude, height, selection))
+    }
+
+    /// Collects the contacts of `selection` among the candidates that [`Self::lower`] left, at the height
+    /// that it gave.
+    pub(super) fn collect(&mut self, attitude: &Attitude, height: f64, selection: &Selection) -> Touch<'_> {
+        self.candidates.retain(|c| c.gap + height <= selection.within);
+        self.candidates.sort_unstable_by(|a, b| a.gap.total_cmp(&b.gap));
+        let apart = selection.apart.max(SAME_POINT * self.pair.extent);
+        // A smooth contact on a joint is also one of the joint's fan, a rounding away.
+        let rounding = 16.0 * f64::EPSILON * self.pair.extent;
+        self.contacts.clear();
+        for candidate in &self.candidates {
+            let contact = contact(attitude, candidate, height);
+            let near = |c: &&mut Contact| {
+                (c.rail_x - contact.rail_x).abs() <= apart && (c.wheel_x - contact.wheel_x).abs() <= apart
+            };
+            match self.contacts.iter_mut().find(near) {
+                None => self.contacts.push(contact),
+                Some(kept) if kept.kink() && !contact.kink() && contact.gap - kept.gap <= rounding => {
+                    *kept = Contact { gap: kept.gap, ..contact };
+                }
+                Some(_) => {}
+            }
+        }
+        Touch { height, contacts: &self.contacts }
+    }
+
+    /// Returns the lowest candidate, and leaves all others up to `within` above it in the buffer.
+    pub(super) fn lower(&mut self, attitude: &Attitude, within: f64) -> Option<Candidate> {
+        self.candidates.clear();
+        let mut search = self.pair.at(attitude, within, &mut self.candidates);
+        search.lowest = self.pair.highest(attitude);
+        self.walk.all(&mut search, self.last);
+        self.work.searches += 1;
+        self.work.solves += search.solves;
+        self.work.pairs = self.walk.pairs;
+        let lowest = *self.candidates.iter().min_by(|a, b| a.gap.total_cmp(&b.gap))?;
+        self.last = Some(lowest.meeting);
+        Some(lowest)
+    }
+
+    /// Returns the place of least gap near a former one at another attitude; `None` if it has left its two
+    /// elements.
+    pub(super) fn follow(&self, attitude: &Attitude, meeting: &Meeting) -> Option<Candidate> {
+        super::walk::follow(&self.pair.at(attitude, 0.0, &mut Vec::new()), meeting)
+    }
+
+    /// Returns what this search has done so far.
+    pub fn work(&self) -> Work {
+        self.work
+    }
+}
+
+impl ProfilePair {
+    /// Makes a search at one attitude.
+    fn at<'a>(
+        &'a self,
+        attitude: &'a Attitude,
+        within: f64,
+        candidates: &'a mut Vec<Candidate>,
+    ) -> Search<'a> {
+        let extent = self.extent + attitude.offset.abs();
+        let bodies = [&self.wheel, &self.rail];
+        let slack = 16.0 * f64::EPSILON * extent;
+        Search { bodies, attitude, extent, within, lowest: f64::INFINITY, candidates, solves: 0, slack }
+    }
+
+    /// Returns the gap of the highest point of the wheel's profile over the lowest of the rail \[mm\]. A
+    /// larger gap is no touch of the two profiles, but of a yawed wheel's rings towards the axle. Slopes
+    /// below 45° may rise above their profile by their own ring.
+    pub(super) fn highest(&self, attitude: &Attitude) -> f64 {
+        let [x, z] = self.wheel.extent;
+        let tilted = (-x[0] * attitude.sin_roll).max(-x[1] * attitude.sin_roll);
+        let steepest = attitude.tan_yaw;
+        let rise = self.radius * steepest * steepest / (1.0 + crate::numerics::cosine(steepest));
+        z[1] * attitude.cos_roll + tilted + rise - self.rail.extent[1][0]
+    }
+}
+
+impl Contact {
+    /// Returns whether one of the bodies touches with a kink, a step or an end.
+    pub fn kink(&self) -> bool {
+        self.rail_kink || self.wheel_kink
+    }
+
+    /// Places the searched pair in contact here: contact frame along the common tangent, skew, and all that follows.
+    ///
+    /// Where a body touches with its smooth profile, ξ is the profile's own tangent to the last bit; at a kink, step or end
+    /// it is the common tangent, and s has no second-order expansion at C.
+    ///
+    /// # Errors
+    /// A contact of another pair, which has no point at these abscissae.
+    ///
+    /// # Examples
+    /// ```
+    /// use wheelrail::placement::Pair;
+    /// use wheelrail::profile::standards;
+    /// use wheelrail::search::{ONE_CONTACT, Pose, ProfilePair, Selection};
+    ///
+    /// let pair = Pair::new(standards::rail("60E1")?, standards::wheel("S1002")?, 460.0)?;
+    /// let profiles = ProfilePair::new(&pair)?;
+    /// let mut search = profiles.search();
+    /// let selection = Selection { within: 0.0, apart: ONE_CONTACT };
+    /// if let Some(touch) = search.touch(&Pose::new(0.0, 0.01, 0.0)?, &selection) {
+    ///     let placement = touch.contacts[0].placed(&pair)?;
+    ///     assert_eq!(placement.skew(), touch.contacts[0].skew);
+    /// }
+    /// # Ok::<(), wheelrail::Error>(())
+    /// ```
+    pub fn placed(&self, pair: &Pair) -> Result<Placement> {
+        pair.placed_along([self.rail_x, self.contact_angle], [self.wheel_x, self.wheel_angle], self.skew)
+    }
+}
+
+fn contact(attitude: &Attitude, c: &Candidate, height: f64) -> Contact {
+    let rolling_radius = attitude.radius - c.wheel.z;
+    let sin = c.wheel.sin / attitude.cos_yaw;
+    let unrolled_cos = ((1.0 - sin) * (1.0 + sin)).max(0.0).sqrt();
+    Contact {
+        rail_x: c.rail.x,
+        wheel_x: c.wheel.x,
+        rail_z: c.rail.z,
+        wheel_z: c.wheel.z,
+        // Without yaw y is 0, not −0.
+        y: attitude.sin_yaw * (c.wheel.x - rolling_radius * c.wheel.sin / c.wheel.cos) + 0.0,
+        contact_angle: c.rail.angle(),
+        wheel_angle: c.wheel.angle(),
+        skew: attitude.sin_yaw.atan2(attitude.cos_yaw * unrolled_cos) + 0.0,
+        gap: c.gap + height,
+        rolling_radius,
+        rail_curvature: c.rail_radius.recip(),
+        wheel_curvature: c.wheel_radius.recip(),
+        rail_kink: c.rail_radius == 0.0,
+        wheel_kink: c.wheel_radius == 0.0,
+    }
+}

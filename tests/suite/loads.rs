@@ -1,0 +1,108 @@
+//! What contacts carry adds up to what wheels and axles are loaded with.
+
+use std::path::Path;
+
+use wheelrail::case::{Run, SILENT, Site, sites};
+use wheelrail::load::Estimate;
+use wheelrail::{Result, scene};
+
+/// What the sums may miss of a load, relative: rounding.
+const SUM: f64 = 1e-10;
+
+fn wheelset(lateral: f64, rest: &str) -> String {
+    format!(
+        "[rail]\nprofile = \"UIC60\"\nrotate = \"1:20\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n[track]\ngauge = 1435.0\n\
+         [wheelset]\nback_to_back = 1360.0\nflange_back_x = -70.0\nlateral = {lateral:?}\n{rest}"
+    )
+}
+
+fn found(text: &str) -> Result<Vec<Site>> {
+    sites(&scene::resolve(&scene::parse(text, false)?, Path::new("."), "loads")?)
+}
+
+/// The vertical force of a site \[N\].
+fn vertical(site: &Site) -> f64 {
+    site.normal_load.unwrap() * site.contact.placement.rail().point().station.cos
+}
+
+fn sum(sites: &[Site], side: &str) -> f64 {
+    sites.iter().filter(|site| site.side() == Some(side)).map(vertical).sum()
+}
+
+#[test]
+fn the_contacts_of_every_wheel_carry_its_load() -> Result<()> {
+    let (mut shared, mut alone) = (0, 0);
+    for lateral in [0.0, 3.0, 5.5, 6.0, 6.2, -5.5] {
+        let sites = found(&wheelset(lateral, "[patch]\nload = 60000.0\n"))?;
+        for side in ["left", "right"] {
+            let total = sum(&sites, side);
+            assert!((total / 60e3 - 1.0).abs() < SUM, "{lateral} {side}: {total}");
+            let count = sites.iter().filter(|site| site.side() == Some(side)).count();
+            if count > 1 { shared += 1 } else { alone += 1 }
+        }
+    }
+    assert!(shared >= 3 && alone >= 6, "{shared} {alone}");
+    Ok(())
+}
+
+#[test]
+fn both_wheels_of_an_axle_sink_alike_and_carry_its_load_together() -> Result<()> {
+    for lateral in [0.0, 2.0, 5.0] {
+        let sites = found(&wheelset(lateral, "load = 120000.0\n"))?;
+        let total = sum(&sites, "left") + sum(&sites, "right");
+        assert!((total / 120e3 - 1.0).abs() < SUM, "{lateral}: {total}");
+        let sunk = ["left", "right"].map(|side| {
+            let first = sites.iter().find(|site| site.side() == Some(side)).unwrap();
+            first.approach() / first.contact.placement.rail().point().station.cos
+        });
+        assert!((sunk[0] / sunk[1] - 1.0).abs() < 1e-12, "{lateral}: {sunk:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn a_load_on_chosen_points_is_vertical_and_shared_by_all_parts() -> Result<()> {
+    let text = "[rail]\nprofile = \"60E1\"\nrotate = \"1:40\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n\
+                [contact]\nrail_x = -20.0\nwheel_x = -20.0\n[patch]\nload = 50000.0\n";
+    let sites = found(text)?;
+    let total: f64 = sites.iter().map(vertical).sum();
+    assert!((total / 50e3 - 1.0).abs() < SUM, "{total}");
+    Ok(())
+}
+
+#[test]
+fn places_with_one_patch_are_one_region_that_names_them() -> Result<()> {
+    let text = "[rail]\nprofile = \"60E1\"\nrotate = \"1:40\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n\
+                [contact]\noffset = -3.0\n[patch]\nload = 60000.0\n";
+    let sites = found(text)?;
+    let [site] = sites.as_slice() else { panic!("{} regions", sites.len()) };
+    let merged = &site.found.as_ref().unwrap().merged;
+    assert_eq!(merged.len(), 1, "{merged:?}");
+    let estimate = site.contact.approach.and_then(|(_, estimate)| estimate);
+    assert_eq!(estimate, Some(Estimate::HalfSpace));
+    Ok(())
+}
+
+#[test]
+fn loads_beyond_reason_name_side_and_key() {
+    let complaint = |text: &str| found(text).err().map(|error| error.to_string()).unwrap_or_default();
+    let wheel = complaint(&wheelset(0.0, "[patch]\nload = 1e12\n"));
+    assert!(wheel.contains("patch: load: found 1000000000000 N on the right side; expected"), "{wheel}");
+    let axle = complaint(&wheelset(0.0, "load = 1e12\n"));
+    assert!(axle.contains("wheelset: load: found 1000000000000 N; expected"), "{axle}");
+    let both = complaint(&wheelset(0.0, "load = 1e5\n[patch]\nload = 5e4\n"));
+    assert!(both.contains("wheelset: load: found 100000 beside [patch]; expected"), "{both}");
+    let negative = complaint(&wheelset(0.0, "load = -1.0\n"));
+    assert!(negative.contains("wheelset: load: found -1; expected a value ≥ 0"), "{negative}");
+}
+
+/// A deck has the force of its own contact, and the summary both parts of it.
+#[test]
+fn a_run_has_the_load_of_every_part() -> Result<()> {
+    let text = wheelset(5.0, "[patch]\nload = 60000.0\n");
+    let case = scene::resolve(&scene::parse(&text, false)?, Path::new("."), "loads")?;
+    let run = Run::new(case, SILENT)?;
+    assert!(run.warnings().is_empty(), "{:?}", run.warnings());
+    assert!(run.parts.iter().all(|part| part.site.normal_load.is_some_and(|load| load > 0.0)));
+    Ok(())
+}
