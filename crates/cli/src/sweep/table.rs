@@ -109,8 +109,8 @@ fn append(out: &mut String, row: &SweepRow, ellipses: Option<(ApproachBy, f64)>)
     );
 }
 
-/// Gives the two last cells: empty without approach or load, at kinks, and where s is not convex. A load counts as if this contact
-/// carried all of its wheel's alone; both wheels of an axle carry half of its load.
+/// Returns the two last cells: the semi-axes of the contact ellipse \[mm\]. They are empty without approach or load, at kinks, and
+/// where s is not convex. The load of a wheel counts as if this contact carried all of it; each wheel of an axle carries half.
 fn semi_axes(contact: &Contact, ellipses: Option<(ApproachBy, f64)>) -> String {
     let ellipse = |(by, modulus)| {
         let curvatures = curvatures_at(contact);
