@@ -244,7 +244,7 @@ pub struct WheelsetData {
     /// right-hand wheel.
     #[serde(default)]
     pub roll: RollData,
-    /// Vertical load of the axle, N, instead of [patch]: both wheels sink by the same distance, and δ is an estimate.
+    /// Vertical load of the axle, N, instead of `[patch]`: both wheels sink by the same distance, and δ is an estimate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load: Option<f64>,
     /// Largest vertical gap, mm, up to which near misses are reported.
