@@ -1,5 +1,5 @@
-//! What is promised of s, on random pairs against 28-digit values: relative and absolute errors, estimates at every tolerance, and
-//! where there is a surface at all.
+//! Tests what is promised of s on random pairs, against 28-digit values: relative and absolute errors, error estimates at every
+//! tolerance, and where there is a surface at all.
 //!
 //! `WHEELRAIL_PROMISE_SCENES=5000 cargo test promises -- --nocapture` is the long run.
 
@@ -25,17 +25,17 @@ const SEED: u64 = 0x5EED_0F1E_0000;
 
 const TOLERANCES: [f64; 4] = [FULL_PRECISION, 1e-9, 1e-6, 1e-3];
 
-/// What is promised to users: a share of what s is the sum of over both contact segments, absolute \[mm\] elsewhere.
+/// Errors of s that are promised to users: over both contact segments a share of the terms of s, elsewhere a length \[mm\].
 const RELATIVE: f64 = 1e-13;
 const ABSOLUTE: f64 = 2e-12;
 
-/// Points of a grid that are compared, beside those where a surface ends.
+/// Number of points of a grid that are compared, besides those where a surface ends.
 const COMPARED: usize = 40;
 
-/// Within this of a place where a surface ends \[mm\], a value and none are as good.
+/// Distance \[mm\] from the end of a surface within which both a value and none are right.
 const AT_AN_END: f64 = 1e-6;
 
-/// s = 0 leaves this much in 28 digits \[mm\].
+/// Largest |s| \[mm\] that 28 digits cannot tell from 0.
 const RESIDUE: f64 = 1e-26;
 
 /// Kinds of measured rails and wheels.
@@ -52,7 +52,7 @@ const SPECIMENS: [[SpecimenKind; 4]; 2] = [
 /// A profile and its exact double.
 type Doubled = (Profile, Exact);
 
-/// Every built-in profile of one side that can be written by centres and radii.
+/// Returns every built-in profile of one side that can be written by centres and radii.
 fn built_in(side: Side) -> Vec<Doubled> {
     let all: Vec<_> = match side {
         Side::Rail => standards::rail_names().map(standards::rail).collect(),
@@ -61,7 +61,7 @@ fn built_in(side: Side) -> Vec<Doubled> {
     all.into_iter().filter_map(|profile| doubled(&profile.expect("a built-in profile"))).collect()
 }
 
-/// A profile as it is measured, worn or new, smoothed; `None` where it turns back.
+/// Returns a smoothed profile through measured points, worn or new; `None` if it turns back.
 fn measured(kinds: &[SpecimenKind], dice: &mut Random) -> Option<Doubled> {
     let instrument = Instrument::new(dice.between(0.2, 1.0), dice.between(0.0, 0.005), dice.bits());
     doubled(&Specimen::new(*dice.pick(kinds), instrument).ok()?.profile().ok()?)
@@ -72,13 +72,13 @@ struct Scene<'a> {
     name: String,
     placement: Placement,
     exact: exact::Pair<'a>,
-    /// The same without yaw.
+    /// The exact pair without yaw.
     straight: exact::Pair<'a>,
     xi: Vec<f64>,
     axis: EtaAxis,
 }
 
-/// Ascending values over a random window.
+/// Returns ascending values over a random window.
 fn values(dice: &mut Random, widest: f64, most: usize, extra: &[f64]) -> Vec<f64> {
     let half = 10f64.powf(dice.between(-1.0, widest));
     let centre = if dice.below(2) == 0 { 0.0 } else { dice.between(-half, half) };
@@ -93,7 +93,7 @@ fn values(dice: &mut Random, widest: f64, most: usize, extra: &[f64]) -> Vec<f64
 }
 
 impl<'a> Scene<'a> {
-    /// A pair in contact, without a grid.
+    /// Places a pair in contact, without a grid.
     fn placed([rail, wheel]: [&'a Doubled; 2], radius: f64, skew: f64, at: [f64; 2]) -> Option<Self> {
         let pair = Pair::new(rail.0.clone(), wheel.0.clone(), radius).ok()?;
         let placement = pair.placed(at[0], at[1], skew).ok()?;
@@ -104,7 +104,7 @@ impl<'a> Scene<'a> {
         Some(Self { name, placement, exact: exact?, straight: straight?, xi: Vec::new(), axis })
     }
 
-    /// `None` where the dice give no placed pair.
+    /// Makes a random scene; `None` if the dice give no placed pair.
     fn new([rail, wheel]: [&'a Doubled; 2], dice: &mut Random) -> Option<Self> {
         let radius = dice.between(150.0, 1000.0);
         let skew = if dice.below(2) == 0 { 0.0 } else { dice.between(-0.08, 0.08) };
@@ -117,7 +117,7 @@ impl<'a> Scene<'a> {
         Some(scene)
     }
 
-    /// s over the grid and its estimate \[mm\].
+    /// Returns s over the grid and its estimated error \[mm\].
     fn filled(&self, tolerance: f64, method: Option<Method>) -> (Values, f64) {
         let mut plan = plan(&self.placement, &self.xi, &self.axis, tolerance, method);
         let mut s = Values::new(self.xi.len() * self.axis.eta().len());
@@ -126,17 +126,17 @@ impl<'a> Scene<'a> {
         (s, plan.error)
     }
 
-    /// ξ and η of a point of the grid \[mm\].
+    /// Returns ξ and η of a point of the grid \[mm\].
     fn place(&self, index: usize) -> [f64; 2] {
         [self.xi[index / self.axis.eta().len()], self.axis.eta()[index % self.axis.eta().len()]]
     }
 
-    /// Whether s leads from the rail to the wheel.
+    /// Returns whether s leads from the rail to the wheel.
     fn on_both(&self, place: [f64; 2], s: f64) -> bool {
         self.exact.on_both(place, self.placement.rail().section().height(place[0]), s)
     }
 
-    /// Sum of the magnitudes of what s is the sum of \[mm\]: midplane gap, climb of the wheel along ξ′ − ξ, its rise across.
+    /// Returns the sum of the magnitudes of the terms of s \[mm\]: midplane gap, climb of the wheel along ξ′ − ξ, rise across.
     fn size(&self, [xi, eta]: [f64; 2], s: f64) -> f64 {
         let skew = self.placement.skew_rotation();
         let midplane = |xi: f64| match self.straight.wheel(xi, 0.0) {
@@ -153,7 +153,7 @@ impl<'a> Scene<'a> {
         gap.abs() + climb.abs() + (s - gap - climb).abs()
     }
 
-    /// What lies at a place; unclear as well where it is not the same nearby.
+    /// Returns what lies at a place. It is unclear also if there is no surface at the place but one nearby.
     fn exactly(&self, [xi, eta]: [f64; 2]) -> Found {
         let here = self.exact.separation(xi, eta);
         if here == Found::Nothing {
@@ -167,7 +167,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// R_max/300 mm of [`ABSOLUTE`], at least 1.
+/// Returns the factor R_max/300 mm of [`ABSOLUTE`], at least 1.
 fn scale(placement: &Placement) -> f64 {
     let segments = placement.rail().profile().segments().iter().chain(placement.wheel().profile().segments());
     let radius = |shape: &Shape| match shape {
@@ -177,14 +177,14 @@ fn scale(placement: &Placement) -> f64 {
     segments.map(|segment| radius(&segment.shape)).fold(300.0, f64::max) / 300.0
 }
 
-/// What was found over all scenes.
+/// The results over all scenes.
 #[derive(Default)]
 struct Tally {
     scenes: usize,
     points: usize,
     /// Largest shares of what is promised: relative, absolute, estimates by tolerance.
     worst: [f64; 6],
-    /// The same of the scene under test where it oversteps, with the place.
+    /// Largest overstepping share of each promise in the scene under test, with its place.
     of_scene: [Option<(f64, String)>; 6],
     overstepped: Vec<String>,
 }
@@ -197,7 +197,7 @@ impl Tally {
         if kept {
             return;
         }
-        // Of a scene the worst.
+        // Only the worst place of a scene is kept.
         match &mut self.of_scene[promise] {
             Some((worst, _)) if *worst >= share => {}
             worst => *worst = Some((share, what())),
@@ -218,7 +218,7 @@ impl Tally {
         let at_c = scene.xi.partition_point(|&xi| xi < 0.0).min(scene.xi.len() - 1) * scene.axis.eta().len();
         places
             .push(at_c + scene.axis.eta().partition_point(|&eta| eta < 0.0).min(scene.axis.eta().len() - 1));
-        // A value beside none.
+        // Points with a value next to points without one.
         let ends = (1..count).filter(|&k| pointwise[k].is_nan() != pointwise[k - 1].is_nan());
         places.extend(ends.take(COMPARED / 4).flat_map(|k| [k - 1, k]));
         for k in 0..count {
@@ -256,7 +256,7 @@ impl Tally {
             }
             self.points += 1;
             let error = |s: f64| ((s - exact.high) - exact.low).abs();
-            // A feature between two steps along the line: what is found is further out, and on both surfaces.
+            // The exact search stepped over a feature of the surface: the value found is farther out, and on both surfaces.
             if pointwise[k] < exact.high - AT_AN_END && scene.on_both(place, pointwise[k]) {
                 continue;
             }
@@ -282,84 +282,62 @@ impl Tally {
     }
 }
 
-/// A scene that once overstepped a promise.
-struct Mended {
-    why: &'static str,
-    profiles: [&'static str; 2],
-    at: [f64; 2],
-    radius: f64,
-    skew: f64,
-    /// First and last value and number of ξ and η.
-    window: [(f64, f64, usize); 2],
-}
+/// A scene that once overstepped a promise: why; rail and wheel; abscissae of C on both, rolling radius \[mm\] and skew \[rad\];
+/// first value, last value and number of ξ and η.
+type Mended = (&'static str, [&'static str; 2], [f64; 4], [(f64, f64, usize); 2]);
 
 const MENDED: [Mended; 6] = [
-    Mended {
-        why: "the arc next to C was placed from its far end: 4.2 times the estimate",
-        profiles: ["52E1", "EN15302-H"],
-        at: [-18.029613782175787, 6.794909407022686],
-        radius: 523.3352920826783,
-        skew: 0.0,
-        window: [(-3.772936953905333, 3.772936953905333, 33), (-0.6167972241811461, 0.6167972241811461, 21)],
-    },
-    Mended {
-        why: "the same on a wheel: 3.8 times",
-        profiles: ["50E5", "EN15302-B"],
-        at: [-11.49809772770083, -0.27613964117112744],
-        radius: 351.8847820855062,
-        skew: 0.0,
-        window: [
-            (-0.24756297349982343, 0.24756297349982343, 86),
-            (-0.8000281322929101, 10.609630784434785, 23),
-        ],
-    },
-    Mended {
-        why: "the angle of a steep rail is off by the rounding of its sine over its cosine: 2.7 times",
-        profiles: ["49E5", "APTA-220"],
-        at: [-33.729325731506606, -2.6263549019121797],
-        radius: 518.9165331604975,
-        skew: 0.027084526575921225,
-        window: [(-6.0, 6.0, 60), (-31.0, 31.0, 40)],
-    },
-    Mended {
-        why: "a steep arc: the rounding of its sine times the radius times the slope, 1.3 times",
-        profiles: ["49E5", "EN15302-H"],
-        at: [33.896785912583596, -14.711637474315786],
-        radius: 350.0428709455566,
-        skew: 0.0,
-        window: [(-23.3, 10.0, 70), (-3.0, 3.0, 20)],
-    },
-    Mended {
-        why: "a polynomial tread takes more roundings than an arc: 1.4 times",
-        profiles: ["50E6", "S1002"],
-        at: [4.277825490909073, -8.704879560424494],
-        radius: 773.6546993174749,
-        skew: 0.0,
-        window: [(-9.50068797473938, 9.50068797473938, 80), (-0.5, 0.5, 11)],
-    },
-    Mended {
-        why: "wide across under yaw: s itself takes more than two roundings",
-        profiles: ["UIC60", "S1002-arcs-0.1um"],
-        at: [5.442924492056562, 15.233777198061574],
-        radius: 384.519117030454,
-        skew: 0.026305572381724804,
-        window: [(-1.5, 1.5, 40), (-30.0, 30.0, 41)],
-    },
+    (
+        "the arc next to C was placed from its far end: 4.2 times the estimate",
+        ["52E1", "EN15302-H"],
+        [-18.029613782175787, 6.794909407022686, 523.3352920826783, 0.0],
+        [(-3.772936953905333, 3.772936953905333, 33), (-0.6167972241811461, 0.6167972241811461, 21)],
+    ),
+    (
+        "the arc next to C on a wheel was placed from its far end: 3.8 times",
+        ["50E5", "EN15302-B"],
+        [-11.49809772770083, -0.27613964117112744, 351.8847820855062, 0.0],
+        [(-0.24756297349982343, 0.24756297349982343, 86), (-0.8000281322929101, 10.609630784434785, 23)],
+    ),
+    (
+        "the angle of a steep rail is off by the rounding of its sine over its cosine: 2.7 times",
+        ["49E5", "APTA-220"],
+        [-33.729325731506606, -2.6263549019121797, 518.9165331604975, 0.027084526575921225],
+        [(-6.0, 6.0, 60), (-31.0, 31.0, 40)],
+    ),
+    (
+        "a steep arc: the rounding of its sine times the radius times the slope, 1.3 times",
+        ["49E5", "EN15302-H"],
+        [33.896785912583596, -14.711637474315786, 350.0428709455566, 0.0],
+        [(-23.3, 10.0, 70), (-3.0, 3.0, 20)],
+    ),
+    (
+        "a polynomial tread takes more roundings than an arc: 1.4 times",
+        ["50E6", "S1002"],
+        [4.277825490909073, -8.704879560424494, 773.6546993174749, 0.0],
+        [(-9.50068797473938, 9.50068797473938, 80), (-0.5, 0.5, 11)],
+    ),
+    (
+        "wide across under yaw: s itself takes more than two roundings",
+        ["UIC60", "S1002-arcs-0.1um"],
+        [5.442924492056562, 15.233777198061574, 384.519117030454, 0.026305572381724804],
+        [(-1.5, 1.5, 40), (-30.0, 30.0, 41)],
+    ),
 ];
 
 #[test]
 fn mended_scenes_stay_so() {
     let mut tally = Tally::default();
-    for (k, mended) in MENDED.iter().enumerate() {
-        let drawn = [standards::rail(mended.profiles[0]), standards::wheel(mended.profiles[1])];
+    for (k, (why, [rail, wheel], [rail_x, wheel_x, radius, skew], window)) in MENDED.into_iter().enumerate() {
+        let drawn = [standards::rail(rail), standards::wheel(wheel)];
         let [rail, wheel] = drawn.map(|profile| doubled(&profile.expect("a built-in")).expect("a graph"));
         let mut scene =
-            Scene::placed([&rail, &wheel], mended.radius, mended.skew, mended.at).expect("a placed pair");
-        let [xi, eta] = mended.window.map(|(from, to, n)| equal_steps(from, to, n));
+            Scene::placed([&rail, &wheel], radius, skew, [rail_x, wheel_x]).expect("a placed pair");
+        let [xi, eta] = window.map(|(from, to, n)| equal_steps(from, to, n));
         (scene.xi, scene.axis) = (xi, EtaAxis::new(&eta));
         tally.add(&scene, &mut Random::new(SEED + k as u64));
         let worst: Vec<_> = std::mem::take(&mut tally.of_scene).into_iter().flatten().collect();
-        assert!(worst.is_empty() && tally.overstepped.is_empty(), "{}: {worst:?}", mended.why);
+        assert!(worst.is_empty() && tally.overstepped.is_empty(), "{why}: {worst:?}");
     }
 }
 
@@ -402,7 +380,7 @@ fn promises_are_kept_on_random_pairs() {
     assert!(tally.scenes as u64 > scenes / 2 && tally.overstepped.is_empty(), "{}", tally.overstepped.len());
 }
 
-/// The 28 digits are right: they are those of the 60-digit values.
+/// The 28-digit values have the digits of the 60-digit values.
 #[test]
 fn exact_values_are_the_60_digit_ones() {
     let yawed = ["yawed_crown_on_cone", "yawed_60E1_S1002_tread", "yawed_flange"].map(|name| {

@@ -16,6 +16,7 @@ pub mod errors;
 pub mod hard_case;
 mod hard_checks;
 pub mod hard_run;
+mod inclined;
 pub mod loads;
 pub mod measured;
 pub mod measurements;

@@ -5,13 +5,14 @@ use std::fmt::Write as _;
 
 use rayon::prelude::*;
 
+use super::inclined::{RADIUS, inclined_pair};
 use super::random::Random;
 use wheelrail::error::{Error, Result};
 use wheelrail::load::{Elastic, curvatures, effective_modulus};
 use wheelrail::measured::{self, CUTOFF_WAVELENGTH, CurveKind, Format, Options, write};
 use wheelrail::patch::{Patch, Window};
-use wheelrail::placement::{Body, Pair, Placement};
-use wheelrail::profile::{Mark, Profile, Side, beside, inclination, standards, trace};
+use wheelrail::placement::{Body, Placement};
+use wheelrail::profile::{Mark, Profile, Side, beside, standards, trace};
 use wheelrail::search::{Pose, ProfilePair, Selection};
 use wheelrail::separation::Evaluator;
 
@@ -23,8 +24,6 @@ pub const NOISES: [f64; 4] = [0.0, 0.1, 1.0, 10.0];
 /// Seed of the noise. It is equal for all rows of one body, so that rows differ only by their curves.
 const SEED: u64 = 0x60E1_51002;
 
-/// Nominal rolling radius R of the comparison \[mm\].
-const RADIUS: f64 = 460.0;
 /// Approach δ of the comparison \[mm\].
 const APPROACH: f64 = 0.08;
 /// Load of the comparison \[N\].
@@ -198,7 +197,7 @@ impl DrawnPair {
         let rail = standards::rail("60E1")?;
         let bodies =
             [DrawnBody::new(rail, Side::Rail), DrawnBody::new(standards::wheel("S1002")?, Side::Wheel)];
-        let pair = pair(&bodies[0].profile, &bodies[1].profile)?;
+        let pair = inclined_pair(&bodies[0].profile, bodies[1].profile.clone())?;
         let search = ProfilePair::new(&pair)?;
         let mut search = search.search();
         let touch = search.touch(&Pose::new(0.0, 0.0, 0.0)?, &Selection { within: 0.0, apart: 0.5 });
@@ -219,7 +218,7 @@ impl DrawnPair {
         let fit = |body: &DrawnBody| body.fitted(&body.points(spacing, noise), &options);
         let (fitted_rail, fitted_wheel) = (fit(rail)?, fit(wheel)?);
         let (a, b) = (rail.compare(&fitted_rail), wheel.compare(&fitted_wheel));
-        let pair = pair(&fitted_rail, &fitted_wheel)?;
+        let pair = inclined_pair(&fitted_rail, fitted_wheel)?;
         let placed = pair.placed_like(&self.placement);
         let mut evaluator = Evaluator::new(&placed);
         let found: Vec<f64> =
@@ -234,11 +233,6 @@ impl DrawnPair {
         let [profile, slope, curvature] = [0, 1, 2].map(|k: usize| a[k].max(b[k]));
         Ok(MeasuredErrors { profile, slope, curvature, separation, area, pressure })
     }
-}
-
-/// Makes the pair of the rail, inclined 1:40, and the wheel.
-fn pair(rail: &Profile, wheel: &Profile) -> Result<Pair> {
-    Pair::new(rail.rotated(inclination(1.0, 40.0)?), wheel.clone(), RADIUS)
 }
 
 /// Returns \[ξ, η, s\] at the points of a grid over the box that are in the patch; C is one of them.

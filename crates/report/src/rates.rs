@@ -1,12 +1,13 @@
 //! Counts positions of a wheelset a second on one core: drawn arcs against worn profiles as instruments
 //! measure them.
 
+use super::inclined::inclined_pair;
 use super::specimen::{Instrument, Specimen, SpecimenKind};
 use super::speed::{LEAST_RUNS, Timing, race, timed};
 use wheelrail::error::Result;
 use wheelrail::measured::{CurveKind, Format, Options};
 use wheelrail::placement::{Pair, RailDistance, WheelDistance};
-use wheelrail::profile::{Profile, inclination, standards};
+use wheelrail::profile::{Profile, standards};
 use wheelrail::search::{Conicity, Position, Roll, Selection, Sweep, WheelsetOnTrack};
 
 /// Largest displacement of the wheelset to either side \[mm\].
@@ -19,9 +20,6 @@ pub const INSTRUMENTS: [[f64; 2]; 4] = [[0.28, 3.0], [0.28, 5.0], [0.035, 3.0], 
 
 /// Seed of wear and noise.
 const SEED: u64 = 60_115_302;
-
-/// Nominal rolling radius R \[mm\].
-const RADIUS: f64 = 460.0;
 
 /// The extent of the measurement.
 #[derive(Debug, Clone, PartialEq)]
@@ -171,7 +169,7 @@ fn swept(system: &WheelsetOnTrack, motion: Motion, extent: &Extent, row: &mut Ra
 
 /// Makes the pair of 60E1 and wheel A of EN 15302: arcs and lines.
 fn drawn() -> Result<Pair> {
-    pair(&standards::rail("60E1")?, standards::wheel("EN15302-A")?)
+    inclined_pair(&standards::rail("60E1")?, standards::wheel("EN15302-A")?)
 }
 
 /// Makes a worn pair through points every `spacing` mm with `noise` µm; also returns the number of points of
@@ -184,12 +182,7 @@ fn worn(spacing: f64, noise: f64, curve: CurveKind) -> Result<(usize, Pair)> {
     };
     let (rail, wheel) = (specimen(SpecimenKind::WornRail)?, specimen(SpecimenKind::WornWheel)?);
     let points = rail.points.len().max(wheel.points.len());
-    Ok((points, pair(&fitted(&rail)?, fitted(&wheel)?)?))
-}
-
-/// Makes the pair of the rail, inclined 1:40, and the wheel.
-fn pair(rail: &Profile, wheel: Profile) -> Result<Pair> {
-    Pair::new(rail.rotated(inclination(1.0, 40.0)?), wheel, RADIUS)
+    Ok((points, inclined_pair(&fitted(&rail)?, fitted(&wheel)?)?))
 }
 
 fn system(pair: Pair) -> Result<WheelsetOnTrack> {

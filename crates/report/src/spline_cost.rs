@@ -1,6 +1,7 @@
 //! Measures the cost of a grid over measured profiles: splines through points of 60E1 and S1002 against
 //! chains of arcs.
 
+use super::inclined::RADIUS;
 use super::speed::{LEAST_RUNS, RaceTrack, TimedWork, Timing, race};
 use wheelrail::error::Result;
 use wheelrail::measured::{self, CurveKind, Format, Options, write};
@@ -14,8 +15,6 @@ const SPACINGS: [f64; 3] = [0.1, 0.5, 1.0];
 /// is made of polynomials, and would be no chain of arcs.
 const ARC_SPACING: f64 = 0.5;
 
-/// Nominal rolling radius R \[mm\].
-const WHEEL_RADIUS: f64 = 460.0;
 /// Abscissa of the contact on both profiles \[mm\].
 const CONTACT: f64 = -3.0;
 /// Half widths of the window \[mm\].
@@ -82,5 +81,5 @@ fn fitted(curve: CurveKind, spacing: f64) -> Result<Placement> {
     };
     let rail = profile(&standards::rail("60E1")?, Side::Rail)?;
     let wheel = profile(&standards::wheel("S1002")?, Side::Wheel)?;
-    Pair::new(rail, wheel, WHEEL_RADIUS)?.placed(CONTACT, CONTACT, 0.0)
+    Pair::new(rail, wheel, RADIUS)?.placed(CONTACT, CONTACT, 0.0)
 }

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::inclined::RADIUS;
 use super::reference::Reference;
 use wheelrail::error::Result;
 use wheelrail::patch::Window;
@@ -14,8 +15,6 @@ use wheelrail_check::{Answer, Floor, Report, Request, check};
 const SKEW: f64 = 0.01;
 const SKEWS: [f64; 2] = [SKEW, -0.06];
 
-/// R of the built-in pairs \[mm\].
-const WHEEL_RADIUS: f64 = 460.0;
 const HALF_WIDTHS: [f64; 2] = [30.0, 15.0];
 const APPROACH: f64 = 0.05;
 
@@ -88,7 +87,7 @@ pub fn built_in_pairs() -> Result<Vec<Subject>> {
         .enumerate()
         .map(|(k, (rail, wheel))| {
             let skew = if k % 3 == 2 { SKEW } else { 0.0 };
-            let pair = Pair::new(standards::rail(rail)?, standards::wheel(wheel)?, WHEEL_RADIUS)?;
+            let pair = Pair::new(standards::rail(rail)?, standards::wheel(wheel)?, RADIUS)?;
             let [xi, eta] = HALF_WIDTHS.map(|half| [-half, half]);
             let request = Request { window: Window { xi, eta }, approach: APPROACH };
             let name = format!("{rail} and {wheel}, skew {skew}");

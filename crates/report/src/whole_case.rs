@@ -3,6 +3,7 @@
 
 use std::hint::black_box;
 
+use super::inclined::inclined_pair;
 use super::specimen::{Instrument, Specimen, SpecimenKind};
 use super::speed::{LEAST_RUNS, Timing, race, timed};
 use wheelrail::case::{Profiles, Run, SILENT};
@@ -11,13 +12,11 @@ use wheelrail::measured::Format;
 use wheelrail::mesh::{StripCounts, StripMesh, equal_steps};
 use wheelrail::patch::{Patch, Window};
 use wheelrail::placement::{Pair, Placement};
-use wheelrail::profile::{Profile, inclination, standards};
+use wheelrail::profile::{Profile, standards};
 use wheelrail::scene::{parse, with_profiles};
 use wheelrail::search::{ONE_CONTACT, Pose, ProfilePair, Selection};
 use wheelrail::separation::{EtaAxis, FULL_PRECISION, Values, plan};
 
-/// Nominal rolling radius R \[mm\].
-const RADIUS: f64 = 460.0;
 /// Approach δ \[mm\].
 const APPROACH: f64 = 0.08;
 /// Half widths of the window \[mm\].
@@ -70,9 +69,8 @@ pub fn whole_cases(side: usize, seconds: f64) -> Result<Vec<WholeCase>> {
         .collect()
 }
 
-/// Makes the pair of the rail, inclined 1:40, and the wheel.
 fn pair([rail, wheel]: [Profile; 2]) -> Result<Pair> {
-    Pair::new(rail.rotated(inclination(1.0, 40.0)?), wheel, RADIUS)
+    inclined_pair(&rail, wheel)
 }
 
 /// Writes a worn rail and a worn wheel as files, reads and smooths them.

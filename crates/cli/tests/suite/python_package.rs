@@ -6,8 +6,7 @@ use std::process::Command;
 use std::sync::OnceLock;
 use wheelrail::case::contacts;
 use wheelrail::scene;
-use wheelrail::separation::axis::EtaAxis;
-use wheelrail::separation::plan::plan;
+use wheelrail::separation::{EtaAxis, plan};
 
 /// The package's sources.
 const PACKAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../python");
