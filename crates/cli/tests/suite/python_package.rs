@@ -99,7 +99,7 @@ fn rust_the_command_line_and_python_give_the_same_bits() {
     let (_, placement) = contacts(&case).unwrap().swap_remove(0);
     let axis = |half: f64| (-100..=100).map(|k| half * f64::from(k) / 100.0).collect::<Vec<f64>>();
     let (xi, eta) = (axis(12.0), EtaAxis::new(&axis(10.0)));
-    let mut values = vec![0.0; xi.len() * eta.eta.len()];
+    let mut values = vec![0.0; xi.len() * eta.eta().len()];
     plan(&placement, &xi, &eta, 1e-12, None).fill(&placement, &xi, &eta, &mut values);
     let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
     std::fs::write(here.join("grid.f64"), bytes).unwrap();
