@@ -26,7 +26,8 @@ fn vertical(site: &Site) -> f64 {
 }
 
 fn sum(sites: &[Site], side: &str) -> f64 {
-    sites.iter().filter(|site| site.side() == Some(side)).map(vertical).sum()
+    let of_side = sites.iter().filter(|site| site.side() == Some(side) && site.normal_load.is_some());
+    of_side.map(vertical).sum()
 }
 
 #[test]
@@ -94,6 +95,33 @@ fn loads_beyond_reason_name_side_and_key() {
     assert!(both.contains("wheelset: load: found 100000 beside [patch]; expected"), "{both}");
     let negative = complaint(&wheelset(0.0, "load = -1.0\n"));
     assert!(negative.contains("wheelset: load: found -1; expected a value ≥ 0"), "{negative}");
+}
+
+/// Decks of every example add up to the load that it names.
+#[test]
+fn the_decks_of_every_example_carry_its_load() -> Result<()> {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/scenes"));
+    let mut loaded = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let example = scene::load(&path)?;
+        let of_wheel = example.patch.as_ref().and_then(|patch| patch.load);
+        let of_axle = example.wheelset.as_ref().and_then(|wheelset| wheelset.load);
+        let sites = sites(&scene::resolve(&example, folder, "example")?)?;
+        let totals = ["left", "right", "single"].map(|side| sum(&sites, side));
+        if let Some(load) = of_wheel {
+            let carried = totals.iter().filter(|total| **total > 0.0);
+            assert!(
+                carried.clone().count() > 0 && carried.clone().all(|total| (total / load - 1.0).abs() < SUM)
+            );
+        }
+        if let Some(load) = of_axle {
+            assert!((totals.iter().sum::<f64>() / load - 1.0).abs() < SUM, "{}: {totals:?}", path.display());
+        }
+        loaded += usize::from(of_wheel.or(of_axle).is_some());
+    }
+    assert!(loaded >= 2, "{loaded} examples have loads");
+    Ok(())
 }
 
 /// A deck has the force of its own contact, and the summary both parts of it.
