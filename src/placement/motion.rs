@@ -6,7 +6,7 @@
 
 use nalgebra::Vector3;
 
-use super::Placement;
+use super::placed::Placement;
 use crate::error::{Error, Result, finite};
 
 /// How fast a wheel turns about its axle.

@@ -12,7 +12,7 @@ track = wr.Wheelset(pair, gauge=1435.0, back_to_back=1360.0, flange_back_x=-70.0
 contact = track.touch(lateral=0.0).right[0]
 problem = contact.to_tamaas(load=60e3)
 pressure = problem.solve()
-carried = pressure.sum() * problem.cell
+carried = pressure.sum() * problem.cell * np.cos(contact.contact_angle)  # the vertical part
 print(f"{pressure.max():.0f} N/mm² over {np.count_nonzero(pressure) * problem.cell:.1f} mm², {carried:.0f} N")
 assert abs(carried - 60e3) < 1.0
 

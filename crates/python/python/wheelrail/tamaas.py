@@ -70,7 +70,7 @@ def problem(
     xi: ArrayLike | None = None,
     eta: ArrayLike | None = None,
 ) -> Problem:
-    """Make the problem of a contact under a load in N.
+    """Make the problem of a contact that carries a vertical load in N alone; its normal force is load/cos(contact_angle).
 
     `modulus` is E* in N/mm2, steel on steel if None. The grid covers the patch that the load is estimated to cause, with
     cells of `spacing` in mm, by default 16 over its shorter side; or it is that of the evenly spaced `xi` and `eta` in mm.
@@ -89,4 +89,4 @@ def problem(
     tamaas.ModelFactory.registerNonPeriodic(model, "dcfft")
     solver = tamaas.PolonskyKeerRey(model, np.ascontiguousarray(heights), _TOLERANCE)
     solver.setIntegralOperator("dcfft")
-    return Problem(xi, eta, separation, load, model, solver)
+    return Problem(xi, eta, separation, load / np.cos(contact.contact_angle), model, solver)
