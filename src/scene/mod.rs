@@ -5,6 +5,7 @@ mod axes;
 mod data;
 mod method_or_auto;
 mod motion;
+mod motion_data;
 mod profiles;
 mod read;
 mod resolve;
@@ -13,10 +14,10 @@ pub(crate) mod words;
 
 pub use axes::check_axis;
 pub use data::{
-    AxisData, ContactData, FrictionData, GridData, MaterialData, MotionData, OutputData, PatchData,
-    PitchData, PitchWord, ProfileData, RollData, RollWord, Rotation, Scene, Spacing, TrackData, WheelsetData,
-    schema,
+    AxisData, ContactData, DeviationData, GridData, MaterialData, OutputData, PatchData, ProfileData,
+    RollData, RollWord, Rotation, Scene, SideData, Spacing, TrackData, WheelsetData, schema,
 };
+pub use motion_data::{FrictionData, MotionData, PitchData, PitchWord};
 pub use profiles::{ProfileSource, is_chain_file, profile_from_file, read_profile, section_from_files};
 pub use read::{load, parse};
 pub use resolve::{approach, echo, modulus, resolve, with_profiles};

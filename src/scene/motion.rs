@@ -1,6 +1,6 @@
 //! `[motion]` and `[friction]`: what solvers of rolling contact need besides the geometry.
 
-use super::data::{FrictionData, MotionData, PitchData, PitchWord};
+use super::motion_data::{FrictionData, MotionData, PitchData, PitchWord};
 use crate::case::Friction;
 use crate::error::{Error, Result, finite};
 use crate::placement::{Motion, Pitch, Rates};
