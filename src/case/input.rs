@@ -70,6 +70,8 @@ pub struct Standing {
     pub place: Place,
     /// Largest vertical gap \[mm\] of a near miss that is reported; usually 0.
     pub within: f64,
+    /// Whether the roll of a wheelset, where it is solved, is that at which each wheel carries its load.
+    pub roll_by_load: bool,
 }
 
 /// The three ways to place bodies.

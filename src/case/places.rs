@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::load::Estimate;
 use crate::placement::Placement;
 use crate::search;
-use crate::search::{ONE_CONTACT, Selection};
+use crate::search::{ONE_CONTACT, Position, Roll, Selection};
 
 /// Vertical gaps \[mm\] up to which places of contact are looked for at least, one after the other until a load is carried:
 /// what most loads close, and what none does that steel bears.
@@ -164,9 +164,9 @@ fn search(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<Placed>> {
     });
     let mut heavy = "";
     for most in SEARCHED_GAPS {
-        let sides = sides(case, most.max(nearest))?;
         let start = Instant::now();
-        match regions(case, &sides, approach, most)? {
+        let (sides, found) = sunk(case, approach, most, most.max(nearest))?;
+        match found {
             Ok(regions) => {
                 let load_s = if matches!(approach, Some(ApproachBy::WheelLoad(_) | ApproachBy::AxleLoad(_))) {
                     start.elapsed().as_secs_f64()
@@ -183,9 +183,53 @@ fn search(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<Placed>> {
     Err(too_heavy(case, heavy))
 }
 
+/// Most rolls that are tried for the loads: each is closer than the last by the share of the sinking in the gap's growth, a
+/// thousandth.
+const MOST_ROLLS: usize = 16;
+
+/// Largest step of the roll that is left \[rad\]: it lifts a wheel by 1e-9 mm.
+const SETTLED_ROLL: f64 = 1e-12;
+
+/// Lowers the wheels, and finds the regions under an approach, at the roll at which each wheel carries its load if that is asked
+/// for: the middle of the axle is then as high over one rail as over the other.
+fn sunk(case: &Case, approach: Option<ApproachBy>, most: f64, within: f64) -> Result<(Vec<Side>, Carried)> {
+    let mut sides = sides(case, within, None)?;
+    let each = match approach {
+        Some(ApproachBy::AxleLoad(load)) if follows(case) => Some(ApproachBy::WheelLoad(load / 2.0)),
+        _ => approach,
+    };
+    let mut found = regions(case, &sides, each, most)?;
+    if !follows(case) {
+        return Ok((sides, found));
+    }
+    let Place::Wheelset { system, .. } = &case.standing.place else { return Ok((sides, found)) };
+    let spread = system.right().track().rail_x() + system.left().track().rail_x();
+    for _ in 0..MOST_ROLLS {
+        let (Ok(carried), [right, left]) = (&found, sides.as_slice()) else { break };
+        let heights = [right, left].map(|side| side.height);
+        let sunk = [0, 1].map(|k| carried[k].first().map_or(0.0, Region::sunk));
+        let lever = spread + right.places[0].rail_x + left.places[0].rail_x;
+        let step = ((heights[1] - sunk[1]) - (heights[0] - sunk[0])) / lever;
+        if step.abs() <= SETTLED_ROLL {
+            break;
+        }
+        let roll = right.roll + step;
+        sides = self::sides(case, within, Some(roll))?;
+        found = regions(case, &sides, each, most)?;
+    }
+    Ok((sides, found))
+}
+
+/// Tells whether the roll of a case follows its loads.
+fn follows(case: &Case) -> bool {
+    let solved =
+        matches!(&case.standing.place, Place::Wheelset { position, .. } if position.roll == Roll::Solve);
+    solved && case.standing.roll_by_load
+}
+
 /// Lowers a wheel or a wheelset, and gives the places of contact with vertical gaps up to `within` \[mm\]. The right-hand
-/// side, which is the one that is described, comes first.
-fn sides(case: &Case, within: f64) -> Result<Vec<Side>> {
+/// side, which is the one that is described, comes first. `roll` \[rad\] takes the place of a wheelset's own.
+fn sides(case: &Case, within: f64, roll: Option<f64>) -> Result<Vec<Side>> {
     let selection = Selection { within, apart: ONE_CONTACT };
     match &case.standing.place {
         Place::Points { .. } => Ok(Vec::new()),
@@ -199,7 +243,8 @@ fn sides(case: &Case, within: f64) -> Result<Vec<Side>> {
         }
         Place::Wheelset { system, position } => {
             let mut search = system.search();
-            let Some(touch) = search.touch(position, &selection)? else {
+            let position = Position { roll: roll.map_or(position.roll, Roll::Fixed), ..*position };
+            let Some(touch) = search.touch(&position, &selection)? else {
                 let expected =
                     "wheels over their rails, and a roll within ±0.1 rad at which both sides touch";
                 return Err(no_touch("wheelset: lateral", expected, "check lateral, gauge and signs"));

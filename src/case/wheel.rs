@@ -81,6 +81,11 @@ impl Region {
         self.extents.first().is_some_and(|extent| extent.xi[0] <= xi && xi <= extent.xi[1])
     }
 
+    /// Gives what the wheel sinks by \[mm\], of the region that touches first.
+    pub(super) fn sunk(&self) -> f64 {
+        self.approach / self.placement.rail().point.station.cos
+    }
+
     /// Gives the vertical force \[N\].
     fn vertical(&self) -> f64 {
         self.loads.iter().sum::<f64>() * self.placement.rail().point.station.cos

@@ -81,7 +81,10 @@ impl Scene {
     #[must_use]
     pub fn at(&self, position: &Position) -> Self {
         let roll = match position.roll {
-            Roll::Solve => RollData::Word(RollWord::Solve),
+            Roll::Solve => RollData::Word(match self.wheelset.as_ref().map(|wheelset| wheelset.roll) {
+                Some(RollData::Word(RollWord::Load)) => RollWord::Load,
+                _ => RollWord::Solve,
+            }),
             Roll::Neglect => RollData::Word(RollWord::Neglect),
             Roll::Fixed(angle) => RollData::Radians(angle),
         };
@@ -325,8 +328,8 @@ pub struct WheelsetData {
     /// Yaw about z, rad, applied first; a positive yaw moves the right-hand wheel forward.
     #[serde(default)]
     pub yaw: f64,
-    /// Roll: "solve" (both wheels touch), "neglect" (0), or rad about the track's y axis; a positive roll lowers the
-    /// right-hand wheel.
+    /// Roll: "solve" (both wheels touch), "load" (each wheel carries its load), "neglect" (0), or rad about the track's y axis;
+    /// a positive roll lowers the right-hand wheel.
     #[serde(default)]
     pub roll: RollData,
     /// Vertical load of the axle, N, instead of `[patch]`: both wheels sink by the same distance, and δ is an estimate.
@@ -339,7 +342,7 @@ pub struct WheelsetData {
 
 /// How the roll of a wheelset is found.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged, expecting = "expected \"solve\", \"neglect\" or an angle in rad")]
+#[serde(untagged, expecting = "expected \"solve\", \"load\", \"neglect\" or an angle in rad")]
 pub enum RollData {
     /// One of the words.
     Word(RollWord),
@@ -359,6 +362,8 @@ impl Default for RollData {
 pub enum RollWord {
     /// Both wheels touch: the roll is sought.
     Solve,
+    /// Each wheel carries its load: the roll is sought at which it does.
+    Load,
     /// The roll is 0; each side is lowered on its own.
     Neglect,
 }

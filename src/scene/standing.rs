@@ -72,7 +72,18 @@ fn on_track(
         let left = own(&mut left.pair, off_left, "left", -1.0)?;
         WheelsetOnTrack::of_sides(left, own(&mut profiles.right.pair, off_right, "right", 1.0)?)
     };
-    Ok(Standing { place: Place::Wheelset { system: Arc::new(system), position }, within })
+    let roll_by_load = wheelset.roll == RollData::Word(RollWord::Load);
+    let loaded = wheelset.load.is_some() || scene.patch.as_ref().is_some_and(|patch| patch.load.is_some());
+    if roll_by_load && !loaded {
+        let expected = "\"load\" with a load in [wheelset] or [patch]";
+        return Err(Error::new(
+            "wheelset: roll",
+            "\"load\" without a load",
+            expected,
+            "give one, or another roll",
+        ));
+    }
+    Ok(Standing { place: Place::Wheelset { system: Arc::new(system), position }, within, roll_by_load })
 }
 
 /// Places one side, whose x is the track's times `sign`: by its nominal rail, which then deviates.
@@ -120,7 +131,7 @@ fn single(contact: &ContactData, pair: &Pair) -> Result<Standing> {
             return Err(Error::new("contact", found, expected, "keep one of the two forms"));
         }
     };
-    Ok(Standing { place, within })
+    Ok(Standing { place, within, roll_by_load: false })
 }
 
 fn within(within: Option<f64>) -> Result<f64> {
@@ -170,7 +181,8 @@ fn wheels(wheelset: &WheelsetData) -> Result<WheelDistance> {
 
 fn roll(roll: RollData) -> Result<Roll> {
     Ok(match roll {
-        RollData::Word(RollWord::Solve) => Roll::Solve,
+        // The search's roll is where the loads' begins.
+        RollData::Word(RollWord::Solve | RollWord::Load) => Roll::Solve,
         RollData::Word(RollWord::Neglect) => Roll::Neglect,
         RollData::Radians(angle) => Roll::Fixed(finite("wheelset: roll", angle)?),
     })

@@ -61,6 +61,33 @@ fn both_wheels_of_an_axle_sink_alike_and_carry_its_load_together() -> Result<()>
     Ok(())
 }
 
+/// With `roll = "load"` each wheel carries its load, and the middle of the axle is as high over one rail as over the other.
+#[test]
+fn the_roll_follows_the_loads() -> Result<()> {
+    for (lateral, rest) in
+        [(2.0, "[patch]\nload = 60000.0\n"), (5.5, "load = 120000.0\n"), (0.0, "load = 90000.0\n")]
+    {
+        let load = if lateral == 0.0 { 45e3 } else { 60e3 };
+        let sites = found(&wheelset(lateral, &format!("roll = \"load\"\n{rest}")))?;
+        let heights = ["left", "right"].map(|side| {
+            let total = sum(&sites, side);
+            assert!((total / load - 1.0).abs() < SUM, "{lateral} {side}: {total}");
+            let first = sites.iter().find(|site| site.side() == Some(side)).unwrap();
+            let sunk = first.approach() / first.contact.placement.rail().point().station.cos;
+            first.found.as_ref().unwrap().height_mm - sunk
+        });
+        assert!((heights[0] - heights[1]).abs() < 1e-8, "{lateral}: {heights:?}");
+        let roll = sites[0].found.as_ref().unwrap().roll_rad;
+        assert!(if lateral == 0.0 { roll.abs() < 1e-12 } else { roll != 0.0 }, "{lateral}: {roll}");
+    }
+    let error = found(&wheelset(0.0, "roll = \"load\"\n")).err().map(|error| error.to_string());
+    assert!(
+        error.as_deref().is_some_and(|e| e.contains("wheelset: roll: found \"load\" without a load")),
+        "{error:?}"
+    );
+    Ok(())
+}
+
 #[test]
 fn a_load_on_chosen_points_is_vertical_and_shared_by_all_parts() -> Result<()> {
     let text = "[rail]\nprofile = \"60E1\"\nrotate = \"1:40\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n\
