@@ -183,15 +183,17 @@ fn search(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<Placed>> {
     Err(too_heavy(case, heavy))
 }
 
-/// Most rolls that are tried for the loads: each is closer than the last by the share of the sinking in the gap's growth, a
-/// thousandth.
-const MOST_ROLLS: usize = 16;
+/// Most rolls that are tried for the loads. On treads three suffice: what the wheels sink by hardly depends on the roll.
+const MOST_ROLLS: usize = 32;
 
 /// Largest step of the roll that is left \[rad\]: it lifts a wheel by 1e-9 mm.
 const SETTLED_ROLL: f64 = 1e-12;
 
 /// Lowers the wheels, and finds the regions under an approach, at the roll at which each wheel carries its load if that is asked
 /// for: the middle of the axle is then as high over one rail as over the other.
+///
+/// # Errors
+/// No contact; no roll at which the heights agree to [`SETTLED_ROLL`], as where a flange steeper than 73° carries.
 fn sunk(case: &Case, approach: Option<ApproachBy>, most: f64, within: f64) -> Result<(Vec<Side>, Carried)> {
     let mut sides = sides(case, within, None)?;
     let each = match approach {
@@ -208,16 +210,23 @@ fn sunk(case: &Case, approach: Option<ApproachBy>, most: f64, within: f64) -> Re
         let (Ok(carried), [right, left]) = (&found, sides.as_slice()) else { break };
         let heights = [right, left].map(|side| side.height);
         let sunk = [0, 1].map(|k| carried[k].first().map_or(0.0, Region::sunk));
-        let lever = spread + right.places[0].rail_x + left.places[0].rail_x;
+        // A turn about the axle's middle lifts a contact by its lever, and a steep one by what it moves aside.
+        let steep = |side: &Side| side.places[0].rolling_radius * side.places[0].contact_angle.tan();
+        let lever = spread + right.places[0].rail_x + left.places[0].rail_x - steep(right) - steep(left);
         let step = ((heights[1] - sunk[1]) - (heights[0] - sunk[0])) / lever;
         if step.abs() <= SETTLED_ROLL {
-            break;
+            return Ok((sides, found));
         }
         let roll = right.roll + step;
         sides = self::sides(case, within, Some(roll))?;
         found = regions(case, &sides, each, most)?;
     }
-    Ok((sides, found))
+    if found.is_err() {
+        return Ok((sides, found));
+    }
+    let (found, expected) =
+        ("no roll that the loads settle at", "contacts flatter than 73° on one side at least");
+    Err(Error::new("wheelset: roll", found, expected, "take \"solve\", or give the roll"))
 }
 
 /// Tells whether the roll of a case follows its loads.

@@ -205,7 +205,7 @@ impl<'a> Wheel<'a> {
 ///
 /// Method: Hertz's closed form for a wheel with one region of constant curvature; otherwise secants over half-spaces of every
 /// region. Those of two regions do not act upon each other. The forces are scaled at the end by what the search leaves, 1e-6.
-/// Accuracy: see the table in the docs on clients. Cost: 10 µs, or some ten milliseconds a region.
+/// Accuracy: see the table in [`docs::loads`](crate::docs::loads). Cost: 10 µs, or some ten milliseconds a region.
 ///
 /// # Errors
 /// A place at which the pair cannot be placed.
@@ -243,8 +243,14 @@ pub(super) fn carry(
         })
     };
     let vertical = |all: &[Vec<Region>]| all.iter().flatten().map(Region::vertical).sum::<f64>();
-    let sunk = under_total(|sunk| vertical(&sink(sunk)), load, guess, most);
-    let regions = sunk.map(sink);
+    // What was found is mostly what was looked at last.
+    let mut last = (f64::NAN, Vec::new());
+    let total = |sunk| {
+        last = (sunk, sink(sunk));
+        vertical(&last.1)
+    };
+    let found = under_total(total, load, guess, most);
+    let regions = found.map(|sunk| if last.0 == sunk { last.1 } else { sink(sunk) });
     if let Some(error) = failure {
         return Err(error);
     }

@@ -6,19 +6,23 @@ mod data;
 mod method_or_auto;
 mod motion;
 mod motion_data;
+mod profile_data;
 mod profiles;
 mod read;
 mod resolve;
+mod side_data;
 mod standing;
 pub(crate) mod words;
 
 pub use axes::check_axis;
 pub use data::{
-    AxisData, ContactData, DeviationData, GridData, MaterialData, OutputData, PatchData, ProfileData,
-    RollData, RollWord, Rotation, Scene, SideData, Spacing, TrackData, WheelsetData, schema,
+    AxisData, ContactData, GridData, MaterialData, OutputData, PatchData, RollData, RollWord, Scene, Spacing,
+    TrackData, WheelsetData, schema,
 };
 pub use motion_data::{FrictionData, MotionData, PitchData, PitchWord};
+pub use profile_data::{ProfileData, Rotation};
 pub use profiles::{ProfileSource, is_chain_file, profile_from_file, read_profile, section_from_files};
 pub use read::{load, parse};
 pub use resolve::{approach, echo, modulus, resolve, with_profiles};
+pub use side_data::{DeviationData, SideData};
 pub use words::perhaps;

@@ -2,8 +2,10 @@
 
 use std::path::Path;
 
-use super::data::{ProfileData, Scene, SideData};
+use super::data::Scene;
+use super::profile_data::ProfileData;
 use super::read::parse;
+use super::side_data::SideData;
 use super::words::nearest;
 use crate::case::{Profiles, SideProfiles};
 use crate::error::{Error, Result, finite, given};

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use nalgebra::UnitComplex;
 
-use super::data::{ContactData, DeviationData, RollData, RollWord, Scene, SideData, TrackData, WheelsetData};
+use super::data::{ContactData, RollData, RollWord, Scene, TrackData, WheelsetData};
+use super::side_data::{DeviationData, SideData};
 use crate::case::{Place, Profiles, Standing};
 use crate::error::{Error, Result, finite, given};
 use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};

@@ -1,7 +1,7 @@
 //! What a grid and a sweep take in Rust, for `benches/cost.py`: a line of JSON.
 //!
 //!     PYO3_BUILD_EXTENSION_MODULE=1 cargo run --release -p wheelrail-python --example cost
-#![allow(clippy::print_stdout)]
+#![allow(clippy::print_stdout, reason = "its line of JSON is what it is for")]
 
 use std::hint::black_box;
 use std::time::Instant;
