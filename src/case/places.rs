@@ -193,7 +193,7 @@ const SETTLED_ROLL: f64 = 1e-12;
 /// for: the middle of the axle is then as high over one rail as over the other.
 ///
 /// # Errors
-/// No contact; no roll at which the heights agree to [`SETTLED_ROLL`], as where a flange steeper than 73° carries.
+/// No contact; no roll at which the heights agree to [`SETTLED_ROLL`] in time, as where a steep flange carries.
 fn sunk(case: &Case, approach: Option<ApproachBy>, most: f64, within: f64) -> Result<(Vec<Side>, Carried)> {
     let mut sides = sides(case, within, None)?;
     let each = match approach {
@@ -224,8 +224,10 @@ fn sunk(case: &Case, approach: Option<ApproachBy>, most: f64, within: f64) -> Re
     if found.is_err() {
         return Ok((sides, found));
     }
-    let (found, expected) =
-        ("no roll that the loads settle at", "contacts flatter than 73° on one side at least");
+    let (found, expected) = (
+        "no roll that the loads settle at",
+        "a roll at which both loads leave the axle one height: on a flange there may be none",
+    );
     Err(Error::new("wheelset: roll", found, expected, "take \"solve\", or give the roll"))
 }
 
