@@ -104,7 +104,8 @@ impl Columns {
 fn quantities(row: &SweepRow, ellipse: Option<(ApproachBy, f64)>) -> Quantities {
     let c = &row.contact;
     let [conicity, error] = row.conicity.map_or([f64::NAN; 2], |found| [found.conicity, found.error]);
-    let [xi, eta] = ellipse.and_then(|by| semi_axes(c, by)).unwrap_or([f64::NAN; 2]);
+    let [xi, eta] =
+        ellipse.and_then(|by| semi_axes(c, row.side == TrackSide::Left, by)).unwrap_or([f64::NAN; 2]);
     [
         row.lateral,
         row.yaw,
@@ -128,13 +129,12 @@ fn quantities(row: &SweepRow, ellipse: Option<(ApproachBy, f64)>) -> Quantities 
 }
 
 /// Gives the semi-axes \[mm\] of Hertz's ellipse nearest to ξ and to η; `None` at kinks, and where s is not convex.
-fn semi_axes(contact: &Contact, (by, modulus): (ApproachBy, f64)) -> Option<[f64; 2]> {
+fn semi_axes(contact: &Contact, left: bool, (by, modulus): (ApproachBy, f64)) -> Option<[f64; 2]> {
     let curvatures = curvatures_at(contact);
     let ellipse = match by {
         ApproachBy::Given(approach) => curvatures.under_approach(approach, modulus),
-        ApproachBy::WheelLoad(load) => curvatures.under_load(load / contact.contact_angle.cos(), modulus),
-        ApproachBy::AxleLoad(load) => {
-            curvatures.under_load(load / 2.0 / contact.contact_angle.cos(), modulus)
+        ApproachBy::WheelLoad(_) | ApproachBy::WheelLoads { .. } | ApproachBy::AxleLoad(_) => {
+            curvatures.under_load(by.of_wheel(left)? / contact.contact_angle.cos(), modulus)
         }
     };
     Some(curvatures.along(&ellipse?))

@@ -107,8 +107,38 @@ pub enum ApproachBy {
     Given(f64),
     /// δ of every contact is estimated from the vertical load of each wheel \[N\].
     WheelLoad(f64),
+    /// δ of every contact is estimated from the vertical loads of both wheels \[N\].
+    WheelLoads {
+        /// That of the right-hand wheel.
+        right: f64,
+        /// That of the left-hand wheel.
+        left: f64,
+    },
     /// δ of every contact is estimated from the vertical load of the axle \[N\]: both wheels sink alike.
     AxleLoad(f64),
+}
+
+impl ApproachBy {
+    /// Gives the vertical load of a wheel \[N\], of an axle's half; `None` if the approach is given.
+    pub fn of_wheel(self, left_hand: bool) -> Option<f64> {
+        match self {
+            Self::Given(_) => None,
+            Self::WheelLoad(load) => Some(load),
+            Self::WheelLoads { right, left } => Some(if left_hand { left } else { right }),
+            Self::AxleLoad(load) => Some(load / 2.0),
+        }
+    }
+}
+
+/// Where the frame of a contact has its origin, and whose angle.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum FrameOrigin {
+    /// The contact point C and the common tangent there.
+    #[default]
+    Contact,
+    /// The centre of the overlap and the mean angle of the rail's surface under it; the weight is the squared overlap.
+    Weighted,
 }
 
 /// What is asked of every contact.
@@ -116,6 +146,8 @@ pub enum ApproachBy {
 pub struct Question {
     /// The approach; `None` asks for the geometry only.
     pub approach: Option<ApproachBy>,
+    /// Where the frames of contacts under an approach have their origin.
+    pub frame: FrameOrigin,
     /// How the wheels move, for the creepages; `None` asks for none.
     pub motion: Option<Motion>,
     /// Elastic constants of rail and wheel.

@@ -24,8 +24,8 @@ pub use drawn::patch_picture;
 pub use files::{Rasterise, write};
 pub use grids::Grid;
 pub use input::{
-    ApproachBy, AskedAxes, Case, Echo, Friction, OutputFormat, Outputs, Place, Profiles, Question,
-    SideProfiles, Standing,
+    ApproachBy, AskedAxes, Case, Echo, FrameOrigin, Friction, OutputFormat, Outputs, Place, Profiles,
+    Question, SideProfiles, Standing,
 };
 pub use places::{Found, PlaceOfContact, approach_under_load, contacts};
 pub use run::{Part, Run, SILENT, Tell};

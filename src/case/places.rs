@@ -5,8 +5,8 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::contact::PlacedContact;
-use super::input::{ApproachBy, Case, Place};
-use super::wheel::{Joining, Region, Wheel, carry};
+use super::input::{ApproachBy, Case, FrameOrigin, Place};
+use super::wheel::{Region, RegionRules, Wheel, carry};
 use crate::error::{Error, Result};
 use crate::load::Estimate;
 use crate::placement::Placement;
@@ -126,8 +126,8 @@ pub fn approach_under_load(
     modulus: f64,
 ) -> Result<(f64, Option<Estimate>)> {
     let pair = placement.pair();
-    let joining = Joining { merge: 0.0, spacing: None, alone: true };
-    let wheel = Wheel::at_points(&pair, placement.clone(), joining);
+    let rules = RegionRules { merge: 0.0, spacing: None, alone: true, frame: FrameOrigin::Contact };
+    let wheel = Wheel::at_points(&pair, placement.clone(), rules);
     let [.., most] = SEARCHED_GAPS;
     let carried = carry(&mut [wheel], load, modulus, most)?;
     let first = carried.and_then(|mut wheels| wheels.pop()?.pop());
@@ -145,12 +145,22 @@ pub(super) fn find(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<Plac
     let start = Instant::now();
     let contact = match approach {
         None => PlacedContact::new(placement, None, modulus)?,
-        Some(ApproachBy::Given(approach)) => PlacedContact::new(placement, Some(approach), modulus)?,
-        Some(ApproachBy::WheelLoad(load) | ApproachBy::AxleLoad(load)) => {
-            let wheel = Wheel::at_points(&case.profiles.right.pair, placement, joining(case, true));
+        Some(ApproachBy::Given(approach)) if case.question.frame == FrameOrigin::Contact => {
+            PlacedContact::new(placement, Some(approach), modulus)?
+        }
+        Some(by) => {
+            let mut wheel = Wheel::at_points(&case.profiles.right.pair, placement, rules(case, true));
             let [.., most] = SEARCHED_GAPS;
-            let mut carried = carry(&mut [wheel], load, modulus, most)?.ok_or_else(|| too_heavy(case, ""))?;
-            PlacedContact::of(carried.swap_remove(0).swap_remove(0), modulus, start.elapsed().as_secs_f64())?
+            let mut regions = match by {
+                ApproachBy::Given(approach) => wheel.regions(approach)?,
+                ApproachBy::WheelLoad(load)
+                | ApproachBy::WheelLoads { right: load, .. }
+                | ApproachBy::AxleLoad(load) => {
+                    let carried = carry(&mut [wheel], load, modulus, most)?;
+                    carried.ok_or_else(|| too_heavy(case, ""))?.swap_remove(0)
+                }
+            };
+            PlacedContact::of(regions.swap_remove(0), modulus, start.elapsed().as_secs_f64())?
         }
     };
     Ok(vec![Placed { folder: String::new(), found: None, contact }])
@@ -168,10 +178,9 @@ fn search(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<Placed>> {
         let (sides, found) = sunk(case, approach, most, most.max(nearest))?;
         match found {
             Ok(regions) => {
-                let load_s = if matches!(approach, Some(ApproachBy::WheelLoad(_) | ApproachBy::AxleLoad(_))) {
-                    start.elapsed().as_secs_f64()
-                } else {
-                    0.0
+                let load_s = match approach {
+                    None | Some(ApproachBy::Given(_)) => 0.0,
+                    Some(_) => start.elapsed().as_secs_f64(),
                 };
                 let contacts =
                     sides.iter().zip(regions).map(|(side, regions)| side.contacts(case, regions, load_s));
@@ -184,7 +193,11 @@ fn search(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<Placed>> {
 }
 
 /// Most rolls that are tried for the loads. On treads three suffice: what the wheels sink by hardly depends on the roll.
-const MOST_ROLLS: usize = 32;
+const MOST_ROLLS: usize = 64;
+
+/// Steps of the roll \[rad\] over which the difference of heights still has a slope: what their rounding changes is less than
+/// a hundredth of it.
+const SLOPE_OVER: f64 = 1e-8;
 
 /// Largest step of the roll that is left \[rad\]: it lifts a wheel by 1e-9 mm.
 const SETTLED_ROLL: f64 = 1e-12;
@@ -206,6 +219,7 @@ fn sunk(case: &Case, approach: Option<ApproachBy>, most: f64, within: f64) -> Re
     }
     let Place::Wheelset { system, .. } = &case.standing.place else { return Ok((sides, found)) };
     let spread = system.right().track().rail_x() + system.left().track().rail_x();
+    let (mut range, mut before) = ([f64::NEG_INFINITY, f64::INFINITY], None);
     for _ in 0..MOST_ROLLS {
         let (Ok(carried), [right, left]) = (&found, sides.as_slice()) else { break };
         let heights = [right, left].map(|side| side.height);
@@ -213,11 +227,26 @@ fn sunk(case: &Case, approach: Option<ApproachBy>, most: f64, within: f64) -> Re
         // A turn about the axle's middle lifts a contact by its lever, and a steep one by what it moves aside.
         let steep = |side: &Side| side.places[0].rolling_radius * side.places[0].contact_angle.tan();
         let lever = spread + right.places[0].rail_x + left.places[0].rail_x - steep(right) - steep(left);
-        let step = ((heights[1] - sunk[1]) - (heights[0] - sunk[0])) / lever;
+        let (here, miss) = (right.roll, (heights[1] - sunk[1]) - (heights[0] - sunk[0]));
+        // Where a steep flange carries, what the wheels sink by depends on the roll as well: a secant knows.
+        let slope = match before {
+            Some((there, missed, _)) if f64::abs(here - there) > SLOPE_OVER => {
+                (missed - miss) / (here - there)
+            }
+            Some((.., slope)) => slope,
+            None => lever,
+        };
+        let step = miss / if slope > 0.0 { slope } else { lever };
         if step.abs() <= SETTLED_ROLL {
             return Ok((sides, found));
         }
-        let roll = right.roll + step;
+        range[usize::from(step < 0.0)] = here;
+        before = Some((here, miss, slope));
+        let inside = range[0] < here + step && here + step < range[1];
+        if !inside && range[1] - range[0] < SLOPE_OVER && step.abs() > SLOPE_OVER {
+            break;
+        }
+        let roll = if inside { here + step } else { range[0] + (range[1] - range[0]) / 2.0 };
         sides = self::sides(case, within, Some(roll))?;
         found = regions(case, &sides, each, most)?;
     }
@@ -226,7 +255,7 @@ fn sunk(case: &Case, approach: Option<ApproachBy>, most: f64, within: f64) -> Re
     }
     let (found, expected) = (
         "no roll that the loads settle at",
-        "a roll at which both loads leave the axle one height: on a flange there may be none",
+        "a roll at which both loads leave the axle one height: there is none where two places become one region",
     );
     Err(Error::new("wheelset: roll", found, expected, "take \"solve\", or give the roll"))
 }
@@ -274,8 +303,8 @@ type Carried = std::result::Result<Vec<Vec<Region>>, &'static str>;
 
 /// Finds the regions of every side under an approach; each wheel sinks by at most `most` \[mm\] under a load.
 fn regions(case: &Case, sides: &[Side], approach: Option<ApproachBy>, most: f64) -> Result<Carried> {
-    let joining = joining(case, false);
-    let wheel = |side: &Side| Wheel::over(&case.profiles.on(side.name).pair, &side.places, joining);
+    let rules = rules(case, false);
+    let wheel = |side: &Side| Wheel::over(&case.profiles.on(side.name).pair, &side.places, rules);
     let modulus = case.question.modulus();
     let mut all = Vec::new();
     match approach {
@@ -286,7 +315,12 @@ fn regions(case: &Case, sides: &[Side], approach: Option<ApproachBy>, most: f64)
             }
         }
         Some(ApproachBy::WheelLoad(load)) => {
+            let by = ApproachBy::WheelLoads { right: load, left: load };
+            return regions(case, sides, Some(by), most);
+        }
+        Some(ApproachBy::WheelLoads { right, left }) => {
             for side in sides {
+                let load = if side.name == "left" { left } else { right };
                 let Some(carried) = carry(&mut [wheel(side)], load, modulus, most)? else {
                     return Ok(Err(side.name));
                 };
@@ -302,8 +336,9 @@ fn regions(case: &Case, sides: &[Side], approach: Option<ApproachBy>, most: f64)
     Ok(Ok(all))
 }
 
-fn joining(case: &Case, alone: bool) -> Joining {
-    Joining { merge: case.axes.merge, spacing: case.axes.spacing, alone }
+fn rules(case: &Case, alone: bool) -> RegionRules {
+    let frame = case.question.frame;
+    RegionRules { merge: case.axes.merge, spacing: case.axes.spacing, alone, frame }
 }
 
 fn no_touch(place: &str, expected: &str, advice: &str) -> Error {
@@ -315,6 +350,8 @@ fn too_heavy(case: &Case, side: &str) -> Error {
     let (key, load) = match case.question.approach {
         Some(ApproachBy::AxleLoad(load)) => ("wheelset: load", load),
         Some(ApproachBy::WheelLoad(load)) => ("patch: load", load),
+        Some(ApproachBy::WheelLoads { left, .. }) if side == "left" => ("left: load", left),
+        Some(ApproachBy::WheelLoads { right, .. }) => ("right: load", right),
         Some(ApproachBy::Given(_)) | None => ("patch", 0.0),
     };
     unborne(key, load, side)

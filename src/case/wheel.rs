@@ -8,8 +8,9 @@ use std::sync::Arc;
 
 use nalgebra::Point2;
 
-use crate::error::Result;
-use crate::load::{Estimate, HalfSpace, curvatures, hertz_holds, under_total};
+use super::input::FrameOrigin;
+use crate::error::{Error, Result};
+use crate::load::{Estimate, HalfSpace, curvatures, hertz_holds, under_total, weighted_frame};
 use crate::mesh::groups;
 use crate::patch::{Patch, Window};
 use crate::placement::{Pair, Placement};
@@ -24,18 +25,20 @@ pub(super) struct Wheel<'a> {
     pair: &'a Pair,
     /// The first one touches first.
     places: Vec<Reached>,
-    joining: Joining,
+    rules: RegionRules,
 }
 
-/// What makes parts of a patch one region.
+/// What makes parts of a patch one region, and where its frame is.
 #[derive(Clone, Copy)]
-pub(super) struct Joining {
+pub(super) struct RegionRules {
     /// Parts closer than this \[mm\] are joined.
     pub merge: f64,
     /// Steps of the grids \[mm\]: parts that the grid of another one would cut are joined.
     pub spacing: Option<[f64; 2]>,
     /// Whether all parts of the patch of a place are its own: no other place stands for them.
     pub alone: bool,
+    /// Origin and angle of a region's frame.
+    pub frame: FrameOrigin,
 }
 
 /// A place of contact that the wheel closes as it sinks.
@@ -75,6 +78,54 @@ pub(super) struct Region {
 }
 
 impl Region {
+    /// Finds the region of a place under its approach δ \[mm\].
+    fn new(place: usize, placement: Arc<Placement>, approach: f64, rules: &RegionRules) -> Self {
+        let patch = Patch::new(&placement, approach, &Window::UNBOUNDED);
+        let mut parts = groups(&patch, rules.merge, rules.spacing);
+        parts.truncate(if rules.alone { parts.len() } else { 1 });
+        let extents = parts.into_iter().map(|group| group.extent).collect();
+        let (merged, loads) = (Vec::new(), Vec::new());
+        Self { place, merged, placement, approach, patch, extents, loads, estimate: None }
+    }
+
+    /// Gives the same region in the frame at the centre of its overlap; without any overlap as it is. The wheel sinks as far.
+    ///
+    /// # Errors
+    /// A skewed wheel.
+    fn weighted(self, rules: &RegionRules) -> Result<Self> {
+        let Some(frame) =
+            self.extents.first().and_then(|e| weighted_frame(&self.placement, e, self.approach))
+        else {
+            return Ok(self);
+        };
+        let key = |mut error: Error| {
+            error.place = "patch: frame".into();
+            error
+        };
+        let placement = self.placement.reframed(frame[0], frame[1]).map_err(key)?;
+        let contact = placement.rail().contact_frame().inverse_transform_point(&self.contact_point()).x;
+        let approach = self.sunk() * placement.rail().point.station.cos;
+        let mut region = Self::new(self.place, Arc::new(placement), approach, rules);
+        if !rules.alone {
+            // The group of parts that C lies in is the contact's own; others stand before it where they hold the origin.
+            let mut parts = groups(&region.patch, rules.merge, rules.spacing);
+            parts.retain(|group| group.extent.xi[0] <= contact && contact <= group.extent.xi[1]);
+            parts.truncate(1);
+            let own = |k: &usize| parts.iter().any(|group| group.components.contains(k));
+            let components = std::mem::take(&mut region.patch.components);
+            let kept = components.into_iter().enumerate().filter(|(k, _)| own(k));
+            region.patch.components = kept.map(|(_, component)| component).collect();
+            region.extents = parts.into_iter().map(|group| group.extent).collect();
+        }
+        Ok(region)
+    }
+
+    /// Gives C on the rail, in its own axes \[mm\].
+    fn contact_point(&self) -> Point2<f64> {
+        let Station { x, z, .. } = self.placement.rail().point.station;
+        Point2::new(x, z)
+    }
+
     /// Tells whether the group of parts around C holds a place of contact.
     fn holds(&self, place: &Reached) -> bool {
         let xi = self.placement.rail().contact_frame().inverse_transform_point(&place.rail).x;
@@ -94,7 +145,7 @@ impl Region {
 
 impl<'a> Wheel<'a> {
     /// Makes a wheel of the places that a search found, the lowest gap first.
-    pub(super) fn over(pair: &'a Pair, places: &[search::Contact], joining: Joining) -> Self {
+    pub(super) fn over(pair: &'a Pair, places: &[search::Contact], rules: RegionRules) -> Self {
         let reached = |place: &search::Contact| Reached {
             rail: Point2::new(place.rail_x, place.rail_z),
             along: [[place.rail_x, place.contact_angle], [place.wheel_x, place.wheel_angle]],
@@ -104,11 +155,11 @@ impl<'a> Wheel<'a> {
             placement: None,
             cells: Vec::new(),
         };
-        Self { pair, places: places.iter().map(reached).collect(), joining }
+        Self { pair, places: places.iter().map(reached).collect(), rules }
     }
 
     /// Makes a wheel that touches at chosen points.
-    pub(super) fn at_points(pair: &'a Pair, placement: Placement, joining: Joining) -> Self {
+    pub(super) fn at_points(pair: &'a Pair, placement: Placement, rules: RegionRules) -> Self {
         let Station { x, z, cos, .. } = placement.rail().point.station;
         let place = Reached {
             rail: Point2::new(x, z),
@@ -120,7 +171,7 @@ impl<'a> Wheel<'a> {
             placement: Some(Arc::new(placement)),
             cells: Vec::new(),
         };
-        Self { pair, places: vec![place], joining }
+        Self { pair, places: vec![place], rules }
     }
 
     /// Finds the regions under an approach δ \[mm\] of the first place; the first region is that place's.
@@ -140,16 +191,11 @@ impl<'a> Wheel<'a> {
                 region.merged.push(index);
                 continue;
             }
-            let placement = self.placement(index)?;
-            let patch = Patch::new(&placement, approach, &Window::UNBOUNDED);
-            let Joining { merge, spacing, alone } = self.joining;
-            let mut parts = groups(&patch, merge, spacing);
-            parts.truncate(if alone { parts.len() } else { 1 });
-            let extents = parts.into_iter().map(|group| group.extent).collect();
-            let (merged, loads) = (Vec::new(), Vec::new());
-            let region =
-                Region { place: index, merged, placement, approach, patch, extents, loads, estimate: None };
-            regions.push(region);
+            let region = Region::new(index, self.placement(index)?, approach, &self.rules);
+            regions.push(match self.rules.frame {
+                FrameOrigin::Contact => region,
+                FrameOrigin::Weighted => region.weighted(&self.rules)?,
+            });
         }
         Ok(regions)
     }
@@ -181,6 +227,9 @@ impl<'a> Wheel<'a> {
 
     /// Gives the one region with Hertz's ellipse under a vertical load \[N\], where that ellipse holds and nothing else touches.
     fn by_hertz(&mut self, load: f64, modulus: f64) -> Result<Option<Region>> {
+        if self.rules.frame != FrameOrigin::Contact {
+            return Ok(None);
+        }
         let placement = self.placement(0)?;
         let (curvatures, normal) = (curvatures(&placement), load / self.places[0].cos);
         let Some(ellipse) = curvatures.under_load(normal, modulus) else { return Ok(None) };

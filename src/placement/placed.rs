@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use nalgebra::{Isometry2, Translation2, UnitComplex};
+use nalgebra::{Isometry2, Point2, Translation2, UnitComplex};
 
 use crate::error::{Error, Result, finite};
-use crate::profile::{Profile, ProfilePoint, Section, Side};
+use crate::profile::{Profile, ProfilePoint, Section, Side, Station};
 
 /// A profile with its outer surface in its own axes.
 #[derive(Debug)]
@@ -51,6 +51,8 @@ pub struct Placement {
     wheel_radius: f64,
     /// χ \[rad\], finite.
     skew: f64,
+    /// Whether the frame's origin is C.
+    at_contact: bool,
 }
 
 /// What is placed: two right-hand profiles, prepared once, and the wheel's radius. A clone shares the profiles.
@@ -117,7 +119,13 @@ impl Pair {
     pub fn placed(&self, rail_x: f64, wheel_x: f64, skew: f64) -> Result<Placement> {
         let rail = Body::at(&self.rail, rail_x, Side::Rail).map_err(|e| e.within("contact: rail_x"))?;
         let wheel = Body::at(&self.wheel, wheel_x, Side::Wheel).map_err(|e| e.within("contact: wheel_x"))?;
-        Ok(Placement { rail, wheel, wheel_radius: self.wheel_radius, skew: checked_skew(skew)? })
+        Ok(Placement {
+            rail,
+            wheel,
+            wheel_radius: self.wheel_radius,
+            skew: checked_skew(skew)?,
+            at_contact: true,
+        })
     }
 
     /// Places the pair in contact along a given common tangent: abscissa \[mm\] and angle of ξ \[rad\] in the own axes of each
@@ -129,7 +137,13 @@ impl Pair {
     pub fn placed_along(&self, rail: [f64; 2], wheel: [f64; 2], skew: f64) -> Result<Placement> {
         let rail = Body::along(&self.rail, rail, Side::Rail).map_err(|e| e.within("contact: rail"))?;
         let wheel = Body::along(&self.wheel, wheel, Side::Wheel).map_err(|e| e.within("contact: wheel"))?;
-        Ok(Placement { rail, wheel, wheel_radius: self.wheel_radius, skew: checked_skew(skew)? })
+        Ok(Placement {
+            rail,
+            wheel,
+            wheel_radius: self.wheel_radius,
+            skew: checked_skew(skew)?,
+            at_contact: true,
+        })
     }
 
     /// This pair in the contact frames of another placed pair, so that s of both can be compared point by point.
@@ -145,6 +159,7 @@ impl Pair {
             wheel: body(&self.wheel, &other.wheel, Side::Wheel),
             wheel_radius: self.wheel_radius,
             skew: other.skew,
+            at_contact: other.at_contact,
         }
     }
 }
@@ -274,6 +289,36 @@ impl Placement {
     #[must_use]
     pub fn without_skew(&self) -> Self {
         Self { skew: 0.0, ..self.clone() }
+    }
+
+    /// The same bodies in another frame of the plane η = 0: its origin lies on the rail at `rail_x` \[mm\], its ξ at `angle` \[rad\]
+    /// in the rail profile's axes. The wheel does not move, so that s at the new origin is what it was there, along the new
+    /// ζ; neither body is smooth in the sense of [`Body::is_smooth`].
+    ///
+    /// # Errors
+    /// An abscissa off the rail; a skewed wheel, whose meridians do not hold the new ζ.
+    pub fn reframed(&self, rail_x: f64, angle: f64) -> Result<Self> {
+        if self.skew != 0.0 {
+            let (found, expected) = (format!("a skew of {} rad", self.skew), "a wheel without yaw");
+            return Err(Error::new("contact", found, expected, "keep the frame of the contact point"));
+        }
+        let point = self.rail.prepared.point(rail_x).map_err(|e| e.within("contact: rail_x"))?;
+        let here = self.rail.contact_frame();
+        let origin = here.inverse_transform_point(&Point2::new(point.station.x, point.station.z));
+        let turn = UnitComplex::new(angle) * here.rotation.inverse();
+        let body = |body: &Body, mut point: ProfilePoint, side| {
+            let (origin, along) = (body.contact_frame() * origin, body.contact_frame().rotation * turn);
+            point.station = Station { x: origin.x, z: origin.y, cos: along.re, sin: along.im };
+            let section = Section::in_frame(&body.prepared.profile, point.station, side);
+            Body { prepared: Arc::clone(&body.prepared), point, section }
+        };
+        let wheel = body(&self.wheel, self.wheel.point, Side::Wheel);
+        Ok(Self { rail: body(&self.rail, point, Side::Rail), wheel, at_contact: false, ..self.clone() })
+    }
+
+    /// Whether the frame's origin is the contact point C: not so in a frame by [`Self::reframed`].
+    pub fn is_at_contact(&self) -> bool {
+        self.at_contact
     }
 
     /// R − z_C \[mm\]: distance from the axle to C.

@@ -7,7 +7,7 @@ use super::method_or_auto;
 use super::motion_data::{FrictionData, MotionData};
 use super::profile_data::ProfileData;
 use super::side_data::SideData;
-use crate::case::OutputFormat;
+use crate::case::{FrameOrigin, OutputFormat};
 use crate::search::{Position, Roll};
 use crate::separation::Method;
 
@@ -197,6 +197,15 @@ pub struct PatchData {
     /// Vertical load of each wheel, N; all its contacts share it. δ is then an estimate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load: Option<f64>,
+    /// Origin and angle of the contact frame: "contact", the contact point and its tangent, or "weighted", the centre of
+    /// the overlap and the mean angle of the rail there, as in CONTACT; without yaw only.
+    #[serde(default, skip_serializing_if = "is_contact")]
+    pub frame: FrameOrigin,
+}
+
+/// Tells whether the frame is the usual one, which a scene need not name.
+fn is_contact(frame: &FrameOrigin) -> bool {
+    *frame == FrameOrigin::Contact
 }
 
 /// Elastic constants of both bodies; steel if not given.

@@ -8,8 +8,9 @@ use super::axes::asked_axes;
 use super::data::{MaterialData, PatchData, Scene};
 use super::motion::{friction, motion};
 use super::profiles::profiles;
+use super::side_data::SideData;
 use super::standing::standing;
-use crate::case::{ApproachBy, Case, Echo, Friction, OutputFormat, Outputs, Profiles, Question};
+use crate::case::{ApproachBy, Case, Echo, FrameOrigin, Friction, OutputFormat, Outputs, Profiles, Question};
 use crate::error::{Error, Result, finite};
 use crate::load::{Elastic, effective_modulus};
 
@@ -74,20 +75,44 @@ fn question(scene: &Scene) -> Result<Question> {
         let (found, expected) = (tolerance.to_string(), "a positive length in mm");
         return Err(Error::new("grid: tolerance", found, expected, "1e-12 gives all digits"));
     }
-    Ok(Question { approach, motion, material, friction, tolerance, method: scene.grid.method })
+    let frame = scene.patch.as_ref().map_or_else(FrameOrigin::default, |patch| patch.frame);
+    Ok(Question { approach, frame, motion, material, friction, tolerance, method: scene.grid.method })
 }
 
-/// Returns the approach, or the load from which it is estimated, of `[patch]` or `[wheelset]`.
+/// Returns the approach, or the load from which it is estimated, of `[patch]`, `[wheelset]` or both sides.
 fn approach_of(scene: &Scene) -> Result<Option<ApproachBy>> {
     let of_axle = scene.wheelset.as_ref().and_then(|wheelset| wheelset.load);
-    match (&scene.patch, of_axle) {
-        (None, None) => Ok(None),
-        (Some(patch), None) => approach(patch).map(Some),
-        (None, Some(load)) => checked("wheelset: load", load, ApproachBy::AxleLoad(load)).map(Some),
-        (Some(_), Some(load)) => {
-            let expected = "the axle's load without [patch], or [patch] without it";
-            let found = format!("{load} beside [patch]");
-            Err(Error::new("wheelset: load", found, expected, "remove one"))
+    let of_side = |side: &Option<SideData>| side.as_ref().and_then(|side| side.load);
+    let sides = [of_side(&scene.left), of_side(&scene.right)];
+    let asked = scene.patch.as_ref().filter(|patch| patch.approach.is_some() || patch.load.is_some());
+    let elsewhere = of_axle.is_some() || sides != [None, None];
+    if let Some(patch) = asked.or(scene.patch.as_ref().filter(|_| !elsewhere)) {
+        if elsewhere {
+            let (place, load) = match (of_axle, sides) {
+                (Some(load), _) => ("wheelset: load", load),
+                (None, [Some(load), _]) => ("left: load", load),
+                (None, [None, load]) => ("right: load", load.unwrap_or(f64::NAN)),
+            };
+            let expected = "loads beside a [patch] without approach and load, or [patch] alone";
+            return Err(Error::new(place, format!("{load} beside [patch]"), expected, "remove one"));
+        }
+        return approach(patch).map(Some);
+    }
+    match (of_axle, sides) {
+        (None, [None, None]) => Ok(None),
+        (Some(load), [None, None]) => checked("wheelset: load", load, ApproachBy::AxleLoad(load)).map(Some),
+        (None, [Some(left), Some(right)]) => {
+            let by = ApproachBy::WheelLoads { right, left };
+            checked("left: load", left, by).and_then(|by| checked("right: load", right, by)).map(Some)
+        }
+        (None, _) => {
+            let (place, other) = if sides[0].is_none() { ("left", "right") } else { ("right", "left") };
+            let found = format!("no load beside that of [{other}]");
+            Err(Error::new(place, found, "loads of both sides or of none", "give both"))
+        }
+        (Some(_), _) => {
+            let expected = "the load of the axle or those of its wheels";
+            Err(Error::new("wheelset: load", "it and loads of sides", expected, "remove one"))
         }
     }
 }

@@ -15,6 +15,9 @@ pub struct SideData {
     /// The wheel profile of this side; without `radius` it has that of `[wheel]`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wheel: Option<ProfileData>,
+    /// Vertical load of this side's wheel, N, instead of `[patch] load`; the other side then has its own as well.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub load: Option<f64>,
     /// How this side's rail deviates from its place on the track.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub deviation: Option<DeviationData>,

@@ -74,9 +74,12 @@ fn on_track(
         WheelsetOnTrack::of_sides(left, own(&mut profiles.right.pair, off_right, "right", 1.0)?)
     };
     let roll_by_load = wheelset.roll == RollData::Word(RollWord::Load);
-    let loaded = wheelset.load.is_some() || scene.patch.as_ref().is_some_and(|patch| patch.load.is_some());
+    let of_side = |side: &Option<SideData>| side.as_ref().is_some_and(|side| side.load.is_some());
+    let loaded = wheelset.load.is_some()
+        || scene.patch.as_ref().is_some_and(|patch| patch.load.is_some())
+        || of_side(&scene.left);
     if roll_by_load && !loaded {
-        let expected = "\"load\" with a load in [wheelset] or [patch]";
+        let expected = "\"load\" with a load in [wheelset], [patch], or [left] and [right]";
         return Err(Error::new(
             "wheelset: roll",
             "\"load\" without a load",

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use wheelrail::case::{Run, SILENT, Site, sites};
 use wheelrail::load::Estimate;
-use wheelrail::{Result, scene};
+use wheelrail::nalgebra::Point2;
+use wheelrail::{Evaluator, Result, scene};
 
 /// What the sums may miss of a load, relative: rounding.
 const SUM: f64 = 1e-10;
@@ -122,6 +123,68 @@ fn loads_beyond_reason_name_side_and_key() {
     assert!(both.contains("wheelset: load: found 100000 beside [patch]; expected"), "{both}");
     let negative = complaint(&wheelset(0.0, "load = -1.0\n"));
     assert!(negative.contains("wheelset: load: found -1; expected a value ≥ 0"), "{negative}");
+}
+
+#[test]
+fn each_wheel_may_have_its_own_load() -> Result<()> {
+    let own =
+        |rest: &str| format!("{}[left]\nload = 40000.0\n[right]\nload = 70000.0\n", wheelset(3.0, rest));
+    for rest in ["", "roll = \"load\"\n", "[patch]\nframe = \"weighted\"\n"] {
+        let sites = found(&own(rest))?;
+        for (side, load) in [("left", 40e3), ("right", 70e3)] {
+            let total = sum(&sites, side);
+            assert!((total / load - 1.0).abs() < SUM, "{rest} {side}: {total}");
+        }
+    }
+    let complaint = |text: &str| found(text).err().map(|error| error.to_string()).unwrap_or_default();
+    let one = complaint(&wheelset(0.0, "[left]\nload = 40000.0\n"));
+    assert!(one.contains("right: found no load beside that of [left]; expected"), "{one}");
+    let twice = complaint(&own("[patch]\nload = 1000.0\n"));
+    assert!(twice.contains("left: load: found 40000 beside [patch]; expected"), "{twice}");
+    let heavy = complaint(&own("").replace("70000.0", "1e12"));
+    assert!(heavy.contains("right: load: found 1000000000000 N on the right side"), "{heavy}");
+    Ok(())
+}
+
+/// The weighted frame is another frame over the same bodies: points s above the rail lie on the wheel, whichever the frame.
+#[test]
+fn the_weighted_frame_moves_no_body() -> Result<()> {
+    let mut turned = 0;
+    for (lateral, yaw) in [(0.0, false), (3.0, false), (5.5, false), (6.2, false), (3.0, true)] {
+        let yaw = if yaw { "yaw = 0.01\n" } else { "" };
+        let plain = found(&wheelset(lateral, &format!("{yaw}[patch]\nload = 60000.0\n")))?;
+        let weighted =
+            found(&wheelset(lateral, &format!("{yaw}[patch]\nload = 60000.0\nframe = \"weighted\"\n")));
+        if !yaw.is_empty() {
+            let error = weighted.err().map(|error| error.to_string()).unwrap_or_default();
+            assert!(error.contains("patch: frame: found a skew of"), "{error}");
+            continue;
+        }
+        for site in weighted? {
+            let placement = &site.contact.placement;
+            let number = site.found.as_ref().map(|found| (found.side, found.contact));
+            let same = plain.iter().find(|plain| plain.found.as_ref().map(|f| (f.side, f.contact)) == number);
+            let old = &same.unwrap().contact.placement;
+            let frames = [placement, old].map(|placement| placement.rail().contact_frame());
+            turned += usize::from(frames[0].rotation.angle_to(&frames[1].rotation).abs() > 1e-3);
+            let [mut here, mut there] = [placement, old].map(Evaluator::new);
+            for &xi in site.grid.xi.iter().step_by(3) {
+                for &eta in site.grid.eta.iter().step_by(5) {
+                    let (s, rail) = (here.separation(xi, eta), here.rail_height(xi));
+                    let point = frames[1].inverse_transform_point(&(frames[0] * Point2::new(xi, rail + s)));
+                    let height = there.rail_height(point.x) + there.separation(point.x, eta);
+                    assert!((point.y - height).abs() < 1e-10, "{lateral} {xi} {eta}: {point} {height}");
+                }
+            }
+            // What the wheel sinks by differs by what the other angle makes of the vertical force.
+            let cos = [placement, old].map(|placement| placement.rail().point().station.cos);
+            let sunk = [site.approach() / cos[0], same.unwrap().approach() / cos[1]];
+            let lean = (cos[0] / cos[1] - 1.0).abs();
+            assert!((sunk[0] / sunk[1] - 1.0).abs() < 0.02 + 2.0 * lean, "{lateral}: {sunk:?} {cos:?}");
+        }
+    }
+    assert!(turned >= 3, "{turned}");
+    Ok(())
 }
 
 /// Decks of every example add up to the load that it names.

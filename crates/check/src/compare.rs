@@ -70,8 +70,10 @@ pub fn check(
         tally.ray(xi, eta, answer(xi, eta));
     }
     let distances = tally.distances(request.approach, placement.wheel_radius(), answer);
-    let contact_point = [placement.rail(), placement.wheel()].map(contact_point);
-    let contact_point = [0, 1].map(|k| largest(contact_point.iter().map(|body| body[k])));
+    let contact_point = placement.is_at_contact().then(|| {
+        let bodies = [placement.rail(), placement.wheel()].map(contact_point);
+        [0, 1].map(|k| largest(bodies.iter().map(|body| body[k])))
+    });
     let mut report = tally.report(distances, contact_point);
     report.seconds = start.elapsed().as_secs_f64();
     Ok(report)
@@ -285,7 +287,7 @@ impl<'a> Tally<'a> {
         out
     }
 
-    fn report(self, distances: Distances, contact_point: [f64; 2]) -> Report {
+    fn report(self, distances: Distances, contact_point: Option<[f64; 2]>) -> Report {
         let mut report = Report {
             agrees: false,
             objections: Vec::new(),

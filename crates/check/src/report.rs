@@ -106,7 +106,7 @@ pub struct Report {
     pub normals: Differences,
     /// Distance of C from the profiles \[mm\] and angle between the frame's ξ axis and their tangents
     /// \[rad\].
-    pub contact_point: [f64; 2],
+    pub contact_point: Option<[f64; 2]>,
     /// The text [`RELATION`](super::RELATION).
     pub relation: &'static str,
     /// Closest distances compared with the separation.
@@ -199,12 +199,14 @@ impl Report {
         );
         let unresolved = counts.unresolved;
         object(unresolved == 0, format!("checker: {unresolved} points it could not resolve; expected none"));
-        let [off, turned] = self.contact_point;
-        object(off <= rounding, format!("C: {off:.2e} mm off a profile; expected at most {rounding:.1e} mm"));
-        let tangent = format!(
-            "ξ: turned by {turned:.2e} rad from a profile's tangent at C; expected at most {TANGENT:.1e}"
-        );
-        object(turned <= TANGENT, tangent);
+        if let Some([off, turned]) = self.contact_point {
+            let expected = format!("expected at most {rounding:.1e} mm");
+            object(off <= rounding, format!("C: {off:.2e} mm off a profile; {expected}"));
+            let tangent = format!(
+                "ξ: turned by {turned:.2e} rad from a profile's tangent at C; expected at most {TANGENT:.1e}"
+            );
+            object(turned <= TANGENT, tangent);
+        }
         let median = self.orders.median;
         let order = self.orders.observed == 0 || (median - EXPECTED_ORDER).abs() <= ORDER_SPREAD;
         object(order, format!("meshes: they converge with order {median:.3}; expected {EXPECTED_ORDER}"));
@@ -255,11 +257,13 @@ impl fmt::Display for Report {
             "  error of the meshes ~ cell^p: p = {median:.2} in the middle of {observed} points, {least:.2} to \
              {most:.2}; expected {EXPECTED_ORDER}"
         )?;
-        let [off, turned] = self.contact_point;
-        writeln!(
-            f,
-            "  C: {off:.1e} mm off the profiles; ξ {turned:.1e} rad off their tangents where smooth"
-        )?;
+        match self.contact_point {
+            Some([off, turned]) => writeln!(
+                f,
+                "  C: {off:.1e} mm off the profiles; ξ {turned:.1e} rad off their tangents where smooth"
+            )?,
+            None => writeln!(f, "  C: not the origin of this frame, and not compared")?,
+        }
         writeln!(f, "  the checker's own errors on bodies of known shape and this size:")?;
         self.floors.iter().try_for_each(|Floor { form, ray_mm, normal, closest_mm }| {
             writeln!(

@@ -206,9 +206,9 @@ impl Contact {
         let (curvatures, cos) = (curvatures(placement), placement.rail().point().station.cos);
         let ellipse = match by {
             ApproachBy::Given(approach) => curvatures.under_approach(approach, modulus),
-            ApproachBy::WheelLoad(load) | ApproachBy::AxleLoad(load) => {
-                curvatures.under_load(load / cos, modulus)
-            }
+            ApproachBy::WheelLoad(load)
+            | ApproachBy::WheelLoads { right: load, .. }
+            | ApproachBy::AxleLoad(load) => curvatures.under_load(load / cos, modulus),
         };
         let no_ellipse = || {
             let expected = "a smooth contact at which the separation is convex, and a load";
@@ -313,7 +313,7 @@ pub(crate) fn asked(
     approach: Option<f64>,
     modulus: Option<f64>,
 ) -> PyResult<(ApproachBy, f64)> {
-    scene::approach(&PatchData { load, approach })
+    scene::approach(&PatchData { load, approach, ..PatchData::default() })
         .or_raise()
         .and_then(|by| Ok((by, checked_modulus(modulus)?)))
 }

@@ -35,7 +35,9 @@ impl Patch {
     ) -> wheelrail::Result<Self> {
         let (approach, load, estimate) = match by {
             ApproachBy::Given(approach) => (approach, None, None),
-            ApproachBy::WheelLoad(load) | ApproachBy::AxleLoad(load) => {
+            ApproachBy::WheelLoad(load)
+            | ApproachBy::WheelLoads { right: load, .. }
+            | ApproachBy::AxleLoad(load) => {
                 let (approach, estimate) = approach_under_load(placement, load, modulus)?;
                 (approach, Some(load), estimate)
             }
