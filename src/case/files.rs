@@ -6,8 +6,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use super::drawn::{Drawn, loops_of};
+use super::in_place::write_in_place;
 use super::input::{OutputFormat, Outputs};
-use super::run::{Part, Run, Tell};
+use super::run::{COMPUTING, Part, Run, Tell};
 use super::summary::summary;
 use crate::error::{Error, Result};
 use crate::export::{
@@ -33,13 +34,49 @@ type Job<'a> = (&'static str, Box<dyn Fn(&FolderPart<'_>) -> Result<()> + Sync +
 ///
 /// # Errors
 /// The disk's; a format that cannot hold the grid, where the case requires it; a case that asks for PNG without `png`.
-pub fn write(run: &Run, folder: &Folder, png: Option<Rasterise>, tell: Tell<'_>) -> Result<()> {
-    run.parts.iter().try_for_each(|part| write_part(run, part, folder, png, tell))
+pub fn write(run: &Run, folder: &Folder, png: Option<Rasterise>, tell: Tell<'_>) -> Result<Vec<WrittenPart>> {
+    let mut in_place = write_in_place(run, folder)?;
+    let all = run.parts.len() as f64;
+    let one = |(k, part): (usize, &Part)| {
+        let tell = |step: String, share: f64| {
+            tell(step, COMPUTING + (1.0 - COMPUTING) * (k as f64 + share) / all);
+        };
+        // They lie beside the first part's own files.
+        write_part(run, part, folder, std::mem::take(&mut in_place), png, &tell)
+    };
+    run.parts.iter().enumerate().map(one).collect()
+}
+
+/// What was written of one part.
+#[derive(Debug, Clone)]
+pub struct WrittenPart {
+    /// Folder below the run's own; empty for the run's own.
+    pub folder: String,
+    /// Its files by name.
+    pub files: Vec<WrittenFile>,
+    /// What `summary.json` says.
+    pub summary: serde_json::Value,
+}
+
+/// A file that was written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct WrittenFile {
+    /// Its name.
+    pub name: String,
+    /// Its size \[bytes\].
+    pub size: u64,
 }
 
 /// Writes the files of one part side by side; summary.json last.
-fn write_part(run: &Run, part: &Part, folder: &Folder, png: Option<Rasterise>, tell: Tell<'_>) -> Result<()> {
-    tell(format!("{}: files", part.site.name()));
+fn write_part(
+    run: &Run,
+    part: &Part,
+    folder: &Folder,
+    in_place: Vec<String>,
+    png: Option<Rasterise>,
+    tell: Tell<'_>,
+) -> Result<WrittenPart> {
+    tell(format!("{}: files", part.site.name()), 0.0);
     let (outputs, mut skipped) = (&run.case.outputs, Vec::new());
     let header = header(run, part);
     let rail = RailColumns::new(part);
@@ -69,10 +106,20 @@ fn write_part(run: &Run, part: &Part, folder: &Folder, png: Option<Rasterise>, t
         decks(&mut jobs, run, deck, strips.as_ref(), settings);
     }
     let folder = folder.part(&part.site.folder)?;
-    let names = write_jobs(&jobs, &folder, |done| {
-        tell(format!("{}: {done} of {} files written", part.site.name(), jobs.len()));
+    let mut names = write_jobs(&jobs, &folder, |done| {
+        let step = format!("{}: {done} of {} files written", part.site.name(), jobs.len());
+        tell(step, done as f64 / jobs.len() as f64);
     })?;
-    folder.write("summary.json", &summary(run, part, &folder, creepages, bodies.as_ref(), &names, &skipped))
+    names.extend(in_place);
+    names.sort();
+    let summary = summary(run, part, &folder, creepages, bodies.as_ref(), &names, &skipped);
+    let mut text = serde_json::to_vec_pretty(&summary).unwrap_or_default();
+    text.push(b'\n');
+    folder.write("summary.json", &text)?;
+    let names = names.into_iter().chain(["summary.json".into()]);
+    let files =
+        names.map(|name| Ok(WrittenFile { size: folder.size(&name)?, name })).collect::<Result<_>>()?;
+    Ok(WrittenPart { folder: part.site.folder.clone(), files, summary })
 }
 
 /// Writes files on all threads, tells how many are done, and gives their names in order.
@@ -155,7 +202,7 @@ fn remarks(run: &Run, part: &Part) -> Vec<String> {
 }
 
 /// Gives the boundary-fitted mesh as writers take it.
-fn quads(strips: &StripMesh) -> QuadMesh {
+pub(super) fn quads(strips: &StripMesh) -> QuadMesh {
     QuadMesh {
         points: strips.points.clone(),
         quads: strips.cells.iter().map(|cell| cell.corners).collect(),

@@ -36,6 +36,11 @@ pub(super) fn grids(asked: &AskedAxes, place: &Placed) -> Result<Vec<Grid>> {
     }
     let patch = place.contact.whole_patch();
     let mut groups = patch.map_or_else(Vec::new, |patch| groups(patch, *merge, *spacing));
+    if groups.is_empty() && place.contact.approach.is_none() {
+        let expected = "an approach or a load, by which the grid is sized";
+        let advice = "give [patch] approach = … (mm) or load = … (N), or axes in [grid]";
+        return Err(Error::new("patch", "none", expected, advice));
+    }
     if groups.is_empty() {
         let expected = "values, or a patch that the axes can be sized by";
         let advice = "give from, to and n, or a larger approach";

@@ -25,6 +25,8 @@ pub struct Case {
     pub(crate) outputs: Outputs,
     pub(crate) echo: Echo,
     pub(crate) file: Option<PathBuf>,
+    /// What in the scene looks like a slip: warnings.
+    pub(crate) doubts: Vec<String>,
 }
 
 /// The profiles of both sides, the right-hand one's first; a single wheel and a symmetric wheelset have one pair.
@@ -206,6 +208,11 @@ pub struct Outputs {
 }
 
 impl Outputs {
+    /// Gives about how many bytes a point of a grid takes in the files of all formats together.
+    pub(super) fn bytes_a_point(&self) -> f64 {
+        self.formats.iter().map(|format| format.bytes_a_point()).sum()
+    }
+
     /// Tells whether any of the formats is asked for.
     pub fn any(&self, formats: &[OutputFormat]) -> bool {
         self.formats.iter().any(|format| formats.contains(format))
@@ -235,6 +242,18 @@ pub enum OutputFormat {
 }
 
 impl OutputFormat {
+    /// Gives about how many bytes a point of a grid takes in the files of the format.
+    fn bytes_a_point(self) -> f64 {
+        match self {
+            Self::Vtk => 190.0,
+            Self::Npy | Self::Netcdf => 8.0,
+            Self::Text => 80.0,
+            Self::Conform => 130.0,
+            Self::Contact => 28.0,
+            Self::Countact | Self::Png => 0.0,
+        }
+    }
+
     /// Formats that are solver decks.
     pub(super) const DECKS: [Self; 4] = [Self::Text, Self::Conform, Self::Countact, Self::Contact];
 }

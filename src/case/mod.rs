@@ -6,9 +6,11 @@ mod analysis;
 mod columns;
 mod contact;
 mod curves;
+mod doubts;
 mod drawn;
 mod files;
 mod grids;
+mod in_place;
 mod input;
 mod places;
 mod run;
@@ -21,7 +23,7 @@ pub use columns::Columns;
 pub use contact::{EllipseUnder, PlacedContact};
 pub use curves::{MOST_DRAWN, ascending, curves};
 pub use drawn::patch_picture;
-pub use files::{Rasterise, write};
+pub use files::{Rasterise, WrittenFile, WrittenPart, write};
 pub use grids::Grid;
 pub use input::{
     ApproachBy, AskedAxes, Case, Echo, FrameOrigin, Friction, OutputFormat, Outputs, Place, Profiles,

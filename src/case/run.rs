@@ -1,6 +1,7 @@
 //! A case and everything computed from it.
 
 use super::analysis::Analysis;
+use super::doubts::{doubts_of, doubts_of_placing};
 use super::grids::check_memory;
 use super::input::{Case, Place};
 use super::site::{Site, sites};
@@ -9,11 +10,14 @@ use crate::patch::Patch;
 use crate::placement::Creepages;
 use crate::separation::Plan;
 
-/// Is told the step that a run is at, from several threads.
-pub type Tell<'a> = &'a (dyn Fn(String) + Sync);
+/// Is told the step that a run is at, and the share of the run's work that is behind it (0 to 1), from several threads.
+pub type Tell<'a> = &'a (dyn Fn(String, f64) + Sync);
+
+/// Share of a run's work before its files are written, as a guess.
+pub(super) const COMPUTING: f64 = 0.5;
 
 /// Tells nobody.
-pub const SILENT: Tell<'static> = &|_| {};
+pub const SILENT: Tell<'static> = &|_, _| {};
 
 /// A case and everything computed from it.
 #[derive(Debug, Clone)]
@@ -57,16 +61,18 @@ impl Run {
     /// # Ok::<(), wheelrail::Error>(())
     /// ```
     pub fn new(case: Case, tell: Tell<'_>) -> Result<Self> {
-        tell("contacts".into());
+        tell("contacts".into(), 0.0);
         let sites = sites(&case)?;
         check_memory(&case.outputs, sites.iter().map(|site| &site.grid))?;
-        let part = |site: Site| {
-            let Site { grid, .. } = &site;
-            tell(format!("{}: grid of {} x {} points", site.name(), grid.xi.len(), grid.eta.len()));
+        let all = sites.len() as f64;
+        let part = |(k, site): (usize, Site)| {
+            let (Site { grid, .. }, done) = (&site, k as f64 / all);
+            let step = format!("{}: grid of {} x {} points", site.name(), grid.xi.len(), grid.eta.len());
+            tell(step, COMPUTING * done);
             let analysis = Analysis::new(&site, &case.question)?;
             Ok(Part { site, analysis })
         };
-        let parts = sites.into_iter().map(part).collect::<Result<_>>()?;
+        let parts = sites.into_iter().enumerate().map(part).collect::<Result<_>>()?;
         Ok(Self { case, parts })
     }
 
@@ -80,14 +86,25 @@ impl Run {
         self
     }
 
-    /// Lists the geometric "no"s.
+    /// Gives about how many bytes of files will be written: those that grow with the grids.
+    pub fn expected_bytes(&self) -> f64 {
+        let points = self.parts.iter().map(|part| part.site.grid.xi.len() * part.site.grid.eta.len());
+        points.sum::<usize>() as f64 * self.case.outputs.bytes_a_point()
+    }
+
+    /// Lists the geometric "no"s, each with the name of its contact if there are several.
     pub fn refusals(&self) -> Vec<String> {
-        self.parts.iter().flat_map(Part::refusals).collect()
+        let named = |part: &Part| {
+            let name = if self.parts.len() > 1 { format!("{}: ", part.site.name()) } else { String::new() };
+            part.refusals().into_iter().map(move |refusal| format!("{name}{refusal}"))
+        };
+        self.parts.iter().flat_map(named).collect()
     }
 
     /// Lists what a user should know before using the files.
     pub fn warnings(&self) -> Vec<String> {
-        let mut out = Vec::new();
+        let mut out = self.case.doubts.clone();
+        out.extend(doubts_of_placing(self));
         for (side, profiles) in self.case.profiles.sides() {
             let findings = profiles.measured.iter().flatten().flat_map(|record| &record.warnings);
             let place = side.map_or_else(String::new, |side| format!("{side} side: "));
@@ -96,22 +113,7 @@ impl Run {
         for part in &self.parts {
             let folder = &part.site.folder;
             let place = if folder.is_empty() { String::new() } else { format!("{folder}: ") };
-            out.extend(Self::warnings_of(part).into_iter().map(|warning| format!("{place}{warning}")));
-        }
-        out
-    }
-
-    /// Lists what a user should know before using the files of one part.
-    pub(super) fn warnings_of(part: &Part) -> Vec<String> {
-        let mut out = Vec::from_iter(part.site.grid.warning.clone());
-        if part.analysis.patch.as_ref().is_some_and(Patch::cut_by_window) {
-            out.push("the window of the grid cuts the patch: solvers would overestimate the pressure".into());
-        }
-        let Plan { error, tolerance, .. } = part.analysis.plan;
-        if error.is_nan() || error > tolerance {
-            out.push(format!(
-                "the separation's estimated error, {error:.1e} mm, is above grid.tolerance, {tolerance:e} mm"
-            ));
+            out.extend(part.warnings().into_iter().map(|warning| format!("{place}{warning}")));
         }
         out
     }
@@ -150,5 +152,21 @@ impl Part {
     /// Lists the geometric "no"s of the part.
     pub fn refusals(&self) -> Vec<String> {
         self.site.refusals(self.analysis.patch.as_ref())
+    }
+
+    /// Lists what a user should know before using the files of the part.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut out = Vec::from_iter(self.site.grid.warning.clone());
+        if self.analysis.patch.as_ref().is_some_and(Patch::cut_by_window) {
+            out.push("the window of the grid cuts the patch: solvers would overestimate the pressure".into());
+        }
+        let Plan { error, tolerance, .. } = self.analysis.plan;
+        if error.is_nan() || error > tolerance {
+            out.push(format!(
+                "the separation's estimated error, {error:.1e} mm, is above grid.tolerance, {tolerance:e} mm"
+            ));
+        }
+        out.extend(doubts_of(self));
+        out
     }
 }

@@ -73,6 +73,11 @@ impl Site {
         self.contact.approach.map_or(0.0, |(approach, _)| approach)
     }
 
+    /// Gives the vertical part of the normal force \[N\]; `None` unless a load was asked for.
+    pub fn vertical_load(&self) -> Option<f64> {
+        self.normal_load.map(|load| load * self.contact.placement.rail().point.station.cos)
+    }
+
     /// Gives the rectangle between the outermost points of the grid.
     pub fn window(&self) -> Window {
         Window { xi: ends(&self.grid.xi), eta: ends(&self.grid.eta) }

@@ -3,6 +3,7 @@
 use serde::Serialize;
 use serde_json::{Value, json};
 
+use super::in_place;
 use super::input::Case;
 use super::run::{Part, Run};
 use crate::files::FolderPart;
@@ -40,7 +41,7 @@ struct ClosingSummary {
 /// Kinks below this are not worth a reader's time \[rad\].
 const SMOOTH: f64 = 1e-9;
 
-/// Gives the summary of one part as JSON text; `surfaces` are the written ones of rail and wheel.
+/// Gives the summary of one part; `surfaces` are the written ones of rail and wheel.
 pub(super) fn summary(
     run: &Run,
     part: &Part,
@@ -49,11 +50,13 @@ pub(super) fn summary(
     surfaces: Option<&[Surface; 2]>,
     files: &[String],
     skipped: &[String],
-) -> Vec<u8> {
+) -> Value {
     let (Part { site, analysis }, Case { echo, file, profiles, .. }) = (part, &run.case);
     let (contact, own) = (&site.contact, profiles.on(site.side().unwrap_or_default()));
     let placement = &contact.placement;
-    let value = json!({
+    let place = in_place::to_track(run, part);
+    let rows = [0, 1, 2, 3].map(|row| [0, 1, 2, 3].map(|column| place[(row, column)]));
+    json!({
         "program": "wheelrail",
         "version": env!("CARGO_PKG_VERSION"),
         "title": echo.title,
@@ -75,7 +78,10 @@ pub(super) fn summary(
         "approach_mm": contact.approach.map(|(approach, _)| approach),
         "approach_estimated_by": contact.approach.and_then(|(_, estimate)| estimate),
         "normal_load_n": site.normal_load,
-        "vertical_load_n": site.normal_load.map(|load| load * placement.rail().point.station.cos),
+        "vertical_load_n": site.vertical_load(),
+        "effective_modulus_n_per_mm2": run.case.question.modulus(),
+        "contact_to_track": rows,
+        "wheelset_files": in_place::beside(run, part),
         "hertz_ellipse": contact.ellipse,
         "hertz_ellipse_under": contact.ellipse_under,
         "patch": analysis.patch.as_ref().map(patch),
@@ -94,15 +100,12 @@ pub(super) fn summary(
             "reason": analysis.plan.reason,
         },
         "refusals": part.refusals(),
-        "warnings": Run::warnings_of(part),
+        "warnings": part.warnings(),
         "other_parts": run.parts.iter().map(|p| &p.site.folder).filter(|f| **f != site.folder).collect::<Vec<_>>(),
         "files": files,
         "files_skipped": skipped,
         "timings": analysis.timings,
-    });
-    let mut text = serde_json::to_vec_pretty(&value).unwrap_or_default();
-    text.push(b'\n');
-    text
+    })
 }
 
 fn body(body: &Body) -> BodySummary<'_> {

@@ -7,6 +7,7 @@
 mod block;
 mod csv;
 mod deck;
+mod in_place;
 mod legacy;
 mod model;
 mod netcdf;
@@ -17,6 +18,7 @@ mod vts;
 
 pub use csv::{boundary_csv, interpen_csv};
 pub use deck::{ContactSettings, Deck, Prescribed, conform_wrp, contact_inp, countact_wrp, separation_wrp};
+pub use in_place::{ContactInPlace, body_vtp, boundaries_vtp, contacts_vtp, patches_vtp, wheelset_vtm};
 pub use legacy::separation_vtk;
 pub use model::{Frame, GridFields, Header, Interval, Loop, QuadMesh, SurfaceMesh};
 pub use netcdf::NetCdf;

@@ -1,12 +1,14 @@
-"""Opens the folder it lies in with ParaView: separation coloured, boundary overlaid, gap vectors.
+"""Shows the folder it lies in with ParaView: rail, wheel seen through, separation, patch and its boundary.
 
     paraview --script=view.py
-    pvbatch view.py picture.png          (without a display: xvfb-run -a pvbatch view.py picture.png)
+    pvbatch view.py picture.png            (without a display: xvfb-run -a pvbatch view.py picture.png)
+    pvbatch view.py picture.png arrows     (with arrows from the rail to the wheel)
 
-Contact frame in mm: x = xi (along the common tangent), y = eta (rolling direction), z = zeta (from rail to wheel).
-Separation s > 0 apart, s < 0 overlapping; the boundary is s = delta.
+Contact frame in mm: x = xi (along the common tangent), y = eta (along the rail), z = zeta (from rail to wheel).
+Separation s > 0 apart, s < 0 overlapping, before any approach; colours show s from 0 to 3 delta, clipped.
 """
 
+import json
 import math
 import os
 import sys
@@ -14,72 +16,122 @@ import sys
 from paraview.simple import *
 
 here = os.path.dirname(os.path.abspath(__file__ if "__file__" in globals() else sys.argv[0]))
+with open(os.path.join(here, "summary.json"), encoding="utf-8") as file:
+    summary = json.load(file)
+picture = next((word for word in sys.argv[1:] if word.endswith(".png")), None)
+INK = [0.15, 0.15, 0.15]
 
 
-def open_file(name):
-    return OpenDataFile(os.path.join(here, name))
+def shown(name, colour=None, opacity=1.0):
+    """Shows a file of the folder in one colour; None where it was not written or is empty."""
+    path = os.path.join(here, name)
+    if not os.path.exists(path):
+        return None, None
+    source = OpenDataFile(path)
+    source.UpdatePipeline()
+    if source.GetDataInformation().GetNumberOfPoints() == 0:
+        return None, None
+    display = Show(source, view)
+    # Not ColorBy: ParaView 5.11 refuses it for a file without arrays.
+    display.ColorArrayName = ["POINTS", ""]
+    if colour:
+        display.AmbientColor = display.DiffuseColor = colour
+    display.Opacity = opacity
+    return source, display
 
 
 view = GetActiveViewOrCreate("RenderView")
 if hasattr(view, "UseColorPaletteForBackground"):
     view.UseColorPaletteForBackground = 0
 view.Background = [1, 1, 1]
-view.OrientationAxesLabelColor = [0, 0, 0]
+view.OrientationAxesLabelColor = INK
 
-grid = open_file("separation.vts")
-shown = Show(grid, view)
-ColorBy(shown, ("POINTS", "separation"))
-shown.RescaleTransferFunctionToDataRange(True)
+# Bodies, brought from the axes of the track into the contact frame: the transform's rotation is orthogonal.
+place = summary["contact_to_track"]
+columns = [[row[k] for row in place[:3]] for k in range(4)]
+back = [[*columns[k], -sum(a * b for a, b in zip(columns[k], columns[3]))] for k in range(3)] + [[0, 0, 0, 1]]
+for body, colour, opacity in [("rails", [0.70, 0.73, 0.76], 1.0), ("wheels", [0.35, 0.50, 0.70], 0.15)]:
+    _, display = shown(os.path.join(summary["wheelset_files"], f"{body}.vtp"), colour, opacity)
+    if display:
+        display.UserTransform = [number for row in back for number in row]
+
+# Separation on the rail, from 0 to 3 delta; without a delta over its whole range.
+delta = summary["approach_mm"] or 0.0
+grid, surface = shown("separation.vts")
+low, high = grid.PointData["separation"].GetRange()
+end = 3 * delta if delta > 0 else high
+ColorBy(surface, ("POINTS", "separation"))
 colours = GetColorTransferFunction("separation")
 colours.ApplyPreset("Viridis (matplotlib)", True)
+colours.RescaleTransferFunction(0.0, end if end > 0 else 1.0)
+colours.NanOpacity = 0.0
 bar = GetScalarBar(colours, view)
-bar.Title, bar.ComponentTitle = "separation s [mm]", ""
-bar.TitleColor = bar.LabelColor = [0, 0, 0]
-bar.TitleFontSize = bar.LabelFontSize = 14
+bar.Title = "s, mm, 0 to 3 delta, clipped" if delta > 0 else "s, mm"
+bar.ComponentTitle = ""
+bar.TitleColor = bar.LabelColor = INK
+bar.TitleFontSize, bar.LabelFontSize = 14, 12
 bar.WindowLocation = "Lower Right Corner"
-shown.SetScalarBarVisibility(view, True)
+surface.SetScalarBarVisibility(view, True)
 
-boundary = open_file("boundary.vtp")
-boundary.UpdatePipeline()
-if boundary.GetDataInformation().GetNumberOfPoints() > 0:
-    line = Show(boundary, view)
-    ColorBy(line, None)
-    line.AmbientColor = line.DiffuseColor = [0.8, 0, 0]
+# The patch, filled and outlined. What lies on the rail is lifted so that it is seen, by less than a line is wide.
+_, patch = shown("patch.vtu", [0.93, 0.45, 0.13], 0.5)
+_, line = shown("boundary.vtp", [0.75, 0.05, 0.05])
+if line:
     line.LineWidth = 3
-
-# About 400 arrows from the rail towards the wheel, stretched by a round factor so that the longest is
-# about a tenth of the grid.
-grid.UpdatePipeline()
 bounds = grid.GetDataInformation().GetBounds()
-low, high = grid.PointData["separation"].GetRange()
-longest = max(abs(low), abs(high))
-stretch = 1
-if 0 < longest < float("inf"):
-    stretch = 10 ** math.floor(math.log10(0.1 * (bounds[3] - bounds[2] or 1) / longest) + 0.5)
-arrows = Glyph(Input=grid, GlyphType="Arrow")
-arrows.OrientationArray = ["POINTS", "gap_vector"]
-arrows.ScaleArray = ["POINTS", "gap_vector"]
-arrows.ScaleFactor = stretch
-arrows.GlyphMode = "Uniform Spatial Distribution (Bounds Based)"
-arrows.MaximumNumberOfSamplePoints = 400
-glyphs = Show(arrows, view)
-ColorBy(glyphs, None)
-glyphs.AmbientColor = glyphs.DiffuseColor = [0.3, 0.3, 0.3]
-note = Show(Text(Text=f"mm; red: boundary s = delta; arrows: gap x {stretch:g}"), view)
-note.Color, note.FontSize = [0, 0, 0], 14
+size = max(bounds[1] - bounds[0], bounds[3] - bounds[2])
+for step, display in enumerate((surface, patch, line), start=1):
+    if display:
+        display.Position = [0, 0, 0.003 * step * size]
 
-# The wheel, seen through, to be switched on by a click.
-wheel = open_file("wheel.vts")
-surface = Show(wheel, view)
-ColorBy(surface, None)
-surface.Opacity = 0.3
-Hide(wheel, view)
+found = summary["found"]
+words = [summary["title"]]
+if found:
+    words.append(f"{found['side']} side, contact {found['contact']}")
+angle = math.degrees(summary["rail"]["contact_angle_rad"])
+words.append(f"contact angle {angle:.2f} deg, rolling radius {summary['rolling_radius_mm']:.2f} mm")
+words.append(f"delta = {delta:.4g} mm" if delta > 0 else "no approach, no patch")
+if summary["normal_load_n"]:
+    words[-1] += f", normal force {summary['normal_load_n'] / 1e3:.4g} kN"
+if summary["patch"] and summary["patch"]["components"]:
+    words.append(f"patch {summary['patch']['area_mm2']:.4g} mm2")
+elif delta > 0:
+    words.append("the patch is empty")
 
-picture = sys.argv[-1] if sys.argv[-1].endswith(".png") else None
+if "arrows" in sys.argv[1:]:
+    # About 400 arrows, stretched by a round factor so that the longest is about a tenth of the grid.
+    longest = max(abs(low), abs(high))
+    stretch = 10 ** math.floor(math.log10(0.1 * (bounds[3] - bounds[2] or 1) / longest) + 0.5) if longest > 0 else 1
+    arrows = Glyph(Input=grid, GlyphType="Arrow")
+    arrows.OrientationArray = arrows.ScaleArray = ["POINTS", "gap_vector"]
+    arrows.ScaleFactor = stretch
+    arrows.GlyphMode = "Uniform Spatial Distribution (Bounds Based)"
+    arrows.MaximumNumberOfSamplePoints = 400
+    glyphs = Show(arrows, view)
+    glyphs.ColorArrayName = ["POINTS", ""]
+    glyphs.AmbientColor = glyphs.DiffuseColor = INK
+    words.append(f"arrows: gap x {stretch:g}")
+
+note = Show(Text(Text="\n".join(words)), view)
+note.Color, note.FontSize = INK, 14
+note.WindowLocation, note.Justification = "Upper Left Corner", "Left"
+
+axes = surface.DataAxesGrid
+axes.GridAxesVisibility = 1
+axes.XTitle, axes.YTitle, axes.ZTitle = "xi, mm", "eta, mm", "zeta, mm"
+for name in ("XTitleColor", "YTitleColor", "ZTitleColor", "XLabelColor", "YLabelColor", "ZLabelColor", "GridColor"):
+    setattr(axes, name, INK)
+
+# Obliquely from the gauge side, at what the grid covers.
 if picture:
     view.ViewSize = [1600, 1000]
-view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp = [-1, -2, 1.6], [0, 0, 0], [0, 0, 1]
-ResetCamera(view)
+# The first rendering would move the camera.
+Render(view)
+direction = [-0.55, -0.85, 1.1]
+view.CameraFocalPoint = [(bounds[2 * k] + bounds[2 * k + 1]) / 2 for k in range(3)]
+view.CameraPosition = [c + 2.0 * size * d for c, d in zip(view.CameraFocalPoint, direction)]
+view.CameraViewUp = [0, 0, 1]
+view.CenterOfRotation = view.CameraFocalPoint
 Render(view)
 if picture:
     SaveScreenshot(picture, view)

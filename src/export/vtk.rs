@@ -17,7 +17,7 @@ use vtkio::model::{
 };
 
 /// The counts of an empty PolyData piece. `vtkio` leaves them out, and no reader takes a file without them.
-const EMPTY_POLYDATA: &str = "<Piece NumberOfPoints=\"0\" NumberOfVerts=\"0\" NumberOfLines=\"0\" \
+pub(super) const EMPTY_POLYDATA: &str = "<Piece NumberOfPoints=\"0\" NumberOfVerts=\"0\" NumberOfLines=\"0\" \
     NumberOfStrips=\"0\" NumberOfPolys=\"0\">";
 
 /// The counts of an empty unstructured grid, which `vtkio` leaves out.
@@ -111,12 +111,12 @@ fn unstructured(
 }
 
 /// Returns the coordinates of points one after another.
-fn coordinates<'a>(points: impl IntoIterator<Item = &'a Point3<f64>>) -> IOBuffer {
+pub(super) fn coordinates<'a>(points: impl IntoIterator<Item = &'a Point3<f64>>) -> IOBuffer {
     points.into_iter().flat_map(|point| point.coords.as_slice()).copied().collect::<Vec<f64>>().into()
 }
 
 /// Returns the nodes of a cell without equal neighbours.
-fn distinct(quad: &[usize; 4]) -> Vec<usize> {
+pub(super) fn distinct(quad: &[usize; 4]) -> Vec<usize> {
     let mut nodes = quad.to_vec();
     nodes.dedup();
     if nodes.len() == 4 && nodes[0] == nodes[3] {
@@ -125,13 +125,18 @@ fn distinct(quad: &[usize; 4]) -> Vec<usize> {
     nodes
 }
 
-fn scalars(name: &str, data: IOBuffer, expected: usize) -> Result<Attribute> {
+pub(super) fn scalars(name: &str, data: IOBuffer, expected: usize) -> Result<Attribute> {
     same_length(name, data.len(), expected)?;
     let elem = ElementType::Scalars { num_comp: 1, lookup_table: None };
     Ok(Attribute::DataArray(DataArray { name: name.into(), elem, data }))
 }
 
 fn xml(header: &Header, data: DataSet, empty_piece: &str) -> Result<Vec<u8>> {
+    Ok(annotate(xml_text(data, empty_piece)?, header))
+}
+
+/// Encodes a data set; `empty_piece` is the tag of a piece without points.
+pub(super) fn xml_text(data: DataSet, empty_piece: &str) -> Result<String> {
     let mut bytes = Vec::new();
     let (version, byte_order) = (Version::new_xml(1, 0), ByteOrder::LittleEndian);
     let file = Vtk { version, title: String::new(), byte_order, file_path: None, data };
@@ -139,7 +144,7 @@ fn xml(header: &Header, data: DataSet, empty_piece: &str) -> Result<Vec<u8>> {
     let text = String::from_utf8(bytes).map_err(refused)?;
     // Node numbers are far below 2⁶³, so that their bytes are the same in both types.
     let text = text.replace("<DataArray type=\"UInt64\"", "<DataArray type=\"Int64\"");
-    Ok(annotate(text.replacen("<Piece>", empty_piece, 1), header))
+    Ok(text.replacen("<Piece>", empty_piece, 1))
 }
 
 /// Puts δ and the frame into field data, and the header's statements into a comment.

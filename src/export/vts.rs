@@ -7,7 +7,7 @@
 //! point. This array is written only if there are such points.
 
 use super::block::{Block, put_bytes, put_f64, put_vectors};
-use super::model::{GridFields, Header, known};
+use super::model::{GridFields, Header, known, plain};
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
@@ -152,10 +152,15 @@ fn head(header: &Header, grid: &GridFields, arrays: &[&Array]) -> String {
 
 /// Returns the header's statements as an XML comment.
 pub(super) fn comment(header: &Header) -> String {
+    comment_of(&header.statements())
+}
+
+/// Returns lines as an XML comment, made plain.
+pub(super) fn comment_of(statements: &[String]) -> String {
     let mut text = String::from("  <!--\n");
-    for line in header.statements() {
+    for line in statements {
         text += "    ";
-        text += &line;
+        text += &plain(line);
         text += "\n";
     }
     text + "  -->\n"

@@ -173,6 +173,15 @@ impl FolderPart<'_> {
         self.stream(name, |sink| sink.write_all(bytes))
     }
 
+    /// Gives the size of a file that was written \[bytes\].
+    ///
+    /// # Errors
+    /// Any error of the disk.
+    pub fn size(&self, name: &str) -> Result<u64> {
+        let found = fs::metadata(self.temporary.join(name));
+        found.map(|found| found.len()).map_err(|e| unwritable(&self.target.join(name), e))
+    }
+
     /// Writes one file piece by piece, for large files. The sink is not buffered: pass blocks of at least
     /// some ten kilobytes.
     ///

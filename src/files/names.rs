@@ -41,6 +41,13 @@ pub const RUN_FOLDER: Names = Names {
         "countact.wrp",
         "contact.inp",
         "view.py",
+        "wheelset.vtm",
+        "wheelset.pvd",
+        "rails.vtp",
+        "wheels.vtp",
+        "patches.vtp",
+        "boundaries.vtp",
+        "contacts.vtp",
         // A Python that imports or compiles view.py leaves this folder.
         "__pycache__",
     ],

@@ -3,11 +3,13 @@
 mod axes;
 mod lines;
 mod quality;
+mod shells;
 mod strips;
 mod surfaces;
 mod trace;
 
 pub use axes::{Axes, GridGroup, MOST_ON_AXIS, MOST_POINTS, equal_steps, groups};
 pub use quality::{Quality, Spread};
+pub use shells::{BodyShell, axle_point};
 pub use strips::{Cell, StripCounts, StripMesh};
 pub use surfaces::Surface;

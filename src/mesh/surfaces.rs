@@ -220,7 +220,7 @@ fn in_space(in_plane: Point2<f64>, eta: f64) -> Point3<f64> {
 }
 
 /// Returns (ξ, η, ζ) \[mm\] of a profile point turned about the axle by ψ \[rad\].
-fn wheel_point(placement: &Placement, station: &Station, psi: f64) -> Point3<f64> {
+pub(super) fn wheel_point(placement: &Placement, station: &Station, psi: f64) -> Point3<f64> {
     let w = placement.wheel_radius() - station.z;
     // This computes R − w cosψ without cancellation.
     let turned = Point2::new(station.x, station.z + 2.0 * w * (psi / 2.0).sin().powi(2));

@@ -3,6 +3,7 @@
 
 mod axes;
 mod data;
+mod doubts;
 mod method_or_auto;
 mod motion;
 mod motion_data;

@@ -41,8 +41,9 @@ fn from_json<T: DeserializeOwned>(text: &str) -> Result<(T, Value)> {
     let complaint = |error: serde_json::Error| {
         let line = error.line().checked_sub(1).and_then(|line| text.lines().nth(line));
         let read = line.and_then(|line| line.get(..error.column()));
-        let found = read.map(|read| format!("what ends in {}", shortened(read, Keep::End)));
-        house_form(format!("line {}", error.line()), &without_position(&error.to_string()), found)
+        let found = read.map(|read| format!("`{}` up to there", shortened(read.trim(), Keep::End)));
+        let place = format!("line {}, column {}", error.line(), error.column());
+        advised(house_form(place, &without_position(&error.to_string()), found), line)
     };
     Ok((serde_json::from_str(text).map_err(complaint)?, serde_json::from_str(text).map_err(complaint)?))
 }
@@ -50,9 +51,14 @@ fn from_json<T: DeserializeOwned>(text: &str) -> Result<(T, Value)> {
 fn from_toml<T: DeserializeOwned>(text: &str) -> Result<(T, Value)> {
     let complaint = |error: toml::de::Error| {
         let line = |start| text.get(..start).map_or(0, |before: &str| before.matches('\n').count()) + 1;
-        let place = error.span().map_or_else(String::new, |span| format!("line {}", line(span.start)));
+        let number = error.span().map(|span| line(span.start));
+        let place = number.map_or_else(String::new, |number| format!("line {number}"));
         let found = error.span().and_then(|span| text.get(span));
-        house_form(place, error.message(), found.map(|found| shortened(found, Keep::Beginning)))
+        let read = number.and_then(|number| text.lines().nth(number - 1));
+        advised(
+            house_form(place, error.message(), found.map(|found| shortened(found, Keep::Beginning))),
+            read,
+        )
     };
     let read = toml::from_str(text).map_err(complaint)?;
     // `toml` drops the surplus items of an array, `serde_json` does not. Numbers that are not finite become null here and
@@ -63,6 +69,34 @@ fn from_toml<T: DeserializeOwned>(text: &str) -> Result<(T, Value)> {
             .map_err(|error| house_form(String::new(), &error.to_string(), None))?;
     }
     Ok((read, value))
+}
+
+/// Gives an error better advice where its line has a decimal comma.
+fn advised(mut error: Error, line: Option<&str>) -> Error {
+    if let Some(number) = line.and_then(decimal_comma) {
+        error.advice = format!("write numbers with a decimal point: {number}");
+    }
+    error
+}
+
+/// Finds a number with a decimal comma in a line, outside of lists, and gives it with a point.
+fn decimal_comma(line: &str) -> Option<String> {
+    let digit = |c: Option<&char>| c.is_some_and(char::is_ascii_digit);
+    let line: Vec<char> = line.split('#').next().unwrap_or(line).chars().collect();
+    let mut depth = 0;
+    for (k, c) in line.iter().enumerate() {
+        match c {
+            '[' => depth += 1,
+            ']' => depth -= 1,
+            ',' if depth == 0 && k > 0 && digit(line.get(k - 1)) && digit(line.get(k + 1)) => {
+                let whole = line[..k].iter().rev().take_while(|c| digit(Some(c))).count();
+                let part = line[k + 1..].iter().take_while(|c| digit(Some(c)));
+                return Some(line[k - whole..k].iter().chain(['.'].iter()).chain(part).collect());
+            }
+            _ => {}
+        }
+    }
+    None
 }
 
 /// Finds the first key whose list was read as a table.
@@ -233,7 +267,7 @@ mod tests {
             (
                 "{\"grid\":\n{\"spacing\": \"fine\"}}",
                 true,
-                "line 2: found what ends in {\"spacing\": \"fine\"}; expected a step in mm, or [Δξ, Δη];",
+                "line 2, column 20: found `{\"spacing\": \"fine\"}` up to there; expected a step in mm, or [Δξ, Δη];",
             ),
         ];
         for (text, json, expected) in cases {
@@ -241,6 +275,19 @@ mod tests {
             assert!(error.starts_with(expected), "{error}");
         }
         assert_eq!(shortened(&"a ".repeat(50), Keep::End), format!("…{}", " a".repeat(30)));
+    }
+
+    #[test]
+    fn decimal_commas_are_told() {
+        for (text, json, number) in [
+            ("[wheel]\nradius = 460,5", false, "460.5"),
+            ("[wheel]\nradius = \"46,25\"", false, "46.25"),
+            ("{\"rail\": {\"rotate\": 0,025}}", true, "0.025"),
+        ] {
+            let error = parse::<Scene>(text, json).err().map(|e| e.to_string()).unwrap_or_default();
+            assert!(error.ends_with(&format!("write numbers with a decimal point: {number}")), "{error}");
+        }
+        assert_eq!(decimal_comma("shift = [1,2]"), None);
     }
 
     #[test]

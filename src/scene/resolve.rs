@@ -6,6 +6,7 @@ use sha2::{Digest, Sha256};
 
 use super::axes::asked_axes;
 use super::data::{MaterialData, PatchData, Scene};
+use super::doubts::doubts;
 use super::motion::{friction, motion};
 use super::profiles::profiles;
 use super::side_data::SideData;
@@ -41,8 +42,8 @@ fn case(scene: &Scene, name: &str, profiles: impl FnOnce() -> Result<Profiles>) 
     let question = question(scene)?;
     let axes = asked_axes(&scene.grid)?;
     let (standing, profiles) = standing(scene, profiles()?)?;
-    let (outputs, echo) = (outputs(scene), echo(scene, name));
-    Ok(Case { profiles, standing, question, axes, outputs, echo, file: None })
+    let (outputs, echo, doubts) = (outputs(scene), echo(scene, name), doubts(scene, &profiles));
+    Ok(Case { profiles, standing, question, axes, outputs, echo, file: None, doubts })
 }
 
 /// Returns what output files say about a scene: its title or else `name`, and the scene itself with its SHA-256. Scenes

@@ -176,11 +176,12 @@ fn the_weighted_frame_moves_no_body() -> Result<()> {
                     assert!((point.y - height).abs() < 1e-10, "{lateral} {xi} {eta}: {point} {height}");
                 }
             }
-            // What the wheel sinks by differs by what the other angle makes of the vertical force.
-            let cos = [placement, old].map(|placement| placement.rail().point().station.cos);
-            let sunk = [site.approach() / cos[0], same.unwrap().approach() / cos[1]];
-            let lean = (cos[0] / cos[1] - 1.0).abs();
-            assert!((sunk[0] / sunk[1] - 1.0).abs() < 0.02 + 2.0 * lean, "{lateral}: {sunk:?} {cos:?}");
+            // What the wheel sinks by, which is that of its first contact, hardly depends on the frame.
+            if number.is_some_and(|(_, contact)| contact == 1) {
+                let cos = [placement, old].map(|placement| placement.rail().point().station.cos);
+                let sunk = [site.approach() / cos[0], same.unwrap().approach() / cos[1]];
+                assert!((sunk[0] / sunk[1] - 1.0).abs() < 0.05, "{lateral}: {sunk:?} {cos:?}");
+            }
         }
     }
     assert!(turned >= 3, "{turned}");

@@ -137,7 +137,7 @@ fn a_contact_that_only_the_approach_closes_is_no_refusal() {
     let home = tempfile::tempdir().expect("a folder");
     let target = home.path().join("out");
     let folder = Folder::create(&target, RUN_FOLDER).expect("a folder");
-    write(&run, &folder, None, SILENT).and_then(|()| folder.commit()).expect("files");
+    write(&run, &folder, None, SILENT).and_then(|_| folder.commit()).expect("files");
     for part in &run.parts {
         let deck =
             std::fs::read_to_string(target.join(&part.site.folder).join("contact.inp")).expect("a deck");
@@ -158,7 +158,7 @@ fn files_say_that_a_contact_is_infeasible_or_a_mirror_image() {
         let home = tempfile::tempdir().expect("a folder");
         let target = home.path().join("out");
         let out = Folder::create(&target, RUN_FOLDER).expect("a folder");
-        write(&run, &out, None, SILENT).and_then(|()| out.commit()).expect("files");
+        write(&run, &out, None, SILENT).and_then(|_| out.commit()).expect("files");
         for name in ["contact.inp", "separation.wrp", "rail.vtu", "patch.vtu"] {
             let file = std::fs::read_to_string(target.join(folder).join(name)).expect("a file");
             assert!(file.contains(said), "{folder}/{name}");

@@ -7,6 +7,7 @@
 
 mod answer;
 mod check;
+mod init;
 mod midsep;
 mod output;
 mod png;
@@ -19,7 +20,7 @@ mod sweep;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use answer::{Outcome, complain, print};
 use wheelrail::{Error, Result};
@@ -38,13 +39,7 @@ struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Run the whole pipeline and write a folder of files.
-    Run {
-        /// Scene file, TOML or JSON.
-        scene: PathBuf,
-        /// Folder to write; by default output/<scene name>.
-        #[arg(long)]
-        out: Option<PathBuf>,
-    },
+    Run(run::RunArguments),
     /// Print the midplane table and the transformed parameters.
     Midsep {
         /// Scene file, TOML or JSON.
@@ -69,8 +64,21 @@ enum Command {
     /// List, show, plot and convert profiles.
     #[command(subcommand)]
     Profile(Box<profile::ProfileCommand>),
+    /// Write a commented scene to begin with.
+    Init {
+        /// File to write; an existing one is never replaced.
+        #[arg(default_value = "scene.toml")]
+        file: PathBuf,
+    },
     /// Print the JSON Schema of a scene.
     Schema,
+    /// Print completions for a shell, e.g. `wheelrail completions bash > /etc/bash_completion.d/wheelrail`.
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page, e.g. `wheelrail man | man -l -`.
+    Man,
 }
 
 /// Runs the command and returns its exit code.
@@ -103,14 +111,41 @@ fn on_threads(arguments: Arguments) -> Result<Outcome> {
         Error::new("--threads", error.to_string(), "a number of threads the system grants", "take fewer")
     })?;
     pool.install(|| match arguments.command {
-        Command::Run { scene, out } => run::run(&scene, out.as_deref()),
+        Command::Run(arguments) => run::run(&arguments),
         Command::Midsep { scene } => midsep::midsep(&scene),
         Command::Check { scene } => check::check(&scene),
         Command::Sweep(arguments) => sweep::sweep(&arguments),
         Command::Report { out, splice } => report::report(out.as_deref(), splice.as_deref()),
         Command::Profile(command) => profile::profile(&command),
+        Command::Init { file } => init::init(&file),
         Command::Schema => schema(),
+        Command::Completions { shell } => completions(shell),
+        Command::Man => manual(),
     })
+}
+
+fn completions(shell: clap_complete::Shell) -> Result<Outcome> {
+    let mut text = Vec::new();
+    clap_complete::generate(shell, &mut Arguments::command(), "wheelrail", &mut text);
+    print(&String::from_utf8_lossy(&text))
+}
+
+/// Prints the manual page of the program, then those of its commands, each with its options.
+fn manual() -> Result<Outcome> {
+    let mut command = Arguments::command();
+    command.build();
+    let (mut text, commands) = (Vec::new(), command.get_subcommands().cloned().collect::<Vec<_>>());
+    let page = |command: clap::Command, text: &mut Vec<u8>| {
+        let written = clap_mangen::Man::new(command).render(text);
+        written.map_err(|error| {
+            Error::new("man", error.to_string(), "a page", "report this as a fault of wheelrail")
+        })
+    };
+    page(command, &mut text)?;
+    for command in commands.into_iter().filter(|command| command.get_name() != "help") {
+        page(command, &mut text)?;
+    }
+    print(&String::from_utf8_lossy(&text))
 }
 
 fn schema() -> Result<Outcome> {

@@ -48,11 +48,13 @@ pub(super) fn write(
         let written = patch(folder, scene, case, table, position, &name)
             .map_err(|error| error.within(format!("position {}", k + 1)))?;
         let done = 1 + done.fetch_add(1, Ordering::Relaxed);
-        progress.at(format!("patches of {done} of {} positions", positions.len()));
+        let all = positions.len();
+        progress.share(format!("patches of {done} of {all} positions"), done as f64 / all as f64);
         Ok(written)
     };
     let written = positions.par_iter().enumerate().map(one).collect::<Result<Vec<_>>>()?;
-    folder.write("surface.pvd", collection(&written).as_bytes())?;
+    folder.write("surface.pvd", collection(&written, every_part).as_bytes())?;
+    folder.write("wheelset.pvd", collection(&written, wheelset).as_bytes())?;
     folder.write("summary.json", &summary(scene, &case.echo().hash, &written))?;
     let missing = written.iter().filter(|written| written.folders.is_empty()).count();
     if missing > 0 {
@@ -83,15 +85,24 @@ fn patch(
     Ok(Written { position, folders: run.parts.into_iter().map(|part| part.site.folder).collect() })
 }
 
-/// Returns the collection of the separation of every part over time. Time is the lateral displacement if it always grows,
-/// else the number of the position.
-fn collection(written: &[Written]) -> String {
+/// Returns the files with the separation of every part of a position.
+fn every_part(written: &Written) -> Vec<String> {
+    written.folders.iter().map(|folder| format!("{folder}/separation.vts")).collect()
+}
+
+/// Returns the file with the wheelset on its track at a position.
+fn wheelset(written: &Written) -> Vec<String> {
+    written.folders.first().map(|folder| format!("{folder}/wheelset.vtm")).into_iter().collect()
+}
+
+/// Returns the collection of files of every position over time. Time is the lateral displacement if it always grows, else the
+/// number of the position.
+fn collection(written: &[Written], files: fn(&Written) -> Vec<String>) -> String {
     let grows = written.windows(2).all(|pair| pair[0].position.lateral < pair[1].position.lateral);
     let mut steps = Vec::new();
     for (k, written) in written.iter().enumerate() {
         let time = if grows { written.position.lateral } else { (k + 1) as f64 };
-        let parts = written.folders.iter().enumerate();
-        steps.extend(parts.map(|(part, folder)| (time, part, format!("{folder}/separation.vts"))));
+        steps.extend(files(written).into_iter().enumerate().map(|(part, file)| (time, part, file)));
     }
     collection_pvd(&steps)
 }

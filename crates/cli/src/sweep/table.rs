@@ -69,7 +69,8 @@ impl SweepTable<'_> {
         sweep.blocks(lines, |done, chunks: Vec<(Columns, String)>| {
             let wanted = sink(&chunks.iter().map(|(_, text)| text.as_str()).collect::<String>())?;
             let rate = done as f64 / start.elapsed().as_secs_f64();
-            progress.at(format!("{done} of {all} positions, {rate:.0} a second"));
+            let step = format!("{done} of {all} positions, {rate:.0} a second");
+            progress.share(step, done as f64 / all as f64);
             Ok(wanted)
         })
     }

@@ -1,0 +1,150 @@
+//! Where a contact is on the track, and files that show all of a run in the track's axes.
+//!
+//! The axes of a wheelset's track: x to the right, y forward, z up, the origin in the middle of the track at the top of rail,
+//! with the middle of the axle at y = 0. For a single wheel they are the rail profile's axes, with the wheel's centre at y = 0.
+
+use nalgebra::{Matrix4, Point3, Vector4};
+
+use super::drawn::loops_of;
+use super::files::quads;
+use super::input::{OutputFormat, Place};
+use super::run::{Part, Run};
+use crate::error::Result;
+use crate::export::{
+    ContactInPlace, Loop, QuadMesh, body_vtp, boundaries_vtp, contacts_vtp, patches_vtp, wheelset_vtm,
+};
+use crate::files::Folder;
+use crate::mesh::{BodyShell, axle_point};
+use crate::placement::Placement;
+use crate::separation::Evaluator;
+
+/// Half the length of rail that is shown \[mm\].
+const RAIL: f64 = 300.0;
+
+/// Half the arc of a wheel's rim that is shown \[rad\].
+const RIM: f64 = 0.7;
+
+/// How far shells may depart from the bodies \[mm\]: nobody sees it, and a sweep of a hundred positions stays small.
+const SHELL: f64 = 0.02;
+
+/// Gives the transform from the contact frame of a part to the axes of the track, of homogeneous coordinates (ξ, η, ζ, 1). On a
+/// left side it has a reflection: that side's own axes are the mirror image's.
+pub(super) fn to_track(run: &Run, part: &Part) -> Matrix4<f64> {
+    let placement = &part.site.contact.placement;
+    let left = part.site.side() == Some("left");
+    let (rail, half) = match &run.case.standing.place {
+        Place::Wheelset { system, .. } => {
+            let side = if left { system.left() } else { system.right() };
+            ([side.track().rail_x(), side.track().rail_z()], side.wheelset().wheel_x())
+        }
+        Place::Points { .. } | Place::Wheel { .. } => ([0.0; 2], 0.0),
+    };
+    let c = placement.rail().point.station;
+    let mirrored = if left { -1.0 } else { 1.0 };
+    Matrix4::from_columns(&[
+        Vector4::new(mirrored * c.cos, 0.0, c.sin, 0.0),
+        Vector4::new(0.0, 1.0, 0.0, 0.0),
+        Vector4::new(-mirrored * c.sin, 0.0, c.cos, 0.0),
+        Vector4::new(mirrored * (rail[0] + c.x), -axle_point(placement, -half).y, rail[1] + c.z, 1.0),
+    ])
+}
+
+/// Writes `wheelset.vtm` and its pieces, below the folder of the run's first part: both rails, both wheels at first touch, patches,
+/// boundaries and contact points, all where they are. Gives their names.
+///
+/// # Errors
+/// The disk's.
+pub(super) fn write_in_place(run: &Run, folder: &Folder) -> Result<Vec<String>> {
+    let Some(first) = run.parts.first().filter(|_| run.case.outputs.any(&[OutputFormat::Vtk])) else {
+        return Ok(Vec::new());
+    };
+    let folder = folder.part(&first.site.folder)?;
+    let statements = statements(run);
+    let sides = ["right", "left"].into_iter().filter_map(|side| {
+        run.parts.iter().find(|part| (part.site.side() == Some("left")) == (side == "left"))
+    });
+    let places: Vec<_> = sides.map(|part| (&part.site.contact.placement, to_track(run, part))).collect();
+    let shells = |shell: fn(&Placement) -> BodyShell| {
+        let shells = places.iter().map(|(placement, place)| {
+            let BodyShell { points, faces } = shell(placement);
+            BodyShell { points: points.iter().map(|point| moved(place, point)).collect(), faces }
+        });
+        joined(shells)
+    };
+    let [rails, wheels] = [
+        shells(|placement| BodyShell::rail(placement, RAIL, SHELL)),
+        shells(|placement| BodyShell::wheel(placement, RIM, SHELL)),
+    ];
+    let contacts: Vec<_> = (1..).zip(&run.parts).map(|(k, part)| in_place(run, part, k)).collect();
+    let files = [
+        ("rails", "rails.vtp", body_vtp(&statements, &rails.points, &rails.faces)?),
+        ("wheels", "wheels.vtp", body_vtp(&statements, &wheels.points, &wheels.faces)?),
+        ("patches", "patches.vtp", patches_vtp(&statements, &contacts)?),
+        ("boundaries", "boundaries.vtp", boundaries_vtp(&statements, &contacts)?),
+        ("contacts", "contacts.vtp", contacts_vtp(&statements, &contacts)?),
+    ];
+    files.iter().try_for_each(|(_, name, bytes)| folder.write(name, bytes))?;
+    let blocks = files.map(|(block, name, _)| (block, name));
+    folder.write("wheelset.vtm", wheelset_vtm(&statements, &blocks).as_bytes())?;
+    Ok(blocks.into_iter().map(|(_, name)| name).chain(["wheelset.vtm"]).map(String::from).collect())
+}
+
+/// Gives the path from a part's folder to that of `wheelset.vtm`.
+pub(super) fn beside(run: &Run, part: &Part) -> String {
+    let root = run.parts.first().map_or("", |first| first.site.folder.as_str());
+    if part.site.folder == root { ".".into() } else { format!("../{root}") }
+}
+
+/// Joins shells into one.
+fn joined(shells: impl Iterator<Item = BodyShell>) -> BodyShell {
+    shells.fold(BodyShell { points: Vec::new(), faces: Vec::new() }, |mut all, shell| {
+        let first = all.points.len();
+        all.points.extend(shell.points);
+        all.faces
+            .extend(shell.faces.into_iter().map(|face| face.into_iter().map(|node| first + node).collect()));
+        all
+    })
+}
+
+fn statements(run: &Run) -> Vec<String> {
+    let axes = match run.case.standing.place {
+        Place::Wheelset { .. } => {
+            "track axes: x to the right, y forward, z up; origin in the middle, top of rail"
+        }
+        Place::Points { .. } | Place::Wheel { .. } => {
+            "axes of the rail profile: x to the field side, y along, z up"
+        }
+    };
+    vec![
+        format!("title: {}", run.case.echo.title),
+        format!("written by wheelrail {}", env!("CARGO_PKG_VERSION")),
+        format!("scene {}", run.case.echo.hash),
+        format!("lengths in mm; {axes}"),
+        "wheels at first touch, before any approach".into(),
+    ]
+}
+
+fn in_place(run: &Run, part: &Part, number: usize) -> ContactInPlace {
+    let placement = &part.site.contact.placement;
+    let place = to_track(run, part);
+    let approach = part.site.contact.approach.map_or(f64::NAN, |(approach, _)| approach);
+    let patch = part.analysis.strips.as_ref().map(quads).unwrap_or_default();
+    let mut evaluator = Evaluator::new(placement);
+    let overlap =
+        patch.points.iter().map(|point| approach - evaluator.separation(point.x, point.y)).collect();
+    let ring = |ring: Loop| Loop { points: ring.points.iter().map(|p| moved(&place, p)).collect(), ..ring };
+    let loops = part.analysis.patch.as_ref().map_or_else(Vec::new, |patch| loops_of(placement, patch));
+    ContactInPlace {
+        number,
+        point: moved(&place, &Point3::origin()),
+        approach,
+        vertical_load: part.site.vertical_load().unwrap_or(f64::NAN),
+        patch: QuadMesh { points: patch.points.iter().map(|point| moved(&place, point)).collect(), ..patch },
+        overlap,
+        loops: loops.into_iter().map(ring).collect(),
+    }
+}
+
+fn moved(place: &Matrix4<f64>, point: &Point3<f64>) -> Point3<f64> {
+    place.transform_point(point)
+}

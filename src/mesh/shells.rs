@@ -1,0 +1,140 @@
+//! Closed shells of both bodies, for pictures of the whole: a piece of rail and an arc of the wheel's rim.
+
+use nalgebra::{Point2, Point3};
+
+use super::surfaces::wheel_point;
+use crate::placement::Placement;
+use crate::profile::{Profile, Station, trace};
+
+/// How far a shell is carried beyond what the profile describes \[mm\], so that it has a back.
+const BACK: f64 = 20.0;
+
+/// Step of the traces that outlines are thinned from \[mm\].
+const TRACED: f64 = 0.25;
+
+/// A closed surface of polygons: a prism or an arc of a ring, with both ends.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BodyShell {
+    /// Points in the contact frame (ξ, η, ζ) \[mm\].
+    pub points: Vec<Point3<f64>>,
+    /// The points of every face in order.
+    pub faces: Vec<Vec<usize>>,
+}
+
+impl BodyShell {
+    /// Makes a piece of the rail from −`half_length` to `half_length` \[mm\] along η. The outline departs from the profile by at most
+    /// `tolerance` \[mm\], and is closed below it.
+    pub fn rail(placement: &Placement, half_length: f64, tolerance: f64) -> Self {
+        let stations = outline(placement.rail().profile(), tolerance);
+        let low = stations.iter().map(|station| station.z).fold(f64::INFINITY, f64::min) - BACK;
+        let frame = placement.rail().contact_frame();
+        let points = |eta: f64| {
+            let point = move |x: f64, z: f64| {
+                let point = frame.inverse_transform_point(&Point2::new(x, z));
+                Point3::new(point.x, eta, point.y)
+            };
+            closed(&stations, low).into_iter().map(|station| point(station.x, station.z)).collect()
+        };
+        Self::swept([-half_length, half_length].into_iter().map(points).collect())
+    }
+
+    /// Makes the rim of the wheel, before any approach, from −`half_angle` to `half_angle` \[rad\] about the axle, 0 at C. The
+    /// surface departs from the wheel's by at most `tolerance` \[mm\], and the outline is closed above the profile.
+    pub fn wheel(placement: &Placement, half_angle: f64, tolerance: f64) -> Self {
+        let stations = outline(placement.wheel().profile(), tolerance);
+        let high = stations.iter().map(|station| station.z).fold(f64::NEG_INFINITY, f64::max) + BACK;
+        let ring = closed(&stations, high.min(placement.wheel_radius()));
+        let step = (8.0 * tolerance / placement.rolling_radius()).sqrt();
+        let count = (2.0 * half_angle / step).ceil().max(1.0);
+        let turned = |k: usize| {
+            let psi = half_angle * (2.0 * k as f64 / count - 1.0);
+            ring.iter().map(|station| wheel_point(placement, station, psi)).collect()
+        };
+        Self::swept((0..=count as usize).map(turned).collect())
+    }
+
+    /// Joins equal outlines, one after the other, by quadrilaterals, and closes both ends.
+    fn swept(outlines: Vec<Vec<Point3<f64>>>) -> Self {
+        let (count, around) = (outlines.len(), outlines.first().map_or(0, Vec::len));
+        let at = |section: usize, k: usize| section * around + k % around;
+        let quad = |section: usize, k: usize| {
+            vec![at(section, k), at(section, k + 1), at(section + 1, k + 1), at(section + 1, k)]
+        };
+        let mut faces: Vec<Vec<usize>> =
+            (1..count).flat_map(|section| (0..around).map(move |k| quad(section - 1, k))).collect();
+        faces.push((0..around).rev().collect());
+        faces.push((0..around).map(|k| at(count - 1, k)).collect());
+        Self { points: outlines.into_iter().flatten().collect(), faces }
+    }
+}
+
+/// Gives the point of the axle in the wheel profile's plane x \[mm\], in the contact frame \[mm\].
+pub fn axle_point(placement: &Placement, x: f64) -> Point3<f64> {
+    wheel_point(placement, &Station { x, z: placement.wheel_radius(), ..Station::AXES }, 0.0)
+}
+
+/// Gives points of a profile from left to right whose chords depart from it by at most `tolerance` \[mm\].
+fn outline(profile: &Profile, tolerance: f64) -> Vec<Station> {
+    let marks = trace(profile, TRACED);
+    let mut out: Vec<Station> = Vec::new();
+    let mut from = 0;
+    for k in 1..marks.len() {
+        let bend = (marks[k].station.angle() - marks[from].station.angle()).abs();
+        // The sagitta of an arc is its chord by an eighth of its angle.
+        let leaves = (marks[k].s - marks[from].s) * bend / 8.0 > tolerance;
+        if out.is_empty() || leaves {
+            out.push(marks[k - 1].station);
+            from = k - 1;
+        }
+    }
+    out.extend(marks.last().map(|last| last.station));
+    out
+}
+
+/// Closes an outline by two corners at the height z \[mm\].
+fn closed(stations: &[Station], z: f64) -> Vec<Station> {
+    let corner = |station: &Station| Station { z, ..*station };
+    let ends = [stations.last(), stations.first()].into_iter().flatten().map(corner);
+    stations.iter().copied().chain(ends).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Result;
+    use crate::placement::Pair;
+    use crate::profile::standards;
+
+    #[test]
+    fn shells_are_closed_and_follow_their_bodies() -> Result<()> {
+        let pair = Pair::new(standards::rail("60E1")?, standards::wheel("S1002")?, 460.0)?;
+        let placement = pair.placed(0.0, 0.0, 0.01)?;
+        for shell in [BodyShell::rail(&placement, 100.0, 0.02), BodyShell::wheel(&placement, 0.5, 0.02)] {
+            // Every edge of a closed surface belongs to two faces, once in each direction.
+            let mut edges = std::collections::BTreeMap::new();
+            for face in &shell.faces {
+                for (k, &a) in face.iter().enumerate() {
+                    let b = face[(k + 1) % face.len()];
+                    *edges.entry((a.min(b), a.max(b))).or_insert(0) += if a < b { 1 } else { -1 };
+                }
+            }
+            assert!(edges.values().all(|sum| *sum == 0), "{} edges", edges.len());
+            assert!(shell.points.len() > 50);
+        }
+        // What the outline of the wheel leaves out is within the tolerance.
+        let wheel = placement.wheel().profile();
+        let outline = outline(wheel, 0.02);
+        for mark in trace(wheel, 0.1) {
+            let away = outline.windows(2).map(|ends| {
+                let (a, b) = (ends[0], ends[1]);
+                let (dx, dz) = (b.x - a.x, b.z - a.z);
+                let share = ((mark.station.x - a.x) * dx + (mark.station.z - a.z) * dz) / (dx * dx + dz * dz);
+                let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
+                (mark.station.x - a.x - share * dx).hypot(mark.station.z - a.z - share * dz)
+            });
+            let nearest = away.fold(f64::INFINITY, f64::min);
+            assert!(nearest < 0.04, "{mark:?}: {nearest}");
+        }
+        Ok(())
+    }
+}
