@@ -59,6 +59,7 @@
 
 #[cfg(feature = "files")]
 pub mod case;
+pub mod conformal;
 pub mod docs;
 pub mod error;
 pub mod export;

@@ -1,0 +1,20 @@
+//! Conformal contact: the gap t(σ, η) along the rail's own turning normal, over the rail's surface unrolled by its arc length σ.
+//!
+//! The definition and the derivation are in [`crate::docs::conformal`].
+//!
+//! | What | File |
+//! |---|---|
+//! | the rail by its arc length σ | `arc_length`: [`RailArcLength`] |
+//! | where a line meets a segment of the wheel's profile | `meeting` |
+//! | the line along the normal and its column over the wheel | `ray` |
+//! | t, α and both normals at single points | `gap`: [`NormalGap`] |
+//! | t(σ, ·) as polynomials, grids | `columns`: [`NormalGap::fill`] |
+
+mod arc_length;
+mod columns;
+mod gap;
+mod meeting;
+mod ray;
+
+pub use arc_length::{RailArcLength, RailPoint};
+pub use gap::{GapPoint, NormalGap};
