@@ -4,12 +4,14 @@
 
 mod analysis;
 mod columns;
+mod conformal;
 mod contact;
 mod curves;
 mod drawn;
 mod files;
 mod grids;
 mod input;
+mod on_rail;
 mod places;
 mod run;
 mod site;
@@ -18,6 +20,7 @@ mod wheel;
 
 pub use analysis::{Analysis, Timings, check_method};
 pub use columns::Columns;
+pub use conformal::Conformal;
 pub use contact::{EllipseUnder, PlacedContact};
 pub use curves::{MOST_DRAWN, ascending, curves};
 pub use drawn::patch_picture;

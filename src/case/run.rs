@@ -1,6 +1,7 @@
 //! A case and everything computed from it.
 
 use super::analysis::Analysis;
+use super::conformal::turning_warning;
 use super::grids::check_memory;
 use super::input::{Case, Place};
 use super::site::{Site, sites};
@@ -107,6 +108,8 @@ impl Run {
         if part.analysis.patch.as_ref().is_some_and(Patch::cut_by_window) {
             out.push("the window of the grid cuts the patch: solvers would overestimate the pressure".into());
         }
+        let Analysis { patch, conformal, .. } = &part.analysis;
+        out.extend(turning_warning(&part.site, patch.as_ref(), conformal.as_ref()));
         let Plan { error, tolerance, .. } = part.analysis.plan;
         if error.is_nan() || error > tolerance {
             out.push(format!(

@@ -26,31 +26,35 @@ const FEW_POINTS: usize = 65536;
 /// Number of coefficients that the first column of a block begins with.
 const FIRST_COUNT: usize = 4;
 
-impl NormalGap<'_> {
-    /// Writes t \[mm\] over a grid of σ and η, at index i_σ · n_η + i_η; NaN where t is undefined. The tolerance \[mm\] is
-    /// that of s: at and below [`crate::separation::FULL_PRECISION`] all digits near C are kept. Returns the largest
-    /// truncation error \[mm\] that was measured meanwhile.
-    ///
-    /// It runs on the threads of the current rayon pool. Any number of threads gives the same bits.
-    pub fn fill(&self, sigma: &[f64], axis: &EtaAxis, tolerance: f64, out: &mut [f64]) -> f64 {
-        let length = axis.eta().len();
-        if length == 0 {
-            return 0.0;
-        }
-        let demand = Demand::for_tolerance(tolerance).on_truncation();
-        let block = |(out, sigma): (&mut [f64], &[f64])| {
-            let mut columns = Columns::new(self, axis, demand);
-            for (out, &sigma) in out.chunks_mut(length).zip(sigma) {
-                columns.fill(sigma, out);
-            }
-            columns.error
-        };
-        if out.len() <= FEW_POINTS {
-            return out.chunks_mut(BLOCK * length).zip(sigma.chunks(BLOCK)).map(block).fold(0.0, f64::max);
-        }
-        let blocks = out.par_chunks_mut(BLOCK * length).zip(sigma.par_chunks(BLOCK));
-        blocks.map(block).reduce(|| 0.0, f64::max)
+/// Writes t \[mm\] over a grid of σ and η, at index i_σ · n_η + i_η; NaN where t is undefined. The tolerance \[mm\] is that
+/// of s: at and below [`crate::separation::FULL_PRECISION`] all digits near C are kept. Returns the largest truncation error
+/// \[mm\] that was measured meanwhile.
+///
+/// It runs on the threads of the current rayon pool. Any number of threads gives the same bits.
+pub fn fill_normal_gap(
+    gap: &NormalGap<'_>,
+    sigma: &[f64],
+    axis: &EtaAxis,
+    tolerance: f64,
+    out: &mut [f64],
+) -> f64 {
+    let length = axis.eta().len();
+    if length == 0 {
+        return 0.0;
     }
+    let demand = Demand::for_tolerance(tolerance).on_truncation();
+    let block = |(out, sigma): (&mut [f64], &[f64])| {
+        let mut columns = Columns::new(gap, axis, demand);
+        for (out, &sigma) in out.chunks_mut(length).zip(sigma) {
+            columns.fill(sigma, out);
+        }
+        columns.error
+    };
+    if out.len() <= FEW_POINTS {
+        return out.chunks_mut(BLOCK * length).zip(sigma.chunks(BLOCK)).map(block).fold(0.0, f64::max);
+    }
+    let blocks = out.par_chunks_mut(BLOCK * length).zip(sigma.par_chunks(BLOCK));
+    blocks.map(block).reduce(|| 0.0, f64::max)
 }
 
 /// The columns of one block.

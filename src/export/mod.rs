@@ -6,6 +6,7 @@
 
 mod block;
 mod csv;
+mod curved;
 mod deck;
 mod legacy;
 mod model;
@@ -15,8 +16,12 @@ mod picture;
 mod vtk;
 mod vts;
 
-pub use csv::{boundary_csv, interpen_csv};
-pub use deck::{ContactSettings, Deck, Prescribed, conform_wrp, contact_inp, countact_wrp, separation_wrp};
+pub use csv::{boundary_csv, interpen_csv, interpen_sigma_csv};
+pub use curved::CurvedFields;
+pub use deck::{
+    ContactSettings, CurvedDeck, Deck, Prescribed, conform_curved_wrp, conform_wrp, contact_curved_inp,
+    contact_inp, countact_wrp, separation_wrp,
+};
 pub use legacy::separation_vtk;
 pub use model::{Frame, GridFields, Header, Interval, Loop, QuadMesh, SurfaceMesh};
 pub use netcdf::NetCdf;
@@ -26,7 +31,7 @@ pub use picture::{
     jumps,
 };
 pub use vtk::{boundary_vtp, collection_pvd, patch_vtu, surface_vtp};
-pub use vts::{rail_vts, separation_vts, wheel_vts};
+pub use vts::{conformal_vts, rail_vts, separation_vts, wheel_vts};
 
 /// The ParaView script that opens its own folder: coloured separation, the boundary, gap vectors.
 pub const VIEW_SCRIPT: &str = include_str!("view.py");
