@@ -3,9 +3,11 @@
 use crate::common::{folder, profile};
 use serde::Deserialize;
 use wheelrail::Evaluator;
-use wheelrail::conformal::{GapPoint, NormalGap, fill_normal_gap};
+use wheelrail::case::{Run, SILENT};
+use wheelrail::conformal::{ConformalPatch, GapPoint, NormalGap, fill_normal_gap};
+use wheelrail::scene::{self, Scene};
 use wheelrail::separation::{EtaAxis, FULL_PRECISION};
-use wheelrail::{Arc, Half, Pair, Placement};
+use wheelrail::{Arc, Half, Pair, Patch, Placement, Window};
 use wheelrail_report::reference::{ReferenceScene, ReferenceSegment, exact};
 
 /// What is promised to users; no row of [`BOUNDS`] may be looser.
@@ -270,4 +272,110 @@ fn both_normals_are_those_of_the_surfaces() {
             assert!((normal.into_inner() - other.into_inner()).norm() < 1e-9, "{normal:?} {other:?}");
         }
     }
+}
+
+#[test]
+fn on_a_flat_rail_the_conformal_patch_is_the_patch() {
+    let line = Arc::line([-30.0, 0.0], [30.0, 0.0]).and_then(profile).expect("a line");
+    let tread =
+        Arc::about([0.0, 330.0], 330.0, Half::Lower, [-60.0, 60.0]).and_then(profile).expect("an arc");
+    let pair = Pair::new(line, tread, 460.0).expect("a pair");
+    for skew in [0.0, 0.03] {
+        let placement = pair.placed(0.0, 0.0, skew).expect("a placement");
+        let window = Window { xi: [-12.0, 12.0], eta: [-14.0, 14.0] };
+        let found = ConformalPatch::new(&NormalGap::new(&placement), 0.05, &window);
+        let patch = Patch::new(&placement, 0.05, &Window::UNBOUNDED);
+        let ([found], [part]) = (&found.components[..], &patch.components[..]) else { panic!("{found:?}") };
+        assert!((found.area / part.area - 1.0).abs() < 1e-8, "{} {}", found.area, part.area);
+        for end in [0, 1] {
+            assert!(
+                (found.sigma[end] - part.xi[end]).abs() < 1e-7
+                    && (found.eta[end] - part.eta[end]).abs() < 2e-3
+            );
+        }
+        assert!(!found.cut && found.angle == [0.0; 2]);
+    }
+}
+
+#[test]
+fn a_conformal_patch_has_its_tips_where_the_gap_is_closed() {
+    let placement = arcs(13.0, 13.5, 460.0, 0.0);
+    let (gap, delta) = (NormalGap::new(&placement), 0.08);
+    let window = Window { xi: [-11.0, 11.0], eta: [-14.0, 14.0] };
+    let patch = ConformalPatch::new(&gap, delta, &window);
+    let [part] = &patch.components[..] else { panic!("{patch:?}") };
+    for tip in part.sigma {
+        assert!((gap.gap(tip, 0.0) - delta * gap.angle(tip).cos()).abs() < 1e-14);
+    }
+    assert!(
+        (part.sigma[0] + part.sigma[1]).abs() < 1e-9 && (part.angle[1] - part.sigma[1] / 13.0).abs() < 1e-12
+    );
+    // Cells of a fine grid.
+    let step = 0.02;
+    let axis =
+        |reach: f64| (0..).map(move |k| step * (f64::from(k) + 0.5) - reach).take_while(move |v| *v < reach);
+    let (sigma, eta): (Vec<f64>, Vec<f64>) = (axis(11.0).collect(), axis(12.0).collect());
+    let mut t = vec![0.0; sigma.len() * eta.len()];
+    fill_normal_gap(&gap, &sigma, &EtaAxis::new(&eta), 1e-9, &mut t);
+    let inside = t.chunks(eta.len()).zip(&sigma).map(|(column, &sigma)| {
+        let target = delta * gap.angle(sigma).cos();
+        column.iter().filter(|&&t| t < target).count()
+    });
+    let cells = inside.sum::<usize>() as f64 * step * step;
+    assert!((cells / patch.area() - 1.0).abs() < 1e-3, "{cells} {}", patch.area());
+    let wider = ConformalPatch::new(&gap, 0.1, &window);
+    assert!(wider.area() > patch.area() && wider.components[0].sigma[1] > part.sigma[1]);
+    // A window that is too small cuts the patch.
+    let small = Window { xi: [-11.0, 2.0], eta: [-14.0, 14.0] };
+    assert!(ConformalPatch::new(&gap, delta, &small).components[0].cut);
+}
+
+const CORNER: &str = "rail.profile = \"60E1\"\nwheel = { profile = \"S1002\", radius = 460.0 }\n\
+                      contact = { rail_x = -32.5, wheel_x = -36.5 }\npatch = { approach = 0.08 }\n";
+
+fn case(rest: &str) -> wheelrail::Result<Run> {
+    let scene: Scene = scene::parse(&format!("{CORNER}{rest}"), false)?;
+    Run::new(scene::resolve(&scene, ".".as_ref(), "corner")?, SILENT)
+}
+
+#[test]
+fn a_run_over_the_plane_recommends_the_rail_where_the_normal_turns() {
+    let warnings = case("").expect("a run").warnings();
+    assert!(warnings.iter().any(|text| text.contains("grid.reference = \"rail\"")), "{warnings:?}");
+    let tread = "rail.profile = \"60E1\"\nwheel = { profile = \"S1002\", radius = 460.0 }\n\
+                 contact = { rail_x = 0.0, wheel_x = 0.0 }\npatch = { approach = 0.05 }\n";
+    let scene: Scene = scene::parse(tread, false).expect("a scene");
+    let case = scene::resolve(&scene, ".".as_ref(), "tread").expect("a case");
+    assert_eq!(Run::new(case, SILENT).expect("a run").warnings(), [""; 0]);
+}
+
+#[test]
+fn a_run_over_the_rail_has_both_gaps_at_the_same_points() {
+    let run = case("grid = { reference = \"rail\" }\n").expect("a run");
+    assert!(!run.warnings().iter().any(|text| text.contains("grid.reference")), "{:?}", run.warnings());
+    let part = &run.parts[0];
+    let (grid, conformal) = (&part.site.grid, part.analysis.conformal.as_ref().expect("a normal gap"));
+    let gap = NormalGap::new(&part.site.contact.placement);
+    for (i, at) in conformal.rail.iter().enumerate() {
+        assert_eq!(at.xi, grid.xi[i]);
+        for (j, &eta) in grid.eta.iter().enumerate().step_by(5) {
+            let (found, t) = (conformal.gap[i * grid.eta.len() + j], gap.gap(at.sigma, eta));
+            assert!((found - t).abs() < 1e-13 || (found.is_nan() && t.is_nan()), "{at:?} {eta}: {found} {t}");
+        }
+    }
+    let patch = conformal.patch.as_ref().expect("a patch");
+    assert!(patch.components.iter().all(|part| !part.cut), "{patch:?}");
+}
+
+#[test]
+fn bad_input_over_the_rail_is_refused() {
+    let complaint = |rest: &str| case(rest).expect_err("an error").to_string();
+    let beyond = complaint(
+        "grid = { reference = \"rail\", xi = { from = -40.0, to = 4.0, n = 9 }, eta = { values = [0.0, 1.0] } }\n",
+    );
+    assert!(beyond.contains("grid: xi: found -40; expected σ within"), "{beyond}");
+    let method = complaint("grid = { reference = \"rail\", method = \"pointwise\" }\n");
+    assert!(method.contains("grid: method: found pointwise"), "{method}");
+    let word = complaint("grid = { reference = \"wheel\" }\n");
+    assert!(word.contains("wheel"), "{word}");
 }
