@@ -22,6 +22,7 @@
 //! | INSEP, (6.1)–(6.12) | s(ξ, η) and unit normals | [`Evaluator`]; over grids [`separation::plan`](fn@separation::plan), [`separation::Plan`] |
 //! | (6.13)–(6.16) | the Report's own iteration | [`separation::Method::ReportNewton`] |
 //! | INTERPEN, (7.1)–(7.3) | the boundary s = δ | [`patch::Slicer`], [`Patch`] |
+//! | CONFORM | the gap along the turning normal | [`conformal`] |
 //! | CONFORM, COUNTACT | the solvers that read all this | [`export::Deck`], [`mesh`] |
 //!
 //! The Report chooses contact points; [`search`] finds them. [`measured`] reads profiles from instruments' files.
@@ -51,7 +52,8 @@
 //! gap, rise across, and under yaw climb along; of s itself where bodies do not overlap), absolute error below
 //! 2e-12 mm (× R_max/300 mm for radii beyond 300 mm) elsewhere, |Δη| ≤ (R/η) × that on the boundary: checked against
 //! 60-digit values on every test run, and against triangle meshes of another library by `wheelrail check`. Not
-//! guaranteed: anything elastic. See [`docs::numerics`] for the formulas and [`docs::errata`] for what differs from
+//! guaranteed: anything elastic. The same bounds hold for the normal gap t of
+//! [`conformal`]. See [`docs::numerics`] and [`docs::conformal`] for the formulas and [`docs::errata`] for what differs from
 //! the Report.
 
 #![deny(missing_docs, rustdoc::broken_intra_doc_links)]
@@ -59,6 +61,7 @@
 
 #[cfg(feature = "files")]
 pub mod case;
+pub mod conformal;
 pub mod docs;
 pub mod error;
 pub mod export;

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
+use super::conformal::Conformal;
 use super::input::Question;
 use super::site::Site;
 use crate::error::{Error, Result};
@@ -28,6 +29,8 @@ pub struct Timings {
     pub patch_s: f64,
     /// Boundary-fitted mesh.
     pub mesh_s: f64,
+    /// The normal gap and its patch; next to 0 where it is not asked for.
+    pub conformal_s: f64,
 }
 
 /// The separation over a grid and the patch in its window.
@@ -41,6 +44,8 @@ pub struct Analysis {
     pub patch: Option<Patch>,
     /// The boundary-fitted mesh over the patch.
     pub strips: Option<StripMesh>,
+    /// The normal gap over the rail's surface, where it is asked for.
+    pub conformal: Option<Conformal>,
     /// Where the time went.
     pub timings: Timings,
 }
@@ -64,14 +69,17 @@ impl Analysis {
         let cut = Instant::now();
         let mesh = |patch: &Patch| StripMesh::new(placement, patch, StripCounts::default());
         let strips = patch.as_ref().map(mesh).transpose()?;
+        let meshed = Instant::now();
+        let conformal = Conformal::new(site, question.tolerance);
         let timings = Timings {
             load_s: site.contact.load_s,
             plan_s: (planned - start).as_secs_f64(),
             grid_s: (filled - planned).as_secs_f64(),
             patch_s: (cut - filled).as_secs_f64(),
-            mesh_s: cut.elapsed().as_secs_f64(),
+            mesh_s: (meshed - cut).as_secs_f64(),
+            conformal_s: meshed.elapsed().as_secs_f64(),
         };
-        Ok(Self { separation, plan, patch, strips, timings })
+        Ok(Self { separation, plan, patch, strips, conformal, timings })
     }
 }
 

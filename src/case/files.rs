@@ -8,13 +8,15 @@ use rayon::prelude::*;
 use super::drawn::{Drawn, loops_of};
 use super::in_place::write_in_place;
 use super::input::{OutputFormat, Outputs};
+use super::on_rail::OnRail;
 use super::run::{COMPUTING, Part, Run, Tell};
 use super::summary::summary;
 use crate::error::{Error, Result};
 use crate::export::{
-    ContactSettings, Deck, Frame, GridFields, Header, Interval, Loop, NetCdf, PatchPicture, Prescribed,
-    QuadMesh, SurfaceMesh, VIEW_SCRIPT, array_npy, boundary_csv, boundary_vtp, conform_wrp, contact_inp,
-    countact_wrp, interpen_csv, patch_vtu, rail_vts, separation_vtk, separation_vts, separation_wrp,
+    ContactSettings, CurvedDeck, CurvedFields, Deck, Frame, GridFields, Header, Interval, Loop, NetCdf,
+    PatchPicture, Prescribed, QuadMesh, SurfaceMesh, VIEW_SCRIPT, array_npy, boundary_csv, boundary_vtp,
+    conform_curved_wrp, conform_wrp, conformal_vts, contact_curved_inp, contact_inp, countact_wrp,
+    interpen_csv, interpen_sigma_csv, patch_vtu, rail_vts, separation_vtk, separation_vts, separation_wrp,
     surface_vtp, wheel_vts,
 };
 use crate::files::{Folder, FolderPart};
@@ -83,9 +85,24 @@ fn write_part(
     let axes = &part.site.grid;
     let grid = GridFields::new(&axes.xi, &axes.eta, &part.analysis.separation, &rail.height, &rail.normal)?;
     let creepages = run.creepages(part)?;
-    let deck = possible(outputs, "decks", &OutputFormat::DECKS, || Deck::new(&header, &grid), &mut skipped)?;
+    let on_rail = part.analysis.conformal.as_ref().map(|conformal| OnRail::new(&part.site, conformal));
+    let curved = on_rail.as_ref().map(OnRail::fields).transpose()?;
+    let (decks_of, netcdf_of) = match &curved {
+        Some(_) => (&[][..], &[][..]),
+        None => (&OutputFormat::DECKS[..], &[OutputFormat::Netcdf][..]),
+    };
+    let deck = possible(outputs, "decks", decks_of, || Deck::new(&header, &grid), &mut skipped)?;
     let netcdf = || NetCdf::new(&header, &grid);
-    let netcdf = possible(outputs, "separation.nc", &[OutputFormat::Netcdf], netcdf, &mut skipped)?;
+    let netcdf = possible(outputs, "separation.nc", netcdf_of, netcdf, &mut skipped)?;
+    let curved_deck = match &curved {
+        Some(curved) => {
+            OnRail::refuse(outputs, &mut skipped)?;
+            let formats = [OutputFormat::Conform, OutputFormat::Contact];
+            let deck = || CurvedDeck::new(&header, curved);
+            possible(outputs, "conform.wrp, contact.inp", &formats, deck, &mut skipped)?
+        }
+        None => None,
+    };
     let bodies = surfaces_around(outputs, part, &mut skipped)?;
     let loops = loops(part);
     let strips = part.analysis.strips.as_ref().map(quads);
@@ -100,6 +117,12 @@ fn write_part(
     }
     if let Some(netcdf) = &netcdf {
         stream(&mut jobs, "separation.nc", move |file| netcdf.write(file));
+    }
+    if let (Some(on_rail), Some(curved)) = (&on_rail, &curved) {
+        surface_of_rail(&mut jobs, outputs, &header, (on_rail, curved));
+    }
+    if let Some(deck) = &curved_deck {
+        curved_decks(&mut jobs, outputs, deck, contact_settings(run, part, creepages));
     }
     if let Some(deck) = &deck {
         let settings = contact_settings(run, part, creepages);
@@ -355,6 +378,43 @@ fn decks<'a>(
     }
     if let (true, Some(settings)) = (run.case.outputs.any(&[OutputFormat::Contact]), settings) {
         stream(jobs, "contact.inp", move |file| contact_inp(deck, &settings, file));
+    }
+}
+
+/// Adds the table, the arrays and the grid over the rail's surface.
+fn surface_of_rail<'a>(
+    jobs: &mut Vec<Job<'a>>,
+    outputs: &Outputs,
+    header: &'a Header,
+    (on_rail, curved): (&'a OnRail<'a>, &'a CurvedFields<'a>),
+) {
+    bytes(jobs, "interpen_sigma.csv", || Ok(interpen_sigma_csv(&on_rail.intervals()).into_bytes()));
+    if outputs.any(&[OutputFormat::Npy]) {
+        let (n, m) = (on_rail.sigma.len() as u64, curved.grid().eta().len() as u64);
+        let mut add = |name: &'static str, shape: Vec<u64>, values: &'a [f64]| {
+            stream(jobs, name, move |file| array_npy(file, &shape, values));
+        };
+        add("sigma.npy", vec![n], &on_rail.sigma);
+        add("angle.npy", vec![n], &on_rail.angle);
+        add("normal_gap.npy", vec![n, m], curved.grid().separation());
+    }
+    if outputs.any(&[OutputFormat::Vtk]) {
+        stream(jobs, "conformal.vts", move |file| conformal_vts(file, header, curved));
+    }
+}
+
+/// Adds the decks over the rail's surface.
+fn curved_decks<'a>(
+    jobs: &mut Vec<Job<'a>>,
+    outputs: &Outputs,
+    deck: &'a CurvedDeck<'a>,
+    settings: Option<ContactSettings>,
+) {
+    if outputs.any(&[OutputFormat::Conform]) {
+        stream(jobs, "conform.wrp", move |file| conform_curved_wrp(deck, file));
+    }
+    if let (true, Some(settings)) = (outputs.any(&[OutputFormat::Contact]), settings) {
+        stream(jobs, "contact.inp", move |file| contact_curved_inp(deck, &settings, file));
     }
 }
 

@@ -2,8 +2,10 @@
 
 use super::input::{AskedAxes, OutputFormat, Outputs};
 use super::places::{MOST_PARTS, Placed};
+use crate::conformal::{RailArcLength, Reference};
 use crate::error::{Error, Result};
 use crate::mesh::{Axes, GridGroup, MOST_POINTS, groups};
+use crate::placement::Placement;
 
 /// The axes of one grid.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,6 +16,8 @@ pub struct Grid {
     pub eta: Vec<f64>,
     /// What the user should know of automatic axes.
     pub warning: Option<String>,
+    /// σ \[mm\], ascending, where gaps are given over the rail's surface; ξ are then those of its points.
+    pub sigma: Option<Vec<f64>>,
 }
 
 impl Grid {
@@ -30,9 +34,14 @@ impl Grid {
 /// # Errors
 /// Automatic axes without a patch; a patch of more parts than anybody looks through; cells that do not fit into memory.
 pub(super) fn grids(asked: &AskedAxes, place: &Placed) -> Result<Vec<Grid>> {
-    let AskedAxes { xi, eta, spacing, merge } = asked;
+    let AskedAxes { xi, eta, spacing, merge, reference } = asked;
+    let unrolled = |grid: Grid| match reference {
+        Reference::Plane => Ok(grid),
+        Reference::Rail => on_rail(grid, &place.contact.placement, xi.is_some()),
+    };
     if let (Some(xi), Some(eta)) = (xi, eta) {
-        return Ok(vec![Grid { xi: xi.clone(), eta: eta.clone(), warning: None }]);
+        let grid = Grid { xi: xi.clone(), eta: eta.clone(), warning: None, sigma: None };
+        return Ok(vec![unrolled(grid)?]);
     }
     let patch = place.contact.whole_patch();
     let mut groups = patch.map_or_else(Vec::new, |patch| groups(patch, *merge, *spacing));
@@ -59,9 +68,40 @@ pub(super) fn grids(asked: &AskedAxes, place: &Placed) -> Result<Vec<Grid>> {
         let automatic = group.axes(*spacing)?;
         let warning = stretched(&automatic);
         let (xi, eta) = (xi.clone().unwrap_or(automatic.xi), eta.clone().unwrap_or(automatic.eta));
-        Ok(Grid { xi, eta, warning })
+        unrolled(Grid { xi, eta, warning, sigma: None })
     };
     groups.iter().map(grid).collect()
+}
+
+/// Lays the first axis of a grid along the rail's surface. Given values are σ already; an automatic axis is laid anew with its
+/// own step over the arc between its ends, as far as the surface reaches.
+///
+/// # Errors
+/// Values beyond the part of the rail that σ covers; a rail without a surface at C.
+fn on_rail(grid: Grid, placement: &Placement, given: bool) -> Result<Grid> {
+    let rail = RailArcLength::new(placement);
+    let beyond = |found: String, [low, high]: [f64; 2]| {
+        let expected = format!("σ within [{low}, {high}] mm, where the rail's surface is single-valued");
+        let advice =
+            "it ends, overhangs or is covered by another part of the rail beyond: take a smaller range";
+        Error::new("grid: xi", found, expected, advice)
+    };
+    let Some(reach) = rail.reach() else { return Err(beyond("no surface at C".into(), [f64::NAN; 2])) };
+    let sigma = if given { grid.xi } else { arc_axis(&rail, reach, &grid.xi) };
+    let point =
+        |&sigma: &f64| rail.point(sigma).map(|at| at.xi).ok_or_else(|| beyond(sigma.to_string(), reach));
+    let xi = sigma.iter().map(point).collect::<Result<Vec<_>>>()?;
+    Ok(Grid { xi, sigma: Some(sigma), ..grid })
+}
+
+/// Lays an axis of equal steps along the rail over the same part as an axis of ξ, on the lattice about C.
+fn arc_axis(rail: &RailArcLength<'_>, reach: [f64; 2], xi: &[f64]) -> Vec<f64> {
+    let (Some(&first), Some(&last)) = (xi.first(), xi.last()) else { return Vec::new() };
+    let step = (last - first) / (xi.len().max(2) - 1) as f64;
+    let end = |xi: f64, end: f64| Some(rail.sigma(xi)).filter(|sigma| !sigma.is_nan()).unwrap_or(end);
+    let from = (end(first, reach[0]) / step).ceil() as i64;
+    let to = (end(last, reach[1]) / step).floor() as i64;
+    (from..=to).map(|k| k as f64 * step).collect()
 }
 
 fn stretched(axes: &Axes) -> Option<String> {

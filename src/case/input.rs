@@ -6,6 +6,7 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::conformal::Reference;
 use crate::load::{Elastic, effective_modulus};
 use crate::measured::Record;
 use crate::placement::Motion;
@@ -196,6 +197,8 @@ pub struct AskedAxes {
     pub spacing: Option<[f64; 2]>,
     /// Parts of the patch closer than this \[mm\] share a grid; 0 merges none.
     pub merge: f64,
+    /// The surface over which gaps are given; with the rail `xi` holds σ.
+    pub reference: Reference,
 }
 
 /// The files that are written besides the tables and the picture.

@@ -4,6 +4,7 @@
 
 mod analysis;
 mod columns;
+mod conformal;
 mod contact;
 mod curves;
 mod doubts;
@@ -12,6 +13,7 @@ mod files;
 mod grids;
 mod in_place;
 mod input;
+mod on_rail;
 mod places;
 mod run;
 mod site;
@@ -20,6 +22,7 @@ mod wheel;
 
 pub use analysis::{Analysis, Timings, check_method};
 pub use columns::Columns;
+pub use conformal::Conformal;
 pub use contact::{EllipseUnder, PlacedContact};
 pub use curves::{MOST_DRAWN, ascending, curves};
 pub use drawn::patch_picture;

@@ -1,6 +1,7 @@
 //! A case and everything computed from it.
 
 use super::analysis::Analysis;
+use super::conformal::turning_warning;
 use super::doubts::{doubts_of, doubts_of_placing};
 use super::grids::check_memory;
 use super::input::{Case, Place};
@@ -160,6 +161,8 @@ impl Part {
         if self.analysis.patch.as_ref().is_some_and(Patch::cut_by_window) {
             out.push("the window of the grid cuts the patch: solvers would overestimate the pressure".into());
         }
+        let Analysis { patch, conformal, .. } = &self.analysis;
+        out.extend(turning_warning(&self.site, patch.as_ref(), conformal.as_ref()));
         let Plan { error, tolerance, .. } = self.analysis.plan;
         if error.is_nan() || error > tolerance {
             out.push(format!(

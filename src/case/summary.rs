@@ -3,6 +3,7 @@
 use serde::Serialize;
 use serde_json::{Value, json};
 
+use super::conformal::Conformal;
 use super::in_place;
 use super::input::Case;
 use super::run::{Part, Run};
@@ -90,6 +91,7 @@ pub(super) fn summary(
             "rail": Quality::of_surface(rail),
             "wheel": Quality::of_surface(wheel),
         })),
+        "conformal": analysis.conformal.as_ref().map(Conformal::summary),
         "grid": {
             "n_xi": site.grid.xi.len(),
             "n_eta": site.grid.eta.len(),

@@ -1,5 +1,5 @@
-//! Background: conventions, measured files, the numerics with their derivation, the Report's errata, sweeps, loads, clients,
-//! references.
+//! Background: conventions, measured files, the numerics with their derivation, conformal contact, the Report's errata, sweeps,
+//! loads, clients, references.
 
 #[doc = include_str!("conventions.md")]
 pub mod conventions {}
@@ -9,6 +9,9 @@ pub mod measured_files {}
 
 #[doc = include_str!("numerics.md")]
 pub mod numerics {}
+
+#[doc = include_str!("conformal.md")]
+pub mod conformal {}
 
 #[doc = include_str!("errata.md")]
 pub mod errata {}

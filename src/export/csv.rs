@@ -27,6 +27,16 @@ pub fn interpen_csv(intervals: &[Interval]) -> String {
     text
 }
 
+/// Writes `interpen_sigma.csv`, the same table over the rail's surface, with the columns sigma, xi, eta_min and eta_max: the
+/// interval of η with t ≤ δ cos α for each grid σ inside the conformal patch. Each row is \[σ, ξ, η_min, η_max\] \[mm\].
+pub fn interpen_sigma_csv(rows: &[[f64; 4]]) -> String {
+    let mut text = String::from("sigma,xi,eta_min,eta_max\n");
+    for [sigma, xi, low, high] in rows {
+        let _ = writeln!(text, "{sigma:?},{xi:?},{low:?},{high:?}");
+    }
+    text
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

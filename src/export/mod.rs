@@ -6,6 +6,7 @@
 
 mod block;
 mod csv;
+mod curved;
 mod deck;
 mod in_place;
 mod legacy;
@@ -16,8 +17,12 @@ mod picture;
 mod vtk;
 mod vts;
 
-pub use csv::{boundary_csv, interpen_csv};
-pub use deck::{ContactSettings, Deck, Prescribed, conform_wrp, contact_inp, countact_wrp, separation_wrp};
+pub use csv::{boundary_csv, interpen_csv, interpen_sigma_csv};
+pub use curved::CurvedFields;
+pub use deck::{
+    ContactSettings, CurvedDeck, Deck, Prescribed, conform_curved_wrp, conform_wrp, contact_curved_inp,
+    contact_inp, countact_wrp, separation_wrp,
+};
 pub use in_place::{ContactInPlace, body_vtp, boundaries_vtp, contacts_vtp, patches_vtp, wheelset_vtm};
 pub use legacy::separation_vtk;
 pub use model::{Frame, GridFields, Header, Interval, Loop, QuadMesh, SurfaceMesh};
@@ -28,7 +33,7 @@ pub use picture::{
     jumps,
 };
 pub use vtk::{boundary_vtp, collection_pvd, patch_vtu, surface_vtp};
-pub use vts::{rail_vts, separation_vts, wheel_vts};
+pub use vts::{conformal_vts, rail_vts, separation_vts, wheel_vts};
 
 /// The ParaView script that opens its own folder: coloured separation, the boundary, gap vectors.
 pub const VIEW_SCRIPT: &str = include_str!("view.py");

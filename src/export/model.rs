@@ -204,7 +204,7 @@ pub(super) fn known(value: f64) -> f64 {
     if value.is_nan() { 0.0 } else { value }
 }
 
-fn even_step(format: &str, axis: &str, values: &[f64]) -> Result<f64> {
+pub(super) fn even_step(format: &str, axis: &str, values: &[f64]) -> Result<f64> {
     let advice = format!("give grid.{axis} as from, to, n, or leave {format} out of output.formats");
     let (&[first, ..], &[.., last]) = (values, values) else {
         return Err(Error::new(format!("grid.{axis}"), "no points", "at least two", advice));

@@ -7,6 +7,7 @@
 //! point. This array is written only if there are such points.
 
 use super::block::{Block, put_bytes, put_f64, put_vectors};
+use super::curved::CurvedFields;
 use super::model::{GridFields, Header, known, plain};
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -64,7 +65,40 @@ pub fn separation_vts(sink: &mut dyn Write, header: &Header, grid: &GridFields) 
         }),
         Array::byte("mask", |i| grid.mask(i)),
     ];
-    structured_grid(sink, header, grid, rail_points(grid), arrays)
+    structured_grid(sink, header, grid, "separation", rail_points(grid), arrays)
+}
+
+/// Writes `conformal.vts`: the rail's surface over σ and η with normal_gap t \[mm\], angle α \[rad\], sigma \[mm\],
+/// interpenetration max(δ cos α − t, 0) \[mm\], gap_vector t·n_R \[mm\] (Warp By Vector moves the rail onto the wheel by it),
+/// the outward unit normals of both bodies, and mask (1 where t is defined). Undefined values are NaN; in vectors they are 0.
+///
+/// # Errors
+/// The errors of the sink.
+pub fn conformal_vts(sink: &mut dyn Write, header: &Header, fields: &CurvedFields<'_>) -> io::Result<()> {
+    let (delta, grid) = (header.approach, &fields.grid());
+    let depth = move |t: f64, cos: f64| if t > delta * cos { 0.0 } else { delta * cos - t };
+    let n = grid.eta().len();
+    let repeated = move |value: f64| std::iter::repeat_n(value, n);
+    let arrays = vec![
+        Array::scalar("normal_gap", |i| grid.column(i).iter().copied()),
+        Array::scalar("angle", move |i| repeated(fields.angle(i))),
+        Array::scalar("sigma", move |i| repeated(fields.sigma()[i])),
+        Array::scalar("interpenetration", move |i| {
+            let cos = fields.normal(i)[1];
+            grid.column(i).iter().map(move |&t| depth(t, cos))
+        }),
+        Array::vector("gap_vector", |i| {
+            let [n_xi, n_zeta] = fields.normal(i);
+            grid.column(i).iter().map(move |&t| [known(t * n_xi), 0.0, known(t * n_zeta)])
+        }),
+        Array::vector("rail_normal", |i| {
+            let [n_xi, n_zeta] = fields.normal(i);
+            grid.eta().iter().map(move |_| [n_xi, 0.0, n_zeta])
+        }),
+        Array::vector("wheel_normal", |i| fields.wheel_normals(i).iter().map(|normal| normal.map(known))),
+        Array::byte("mask", |i| grid.mask(i)),
+    ];
+    structured_grid(sink, header, grid, "normal_gap", rail_points(grid), arrays)
 }
 
 /// Writes `rail.vts`: the rail's surface ζ^R(ξ), with the separation as its scalar.
@@ -72,7 +106,7 @@ pub fn separation_vts(sink: &mut dyn Write, header: &Header, grid: &GridFields) 
 /// # Errors
 /// The errors of the sink.
 pub fn rail_vts(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io::Result<()> {
-    structured_grid(sink, header, grid, rail_points(grid), vec![separation_array(grid)])
+    structured_grid(sink, header, grid, "separation", rail_points(grid), vec![separation_array(grid)])
 }
 
 /// Writes `wheel.vts`: the wheel's surface ζ^R + s before any approach, with the separation as its scalar.
@@ -84,7 +118,7 @@ pub fn wheel_vts(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io
         let (xi, rail) = (grid.xi()[i], grid.rail_height()[i]);
         grid.eta().iter().zip(grid.column(i)).map(move |(&eta, s)| [xi, eta, known(rail + s)])
     });
-    structured_grid(sink, header, grid, points, vec![separation_array(grid)])
+    structured_grid(sink, header, grid, "separation", points, vec![separation_array(grid)])
 }
 
 fn rail_points<'a>(grid: &'a GridFields) -> Array<'a> {
@@ -105,13 +139,14 @@ fn structured_grid(
     sink: &mut dyn Write,
     header: &Header,
     grid: &GridFields,
+    scalars: &str,
     points: Array,
     fields: Vec<Array>,
 ) -> io::Result<()> {
     let hidden = hidden(grid);
     let arrays: Vec<_> = [&points].into_iter().chain(&fields).chain(&hidden).collect();
     let mut block = Block::new(sink);
-    block.bytes(head(header, grid, &arrays).as_bytes())?;
+    block.bytes(head(header, grid, scalars, &arrays).as_bytes())?;
     for array in &arrays {
         let column_bytes = grid.eta().len() * array.bytes_per_point;
         block.bytes(&((grid.xi().len() * column_bytes) as u64).to_le_bytes())?;
@@ -123,8 +158,8 @@ fn structured_grid(
     block.finish()
 }
 
-/// Returns everything up to the first appended byte; `arrays[0]` are the points.
-fn head(header: &Header, grid: &GridFields, arrays: &[&Array]) -> String {
+/// Returns everything up to the first appended byte; `arrays[0]` are the points, `scalars` names the array that is coloured by.
+fn head(header: &Header, grid: &GridFields, scalars: &str, arrays: &[&Array]) -> String {
     let extent = format!("0 {} 0 {} 0 0", grid.eta().len() - 1, grid.xi().len() - 1);
     let mut offset = 0;
     let mut declared = arrays.iter().map(|array| {
@@ -142,7 +177,7 @@ fn head(header: &Header, grid: &GridFields, arrays: &[&Array]) -> String {
         "<?xml version=\"1.0\"?>\n\
          <VTKFile type=\"StructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
          {}  <StructuredGrid WholeExtent=\"{extent}\">\n{}    <Piece Extent=\"{extent}\">\n\
-         \x20     <PointData Scalars=\"separation\">\n{fields}      </PointData>\n\
+         \x20     <PointData Scalars=\"{scalars}\">\n{fields}      </PointData>\n\
          \x20     <Points>\n{points}      </Points>\n\
          \x20   </Piece>\n  </StructuredGrid>\n  <AppendedData encoding=\"raw\">\n   _",
         comment(header),

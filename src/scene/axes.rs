@@ -2,6 +2,7 @@
 
 use super::data::{AxisData, GridData, Spacing};
 use crate::case::AskedAxes;
+use crate::conformal::Reference;
 use crate::error::{Error, Result, finite};
 use crate::mesh::{MOST_ON_AXIS, equal_steps};
 
@@ -15,8 +16,12 @@ const SMALLEST: f64 = 1e-60;
 ///
 /// # Errors
 /// Values that are not finite, not ascending, too many or too near each other; a step that is not positive; a negative
-/// distance; a step or distance beside two given axes.
+/// distance; a step or distance beside two given axes; a method of s for the normal gap.
 pub(super) fn asked_axes(grid: &GridData) -> Result<AskedAxes> {
+    if let (Reference::Rail, Some(method)) = (grid.reference, grid.method) {
+        let (found, expected) = (method.name(), "\"auto\" where grid.reference is \"rail\"");
+        return Err(Error::new("grid: method", found, expected, "remove it: the normal gap has one method"));
+    }
     let (xi, eta) = (axis("grid: xi", &grid.xi)?, axis("grid: eta", &grid.eta)?);
     let (spacing, merge) = (grid.spacing.map(steps).transpose()?, distance(grid.merge.unwrap_or(0.0))?);
     let automatic = [("spacing", grid.spacing.is_some()), ("merge", grid.merge.is_some())];
@@ -25,7 +30,7 @@ pub(super) fn asked_axes(grid: &GridData) -> Result<AskedAxes> {
             let (place, expected) = (format!("grid: {key}"), format!("`{key}` only with automatic axes"));
             Err(Error::new(place, "a value beside given axes", expected, "remove it"))
         }
-        _ => Ok(AskedAxes { xi, eta, spacing, merge }),
+        _ => Ok(AskedAxes { xi, eta, spacing, merge, reference: grid.reference }),
     }
 }
 

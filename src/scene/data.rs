@@ -8,6 +8,7 @@ use super::motion_data::{FrictionData, MotionData};
 use super::profile_data::ProfileData;
 use super::side_data::SideData;
 use crate::case::{FrameOrigin, OutputFormat};
+use crate::conformal::Reference;
 use crate::search::{Position, Roll};
 use crate::separation::Method;
 
@@ -249,12 +250,21 @@ pub struct GridData {
     /// of its own.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub merge: Option<f64>,
+    /// The surface over which the gap is given: "plane", the tangent plane at C, or "rail", the rail's own surface. With "rail"
+    /// the values of `xi` are arc lengths σ along the rail from C, and the normal gap is written besides s.
+    #[serde(skip_serializing_if = "is_plane")]
+    pub reference: Reference,
     /// Absolute tolerance on s, mm.
     pub tolerance: f64,
     /// Method of the accuracy ladder. "auto" takes the cheapest one within the tolerance.
     #[serde(with = "method_or_auto")]
     #[schemars(schema_with = "method_or_auto::schema")]
     pub method: Option<Method>,
+}
+
+// serde prescribes the reference to the value.
+fn is_plane(reference: &Reference) -> bool {
+    *reference == Reference::Plane
 }
 
 impl Default for GridData {
@@ -264,6 +274,7 @@ impl Default for GridData {
             eta: AxisData::Word(Auto::Auto),
             spacing: None,
             merge: None,
+            reference: Reference::Plane,
             tolerance: 1e-12,
             method: None,
         }

@@ -92,7 +92,7 @@ impl EtaAxis {
 
 /// Writes the mirror image of a column's end to its first `count` values; `count` is at most half of the column.
 #[inline(always)]
-pub(super) fn mirror(column: &mut [f64], count: usize) {
+pub(crate) fn mirror(column: &mut [f64], count: usize) {
     let (left, right) = column.split_at_mut(count);
     let right = &right[right.len() - count..];
     let (lines, inner_left) = left.as_chunks_mut::<LINE>();

@@ -1,7 +1,7 @@
 //! The accuracy that s must have, and the size below which a quantity counts as rounding.
 
 /// Share of a quantity below which a part of it counts as rounding. Further coefficients would not lower its error.
-pub(super) const ROUNDING_LEVEL: f64 = 4.0 * f64::EPSILON;
+pub(crate) const ROUNDING_LEVEL: f64 = 4.0 * f64::EPSILON;
 
 /// Share of the absolute demand that truncation may use. The rest is for rounding, and for places between the samples of a
 /// plan.
@@ -36,7 +36,7 @@ impl Demand {
     }
 
     /// Returns the demand on truncation alone.
-    pub(super) fn on_truncation(self) -> Self {
+    pub(crate) fn on_truncation(self) -> Self {
         Self { absolute: TRUNCATION * self.absolute, ..self }
     }
 
@@ -44,7 +44,7 @@ impl Demand {
     /// rounding. The sagitta \[mm\] of the beginning counts as well, because the rise of a short span is the difference of
     /// larger sagittae.
     #[inline(always)]
-    pub(super) fn allowed(&self, rise: f64, sagitta: f64) -> f64 {
+    pub(crate) fn allowed(&self, rise: f64, sagitta: f64) -> f64 {
         let rise = rise.abs();
         self.absolute.min(self.relative * rise).max(ROUNDING_LEVEL * (rise + sagitta))
     }

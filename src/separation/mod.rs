@@ -26,10 +26,15 @@ mod values;
 pub(crate) mod wheel_surface;
 
 pub use axis::EtaAxis;
+pub(crate) use axis::mirror;
+pub(crate) use columns::horner::{ColumnPolynomial, MOST_COEFFICIENTS, SpanRun};
+pub(crate) use columns::skewed::{SMALL_SHARE, interpolate};
+pub(crate) use demand::ROUNDING_LEVEL;
 pub use demand::{Demand, FULL_PRECISION};
 pub use evaluator::{Evaluator, Normals};
-pub(crate) use gap::midplane_gap;
+pub(crate) use gap::{contact_gap, midplane_gap, skewed_gap};
 pub use grid::{Choice, Method};
 pub use midplane::{MidplaneRow, Transformed, midplane_rows, midplane_table, transformed_parameters};
 pub use plan::{Plan, plan};
 pub use values::Values;
+pub(crate) use wheel_surface::{WheelSurface, sagitta};

@@ -16,7 +16,7 @@ use nalgebra::{Unit, UnitComplex, Vector2, Vector3};
 use crate::numerics::lanes::{Lanes, every, lanes};
 use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
-use crate::profile::{Branch, BranchPoint, BranchPoints, Branches, Piece, Section};
+use crate::profile::{Branch, BranchPoint, BranchPoints, Branches, Piece, Section, Station};
 
 /// Most steps in which a point is found. Each step gains some six digits; a branch that needs more steps is steep there.
 const STEPS: usize = 8;
@@ -39,9 +39,9 @@ pub struct WheelSurface<'a> {
     /// The wheel profile in the contact frame.
     pub section: &'a Section,
     /// Axle distance of C: R − z_C \[mm\].
-    pub(super) axle: f64,
-    cos: f64,
-    pub(super) sin: f64,
+    pub(crate) axle: f64,
+    pub(crate) cos: f64,
+    pub(crate) sin: f64,
 }
 
 /// The part of a column that lies over one branch of the wheel.
@@ -424,17 +424,23 @@ impl<'a> WheelSurface<'a> {
     /// Computes the outward unit normal (towards the rail) in (ξ, η, ζ) at a point with lateral offset η \[mm\].
     pub fn normal(&self, xi: f64, eta: f64, span: &Span, point: &SagittaPoint) -> Unit<Vector3<f64>> {
         let tangent = self.branch(span).station(self.abscissa(xi, point.e));
+        self.normal_at(&tangent, point.w, eta)
+    }
+
+    /// Computes the outward unit normal (towards the rail) in (ξ, η, ζ) from the profile's tangent in the contact frame, at an
+    /// axle distance w and a lateral offset η \[mm\].
+    pub fn normal_at(&self, tangent: &Station, w: f64, eta: f64) -> Unit<Vector3<f64>> {
         // The profile angle is φ = ψ + θ in the wheel's own axes; the meridian plane is turned by atan(η/w).
         let tilt = UnitComplex::from_cos_sin_unchecked(self.cos, self.sin);
         let own = tilt * Vector2::new(tangent.cos, tangent.sin);
-        let rho = point.w.hypot(eta);
-        let down = tilt.inverse_transform_vector(&Vector2::new(own.y, -own.x * point.w / rho));
+        let rho = w.hypot(eta);
+        let down = tilt.inverse_transform_vector(&Vector2::new(own.y, -own.x * w / rho));
         Unit::new_unchecked(Vector3::new(down.x, own.x * eta / rho, down.y))
     }
 }
 
 /// Computes e = √(w² + u) − w \[mm\] without cancellation.
 #[inline]
-pub(super) fn sagitta(w: f64, u: f64) -> f64 {
+pub(crate) fn sagitta(w: f64, u: f64) -> f64 {
     u / (w + (w * w + u).sqrt())
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use syn::visit::Visit;
 
 /// Rooms of the library from the bottom up; each may use those before it and itself.
-const ORDER: [&str; 15] = [
+const ORDER: [&str; 16] = [
     "error",
     "numerics",
     "files",
@@ -16,6 +16,7 @@ const ORDER: [&str; 15] = [
     "separation",
     "search",
     "patch",
+    "conformal",
     "load",
     "mesh",
     "export",

@@ -11,6 +11,7 @@
 mod any_grid;
 mod closed_forms;
 mod common;
+mod conformal;
 mod flood_fill;
 mod hard_cases;
 mod independent_check;

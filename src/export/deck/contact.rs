@@ -6,8 +6,8 @@
 //! its input; only its output tells.
 
 use super::super::block::Block;
-use super::number::WIDTH;
-use super::text::{Deck, line};
+use super::number::{Field, WIDTH};
+use super::text::{Deck, Lattice, line};
 use crate::placement::Creepages;
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -55,18 +55,33 @@ impl ContactSettings {
 pub fn contact_inp(deck: &Deck<'_>, settings: &ContactSettings, sink: &mut dyn Write) -> io::Result<()> {
     let mut block = Block::new(sink);
     block.bytes(comments(deck, settings).as_bytes())?;
-    block.bytes(control(deck, settings).as_bytes())?;
+    block.bytes(control(&deck.lattice(), settings, Reference::Plane).as_bytes())?;
     for i in 0..deck.xi.len() {
-        for run in deck.column(i).chunks(PER_LINE) {
-            let room = block.room(run.len() * WIDTH + 1)?;
-            for (place, number) in room.chunks_exact_mut(WIDTH).zip(run) {
-                place.copy_from_slice(number);
-            }
-            room[run.len() * WIDTH] = b'\n';
-        }
+        rows(&mut block, deck.column(i))?;
     }
     block.bytes(b" 0  MODULE\n")?;
     block.finish()
+}
+
+/// Writes the distances of one column of elements.
+pub(super) fn rows(block: &mut Block<'_>, column: &[Field]) -> io::Result<()> {
+    for run in column.chunks(PER_LINE) {
+        let room = block.room(run.len() * WIDTH + 1)?;
+        for (place, number) in room.chunks_exact_mut(WIDTH).zip(run) {
+            place.copy_from_slice(number);
+        }
+        room[run.len() * WIDTH] = b'\n';
+    }
+    Ok(())
+}
+
+/// The surface over which CONTACT's distances are given.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Reference<'a> {
+    /// The tangent plane.
+    Plane,
+    /// A surface that is curved along y, with the lines of its inclinations.
+    Curved(&'a str),
 }
 
 fn comments(deck: &Deck<'_>, settings: &ContactSettings) -> String {
@@ -81,7 +96,7 @@ fn comments(deck: &Deck<'_>, settings: &ContactSettings) -> String {
     lines.iter().map(|line| format!("% {line}\n")).collect()
 }
 
-fn control(deck: &Deck<'_>, settings: &ContactSettings) -> String {
+pub(super) fn control(grid: &Lattice, settings: &ContactSettings, reference: Reference<'_>) -> String {
     let (force, normal) = match settings.normal {
         Prescribed::Force(force) => (1, force),
         Prescribed::Approach(approach) => (0, approach),
@@ -93,7 +108,12 @@ fn control(deck: &Deck<'_>, settings: &ContactSettings) -> String {
         " 3  MODULE\n  20{tangential}{force}00       P-B-T-N-F-S     % N = {force}: {} prescribed\n",
         if force == 1 { "normal force [N]" } else { "approach [mm]" }
     );
-    text += "  022020       L-D-C-M-Z-E\n 0002221       H-G-I-A-O-W-R\n";
+    // The digit C is 2 for a half-space, and 4 for a body whose surface is curved along y.
+    let (influence, inclinations) = match reference {
+        Reference::Plane => (2, ""),
+        Reference::Curved(inclinations) => (4, inclinations),
+    };
+    let _ = write!(text, "  02{influence}020       L-D-C-M-Z-E\n 0002221       H-G-I-A-O-W-R\n");
     text += "   999 100 30 1 1.0e-8           MAXGS MAXIN MAXNR MAXOUT EPS\n";
     // `{:?}` writes every f64 with a point or an exponent, in the shortest form that reads back the same.
     let normal_name = ["PEN", "FN"][force];
@@ -109,13 +129,16 @@ fn control(deck: &Deck<'_>, settings: &ContactSettings) -> String {
     let _ = writeln!(text, "   {at_rest:?} {sliding:?}           FSTAT FKIN");
     if let Some(Creepages { rolling_speed, forward, .. }) = settings.creepages {
         // A step of one element along the rolling direction.
-        let (direction, step) = (if forward { "0.0" } else { "180.0d" }, deck.steps[1]);
+        let (direction, step) = (if forward { "0.0" } else { "180.0d" }, grid.steps[1]);
         let _ = writeln!(text, "   {direction} {step:?} {rolling_speed:?}           CHI DQ VELOC");
     }
+    text += inclinations;
     let _ = writeln!(text, "   {nu_r:?} {nu_w:?} {g_r:?} {g_w:?}           POISS 1,2  GG 1,2");
     text += "   3           IPOTCN\n";
-    let _ = write!(text, "   {} {} ", deck.eta.len(), deck.xi.len());
-    text += line(&[deck.grid.eta()[0], deck.grid.xi()[0], deck.steps[1], deck.steps[0]]).trim_end();
+    let ([n_lateral, n_rolling], [lateral, rolling], [d_lateral, d_rolling]) =
+        (grid.count, grid.first, grid.steps);
+    let _ = write!(text, "   {n_rolling} {n_lateral} ");
+    text += line(&[rolling, lateral, d_rolling, d_lateral]).trim_end();
     text += "  MX MY XC1 YC1 DX DY\n";
     text + "   9 1           IBASE IPLAN\n"
 }

@@ -6,10 +6,12 @@
 //! of `wrp`, and `tests/clients/read_wrp.f90` reads all three. `contact.inp` is for Vollebregt's CONTACT.
 
 mod contact;
+mod curved;
 mod number;
 mod text;
 mod wrp;
 
 pub use contact::{ContactSettings, Prescribed, contact_inp};
+pub use curved::{CurvedDeck, conform_curved_wrp, contact_curved_inp};
 pub use text::Deck;
 pub use wrp::{conform_wrp, countact_wrp, separation_wrp};

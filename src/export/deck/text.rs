@@ -34,10 +34,27 @@ impl<'a> Deck<'a> {
         })
     }
 
+    /// Returns the lattice of the grid's points.
+    pub(super) fn lattice(&self) -> Lattice {
+        let first = [self.grid.xi()[0], self.grid.eta()[0]];
+        Lattice { count: [self.xi.len(), self.eta.len()], first, steps: self.steps }
+    }
+
     /// Returns the texts of s along the column of ξ number `i`.
     pub(super) fn column(&self, i: usize) -> &[Field] {
         &self.separation[i * self.eta.len()..(i + 1) * self.eta.len()]
     }
+}
+
+/// The lattice of a deck's points: along ξ or σ first, along η second.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lattice {
+    /// Numbers of points.
+    pub count: [usize; 2],
+    /// The first point \[mm\].
+    pub first: [f64; 2],
+    /// Steps \[mm\].
+    pub steps: [f64; 2],
 }
 
 fn fields(values: &[f64]) -> Vec<Field> {

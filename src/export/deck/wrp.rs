@@ -26,9 +26,9 @@
 //! If m = 0, the number in the column of s is 10 × the largest |s|. A normal that does not exist is 0 0.
 
 use super::super::block::Block;
-use super::super::model::QuadMesh;
+use super::super::model::{Header, QuadMesh};
 use super::number::{Field, WIDTH, field};
-use super::text::{Deck, line};
+use super::text::{Deck, Lattice, line};
 use crate::error::{Error, ErrorKind, Result};
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -63,7 +63,7 @@ const COUNTACT_NOTES: [&str; 4] = [
 /// The errors of the sink.
 pub fn separation_wrp(deck: &Deck<'_>, sink: &mut dyn Write) -> io::Result<()> {
     let mut block = Block::new(sink);
-    block.bytes(head(deck, "WRPATCH", &[]).as_bytes())?;
+    block.bytes(plane_head(deck, "WRPATCH", &[]).as_bytes())?;
     records(deck, &mut block)?;
     block.bytes(b"END\n")?;
     block.finish()
@@ -75,7 +75,7 @@ pub fn separation_wrp(deck: &Deck<'_>, sink: &mut dyn Write) -> io::Result<()> {
 /// The errors of the sink.
 pub fn conform_wrp(deck: &Deck<'_>, sink: &mut dyn Write) -> io::Result<()> {
     let mut block = Block::new(sink);
-    block.bytes(head(deck, "CONFORM", &CONFORM_NOTES).as_bytes())?;
+    block.bytes(plane_head(deck, "CONFORM", &CONFORM_NOTES).as_bytes())?;
     for i in 0..deck.xi.len() {
         let [n_xi, n_zeta] = deck.grid.rail_normal()[i].map(|n| field(if n.is_nan() { 0.0 } else { n }));
         let mut second = [b' '; NORMAL];
@@ -100,7 +100,7 @@ pub fn conform_wrp(deck: &Deck<'_>, sink: &mut dyn Write) -> io::Result<()> {
 pub fn countact_wrp(deck: &Deck<'_>, mesh: &QuadMesh, sink: &mut dyn Write) -> io::Result<()> {
     let cells = cells(mesh).map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error))?;
     let mut block = Block::new(sink);
-    block.bytes(head(deck, "COUNTACT", &COUNTACT_NOTES).as_bytes())?;
+    block.bytes(plane_head(deck, "COUNTACT", &COUNTACT_NOTES).as_bytes())?;
     records(deck, &mut block)?;
     block.bytes(cells.as_bytes())?;
     block.bytes(b"END\n")?;
@@ -128,21 +128,27 @@ fn record(deck: &Deck<'_>, i: usize, j: usize, place: &mut [u8]) {
     place[RECORD - 1] = b'\n';
 }
 
-fn head(deck: &Deck<'_>, magic: &str, notes: &[&str]) -> String {
-    let mut comments = deck.header.statements();
-    comments.extend(SEPARATION_NOTES.iter().chain(notes).map(|note| (*note).into()));
+/// Returns the head of a deck over the tangent plane.
+fn plane_head(deck: &Deck<'_>, magic: &str, notes: &[&str]) -> String {
+    let notes = SEPARATION_NOTES.iter().chain(notes).map(|note| (*note).to_string());
+    let comments = deck.header.statements().into_iter().chain(notes).collect::<Vec<_>>();
+    head(deck.header, magic, &comments, &deck.lattice())
+}
+
+/// Returns everything before the records, with these comments.
+pub(super) fn head(header: &Header, magic: &str, comments: &[String], grid: &Lattice) -> String {
     let mut text = format!("{magic:<8}{:>4} {:<8}\n{:>8}\n", 1, "mm", comments.len());
     for comment in comments {
         text += "# ";
-        text += &comment;
+        text += comment;
         text += "\n";
     }
-    let (grid, frame) = (deck.grid, &deck.header.frame);
+    let frame = &header.frame;
     // Writing to a String cannot fail.
-    let _ = writeln!(text, "{:>8}{:>8}", deck.xi.len(), deck.eta.len());
-    text += &line(&[grid.xi()[0], grid.eta()[0]]);
-    text += &line(&deck.steps);
-    text += &line(&[deck.header.approach]);
+    let _ = writeln!(text, "{:>8}{:>8}", grid.count[0], grid.count[1]);
+    text += &line(&grid.first);
+    text += &line(&grid.steps);
+    text += &line(&[header.approach]);
     let vectors = [frame.origin.coords, *frame.xi, *frame.eta, *frame.zeta];
     vectors.iter().for_each(|vector| text += &line(vector.as_slice()));
     text

@@ -1,9 +1,9 @@
 //! Columns s(ξ, ·) as polynomials: how they are fitted, and how many of them are evaluated at once.
 
 pub(super) mod fit;
-pub(super) mod horner;
+pub(crate) mod horner;
 pub(super) mod neighbours;
-pub(super) mod skewed;
+pub(crate) mod skewed;
 mod stream;
 pub(super) mod strip;
 pub(super) mod strips;

@@ -15,7 +15,7 @@ use crate::separation::gap::contact_gap;
 use crate::separation::wheel_surface::{SpanLanes, WheelSurface};
 
 /// Share of an interval's largest |s| below which an interpolated s would not have the promised thirteen digits.
-const SMALL_SHARE: f64 = 1.0 / 64.0;
+pub const SMALL_SHARE: f64 = 1.0 / 64.0;
 
 /// Writes s \[mm\] of the column at ξ over ascending η to a demanded accuracy; NaN where a body has no surface. Returns the
 /// largest truncation error \[mm\].
@@ -145,23 +145,39 @@ impl pulp::WithSimd for EtaInterval<'_, '_, '_> {
             return Some(size);
         }
         let demand = column.demand;
-        let c = chebyshev::coefficients(&s);
-        let (kept, dropped) = kept(&c, demand.absolute.min(demand.relative * size.largest), rounding)?;
-        let mut powers = chebyshev::to_powers(&c, kept);
-        let mut shrink = 1.0;
-        for c in &mut powers[1..kept] {
-            shrink /= half;
-            *c *= shrink;
-        }
-        let c = &powers[1..kept.max(2)];
-        // Powers of a tiny interval may overflow.
-        if c.len() > MOST_COEFFICIENTS || !c.iter().all(|c| c.is_finite()) {
-            return None;
-        }
-        per_degree(c.len(), OneRun { simd, begin: [powers[0], centre], c, u: eta, out });
+        let allowed = demand.absolute.min(demand.relative * size.largest);
+        let dropped = interpolate(simd, &s, [centre, half], [allowed, rounding], eta, out)?;
         column.error = column.error.max(dropped);
         Some(size)
     }
+}
+
+/// Writes the interpolant of values at the 16 Chebyshev points of the interval centre ± half to all η \[mm\]. Returns the sum
+/// of the coefficients that were dropped, or `None` if too few of them are within `demand` or as small as `rounding` \[mm\].
+#[inline(always)]
+pub fn interpolate<S: pulp::Simd>(
+    simd: S,
+    values: &Lanes,
+    [centre, half]: [f64; 2],
+    [demand, rounding]: [f64; 2],
+    eta: &[f64],
+    out: &mut [f64],
+) -> Option<f64> {
+    let c = chebyshev::coefficients(values);
+    let (kept, dropped) = kept(&c, demand, rounding)?;
+    let mut powers = chebyshev::to_powers(&c, kept);
+    let mut shrink = 1.0;
+    for c in &mut powers[1..kept] {
+        shrink /= half;
+        *c *= shrink;
+    }
+    let c = &powers[1..kept.max(2)];
+    // Powers of a tiny interval may overflow.
+    if c.len() > MOST_COEFFICIENTS || !c.iter().all(|c| c.is_finite()) {
+        return None;
+    }
+    per_degree(c.len(), OneRun { simd, begin: [powers[0], centre], c, u: eta, out });
+    Some(dropped)
 }
 
 /// Returns the number of Chebyshev coefficients that are needed, and the sum of the others. The others are all as small as

@@ -3,6 +3,7 @@
 import sys
 
 import numpy as np
+from contact_deck import read_contact
 from folder import Checks, Folder
 from wrp import read_wrp
 
@@ -30,43 +31,6 @@ for name in filter(folder.has, ("separation.wrp", "conform.wrp", "countact.wrp")
         checks("countact.wrp cells know their nodes",
                np.all(read["cells"][:, 1:] >= 1) and np.all(read["cells"][:, 1:] <= len(read["points"])),
                f"{len(read['cells'])} cells, {read['area'].sum():.6g} mm2")
-
-
-def read_contact(path):
-    """A reader of the grammar of CONTACT's module 3 with IBASE = 9: words up to % on lines up to 256 characters."""
-    lines = []
-    for line in open(path, encoding="ascii"):
-        assert len(line.rstrip("\n")) <= 256, "line too long"
-        words = line.split("%")[0].split()
-        assert len(words) <= 50, "too many items"
-        if words:
-            lines.append(words)
-    take = iter(lines).__next__
-    assert int(take()[0]) == 3
-    digits = take()[0]
-    assert len(digits) == 6 and digits[:2] == "20" and digits[2] in "03" and digits[3] in "01" and digits[4:] == "00"
-    assert take()[0] == "022020" and take()[0] == "0002221"
-    [int(word) for word in take()[:4]]
-    kinematics = [float(word) for word in take()[:4]]
-    deck = {"force": digits[3] == "1", "normal": kinematics[0], "creepages": kinematics[1:], "rolling": None}
-    deck["friction"] = [float(word) for word in take()[:2]]
-    if digits[2] == "3":
-        chi, step, speed = take()[:3]
-        degrees = chi.endswith("d")
-        chi = np.deg2rad(float(chi[:-1])) if degrees else float(chi)
-        deck["rolling"] = (chi, float(step), float(speed))
-    [float(word) for word in take()[:4]]
-    assert int(take()[0]) == 3
-    grid = take()
-    deck |= {"n": (int(grid[0]), int(grid[1])), "first": [float(w) for w in grid[2:4]], "step": [float(w) for w in grid[4:6]]}
-    assert take()[:2] == ["9", "1"]
-    h = []
-    while len(h) < deck["n"][0] * deck["n"][1]:
-        h += [float(word) for word in take()]
-    deck["h"] = np.array(h).reshape(deck["n"][1], deck["n"][0])
-    assert take()[0] == "0" and next(iter(lines[len(lines):]), None) is None
-    return deck
-
 
 checks.client = "CONTACT grammar"
 deck = read_contact(folder / "contact.inp")

@@ -25,6 +25,11 @@ def read_wrp(path, reader):
     read["mask"] = take(n_xi * n_eta, "<i4").reshape(n_xi, n_eta)
     read["s"] = take(n_xi * n_eta, "<f8").reshape(n_xi, n_eta)
     if path.name == "conform.wrp":
+        magic = open(path, "rb").read(8)
+    if path.name == "conform.wrp" and magic == b"CONFCURV":
+        read["station"] = take(5 * n_xi, "<f8").reshape(n_xi, 5)
+        read["wheel"] = take(3 * n_xi * n_eta, "<f8").reshape(n_xi, n_eta, 3)
+    elif path.name == "conform.wrp":
         read["normal"] = take(2 * n_xi * n_eta, "<f8").reshape(n_xi, n_eta, 2)
     read["points"] = take(3 * n_points, "<f8").reshape(-1, 3)
     read["cells"] = take(5 * n_cells, "<i4").reshape(-1, 5)

@@ -79,6 +79,11 @@ pub fn check_run(dir: &Path) {
     check_decks("check_run.py", dir);
 }
 
+/// Runs every reader on a folder of `wheelrail run` over the rail's surface.
+pub fn check_conformal(dir: &Path) {
+    check_decks("check_conformal.py", dir);
+}
+
 /// Runs every reader on one folder.
 pub fn check_all(dir: &Path) {
     check_decks("check_text.py", dir);

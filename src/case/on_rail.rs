@@ -1,0 +1,94 @@
+//! The files of a grid over the rail's surface.
+
+use super::conformal::Conformal;
+use super::input::{OutputFormat, Outputs};
+use super::site::{Site, ends};
+use crate::conformal::{NormalGap, conformal_slice};
+use crate::error::{Error, Result};
+use crate::export::{CurvedFields, GridFields};
+
+/// Formats that hold s over equal steps of ξ only.
+const PLANE_ONLY: [(OutputFormat, &str, &str); 3] = [
+    (OutputFormat::Netcdf, "netcdf", "separation.nc"),
+    (OutputFormat::Text, "text", "separation.wrp"),
+    (OutputFormat::Countact, "countact", "countact.wrp"),
+];
+
+/// What the files of a grid over the rail's surface are written from.
+pub(super) struct OnRail<'a> {
+    site: &'a Site,
+    conformal: &'a Conformal,
+    /// σ \[mm\].
+    pub sigma: Vec<f64>,
+    /// α \[rad\].
+    pub angle: Vec<f64>,
+    height: Vec<f64>,
+    normal: Vec<[f64; 2]>,
+    wheel_normal: Vec<[f64; 3]>,
+}
+
+impl<'a> OnRail<'a> {
+    /// Computes the wheel's normals, too, at every point.
+    pub fn new(site: &'a Site, conformal: &'a Conformal) -> Self {
+        let (gap, eta) = (NormalGap::new(&site.contact.placement), &site.grid.eta);
+        let normal_at = |sigma: f64, eta: f64| {
+            let normal = gap.point(sigma, eta).and_then(|point| point.wheel_normal);
+            normal.map_or([f64::NAN; 3], |normal| [normal.x, normal.y, normal.z])
+        };
+        let rail = &conformal.rail;
+        Self {
+            site,
+            conformal,
+            sigma: rail.iter().map(|at| at.sigma).collect(),
+            angle: rail.iter().map(|at| at.sin.atan2(at.cos)).collect(),
+            height: rail.iter().map(|at| at.zeta).collect(),
+            normal: rail.iter().map(|at| [-at.sin, at.cos]).collect(),
+            wheel_normal: rail
+                .iter()
+                .flat_map(|at| eta.iter().map(move |&eta| normal_at(at.sigma, eta)))
+                .collect(),
+        }
+    }
+
+    /// Gives the fields as writers take them.
+    ///
+    /// # Errors
+    /// A grid without points.
+    pub fn fields(&self) -> Result<CurvedFields<'_>> {
+        let grid = &self.site.grid;
+        let fields = GridFields::new(&grid.xi, &grid.eta, &self.conformal.gap, &self.height, &self.normal)?;
+        CurvedFields::new(&self.sigma, fields, &self.wheel_normal)
+    }
+
+    /// Gives the rows \[σ, ξ, η_min, η_max\] of INTERPEN's table over the rail's surface.
+    pub fn intervals(&self) -> Vec<[f64; 4]> {
+        let Some(patch) = &self.conformal.patch else { return Vec::new() };
+        let gap = NormalGap::new(&self.site.contact.placement);
+        let window = ends(&self.site.grid.eta);
+        let row = |(&sigma, &xi): (&f64, &f64)| {
+            let slice = conformal_slice(&gap, patch.approach, window, sigma)?;
+            Some([sigma, xi, slice.eta[0], slice.eta[1]])
+        };
+        self.sigma.iter().zip(&self.site.grid.xi).filter_map(row).collect()
+    }
+
+    /// Refuses formats that have no form over the rail's surface: an error where they are required, and a remark elsewhere.
+    ///
+    /// # Errors
+    /// The first such format that the scene names.
+    pub fn refuse(outputs: &Outputs, skipped: &mut Vec<String>) -> Result<()> {
+        for (format, name, file) in PLANE_ONLY {
+            if !outputs.any(&[format]) {
+                continue;
+            }
+            if outputs.required {
+                let found = format!("\"{name}\" with grid.reference = \"rail\"");
+                let expected = "formats with a form over the rail's surface: vtk, npy, conform, contact, png";
+                let advice = format!("{file} needs equal steps of xi: leave it out, or take the plane");
+                return Err(Error::new("output: formats", found, expected, advice));
+            }
+            skipped.push(format!("{file}: it has no form over the rail's surface"));
+        }
+        Ok(())
+    }
+}

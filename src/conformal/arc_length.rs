@@ -1,0 +1,223 @@
+//! The rail's surface by its arc length σ from the contact point.
+
+use crate::numerics::polynomial::value_and_slope;
+use crate::numerics::quadrature::smooth_integrals;
+use crate::placement::Placement;
+use crate::profile::{ArcBranch, Branch, BranchShape, ONE_JOINT, PolynomialBranch, Station};
+
+/// Relative accuracy demanded of the arc length of a polynomial: rounding.
+const LENGTH_DEMAND: f64 = 1e-15;
+
+/// Most Newton steps to the parameter of an arc length. Each doubles the digits; more are needed only where a polynomial is
+/// nearly vertical in its parameter.
+const STEPS: usize = 60;
+
+/// A point of the rail with the direction of its surface, in the contact frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RailPoint {
+    /// Arc length σ from C \[mm\], positive towards +ξ.
+    pub sigma: f64,
+    /// ξ \[mm\].
+    pub xi: f64,
+    /// ζ \[mm\].
+    pub zeta: f64,
+    /// cos α; α is the angle of the outward normal (−sin α, cos α) from ζ, positive counter-clockwise.
+    pub cos: f64,
+    /// sin α.
+    pub sin: f64,
+    /// Whether the point lies on the segment through C.
+    pub on_contact: bool,
+}
+
+/// The part of the rail's surface that is connected with C and is a graph over ξ, by arc length.
+#[derive(Debug, Clone)]
+pub struct RailArcLength<'a> {
+    /// In order of σ.
+    stretches: Vec<Stretch<'a>>,
+}
+
+/// A stretch of the rail over one branch.
+#[derive(Debug, Clone)]
+struct Stretch<'a> {
+    /// Range of σ \[mm\].
+    sigma: [f64; 2],
+    curve: Curve<'a>,
+    on_contact: bool,
+}
+
+/// The curve of a stretch, from a known point at a known σ.
+#[derive(Debug, Clone)]
+enum Curve<'a> {
+    /// A line or arc through a station.
+    Arc { begin: f64, from: Station, radius: f64 },
+    /// A polynomial through its point t.
+    Polynomial { begin: f64, t: f64, branch: &'a PolynomialBranch },
+}
+
+impl<'a> RailArcLength<'a> {
+    /// Follows the rail of a placed pair from C to both sides.
+    ///
+    /// It ends where the surface that s sees ends, or steps to another part of the profile.
+    pub fn new(placement: &'a Placement) -> Self {
+        let section = &placement.rail().section;
+        let mut stretches = Vec::new();
+        let centre = section.pieces.partition_point(|piece| piece.xi[1] < 0.0);
+        if section.pieces.get(centre).is_none_or(|piece| piece.xi[0] > 0.0) {
+            return Self { stretches };
+        }
+        let frame = &section.frame;
+        let size = placement.rail().profile().extent() + frame.x.abs() + frame.z.abs();
+        let connected = |left: usize| {
+            let (Some(a), Some(b)) = (section.pieces.get(left), section.pieces.get(left + 1)) else {
+                return false;
+            };
+            let ([xi_a, xi_b], [(p, zeta_a), (_, zeta_b)]) = ([a.xi[1], b.xi[0]], [&a.ends[1], &b.ends[0]]);
+            let slope = section.branches[a.branch].slope_from(p).abs();
+            // A rounding of ξ moves the point of a steep end along its slope.
+            let steep = if slope.is_finite() { 1.0 + slope } else { 1.0 / f64::EPSILON };
+            xi_a == xi_b && (zeta_a - zeta_b).abs() <= ONE_JOINT * size * steep
+        };
+        let mut follow = |index: usize, from: (f64, f64), forward: bool| {
+            let piece = &section.pieces[index];
+            let branch = &section.branches[piece.branch];
+            let ends = if forward { [from.0, piece.xi[1]] } else { [piece.xi[0], from.0] };
+            let stretch = Stretch::new(branch, section.contact == Some(piece.branch), ends, from, forward);
+            let sigma = stretch.sigma[usize::from(forward)];
+            stretches.push(stretch);
+            (ends[usize::from(forward)], sigma)
+        };
+        let (mut index, mut at) = (centre, follow(centre, (0.0, 0.0), false));
+        while index > 0 && connected(index - 1) {
+            index -= 1;
+            at = follow(index, at, false);
+        }
+        (index, at) = (centre, follow(centre, (0.0, 0.0), true));
+        while connected(index) {
+            index += 1;
+            at = follow(index, at, true);
+        }
+        stretches.retain(|stretch| stretch.sigma[0] < stretch.sigma[1]);
+        stretches.sort_by(|a, b| a.sigma[0].total_cmp(&b.sigma[0]));
+        Self { stretches }
+    }
+
+    /// Returns the smallest and largest σ \[mm\]; `None` if C is not on the rail's surface.
+    pub fn reach(&self) -> Option<[f64; 2]> {
+        Some([self.stretches.first()?.sigma[0], self.stretches.last()?.sigma[1]])
+    }
+
+    /// Returns the σ \[mm\] of the joints inside the reach, ascending, without C.
+    pub fn joints(&self) -> Vec<f64> {
+        let ends = self.stretches.windows(2).map(|pair| pair[1].sigma[0]);
+        ends.filter(|&sigma| sigma != 0.0).collect()
+    }
+
+    /// Finds the point of the rail at σ \[mm\]. At a joint it is on the stretch at smaller σ. Returns `None` beyond the
+    /// reach.
+    ///
+    /// Accuracy: on the segment through C a few roundings of each coordinate, relative to σ; elsewhere a few roundings of
+    /// the profile's extent. Cost: a sine and a cosine on arcs; three or four short quadratures on polynomials.
+    pub fn point(&self, sigma: f64) -> Option<RailPoint> {
+        let index = self.stretches.partition_point(|stretch| stretch.sigma[1] < sigma);
+        let stretch = self.stretches.get(index).filter(|stretch| stretch.sigma[0] <= sigma)?;
+        let at = stretch.curve.station(sigma);
+        let on_contact = stretch.on_contact;
+        Some(RailPoint { sigma, xi: at.x, zeta: at.z, cos: at.cos, sin: at.sin, on_contact })
+    }
+
+    /// Finds σ \[mm\] of the point at ξ \[mm\]; NaN beyond the reach.
+    pub fn sigma(&self, xi: f64) -> f64 {
+        let Some([low, high]) = self.reach() else { return f64::NAN };
+        let across = |sigma: f64| self.point(sigma).map_or(f64::NAN, |point| point.xi - xi);
+        crate::numerics::roots::bracketed(across, low, high).unwrap_or(f64::NAN)
+    }
+}
+
+impl<'a> Stretch<'a> {
+    /// Makes the stretch over the abscissae `ends` \[mm\] of a branch, which continues from (ξ, σ) \[mm\].
+    fn new(
+        branch: &'a Branch,
+        on_contact: bool,
+        ends: [f64; 2],
+        (xi, begin): (f64, f64),
+        forward: bool,
+    ) -> Self {
+        let [far, sign] = if forward { [ends[1], 1.0] } else { [ends[0], -1.0] };
+        let (curve, length) = match &branch.shape {
+            BranchShape::Arc(arc) => {
+                // The contact segment goes through C with no rounding.
+                let at_c = on_contact && xi == 0.0;
+                let from = if at_c { Station::AXES } else { branch.station(xi) };
+                (Curve::Arc { begin, from, radius: arc.radius }, arc_length(arc, &from, far))
+            }
+            BranchShape::Polynomial(branch) => {
+                let t = if on_contact && xi == 0.0 { 0.0 } else { branch.parameter(xi) };
+                let curve = Curve::Polynomial { begin, t, branch };
+                (curve, run_length(branch, [t, branch.parameter(far)]))
+            }
+        };
+        let end = begin + sign * length.abs();
+        Self { sigma: if forward { [begin, end] } else { [end, begin] }, curve, on_contact }
+    }
+}
+
+/// Computes the length \[mm\] along a line or arc from a station to the abscissa `far` \[mm\].
+fn arc_length(arc: &ArcBranch, from: &Station, far: f64) -> f64 {
+    let (sin, cos) = arc.sine_cosine(far);
+    if arc.curvature == 0.0 {
+        // A steep line is stored by its ends, so that its height at ξ is more accurate than its cosine.
+        return (far - from.x).hypot(arc.height(far) - from.z);
+    }
+    arc.radius * (sin * from.cos - cos * from.sin).atan2(cos * from.cos + sin * from.sin)
+}
+
+/// Computes the length \[mm\] of a polynomial between two parameters; negative if they descend.
+fn run_length(branch: &PolynomialBranch, [a, b]: [f64; 2]) -> f64 {
+    let [low, high] = if a <= b { [a, b] } else { [b, a] };
+    let mut speed = |t: f64| [value_and_slope(&branch.xi, t)[1].hypot(value_and_slope(&branch.zeta, t)[1])];
+    let short = high - low <= 0.1 * (branch.t[1] - branch.t[0]);
+    let [length] = smooth_integrals(&mut speed, [low, high], [LENGTH_DEMAND], short);
+    if a <= b { length } else { -length }
+}
+
+impl Curve<'_> {
+    /// Returns the point and tangent at σ \[mm\].
+    fn station(&self, sigma: f64) -> Station {
+        match self {
+            Self::Arc { begin, from, radius } => {
+                let length = sigma - begin;
+                // The chord has the direction of the mean tangent.
+                let turn = length / radius;
+                let (sin_half, cos_half) = (0.5 * turn).sin_cos();
+                let chord = if turn == 0.0 { length } else { 2.0 * radius * sin_half };
+                let sin = 2.0 * sin_half * cos_half;
+                let cos = (cos_half - sin_half) * (cos_half + sin_half);
+                Station { x: chord * cos_half, z: chord * sin_half, cos, sin }.placed_by(from)
+            }
+            Self::Polynomial { begin, t, branch } => {
+                let t = parameter(branch, *t, sigma - begin);
+                let ([x, dx], [z, dz]) = (value_and_slope(&branch.xi, t), value_and_slope(&branch.zeta, t));
+                let speed = dx.hypot(dz);
+                Station { x, z, cos: dx / speed, sin: dz / speed }
+            }
+        }
+    }
+}
+
+/// Finds the parameter at a length \[mm\] along a polynomial from the parameter `from`, by Newton's method held inside the
+/// range.
+fn parameter(branch: &PolynomialBranch, from: f64, length: f64) -> f64 {
+    let speed = |t: f64| value_and_slope(&branch.xi, t)[1].hypot(value_and_slope(&branch.zeta, t)[1]);
+    let [low, high] = branch.t;
+    let (mut t, mut walked) = (from, 0.0);
+    for _ in 0..STEPS {
+        let next = (t + (length - walked) / speed(t)).clamp(low, high);
+        let step = next - t;
+        if step.abs() <= f64::EPSILON * (next - from).abs() {
+            break;
+        }
+        walked += run_length(branch, [t, next]);
+        t = next;
+    }
+    t
+}

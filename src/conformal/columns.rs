@@ -1,0 +1,299 @@
+//! Fills grids of the normal gap: t(σ, ·) as polynomials, column by column.
+//!
+//! Without skew t over one segment of the wheel is t₀ + v q(v), v = u − u₀, u = η². q is interpolated at Chebyshev points of
+//! the sagitta, all of one column at once. With skew t is interpolated in η itself over intervals that are halved as needed.
+
+use rayon::prelude::*;
+
+use super::arc_length::RailPoint;
+use super::gap::NormalGap;
+use super::ray::{Ray, RaySpan};
+use crate::numerics::chebyshev::{self, extrema, powers, unit_nodes};
+use crate::numerics::lanes::{Lanes, MANY, lanes, largest, smallest};
+use crate::numerics::nan_max;
+use crate::separation::{
+    ColumnPolynomial, Demand, EtaAxis, MOST_COEFFICIENTS, ROUNDING_LEVEL, SMALL_SHARE, SpanRun, interpolate,
+    mirror,
+};
+
+/// Number of columns of one block, which is the unit of work of a thread. Each block begins anew, so that any number of
+/// threads gives the same bits.
+const BLOCK: usize = MANY;
+
+/// Most points of a grid that is filled by one thread, because waking another takes some 50 µs.
+const FEW_POINTS: usize = 65536;
+
+/// Number of coefficients that the first column of a block begins with.
+const FIRST_COUNT: usize = 4;
+
+/// Writes t \[mm\] over a grid of σ and η, at index i_σ · n_η + i_η; NaN where t is undefined. The tolerance \[mm\] is that
+/// of s: at and below [`crate::separation::FULL_PRECISION`] all digits near C are kept. Returns the largest truncation error
+/// \[mm\] that was measured meanwhile.
+///
+/// It runs on the threads of the current rayon pool. Any number of threads gives the same bits.
+pub fn fill_normal_gap(
+    gap: &NormalGap<'_>,
+    sigma: &[f64],
+    axis: &EtaAxis,
+    tolerance: f64,
+    out: &mut [f64],
+) -> f64 {
+    let length = axis.eta().len();
+    if length == 0 {
+        return 0.0;
+    }
+    let demand = Demand::for_tolerance(tolerance).on_truncation();
+    let block = |(out, sigma): (&mut [f64], &[f64])| {
+        let mut columns = Columns::new(gap, axis, demand);
+        for (out, &sigma) in out.chunks_mut(length).zip(sigma) {
+            columns.fill(sigma, out);
+        }
+        columns.error
+    };
+    if out.len() <= FEW_POINTS {
+        return out.chunks_mut(BLOCK * length).zip(sigma.chunks(BLOCK)).map(block).fold(0.0, f64::max);
+    }
+    let blocks = out.par_chunks_mut(BLOCK * length).zip(sigma.par_chunks(BLOCK));
+    blocks.map(block).reduce(|| 0.0, f64::max)
+}
+
+/// The columns of one block.
+struct Columns<'g, 'a> {
+    gap: &'g NormalGap<'a>,
+    axis: &'g EtaAxis,
+    demand: Demand,
+    arch: pulp::Arch,
+    /// Number of coefficients that sufficed last.
+    count: usize,
+    /// Largest measured truncation error \[mm\].
+    error: f64,
+}
+
+/// The run of e over a span, and the range of u \[mm²\] that its polynomial is evaluated over.
+struct Reach {
+    run: f64,
+    u: [f64; 2],
+}
+
+impl<'g, 'a> Columns<'g, 'a> {
+    fn new(gap: &'g NormalGap<'a>, axis: &'g EtaAxis, demand: Demand) -> Self {
+        Self { gap, axis, demand, arch: pulp::Arch::new(), count: FIRST_COUNT, error: 0.0 }
+    }
+
+    fn fill(&mut self, sigma: f64, out: &mut [f64]) {
+        out.fill(f64::NAN);
+        let Some(at) = self.gap.rail.point(sigma) else { return };
+        if self.gap.placement.skew() == 0.0 {
+            self.plain(&at, out);
+        } else {
+            self.skewed(&at, self.axis.eta(), out);
+        }
+    }
+
+    /// Fills a column of a wheel without skew.
+    fn plain(&mut self, at: &RailPoint, out: &mut [f64]) {
+        let ray = self.gap.bodies.ray(at, 0.0);
+        let (Some(mut spans), reach) = (ray.spans(), self.axis.reach) else { return };
+        let mut from = 0.0;
+        loop {
+            let span = spans.here();
+            let Some(Reach { run, u }) = reach_of(&ray, &span, from, reach) else { return };
+            if u[1] > u[0] || u[0] == 0.0 {
+                self.over_span(&ray, &span, run, u, out);
+            }
+            from = u[1];
+            if from >= reach * reach {
+                break;
+            }
+            match spans.next() {
+                Some(next) => spans = next,
+                None => break,
+            }
+        }
+        if self.axis.symmetric {
+            mirror(out, self.axis.first_positive);
+        }
+    }
+
+    /// Evaluates one span between two u \[mm²\], by its polynomial or else point by point.
+    fn over_span(&mut self, ray: &Ray<'_>, span: &RaySpan<'_>, run: f64, u: [f64; 2], out: &mut [f64]) {
+        let fitter = Fit { ray, span, run, demand: self.demand, least: self.count };
+        let fit = self.arch.dispatch(fitter);
+        if let Some(fit) = &fit {
+            self.count = fit.n;
+            self.error = self.error.max(fit.error);
+        }
+        for range in self.axis.ranges(u) {
+            match &fit {
+                Some(fit) => {
+                    let run = SpanRun { fit, u: &self.axis.u[range.clone()], out: &mut out[range] };
+                    self.arch.dispatch(run);
+                }
+                None => {
+                    for k in range {
+                        let point = ray.at(self.axis.eta()[k]).point_over(span);
+                        out[k] = point.map_or(f64::NAN, |point| point.t);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Fills a part of a column of a skewed wheel.
+    fn skewed(&mut self, at: &RailPoint, eta: &[f64], out: &mut [f64]) {
+        if eta.len() <= MANY {
+            return self.singly(at, eta, out);
+        }
+        let Some([least, most]) = self.interpolated(at, eta, out) else {
+            let (eta, out) = (eta.split_at(eta.len() / 2), out.split_at_mut(eta.len() / 2));
+            self.skewed(at, eta.0, out.0);
+            return self.skewed(at, eta.1, out.1);
+        };
+        // A parabola falls by less than that share between two Chebyshev points.
+        if least > 2.0 * SMALL_SHARE * most {
+            return;
+        }
+        let is_small = |t: &f64| t.abs() < SMALL_SHARE * most;
+        let (Some(begin), Some(end)) = (out.iter().position(is_small), out.iter().rposition(is_small)) else {
+            return;
+        };
+        let small = begin..end + 1;
+        if small.len() <= eta.len() / 2 {
+            self.skewed(at, &eta[small.clone()], &mut out[small]);
+        } else {
+            self.singly(at, &eta[small.clone()], &mut out[small]);
+        }
+    }
+
+    fn singly(&self, at: &RailPoint, eta: &[f64], out: &mut [f64]) {
+        for (t, &eta) in out.iter_mut().zip(eta) {
+            *t = self.gap.bodies.ray(at, eta).point().map_or(f64::NAN, |point| point.t);
+        }
+    }
+
+    /// Interpolates t over an interval of η. Returns the least and the largest |t| at the Chebyshev points, or `None` where
+    /// t does not lie over one branch of the wheel or has too many digits for one polynomial.
+    fn interpolated(&mut self, at: &RailPoint, eta: &[f64], out: &mut [f64]) -> Option<[f64; 2]> {
+        let (a, b) = (*eta.first()?, *eta.last()?);
+        let interval = [a + (b - a) / 2.0, (b - a) / 2.0];
+        let nodes = &*chebyshev::NODES;
+        let (mut t, mut abscissae) = ([0.0; MANY], [0.0; MANY]);
+        let first = self.gap.bodies.ray(at, interval[0]).point()?;
+        for k in 0..MANY {
+            let point = self.gap.bodies.ray(at, interval[0] + interval[1] * nodes[k]).point()?;
+            if (point.branch, point.over_contact) != (first.branch, first.over_contact) {
+                return None;
+            }
+            (t[k], abscissae[k]) = (point.t, point.abscissa);
+        }
+        // The abscissa is nearly a parabola in η: a turn between two points moves it by less than the step between others.
+        let margin = abscissae.windows(2).fold(0.0, |most: f64, pair| most.max((pair[1] - pair[0]).abs()));
+        let [low, high] = self.gap.bodies.wheel.section.branches[first.branch].xi;
+        if !abscissae.iter().all(|x| low + margin <= *x && *x <= high - margin) {
+            return None;
+        }
+        let size = largest(&t);
+        let rounding = if first.over_contact { ROUNDING_LEVEL * size } else { self.gap.bodies.rounding() };
+        let allowed = self.demand.absolute.min(self.demand.relative * size);
+        let work = Interpolation { t: &t, interval, demand: [allowed, rounding], eta, out };
+        let dropped = self.arch.dispatch(work)?;
+        self.error = self.error.max(dropped);
+        Some([smallest(&t), size])
+    }
+}
+
+/// Finds how far a span reaches; `None` where the ray misses its end. `from` is the u \[mm²\] at which the previous span ended.
+fn reach_of(ray: &Ray<'_>, span: &RaySpan<'_>, from: f64, eta: f64) -> Option<Reach> {
+    let begin = span.e[0] * (2.0 * span.w + span.e[0]);
+    let begin = if span.from > span.e[0] { from.max(begin) } else { begin };
+    // Two spans meet at one joint, in spite of rounding.
+    let begin = if span.from == span.e[0] && from > 0.0 { from } else { begin };
+    if span.e[1].is_finite() {
+        let t = ray.t_over(span, span.e[1]);
+        let w = ray.axle_distance(t);
+        let end = span.e[1] * (2.0 * w + span.e[1]);
+        if w > 0.0 && end < eta * eta {
+            return Some(Reach { run: span.e[1] - span.e[0], u: [begin, end.max(begin)] });
+        }
+    }
+    Some(Reach { run: ray.sagitta_near(span, eta) - span.e[0], u: [begin, eta * eta] })
+}
+
+/// The fit of one span. The work is compiled for each kind of machine.
+struct Fit<'f, 'a> {
+    ray: &'f Ray<'a>,
+    span: &'f RaySpan<'a>,
+    /// e at the end less e at the beginning \[mm\].
+    run: f64,
+    demand: Demand,
+    /// Number of coefficients to begin with.
+    least: usize,
+}
+
+impl pulp::WithSimd for Fit<'_, '_> {
+    type Output = Option<ColumnPolynomial>;
+
+    /// Fits q in powers of v. Returns `None` if no degree reaches the demand, near a vertical tangent.
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> Option<ColumnPolynomial> {
+        // Half the lanes hold the nodes of low degrees, and the places where the error is measured.
+        let fits = |n: usize| n + extrema(n).len() < MANY / 2;
+        let attempt =
+            |n: usize| if fits(n) { self.attempt::<{ MANY / 2 }>(n) } else { self.attempt::<MANY>(n) };
+        (self.least..=MOST_COEFFICIENTS).find_map(attempt)
+    }
+}
+
+impl Fit<'_, '_> {
+    /// Fits n coefficients, with N lanes for the nodes and for the places where the error is measured. Returns `None` if the
+    /// error is above the demand.
+    #[inline(always)]
+    fn attempt<const N: usize>(&self, n: usize) -> Option<ColumnPolynomial> {
+        let Self { ray, span, run, demand, .. } = *self;
+        let e0 = span.e[0];
+        // The nodes, then places between nodes, then the end.
+        let (nodes, between) = (unit_nodes(n), extrema(n));
+        let runs: Lanes<N> = lanes(|k| {
+            let inner = if k < n { nodes.get(k) } else { between.get(k - n) };
+            run * inner.copied().unwrap_or(1.0)
+        });
+        let [runs, rise] = ray.rises_by(span, &runs)?;
+        let v = ray.u_above(span, &runs, &rise);
+        let (mut places, mut q) = ([[0.0; 1]; MOST_COEFFICIENTS], [[0.0; 1]; MOST_COEFFICIENTS]);
+        for k in 0..n {
+            (places[k], q[k]) = ([v[k]], [rise[k] / v[k]]);
+        }
+        powers(&places[..n], &mut q[..n]);
+        let value = |k: usize| q[..n].iter().rev().fold(0.0, |sum, [q]| sum * v[k] + q);
+        let error = (n..N).map(|k| (value(k) * v[k] - rise[k]).abs()).fold(0.0, nan_max);
+        // The comparison is false for an error that is NaN.
+        if error <= demand.allowed(rise[N - 1], e0) {
+            return Some(ColumnPolynomial {
+                base: span.t,
+                u0: e0 * (2.0 * span.w + e0),
+                c: *q.as_flattened().first_chunk()?,
+                n,
+                error,
+            });
+        }
+        None
+    }
+}
+
+/// Interpolation of a skewed column. The work is compiled for each kind of machine.
+struct Interpolation<'w> {
+    t: &'w Lanes,
+    interval: [f64; 2],
+    demand: [f64; 2],
+    eta: &'w [f64],
+    out: &'w mut [f64],
+}
+
+impl pulp::WithSimd for Interpolation<'_> {
+    type Output = Option<f64>;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, simd: S) -> Option<f64> {
+        interpolate(simd, self.t, self.interval, self.demand, self.eta, self.out)
+    }
+}

@@ -1,0 +1,109 @@
+//! Where a line in the wheel's meridian plane meets one segment of its profile.
+
+use crate::numerics::lanes::{Lanes, every, lanes};
+use crate::numerics::polynomial::{divided_differences, value_and_slope, values_and_slopes};
+use crate::profile::{Branch, BranchPoint, BranchPoints, BranchShape};
+
+/// Most Newton steps along a polynomial. Each doubles the digits of the run.
+const STEPS: usize = 20;
+
+/// Step, as a share of the run from the known point, after which the run is exact to rounding: the next step is about its
+/// square.
+const LAST_STEP: f64 = 1e-8;
+
+/// Least ε along a chord, as a share of the one that its tangent promises. That of a parabola to the place where it is parallel
+/// to n is half as long.
+const LEAST_STRETCH: f64 = 0.5;
+
+/// Finds r and runs ε at which −ε d + r n lies on a branch, for N lines from one known point of it. ε is about `runs`, and
+/// exactly that on arcs and lines: on a polynomial no root is sought. `drift` is d_ξ n_ζ − d_ζ n_ξ. NaN as for [`along`], and
+/// where the chord may end beyond a place at which the polynomial is parallel to n.
+#[inline(always)]
+pub fn along_by<const N: usize>(
+    branch: &Branch,
+    from: &BranchPoint,
+    runs: &Lanes<N>,
+    (d, n): ([f64; 2], [f64; 2]),
+    drift: f64,
+) -> Option<[Lanes<N>; 2]> {
+    match (&branch.shape, from) {
+        (BranchShape::Polynomial(p), BranchPoints::Polynomial { t: [t], .. }) => {
+            let (xi, zeta) = (p.xi.as_slice(), p.zeta.as_slice());
+            let ([_, dx], [_, dz]) = (value_and_slope(xi, *t), value_and_slope(zeta, *t));
+            let rate = 1.0 / (dx * n[1] - dz * n[0]);
+            // The line moves across itself by −ε × drift.
+            let steps: Lanes<N> = lanes(|k| -runs[k] * drift * rate);
+            let to: Lanes<N> = lanes(|k| t + steps[k]);
+            let (x, z) = (divided_differences(xi, &[*t; N], &to), divided_differences(zeta, &[*t; N], &to));
+            let square = n[0] * n[0] + n[1] * n[1];
+            let down = d[0] * n[0] + d[1] * n[1];
+            let run: Lanes<N> = lanes(|k| runs[k] * rate * (x[k] * n[1] - z[k] * n[0]));
+            let rise = |k: usize| {
+                let r = (steps[k] * (x[k] * n[0] + z[k] * n[1]) + run[k] * down) / square;
+                if rate > 0.0 && run[k] >= LEAST_STRETCH * runs[k] { r } else { f64::NAN }
+            };
+            Some([run, lanes(rise)])
+        }
+        _ => {
+            let v0: [Lanes<N>; 2] = [lanes(|k| -runs[k] * d[0]), lanes(|k| -runs[k] * d[1])];
+            Some([*runs, along(branch, &from.repeated(), [&v0[0], &v0[1]], n)?])
+        }
+    }
+}
+
+/// Finds the r at which v₀ + r n lies on a branch, for N lines; v₀ is seen from known points of the branch. Of two such r it
+/// is the one at which the line enters the material of a wheel. NaN where the line misses the curve of the branch, and for
+/// points of another branch. The ends of the branch do not count on arcs and lines.
+///
+/// Method: the quadratic equation of an arc or line; Newton's method on a polynomial. Accuracy: a few roundings of r where
+/// v₀ is exact. Cost: a root and a division on arcs. Returns `None` if Newton's steps do not settle; then N lines are to be
+/// taken one by one, and a single line has no point.
+#[inline(always)]
+pub fn along<const N: usize>(
+    branch: &Branch,
+    from: &BranchPoints<N>,
+    v0: [&Lanes<N>; 2],
+    n: [f64; 2],
+) -> Option<Lanes<N>> {
+    match (&branch.shape, from) {
+        (BranchShape::Arc(arc), BranchPoints::Arc { sin, cos, .. }) => {
+            let square = n[0] * n[0] + n[1] * n[1];
+            Some(lanes(|k| {
+                let [x, z] = [v0[0][k], v0[1][k]];
+                let f = 2.0 * (z * cos[k] - x * sin[k]) - arc.curvature * (x * x + z * z);
+                let b = n[1] * cos[k] - n[0] * sin[k] - arc.curvature * (n[0] * x + n[1] * z);
+                let root = (b * b + arc.curvature * square * f).sqrt();
+                if b > 0.0 { -f / (b + root) } else { f64::NAN }
+            }))
+        }
+        (BranchShape::Polynomial(p), BranchPoints::Polynomial { t, .. }) => {
+            let (xi, zeta) = (p.xi.as_slice(), p.zeta.as_slice());
+            let cross: Lanes<N> = lanes(|k| n[1] * v0[0][k] - n[0] * v0[1][k]);
+            let mut to = *t;
+            for _ in 0..STEPS {
+                let ([_, dx], [_, dz]) = (values_and_slopes(xi, &to), values_and_slopes(zeta, &to));
+                let (x, z) = (divided_differences(xi, t, &to), divided_differences(zeta, t, &to));
+                let across: Lanes<N> = lanes(|k| x[k] * n[1] - z[k] * n[0]);
+                let next: Lanes<N> = lanes(|k| {
+                    let miss = (to[k] - t[k]) * across[k] - cross[k];
+                    (to[k] - miss / (dx[k] * n[1] - dz[k] * n[0])).max(p.t[0]).min(p.t[1])
+                });
+                let steps: Lanes<N> = lanes(|k| (next[k] - to[k]).abs());
+                let done = every::<N>(|k| steps[k] <= LAST_STEP * (next[k] - t[k]).abs());
+                to = next;
+                if done {
+                    let (x, z) = (divided_differences(xi, t, &to), divided_differences(zeta, t, &to));
+                    let r = |k: usize| {
+                        let across = x[k] * n[1] - z[k] * n[0];
+                        let r = (z[k] * v0[0][k] - x[k] * v0[1][k]) / across;
+                        if across > 0.0 { r } else { f64::NAN }
+                    };
+                    return Some(lanes(r));
+                }
+            }
+            None
+        }
+        // Points of another branch have no lines on this one.
+        _ => Some([f64::NAN; N]),
+    }
+}

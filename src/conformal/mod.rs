@@ -1,0 +1,27 @@
+//! Conformal contact: the gap t(σ, η) along the rail's own turning normal, over the rail's surface unrolled by its arc length σ.
+//!
+//! The definition and the derivation are in [`crate::docs::conformal`].
+//!
+//! | What | File |
+//! |---|---|
+//! | the rail by its arc length σ | `arc_length`: [`RailArcLength`] |
+//! | where a line meets a segment of the wheel's profile | `meeting` |
+//! | the line along the normal and its column over the wheel | `ray` |
+//! | t, α and both normals at single points | `gap`: [`NormalGap`] |
+//! | t(σ, ·) as polynomials, grids | `columns`: [`fill_normal_gap`] |
+//! | the patch t < δ cos α | `patch`: [`ConformalPatch`] |
+//! | the two surfaces over which gaps are given | `reference`: [`Reference`] |
+
+mod arc_length;
+mod columns;
+mod gap;
+mod meeting;
+mod patch;
+mod ray;
+mod reference;
+
+pub use arc_length::{RailArcLength, RailPoint};
+pub use columns::fill_normal_gap;
+pub use gap::{GapPoint, NormalGap};
+pub use patch::{ConformalComponent, ConformalPatch, ConformalSlice, conformal_slice};
+pub use reference::Reference;

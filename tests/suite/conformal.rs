@@ -1,0 +1,381 @@
+//! The normal gap of conformal contact against 60-digit values and closed forms.
+
+use crate::common::{folder, profile};
+use serde::Deserialize;
+use wheelrail::Evaluator;
+use wheelrail::case::{Run, SILENT};
+use wheelrail::conformal::{ConformalPatch, GapPoint, NormalGap, fill_normal_gap};
+use wheelrail::scene::{self, Scene};
+use wheelrail::separation::{EtaAxis, FULL_PRECISION};
+use wheelrail::{Arc, Half, Pair, Patch, Placement, Window};
+use wheelrail_report::reference::{ReferenceScene, ReferenceSegment, exact};
+
+/// What is promised to users; no row of [`BOUNDS`] may be looser.
+const PROMISED_RELATIVE: f64 = 1e-13;
+const PROMISED_ABSOLUTE: f64 = 2e-12;
+
+/// A row whose measured error is this much below its bound fails as "tighten me".
+const MOST_SLACK: f64 = 4.0;
+
+/// A way to compute t and the bounds it is held to.
+struct Bound {
+    grid: bool,
+    /// Largest relative error of t where the point lies over both contact segments.
+    relative: f64,
+    /// Largest absolute error elsewhere \[mm\], × max(1, R_max/300 mm).
+    absolute: f64,
+}
+
+/// Single points, and whole grids by polynomials.
+const BOUNDS: [Bound; 2] = [
+    Bound { grid: false, relative: 2.5e-15, absolute: 6e-15 },
+    Bound { grid: true, relative: 6e-15, absolute: 6e-15 },
+];
+
+/// Largest error of α \[rad\] and of (ξ, ζ) \[mm\].
+const PLACE: f64 = 1.5e-14;
+
+/// A row of a file: σ, η, t, α, ξ, ζ; `None` where the ray misses the wheel or σ is beyond the rail.
+type Row = (f64, f64, Option<String>, Option<String>, Option<String>, Option<String>);
+
+#[derive(Deserialize)]
+struct Values {
+    scene: ReferenceScene,
+    normal_gap: Vec<Row>,
+}
+
+impl Values {
+    fn scale(&self) -> f64 {
+        let radius = |segment: &ReferenceSegment| match segment {
+            ReferenceSegment::Arc { r, .. } => *r,
+            _ => 0.0,
+        };
+        let largest = self.scene.rail.iter().chain(&self.scene.wheel).map(radius).fold(0.0, f64::max);
+        (largest / 300.0).max(1.0)
+    }
+
+    /// t at the rows, as a grid computes it or point by point.
+    fn found(&self, gap: &NormalGap<'_>, grid: bool) -> Vec<f64> {
+        if !grid {
+            return self.normal_gap.iter().map(|row| gap.gap(row.0, row.1)).collect();
+        }
+        let [sigma, eta] = self.scene.axes();
+        // More columns and rows between the given ones are interpolated, few are not.
+        let mut all = eta.clone();
+        all.extend((0..110).map(|k| -7.9 + 0.13 * f64::from(k)));
+        all.sort_by(f64::total_cmp);
+        let mut out = vec![0.0; sigma.len() * all.len()];
+        fill_normal_gap(gap, &sigma, &EtaAxis::new(&all), FULL_PRECISION, &mut out);
+        let index = |values: &[f64], value: f64| values.iter().position(|&v| v == value).expect("an entry");
+        let at = |row: &Row| out[index(&sigma, row.0) * all.len() + index(&all, row.1)];
+        self.normal_gap.iter().map(at).collect()
+    }
+}
+
+fn references() -> Vec<(String, Values)> {
+    let files = std::fs::read_dir(folder("reference_conformal")).expect("the folder of reference values");
+    let mut files: Vec<_> = files.map(|entry| entry.expect("a file").path()).collect();
+    files.retain(|path| path.extension().is_some_and(|e| e == "json"));
+    files.sort();
+    assert!(files.len() >= 11, "{files:?}");
+    let read = |path: std::path::PathBuf| {
+        let text = std::fs::read_to_string(&path).expect("a readable file");
+        let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+        (name, serde_json::from_str(&text).expect("its format"))
+    };
+    files.into_iter().map(read).collect()
+}
+
+#[test]
+fn the_normal_gap_keeps_its_digits() {
+    for Bound { grid, relative: bound, absolute } in BOUNDS {
+        assert!(bound <= PROMISED_RELATIVE && absolute <= PROMISED_ABSOLUTE);
+        let (mut relative, mut elsewhere, mut over, mut others) = (0f64, 0f64, 0, 0);
+        for (name, values) in references() {
+            let placement = values.scene.placement().expect("a placement");
+            let gap = NormalGap::new(&placement);
+            for (row, found) in values.normal_gap.iter().zip(values.found(&gap, grid)) {
+                let (sigma, eta, Some(t), ..) = row else {
+                    assert!(found.is_nan(), "{name} {row:?}: {found}");
+                    continue;
+                };
+                let (t, what) = (exact(t), format!("{name} grid {grid} σ = {sigma} η = {eta}"));
+                let error = (found - t).abs();
+                let contact = gap.point(*sigma, *eta).is_some_and(|point| point.over_contact);
+                if contact {
+                    let error = if error == 0.0 { 0.0 } else { error / t.abs() };
+                    assert!(error <= bound, "{what}: relative error {error:e}");
+                    (relative, over) = (relative.max(error), over + 1);
+                } else {
+                    let error = error / values.scale();
+                    assert!(error <= absolute, "{what}: error {error:e} mm");
+                    (elsewhere, others) = (elsewhere.max(error), others + 1);
+                }
+            }
+        }
+        println!("grid {grid}: relative {relative:e} at {over} points, {elsewhere:e} mm at {others}");
+        assert!(over > 150 && others > 150, "{over} {others}");
+        assert!(relative * MOST_SLACK >= bound, "tighten grid {grid}: relative {relative:e}");
+        assert!(elsewhere * MOST_SLACK >= absolute, "tighten grid {grid}: absolute {elsewhere:e}");
+    }
+}
+
+#[test]
+fn the_rail_is_where_its_arc_length_says() {
+    let mut worst = 0f64;
+    for (name, values) in references() {
+        let placement = values.scene.placement().expect("a placement");
+        let gap = NormalGap::new(&placement);
+        for (sigma, _, _, alpha, xi, zeta) in &values.normal_gap {
+            let (Some(alpha), Some(xi), Some(zeta)) = (alpha, xi, zeta) else {
+                assert!(gap.angle(*sigma).is_nan(), "{name} {sigma}");
+                continue;
+            };
+            let at = gap.rail().point(*sigma).expect("a point of the rail");
+            let errors = [gap.angle(*sigma) - exact(alpha), at.xi - exact(xi), at.zeta - exact(zeta)];
+            let error = errors.into_iter().fold(0.0, |most: f64, error| most.max(error.abs()));
+            assert!(error <= PLACE, "{name} {sigma}: {errors:?}");
+            assert!((gap.rail().sigma(at.xi) - sigma).abs() <= 4.0 * PLACE, "{name} {sigma}");
+            worst = worst.max(error);
+        }
+    }
+    assert!(worst * MOST_SLACK >= PLACE, "tighten: {worst:e}");
+}
+
+/// An upper arc about (0, −r) under one about the same point or touching it at C.
+fn arcs(rail: f64, wheel: f64, radius: f64, skew: f64) -> Placement {
+    let arc = |r: f64| Arc::about([0.0, -r], r, Half::Upper, [-0.95 * r, 0.95 * r]).and_then(profile);
+    let pair = Pair::new(arc(rail).expect("a rail"), arc(wheel).expect("a wheel"), radius);
+    pair.and_then(|pair| pair.placed(0.0, 0.0, skew)).expect("a placement")
+}
+
+#[test]
+fn coaxial_tori_have_the_gap_of_their_radii() {
+    // Both arcs touch at C. In the midplane the ray at angle α meets the circle about (0, −r_W).
+    let (rail, wheel) = (13.0, 15.0);
+    let gap_of = arcs(rail, wheel, 460.0, 0.0);
+    let gap = NormalGap::new(&gap_of);
+    let apart = wheel - rail;
+    for k in -9..=9 {
+        let alpha = 0.1 * f64::from(k);
+        // |O_R + (r + t) n − O_W| = r_W, with the centres `apart` one above the other.
+        let (sin, cos) = (alpha.sin(), alpha.cos());
+        let t = (wheel * wheel - (apart * sin).powi(2)).sqrt() - apart * cos - rail;
+        let found = gap.gap(-rail * alpha, 0.0);
+        assert!((found - t).abs() < 4e-15, "{alpha}: {found} {t}");
+        assert!((gap.angle(-rail * alpha) - alpha).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn an_arc_in_its_own_groove_has_no_gap_in_the_midplane() {
+    let same = arcs(13.0, 13.0, 460.0, 0.0);
+    let gap = NormalGap::new(&same);
+    for sigma in [-12.0, -3.0, 0.0, 5.0, 13.0] {
+        assert_eq!(gap.gap(sigma, 0.0), 0.0);
+        // Along η the wheel rises by its sagitta: along the normal that is e cos α to first order.
+        let (e, t) = (460.0 - (460.0f64 * 460.0 - 1.0).sqrt(), gap.gap(sigma, 1.0));
+        let first = e * gap.angle(sigma).cos();
+        assert!((t - first).abs() < e * (e / 13.0 + 13.0 / 460.0), "{sigma}: {t} {first}");
+    }
+}
+
+#[test]
+fn a_ball_in_a_torus_groove_has_the_gap_of_two_circles() {
+    // The groove of a wheel whose arc's centre is on its axle is a ball.
+    let (rail, ball) = (20.0, 100.0);
+    let arc = |r: f64, half: Half, centre: f64| {
+        Arc::about([0.0, centre], r, half, [-0.6 * r, 0.6 * r]).and_then(profile).expect("an arc")
+    };
+    let pair = Pair::new(arc(rail, Half::Upper, -rail), arc(ball, Half::Lower, ball), ball).expect("a pair");
+    for skew in [0.0, 0.02] {
+        let placement = pair.placed(0.0, 0.0, skew).expect("a placement");
+        let gap = NormalGap::new(&placement);
+        for (sigma, eta) in [(0.0, 0.0), (1e-4, 2e-5), (3.0, 1.0), (-7.0, 4.0), (9.0, -8.0)] {
+            let angle: f64 = sigma / rail;
+            // The line P + t n against the ball about (0, 0, ball): t² + 2 t b + c = 0.
+            let p = [rail * angle.sin(), eta, -2.0 * rail * (0.5 * angle).sin().powi(2)];
+            let n = [angle.sin(), 0.0, angle.cos()];
+            let b = p[0] * n[0] + (p[2] - ball) * n[2];
+            let c = p[0] * p[0] + p[1] * p[1] + p[2] * (p[2] - 2.0 * ball);
+            let t = c / (-b + (b * b - c).sqrt());
+            let found = gap.gap(sigma, eta);
+            assert!((found - t).abs() <= 2e-15 * t.abs() + 1e-15 * t, "{skew} {sigma} {eta}: {found} {t}");
+        }
+    }
+}
+
+#[test]
+fn the_gap_tends_to_the_separation_on_flat_rails() {
+    let line = Arc::line([-30.0, 0.0], [30.0, 0.0]).and_then(profile).expect("a line");
+    let tread =
+        Arc::about([0.0, 330.0], 330.0, Half::Lower, [-60.0, 60.0]).and_then(profile).expect("an arc");
+    let placement =
+        Pair::new(line, tread, 460.0).and_then(|pair| pair.placed(0.0, 0.0, 0.01)).expect("a pair");
+    let (gap, mut plane) = (NormalGap::new(&placement), Evaluator::new(&placement));
+    for (sigma, eta) in [(1e-6, 0.0), (0.3, -2.0), (-8.0, 9.0), (25.0, 0.1)] {
+        let (t, s) = (gap.gap(sigma, eta), plane.separation(sigma, eta));
+        assert!((t - s).abs() <= 1e-15 * s, "{t} {s}");
+    }
+    // On a crown α = −σ/ρ, and t − s is of the order of s α² and of the slope of s times s α.
+    let (mut last, mut ratios) = (f64::NAN, Vec::new());
+    for radius in [300.0, 3000.0, 30_000.0] {
+        let crown = Arc::about([0.0, -radius], radius, Half::Upper, [-30.0, 30.0]).and_then(profile);
+        let cone = Arc::line([-60.0, 0.0], [60.0, 0.0]).and_then(profile).expect("a cone");
+        let pair = crown.and_then(|crown| Pair::new(crown, cone, 460.0)).expect("a pair");
+        let placement = pair.placed(0.0, 0.0, 0.0).expect("a placement");
+        let gap = NormalGap::new(&placement);
+        let at = gap.rail().point(8.0).expect("a point");
+        let s = Evaluator::new(&placement).separation(at.xi, 3.0);
+        let share = (gap.gap(8.0, 3.0) - s) / s;
+        ratios.push(last / share);
+        last = share;
+    }
+    // α falls by ten each time, so that the difference falls by a hundred.
+    assert!(ratios[1..].iter().all(|ratio| (90.0..110.0).contains(ratio)), "{ratios:?}");
+}
+
+#[test]
+fn rays_that_miss_are_no_numbers_and_overlap_is_negative() {
+    let placement = arcs(13.0, 15.0, 460.0, 0.0);
+    let gap = NormalGap::new(&placement);
+    let [low, high] = gap.rail().reach().expect("a range of σ");
+    assert!((high - 13.0 * 0.95f64.asin()).abs() < 1e-13 && (low + high).abs() < 1e-13);
+    assert!(gap.gap(high + 1e-9, 0.0).is_nan() && gap.point(high + 1e-9, 0.0).is_none());
+    assert!(gap.gap(0.0, 470.0).is_nan());
+    // A wheel's arc that is tighter than the rail's overlaps it on both sides of C.
+    let tighter = arcs(15.0, 13.0, 460.0, 0.0);
+    let gap = NormalGap::new(&tighter);
+    for sigma in [-6.0, 2.0, 5.0] {
+        let t = gap.gap(sigma, 0.0);
+        let alpha: f64 = sigma / 15.0;
+        let exact = (169.0 - (2.0 * alpha.sin()).powi(2)).sqrt() + 2.0 * alpha.cos() - 15.0;
+        assert!(t < 0.0 && (t - exact).abs() < 4e-15, "{t} {exact}");
+    }
+}
+
+#[test]
+fn both_normals_are_those_of_the_surfaces() {
+    for (_, values) in references() {
+        let placement = values.scene.placement().expect("a placement");
+        let gap = NormalGap::new(&placement);
+        for (sigma, eta, t, alpha, ..) in &values.normal_gap {
+            let (Some(_), Some(alpha)) = (t, alpha) else { continue };
+            let GapPoint { rail, rail_normal, wheel_normal, gap: t, .. } =
+                gap.point(*sigma, *eta).expect("a point");
+            let (sin, cos) = exact(alpha).sin_cos();
+            assert!((rail_normal.x + sin).abs() < 1e-14 && (rail_normal.z - cos).abs() < 1e-14);
+            // The wheel's normal at the hit is that of the column over the same place.
+            let over = rail.xi + t * rail_normal.x;
+            let other = Evaluator::new(&placement).normals(over, *eta).wheel.expect("a normal");
+            let normal = wheel_normal.expect("a normal of the wheel");
+            assert!((normal.into_inner() - other.into_inner()).norm() < 1e-9, "{normal:?} {other:?}");
+        }
+    }
+}
+
+#[test]
+fn on_a_flat_rail_the_conformal_patch_is_the_patch() {
+    let line = Arc::line([-30.0, 0.0], [30.0, 0.0]).and_then(profile).expect("a line");
+    let tread =
+        Arc::about([0.0, 330.0], 330.0, Half::Lower, [-60.0, 60.0]).and_then(profile).expect("an arc");
+    let pair = Pair::new(line, tread, 460.0).expect("a pair");
+    for skew in [0.0, 0.03] {
+        let placement = pair.placed(0.0, 0.0, skew).expect("a placement");
+        let window = Window { xi: [-12.0, 12.0], eta: [-14.0, 14.0] };
+        let found = ConformalPatch::new(&NormalGap::new(&placement), 0.05, &window);
+        let patch = Patch::new(&placement, 0.05, &Window::UNBOUNDED);
+        let ([found], [part]) = (&found.components[..], &patch.components[..]) else { panic!("{found:?}") };
+        assert!((found.area / part.area - 1.0).abs() < 1e-8, "{} {}", found.area, part.area);
+        for end in [0, 1] {
+            assert!(
+                (found.sigma[end] - part.xi[end]).abs() < 1e-7
+                    && (found.eta[end] - part.eta[end]).abs() < 2e-3
+            );
+        }
+        assert!(!found.cut && found.angle == [0.0; 2]);
+    }
+}
+
+#[test]
+fn a_conformal_patch_has_its_tips_where_the_gap_is_closed() {
+    let placement = arcs(13.0, 13.5, 460.0, 0.0);
+    let (gap, delta) = (NormalGap::new(&placement), 0.08);
+    let window = Window { xi: [-11.0, 11.0], eta: [-14.0, 14.0] };
+    let patch = ConformalPatch::new(&gap, delta, &window);
+    let [part] = &patch.components[..] else { panic!("{patch:?}") };
+    for tip in part.sigma {
+        assert!((gap.gap(tip, 0.0) - delta * gap.angle(tip).cos()).abs() < 1e-14);
+    }
+    assert!(
+        (part.sigma[0] + part.sigma[1]).abs() < 1e-9 && (part.angle[1] - part.sigma[1] / 13.0).abs() < 1e-12
+    );
+    // Cells of a fine grid.
+    let step = 0.02;
+    let axis =
+        |reach: f64| (0..).map(move |k| step * (f64::from(k) + 0.5) - reach).take_while(move |v| *v < reach);
+    let (sigma, eta): (Vec<f64>, Vec<f64>) = (axis(11.0).collect(), axis(12.0).collect());
+    let mut t = vec![0.0; sigma.len() * eta.len()];
+    fill_normal_gap(&gap, &sigma, &EtaAxis::new(&eta), 1e-9, &mut t);
+    let inside = t.chunks(eta.len()).zip(&sigma).map(|(column, &sigma)| {
+        let target = delta * gap.angle(sigma).cos();
+        column.iter().filter(|&&t| t < target).count()
+    });
+    let cells = inside.sum::<usize>() as f64 * step * step;
+    assert!((cells / patch.area() - 1.0).abs() < 1e-3, "{cells} {}", patch.area());
+    let wider = ConformalPatch::new(&gap, 0.1, &window);
+    assert!(wider.area() > patch.area() && wider.components[0].sigma[1] > part.sigma[1]);
+    // A window that is too small cuts the patch.
+    let small = Window { xi: [-11.0, 2.0], eta: [-14.0, 14.0] };
+    assert!(ConformalPatch::new(&gap, delta, &small).components[0].cut);
+}
+
+const CORNER: &str = "rail.profile = \"60E1\"\nwheel = { profile = \"S1002\", radius = 460.0 }\n\
+                      contact = { rail_x = -32.5, wheel_x = -36.5 }\npatch = { approach = 0.08 }\n";
+
+fn case(rest: &str) -> wheelrail::Result<Run> {
+    let scene: Scene = scene::parse(&format!("{CORNER}{rest}"), false)?;
+    Run::new(scene::resolve(&scene, ".".as_ref(), "corner")?, SILENT)
+}
+
+#[test]
+fn a_run_over_the_plane_recommends_the_rail_where_the_normal_turns() {
+    let warnings = case("").expect("a run").warnings();
+    assert!(warnings.iter().any(|text| text.contains("grid.reference = \"rail\"")), "{warnings:?}");
+    let tread = "rail.profile = \"60E1\"\nwheel = { profile = \"S1002\", radius = 460.0 }\n\
+                 contact = { rail_x = 0.0, wheel_x = 0.0 }\npatch = { approach = 0.05 }\n";
+    let scene: Scene = scene::parse(tread, false).expect("a scene");
+    let case = scene::resolve(&scene, ".".as_ref(), "tread").expect("a case");
+    assert_eq!(Run::new(case, SILENT).expect("a run").warnings(), [""; 0]);
+}
+
+#[test]
+fn a_run_over_the_rail_has_both_gaps_at_the_same_points() {
+    let run = case("grid = { reference = \"rail\" }\n").expect("a run");
+    assert!(!run.warnings().iter().any(|text| text.contains("grid.reference")), "{:?}", run.warnings());
+    let part = &run.parts[0];
+    let (grid, conformal) = (&part.site.grid, part.analysis.conformal.as_ref().expect("a normal gap"));
+    let gap = NormalGap::new(&part.site.contact.placement);
+    for (i, at) in conformal.rail.iter().enumerate() {
+        assert_eq!(at.xi, grid.xi[i]);
+        for (j, &eta) in grid.eta.iter().enumerate().step_by(5) {
+            let (found, t) = (conformal.gap[i * grid.eta.len() + j], gap.gap(at.sigma, eta));
+            assert!((found - t).abs() < 1e-13 || (found.is_nan() && t.is_nan()), "{at:?} {eta}: {found} {t}");
+        }
+    }
+    let patch = conformal.patch.as_ref().expect("a patch");
+    assert!(patch.components.iter().all(|part| !part.cut), "{patch:?}");
+}
+
+#[test]
+fn bad_input_over_the_rail_is_refused() {
+    let complaint = |rest: &str| case(rest).expect_err("an error").to_string();
+    let beyond = complaint(
+        "grid = { reference = \"rail\", xi = { from = -40.0, to = 4.0, n = 9 }, eta = { values = [0.0, 1.0] } }\n",
+    );
+    assert!(beyond.contains("grid: xi: found -40; expected σ within"), "{beyond}");
+    let method = complaint("grid = { reference = \"rail\", method = \"pointwise\" }\n");
+    assert!(method.contains("grid: method: found pointwise"), "{method}");
+    let word = complaint("grid = { reference = \"wheel\" }\n");
+    assert!(word.contains("wheel"), "{word}");
+}
