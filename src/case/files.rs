@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use nalgebra::{Unit, Vector3};
 use rayon::prelude::*;
 
 use super::drawn::{Drawn, loops_of};
@@ -10,21 +11,22 @@ use super::in_place::write_in_place;
 use super::input::{OutputFormat, Outputs};
 use super::on_rail::OnRail;
 use super::run::{COMPUTING, Part, Run, Tell};
-use super::summary::summary;
+use super::summary::{Meshes, summary};
 use crate::error::{Error, Result};
 use crate::export::{
     ContactSettings, CurvedDeck, CurvedFields, Deck, Frame, GridFields, Header, Interval, Loop, NetCdf,
-    PatchPicture, Prescribed, QuadMesh, SurfaceMesh, VIEW_SCRIPT, array_npy, boundary_csv, boundary_vtp,
-    conform_curved_wrp, conform_wrp, conformal_vts, contact_curved_inp, contact_inp, countact_wrp,
-    interpen_csv, interpen_sigma_csv, patch_vtu, rail_vts, separation_vtk, separation_vts, separation_wrp,
-    surface_vtp, wheel_vts,
+    PatchMesh, PatchPicture, Prescribed, QuadMesh, SurfaceMesh, VIEW_SCRIPT, array_npy, boundary_csv,
+    boundary_vtp, conform_curved_wrp, conform_wrp, conformal_vts, contact_curved_inp, contact_inp,
+    countact_wrp, interpen_csv, interpen_sigma_csv, patch_inp, patch_msh, patch_vtu, rail_vts,
+    separation_vtk, separation_vts, separation_wrp, strips_vtu, surface_stl, surface_vtp, surface_vtu,
+    wheel_vts,
 };
 use crate::files::{Folder, FolderPart};
-use crate::mesh::{StripMesh, Surface};
+use crate::mesh::{StripMesh, Surface, TriangleMesh};
 use crate::patch::Outline;
-use crate::placement::Creepages;
+use crate::placement::{Creepages, Placement};
 use crate::profile::Station;
-use crate::separation::midplane_table;
+use crate::separation::{Evaluator, Normals, midplane_table};
 
 /// Turns a picture's SVG into PNG. The library draws no pixels: a caller who wants them brings this.
 pub type Rasterise = fn(&str) -> Result<Vec<u8>>;
@@ -104,6 +106,8 @@ fn write_part(
         None => None,
     };
     let bodies = surfaces_around(outputs, part, &mut skipped)?;
+    let solids = bodies.as_ref().map(|bodies| bodies.each_ref().map(|body| surface_mesh(part, body)));
+    let triangles = triangles(run, part, &mut skipped)?;
     let loops = loops(part);
     let strips = part.analysis.strips.as_ref().map(quads);
     let drawn = Drawn::new(part);
@@ -113,8 +117,9 @@ fn write_part(
     arrays(&mut jobs, outputs, part);
     pictures(&mut jobs, outputs, &picture, png)?;
     if outputs.any(&[OutputFormat::Vtk]) {
-        surfaces(&mut jobs, &header, &grid, &loops, strips.as_ref(), bodies.as_ref());
+        surfaces(&mut jobs, &header, &grid, &loops, strips.as_ref());
     }
+    elements(&mut jobs, outputs, &header, triangles.as_ref(), solids.as_ref());
     if let Some(netcdf) = &netcdf {
         stream(&mut jobs, "separation.nc", move |file| netcdf.write(file));
     }
@@ -135,7 +140,8 @@ fn write_part(
     })?;
     names.extend(in_place);
     names.sort();
-    let summary = summary(run, part, &folder, creepages, bodies.as_ref(), &names, &skipped);
+    let meshes = Meshes { bodies: bodies.as_ref(), patch: triangles.as_ref().map(|patch| &patch.mesh) };
+    let summary = summary(run, part, &folder, creepages, meshes, &names, &skipped);
     let mut text = serde_json::to_vec_pretty(&summary).unwrap_or_default();
     text.push(b'\n');
     folder.write("summary.json", &text)?;
@@ -293,13 +299,13 @@ fn pictures<'a>(
     Ok(())
 }
 
-/// Gives both bodies around the patch, if VTK's files are asked for; a grid of one row or column has none.
+/// Gives both bodies around the patch, if files with them are asked for; a grid of one row or column has none.
 fn surfaces_around(
     outputs: &Outputs,
     part: &Part,
     skipped: &mut Vec<String>,
 ) -> Result<Option<[Surface; 2]>> {
-    let names = "rail.vtu, wheel.vtu";
+    let names = "surfaces of rail and wheel";
     if !part.site.has_extent() {
         skipped.push(format!("{names}: the grid has no extent"));
         return Ok(None);
@@ -307,7 +313,84 @@ fn surfaces_around(
     let contact = &part.site.contact;
     let approach = contact.approach.map(|(approach, _)| approach);
     let surfaces = || Surface::around(&contact.placement, &part.site.window(), approach);
-    possible(outputs, names, &[OutputFormat::Vtk], surfaces, skipped)
+    possible(outputs, names, &OutputFormat::SURFACES, surfaces, skipped)
+}
+
+/// Gives a body's surface as writers take it.
+fn surface_mesh(part: &Part, body: &Surface) -> SurfaceMesh {
+    SurfaceMesh {
+        points: body.points.clone(),
+        triangles: body.triangles(),
+        separation: body.separations(&part.site.contact.placement),
+        normals: body.normals.clone(),
+    }
+}
+
+/// Gives the triangle mesh of the patch with its fields, if files with it are asked for; `None` without an approach.
+fn triangles(run: &Run, part: &Part, skipped: &mut Vec<String>) -> Result<Option<PatchMesh>> {
+    let Some(patch) = &part.analysis.patch else { return Ok(None) };
+    let (outputs, placement) = (&run.case.outputs, &part.site.contact.placement);
+    let mesh = || {
+        let mesh = TriangleMesh::new(placement, patch, outputs.mesh_size)?;
+        let areas = patch.components.iter().map(|component| component.area).collect();
+        Ok(with_fields(placement, mesh, areas))
+    };
+    possible(outputs, "triangle mesh of the patch", &OutputFormat::TRIANGLES, mesh, skipped)
+}
+
+fn with_fields(placement: &Placement, mesh: TriangleMesh, areas: Vec<f64>) -> PatchMesh {
+    let mut evaluator = Evaluator::new(placement);
+    let zero = |normal: Option<Unit<Vector3<f64>>>| normal.map_or_else(Vector3::zeros, Unit::into_inner);
+    let (mut separation, mut rail_normals, mut wheel_normals) = (Vec::new(), Vec::new(), Vec::new());
+    for point in &mesh.points {
+        separation.push(evaluator.separation(point.x, point.y));
+        let Normals { rail, wheel } = evaluator.normals(point.x, point.y);
+        rail_normals.push(zero(rail));
+        wheel_normals.push(zero(wheel));
+    }
+    PatchMesh { mesh, separation, rail_normals, wheel_normals, areas }
+}
+
+/// Adds the files of triangles: of the patch, and of both bodies around it.
+fn elements<'a>(
+    jobs: &mut Vec<Job<'a>>,
+    outputs: &Outputs,
+    header: &'a Header,
+    patch: Option<&'a PatchMesh>,
+    bodies: Option<&'a [SurfaceMesh; 2]>,
+) {
+    let bodies = || bodies.into_iter().flatten();
+    if outputs.any(&[OutputFormat::Vtk]) {
+        for (name, body) in ["rail.vtu", "wheel.vtu"].into_iter().zip(bodies()) {
+            bytes(jobs, name, move || surface_vtu(header, body));
+        }
+        if let Some(patch) = patch {
+            bytes(jobs, "patch.vtu", move || patch_vtu(header, patch));
+        }
+    }
+    if outputs.any(&[OutputFormat::Vtp]) {
+        for (name, body) in ["rail.vtp", "wheel.vtp"].into_iter().zip(bodies()) {
+            bytes(jobs, name, move || surface_vtp(header, body));
+        }
+        if let Some(patch) = patch {
+            bytes(jobs, "patch.vtp", move || surface_vtp(header, &patch.surface()));
+        }
+    }
+    if outputs.any(&[OutputFormat::Stl]) {
+        for ((name, solid), body) in [("rail.stl", "rail"), ("wheel.stl", "wheel")].into_iter().zip(bodies())
+        {
+            bytes(jobs, name, move || surface_stl(solid, body));
+        }
+        if let Some(patch) = patch {
+            bytes(jobs, "patch.stl", move || surface_stl("patch", &patch.surface()));
+        }
+    }
+    if let (true, Some(patch)) = (outputs.any(&[OutputFormat::Gmsh]), patch) {
+        bytes(jobs, "patch.msh", move || patch_msh(header, patch));
+    }
+    if let (true, Some(patch)) = (outputs.any(&[OutputFormat::Abaqus]), patch) {
+        bytes(jobs, "patch.inp", move || patch_inp(header, patch));
+    }
 }
 
 fn surfaces<'a>(
@@ -316,7 +399,6 @@ fn surfaces<'a>(
     grid: &'a GridFields<'a>,
     loops: &'a [Loop],
     strips: Option<&'a QuadMesh>,
-    bodies: Option<&'a [Surface; 2]>,
 ) {
     type Writer = fn(&mut dyn Write, &Header, &GridFields<'_>) -> std::io::Result<()>;
     let writers: [(&'static str, Writer); 4] = [
@@ -328,14 +410,8 @@ fn surfaces<'a>(
     for (name, writer) in writers {
         stream(jobs, name, move |file| writer(file, header, grid));
     }
-    for (name, body) in ["rail.vtu", "wheel.vtu"].into_iter().zip(bodies.into_iter().flatten()) {
-        bytes(jobs, name, move || {
-            let mesh = SurfaceMesh { points: body.points.clone(), triangles: body.triangles() };
-            surface_vtp(header, &mesh)
-        });
-    }
     if let Some(strips) = strips {
-        bytes(jobs, "patch.vtu", move || patch_vtu(header, strips));
+        bytes(jobs, "strips.vtu", move || strips_vtu(header, strips));
     }
     bytes(jobs, "boundary.vtp", move || boundary_vtp(header, loops));
     bytes(jobs, "view.py", || Ok(VIEW_SCRIPT.as_bytes().to_vec()));

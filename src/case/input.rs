@@ -202,12 +202,14 @@ pub struct AskedAxes {
 }
 
 /// The files that are written besides the tables and the picture.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Outputs {
     /// Their formats.
     pub formats: Vec<OutputFormat>,
     /// Whether each of them has to be written. Otherwise a format that cannot hold the grid is left out with a remark.
     pub required: bool,
+    /// Length of the edges of the patch's triangle mesh \[mm\]; `None` takes it from each part of the patch.
+    pub mesh_size: Option<f64>,
 }
 
 impl Outputs {
@@ -242,6 +244,14 @@ pub enum OutputFormat {
     Contact,
     /// patch.png.
     Png,
+    /// patch.msh.
+    Gmsh,
+    /// patch.inp.
+    Abaqus,
+    /// patch.stl, rail.stl, wheel.stl.
+    Stl,
+    /// patch.vtp, rail.vtp, wheel.vtp.
+    Vtp,
 }
 
 impl OutputFormat {
@@ -253,12 +263,18 @@ impl OutputFormat {
             Self::Text => 80.0,
             Self::Conform => 130.0,
             Self::Contact => 28.0,
-            Self::Countact | Self::Png => 0.0,
+            Self::Countact | Self::Png | Self::Gmsh | Self::Abaqus | Self::Stl | Self::Vtp => 0.0,
         }
     }
 
     /// Formats that are solver decks.
     pub(super) const DECKS: [Self; 4] = [Self::Text, Self::Conform, Self::Countact, Self::Contact];
+
+    /// Formats that hold the triangle mesh of the patch.
+    pub(super) const TRIANGLES: [Self; 5] = [Self::Vtk, Self::Gmsh, Self::Abaqus, Self::Stl, Self::Vtp];
+
+    /// Formats that hold the surfaces of both bodies.
+    pub(super) const SURFACES: [Self; 3] = [Self::Vtk, Self::Stl, Self::Vtp];
 }
 
 /// What files say of the scene that they come from; nothing is computed from it.

@@ -8,7 +8,7 @@ use super::in_place;
 use super::input::Case;
 use super::run::{Part, Run};
 use crate::files::FolderPart;
-use crate::mesh::{Quality, Surface};
+use crate::mesh::{Quality, Surface, TriangleMesh};
 use crate::patch::{Component, Patch};
 use crate::placement::{Body, Creepages};
 use crate::profile::{Closing, Joint};
@@ -42,13 +42,22 @@ struct ClosingSummary {
 /// Kinks below this are not worth a reader's time \[rad\].
 const SMOOTH: f64 = 1e-9;
 
-/// Gives the summary of one part; `surfaces` are the written ones of rail and wheel.
+/// The meshes that were written.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Meshes<'a> {
+    /// The surfaces of rail and wheel.
+    pub(super) bodies: Option<&'a [Surface; 2]>,
+    /// The triangles of the patch.
+    pub(super) patch: Option<&'a TriangleMesh>,
+}
+
+/// Gives the summary of one part.
 pub(super) fn summary(
     run: &Run,
     part: &Part,
     folder: &FolderPart<'_>,
     creepages: Option<Creepages>,
-    surfaces: Option<&[Surface; 2]>,
+    meshes: Meshes<'_>,
     files: &[String],
     skipped: &[String],
 ) -> Value {
@@ -87,7 +96,8 @@ pub(super) fn summary(
         "hertz_ellipse_under": contact.ellipse_under,
         "patch": analysis.patch.as_ref().map(patch),
         "mesh_quality": analysis.strips.as_ref().and_then(Quality::of_strips),
-        "surface_quality": surfaces.map(|[rail, wheel]| json!({
+        "triangle_mesh": meshes.patch.map(triangle_mesh),
+        "surface_quality": meshes.bodies.map(|[rail, wheel]| json!({
             "rail": Quality::of_surface(rail),
             "wheel": Quality::of_surface(wheel),
         })),
@@ -151,6 +161,18 @@ fn patch(patch: &Patch) -> Value {
         "eta_extent_mm": extent.map(|e| e.eta),
         "cut_by_window": patch.cut_by_window(),
         "components": patch.components.iter().map(component).collect::<Vec<_>>(),
+    })
+}
+
+fn triangle_mesh(mesh: &TriangleMesh) -> Value {
+    json!({
+        "quality": Quality::of_triangles(mesh),
+        "smallest_angle_away_from_sharp_corners_rad": Some(mesh.smallest_angle()).filter(|angle| angle.is_finite()),
+        "components": (0..mesh.size.len()).map(|k| json!({
+            "size_mm": mesh.size[k],
+            "chord_error_mm": mesh.chord_error[k],
+            "area_mm2": mesh.area(k),
+        })).collect::<Vec<_>>(),
     })
 }
 

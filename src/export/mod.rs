@@ -4,35 +4,41 @@
 //! never held twice; small files are returned as bytes. Every file is in the contact frame of Report Sec. 4,
 //! in mm. [`Header::statements`] is the one place that describes frame, signs, order and mask in words.
 
+mod abaqus;
 mod block;
 mod csv;
 mod curved;
 mod deck;
+mod gmsh;
 mod in_place;
 mod legacy;
 mod model;
 mod netcdf;
 mod npy;
 mod picture;
+mod stl;
 mod vtk;
 mod vts;
 
+pub use abaqus::patch_inp;
 pub use csv::{boundary_csv, interpen_csv, interpen_sigma_csv};
 pub use curved::CurvedFields;
 pub use deck::{
     ContactSettings, CurvedDeck, Deck, Prescribed, conform_curved_wrp, conform_wrp, contact_curved_inp,
     contact_inp, countact_wrp, separation_wrp,
 };
+pub use gmsh::patch_msh;
 pub use in_place::{ContactInPlace, body_vtp, boundaries_vtp, contacts_vtp, patches_vtp, wheelset_vtm};
 pub use legacy::separation_vtk;
-pub use model::{Frame, GridFields, Header, Interval, Loop, QuadMesh, SurfaceMesh};
+pub use model::{Frame, GridFields, Header, Interval, Loop, PatchMesh, QuadMesh, SurfaceMesh};
 pub use netcdf::NetCdf;
 pub use npy::array_npy;
 pub use picture::{
     Chart, CurvesPanel, CurvesPicture, Nodes, PatchPicture, PlottedCurve, ProfilePicture, SEPARATOR, Series,
     jumps,
 };
-pub use vtk::{boundary_vtp, collection_pvd, patch_vtu, surface_vtp};
+pub use stl::surface_stl;
+pub use vtk::{boundary_vtp, collection_pvd, patch_vtu, strips_vtu, surface_vtp, surface_vtu};
 pub use vts::{conformal_vts, rail_vts, separation_vts, wheel_vts};
 
 /// The ParaView script that opens its own folder: coloured separation, the boundary, gap vectors.

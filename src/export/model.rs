@@ -3,6 +3,7 @@
 use nalgebra::{Isometry2, Point3, Unit, Vector3};
 
 use crate::error::{Error, Result};
+use crate::mesh::TriangleMesh;
 
 /// Largest difference of the steps of an evenly spaced grid, as a multiple of the largest |coordinate|: two roundings of
 /// `from + i·step` at each end. A smaller factor would refuse grids that are even to rounding. A larger one would accept
@@ -277,22 +278,78 @@ impl QuadMesh {
     }
 }
 
-/// A triangulated surface of one body around the patch.
+/// A triangulated surface of one body.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SurfaceMesh {
     /// Nodes (ξ, η, ζ) \[mm\].
     pub points: Vec<Point3<f64>>,
     /// Triangles: indices of three nodes, counter-clockwise seen from outside the body.
     pub triangles: Vec<[usize; 3]>,
+    /// s \[mm\] at the nodes, NaN where it is not defined.
+    pub separation: Vec<f64>,
+    /// Outward unit normals at the nodes.
+    pub normals: Vec<Vector3<f64>>,
 }
 
 impl SurfaceMesh {
-    /// Checks the property that every writer relies on.
+    /// Checks the properties that every writer relies on.
     ///
     /// # Errors
-    /// A node number beyond the nodes.
+    /// Lengths that do not agree; a node number beyond the nodes.
     pub fn validate(&self) -> Result<()> {
+        same_length("separations of a surface", self.separation.len(), self.points.len())?;
+        same_length("normals of a surface", self.normals.len(), self.points.len())?;
         nodes_exist(self.triangles.iter().flatten(), self.points.len())
+    }
+}
+
+/// The triangle mesh of the patch, with what its nodes and components carry.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PatchMesh {
+    /// The mesh.
+    pub mesh: TriangleMesh,
+    /// s \[mm\] at the nodes.
+    pub separation: Vec<f64>,
+    /// Outward unit normals of the rail at the nodes; zero where it has none.
+    pub rail_normals: Vec<Vector3<f64>>,
+    /// Outward unit normals of the wheel over the nodes; zero where it has none.
+    pub wheel_normals: Vec<Vector3<f64>>,
+    /// Exact area of each component \[mm²\], inside the curve and not the polygon.
+    pub areas: Vec<f64>,
+}
+
+impl PatchMesh {
+    /// Checks the properties that every writer relies on.
+    ///
+    /// # Errors
+    /// Lengths that do not agree; a node or component number beyond those there are.
+    pub fn validate(&self) -> Result<()> {
+        let nodes = self.mesh.points.len();
+        same_length("separations of the patch", self.separation.len(), nodes)?;
+        same_length("rail normals of the patch", self.rail_normals.len(), nodes)?;
+        same_length("wheel normals of the patch", self.wheel_normals.len(), nodes)?;
+        same_length("cell components", self.mesh.component.len(), self.mesh.triangles.len())?;
+        nodes_exist(self.mesh.component.iter(), self.areas.len())?;
+        nodes_exist(self.mesh.triangles.iter().flatten(), nodes)?;
+        nodes_exist(self.mesh.boundary.iter().flat_map(|chain| &chain.nodes), nodes)
+    }
+
+    /// Returns the nodes of the boundary, ascending.
+    pub(super) fn boundary_nodes(&self) -> Vec<usize> {
+        let mut nodes: Vec<usize> =
+            self.mesh.boundary.iter().flat_map(|chain| &chain.nodes).copied().collect();
+        nodes.sort_unstable();
+        nodes
+    }
+
+    /// Returns the patch as a part of the rail's surface.
+    pub fn surface(&self) -> SurfaceMesh {
+        SurfaceMesh {
+            points: self.mesh.points.clone(),
+            triangles: self.mesh.triangles.clone(),
+            separation: self.separation.clone(),
+            normals: self.rail_normals.clone(),
+        }
     }
 }
 

@@ -1,8 +1,9 @@
 //! Sample data for the writers' tests: a paraboloid, with a corner where no body is.
 
-use nalgebra::{Isometry2, Point3, Translation2, UnitComplex};
+use nalgebra::{Isometry2, Point3, Translation2, UnitComplex, Vector3};
 
-use super::model::{Frame, GridFields, Header, Loop, QuadMesh};
+use super::model::{Frame, GridFields, Header, Loop, PatchMesh, QuadMesh};
+use crate::mesh::{BoundaryChain, TriangleMesh};
 
 /// A grid that owns its arrays.
 pub(super) struct Sample {
@@ -48,6 +49,29 @@ pub(super) fn mesh() -> QuadMesh {
     let points = (0..9).map(|i| Point3::new(f64::from(i / 3) - 1.0, f64::from(i % 3) - 1.0, 0.0)).collect();
     let quads = [0, 1, 3, 4].map(|a| [a, a + 3, a + 4, a + 1]).to_vec();
     QuadMesh { points, quads, area: vec![1.0; 4], component: vec![0, 0, 1, 1] }
+}
+
+/// Returns the same square in eight triangles around nine nodes, with 7 mm² as its area.
+pub(super) fn patch_mesh() -> PatchMesh {
+    let QuadMesh { points, quads, .. } = mesh();
+    let triangles: Vec<[usize; 3]> = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    let chain = BoundaryChain { component: 0, nodes: vec![0, 3, 6, 7, 8, 5, 2, 1], angles: vec![1.5; 8] };
+    let mesh = TriangleMesh {
+        component: vec![0; triangles.len()],
+        triangles,
+        boundary: vec![chain],
+        size: vec![1.0],
+        chord_error: vec![0.01],
+        points,
+    };
+    let nodes = mesh.points.len();
+    PatchMesh {
+        separation: vec![0.05; nodes],
+        rail_normals: vec![Vector3::z(); nodes],
+        wheel_normals: vec![-Vector3::z(); nodes],
+        areas: vec![7.0],
+        mesh,
+    }
 }
 
 pub(super) fn square() -> Loop {

@@ -7,10 +7,10 @@
 //! which meshio turns into floating-point numbers (they are declared as signed). Array names contain no blanks, which break
 //! readers. Only the version and the cell kinds that meshio reads are used: XML 1.0.
 
-use super::model::{Header, Loop, QuadMesh, SurfaceMesh, same_length};
+use super::model::{Header, Loop, PatchMesh, QuadMesh, SurfaceMesh, same_length};
 use super::vts::{comment, field_data};
 use crate::error::{Error, Result};
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use vtkio::model::{
     Attribute, Attributes, ByteOrder, CellType, Cells, DataArray, DataSet, ElementType, IOBuffer,
     PolyDataPiece, UnstructuredGridPiece, Version, VertexNumbers, Vtk,
@@ -45,33 +45,96 @@ pub fn boundary_vtp(header: &Header, loops: &[Loop]) -> Result<Vec<u8>> {
         data: Attributes { point: Vec::new(), cell },
         ..PolyDataPiece::default()
     };
-    xml(header, DataSet::inline(piece), EMPTY_POLYDATA)
+    xml(header, &[], DataSet::inline(piece), EMPTY_POLYDATA)
 }
 
-/// Writes `patch.vtu`: the boundary-fitted cells on the rail's surface, with the cell arrays `area` \[mm²\]
-/// and `component`. A cell with a repeated node is written as a triangle.
+/// Writes `strips.vtu`: the boundary-fitted cells on the rail's surface, with the cell arrays `area` \[mm²\] and `component`.
+/// All quads come first, then the cells with a repeated node, which are written as triangles; each kind is in the order of
+/// the mesh. With one block per kind meshio converts the file to any format.
 ///
 /// # Errors
 /// A mesh that contradicts itself.
-pub fn patch_vtu(header: &Header, mesh: &QuadMesh) -> Result<Vec<u8>> {
+pub fn strips_vtu(header: &Header, mesh: &QuadMesh) -> Result<Vec<u8>> {
     mesh.validate()?;
-    let components: Vec<i32> = mesh.component.iter().map(|&c| c as i32).collect();
-    let cell = vec![
-        scalars("area", mesh.area.clone().into(), mesh.quads.len())?,
-        scalars("component", components.into(), mesh.quads.len())?,
-    ];
     let cells: Vec<Vec<usize>> = mesh.quads.iter().map(distinct).collect();
-    unstructured(header, &mesh.points, &cells, cell)
+    let mut order: Vec<usize> = (0..cells.len()).collect();
+    order.sort_by_key(|&k| std::cmp::Reverse(cells[k].len()));
+    let areas: Vec<f64> = order.iter().map(|&k| mesh.area[k]).collect();
+    let components: Vec<i32> = order.iter().map(|&k| mesh.component[k] as i32).collect();
+    let cell = vec![
+        scalars("area", areas.into(), cells.len())?,
+        scalars("component", components.into(), cells.len())?,
+    ];
+    let cells: Vec<&[usize]> = order.iter().map(|&k| &cells[k][..]).collect();
+    let grid = unstructured(&mesh.points, &cells, Attributes { point: Vec::new(), cell });
+    xml(header, &[], grid, EMPTY_UNSTRUCTURED)
 }
 
-/// Writes a triangulated surface as `.vtu`.
+/// Writes `patch.vtu`: the triangle mesh of the patch on the rail's surface. Point arrays are separation \[mm\],
+/// `rail_normal`, `wheel_normal` and boundary (1 on the boundary, 0 inside); cell arrays are `component`, and
+/// `component_area`, the exact area \[mm²\] of the cell's component. Field data hold the exact areas, the sizes and the chord
+/// errors of all components.
+///
+/// # Errors
+/// A mesh that contradicts itself.
+pub fn patch_vtu(header: &Header, patch: &PatchMesh) -> Result<Vec<u8>> {
+    patch.validate()?;
+    let PatchMesh { mesh, separation, rail_normals, wheel_normals, areas } = patch;
+    let (nodes, cells) = (mesh.points.len(), mesh.triangles.len());
+    let mut boundary = vec![0; nodes];
+    patch.boundary_nodes().into_iter().for_each(|node| boundary[node] = 1);
+    let own_areas: Vec<f64> = mesh.component.iter().map(|&component| areas[component]).collect();
+    let components: Vec<i32> = mesh.component.iter().map(|&component| component as i32).collect();
+    let data = Attributes {
+        point: vec![
+            scalars("separation", separation.clone().into(), nodes)?,
+            vectors("rail_normal", rail_normals),
+            vectors("wheel_normal", wheel_normals),
+            scalars("boundary", boundary.into(), nodes)?,
+        ],
+        cell: vec![
+            scalars("component", components.into(), cells)?,
+            scalars("component_area", own_areas.into(), cells)?,
+        ],
+    };
+    let fields: [(&str, &[f64]); 3] = [
+        ("component_areas_mm2", areas),
+        ("component_sizes_mm", &mesh.size),
+        ("component_chord_errors_mm", &mesh.chord_error),
+    ];
+    xml(header, &fields, unstructured(&mesh.points, &mesh.triangles, data), EMPTY_UNSTRUCTURED)
+}
+
+/// Writes a triangulated surface as unstructured grid (`.vtu`), with the point arrays separation \[mm\] and normal.
+///
+/// # Errors
+/// A mesh that contradicts itself.
+pub fn surface_vtu(header: &Header, mesh: &SurfaceMesh) -> Result<Vec<u8>> {
+    let data = surface_data(mesh)?;
+    xml(header, &[], unstructured(&mesh.points, &mesh.triangles, data), EMPTY_UNSTRUCTURED)
+}
+
+/// Writes a triangulated surface as polygons (`.vtp`), which viewers in browsers open, with the same arrays as
+/// [`surface_vtu`].
 ///
 /// # Errors
 /// A mesh that contradicts itself.
 pub fn surface_vtp(header: &Header, mesh: &SurfaceMesh) -> Result<Vec<u8>> {
+    let data = surface_data(mesh)?;
+    let (connectivity, offsets) = numbered(&mesh.triangles);
+    let piece = PolyDataPiece {
+        points: coordinates(&mesh.points),
+        polys: Some(VertexNumbers::XML { connectivity, offsets }),
+        data,
+        ..PolyDataPiece::default()
+    };
+    xml(header, &[], DataSet::inline(piece), EMPTY_POLYDATA)
+}
+
+fn surface_data(mesh: &SurfaceMesh) -> Result<Attributes> {
     mesh.validate()?;
-    let cells: Vec<Vec<usize>> = mesh.triangles.iter().map(|triangle| triangle.to_vec()).collect();
-    unstructured(header, &mesh.points, &cells, Vec::new())
+    let separation = scalars("separation", mesh.separation.clone().into(), mesh.points.len())?;
+    Ok(Attributes { point: vec![separation, vectors("normal", &mesh.normals)], cell: Vec::new() })
 }
 
 /// Writes `surface.pvd`: the files of a sweep on one time axis, which ParaView plays. `steps` are (time, part, path), with
@@ -87,27 +150,28 @@ pub fn collection_pvd(steps: &[(f64, usize, String)]) -> String {
     )
 }
 
-fn unstructured(
-    header: &Header,
-    points: &[Point3<f64>],
-    cells: &[Vec<usize>],
-    cell: Vec<Attribute>,
-) -> Result<Vec<u8>> {
+fn unstructured<C: AsRef<[usize]>>(points: &[Point3<f64>], cells: &[C], data: Attributes) -> DataSet {
+    let kind = |cell: &C| if cell.as_ref().len() == 3 { CellType::Triangle } else { CellType::Quad };
+    let (connectivity, offsets) = numbered(cells);
+    DataSet::inline(UnstructuredGridPiece {
+        points: coordinates(points),
+        cells: Cells {
+            cell_verts: VertexNumbers::XML { connectivity, offsets },
+            types: cells.iter().map(kind).collect(),
+        },
+        data,
+    })
+}
+
+/// Returns the nodes of all cells one after another, and where each cell ends among them.
+fn numbered<C: AsRef<[usize]>>(cells: &[C]) -> (Vec<u64>, Vec<u64>) {
     let mut end = 0;
     let offsets = cells.iter().map(|nodes| {
-        end += nodes.len() as u64;
+        end += nodes.as_ref().len() as u64;
         end
     });
     let offsets = offsets.collect();
-    let types = cells.iter().map(|nodes| if nodes.len() == 3 { CellType::Triangle } else { CellType::Quad });
-    let types = types.collect();
-    let connectivity = cells.iter().flatten().map(|&node| node as u64).collect();
-    let piece = UnstructuredGridPiece {
-        points: coordinates(points),
-        cells: Cells { cell_verts: VertexNumbers::XML { connectivity, offsets }, types },
-        data: Attributes { point: Vec::new(), cell },
-    };
-    xml(header, DataSet::inline(piece), EMPTY_UNSTRUCTURED)
+    (cells.iter().flat_map(AsRef::as_ref).map(|&node| node as u64).collect(), offsets)
 }
 
 /// Returns the coordinates of points one after another.
@@ -131,8 +195,14 @@ pub(super) fn scalars(name: &str, data: IOBuffer, expected: usize) -> Result<Att
     Ok(Attribute::DataArray(DataArray { name: name.into(), elem, data }))
 }
 
-fn xml(header: &Header, data: DataSet, empty_piece: &str) -> Result<Vec<u8>> {
-    Ok(annotate(xml_text(data, empty_piece)?, header))
+/// Returns an array of vectors of points.
+fn vectors(name: &str, vectors: &[Vector3<f64>]) -> Attribute {
+    let data = vectors.iter().flat_map(|vector| vector.as_slice()).copied().collect::<Vec<f64>>().into();
+    Attribute::DataArray(DataArray { name: name.into(), elem: ElementType::Vectors, data })
+}
+
+fn xml(header: &Header, fields: &[(&str, &[f64])], data: DataSet, empty_piece: &str) -> Result<Vec<u8>> {
+    Ok(annotate(xml_text(data, empty_piece)?, header, fields))
 }
 
 /// Encodes a data set; `empty_piece` is the tag of a piece without points.
@@ -147,9 +217,10 @@ pub(super) fn xml_text(data: DataSet, empty_piece: &str) -> Result<String> {
     Ok(text.replacen("<Piece>", empty_piece, 1))
 }
 
-/// Puts δ and the frame into field data, and the header's statements into a comment.
-fn annotate(text: String, header: &Header) -> Vec<u8> {
-    let text = text.replacen("<Piece", &format!("{}{}<Piece", comment(header), field_data(header)), 1);
+/// Puts δ, the frame and other numbers into field data, and the header's statements into a comment.
+fn annotate(text: String, header: &Header, fields: &[(&str, &[f64])]) -> Vec<u8> {
+    let text =
+        text.replacen("<Piece", &format!("{}{}<Piece", comment(header), field_data(header, fields)), 1);
     text.into_bytes()
 }
 
@@ -160,7 +231,7 @@ fn refused(error: impl std::fmt::Display) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::export::sample::{header, mesh, square};
+    use crate::export::sample::{header, mesh, patch_mesh, square};
 
     fn text(bytes: &[u8]) -> String {
         String::from_utf8_lossy(bytes).into_owned()
@@ -171,8 +242,12 @@ mod tests {
         for file in [
             boundary_vtp(&header(), &[square()]).unwrap(),
             boundary_vtp(&header(), &[]).unwrap(),
-            patch_vtu(&header(), &mesh()).unwrap(),
-            patch_vtu(&header(), &QuadMesh::default()).unwrap(),
+            strips_vtu(&header(), &mesh()).unwrap(),
+            strips_vtu(&header(), &QuadMesh::default()).unwrap(),
+            patch_vtu(&header(), &patch_mesh()).unwrap(),
+            surface_vtu(&header(), &patch_mesh().surface()).unwrap(),
+            surface_vtp(&header(), &patch_mesh().surface()).unwrap(),
+            surface_vtp(&header(), &SurfaceMesh::default()).unwrap(),
         ] {
             let text = text(&file);
             assert!(text.contains("approach_mm") && text.contains("scene 0123abcd"), "{text}");
@@ -183,12 +258,25 @@ mod tests {
 
     #[test]
     fn what_is_written_reads_back() {
-        let file = Vtk::parse_xml(&patch_vtu(&header(), &mesh()).unwrap()[..]).unwrap();
+        let file = Vtk::parse_xml(&strips_vtu(&header(), &mesh()).unwrap()[..]).unwrap();
         let DataSet::UnstructuredGrid { pieces, .. } = file.data else { panic!("{file:?}") };
         let piece = pieces[0].clone().into_loaded_piece_data(None).unwrap();
         let points: Vec<f64> = piece.points.cast_into().unwrap();
         assert_eq!(points, mesh().points.into_iter().flat_map(<[f64; 3]>::from).collect::<Vec<_>>());
         assert_eq!((piece.cells.num_cells(), piece.cells.num_verts()), (4, 16));
+    }
+
+    #[test]
+    fn cells_of_a_kind_stand_together() {
+        let mut mixed = mesh();
+        mixed.quads[1] = [1, 4, 5, 1];
+        let file = Vtk::parse_xml(&strips_vtu(&header(), &mixed).unwrap()[..]).unwrap();
+        let DataSet::UnstructuredGrid { pieces, .. } = file.data else { panic!("{file:?}") };
+        let piece = pieces[0].clone().into_loaded_piece_data(None).unwrap();
+        assert_eq!(
+            piece.cells.types[..],
+            [CellType::Quad, CellType::Quad, CellType::Quad, CellType::Triangle]
+        );
     }
 
     #[test]
@@ -202,8 +290,12 @@ mod tests {
     fn arrays_and_meshes_that_do_not_fit_are_refused() {
         let mut broken = mesh();
         broken.area.pop();
-        assert!(patch_vtu(&header(), &broken).unwrap_err().place.contains("areas"));
-        let surface_mesh = SurfaceMesh { points: vec![Point3::origin(); 3], triangles: vec![[0, 1, 3]] };
-        assert!(surface_vtp(&header(), &surface_mesh).is_err());
+        assert!(strips_vtu(&header(), &broken).unwrap_err().place.contains("areas"));
+        let mut surface = patch_mesh().surface();
+        surface.triangles[0][2] = surface.points.len();
+        assert!(surface_vtu(&header(), &surface).is_err() && surface_vtp(&header(), &surface).is_err());
+        let mut patch = patch_mesh();
+        patch.areas.clear();
+        assert!(patch_vtu(&header(), &patch).is_err());
     }
 }

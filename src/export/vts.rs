@@ -181,7 +181,7 @@ fn head(header: &Header, grid: &GridFields, scalars: &str, arrays: &[&Array]) ->
          \x20     <Points>\n{points}      </Points>\n\
          \x20   </Piece>\n  </StructuredGrid>\n  <AppendedData encoding=\"raw\">\n   _",
         comment(header),
-        field_data(header),
+        field_data(header, &[]),
     )
 }
 
@@ -201,8 +201,8 @@ pub(super) fn comment_of(statements: &[String]) -> String {
     text + "  -->\n"
 }
 
-/// Returns δ and the frame as numeric field data. Text there would make a file unreadable to meshio.
-pub(super) fn field_data(header: &Header) -> String {
+/// Returns δ, the frame and other named numbers as numeric field data. Text there would make a file unreadable to meshio.
+pub(super) fn field_data(header: &Header, more: &[(&str, &[f64])]) -> String {
     let frame = &header.frame;
     let mut text = String::from("    <FieldData>\n");
     let approach = [header.approach];
@@ -213,7 +213,7 @@ pub(super) fn field_data(header: &Header) -> String {
         ("frame_eta", frame.eta.as_slice()),
         ("frame_zeta", frame.zeta.as_slice()),
     ];
-    for (name, values) in entries {
+    for (name, values) in entries.iter().chain(more) {
         let numbers: Vec<_> = values.iter().map(|v| format!("{v:?}")).collect();
         // Writing to a String cannot fail.
         let _ = writeln!(

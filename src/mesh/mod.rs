@@ -1,15 +1,21 @@
 //! Solver meshes over the patch, surfaces around it, and measures of their quality.
 
 mod axes;
+mod boundary;
+mod delaunay;
 mod lines;
 mod quality;
 mod shells;
+mod smoothing;
+mod spacing;
 mod strips;
 mod surfaces;
 mod trace;
+mod triangles;
 
 pub use axes::{Axes, GridGroup, MOST_ON_AXIS, MOST_POINTS, equal_steps, groups};
 pub use quality::{Quality, Spread};
 pub use shells::{BodyShell, axle_point};
 pub use strips::{Cell, StripCounts, StripMesh};
 pub use surfaces::Surface;
+pub use triangles::{BoundaryChain, TriangleMesh};

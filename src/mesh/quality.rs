@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::strips::StripMesh;
 use super::surfaces::Surface;
+use super::triangles::TriangleMesh;
 
 /// The least, largest and mean value over all cells.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -44,6 +45,12 @@ impl Quality {
             CellShape::new(&corners, &Vector3::z())
         };
         Self::of(mesh.cells.iter().map(|cell| shape(cell.vertices())))
+    }
+
+    /// Measures the cells of the triangle mesh of a patch in the ξ–η plane. Returns `None` without cells.
+    pub fn of_triangles(mesh: &TriangleMesh) -> Option<Self> {
+        let flat = |node: usize| Point3::new(mesh.points[node].x, mesh.points[node].y, 0.0);
+        Self::of(mesh.triangles.iter().map(|cell| CellShape::new(&cell.map(flat), &Vector3::z())))
     }
 
     /// Measures the triangles of a surface. Returns `None` without triangles.

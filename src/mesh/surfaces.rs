@@ -4,12 +4,13 @@
 //! parameters (profile × extrusion, profile × rotation about the axle), and therefore show walls and overhangs that s(ξ, η)
 //! cannot show.
 
-use nalgebra::{Point2, Point3, Vector2, distance_squared};
+use nalgebra::{Point2, Point3, Vector2, Vector3, distance_squared};
 
 use crate::error::{Error, ErrorKind, Result, finite};
 use crate::patch::Window;
 use crate::placement::Placement;
 use crate::profile::{Side, Station};
+use crate::separation::Evaluator;
 
 use super::trace::{arc_step, trace};
 
@@ -27,6 +28,10 @@ const FACET_LIMITS: [f64; 2] = [1e-6, 1e-4];
 /// Largest distance of the wheel's surface before and behind C, as a share of the rolling radius. Towards the whole radius
 /// the surface becomes vertical.
 const WIDEST: f64 = 0.5;
+
+/// Distance of a point from the surface that s sees, as a share of the profile's extent, below which it is on it: a thousand
+/// times more than the rounding of both, and far less than any wall.
+const SEEN: f64 = 1e-9;
 
 /// The structured surface of one body.
 ///
@@ -53,6 +58,8 @@ pub struct Surface {
     pub n: [usize; 2],
     /// Points \[mm\] at index i · n\[1\] + j: (ξ, η, ζ) of the contact frame, unless the surface was moved to other axes.
     pub points: Vec<Point3<f64>>,
+    /// Outward unit normals of the exact surface at the points, in the same axes; at a kink that of one side.
+    pub normals: Vec<Vector3<f64>>,
 }
 
 impl Surface {
@@ -88,11 +95,12 @@ impl Surface {
             .map(|psi| radius * psi.sin())
             .collect();
         let frame = placement.rail().contact_frame();
-        let points = |station: &Station| {
+        let nodes = |station: &Station| {
             let here = frame.inverse_transform_point(&Point2::new(station.x, station.z));
-            along.iter().map(|&eta| in_space(here, eta)).collect::<Vec<_>>()
+            let up = frame.inverse_transform_vector(&Vector2::new(-station.sin, station.cos));
+            along.iter().map(|&eta| (in_space(here, eta), Vector3::new(up.x, 0.0, up.y))).collect::<Vec<_>>()
         };
-        Self::of(Side::Rail, &stations, along.len(), points)
+        Self::of(Side::Rail, &stations, along.len(), nodes)
     }
 
     /// Makes the wheel's surface, before any approach, over a window of the contact frame, as far as its profile goes. C is
@@ -108,16 +116,18 @@ impl Surface {
         let radii = || stations.iter().map(|s| placement.wheel_radius() - s.z);
         let [smallest, largest] = [radii().fold(f64::INFINITY, f64::min), radii().fold(0.0, f64::max)];
         let psi = angles(own.eta, smallest, largest, tolerance / 2.0);
-        let points =
-            |station: &Station| psi.iter().map(|&psi| wheel_point(placement, station, psi)).collect();
-        Self::of(Side::Wheel, &stations, psi.len(), points)
+        let node = |station: &Station, psi: f64| {
+            (wheel_point(placement, station, psi), wheel_normal(placement, station, psi))
+        };
+        let nodes = |station: &Station| psi.iter().map(|&psi| node(station, psi)).collect();
+        Self::of(Side::Wheel, &stations, psi.len(), nodes)
     }
 
     fn of(
         side: Side,
         stations: &[Station],
         along: usize,
-        points: impl Fn(&Station) -> Vec<Point3<f64>>,
+        nodes: impl Fn(&Station) -> Vec<(Point3<f64>, Vector3<f64>)>,
     ) -> Result<Self> {
         let n = [stations.len(), along];
         let count = n[0] as f64 * n[1] as f64;
@@ -131,7 +141,8 @@ impl Surface {
             )
             .of_kind(ErrorKind::Limit));
         }
-        Ok(Self { side, n, points: stations.iter().flat_map(points).collect() })
+        let (points, normals) = stations.iter().flat_map(nodes).unzip();
+        Ok(Self { side, n, points, normals })
     }
 
     /// Returns this surface with its points in the rail profile's axes (x, y, z), y = η.
@@ -139,7 +150,30 @@ impl Surface {
     pub fn in_rail_axes(&self, placement: &Placement) -> Self {
         let frame = placement.rail().contact_frame();
         let moved = |point: &Point3<f64>| in_space(frame * point.xz(), point.y);
-        Self { points: self.points.iter().map(moved).collect(), ..self.clone() }
+        let turned = |normal: &Vector3<f64>| {
+            let in_plane = frame * normal.xz();
+            Vector3::new(in_plane.x, normal.y, in_plane.y)
+        };
+        Self {
+            points: self.points.iter().map(moved).collect(),
+            normals: self.normals.iter().map(turned).collect(),
+            ..self.clone()
+        }
+    }
+
+    /// Returns s \[mm\] at every point of a surface in the contact frame of this placed pair. It is NaN where the other body
+    /// has no surface, and at points that s does not see because they are behind an overhang.
+    pub fn separations(&self, placement: &Placement) -> Vec<f64> {
+        let mut evaluator = Evaluator::new(placement);
+        let body = if self.side == Side::Rail { placement.rail() } else { placement.wheel() };
+        let near = SEEN * body.profile().extent();
+        let separation = |point: &Point3<f64>| {
+            let s = evaluator.separation(point.x, point.y);
+            let rail = evaluator.rail_height(point.x);
+            let seen = if self.side == Side::Rail { rail } else { rail + s };
+            if (seen - point.z).abs() <= near { s } else { f64::NAN }
+        };
+        self.points.iter().map(separation).collect()
     }
 
     /// Returns the corners of the facets, counter-clockwise seen from outside the body.
@@ -227,4 +261,12 @@ pub(super) fn wheel_point(placement: &Placement, station: &Station, psi: f64) ->
     let own = placement.wheel().contact_frame().inverse_transform_point(&turned);
     let tangential = placement.skew_rotation() * Vector2::new(own.x, w * psi.sin());
     Point3::new(tangential.x, tangential.y, own.y)
+}
+
+/// Returns the outward normal in (ξ, η, ζ) of the wheel at a profile point turned about the axle by ψ \[rad\].
+fn wheel_normal(placement: &Placement, station: &Station, psi: f64) -> Vector3<f64> {
+    let turned = Vector2::new(station.sin, -station.cos * psi.cos());
+    let own = placement.wheel().contact_frame().inverse_transform_vector(&turned);
+    let tangential = placement.skew_rotation() * Vector2::new(own.x, station.cos * psi.sin());
+    Vector3::new(tangential.x, tangential.y, own.y)
 }

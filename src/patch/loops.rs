@@ -8,47 +8,58 @@ use super::band::Band;
 
 /// A side of a band, as part of a loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct BandSide {
-    band: usize,
+pub(crate) struct BandSide {
+    /// Index of the band in its component.
+    pub(crate) band: usize,
     /// 0 for the lower side, along which a loop runs with ξ; 1 for the upper side, along which it runs back.
-    branch: usize,
+    pub(crate) branch: usize,
 }
 
 /// The slices of one band as \[ξ, lower η, upper η\] \[mm\], by ascending ξ, both ends included.
 pub(super) type Rows = Vec<[f64; 3]>;
 
+/// Returns the sides of the bands that make up each loop, in the order in which the loop runs along them, with the patch on
+/// the left.
+pub(crate) fn rings(bands: &[Band]) -> Vec<Vec<BandSide>> {
+    let mut free: Vec<BandSide> =
+        (0..bands.len()).flat_map(|band| [0, 1].map(|branch| BandSide { band, branch })).collect();
+    let mut rings = Vec::new();
+    while let Some(first) = free.pop() {
+        let (mut ring, mut side) = (vec![first], first);
+        loop {
+            side = next(bands, side);
+            if side == first {
+                break;
+            }
+            // Two intervals at one ξ overlap only by rounding if no side is left. The loop is then closed here.
+            let Some(place) = free.iter().position(|other| *other == side) else { break };
+            ring.push(free.swap_remove(place));
+        }
+        rings.push(ring);
+    }
+    rings
+}
+
 /// Returns loops of \[ξ, η\] \[mm\] around the bands, with the patch on the left: outer loops are counter-clockwise, holes
 /// clockwise. The first point is not repeated, and neighbouring points differ.
 pub(super) fn loops(bands: &[Band], rows: &[Rows]) -> Vec<Vec<[f64; 2]>> {
-    let mut free: Vec<BandSide> =
-        (0..bands.len()).flat_map(|band| [0, 1].map(|branch| BandSide { band, branch })).collect();
-    let mut loops = Vec::new();
-    while let Some(first) = free.pop() {
-        let (mut points, mut side) = (Vec::new(), first);
-        loop {
+    let around = |ring: Vec<BandSide>| {
+        let mut points = Vec::new();
+        for side in ring {
             let rows = rows[side.band].iter();
             if side.branch == 0 {
                 points.extend(rows.map(|[xi, low, _]| [*xi, *low]));
             } else {
                 points.extend(rows.rev().map(|[xi, _, high]| [*xi, *high]));
             }
-            side = next(bands, side);
-            if side == first {
-                break;
-            }
-            match free.iter().position(|other| *other == side) {
-                Some(place) => free.swap_remove(place),
-                // Two intervals at one ξ overlap only by rounding. The loop is closed here.
-                None => break,
-            };
         }
         points.dedup();
         while points.len() > 1 && points.first() == points.last() {
             points.pop();
         }
-        loops.push(points);
-    }
-    loops
+        points
+    };
+    rings(bands).into_iter().map(around).collect()
 }
 
 /// Returns the side on which a loop continues after the given side.

@@ -15,6 +15,7 @@ pub(crate) mod turning_points;
 pub(crate) use band::Band;
 pub use components::{Component, Patch};
 pub(crate) use grading::Grading;
+pub(crate) use loops::{BandSide, rings};
 pub use outline::{End, Outline, Window};
 pub use slice::{Slice, Slicer};
 pub(crate) use turning_points::turning_points;

@@ -49,6 +49,9 @@ pub struct Scene {
     /// Where s is evaluated, and how accurately.
     #[serde(default)]
     pub grid: GridData,
+    /// How fine the triangle mesh of the patch is.
+    #[serde(default, skip_serializing_if = "MeshData::is_default")]
+    pub mesh: MeshData,
     /// Which files are written.
     #[serde(default)]
     pub output: OutputData,
@@ -329,6 +332,24 @@ pub enum Spacing {
     Both(f64),
     /// The steps [Δξ, Δη].
     Each([f64; 2]),
+}
+
+/// The triangle mesh of the patch for finite elements.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct MeshData {
+    /// Length of its edges where neither curvature nor a narrow place asks for shorter ones, mm; without it, for each part of
+    /// the patch a 16th of the side of a square with its area.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub size: Option<f64>,
+}
+
+impl MeshData {
+    /// Tells whether no key is given.
+    pub fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 /// The files that are written besides summary.json, the tables and the picture.

@@ -42,7 +42,7 @@ fn case(scene: &Scene, name: &str, profiles: impl FnOnce() -> Result<Profiles>) 
     let question = question(scene)?;
     let axes = asked_axes(&scene.grid)?;
     let (standing, profiles) = standing(scene, profiles()?)?;
-    let (outputs, echo, doubts) = (outputs(scene), echo(scene, name), doubts(scene, &profiles));
+    let (outputs, echo, doubts) = (outputs(scene)?, echo(scene, name), doubts(scene, &profiles));
     Ok(Case { profiles, standing, question, axes, outputs, echo, file: None, doubts })
 }
 
@@ -57,13 +57,21 @@ pub fn echo(scene: &Scene, name: &str) -> Echo {
     }
 }
 
-/// Returns the formats to write. If the scene names none, these are all but PNG.
-fn outputs(scene: &Scene) -> Outputs {
+/// Returns the formats to write, and the size of the triangle mesh. If the scene names no formats, these are all but PNG and
+/// those for finite elements.
+fn outputs(scene: &Scene) -> Result<Outputs> {
     use OutputFormat::{Conform, Contact, Countact, Netcdf, Npy, Text, Vtk};
     let named = scene.output.formats.clone();
     let required = named.is_some();
     let formats = named.unwrap_or_else(|| vec![Vtk, Npy, Netcdf, Text, Conform, Countact, Contact]);
-    Outputs { formats, required }
+    let mesh_size = scene.mesh.size;
+    if let Some(size) = mesh_size {
+        if finite("mesh: size", size)? <= 0.0 {
+            let advice = "leave it out, or give a length";
+            return Err(Error::new("mesh: size", size.to_string(), "a positive length in mm", advice));
+        }
+    }
+    Ok(Outputs { formats, required, mesh_size })
 }
 
 fn question(scene: &Scene) -> Result<Question> {

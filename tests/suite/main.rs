@@ -29,5 +29,6 @@ mod reference_yawed;
 mod report;
 mod slices;
 mod strips;
+mod triangles;
 mod two_sides;
 mod yawed_patches;

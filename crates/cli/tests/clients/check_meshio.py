@@ -8,19 +8,24 @@ from folder import Checks, Folder
 
 folder = Folder(sys.argv[1])
 checks = Checks(f"meshio {meshio.__version__}")
-if folder.has("patch.vtu") and folder.boundary():
-    patch = meshio.read(folder / "patch.vtu")
-    cells = sum(len(block.data) for block in patch.cells)
-    areas = patch.cell_data["area"]
-    checks("patch.vtu", sum(map(len, areas)) == cells, f"{cells} cells, {sum(a.sum() for a in areas):.6g} mm2")
-    checks("patch.vtu has whole numbers of nodes", all(block.data.dtype.kind == "i" for block in patch.cells))
-    checks("patch.vtu holds triangles and quads", {block.type for block in patch.cells} <= {"triangle", "quad"})
-elif folder.has("patch.vtu"):
-    checks("patch.vtu is empty, which meshio cannot read from any program", True)
+for name, kinds in (("patch.vtu", ["triangle"]), ("strips.vtu", ["quad", "triangle"])):
+    if folder.has(name) and not folder.boundary():
+        checks(f"{name} is empty, which meshio cannot read from any program", True)
+    elif folder.has(name):
+        patch = meshio.read(folder / name)
+        blocks = [block.type for block in patch.cells]
+        cells = sum(len(block.data) for block in patch.cells)
+        checks(f"{name} has one block of each kind", blocks in (kinds, kinds[:1]), f"{cells} cells, {blocks}")
+        checks(f"{name} has whole numbers of nodes", all(block.data.dtype.kind == "i" for block in patch.cells))
+        components = patch.cell_data["component"]
+        checks(f"{name} has a component for each cell", sum(map(len, components)) == cells)
 for name in filter(folder.has, ("rail.vtu", "wheel.vtu")):
     surface = meshio.read(folder / name)
     cells = sum(len(block.data) for block in surface.cells)
-    checks(f"{name} holds triangles", {block.type for block in surface.cells} == {"triangle"}, f"{cells} cells")
+    checks(f"{name} holds triangles", [block.type for block in surface.cells] == ["triangle"], f"{cells} cells")
+    lengths = np.linalg.norm(surface.point_data["normal"], axis=1)
+    checks(f"{name} has unit normals", np.abs(lengths - 1).max() < 1e-14)
+    checks(f"{name} has separations", np.isfinite(surface.point_data["separation"]).mean() > 0.3)
 if folder.has("separation.vtk"):
     grid = meshio.read(folder / "separation.vtk")
     checks.same("separation.vtk xi", grid.points[:: len(folder.eta), 0].astype("f8"), folder.xi)

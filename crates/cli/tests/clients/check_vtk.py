@@ -51,14 +51,32 @@ if loops:
         cell = boundary.get_cell(number)
         checks.same(f"boundary.vtp loop {number}", cell.points[:-1, :2], points)
         checks(f"boundary.vtp loop {number} is closed", cell.point_ids[0] == cell.point_ids[-1])
+if folder.has("strips.vtu"):
+    strips = pyvista.read(folder / "strips.vtu")
+    checks("strips.vtu", strips.n_cells == 0 or set(strips.celltypes) <= {5, 9}, f"{strips.n_cells} cells")
+    if strips.n_cells:
+        strips.points[:, 2] = 0
+        polygons = strips.compute_cell_sizes()["Area"].sum()
+        area = strips.cell_data["area"].sum()
+        checks.near("strips.vtu areas are near those of its polygons", area, polygons, 0.05)
 if folder.has("patch.vtu"):
     patch = pyvista.read(folder / "patch.vtu")
-    checks("patch.vtu", patch.n_cells == 0 or set(patch.celltypes) <= {5, 9}, f"{patch.n_cells} cells")
+    checks("patch.vtu", set(patch.celltypes) <= {5}, f"{patch.n_cells} cells")
     if patch.n_cells:
+        exact = patch.field_data["component_areas_mm2"]
+        checks.same("patch.vtu has the exact areas", patch.cell_data["component_area"], exact[patch.cell_data["component"]])
+        inside = patch.point_data["separation"][patch.point_data["boundary"] == 0]
+        checks("patch.vtu has s < delta inside", inside.max() < patch.field_data["approach_mm"][0])
         patch.points[:, 2] = 0
-        polygons = patch.compute_cell_sizes()["Area"].sum()
-        area = patch.cell_data["area"].sum()
-        checks.near("patch.vtu areas are near those of its polygons", area, polygons, 0.05)
+        sized = patch.compute_cell_sizes()["Area"]
+        for number, area in enumerate(exact):
+            polygons = sized[patch.cell_data["component"] == number].sum()
+            checks.near(f"patch.vtu component {number} has its area but for chords", polygons, area, 0.02)
+for name in filter(folder.has, ("patch.vtp", "rail.vtp", "wheel.vtp")):
+    surface, grid_form = pyvista.read(folder / name), pyvista.read(folder / name.replace("vtp", "vtu"))
+    checks.same(f"{name} has the points of the .vtu", np.asarray(surface.points), np.asarray(grid_form.points))
+    checks(f"{name} has the triangles of the .vtu", surface.n_cells == grid_form.n_cells, f"{surface.n_cells} cells")
+    checks.same(f"{name} has the separations of the .vtu", surface["separation"], grid_form["separation"])
 if folder.has("separation.vtk"):
     legacy = pyvista.read(folder / "separation.vtk")
     checks.same("separation.vtk", on_grid(legacy["separation"]), folder.s)

@@ -6,8 +6,8 @@ use std::path::Path;
 use wheelrail::export::{
     ContactSettings, Deck, Frame, GridFields, Header, Interval, Loop, NetCdf, Nodes, PatchPicture,
     Prescribed, QuadMesh, VIEW_SCRIPT, array_npy, boundary_csv, boundary_vtp, collection_pvd, conform_wrp,
-    contact_inp, countact_wrp, interpen_csv, patch_vtu, rail_vts, separation_vtk, separation_vts,
-    separation_wrp, wheel_vts,
+    contact_inp, countact_wrp, interpen_csv, rail_vts, separation_vtk, separation_vts, separation_wrp,
+    strips_vtu, wheel_vts,
 };
 use wheelrail::files::{Folder, RUN_FOLDER};
 use wheelrail::nalgebra::{Isometry2, Point3, Translation2, UnitComplex, Vector2};
@@ -118,7 +118,7 @@ impl Scene {
         let row = Interval { xi: 0.0, component: 0, eta: [-1.0, 1.0] };
         folder.write("interpen.csv", interpen_csv(&[row]).as_bytes()).unwrap();
         folder.write("boundary.vtp", &boundary_vtp(&header, &loops).unwrap()).unwrap();
-        folder.write("patch.vtu", &patch_vtu(&header, &self.mesh()).unwrap()).unwrap();
+        folder.write("strips.vtu", &strips_vtu(&header, &self.mesh()).unwrap()).unwrap();
         let steps = [(0.0, 0, "rail.vts".into()), (0.5, 0, "wheel.vts".into())];
         folder.write("surface.pvd", collection_pvd(&steps).as_bytes()).unwrap();
         folder.write("patch.svg", picture(&header, &grid, &loops).as_bytes()).unwrap();

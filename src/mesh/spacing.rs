@@ -1,0 +1,346 @@
+//! Divides the boundary of a component into edges that a triangle mesh with good angles can begin from.
+//!
+//! The length of an edge is at most the size asked for, follows curvature so that the chord error keeps its bound, is at most
+//! the radius of the largest circle that touches the boundary there from inside and fits into the component, and varies
+//! slowly from place to place. Corners are nodes. Both edges at a sharp corner have one length: the triangle between them, the
+//! tip, is isosceles. What is left of the component behind its tips has no sharp corner.
+
+use std::f64::consts::{FRAC_PI_3, PI};
+
+use nalgebra::Point2;
+
+use super::boundary::{BoundaryTracer, Ring};
+
+/// Largest turn of the boundary along one edge \[rad\].
+const TURN_PER_EDGE: f64 = 0.4;
+
+/// Largest growth of the edges per length.
+const GROWTH: f64 = 0.25;
+
+/// Edges per radius of the largest circle inside the component.
+const EDGES_PER_RADIUS: f64 = 1.0;
+
+/// The same behind a tip, whose third side is as long as the width.
+const EDGES_PER_WEDGE: f64 = 0.6;
+
+/// Interior angle \[rad\] below which a corner is sharp: edges of one length on both of its sides would see each other.
+const SHARP: f64 = FRAC_PI_3;
+
+/// Share of the circle in a wedge of straight sides from which on a circle inside the component counts as that of the corner.
+const WEDGE: f64 = 0.75;
+
+/// Largest length of the edges at a sharp corner, as a share of the boundary up to the next corner.
+const CORNER_SHARE: f64 = 0.25;
+
+/// A node of the boundary.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct BoundaryNode {
+    /// The point (ξ, η) \[mm\], on the exact curve.
+    pub(super) point: Point2<f64>,
+    /// Length of the ring's polygon up to the node \[mm\].
+    pub(super) at: f64,
+    /// Whether the boundary has a sharp corner here.
+    pub(super) tip: bool,
+}
+
+/// What the edges of a boundary have to keep.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct EdgeLimits {
+    /// Largest length of an edge \[mm\].
+    pub(super) size: f64,
+    /// Largest distance of the curve from an edge \[mm\].
+    pub(super) chord_error: f64,
+    /// Share of the lengths that they would have otherwise, at most 1.
+    pub(super) share: f64,
+}
+
+/// A corner of a ring.
+#[derive(Debug, Clone, Copy)]
+struct RingCorner {
+    sample: usize,
+    angle: f64,
+}
+
+/// A sample of any ring with the edge length wanted there.
+#[derive(Debug, Clone, Copy)]
+struct Wanted {
+    point: Point2<f64>,
+    length: f64,
+}
+
+/// Returns the nodes of each ring, in its order.
+pub(super) fn nodes(
+    tracer: &mut BoundaryTracer<'_>,
+    rings: &[Ring],
+    limits: EdgeLimits,
+) -> Vec<Vec<BoundaryNode>> {
+    let corners: Vec<Vec<RingCorner>> = rings.iter().map(corners_of).collect();
+    let circles = circles(rings);
+    let mut wanted: Vec<Vec<Wanted>> = Vec::new();
+    let mut first = 0;
+    for (ring, corners) in rings.iter().zip(&corners) {
+        let circles = &circles[first..first + ring.samples.len()];
+        wanted.push(own_lengths(ring, corners, circles, limits));
+        first += circles.len();
+    }
+    let protected: Vec<Vec<[f64; 2]>> =
+        (0..rings.len()).map(|k| protected(&rings[k], &corners[k], &wanted)).collect();
+    for (k, ring) in rings.iter().enumerate() {
+        narrow(ring, &corners[k], &protected[k], &circles_of(&circles, rings, k), &mut wanted[k]);
+    }
+    let all: Vec<Wanted> = wanted.iter().flatten().filter(|w| w.length.is_finite()).copied().collect();
+    let mut nodes = Vec::with_capacity(rings.len());
+    for (k, ring) in rings.iter().enumerate() {
+        let lengths: Vec<f64> =
+            wanted[k].iter().map(|w| limits.share * graded(&w.point, &all).min(limits.size)).collect();
+        nodes.push(divided(tracer, ring, &corners[k], &protected[k], &lengths, limits));
+    }
+    nodes
+}
+
+fn circles_of<'a>(circles: &'a [f64], rings: &[Ring], k: usize) -> &'a [f64] {
+    let first: usize = rings[..k].iter().map(|ring| ring.samples.len()).sum();
+    &circles[first..first + rings[k].samples.len()]
+}
+
+fn corners_of(ring: &Ring) -> Vec<RingCorner> {
+    let corners = (0..ring.samples.len()).filter(|&k| ring.is_corner(k));
+    corners.map(|sample| RingCorner { sample, angle: PI - ring.samples[sample].turn }).collect()
+}
+
+/// Returns the radius \[mm\] of the largest circle that touches the boundary from inside at every sample and holds no other
+/// sample; infinite at corners.
+fn circles(rings: &[Ring]) -> Vec<f64> {
+    let points: Vec<Point2<f64>> =
+        rings.iter().flat_map(|ring| &ring.samples).map(|sample| sample.point).collect();
+    let mut radii = Vec::with_capacity(points.len());
+    for ring in rings {
+        for (k, sample) in ring.samples.iter().enumerate() {
+            if ring.is_corner(k) {
+                radii.push(f64::INFINITY);
+                continue;
+            }
+            let inward = ring.inward(k);
+            let radius = |other: &Point2<f64>| {
+                let to = other - sample.point;
+                let depth = to.dot(&inward);
+                if depth > 0.0 { to.norm_squared() / (2.0 * depth) } else { f64::INFINITY }
+            };
+            radii.push(points.iter().map(radius).fold(f64::INFINITY, f64::min));
+        }
+    }
+    radii
+}
+
+/// Returns the corners before and after a sample. A ring without corners has none.
+fn beside<'a>(corners: &'a [RingCorner], sample: usize) -> impl Iterator<Item = &'a RingCorner> {
+    let after = corners.partition_point(|corner| corner.sample <= sample);
+    let n = corners.len();
+    let both = [after + n.saturating_sub(1), after];
+    both.into_iter().filter_map(move |k| corners.get(k.checked_rem(n)?))
+}
+
+/// Returns whether the circle at a sample is that between the two sides of a corner.
+fn is_wedge(ring: &Ring, corner: &RingCorner, sample: usize, circle: f64) -> bool {
+    let away = (ring.samples[sample].point - ring.samples[corner.sample].point).norm();
+    corner.angle < PI && circle >= WEDGE * away * (corner.angle / 2.0).tan()
+}
+
+/// Returns the edge length at every sample that follows from size, curvature and circles, but not from wedges at corners.
+fn own_lengths(ring: &Ring, corners: &[RingCorner], circles: &[f64], limits: EdgeLimits) -> Vec<Wanted> {
+    let length = |k: usize| {
+        if ring.is_corner(k) {
+            return corner_gap(ring, corners, k).min(limits.size);
+        }
+        let radius = ring.radius(k);
+        let curved = (8.0 * limits.chord_error * radius).sqrt().min(TURN_PER_EDGE * radius);
+        let wedge = beside(corners, k).any(|corner| is_wedge(ring, corner, k, circles[k]));
+        let inside = if wedge { f64::INFINITY } else { circles[k] / EDGES_PER_RADIUS };
+        limits.size.min(curved).min(inside)
+    };
+    let samples = ring.samples.iter().enumerate();
+    samples.map(|(k, sample)| Wanted { point: sample.point, length: length(k) }).collect()
+}
+
+/// Returns the length of the boundary from a corner to the nearest other one \[mm\], or the whole ring.
+fn corner_gap(ring: &Ring, corners: &[RingCorner], sample: usize) -> f64 {
+    let at = |k: usize| ring.samples[k].at;
+    let gap = |other: &RingCorner| {
+        let way = (at(other.sample) - at(sample)).abs();
+        way.min(ring.length - way)
+    };
+    corners.iter().filter(|other| other.sample != sample).map(gap).fold(ring.length, f64::min)
+}
+
+/// Returns the lengths of the polygon from before to after each sharp corner at which its two edges end.
+fn protected(ring: &Ring, corners: &[RingCorner], wanted: &[Vec<Wanted>]) -> Vec<[f64; 2]> {
+    let all: Vec<Wanted> = wanted.iter().flatten().copied().collect();
+    let sharp = corners.iter().filter(|corner| corner.angle < SHARP);
+    let around = |corner: &RingCorner| {
+        let here = ring.samples[corner.sample];
+        let length = graded(&here.point, &all).min(CORNER_SHARE * corner_gap(ring, corners, corner.sample));
+        [here.at - length, here.at + length]
+    };
+    sharp.map(around).collect()
+}
+
+/// Adds what the wedge of a sharp corner asks for beyond the corner's own two edges. Within them nothing is asked for.
+fn narrow(
+    ring: &Ring,
+    corners: &[RingCorner],
+    protected: &[[f64; 2]],
+    circles: &[f64],
+    wanted: &mut [Wanted],
+) {
+    for (k, sample) in ring.samples.iter().enumerate() {
+        let inside = |[from, to]: &[f64; 2]| {
+            let turns = [-ring.length, 0.0, ring.length].map(|whole| sample.at + whole);
+            turns.into_iter().any(|at| *from < at && at < *to)
+        };
+        if protected.iter().any(inside) {
+            wanted[k].length = f64::INFINITY;
+            continue;
+        }
+        let mut sharp = beside(corners, k).filter(|corner| corner.angle < SHARP);
+        if sharp.any(|corner| is_wedge(ring, corner, k, circles[k])) {
+            wanted[k].length = wanted[k].length.min(circles[k] / EDGES_PER_WEDGE);
+        }
+    }
+}
+
+/// Returns the edge length at a point that grows slowly enough from all others.
+fn graded(point: &Point2<f64>, wanted: &[Wanted]) -> f64 {
+    wanted.iter().map(|w| w.length + GROWTH * (w.point - point).norm()).fold(f64::INFINITY, f64::min)
+}
+
+/// Divides a ring into edges of these lengths.
+fn divided(
+    tracer: &mut BoundaryTracer<'_>,
+    ring: &Ring,
+    corners: &[RingCorner],
+    protected: &[[f64; 2]],
+    lengths: &[f64],
+    limits: EdgeLimits,
+) -> Vec<BoundaryNode> {
+    let n = ring.samples.len();
+    // Number of edges from the start of the ring to each sample.
+    let mut counts = vec![0.0];
+    for k in 0..n {
+        let mean = |a: f64, b: f64| 2.0 / (1.0 / a + 1.0 / b);
+        counts.push(counts[k] + ring.step(k) / mean(lengths[k], lengths[(k + 1) % n]));
+    }
+    let wrapped = |at: f64| at.rem_euclid(ring.length);
+    let mut fixed: Vec<f64> = protected.iter().flatten().copied().map(wrapped).collect();
+    let mut last = f64::NEG_INFINITY;
+    for corner in corners {
+        let at = ring.samples[corner.sample].at;
+        // Corners closer than the chord error may share a node.
+        if corner.angle < SHARP || at - last > limits.chord_error {
+            fixed.push(at);
+            last = at;
+        }
+    }
+    if fixed.is_empty() {
+        fixed.push(0.0);
+    }
+    fixed.sort_by(f64::total_cmp);
+    let whole = fixed.len() == 1;
+    let count = |at: f64| {
+        let k = ring.index(at);
+        counts[k] + (counts[k + 1] - counts[k]) * ((at - ring.samples[k].at) / ring.step(k))
+    };
+    let mut places = Vec::new();
+    for (k, &from) in fixed.iter().enumerate() {
+        let to = fixed.get(k + 1).copied().unwrap_or(fixed[0] + ring.length);
+        let begin = count(from);
+        let end = if to >= ring.length { counts[n] + count(to - ring.length) } else { count(to) };
+        let edge = |[a, b]: &[f64; 2]| {
+            let middle = wrapped(from + (to - from) / 2.0);
+            [-ring.length, 0.0, ring.length].iter().any(|w| *a < middle + w && middle + w < *b)
+        };
+        let least = if whole { 3.0 } else { 1.0 };
+        let edges = if protected.iter().any(edge) { 1.0 } else { (end - begin).ceil().max(least) };
+        places.push(from);
+        places.extend((1..edges as usize).map(|j| {
+            let wanted = begin + (end - begin) * j as f64 / edges;
+            length_at(ring, &counts, wanted)
+        }));
+    }
+    let sharp = |corner: &RingCorner| corner.angle < SHARP;
+    let tip = |at: f64| corners.iter().any(|corner| sharp(corner) && ring.samples[corner.sample].at == at);
+    let mut nodes: Vec<BoundaryNode> = Vec::new();
+    for at in places {
+        nodes.push(BoundaryNode { point: tracer.point(ring, at), at, tip: tip(at) });
+    }
+    // No chain begins with a tip, so that the nodes on both sides of a tip have places in it.
+    if nodes[0].tip {
+        nodes.rotate_left(1);
+    }
+    halved(tracer, ring, nodes, limits.chord_error)
+}
+
+/// Returns the length of the polygon at which this number of edges is reached, which may exceed that of the whole ring.
+fn length_at(ring: &Ring, counts: &[f64], wanted: f64) -> f64 {
+    let whole = counts[counts.len() - 1];
+    let (wanted, beyond) = if wanted >= whole { (wanted - whole, ring.length) } else { (wanted, 0.0) };
+    let k = counts.partition_point(|count| *count <= wanted).clamp(1, counts.len() - 1) - 1;
+    ring.samples[k].at + ring.step(k) * ((wanted - counts[k]) / (counts[k + 1] - counts[k])) + beyond
+}
+
+/// Halves edges until the chord error keeps its bound.
+fn halved(
+    tracer: &mut BoundaryTracer<'_>,
+    ring: &Ring,
+    mut nodes: Vec<BoundaryNode>,
+    chord_error: f64,
+) -> Vec<BoundaryNode> {
+    let off = |nodes: &[BoundaryNode], k: usize| {
+        let (here, next) = (nodes[k], following(ring, nodes, k));
+        // A curve shorter than the bound cannot be farther from its chord.
+        next.at - here.at > chord_error
+            && ring.off_chord([here.at, next.at], [here.point, next.point]) > chord_error
+    };
+    let mut k = 0;
+    while k < nodes.len() {
+        if nodes[k].tip && (off(&nodes, k) || off(&nodes, k - 1)) {
+            halve_tip(tracer, ring, &mut nodes, k);
+            k += 1;
+        } else if !nodes[k].tip && !nodes[(k + 1) % nodes.len()].tip && off(&nodes, k) {
+            let at = [nodes[k].at, following(ring, &nodes, k).at];
+            nodes.insert(k + 1, between(tracer, ring, at, 0.5));
+        } else {
+            k += 1;
+        }
+    }
+    nodes
+}
+
+/// Halves both edges at a tip, which is not the first node, so that they keep one length. The tip is then one node later.
+pub(super) fn halve_tip(
+    tracer: &mut BoundaryTracer<'_>,
+    ring: &Ring,
+    nodes: &mut Vec<BoundaryNode>,
+    tip: usize,
+) {
+    let [back, on] =
+        [tip - 1, tip].map(|k| between(tracer, ring, [nodes[k].at, following(ring, nodes, k).at], 0.5));
+    nodes.insert(tip + 1, on);
+    nodes.insert(tip, back);
+}
+
+/// Returns the node after node `k`, with its length counted on from that node.
+pub(super) fn following(ring: &Ring, nodes: &[BoundaryNode], k: usize) -> BoundaryNode {
+    let next = nodes[(k + 1) % nodes.len()];
+    if next.at > nodes[k].at { next } else { BoundaryNode { at: next.at + ring.length, ..next } }
+}
+
+/// Returns a new node at a share of the way between two lengths of the polygon.
+pub(super) fn between(
+    tracer: &mut BoundaryTracer<'_>,
+    ring: &Ring,
+    at: [f64; 2],
+    share: f64,
+) -> BoundaryNode {
+    let at = at[0] + (at[1] - at[0]) * share;
+    BoundaryNode { point: tracer.point(ring, at), at, tip: false }
+}

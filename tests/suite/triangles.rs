@@ -1,0 +1,271 @@
+//! The triangle mesh of a patch: angles, boundary nodes on the exact curve, areas, topology, and the same bits in every run.
+
+use std::collections::{HashMap, HashSet};
+use std::f64::consts::FRAC_PI_6;
+use std::path::Path;
+
+use crate::common::{approached_references, folder, profile, two_crowns};
+use wheelrail::case::{Run, SILENT};
+use wheelrail::mesh::TriangleMesh;
+use wheelrail::patch::{Patch, Window};
+use wheelrail::placement::{Pair, Placement};
+use wheelrail::profile::{Arc, Half, inclination, standards};
+use wheelrail::scene;
+use wheelrail::separation::Evaluator;
+use wheelrail_report::random::Random;
+
+/// Largest |s − δ| at a node of the boundary \[mm\]: the bound of s, and of δ's own rounding.
+const ON_BOUNDARY: f64 = 4e-12;
+
+/// What a mesh is made of.
+struct Meshed {
+    triangles: usize,
+    /// Nodes of the boundary that lie on s = δ.
+    level: usize,
+    sharp: usize,
+}
+
+/// Checks everything that is promised of the mesh of a patch.
+fn check(name: &str, placement: &Placement, patch: &Patch, size: Option<f64>) -> Meshed {
+    let mesh = TriangleMesh::new(placement, patch, size).unwrap_or_else(|error| panic!("{name}: {error}"));
+    assert_eq!(mesh, TriangleMesh::new(placement, patch, size).expect("a mesh"), "{name}: other bits");
+    check_angles(name, &mesh);
+    check_topology(name, &mesh, patch);
+    check_areas(name, &mesh, patch);
+    let level = check_boundary(name, placement, &mesh, patch);
+    let angles = mesh.boundary.iter().flat_map(|chain| &chain.angles);
+    let sharp = angles.filter(|angle| **angle < FRAC_PI_6).count();
+    Meshed { triangles: mesh.triangles.len(), level, sharp }
+}
+
+fn check_angles(name: &str, mesh: &TriangleMesh) {
+    let sharp: HashSet<usize> = mesh
+        .boundary
+        .iter()
+        .flat_map(|chain| chain.nodes.iter().zip(&chain.angles))
+        .filter(|(_, angle)| **angle < FRAC_PI_6)
+        .map(|(node, _)| *node)
+        .collect();
+    // Smooth boundaries turn by small angles only: what is sharp is a corner.
+    assert!(sharp.len() <= 4 * mesh.size.len(), "{name}: {} sharp corners", sharp.len());
+    for triangle in &mesh.triangles {
+        let [a, b, c] = triangle.map(|node| mesh.points[node].xy());
+        for [here, on, back] in [[a, b, c], [b, c, a], [c, a, b]] {
+            let (on, back) = (on - here, back - here);
+            let angle = on.perp(&back).atan2(on.dot(&back));
+            assert!(angle > 0.0, "{name}: a triangle is not counter-clockwise");
+            let corner = triangle.iter().any(|node| sharp.contains(node));
+            let good = (FRAC_PI_6..=4.0 * FRAC_PI_6).contains(&angle);
+            assert!(good || corner, "{name}: {:.3}° at {here:?}", angle.to_degrees());
+        }
+    }
+}
+
+fn check_topology(name: &str, mesh: &TriangleMesh, patch: &Patch) {
+    let mut sides: HashMap<[usize; 2], i32> = HashMap::new();
+    for &[a, b, c] in &mesh.triangles {
+        for side in [[a, b], [b, c], [c, a]] {
+            assert!(sides.insert(side, 1).is_none(), "{name}: a side used twice in one sense");
+        }
+    }
+    let outer: HashSet<[usize; 2]> =
+        sides.keys().filter(|[a, b]| !sides.contains_key(&[*b, *a])).copied().collect();
+    let chained: HashSet<[usize; 2]> = mesh
+        .boundary
+        .iter()
+        .flat_map(|chain| {
+            (0..chain.nodes.len()).map(|k| [chain.nodes[k], chain.nodes[(k + 1) % chain.nodes.len()]])
+        })
+        .collect();
+    assert_eq!(outer, chained, "{name}: the chains are the boundary of the triangles");
+    let used: HashSet<usize> = mesh.triangles.iter().flatten().copied().collect();
+    assert_eq!(used.len(), mesh.points.len(), "{name}: points without a triangle");
+    let edges = (sides.len() + outer.len()) / 2;
+    let euler = mesh.points.len() as i64 - edges as i64 + mesh.triangles.len() as i64;
+    let expected: i64 = patch.components.iter().map(|component| 1 - component.holes.len() as i64).sum();
+    assert_eq!(euler, expected, "{name}: V − E + F");
+    let rings: usize = patch.components.iter().map(|component| 1 + component.holes.len()).sum();
+    assert_eq!(mesh.boundary.len(), rings, "{name}");
+}
+
+/// The mesh's area differs from the exact one by what lies between chords and curve, at most ⅔ of the chord error along
+/// the perimeter where the curve bends, and all of it beside a corner that is no node.
+fn check_areas(name: &str, mesh: &TriangleMesh, patch: &Patch) {
+    for (k, component) in patch.components.iter().enumerate() {
+        let bound = mesh.chord_error[k] * component.perimeter + 1e-11 * component.area;
+        let off = (mesh.area(k) - component.area).abs();
+        assert!(off <= bound, "{name}: off by {off} mm², {bound} allowed");
+        assert!(
+            mesh.chord_error[k] <= 0.0101 * mesh.size[k],
+            "{name}: {} of {}",
+            mesh.chord_error[k],
+            mesh.size[k]
+        );
+    }
+}
+
+/// Returns how many nodes lie on s = δ. The others lie on an edge of the window, or where a body ends or steps.
+fn check_boundary(name: &str, placement: &Placement, mesh: &TriangleMesh, patch: &Patch) -> usize {
+    let (mut evaluator, mut level) = (Evaluator::new(placement), 0);
+    for &node in mesh.boundary.iter().flat_map(|chain| &chain.nodes) {
+        let (xi, eta) = (mesh.points[node].x, mesh.points[node].y);
+        let at_window = patch.window.xi.contains(&xi) || patch.window.eta.contains(&eta);
+        let off = evaluator.separation(xi, eta) - patch.approach;
+        if off.abs() <= ON_BOUNDARY {
+            level += 1;
+            continue;
+        }
+        // The surface ends or steps here: s jumps within a nanometre.
+        let near = 1e-6;
+        let beside = [[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]];
+        let ends = beside.iter().any(|[x, y]| {
+            let there = evaluator.separation(xi + near * x, eta + near * y) - patch.approach;
+            there.is_nan() || (there - off).abs() > 100.0 * near
+        });
+        assert!(at_window || ends || off.is_nan(), "{name}: s − δ = {off:e} at ({xi}, {eta})");
+    }
+    level
+}
+
+fn whole(placement: &Placement, delta: f64) -> Patch {
+    Patch::new(placement, delta, &Window::UNBOUNDED)
+}
+
+#[test]
+fn meshes_of_references_keep_every_promise() {
+    for (name, placement, delta) in approached_references() {
+        let meshed = check(&name, &placement, &whole(&placement, delta), None);
+        assert!(meshed.triangles > 200 && meshed.level > 20, "{name}: {}", meshed.triangles);
+    }
+}
+
+#[test]
+fn meshes_of_example_scenes_keep_every_promise() {
+    let mut parts = 0;
+    let scenes = folder("../examples/scenes");
+    let mut files: Vec<_> =
+        std::fs::read_dir(scenes).expect("the scenes").map(|file| file.expect("a file").path()).collect();
+    files.sort();
+    for file in files.iter().filter(|file| file.extension().is_some_and(|end| end == "toml")) {
+        let text = std::fs::read_to_string(file).expect("a scene");
+        let scene = scene::parse(&text, false).expect("a scene");
+        let case =
+            scene::resolve(&scene, file.parent().unwrap_or(Path::new(".")), "example").expect("a case");
+        for part in Run::new(case, SILENT).expect("a run").parts {
+            let Some(patch) = part.site.contact.whole_patch() else { continue };
+            check(
+                &format!("{} {}", file.display(), part.site.name()),
+                &part.site.contact.placement,
+                patch,
+                None,
+            );
+            parts += 1;
+        }
+    }
+    assert!(parts >= 5, "{parts} parts");
+}
+
+#[test]
+fn random_pairs_keep_every_promise() {
+    let mut random = Random::new(22);
+    let (mut pairs, mut cut, mut sharp, mut several) = (0, 0, 0, 0);
+    while pairs < 100 {
+        let rail = standards::rail(random.pick::<&str>(&["60E1", "56E1", "49E1"])).expect("a rail");
+        let rail = rail.rotated(inclination(1.0, *random.pick(&[20.0, 40.0])).expect("an inclination"));
+        let wheel =
+            standards::wheel(random.pick::<&str>(&["S1002", "EN15302-A", "APTA-120"])).expect("a wheel");
+        let pair = Pair::new(rail, wheel, random.between(200.0, 1200.0)).expect("a pair");
+        let yaw = *random.pick(&[0.0, 0.0, 0.01, -0.04, 0.1]);
+        let (rail_x, wheel_x) = (random.between(-35.0, 25.0), random.between(-40.0, 25.0));
+        let Ok(placement) = pair.placed(rail_x, wheel_x, yaw) else { continue };
+        let delta = 10f64.powf(random.between(-6.0, 0.0));
+        let from = random.between(-5.0, 5.0);
+        let window = Window {
+            xi: [from, from + random.between(0.1, 8.0)],
+            eta: [random.between(-6.0, -0.1), random.between(0.1, 6.0)],
+        };
+        let window = if random.uniform() < 0.4 { window } else { Window::UNBOUNDED };
+        let patch = Patch::new(&placement, delta, &window);
+        if patch.components.is_empty() {
+            continue;
+        }
+        let name = format!("pair {pairs}: {rail_x} on {wheel_x}, yaw {yaw}, δ {delta}, {window:?}");
+        sharp += check(&name, &placement, &patch, None).sharp;
+        cut += usize::from(patch.cut_by_window());
+        several += usize::from(patch.components.len() > 1);
+        pairs += 1;
+    }
+    assert!(cut > 10 && sharp > 2 && several > 2, "{cut} cut, {sharp} sharp corners, {several} with parts");
+}
+
+#[test]
+fn tiny_narrow_and_cut_patches_keep_every_promise() {
+    let crown = |radius: f64, reach: f64| {
+        profile(Arc::about([0.0, -radius], radius, Half::Upper, [-reach, reach]).expect("an arc"))
+            .expect("a profile")
+    };
+    let line = || profile(Arc::line([-60.0, 0.0], [60.0, 0.0]).expect("a line")).expect("a profile");
+    let placed = |rail, wheel| Pair::new(rail, wheel, 460.0).and_then(|pair| pair.placed(0.0, 0.0, 0.0));
+    let round = placed(crown(300.0, 30.0), line()).expect("a placement");
+    // 1e-6 mm, and everything up to 40 mm across.
+    for delta in [1e-15, 1e-9, 1e-3, 0.05, 1.0] {
+        check(&format!("crown, δ = {delta}"), &round, &whole(&round, delta), None);
+    }
+    for narrow in [placed(crown(300.0, 30.0), crown(300.01, 40.0)), placed(crown(1.0, 0.9), line())] {
+        let narrow = narrow.expect("a placement");
+        for delta in [1e-9, 3e-6, 1e-3] {
+            check(&format!("narrow, δ = {delta}"), &narrow, &whole(&narrow, delta), None);
+        }
+    }
+    let patch = whole(&round, 0.05);
+    let ([_, b], [_, h]) = (patch.components[0].xi, patch.components[0].eta);
+    for (xi, eta) in [
+        ([0.97 * b, 2.0 * b], [-2.0 * h, 2.0 * h]),
+        ([-2.0 * b, 2.0 * b], [0.999 * h, 2.0 * h]),
+        ([-0.1, 0.1], [-0.1, 0.1]),
+        ([-2.0 * b, 2.0 * b], [-0.001, 0.001]),
+        ([-0.3 * b, 2.0 * b], [-0.2 * h, 0.9 * h]),
+    ] {
+        let window = Window { xi, eta };
+        let cut = Patch::new(&round, 0.05, &window);
+        check(&format!("cut by {window:?}"), &round, &cut, None);
+        check(&format!("cut by {window:?}, coarse"), &round, &cut, Some(20.0));
+    }
+    assert!(TriangleMesh::new(&round, &whole(&round, 0.0), None).expect("no cells").triangles.is_empty());
+}
+
+#[test]
+fn parts_and_holes_are_meshed_by_themselves() {
+    let crowns = two_crowns(-1e-3, 0.0).expect("a placement");
+    for delta in [0.02, 0.1, 0.3] {
+        check(&format!("two crowns, δ = {delta}"), &crowns, &whole(&crowns, delta), None);
+    }
+    let mut holes = 0;
+    for skew in [0.05, 0.1, 0.2, 0.3] {
+        for delta in [0.1, 0.16, 0.17, 0.2, 0.3, 0.5, 1.0] {
+            let crowns = two_crowns(-1e-3, skew).expect("a placement");
+            let patch = whole(&crowns, delta);
+            holes += patch.components.iter().map(|component| component.holes.len()).sum::<usize>();
+            check(&format!("two crowns, skew {skew}, δ = {delta}"), &crowns, &patch, None);
+        }
+    }
+    println!("{holes} holes");
+}
+
+#[test]
+fn sizes_are_kept_and_bad_ones_refused() {
+    let crowns = two_crowns(0.0, 0.0).expect("a placement");
+    let patch = whole(&crowns, 0.05);
+    let mut before = 0;
+    for size in [2.0, 1.0, 0.5, 0.25] {
+        let cells = check(&format!("size {size}"), &crowns, &patch, Some(size)).triangles;
+        assert!(cells > before, "{cells} after {before}");
+        before = cells;
+    }
+    // A quarter of the size makes about 16 times the cells.
+    let area = patch.area() / (0.25 * 0.25 * 3f64.sqrt() / 4.0);
+    assert!((before as f64 / area - 1.0).abs() < 0.5, "{before} cells, {area} equilateral ones");
+    for size in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-5] {
+        assert!(TriangleMesh::new(&crowns, &patch, Some(size)).is_err(), "{size}");
+    }
+}
