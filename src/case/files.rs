@@ -9,6 +9,7 @@ use super::drawn::{Drawn, loops_of};
 use super::input::{OutputFormat, Outputs};
 use super::run::{Part, Run, Tell};
 use super::summary::summary;
+use super::view::view;
 use crate::error::{Error, Result};
 use crate::export::{
     ContactSettings, Deck, Frame, GridFields, Header, Interval, Loop, NetCdf, PatchPicture, Prescribed,
@@ -58,6 +59,11 @@ fn write_part(run: &Run, part: &Part, folder: &Folder, png: Option<Rasterise>, t
     tables(&mut jobs, part, &loops);
     arrays(&mut jobs, outputs, part);
     pictures(&mut jobs, outputs, &picture, png)?;
+    // One page shows all parts of the run; it lies with the first.
+    if outputs.any(&[OutputFormat::Html]) && run.parts.first().is_some_and(|first| std::ptr::eq(first, part))
+    {
+        bytes(&mut jobs, "view.html", || Ok(view(run).html()));
+    }
     if outputs.any(&[OutputFormat::Vtk]) {
         surfaces(&mut jobs, &header, &grid, &loops, strips.as_ref(), bodies.as_ref());
     }

@@ -198,6 +198,8 @@ pub enum OutputFormat {
     Countact,
     /// contact.inp.
     Contact,
+    /// view.html.
+    Html,
     /// patch.png.
     Png,
 }

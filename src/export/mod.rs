@@ -7,6 +7,7 @@
 mod block;
 mod csv;
 mod deck;
+mod html;
 mod legacy;
 mod model;
 mod netcdf;
@@ -17,6 +18,7 @@ mod vts;
 
 pub use csv::{boundary_csv, interpen_csv};
 pub use deck::{ContactSettings, Deck, Prescribed, conform_wrp, contact_inp, countact_wrp, separation_wrp};
+pub use html::{PageFrame, PageLoop, PagePair, PageProfile, ViewContact, ViewPage};
 pub use legacy::separation_vtk;
 pub use model::{Frame, GridFields, Header, Interval, Loop, QuadMesh, SurfaceMesh};
 pub use netcdf::NetCdf;

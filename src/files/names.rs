@@ -41,6 +41,7 @@ pub const RUN_FOLDER: Names = Names {
         "countact.wrp",
         "contact.inp",
         "view.py",
+        "view.html",
         // A Python that imports or compiles view.py leaves this folder.
         "__pycache__",
     ],

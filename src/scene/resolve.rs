@@ -57,10 +57,10 @@ pub fn echo(scene: &Scene, name: &str) -> Echo {
 
 /// Returns the formats to write. If the scene names none, these are all but PNG.
 fn outputs(scene: &Scene) -> Outputs {
-    use OutputFormat::{Conform, Contact, Countact, Netcdf, Npy, Text, Vtk};
+    use OutputFormat::{Conform, Contact, Countact, Html, Netcdf, Npy, Text, Vtk};
     let named = scene.output.formats.clone();
     let required = named.is_some();
-    let formats = named.unwrap_or_else(|| vec![Vtk, Npy, Netcdf, Text, Conform, Countact, Contact]);
+    let formats = named.unwrap_or_else(|| vec![Vtk, Npy, Netcdf, Text, Conform, Countact, Contact, Html]);
     Outputs { formats, required }
 }
 
