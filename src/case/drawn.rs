@@ -111,7 +111,7 @@ pub(super) fn loops_of(placement: &Placement, patch: &Patch) -> Vec<Loop> {
 }
 
 /// Tells the pictures of a run apart: by side and number of a contact that was found, or by the part of the patch.
-fn contact_name(part: &Part) -> String {
+pub(super) fn contact_name(part: &Part) -> String {
     match &part.site.found {
         Some(found) if found.side == "single" => format!("contact {}", found.contact),
         Some(found) => {

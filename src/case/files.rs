@@ -12,6 +12,7 @@ use super::input::{OutputFormat, Outputs};
 use super::on_rail::OnRail;
 use super::run::{COMPUTING, Part, Run, Tell};
 use super::summary::{Meshes, summary};
+use super::view::view;
 use crate::error::{Error, Result};
 use crate::export::{
     ContactSettings, CurvedDeck, CurvedFields, Deck, Frame, GridFields, Header, Interval, Loop, NetCdf,
@@ -116,6 +117,11 @@ fn write_part(
     tables(&mut jobs, part, &loops);
     arrays(&mut jobs, outputs, part);
     pictures(&mut jobs, outputs, &picture, png)?;
+    // One page shows all parts of the run; it lies with the first.
+    if outputs.any(&[OutputFormat::Html]) && run.parts.first().is_some_and(|first| std::ptr::eq(first, part))
+    {
+        bytes(&mut jobs, "view.html", || Ok(view(run).html()));
+    }
     if outputs.any(&[OutputFormat::Vtk]) {
         surfaces(&mut jobs, &header, &grid, &loops, strips.as_ref());
     }

@@ -242,6 +242,8 @@ pub enum OutputFormat {
     Countact,
     /// contact.inp.
     Contact,
+    /// view.html.
+    Html,
     /// patch.png.
     Png,
     /// patch.msh.
@@ -263,7 +265,9 @@ impl OutputFormat {
             Self::Text => 80.0,
             Self::Conform => 130.0,
             Self::Contact => 28.0,
-            Self::Countact | Self::Png | Self::Gmsh | Self::Abaqus | Self::Stl | Self::Vtp => 0.0,
+            Self::Countact | Self::Png | Self::Gmsh | Self::Abaqus | Self::Stl | Self::Vtp | Self::Html => {
+                0.0
+            }
         }
     }
 

@@ -18,6 +18,7 @@ mod places;
 mod run;
 mod site;
 mod summary;
+mod view;
 mod wheel;
 
 pub use analysis::{Analysis, Timings, check_method};

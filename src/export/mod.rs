@@ -10,6 +10,7 @@ mod csv;
 mod curved;
 mod deck;
 mod gmsh;
+mod html;
 mod in_place;
 mod legacy;
 mod model;
@@ -28,6 +29,7 @@ pub use deck::{
     contact_inp, countact_wrp, separation_wrp,
 };
 pub use gmsh::patch_msh;
+pub use html::{PageFrame, PageLoop, PagePair, PageProfile, ViewContact, ViewPage};
 pub use in_place::{ContactInPlace, body_vtp, boundaries_vtp, contacts_vtp, patches_vtp, wheelset_vtm};
 pub use legacy::separation_vtk;
 pub use model::{Frame, GridFields, Header, Interval, Loop, PatchMesh, QuadMesh, SurfaceMesh};

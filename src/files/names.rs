@@ -62,6 +62,7 @@ pub const RUN_FOLDER: Names = Names {
         "patches.vtp",
         "boundaries.vtp",
         "contacts.vtp",
+        "view.html",
         // A Python that imports or compiles view.py leaves this folder.
         "__pycache__",
     ],

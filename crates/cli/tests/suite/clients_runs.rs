@@ -10,13 +10,13 @@ use wheelrail::files::RUN_FOLDER;
 const HERTZ: [&str; 3] = ["113932", "1139.19", "0.0904879"];
 
 /// Every format that a scene may ask for.
-const ALL_FORMATS: &str = "[output]\nformats = [\"vtk\", \"npy\", \"netcdf\", \"text\", \"conform\", \"countact\", \"contact\", \"png\"]\n";
+const ALL_FORMATS: &str = "[output]\nformats = [\"vtk\", \"npy\", \"netcdf\", \"text\", \"conform\", \"countact\", \"contact\", \"html\", \"png\"]\n";
 
 /// What a solver of rolling contact needs besides.
 const ROLLING: &str = "[motion]\nspeed = 30.0\n[friction]\nstatic = 0.35\nkinetic = 0.25\n";
 
 /// What may lie in a run's folder and is not of the run: the collection is a sweep's, the other one is Python's.
-const NOT_OF_A_RUN: [&str; 2] = ["surface.pvd", "__pycache__"];
+const NOT_OF_A_RUN: [&str; 3] = ["surface.pvd", "wheelset.pvd", "__pycache__"];
 
 /// What only a run over the rail's surface writes.
 const ON_RAIL: [&str; 5] =
@@ -62,6 +62,10 @@ fn run_file(path: &Path, dir: &Path) {
     let output = program.arg("run").arg(path).arg("--out").arg(dir).output().unwrap();
     assert!(output.status.success(), "{}: {}", path.display(), String::from_utf8_lossy(&output.stderr));
 }
+
+/// What only the folder of a run's first contact holds: the page and the bodies in their place.
+const OF_ALL_CONTACTS: [&str; 7] =
+    ["view.html", "wheelset.vtm", "rails.vtp", "wheels.vtp", "patches.vtp", "boundaries.vtp", "contacts.vtp"];
 
 /// The folder holds the files of [`RUN_FOLDER`] but for these, no other ones, and the summary lists the same.
 fn assert_complete(dir: &Path, missing: &[&str]) {
@@ -131,7 +135,7 @@ fn every_reader_reads_each_contact_of_a_wheelset() {
     let parts: Vec<_> = parts.filter(|path| path.is_dir()).collect();
     assert!(parts.iter().any(|part| part.ends_with("left")), "{parts:?}");
     for part in parts {
-        assert_complete(&part, &ON_RAIL);
+        assert_complete(&part, &[&ON_RAIL[..], &OF_ALL_CONTACTS].concat());
         check_run(&part);
     }
 }

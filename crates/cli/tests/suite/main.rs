@@ -12,6 +12,7 @@ mod clients;
 mod clients_runs;
 mod hostile;
 mod load_table;
+mod pages;
 mod profile_cli;
 mod programs;
 mod python_package;

@@ -37,7 +37,7 @@ fn clients() -> Option<&'static Clients> {
 }
 
 /// Says that something did not run, or fails where it must.
-fn not_run(what: &str) {
+pub fn not_run(what: &str) {
     assert!(std::env::var(REQUIRED).as_deref() != Ok("1"), "{what} ({REQUIRED} is 1)");
     eprintln!("NOT RUN: {what}");
 }

@@ -1,0 +1,205 @@
+// Opens pages of runs in a headless browser, as a reader would, and prints one line for each.
+//
+//     node check_page.mjs BROWSER < JSON
+//
+// The JSON is a list of pages: { name, page, others: [{ contact, delta, loops, area }] }, where `others` are runs of the same
+// scene with another approach, mm: the exact loops of their boundaries and their area. Keys, pointer, themes and telephone are
+// tried on the first page and on those of more than two contacts. A failed check ends with exit code 1.
+import assert from "node:assert/strict";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+import { chromium } from "playwright-core";
+
+/** Largest distance of an exact boundary from the page's contour, in steps of the page's grid along each axis. */
+const WITHIN_STEPS = 0.05;
+/** Largest relative difference of the areas. */
+const WITHIN_AREA = 1e-3;
+
+const FLAGS = [
+    "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
+    "--disable-background-networking", "--disable-component-update", "--disable-sync",
+];
+
+/** Opens a page; whatever it says or asks for is a failure. */
+async function open(context, file) {
+    const page = await context.newPage();
+    page.faults = [];
+    page.on("console", (message) => page.faults.push(`console: ${message.text()}`));
+    page.on("pageerror", (error) => page.faults.push(error.stack));
+    page.on("request", (request) => {
+        if (request.url() !== pathToFileURL(file).href) page.faults.push(`request: ${request.url()}`);
+    });
+    await page.goto(pathToFileURL(file).href);
+    await page.waitForFunction(() => window.wheelrail !== undefined);
+    await settled(page);
+    return page;
+}
+
+/** Waits until what was asked for is drawn. */
+function settled(page) {
+    return page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+}
+
+/** Numbers of different colours of all visible canvases. */
+function colours(page) {
+    return page.evaluate(() =>
+        [...document.querySelectorAll("canvas")].filter((canvas) => canvas.clientWidth > 0).map((canvas) => {
+            const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+            return new Set(new Uint32Array(data.buffer)).size;
+        }),
+    );
+}
+
+/** Largest distance of exact points from polylines, in steps. */
+function farthest(exact, lines, [dx, dy]) {
+    let most = 0;
+    for (const [x, y] of exact.flat()) {
+        let least = Infinity;
+        for (const line of lines) {
+            for (let k = 1; k < line.length; k++) {
+                const [a, b] = [line[k - 1], line[k]].map(([u, v]) => [(u - x) / dx, (v - y) / dy]);
+                const d = [b[0] - a[0], b[1] - a[1]];
+                const share = -(a[0] * d[0] + a[1] * d[1]) / (d[0] * d[0] + d[1] * d[1]);
+                const t = Math.min(Math.max(share, 0), 1) || 0;
+                least = Math.min(least, Math.hypot(a[0] + t * d[0], a[1] + t * d[1]));
+            }
+        }
+        most = Math.max(most, least);
+    }
+    return most;
+}
+
+function areaOf(lines) {
+    const cross = ([a, b], [c, d]) => (a * d - b * c) / 2;
+    return lines.flatMap((line) => line.slice(1).map((at, k) => cross(line[k], at))).reduce((sum, part) => sum + part, 0);
+}
+
+/** The lines that reach into the box around some loops: a page's window may show a neighbouring contact, too. */
+function around(loops, lines) {
+    const box = [0, 1].map((k) => {
+        const values = loops.flat().map((at) => at[k]);
+        return [Math.min(...values), Math.max(...values)];
+    });
+    const inside = (at) => box.every(([low, high], k) => at[k] >= low && at[k] <= high);
+    return lines.filter((line) => line.some(inside));
+}
+
+/** The slider moves the contour to the boundary that a run gives for that δ. */
+async function slider(page, others) {
+    const found = [];
+    for (const { contact, delta, loops, area } of others) {
+        await page.locator(`#delta-${contact}`).evaluate((input, share) => {
+            input.value = share * input.max;
+            input.dispatchEvent(new Event("input"));
+        }, await page.evaluate(([k, mm]) => mm / (3 * window.wheelrail.given(k)), [contact, delta]));
+        const [near, step] = await page.evaluate((k) => [window.wheelrail.delta(k), window.wheelrail.given(k) / 200], contact);
+        assert.ok(Math.abs(near - delta) <= step, `δ ${near}, not ${delta}`);
+        const [drawn, steps] = await page.evaluate(([k, mm]) => {
+            // The slider has steps; the rest of the way is none of them.
+            if (Math.abs(window.wheelrail.delta(k) - mm) > 1e-9) window.wheelrail.setDelta(mm, k);
+            return [window.wheelrail.contour(k), window.wheelrail.steps(k)];
+        }, [contact, delta]);
+        const lines = around(loops, drawn);
+        assert.equal(lines.length, loops.length, "as many loops as the run has");
+        const distance = farthest(loops, lines, steps);
+        const relative = Math.abs(areaOf(lines) / area - 1);
+        assert.ok(distance < WITHIN_STEPS, `contact ${contact}, δ ${delta}: ${distance} steps from the run's boundary`);
+        assert.ok(relative < WITHIN_AREA, `contact ${contact}, δ ${delta}: area differs by ${relative}`);
+        found.push(`δ ${delta}: ${distance.toFixed(4)} steps, area ${relative.toExponential(1)}`);
+    }
+    return found;
+}
+
+/** Keys move the cut and δ, every picture is reached by Tab and shows that it is. */
+async function keys(page) {
+    const state = () => page.evaluate(() => [window.wheelrail.cut(0), window.wheelrail.delta(0), window.wheelrail.steps(0)]);
+    const plan = page.locator("canvas.plan").first();
+    await plan.focus();
+    await page.keyboard.press("Home");
+    const [before, delta, steps] = await state();
+    for (const key of ["ArrowRight", "Shift+ArrowUp", "+"]) await page.keyboard.press(key);
+    const [after, larger] = await state();
+    assert.ok(Math.abs(after[0] - before[0] - steps[0]) < 1e-9 && Math.abs(after[1] - before[1] - 10 * steps[1]) < 1e-9);
+    assert.ok(larger > delta, "+ raises δ");
+    // Tab goes on from where the mouse was pressed.
+    await page.locator("h1").click();
+    const reached = new Set();
+    for (let k = 0; k < 24; k++) {
+        await page.keyboard.press("Tab");
+        reached.add(await page.evaluate(() => {
+            const { activeElement: here } = document;
+            // Behind the last element the browser's own frame has its turn.
+            const shown = here === document.body || getComputedStyle(here).outlineStyle !== "none";
+            if (!shown) throw new Error(`no focus to be seen on ${here.tagName} ${here.className}`);
+            return here.tagName === "CANVAS" ? here.className : here.tagName;
+        }));
+    }
+    for (const wanted of ["INPUT", "space", "plan", "cut", "BUTTON"]) assert.ok(reached.has(wanted), `Tab reaches ${wanted}`);
+}
+
+/** The pointer reads s, and a drag turns the view in space. */
+async function pointer(page) {
+    const plan = page.locator("canvas.plan").first();
+    const box = await plan.boundingBox();
+    await page.mouse.move(box.x + 0.55 * box.width, box.y + 0.4 * box.height);
+    const text = await page.locator("figure.plan output").first().textContent();
+    assert.match(text, /^ξ \S+ mm {3}η \S+ mm {3}s (\S+ (µm|mm)|no surface)$/);
+    const space = page.locator("canvas.space").first();
+    const [before, room] = [await space.screenshot(), await space.boundingBox()];
+    await page.mouse.move(room.x + 0.3 * room.width, room.y + 0.5 * room.height);
+    await page.mouse.down();
+    await page.mouse.move(room.x + 0.5 * room.width, room.y + 0.6 * room.height, { steps: 3 });
+    await page.mouse.up();
+    await settled(page);
+    assert.ok(!before.equals(await space.screenshot()), "a drag turns the view");
+}
+
+/** The same page looks the same twice, and otherwise in the dark. */
+async function themes(page) {
+    const shots = [await page.screenshot(), await page.screenshot()];
+    assert.ok(shots[0].equals(shots[1]), "two screenshots of one page");
+    await page.locator("button.theme").click();
+    await page.mouse.move(0, 0);
+    await settled(page);
+    assert.ok(!shots[0].equals(await page.screenshot()), "light and dark");
+}
+
+/** On a telephone nothing is wider than the screen, and a touch moves the cut. */
+async function telephone(browser, file) {
+    const context = await browser.newContext({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+    const page = await open(context, file);
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "no sideways scrolling");
+    const plan = page.locator("canvas.plan").first();
+    await plan.scrollIntoViewIfNeeded();
+    const box = await plan.boundingBox();
+    const before = await page.evaluate(() => window.wheelrail.cut(0));
+    await page.touchscreen.tap(box.x + 0.55 * box.width, box.y + 0.3 * box.height);
+    const after = await page.evaluate(() => window.wheelrail.cut(0));
+    assert.notDeepEqual(after, before, "a touch moves the cut");
+    assert.deepEqual(page.faults, []);
+    await context.close();
+}
+
+const profile = mkdtempSync(join(tmpdir(), "wheelrail-pages-"));
+const [executablePath] = process.argv.slice(2);
+const browser = await chromium.launch({ executablePath, args: [...FLAGS, `--disk-cache-dir=${profile}`] });
+try {
+    for (const [number, { name, page: file, others }] of JSON.parse(readFileSync(0, "utf8")).entries()) {
+        const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, offline: true });
+        const page = await open(context, file);
+        const drawn = await colours(page);
+        assert.ok(drawn.length >= 5 && drawn.every((count) => count > 8), `${name}: colours of the pictures: ${drawn}`);
+        const found = await slider(page, others);
+        const tried = number === 0 || (await page.evaluate(() => window.wheelrail.contacts.length)) > 2;
+        for (const attempt of tried ? [keys, pointer, themes] : []) await attempt(page);
+        assert.deepEqual(page.faults, [], name);
+        await context.close();
+        if (tried) await telephone(browser, file);
+        console.log(`page ${name}: ${drawn.length} pictures; ${found.join("; ") || "no patch"}`);
+    }
+} finally {
+    await browser.close();
+    rmSync(profile, { recursive: true });
+}

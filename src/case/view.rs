@@ -1,0 +1,237 @@
+//! What the page of a run shows: every contact on a grid of the page's own, and what is known of it in words.
+
+use super::drawn::contact_name;
+use super::input::SideProfiles;
+use super::run::{Part, Run};
+use crate::export::{PageFrame, PageLoop, PagePair, PageProfile, ViewContact, ViewPage};
+use crate::load::Estimate;
+use crate::mesh::equal_steps;
+use crate::patch::{Patch, Window};
+use crate::profile::{Profile, trace};
+use crate::separation::{EtaAxis, Values, plan};
+
+/// Contacts that a page shows: more would take more than the 1.5 MB that a mail or a browser takes at once.
+const MOST_SHOWN: usize = 16;
+
+/// Points of a page's grid along ξ and along η, for up to four contacts. Boundaries by linear interpolation are then within
+/// some 0.01 of a step of the exact ones.
+const POINTS: usize = 161;
+
+/// Points of all grids of a page together.
+const ALL_POINTS: f64 = 4.0 * (POINTS * POINTS) as f64;
+
+/// The largest approach that a page shows, as a multiple of the run's: its colours end there, too.
+const SHOWN: f64 = 3.0;
+
+/// Margin of a page's window around what it shows, as a share of its side.
+const MARGIN: f64 = 0.04;
+
+/// Farthest distance of the window's edge from the patch's box, as a multiple of the box's side. Where bodies conform, the
+/// patch under the largest approach is many times as wide, and the grid over it would be coarse.
+const WIDEST: f64 = 1.5;
+
+/// Half the side \[mm\] of a window that would have no extent.
+const LEAST_HALF: f64 = 5.0;
+
+/// Distance of a profile's points \[mm\], and the most points of one.
+const PROFILE_STEP: f64 = 0.25;
+const PROFILE_POINTS: usize = 1200;
+
+/// Most points of the boundaries of one contact. Only patches of rough profiles have more.
+const BOUNDARY_POINTS: usize = 2000;
+
+/// Makes the page of a run.
+pub(super) fn view(run: &Run) -> ViewPage {
+    let profiles = run.case.profiles.sides().map(|(_, side)| pair(side)).collect();
+    let shown = &run.parts[..run.parts.len().min(MOST_SHOWN)];
+    let n = ((ALL_POINTS / shown.len() as f64).sqrt() as usize).min(POINTS);
+    ViewPage {
+        title: run.case.echo.title.clone(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        scene_hash: run.case.echo.hash.clone(),
+        pairs: profiles,
+        contacts: shown.iter().map(|part| contact(run, part, n)).collect(),
+        notes: notes(run, n),
+    }
+}
+
+/// Says what the page's numbers are, and what it leaves out.
+fn notes(run: &Run, n: usize) -> Vec<String> {
+    let mut notes = vec![format!(
+        "Numbers of this page are in single precision, on a grid of {n} × {n} points of its own; s and boundaries of other δ are \
+         interpolated linearly. The exact ones are in the files beside it."
+    )];
+    if run.parts.len() > MOST_SHOWN {
+        notes.push(format!("The page shows the first {MOST_SHOWN} of {} contacts.", run.parts.len()));
+    }
+    if run.parts.iter().any(|part| part.site.side() == Some("left")) {
+        notes.push("The left side is shown as its mirror image: x to the left, y forward, z up.".into());
+    }
+    notes
+}
+
+fn pair(side: &SideProfiles) -> PagePair {
+    let [rail, wheel] = [side.pair.rail(), side.pair.wheel()].map(polyline);
+    PagePair { rail, wheel, radius: side.pair.wheel_radius() }
+}
+
+/// Gives a profile as a polyline; one of very many points is thinned.
+fn polyline(profile: &Profile) -> PageProfile {
+    let marks = trace(profile, PROFILE_STEP);
+    let kept = thinned(&marks, PROFILE_POINTS);
+    let coordinate = |of: fn(&crate::profile::Station) -> f64| kept.iter().map(|m| of(&m.station)).collect();
+    PageProfile { name: profile.name.clone(), x: coordinate(|s| s.x), z: coordinate(|s| s.z) }
+}
+
+/// Gives at most about `most` of some items, evenly chosen, the first and the last among them.
+fn thinned<T: Copy>(items: &[T], most: usize) -> Vec<T> {
+    let stride = items.len().div_ceil(most).max(1);
+    let mut kept: Vec<T> = items.iter().step_by(stride).copied().collect();
+    if stride > 1 && !(items.len() - 1).is_multiple_of(stride) {
+        kept.extend(items.last());
+    }
+    kept
+}
+
+fn contact(run: &Run, part: &Part, n: usize) -> ViewContact {
+    let (placement, patch) = (&part.site.contact.placement, part.analysis.patch.as_ref());
+    let window = window(part);
+    let (xi, axis) = (through_zero(window.xi, n), EtaAxis::new(&through_zero(window.eta, n)));
+    let question = &run.case.question;
+    let mut plan = plan(placement, &xi, &axis, question.tolerance, question.method);
+    let mut separation = Values::new(n * n);
+    plan.fill(placement, &xi, &axis, &mut separation);
+    let rail = &placement.rail().section;
+    let both = run.case.profiles.left.is_some() && part.site.side() == Some("left");
+    let mut warnings = part.refusals();
+    warnings.extend(part.warnings());
+    ViewContact {
+        name: contact_name(part),
+        pair: usize::from(both),
+        frames: [placement.rail(), placement.wheel()].map(|body| PageFrame::from(&body.contact_frame())),
+        skew: placement.skew(),
+        approach: part.site.contact.approach.map(|(approach, _)| approach).filter(|approach| *approach > 0.0),
+        area: patch.map(Patch::area),
+        rail_height: xi
+            .iter()
+            .map(|&xi| rail.branch_at(xi).map_or(f64::NAN, |branch| branch.height(xi)))
+            .collect(),
+        separation: separation.to_vec(),
+        boundary: patch.map_or_else(Vec::new, boundary),
+        facts: facts(part),
+        warnings,
+        xi,
+        eta: axis.eta,
+    }
+}
+
+/// Gives the window of a page's grid: the patch under three times the approach, as far as it is around the patch itself.
+fn window(part: &Part) -> Window {
+    let placement = &part.site.contact.placement;
+    let patch = part.analysis.patch.as_ref();
+    let Some((patch, inner)) = patch.and_then(|patch| Some((patch, patch.extent()?))) else {
+        let Window { xi, eta } = part.site.window();
+        return Window { xi: with_extent(xi), eta: with_extent(eta) };
+    };
+    let wide = Patch::new(placement, SHOWN * patch.approach, &Window::UNBOUNDED);
+    let apart = |[a, b]: [f64; 2], [c, d]: [f64; 2]| b < c || d < a;
+    let around = wide.components.iter().filter(|c| !apart(c.xi, inner.xi) && !apart(c.eta, inner.eta));
+    let outer = around.fold(inner, |box_of, c| Window {
+        xi: [box_of.xi[0].min(c.xi[0]), box_of.xi[1].max(c.xi[1])],
+        eta: [box_of.eta[0].min(c.eta[0]), box_of.eta[1].max(c.eta[1])],
+    });
+    let shown = |[a, b]: [f64; 2], [c, d]: [f64; 2]| {
+        let reach = WIDEST * (b - a);
+        let (from, to) = (c.max(a - reach), d.min(b + reach));
+        let margin = MARGIN * (to - from);
+        with_extent([from - margin, to + margin])
+    };
+    Window { xi: shown(inner.xi, outer.xi), eta: shown(inner.eta, outer.eta) }
+}
+
+/// Widens an interval that has no length.
+fn with_extent([from, to]: [f64; 2]) -> [f64; 2] {
+    if from < to { [from, to] } else { [from - LEAST_HALF, to + LEAST_HALF] }
+}
+
+/// Gives n ≥ 2 values in equal steps over an interval. The interval moves by less than a step, so that 0, where C lies, is
+/// one of the values if it is between them.
+fn through_zero([from, to]: [f64; 2], n: usize) -> Vec<f64> {
+    let step = (to - from) / (n - 1) as f64;
+    let before = (-from / step).round();
+    if before < 0.0 || before >= n as f64 {
+        return equal_steps(from, to, n);
+    }
+    (0..n).map(|k| (k as f64 - before) * step).collect()
+}
+
+fn boundary(patch: &Patch) -> Vec<PageLoop> {
+    let loops = || patch.components.iter().flat_map(|c| [&c.boundary].into_iter().chain(&c.holes));
+    let all: usize = loops().map(Vec::len).sum();
+    let kept = |points: &Vec<[f64; 2]>| {
+        // At least a triangle of every loop is left.
+        let most = (points.len() * BOUNDARY_POINTS / all.max(1)).clamp(3, points.len().max(3));
+        PageLoop(thinned(points, most).into_iter().flatten().collect())
+    };
+    loops().map(kept).collect()
+}
+
+/// Gives the rows of the table: what a reader asks first.
+fn facts(part: &Part) -> Vec<[String; 2]> {
+    let (site, contact) = (&part.site, &part.site.contact);
+    let placement = &contact.placement;
+    let [rail, wheel] = [placement.rail(), placement.wheel()];
+    let mut rows: Vec<[String; 2]> = Vec::new();
+    let mut row = |label: &str, value: String| rows.push([label.into(), with_minus(&value)]);
+    row("Approach δ", approach(part));
+    for (label, body) in [("C on the rail", rail), ("C on the wheel", wheel)] {
+        let at = &body.point.station;
+        row(label, format!("({:.3}, {:.3}) mm", at.x, at.z));
+    }
+    row("Contact angle θ", format!("{:.3}°", rail.contact_angle().to_degrees()));
+    row("Rolling radius", format!("{:.3} mm", placement.rolling_radius()));
+    if placement.skew() != 0.0 {
+        row("Skew", format!("{:.3} mrad", 1e3 * placement.skew()));
+    }
+    if let Some(load) = site.normal_load {
+        row("Normal load", format!("{:.2} kN", load / 1e3));
+        row("Vertical load", format!("{:.2} kN", load * rail.point.station.cos / 1e3));
+    }
+    if let Some(patch) = &part.analysis.patch {
+        row("Area of the patch", format!("{:.3} mm²", patch.area()));
+        if let Some(Window { xi: [a, b], eta: [c, d] }) = patch.extent() {
+            row("Extents ξ × η", format!("{:.3} × {:.3} mm", b - a, d - c));
+        }
+    }
+    if let Some(ellipse) = &contact.ellipse {
+        row("Hertz p₀", format!("{:.0} N/mm²", ellipse.pressure_n_per_mm2));
+        row("Hertz load", format!("{:.2} kN", ellipse.load_n / 1e3));
+        row("Hertz semi-axes", format!("{:.3}, {:.3} mm", ellipse.a_mm, ellipse.b_mm));
+    }
+    let plan = &part.analysis.plan;
+    row("Grid of the files", format!("{} × {}", site.grid.xi.len(), site.grid.eta.len()));
+    row("Method", format!("{}, ± {:.0e} mm", plan.choice.method.name(), plan.error));
+    rows
+}
+
+fn approach(part: &Part) -> String {
+    let Some((approach, estimate)) = part.site.contact.approach else { return "none asked for".into() };
+    let by = match estimate {
+        None => "given",
+        Some(Estimate::Hertz) => "Hertz",
+        Some(Estimate::HalfSpace) => "half-space",
+    };
+    format!("{approach:.5} mm ({by})")
+}
+
+/// Gives numbers their true minus sign; hyphens of words stay.
+fn with_minus(text: &str) -> String {
+    let mut before = ' ';
+    let mark = |(at, c): (usize, char)| {
+        let number = c == '-' && text[at + 1..].starts_with(|next: char| next.is_ascii_digit());
+        let word = before.is_alphabetic() && before != 'e';
+        before = c;
+        if number && !word { '\u{2212}' } else { c }
+    };
+    text.char_indices().map(mark).collect()
+}

@@ -1,0 +1,10 @@
+//! Pages for a browser. A page is one file: it holds its numbers, its style and its script, and asks the network for nothing.
+//!
+//! The scripts are bundles. Their sources are in `source/` beside this file, with `package.json` and `package-lock.json`;
+//! `npm ci && npm run build` there makes them, and a test compares the result with what is committed. Cargo needs no node.
+
+mod document;
+mod numbers;
+mod view;
+
+pub use view::{PageFrame, PageLoop, PagePair, PageProfile, ViewContact, ViewPage};

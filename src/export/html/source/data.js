@@ -1,0 +1,129 @@
+// The data of a page: arrays, and a contact with its grid.
+
+/** Decodes base64 of little-endian single precision; browsers run on little-endian machines only. */
+export function floats(base64) {
+    return new Float32Array(Uint8Array.from(atob(base64), (c) => c.charCodeAt(0)).buffer);
+}
+
+/** Reads the JSON that the page carries. */
+export function pageData() {
+    return JSON.parse(document.getElementById("data").textContent);
+}
+
+/** A polyline [x, z] of a profile in its own axes, mm. */
+export function profilePoints(profile) {
+    const [x, z] = [floats(profile.x), floats(profile.z)];
+    return Array.from(x, (value, k) => [value, z[k]]);
+}
+
+/** s on a rectangular grid of equal steps, at i * eta.length + j; NaN where a body has no surface. Lengths in mm. */
+export class Grid {
+    constructor(xi, eta, values) {
+        Object.assign(this, { xi, eta, values });
+        this.steps = [xi, eta].map((axis) => (axis[axis.length - 1] - axis[0]) / (axis.length - 1));
+    }
+
+    /** Both ends of an axis: 0 is ξ, 1 is η. */
+    ends(axis) {
+        const values = axis === 0 ? this.xi : this.eta;
+        return [values[0], values[values.length - 1]];
+    }
+
+    /** s at a point, interpolated linearly along both axes; NaN outside. */
+    at(xi, eta) {
+        const [i, u] = place(xi, this.xi, this.steps[0]);
+        const [j, v] = place(eta, this.eta, this.steps[1]);
+        const m = this.eta.length;
+        const s = this.values;
+        const k = i * m + j;
+        // A node's own value counts alone, so that an undefined neighbour does not spoil it.
+        const near = v === 0 ? s[k] : (1 - v) * s[k] + v * s[k + 1];
+        if (u === 0) return near;
+        const far = v === 0 ? s[k + m] : (1 - v) * s[k + m] + v * s[k + m + 1];
+        return (1 - u) * near + u * far;
+    }
+
+    /** Least and largest defined s. */
+    range() {
+        let [low, high] = [Infinity, -Infinity];
+        for (const s of this.values) {
+            if (s < low) low = s;
+            if (s > high) high = s;
+        }
+        return [low, high];
+    }
+
+    /** Least s on the edges of the grid: contours of larger s are cut by them. */
+    leastOnEdge() {
+        const [n, m] = [this.xi.length, this.eta.length];
+        let least = Infinity;
+        for (let i = 0; i < n; i++) {
+            for (let j = 0; j < m; j += i === 0 || i === n - 1 ? 1 : m - 1) {
+                const s = this.values[i * m + j];
+                if (s < least) least = s;
+            }
+        }
+        return least;
+    }
+}
+
+/** Index of the node below a value, and the share of the step beyond it; not numbers outside of the axis. */
+function place(value, axis, step) {
+    const at = (value - axis[0]) / step;
+    if (!(at >= 0 && at <= axis.length - 1)) return [NaN, NaN];
+    const index = Math.min(Math.floor(at), axis.length - 2);
+    const share = at - index;
+    return share === 1 ? [index + 1, 0] : [index, share];
+}
+
+/** A rigid motion of the plane from a contact frame (ξ, ζ) to own axes (x, z), and back. */
+export class Frame {
+    constructor({ origin, turn }) {
+        Object.assign(this, { origin, turn });
+    }
+
+    out([xi, zeta]) {
+        const [c, s] = this.turn;
+        return [this.origin[0] + c * xi - s * zeta, this.origin[1] + s * xi + c * zeta];
+    }
+
+    into([x, z]) {
+        const [c, s] = this.turn;
+        const [dx, dz] = [x - this.origin[0], z - this.origin[1]];
+        return [c * dx + s * dz, c * dz - s * dx];
+    }
+}
+
+/** One contact of a run, decoded. */
+export class Contact {
+    constructor(raw, pairs) {
+        const { name, approach, area, skew, facts, warnings } = raw;
+        Object.assign(this, { name: name || "contact", approach, area, skew, facts, warnings });
+        this.grid = new Grid(floats(raw.xi), floats(raw.eta), floats(raw.separation));
+        this.railHeight = floats(raw.rail_height);
+        // The exact boundary under δ of the run, closed.
+        this.boundary = raw.boundary.map((loop) => {
+            const values = floats(loop);
+            const points = Array.from({ length: values.length / 2 }, (_, k) => [values[2 * k], values[2 * k + 1]]);
+            return [...points, points[0]];
+        });
+        [this.railFrame, this.wheelFrame] = raw.frames.map((frame) => new Frame(frame));
+        this.pair = pairs[raw.pair];
+        // Colours are made for s from 0 to 3 δ; without δ, for all that the contours can show.
+        const edge = this.grid.leastOnEdge();
+        const [, high] = this.grid.range();
+        const fallback = [edge, high, 0.1].find((s) => s > 0 && Number.isFinite(s));
+        this.scale = approach ? 3 * approach : fallback;
+        this.delta = approach ?? fallback / 3;
+    }
+}
+
+/** Decodes the profiles of a page. */
+export function pairsOf(data) {
+    return data.pairs.map(({ rail, wheel, radius }) => ({
+        rail: profilePoints(rail),
+        wheel: profilePoints(wheel),
+        names: [rail.name, wheel.name],
+        radius,
+    }));
+}

@@ -1,0 +1,72 @@
+// Small helpers for elements and numbers.
+
+/** Makes an element with attributes and children; text is never read as markup. */
+export function element(tag, attributes = {}, ...children) {
+    const node = document.createElement(tag);
+    for (const [name, value] of Object.entries(attributes)) {
+        if (name.startsWith("on")) node.addEventListener(name.slice(2), value);
+        else if (value !== undefined && value !== false) node.setAttribute(name, value === true ? "" : value);
+    }
+    node.append(...children);
+    return node;
+}
+
+/** A number with this many decimals and a true minus sign. */
+export function fixed(value, decimals) {
+    if (!Number.isFinite(value)) return "–";
+    const text = value.toFixed(decimals);
+    return Number(text) === 0 ? text.replace("-", "") : text.replace("-", "\u2212");
+}
+
+/** A length in µm below 1 mm, in mm above. */
+export function length(mm) {
+    if (!Number.isFinite(mm)) return "no surface";
+    return Math.abs(mm) < 1 ? `${fixed(1e3 * mm, 2)} µm` : `${fixed(mm, 4)} mm`;
+}
+
+/** Round values inside of a range, about so many. */
+export function ticks([from, to], about) {
+    const raw = (to - from) / Math.max(about, 1);
+    const power = 10 ** Math.floor(Math.log10(raw));
+    const step = power * [1, 2, 5, 10].find((m) => m * power >= raw * 0.999);
+    const first = Math.ceil(from / step - 1e-6);
+    const last = Math.floor(to / step + 1e-6);
+    const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+    return Array.from({ length: last - first + 1 }, (_, k) => {
+        const value = (first + k) * step;
+        return [value, fixed(value, decimals)];
+    });
+}
+
+/**
+ * A canvas that is as sharp as the screen. It is drawn in the next frame after its size or its content has changed. `draw`
+ * gets its context, in CSS pixels, its width and height, and the number of pixels of the screen in one of CSS.
+ */
+export class Sheet {
+    constructor(label, draw, attributes = {}) {
+        this.canvas = element("canvas", { role: "img", "aria-label": label, ...attributes });
+        this.draw = draw;
+        new ResizeObserver(() => this.refresh()).observe(this.canvas);
+    }
+
+    /** Asks for the picture to be drawn; several wishes before the next frame are one. */
+    refresh() {
+        this.asked ??= requestAnimationFrame(() => {
+            this.asked = undefined;
+            this.paint();
+        });
+    }
+
+    paint() {
+        const { canvas } = this;
+        const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+        if (width === 0 || height === 0) return;
+        const ratio = window.devicePixelRatio || 1;
+        const size = [Math.round(width * ratio), Math.round(height * ratio)];
+        if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
+        const context = canvas.getContext("2d");
+        context.setTransform(ratio, 0, 0, ratio, 0, 0);
+        context.clearRect(0, 0, width, height);
+        this.draw(context, width, height, ratio);
+    }
+}

@@ -1,0 +1,100 @@
+// The plan of the contact: s in colour over ξ and η, the boundary, and the two lines of the cut.
+
+import { colourOf, theme } from "./colours.js";
+import { contours } from "./contours.js";
+import { Sheet, fixed, length } from "./dom.js";
+import { Plot } from "./plot.js";
+
+/** Axes thinner than this get a scale each. */
+const THINNEST = 4;
+
+export class PlanView {
+    /** `state` is shared by all views of a contact: { contact, delta, lines, cut }; `moved` is told when the cut moves. */
+    constructor(state, moved) {
+        Object.assign(this, { state, moved });
+        const label = "Separation s over ξ and η. Arrow keys move the cut, plus and minus change δ.";
+        this.sheet = new Sheet(label, (...to) => this.draw(...to), { tabindex: 0, class: "plan" });
+        this.readout = document.createElement("output");
+        this.listen(this.sheet.canvas);
+    }
+
+    listen(canvas) {
+        let held = false;
+        const move = (event) => {
+            const at = this.plot?.back(event.offsetX, event.offsetY, held);
+            if (at && held) this.moved(at);
+            this.say(at ?? this.state.cut);
+        };
+        canvas.addEventListener("pointerdown", (event) => {
+            held = true;
+            canvas.setPointerCapture(event.pointerId);
+            move(event);
+        });
+        canvas.addEventListener("pointermove", move);
+        for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => (held = false));
+        canvas.addEventListener("pointerleave", () => this.say(this.state.cut));
+    }
+
+    /** Writes ξ, η and s of a point below the plan. */
+    say([xi, eta]) {
+        const s = this.state.contact.grid.at(xi, eta);
+        this.readout.value = `ξ ${fixed(xi, 3)} mm   η ${fixed(eta, 3)} mm   s ${length(s)}`;
+    }
+
+    draw(context, width, height, ratio) {
+        const { contact, delta, lines, cut } = this.state;
+        const { grid } = contact;
+        const room = [58, 10, width - 72, height - 54];
+        const plot = Plot.trueScale(context, room, grid.ends(0), grid.ends(1), THINNEST);
+        this.plot = plot;
+        const colours = theme();
+        context.drawImage(this.field(plot, ratio), ...plot.place);
+        plot.clipped(() => {
+            plot.lines(this.isolines, "rgb(255 255 255 / 35%)", 1);
+            if (contact.approach && delta !== contact.approach) {
+                plot.lines(contact.boundary, colours.given, 1.5, [4, 3]);
+            }
+            plot.lines(lines, colours.halo, 4.5);
+            plot.lines(lines, colours.boundary, 2.25);
+            plot.line([[cut[0], plot.v[0]], [cut[0], plot.v[1]]], colours.cutEta, 1.25, [6, 3]);
+            plot.line([[plot.u[0], cut[1]], [plot.u[1], cut[1]]], colours.cutXi, 1.25, [6, 3]);
+            dot(plot, [0, 0], colours);
+        });
+        plot.axes(["ξ [mm]", "η [mm]"]);
+        this.say(cut);
+    }
+
+    /** s in colour, drawn once for every size. */
+    field(plot, ratio) {
+        const { grid, scale } = this.state.contact;
+        const [width, height] = [plot.place[2], plot.place[3]].map((side) => Math.max(2, Math.round(side * ratio)));
+        if (this.image?.width === width && this.image.height === height) return this.image;
+        const image = new ImageData(width, height);
+        for (let y = 0; y < height; y++) {
+            const v = plot.v[1] - ((y + 0.5) / height) * (plot.v[1] - plot.v[0]);
+            for (let x = 0; x < width; x++) {
+                const u = plot.u[0] + ((x + 0.5) / width) * (plot.u[1] - plot.u[0]);
+                image.data.set(colourOf(grid.at(u, v) / scale), 4 * (y * width + x));
+            }
+        }
+        this.image = Object.assign(document.createElement("canvas"), { width, height });
+        this.image.getContext("2d").putImageData(image, 0, 0);
+        this.isolines ??= [1, 2, 4, 5].flatMap((k) => contours(grid, (k / 6) * scale));
+        return this.image;
+    }
+}
+
+/** Marks C. */
+function dot(plot, at, colours) {
+    const { context } = plot;
+    context.beginPath();
+    context.arc(plot.x(at[0]), plot.y(at[1]), 3.5, 0, 7);
+    Object.assign(context, { fillStyle: "#fff", strokeStyle: "#111", lineWidth: 1.25 });
+    context.fill();
+    context.stroke();
+    context.font = "600 12px system-ui, sans-serif";
+    context.fillStyle = "#fff";
+    Object.assign(context, { textAlign: "left", textBaseline: "bottom", strokeStyle: "rgb(0 0 0 / 60%)", lineWidth: 3 });
+    context.strokeText("C", plot.x(at[0]) + 6, plot.y(at[1]) - 4);
+    context.fillText("C", plot.x(at[0]) + 6, plot.y(at[1]) - 4);
+}

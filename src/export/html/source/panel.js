@@ -1,0 +1,164 @@
+// All views of one contact, with the slider, the table and the keys.
+
+import { gradient } from "./colours.js";
+import { areaInside, closed, contours } from "./contours.js";
+import { Cut } from "./cuts.js";
+import { element, fixed } from "./dom.js";
+import { PlanView } from "./map.js";
+import { Profiles } from "./profiles.js";
+import { SpaceView } from "./scene.js";
+
+/** Steps of the slider from 0 to the end of the scale. */
+const STEPS = 600;
+
+export class Panel {
+    constructor(contact, number) {
+        const state = { contact, delta: contact.delta, cut: [0, 0], lines: [] };
+        state.cut = [0, 1].map((axis) => kept(0, contact.grid.ends(axis)));
+        Object.assign(this, { contact, state });
+        const moved = (cut) => this.moveCut(cut);
+        this.space = new SpaceView(state);
+        this.plan = new PlanView(state, moved);
+        this.cuts = [0, 1].map((axis) => new Cut(axis, state, moved));
+        this.profiles = new Profiles(state);
+        this.node = this.build(number);
+        this.node.addEventListener("keydown", (event) => this.key(event));
+        this.setDelta(contact.delta);
+    }
+
+    build(number) {
+        const { contact } = this;
+        const heading = `contact-${number}`;
+        return element(
+            "section",
+            { class: "contact", "aria-labelledby": heading, id: `panel-${number}` },
+            element("div", { class: "head" }, element("h2", { id: heading }, contact.name), this.slider(number)),
+            this.warnings(),
+            element(
+                "div",
+                { class: "views" },
+                figure("space", "Separation on the rail", this.space.sheet.canvas, this.viewButtons(number)),
+                figure("plan", "Separation on the contact plane", this.plan.sheet.canvas, this.legend(), this.plan.readout),
+                this.facts(),
+                figure("cut", "Cut along ξ", this.cuts[0].sheet.canvas),
+                figure("cut", "Cut along η", this.cuts[1].sheet.canvas),
+                figure("profiles", "Profiles in the midplane", this.profiles.sheet.canvas, this.names()),
+            ),
+        );
+    }
+
+    warnings() {
+        const { warnings } = this.contact;
+        if (warnings.length === 0) return "";
+        return element("ul", { class: "warnings", "aria-label": "Warnings" }, ...warnings.map((text) => element("li", {}, text)));
+    }
+
+    slider(number) {
+        const id = `delta-${number}`;
+        this.input = element("input", {
+            id, type: "range", min: 0, max: STEPS, step: 1,
+            oninput: () => this.setDelta((this.input.value / STEPS) * this.contact.scale, true),
+        });
+        this.reset = element("button", { type: "button", onclick: () => this.setDelta(this.contact.delta) }, "δ of the run");
+        this.reset.hidden = !this.contact.approach;
+        this.said = element("output", { for: id, class: "said" });
+        return element("div", { class: "slider" }, element("label", { for: id }, "δ"), this.input, this.said, this.reset);
+    }
+
+    viewButtons(number) {
+        const button = (view, text) => element("button", { type: "button", onclick: () => this.space.look(view) }, text);
+        const option = (value, text) => element("option", { value }, text);
+        const wheel = element("select", { id: `wheel-${number}` }, option("half", "half"), option("whole", "whole"), option("none", "none"));
+        wheel.addEventListener("change", () => this.space.showWheel(wheel.value));
+        return element(
+            "div",
+            { class: "buttons", role: "group", "aria-label": "View in space" },
+            button("contact", "Contact"), button("whole", "Whole"), button("above", "Along ζ"),
+            element("label", { for: wheel.id }, "wheel "), wheel,
+        );
+    }
+
+    /** The scale of colours, which reaches from 0 to 3 δ of the run. */
+    legend() {
+        const { scale, approach } = this.contact;
+        const [unit, factor] = scale < 1 ? ["µm", 1e3] : ["mm", 1];
+        const label = (share, text) => element("span", { style: `left: ${100 * share}%; transform: translateX(-${100 * share}%)` }, text);
+        const value = (share) => fixed(share * scale * factor, scale * factor < 10 ? 2 : 0);
+        const names = approach
+            ? [label(0, "0"), label(1 / 3, "δ"), label(1, `3 δ = ${value(1)} ${unit}`)]
+            : [label(0, "0"), label(0.5, value(0.5)), label(1, `${value(1)} ${unit}`)];
+        const bar = element("div", { class: "bar", style: `background: ${gradient()}` });
+        const about = approach ? "Scale of s, linear from 0 to 3 δ of the run" : "Scale of s, linear from 0";
+        return element("div", { class: "legend", role: "img", "aria-label": about }, bar, element("div", { class: "marks" }, ...names));
+    }
+
+    names() {
+        const [rail, wheel] = this.contact.pair.names;
+        return element("p", { class: "names" }, element("span", { class: "rail" }, `rail ${rail}`), element("span", { class: "wheel" }, `wheel ${wheel}`));
+    }
+
+    facts() {
+        const rows = this.contact.facts.map(([name, value]) => element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, value)));
+        return element("div", { class: "facts" }, element("table", {}, element("caption", {}, "From the run"), element("tbody", {}, ...rows)));
+    }
+
+    /** Moves the boundary to another δ, mm. */
+    setDelta(delta, bySlider = false) {
+        const { contact, state } = this;
+        state.delta = kept(delta, [0, contact.scale]);
+        // The slider's steps do not hit the δ of the run, which its button gives.
+        if (!bySlider) this.input.value = Math.round((state.delta / contact.scale) * STEPS);
+        const own = contact.approach && state.delta === contact.approach;
+        state.lines = own ? contact.boundary : contours(contact.grid, state.delta);
+        this.say();
+        this.refresh();
+    }
+
+    say() {
+        const { contact, state } = this;
+        const own = contact.approach && state.delta === contact.approach;
+        const cut = !own && state.lines.some((line) => !closed(line));
+        const area = own ? contact.area : areaInside(state.lines);
+        const size = cut ? "cut by the edge of the page's grid" : `area ${fixed(area, own ? 3 : 2)} mm²`;
+        this.said.value = `${fixed(state.delta, 5)} mm, ${size}`;
+        this.input.setAttribute("aria-valuetext", `δ ${this.said.value}`);
+        this.reset.disabled = state.delta === contact.delta;
+    }
+
+    moveCut([xi, eta]) {
+        const { grid } = this.contact;
+        this.state.cut = [kept(xi, grid.ends(0)), kept(eta, grid.ends(1))];
+        this.refresh();
+    }
+
+    /** Arrows move the cut (turn the view, where it has the focus), plus and minus change δ, Home goes back to C. */
+    key(event) {
+        if (event.ctrlKey || event.metaKey || event.altKey) return;
+        const { state, contact } = this;
+        const inSpace = event.target === this.space.sheet.canvas;
+        const onSheet = inSpace || event.target.tagName === "CANVAS";
+        const step = (axis) => contact.grid.steps[axis] * (event.shiftKey ? 10 : 1);
+        const moves = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+        const delta = { "+": 1, "=": 1, "-": -1, "\u2212": -1 }[event.key];
+        if (delta) this.setDelta(state.delta + (delta * contact.scale) / (STEPS / 6));
+        else if (inSpace && this.space.key(event.key)) event.preventDefault();
+        else if (onSheet && event.key in moves) {
+            const [dx, dy] = moves[event.key];
+            this.moveCut([state.cut[0] + dx * step(0), state.cut[1] + dy * step(1)]);
+        } else if (onSheet && event.key === "Home") this.moveCut([0, 0]);
+        else return;
+        event.preventDefault();
+    }
+
+    refresh() {
+        [this.space, this.plan, ...this.cuts, this.profiles].forEach((view) => view.sheet.refresh());
+    }
+}
+
+function figure(kind, title, ...content) {
+    return element("figure", { class: kind }, element("figcaption", {}, title), ...content);
+}
+
+function kept(value, [low, high]) {
+    return Math.min(Math.max(value, low), high);
+}
