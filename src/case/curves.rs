@@ -2,7 +2,7 @@
 
 use super::columns::Columns;
 use crate::error::{Error, Result};
-use crate::export::{CurvesPanel, CurvesPicture, PlottedCurve, jumps};
+use crate::export::{CurvesPanel, CurvesPicture, PlottedCurve, SEPARATOR, jumps};
 
 /// Most positions that are drawn: more than a page has pixels.
 pub const MOST_DRAWN: usize = 2000;
@@ -55,25 +55,69 @@ pub fn curves(columns: &Columns, lateral: &[f64], title: &str, about: &str) -> R
         let points = lateral.iter().zip(values).map(|(&lateral, value)| [lateral, value]).collect();
         PlottedCurve { name: name.into(), points, jumps: jumps.to_vec() }
     };
-    let quantity =
-        |title: &str, axis: &str, curves| CurvesPanel { title: title.into(), axis: axis.into(), curves };
+    let tread = lowest.tread();
+    let quantity = |title: &str, axis: &str, curves: Vec<PlottedCurve>, flat: bool| {
+        let shown = tread.as_deref().filter(|_| flat).and_then(|tread| tread_range(&curves, tread));
+        let title = if shown.is_some() { format!("{title}; flange cut off") } else { title.into() };
+        CurvesPanel { title, axis: axis.into(), curves, shown }
+    };
     let either = [left.as_slice(), right.as_slice()].concat();
     let of_position = OF_POSITION.map(|(title, axis, name, factor, jumps)| {
         let values = lowest.values(true, name).into_iter().map(|value| factor * value).collect();
-        quantity(title, axis, vec![curve("", values, if jumps { &either } else { &[] })])
+        quantity(title, axis, vec![curve("", values, if jumps { &either } else { &[] })], true)
     });
     let of_side = OF_SIDE.map(|(title, axis, name, angle)| {
         let shown = |value: f64| if angle { value.to_degrees() } else { value };
         let values = |right| lowest.values(right, name).into_iter().map(shown).collect();
         let both = sides.into_iter().zip([&left, &right]);
-        quantity(title, axis, both.map(|((name, right), jumps)| curve(name, values(right), jumps)).collect())
+        let curves = both.map(|((name, right), jumps)| curve(name, values(right), jumps)).collect();
+        quantity(title, axis, curves, false)
+    });
+    let conicity = lowest.values(true, "conicity");
+    let at_usual = conicity_at(lateral, &conicity, USUAL_AMPLITUDE);
+    let conicity = at_usual.map_or_else(String::new, |conicity| {
+        format!("{SEPARATOR}equivalent conicity {conicity:.3} at {USUAL_AMPLITUDE} mm")
     });
     Ok(CurvesPicture {
         title: title.into(),
-        about: about.into(),
+        about: format!("{about}{conicity}"),
         abscissa: "lateral displacement [mm]".into(),
         quantities: of_position.into_iter().chain(of_side).collect(),
     })
+}
+
+/// Amplitude at which the equivalent conicity is usually named \[mm\].
+const USUAL_AMPLITUDE: f64 = 3.0;
+
+/// Contact angles beyond this \[rad\] are those of flanges and their roots: 30°.
+const FLANGE: f64 = 0.52;
+
+/// Least share of the positions on treads by which panels are scaled.
+const MOSTLY: f64 = 0.2;
+
+/// Least length of all values, as a multiple of that on treads, above which the rest is cut off.
+const FLATTENED: f64 = 3.0;
+
+/// Gives the conicity at an amplitude \[mm\], from the line between two positions; `None` outside.
+fn conicity_at(lateral: &[f64], conicity: &[f64], amplitude: f64) -> Option<f64> {
+    let after = lateral.iter().position(|&lateral| lateral >= amplitude)?;
+    let before = after.checked_sub(1).unwrap_or(after);
+    let run = lateral[after] - lateral[before];
+    let share = if run > 0.0 { (amplitude - lateral[before]) / run } else { 0.0 };
+    let value = conicity.get(before)? + share * (conicity.get(after)? - conicity.get(before)?);
+    (value.is_finite() && lateral[before] <= amplitude).then_some(value)
+}
+
+/// Gives the range of the curves over the positions on treads, if that of all positions is far longer.
+fn tread_range(curves: &[PlottedCurve], tread: &[bool]) -> Option<[f64; 2]> {
+    let range = |all: bool| {
+        let points = curves.iter().flat_map(|curve| curve.points.iter().zip(tread));
+        let values =
+            points.filter(|(point, tread)| point[1].is_finite() && (all || **tread)).map(|(p, _)| p[1]);
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+    };
+    let ([low, high], [least, most]) = (range(false), range(true));
+    (high > low && most - least > FLATTENED * (high - low)).then_some([low, high])
 }
 
 /// The rows of the lowest contacts, by position and side.
@@ -92,6 +136,15 @@ impl<'a> Lowest<'a> {
             }
         }
         Self { columns, rows }
+    }
+
+    /// Tells for every position whether both sides touch on treads; `None` if too few do.
+    fn tread(&self) -> Option<Vec<bool>> {
+        let angles = [false, true].map(|right| self.values(right, "contact_angle_rad"));
+        let on_tread = |k: usize| angles.iter().all(|angles| angles[k].abs() < FLANGE);
+        let tread: Vec<bool> = (0..self.rows.len()).map(on_tread).collect();
+        let count = tread.iter().filter(|tread| **tread).count();
+        (count as f64 >= MOSTLY * tread.len() as f64).then_some(tread)
     }
 
     /// Gives a quantity at every position; NaN where a side has no contact.

@@ -24,6 +24,7 @@ const OUTLINE_POINTS: usize = 32;
 /// s over the window of the grid whatever the spacing of the solver's cells, and both profiles.
 pub(super) struct Drawn {
     contact: String,
+    refusals: Vec<String>,
     xi: Vec<f64>,
     eta: EtaAxis,
     separation: Values,
@@ -37,7 +38,8 @@ impl Drawn {
     /// Computes what is drawn of a part.
     pub(super) fn new(part: &Part) -> Self {
         let (site, choice) = (&part.site, &part.analysis.plan.choice);
-        Self::of(&site.contact.placement, &site.window(), choice, contact_name(part))
+        let drawn = Self::of(&site.contact.placement, &site.window(), choice, contact_name(part));
+        Self { refusals: part.refusals(), ..drawn }
     }
 
     /// Computes what is drawn of a placed pair over a window.
@@ -49,7 +51,7 @@ impl Drawn {
         let mut evaluator = Evaluator::new(placement);
         let midplane = xi.iter().map(|&xi| [xi, evaluator.separation(xi, 0.0)]).collect();
         let outlines = [&placement.rail().section, &placement.wheel().section].map(outline);
-        Self { contact, xi, eta, separation, midplane, outlines }
+        Self { contact, refusals: Vec::new(), xi, eta, separation, midplane, outlines }
     }
 
     /// Gives the picture, with the solver's cells and the boundary.
@@ -66,6 +68,7 @@ impl Drawn {
             separation: Nodes { xi: &self.xi, eta: &self.eta.eta, values: &self.separation },
             midplane: &self.midplane,
             loops,
+            refusals: &self.refusals,
             rail: &self.outlines[0],
             wheel: &self.outlines[1],
         }

@@ -305,6 +305,20 @@ impl Case {
         Self { standing, echo, ..self.clone() }
     }
 
+    /// Gives the same case as one of many: without the page of every run, unless the scene names that format.
+    #[must_use]
+    pub fn as_one_of_many(mut self) -> Self {
+        if !self.outputs.required {
+            self.outputs.formats.retain(|format| *format != OutputFormat::Html);
+        }
+        self
+    }
+
+    /// Gives the profiles of both sides.
+    pub fn profiles(&self) -> &Profiles {
+        &self.profiles
+    }
+
     /// Gives where the bodies stand.
     pub fn standing(&self) -> &Standing {
         &self.standing

@@ -46,6 +46,8 @@ pub struct CurvesPanel {
     pub axis: String,
     /// The curves, at most two.
     pub curves: Vec<PlottedCurve>,
+    /// Smallest and largest value that is shown; what is beyond is cut off at the panel's edge. `None` shows all.
+    pub shown: Option<[f64; 2]>,
 }
 
 /// The content of the picture.
@@ -78,7 +80,7 @@ impl CurvesPicture {
     fn panel(&self, page: &mut Page, place: [f64; 4], u: [f64; 2], quantity: &CurvesPanel) {
         page.heading(place, &quantity.title);
         let values = quantity.curves.iter().flat_map(|curve| &curve.points).map(|p| p[1]);
-        let [low, high] = range(values);
+        let [low, high] = quantity.shown.unwrap_or_else(|| range(values));
         let least = (1e-6 * low.abs().max(high.abs())).max(1e-9);
         let panel = Panel { place, u, v: airy([low, high], 0.06, least) };
         panel.zero_line(page);
@@ -146,7 +148,7 @@ mod tests {
 
     fn picture(points: Vec<[f64; 2]>, jumps: Vec<usize>) -> CurvesPicture {
         let curves = vec![PlottedCurve { name: "left".into(), points, jumps }];
-        let quantity = CurvesPanel { title: "Radius".into(), axis: "r [mm]".into(), curves };
+        let quantity = CurvesPanel { title: "Radius".into(), axis: "r [mm]".into(), curves, shown: None };
         CurvesPicture {
             title: "A sweep".into(),
             about: String::new(),

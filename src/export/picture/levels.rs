@@ -2,7 +2,7 @@
 
 use super::contour::Nodes;
 use super::page::{Colour, INSIDE, Page, Pen, WHITE, Words};
-use super::panel::{Panel, extremes, number, round_below};
+use super::panel::{Panel, extremes, number, power_for, round_below};
 
 /// Largest level drawn, as a multiple of the approach. Near a flange s grows to many times the approach, which does not
 /// matter for the patch.
@@ -30,6 +30,8 @@ const APART: f64 = 60.0;
 pub(super) struct Level {
     pub(super) value: f64,
     pub(super) name: String,
+    /// The power of ten in which the name is written.
+    pub(super) power: i32,
     pub(super) pen: Pen,
     /// The lines in coordinates of the page.
     pub(super) lines: Vec<Vec<[f64; 2]>>,
@@ -51,12 +53,14 @@ pub(super) fn levels(nodes: &Nodes<'_>, approach: f64, panel: &Panel) -> Vec<Lev
     }
     // The lowest value itself has no line; it would be a point.
     let (first, last) = ((low / step).floor() as i64 + 1, (high / step).floor() as i64);
+    let power = power_for((first as f64 * step).abs().max((last as f64 * step).abs()));
+    let unit = 10f64.powi(power);
     let level = |k: i64| {
         let value = k as f64 * step;
         let pen = Pen::new(shade((value - low) / (high - low)), 1.2);
         let pen = if k < 0 { pen.dashed([4.0, 3.0]) } else { pen };
         let lines = nodes.lines(value).iter().flat_map(|line| panel.curve(line)).collect();
-        Level { value, name: number(value, step), pen, lines }
+        Level { value, name: number(value / unit, step / unit), power, pen, lines }
     };
     (first..=last).map(level).filter(|level| !level.lines.is_empty()).collect()
 }

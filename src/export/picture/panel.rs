@@ -82,7 +82,10 @@ impl Panel {
     /// Draws the frame, ticks, numbers and names below and to the left.
     pub(super) fn axes(&self, page: &mut Page, names: [&str; 2]) {
         let [_, _, w, h] = self.place;
-        self.ticked(page, names, [ticks_of(self.u, w / 45.0), ticks_of(self.v, h / 28.0)]);
+        let powers = [self.u, self.v].map(|range| power_for(range[0].abs().max(range[1].abs())));
+        let ticks = [ticks_of(self.u, w / 45.0, powers[0]), ticks_of(self.v, h / 28.0, powers[1])];
+        let [u, v] = [0, 1].map(|k| in_power(names[k], powers[k]));
+        self.ticked(page, [&u, &v], ticks);
     }
 
     /// Draws the frame, ticks and names if u and v are decimal logarithms between whole numbers.
@@ -127,7 +130,10 @@ impl Panel {
         let caps = [start, end[0]].map(|x| vec![[x, end[1] - 3.0], [x, end[1] + 3.0]]);
         page.lines(&caps, Pen::new(INK, 1.0));
         let middle = [(start + end[0]) / 2.0, end[1] - 7.0];
-        page.text(middle, format!("{} mm", number(length, length)), SMALL.middle());
+        let power = power_for(length);
+        let length = length / 10f64.powi(power);
+        let unit = if power == 0 { "mm".into() } else { format!("{} mm", power_of_ten(power)) };
+        page.text(middle, format!("{} {unit}", number(length, length)), SMALL.middle());
     }
 }
 
@@ -169,9 +175,21 @@ pub(super) fn number(x: f64, step: f64) -> String {
     if zero { "0".into() } else { text.replace('-', "\u{2212}") }
 }
 
-/// Returns round values inside a range with their labels. There are about `most` of them, and at least two, because one
+/// Returns the power of ten, a multiple of 3, in which numbers up to `largest` are written: 0 from 10⁻³ to 10⁶, so that small and
+/// large ones have few digits.
+pub(super) fn power_for(largest: f64) -> i32 {
+    let power = largest.log10().floor();
+    if !power.is_finite() || (-3.0..6.0).contains(&power) { 0 } else { 3 * (power / 3.0).floor() as i32 }
+}
+
+/// Puts a power of ten before the unit of a name: "s [10⁻⁹ mm]".
+pub(super) fn in_power(name: &str, power: i32) -> String {
+    if power == 0 { name.into() } else { name.replacen('[', &format!("[{} ", power_of_ten(power)), 1) }
+}
+
+/// Returns round values inside a range with their labels, in a power of ten. There are about `most` of them, and at least two, because one
 /// tick gives no scale.
-fn ticks_of(range: [f64; 2], most: f64) -> Ticks {
+fn ticks_of(range: [f64; 2], most: f64, power: i32) -> Ticks {
     // Rounding down takes off up to a factor of 2.5.
     let mut step = round_below(2.5 * (range[1] - range[0]) / most);
     let mut values = multiples(range, step);
@@ -183,7 +201,8 @@ fn ticks_of(range: [f64; 2], most: f64) -> Ticks {
         step = round_below(0.7 * step);
         values = multiples(range, step);
     }
-    values.into_iter().map(|value| (value, number(value, step))).collect()
+    let unit = 10f64.powi(power);
+    values.into_iter().map(|value| (value, number(value / unit, step / unit))).collect()
 }
 
 /// Most steps down from the first distance of ticks, which is at most a few times the range.
@@ -204,7 +223,7 @@ fn decades([low, high]: [f64; 2]) -> Ticks {
 }
 
 /// Returns a power of ten in words: "10⁻¹²".
-fn power_of_ten(power: i32) -> String {
+pub(super) fn power_of_ten(power: i32) -> String {
     let digit = |c: char| match c {
         '-' => '⁻',
         '1' => '¹',
@@ -233,10 +252,16 @@ mod tests {
     fn narrow_axes_have_two_ticks_at_least() {
         for range in [[-1.5, 1.5], [-0.9, 1.9], [0.21, 0.29], [-7.0, 90.0]] {
             for most in [0.2, 1.2, 7.0] {
-                assert!(ticks_of(range, most).len() >= 2, "{range:?} {most}: {:?}", ticks_of(range, most));
+                let ticks = ticks_of(range, most, 0);
+                assert!(ticks.len() >= 2, "{range:?} {most}: {ticks:?}");
             }
         }
-        assert_eq!(ticks_of([-1.5, 1.5], 1.2).len(), 3);
+        assert_eq!(ticks_of([-1.5, 1.5], 1.2, 0).len(), 3);
+        let labels: Vec<String> =
+            ticks_of([0.0, 3e-9], 3.0, -9).into_iter().map(|(_, label)| label).collect();
+        assert_eq!(labels, ["0", "1", "2", "3"]);
+        assert_eq!([2e-9, 7e-4, 0.2, 0.0, 3e7].map(power_for), [-9, -6, 0, 0, 6]);
+        assert_eq!(in_power("s [mm]", -9), "s [10⁻⁹ mm]");
     }
 
     #[test]

@@ -1,12 +1,14 @@
 //! Draws the picture of a patch for a report: both profiles at true scale, the exaggerated gap, and the lines
 //! of equal separation with the boundary over the solver's cells, to scale, with units and a legend.
 
+use nalgebra::Point3;
+
 use super::super::model::{Header, Loop};
 use super::contour::Nodes;
 use super::levels;
 use super::page::SEPARATOR;
 use super::page::{BLUE, BODY, Colour, INSIDE, Page, Pen, RED, SMALL};
-use super::panel::{Panel, airy, extremes, number, range};
+use super::panel::{Panel, airy, extremes, in_power, number, power_for, power_of_ten, range};
 
 const RAIL: Pen = Pen::new([70, 70, 70], 1.8);
 const WHEEL: Pen = Pen::new(BLUE, 1.8);
@@ -26,6 +28,9 @@ const AXIS: f64 = 38.0;
 /// Room for the ζ axis with its letter \[page units\].
 const AXIS_ROOM: f64 = AXIS + 16.0;
 
+/// Distance from the edge of the window, as a share of its width, up to which a line lies along it: far below a line's width.
+const ON_EDGE: f64 = 1e-6;
+
 /// Height of the page \[page units\].
 const HEIGHT: f64 = 1040.0;
 
@@ -44,6 +49,8 @@ pub struct PatchPicture<'a> {
     pub midplane: &'a [[f64; 2]],
     /// The boundary of the patch.
     pub loops: &'a [Loop],
+    /// The geometric "no"s, which the picture shows in red.
+    pub refusals: &'a [String],
     /// The rail's profile \[ξ, ζ\] \[mm\]; NaN points separate its pieces.
     pub rail: &'a [[f64; 2]],
     /// The wheel's profile \[ξ, ζ\] \[mm\] in the midplane η = 0 before any approach; NaN points separate its
@@ -66,6 +73,7 @@ impl PatchPicture<'_> {
         ];
         let about = about.into_iter().flatten().collect::<Vec<_>>().join(SEPARATOR);
         let mut page = Page::new(&header.title, &about);
+        page.text([40.0, 82.0], self.refusals.join(SEPARATOR), BODY.in_colour(RED));
         self.profiles(&mut page, [40.0, 110.0, 380.0, 250.0]);
         self.gap(&mut page, [520.0, 110.0, 340.0, 250.0]);
         self.contours(&mut page, [90.0, 460.0, 590.0, 500.0]);
@@ -160,17 +168,46 @@ impl PatchPicture<'_> {
             page.lines(&level.lines, level.pen);
         }
         levels::label(page, &levels, &rings, &panel, self.header.approach);
-        page.lines(&rings, BOUNDARY);
+        let boundary: Vec<_> = self.loops.iter().flat_map(|ring| self.boundary(&panel, ring)).collect();
+        page.lines(&boundary, BOUNDARY);
         panel.axes(page, ["ξ [mm]", "η [mm] (rolling direction)"]);
         let side = room[0] + room[2] + 40.0;
         self.key(page, [side, room[1] + 20.0], &levels);
         panel.scale_bar(page, [side + 130.0, room[1] + room[3]], 130.0);
     }
 
+    /// Returns the lines of a loop where s = δ: without those along the window, which cut the patch off.
+    fn boundary(&self, panel: &Panel, ring: &Loop) -> Vec<Vec<[f64; 2]>> {
+        let edges = self.cells.map(|values| range(values.iter().copied()));
+        let along = |a: &Point3<f64>, b: &Point3<f64>| {
+            (0..2).any(|k| {
+                let near = ON_EDGE * (edges[k][1] - edges[k][0]);
+                edges[k].iter().any(|edge| (a[k] - edge).abs() < near && (b[k] - edge).abs() < near)
+            })
+        };
+        let mut lines: Vec<Vec<[f64; 2]>> = Vec::new();
+        let next = ring.points.iter().cycle().skip(1);
+        let mut open = false;
+        for (a, b) in ring.points.iter().zip(next) {
+            if along(a, b) {
+                open = false;
+                continue;
+            }
+            let [from, to] = [a, b].map(|point| panel.point([point.x, point.y]));
+            match lines.last_mut() {
+                Some(line) if open => line.push(to),
+                _ => lines.push(vec![from, to]),
+            }
+            open = true;
+        }
+        lines
+    }
+
     /// Writes what the lines mean, beside them.
     fn key(&self, page: &mut Page, [side, top]: [f64; 2], levels: &[levels::Level]) {
         let mut row = top;
-        page.text([side, row], "s [mm]", BODY);
+        let power = levels.first().map_or(0, |level| level.power);
+        page.text([side, row], in_power("s [mm]", power), BODY);
         for level in levels {
             row += 20.0;
             page.legend([side, row], level.pen, &level.name);
@@ -215,8 +252,12 @@ fn even_step(values: &[f64]) -> Option<f64> {
     (low > 0.0 && high - low <= 1e-4 * high).then_some(low)
 }
 
-/// Returns a positive number with so many significant digits, without zeros at its end.
+/// Returns a positive number with so many significant digits, without zeros at its end; small ones with a power of ten.
 fn significant(x: f64, digits: i32) -> String {
+    let power = power_for(x);
+    if power != 0 {
+        return format!("{}·{}", significant(x / 10f64.powi(power), digits), power_of_ten(power));
+    }
     let step = 10f64.powi(x.log10().floor() as i32 + 1 - digits);
     let text = number((x / step).round() * step, step);
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }

@@ -80,7 +80,8 @@ fn patch(
     let place = Place::Wheelset { system: Arc::clone(table.system), position };
     let roll_by_load = case.standing().roll_by_load;
     let standing = Standing { place, within: table.selection.within, roll_by_load };
-    let run = Run::new(case.at(standing, scene::echo(&scene.at(&position), name)), SILENT)?.filed_under(name);
+    let here = case.at(standing, scene::echo(&scene.at(&position), name)).as_one_of_many();
+    let run = Run::new(here, SILENT)?.filed_under(name);
     case::write(&run, folder, Some(png), SILENT)?;
     Ok(Written { position, folders: run.parts.into_iter().map(|part| part.site.folder).collect() })
 }

@@ -140,6 +140,7 @@ fn picture(header: &Header, grid: &GridFields, loops: &[Loop]) -> String {
         cells,
         separation,
         midplane: &midplane,
+        refusals: &[],
         loops,
         rail: &rail,
         wheel: &wheel,

@@ -30,6 +30,7 @@ fn picture<'a>(
         cells: [&sample.xi, &sample.eta],
         separation: Nodes { xi: &sample.xi, eta: &sample.eta, values: &sample.separation },
         midplane,
+        refusals: &[],
         loops,
         rail: &profiles[0],
         wheel: &profiles[1],
