@@ -8,6 +8,7 @@
     reason = "tests stop at the first surprise and say what they saw"
 )]
 
+mod answers;
 mod clients;
 mod clients_runs;
 mod hostile;
