@@ -16,4 +16,4 @@ pub use axes::{Axes, GridGroup, MOST_ON_AXIS, MOST_POINTS, equal_steps, groups};
 pub use quality::{Quality, Spread};
 pub use strips::{Cell, StripCounts, StripMesh};
 pub use surfaces::Surface;
-pub use triangles::{BoundaryChain, TriangleMesh};
+pub use triangles::{BoundaryChain, TriangleMesh, checked_size};

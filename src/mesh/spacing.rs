@@ -122,7 +122,7 @@ fn circles(rings: &[Ring]) -> Vec<Vec<f64>> {
 }
 
 /// Returns the corners before and after a sample. A ring without corners has none.
-fn beside<'a>(corners: &'a [RingCorner], sample: usize) -> impl Iterator<Item = &'a RingCorner> {
+fn beside(corners: &[RingCorner], sample: usize) -> impl Iterator<Item = &RingCorner> {
     let after = corners.partition_point(|corner| corner.sample <= sample);
     let n = corners.len();
     let both = [after + n.saturating_sub(1), after];

@@ -189,15 +189,20 @@ impl TriangleMesh {
     }
 }
 
-fn checked(component: &Component, size: f64) -> Result<f64> {
-    if finite("mesh: size", size)? <= 0.0 {
-        return Err(Error::new(
-            "mesh: size",
-            size.to_string(),
-            "a positive length in mm",
-            "leave it out, or give a length",
-        ));
+/// Returns a size of triangles \[mm\] if it can be meant.
+///
+/// # Errors
+/// A size that is not positive and finite.
+pub fn checked_size(size: f64) -> Result<f64> {
+    if finite("mesh: size", size)? > 0.0 {
+        return Ok(size);
     }
+    let (expected, advice) = ("a positive length in mm", "leave it out, or give a length");
+    Err(Error::new("mesh: size", size.to_string(), expected, advice))
+}
+
+fn checked(component: &Component, size: f64) -> Result<f64> {
+    let size = checked_size(size)?;
     let cells = component.area / (size * size * 3f64.sqrt() / 4.0);
     if cells > MOST_CELLS {
         let expected = format!("at most {MOST_CELLS:e}");
