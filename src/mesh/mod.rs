@@ -18,4 +18,4 @@ pub use quality::{Quality, Spread};
 pub use shells::{BodyShell, axle_point};
 pub use strips::{Cell, StripCounts, StripMesh};
 pub use surfaces::Surface;
-pub use triangles::{BoundaryChain, TriangleMesh};
+pub use triangles::{BoundaryChain, TriangleMesh, checked_size};

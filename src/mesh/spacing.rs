@@ -32,6 +32,9 @@ const WEDGE: f64 = 0.75;
 /// Largest length of the edges at a sharp corner, as a share of the boundary up to the next corner.
 const CORNER_SHARE: f64 = 0.25;
 
+/// Least number of edges of a ring without corners.
+const LEAST_EDGES: f64 = 3.0;
+
 /// A node of the boundary.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BoundaryNode {
@@ -76,17 +79,12 @@ pub(super) fn nodes(
 ) -> Vec<Vec<BoundaryNode>> {
     let corners: Vec<Vec<RingCorner>> = rings.iter().map(corners_of).collect();
     let circles = circles(rings);
-    let mut wanted: Vec<Vec<Wanted>> = Vec::new();
-    let mut first = 0;
-    for (ring, corners) in rings.iter().zip(&corners) {
-        let circles = &circles[first..first + ring.samples.len()];
-        wanted.push(own_lengths(ring, corners, circles, limits));
-        first += circles.len();
-    }
+    let mut wanted: Vec<Vec<Wanted>> =
+        (0..rings.len()).map(|k| own_lengths(&rings[k], &corners[k], &circles[k], limits)).collect();
     let protected: Vec<Vec<[f64; 2]>> =
         (0..rings.len()).map(|k| protected(&rings[k], &corners[k], &wanted)).collect();
     for (k, ring) in rings.iter().enumerate() {
-        narrow(ring, &corners[k], &protected[k], &circles_of(&circles, rings, k), &mut wanted[k]);
+        narrow(ring, &corners[k], &protected[k], &circles[k], &mut wanted[k]);
     }
     let all: Vec<Wanted> = wanted.iter().flatten().filter(|w| w.length.is_finite()).copied().collect();
     let mut nodes = Vec::with_capacity(rings.len());
@@ -98,42 +96,33 @@ pub(super) fn nodes(
     nodes
 }
 
-fn circles_of<'a>(circles: &'a [f64], rings: &[Ring], k: usize) -> &'a [f64] {
-    let first: usize = rings[..k].iter().map(|ring| ring.samples.len()).sum();
-    &circles[first..first + rings[k].samples.len()]
-}
-
 fn corners_of(ring: &Ring) -> Vec<RingCorner> {
     let corners = (0..ring.samples.len()).filter(|&k| ring.is_corner(k));
     corners.map(|sample| RingCorner { sample, angle: PI - ring.samples[sample].turn }).collect()
 }
 
-/// Returns the radius \[mm\] of the largest circle that touches the boundary from inside at every sample and holds no other
-/// sample; infinite at corners.
-fn circles(rings: &[Ring]) -> Vec<f64> {
+/// Returns for each ring the radius \[mm\] of the largest circle that touches the boundary from inside at every sample and holds
+/// no sample of any ring; infinite at corners.
+fn circles(rings: &[Ring]) -> Vec<Vec<f64>> {
     let points: Vec<Point2<f64>> =
         rings.iter().flat_map(|ring| &ring.samples).map(|sample| sample.point).collect();
-    let mut radii = Vec::with_capacity(points.len());
-    for ring in rings {
-        for (k, sample) in ring.samples.iter().enumerate() {
-            if ring.is_corner(k) {
-                radii.push(f64::INFINITY);
-                continue;
-            }
-            let inward = ring.inward(k);
-            let radius = |other: &Point2<f64>| {
-                let to = other - sample.point;
-                let depth = to.dot(&inward);
-                if depth > 0.0 { to.norm_squared() / (2.0 * depth) } else { f64::INFINITY }
-            };
-            radii.push(points.iter().map(radius).fold(f64::INFINITY, f64::min));
+    let circle = |ring: &Ring, k: usize| {
+        if ring.is_corner(k) {
+            return f64::INFINITY;
         }
-    }
-    radii
+        let (here, inward) = (ring.samples[k].point, ring.inward(k));
+        let radius = |other: &Point2<f64>| {
+            let to = other - here;
+            let depth = to.dot(&inward);
+            if depth > 0.0 { to.norm_squared() / (2.0 * depth) } else { f64::INFINITY }
+        };
+        points.iter().map(radius).fold(f64::INFINITY, f64::min)
+    };
+    rings.iter().map(|ring| (0..ring.samples.len()).map(|k| circle(ring, k)).collect()).collect()
 }
 
 /// Returns the corners before and after a sample. A ring without corners has none.
-fn beside<'a>(corners: &'a [RingCorner], sample: usize) -> impl Iterator<Item = &'a RingCorner> {
+fn beside(corners: &[RingCorner], sample: usize) -> impl Iterator<Item = &RingCorner> {
     let after = corners.partition_point(|corner| corner.sample <= sample);
     let n = corners.len();
     let both = [after + n.saturating_sub(1), after];
@@ -193,11 +182,7 @@ fn narrow(
     wanted: &mut [Wanted],
 ) {
     for (k, sample) in ring.samples.iter().enumerate() {
-        let inside = |[from, to]: &[f64; 2]| {
-            let turns = [-ring.length, 0.0, ring.length].map(|whole| sample.at + whole);
-            turns.into_iter().any(|at| *from < at && at < *to)
-        };
-        if protected.iter().any(inside) {
+        if protected.iter().any(|around| holds(ring, around, sample.at)) {
             wanted[k].length = f64::INFINITY;
             continue;
         }
@@ -222,20 +207,46 @@ fn divided(
     lengths: &[f64],
     limits: EdgeLimits,
 ) -> Vec<BoundaryNode> {
-    let n = ring.samples.len();
-    // Number of edges from the start of the ring to each sample.
-    let mut counts = vec![0.0];
-    for k in 0..n {
-        let mean = |a: f64, b: f64| 2.0 / (1.0 / a + 1.0 / b);
-        counts.push(counts[k] + ring.step(k) / mean(lengths[k], lengths[(k + 1) % n]));
+    let counts = EdgeCounts::new(ring, lengths);
+    let fixed = fixed_places(ring, corners, protected, limits.chord_error);
+    let least = if fixed.len() == 1 { LEAST_EDGES } else { 1.0 };
+    let mut places = Vec::new();
+    for (k, &from) in fixed.iter().enumerate() {
+        let to = fixed.get(k + 1).copied().unwrap_or(fixed[0] + ring.length);
+        let ends = [from, to].map(|at| counts.up_to(at));
+        let edges = if protected.iter().any(|around| holds(ring, around, from + (to - from) / 2.0)) {
+            1.0
+        } else {
+            (ends[1] - ends[0]).ceil().max(least)
+        };
+        places.push(from);
+        let share = |j: usize| ends[0] + (ends[1] - ends[0]) * j as f64 / edges;
+        places.extend((1..edges as usize).map(|j| counts.place(share(j))));
     }
-    let wrapped = |at: f64| at.rem_euclid(ring.length);
-    let mut fixed: Vec<f64> = protected.iter().flatten().copied().map(wrapped).collect();
+    let sharp =
+        |at: f64| corners.iter().any(|corner| corner.angle < SHARP && ring.samples[corner.sample].at == at);
+    let node = |at: f64| BoundaryNode { point: tracer.point(ring, at), at, tip: sharp(at) };
+    let mut nodes: Vec<BoundaryNode> = places.into_iter().map(node).collect();
+    // No chain begins with a tip, so that the nodes on both sides of a tip have places in it.
+    if nodes.first().is_some_and(|node| node.tip) {
+        nodes.rotate_left(1);
+    }
+    halved(tracer, ring, nodes, limits.chord_error)
+}
+
+/// Returns whether a place of a ring lies between two others, which may lie before its start or beyond its end.
+fn holds(ring: &Ring, [from, to]: &[f64; 2], at: f64) -> bool {
+    [-ring.length, 0.0, ring.length].into_iter().any(|whole| *from < at + whole && at + whole < *to)
+}
+
+/// Returns the ascending places of a ring that are nodes: corners, and the ends of the edges at tips. There is at least one.
+fn fixed_places(ring: &Ring, corners: &[RingCorner], protected: &[[f64; 2]], chord_error: f64) -> Vec<f64> {
+    let mut fixed: Vec<f64> = protected.iter().flatten().map(|at| at.rem_euclid(ring.length)).collect();
     let mut last = f64::NEG_INFINITY;
     for corner in corners {
         let at = ring.samples[corner.sample].at;
         // Corners closer than the chord error may share a node.
-        if corner.angle < SHARP || at - last > limits.chord_error {
+        if corner.angle < SHARP || at - last > chord_error {
             fixed.push(at);
             last = at;
         }
@@ -244,47 +255,45 @@ fn divided(
         fixed.push(0.0);
     }
     fixed.sort_by(f64::total_cmp);
-    let whole = fixed.len() == 1;
-    let count = |at: f64| {
-        let k = ring.index(at);
-        counts[k] + (counts[k + 1] - counts[k]) * ((at - ring.samples[k].at) / ring.step(k))
-    };
-    let mut places = Vec::new();
-    for (k, &from) in fixed.iter().enumerate() {
-        let to = fixed.get(k + 1).copied().unwrap_or(fixed[0] + ring.length);
-        let begin = count(from);
-        let end = if to >= ring.length { counts[n] + count(to - ring.length) } else { count(to) };
-        let edge = |[a, b]: &[f64; 2]| {
-            let middle = wrapped(from + (to - from) / 2.0);
-            [-ring.length, 0.0, ring.length].iter().any(|w| *a < middle + w && middle + w < *b)
-        };
-        let least = if whole { 3.0 } else { 1.0 };
-        let edges = if protected.iter().any(edge) { 1.0 } else { (end - begin).ceil().max(least) };
-        places.push(from);
-        places.extend((1..edges as usize).map(|j| {
-            let wanted = begin + (end - begin) * j as f64 / edges;
-            length_at(ring, &counts, wanted)
-        }));
-    }
-    let sharp = |corner: &RingCorner| corner.angle < SHARP;
-    let tip = |at: f64| corners.iter().any(|corner| sharp(corner) && ring.samples[corner.sample].at == at);
-    let mut nodes: Vec<BoundaryNode> = Vec::new();
-    for at in places {
-        nodes.push(BoundaryNode { point: tracer.point(ring, at), at, tip: tip(at) });
-    }
-    // No chain begins with a tip, so that the nodes on both sides of a tip have places in it.
-    if nodes[0].tip {
-        nodes.rotate_left(1);
-    }
-    halved(tracer, ring, nodes, limits.chord_error)
+    fixed
 }
 
-/// Returns the length of the polygon at which this number of edges is reached, which may exceed that of the whole ring.
-fn length_at(ring: &Ring, counts: &[f64], wanted: f64) -> f64 {
-    let whole = counts[counts.len() - 1];
-    let (wanted, beyond) = if wanted >= whole { (wanted - whole, ring.length) } else { (wanted, 0.0) };
-    let k = counts.partition_point(|count| *count <= wanted).clamp(1, counts.len() - 1) - 1;
-    ring.samples[k].at + ring.step(k) * ((wanted - counts[k]) / (counts[k + 1] - counts[k])) + beyond
+/// The number of edges along a ring.
+struct EdgeCounts<'a> {
+    ring: &'a Ring,
+    /// Number of edges from the start of the ring to each sample, and to its end.
+    counts: Vec<f64>,
+}
+
+impl<'a> EdgeCounts<'a> {
+    /// Sums up the edges of a ring from their lengths \[mm\] at its samples.
+    fn new(ring: &'a Ring, lengths: &[f64]) -> Self {
+        let (n, mut counts) = (ring.samples.len(), vec![0.0]);
+        for k in 0..n {
+            let per_length = (1.0 / lengths[k] + 1.0 / lengths[(k + 1) % n]) / 2.0;
+            counts.push(counts[k] + ring.step(k) * per_length);
+        }
+        Self { ring, counts }
+    }
+
+    /// Returns the number of edges up to a length of the polygon, which may exceed that of the whole ring.
+    fn up_to(&self, at: f64) -> f64 {
+        if at >= self.ring.length {
+            return self.counts[self.counts.len() - 1] + self.up_to(at - self.ring.length);
+        }
+        let k = self.ring.index(at);
+        let share = (at - self.ring.samples[k].at) / self.ring.step(k);
+        self.counts[k] + (self.counts[k + 1] - self.counts[k]) * share
+    }
+
+    /// Returns the length of the polygon at which this number of edges is reached.
+    fn place(&self, count: f64) -> f64 {
+        let whole = self.counts[self.counts.len() - 1];
+        let (count, beyond) = if count >= whole { (count - whole, self.ring.length) } else { (count, 0.0) };
+        let k = self.counts.partition_point(|known| *known <= count).clamp(1, self.counts.len() - 1) - 1;
+        let share = (count - self.counts[k]) / (self.counts[k + 1] - self.counts[k]);
+        self.ring.samples[k].at + self.ring.step(k) * share + beyond
+    }
 }
 
 /// Halves edges until the chord error keeps its bound.

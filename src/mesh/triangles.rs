@@ -26,6 +26,9 @@ const CHORD_SHARE: f64 = 0.01;
 /// Largest area of a triangle, as a multiple of that of an equilateral triangle with sides of the size.
 const AREA_SHARE: f64 = 1.3;
 
+/// Least number of samples of a ring. One with fewer has no inside.
+const LEAST_SAMPLES: usize = 3;
+
 /// Most cells of a component. With more, cells are smaller than the accuracy of the patch, which can only be a mistake.
 const MOST_CELLS: f64 = 1e6;
 
@@ -102,7 +105,8 @@ impl TriangleMesh {
     /// square with its area. An empty patch gives an empty mesh.
     ///
     /// # Errors
-    /// A size that is not positive, or that gives more than 10⁶ cells; a boundary that meets itself.
+    /// A size that is not positive, or that gives more than 10⁶ cells; a boundary that meets itself; a part of the patch as small
+    /// as the rounding of its coordinates.
     pub fn new(placement: &Placement, patch: &Patch, size: Option<f64>) -> Result<Self> {
         let mut mesh = Self {
             points: Vec::new(),
@@ -150,6 +154,11 @@ impl TriangleMesh {
     fn add(&mut self, placement: &Placement, patch: &Patch, component: &Component, size: f64) -> Result<()> {
         let mut tracer = BoundaryTracer::new(placement, patch, component);
         let mut rings = tracer.rings();
+        if size.is_nan() || size <= 0.0 || rings.iter().any(|ring| ring.samples.len() < LEAST_SAMPLES) {
+            let found = format!("a part of {:e} mm²", component.area);
+            let expected = "parts above the rounding of their coordinates";
+            return Err(Error::new("mesh", found, expected, "take a larger approach"));
+        }
         // The ring that encloses most is the outer one.
         rings.sort_by(|a, b| b.enclosed().total_cmp(&a.enclosed()));
         let (region, chains) = best(&mut tracer, &rings, component.area, size)?;
@@ -180,15 +189,20 @@ impl TriangleMesh {
     }
 }
 
-fn checked(component: &Component, size: f64) -> Result<f64> {
-    if finite("mesh: size", size)? <= 0.0 {
-        return Err(Error::new(
-            "mesh: size",
-            size.to_string(),
-            "a positive length in mm",
-            "leave it out, or give a length",
-        ));
+/// Returns a size of triangles \[mm\] if it can be meant.
+///
+/// # Errors
+/// A size that is not positive and finite.
+pub fn checked_size(size: f64) -> Result<f64> {
+    if finite("mesh: size", size)? > 0.0 {
+        return Ok(size);
     }
+    let (expected, advice) = ("a positive length in mm", "leave it out, or give a length");
+    Err(Error::new("mesh: size", size.to_string(), expected, advice))
+}
+
+fn checked(component: &Component, size: f64) -> Result<f64> {
+    let size = checked_size(size)?;
     let cells = component.area / (size * size * 3f64.sqrt() / 4.0);
     if cells > MOST_CELLS {
         let expected = format!("at most {MOST_CELLS:e}");

@@ -356,7 +356,7 @@ impl MeshData {
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputData {
-    /// Formats; if not given, all but "png".
+    /// Formats; if not given, all but "png", "gmsh", "abaqus", "stl" and "vtp".
     #[serde(skip_serializing_if = "Option::is_none")]
     pub formats: Option<Vec<OutputFormat>>,
 }

@@ -14,6 +14,7 @@ use super::standing::standing;
 use crate::case::{ApproachBy, Case, Echo, FrameOrigin, Friction, OutputFormat, Outputs, Profiles, Question};
 use crate::error::{Error, Result, finite};
 use crate::load::{Elastic, effective_modulus};
+use crate::mesh::checked_size;
 
 /// Smallest approach other than 0 \[mm\], and smallest load \[N\]. They are far below any real ones, and their powers do
 /// not underflow.
@@ -64,13 +65,7 @@ fn outputs(scene: &Scene) -> Result<Outputs> {
     let named = scene.output.formats.clone();
     let required = named.is_some();
     let formats = named.unwrap_or_else(|| vec![Vtk, Npy, Netcdf, Text, Conform, Countact, Contact, Html]);
-    let mesh_size = scene.mesh.size;
-    if let Some(size) = mesh_size {
-        if finite("mesh: size", size)? <= 0.0 {
-            let advice = "leave it out, or give a length";
-            return Err(Error::new("mesh: size", size.to_string(), "a positive length in mm", advice));
-        }
-    }
+    let mesh_size = scene.mesh.size.map(checked_size).transpose()?;
     Ok(Outputs { formats, required, mesh_size })
 }
 

@@ -269,3 +269,19 @@ fn sizes_are_kept_and_bad_ones_refused() {
         assert!(TriangleMesh::new(&crowns, &patch, Some(size)).is_err(), "{size}");
     }
 }
+
+#[test]
+fn a_scene_gives_the_size() {
+    let case = |size: f64| {
+        let text = format!(
+            "[rail]\nprofile = \"60E1\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n\
+             [contact]\noffset = 0.0\n[mesh]\nsize = {size:?}\n"
+        );
+        scene::resolve(&scene::parse(&text, false)?, Path::new("."), "sized")
+    };
+    assert!(case(0.5).is_ok());
+    for size in [0.0, -1.0, f64::INFINITY] {
+        let Err(error) = case(size) else { panic!("{size} cannot be meant") };
+        assert_eq!(error.place, "mesh: size", "{error}");
+    }
+}

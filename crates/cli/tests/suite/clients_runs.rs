@@ -1,6 +1,6 @@
 //! Folders of `wheelrail run` itself, read and solved by the programs that they are for.
 
-use crate::programs::{check, check_conformal, check_run, folder};
+use crate::programs::{check, check_conformal, check_gmsh, check_run, folder};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -10,7 +10,8 @@ use wheelrail::files::RUN_FOLDER;
 const HERTZ: [&str; 3] = ["113932", "1139.19", "0.0904879"];
 
 /// Every format that a scene may ask for.
-const ALL_FORMATS: &str = "[output]\nformats = [\"vtk\", \"npy\", \"netcdf\", \"text\", \"conform\", \"countact\", \"contact\", \"html\", \"png\"]\n";
+const ALL_FORMATS: &str = "[output]\nformats = [\"vtk\", \"npy\", \"netcdf\", \"text\", \"conform\", \"countact\", \"contact\", \
+                           \"html\", \"png\", \"gmsh\", \"abaqus\", \"stl\", \"vtp\"]\n";
 
 /// What a solver of rolling contact needs besides.
 const ROLLING: &str = "[motion]\nspeed = 30.0\n[friction]\nstatic = 0.35\nkinetic = 0.25\n";
@@ -137,6 +138,36 @@ fn every_reader_reads_each_contact_of_a_wheelset() {
     for part in parts {
         assert_complete(&part, &[&ON_RAIL[..], &OF_ALL_CONTACTS].concat());
         check_run(&part);
+    }
+}
+
+/// Ten boundaries: plain, cut by the window, yawed, narrow, of two sizes, and beside the flange.
+#[test]
+fn gmsh_meshes_the_same_boundaries_no_better() {
+    let yawed = |yaw: f64| format!("yaw = {yaw:?}\n[patch]\napproach = 0.05\n");
+    let cut = |xi: [f64; 2], eta: [f64; 2]| {
+        format!(
+            "[patch]\napproach = 0.05\n[grid]\nxi = {{ from = {:?}, to = {:?}, n = 33 }}\n\
+             eta = {{ from = {:?}, to = {:?}, n = 33 }}\n",
+            xi[0], xi[1], eta[0], eta[1]
+        )
+    };
+    let plain = "[patch]\napproach = 0.05\n";
+    let sized = |size: f64| format!("{plain}[mesh]\nsize = {size:?}\n");
+    let scenes = [
+        ("mesh_tread", standard("60E1", "S1002", 0.0, plain)),
+        ("mesh_fine", standard("60E1", "S1002", 0.0, &sized(0.3))),
+        ("mesh_coarse", standard("60E1", "S1002", 0.0, &sized(2.0))),
+        ("mesh_deep", standard("56E1", "EN15302-A", 2.0, "[patch]\napproach = 0.3\n")),
+        ("mesh_yawed", standard("60E1", "S1002", 0.0, &yawed(0.05))),
+        ("mesh_yawed_flange", standard("60E1", "S1002", 5.0, &yawed(0.02))),
+        ("mesh_flange", standard("60E1", "S1002", 6.0, plain)),
+        ("mesh_corner", standard("60E1", "S1002", 0.0, &cut([-1.0, 12.0], [-2.0, 4.0]))),
+        ("mesh_cap", standard("60E1", "S1002", 0.0, &cut([-12.0, 12.0], [5.0, 12.0]))),
+        ("mesh_crown", crown(0.0, 0.0, plain)),
+    ];
+    for (name, scene) in scenes {
+        check_gmsh(&run(name, &scene));
     }
 }
 

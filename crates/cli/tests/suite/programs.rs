@@ -64,6 +64,17 @@ pub fn output_of(script: &str, dir: &Path, arguments: &[&str]) -> Option<String>
     Some(lines)
 }
 
+/// Runs the script that needs Gmsh, whose package is linked with libraries that it does not bring.
+pub fn check_gmsh(dir: &Path) {
+    let Some(python) = python() else { return };
+    let import = Command::new(python).args(["-c", "import gmsh"]).output().unwrap();
+    if import.status.success() {
+        check("check_gmsh.py", dir, &[]);
+    } else {
+        not_run("gmsh cannot be imported: libraries of .ci/run are missing");
+    }
+}
+
 /// Runs one script that needs the Fortran reader.
 fn check_decks(script: &str, dir: &Path) {
     match clients().map(|clients| &clients.reader) {
