@@ -11,9 +11,11 @@ mod files;
 mod grids;
 mod input;
 mod places;
+mod polylines;
 mod run;
 mod site;
 mod summary;
+mod sweep_view;
 mod view;
 mod wheel;
 
@@ -31,3 +33,4 @@ pub use input::{
 pub use places::{Found, PlaceOfContact, approach_under_load, contacts};
 pub use run::{Part, Run, SILENT, Tell};
 pub use site::{Site, sites};
+pub use sweep_view::sweep_page;

@@ -18,7 +18,10 @@ mod vts;
 
 pub use csv::{boundary_csv, interpen_csv};
 pub use deck::{ContactSettings, Deck, Prescribed, conform_wrp, contact_inp, countact_wrp, separation_wrp};
-pub use html::{PageFrame, PageLoop, PagePair, PageProfile, ViewContact, ViewPage};
+pub use html::{
+    PageFrame, PageLoop, PagePair, PageProfile, SweepCurve, SweepPage, SweepPanel, SweepSide, ViewContact,
+    ViewPage,
+};
 pub use legacy::separation_vtk;
 pub use model::{Frame, GridFields, Header, Interval, Loop, QuadMesh, SurfaceMesh};
 pub use netcdf::NetCdf;
