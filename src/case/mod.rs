@@ -15,9 +15,11 @@ mod in_place;
 mod input;
 mod on_rail;
 mod places;
+mod polylines;
 mod run;
 mod site;
 mod summary;
+mod sweep_view;
 mod view;
 mod wheel;
 
@@ -36,3 +38,4 @@ pub use input::{
 pub use places::{Found, PlaceOfContact, approach_under_load, contacts};
 pub use run::{Part, Run, SILENT, Tell};
 pub use site::{Site, sites};
+pub use sweep_view::sweep_page;

@@ -1,13 +1,12 @@
 //! What the page of a run shows: every contact on a grid of the page's own, and what is known of it in words.
 
 use super::drawn::contact_name;
-use super::input::SideProfiles;
+use super::polylines::{pairs, thinned};
 use super::run::{Part, Run};
-use crate::export::{PageFrame, PageLoop, PagePair, PageProfile, ViewContact, ViewPage};
+use crate::export::{PageFrame, PageLoop, ViewContact, ViewPage};
 use crate::load::Estimate;
 use crate::mesh::equal_steps;
 use crate::patch::{Patch, Window};
-use crate::profile::{Profile, trace};
 use crate::separation::{EtaAxis, Values, plan};
 
 /// Contacts that a page shows: more would take more than the 1.5 MB that a mail or a browser takes at once.
@@ -33,23 +32,18 @@ const WIDEST: f64 = 1.5;
 /// Half the side \[mm\] of a window that would have no extent.
 const LEAST_HALF: f64 = 5.0;
 
-/// Distance of a profile's points \[mm\], and the most points of one.
-const PROFILE_STEP: f64 = 0.25;
-const PROFILE_POINTS: usize = 1200;
-
 /// Most points of the boundaries of one contact. Only patches of rough profiles have more.
 const BOUNDARY_POINTS: usize = 2000;
 
 /// Makes the page of a run.
 pub(super) fn view(run: &Run) -> ViewPage {
-    let profiles = run.case.profiles.sides().map(|(_, side)| pair(side)).collect();
     let shown = &run.parts[..run.parts.len().min(MOST_SHOWN)];
     let n = ((ALL_POINTS / shown.len() as f64).sqrt() as usize).min(POINTS);
     ViewPage {
         title: run.case.echo.title.clone(),
         version: env!("CARGO_PKG_VERSION").into(),
         scene_hash: run.case.echo.hash.clone(),
-        pairs: profiles,
+        pairs: pairs(&run.case.profiles),
         contacts: shown.iter().map(|part| contact(run, part, n)).collect(),
         notes: notes(run, n),
     }
@@ -64,33 +58,13 @@ fn notes(run: &Run, n: usize) -> Vec<String> {
     if run.parts.len() > MOST_SHOWN {
         notes.push(format!("The page shows the first {MOST_SHOWN} of {} contacts.", run.parts.len()));
     }
+    if run.parts.len() > 1 {
+        notes.push("Dashed regions in the colour of the boundary belong to a neighbouring contact.".into());
+    }
     if run.parts.iter().any(|part| part.site.side() == Some("left")) {
         notes.push("The left side is shown as its mirror image: x to the left, y forward, z up.".into());
     }
     notes
-}
-
-fn pair(side: &SideProfiles) -> PagePair {
-    let [rail, wheel] = [side.pair.rail(), side.pair.wheel()].map(polyline);
-    PagePair { rail, wheel, radius: side.pair.wheel_radius() }
-}
-
-/// Gives a profile as a polyline; one of very many points is thinned.
-fn polyline(profile: &Profile) -> PageProfile {
-    let marks = trace(profile, PROFILE_STEP);
-    let kept = thinned(&marks, PROFILE_POINTS);
-    let coordinate = |of: fn(&crate::profile::Station) -> f64| kept.iter().map(|m| of(&m.station)).collect();
-    PageProfile { name: profile.name.clone(), x: coordinate(|s| s.x), z: coordinate(|s| s.z) }
-}
-
-/// Gives at most about `most` of some items, evenly chosen, the first and the last among them.
-fn thinned<T: Copy>(items: &[T], most: usize) -> Vec<T> {
-    let stride = items.len().div_ceil(most).max(1);
-    let mut kept: Vec<T> = items.iter().step_by(stride).copied().collect();
-    if stride > 1 && !(items.len() - 1).is_multiple_of(stride) {
-        kept.extend(items.last());
-    }
-    kept
 }
 
 fn contact(run: &Run, part: &Part, n: usize) -> ViewContact {
@@ -133,7 +107,8 @@ fn window(part: &Part) -> Window {
         let Window { xi, eta } = part.site.window();
         return Window { xi: with_extent(xi), eta: with_extent(eta) };
     };
-    let wide = Patch::new(placement, SHOWN * patch.approach, &Window::UNBOUNDED);
+    let largest = (SHOWN * patch.approach).min(f64::MAX);
+    let wide = Patch::new(placement, largest, &Window::UNBOUNDED);
     let apart = |[a, b]: [f64; 2], [c, d]: [f64; 2]| b < c || d < a;
     let around = wide.components.iter().filter(|c| !apart(c.xi, inner.xi) && !apart(c.eta, inner.eta));
     let outer = around.fold(inner, |box_of, c| Window {

@@ -29,7 +29,10 @@ pub use deck::{
     contact_inp, countact_wrp, separation_wrp,
 };
 pub use gmsh::patch_msh;
-pub use html::{PageFrame, PageLoop, PagePair, PageProfile, ViewContact, ViewPage};
+pub use html::{
+    PageFrame, PageLoop, PagePair, PageProfile, SweepCurve, SweepPage, SweepPanel, SweepSide, ViewContact,
+    ViewPage,
+};
 pub use in_place::{ContactInPlace, body_vtp, boundaries_vtp, contacts_vtp, patches_vtp, wheelset_vtm};
 pub use legacy::separation_vtk;
 pub use model::{Frame, GridFields, Header, Interval, Loop, PatchMesh, QuadMesh, SurfaceMesh};

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use super::candidates::{Candidate, Meeting};
 use super::locus::Attitude;
-use nalgebra::Rotation3;
+use nalgebra::{Isometry2, Rotation3, Vector2};
 
 use super::touch::{ContactSearch, ProfilePair, Selection, Touch, Work, small_angle, wheel_rotation};
 use crate::error::{Result, finite};
@@ -203,6 +203,15 @@ impl WheelsetOnTrack {
     /// Makes a search over this system.
     pub fn search(&self) -> WheelsetSearch<'_> {
         WheelsetSearch { system: self, sides: self.sides.each_ref().map(|side| side.pair.search()) }
+    }
+
+    /// Returns where a wheel's profile is in the axes of its rail's profile, in the section through the axle: the isometry takes
+    /// (x, z) of the wheel to (x, z) of the rail \[mm\]. `roll` \[rad\] is that of the wheelset, `z` \[mm\] the height of its middle
+    /// above R over the top of rail, as [`SideTouch::z`] is. Yaw moves the section, but does not foreshorten it.
+    pub fn section(&self, right: bool, position: &Position, roll: f64, z: f64) -> Isometry2<f64> {
+        let side = usize::from(right);
+        let (attitude, level) = self.attitude(position, roll, side);
+        Isometry2::new(Vector2::new(attitude.offset, z - level), -SIGNS[side] * roll)
     }
 
     /// Returns the attitude of one side (0 left, 1 right), and the height of the axle's middle above R over the

@@ -36,6 +36,14 @@ fn escape(text: &str) -> String {
 mod tests {
     use super::*;
 
+    /// An element of a page ends at the first of these, wherever it stands.
+    #[test]
+    fn scripts_cannot_end_their_element() {
+        for script in [include_str!("view.js"), include_str!("sweep.js")].map(str::to_ascii_lowercase) {
+            assert!(!script.contains("</script") && !script.contains("<!--") && !script.contains("<script"));
+        }
+    }
+
     #[test]
     fn text_of_the_data_ends_no_element() {
         let title = "</script><script>alert(1)</script><!-- & \"]]>";

@@ -5,6 +5,8 @@
 
 mod document;
 mod numbers;
+mod sweep;
 mod view;
 
+pub use sweep::{SweepCurve, SweepPage, SweepPanel, SweepSide};
 pub use view::{PageFrame, PageLoop, PagePair, PageProfile, ViewContact, ViewPage};

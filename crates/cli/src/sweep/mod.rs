@@ -41,6 +41,9 @@ pub(super) struct SweepArguments {
     /// Picture of the usual curves over the lateral displacement, in addition: .svg or .png.
     #[arg(long, value_name = "FILE.svg")]
     picture: Option<PathBuf>,
+    /// Page for a browser, in addition: the same curves, with the profiles at the position under the pointer.
+    #[arg(long, value_name = "FILE.html")]
+    html: Option<PathBuf>,
 }
 
 impl SweepArguments {
@@ -64,6 +67,7 @@ impl SweepArguments {
 struct SweepOutputs {
     table: Option<NewFile>,
     picture: Option<(PictureFormat, NewFile)>,
+    html: Option<NewFile>,
     patches: Option<Folder>,
 }
 
@@ -82,7 +86,9 @@ impl SweepOutputs {
             .map(|file| folder.join(file))
             .collect();
         taken.extend(arguments.positions.clone().into_iter().chain([arguments.scene.clone()]));
-        for (option, file) in [("--out", &arguments.out), ("--picture", &arguments.picture)] {
+        let files =
+            [("--out", &arguments.out), ("--picture", &arguments.picture), ("--html", &arguments.html)];
+        for (option, file) in files {
             let Some(file) = file else { continue };
             refuse_taken(option, file, &taken)?;
             taken.push(file.clone());
@@ -90,6 +96,7 @@ impl SweepOutputs {
         Ok(Self {
             table: arguments.out.as_deref().map(NewFile::create).transpose()?,
             picture: format.zip(picture.map(NewFile::create).transpose()?),
+            html: arguments.html.as_deref().map(NewFile::create).transpose()?,
             patches: arguments
                 .patches
                 .as_deref()
@@ -102,6 +109,7 @@ impl SweepOutputs {
     fn commit(self) -> Result<()> {
         self.patches.map_or(Ok(()), Folder::commit)?;
         self.picture.map_or(Ok(()), |(_, file)| file.commit())?;
+        self.html.map_or(Ok(()), NewFile::commit)?;
         self.table.map_or(Ok(()), NewFile::commit)
     }
 }
@@ -135,6 +143,10 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
         progress.at("picture");
         let picture = curves::picture(&table, &title(&case))?;
         file.put(&format.bytes(picture.svg())?)?;
+    }
+    if let Some(file) = &mut outputs.html {
+        progress.at("page");
+        file.put(&curves::page(&table, &case)?.html())?;
     }
     match &mut outputs.table {
         None => table.blocks(&progress, print_to_reader)?,

@@ -3,7 +3,8 @@
 //     node check_page.mjs BROWSER < JSON
 //
 // The JSON is a list of pages: { name, page, others: [{ contact, delta, loops, area }] }, where `others` are runs of the same
-// scene with another approach, mm: the exact loops of their boundaries and their area. Keys, pointer, themes and telephone are
+// scene with another approach, mm: the exact loops of their boundaries and their area. A page with `table`, the CSV of a sweep,
+// is that of the sweep. Keys, pointer, themes and telephone are
 // tried on the first page and on those of more than two contacts. A failed check ends with exit code 1.
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -14,6 +15,8 @@ import { chromium } from "playwright-core";
 
 /** Largest distance of an exact boundary from the page's contour, in steps of the page's grid along each axis. */
 const WITHIN_STEPS = 0.05;
+/** Largest distance of two points of contact that a picture of profiles joins, mm. */
+const WITHIN_PICTURE = 0.02;
 /** Largest relative difference of the areas. */
 const WITHIN_AREA = 1e-3;
 
@@ -182,15 +185,70 @@ async function telephone(browser, file) {
     await context.close();
 }
 
+/** The page of a sweep says what its table says, wherever the slider, the pointer and the keys take it. */
+async function sweep(page, table) {
+    const [header, ...lines] = readFileSync(table, "utf8").trim().split("\n").map((line) => line.split(","));
+    const rows = lines.map((cells) => Object.fromEntries(header.map((name, k) => [name, cells[k]])));
+    const displacements = [...new Set(rows.map((row) => row.lateral_mm))];
+    assert.equal(await page.evaluate(() => window.wheelrail.positions), displacements.length);
+    let apart = 0;
+    for (const [number, displacement] of displacements.entries()) {
+        await page.locator("#position").fill(String(number));
+        const [lateral, sides, radii] = await page.evaluate(() => {
+            const sides = [0, 1].map((k) => [window.wheelrail.contacts(k), window.wheelrail.joined(k)]);
+            return [window.wheelrail.lateral(), sides, window.wheelrail.values(0)];
+        });
+        assert.ok(Math.abs(lateral - displacement) < 1e-5, `${lateral} at ${displacement}`);
+        for (const [side, [contacts, joined]] of ["left", "right"].map((side, k) => [side, sides[k]])) {
+            const own = rows.filter((row) => row.lateral_mm === displacement && row.side === side);
+            const expected = own.map((row) => [Number(row.rail_x_mm), Number(row.wheel_x_mm)]);
+            assert.equal(contacts.length, expected.length, `${side} at ${displacement}`);
+            contacts.flat().forEach((x, k) => assert.ok(Math.abs(x - expected.flat()[k]) < 1e-4));
+            const touching = joined.filter((_, k) => Number(own[k].gap_mm) === 0);
+            for (const [[a, b], [c, d]] of touching) apart = Math.max(apart, Math.hypot(a - c, b - d));
+        }
+        const delta = Number(rows.find((row) => row.lateral_mm === displacement).delta_r_mm);
+        const shown = Number(radii[0][1].replace("\u2212", "-"));
+        assert.ok(Math.abs(shown - delta) <= 0.0051, `Δr ${shown} and ${delta} at ${displacement}`);
+    }
+    assert.ok(apart < WITHIN_PICTURE, `points of contact ${apart} mm apart`);
+    const canvas = page.locator("canvas.cut").nth(3);
+    const box = await canvas.boundingBox();
+    await page.mouse.move(box.x + 0.3 * box.width, box.y + 0.5 * box.height);
+    const pointed = await page.evaluate(() => window.wheelrail.at());
+    assert.ok(pointed > 0 && pointed < displacements.length / 2, `the pointer chose ${pointed}`);
+    await canvas.focus();
+    await page.keyboard.press("ArrowRight");
+    assert.equal(await page.evaluate(() => window.wheelrail.at()), pointed + 1);
+    return `${displacements.length} positions, points of contact at most ${apart.toExponential(1)} mm apart`;
+}
+
+/** On a telephone the page of a sweep is not wider than the screen. */
+async function narrow(browser, file) {
+    const context = await browser.newContext({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+    const page = await open(context, file);
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "no sideways scrolling");
+    assert.deepEqual(page.faults, []);
+    await context.close();
+}
+
 const profile = mkdtempSync(join(tmpdir(), "wheelrail-pages-"));
 const [executablePath] = process.argv.slice(2);
 const browser = await chromium.launch({ executablePath, args: [...FLAGS, `--disk-cache-dir=${profile}`] });
 try {
-    for (const [number, { name, page: file, others }] of JSON.parse(readFileSync(0, "utf8")).entries()) {
+    for (const [number, { name, page: file, others, table }] of JSON.parse(readFileSync(0, "utf8")).entries()) {
         const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, offline: true });
         const page = await open(context, file);
         const drawn = await colours(page);
         assert.ok(drawn.length >= 5 && drawn.every((count) => count > 8), `${name}: colours of the pictures: ${drawn}`);
+        if (table) {
+            console.log(`page ${name}: ${drawn.length} pictures; ${await sweep(page, table)}`);
+            await themes(page);
+            assert.deepEqual(page.faults, [], name);
+            await context.close();
+            await narrow(browser, file);
+            continue;
+        }
         const found = await slider(page, others);
         const tried = number === 0 || (await page.evaluate(() => window.wheelrail.contacts.length)) > 2;
         for (const attempt of tried ? [keys, pointer, themes] : []) await attempt(page);

@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 const LARGEST: u64 = 1_500_000;
 
 /// Files that the build writes beside its sources.
-const BUILT: [&str; 2] = ["view.js", "three-LICENSE.txt"];
+const BUILT: [&str; 3] = ["view.js", "sweep.js", "three-LICENSE.txt"];
 
 /// A folder with node's packages and the pages' sources, and the browser.
 struct Tools {
@@ -108,6 +108,19 @@ fn page(name: &str, dir: &Path, others: Vec<Value>) -> Value {
     json!({ "name": name, "page": file, "others": others })
 }
 
+/// Sweeps the example's wheelset without yaw, so that contacts lie in the section that the page draws.
+fn swept() -> Value {
+    let [path, page, table] = ["page_sweep.toml", "page_sweep.html", "page_sweep.csv"].map(folder);
+    std::fs::write(&path, wheelset("0.0", "approach = 0.05").replace("yaw = 0.002", "yaw = 0.0")).unwrap();
+    let mut program = Command::new(env!("CARGO_BIN_EXE_wheelrail"));
+    program.arg("sweep").arg(&path).args(["--lateral", "-8:8:0.5", "--html"]).arg(&page);
+    let output = program.arg("--out").arg(&table).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let size = std::fs::metadata(&page).unwrap().len();
+    assert!(size < LARGEST, "{size} bytes");
+    json!({ "name": "sweep", "page": page, "table": table })
+}
+
 #[test]
 fn pages_open_in_a_browser_and_their_slider_gives_the_boundary_of_a_run() {
     let patch = |approach: &str| format!("[patch]\n{approach}");
@@ -122,6 +135,7 @@ fn pages_open_in_a_browser_and_their_slider_gives_the_boundary_of_a_run() {
         compared("two-point", |approach| wheelset("4.84", approach), &[0.02, 0.012, 0.03]),
         compared("wheelset", |approach| wheelset("2.0", approach), &[0.08, 0.04]),
         page("no-patch", &run("page_no_patch", &single("offset = 0.0", empty), 1), Vec::new()),
+        swept(),
     ]);
     let Some(tools) = tools() else { return };
     let mut node = Command::new("node");

@@ -69,7 +69,7 @@ fn bad_calls_end_with_code_2_and_leave_the_inputs() {
     let range = ["--lateral", "0:1:1"];
     let listed = ["--positions", "positions.csv"];
     std::fs::create_dir(here.join("folder")).unwrap();
-    let cases: [(&str, &[&str], &[&str], &str); 15] = [
+    let cases: [(&str, &[&str], &[&str], &str); 17] = [
         (
             "scene.toml",
             &range,
@@ -110,6 +110,8 @@ fn bad_calls_end_with_code_2_and_leave_the_inputs() {
             "--picture: found \"curves.jpg\"; expected a name",
         ),
         ("scene.toml", &range, &["--out", "a.svg", "--picture", "./a.svg"], "--picture: found a.svg, which"),
+        ("scene.toml", &range, &["--out", "a.html", "--html", "./a.html"], "--html: found a.html, which"),
+        ("scene.toml", &["--positions", "down.csv"], &["--html", "a.html"], "--html: found 1 mm after 2 mm;"),
     ];
     let files = ["scene.toml", "own.toml", "wheel.toml", "positions.csv"];
     let contents = || files.map(|file| std::fs::read(here.join(file)).unwrap());

@@ -82,6 +82,22 @@ export function closed(line) {
     return line.length > 2 && first[0] === last[0] && first[1] === last[1];
 }
 
+/** Divides lines into those whose boxes meet the box around some loops, and the others: a neighbouring contact's. */
+export function near(loops, lines) {
+    if (loops.length === 0) return [lines, []];
+    const own = boxOf(loops.flat());
+    const meets = (line) => boxOf(line).every(([low, high], k) => low <= own[k][1] && high >= own[k][0]);
+    return [lines.filter(meets), lines.filter((line) => !meets(line))];
+}
+
+/** Least and largest ξ and η of some points. */
+function boxOf(points) {
+    return [0, 1].map((k) => {
+        const values = points.map((at) => at[k]);
+        return [Math.min(...values), Math.max(...values)];
+    });
+}
+
 /** Area inside of some lines, mm²: NaN where one of them is open, cut by the edge of the grid. */
 export function areaInside(lines) {
     let area = 0;

@@ -44,7 +44,9 @@ export function ticks([from, to], about) {
  */
 export class Sheet {
     constructor(label, draw, attributes = {}) {
-        this.canvas = element("canvas", { role: "img", "aria-label": label, ...attributes });
+        // What takes keys is no mere picture to a screen reader.
+        const role = "tabindex" in attributes ? "application" : "img";
+        this.canvas = element("canvas", { role, "aria-label": label, ...attributes });
         this.draw = draw;
         new ResizeObserver(() => this.refresh()).observe(this.canvas);
     }

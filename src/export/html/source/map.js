@@ -9,7 +9,7 @@ import { Plot } from "./plot.js";
 const THINNEST = 4;
 
 export class PlanView {
-    /** `state` is shared by all views of a contact: { contact, delta, lines, cut }; `moved` is told when the cut moves. */
+    /** `state` is shared by all views of a contact: { contact, delta, lines, others, cut }; `moved` is told when the cut moves. */
     constructor(state, moved) {
         Object.assign(this, { state, moved });
         const label = "Separation s over ξ and η. Arrow keys move the cut, plus and minus change δ.";
@@ -42,7 +42,7 @@ export class PlanView {
     }
 
     draw(context, width, height, ratio) {
-        const { contact, delta, lines, cut } = this.state;
+        const { contact, delta, lines, others, cut } = this.state;
         const { grid } = contact;
         const room = [58, 10, width - 72, height - 54];
         const plot = Plot.trueScale(context, room, grid.ends(0), grid.ends(1), THINNEST);
@@ -54,6 +54,7 @@ export class PlanView {
             if (contact.approach && delta !== contact.approach) {
                 plot.lines(contact.boundary, colours.given, 1.5, [4, 3]);
             }
+            plot.lines(others, colours.boundary, 1.25, [4, 3]);
             plot.lines(lines, colours.halo, 4.5);
             plot.lines(lines, colours.boundary, 2.25);
             plot.line([[cut[0], plot.v[0]], [cut[0], plot.v[1]]], colours.cutEta, 1.25, [6, 3]);

@@ -1,7 +1,7 @@
 // All views of one contact, with the slider, the table and the keys.
 
 import { gradient } from "./colours.js";
-import { areaInside, closed, contours } from "./contours.js";
+import { areaInside, closed, contours, near } from "./contours.js";
 import { Cut } from "./cuts.js";
 import { element, fixed } from "./dom.js";
 import { PlanView } from "./map.js";
@@ -13,7 +13,7 @@ const STEPS = 600;
 
 export class Panel {
     constructor(contact, number) {
-        const state = { contact, delta: contact.delta, cut: [0, 0], lines: [] };
+        const state = { contact, delta: contact.delta, cut: [0, 0], lines: [], others: [] };
         state.cut = [0, 1].map((axis) => kept(0, contact.grid.ends(axis)));
         Object.assign(this, { contact, state });
         const moved = (cut) => this.moveCut(cut);
@@ -109,7 +109,9 @@ export class Panel {
         // The slider's steps do not hit the δ of the run, which its button gives.
         if (!bySlider) this.input.value = Math.round((state.delta / contact.scale) * STEPS);
         const own = contact.approach && state.delta === contact.approach;
-        state.lines = own ? contact.boundary : contours(contact.grid, state.delta);
+        const [lines, others] = near(contact.boundary, contours(contact.grid, state.delta));
+        state.lines = own ? contact.boundary : lines;
+        state.others = others;
         this.say();
         this.refresh();
     }

@@ -81,18 +81,30 @@ export class Plot {
         context.setLineDash([]);
     }
 
+    /** Fills what lies between a polyline and a height. */
+    fill(points, level, colour) {
+        const { context } = this;
+        context.beginPath();
+        this.path(points);
+        context.lineTo(this.x(points[points.length - 1][0]), this.y(level));
+        context.lineTo(this.x(points[0][0]), this.y(level));
+        context.closePath();
+        context.fillStyle = colour;
+        context.fill();
+    }
+
     /** Frame, ticks, numbers and names of both axes. */
-    axes([below, beside], lines = false) {
+    axes([below, beside]) {
         const { context, colours } = this;
         const [left, top, width, height] = this.place;
         context.font = FONT;
         context.lineWidth = 1;
         const across = ticks(this.u, Math.max(2, width / 60));
-        const up = ticks(this.v, Math.max(2, height / 36));
-        context.strokeStyle = colours.line;
+        const up = ticks(this.v, Math.max(2, height / 30));
+        context.strokeStyle = colours.axis;
         context.beginPath();
-        for (const [u] of across) mark(context, this.x(u), top + height, 0, lines ? -height : 4);
-        for (const [v] of up) mark(context, left, this.y(v), lines ? width : -4, 0);
+        for (const [u] of across) mark(context, this.x(u), top + height, 0, 4);
+        for (const [v] of up) mark(context, left, this.y(v), -4, 0);
         context.stroke();
         context.strokeStyle = colours.axis;
         context.strokeRect(left, top, width, height);

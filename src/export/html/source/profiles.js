@@ -28,8 +28,8 @@ export class Profiles {
         // Above there is room for ζ.
         const plot = Plot.trueScale(context, room, [x[0] - margin, x[1] + margin], [z[0], z[1] + 7 * margin]);
         plot.clipped(() => {
-            area(plot, this.rail, plot.v[0], colours.railFill);
-            area(plot, this.wheel, plot.v[1], colours.wheelFill);
+            plot.fill(this.rail, plot.v[0], colours.railFill);
+            plot.fill(this.wheel, plot.v[1], colours.wheelFill);
             plot.line(this.rail, colours.rail, 1.75);
             plot.line(this.wheel, colours.wheel, 1.75);
             this.frame(plot, contact, lines, colours);
@@ -57,16 +57,4 @@ export class Profiles {
         context.fill();
         context.stroke();
     }
-}
-
-/** Fills the body on one side of its profile. */
-function area(plot, profile, towards, colour) {
-    const { context } = plot;
-    context.beginPath();
-    plot.path(profile);
-    context.lineTo(plot.x(profile[profile.length - 1][0]), plot.y(towards));
-    context.lineTo(plot.x(profile[0][0]), plot.y(towards));
-    context.closePath();
-    context.fillStyle = colour;
-    context.fill();
 }

@@ -1,0 +1,98 @@
+// One quantity of a sweep over the lateral displacement.
+
+import { theme } from "./colours.js";
+import { Sheet, fixed } from "./dom.js";
+import { Plot } from "./plot.js";
+
+export class Curves {
+    /** `panel` has a title, an axis and curves; `state` is shared by all: { lateral, at }; `moved` is told an index. */
+    constructor(panel, abscissa, state, moved) {
+        Object.assign(this, { panel, abscissa, state, moved });
+        const label = `${panel.title}, ${panel.axis} over ${abscissa}. Arrow keys move the position.`;
+        this.sheet = new Sheet(label, (...to) => this.draw(...to), { tabindex: 0, class: "cut" });
+        const { canvas } = this.sheet;
+        const move = (event) => {
+            const at = this.plot?.back(event.offsetX, event.offsetY, event.buttons > 0);
+            if (at) moved(nearest(state.lateral, at[0]));
+        };
+        canvas.addEventListener("pointerdown", (event) => {
+            canvas.setPointerCapture(event.pointerId);
+            move(event);
+        });
+        canvas.addEventListener("pointermove", move);
+        this.range = this.values();
+    }
+
+    /** Least and largest value with some air, never without extent. */
+    values() {
+        const all = this.panel.curves.flatMap((curve) => [...curve.values]).filter((value) => Number.isFinite(value));
+        if (all.length === 0) return [0, 1];
+        const [low, high] = [Math.min(...all), Math.max(...all)];
+        const air = Math.max(0.06 * (high - low), 1e-6 * Math.max(Math.abs(low), Math.abs(high)), 1e-9);
+        return [low - air, high + air];
+    }
+
+    draw(context, width, height) {
+        const { lateral, at } = this.state;
+        const colours = theme();
+        const ends = [lateral[0], lateral[lateral.length - 1]];
+        // A sweep of one position has no width of its own.
+        const across = ends[0] < ends[1] ? ends : [ends[0] - 1, ends[0] + 1];
+        const plot = new Plot(context, [66, 8, width - 80, height - 50], across, this.range);
+        this.plot = plot;
+        const colour = (k) => [colours.cutXi, colours.boundary][k];
+        plot.clipped(() => {
+            plot.line([[across[0], 0], [across[1], 0]], colours.line, 1);
+            plot.line([[lateral[at], plot.v[0]], [lateral[at], plot.v[1]]], colours.soft, 1.25, [3, 3]);
+            this.panel.curves.forEach((curve, k) => {
+                const pieces = parted(lateral, curve);
+                plot.lines(pieces, colour(k), 1.9);
+                pieces.filter((piece) => piece.length === 1).forEach(([point]) => dot(plot, point, 2.2, colour(k)));
+            });
+        });
+        this.panel.curves.forEach(({ values }, k) => {
+            if (!Number.isFinite(values[at])) return;
+            dot(plot, [lateral[at], values[at]], 4, colour(k));
+            Object.assign(context, { strokeStyle: colours.paper, lineWidth: 1.5 });
+            context.stroke();
+        });
+        plot.axes([this.abscissa, this.panel.axis]);
+    }
+
+    /** What the curves say at the position, with the names of the curves. */
+    said() {
+        const decimals = Math.max(0, Math.min(6, 3 - Math.floor(Math.log10(this.range[1] - this.range[0]))));
+        return this.panel.curves.map(({ name, values }) => [name, fixed(values[this.state.at], decimals)]);
+    }
+}
+
+/** The pieces of a curve between its jumps and missing values; a piece may be a single point. */
+function parted(lateral, { values, jumps }) {
+    const ends = new Set(jumps);
+    const pieces = [[]];
+    for (let k = 0; k < lateral.length; k++) {
+        if (Number.isNaN(values[k])) pieces.push([]);
+        else pieces[pieces.length - 1].push([lateral[k], values[k]]);
+        if (ends.has(k)) pieces.push([]);
+    }
+    return pieces.filter((piece) => piece.length > 0);
+}
+
+function dot(plot, [u, v], radius, colour) {
+    const { context } = plot;
+    context.beginPath();
+    context.arc(plot.x(u), plot.y(v), radius, 0, 7);
+    context.fillStyle = colour;
+    context.fill();
+}
+
+/** Index of the nearest of some ascending values. */
+export function nearest(values, value) {
+    let [low, high] = [0, values.length - 1];
+    while (high - low > 1) {
+        const middle = (low + high) >> 1;
+        if (values[middle] <= value) low = middle;
+        else high = middle;
+    }
+    return value - values[low] <= values[high] - value ? low : high;
+}

@@ -1,0 +1,87 @@
+// The page of a sweep.
+
+import { Curves } from "./curves.js";
+import { floats, pageData, pairsOf } from "./data.js";
+import { element, fixed } from "./dom.js";
+import { PairView } from "./pair.js";
+import { themeButton } from "./themes.js";
+
+const data = pageData();
+const lateral = floats(data.lateral);
+const state = { lateral, at: lateral.length >> 1, lifted: false };
+const pairs = pairsOf(data);
+const sides = data.sides.map((side) => new PairView(side, pairs, state));
+const panels = data.panels.map((panel) => {
+    const curves = panel.curves.map((curve) => ({ ...curve, values: floats(curve.values) }));
+    return new Curves({ ...panel, curves }, data.abscissa, state, move);
+});
+const said = [...sides, ...panels].map(() => element("output", {}));
+const position = element("output", { for: "position", class: "said" });
+const slider = element("input", {
+    id: "position", type: "range", min: 0, max: lateral.length - 1, step: 1, oninput: () => move(Number(slider.value)),
+});
+const lifted = element("input", {
+    id: "lifted", type: "checkbox",
+    onchange: () => {
+        state.lifted = lifted.checked;
+        refresh();
+    },
+});
+
+const page = document.getElementById("page");
+page.replaceChildren(
+    element("header", {}, element("h1", {}, data.title), element("p", { class: "from" }, `${data.about}; wheelrail ${data.version}`), themeButton(refresh)),
+    element(
+        "div",
+        { class: "head" },
+        element("div", { class: "slider" }, element("label", { for: "position" }, "Lateral displacement"), slider, position, element("label", { for: "lifted", class: "choice" }, lifted, " wheels lifted")),
+    ),
+    element("div", { class: "pairs" }, ...sides.map((side, k) => figure(side.side.right ? "Right side" : "Left side", side, said[k]))),
+    element("div", { class: "curves" }, ...panels.map((panel, k) => figure(panel.panel.title, panel, said[sides.length + k]))),
+    element(
+        "footer",
+        {},
+        element("p", {}, "The pointer over a curve, the slider, and the left and right arrows (with Shift by ten positions) choose the position; the profiles above stand where the wheelset is there, with its roll and height, seen along the track. Filled: the lowest contact of a side; open: further ones within the gap that the scene asks for. The section is that through the axle: under yaw a contact lies before or behind it, and its two points are not in one place."),
+        element("p", {}, "Numbers of this page are in single precision; the exact ones are in the table of the sweep."),
+    ),
+);
+page.addEventListener("keydown", (event) => {
+    const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+    if (!step || event.target === slider || event.ctrlKey || event.metaKey || event.altKey) return;
+    move(state.at + step * (event.shiftKey ? 10 : 1));
+    event.preventDefault();
+});
+move(state.at);
+
+function figure(title, view, output) {
+    return element("figure", {}, element("figcaption", {}, title), view.sheet.canvas, output);
+}
+
+/** Goes to a position by its number. */
+function move(at) {
+    state.at = Math.min(Math.max(at, 0), lateral.length - 1);
+    slider.value = state.at;
+    position.value = `${fixed(lateral[state.at], 3)} mm`;
+    slider.setAttribute("aria-valuetext", position.value);
+    sides.forEach((side, k) => (said[k].value = side.said()));
+    panels.forEach((panel, k) => {
+        const values = panel.said().map(([name, value]) => element("span", {}, `${name} ${value}`.trim()));
+        said[sides.length + k].replaceChildren(...values);
+    });
+    refresh();
+}
+
+function refresh() {
+    [...sides, ...panels].forEach((view) => view.sheet.refresh());
+}
+
+// What tests and scripts ask of the page: lengths in mm.
+window.wheelrail = {
+    positions: lateral.length,
+    at: () => state.at,
+    lateral: () => lateral[state.at],
+    move,
+    values: (k) => panels[k].said(),
+    contacts: (k) => sides[k].contacts[state.at],
+    joined: (k) => sides[k].joined(),
+};

@@ -1,0 +1,85 @@
+//! The page of a sweep: curves over the lateral displacement, and the pair of profiles at the position under the pointer.
+
+use serde::Serialize;
+
+use super::document::document;
+use super::numbers::floats;
+use super::view::PagePair;
+
+/// The bundled script; its sources are in `source/sweep.js` and the files that this imports.
+const SCRIPT: &str = include_str!("sweep.js");
+
+/// One curve, with a value for every position.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SweepCurve {
+    /// Name in the legend; empty for the only curve of a panel.
+    pub name: String,
+    /// Values; NaN where there is none.
+    #[serde(serialize_with = "floats")]
+    pub values: Vec<f64>,
+    /// Indices of positions after which the contact jumps: no line connects them with the next one.
+    pub jumps: Vec<usize>,
+}
+
+/// The curves of one quantity.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SweepPanel {
+    /// Heading of the panel.
+    pub title: String,
+    /// Name of the axis, with its unit.
+    pub axis: String,
+    /// The curves.
+    pub curves: Vec<SweepCurve>,
+}
+
+/// Rail and wheel of one side at all positions, in the axes of the rail's profile: x to the field side.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SweepSide {
+    /// Whether this is the right-hand side.
+    pub right: bool,
+    /// Index of its profiles in the page's pairs.
+    pub pair: usize,
+    /// The rail profile's origin \[mm\]: distance from the middle of the track, and height over the top of rail.
+    pub rail: [f64; 2],
+    /// Of every position in turn x, z \[mm\] and angle \[rad\], counter-clockwise, of the wheel profile's axes; NaN where the
+    /// wheel touches nothing.
+    #[serde(serialize_with = "floats")]
+    pub places: Vec<f64>,
+    /// Index of the position of every contact.
+    pub position: Vec<usize>,
+    /// Abscissa \[mm\] of every contact on the rail's profile.
+    #[serde(serialize_with = "floats")]
+    pub rail_x: Vec<f64>,
+    /// Abscissa \[mm\] of every contact on the wheel's profile.
+    #[serde(serialize_with = "floats")]
+    pub wheel_x: Vec<f64>,
+}
+
+/// The page of a sweep.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SweepPage {
+    /// Title of the scene.
+    pub title: String,
+    /// A line below the title.
+    pub about: String,
+    /// Version of this program.
+    pub version: String,
+    /// Name of the abscissa, with its unit.
+    pub abscissa: String,
+    /// Lateral displacements \[mm\], ascending.
+    #[serde(serialize_with = "floats")]
+    pub lateral: Vec<f64>,
+    /// The panels of curves.
+    pub panels: Vec<SweepPanel>,
+    /// The profiles of the sides.
+    pub pairs: Vec<PagePair>,
+    /// Left and right side.
+    pub sides: Vec<SweepSide>,
+}
+
+impl SweepPage {
+    /// Returns the page as HTML. Its size is that of the script, some 20 kB, and 16/3 bytes for every number of an array.
+    pub fn html(&self) -> Vec<u8> {
+        document(&self.title, self, SCRIPT)
+    }
+}
