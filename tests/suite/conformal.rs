@@ -33,7 +33,7 @@ const BOUNDS: [Bound; 4] = [
     Bound { grid: false, skewed: false, relative: 2.5e-15, absolute: 6e-15 },
     Bound { grid: false, skewed: true, relative: 2.5e-15, absolute: 6e-15 },
     Bound { grid: true, skewed: false, relative: 2.5e-15, absolute: 6e-15 },
-    Bound { grid: true, skewed: true, relative: 8e-14, absolute: 6e-15 },
+    Bound { grid: true, skewed: true, relative: 8e-14, absolute: 2.5e-14 },
 ];
 
 /// Largest error of α \[rad\] and of (ξ, ζ) \[mm\].
