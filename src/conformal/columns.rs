@@ -7,9 +7,10 @@ use rayon::prelude::*;
 
 use super::arc_length::RailPoint;
 use super::gap::NormalGap;
-use super::ray::{Ray, RaySpan};
+use super::ray::RayBodies;
+use super::span::{RayPoints, RaySpan, Reach, point, points};
 use crate::numerics::chebyshev::{self, extrema, powers, unit_nodes};
-use crate::numerics::lanes::{Lanes, MANY, lanes, largest, smallest};
+use crate::numerics::lanes::{Lanes, MANY, every, lanes, largest, smallest};
 use crate::numerics::nan_max;
 use crate::separation::{
     ColumnPolynomial, Demand, EtaAxis, MOST_COEFFICIENTS, ROUNDING_LEVEL, SMALL_SHARE, SpanRun, interpolate,
@@ -69,12 +70,6 @@ struct Columns<'g, 'a> {
     error: f64,
 }
 
-/// The run of e over a span, and the range of u \[mm²\] that its polynomial is evaluated over.
-struct Reach {
-    run: f64,
-    u: [f64; 2],
-}
-
 impl<'g, 'a> Columns<'g, 'a> {
     fn new(gap: &'g NormalGap<'a>, axis: &'g EtaAxis, demand: Demand) -> Self {
         Self { gap, axis, demand, arch: pulp::Arch::new(), count: FIRST_COUNT, error: 0.0 }
@@ -92,23 +87,15 @@ impl<'g, 'a> Columns<'g, 'a> {
 
     /// Fills a column of a wheel without skew.
     fn plain(&mut self, at: &RailPoint, out: &mut [f64]) {
-        let ray = self.gap.bodies.ray(at, 0.0);
-        let (Some(mut spans), reach) = (ray.spans(), self.axis.reach) else { return };
+        let (mut next, reach) = (RaySpan::first(&self.gap.bodies.ray(at, 0.0)), self.axis.reach);
         let mut from = 0.0;
-        loop {
-            let span = spans.here();
-            let Some(Reach { run, u }) = reach_of(&ray, &span, from, reach) else { return };
+        while let Some(span) = next {
+            let Reach { run, u } = span.reach(from, reach);
             if u[1] > u[0] || u[0] == 0.0 {
-                self.over_span(&ray, &span, run, u, out);
+                self.over_span(&span, run, u, out);
             }
             from = u[1];
-            if from >= reach * reach {
-                break;
-            }
-            match spans.next() {
-                Some(next) => spans = next,
-                None => break,
-            }
+            next = if from < reach * reach { span.next() } else { None };
         }
         if self.axis.symmetric {
             mirror(out, self.axis.first_positive);
@@ -116,8 +103,8 @@ impl<'g, 'a> Columns<'g, 'a> {
     }
 
     /// Evaluates one span between two u \[mm²\], by its polynomial or else point by point.
-    fn over_span(&mut self, ray: &Ray<'_>, span: &RaySpan<'_>, run: f64, u: [f64; 2], out: &mut [f64]) {
-        let fitter = Fit { ray, span, run, demand: self.demand, least: self.count };
+    fn over_span(&mut self, span: &RaySpan<'_>, run: f64, u: [f64; 2], out: &mut [f64]) {
+        let fitter = Fit { span, run, demand: self.demand, least: self.count };
         let fit = self.arch.dispatch(fitter);
         if let Some(fit) = &fit {
             self.count = fit.n;
@@ -131,7 +118,7 @@ impl<'g, 'a> Columns<'g, 'a> {
                 }
                 None => {
                     for k in range {
-                        let point = ray.at(self.axis.eta()[k]).point_over(span);
+                        let point = span.point_at(self.axis.eta()[k]);
                         out[k] = point.map_or(f64::NAN, |point| point.t);
                     }
                 }
@@ -167,7 +154,7 @@ impl<'g, 'a> Columns<'g, 'a> {
 
     fn singly(&self, at: &RailPoint, eta: &[f64], out: &mut [f64]) {
         for (t, &eta) in out.iter_mut().zip(eta) {
-            *t = self.gap.bodies.ray(at, eta).point().map_or(f64::NAN, |point| point.t);
+            *t = point(&self.gap.bodies.ray(at, eta)).map_or(f64::NAN, |point| point.t);
         }
     }
 
@@ -176,52 +163,16 @@ impl<'g, 'a> Columns<'g, 'a> {
     fn interpolated(&mut self, at: &RailPoint, eta: &[f64], out: &mut [f64]) -> Option<[f64; 2]> {
         let (a, b) = (*eta.first()?, *eta.last()?);
         let interval = [a + (b - a) / 2.0, (b - a) / 2.0];
-        let nodes = &*chebyshev::NODES;
-        let (mut t, mut abscissae) = ([0.0; MANY], [0.0; MANY]);
-        let first = self.gap.bodies.ray(at, interval[0]).point()?;
-        for k in 0..MANY {
-            let point = self.gap.bodies.ray(at, interval[0] + interval[1] * nodes[k]).point()?;
-            if (point.branch, point.over_contact) != (first.branch, first.over_contact) {
-                return None;
-            }
-            (t[k], abscissae[k]) = (point.t, point.abscissa);
-        }
-        // The abscissa is nearly a parabola in η: a turn between two points moves it by less than the step between others.
-        let margin = abscissae.windows(2).fold(0.0, |most: f64, pair| most.max((pair[1] - pair[0]).abs()));
-        let [low, high] = self.gap.bodies.wheel.section.branches[first.branch].xi;
-        if !abscissae.iter().all(|x| low + margin <= *x && *x <= high - margin) {
-            return None;
-        }
-        let size = largest(&t);
-        let rounding = if first.over_contact { ROUNDING_LEVEL * size } else { self.gap.bodies.rounding() };
-        let allowed = self.demand.absolute.min(self.demand.relative * size);
-        let work = Interpolation { t: &t, interval, demand: [allowed, rounding], eta, out };
-        let dropped = self.arch.dispatch(work)?;
+        let bodies = &self.gap.bodies;
+        let (dropped, least, most) =
+            self.arch.dispatch(Interpolation { bodies, at, interval, demand: self.demand, eta, out })?;
         self.error = self.error.max(dropped);
-        Some([smallest(&t), size])
+        Some([least, most])
     }
-}
-
-/// Finds how far a span reaches; `None` where the ray misses its end. `from` is the u \[mm²\] at which the previous span ended.
-fn reach_of(ray: &Ray<'_>, span: &RaySpan<'_>, from: f64, eta: f64) -> Option<Reach> {
-    let begin = span.e[0] * (2.0 * span.w + span.e[0]);
-    let begin = if span.from > span.e[0] { from.max(begin) } else { begin };
-    // Two spans meet at one joint, in spite of rounding.
-    let begin = if span.from == span.e[0] && from > 0.0 { from } else { begin };
-    if span.e[1].is_finite() {
-        let t = ray.t_over(span, span.e[1]);
-        let w = ray.axle_distance(t);
-        let end = span.e[1] * (2.0 * w + span.e[1]);
-        if w > 0.0 && end < eta * eta {
-            return Some(Reach { run: span.e[1] - span.e[0], u: [begin, end.max(begin)] });
-        }
-    }
-    Some(Reach { run: ray.sagitta_near(span, eta) - span.e[0], u: [begin, eta * eta] })
 }
 
 /// The fit of one span. The work is compiled for each kind of machine.
 struct Fit<'f, 'a> {
-    ray: &'f Ray<'a>,
     span: &'f RaySpan<'a>,
     /// e at the end less e at the beginning \[mm\].
     run: f64,
@@ -249,16 +200,15 @@ impl Fit<'_, '_> {
     /// error is above the demand.
     #[inline(always)]
     fn attempt<const N: usize>(&self, n: usize) -> Option<ColumnPolynomial> {
-        let Self { ray, span, run, demand, .. } = *self;
-        let e0 = span.e[0];
+        let Self { span, run, demand, .. } = *self;
         // The nodes, then places between nodes, then the end.
         let (nodes, between) = (unit_nodes(n), extrema(n));
         let runs: Lanes<N> = lanes(|k| {
             let inner = if k < n { nodes.get(k) } else { between.get(k - n) };
             run * inner.copied().unwrap_or(1.0)
         });
-        let [runs, rise] = ray.rises_by(span, &runs)?;
-        let v = ray.u_above(span, &runs, &rise);
+        let [runs, rise] = span.rises_by(&runs)?;
+        let v = span.u_above(&runs, &rise);
         let (mut places, mut q) = ([[0.0; 1]; MOST_COEFFICIENTS], [[0.0; 1]; MOST_COEFFICIENTS]);
         for k in 0..n {
             (places[k], q[k]) = ([v[k]], [rise[k] / v[k]]);
@@ -267,10 +217,10 @@ impl Fit<'_, '_> {
         let value = |k: usize| q[..n].iter().rev().fold(0.0, |sum, [q]| sum * v[k] + q);
         let error = (n..N).map(|k| (value(k) * v[k] - rise[k]).abs()).fold(0.0, nan_max);
         // The comparison is false for an error that is NaN.
-        if error <= demand.allowed(rise[N - 1], e0) {
+        if error <= demand.allowed(rise[N - 1], span.e0()) {
             return Some(ColumnPolynomial {
-                base: span.t,
-                u0: e0 * (2.0 * span.w + e0),
+                base: span.base(),
+                u0: span.u0(),
                 c: *q.as_flattened().first_chunk()?,
                 n,
                 error,
@@ -280,20 +230,38 @@ impl Fit<'_, '_> {
     }
 }
 
-/// Interpolation of a skewed column. The work is compiled for each kind of machine.
-struct Interpolation<'w> {
-    t: &'w Lanes,
+/// Interpolation of a part of a skewed column. The work is compiled for each kind of machine.
+struct Interpolation<'w, 'a> {
+    bodies: &'w RayBodies<'a>,
+    at: &'w RailPoint,
+    /// Centre and half the length of the interval of η \[mm\].
     interval: [f64; 2],
-    demand: [f64; 2],
+    demand: Demand,
     eta: &'w [f64],
     out: &'w mut [f64],
 }
 
-impl pulp::WithSimd for Interpolation<'_> {
-    type Output = Option<f64>;
+impl pulp::WithSimd for Interpolation<'_, '_> {
+    type Output = Option<(f64, f64, f64)>;
 
+    /// Returns the sum of the dropped coefficients, and the least and the largest |t| at the Chebyshev points.
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, simd: S) -> Option<f64> {
-        interpolate(simd, self.t, self.interval, self.demand, self.eta, self.out)
+    fn with_simd<S: pulp::Simd>(self, simd: S) -> Option<(f64, f64, f64)> {
+        let Self { bodies, at, interval, demand, eta, out } = self;
+        let [centre, half] = interval;
+        let nodes = &*chebyshev::NODES;
+        let RayPoints { t, abscissae, piece, over_contact } =
+            points(bodies, at, &lanes(|k| centre + half * nodes[k]))?;
+        // The abscissa is nearly a parabola in η: a turn between two points moves it by less than the step between others.
+        let margin = abscissae.windows(2).fold(0.0, |most: f64, pair| most.max((pair[1] - pair[0]).abs()));
+        let [low, high] = [piece[0] + margin, piece[1] - margin];
+        if !every::<MANY>(|k| low <= abscissae[k] && abscissae[k] <= high) {
+            return None;
+        }
+        let size = largest(&t);
+        let rounding = if over_contact { ROUNDING_LEVEL * size } else { bodies.rounding() };
+        let allowed = demand.absolute.min(demand.relative * size);
+        let dropped = interpolate(simd, &t, interval, [allowed, rounding], eta, out)?;
+        Some((dropped, smallest(&t), size))
     }
 }

@@ -6,7 +6,8 @@
 //! |---|---|
 //! | the rail by its arc length σ | `arc_length`: [`RailArcLength`] |
 //! | where a line meets a segment of the wheel's profile | `meeting` |
-//! | the line along the normal and its column over the wheel | `ray` |
+//! | the line along the normal, and several of one σ at once | `ray`, `rays` |
+//! | the spans of a line's column over the wheel | `span` |
 //! | t, α and both normals at single points | `gap`: [`NormalGap`] |
 //! | t(σ, ·) as polynomials, grids | `columns`: [`fill_normal_gap`] |
 //! | the patch t < δ cos α | `patch`: [`ConformalPatch`] |
@@ -18,7 +19,9 @@ mod gap;
 mod meeting;
 mod patch;
 mod ray;
+mod rays;
 mod reference;
+mod span;
 
 pub use arc_length::{RailArcLength, RailPoint};
 pub use columns::fill_normal_gap;

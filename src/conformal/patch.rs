@@ -71,21 +71,22 @@ impl ConformalPatch {
         let depth =
             |sigma: f64| lowest(gap, approach, window.eta, sigma).map_or(f64::NAN, |[_, depth]| depth);
         let inside = |sigma: f64| depth(sigma) < 0.0;
-        let mut begin = inside(from).then_some(from);
+        // Where a part begins, and whether that is a tip.
+        let mut begin = inside(from).then_some((from, false));
         for pair in places.windows(2) {
             let (here, there) = (inside(pair[0]), inside(pair[1]));
             if here != there {
                 let tip = bracketed(depth, pair[0], pair[1]);
-                // The wheel's surface ends between the two.
-                let tip = tip.unwrap_or(if here { pair[0] } else { pair[1] });
+                // Without a root the wheel's surface ends between the two.
+                let end = (tip.unwrap_or(if here { pair[0] } else { pair[1] }), tip.is_some());
                 match begin.take() {
-                    Some(begin) => patch.add(gap, window, [begin, tip]),
-                    None => begin = Some(tip),
+                    Some(begin) => patch.add(gap, window, [begin, end]),
+                    None => begin = Some(end),
                 }
             }
         }
         if let Some(begin) = begin {
-            patch.add(gap, window, [begin, to]);
+            patch.add(gap, window, [begin, (to, false)]);
         }
         patch
     }
@@ -95,13 +96,13 @@ impl ConformalPatch {
         self.components.iter().map(|component| component.area).sum()
     }
 
-    /// Adds the part over an interval of σ.
-    fn add(&mut self, gap: &NormalGap<'_>, window: &Window, sigma: [f64; 2]) {
+    /// Adds the part between two σ, each with whether it is a tip.
+    fn add(&mut self, gap: &NormalGap<'_>, window: &Window, ends: [(f64, bool); 2]) {
+        let (sigma, round) = (ends.map(|end| end.0), ends.map(|end| end.1));
         let slice = |sigma: f64| conformal_slice(gap, self.approach, window.eta, sigma);
-        let at_window = [0, 1].map(|end| slice(sigma[end]).is_some_and(|s| s.eta[1] > s.eta[0]));
-        let grading = Grading { xi: sigma, round: at_window.map(|cut| !cut) };
+        let grading = Grading { xi: sigma, round };
         let mut rows = Vec::with_capacity(POINTS_PER_SIDE);
-        let mut cut = at_window.contains(&true);
+        let mut cut = round.contains(&false);
         let mut eta = [f64::INFINITY, f64::NEG_INFINITY];
         let mut angle = eta;
         for k in 0..POINTS_PER_SIDE {

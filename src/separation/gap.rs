@@ -87,7 +87,7 @@ fn curvature_difference(wheel_radius: f64, rail_radius: f64) -> f64 {
 
 /// Computes ζ^W(ξ + `shift`) − ζ^R(ξ) \[mm\] for a skewed wheel over both contact segments. It is the gap at ξ plus the
 /// wheel's rise from there; neither cancels.
-pub(crate) fn skewed_gap(rail: &Branch, wheel: &Branch, xi: f64, shift: f64) -> f64 {
+pub(super) fn skewed_gap(rail: &Branch, wheel: &Branch, xi: f64, shift: f64) -> f64 {
     let inside = |x: f64| x >= wheel.xi[0] && x <= wheel.xi[1];
     if !inside(xi) {
         return wheel.height(xi + shift) - rail.height(xi);

@@ -20,16 +20,20 @@ const MOST_SLACK: f64 = 4.0;
 /// A way to compute t and the bounds it is held to.
 struct Bound {
     grid: bool,
+    skewed: bool,
     /// Largest relative error of t where the point lies over both contact segments.
     relative: f64,
     /// Largest absolute error elsewhere \[mm\], × max(1, R_max/300 mm).
     absolute: f64,
 }
 
-/// Single points, and whole grids by polynomials.
-const BOUNDS: [Bound; 2] = [
-    Bound { grid: false, relative: 2.5e-15, absolute: 6e-15 },
-    Bound { grid: true, relative: 6e-15, absolute: 6e-15 },
+/// Single points, and whole grids by polynomials. An interpolated skewed column has the accuracy of its largest t in an interval,
+/// and t may fall to a 64th of that.
+const BOUNDS: [Bound; 4] = [
+    Bound { grid: false, skewed: false, relative: 2.5e-15, absolute: 6e-15 },
+    Bound { grid: false, skewed: true, relative: 2.5e-15, absolute: 6e-15 },
+    Bound { grid: true, skewed: false, relative: 2.5e-15, absolute: 6e-15 },
+    Bound { grid: true, skewed: true, relative: 8e-14, absolute: 2.5e-14 },
 ];
 
 /// Largest error of α \[rad\] and of (ξ, ζ) \[mm\].
@@ -88,10 +92,12 @@ fn references() -> Vec<(String, Values)> {
 
 #[test]
 fn the_normal_gap_keeps_its_digits() {
-    for Bound { grid, relative: bound, absolute } in BOUNDS {
+    for Bound { grid, skewed, relative: bound, absolute } in BOUNDS {
         assert!(bound <= PROMISED_RELATIVE && absolute <= PROMISED_ABSOLUTE);
         let (mut relative, mut elsewhere, mut over, mut others) = (0f64, 0f64, 0, 0);
-        for (name, values) in references() {
+        for (name, values) in
+            references().into_iter().filter(|(_, values)| (values.scene.chi != 0.0) == skewed)
+        {
             let placement = values.scene.placement().expect("a placement");
             let gap = NormalGap::new(&placement);
             for (row, found) in values.normal_gap.iter().zip(values.found(&gap, grid)) {
@@ -113,10 +119,15 @@ fn the_normal_gap_keeps_its_digits() {
                 }
             }
         }
-        println!("grid {grid}: relative {relative:e} at {over} points, {elsewhere:e} mm at {others}");
-        assert!(over > 150 && others > 150, "{over} {others}");
-        assert!(relative * MOST_SLACK >= bound, "tighten grid {grid}: relative {relative:e}");
-        assert!(elsewhere * MOST_SLACK >= absolute, "tighten grid {grid}: absolute {elsewhere:e}");
+        println!(
+            "grid {grid} skewed {skewed}: relative {relative:e} at {over} points, {elsewhere:e} mm at {others}"
+        );
+        assert!(over > 80 && others > 15, "{over} {others}");
+        assert!(relative * MOST_SLACK >= bound, "tighten grid {grid} skewed {skewed}: relative {relative:e}");
+        assert!(
+            elsewhere * MOST_SLACK >= absolute,
+            "tighten grid {grid} skewed {skewed}: absolute {elsewhere:e}"
+        );
     }
 }
 
@@ -330,8 +341,10 @@ fn a_conformal_patch_has_its_tips_where_the_gap_is_closed() {
     assert!(ConformalPatch::new(&gap, delta, &small).components[0].cut);
 }
 
-const CORNER: &str = "rail.profile = \"60E1\"\nwheel = { profile = \"S1002\", radius = 460.0 }\n\
-                      contact = { rail_x = -32.5, wheel_x = -36.5 }\npatch = { approach = 0.08 }\n";
+/// A gauge corner of 13 mm in a root of 14.5 mm.
+const CORNER: &str = "rail.segments = [{ arc = { center = [0.0, -13.0], radius = 13.0, half = \"upper\", x = [-12.0, 12.0] } }]\n\
+                      wheel = { radius = 460.0, segments = [{ arc = { center = [0.0, -14.5], radius = 14.5, half = \"upper\", \
+                      x = [-13.5, 13.5] } }] }\ncontact = { rail_x = 0.0, wheel_x = 0.0 }\npatch = { approach = 0.08 }\n";
 
 fn case(rest: &str) -> wheelrail::Result<Run> {
     let scene: Scene = scene::parse(&format!("{CORNER}{rest}"), false)?;

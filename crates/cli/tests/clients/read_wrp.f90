@@ -39,6 +39,7 @@ program read_wrp
     read(10, '(3e25.16)') station(3:5, i)
   end do
   do i = 1, n_xi
+    sigma = 0
     if (magic == 'CONFCURV') sigma = xi(i)
     do j = 1, n_eta
       read(10, '(i2,3e25.16)') m(j, i), place, s(j, i)

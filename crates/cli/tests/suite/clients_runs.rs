@@ -108,8 +108,9 @@ fn every_reader_reads_what_runs_write() {
 #[test]
 fn every_reader_reads_runs_over_the_rails_surface() {
     let grid = "[grid]\nreference = \"rail\"\n";
-    let corner = "[rail]\nprofile = \"60E1\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n\
-                  [contact]\nrail_x = -32.5\nwheel_x = -36.5\n[patch]\napproach = 0.08\n";
+    let corner = "[rail]\nsegments = [{ arc = { center = [0.0, -13.0], radius = 13.0, half = \"upper\", x = [-12.0, 12.0] } }]\n\
+                  [wheel]\nradius = 460.0\nsegments = [{ arc = { center = [0.0, -14.5], radius = 14.5, half = \"upper\", \
+                  x = [-13.5, 13.5] } }]\n[contact]\nrail_x = 0.0\nwheel_x = 0.0\n[patch]\napproach = 0.08\n";
     let wide = "xi = { from = -4.5, to = 9.0, n = 55 }\neta = { from = -12.0, to = 12.0, n = 49 }\n";
     let yawed = standard("60E1", "S1002", 6.0, "yaw = 0.01\n[patch]\nload = 60000.0\n");
     let scenes = [

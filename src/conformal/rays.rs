@@ -1,0 +1,121 @@
+//! N rays of one point of the rail, at N places along η, over one piece of the wheel's profile. A single ray is N = 1.
+
+use super::meeting::along;
+use super::ray::Ray;
+use crate::numerics::lanes::{Lanes, every, lanes};
+use crate::profile::{Branch, BranchPoints};
+use crate::separation::{contact_gap, sagitta};
+
+/// Most steps to the sagitta of a point. Each gains some three digits.
+const STEPS: usize = 40;
+
+/// Roundings of the sagitta below which its steps have settled.
+const SETTLED: f64 = 2.0;
+
+/// Where rays begin to follow a piece.
+#[derive(Debug, Clone, Copy)]
+pub struct Beginning<const N: usize> {
+    /// t \[mm\].
+    pub t: Lanes<N>,
+    /// Sagitta e \[mm\].
+    pub e: Lanes<N>,
+    /// The wheel's points.
+    pub points: BranchPoints<N>,
+    /// Whether they are above the midplane of both contact segments, from where t keeps all digits.
+    pub over_contact: bool,
+}
+
+/// Points of the wheel on rays.
+#[derive(Debug, Clone, Copy)]
+pub struct Met<const N: usize> {
+    /// t \[mm\].
+    pub t: Lanes<N>,
+    /// Sagitta e \[mm\].
+    pub e: Lanes<N>,
+    /// Axle distance w \[mm\].
+    pub w: Lanes<N>,
+}
+
+/// Finds where rays meet a piece in the wheel's own midplane, e = 0. Returns `None` where one misses it, and if N > 1 and not
+/// all have the accuracy of the contact segments or none.
+#[inline(always)]
+pub fn in_midplane<const N: usize>(rays: &[Ray<'_>; N], index: usize) -> Option<Beginning<N>> {
+    let (bodies, n) = (&rays[0].bodies, rays[0].n);
+    let piece = &rays[0].pieces()[index];
+    let branch = rays[0].branch(piece);
+    let rail = bodies.rail();
+    let inside = |x: f64| branch.xi[0] <= x && x <= branch.xi[1];
+    let on_contact = bodies.wheel.section.contact == Some(piece.branch);
+    let contact = rays[0].contact.zip(rail.contact).filter(|([xi, _], _)| on_contact && inside(*xi));
+    let over = contact.filter(|_| every::<N>(|k| inside(rays[k].p[0])));
+    if N > 1 && over.is_some() != contact.is_some() {
+        return None;
+    }
+    let above: Lanes<N> = lanes(|k| match over {
+        Some(_) => rays[k].p[0],
+        None => rays[k].p[0].max(piece.xi[0]).min(piece.xi[1]),
+    });
+    let (from, height) = branch.points(&above)?;
+    let apart: Lanes<N> = match over {
+        Some(([xi, _], r)) => {
+            let (point, at) = branch.point(xi);
+            let gap = contact_gap(&rail.branches[r], branch, xi, at);
+            let slope =
+                if bodies.is_skewed() { branch.chords_from(&point.repeated(), &above)? } else { [0.0; N] };
+            lanes(|k| gap + rays[k].contact.map_or(f64::NAN, |[_, shift]| shift) * slope[k])
+        }
+        None => lanes(|k| height[k] - rays[k].p[1]),
+    };
+    let v0: [Lanes<N>; 2] = [lanes(|k| rays[k].p[0] - above[k]), lanes(|k| -apart[k])];
+    let t = along(branch, &from, [&v0[0], &v0[1]], n)?;
+    if !every::<N>(|k| t[k].is_finite()) {
+        return None;
+    }
+    let (points, _) = branch.points(&lanes(|k| rays[k].p[0] + t[k] * n[0]))?;
+    Some(Beginning { t, e: [0.0; N], points, over_contact: over.is_some() })
+}
+
+/// Finds where the columns of rays enter a piece at its near end. Returns `None` unless all of them do.
+#[inline(always)]
+pub fn at_joint<const N: usize>(rays: &[Ray<'_>; N], index: usize) -> Option<Beginning<N>> {
+    let [near, _] = rays[0].sides();
+    let piece = &rays[0].pieces()[index];
+    let (begin, zeta) = piece.ends[near];
+    let e: Lanes<N> = lanes(|k| rays[k].passes(index, near));
+    if !every::<N>(|k| e[k].is_finite()) {
+        return None;
+    }
+    let t = lanes(|k| rays[k].t_through([piece.xi[near], zeta], e[k]));
+    Some(Beginning { t, e, points: begin.repeated(), over_contact: false })
+}
+
+/// Finds the points of the wheel at the rays' own η′ over a branch. Returns `None` where a ray misses the branch or its steps
+/// do not settle.
+///
+/// Method: the sagitta from t and t from the sagitta in turn.
+#[inline(always)]
+pub fn meet<const N: usize>(rays: &[Ray<'_>; N], branch: &Branch, begin: &Beginning<N>) -> Option<Met<N>> {
+    let (wheel, n) = (&rays[0].bodies.wheel, rays[0].n);
+    let (mut t, mut e) = (begin.t, begin.e);
+    let mut w: Lanes<N> = lanes(|k| rays[k].axle_distance(t[k]));
+    for _ in 0..STEPS {
+        let next: Lanes<N> = lanes(|k| {
+            let eta = rays[k].eta_at(t[k]);
+            sagitta(w[k], eta * eta)
+        });
+        let steps: Lanes<N> = lanes(|k| (next[k] - e[k]).abs());
+        e = next;
+        let v0: [Lanes<N>; 2] =
+            [lanes(|k| -(e[k] - begin.e[k]) * wheel.sin), lanes(|k| -(e[k] - begin.e[k]) * wheel.cos)];
+        let rise = along(branch, &begin.points, [&v0[0], &v0[1]], n)?;
+        t = lanes(|k| begin.t[k] + rise[k]);
+        w = lanes(|k| rays[k].axle_distance(t[k]));
+        if !every::<N>(|k| t[k].is_finite()) {
+            return None;
+        }
+        if every::<N>(|k| steps[k] <= SETTLED * f64::EPSILON * e[k]) {
+            return every::<N>(|k| w[k] > 0.0).then_some(Met { t, e, w });
+        }
+    }
+    None
+}
