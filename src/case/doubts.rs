@@ -1,7 +1,7 @@
 //! What is possible in a result but seldom meant: each doubt with its number and its likely cause.
 
-use super::input::Place;
-use super::run::{Part, Run};
+use super::input::{Case, Place};
+use super::site::Site;
 use crate::placement::Placement;
 use crate::profile::trace;
 
@@ -24,16 +24,15 @@ const FLANGE: f64 = 10.0;
 const TIP: f64 = 2.0;
 
 /// Lists what is doubtful about a contact and its approach.
-pub(super) fn doubts_of(part: &Part) -> Vec<String> {
-    let placement = &part.site.contact.placement;
-    [flange(placement), approach(part), rolling_radius(placement)].into_iter().flatten().collect()
+pub(super) fn doubts_of(site: &Site) -> Vec<String> {
+    let placement = &site.contact.placement;
+    [flange(placement), approach(site), rolling_radius(placement)].into_iter().flatten().collect()
 }
 
 /// Lists what is doubtful about the way that bodies are placed.
-pub(super) fn doubts_of_placing(run: &Run) -> Vec<String> {
-    let Place::Points { .. } = run.case.standing.place else { return Vec::new() };
-    let Some(part) = run.parts.first() else { return Vec::new() };
-    let placement = &part.site.contact.placement;
+pub(super) fn doubts_of_placing(case: &Case, site: &Site) -> Vec<String> {
+    let Place::Points { .. } = case.standing.place else { return Vec::new() };
+    let placement = &site.contact.placement;
     let angles = [placement.rail(), placement.wheel()].map(|body| body.contact_angle().to_degrees());
     let tilt = angles[0] - angles[1];
     let text = format!(
@@ -64,12 +63,12 @@ fn flange(placement: &Placement) -> Option<String> {
     ))
 }
 
-fn approach(part: &Part) -> Option<String> {
-    let (approach, _) = part.site.contact.approach?;
+fn approach(site: &Site) -> Option<String> {
+    let (approach, _) = site.contact.approach?;
     if approach <= LARGE_APPROACH {
         return None;
     }
-    let marks = trace(part.site.contact.placement.rail().profile(), 1.0);
+    let marks = trace(site.contact.placement.rail().profile(), 1.0);
     let heights = || marks.iter().map(|mark| mark.station.z);
     let height = heights().fold(f64::NEG_INFINITY, f64::max) - heights().fold(f64::INFINITY, f64::min);
     let beyond = if approach > height { ", more than the rail's profile is high" } else { "" };

@@ -105,7 +105,8 @@ impl Run {
     /// Lists what a user should know before using the files.
     pub fn warnings(&self) -> Vec<String> {
         let mut out = self.case.doubts.clone();
-        out.extend(doubts_of_placing(self));
+        let first = self.parts.first();
+        out.extend(first.into_iter().flat_map(|part| doubts_of_placing(&self.case, &part.site)));
         for (side, profiles) in self.case.profiles.sides() {
             let findings = profiles.measured.iter().flatten().flat_map(|record| &record.warnings);
             let place = side.map_or_else(String::new, |side| format!("{side} side: "));
@@ -169,7 +170,7 @@ impl Part {
                 "the separation's estimated error, {error:.1e} mm, is above grid.tolerance, {tolerance:e} mm"
             ));
         }
-        out.extend(doubts_of(self));
+        out.extend(doubts_of(&self.site));
         out
     }
 }
