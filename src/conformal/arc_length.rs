@@ -2,11 +2,15 @@
 
 use crate::numerics::polynomial::value_and_slope;
 use crate::numerics::quadrature::smooth_integrals;
+use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
 use crate::profile::{ArcBranch, Branch, BranchShape, ONE_JOINT, PolynomialBranch, Station};
 
 /// Relative accuracy demanded of the arc length of a polynomial: rounding.
 const LENGTH_DEMAND: f64 = 1e-15;
+
+/// Longest part of a polynomial, as a share of its range, whose length is tried with few nodes first.
+const SHORT: f64 = 0.1;
 
 /// Most Newton steps to the parameter of an arc length. Each doubles the digits; more are needed only where a polynomial is
 /// nearly vertical in its parameter.
@@ -129,7 +133,7 @@ impl<'a> RailArcLength<'a> {
     pub fn sigma(&self, xi: f64) -> f64 {
         let Some([low, high]) = self.reach() else { return f64::NAN };
         let across = |sigma: f64| self.point(sigma).map_or(f64::NAN, |point| point.xi - xi);
-        crate::numerics::roots::bracketed(across, low, high).unwrap_or(f64::NAN)
+        bracketed(across, low, high).unwrap_or(f64::NAN)
     }
 }
 
@@ -175,7 +179,7 @@ fn arc_length(arc: &ArcBranch, from: &Station, far: f64) -> f64 {
 fn run_length(branch: &PolynomialBranch, [a, b]: [f64; 2]) -> f64 {
     let [low, high] = if a <= b { [a, b] } else { [b, a] };
     let mut speed = |t: f64| [value_and_slope(&branch.xi, t)[1].hypot(value_and_slope(&branch.zeta, t)[1])];
-    let short = high - low <= 0.1 * (branch.t[1] - branch.t[0]);
+    let short = high - low <= SHORT * (branch.t[1] - branch.t[0]);
     let [length] = smooth_integrals(&mut speed, [low, high], [LENGTH_DEMAND], short);
     if a <= b { length } else { -length }
 }

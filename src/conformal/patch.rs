@@ -1,7 +1,7 @@
 //! The conformal patch t < δ cos α(σ), over the rail's surface unrolled by σ.
 
 use super::gap::NormalGap;
-use crate::numerics::roots::bracketed;
+use crate::numerics::roots::{bracketed, last_where};
 use crate::patch::{Grading, Window};
 
 /// Least number of equal steps of σ over the window in which parts of the patch are looked for.
@@ -178,7 +178,7 @@ pub fn conformal_slice(
         cut = true;
         if at_end.is_nan() {
             let on_wheel = |eta: f64| beyond(eta) <= 0.0;
-            return crate::numerics::roots::last_where(on_wheel, middle, end);
+            return last_where(on_wheel, middle, end);
         }
         end
     });
