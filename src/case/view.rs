@@ -210,3 +210,23 @@ fn with_minus(text: &str) -> String {
     };
     text.char_indices().map(mark).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_get_a_minus_sign_and_words_keep_their_hyphens() {
+        assert_eq!(with_minus("(-12.5, 0.1) mm"), "(\u{2212}12.5, 0.1) mm");
+        assert_eq!(with_minus("report-newton, ± 6e-15 mm"), "report-newton, ± 6e\u{2212}15 mm");
+        assert_eq!(with_minus("half-space"), "half-space");
+    }
+
+    #[test]
+    fn axes_of_a_page_pass_through_c_where_it_is_inside() {
+        let around = through_zero([-1.0, 2.1], 32);
+        assert!(around.len() == 32 && around.contains(&0.0), "{around:?}");
+        assert!((around[0] + 1.0).abs() < 0.1 && (around[31] - 2.1).abs() < 0.1, "{around:?}");
+        assert_eq!(through_zero([3.0, 4.0], 3), [3.0, 3.5, 4.0]);
+    }
+}
