@@ -1,14 +1,12 @@
 //! Which files a run writes, and from what.
 
 use std::io::Write;
-use std::sync::atomic::{AtomicUsize, Ordering};
-
-use nalgebra::{Unit, Vector3};
-use rayon::prelude::*;
 
 use super::drawn::{Drawn, loops_of};
+use super::elements::{elements, surface_mesh, surfaces_around, triangles};
 use super::in_place::write_in_place;
 use super::input::{OutputFormat, Outputs};
+use super::jobs::{Job, bytes, possible, stream, write_jobs};
 use super::on_rail::OnRail;
 use super::run::{COMPUTING, Part, Run, Tell};
 use super::summary::{Meshes, summary};
@@ -16,24 +14,20 @@ use super::view::view;
 use crate::error::{Error, Result};
 use crate::export::{
     ContactSettings, CurvedDeck, CurvedFields, Deck, Frame, GridFields, Header, Interval, Loop, NetCdf,
-    PatchMesh, PatchPicture, Prescribed, QuadMesh, SurfaceMesh, VIEW_SCRIPT, array_npy, boundary_csv,
-    boundary_vtp, conform_curved_wrp, conform_wrp, conformal_vts, contact_curved_inp, contact_inp,
-    countact_wrp, interpen_csv, interpen_sigma_csv, patch_inp, patch_msh, patch_vtu, rail_vts,
-    separation_vtk, separation_vts, separation_wrp, strips_vtu, surface_stl, surface_vtp, surface_vtu,
+    PatchPicture, Prescribed, QuadMesh, VIEW_SCRIPT, array_npy, boundary_csv, boundary_vtp,
+    conform_curved_wrp, conform_wrp, conformal_vts, contact_curved_inp, contact_inp, countact_wrp,
+    interpen_csv, interpen_sigma_csv, rail_vts, separation_vtk, separation_vts, separation_wrp, strips_vtu,
     wheel_vts,
 };
-use crate::files::{Folder, FolderPart};
-use crate::mesh::{StripMesh, Surface, TriangleMesh};
+use crate::files::Folder;
+use crate::mesh::StripMesh;
 use crate::patch::Outline;
-use crate::placement::{Creepages, Placement};
+use crate::placement::Creepages;
 use crate::profile::Station;
-use crate::separation::{Evaluator, Normals, midplane_table};
+use crate::separation::midplane_table;
 
 /// Turns a picture's SVG into PNG. The library draws no pixels: a caller who wants them brings this.
 pub type Rasterise = fn(&str) -> Result<Vec<u8>>;
-
-/// A file and the writer of its content.
-type Job<'a> = (&'static str, Box<dyn Fn(&FolderPart<'_>) -> Result<()> + Sync + Send + 'a>);
 
 /// Writes all files that a run's case asks for, part by part, and tells what it is at.
 ///
@@ -157,41 +151,6 @@ fn write_part(
     Ok(WrittenPart { folder: part.site.folder.clone(), files, summary })
 }
 
-/// Writes files on all threads, tells how many are done, and gives their names in order.
-fn write_jobs(jobs: &[Job<'_>], folder: &FolderPart<'_>, tell: impl Fn(usize) + Sync) -> Result<Vec<String>> {
-    let written = AtomicUsize::new(0);
-    jobs.par_iter().try_for_each(|(_, job)| {
-        job(folder)?;
-        tell(1 + written.fetch_add(1, Ordering::Relaxed));
-        Ok(())
-    })?;
-    let mut names: Vec<String> = jobs.iter().map(|(name, _)| (*name).to_string()).collect();
-    names.sort();
-    Ok(names)
-}
-
-/// Makes what files of these formats are written from, if any of them is asked for. What cannot be made (decks need
-/// equal steps) is an error where the formats are required, and a remark elsewhere.
-fn possible<T>(
-    outputs: &Outputs,
-    files: &str,
-    formats: &[OutputFormat],
-    content: impl FnOnce() -> Result<T>,
-    skipped: &mut Vec<String>,
-) -> Result<Option<T>> {
-    if !outputs.any(formats) {
-        return Ok(None);
-    }
-    match content() {
-        Ok(content) => Ok(Some(content)),
-        Err(Error { place, found, .. }) if !outputs.required => {
-            skipped.push(format!("{files}: {place} has {found}"));
-            Ok(None)
-        }
-        Err(error) => Err(error),
-    }
-}
-
 /// ζ^R and the rail's normal at every ξ of the grid.
 struct RailColumns {
     height: Vec<f64>,
@@ -305,100 +264,6 @@ fn pictures<'a>(
     Ok(())
 }
 
-/// Gives both bodies around the patch, if files with them are asked for; a grid of one row or column has none.
-fn surfaces_around(
-    outputs: &Outputs,
-    part: &Part,
-    skipped: &mut Vec<String>,
-) -> Result<Option<[Surface; 2]>> {
-    let names = "surfaces of rail and wheel";
-    if !part.site.has_extent() {
-        skipped.push(format!("{names}: the grid has no extent"));
-        return Ok(None);
-    }
-    let contact = &part.site.contact;
-    let approach = contact.approach.map(|(approach, _)| approach);
-    let surfaces = || Surface::around(&contact.placement, &part.site.window(), approach);
-    possible(outputs, names, &OutputFormat::SURFACES, surfaces, skipped)
-}
-
-/// Gives a body's surface as writers take it.
-fn surface_mesh(part: &Part, body: &Surface) -> SurfaceMesh {
-    SurfaceMesh {
-        points: body.points.clone(),
-        triangles: body.triangles(),
-        separation: body.separations(&part.site.contact.placement),
-        normals: body.normals.clone(),
-    }
-}
-
-/// Gives the triangle mesh of the patch with its fields, if files with it are asked for; `None` without an approach.
-fn triangles(run: &Run, part: &Part, skipped: &mut Vec<String>) -> Result<Option<PatchMesh>> {
-    let Some(patch) = &part.analysis.patch else { return Ok(None) };
-    let (outputs, placement) = (&run.case.outputs, &part.site.contact.placement);
-    let mesh = || {
-        let mesh = TriangleMesh::new(placement, patch, outputs.mesh_size)?;
-        let areas = patch.components.iter().map(|component| component.area).collect();
-        Ok(with_fields(placement, mesh, areas))
-    };
-    possible(outputs, "triangle mesh of the patch", &OutputFormat::TRIANGLES, mesh, skipped)
-}
-
-fn with_fields(placement: &Placement, mesh: TriangleMesh, areas: Vec<f64>) -> PatchMesh {
-    let mut evaluator = Evaluator::new(placement);
-    let zero = |normal: Option<Unit<Vector3<f64>>>| normal.map_or_else(Vector3::zeros, Unit::into_inner);
-    let (mut separation, mut rail_normals, mut wheel_normals) = (Vec::new(), Vec::new(), Vec::new());
-    for point in &mesh.points {
-        separation.push(evaluator.separation(point.x, point.y));
-        let Normals { rail, wheel } = evaluator.normals(point.x, point.y);
-        rail_normals.push(zero(rail));
-        wheel_normals.push(zero(wheel));
-    }
-    PatchMesh { mesh, separation, rail_normals, wheel_normals, areas }
-}
-
-/// Adds the files of triangles: of the patch, and of both bodies around it.
-fn elements<'a>(
-    jobs: &mut Vec<Job<'a>>,
-    outputs: &Outputs,
-    header: &'a Header,
-    patch: Option<&'a PatchMesh>,
-    bodies: Option<&'a [SurfaceMesh; 2]>,
-) {
-    let bodies = || bodies.into_iter().flatten();
-    if outputs.any(&[OutputFormat::Vtk]) {
-        for (name, body) in ["rail.vtu", "wheel.vtu"].into_iter().zip(bodies()) {
-            bytes(jobs, name, move || surface_vtu(header, body));
-        }
-        if let Some(patch) = patch {
-            bytes(jobs, "patch.vtu", move || patch_vtu(header, patch));
-        }
-    }
-    if outputs.any(&[OutputFormat::Vtp]) {
-        for (name, body) in ["rail.vtp", "wheel.vtp"].into_iter().zip(bodies()) {
-            bytes(jobs, name, move || surface_vtp(header, body));
-        }
-        if let Some(patch) = patch {
-            bytes(jobs, "patch.vtp", move || surface_vtp(header, &patch.surface()));
-        }
-    }
-    if outputs.any(&[OutputFormat::Stl]) {
-        for ((name, solid), body) in [("rail.stl", "rail"), ("wheel.stl", "wheel")].into_iter().zip(bodies())
-        {
-            bytes(jobs, name, move || surface_stl(solid, body));
-        }
-        if let Some(patch) = patch {
-            bytes(jobs, "patch.stl", move || surface_stl("patch", &patch.surface()));
-        }
-    }
-    if let (true, Some(patch)) = (outputs.any(&[OutputFormat::Gmsh]), patch) {
-        bytes(jobs, "patch.msh", move || patch_msh(header, patch));
-    }
-    if let (true, Some(patch)) = (outputs.any(&[OutputFormat::Abaqus]), patch) {
-        bytes(jobs, "patch.inp", move || patch_inp(header, patch));
-    }
-}
-
 fn surfaces<'a>(
     jobs: &mut Vec<Job<'a>>,
     header: &'a Header,
@@ -421,25 +286,6 @@ fn surfaces<'a>(
     }
     bytes(jobs, "boundary.vtp", move || boundary_vtp(header, loops));
     bytes(jobs, "view.py", || Ok(VIEW_SCRIPT.as_bytes().to_vec()));
-}
-
-/// Adds a small file, made in memory.
-fn bytes<'a>(
-    jobs: &mut Vec<Job<'a>>,
-    name: &'static str,
-    content: impl Fn() -> Result<Vec<u8>> + Sync + Send + 'a,
-) {
-    let content = move || content().map_err(|error| error.within(name));
-    jobs.push((name, Box::new(move |folder: &FolderPart<'_>| folder.write(name, &content()?))));
-}
-
-/// Adds a large file, written piece by piece.
-fn stream<'a>(
-    jobs: &mut Vec<Job<'a>>,
-    name: &'static str,
-    content: impl Fn(&mut dyn Write) -> std::io::Result<()> + Sync + Send + 'a,
-) {
-    jobs.push((name, Box::new(move |folder: &FolderPart<'_>| folder.stream(name, &content))));
 }
 
 fn decks<'a>(
