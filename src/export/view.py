@@ -50,8 +50,8 @@ view.OrientationAxesLabelColor = INK
 place = summary["contact_to_track"]
 columns = [[row[k] for row in place[:3]] for k in range(4)]
 back = [[*columns[k], -sum(a * b for a, b in zip(columns[k], columns[3]))] for k in range(3)] + [[0, 0, 0, 1]]
-for body, colour, opacity in [("rails", [0.70, 0.73, 0.76], 1.0), ("wheels", [0.35, 0.50, 0.70], 0.15)]:
-    _, display = shown(os.path.join(summary["wheelset_files"], f"{body}.vtp"), colour, opacity)
+for name, colour, opacity in [("rails.vtp", [0.70, 0.73, 0.76], 1.0), ("wheels.vtp", [0.35, 0.50, 0.70], 0.15)]:
+    _, display = shown(os.path.join(summary["wheelset_files"], name), colour, opacity)
     if display:
         display.UserTransform = [number for row in back for number in row]
 
