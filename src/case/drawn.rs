@@ -4,8 +4,8 @@ use nalgebra::Point3;
 
 use super::run::Part;
 use super::site::ends;
-use crate::export::{Frame, Header, Loop, Nodes, PatchPicture, SEPARATOR};
-use crate::mesh::equal_steps;
+use crate::export::{Frame, Header, Loop, Nodes, PatchPicture, QuadMesh, SEPARATOR};
+use crate::mesh::{StripMesh, equal_steps};
 use crate::patch::{Patch, Window};
 use crate::placement::Placement;
 use crate::profile::Section;
@@ -111,6 +111,16 @@ pub(super) fn loops_of(placement: &Placement, patch: &Patch) -> Vec<Loop> {
             Loop { component, points }
         })
         .collect()
+}
+
+/// Gives the boundary-fitted mesh as writers take it.
+pub(super) fn quads(strips: &StripMesh) -> QuadMesh {
+    QuadMesh {
+        points: strips.points.clone(),
+        quads: strips.cells.iter().map(|cell| cell.corners).collect(),
+        area: strips.cells.iter().map(|cell| cell.area).collect(),
+        component: strips.cells.iter().map(|cell| cell.component).collect(),
+    }
 }
 
 /// Tells the pictures of a run apart: by side and number of a contact that was found, or by the part of the patch.

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use super::drawn::{Drawn, loops_of};
+use super::drawn::{Drawn, loops_of, quads};
 use super::elements::{elements, surface_mesh, surfaces_around, triangles};
 use super::in_place::write_in_place;
 use super::input::{OutputFormat, Outputs};
@@ -20,7 +20,6 @@ use crate::export::{
     wheel_vts,
 };
 use crate::files::Folder;
-use crate::mesh::StripMesh;
 use crate::patch::Outline;
 use crate::placement::Creepages;
 use crate::profile::Station;
@@ -193,16 +192,6 @@ fn remarks(run: &Run, part: &Part) -> Vec<String> {
         ));
     }
     out
-}
-
-/// Gives the boundary-fitted mesh as writers take it.
-pub(super) fn quads(strips: &StripMesh) -> QuadMesh {
-    QuadMesh {
-        points: strips.points.clone(),
-        quads: strips.cells.iter().map(|cell| cell.corners).collect(),
-        area: strips.cells.iter().map(|cell| cell.area).collect(),
-        component: strips.cells.iter().map(|cell| cell.component).collect(),
-    }
 }
 
 /// Gives the boundary loops, lifted onto the rail: of every component the outer one, then those around its holes.

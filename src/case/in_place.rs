@@ -5,8 +5,7 @@
 
 use nalgebra::{Matrix4, Point3, Vector4};
 
-use super::drawn::loops_of;
-use super::files::quads;
+use super::drawn::{loops_of, quads};
 use super::input::{OutputFormat, Place};
 use super::run::{Part, Run};
 use crate::error::Result;

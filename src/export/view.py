@@ -87,7 +87,8 @@ for step, display in enumerate((surface, patch, line), start=1):
 found = summary["found"]
 words = [summary["title"]]
 if found:
-    words.append(f"{found['side']} side, contact {found['contact']}")
+    side = "" if found["side"] == "single" else f"{found['side']} side, "
+    words.append(f"{side}contact {found['contact']}")
 angle = math.degrees(summary["rail"]["contact_angle_rad"])
 words.append(f"contact angle {angle:.2f} deg, rolling radius {summary['rolling_radius_mm']:.2f} mm")
 words.append(f"delta = {delta:.4g} mm" if delta > 0 else "no approach, no patch")

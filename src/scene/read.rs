@@ -267,7 +267,7 @@ mod tests {
             (
                 "{\"grid\":\n{\"spacing\": \"fine\"}}",
                 true,
-                "line 2, column 20: found `{\"spacing\": \"fine\"}` up to there; expected a step in mm, or [Δξ, Δη];",
+                "line 2, column 19: found `{\"spacing\": \"fine\"}` up to there; expected a step in mm, or [Δξ, Δη];",
             ),
         ];
         for (text, json, expected) in cases {

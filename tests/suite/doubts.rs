@@ -33,7 +33,7 @@ fn slips_are_spoken_of_with_their_number() -> Result<()> {
         ),
         (pair("", "", "[contact]\noffset = 0.0\n[patch]\napproach = 1.5"), "an approach of 1.5000 mm: wheels and rails"),
         (pair("", "", "[contact]\noffset = 60.0\n[patch]\napproach = 0.05"), "stands on the tip of its flange"),
-        (pair("", "shift = [0.0, 20.0]", touching), "the rolling radius, 440."),
+        (pair("", "shift = [0.0, 20.0]", touching), "the rolling radius, 441."),
         (
             pair("", "", touching).replace(
                 "profile = \"60E1\"",

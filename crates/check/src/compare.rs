@@ -81,7 +81,7 @@ pub fn check(
 
 /// Returns the sharpest radius of both profiles \[mm\], at most an eighth of the wheel's: the radius of the
 /// closed forms.
-fn smallest_radius(placement: &Placement) -> f64 {
+pub(super) fn smallest_radius(placement: &Placement) -> f64 {
     let segments =
         [placement.rail(), placement.wheel()].into_iter().flat_map(|body| body.profile().segments());
     let radii = segments.filter_map(|segment| match &segment.shape {

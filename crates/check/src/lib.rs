@@ -12,6 +12,7 @@ mod closest;
 mod compare;
 mod floor;
 mod meshes;
+mod normal_gap;
 mod patch;
 mod points;
 mod ray;
@@ -22,6 +23,7 @@ mod sampler;
 
 pub use compare::check;
 pub use floor::Floor;
+pub use normal_gap::{NormalGapReport, NormalGapSample, check_normal_gap};
 pub use relation::RELATION;
 pub use report::{Counts, Differences, Distances, Orders, Report};
 pub use request::{Answer, Request};

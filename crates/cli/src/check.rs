@@ -5,10 +5,11 @@ use std::path::Path;
 use super::progress::Progress;
 use crate::answer::{Outcome, folder_of, outcome, print};
 use wheelrail::case::{Site, sites};
+use wheelrail::conformal::NormalGap;
 use wheelrail::error::Result;
 use wheelrail::scene;
 use wheelrail::separation::Evaluator;
-use wheelrail_check::{Answer, Report, Request, check as compare};
+use wheelrail_check::{Answer, NormalGapSample, Report, Request, check as compare, check_normal_gap};
 
 /// Checks a scene without filling its grids. The exit code is 1 if something disagrees. It is also 1 where `run` answers
 /// "no", because there is then nothing to compare.
@@ -24,9 +25,42 @@ pub(super) fn check(path: &Path) -> Result<Outcome> {
         let report = check_site(site)?;
         agrees &= report.agrees;
         print(&format!("{}: {report}", site.name()))?;
+        if let Some(samples) = normal_gaps(site) {
+            let report = check_normal_gap(&site.contact.placement, &samples)?;
+            agrees &= report.agrees;
+            print(&report.to_string())?;
+        }
     }
     let outcome = outcome(sites.iter().flat_map(|site| site.refusals(site.patch().as_ref())));
     Ok(if agrees { outcome } else { Outcome::No })
+}
+
+/// Points a side at which the normal gap of a grid over the rail's surface is measured.
+const SAMPLES: usize = 9;
+
+/// Gives normal gaps over the grid of a site, evenly spread; `None` for a grid over the tangent plane.
+fn normal_gaps(site: &Site) -> Option<Vec<NormalGapSample>> {
+    let sigma = site.grid.sigma.as_ref()?;
+    let gap = NormalGap::new(&site.contact.placement);
+    let spread = |values: &[f64]| -> Vec<f64> {
+        values.iter().step_by(values.len().div_ceil(SAMPLES).max(1)).copied().collect()
+    };
+    let eta = spread(&site.grid.eta);
+    let places = spread(sigma)
+        .into_iter()
+        .flat_map(|sigma| eta.iter().map(move |&eta| (sigma, eta)).collect::<Vec<_>>());
+    let sample = |(sigma, eta)| {
+        let point = gap.point(sigma, eta)?;
+        let (point_on_rail, wheel_normal) = ([point.rail.xi, eta, point.rail.zeta], point.wheel_normal?);
+        Some(NormalGapSample {
+            at: [sigma, eta],
+            point: point_on_rail,
+            gap: point.gap,
+            rail_normal: point.rail_normal,
+            wheel_normal,
+        })
+    };
+    Some(places.filter_map(sample).collect())
 }
 
 fn check_site(site: &Site) -> Result<Report> {

@@ -250,3 +250,27 @@ fn an_infeasible_scene_is_no_agreement_for_the_command() {
         "{said}{complained}"
     );
 }
+
+#[test]
+fn check_measures_the_normal_gap_of_grids_over_the_rails_surface() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    let grid = "[grid]\nreference = \"rail\"\n";
+    for (name, contact) in [
+        ("corner", "offset = 3.5\n[patch]\napproach = 0.05"),
+        ("yawed", "offset = 6.0\nyaw = 0.01\n[patch]\napproach = 0.08"),
+    ] {
+        write(here, &format!("{name}.toml"), &format!("{BODIES}[contact]\n{contact}\n{grid}"));
+        let output = wheelrail(here, &["check", &format!("{name}.toml")]);
+        let said = String::from_utf8(output.stdout).unwrap();
+        assert!(output.status.success(), "{name}: {said}{}", String::from_utf8_lossy(&output.stderr));
+        let line = said.lines().find(|line| line.contains("normal gap t: agrees with closest distances at "));
+        let points = line.and_then(|line| line.split(' ').rev().nth(1)?.parse::<usize>().ok());
+        assert!(points.is_some_and(|points| points > 40), "{name}: {said}");
+        let aligned = said
+            .lines()
+            .find_map(|line| line.trim().strip_prefix("where both normals are one line to 3 degrees, "));
+        let aligned = aligned.and_then(|rest| rest.split(' ').next()?.parse::<usize>().ok());
+        assert!(aligned.is_some_and(|aligned| aligned > 3), "{name}: {said}");
+    }
+}

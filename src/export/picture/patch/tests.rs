@@ -86,7 +86,7 @@ fn levels_follow_the_approach_and_have_their_numbers_on_the_lines() {
 #[test]
 fn numbers_have_their_digits() {
     let found = [0.076_974_259_6, 0.05, 110.4, 63.0, 1e-9].map(|x| significant(x, 4));
-    assert_eq!(found, ["0.07697", "0.05", "110.4", "63", "0.000000001"]);
+    assert_eq!(found, ["0.07697", "0.05", "110.4", "63", "1·10⁻⁹"]);
     assert_eq!(significant(1234.5, 2), "1200");
 }
 

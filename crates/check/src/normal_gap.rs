@@ -1,0 +1,135 @@
+//! The normal gap of conformal contact against closest distances: no way to the wheel is shorter than the closest one, and the
+//! closest one is that along the normal where both bodies' normals agree.
+
+use std::fmt;
+
+use wheelrail::error::{Error, Result};
+use wheelrail::nalgebra::{Unit, Vector3};
+use wheelrail::placement::Placement;
+
+use super::body::Solid;
+use super::closest::to_point;
+use super::compare::smallest_radius;
+use super::floor::floors;
+use super::meshes::Vector;
+use super::sampler::SampledSurface;
+
+/// Largest difference that counts as agreement, as a multiple of the floor and the mesh's own estimate.
+const SAFETY: f64 = 4.0;
+
+/// Error that the program itself may have \[mm\], per millimetre of the farthest point: 60 roundings.
+const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
+
+/// Largest sine of the angle between the line of the normal gap and the wheel's normal at which both count as one direction.
+const ONE_DIRECTION: f64 = 0.05;
+
+/// A point of the rail with its normal gap.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NormalGapSample {
+    /// (σ, η) \[mm\].
+    pub at: [f64; 2],
+    /// The point (ξ, η, ζ) \[mm\].
+    pub point: [f64; 3],
+    /// t \[mm\], finite.
+    pub gap: f64,
+    /// Outward unit normal of the rail.
+    pub rail_normal: Unit<Vector3<f64>>,
+    /// Outward unit normal of the wheel where the line along it ends.
+    pub wheel_normal: Unit<Vector3<f64>>,
+}
+
+/// What the comparison found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NormalGapReport {
+    /// Number of points that were compared.
+    pub points: usize,
+    /// Largest closest distance less |t|, beyond what both may err by \[mm\]; not above 0 where all is well.
+    pub beyond_mm: f64,
+    /// Where that is: (σ, η) \[mm\].
+    pub at_mm: [f64; 2],
+    /// Number of points at which both normals are one line.
+    pub aligned: usize,
+    /// Largest distance of the closest one from \[|t| cosβ − bend, |t|\] there, beyond what both may err by \[mm\]; β is the angle
+    /// of the two normals.
+    pub aligned_mm: f64,
+    /// Whether t agrees everywhere.
+    pub agrees: bool,
+}
+
+impl fmt::Display for NormalGapReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let said = if self.agrees { "agrees with" } else { "DISAGREES with" };
+        let [sigma, eta] = self.at_mm;
+        writeln!(f, "  normal gap t: {said} closest distances at {} points", self.points)?;
+        writeln!(
+            f,
+            "    distance - |t| less both errors: at most {:.1e} mm, at σ = {sigma:.4}, η = {eta:.4} mm; expected at most 0",
+            self.beyond_mm
+        )?;
+        writeln!(
+            f,
+            "    where both normals are one line to 3 degrees, {} points: at most {:.1e} mm outside of |t| cosβ to |t|",
+            self.aligned, self.aligned_mm
+        )
+    }
+}
+
+/// Compares normal gaps with the closest distances of their points from the wheel's mesh.
+///
+/// Cost: about a millisecond a point.
+///
+/// # Errors
+/// Points or profiles that are not finite; no point that could be measured.
+pub fn check_normal_gap(placement: &Placement, samples: &[NormalGapSample]) -> Result<NormalGapReport> {
+    let reach = samples.iter().map(|sample| Vector3::from(sample.point).norm() + sample.gap.abs());
+    let reach = reach.fold(0.0, f64::max);
+    let solid = Some(SampledSurface::wheel(placement)).filter(|_| reach.is_finite());
+    let Some(wheel) = solid.and_then(|surface| Solid::new(surface, 2.0 * reach)) else {
+        let expected = "finite points and profiles";
+        return Err(Error::new(
+            "check: normal gap",
+            "points that are not finite",
+            expected,
+            "check the profiles",
+        ));
+    };
+    let radius = smallest_radius(placement);
+    let floors = floors(radius, placement.rolling_radius())?;
+    let floor = floors.iter().map(|floor| floor.closest_mm).fold(0.0, f64::max);
+    let mut report = NormalGapReport {
+        points: 0,
+        beyond_mm: f64::NEG_INFINITY,
+        at_mm: [f64::NAN; 2],
+        aligned: 0,
+        aligned_mm: f64::NEG_INFINITY,
+        agrees: true,
+    };
+    for sample in samples {
+        let [xi, eta, zeta] = sample.point;
+        let Some(closest) = to_point(&wheel, Vector::new(xi, eta, zeta)) else { continue };
+        let rounding = ROUNDINGS * (placement.wheel_radius() + reach);
+        let allowed = SAFETY * (floor + closest.error) + rounding;
+        let longer = closest.distance - sample.gap.abs() - allowed;
+        report.points += 1;
+        if longer > report.beyond_mm {
+            (report.beyond_mm, report.at_mm) = (longer, sample.at);
+        }
+        let (t, sine) = (sample.gap.abs(), sample.rail_normal.cross(&sample.wheel_normal).norm());
+        if sine < ONE_DIRECTION {
+            // Of a tangent plane at the angle β the closest point is t cosβ away; the wheel bends from it by at most its sharpest
+            // radius.
+            let bend = t * sine * t * sine / radius;
+            let expected = [t * (1.0 - sine * sine).sqrt() - bend, t];
+            let difference = (expected[0] - closest.distance).max(closest.distance - expected[1]);
+            report.aligned += 1;
+            report.aligned_mm = report.aligned_mm.max(difference - allowed);
+            report.agrees &= difference <= allowed;
+        }
+        report.agrees &= longer <= 0.0;
+    }
+    if report.points == 0 {
+        let expected = "points over the wheel, of which at least one can be measured";
+        return Err(Error::new("check: normal gap", "none", expected, "widen the window of the grid"));
+    }
+    Ok(report)
+}
