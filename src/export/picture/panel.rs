@@ -258,7 +258,7 @@ mod tests {
         }
         assert_eq!(ticks_of([-1.5, 1.5], 1.2, 0).len(), 3);
         let labels: Vec<String> =
-            ticks_of([0.0, 3e-9], 6.0, -9).into_iter().map(|(_, label)| label).collect();
+            ticks_of([0.0, 3.1e-9], 6.0, -9).into_iter().map(|(_, label)| label).collect();
         assert_eq!(labels, ["0", "1", "2", "3"]);
         assert_eq!([2e-9, 7e-4, 0.2, 0.0, 3e7].map(power_for), [-9, -6, 0, 0, 6]);
         assert_eq!(in_power("s [mm]", -9), "s [10⁻⁹ mm]");
