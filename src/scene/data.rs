@@ -113,6 +113,7 @@ pub struct ContactData {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub yaw: Option<f64>,
     /// Largest vertical gap, mm, up to which near misses are reported.
+    #[schemars(extend("minimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub within: Option<f64>,
 }
@@ -122,12 +123,15 @@ pub struct ContactData {
 #[serde(deny_unknown_fields)]
 pub struct TrackData {
     /// Distance between the rails' inner faces, mm.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gauge: Option<f64>,
     /// Depth below the top of rail down to which the gauge is measured, mm; 14 if not given.
+    #[schemars(extend("minimum" = 0, "default" = 14))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gauge_height: Option<f64>,
     /// Distance between the origins of the rail profiles, mm; instead of the gauge.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spacing: Option<f64>,
 }
@@ -137,12 +141,14 @@ pub struct TrackData {
 #[serde(deny_unknown_fields)]
 pub struct WheelsetData {
     /// Distance between the flange backs, mm.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub back_to_back: Option<f64>,
     /// Abscissa of the flange back on the wheel profile, mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub flange_back_x: Option<f64>,
     /// Distance between the origins of the wheel profiles, mm; instead of `back_to_back` and `flange_back_x`.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spacing: Option<f64>,
     /// Lateral displacement, mm, + to the right.
@@ -156,9 +162,11 @@ pub struct WheelsetData {
     #[serde(default)]
     pub roll: RollData,
     /// Vertical load of the axle, N, instead of `[patch]`: both wheels sink by the same distance, and δ is an estimate.
+    #[schemars(extend("minimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load: Option<f64>,
     /// Largest vertical gap, mm, up to which near misses are reported.
+    #[schemars(extend("minimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub within: Option<f64>,
 }
@@ -196,9 +204,11 @@ pub enum RollWord {
 #[serde(deny_unknown_fields)]
 pub struct PatchData {
     /// Approach δ, mm.
+    #[schemars(extend("minimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub approach: Option<f64>,
     /// Vertical load of each wheel, N; all its contacts share it. δ is then an estimate.
+    #[schemars(extend("minimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load: Option<f64>,
     /// Origin and angle of the contact frame: "contact", the contact point and its tangent, or "weighted", the centre of
@@ -217,12 +227,16 @@ fn is_contact(frame: &FrameOrigin) -> bool {
 #[serde(deny_unknown_fields, default)]
 pub struct MaterialData {
     /// Young's modulus of the rail, N/mm².
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub rail_youngs_modulus: f64,
     /// Poisson's ratio of the rail.
+    #[schemars(extend("exclusiveMinimum" = -1, "maximum" = 0.5))]
     pub rail_poissons_ratio: f64,
     /// Young's modulus of the wheel, N/mm².
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub wheel_youngs_modulus: f64,
     /// Poisson's ratio of the wheel.
+    #[schemars(extend("exclusiveMinimum" = -1, "maximum" = 0.5))]
     pub wheel_poissons_ratio: f64,
 }
 
@@ -251,6 +265,7 @@ pub struct GridData {
     pub spacing: Option<Spacing>,
     /// Parts of the patch closer to each other than this, mm, share one automatic grid. If not given, each part has a grid
     /// of its own.
+    #[schemars(extend("minimum" = 0))]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub merge: Option<f64>,
     /// The surface over which the gap is given: "plane", the tangent plane at C, or "rail", the rail's own surface. With "rail"
@@ -258,6 +273,7 @@ pub struct GridData {
     #[serde(skip_serializing_if = "is_plane")]
     pub reference: Reference,
     /// Absolute tolerance on s, mm.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub tolerance: f64,
     /// Method of the accuracy ladder. "auto" takes the cheapest one within the tolerance.
     #[serde(with = "method_or_auto")]
@@ -313,6 +329,7 @@ pub struct StepsData {
     /// Last value, mm.
     pub to: f64,
     /// Number of values.
+    #[schemars(extend("minimum" = 1, "maximum" = 1000000))]
     pub n: u64,
 }
 
@@ -321,6 +338,7 @@ pub struct StepsData {
 #[serde(deny_unknown_fields)]
 pub struct ValuesData {
     /// Ascending values, mm.
+    #[schemars(extend("minItems" = 1))]
     pub values: Vec<f64>,
 }
 

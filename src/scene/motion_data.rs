@@ -57,9 +57,11 @@ pub enum PitchWord {
 #[serde(deny_unknown_fields)]
 pub struct FrictionData {
     /// Where surfaces stick; 0.3 by default.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     #[serde(rename = "static", default, skip_serializing_if = "Option::is_none")]
     pub at_rest: Option<f64>,
     /// Where they slide; the static one by default.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     #[serde(rename = "kinetic", default, skip_serializing_if = "Option::is_none")]
     pub sliding: Option<f64>,
 }

@@ -16,6 +16,7 @@ use crate::profile::{SegmentData, inclination};
 #[serde(deny_unknown_fields)]
 pub struct ProfileData {
     /// Nominal rolling radius R of a wheel, mm: the distance from the axle to the profile's origin.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub radius: Option<f64>,
     /// Name of a built-in profile (`wheelrail profile list`).
@@ -47,6 +48,7 @@ pub struct ProfileData {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub columns: Option<[measured::Column; 2]>,
     /// Section of an .mpt file, from 1.
+    #[schemars(extend("minimum" = 1))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub section: Option<usize>,
     /// Of an .slcs file: place of the section along the track, mm.
