@@ -83,6 +83,7 @@ pub fn curves(columns: &Columns, lateral: &[f64], title: &str, about: &str) -> R
         about: format!("{about}{conicity}"),
         abscissa: "lateral displacement [mm]".into(),
         quantities: of_position.into_iter().chain(of_side).collect(),
+        pair: None,
     })
 }
 

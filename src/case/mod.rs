@@ -15,6 +15,7 @@ mod grids;
 mod in_place;
 mod input;
 mod jobs;
+mod joined;
 mod on_rail;
 mod places;
 mod polylines;
@@ -37,6 +38,7 @@ pub use input::{
     ApproachBy, AskedAxes, Case, Echo, FrameOrigin, Friction, OutputFormat, Outputs, Place, Profiles,
     Question, SideProfiles, Standing,
 };
+pub use joined::joined_pair;
 pub use places::{Found, PlaceOfContact, approach_under_load, contacts};
 pub use run::{Part, Run, SILENT, Tell};
 pub use site::{Site, sites};

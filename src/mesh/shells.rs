@@ -75,20 +75,25 @@ pub fn axle_point(placement: &Placement, x: f64) -> Point3<f64> {
 
 /// Gives points of a profile from left to right whose chords depart from it by at most `tolerance` \[mm\].
 fn outline(profile: &Profile, tolerance: f64) -> Vec<Station> {
-    let marks = trace(profile, TRACED);
-    let mut out: Vec<Station> = Vec::new();
+    let stations: Vec<Station> = trace(profile, TRACED).into_iter().map(|mark| mark.station).collect();
+    let mut out = Vec::from_iter(stations.first().copied());
     let mut from = 0;
-    for k in 1..marks.len() {
-        let bend = (marks[k].station.angle() - marks[from].station.angle()).abs();
-        // The sagitta of an arc is its chord by an eighth of its angle.
-        let leaves = (marks[k].s - marks[from].s) * bend / 8.0 > tolerance;
-        if out.is_empty() || leaves {
-            out.push(marks[k - 1].station);
+    for k in 2..stations.len() {
+        let between = &stations[from + 1..k];
+        if between.iter().any(|station| beside_chord(station, &stations[from], &stations[k]) > tolerance) {
+            out.push(stations[k - 1]);
             from = k - 1;
         }
     }
-    out.extend(marks.last().map(|last| last.station));
+    out.extend(stations.last());
     out
+}
+
+/// Gives the distance of a point from the line through two others \[mm\], or from the first where they are one.
+fn beside_chord(point: &Station, a: &Station, b: &Station) -> f64 {
+    let (along, off) = ([b.x - a.x, b.z - a.z], [point.x - a.x, point.z - a.z]);
+    let length = along[0].hypot(along[1]);
+    if length > 0.0 { (along[0] * off[1] - along[1] * off[0]).abs() / length } else { off[0].hypot(off[1]) }
 }
 
 /// Closes an outline by two corners at the height z \[mm\].
@@ -133,7 +138,7 @@ mod tests {
                 (mark.station.x - a.x - share * dx).hypot(mark.station.z - a.z - share * dz)
             });
             let nearest = away.fold(f64::INFINITY, f64::min);
-            assert!(nearest < 0.04, "{mark:?}: {nearest}");
+            assert!(nearest < 0.021, "{mark:?}: {nearest}");
         }
         Ok(())
     }

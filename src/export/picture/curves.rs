@@ -23,6 +23,14 @@ const JUMP_SHARE: f64 = 0.02;
 /// Number of changes on each side of a jump that are compared with it. Even two other jumps among them do not hide it.
 const BESIDE: usize = 3;
 
+/// Height of the panel with the pair \[page units\].
+const PAIR: f64 = 330.0;
+
+const RAIL: Pen = Pen::new([70, 70, 70], 1.8);
+const WHEEL: Pen = Pen::new(BLUE, 1.8);
+const JOINED: Pen = Pen::new([160, 160, 160], 0.8);
+const GAUGE: Pen = Pen::new(RED, 1.0).dashed([5.0, 3.0]);
+
 /// Radius of the dot that represents a point without a line \[page units\].
 const DOT: f64 = 2.2;
 
@@ -61,6 +69,21 @@ pub struct CurvesPicture {
     pub abscissa: String,
     /// The panels, row by row, two in a row.
     pub quantities: Vec<CurvesPanel>,
+    /// The pair below them; `None` for none.
+    pub pair: Option<JoinedPair>,
+}
+
+/// A rail and a wheel raised above it, with the points joined at which they touch; all in the rail profile's axes \[x, z\] \[mm\].
+#[derive(Debug, Clone, PartialEq)]
+pub struct JoinedPair {
+    /// The rail's profile.
+    pub rail: Vec<[f64; 2]>,
+    /// The wheel's profile.
+    pub wheel: Vec<[f64; 2]>,
+    /// From the point on the rail to that on the wheel, in the order of the positions.
+    pub lines: Vec<[[f64; 2]; 2]>,
+    /// Abscissa of the gauge line.
+    pub gauge: Option<f64>,
 }
 
 impl CurvesPicture {
@@ -74,6 +97,10 @@ impl CurvesPicture {
             let place = [LEFT[k % LEFT.len()], TOP + ROW * (k / LEFT.len()) as f64, SIZE[0], SIZE[1]];
             self.panel(&mut page, place, u, quantity);
         }
+        let height = match &self.pair {
+            Some(pair) => pair.draw(&mut page, height),
+            None => height,
+        };
         page.finish(height, &super::page::foot())
     }
 
@@ -95,6 +122,30 @@ impl CurvesPicture {
             }
         }
         panel.axes(page, [&self.abscissa, &quantity.axis]);
+    }
+}
+
+impl JoinedPair {
+    /// Draws the pair at true scale below `top`, and returns the height of the page.
+    fn draw(&self, page: &mut Page, top: f64) -> f64 {
+        let points = || self.rail.iter().chain(&self.wheel);
+        let (u, v) = (range(points().map(|p| p[0])), range(points().map(|p| p[1])));
+        let room = [LEFT[0], top, LEFT[1] + SIZE[0] - LEFT[0], PAIR];
+        page.heading(room, "Points of contact on rail and raised wheel, right side, true scale");
+        let panel = Panel::true_scale(room, airy(u, 0.02, 0.0), airy(v, 0.02, 0.0));
+        let lines: Vec<_> = self.lines.iter().flat_map(|ends| panel.curve(ends)).collect();
+        page.lines(&lines, JOINED);
+        page.lines(&panel.curve(&self.rail), RAIL);
+        page.lines(&panel.curve(&self.wheel), WHEEL);
+        let foot = room[1] + room[3] + 24.0;
+        if let Some(gauge) = self.gauge {
+            page.lines(&panel.curve(&[[gauge, panel.v[0]], [gauge, panel.v[1]]]), GAUGE);
+            page.legend([room[0] + 160.0, foot], GAUGE, "gauge line");
+        }
+        page.legend([room[0], foot], RAIL, "rail");
+        page.legend([room[0] + 80.0, foot], WHEEL, "wheel");
+        panel.scale_bar(page, [room[0] + room[2], foot], room[2] / 6.0);
+        top + PAIR + 70.0
     }
 }
 
@@ -154,6 +205,7 @@ mod tests {
             about: String::new(),
             abscissa: "y [mm]".into(),
             quantities: vec![quantity],
+            pair: None,
         }
     }
 

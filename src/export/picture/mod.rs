@@ -12,7 +12,7 @@ mod profile;
 
 pub use chart::{Chart, Series};
 pub use contour::Nodes;
-pub use curves::{CurvesPanel, CurvesPicture, PlottedCurve, jumps};
+pub use curves::{CurvesPanel, CurvesPicture, JoinedPair, PlottedCurve, jumps};
 pub use page::SEPARATOR;
 pub use patch::PatchPicture;
 pub use profile::ProfilePicture;

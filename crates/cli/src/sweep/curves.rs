@@ -2,7 +2,7 @@
 
 use super::table::SweepTable;
 use crate::answer::counted;
-use wheelrail::case::{Case, Columns, MOST_DRAWN, ascending, curves, sweep_page};
+use wheelrail::case::{Case, Columns, MOST_DRAWN, ascending, curves, joined_pair, sweep_page};
 use wheelrail::error::{Error, Result};
 use wheelrail::export::{CurvesPicture, SweepPage};
 use wheelrail::search::Position;
@@ -43,10 +43,15 @@ impl Drawn {
     }
 }
 
-/// Makes the picture of a table's positions; their lateral displacements have to ascend.
-pub(super) fn picture(table: &SweepTable, title: &str) -> Result<CurvesPicture> {
+/// Makes the picture of a table's positions, with the right-hand pair below; their lateral displacements have to ascend. `gauge`
+/// is that of the track \[mm\], if it is known.
+pub(super) fn picture(table: &SweepTable, case: &Case, gauge: Option<f64>) -> Result<CurvesPicture> {
     let drawn = Drawn::new(table).map_err(|error: Error| error.at("--picture"))?;
-    curves(&drawn.columns, &drawn.lateral, title, &drawn.about)
+    let pair = &case.profiles().right.pair;
+    let title = format!("{} under {}", pair.rail().name, pair.wheel().name);
+    let picture = curves(&drawn.columns, &drawn.lateral, &title, &drawn.about)?;
+    let gauge_line = gauge.map(|gauge| gauge / 2.0 - table.system.right().track().rail_x());
+    Ok(CurvesPicture { pair: Some(joined_pair(pair, &drawn.columns, gauge_line)), ..picture })
 }
 
 /// Makes the page of a table's positions; their lateral displacements have to ascend.

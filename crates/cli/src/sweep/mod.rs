@@ -141,7 +141,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     }
     if let Some((format, file)) = &mut outputs.picture {
         progress.at("picture");
-        let picture = curves::picture(&table, &title(&case))?;
+        let picture = curves::picture(&table, &case, scene.track.as_ref().and_then(|track| track.gauge))?;
         file.put(&format.bytes(picture.svg())?)?;
     }
     if let Some(file) = &mut outputs.html {
@@ -154,12 +154,6 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     }
     outputs.commit()?;
     Ok(Outcome::Done)
-}
-
-/// Returns the title of a sweep's picture: that of the scene may name its one position.
-fn title(case: &Case) -> String {
-    let pair = &case.profiles().right.pair;
-    format!("{} under {}", pair.rail().name, pair.wheel().name)
 }
 
 /// Returns the wheelset and track of a case, and the position in the case.
