@@ -82,6 +82,39 @@ pub struct PolynomialData {
     pub coefficients: Vec<f64>,
 }
 
+impl SegmentData {
+    /// Gives the segment in mm, of one in a unit of this length \[mm\]. The coefficients of a polynomial are those of z over x in
+    /// that unit.
+    #[must_use]
+    pub fn in_millimetres(&self, unit: f64) -> Self {
+        let point = |point: Option<[f64; 2]>| point.map(|point| point.map(|value| unit * value));
+        let line = |line: &LineData| LineData {
+            from: point(line.from),
+            to: point(line.to),
+            slope: line.slope,
+            to_x: line.to_x.map(|x| unit * x),
+        };
+        let arc = |arc: &ArcData| ArcData {
+            center: point(arc.center),
+            radius: unit * arc.radius,
+            half: arc.half,
+            x: point(arc.x),
+            to_x: arc.to_x.map(|x| unit * x),
+        };
+        let polynomial = |polynomial: &PolynomialData| {
+            let powers = polynomial.coefficients.iter().zip(0..);
+            let coefficients = powers.map(|(c, power)| c * unit * unit.powi(power).recip()).collect();
+            PolynomialData { x: polynomial.x.map(|x| unit * x), coefficients }
+        };
+        Self {
+            label: self.label.clone(),
+            line: self.line.as_ref().map(line),
+            arc: self.arc.as_ref().map(arc),
+            polynomial: self.polynomial.as_ref().map(polynomial),
+        }
+    }
+}
+
 /// Makes the profile of a chain of segments. `start` is the first point of a chain that begins in the form of Appendix A.
 ///
 /// # Errors
@@ -193,6 +226,35 @@ mod tests {
         let drawn: Drawn = toml::from_str(segments)?;
         let error = drawn_profile("drawn", "", drawn.start, &drawn.segments).err();
         Ok(error.map(|e| e.to_string()).unwrap_or_default())
+    }
+
+    /// A chain of a line, an arc and a parabola in inches is 25.4 times as large in mm: all its ends, with their slopes.
+    #[test]
+    fn segments_in_inches_are_those_in_millimetres() -> Result<()> {
+        let none = SegmentData { label: None, line: None, arc: None, polynomial: None };
+        let line = LineData { from: Some([-2.0, -0.5]), to: Some([-1.0, 0.0]), slope: None, to_x: None };
+        let arc = ArcData { center: None, radius: 3.0, half: HalfData::Upper, x: None, to_x: Some(0.0) };
+        let polynomial = PolynomialData { x: [0.0, 1.5], coefficients: vec![0.125, -0.25, -0.0625] };
+        let chain = [
+            SegmentData { line: Some(line), ..none.clone() },
+            SegmentData { arc: Some(arc), ..none.clone() },
+            SegmentData { polynomial: Some(polynomial), ..none },
+        ];
+        let inches = drawn_profile("inches", "", None, &chain[..2])?;
+        let millimetres: Vec<SegmentData> =
+            chain.iter().map(|segment| segment.in_millimetres(25.4)).collect();
+        let scaled = drawn_profile("mm", "", None, &millimetres[..2])?;
+        for (a, b) in inches.segments().iter().zip(scaled.segments()) {
+            for (a, b) in [(a.start(), b.start()), (a.end(), b.end())] {
+                assert!((25.4 * a.x - b.x).abs() < 1e-13 && (25.4 * a.z - b.z).abs() < 1e-13, "{a:?} {b:?}");
+                assert!((a.sin - b.sin).abs() < 1e-13, "{a:?} {b:?}");
+            }
+        }
+        let parabola = millimetres[2].polynomial.as_ref().map(|p| (p.x[1], p.coefficients.clone()));
+        let Some((x, c)) = parabola else { panic!("no parabola") };
+        let z = c[0] + x * (c[1] + x * c[2]);
+        assert!((z / 25.4 - (0.125 + 1.5 * (-0.25 - 1.5 * 0.0625))).abs() < 1e-15, "{z}");
+        Ok(())
     }
 
     #[test]

@@ -60,7 +60,7 @@ pub struct ProfileData {
     /// Of a measured file: whether its second axis points down.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub flip_z: Option<bool>,
-    /// Unit of the coordinates of a measured file.
+    /// Unit of the coordinates of a measured file, or of `segments`; mm if not given. `radius` and `shift` are in mm in any case.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<measured::Unit>,
     /// Point of a measured file that becomes the origin.

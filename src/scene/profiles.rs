@@ -10,7 +10,7 @@ use super::words::nearest;
 use crate::case::{Profiles, SideProfiles};
 use crate::error::{Error, Result, finite, given};
 use crate::files::{read_bytes, read_text};
-use crate::measured::{self, Cut, Measured, Options, Record, SliceList};
+use crate::measured::{self, Cut, Measured, Options, Record, SliceList, Unit};
 use crate::placement::Pair;
 use crate::profile::{Profile, SegmentData, Side, drawn_profile, standards};
 
@@ -26,8 +26,24 @@ struct ProfileFile {
     #[serde(default)]
     source: Option<String>,
     #[serde(default)]
+    unit: Option<Unit>,
+    #[serde(default)]
     start: Option<[f64; 2]>,
     segments: Vec<SegmentData>,
+}
+
+/// Makes the profile of segments that are in a unit, mm if none is given.
+fn in_unit(
+    names: [&str; 2],
+    unit: Option<Unit>,
+    start: Option<[f64; 2]>,
+    segments: &[SegmentData],
+) -> Result<Profile> {
+    let Some(unit) = unit.map(Unit::millimetres) else {
+        return drawn_profile(names[0], names[1], start, segments);
+    };
+    let segments: Vec<SegmentData> = segments.iter().map(|segment| segment.in_millimetres(unit)).collect();
+    drawn_profile(names[0], names[1], start.map(|start| start.map(|value| unit * value)), &segments)
 }
 
 /// Returns the rail and the wheel of a scene, turned and shifted as the scene says. Files are relative to `folder`; each
@@ -88,7 +104,7 @@ fn profile(data: &ProfileData, folder: &Path, side: Side) -> Result<Resolved> {
         (Some(name), None, None) => Resolved::drawn(built_in(name, side)?),
         (None, Some(file), None) => in_file(data, &folder.join(file), side)?,
         (None, None, Some(segments)) => {
-            Resolved::drawn(drawn_profile("inline", "scene", data.start, segments)?)
+            Resolved::drawn(in_unit(["inline", "scene"], data.unit, data.start, segments)?)
         }
         _ => {
             let expected = "exactly one of `profile`, `file`, `segments`";
@@ -218,7 +234,8 @@ pub fn section_from_files(path: &Path, side: Side, options: &Options) -> Result<
 
 /// Refuses keys that mean nothing for a drawn profile.
 fn reject_measured_keys(data: &ProfileData) -> Result<()> {
-    let keys = Options { mirror: None, ..data.measured() }.given();
+    let unit = data.unit.filter(|_| data.segments.is_none());
+    let keys = Options { mirror: None, unit, ..data.measured() }.given();
     if keys.is_empty() {
         return Ok(());
     }
@@ -264,7 +281,7 @@ pub fn is_chain_file(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml") || e.eq_ignore_ascii_case("json"))
 }
 
-/// Reads a profile file: `segments`, and optionally `name`, `source` and `start`.
+/// Reads a profile file: `segments`, and optionally `name`, `source`, `unit` and `start`.
 ///
 /// # Errors
 /// An unreadable file; anything that is wrong with its segments.
@@ -275,5 +292,5 @@ pub fn profile_from_file(path: &Path) -> Result<Profile> {
     let file: ProfileFile = parse(&text, json).map_err(|e| e.within(&place))?;
     let name = file.name.unwrap_or_else(|| place.clone());
     let source = file.source.unwrap_or_else(|| place.clone());
-    drawn_profile(&name, &source, file.start, &file.segments).map_err(|e| e.within(&place))
+    in_unit([&name, &source], file.unit, file.start, &file.segments).map_err(|e| e.within(&place))
 }
