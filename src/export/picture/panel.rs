@@ -132,8 +132,8 @@ impl Panel {
         let middle = [(start + end[0]) / 2.0, end[1] - 7.0];
         let power = power_for(length);
         let length = length / 10f64.powi(power);
-        let unit = if power == 0 { "mm".into() } else { format!("{} mm", power_of_ten(power)) };
-        page.text(middle, format!("{} {unit}", number(length, length)), SMALL.middle());
+        let power = if power == 0 { String::new() } else { format!("·{}", power_of_ten(power)) };
+        page.text(middle, format!("{}{power} mm", number(length, length)), SMALL.middle());
     }
 }
 
@@ -175,11 +175,11 @@ pub(super) fn number(x: f64, step: f64) -> String {
     if zero { "0".into() } else { text.replace('-', "\u{2212}") }
 }
 
-/// Returns the power of ten, a multiple of 3, in which numbers up to `largest` are written: 0 from 10⁻³ to 10⁶, so that small and
+/// Returns the power of ten, a multiple of 3, in which numbers up to `largest` are written: 0 from 10⁻² to 10⁶, so that small and
 /// large ones have few digits.
 pub(super) fn power_for(largest: f64) -> i32 {
     let power = largest.log10().floor();
-    if !power.is_finite() || (-3.0..6.0).contains(&power) { 0 } else { 3 * (power / 3.0).floor() as i32 }
+    if !power.is_finite() || (-2.0..6.0).contains(&power) { 0 } else { 3 * (power / 3.0).floor() as i32 }
 }
 
 /// Puts a power of ten before the unit of a name: "s [10⁻⁹ mm]".

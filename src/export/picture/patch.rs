@@ -73,7 +73,9 @@ impl PatchPicture<'_> {
         ];
         let about = about.into_iter().flatten().collect::<Vec<_>>().join(SEPARATOR);
         let mut page = Page::new(&header.title, &about);
-        page.text([40.0, 82.0], self.refusals.join(SEPARATOR), BODY.in_colour(RED));
+        // The first clause says what is wrong; the rest, what to do, is on stderr.
+        let refused = self.refusals.iter().filter_map(|refusal| refusal.split(';').next());
+        page.text([40.0, 82.0], refused.collect::<Vec<_>>().join(SEPARATOR), BODY.in_colour(RED));
         self.profiles(&mut page, [40.0, 110.0, 380.0, 250.0]);
         self.gap(&mut page, [520.0, 110.0, 340.0, 250.0]);
         self.contours(&mut page, [90.0, 460.0, 590.0, 500.0]);
@@ -252,9 +254,12 @@ fn even_step(values: &[f64]) -> Option<f64> {
     (low > 0.0 && high - low <= 1e-4 * high).then_some(low)
 }
 
+/// Numbers in words from here on are written without a power of ten.
+const PLAIN: f64 = 1e-4;
+
 /// Returns a positive number with so many significant digits, without zeros at its end; small ones with a power of ten.
 fn significant(x: f64, digits: i32) -> String {
-    let power = power_for(x);
+    let power = if x < PLAIN { power_for(x) } else { 0 };
     if power != 0 {
         return format!("{}·{}", significant(x / 10f64.powi(power), digits), power_of_ten(power));
     }
