@@ -58,8 +58,7 @@ pub fn curves(columns: &Columns, lateral: &[f64], title: &str, about: &str) -> R
     let tread = lowest.tread();
     let quantity = |title: &str, axis: &str, curves: Vec<PlottedCurve>, flat: bool| {
         let shown = tread.as_deref().filter(|_| flat).and_then(|tread| tread_range(&curves, tread));
-        let title = if shown.is_some() { format!("{title}; flange cut off") } else { title.into() };
-        CurvesPanel { title, axis: axis.into(), curves, shown }
+        CurvesPanel { title: title.into(), axis: axis.into(), curves, shown }
     };
     let either = [left.as_slice(), right.as_slice()].concat();
     let of_position = OF_POSITION.map(|(title, axis, name, factor, jumps)| {

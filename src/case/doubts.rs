@@ -3,7 +3,7 @@
 use super::input::{Case, Place};
 use super::site::Site;
 use crate::placement::Placement;
-use crate::profile::trace;
+use crate::profile::{Profile, Shape, Station, trace};
 
 /// Approaches beyond this \[mm\] are no elastic ones: steel yields at a tenth of it.
 const LARGE_APPROACH: f64 = 1.0;
@@ -43,8 +43,7 @@ pub(super) fn doubts_of_placing(case: &Case, site: &Site) -> Vec<String> {
 }
 
 fn flange(placement: &Placement) -> Option<String> {
-    let marks = trace(placement.wheel().profile(), 1.0);
-    let tip = marks.iter().map(|mark| mark.station).min_by(|a, b| a.z.total_cmp(&b.z))?;
+    let tip = lowest(placement.wheel().profile())?;
     let at = placement.wheel().point().station;
     if tip.z > -FLANGE {
         return None;
@@ -61,6 +60,15 @@ fn flange(placement: &Placement) -> Option<String> {
          the profiles' x points to (mirror)",
         at.x
     ))
+}
+
+/// Gives the lowest point of a profile, to a few tenths of a millimetre.
+fn lowest(profile: &Profile) -> Option<Station> {
+    let stations = profile.segments().iter().flat_map(|segment| match &segment.shape {
+        Shape::Arc(arc) => [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| arc.station_at(share)).to_vec(),
+        Shape::Polynomial(_) => vec![segment.start(), segment.end()],
+    });
+    stations.min_by(|a, b| a.z.total_cmp(&b.z))
 }
 
 fn approach(site: &Site) -> Option<String> {

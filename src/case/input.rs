@@ -48,6 +48,13 @@ pub struct SideProfiles {
     pub measured: [Option<Record>; 2],
 }
 
+impl SideProfiles {
+    /// Names rail and wheel, as a title: "60E1 under S1002".
+    pub fn names(&self) -> String {
+        format!("{} under {}", self.pair.rail().name, self.pair.wheel().name)
+    }
+}
+
 impl Profiles {
     /// Makes the profiles of both sides from a pair that nothing was measured of.
     pub fn drawn(pair: Pair) -> Self {

@@ -83,7 +83,7 @@ impl<'a> OnRail<'a> {
             }
             if outputs.required {
                 let found = format!("\"{name}\" with grid.reference = \"rail\"");
-                let expected = "formats with a form over the rail's surface: vtk, npy, conform, contact, png";
+                let expected = "formats other than netcdf, text and countact";
                 let advice = format!("{file} needs equal steps of xi: leave it out, or take the plane");
                 return Err(Error::new("output: formats", found, expected, advice));
             }

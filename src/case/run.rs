@@ -36,6 +36,8 @@ pub struct Part {
     pub site: Site,
     /// Separation and patch.
     pub analysis: Analysis,
+    /// What a user should know before using the files.
+    pub warnings: Vec<String>,
 }
 
 impl Run {
@@ -71,7 +73,8 @@ impl Run {
             let step = format!("{}: grid of {} x {} points", site.name(), grid.xi.len(), grid.eta.len());
             tell(step, COMPUTING * done);
             let analysis = Analysis::new(&site, &case.question)?;
-            Ok(Part { site, analysis })
+            let warnings = warnings_of(&site, &analysis);
+            Ok(Part { site, analysis, warnings })
         };
         let parts = sites.into_iter().enumerate().map(part).collect::<Result<_>>()?;
         Ok(Self { case, parts })
@@ -115,7 +118,7 @@ impl Run {
         for part in &self.parts {
             let folder = &part.site.folder;
             let place = if folder.is_empty() { String::new() } else { format!("{folder}: ") };
-            out.extend(part.warnings().into_iter().map(|warning| format!("{place}{warning}")));
+            out.extend(part.warnings.iter().map(|warning| format!("{place}{warning}")));
         }
         out
     }
@@ -155,22 +158,22 @@ impl Part {
     pub fn refusals(&self) -> Vec<String> {
         self.site.refusals(self.analysis.patch.as_ref())
     }
+}
 
-    /// Lists what a user should know before using the files of the part.
-    pub fn warnings(&self) -> Vec<String> {
-        let mut out = Vec::from_iter(self.site.grid.warning.clone());
-        if self.analysis.patch.as_ref().is_some_and(Patch::cut_by_window) {
-            out.push("the window of the grid cuts the patch: solvers would overestimate the pressure".into());
-        }
-        let Analysis { patch, conformal, .. } = &self.analysis;
-        out.extend(turning_warning(&self.site, patch.as_ref(), conformal.as_ref()));
-        let Plan { error, tolerance, .. } = self.analysis.plan;
-        if error.is_nan() || error > tolerance {
-            out.push(format!(
-                "the separation's estimated error, {error:.1e} mm, is above grid.tolerance, {tolerance:e} mm"
-            ));
-        }
-        out.extend(doubts_of(&self.site));
-        out
+/// Lists what a user should know before using the files of a part.
+fn warnings_of(site: &Site, analysis: &Analysis) -> Vec<String> {
+    let mut out = Vec::from_iter(site.grid.warning.clone());
+    if analysis.patch.as_ref().is_some_and(Patch::cut_by_window) {
+        out.push("the window of the grid cuts the patch: solvers would overestimate the pressure".into());
     }
+    let Analysis { patch, conformal, .. } = analysis;
+    out.extend(turning_warning(site, patch.as_ref(), conformal.as_ref()));
+    let Plan { error, tolerance, .. } = analysis.plan;
+    if error.is_nan() || error > tolerance {
+        out.push(format!(
+            "the separation's estimated error, {error:.1e} mm, is above grid.tolerance, {tolerance:e} mm"
+        ));
+    }
+    out.extend(doubts_of(site));
+    out
 }

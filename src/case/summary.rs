@@ -61,7 +61,7 @@ pub(super) fn summary(
     files: &[String],
     skipped: &[String],
 ) -> Value {
-    let (Part { site, analysis }, Case { echo, file, profiles, .. }) = (part, &run.case);
+    let (Part { site, analysis, .. }, Case { echo, file, profiles, .. }) = (part, &run.case);
     let (contact, own) = (&site.contact, profiles.on(site.side().unwrap_or_default()));
     let placement = &contact.placement;
     let place = in_place::to_track(run, part);
@@ -112,7 +112,7 @@ pub(super) fn summary(
             "reason": analysis.plan.reason,
         },
         "refusals": part.refusals(),
-        "warnings": part.warnings(),
+        "warnings": part.warnings,
         "other_parts": run.parts.iter().map(|p| &p.site.folder).filter(|f| **f != site.folder).collect::<Vec<_>>(),
         "files": files,
         "files_skipped": skipped,

@@ -9,7 +9,7 @@ use crate::export::{CurvesPanel, PlottedCurve, SweepCurve, SweepPage, SweepPanel
 use crate::search::{Position, Roll, WheelsetOnTrack};
 
 /// Makes the page of a sweep from its columns, over the lateral displacements \[mm\] of all its positions; these have to ascend,
-/// and `columns` may lack those without contact. `about` stands below the title of the case.
+/// and `columns` may lack those without contact. `about` stands below the names of the profiles.
 ///
 /// # Errors
 /// Lateral displacements that do not ascend.
@@ -20,7 +20,8 @@ pub fn sweep_page(
     lateral: &[f64],
     about: &str,
 ) -> Result<SweepPage> {
-    let picture = curves(columns, lateral, &case.echo.title, about)?;
+    // The title of the scene may name its one position.
+    let picture = curves(columns, lateral, &case.profiles.right.names(), about)?;
     Ok(SweepPage {
         title: picture.title,
         about: picture.about,
@@ -39,7 +40,9 @@ fn panel(panel: CurvesPanel) -> SweepPanel {
         values: points.into_iter().map(|[_, value]| value).collect(),
         jumps,
     };
-    SweepPanel { title: panel.title, axis: panel.axis, curves: panel.curves.into_iter().map(curve).collect() }
+    let title = panel.heading();
+    let curves = panel.curves.into_iter().map(curve).collect();
+    SweepPanel { title, axis: panel.axis, curves, shown: panel.shown }
 }
 
 /// Gives where the wheel of a side is at every position, and its contacts.

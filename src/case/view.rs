@@ -78,7 +78,7 @@ fn contact(run: &Run, part: &Part, n: usize) -> ViewContact {
     let rail = &placement.rail().section;
     let both = run.case.profiles.left.is_some() && part.site.side() == Some("left");
     let mut warnings = part.refusals();
-    warnings.extend(part.warnings());
+    warnings.extend_from_slice(&part.warnings);
     ViewContact {
         name: contact_name(part),
         pair: usize::from(both),

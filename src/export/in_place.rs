@@ -1,14 +1,14 @@
 //! Files in the axes of the track: bodies, patches, boundaries and contact points where they are.
 
 use nalgebra::Point3;
-use vtkio::model::{Attribute, Attributes, DataSet, PolyDataPiece, VertexNumbers};
+use vtkio::model::{Attribute, Attributes, DataSet, PolyDataPiece};
 
 use super::model::{Loop, QuadMesh};
-use super::vtk::{EMPTY_POLYDATA, coordinates, distinct, scalars, xml_text};
+use super::vtk::{EMPTY_POLYDATA, closed, coordinates, distinct, numbered, scalars, xml_text};
 use super::vts::comment_of;
 use crate::error::Result;
 
-/// Polygons, or the loops of boundaries, of one contact.
+/// What files in the axes of the track show of one contact; all points are in those axes \[mm\].
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactInPlace {
     /// Number of the contact in the run, from 1.
@@ -34,7 +34,7 @@ pub struct ContactInPlace {
 pub fn body_vtp(statements: &[String], points: &[Point3<f64>], faces: &[Vec<usize>]) -> Result<Vec<u8>> {
     let piece = PolyDataPiece {
         points: coordinates(points),
-        polys: Some(cells(faces.iter().map(|face| face.iter().map(|&node| node as u64).collect()))),
+        polys: Some(numbered(faces)),
         ..PolyDataPiece::default()
     };
     annotated(statements, piece)
@@ -49,7 +49,7 @@ pub fn patches_vtp(statements: &[String], contacts: &[ContactInPlace]) -> Result
     for contact in contacts {
         contact.patch.validate()?;
         for quad in &contact.patch.quads {
-            faces.push(distinct(quad).into_iter().map(|node| (first + node) as u64).collect());
+            faces.push(distinct(quad).into_iter().map(|node| first + node).collect::<Vec<_>>());
             numbers.push(contact.number as i32);
         }
         first += contact.patch.points.len();
@@ -58,7 +58,7 @@ pub fn patches_vtp(statements: &[String], contacts: &[ContactInPlace]) -> Result
     let count = numbers.len();
     let piece = PolyDataPiece {
         points: coordinates(contacts.iter().flat_map(|contact| &contact.patch.points)),
-        polys: Some(cells(faces.into_iter())),
+        polys: Some(numbered(&faces)),
         data: Attributes {
             point: vec![scalars("overlap", overlap.into(), first)?],
             cell: vec![scalars("contact", numbers.into(), count)?],
@@ -74,20 +74,12 @@ pub fn patches_vtp(statements: &[String], contacts: &[ContactInPlace]) -> Result
 /// Data that `vtkio` refuses, which would be a fault of this program.
 pub fn boundaries_vtp(statements: &[String], contacts: &[ContactInPlace]) -> Result<Vec<u8>> {
     let loops =
-        || contacts.iter().flat_map(|contact| contact.loops.iter().map(move |ring| (contact.number, ring)));
-    let mut first = 0;
-    let closed = loops().map(|(_, ring)| {
-        let count = ring.points.len() as u64;
-        first += count;
-        (first - count..first).chain([first - count]).collect()
-    });
-    let closed: Vec<Vec<u64>> = closed.collect();
-    let numbers: Vec<i32> = loops().map(|(number, _)| number as i32).collect();
-    let count = numbers.len();
+        contacts.iter().flat_map(|contact| contact.loops.iter().map(|ring| (contact.number as i32, ring)));
+    let (numbers, loops): (Vec<i32>, Vec<&Loop>) = loops.filter(|(_, ring)| !ring.points.is_empty()).unzip();
     let piece = PolyDataPiece {
-        points: coordinates(loops().flat_map(|(_, ring)| &ring.points)),
-        lines: Some(cells(closed.into_iter())),
-        data: Attributes { point: Vec::new(), cell: vec![scalars("contact", numbers.into(), count)?] },
+        points: coordinates(loops.iter().flat_map(|ring| &ring.points)),
+        lines: Some(closed(&loops)),
+        data: Attributes { point: Vec::new(), cell: vec![scalars("contact", numbers.into(), loops.len())?] },
         ..PolyDataPiece::default()
     };
     annotated(statements, piece)
@@ -109,7 +101,7 @@ pub fn contacts_vtp(statements: &[String], contacts: &[ContactInPlace]) -> Resul
     ];
     let piece = PolyDataPiece {
         points: coordinates(contacts.iter().map(|contact| &contact.point)),
-        verts: Some(cells((0..contacts.len() as u64).map(|node| vec![node]))),
+        verts: Some(numbered(&(0..contacts.len()).map(|node| [node]).collect::<Vec<_>>())),
         data: Attributes { point, cell: Vec::new() },
         ..PolyDataPiece::default()
     };
@@ -127,15 +119,6 @@ pub fn wheelset_vtm(statements: &[String], blocks: &[(&str, &str)]) -> String {
          <vtkMultiBlockDataSet>\n{sets}  </vtkMultiBlockDataSet>\n</VTKFile>\n",
         comment_of(statements)
     )
-}
-
-fn cells(all: impl Iterator<Item = Vec<u64>>) -> VertexNumbers {
-    let (mut connectivity, mut offsets) = (Vec::new(), Vec::new());
-    for nodes in all {
-        connectivity.extend(nodes);
-        offsets.push(connectivity.len() as u64);
-    }
-    VertexNumbers::XML { connectivity, offsets }
 }
 
 fn annotated(statements: &[String], piece: PolyDataPiece) -> Result<Vec<u8>> {

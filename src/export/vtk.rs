@@ -30,18 +30,11 @@ const EMPTY_UNSTRUCTURED: &str = "<Piece NumberOfPoints=\"0\" NumberOfCells=\"0\
 /// Data that `vtkio` refuses, which would be a fault of this program.
 pub fn boundary_vtp(header: &Header, loops: &[Loop]) -> Result<Vec<u8>> {
     let loops: Vec<_> = loops.iter().filter(|ring| !ring.points.is_empty()).collect();
-    let (mut connectivity, mut offsets, mut first) = (Vec::new(), Vec::new(), 0);
-    for ring in &loops {
-        let count = ring.points.len() as u64;
-        connectivity.extend((first..first + count).chain([first]));
-        offsets.push(connectivity.len() as u64);
-        first += count;
-    }
     let components = loops.iter().map(|ring| ring.component as i32).collect::<Vec<_>>();
     let cell = vec![scalars("component", components.into(), loops.len())?];
     let piece = PolyDataPiece {
         points: coordinates(loops.iter().flat_map(|ring| &ring.points)),
-        lines: Some(VertexNumbers::XML { connectivity, offsets }),
+        lines: Some(closed(&loops)),
         data: Attributes { point: Vec::new(), cell },
         ..PolyDataPiece::default()
     };
@@ -121,10 +114,9 @@ pub fn surface_vtu(header: &Header, mesh: &SurfaceMesh) -> Result<Vec<u8>> {
 /// A mesh that contradicts itself.
 pub fn surface_vtp(header: &Header, mesh: &SurfaceMesh) -> Result<Vec<u8>> {
     let data = surface_data(mesh)?;
-    let (connectivity, offsets) = numbered(&mesh.triangles);
     let piece = PolyDataPiece {
         points: coordinates(&mesh.points),
-        polys: Some(VertexNumbers::XML { connectivity, offsets }),
+        polys: Some(numbered(&mesh.triangles)),
         data,
         ..PolyDataPiece::default()
     };
@@ -152,26 +144,32 @@ pub fn collection_pvd(steps: &[(f64, usize, String)]) -> String {
 
 fn unstructured<C: AsRef<[usize]>>(points: &[Point3<f64>], cells: &[C], data: Attributes) -> DataSet {
     let kind = |cell: &C| if cell.as_ref().len() == 3 { CellType::Triangle } else { CellType::Quad };
-    let (connectivity, offsets) = numbered(cells);
-    DataSet::inline(UnstructuredGridPiece {
-        points: coordinates(points),
-        cells: Cells {
-            cell_verts: VertexNumbers::XML { connectivity, offsets },
-            types: cells.iter().map(kind).collect(),
-        },
-        data,
-    })
+    let types = cells.iter().map(kind).collect();
+    let cells = Cells { cell_verts: numbered(cells), types };
+    DataSet::inline(UnstructuredGridPiece { points: coordinates(points), cells, data })
 }
 
 /// Returns the nodes of all cells one after another, and where each cell ends among them.
-fn numbered<C: AsRef<[usize]>>(cells: &[C]) -> (Vec<u64>, Vec<u64>) {
+pub(super) fn numbered<C: AsRef<[usize]>>(cells: &[C]) -> VertexNumbers {
     let mut end = 0;
     let offsets = cells.iter().map(|nodes| {
         end += nodes.as_ref().len() as u64;
         end
     });
     let offsets = offsets.collect();
-    (cells.iter().flat_map(AsRef::as_ref).map(|&node| node as u64).collect(), offsets)
+    let connectivity = cells.iter().flat_map(AsRef::as_ref).map(|&node| node as u64).collect();
+    VertexNumbers::XML { connectivity, offsets }
+}
+
+/// Returns loops as closed lines, of points that stand one loop after another.
+pub(super) fn closed(loops: &[&Loop]) -> VertexNumbers {
+    let mut first = 0;
+    let line = |ring: &&Loop| -> Vec<usize> {
+        let from = first;
+        first += ring.points.len();
+        (from..first).chain([from]).collect()
+    };
+    numbered(&loops.iter().map(line).collect::<Vec<_>>())
 }
 
 /// Returns the coordinates of points one after another.

@@ -119,13 +119,7 @@ impl Pair {
     pub fn placed(&self, rail_x: f64, wheel_x: f64, skew: f64) -> Result<Placement> {
         let rail = Body::at(&self.rail, rail_x, Side::Rail).map_err(|e| e.within("contact: rail_x"))?;
         let wheel = Body::at(&self.wheel, wheel_x, Side::Wheel).map_err(|e| e.within("contact: wheel_x"))?;
-        Ok(Placement {
-            rail,
-            wheel,
-            wheel_radius: self.wheel_radius,
-            skew: checked_skew(skew)?,
-            at_contact: true,
-        })
+        self.touching(rail, wheel, skew)
     }
 
     /// Places the pair in contact along a given common tangent: abscissa \[mm\] and angle of ξ \[rad\] in the own axes of each
@@ -137,13 +131,12 @@ impl Pair {
     pub fn placed_along(&self, rail: [f64; 2], wheel: [f64; 2], skew: f64) -> Result<Placement> {
         let rail = Body::along(&self.rail, rail, Side::Rail).map_err(|e| e.within("contact: rail"))?;
         let wheel = Body::along(&self.wheel, wheel, Side::Wheel).map_err(|e| e.within("contact: wheel"))?;
-        Ok(Placement {
-            rail,
-            wheel,
-            wheel_radius: self.wheel_radius,
-            skew: checked_skew(skew)?,
-            at_contact: true,
-        })
+        self.touching(rail, wheel, skew)
+    }
+
+    fn touching(&self, rail: Body, wheel: Body, skew: f64) -> Result<Placement> {
+        let skew = finite("contact: skew", skew)?;
+        Ok(Placement { rail, wheel, wheel_radius: self.wheel_radius, skew, at_contact: true })
     }
 
     /// This pair in the contact frames of another placed pair, so that s of both can be compared point by point.
@@ -162,11 +155,6 @@ impl Pair {
             at_contact: other.at_contact,
         }
     }
-}
-
-/// Rejects a skew that is no number.
-fn checked_skew(skew: f64) -> Result<f64> {
-    finite("contact: skew", skew)
 }
 
 /// Angles closer than this \[rad\] are those of one tangent: what a search leaves by rounding, far below the kinks of
@@ -282,7 +270,7 @@ impl Placement {
     /// # Errors
     /// A skew that is not finite.
     pub fn with_skew(&self, skew: f64) -> Result<Self> {
-        Ok(Self { skew: checked_skew(skew)?, ..self.clone() })
+        Ok(Self { skew: finite("contact: skew", skew)?, ..self.clone() })
     }
 
     /// The same contact with χ = 0.

@@ -100,7 +100,7 @@ fn narrow_features_and_missing_surfaces_are_seen_by_the_plan() {
              eta = {{ from = -4.0, to = 4.0, n = 33 }}\ntolerance = 1e-3\n"
         );
         let run = computed(&text).expect("a run");
-        let Part { site, analysis } = &run.parts[0];
+        let Part { site, analysis, .. } = &run.parts[0];
         let (xi, eta) = (&site.grid.xi, &site.grid.eta);
         let mut evaluator = Evaluator::new(&site.contact.placement);
         let mut worst = 0f64;

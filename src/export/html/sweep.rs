@@ -30,6 +30,8 @@ pub struct SweepPanel {
     pub axis: String,
     /// The curves.
     pub curves: Vec<SweepCurve>,
+    /// Smallest and largest value that is shown; `None` shows all.
+    pub shown: Option<[f64; 2]>,
 }
 
 /// Rail and wheel of one side at all positions, in the axes of the rail's profile: x to the field side.
@@ -58,7 +60,7 @@ pub struct SweepSide {
 /// The page of a sweep.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SweepPage {
-    /// Title of the scene.
+    /// Title.
     pub title: String,
     /// A line below the title.
     pub about: String,

@@ -58,6 +58,14 @@ pub struct CurvesPanel {
     pub shown: Option<[f64; 2]>,
 }
 
+impl CurvesPanel {
+    /// Returns the heading, which says so if values are cut off.
+    pub fn heading(&self) -> String {
+        let cut = if self.shown.is_some() { "; flange cut off" } else { "" };
+        format!("{}{cut}", self.title)
+    }
+}
+
 /// The content of the picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CurvesPicture {
@@ -105,7 +113,7 @@ impl CurvesPicture {
     }
 
     fn panel(&self, page: &mut Page, place: [f64; 4], u: [f64; 2], quantity: &CurvesPanel) {
-        page.heading(place, &quantity.title);
+        page.heading(place, &quantity.heading());
         let values = quantity.curves.iter().flat_map(|curve| &curve.points).map(|p| p[1]);
         let [low, high] = quantity.shown.unwrap_or_else(|| range(values));
         let least = (1e-6 * low.abs().max(high.abs())).max(1e-9);

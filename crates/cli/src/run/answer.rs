@@ -143,7 +143,7 @@ const ROWS: [(&str, Cell); 19] = [
     ("method", |part| Some(part.analysis.plan.choice.method.name().into())),
     ("error of s up to, mm", |part| Some(format!("{:.1e}", part.analysis.plan.error))),
     ("warnings", |part| {
-        let count = part.warnings().len();
+        let count = part.warnings.len();
         (count > 0).then(|| count.to_string())
     }),
 ];

@@ -47,11 +47,10 @@ impl Drawn {
 /// is that of the track \[mm\], if it is known.
 pub(super) fn picture(table: &SweepTable, case: &Case, gauge: Option<f64>) -> Result<CurvesPicture> {
     let drawn = Drawn::new(table).map_err(|error: Error| error.at("--picture"))?;
-    let pair = &case.profiles().right.pair;
-    let title = format!("{} under {}", pair.rail().name, pair.wheel().name);
-    let picture = curves(&drawn.columns, &drawn.lateral, &title, &drawn.about)?;
+    let right = &case.profiles().right;
+    let picture = curves(&drawn.columns, &drawn.lateral, &right.names(), &drawn.about)?;
     let gauge_line = gauge.map(|gauge| gauge / 2.0 - table.system.right().track().rail_x());
-    Ok(CurvesPicture { pair: Some(joined_pair(pair, &drawn.columns, gauge_line)), ..picture })
+    Ok(CurvesPicture { pair: Some(joined_pair(&right.pair, &drawn.columns, gauge_line)), ..picture })
 }
 
 /// Makes the page of a table's positions; their lateral displacements have to ascend.

@@ -1,7 +1,7 @@
 // One quantity of a sweep over the lateral displacement.
 
 import { theme } from "./colours.js";
-import { Sheet, fixed } from "./dom.js";
+import { Sheet, fixed, followed } from "./dom.js";
 import { Plot } from "./plot.js";
 
 export class Curves {
@@ -10,24 +10,18 @@ export class Curves {
         Object.assign(this, { panel, abscissa, state, moved });
         const label = `${panel.title}, ${panel.axis} over ${abscissa}. Arrow keys move the position.`;
         this.sheet = new Sheet(label, (...to) => this.draw(...to), { tabindex: 0, class: "cut" });
-        const { canvas } = this.sheet;
-        const move = (event) => {
-            const at = this.plot?.back(event.offsetX, event.offsetY, event.buttons > 0);
+        followed(this.sheet.canvas, (event, held) => {
+            const at = this.plot?.back(event.offsetX, event.offsetY, held);
             if (at) moved(nearest(state.lateral, at[0]));
-        };
-        canvas.addEventListener("pointerdown", (event) => {
-            canvas.setPointerCapture(event.pointerId);
-            move(event);
         });
-        canvas.addEventListener("pointermove", move);
         this.range = this.values();
     }
 
-    /** Least and largest value with some air, never without extent. */
+    /** Least and largest value that is shown, with some air, never without extent. */
     values() {
         const all = this.panel.curves.flatMap((curve) => [...curve.values]).filter((value) => Number.isFinite(value));
         if (all.length === 0) return [0, 1];
-        const [low, high] = [Math.min(...all), Math.max(...all)];
+        const [low, high] = this.panel.shown ?? [Math.min(...all), Math.max(...all)];
         const air = Math.max(0.06 * (high - low), 1e-6 * Math.max(Math.abs(low), Math.abs(high)), 1e-9);
         return [low - air, high + air];
     }
@@ -51,7 +45,7 @@ export class Curves {
             });
         });
         this.panel.curves.forEach(({ values }, k) => {
-            if (!Number.isFinite(values[at])) return;
+            if (!(values[at] >= plot.v[0] && values[at] <= plot.v[1])) return;
             dot(plot, [lateral[at], values[at]], 4, colour(k));
             Object.assign(context, { strokeStyle: colours.paper, lineWidth: 1.5 });
             context.stroke();

@@ -1,7 +1,7 @@
 // s along the two lines of the cut.
 
 import { theme } from "./colours.js";
-import { Sheet, fixed, length } from "./dom.js";
+import { Sheet, fixed, followed, length } from "./dom.js";
 import { Plot } from "./plot.js";
 
 /** Least s shown, as a share of the scale below 0. */
@@ -18,20 +18,11 @@ export class Cut {
     }
 
     listen(canvas) {
-        let held = false;
-        const move = (event) => {
-            if (!held) return;
-            const at = this.plot?.back(event.offsetX, event.offsetY, true);
+        followed(canvas, (event, held) => {
+            const at = held && this.plot?.back(event.offsetX, event.offsetY, true);
             const { cut } = this.state;
             if (at) this.moved(this.axis === 0 ? [at[0], cut[1]] : [cut[0], at[0]]);
-        };
-        canvas.addEventListener("pointerdown", (event) => {
-            held = true;
-            canvas.setPointerCapture(event.pointerId);
-            move(event);
         });
-        canvas.addEventListener("pointermove", move);
-        for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => (held = false));
     }
 
     /** s at a place of the line. */

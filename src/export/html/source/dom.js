@@ -24,6 +24,19 @@ export function length(mm) {
     return Math.abs(mm) < 1 ? `${fixed(1e3 * mm, 2)} µm` : `${fixed(mm, 4)} mm`;
 }
 
+/**
+ * Tells `moved` of the pointer over an element, and whether it is held down; an element that is held keeps the pointer beyond
+ * its edges.
+ */
+export function followed(node, moved) {
+    const told = (event) => moved(event, event.buttons > 0);
+    node.addEventListener("pointerdown", (event) => {
+        node.setPointerCapture(event.pointerId);
+        told(event);
+    });
+    node.addEventListener("pointermove", told);
+}
+
 /** Round values inside of a range, about so many. */
 export function ticks([from, to], about) {
     const raw = (to - from) / Math.max(about, 1);

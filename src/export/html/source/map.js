@@ -2,7 +2,7 @@
 
 import { colourOf, theme } from "./colours.js";
 import { contours } from "./contours.js";
-import { Sheet, fixed, length } from "./dom.js";
+import { Sheet, fixed, followed, length } from "./dom.js";
 import { Plot } from "./plot.js";
 
 /** Axes thinner than this get a scale each. */
@@ -19,19 +19,11 @@ export class PlanView {
     }
 
     listen(canvas) {
-        let held = false;
-        const move = (event) => {
+        followed(canvas, (event, held) => {
             const at = this.plot?.back(event.offsetX, event.offsetY, held);
             if (at && held) this.moved(at);
             this.say(at ?? this.state.cut);
-        };
-        canvas.addEventListener("pointerdown", (event) => {
-            held = true;
-            canvas.setPointerCapture(event.pointerId);
-            move(event);
         });
-        canvas.addEventListener("pointermove", move);
-        for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => (held = false));
         canvas.addEventListener("pointerleave", () => this.say(this.state.cut));
     }
 

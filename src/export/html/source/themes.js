@@ -6,18 +6,22 @@ import { element } from "./dom.js";
 export function themeButton(changed) {
     const system = matchMedia("(prefers-color-scheme: dark)");
     const root = document.documentElement;
-    const dark = () => (root.dataset.theme ?? (system.matches ? "dark" : "light")) === "dark";
     const button = element("button", { type: "button", class: "theme" });
-    const say = () => {
-        button.textContent = dark() ? "Light" : "Dark";
-        button.setAttribute("aria-label", dark() ? "Change to light colours" : "Change to dark colours");
+    let chosen = false;
+    const take = (theme) => {
+        root.dataset.theme = theme;
+        button.textContent = theme === "dark" ? "Light" : "Dark";
+        button.setAttribute("aria-label", `Change to ${button.textContent.toLowerCase()} colours`);
         changed();
     };
+    const follow = () => {
+        if (!chosen) take(system.matches ? "dark" : "light");
+    };
     button.addEventListener("click", () => {
-        root.dataset.theme = dark() ? "light" : "dark";
-        say();
+        chosen = true;
+        take(root.dataset.theme === "dark" ? "light" : "dark");
     });
-    system.addEventListener("change", say);
-    say();
+    system.addEventListener("change", follow);
+    follow();
     return button;
 }
