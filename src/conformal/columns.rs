@@ -188,10 +188,15 @@ impl pulp::WithSimd for Fit<'_, '_> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) -> Option<ColumnPolynomial> {
         // Half the lanes hold the nodes of low degrees, and the places where the error is measured.
-        let fits = |n: usize| n + extrema(n).len() < MANY / 2;
-        let attempt =
-            |n: usize| if fits(n) { self.attempt::<{ MANY / 2 }>(n) } else { self.attempt::<MANY>(n) };
-        (self.least..=MOST_COEFFICIENTS).find_map(attempt)
+        // A closure would be compiled apart, for the least of machines.
+        for n in self.least..=MOST_COEFFICIENTS {
+            let few = n + extrema(n).len() < MANY / 2;
+            let fit = if few { self.attempt::<{ MANY / 2 }>(n) } else { self.attempt::<MANY>(n) };
+            if fit.is_some() {
+                return fit;
+            }
+        }
+        None
     }
 }
 

@@ -15,6 +15,15 @@ const LAST_STEP: f64 = 1e-8;
 /// to n is half as long.
 const LEAST_STRETCH: f64 = 0.5;
 
+/// Where N lines meet a branch.
+#[derive(Debug, Clone, Copy)]
+pub struct Meetings<const N: usize> {
+    /// r \[mm\].
+    pub r: Lanes<N>,
+    /// Parameters of the points met on a polynomial.
+    pub parameters: Option<Lanes<N>>,
+}
+
 /// Finds r and runs ε at which −ε d + r n lies on a branch, for N lines from one known point of it. ε is about `runs`, and
 /// exactly that on arcs and lines: on a polynomial no root is sought. `drift` is d_ξ n_ζ − d_ζ n_ξ. NaN as for [`along`], and
 /// where the chord may end beyond a place at which the polynomial is parallel to n.
@@ -46,7 +55,7 @@ pub fn along_by<const N: usize>(
         }
         _ => {
             let v0: [Lanes<N>; 2] = [lanes(|k| -runs[k] * d[0]), lanes(|k| -runs[k] * d[1])];
-            Some([*runs, along(branch, &from.repeated(), [&v0[0], &v0[1]], n)?])
+            Some([*runs, along(branch, &from.repeated(), [&v0[0], &v0[1]], n)?.r])
         }
     }
 }
@@ -64,17 +73,18 @@ pub fn along<const N: usize>(
     from: &BranchPoints<N>,
     v0: [&Lanes<N>; 2],
     n: [f64; 2],
-) -> Option<Lanes<N>> {
+) -> Option<Meetings<N>> {
     match (&branch.shape, from) {
         (BranchShape::Arc(arc), BranchPoints::Arc { sin, cos, .. }) => {
             let square = n[0] * n[0] + n[1] * n[1];
-            Some(lanes(|k| {
+            let r = |k: usize| {
                 let [x, z] = [v0[0][k], v0[1][k]];
                 let f = 2.0 * (z * cos[k] - x * sin[k]) - arc.curvature * (x * x + z * z);
                 let b = n[1] * cos[k] - n[0] * sin[k] - arc.curvature * (n[0] * x + n[1] * z);
                 let root = (b * b + arc.curvature * square * f).sqrt();
                 if b > 0.0 { -f / (b + root) } else { f64::NAN }
-            }))
+            };
+            Some(Meetings { r: lanes(r), parameters: None })
         }
         (BranchShape::Polynomial(p), BranchPoints::Polynomial { t, .. }) => {
             let (xi, zeta) = (p.xi.as_slice(), p.zeta.as_slice());
@@ -98,12 +108,12 @@ pub fn along<const N: usize>(
                         let r = (z[k] * v0[0][k] - x[k] * v0[1][k]) / across;
                         if across > 0.0 { r } else { f64::NAN }
                     };
-                    return Some(lanes(r));
+                    return Some(Meetings { r: lanes(r), parameters: Some(to) });
                 }
             }
             None
         }
         // Points of another branch have no lines on this one.
-        _ => Some([f64::NAN; N]),
+        _ => Some(Meetings { r: [f64::NAN; N], parameters: None }),
     }
 }

@@ -28,7 +28,7 @@ pub struct RayBodies<'a> {
 #[derive(Debug, Clone, Copy)]
 pub struct Ray<'a> {
     /// The bodies.
-    pub bodies: RayBodies<'a>,
+    pub bodies: &'a RayBodies<'a>,
     /// P′ \[mm\].
     pub p: [f64; 2],
     /// n′.
@@ -72,13 +72,13 @@ impl<'a> RayBodies<'a> {
     }
 
     /// Casts the ray from a point of the rail at lateral position η \[mm\]. Without skew all η have the same ray but for η.
-    pub fn ray(&self, from: &RailPoint, eta: f64) -> Ray<'a> {
+    pub fn ray(&'a self, from: &RailPoint, eta: f64) -> Ray<'a> {
         let (sin, cos) = (self.skew_sin, self.skew_cos);
         let skewed = sin != 0.0;
         let shift = if skewed { eta * sin - from.xi * self.versine } else { 0.0 };
         let n = [if skewed { -from.sin * cos } else { -from.sin }, from.cos];
         Ray {
-            bodies: *self,
+            bodies: self,
             p: [from.xi + shift, from.zeta],
             n,
             eta: if skewed { eta * cos - from.xi * sin } else { eta },

@@ -1,6 +1,6 @@
 //! N rays of one point of the rail, at N places along η, over one piece of the wheel's profile. A single ray is N = 1.
 
-use super::meeting::along;
+use super::meeting::{Meetings, along};
 use super::ray::Ray;
 use crate::numerics::lanes::{Lanes, every, lanes};
 use crate::profile::{Branch, BranchPoints};
@@ -40,7 +40,7 @@ pub struct Met<const N: usize> {
 /// all have the accuracy of the contact segments or none.
 #[inline(always)]
 pub fn in_midplane<const N: usize>(rays: &[Ray<'_>; N], index: usize) -> Option<Beginning<N>> {
-    let (bodies, n) = (&rays[0].bodies, rays[0].n);
+    let (bodies, n) = (rays[0].bodies, rays[0].n);
     let piece = &rays[0].pieces()[index];
     let branch = rays[0].branch(piece);
     let rail = bodies.rail();
@@ -67,11 +67,14 @@ pub fn in_midplane<const N: usize>(rays: &[Ray<'_>; N], index: usize) -> Option<
         None => lanes(|k| height[k] - rays[k].p[1]),
     };
     let v0: [Lanes<N>; 2] = [lanes(|k| rays[k].p[0] - above[k]), lanes(|k| -apart[k])];
-    let t = along(branch, &from, [&v0[0], &v0[1]], n)?;
+    let Meetings { r: t, parameters } = along(branch, &from, [&v0[0], &v0[1]], n)?;
     if !every::<N>(|k| t[k].is_finite()) {
         return None;
     }
-    let (points, _) = branch.points(&lanes(|k| rays[k].p[0] + t[k] * n[0]))?;
+    let points = match parameters {
+        Some(parameters) => branch.points_of(&parameters)?,
+        None => branch.points(&lanes(|k| rays[k].p[0] + t[k] * n[0]))?.0,
+    };
     Some(Beginning { t, e: [0.0; N], points, over_contact: over.is_some() })
 }
 
@@ -107,7 +110,7 @@ pub fn meet<const N: usize>(rays: &[Ray<'_>; N], branch: &Branch, begin: &Beginn
         e = next;
         let v0: [Lanes<N>; 2] =
             [lanes(|k| -(e[k] - begin.e[k]) * wheel.sin), lanes(|k| -(e[k] - begin.e[k]) * wheel.cos)];
-        let rise = along(branch, &begin.points, [&v0[0], &v0[1]], n)?;
+        let Meetings { r: rise, .. } = along(branch, &begin.points, [&v0[0], &v0[1]], n)?;
         t = lanes(|k| begin.t[k] + rise[k]);
         w = lanes(|k| rays[k].axle_distance(t[k]));
         if !every::<N>(|k| t[k].is_finite()) {

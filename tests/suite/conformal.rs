@@ -1,143 +1,64 @@
 //! The normal gap of conformal contact against 60-digit values and closed forms.
 
 use crate::common::{folder, profile};
-use serde::Deserialize;
 use wheelrail::Evaluator;
 use wheelrail::case::{Run, SILENT};
 use wheelrail::conformal::{ConformalPatch, GapPoint, NormalGap, fill_normal_gap};
 use wheelrail::scene::{self, Scene};
-use wheelrail::separation::{EtaAxis, FULL_PRECISION};
+use wheelrail::separation::EtaAxis;
 use wheelrail::{Arc, Half, Pair, Patch, Placement, Window};
-use wheelrail_report::reference::{ReferenceScene, ReferenceSegment, exact};
+use wheelrail_report::conformal::values::{
+    BOUNDS, FILES, GapBound, GapErrors, GapReference, GapValue, PROMISED_ABSOLUTE, PROMISED_RELATIVE,
+    gap_references,
+};
+use wheelrail_report::reference::exact;
 
-/// What is promised to users; no row of [`BOUNDS`] may be looser.
-const PROMISED_RELATIVE: f64 = 1e-13;
-const PROMISED_ABSOLUTE: f64 = 2e-12;
-
-/// A row whose measured error is this much below its bound fails as "tighten me".
-const MOST_SLACK: f64 = 4.0;
-
-/// A way to compute t and the bounds it is held to.
-struct Bound {
-    grid: bool,
-    skewed: bool,
-    /// Largest relative error of t where the point lies over both contact segments.
-    relative: f64,
-    /// Largest absolute error elsewhere \[mm\], × max(1, R_max/300 mm).
-    absolute: f64,
+fn references() -> Vec<GapReference> {
+    gap_references().expect("the files' format")
 }
 
-/// Single points, and whole grids by polynomials. An interpolated skewed column has the accuracy of its largest t in an interval,
-/// and t may fall to a 64th of that.
-const BOUNDS: [Bound; 4] = [
-    Bound { grid: false, skewed: false, relative: 2.5e-15, absolute: 6e-15 },
-    Bound { grid: false, skewed: true, relative: 2.5e-15, absolute: 6e-15 },
-    Bound { grid: true, skewed: false, relative: 2.5e-15, absolute: 6e-15 },
-    Bound { grid: true, skewed: true, relative: 8e-14, absolute: 2.5e-14 },
-];
+/// A row of [`BOUNDS`] whose measured error is this much below it fails as "tighten me".
+const MOST_SLACK: f64 = 4.0;
 
 /// Largest error of α \[rad\] and of (ξ, ζ) \[mm\].
 const PLACE: f64 = 1.5e-14;
 
-/// A row of a file: σ, η, t, α, ξ, ζ; `None` where the ray misses the wheel or σ is beyond the rail.
-type Row = (f64, f64, Option<String>, Option<String>, Option<String>, Option<String>);
-
-#[derive(Deserialize)]
-struct Values {
-    scene: ReferenceScene,
-    normal_gap: Vec<Row>,
-}
-
-impl Values {
-    fn scale(&self) -> f64 {
-        let radius = |segment: &ReferenceSegment| match segment {
-            ReferenceSegment::Arc { r, .. } => *r,
-            _ => 0.0,
-        };
-        let largest = self.scene.rail.iter().chain(&self.scene.wheel).map(radius).fold(0.0, f64::max);
-        (largest / 300.0).max(1.0)
-    }
-
-    /// t at the rows, as a grid computes it or point by point.
-    fn found(&self, gap: &NormalGap<'_>, grid: bool) -> Vec<f64> {
-        if !grid {
-            return self.normal_gap.iter().map(|row| gap.gap(row.0, row.1)).collect();
+#[test]
+fn the_normal_gap_keeps_its_digits() {
+    for GapBound { grid, skewed, relative, absolute } in BOUNDS {
+        assert!(relative <= PROMISED_RELATIVE && absolute <= PROMISED_ABSOLUTE);
+        let mut all = GapErrors::NONE;
+        for reference in references().iter().filter(|reference| reference.skewed() == skewed) {
+            let errors = reference.errors(&reference.placement().expect("a placement"), grid);
+            let what = format!("{} grid {grid}: {errors:?}", reference.name);
+            assert!(errors.relative <= relative && errors.absolute <= absolute, "{what}");
+            assert_eq!(errors.wrongly_masked, 0, "{what}");
+            all = all.and(errors);
         }
-        let [sigma, eta] = self.scene.axes();
-        // More columns and rows between the given ones are interpolated, few are not.
-        let mut all = eta.clone();
-        all.extend((0..110).map(|k| -7.9 + 0.13 * f64::from(k)));
-        all.sort_by(f64::total_cmp);
-        let mut out = vec![0.0; sigma.len() * all.len()];
-        fill_normal_gap(gap, &sigma, &EtaAxis::new(&all), FULL_PRECISION, &mut out);
-        let index = |values: &[f64], value: f64| values.iter().position(|&v| v == value).expect("an entry");
-        let at = |row: &Row| out[index(&sigma, row.0) * all.len() + index(&all, row.1)];
-        self.normal_gap.iter().map(at).collect()
+        println!("grid {grid} skewed {skewed}: {all:?}");
+        assert!(all.over_contact > 80 && all.elsewhere > 15, "{all:?}");
+        assert!(all.relative * MOST_SLACK >= relative, "tighten grid {grid} skewed {skewed}: {all:?}");
+        assert!(all.absolute * MOST_SLACK >= absolute, "tighten grid {grid} skewed {skewed}: {all:?}");
     }
-}
-
-fn references() -> Vec<(String, Values)> {
-    let files = std::fs::read_dir(folder("reference_conformal")).expect("the folder of reference values");
-    let mut files: Vec<_> = files.map(|entry| entry.expect("a file").path()).collect();
-    files.retain(|path| path.extension().is_some_and(|e| e == "json"));
-    files.sort();
-    assert!(files.len() >= 11, "{files:?}");
-    let read = |path: std::path::PathBuf| {
-        let text = std::fs::read_to_string(&path).expect("a readable file");
-        let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
-        (name, serde_json::from_str(&text).expect("its format"))
-    };
-    files.into_iter().map(read).collect()
 }
 
 #[test]
-fn the_normal_gap_keeps_its_digits() {
-    for Bound { grid, skewed, relative: bound, absolute } in BOUNDS {
-        assert!(bound <= PROMISED_RELATIVE && absolute <= PROMISED_ABSOLUTE);
-        let (mut relative, mut elsewhere, mut over, mut others) = (0f64, 0f64, 0, 0);
-        for (name, values) in
-            references().into_iter().filter(|(_, values)| (values.scene.chi != 0.0) == skewed)
-        {
-            let placement = values.scene.placement().expect("a placement");
-            let gap = NormalGap::new(&placement);
-            for (row, found) in values.normal_gap.iter().zip(values.found(&gap, grid)) {
-                let (sigma, eta, Some(t), ..) = row else {
-                    assert!(found.is_nan(), "{name} {row:?}: {found}");
-                    continue;
-                };
-                let (t, what) = (exact(t), format!("{name} grid {grid} σ = {sigma} η = {eta}"));
-                let error = (found - t).abs();
-                let contact = gap.point(*sigma, *eta).is_some_and(|point| point.over_contact);
-                if contact {
-                    let error = if error == 0.0 { 0.0 } else { error / t.abs() };
-                    assert!(error <= bound, "{what}: relative error {error:e}");
-                    (relative, over) = (relative.max(error), over + 1);
-                } else {
-                    let error = error / values.scale();
-                    assert!(error <= absolute, "{what}: error {error:e} mm");
-                    (elsewhere, others) = (elsewhere.max(error), others + 1);
-                }
-            }
-        }
-        println!(
-            "grid {grid} skewed {skewed}: relative {relative:e} at {over} points, {elsewhere:e} mm at {others}"
-        );
-        assert!(over > 80 && others > 15, "{over} {others}");
-        assert!(relative * MOST_SLACK >= bound, "tighten grid {grid} skewed {skewed}: relative {relative:e}");
-        assert!(
-            elsewhere * MOST_SLACK >= absolute,
-            "tighten grid {grid} skewed {skewed}: absolute {elsewhere:e}"
-        );
-    }
+fn every_file_of_values_is_embedded() {
+    let files = std::fs::read_dir(folder("reference_conformal")).expect("the folder of reference values");
+    let paths = files.map(|entry| entry.expect("a file").path());
+    let mut on_disk: Vec<_> = paths.filter(|path| path.extension().is_some_and(|e| e == "json")).collect();
+    on_disk.sort();
+    let names: Vec<_> = on_disk.iter().filter_map(|path| path.file_stem()?.to_str()).collect();
+    assert_eq!(names, FILES.map(|(name, _)| name));
 }
 
 #[test]
 fn the_rail_is_where_its_arc_length_says() {
     let mut worst = 0f64;
-    for (name, values) in references() {
-        let placement = values.scene.placement().expect("a placement");
+    for GapReference { name, scene, normal_gap } in references() {
+        let placement = scene.placement().expect("a placement");
         let gap = NormalGap::new(&placement);
-        for (sigma, _, _, alpha, xi, zeta) in &values.normal_gap {
+        for GapValue { sigma, angle: alpha, xi, zeta, .. } in &normal_gap {
             let (Some(alpha), Some(xi), Some(zeta)) = (alpha, xi, zeta) else {
                 assert!(gap.angle(*sigma).is_nan(), "{name} {sigma}");
                 continue;
@@ -267,10 +188,10 @@ fn rays_that_miss_are_no_numbers_and_overlap_is_negative() {
 
 #[test]
 fn both_normals_are_those_of_the_surfaces() {
-    for (_, values) in references() {
-        let placement = values.scene.placement().expect("a placement");
+    for reference in references() {
+        let placement = reference.placement().expect("a placement");
         let gap = NormalGap::new(&placement);
-        for (sigma, eta, t, alpha, ..) in &values.normal_gap {
+        for GapValue { sigma, eta, gap: t, angle: alpha, .. } in &reference.normal_gap {
             let (Some(_), Some(alpha)) = (t, alpha) else { continue };
             let GapPoint { rail, rail_normal, wheel_normal, gap: t, .. } =
                 gap.point(*sigma, *eta).expect("a point");

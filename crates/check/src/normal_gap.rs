@@ -3,6 +3,7 @@
 
 use std::fmt;
 
+use wheelrail::conformal::NormalGap;
 use wheelrail::error::{Error, Result};
 use wheelrail::nalgebra::{Unit, Vector3};
 use wheelrail::placement::Placement;
@@ -36,6 +37,20 @@ pub struct NormalGapSample {
     pub rail_normal: Unit<Vector3<f64>>,
     /// Outward unit normal of the wheel where the line along it ends.
     pub wheel_normal: Unit<Vector3<f64>>,
+}
+
+impl NormalGapSample {
+    /// Evaluates the point at (σ, η) \[mm\]; `None` beyond the rail's range of σ and where the ray misses the wheel.
+    pub fn at(gap: &NormalGap<'_>, sigma: f64, eta: f64) -> Option<Self> {
+        let point = gap.point(sigma, eta)?;
+        Some(Self {
+            at: [sigma, eta],
+            point: [point.rail.xi, eta, point.rail.zeta],
+            gap: point.gap,
+            rail_normal: point.rail_normal,
+            wheel_normal: point.wheel_normal?,
+        })
+    }
 }
 
 /// What the comparison found.

@@ -46,21 +46,10 @@ fn normal_gaps(site: &Site) -> Option<Vec<NormalGapSample>> {
         values.iter().step_by(values.len().div_ceil(SAMPLES).max(1)).copied().collect()
     };
     let eta = spread(&site.grid.eta);
-    let places = spread(sigma)
-        .into_iter()
-        .flat_map(|sigma| eta.iter().map(move |&eta| (sigma, eta)).collect::<Vec<_>>());
-    let sample = |(sigma, eta)| {
-        let point = gap.point(sigma, eta)?;
-        let (point_on_rail, wheel_normal) = ([point.rail.xi, eta, point.rail.zeta], point.wheel_normal?);
-        Some(NormalGapSample {
-            at: [sigma, eta],
-            point: point_on_rail,
-            gap: point.gap,
-            rail_normal: point.rail_normal,
-            wheel_normal,
-        })
-    };
-    Some(places.filter_map(sample).collect())
+    let samples = spread(sigma).into_iter().flat_map(|sigma| {
+        eta.iter().filter_map(|&eta| NormalGapSample::at(&gap, sigma, eta)).collect::<Vec<_>>()
+    });
+    Some(samples.collect())
 }
 
 fn check_site(site: &Site) -> Result<Report> {

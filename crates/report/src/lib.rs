@@ -6,12 +6,13 @@
 //! runs the cases of `tests/hard_cases`; [`verification`] checks placed pairs by parry3d's meshes. [`measured`] compares
 //! curves through points with the drawing from which the points come; [`specimen`] makes worn profiles as instruments
 //! measure them. [`rates`] counts positions of a wheelset a second over them, [`loads`] compares approaches under load with
-//! solved ones, [`whole_case`] times a case from first touch to its mesh. [`measurements`] does all of this with a given
-//! effort; [`requirements`] judges the ratios; [`practice`] compares whole cases of engineers with brute force. [`page`]
+//! solved ones, [`whole_case`] times a case from first touch to its mesh, [`conformal`] measures the normal gap.
+//! [`measurements`] does all of this with a given effort; [`requirements`] judges the ratios; [`practice`] compares whole cases of engineers with brute force. [`page`]
 //! and [`table`] turn the numbers into Markdown, CSV and charts. Nothing here touches the disk.
 
 #![cfg_attr(not(test), warn(unused_crate_dependencies))]
 
+pub mod conformal;
 pub mod errors;
 pub mod hard_case;
 mod hard_checks;

@@ -82,7 +82,7 @@ type Row = [f64; 2];
 
 impl Loaded {
     /// Resolves the case of this position over a pair.
-    fn case(&self, pair: &Pair) -> Result<Case> {
+    pub(super) fn case(&self, pair: &Pair) -> Result<Case> {
         let Self { offset, yaw, load, .. } = self;
         // The profiles named here are not read, because the pair is given.
         let scene = format!(

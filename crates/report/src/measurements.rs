@@ -5,6 +5,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
+use super::conformal::{NormalGapFigures, normal_gap_figures};
 use super::errors::{Errors, compare};
 use super::hard_case::hard_cases;
 use super::hard_run::{self, HardOutcome};
@@ -126,7 +127,7 @@ pub struct Threads {
 }
 
 /// All numbers of a report.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Measurements {
     /// Rows for every scene × method × tolerance × grid.
     pub rows: Vec<AccuracyRow>,
@@ -150,6 +151,8 @@ pub struct Measurements {
     pub hard_cases: Vec<HardOutcome>,
     /// Results of the practice cases against brute force.
     pub practice: Vec<PracticeRow>,
+    /// Errors, times and effects of the normal gap.
+    pub normal_gap: NormalGapFigures,
     /// Errors of approaches under loads.
     pub loads: Vec<ApproachError>,
     /// Results of the check by parry3d's meshes: of the reference scenes, with and without skew, and of the
@@ -186,6 +189,8 @@ pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measur
     progress("practice cases against brute force");
     let cases: Vec<_> = practice::cases()?.into_iter().step_by(effort.every_case).collect();
     let practice = cases.par_iter().map(practice::run).collect();
+    progress("the normal gap");
+    let normal_gap = one.install(|| normal_gap_figures(&effort.sides, effort.seconds))?;
     progress("loads");
     let loads = loads::carried()?.iter().map(Carried::compared).collect();
     progress("the check by parry3d's meshes");
@@ -203,6 +208,7 @@ pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measur
         run,
         hard_cases,
         practice,
+        normal_gap,
         loads,
         verified,
         evidence,

@@ -1,8 +1,10 @@
 //! Builds the page of the report: a list of sections, each made by one function, and the files beside it.
 
+mod conformal;
 mod in_use;
 mod section;
 
+pub use conformal::conforming_table;
 pub use section::PageSection;
 
 use super::hard_run::HardOutcome;
@@ -23,13 +25,14 @@ pub type PageOrigin = Vec<(&'static str, String)>;
 pub const PAGE: &str = "report.md";
 
 /// Names of all files of a report.
-pub const FILES: [&str; 11] = [
+pub const FILES: [&str; 12] = [
     PAGE,
     "accuracy.csv",
     "positions.csv",
     "cases.csv",
     "hard_cases.csv",
     "practice.csv",
+    "normal_gap.csv",
     "verification.csv",
     "scaling.csv",
     "scaling.svg",
@@ -50,6 +53,7 @@ pub fn sections(m: &Measurements) -> Vec<PageSection> {
         hard_cases(m),
         in_use::practice(m),
         in_use::loads(m),
+        conformal::normal_gap(m),
         verification(m),
         measured_profiles(m),
         method(m),

@@ -1,5 +1,6 @@
 //! The ratios that the project requires of itself, and whether a run met them.
 
+use super::conformal::cost::GapCost;
 use super::measurements::{AccuracyRow, Growth, Measurements, median};
 use super::rates::{Motion, Rate};
 use super::spline_cost::SplineCost;
@@ -28,6 +29,10 @@ const RUN: f64 = 0.1;
 const WHOLE_CASES: [(&str, f64); 2] = [("drawn", 1e-4), ("measured", 3e-4)];
 /// Largest time of a plan over that of the fill.
 const PLAN_OVER_FILL: f64 = 2.0;
+/// Largest time of a grid of the normal gap over that of s.
+const NORMAL_GAP_OVER_S: f64 = 3.0;
+/// Number n of the n × n grid on which that counts.
+const NORMAL_GAP_SIDE: usize = 200;
 /// Largest distance of d log time/d log points from 1 at which growth counts as linear. It is a factor of 1.6 over four
 /// decades.
 const LINEAR: f64 = 0.05;
@@ -74,6 +79,7 @@ pub fn all(m: &Measurements) -> Vec<Requirement> {
     out.extend(RATES.iter().flat_map(|&(motion, drawn, measured)| rates(m, motion, [drawn, measured])));
     out.extend(conicity_table(m));
     out.extend(whole_cases(m));
+    out.extend(normal_gap(m));
     out.extend(m.run.map(|run| {
         at_most("`run` of a measured wheelset, files not written, s", RUN, run.total(), String::new())
     }));
@@ -143,6 +149,22 @@ fn splined_points(m: &Measurements) -> Option<Requirement> {
         worst.nanoseconds(),
         remark,
     ))
+}
+
+/// Judges the normal gap over s; the slowest scene decides.
+fn normal_gap(m: &Measurements) -> Option<Requirement> {
+    let costs = m.normal_gap.scenes.iter().flat_map(|scene| &scene.costs);
+    let costs: Vec<&GapCost> = costs.filter(|cost| cost.side == NORMAL_GAP_SIDE).collect();
+    let worst = costs.iter().max_by(|a, b| a.ratio().total_cmp(&b.ratio()))?;
+    let met = costs.iter().filter(|cost| cost.ratio() <= NORMAL_GAP_OVER_S).count();
+    let middle = median(costs.iter().map(|cost| cost.ratio()));
+    Some(Requirement {
+        what: format!("time of the normal gap over that of s, {NORMAL_GAP_SIDE} × {NORMAL_GAP_SIDE}"),
+        least: format!("at most {NORMAL_GAP_OVER_S}"),
+        found: format!("{:.2}", worst.ratio()),
+        remark: format!("{}; median {middle:.2}; {met} of {} scenes", worst.scene, costs.len()),
+        met: worst.ratio() <= NORMAL_GAP_OVER_S,
+    })
 }
 
 /// Judges splines over arcs; the slowest grid decides.

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::conformal::GapScene;
 use super::hard_case::METHODS;
 use super::hard_run::HardOutcome;
 use super::measurements::{AccuracyRow, Growth};
@@ -109,6 +110,35 @@ pub fn verification_csv(groups: &[Vec<Verified>]) -> String {
             floor(|f| f.ray_mm),
             floor(|f| f.closest_mm),
         );
+    }
+    out
+}
+
+/// Returns normal_gap.csv: errors of t against 60-digit values, times, and the check by closest distances; one row for each
+/// scene and grid.
+pub fn normal_gap_csv(scenes: &[GapScene]) -> String {
+    let mut out = String::from(
+        "scene,skewed,points_relative_error,points_error_mm,grid_relative_error,grid_error_mm,wrongly_masked,side,seconds,\
+         seconds_of_s,checked_points,distance_beyond_mm,agrees\n",
+    );
+    for GapScene { name, skewed, errors: [points, grid], costs, check } in scenes {
+        for cost in costs {
+            let _ = writeln!(
+                out,
+                "{name},{skewed},{:.4e},{:.4e},{:.4e},{:.4e},{},{},{:.4e},{:.4e},{},{:.2e},{}",
+                points.relative,
+                points.absolute,
+                grid.relative,
+                grid.absolute,
+                points.wrongly_masked + grid.wrongly_masked,
+                cost.side,
+                cost.normal_gap,
+                cost.separation,
+                check.points,
+                check.beyond_mm,
+                check.agrees,
+            );
+        }
     }
     out
 }

@@ -5,7 +5,9 @@ use super::points::{self, BranchPoint, BranchPoints, repeated};
 use super::turned::{rising_parts, seen_from, seen_from_own_point};
 use crate::numerics::cosine;
 use crate::numerics::lanes::Lanes;
-use crate::numerics::polynomial::{derivative, derivatives, exact_values, range, value, value_and_slope};
+use crate::numerics::polynomial::{
+    derivative, derivatives, exact_values, range, value, value_and_slope, values_and_slopes,
+};
 use crate::numerics::twice::Twice;
 use crate::profile::arc::Arc;
 use crate::profile::polynomial::Polynomial;
@@ -324,6 +326,17 @@ impl Branch {
                 points::points(p.coefficients(), repeated(p.t), repeated(p.ends), xi)
             }
         }
+    }
+
+    /// Returns the points of a polynomial at N parameters, from which chords are drawn; `None` for an arc or line.
+    #[inline(always)]
+    pub fn points_of<const N: usize>(&self, t: &Lanes<N>) -> Option<BranchPoints<N>> {
+        let BranchShape::Polynomial(p) = &self.shape else { return None };
+        let [xi, mut rate] = values_and_slopes(p.xi.as_slice(), t);
+        for rate in &mut rate {
+            *rate = 1.0 / *rate;
+        }
+        Some(BranchPoints::Polynomial { xi, t: *t, rate })
     }
 
     /// Finds the point at ξ, from which chords are drawn, and ζ(ξ) \[mm\].

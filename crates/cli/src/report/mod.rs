@@ -41,5 +41,7 @@ pub(super) fn report(out: Option<&Path>, splice: Option<&Path>) -> Result<Outcom
     let wrong = wrong.map(|case| format!("hard case {} is not as stated", case.case.reference.name));
     let disputed = measurements.verified.iter().flatten().filter(|verified| !verified.report.agrees);
     let disputed = disputed.map(|verified| format!("{} disagrees with parry3d's meshes", verified.name));
-    Ok(outcome(wrong.chain(disputed)))
+    let gaps = measurements.normal_gap.scenes.iter().filter(|scene| !scene.check.agrees);
+    let gaps = gaps.map(|scene| format!("the normal gap of {} disagrees with closest distances", scene.name));
+    Ok(outcome(wrong.chain(disputed).chain(gaps)))
 }

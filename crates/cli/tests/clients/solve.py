@@ -16,15 +16,18 @@ from ContactMechanics import FreeFFTElasticHalfSpace, Systems
 from folder import Checks, Folder
 
 
-def solved_by_tamaas(s, steps, modulus, load):
-    """Peak pressure [MPa] and approach [mm] of a separation [mm], NaN where a body has no surface, on these steps [mm]."""
-    s = np.where(np.isnan(s), 10 * np.nanmax(np.abs(s)), s)
-    size = [n * d for n, d in zip(s.shape, steps)]
+def traction(gap, steps, modulus, load):
+    """Pressure [MPa] on the cells of a gap [mm] on these steps [mm] under a load [N], and the rigid approach [mm].
+
+    The gap is NaN where a body has no surface.
+    """
+    gap = np.where(np.isnan(gap), 10 * np.nanmax(np.abs(gap)), gap)
+    size = [n * d for n, d in zip(gap.shape, steps)]
     tamaas.set_log_level(tamaas.LogLevel.error)
-    model = tamaas.Model(tamaas.model_type.basic_2d, size, list(s.shape))
+    model = tamaas.Model(tamaas.model_type.basic_2d, size, list(gap.shape))
     model.E, model.nu = modulus, 0
     tamaas.ModelFactory.registerNonPeriodic(model, "dcfft")
-    solver = tamaas.PolonskyKeerRey(model, np.ascontiguousarray(-s), 1e-10)
+    solver = tamaas.PolonskyKeerRey(model, np.ascontiguousarray(-gap), 1e-10)
     solver.setIntegralOperator("dcfft")
     error = solver.solve(load / np.prod(size))
     assert error < 1e-10, error
@@ -32,11 +35,17 @@ def solved_by_tamaas(s, steps, modulus, load):
     # No solver complains of a patch that the grid cuts, and its pressures are far too high.
     edges = np.concatenate([pressure[[0, -1]].ravel(), pressure[:, [0, -1]].ravel()])
     assert not edges.any(), "the grid cuts the patch"
-    # The solver leaves the displacement up to a constant. Where the bodies touch, s + u is the approach.
+    # The solver leaves the displacement up to a constant. Where the bodies touch, gap + u is the approach.
     displacement = np.zeros_like(pressure)
     model.operators["dcfft"](pressure, displacement)
     touching = pressure > 0.1 * pressure.max()
-    return pressure.max(), np.mean((s + displacement)[touching])
+    return pressure, np.mean((gap + displacement)[touching])
+
+
+def solved_by_tamaas(s, steps, modulus, load):
+    """Peak pressure [MPa] and approach [mm] of a separation [mm] on these steps [mm]."""
+    pressure, approach = traction(s, steps, modulus, load)
+    return pressure.max(), approach
 
 
 def tamaas_solution(folder, modulus, load):

@@ -11,6 +11,7 @@
 mod answers;
 mod clients;
 mod clients_runs;
+mod conformal_table;
 mod hostile;
 mod load_table;
 mod pages;

@@ -1,0 +1,59 @@
+//! Times grids of the normal gap against grids of s over the same windows.
+
+use super::values::GapReference;
+use crate::speed::{LEAST_RUNS, Timing, race, timed};
+use wheelrail::conformal::{NormalGap, fill_normal_gap};
+use wheelrail::error::Result;
+use wheelrail::mesh::equal_steps;
+use wheelrail::separation::{EtaAxis, FULL_PRECISION, Method, Values, plan};
+
+/// The times of one grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GapCost {
+    /// Name of the scene.
+    pub scene: String,
+    /// Number n of the n × n grid.
+    pub side: usize,
+    /// Shortest time of t over the grid of σ and η \[s\].
+    pub normal_gap: f64,
+    /// Shortest time of s over the grid of ξ and η \[s\], by spectral columns.
+    pub separation: f64,
+}
+
+impl GapCost {
+    /// Returns the time of t over that of s.
+    pub fn ratio(&self) -> f64 {
+        self.normal_gap / self.separation
+    }
+}
+
+/// Times n × n points over the window of a scene's values, t and s at full precision, each for at least `seconds`. Call it on
+/// one thread.
+///
+/// # Errors
+/// The errors of [`GapReference::placement`].
+pub fn gap_cost(reference: &GapReference, side: usize, seconds: f64) -> Result<GapCost> {
+    let placement = reference.placement()?;
+    let gap = NormalGap::new(&placement);
+    let [sigma, eta] = reference.scene.axes();
+    let reach = eta.iter().fold(0.0, |most: f64, eta| most.max(eta.abs()));
+    let axis = EtaAxis::new(&equal_steps(-reach, reach, side));
+    let ends = gap.rail().reach().map_or([0.0; 2], |[low, high]| {
+        [sigma.first().map_or(0.0, |&at| low.max(at)), sigma.last().map_or(0.0, |&at| high.min(at))]
+    });
+    let sigma = equal_steps(ends[0], ends[1], side);
+    let [from, to] = ends.map(|at| gap.rail().point(at).map_or(0.0, |at| at.xi));
+    let xi = equal_steps(from, to, side);
+    let choice = plan(&placement, &xi, &axis, FULL_PRECISION, Some(Method::Spectral)).choice;
+    let mut values = Values::new(side * side);
+    values.fill(0.0);
+    let mut timings = [Timing::NONE; 2];
+    race(&mut timings, seconds, LEAST_RUNS, |contestant| {
+        timed(|| match contestant {
+            0 => drop(fill_normal_gap(&gap, &sigma, &axis, FULL_PRECISION, &mut values)),
+            _ => drop(choice.fill(&placement, &xi, &axis, &mut values)),
+        })
+    });
+    let [normal_gap, separation] = timings.map(|timing| timing.best);
+    Ok(GapCost { scene: reference.name.clone(), side, normal_gap, separation })
+}
