@@ -56,8 +56,8 @@ fn flange(placement: &Placement) -> Option<String> {
         return None;
     };
     Some(format!(
-        "the wheel stands on the {place} of its flange, x = {:.2} mm on the wheel: check the offset, the gauge, and the side that \
-         the profiles' x points to (mirror)",
+        "the wheel stands on the {place} of its flange, x = {:.2} mm on the wheel: check the offset, the gauge, the side that the \
+         profiles' x points to (mirror), and the origin (a wheel measured from its flange back needs shift = [-70.0, 0.0])",
         at.x
     ))
 }

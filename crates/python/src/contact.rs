@@ -2,9 +2,10 @@
 
 use std::sync::OnceLock;
 
-use numpy::{PyArray2, PyArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use wheelrail::case::{ApproachBy, check_method};
+use wheelrail::conformal::{NormalGap, RailArcLength, fill_normal_gap};
 use wheelrail::internal::MANY;
 use wheelrail::load::{Curvatures, Ellipse, curvatures, feasibility};
 use wheelrail::scene::{self, MaterialData, PatchData};
@@ -12,7 +13,7 @@ use wheelrail::search;
 use wheelrail::separation::{EtaAxis, Method, Plan, plan};
 use wheelrail::{Error, Placement};
 
-use crate::arrays::{Numbers, values};
+use crate::arrays::{Numbers, array, values};
 use crate::errors::{OrRaise, exception};
 use crate::patch::Patch;
 use crate::profile::Profile;
@@ -176,13 +177,7 @@ impl Contact {
         method: &str,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let method = named_method(method)?;
-        let (xi, eta) = (values(&xi)?, values(&eta)?);
-        scene::check_axis("xi", &xi).or_raise()?;
-        scene::check_axis("eta", &eta).or_raise()?;
-        if !(tolerance > 0.0 && tolerance.is_finite()) {
-            let (found, expected) = (tolerance.to_string(), "a positive length in mm");
-            return Err(exception(Error::new("tolerance", found, expected, "1e-12 gives all digits")));
-        }
+        let [xi, eta] = checked_axes(("xi", &xi), &eta, tolerance)?;
         let placement = self.placement()?;
         check_method(placement, method).or_raise()?;
         let array = PyArray2::<f64>::zeros(py, [xi.len(), eta.len()], false);
@@ -193,6 +188,49 @@ impl Contact {
         fill(py, &mut plan, placement, (&xi, &axis), out)?;
         drop(values);
         Ok(array)
+    }
+
+    /// Compute the normal gap t(sigma, eta) along the rail's own turning normal, over the rail's surface, in mm, + apart: float64
+    /// (n_sigma, n_eta), C order, NaN beyond the rail's surface and where the normal misses the wheel. It is for conformal
+    /// contact: an approach delta along zeta closes delta*cos(alpha) of it.
+    ///
+    /// `sigma`, the arc length along the rail from C, + towards +xi, and `eta` are ascending arrays in mm; `tolerance` in mm is
+    /// as of `separation`. The array is filled without the GIL.
+    ///
+    /// Raises InputError for axes that do not ascend and a tolerance that is not positive.
+    #[pyo3(signature = (sigma, eta, *, tolerance = 1e-12))]
+    fn normal_gap<'py>(
+        &self,
+        py: Python<'py>,
+        sigma: Numbers<'py>,
+        eta: Numbers<'py>,
+        tolerance: f64,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let axes = checked_axes(("sigma", &sigma), &eta, tolerance)?;
+        let array = PyArray2::<f64>::zeros(py, [axes[0].len(), axes[1].len()], false);
+        let mut values = array.try_readwrite()?;
+        let out = values.as_slice_mut()?;
+        let placement = self.placement()?;
+        py.detach(|| {
+            fill_normal_gap(&NormalGap::new(placement), &axes[0], &EtaAxis::new(&axes[1]), tolerance, out)
+        });
+        drop(values);
+        Ok(array)
+    }
+
+    /// Find the rail's points by their arc length `sigma` from C, mm: xi and zeta in mm and alpha in rad, the angle of the
+    /// outward normal (-sin(alpha), cos(alpha)) from zeta; each (n_sigma,), NaN beyond the rail's surface.
+    fn rail_surface<'py>(
+        &self,
+        py: Python<'py>,
+        sigma: Numbers<'py>,
+    ) -> PyResult<[Bound<'py, PyArray1<f64>>; 3]> {
+        let rail = RailArcLength::new(self.placement()?);
+        let nowhere = [f64::NAN; 3];
+        let point =
+            |&sigma: &f64| rail.point(sigma).map_or(nowhere, |at| [at.xi, at.zeta, at.sin.atan2(at.cos)]);
+        let points: Vec<[f64; 3]> = values(&sigma)?.iter().map(point).collect();
+        Ok([0, 1, 2].map(|k| array(py, points.iter().map(|point| point[k]).collect())))
     }
 
     /// Compute Hertz's elliptic contact under a vertical load in N, which this contact carries alone, or an approach in mm; `modulus` is E* in N/mm2, steel on steel if
@@ -271,6 +309,22 @@ impl Contact {
         let ((x, z), angle) = (self.rail_point()?, self.contact_angle()?);
         Ok(format!("Contact({:?}, rail_point=({x:.4}, {z:.4}), contact_angle={angle:.5})", self.name))
     }
+}
+
+/// Reads the axes of a grid \[mm\], and checks them and the tolerance.
+fn checked_axes(
+    (name, first): (&str, &Numbers<'_>),
+    eta: &Numbers<'_>,
+    tolerance: f64,
+) -> PyResult<[Vec<f64>; 2]> {
+    let (first, eta) = (values(first)?, values(eta)?);
+    scene::check_axis(name, &first).or_raise()?;
+    scene::check_axis("eta", &eta).or_raise()?;
+    if tolerance > 0.0 && tolerance.is_finite() {
+        return Ok([first, eta]);
+    }
+    let (found, expected) = (tolerance.to_string(), "a positive length in mm");
+    Err(exception(Error::new("tolerance", found, expected, "1e-12 gives all digits")))
 }
 
 /// Fills a grid. Methods and wheels that take microseconds a point are filled in parts, between which Ctrl-C is looked for.

@@ -48,6 +48,28 @@ def test_a_large_grid_filled_in_parts_has_the_bits_of_the_whole(track: wr.Wheels
         assert np.nanmax(np.abs(large[rows] - part)) <= (1e-9 if yaw else 0.0)
 
 
+@pytest.mark.parametrize("yaw", [0.0, 0.01])
+def test_the_normal_gap_follows_the_rail_and_tends_to_the_separation(track: wr.Wheelset, yaw: float) -> None:
+    contact = track.touch(lateral=5.5, yaw=yaw).right[0]
+    sigma, eta = np.linspace(-4, 4, 33), np.linspace(-6, 6, 41)
+    t, (xi, zeta, alpha) = contact.normal_gap(sigma, eta), contact.rail_surface(sigma)
+    assert t.shape == (33, 41) and t.dtype == np.float64 and xi.shape == zeta.shape == alpha.shape == sigma.shape
+    assert t[16, 20] == xi[16] == zeta[16] == 0.0 and np.ptp(alpha) > 0.2
+    # Steps of the points are chords of the arc, along its tangent.
+    run, rise = np.diff(xi), np.diff(zeta)
+    assert np.all(np.hypot(run, rise) <= 0.25) and np.allclose(np.hypot(run, rise), 0.25, rtol=1e-3)
+    assert np.allclose(np.arctan2(rise, run), 0.5 * (alpha[1:] + alpha[:-1]), atol=1e-2)
+    # Near C the two gaps are the same to first order.
+    near = np.abs(sigma) < 0.6
+    s = contact.separation(xi[near], eta)
+    assert np.all(np.abs(t[near] - s) <= 0.06 * np.abs(s) + 1e-15)
+    assert np.isnan(contact.normal_gap([1e4], [0.0])).all() and np.isnan(contact.rail_surface([1e4])[2]).all()
+    with pytest.raises(wr.InputError, match="sigma"):
+        contact.normal_gap([1.0, 0.0], eta)
+    with pytest.raises(wr.InputError, match="tolerance"):
+        contact.normal_gap(sigma, eta, tolerance=0.0)
+
+
 def test_patches(track: wr.Wheelset) -> None:
     contact = track.touch().right[0]
     patch = contact.patch(approach=0.05)

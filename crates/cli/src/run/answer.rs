@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use crate::answer::{Outcome, counted};
 use wheelrail::case::{Part, Run, WrittenPart};
+use wheelrail::conformal::ConformalPatch;
 use wheelrail::load::Estimate;
 
 /// Contacts side by side in one table; more follow below.
@@ -95,7 +96,7 @@ pub(super) fn size(bytes: f64) -> String {
 type Cell = fn(&Part) -> Option<String>;
 
 /// The rows of the table, each with its unit.
-const ROWS: [(&str, Cell); 19] = [
+const ROWS: [(&str, Cell); 22] = [
     ("", |part| Some(part.site.name())),
     ("folder", |part| Some(part.site.folder.clone()).filter(|folder| !folder.is_empty())),
     ("C on the rail, x, mm", |part| {
@@ -134,12 +135,20 @@ const ROWS: [(&str, Cell); 19] = [
             .map(|patch| patch.components.len().to_string())
             .filter(|count| count != "1")
     }),
+    ("conformal patch: area, mm²", |part| Some(format!("{:.2}", conformal_patch(part)?.area()))),
+    ("its normal turns, degrees", |part| {
+        let components = &conformal_patch(part)?.components;
+        let turn =
+            components.iter().map(|component| component.angle[1] - component.angle[0]).reduce(f64::max)?;
+        Some(format!("{:.2}", turn.to_degrees()))
+    }),
     ("feasible", |part| {
         let feasible = part.site.contact.feasibility.feasible;
         let first = part.site.found.as_ref().is_none_or(|found| found.contact == 1);
         first.then(|| if feasible { "yes" } else { "no" }.into())
     }),
-    ("grid, ξ × η", |part| Some(format!("{} × {}", part.site.grid.xi.len(), part.site.grid.eta.len()))),
+    ("grid, ξ × η", |part| part.site.grid.sigma.is_none().then(|| points(part))),
+    ("grid, σ × η", |part| part.site.grid.sigma.is_some().then(|| points(part))),
     ("method", |part| Some(part.analysis.plan.choice.method.name().into())),
     ("error of s up to, mm", |part| Some(format!("{:.1e}", part.analysis.plan.error))),
     ("warnings", |part| {
@@ -147,3 +156,12 @@ const ROWS: [(&str, Cell); 19] = [
         (count > 0).then(|| count.to_string())
     }),
 ];
+
+fn points(part: &Part) -> String {
+    format!("{} × {}", part.site.grid.xi.len(), part.site.grid.eta.len())
+}
+
+/// Gives the patch over the rail's surface; `None` for a grid over the plane and without an approach.
+fn conformal_patch(part: &Part) -> Option<&ConformalPatch> {
+    part.analysis.conformal.as_ref()?.patch.as_ref()
+}

@@ -113,12 +113,12 @@ fn every_reader_reads_runs_over_the_rails_surface() {
                   x = [-13.5, 13.5] } }]\n[contact]\nrail_x = 0.0\nwheel_x = 0.0\n[patch]\napproach = 0.08\n";
     let wide = "xi = { from = -4.5, to = 9.0, n = 55 }\neta = { from = -12.0, to = 12.0, n = 49 }\n";
     let yawed = standard("60E1", "S1002", 6.0, "yaw = 0.01\n[patch]\nload = 60000.0\n");
-    let root = standard("60E1", "S1002", 3.5, "[patch]\nload = 60000.0\n");
+    let root = include_str!("../../../../examples/scenes/flange_root.toml");
     let scenes = [
         ("corner", format!("{corner}{grid}")),
         ("corner_wide", format!("{corner}{grid}{wide}")),
         ("corner_yawed", format!("{yawed}{grid}")),
-        ("flange_root", format!("{root}{grid}")),
+        ("flange_root", root.to_owned()),
     ];
     for (name, scene) in scenes {
         let (path, dir) = (folder(&format!("{name}.toml")), folder(name));
