@@ -26,15 +26,16 @@ for name in files:
 # The array that colours each grid, and the angle that the conformal patch depends on.
 colours = next(ast.literal_eval(node.value) for node in tree.body if isinstance(node, ast.Assign) and node.targets[0].id == "GAPS")
 checks("colours each grid", set(colours) == {"conformal.vts", "separation.vts"})
-coloured = [*colours.items(), ("conformal.vts", "angle")]
-for name, array in coloured:
-    checks(f"{name} has {array}", read[name] is None or array in read[name].point_data)
+there = [name for name in colours if read[name] is not None]
+for name, array in [*colours.items(), ("conformal.vts", "angle")]:
+    if name in there:
+        checks(f"{name} has {array}", array in read[name].point_data)
 arrays = [node.elts[1].value for node in ast.walk(tree) if isinstance(node, (ast.List, ast.Tuple))
           and len(node.elts) == 2 and all(isinstance(part, ast.Constant) for part in node.elts) and node.elts[0].value == "POINTS"]
 # The script computes this one.
 arrays = set(arrays) - {"", "beyond"}
 checks("names arrays", len(arrays) > 0)
 for name in sorted(arrays):
-    for grid in (grid for grid in colours if read[grid] is not None):
+    for grid in there:
         checks(f"array {name} is in {grid}", name in read[grid].point_data)
 checks.done()
