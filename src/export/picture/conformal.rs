@@ -172,13 +172,13 @@ impl ConformalPicture<'_> {
         }
     }
 
-    /// Draws normals as long as the gap.
+    /// Draws normals as long as the gap; none where the line misses the wheel, and a dashed one where the gap is cut off.
     fn rays(&self, page: &mut Page, panel: &Panel, fan: &Fan) {
         let (mut whole, mut beyond) = (Vec::new(), Vec::new());
         for normal in self.some_normals(panel, APART[1]) {
-            let end = normal.point(fan.factor * normal.gap.clamp(-fan.shown, fan.shown));
-            let lines = if normal.gap > fan.shown { &mut beyond } else { &mut whole };
-            lines.extend(panel.curve(&[normal.foot, end]));
+            let (length, lines) =
+                if normal.gap > fan.shown { (fan.shown, &mut beyond) } else { (normal.gap, &mut whole) };
+            lines.extend(panel.curve(&[normal.foot, normal.point(fan.factor * length)]));
         }
         page.lines(&whole, NORMAL);
         page.lines(&beyond, BEYOND);

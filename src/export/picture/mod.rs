@@ -1,5 +1,5 @@
-//! Draws pictures as SVG: of a patch, of the gap over the rail's surface, of a sweep, of a profile, and the charts of the report. All use one
-//! kind of page and one kind of panel.
+//! Draws pictures as SVG: of a patch, of the gap over the rail's surface, of a sweep, of a profile, and the charts of the
+//! report. All use one kind of page and one kind of panel.
 
 mod chart;
 mod conformal;
