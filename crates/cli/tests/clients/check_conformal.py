@@ -71,7 +71,8 @@ svg = ElementTree.parse(folder / "conformal.svg").getroot()
 words = [text.strip() for text in svg.itertext()]
 ends = [f"α = {np.degrees(angle):.1f}°".replace("-", "−") for angle in (alpha[0], alpha[-1])]
 named = {"t [mm]", "σ [mm]", "α [°]", "boundary t = δ cos α", *ends, folder.summary["title"][:80]}
-checks("conformal.svg is XML and names what it shows", svg.tag.endswith("svg") and named <= set(words), str(named - set(words)))
+checks("conformal.svg is XML and names what it shows", svg.tag.endswith("svg") and named <= set(words),
+       ", ".join(sorted(named - set(words))) or f"{len(named)} names")
 image = pyvista.read(folder / "conformal.png")
 shades = np.unique(np.asarray(image.active_scalars).reshape(-1, image.active_scalars.shape[-1]), axis=0)
 checks("conformal.png is a picture", min(image.dimensions[:2]) >= 1000 and len(shades) > 50, f"{image.dimensions}, {len(shades)} colours")
