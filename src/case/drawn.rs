@@ -4,7 +4,7 @@ use nalgebra::Point3;
 
 use super::run::Part;
 use super::site::ends;
-use crate::export::{Frame, Header, Loop, Nodes, PatchPicture, QuadMesh, SEPARATOR};
+use crate::export::{Frame, Header, Loop, Nodes, PatchPicture, PicturedContact, QuadMesh, SEPARATOR};
 use crate::mesh::{StripMesh, equal_steps};
 use crate::patch::{Patch, Window};
 use crate::placement::Placement;
@@ -13,10 +13,10 @@ use crate::separation::{Choice, Demand, EtaAxis, Evaluator, Method, Values};
 
 /// Points of a picture along ξ and along η: a line of equal separation is smooth to the eye, and C is among them where
 /// the grid is symmetric about it.
-const DRAWN: usize = 121;
+pub(super) const DRAWN: usize = 121;
 
 /// Tolerance on s \[mm\] of a picture without a plan: far below the width of a line.
-const DRAWN_TOLERANCE: f64 = 1e-6;
+pub(super) const DRAWN_TOLERANCE: f64 = 1e-6;
 
 /// Points of a picture's profile along one piece of it.
 const OUTLINE_POINTS: usize = 32;
@@ -62,16 +62,18 @@ impl Drawn {
         loops: &'a [Loop],
     ) -> PatchPicture<'a> {
         PatchPicture {
-            header,
-            contact: &self.contact,
+            contact: self.contact(header),
             cells,
             separation: Nodes { xi: &self.xi, eta: &self.eta.eta, values: &self.separation },
             midplane: &self.midplane,
             loops,
-            refusals: &self.refusals,
-            rail: &self.outlines[0],
-            wheel: &self.outlines[1],
         }
+    }
+
+    /// Gives the contact as all its pictures show it.
+    pub(super) fn contact<'a>(&'a self, header: &'a Header) -> PicturedContact<'a> {
+        let [rail, wheel] = &self.outlines;
+        PicturedContact { header, name: &self.contact, refusals: &self.refusals, rail, wheel }
     }
 }
 

@@ -10,11 +10,12 @@ use super::jobs::{Job, bytes, possible, stream, write_jobs};
 use super::on_rail::OnRail;
 use super::run::{COMPUTING, Part, Run, Tell};
 use super::summary::{Meshes, summary};
+use super::unrolled::Unrolled;
 use super::view::view;
 use crate::error::{Error, Result};
 use crate::export::{
-    ContactSettings, CurvedDeck, CurvedFields, Deck, Frame, GridFields, Header, Interval, Loop, NetCdf,
-    PatchPicture, Prescribed, QuadMesh, VIEW_SCRIPT, array_npy, boundary_csv, boundary_vtp,
+    ConformalPicture, ContactSettings, CurvedDeck, CurvedFields, Deck, Frame, GridFields, Header, Interval,
+    Loop, NetCdf, PatchPicture, Prescribed, QuadMesh, VIEW_SCRIPT, array_npy, boundary_csv, boundary_vtp,
     conform_curved_wrp, conform_wrp, conformal_vts, contact_curved_inp, contact_inp, countact_wrp,
     interpen_csv, interpen_sigma_csv, rail_vts, separation_vtk, separation_vts, separation_wrp, strips_vtu,
     wheel_vts,
@@ -106,10 +107,12 @@ fn write_part(
     let strips = part.analysis.strips.as_ref().map(quads);
     let drawn = Drawn::new(part);
     let picture = drawn.picture(&header, [&axes.xi, &axes.eta], &loops);
+    let unrolled = Unrolled::new(part);
+    let unrolled = unrolled.as_ref().map(|unrolled| unrolled.picture(&header, &drawn));
     let mut jobs: Vec<Job<'_>> = Vec::new();
     tables(&mut jobs, part, &loops);
     arrays(&mut jobs, outputs, part);
-    pictures(&mut jobs, outputs, &picture, png)?;
+    pictures(&mut jobs, outputs, (&picture, unrolled.as_ref()), png)?;
     // One page shows all parts of the run; it lies with the first.
     if outputs.any(&[OutputFormat::Html]) && run.parts.first().is_some_and(|first| std::ptr::eq(first, part))
     {
@@ -235,22 +238,38 @@ fn arrays<'a>(jobs: &mut Vec<Job<'a>>, outputs: &Outputs, part: &'a Part) {
     add("separation.npy", vec![n, m], &part.analysis.separation);
 }
 
-/// Adds the picture, as PNG too where that is asked for.
+/// Adds the pictures over the plane and over the rail's surface, as PNG too where that is asked for.
 fn pictures<'a>(
     jobs: &mut Vec<Job<'a>>,
     outputs: &Outputs,
-    picture: &'a PatchPicture<'a>,
+    (plane, rail): (&'a PatchPicture<'a>, Option<&'a ConformalPicture<'a>>),
     png: Option<Rasterise>,
 ) -> Result<()> {
-    bytes(jobs, "patch.svg", || Ok(picture.svg().into_bytes()));
-    if outputs.any(&[OutputFormat::Png]) {
-        let png = png.ok_or_else(|| {
-            let expected = "formats that the library writes by itself";
-            Error::new("output: formats", "\"png\"", expected, "use the program `wheelrail`, or leave it out")
-        })?;
-        bytes(jobs, "patch.png", move || png(&picture.svg()));
+    let wanted = outputs.any(&[OutputFormat::Png]);
+    if wanted && png.is_none() {
+        let expected = "formats that the library writes by itself";
+        let advice = "use the program `wheelrail`, or leave it out";
+        return Err(Error::new("output: formats", "\"png\"", expected, advice));
+    }
+    let png = png.filter(|_| wanted);
+    picture(jobs, ["patch.svg", "patch.png"], (plane, PatchPicture::svg), png);
+    if let Some(rail) = rail {
+        picture(jobs, ["conformal.svg", "conformal.png"], (rail, ConformalPicture::svg), png);
     }
     Ok(())
+}
+
+/// Adds one picture as SVG, and as PNG where there is a way to it.
+fn picture<'a, P: Sync>(
+    jobs: &mut Vec<Job<'a>>,
+    [svg, as_png]: [&'static str; 2],
+    (picture, draw): (&'a P, fn(&P) -> String),
+    png: Option<Rasterise>,
+) {
+    bytes(jobs, svg, move || Ok(draw(picture).into_bytes()));
+    if let Some(png) = png {
+        bytes(jobs, as_png, move || png(&draw(picture)));
+    }
 }
 
 fn surfaces<'a>(

@@ -251,7 +251,7 @@ pub enum OutputFormat {
     Contact,
     /// view.html.
     Html,
-    /// patch.png.
+    /// patch.png, conformal.png.
     Png,
     /// patch.msh.
     Gmsh,

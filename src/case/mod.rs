@@ -23,6 +23,7 @@ mod run;
 mod site;
 mod summary;
 mod sweep_view;
+mod unrolled;
 mod view;
 mod wheel;
 

@@ -39,8 +39,8 @@ pub use model::{Frame, GridFields, Header, Interval, Loop, PatchMesh, QuadMesh, 
 pub use netcdf::NetCdf;
 pub use npy::array_npy;
 pub use picture::{
-    Chart, CurvesPanel, CurvesPicture, JoinedPair, Nodes, PatchPicture, PlottedCurve, ProfilePicture,
-    SEPARATOR, Series, jumps,
+    Chart, ConformalPicture, CurvesPanel, CurvesPicture, JoinedPair, Nodes, PatchPicture, PicturedContact,
+    PlottedCurve, ProfilePicture, RailNormal, SEPARATOR, Series, jumps,
 };
 pub use stl::surface_stl;
 pub use vtk::{boundary_vtp, collection_pvd, patch_vtu, strips_vtu, surface_vtp, surface_vtu};

@@ -49,6 +49,8 @@ pub const RUN_FOLDER: Names = Names {
         "surface.pvd",
         "patch.svg",
         "patch.png",
+        "conformal.svg",
+        "conformal.png",
         "separation.nc",
         "separation.wrp",
         "conform.wrp",

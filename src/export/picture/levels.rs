@@ -2,7 +2,7 @@
 
 use super::contour::Nodes;
 use super::page::{Colour, INSIDE, Page, Pen, WHITE, Words};
-use super::panel::{Panel, extremes, number, power_for, round_below};
+use super::panel::{DIGIT, Panel, extremes, number, power_for, round_below};
 
 /// Largest level drawn, as a multiple of the approach. Near a flange s grows to many times the approach, which does not
 /// matter for the patch.
@@ -13,8 +13,6 @@ const LEVELS: f64 = 10.0;
 
 /// The style of the numbers on the lines.
 const NUMBERS: Words = Words::new(9.5).middle();
-/// Width of a digit as a share of its size.
-const DIGIT: f64 = 0.64;
 
 /// Number of places on one level that are tried for its number.
 const TRIED: usize = 48;
@@ -28,7 +26,6 @@ const APART: f64 = 60.0;
 
 /// The lines of one level.
 pub(super) struct Level {
-    pub(super) value: f64,
     pub(super) name: String,
     /// The power of ten in which the name is written.
     pub(super) power: i32,
@@ -60,19 +57,14 @@ pub(super) fn levels(nodes: &Nodes<'_>, approach: f64, panel: &Panel) -> Vec<Lev
         let pen = Pen::new(shade((value - low) / (high - low)), 1.2);
         let pen = if k < 0 { pen.dashed([4.0, 3.0]) } else { pen };
         let lines = nodes.lines(value).iter().flat_map(|line| panel.curve(line)).collect();
-        Level { value, name: number(value / unit, step / unit), power, pen, lines }
+        Level { name: number(value / unit, step / unit), power, pen, lines }
     };
     (first..=last).map(level).filter(|level| !level.lines.is_empty()).collect()
 }
 
-/// Writes each level's number where its line is farthest from all others and from the numbers written before.
-pub(super) fn label(
-    page: &mut Page,
-    levels: &[Level],
-    rings: &[Vec<[f64; 2]>],
-    panel: &Panel,
-    approach: f64,
-) {
+/// Writes each level's number where its line is farthest from all others and from the numbers written before. The closed rings
+/// around the patch are on the page, as the lines are.
+pub(super) fn label(page: &mut Page, levels: &[Level], rings: &[Vec<[f64; 2]>], panel: &Panel) {
     let mut placed: Vec<[f64; 2]> = Vec::new();
     for (number, level) in levels.iter().enumerate() {
         let size = [NUMBERS.size * DIGIT * level.name.chars().count() as f64 + 3.0, NUMBERS.size + 1.0];
@@ -89,7 +81,7 @@ pub(super) fn label(
             points.iter().step_by(points.len().div_ceil(TRIED).max(1)).filter(|at| inside(panel, **at, size));
         let rated = tried.filter_map(|at| Some((free(*at)?, *at)));
         let Some((_, [x, y])) = rated.max_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
-        let ground = if level.value < approach { INSIDE } else { WHITE };
+        let ground = if within(rings, [x, y]) { INSIDE } else { WHITE };
         let corners = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]];
         page.area(&[corners.map(|[i, j]| [x + i * size[0], y + j * size[1]]).to_vec()], ground);
         page.text([x, y + 0.36 * NUMBERS.size], &level.name, NUMBERS);
@@ -104,6 +96,15 @@ fn inside(panel: &Panel, at: [f64; 2], size: [f64; 2]) -> bool {
         let half = size[k] / 2.0 + 2.0;
         at[k] - half > from && at[k] + half < from + length
     })
+}
+
+/// Returns whether a point lies inside closed rings, by the even-odd rule.
+fn within(rings: &[Vec<[f64; 2]>], [x, y]: [f64; 2]) -> bool {
+    let crossed = |side: &[[f64; 2]]| {
+        let [[a, b], [c, d]] = [side[0], side[1]];
+        (b > y) != (d > y) && x < a + (c - a) * (y - b) / (d - b)
+    };
+    rings.iter().flat_map(|ring| ring.windows(2)).filter(|side| crossed(side)).count() % 2 == 1
 }
 
 /// Returns the distance of the nearest of some points, +∞ if there are none.

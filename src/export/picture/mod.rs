@@ -1,16 +1,21 @@
-//! Draws pictures as SVG: of a patch, of a sweep, of a profile, and the charts of the report. All use one
-//! kind of page and one kind of panel.
+//! Draws pictures as SVG: of a patch, of the gap over the rail's surface, of a sweep, of a profile, and the charts of the
+//! report. All use one kind of page and one kind of panel.
 
 mod chart;
+mod conformal;
+mod contact;
 mod contour;
 mod curves;
 mod levels;
+mod map;
 mod page;
 mod panel;
 mod patch;
 mod profile;
 
 pub use chart::{Chart, Series};
+pub use conformal::{ConformalPicture, RailNormal};
+pub use contact::PicturedContact;
 pub use contour::Nodes;
 pub use curves::{CurvesPanel, CurvesPicture, JoinedPair, PlottedCurve, jumps};
 pub use page::SEPARATOR;

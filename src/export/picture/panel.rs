@@ -6,6 +6,15 @@ const FRAME: Pen = Pen::new(GREY, 0.8);
 const ZERO: Pen = Pen::new(GREY, 0.6);
 const GRID: Pen = Pen::new([221; 3], 1.0);
 
+/// Width of a digit as a share of its size.
+pub(super) const DIGIT: f64 = 0.64;
+/// Width of a decimal point as a share of its size.
+const POINT: f64 = 0.32;
+/// Width of a minus sign as a share of its size.
+const MINUS: f64 = 0.84;
+/// Least free space between two numbers of an axis \[page units\].
+const BETWEEN: f64 = 2.5;
+
 /// Values along an axis with their labels.
 type Ticks = Vec<(f64, String)>;
 
@@ -106,10 +115,11 @@ impl Panel {
         let [x, y, w, h] = self.place;
         page.lines(&[vec![[x, y], [x + w, y], [x + w, y + h], [x, y + h], [x, y]]], FRAME);
         let mut ticks = Vec::new();
-        for (value, label) in below {
-            let [px, _] = self.point([value, self.v[0]]);
-            ticks.push(vec![[px, y + h], [px, y + h + 5.0]]);
-            page.text([px, y + h + 18.0], label, SMALL.middle());
+        let below: Ticks =
+            below.into_iter().map(|(value, label)| (self.point([value, self.v[0]])[0], label)).collect();
+        ticks.extend(below.iter().map(|(px, _)| vec![[*px, y + h], [*px, y + h + 5.0]]));
+        for (px, label) in labelled(&below) {
+            page.text([*px, y + h + 18.0], label, SMALL.middle());
         }
         for (value, label) in left {
             let [_, py] = self.point([self.u[0], value]);
@@ -121,8 +131,21 @@ impl Panel {
         page.upright([x - 46.0, y + h / 2.0], names[1], BODY.middle());
     }
 
-    /// Draws a bar of a round length along u, with its right end at `end` \[page units\].
-    pub(super) fn scale_bar(&self, page: &mut Page, end: [f64; 2], longest: f64) {
+    /// Writes a value of its own at the ticks of u, above the frame, and the name of these values to the left of them.
+    pub(super) fn above(&self, page: &mut Page, name: &str, value: impl Fn(f64) -> String) {
+        let [x, y, w, _] = self.place;
+        let ticks = ticks_of(self.u, w / 45.0, 0).into_iter();
+        let ticks: Ticks = ticks.map(|(u, _)| (self.point([u, self.v[1]])[0], value(u))).collect();
+        let marks: Vec<_> = ticks.iter().map(|(px, _)| vec![[*px, y], [*px, y - 5.0]]).collect();
+        page.lines(&marks, FRAME);
+        for (px, value) in labelled(&ticks) {
+            page.text([*px, y - 10.0], value, SMALL.middle());
+        }
+        page.text([x - 26.0, y - 10.0], name, BODY.end());
+    }
+
+    /// Draws a bar of a round length along u, with its right end at `end` \[page units\]. Returns the x of its left end.
+    pub(super) fn scale_bar(&self, page: &mut Page, end: [f64; 2], longest: f64) -> f64 {
         let scale = self.scale()[0];
         let length = round_below(longest / scale);
         let start = end[0] - length * scale;
@@ -134,6 +157,7 @@ impl Panel {
         let length = length / 10f64.powi(power);
         let power = if power == 0 { String::new() } else { format!("·{}", power_of_ten(power)) };
         page.text(middle, format!("{}{power} mm", number(length, length)), SMALL.middle());
+        start
     }
 }
 
@@ -182,6 +206,20 @@ pub(super) fn power_for(largest: f64) -> i32 {
     if !power.is_finite() || (-2.0..6.0).contains(&power) { 0 } else { 3 * (power / 3.0).floor() as i32 }
 }
 
+/// Numbers in words from here on are written without a power of ten.
+const PLAIN: f64 = 1e-4;
+
+/// Returns a positive number with so many significant digits, without zeros at its end; small ones with a power of ten.
+pub(super) fn significant(x: f64, digits: i32) -> String {
+    let power = if x < PLAIN { power_for(x) } else { 0 };
+    if power != 0 {
+        return format!("{}·{}", significant(x / 10f64.powi(power), digits), power_of_ten(power));
+    }
+    let step = 10f64.powi(x.log10().floor() as i32 + 1 - digits);
+    let text = number((x / step).round() * step, step);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
+}
+
 /// Puts a power of ten before the unit of a name: "s [10⁻⁹ mm]".
 pub(super) fn in_power(name: &str, power: i32) -> String {
     if power == 0 { name.into() } else { name.replacen('[', &format!("[{} ", power_of_ten(power)), 1) }
@@ -208,6 +246,26 @@ fn ticks_of(range: [f64; 2], most: f64, power: i32) -> Ticks {
 /// Most steps down from the first distance of ticks, which is at most a few times the range.
 const LADDER: usize = 6;
 
+/// Returns the ticks, given with their places along u \[page units\], that have a label: all, or every second or third and so on
+/// where the labels do not fit beside each other otherwise. At least two are left.
+fn labelled(ticks: &[(f64, String)]) -> impl Iterator<Item = &(f64, String)> {
+    let width = |label: &str| {
+        let letter = |c| match c {
+            '.' => POINT,
+            '\u{2212}' => MINUS,
+            _ => DIGIT,
+        };
+        SMALL.size * label.chars().map(letter).sum::<f64>()
+    };
+    let fits = |stride: &usize| {
+        let some: Vec<_> = ticks.iter().step_by(*stride).collect();
+        some.windows(2)
+            .all(|pair| pair[1].0 - pair[0].0 > 0.5 * (width(&pair[0].1) + width(&pair[1].1)) + BETWEEN)
+    };
+    let stride = (1..ticks.len()).find(fits).unwrap_or(ticks.len().saturating_sub(1).max(1));
+    ticks.iter().step_by(stride)
+}
+
 fn multiples([low, high]: [f64; 2], step: f64) -> Vec<f64> {
     let first = (low / step).ceil();
     let count = (high / step).floor() - first;
@@ -223,7 +281,7 @@ fn decades([low, high]: [f64; 2]) -> Ticks {
 }
 
 /// Returns a power of ten in words: "10⁻¹²".
-pub(super) fn power_of_ten(power: i32) -> String {
+fn power_of_ten(power: i32) -> String {
     let digit = |c: char| match c {
         '-' => '⁻',
         '1' => '¹',
@@ -249,6 +307,13 @@ mod tests {
     }
 
     #[test]
+    fn numbers_have_their_digits() {
+        let found = [0.076_974_259_6, 0.05, 110.4, 63.0, 1e-9].map(|x| significant(x, 4));
+        assert_eq!(found, ["0.07697", "0.05", "110.4", "63", "1·10⁻⁹"]);
+        assert_eq!(significant(1234.5, 2), "1200");
+    }
+
+    #[test]
     fn narrow_axes_have_two_ticks_at_least() {
         for range in [[-1.5, 1.5], [-0.9, 1.9], [0.21, 0.29], [-7.0, 90.0]] {
             for most in [0.2, 1.2, 7.0] {
@@ -262,6 +327,21 @@ mod tests {
         assert_eq!(labels, ["0", "1", "2", "3"]);
         assert_eq!([2e-9, 7e-4, 0.2, 0.0, 3e7].map(power_for), [-9, -6, 0, 0, 6]);
         assert_eq!(in_power("s [mm]", -9), "s [10⁻⁹ mm]");
+    }
+
+    #[test]
+    fn labels_that_do_not_fit_are_left_out() {
+        let ticks = |step: f64, labels: &[&str]| -> Ticks {
+            labels.iter().enumerate().map(|(k, label)| (step * k as f64, (*label).into())).collect()
+        };
+        let left = |ticks: &Ticks| labelled(ticks).map(|(_, label)| label.clone()).collect::<Vec<_>>();
+        let few = ["\u{2212}1", "0", "1"];
+        assert_eq!(left(&ticks(12.3, &few)), ["\u{2212}1", "1"]);
+        assert_eq!(left(&ticks(15.0, &few)), few);
+        // Two are left whatever their distance.
+        assert_eq!(left(&ticks(1.0, &few)), ["\u{2212}1", "1"]);
+        assert_eq!(left(&ticks(20.0, &["10.0", "20.0", "30.0", "40.0", "50.0"])), ["10.0", "30.0", "50.0"]);
+        assert_eq!(left(&Ticks::new()), [""; 0]);
     }
 
     #[test]

@@ -1,9 +1,11 @@
-"""The files over the rail's surface, read by the compiled Fortran reader, a reader of CONTACT's grammar and VTK: FOLDER READ_WRP."""
+"""The files over the rail's surface, read by the compiled Fortran reader, a reader of CONTACT's grammar, VTK and readers of pictures: FOLDER READ_WRP."""
 
 import csv
 import sys
+from xml.etree import ElementTree
 
 import numpy as np
+import pyvista
 import vtk
 from contact_deck import read_contact
 from folder import Checks, Folder
@@ -63,6 +65,17 @@ checks.same("conformal.vts angle", arrays["angle"].reshape(t.shape)[:, 0], alpha
 checks.same("conformal.vts points lie at xi", points[:, 0, 0], folder.xi)
 checks.same("conformal.vts points lie on the rail", points[:, 0, 2], read["station"][:, 1])
 checks.same("conformal.vts wheel_normal", arrays["wheel_normal"].reshape(*t.shape, 3)[defined], read["wheel"][defined])
+
+checks.client = "pictures"
+svg = ElementTree.parse(folder / "conformal.svg").getroot()
+words = [text.strip() for text in svg.itertext()]
+ends = [f"α = {np.degrees(angle):.1f}°".replace("-", "−") for angle in (alpha[0], alpha[-1])]
+named = {"t [mm]", "σ [mm]", "α [°]", "boundary t = δ cos α", *ends, folder.summary["title"][:80]}
+checks("conformal.svg is XML and names what it shows", svg.tag.endswith("svg") and named <= set(words),
+       ", ".join(sorted(named - set(words))) or f"{len(named)} names")
+image = pyvista.read(folder / "conformal.png")
+shades = np.unique(np.asarray(image.active_scalars).reshape(-1, image.active_scalars.shape[-1]), axis=0)
+checks("conformal.png is a picture", min(image.dimensions[:2]) >= 1000 and len(shades) > 50, f"{image.dimensions}, {len(shades)} colours")
 
 checks.client = "csv"
 rows = [tuple(map(float, row.values())) for row in csv.DictReader(open(folder / "interpen_sigma.csv"))]

@@ -5,9 +5,9 @@ use crate::programs::{check, check_all, folder};
 use std::path::Path;
 use wheelrail::export::{
     ContactSettings, Deck, Frame, GridFields, Header, Interval, Loop, NetCdf, Nodes, PatchPicture,
-    Prescribed, QuadMesh, VIEW_SCRIPT, array_npy, boundary_csv, boundary_vtp, collection_pvd, conform_wrp,
-    contact_inp, countact_wrp, interpen_csv, rail_vts, separation_vtk, separation_vts, separation_wrp,
-    strips_vtu, wheel_vts,
+    PicturedContact, Prescribed, QuadMesh, VIEW_SCRIPT, array_npy, boundary_csv, boundary_vtp,
+    collection_pvd, conform_wrp, contact_inp, countact_wrp, interpen_csv, rail_vts, separation_vtk,
+    separation_vts, separation_wrp, strips_vtu, wheel_vts,
 };
 use wheelrail::files::{Folder, RUN_FOLDER};
 use wheelrail::nalgebra::{Isometry2, Point3, Translation2, UnitComplex, Vector2};
@@ -134,18 +134,8 @@ fn picture(header: &Header, grid: &GridFields, loops: &[Loop]) -> String {
     let midplane: Vec<[f64; 2]> = grid.xi().iter().map(|&x| [x, hertz(x, 0.0)]).collect();
     let separation = Nodes { xi: grid.xi(), eta: grid.eta(), values: grid.separation() };
     let cells = [grid.xi(), grid.eta()];
-    PatchPicture {
-        header,
-        contact: "",
-        cells,
-        separation,
-        midplane: &midplane,
-        refusals: &[],
-        loops,
-        rail: &rail,
-        wheel: &wheel,
-    }
-    .svg()
+    let contact = PicturedContact { header, name: "", refusals: &[], rail: &rail, wheel: &wheel };
+    PatchPicture { contact, cells, separation, midplane: &midplane, loops }.svg()
 }
 
 fn rail_height(xi: f64) -> f64 {

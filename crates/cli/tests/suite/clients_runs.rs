@@ -20,8 +20,15 @@ const ROLLING: &str = "[motion]\nspeed = 30.0\n[friction]\nstatic = 0.35\nkineti
 const NOT_OF_A_RUN: [&str; 3] = ["surface.pvd", "wheelset.pvd", "__pycache__"];
 
 /// What only a run over the rail's surface writes.
-const ON_RAIL: [&str; 5] =
-    ["sigma.npy", "angle.npy", "normal_gap.npy", "conformal.vts", "interpen_sigma.csv"];
+const ON_RAIL: [&str; 7] = [
+    "sigma.npy",
+    "angle.npy",
+    "normal_gap.npy",
+    "conformal.vts",
+    "interpen_sigma.csv",
+    "conformal.svg",
+    "conformal.png",
+];
 
 /// What has no form over the rail's surface.
 const ON_PLANE: [&str; 3] = ["separation.nc", "separation.wrp", "countact.wrp"];

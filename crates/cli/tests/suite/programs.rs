@@ -93,6 +93,7 @@ pub fn check_run(dir: &Path) {
 /// Runs every reader on a folder of `wheelrail run` over the rail's surface.
 pub fn check_conformal(dir: &Path) {
     check_decks("check_conformal.py", dir);
+    check("check_view.py", dir, &[]);
 }
 
 /// Runs every reader on one folder.
