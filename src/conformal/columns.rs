@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::arc_length::RailPoint;
 use super::gap::NormalGap;
-use super::ray::RayBodies;
+use super::ray::{Ray, RayBodies};
 use super::span::{RayPoints, RaySpan, Reach, point, points};
 use crate::numerics::chebyshev::{self, extrema, powers, unit_nodes};
 use crate::numerics::lanes::{Lanes, MANY, every, lanes, largest, smallest};
@@ -46,9 +46,7 @@ pub fn fill_normal_gap(
     let demand = Demand::for_tolerance(tolerance).on_truncation();
     let block = |(out, sigma): (&mut [f64], &[f64])| {
         let mut columns = Columns::new(gap, axis, demand);
-        for (out, &sigma) in out.chunks_mut(length).zip(sigma) {
-            columns.fill(sigma, out);
-        }
+        columns.fill(sigma, out);
         columns.error
     };
     if out.len() <= FEW_POINTS {
@@ -75,19 +73,37 @@ impl<'g, 'a> Columns<'g, 'a> {
         Self { gap, axis, demand, arch: pulp::Arch::new(), count: FIRST_COUNT, error: 0.0 }
     }
 
-    fn fill(&mut self, sigma: f64, out: &mut [f64]) {
+    /// Fills the columns of all σ of the block.
+    fn fill(&mut self, sigma: &[f64], out: &mut [f64]) {
         out.fill(f64::NAN);
-        let Some(at) = self.gap.rail.point(sigma) else { return };
-        if self.gap.placement.skew() == 0.0 {
-            self.plain(&at, out);
-        } else {
-            self.skewed(&at, self.axis.eta(), out);
+        let rail: Vec<Option<RailPoint>> = sigma.iter().map(|&sigma| self.gap.rail.point(sigma)).collect();
+        let columns = out.chunks_mut(self.axis.eta().len());
+        if self.gap.placement.skew() != 0.0 {
+            for (at, out) in rail.iter().zip(columns) {
+                if let Some(at) = at {
+                    self.skewed(at, self.axis.eta(), out);
+                }
+            }
+            return;
+        }
+        let rays: Vec<Option<Ray<'_>>> =
+            rail.iter().map(|at| at.as_ref().map(|at| self.gap.bodies.ray(at, 0.0))).collect();
+        let all: Option<[Ray<'_>; BLOCK]> =
+            rays.iter().copied().collect::<Option<Vec<_>>>().and_then(|rays| rays.try_into().ok());
+        match all {
+            Some(rays) => {
+                let firsts = self.arch.dispatch(Firsts(&rays));
+                firsts.into_iter().zip(columns).for_each(|(first, out)| self.plain(first, out));
+            }
+            None => rays.iter().zip(columns).for_each(|(ray, out)| {
+                self.plain(ray.as_ref().and_then(RaySpan::first), out);
+            }),
         }
     }
 
-    /// Fills a column of a wheel without skew.
-    fn plain(&mut self, at: &RailPoint, out: &mut [f64]) {
-        let (mut next, reach) = (RaySpan::first(&self.gap.bodies.ray(at, 0.0)), self.axis.reach);
+    /// Fills a column of a wheel without skew from its first span.
+    fn plain(&mut self, first: Option<RaySpan<'_>>, out: &mut [f64]) {
+        let (mut next, reach) = (first, self.axis.reach);
         let mut from = 0.0;
         while let Some(span) = next {
             let Reach { run, u } = span.reach(from, reach);
@@ -168,6 +184,18 @@ impl<'g, 'a> Columns<'g, 'a> {
             self.arch.dispatch(Interpolation { bodies, at, interval, demand: self.demand, eta, out })?;
         self.error = self.error.max(dropped);
         Some([least, most])
+    }
+}
+
+/// The first spans of the columns of a block. The work is compiled for each kind of machine.
+struct Firsts<'r, 'a>(&'r [Ray<'a>; BLOCK]);
+
+impl<'a> pulp::WithSimd for Firsts<'_, 'a> {
+    type Output = [Option<RaySpan<'a>>; BLOCK];
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> Self::Output {
+        RaySpan::firsts(self.0)
     }
 }
 

@@ -55,7 +55,7 @@ pub fn along_by<const N: usize>(
         }
         _ => {
             let v0: [Lanes<N>; 2] = [lanes(|k| -runs[k] * d[0]), lanes(|k| -runs[k] * d[1])];
-            Some([*runs, along(branch, &from.repeated(), [&v0[0], &v0[1]], n)?.r])
+            Some([*runs, along(branch, &from.repeated(), [&v0[0], &v0[1]], [&[n[0]; N], &[n[1]; N]])?.r])
         }
     }
 }
@@ -72,15 +72,15 @@ pub fn along<const N: usize>(
     branch: &Branch,
     from: &BranchPoints<N>,
     v0: [&Lanes<N>; 2],
-    n: [f64; 2],
+    n: [&Lanes<N>; 2],
 ) -> Option<Meetings<N>> {
     match (&branch.shape, from) {
         (BranchShape::Arc(arc), BranchPoints::Arc { sin, cos, .. }) => {
-            let square = n[0] * n[0] + n[1] * n[1];
             let r = |k: usize| {
-                let [x, z] = [v0[0][k], v0[1][k]];
+                let ([x, z], [n_x, n_z]) = ([v0[0][k], v0[1][k]], [n[0][k], n[1][k]]);
+                let square = n_x * n_x + n_z * n_z;
                 let f = 2.0 * (z * cos[k] - x * sin[k]) - arc.curvature * (x * x + z * z);
-                let b = n[1] * cos[k] - n[0] * sin[k] - arc.curvature * (n[0] * x + n[1] * z);
+                let b = n_z * cos[k] - n_x * sin[k] - arc.curvature * (n_x * x + n_z * z);
                 let root = (b * b + arc.curvature * square * f).sqrt();
                 if b > 0.0 { -f / (b + root) } else { f64::NAN }
             };
@@ -88,15 +88,15 @@ pub fn along<const N: usize>(
         }
         (BranchShape::Polynomial(p), BranchPoints::Polynomial { t, .. }) => {
             let (xi, zeta) = (p.xi.as_slice(), p.zeta.as_slice());
-            let cross: Lanes<N> = lanes(|k| n[1] * v0[0][k] - n[0] * v0[1][k]);
+            let cross: Lanes<N> = lanes(|k| n[1][k] * v0[0][k] - n[0][k] * v0[1][k]);
             let mut to = *t;
             for _ in 0..STEPS {
                 let ([_, dx], [_, dz]) = (values_and_slopes(xi, &to), values_and_slopes(zeta, &to));
                 let (x, z) = (divided_differences(xi, t, &to), divided_differences(zeta, t, &to));
-                let across: Lanes<N> = lanes(|k| x[k] * n[1] - z[k] * n[0]);
+                let across: Lanes<N> = lanes(|k| x[k] * n[1][k] - z[k] * n[0][k]);
                 let next: Lanes<N> = lanes(|k| {
                     let miss = (to[k] - t[k]) * across[k] - cross[k];
-                    (to[k] - miss / (dx[k] * n[1] - dz[k] * n[0])).max(p.t[0]).min(p.t[1])
+                    (to[k] - miss / (dx[k] * n[1][k] - dz[k] * n[0][k])).max(p.t[0]).min(p.t[1])
                 });
                 let steps: Lanes<N> = lanes(|k| (next[k] - to[k]).abs());
                 let done = every::<N>(|k| steps[k] <= LAST_STEP * (next[k] - t[k]).abs());
@@ -104,7 +104,7 @@ pub fn along<const N: usize>(
                 if done {
                     let (x, z) = (divided_differences(xi, t, &to), divided_differences(zeta, t, &to));
                     let r = |k: usize| {
-                        let across = x[k] * n[1] - z[k] * n[0];
+                        let across = x[k] * n[1][k] - z[k] * n[0][k];
                         let r = (z[k] * v0[0][k] - x[k] * v0[1][k]) / across;
                         if across > 0.0 { r } else { f64::NAN }
                     };

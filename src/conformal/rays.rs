@@ -1,10 +1,11 @@
-//! N rays of one point of the rail, at N places along η, over one piece of the wheel's profile. A single ray is N = 1.
+//! N rays over one piece of the wheel's profile: of one point of the rail at N places along η, or of N points of the rail. A
+//! single ray is N = 1.
 
 use super::meeting::{Meetings, along};
 use super::ray::Ray;
 use crate::numerics::lanes::{Lanes, every, lanes};
 use crate::profile::{Branch, BranchPoints};
-use crate::separation::{contact_gap, sagitta};
+use crate::separation::{contact_gap, contact_gaps, sagitta};
 
 /// Most steps to the sagitta of a point. Each gains some three digits.
 const STEPS: usize = 40;
@@ -25,6 +26,15 @@ pub struct Beginning<const N: usize> {
     pub over_contact: bool,
 }
 
+impl<const N: usize> Beginning<N> {
+    /// Returns that of one ray.
+    #[inline(always)]
+    pub fn lane(&self, k: usize) -> Beginning<1> {
+        let Self { t, e, points, over_contact } = self;
+        Beginning { t: [t[k]], e: [e[k]], points: points.lane(k), over_contact: *over_contact }
+    }
+}
+
 /// Points of the wheel on rays.
 #[derive(Debug, Clone, Copy)]
 pub struct Met<const N: usize> {
@@ -36,19 +46,19 @@ pub struct Met<const N: usize> {
     pub w: Lanes<N>,
 }
 
-/// Finds where rays meet a piece in the wheel's own midplane, e = 0. Returns `None` where one misses it, and if N > 1 and not
-/// all have the accuracy of the contact segments or none.
+/// Finds where rays meet a piece in the wheel's own midplane, e = 0. Under skew all come from one point of the rail. Returns
+/// `None` where one misses it, and if N > 1 and not all have the accuracy of the contact segments or none.
 #[inline(always)]
 pub fn in_midplane<const N: usize>(rays: &[Ray<'_>; N], index: usize) -> Option<Beginning<N>> {
-    let (bodies, n) = (rays[0].bodies, rays[0].n);
+    let (bodies, n) = (rays[0].bodies, directions(rays));
     let piece = &rays[0].pieces()[index];
     let branch = rays[0].branch(piece);
-    let rail = bodies.rail();
+    let of_contact = bodies.wheel.section.contact == Some(piece.branch);
+    let rail = bodies.rail().contact.filter(|_| of_contact).map(|r| &bodies.rail().branches[r]);
     let inside = |x: f64| branch.xi[0] <= x && x <= branch.xi[1];
-    let on_contact = bodies.wheel.section.contact == Some(piece.branch);
-    let contact = rays[0].contact.zip(rail.contact).filter(|([xi, _], _)| on_contact && inside(*xi));
-    let over = contact.filter(|_| every::<N>(|k| inside(rays[k].p[0])));
-    if N > 1 && over.is_some() != contact.is_some() {
+    let from_contact = |k: usize| rays[k].contact.is_some_and(|[xi, _]| inside(xi));
+    let over = rail.filter(|_| every::<N>(|k| from_contact(k) && inside(rays[k].p[0])));
+    if N > 1 && over.is_none() && rail.is_some() && !every::<N>(|k| !from_contact(k)) {
         return None;
     }
     let above: Lanes<N> = lanes(|k| match over {
@@ -57,25 +67,33 @@ pub fn in_midplane<const N: usize>(rays: &[Ray<'_>; N], index: usize) -> Option<
     });
     let (from, height) = branch.points(&above)?;
     let apart: Lanes<N> = match over {
-        Some(([xi, _], r)) => {
+        Some(rail) if bodies.is_skewed() => {
+            let xi = rays[0].contact.map_or(f64::NAN, |[xi, _]| xi);
             let (point, at) = branch.point(xi);
-            let gap = contact_gap(&rail.branches[r], branch, xi, at);
-            let slope =
-                if bodies.is_skewed() { branch.chords_from(&point.repeated(), &above)? } else { [0.0; N] };
+            let gap = contact_gap(rail, branch, xi, at);
+            let slope = branch.chords_from(&point.repeated(), &above)?;
             lanes(|k| gap + rays[k].contact.map_or(f64::NAN, |[_, shift]| shift) * slope[k])
         }
+        // The wheel's points are over the rail's own.
+        Some(rail) => contact_gaps(rail, branch, &above, &height)?,
         None => lanes(|k| height[k] - rays[k].p[1]),
     };
     let v0: [Lanes<N>; 2] = [lanes(|k| rays[k].p[0] - above[k]), lanes(|k| -apart[k])];
-    let Meetings { r: t, parameters } = along(branch, &from, [&v0[0], &v0[1]], n)?;
+    let Meetings { r: t, parameters } = along(branch, &from, [&v0[0], &v0[1]], [&n[0], &n[1]])?;
     if !every::<N>(|k| t[k].is_finite()) {
         return None;
     }
     let points = match parameters {
         Some(parameters) => branch.points_of(&parameters)?,
-        None => branch.points(&lanes(|k| rays[k].p[0] + t[k] * n[0]))?.0,
+        None => branch.points(&lanes(|k| rays[k].p[0] + t[k] * n[0][k]))?.0,
     };
     Some(Beginning { t, e: [0.0; N], points, over_contact: over.is_some() })
+}
+
+/// Returns the directions n′ of rays.
+#[inline(always)]
+fn directions<const N: usize>(rays: &[Ray<'_>; N]) -> [Lanes<N>; 2] {
+    [lanes(|k| rays[k].n[0]), lanes(|k| rays[k].n[1])]
 }
 
 /// Finds where the columns of rays enter a piece at its near end. Returns `None` unless all of them do.
@@ -98,7 +116,7 @@ pub fn at_joint<const N: usize>(rays: &[Ray<'_>; N], index: usize) -> Option<Beg
 /// Method: the sagitta from t and t from the sagitta in turn.
 #[inline(always)]
 pub fn meet<const N: usize>(rays: &[Ray<'_>; N], branch: &Branch, begin: &Beginning<N>) -> Option<Met<N>> {
-    let (wheel, n) = (&rays[0].bodies.wheel, rays[0].n);
+    let (wheel, n) = (&rays[0].bodies.wheel, directions(rays));
     let (mut t, mut e) = (begin.t, begin.e);
     let mut w: Lanes<N> = lanes(|k| rays[k].axle_distance(t[k]));
     for _ in 0..STEPS {
@@ -110,7 +128,7 @@ pub fn meet<const N: usize>(rays: &[Ray<'_>; N], branch: &Branch, begin: &Beginn
         e = next;
         let v0: [Lanes<N>; 2] =
             [lanes(|k| -(e[k] - begin.e[k]) * wheel.sin), lanes(|k| -(e[k] - begin.e[k]) * wheel.cos)];
-        let Meetings { r: rise, .. } = along(branch, &begin.points, [&v0[0], &v0[1]], n)?;
+        let Meetings { r: rise, .. } = along(branch, &begin.points, [&v0[0], &v0[1]], [&n[0], &n[1]])?;
         t = lanes(|k| begin.t[k] + rise[k]);
         w = lanes(|k| rays[k].axle_distance(t[k]));
         if !every::<N>(|k| t[k].is_finite()) {

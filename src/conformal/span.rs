@@ -108,6 +108,26 @@ impl<'a> RaySpan<'a> {
         Some(Self::over(ray, piece, begin, 0.0, false))
     }
 
+    /// Makes the spans of 16 rays without skew that begin in the wheel's midplane; `None` where one has none.
+    #[inline(always)]
+    pub fn firsts(rays: &[Ray<'a>; MANY]) -> [Option<Self>; MANY] {
+        let pieces = rays.map(|ray| ray.first_piece());
+        let together = every::<MANY>(|k| pieces[k] == pieces[0]);
+        // A closure would be compiled apart, for the least of machines.
+        let begins = match pieces[0] {
+            Some(piece) if together => in_midplane(rays, piece),
+            _ => None,
+        };
+        let mut spans = [None; MANY];
+        for (k, (span, ray)) in spans.iter_mut().zip(rays).enumerate() {
+            *span = match (&begins, pieces[k]) {
+                (Some(begins), Some(piece)) => Some(Self::over(ray, piece, begins.lane(k), 0.0, false)),
+                _ => Self::first(ray),
+            };
+        }
+        spans
+    }
+
     /// Returns the next span; `None` at the end of the profile.
     pub fn next(&self) -> Option<Self> {
         let ray = &self.ray;

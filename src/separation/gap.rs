@@ -33,7 +33,7 @@ pub(crate) fn contact_gap(rail: &Branch, wheel: &Branch, xi: f64, zeta_w: f64) -
 /// Computes the gaps \[mm\] between two branches through C at N abscissae; `zeta_w` is ζ^W there. If one gap needs 32
 /// digits, all are computed with them. Returns `None` if N > 1 and a point is not found.
 #[inline(always)]
-pub(super) fn contact_gaps<const N: usize>(
+pub(crate) fn contact_gaps<const N: usize>(
     rail: &Branch,
     wheel: &Branch,
     xi: &Lanes<N>,

@@ -32,7 +32,7 @@ pub(crate) use columns::skewed::{SMALL_SHARE, interpolate};
 pub(crate) use demand::ROUNDING_LEVEL;
 pub use demand::{Demand, FULL_PRECISION};
 pub use evaluator::{Evaluator, Normals};
-pub(crate) use gap::{contact_gap, midplane_gap};
+pub(crate) use gap::{contact_gap, contact_gaps, midplane_gap};
 pub use grid::{Choice, Method};
 pub use midplane::{MidplaneRow, Transformed, midplane_rows, midplane_table, transformed_parameters};
 pub use plan::{Plan, plan};

@@ -59,6 +59,21 @@ impl BranchPoint {
     }
 }
 
+impl<const N: usize> BranchPoints<N> {
+    /// Returns one of the points.
+    #[inline(always)]
+    pub fn lane(&self, k: usize) -> BranchPoint {
+        match self {
+            Self::Arc { sin, cos, secant } => {
+                BranchPoints::Arc { sin: [sin[k]], cos: [cos[k]], secant: [secant[k]] }
+            }
+            Self::Polynomial { xi, t, rate } => {
+                BranchPoints::Polynomial { xi: [xi[k]], t: [t[k]], rate: [rate[k]] }
+            }
+        }
+    }
+}
+
 /// Returns each of two numbers N times. The arrays are written out, because the compiler may not inline `array::map`.
 #[inline(always)]
 pub(super) fn repeated<const N: usize>([a, b]: [f64; 2]) -> [Lanes<N>; 2] {
