@@ -8,7 +8,8 @@ use rayon::prelude::*;
 use super::arc_length::RailPoint;
 use super::gap::NormalGap;
 use super::ray::RayBodies;
-use super::span::{RayPoints, RaySpan, Reach, point, points};
+use super::sight::{point, searched};
+use super::span::{RayPoints, RaySpan, Reach, points};
 use crate::numerics::chebyshev::{self, extrema, powers, unit_nodes};
 use crate::numerics::lanes::{Lanes, MANY, every, lanes, largest, smallest};
 use crate::numerics::nan_max;
@@ -82,6 +83,19 @@ impl<'g, 'a> Columns<'g, 'a> {
             self.plain(&at, out);
         } else {
             self.skewed(&at, self.axis.eta(), out);
+        }
+        self.complete(&at, out);
+    }
+
+    /// Finds the points of a column that lie over none of its spans, and those at which the rail's point is on the other side of
+    /// the wheel's profile than at the beginning of a span.
+    fn complete(&self, at: &RailPoint, out: &mut [f64]) {
+        let stepped = self.gap.bodies.may_step(at, self.axis.eta());
+        for (t, &eta) in out.iter_mut().zip(self.axis.eta()) {
+            let ray = || self.gap.bodies.ray(at, eta);
+            if t.is_nan() || ((*t < 0.0 || stepped) && !ray().begins_on_side(*t)) {
+                *t = searched(&ray()).map_or(f64::NAN, |point| point.t);
+            }
         }
     }
 

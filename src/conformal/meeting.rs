@@ -73,7 +73,9 @@ pub fn along<const N: usize>(
                 let f = 2.0 * (z * cos[k] - x * sin[k]) - arc.curvature * (x * x + z * z);
                 let b = n[1] * cos[k] - n[0] * sin[k] - arc.curvature * (n[0] * x + n[1] * z);
                 let root = (b * b + arc.curvature * square * f).sqrt();
-                if b > 0.0 { -f / (b + root) } else { f64::NAN }
+                // Seen from behind the centre the entry is the farther root. A line has no such side.
+                let r = if b > 0.0 { -f / (b + root) } else { (b - root) / (arc.curvature * square) };
+                if r.is_finite() { r } else { f64::NAN }
             }))
         }
         (BranchShape::Polynomial(p), BranchPoints::Polynomial { t, .. }) => {
