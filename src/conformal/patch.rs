@@ -96,7 +96,8 @@ impl ConformalPatch {
             if here != there {
                 let tip = bracketed(depth, pair[0], pair[1]);
                 // Without a root the wheel's surface ends between the two.
-                let end = (tip.unwrap_or(if here { pair[0] } else { pair[1] }), tip.is_some());
+                let [on, off] = if here { [pair[0], pair[1]] } else { [pair[1], pair[0]] };
+                let end = (tip.unwrap_or_else(|| last_where(inside, on, off)), tip.is_some());
                 match begin.take() {
                     Some(begin) => patch.add(gap, window, [begin, end]),
                     None => begin = Some(end),

@@ -1,5 +1,6 @@
 //! Placed pairs as engineers have them, and some that nobody has.
 
+use wheelrail::conformal::NormalGap;
 use wheelrail::profile::{Arc, Half, Polynomial, Profile, Segment, Shape, inclination, standards};
 use wheelrail::{ONE_CONTACT, Pair, Placement, Pose, ProfilePair, Selection};
 use wheelrail_report::random::Random;
@@ -43,8 +44,14 @@ impl Stock {
         }
     }
 
-    /// The pairs of a number and a kind; none where the two do not meet.
+    /// The pairs of a number and a kind; none where the two do not meet, or where the rail hides C.
     pub fn placed(&self, kind: usize, number: u64) -> Vec<Placed> {
+        let mut all = self.met(kind, number);
+        all.retain(|placed| NormalGap::new(&placed.placement).rail().reach().is_some());
+        all
+    }
+
+    fn met(&self, kind: usize, number: u64) -> Vec<Placed> {
         let mut dice = Random::new(number ^ (kind as u64) << 32);
         let [rails, wheels] = match kind {
             0 | 1 => &self.built_in,
