@@ -2,10 +2,12 @@
 
 use super::input::{AskedAxes, OutputFormat, Outputs};
 use super::places::{MOST_PARTS, Placed};
-use crate::conformal::{RailArcLength, Reference};
+use crate::conformal::{ConformalPatch, NormalGap, RailArcLength, Reference};
 use crate::error::{Error, Result};
-use crate::mesh::{Axes, GridGroup, MOST_POINTS, groups};
-use crate::placement::Placement;
+use crate::mesh::{Axes, GridGroup, MOST_POINTS, conformal_groups, groups};
+
+/// Half widths \[mm\] of the window in which a conformal patch is first looked for where the plane has none.
+const LEAST_WINDOW: f64 = 1.0;
 
 /// The axes of one grid.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,6 +20,8 @@ pub struct Grid {
     pub warning: Option<String>,
     /// σ \[mm\], ascending, where gaps are given over the rail's surface; ξ are then those of its points.
     pub sigma: Option<Vec<f64>>,
+    /// Indices of the groups of parts of the plane's patch that an automatic grid covers.
+    pub groups: Vec<usize>,
 }
 
 impl Grid {
@@ -26,7 +30,8 @@ impl Grid {
     }
 }
 
-/// Gives the grids of one contact: the case's own axes, or one grid over every part of the patch.
+/// Gives the grids of one contact: the case's own axes, or one grid over every part of the patch, of the conformal one over the
+/// rail's surface.
 ///
 /// A contact that was found has one grid, over the part of the patch that holds it: the others are contacts of
 /// their own.
@@ -35,16 +40,20 @@ impl Grid {
 /// Automatic axes without a patch; a patch of more parts than anybody looks through; cells that do not fit into memory.
 pub(super) fn grids(asked: &AskedAxes, place: &Placed) -> Result<Vec<Grid>> {
     let AskedAxes { xi, eta, spacing, merge, reference } = asked;
-    let unrolled = |grid: Grid| match reference {
-        Reference::Plane => Ok(grid),
-        Reference::Rail => on_rail(grid, &place.contact.placement, xi.is_some()),
-    };
+    let rail = || RailArcLength::new(&place.contact.placement);
     if let (Some(xi), Some(eta)) = (xi, eta) {
-        let grid = Grid { xi: xi.clone(), eta: eta.clone(), warning: None, sigma: None };
-        return Ok(vec![unrolled(grid)?]);
+        let grid = Grid { xi: xi.clone(), eta: eta.clone(), warning: None, sigma: None, groups: Vec::new() };
+        return Ok(vec![if *reference == Reference::Rail { on_rail(grid, &rail())? } else { grid }]);
     }
     let patch = place.contact.whole_patch();
-    let mut groups = patch.map_or_else(Vec::new, |patch| groups(patch, *merge, *spacing));
+    let plane = patch.map_or_else(Vec::new, |patch| groups(patch, *merge, *spacing));
+    let mut groups = match (reference, place.contact.approach) {
+        (Reference::Rail, Some((approach, _))) => {
+            let patch = whole_conformal(place, approach, &plane);
+            conformal_groups(&patch, *merge, *spacing)
+        }
+        _ => plane.clone(),
+    };
     if groups.is_empty() && place.contact.approach.is_none() {
         let expected = "an approach or a load, by which the grid is sized";
         let advice = "give [patch] approach = … (mm) or load = … (N), or axes in [grid]";
@@ -64,22 +73,51 @@ pub(super) fn grids(asked: &AskedAxes, place: &Placed) -> Result<Vec<Grid>> {
         let advice = "smooth the profiles, give grid.merge, or from, to and n";
         return Err(Error::new("grid", found, expected, advice));
     }
-    let grid = |group: &GridGroup| {
+    let grid = |(index, group): (usize, &GridGroup)| {
         let automatic = group.axes(*spacing)?;
         let warning = stretched(&automatic);
-        let (xi, eta) = (xi.clone().unwrap_or(automatic.xi), eta.clone().unwrap_or(automatic.eta));
-        unrolled(Grid { xi, eta, warning, sigma: None })
+        let eta = eta.clone().unwrap_or(automatic.eta);
+        if *reference == Reference::Plane {
+            let xi = xi.clone().unwrap_or(automatic.xi);
+            return Ok(Grid { xi, eta, warning, sigma: None, groups: vec![index] });
+        }
+        let rail = rail();
+        let covered = covered(&rail, group, &plane);
+        let xi = xi.clone().unwrap_or_else(|| within(automatic.xi, rail.reach()));
+        on_rail(Grid { xi, eta, warning, sigma: None, groups: covered }, &rail)
     };
-    groups.iter().map(grid).collect()
+    groups.iter().enumerate().map(grid).collect()
 }
 
-/// Lays the first axis of a grid along the rail's surface. Given values are σ already; an automatic axis is laid anew with its
-/// own step over the arc between its ends, as far as the surface reaches.
+/// Finds the whole conformal patch of a contact, from a window twice as large as the plane's.
+fn whole_conformal(place: &Placed, approach: f64, plane: &[GridGroup]) -> ConformalPatch {
+    let widest = |side: fn(&GridGroup) -> [f64; 2]| {
+        plane.iter().flat_map(side).fold(0.0, |most: f64, end| most.max(end.abs()))
+    };
+    let sides = [widest(|group| group.extent.xi), widest(|group| group.extent.eta)];
+    let around = sides.map(|side| if side > 0.0 { 2.0 * side } else { LEAST_WINDOW });
+    ConformalPatch::whole(&NormalGap::new(&place.contact.placement), approach, around)
+}
+
+/// Lists the groups of the plane's patch that a group over the rail's surface covers.
+fn covered(rail: &RailArcLength<'_>, group: &GridGroup, plane: &[GridGroup]) -> Vec<usize> {
+    let xi = group.extent.xi.map(|sigma| rail.point(sigma).map_or(f64::NAN, |at| at.xi));
+    let meets = |a: [f64; 2], b: [f64; 2]| a[0] <= b[1] && b[0] <= a[1];
+    let under = |other: &GridGroup| meets(xi, other.extent.xi) && meets(group.extent.eta, other.extent.eta);
+    (0..plane.len()).filter(|&k| under(&plane[k])).collect()
+}
+
+/// Keeps the values of an automatic axis of σ \[mm\] that lie on the rail's surface; its margins may not.
+fn within(sigma: Vec<f64>, reach: Option<[f64; 2]>) -> Vec<f64> {
+    let [low, high] = reach.unwrap_or([f64::NAN; 2]);
+    sigma.into_iter().filter(|sigma| (low..=high).contains(sigma)).collect()
+}
+
+/// Takes the first axis of a grid as σ along the rail's surface.
 ///
 /// # Errors
 /// Values beyond the part of the rail that σ covers; a rail without a surface at C.
-fn on_rail(grid: Grid, placement: &Placement, given: bool) -> Result<Grid> {
-    let rail = RailArcLength::new(placement);
+fn on_rail(grid: Grid, rail: &RailArcLength<'_>) -> Result<Grid> {
     let beyond = |found: String, [low, high]: [f64; 2]| {
         let expected = format!("σ within [{low}, {high}] mm, where the rail's surface is single-valued");
         let advice =
@@ -87,21 +125,10 @@ fn on_rail(grid: Grid, placement: &Placement, given: bool) -> Result<Grid> {
         Error::new("grid: xi", found, expected, advice)
     };
     let Some(reach) = rail.reach() else { return Err(beyond("no surface at C".into(), [f64::NAN; 2])) };
-    let sigma = if given { grid.xi } else { arc_axis(&rail, reach, &grid.xi) };
     let point =
         |&sigma: &f64| rail.point(sigma).map(|at| at.xi).ok_or_else(|| beyond(sigma.to_string(), reach));
-    let xi = sigma.iter().map(point).collect::<Result<Vec<_>>>()?;
-    Ok(Grid { xi, sigma: Some(sigma), ..grid })
-}
-
-/// Lays an axis of equal steps along the rail over the same part as an axis of ξ, on the lattice about C.
-fn arc_axis(rail: &RailArcLength<'_>, reach: [f64; 2], xi: &[f64]) -> Vec<f64> {
-    let (Some(&first), Some(&last)) = (xi.first(), xi.last()) else { return Vec::new() };
-    let step = (last - first) / (xi.len().max(2) - 1) as f64;
-    let end = |xi: f64, end: f64| Some(rail.sigma(xi)).filter(|sigma| !sigma.is_nan()).unwrap_or(end);
-    let from = (end(first, reach[0]) / step).ceil() as i64;
-    let to = (end(last, reach[1]) / step).floor() as i64;
-    (from..=to).map(|k| k as f64 * step).collect()
+    let xi = grid.xi.iter().map(point).collect::<Result<Vec<_>>>()?;
+    Ok(Grid { xi, sigma: Some(grid.xi), ..grid })
 }
 
 fn stretched(axes: &Axes) -> Option<String> {

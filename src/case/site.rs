@@ -32,6 +32,8 @@ pub fn sites(case: &Case) -> Result<Vec<Site>> {
     let mut sites: Vec<Site> = Vec::new();
     let one_grid = case.axes.xi.is_some() && case.axes.eta.is_some();
     for (place, grids) in places.into_iter().zip(grids) {
+        let shared = |k: &usize| grids.iter().filter(|grid| grid.groups.contains(k)).count() > 1;
+        let shares: Vec<bool> = grids.iter().map(|grid| grid.groups.iter().any(shared)).collect();
         for (number, grid) in grids.into_iter().enumerate() {
             let folder = match (sites.is_empty(), number) {
                 (true, _) => String::new(),
@@ -44,7 +46,13 @@ pub fn sites(case: &Case) -> Result<Vec<Site>> {
                 [] => None,
                 // Axes that the scene gives are one grid for all groups of parts.
                 loads if one_grid => Some(loads.iter().sum()),
-                loads => loads.get(number).copied(),
+                // A part of the plane's patch may lie over two of the conformal one: nothing divides its load.
+                _ if shares[number] => None,
+                loads => {
+                    let covered: Vec<f64> =
+                        grid.groups.iter().filter_map(|&k| loads.get(k).copied()).collect();
+                    (!covered.is_empty()).then(|| covered.iter().sum())
+                }
             };
             sites.push(Site { folder, found, contact, grid, normal_load });
         }

@@ -8,7 +8,8 @@ use rayon::prelude::*;
 use super::arc_length::RailPoint;
 use super::gap::NormalGap;
 use super::ray::{Ray, RayBodies};
-use super::span::{RayPoints, RaySpan, Reach, point, points};
+use super::sight::{point, searched};
+use super::span::{RayPoints, RaySpan, Reach, points};
 use crate::numerics::chebyshev::{self, extrema, powers, unit_nodes};
 use crate::numerics::lanes::{Lanes, MANY, every, lanes, largest, smallest};
 use crate::numerics::nan_max;
@@ -77,15 +78,22 @@ impl<'g, 'a> Columns<'g, 'a> {
     fn fill(&mut self, sigma: &[f64], out: &mut [f64]) {
         out.fill(f64::NAN);
         let rail: Vec<Option<RailPoint>> = sigma.iter().map(|&sigma| self.gap.rail.point(sigma)).collect();
-        let columns = out.chunks_mut(self.axis.eta().len());
-        if self.gap.placement.skew() != 0.0 {
-            for (at, out) in rail.iter().zip(columns) {
-                if let Some(at) = at {
-                    self.skewed(at, self.axis.eta(), out);
-                }
-            }
-            return;
+        let length = self.axis.eta().len();
+        if self.gap.placement.skew() == 0.0 {
+            self.all_plain(&rail, out);
         }
+        for (at, out) in rail.iter().zip(out.chunks_mut(length)) {
+            let Some(at) = at else { continue };
+            if self.gap.placement.skew() != 0.0 {
+                self.skewed(at, self.axis.eta(), out);
+            }
+            self.complete(at, out);
+        }
+    }
+
+    /// Fills the columns of the block over a wheel without skew.
+    fn all_plain(&mut self, rail: &[Option<RailPoint>], out: &mut [f64]) {
+        let columns = out.chunks_mut(self.axis.eta().len());
         let rays: Vec<Option<Ray<'_>>> =
             rail.iter().map(|at| at.as_ref().map(|at| self.gap.bodies.ray(at, 0.0))).collect();
         let all: Option<[Ray<'_>; BLOCK]> =
@@ -98,6 +106,22 @@ impl<'g, 'a> Columns<'g, 'a> {
             None => rays.iter().zip(columns).for_each(|(ray, out)| {
                 self.plain(ray.as_ref().and_then(RaySpan::first), out);
             }),
+        }
+    }
+
+    /// Finds the points of a column that lie over none of its spans, and those at which the rail's point is on the other side of
+    /// the wheel's profile than at the beginning of a span.
+    fn complete(&self, at: &RailPoint, out: &mut [f64]) {
+        let stepped = self.gap.bodies.may_step(at, self.axis.eta());
+        // All at once: hardly any column has such a point.
+        if !stepped && out.iter().fold(true, |all, t| all & (*t >= 0.0)) {
+            return;
+        }
+        for (t, &eta) in out.iter_mut().zip(self.axis.eta()) {
+            let ray = || self.gap.bodies.ray(at, eta);
+            if t.is_nan() || ((*t < 0.0 || stepped) && !ray().begins_on_side(*t)) {
+                *t = searched(&ray()).map_or(f64::NAN, |point| point.t);
+            }
         }
     }
 

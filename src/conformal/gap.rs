@@ -4,7 +4,8 @@ use nalgebra::{Unit, Vector2, Vector3};
 
 use super::arc_length::{RailArcLength, RailPoint};
 use super::ray::RayBodies;
-use super::span::{self, RayPoint};
+use super::sight;
+use super::span::RayPoint;
 use crate::placement::Placement;
 
 /// Evaluates the normal gap over a placed pair.
@@ -80,7 +81,7 @@ impl<'a> NormalGap<'a> {
     /// Computes everything at one point; `None` beyond the rail's range of σ.
     pub fn point(&self, sigma: f64, eta: f64) -> Option<GapPoint> {
         let rail = self.rail.point(sigma)?;
-        let met = span::point(&self.bodies.ray(&rail, eta));
+        let met = sight::point(&self.bodies.ray(&rail, eta));
         let rail_normal = Unit::new_unchecked(Vector3::new(-rail.sin, 0.0, rail.cos));
         let wheel_normal = met.map(|point| self.wheel_normal(&point));
         let over_contact = met.is_some_and(|met| met.over_contact);
@@ -90,7 +91,7 @@ impl<'a> NormalGap<'a> {
 
     fn meeting(&self, sigma: f64, eta: f64) -> Option<(RailPoint, RayPoint)> {
         let rail = self.rail.point(sigma)?;
-        Some((rail, span::point(&self.bodies.ray(&rail, eta))?))
+        Some((rail, sight::point(&self.bodies.ray(&rail, eta))?))
     }
 
     /// Computes the wheel's outward unit normal (ξ, η, ζ) at a point of a ray.

@@ -82,7 +82,9 @@ pub fn along<const N: usize>(
                 let f = 2.0 * (z * cos[k] - x * sin[k]) - arc.curvature * (x * x + z * z);
                 let b = n_z * cos[k] - n_x * sin[k] - arc.curvature * (n_x * x + n_z * z);
                 let root = (b * b + arc.curvature * square * f).sqrt();
-                if b > 0.0 { -f / (b + root) } else { f64::NAN }
+                // Seen from behind the centre the entry is the farther root. A line has no such side.
+                let r = if b > 0.0 { -f / (b + root) } else { (b - root) / (arc.curvature * square) };
+                if r.is_finite() { r } else { f64::NAN }
             };
             Some(Meetings { r: lanes(r), parameters: None })
         }

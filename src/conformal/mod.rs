@@ -8,6 +8,7 @@
 //! | where a line meets a segment of the wheel's profile | `meeting` |
 //! | the line along the normal, and several of one σ at once | `ray`, `rays` |
 //! | the spans of a line's column over the wheel | `span` |
+//! | the wheel's point on a line that enters it more than once | `sight` |
 //! | t, α and both normals at single points | `gap`: [`NormalGap`] |
 //! | t(σ, ·) as polynomials, grids | `columns`: [`fill_normal_gap`] |
 //! | the patch t < δ cos α | `patch`: [`ConformalPatch`] |
@@ -21,6 +22,7 @@ mod patch;
 mod ray;
 mod rays;
 mod reference;
+mod sight;
 mod span;
 
 pub use arc_length::{RailArcLength, RailPoint};

@@ -13,6 +13,18 @@ const AREA_DEMAND: f64 = 1e-10;
 /// Number of points on each of the two sides of a loop.
 const POINTS_PER_SIDE: usize = 128;
 
+/// Steps over the window in η in which the lowest place of a skewed wheel is looked for.
+const ETA_STEPS: usize = 16;
+
+/// Most steps to the least or largest depth between two places. The interval is then 1e-6 of what it was.
+const TURN_STEPS: usize = 30;
+
+/// Share of an interval at which a golden section divides it.
+const GOLDEN: f64 = 0.381_966_011_250_105_1;
+
+/// Largest number of times that a window is doubled: from 1/100 mm to beyond any wheel.
+const MOST_DOUBLINGS: usize = 20;
+
 /// One connected part of the conformal patch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConformalComponent {
@@ -24,6 +36,8 @@ pub struct ConformalComponent {
     pub cut: bool,
     /// Area on the rail's surface \[mm²\].
     pub area: f64,
+    /// Smallest t − δ cos α \[mm\], of the points of the boundary's columns.
+    pub least: f64,
     /// Least and largest α \[rad\]. The normal turns by their difference within the part.
     pub angle: [f64; 2],
     /// Boundary: a closed loop of \[σ, η\] \[mm\], counter-clockwise seen from outside of the rail. The first point is not
@@ -34,9 +48,9 @@ pub struct ConformalComponent {
 /// The conformal patch inside a window of (σ, η).
 ///
 /// Method: at every σ the wheel's lowest place along η is where its normal has no component along η; the interval of η
-/// around it is bounded by roots of t = δ cos α. Tips are roots of the depth of the lowest place. A part that is narrower in
-/// σ than 1/256 of the window and lies between two joints may be missed, and so may a second interval of η at one σ, which
-/// only a skewed wheel with a hollow has.
+/// around it is bounded by roots of t = δ cos α. Tips are roots of the depth of the lowest place, which is looked for at joints of the
+/// rail, at 256 equal steps of the window, and where it turns between them. A part with two turns of that depth within two
+/// steps may be missed, and so may a second interval of η at one σ, which only a skewed wheel with a hollow has.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConformalPatch {
     /// Approach δ \[mm\].
@@ -52,6 +66,8 @@ pub struct ConformalSlice {
     pub eta: [f64; 2],
     /// Whether an end of the interval is that of the window or of the wheel.
     pub cut: bool,
+    /// Smallest t − δ cos α \[mm\].
+    pub least: f64,
 }
 
 impl ConformalPatch {
@@ -71,6 +87,8 @@ impl ConformalPatch {
         let depth =
             |sigma: f64| lowest(gap, approach, window.eta, sigma).map_or(f64::NAN, |[_, depth]| depth);
         let inside = |sigma: f64| depth(sigma) < 0.0;
+        places.extend(turned(&depth, &places));
+        places.sort_by(f64::total_cmp);
         // Where a part begins, and whether that is a tip.
         let mut begin = inside(from).then_some((from, false));
         for pair in places.windows(2) {
@@ -78,7 +96,8 @@ impl ConformalPatch {
             if here != there {
                 let tip = bracketed(depth, pair[0], pair[1]);
                 // Without a root the wheel's surface ends between the two.
-                let end = (tip.unwrap_or(if here { pair[0] } else { pair[1] }), tip.is_some());
+                let [on, off] = if here { [pair[0], pair[1]] } else { [pair[1], pair[0]] };
+                let end = (tip.unwrap_or_else(|| last_where(inside, on, off)), tip.is_some());
                 match begin.take() {
                     Some(begin) => patch.add(gap, window, [begin, end]),
                     None => begin = Some(end),
@@ -87,6 +106,26 @@ impl ConformalPatch {
         }
         if let Some(begin) = begin {
             patch.add(gap, window, [begin, (to, false)]);
+        }
+        patch
+    }
+
+    /// Finds the whole patch: in a window that is doubled until it cuts no part, or covers the rail's surface and the wheel. It begins
+    /// with the half widths \[mm\] `around` C, along σ and η.
+    pub fn whole(gap: &NormalGap<'_>, approach: f64, around: [f64; 2]) -> Self {
+        let mut window = Window { xi: [-around[0], around[0]], eta: [-around[1], around[1]] };
+        let mut patch = Self::new(gap, approach, &window);
+        for _ in 0..MOST_DOUBLINGS {
+            let meets = |ends: [f64; 2], of: [f64; 2]| ends[0] <= of[0] || ends[1] >= of[1];
+            // The ends of the rail's surface and of the wheel lie inside of a window that is wide enough.
+            let along = patch.components.iter().any(|part| meets(part.sigma, window.xi));
+            let across = patch.components.iter().any(|part| meets(part.eta, window.eta));
+            if !along && !across {
+                break;
+            }
+            let wider = |[a, b]: [f64; 2], grow: bool| if grow { [2.0 * a, 2.0 * b] } else { [a, b] };
+            window = Window { xi: wider(window.xi, along), eta: wider(window.eta, across) };
+            patch = Self::new(gap, approach, &window);
         }
         patch
     }
@@ -105,11 +144,13 @@ impl ConformalPatch {
         let mut cut = round.contains(&false);
         let mut eta = [f64::INFINITY, f64::NEG_INFINITY];
         let mut angle = eta;
+        let mut least = f64::INFINITY;
         for k in 0..POINTS_PER_SIDE {
             let at = grading.xi(k as f64 / (POINTS_PER_SIDE - 1) as f64);
             let alpha = gap.angle(at);
             angle = [angle[0].min(alpha), angle[1].max(alpha)];
             if let Some(found) = slice(at) {
+                least = least.min(found.least);
                 cut |= found.cut;
                 eta = [eta[0].min(found.eta[0]), eta[1].max(found.eta[1])];
                 rows.push((at, found.eta));
@@ -128,27 +169,77 @@ impl ConformalPatch {
         if boundary.len() > 1 && boundary.first() == boundary.last() {
             boundary.pop();
         }
-        self.components.push(ConformalComponent { sigma, eta, cut, area, angle, boundary });
+        self.components.push(ConformalComponent { sigma, eta, cut, area, least, angle, boundary });
     }
+}
+
+/// Finds σ \[mm\] between neighbouring places, ascending, at which the depth may pass zero twice: where it turns on the other side of
+/// zero.
+fn turned(depth: &impl Fn(f64) -> f64, places: &[f64]) -> Vec<f64> {
+    let depths: Vec<f64> = places.iter().map(|&sigma| depth(sigma)).collect();
+    let mut found = Vec::new();
+    for (at, d) in places.windows(3).zip(depths.windows(3)) {
+        let sign = d[1].signum();
+        let [before, here, after] = [d[0], d[1], d[2]].map(|depth| depth * sign);
+        // Three places on one side, of which the middle one is nearest to the other side, and near enough.
+        let near = here <= before && here <= after && here < (before - here).max(after - here);
+        if near && let Some(turn) = crosses(&|sigma| sign * depth(sigma), [at[0], at[2]]) {
+            found.push(turn);
+        }
+    }
+    found
+}
+
+/// Finds a place inside an interval at which a function with one turn is negative, by golden sections.
+fn crosses(f: &impl Fn(f64) -> f64, [mut a, mut b]: [f64; 2]) -> Option<f64> {
+    let mut inner = [a + GOLDEN * (b - a), b - GOLDEN * (b - a)];
+    let mut values = inner.map(f);
+    for _ in 0..TURN_STEPS {
+        if let Some(k) = values.iter().position(|value| *value < 0.0) {
+            return Some(inner[k]);
+        }
+        if values[0] <= values[1] {
+            b = inner[1];
+            inner = [a + GOLDEN * (b - a), inner[0]];
+            values = [f(inner[0]), values[0]];
+        } else {
+            a = inner[0];
+            inner = [inner[1], b - GOLDEN * (b - a)];
+            values = [values[1], f(inner[1])];
+        }
+    }
+    None
 }
 
 /// Finds the place of the wheel along η that is lowest over the rail at σ: η \[mm\] and t − δ cos α there \[mm\]. Returns
 /// `None` where there is no such place in the window.
 fn lowest(gap: &NormalGap<'_>, approach: f64, window: [f64; 2], sigma: f64) -> Option<[f64; 2]> {
+    let eta = if gap.placement.skew() == 0.0 && window[0] <= 0.0 && 0.0 <= window[1] {
+        0.0
+    } else {
+        lowest_of_steps(gap, window, sigma)?
+    };
+    let point = gap.point(sigma, eta)?;
+    Some([eta, point.gap - approach * point.rail.cos]).filter(|[_, depth]| depth.is_finite())
+}
+
+/// Finds the η \[mm\] at which the wheel is lowest: next to the least of some steps, where its normal has no component along η.
+fn lowest_of_steps(gap: &NormalGap<'_>, [from, to]: [f64; 2], sigma: f64) -> Option<f64> {
+    let t = |eta: f64| gap.gap(sigma, eta);
+    let step = |k: usize| from + (to - from) * k as f64 / ETA_STEPS as f64;
+    let met = (0..=ETA_STEPS).map(|k| (k, t(step(k)))).filter(|(_, t)| !t.is_nan());
+    let (least, _) = met.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let ends = [least.saturating_sub(1), (least + 1).min(ETA_STEPS)].map(|k| {
+        let end = step(k);
+        if t(end).is_nan() { last_where(|eta| !t(eta).is_nan(), step(least), end) } else { end }
+    });
     let across = |eta: f64| {
         let normal = gap.point(sigma, eta).and_then(|point| point.wheel_normal);
         normal.map_or(f64::NAN, |normal| normal.y)
     };
-    let eta = if gap.placement.skew() == 0.0 && window[0] <= 0.0 && 0.0 <= window[1] {
-        0.0
-    } else {
-        bracketed(across, window[0], window[1]).unwrap_or_else(|| {
-            // The surface rises over the whole window from one of its ends.
-            if gap.gap(sigma, window[0]) < gap.gap(sigma, window[1]) { window[0] } else { window[1] }
-        })
-    };
-    let point = gap.point(sigma, eta)?;
-    Some([eta, point.gap - approach * point.rail.cos]).filter(|[_, depth]| depth.is_finite())
+    let turn = bracketed(across, ends[0], ends[1]);
+    // Without a turn the surface rises over the whole interval from one of its ends.
+    turn.or_else(|| ends.into_iter().min_by(|a, b| t(*a).total_cmp(&t(*b))))
 }
 
 /// Finds the interval of η \[mm\] inside `window` with t ≤ δ cos α at one σ \[mm\]; `None` outside of the patch.
@@ -163,24 +254,19 @@ pub fn conformal_slice(
         return None;
     }
     let target = approach * gap.rail().point(sigma)?.cos;
+    let beyond = |eta: f64| gap.gap(sigma, eta) - target;
     let mut cut = false;
-    let ends = window.map(|end| {
-        let beyond = |eta: f64| gap.gap(sigma, eta) - target;
+    let eta = window.map(|end| {
         if depth == 0.0 {
             return middle;
         }
-        let at_end = beyond(end);
-        if at_end > 0.0
-            && let Some(root) = bracketed(beyond, middle, end)
-        {
-            return root;
-        }
-        cut = true;
-        if at_end.is_nan() {
-            let on_wheel = |eta: f64| beyond(eta) <= 0.0;
-            return last_where(on_wheel, middle, end);
-        }
-        end
+        // The wheel may end before the window.
+        let end =
+            if beyond(end).is_nan() { last_where(|eta| !beyond(eta).is_nan(), middle, end) } else { end };
+        bracketed(beyond, middle, end).unwrap_or_else(|| {
+            cut = true;
+            end
+        })
     });
-    Some(ConformalSlice { eta: ends, cut })
+    Some(ConformalSlice { eta, cut, least: depth })
 }

@@ -6,7 +6,7 @@
 use super::arc_length::RailPoint;
 use crate::placement::Placement;
 use crate::profile::{Branch, ONE_JOINT, Piece, Section};
-use crate::separation::WheelSurface;
+use crate::separation::{WheelSurface, sagitta};
 
 /// The bodies over which rays are cast, with what all rays share.
 #[derive(Debug, Clone, Copy)]
@@ -71,6 +71,21 @@ impl<'a> RayBodies<'a> {
         f64::EPSILON * self.size
     }
 
+    /// Returns the largest distance \[mm\] of the two sides of a joint.
+    pub fn joint(&self) -> f64 {
+        ONE_JOINT * self.size
+    }
+
+    /// Tells whether the wheel's profile has a step over one of the points of a column, between the midplane and the sagitta of
+    /// the point.
+    pub fn may_step(&self, from: &RailPoint, eta: &[f64]) -> bool {
+        let ends = [eta.first(), eta.last()].map(|eta| self.ray(from, eta.copied().unwrap_or(0.0)));
+        let reach = ends.iter().map(|ray| ray.own_sagitta() * self.wheel.sin.abs()).fold(0.0, f64::max);
+        let low = ends[0].p[0].min(ends[1].p[0]) - reach;
+        let high = ends[0].p[0].max(ends[1].p[0]) + reach;
+        self.wheel.section.steps_within([low, high], self.joint())
+    }
+
     /// Casts the ray from a point of the rail at lateral position η \[mm\]. Without skew all η have the same ray but for η.
     pub fn ray(&'a self, from: &RailPoint, eta: f64) -> Ray<'a> {
         let (sin, cos) = (self.skew_sin, self.skew_cos);
@@ -115,8 +130,22 @@ impl<'a> Ray<'a> {
         (run * n[0] + rise * n[1]) / (n[0] * n[0] + n[1] * n[1])
     }
 
+    /// Computes the sagitta e \[mm\] of the ray's own beginning, t = 0; NaN behind the axle.
+    pub fn own_sagitta(&self) -> f64 {
+        sagitta(self.axle_distance(0.0), self.eta * self.eta)
+    }
+
+    /// Tells whether the ray's beginning, t = 0, is on the side of the wheel's profile from which the ray meets it at t \[mm\]: in
+    /// the material if t is negative, and not there if t is positive.
+    pub fn begins_on_side(&self, t: f64) -> bool {
+        let (wheel, e) = (&self.bodies.wheel, self.own_sagitta());
+        let height = wheel.section.height(self.p[0] - e * wheel.sin);
+        let depth = self.p[1] - e * wheel.cos - height;
+        if t < 0.0 { depth >= -self.bodies.joint() } else { depth.is_nan() || depth <= self.bodies.joint() }
+    }
+
     /// Computes how far a point of the profile lies beside the ray \[mm\], towards larger ξ.
-    fn beside(&self, at: [f64; 2]) -> f64 {
+    pub fn beside(&self, at: [f64; 2]) -> f64 {
         (at[0] - self.p[0]) * self.n[1] - (at[1] - self.p[1]) * self.n[0]
     }
 
@@ -136,35 +165,72 @@ impl<'a> Ray<'a> {
         [0, 1].map(|end| self.beside([piece.xi[end], piece.ends[end].1]))
     }
 
-    /// Finds the piece of the wheel's profile that the ray meets in the wheel's own midplane, e = 0.
+    /// Tells whether a piece leads from one side of the ray to the other everywhere, so that the ray crosses it once at most.
+    pub fn passes_once(&self, index: usize) -> bool {
+        let slopes = self.bodies.wheel.section.slopes()[index];
+        // A vertical surface has an infinite slope, and rays along ζ cross it once, too.
+        self.n[0] == 0.0 || slopes.iter().all(|slope| slope * self.n[0] < self.n[1])
+    }
+
+    /// Tells whether a piece leads from one side of the ray to the other everywhere between the abscissa of P′, if it is above P′, and
+    /// the end to which the profile is followed from there.
+    fn leads(&self, index: usize) -> bool {
+        if self.passes_once(index) {
+            return true;
+        }
+        let (piece, from) = (&self.pieces()[index], self.p[0]);
+        if from < piece.xi[0] || piece.xi[1] < from {
+            return false;
+        }
+        let branch = self.branch(piece);
+        let beside = self.beside([from, branch.height(from)]);
+        // A ray from a point in the material is followed against its direction.
+        let leans_right = self.n[0] > 0.0;
+        let outside = (beside < 0.0) == leans_right || beside.abs() <= self.bodies.joint();
+        let [a, b] = if outside == leans_right { [from, piece.xi[1]] } else { [piece.xi[0], from] };
+        let [slopes, _] = branch.derivative_bounds(a, b);
+        slopes.iter().all(|slope| slope * self.n[0] < self.n[1])
+    }
+
+    /// Tells whether two neighbouring pieces have one point in common, seen along the ray.
+    pub fn joins(&self, [left, right]: [usize; 2]) -> bool {
+        let ([_, end], [begin, _]) = (self.ends_beside(left), self.ends_beside(right));
+        (end - begin).abs() <= self.bodies.joint()
+    }
+
+    /// Finds the piece of the wheel's profile that the ray meets in the wheel's own midplane, e = 0. Returns `None` where it
+    /// misses the profile, and where a part of the profile that leads there has a step or turns back across the ray.
     ///
     /// Method: the pieces are followed from the one above P′ towards the ray.
     pub fn first_piece(&self) -> Option<usize> {
         let last = self.pieces().len().checked_sub(1)?;
-        let rounding = ONE_JOINT * self.bodies.size;
         let mut index = self.pieces().partition_point(|piece| piece.xi[1] < self.p[0]).min(last);
-        let mut came: Option<(usize, f64)> = None;
-        loop {
+        let mut came = None;
+        while self.leads(index) {
             let [low, high] = self.ends_beside(index);
             let next = if low > 0.0 {
-                index.checked_sub(1).map(|next| (next, low))
+                index.checked_sub(1)
             } else if high < 0.0 {
-                (index < last).then_some((index + 1, high))
+                (index < last).then_some(index + 1)
             } else {
                 return Some(index);
             };
-            let outer = if low > 0.0 { low } else { high };
-            let Some((next, edge)) = next else {
+            let Some(next) = next else {
                 // The end of the profile is on the ray to rounding.
-                return (outer.abs() <= rounding).then_some(index);
+                let outer = if low > 0.0 { low } else { high };
+                return (outer.abs() <= self.bodies.joint()).then_some(index);
             };
-            // The ray passes between two pieces: through a joint that both round differently, or through a step.
-            if let Some((before, passed)) = came.filter(|(before, _)| *before == next) {
-                return ((edge - passed).abs() <= rounding).then_some(before);
+            if !self.joins([index.min(next), index.max(next)]) {
+                return None;
             }
-            came = Some((index, edge));
+            // The ray passes through a joint that both pieces round differently.
+            if came == Some(next) {
+                return came;
+            }
+            came = Some(index);
             index = next;
         }
+        None
     }
 
     /// Returns the ends of a piece by which the column enters and leaves it; 0 is the end at smaller ξ.

@@ -65,19 +65,16 @@ pub struct RayPoints {
     pub over_contact: bool,
 }
 
-/// Finds the wheel's point at a ray's own η′; `None` where the ray misses the wheel.
-///
-/// Accuracy: over both contact segments a few roundings of the terms of t; elsewhere of the profile's extent.
-pub fn point(ray: &Ray<'_>) -> Option<RayPoint> {
-    RaySpan::holding(ray)?.point_at(ray.eta)
-}
-
 /// Finds the points at 16 places η \[mm\] of one point of the rail. Returns `None` unless all lie over the piece over which
 /// that of the middle place lies.
 #[inline(always)]
 pub fn points(bodies: &RayBodies<'_>, at: &RailPoint, eta: &Lanes) -> Option<RayPoints> {
     let rays = eta.map(|eta| bodies.ray(at, eta));
     let span = RaySpan::holding(&rays[MANY / 2])?;
+    let over_it = |ray: &Ray<'_>| RaySpan::holding(ray).is_some_and(|other| other.piece == span.piece);
+    if !over_it(&rays[0]) || !over_it(&rays[MANY - 1]) {
+        return None;
+    }
     let begin = if span.joint {
         let begin = at_joint(&rays, span.piece)?;
         // Each column enters the piece at its joint, and not from a step that covers it.
@@ -101,7 +98,7 @@ pub fn points(bodies: &RayBodies<'_>, at: &RailPoint, eta: &Lanes) -> Option<Ray
 }
 
 impl<'a> RaySpan<'a> {
-    /// Makes the span that begins in the wheel's midplane.
+    /// Makes the span that begins in the wheel's midplane; `None` where [`Ray::first_piece`] finds no piece.
     pub fn first(ray: &Ray<'a>) -> Option<Self> {
         let piece = ray.first_piece()?;
         let begin = in_midplane(&[*ray], piece)?;
@@ -128,13 +125,16 @@ impl<'a> RaySpan<'a> {
         spans
     }
 
-    /// Returns the next span; `None` at the end of the profile.
+    /// Returns the next span; `None` at the end of the profile, and where it has a step or turns back across the ray.
     pub fn next(&self) -> Option<Self> {
         let ray = &self.ray;
         let piece = match ray.sides()[1] {
             0 => self.piece.checked_sub(1)?,
             _ => Some(self.piece + 1).filter(|&next| next < ray.pieces().len())?,
         };
+        if !ray.passes_once(piece) || !ray.joins([piece.min(self.piece), piece.max(self.piece)]) {
+            return None;
+        }
         let begin = at_joint(&[*ray], piece)?;
         Some(Self::over(ray, piece, begin, self.end.max(begin.e[0]), true))
     }
@@ -145,8 +145,8 @@ impl<'a> RaySpan<'a> {
         Self { ray: *ray, piece, branch, begin, w, end, from, joint }
     }
 
-    /// Finds the span that holds a ray's own η′.
-    fn holding(ray: &Ray<'a>) -> Option<Self> {
+    /// Finds the span that holds a ray's own η′; `None` where the way there has none.
+    pub fn holding(ray: &Ray<'a>) -> Option<Self> {
         let mut span = Self::first(ray)?;
         while span.is_passed() {
             span = span.next()?;

@@ -4,6 +4,7 @@
 //! Centres lie on the lattice (i Δξ, j Δη) about C. C itself is therefore a centre, the η axis is symmetric to the last bit
 //! over a symmetric patch, and grids of one spacing for several parts or approaches share their centres.
 
+use crate::conformal::{ConformalComponent, ConformalPatch};
 use crate::error::{Error, ErrorKind, Result, finite};
 use crate::patch::{Component, Patch, Window};
 
@@ -53,14 +54,14 @@ pub fn equal_steps(a: f64, b: f64, n: usize) -> Vec<f64> {
     (0..n).map(|k| (a * (last - k as f64) + b * k as f64) / last).collect()
 }
 
-/// Components of a patch that share a grid.
+/// Components of a patch that share a grid; for a conformal patch σ stands in the place of ξ.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GridGroup {
     /// Indices of the components in the patch, ascending.
     pub components: Vec<usize>,
     /// The box around the components \[mm\].
     pub extent: Window,
-    /// Smallest s on the components \[mm\].
+    /// Smallest s, or t − δ cos α, on the components \[mm\].
     pub least: f64,
     /// The shorter side of the box around the largest component \[mm\].
     pub short_side: f64,
@@ -86,21 +87,46 @@ pub struct GridGroup {
 /// # Ok::<(), wheelrail::Error>(())
 /// ```
 pub fn groups(patch: &Patch, merge: f64, spacing: Option<[f64; 2]>) -> Vec<GridGroup> {
-    let components = &patch.components;
+    let part = |component: &Component| GridPart {
+        extent: Window { xi: component.xi, eta: component.eta },
+        least: component.deepest[0],
+    };
+    grouped(&patch.components.iter().map(part).collect::<Vec<_>>(), merge, spacing)
+}
+
+/// Divides the components of a conformal patch into groups by the rules of [`groups`]. The patch must be the whole one.
+pub fn conformal_groups(patch: &ConformalPatch, merge: f64, spacing: Option<[f64; 2]>) -> Vec<GridGroup> {
+    let part = |component: &ConformalComponent| GridPart {
+        extent: Window { xi: component.sigma, eta: component.eta },
+        least: component.least,
+    };
+    grouped(&patch.components.iter().map(part).collect::<Vec<_>>(), merge, spacing)
+}
+
+/// What groups are made by of a component.
+#[derive(Debug, Clone, Copy)]
+struct GridPart {
+    /// The box around the component \[mm\].
+    extent: Window,
+    /// Its smallest s, or t − δ cos α \[mm\].
+    least: f64,
+}
+
+fn grouped(parts: &[GridPart], merge: f64, spacing: Option<[f64; 2]>) -> Vec<GridGroup> {
     let mut groups: Vec<GridGroup> = Vec::new();
-    for (index, component) in components.iter().enumerate() {
-        let mut group = GridGroup::of(index, component);
+    for (index, part) in parts.iter().enumerate() {
+        let mut group = GridGroup::of(index, part);
         // A new part may link groups that were apart: all groups near it are joined.
         let belongs = |group: &GridGroup, other: &GridGroup| {
             let apart = distance(&group.extent, &other.extent);
             apart < merge || group.cuts(other, spacing) || other.cuts(group, spacing)
         };
         while let Some(near) = groups.iter().position(|other| belongs(&group, other)) {
-            group = groups.swap_remove(near).joined(group, components);
+            group = groups.swap_remove(near).joined(group, parts);
         }
         groups.push(group);
     }
-    let away = |group: &GridGroup| !group.components.iter().any(|&k| holds_contact(&components[k]));
+    let away = |group: &GridGroup| !group.components.iter().any(|&k| holds_contact(&parts[k].extent));
     groups.sort_by(|a, b| away(a).cmp(&away(b)).then(a.least.total_cmp(&b.least)));
     groups
 }
@@ -126,17 +152,16 @@ impl GridGroup {
         self.axes(spacing).is_ok_and(|axes| distance(&axes.window(), &other.extent) <= 0.0)
     }
 
-    fn of(index: usize, component: &Component) -> Self {
-        let extent = Window { xi: component.xi, eta: component.eta };
-        let [short_side, _] = sides(component);
-        Self { components: vec![index], extent, least: component.deepest[0], short_side }
+    fn of(index: usize, part: &GridPart) -> Self {
+        let [short_side, _] = sides(&part.extent);
+        Self { components: vec![index], extent: part.extent, least: part.least, short_side }
     }
 
-    fn joined(mut self, other: Self, components: &[Component]) -> Self {
+    fn joined(mut self, other: Self, parts: &[GridPart]) -> Self {
         self.components.extend(other.components);
         self.components.sort_unstable();
         let join = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
-        let boxes = self.components.iter().map(|&k| sides(&components[k]));
+        let boxes = self.components.iter().map(|&k| sides(&parts[k].extent));
         let largest = boxes.max_by(|a, b| (a[0] * a[1]).total_cmp(&(b[0] * b[1])));
         Self {
             extent: Window {
@@ -150,13 +175,13 @@ impl GridGroup {
     }
 }
 
-fn holds_contact(component: &Component) -> bool {
-    [component.xi, component.eta].iter().all(|[from, to]| *from <= 0.0 && *to >= 0.0)
+fn holds_contact(extent: &Window) -> bool {
+    [extent.xi, extent.eta].iter().all(|[from, to]| *from <= 0.0 && *to >= 0.0)
 }
 
-/// Returns the shorter and the longer side of the component's box \[mm\].
-fn sides(component: &Component) -> [f64; 2] {
-    let [along, across] = [component.xi, component.eta].map(|[a, b]| b - a);
+/// Returns the shorter and the longer side of a component's box \[mm\].
+fn sides(extent: &Window) -> [f64; 2] {
+    let [along, across] = [extent.xi, extent.eta].map(|[a, b]| b - a);
     [along.min(across), along.max(across)]
 }
 

@@ -29,7 +29,7 @@ pub use inclination::inclination;
 pub use polynomial::Polynomial;
 pub(crate) use section::{
     ArcBranch, Branch, BranchPoint, BranchPoints, BranchShape, Branches, Piece, PolynomialBranch,
-    stationary_points,
+    parallel_to, stationary_points,
 };
 pub use section::{ProfilePoint, Section};
 pub use segment::{Segment, Shape};

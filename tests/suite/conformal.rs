@@ -2,16 +2,17 @@
 
 use crate::common::{folder, profile};
 use wheelrail::Evaluator;
-use wheelrail::case::{Run, SILENT};
+use wheelrail::case::{Case, Profiles, Run, SILENT};
 use wheelrail::conformal::{ConformalPatch, GapPoint, NormalGap, fill_normal_gap};
 use wheelrail::scene::{self, Scene};
 use wheelrail::separation::EtaAxis;
-use wheelrail::{Arc, Half, Pair, Patch, Placement, Window};
+use wheelrail::{Arc, Half, Pair, Patch, Placement, Window, inclination};
 use wheelrail_report::conformal::values::{
     BOUNDS, FILES, GapBound, GapErrors, GapReference, GapValue, PROMISED_ABSOLUTE, PROMISED_RELATIVE,
     gap_references,
 };
 use wheelrail_report::reference::exact;
+use wheelrail_report::specimen::{Instrument, Specimen, SpecimenKind};
 
 fn references() -> Vec<GapReference> {
     gap_references().expect("the files' format")
@@ -299,6 +300,69 @@ fn a_run_over_the_rail_has_both_gaps_at_the_same_points() {
     }
     let patch = conformal.patch.as_ref().expect("a patch");
     assert!(patch.components.iter().all(|part| !part.cut), "{patch:?}");
+}
+
+/// The text of a scene with automatic grids over the rail.
+fn over_rail(text: &str) -> Scene {
+    scene::parse(&format!("{text}\n[grid]\nreference = \"rail\"\n"), false).expect("a scene")
+}
+
+/// Runs a case over the rail; no part of its grids' conformal patches is cut, and every grid has its margin.
+fn uncut(case: wheelrail::Result<Case>) -> Run {
+    let run = Run::new(case.expect("a case"), SILENT).expect("a run");
+    for part in &run.parts {
+        let conformal = part.analysis.conformal.as_ref().expect("a normal gap");
+        let patch = conformal.patch.as_ref().expect("a patch");
+        let name = part.site.name();
+        assert!(!patch.components.is_empty(), "{name}");
+        let sigma: Vec<f64> = conformal.rail.iter().map(|at| at.sigma).collect();
+        for component in &patch.components {
+            assert!(!component.cut, "{name}: {component:?}");
+            for (axis, ends) in [(&sigma, component.sigma), (&part.site.grid.eta, component.eta)] {
+                let inner = [axis[1], axis[axis.len() - 2]];
+                assert!(inner[0] < ends[0] && ends[1] < inner[1], "{name}: {ends:?} in {inner:?}");
+            }
+        }
+    }
+    assert!(!run.warnings().iter().any(|text| text.contains("cuts")), "{:?}", run.warnings());
+    run
+}
+
+#[test]
+fn automatic_grids_over_the_rail_cut_no_part() {
+    let drawn = |text: &str| uncut(scene::resolve(&over_rail(text), ".".as_ref(), "uncut"));
+    let pair =
+        "[rail]\nprofile = \"60E1\"\nrotate = \"1:40\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n";
+    for offset in [2.3, 3.0, 3.5] {
+        for yaw in [0.0, 0.02] {
+            let contact = format!("[contact]\noffset = {offset:?}\nyaw = {yaw:?}\n[patch]\nload = 60000.0\n");
+            let run = drawn(&format!("{pair}{contact}"));
+            assert!(run.parts.iter().all(|part| part.site.normal_load.is_some_and(|load| load > 0.0)));
+        }
+    }
+    drawn(
+        "[rail]\nprofile = \"54E3\"\n[wheel]\nprofile = \"EN15302-C\"\nradius = 460.0\n\
+         [contact]\noffset = 4.0\n[patch]\napproach = 0.1\n",
+    );
+    let run = drawn(&format!("{pair}{WHEELSET}"));
+    assert!(run.parts.iter().any(|part| part.site.side() == Some("left")));
+}
+
+const WHEELSET: &str = "[track]\ngauge = 1435.0\n[wheelset]\nback_to_back = 1360.0\nflange_back_x = -70.0\nlateral = 5.0\n\
+                        yaw = 0.005\n[patch]\nload = 60000.0\n";
+
+#[test]
+fn automatic_grids_over_worn_rails_cut_no_part() {
+    let worn = |kind| Specimen::new(kind, Instrument::new(0.3, 3.0, 1979)).and_then(|made| made.profile());
+    let [rail, wheel] =
+        [SpecimenKind::WornRail, SpecimenKind::WornWheel].map(|kind| worn(kind).expect("a profile"));
+    let pair =
+        Pair::new(rail.rotated(inclination(1.0, 40.0).expect("a rotation")), wheel, 460.0).expect("a pair");
+    let text = "[rail]\nprofile = \"60E1\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n";
+    for rest in [WHEELSET, "[contact]\noffset = 3.0\nyaw = 0.02\n[patch]\napproach = 0.08\n"] {
+        let scene = over_rail(&format!("{text}{rest}"));
+        uncut(scene::with_profiles(&scene, Profiles::drawn(pair.clone()), "worn"));
+    }
 }
 
 #[test]

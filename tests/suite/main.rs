@@ -12,6 +12,7 @@ mod any_grid;
 mod closed_forms;
 mod common;
 mod conformal;
+mod conformal_brute;
 mod doubts;
 mod flood_fill;
 mod hard_cases;

@@ -7,11 +7,13 @@ mod envelope;
 mod points;
 mod turned;
 
-pub use between::stationary_points;
+pub use between::{parallel_to, stationary_points};
 pub use branch::{ArcBranch, Branch, BranchShape, PolynomialBranch};
 pub use branches::Branches;
 pub use envelope::Piece;
 pub use points::{BranchPoint, BranchPoints};
+
+use std::sync::OnceLock;
 
 use super::chain::Profile;
 use super::closing::ONE_JOINT;
@@ -44,6 +46,8 @@ pub struct Section {
     pub(crate) branches: Vec<Branch>,
     /// The outer envelope: the outer branch over disjoint closed intervals of ascending ξ.
     pub(crate) pieces: Vec<Piece>,
+    /// Bounds of ζ′ over every piece, once they were asked for.
+    slopes: OnceLock<Vec<[f64; 2]>>,
     /// Index of the branch through the frame's origin, if the frame is that of a contact point.
     pub(crate) contact: Option<usize>,
 }
@@ -91,7 +95,7 @@ impl Section {
         }
         let contact = contact.and_then(|point| branches.iter().position(|b| b.is_contact(point.segment)));
         let pieces = envelope::pieces(&branches, side);
-        Self { frame, branches, pieces, contact }
+        Self { frame, branches, pieces, slopes: OnceLock::new(), contact }
     }
 
     /// Returns the outer branch at ξ, or `None` where the body has no surface. At a joint it is the left branch.
@@ -107,6 +111,36 @@ impl Section {
     /// Returns the pieces of the envelope that do not end before ξ.
     pub(crate) fn pieces_from(&self, xi: f64) -> &[Piece] {
         &self.pieces[self.pieces.partition_point(|piece| piece.xi[1] < xi)..]
+    }
+
+    /// Returns bounds of ζ′ over every piece of the envelope; infinite where a piece is vertical. They are found once.
+    pub(crate) fn slopes(&self) -> &[[f64; 2]] {
+        let bounds = |piece: &Piece| {
+            let [slopes, _] = self.branches[piece.branch].derivative_bounds(piece.xi[0], piece.xi[1]);
+            slopes
+        };
+        self.slopes.get_or_init(|| self.pieces.iter().map(bounds).collect())
+    }
+
+    /// Returns whether the envelope begins, ends or changes its height by more than `rounding` \[mm\] within an interval of ξ
+    /// \[mm\].
+    pub(crate) fn steps_within(&self, [low, high]: [f64; 2], rounding: f64) -> bool {
+        let mut pieces = self.pieces_from(low).iter();
+        let mut last = match pieces.next() {
+            Some(first) if first.xi[0] <= low => first,
+            _ => return true,
+        };
+        while last.xi[1] <= high {
+            match pieces.next() {
+                Some(next)
+                    if next.xi[0] == last.xi[1] && (next.ends[0].1 - last.ends[1].1).abs() <= rounding =>
+                {
+                    last = next;
+                }
+                _ => return true,
+            }
+        }
+        false
     }
 
     /// Returns whether ξ \[mm\] lies on the segment through C, at least `margin` \[mm\] inside the ends of its outer part.

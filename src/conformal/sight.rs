@@ -1,0 +1,153 @@
+//! The wheel's point on a ray, on any profile: also where the profile turns back across the ray, so that the ray enters it more
+//! than once.
+
+use super::meeting::along;
+use super::ray::Ray;
+use super::span::{RayPoint, RaySpan};
+use crate::numerics::roots::bracketed;
+use crate::profile::parallel_to;
+use crate::separation::sagitta;
+
+/// Most steps to the sagitta of a point. Each gains some three digits.
+const STEPS: usize = 40;
+
+/// Largest move \[mm\] along a ray by which a rounding of ξ is made good. A ray that touches the profile may have another entry.
+const LARGEST_REST: f64 = 1e-6;
+
+/// Roundings of the sagitta below which its steps have settled.
+const SETTLED: f64 = 2.0;
+
+/// A ray seen in the profile's plane, where each of its points is lower by its own sagitta.
+struct Sight<'r, 'a> {
+    ray: &'r Ray<'a>,
+    /// Sagitta of the rail's point \[mm\].
+    own: f64,
+}
+
+/// A point of the profile beside a ray.
+#[derive(Debug, Clone, Copy)]
+struct Beside {
+    /// Abscissa of the point \[mm\].
+    xi: f64,
+    /// How far it lies beside the ray \[mm\], towards larger ξ.
+    by: f64,
+}
+
+/// Finds the wheel's point at a ray's own η′: the first entry above a rail's point outside of the wheel, and the last one below a
+/// point in its material. `None` where the ray misses the wheel's outer surface.
+///
+/// Accuracy: over both contact segments a few roundings of the terms of t; elsewhere of the profile's extent.
+pub fn point(ray: &Ray<'_>) -> Option<RayPoint> {
+    let simple = RaySpan::holding(ray).and_then(|span| span.point_at(ray.eta));
+    simple.filter(|point| ray.begins_on_side(point.t)).or_else(|| searched(ray))
+}
+
+/// Finds the point of [`point`] where the profile between the rail's point and the ray is not known to turn away from the ray
+/// everywhere.
+///
+/// Method: the profile is followed from the abscissa of the rail's point until it first crosses the ray. A part that crosses the ray
+/// twice is found unless the ray touches it within the change of the sagitta.
+pub fn searched(ray: &Ray<'_>) -> Option<RayPoint> {
+    let sight = Sight { ray, own: ray.own_sagitta() };
+    let (piece, abscissa) = sight.first_crossing()?;
+    let branch = ray.branch(&ray.pieces()[piece]);
+    let (from, zeta) = branch.point(abscissa);
+    let (t, e) = sight.abreast([abscissa, zeta]);
+    // A rounding of ξ moves the point of a steep surface off the ray.
+    let (d, n) = ([ray.bodies.wheel.sin, ray.bodies.wheel.cos], ray.n.map(|n| [n]));
+    let [x, z] = [(0, abscissa), (1, zeta)].map(|(k, at)| [ray.p[k] + t * ray.n[k] - e * d[k] - at]);
+    let rest = along(branch, &from, [&x, &z], [&n[0], &n[1]]).map_or(f64::NAN, |met| met.r[0]);
+    let t = if rest.abs() <= LARGEST_REST { t + rest } else { t };
+    let (w, eta, branch) = (ray.axle_distance(t), ray.eta_at(t), ray.pieces()[piece].branch);
+    (w > 0.0).then_some(RayPoint { t, w, eta, branch, abscissa, over_contact: false })
+}
+
+impl Sight<'_, '_> {
+    /// Finds t \[mm\] of the ray's point that is abreast of a point of the profile, and its sagitta \[mm\].
+    fn abreast(&self, at: [f64; 2]) -> (f64, f64) {
+        let (ray, mut e) = (self.ray, self.own);
+        let mut t = ray.t_through(at, e);
+        for _ in 0..STEPS {
+            let eta = ray.eta_at(t);
+            let next = sagitta(ray.axle_distance(t), eta * eta);
+            let settled = (next - e).abs() <= SETTLED * f64::EPSILON * e;
+            (t, e) = (ray.t_through(at, next), next);
+            if settled {
+                break;
+            }
+        }
+        (t, e)
+    }
+
+    /// Computes how far a point of the profile lies beside the ray.
+    fn beside(&self, at: [f64; 2]) -> Beside {
+        let (_, e) = self.abreast(at);
+        Beside { xi: at[0], by: self.ray.beside(at) + e * self.ray.drift }
+    }
+
+    /// Computes how far the end of a piece lies beside the ray; 0 is the end at smaller ξ.
+    fn end_beside(&self, index: usize, end: usize) -> Option<Beside> {
+        let piece = self.ray.pieces().get(index)?;
+        Some(self.beside([piece.xi[end], piece.ends[end].1]))
+    }
+
+    /// Finds where the profile, followed from the abscissa of the rail's point, first crosses the ray: its piece and abscissa
+    /// \[mm\]. `None` at the end of the profile, and where it crosses the ray by a step.
+    fn first_crossing(&self) -> Option<(usize, f64)> {
+        let (mut index, mut before, rises) = self.beginning()?;
+        loop {
+            for next in self.places(index, before.xi, rises) {
+                if (before.by < 0.0) != (next.by < 0.0) {
+                    return Some((index, self.crossing(index, [before.xi, next.xi])));
+                }
+                before = next;
+            }
+            index = if rises { index + 1 } else { index.checked_sub(1)? };
+            let begin = self.end_beside(index, usize::from(!rises))?;
+            if (before.by < 0.0) != (begin.by < 0.0) {
+                let joined = (begin.by - before.by).abs() <= self.ray.bodies.joint();
+                return joined.then_some((index, begin.xi));
+            }
+            before = begin;
+        }
+    }
+
+    /// Finds where the profile is followed from: a piece, a place of it, and whether towards larger ξ. `None` where the ray leads
+    /// away from the profile, or passes its end in the material.
+    fn beginning(&self) -> Option<(usize, Beside, bool)> {
+        let (ray, from) = (self.ray, self.ray.p[0] - self.own * self.ray.bodies.wheel.sin);
+        let leans_right = ray.n[0] > 0.0;
+        let at = ray.pieces().partition_point(|piece| piece.xi[1] < from);
+        if let Some(piece) = ray.pieces().get(at).filter(|piece| piece.xi[0] <= from) {
+            // With the ray from a rail's point outside of the material, and against it from one inside.
+            let begin = self.beside([from, ray.branch(piece).height(from)]);
+            return Some((at, begin, begin.by < 0.0));
+        }
+        let index = if leans_right { at } else { at.checked_sub(1)? };
+        let begin = self.end_beside(index, usize::from(!leans_right))?;
+        ((begin.by < 0.0) == leans_right).then_some((index, begin, leans_right))
+    }
+
+    /// Lists the places of a piece from an abscissa \[mm\] to its far end between which it does not turn back across the ray.
+    fn places(&self, index: usize, from: f64, rises: bool) -> Vec<Beside> {
+        let (ray, piece) = (self.ray, &self.ray.pieces()[index]);
+        let branch = ray.branch(piece);
+        let mut all = Vec::new();
+        if !ray.passes_once(index) {
+            let range = if rises { [from, piece.xi[1]] } else { [piece.xi[0], from] };
+            let turns = parallel_to(branch, ray.n, range);
+            all.extend(turns.into_iter().map(|xi| self.beside([xi, branch.height(xi)])));
+            if !rises {
+                all.reverse();
+            }
+        }
+        all.extend(self.end_beside(index, usize::from(rises)));
+        all
+    }
+
+    /// Finds the abscissa \[mm\] at which a piece crosses the ray between two others.
+    fn crossing(&self, index: usize, [a, b]: [f64; 2]) -> f64 {
+        let branch = self.ray.branch(&self.ray.pieces()[index]);
+        bracketed(|xi| self.beside([xi, branch.height(xi)]).by, a, b).unwrap_or(b)
+    }
+}
