@@ -25,6 +25,9 @@ const BLOCK: usize = MANY;
 /// Most points of a grid that is filled by one thread, because waking another takes some 50 µs.
 const FEW_POINTS: usize = 65536;
 
+/// The end of columns whose points were all searched.
+const SEARCHED: f64 = f64::NEG_INFINITY;
+
 /// Number of coefficients that the first column of a block begins with.
 const FIRST_COUNT: usize = 4;
 
@@ -79,20 +82,19 @@ impl<'g, 'a> Columns<'g, 'a> {
         out.fill(f64::NAN);
         let rail: Vec<Option<RailPoint>> = sigma.iter().map(|&sigma| self.gap.rail.point(sigma)).collect();
         let length = self.axis.eta().len();
-        if self.gap.placement.skew() == 0.0 {
-            self.all_plain(&rail, out);
-        }
-        for (at, out) in rail.iter().zip(out.chunks_mut(length)) {
+        let skewed = self.gap.placement.skew() != 0.0;
+        let ends = if skewed { vec![SEARCHED; sigma.len()] } else { self.all_plain(&rail, out) };
+        for ((at, end), out) in rail.iter().zip(ends).zip(out.chunks_mut(length)) {
             let Some(at) = at else { continue };
-            if self.gap.placement.skew() != 0.0 {
+            if skewed {
                 self.skewed(at, self.axis.eta(), out);
             }
-            self.complete(at, out);
+            self.complete(at, end, out);
         }
     }
 
-    /// Fills the columns of the block over a wheel without skew.
-    fn all_plain(&mut self, rail: &[Option<RailPoint>], out: &mut [f64]) {
+    /// Fills the columns of the block over a wheel without skew. Returns for each the u \[mm²\] beyond which it has no points.
+    fn all_plain(&mut self, rail: &[Option<RailPoint>], out: &mut [f64]) -> Vec<f64> {
         let columns = out.chunks_mut(self.axis.eta().len());
         let rays: Vec<Option<Ray<'_>>> =
             rail.iter().map(|at| at.as_ref().map(|at| self.gap.bodies.ray(at, 0.0))).collect();
@@ -101,45 +103,58 @@ impl<'g, 'a> Columns<'g, 'a> {
         match all {
             Some(rays) => {
                 let firsts = self.arch.dispatch(Firsts(&rays));
-                firsts.into_iter().zip(columns).for_each(|(first, out)| self.plain(first, out));
+                firsts.into_iter().zip(columns).map(|(first, out)| self.plain(first, out)).collect()
             }
-            None => rays.iter().zip(columns).for_each(|(ray, out)| {
-                self.plain(ray.as_ref().and_then(RaySpan::first), out);
-            }),
+            None => {
+                let firsts = rays.iter().map(|ray| ray.as_ref().and_then(RaySpan::first));
+                firsts.zip(columns).map(|(first, out)| self.plain(first, out)).collect()
+            }
         }
     }
 
     /// Finds the points of a column that lie over none of its spans, and those at which the rail's point is on the other side of
-    /// the wheel's profile than at the beginning of a span.
-    fn complete(&self, at: &RailPoint, out: &mut [f64]) {
-        let stepped = self.gap.bodies.may_step(at, self.axis.eta());
+    /// the wheel's profile than at the beginning of a span. Beyond the u \[mm²\] of `end` none are missing.
+    fn complete(&self, at: &RailPoint, end: f64, out: &mut [f64]) {
+        let bodies = &self.gap.bodies;
         // All at once: hardly any column has such a point.
-        if !stepped && out.iter().fold(true, |all, t| all & (*t >= 0.0)) {
+        if !bodies.has_steps() && out.iter().fold(true, |all, t| all & (*t >= 0.0)) {
+            return;
+        }
+        let [stepped, ends] = bodies.edges_over(at, self.axis.eta());
+        let undefined = out.iter().fold(false, |any, t| any | t.is_nan());
+        if !stepped && !ends && !undefined {
             return;
         }
         for (t, &eta) in out.iter_mut().zip(self.axis.eta()) {
-            let ray = || self.gap.bodies.ray(at, eta);
-            if t.is_nan() || ((*t < 0.0 || stepped) && !ray().begins_on_side(*t)) {
+            let ray = || bodies.ray(at, eta);
+            let missing = t.is_nan() && eta * eta <= end;
+            let doubtful = stepped || (ends && *t < 0.0);
+            if missing || (doubtful && !ray().begins_on_side(*t)) {
                 *t = searched(&ray()).map_or(f64::NAN, |point| point.t);
             }
         }
     }
 
-    /// Fills a column of a wheel without skew from its first span.
-    fn plain(&mut self, first: Option<RaySpan<'_>>, out: &mut [f64]) {
+    /// Fills a column of a wheel without skew from its first span. Returns the u \[mm²\] at which it leaves the wheel by the end of
+    /// the profile; infinite where it does not.
+    fn plain(&mut self, first: Option<RaySpan<'_>>, out: &mut [f64]) -> f64 {
         let (mut next, reach) = (first, self.axis.reach);
-        let mut from = 0.0;
+        let (mut from, mut end) = (0.0, f64::INFINITY);
         while let Some(span) = next {
             let Reach { run, u } = span.reach(from, reach);
             if u[1] > u[0] || u[0] == 0.0 {
                 self.over_span(&span, run, u, out);
             }
             from = u[1];
+            if span.is_last() {
+                end = from;
+            }
             next = if from < reach * reach { span.next() } else { None };
         }
         if self.axis.symmetric {
             mirror(out, self.axis.first_positive);
         }
+        end
     }
 
     /// Evaluates one span between two u \[mm²\], by its polynomial or else point by point.

@@ -9,7 +9,7 @@ use crate::profile::{Branch, ONE_JOINT, Piece, Section};
 use crate::separation::{WheelSurface, sagitta};
 
 /// The bodies over which rays are cast, with what all rays share.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct RayBodies<'a> {
     placement: &'a Placement,
     /// The wheel.
@@ -20,6 +20,8 @@ pub struct RayBodies<'a> {
     skew_cos: f64,
     /// 1 − cos χ, to all digits.
     versine: f64,
+    /// Intervals of ξ \[mm\] at which the wheel's outer surface has a step or a hole.
+    steps: Vec<[f64; 2]>,
     /// Size of the coordinates \[mm\] whose roundings part the two sides of a joint.
     size: f64,
 }
@@ -53,7 +55,8 @@ impl<'a> RayBodies<'a> {
         let wheel = WheelSurface::new(placement);
         let frame = &wheel.section.frame;
         let size = placement.wheel().profile().extent() + frame.x.abs() + frame.z.abs();
-        Self { placement, wheel, skew_sin: skew.im, skew_cos: skew.re, versine, size }
+        let steps = wheel.section.steps(ONE_JOINT * size);
+        Self { placement, wheel, skew_sin: skew.im, skew_cos: skew.re, versine, steps, size }
     }
 
     /// Returns the rail's section in the contact frame.
@@ -76,14 +79,22 @@ impl<'a> RayBodies<'a> {
         ONE_JOINT * self.size
     }
 
-    /// Tells whether the wheel's profile has a step over one of the points of a column, between the midplane and the sagitta of
-    /// the point.
-    pub fn may_step(&self, from: &RailPoint, eta: &[f64]) -> bool {
+    /// Tells whether the wheel's outer surface has steps.
+    pub fn has_steps(&self) -> bool {
+        !self.steps.is_empty()
+    }
+
+    /// Tells whether the wheel's outer surface has a step over one of the points of a column, between the midplane and the sagitta
+    /// of the point, and whether it ends there.
+    pub fn edges_over(&self, from: &RailPoint, eta: &[f64]) -> [bool; 2] {
         let ends = [eta.first(), eta.last()].map(|eta| self.ray(from, eta.copied().unwrap_or(0.0)));
         let reach = ends.iter().map(|ray| ray.own_sagitta() * self.wheel.sin.abs()).fold(0.0, f64::max);
         let low = ends[0].p[0].min(ends[1].p[0]) - reach;
         let high = ends[0].p[0].max(ends[1].p[0]) + reach;
-        self.wheel.section.steps_within([low, high], self.joint())
+        let pieces = &self.wheel.section.pieces;
+        let inside = pieces.first().is_some_and(|piece| piece.xi[0] <= low)
+            && pieces.last().is_some_and(|piece| high <= piece.xi[1]);
+        [self.steps.iter().any(|[begin, end]| *begin <= high && low <= *end), !inside]
     }
 
     /// Casts the ray from a point of the rail at lateral position η \[mm\]. Without skew all η have the same ray but for η.

@@ -139,6 +139,14 @@ impl<'a> RaySpan<'a> {
         Some(Self::over(ray, piece, begin, self.end.max(begin.e[0]), true))
     }
 
+    /// Tells whether the span leaves its piece by the end of the profile.
+    pub fn is_last(&self) -> bool {
+        match self.ray.sides()[1] {
+            0 => self.piece == 0,
+            _ => self.piece + 1 == self.ray.pieces().len(),
+        }
+    }
+
     fn over(ray: &Ray<'a>, piece: usize, begin: Beginning<1>, from: f64, joint: bool) -> Self {
         let branch = ray.branch(&ray.pieces()[piece]);
         let (w, end) = (ray.axle_distance(begin.t[0]), ray.leaves(piece));

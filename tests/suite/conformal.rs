@@ -7,6 +7,7 @@ use wheelrail::conformal::{ConformalPatch, GapPoint, NormalGap, fill_normal_gap}
 use wheelrail::scene::{self, Scene};
 use wheelrail::separation::EtaAxis;
 use wheelrail::{Arc, Half, Pair, Patch, Placement, Window, inclination};
+use wheelrail_check::{NormalGapSample, check_normal_gap};
 use wheelrail_report::conformal::values::{
     BOUNDS, FILES, GapBound, GapErrors, GapReference, GapValue, PROMISED_ABSOLUTE, PROMISED_RELATIVE,
     gap_references,
@@ -40,6 +41,19 @@ fn the_normal_gap_keeps_its_digits() {
         assert!(all.over_contact > 80 && all.elsewhere > 15, "{all:?}");
         assert!(all.relative * MOST_SLACK >= relative, "tighten grid {grid} skewed {skewed}: {all:?}");
         assert!(all.absolute * MOST_SLACK >= absolute, "tighten grid {grid} skewed {skewed}: {all:?}");
+    }
+}
+
+#[test]
+fn closest_distances_agree_with_the_normal_gap_of_every_scene() {
+    for reference in references() {
+        let placement = reference.placement().expect("a placement");
+        let gap = NormalGap::new(&placement);
+        let values = reference.normal_gap.iter();
+        let samples: Vec<_> =
+            values.filter_map(|value| NormalGapSample::at(&gap, value.sigma, value.eta)).collect();
+        let report = check_normal_gap(&placement, &samples).expect("a check");
+        assert!(report.agrees && report.points > 10, "{}: {report}", reference.name);
     }
 }
 

@@ -7,6 +7,7 @@ use wheelrail::conformal::NormalGap;
 use wheelrail::error::{Error, Result};
 use wheelrail::nalgebra::{Unit, Vector3};
 use wheelrail::placement::Placement;
+use wheelrail::profile::{Profile, Segment, Shape};
 
 use super::body::Solid;
 use super::closest::to_point;
@@ -23,6 +24,9 @@ const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
 /// Largest sine of the angle between the line of the normal gap and the wheel's normal at which both count as one direction.
 const ONE_DIRECTION: f64 = 0.05;
+
+/// Places of a polynomial at which its curvature is looked at.
+const SAMPLES: usize = 9;
 
 /// A point of the rail with its normal gap.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -109,6 +113,7 @@ pub fn check_normal_gap(placement: &Placement, samples: &[NormalGapSample]) -> R
         ));
     };
     let radius = smallest_radius(placement);
+    let sharpest = sharpest_radius(placement.wheel().profile()).min(radius);
     let floors = floors(radius, placement.rolling_radius())?;
     let floor = floors.iter().map(|floor| floor.closest_mm).fold(0.0, f64::max);
     let mut report = NormalGapReport {
@@ -133,7 +138,7 @@ pub fn check_normal_gap(placement: &Placement, samples: &[NormalGapSample]) -> R
         if sine < ONE_DIRECTION {
             // Of a tangent plane at the angle β the closest point is t cosβ away; the wheel bends from it by at most its sharpest
             // radius.
-            let bend = t * sine * t * sine / radius;
+            let bend = t * sine * t * sine / sharpest;
             let expected = [t * (1.0 - sine * sine).sqrt() - bend, t];
             let difference = (expected[0] - closest.distance).max(closest.distance - expected[1]);
             report.aligned += 1;
@@ -147,4 +152,17 @@ pub fn check_normal_gap(placement: &Placement, samples: &[NormalGapSample]) -> R
         return Err(Error::new("check: normal gap", "none", expected, "widen the window of the grid"));
     }
     Ok(report)
+}
+
+/// Computes the smallest radius of curvature of a profile \[mm\], of a polynomial at [`SAMPLES`] places.
+fn sharpest_radius(profile: &Profile) -> f64 {
+    let curvature = |segment: &Segment| match &segment.shape {
+        Shape::Arc(arc) => arc.curvature().abs(),
+        Shape::Polynomial(polynomial) => {
+            let [from, to] = polynomial.range();
+            let place = |k: usize| from + (to - from) * k as f64 / (SAMPLES - 1) as f64;
+            (0..SAMPLES).map(|k| polynomial.curvature(place(k)).abs()).fold(0.0, f64::max)
+        }
+    };
+    1.0 / profile.segments().iter().map(curvature).fold(0.0, f64::max)
 }

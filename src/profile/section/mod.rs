@@ -122,25 +122,14 @@ impl Section {
         self.slopes.get_or_init(|| self.pieces.iter().map(bounds).collect())
     }
 
-    /// Returns whether the envelope begins, ends or changes its height by more than `rounding` \[mm\] within an interval of ξ
-    /// \[mm\].
-    pub(crate) fn steps_within(&self, [low, high]: [f64; 2], rounding: f64) -> bool {
-        let mut pieces = self.pieces_from(low).iter();
-        let mut last = match pieces.next() {
-            Some(first) if first.xi[0] <= low => first,
-            _ => return true,
+    /// Returns the intervals of ξ \[mm\] over which the envelope has a hole, or changes its height by more than `rounding` \[mm\]
+    /// at once; ascending, without its own ends.
+    pub(crate) fn steps(&self, rounding: f64) -> Vec<[f64; 2]> {
+        let joins = |pair: &&[Piece]| {
+            pair[0].xi[1] == pair[1].xi[0] && (pair[1].ends[0].1 - pair[0].ends[1].1).abs() <= rounding
         };
-        while last.xi[1] <= high {
-            match pieces.next() {
-                Some(next)
-                    if next.xi[0] == last.xi[1] && (next.ends[0].1 - last.ends[1].1).abs() <= rounding =>
-                {
-                    last = next;
-                }
-                _ => return true,
-            }
-        }
-        false
+        let apart = self.pieces.windows(2).filter(|pair| !joins(pair));
+        apart.map(|pair| [pair[0].xi[1], pair[1].xi[0]]).collect()
     }
 
     /// Returns whether ξ \[mm\] lies on the segment through C, at least `margin` \[mm\] inside the ends of its outer part.
