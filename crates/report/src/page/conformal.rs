@@ -72,7 +72,7 @@ fn scenes(scenes: &[GapScene]) -> String {
     for side in sides {
         head.extend([format!("{side}², µs"), "over s".into()]);
     }
-    head.extend(["checked points".into(), "distance beyond |t|, mm".into(), "agrees".into()]);
+    head.extend(["checked points".into(), "distance beyond \\|t\\|, mm".into(), "agrees".into()]);
     let row = |scene: &GapScene| {
         let mut cells = vec![scene.name.clone()];
         for cost in &scene.costs {
