@@ -86,18 +86,20 @@ impl ConformalPatch {
         places.dedup();
         let depth =
             |sigma: f64| lowest(gap, approach, window.eta, sigma).map_or(f64::NAN, |[_, depth]| depth);
-        let inside = |sigma: f64| depth(sigma) < 0.0;
+        let mut places: Vec<Place> =
+            places.into_iter().map(|sigma| Place { sigma, depth: depth(sigma) }).collect();
         places.extend(turned(&depth, &places));
-        places.sort_by(f64::total_cmp);
+        places.sort_by(|a, b| a.sigma.total_cmp(&b.sigma));
         // Where a part begins, and whether that is a tip.
-        let mut begin = inside(from).then_some((from, false));
+        let mut begin = places.first().filter(|place| place.is_inside()).map(|place| (place.sigma, false));
         for pair in places.windows(2) {
-            let (here, there) = (inside(pair[0]), inside(pair[1]));
-            if here != there {
-                let tip = bracketed(depth, pair[0], pair[1]);
+            let [here, there] = [pair[0], pair[1]];
+            if here.is_inside() != there.is_inside() {
+                let tip = bracketed(depth, here.sigma, there.sigma);
                 // Without a root the wheel's surface ends between the two.
-                let [on, off] = if here { [pair[0], pair[1]] } else { [pair[1], pair[0]] };
-                let end = (tip.unwrap_or_else(|| last_where(inside, on, off)), tip.is_some());
+                let [on, off] = if here.is_inside() { [here, there] } else { [there, here] };
+                let last = || last_where(|sigma| depth(sigma) < 0.0, on.sigma, off.sigma);
+                let end = (tip.unwrap_or_else(last), tip.is_some());
                 match begin.take() {
                     Some(begin) => patch.add(gap, window, [begin, end]),
                     None => begin = Some(end),
@@ -173,18 +175,33 @@ impl ConformalPatch {
     }
 }
 
-/// Finds σ \[mm\] between neighbouring places, ascending, at which the depth may pass zero twice: where it turns on the other side of
+/// The depth of the lowest place of the wheel over one σ.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    /// σ \[mm\].
+    sigma: f64,
+    /// The least t − δ cos α \[mm\]; NaN where there is none.
+    depth: f64,
+}
+
+impl Place {
+    fn is_inside(&self) -> bool {
+        self.depth < 0.0
+    }
+}
+
+/// Finds places between neighbouring ones, ascending, at which the depth may pass zero twice: where it turns on the other side of
 /// zero.
-fn turned(depth: &impl Fn(f64) -> f64, places: &[f64]) -> Vec<f64> {
-    let depths: Vec<f64> = places.iter().map(|&sigma| depth(sigma)).collect();
+fn turned(depth: &impl Fn(f64) -> f64, places: &[Place]) -> Vec<Place> {
     let mut found = Vec::new();
-    for (at, d) in places.windows(3).zip(depths.windows(3)) {
-        let sign = d[1].signum();
-        let [before, here, after] = [d[0], d[1], d[2]].map(|depth| depth * sign);
+    for at in places.windows(3) {
+        let sign = at[1].depth.signum();
+        let [before, here, after] = [at[0], at[1], at[2]].map(|place| place.depth * sign);
         // Three places on one side, of which the middle one is nearest to the other side, and near enough.
         let near = here <= before && here <= after && here < (before - here).max(after - here);
-        if near && let Some(turn) = crosses(&|sigma| sign * depth(sigma), [at[0], at[2]]) {
-            found.push(turn);
+        let signed = |sigma: f64| sign * depth(sigma);
+        if near && let Some(sigma) = crosses(&signed, [at[0].sigma, at[2].sigma]) {
+            found.push(Place { sigma, depth: depth(sigma) });
         }
     }
     found

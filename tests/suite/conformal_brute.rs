@@ -1,7 +1,7 @@
 //! The normal gap against brute force in space, on random placed pairs: lowered wheels, chosen points, measured profiles, and
 //! profiles that nobody has.
 //!
-//! `WHEELRAIL_RAYS=1500 cargo test conformal_brute -- --nocapture` is the long run.
+//! `WHEELRAIL_RAYS=1500 cargo test first_entry -- --nocapture` is the long run over lines.
 
 mod fill;
 mod oracle;
@@ -30,7 +30,7 @@ const EVERY: usize = 3;
 /// Times by which a line is followed more finely where t disagrees: a corner of the wheel may lie within one step.
 const FINER: f64 = 100.0;
 
-/// Seeds of every kind of pair whose patches are compared in one ordinary test run.
+/// Seeds of every kind of pair whose patches are compared.
 const PATCH_SEEDS: u64 = 8;
 
 /// Number of points of a flood fill on an axis.
@@ -187,12 +187,11 @@ fn wider(a: &Window, inside: &Window) -> Window {
 
 #[test]
 fn conformal_patches_are_those_of_a_flood_fill() {
-    let seeds = std::env::var("WHEELRAIL_RAYS").ok().and_then(|n| n.parse().ok()).unwrap_or(PATCH_SEEDS);
     let stock = Stock::new();
     let mut wrong = Vec::new();
     // Of profiles that nobody has, a fill leaves open what is connected: their patches are slivers between kinks.
     for (kind, name) in KINDS.iter().enumerate().filter(|(_, name)| **name != "strange") {
-        let pairs = (0..seeds).into_par_iter().flat_map_iter(|seed| {
+        let pairs = (0..PATCH_SEEDS).into_par_iter().flat_map_iter(|seed| {
             let mut dice = Random::new(seed);
             stock.placed(kind, seed).into_iter().map(move |placed| Compared::of(&placed, &mut dice))
         });
@@ -200,7 +199,7 @@ fn conformal_patches_are_those_of_a_flood_fill() {
         let parts: usize = all.iter().map(|compared| compared.parts[1].len()).sum();
         let worst = all.iter().map(|compared| (compared.areas[0] / compared.areas[1] - 1.0).abs());
         println!("{name}: {} pairs, {parts} parts, area within {:.1e}", all.len(), worst.fold(0.0, f64::max));
-        assert!(all.len() as u64 > seeds / 2, "{name}");
+        assert!(all.len() as u64 > PATCH_SEEDS / 2, "{name}");
         wrong.extend(all.iter().filter_map(Compared::difference));
     }
     assert!(wrong.is_empty(), "{} wrong:\n{}", wrong.len(), wrong[..wrong.len().min(20)].join("\n"));

@@ -41,7 +41,7 @@ fn all_references() -> Vec<Reference> {
 }
 
 fn scale(reference: &Reference) -> f64 {
-    (reference.largest_radius() / 300.0).max(1.0)
+    (reference.scene.largest_radius() / 300.0).max(1.0)
 }
 
 /// Largest errors of one method on one scene, and their estimate \[mm\].

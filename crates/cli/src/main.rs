@@ -52,7 +52,7 @@ enum Command {
     },
     /// Sweep a wheelset over its track and print a row for each position, side and contact.
     Sweep(sweep::SweepArguments),
-    /// Measure speed against error and run the hard cases; takes about two minutes.
+    /// Measure speed against error and run the hard cases; takes about three minutes.
     Report {
         /// Folder to write; by default output/report.
         #[arg(long)]

@@ -63,7 +63,7 @@ pub(super) fn all(
     points: &[Vec<ComparedPoint>; 3],
     cases: &[HardCase],
 ) -> Result<Vec<HardCheck>> {
-    let scale = case.unit * (case.reference.largest_radius() / case.unit / 300.0).max(1.0);
+    let scale = case.unit * (case.reference.scene.largest_radius() / case.unit / 300.0).max(1.0);
     let bench = Bench { case, placement, scale };
     let mut checks = Vec::new();
     for (method, points) in METHODS.iter().zip(points) {

@@ -57,7 +57,7 @@ pub struct Effort {
 }
 
 impl Effort {
-    /// Returns the effort of `wheelrail report`: 4 × 10^4 and 4 × 10^6 points, growth up to 10^8; about four
+    /// Returns the effort of `wheelrail report`: 4 × 10^4 and 4 × 10^6 points, growth up to 10^8; about three
     /// minutes, 0.9 GB.
     pub fn full() -> Self {
         Self {

@@ -146,6 +146,15 @@ impl ReferenceScene {
             values
         })
     }
+
+    /// Returns the largest radius of either profile \[mm\]: the scale of absolute bounds.
+    pub fn largest_radius(&self) -> f64 {
+        let radius = |segment: &ReferenceSegment| match segment {
+            ReferenceSegment::Arc { r, .. } => *r,
+            _ => 0.0,
+        };
+        self.rail.iter().chain(&self.wheel).map(radius).fold(0.0, f64::max)
+    }
 }
 
 impl Reference {
@@ -164,15 +173,6 @@ impl Reference {
     /// The errors of [`ReferenceScene::placement`].
     pub fn placement(&self) -> Result<Placement> {
         self.scene.placement().map_err(|error| error.within(&self.name))
-    }
-
-    /// Returns the largest radius of either profile \[mm\]: the scale of absolute bounds.
-    pub fn largest_radius(&self) -> f64 {
-        let radius = |segment: &ReferenceSegment| match segment {
-            ReferenceSegment::Arc { r, .. } => *r,
-            _ => 0.0,
-        };
-        self.scene.rail.iter().chain(&self.scene.wheel).map(radius).fold(0.0, f64::max)
     }
 }
 

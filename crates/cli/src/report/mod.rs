@@ -20,7 +20,7 @@ const REPORT_FOLDER: Names = Names { marker: PAGE, files: &FILES, is_part: |_| f
 /// machine.
 pub(super) fn report(out: Option<&Path>, splice: Option<&Path>) -> Result<Outcome> {
     let target = out.unwrap_or(Path::new("output/report"));
-    // The outputs are opened first, so that their faults show before two minutes of measuring.
+    // The outputs are opened first, so that their faults show before three minutes of measuring.
     let folder = Folder::create(target, REPORT_FOLDER)?;
     let splice = splice.map(splice::SplicedFile::open).transpose()?;
     let origin = origin::origin();

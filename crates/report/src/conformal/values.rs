@@ -3,7 +3,7 @@
 
 use serde::Deserialize;
 
-use crate::reference::{ReferenceScene, ReferenceSegment, embedded, exact, malformed};
+use crate::reference::{ReferenceScene, embedded, exact, malformed};
 use wheelrail::conformal::{NormalGap, fill_normal_gap};
 use wheelrail::error::Result;
 use wheelrail::mesh::equal_steps;
@@ -121,6 +121,7 @@ impl GapReference {
     pub fn errors(&self, placement: &Placement, grid: bool) -> GapErrors {
         let gap = NormalGap::new(placement);
         let found = if grid { self.filled(&gap) } else { self.single(&gap) };
+        let scale = (self.scene.largest_radius() / 300.0).max(1.0);
         let mut errors = GapErrors::NONE;
         for (value, found) in self.normal_gap.iter().zip(found) {
             let Some(t) = value.gap.as_deref().map(exact).filter(|_| !found.is_nan()) else {
@@ -133,7 +134,7 @@ impl GapReference {
                 errors.relative = errors.relative.max(if error == 0.0 { 0.0 } else { error / t.abs() });
                 errors.over_contact += 1;
             } else {
-                errors.absolute = errors.absolute.max(error / self.scale());
+                errors.absolute = errors.absolute.max(error / scale);
                 errors.elsewhere += 1;
             }
         }
@@ -155,16 +156,6 @@ impl GapReference {
         let index = |values: &[f64], value: f64| values.partition_point(|&v| v < value);
         let at = |value: &GapValue| out[index(&sigma, value.sigma) * eta.len() + index(&eta, value.eta)];
         self.normal_gap.iter().map(at).collect()
-    }
-
-    /// Returns max(1, R_max/300 mm), the scale of absolute bounds.
-    fn scale(&self) -> f64 {
-        let radius = |segment: &ReferenceSegment| match segment {
-            ReferenceSegment::Arc { r, .. } => *r,
-            _ => 0.0,
-        };
-        let largest = self.scene.rail.iter().chain(&self.scene.wheel).map(radius).fold(0.0, f64::max);
-        (largest / 300.0).max(1.0)
     }
 }
 
