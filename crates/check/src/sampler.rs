@@ -23,8 +23,29 @@ pub(super) struct SampledCurve {
 
 #[derive(Debug, Clone)]
 enum Form {
-    Turning { start: Station, curvature: f64 },
-    Polynomial { polynomial: Polynomial, origin: [f64; 2] },
+    Turning {
+        start: Station,
+        curvature: f64,
+    },
+    /// With the coefficients of (x − x_C, z − z_C) about the beginning of the range.
+    Polynomial {
+        polynomial: Polynomial,
+        local: [Vec<f64>; 2],
+    },
+}
+
+/// Returns coefficients of a polynomial, given to twice the working precision, about another beginning, less a value: no digit
+/// is lost to the size of that value.
+fn about(c: &[[f64; 2]], begin: f64, less: f64) -> Vec<f64> {
+    let mut local = recentred(&exact(c), begin.into());
+    if let Some(first) = local.first_mut() {
+        *first = *first - less;
+    }
+    local.into_iter().map(f64::from).collect()
+}
+
+fn exact(c: &[[f64; 2]]) -> Vec<Twice> {
+    c.iter().map(|[high, low]| Twice::sum(*high, *low)).collect()
 }
 
 impl SampledCurve {
@@ -38,7 +59,10 @@ impl SampledCurve {
             }
             Shape::Polynomial(polynomial) => {
                 let length = polynomial.range()[1] - polynomial.range()[0];
-                let shape = Form::Polynomial { polynomial: polynomial.clone(), origin };
+                let [x, z] = polynomial.coefficients();
+                let begin = polynomial.range()[0];
+                let local = [(x, origin[0]), (z, origin[1])].map(|(c, origin)| about(&c, begin, origin));
+                let shape = Form::Polynomial { polynomial: polynomial.clone(), local };
                 let curve = Self { shape, length, scale: length, longest: length };
                 curve.with_scale_of_polynomial(polynomial)
             }
@@ -77,9 +101,8 @@ impl SampledCurve {
                     start.z + chord * (start.sin * cos + start.cos * sin),
                 ]
             }
-            Form::Polynomial { polynomial, origin } => {
-                let station = polynomial.station(polynomial.range()[0] + t);
-                [station.x - origin[0], station.z - origin[1]]
+            Form::Polynomial { local: [x, z], .. } => {
+                [x, z].map(|c| c.iter().rev().fold(0.0, |sum, c| sum * t + c))
             }
         }
     }
@@ -113,8 +136,7 @@ impl SampledCurve {
             Form::Turning { curvature, .. } => curvature.abs(),
             Form::Polynomial { polynomial, .. } => {
                 let bound = |c: &[[f64; 2]]| -> f64 {
-                    let exact: Vec<Twice> = c.iter().map(|[high, low]| Twice::sum(*high, *low)).collect();
-                    let local = recentred(&exact, (polynomial.range()[0] + t).into());
+                    let local = recentred(&exact(c), (polynomial.range()[0] + t).into());
                     let terms = local.iter().enumerate().skip(2);
                     terms
                         .map(|(k, &c)| {
