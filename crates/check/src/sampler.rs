@@ -39,7 +39,7 @@ enum Form {
 fn about(c: &[[f64; 2]], begin: f64, less: f64) -> Vec<f64> {
     let mut local = recentred(&exact(c), begin.into());
     if let Some(first) = local.first_mut() {
-        *first = *first - less;
+        *first -= less;
     }
     local.into_iter().map(f64::from).collect()
 }
