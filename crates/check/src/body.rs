@@ -9,8 +9,11 @@ use super::sampler::SampledSurface;
 const CELLS_PER_SCALE: f64 = 8.0;
 /// Fewest cells of the coarse mesh per curve.
 const LEAST_CELLS: usize = 2;
-/// Cells of the coarse mesh around the axle, or along the rail.
+/// Fewest cells of the coarse mesh around the axle, or along the rail.
 const CELLS_AROUND: usize = 12;
+/// Longest of these cells \[mm\]. On a wheel of 460 mm its sagitta is 0.07 mm: with a deeper one the closest place on the coarse
+/// mesh may belong to another part of the profile than the closest one of the body.
+const LONGEST_CELL: f64 = 16.0;
 
 /// Distance from a segment's end, as a share of the body's size, within which the neighbour counts as well. It covers the
 /// rounding of the foot's position, which grows with the slope.
@@ -54,12 +57,12 @@ impl Solid {
     /// profile has a point that is not finite.
     pub fn new(surface: SampledSurface, reach: f64) -> Option<Self> {
         let v = surface.v_reach(reach);
+        let around = CELLS_AROUND.max((2.0 * v / LONGEST_CELL).ceil() as usize);
         let mut patches = Vec::with_capacity(surface.curves.len());
         let (mut vertices, mut owners) = (Vec::new(), Vec::new());
         for (index, curve) in surface.curves.iter().enumerate() {
             let n = LEAST_CELLS.max((CELLS_PER_SCALE * curve.length / curve.scale).ceil() as usize);
-            let patch =
-                CurveMesh::new(&surface, index, spread(0.0, curve.length, n), spread(-v, v, CELLS_AROUND))?;
+            let patch = CurveMesh::new(&surface, index, spread(0.0, curve.length, n), spread(-v, v, around))?;
             for triangle in (0..patch.mesh.len()).filter(|&k| patch.mesh.normal(k).z > 0.0) {
                 vertices.extend(patch.mesh.corners(triangle));
                 owners.push((index, triangle));
