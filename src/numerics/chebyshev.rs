@@ -81,6 +81,38 @@ pub fn to_powers(c: &Lanes, kept: usize) -> Lanes {
     interleaved(&even, &odd)
 }
 
+/// Computes the interpolant at t by Clenshaw's rule.
+#[inline]
+pub fn value(c: &Lanes, t: f64) -> f64 {
+    let (mut here, mut before) = (0.0, 0.0);
+    for &c in c[1..].iter().rev() {
+        (here, before) = (c + 2.0 * t * here - before, here);
+    }
+    c[0] + t * here - before
+}
+
+/// Computes the interpolant and its derivative at t by Clenshaw's rule.
+#[inline]
+pub fn value_and_slope(c: &Lanes, t: f64) -> [f64; 2] {
+    let (mut here, mut before, mut slope, mut last) = (0.0, 0.0, 0.0, 0.0);
+    for &c in c[1..].iter().rev() {
+        (slope, last) = (2.0 * (here + t * slope) - last, slope);
+        (here, before) = (c + 2.0 * t * here - before, here);
+    }
+    [c[0] + t * here - before, here + t * slope - last]
+}
+
+/// Computes the coefficients of the derivative by t.
+pub fn derivative(c: &Lanes) -> Lanes {
+    let mut slope = [0.0; POINTS];
+    for k in (1..POINTS).rev() {
+        let further = if k + 1 < POINTS { slope[k + 1] } else { 0.0 };
+        slope[k - 1] = further + 2.0 * k as f64 * c[k];
+    }
+    slope[0] /= 2.0;
+    slope
+}
+
 /// Computes sum + factor × row.
 #[inline(always)]
 fn add_multiple(mut sum: [f64; HALF], factor: f64, row: &[f64; HALF]) -> [f64; HALF] {
@@ -178,10 +210,16 @@ mod tests {
     fn an_interpolant_takes_the_values() {
         let f = |t: f64| (0.5 * t).exp() / (5.0 - t);
         let powers = to_powers(&coefficients(&NODES.map(f)), POINTS);
+        let c = coefficients(&NODES.map(f));
+        let slope = derivative(&c);
         for k in -10..=10 {
             let t = f64::from(k) / 10.0;
             let horner = powers.iter().rev().fold(0.0, |sum, c| sum * t + c);
-            assert!((horner - f(t)).abs() < 1e-15, "{t}");
+            assert!((horner - f(t)).abs() < 1e-15 && (value(&c, t) - f(t)).abs() < 1e-15, "{t}");
+            let exact = f(t) * (0.5 + 1.0 / (5.0 - t));
+            assert!((value(&slope, t) - exact).abs() < 1e-13, "{t}");
+            let [both, rate] = value_and_slope(&c, t);
+            assert!(both == value(&c, t) && (rate - exact).abs() < 1e-13, "{t}");
         }
     }
 

@@ -6,6 +6,7 @@ pub mod lanes;
 pub mod polynomial;
 pub mod quadrature;
 pub mod roots;
+pub mod sign_changes;
 pub mod twice;
 
 /// Gives the larger of two numbers, and NaN if either is NaN.

@@ -2,9 +2,15 @@
 
 use serde::Serialize;
 
-use super::skewed::slicer::Edge;
+use super::skewed::circle::Turned;
+use super::skewed::slicer::{BESIDE, Edge};
 use super::slice::Slicer;
+use crate::numerics::lanes::Lanes;
+use crate::numerics::sign_changes::sign_changes;
 use crate::placement::Placement;
+
+/// Size of a slope of s below which its sign does not count. Turns that are missed change s by less than 1e-11 of their distance.
+const SLOPE_NOISE: f64 = 1e-11;
 
 /// A rectangle of the ξ–η plane \[mm\] inside which a patch is sought.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -63,6 +69,28 @@ impl<'a> Outline<'a> {
         let (whole, slopes) = self.slicer.edges_and_slopes(xi, valley)?;
         let edges = self.clipped(whole)?;
         Some((edges, [0, 1].map(|k| if edges[k].eta == whole[k].eta { slopes[k] } else { 0.0 })))
+    }
+
+    /// Returns all ξ inside (a, b) at which s along the line of constant η may turn or step \[mm\], ascending.
+    pub(super) fn turns_along(&mut self, eta: f64, [a, b]: [f64; 2]) -> Vec<f64> {
+        let placement = self.slicer.placement();
+        let (turned, wheel) = (Turned::new(placement), &placement.wheel().section);
+        let beside = BESIDE * placement.rolling_radius();
+        let ends = wheel.pieces.iter().enumerate().flat_map(|(k, piece)| piece.xi.map(|p| (k, p)));
+        let crossed = ends.map(|(k, p)| turned.xi_at(k, p, eta)).flat_map(|xi| [xi - beside, xi + beside]);
+        let joints = placement.rail().section.joints([a, b]).flat_map(|(xi, _)| [xi, xi.next_up()]);
+        let mut places: Vec<f64> =
+            crossed.chain(joints).chain([a, b]).filter(|xi| a <= *xi && *xi <= b).collect();
+        places.sort_by(f64::total_cmp);
+        places.dedup();
+        let mut turns = Vec::new();
+        for pair in places.windows(2) {
+            let slope = |xi: &Lanes| xi.map(|xi| self.slicer.gradient(xi, eta)[0]);
+            sign_changes(slope, [pair[0], pair[1]], SLOPE_NOISE, &mut turns);
+        }
+        places.append(&mut turns);
+        places.sort_by(f64::total_cmp);
+        places
     }
 
     fn clipped(&self, [mut low, mut high]: [Edge; 2]) -> Option<[Edge; 2]> {

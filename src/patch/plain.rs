@@ -5,10 +5,6 @@ use super::outline::{End, Outline};
 use crate::numerics::roots::{bracketed, last_where};
 use crate::patch::turning_points;
 
-/// Number of intervals in which turns of the depth along the window's edge are sought if the midplane is outside the
-/// window. A part is missed only if it begins and ends within one of them.
-const WINDOW_INTERVALS: usize = 512;
-
 /// Returns the bands by ascending ξ, and the ξ at which s may be least \[mm\].
 ///
 /// At a joint the gap may step (an overhang). Every interval between turning points is therefore judged by the values at
@@ -85,14 +81,7 @@ fn turns_of_depth(outline: &mut Outline<'_>, a: f64, b: f64) -> Vec<f64> {
     if floor == 0.0 {
         return points;
     }
-    let step = (b - a) / WINDOW_INTERVALS as f64;
-    points.extend((1..WINDOW_INTERVALS).map(|k| a + step * k as f64));
-    points.sort_by(f64::total_cmp);
-    let slicer = &mut outline.slicer;
-    let mut slope = |xi: f64| slicer.gradient(xi, floor)[0];
-    let turns: Vec<f64> =
-        points.windows(2).filter_map(|pair| bracketed(&mut slope, pair[0].next_up(), pair[1])).collect();
-    points.extend(turns);
+    points.extend(outline.turns_along(floor, [a, b]));
     points.sort_by(f64::total_cmp);
     points.dedup();
     points

@@ -28,11 +28,13 @@ const AREA: f64 = 1e-3;
 const UNDECIDED: f64 = 0.01;
 
 /// A placed pair and what is asked of it.
-struct Case {
-    name: String,
-    placement: Placement,
-    approach: f64,
-    window: Window,
+pub struct Case {
+    pub name: String,
+    pub placement: Placement,
+    pub approach: f64,
+    pub window: Window,
+    /// The method by which the grid is filled.
+    pub method: Method,
 }
 
 impl Case {
@@ -72,17 +74,37 @@ impl Case {
         let size = approach.sqrt() * *dice.pick(&[15.0, 40.0, 60.0]);
         let mut end = |sign: f64| sign * size * dice.between(0.3, 1.0);
         let window = Window { xi: [end(-1.0), end(1.0)], eta: [end(-1.0), end(1.0)] };
-        Some(Self { name, placement, approach, window })
+        Some(Self { name, placement, approach, window, method: Method::Spectral })
     }
 
     /// s − δ over a grid of n × n points, and its axes; infinite where a body has no surface.
-    fn filled(&self, window: &Window, n: usize) -> Filled {
+    pub fn filled(&self, window: &Window, n: usize) -> Filled {
         let axis = |[a, b]: [f64; 2]| -> Vec<f64> {
             (0..n).map(|k| if k + 1 == n { b } else { a + (b - a) * k as f64 / (n - 1) as f64 }).collect()
         };
         let (xi, eta) = (axis(window.xi), axis(window.eta));
-        let depth = depths(&self.placement, &xi, &eta, self.approach);
+        let depth = self.depths(&xi, &eta);
         Filled { xi, eta, depth }
+    }
+
+    /// s − δ at the points of a grid; infinite where a body has no surface.
+    fn depths(&self, xi: &[f64], eta: &[f64]) -> Vec<f64> {
+        let mut s = vec![f64::NAN; xi.len() * eta.len()];
+        let choice =
+            Choice { method: self.method, demand: Demand::for_tolerance(TOLERANCE), coefficients: 3 };
+        choice.fill(&self.placement, xi, &EtaAxis::new(eta), &mut s);
+        // Without skew the patch is that over the midplane.
+        let over = if self.placement.skew() == 0.0 {
+            self.placement.overlap().unwrap_or([0.0; 2])
+        } else {
+            [f64::MIN, f64::MAX]
+        };
+        let n = eta.len();
+        s.iter_mut().enumerate().for_each(|(k, s)| {
+            let seen = over[0] <= xi[k / n] && xi[k / n] <= over[1];
+            *s = if s.is_nan() || !seen { f64::INFINITY } else { *s - self.approach };
+        });
+        s
     }
 
     /// Area and its change from grids half as fine, over the box around the points inside, and whether that is fine enough.
@@ -94,27 +116,11 @@ impl Case {
     }
 }
 
-fn depths(placement: &Placement, xi: &[f64], eta: &[f64], approach: f64) -> Vec<f64> {
-    let mut s = vec![f64::NAN; xi.len() * eta.len()];
-    let choice =
-        Choice { method: Method::Spectral, demand: Demand::for_tolerance(TOLERANCE), coefficients: 3 };
-    choice.fill(placement, xi, &EtaAxis::new(eta), &mut s);
-    // Without skew the patch is that over the midplane.
-    let over =
-        if placement.skew() == 0.0 { placement.overlap().unwrap_or([0.0; 2]) } else { [f64::MIN, f64::MAX] };
-    let n = eta.len();
-    s.iter_mut().enumerate().for_each(|(k, s)| {
-        let seen = over[0] <= xi[k / n] && xi[k / n] <= over[1];
-        *s = if s.is_nan() || !seen { f64::INFINITY } else { *s - approach };
-    });
-    s
-}
-
 /// s − δ over a grid.
-struct Filled {
-    xi: Vec<f64>,
-    eta: Vec<f64>,
-    depth: Vec<f64>,
+pub struct Filled {
+    pub xi: Vec<f64>,
+    pub eta: Vec<f64>,
+    pub depth: Vec<f64>,
 }
 
 impl Filled {
@@ -220,7 +226,7 @@ fn check_points(case: &Case, patch: &Patch, filled: &Filled) {
 
 /// What the fill of a case has left open.
 #[derive(Debug, Default, Clone, Copy)]
-struct Open {
+pub struct Open {
     cases: usize,
     connection: usize,
     edge: usize,
@@ -233,7 +239,8 @@ fn beside_ends(patch: &Patch, cell: f64) -> f64 {
     patch.components.iter().map(|c| 0.5 * cell * (c.eta[1] - c.eta[0]) * ends(c) as f64).sum()
 }
 
-fn check(case: &Case) -> Open {
+/// Every point, the components, the area and the cuts of a patch against fills.
+pub fn check(case: &Case) -> Open {
     let patch = Patch::new(&case.placement, case.approach, &case.window);
     let mut n = POINTS[0];
     let mut before = case.filled(&case.window, n);
@@ -291,7 +298,7 @@ fn check_rings(case: &Case) {
     for group in mesh::groups(&whole, 0.0, None) {
         let axes = group.axes(None).expect("axes");
         let (n, m) = (axes.xi.len(), axes.eta.len());
-        let depth = depths(&case.placement, &axes.xi, &axes.eta, case.approach);
+        let depth = case.depths(&axes.xi, &axes.eta);
         for (k, depth) in depth.iter().enumerate() {
             let (i, j) = (k / m, k % m);
             let ring = i == 0 || j == 0 || i + 1 == n || j + 1 == m;
@@ -306,9 +313,12 @@ fn check_rings(case: &Case) {
     }
 }
 
-#[test]
-fn patches_are_what_a_flood_fill_finds() {
-    let count = std::env::var("WHEELRAIL_PATCHES").ok().and_then(|count| count.parse().ok()).unwrap_or(PAIRS);
+/// Checks the cases of all numbers below `count` that there are; fails with the names of those that fail.
+pub fn check_all(
+    count: u64,
+    case: impl Fn(u64) -> Option<Case> + Sync,
+    check: impl Fn(&Case) -> Open + Sync + std::panic::RefUnwindSafe,
+) {
     println!("cases 0 … {count}");
     let failed = std::sync::Mutex::new(Vec::new());
     let sum = |a: Open, b: Open| Open {
@@ -318,11 +328,8 @@ fn patches_are_what_a_flood_fill_finds() {
         area: a.area + b.area,
     };
     let one = |number: u64| {
-        let Some(case) = Case::new(number) else { return Open::default() };
-        let outcome = std::panic::catch_unwind(|| {
-            check_rings(&case);
-            check(&case)
-        });
+        let Some(case) = case(number) else { return Open::default() };
+        let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| check(&case)));
         outcome.unwrap_or_else(|_| {
             failed.lock().expect("a list").push(case.name.clone());
             Open { cases: 1, ..Open::default() }
@@ -334,4 +341,13 @@ fn patches_are_what_a_flood_fill_finds() {
     assert!(failed.is_empty(), "{} of {} failed:\n{}", failed.len(), open.cases, failed.join("\n"));
     assert!(open.cases as f64 > 0.7 * count as f64, "only {} pairs meet", open.cases);
     assert!((open.connection as f64) < UNDECIDED * count as f64, "{open:?}");
+}
+
+#[test]
+fn patches_are_what_a_flood_fill_finds() {
+    let count = std::env::var("WHEELRAIL_PATCHES").ok().and_then(|count| count.parse().ok()).unwrap_or(PAIRS);
+    check_all(count, Case::new, |case| {
+        check_rings(case);
+        check(case)
+    });
 }

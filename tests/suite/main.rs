@@ -9,6 +9,7 @@
 )]
 
 mod any_grid;
+mod campaign;
 mod closed_forms;
 mod common;
 mod conformal;
@@ -25,6 +26,7 @@ mod loads;
 mod measured_scene;
 mod mesh;
 mod parts;
+mod polynomial_patches;
 mod practice;
 mod promises;
 mod reference_values;

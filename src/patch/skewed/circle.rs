@@ -15,7 +15,7 @@ const MARGIN: f64 = 0.05;
 
 /// Places the circles of a wheel's profile points over the tangent plane of a skewed placement.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Turned<'a> {
+pub(in crate::patch) struct Turned<'a> {
     pub(super) section: &'a Section,
     /// R, the axle distance of C \[mm\].
     axle: f64,
@@ -54,7 +54,7 @@ pub(super) struct Parallel {
 
 impl<'a> Turned<'a> {
     /// Makes the circles of a placed pair.
-    pub(super) fn new(placement: &'a Placement) -> Self {
+    pub(in crate::patch) fn new(placement: &'a Placement) -> Self {
         let wheel = placement.wheel();
         Self {
             section: &wheel.section,
@@ -83,10 +83,23 @@ impl<'a> Turned<'a> {
     /// Returns the place of a profile point that is parallel to η, with the slope of the surface there.
     pub(super) fn parallel_with_slope(&self, piece: usize, p: f64) -> Parallel {
         let tangent = self.section.branches[self.section.pieces[piece].branch].station(p);
+        let (t, slope) = self.parallel_of(Vector2::new(tangent.cos, tangent.sin));
+        Parallel { circle: self.circle_with(p, tangent.z), t, slope }
+    }
+
+    /// Returns t and dζ/dξ of the place that is parallel to η on the circle of a point whose profile has a slope, which may be
+    /// infinite. Both are monotone functions of the profile's angle.
+    pub(super) fn parallel_to_tangent(&self, slope: f64) -> (f64, f64) {
+        let cos = 1.0 / 1f64.hypot(slope);
+        self.parallel_of(Vector2::new(cos, if cos == 0.0 { slope.signum() } else { slope * cos }))
+    }
+
+    /// Returns t and dζ/dξ of the place that is parallel to η, from the unit tangent of the profile.
+    fn parallel_of(&self, tangent: Vector2<f64>) -> (f64, f64) {
         // The tangent is (cos φ, sin φ) in the profile's own axes.
-        let own = self.tilt * Vector2::new(tangent.cos, tangent.sin);
+        let own = self.tilt * tangent;
         let half = own.x * self.skew.re;
-        let constant = self.skew.im * tangent.sin;
+        let constant = self.skew.im * tangent.y;
         let square = self.skew.im * (self.tilt * own).y;
         let root = (half * half - constant * square).sqrt();
         let nearest = -constant / (half + root.copysign(half));
@@ -95,11 +108,64 @@ impl<'a> Turned<'a> {
         let share = 2.0 / (1.0 + t * t);
         // The normal in the wheel's own directions is that in the midplane plus what the turn by v adds to it.
         let lifted = own.x * share * t * t;
-        let along = tangent.sin + lifted * self.tilt.im;
+        let along = tangent.y + lifted * self.tilt.im;
         let across = own.x * share * t;
-        let up = lifted * self.tilt.re - tangent.cos;
-        let slope = -(self.skew * Vector2::new(along, across)).x / up;
-        Parallel { circle: self.circle_with(p, tangent.z), t, slope }
+        let up = lifted * self.tilt.re - tangent.x;
+        (t, -(self.skew * Vector2::new(along, across)).x / up)
+    }
+
+    /// Returns dξ/dp of the place of a profile point that is parallel to η.
+    ///
+    /// With φ = ψ + θ, the place is where F = sinχ (sinφ cosθ − cosφ sinθ cos v) + cosχ cosφ sin v is 0, so that dv/dp =
+    /// −(∂F/∂ψ)/(∂F/∂v) dψ/dp.
+    pub(super) fn run(&self, piece: usize, p: f64) -> f64 {
+        let branch = &self.section.branches[self.section.pieces[piece].branch];
+        let tangent = branch.station(p);
+        let own = self.tilt * Vector2::new(tangent.cos, tangent.sin);
+        let (t, _) = self.parallel_of(Vector2::new(tangent.cos, tangent.sin));
+        let share = 1.0 / (1.0 + t * t);
+        let (sin, cos, versine) = (2.0 * t * share, (1.0 - t * t) * share, 2.0 * t * t * share);
+        let [by_psi, by_v] = [
+            self.skew.im * (own.x * self.tilt.re + own.y * self.tilt.im * cos) - self.skew.re * own.y * sin,
+            own.x * (self.skew.im * self.tilt.im * sin + self.skew.re * cos),
+        ];
+        // Farther places are taken for that at the limit, which does not move along the circle.
+        let turn = if t.abs() < FARTHEST { -by_psi / by_v * branch.curvature(p) / tangent.cos } else { 0.0 };
+        let radius = self.circle_with(p, tangent.z).radius;
+        let growth = -own.y / tangent.cos;
+        let along = 1.0 + self.tilt.im * (growth * versine + radius * sin * turn);
+        self.skew.re * along - self.skew.im * (growth * sin + radius * cos * turn)
+    }
+
+    /// Returns whether bounds of angle and curvature leave it open that ξ of the places turns along a piece.
+    pub(super) fn may_turn(&self, piece: usize) -> bool {
+        let (ends, slopes) = (self.section.pieces[piece].xi, self.section.slopes()[piece]);
+        let [_, seconds] =
+            self.section.branches[self.section.pieces[piece].branch].derivative_bounds(ends[0], ends[1]);
+        let steepest = slopes[0].abs().max(slopes[1].abs());
+        let far = slopes.map(|slope| self.parallel_to_tangent(slope).0.abs());
+        let t = far[0].max(far[1]);
+        let (sin, cos) = (2.0 * t / (1.0 + t * t), (1.0 - t * t) / (1.0 + t * t));
+        let [turned, tilted] = [self.skew.im.abs(), self.tilt.im.abs()];
+        let flattest = slopes.map(|slope| (self.tilt.re - self.tilt.im * slope) / 1f64.hypot(slope));
+        let by_v = flattest[0].min(flattest[1]) * (self.skew.re * cos - turned * tilted * sin);
+        // dψ/dp is ζ″/(1 + ζ′²).
+        let turn = (turned + self.skew.re * sin) * seconds[0].abs().max(seconds[1].abs()) / by_v;
+        let radii = ends.map(|p| self.circle(piece, p).radius);
+        let radius = radii[0].max(radii[1]) + steepest * (ends[1] - ends[0]);
+        let growth = tilted + steepest * self.tilt.re;
+        let most = growth * (tilted * (1.0 - cos) + turned * sin) + radius * turn * (turned + tilted * sin);
+        !(by_v > 0.0 && most < self.skew.re)
+    }
+
+    /// Returns ξ at which a circle crosses the line of constant η, next to the midplane; NaN if it does not.
+    pub(in crate::patch) fn xi_at(&self, piece: usize, p: f64, eta: f64) -> f64 {
+        let circle = self.circle(piece, p);
+        let constant = circle.p * self.skew.im - eta;
+        let square = constant + 2.0 * circle.radius * self.tilt.im * self.skew.im;
+        let half = circle.radius * self.skew.re;
+        let t = -constant / (half + (half * half - square * constant).sqrt().copysign(half));
+        self.place(&circle, t).xi
     }
 
     /// Returns the place at t on a circle.

@@ -4,10 +4,6 @@ use super::monotone::monotone;
 use crate::numerics::roots::{bracketed, last_where};
 use crate::patch::outline::Outline;
 
-/// Number of intervals of a monotone stretch in which the window's edge is searched if the valley is outside the window. A
-/// part of the patch is missed if it begins and ends within one of them.
-const WINDOW_INTERVALS: usize = 64;
-
 /// Values of ξ at which the intervals of η may change \[mm\], in no order.
 #[derive(Debug, Default)]
 pub(in crate::patch) struct Events {
@@ -83,14 +79,17 @@ fn passes(outline: &mut Outline<'_>, crease: usize, ends: [f64; 2], events: &mut
 /// Adds the events of a valley or ridge that leaves the window: there s at its place, or at the window's edge next to it,
 /// passes δ.
 fn passes_beside_window(outline: &mut Outline<'_>, crease: usize, [from, to]: [f64; 2], events: &mut Events) {
-    let at = |k: usize| {
-        if k == WINDOW_INTERVALS { to } else { from + (to - from) * k as f64 / WINDOW_INTERVALS as f64 }
-    };
+    let mut places = vec![from];
+    for edge in outline.window.eta.into_iter().filter(|edge| edge.is_finite()) {
+        places.extend(outline.turns_along(edge, [from, to]));
+    }
+    places.push(to);
+    places.sort_by(f64::total_cmp);
     let mut before = outline.depth(Some(crease), from) < 0.0;
-    for k in 1..=WINDOW_INTERVALS {
-        let here = outline.depth(Some(crease), at(k)) < 0.0;
+    for pair in places.windows(2) {
+        let here = outline.depth(Some(crease), pair[1]) < 0.0;
         if here != before {
-            let (on, off) = if before { (at(k - 1), at(k)) } else { (at(k), at(k - 1)) };
+            let (on, off) = if before { (pair[0], pair[1]) } else { (pair[1], pair[0]) };
             let xi = last_where(|xi| outline.depth(Some(crease), xi) < 0.0, on, off);
             let eta = outline.slicer.valley(Some(crease), xi);
             let seen = outline.window.eta[0] <= eta && eta <= outline.window.eta[1];

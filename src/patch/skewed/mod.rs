@@ -1,6 +1,6 @@
 //! The patch under a skewed wheel. A line of constant ξ may meet it in several intervals; each is found from a valley.
 
-mod circle;
+pub(super) mod circle;
 pub(super) mod events;
 pub(super) mod lanes;
 pub(crate) mod monotone;

@@ -4,16 +4,11 @@
 use std::ops::Range;
 
 use super::circle::{Circle, FARTHEST, Turned};
+use crate::numerics::lanes::Lanes;
+use crate::numerics::sign_changes::sign_changes;
 
-/// Length \[mm\] of the steps in which a piece is searched for folds of ξ. A fold is missed only if it begins and ends
-/// within one step. A fold takes a curvature of about 1/(R χ²), which would turn the profile by a large angle.
-const STEP: f64 = 0.5;
-
-/// Fewest and most steps of a piece.
-const STEPS: [usize; 2] = [2, 16];
-
-/// Number of times that the bracket of a fold is shortened by a third. The error of ξ is the square of what remains.
-const THIRDS: usize = 60;
+/// Rounding of dξ/dp.
+const RUN_NOISE: f64 = 64.0 * f64::EPSILON;
 
 /// Turn about the axle below which a kink makes no fold. Its ridge would be ρ t²/2 above its valleys, which is less than
 /// rounding.
@@ -108,15 +103,11 @@ impl ValleyPath {
             let (circle, t) = turned.parallel(index, p);
             turned.place(&circle, t).xi
         };
-        let steps = (((b - a) / STEP) as usize).clamp(STEPS[0], STEPS[1]);
-        let node = |k: usize| if k == steps { b } else { a + (b - a) * k as f64 / steps as f64 };
-        let values: Vec<f64> = (0..=steps).map(|k| xi(node(k))).collect();
         let mut cuts = vec![a];
-        for k in 1..steps {
-            let [before, after] = [values[k] - values[k - 1], values[k + 1] - values[k]];
-            if before * after < 0.0 && before.abs().min(after.abs()) > turned.rounding() {
-                cuts.push(turn(node(k - 1), node(k + 1), before.signum(), &xi));
-            }
+        if turned.may_turn(index) {
+            sign_changes(|p: &Lanes| p.map(|p| turned.run(index, p)), [a, b], RUN_NOISE, &mut cuts);
+            cuts.retain(|p| *p < b);
+            cuts.dedup();
         }
         cuts.push(b);
         let circle = turned.parallel(index, a).0;
@@ -169,15 +160,4 @@ pub(super) fn circle_legs(turned: &Turned<'_>, circle: Circle) -> Vec<Leg> {
         .map(|range| leg(turned, circle, range))
         .map(|leg| if leg.xi[0] <= leg.xi[1] { leg } else { leg.reversed() })
         .collect()
-}
-
-/// Returns where ξ(p) turns between a and b: at a maximum for `sign` = 1, at a minimum for −1.
-fn turn(mut a: f64, mut b: f64, sign: f64, xi: &impl Fn(f64) -> f64) -> f64 {
-    let value = |p: f64| sign * xi(p);
-    for _ in 0..THIRDS {
-        let third = (b - a) / 3.0;
-        let (p, q) = (a + third, b - third);
-        if value(p) < value(q) { a = p } else { b = q }
-    }
-    a + (b - a) / 2.0
 }

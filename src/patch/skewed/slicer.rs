@@ -23,7 +23,7 @@ const QUADRATIC: f64 = 1e-8;
 const NEWTON_ROUNDINGS: f64 = 64.0;
 
 /// Distance of a point beside an end or step, as a share of R. It is a million roundings, and less than any segment.
-const BESIDE: f64 = 1e-9;
+pub(in crate::patch) const BESIDE: f64 = 1e-9;
 
 /// Number of fourfold steps in which a point on the surface is sought next to its end. They reach the square root of
 /// rounding, which is the error where lines of constant ξ only touch the end.

@@ -16,7 +16,7 @@
 
 use std::ops::Range;
 
-use super::circle::{Circle, FARTHEST, PlanePoint, Turned};
+use super::circle::{Circle, FARTHEST, Parallel, PlanePoint, Turned};
 use super::path::{Leg, ValleyPath, circle_legs};
 use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
@@ -34,8 +34,10 @@ const SECANTS: usize = 8;
 pub(crate) struct Spot {
     /// η \[mm\].
     pub(crate) eta: f64,
-    /// \[ζ, dζ/dξ along the circle\] on a circle; `None` where the surface itself is parallel to η.
-    pub(crate) rim: Option<[f64; 2]>,
+    /// ζ of the wheel \[mm\].
+    height: f64,
+    /// Whether the place is on the circle of a kink or end. Elsewhere the surface itself is parallel to η.
+    on_circle: bool,
 }
 
 /// A valley or ridge over an interval of ξ.
@@ -81,18 +83,12 @@ impl<'a> Valleys<'a> {
     pub(crate) fn spot(&self, crease: usize, xi: f64) -> Spot {
         let legs = &self.creases[crease].legs;
         let leg = &legs[legs.partition_point(|leg| leg.xi[1] < xi).min(legs.len() - 1)];
-        match *leg {
-            Leg { piece: Some(piece), range, .. } => {
-                let p = self.abscissa(piece, range, xi);
-                let (circle, t) = self.turned.parallel(piece, p);
-                Spot { eta: self.turned.place(&circle, t).eta, rim: None }
-            }
-            Leg { circle, .. } => {
-                let t = self.turn(leg, xi);
-                let eta = self.turned.place(&circle, t).eta;
-                Spot { eta, rim: Some([self.turned.height(&circle, t), self.turned.slope(t)]) }
-            }
-        }
+        let (circle, t) = match leg.piece {
+            Some(piece) => self.turned.parallel(piece, self.abscissa(piece, leg.range, xi)),
+            None => (leg.circle, self.turn(leg, xi)),
+        };
+        let [eta, height] = [self.turned.place(&circle, t).eta, self.turned.height(&circle, t)];
+        Spot { eta, height, on_circle: leg.piece.is_none() }
     }
 
     /// Returns t at which the line of constant ξ meets a leg on a circle.
@@ -105,13 +101,51 @@ impl<'a> Valleys<'a> {
         if t.is_nan() { self.turned.touching() } else { t }.clamp(low, high)
     }
 
+    /// Returns the parameter of a leg at ξ: the profile abscissa \[mm\], or t on a circle.
+    pub(super) fn parameter(&self, leg: &Leg, xi: f64) -> f64 {
+        match (leg.xi.iter().position(|end| *end == xi), leg.piece) {
+            (Some(end), _) => leg.range[end],
+            (None, Some(piece)) => self.abscissa(piece, leg.range, xi),
+            (None, None) => self.turn(leg, xi),
+        }
+    }
+
+    /// Returns ξ and ζ \[mm\] at a parameter of a leg, and dζ/dξ along the leg.
+    pub(super) fn place(&self, leg: &Leg, at: f64) -> (f64, f64, f64) {
+        let (circle, t, slope) = match leg.piece {
+            Some(piece) => {
+                let Parallel { circle, t, slope } = self.turned.parallel_with_slope(piece, at);
+                (circle, t, slope)
+            }
+            None => (leg.circle, at, self.turned.slope(at)),
+        };
+        (self.turned.place(&circle, t).xi, self.turned.height(&circle, t), slope)
+    }
+
+    /// Returns bounds of dζ/dξ along a leg.
+    pub(super) fn slopes(&self, leg: &Leg) -> [f64; 2] {
+        let turned = &self.turned;
+        let Some(piece) = leg.piece else {
+            // Along a circle the slope is monotone up to where the circle is parallel to η; there it is infinite.
+            let [a, b] = leg.range;
+            let (ends, middle) = ([a, b].map(|t| turned.slope(t)), turned.slope(a + (b - a) / 2.0));
+            let [low, high] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+            let flat = if low.abs() < high.abs() { low } else { high };
+            return match middle {
+                middle if low <= middle && middle <= high => [low, high],
+                middle if middle > flat => [flat, f64::INFINITY],
+                _ => [f64::NEG_INFINITY, flat],
+            };
+        };
+        let ends = turned.section.slopes()[piece].map(|tangent| turned.parallel_to_tangent(tangent).1);
+        [ends[0].min(ends[1]), ends[0].max(ends[1])]
+    }
+
     /// Returns s(ξ, η) of a placed pair at the place of a valley or ridge \[mm\].
     pub(crate) fn separation(&self, evaluator: &mut Evaluator<'_>, xi: f64, spot: &Spot) -> f64 {
-        match spot.rim {
-            // Rounding may end the surface a little before this place.
-            Some([height, _]) => height - evaluator.rail_height(xi),
-            None => evaluator.separation(xi, spot.eta),
-        }
+        let s = if spot.on_circle { f64::NAN } else { evaluator.separation(xi, spot.eta) };
+        // Rounding may end the surface a little before this place.
+        if s.is_nan() { spot.height - evaluator.rail_height(xi) } else { s }
     }
 
     /// Returns the profile abscissa \[mm\] of a piece whose place is at ξ. If there is none, it returns the end of `[from,
