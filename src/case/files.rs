@@ -21,7 +21,6 @@ use crate::export::{
     wheel_vts,
 };
 use crate::files::Folder;
-use crate::patch::Outline;
 use crate::placement::Creepages;
 use crate::profile::Station;
 use crate::separation::midplane_table;
@@ -206,10 +205,9 @@ fn loops(part: &Part) -> Vec<Loop> {
 /// Gives INTERPEN's own table: the intervals of η at every ξ of the grid that lies in the patch, by component and η.
 fn intervals(part: &Part) -> Vec<Interval> {
     let Some(patch) = &part.analysis.patch else { return Vec::new() };
-    let mut outline = Outline::new(&part.site.contact.placement, patch.approach, &patch.window);
     let mut rows = Vec::new();
     for &xi in &part.site.grid.xi {
-        let mut here = patch.slices(&mut outline, xi);
+        let mut here = patch.slices(xi);
         here.sort_by(|(a, p), (b, q)| a.cmp(b).then(p.eta[0].total_cmp(&q.eta[0])));
         rows.extend(here.into_iter().map(|(component, slice)| Interval { xi, component, eta: slice.eta }));
     }

@@ -2,8 +2,7 @@
 
 use nalgebra::{Point2, Vector2};
 
-use crate::patch::{Band, BandSide, Component, Outline, Patch, rings};
-use crate::placement::Placement;
+use crate::patch::{Band, BandSide, Component, rings};
 
 /// Samples of a component's boundary before curvature asks for more, on each of its two sides.
 const SAMPLES_PER_SIDE: f64 = 64.0;
@@ -61,20 +60,15 @@ pub(super) struct Ring {
 /// Finds points of a component's boundary.
 pub(super) struct BoundaryTracer<'a> {
     bands: &'a [Band],
-    outline: Outline<'a>,
     /// Half the circumference of the box around the component \[mm\].
     extent: f64,
 }
 
 impl<'a> BoundaryTracer<'a> {
-    /// Makes the tracer of a component of the patch of a placed pair.
-    pub(super) fn new(placement: &'a Placement, patch: &Patch, component: &'a Component) -> Self {
+    /// Makes the tracer of a component.
+    pub(super) fn new(component: &'a Component) -> Self {
         let sides = [component.xi, component.eta].map(|[from, to]| to - from);
-        Self {
-            bands: &component.bands,
-            outline: Outline::new(placement, patch.approach, &patch.window),
-            extent: sides[0] + sides[1],
-        }
+        Self { bands: &component.bands, extent: sides[0] + sides[1] }
     }
 
     /// Returns all rings of the component.
@@ -154,7 +148,7 @@ impl<'a> BoundaryTracer<'a> {
                     1.0 => band.xi[1],
                     t => band.grading().xi(t).clamp(band.xi[0], band.xi[1]),
                 };
-                Point2::new(xi, band.slice(&mut self.outline, xi).eta[side.branch])
+                Point2::new(xi, band.slice(xi).eta[side.branch])
             }
         }
     }

@@ -16,8 +16,9 @@ use nalgebra::Point3;
 
 use super::lines::{BandMeeting, between, lines};
 use crate::error::{Error, ErrorKind, Result};
-use crate::patch::{Band, Component, Outline, Patch};
+use crate::patch::{Band, Component, Patch};
 use crate::placement::Placement;
+use crate::separation::Evaluator;
 
 /// Most cells of a mesh. With more, cells are smaller than the accuracy of the patch, which can only be a mistake.
 const MOST_CELLS: f64 = 1e7;
@@ -109,7 +110,7 @@ impl StripMesh {
         counts.check()?;
         let mut builder = StripBuilder {
             placement,
-            outline: Outline::new(placement, patch.approach, &patch.window),
+            evaluator: Evaluator::new(placement),
             shares: shares(counts.across),
             mesh: Self { points: Vec::new(), cells: Vec::new() },
             eta: Vec::new(),
@@ -144,7 +145,7 @@ fn shares(across: usize) -> Vec<f64> {
 
 struct StripBuilder<'a> {
     placement: &'a Placement,
-    outline: Outline<'a>,
+    evaluator: Evaluator<'a>,
     /// c of the points across a band that meets no narrower one.
     shares: Vec<f64>,
     mesh: StripMesh,
@@ -199,7 +200,7 @@ impl StripBuilder<'_> {
         self.eta.clear();
         self.eta.extend((1..shares.len()).map(|j| middle(j - 1)));
         self.separation.resize(self.eta.len(), f64::NAN);
-        self.outline.column(moments.xi, &self.eta, &mut self.separation);
+        self.evaluator.column(moments.xi, &self.eta, &mut self.separation);
         for j in 0..self.eta.len() {
             let quad = [rows[0][j], rows[1][j], rows[1][j + 1], rows[0][j + 1]];
             if let Some(corners) = tip_first(quad) {
@@ -218,7 +219,7 @@ impl StripBuilder<'_> {
 
     /// Returns the indices of the points of one strip edge, ascending in η. They are equal if the edge has no width.
     fn row(&mut self, band: &Band, shares: &[f64], xi: f64) -> Vec<usize> {
-        let eta = band.slice(&mut self.outline, xi).eta;
+        let eta = band.slice(xi).eta;
         let zeta = self.placement.rail().section.height(xi);
         let points = &mut self.mesh.points;
         let first = points.len();
@@ -232,7 +233,7 @@ impl StripBuilder<'_> {
 
     /// Computes the moments of a strip's width, over the pieces between all corners of the boundary, even those without a
     /// strip edge.
-    fn moments(&mut self, band: &Band, xi: [f64; 2]) -> Moments {
+    fn moments(&self, band: &Band, xi: [f64; 2]) -> Moments {
         // A mean of values that change sign is computed from an offset. The demanded accuracy then refers to the size of
         // the offset.
         let offset = band.sides.into_iter().flatten().fold(xi[1] - xi[0], |most, eta| eta.abs().max(most));
@@ -246,13 +247,11 @@ impl StripBuilder<'_> {
         };
         let (mut sums, mut from) = ([0.0; 4], parameter(xi[0]));
         for to in inside.chain([xi[1]]).map(parameter) {
-            let weighted = |x: f64| match self.outline.edges(band.valley(x), x) {
-                Some([low, high]) => {
-                    let width = high.eta - low.eta;
-                    let middle = low.eta + width / 2.0;
-                    [width, (x - xi[0]) * width, (offset + middle) * width, width * width / 2.0]
-                }
-                None => [0.0; 4],
+            let weighted = |x: f64| {
+                let [low, high] = band.slice(x).eta;
+                let width = high - low;
+                let middle = low + width / 2.0;
+                [width, (x - xi[0]) * width, (offset + middle) * width, width * width / 2.0]
             };
             let demand = [AREA_DEMAND, CENTROID_DEMAND, CENTROID_DEMAND, CENTROID_DEMAND];
             let piece = grading.integrals([from, to], weighted, demand);

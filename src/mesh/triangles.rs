@@ -152,7 +152,7 @@ impl TriangleMesh {
     }
 
     fn add(&mut self, placement: &Placement, patch: &Patch, component: &Component, size: f64) -> Result<()> {
-        let mut tracer = BoundaryTracer::new(placement, patch, component);
+        let mut tracer = BoundaryTracer::new(component);
         let mut rings = tracer.rings();
         if size.is_nan() || size <= 0.0 || rings.iter().any(|ring| ring.samples.len() < LEAST_SAMPLES) {
             let found = format!("a part of {:e} mm²", component.area);

@@ -3,10 +3,18 @@
 use super::grading::Grading;
 use super::outline::{End, Outline};
 use super::slice::Slice;
+use super::stretch::{Fit, Stretch};
+use crate::numerics::nan_max;
 use crate::profile::Section;
 
 /// Least step of a surface, in roundings of the profile's extent. A smaller one counts as a smooth joint.
 const STEP_ROUNDINGS: f64 = 64.0;
+
+/// Length, as a share of a band, of what lies between two corners that are one.
+const ONE_CORNER: f64 = 1e-11;
+
+/// Rounding of s in units of the rounding of the coordinates.
+const ROUNDINGS: f64 = 4.0;
 
 /// A range of ξ over which a component has one interval of η, whose ends vary without a jump.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +30,10 @@ pub(crate) struct Band {
     pub(super) valleys: Vec<(f64, Vec<usize>)>,
     /// Both ends of `xi`, and every ξ between them where a side may have a corner \[mm\], ascending.
     pub(crate) corners: Vec<f64>,
+    /// The edges between the corners, as if there were no window in η; by ascending ξ.
+    pub(super) stretches: Vec<Stretch>,
+    /// Range of η of the window \[mm\].
+    pub(super) window: [f64; 2],
 }
 
 impl Band {
@@ -36,16 +48,86 @@ impl Band {
         self.valleys_at(xi).first().copied()
     }
 
-    /// Returns the slice at ξ, which must lie within `xi`. If rounding finds no slice, the result has no width.
-    pub(crate) fn slice(&self, outline: &mut Outline<'_>, xi: f64) -> Slice {
+    /// Makes a band without corners and stretches; [`Self::fit`] finds the latter.
+    pub(super) fn new(xi: [f64; 2], ends: [Option<End>; 2], sides: [[f64; 2]; 2], window: [f64; 2]) -> Self {
+        Self { xi, ends, sides, valleys: Vec::new(), corners: Vec::new(), stretches: Vec::new(), window }
+    }
+
+    /// Fits interpolants to the edges between the corners.
+    pub(super) fn fit(&mut self, outline: &mut Outline<'_>) {
+        let length = self.xi[1] - self.xi[0];
+        let mut corners = vec![self.xi[0]];
+        for &corner in &self.corners {
+            let apart = |other: f64| (corner - other).abs() > ONE_CORNER * length;
+            if apart(corners[corners.len() - 1]) && apart(self.xi[1]) {
+                corners.push(corner);
+            }
+        }
+        corners.push(self.xi[1]);
+        let inside = |[low, high]: [f64; 2]| self.window[0] < low && high < self.window[1];
+        let zero = [0, 1].map(|end| {
+            let [low, high] = self.sides[end];
+            low == high && (self.ends[end] == Some(End::Tip) || inside([low, high]))
+        });
+        let root = self.ends.map(|end| matches!(end, None | Some(End::ProfileEnd)));
+        let noise = self.noise(outline);
+        let mut stretches = Vec::new();
+        let edges = |xi: f64| {
+            let valley = self.valley(xi);
+            match outline.slicer.edges(xi, valley) {
+                Some(edges) => edges.map(|edge| edge.eta),
+                None => [outline.slicer.valley(valley, xi); 2],
+            }
+        };
+        let mut fit = Fit { edges, band: self.xi, zero, root, noise };
+        for pair in corners.windows(2) {
+            fit.add([pair[0], pair[1]], &mut stretches);
+        }
+        self.stretches = stretches;
+    }
+
+    /// Returns the rounding of the square of half the width \[mm²\]: that of s, by what the square is per depth in the middle of the
+    /// band.
+    fn noise(&self, outline: &mut Outline<'_>) -> f64 {
+        let rail = &outline.slicer.placement().rail().section;
+        let size = self.xi.map(|xi| rail.height(xi).abs() + xi.abs());
+        let middle = self.xi[0] + (self.xi[1] - self.xi[0]) / 2.0;
+        let valley = self.valley(middle);
+        let depth = outline.slicer.depth_over(valley, middle).abs();
+        let square = outline
+            .slicer
+            .edges(middle, valley)
+            .map_or(0.0, |[low, high]| ((high.eta - low.eta) / 2.0).powi(2));
+        ROUNDINGS * f64::EPSILON * square * (1.0 + nan_max(size[0], size[1]) / depth)
+    }
+
+    fn stretch(&self, xi: f64) -> Option<&Stretch> {
+        let k = self.stretches.partition_point(|stretch| stretch.xi[1] < xi);
+        self.stretches.get(k.min(self.stretches.len().saturating_sub(1)))
+    }
+
+    /// Returns the slice at ξ, which must lie within `xi`.
+    pub(crate) fn slice(&self, xi: f64) -> Slice {
         if let Some(end) = (0..2).find(|&end| xi == self.xi[end]) {
             return Slice { eta: self.sides[end] };
         }
-        if let Some([low, high]) = outline.edges(self.valley(xi), xi) {
-            return Slice { eta: [low.eta, high.eta] };
-        }
-        let [_, _, eta] = outline.lowest(self.valley(xi), xi);
-        Slice { eta: [eta; 2] }
+        let [low, high] = self.whole(xi);
+        let [from, to] = self.window;
+        Slice { eta: [low.max(from).min(to), high.min(to).max(from)] }
+    }
+
+    /// Returns the slice at ξ as if there were no window in η \[mm\].
+    pub(super) fn whole(&self, xi: f64) -> [f64; 2] {
+        self.stretch(xi).map_or([f64::NAN; 2], |stretch| stretch.edges(xi))
+    }
+
+    /// Returns the slice at ξ \[mm\], and dη/dξ of both its ends, which is infinite at a tip and 0 along the window.
+    pub(super) fn edges_and_slopes(&self, xi: f64) -> ([f64; 2], [f64; 2]) {
+        let Some(stretch) = self.stretch(xi) else { return ([f64::NAN; 2], [f64::NAN; 2]) };
+        let (edges, slopes) = stretch.edges_and_slopes(xi);
+        let [from, to] = self.window;
+        let clipped = [edges[0].max(from).min(to), edges[1].min(to).max(from)];
+        (clipped, [0, 1].map(|k| if clipped[k] == edges[k] { slopes[k] } else { 0.0 }))
     }
 
     /// Returns ξ as a function of t in \[0, 1\] in which the width of the band is smooth except at corners. An end at a

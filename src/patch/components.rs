@@ -2,14 +2,12 @@
 
 use super::band::Band;
 use super::corners;
-use super::corners::BandRow;
 use super::loops;
 use super::loops::Rows;
 use super::measure::area_and_length;
 use super::outline::{End, Outline, Window};
 use super::plain;
 use super::skewed::lanes;
-use super::skewed::slicer::Edge;
 use super::slice::Slice;
 use crate::placement::Placement;
 
@@ -20,6 +18,9 @@ const POINTS_PER_SIDE: usize = 128;
 
 /// Least number of points on a piece of a loop between two corners.
 const LEAST_POINTS: usize = 2;
+
+/// Number of steps between the slices from which a band's range of η is estimated.
+const REACH_SLICES: usize = 8;
 
 /// One connected component of the patch.
 #[derive(Debug, Clone, PartialEq)]
@@ -110,14 +111,14 @@ impl Patch {
     }
 
     /// Returns the intervals of η of the patch at ξ, each with the index of its component, in no order. If some intervals
-    /// end at ξ and others begin there, it returns those on the left. `outline` must belong to the same placed pair.
-    pub fn slices(&self, outline: &mut Outline<'_>, xi: f64) -> Vec<(usize, Slice)> {
+    /// end at ξ and others begin there, it returns those on the left.
+    pub fn slices(&self, xi: f64) -> Vec<(usize, Slice)> {
         let mut slices = Vec::new();
         for (index, component) in self.components.iter().enumerate() {
             let bands = &component.bands;
             let ended = bands.iter().any(|band| band.xi[1] == xi);
             let over = |band: &&Band| (band.xi[0] < xi && xi <= band.xi[1]) || (xi == band.xi[0] && !ended);
-            slices.extend(bands.iter().filter(over).map(|band| (index, band.slice(outline, xi))));
+            slices.extend(bands.iter().filter(over).map(|band| (index, band.slice(xi))));
         }
         slices
     }
@@ -216,7 +217,7 @@ impl Region {
         let boundary = loops.next().unwrap_or_default();
         let mut sums = [0.0, loops::walls(&self.bands)];
         for band in &self.bands {
-            let [area, length] = area_and_length(outline, band);
+            let [area, length] = area_and_length(band);
             sums = [sums[0] + area, sums[1] + length];
         }
         let mut corners: Vec<f64> = self.bands.iter().flat_map(|band| &band.corners).copied().collect();
@@ -248,30 +249,26 @@ impl Region {
         for band in &mut self.bands {
             let [from, to] = band.xi;
             let joints = rail.joints(band.xi).map(|(xi, _)| xi);
-            let mut corners: Vec<f64> =
-                [from, to].into_iter().chain(joints.filter(|xi| from < *xi && *xi < to)).collect();
-            if !skewed {
-                corners::plain(outline, band, deepest, &mut corners);
-            }
-            sort(&mut corners);
-            band.corners = corners;
-            let nodes = graded(band, b - a);
-            let mut rows: Vec<BandRow> = nodes.into_iter().map(|xi| row(outline, band, xi)).collect();
+            band.corners = [from, to].into_iter().chain(joints.filter(|xi| from < *xi && *xi < to)).collect();
             let mut more = Vec::new();
             if skewed {
-                let eta = rows.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], row| {
-                    [low.min(row.edges[0].eta), high.max(row.edges[1].eta)]
-                });
+                let eta = reach(outline, band);
                 corners::skewed(outline, band, eta, &mut more);
+            } else {
+                corners::plain(outline, band, deepest, &mut more);
             }
-            corners::at_window(outline, band, &rows, &mut more);
-            rows.extend(more.iter().map(|&xi| row(outline, band, xi)));
             band.corners.append(&mut more);
             sort(&mut band.corners);
-            rows.sort_by(|p, q| p.xi.total_cmp(&q.xi));
-            add_farthest(outline, band, &mut rows);
-            rows.dedup_by_key(|row| row.xi);
-            all.push(rows.iter().map(|row| [row.xi, row.edges[0].eta, row.edges[1].eta]).collect());
+            band.fit(outline);
+            let mut rows: Rows = graded(band, b - a).into_iter().map(|xi| row(band, xi)).collect();
+            corners::at_window(band, &rows, &mut more);
+            rows.extend(more.iter().map(|&xi| row(band, xi)));
+            band.corners.append(&mut more);
+            sort(&mut band.corners);
+            rows.sort_by(|p, q| p[0].total_cmp(&q[0]));
+            add_farthest(band, !skewed, &mut rows);
+            rows.dedup_by_key(|row| row[0]);
+            all.push(rows);
         }
         all
     }
@@ -311,26 +308,40 @@ impl Region {
     }
 }
 
-/// Returns both edges of a band at ξ.
-fn row(outline: &mut Outline<'_>, band: &Band, xi: f64) -> BandRow {
-    let Slice { eta } = band.slice(outline, xi);
-    BandRow { xi, edges: eta.map(|eta| Edge { eta, ledge: false }) }
+/// Returns ξ and both edges of a band there.
+fn row(band: &Band, xi: f64) -> [f64; 3] {
+    let [low, high] = band.slice(xi).eta;
+    [xi, low, high]
+}
+
+/// Returns a range of η that holds a band, or nearly: twice that of some slices.
+fn reach(outline: &mut Outline<'_>, band: &Band) -> [f64; 2] {
+    let grading = band.grading();
+    let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+    for k in 0..=REACH_SLICES {
+        let xi = grading.xi(k as f64 / REACH_SLICES as f64).clamp(band.xi[0], band.xi[1]);
+        for edge in outline.slicer.edges(xi, band.valley(xi)).into_iter().flatten() {
+            range = [range[0].min(edge.eta), range[1].max(edge.eta)];
+        }
+    }
+    let more = (range[1] - range[0]) / 2.0;
+    [range[0] - more, range[1] + more]
 }
 
 /// Adds the rows at which a branch turns and is farthest out in η.
-fn add_farthest(outline: &mut Outline<'_>, band: &Band, rows: &mut Vec<BandRow>) {
-    let symmetric = outline.slicer.skewed.is_none() && outline.window.eta[0] == -outline.window.eta[1];
+fn add_farthest(band: &Band, plain: bool, rows: &mut Rows) {
+    let symmetric = plain && band.window[0] == -band.window[1];
     let branches: &[usize] = if symmetric { &[1] } else { &[0, 1] };
     let mut more = Vec::new();
     for &branch in branches {
-        let outward = |k: &usize| if branch == 0 { -rows[*k].edges[0].eta } else { rows[*k].edges[1].eta };
+        let outward = |k: &usize| if branch == 0 { -rows[*k][1] } else { rows[*k][2] };
         let inner = 1..rows.len().saturating_sub(1);
         let farthest = inner.max_by(|p, q| outward(p).total_cmp(&outward(q)));
-        let between = farthest.map(|k| [rows[k - 1].xi, rows[k + 1].xi]);
-        more.extend(between.and_then(|between| corners::turn_of_branch(outline, band, branch, between)));
+        let between = farthest.map(|k| [rows[k - 1][0], rows[k + 1][0]]);
+        more.extend(between.and_then(|between| corners::turn_of_branch(band, branch, between)));
     }
-    rows.extend(more.into_iter().map(|xi| row(outline, band, xi)));
-    rows.sort_by(|p, q| p.xi.total_cmp(&q.xi));
+    rows.extend(more.into_iter().map(|xi| row(band, xi)));
+    rows.sort_by(|p, q| p[0].total_cmp(&q[0]));
 }
 
 /// Sorts numbers into ascending order and removes repeated ones.

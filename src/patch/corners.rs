@@ -1,8 +1,8 @@
 //! Finds where the boundary of a patch may have a corner, and where it turns back in η.
 
 use super::band::Band;
+use super::loops::Rows;
 use super::outline::Outline;
-use super::skewed::slicer::Edge;
 use crate::numerics::roots::{bracketed, last_where};
 
 /// Distance from a band up to which joints of the wheel are examined, as a multiple of the band's depth × sinθ. It is
@@ -14,13 +14,6 @@ const CIRCLE_INTERVALS: usize = 8;
 
 /// Most doublings of the bracket of a sagitta.
 const DOUBLINGS: usize = 40;
-
-/// Both edges of a band at one ξ.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct BandRow {
-    pub(super) xi: f64,
-    pub(super) edges: [Edge; 2],
-}
 
 /// Appends the ξ inside a band where, without skew, its boundary crosses a joint or the end of the wheel's
 /// surface. The two branches mirror each other.
@@ -78,30 +71,22 @@ pub(super) fn skewed(outline: &Outline<'_>, band: &Band, eta: [f64; 2], corners:
 }
 
 /// Appends the ξ between two rows at which a branch meets the edge of the window.
-pub(super) fn at_window(outline: &mut Outline<'_>, band: &Band, rows: &[BandRow], corners: &mut Vec<f64>) {
-    let window = outline.window.eta;
+pub(super) fn at_window(band: &Band, rows: &Rows, corners: &mut Vec<f64>) {
     for pair in rows.windows(2) {
         for branch in 0..2 {
-            let cut = |edges: [Edge; 2]| edges[branch].eta == window[branch];
-            let first = cut(pair[0].edges);
-            if first != cut(pair[1].edges) {
-                let same = |xi: f64| outline.edges(band.valley(xi), xi).map_or(!first, cut) == first;
-                corners.push(last_where(same, pair[0].xi, pair[1].xi));
+            let cut = |xi: f64| {
+                let eta = band.whole(xi)[branch];
+                if branch == 0 { eta <= band.window[0] } else { eta >= band.window[1] }
+            };
+            let first = cut(pair[0][0]);
+            if first != cut(pair[1][0]) {
+                corners.push(last_where(|xi| cut(xi) == first, pair[0][0], pair[1][0]));
             }
         }
     }
 }
 
 /// Returns the ξ between two rows at which a branch turns and is farthest out in η. Returns `None` if it does not turn.
-pub(super) fn turn_of_branch(
-    outline: &mut Outline<'_>,
-    band: &Band,
-    branch: usize,
-    [from, to]: [f64; 2],
-) -> Option<f64> {
-    let slope = |xi: f64| match outline.edges(band.valley(xi), xi).map(|edges| edges[branch]) {
-        Some(Edge { eta, ledge: false }) => outline.slicer.gradient(xi, eta)[0],
-        _ => f64::NAN,
-    };
-    bracketed(slope, from, to)
+pub(super) fn turn_of_branch(band: &Band, branch: usize, [from, to]: [f64; 2]) -> Option<f64> {
+    bracketed(|xi| band.edges_and_slopes(xi).1[branch], from, to)
 }

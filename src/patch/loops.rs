@@ -121,7 +121,7 @@ mod tests {
     use super::*;
 
     fn band(xi: [f64; 2], sides: [[f64; 2]; 2]) -> Band {
-        Band { xi, ends: [None; 2], sides, valleys: Vec::new(), corners: xi.to_vec() }
+        Band::new(xi, [None; 2], sides, [f64::NEG_INFINITY, f64::INFINITY])
     }
 
     /// Returns the loops of bands with straight sides.

@@ -1,7 +1,6 @@
 //! Integrates the area of a band and the length of its branches.
 
 use super::band::Band;
-use super::outline::Outline;
 
 /// Relative accuracy demanded of the quadrature of the area.
 const AREA_DEMAND: f64 = 1e-13;
@@ -10,17 +9,15 @@ const AREA_DEMAND: f64 = 1e-13;
 const PERIMETER_DEMAND: f64 = 1e-11;
 
 /// Returns the area of a band and the length of both its branches \[mm², mm\].
-pub(super) fn area_and_length(outline: &mut Outline<'_>, band: &Band) -> [f64; 2] {
+pub(super) fn area_and_length(band: &Band) -> [f64; 2] {
     let mut sums = [0.0; 2];
     let grading = band.grading();
     for t in band.pieces() {
-        let width_and_speed = |xi: f64| match outline.edges_and_slopes(band.valley(xi), xi) {
-            Some(([low, high], slopes)) => {
-                // A slope is infinite only where rounding has moved ξ onto a round end, which contributes nothing.
-                let speeds = slopes.map(|slope| if slope.is_finite() { 1f64.hypot(slope) } else { 0.0 });
-                [high.eta - low.eta, speeds[0] + speeds[1]]
-            }
-            None => [0.0; 2],
+        let width_and_speed = |xi: f64| {
+            let ([low, high], slopes) = band.edges_and_slopes(xi);
+            // A slope is infinite only where rounding has moved ξ onto a round end, which contributes nothing.
+            let speeds = slopes.map(|slope| if slope.is_finite() { 1f64.hypot(slope) } else { 0.0 });
+            [high - low, speeds[0] + speeds[1]]
         };
         let [area, length] = grading.integrals(t, width_and_speed, [AREA_DEMAND, PERIMETER_DEMAND]);
         sums = [sums[0] + area, sums[1] + length];

@@ -10,6 +10,7 @@ mod outline;
 mod plain;
 pub(crate) mod skewed;
 mod slice;
+mod stretch;
 pub(crate) mod turning_points;
 
 pub(crate) use band::Band;

@@ -59,18 +59,6 @@ impl<'a> Outline<'a> {
         self.clipped(edges)
     }
 
-    /// Returns both ends of the slice at ξ, and dη/dξ of both branches there, which is 0 along the window. With skew the
-    /// slice is the one that holds `valley`.
-    pub(super) fn edges_and_slopes(
-        &mut self,
-        valley: Option<usize>,
-        xi: f64,
-    ) -> Option<([Edge; 2], [f64; 2])> {
-        let (whole, slopes) = self.slicer.edges_and_slopes(xi, valley)?;
-        let edges = self.clipped(whole)?;
-        Some((edges, [0, 1].map(|k| if edges[k].eta == whole[k].eta { slopes[k] } else { 0.0 })))
-    }
-
     /// Returns all ξ inside (a, b) at which s along the line of constant η may turn or step \[mm\], ascending.
     pub(super) fn turns_along(&mut self, eta: f64, [a, b]: [f64; 2]) -> Vec<f64> {
         let placement = self.slicer.placement();

@@ -70,7 +70,7 @@ fn closed(
         let edges = outline.edges(None, xi).filter(|_| end != Some(End::Tip));
         edges.map_or_else(|| [outline.floor(None, xi); 2], |edges| edges.map(|edge| edge.eta))
     });
-    Band { xi: [from, to], ends: [begin, end], sides, valleys: Vec::new(), corners: Vec::new() }
+    Band::new([from, to], [begin, end], sides, outline.window.eta)
 }
 
 /// Returns a, b, and all ξ between them where the depth may turn: joints and stationary points. The depth is monotone

@@ -18,14 +18,6 @@ pub struct Slice {
     pub eta: [f64; 2],
 }
 
-/// The upper end of a slice without skew, and the wheel point at that end.
-#[derive(Debug, Clone, Copy)]
-struct UpperEnd {
-    edge: Edge,
-    span: Span,
-    foot: SagittaPoint,
-}
-
 /// Finds the slices of a placed pair at one approach.
 ///
 /// # Examples
@@ -79,6 +71,14 @@ impl<'a> Slicer<'a> {
         }
     }
 
+    /// Returns s − δ at a valley \[mm\]; without skew that of the midplane.
+    pub(super) fn depth_over(&mut self, valley: Option<usize>, xi: f64) -> f64 {
+        match (&mut self.skewed, valley) {
+            (Some(skewed), Some(valley)) => skewed.depth(valley, xi),
+            _ => self.depth(xi),
+        }
+    }
+
     /// Returns the interval of η at ξ, or `None` outside the patch. With skew it is the deepest of several intervals. The
     /// interval has no width at a tip. It ends where the wheel's surface ends along η, if that is before s reaches δ.
     ///
@@ -96,31 +96,12 @@ impl<'a> Slicer<'a> {
         if let (Some(skewed), Some(valley)) = (&mut self.skewed, valley) {
             return skewed.edges(xi, valley);
         }
-        let UpperEnd { edge, .. } = self.half(xi)?;
+        let edge = self.half(xi)?;
         Some([Edge { eta: -edge.eta, ..edge }, edge])
     }
 
-    /// Returns both ends of the slice at ξ, and dη/dξ of both branches there, which is infinite at a tip. With skew the
-    /// slice is the one that holds `valley`.
-    pub(super) fn edges_and_slopes(
-        &mut self,
-        xi: f64,
-        valley: Option<usize>,
-    ) -> Option<([Edge; 2], [f64; 2])> {
-        if self.skewed.is_some() {
-            let edges = self.edges(xi, valley)?;
-            let slope = |edge: Edge| {
-                if edge.ledge { self.ledge_slope(xi, edge.eta) } else { self.boundary_slope(xi, edge.eta) }
-            };
-            return Some((edges, edges.map(slope)));
-        }
-        let half = self.half(xi)?;
-        let slope = self.half_slope(xi, &half);
-        Some(([Edge { eta: -half.edge.eta, ..half.edge }, half.edge], [-slope, slope]))
-    }
-
     /// Returns the upper end of the slice at ξ without skew, or `None` outside the patch.
-    fn half(&mut self, xi: f64) -> Option<UpperEnd> {
+    fn half(&mut self, xi: f64) -> Option<Edge> {
         let depth = self.approach - midplane_gap(self.placement, xi);
         if depth.is_nan() || depth < 0.0 {
             return None;
@@ -130,26 +111,11 @@ impl<'a> Slicer<'a> {
         self.foot_lifted(xi, depth, likely).or_else(|| self.foot_lifted(xi, depth, f64::INFINITY))
     }
 
-    /// Returns dη/dξ of the branch η > 0 without skew: −s_ξ/s_η, or on a ledge the slope of the wheel's circle.
-    fn half_slope(&self, xi: f64, UpperEnd { edge, span, foot }: &UpperEnd) -> f64 {
-        if edge.ledge {
-            return foot.w / (edge.eta * self.placement.wheel().section.frame.sin);
-        }
-        let normal = self.wheel.normal(xi, edge.eta, span, foot);
-        let rail = self.evaluator.rail_slope(xi);
-        // s_ξ = −n_ξ/n_ζ − slope of the rail, and s_η = −n_η/n_ζ.
-        -(normal.x + rail * normal.z) / normal.y
-    }
-
     /// Returns the wheel point that lies `depth` \[mm\] above the midplane point at ξ, or an earlier point at which the
     /// surface ends or steps. Returns `None` if η² would exceed `u_max`.
-    fn foot_lifted(&mut self, xi: f64, depth: f64, u_max: f64) -> Option<UpperEnd> {
+    fn foot_lifted(&mut self, xi: f64, depth: f64, u_max: f64) -> Option<Edge> {
         self.wheel.spans(xi, u_max, &mut self.spans);
-        let half = |foot: SagittaPoint, span: &Span, ledge: bool| UpperEnd {
-            edge: Edge { eta: foot.u.max(0.0).sqrt(), ledge },
-            span: *span,
-            foot,
-        };
+        let half = |foot: SagittaPoint, ledge: bool| Edge { eta: foot.u.max(0.0).sqrt(), ledge };
         let floor = self.spans.first().filter(|span| span.e[0] == 0.0)?.height;
         for span in &self.spans {
             let rise = depth - (span.height - floor);
@@ -157,11 +123,11 @@ impl<'a> Slicer<'a> {
             if end.is_none_or(|end| end.rise >= rise) {
                 let step = rise < -STEP_ROUNDINGS * f64::EPSILON * (span.height.abs() + floor.abs());
                 let foot = self.wheel.point_with_rise(xi, span, rise.max(0.0), CONTRACTIONS);
-                return Some(half(foot, span, step));
+                return Some(half(foot, step));
             }
         }
         let last = self.spans.last().filter(|span| span.u[1] < u_max)?;
-        Some(half(self.wheel.point(xi, last, last.e[1]), last, true))
+        Some(half(self.wheel.point(xi, last, last.e[1]), true))
     }
 
     /// Returns η \[mm\] of the least s at ξ. It is 0 without skew, else the place where the wheel is parallel to η or its
@@ -193,11 +159,6 @@ impl<'a> Slicer<'a> {
         let rail = self.evaluator.rail_slope(xi);
         let [along, across] = self.evaluator.wheel_slopes(xi, eta);
         [along - rail, across]
-    }
-
-    /// Returns dη/dξ along the end or step of a skewed wheel's surface that is nearest to a point; NaN without skew.
-    fn ledge_slope(&self, xi: f64, eta: f64) -> f64 {
-        self.skewed.as_ref().map_or(f64::NAN, |skewed| skewed.valleys.rim_slope(xi, eta))
     }
 
     /// Returns s(ξ, η) \[mm\].

@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 use wheelrail::case::contacts;
 use wheelrail::mesh;
-use wheelrail::patch::{Component, End, Outline, Patch, Window};
+use wheelrail::patch::{Component, End, Patch, Window};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Profile, standards};
 use wheelrail::scene;
@@ -206,9 +206,8 @@ impl Filled {
 
 /// Every point of the grid, judged by the patch's slices.
 fn check_points(case: &Case, patch: &Patch, filled: &Filled) {
-    let mut outline = Outline::new(&case.placement, case.approach, &case.window);
     for (i, &xi) in filled.xi.iter().enumerate() {
-        let slices = patch.slices(&mut outline, xi);
+        let slices = patch.slices(xi);
         for (j, &eta) in filled.eta.iter().enumerate() {
             let depth = filled.at(i, j);
             let found = slices.iter().any(|(_, slice)| slice.eta[0] <= eta && eta <= slice.eta[1]);

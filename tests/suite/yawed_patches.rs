@@ -8,7 +8,7 @@ use wheelrail::case::{Run, SILENT};
 use wheelrail::internal::bracketed;
 use wheelrail::load::feasibility;
 use wheelrail::mesh::{StripCounts, StripMesh};
-use wheelrail::patch::{End, Outline, Patch, Window};
+use wheelrail::patch::{End, Patch, Window};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Half, Profile, Section, Side, standards};
 use wheelrail::scene;
@@ -50,8 +50,8 @@ fn scanned(evaluator: &mut Evaluator<'_>, xi: f64, [from, to]: [f64; 2], delta: 
 }
 
 /// The slices of all components at ξ.
-fn sliced(patch: &Patch, outline: &mut Outline<'_>, xi: f64) -> Vec<[f64; 2]> {
-    let mut all: Vec<[f64; 2]> = patch.slices(outline, xi).into_iter().map(|(_, slice)| slice.eta).collect();
+fn sliced(patch: &Patch, xi: f64) -> Vec<[f64; 2]> {
+    let mut all: Vec<[f64; 2]> = patch.slices(xi).into_iter().map(|(_, slice)| slice.eta).collect();
     all.sort_by(|a, b| a[0].total_cmp(&b[0]));
     all.retain(|[a, b]| a < b);
     all
@@ -75,12 +75,12 @@ fn check(name: &str, placement: &Placement, delta: f64) -> Patch {
         [(a - margin).max(from), (b + margin).min(to)]
     };
     let [xi, eta] = [wider(extent.xi, NEAR.xi), wider(extent.eta, NEAR.eta)];
-    let (mut evaluator, mut outline) = (Evaluator::new(placement), Outline::new(placement, delta, &NEAR));
+    let mut evaluator = Evaluator::new(placement);
     let (step, fine) = ((xi[1] - xi[0]) / LINES as f64, (eta[1] - eta[0]) / POINTS as f64);
     let mut area = 0.0;
     for k in 0..LINES {
         let xi = xi[0] + step * (k as f64 + 0.5);
-        let [expected, found] = [scanned(&mut evaluator, xi, eta, delta), sliced(&patch, &mut outline, xi)];
+        let [expected, found] = [scanned(&mut evaluator, xi, eta, delta), sliced(&patch, xi)];
         area += step * widths(&expected);
         // What is narrower than two points the scan may miss.
         let all_wide = expected.iter().chain(&found).all(|[a, b]| b - a > 2.0 * fine);
@@ -155,9 +155,8 @@ fn a_component_goes_on_on_both_sides_of_the_wheel_s_end() {
         let patch = check(&format!("yaw {yaw}"), &placement, 0.2);
         let [c] = patch.components.as_slice() else { panic!("{} components", patch.components.len()) };
         assert_eq!((c.ends, c.holes.len()), ([End::Tip; 2], 0), "yaw {yaw}");
-        let mut outline = Outline::new(&placement, 0.2, &NEAR);
         let most = (0..400).map(|k| c.xi[0] + (c.xi[1] - c.xi[0]) * (f64::from(k) + 0.5) / 400.0);
-        let most = most.map(|xi| sliced(&patch, &mut outline, xi).len()).max();
+        let most = most.map(|xi| sliced(&patch, xi).len()).max();
         assert_eq!(most, Some(2), "yaw {yaw}");
     }
 }

@@ -188,12 +188,6 @@ impl<'a> Turned<'a> {
         sin * self.tilt.re / (self.tilt.im * self.skew.re * sin - self.skew.im * cos)
     }
 
-    /// Returns dη/dξ along any circle at t.
-    pub(super) fn rim_slope(&self, t: f64) -> f64 {
-        let along = self.skew * Vector2::new(2.0 * t * self.tilt.im, 1.0 - t * t);
-        along.y / along.x
-    }
-
     /// Returns the rounding of ξ and ζ \[mm\].
     pub(super) fn rounding(&self) -> f64 {
         64.0 * f64::EPSILON * self.axle

@@ -245,13 +245,8 @@ impl LaneWalk<'_, '_> {
     /// Returns a new band that begins at ξ. Its slice is taken at `at`, which is ξ or the next number.
     fn opened(&mut self, group: &ValleyGroup, xi: f64, fork: Option<[f64; 2]>, at: f64) -> Band {
         let (side, end) = self.end(group, xi, at, [f64::NAN; 2]);
-        Band {
-            xi: [xi; 2],
-            ends: [fork.is_none().then_some(end), None],
-            sides: [fork.unwrap_or(side); 2],
-            valleys: Vec::new(),
-            corners: Vec::new(),
-        }
+        let ends = [fork.is_none().then_some(end), None];
+        Band::new([xi; 2], ends, [fork.unwrap_or(side); 2], self.outline.window.eta)
     }
 
     /// Returns the side of a band that begins or ends at ξ without a fork, and what bounds the band.

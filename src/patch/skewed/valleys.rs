@@ -186,13 +186,6 @@ impl<'a> Valleys<'a> {
         self.crossings(xi).map(|(place, _)| place.eta)
     }
 
-    /// Returns dη/dξ of the end or step of the wheel's surface that is next to a point; NaN if there is none.
-    pub(crate) fn rim_slope(&self, xi: f64, eta: f64) -> f64 {
-        let off = |place: &PlanePoint| (place.eta - eta).abs();
-        let nearest = self.crossings(xi).min_by(|(p, _), (q, _)| off(p).total_cmp(&off(q)));
-        nearest.map_or(f64::NAN, |(_, t)| self.turned.rim_slope(t))
-    }
-
     /// Calls `visit` for the circle of every joint and end of the wheel that may meet a box of the ξ–η plane. The arguments
     /// are \[ξ, ζ\] as a function of t along the circle, and the range of t.
     pub(crate) fn circles(

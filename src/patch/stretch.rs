@@ -1,0 +1,242 @@
+//! The boundary of a patch between two corners, as interpolants.
+
+use crate::numerics::chebyshev::{NODES, POINTS, PROOF, coefficients, value, value_and_slope};
+use crate::numerics::lanes::{Lanes, largest};
+
+/// Share of the first stretch at which a part is not halved again. What is left beside an unknown corner is below the accuracy of
+/// areas.
+const SHORTEST: f64 = 1e-7;
+
+/// Most stretches between two corners. Only noise that is larger than it is said to be asks for more.
+const MOST_STRETCHES: usize = 64;
+
+/// Rounding of an edge, in roundings of its size.
+const EDGE_ROUNDINGS: f64 = 8.0;
+
+/// Both edges of a band over a range of ξ without a corner.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Stretch {
+    /// Range of ξ \[mm\].
+    pub(crate) xi: [f64; 2],
+    curve: Curve,
+}
+
+/// How the edges vary over a stretch: coefficients of Chebyshev polynomials over (−1, 1).
+#[derive(Debug, Clone, PartialEq)]
+enum Curve {
+    /// Functions of ξ: the square of half the width, divided by the distance from either end at which the width is zero, and the
+    /// middle between the edges.
+    Width { zero: [bool; 2], square: Lanes, middle: Lanes },
+    /// The edges themselves as functions of the square root of the distance from the first (0) or last (1) ξ.
+    Root { from: usize, edges: [Lanes; 2] },
+}
+
+/// Fits stretches to the edges of a band.
+pub(super) struct Fit<F> {
+    /// Gives both edges \[mm\] at ξ.
+    pub(super) edges: F,
+    /// Range of ξ of the band \[mm\].
+    pub(super) band: [f64; 2],
+    /// Whether the width is zero at either end of the band.
+    pub(super) zero: [bool; 2],
+    /// Whether the edges may be square roots of the distance from either end of the band.
+    pub(super) root: [bool; 2],
+    /// Rounding of the square of half the width \[mm²\].
+    pub(super) noise: f64,
+}
+
+impl<F: FnMut(f64) -> [f64; 2]> Fit<F> {
+    /// Appends the stretches between two neighbouring corners.
+    ///
+    /// Method: the interpolant at 16 Chebyshev points of ξ; if its last coefficients are no rounding, of the square root of the
+    /// distance from an end of the band; otherwise the range is halved.
+    pub(super) fn add(&mut self, corners: [f64; 2], stretches: &mut Vec<Stretch>) {
+        let shortest = SHORTEST * (corners[1] - corners[0]);
+        let first = stretches.len();
+        let mut waiting = vec![corners];
+        while let Some(xi @ [a, b]) = waiting.pop() {
+            let (plain, resolved) = self.over_width(xi);
+            let root = (0..2).find(|&end| !resolved && self.root[end] && xi[end] == self.band[end]);
+            let rooted = root.map(|end| self.over_root(xi, end)).filter(|(_, resolved)| *resolved);
+            let many = stretches.len() + waiting.len() > first + MOST_STRETCHES;
+            let middle = a + (b - a) / 2.0;
+            if let Some((stretch, _)) = rooted {
+                stretches.push(stretch);
+            } else if resolved || b - a <= shortest || many || middle <= a || middle >= b {
+                stretches.push(plain);
+            } else {
+                waiting.extend([[middle, b], [a, middle]]);
+            }
+        }
+    }
+
+    fn over_width(&mut self, xi: [f64; 2]) -> (Stretch, bool) {
+        let [a, b] = xi;
+        let zero = [0, 1].map(|end| self.zero[end] && xi[end] == self.band[end]);
+        let (centre, half) = (a + (b - a) / 2.0, (b - a) / 2.0);
+        let (mut square, mut middle) = ([0.0; POINTS], [0.0; POINTS]);
+        let (mut narrowest, mut nearest) = (f64::INFINITY, f64::INFINITY);
+        for k in 0..POINTS {
+            let x = centre + half * NODES[k];
+            let [low, high] = (self.edges)(x);
+            let (width, [far, _]) = ((high - low) / 2.0, distances(xi, zero, x));
+            (narrowest, nearest) = (narrowest.min(width), nearest.min(far));
+            (middle[k], square[k]) = (low + width, width * width / far);
+        }
+        let rounding = self.rounding(largest(&middle), narrowest);
+        let (square, middle) = (coefficients(&square), coefficients(&middle));
+        let resolved = is_rounding(&square, self.noise / nearest) && is_rounding(&middle, rounding);
+        let curve = Curve::Width { zero, square, middle };
+        (Stretch { xi, curve }, resolved)
+    }
+
+    /// Returns the rounding \[mm\] of edges of this size, half the narrowest width of which is given.
+    fn rounding(&self, size: f64, narrowest: f64) -> f64 {
+        EDGE_ROUNDINGS * f64::EPSILON * size + self.noise / (2.0 * narrowest)
+    }
+
+    fn over_root(&mut self, xi: [f64; 2], from: usize) -> (Stretch, bool) {
+        let length = xi[1] - xi[0];
+        let (mut low, mut high) = ([0.0; POINTS], [0.0; POINTS]);
+        for k in 0..POINTS {
+            let root = (1.0 + NODES[k]) / 2.0;
+            let away = length * root * root;
+            [low[k], high[k]] = (self.edges)(if from == 0 { xi[0] + away } else { xi[1] - away });
+        }
+        let narrowest = (0..POINTS).map(|k| (high[k] - low[k]) / 2.0).fold(f64::INFINITY, f64::min);
+        let rounding = self.rounding(largest(&low).max(largest(&high)), narrowest);
+        let edges = [coefficients(&low), coefficients(&high)];
+        let resolved = edges.iter().all(|edge| is_rounding(edge, rounding));
+        (Stretch { xi, curve: Curve::Root { from, edges } }, resolved)
+    }
+}
+
+impl Stretch {
+    /// Returns both edges \[mm\] at ξ within the range.
+    pub(crate) fn edges(&self, xi: f64) -> [f64; 2] {
+        match &self.curve {
+            Curve::Width { zero, square, middle } => {
+                let t = self.parameter(xi);
+                let [far, _] = distances(self.xi, *zero, xi);
+                // Rounding may make the square negative beside a neck.
+                let (half, middle) = ((value(square, t) * far).max(0.0).sqrt(), value(middle, t));
+                [middle - half, middle + half]
+            }
+            Curve::Root { from, edges } => {
+                let t = 2.0 * self.root(*from, xi) - 1.0;
+                edges.each_ref().map(|edge| value(edge, t))
+            }
+        }
+    }
+
+    /// Returns both edges \[mm\] at ξ within the range, and dη/dξ of both, which is infinite where the width is zero.
+    pub(crate) fn edges_and_slopes(&self, xi: f64) -> ([f64; 2], [f64; 2]) {
+        let length = self.xi[1] - self.xi[0];
+        match &self.curve {
+            Curve::Width { zero, square, middle } => {
+                let t = self.parameter(xi);
+                let [far, change] = distances(self.xi, *zero, xi);
+                let [[square, growth], [middle, along]] = [square, middle].map(|c| value_and_slope(c, t));
+                let half = (square * far).max(0.0).sqrt();
+                let rate = 2.0 / length;
+                let widens = (growth * rate * far + square * change) / (2.0 * half);
+                let along = along * rate;
+                ([middle - half, middle + half], [along - widens, along + widens])
+            }
+            Curve::Root { from, edges } => {
+                let root = self.root(*from, xi);
+                let toward = if *from == 0 { 1.0 } else { -1.0 };
+                // dt/dξ of t = 2 √(distance/length) − 1.
+                let rate = toward / (length * root);
+                let both = edges.each_ref().map(|edge| value_and_slope(edge, 2.0 * root - 1.0));
+                (both.map(|edge| edge[0]), both.map(|edge| edge[1] * rate))
+            }
+        }
+    }
+
+    fn parameter(&self, xi: f64) -> f64 {
+        let [a, b] = self.xi;
+        (((xi - a) - (b - xi)) / (b - a)).clamp(-1.0, 1.0)
+    }
+
+    /// Returns the root of the distance from an end, as a share of that of the range.
+    fn root(&self, from: usize, xi: f64) -> f64 {
+        ((xi - self.xi[from]) / (self.xi[1 - from] - self.xi[from])).clamp(0.0, 1.0).sqrt()
+    }
+}
+
+/// Returns the product of the distances from the ends with a zero width, and its derivative.
+fn distances([a, b]: [f64; 2], zero: [bool; 2], xi: f64) -> [f64; 2] {
+    match zero {
+        [false, false] => [1.0, 0.0],
+        [true, false] => [xi - a, 1.0],
+        [false, true] => [b - xi, -1.0],
+        [true, true] => [(xi - a) * (b - xi), (b - xi) - (xi - a)],
+    }
+}
+
+/// Returns whether the last coefficients are no larger than rounding.
+fn is_rounding(c: &Lanes, rounding: f64) -> bool {
+    c[POINTS - PROOF..].iter().all(|c| c.abs() <= rounding)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fitted(
+        edges: impl FnMut(f64) -> [f64; 2],
+        band: [f64; 2],
+        zero: [bool; 2],
+        root: [bool; 2],
+    ) -> Vec<Stretch> {
+        let mut stretches = Vec::new();
+        Fit { edges, band, zero, root, noise: 8.0 * f64::EPSILON }.add(band, &mut stretches);
+        stretches
+    }
+
+    #[test]
+    fn an_ellipse_is_one_stretch() {
+        let half = |x: f64| ((x + 1.0) * (2.0 - x)).sqrt();
+        let found = fitted(|x| [0.1 * x - half(x), 0.1 * x + half(x)], [-1.0, 2.0], [true; 2], [false; 2]);
+        let [stretch] = found.as_slice() else { panic!("{}", found.len()) };
+        for x in [-1.0, -0.999_999, 0.3, 2.0] {
+            let ([low, high], slopes) = stretch.edges_and_slopes(x);
+            assert_eq!([low, high], stretch.edges(x));
+            assert!(
+                (low - 0.1 * x + half(x)).abs() < 1e-14 && (high - 0.1 * x - half(x)).abs() < 1e-14,
+                "{x}"
+            );
+            let slope = 0.1 + (1.0 - 2.0 * x) / (2.0 * half(x));
+            assert!(half(x) == 0.0 || (slopes[1] / slope - 1.0).abs() < 1e-12, "{x}");
+        }
+    }
+
+    #[test]
+    fn one_edge_may_be_a_root() {
+        for from in 0..2 {
+            let away = move |x: f64| if from == 0 { x } else { 1.0 - x };
+            let edges = move |x: f64| [-1.0 - x, -0.2 * away(x).sqrt() + 0.3 * x];
+            let found = fitted(edges, [0.0, 1.0], [false; 2], [from == 0, from == 1]);
+            assert_eq!(found.len(), 1);
+            for x in [0.0, 1e-9, 0.2, 1.0] {
+                let ([low, high], _) = found[0].edges_and_slopes(x);
+                assert!((low - edges(x)[0]).abs() < 1e-14 && (high - edges(x)[1]).abs() < 1e-14, "{x}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_kink_is_cut_out() {
+        let found = fitted(|x: f64| [-1.0, 1.0 + (x - 0.3).abs()], [0.0, 1.0], [false; 2], [false; 2]);
+        let area: f64 = (0..10_000)
+            .map(|k| (f64::from(k) + 0.5) / 10_000.0)
+            .map(|x| {
+                let at = found.partition_point(|stretch| stretch.xi[1] < x);
+                let [low, high] = found[at].edges(x);
+                (high - low) / 10_000.0
+            })
+            .sum();
+        assert!((area - 2.29).abs() < 1e-8 && found.len() < 40, "{area} {}", found.len());
+    }
+}
