@@ -81,9 +81,9 @@ pub fn to_powers(c: &Lanes, kept: usize) -> Lanes {
     interleaved(&even, &odd)
 }
 
-/// Computes the interpolant at t by Clenshaw's rule.
+/// Computes Σ c_k T_k(t) by Clenshaw's rule; `c` has at least one coefficient.
 #[inline]
-pub fn value(c: &Lanes, t: f64) -> f64 {
+pub fn value(c: &[f64], t: f64) -> f64 {
     let (mut here, mut before) = (0.0, 0.0);
     for &c in c[1..].iter().rev() {
         (here, before) = (c + 2.0 * t * here - before, here);
@@ -91,9 +91,9 @@ pub fn value(c: &Lanes, t: f64) -> f64 {
     c[0] + t * here - before
 }
 
-/// Computes the interpolant and its derivative at t by Clenshaw's rule.
+/// Computes Σ c_k T_k(t) and its derivative by Clenshaw's rule; `c` has at least one coefficient.
 #[inline]
-pub fn value_and_slope(c: &Lanes, t: f64) -> [f64; 2] {
+pub fn value_and_slope(c: &[f64], t: f64) -> [f64; 2] {
     let (mut here, mut before, mut slope, mut last) = (0.0, 0.0, 0.0, 0.0);
     for &c in c[1..].iter().rev() {
         (slope, last) = (2.0 * (here + t * slope) - last, slope);

@@ -72,12 +72,18 @@ impl Band {
         let root = self.ends.map(|end| matches!(end, None | Some(End::ProfileEnd)));
         let noise = self.noise(outline);
         let mut stretches = Vec::new();
+        // ξ, the square of half the width and the middle of the last two slices.
+        let mut known = [[f64::NAN; 3]; 2];
         let edges = |xi: f64| {
             let valley = self.valley(xi);
-            match outline.slicer.edges(xi, valley) {
-                Some(edges) => edges.map(|edge| edge.eta),
-                None => [outline.slicer.valley(valley, xi); 2],
-            }
+            let edges = outline
+                .slicer
+                .edges_near(xi, extrapolated(&known, xi))
+                .or_else(|| outline.slicer.edges(xi, valley).map(|edges| edges.map(|edge| edge.eta)));
+            let [low, high] = edges.unwrap_or_else(|| [outline.slicer.valley(valley, xi); 2]);
+            let half = (high - low) / 2.0;
+            known = [known[1], [xi, half * half, low + half]];
+            [low, high]
         };
         let mut fit = Fit { edges, band: self.xi, zero, root, noise };
         for pair in corners.windows(2) {
@@ -111,14 +117,9 @@ impl Band {
         if let Some(end) = (0..2).find(|&end| xi == self.xi[end]) {
             return Slice { eta: self.sides[end] };
         }
-        let [low, high] = self.whole(xi);
+        let [low, high] = self.stretch(xi).map_or([f64::NAN; 2], |stretch| stretch.edges(xi));
         let [from, to] = self.window;
         Slice { eta: [low.max(from).min(to), high.min(to).max(from)] }
-    }
-
-    /// Returns the slice at ξ as if there were no window in η \[mm\].
-    pub(super) fn whole(&self, xi: f64) -> [f64; 2] {
-        self.stretch(xi).map_or([f64::NAN; 2], |stretch| stretch.edges(xi))
     }
 
     /// Returns the slice at ξ \[mm\], and dη/dξ of both its ends, which is infinite at a tip and 0 along the window.
@@ -153,6 +154,15 @@ impl Band {
     pub(crate) fn meets(&self, next: &Self) -> bool {
         self.xi[1] == next.xi[0] && overlap(self.sides[1], next.sides[0])
     }
+}
+
+/// Returns the edges \[mm\] at ξ that follow from two slices, each given by ξ, the square of half the width and the middle; NaN
+/// if there are none.
+fn extrapolated(&[[x, square, middle], [y, other, last]]: &[[f64; 3]; 2], xi: f64) -> [f64; 2] {
+    let share = (xi - y) / (y - x);
+    let half = (other + (other - square) * share).sqrt();
+    let middle = last + (last - middle) * share;
+    [middle - half, middle + half]
 }
 
 /// Returns whether two intervals have more than a point in common.

@@ -74,13 +74,11 @@ pub(super) fn skewed(outline: &Outline<'_>, band: &Band, eta: [f64; 2], corners:
 pub(super) fn at_window(band: &Band, rows: &Rows, corners: &mut Vec<f64>) {
     for pair in rows.windows(2) {
         for branch in 0..2 {
-            let cut = |xi: f64| {
-                let eta = band.whole(xi)[branch];
-                if branch == 0 { eta <= band.window[0] } else { eta >= band.window[1] }
-            };
-            let first = cut(pair[0][0]);
-            if first != cut(pair[1][0]) {
-                corners.push(last_where(|xi| cut(xi) == first, pair[0][0], pair[1][0]));
+            let cut = |row: &[f64; 3]| row[1 + branch] == band.window[branch];
+            let first = cut(&pair[0]);
+            if first != cut(&pair[1]) {
+                let same = |xi: f64| (band.slice(xi).eta[branch] == band.window[branch]) == first;
+                corners.push(last_where(same, pair[0][0], pair[1][0]));
             }
         }
     }

@@ -16,7 +16,8 @@ pub(super) fn area_and_length(band: &Band) -> [f64; 2] {
         let width_and_speed = |xi: f64| {
             let ([low, high], slopes) = band.edges_and_slopes(xi);
             // A slope is infinite only where rounding has moved ξ onto a round end, which contributes nothing.
-            let speeds = slopes.map(|slope| if slope.is_finite() { 1f64.hypot(slope) } else { 0.0 });
+            let speeds =
+                slopes.map(|slope| if slope.is_finite() { (1.0 + slope * slope).sqrt() } else { 0.0 });
             [high - low, speeds[0] + speeds[1]]
         };
         let [area, length] = grading.integrals(t, width_and_speed, [AREA_DEMAND, PERIMETER_DEMAND]);

@@ -100,6 +100,12 @@ impl<'a> Slicer<'a> {
         Some([Edge { eta: -edge.eta, ..edge }, edge])
     }
 
+    /// Returns both ends of the slice at ξ \[mm\] next to a guess, under a skewed wheel. Returns `None` without skew, and if they are
+    /// not surely those of the slice that was guessed.
+    pub(super) fn edges_near(&mut self, xi: f64, guess: [f64; 2]) -> Option<[f64; 2]> {
+        self.skewed.as_mut()?.edges_near(xi, guess)
+    }
+
     /// Returns the upper end of the slice at ξ without skew, or `None` outside the patch.
     fn half(&mut self, xi: f64) -> Option<Edge> {
         let depth = self.approach - midplane_gap(self.placement, xi);

@@ -10,6 +10,9 @@ const SHORTEST: f64 = 1e-7;
 /// Most stretches between two corners. Only noise that is larger than it is said to be asks for more.
 const MOST_STRETCHES: usize = 64;
 
+/// Share of the rounding up to which a coefficient is left out: a sixteenth of it, and a margin.
+const LEFT_OUT: f64 = 1.0 / 64.0;
+
 /// Rounding of an edge, in roundings of its size.
 const EDGE_ROUNDINGS: f64 = 8.0;
 
@@ -21,14 +24,22 @@ pub(crate) struct Stretch {
     curve: Curve,
 }
 
-/// How the edges vary over a stretch: coefficients of Chebyshev polynomials over (−1, 1).
+/// A sum of Chebyshev polynomials over (−1, 1).
+#[derive(Debug, Clone, PartialEq)]
+struct Series {
+    coefficients: Lanes,
+    /// Number of coefficients that are not rounding, at least 1.
+    count: usize,
+}
+
+/// How the edges vary over a stretch.
 #[derive(Debug, Clone, PartialEq)]
 enum Curve {
     /// Functions of ξ: the square of half the width, divided by the distance from either end at which the width is zero, and the
     /// middle between the edges.
-    Width { zero: [bool; 2], square: Lanes, middle: Lanes },
+    Width { zero: [bool; 2], square: Series, middle: Series },
     /// The edges themselves as functions of the square root of the distance from the first (0) or last (1) ξ.
-    Root { from: usize, edges: [Lanes; 2] },
+    Root { from: usize, edges: [Series; 2] },
 }
 
 /// Fits stretches to the edges of a band.
@@ -84,8 +95,9 @@ impl<F: FnMut(f64) -> [f64; 2]> Fit<F> {
             (middle[k], square[k]) = (low + width, width * width / far);
         }
         let rounding = self.rounding(largest(&middle), narrowest);
-        let (square, middle) = (coefficients(&square), coefficients(&middle));
-        let resolved = is_rounding(&square, self.noise / nearest) && is_rounding(&middle, rounding);
+        let (square, first) = Series::new(&square, self.noise / nearest);
+        let (middle, second) = Series::new(&middle, rounding);
+        let resolved = first && second;
         let curve = Curve::Width { zero, square, middle };
         (Stretch { xi, curve }, resolved)
     }
@@ -105,9 +117,8 @@ impl<F: FnMut(f64) -> [f64; 2]> Fit<F> {
         }
         let narrowest = (0..POINTS).map(|k| (high[k] - low[k]) / 2.0).fold(f64::INFINITY, f64::min);
         let rounding = self.rounding(largest(&low).max(largest(&high)), narrowest);
-        let edges = [coefficients(&low), coefficients(&high)];
-        let resolved = edges.iter().all(|edge| is_rounding(edge, rounding));
-        (Stretch { xi, curve: Curve::Root { from, edges } }, resolved)
+        let [(low, first), (high, second)] = [low, high].map(|values| Series::new(&values, rounding));
+        (Stretch { xi, curve: Curve::Root { from, edges: [low, high] } }, first && second)
     }
 }
 
@@ -119,12 +130,12 @@ impl Stretch {
                 let t = self.parameter(xi);
                 let [far, _] = distances(self.xi, *zero, xi);
                 // Rounding may make the square negative beside a neck.
-                let (half, middle) = ((value(square, t) * far).max(0.0).sqrt(), value(middle, t));
+                let (half, middle) = ((square.value(t) * far).max(0.0).sqrt(), middle.value(t));
                 [middle - half, middle + half]
             }
             Curve::Root { from, edges } => {
                 let t = 2.0 * self.root(*from, xi) - 1.0;
-                edges.each_ref().map(|edge| value(edge, t))
+                edges.each_ref().map(|edge| edge.value(t))
             }
         }
     }
@@ -136,7 +147,8 @@ impl Stretch {
             Curve::Width { zero, square, middle } => {
                 let t = self.parameter(xi);
                 let [far, change] = distances(self.xi, *zero, xi);
-                let [[square, growth], [middle, along]] = [square, middle].map(|c| value_and_slope(c, t));
+                let [[square, growth], [middle, along]] =
+                    [square, middle].map(|series| series.value_and_slope(t));
                 let half = (square * far).max(0.0).sqrt();
                 let rate = 2.0 / length;
                 let widens = (growth * rate * far + square * change) / (2.0 * half);
@@ -148,7 +160,7 @@ impl Stretch {
                 let toward = if *from == 0 { 1.0 } else { -1.0 };
                 // dt/dξ of t = 2 √(distance/length) − 1.
                 let rate = toward / (length * root);
-                let both = edges.each_ref().map(|edge| value_and_slope(edge, 2.0 * root - 1.0));
+                let both = edges.each_ref().map(|edge| edge.value_and_slope(2.0 * root - 1.0));
                 (both.map(|edge| edge[0]), both.map(|edge| edge[1] * rate))
             }
         }
@@ -175,9 +187,28 @@ fn distances([a, b]: [f64; 2], zero: [bool; 2], xi: f64) -> [f64; 2] {
     }
 }
 
-/// Returns whether the last coefficients are no larger than rounding.
-fn is_rounding(c: &Lanes, rounding: f64) -> bool {
-    c[POINTS - PROOF..].iter().all(|c| c.abs() <= rounding)
+impl Series {
+    /// Interpolates values at the 16 points. Returns the series, and whether its last coefficients are no larger than `rounding`.
+    fn new(values: &Lanes, rounding: f64) -> (Self, bool) {
+        let coefficients = coefficients(values);
+        // What is left out is in sum less than the rounding of one value.
+        let counts = |c: &f64| c.abs() > LEFT_OUT * rounding;
+        let count = coefficients.iter().rposition(counts).map_or(1, |last| last + 1);
+        let resolved = coefficients[POINTS - PROOF..].iter().all(|c| c.abs() <= rounding);
+        (Self { coefficients, count }, resolved)
+    }
+
+    fn value(&self, t: f64) -> f64 {
+        if self.count == 1 { self.coefficients[0] } else { value(&self.coefficients[..self.count], t) }
+    }
+
+    fn value_and_slope(&self, t: f64) -> [f64; 2] {
+        if self.count == 1 {
+            [self.coefficients[0], 0.0]
+        } else {
+            value_and_slope(&self.coefficients[..self.count], t)
+        }
+    }
 }
 
 #[cfg(test)]

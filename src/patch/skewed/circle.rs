@@ -98,11 +98,8 @@ impl<'a> Turned<'a> {
     fn parallel_of(&self, tangent: Vector2<f64>) -> (f64, f64) {
         // The tangent is (cos φ, sin φ) in the profile's own axes.
         let own = self.tilt * tangent;
-        let half = own.x * self.skew.re;
-        let constant = self.skew.im * tangent.y;
-        let square = self.skew.im * (self.tilt * own).y;
-        let root = (half * half - constant * square).sqrt();
-        let nearest = -constant / (half + root.copysign(half));
+        let (constant, half) = (self.skew.im * tangent.y, own.x * self.skew.re);
+        let nearest = self.nearest(tangent, own);
         let far = FARTHEST.copysign(-constant * half);
         let t = if nearest.abs() <= FARTHEST { nearest } else { far };
         let share = 2.0 / (1.0 + t * t);
@@ -114,27 +111,35 @@ impl<'a> Turned<'a> {
         (t, -(self.skew * Vector2::new(along, across)).x / up)
     }
 
-    /// Returns dξ/dp of the place of a profile point that is parallel to η.
+    /// Returns t of the place that is parallel to η, however far away, from the unit tangent and that in the profile's own axes; NaN
+    /// if there is none.
+    fn nearest(&self, tangent: Vector2<f64>, own: Vector2<f64>) -> f64 {
+        let half = own.x * self.skew.re;
+        let constant = self.skew.im * tangent.y;
+        let square = self.skew.im * (self.tilt * own).y;
+        let root = (half * half - constant * square).sqrt();
+        -constant / (half + root.copysign(half))
+    }
+
+    /// Returns dξ/dl of the place of a profile point that is parallel to η, where l is the length of the profile.
     ///
-    /// With φ = ψ + θ, the place is where F = sinχ (sinφ cosθ − cosφ sinθ cos v) + cosχ cosφ sin v is 0, so that dv/dp =
-    /// −(∂F/∂ψ)/(∂F/∂v) dψ/dp.
+    /// With φ = ψ + θ, the place is where F = sinχ (sinφ cosθ − cosφ sinθ cos v) + cosχ cosφ sin v is 0, so that dv/dl =
+    /// −(∂F/∂ψ)/(∂F/∂v) dψ/dl.
     pub(super) fn run(&self, piece: usize, p: f64) -> f64 {
         let branch = &self.section.branches[self.section.pieces[piece].branch];
         let tangent = branch.station(p);
         let own = self.tilt * Vector2::new(tangent.cos, tangent.sin);
-        let (t, _) = self.parallel_of(Vector2::new(tangent.cos, tangent.sin));
+        let t = self.nearest(Vector2::new(tangent.cos, tangent.sin), own);
         let share = 1.0 / (1.0 + t * t);
         let (sin, cos, versine) = (2.0 * t * share, (1.0 - t * t) * share, 2.0 * t * t * share);
         let [by_psi, by_v] = [
             self.skew.im * (own.x * self.tilt.re + own.y * self.tilt.im * cos) - self.skew.re * own.y * sin,
             own.x * (self.skew.im * self.tilt.im * sin + self.skew.re * cos),
         ];
-        // Farther places are taken for that at the limit, which does not move along the circle.
-        let turn = if t.abs() < FARTHEST { -by_psi / by_v * branch.curvature(p) / tangent.cos } else { 0.0 };
+        let turn = -by_psi / by_v * branch.curvature(p);
         let radius = self.circle_with(p, tangent.z).radius;
-        let growth = -own.y / tangent.cos;
-        let along = 1.0 + self.tilt.im * (growth * versine + radius * sin * turn);
-        self.skew.re * along - self.skew.im * (growth * sin + radius * cos * turn)
+        let along = tangent.cos + self.tilt.im * (radius * sin * turn - own.y * versine);
+        self.skew.re * along - self.skew.im * (radius * cos * turn - own.y * sin)
     }
 
     /// Returns whether bounds of angle and curvature leave it open that ξ of the places turns along a piece.

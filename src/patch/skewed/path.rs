@@ -1,13 +1,14 @@
 //! Follows the places of a wheel that are parallel to η in the order of its profile, and cuts this path where
 //! it turns back in ξ.
 
+use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
 
 use super::circle::{Circle, FARTHEST, Turned};
 use crate::numerics::lanes::Lanes;
 use crate::numerics::sign_changes::sign_changes;
 
-/// Rounding of dξ/dp.
+/// Rounding of dξ/dl.
 const RUN_NOISE: f64 = 64.0 * f64::EPSILON;
 
 /// Turn about the axle below which a kink makes no fold. Its ridge would be ρ t²/2 above its valleys, which is less than
@@ -105,8 +106,13 @@ impl ValleyPath {
         };
         let mut cuts = vec![a];
         if turned.may_turn(index) {
-            sign_changes(|p: &Lanes| p.map(|p| turned.run(index, p)), [a, b], RUN_NOISE, &mut cuts);
-            cuts.retain(|p| *p < b);
+            // Beside a vertical end the run is a function of the square root of the distance from it, which the sine resolves.
+            let (middle, half) = (a + (b - a) / 2.0, (b - a) / 2.0);
+            let abscissa = |angle: f64| (middle + half * angle.sin()).clamp(a, b);
+            let run = |angle: &Lanes| angle.map(|angle| turned.run(index, abscissa(angle)));
+            let mut turns = Vec::new();
+            sign_changes(run, [-FRAC_PI_2, FRAC_PI_2], RUN_NOISE, &mut turns);
+            cuts.extend(turns.into_iter().map(abscissa).filter(|p| a < *p && *p < b));
             cuts.dedup();
         }
         cuts.push(b);
