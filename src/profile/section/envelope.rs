@@ -23,6 +23,14 @@ pub(super) fn pieces(branches: &[Branch], side: Side) -> Vec<Piece> {
     intervals(branches, side).into_iter().map(with_ends).collect()
 }
 
+/// Returns the indices of the pieces that do not begin where the piece before ends, with heights equal to `rounding` \[mm\].
+pub(super) fn steps(pieces: &[Piece], rounding: f64) -> Vec<usize> {
+    let joins = |[before, piece]: [&Piece; 2]| {
+        before.xi[1] == piece.xi[0] && (piece.ends[0].1 - before.ends[1].1).abs() <= rounding
+    };
+    (1..pieces.len()).filter(|&k| !joins([&pieces[k - 1], &pieces[k]])).collect()
+}
+
 /// Returns the intervals in order of ξ, each with the index of the outer branch over it.
 fn intervals(branches: &[Branch], side: Side) -> Vec<([f64; 2], usize)> {
     let mut ends: Vec<f64> = branches.iter().flat_map(|b| b.xi).collect();

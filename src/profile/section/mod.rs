@@ -46,6 +46,8 @@ pub struct Section {
     pub(crate) branches: Vec<Branch>,
     /// The outer envelope: the outer branch over disjoint closed intervals of ascending ξ.
     pub(crate) pieces: Vec<Piece>,
+    /// Indices of the pieces before which the envelope has a hole, or changes its height at once by more than rounding.
+    pub(crate) steps: Vec<usize>,
     /// Bounds of ζ′ over every piece, once they were asked for.
     slopes: OnceLock<Vec<[f64; 2]>>,
     /// Index of the branch through the frame's origin, if the frame is that of a contact point.
@@ -95,7 +97,8 @@ impl Section {
         }
         let contact = contact.and_then(|point| branches.iter().position(|b| b.is_contact(point.segment)));
         let pieces = envelope::pieces(&branches, side);
-        Self { frame, branches, pieces, slopes: OnceLock::new(), contact }
+        let steps = envelope::steps(&pieces, rounding);
+        Self { frame, branches, pieces, steps, slopes: OnceLock::new(), contact }
     }
 
     /// Returns the outer branch at ξ, or `None` where the body has no surface. At a joint it is the left branch.
@@ -122,14 +125,10 @@ impl Section {
         self.slopes.get_or_init(|| self.pieces.iter().map(bounds).collect())
     }
 
-    /// Returns the intervals of ξ \[mm\] over which the envelope has a hole, or changes its height by more than `rounding` \[mm\]
-    /// at once; ascending, without its own ends.
-    pub(crate) fn steps(&self, rounding: f64) -> Vec<[f64; 2]> {
-        let joins = |pair: &&[Piece]| {
-            pair[0].xi[1] == pair[1].xi[0] && (pair[1].ends[0].1 - pair[0].ends[1].1).abs() <= rounding
-        };
-        let apart = self.pieces.windows(2).filter(|pair| !joins(pair));
-        apart.map(|pair| [pair[0].xi[1], pair[1].xi[0]]).collect()
+    /// Returns the intervals of ξ \[mm\] over which the envelope has a hole or changes its height at once; ascending, without its
+    /// own ends.
+    pub(crate) fn steps(&self) -> Vec<[f64; 2]> {
+        self.steps.iter().map(|&k| [self.pieces[k - 1].xi[1], self.pieces[k].xi[0]]).collect()
     }
 
     /// Returns whether ξ \[mm\] lies on the segment through C, at least `margin` \[mm\] inside the ends of its outer part.
