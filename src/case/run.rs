@@ -168,8 +168,13 @@ fn warnings_of(site: &Site, analysis: &Analysis) -> Vec<String> {
     }
     let Analysis { patch, conformal, .. } = analysis;
     out.extend(turning_warning(site, patch.as_ref(), conformal.as_ref()));
-    let Plan { error, tolerance, .. } = analysis.plan;
-    if error.is_nan() || error > tolerance {
+    let Plan { choice, error, tolerance, .. } = &analysis.plan;
+    if error.is_nan() {
+        let name = choice.method.name();
+        out.push(format!(
+            "the method {name} has no number at some points of both bodies: take \"auto\" as grid.method"
+        ));
+    } else if error > tolerance {
         out.push(format!(
             "the separation's estimated error, {error:.1e} mm, is above grid.tolerance, {tolerance:e} mm"
         ));
