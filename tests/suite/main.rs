@@ -9,6 +9,7 @@
 )]
 
 mod any_grid;
+mod campaign;
 mod closed_forms;
 mod common;
 mod conformal;
@@ -31,6 +32,7 @@ mod reference_values;
 mod reference_yawed;
 mod report;
 mod slices;
+mod steps;
 mod strips;
 mod triangles;
 mod two_sides;
