@@ -418,10 +418,13 @@ impl<'a> WheelSurface<'a> {
     }
 
     /// Computes dζ/du \[1/mm\], the growth of ζ with η², at the beginning of a span. At η = 0 this is q(ξ, 0) = (cosθ − h′(ξ)
-    /// sinθ)/2w.
+    /// sinθ)/2w. At a vertical end of the profile e stays while w falls.
     pub fn opening(&self, xi: f64, span: &Span) -> f64 {
         let e = span.e[0];
         let rise = self.cos - self.sin * self.branch(span).chord_from(&span.begin, self.abscissa(xi, e));
+        if rise.is_infinite() {
+            return -1.0 / (2.0 * e * self.cos);
+        }
         rise / (2.0 * (span.w + e * (1.0 - self.cos * rise)))
     }
 

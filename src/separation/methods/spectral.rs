@@ -36,11 +36,12 @@ impl<'a> Spectral<'a> {
 /// Returns whether the spans cover the whole column up to `u_max` \[mm²\].
 fn is_whole(spans: &[Span], u_max: f64) -> bool {
     let mut reached = 0.0;
-    spans.iter().all(|span| {
+    let joined = spans.iter().all(|span| {
         let joined = span.u[0] <= reached;
         reached = span.u[1].max(reached);
         joined
-    }) && reached >= u_max
+    });
+    joined && !spans.is_empty() && reached >= u_max
 }
 
 /// Returns the range of u \[mm²\] over which a span is the outer one, if earlier spans reach to `reached`: open at its beginning,
