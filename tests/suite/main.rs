@@ -15,6 +15,7 @@ mod common;
 mod conformal;
 mod conformal_brute;
 mod doubts;
+mod flange_backs;
 mod flood_fill;
 mod hard_cases;
 mod in_place;

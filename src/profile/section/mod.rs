@@ -36,15 +36,16 @@ pub struct ProfilePoint {
 /// The part of a profile that faces the other body, as a function ζ(ξ) in a frame.
 ///
 /// All quantities are in the axes of the frame: ξ along its tangent, ζ along its normal \[mm\]. The profile may overhang in
-/// ξ. The outer one of the sheets that face the other body then counts. The height is undefined where no sheet faces the
-/// other body.
+/// ξ. The outer one of the sheets that face the other body then counts. In the frame of a contact, though, a sheet that begins
+/// more than 10 mm in front of the one through C is that of another head, such as a guard rail beside a flangeway: it counts
+/// only where the sheet through C has ended. The height is undefined where no sheet faces the other body.
 #[derive(Debug, Clone)]
 pub struct Section {
     /// The frame, in profile axes.
     pub(crate) frame: Station,
     /// All branches, in the order of the chain.
     pub(crate) branches: Vec<Branch>,
-    /// The outer envelope: the outer branch over disjoint closed intervals of ascending ξ.
+    /// The envelope: the branch that counts over disjoint closed intervals of ascending ξ.
     pub(crate) pieces: Vec<Piece>,
     /// Indices of the pieces before which the envelope has a hole, or changes its height at once by more than rounding.
     pub(crate) steps: Vec<usize>,
@@ -57,21 +58,27 @@ pub struct Section {
 impl Section {
     /// Makes the section of a profile in its own axes.
     pub fn own_axes(profile: &Profile, side: Side) -> Self {
-        Self::build(profile, Station::AXES, None, side)
+        Self::build(profile, Station::AXES, None, side, false)
     }
 
     /// Makes the section in the contact frame of a point of the profile: its origin is the point, ξ is along the tangent.
     pub(crate) fn at_contact(profile: &Profile, point: &ProfilePoint, side: Side) -> Self {
-        Self::build(profile, point.station, Some(point), side)
+        Self::build(profile, point.station, Some(point), side, true)
     }
 
-    /// Makes the section in any frame. A contact at a kink needs this, because the common normal there is not the normal of
+    /// Makes the section in the frame of any contact. A contact at a kink needs this, because the common normal there is not the normal of
     /// a tangent.
     pub(crate) fn in_frame(profile: &Profile, frame: Station, side: Side) -> Self {
-        Self::build(profile, frame, None, side)
+        Self::build(profile, frame, None, side, true)
     }
 
-    fn build(profile: &Profile, frame: Station, contact: Option<&ProfilePoint>, side: Side) -> Self {
+    fn build(
+        profile: &Profile,
+        frame: Station,
+        contact: Option<&ProfilePoint>,
+        side: Side,
+        at_contact: bool,
+    ) -> Self {
         let mut branches: Vec<Branch> = Vec::with_capacity(profile.segments().len());
         let rounding = ONE_JOINT * (profile.extent() + frame.x.abs() + frame.z.abs());
         let mut goes_on = false;
@@ -96,12 +103,12 @@ impl Section {
             };
         }
         let contact = contact.and_then(|point| branches.iter().position(|b| b.is_contact(point.segment)));
-        let pieces = envelope::pieces(&branches, side);
+        let pieces = envelope::pieces(&branches, side, at_contact);
         let steps = envelope::steps(&pieces, rounding);
         Self { frame, branches, pieces, steps, slopes: OnceLock::new(), contact }
     }
 
-    /// Returns the outer branch at ξ, or `None` where the body has no surface. At a joint it is the left branch.
+    /// Returns the branch that counts at ξ, or `None` where the body has no surface. At a joint it is the left branch.
     pub(crate) fn branch_at(&self, xi: f64) -> Option<&Branch> {
         self.piece_at(xi).map(|piece| &self.branches[piece.branch])
     }
