@@ -47,7 +47,7 @@ pub struct Found {
     pub place: PlaceOfContact,
     /// Places whose patches overlap that of this contact, or are merged with it: they are one region with it.
     pub merged: Vec<PlaceOfContact>,
-    /// Other places on this side within `within` that are no contact of their own.
+    /// Other places on this side within `within` that are no contact of their own and merged with none.
     pub near_misses: Vec<PlaceOfContact>,
 }
 
@@ -380,7 +380,8 @@ impl Side {
             }
             return Ok(placed);
         }
-        let own: Vec<usize> = regions.iter().map(|region| region.place).collect();
+        let own: Vec<usize> =
+            regions.iter().flat_map(|region| region.merged.iter().chain([&region.place])).copied().collect();
         let missed = (0..self.places.len()).filter(|k| !own.contains(k) && self.places[*k].gap <= within);
         let missed: Vec<PlaceOfContact> = of(&missed.collect::<Vec<_>>());
         for region in regions {
