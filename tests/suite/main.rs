@@ -14,6 +14,7 @@ mod closed_forms;
 mod common;
 mod conformal;
 mod conformal_brute;
+mod conicity;
 mod doubts;
 mod flange_backs;
 mod flood_fill;
