@@ -19,6 +19,7 @@ mod doubts;
 mod flange_backs;
 mod flood_fill;
 mod hard_cases;
+mod hard_scenes;
 mod in_place;
 mod independent_check;
 mod interpenetration;
