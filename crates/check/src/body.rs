@@ -27,6 +27,9 @@ const NEARBY_CELLS: f64 = 2.0;
 /// cannot be distinguished.
 pub(super) const STEEPEST: f64 = 0.02;
 
+/// Distance \[mm\] by which another head stands in front of the sheet through C at least: the program then takes the latter.
+pub(super) const FLANGEWAY: f64 = 10.0;
+
 /// A body with its coarse mesh, which has only triangles that face the other body.
 pub(super) struct Solid {
     /// The surface of the body.
@@ -76,11 +79,29 @@ impl Solid {
 
     /// Returns the heights that the line through (ξ, η) meets first.
     pub fn along_zeta(&self, xi: f64, eta: f64) -> AlongZeta {
-        let guesses = match self.coarse(xi, eta) {
-            Some(coarse) => self.candidates(&coarse),
+        let origin = if self.surface.is_wheel() { RayOrigin::Below } else { RayOrigin::Above };
+        self.met(xi, eta, origin)
+    }
+
+    /// Returns the heights that the line through (ξ, η) meets first from a flangeway behind `zeta` \[mm\] on.
+    pub fn behind(&self, xi: f64, eta: f64, zeta: f64) -> AlongZeta {
+        let wheel = self.surface.is_wheel();
+        let from = if wheel { zeta + FLANGEWAY } else { zeta - FLANGEWAY };
+        self.met(xi, eta, if wheel { RayOrigin::UpFrom(from) } else { RayOrigin::DownFrom(from) })
+    }
+
+    fn met(&self, xi: f64, eta: f64, origin: RayOrigin) -> AlongZeta {
+        let coarse = self.coarse(xi, eta, origin);
+        let guesses = match &coarse {
+            Some(coarse) => self.candidates(coarse),
             None => self.all_ends(eta),
         };
-        let near = !guesses.is_empty() && self.coarse(xi, eta).is_some();
+        let near = !guesses.is_empty() && coarse.is_some();
+        let passed = |zeta: f64| match origin {
+            RayOrigin::Below | RayOrigin::Above => false,
+            RayOrigin::UpFrom(from) => zeta < from,
+            RayOrigin::DownFrom(from) => zeta > from,
+        };
         let mut found = Vec::new();
         let mut steep = false;
         for guess in guesses {
@@ -89,6 +110,7 @@ impl Solid {
                 continue;
             }
             match height(&self.surface, place, xi, eta) {
+                Some(height) if passed(height.zeta) => {}
                 Some(height) if height.normal.z > STEEPEST => found.push(height),
                 Some(height) if height.normal.z < -STEEPEST => {}
                 _ => steep = true,
@@ -119,8 +141,7 @@ impl Solid {
         curves.flat_map(|(curve, c)| [0.0, c.length].map(|t| SurfacePoint { curve, t, v: eta })).collect()
     }
 
-    fn coarse(&self, xi: f64, eta: f64) -> Option<SurfacePoint> {
-        let origin = if self.surface.is_wheel() { RayOrigin::Below } else { RayOrigin::Above };
+    fn coarse(&self, xi: f64, eta: f64, origin: RayOrigin) -> Option<SurfacePoint> {
         let mesh = self.mesh.as_ref()?;
         // Rays through an edge or vertex of the mesh may miss it, so that places beside it are tried.
         let nudge = self.surface.size * f64::EPSILON.sqrt();

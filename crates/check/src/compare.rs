@@ -3,7 +3,7 @@
 use std::time::Instant;
 use wheelrail::nalgebra::{Unit, Vector3};
 
-use super::body::{AlongZeta, JOINT, STEEPEST, Solid};
+use super::body::{AlongZeta, FLANGEWAY, JOINT, STEEPEST, Solid};
 use super::closest::{of_bodies, to_point};
 use super::floor::{Floor, floors};
 use super::meshes::Vector;
@@ -177,7 +177,7 @@ impl<'a> Tally<'a> {
     fn ray(&mut self, xi: f64, eta: f64, answer: Answer) {
         self.counts.points += 1;
         let missing = answer.separation.is_nan();
-        match (self.rail.along_zeta(xi, eta), self.wheel.along_zeta(xi, eta)) {
+        match self.sheets(xi, eta, answer.separation) {
             (AlongZeta::Unresolved, _) | (_, AlongZeta::Unresolved) => self.counts.unresolved += 1,
             (AlongZeta::Steep, _) | (_, AlongZeta::Steep) => self.counts.steep_or_end += 1,
             (AlongZeta::Nothing, _) | (_, AlongZeta::Nothing) if missing => self.counts.no_surface += 1,
@@ -192,6 +192,23 @@ impl<'a> Tally<'a> {
                     self.compare([xi, eta], answer, &rail, &wheel);
                 }
             }
+        }
+    }
+
+    /// Returns what the line through (ξ, η) meets of rail and wheel: the outermost sheets, or where these are so much nearer to
+    /// each other than `separation` \[mm\] that one of them may be of another head, the sheet behind that.
+    fn sheets(&self, xi: f64, eta: f64, separation: f64) -> (AlongZeta, AlongZeta) {
+        let (rail, wheel) = (self.rail.along_zeta(xi, eta), self.wheel.along_zeta(xi, eta));
+        let (AlongZeta::Heights(r), AlongZeta::Heights(w)) = (&rail, &wheel) else { return (rail, wheel) };
+        let near = |[r, w]: [f64; 2]| (separation - (w - r)).abs() < FLANGEWAY / 2.0;
+        let outer = [r[0].zeta, w[0].zeta];
+        if near(outer) || separation.is_nan() {
+            return (rail, wheel);
+        }
+        match (self.rail.behind(xi, eta, outer[0]), self.wheel.behind(xi, eta, outer[1])) {
+            (AlongZeta::Heights(r), _) if near([r[0].zeta, outer[1]]) => (AlongZeta::Heights(r), wheel),
+            (_, AlongZeta::Heights(w)) if near([outer[0], w[0].zeta]) => (rail, AlongZeta::Heights(w)),
+            _ => (rail, wheel),
         }
     }
 
