@@ -205,11 +205,22 @@ impl<'a> Tally<'a> {
         if near(outer) || separation.is_nan() {
             return (rail, wheel);
         }
-        match (self.rail.behind(xi, eta, outer[0]), self.wheel.behind(xi, eta, outer[1])) {
-            (AlongZeta::Heights(r), _) if near([r[0].zeta, outer[1]]) => (AlongZeta::Heights(r), wheel),
-            (_, AlongZeta::Heights(w)) if near([outer[0], w[0].zeta]) => (rail, AlongZeta::Heights(w)),
-            _ => (rail, wheel),
+        // Each sheet lies a flangeway behind the one before, so that the searches end.
+        let mut behind = self.rail.behind(xi, eta, outer[0]);
+        while let AlongZeta::Heights(r) = &behind {
+            if near([r[0].zeta, outer[1]]) {
+                return (behind, wheel);
+            }
+            behind = self.rail.behind(xi, eta, r[0].zeta);
         }
+        behind = self.wheel.behind(xi, eta, outer[1]);
+        while let AlongZeta::Heights(w) = &behind {
+            if near([outer[0], w[0].zeta]) {
+                return (rail, behind);
+            }
+            behind = self.wheel.behind(xi, eta, w[0].zeta);
+        }
+        (rail, wheel)
     }
 
     fn compare(&mut self, at: [f64; 2], answer: Answer, rail: &[Height], wheel: &[Height]) {
