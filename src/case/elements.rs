@@ -40,16 +40,22 @@ pub(super) fn surface_mesh(part: &Part, body: &Surface) -> SurfaceMesh {
     }
 }
 
-/// Gives the triangle mesh of the patch with its fields, if files with it are asked for; `None` without an approach.
+/// Gives the triangle mesh of the patch with its fields, if files with it are asked for; `None` without an approach, and for an
+/// infeasible contact, whose overlap is no patch.
 pub(super) fn triangles(run: &Run, part: &Part, skipped: &mut Vec<String>) -> Result<Option<PatchMesh>> {
     let Some(patch) = &part.analysis.patch else { return Ok(None) };
     let (outputs, placement) = (&run.case.outputs, &part.site.contact.placement);
+    let names = "triangle mesh of the patch";
+    if part.site.is_infeasible() {
+        skipped.push(format!("{names}: the contact is infeasible"));
+        return Ok(None);
+    }
     let mesh = || {
         let mesh = TriangleMesh::new(placement, patch, outputs.mesh_size)?;
         let areas = patch.components.iter().map(|component| component.area).collect();
         Ok(with_fields(placement, mesh, areas))
     };
-    possible(outputs, "triangle mesh of the patch", &OutputFormat::TRIANGLES, mesh, skipped)
+    possible(outputs, names, &OutputFormat::TRIANGLES, mesh, skipped)
 }
 
 fn with_fields(placement: &Placement, mesh: TriangleMesh, areas: Vec<f64>) -> PatchMesh {

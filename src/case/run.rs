@@ -5,6 +5,7 @@ use super::conformal::turning_warning;
 use super::doubts::{doubts_of, doubts_of_placing};
 use super::grids::check_memory;
 use super::input::{Case, Place};
+use super::places::Found;
 use super::site::{Site, sites};
 use crate::error::Result;
 use crate::patch::Patch;
@@ -137,19 +138,27 @@ impl Run {
             Place::Points { .. } | Place::Wheel { .. } => 0.0,
         };
         let motion = if left { motion.mirrored() } else { motion };
-        motion.creepages(&part.site.contact.placement, half, self.free_radius()).map(Some)
+        motion.creepages(&part.site.contact.placement, half, self.free_radius()?).map(Some)
     }
 
-    /// Gives the rolling radius \[mm\] of a wheelset that rolls freely: the mean of its sides' first contacts.
-    fn free_radius(&self) -> f64 {
-        let mut sides: Vec<(Option<&str>, f64)> = Vec::new();
-        for Part { site, .. } in &self.parts {
-            let known = sides.iter().any(|(side, _)| *side == site.side());
-            if !known && site.found.as_ref().is_none_or(|found| found.contact == 1) {
-                sides.push((site.side(), site.contact.placement.rolling_radius()));
+    /// Gives the rolling radius \[mm\] of a wheelset that rolls freely: the mean of those at which its sides touch first, whatever
+    /// frame their contacts have.
+    ///
+    /// # Errors
+    /// Chosen points at which the pair cannot be placed.
+    fn free_radius(&self) -> Result<f64> {
+        if let Place::Points { rail_x, wheel_x } = &self.case.standing.place {
+            let pair = &self.case.profiles.right.pair;
+            return Ok(pair.placed(*rail_x, *wheel_x, 0.0)?.rolling_radius());
+        }
+        let mut sides: Vec<&Found> = Vec::new();
+        for found in self.parts.iter().filter_map(|part| part.site.found.as_ref()) {
+            // A patch of several parts has a site for each.
+            if found.contact == 1 && sides.iter().all(|known| known.side != found.side) {
+                sides.push(found);
             }
         }
-        sides.iter().map(|(_, radius)| radius).sum::<f64>() / sides.len() as f64
+        Ok(sides.iter().map(|found| found.place.rolling_radius_mm).sum::<f64>() / sides.len() as f64)
     }
 }
 

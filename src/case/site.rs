@@ -96,13 +96,18 @@ impl Site {
         self.contact.patch_in(&self.window())
     }
 
+    /// Tells whether the bodies overlap before any approach. A further contact of a side is closed by the approach only, and the
+    /// first one overlaps by that approach: only first ones can be infeasible.
+    pub fn is_infeasible(&self) -> bool {
+        let first = self.found.as_ref().is_none_or(|found| found.contact == 1);
+        first && !self.contact.feasibility.feasible
+    }
+
     /// Lists the geometric "no"s of the contact and of its patch in the window.
     pub fn refusals(&self, patch: Option<&Patch>) -> Vec<String> {
         let mut out = Vec::new();
         let feasibility = &self.contact.feasibility;
-        // A further contact of a side is closed by the approach only, and the first one overlaps by that approach.
-        let first = self.found.as_ref().is_none_or(|found| found.contact == 1);
-        if first && !feasibility.feasible {
+        if self.is_infeasible() {
             out.push(format!(
                 "infeasible contact: the bodies overlap by {:.6e} mm at xi = {:.6} mm, eta = {:.6} mm; expected s >= 0 \
                  everywhere (4.1); choose another pair of points",

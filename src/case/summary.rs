@@ -172,6 +172,11 @@ fn triangle_mesh(mesh: &TriangleMesh) -> Value {
             "size_mm": mesh.size[k],
             "chord_error_mm": mesh.chord_error[k],
             "area_mm2": mesh.area(k),
+            "sharp_corners": mesh.sharp_corners(k).into_iter().map(|(node, angle)| json!({
+                "xi_mm": mesh.points[node].x,
+                "eta_mm": mesh.points[node].y,
+                "angle_rad": angle,
+            })).collect::<Vec<_>>(),
         })).collect::<Vec<_>>(),
     })
 }

@@ -28,6 +28,7 @@ mod layers;
 mod loads;
 mod measured_scene;
 mod mesh;
+mod motion;
 mod parts;
 mod practice;
 mod promises;

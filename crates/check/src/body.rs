@@ -3,7 +3,7 @@
 use super::meshes::{Hit, Mesh, RayOrigin, Vector};
 use super::patch::{CurveMesh, SurfacePoint};
 use super::ray::{Height, foot, height};
-use super::sampler::SampledSurface;
+use super::sampler::{SampledCurve, SampledSurface};
 
 /// Cells of the coarse mesh per local scale.
 const CELLS_PER_SCALE: f64 = 8.0;
@@ -56,15 +56,22 @@ pub(super) enum AlongZeta {
 }
 
 impl Solid {
+    /// Returns the number of cells of the coarse mesh up to this distance from the origin \[mm\]; infinite or NaN for what is
+    /// not finite.
+    pub fn cells(surface: &SampledSurface, reach: f64) -> f64 {
+        let along = surface.curves.iter().map(along).sum::<f64>();
+        along * around(surface.v_reach(reach))
+    }
+
     /// Meshes a body around the ξ–η window, up to the given distance from the origin \[mm\]; `None` if its
     /// profile has a point that is not finite.
     pub fn new(surface: SampledSurface, reach: f64) -> Option<Self> {
         let v = surface.v_reach(reach);
-        let around = CELLS_AROUND.max((2.0 * v / LONGEST_CELL).ceil() as usize);
+        let around = around(v) as usize;
         let mut patches = Vec::with_capacity(surface.curves.len());
         let (mut vertices, mut owners) = (Vec::new(), Vec::new());
         for (index, curve) in surface.curves.iter().enumerate() {
-            let n = LEAST_CELLS.max((CELLS_PER_SCALE * curve.length / curve.scale).ceil() as usize);
+            let n = along(curve) as usize;
             let patch = CurveMesh::new(&surface, index, spread(0.0, curve.length, n), spread(-v, v, around))?;
             for triangle in (0..patch.mesh.len()).filter(|&k| patch.mesh.normal(k).z > 0.0) {
                 vertices.extend(patch.mesh.corners(triangle));
@@ -215,6 +222,18 @@ impl Solid {
         let (curve, triangle) = self.owners[hit.triangle];
         self.patches[curve].place(&Hit { triangle, ..hit })
     }
+}
+
+/// Returns the number of coarse cells along a curve.
+fn along(curve: &SampledCurve) -> f64 {
+    let cells = (CELLS_PER_SCALE * curve.length / curve.scale).ceil();
+    if cells < LEAST_CELLS as f64 { LEAST_CELLS as f64 } else { cells }
+}
+
+/// Returns the number of coarse cells from −v to v \[mm\] around the axle or along the rail.
+fn around(v: f64) -> f64 {
+    let cells = (2.0 * v / LONGEST_CELL).ceil();
+    if cells < CELLS_AROUND as f64 { CELLS_AROUND as f64 } else { cells }
 }
 
 /// Returns n + 1 values from a to b.

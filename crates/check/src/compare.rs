@@ -14,7 +14,7 @@ use super::relation::{Above, RELATION, normals_between};
 use super::report::{Counts, Differences, Distances, Orders, Report};
 use super::request::{Answer, Request};
 use super::sampler::{SampledCurve, SampledSurface};
-use wheelrail::error::{Error, Result};
+use wheelrail::error::{Error, ErrorKind, Result};
 use wheelrail::internal::largest;
 use wheelrail::placement::{Body, Placement};
 use wheelrail::profile::Shape;
@@ -41,12 +41,16 @@ const CONTACT_STEPS: usize = 12;
 /// Lift of the wheel for closest distances, as a share of R, on top of the approach.
 const LIFT: f64 = 1e-4;
 
+/// Most cells of the coarse mesh of a body: some 200 MB.
+const MOST_CELLS: f64 = 1e6;
+
 /// Checks the answers of `answer` for s and normals at (ξ, η) of a placed pair.
 ///
 /// Cost: about a millisecond a point, under 0.5 s in all.
 ///
 /// # Errors
-/// A placed pair whose profiles have points that are not finite, or a window that is not finite.
+/// A placed pair whose profiles have points that are not finite, or a window that is not finite; bodies so large that their
+/// meshes take more than 10⁶ cells.
 pub fn check(
     placement: &Placement,
     request: &Request,
@@ -56,13 +60,28 @@ pub fn check(
     let [xi, eta] = [request.window.xi, request.window.eta];
     let reach = [xi, eta].map(|[a, b]| a.abs().max(b.abs()));
     let reach = reach[0].hypot(reach[1]);
+    // Beyond its largest radius along η, and the profile's extent along ξ, the wheel has no surface.
+    let extent = placement.wheel().profile().extent();
+    let farthest = extent.hypot(placement.wheel_radius() + extent);
+    let meshed = reach.min(farthest);
     let not_finite = || {
         let expected = "finite points over a finite window";
         Error::new("check: profiles", "points that are not finite", expected, "check profiles and grid")
     };
-    let [rail, wheel] = [SampledSurface::rail(placement), SampledSurface::wheel(placement)]
-        .map(|surface| Solid::new(surface, reach).filter(|_| reach.is_finite()).ok_or_else(not_finite));
-    let (rail, wheel) = (rail?, wheel?);
+    let solid = |surface: SampledSurface| {
+        let cells = Solid::cells(&surface, meshed);
+        if !reach.is_finite() || !cells.is_finite() {
+            return Err(not_finite());
+        }
+        if cells > MOST_CELLS {
+            let (found, expected) =
+                (format!("a mesh of {cells:.0e} cells"), format!("at most {MOST_CELLS:e}"));
+            let advice = "take a smaller window, or profiles without parts far from the contact";
+            return Err(Error::new("check", found, expected, advice).of_kind(ErrorKind::Limit));
+        }
+        Solid::new(surface, meshed).ok_or_else(not_finite)
+    };
+    let (rail, wheel) = (solid(SampledSurface::rail(placement))?, solid(SampledSurface::wheel(placement))?);
     let floors = floors(smallest_radius(placement), placement.rolling_radius())?;
     let points = spread_points(placement, request, &rail.surface, &wheel.surface);
     let mut tally = Tally::new(&rail, &wheel, &floors);

@@ -75,6 +75,12 @@ pub(super) fn rows(block: &mut Block<'_>, column: &[Field]) -> io::Result<()> {
     Ok(())
 }
 
+/// Largest constant Ak of dissimilar materials with which CONTACT solves normal and tangential problem once, one after the other.
+const SIMILAR: f64 = 1e-4;
+
+/// Most rounds in which CONTACT solves both where each acts on the other: 20 change its tractions by at most 0.2 % beyond.
+const ROUNDS: u32 = 20;
+
 /// The surface over which CONTACT's distances are given.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Reference<'a> {
@@ -113,8 +119,12 @@ pub(super) fn control(grid: &Lattice, settings: &ContactSettings, reference: Ref
         Reference::Plane => (2, ""),
         Reference::Curved(inclinations) => (4, inclinations),
     };
-    let _ = write!(text, "  02{influence}020       L-D-C-M-Z-E\n 0002221       H-G-I-A-O-W-R\n");
-    text += "   999 100 30 1 1.0e-8           MAXGS MAXIN MAXNR MAXOUT EPS\n";
+    // The digit E is 9 where the slip of every element follows the distances.
+    let extra = if influence == 4 && tangential == 3 { 9 } else { 0 };
+    let _ = write!(text, "  02{influence}02{extra}       L-D-C-M-Z-E\n 0002221       H-G-I-A-O-W-R\n");
+    let coupled = tangential == 3 && (influence == 4 || dissimilarity(settings).abs() >= SIMILAR);
+    let rounds = if coupled { ROUNDS } else { 1 };
+    let _ = writeln!(text, "   999 100 30 {rounds} 1.0e-8           MAXGS MAXIN MAXNR MAXOUT EPS");
     // `{:?}` writes every f64 with a point or an exponent, in the shortest form that reads back the same.
     let normal_name = ["PEN", "FN"][force];
     match settings.creepages {
@@ -141,6 +151,14 @@ pub(super) fn control(grid: &Lattice, settings: &ContactSettings, reference: Ref
     text += line(&[rolling, lateral, d_rolling, d_lateral]).trim_end();
     text += "  MX MY XC1 YC1 DX DY\n";
     text + "   9 1           IBASE IPLAN\n"
+}
+
+/// Gives CONTACT's Ak, by which a pressure moves surfaces sideways against each other; 0 for equal materials.
+fn dissimilarity(settings: &ContactSettings) -> f64 {
+    let [rail, wheel] = [0, 1].map(|k| (1.0 - 2.0 * settings.poisson[k]) / settings.shear_modulus[k]);
+    let [g_r, g_w] = settings.shear_modulus;
+    let mean = 2.0 / (g_r.recip() + g_w.recip());
+    mean / 4.0 * (rail - wheel)
 }
 
 #[cfg(test)]
@@ -194,6 +212,7 @@ mod tests {
             longitudinal: 1e-3,
             lateral: -2e-3,
             spin: 3e-4,
+            turn: [-2e-3, 0.0],
             rolling_speed: 2e4,
             forward: true,
             pitch: -43.0,
@@ -202,7 +221,10 @@ mod tests {
         let rolling = ContactSettings { friction: [0.4, 0.3], creepages: Some(creepages), ..steel };
         let text = deck_with(&sample, &rolling);
         let lines: Vec<_> = text.lines().filter(|line| !line.starts_with('%')).map(str::trim_start).collect();
-        assert!(lines[1].starts_with("203100 "), "{text}");
+        assert!(lines[1].starts_with("203100 ") && lines[2].starts_with("022020 "), "{text}");
+        assert!(lines[4].starts_with("999 100 30 1 "), "{text}");
+        let soft = ContactSettings { poisson: [0.28, 0.27], ..rolling };
+        assert!(deck_with(&sample, &soft).contains("   999 100 30 20 1.0e-8 "), "dissimilar materials");
         assert!(lines[5].starts_with("80000.0 0.001 -0.002 0.0003 "), "{text}");
         assert!(lines[6].starts_with("0.4 0.3 "), "{text}");
         let step = sample.fields().steps("a test").unwrap()[1];

@@ -1,6 +1,6 @@
 //! Folders of `wheelrail run` itself, read and solved by the programs that they are for.
 
-use crate::programs::{check, check_conformal, check_gmsh, check_run, folder};
+use crate::programs::{check, check_calculix, check_conformal, check_gmsh, check_run, folder};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -126,6 +126,7 @@ fn every_reader_reads_runs_over_the_rails_surface() {
         ("corner_wide", format!("{corner}{grid}{wide}")),
         ("corner_yawed", format!("{yawed}{grid}")),
         ("flange_root", root.to_owned()),
+        ("flange_root_rolling", format!("{root}[motion]\nspeed = 30.0\n")),
     ];
     for (name, scene) in scenes {
         let (path, dir) = (folder(&format!("{name}.toml")), folder(name));
@@ -179,6 +180,22 @@ fn gmsh_meshes_the_same_boundaries_no_better() {
     ];
     for (name, scene) in scenes {
         check_gmsh(&run(name, &scene));
+    }
+}
+
+/// A job that adds material, thickness, supports and a pressure: one part, one with a corner, and two in one mesh.
+#[test]
+fn calculix_solves_a_job_over_the_triangles() {
+    let plain = "[patch]\napproach = 0.05\n";
+    let cut = "[patch]\napproach = 0.05\n[grid]\nxi = { from = -1.0, to = 12.0, n = 33 }\neta = { from = -2.0, to = 4.0, n = 33 }\n";
+    let two = "[patch]\napproach = 0.3\n[grid]\nxi = { from = -60.0, to = 40.0, n = 51 }\neta = { from = -20.0, to = 20.0, n = 21 }\n";
+    let scenes = [
+        ("job_tread", standard("60E1", "S1002", 0.0, plain)),
+        ("job_corner", standard("60E1", "S1002", 0.0, cut)),
+        ("job_two", standard("60E1", "S1002", 5.9, two)),
+    ];
+    for (name, scene) in scenes {
+        check_calculix(&run(name, &scene));
     }
 }
 
