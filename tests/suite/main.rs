@@ -9,6 +9,7 @@
 )]
 
 mod any_grid;
+mod campaign;
 mod closed_forms;
 mod common;
 mod conformal;

@@ -12,6 +12,7 @@ mod answers;
 mod clients;
 mod clients_runs;
 mod conformal_table;
+mod doubts_cli;
 mod hostile;
 mod load_table;
 mod pages;
