@@ -102,12 +102,11 @@ impl Landmarks {
         if height.is_nan() { 0.0 } else { height }
     }
 
-    /// Finds what is doubtful about a contact; `other` is the lift of the other wheel.
-    pub(super) fn doubts(&self, at: &Touching, other: f64) -> ContactDoubts {
+    /// Finds what is doubtful about a contact; `lift` is that of its wheel, `other` that of the other one.
+    pub(super) fn doubts(&self, at: &Touching, [lift, other]: [f64; 2]) -> ContactDoubts {
         let [x, z] = [at.wheel.x, at.wheel.y];
         let on_tip = self.tip.is_some_and(|tip| z < tip.y + TIP);
         let on_back = self.tip.is_some_and(|tip| x < tip.x) && !on_tip;
-        let lift = self.lift(at);
         let lifted = lift > LIFTED && lift + other > 2.0 * LIFTED;
         let from_tip = self.tip.map(|tip| (x - tip.x).abs()).filter(|distance| *distance > RUNNING);
         // R − z is the rolling radius.
@@ -161,8 +160,8 @@ impl SweepDoubts {
             if row.number > 0 {
                 return (row, ContactDoubts::default());
             }
-            let other = if row.side == TrackSide::Right { left } else { right };
-            (row, self.on(row.side).doubts(&Touching::from(&row.contact), other))
+            let lifts = if row.side == TrackSide::Right { [right, left] } else { [left, right] };
+            (row, self.on(row.side).doubts(&Touching::from(&row.contact), lifts))
         })
     }
 

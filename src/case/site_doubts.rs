@@ -43,7 +43,8 @@ pub(super) fn doubts_of(site: &Site, other: f64) -> Vec<Doubt> {
 
 fn of_contact(site: &Site, other: f64) -> Vec<Doubt> {
     let placement = &site.contact.placement;
-    let doubts = Landmarks::new(&placement.pair()).doubts(&Touching::from(placement), other);
+    let (marks, touching) = (Landmarks::new(&placement.pair()), Touching::from(placement));
+    let doubts = marks.doubts(&touching, [marks.lift(&touching), other]);
     doubts.list().map(|(kind, value)| Doubt::of_contact(kind, value, placement.wheel_radius())).collect()
 }
 

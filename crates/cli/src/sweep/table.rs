@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use super::super::progress::Progress;
 use super::doubts::Tally;
-use wheelrail::case::{ApproachBy, Columns, SweepDoubts};
+use wheelrail::case::{ApproachBy, Columns, ContactDoubts, SweepDoubts};
 use wheelrail::error::Result;
 use wheelrail::search::{Conicity, ParallelSweep, Position, Selection, WheelsetOnTrack};
 
@@ -72,12 +72,13 @@ impl SweepTable<'_> {
         let (sweep, cells) = (self.sweep(&self.positions), cells());
         // One position at a time becomes columns, and these text: threads share the work.
         let lines = |chunk: &mut Chunk, position, rows: &[_]| {
-            chunk.columns.clear();
-            for (row, doubts) in self.doubts.of_rows(rows) {
-                chunk.columns.push(position, row, self.ellipses, doubts.kinds());
-            }
-            chunk.doubts.add(self.doubts.of_rows(rows));
-            append(&mut chunk.text, &cells, &chunk.columns);
+            let Chunk { columns, text, doubts } = chunk;
+            columns.clear();
+            let push = |(row, found): &(&_, ContactDoubts)| {
+                columns.push(position, row, self.ellipses, found.kinds());
+            };
+            doubts.add(self.doubts.of_rows(rows).inspect(push));
+            append(text, &cells, columns);
             Ok(())
         };
         sweep.blocks(lines, |done, chunks: Vec<Chunk>| {
