@@ -5,13 +5,16 @@ use serde::Serialize;
 
 use super::Format;
 use super::clean::checks::{Finding, no_order, wrong_unit};
-use super::options::{NamedOrigin, Options, Origin};
+use super::options::{NamedOrigin, Options, Origin, Repair};
 use super::read::points::{DesignElement, ElementShape, Point, Points};
 use super::shape::{
     flange_side, gauge_depth, gauge_side, has_flange_back, head_up, running_head, top, width,
 };
 use crate::error::{Error, Result};
 use crate::profile::Side;
+
+/// Least number of points that have a shape.
+const LEAST_POINTS: usize = 3;
 
 /// A decision on the way from the file to the profile.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -62,6 +65,12 @@ pub fn resolve(points: &Points, side: Side, options: &Options) -> Result<(Transf
         let (found, expected) = (format!("a {} profile", name(body)), format!("a {} profile", name(side)));
         return Err(Error::new("type", found, expected, "give the other file"));
     }
+    if points.at.len() < LEAST_POINTS {
+        let place = points.at.last().map_or_else(String::new, Point::place);
+        let found = format!("{} points in all", points.at.len());
+        let expected = format!("{LEAST_POINTS} points or more: fewer have no shape");
+        return Err(Error::new(place, found, expected, "give a file with the whole profile"));
+    }
     let mut transform = Transform { scale: [1.0; 2], shift: [0.0; 2], reversed: false, steps: Vec::new() };
     let unit = unit(points, options, &mut transform.steps)?;
     transform.scale = [unit; 2];
@@ -78,10 +87,15 @@ pub fn resolve(points: &Points, side: Side, options: &Options) -> Result<(Transf
             }
             return Err(error);
         }
-        (None, []) => {}
         (None, open) => {
             let placed = transform.points(&points.at);
-            return Err(no_order(&placed).unwrap_or_else(|| asked(open, &placed, side, stated)));
+            let sorted = open.is_empty() && options.repair.contains(&Repair::Sort);
+            if let Some(error) = no_order(&placed).filter(|_| !sorted) {
+                return Err(error);
+            }
+            if !open.is_empty() {
+                return Err(asked(open, &placed, side, stated));
+            }
         }
     }
     transform.reverse(&points.at);

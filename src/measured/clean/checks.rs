@@ -31,8 +31,8 @@ const GAP: f64 = 5.0;
 const WIDTHS: RangeInclusive<f64> = 5.0..=500.0;
 /// Least width \[mm\] of a profile whose unit nothing states: rails and wheels in inches have 2.8 to 6, in cm 7 to 14.
 const PLAIN_WIDTH: f64 = 20.0;
-/// Widths \[mm\] of whole rail heads and wheels, with some room.
-const USUAL_WIDTHS: RangeInclusive<f64> = 50.0..=200.0;
+/// Widths \[mm\] of whole rail heads and wheels.
+const USUAL_WIDTHS: RangeInclusive<f64> = 60.0..=150.0;
 /// Least share of the points at which the path of points in no order turns back; a shuffled path does at every second one.
 const NO_ORDER: f64 = 0.1;
 
@@ -108,8 +108,10 @@ pub(in crate::measured) fn wrong_unit(points: &[Point], unit: f64, stated: bool)
         return None;
     }
     let as_if = |other: &Unit| wide / unit * other.millimetres();
-    let mut fitting: Vec<Unit> =
-        Unit::ALL.into_iter().filter(|other| WIDTHS.contains(&as_if(other))).collect();
+    let mut fitting: Vec<Unit> = Unit::ALL
+        .into_iter()
+        .filter(|other| other.millimetres() != unit && WIDTHS.contains(&as_if(other)))
+        .collect();
     fitting.sort_by_key(|other| !USUAL_WIDTHS.contains(&as_if(other)));
     let names: Vec<_> = fitting.iter().map(|other| format!("\"{}\"", other.name())).collect();
     let advice = match names.len() {

@@ -140,13 +140,11 @@ impl Points {
     /// Ends the reading.
     ///
     /// # Errors
-    /// Too few points and no design element; coordinates that overflowed.
+    /// Fewer than two points and no design element; coordinates that overflowed.
     pub(in crate::measured) fn finish(self, text: &str) -> Result<Self> {
-        /// Least number of points that have a shape.
-        const LEAST: usize = 3;
-        if self.at.len() < LEAST && self.elements.is_empty() {
+        if self.at.len() < 2 && self.elements.is_empty() {
             let found = format!("{} points up to the end of the file", self.at.len());
-            let expected = format!("{LEAST} points or more of a profile, as {} has it", self.format.title());
+            let expected = format!("a profile as {} writes it", self.format.title());
             return Err(Error::new(last_place(text), found, expected, "give another file or its `format`"));
         }
         if let Some(far) = self.at.iter().find(|point| !(point.x.is_finite() && point.z.is_finite())) {

@@ -80,7 +80,7 @@ fn all_open_questions_are_one_message() {
         assert!(found.contains(part), "{part}: {found}");
     }
     let found = complaint("p.csv", &plane[..2], Side::Rail, &Options::default());
-    assert!(found.contains("found 2 points up to the end of the file; expected 3 points or more"), "{found}");
+    assert!(found.contains("point 2 (line 2): found 2 points in all; expected 3 points or more"), "{found}");
 }
 
 #[test]
@@ -90,7 +90,7 @@ fn an_overhang_at_an_end_is_named_as_the_file_has_it_whatever_the_axes() {
     // Two points in the wrong order, and a last one that somebody added.
     points.swap(10, 11);
     let last = points[points.len() - 1];
-    points.push([last[0] + 3.0, last[1] + 0.2]);
+    points.push([last[0] + 2.0, last[1] + 3.0]);
     for mirror in [false, true] {
         let options = |repair: &[Repair]| Options {
             mirror: Some(mirror),
@@ -106,7 +106,7 @@ fn an_overhang_at_an_end_is_named_as_the_file_has_it_whatever_the_axes() {
         assert_eq!(found, expected, "{mirror}");
         points.pop();
         assert_eq!(complaint("o.csv", &points, Side::Rail, &options(&[Repair::Sort])), "", "{mirror}");
-        points.push([last[0] + 3.0, last[1] + 0.2]);
+        points.push([last[0] + 2.0, last[1] + 3.0]);
     }
 }
 
