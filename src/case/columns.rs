@@ -1,5 +1,6 @@
 //! The table of a sweep in columns.
 
+use super::doubts::DoubtSet;
 use super::input::ApproachBy;
 use crate::load::curvatures_at;
 use crate::search::{Contact, SweepRow, TrackSide};
@@ -18,6 +19,8 @@ pub struct Columns {
     pub contact: Vec<u32>,
     /// Whether a body touches with a kink, step or end.
     pub kink: Vec<bool>,
+    /// What is doubtful about the contact.
+    pub doubt: Vec<DoubtSet>,
     /// The quantities, in the order of [`Columns::QUANTITIES`].
     pub quantities: [Vec<f64>; Columns::QUANTITIES.len()],
 }
@@ -54,6 +57,7 @@ impl Columns {
         self.right.reserve(rows);
         self.contact.reserve(rows);
         self.kink.reserve(rows);
+        self.doubt.reserve(rows);
         self.quantities.iter_mut().for_each(|column| column.reserve(rows));
     }
 
@@ -70,11 +74,18 @@ impl Columns {
 
     /// Appends the row of a contact at the position with this number; `ellipse` is approach or load, and E* \[N/mm²\], of
     /// Hertz's ellipses.
-    pub fn push(&mut self, position: usize, row: &SweepRow, ellipse: Option<(ApproachBy, f64)>) {
+    pub fn push(
+        &mut self,
+        position: usize,
+        row: &SweepRow,
+        ellipse: Option<(ApproachBy, f64)>,
+        doubt: DoubtSet,
+    ) {
         self.position.push(position as u64);
         self.right.push(row.side == TrackSide::Right);
         self.contact.push(row.number as u32 + 1);
         self.kink.push(row.contact.kink());
+        self.doubt.push(doubt);
         for (column, value) in self.quantities.iter_mut().zip(quantities(row, ellipse)) {
             column.push(value);
         }
@@ -86,6 +97,7 @@ impl Columns {
         self.right.clear();
         self.contact.clear();
         self.kink.clear();
+        self.doubt.clear();
         self.quantities.iter_mut().for_each(Vec::clear);
     }
 
@@ -95,6 +107,7 @@ impl Columns {
         self.right.extend_from_slice(&other.right);
         self.contact.extend_from_slice(&other.contact);
         self.kink.extend_from_slice(&other.kink);
+        self.doubt.extend_from_slice(&other.doubt);
         for (column, more) in self.quantities.iter_mut().zip(&other.quantities) {
             column.extend_from_slice(more);
         }

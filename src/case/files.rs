@@ -9,6 +9,7 @@ use super::input::{OutputFormat, Outputs};
 use super::jobs::{Job, bytes, possible, stream, write_jobs};
 use super::on_rail::OnRail;
 use super::run::{COMPUTING, Part, Run, Tell};
+use super::site::cut_by;
 use super::summary::{Meshes, summary};
 use super::unrolled::Unrolled;
 use super::view::view;
@@ -21,7 +22,7 @@ use crate::export::{
     wheel_vts,
 };
 use crate::files::Folder;
-use crate::patch::Outline;
+use crate::patch::{Outline, Slice};
 use crate::placement::Creepages;
 use crate::profile::Station;
 use crate::separation::midplane_table;
@@ -211,7 +212,13 @@ fn intervals(part: &Part) -> Vec<Interval> {
     for &xi in &part.site.grid.xi {
         let mut here = patch.slices(&mut outline, xi);
         here.sort_by(|(a, p), (b, q)| a.cmp(b).then(p.eta[0].total_cmp(&q.eta[0])));
-        rows.extend(here.into_iter().map(|(component, slice)| Interval { xi, component, eta: slice.eta }));
+        let row = |(component, slice): (usize, Slice)| Interval {
+            xi,
+            component,
+            eta: slice.eta,
+            cut: cut_by(patch.window.eta, slice.eta),
+        };
+        rows.extend(here.into_iter().map(row));
     }
     rows
 }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::doubts::Doubt;
 use crate::conformal::Reference;
 use crate::load::{Elastic, effective_modulus};
 use crate::measured::Record;
@@ -27,7 +28,7 @@ pub struct Case {
     pub(crate) echo: Echo,
     pub(crate) file: Option<PathBuf>,
     /// What in the scene looks like a slip: warnings.
-    pub(crate) doubts: Vec<String>,
+    pub(crate) doubts: Vec<Doubt>,
 }
 
 /// The profiles of both sides, the right-hand one's first; a single wheel and a symmetric wheelset have one pair.
@@ -344,6 +345,22 @@ impl Case {
     /// Gives what files say of the scene.
     pub fn echo(&self) -> &Echo {
         &self.echo
+    }
+
+    /// Lists what in the scene looks like a slip.
+    pub fn doubts(&self) -> &[Doubt] {
+        &self.doubts
+    }
+
+    /// Lists what a user should know of the scene and of its measured files.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut out: Vec<String> = self.doubts.iter().map(Doubt::to_string).collect();
+        for (side, profiles) in self.profiles.sides() {
+            let findings = profiles.measured.iter().flatten().flat_map(|record| &record.warnings);
+            let place = side.map_or_else(String::new, |side| format!("{side} side: "));
+            out.extend(findings.map(|finding| format!("{place}{}: {}", finding.place, finding.found)));
+        }
+        out
     }
 
     /// Gives what was done to measured profiles of rail and wheel, of the right-hand side or both.

@@ -2,11 +2,12 @@
 
 use super::analysis::Analysis;
 use super::conformal::turning_warning;
-use super::doubts::{doubts_of, doubts_of_placing};
+use super::doubts::Doubt;
 use super::grids::check_memory;
 use super::input::{Case, Place};
 use super::places::Found;
 use super::site::{Site, sites};
+use super::site_doubts::{doubted, doubts_of, doubts_of_placing, other_lift};
 use crate::error::Result;
 use crate::patch::Patch;
 use crate::placement::Creepages;
@@ -66,7 +67,8 @@ impl Run {
     /// ```
     pub fn new(case: Case, tell: Tell<'_>) -> Result<Self> {
         tell("contacts".into(), 0.0);
-        let sites = sites(&case)?;
+        let sites = sites(&case).map_err(|error| doubted(error, &case.doubts))?;
+        let others: Vec<f64> = sites.iter().map(|site| other_lift(site, &sites)).collect();
         check_memory(&case.outputs, sites.iter().map(|site| &site.grid))?;
         let all = sites.len() as f64;
         let part = |(k, site): (usize, Site)| {
@@ -74,7 +76,7 @@ impl Run {
             let step = format!("{}: grid of {} x {} points", site.name(), grid.xi.len(), grid.eta.len());
             tell(step, COMPUTING * done);
             let analysis = Analysis::new(&site, &case.question)?;
-            let warnings = warnings_of(&site, &analysis);
+            let warnings = warnings_of(&site, &analysis, others[k]);
             Ok(Part { site, analysis, warnings })
         };
         let parts = sites.into_iter().enumerate().map(part).collect::<Result<_>>()?;
@@ -108,14 +110,10 @@ impl Run {
 
     /// Lists what a user should know before using the files.
     pub fn warnings(&self) -> Vec<String> {
-        let mut out = self.case.doubts.clone();
+        let mut out = self.case.warnings();
         let first = self.parts.first();
-        out.extend(first.into_iter().flat_map(|part| doubts_of_placing(&self.case, &part.site)));
-        for (side, profiles) in self.case.profiles.sides() {
-            let findings = profiles.measured.iter().flatten().flat_map(|record| &record.warnings);
-            let place = side.map_or_else(String::new, |side| format!("{side} side: "));
-            out.extend(findings.map(|finding| format!("{place}{}: {}", finding.place, finding.found)));
-        }
+        let placing = first.into_iter().flat_map(|part| doubts_of_placing(&self.case, &part.site));
+        out.extend(placing.map(|doubt| doubt.to_string()));
         for part in &self.parts {
             let folder = &part.site.folder;
             let place = if folder.is_empty() { String::new() } else { format!("{folder}: ") };
@@ -169,8 +167,8 @@ impl Part {
     }
 }
 
-/// Lists what a user should know before using the files of a part.
-fn warnings_of(site: &Site, analysis: &Analysis) -> Vec<String> {
+/// Lists what a user should know before using the files of a part; `other` is the lift of the other wheel \[mm\].
+fn warnings_of(site: &Site, analysis: &Analysis, other: f64) -> Vec<String> {
     let mut out = Vec::from_iter(site.grid.warning.clone());
     if analysis.patch.as_ref().is_some_and(Patch::cut_by_window) {
         out.push("the window of the grid cuts the patch: solvers would overestimate the pressure".into());
@@ -188,6 +186,6 @@ fn warnings_of(site: &Site, analysis: &Analysis) -> Vec<String> {
             "the separation's estimated error, {error:.1e} mm, is above grid.tolerance, {tolerance:e} mm"
         ));
     }
-    out.extend(doubts_of(site));
+    out.extend(doubts_of(site, other).iter().map(Doubt::to_string));
     out
 }

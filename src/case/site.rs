@@ -5,6 +5,7 @@ use super::grids::{Grid, grids};
 use super::input::Case;
 use super::places::{Found, find};
 use crate::error::Result;
+use crate::load::Estimate;
 use crate::patch::{Patch, Window};
 
 /// One contact with the axes of one grid, and the folder of its files.
@@ -86,6 +87,13 @@ impl Site {
         self.normal_load.map(|load| load * self.contact.placement.rail().point.station.cos)
     }
 
+    /// Gives the largest pressure of Hertz's ellipse \[N/mm²\]; `None` without an ellipse, and where the half-space found that the
+    /// patch is none.
+    pub fn hertz_pressure(&self) -> Option<f64> {
+        let half_space = self.contact.approach.is_some_and(|(_, by)| by == Some(Estimate::HalfSpace));
+        self.contact.ellipse.filter(|_| !half_space).map(|ellipse| ellipse.pressure_n_per_mm2)
+    }
+
     /// Gives the rectangle between the outermost points of the grid.
     pub fn window(&self) -> Window {
         Window { xi: ends(&self.grid.xi), eta: ends(&self.grid.eta) }
@@ -137,4 +145,9 @@ pub(super) fn ends(values: &[f64]) -> [f64; 2] {
         [only] => [*only; 2],
         [] => [0.0; 2],
     }
+}
+
+/// Tells which ends of an interval of η are those of the window's.
+pub(super) fn cut_by(window: [f64; 2], eta: [f64; 2]) -> [bool; 2] {
+    [eta[0] <= window[0], eta[1] >= window[1]]
 }

@@ -7,6 +7,7 @@ use super::conformal::Conformal;
 use super::in_place;
 use super::input::Case;
 use super::run::{Part, Run};
+use super::site::Site;
 use crate::files::FolderPart;
 use crate::mesh::{Quality, Surface, TriangleMesh};
 use crate::patch::{Component, Patch};
@@ -92,7 +93,7 @@ pub(super) fn summary(
         "effective_modulus_n_per_mm2": run.case.question.modulus(),
         "contact_to_track": rows,
         "wheelset_files": in_place::beside(run, part),
-        "hertz_ellipse": contact.ellipse,
+        "hertz_ellipse": hertz(site),
         "hertz_ellipse_under": contact.ellipse_under,
         "patch": analysis.patch.as_ref().map(patch),
         "mesh_quality": analysis.strips.as_ref().and_then(Quality::of_strips),
@@ -152,11 +153,19 @@ fn relative_motion(creepages: Creepages) -> Value {
     })
 }
 
+/// Gives Hertz's ellipse, whose pressure is null where the half-space decided: nothing has that pressure there.
+fn hertz(site: &Site) -> Option<Value> {
+    let mut ellipse = json!(site.contact.ellipse?);
+    ellipse["pressure_n_per_mm2"] = json!(site.hertz_pressure());
+    Some(ellipse)
+}
+
 fn patch(patch: &Patch) -> Value {
     let extent = patch.extent();
+    // The empty sum is −0, which + 0 makes 0.
     json!({
-        "area_mm2": patch.area(),
-        "perimeter_mm": patch.components.iter().map(|c| c.perimeter).sum::<f64>(),
+        "area_mm2": patch.area() + 0.0,
+        "perimeter_mm": patch.components.iter().map(|c| c.perimeter).sum::<f64>() + 0.0,
         "xi_extent_mm": extent.map(|e| e.xi),
         "eta_extent_mm": extent.map(|e| e.eta),
         "cut_by_window": patch.cut_by_window(),

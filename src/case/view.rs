@@ -173,13 +173,15 @@ fn facts(part: &Part) -> Vec<[String; 2]> {
         row("Vertical load", format!("{:.2} kN", load * rail.point.station.cos / 1e3));
     }
     if let Some(patch) = &part.analysis.patch {
-        row("Area of the patch", format!("{:.3} mm²", patch.area()));
+        row("Area of the patch", format!("{:.3} mm²", patch.area() + 0.0));
         if let Some(Window { xi: [a, b], eta: [c, d] }) = patch.extent() {
             row("Extents ξ × η", format!("{:.3} × {:.3} mm", b - a, d - c));
         }
     }
     if let Some(ellipse) = &contact.ellipse {
-        row("Hertz p₀", format!("{:.0} N/mm²", ellipse.pressure_n_per_mm2));
+        if let Some(pressure) = site.hertz_pressure() {
+            row("Hertz p₀", format!("{pressure:.0} N/mm²"));
+        }
         row("Hertz load", format!("{:.2} kN", ellipse.load_n / 1e3));
         row("Hertz semi-axes", format!("{:.3}, {:.3} mm", ellipse.a_mm, ellipse.b_mm));
     }

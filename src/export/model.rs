@@ -251,6 +251,8 @@ pub struct Interval {
     pub component: usize,
     /// Smallest and largest η \[mm\] with s ≤ δ.
     pub eta: [f64; 2],
+    /// Whether each of them is the end of the window, where s < δ.
+    pub cut: [bool; 2],
 }
 
 /// The boundary-fitted solver mesh of the patch.

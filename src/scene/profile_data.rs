@@ -138,7 +138,10 @@ impl Rotation {
     /// # Errors
     /// An angle that is not finite; a ratio of other than two numbers, or with a run of 0.
     pub fn turn(&self) -> Result<UnitComplex<f64>> {
-        let bad = |found: String| Error::new("", found, "rad, or \"1:n\" with n ≠ 0", "correct it");
+        let bad = |found: String| {
+            let advice = "write an inclination with a colon and quotes, an angle as a number without quotes";
+            Error::new("", found, "rad, or \"1:n\" with n ≠ 0", advice)
+        };
         match self {
             Self::Radians(angle) => Ok(UnitComplex::new(finite("", *angle)?)),
             Self::Ratio(text) => {

@@ -71,12 +71,36 @@ fn from_toml<T: DeserializeOwned>(text: &str) -> Result<(T, Value)> {
     Ok((read, value))
 }
 
-/// Gives an error better advice where its line has a decimal comma.
+/// Gives an error better advice where its line has a decimal comma, a word without quotes or a number with them.
 fn advised(mut error: Error, line: Option<&str>) -> Error {
     if let Some(number) = line.and_then(decimal_comma) {
         error.advice = format!("write numbers with a decimal point: {number}");
+    } else if let Some(value) = line.and_then(bare_value) {
+        let word = error.expected == "a string" || error.expected == "string";
+        let number = value.split_whitespace().next().filter(|first| first.parse::<f64>().is_ok());
+        // `toml` reads 60E1 as 60·10¹ and 1:40 as a time of day.
+        let unread = ["string values must be quoted", "invalid time"].contains(&error.found.as_str());
+        if let (Some(number), true) = (number.filter(|number| *number != value), unread) {
+            error.found = value.to_owned();
+            error.expected = "a number, or words in quotes".into();
+            error.advice = format!("write the number alone, in the unit of its key: {number}");
+        } else if word || unread {
+            error.found = value.to_owned();
+            error.expected = "a name in quotes".into();
+            error.advice = format!("a name needs quotes: \"{value}\"");
+        }
+    } else if error.found.starts_with("invalid type: string") && error.expected == "a number" {
+        error.advice = "write the number alone, without quotes and in the unit of its key".into();
     }
     error
+}
+
+/// Gives the value of a line `key = value` without quotes, lists, tables and comments, or of `"key": value` in JSON.
+fn bare_value(line: &str) -> Option<&str> {
+    let line = line.split('#').next().unwrap_or(line);
+    let (_, value) = line.rsplit_once("\":").or_else(|| line.split_once('='))?;
+    let value = value.trim().trim_end_matches([',', '}', ' ']);
+    (!value.is_empty() && !value.contains(['"', '\'', '[', '{', '='])).then_some(value)
 }
 
 /// Finds a number with a decimal comma in a line, outside of lists, and gives it with a point.
@@ -288,6 +312,45 @@ mod tests {
             assert!(error.ends_with(&format!("write numbers with a decimal point: {number}")), "{error}");
         }
         assert_eq!(decimal_comma("shift = [1,2]"), None);
+    }
+
+    #[test]
+    fn names_need_quotes_and_numbers_none() {
+        for (text, json, expected) in [
+            (
+                "[rail]\nprofile = 60E1 # inclined",
+                false,
+                "line 2: found 60E1; expected a name in quotes; a name needs quotes: \"60E1\"",
+            ),
+            (
+                "[wheel]\nprofile = S1002",
+                false,
+                "line 2: found S1002; expected a name in quotes; a name needs",
+            ),
+            ("[rail]\nrotate = 1:40", false, "line 2: found 1:40; expected a name in quotes; a name needs"),
+            ("[rail]\nrotate = 1/40", false, "line 2: found 1/40; expected a name in quotes; a name needs"),
+            (
+                "{\"rail\": {\"profile\": 60E1}}",
+                true,
+                "line 1, column 26: found 60E1; expected a name in quotes; a name",
+            ),
+            (
+                "[patch]\nload = 80 kN",
+                false,
+                "line 2: found 80 kN; expected a number, or words in quotes; write the number alone, in the unit of its key: 80",
+            ),
+            (
+                "[patch]\nload = \"80 kN\"",
+                false,
+                "line 2: found invalid type: string \"80 kN\"; expected a number; write the number alone, without quotes",
+            ),
+        ] {
+            let error = parse::<Scene>(text, json).err().map(|e| e.to_string()).unwrap_or_default();
+            let from = if json { "found" } else { "line" };
+            let [error, expected] =
+                [error.as_str(), expected].map(|text| text.split_once(from).map_or("", |(_, rest)| rest));
+            assert!(error.starts_with(expected) && !expected.is_empty(), "{error}");
+        }
     }
 
     #[test]

@@ -137,8 +137,14 @@ pub fn approach(patch: &PatchData) -> Result<ApproachBy> {
 
 /// Returns `by` if its value is one that can be meant.
 fn checked(key: &str, value: f64, by: ApproachBy) -> Result<ApproachBy> {
+    let load = !matches!(by, ApproachBy::Given(_));
     if finite(key, value)? < 0.0 {
-        return Err(Error::new(key, value.to_string(), "a value ≥ 0", "correct the sign"));
+        let expected = if load { "a positive load in N" } else { "a value ≥ 0" };
+        return Err(Error::new(key, value.to_string(), expected, "correct the sign"));
+    }
+    if load && value == 0.0 {
+        let advice = "leave the load out to get the geometry alone, or give one";
+        return Err(Error::new(key, "0", "a positive load in N", advice));
     }
     if value > 0.0 && value < SMALLEST {
         let expected = format!("0, or at least {SMALLEST:e}");
@@ -188,6 +194,24 @@ mod tests {
     }
 
     #[test]
+    fn the_template_names_the_formats_that_are_not_written_unasked() -> Result<()> {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/cli/src/init.toml");
+        let template = crate::files::read_text(&file, 1 << 16)?;
+        let sentence = template.lines().find_map(|line| line.split_once("without it all but "));
+        let named: Vec<&str> =
+            sentence.map_or("", |(_, names)| names).split('"').skip(1).step_by(2).collect();
+        let written = outputs(&parse("", false)?)?.formats;
+        let all = parse::<Scene>("[output]\nformats = [\"?\"]", false).err().map(|error| error.expected);
+        let all = all.unwrap_or_default();
+        let known = all.trim_start_matches("one of ").split(", ");
+        let name = |format: &OutputFormat| serde_json::to_value(format).unwrap_or_default();
+        let others: Vec<&str> =
+            known.filter(|known| !written.iter().any(|format| name(format) == *known)).collect();
+        assert_eq!(named, others);
+        Ok(())
+    }
+
+    #[test]
     fn complaints_say_what_was_found() -> Result<()> {
         let rails = [
             ("profile = \"60e1\"", "perhaps `60E1` is meant"),
@@ -225,6 +249,22 @@ mod tests {
                 "grid: xi: found 3 after 5;",
             ),
             ("[contact]\noffset = 0.0\n[grid]\nxi = { values = [] }", "grid: xi: found no values;"),
+            (
+                "[contact]\noffset = 0.0\n[patch]\nload = 0",
+                "patch: load: found 0; expected a positive load in N; leave the load out",
+            ),
+            (
+                "[track]\ngauge = 1.435\n[wheelset]\nspacing = 1500.0",
+                "track: gauge: found 1.435; expected a distance in mm; give it in mm: 1.435 m are 1435 mm",
+            ),
+            (
+                "[track]\ngauge = 1435.0\n[wheelset]\nback_to_back = 1.36\nflange_back_x = -70.0",
+                "wheelset: back_to_back: found 1.36; expected a distance in mm; give it in mm: 1.36 m are 1360 mm",
+            ),
+            (
+                "[track]\nspacing = 59.0\n[wheelset]\nspacing = 1500.0",
+                "track: spacing: found 59; expected a distance in mm; give it in mm: 59 in are 1498.6 mm",
+            ),
         ];
         for (rest, message) in rests {
             let found = complaint("profile = \"60E1\"", rest)?;

@@ -5,6 +5,7 @@ use std::path::Path;
 use wheelrail::case::{Run, SILENT, Site, sites};
 use wheelrail::load::Estimate;
 use wheelrail::nalgebra::Point2;
+use wheelrail::profile::standards;
 use wheelrail::{Evaluator, Result, scene};
 
 /// What the sums may miss of a load, relative: rounding.
@@ -224,4 +225,19 @@ fn a_run_has_the_load_of_every_part() -> Result<()> {
     assert!(run.warnings().is_empty(), "{:?}", run.warnings());
     assert!(run.parts.iter().all(|part| part.site.normal_load.is_some_and(|load| load > 0.0)));
     Ok(())
+}
+
+#[test]
+fn the_page_on_loads_names_wheels_and_rails_that_are_built_in() {
+    let page = include_str!("../../src/docs/loads.md");
+    let pairs =
+        page.lines().filter_map(|line| line.strip_prefix("| ")?.split(" | ").next()?.split_once(" under "));
+    let mut read = 0;
+    for (rail, wheel) in pairs {
+        let rail = rail.split(' ').next().unwrap_or_default();
+        assert!(standards::rail(rail).is_ok(), "{rail}");
+        assert!(standards::wheel(wheel).is_ok(), "{wheel}");
+        read += 1;
+    }
+    assert!(read > 40, "{read}");
 }

@@ -3,7 +3,7 @@
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use wheelrail::case::{ApproachBy, Columns, MOST_DRAWN, curves};
+use wheelrail::case::{ApproachBy, Columns, DoubtSet, MOST_DRAWN, curves};
 use wheelrail::search::{ONE_CONTACT, Selection};
 use wheelrail::search::{ParallelSweep, Position, WheelsetOnTrack, conicity_over};
 
@@ -40,7 +40,7 @@ pub(crate) fn sweep<'py>(
         all.reserve(2 * positions.len());
         sweep.blocks(
             |chunk: &mut Columns, number, rows| {
-                rows.iter().for_each(|row| chunk.push(number, row, ellipses));
+                rows.iter().for_each(|row| chunk.push(number, row, ellipses, DoubtSet::default()));
                 watch.go_on()
             },
             |done, chunks| {

@@ -19,7 +19,7 @@ const SOLVED: &str = include_str!("../data/loads.csv");
 const PAIRS: [&str; 5] = [
     "60E1 1:40 under S1002",
     "UIC60 1:20 under S1002",
-    "60E2 1:40 under EN13715-1:40",
+    "60E2 1:40 under EN13715-1:40-h28-e32.5",
     "54E3 1:20 under EN15302-C",
     "worn, measured",
 ];

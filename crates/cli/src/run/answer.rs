@@ -120,10 +120,11 @@ const ROWS: [(&str, Cell); 22] = [
     }),
     ("normal force, kN", |part| part.site.normal_load.map(|load| format!("{:.3}", load / 1e3))),
     ("its vertical part, kN", |part| part.site.vertical_load().map(|load| format!("{:.3}", load / 1e3))),
-    ("Hertz's pressure, N/mm²", |part| {
-        part.site.contact.ellipse.as_ref().map(|ellipse| format!("{:.0}", ellipse.pressure_n_per_mm2))
+    ("Hertz's pressure, N/mm²", |part| part.site.hertz_pressure().map(|pressure| format!("{pressure:.0}"))),
+    // The area of no part is −0, which + 0 makes 0.
+    ("patch: area, mm²", |part| {
+        part.analysis.patch.as_ref().map(|patch| format!("{:.2}", patch.area() + 0.0))
     }),
-    ("patch: area, mm²", |part| part.analysis.patch.as_ref().map(|patch| format!("{:.2}", patch.area()))),
     ("patch: extent, ξ × η, mm", |part| {
         let extent = part.analysis.patch.as_ref()?.extent()?;
         Some(format!("{:.3} × {:.3}", extent.xi[1] - extent.xi[0], extent.eta[1] - extent.eta[0]))
@@ -135,7 +136,7 @@ const ROWS: [(&str, Cell); 22] = [
             .map(|patch| patch.components.len().to_string())
             .filter(|count| count != "1")
     }),
-    ("conformal patch: area, mm²", |part| Some(format!("{:.2}", conformal_patch(part)?.area()))),
+    ("conformal patch: area, mm²", |part| Some(format!("{:.2}", conformal_patch(part)?.area() + 0.0))),
     ("its normal turns, degrees", |part| {
         let components = &conformal_patch(part)?.components;
         let turn =

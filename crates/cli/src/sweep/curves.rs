@@ -2,7 +2,7 @@
 
 use super::table::SweepTable;
 use crate::answer::counted;
-use wheelrail::case::{Case, Columns, MOST_DRAWN, ascending, curves, joined_pair, sweep_page};
+use wheelrail::case::{Case, Columns, DoubtSet, MOST_DRAWN, ascending, curves, joined_pair, sweep_page};
 use wheelrail::error::{Error, Result};
 use wheelrail::export::{CurvesPicture, SweepPage};
 use wheelrail::search::Position;
@@ -27,7 +27,7 @@ impl Drawn {
         let mut columns = Columns::default();
         table.sweep(&drawn).blocks(
             |chunk: &mut Columns, position, rows| {
-                rows.iter().for_each(|row| chunk.push(position, row, None));
+                rows.iter().for_each(|row| chunk.push(position, row, None, DoubtSet::default()));
                 Ok(())
             },
             |_, chunks| {

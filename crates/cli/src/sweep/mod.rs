@@ -3,6 +3,7 @@
 
 mod conicity;
 mod curves;
+mod doubts;
 mod patches;
 mod positions;
 mod table;
@@ -15,11 +16,11 @@ use super::progress::Progress;
 use crate::answer::{Outcome, complain, folder_of, print_to_reader};
 use positions::{lateral_range, read_positions};
 use table::SweepTable;
-use wheelrail::case::{Case, Place};
+use wheelrail::case::{Case, Place, SweepDoubts};
 use wheelrail::error::{Error, Result};
 use wheelrail::files::{Folder, NewFile, PATCHES_FOLDER};
 use wheelrail::scene::{self, Scene};
-use wheelrail::search::{ONE_CONTACT, Position, Selection, WheelsetOnTrack, conicity_over};
+use wheelrail::search::{ONE_CONTACT, Position, Selection, TrackSide, WheelsetOnTrack, conicity_over};
 
 /// The scene, the positions, and the outputs.
 #[derive(Debug, clap::Args)]
@@ -123,6 +124,9 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     let in_scene = |error: Error| error.within(path.display());
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let case = scene::resolve(&scene, folder_of(path), &name).map_err(in_scene)?.read_from(path);
+    for warning in case.warnings() {
+        complain(&format!("warning: {warning}"));
+    }
     let (system, template) = wheelset(&case).map_err(in_scene)?;
     let positions = arguments.positions(template)?;
     let mut told = |done: usize, most: usize| {
@@ -135,7 +139,9 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     let asked = case.question();
     let ellipses = asked.approach.map(|approach| (approach, asked.modulus()));
     let selection = Selection { within: case.standing().within, apart: ONE_CONTACT };
-    let table = SweepTable { system, conicity, selection, positions, ellipses };
+    let profiles = case.profiles();
+    let doubts = SweepDoubts::new(&profiles.right.pair, profiles.left.as_ref().map(|left| &left.pair));
+    let table = SweepTable { system, conicity, selection, positions, ellipses, doubts };
     if let Some(folder) = &outputs.patches {
         patches::write(folder, &scene, &case, &table, &progress)?;
     }
@@ -148,11 +154,17 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
         progress.at("page");
         file.put(&curves::page(&table, &case)?.html())?;
     }
-    match &mut outputs.table {
+    let doubts = match &mut outputs.table {
         None => table.blocks(&progress, print_to_reader)?,
         Some(file) => table.blocks(&progress, |text| file.put(text.as_bytes()).map(|()| true))?,
-    }
+    };
     outputs.commit()?;
+    drop(progress);
+    let side = |side| if side == TrackSide::Left { "left" } else { "right" };
+    let radius = |of| profiles.on(side(of)).pair.wheel_radius();
+    if let Some(line) = doubts.line(table.positions.len(), radius) {
+        complain(&format!("sweep: {line}"));
+    }
     Ok(Outcome::Done)
 }
 

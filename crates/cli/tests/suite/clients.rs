@@ -115,7 +115,7 @@ impl Scene {
         write_decks(&folder, &header, &grid, &self.mesh());
         let loops = self.loops();
         folder.write("boundary.csv", boundary_csv(&loops).as_bytes()).unwrap();
-        let row = Interval { xi: 0.0, component: 0, eta: [-1.0, 1.0] };
+        let row = Interval { xi: 0.0, component: 0, eta: [-1.0, 1.0], cut: [false; 2] };
         folder.write("interpen.csv", interpen_csv(&[row]).as_bytes()).unwrap();
         folder.write("boundary.vtp", &boundary_vtp(&header, &loops).unwrap()).unwrap();
         folder.write("strips.vtu", &strips_vtu(&header, &self.mesh()).unwrap()).unwrap();
