@@ -36,9 +36,9 @@ const CORNER_SHARE: f64 = 0.25;
 /// Least number of edges of a ring without corners.
 const LEAST_EDGES: f64 = 3.0;
 
-/// Most edges of the boundary of a component. Edges are as long as it is wide, so that one with more is ten thousand times as
+/// Most edges of the boundary of a component. Edges are as long as it is wide, so that one with more is fifty thousand times as
 /// long as it is wide, and nothing is computed over such a mesh.
-const MOST_EDGES: f64 = 2e4;
+const MOST_EDGES: f64 = 1e5;
 
 /// A node of the boundary.
 #[derive(Debug, Clone, Copy)]
@@ -79,7 +79,7 @@ struct Wanted {
 /// Returns the nodes of each ring, in its order.
 ///
 /// # Errors
-/// More than 20,000 edges, counted before any node is made.
+/// More than 100,000 edges, counted before any node is made.
 pub(super) fn nodes(
     tracer: &mut BoundaryTracer<'_>,
     rings: &[Ring],
