@@ -84,7 +84,7 @@ fn wrong_units_signs_and_origins_are_spoken_of_with_their_number() -> Result<()>
             "1524.0",
             "track: gauge: 1524 mm is 164 mm more than wheelset: back_to_back: gauge and back_to_back of one",
         ),
-        ("1435.0", "1524.0", "the wheel touches 92."),
+        ("1435.0", "1524.0", "the wheel touches 91."),
         ("1435.0", "1360.0", "track: gauge: 1360 mm is 0 mm more than"),
         (
             "-70.0",
@@ -141,7 +141,7 @@ fn standard_pairs() -> Result<Vec<(Pair, f64)>> {
     {
         let apta = wheel.starts_with("APTA");
         let profile = standards::wheel(wheel)?.shifted(0.0, if apta { -15.875 } else { 0.0 });
-        let n = if out.len() % 2 == 0 { 20.0 } else { 40.0 };
+        let n = if out.len().is_multiple_of(2) { 20.0 } else { 40.0 };
         let back = profile.segments()[0].start().x.max(-70.0);
         let rail = standards::rail(rail)?.rotated(inclination(1.0, n)?);
         out.push((Pair::new(rail, profile, 460.0)?, if wheel.starts_with("cone") { -70.0 } else { back }));
@@ -187,7 +187,7 @@ fn height(points: &[[f64; 2]], x: f64, sign: f64) -> Option<f64> {
 }
 
 /// Lift \[mm\], and whether the wheel stands on tip or back or beyond its tread, by points of both profiles in space, without roll.
-fn brute(pair: &Pair, row: &SweepRow) -> (f64, [bool; 3]) {
+fn brute(pair: &Pair, row: &SweepRow) -> (f64, [Option<bool>; 3]) {
     let points = |profile: &Profile| -> Vec<[f64; 2]> {
         trace(profile, 0.02).iter().map(|mark| [mark.station.x, mark.station.z]).collect()
     };
@@ -199,7 +199,10 @@ fn brute(pair: &Pair, row: &SweepRow) -> (f64, [bool; 3]) {
     let lift = height(&placed, top[0], -1.0).map_or(0.0, |over| over - top[1]);
     let tip = wheel.iter().min_by(|a, b| a[1].total_cmp(&b[1])).unwrap();
     let on_tip = c.wheel_z < tip[1] + 2.0;
-    (lift, [on_tip, !on_tip && c.wheel_x < tip[0], (c.wheel_x - tip[0]).abs() > 90.0])
+    // The tip is found to 0.05 mm: nearer to a limit either answer is right.
+    let sure = |value: f64, limit: f64| ((value - limit).abs() > 0.2).then_some(value > limit);
+    let far = sure((c.wheel_x - tip[0]).abs(), 90.0);
+    (lift, [Some(on_tip), Some(!on_tip && c.wheel_x < tip[0]), far])
 }
 
 #[test]
@@ -228,6 +231,7 @@ fn doubts_of_sweeps_are_those_of_brute_force() -> Result<()> {
                     .into_iter()
                     .enumerate()
             {
+                let Some(expected) = expected else { continue };
                 assert_eq!(has(kind).is_some(), expected, "{kind:?}: {row:?}");
                 told[n] += u32::from(expected);
             }
