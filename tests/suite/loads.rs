@@ -123,7 +123,7 @@ fn loads_beyond_reason_name_side_and_key() {
     let both = complaint(&wheelset(0.0, "load = 1e5\n[patch]\nload = 5e4\n"));
     assert!(both.contains("wheelset: load: found 100000 beside [patch]; expected"), "{both}");
     let negative = complaint(&wheelset(0.0, "load = -1.0\n"));
-    assert!(negative.contains("wheelset: load: found -1; expected a value ≥ 0"), "{negative}");
+    assert!(negative.contains("wheelset: load: found -1; expected a positive load"), "{negative}");
 }
 
 #[test]

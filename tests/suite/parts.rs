@@ -153,13 +153,16 @@ fn files_say_that_a_contact_is_infeasible_or_a_mirror_image() {
     let wheelset = "[rail]\nprofile = \"60E1\"\nrotate = \"1:40\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n\
                     [track]\ngauge = 1435.0\n[wheelset]\nback_to_back = 1360.0\nflange_back_x = -70.0\n\
                     lateral = 1.0\n[patch]\napproach = 0.05\n";
-    for (text, folder, said) in [(chosen, "", "infeasible contact"), (wheelset, "left", "mirror image")] {
+    // An infeasible contact has no mesh of its patch.
+    let cases = [(chosen, "", "infeasible contact", None), (wheelset, "left", "mirror image", Some("patch.vtu"))];
+    for (text, folder, said, mesh) in cases {
         let run = computed(text).expect("a contact");
         let home = tempfile::tempdir().expect("a folder");
         let target = home.path().join("out");
         let out = Folder::create(&target, RUN_FOLDER).expect("a folder");
         write(&run, &out, None, SILENT).and_then(|_| out.commit()).expect("files");
-        for name in ["contact.inp", "separation.wrp", "rail.vtu", "patch.vtu"] {
+        assert_eq!(target.join(folder).join("patch.vtu").exists(), mesh.is_some());
+        for name in ["contact.inp", "separation.wrp", "rail.vtu"].into_iter().chain(mesh) {
             let file = std::fs::read_to_string(target.join(folder).join(name)).expect("a file");
             assert!(file.contains(said), "{folder}/{name}");
         }
