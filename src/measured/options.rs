@@ -1,6 +1,5 @@
 //! The options that a scene may give for a measured file.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::column::Column;
@@ -27,7 +26,8 @@ pub const TAPE_DISTANCE: f64 = 70.0;
 
 /// How a measured file becomes a profile. Every option may be left out. The definition of the file's format then decides;
 /// if it says nothing, the shape decides; if the shape proves nothing, this is an error.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "files", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct Options {
     /// Format of the file; if not given, its extension tells.
@@ -86,7 +86,8 @@ pub struct Options {
 }
 
 /// The point of a file that becomes the origin of the profile.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "files", derive(schemars::JsonSchema))]
 #[serde(untagged, expecting = "expected \"as-is\", \"gauge-point\", \"tape-line\" or a point [x, z]")]
 pub enum Origin {
     /// An origin with a name.
@@ -96,7 +97,8 @@ pub enum Origin {
 }
 
 /// The origins that have a name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "files", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum NamedOrigin {
     /// The origin of the file.
@@ -108,7 +110,8 @@ pub enum NamedOrigin {
 }
 
 /// A repair that may be made.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "files", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Repair {
     /// Keeps one of several coinciding points.
@@ -122,7 +125,8 @@ pub enum Repair {
 }
 
 /// The kind of curve through the points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "files", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum CurveKind {
     /// A cubic smoothing spline, C² between corners.
