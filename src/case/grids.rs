@@ -1,6 +1,7 @@
 //! The grids of a case: its own axes, or automatic ones over every part of the patch.
 
-use super::input::{AskedAxes, OutputFormat, Outputs};
+use super::formats::Writer;
+use super::input::{AskedAxes, Outputs};
 use super::places::{MOST_PARTS, Placed};
 use crate::conformal::{ConformalPatch, NormalGap, RailArcLength, Reference};
 use crate::error::{Error, Result};
@@ -160,7 +161,7 @@ pub(super) fn check_memory<'a>(outputs: &Outputs, grids: impl Iterator<Item = &'
         return bad(format!("{all} points"), format!("at most {MOST_POINTS:e} points"));
     }
     // All grids are kept, and written one after the other.
-    let bytes = NUMBER * all + if outputs.any(&OutputFormat::DECKS) { TEXT * largest } else { 0 };
+    let bytes = NUMBER * all + if outputs.wants(Writer::is_deck) { TEXT * largest } else { 0 };
     let mut memory = Vec::<u8>::new();
     if bytes > ALWAYS_THERE && std::hint::black_box(&mut memory).try_reserve_exact(bytes).is_err() {
         let found = format!("{all} points, which take {bytes} bytes of memory");

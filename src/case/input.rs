@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::doubts::Doubt;
+use super::formats::{File, OutputFormat, Writer};
 use crate::conformal::Reference;
 use crate::load::{Elastic, effective_modulus};
 use crate::measured::Record;
@@ -221,72 +222,21 @@ pub struct Outputs {
 }
 
 impl Outputs {
+    /// Lists the files of the formats.
+    pub(super) fn files(&self) -> impl Iterator<Item = File> {
+        let formats = OutputFormat::ALL.iter().filter(|format| self.formats.contains(format));
+        formats.flat_map(|format| format.row().files).copied()
+    }
+
+    /// Tells whether a file of the formats has such a writer.
+    pub(super) fn wants(&self, such: fn(&Writer) -> bool) -> bool {
+        self.files().any(|(_, writer)| such(&writer))
+    }
+
     /// Gives about how many bytes a point of a grid takes in the files of all formats together.
     pub(super) fn bytes_a_point(&self) -> f64 {
-        self.formats.iter().map(|format| format.bytes_a_point()).sum()
+        self.formats.iter().map(|format| format.row().bytes_a_point).sum()
     }
-
-    /// Tells whether any of the formats is asked for.
-    pub fn any(&self, formats: &[OutputFormat]) -> bool {
-        self.formats.iter().any(|format| formats.contains(format))
-    }
-}
-
-/// One output format.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum OutputFormat {
-    /// .vts, .vtp, .vtu, .vtk and view.py.
-    Vtk,
-    /// xi.npy, eta.npy, separation.npy.
-    Npy,
-    /// separation.nc.
-    Netcdf,
-    /// separation.wrp.
-    Text,
-    /// conform.wrp.
-    Conform,
-    /// countact.wrp.
-    Countact,
-    /// contact.inp.
-    Contact,
-    /// view.html.
-    Html,
-    /// patch.png, conformal.png.
-    Png,
-    /// patch.msh.
-    Gmsh,
-    /// patch.inp.
-    Abaqus,
-    /// patch.stl, rail.stl, wheel.stl.
-    Stl,
-    /// patch.vtp, rail.vtp, wheel.vtp.
-    Vtp,
-}
-
-impl OutputFormat {
-    /// Gives about how many bytes a point of a grid takes in the files of the format.
-    fn bytes_a_point(self) -> f64 {
-        match self {
-            Self::Vtk => 190.0,
-            Self::Npy | Self::Netcdf => 8.0,
-            Self::Text => 80.0,
-            Self::Conform => 130.0,
-            Self::Contact => 28.0,
-            Self::Countact | Self::Png | Self::Gmsh | Self::Abaqus | Self::Stl | Self::Vtp | Self::Html => {
-                0.0
-            }
-        }
-    }
-
-    /// Formats that are solver decks.
-    pub(super) const DECKS: [Self; 4] = [Self::Text, Self::Conform, Self::Countact, Self::Contact];
-
-    /// Formats that hold the triangle mesh of the patch.
-    pub(super) const TRIANGLES: [Self; 5] = [Self::Vtk, Self::Gmsh, Self::Abaqus, Self::Stl, Self::Vtp];
-
-    /// Formats that hold the surfaces of both bodies.
-    pub(super) const SURFACES: [Self; 3] = [Self::Vtk, Self::Stl, Self::Vtp];
 }
 
 /// What files say of the scene that they come from; nothing is computed from it.

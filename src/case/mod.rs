@@ -11,6 +11,7 @@ mod doubts;
 mod drawn;
 mod elements;
 mod files;
+mod formats;
 mod grids;
 mod in_place;
 mod input;
@@ -37,10 +38,11 @@ pub use curves::{MOST_DRAWN, ascending, curves};
 pub use doubts::{ContactDoubts, Doubt, DoubtKind, DoubtSet};
 pub use drawn::patch_picture;
 pub use files::{Rasterise, WrittenFile, WrittenPart, write};
+pub use formats::{OutputFormat, PATCHES_FOLDER, RUN_FOLDER, run_files};
 pub use grids::Grid;
 pub use input::{
-    ApproachBy, AskedAxes, Case, Echo, FrameOrigin, Friction, OutputFormat, Outputs, Place, Profiles,
-    Question, SideProfiles, Standing,
+    ApproachBy, AskedAxes, Case, Echo, FrameOrigin, Friction, Outputs, Place, Profiles, Question,
+    SideProfiles, Standing,
 };
 pub use joined::joined_pair;
 pub use landmarks::{Landmarks, SweepDoubts};

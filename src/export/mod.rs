@@ -33,7 +33,7 @@ pub use html::{
     PageFrame, PageLoop, PagePair, PageProfile, SweepCurve, SweepPage, SweepPanel, SweepSide, ViewContact,
     ViewPage,
 };
-pub use in_place::{ContactInPlace, body_vtp, boundaries_vtp, contacts_vtp, patches_vtp, wheelset_vtm};
+pub use in_place::{ContactInPlace, InPlace};
 pub use legacy::separation_vtk;
 pub use model::{Frame, GridFields, Header, Interval, Loop, PatchMesh, QuadMesh, SurfaceMesh};
 pub use netcdf::NetCdf;

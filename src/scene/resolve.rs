@@ -61,10 +61,10 @@ pub fn echo(scene: &Scene, name: &str) -> Echo {
 /// Returns the formats to write, and the size of the triangle mesh. If the scene names no formats, these are all but PNG and
 /// those for finite elements.
 fn outputs(scene: &Scene) -> Result<Outputs> {
-    use OutputFormat::{Conform, Contact, Countact, Html, Netcdf, Npy, Text, Vtk};
     let named = scene.output.formats.clone();
     let required = named.is_some();
-    let formats = named.unwrap_or_else(|| vec![Vtk, Npy, Netcdf, Text, Conform, Countact, Contact, Html]);
+    let unasked = || OutputFormat::ALL.iter().copied().filter(|format| format.unasked()).collect();
+    let formats = named.unwrap_or_else(unasked);
     let mesh_size = scene.mesh.size.map(checked_size).transpose()?;
     Ok(Outputs { formats, required, mesh_size })
 }

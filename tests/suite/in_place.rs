@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use tempfile::TempDir;
-use wheelrail::case::{Run, SILENT, WrittenPart, write};
-use wheelrail::files::{Folder, RUN_FOLDER};
+use wheelrail::case::{RUN_FOLDER, Run, SILENT, WrittenPart, write};
+use wheelrail::files::Folder;
 use wheelrail::mesh::axle_point;
 use wheelrail::nalgebra::{Matrix4, Point3};
 use wheelrail::{Result, scene};

@@ -1,8 +1,8 @@
 //! The parts of a run: contacts of one wheel, and parts of a patch with a grid each or, by `[grid] merge`, together.
 
 use std::path::Path;
-use wheelrail::case::{Part, Run, SILENT, write};
-use wheelrail::files::{Folder, RUN_FOLDER};
+use wheelrail::case::{Part, RUN_FOLDER, Run, SILENT, write};
+use wheelrail::files::Folder;
 use wheelrail::scene;
 use wheelrail::separation::Evaluator;
 

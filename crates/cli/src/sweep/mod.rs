@@ -16,9 +16,9 @@ use super::progress::Progress;
 use crate::answer::{Outcome, complain, folder_of, print_to_reader};
 use positions::{lateral_range, read_positions};
 use table::SweepTable;
-use wheelrail::case::{Case, Place, SweepDoubts};
+use wheelrail::case::{Case, PATCHES_FOLDER, Place, SweepDoubts};
 use wheelrail::error::{Error, Result};
-use wheelrail::files::{Folder, NewFile, PATCHES_FOLDER};
+use wheelrail::files::{Folder, NewFile};
 use wheelrail::scene::{self, Scene};
 use wheelrail::search::{ONE_CONTACT, Position, Selection, TrackSide, WheelsetOnTrack, conicity_over};
 
