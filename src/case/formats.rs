@@ -14,7 +14,8 @@ use crate::export::{
     ContactSettings, CurvedDeck, CurvedFields, Deck, GridFields, Header, InPlace, Loop, PatchMesh, QuadMesh,
     SurfaceMesh, VIEW_SCRIPT, array_npy, boundary_vtp, conform_curved_wrp, conform_wrp, conformal_vts,
     contact_curved_inp, contact_inp, countact_wrp, patch_inp, patch_msh, patch_vtu, rail_vts, separation_vtk,
-    separation_vts, separation_wrp, strips_vtu, surface_stl, surface_vtp, surface_vtu, wheel_vts,
+    separation_vts, separation_wrp, strips_vtu, surface_ply, surface_stl, surface_vtp, surface_vtu,
+    wheel_vts,
 };
 use crate::files::Names;
 
@@ -203,6 +204,12 @@ formats! {
             ("patch.stl", Writer::Surface(Of::Patch, surface_stl)),
             ("rail.stl", Writer::Surface(Of::Rail, surface_stl)),
             ("wheel.stl", Writer::Surface(Of::Wheel, surface_stl)),
+        ]),
+        /// patch.ply, rail.ply, wheel.ply.
+        Ply = named(0.0, &[
+            ("patch.ply", Writer::Surface(Of::Patch, surface_ply)),
+            ("rail.ply", Writer::Surface(Of::Rail, surface_ply)),
+            ("wheel.ply", Writer::Surface(Of::Wheel, surface_ply)),
         ]),
         /// patch.vtp, rail.vtp, wheel.vtp.
         Vtp = named(0.0, &[
