@@ -10,6 +10,8 @@ pub enum ErrorKind {
     Input,
     /// The bodies do not lie as the input supposes. Examples: a point off its profile, a wheel beside its rail.
     Geometry,
+    /// A wheel stands where it touches nothing.
+    NoContact,
     /// A disk or a stream did not do what it was asked.
     Io,
     /// The input asks for more than the program computes or reads: points, cells, bytes.

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::contact::PlacedContact;
 use super::input::{ApproachBy, Case, FrameOrigin, Place};
 use super::wheel::{Region, RegionRules, Wheel, carry};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::load::Estimate;
 use crate::placement::Placement;
 use crate::search;
@@ -342,7 +342,7 @@ fn rules(case: &Case, alone: bool) -> RegionRules {
 }
 
 fn no_touch(place: &str, expected: &str, advice: &str) -> Error {
-    Error::new(place, "no contact", expected, advice)
+    Error::new(place, "no contact", expected, advice).of_kind(ErrorKind::NoContact)
 }
 
 /// Says that no approach carries the load of a case.
