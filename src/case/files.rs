@@ -23,6 +23,7 @@ use crate::mesh::Surface;
 use crate::patch::{Outline, Slice};
 use crate::placement::Creepages;
 use crate::profile::Station;
+use crate::search::TrackSide;
 use crate::separation::midplane_table;
 
 /// Turns a picture's SVG into PNG. The library draws no pixels: a caller who wants them brings this.
@@ -307,7 +308,7 @@ fn header(run: &Run, part: &Part) -> Header {
 /// Lists what the reader of a file of this part must know.
 fn remarks(run: &Run, part: &Part) -> Vec<String> {
     let mut out = part.refusals();
-    if part.site.side() == Some("left") {
+    if part.site.side() == Some(TrackSide::Left) {
         let signs = match run.case.question.motion {
             Some(_) => "creepages are those of the mirror image",
             None => "lateral creepage, spin and skew change sign",

@@ -11,6 +11,7 @@ use super::run::{Part, Run};
 use crate::export::{ContactInPlace, InPlace, Loop, QuadMesh};
 use crate::mesh::{BodyShell, axle_point};
 use crate::placement::Placement;
+use crate::search::TrackSide;
 use crate::separation::Evaluator;
 
 /// Half the length of rail that is shown \[mm\].
@@ -26,7 +27,7 @@ const SHELL: f64 = 0.02;
 /// left side it has a reflection: that side's own axes are the mirror image's.
 pub(super) fn to_track(run: &Run, part: &Part) -> Matrix4<f64> {
     let placement = &part.site.contact.placement;
-    let left = part.site.side() == Some("left");
+    let left = part.site.side() == Some(TrackSide::Left);
     let (rail, half) = match &run.case.standing.place {
         Place::Wheelset { system, .. } => {
             let side = if left { system.left() } else { system.right() };
@@ -47,9 +48,8 @@ pub(super) fn to_track(run: &Run, part: &Part) -> Matrix4<f64> {
 /// Gives what shows all of a run in the axes of the track: both rails, both wheels at first touch, patches, boundaries and contact
 /// points, all where they are.
 pub(super) fn in_place(run: &Run) -> InPlace {
-    let sides = ["right", "left"].into_iter().filter_map(|side| {
-        run.parts.iter().find(|part| (part.site.side() == Some("left")) == (side == "left"))
-    });
+    let on = |left: bool| run.parts.iter().find(|part| (part.site.side() == Some(TrackSide::Left)) == left);
+    let sides = [false, true].into_iter().filter_map(on);
     let places: Vec<_> = sides.map(|part| (&part.site.contact.placement, to_track(run, part))).collect();
     let shells = |shell: fn(&Placement) -> BodyShell| {
         let shells = places.iter().map(|(placement, place)| {

@@ -13,7 +13,7 @@ use crate::load::{Elastic, effective_modulus};
 use crate::measured::Record;
 use crate::placement::Motion;
 use crate::placement::Pair;
-use crate::search::{Pose, Position, ProfilePair, WheelsetOnTrack};
+use crate::search::{Pose, Position, ProfilePair, TrackSide, WheelsetOnTrack};
 use crate::separation::Method;
 
 /// Two prepared profiles, where they stand, what is asked of them, and what is to be written.
@@ -63,15 +63,16 @@ impl Profiles {
         Self { right: SideProfiles { pair, measured: [None, None] }, left: None }
     }
 
-    /// Gives those of a side, "left" or any other.
-    pub fn on(&self, side: &str) -> &SideProfiles {
-        self.left.as_ref().filter(|_| side == "left").unwrap_or(&self.right)
+    /// Gives those of a side; a single wheel has the right-hand side's.
+    pub fn on(&self, side: Option<TrackSide>) -> &SideProfiles {
+        self.left.as_ref().filter(|_| side == Some(TrackSide::Left)).unwrap_or(&self.right)
     }
 
-    /// Gives all there are, with the name of the side where both have their own.
-    pub fn sides(&self) -> impl Iterator<Item = (Option<&'static str>, &SideProfiles)> {
-        let name = self.left.as_ref().map(|_| "right");
-        [(name, &self.right)].into_iter().chain(self.left.iter().map(|left| (Some("left"), left)))
+    /// Gives all there are, with the side where both have their own.
+    pub fn sides(&self) -> impl Iterator<Item = (Option<TrackSide>, &SideProfiles)> {
+        let right = self.left.as_ref().map(|_| TrackSide::Right);
+        let left = self.left.iter().map(|left| (Some(TrackSide::Left), left));
+        [(right, &self.right)].into_iter().chain(left)
     }
 }
 

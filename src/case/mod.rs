@@ -12,6 +12,7 @@ mod drawn;
 mod elements;
 mod files;
 mod formats;
+mod found;
 mod grids;
 mod in_place;
 mod input;
@@ -39,6 +40,7 @@ pub use doubts::{ContactDoubts, Doubt, DoubtKind, DoubtSet};
 pub use drawn::patch_picture;
 pub use files::{Rasterise, WrittenFile, WrittenPart, write};
 pub use formats::{OutputFormat, PATCHES_FOLDER, RUN_FOLDER, run_files};
+pub use found::{Found, PlaceOfContact};
 pub use grids::Grid;
 pub use input::{
     ApproachBy, AskedAxes, Case, Echo, FrameOrigin, Friction, Outputs, Place, Profiles, Question,
@@ -46,7 +48,7 @@ pub use input::{
 };
 pub use joined::joined_pair;
 pub use landmarks::{Landmarks, SweepDoubts};
-pub use places::{Found, PlaceOfContact, approach_under_load, contacts};
+pub use places::{approach_under_load, contacts};
 pub use run::{Part, Run, SILENT, Tell};
 pub use site::{Site, sites};
 pub use sweep_view::sweep_page;

@@ -63,7 +63,7 @@ pub(super) fn summary(
     skipped: &[String],
 ) -> Value {
     let (Part { site, analysis, .. }, Case { echo, file, profiles, .. }) = (part, &run.case);
-    let (contact, own) = (&site.contact, profiles.on(site.side().unwrap_or_default()));
+    let (contact, own) = (&site.contact, profiles.on(site.side()));
     let placement = &contact.placement;
     let place = in_place::to_track(run, part);
     let rows = [0, 1, 2, 3].map(|row| [0, 1, 2, 3].map(|column| place[(row, column)]));
@@ -82,7 +82,7 @@ pub(super) fn summary(
         "wheel_radius_mm": placement.wheel_radius(),
         "rolling_radius_mm": placement.rolling_radius(),
         "skew_rad": placement.skew(),
-        "found": site.found,
+        "found": site.contact.found,
         "creepages": creepages.map(relative_motion),
         "feasibility": contact.feasibility,
         "curvatures": contact.curvatures,

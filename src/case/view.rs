@@ -7,6 +7,7 @@ use crate::export::{PageFrame, PageLoop, ViewContact, ViewPage};
 use crate::load::Estimate;
 use crate::mesh::equal_steps;
 use crate::patch::{Patch, Window};
+use crate::search::TrackSide;
 use crate::separation::{EtaAxis, Values, plan};
 
 /// Contacts that a page shows: more would take more than the 1.5 MB that a mail or a browser takes at once.
@@ -61,7 +62,7 @@ fn notes(run: &Run, n: usize) -> Vec<String> {
     if run.parts.len() > 1 {
         notes.push("Dashed regions in the colour of the boundary belong to a neighbouring contact.".into());
     }
-    if run.parts.iter().any(|part| part.site.side() == Some("left")) {
+    if run.parts.iter().any(|part| part.site.side() == Some(TrackSide::Left)) {
         notes.push("The left side is shown as its mirror image: x to the left, y forward, z up.".into());
     }
     notes
@@ -76,7 +77,7 @@ fn contact(run: &Run, part: &Part, n: usize) -> ViewContact {
     let mut separation = Values::new(n * n);
     plan.fill(placement, &xi, &axis, &mut separation);
     let rail = &placement.rail().section;
-    let both = run.case.profiles.left.is_some() && part.site.side() == Some("left");
+    let both = run.case.profiles.left.is_some() && part.site.side() == Some(TrackSide::Left);
     let mut warnings = part.refusals();
     warnings.extend_from_slice(&part.warnings);
     ViewContact {

@@ -51,7 +51,7 @@ pub(super) fn table(run: &Run, written: &[WrittenPart]) -> String {
     }
     out.push('\n');
     for part in &run.parts {
-        let merged = part.site.found.as_ref().map_or(0, |found| found.merged.len());
+        let merged = part.site.contact.found.as_ref().map_or(0, |found| found.merged.len());
         if merged > 0 {
             let places = counted(merged, "further place");
             out += &format!(
@@ -145,7 +145,7 @@ const ROWS: [(&str, Cell); 22] = [
     }),
     ("feasible", |part| {
         let feasible = part.site.contact.feasibility.feasible;
-        let first = part.site.found.as_ref().is_none_or(|found| found.contact == 1);
+        let first = part.site.contact.found.as_ref().is_none_or(|found| found.contact == 1);
         first.then(|| if feasible { "yes" } else { "no" }.into())
     }),
     ("grid, ξ × η", |part| part.site.grid.sigma.is_none().then(|| points(part))),

@@ -20,7 +20,7 @@ use wheelrail::case::{Case, PATCHES_FOLDER, Place, SweepDoubts};
 use wheelrail::error::{Error, Result};
 use wheelrail::files::{Folder, NewFile};
 use wheelrail::scene::{self, Scene};
-use wheelrail::search::{ONE_CONTACT, Position, Selection, TrackSide, WheelsetOnTrack, conicity_over};
+use wheelrail::search::{ONE_CONTACT, Position, Selection, WheelsetOnTrack, conicity_over};
 
 /// The scene, the positions, and the outputs.
 #[derive(Debug, clap::Args)]
@@ -160,8 +160,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     };
     outputs.commit()?;
     drop(progress);
-    let side = |side| if side == TrackSide::Left { "left" } else { "right" };
-    let radius = |of| profiles.on(side(of)).pair.wheel_radius();
+    let radius = |side| profiles.on(Some(side)).pair.wheel_radius();
     if let Some(line) = doubts.line(table.positions.len(), radius) {
         complain(&format!("sweep: {line}"));
     }

@@ -65,7 +65,7 @@ fn texts(regions: &[Carried], solved: &BTreeMap<String, f64>) -> [String; 2] {
         let _ = writeln!(data, "{},{normal:.1},{approach:.7}", loaded.key(region.contact()));
         let error = 100.0 * (site.approach() / approach - 1.0);
         let method = if region.estimate() == Some(Estimate::Hertz) { "Hertz" } else { "half-space" };
-        let places = 1 + site.found.as_ref().map_or(0, |found| found.merged.len());
+        let places = 1 + site.contact.found.as_ref().map_or(0, |found| found.merged.len());
         let _ = writeln!(
             table,
             "| {} | {} | {} | {:.0} | {} | {:.1}° | {:.1} | {approach:.4} | {:.4} ({:+.1} %) | {method} | {places} |",
