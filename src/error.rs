@@ -8,7 +8,7 @@ use std::sync::Arc;
 pub enum ErrorKind {
     /// The input is malformed, contradictory or impossible.
     Input,
-    /// The bodies do not lie as the input supposes. Examples: a point off its profile, a wheel beside its rail.
+    /// The bodies do not lie as the input supposes: a point is off its profile, for example.
     Geometry,
     /// A wheel stands where it touches nothing.
     NoContact,
