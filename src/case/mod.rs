@@ -33,7 +33,7 @@ mod view;
 mod wheel;
 
 pub use analysis::{Analysis, Timings, check_method};
-pub use columns::Columns;
+pub use columns::{COLUMNS, Column, ColumnArray, Columns};
 pub use conformal::Conformal;
 pub use contact::{EllipseUnder, PlacedContact};
 pub use curves::{MOST_DRAWN, ascending, curves};

@@ -3,9 +3,9 @@
 use super::analysis::Analysis;
 use super::conformal::turning_warning;
 use super::doubts::Doubt;
+use super::found::Found;
 use super::grids::check_memory;
 use super::input::{Case, Place};
-use super::found::Found;
 use super::site::{Site, sites};
 use super::site_doubts::{doubted, doubts_of, doubts_of_placing, other_lift};
 use crate::error::Result;

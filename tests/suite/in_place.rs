@@ -50,7 +50,10 @@ fn both_sides_agree_where_the_axle_is() -> Result<()> {
             let place = transform(written);
             let side = part.site.side().unwrap();
             let turned = place.fixed_view::<3, 3>(0, 0).determinant();
-            assert!((turned - if side == TrackSide::Left { -1.0 } else { 1.0 }).abs() < 1e-12, "{side}: {turned}");
+            assert!(
+                (turned - if side == TrackSide::Left { -1.0 } else { 1.0 }).abs() < 1e-12,
+                "{side}: {turned}"
+            );
             let middle = place.transform_point(&axle_point(&part.site.contact.placement, -HALF));
             assert!((middle.x - lateral).abs() < ROUNDING && middle.y.abs() < ROUNDING, "{side}: {middle}");
             let found = part.site.contact.found.as_ref().unwrap();

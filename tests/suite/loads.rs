@@ -165,7 +165,9 @@ fn the_weighted_frame_moves_no_body() -> Result<()> {
         for site in weighted? {
             let placement = &site.contact.placement;
             let number = site.contact.found.as_ref().map(|found| (found.side, found.contact));
-            let same = plain.iter().find(|plain| plain.contact.found.as_ref().map(|f| (f.side, f.contact)) == number);
+            let same = plain
+                .iter()
+                .find(|plain| plain.contact.found.as_ref().map(|f| (f.side, f.contact)) == number);
             let old = &same.unwrap().contact.placement;
             let frames = [placement, old].map(|placement| placement.rail().contact_frame());
             turned += usize::from(frames[0].rotation.angle_to(&frames[1].rotation).abs() > 1e-3);
