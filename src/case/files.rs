@@ -350,11 +350,10 @@ fn intervals(part: &Part) -> Vec<Interval> {
 fn contact_settings(run: &Run, part: &Part, creepages: Option<Creepages>) -> Option<ContactSettings> {
     let (approach, _) = part.site.contact.approach.filter(|(approach, _)| *approach > 0.0)?;
     let load = part.site.normal_load.filter(|load| *load > 0.0);
-    let bodies = run.case.question.material;
+    let question = &run.case.question;
     Some(ContactSettings {
-        poisson: bodies.map(|body| body.poissons_ratio),
-        shear_modulus: bodies.map(|body| body.youngs_modulus / (2.0 * (1.0 + body.poissons_ratio))),
-        friction: [run.case.question.friction.at_rest, run.case.question.friction.sliding],
+        material: question.material,
+        friction: [question.friction.at_rest, question.friction.sliding],
         creepages,
         normal: load.map_or(Prescribed::Approach(approach), Prescribed::Force),
     })

@@ -11,6 +11,7 @@ use super::formats::{File, OutputFormat, Writer};
 use crate::conformal::Reference;
 use crate::load::{Elastic, effective_modulus};
 use crate::measured::Record;
+use crate::numerics::bodies::Bodies;
 use crate::placement::Motion;
 use crate::placement::Pair;
 use crate::search::{Pose, Position, ProfilePair, TrackSide, WheelsetOnTrack};
@@ -46,8 +47,8 @@ pub struct Profiles {
 pub struct SideProfiles {
     /// Rail and wheel.
     pub pair: Pair,
-    /// The records of rail and wheel; `None` for a drawn profile.
-    pub measured: [Option<Record>; 2],
+    /// The record of each; `None` for a drawn profile.
+    pub measured: Bodies<Option<Record>>,
 }
 
 impl SideProfiles {
@@ -60,7 +61,7 @@ impl SideProfiles {
 impl Profiles {
     /// Makes the profiles of both sides from a pair that nothing was measured of.
     pub fn drawn(pair: Pair) -> Self {
-        Self { right: SideProfiles { pair, measured: [None, None] }, left: None }
+        Self { right: SideProfiles { pair, measured: Bodies::default() }, left: None }
     }
 
     /// Gives those of a side; a single wheel has the right-hand side's.
@@ -164,7 +165,7 @@ pub struct Question {
     /// How the wheels move, for the creepages; `None` asks for none.
     pub motion: Option<Motion>,
     /// Elastic constants of rail and wheel.
-    pub material: [Elastic; 2],
+    pub material: Bodies<Elastic>,
     /// Friction between them; it enters solver decks only.
     pub friction: Friction,
     /// Absolute tolerance on s \[mm\]; 1e-12 asks for all digits.
@@ -191,8 +192,7 @@ impl Default for Friction {
 impl Question {
     /// Gives E* of both materials \[N/mm²\].
     pub fn modulus(&self) -> f64 {
-        let [rail, wheel] = &self.material;
-        effective_modulus(rail, wheel)
+        effective_modulus(&self.material.rail, &self.material.wheel)
     }
 }
 
@@ -307,7 +307,7 @@ impl Case {
     pub fn warnings(&self) -> Vec<String> {
         let mut out: Vec<String> = self.doubts.iter().map(Doubt::to_string).collect();
         for (side, profiles) in self.profiles.sides() {
-            let findings = profiles.measured.iter().flatten().flat_map(|record| &record.warnings);
+            let findings = profiles.measured.both().into_iter().flatten().flat_map(|record| &record.warnings);
             let place = side.map_or_else(String::new, |side| format!("{side} side: "));
             out.extend(findings.map(|finding| format!("{place}{}: {}", finding.place, finding.found)));
         }
@@ -315,7 +315,7 @@ impl Case {
     }
 
     /// Gives what was done to measured profiles of rail and wheel, of the right-hand side or both.
-    pub fn measured(&self) -> &[Option<Record>; 2] {
+    pub fn measured(&self) -> &Bodies<Option<Record>> {
         &self.profiles.right.measured
     }
 }

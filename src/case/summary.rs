@@ -75,8 +75,8 @@ pub(super) fn summary(
     let rest = json!({
         "rail": body(placement.rail()),
         "wheel": body(placement.wheel()),
-        "measured_rail": own.measured[0],
-        "measured_wheel": own.measured[1],
+        "measured_rail": own.measured.rail,
+        "measured_wheel": own.measured.wheel,
         "wheel_radius_mm": placement.wheel_radius(),
         "found": contact.found,
         "creepages": creepages.map(relative_motion),

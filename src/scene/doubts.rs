@@ -212,7 +212,7 @@ fn kinks(scene: &Scene, side: Option<TrackSide>, own: &SideProfiles, out: &mut V
     let bodies: [(&str, &Profile); 2] = [("rail", own.pair.rail()), ("wheel", own.pair.wheel())];
     for (k, (body, profile)) in bodies.into_iter().enumerate() {
         // The kinks of standards are theirs, and those of measured profiles their files'.
-        if data[k].profile.is_some() || own.measured[k].is_some() {
+        if data[k].profile.is_some() || own.measured.both()[k].is_some() {
             continue;
         }
         let place = own_place(side, body);

@@ -16,8 +16,6 @@ const DOCS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../src/docs/loads.md
 /// The data of the report, which has the solved approaches.
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../report/data/loads.csv");
 
-const STEEL: Elastic = Elastic { youngs_modulus: 2.1e5, poissons_ratio: 0.28 };
-
 /// Largest relative error of δ.
 const BOUND: f64 = 5e-3;
 
@@ -46,7 +44,7 @@ fn solve(dir: &Path, regions: &[Carried]) -> Option<BTreeMap<String, f64>> {
     for (number, region) in regions.iter().enumerate() {
         write_grid(&dir.join(format!("{number:03}")), region);
     }
-    let modulus = effective_modulus(&STEEL, &STEEL);
+    let modulus = effective_modulus(&Elastic::STEEL, &Elastic::STEEL);
     let lines = output_of("load_table.py", dir, &[&format!("{modulus:?}")])?;
     let pair = |line: &str| {
         let (name, approach) = line.split_once(' ').unwrap();
