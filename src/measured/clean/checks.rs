@@ -276,7 +276,7 @@ fn paired(back: &[usize], n: usize) -> Vec<Fold> {
     match back {
         [] => Vec::new(),
         [only] => vec![alone(*only)],
-        [first, inner @ .., last] if back.len() % 2 == 0 => {
+        [first, inner @ .., last] if back.len().is_multiple_of(2) => {
             if overhang(*first) + between(1) + overhang(*last) < between(0) {
                 [vec![alone(*first)], pairs(inner), vec![alone(*last)]].concat()
             } else {
