@@ -3,14 +3,15 @@
 use super::analysis::Analysis;
 use super::conformal::turning_warning;
 use super::doubts::Doubt;
+use super::found::Found;
 use super::grids::check_memory;
 use super::input::{Case, Place};
-use super::places::Found;
 use super::site::{Site, sites};
 use super::site_doubts::{doubted, doubts_of, doubts_of_placing, other_lift};
 use crate::error::Result;
 use crate::patch::Patch;
 use crate::placement::Creepages;
+use crate::search::TrackSide;
 use crate::separation::Plan;
 
 /// Is told the step that a run is at, and the share of the run's work that is behind it (0 to 1), from several threads.
@@ -129,7 +130,7 @@ impl Run {
     /// A wheel at rest where it touches.
     pub fn creepages(&self, part: &Part) -> Result<Option<Creepages>> {
         let Some(motion) = self.case.question.motion else { return Ok(None) };
-        let left = part.site.side() == Some("left");
+        let left = part.site.side() == Some(TrackSide::Left);
         let half = match &self.case.standing.place {
             Place::Wheelset { system, .. } if left => system.left().wheelset().wheel_x(),
             Place::Wheelset { system, .. } => system.right().wheelset().wheel_x(),
@@ -150,7 +151,7 @@ impl Run {
             return Ok(pair.placed(*rail_x, *wheel_x, 0.0)?.rolling_radius());
         }
         let mut sides: Vec<&Found> = Vec::new();
-        for found in self.parts.iter().filter_map(|part| part.site.found.as_ref()) {
+        for found in self.parts.iter().filter_map(|part| part.site.contact.found.as_ref()) {
             // A patch of several parts has a site for each.
             if found.contact == 1 && sides.iter().all(|known| known.side != found.side) {
                 sides.push(found);

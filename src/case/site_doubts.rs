@@ -23,7 +23,7 @@ pub(super) fn doubted(mut error: Error, doubts: &[Doubt]) -> Error {
 
 /// Returns how far the other wheel of a site's axle is lifted \[mm\]; 0 for a single wheel.
 pub(super) fn other_lift(site: &Site, all: &[Site]) -> f64 {
-    let first = |other: &&Site| other.found.as_ref().is_some_and(|found| found.contact == 1);
+    let first = |other: &&Site| other.contact.found.as_ref().is_some_and(|found| found.contact == 1);
     let other = all.iter().filter(first).find(|other| other.side() != site.side());
     other.map_or(0.0, |other| {
         let placement = &other.contact.placement;
@@ -35,7 +35,7 @@ pub(super) fn other_lift(site: &Site, all: &[Site]) -> f64 {
 /// rail, 0 for a single wheel.
 pub(super) fn doubts_of(site: &Site, other: f64) -> Vec<Doubt> {
     // Further contacts of a wheel follow from the first one, which bears the doubts.
-    let first = site.found.as_ref().is_none_or(|found| found.contact == 1);
+    let first = site.contact.found.as_ref().is_none_or(|found| found.contact == 1);
     let mut out = if first { of_contact(site, other) } else { Vec::new() };
     out.extend(approach(site));
     out

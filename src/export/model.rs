@@ -283,6 +283,8 @@ impl QuadMesh {
 /// A triangulated surface of one body.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SurfaceMesh {
+    /// What it is of, in ASCII letters: "patch", "rail", "wheel".
+    pub name: &'static str,
     /// Nodes (ξ, η, ζ) \[mm\].
     pub points: Vec<Point3<f64>>,
     /// Triangles: indices of three nodes, counter-clockwise seen from outside the body.
@@ -347,6 +349,7 @@ impl PatchMesh {
     /// Returns the patch as a part of the rail's surface.
     pub fn surface(&self) -> SurfaceMesh {
         SurfaceMesh {
+            name: "patch",
             points: self.mesh.points.clone(),
             triangles: self.mesh.triangles.clone(),
             separation: self.separation.clone(),

@@ -27,6 +27,7 @@ pub use clean::checks::{Check, Finding};
 pub use clean::repairs::Repaired;
 pub use column::Column;
 pub use fit::curve::{Corner, CurveRecord, Residual};
+pub(crate) use options::measured_options;
 pub use options::{
     ARC_TOLERANCE, CUTOFF_WAVELENGTH, CurveKind, GAUGE_HEIGHT, KINK_ANGLE, NamedOrigin, Options, Origin,
     Repair, TAPE_DISTANCE,

@@ -7,6 +7,7 @@ use super::profile_data::{ProfileData, Rotation};
 use super::side_data::SideData;
 use crate::case::{Doubt, DoubtKind, Landmarks, Profiles, SideProfiles};
 use crate::profile::Profile;
+use crate::search::TrackSide;
 
 /// Steepest inclination that is no doubt \[rad\]: 1:5.
 const STEEPEST: f64 = 0.2;
@@ -162,7 +163,7 @@ fn distances(scene: &Scene, out: &mut Vec<Doubt>) {
 }
 
 /// Of a wheel's radius and flange.
-fn wheel(scene: &Scene, side: Option<&str>, own: &SideProfiles, out: &mut Vec<Doubt>) {
+fn wheel(scene: &Scene, side: Option<TrackSide>, own: &SideProfiles, out: &mut Vec<Doubt>) {
     let radius = own.pair.wheel_radius();
     let place = own_place(side, "wheel");
     if !RADII.contains(&radius) {
@@ -194,13 +195,13 @@ fn wheel(scene: &Scene, side: Option<&str>, own: &SideProfiles, out: &mut Vec<Do
 }
 
 /// Names a body of a side.
-fn own_place(side: Option<&str>, body: &str) -> String {
+fn own_place(side: Option<TrackSide>, body: &str) -> String {
     side.map_or_else(|| body.to_string(), |side| format!("{side}: {body}"))
 }
 
-fn kinks(scene: &Scene, side: Option<&str>, own: &SideProfiles, out: &mut Vec<Doubt>) {
+fn kinks(scene: &Scene, side: Option<TrackSide>, own: &SideProfiles, out: &mut Vec<Doubt>) {
     let of_side = match side {
-        Some("left") => scene.left.as_ref(),
+        Some(TrackSide::Left) => scene.left.as_ref(),
         Some(_) => scene.right.as_ref(),
         None => None,
     };
@@ -211,7 +212,7 @@ fn kinks(scene: &Scene, side: Option<&str>, own: &SideProfiles, out: &mut Vec<Do
     let bodies: [(&str, &Profile); 2] = [("rail", own.pair.rail()), ("wheel", own.pair.wheel())];
     for (k, (body, profile)) in bodies.into_iter().enumerate() {
         // The kinks of standards are theirs, and those of measured profiles their files'.
-        if data[k].profile.is_some() || own.measured[k].is_some() {
+        if data[k].profile.is_some() || own.measured.both()[k].is_some() {
             continue;
         }
         let place = own_place(side, body);

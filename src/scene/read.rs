@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::data::Scene;
@@ -30,10 +30,11 @@ pub fn load(path: &Path) -> Result<Scene> {
 pub fn parse<T: DeserializeOwned + Serialize>(text: &str, json: bool) -> Result<T> {
     let (read, value): (T, Value) = if json { from_json(text)? } else { from_toml(text)? };
     // `serde` accepts a list instead of a table, with its items in the order of the keys.
+    // `toml` drops the surplus items of a list.
     let again = serde_json::to_value(&read).unwrap_or_default();
-    match list_for_table(&value, &again, "") {
+    match wrong_list(&value, &again, "") {
         None => Ok(read),
-        Some(key) => Err(Error::new(key, "a list", "a table of keys and values", SEE_ALSO)),
+        Some((key, found, expected)) => Err(Error::new(key, found, expected, SEE_ALSO)),
     }
 }
 
@@ -60,15 +61,10 @@ fn from_toml<T: DeserializeOwned>(text: &str) -> Result<(T, Value)> {
             read,
         )
     };
-    let read = toml::from_str(text).map_err(complaint)?;
-    // `toml` drops the surplus items of an array, `serde_json` does not. Numbers that are not finite become null here and
-    // are found later.
-    let value: Value = toml::from_str(text).map_err(complaint)?;
-    if !has_null(&value) {
-        serde_json::from_value::<T>(value.clone())
-            .map_err(|error| house_form(String::new(), &error.to_string(), None))?;
-    }
-    Ok((read, value))
+    let table = toml::de::DeTable::parse(text).map_err(complaint)?;
+    let read = T::deserialize(toml::Deserializer::from(table.clone())).map_err(complaint)?;
+    // Numbers that are not finite become null here and are found later.
+    Ok((read, Value::deserialize(toml::Deserializer::from(table)).map_err(complaint)?))
 }
 
 /// Gives an error better advice where its line has a decimal comma, a word without quotes or a number with them.
@@ -123,27 +119,24 @@ fn decimal_comma(line: &str) -> Option<String> {
     None
 }
 
-/// Finds the first key whose list was read as a table.
-fn list_for_table(given: &Value, read: &Value, key: &str) -> Option<String> {
+/// Finds the first key whose list was read as a table or as a shorter list; gives it with what was found and expected.
+fn wrong_list(given: &Value, read: &Value, key: &str) -> Option<(String, String, String)> {
     match (given, read) {
-        (Value::Array(_), Value::Object(_)) => Some(key.to_string()),
+        (Value::Array(_), Value::Object(_)) => {
+            Some((key.into(), "a list".into(), "a table of keys and values".into()))
+        }
+        (Value::Array(given), Value::Array(read)) if given.len() > read.len() => {
+            let expected = format!("a list of {}", read.len());
+            Some((key.into(), format!("a list of {}", given.len()), expected))
+        }
         (Value::Array(given), Value::Array(read)) => {
-            given.iter().zip(read).find_map(|(given, read)| list_for_table(given, read, key))
+            given.iter().zip(read).find_map(|(given, read)| wrong_list(given, read, key))
         }
         (Value::Object(given), Value::Object(read)) => given.iter().find_map(|(name, given)| {
             let key = if key.is_empty() { name.clone() } else { format!("{key}: {name}") };
-            list_for_table(given, read.get(name)?, &key)
+            wrong_list(given, read.get(name)?, &key)
         }),
         _ => None,
-    }
-}
-
-fn has_null(value: &Value) -> bool {
-    match value {
-        Value::Null => true,
-        Value::Array(values) => values.iter().any(has_null),
-        Value::Object(values) => values.values().any(has_null),
-        _ => false,
     }
 }
 
@@ -236,8 +229,8 @@ mod tests {
     #[test]
     fn an_array_that_is_too_long_is_not_cut_short() {
         let text = SCENE.replace("[wheel]", "shift = [0.0, 0.0, 99.0]\n[wheel]");
-        let error = parse::<Scene>(&text, false).err().map(|e| e.to_string());
-        assert!(error.as_deref().is_some_and(|e| e.contains("invalid length 3")), "{error:?}");
+        let error = parse::<Scene>(&text, false).err().map(|e| e.to_string()).unwrap_or_default();
+        assert!(error.starts_with("rail: shift: found a list of 3; expected a list of 2;"), "{error}");
     }
 
     #[test]

@@ -15,6 +15,7 @@ use crate::case::{ApproachBy, Case, Echo, FrameOrigin, Friction, OutputFormat, O
 use crate::error::{Error, Result, finite};
 use crate::load::{Elastic, effective_modulus};
 use crate::mesh::checked_size;
+use crate::numerics::bodies::Bodies;
 
 /// Smallest approach other than 0 \[mm\], and smallest load \[N\]. They are far below any real ones, and their powers do
 /// not underflow.
@@ -61,10 +62,10 @@ pub fn echo(scene: &Scene, name: &str) -> Echo {
 /// Returns the formats to write, and the size of the triangle mesh. If the scene names no formats, these are all but PNG and
 /// those for finite elements.
 fn outputs(scene: &Scene) -> Result<Outputs> {
-    use OutputFormat::{Conform, Contact, Countact, Html, Netcdf, Npy, Text, Vtk};
     let named = scene.output.formats.clone();
     let required = named.is_some();
-    let formats = named.unwrap_or_else(|| vec![Vtk, Npy, Netcdf, Text, Conform, Countact, Contact, Html]);
+    let unasked = || OutputFormat::ALL.iter().copied().filter(|format| format.unasked()).collect();
+    let formats = named.unwrap_or_else(unasked);
     let mesh_size = scene.mesh.size.map(checked_size).transpose()?;
     Ok(Outputs { formats, required, mesh_size })
 }
@@ -158,11 +159,11 @@ fn checked(key: &str, value: f64, by: ApproachBy) -> Result<ApproachBy> {
 /// # Errors
 /// A modulus that is not positive; a Poisson's ratio beyond (−1, 0.5\].
 pub fn modulus(material: &MaterialData) -> Result<f64> {
-    let [rail, wheel] = elastic(material)?;
+    let Bodies { rail, wheel } = elastic(material)?;
     Ok(effective_modulus(&rail, &wheel))
 }
 
-fn elastic(material: &MaterialData) -> Result<[Elastic; 2]> {
+fn elastic(material: &MaterialData) -> Result<Bodies<Elastic>> {
     let body = |name: &str, youngs_modulus: f64, poissons_ratio: f64| {
         let place = |key: &str| format!("material: {name}_{key}");
         if !(youngs_modulus > 0.0 && youngs_modulus.is_finite()) {
@@ -175,10 +176,10 @@ fn elastic(material: &MaterialData) -> Result<[Elastic; 2]> {
         }
         Ok(Elastic { youngs_modulus, poissons_ratio })
     };
-    Ok([
-        body("rail", material.rail_youngs_modulus, material.rail_poissons_ratio)?,
-        body("wheel", material.wheel_youngs_modulus, material.wheel_poissons_ratio)?,
-    ])
+    Ok(Bodies {
+        rail: body("rail", material.rail_youngs_modulus, material.rail_poissons_ratio)?,
+        wheel: body("wheel", material.wheel_youngs_modulus, material.wheel_poissons_ratio)?,
+    })
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! The accuracy ladder, and how each of its methods fills a grid.
 
 use rayon::prelude::*;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::axis::EtaAxis;
@@ -29,7 +28,8 @@ const BLOCK: usize = MANY;
 const FEW_POINTS: [usize; 2] = [65536, 4096];
 
 /// The methods of the accuracy ladder, from the simplest formula to the historical baseline.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "files", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
     /// Second-order expansion of s at C (Hertz).

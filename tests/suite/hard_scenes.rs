@@ -150,7 +150,7 @@ fn a_place_is_merged_or_a_near_miss_but_not_both() {
         "contact": {"offset": -3.196_054_690_368_523_4, "within": 0.3},
         "patch": {"load": 54778.0}, "output": {"formats": []}
     });
-    let found = run(&scene).parts[0].site.found.clone().expect("a place that was found");
+    let found = run(&scene).parts[0].site.contact.found.clone().expect("a place that was found");
     assert!(!found.merged.is_empty(), "{found:?}");
     assert!(found.near_misses.iter().all(|place| !found.merged.contains(place)), "{found:?}");
 }

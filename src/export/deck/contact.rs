@@ -8,6 +8,8 @@
 use super::super::block::Block;
 use super::number::{Field, WIDTH};
 use super::text::{Deck, Lattice, line};
+use crate::load::Elastic;
+use crate::numerics::bodies::Bodies;
 use crate::placement::Creepages;
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -30,10 +32,8 @@ pub enum Prescribed {
 pub struct ContactSettings {
     /// Prescribed force or approach.
     pub normal: Prescribed,
-    /// Poisson's ratios of rail and wheel, typically 0.28.
-    pub poisson: [f64; 2],
-    /// Shear moduli of rail and wheel \[N/mm²\], typically 82,000.
-    pub shear_modulus: [f64; 2],
+    /// Elastic constants of rail and wheel.
+    pub material: Bodies<Elastic>,
     /// Coefficients of friction, static and kinetic, typically 0.3; they do not enter the normal problem.
     pub friction: [f64; 2],
     /// Creepages of steady rolling; `None` asks for the normal problem alone, without friction.
@@ -43,8 +43,8 @@ pub struct ContactSettings {
 impl ContactSettings {
     /// Returns the settings for steel on steel without motion: E = 210,000 N/mm², ν = 0.28, friction 0.3.
     pub fn steel(normal: Prescribed) -> Self {
-        let shear = 210_000.0 / (2.0 * (1.0 + 0.28));
-        Self { normal, poisson: [0.28; 2], shear_modulus: [shear; 2], friction: [0.3; 2], creepages: None }
+        let material = Bodies { rail: Elastic::STEEL, wheel: Elastic::STEEL };
+        Self { normal, material, friction: [0.3; 2], creepages: None }
     }
 }
 
@@ -107,7 +107,8 @@ pub(super) fn control(grid: &Lattice, settings: &ContactSettings, reference: Ref
         Prescribed::Force(force) => (1, force),
         Prescribed::Approach(approach) => (0, approach),
     };
-    let ([nu_r, nu_w], [g_r, g_w]) = (settings.poisson, settings.shear_modulus);
+    let Bodies { rail: [nu_r, g_r], wheel: [nu_w, g_w] } =
+        settings.material.map(|body| [body.poissons_ratio, body.shear_modulus()]);
     let ([at_rest, sliding], tangential) =
         (settings.friction, if settings.creepages.is_some() { 3 } else { 0 });
     let mut text = format!(
@@ -155,10 +156,10 @@ pub(super) fn control(grid: &Lattice, settings: &ContactSettings, reference: Ref
 
 /// Gives CONTACT's Ak, by which a pressure moves surfaces sideways against each other; 0 for equal materials.
 fn dissimilarity(settings: &ContactSettings) -> f64 {
-    let [rail, wheel] = [0, 1].map(|k| (1.0 - 2.0 * settings.poisson[k]) / settings.shear_modulus[k]);
-    let [g_r, g_w] = settings.shear_modulus;
-    let mean = 2.0 / (g_r.recip() + g_w.recip());
-    mean / 4.0 * (rail - wheel)
+    let Bodies { rail, wheel } = settings.material;
+    let mean = 2.0 / (rail.shear_modulus().recip() + wheel.shear_modulus().recip());
+    let share = |body: Elastic| (1.0 - 2.0 * body.poissons_ratio) / body.shear_modulus();
+    mean / 4.0 * (share(rail) - share(wheel))
 }
 
 #[cfg(test)]
@@ -223,7 +224,8 @@ mod tests {
         let lines: Vec<_> = text.lines().filter(|line| !line.starts_with('%')).map(str::trim_start).collect();
         assert!(lines[1].starts_with("203100 ") && lines[2].starts_with("022020 "), "{text}");
         assert!(lines[4].starts_with("999 100 30 1 "), "{text}");
-        let soft = ContactSettings { poisson: [0.28, 0.27], ..rolling };
+        let soft = Elastic { poissons_ratio: 0.27, ..Elastic::STEEL };
+        let soft = ContactSettings { material: Bodies { wheel: soft, ..steel.material }, ..rolling };
         assert!(deck_with(&sample, &soft).contains("   999 100 30 20 1.0e-8 "), "dissimilar materials");
         assert!(lines[5].starts_with("80000.0 0.001 -0.002 0.0003 "), "{text}");
         assert!(lines[6].starts_with("0.4 0.3 "), "{text}");

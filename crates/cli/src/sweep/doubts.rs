@@ -61,10 +61,9 @@ impl Tally {
         let said: String = kinds
             .filter_map(|(kind, found)| {
                 let (value, lateral, side) = found.worst?;
-                let name = if side == TrackSide::Right { "right" } else { "left" };
                 let doubt = Doubt::of_contact(kind, value, radius(side));
                 let (word, count) = (kind.word(), found.positions);
-                Some(format!("; {word} at {count}, most at {lateral} mm, {name} side: {doubt}"))
+                Some(format!("; {word} at {count}, most at {lateral} mm, {side} side: {doubt}"))
             })
             .collect();
         let positions = counted(all, "position");

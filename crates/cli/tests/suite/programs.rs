@@ -95,6 +95,7 @@ fn check_decks(script: &str, dir: &Path) {
 /// Runs every reader on a folder of `wheelrail run` with all formats.
 pub fn check_run(dir: &Path) {
     check_all(dir);
+    check("check_ply.py", dir, &[]);
     check_decks("check_run.py", dir);
 }
 
