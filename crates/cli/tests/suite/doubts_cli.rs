@@ -78,7 +78,7 @@ fn hertz_s_pressure_is_left_out_where_the_half_space_decided() {
         assert_eq!(table.contains("estimated by Hertz"), by_hertz, "{table}");
         assert_eq!(table.contains("Hertz's pressure"), by_hertz, "{table}");
         let read = |name: &str| std::fs::read_to_string(folder.path().join("out").join(name)).unwrap();
-        assert_eq!(read("view.html").contains("Hertz p₀"), by_hertz, "{offset}");
+        assert_eq!(read("view.html").contains("Hertz's pressure"), by_hertz, "{offset}");
         let summary: serde_json::Value = serde_json::from_str(&read("summary.json")).unwrap();
         let ellipse = &summary["hertz_ellipse"];
         assert!(
