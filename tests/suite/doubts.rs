@@ -116,7 +116,7 @@ fn wrong_units_signs_and_origins_are_spoken_of_with_their_number() -> Result<()>
             "approach = 8e-5",
             "an approach of 8e-5 mm, which would be 0.08 mm if it were in m: wheels",
         ),
-        ("lateral = 0.0", "lateral = 9.0", "the wheel's tread is"),
+        ("lateral = 0.0", "lateral = 10.0", "the wheel's tread is"),
     ];
     for (was, is, expected) in cases {
         let found = warnings(&wheelset(was, is), Path::new("."))?;
