@@ -154,7 +154,8 @@ fn files_say_that_a_contact_is_infeasible_or_a_mirror_image() {
                     [track]\ngauge = 1435.0\n[wheelset]\nback_to_back = 1360.0\nflange_back_x = -70.0\n\
                     lateral = 1.0\n[patch]\napproach = 0.05\n";
     // An infeasible contact has no mesh of its patch.
-    let cases = [(chosen, "", "infeasible contact", None), (wheelset, "left", "mirror image", Some("patch.vtu"))];
+    let cases =
+        [(chosen, "", "infeasible contact", None), (wheelset, "left", "mirror image", Some("patch.vtu"))];
     for (text, folder, said, mesh) in cases {
         let run = computed(text).expect("a contact");
         let home = tempfile::tempdir().expect("a folder");
