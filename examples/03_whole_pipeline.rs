@@ -5,8 +5,8 @@
 
 use std::path::Path;
 
-use wheelrail::case::{Run, SILENT, write};
-use wheelrail::files::{Folder, RUN_FOLDER};
+use wheelrail::case::{RUN_FOLDER, Run, SILENT, write};
+use wheelrail::files::Folder;
 use wheelrail::scene;
 
 fn main() -> wheelrail::Result<()> {

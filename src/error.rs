@@ -8,8 +8,10 @@ use std::sync::Arc;
 pub enum ErrorKind {
     /// The input is malformed, contradictory or impossible.
     Input,
-    /// The bodies do not lie as the input supposes. Examples: a point off its profile, a wheel beside its rail.
+    /// The bodies do not lie as the input supposes: a point is off its profile, for example.
     Geometry,
+    /// A wheel stands where it touches nothing.
+    NoContact,
     /// A disk or a stream did not do what it was asked.
     Io,
     /// The input asks for more than the program computes or reads: points, cells, bytes.

@@ -86,6 +86,7 @@ pub use load::{Feasibility, feasibility};
 pub use mesh::{Axes, StripCounts, StripMesh};
 /// Points, normals, rotations and frames of the public API are of this version of nalgebra.
 pub use nalgebra;
+pub use numerics::bodies::Bodies;
 pub use patch::{Component, Patch, Window};
 pub use placement::{Body, Pair, Placement, RailDistance, WheelDistance};
 pub use profile::{Arc, Half, Polynomial, Profile, Segment, Shape, Side, Station, inclination, standards};

@@ -1,8 +1,85 @@
 //! The table of a sweep in columns.
 
+use std::fmt::Write;
+
+use super::doubts::DoubtSet;
 use super::input::ApproachBy;
 use crate::load::curvatures_at;
 use crate::search::{Contact, SweepRow, TrackSide};
+
+/// A column of the table of a sweep. The command line's text and Python's arrays read the one list, [`COLUMNS`].
+pub struct Column {
+    /// Its name, with the unit.
+    pub name: &'static str,
+    stands: Stands,
+    values: Values,
+}
+
+/// Where a column stands.
+#[derive(PartialEq)]
+enum Stands {
+    Both,
+    Arrays,
+    Text,
+}
+
+/// The values of a column.
+enum Values {
+    Position,
+    Side,
+    Contact,
+    Kink,
+    Doubt,
+    /// Numbers of a row and of the semi-axes of its ellipse, NaN where there is none; the flag tells whether the text then
+    /// has an empty cell.
+    Number(fn(&SweepRow, [f64; 2]) -> f64, bool),
+}
+
+/// The columns of the table, in their order.
+pub const COLUMNS: [Column; 23] = [
+    Column { name: "position", stands: Stands::Arrays, values: Values::Position },
+    number("lateral_mm", |row, _| row.lateral),
+    number("yaw_rad", |row, _| row.yaw),
+    number("roll_rad", |row, _| row.roll),
+    Column { name: "side", stands: Stands::Both, values: Values::Side },
+    Column { name: "contact", stands: Stands::Both, values: Values::Contact },
+    number("z_mm", |row, _| row.z),
+    number("rail_x_mm", |row, _| row.contact.rail_x),
+    number("wheel_x_mm", |row, _| row.contact.wheel_x),
+    number("y_mm", |row, _| row.contact.y),
+    number("contact_angle_rad", |row, _| row.contact.contact_angle),
+    number("rolling_radius_mm", |row, _| row.contact.rolling_radius),
+    number("delta_r_mm", |row, _| row.delta_r),
+    perhaps("conicity", |row, _| row.conicity.map_or(f64::NAN, |found| found.conicity)),
+    Column {
+        stands: Stands::Arrays,
+        ..number("conicity_error", |row, _| row.conicity.map_or(f64::NAN, |found| found.error))
+    },
+    number("gap_mm", |row, _| row.contact.gap),
+    number("skew_rad", |row, _| row.contact.skew),
+    number("rail_curvature_per_mm", |row, _| row.contact.rail_curvature),
+    number("wheel_curvature_per_mm", |row, _| row.contact.wheel_curvature),
+    Column { name: "kink", stands: Stands::Both, values: Values::Kink },
+    perhaps("hertz_xi_mm", |_, [xi, _]| xi),
+    perhaps("hertz_eta_mm", |_, [_, eta]| eta),
+    Column { name: "doubt", stands: Stands::Text, values: Values::Doubt },
+];
+
+const fn number(name: &'static str, of: fn(&SweepRow, [f64; 2]) -> f64) -> Column {
+    Column { name, stands: Stands::Both, values: Values::Number(of, false) }
+}
+
+/// A number whose cell is empty where there is none.
+const fn perhaps(name: &'static str, of: fn(&SweepRow, [f64; 2]) -> f64) -> Column {
+    Column { name, stands: Stands::Both, values: Values::Number(of, true) }
+}
+
+impl Column {
+    /// Tells whether it holds numbers that are not whole.
+    pub fn is_number(&self) -> bool {
+        matches!(self.values, Values::Number(..))
+    }
+}
 
 /// Contacts of a wheelset at many positions, a row each; all columns have the same length.
 ///
@@ -18,43 +95,36 @@ pub struct Columns {
     pub contact: Vec<u32>,
     /// Whether a body touches with a kink, step or end.
     pub kink: Vec<bool>,
-    /// The quantities, in the order of [`Columns::QUANTITIES`].
-    pub quantities: [Vec<f64>; Columns::QUANTITIES.len()],
+    /// What is doubtful about the contact.
+    pub doubt: Vec<DoubtSet>,
+    /// The numbers, in the order of [`COLUMNS`]; empty for columns without.
+    pub numbers: [Vec<f64>; COLUMNS.len()],
 }
 
-/// What a row says of a contact, in the order of the columns.
-type Quantities = [f64; Columns::QUANTITIES.len()];
+/// One column as an array.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ColumnArray {
+    /// Numbers of positions.
+    Positions(Vec<u64>),
+    /// Yes or no.
+    Flags(Vec<bool>),
+    /// Numbers of contacts.
+    Counts(Vec<u32>),
+    /// Lengths, angles and the like.
+    Numbers(Vec<f64>),
+}
 
 impl Columns {
-    /// Names of the quantities, each with its unit.
-    pub const QUANTITIES: [&'static str; 18] = [
-        "lateral_mm",
-        "yaw_rad",
-        "roll_rad",
-        "z_mm",
-        "rail_x_mm",
-        "wheel_x_mm",
-        "y_mm",
-        "contact_angle_rad",
-        "rolling_radius_mm",
-        "delta_r_mm",
-        "conicity",
-        "conicity_error",
-        "gap_mm",
-        "skew_rad",
-        "rail_curvature_per_mm",
-        "wheel_curvature_per_mm",
-        "hertz_xi_mm",
-        "hertz_eta_mm",
-    ];
-
     /// Makes room for so many more rows.
     pub fn reserve(&mut self, rows: usize) {
         self.position.reserve(rows);
         self.right.reserve(rows);
         self.contact.reserve(rows);
         self.kink.reserve(rows);
-        self.quantities.iter_mut().for_each(|column| column.reserve(rows));
+        self.doubt.reserve(rows);
+        for (column, numbers) in COLUMNS.iter().zip(&mut self.numbers) {
+            numbers.reserve(if column.is_number() { rows } else { 0 });
+        }
     }
 
     /// Gives the number of rows.
@@ -62,21 +132,32 @@ impl Columns {
         self.position.len()
     }
 
-    /// Gives the column of a quantity; `None` of an unknown one.
+    /// Gives the numbers of a column; `None` of an unknown one.
     pub fn quantity(&self, name: &str) -> Option<&[f64]> {
-        let index = Self::QUANTITIES.iter().position(|known| *known == name)?;
-        Some(&self.quantities[index])
+        let index = COLUMNS.iter().position(|column| column.is_number() && column.name == name)?;
+        Some(&self.numbers[index])
     }
 
     /// Appends the row of a contact at the position with this number; `ellipse` is approach or load, and E* \[N/mm²\], of
     /// Hertz's ellipses.
-    pub fn push(&mut self, position: usize, row: &SweepRow, ellipse: Option<(ApproachBy, f64)>) {
+    pub fn push(
+        &mut self,
+        position: usize,
+        row: &SweepRow,
+        ellipse: Option<(ApproachBy, f64)>,
+        doubt: DoubtSet,
+    ) {
         self.position.push(position as u64);
         self.right.push(row.side == TrackSide::Right);
         self.contact.push(row.number as u32 + 1);
         self.kink.push(row.contact.kink());
-        for (column, value) in self.quantities.iter_mut().zip(quantities(row, ellipse)) {
-            column.push(value);
+        self.doubt.push(doubt);
+        let axes = ellipse.and_then(|by| semi_axes(&row.contact, row.side == TrackSide::Left, by));
+        let axes = axes.unwrap_or([f64::NAN; 2]);
+        for (column, numbers) in COLUMNS.iter().zip(&mut self.numbers) {
+            if let Values::Number(of, _) = column.values {
+                numbers.push(of(row, axes));
+            }
         }
     }
 
@@ -86,7 +167,8 @@ impl Columns {
         self.right.clear();
         self.contact.clear();
         self.kink.clear();
-        self.quantities.iter_mut().for_each(Vec::clear);
+        self.doubt.clear();
+        self.numbers.iter_mut().for_each(Vec::clear);
     }
 
     /// Appends the rows of another table.
@@ -95,37 +177,58 @@ impl Columns {
         self.right.extend_from_slice(&other.right);
         self.contact.extend_from_slice(&other.contact);
         self.kink.extend_from_slice(&other.kink);
-        for (column, more) in self.quantities.iter_mut().zip(&other.quantities) {
-            column.extend_from_slice(more);
+        self.doubt.extend_from_slice(&other.doubt);
+        for (numbers, more) in self.numbers.iter_mut().zip(&other.numbers) {
+            numbers.extend_from_slice(more);
         }
     }
-}
 
-fn quantities(row: &SweepRow, ellipse: Option<(ApproachBy, f64)>) -> Quantities {
-    let c = &row.contact;
-    let [conicity, error] = row.conicity.map_or([f64::NAN; 2], |found| [found.conicity, found.error]);
-    let [xi, eta] =
-        ellipse.and_then(|by| semi_axes(c, row.side == TrackSide::Left, by)).unwrap_or([f64::NAN; 2]);
-    [
-        row.lateral,
-        row.yaw,
-        row.roll,
-        row.z,
-        c.rail_x,
-        c.wheel_x,
-        c.y,
-        c.contact_angle,
-        c.rolling_radius,
-        row.delta_r,
-        conicity,
-        error,
-        c.gap,
-        c.skew,
-        c.rail_curvature,
-        c.wheel_curvature,
-        xi,
-        eta,
-    ]
+    /// Gives the first line of the table as CSV: the names of its columns.
+    pub fn csv_head() -> String {
+        let names = COLUMNS.iter().filter(|column| column.stands != Stands::Arrays);
+        format!("{}\n", names.map(|column| column.name).collect::<Vec<_>>().join(","))
+    }
+
+    /// Appends all rows as CSV, in the shortest digits that read back as the same numbers.
+    pub fn append_csv(&self, out: &mut String) {
+        for row in 0..self.rows() {
+            let cells = COLUMNS.iter().zip(&self.numbers);
+            for (k, (column, numbers)) in
+                cells.filter(|(column, _)| column.stands != Stands::Arrays).enumerate()
+            {
+                if k > 0 {
+                    out.push(',');
+                }
+                // Writing to a String cannot fail.
+                let _ = match column.values {
+                    Values::Position => write!(out, "{}", self.position[row]),
+                    Values::Side => out.write_str(if self.right[row] { "right" } else { "left" }),
+                    Values::Contact => write!(out, "{}", self.contact[row]),
+                    Values::Kink => write!(out, "{}", u8::from(self.kink[row])),
+                    Values::Doubt => write!(out, "{}", self.doubt[row]),
+                    Values::Number(_, true) if numbers[row].is_nan() => Ok(()),
+                    Values::Number(..) => write!(out, "{}", numbers[row]),
+                };
+            }
+            out.push('\n');
+        }
+    }
+
+    /// Gives the columns as arrays with their names, in order; the sides are flags, `right`.
+    pub fn into_arrays(mut self) -> Vec<(&'static str, ColumnArray)> {
+        let mut out = Vec::new();
+        for (column, numbers) in COLUMNS.iter().zip(self.numbers) {
+            out.push(match column.values {
+                Values::Position => (column.name, ColumnArray::Positions(std::mem::take(&mut self.position))),
+                Values::Side => ("right", ColumnArray::Flags(std::mem::take(&mut self.right))),
+                Values::Contact => (column.name, ColumnArray::Counts(std::mem::take(&mut self.contact))),
+                Values::Kink => (column.name, ColumnArray::Flags(std::mem::take(&mut self.kink))),
+                Values::Number(..) => (column.name, ColumnArray::Numbers(numbers)),
+                Values::Doubt => continue,
+            });
+        }
+        out
+    }
 }
 
 /// Gives the semi-axes \[mm\] of Hertz's ellipse nearest to ξ and to η; `None` at kinks, and where s is not convex.

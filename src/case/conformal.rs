@@ -86,11 +86,15 @@ pub(super) fn turning_warning(
     // A tip under skew is off the midplane; the gaps compare there as well.
     let s = Evaluator::new(placement).separation(at.xi, 0.0);
     let t = gap.gap(at.sigma, 0.0);
+    let own = if t.is_nan() {
+        "the rail's own meets no wheel".into()
+    } else {
+        format!("along the rail's own {t:.4e} mm ({:+.1} %)", 100.0 * (s - t) / t)
+    };
     Some(format!(
         "the rail's normal turns by {:.1} degrees within the patch: at xi = {:.3} mm the gap along the fixed normal is {s:.4e} mm, \
-         along the rail's own {t:.4e} mm ({:+.1} %); a conformal solver needs grid.reference = \"rail\"",
+         {own}; a conformal solver needs grid.reference = \"rail\"",
         turn.to_degrees(),
         at.xi,
-        100.0 * (s - t) / t
     ))
 }

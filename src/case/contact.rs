@@ -4,6 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use serde::Serialize;
 
+use super::found::Found;
 use super::wheel::Region;
 use crate::error::{Error, Result};
 use crate::load::{Curvatures, Ellipse, Estimate, Feasibility, curvatures, feasibility};
@@ -23,6 +24,8 @@ pub enum EllipseUnder {
 /// The contact point, its feasibility, curvatures and approach.
 #[derive(Debug, Clone)]
 pub struct PlacedContact {
+    /// How the contact was found; `None` for a chosen one.
+    pub found: Option<Found>,
     /// The placed pair.
     pub placement: Placement,
     /// Whether s ≥ 0 everywhere (4.1), with the least s.
@@ -57,6 +60,7 @@ impl PlacedContact {
         let curvatures = curvatures(&placement);
         let ellipse = approach.and_then(|approach| curvatures.under_approach(approach, modulus));
         Ok(Self {
+            found: None,
             placement,
             feasibility,
             curvatures,
@@ -84,6 +88,16 @@ impl PlacedContact {
         (contact.normal_loads, contact.load_s) = (loads, load_s);
         contact.whole_patch = OnceLock::from(patch);
         Ok(contact)
+    }
+
+    /// Gives the same contact with how it was found.
+    pub(super) fn found_as(self, found: Found) -> Self {
+        Self { found: Some(found), ..self }
+    }
+
+    /// Names the contact as messages call it: by side and number, or "contact" for a chosen one.
+    pub fn name(&self) -> String {
+        self.found.as_ref().map_or_else(|| "contact".into(), Found::name)
     }
 
     /// Gives the patch over the whole plane, found once; `None` without an approach.

@@ -1,99 +1,227 @@
-//! What is possible in a result but seldom meant: each doubt with its number and its likely cause.
+//! Doubts: what is possible in a scene or a result but seldom meant, each with its number and its likely cause.
 
-use super::input::{Case, Place};
-use super::site::Site;
-use crate::placement::Placement;
-use crate::profile::{Profile, Shape, Station, trace};
+use std::fmt;
 
-/// Approaches beyond this \[mm\] are no elastic ones: steel yields at a tenth of it.
-const LARGE_APPROACH: f64 = 1.0;
+use serde::Serialize;
 
-/// Largest difference of the tangents at chosen points that is not spoken of \[degrees\]: wheels roll by less.
-const TILT: f64 = 2.0;
-
-/// Largest difference of a tread's rolling radius from the nominal one that is not spoken of \[mm\].
-const RADIUS_OFF: f64 = 15.0;
-
-/// Contact angles below this \[degrees\] are those of treads.
-const TREAD: f64 = 20.0;
-
-/// Depth of the lowest point below the profile's origin from which on it is a flange's tip \[mm\].
-const FLANGE: f64 = 10.0;
-
-/// Height above the lowest point up to which a contact is on the tip \[mm\].
-const TIP: f64 = 2.0;
-
-/// Lists what is doubtful about a contact and its approach.
-pub(super) fn doubts_of(site: &Site) -> Vec<String> {
-    let placement = &site.contact.placement;
-    [flange(placement), approach(site), rolling_radius(placement)].into_iter().flatten().collect()
+/// What a doubt is about. Runs, sweeps and the page on sweeps read this one list.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DoubtKind {
+    /// The wheel stands on the tip of its flange.
+    FlangeTip,
+    /// The wheel stands on the back of its flange.
+    FlangeBack,
+    /// The wheel's tread is far above the top of the rail.
+    Lifted,
+    /// The wheel touches beyond the part of the tread that runs on rails.
+    BeyondTread,
+    /// The rolling radius on the tread is far from the nominal one.
+    RollingRadius,
+    /// The approach is larger or smaller than any elastic one.
+    Approach,
+    /// The tangents at chosen points differ.
+    Tilt,
+    /// A profile is turned by more than any inclination.
+    Inclination,
+    /// A rail is inclined away from the middle of the track.
+    Outwards,
+    /// A yaw or roll is larger than those of wheelsets.
+    Angle,
+    /// A load is smaller than the weight of any wheel.
+    Load,
+    /// Young's modulus is no metal's.
+    Modulus,
+    /// The nominal radius is no railway wheel's.
+    Radius,
+    /// The gauge does not go with the distance of the flange backs.
+    Gauge,
+    /// The gauge is measured elsewhere than below the running surface.
+    GaugeHeight,
+    /// The profile has its flange back elsewhere than the scene says.
+    FlangeBackX,
+    /// The wheel has its flange at the field side.
+    FlangeSide,
+    /// Two drawn segments meet at a kink.
+    Kink,
+    /// The wheelset is faster than any train.
+    Speed,
 }
 
-/// Lists what is doubtful about the way that bodies are placed.
-pub(super) fn doubts_of_placing(case: &Case, site: &Site) -> Vec<String> {
-    let Place::Points { .. } = case.standing.place else { return Vec::new() };
-    let placement = &site.contact.placement;
-    let angles = [placement.rail(), placement.wheel()].map(|body| body.contact_angle().to_degrees());
-    let tilt = angles[0] - angles[1];
-    let text = format!(
-        "contact: the tangents at rail_x and wheel_x differ by {tilt:.2} degrees: the wheel is tilted by as much to touch there; \
-         [contact] offset finds the points at which it touches upright"
-    );
-    Vec::from_iter((tilt.abs() > TILT).then_some(text))
-}
+impl DoubtKind {
+    /// All kinds.
+    pub const ALL: [Self; 19] = [
+        Self::FlangeTip,
+        Self::FlangeBack,
+        Self::Lifted,
+        Self::BeyondTread,
+        Self::RollingRadius,
+        Self::Approach,
+        Self::Tilt,
+        Self::Inclination,
+        Self::Outwards,
+        Self::Angle,
+        Self::Load,
+        Self::Modulus,
+        Self::Radius,
+        Self::Gauge,
+        Self::GaugeHeight,
+        Self::FlangeBackX,
+        Self::FlangeSide,
+        Self::Kink,
+        Self::Speed,
+    ];
 
-fn flange(placement: &Placement) -> Option<String> {
-    let tip = lowest(placement.wheel().profile())?;
-    let at = placement.wheel().point().station;
-    if tip.z > -FLANGE {
-        return None;
+    /// The kinds about a place of contact: those that a sweep names at each position.
+    pub const OF_CONTACT: [Self; 5] =
+        [Self::FlangeTip, Self::FlangeBack, Self::Lifted, Self::BeyondTread, Self::RollingRadius];
+
+    /// Gives the word that stands for the kind in tables.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::FlangeTip => "flange-tip",
+            Self::FlangeBack => "flange-back",
+            Self::Lifted => "lifted",
+            Self::BeyondTread => "beyond-tread",
+            Self::RollingRadius => "rolling-radius",
+            Self::Approach => "approach",
+            Self::Tilt => "tilt",
+            Self::Inclination => "inclination",
+            Self::Outwards => "outwards",
+            Self::Angle => "angle",
+            Self::Load => "load",
+            Self::Modulus => "modulus",
+            Self::Radius => "radius",
+            Self::Gauge => "gauge",
+            Self::GaugeHeight => "gauge-height",
+            Self::FlangeBackX => "flange-back-x",
+            Self::FlangeSide => "flange-side",
+            Self::Kink => "kink",
+            Self::Speed => "speed",
+        }
     }
-    let place = if at.z < tip.z + TIP {
-        "tip"
-    } else if at.x < tip.x {
-        "back"
-    } else {
-        return None;
-    };
-    Some(format!(
-        "the wheel stands on the {place} of its flange, x = {:.2} mm on the wheel: check the offset, the gauge, the side that the \
-         profiles' x points to (mirror), and the origin (a wheel measured from its flange back needs shift = [-70.0, 0.0])",
-        at.x
-    ))
-}
 
-/// Gives the lowest point of a profile, to a few tenths of a millimetre.
-fn lowest(profile: &Profile) -> Option<Station> {
-    let stations = profile.segments().iter().flat_map(|segment| match &segment.shape {
-        Shape::Arc(arc) => [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| arc.station_at(share)).to_vec(),
-        Shape::Polynomial(_) => vec![segment.start(), segment.end()],
-    });
-    stations.min_by(|a, b| a.z.total_cmp(&b.z))
-}
-
-fn approach(site: &Site) -> Option<String> {
-    let (approach, _) = site.contact.approach?;
-    if approach <= LARGE_APPROACH {
-        return None;
+    /// Gives the likely cause, and what to look at.
+    pub fn cause(self) -> &'static str {
+        match self {
+            Self::FlangeTip | Self::FlangeBack => {
+                "check the offset, the gauge, the side that the profiles' x points to (mirror), and the origin (a wheel \
+                 measured from its flange back needs shift = [-70.0, 0.0])"
+            }
+            Self::Lifted => {
+                "the wheel stands on its flange: check the lateral displacement, gauge and back_to_back, and the origins of \
+                 measured profiles"
+            }
+            Self::BeyondTread => {
+                "treads run on their first 90 mm: check the offset, or gauge, back_to_back and flange_back_x"
+            }
+            Self::RollingRadius => {
+                "R is measured to the profile's origin, which some drawings (APTA) have at the gauge point and instruments at \
+                 the flange; give the radius there, or move the profile by shift or origin"
+            }
+            Self::Approach => {
+                "wheels and rails approach each other by 0.05 to 0.2 mm; check the unit, mm for an approach and N for a load"
+            }
+            Self::Tilt => {
+                "the wheel is tilted by as much to touch there; [contact] offset finds the points at which it touches upright"
+            }
+            Self::Inclination => "angles are in rad, and inclinations like \"1:40\"",
+            Self::Outwards => {
+                "rails are inclined towards the middle of the track, where x is negative: \"1:40\" does it; a profile whose x \
+                 points to the middle needs mirror = true"
+            }
+            Self::Angle => "wheelsets turn by less than 2; angles are in rad",
+            Self::Load => "loads are in N, not in kN",
+            Self::Modulus => "steel has 2.1e5; it looks like GPa or Pa",
+            Self::Radius => "R is half of the diameter at the tread, in mm",
+            Self::Gauge => {
+                "gauge and back_to_back of one railway differ by 50 to 85 mm (1435 and 1360, 1520 and 1440, 1000 and 925): \
+                 check that both are of the same one, and not swapped"
+            }
+            Self::GaugeHeight => "the gauge is measured 9 to 16 mm below the top of rail; check the unit, mm",
+            Self::FlangeBackX => {
+                "measured profiles have the origin of their instrument: give the abscissa of the back, or origin = \"tape-line\", \
+                 which puts it at -70"
+            }
+            Self::FlangeSide => {
+                "x points to the field side, and flanges are at negative x: mirror = true for a profile whose x points to the \
+                 middle of the track"
+            }
+            Self::Kink => "check their ends, unless the corner is meant",
+            Self::Speed => "speeds are in m/s, not in km/h",
+        }
     }
-    let marks = trace(site.contact.placement.rail().profile(), 1.0);
-    let heights = || marks.iter().map(|mark| mark.station.z);
-    let height = heights().fold(f64::NEG_INFINITY, f64::max) - heights().fold(f64::INFINITY, f64::min);
-    let beyond = if approach > height { ", more than the rail's profile is high" } else { "" };
-    Some(format!(
-        "an approach of {approach:.4} mm{beyond}: wheels and rails approach each other by 0.05 to 0.2 mm; check the unit, mm for an \
-         approach and N for a load"
-    ))
 }
 
-fn rolling_radius(placement: &Placement) -> Option<String> {
-    let (rolling, nominal) = (placement.rolling_radius(), placement.wheel_radius());
-    let tread = placement.rail().contact_angle().to_degrees().abs() < TREAD;
-    (tread && (rolling - nominal).abs() > RADIUS_OFF).then(|| {
-        format!(
-            "the rolling radius, {rolling:.2} mm, differs by {:.2} mm from wheel.radius: R is measured to the profile's origin, which \
-             some drawings (APTA) have at the gauge point; give the radius there, or move the profile by shift or origin",
-            rolling - nominal
-        )
-    })
+/// The doubts about a place of contact: a number \[mm\] for each kind of [`DoubtKind::OF_CONTACT`], `None` where there is none.
+///
+/// The numbers are x on the wheel of a contact on tip or back, the height of the tread over the rail, the distance from the
+/// tip, and the rolling radius less the nominal one.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ContactDoubts(pub(super) [Option<f64>; DoubtKind::OF_CONTACT.len()]);
+
+impl ContactDoubts {
+    /// Lists the doubts with their numbers \[mm\].
+    pub fn list(self) -> impl Iterator<Item = (DoubtKind, f64)> {
+        DoubtKind::OF_CONTACT.into_iter().zip(self.0).filter_map(|(kind, value)| Some((kind, value?)))
+    }
+
+    /// Gives the kinds without their numbers.
+    pub fn kinds(self) -> DoubtSet {
+        let bits = self.0.iter().enumerate().map(|(k, value)| u8::from(value.is_some()) << k);
+        DoubtSet(bits.fold(0, |set, bit| set | bit))
+    }
+}
+
+/// A set of kinds of [`DoubtKind::OF_CONTACT`].
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct DoubtSet(u8);
+
+impl fmt::Display for DoubtSet {
+    /// Writes the words of the kinds, a space between two; nothing for the empty set.
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let kinds = DoubtKind::OF_CONTACT.into_iter().enumerate();
+        for (n, (_, kind)) in kinds.filter(|(k, _)| self.0 >> k & 1 == 1).enumerate() {
+            write!(f, "{}{}", if n > 0 { " " } else { "" }, kind.word())?;
+        }
+        Ok(())
+    }
+}
+
+/// A doubt with its number.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Doubt {
+    /// What it is about.
+    pub kind: DoubtKind,
+    /// What was found, with its number and its place in the scene.
+    pub found: String,
+}
+
+impl Doubt {
+    /// Makes a doubt.
+    pub(crate) fn new(kind: DoubtKind, found: impl Into<String>) -> Self {
+        Self { kind, found: found.into() }
+    }
+
+    /// Says a doubt of [`ContactDoubts::list`] for a wheel of a nominal radius \[mm\].
+    pub fn of_contact(kind: DoubtKind, value: f64, radius: f64) -> Self {
+        let on_wheel = format!("x = {value:.2} mm on the wheel");
+        let found = match kind {
+            DoubtKind::FlangeTip => format!("the wheel stands on the tip of its flange, {on_wheel}"),
+            DoubtKind::FlangeBack => format!("the wheel stands on the back of its flange, {on_wheel}"),
+            DoubtKind::Lifted => format!("the wheel's tread is {value:.2} mm above the top of the rail"),
+            DoubtKind::BeyondTread => format!("the wheel touches {value:.2} mm from the tip of its flange"),
+            _ => {
+                let rolling = radius + value;
+                format!("the rolling radius, {rolling:.2} mm, differs by {value:.2} mm from wheel.radius")
+            }
+        };
+        Self::new(kind, found)
+    }
+}
+
+impl fmt::Display for Doubt {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{}: {}", self.found, self.kind.cause())
+    }
 }

@@ -2,6 +2,7 @@
 
 use nalgebra::Point3;
 
+use super::found::Found;
 use super::run::Part;
 use super::site::ends;
 use crate::export::{Frame, Header, Loop, Nodes, PatchPicture, PicturedContact, QuadMesh, SEPARATOR};
@@ -9,6 +10,7 @@ use crate::mesh::{StripMesh, equal_steps};
 use crate::patch::{Patch, Window};
 use crate::placement::Placement;
 use crate::profile::Section;
+use crate::search::TrackSide;
 use crate::separation::{Choice, Demand, EtaAxis, Evaluator, Method, Values};
 
 /// Points of a picture along ξ and along η: a line of equal separation is smooth to the eye, and C is among them where
@@ -127,11 +129,11 @@ pub(super) fn quads(strips: &StripMesh) -> QuadMesh {
 
 /// Tells the pictures of a run apart: by side and number of a contact that was found, or by the part of the patch.
 pub(super) fn contact_name(part: &Part) -> String {
-    match &part.site.found {
-        Some(found) if found.side == "single" => format!("contact {}", found.contact),
-        Some(found) => {
-            let mirrored = if found.side == "left" { ", mirrored" } else { "" };
-            format!("{} side{mirrored}{SEPARATOR}contact {}", found.side, found.contact)
+    match &part.site.contact.found {
+        Some(Found { side: None, contact, .. }) => format!("contact {contact}"),
+        Some(Found { side: Some(side), contact, .. }) => {
+            let mirrored = if *side == TrackSide::Left { ", mirrored" } else { "" };
+            format!("{side} side{mirrored}{SEPARATOR}contact {contact}")
         }
         None => part.site.folder.clone(),
     }

@@ -1,28 +1,29 @@
 //! Which files a run writes, and from what.
 
-use std::io::Write;
-
 use super::drawn::{Drawn, loops_of, quads};
-use super::elements::{elements, surface_mesh, surfaces_around, triangles};
-use super::in_place::write_in_place;
-use super::input::{OutputFormat, Outputs};
+use super::elements::{surface_mesh, surfaces_around, triangles};
+use super::formats::{Of, Writer};
+use super::in_place::in_place;
+use super::input::Outputs;
 use super::jobs::{Job, bytes, possible, stream, write_jobs};
 use super::on_rail::OnRail;
 use super::run::{COMPUTING, Part, Run, Tell};
+use super::site::cut_by;
 use super::summary::{Meshes, summary};
 use super::unrolled::Unrolled;
 use super::view::view;
 use crate::error::{Error, Result};
 use crate::export::{
-    ConformalPicture, ContactSettings, CurvedDeck, CurvedFields, Deck, Frame, GridFields, Header, Interval,
-    Loop, NetCdf, PatchPicture, Prescribed, QuadMesh, VIEW_SCRIPT, array_npy, boundary_csv, boundary_vtp,
-    conform_curved_wrp, conform_wrp, conformal_vts, contact_curved_inp, contact_inp, countact_wrp,
-    interpen_csv, interpen_sigma_csv, rail_vts, separation_vtk, separation_vts, separation_wrp, strips_vtu,
-    wheel_vts,
+    ConformalPicture, ContactSettings, CurvedDeck, CurvedFields, Deck, Frame, GridFields, Header, InPlace,
+    Interval, Loop, NetCdf, PatchMesh, PatchPicture, Prescribed, QuadMesh, SurfaceMesh, boundary_csv,
+    interpen_csv, interpen_sigma_csv,
 };
 use crate::files::Folder;
+use crate::mesh::Surface;
+use crate::patch::Slice;
 use crate::placement::Creepages;
 use crate::profile::Station;
+use crate::search::TrackSide;
 use crate::separation::midplane_table;
 
 /// Turns a picture's SVG into PNG. The library draws no pixels: a caller who wants them brings this.
@@ -33,14 +34,12 @@ pub type Rasterise = fn(&str) -> Result<Vec<u8>>;
 /// # Errors
 /// The disk's; a format that cannot hold the grid, where the case requires it; a case that asks for PNG without `png`.
 pub fn write(run: &Run, folder: &Folder, png: Option<Rasterise>, tell: Tell<'_>) -> Result<Vec<WrittenPart>> {
-    let mut in_place = write_in_place(run, folder)?;
     let all = run.parts.len() as f64;
     let one = |(k, part): (usize, &Part)| {
         let tell = |step: String, share: f64| {
             tell(step, COMPUTING + (1.0 - COMPUTING) * (k as f64 + share) / all);
         };
-        // They lie beside the first part's own files.
-        write_part(run, part, folder, std::mem::take(&mut in_place), png, &tell)
+        write_part(run, part, folder, png, &tell)
     };
     run.parts.iter().enumerate().map(one).collect()
 }
@@ -70,77 +69,44 @@ fn write_part(
     run: &Run,
     part: &Part,
     folder: &Folder,
-    in_place: Vec<String>,
     png: Option<Rasterise>,
     tell: Tell<'_>,
 ) -> Result<WrittenPart> {
     tell(format!("{}: files", part.site.name()), 0.0);
-    let (outputs, mut skipped) = (&run.case.outputs, Vec::new());
-    let header = header(run, part);
-    let rail = RailColumns::new(part);
-    let axes = &part.site.grid;
+    let (outputs, axes, mut skipped) = (&run.case.outputs, &part.site.grid, Vec::new());
+    let (header, rail, creepages) = (header(run, part), RailColumns::new(part), run.creepages(part)?);
     let grid = GridFields::new(&axes.xi, &axes.eta, &part.analysis.separation, &rail.height, &rail.normal)?;
-    let creepages = run.creepages(part)?;
     let on_rail = part.analysis.conformal.as_ref().map(|conformal| OnRail::new(&part.site, conformal));
     let curved = on_rail.as_ref().map(OnRail::fields).transpose()?;
-    let (decks_of, netcdf_of) = match &curved {
-        Some(_) => (&[][..], &[][..]),
-        None => (&OutputFormat::DECKS[..], &[OutputFormat::Netcdf][..]),
-    };
-    let deck = possible(outputs, "decks", decks_of, || Deck::new(&header, &grid), &mut skipped)?;
-    let netcdf = || NetCdf::new(&header, &grid);
-    let netcdf = possible(outputs, "separation.nc", netcdf_of, netcdf, &mut skipped)?;
-    let curved_deck = match &curved {
-        Some(curved) => {
-            OnRail::refuse(outputs, &mut skipped)?;
-            let formats = [OutputFormat::Conform, OutputFormat::Contact];
-            let deck = || CurvedDeck::new(&header, curved);
-            possible(outputs, "conform.wrp, contact.inp", &formats, deck, &mut skipped)?
-        }
-        None => None,
-    };
+    let gridded = Gridded::new(outputs, &header, &grid, curved.as_ref(), &mut skipped)?;
     let bodies = surfaces_around(outputs, part, &mut skipped)?;
-    let solids = bodies.as_ref().map(|bodies| bodies.each_ref().map(|body| surface_mesh(part, body)));
     let triangles = triangles(run, part, &mut skipped)?;
-    let loops = loops(part);
-    let strips = part.analysis.strips.as_ref().map(quads);
-    let drawn = Drawn::new(part);
-    let picture = drawn.picture(&header, [&axes.xi, &axes.eta], &loops);
-    let unrolled = Unrolled::new(part);
-    let unrolled = unrolled.as_ref().map(|unrolled| unrolled.picture(&header, &drawn));
-    let mut jobs: Vec<Job<'_>> = Vec::new();
-    tables(&mut jobs, part, &loops);
-    arrays(&mut jobs, outputs, part);
-    pictures(&mut jobs, outputs, (&picture, unrolled.as_ref()), png)?;
-    // One page shows all parts of the run; it lies with the first.
-    if outputs.any(&[OutputFormat::Html]) && run.parts.first().is_some_and(|first| std::ptr::eq(first, part))
-    {
-        bytes(&mut jobs, "view.html", || Ok(view(run).html()));
-    }
-    if outputs.any(&[OutputFormat::Vtk]) {
-        surfaces(&mut jobs, &header, &grid, &loops, strips.as_ref());
-    }
-    elements(&mut jobs, outputs, &header, triangles.as_ref(), solids.as_ref());
-    if let Some(netcdf) = &netcdf {
-        stream(&mut jobs, "separation.nc", move |file| netcdf.write(file));
-    }
-    if let (Some(on_rail), Some(curved)) = (&on_rail, &curved) {
-        surface_of_rail(&mut jobs, outputs, &header, (on_rail, curved));
-    }
-    if let Some(deck) = &curved_deck {
-        curved_decks(&mut jobs, outputs, deck, contact_settings(run, part, creepages));
-    }
-    if let Some(deck) = &deck {
-        let settings = contact_settings(run, part, creepages);
-        decks(&mut jobs, run, deck, strips.as_ref(), settings);
-    }
+    let (drawn, unrolled, loops) = (Drawn::new(part), Unrolled::new(part), loops(part));
+    // What shows all parts of the run lies with the first.
+    let first = run.parts.first().is_some_and(|first| std::ptr::eq(first, part));
+    let sources = Sources {
+        header: &header,
+        grid: &grid,
+        curved: curved.as_ref(),
+        gridded,
+        settings: contact_settings(run, part, creepages),
+        strips: part.analysis.strips.as_ref().map(quads),
+        surfaces: surfaces_of(part, triangles.as_ref(), bodies.as_ref()),
+        triangles: triangles.as_ref(),
+        in_place: (first && outputs.wants(Writer::is_in_place)).then(|| in_place(run)),
+        page: first.then_some(run),
+        picture: drawn.picture(&header, [&axes.xi, &axes.eta], &loops),
+        unrolled: unrolled.as_ref().map(|unrolled| unrolled.picture(&header, &drawn)),
+        png: rasterise(outputs, png)?,
+        loops: &loops,
+    };
+    let mut jobs = always(part, &sources, on_rail.as_ref());
+    jobs.extend(outputs.files().filter_map(|(name, writer)| job(name, writer, &sources)));
     let folder = folder.part(&part.site.folder)?;
-    let mut names = write_jobs(&jobs, &folder, |done| {
+    let names = write_jobs(&jobs, &folder, |done| {
         let step = format!("{}: {done} of {} files written", part.site.name(), jobs.len());
         tell(step, done as f64 / jobs.len() as f64);
     })?;
-    names.extend(in_place);
-    names.sort();
     let meshes = Meshes { bodies: bodies.as_ref(), patch: triangles.as_ref().map(|patch| &patch.mesh) };
     let summary = summary(run, part, &folder, creepages, meshes, &names, &skipped);
     let mut text = serde_json::to_vec_pretty(&summary).unwrap_or_default();
@@ -150,6 +116,164 @@ fn write_part(
     let files =
         names.map(|name| Ok(WrittenFile { size: folder.size(&name)?, name })).collect::<Result<_>>()?;
     Ok(WrittenPart { folder: part.site.folder.clone(), files, summary })
+}
+
+/// What the files of a part are written from.
+struct Sources<'a> {
+    header: &'a Header,
+    grid: &'a GridFields<'a>,
+    curved: Option<&'a CurvedFields<'a>>,
+    gridded: Gridded<'a>,
+    settings: Option<ContactSettings>,
+    loops: &'a [Loop],
+    strips: Option<QuadMesh>,
+    triangles: Option<&'a PatchMesh>,
+    surfaces: Vec<(Of, SurfaceMesh)>,
+    in_place: Option<InPlace>,
+    /// The run, for the part with which its page lies.
+    page: Option<&'a Run>,
+    picture: PatchPicture<'a>,
+    unrolled: Option<ConformalPicture<'a>>,
+    png: Option<Rasterise>,
+}
+
+/// What needs equal steps, where it is asked for and the grid has them.
+struct Gridded<'a> {
+    netcdf: Option<NetCdf<'a>>,
+    deck: Option<Deck<'a>>,
+    curved_deck: Option<CurvedDeck<'a>>,
+}
+
+impl<'a> Gridded<'a> {
+    fn new(
+        outputs: &Outputs,
+        header: &'a Header,
+        grid: &'a GridFields<'a>,
+        curved: Option<&'a CurvedFields<'a>>,
+        skipped: &mut Vec<String>,
+    ) -> Result<Self> {
+        if let Some(curved) = curved {
+            OnRail::refuse(outputs, skipped)?;
+            let (names, deck) = ("conform.wrp, contact.inp", || CurvedDeck::new(header, curved));
+            let curved_deck = possible(outputs, names, Writer::is_curved_deck, deck, skipped)?;
+            return Ok(Self { netcdf: None, deck: None, curved_deck });
+        }
+        let (deck, netcdf) = (|| Deck::new(header, grid), || NetCdf::new(header, grid));
+        let deck = possible(outputs, "decks", Writer::is_deck, deck, skipped)?;
+        let netcdf = possible(outputs, "separation.nc", Writer::is_netcdf, netcdf, skipped)?;
+        Ok(Self { netcdf, deck, curved_deck: None })
+    }
+}
+
+/// Gives the surfaces that there are.
+fn surfaces_of(
+    part: &Part,
+    patch: Option<&PatchMesh>,
+    bodies: Option<&[Surface; 2]>,
+) -> Vec<(Of, SurfaceMesh)> {
+    let patch = patch.map(|patch| (Of::Patch, patch.surface()));
+    let bodies = bodies.into_iter().flat_map(|[rail, wheel]| {
+        [(Of::Rail, surface_mesh("rail", part, rail)), (Of::Wheel, surface_mesh("wheel", part, wheel))]
+    });
+    patch.into_iter().chain(bodies).collect()
+}
+
+/// Makes the job of a file; `None` where what it is written from is not there.
+fn job<'a>(name: &'static str, writer: Writer, s: &'a Sources<'a>) -> Option<Job<'a>> {
+    let Sources { header, grid, gridded: Gridded { netcdf, deck, curved_deck }, .. } = s;
+    let (deck, curved_deck) = (deck.as_ref(), curved_deck.as_ref());
+    Some(match writer {
+        Writer::Grid(write) => stream(name, move |file| write(file, header, grid)),
+        Writer::Curved(write) => {
+            let curved = s.curved?;
+            stream(name, move |file| write(file, header, curved))
+        }
+        Writer::NetCdf => {
+            let netcdf = netcdf.as_ref()?;
+            stream(name, move |file| netcdf.write(file))
+        }
+        Writer::Deck(write) => {
+            let deck = deck?;
+            stream(name, move |file| write(deck, file))
+        }
+        Writer::StripsDeck(write) => {
+            let (deck, strips) = (deck?, s.strips.as_ref()?);
+            stream(name, move |file| write(deck, strips, file))
+        }
+        Writer::PressedDeck(write) => {
+            let (deck, settings) = (deck?, s.settings.as_ref()?);
+            stream(name, move |file| write(deck, settings, file))
+        }
+        Writer::CurvedDeck(write) => {
+            let deck = curved_deck?;
+            stream(name, move |file| write(deck, file))
+        }
+        Writer::PressedCurvedDeck(write) => {
+            let (deck, settings) = (curved_deck?, s.settings.as_ref()?);
+            stream(name, move |file| write(deck, settings, file))
+        }
+        Writer::Loops(write) => bytes(name, move || write(header, s.loops)),
+        Writer::Strips(write) => {
+            let strips = s.strips.as_ref()?;
+            bytes(name, move || write(header, strips))
+        }
+        Writer::Triangles(write) => {
+            let triangles = s.triangles?;
+            bytes(name, move || write(header, triangles))
+        }
+        Writer::Surface(of, write) => {
+            let (_, surface) = s.surfaces.iter().find(|(known, _)| *known == of)?;
+            bytes(name, move || write(header, surface))
+        }
+        Writer::InPlace(write) => {
+            let in_place = s.in_place.as_ref()?;
+            bytes(name, move || write(in_place))
+        }
+        Writer::Page => {
+            let run = s.page?;
+            bytes(name, move || Ok(view(run).html()))
+        }
+        Writer::Picture => {
+            let png = s.png?;
+            bytes(name, move || png(&s.picture.svg()))
+        }
+        Writer::CurvedPicture => {
+            let (png, unrolled) = (s.png?, s.unrolled.as_ref()?);
+            bytes(name, move || png(&unrolled.svg()))
+        }
+        Writer::Text(text) => bytes(name, move || Ok(text.as_bytes().to_vec())),
+    })
+}
+
+/// Makes the jobs of the files of every run: tables and pictures.
+fn always<'a>(part: &'a Part, s: &'a Sources<'a>, on_rail: Option<&'a OnRail<'a>>) -> Vec<Job<'a>> {
+    let placement = &part.site.contact.placement;
+    let mut jobs = vec![
+        bytes("boundary.csv", || Ok(boundary_csv(s.loops).into_bytes())),
+        bytes("interpen.csv", move || Ok(interpen_csv(&intervals(part)).into_bytes())),
+        bytes("midsep.txt", move || Ok(midplane_table(placement, &part.site.grid.xi).into_bytes())),
+        bytes("patch.svg", || Ok(s.picture.svg().into_bytes())),
+    ];
+    if let Some(on_rail) = on_rail {
+        jobs.push(bytes("interpen_sigma.csv", || Ok(interpen_sigma_csv(&on_rail.intervals()).into_bytes())));
+    }
+    if let Some(unrolled) = &s.unrolled {
+        jobs.push(bytes("conformal.svg", || Ok(unrolled.svg().into_bytes())));
+    }
+    jobs
+}
+
+/// Gives the way from SVG to PNG.
+///
+/// # Errors
+/// PNG is asked for, and there is none.
+fn rasterise(outputs: &Outputs, png: Option<Rasterise>) -> Result<Option<Rasterise>> {
+    if outputs.wants(Writer::is_picture) && png.is_none() {
+        let expected = "formats that the library writes by itself";
+        let advice = "use the program `wheelrail`, or leave it out";
+        return Err(Error::new("output: formats", "\"png\"", expected, advice));
+    }
+    Ok(png)
 }
 
 /// ζ^R and the rail's normal at every ξ of the grid.
@@ -184,7 +308,7 @@ fn header(run: &Run, part: &Part) -> Header {
 /// Lists what the reader of a file of this part must know.
 fn remarks(run: &Run, part: &Part) -> Vec<String> {
     let mut out = part.refusals();
-    if part.site.side() == Some("left") {
+    if part.site.side() == Some(TrackSide::Left) {
         let signs = match run.case.question.motion {
             Some(_) => "creepages are those of the mirror image",
             None => "lateral creepage, spin and skew change sign",
@@ -209,147 +333,15 @@ fn intervals(part: &Part) -> Vec<Interval> {
     for &xi in &part.site.grid.xi {
         let mut here = patch.slices(xi);
         here.sort_by(|(a, p), (b, q)| a.cmp(b).then(p.eta[0].total_cmp(&q.eta[0])));
-        rows.extend(here.into_iter().map(|(component, slice)| Interval { xi, component, eta: slice.eta }));
+        let row = |(component, slice): (usize, Slice)| Interval {
+            xi,
+            component,
+            eta: slice.eta,
+            cut: cut_by(patch.window.eta, slice.eta),
+        };
+        rows.extend(here.into_iter().map(row));
     }
     rows
-}
-
-fn tables<'a>(jobs: &mut Vec<Job<'a>>, part: &'a Part, loops: &'a [Loop]) {
-    bytes(jobs, "boundary.csv", move || Ok(boundary_csv(loops).into_bytes()));
-    bytes(jobs, "interpen.csv", move || Ok(interpen_csv(&intervals(part)).into_bytes()));
-    bytes(jobs, "midsep.txt", move || {
-        Ok(midplane_table(&part.site.contact.placement, &part.site.grid.xi).into_bytes())
-    });
-}
-
-fn arrays<'a>(jobs: &mut Vec<Job<'a>>, outputs: &Outputs, part: &'a Part) {
-    if !outputs.any(&[OutputFormat::Npy]) {
-        return;
-    }
-    let axes = &part.site.grid;
-    let (n, m) = (axes.xi.len() as u64, axes.eta.len() as u64);
-    let mut add = |name: &'static str, shape: Vec<u64>, values: &'a [f64]| {
-        stream(jobs, name, move |file| array_npy(file, &shape, values));
-    };
-    add("xi.npy", vec![n], &axes.xi);
-    add("eta.npy", vec![m], &axes.eta);
-    add("separation.npy", vec![n, m], &part.analysis.separation);
-}
-
-/// Adds the pictures over the plane and over the rail's surface, as PNG too where that is asked for.
-fn pictures<'a>(
-    jobs: &mut Vec<Job<'a>>,
-    outputs: &Outputs,
-    (plane, rail): (&'a PatchPicture<'a>, Option<&'a ConformalPicture<'a>>),
-    png: Option<Rasterise>,
-) -> Result<()> {
-    let wanted = outputs.any(&[OutputFormat::Png]);
-    if wanted && png.is_none() {
-        let expected = "formats that the library writes by itself";
-        let advice = "use the program `wheelrail`, or leave it out";
-        return Err(Error::new("output: formats", "\"png\"", expected, advice));
-    }
-    let png = png.filter(|_| wanted);
-    picture(jobs, ["patch.svg", "patch.png"], (plane, PatchPicture::svg), png);
-    if let Some(rail) = rail {
-        picture(jobs, ["conformal.svg", "conformal.png"], (rail, ConformalPicture::svg), png);
-    }
-    Ok(())
-}
-
-/// Adds one picture as SVG, and as PNG where there is a way to it.
-fn picture<'a, P: Sync>(
-    jobs: &mut Vec<Job<'a>>,
-    [svg, as_png]: [&'static str; 2],
-    (picture, draw): (&'a P, fn(&P) -> String),
-    png: Option<Rasterise>,
-) {
-    bytes(jobs, svg, move || Ok(draw(picture).into_bytes()));
-    if let Some(png) = png {
-        bytes(jobs, as_png, move || png(&draw(picture)));
-    }
-}
-
-fn surfaces<'a>(
-    jobs: &mut Vec<Job<'a>>,
-    header: &'a Header,
-    grid: &'a GridFields<'a>,
-    loops: &'a [Loop],
-    strips: Option<&'a QuadMesh>,
-) {
-    type Writer = fn(&mut dyn Write, &Header, &GridFields<'_>) -> std::io::Result<()>;
-    let writers: [(&'static str, Writer); 4] = [
-        ("separation.vts", separation_vts),
-        ("rail.vts", rail_vts),
-        ("wheel.vts", wheel_vts),
-        ("separation.vtk", separation_vtk),
-    ];
-    for (name, writer) in writers {
-        stream(jobs, name, move |file| writer(file, header, grid));
-    }
-    if let Some(strips) = strips {
-        bytes(jobs, "strips.vtu", move || strips_vtu(header, strips));
-    }
-    bytes(jobs, "boundary.vtp", move || boundary_vtp(header, loops));
-    bytes(jobs, "view.py", || Ok(VIEW_SCRIPT.as_bytes().to_vec()));
-}
-
-fn decks<'a>(
-    jobs: &mut Vec<Job<'a>>,
-    run: &Run,
-    deck: &'a Deck<'a>,
-    strips: Option<&'a QuadMesh>,
-    settings: Option<ContactSettings>,
-) {
-    if run.case.outputs.any(&[OutputFormat::Text]) {
-        stream(jobs, "separation.wrp", move |file| separation_wrp(deck, file));
-    }
-    if run.case.outputs.any(&[OutputFormat::Conform]) {
-        stream(jobs, "conform.wrp", move |file| conform_wrp(deck, file));
-    }
-    if let (true, Some(strips)) = (run.case.outputs.any(&[OutputFormat::Countact]), strips) {
-        stream(jobs, "countact.wrp", move |file| countact_wrp(deck, strips, file));
-    }
-    if let (true, Some(settings)) = (run.case.outputs.any(&[OutputFormat::Contact]), settings) {
-        stream(jobs, "contact.inp", move |file| contact_inp(deck, &settings, file));
-    }
-}
-
-/// Adds the table, the arrays and the grid over the rail's surface.
-fn surface_of_rail<'a>(
-    jobs: &mut Vec<Job<'a>>,
-    outputs: &Outputs,
-    header: &'a Header,
-    (on_rail, curved): (&'a OnRail<'a>, &'a CurvedFields<'a>),
-) {
-    bytes(jobs, "interpen_sigma.csv", || Ok(interpen_sigma_csv(&on_rail.intervals()).into_bytes()));
-    if outputs.any(&[OutputFormat::Npy]) {
-        let (n, m) = (on_rail.sigma.len() as u64, curved.grid().eta().len() as u64);
-        let mut add = |name: &'static str, shape: Vec<u64>, values: &'a [f64]| {
-            stream(jobs, name, move |file| array_npy(file, &shape, values));
-        };
-        add("sigma.npy", vec![n], &on_rail.sigma);
-        add("angle.npy", vec![n], &on_rail.angle);
-        add("normal_gap.npy", vec![n, m], curved.grid().separation());
-    }
-    if outputs.any(&[OutputFormat::Vtk]) {
-        stream(jobs, "conformal.vts", move |file| conformal_vts(file, header, curved));
-    }
-}
-
-/// Adds the decks over the rail's surface.
-fn curved_decks<'a>(
-    jobs: &mut Vec<Job<'a>>,
-    outputs: &Outputs,
-    deck: &'a CurvedDeck<'a>,
-    settings: Option<ContactSettings>,
-) {
-    if outputs.any(&[OutputFormat::Conform]) {
-        stream(jobs, "conform.wrp", move |file| conform_curved_wrp(deck, file));
-    }
-    if let (true, Some(settings)) = (outputs.any(&[OutputFormat::Contact]), settings) {
-        stream(jobs, "contact.inp", move |file| contact_curved_inp(deck, &settings, file));
-    }
 }
 
 /// Gives CONTACT's control numbers: the contact's own normal force, or the approach where no load was asked for; `None` without
@@ -357,11 +349,10 @@ fn curved_decks<'a>(
 fn contact_settings(run: &Run, part: &Part, creepages: Option<Creepages>) -> Option<ContactSettings> {
     let (approach, _) = part.site.contact.approach.filter(|(approach, _)| *approach > 0.0)?;
     let load = part.site.normal_load.filter(|load| *load > 0.0);
-    let bodies = run.case.question.material;
+    let question = &run.case.question;
     Some(ContactSettings {
-        poisson: bodies.map(|body| body.poissons_ratio),
-        shear_modulus: bodies.map(|body| body.youngs_modulus / (2.0 * (1.0 + body.poissons_ratio))),
-        friction: [run.case.question.friction.at_rest, run.case.question.friction.sliding],
+        material: question.material,
+        friction: [question.friction.at_rest, question.friction.sliding],
         creepages,
         normal: load.map_or(Prescribed::Approach(approach), Prescribed::Force),
     })

@@ -1,7 +1,9 @@
 //! The grids of a case: its own axes, or automatic ones over every part of the patch.
 
-use super::input::{AskedAxes, OutputFormat, Outputs};
-use super::places::{MOST_PARTS, Placed};
+use super::contact::PlacedContact;
+use super::formats::Writer;
+use super::input::{AskedAxes, Outputs};
+use super::places::MOST_PARTS;
 use crate::conformal::{ConformalPatch, NormalGap, RailArcLength, Reference};
 use crate::error::{Error, Result};
 use crate::mesh::{Axes, GridGroup, MOST_POINTS, conformal_groups, groups};
@@ -38,23 +40,23 @@ impl Grid {
 ///
 /// # Errors
 /// Automatic axes without a patch; a patch of more parts than anybody looks through; cells that do not fit into memory.
-pub(super) fn grids(asked: &AskedAxes, place: &Placed) -> Result<Vec<Grid>> {
+pub(super) fn grids(asked: &AskedAxes, contact: &PlacedContact) -> Result<Vec<Grid>> {
     let AskedAxes { xi, eta, spacing, merge, reference } = asked;
-    let rail = || RailArcLength::new(&place.contact.placement);
+    let rail = || RailArcLength::new(&contact.placement);
     if let (Some(xi), Some(eta)) = (xi, eta) {
         let grid = Grid { xi: xi.clone(), eta: eta.clone(), warning: None, sigma: None, groups: Vec::new() };
         return Ok(vec![if *reference == Reference::Rail { on_rail(grid, &rail())? } else { grid }]);
     }
-    let patch = place.contact.whole_patch();
+    let patch = contact.whole_patch();
     let plane = patch.map_or_else(Vec::new, |patch| groups(patch, *merge, *spacing));
-    let mut groups = match (reference, place.contact.approach) {
+    let mut groups = match (reference, contact.approach) {
         (Reference::Rail, Some((approach, _))) => {
-            let patch = whole_conformal(place, approach, &plane);
+            let patch = whole_conformal(contact, approach, &plane);
             conformal_groups(&patch, *merge, *spacing)
         }
         _ => plane.clone(),
     };
-    if groups.is_empty() && place.contact.approach.is_none() {
+    if groups.is_empty() && contact.approach.is_none() {
         let expected = "an approach or a load, by which the grid is sized";
         let advice = "give [patch] approach = … (mm) or load = … (N), or axes in [grid]";
         return Err(Error::new("patch", "none", expected, advice));
@@ -64,7 +66,7 @@ pub(super) fn grids(asked: &AskedAxes, place: &Placed) -> Result<Vec<Grid>> {
         let advice = "give from, to and n, or a larger approach";
         return Err(Error::new("grid", "auto, and no patch", expected, advice));
     }
-    if place.found.is_some() {
+    if contact.found.is_some() {
         groups.truncate(1);
     }
     if groups.len() > MOST_PARTS {
@@ -90,13 +92,13 @@ pub(super) fn grids(asked: &AskedAxes, place: &Placed) -> Result<Vec<Grid>> {
 }
 
 /// Finds the whole conformal patch of a contact, from a window twice as large as the plane's.
-fn whole_conformal(place: &Placed, approach: f64, plane: &[GridGroup]) -> ConformalPatch {
+fn whole_conformal(contact: &PlacedContact, approach: f64, plane: &[GridGroup]) -> ConformalPatch {
     let widest = |side: fn(&GridGroup) -> [f64; 2]| {
         plane.iter().flat_map(side).fold(0.0, |most: f64, end| most.max(end.abs()))
     };
     let sides = [widest(|group| group.extent.xi), widest(|group| group.extent.eta)];
     let around = sides.map(|side| if side > 0.0 { 2.0 * side } else { LEAST_WINDOW });
-    ConformalPatch::whole(&NormalGap::new(&place.contact.placement), approach, around)
+    ConformalPatch::whole(&NormalGap::new(&contact.placement), approach, around)
 }
 
 /// Lists the groups of the plane's patch that a group over the rail's surface covers.
@@ -160,7 +162,7 @@ pub(super) fn check_memory<'a>(outputs: &Outputs, grids: impl Iterator<Item = &'
         return bad(format!("{all} points"), format!("at most {MOST_POINTS:e} points"));
     }
     // All grids are kept, and written one after the other.
-    let bytes = NUMBER * all + if outputs.any(&OutputFormat::DECKS) { TEXT * largest } else { 0 };
+    let bytes = NUMBER * all + if outputs.wants(Writer::is_deck) { TEXT * largest } else { 0 };
     let mut memory = Vec::<u8>::new();
     if bytes > ALWAYS_THERE && std::hint::black_box(&mut memory).try_reserve_exact(bytes).is_err() {
         let found = format!("{all} points, which take {bytes} bytes of memory");

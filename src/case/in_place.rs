@@ -1,4 +1,4 @@
-//! Where a contact is on the track, and files that show all of a run in the track's axes.
+//! Where a contact is on the track, and what files show of all of a run in the track's axes.
 //!
 //! The axes of a wheelset's track: x to the right, y forward, z up, the origin in the middle of the track at the top of rail,
 //! with the middle of the axle at y = 0. For a single wheel they are the rail profile's axes, with the wheel's centre at y = 0.
@@ -6,15 +6,12 @@
 use nalgebra::{Matrix4, Point3, Vector4};
 
 use super::drawn::{loops_of, quads};
-use super::input::{OutputFormat, Place};
+use super::input::Place;
 use super::run::{Part, Run};
-use crate::error::Result;
-use crate::export::{
-    ContactInPlace, Loop, QuadMesh, body_vtp, boundaries_vtp, contacts_vtp, patches_vtp, wheelset_vtm,
-};
-use crate::files::Folder;
+use crate::export::{ContactInPlace, InPlace, Loop, QuadMesh};
 use crate::mesh::{BodyShell, axle_point};
 use crate::placement::Placement;
+use crate::search::TrackSide;
 use crate::separation::Evaluator;
 
 /// Half the length of rail that is shown \[mm\].
@@ -30,7 +27,7 @@ const SHELL: f64 = 0.02;
 /// left side it has a reflection: that side's own axes are the mirror image's.
 pub(super) fn to_track(run: &Run, part: &Part) -> Matrix4<f64> {
     let placement = &part.site.contact.placement;
-    let left = part.site.side() == Some("left");
+    let left = part.site.side() == Some(TrackSide::Left);
     let (rail, half) = match &run.case.standing.place {
         Place::Wheelset { system, .. } => {
             let side = if left { system.left() } else { system.right() };
@@ -48,20 +45,11 @@ pub(super) fn to_track(run: &Run, part: &Part) -> Matrix4<f64> {
     ])
 }
 
-/// Writes `wheelset.vtm` and its pieces, below the folder of the run's first part: both rails, both wheels at first touch, patches,
-/// boundaries and contact points, all where they are. Gives their names.
-///
-/// # Errors
-/// The disk's.
-pub(super) fn write_in_place(run: &Run, folder: &Folder) -> Result<Vec<String>> {
-    let Some(first) = run.parts.first().filter(|_| run.case.outputs.any(&[OutputFormat::Vtk])) else {
-        return Ok(Vec::new());
-    };
-    let folder = folder.part(&first.site.folder)?;
-    let statements = statements(run);
-    let sides = ["right", "left"].into_iter().filter_map(|side| {
-        run.parts.iter().find(|part| (part.site.side() == Some("left")) == (side == "left"))
-    });
+/// Gives what shows all of a run in the axes of the track: both rails, both wheels at first touch, patches, boundaries and contact
+/// points, all where they are.
+pub(super) fn in_place(run: &Run) -> InPlace {
+    let on = |left: bool| run.parts.iter().find(|part| (part.site.side() == Some(TrackSide::Left)) == left);
+    let sides = [false, true].into_iter().filter_map(on);
     let places: Vec<_> = sides.map(|part| (&part.site.contact.placement, to_track(run, part))).collect();
     let shells = |shell: fn(&Placement) -> BodyShell| {
         let shells = places.iter().map(|(placement, place)| {
@@ -70,22 +58,12 @@ pub(super) fn write_in_place(run: &Run, folder: &Folder) -> Result<Vec<String>> 
         });
         joined(shells)
     };
-    let [rails, wheels] = [
-        shells(|placement| BodyShell::rail(placement, RAIL, SHELL)),
-        shells(|placement| BodyShell::wheel(placement, RIM, SHELL)),
-    ];
-    let contacts: Vec<_> = (1..).zip(&run.parts).map(|(k, part)| in_place(run, part, k)).collect();
-    let files = [
-        ("rails", "rails.vtp", body_vtp(&statements, &rails.points, &rails.faces)?),
-        ("wheels", "wheels.vtp", body_vtp(&statements, &wheels.points, &wheels.faces)?),
-        ("patches", "patches.vtp", patches_vtp(&statements, &contacts)?),
-        ("boundaries", "boundaries.vtp", boundaries_vtp(&statements, &contacts)?),
-        ("contacts", "contacts.vtp", contacts_vtp(&statements, &contacts)?),
-    ];
-    files.iter().try_for_each(|(_, name, bytes)| folder.write(name, bytes))?;
-    let blocks = files.map(|(block, name, _)| (block, name));
-    folder.write("wheelset.vtm", wheelset_vtm(&statements, &blocks).as_bytes())?;
-    Ok(blocks.into_iter().map(|(_, name)| name).chain(["wheelset.vtm"]).map(String::from).collect())
+    InPlace {
+        statements: statements(run),
+        rails: shells(|placement| BodyShell::rail(placement, RAIL, SHELL)),
+        wheels: shells(|placement| BodyShell::wheel(placement, RIM, SHELL)),
+        contacts: (1..).zip(&run.parts).map(|(k, part)| contact(run, part, k)).collect(),
+    }
 }
 
 /// Gives the path from a part's folder to that of `wheelset.vtm`.
@@ -123,7 +101,7 @@ fn statements(run: &Run) -> Vec<String> {
     ]
 }
 
-fn in_place(run: &Run, part: &Part, number: usize) -> ContactInPlace {
+fn contact(run: &Run, part: &Part, number: usize) -> ContactInPlace {
     let placement = &part.site.contact.placement;
     let place = to_track(run, part);
     let approach = part.site.contact.approach.map_or(f64::NAN, |(approach, _)| approach);

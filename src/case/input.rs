@@ -6,12 +6,15 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::doubts::Doubt;
+use super::formats::{File, OutputFormat, Writer};
 use crate::conformal::Reference;
 use crate::load::{Elastic, effective_modulus};
 use crate::measured::Record;
+use crate::numerics::bodies::Bodies;
 use crate::placement::Motion;
 use crate::placement::Pair;
-use crate::search::{Pose, Position, ProfilePair, WheelsetOnTrack};
+use crate::search::{Pose, Position, ProfilePair, TrackSide, WheelsetOnTrack};
 use crate::separation::Method;
 
 /// Two prepared profiles, where they stand, what is asked of them, and what is to be written.
@@ -27,7 +30,7 @@ pub struct Case {
     pub(crate) echo: Echo,
     pub(crate) file: Option<PathBuf>,
     /// What in the scene looks like a slip: warnings.
-    pub(crate) doubts: Vec<String>,
+    pub(crate) doubts: Vec<Doubt>,
 }
 
 /// The profiles of both sides, the right-hand one's first; a single wheel and a symmetric wheelset have one pair.
@@ -44,8 +47,8 @@ pub struct Profiles {
 pub struct SideProfiles {
     /// Rail and wheel.
     pub pair: Pair,
-    /// The records of rail and wheel; `None` for a drawn profile.
-    pub measured: [Option<Record>; 2],
+    /// The record of each; `None` for a drawn profile.
+    pub measured: Bodies<Option<Record>>,
 }
 
 impl SideProfiles {
@@ -58,18 +61,19 @@ impl SideProfiles {
 impl Profiles {
     /// Makes the profiles of both sides from a pair that nothing was measured of.
     pub fn drawn(pair: Pair) -> Self {
-        Self { right: SideProfiles { pair, measured: [None, None] }, left: None }
+        Self { right: SideProfiles { pair, measured: Bodies::default() }, left: None }
     }
 
-    /// Gives those of a side, "left" or any other.
-    pub fn on(&self, side: &str) -> &SideProfiles {
-        self.left.as_ref().filter(|_| side == "left").unwrap_or(&self.right)
+    /// Gives those of a side; a single wheel has the right-hand side's.
+    pub fn on(&self, side: Option<TrackSide>) -> &SideProfiles {
+        self.left.as_ref().filter(|_| side == Some(TrackSide::Left)).unwrap_or(&self.right)
     }
 
-    /// Gives all there are, with the name of the side where both have their own.
-    pub fn sides(&self) -> impl Iterator<Item = (Option<&'static str>, &SideProfiles)> {
-        let name = self.left.as_ref().map(|_| "right");
-        [(name, &self.right)].into_iter().chain(self.left.iter().map(|left| (Some("left"), left)))
+    /// Gives all there are, with the side where both have their own.
+    pub fn sides(&self) -> impl Iterator<Item = (Option<TrackSide>, &SideProfiles)> {
+        let right = self.left.as_ref().map(|_| TrackSide::Right);
+        let left = self.left.iter().map(|left| (Some(TrackSide::Left), left));
+        [(right, &self.right)].into_iter().chain(left)
     }
 }
 
@@ -161,7 +165,7 @@ pub struct Question {
     /// How the wheels move, for the creepages; `None` asks for none.
     pub motion: Option<Motion>,
     /// Elastic constants of rail and wheel.
-    pub material: [Elastic; 2],
+    pub material: Bodies<Elastic>,
     /// Friction between them; it enters solver decks only.
     pub friction: Friction,
     /// Absolute tolerance on s \[mm\]; 1e-12 asks for all digits.
@@ -188,8 +192,7 @@ impl Default for Friction {
 impl Question {
     /// Gives E* of both materials \[N/mm²\].
     pub fn modulus(&self) -> f64 {
-        let [rail, wheel] = &self.material;
-        effective_modulus(rail, wheel)
+        effective_modulus(&self.material.rail, &self.material.wheel)
     }
 }
 
@@ -220,72 +223,21 @@ pub struct Outputs {
 }
 
 impl Outputs {
+    /// Lists the files of the formats.
+    pub(super) fn files(&self) -> impl Iterator<Item = File> {
+        let formats = OutputFormat::ALL.iter().filter(|format| self.formats.contains(format));
+        formats.flat_map(|format| format.row().files).copied()
+    }
+
+    /// Tells whether a file of the formats has such a writer.
+    pub(super) fn wants(&self, such: fn(&Writer) -> bool) -> bool {
+        self.files().any(|(_, writer)| such(&writer))
+    }
+
     /// Gives about how many bytes a point of a grid takes in the files of all formats together.
     pub(super) fn bytes_a_point(&self) -> f64 {
-        self.formats.iter().map(|format| format.bytes_a_point()).sum()
+        self.formats.iter().map(|format| format.row().bytes_a_point).sum()
     }
-
-    /// Tells whether any of the formats is asked for.
-    pub fn any(&self, formats: &[OutputFormat]) -> bool {
-        self.formats.iter().any(|format| formats.contains(format))
-    }
-}
-
-/// One output format.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum OutputFormat {
-    /// .vts, .vtp, .vtu, .vtk and view.py.
-    Vtk,
-    /// xi.npy, eta.npy, separation.npy.
-    Npy,
-    /// separation.nc.
-    Netcdf,
-    /// separation.wrp.
-    Text,
-    /// conform.wrp.
-    Conform,
-    /// countact.wrp.
-    Countact,
-    /// contact.inp.
-    Contact,
-    /// view.html.
-    Html,
-    /// patch.png, conformal.png.
-    Png,
-    /// patch.msh.
-    Gmsh,
-    /// patch.inp.
-    Abaqus,
-    /// patch.stl, rail.stl, wheel.stl.
-    Stl,
-    /// patch.vtp, rail.vtp, wheel.vtp.
-    Vtp,
-}
-
-impl OutputFormat {
-    /// Gives about how many bytes a point of a grid takes in the files of the format.
-    fn bytes_a_point(self) -> f64 {
-        match self {
-            Self::Vtk => 190.0,
-            Self::Npy | Self::Netcdf => 8.0,
-            Self::Text => 80.0,
-            Self::Conform => 130.0,
-            Self::Contact => 28.0,
-            Self::Countact | Self::Png | Self::Gmsh | Self::Abaqus | Self::Stl | Self::Vtp | Self::Html => {
-                0.0
-            }
-        }
-    }
-
-    /// Formats that are solver decks.
-    pub(super) const DECKS: [Self; 4] = [Self::Text, Self::Conform, Self::Countact, Self::Contact];
-
-    /// Formats that hold the triangle mesh of the patch.
-    pub(super) const TRIANGLES: [Self; 5] = [Self::Vtk, Self::Gmsh, Self::Abaqus, Self::Stl, Self::Vtp];
-
-    /// Formats that hold the surfaces of both bodies.
-    pub(super) const SURFACES: [Self; 3] = [Self::Vtk, Self::Stl, Self::Vtp];
 }
 
 /// What files say of the scene that they come from; nothing is computed from it.
@@ -346,8 +298,24 @@ impl Case {
         &self.echo
     }
 
+    /// Lists what in the scene looks like a slip.
+    pub fn doubts(&self) -> &[Doubt] {
+        &self.doubts
+    }
+
+    /// Lists what a user should know of the scene and of its measured files.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut out: Vec<String> = self.doubts.iter().map(Doubt::to_string).collect();
+        for (side, profiles) in self.profiles.sides() {
+            let findings = profiles.measured.both().into_iter().flatten().flat_map(|record| &record.warnings);
+            let place = side.map_or_else(String::new, |side| format!("{side} side: "));
+            out.extend(findings.map(|finding| format!("{place}{}: {}", finding.place, finding.found)));
+        }
+        out
+    }
+
     /// Gives what was done to measured profiles of rail and wheel, of the right-hand side or both.
-    pub fn measured(&self) -> &[Option<Record>; 2] {
+    pub fn measured(&self) -> &Bodies<Option<Record>> {
         &self.profiles.right.measured
     }
 }

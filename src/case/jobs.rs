@@ -5,7 +5,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use super::input::{OutputFormat, Outputs};
+use super::formats::Writer;
+use super::input::Outputs;
 use crate::error::{Error, Result};
 use crate::files::FolderPart;
 
@@ -29,16 +30,16 @@ pub(super) fn write_jobs(
     Ok(names)
 }
 
-/// Makes what files of these formats are written from, if any of them is asked for. What cannot be made (decks need
+/// Makes what files of such writers are written from, if any of them is asked for. What cannot be made (decks need
 /// equal steps) is an error where the formats are required, and a remark elsewhere.
 pub(super) fn possible<T>(
     outputs: &Outputs,
     files: &str,
-    formats: &[OutputFormat],
+    such: fn(&Writer) -> bool,
     content: impl FnOnce() -> Result<T>,
     skipped: &mut Vec<String>,
 ) -> Result<Option<T>> {
-    if !outputs.any(formats) {
+    if !outputs.wants(such) {
         return Ok(None);
     }
     match content() {
@@ -51,21 +52,19 @@ pub(super) fn possible<T>(
     }
 }
 
-/// Adds a small file, made in memory.
+/// Makes the job of a small file, made in memory.
 pub(super) fn bytes<'a>(
-    jobs: &mut Vec<Job<'a>>,
     name: &'static str,
     content: impl Fn() -> Result<Vec<u8>> + Sync + Send + 'a,
-) {
+) -> Job<'a> {
     let content = move || content().map_err(|error| error.within(name));
-    jobs.push((name, Box::new(move |folder: &FolderPart<'_>| folder.write(name, &content()?))));
+    (name, Box::new(move |folder: &FolderPart<'_>| folder.write(name, &content()?)))
 }
 
-/// Adds a large file, written piece by piece.
+/// Makes the job of a large file, written piece by piece.
 pub(super) fn stream<'a>(
-    jobs: &mut Vec<Job<'a>>,
     name: &'static str,
     content: impl Fn(&mut dyn Write) -> std::io::Result<()> + Sync + Send + 'a,
-) {
-    jobs.push((name, Box::new(move |folder: &FolderPart<'_>| folder.stream(name, &content))));
+) -> Job<'a> {
+    (name, Box::new(move |folder: &FolderPart<'_>| folder.stream(name, &content)))
 }

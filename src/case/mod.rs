@@ -10,17 +10,22 @@ mod curves;
 mod doubts;
 mod drawn;
 mod elements;
+mod facts;
 mod files;
+mod formats;
+mod found;
 mod grids;
 mod in_place;
 mod input;
 mod jobs;
 mod joined;
+mod landmarks;
 mod on_rail;
 mod places;
 mod polylines;
 mod run;
 mod site;
+mod site_doubts;
 mod summary;
 mod sweep_view;
 mod unrolled;
@@ -28,19 +33,24 @@ mod view;
 mod wheel;
 
 pub use analysis::{Analysis, Timings, check_method};
-pub use columns::Columns;
+pub use columns::{COLUMNS, Column, ColumnArray, Columns};
 pub use conformal::Conformal;
 pub use contact::{EllipseUnder, PlacedContact};
 pub use curves::{MOST_DRAWN, ascending, curves};
+pub use doubts::{ContactDoubts, Doubt, DoubtKind, DoubtSet};
 pub use drawn::patch_picture;
+pub use facts::{FACTS, Fact};
 pub use files::{Rasterise, WrittenFile, WrittenPart, write};
+pub use formats::{OutputFormat, PATCHES_FOLDER, RUN_FOLDER, run_files};
+pub use found::{Found, PlaceOfContact};
 pub use grids::Grid;
 pub use input::{
-    ApproachBy, AskedAxes, Case, Echo, FrameOrigin, Friction, OutputFormat, Outputs, Place, Profiles,
-    Question, SideProfiles, Standing,
+    ApproachBy, AskedAxes, Case, Echo, FrameOrigin, Friction, Outputs, Place, Profiles, Question,
+    SideProfiles, Standing,
 };
 pub use joined::joined_pair;
-pub use places::{Found, PlaceOfContact, approach_under_load, contacts};
+pub use landmarks::{Landmarks, SweepDoubts};
+pub use places::{approach_under_load, contacts};
 pub use run::{Part, Run, SILENT, Tell};
 pub use site::{Site, sites};
 pub use sweep_view::sweep_page;

@@ -1,27 +1,19 @@
 //! The files of a grid over the rail's surface.
 
 use super::conformal::Conformal;
-use super::input::{OutputFormat, Outputs};
-use super::site::{Site, ends};
+use super::formats::OutputFormat;
+use super::input::Outputs;
+use super::site::{Site, cut_by, ends};
 use crate::conformal::{NormalGap, conformal_slice};
 use crate::error::{Error, Result};
 use crate::export::{CurvedFields, GridFields};
-
-/// Formats that hold s over equal steps of ξ only.
-const PLANE_ONLY: [(OutputFormat, &str, &str); 3] = [
-    (OutputFormat::Netcdf, "netcdf", "separation.nc"),
-    (OutputFormat::Text, "text", "separation.wrp"),
-    (OutputFormat::Countact, "countact", "countact.wrp"),
-];
 
 /// What the files of a grid over the rail's surface are written from.
 pub(super) struct OnRail<'a> {
     site: &'a Site,
     conformal: &'a Conformal,
     /// σ \[mm\].
-    pub sigma: Vec<f64>,
-    /// α \[rad\].
-    pub angle: Vec<f64>,
+    sigma: Vec<f64>,
     height: Vec<f64>,
     normal: Vec<[f64; 2]>,
     wheel_normal: Vec<[f64; 3]>,
@@ -40,7 +32,6 @@ impl<'a> OnRail<'a> {
             site,
             conformal,
             sigma: rail.iter().map(|at| at.sigma).collect(),
-            angle: rail.iter().map(|at| at.sin.atan2(at.cos)).collect(),
             height: rail.iter().map(|at| at.zeta).collect(),
             normal: rail.iter().map(|at| [-at.sin, at.cos]).collect(),
             wheel_normal: rail
@@ -60,14 +51,14 @@ impl<'a> OnRail<'a> {
         CurvedFields::new(&self.sigma, fields, &self.wheel_normal)
     }
 
-    /// Gives the rows \[σ, ξ, η_min, η_max\] of INTERPEN's table over the rail's surface.
-    pub fn intervals(&self) -> Vec<[f64; 4]> {
+    /// Gives the rows \[σ, ξ, η_min, η_max\], with their ends that are the window's, of INTERPEN's table over the rail's surface.
+    pub fn intervals(&self) -> Vec<([f64; 4], [bool; 2])> {
         let Some(patch) = &self.conformal.patch else { return Vec::new() };
         let gap = NormalGap::new(&self.site.contact.placement);
         let window = ends(&self.site.grid.eta);
         let row = |(&sigma, &xi): (&f64, &f64)| {
             let slice = conformal_slice(&gap, patch.approach, window, sigma)?;
-            Some([sigma, xi, slice.eta[0], slice.eta[1]])
+            Some(([sigma, xi, slice.eta[0], slice.eta[1]], cut_by(window, slice.eta)))
         };
         self.sigma.iter().zip(&self.site.grid.xi).filter_map(row).collect()
     }
@@ -77,12 +68,14 @@ impl<'a> OnRail<'a> {
     /// # Errors
     /// The first such format that the scene names.
     pub fn refuse(outputs: &Outputs, skipped: &mut Vec<String>) -> Result<()> {
-        for (format, name, file) in PLANE_ONLY {
-            if !outputs.any(&[format]) {
+        for (format, file) in
+            OutputFormat::ALL.iter().filter_map(|format| Some((format, format.plane_only()?)))
+        {
+            if !outputs.formats.contains(format) {
                 continue;
             }
             if outputs.required {
-                let found = format!("\"{name}\" with grid.reference = \"rail\"");
+                let found = format!("\"{}\" with grid.reference = \"rail\"", format.name());
                 let expected = "formats other than netcdf, text and countact";
                 let advice = format!("{file} needs equal steps of xi: leave it out, or take the plane");
                 return Err(Error::new("output: formats", found, expected, advice));

@@ -2,16 +2,15 @@
 
 use std::time::Instant;
 
-use serde::Serialize;
-
 use super::contact::PlacedContact;
+use super::found::{Found, PlaceOfContact};
 use super::input::{ApproachBy, Case, FrameOrigin, Place};
 use super::wheel::{Region, RegionRules, Wheel, carry};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::load::Estimate;
 use crate::placement::Placement;
 use crate::search;
-use crate::search::{ONE_CONTACT, Position, Roll, Selection};
+use crate::search::{ONE_CONTACT, Position, Roll, Selection, TrackSide};
 
 /// Vertical gaps \[mm\] up to which places of contact are looked for at least, one after the other until a load is carried:
 /// what most loads close, and what none does that steel bears.
@@ -23,80 +22,10 @@ const STEEPEST: f64 = 4.0;
 /// Contacts of one wheel, and parts of one patch, beyond which nobody looks through their folders: the profiles are rough.
 pub(super) const MOST_PARTS: usize = 100;
 
-/// One contact to analyse.
-pub(super) struct Placed {
-    /// Subfolder of its files.
-    pub folder: String,
-    pub found: Option<Found>,
-    pub contact: PlacedContact,
-}
-
-/// How a contact was found.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Found {
-    /// "left" or "right" of a wheelset, "single" otherwise. The left side's axes are mirrored.
-    pub side: &'static str,
-    /// Height at first touch \[mm\], + up: of a wheelset's centre above R over the top of rail, of a single wheel's
-    /// profile origin over the rail's.
-    pub height_mm: f64,
-    /// Roll \[rad\], solved or given.
-    pub roll_rad: f64,
-    /// Number on its side, from 1.
-    pub contact: usize,
-    /// This contact.
-    pub place: PlaceOfContact,
-    /// Places whose patches overlap that of this contact, or are merged with it: they are one region with it.
-    pub merged: Vec<PlaceOfContact>,
-    /// Other places on this side within `within` that are no contact of their own.
-    pub near_misses: Vec<PlaceOfContact>,
-}
-
-/// A place of contact or near miss.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct PlaceOfContact {
-    /// Abscissa on the rail profile \[mm\].
-    pub rail_x_mm: f64,
-    /// Abscissa on the wheel profile \[mm\].
-    pub wheel_x_mm: f64,
-    /// Along the rail from the wheel's centre \[mm\].
-    pub y_mm: f64,
-    /// Contact angle in the rail profile's axes \[rad\].
-    pub contact_angle_rad: f64,
-    /// Rolling radius \[mm\].
-    pub rolling_radius_mm: f64,
-    /// Vertical gap at first touch \[mm\].
-    pub gap_mm: f64,
-    /// Whether a body touches with a kink, step or end.
-    pub kink: bool,
-}
-
-impl Found {
-    /// Names side and number, as messages call the contact.
-    pub fn name(&self) -> String {
-        match self.side {
-            "single" => format!("contact {}", self.contact),
-            side => format!("{side} side, contact {}", self.contact),
-        }
-    }
-}
-
-impl From<&search::Contact> for PlaceOfContact {
-    fn from(c: &search::Contact) -> Self {
-        Self {
-            rail_x_mm: c.rail_x,
-            wheel_x_mm: c.wheel_x,
-            y_mm: c.y,
-            contact_angle_rad: c.contact_angle,
-            rolling_radius_mm: c.rolling_radius,
-            gap_mm: c.gap,
-            kink: c.kink(),
-        }
-    }
-}
-
 /// A side of the track, or a single wheel, at first touch.
 struct Side {
-    name: &'static str,
+    /// `None` of a single wheel.
+    side: Option<TrackSide>,
     height: f64,
     roll: f64,
     /// The places of contact, the lowest gap first.
@@ -112,7 +41,7 @@ pub fn contacts(case: &Case) -> Result<Vec<(String, Placement)>> {
     // A chosen contact is one whatever the approach.
     let chosen = matches!(case.standing.place, Place::Points { .. });
     let placed = find(case, case.question.approach.filter(|_| !chosen))?;
-    Ok(placed.into_iter().map(|place| (place.name(), place.contact.placement)).collect())
+    Ok(placed.into_iter().map(|contact| (contact.name(), contact.placement)).collect())
 }
 
 /// Returns the approach \[mm\] along the normal of a contact that carries a vertical load \[N\] alone, with all parts of its patch,
@@ -131,14 +60,14 @@ pub fn approach_under_load(
     let [.., most] = SEARCHED_GAPS;
     let carried = carry(&mut [wheel], load, modulus, most)?;
     let first = carried.and_then(|mut wheels| wheels.pop()?.pop());
-    first.map(|region| (region.approach, region.estimate)).ok_or_else(|| unborne("load", load, ""))
+    first.map(|region| (region.approach, region.estimate)).ok_or_else(|| unborne("load", load, None))
 }
 
 /// Finds all contacts of a case under an approach, the first one first.
 ///
 /// # Errors
 /// No contact, or more than anybody looks through; a load that no approach carries.
-pub(super) fn find(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<Placed>> {
+pub(super) fn find(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<PlacedContact>> {
     let modulus = case.question.modulus();
     let Place::Points { rail_x, wheel_x } = &case.standing.place else { return search(case, approach) };
     let placement = case.profiles.right.pair.placed(*rail_x, *wheel_x, 0.0)?;
@@ -157,22 +86,22 @@ pub(super) fn find(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<Plac
                 | ApproachBy::WheelLoads { right: load, .. }
                 | ApproachBy::AxleLoad(load) => {
                     let carried = carry(&mut [wheel], load, modulus, most)?;
-                    carried.ok_or_else(|| too_heavy(case, ""))?.swap_remove(0)
+                    carried.ok_or_else(|| too_heavy(case, None))?.swap_remove(0)
                 }
             };
             PlacedContact::of(regions.swap_remove(0), modulus, start.elapsed().as_secs_f64())?
         }
     };
-    Ok(vec![Placed { folder: String::new(), found: None, contact }])
+    Ok(vec![contact])
 }
 
 /// Lets a search find the contacts of a wheel or a wheelset.
-fn search(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<Placed>> {
+fn search(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<PlacedContact>> {
     let nearest = case.standing.within.max(match approach {
         Some(ApproachBy::Given(approach)) => STEEPEST * approach,
         _ => 0.0,
     });
-    let mut heavy = "";
+    let mut heavy = None;
     for most in SEARCHED_GAPS {
         let start = Instant::now();
         let (sides, found) = sunk(case, approach, most, most.max(nearest))?;
@@ -279,7 +208,7 @@ fn sides(case: &Case, within: f64, roll: Option<f64>) -> Result<Vec<Side>> {
                 return Err(no_touch("contact: offset", "a wheel over its rail", "check offset and signs"));
             };
             let places = touch.contacts.to_vec();
-            Ok(vec![Side { name: "single", height: touch.height, roll: pose.roll(), places }])
+            Ok(vec![Side { side: None, height: touch.height, roll: pose.roll(), places }])
         }
         Place::Wheelset { system, position } => {
             let mut search = system.search();
@@ -289,22 +218,23 @@ fn sides(case: &Case, within: f64, roll: Option<f64>) -> Result<Vec<Side>> {
                     "wheels over their rails, and a roll within ±0.1 rad at which both sides touch";
                 return Err(no_touch("wheelset: lateral", expected, "check lateral, gauge and signs"));
             };
-            let side = |name, k: usize| {
-                let side = &touch.sides[k];
-                Side { name, height: side.z, roll: touch.roll, places: side.touch.contacts.to_vec() }
+            let side = |side, k: usize| {
+                let found = &touch.sides[k];
+                let places = found.touch.contacts.to_vec();
+                Side { side: Some(side), height: found.z, roll: touch.roll, places }
             };
-            Ok(vec![side("right", 1), side("left", 0)])
+            Ok(vec![side(TrackSide::Right, 1), side(TrackSide::Left, 0)])
         }
     }
 }
 
-/// The regions of every side, or the name of a side that does not carry its load.
-type Carried = std::result::Result<Vec<Vec<Region>>, &'static str>;
+/// The regions of every side, or the side that does not carry its load; `None` of an axle and of a single wheel.
+type Carried = std::result::Result<Vec<Vec<Region>>, Option<TrackSide>>;
 
 /// Finds the regions of every side under an approach; each wheel sinks by at most `most` \[mm\] under a load.
 fn regions(case: &Case, sides: &[Side], approach: Option<ApproachBy>, most: f64) -> Result<Carried> {
     let rules = rules(case, false);
-    let wheel = |side: &Side| Wheel::over(&case.profiles.on(side.name).pair, &side.places, rules);
+    let wheel = |side: &Side| Wheel::over(&case.profiles.on(side.side).pair, &side.places, rules);
     let modulus = case.question.modulus();
     let mut all = Vec::new();
     match approach {
@@ -320,16 +250,16 @@ fn regions(case: &Case, sides: &[Side], approach: Option<ApproachBy>, most: f64)
         }
         Some(ApproachBy::WheelLoads { right, left }) => {
             for side in sides {
-                let load = if side.name == "left" { left } else { right };
+                let load = if side.side == Some(TrackSide::Left) { left } else { right };
                 let Some(carried) = carry(&mut [wheel(side)], load, modulus, most)? else {
-                    return Ok(Err(side.name));
+                    return Ok(Err(side.side));
                 };
                 all.extend(carried);
             }
         }
         Some(ApproachBy::AxleLoad(load)) => {
             let mut wheels: Vec<_> = sides.iter().map(wheel).collect();
-            let Some(carried) = carry(&mut wheels, load, modulus, most)? else { return Ok(Err("")) };
+            let Some(carried) = carry(&mut wheels, load, modulus, most)? else { return Ok(Err(None)) };
             all = carried;
         }
     }
@@ -342,23 +272,23 @@ fn rules(case: &Case, alone: bool) -> RegionRules {
 }
 
 fn no_touch(place: &str, expected: &str, advice: &str) -> Error {
-    Error::new(place, "no contact", expected, advice)
+    Error::new(place, "no contact", expected, advice).of_kind(ErrorKind::NoContact)
 }
 
 /// Says that no approach carries the load of a case.
-fn too_heavy(case: &Case, side: &str) -> Error {
+fn too_heavy(case: &Case, side: Option<TrackSide>) -> Error {
     let (key, load) = match case.question.approach {
         Some(ApproachBy::AxleLoad(load)) => ("wheelset: load", load),
         Some(ApproachBy::WheelLoad(load)) => ("patch: load", load),
-        Some(ApproachBy::WheelLoads { left, .. }) if side == "left" => ("left: load", left),
+        Some(ApproachBy::WheelLoads { left, .. }) if side == Some(TrackSide::Left) => ("left: load", left),
         Some(ApproachBy::WheelLoads { right, .. }) => ("right: load", right),
         Some(ApproachBy::Given(_)) | None => ("patch", 0.0),
     };
     unborne(key, load, side)
 }
 
-fn unborne(key: &str, load: f64, side: &str) -> Error {
-    let on = if side.is_empty() || side == "single" { String::new() } else { format!(" on the {side} side") };
+fn unborne(key: &str, load: f64, side: Option<TrackSide>) -> Error {
+    let on = side.map_or_else(String::new, |side| format!(" on the {side} side"));
     let [.., most] = SEARCHED_GAPS;
     let expected = format!("a load that a wheel carries which sinks by at most {most} mm");
     let advice = "check the unit of the load and the place of contact";
@@ -367,59 +297,47 @@ fn unborne(key: &str, load: f64, side: &str) -> Error {
 
 impl Side {
     /// Makes contacts of the regions; without any, which is without an approach, of the places within reach.
-    fn contacts(&self, case: &Case, regions: Vec<Region>, load_s: f64) -> Result<Vec<Placed>> {
+    fn contacts(&self, case: &Case, regions: Vec<Region>, load_s: f64) -> Result<Vec<PlacedContact>> {
         let within = case.standing.within;
         let modulus = case.question.modulus();
         let of = |indices: &[usize]| indices.iter().map(|&k| PlaceOfContact::from(&self.places[k])).collect();
         let mut placed = Vec::new();
         if regions.is_empty() {
             for place in self.places.iter().take_while(|place| place.gap <= within) {
-                let contact =
-                    PlacedContact::new(place.placed(&case.profiles.on(self.name).pair)?, None, modulus)?;
-                placed.push(self.placed(placed.len() + 1, place, contact)?);
+                let placement = place.placed(&case.profiles.on(self.side).pair)?;
+                let found = self.found(placed.len() + 1, place)?;
+                placed.push(PlacedContact::new(placement, None, modulus)?.found_as(found));
             }
             return Ok(placed);
         }
-        let own: Vec<usize> = regions.iter().map(|region| region.place).collect();
+        let own: Vec<usize> =
+            regions.iter().flat_map(|region| region.merged.iter().chain([&region.place])).copied().collect();
         let missed = (0..self.places.len()).filter(|k| !own.contains(k) && self.places[*k].gap <= within);
         let missed: Vec<PlaceOfContact> = of(&missed.collect::<Vec<_>>());
         for region in regions {
             let (place, merged) = (&self.places[region.place], of(&region.merged));
-            let contact = PlacedContact::of(region, modulus, load_s)?;
-            let mut one = self.placed(placed.len() + 1, place, contact)?;
-            if let Some(found) = &mut one.found {
-                (found.merged, found.near_misses) = (merged, missed.clone());
-            }
-            placed.push(one);
+            let near_misses = missed.clone();
+            let found = Found { merged, near_misses, ..self.found(placed.len() + 1, place)? };
+            placed.push(PlacedContact::of(region, modulus, load_s)?.found_as(found));
         }
         Ok(placed)
     }
 
-    /// Names the contact with this number, from 1.
-    fn placed(&self, number: usize, place: &search::Contact, contact: PlacedContact) -> Result<Placed> {
+    /// Says how the contact with this number, from 1, was found.
+    fn found(&self, number: usize, place: &search::Contact) -> Result<Found> {
         if number > MOST_PARTS {
             let found = format!("more than {MOST_PARTS} places of contact of one wheel");
             let advice = "smooth the profiles, or give grid.merge";
             return Err(Error::new("contact", found, format!("at most {MOST_PARTS}"), advice));
         }
-        let found = Found {
-            side: self.name,
+        Ok(Found {
+            side: self.side,
             height_mm: self.height,
             roll_rad: self.roll,
             contact: number,
             place: place.into(),
             merged: Vec::new(),
             near_misses: Vec::new(),
-        };
-        let folder =
-            if number == 1 { self.name.to_string() } else { format!("{}-contact-{number}", self.name) };
-        Ok(Placed { folder, found: Some(found), contact })
-    }
-}
-
-impl Placed {
-    /// Names the contact as messages call it: by side and number, or "contact" for a chosen one.
-    pub(super) fn name(&self) -> String {
-        self.found.as_ref().map_or_else(|| "contact".into(), Found::name)
+        })
     }
 }

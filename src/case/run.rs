@@ -2,13 +2,16 @@
 
 use super::analysis::Analysis;
 use super::conformal::turning_warning;
-use super::doubts::{doubts_of, doubts_of_placing};
+use super::doubts::Doubt;
+use super::found::Found;
 use super::grids::check_memory;
 use super::input::{Case, Place};
 use super::site::{Site, sites};
+use super::site_doubts::{doubted, doubts_of, doubts_of_placing, other_lift};
 use crate::error::Result;
 use crate::patch::Patch;
 use crate::placement::Creepages;
+use crate::search::TrackSide;
 use crate::separation::Plan;
 
 /// Is told the step that a run is at, and the share of the run's work that is behind it (0 to 1), from several threads.
@@ -65,7 +68,8 @@ impl Run {
     /// ```
     pub fn new(case: Case, tell: Tell<'_>) -> Result<Self> {
         tell("contacts".into(), 0.0);
-        let sites = sites(&case)?;
+        let sites = sites(&case).map_err(|error| doubted(error, &case.doubts))?;
+        let others: Vec<f64> = sites.iter().map(|site| other_lift(site, &sites)).collect();
         check_memory(&case.outputs, sites.iter().map(|site| &site.grid))?;
         let all = sites.len() as f64;
         let part = |(k, site): (usize, Site)| {
@@ -73,7 +77,7 @@ impl Run {
             let step = format!("{}: grid of {} x {} points", site.name(), grid.xi.len(), grid.eta.len());
             tell(step, COMPUTING * done);
             let analysis = Analysis::new(&site, &case.question)?;
-            let warnings = warnings_of(&site, &analysis);
+            let warnings = warnings_of(&site, &analysis, others[k]);
             Ok(Part { site, analysis, warnings })
         };
         let parts = sites.into_iter().enumerate().map(part).collect::<Result<_>>()?;
@@ -107,14 +111,10 @@ impl Run {
 
     /// Lists what a user should know before using the files.
     pub fn warnings(&self) -> Vec<String> {
-        let mut out = self.case.doubts.clone();
+        let mut out = self.case.warnings();
         let first = self.parts.first();
-        out.extend(first.into_iter().flat_map(|part| doubts_of_placing(&self.case, &part.site)));
-        for (side, profiles) in self.case.profiles.sides() {
-            let findings = profiles.measured.iter().flatten().flat_map(|record| &record.warnings);
-            let place = side.map_or_else(String::new, |side| format!("{side} side: "));
-            out.extend(findings.map(|finding| format!("{place}{}: {}", finding.place, finding.found)));
-        }
+        let placing = first.into_iter().flat_map(|part| doubts_of_placing(&self.case, &part.site));
+        out.extend(placing.map(|doubt| doubt.to_string()));
         for part in &self.parts {
             let folder = &part.site.folder;
             let place = if folder.is_empty() { String::new() } else { format!("{folder}: ") };
@@ -130,26 +130,34 @@ impl Run {
     /// A wheel at rest where it touches.
     pub fn creepages(&self, part: &Part) -> Result<Option<Creepages>> {
         let Some(motion) = self.case.question.motion else { return Ok(None) };
-        let left = part.site.side() == Some("left");
+        let left = part.site.side() == Some(TrackSide::Left);
         let half = match &self.case.standing.place {
             Place::Wheelset { system, .. } if left => system.left().wheelset().wheel_x(),
             Place::Wheelset { system, .. } => system.right().wheelset().wheel_x(),
             Place::Points { .. } | Place::Wheel { .. } => 0.0,
         };
         let motion = if left { motion.mirrored() } else { motion };
-        motion.creepages(&part.site.contact.placement, half, self.free_radius()).map(Some)
+        motion.creepages(&part.site.contact.placement, half, self.free_radius()?).map(Some)
     }
 
-    /// Gives the rolling radius \[mm\] of a wheelset that rolls freely: the mean of its sides' first contacts.
-    fn free_radius(&self) -> f64 {
-        let mut sides: Vec<(Option<&str>, f64)> = Vec::new();
-        for Part { site, .. } in &self.parts {
-            let known = sides.iter().any(|(side, _)| *side == site.side());
-            if !known && site.found.as_ref().is_none_or(|found| found.contact == 1) {
-                sides.push((site.side(), site.contact.placement.rolling_radius()));
+    /// Gives the rolling radius \[mm\] of a wheelset that rolls freely: the mean of those at which its sides touch first, whatever
+    /// frame their contacts have.
+    ///
+    /// # Errors
+    /// Chosen points at which the pair cannot be placed.
+    fn free_radius(&self) -> Result<f64> {
+        if let Place::Points { rail_x, wheel_x } = &self.case.standing.place {
+            let pair = &self.case.profiles.right.pair;
+            return Ok(pair.placed(*rail_x, *wheel_x, 0.0)?.rolling_radius());
+        }
+        let mut sides: Vec<&Found> = Vec::new();
+        for found in self.parts.iter().filter_map(|part| part.site.contact.found.as_ref()) {
+            // A patch of several parts has a site for each.
+            if found.contact == 1 && sides.iter().all(|known| known.side != found.side) {
+                sides.push(found);
             }
         }
-        sides.iter().map(|(_, radius)| radius).sum::<f64>() / sides.len() as f64
+        Ok(sides.iter().map(|found| found.place.rolling_radius_mm).sum::<f64>() / sides.len() as f64)
     }
 }
 
@@ -160,20 +168,25 @@ impl Part {
     }
 }
 
-/// Lists what a user should know before using the files of a part.
-fn warnings_of(site: &Site, analysis: &Analysis) -> Vec<String> {
+/// Lists what a user should know before using the files of a part; `other` is the lift of the other wheel \[mm\].
+fn warnings_of(site: &Site, analysis: &Analysis, other: f64) -> Vec<String> {
     let mut out = Vec::from_iter(site.grid.warning.clone());
     if analysis.patch.as_ref().is_some_and(Patch::cut_by_window) {
         out.push("the window of the grid cuts the patch: solvers would overestimate the pressure".into());
     }
     let Analysis { patch, conformal, .. } = analysis;
     out.extend(turning_warning(site, patch.as_ref(), conformal.as_ref()));
-    let Plan { error, tolerance, .. } = analysis.plan;
-    if error.is_nan() || error > tolerance {
+    let Plan { choice, error, tolerance, .. } = &analysis.plan;
+    if error.is_nan() {
+        let name = choice.method.name();
+        out.push(format!(
+            "the method {name} has no number at some points of both bodies: take \"auto\" as grid.method"
+        ));
+    } else if error > tolerance {
         out.push(format!(
             "the separation's estimated error, {error:.1e} mm, is above grid.tolerance, {tolerance:e} mm"
         ));
     }
-    out.extend(doubts_of(site));
+    out.extend(doubts_of(site, other).iter().map(Doubt::to_string));
     out
 }

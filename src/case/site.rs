@@ -3,17 +3,17 @@
 use super::contact::PlacedContact;
 use super::grids::{Grid, grids};
 use super::input::Case;
-use super::places::{Found, find};
+use super::places::find;
 use crate::error::Result;
+use crate::load::Estimate;
 use crate::patch::{Patch, Window};
+use crate::search::TrackSide;
 
 /// One contact with the axes of one grid, and the folder of its files.
 #[derive(Debug, Clone)]
 pub struct Site {
     /// Folder below the run's own; empty for the run's own.
     pub folder: String,
-    /// How the contact was found; `None` for a chosen one.
-    pub found: Option<Found>,
     /// The placed pair.
     pub contact: PlacedContact,
     /// The axes.
@@ -27,21 +27,20 @@ pub struct Site {
 /// # Errors
 /// No contact; axes that cannot be sized; more contacts or parts than anybody looks through.
 pub fn sites(case: &Case) -> Result<Vec<Site>> {
-    let places = find(case, case.question.approach)?;
-    let grids = places.iter().map(|place| grids(&case.axes, place)).collect::<Result<Vec<_>>>()?;
+    let contacts = find(case, case.question.approach)?;
+    let grids = contacts.iter().map(|contact| grids(&case.axes, contact)).collect::<Result<Vec<_>>>()?;
     let mut sites: Vec<Site> = Vec::new();
     let one_grid = case.axes.xi.is_some() && case.axes.eta.is_some();
-    for (place, grids) in places.into_iter().zip(grids) {
+    for (contact, grids) in contacts.into_iter().zip(grids) {
         let shared = |k: &usize| grids.iter().filter(|grid| grid.groups.contains(k)).count() > 1;
         let shares: Vec<bool> = grids.iter().map(|grid| grid.groups.iter().any(shared)).collect();
         for (number, grid) in grids.into_iter().enumerate() {
-            let folder = match (sites.is_empty(), number) {
-                (true, _) => String::new(),
-                (false, 0) => place.folder.clone(),
-                (false, _) if place.folder.is_empty() => format!("patch-{}", number + 1),
-                (false, _) => format!("{}-patch-{}", place.folder, number + 1),
+            let folder = match (&contact.found, number) {
+                _ if sites.is_empty() => String::new(),
+                (Some(found), 0) => found.folder(),
+                (Some(found), _) => format!("{}-patch-{}", found.folder(), number + 1),
+                (None, _) => format!("patch-{}", number + 1),
             };
-            let (found, contact) = (place.found.clone(), place.contact.clone());
             let normal_load = match contact.normal_loads.as_slice() {
                 [] => None,
                 // Axes that the scene gives are one grid for all groups of parts.
@@ -54,7 +53,7 @@ pub fn sites(case: &Case) -> Result<Vec<Site>> {
                     (!covered.is_empty()).then(|| covered.iter().sum())
                 }
             };
-            sites.push(Site { folder, found, contact, grid, normal_load });
+            sites.push(Site { folder, contact: contact.clone(), grid, normal_load });
         }
     }
     Ok(sites)
@@ -64,16 +63,16 @@ impl Site {
     /// Names the contact as messages call it: by side and number if it was found, by its part of the patch if it was
     /// chosen and has several grids.
     pub fn name(&self) -> String {
-        match &self.found {
+        match &self.contact.found {
             Some(found) => found.name(),
             None if self.folder.is_empty() => "contact".into(),
             None => format!("contact, {}", self.folder),
         }
     }
 
-    /// Gives the side of a contact that was found: "left" or "right" of a wheelset, "single" otherwise.
-    pub fn side(&self) -> Option<&'static str> {
-        self.found.as_ref().map(|found| found.side)
+    /// Gives the side of a wheelset's contact; `None` of a single wheel's.
+    pub fn side(&self) -> Option<TrackSide> {
+        self.contact.found.as_ref()?.side
     }
 
     /// Gives δ \[mm\], 0 for a case without an approach.
@@ -86,6 +85,13 @@ impl Site {
         self.normal_load.map(|load| load * self.contact.placement.rail().point.station.cos)
     }
 
+    /// Gives the largest pressure of Hertz's ellipse \[N/mm²\]; `None` without an ellipse, and where the half-space found that the
+    /// patch is none.
+    pub fn hertz_pressure(&self) -> Option<f64> {
+        let half_space = self.contact.approach.is_some_and(|(_, by)| by == Some(Estimate::HalfSpace));
+        self.contact.ellipse.filter(|_| !half_space).map(|ellipse| ellipse.pressure_n_per_mm2)
+    }
+
     /// Gives the rectangle between the outermost points of the grid.
     pub fn window(&self) -> Window {
         Window { xi: ends(&self.grid.xi), eta: ends(&self.grid.eta) }
@@ -96,13 +102,18 @@ impl Site {
         self.contact.patch_in(&self.window())
     }
 
+    /// Tells whether the bodies overlap before any approach. A further contact of a side is closed by the approach only, and the
+    /// first one overlaps by that approach: only first ones can be infeasible.
+    pub fn is_infeasible(&self) -> bool {
+        let first = self.contact.found.as_ref().is_none_or(|found| found.contact == 1);
+        first && !self.contact.feasibility.feasible
+    }
+
     /// Lists the geometric "no"s of the contact and of its patch in the window.
     pub fn refusals(&self, patch: Option<&Patch>) -> Vec<String> {
         let mut out = Vec::new();
         let feasibility = &self.contact.feasibility;
-        // A further contact of a side is closed by the approach only, and the first one overlaps by that approach.
-        let first = self.found.as_ref().is_none_or(|found| found.contact == 1);
-        if first && !feasibility.feasible {
+        if self.is_infeasible() {
             out.push(format!(
                 "infeasible contact: the bodies overlap by {:.6e} mm at xi = {:.6} mm, eta = {:.6} mm; expected s >= 0 \
                  everywhere (4.1); choose another pair of points",
@@ -132,4 +143,9 @@ pub(super) fn ends(values: &[f64]) -> [f64; 2] {
         [only] => [*only; 2],
         [] => [0.0; 2],
     }
+}
+
+/// Tells which ends of an interval of η are those of the window's.
+pub(super) fn cut_by(window: [f64; 2], eta: [f64; 2]) -> [bool; 2] {
+    [eta[0] <= window[0], eta[1] >= window[1]]
 }

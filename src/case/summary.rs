@@ -4,9 +4,11 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::conformal::Conformal;
+use super::facts::FACTS;
 use super::in_place;
 use super::input::Case;
 use super::run::{Part, Run};
+use super::site::Site;
 use crate::files::FolderPart;
 use crate::mesh::{Quality, Surface, TriangleMesh};
 use crate::patch::{Component, Patch};
@@ -61,38 +63,30 @@ pub(super) fn summary(
     files: &[String],
     skipped: &[String],
 ) -> Value {
-    let (Part { site, analysis, .. }, Case { echo, file, profiles, .. }) = (part, &run.case);
-    let (contact, own) = (&site.contact, profiles.on(site.side().unwrap_or_default()));
+    let (Part { site, analysis, .. }, Case { profiles, .. }) = (part, &run.case);
+    let (contact, own) = (&site.contact, profiles.on(site.side()));
     let placement = &contact.placement;
     let place = in_place::to_track(run, part);
     let rows = [0, 1, 2, 3].map(|row| [0, 1, 2, 3].map(|column| place[(row, column)]));
-    json!({
-        "program": "wheelrail",
-        "version": env!("CARGO_PKG_VERSION"),
-        "title": echo.title,
-        "scene": echo.scene,
-        "scene_file": file.as_ref().map(|file| folder.relative(file)),
-        "scene_sha256": echo.hash,
-        "conventions": "mm, rad; s > 0 apart; contact frame: origin C, xi along the common tangent, eta along the rail, zeta from rail to wheel; grids [i_xi][i_eta]",
+    let mut summary = head(&run.case, folder);
+    let facts = FACTS.iter().filter_map(|fact| fact.number(part));
+    // Numbers of bodies, patches and ellipses stand in their tables.
+    let flat = facts.filter(|(keys, _)| keys.len() == 1).map(|(keys, value)| (keys.concat(), json!(value)));
+    let rest = json!({
         "rail": body(placement.rail()),
         "wheel": body(placement.wheel()),
-        "measured_rail": own.measured[0],
-        "measured_wheel": own.measured[1],
+        "measured_rail": own.measured.rail,
+        "measured_wheel": own.measured.wheel,
         "wheel_radius_mm": placement.wheel_radius(),
-        "rolling_radius_mm": placement.rolling_radius(),
-        "skew_rad": placement.skew(),
-        "found": site.found,
+        "found": contact.found,
         "creepages": creepages.map(relative_motion),
         "feasibility": contact.feasibility,
         "curvatures": contact.curvatures,
-        "approach_mm": contact.approach.map(|(approach, _)| approach),
         "approach_estimated_by": contact.approach.and_then(|(_, estimate)| estimate),
-        "normal_load_n": site.normal_load,
-        "vertical_load_n": site.vertical_load(),
         "effective_modulus_n_per_mm2": run.case.question.modulus(),
         "contact_to_track": rows,
         "wheelset_files": in_place::beside(run, part),
-        "hertz_ellipse": contact.ellipse,
+        "hertz_ellipse": hertz(site),
         "hertz_ellipse_under": contact.ellipse_under,
         "patch": analysis.patch.as_ref().map(patch),
         "mesh_quality": analysis.strips.as_ref().and_then(Quality::of_strips),
@@ -117,6 +111,23 @@ pub(super) fn summary(
         "files": files,
         "files_skipped": skipped,
         "timings": analysis.timings,
+    });
+    if let (Value::Object(all), Value::Object(rest)) = (&mut summary, rest) {
+        all.extend(flat.chain(rest));
+    }
+    summary
+}
+
+/// Gives what the summary says of the program and of the scene.
+fn head(Case { echo, file, .. }: &Case, folder: &FolderPart<'_>) -> Value {
+    json!({
+        "program": "wheelrail",
+        "version": env!("CARGO_PKG_VERSION"),
+        "title": echo.title,
+        "scene": echo.scene,
+        "scene_file": file.as_ref().map(|file| folder.relative(file)),
+        "scene_sha256": echo.hash,
+        "conventions": "mm, rad; s > 0 apart; contact frame: origin C, xi along the common tangent, eta along the rail, zeta from rail to wheel; grids [i_xi][i_eta]",
     })
 }
 
@@ -152,11 +163,19 @@ fn relative_motion(creepages: Creepages) -> Value {
     })
 }
 
+/// Gives Hertz's ellipse, whose pressure is null where the half-space decided: nothing has that pressure there.
+fn hertz(site: &Site) -> Option<Value> {
+    let mut ellipse = json!(site.contact.ellipse?);
+    ellipse["pressure_n_per_mm2"] = json!(site.hertz_pressure());
+    Some(ellipse)
+}
+
 fn patch(patch: &Patch) -> Value {
     let extent = patch.extent();
+    // The empty sum is −0, which + 0 makes 0.
     json!({
-        "area_mm2": patch.area(),
-        "perimeter_mm": patch.components.iter().map(|c| c.perimeter).sum::<f64>(),
+        "area_mm2": patch.area() + 0.0,
+        "perimeter_mm": patch.components.iter().map(|c| c.perimeter).sum::<f64>() + 0.0,
         "xi_extent_mm": extent.map(|e| e.xi),
         "eta_extent_mm": extent.map(|e| e.eta),
         "cut_by_window": patch.cut_by_window(),
@@ -172,6 +191,11 @@ fn triangle_mesh(mesh: &TriangleMesh) -> Value {
             "size_mm": mesh.size[k],
             "chord_error_mm": mesh.chord_error[k],
             "area_mm2": mesh.area(k),
+            "sharp_corners": mesh.sharp_corners(k).into_iter().map(|(node, angle)| json!({
+                "xi_mm": mesh.points[node].x,
+                "eta_mm": mesh.points[node].y,
+                "angle_rad": angle,
+            })).collect::<Vec<_>>(),
         })).collect::<Vec<_>>(),
     })
 }

@@ -77,6 +77,7 @@ fn side(case: &Case, system: &WheelsetOnTrack, columns: &Columns, lateral: &[f64
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case::DoubtSet;
     use crate::search::{ONE_CONTACT, ParallelSweep, Selection};
     use nalgebra::Point2;
 
@@ -93,7 +94,7 @@ mod tests {
         let mut columns = Columns::default();
         let sweep = ParallelSweep { system, selection, conicity: None, positions: &positions };
         let rows = |chunk: &mut Columns, position, rows: &[_]| {
-            rows.iter().for_each(|row| chunk.push(position, row, None));
+            rows.iter().for_each(|row| chunk.push(position, row, None, DoubtSet::default()));
             Ok(())
         };
         let all = |_, chunks: Vec<Columns>| {

@@ -1,12 +1,13 @@
 //! What the page of a run shows: every contact on a grid of the page's own, and what is known of it in words.
 
 use super::drawn::contact_name;
+use super::facts::{FACTS, Fact};
 use super::polylines::{pairs, thinned};
 use super::run::{Part, Run};
 use crate::export::{PageFrame, PageLoop, ViewContact, ViewPage};
-use crate::load::Estimate;
 use crate::mesh::equal_steps;
 use crate::patch::{Patch, Window};
+use crate::search::TrackSide;
 use crate::separation::{EtaAxis, Values, plan};
 
 /// Contacts that a page shows: more would take more than the 1.5 MB that a mail or a browser takes at once.
@@ -61,7 +62,7 @@ fn notes(run: &Run, n: usize) -> Vec<String> {
     if run.parts.len() > 1 {
         notes.push("Dashed regions in the colour of the boundary belong to a neighbouring contact.".into());
     }
-    if run.parts.iter().any(|part| part.site.side() == Some("left")) {
+    if run.parts.iter().any(|part| part.site.side() == Some(TrackSide::Left)) {
         notes.push("The left side is shown as its mirror image: x to the left, y forward, z up.".into());
     }
     notes
@@ -76,7 +77,7 @@ fn contact(run: &Run, part: &Part, n: usize) -> ViewContact {
     let mut separation = Values::new(n * n);
     plan.fill(placement, &xi, &axis, &mut separation);
     let rail = &placement.rail().section;
-    let both = run.case.profiles.left.is_some() && part.site.side() == Some("left");
+    let both = run.case.profiles.left.is_some() && part.site.side() == Some(TrackSide::Left);
     let mut warnings = part.refusals();
     warnings.extend_from_slice(&part.warnings);
     ViewContact {
@@ -151,52 +152,13 @@ fn boundary(patch: &Patch) -> Vec<PageLoop> {
     loops().map(kept).collect()
 }
 
-/// Gives the rows of the table: what a reader asks first.
+/// Gives the rows of the table.
 fn facts(part: &Part) -> Vec<[String; 2]> {
-    let (site, contact) = (&part.site, &part.site.contact);
-    let placement = &contact.placement;
-    let [rail, wheel] = [placement.rail(), placement.wheel()];
-    let mut rows: Vec<[String; 2]> = Vec::new();
-    let mut row = |label: &str, value: String| rows.push([label.into(), with_minus(&value)]);
-    row("Approach δ", approach(part));
-    for (label, body) in [("C on the rail", rail), ("C on the wheel", wheel)] {
-        let at = &body.point.station;
-        row(label, format!("({:.3}, {:.3}) mm", at.x, at.z));
-    }
-    row("Contact angle θ", format!("{:.3}°", rail.contact_angle().to_degrees()));
-    row("Rolling radius", format!("{:.3} mm", placement.rolling_radius()));
-    if placement.skew() != 0.0 {
-        row("Skew", format!("{:.3} mrad", 1e3 * placement.skew()));
-    }
-    if let Some(load) = site.normal_load {
-        row("Normal load", format!("{:.2} kN", load / 1e3));
-        row("Vertical load", format!("{:.2} kN", load * rail.point.station.cos / 1e3));
-    }
-    if let Some(patch) = &part.analysis.patch {
-        row("Area of the patch", format!("{:.3} mm²", patch.area()));
-        if let Some(Window { xi: [a, b], eta: [c, d] }) = patch.extent() {
-            row("Extents ξ × η", format!("{:.3} × {:.3} mm", b - a, d - c));
-        }
-    }
-    if let Some(ellipse) = &contact.ellipse {
-        row("Hertz p₀", format!("{:.0} N/mm²", ellipse.pressure_n_per_mm2));
-        row("Hertz load", format!("{:.2} kN", ellipse.load_n / 1e3));
-        row("Hertz semi-axes", format!("{:.3}, {:.3} mm", ellipse.a_mm, ellipse.b_mm));
-    }
-    let plan = &part.analysis.plan;
-    row("Grid of the files", format!("{} × {}", site.grid.xi.len(), site.grid.eta.len()));
-    row("Method", format!("{}, ± {:.0e} mm", plan.choice.method.name(), plan.error));
-    rows
-}
-
-fn approach(part: &Part) -> String {
-    let Some((approach, estimate)) = part.site.contact.approach else { return "none asked for".into() };
-    let by = match estimate {
-        None => "given",
-        Some(Estimate::Hertz) => "Hertz",
-        Some(Estimate::HalfSpace) => "half-space",
+    let row = |fact: &Fact| {
+        let value = format!("{} {}", fact.text(part)?, fact.unit);
+        Some([fact.label.into(), with_minus(value.trim_end())])
     };
-    format!("{approach:.5} mm ({by})")
+    FACTS.iter().filter_map(row).collect()
 }
 
 /// Gives numbers their true minus sign; hyphens of words stay.

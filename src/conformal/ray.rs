@@ -55,7 +55,7 @@ impl<'a> RayBodies<'a> {
         let wheel = WheelSurface::new(placement);
         let frame = &wheel.section.frame;
         let size = placement.wheel().profile().extent() + frame.x.abs() + frame.z.abs();
-        let steps = wheel.section.steps(ONE_JOINT * size);
+        let steps = wheel.section.steps();
         Self { placement, wheel, skew_sin: skew.im, skew_cos: skew.re, versine, steps, size }
     }
 

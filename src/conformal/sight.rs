@@ -68,9 +68,7 @@ impl Sight<'_, '_> {
         let (ray, mut e) = (self.ray, self.own);
         let mut t = ray.t_through(at, e);
         for _ in 0..STEPS {
-            let eta = ray.eta_at(t);
-            let next = sagitta(ray.axle_distance(t), eta * eta);
-            let settled = (next - e).abs() <= SETTLED * f64::EPSILON * e;
+            let (next, settled) = self.next_sagitta(t, e);
             (t, e) = (ray.t_through(at, next), next);
             if settled {
                 break;
@@ -79,10 +77,27 @@ impl Sight<'_, '_> {
         (t, e)
     }
 
-    /// Computes how far a point of the profile lies beside the ray.
+    /// Computes how far a point of the profile lies beside the ray. What is far off has fewer digits: its sign counts.
     fn beside(&self, at: [f64; 2]) -> Beside {
-        let (_, e) = self.abreast(at);
-        Beside { xi: at[0], by: self.ray.beside(at) + e * self.ray.drift }
+        let (ray, mut e) = (self.ray, self.own);
+        let (own, mut by) = (ray.beside(at), f64::NAN);
+        for _ in 0..STEPS {
+            let (next, settled) = self.next_sagitta(ray.t_through(at, e), e);
+            by = own + next * ray.drift;
+            // The next step moves it by a thousandth of this one.
+            if settled || ((next - e) * ray.drift).abs() <= by.abs() {
+                break;
+            }
+            e = next;
+        }
+        Beside { xi: at[0], by }
+    }
+
+    /// Computes the sagitta \[mm\] of the ray's point at t \[mm\], and whether the step there from the last one is a rounding.
+    fn next_sagitta(&self, t: f64, e: f64) -> (f64, bool) {
+        let eta = self.ray.eta_at(t);
+        let next = sagitta(self.ray.axle_distance(t), eta * eta);
+        (next, (next - e).abs() <= SETTLED * f64::EPSILON * e)
     }
 
     /// Computes how far the end of a piece lies beside the ray; 0 is the end at smaller ξ.

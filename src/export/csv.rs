@@ -17,24 +17,31 @@ pub fn boundary_csv(loops: &[Loop]) -> String {
     text
 }
 
-/// Writes `interpen.csv`, INTERPEN's own table, with the columns xi, component, eta_min and eta_max: one row for each
-/// interval of each grid ξ inside the patch.
+/// Writes `interpen.csv`, INTERPEN's own table, with the columns xi, component, eta_min, eta_max and cut: one row for each
+/// interval of each grid ξ inside the patch. `cut` says which end of it is the window's, not the patch's: 0 none, 1 the lower
+/// one, 2 the upper one, 3 both.
 pub fn interpen_csv(intervals: &[Interval]) -> String {
-    let mut text = String::from("xi,component,eta_min,eta_max\n");
-    for Interval { xi, component, eta: [low, high] } in intervals {
-        let _ = writeln!(text, "{xi:?},{component},{low:?},{high:?}");
+    let mut text = String::from("xi,component,eta_min,eta_max,cut\n");
+    for Interval { xi, component, eta: [low, high], cut } in intervals {
+        let _ = writeln!(text, "{xi:?},{component},{low:?},{high:?},{}", code(*cut));
     }
     text
 }
 
-/// Writes `interpen_sigma.csv`, the same table over the rail's surface, with the columns sigma, xi, eta_min and eta_max: the
-/// interval of η with t ≤ δ cos α for each grid σ inside the conformal patch. Each row is \[σ, ξ, η_min, η_max\] \[mm\].
-pub fn interpen_sigma_csv(rows: &[[f64; 4]]) -> String {
-    let mut text = String::from("sigma,xi,eta_min,eta_max\n");
-    for [sigma, xi, low, high] in rows {
-        let _ = writeln!(text, "{sigma:?},{xi:?},{low:?},{high:?}");
+/// Writes `interpen_sigma.csv`, the same table over the rail's surface, with the columns sigma, xi, eta_min, eta_max and cut: the
+/// interval of η with t ≤ δ cos α for each grid σ inside the conformal patch. Each row is \[σ, ξ, η_min, η_max\] \[mm\], with
+/// the ends that are the window's.
+pub fn interpen_sigma_csv(rows: &[([f64; 4], [bool; 2])]) -> String {
+    let mut text = String::from("sigma,xi,eta_min,eta_max,cut\n");
+    for ([sigma, xi, low, high], cut) in rows {
+        let _ = writeln!(text, "{sigma:?},{xi:?},{low:?},{high:?},{}", code(*cut));
     }
     text
+}
+
+/// Gives the number that says which ends are cut.
+fn code([low, high]: [bool; 2]) -> u8 {
+    u8::from(low) + 2 * u8::from(high)
 }
 
 #[cfg(test)]
@@ -47,8 +54,11 @@ mod tests {
         let text = boundary_csv(&[square()]);
         let lines: Vec<_> = text.lines().collect();
         assert_eq!((lines.len(), lines[1], lines[5]), (6, "0,-1.0,-1.0", "0,-1.0,-1.0"));
-        let row = Interval { xi: 0.1 + 0.2, component: 1, eta: [-1e-9, 2.0] };
-        assert_eq!(interpen_csv(&[row]), "xi,component,eta_min,eta_max\n0.30000000000000004,1,-1e-9,2.0\n");
+        let row = Interval { xi: 0.1 + 0.2, component: 1, eta: [-1e-9, 2.0], cut: [false, true] };
+        let text = "xi,component,eta_min,eta_max,cut\n0.30000000000000004,1,-1e-9,2.0,2\n";
+        assert_eq!(interpen_csv(&[row]), text);
+        let cuts = [[false; 2], [true, false], [false, true], [true; 2]];
+        assert_eq!(cuts.map(code), [0, 1, 2, 3]);
         assert_eq!(boundary_csv(&[]), "component,xi,eta\n");
     }
 }

@@ -47,6 +47,11 @@ impl<'a> CurvedFields<'a> {
         (-n_xi).atan2(n_zeta)
     }
 
+    /// Returns α \[rad\] at every σ.
+    pub fn angles(&self) -> Vec<f64> {
+        (0..self.sigma.len()).map(|i| self.angle(i)).collect()
+    }
+
     /// Returns the wheel's outward unit normals along the column of σ number `i`.
     pub fn wheel_normals(&self, i: usize) -> &'a [[f64; 3]] {
         let n = self.grid.eta().len();

@@ -17,6 +17,7 @@ mod model;
 mod netcdf;
 mod npy;
 mod picture;
+mod ply;
 mod stl;
 mod vtk;
 mod vts;
@@ -33,7 +34,7 @@ pub use html::{
     PageFrame, PageLoop, PagePair, PageProfile, SweepCurve, SweepPage, SweepPanel, SweepSide, ViewContact,
     ViewPage,
 };
-pub use in_place::{ContactInPlace, body_vtp, boundaries_vtp, contacts_vtp, patches_vtp, wheelset_vtm};
+pub use in_place::{ContactInPlace, InPlace};
 pub use legacy::separation_vtk;
 pub use model::{Frame, GridFields, Header, Interval, Loop, PatchMesh, QuadMesh, SurfaceMesh};
 pub use netcdf::NetCdf;
@@ -42,6 +43,7 @@ pub use picture::{
     Chart, ConformalPicture, CurvesPanel, CurvesPicture, JoinedPair, Nodes, PatchPicture, PicturedContact,
     PlottedCurve, ProfilePicture, RailNormal, SEPARATOR, Series, jumps,
 };
+pub use ply::surface_ply;
 pub use stl::surface_stl;
 pub use vtk::{boundary_vtp, collection_pvd, patch_vtu, strips_vtu, surface_vtp, surface_vtu};
 pub use vts::{conformal_vts, rail_vts, separation_vts, wheel_vts};

@@ -251,6 +251,8 @@ pub struct Interval {
     pub component: usize,
     /// Smallest and largest η \[mm\] with s ≤ δ.
     pub eta: [f64; 2],
+    /// Whether each of them is the end of the window, where s < δ.
+    pub cut: [bool; 2],
 }
 
 /// The boundary-fitted solver mesh of the patch.
@@ -281,6 +283,8 @@ impl QuadMesh {
 /// A triangulated surface of one body.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SurfaceMesh {
+    /// What it is of, in ASCII letters: "patch", "rail", "wheel".
+    pub name: &'static str,
     /// Nodes (ξ, η, ζ) \[mm\].
     pub points: Vec<Point3<f64>>,
     /// Triangles: indices of three nodes, counter-clockwise seen from outside the body.
@@ -345,6 +349,7 @@ impl PatchMesh {
     /// Returns the patch as a part of the rail's surface.
     pub fn surface(&self) -> SurfaceMesh {
         SurfaceMesh {
+            name: "patch",
             points: self.mesh.points.clone(),
             triangles: self.mesh.triangles.clone(),
             separation: self.separation.clone(),

@@ -1,8 +1,6 @@
-//! Writes NumPy arrays (`.npy`): f64, little-endian, C order. `npyz` writes the header. It would write the body value by
-//! value, at half the speed of the disk's cache; this file writes it in blocks.
+//! Writes NumPy arrays (`.npy`, version 1.0): f64, little-endian, C order, in blocks.
 
 use super::block::{Block, put_f64};
-use npyz::WriterBuilder;
 use std::io::{self, Write};
 
 /// Number of values put into a block at a time.
@@ -27,18 +25,30 @@ pub fn array_npy(sink: &mut dyn Write, shape: &[u64], values: &[f64]) -> io::Res
         return Err(io::Error::new(io::ErrorKind::InvalidInput, text));
     }
     let mut block = Block::new(sink);
-    block.bytes(&head(shape)?)?;
+    block.bytes(&head(shape))?;
     for run in values.chunks(RUN) {
         put_f64(block.room(8 * run.len())?, run.iter().copied());
     }
     block.finish()
 }
 
-fn head(shape: &[u64]) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    // The header is complete once the writer exists; dropping the writer adds nothing.
-    drop(npyz::WriteOptions::<f64>::new().default_dtype().shape(shape).writer(&mut bytes).begin_nd()?);
-    Ok(bytes)
+/// Length of the header's beginning: magic, version, and the length of the rest as two bytes, little-endian.
+const PREFIX: usize = 10;
+
+/// NumPy aligns the data at multiples of this, with blanks before the line break that ends the header.
+const ALIGNMENT: usize = 64;
+
+/// Returns the header of an array of at most a thousand dimensions: its length fits into two bytes.
+fn head(shape: &[u64]) -> Vec<u8> {
+    let sizes: String = shape.iter().map(|size| format!("{size}, ")).collect();
+    // As Python prints a tuple: (2, 3), but (2,).
+    let sizes = sizes.strip_suffix(if shape.len() > 1 { ", " } else { " " }).unwrap_or_default();
+    let text = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({sizes}), }}");
+    let rest = (PREFIX + text.len() + 1).next_multiple_of(ALIGNMENT) - PREFIX;
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((rest as u16).to_le_bytes());
+    bytes.extend(format!("{text:<0$}\n", rest - 1).bytes());
+    bytes
 }
 
 #[cfg(test)]
@@ -50,20 +60,18 @@ mod tests {
         let values = [1.0, -0.0, f64::NAN, 5e-324, 0.1, 2.0];
         let mut file = Vec::new();
         array_npy(&mut file, &[2, 3], &values).unwrap();
-        let read = npyz::NpyFile::new(&file[..]).unwrap();
-        assert_eq!(read.shape(), [2, 3]);
-        let back: Vec<f64> = read.into_vec().unwrap();
-        assert_eq!(back.map_bits(), values.to_vec().map_bits());
+        let back = file[128..].chunks(8).map(|bytes| bytes.try_into().map(f64::from_le_bytes).unwrap());
+        assert_eq!(back.map(f64::to_bits).collect::<Vec<_>>(), values.map(f64::to_bits));
         assert!(array_npy(&mut Vec::new(), &[7], &values).is_err());
     }
 
-    trait Bits {
-        fn map_bits(self) -> Vec<u64>;
-    }
-
-    impl Bits for Vec<f64> {
-        fn map_bits(self) -> Vec<u64> {
-            self.into_iter().map(f64::to_bits).collect()
+    /// The bytes that NumPy 2.4 writes for such arrays.
+    #[test]
+    fn headers_are_those_of_numpy() {
+        for (shape, text) in [(&[5][..], "(5,)"), (&[2, 3], "(2, 3)"), (&[2, 3, 4], "(2, 3, 4)")] {
+            let text = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': {text}, }}");
+            let expected = [b"\x93NUMPY\x01\x00\x76\x00", format!("{text:<117}\n").as_bytes()].concat();
+            assert_eq!(head(shape), expected);
         }
     }
 }

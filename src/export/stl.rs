@@ -5,15 +5,16 @@ use std::fmt::Write as _;
 
 use nalgebra::{Point3, Vector3};
 
-use super::model::SurfaceMesh;
+use super::model::{Header, SurfaceMesh};
 use crate::error::Result;
 
-/// Writes a surface under a name of ASCII letters.
+/// Writes a surface under its name. The format has no place for the header.
 ///
 /// # Errors
 /// A mesh that contradicts itself.
-pub fn surface_stl(name: &str, mesh: &SurfaceMesh) -> Result<Vec<u8>> {
+pub fn surface_stl(_: &Header, mesh: &SurfaceMesh) -> Result<Vec<u8>> {
     mesh.validate()?;
+    let name = mesh.name;
     let mut text = format!("solid {name}\n");
     for triangle in &mesh.triangles {
         let corners @ [a, b, c] = triangle.map(|node| mesh.points[node]);
@@ -35,11 +36,11 @@ fn numbers(point: &Point3<f64>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::export::sample::patch_mesh;
+    use crate::export::sample::{header, patch_mesh};
 
     #[test]
     fn facets_point_outwards() {
-        let text = String::from_utf8(surface_stl("patch", &patch_mesh().surface()).unwrap()).unwrap();
+        let text = String::from_utf8(surface_stl(&header(), &patch_mesh().surface()).unwrap()).unwrap();
         assert!(text.starts_with("solid patch\n") && text.ends_with("endsolid patch\n"), "{text}");
         assert_eq!(text.matches("facet normal 0e0 0e0 1e0\n").count(), 8, "{text}");
         assert_eq!(text.matches("vertex ").count(), 24, "{text}");

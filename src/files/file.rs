@@ -52,6 +52,7 @@ impl NewFile {
     /// # Errors
     /// Any error of the disk; the old file is then as it was.
     pub fn commit(self) -> Result<()> {
+        let _whole = temporary::uninterrupted();
         let moved = self.temporary.iter().try_for_each(|temporary| fs::rename(temporary, &self.target));
         moved.map_err(|error| unwritable(&self.target, error))
     }
@@ -59,8 +60,8 @@ impl NewFile {
 
 impl Drop for NewFile {
     fn drop(&mut self) {
-        // After a commit the temporary file is gone. The next process removes a file that cannot be removed here.
-        self.temporary.iter().for_each(|temporary| drop(fs::remove_file(temporary)));
+        // After a commit the temporary file is gone.
+        self.temporary.iter().for_each(|temporary| temporary::discard(temporary));
     }
 }
 

@@ -9,7 +9,8 @@
 //!   DIR is missing for an instant, and the old folder waits beside it under a name that the next run puts
 //!   back.
 //! - **Killed runs.** The temporary folder is locked as long as its run lives: `files::temporary`. On systems
-//!   that lock folders, the next run into the same parent removes what a killed run left.
+//!   that lock folders, the next run into the same parent removes what a killed run left. A program that catches the signal
+//!   removes it at once: [`discard_all`](temporary::discard_all).
 //! - **No fsync.** Twenty of them cost more than the whole run. The promise holds for a kill of the process,
 //!   not for a power cut: the END lines and the sizes in the headers show that a folder is incomplete.
 //! - **Foreign files.** A folder is replaced only if it is empty or contains our own summary. What is in it and
@@ -82,6 +83,7 @@ impl Folder {
     /// Any error of the disk.
     pub fn part(&self, name: &str) -> Result<FolderPart<'_>> {
         let (temporary, target) = (self.temporary.join(name), self.target.join(name));
+        let _whole = temporary::uninterrupted();
         fs::create_dir_all(&temporary).map_err(|e| unwritable(&target, e))?;
         Ok(FolderPart { temporary, target, _whole: self })
     }
@@ -108,6 +110,11 @@ impl Folder {
     /// # Errors
     /// DIR has meanwhile become something that may not be replaced; the disk refuses. DIR is then as it was.
     pub fn commit(self) -> Result<()> {
+        let _whole = temporary::uninterrupted();
+        self.put_in_place()
+    }
+
+    fn put_in_place(&self) -> Result<()> {
         use ErrorKind::{AlreadyExists, DirectoryNotEmpty, PermissionDenied};
         for _ in 0..SWAPS_TRIED {
             // The rename also replaces an empty folder.
@@ -138,9 +145,9 @@ impl Folder {
     }
 
     /// Takes over what came into the old folder, which now has the temporary name, while the two were
-    /// exchanged. Dropping self then deletes the old folder; where something in it cannot be taken over, the old
+    /// exchanged. Dropping the folder then deletes the old folder; where something in it cannot be taken over, the old
     /// folder gets a name of its own instead.
-    fn leave(self) -> Result<()> {
+    fn leave(&self) -> Result<()> {
         let late = match foreign(&self.temporary, self.names) {
             // Another run has cleaned up.
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
@@ -206,9 +213,7 @@ impl FolderPart<'_> {
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        // A failure here leaves a stale folder, which the next run removes. After a plain rename there is nothing to
-        // remove.
-        drop(fs::remove_dir_all(&self.temporary));
+        temporary::discard(&self.temporary);
     }
 }
 

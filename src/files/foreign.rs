@@ -41,7 +41,7 @@ fn collect(root: &Path, inside: &Path, names: Option<Names>, out: &mut Vec<Forei
     let entries = fs::read_dir(root.join(inside))?.collect::<io::Result<Vec<DirEntry>>>()?;
     for entry in entries {
         let (name, path) = (entry.file_name(), inside.join(entry.file_name()));
-        if names.is_some_and(|names| names.files.iter().any(|own| name == **own)) {
+        if names.is_some_and(|names| name.to_str().is_some_and(names.is_file)) {
             continue;
         }
         if !entry.file_type()?.is_dir() {

@@ -14,5 +14,6 @@ mod temporary;
 
 pub use file::{NewFile, write_file};
 pub use folder::{Folder, FolderPart};
-pub use names::{Names, PATCHES_FOLDER, RUN_FOLDER};
+pub use names::Names;
 pub use read::{read_bytes, read_text};
+pub use temporary::discard_all;

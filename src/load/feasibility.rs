@@ -1,5 +1,6 @@
 //! Feasibility of a chosen contact point (Report Sec. 4): s ≥ 0 everywhere, (4.1).
 
+use nalgebra::Point2;
 use serde::Serialize;
 
 use crate::patch::skewed::monotone::monotone;
@@ -17,7 +18,8 @@ const ROUNDING: f64 = 1e-12;
 pub struct Feasibility {
     /// Whether the bodies nowhere overlap in this position.
     pub feasible: bool,
-    /// Least separation over the overlap of the two bodies \[mm\], negative where they do.
+    /// Least separation where the bodies lie over each other \[mm\], negative where they overlap: the least s along ζ. Where s
+    /// does not say what the bodies do, it is the least vertical gap between them; see [`feasibility`].
     pub least_separation_mm: f64,
     /// ξ where it is \[mm\].
     pub at_xi_mm: f64,
@@ -31,7 +33,11 @@ pub struct Feasibility {
 /// end or where the two are parallel. The midplane suffices: at fixed ξ the wheel only rises with |η|, since its
 /// profile angle is below 90°.
 ///
-/// Under a skewed wheel the least s of every line of constant ξ is where the wheel is parallel to η, or on the circle of a
+/// The bodies decide, not their sheets: along a steep ζ, s compares only the sheets that face each other at C. Without skew
+/// the vertical gap in the rail profile's axes says whether the bodies overlap, as each body has one outer height there. Where
+/// s is negative and the vertical gap is not, or the other way round, the result is the least vertical gap with its place.
+///
+/// Under a skewed wheel s alone decides. The least s of every line of constant ξ is where the wheel is parallel to η, or on the circle of a
 /// kink or end: places in closed form. Along them s is searched between joints for where it turns, up to |η| = 0.65 of the
 /// axle's distance. Exact to rounding, but for two turns within a quarter of a stretch between joints: see the docs on
 /// numerics.
@@ -52,11 +58,26 @@ pub struct Feasibility {
 /// # Ok::<(), wheelrail::Error>(())
 /// ```
 pub fn feasibility(placement: &Placement) -> Option<Feasibility> {
-    let (least_separation_mm, at_xi_mm, at_eta_mm) =
+    let along_zeta =
         if placement.skew() == 0.0 { least_in_midplane(placement)? } else { least_under_skew(placement)? };
     let extent = placement.rail().profile().extent().max(placement.wheel().profile().extent());
-    let feasible = least_separation_mm >= -ROUNDING * extent;
+    let apart = |gap: f64| gap >= -ROUNDING * extent;
+    // What a steep surface is off by along its normal is more along the vertical.
+    let steep = placement.rail().point().station.cos;
+    let vertical = least_vertical_gap(placement);
+    let feasible = vertical.map_or(apart(along_zeta.0), |(gap, ..)| apart(gap * steep));
+    let agreed = feasible == apart(along_zeta.0);
+    let (least_separation_mm, at_xi_mm, at_eta_mm) = vertical.filter(|_| !agreed).unwrap_or(along_zeta);
     Some(Feasibility { feasible, least_separation_mm, at_xi_mm, at_eta_mm })
+}
+
+/// (gap, ξ, η) \[mm\] of the least vertical gap in the midplane, the place on the rail; `None` under skew.
+fn least_vertical_gap(placement: &Placement) -> Option<(f64, f64, f64)> {
+    let upright = placement.reframed(placement.rail().point().station.x, 0.0).ok()?;
+    let (gap, along, _) = least_in_midplane(&upright)?;
+    let place = upright.rail().contact_frame() * Point2::new(along, upright.rail().section().height(along));
+    let xi = placement.rail().contact_frame().inverse_transform_point(&place).x;
+    Some((gap, xi, 0.0))
 }
 
 /// (s, ξ, η) \[mm\] of the least s in the midplane.

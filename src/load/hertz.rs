@@ -17,6 +17,16 @@ pub struct Elastic {
     pub poissons_ratio: f64,
 }
 
+impl Elastic {
+    /// Steel: E = 210,000 N/mm², ν = 0.28.
+    pub const STEEL: Self = Self { youngs_modulus: 210_000.0, poissons_ratio: 0.28 };
+
+    /// Gives G = E / (2 (1 + ν)) \[N/mm²\].
+    pub fn shear_modulus(&self) -> f64 {
+        self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
+    }
+}
+
 /// 1/E* = (1 − ν_R²)/E_R + (1 − ν_W²)/E_W \[N/mm²\].
 pub fn effective_modulus(rail: &Elastic, wheel: &Elastic) -> f64 {
     let compliance = |body: &Elastic| (1.0 - body.poissons_ratio * body.poissons_ratio) / body.youngs_modulus;
@@ -63,8 +73,7 @@ pub struct Ellipse {
 /// let curvatures = curvatures(&placement);
 /// assert!((curvatures.a_per_mm * 920.0 - 1.0).abs() < 1e-12 && (curvatures.b_per_mm * 600.0 - 1.0).abs() < 1e-12);
 ///
-/// let steel = Elastic { youngs_modulus: 210_000.0, poissons_ratio: 0.28 };
-/// let modulus = effective_modulus(&steel, &steel);
+/// let modulus = effective_modulus(&Elastic::STEEL, &Elastic::STEEL);
 /// assert!((modulus - 113_932.3).abs() < 0.1);
 /// let ellipse = curvatures.under_load(80_000.0, modulus).expect("a convex gap");
 /// assert!((ellipse.approach_mm - 0.090_487_9).abs() < 1e-6);

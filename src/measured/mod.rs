@@ -27,6 +27,7 @@ pub use clean::checks::{Check, Finding};
 pub use clean::repairs::Repaired;
 pub use column::Column;
 pub use fit::curve::{Corner, CurveRecord, Residual};
+pub(crate) use options::measured_options;
 pub use options::{
     ARC_TOLERANCE, CUTOFF_WAVELENGTH, CurveKind, GAUGE_HEIGHT, KINK_ANGLE, NamedOrigin, Options, Origin,
     Repair, TAPE_DISTANCE,
@@ -112,6 +113,15 @@ pub fn profile(file: &str, bytes: &[u8], side: Side, options: &Options) -> Resul
         Some(format) => format,
         None => Format::of_file(file)?,
     };
+    let named = Format::body_of_file(file).filter(|named| options.format.is_none() && *named != side);
+    if let Some(named) = named {
+        let [found, expected] = [named, side].map(|side| match side {
+            Side::Rail => "a rail",
+            Side::Wheel => "a wheel",
+        });
+        let found = format!("the extension of {found}");
+        return Err(Error::new(file, found, expected, "give the other file, or say its `format`"));
+    }
     let points =
         read::reader::read(bytes, format, options.columns.as_ref()).map_err(|error| error.within(file))?;
     build(file, points, side, options).map_err(|error| error.within(file))

@@ -1,11 +1,8 @@
 //! The options that a scene may give for a measured file.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::column::Column;
 use super::read::format::Format;
-use super::unit::Unit;
 use crate::error::{Error, Result, finite};
 use crate::profile::Side;
 
@@ -25,68 +22,105 @@ pub const GAUGE_HEIGHT: f64 = 14.0;
 /// Default distance of the taping line from the flange back \[mm\] (EN 13715: 70).
 pub const TAPE_DISTANCE: f64 = 70.0;
 
-/// How a measured file becomes a profile. Every option may be left out. The definition of the file's format then decides;
-/// if it says nothing, the shape decides; if the shape proves nothing, this is an error.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct Options {
-    /// Format of the file; if not given, its extension tells.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub format: Option<Format>,
-    /// Columns of x and z in a text or CSV file: numbers from 1, or names in its first row.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub columns: Option<[Column; 2]>,
-    /// Section of an .mpt file to use, from 1; if not given, all sections in a row.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub section: Option<usize>,
-    /// Of an `.slcs` file: place of the section along the track, mm, between the first slice and the last.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub along: Option<f64>,
-    /// Of an `.slcw` file: place of the section around the wheel, rad; a wheel is periodic.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub angle: Option<f64>,
-    /// Whether the file's first axis points to the centre of the track (x = −first). Profiles are right-hand:
-    /// flange and gauge corner at negative x.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub mirror: Option<bool>,
-    /// Whether the file's second axis points down, so that z = −second.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub flip_z: Option<bool>,
-    /// Unit of the file's coordinates; if neither the option nor the file states it, mm.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub unit: Option<Unit>,
-    /// Point of the file that becomes the origin.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub origin: Option<Origin>,
-    /// Depth of the gauge point below the top of rail, mm; 14 if not given.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub gauge_height: Option<f64>,
-    /// Distance of the taping line from the flange back, mm; 70 if not given.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub tape_distance: Option<f64>,
-    /// Whether the rail was measured as it lies. Its points then contain its inclination already, which is not applied
-    /// again.
-    pub already_inclined: bool,
-    /// Repairs that may be made; the summary lists each repair that was made.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub repair: Vec<Repair>,
-    /// Kind of curve through the points. If not given: "smoothing", or "elements" for a file that has only design elements.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub curve: Option<CurveKind>,
-    /// Wavelength whose waves smoothing halves, mm; 5 if not given. Before a chain of arcs it smooths the tangents; if not
-    /// given, the tolerance decides there.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub cutoff_wavelength: Option<f64>,
-    /// Largest kink that smoothing may round off, rad; larger kinks stay corners. π/6 if not given; π means no corners.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub kink_angle: Option<f64>,
-    /// Largest distance of a point from the chain of arcs, mm; 0.01 if not given.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub arc_tolerance: Option<f64>,
+/// Declares tables of keys that hold those of a measured file, which stand here alone. serde's `flatten` would lose the lines of
+/// errors and the list of known keys.
+macro_rules! measured_options {
+    // The table with its own keys first.
+    (table [$(#[$of_table:meta])* pub struct $name:ident { $($own:tt)* }] $($(#[$of_key:meta])* $key:ident: $type:ty;)*) => {
+        $(#[$of_table])*
+        pub struct $name {
+            $($own)*
+            $($(#[$of_key])* pub $key: $type,)*
+        }
+    };
+    // The way from such a table to the options.
+    (method [$name:ident] $($(#[$of_key:meta])* $key:ident: $type:ty;)*) => {
+        impl $name {
+            /// Gives the keys of a measured file.
+            pub fn measured(&self) -> $crate::measured::Options {
+                $crate::measured::Options { $($key: self.$key.clone(),)* }
+            }
+        }
+    };
+    (@$what:ident $($of:tt)*) => {
+        $crate::measured::measured_options! {
+            $what [$($of)*]
+            /// Format of the file; if not given, its extension tells.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            format: Option<$crate::measured::Format>;
+            /// Columns of x and z in a text or CSV file: numbers from 1, or names in its first row.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            columns: Option<[$crate::measured::Column; 2]>;
+            /// Section of an .mpt file to use, from 1; if not given, all sections in a row.
+            #[cfg_attr(feature = "files", schemars(extend("minimum" = 1)))]
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            section: Option<usize>;
+            /// Of an `.slcs` file: place of the section along the track, mm, between the first slice and the last.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            along: Option<f64>;
+            /// Of an `.slcw` file: place of the section around the wheel, rad; a wheel is periodic.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            angle: Option<f64>;
+            /// Whether the file's first axis points to the centre of the track (x = −first). Profiles are right-hand:
+            /// flange and gauge corner at negative x. Of any other profile: mirror image under x → −x, before `rotate` and
+            /// `shift`.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            mirror: Option<bool>;
+            /// Whether the file's second axis points down, so that z = −second.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            flip_z: Option<bool>;
+            /// Unit of the file's coordinates, or of `segments`; if neither the option nor the file states it, mm. `radius` and
+            /// `shift` are in mm in any case.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            unit: Option<$crate::measured::Unit>;
+            /// Point of the file that becomes the origin.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            origin: Option<$crate::measured::Origin>;
+            /// Depth of the gauge point below the top of rail, mm; 14 if not given.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            gauge_height: Option<f64>;
+            /// Distance of the taping line from the flange back, mm; 70 if not given.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            tape_distance: Option<f64>;
+            /// Whether the rail was measured as it lies. Its points then contain its inclination already, which is not applied
+            /// again.
+            #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+            already_inclined: bool;
+            /// Repairs that may be made; the summary lists each repair that was made.
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            repair: Vec<$crate::measured::Repair>;
+            /// Kind of curve through the points. If not given: "smoothing", or "elements" for a file that has only design elements.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            curve: Option<$crate::measured::CurveKind>;
+            /// Wavelength whose waves smoothing halves, mm; 5 if not given. Before a chain of arcs it smooths the tangents; if not
+            /// given, the tolerance decides there.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            cutoff_wavelength: Option<f64>;
+            /// Largest kink that smoothing may round off, rad; larger kinks stay corners. π/6 if not given; π means no corners.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            kink_angle: Option<f64>;
+            /// Largest distance of a point from the chain of arcs, mm; 0.01 if not given.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            arc_tolerance: Option<f64>;
+        }
+    };
+}
+
+pub(crate) use measured_options;
+
+measured_options! {
+    @table
+    /// How a measured file becomes a profile. Every option may be left out. The definition of the file's format then decides;
+    /// if it says nothing, the shape decides; if the shape proves nothing, this is an error.
+    #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+    #[cfg_attr(feature = "files", derive(schemars::JsonSchema))]
+    #[serde(deny_unknown_fields)]
+    pub struct Options {}
 }
 
 /// The point of a file that becomes the origin of the profile.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "files", derive(schemars::JsonSchema))]
 #[serde(untagged, expecting = "expected \"as-is\", \"gauge-point\", \"tape-line\" or a point [x, z]")]
 pub enum Origin {
     /// An origin with a name.
@@ -96,7 +130,8 @@ pub enum Origin {
 }
 
 /// The origins that have a name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "files", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum NamedOrigin {
     /// The origin of the file.
@@ -108,7 +143,8 @@ pub enum NamedOrigin {
 }
 
 /// A repair that may be made.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "files", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Repair {
     /// Keeps one of several coinciding points.
@@ -122,7 +158,8 @@ pub enum Repair {
 }
 
 /// The kind of curve through the points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "files", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum CurveKind {
     /// A cubic smoothing spline, C² between corners.
@@ -251,6 +288,7 @@ fn reject_idle(options: &[(&str, bool, &str)]) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measured::{Column, Unit};
 
     #[test]
     fn options_read_as_scenes_write_them() -> std::result::Result<(), toml::de::Error> {

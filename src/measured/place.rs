@@ -4,12 +4,17 @@
 use serde::Serialize;
 
 use super::Format;
-use super::clean::checks::{Finding, reject_width};
-use super::options::{NamedOrigin, Options, Origin};
+use super::clean::checks::{Finding, no_order, wrong_unit};
+use super::options::{NamedOrigin, Options, Origin, Repair};
 use super::read::points::{DesignElement, ElementShape, Point, Points};
-use super::shape::{flange_side, gauge_depth, gauge_side, has_flange_back, head_up, running_head, top};
+use super::shape::{
+    flange_side, gauge_depth, gauge_side, has_flange_back, head_up, running_head, top, width,
+};
 use crate::error::{Error, Result};
 use crate::profile::Side;
+
+/// Least number of points that have a shape.
+const LEAST_POINTS: usize = 3;
 
 /// A decision on the way from the file to the profile.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -60,32 +65,74 @@ pub fn resolve(points: &Points, side: Side, options: &Options) -> Result<(Transf
         let (found, expected) = (format!("a {} profile", name(body)), format!("a {} profile", name(side)));
         return Err(Error::new("type", found, expected, "give the other file"));
     }
+    if points.at.len() < LEAST_POINTS {
+        let place = points.at.last().map_or_else(String::new, Point::place);
+        let found = format!("{} points in all", points.at.len());
+        let expected = format!("{LEAST_POINTS} points or more: fewer have no shape");
+        return Err(Error::new(place, found, expected, "give a file with the whole profile"));
+    }
     let mut transform = Transform { scale: [1.0; 2], shift: [0.0; 2], reversed: false, steps: Vec::new() };
     let unit = unit(points, options, &mut transform.steps)?;
     transform.scale = [unit; 2];
-    reject_width(&transform.points(&points.at), unit)?;
-    let [mirror, flip] = definition(points.format, side);
-    let mut findings = Vec::new();
-    let flipped = Axis { what: "flip_z", option: options.flip_z, format: points.format, definition: flip };
-    let proof = head_up(&transform.points(&points.at), side).map(|(up, why)| (!up, why));
-    findings.extend(flipped.contradiction(proof.as_ref(), &points.at));
-    if flipped.decide(proof, side, &mut transform.steps)? {
-        transform.scale[1] = -unit;
-    }
-    let mirrored = Axis { what: "mirror", option: options.mirror, format: points.format, definition: mirror };
-    let upright = transform.points(&points.at);
-    let proof = match side {
-        Side::Rail => gauge_side(&upright),
-        Side::Wheel => flange_side(&upright),
-    };
-    let proof = proof.map(|(left, why)| (!left, why));
-    findings.extend(mirrored.contradiction(proof.as_ref(), &points.at));
-    if mirrored.decide(proof, side, &mut transform.steps)? {
-        transform.scale[0] = -unit;
+    let stated = options.unit.is_some() || points.unit.is_some();
+    let wrong = wrong_unit(&transform.points(&points.at), unit, stated);
+    // What else is to be asked is found in the likeliest unit.
+    let unit = wrong.as_ref().map_or(unit, |(_, likeliest)| *likeliest);
+    transform.scale = [unit; 2];
+    let (findings, open) = transform.turn(points, side, options);
+    match (wrong, open.as_slice()) {
+        (Some((mut error, _)), open) => {
+            for question in open {
+                error.advice += &format!("; and {}", question.choices);
+            }
+            return Err(error);
+        }
+        (None, open) => {
+            let placed = transform.points(&points.at);
+            let sorted = open.is_empty() && options.repair.contains(&Repair::Sort);
+            if let Some(error) = no_order(&placed).filter(|_| !sorted) {
+                return Err(error);
+            }
+            if !open.is_empty() {
+                return Err(asked(open, &placed, side, stated));
+            }
+        }
     }
     transform.reverse(&points.at);
     transform.shift_origin(&points.at, side, options)?;
     Ok((transform, findings))
+}
+
+/// A question that neither option, format nor shape answers.
+struct Question {
+    what: &'static str,
+    /// What the shape does not show.
+    found: &'static str,
+    choices: String,
+}
+
+/// Returns the error that asks all open questions at once; a shape that looks like the other body comes first.
+fn asked(open: &[Question], points: &[Point], side: Side, stated: bool) -> Error {
+    let list =
+        |part: fn(&Question) -> &str, between: &str| open.iter().map(part).collect::<Vec<_>>().join(between);
+    let mut advice =
+        if open.len() > 1 { "give both options".to_owned() } else { "give the option".to_owned() };
+    if !stated {
+        let [low, high] = width(points);
+        advice += &format!(", and `unit` unless it is {:.1} mm wide", high - low);
+    }
+    let other = if side == Side::Rail { Side::Wheel } else { Side::Rail };
+    let mut found = list(|question| question.found, "; ");
+    if let Some((_, why)) = head_up(points, other) {
+        found = format!("the shape of a {} ({why}); as a {}: {found}", name(other), name(side));
+        advice = format!("give it as a {}; or {advice}", name(other));
+    }
+    Error::new(
+        list(|question| question.what, ", "),
+        found,
+        list(|question| &question.choices, ", and "),
+        advice,
+    )
 }
 
 fn name(side: Side) -> &'static str {
@@ -119,14 +166,14 @@ struct Axis {
 }
 
 impl Axis {
-    fn decide(&self, proof: Option<(bool, String)>, side: Side, steps: &mut Vec<Step>) -> Result<bool> {
+    /// Decides the question; `None` leaves it open.
+    fn decide(&self, proof: Option<(bool, String)>, steps: &mut Vec<Step>) -> Option<bool> {
         let (turn, because) = match (self.option, self.definition, proof) {
             (Some(option), ..) => (option, format!("option `{}`", self.what)),
             (None, Some(defined), _) => {
                 (defined, format!("definition of the format ({})", self.format.title()))
             }
-            (None, None, Some(proof)) => proof,
-            (None, None, None) => return Err(self.ambiguous(side)),
+            (None, None, proof) => proof?,
         };
         let done = match (self.what, turn) {
             ("mirror", true) => "x = −first axis",
@@ -135,7 +182,7 @@ impl Axis {
             (_, false) => "z = second axis",
         };
         steps.push(Step { what: self.what, done: done.into(), because });
-        Ok(turn)
+        Some(turn)
     }
 
     /// Returns a finding if the shape contradicts the format's definition that was followed. There is none if an option
@@ -152,7 +199,7 @@ impl Axis {
         Some(Finding::orientation(at.first()?, found))
     }
 
-    fn ambiguous(&self, side: Side) -> Error {
+    fn question(&self, side: Side) -> Question {
         let (found, yes, no) = match (self.what, side) {
             ("mirror", Side::Rail) => (
                 "a rail whose gauge side nothing proves (not just one side face)",
@@ -175,12 +222,45 @@ impl Axis {
                 "at the smaller",
             ),
         };
-        let expected = format!("`{0} = true` ({yes}) or `{0} = false` ({no})", self.what);
-        Error::new(self.what, found, expected, "give the option")
+        let choices = format!("`{0} = true` ({yes}) or `{0} = false` ({no})", self.what);
+        Question { what: self.what, found, choices }
     }
 }
 
 impl Transform {
+    /// Turns the axes upright and to the right hand; returns the definitions that the shape contradicts, and what is left open.
+    fn turn(&mut self, points: &Points, side: Side, options: &Options) -> (Vec<Finding>, Vec<Question>) {
+        let [mirror, flip] = definition(points.format, side);
+        let (mut findings, mut open) = (Vec::new(), Vec::new());
+        let flipped =
+            Axis { what: "flip_z", option: options.flip_z, format: points.format, definition: flip };
+        let proof = head_up(&self.points(&points.at), side).map(|(up, why)| (!up, why));
+        findings.extend(flipped.contradiction(proof.as_ref(), &points.at));
+        let turned = flipped.decide(proof, &mut self.steps);
+        if turned == Some(true) {
+            self.scale[1] = -self.scale[1];
+        }
+        let mirrored =
+            Axis { what: "mirror", option: options.mirror, format: points.format, definition: mirror };
+        // A profile that may be on its head has no sides.
+        let proof = turned.and_then(|_| {
+            let upright = self.points(&points.at);
+            match side {
+                Side::Rail => gauge_side(&upright),
+                Side::Wheel => flange_side(&upright),
+            }
+        });
+        let proof = proof.map(|(left, why)| (!left, why));
+        findings.extend(mirrored.contradiction(proof.as_ref(), &points.at));
+        let mirror = mirrored.decide(proof, &mut self.steps);
+        if mirror == Some(true) {
+            self.scale[0] = -self.scale[0];
+        }
+        open.extend(turned.is_none().then(|| flipped.question(side)));
+        open.extend(mirror.is_none().then(|| mirrored.question(side)));
+        (findings, open)
+    }
+
     /// Turns a point of the file into profile axes.
     pub fn apply(&self, [x, z]: [f64; 2]) -> [f64; 2] {
         [self.scale[0] * x + self.shift[0], self.scale[1] * z + self.shift[1]]

@@ -7,6 +7,7 @@ use wheelrail_report::random::Random;
 
 mod curves;
 mod mutations;
+mod questions;
 mod slices;
 
 const FILES: [(&str, &[u8], Side); 9] = [

@@ -1,10 +1,10 @@
 //! Units of length in files.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A unit of length.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "files", derive(schemars::JsonSchema))]
 pub enum Unit {
     /// Metres.
     #[serde(rename = "m")]

@@ -4,15 +4,15 @@
 
 use std::fmt::Write as _;
 
-use serde::Serialize;
-
 use super::Format;
 use crate::error::{Error, ErrorKind, Result};
-use crate::numerics::polynomial::recentred;
-use crate::profile::{
-    Arc, ArcData, HalfData, LineData, Polynomial, PolynomialData, Profile, Segment, SegmentData, Shape, Side,
-    Station,
-};
+use crate::profile::{Arc, Polynomial, Profile, Shape, Side};
+
+#[cfg(feature = "files")]
+mod segments;
+
+#[cfg(feature = "files")]
+pub use segments::{Segments, segments};
 
 /// Returns the text of a file with these points \[mm\]: x to the field side, z up, from left to right. `name` goes into its
 /// header.
@@ -180,100 +180,4 @@ fn along_polynomial(polynomial: &Polynomial, step: f64) -> Result<Vec<[f64; 2]>>
     let longest = coarse.windows(2).map(|p| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1])).fold(0.0, f64::max);
     let n = steps_over(longest * CHORDS as f64, step)?;
     Ok((0..=n).map(|k| at(k as f64 / n as f64)).collect())
-}
-
-/// A profile as the segments of a scene.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Segments {
-    /// The `[[segments]]` tables in TOML.
-    pub toml: String,
-    /// Texts on what was cut off at the two ends: side faces beyond the vertical, which a graph z(x) cannot hold.
-    pub cut: Vec<String>,
-}
-
-/// Writes the profile as `[[segments]]` of a scene. Side faces are cut off where they are vertical.
-///
-/// # Errors
-/// Segments between the ends that are no graph z(x), with their place: undercuts, and the parametric spans of a spline. A
-/// profile made with `curve = "arcs"` can be written.
-pub fn segments(profile: &Profile) -> Result<Segments> {
-    #[derive(Serialize)]
-    struct Scene {
-        segments: Vec<SegmentData>,
-    }
-    let all = profile.drawn();
-    let first = all.iter().position(|segment| segment.end().cos >= 0.0).unwrap_or(all.len());
-    let last = all.iter().rposition(|segment| segment.start().cos >= 0.0).map_or(0, |k| k + 1);
-    let mut scene = Scene { segments: Vec::with_capacity(all.len()) };
-    let mut cut = Vec::new();
-    for (k, segment) in all.iter().enumerate() {
-        let ends = [k == first, k + 1 == last];
-        let clipped = [segment.start(), segment.end()].map(|station| station.cos < 0.0);
-        if k < first || k >= last {
-            cut.push(format!("{}: beyond the vertical", segment.place(k)));
-            continue;
-        }
-        if (0..2).any(|end| ends[end] && clipped[end]) {
-            cut.push(format!("{}: the part beyond the vertical", segment.place(k)));
-        }
-        let data = match &segment.shape {
-            Shape::Arc(arc) => arc_data(arc, ends),
-            Shape::Polynomial(polynomial) => polynomial_data(polynomial),
-        };
-        scene.segments.push(labelled(segment, data.map_err(|error| error.within(segment.place(k)))?));
-    }
-    let toml = toml::to_string(&scene).map_err(|error| {
-        Error::new("segments", error.to_string(), "segments that TOML can hold", "report this")
-    })?;
-    Ok(Segments { toml, cut })
-}
-
-fn labelled(segment: &Segment, data: SegmentData) -> SegmentData {
-    SegmentData { label: (!segment.label.is_empty()).then(|| segment.label.clone()), ..data }
-}
-
-const NOTHING: SegmentData = SegmentData { label: None, line: None, arc: None, polynomial: None };
-
-/// Returns the data of an arc. An end that `clip` allows is cut off where its tangent is vertical.
-fn arc_data(arc: &Arc, clip: [bool; 2]) -> Result<SegmentData> {
-    let (start, end) = (arc.start, arc.end);
-    let vertical = |side: f64| arc.centre().map_or(f64::NAN, |[a, _]| a + side * arc.radius.abs());
-    let x0 = if clip[0] && start.cos < 0.0 { vertical(-1.0) } else { start.x };
-    let x1 = if clip[1] && end.cos < 0.0 { vertical(1.0) } else { end.x };
-    let graph = |station: &Station, clip: bool| clip || station.cos >= 0.0;
-    if !(graph(&start, clip[0]) && graph(&end, clip[1]) && x0 < x1) {
-        let found = format!("an arc that goes back at x = {}", end.x);
-        return Err(Error::new("", found, "a graph z(x)", "cut the side faces off the points"));
-    }
-    let chord = (end.x - start.x).hypot(end.z - start.z);
-    let sagitta = chord * chord / (8.0 * arc.radius.abs());
-    let data = match arc.centre() {
-        // If the centre is very far away, a height relative to it has fewer digits than the arc is high.
-        Some(center) if sagitta > 4.0 * f64::EPSILON * arc.radius.abs() => {
-            let half = if arc.radius < 0.0 { HalfData::Upper } else { HalfData::Lower };
-            let x = Some([x0, x1]);
-            let data = ArcData { center: Some(center), radius: arc.radius.abs(), half, x, to_x: None };
-            SegmentData { arc: Some(data), ..NOTHING }
-        }
-        _ => {
-            let (from, to) = (Some([start.x, start.z]), Some([end.x, end.z]));
-            SegmentData { line: Some(LineData { from, to, slope: None, to_x: None }), ..NOTHING }
-        }
-    };
-    Ok(data)
-}
-
-/// Returns z(x) in powers of x about 0, as standards print it. A polynomial that was read in that form comes back bit for
-/// bit.
-fn polynomial_data(polynomial: &Polynomial) -> Result<SegmentData> {
-    let graph = polynomial.x.len() == 2 && f64::from(polynomial.x[1]) == 1.0;
-    if !graph {
-        let advice = "use curve = \"arcs\", or name the file in the scene";
-        return Err(Error::new("", "a span of a parametric spline", "a graph z(x)", advice));
-    }
-    let middle = polynomial.x[0];
-    let about_zero = recentred(&polynomial.z, -middle);
-    let x = polynomial.t.map(|t| f64::from(middle + t));
-    let coefficients = about_zero.into_iter().map(f64::from).collect();
-    Ok(SegmentData { polynomial: Some(PolynomialData { x, coefficients }), ..NOTHING })
 }

@@ -12,6 +12,11 @@ const BACK: f64 = 20.0;
 /// Step of the traces that outlines are thinned from \[mm\].
 const TRACED: f64 = 0.25;
 
+/// Least step of these traces, as a share of the profile's extent, and least tolerance of a shell, as a share of its body's size:
+/// nobody sees less. They bound the points of a body of any size.
+const FINEST_TRACE: f64 = 2e-4;
+const FINEST: f64 = 1e-5;
+
 /// A closed surface of polygons: a prism or an arc of a ring, with both ends.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyShell {
@@ -23,7 +28,7 @@ pub struct BodyShell {
 
 impl BodyShell {
     /// Makes a piece of the rail from −`half_length` to `half_length` \[mm\] along η. The outline departs from the profile by at most
-    /// `tolerance` \[mm\], and is closed below it.
+    /// `tolerance` \[mm\], or by a hundred-thousandth of its extent, and is closed below it.
     pub fn rail(placement: &Placement, half_length: f64, tolerance: f64) -> Self {
         let stations = outline(placement.rail().profile(), tolerance);
         let low = stations.iter().map(|station| station.z).fold(f64::INFINITY, f64::min) - BACK;
@@ -39,8 +44,10 @@ impl BodyShell {
     }
 
     /// Makes the rim of the wheel, before any approach, from −`half_angle` to `half_angle` \[rad\] about the axle, 0 at C. The
-    /// surface departs from the wheel's by at most `tolerance` \[mm\], and the outline is closed above the profile.
+    /// surface departs from the wheel's by at most `tolerance` \[mm\], or by a hundred-thousandth of its size, and the outline is
+    /// closed above the profile.
     pub fn wheel(placement: &Placement, half_angle: f64, tolerance: f64) -> Self {
+        let tolerance = tolerance.max(FINEST * placement.rolling_radius());
         let stations = outline(placement.wheel().profile(), tolerance);
         let high = stations.iter().map(|station| station.z).fold(f64::NEG_INFINITY, f64::max) + BACK;
         let ring = closed(&stations, high.min(placement.wheel_radius()));
@@ -75,7 +82,9 @@ pub fn axle_point(placement: &Placement, x: f64) -> Point3<f64> {
 
 /// Gives points of a profile from left to right whose chords depart from it by at most `tolerance` \[mm\].
 fn outline(profile: &Profile, tolerance: f64) -> Vec<Station> {
-    let stations: Vec<Station> = trace(profile, TRACED).into_iter().map(|mark| mark.station).collect();
+    let (step, tolerance) =
+        (TRACED.max(FINEST_TRACE * profile.extent()), tolerance.max(FINEST * profile.extent()));
+    let stations: Vec<Station> = trace(profile, step).into_iter().map(|mark| mark.station).collect();
     let mut out = Vec::from_iter(stations.first().copied());
     let mut from = 0;
     for k in 2..stations.len() {
@@ -139,6 +148,23 @@ mod tests {
             });
             let nearest = away.fold(f64::INFINITY, f64::min);
             assert!(nearest < 0.021, "{mark:?}: {nearest}");
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn shells_of_bodies_of_any_size_have_a_bounded_number_of_points() -> Result<()> {
+        use crate::profile::{Arc, Half, Segment};
+        for size in [1e-6, 1.0, 1e3, 1e6, 1e12] {
+            let arc = |radius: f64| {
+                let arc = Arc::about([0.0, -radius], radius, Half::Upper, [-0.9 * radius, 0.9 * radius])?;
+                Profile::new("arc", "", vec![Segment::arc(arc)])
+            };
+            let pair = Pair::new(arc(size)?, arc(2.0 * size)?, 460.0 * size)?;
+            let placement = pair.placed(0.0, 0.0, 0.0)?;
+            for shell in [BodyShell::rail(&placement, 100.0, 0.02), BodyShell::wheel(&placement, 0.5, 0.02)] {
+                assert!((5..100_000).contains(&shell.points.len()), "{size}: {}", shell.points.len());
+            }
         }
         Ok(())
     }

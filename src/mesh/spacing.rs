@@ -10,6 +10,7 @@ use std::f64::consts::{FRAC_PI_3, PI};
 use nalgebra::Point2;
 
 use super::boundary::{BoundaryTracer, Ring};
+use crate::error::{Error, ErrorKind, Result};
 
 /// Largest turn of the boundary along one edge \[rad\].
 const TURN_PER_EDGE: f64 = 0.4;
@@ -35,6 +36,10 @@ const CORNER_SHARE: f64 = 0.25;
 /// Least number of edges of a ring without corners.
 const LEAST_EDGES: f64 = 3.0;
 
+/// Most edges of the boundary of a component. Edges are as long as it is wide, so that one with more is fifty thousand times as
+/// long as it is wide, and nothing is computed over such a mesh.
+const MOST_EDGES: f64 = 1e5;
+
 /// A node of the boundary.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BoundaryNode {
@@ -42,8 +47,8 @@ pub(super) struct BoundaryNode {
     pub(super) point: Point2<f64>,
     /// Length of the ring's polygon up to the node \[mm\].
     pub(super) at: f64,
-    /// Whether the boundary has a sharp corner here.
-    pub(super) tip: bool,
+    /// At a sharp corner, the number of equal parts of the third side of the triangle that its two edges make.
+    pub(super) tip: Option<usize>,
 }
 
 /// What the edges of a boundary have to keep.
@@ -72,11 +77,14 @@ struct Wanted {
 }
 
 /// Returns the nodes of each ring, in its order.
+///
+/// # Errors
+/// More than 100,000 edges, counted before any node is made.
 pub(super) fn nodes(
     tracer: &mut BoundaryTracer<'_>,
     rings: &[Ring],
     limits: EdgeLimits,
-) -> Vec<Vec<BoundaryNode>> {
+) -> Result<Vec<Vec<BoundaryNode>>> {
     let corners: Vec<Vec<RingCorner>> = rings.iter().map(corners_of).collect();
     let circles = circles(rings);
     let mut wanted: Vec<Vec<Wanted>> =
@@ -87,13 +95,26 @@ pub(super) fn nodes(
         narrow(ring, &corners[k], &protected[k], &circles[k], &mut wanted[k]);
     }
     let all: Vec<Wanted> = wanted.iter().flatten().filter(|w| w.length.is_finite()).copied().collect();
-    let mut nodes = Vec::with_capacity(rings.len());
-    for (k, ring) in rings.iter().enumerate() {
-        let lengths: Vec<f64> =
-            wanted[k].iter().map(|w| limits.share * graded(&w.point, &all).min(limits.size)).collect();
-        nodes.push(divided(tracer, ring, &corners[k], &protected[k], &lengths, limits));
+    let length = |w: &Wanted| limits.share * graded(&w.point, &all).min(limits.size);
+    let counts = rings.iter().zip(&wanted).map(|(ring, wanted)| {
+        let lengths: Vec<f64> = wanted.iter().map(length).collect();
+        EdgeCounts::new(ring, &lengths)
+    });
+    let counts: Vec<EdgeCounts<'_>> = counts.collect();
+    let edges: f64 = counts.iter().map(EdgeCounts::whole).sum();
+    if edges.is_nan() || edges > MOST_EDGES {
+        let found =
+            format!("a part of the patch that is so narrow that its boundary takes {edges:.0e} edges");
+        let advice =
+            "take another approach, a window that cuts more or less of the patch, or formats without it";
+        return Err(
+            Error::new("mesh", found, format!("at most {MOST_EDGES:e}"), advice).of_kind(ErrorKind::Limit)
+        );
     }
-    nodes
+    let nodes = counts.iter().zip(corners).zip(protected);
+    Ok(nodes
+        .map(|((counts, corners), protected)| divided(tracer, counts, &corners, &protected, limits))
+        .collect())
 }
 
 fn corners_of(ring: &Ring) -> Vec<RingCorner> {
@@ -198,16 +219,15 @@ fn graded(point: &Point2<f64>, wanted: &[Wanted]) -> f64 {
     wanted.iter().map(|w| w.length + GROWTH * (w.point - point).norm()).fold(f64::INFINITY, f64::min)
 }
 
-/// Divides a ring into edges of these lengths.
+/// Divides a ring into the edges that were counted.
 fn divided(
     tracer: &mut BoundaryTracer<'_>,
-    ring: &Ring,
+    counts: &EdgeCounts<'_>,
     corners: &[RingCorner],
     protected: &[[f64; 2]],
-    lengths: &[f64],
     limits: EdgeLimits,
 ) -> Vec<BoundaryNode> {
-    let counts = EdgeCounts::new(ring, lengths);
+    let ring = counts.ring;
     let fixed = fixed_places(ring, corners, protected, limits.chord_error);
     let least = if fixed.len() == 1 { LEAST_EDGES } else { 1.0 };
     let mut places = Vec::new();
@@ -225,10 +245,10 @@ fn divided(
     }
     let sharp =
         |at: f64| corners.iter().any(|corner| corner.angle < SHARP && ring.samples[corner.sample].at == at);
-    let node = |at: f64| BoundaryNode { point: tracer.point(ring, at), at, tip: sharp(at) };
+    let node = |at: f64| BoundaryNode { point: tracer.point(ring, at), at, tip: sharp(at).then_some(1) };
     let mut nodes: Vec<BoundaryNode> = places.into_iter().map(node).collect();
     // No chain begins with a tip, so that the nodes on both sides of a tip have places in it.
-    if nodes.first().is_some_and(|node| node.tip) {
+    if nodes.first().is_some_and(|node| node.tip.is_some()) {
         nodes.rotate_left(1);
     }
     halved(tracer, ring, nodes, limits.chord_error)
@@ -276,10 +296,15 @@ impl<'a> EdgeCounts<'a> {
         Self { ring, counts }
     }
 
+    /// Returns the number of edges of the whole ring.
+    fn whole(&self) -> f64 {
+        self.counts[self.counts.len() - 1]
+    }
+
     /// Returns the number of edges up to a length of the polygon, which may exceed that of the whole ring.
     fn up_to(&self, at: f64) -> f64 {
         if at >= self.ring.length {
-            return self.counts[self.counts.len() - 1] + self.up_to(at - self.ring.length);
+            return self.whole() + self.up_to(at - self.ring.length);
         }
         let k = self.ring.index(at);
         let share = (at - self.ring.samples[k].at) / self.ring.step(k);
@@ -288,7 +313,7 @@ impl<'a> EdgeCounts<'a> {
 
     /// Returns the length of the polygon at which this number of edges is reached.
     fn place(&self, count: f64) -> f64 {
-        let whole = self.counts[self.counts.len() - 1];
+        let whole = self.whole();
         let (count, beyond) = if count >= whole { (count - whole, self.ring.length) } else { (count, 0.0) };
         let k = self.counts.partition_point(|known| *known <= count).clamp(1, self.counts.len() - 1) - 1;
         let share = (count - self.counts[k]) / (self.counts[k + 1] - self.counts[k]);
@@ -311,10 +336,10 @@ fn halved(
     };
     let mut k = 0;
     while k < nodes.len() {
-        if nodes[k].tip && (off(&nodes, k) || off(&nodes, k - 1)) {
+        if nodes[k].tip.is_some() && (off(&nodes, k) || off(&nodes, k - 1)) {
             halve_tip(tracer, ring, &mut nodes, k);
             k += 1;
-        } else if !nodes[k].tip && !nodes[(k + 1) % nodes.len()].tip && off(&nodes, k) {
+        } else if nodes[k].tip.is_none() && nodes[(k + 1) % nodes.len()].tip.is_none() && off(&nodes, k) {
             let at = [nodes[k].at, following(ring, &nodes, k).at];
             nodes.insert(k + 1, between(tracer, ring, at, 0.5));
         } else {
@@ -325,12 +350,7 @@ fn halved(
 }
 
 /// Halves both edges at a tip, which is not the first node, so that they keep one length. The tip is then one node later.
-pub(super) fn halve_tip(
-    tracer: &mut BoundaryTracer<'_>,
-    ring: &Ring,
-    nodes: &mut Vec<BoundaryNode>,
-    tip: usize,
-) {
+fn halve_tip(tracer: &mut BoundaryTracer<'_>, ring: &Ring, nodes: &mut Vec<BoundaryNode>, tip: usize) {
     let [back, on] =
         [tip - 1, tip].map(|k| between(tracer, ring, [nodes[k].at, following(ring, nodes, k).at], 0.5));
     nodes.insert(tip + 1, on);
@@ -351,5 +371,5 @@ pub(super) fn between(
     share: f64,
 ) -> BoundaryNode {
     let at = at[0] + (at[1] - at[0]) * share;
-    BoundaryNode { point: tracer.point(ring, at), at, tip: false }
+    BoundaryNode { point: tracer.point(ring, at), at, tip: None }
 }

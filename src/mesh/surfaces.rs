@@ -90,7 +90,7 @@ impl Surface {
         check(placement, window, tolerance)?;
         let stations = trace(placement.rail(), window.xi, tolerance)?;
         let radius = placement.rolling_radius();
-        let along: Vec<f64> = angles(window.eta, radius, radius, tolerance / 2.0)
+        let along: Vec<f64> = angles(window.eta, radius, radius, tolerance / 2.0)?
             .into_iter()
             .map(|psi| radius * psi.sin())
             .collect();
@@ -115,7 +115,7 @@ impl Surface {
         let stations = trace(placement.wheel(), own.xi, tolerance / 2.0)?;
         let radii = || stations.iter().map(|s| placement.wheel_radius() - s.z);
         let [smallest, largest] = [radii().fold(f64::INFINITY, f64::min), radii().fold(0.0, f64::max)];
-        let psi = angles(own.eta, smallest, largest, tolerance / 2.0);
+        let psi = angles(own.eta, smallest, largest, tolerance / 2.0)?;
         let node = |station: &Station, psi: f64| {
             (wheel_point(placement, station, psi), wheel_normal(placement, station, psi))
         };
@@ -130,17 +130,7 @@ impl Surface {
         nodes: impl Fn(&Station) -> Vec<(Point3<f64>, Vector3<f64>)>,
     ) -> Result<Self> {
         let n = [stations.len(), along];
-        let count = n[0] as f64 * n[1] as f64;
-        if count > MOST_POINTS {
-            let expected = format!("at most {MOST_POINTS:e}");
-            return Err(Error::new(
-                "surface",
-                format!("{count:e} points"),
-                expected,
-                "take a coarser tolerance",
-            )
-            .of_kind(ErrorKind::Limit));
-        }
+        bounded(n[0] as f64 * n[1] as f64)?;
         let (points, normals) = stations.iter().flat_map(nodes).unzip();
         Ok(Self { side, n, points, normals })
     }
@@ -229,11 +219,24 @@ fn in_wheel_directions(placement: &Placement, window: &Window) -> Window {
     Window { xi: [xi[0] - aside.max(0.0), xi[1] - aside.min(0.0)], eta }
 }
 
+/// Refuses more points than a surface may have.
+fn bounded(count: f64) -> Result<()> {
+    if count <= MOST_POINTS {
+        return Ok(());
+    }
+    let (found, expected) = (format!("{count:e} points"), format!("at most {MOST_POINTS:e}"));
+    Err(Error::new("surface", found, expected, "take a coarser tolerance").of_kind(ErrorKind::Limit))
+}
+
 /// Returns the angles about the axle, in equal steps, at which a point at this radius reaches from `eta[0]` to `eta[1]`. 0
 /// is one of them if it is between. The chords of the steps keep the tolerance on the largest radius.
-fn angles(eta: [f64; 2], radius: f64, largest: f64, tolerance: f64) -> Vec<f64> {
+///
+/// # Errors
+/// More angles than a surface may have points.
+fn angles(eta: [f64; 2], radius: f64, largest: f64, tolerance: f64) -> Result<Vec<f64>> {
     let [from, to] = eta.map(|eta| (eta / radius).clamp(-1.0, 1.0).asin());
     let step = arc_step(largest, tolerance);
+    bounded((to - from) / step)?;
     let spread = |from: f64, to: f64| {
         let n = ((to - from) / step).ceil().max(1.0);
         (1..=n as usize).map(move |k| if k as f64 == n { to } else { from + (to - from) * k as f64 / n })
@@ -245,7 +248,7 @@ fn angles(eta: [f64; 2], radius: f64, largest: f64, tolerance: f64) -> Vec<f64> 
     } else {
         angles.extend(spread(from, to));
     }
-    angles
+    Ok(angles)
 }
 
 /// Returns the point of space \[mm\] over a point (ξ, ζ) or (x, z) of the midplane, at η.

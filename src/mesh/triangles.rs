@@ -38,6 +38,9 @@ const MOST_ADDED: f64 = 1e5;
 /// Most rounds of refinement in which edges of the boundary are divided.
 const ROUNDS: usize = 12;
 
+/// Nodes made in all attempts and rounds at a component from which on no better mesh is looked for: a few seconds.
+const MOST_MADE: usize = 2_000_000;
+
 /// Attempts at a component, each with shorter edges of the boundary than the one before.
 const ATTEMPTS: i32 = 6;
 
@@ -60,7 +63,7 @@ pub struct BoundaryChain {
 
 /// The graded triangle mesh of all components of a patch.
 ///
-/// Angles: every triangle has angles from 30° to 120°, except where a corner of the patch is sharper than 30°. Boundary:
+/// Angles: every triangle has angles from 30° to 120°, except those with a corner of the patch that is sharper than 30°. Boundary:
 /// every node of it lies on the exact curve s = δ, or on the edge of the window or of a body that cuts the patch there.
 ///
 /// # Examples
@@ -121,19 +124,24 @@ impl TriangleMesh {
                 Some(size) => checked(component, size)?,
                 None => component.area.sqrt() / EDGES_PER_SIDE,
             };
-            mesh.add(placement, patch, component, size)?;
+            mesh.add(placement, component, size)?;
         }
         Ok(mesh)
+    }
+
+    /// Returns the nodes of a component at which the patch has a corner sharper than 30°, each with the angle \[rad\].
+    pub fn sharp_corners(&self, component: usize) -> Vec<(usize, f64)> {
+        let chains = self.boundary.iter().filter(|chain| chain.component == component);
+        let corners = chains.flat_map(|chain| chain.nodes.iter().copied().zip(chain.angles.iter().copied()));
+        corners.filter(|(_, angle)| *angle < FRAC_PI_6).collect()
     }
 
     /// Returns the smallest angle \[rad\] of all triangles without a corner of the patch that is sharper than 30°; infinite
     /// without triangles.
     pub fn smallest_angle(&self) -> f64 {
         let mut sharp = vec![false; self.points.len()];
-        for chain in &self.boundary {
-            for (&node, &angle) in chain.nodes.iter().zip(&chain.angles) {
-                sharp[node] |= angle < FRAC_PI_6;
-            }
+        for (node, _) in (0..self.size.len()).flat_map(|component| self.sharp_corners(component)) {
+            sharp[node] = true;
         }
         let away = self.triangles.iter().filter(|triangle| !triangle.iter().any(|&node| sharp[node]));
         away.flat_map(|&triangle| angles(triangle.map(|node| self.points[node].xy())))
@@ -151,7 +159,7 @@ impl TriangleMesh {
         own.map(|(triangle, _)| area(triangle)).sum()
     }
 
-    fn add(&mut self, placement: &Placement, patch: &Patch, component: &Component, size: f64) -> Result<()> {
+    fn add(&mut self, placement: &Placement, component: &Component, size: f64) -> Result<()> {
         let mut tracer = BoundaryTracer::new(component);
         let mut rings = tracer.rings();
         if size.is_nan() || size <= 0.0 || rings.iter().any(|ring| ring.samples.len() < LEAST_SAMPLES) {
@@ -221,16 +229,17 @@ fn best(
     size: f64,
 ) -> Result<(Region, Vec<Vec<BoundaryNode>>)> {
     let mut best: Option<(f64, Region, Vec<Vec<BoundaryNode>>)> = None;
+    let mut made = 0;
     for attempt in 0..ATTEMPTS {
         let share = SHORTER.powi(attempt);
         let limits = EdgeLimits { size, chord_error: CHORD_SHARE * size, share };
-        let mut chains = spacing::nodes(tracer, rings, limits);
-        let region = meshed(tracer, rings, &mut chains, area, size)?;
+        let mut chains = spacing::nodes(tracer, rings, limits)?;
+        let region = meshed(tracer, rings, &mut chains, area, size, &mut made)?;
         let least = least_angle(&region, &sharp_nodes(&chains));
         if best.as_ref().is_none_or(|(before, ..)| least > *before) {
             best = Some((least, region, chains));
         }
-        if least >= FRAC_PI_6 {
+        if least >= FRAC_PI_6 || made > MOST_MADE {
             break;
         }
     }
@@ -250,25 +259,31 @@ fn least_angle(region: &Region, sharp: &[bool]) -> f64 {
     away.flat_map(|triangle| angles(triangle.map(|node| region.points[node]))).fold(f64::INFINITY, f64::min)
 }
 
-/// Meshes the region inside the chains. Nodes that the mesh needs on the boundary are added to the chains.
+/// Meshes the region inside the chains. Nodes that the mesh needs on the boundary are added to the chains, and all that were
+/// made to `made`.
 fn meshed(
     tracer: &mut BoundaryTracer<'_>,
     rings: &[Ring],
     chains: &mut [Vec<BoundaryNode>],
     area: f64,
     size: f64,
+    made: &mut usize,
 ) -> Result<Region> {
     let largest = AREA_SHARE * size * size * 3f64.sqrt() / 4.0;
     let most = MOST_ADDED + 4.0 * area / largest;
     for round in 0..=ROUNDS {
-        let Polygon { points, edges, tips } = Polygon::new(chains);
-        let region = delaunay::refined(&points, &edges, largest, most as usize, round == ROUNDS)?;
+        let Polygon { points, edges, from, tips } = Polygon::new(chains);
+        let last = round == ROUNDS || *made > MOST_MADE;
+        let region = delaunay::refined(&points, &edges, largest, most as usize, last)?;
+        *made += region.points.len();
         if region.divided.is_empty() {
             let mut region = smoothed(region, points.len(), &edges)?;
             region.triangles.extend(tips);
             return Ok(region);
         }
-        let divided = region.divided.into_iter().map(|(edge, shares)| (edges[edge][0], shares)).collect();
+        let mut divided: Vec<_> =
+            region.divided.into_iter().map(|(edge, shares)| (from[edge], shares)).collect();
+        divided.dedup_by_key(|(node, _)| *node);
         divide(tracer, rings, chains, divided);
     }
     Err(Error::new("mesh", "a boundary without end of new nodes", "one that settles", "take another size"))
@@ -276,10 +291,12 @@ fn meshed(
 
 /// The polygon around a component without its tips.
 struct Polygon {
-    /// The nodes of all chains, tips included.
+    /// The nodes of all chains, tips included, and those that divide third sides of tips.
     points: Vec<Point2<f64>>,
-    /// The edges between nodes that are no tips, in the order of the nodes from which they go.
+    /// The edges around the polygon, in the order of the nodes of the chains from which they go.
     edges: Vec<[usize; 2]>,
+    /// For each edge the node of the chains from which it goes, or the third side of a tip that it is a part of.
+    from: Vec<usize>,
     /// The triangles at the tips.
     tips: Vec<[usize; 3]>,
 }
@@ -287,21 +304,40 @@ struct Polygon {
 impl Polygon {
     fn new(chains: &[Vec<BoundaryNode>]) -> Self {
         let points: Vec<_> = chains.iter().flatten().map(|node| node.point).collect();
-        let (mut edges, mut tips, mut first) = (Vec::with_capacity(points.len()), Vec::new(), 0);
+        let mut polygon = Self { points, edges: Vec::new(), from: Vec::new(), tips: Vec::new() };
+        let mut first = 0;
         for chain in chains {
             let n = chain.len();
-            for k in (0..n).filter(|&k| !chain[k].tip) {
-                let [here, next, after] = [k, k + 1, k + 2].map(|k| first + k % n);
-                if chain[(k + 1) % n].tip {
-                    edges.push([here, after]);
-                    tips.push([here, next, after]);
-                } else {
-                    edges.push([here, next]);
+            for k in (0..n).filter(|&k| chain[k].tip.is_none()) {
+                let nodes = [k, k + 1, k + 2].map(|k| first + k % n);
+                match chain[(k + 1) % n].tip {
+                    Some(parts) => polygon.add_tip(nodes, parts),
+                    None => polygon.add_edge([nodes[0], nodes[1]], nodes[0]),
                 }
             }
             first += n;
         }
-        Self { points, edges, tips }
+        polygon
+    }
+
+    fn add_edge(&mut self, edge: [usize; 2], from: usize) {
+        self.edges.push(edge);
+        self.from.push(from);
+    }
+
+    /// Adds the fan of triangles around a tip, whose third side has equal parts.
+    fn add_tip(&mut self, [here, tip, after]: [usize; 3], parts: usize) {
+        let (begin, whole) = (self.points[here], self.points[after] - self.points[here]);
+        let mut last = here;
+        for part in 1..=parts {
+            let next = if part == parts { after } else { self.points.len() };
+            if part < parts {
+                self.points.push(begin + whole * (part as f64 / parts as f64));
+            }
+            self.add_edge([last, next], here);
+            self.tips.push([last, tip, next]);
+            last = next;
+        }
     }
 }
 
@@ -317,7 +353,7 @@ fn interior_angles(chain: &[BoundaryNode]) -> Vec<f64> {
 }
 
 /// Adds nodes on the curve where edges of the polygon were divided, which are given by the nodes from which they go and
-/// shares of their lengths. Where the third side of a tip was divided, the tip is halved.
+/// shares of their lengths. Where the third side of a tip was divided, it gets twice as many parts.
 fn divide(
     tracer: &mut BoundaryTracer<'_>,
     rings: &[Ring],
@@ -331,9 +367,9 @@ fn divide(
         // From the last node to the first, so that indices stay right.
         while let Some((node, shares)) = divided.pop_if(|(node, _)| *node >= first) {
             let k = node - first;
-            if chain[(k + 1) % chain.len()].tip {
-                let tip = (k + 1) % chain.len();
-                spacing::halve_tip(tracer, ring, chain, tip);
+            let next = (k + 1) % chain.len();
+            if let Some(parts) = &mut chain[next].tip {
+                *parts *= 2;
                 continue;
             }
             let at = [chain[k].at, spacing::following(ring, chain, k).at];

@@ -1,5 +1,6 @@
 //! Numerical methods without railway words, for one value or for values in lanes.
 
+pub mod bodies;
 pub mod chebyshev;
 pub mod elliptic;
 pub mod lanes;

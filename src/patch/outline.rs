@@ -139,9 +139,4 @@ impl<'a> Outline<'a> {
     pub fn separation(&mut self, xi: f64, eta: f64) -> f64 {
         self.slicer.separation(xi, eta)
     }
-
-    /// Writes s(ξ, η) at all η of one column to `out` \[mm\].
-    pub(crate) fn column(&mut self, xi: f64, eta: &[f64], out: &mut [f64]) {
-        self.slicer.column(xi, eta, out);
-    }
 }

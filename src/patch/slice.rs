@@ -172,11 +172,6 @@ impl<'a> Slicer<'a> {
         self.evaluator.separation(xi, eta)
     }
 
-    /// Writes s(ξ, η) at all η of one column to `out` \[mm\].
-    pub(super) fn column(&mut self, xi: f64, eta: &[f64], out: &mut [f64]) {
-        self.evaluator.column(xi, eta, out);
-    }
-
     /// Returns the placed pair.
     pub fn placement(&self) -> &'a Placement {
         self.placement

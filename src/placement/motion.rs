@@ -54,6 +54,8 @@ pub struct Creepages {
     pub lateral: f64,
     /// Spin \[rad/mm\] about −ζ, from wheel to rail: sin θ/r for a wheel that only rolls.
     pub spin: f64,
+    /// Angular velocity of the wheel about ξ and η, over V \[rad/mm\]: about −1/r and 0 for a wheel that only rolls.
+    pub turn: [f64; 2],
     /// The rolling speed V \[mm/s\], positive: the mean of the speeds along η with which the wheel is carried and turns.
     pub rolling_speed: f64,
     /// Whether the contact moves to +η.
@@ -131,10 +133,25 @@ impl Motion {
             longitudinal: over(-velocity.y),
             lateral: over(-velocity.x),
             spin: over((slow + fast).z),
+            turn: [over((slow + fast).x), over((slow + fast).y)],
             rolling_speed: speed,
             forward: if carried.y.abs() >= turned.y.abs() { carried.y > 0.0 } else { turned.y < 0.0 },
             pitch,
         })
+    }
+}
+
+impl Creepages {
+    /// The slip of the rail over the wheel at a point (ξ, η, ζ) of their surface \[mm\], over V: along η, and along the surface's
+    /// tangent at the angle α, whose normal (−sin α, cos α) is given. At C it is the two creepages.
+    ///
+    /// Exact for rigid bodies: it holds the growth of the rolling radius and the turning of the normal, of which creepages and
+    /// spin are the linear part on the tangent plane. As there, the velocity of C along ζ does not enter.
+    pub fn slip_at(&self, point: [f64; 3], [n_xi, n_zeta]: [f64; 2]) -> [f64; 2] {
+        let ([xi, eta, zeta], [w_xi, w_eta]) = (point, self.turn);
+        let along_xi = self.lateral - w_eta * zeta + self.spin * eta;
+        let along_zeta = w_eta * xi - w_xi * eta;
+        [self.longitudinal - self.spin * xi + w_xi * zeta, along_xi * n_zeta - along_zeta * n_xi]
     }
 }
 
@@ -251,6 +268,30 @@ mod tests {
         assert_eq!((pitch.pitch, pitch.forward), (turn, true));
         let locked = with(Rates { pitch: Pitch::Rate(0.0), ..Rates::default() });
         assert_eq!((locked.longitudinal, locked.rolling_speed, locked.forward), (-2.0, SPEED / 2.0, true));
+    }
+
+    #[test]
+    fn slip_away_from_c_is_that_of_a_rigid_wheel() {
+        let angle = 0.3_f64;
+        let placement = cone(angle, 3.0, 0.0);
+        let (sin, cos) = angle.sin_cos();
+        let rolling = creepages(&placement, Rates::default());
+        near(rolling.slip_at([0.0; 3], [0.0, 1.0])[0], rolling.longitudinal);
+        // A point of the rail's plane through the axle: the surface moves backward by the distance from the axle.
+        let (r, v) = (placement.rolling_radius(), rolling.rolling_speed);
+        for [xi, zeta, alpha] in [[5.0, -0.3, -0.1_f64], [-8.0, -1.2, 0.4], [2.0, 0.7, 1.2]] {
+            let normal = [-alpha.sin(), alpha.cos()];
+            let distance = r - xi * sin - zeta * cos;
+            let [along, across] = rolling.slip_at([xi, 0.0, zeta], normal);
+            near(along, (-SPEED - rolling.pitch * distance) / v);
+            near(across, 0.0);
+            // Ahead of C the surface of the wheel comes down, and up the slope of the tangent that is a slip to the side.
+            let rise = rolling.pitch * 4.0 * cos;
+            near(rolling.slip_at([xi, 4.0, zeta], [0.0, 1.0])[1] * v, rolling.pitch * 4.0 * -sin);
+            let expected =
+                rolling.slip_at([xi, 4.0, zeta], [0.0, 1.0])[1] * alpha.cos() - rise * alpha.sin() / v;
+            near(rolling.slip_at([xi, 4.0, zeta], normal)[1], expected);
+        }
     }
 
     #[test]

@@ -1,6 +1,5 @@
 //! Reads segments in the form in which scenes and data files give them.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::builder::ChainBuilder;
@@ -8,7 +7,8 @@ use super::{Arc, Half, Polynomial, Profile, Segment, Shape};
 use crate::error::{Error, Result, given};
 
 /// One segment of a chain: exactly one of `line`, `arc`, `polynomial`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "files", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SegmentData {
     /// Name of the segment in the drawing.
@@ -26,7 +26,8 @@ pub struct SegmentData {
 }
 
 /// A line: `from` and `to`, or `to_x` with `slope` (Appendix A).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "files", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct LineData {
     /// First point [x, z], mm.
@@ -44,7 +45,8 @@ pub struct LineData {
 }
 
 /// An arc: `center` and `x`, or `to_x` (Appendix A).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "files", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ArcData {
     /// Centre [a, b], mm.
@@ -63,7 +65,8 @@ pub struct ArcData {
 }
 
 /// Half of a circle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "files", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum HalfData {
     /// The upper half, which bulges up.
@@ -73,7 +76,8 @@ pub enum HalfData {
 }
 
 /// A polynomial z = Σ c_k x^k over [x0, x1], mm.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "files", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct PolynomialData {
     /// Abscissae [x0, x1] of the ends, mm.

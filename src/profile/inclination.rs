@@ -4,12 +4,16 @@ use nalgebra::UnitComplex;
 
 use crate::error::{Error, Result, finite};
 
+/// Largest rise over run of an inclination: 89.94°. A steeper one stands upright to a tenth of a millimetre over a rail's head,
+/// and its cosine goes below the rounding of its sine, so that profiles lose their order along x.
+const STEEPEST: f64 = 1e3;
+
 /// Makes the rotation whose tangent is rise/run, within ±90°. It is counter-clockwise for a positive quotient.
 ///
 /// Cosine and sine come from the two lengths and not from an angle; both are exact to a rounding.
 ///
 /// # Errors
-/// Numbers that are not finite; a run of 0.
+/// Numbers that are not finite; a run of 0; a rise of more than a thousand runs.
 ///
 /// # Examples
 /// ```
@@ -23,7 +27,11 @@ pub fn inclination(rise: f64, run: f64) -> Result<UnitComplex<f64>> {
         let found = format!("{rise}:{run}");
         return Err(Error::new("inclination", found, "1:n with n ≠ 0", "give the run, 40 for 1:40"));
     }
-    let length = finite("inclination", rise)?.hypot(run).copysign(run);
+    if finite("inclination", rise)?.abs() / run.abs() > STEEPEST {
+        let (found, expected) = (format!("{rise}:{run}"), format!("at most {STEEPEST}:1, which is upright"));
+        return Err(Error::new("inclination", found, expected, "give rise:run, 1:40 for a rail"));
+    }
+    let length = rise.hypot(run).copysign(run);
     Ok(UnitComplex::from_cos_sin_unchecked(run / length, rise / length))
 }
 
@@ -39,6 +47,11 @@ mod tests {
             assert!((turn.norm() - 1.0).abs() <= f64::EPSILON, "{rise}:{run}");
         }
         assert!(inclination(1.0, 0.0).is_err() && inclination(f64::NAN, 40.0).is_err());
+        for (rise, run) in
+            [(1e20, 40.0), (-1e20, 40.0), (1e5, -40.0), (1.0, 1e-300), (f64::MAX, f64::MIN_POSITIVE)]
+        {
+            assert!(inclination(rise, run).is_err(), "{rise}:{run}");
+        }
         Ok(())
     }
 }

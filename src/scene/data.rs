@@ -162,7 +162,7 @@ pub struct WheelsetData {
     #[serde(default)]
     pub roll: RollData,
     /// Vertical load of the axle, N, instead of `[patch]`: both wheels sink by the same distance, and δ is an estimate.
-    #[schemars(extend("minimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load: Option<f64>,
     /// Largest vertical gap, mm, up to which near misses are reported.
@@ -208,7 +208,7 @@ pub struct PatchData {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub approach: Option<f64>,
     /// Vertical load of each wheel, N; all its contacts share it. δ is then an estimate.
-    #[schemars(extend("minimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load: Option<f64>,
     /// Origin and angle of the contact frame: "contact", the contact point and its tangent, or "weighted", the centre of

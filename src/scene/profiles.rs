@@ -11,6 +11,7 @@ use crate::case::{Profiles, SideProfiles};
 use crate::error::{Error, Result, finite, given};
 use crate::files::{read_bytes, read_text};
 use crate::measured::{self, Cut, Measured, Options, Record, SliceList, Unit};
+use crate::numerics::bodies::Bodies;
 use crate::placement::Pair;
 use crate::profile::{Profile, SegmentData, Side, drawn_profile, standards};
 
@@ -95,7 +96,7 @@ fn of_side(
         return Err(Error::new(format!("{}: radius", places[1]), found, expected, "take a plane for a rail"));
     }
     let pair = Pair::new(rail.profile, wheel.profile, radius)?;
-    Ok(SideProfiles { pair, measured: [rail.measured, wheel.measured] })
+    Ok(SideProfiles { pair, measured: Bodies { rail: rail.measured, wheel: wheel.measured } })
 }
 
 /// Returns a profile as the scene places it, and the record of a measured one.

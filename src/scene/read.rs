@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::data::Scene;
@@ -30,10 +30,11 @@ pub fn load(path: &Path) -> Result<Scene> {
 pub fn parse<T: DeserializeOwned + Serialize>(text: &str, json: bool) -> Result<T> {
     let (read, value): (T, Value) = if json { from_json(text)? } else { from_toml(text)? };
     // `serde` accepts a list instead of a table, with its items in the order of the keys.
+    // `toml` drops the surplus items of a list.
     let again = serde_json::to_value(&read).unwrap_or_default();
-    match list_for_table(&value, &again, "") {
+    match wrong_list(&value, &again, "") {
         None => Ok(read),
-        Some(key) => Err(Error::new(key, "a list", "a table of keys and values", SEE_ALSO)),
+        Some((key, found, expected)) => Err(Error::new(key, found, expected, SEE_ALSO)),
     }
 }
 
@@ -60,23 +61,42 @@ fn from_toml<T: DeserializeOwned>(text: &str) -> Result<(T, Value)> {
             read,
         )
     };
-    let read = toml::from_str(text).map_err(complaint)?;
-    // `toml` drops the surplus items of an array, `serde_json` does not. Numbers that are not finite become null here and
-    // are found later.
-    let value: Value = toml::from_str(text).map_err(complaint)?;
-    if !has_null(&value) {
-        serde_json::from_value::<T>(value.clone())
-            .map_err(|error| house_form(String::new(), &error.to_string(), None))?;
-    }
-    Ok((read, value))
+    let table = toml::de::DeTable::parse(text).map_err(complaint)?;
+    let read = T::deserialize(toml::Deserializer::from(table.clone())).map_err(complaint)?;
+    // Numbers that are not finite become null here and are found later.
+    Ok((read, Value::deserialize(toml::Deserializer::from(table)).map_err(complaint)?))
 }
 
-/// Gives an error better advice where its line has a decimal comma.
+/// Gives an error better advice where its line has a decimal comma, a word without quotes or a number with them.
 fn advised(mut error: Error, line: Option<&str>) -> Error {
     if let Some(number) = line.and_then(decimal_comma) {
         error.advice = format!("write numbers with a decimal point: {number}");
+    } else if let Some(value) = line.and_then(bare_value) {
+        let word = error.expected == "a string" || error.expected == "string";
+        let number = value.split_whitespace().next().filter(|first| first.parse::<f64>().is_ok());
+        // `toml` reads 60E1 as 60·10¹ and 1:40 as a time of day.
+        let unread = ["string values must be quoted", "invalid time"].contains(&error.found.as_str());
+        if let (Some(number), true) = (number.filter(|number| *number != value), unread) {
+            error.found = value.to_owned();
+            error.expected = "a number, or words in quotes".into();
+            error.advice = format!("write the number alone, in the unit of its key: {number}");
+        } else if word || unread {
+            error.found = value.to_owned();
+            error.expected = "a name in quotes".into();
+            error.advice = format!("a name needs quotes: \"{value}\"");
+        }
+    } else if error.found.starts_with("invalid type: string") && error.expected == "a number" {
+        error.advice = "write the number alone, without quotes and in the unit of its key".into();
     }
     error
+}
+
+/// Gives the value of a line `key = value` without quotes, lists, tables and comments, or of `"key": value` in JSON.
+fn bare_value(line: &str) -> Option<&str> {
+    let line = line.split('#').next().unwrap_or(line);
+    let (_, value) = line.rsplit_once("\":").or_else(|| line.split_once('='))?;
+    let value = value.trim().trim_end_matches([',', '}', ' ']);
+    (!value.is_empty() && !value.contains(['"', '\'', '[', '{', '='])).then_some(value)
 }
 
 /// Finds a number with a decimal comma in a line, outside of lists, and gives it with a point.
@@ -99,27 +119,24 @@ fn decimal_comma(line: &str) -> Option<String> {
     None
 }
 
-/// Finds the first key whose list was read as a table.
-fn list_for_table(given: &Value, read: &Value, key: &str) -> Option<String> {
+/// Finds the first key whose list was read as a table or as a shorter list; gives it with what was found and expected.
+fn wrong_list(given: &Value, read: &Value, key: &str) -> Option<(String, String, String)> {
     match (given, read) {
-        (Value::Array(_), Value::Object(_)) => Some(key.to_string()),
+        (Value::Array(_), Value::Object(_)) => {
+            Some((key.into(), "a list".into(), "a table of keys and values".into()))
+        }
+        (Value::Array(given), Value::Array(read)) if given.len() > read.len() => {
+            let expected = format!("a list of {}", read.len());
+            Some((key.into(), format!("a list of {}", given.len()), expected))
+        }
         (Value::Array(given), Value::Array(read)) => {
-            given.iter().zip(read).find_map(|(given, read)| list_for_table(given, read, key))
+            given.iter().zip(read).find_map(|(given, read)| wrong_list(given, read, key))
         }
         (Value::Object(given), Value::Object(read)) => given.iter().find_map(|(name, given)| {
             let key = if key.is_empty() { name.clone() } else { format!("{key}: {name}") };
-            list_for_table(given, read.get(name)?, &key)
+            wrong_list(given, read.get(name)?, &key)
         }),
         _ => None,
-    }
-}
-
-fn has_null(value: &Value) -> bool {
-    match value {
-        Value::Null => true,
-        Value::Array(values) => values.iter().any(has_null),
-        Value::Object(values) => values.values().any(has_null),
-        _ => false,
     }
 }
 
@@ -212,8 +229,8 @@ mod tests {
     #[test]
     fn an_array_that_is_too_long_is_not_cut_short() {
         let text = SCENE.replace("[wheel]", "shift = [0.0, 0.0, 99.0]\n[wheel]");
-        let error = parse::<Scene>(&text, false).err().map(|e| e.to_string());
-        assert!(error.as_deref().is_some_and(|e| e.contains("invalid length 3")), "{error:?}");
+        let error = parse::<Scene>(&text, false).err().map(|e| e.to_string()).unwrap_or_default();
+        assert!(error.starts_with("rail: shift: found a list of 3; expected a list of 2;"), "{error}");
     }
 
     #[test]
@@ -288,6 +305,45 @@ mod tests {
             assert!(error.ends_with(&format!("write numbers with a decimal point: {number}")), "{error}");
         }
         assert_eq!(decimal_comma("shift = [1,2]"), None);
+    }
+
+    #[test]
+    fn names_need_quotes_and_numbers_none() {
+        for (text, json, expected) in [
+            (
+                "[rail]\nprofile = 60E1 # inclined",
+                false,
+                "line 2: found 60E1; expected a name in quotes; a name needs quotes: \"60E1\"",
+            ),
+            (
+                "[wheel]\nprofile = S1002",
+                false,
+                "line 2: found S1002; expected a name in quotes; a name needs",
+            ),
+            ("[rail]\nrotate = 1:40", false, "line 2: found 1:40; expected a name in quotes; a name needs"),
+            ("[rail]\nrotate = 1/40", false, "line 2: found 1/40; expected a name in quotes; a name needs"),
+            (
+                "{\"rail\": {\"profile\": 60E1}}",
+                true,
+                "line 1, column 26: found 60E1; expected a name in quotes; a name",
+            ),
+            (
+                "[patch]\nload = 80 kN",
+                false,
+                "line 2: found 80 kN; expected a number, or words in quotes; write the number alone, in the unit of its key: 80",
+            ),
+            (
+                "[patch]\nload = \"80 kN\"",
+                false,
+                "line 2: found invalid type: string \"80 kN\"; expected a number; write the number alone, without quotes",
+            ),
+        ] {
+            let error = parse::<Scene>(text, json).err().map(|e| e.to_string()).unwrap_or_default();
+            let from = if json { "found" } else { "line" };
+            let [error, expected] =
+                [error.as_str(), expected].map(|text| text.split_once(from).map_or("", |(_, rest)| rest));
+            assert!(error.starts_with(expected) && !expected.is_empty(), "{error}");
+        }
     }
 
     #[test]

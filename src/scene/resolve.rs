@@ -15,6 +15,7 @@ use crate::case::{ApproachBy, Case, Echo, FrameOrigin, Friction, OutputFormat, O
 use crate::error::{Error, Result, finite};
 use crate::load::{Elastic, effective_modulus};
 use crate::mesh::checked_size;
+use crate::numerics::bodies::Bodies;
 
 /// Smallest approach other than 0 \[mm\], and smallest load \[N\]. They are far below any real ones, and their powers do
 /// not underflow.
@@ -61,10 +62,10 @@ pub fn echo(scene: &Scene, name: &str) -> Echo {
 /// Returns the formats to write, and the size of the triangle mesh. If the scene names no formats, these are all but PNG and
 /// those for finite elements.
 fn outputs(scene: &Scene) -> Result<Outputs> {
-    use OutputFormat::{Conform, Contact, Countact, Html, Netcdf, Npy, Text, Vtk};
     let named = scene.output.formats.clone();
     let required = named.is_some();
-    let formats = named.unwrap_or_else(|| vec![Vtk, Npy, Netcdf, Text, Conform, Countact, Contact, Html]);
+    let unasked = || OutputFormat::ALL.iter().copied().filter(|format| format.unasked()).collect();
+    let formats = named.unwrap_or_else(unasked);
     let mesh_size = scene.mesh.size.map(checked_size).transpose()?;
     Ok(Outputs { formats, required, mesh_size })
 }
@@ -137,8 +138,14 @@ pub fn approach(patch: &PatchData) -> Result<ApproachBy> {
 
 /// Returns `by` if its value is one that can be meant.
 fn checked(key: &str, value: f64, by: ApproachBy) -> Result<ApproachBy> {
+    let load = !matches!(by, ApproachBy::Given(_));
     if finite(key, value)? < 0.0 {
-        return Err(Error::new(key, value.to_string(), "a value ≥ 0", "correct the sign"));
+        let expected = if load { "a positive load in N" } else { "a value ≥ 0" };
+        return Err(Error::new(key, value.to_string(), expected, "correct the sign"));
+    }
+    if load && value == 0.0 {
+        let advice = "leave the load out to get the geometry alone, or give one";
+        return Err(Error::new(key, "0", "a positive load in N", advice));
     }
     if value > 0.0 && value < SMALLEST {
         let expected = format!("0, or at least {SMALLEST:e}");
@@ -152,11 +159,11 @@ fn checked(key: &str, value: f64, by: ApproachBy) -> Result<ApproachBy> {
 /// # Errors
 /// A modulus that is not positive; a Poisson's ratio beyond (−1, 0.5\].
 pub fn modulus(material: &MaterialData) -> Result<f64> {
-    let [rail, wheel] = elastic(material)?;
+    let Bodies { rail, wheel } = elastic(material)?;
     Ok(effective_modulus(&rail, &wheel))
 }
 
-fn elastic(material: &MaterialData) -> Result<[Elastic; 2]> {
+fn elastic(material: &MaterialData) -> Result<Bodies<Elastic>> {
     let body = |name: &str, youngs_modulus: f64, poissons_ratio: f64| {
         let place = |key: &str| format!("material: {name}_{key}");
         if !(youngs_modulus > 0.0 && youngs_modulus.is_finite()) {
@@ -169,10 +176,10 @@ fn elastic(material: &MaterialData) -> Result<[Elastic; 2]> {
         }
         Ok(Elastic { youngs_modulus, poissons_ratio })
     };
-    Ok([
-        body("rail", material.rail_youngs_modulus, material.rail_poissons_ratio)?,
-        body("wheel", material.wheel_youngs_modulus, material.wheel_poissons_ratio)?,
-    ])
+    Ok(Bodies {
+        rail: body("rail", material.rail_youngs_modulus, material.rail_poissons_ratio)?,
+        wheel: body("wheel", material.wheel_youngs_modulus, material.wheel_poissons_ratio)?,
+    })
 }
 
 #[cfg(test)]
@@ -185,6 +192,24 @@ mod tests {
         let text = format!("[rail]\n{rail}\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n{rest}");
         let scene: Scene = parse(&text, false)?;
         Ok(resolve(&scene, Path::new("."), "").err().map(|e| e.to_string()).unwrap_or_default())
+    }
+
+    #[test]
+    fn the_template_names_the_formats_that_are_not_written_unasked() -> Result<()> {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/cli/src/init.toml");
+        let template = crate::files::read_text(&file, 1 << 16)?;
+        let sentence = template.lines().find_map(|line| line.split_once("without it all but "));
+        let named: Vec<&str> =
+            sentence.map_or("", |(_, names)| names).split('"').skip(1).step_by(2).collect();
+        let written = outputs(&parse("", false)?)?.formats;
+        let all = parse::<Scene>("[output]\nformats = [\"?\"]", false).err().map(|error| error.expected);
+        let all = all.unwrap_or_default();
+        let known = all.trim_start_matches("one of ").split(", ");
+        let name = |format: &OutputFormat| serde_json::to_value(format).unwrap_or_default();
+        let others: Vec<&str> =
+            known.filter(|known| !written.iter().any(|format| name(format) == *known)).collect();
+        assert_eq!(named, others);
+        Ok(())
     }
 
     #[test]
@@ -225,6 +250,22 @@ mod tests {
                 "grid: xi: found 3 after 5;",
             ),
             ("[contact]\noffset = 0.0\n[grid]\nxi = { values = [] }", "grid: xi: found no values;"),
+            (
+                "[contact]\noffset = 0.0\n[patch]\nload = 0",
+                "patch: load: found 0; expected a positive load in N; leave the load out",
+            ),
+            (
+                "[track]\ngauge = 1.435\n[wheelset]\nspacing = 1500.0",
+                "track: gauge: found 1.435; expected a distance in mm; give it in mm: 1.435 m are 1435 mm",
+            ),
+            (
+                "[track]\ngauge = 1435.0\n[wheelset]\nback_to_back = 1.36\nflange_back_x = -70.0",
+                "wheelset: back_to_back: found 1.36; expected a distance in mm; give it in mm: 1.36 m are 1360 mm",
+            ),
+            (
+                "[track]\nspacing = 59.0\n[wheelset]\nspacing = 1500.0",
+                "track: spacing: found 59; expected a distance in mm; give it in mm: 59 in are 1498.6 mm",
+            ),
         ];
         for (rest, message) in rests {
             let found = complaint("profile = \"60E1\"", rest)?;

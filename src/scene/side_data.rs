@@ -16,7 +16,7 @@ pub struct SideData {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wheel: Option<ProfileData>,
     /// Vertical load of this side's wheel, N, instead of `[patch] load`; the other side then has its own as well.
-    #[schemars(extend("minimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load: Option<f64>,
     /// How this side's rail deviates from its place on the track.

@@ -8,6 +8,7 @@ use super::data::{ContactData, RollData, RollWord, Scene, TrackData, WheelsetDat
 use super::side_data::{DeviationData, SideData};
 use crate::case::{Place, Profiles, Standing};
 use crate::error::{Error, Result, finite, given};
+use crate::measured::Unit;
 use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
 use crate::search::{Pose, Position, ProfilePair, Roll, SideOnTrack, WheelsetOnTrack, small_angle};
 
@@ -147,12 +148,37 @@ fn within(within: Option<f64>) -> Result<f64> {
     }
 }
 
+/// Least distance of rails or wheels \[mm\]: the gauge of a railway that people ride on is 184 mm and more.
+const LEAST_DISTANCE: f64 = 150.0;
+
+/// Gauges of railways \[mm\], for guesses at a unit.
+const GAUGES: std::ops::RangeInclusive<f64> = 300.0..=2500.0;
+
+/// Returns a distance of rails or wheels \[mm\], unless it is in another unit.
+fn distance(key: &str, value: f64) -> Result<f64> {
+    if !(value > 0.0 && value < LEAST_DISTANCE) {
+        return Ok(value);
+    }
+    let units = [Unit::Metre, Unit::Inch, Unit::Centimetre, Unit::Foot];
+    let meant = units.into_iter().find(|unit| GAUGES.contains(&(unit.millimetres() * value)));
+    // Whole micrometres, so that no rounding shows.
+    let millimetres = |unit: Unit| (unit.millimetres() * value * 1e3).round() / 1e3;
+    let advice = meant.map_or_else(
+        || "give it in mm".to_owned(),
+        |unit| format!("give it in mm: {value} {} are {} mm", unit.name(), millimetres(unit)),
+    );
+    Err(Error::new(key, value.to_string(), "a distance in mm", advice))
+}
+
 fn rails(track: &TrackData) -> Result<RailDistance> {
     match (track.gauge, track.spacing) {
         (Some(gauge), None) => {
+            let gauge = distance("track: gauge", gauge)?;
             Ok(RailDistance::Gauge { gauge, height: track.gauge_height.unwrap_or(GAUGE_HEIGHT) })
         }
-        (None, Some(spacing)) if track.gauge_height.is_none() => Ok(RailDistance::Spacing(spacing)),
+        (None, Some(spacing)) if track.gauge_height.is_none() => {
+            distance("track: spacing", spacing).map(RailDistance::Spacing)
+        }
         _ => {
             let expected = "either `gauge` with perhaps `gauge_height`, or `spacing`";
             let found = given(&[
@@ -167,10 +193,11 @@ fn rails(track: &TrackData) -> Result<RailDistance> {
 
 fn wheels(wheelset: &WheelsetData) -> Result<WheelDistance> {
     match (wheelset.back_to_back, wheelset.flange_back_x, wheelset.spacing) {
-        (Some(distance), Some(flange_back_x), None) => {
+        (Some(back_to_back), Some(flange_back_x), None) => {
+            let distance = distance("wheelset: back_to_back", back_to_back)?;
             Ok(WheelDistance::BackToBack { distance, flange_back_x })
         }
-        (None, None, Some(spacing)) => Ok(WheelDistance::Spacing(spacing)),
+        (None, None, Some(spacing)) => distance("wheelset: spacing", spacing).map(WheelDistance::Spacing),
         _ => {
             let expected = "either `back_to_back` and `flange_back_x`, or `spacing`";
             let found = given(&[

@@ -4,6 +4,8 @@ mod conicity;
 
 pub use conicity::{ACCURACY, Conicity, Equivalent, NoConicity};
 
+use std::fmt;
+
 use super::touch::{Contact, Selection};
 use super::wheelset::{Position, Roll, WheelsetOnTrack, WheelsetSearch};
 use crate::error::Result;
@@ -15,6 +17,22 @@ pub enum TrackSide {
     Left,
     /// The side at positive x of the track.
     Right,
+}
+
+impl TrackSide {
+    /// Gives the name of the side: "left", "right".
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Left => "left",
+            Self::Right => "right",
+        }
+    }
+}
+
+impl fmt::Display for TrackSide {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
 }
 
 /// One row of a sweep: a contact of one side at one position.

@@ -177,13 +177,17 @@ impl<'a> Evaluator<'a> {
         self.wheel.point_at(xi_w, span, u).map_or(f64::NAN, |point| point.rise)
     }
 
-    /// Computes s \[mm\] at η′ = 0 and the coefficient \[1/mm\] of η′². The wheel is taken at its own abscissa ξ′ = ξ +
-    /// `shift`.
-    pub(super) fn parabola(&mut self, xi: f64, shift: f64) -> [f64; 2] {
+    /// Computes u_0 = η′² \[mm²\] at which the column begins, s \[mm\] and ds/du \[1/mm\] there. The wheel is taken at its own
+    /// abscissa ξ′ = ξ + `shift`. u_0 is 0 unless ξ′ lies beyond the wheel's end or in a hole; the result is NaN if the
+    /// column has no surface up to `u_max` \[mm²\].
+    pub(super) fn parabola(&mut self, xi: f64, shift: f64, u_max: f64) -> [f64; 3] {
         let xi_w = xi + shift;
         self.wheel.spans(xi_w, 0.0, &mut self.spans);
-        let Some(span) = self.spans.first() else { return [f64::NAN; 2] };
-        [self.base(xi, shift, span), self.wheel.opening(xi_w, span)]
+        if self.spans.is_empty() {
+            self.wheel.spans(xi_w, u_max, &mut self.spans);
+        }
+        let Some(span) = self.spans.first() else { return [f64::NAN; 3] };
+        [span.u[0], self.base(xi, shift, span), self.wheel.opening(xi_w, span)]
     }
 
     /// Computes ξ′ − ξ and η′ \[mm\] in the wheel's own directions of the tangent plane. The difference does not cancel.

@@ -1,7 +1,6 @@
 //! The accuracy ladder, and how each of its methods fills a grid.
 
 use rayon::prelude::*;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::axis::EtaAxis;
@@ -10,6 +9,7 @@ use super::columns::strip::Strip;
 use super::columns::strips::strips;
 use super::demand::Demand;
 use super::kernel::Kernel;
+use super::mask::{Masked, covered};
 use super::methods::parabolic::Parabolic;
 use super::methods::pointwise::Pointwise;
 use super::methods::quadratic::Quadratic;
@@ -17,6 +17,7 @@ use super::methods::report_newton::ReportNewton;
 use super::methods::spectral::Spectral;
 use super::values::Residence;
 use crate::numerics::lanes::MANY;
+use crate::numerics::nan_max;
 use crate::placement::Placement;
 
 /// Number of columns of one block, which is the unit of work of a thread.
@@ -27,7 +28,8 @@ const BLOCK: usize = MANY;
 const FEW_POINTS: [usize; 2] = [65536, 4096];
 
 /// The methods of the accuracy ladder, from the simplest formula to the historical baseline.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "files", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
     /// Second-order expansion of s at C (Hertz).
@@ -81,7 +83,8 @@ pub struct Choice {
 
 impl Choice {
     /// Writes s \[mm\] over the grid, at index i_ξ · n_η + i_η; NaN where a body has no surface. Returns the largest
-    /// truncation error \[mm\] that was measured meanwhile; 0 if none is measured.
+    /// truncation error \[mm\] that was measured meanwhile; 0 if none is measured. A method without an error measure of its own
+    /// is compared with single points if a body ends or the wheel steps within the grid.
     ///
     /// It runs on the threads of the current rayon pool. Any number of threads gives the same bits. It is fastest if `out`
     /// is [`super::values::Values`].
@@ -89,7 +92,7 @@ impl Choice {
         if axis.eta.is_empty() {
             return 0.0;
         }
-        let kernel: &(dyn Fn() -> Box<dyn Kernel> + Sync) = match self.method {
+        let bare: &(dyn Fn() -> Box<dyn Kernel> + Sync) = match self.method {
             Method::Quadratic => &|| Box::new(Quadratic::new(placement, axis)),
             Method::ConstantRadius => &|| Box::new(Parabolic::constant_radius(placement, axis)),
             Method::Parabolic => &|| Box::new(Parabolic::local(placement, axis)),
@@ -100,7 +103,9 @@ impl Choice {
             Method::Pointwise => &|| Box::new(Pointwise::new(placement, axis)),
             Method::ReportNewton => &|| Box::new(ReportNewton::new(placement, axis, self.demand.absolute)),
         };
-        let by_columns = self.method < Method::Pointwise;
+        let masked = self.method != Method::Pointwise && !covered(placement, xi, axis);
+        let kernel = || if masked { Box::new(Masked::new(bare(), placement, axis)) } else { bare() };
+        let by_columns = self.method < Method::Pointwise && !masked;
         if out.len() <= FEW_POINTS[usize::from(!by_columns)] {
             return fill_with(&mut *kernel(), xi, out);
         }
@@ -143,5 +148,5 @@ fn fill_with(kernel: &mut dyn Kernel, xi: &[f64], out: &mut [f64]) -> f64 {
 fn fill_in_blocks<'k>(kernel: impl Fn() -> Box<dyn Kernel + 'k> + Sync, xi: &[f64], out: &mut [f64]) -> f64 {
     let length = out.len() / xi.len().max(1);
     let blocks = out.par_chunks_mut(BLOCK * length).zip(xi.par_chunks(BLOCK));
-    blocks.map_init(&kernel, |kernel, (out, xi)| fill_with(&mut **kernel, xi, out)).reduce(|| 0.0, f64::max)
+    blocks.map_init(&kernel, |kernel, (out, xi)| fill_with(&mut **kernel, xi, out)).reduce(|| 0.0, nan_max)
 }

@@ -6,17 +6,20 @@
 //! | g(ξ), the midplane gap | `gap` |
 //! | s and the normals at one point | [`Evaluator`] |
 //! | s over columns: the accuracy ladder | `kernel`, `methods` |
+//! | where the bodies have a surface | `mask` |
 //! | s(ξ, ·) as polynomials in η² or η, many columns at once | `columns` |
 //! | s over a grid, and the cheapest method for it | `grid`: [`Method`], [`Choice`]; `plan`: [`Plan`] |
 //! | the midplane table, MIDSEP (Sec. 5) | `midplane`: [`midplane_table`] |
 
 mod axis;
 mod columns;
+mod crossings;
 mod demand;
 mod evaluator;
 mod gap;
 mod grid;
 mod kernel;
+mod mask;
 pub(crate) mod methods;
 mod midplane;
 mod plan;

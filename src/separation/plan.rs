@@ -5,9 +5,11 @@ use super::columns::fit::Fitter;
 use super::columns::strip::Strip;
 use super::columns::strips::strips;
 use super::columns::{skewed, truncation};
+use super::crossings::beside_steps;
 use super::demand::{Demand, FULL_PRECISION};
 use super::evaluator::Evaluator;
 use super::grid::{Choice, Method};
+use super::mask::covered;
 use super::methods::quadratic::quadratic_form;
 use super::rounding::rounding;
 use super::samples::{Samples, difference, places, thinned};
@@ -66,8 +68,9 @@ impl Plan {
 /// own. At [`FULL_PRECISION`] and below, the quadratic form is chosen only if it is exact to rounding.
 ///
 /// The estimate: spectral columns measure their truncation error in every strip, at its nodes and between them, and in some
-/// of the columns outside strips. Other methods are compared with single points in some hundred columns. Cost: for spectral
-/// columns about that of filling the grid.
+/// of the columns outside strips; the columns on both sides of the places where a step of the wheel crosses the grid are
+/// compared with single points. Other methods are compared with single points in some hundred columns, and while they fill a
+/// grid over which a body ends or the wheel steps, everywhere. Cost: for spectral columns about that of filling the grid.
 ///
 /// # Examples
 /// ```
@@ -118,7 +121,7 @@ impl Planned<'_> {
             error <= tolerance && (tolerance > FULL_PRECISION || error <= rounding)
         };
         let mut found = BETWEEN_SAMPLES * probe.quadratic + probe.rounding;
-        if acceptable(found, probe.rounding) {
+        if acceptable(found, probe.rounding) && covered(self.placement, self.xi, self.axis) {
             let plan =
                 self.sampled(Method::Quadratic, &probe, format!("cheapest of all, within {tolerance:e} mm"));
             if acceptable(plan.error, plan.rounding) {
@@ -127,10 +130,12 @@ impl Planned<'_> {
             found = plan.error;
         }
         let quadratic = Method::Quadratic.name();
-        self.spectral(
-            &probe,
-            format!("cheapest within {tolerance:e} mm; {quadratic} is off by {found:.1e} mm or more"),
-        )
+        let why = if found.is_nan() || acceptable(found, probe.rounding) {
+            format!("{quadratic} knows no ends, steps or kinks")
+        } else {
+            format!("{quadratic} is off by {found:.1e} mm or more")
+        };
+        self.spectral(&probe, format!("cheapest within {tolerance:e} mm; {why}"))
     }
 
     /// Plans a method whose error is estimated by comparison with single points.
@@ -152,8 +157,24 @@ impl Planned<'_> {
         };
         let choice = Choice { method: Method::Spectral, demand, coefficients };
         let rounding = probe.rounding;
+        let truncation = nan_max(truncation, self.beside_steps(&choice, &strips));
         let error = BETWEEN_SAMPLES * truncation + rounding;
         Plan { choice, error, rounding, tolerance: self.tolerance, reason, strips }
+    }
+
+    /// Measures the largest difference \[mm\] of spectral columns from single points beside the steps of the wheel.
+    fn beside_steps(&self, choice: &Choice, strips: &[Strip]) -> f64 {
+        let columns = beside_steps(self.placement, self.xi, self.axis);
+        if columns.is_empty() {
+            return 0.0;
+        }
+        let (eta, mut evaluator) = (&self.axis.eta, Evaluator::new(self.placement));
+        let [mut values, mut exact] = [(); 2].map(|()| vec![f64::NAN; columns.len() * eta.len()]);
+        choice.fill_by_strips(self.placement, &columns, self.axis, strips, &mut values);
+        for (&xi, exact) in columns.iter().zip(exact.chunks_mut(eta.len().max(1))) {
+            evaluator.column(xi, eta, exact);
+        }
+        difference(&values, &exact)
     }
 
     /// Makes the strips. Returns them, the number of coefficients with which columns in no strip start (enough for two

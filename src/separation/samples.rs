@@ -11,8 +11,11 @@ use crate::placement::Placement;
 /// the columns next to joints and half way between them are compared as well.
 const SAMPLED_COLUMNS: usize = 65;
 
-/// Number of η that are compared in these columns.
+/// Least number of η that are compared in these columns.
 const SAMPLED_ETA: usize = 9;
+
+/// Number of points up to which more η are compared: all points of a small grid.
+const SAMPLED_POINTS: usize = 1024;
 
 /// Values at single points of a few columns.
 pub(super) struct Samples<'a> {
@@ -26,7 +29,7 @@ impl<'a> Samples<'a> {
     /// Takes the samples of a grid.
     pub fn new(placement: &'a Placement, xi: &[f64], whole: &EtaAxis) -> Self {
         let columns = sampled_columns(placement, xi);
-        let axis = EtaAxis::new(&thinned(&whole.eta, SAMPLED_ETA));
+        let axis = EtaAxis::new(&thinned(&whole.eta, SAMPLED_ETA.max(SAMPLED_POINTS / columns.len().max(1))));
         let mut evaluator = Evaluator::new(placement);
         let mut exact = vec![f64::NAN; columns.len() * axis.eta.len()];
         for (&xi, out) in columns.iter().zip(exact.chunks_mut(axis.eta.len().max(1))) {

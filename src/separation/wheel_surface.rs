@@ -126,8 +126,11 @@ impl<'a> WheelSurface<'a> {
         &self.section.branches[span.branch]
     }
 
-    /// Finds the spans of the column at ξ from η = 0 until u reaches `u_max` \[mm²\], in order of u. They overwrite
+    /// Finds the spans of the column at ξ from η = 0 until u reaches `u_max` \[mm²\], in order of e. They overwrite
     /// `spans`, which is empty if the wheel has no surface there.
+    ///
+    /// Behind a step of the envelope a span may begin before the span in front of the step ends: there the earlier span is
+    /// the outer one. It may also begin later: between the two the wheel has no surface.
     pub fn spans(&self, xi: f64, u_max: f64, spans: &mut Vec<Span>) {
         spans.clear();
         let pieces = &self.section.pieces;
@@ -141,7 +144,7 @@ impl<'a> WheelSurface<'a> {
                 return;
             }
             let mut span = self.span(xi, index, [begin, end], u_max);
-            if let Some(last) = spans.last().filter(|last| last.e[1] == begin) {
+            if let Some(last) = spans.last().filter(|last| !self.is_step(last.piece, index)) {
                 // Two ranges meet at one joint, in spite of rounding.
                 span.u[0] = last.u[1];
             }
@@ -177,6 +180,11 @@ impl<'a> WheelSurface<'a> {
         } else {
             Some(index + 1).filter(|&i| i < self.section.pieces.len())
         }
+    }
+
+    /// Returns whether the envelope has a hole or a step between two neighbouring pieces.
+    pub(super) fn is_step(&self, a: usize, b: usize) -> bool {
+        self.section.steps.contains(&a.max(b))
     }
 
     /// Returns the index of the first or last piece whose outer end is ξ.
@@ -409,13 +417,18 @@ impl<'a> WheelSurface<'a> {
         xi - e * self.sin
     }
 
-    /// Computes q(ξ, 0) = (cosθ − h′(ξ) sinθ)/2w \[1/mm\], the growth of ζ with η², for a span that begins at η = 0.
+    /// Computes dζ/du \[1/mm\], the growth of ζ with η², at the beginning of a span. At η = 0 this is q(ξ, 0) = (cosθ − h′(ξ)
+    /// sinθ)/2w. At a vertical end of the profile e stays while w falls.
     pub fn opening(&self, xi: f64, span: &Span) -> f64 {
-        let slope = self.branch(span).chord_from(&span.begin, xi);
-        (self.cos - self.sin * slope) / (2.0 * span.w)
+        let e = span.e[0];
+        let rise = self.cos - self.sin * self.branch(span).chord_from(&span.begin, self.abscissa(xi, e));
+        if rise.is_infinite() {
+            return -1.0 / (2.0 * e * self.cos);
+        }
+        rise / (2.0 * (span.w + e * (1.0 - self.cos * rise)))
     }
 
-    /// Finds the index of the span that holds u \[mm²\], among the spans of a column in order of u.
+    /// Finds the index of the span that holds u \[mm²\], among the spans of a column in order of e.
     pub fn span_at(spans: &[Span], u: f64) -> Option<usize> {
         let k = spans.iter().position(|span| u <= span.u[1])?;
         (u >= spans[k].u[0]).then_some(k)

@@ -5,6 +5,7 @@ use wheelrail::Evaluator;
 use wheelrail::case::{Case, Profiles, Run, SILENT};
 use wheelrail::conformal::{ConformalPatch, GapPoint, NormalGap, fill_normal_gap};
 use wheelrail::scene::{self, Scene};
+use wheelrail::search::TrackSide;
 use wheelrail::separation::EtaAxis;
 use wheelrail::{Arc, Half, Pair, Patch, Placement, Window, inclination};
 use wheelrail_check::{NormalGapSample, check_normal_gap};
@@ -359,7 +360,7 @@ fn automatic_grids_over_the_rail_cut_no_part() {
          [contact]\noffset = 4.0\n[patch]\napproach = 0.1\n",
     );
     let run = drawn(&format!("{pair}{WHEELSET}"));
-    assert!(run.parts.iter().any(|part| part.site.side() == Some("left")));
+    assert!(run.parts.iter().any(|part| part.site.side() == Some(TrackSide::Left)));
 }
 
 const WHEELSET: &str = "[track]\ngauge = 1435.0\n[wheelset]\nback_to_back = 1360.0\nflange_back_x = -70.0\nlateral = 5.0\n\

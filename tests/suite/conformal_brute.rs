@@ -4,8 +4,8 @@
 //! `WHEELRAIL_RAYS=1500 cargo test first_entry -- --nocapture` is the long run over lines.
 
 mod fill;
-mod oracle;
-mod placements;
+pub mod oracle;
+pub mod placements;
 
 use fill::Filled;
 use oracle::{Line, Revolved};

@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use tempfile::TempDir;
-use wheelrail::case::{Run, SILENT, WrittenPart, write};
-use wheelrail::files::{Folder, RUN_FOLDER};
+use wheelrail::case::{RUN_FOLDER, Run, SILENT, WrittenPart, write};
+use wheelrail::files::Folder;
 use wheelrail::mesh::axle_point;
 use wheelrail::nalgebra::{Matrix4, Point3};
+use wheelrail::search::TrackSide;
 use wheelrail::{Result, scene};
 
 /// Rounding of places on a track \[mm\].
@@ -49,10 +50,13 @@ fn both_sides_agree_where_the_axle_is() -> Result<()> {
             let place = transform(written);
             let side = part.site.side().unwrap();
             let turned = place.fixed_view::<3, 3>(0, 0).determinant();
-            assert!((turned - if side == "left" { -1.0 } else { 1.0 }).abs() < 1e-12, "{side}: {turned}");
+            assert!(
+                (turned - if side == TrackSide::Left { -1.0 } else { 1.0 }).abs() < 1e-12,
+                "{side}: {turned}"
+            );
             let middle = place.transform_point(&axle_point(&part.site.contact.placement, -HALF));
             assert!((middle.x - lateral).abs() < ROUNDING && middle.y.abs() < ROUNDING, "{side}: {middle}");
-            let found = part.site.found.as_ref().unwrap();
+            let found = part.site.contact.found.as_ref().unwrap();
             if found.contact == 1 {
                 middles.push(middle);
             }
@@ -72,7 +76,7 @@ fn a_single_contact_lies_on_its_rail() -> Result<()> {
     let station = run.parts[0].site.contact.placement.rail().point().station;
     let point = transform(&parts[0]).transform_point(&Point3::origin());
     assert_eq!([point.x, point.z], [station.x, station.z]);
-    let found = run.parts[0].site.found.as_ref().unwrap();
+    let found = run.parts[0].site.contact.found.as_ref().unwrap();
     assert!((point.y - found.place.y_mm).abs() < ROUNDING, "{point} {found:?}");
     // Every block of the file exists beside it.
     let text = std::fs::read_to_string(dir.path().join("out/wheelset.vtm")).unwrap();

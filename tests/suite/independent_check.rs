@@ -217,3 +217,37 @@ fn a_check_without_any_closest_distance_does_not_agree() {
     let report = as_placed(&placement, &window([28.0, 34.0], [-5.0, 5.0], 0.0));
     assert_eq!((report.distances.violation.compared, report.agrees), (0, false), "{report}");
 }
+
+/// A window of 270 km along ξ holds no more of the bodies than one of 270 m, and its check takes no more cells.
+#[test]
+fn a_far_value_of_the_grid_costs_nothing() {
+    let rail = standards::rail("46E4").expect("a rail");
+    let wheel = standards::wheel("S1002").expect("a wheel");
+    let placement =
+        Pair::new(rail, wheel, 460.0).and_then(|pair| pair.placed(0.0, 0.0, 0.0)).expect("a pair");
+    for far in [270.0, 270_185.0, 1e9] {
+        let window = Window { xi: [-far, 9.0], eta: [-0.8, 0.8] };
+        let report = checked(&placement, &placement, &Request { window, approach: 0.05 }, |_, _, _| {});
+        assert!(report.agrees, "{far}\n{report}");
+    }
+    let window = Window { xi: [-9.0, f64::INFINITY], eta: [-0.8, 0.8] };
+    let mut evaluator = Evaluator::new(&placement);
+    let mut answer = |xi: f64, eta: f64| Answer::of(&mut evaluator, xi, eta);
+    assert!(check(&placement, &Request { window, approach: 0.05 }, &mut answer).is_err());
+}
+
+/// A profile of which a part lies a thousand kilometres away is refused before its mesh is made.
+#[test]
+fn bodies_too_large_for_a_mesh_are_refused() {
+    let arc = |radius: f64, half: f64| {
+        let arc = Arc::about([0.0, -radius], radius, Half::Upper, [-half, half]).expect("an arc");
+        Profile::new("arc", "", vec![Segment::arc(arc)]).expect("a profile")
+    };
+    let pair = Pair::new(arc(1e9, 1e8), arc(1e10, 1e8), 1e9).expect("a pair");
+    let placement = pair.placed(0.0, 0.0, 0.0).expect("a placed pair");
+    let window = Window { xi: [-1e8, 1e8], eta: [-1e8, 1e8] };
+    let mut evaluator = Evaluator::new(&placement);
+    let mut answer = |xi: f64, eta: f64| Answer::of(&mut evaluator, xi, eta);
+    let refused = check(&placement, &Request { window, approach: 0.05 }, &mut answer);
+    assert!(refused.is_err_and(|error| error.found.contains("cells")));
+}

@@ -168,6 +168,15 @@ impl<'ast> Visit<'ast> for File {
     /// `pub(in path)` names where an item is seen, not what it needs.
     fn visit_visibility(&mut self, _: &'ast syn::Visibility) {}
 
+    /// A macro that is given a type defines it.
+    fn visit_item_macro(&mut self, item: &'ast syn::ItemMacro) {
+        let tokens = item.mac.tokens.to_string();
+        let words: Vec<&str> = tokens.split_whitespace().collect();
+        let defined = words.windows(2).filter(|pair| ["struct", "enum"].contains(&pair[0]));
+        self.types.extend(defined.map(|pair| pair[1].to_string()));
+        syn::visit::visit_item_macro(self, item);
+    }
+
     fn visit_item_struct(&mut self, item: &'ast syn::ItemStruct) {
         self.types.insert(item.ident.to_string());
         syn::visit::visit_item_struct(self, item);

@@ -1,8 +1,8 @@
 //! The parts of a run: contacts of one wheel, and parts of a patch with a grid each or, by `[grid] merge`, together.
 
 use std::path::Path;
-use wheelrail::case::{Part, Run, SILENT, write};
-use wheelrail::files::{Folder, RUN_FOLDER};
+use wheelrail::case::{FACTS, Part, RUN_FOLDER, Run, SILENT, write};
+use wheelrail::files::Folder;
 use wheelrail::scene;
 use wheelrail::separation::Evaluator;
 
@@ -153,17 +153,43 @@ fn files_say_that_a_contact_is_infeasible_or_a_mirror_image() {
     let wheelset = "[rail]\nprofile = \"60E1\"\nrotate = \"1:40\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n\
                     [track]\ngauge = 1435.0\n[wheelset]\nback_to_back = 1360.0\nflange_back_x = -70.0\n\
                     lateral = 1.0\n[patch]\napproach = 0.05\n";
-    for (text, folder, said) in [(chosen, "", "infeasible contact"), (wheelset, "left", "mirror image")] {
+    // An infeasible contact has no mesh of its patch.
+    let cases =
+        [(chosen, "", "infeasible contact", None), (wheelset, "left", "mirror image", Some("patch.vtu"))];
+    for (text, folder, said, mesh) in cases {
         let run = computed(text).expect("a contact");
         let home = tempfile::tempdir().expect("a folder");
         let target = home.path().join("out");
         let out = Folder::create(&target, RUN_FOLDER).expect("a folder");
         write(&run, &out, None, SILENT).and_then(|_| out.commit()).expect("files");
-        for name in ["contact.inp", "separation.wrp", "rail.vtu", "patch.vtu"] {
+        assert_eq!(target.join(folder).join("patch.vtu").exists(), mesh.is_some());
+        for name in ["contact.inp", "separation.wrp", "rail.vtu"].into_iter().chain(mesh) {
             let file = std::fs::read_to_string(target.join(folder).join(name)).expect("a file");
             assert!(file.contains(said), "{folder}/{name}");
         }
     }
+}
+
+/// The list of facts and the summary agree: a number stands under the keys that its fact names.
+#[test]
+fn facts_stand_in_the_summary_under_their_keys() {
+    let text = "[rail]\nprofile = \"60E1\"\nrotate = \"1:40\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n\
+                [contact]\noffset = 0.0\nyaw = 0.004\n[patch]\nload = 60000.0\n[grid]\nreference = \"rail\"\n\
+                [output]\nformats = [\"npy\"]\n";
+    let run = computed(text).expect("a contact");
+    let home = tempfile::tempdir().expect("a folder");
+    let folder = Folder::create(&home.path().join("out"), RUN_FOLDER).expect("a folder");
+    let written = write(&run, &folder, None, SILENT).expect("files");
+    let (part, summary) = (&run.parts[0], &written[0].summary);
+    let mut numbers = 0;
+    for fact in &FACTS {
+        let Some((keys, value)) = fact.number(part) else { continue };
+        let found = keys.iter().fold(summary, |table, key| &table[key]);
+        assert_eq!(found.as_f64(), value, "{keys:?}");
+        assert_eq!(fact.text(part).is_some(), value.is_some(), "{}", fact.label);
+        numbers += usize::from(value.is_some());
+    }
+    assert!(numbers >= 10, "{numbers}");
 }
 
 #[test]

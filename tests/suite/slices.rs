@@ -31,7 +31,7 @@ fn a_section_runs_and_its_summary_says_where_it_is() {
     let run = Run::new(scene::resolve(&scene, folder(), "").unwrap(), SILENT).unwrap();
     assert!(run.refusals().is_empty(), "{:?}", run.refusals());
     let [rail, wheel] =
-        run.case.measured().each_ref().map(|record| record.as_ref().unwrap().cut.clone().unwrap());
+        run.case.measured().both().map(|record| record.as_ref().unwrap().cut.clone().unwrap());
     assert_eq!((rail.along, rail.angle), (Some(130.0), None));
     let files: Vec<_> = rail.slices.iter().map(|slice| slice.file.as_str()).collect();
     assert_eq!(files, ["rail-b.txt", "rail-c.txt"]);

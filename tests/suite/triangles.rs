@@ -4,8 +4,9 @@ use std::collections::{HashMap, HashSet};
 use std::f64::consts::FRAC_PI_6;
 use std::path::Path;
 
+use crate::campaign;
 use crate::common::{approached_references, folder, profile, two_crowns};
-use wheelrail::case::{Run, SILENT};
+use wheelrail::case::{Run, SILENT, contacts};
 use wheelrail::mesh::TriangleMesh;
 use wheelrail::patch::{Patch, Window};
 use wheelrail::placement::{Pair, Placement};
@@ -163,6 +164,83 @@ fn meshes_of_example_scenes_keep_every_promise() {
         }
     }
     assert!(parts >= 5, "{parts} parts");
+}
+
+/// A random chain of lines and parabolas over \[−half, half\] without steps, as a scene has it.
+fn chain(random: &mut Random, half: f64, steepest: f64) -> String {
+    let mut x: Vec<f64> = (0..2 + random.below(5)).map(|_| random.between(-half, half)).collect();
+    x.extend([-half, half]);
+    x.sort_by(f64::total_cmp);
+    let mut z = 0.0;
+    let segments = x.windows(2).filter(|ends| ends[1] - ends[0] > 0.1).map(|ends| {
+        let ([x0, x1], m) = ([ends[0], ends[1]], random.between(-steepest, steepest));
+        let a = *random.pick(&[0.0, 1.0]) * random.between(-1.0, 1.0) * steepest / (x1 - x0);
+        let from = z;
+        z += m * (x1 - x0);
+        // The line and a (x − x0) (x − x1).
+        let coefficients = [from - m * x0 + a * x0 * x1, m - a * (x0 + x1), a];
+        format!("{{ polynomial = {{ x = [{x0:?}, {x1:?}], coefficients = {coefficients:?} }} }}")
+    });
+    segments.collect::<Vec<_>>().join(", ")
+}
+
+/// Patches with cusps at the ends of profiles, thin parts and several parts: random chains, under windows that cut.
+#[test]
+fn random_chains_keep_their_angles() {
+    let mut random = Random::new(9);
+    let (mut meshes, mut sharp, mut refused) = (0, 0, 0);
+    for number in 0..campaign::scenes() {
+        let steepest = 10f64.powf(random.between(-2.0, 0.2));
+        let text = format!(
+            "[rail]\nsegments = [{}]\n[wheel]\nsegments = [{}]\nradius = {:?}\n[contact]\noffset = {:?}\nyaw = {:?}\n",
+            chain(&mut random, 30.0, steepest),
+            chain(&mut random, 45.0, steepest),
+            random.between(200.0, 600.0),
+            random.between(-10.0, 10.0),
+            *random.pick(&[0.0, 0.0, 0.01, -0.06]),
+        );
+        let case =
+            scene::parse(&text, false).and_then(|scene| scene::resolve(&scene, Path::new("."), "chain"));
+        // Profiles whose pieces fold over, and wheels beside their rails, are none.
+        let Ok(found) = case.and_then(|case| contacts(&case)) else { continue };
+        let delta = 10f64.powf(random.between(-3.0, 0.6));
+        let width = 10f64.powf(random.between(-3.0, 1.0));
+        let from = -width * random.uniform();
+        let narrow = Window { xi: [from, from + width], ..Window::UNBOUNDED };
+        let window = *random.pick(&[Window::UNBOUNDED, narrow]);
+        for (_, placement) in found.iter().take(1) {
+            let patch = Patch::new(placement, delta, &window);
+            match TriangleMesh::new(placement, &patch, None) {
+                Ok(mesh) => {
+                    let name = format!("scene {number}, δ = {delta}, {window:?}\n{text}");
+                    check_angles(&name, &mesh);
+                    meshes += usize::from(!mesh.triangles.is_empty());
+                    sharp += (0..mesh.size.len()).map(|k| mesh.sharp_corners(k).len()).sum::<usize>();
+                }
+                // Too narrow, or as small as rounding.
+                Err(error) => {
+                    assert!(error.place == "mesh" && !error.advice.is_empty(), "{number}: {error}\n{text}");
+                    refused += 1;
+                }
+            }
+        }
+    }
+    println!("{meshes} meshes, {sharp} sharp corners, {refused} refused");
+    assert!(meshes >= 8 && refused * 3 < meshes, "{meshes} meshes, {refused} refused");
+}
+
+/// A part that the window cuts a nanometre beyond C takes a billion edges: it is refused before they are made.
+#[test]
+fn a_part_too_narrow_for_a_mesh_is_refused() {
+    let placement = two_crowns(0.0, 0.0).expect("a pair");
+    for width in [1e-5, 1e-7, 1e-9, 1e-12] {
+        let window = Window { xi: [-5.0, width], eta: [-5.0, 5.0] };
+        let wide = Patch::new(&placement, 0.05, &window);
+        assert!(TriangleMesh::new(&placement, &wide, None).is_ok(), "{width}");
+        let narrow = Patch::new(&placement, 0.05, &Window { xi: [0.0, width], ..window });
+        let Err(error) = TriangleMesh::new(&placement, &narrow, None) else { panic!("{width}: a mesh") };
+        assert!(error.to_string().contains("narrow") || error.to_string().contains("rounding"), "{error}");
+    }
 }
 
 #[test]

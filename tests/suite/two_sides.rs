@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use wheelrail::case::{Site, sites};
+use wheelrail::search::TrackSide;
 use wheelrail::{Result, scene};
 
 fn found(text: &str) -> Result<Vec<Site>> {
@@ -17,13 +18,13 @@ fn wheelset(rest: &str) -> String {
 }
 
 /// (side, abscissa on the rail \[mm\], rolling radius \[mm\], height \[mm\], roll \[rad\]) of the first contact of both sides.
-fn touching(text: &str) -> Result<Vec<(&'static str, [f64; 4])>> {
+fn touching(text: &str) -> Result<Vec<(Option<TrackSide>, [f64; 4])>> {
     let numbers = |site: Site| {
-        let found = site.found.unwrap();
+        let found = site.contact.found.unwrap();
         let place = found.place;
         (found.side, [place.rail_x_mm, place.rolling_radius_mm, found.height_mm, found.roll_rad])
     };
-    let first = |site: &Site| site.found.as_ref().is_some_and(|found| found.contact == 1);
+    let first = |site: &Site| site.contact.found.as_ref().is_some_and(|found| found.contact == 1);
     Ok(found(text)?.into_iter().filter(first).map(numbers).collect())
 }
 

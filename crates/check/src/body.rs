@@ -3,7 +3,7 @@
 use super::meshes::{Hit, Mesh, RayOrigin, Vector};
 use super::patch::{CurveMesh, SurfacePoint};
 use super::ray::{Height, foot, height};
-use super::sampler::SampledSurface;
+use super::sampler::{SampledCurve, SampledSurface};
 
 /// Cells of the coarse mesh per local scale.
 const CELLS_PER_SCALE: f64 = 8.0;
@@ -26,6 +26,9 @@ const NEARBY_CELLS: f64 = 2.0;
 /// Least ζ component of the normal. Below it a ray is practically tangent, heights lose two digits, and neighbouring sheets
 /// cannot be distinguished.
 pub(super) const STEEPEST: f64 = 0.02;
+
+/// Distance \[mm\] by which another head stands in front of the sheet through C at least: the program then takes the latter.
+pub(super) const FLANGEWAY: f64 = 10.0;
 
 /// A body with its coarse mesh, which has only triangles that face the other body.
 pub(super) struct Solid {
@@ -53,15 +56,22 @@ pub(super) enum AlongZeta {
 }
 
 impl Solid {
+    /// Returns the number of cells of the coarse mesh up to this distance from the origin \[mm\]; infinite or NaN for what is
+    /// not finite.
+    pub fn cells(surface: &SampledSurface, reach: f64) -> f64 {
+        let along = surface.curves.iter().map(along).sum::<f64>();
+        along * around(surface.v_reach(reach))
+    }
+
     /// Meshes a body around the ξ–η window, up to the given distance from the origin \[mm\]; `None` if its
     /// profile has a point that is not finite.
     pub fn new(surface: SampledSurface, reach: f64) -> Option<Self> {
         let v = surface.v_reach(reach);
-        let around = CELLS_AROUND.max((2.0 * v / LONGEST_CELL).ceil() as usize);
+        let around = around(v) as usize;
         let mut patches = Vec::with_capacity(surface.curves.len());
         let (mut vertices, mut owners) = (Vec::new(), Vec::new());
         for (index, curve) in surface.curves.iter().enumerate() {
-            let n = LEAST_CELLS.max((CELLS_PER_SCALE * curve.length / curve.scale).ceil() as usize);
+            let n = along(curve) as usize;
             let patch = CurveMesh::new(&surface, index, spread(0.0, curve.length, n), spread(-v, v, around))?;
             for triangle in (0..patch.mesh.len()).filter(|&k| patch.mesh.normal(k).z > 0.0) {
                 vertices.extend(patch.mesh.corners(triangle));
@@ -76,11 +86,29 @@ impl Solid {
 
     /// Returns the heights that the line through (ξ, η) meets first.
     pub fn along_zeta(&self, xi: f64, eta: f64) -> AlongZeta {
-        let guesses = match self.coarse(xi, eta) {
-            Some(coarse) => self.candidates(&coarse),
+        let origin = if self.surface.is_wheel() { RayOrigin::Below } else { RayOrigin::Above };
+        self.met(xi, eta, origin)
+    }
+
+    /// Returns the heights that the line through (ξ, η) meets first from a flangeway behind `zeta` \[mm\] on.
+    pub fn behind(&self, xi: f64, eta: f64, zeta: f64) -> AlongZeta {
+        let wheel = self.surface.is_wheel();
+        let from = if wheel { zeta + FLANGEWAY } else { zeta - FLANGEWAY };
+        self.met(xi, eta, if wheel { RayOrigin::UpFrom(from) } else { RayOrigin::DownFrom(from) })
+    }
+
+    fn met(&self, xi: f64, eta: f64, origin: RayOrigin) -> AlongZeta {
+        let coarse = self.coarse(xi, eta, origin);
+        let guesses = match &coarse {
+            Some(coarse) => self.candidates(coarse),
             None => self.all_ends(eta),
         };
-        let near = !guesses.is_empty() && self.coarse(xi, eta).is_some();
+        let near = !guesses.is_empty() && coarse.is_some();
+        let passed = |zeta: f64| match origin {
+            RayOrigin::Below | RayOrigin::Above => false,
+            RayOrigin::UpFrom(from) => zeta < from,
+            RayOrigin::DownFrom(from) => zeta > from,
+        };
         let mut found = Vec::new();
         let mut steep = false;
         for guess in guesses {
@@ -89,6 +117,7 @@ impl Solid {
                 continue;
             }
             match height(&self.surface, place, xi, eta) {
+                Some(height) if passed(height.zeta) => {}
                 Some(height) if height.normal.z > STEEPEST => found.push(height),
                 Some(height) if height.normal.z < -STEEPEST => {}
                 _ => steep = true,
@@ -119,8 +148,7 @@ impl Solid {
         curves.flat_map(|(curve, c)| [0.0, c.length].map(|t| SurfacePoint { curve, t, v: eta })).collect()
     }
 
-    fn coarse(&self, xi: f64, eta: f64) -> Option<SurfacePoint> {
-        let origin = if self.surface.is_wheel() { RayOrigin::Below } else { RayOrigin::Above };
+    fn coarse(&self, xi: f64, eta: f64, origin: RayOrigin) -> Option<SurfacePoint> {
         let mesh = self.mesh.as_ref()?;
         // Rays through an edge or vertex of the mesh may miss it, so that places beside it are tried.
         let nudge = self.surface.size * f64::EPSILON.sqrt();
@@ -194,6 +222,18 @@ impl Solid {
         let (curve, triangle) = self.owners[hit.triangle];
         self.patches[curve].place(&Hit { triangle, ..hit })
     }
+}
+
+/// Returns the number of coarse cells along a curve.
+fn along(curve: &SampledCurve) -> f64 {
+    let cells = (CELLS_PER_SCALE * curve.length / curve.scale).ceil();
+    if cells < LEAST_CELLS as f64 { LEAST_CELLS as f64 } else { cells }
+}
+
+/// Returns the number of coarse cells from −v to v \[mm\] around the axle or along the rail.
+fn around(v: f64) -> f64 {
+    let cells = (2.0 * v / LONGEST_CELL).ceil();
+    if cells < CELLS_AROUND as f64 { CELLS_AROUND as f64 } else { cells }
 }
 
 /// Returns n + 1 values from a to b.

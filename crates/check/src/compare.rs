@@ -3,7 +3,7 @@
 use std::time::Instant;
 use wheelrail::nalgebra::{Unit, Vector3};
 
-use super::body::{AlongZeta, JOINT, STEEPEST, Solid};
+use super::body::{AlongZeta, FLANGEWAY, JOINT, STEEPEST, Solid};
 use super::closest::{of_bodies, to_point};
 use super::floor::{Floor, floors};
 use super::meshes::Vector;
@@ -14,7 +14,7 @@ use super::relation::{Above, RELATION, normals_between};
 use super::report::{Counts, Differences, Distances, Orders, Report};
 use super::request::{Answer, Request};
 use super::sampler::{SampledCurve, SampledSurface};
-use wheelrail::error::{Error, Result};
+use wheelrail::error::{Error, ErrorKind, Result};
 use wheelrail::internal::largest;
 use wheelrail::placement::{Body, Placement};
 use wheelrail::profile::Shape;
@@ -41,12 +41,16 @@ const CONTACT_STEPS: usize = 12;
 /// Lift of the wheel for closest distances, as a share of R, on top of the approach.
 const LIFT: f64 = 1e-4;
 
+/// Most cells of the coarse mesh of a body: some 200 MB.
+const MOST_CELLS: f64 = 1e6;
+
 /// Checks the answers of `answer` for s and normals at (ξ, η) of a placed pair.
 ///
 /// Cost: about a millisecond a point, under 0.5 s in all.
 ///
 /// # Errors
-/// A placed pair whose profiles have points that are not finite, or a window that is not finite.
+/// A placed pair whose profiles have points that are not finite, or a window that is not finite; bodies so large that their
+/// meshes take more than 10⁶ cells.
 pub fn check(
     placement: &Placement,
     request: &Request,
@@ -56,13 +60,28 @@ pub fn check(
     let [xi, eta] = [request.window.xi, request.window.eta];
     let reach = [xi, eta].map(|[a, b]| a.abs().max(b.abs()));
     let reach = reach[0].hypot(reach[1]);
+    // Beyond its largest radius along η, and the profile's extent along ξ, the wheel has no surface.
+    let extent = placement.wheel().profile().extent();
+    let farthest = extent.hypot(placement.wheel_radius() + extent);
+    let meshed = reach.min(farthest);
     let not_finite = || {
         let expected = "finite points over a finite window";
         Error::new("check: profiles", "points that are not finite", expected, "check profiles and grid")
     };
-    let [rail, wheel] = [SampledSurface::rail(placement), SampledSurface::wheel(placement)]
-        .map(|surface| Solid::new(surface, reach).filter(|_| reach.is_finite()).ok_or_else(not_finite));
-    let (rail, wheel) = (rail?, wheel?);
+    let solid = |surface: SampledSurface| {
+        let cells = Solid::cells(&surface, meshed);
+        if !reach.is_finite() || !cells.is_finite() {
+            return Err(not_finite());
+        }
+        if cells > MOST_CELLS {
+            let (found, expected) =
+                (format!("a mesh of {cells:.0e} cells"), format!("at most {MOST_CELLS:e}"));
+            let advice = "take a smaller window, or profiles without parts far from the contact";
+            return Err(Error::new("check", found, expected, advice).of_kind(ErrorKind::Limit));
+        }
+        Solid::new(surface, meshed).ok_or_else(not_finite)
+    };
+    let (rail, wheel) = (solid(SampledSurface::rail(placement))?, solid(SampledSurface::wheel(placement))?);
     let floors = floors(smallest_radius(placement), placement.rolling_radius())?;
     let points = spread_points(placement, request, &rail.surface, &wheel.surface);
     let mut tally = Tally::new(&rail, &wheel, &floors);
@@ -177,7 +196,7 @@ impl<'a> Tally<'a> {
     fn ray(&mut self, xi: f64, eta: f64, answer: Answer) {
         self.counts.points += 1;
         let missing = answer.separation.is_nan();
-        match (self.rail.along_zeta(xi, eta), self.wheel.along_zeta(xi, eta)) {
+        match self.sheets(xi, eta, answer.separation) {
             (AlongZeta::Unresolved, _) | (_, AlongZeta::Unresolved) => self.counts.unresolved += 1,
             (AlongZeta::Steep, _) | (_, AlongZeta::Steep) => self.counts.steep_or_end += 1,
             (AlongZeta::Nothing, _) | (_, AlongZeta::Nothing) if missing => self.counts.no_surface += 1,
@@ -193,6 +212,34 @@ impl<'a> Tally<'a> {
                 }
             }
         }
+    }
+
+    /// Returns what the line through (ξ, η) meets of rail and wheel: the outermost sheets, or where these are so much nearer to
+    /// each other than `separation` \[mm\] that one of them may be of another head, the sheet behind that.
+    fn sheets(&self, xi: f64, eta: f64, separation: f64) -> (AlongZeta, AlongZeta) {
+        let (rail, wheel) = (self.rail.along_zeta(xi, eta), self.wheel.along_zeta(xi, eta));
+        let (AlongZeta::Heights(r), AlongZeta::Heights(w)) = (&rail, &wheel) else { return (rail, wheel) };
+        let near = |[r, w]: [f64; 2]| (separation - (w - r)).abs() < FLANGEWAY / 2.0;
+        let outer = [r[0].zeta, w[0].zeta];
+        if near(outer) || separation.is_nan() {
+            return (rail, wheel);
+        }
+        // Each sheet lies a flangeway behind the one before, so that the searches end.
+        let mut behind = self.rail.behind(xi, eta, outer[0]);
+        while let AlongZeta::Heights(r) = &behind {
+            if near([r[0].zeta, outer[1]]) {
+                return (behind, wheel);
+            }
+            behind = self.rail.behind(xi, eta, r[0].zeta);
+        }
+        behind = self.wheel.behind(xi, eta, outer[1]);
+        while let AlongZeta::Heights(w) = &behind {
+            if near([outer[0], w[0].zeta]) {
+                return (rail, behind);
+            }
+            behind = self.wheel.behind(xi, eta, w[0].zeta);
+        }
+        (rail, wheel)
     }
 
     fn compare(&mut self, at: [f64; 2], answer: Answer, rail: &[Height], wheel: &[Height]) {

@@ -25,13 +25,17 @@ pub(super) struct Hit {
     pub point: Vector,
 }
 
-/// The end of ζ from which a ray starts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// The place on ζ from which a ray starts.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum RayOrigin {
     /// Below everything: the ray goes up and meets the lowest sheet.
     Below,
     /// Above everything: the ray goes down and meets the highest sheet.
     Above,
+    /// At this ζ \[mm\]: the ray goes up.
+    UpFrom(f64),
+    /// At this ζ \[mm\]: the ray goes down.
+    DownFrom(f64),
 }
 
 impl Mesh {
@@ -52,6 +56,8 @@ impl Mesh {
         let (start, direction) = match origin {
             RayOrigin::Below => (bounds.mins.z - margin, Vector::Z),
             RayOrigin::Above => (bounds.maxs.z + margin, -Vector::Z),
+            RayOrigin::UpFrom(zeta) => (zeta, Vector::Z),
+            RayOrigin::DownFrom(zeta) => (zeta, -Vector::Z),
         };
         let ray = Ray::new(Vector::new(xi, eta, start), direction);
         let triangle = self.0.cast_local_ray_and_get_normal(&ray, f64::MAX, false)?.subshape as usize;

@@ -1,7 +1,7 @@
 //! The command line, with one file for each command.
 //!
 //! Exit codes: 0 done, 1 a geometric "no" (infeasible contact, empty patch, failed check), 2 bad input. Data go to stdout,
-//! progress and messages to stderr.
+//! progress and messages to stderr. Ctrl-C and SIGTERM give 130 and 143.
 
 #![cfg_attr(not(test), warn(unused_crate_dependencies))]
 
@@ -15,6 +15,7 @@ mod profile;
 mod progress;
 mod report;
 mod run;
+mod signals;
 mod sweep;
 
 use std::path::PathBuf;
@@ -84,11 +85,15 @@ enum Command {
 /// Runs the command and returns its exit code.
 fn main() -> ExitCode {
     let outcome = match Arguments::try_parse() {
-        Ok(arguments) => on_threads(arguments),
+        Ok(arguments) => {
+            signals::watch();
+            on_threads(arguments)
+        }
         Err(message) if message.use_stderr() => message.exit(),
         // The text is the help or the version.
         Err(message) => print(&message.render().to_string()),
     };
+    signals::stay_if_ending();
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::No) => ExitCode::from(1),

@@ -6,7 +6,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use wheelrail::case::Columns;
+use wheelrail::case::{Columns, DoubtSet};
 use wheelrail::search::ONE_CONTACT;
 use wheelrail::search::ParallelSweep;
 use wheelrail::separation::{EtaAxis, Values, plan};
@@ -62,7 +62,7 @@ fn sweep(system: &WheelsetOnTrack) -> wheelrail::Result<f64> {
         all.reserve(2 * count);
         ParallelSweep { system, selection, conicity: None, positions: &positions }.blocks(
             |chunk: &mut Columns, number, rows| {
-                rows.iter().for_each(|row| chunk.push(number, row, None));
+                rows.iter().for_each(|row| chunk.push(number, row, None, DoubtSet::default()));
                 Ok(())
             },
             |_, chunks| {

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use pyo3::prelude::*;
-use wheelrail::case::{self, contacts, write};
-use wheelrail::files::{Folder, RUN_FOLDER};
+use wheelrail::case::{self, RUN_FOLDER, contacts, write};
+use wheelrail::files::Folder;
 use wheelrail::{Result, scene};
 
 use crate::contact::Contact;

@@ -20,7 +20,7 @@ impl<T> OrRaise<T> for wheelrail::Result<T> {
 pub(crate) fn exception(error: Error) -> PyErr {
     Python::attach(|py| {
         let name = match error.kind {
-            ErrorKind::Geometry => "GeometryError",
+            ErrorKind::Geometry | ErrorKind::NoContact => "GeometryError",
             ErrorKind::Io => "FileError",
             ErrorKind::Limit => "LimitError",
             _ => "InputError",
@@ -36,5 +36,5 @@ pub(crate) fn exception(error: Error) -> PyErr {
 /// Makes the error of a wheel that touches nothing.
 pub(crate) fn no_contact(place: &str, expected: &str) -> PyErr {
     let error = Error::new(place, "no contact", expected, "check the displacement, the gauge and the signs");
-    exception(error.of_kind(ErrorKind::Geometry))
+    exception(error.of_kind(ErrorKind::NoContact))
 }

@@ -3,7 +3,7 @@
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use wheelrail::case::{ApproachBy, Columns, MOST_DRAWN, curves};
+use wheelrail::case::{ApproachBy, COLUMNS, ColumnArray, Columns, DoubtSet, MOST_DRAWN, curves};
 use wheelrail::search::{ONE_CONTACT, Selection};
 use wheelrail::search::{ParallelSweep, Position, WheelsetOnTrack, conicity_over};
 
@@ -40,7 +40,7 @@ pub(crate) fn sweep<'py>(
         all.reserve(2 * positions.len());
         sweep.blocks(
             |chunk: &mut Columns, number, rows| {
-                rows.iter().for_each(|row| chunk.push(number, row, ellipses));
+                rows.iter().for_each(|row| chunk.push(number, row, ellipses, DoubtSet::default()));
                 watch.go_on()
             },
             |done, chunks| {
@@ -71,12 +71,13 @@ fn listed(positions: &Positions, watch: &Watch) -> wheelrail::Result<Vec<Positio
 /// Gives the columns as NumPy arrays, which take over their memory.
 fn arrays_of(py: Python<'_>, columns: Columns) -> PyResult<Bound<'_, PyDict>> {
     let arrays = PyDict::new(py);
-    arrays.set_item("position", PyArray1::from_vec(py, columns.position))?;
-    arrays.set_item("right", PyArray1::from_vec(py, columns.right))?;
-    arrays.set_item("contact", PyArray1::from_vec(py, columns.contact))?;
-    arrays.set_item("kink", PyArray1::from_vec(py, columns.kink))?;
-    for (name, column) in Columns::QUANTITIES.into_iter().zip(columns.quantities) {
-        arrays.set_item(name, PyArray1::from_vec(py, column))?;
+    for (name, array) in columns.into_arrays() {
+        match array {
+            ColumnArray::Positions(numbers) => arrays.set_item(name, PyArray1::from_vec(py, numbers))?,
+            ColumnArray::Flags(flags) => arrays.set_item(name, PyArray1::from_vec(py, flags))?,
+            ColumnArray::Counts(numbers) => arrays.set_item(name, PyArray1::from_vec(py, numbers))?,
+            ColumnArray::Numbers(numbers) => arrays.set_item(name, PyArray1::from_vec(py, numbers))?,
+        }
     }
     Ok(arrays)
 }
@@ -93,15 +94,15 @@ pub(crate) fn sweep_picture(columns: &Bound<'_, PyDict>, title: &str) -> PyResul
     };
     let (position, right, contact) = (column("position")?, column("right")?, column("contact")?);
     let lateral = column("lateral_mm")?;
-    let mut quantities = Vec::new();
-    for name in Columns::QUANTITIES {
-        quantities.push(column(name)?);
+    let mut numbers = Vec::new();
+    for known in &COLUMNS {
+        numbers.push(if known.is_number() { column(known.name)? } else { Vec::new() });
     }
     // Positions without contact are not in the table; the others are numbered anew, and evenly chosen.
-    let mut numbers = position.clone();
-    numbers.dedup();
-    let stride = numbers.len().div_ceil(MOST_DRAWN).max(1);
-    let drawn: Vec<f64> = numbers.iter().step_by(stride).copied().collect();
+    let mut touching = position.clone();
+    touching.dedup();
+    let stride = touching.len().div_ceil(MOST_DRAWN).max(1);
+    let drawn: Vec<f64> = touching.iter().step_by(stride).copied().collect();
     let mut chosen = Columns::default();
     let mut laterals = Vec::new();
     let mut next = 0;
@@ -119,10 +120,10 @@ pub(crate) fn sweep_picture(columns: &Bound<'_, PyDict>, title: &str) -> PyResul
         chosen.right.push(right[row] != 0.0);
         chosen.contact.push(contact[row] as u32);
         chosen.kink.push(false);
-        for (to, from) in chosen.quantities.iter_mut().zip(&quantities) {
-            to.push(from[row]);
+        for (to, from) in chosen.numbers.iter_mut().zip(&numbers) {
+            to.extend(from.get(row));
         }
     }
-    let about = format!("{} positions; lowest contact of each side, in its own profile axes", numbers.len());
+    let about = format!("{} positions; lowest contact of each side, in its own profile axes", touching.len());
     Ok(curves(&chosen, &laterals, title, &about).or_raise()?.svg())
 }

@@ -19,7 +19,7 @@ const SOLVED: &str = include_str!("../data/loads.csv");
 const PAIRS: [&str; 5] = [
     "60E1 1:40 under S1002",
     "UIC60 1:20 under S1002",
-    "60E2 1:40 under EN13715-1:40",
+    "60E2 1:40 under EN13715-1:40-h28-e32.5",
     "54E3 1:20 under EN15302-C",
     "worn, measured",
 ];
@@ -102,12 +102,12 @@ impl Loaded {
 impl Carried {
     /// Returns the number of the contact, from 1.
     pub fn contact(&self) -> usize {
-        self.site.found.as_ref().map_or(1, |found| found.contact)
+        self.site.contact.found.as_ref().map_or(1, |found| found.contact)
     }
 
     /// Compares the estimated δ with the solved one.
     pub fn compared(&self) -> ApproachError {
-        let merged = self.site.found.as_ref().is_some_and(|found| !found.merged.is_empty());
+        let merged = self.site.contact.found.as_ref().is_some_and(|found| !found.merged.is_empty());
         let parts = self.site.contact.whole_patch().map_or(0, |patch| patch.components.len());
         ApproachError {
             region: self.loaded.key(self.contact()),

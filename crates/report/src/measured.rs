@@ -28,8 +28,6 @@ const SEED: u64 = 0x60E1_51002;
 const APPROACH: f64 = 0.08;
 /// Load of the comparison \[N\].
 const LOAD: f64 = 1e5;
-const STEEL: Elastic = Elastic { youngs_modulus: 2.1e5, poissons_ratio: 0.28 };
-
 /// Range of x in which rails are compared \[mm\]: the running surface. A patch on a tread never lies below the gauge
 /// corner.
 const RAIL_ZONE: [f64; 2] = [-33.0, 33.0];
@@ -253,7 +251,7 @@ fn inside(placement: &Placement, extent: &Window) -> Vec<[f64; 3]> {
 
 /// Returns Hertz's largest pressure \[N/mm²\] under the load.
 fn pressure(placement: &Placement) -> Option<f64> {
-    let modulus = effective_modulus(&STEEL, &STEEL);
+    let modulus = effective_modulus(&Elastic::STEEL, &Elastic::STEEL);
     curvatures(placement).under_load(LOAD, modulus).map(|ellipse| ellipse.pressure_n_per_mm2)
 }
 

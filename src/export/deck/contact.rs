@@ -8,6 +8,8 @@
 use super::super::block::Block;
 use super::number::{Field, WIDTH};
 use super::text::{Deck, Lattice, line};
+use crate::load::Elastic;
+use crate::numerics::bodies::Bodies;
 use crate::placement::Creepages;
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -30,10 +32,8 @@ pub enum Prescribed {
 pub struct ContactSettings {
     /// Prescribed force or approach.
     pub normal: Prescribed,
-    /// Poisson's ratios of rail and wheel, typically 0.28.
-    pub poisson: [f64; 2],
-    /// Shear moduli of rail and wheel \[N/mm²\], typically 82,000.
-    pub shear_modulus: [f64; 2],
+    /// Elastic constants of rail and wheel.
+    pub material: Bodies<Elastic>,
     /// Coefficients of friction, static and kinetic, typically 0.3; they do not enter the normal problem.
     pub friction: [f64; 2],
     /// Creepages of steady rolling; `None` asks for the normal problem alone, without friction.
@@ -43,8 +43,8 @@ pub struct ContactSettings {
 impl ContactSettings {
     /// Returns the settings for steel on steel without motion: E = 210,000 N/mm², ν = 0.28, friction 0.3.
     pub fn steel(normal: Prescribed) -> Self {
-        let shear = 210_000.0 / (2.0 * (1.0 + 0.28));
-        Self { normal, poisson: [0.28; 2], shear_modulus: [shear; 2], friction: [0.3; 2], creepages: None }
+        let material = Bodies { rail: Elastic::STEEL, wheel: Elastic::STEEL };
+        Self { normal, material, friction: [0.3; 2], creepages: None }
     }
 }
 
@@ -75,6 +75,12 @@ pub(super) fn rows(block: &mut Block<'_>, column: &[Field]) -> io::Result<()> {
     Ok(())
 }
 
+/// Largest constant Ak of dissimilar materials with which CONTACT solves normal and tangential problem once, one after the other.
+const SIMILAR: f64 = 1e-4;
+
+/// Most rounds in which CONTACT solves both where each acts on the other: 20 change its tractions by at most 0.2 % beyond.
+const ROUNDS: u32 = 20;
+
 /// The surface over which CONTACT's distances are given.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Reference<'a> {
@@ -101,7 +107,8 @@ pub(super) fn control(grid: &Lattice, settings: &ContactSettings, reference: Ref
         Prescribed::Force(force) => (1, force),
         Prescribed::Approach(approach) => (0, approach),
     };
-    let ([nu_r, nu_w], [g_r, g_w]) = (settings.poisson, settings.shear_modulus);
+    let Bodies { rail: [nu_r, g_r], wheel: [nu_w, g_w] } =
+        settings.material.map(|body| [body.poissons_ratio, body.shear_modulus()]);
     let ([at_rest, sliding], tangential) =
         (settings.friction, if settings.creepages.is_some() { 3 } else { 0 });
     let mut text = format!(
@@ -113,8 +120,12 @@ pub(super) fn control(grid: &Lattice, settings: &ContactSettings, reference: Ref
         Reference::Plane => (2, ""),
         Reference::Curved(inclinations) => (4, inclinations),
     };
-    let _ = write!(text, "  02{influence}020       L-D-C-M-Z-E\n 0002221       H-G-I-A-O-W-R\n");
-    text += "   999 100 30 1 1.0e-8           MAXGS MAXIN MAXNR MAXOUT EPS\n";
+    // The digit E is 9 where the slip of every element follows the distances.
+    let extra = if influence == 4 && tangential == 3 { 9 } else { 0 };
+    let _ = write!(text, "  02{influence}02{extra}       L-D-C-M-Z-E\n 0002221       H-G-I-A-O-W-R\n");
+    let coupled = tangential == 3 && (influence == 4 || dissimilarity(settings).abs() >= SIMILAR);
+    let rounds = if coupled { ROUNDS } else { 1 };
+    let _ = writeln!(text, "   999 100 30 {rounds} 1.0e-8           MAXGS MAXIN MAXNR MAXOUT EPS");
     // `{:?}` writes every f64 with a point or an exponent, in the shortest form that reads back the same.
     let normal_name = ["PEN", "FN"][force];
     match settings.creepages {
@@ -141,6 +152,14 @@ pub(super) fn control(grid: &Lattice, settings: &ContactSettings, reference: Ref
     text += line(&[rolling, lateral, d_rolling, d_lateral]).trim_end();
     text += "  MX MY XC1 YC1 DX DY\n";
     text + "   9 1           IBASE IPLAN\n"
+}
+
+/// Gives CONTACT's Ak, by which a pressure moves surfaces sideways against each other; 0 for equal materials.
+fn dissimilarity(settings: &ContactSettings) -> f64 {
+    let Bodies { rail, wheel } = settings.material;
+    let mean = 2.0 / (rail.shear_modulus().recip() + wheel.shear_modulus().recip());
+    let share = |body: Elastic| (1.0 - 2.0 * body.poissons_ratio) / body.shear_modulus();
+    mean / 4.0 * (share(rail) - share(wheel))
 }
 
 #[cfg(test)]
@@ -194,6 +213,7 @@ mod tests {
             longitudinal: 1e-3,
             lateral: -2e-3,
             spin: 3e-4,
+            turn: [-2e-3, 0.0],
             rolling_speed: 2e4,
             forward: true,
             pitch: -43.0,
@@ -202,7 +222,11 @@ mod tests {
         let rolling = ContactSettings { friction: [0.4, 0.3], creepages: Some(creepages), ..steel };
         let text = deck_with(&sample, &rolling);
         let lines: Vec<_> = text.lines().filter(|line| !line.starts_with('%')).map(str::trim_start).collect();
-        assert!(lines[1].starts_with("203100 "), "{text}");
+        assert!(lines[1].starts_with("203100 ") && lines[2].starts_with("022020 "), "{text}");
+        assert!(lines[4].starts_with("999 100 30 1 "), "{text}");
+        let soft = Elastic { poissons_ratio: 0.27, ..Elastic::STEEL };
+        let soft = ContactSettings { material: Bodies { wheel: soft, ..steel.material }, ..rolling };
+        assert!(deck_with(&sample, &soft).contains("   999 100 30 20 1.0e-8 "), "dissimilar materials");
         assert!(lines[5].starts_with("80000.0 0.001 -0.002 0.0003 "), "{text}");
         assert!(lines[6].starts_with("0.4 0.3 "), "{text}");
         let step = sample.fields().steps("a test").unwrap()[1];

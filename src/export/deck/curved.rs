@@ -27,6 +27,7 @@ use super::number::{WIDTH, field};
 use super::text::{Lattice, line};
 use super::wrp::head;
 use crate::error::Result;
+use crate::placement::Creepages;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
@@ -107,6 +108,9 @@ pub fn conform_curved_wrp(deck: &CurvedDeck<'_>, sink: &mut dyn Write) -> io::Re
 /// distances here, and PEN is 0. So the approach is prescribed, also where it was estimated from a load. CONTACT's
 /// inclinations turn about x = η from y to z (down), so that they are −α.
 ///
+/// With a motion E = 9: CKSI, CETA and CPHI hold the slip that is linear from C, and a line for each element adds what the
+/// turning surface has beyond, so that the sum is the exact slip at the element's centre.
+///
 /// # Errors
 /// The errors of the sink.
 pub fn contact_curved_inp(
@@ -126,6 +130,10 @@ pub fn contact_curved_inp(
         ]
         .map(String::from),
     );
+    if settings.creepages.is_some() {
+        lines.push("creepages: velocity of the rail (body 1) minus that of the wheel, over VELOC".into());
+        lines.push("EXRHS (last lines, x y) adds what the turning surface slips beyond them".into());
+    }
     let undefined = grid.separation().iter().filter(|t| t.is_nan()).count();
     lines.push(format!("undefined elements, filled with 10 x the largest |t|: {undefined}"));
     if let Prescribed::Force(force) = settings.normal {
@@ -157,6 +165,28 @@ pub fn contact_curved_inp(
         let column: Vec<[u8; WIDTH]> = grid.column(i).iter().map(number).collect();
         rows(&mut block, &column)?;
     }
+    if let Some(creepages) = &settings.creepages {
+        slips(&mut block, deck, creepages)?;
+    }
     block.bytes(b" 0  MODULE\n")?;
     block.finish()
+}
+
+/// Share of a step by which CONTACT shifts the lever of the spin in rolling.
+const SPIN_SHIFT: f64 = 1.0 / 6.0;
+
+/// Writes the extra slip (x, y) of every element in the order of the distances: that of the rail's surface there, less
+/// CONTACT's CKSI − CPHI y and CETA + CPHI (x ± DQ/6).
+fn slips(block: &mut Block<'_>, deck: &CurvedDeck<'_>, creepages: &Creepages) -> io::Result<()> {
+    let (fields, grid) = (deck.fields, deck.fields.grid());
+    let Creepages { longitudinal, lateral, spin, forward, .. } = *creepages;
+    let shift = if forward { SPIN_SHIFT } else { -SPIN_SHIFT } * deck.steps[1];
+    for (i, &sigma) in fields.sigma().iter().enumerate() {
+        for &eta in grid.eta() {
+            let [x, y] = creepages.slip_at([grid.xi()[i], eta, grid.rail_height()[i]], fields.normal(i));
+            let linear = [longitudinal - spin * sigma, lateral + spin * (eta + shift)];
+            rows(block, &[x - linear[0], y - linear[1]].map(known).map(field))?;
+        }
+    }
+    Ok(())
 }

@@ -29,6 +29,12 @@ const GAP_RATIO: f64 = 10.0;
 const GAP: f64 = 5.0;
 /// Widths \[mm\] that a profile may have. Other widths mean a wrong unit (0.14: metres; 5500: thousandths of an inch).
 const WIDTHS: RangeInclusive<f64> = 5.0..=500.0;
+/// Least width \[mm\] of a profile whose unit nothing states: rails and wheels in inches have 2.8 to 6, in cm 7 to 14.
+const PLAIN_WIDTH: f64 = 20.0;
+/// Widths \[mm\] of whole rail heads and wheels.
+const USUAL_WIDTHS: RangeInclusive<f64> = 60.0..=150.0;
+/// Least share of the points at which the path of points in no order turns back; a shuffled path does at every second one.
+const NO_ORDER: f64 = 0.1;
 
 /// A kind of fault of measured points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -86,30 +92,56 @@ impl Finding {
             }
             Check::Spike => ("points near the curve", "delete it, or allow repair = [\"remove-spikes\"]"),
             Check::Loop => ("a curve that does not cross itself", "allow repair = [\"cut-loops\"]"),
-            Check::TurnsBack => ("a path that ends where the profile does", "delete the points after it"),
+            Check::TurnsBack => ("a path that ends where the profile does", "delete what lies beyond it"),
             Check::Gap | Check::MissingSideFace => ("a complete profile", "measure it"),
             Check::Orientation => ("an upright right-hand profile", "correct `mirror` or `flip_z`"),
         }
     }
 }
 
-/// Rejects a width outside [`WIDTHS`], which means a wrong unit.
-///
-/// # Errors
-/// A width outside that range. The message names the units that would give a possible width.
-pub(in crate::measured) fn reject_width(points: &[Point], unit: f64) -> Result<()> {
+/// Returns the error of points whose width in a unit \[mm\] means that the unit is wrong, and the length \[mm\] of the unit that is
+/// likeliest meant; `stated` tells whether the file or an option names the unit. `None` for a possible width.
+pub(in crate::measured) fn wrong_unit(points: &[Point], unit: f64, stated: bool) -> Option<(Error, f64)> {
     let [low, high] = width(points);
-    if WIDTHS.contains(&(high - low)) {
-        return Ok(());
+    let wide = high - low;
+    if WIDTHS.contains(&wide) && (stated || wide >= PLAIN_WIDTH) {
+        return None;
     }
-    let fitting = |other: &Unit| WIDTHS.contains(&((high - low) / unit * other.millimetres()));
-    let names: Vec<_> = Unit::ALL.into_iter().filter(fitting).map(|u| format!("\"{}\"", u.name())).collect();
+    let as_if = |other: &Unit| wide / unit * other.millimetres();
+    let mut fitting: Vec<Unit> = Unit::ALL
+        .into_iter()
+        .filter(|other| other.millimetres() != unit && WIDTHS.contains(&as_if(other)))
+        .collect();
+    fitting.sort_by_key(|other| !USUAL_WIDTHS.contains(&as_if(other)));
+    let names: Vec<_> = fitting.iter().map(|other| format!("\"{}\"", other.name())).collect();
     let advice = match names.len() {
         0 => "give another file".to_owned(),
         _ => format!("give the right `unit`: {} would do", names.join(" or ")),
     };
-    let (found, expected) = (format!("a width of {} mm", high - low), "5 to 500 mm");
-    Err(Error::new("unit", found, expected, advice))
+    let expected = if WIDTHS.contains(&wide) {
+        "60 to 140 mm, as rails and wheels have, or a `unit`"
+    } else {
+        "5 to 500 mm"
+    };
+    let error = Error::new("unit", format!("a width of {} mm", shown(wide)), expected, advice);
+    Some((error, fitting.first().map_or(unit, |likeliest| likeliest.millimetres())))
+}
+
+/// Returns a length to six digits, for messages.
+fn shown(length: f64) -> f64 {
+    format!("{length:.5e}").parse().unwrap_or(length)
+}
+
+/// Returns the error of points in no order at all, whose shape says nothing.
+pub(in crate::measured) fn no_order(points: &[Point]) -> Option<Error> {
+    let back = reversals(points);
+    let first = points.get(*back.first()?)?;
+    let (count, n) = (back.len(), points.len());
+    (count > 2 && count as f64 >= NO_ORDER * n as f64).then(|| {
+        let found = format!("points in no order: the path turns back at {count} of {n} points");
+        let expected = "points in order along the profile, from one end to the other";
+        Error::new(first.place(), found, expected, "sort the rows of the file")
+    })
 }
 
 /// Finds all faults, in the order of [`Check`].
@@ -190,10 +222,28 @@ impl Fold {
         points[..self.from].iter().rev().take_while(|p| along(p) > 0.0).count()
     }
 
+    /// Names the shorter part of the path on one side of a single reversal, as the file has it.
+    fn beyond(&self, points: &[Point]) -> String {
+        let (before, after) = (&points[..self.from], &points[self.from + 1..]);
+        let part = if after.len() <= before.len() { after } else { before };
+        let first = part.iter().min_by_key(|point| point.number).map(Point::place);
+        let last = part.iter().max_by_key(|point| point.number).map(Point::place);
+        match (first, last) {
+            (Some(first), Some(last)) if first != last => {
+                format!("what the file has from {first} to {last}: {} points", part.len())
+            }
+            (first, _) => first.unwrap_or_default(),
+        }
+    }
+
     fn finding(&self, points: &[Point]) -> Finding {
         let (first, last) = (&points[self.from], &points[self.to]);
         match self.to - self.from {
-            0 => Finding::new(Check::TurnsBack, first, "a path that turns back and does not return"),
+            0 => {
+                let beyond = self.beyond(points);
+                let found = format!("a path that turns back and does not return: beyond it lies {beyond}");
+                Finding::new(Check::TurnsBack, first, found)
+            }
             1 if self.overrun(points) == 0 => {
                 Finding::new(Check::OutOfOrder, first, format!("the wrong order with {}", last.place()))
             }
@@ -209,16 +259,42 @@ pub(in crate::measured) fn folds(points: &[Point]) -> Vec<Fold> {
         let next = spikes.partition_point(|&s| s + 1 < k);
         spikes.get(next).is_some_and(|&s| s <= k + 1)
     };
-    let mut out: Vec<Fold> = Vec::new();
-    let mut open = None;
-    for k in reversals(points).into_iter().filter(|&k| !beside(k)) {
-        match open.take() {
-            Some(from) => out.push(Fold { from, to: k }),
-            None => open = Some(k),
+    let back: Vec<usize> = reversals(points).into_iter().filter(|&k| !beside(k)).collect();
+    paired(&back, points.len())
+}
+
+/// Pairs the reversals of a path of `n` points, so that the stretches between two of a pair are short: an overhang at an end is
+/// one reversal alone, whose stretch is the overhang.
+fn paired(back: &[usize], n: usize) -> Vec<Fold> {
+    let alone = |k: usize| Fold { from: k, to: k };
+    let pairs = |of: &[usize]| -> Vec<Fold> {
+        of.chunks_exact(2).map(|pair| Fold { from: pair[0], to: pair[1] }).collect()
+    };
+    let overhang = |k: usize| k.min(n - 1 - k);
+    let stretch = |k: usize| back[k + 1] - back[k];
+    let between = |from: usize| (from..back.len() - 1).step_by(2).map(stretch).sum::<usize>();
+    match back {
+        [] => Vec::new(),
+        [only] => vec![alone(*only)],
+        [first, inner @ .., last] if back.len().is_multiple_of(2) => {
+            if overhang(*first) + between(1) + overhang(*last) < between(0) {
+                [vec![alone(*first)], pairs(inner), vec![alone(*last)]].concat()
+            } else {
+                pairs(back)
+            }
+        }
+        _ => {
+            // The reversal that is left alone moves on from pair to pair.
+            let mut sum = between(1);
+            let mut best = (sum + overhang(back[0]), 0);
+            for k in (2..back.len()).step_by(2) {
+                sum = sum + stretch(k - 2) - stretch(k - 1);
+                best = best.min((sum + overhang(back[k]), k));
+            }
+            let single = best.1;
+            [pairs(&back[..single]), vec![alone(back[single])], pairs(&back[single + 1..])].concat()
         }
     }
-    out.extend(open.map(|from| Fold { from, to: from }));
-    out
 }
 
 /// Returns the points where the path turns by more than 120°. Coinciding points are passed over.

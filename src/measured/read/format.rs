@@ -1,6 +1,5 @@
 //! The formats of measured profiles, and how the format of a file is found.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::scan;
@@ -8,7 +7,8 @@ use crate::error::{Error, Result};
 use crate::profile::Side;
 
 /// A format of measured profiles.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "files", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Format {
     /// MiniProf: `.ban`, `.whl`, `.mpt`.

@@ -1,26 +1,108 @@
-//! Finds which branch is the outer one at each ξ.
+//! Finds which branch counts at each ξ: the outer one, unless it belongs to another head.
+
+use std::ops::Range;
 
 use super::branch::Branch;
 use super::points::BranchPoint;
 use crate::numerics::roots::bracketed;
 use crate::profile::side::Side;
 
-/// A closed interval of ξ over which one branch is the outer one.
+/// Least distance \[mm\] along ζ by which a sheet begins in front of the sheet of C if it is that of another head, with a
+/// flangeway between. Flanges are at least 20 mm thick; lips that hang over a worn head stand off by less than 5 mm.
+const LEAST_FLANGEWAY: f64 = 10.0;
+
+/// A closed interval of ξ over which one branch counts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Piece {
     /// Interval of ξ \[mm\].
     pub xi: [f64; 2],
-    /// Index of the outer branch.
+    /// Index of the branch.
     pub branch: usize,
     /// The two ends of the interval as points of the branch, with their ζ \[mm\].
     pub ends: [(BranchPoint, f64); 2],
 }
 
-/// Returns the outer envelope of all branches, in order of ξ.
-pub(super) fn pieces(branches: &[Branch], side: Side) -> Vec<Piece> {
+/// Returns the outer envelope of all branches, in order of ξ. With `at_contact` the frame is that of a contact: other heads
+/// then count only where the sheet through C has ended.
+pub(super) fn pieces(branches: &[Branch], side: Side, at_contact: bool) -> Vec<Piece> {
     let with_ends =
         |(xi, branch): ([f64; 2], usize)| Piece { xi, branch, ends: xi.map(|xi| branches[branch].point(xi)) };
-    intervals(branches, side).into_iter().map(with_ends).collect()
+    let mut outer = intervals(branches, side);
+    if at_contact {
+        outer = without_other_heads(branches, outer);
+    }
+    outer.into_iter().map(with_ends).collect()
+}
+
+/// Replaces the sheets of other heads by the sheet through C, as far as that goes.
+fn without_other_heads(branches: &[Branch], outer: Vec<([f64; 2], usize)>) -> Vec<([f64; 2], usize)> {
+    let Some(own) = sheet_at_origin(branches) else { return outer };
+    if outer.iter().all(|(_, branch)| own.contains(branch)) {
+        return outer;
+    }
+    let sheet = &branches[own.clone()];
+    let reach = [sheet[0].xi[0], sheet[sheet.len() - 1].xi[1]];
+    let mut other_head = vec![false; outer.len()];
+    let right = outer.partition_point(|(xi, _)| xi[1] <= 0.0);
+    // Away from C in both directions; the interval over C itself is looked at from either side.
+    let ways: [(Vec<usize>, usize); 2] =
+        [((right..outer.len()).collect(), 0), ((0..(right + 1).min(outer.len())).rev().collect(), 1)];
+    for (order, near) in ways {
+        // Whether the sheets since C's own was left are those of another head.
+        let mut other = None;
+        for k in order {
+            let (xi, branch) = outer[k];
+            let at = if xi[0] <= 0.0 && 0.0 <= xi[1] { 0.0 } else { xi[near] };
+            if own.contains(&branch) || at < reach[0] || reach[1] < at {
+                other = None;
+                continue;
+            }
+            other_head[k] |=
+                *other.get_or_insert_with(|| step(&branches[branch], sheet, at) > LEAST_FLANGEWAY);
+        }
+    }
+    let mut out = Vec::with_capacity(outer.len());
+    for ((xi, branch), other_head) in outer.into_iter().zip(other_head) {
+        if !other_head {
+            push(&mut out, xi, branch);
+            continue;
+        }
+        let [from, to] = [xi[0].max(reach[0]), xi[1].min(reach[1])];
+        push(&mut out, [xi[0], from], branch);
+        for k in own.clone() {
+            push(&mut out, [from.max(branches[k].xi[0]), to.min(branches[k].xi[1])], k);
+        }
+        push(&mut out, [to, xi[1]], branch);
+    }
+    out
+}
+
+/// Returns the distance \[mm\] along ζ of a branch from a sheet at ξ; 0 where the sheet has a hole there.
+fn step(branch: &Branch, sheet: &[Branch], xi: f64) -> f64 {
+    let own = sheet.iter().find(|own| own.xi[0] <= xi && xi <= own.xi[1]);
+    own.map_or(0.0, |own| (branch.height(xi) - own.height(xi)).abs())
+}
+
+/// Returns the range of the branches that go on from the one nearest to the origin without a break; `None` without branches.
+fn sheet_at_origin(branches: &[Branch]) -> Option<Range<usize>> {
+    let distance = |branch: &Branch| {
+        let xi = 0f64.clamp(branch.xi[0], branch.xi[1]);
+        xi.hypot(branch.height(xi))
+    };
+    let nearest =
+        (0..branches.len()).min_by(|&i, &j| distance(&branches[i]).total_cmp(&distance(&branches[j])))?;
+    let joined = |k: usize| branches[k].xi[1] == branches[k + 1].xi[0];
+    let first = (0..nearest).rev().take_while(|&k| joined(k)).last().unwrap_or(nearest);
+    let last = (nearest..branches.len() - 1).take_while(|&k| joined(k)).last().map_or(nearest, |k| k + 1);
+    Some(first..last + 1)
+}
+
+/// Returns the indices of the pieces that do not begin where the piece before ends, with heights equal to `rounding` \[mm\].
+pub(super) fn steps(pieces: &[Piece], rounding: f64) -> Vec<usize> {
+    let joins = |[before, piece]: [&Piece; 2]| {
+        before.xi[1] == piece.xi[0] && (piece.ends[0].1 - before.ends[1].1).abs() <= rounding
+    };
+    (1..pieces.len()).filter(|&k| !joins([&pieces[k - 1], &pieces[k]])).collect()
 }
 
 /// Returns the intervals in order of ξ, each with the index of the outer branch over it.

@@ -36,16 +36,19 @@ pub struct ProfilePoint {
 /// The part of a profile that faces the other body, as a function ζ(ξ) in a frame.
 ///
 /// All quantities are in the axes of the frame: ξ along its tangent, ζ along its normal \[mm\]. The profile may overhang in
-/// ξ. The outer one of the sheets that face the other body then counts. The height is undefined where no sheet faces the
-/// other body.
+/// ξ. The outer one of the sheets that face the other body then counts. In the frame of a contact, though, a sheet that begins
+/// more than 10 mm in front of the one through C is that of another head, such as a guard rail beside a flangeway: it counts
+/// only where the sheet through C has ended. The height is undefined where no sheet faces the other body.
 #[derive(Debug, Clone)]
 pub struct Section {
     /// The frame, in profile axes.
     pub(crate) frame: Station,
     /// All branches, in the order of the chain.
     pub(crate) branches: Vec<Branch>,
-    /// The outer envelope: the outer branch over disjoint closed intervals of ascending ξ.
+    /// The envelope: the branch that counts over disjoint closed intervals of ascending ξ.
     pub(crate) pieces: Vec<Piece>,
+    /// Indices of the pieces before which the envelope has a hole, or changes its height at once by more than rounding.
+    pub(crate) steps: Vec<usize>,
     /// Bounds of ζ′ over every piece, once they were asked for.
     slopes: OnceLock<Vec<[f64; 2]>>,
     /// Index of the branch through the frame's origin, if the frame is that of a contact point.
@@ -55,21 +58,27 @@ pub struct Section {
 impl Section {
     /// Makes the section of a profile in its own axes.
     pub fn own_axes(profile: &Profile, side: Side) -> Self {
-        Self::build(profile, Station::AXES, None, side)
+        Self::build(profile, Station::AXES, None, side, false)
     }
 
     /// Makes the section in the contact frame of a point of the profile: its origin is the point, ξ is along the tangent.
     pub(crate) fn at_contact(profile: &Profile, point: &ProfilePoint, side: Side) -> Self {
-        Self::build(profile, point.station, Some(point), side)
+        Self::build(profile, point.station, Some(point), side, true)
     }
 
-    /// Makes the section in any frame. A contact at a kink needs this, because the common normal there is not the normal of
+    /// Makes the section in the frame of any contact. A contact at a kink needs this, because the common normal there is not the normal of
     /// a tangent.
     pub(crate) fn in_frame(profile: &Profile, frame: Station, side: Side) -> Self {
-        Self::build(profile, frame, None, side)
+        Self::build(profile, frame, None, side, true)
     }
 
-    fn build(profile: &Profile, frame: Station, contact: Option<&ProfilePoint>, side: Side) -> Self {
+    fn build(
+        profile: &Profile,
+        frame: Station,
+        contact: Option<&ProfilePoint>,
+        side: Side,
+        at_contact: bool,
+    ) -> Self {
         let mut branches: Vec<Branch> = Vec::with_capacity(profile.segments().len());
         let rounding = ONE_JOINT * (profile.extent() + frame.x.abs() + frame.z.abs());
         let mut goes_on = false;
@@ -94,11 +103,12 @@ impl Section {
             };
         }
         let contact = contact.and_then(|point| branches.iter().position(|b| b.is_contact(point.segment)));
-        let pieces = envelope::pieces(&branches, side);
-        Self { frame, branches, pieces, slopes: OnceLock::new(), contact }
+        let pieces = envelope::pieces(&branches, side, at_contact);
+        let steps = envelope::steps(&pieces, rounding);
+        Self { frame, branches, pieces, steps, slopes: OnceLock::new(), contact }
     }
 
-    /// Returns the outer branch at ξ, or `None` where the body has no surface. At a joint it is the left branch.
+    /// Returns the branch that counts at ξ, or `None` where the body has no surface. At a joint it is the left branch.
     pub(crate) fn branch_at(&self, xi: f64) -> Option<&Branch> {
         self.piece_at(xi).map(|piece| &self.branches[piece.branch])
     }
@@ -122,14 +132,10 @@ impl Section {
         self.slopes.get_or_init(|| self.pieces.iter().map(bounds).collect())
     }
 
-    /// Returns the intervals of ξ \[mm\] over which the envelope has a hole, or changes its height by more than `rounding` \[mm\]
-    /// at once; ascending, without its own ends.
-    pub(crate) fn steps(&self, rounding: f64) -> Vec<[f64; 2]> {
-        let joins = |pair: &&[Piece]| {
-            pair[0].xi[1] == pair[1].xi[0] && (pair[1].ends[0].1 - pair[0].ends[1].1).abs() <= rounding
-        };
-        let apart = self.pieces.windows(2).filter(|pair| !joins(pair));
-        apart.map(|pair| [pair[0].xi[1], pair[1].xi[0]]).collect()
+    /// Returns the intervals of ξ \[mm\] over which the envelope has a hole or changes its height at once; ascending, without its
+    /// own ends.
+    pub(crate) fn steps(&self) -> Vec<[f64; 2]> {
+        self.steps.iter().map(|&k| [self.pieces[k - 1].xi[1], self.pieces[k].xi[0]]).collect()
     }
 
     /// Returns whether ξ \[mm\] lies on the segment through C, at least `margin` \[mm\] inside the ends of its outer part.

@@ -135,10 +135,13 @@ fn flank_run(data: &RailData, x: f64, z: f64) -> f64 {
 }
 
 fn unknown(name: &str, body: &str, known: impl Iterator<Item = &'static str>) -> Error {
-    let nearest = known.max_by(|a, b| {
-        let likeness = |s: &str| strsim::jaro_winkler(&s.to_lowercase(), &name.to_lowercase());
-        likeness(a).total_cmp(&likeness(b))
-    });
+    // Names of one family differ in their last letters.
+    let alike = |known: &str| {
+        let same = |(a, b): &(char, char)| a.eq_ignore_ascii_case(b);
+        let letters = known.chars().zip(name.chars()).take_while(same).count();
+        letters as f64 / known.len().max(name.len()) as f64
+    };
+    let nearest = known.max_by(|a, b| alike(a).total_cmp(&alike(b)));
     let expected = nearest.map_or_else(String::new, |n| format!("a built-in {body} profile such as \"{n}\""));
     let advice = "see `wheelrail profile list`, or give `file` or `segments`";
     Error::new("profile", format!("\"{name}\""), expected, advice)

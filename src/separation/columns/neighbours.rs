@@ -47,7 +47,7 @@ impl<'a> Neighbours<'a> {
     }
 
     /// Takes over the columns at ξ, up to u = `u_max` \[mm²\]. Returns `None` if they do not pass the same branches, pass
-    /// more than [`MOST_SPANS`], or have parts without a surface.
+    /// more than [`MOST_SPANS`] or a step of the envelope, or have parts without a surface.
     #[inline(always)]
     pub fn take(&mut self, evaluator: &Evaluator<'a>, u_max: f64, xi: Lanes) -> Option<()> {
         let (wheel, section) = (&self.wheel, &evaluator.placement.rail().section);
@@ -95,7 +95,11 @@ impl<'a> Neighbours<'a> {
             if last {
                 return Some(());
             }
-            index = wheel.next_piece(index)?;
+            let next = wheel.next_piece(index)?;
+            if wheel.is_step(index, next) {
+                return None;
+            }
+            index = next;
         }
     }
 

@@ -214,7 +214,7 @@ impl SkewedColumn<'_, '_> {
             return None;
         }
         let abscissae = lanes(|k| wheel.abscissa(xi_w[k], points.e[k]));
-        if !inside(piece, &abscissae, between) || !beyond_step(wheel, span.piece, [&xi_w, &u], between) {
+        if !inside(piece, &abscissae, between) || !beyond_steps(wheel, span.piece, [&xi_w, &u], between) {
             return None;
         }
         let begun = here.e[0].iter().filter(|&&e| e == 0.0).count();
@@ -245,23 +245,28 @@ fn spans_over<'a>(wheel: &WheelSurface<'a>, xi: &Lanes, piece: &Piece) -> Option
     Some(wheel.span_from(xi, branch, e0, branch.points(&begin)?))
 }
 
-/// Returns whether columns have left the previous piece when they enter this one. The envelope jumps from sheet to sheet
-/// between the two; where both pieces have a point, the previous one counts. If `between`, this also covers all columns
-/// between neighbouring ones.
+/// Returns whether columns that pass a step of the envelope on their way to a piece have left the piece in front of it; where
+/// both have a point, the one in front is the outer one. If `between`, this also covers all columns between neighbouring ones.
 #[inline(always)]
-fn beyond_step(wheel: &WheelSurface<'_>, index: usize, [xi, u]: [&Lanes; 2], between: bool) -> bool {
-    let ([near, far], pieces) = (wheel.sides(), &wheel.section.pieces);
-    let neighbour = if near == 0 { index.checked_sub(1) } else { Some(index + 1) };
-    let piece = &pieces[index];
-    let joined = neighbour.and_then(|k| pieces.get(k)).filter(|before| before.xi[far] == piece.xi[near]);
-    let Some(before) = joined.filter(|before| before.ends[far].1 != piece.ends[near].1) else { return true };
-    // A column that begins on this piece, or on neither side of the joint, leaves the previous piece at e ≤ 0.
-    let beyond = lanes(|k| match wheel.leaves(xi[k], before) {
-        [e, u_joint] if e > 0.0 => u[k] - u_joint,
-        _ => f64::INFINITY,
-    });
-    let margin = if between { widest_step(&beyond) } else { 0.0 };
-    beyond.iter().all(|&beyond| beyond >= margin)
+fn beyond_steps(wheel: &WheelSurface<'_>, index: usize, [xi, u]: [&Lanes; 2], between: bool) -> bool {
+    let pieces = &wheel.section.pieces;
+    wheel.section.steps.iter().all(|&step| {
+        let before = match wheel.sides() {
+            [0, _] if step <= index => &pieces[step - 1],
+            [1, _] if step > index => &pieces[step],
+            _ => return true,
+        };
+        // Columns that begin beyond the piece in front do not pass the step; a level wheel's columns pass nothing.
+        let far = before.xi[wheel.sides()[1]];
+        let passing = |k: usize| (xi[k] - far) * wheel.sin > 0.0;
+        if !(0..MANY).any(passing) {
+            return true;
+        }
+        let beyond: Lanes =
+            lanes(|k| if passing(k) { u[k] - wheel.leaves(xi[k], before)[1] } else { f64::INFINITY });
+        let margin = if between { widest_step(&beyond) } else { 0.0 };
+        beyond.iter().all(|&beyond| beyond > margin)
+    })
 }
 
 /// Returns the largest difference of neighbouring values. An infinite value counts only beside a number.

@@ -5,7 +5,8 @@ use crate::separation::axis::EtaAxis;
 use crate::separation::evaluator::Evaluator;
 use crate::separation::kernel::Kernel;
 
-/// The parabolas s ≈ g(ξ) + η²/2R or s ≈ g(ξ) + q(ξ, 0) η². Under skew the wheel's ξ′ and η′ replace ξ and η.
+/// The parabolas s ≈ g(ξ) + η²/2R or s ≈ g(ξ) + q(ξ, 0) η². Under skew the wheel's ξ′ and η′ replace ξ and η. A column that
+/// begins beyond the wheel's midplane at η² = u_0 has a parabola from there.
 #[derive(Debug)]
 pub struct Parabolic<'a> {
     arch: pulp::Arch,
@@ -31,8 +32,9 @@ impl<'a> Parabolic<'a> {
 impl Kernel for Parabolic<'_> {
     fn column(&mut self, xi: f64, out: &mut [f64]) {
         if self.evaluator.placement.skew() == 0.0 {
-            let [gap, local] = self.evaluator.parabola(xi, 0.0);
+            let [u0, base, local] = self.evaluator.parabola(xi, 0.0, self.axis.reach * self.axis.reach);
             let q = self.constant.unwrap_or(local);
+            let gap = base - q * u0;
             self.arch.dispatch(|| {
                 for (s, u) in out.iter_mut().zip(self.axis.u.iter()) {
                     *s = gap + q * u;
@@ -42,8 +44,9 @@ impl Kernel for Parabolic<'_> {
         }
         for (s, &eta) in out.iter_mut().zip(&self.axis.eta) {
             let [shift, eta_w] = self.evaluator.wheel_coordinates(xi, eta);
-            let [gap, local] = self.evaluator.parabola(xi, shift);
-            *s = gap + self.constant.unwrap_or(local) * (eta_w * eta_w);
+            let u = eta_w * eta_w;
+            let [u0, base, local] = self.evaluator.parabola(xi, shift, u);
+            *s = base + self.constant.unwrap_or(local) * (u - u0);
         }
     }
 }

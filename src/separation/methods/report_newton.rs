@@ -1,13 +1,15 @@
 //! The Report's own INSEP: Newton–Raphson on (6.13), kept as the historical baseline.
 //!
 //! It follows the printed text, in centre form, with its cancellation: F = (z − R)² − (ρ² − η²) leaves an absolute error of
-//! about 1e-13 mm whatever the size of s (erratum 7). The segment is found anew from x at every iterate (erratum 6). An
-//! iterate that leaves the profile or an arc gives NaN.
+//! about 1e-13 mm whatever the size of s (erratum 7). The segment is found anew from x at every iterate (erratum 6). If the
+//! iteration from the midplane leaves the profile or an arc, or does not settle, it begins anew at the point of the sagitta
+//! form; if it does not settle there either, that point is the result.
 
 use crate::numerics::polynomial::derivatives;
-use crate::placement::{Body, Placement};
+use crate::placement::Placement;
 use crate::profile::{Shape, Station};
 use crate::separation::axis::EtaAxis;
+use crate::separation::evaluator::Evaluator;
 use crate::separation::kernel::Kernel;
 
 /// Most iterations before the Report's method counts as not convergent. It needs 2 to 5 if it converges.
@@ -38,9 +40,10 @@ pub fn missing(placement: &Placement) -> Option<&'static str> {
 /// Newton's iteration on (6.13) at every point.
 #[derive(Debug)]
 pub struct ReportNewton<'a> {
-    placement: &'a Placement,
+    evaluator: Evaluator<'a>,
     axis: &'a EtaAxis,
-    rail: Vec<([f64; 2], Printed)>,
+    /// The rail's segments; `None` for polynomials, which (6.2) does not cover.
+    rail: Vec<Option<Printed>>,
     wheel: Vec<([f64; 2], Printed)>,
     tolerance: f64,
     last: usize,
@@ -86,20 +89,15 @@ impl Printed {
 impl<'a> ReportNewton<'a> {
     /// Makes the method for a placed pair without skew. It iterates until |Δζ| is below `tolerance` \[mm\].
     pub fn new(placement: &'a Placement, axis: &'a EtaAxis, tolerance: f64) -> Self {
-        let printed = |body: &Body, frame: &Station| {
-            let segments = body.profile().segments().iter();
-            segments
-                .filter_map(|s| {
-                    let ends = [s.start().seen_from(frame).x, s.end().seen_from(frame).x];
-                    Some((ends, Printed::of(&s.shape, frame)?))
-                })
-                .collect()
-        };
+        let wheel = placement.wheel().profile().segments().iter();
+        let wheel =
+            wheel.filter_map(|s| Some(([s.start().x, s.end().x], Printed::of(&s.shape, &Station::AXES)?)));
+        let (rail, frame) = (placement.rail().profile().segments(), placement.rail().section.frame);
         Self {
-            rail: printed(placement.rail(), &placement.rail().section.frame),
-            wheel: printed(placement.wheel(), &Station::AXES),
-            placement,
+            evaluator: Evaluator::new(placement),
             axis,
+            rail: rail.iter().map(|segment| Printed::of(&segment.shape, &frame)).collect(),
+            wheel: wheel.collect(),
             tolerance,
             last: 0,
         }
@@ -113,15 +111,15 @@ impl<'a> ReportNewton<'a> {
         Some(self.wheel[self.last].1.profile(x))
     }
 
-    /// Computes ζ^W \[mm\] by steps a to h of Sec. 6.2; NaN if they do not converge.
-    fn wheel_height(&mut self, xi: f64, eta: f64, guess: f64) -> f64 {
-        let Station { x: x_c, z: z_c, cos, sin } = self.placement.wheel().section.frame;
-        let radius = self.placement.wheel_radius();
+    /// Computes ζ^W \[mm\] by steps a to h of Sec. 6.2; `None` if they do not converge.
+    fn wheel_height(&mut self, xi: f64, eta: f64, guess: f64) -> Option<f64> {
+        let Station { x: x_c, z: z_c, cos, sin } = self.evaluator.placement.wheel().section.frame;
+        let radius = self.evaluator.placement.wheel_radius();
         let mut zeta = guess;
         for _ in 0..MOST_ITERATIONS {
             let x = x_c + xi * cos - zeta * sin;
             let z = z_c + xi * sin + zeta * cos;
-            let Some((profile, slope)) = self.wheel_profile(x) else { return f64::NAN };
+            let (profile, slope) = self.wheel_profile(x)?;
             let rho = radius - profile;
             let f = (z - radius) * (z - radius) - (rho * rho - eta * eta);
             // (6.16): ∂F/∂z ∂z/∂ζ + ∂F/∂ρ ∂ρ/∂x ∂x/∂ζ, with ∂ρ/∂x = −slope.
@@ -129,26 +127,35 @@ impl<'a> ReportNewton<'a> {
             let step = -f / df;
             zeta += step;
             if step.abs() <= self.tolerance {
-                return zeta;
+                return Some(zeta);
             }
             if step.is_nan() {
                 break;
             }
         }
-        f64::NAN
+        None
+    }
+
+    /// Computes ζ^R \[mm\]; NaN off the rail.
+    fn rail_height(&self, xi: f64) -> f64 {
+        let rail = &self.evaluator.placement.rail().section;
+        let Some(branch) = rail.branch_at(xi) else { return f64::NAN };
+        let printed = self.rail[branch.segment].as_ref().map(|printed| printed.profile(xi).0);
+        // The printed root is NaN where rounding takes ξ past an arc's side.
+        printed.filter(|height| !height.is_nan()).unwrap_or_else(|| branch.height(xi))
     }
 }
 
 impl Kernel for ReportNewton<'_> {
     fn column(&mut self, xi: f64, out: &mut [f64]) {
-        let holds = |([x0, x1], _): &&([f64; 2], Printed)| *x0 <= xi && xi <= *x1;
-        let rail = self.rail.iter().find(holds).map_or_else(
-            || self.placement.rail().section.height(xi), // a polynomial, which (6.2) does not cover
-            |(_, printed)| printed.profile(xi).0,
-        );
-        let guess = self.placement.wheel().section.height(xi);
+        let rail = self.rail_height(xi);
+        let guess = self.evaluator.placement.wheel().section.height(xi);
         for (s, &eta) in out.iter_mut().zip(&self.axis.eta) {
-            *s = self.wheel_height(xi, eta, guess) - rail;
+            let height = self.wheel_height(xi, eta, guess).unwrap_or_else(|| {
+                let start = self.evaluator.separation(xi, eta) + rail;
+                self.wheel_height(xi, eta, start).unwrap_or(start)
+            });
+            *s = height - rail;
         }
     }
 }

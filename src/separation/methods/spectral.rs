@@ -35,9 +35,20 @@ impl<'a> Spectral<'a> {
 
 /// Returns whether the spans cover the whole column up to `u_max` \[mm²\].
 fn is_whole(spans: &[Span], u_max: f64) -> bool {
-    spans.first().is_some_and(|span| span.e[0] == 0.0)
-        && spans.last().is_some_and(|span| span.u[1] >= u_max)
-        && spans.windows(2).all(|pair| pair[0].u[1] == pair[1].u[0])
+    let mut reached = 0.0;
+    let joined = spans.iter().all(|span| {
+        let joined = span.u[0] <= reached;
+        reached = span.u[1].max(reached);
+        joined
+    });
+    joined && !spans.is_empty() && reached >= u_max
+}
+
+/// Returns the range of u \[mm²\] over which a span is the outer one, if earlier spans reach to `reached`: open at its beginning,
+/// unless that is 0. Between two spans that do not meet the wheel has no surface, and the beginning counts.
+fn outer(span: &Span, reached: f64) -> [f64; 2] {
+    let begin = if span.u[0] > reached { span.u[0].next_down() } else { reached };
+    [begin, span.u[1]]
 }
 
 impl Kernel for Spectral<'_> {
@@ -149,10 +160,16 @@ impl Spectral<'_> {
         if !is_whole(&spans, u_max) {
             out.fill(f64::NAN);
         }
+        let mut reached = 0.0;
         for span in &spans {
+            let u = outer(span, reached);
+            if u[0] > u[1] {
+                continue;
+            }
+            reached = u[1];
             let fit = self.fitter.column(xi, span, u_max);
             self.truncation = fit.as_ref().map_or(0.0, |fit| fit.error).max(self.truncation);
-            for range in self.axis.ranges(span.u) {
+            for range in self.axis.ranges(u) {
                 let (u, out) = (&self.axis.u[range.clone()], &mut out[range]);
                 match &fit {
                     Some(fit) => self.fitter.arch.dispatch(SpanRun { fit, u, out }),

@@ -113,6 +113,12 @@ impl<'a> Revolved<'a> {
         Some((high.0, through))
     }
 
+    /// t \[mm\] of the first entry of a line into the material; `None` if there is none, or if it is not through the profile's
+    /// outer surface.
+    pub fn first_entry(&self, line: &Line, finer: f64) -> Option<f64> {
+        self.entries(line, finer).first().and_then(|&(t, through)| through.then_some(t))
+    }
+
     /// The normal gap \[mm\]: outside of the material the first entry above the rail's point, inside of it the last one below.
     pub fn gap(&self, line: &Line, finer: f64) -> Option<f64> {
         let entries = self.entries(line, finer);

@@ -7,7 +7,7 @@ use clap::Args;
 use super::options::{BodyOption, MeasuredArguments};
 use crate::output::refuse_taken;
 use wheelrail::error::{Error, Result};
-use wheelrail::measured::{CurveKind, Measured, Options};
+use wheelrail::measured::{CurveKind, Format, Measured, Options};
 use wheelrail::profile::{Profile, Side, standards};
 use wheelrail::scene::{self, ProfileSource};
 
@@ -81,7 +81,8 @@ impl SourceArguments {
             self.measured.reject(&self.profile)?;
         }
         let options = Options { curve: options.curve.or(curve.filter(|_| !drawn)), ..options };
-        Ok(Source { side, content: scene::read_profile(path, side, &options)? })
+        let content = scene::read_profile(path, side, &options)?;
+        Ok(Source { side: side.or_else(|| Format::body_of_file(&self.profile)), content })
     }
 
     fn built_in(&self) -> Result<Source> {

@@ -13,7 +13,8 @@ use wheelrail_report::measurements::{Effort, measure};
 use wheelrail_report::page::{FILES, PAGE, excerpt, page, sections};
 
 /// The names by which a folder of `wheelrail report` is known.
-const REPORT_FOLDER: Names = Names { marker: PAGE, files: &FILES, is_part: |_| false };
+const REPORT_FOLDER: Names =
+    Names { marker: PAGE, is_file: |name| FILES.contains(&name), is_part: |_| false };
 
 /// Measures, writes the folder, and puts the table into `splice` if given. The exit code is 1 if a hard case is not as its
 /// file states, or if parry3d's meshes disagree. Ratios of times have no influence on it, because they depend on the

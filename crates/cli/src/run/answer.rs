@@ -5,9 +5,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use crate::answer::{Outcome, counted};
-use wheelrail::case::{Part, Run, WrittenPart};
-use wheelrail::conformal::ConformalPatch;
-use wheelrail::load::Estimate;
+use wheelrail::case::{FACTS, Part, Run, WrittenPart};
 
 /// Contacts side by side in one table; more follow below.
 const ABREAST: usize = 4;
@@ -41,17 +39,18 @@ pub(super) fn table(run: &Run, written: &[WrittenPart]) -> String {
     let mut out = format!("{}\n", run.case.echo().title);
     for parts in run.parts.chunks(ABREAST) {
         out.push('\n');
-        for (label, cell) in ROWS {
-            let cells: Vec<String> = parts.iter().map(|part| cell(part).unwrap_or_default()).collect();
-            if cells.iter().any(|cell| !cell.is_empty()) {
-                let cells: String = cells.iter().map(|cell| format!(" {cell:>COLUMN$}")).collect();
-                out += &format!("{label:<LABELS$}{cells}\n");
-            }
+        out += &row("", parts.iter().map(|part| Some(part.site.name())));
+        out += &row("folder", parts.iter().map(|part| Some(part.site.folder.clone())));
+        for fact in &FACTS {
+            let label = [fact.label, fact.unit].join(if fact.unit.is_empty() { "" } else { ", " });
+            out += &row(&label, parts.iter().map(|part| fact.text(part)));
         }
+        let warnings = |part: &Part| Some(part.warnings.len().to_string()).filter(|count| count != "0");
+        out += &row("warnings", parts.iter().map(warnings));
     }
     out.push('\n');
     for part in &run.parts {
-        let merged = part.site.found.as_ref().map_or(0, |found| found.merged.len());
+        let merged = part.site.contact.found.as_ref().map_or(0, |found| found.merged.len());
         if merged > 0 {
             let places = counted(merged, "further place");
             out += &format!(
@@ -92,76 +91,12 @@ pub(super) fn size(bytes: f64) -> String {
     format!("{value:.digits$} {unit}")
 }
 
-/// The content of a row for one contact; `None` where it has none.
-type Cell = fn(&Part) -> Option<String>;
-
-/// The rows of the table, each with its unit.
-const ROWS: [(&str, Cell); 22] = [
-    ("", |part| Some(part.site.name())),
-    ("folder", |part| Some(part.site.folder.clone()).filter(|folder| !folder.is_empty())),
-    ("C on the rail, x, mm", |part| {
-        Some(format!("{:.3}", part.site.contact.placement.rail().point().station.x))
-    }),
-    ("C on the wheel, x, mm", |part| {
-        Some(format!("{:.3}", part.site.contact.placement.wheel().point().station.x))
-    }),
-    ("contact angle, degrees", |part| {
-        Some(format!("{:.3}", part.site.contact.placement.rail().contact_angle().to_degrees()))
-    }),
-    ("rolling radius, mm", |part| Some(format!("{:.3}", part.site.contact.placement.rolling_radius()))),
-    ("approach, mm", |part| part.site.contact.approach.map(|(approach, _)| format!("{approach:.5}"))),
-    ("approach is", |part| {
-        let (_, estimate) = part.site.contact.approach?;
-        Some(match estimate {
-            None => "given".into(),
-            Some(Estimate::Hertz) => "estimated by Hertz".into(),
-            Some(Estimate::HalfSpace) => "est. by half-space".into(),
-        })
-    }),
-    ("normal force, kN", |part| part.site.normal_load.map(|load| format!("{:.3}", load / 1e3))),
-    ("its vertical part, kN", |part| part.site.vertical_load().map(|load| format!("{:.3}", load / 1e3))),
-    ("Hertz's pressure, N/mm²", |part| {
-        part.site.contact.ellipse.as_ref().map(|ellipse| format!("{:.0}", ellipse.pressure_n_per_mm2))
-    }),
-    ("patch: area, mm²", |part| part.analysis.patch.as_ref().map(|patch| format!("{:.2}", patch.area()))),
-    ("patch: extent, ξ × η, mm", |part| {
-        let extent = part.analysis.patch.as_ref()?.extent()?;
-        Some(format!("{:.3} × {:.3}", extent.xi[1] - extent.xi[0], extent.eta[1] - extent.eta[0]))
-    }),
-    ("patch: parts", |part| {
-        part.analysis
-            .patch
-            .as_ref()
-            .map(|patch| patch.components.len().to_string())
-            .filter(|count| count != "1")
-    }),
-    ("conformal patch: area, mm²", |part| Some(format!("{:.2}", conformal_patch(part)?.area()))),
-    ("its normal turns, degrees", |part| {
-        let components = &conformal_patch(part)?.components;
-        let turn =
-            components.iter().map(|component| component.angle[1] - component.angle[0]).reduce(f64::max)?;
-        Some(format!("{:.2}", turn.to_degrees()))
-    }),
-    ("feasible", |part| {
-        let feasible = part.site.contact.feasibility.feasible;
-        let first = part.site.found.as_ref().is_none_or(|found| found.contact == 1);
-        first.then(|| if feasible { "yes" } else { "no" }.into())
-    }),
-    ("grid, ξ × η", |part| part.site.grid.sigma.is_none().then(|| points(part))),
-    ("grid, σ × η", |part| part.site.grid.sigma.is_some().then(|| points(part))),
-    ("method", |part| Some(part.analysis.plan.choice.method.name().into())),
-    ("error of s up to, mm", |part| Some(format!("{:.1e}", part.analysis.plan.error))),
-    ("warnings", |part| {
-        let count = part.warnings.len();
-        (count > 0).then(|| count.to_string())
-    }),
-];
-
-fn points(part: &Part) -> String {
-    format!("{} × {}", part.site.grid.xi.len(), part.site.grid.eta.len())
-}
-
-/// Gives the patch over the rail's surface; `None` for a grid over the plane and without an approach.
-fn conformal_patch(part: &Part) -> Option<&ConformalPatch> {
-    part.analysis.conformal.as_ref()?.patch.as_ref()
+/// Returns a row of the table; nothing where no contact has a cell.
+fn row(label: &str, cells: impl Iterator<Item = Option<String>>) -> String {
+    let cells: Vec<String> = cells.map(Option::unwrap_or_default).collect();
+    if cells.iter().all(String::is_empty) {
+        return String::new();
+    }
+    let cells: String = cells.iter().map(|cell| format!(" {cell:>COLUMN$}")).collect();
+    format!("{label:<LABELS$}{cells}\n")
 }

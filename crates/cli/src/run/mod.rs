@@ -8,9 +8,9 @@ use super::output::refuse_results_of_another;
 use super::png::png;
 use super::progress::Progress;
 use crate::answer::{Outcome, complain, folder_of, outcome, print};
-use wheelrail::case::{Run, write};
+use wheelrail::case::{RUN_FOLDER, Run, write};
 use wheelrail::error::Result;
-use wheelrail::files::{Folder, RUN_FOLDER};
+use wheelrail::files::Folder;
 use wheelrail::scene;
 
 /// Files above this size \[bytes\] are announced before they are written.

@@ -3,6 +3,7 @@
 
 mod conicity;
 mod curves;
+mod doubts;
 mod patches;
 mod positions;
 mod table;
@@ -15,9 +16,9 @@ use super::progress::Progress;
 use crate::answer::{Outcome, complain, folder_of, print_to_reader};
 use positions::{lateral_range, read_positions};
 use table::SweepTable;
-use wheelrail::case::{Case, Place};
+use wheelrail::case::{Case, PATCHES_FOLDER, Place, SweepDoubts, ascending};
 use wheelrail::error::{Error, Result};
-use wheelrail::files::{Folder, NewFile, PATCHES_FOLDER};
+use wheelrail::files::{Folder, NewFile};
 use wheelrail::scene::{self, Scene};
 use wheelrail::search::{ONE_CONTACT, Position, Selection, WheelsetOnTrack, conicity_over};
 
@@ -123,6 +124,9 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     let in_scene = |error: Error| error.within(path.display());
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let case = scene::resolve(&scene, folder_of(path), &name).map_err(in_scene)?.read_from(path);
+    for warning in case.warnings() {
+        complain(&format!("warning: {warning}"));
+    }
     let (system, template) = wheelset(&case).map_err(in_scene)?;
     let positions = arguments.positions(template)?;
     let mut told = |done: usize, most: usize| {
@@ -135,24 +139,46 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     let asked = case.question();
     let ellipses = asked.approach.map(|approach| (approach, asked.modulus()));
     let selection = Selection { within: case.standing().within, apart: ONE_CONTACT };
-    let table = SweepTable { system, conicity, selection, positions, ellipses };
+    let profiles = case.profiles();
+    let doubts = SweepDoubts::new(&profiles.right.pair, profiles.left.as_ref().map(|left| &left.pair));
+    let drawn = [("--picture", outputs.picture.is_some()), ("--html", outputs.html.is_some())];
+    let drawn = drawn.into_iter().find_map(|(option, given)| given.then_some(option));
+    if let Some(option) = drawn {
+        let lateral: Vec<f64> = positions.iter().map(|position| position.lateral).collect();
+        ascending(&lateral).map_err(|error| error.at(option))?;
+    }
+    let drawn = drawn.is_some();
+    let table = SweepTable { system, conicity, selection, positions, ellipses, doubts, drawn };
     if let Some(folder) = &outputs.patches {
         patches::write(folder, &scene, &case, &table, &progress)?;
     }
+    let swept = match &mut outputs.table {
+        None => {
+            // What is drawn needs all positions, whether the reader of the table has gone away or not.
+            let mut read = true;
+            table.blocks(&progress, |text| {
+                read = read && print_to_reader(text)?;
+                Ok(read || drawn)
+            })?
+        }
+        Some(file) => table.blocks(&progress, |text| file.put(text.as_bytes()).map(|()| true))?,
+    };
     if let Some((format, file)) = &mut outputs.picture {
         progress.at("picture");
-        let picture = curves::picture(&table, &case, scene.track.as_ref().and_then(|track| track.gauge))?;
+        let gauge = scene.track.as_ref().and_then(|track| track.gauge);
+        let picture = curves::picture(&table, &swept.drawn, &case, gauge)?;
         file.put(&format.bytes(picture.svg())?)?;
     }
     if let Some(file) = &mut outputs.html {
         progress.at("page");
-        file.put(&curves::page(&table, &case)?.html())?;
-    }
-    match &mut outputs.table {
-        None => table.blocks(&progress, print_to_reader)?,
-        Some(file) => table.blocks(&progress, |text| file.put(text.as_bytes()).map(|()| true))?,
+        file.put(&curves::page(&table, &swept.drawn, &case)?.html())?;
     }
     outputs.commit()?;
+    drop(progress);
+    let radius = |side| profiles.on(Some(side)).pair.wheel_radius();
+    if let Some(line) = swept.doubts.line(table.positions.len(), radius) {
+        complain(&format!("sweep: {line}"));
+    }
     Ok(Outcome::Done)
 }
 

@@ -11,11 +11,11 @@ use super::super::progress::Progress;
 use super::table::SweepTable;
 use crate::answer::{complain, counted};
 use wheelrail::case::{self, Case, Place, Run, SILENT, Standing};
-use wheelrail::error::{Error, Result};
+use wheelrail::error::{Error, ErrorKind, Result};
 use wheelrail::export::collection_pvd;
 use wheelrail::files::Folder;
 use wheelrail::scene::{self, Scene};
-use wheelrail::search::{Position, Selection};
+use wheelrail::search::Position;
 
 /// Most positions. Each makes some forty files.
 const MOST_POSITIONS: usize = 5000;
@@ -73,15 +73,17 @@ fn patch(
     position: &Position,
     name: &str,
 ) -> Result<Written> {
-    let (position, touching) = (*position, Selection { within: 0.0, apart: 0.0 });
-    if table.system.search().touch(&position, &touching)?.is_none() {
-        return Ok(Written { position, folders: Vec::new() });
-    }
+    let position = *position;
     let place = Place::Wheelset { system: Arc::clone(table.system), position };
     let roll_by_load = case.standing().roll_by_load;
     let standing = Standing { place, within: table.selection.within, roll_by_load };
     let here = case.at(standing, scene::echo(&scene.at(&position), name)).as_one_of_many();
-    let run = Run::new(here, SILENT)?.filed_under(name);
+    let run = match Run::new(here, SILENT) {
+        Err(error) if error.kind == ErrorKind::NoContact => {
+            return Ok(Written { position, folders: Vec::new() });
+        }
+        run => run?.filed_under(name),
+    };
     case::write(&run, folder, Some(png), SILENT)?;
     Ok(Written { position, folders: run.parts.into_iter().map(|part| part.site.folder).collect() })
 }

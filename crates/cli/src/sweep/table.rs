@@ -1,42 +1,15 @@
-//! Computes the table of a sweep block by block.
+//! Computes a sweep block by block: its table, and the positions that are drawn.
 
-use std::fmt::Write;
 use std::sync::Arc;
 use std::time::Instant;
 
 use super::super::progress::Progress;
-use wheelrail::case::{ApproachBy, Columns};
+use super::doubts::Tally;
+use wheelrail::case::{ApproachBy, Columns, ContactDoubts, DoubtSet, MOST_DRAWN, SweepDoubts};
 use wheelrail::error::Result;
 use wheelrail::search::{Conicity, ParallelSweep, Position, Selection, WheelsetOnTrack};
 
-/// Columns of the table.
-const HEADER: [&str; 20] = [
-    "lateral_mm",
-    "yaw_rad",
-    "roll_rad",
-    "side",
-    "contact",
-    "z_mm",
-    "rail_x_mm",
-    "wheel_x_mm",
-    "y_mm",
-    "contact_angle_rad",
-    "rolling_radius_mm",
-    "delta_r_mm",
-    "conicity",
-    "gap_mm",
-    "skew_rad",
-    "rail_curvature_per_mm",
-    "wheel_curvature_per_mm",
-    "kink",
-    "hertz_xi_mm",
-    "hertz_eta_mm",
-];
-
-/// Columns that are empty where there is no number: without a conicity or an ellipse.
-const PERHAPS_EMPTY: [&str; 3] = ["conicity", "hertz_xi_mm", "hertz_eta_mm"];
-
-/// The table of a sweep, ready to be computed.
+/// A sweep, ready to be computed.
 pub(super) struct SweepTable<'a> {
     pub system: &'a Arc<WheelsetOnTrack>,
     pub conicity: Option<Conicity>,
@@ -44,82 +17,78 @@ pub(super) struct SweepTable<'a> {
     pub positions: Vec<Position>,
     /// Approach or load, and E*, for the contact ellipses; `None` without them.
     pub ellipses: Option<(ApproachBy, f64)>,
+    pub doubts: SweepDoubts,
+    /// Whether positions are drawn.
+    pub drawn: bool,
+}
+
+/// What chunks of positions become.
+#[derive(Default)]
+pub(super) struct Swept {
+    /// Of one position.
+    columns: Columns,
+    text: String,
+    /// The doubts of all positions.
+    pub doubts: Tally,
+    /// The contacts of the positions that are drawn, which are numbered among themselves.
+    pub drawn: Columns,
 }
 
 impl SweepTable<'_> {
-    /// Passes the table's text to `sink`, block by block, until the sink wants no more.
+    /// Computes the sweep and passes the table's text to `sink`, block by block, until the sink wants no more. Returns the
+    /// doubts, and what is drawn.
     pub(super) fn blocks(
         &self,
         progress: &Progress,
         mut sink: impl FnMut(&str) -> Result<bool>,
-    ) -> Result<()> {
-        let (start, all) = (Instant::now(), self.positions.len());
+    ) -> Result<Swept> {
+        let (start, all, mut swept) = (Instant::now(), self.positions.len(), Swept::default());
         progress.at(format!("0 of {all} positions"));
-        if !sink(&format!("{}\n", HEADER.join(",")))? {
-            return Ok(());
+        if !sink(&Columns::csv_head())? {
+            return Ok(swept);
         }
-        let (sweep, cells) = (self.sweep(&self.positions), cells());
+        let (conicity, stride) = (self.conicity.as_ref(), self.stride());
+        let sweep = ParallelSweep {
+            system: self.system,
+            selection: self.selection,
+            conicity,
+            positions: &self.positions,
+        };
         // One position at a time becomes columns, and these text: threads share the work.
-        let lines = |(columns, text): &mut (Columns, String), position, rows: &[_]| {
+        let make = |chunk: &mut Swept, position: usize, rows: &[_]| {
+            let Swept { columns, text, doubts, drawn } = chunk;
             columns.clear();
-            rows.iter().for_each(|row| columns.push(position, row, self.ellipses));
-            append(text, &cells, columns);
+            let push = |(row, found): &(&_, ContactDoubts)| {
+                columns.push(position, row, self.ellipses, found.kinds());
+                if self.drawn && position.is_multiple_of(stride) {
+                    drawn.push(position / stride, row, None, DoubtSet::default());
+                }
+            };
+            doubts.add(self.doubts.of_rows(rows).inspect(push));
+            columns.append_csv(text);
             Ok(())
         };
-        sweep.blocks(lines, |done, chunks: Vec<(Columns, String)>| {
-            let wanted = sink(&chunks.iter().map(|(_, text)| text.as_str()).collect::<String>())?;
+        sweep.blocks(make, |done, chunks: Vec<Swept>| {
+            for chunk in &chunks {
+                swept.doubts.join(&chunk.doubts);
+                swept.drawn.extend(&chunk.drawn);
+            }
+            let wanted = sink(&chunks.iter().map(|chunk| chunk.text.as_str()).collect::<String>())?;
             let rate = done as f64 / start.elapsed().as_secs_f64();
             let step = format!("{done} of {all} positions, {rate:.0} a second");
             progress.share(step, done as f64 / all as f64);
             Ok(wanted)
-        })
+        })?;
+        Ok(swept)
     }
 
-    /// Gives the sweep over some of the positions.
-    pub(super) fn sweep<'a>(&'a self, positions: &'a [Position]) -> ParallelSweep<'a> {
-        let conicity = self.conicity.as_ref();
-        ParallelSweep { system: self.system, selection: self.selection, conicity, positions }
+    /// Gives the lateral displacements \[mm\] of the positions that are drawn.
+    pub(super) fn drawn_lateral(&self) -> Vec<f64> {
+        self.positions.iter().step_by(self.stride()).map(|position| position.lateral).collect()
     }
-}
 
-/// What a cell of the text shows.
-enum Cell {
-    Side,
-    Contact,
-    Kink,
-    /// The quantity with this index; the flag tells whether the cell is empty where there is no number.
-    Quantity(usize, bool),
-}
-
-/// Gives the cells of a line, in the order of [`HEADER`].
-fn cells() -> Vec<Cell> {
-    let quantity = |name: &str| Columns::QUANTITIES.iter().position(|known| *known == name);
-    let cell = |name: &&str| match *name {
-        "side" => Some(Cell::Side),
-        "contact" => Some(Cell::Contact),
-        "kink" => Some(Cell::Kink),
-        name => quantity(name).map(|index| Cell::Quantity(index, PERHAPS_EMPTY.contains(&name))),
-    };
-    HEADER.iter().filter_map(cell).collect()
-}
-
-/// Adds the rows of some columns as text.
-fn append(out: &mut String, cells: &[Cell], columns: &Columns) {
-    for row in 0..columns.rows() {
-        for (k, cell) in cells.iter().enumerate() {
-            if k > 0 {
-                out.push(',');
-            }
-            let _ = match cell {
-                Cell::Side => write!(out, "{}", if columns.right[row] { "right" } else { "left" }),
-                Cell::Contact => write!(out, "{}", columns.contact[row]),
-                Cell::Kink => write!(out, "{}", u8::from(columns.kink[row])),
-                Cell::Quantity(index, perhaps_empty) => match columns.quantities[*index][row] {
-                    value if *perhaps_empty && value.is_nan() => Ok(()),
-                    value => write!(out, "{value}"),
-                },
-            };
-        }
-        out.push('\n');
+    /// Gives the distance between positions that are drawn.
+    fn stride(&self) -> usize {
+        self.positions.len().div_ceil(MOST_DRAWN).max(1)
     }
 }

@@ -52,6 +52,27 @@ checks.same("contact.inp distances, less what the approach closes", deck["h"], n
 checks("contact.inp has no approach besides", deck["normal"] == 0 and not deck["force"])
 checks.same("contact.inp inclinations", deck["inclination"], np.stack([sigma, -alpha], axis=-1))
 
+creepages = folder.summary["creepages"]
+checks("contact.inp has slips of its elements exactly where there is a motion", (creepages is not None) == ("extra_slip" in deck))
+if creepages:
+    # A wheel that only rolls: its velocity at a point of the rail is forward, plus the pitch about the axle.
+    speed, r, turn = 1000 * folder.summary["scene"]["motion"]["speed"], folder.summary["rolling_radius_mm"], creepages["pitch_rad_per_s"]
+    theta = folder.summary["wheel"]["contact_angle_rad"]
+    axle, up = np.array([np.cos(theta), 0, -np.sin(theta)]), np.array([np.sin(theta), 0, np.cos(theta)])
+    zeta = read["station"][:, 1]
+    points = np.stack(np.broadcast_arrays(folder.xi[:, None], folder.eta, zeta[:, None]), axis=-1)
+    velocity = np.array([0, speed, 0]) + np.cross(turn * axle, points - r * up)
+    at_c = np.array([0, speed, 0]) + np.cross(turn * axle, -r * up)
+    velocity -= np.array([0, 0, at_c[2]])
+    tangent = np.stack([np.cos(alpha), 0 * alpha, np.sin(alpha)], axis=-1)
+    exact = -np.stack([velocity[..., 1], (velocity * tangent[:, None]).sum(axis=-1)], axis=-1) / creepages["rolling_speed_mm_per_s"]
+    ksi, eta, phi = deck["creepages"]
+    shift = step[0] / 6
+    linear = np.stack(np.broadcast_arrays(ksi - phi * sigma[:, None], eta + phi * (folder.eta + shift)), axis=-1)
+    off = np.abs(linear + deck["extra_slip"] - exact).max()
+    checks("contact.inp: creepages and extra slips are the slip of a rigid wheel", off < 1e-12, f"{off:.1e}")
+    checks("contact.inp: extra slips matter", np.abs(deck["extra_slip"]).max() > 1e-5, f"{np.abs(deck['extra_slip']).max():.1e}")
+
 checks.client = "vtk"
 reader = vtk.vtkXMLStructuredGridReader()
 reader.SetFileName(str(folder / "conformal.vts"))

@@ -17,8 +17,11 @@ def read_contact(path):
     digits = take()[0]
     assert len(digits) == 6 and digits[:2] == "20" and digits[2] in "03" and digits[3] in "01" and digits[4:] == "00"
     influence = take()[0]
-    assert influence in ("022020", "024020") and take()[0] == "0002221"
-    [int(word) for word in take()[:4]]
+    assert influence in ("022020", "024020", "024029") and take()[0] == "0002221"
+    rounds = [int(word) for word in take()[:4]][3]
+    # CONTACT warns of one round where the reference is curved and slips.
+    curved = influence[:3] == "024"
+    assert rounds > 1 if curved and digits[2] == "3" else rounds >= 1
     kinematics = [float(word) for word in take()[:4]]
     deck = {"force": digits[3] == "1", "normal": kinematics[0], "creepages": kinematics[1:], "rolling": None}
     deck["friction"] = [float(word) for word in take()[:2]]
@@ -27,7 +30,7 @@ def read_contact(path):
         degrees = chi.endswith("d")
         chi = np.deg2rad(float(chi[:-1])) if degrees else float(chi)
         deck["rolling"] = (chi, float(step), float(speed))
-    if influence == "024020":
+    if curved:
         method, variant, count = (int(word) for word in take()[:3])
         assert method in (0, 1) and 1 <= variant <= 4 and 2 <= count <= 9999
         deck["inclination"] = np.array([[float(word) for word in take()[:2]] for _ in range(count)])
@@ -41,5 +44,8 @@ def read_contact(path):
     while len(h) < deck["n"][0] * deck["n"][1]:
         h += [float(word) for word in take()]
     deck["h"] = np.array(h).reshape(deck["n"][1], deck["n"][0])
+    if influence[-1] == "9":
+        slips = [[float(word) for word in take()] for _ in h]
+        deck["extra_slip"] = np.array(slips).reshape(deck["n"][1], deck["n"][0], 2)
     assert take()[0] == "0" and next(iter(lines[len(lines):]), None) is None
     return deck

@@ -1,23 +1,23 @@
 //! Folders of `wheelrail run` itself, read and solved by the programs that they are for.
 
-use crate::programs::{check, check_conformal, check_gmsh, check_run, folder};
+use crate::programs::{check, check_calculix, check_conformal, check_gmsh, check_run, folder};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use wheelrail::files::RUN_FOLDER;
+use wheelrail::case::{OutputFormat, run_files};
 
 /// The Hertz case of a 460 mm wheel on a 300 mm crown under 80 kN: E* \[N/mm²\], p₀ \[N/mm²\], δ \[mm\].
 const HERTZ: [&str; 3] = ["113932", "1139.19", "0.0904879"];
 
-/// Every format that a scene may ask for.
-const ALL_FORMATS: &str = "[output]\nformats = [\"vtk\", \"npy\", \"netcdf\", \"text\", \"conform\", \"countact\", \"contact\", \
-                           \"html\", \"png\", \"gmsh\", \"abaqus\", \"stl\", \"vtp\"]\n";
+/// Asks for every format but these.
+fn formats(but: &[&str]) -> String {
+    let names =
+        OutputFormat::ALL.iter().map(|format| format.name()).filter(|name| !but.contains(&name.as_str()));
+    format!("[output]\nformats = {:?}\n", names.collect::<Vec<_>>())
+}
 
 /// What a solver of rolling contact needs besides.
 const ROLLING: &str = "[motion]\nspeed = 30.0\n[friction]\nstatic = 0.35\nkinetic = 0.25\n";
-
-/// What may lie in a run's folder and is not of the run: the collection is a sweep's, the other one is Python's.
-const NOT_OF_A_RUN: [&str; 3] = ["surface.pvd", "wheelset.pvd", "__pycache__"];
 
 /// What only a run over the rail's surface writes.
 const ON_RAIL: [&str; 7] = [
@@ -58,7 +58,7 @@ fn crown(slope: f64, x: f64, rest: &str) -> String {
 /// Runs a scene with the real program and all formats and returns its folder, in which every file is.
 fn run(name: &str, scene: &str) -> PathBuf {
     let (path, dir) = (folder(&format!("{name}.toml")), folder(name));
-    std::fs::write(&path, format!("{scene}{ALL_FORMATS}")).unwrap();
+    std::fs::write(&path, format!("{scene}{}", formats(&[]))).unwrap();
     run_file(&path, &dir);
     assert_complete(&dir, &ON_RAIL);
     dir
@@ -75,7 +75,7 @@ fn run_file(path: &Path, dir: &Path) {
 const OF_ALL_CONTACTS: [&str; 7] =
     ["view.html", "wheelset.vtm", "rails.vtp", "wheels.vtp", "patches.vtp", "boundaries.vtp", "contacts.vtp"];
 
-/// The folder holds the files of [`RUN_FOLDER`] but for these, no other ones, and the summary lists the same.
+/// The folder holds the files of a run but for these, no other ones, and the summary lists the same.
 fn assert_complete(dir: &Path, missing: &[&str]) {
     let summary = std::fs::read_to_string(dir.join("summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
@@ -84,19 +84,23 @@ fn assert_complete(dir: &Path, missing: &[&str]) {
     let entries = std::fs::read_dir(dir).unwrap().map(|entry| entry.unwrap());
     let files = entries.filter(|entry| entry.file_type().unwrap().is_file());
     let written: BTreeSet<String> = files.map(|entry| entry.file_name().into_string().unwrap()).collect();
-    let of_a_run =
-        RUN_FOLDER.files.iter().filter(|name| !NOT_OF_A_RUN.contains(name) && !missing.contains(name));
-    let expected: BTreeSet<String> = of_a_run.map(|name| (*name).to_owned()).collect();
+    let expected: BTreeSet<String> =
+        run_files().filter(|name| !missing.contains(name)).map(str::to_owned).collect();
     assert_eq!(written, expected, "{}", dir.display());
     assert_eq!(listed, expected, "{}", dir.display());
 }
 
-/// The page that explains the folder names each of its files.
+/// The page that explains the folder names each of its files, and the formats that have to be asked for.
 #[test]
 fn the_page_about_the_folder_is_complete() {
     let page = include_str!("../../../../output/README.md");
-    for name in RUN_FOLDER.files.iter().filter(|name| !NOT_OF_A_RUN.contains(name)) {
+    for name in run_files() {
         assert!(page.contains(&format!("`{name}`")), "output/README.md does not name {name}");
+    }
+    for format in OutputFormat::ALL.iter().filter(|format| !format.unasked()) {
+        let asked = format!("on request (format \"{}\")", format.name());
+        let row = |line: &str| line.contains(&asked) && format.files().any(|name| line.contains(name));
+        assert!(page.lines().any(row), "output/README.md does not say: {asked}");
     }
 }
 
@@ -126,12 +130,11 @@ fn every_reader_reads_runs_over_the_rails_surface() {
         ("corner_wide", format!("{corner}{grid}{wide}")),
         ("corner_yawed", format!("{yawed}{grid}")),
         ("flange_root", root.to_owned()),
+        ("flange_root_rolling", format!("{root}[motion]\nspeed = 30.0\n")),
     ];
     for (name, scene) in scenes {
         let (path, dir) = (folder(&format!("{name}.toml")), folder(name));
-        let formats = "[output]\nformats = [\"vtk\", \"npy\", \"conform\", \"contact\", \"html\", \"png\", \"gmsh\", \"abaqus\", \
-                       \"stl\", \"vtp\"]\n";
-        std::fs::write(&path, format!("{scene}{formats}")).unwrap();
+        std::fs::write(&path, format!("{scene}{}", formats(&["netcdf", "text", "countact"]))).unwrap();
         run_file(&path, &dir);
         assert_complete(&dir, &ON_PLANE);
         check_conformal(&dir);
@@ -179,6 +182,22 @@ fn gmsh_meshes_the_same_boundaries_no_better() {
     ];
     for (name, scene) in scenes {
         check_gmsh(&run(name, &scene));
+    }
+}
+
+/// A job that adds material, thickness, supports and a pressure: one part, one with a corner, and two in one mesh.
+#[test]
+fn calculix_solves_a_job_over_the_triangles() {
+    let plain = "[patch]\napproach = 0.05\n";
+    let cut = "[patch]\napproach = 0.05\n[grid]\nxi = { from = -1.0, to = 12.0, n = 33 }\neta = { from = -2.0, to = 4.0, n = 33 }\n";
+    let two = "[patch]\napproach = 0.3\n[grid]\nxi = { from = -60.0, to = 40.0, n = 51 }\neta = { from = -20.0, to = 20.0, n = 21 }\n";
+    let scenes = [
+        ("job_tread", standard("60E1", "S1002", 0.0, plain)),
+        ("job_corner", standard("60E1", "S1002", 0.0, cut)),
+        ("job_two", standard("60E1", "S1002", 5.9, two)),
+    ];
+    for (name, scene) in scenes {
+        check_calculix(&run(name, &scene));
     }
 }
 

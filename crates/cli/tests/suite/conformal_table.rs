@@ -14,8 +14,6 @@ const DOCS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../src/docs/conforma
 /// The data of the report, which has the pressures.
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../report/data/conformal.csv");
 
-const STEEL: Elastic = Elastic { youngs_modulus: 2.1e5, poissons_ratio: 0.28 };
-
 /// Largest relative difference from the data.
 const SAME: f64 = 1e-4;
 
@@ -41,7 +39,7 @@ fn solve(dir: &Path, pairs: &[ConformingPair]) -> Option<Vec<[Solved; GAPS.len()
     for (number, pair) in pairs.iter().enumerate() {
         write_grid(&dir.join(format!("{number:02}")), pair);
     }
-    let modulus = effective_modulus(&STEEL, &STEEL);
+    let modulus = effective_modulus(&Elastic::STEEL, &Elastic::STEEL);
     let lines = output_of("conformal_table.py", dir, &[&format!("{modulus:?}")])?;
     let row = |line: &str| {
         let numbers: Vec<f64> = line.split(' ').skip(1).map(|cell| cell.parse().unwrap()).collect();

@@ -5,6 +5,8 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 use wheelrail_report::random::Random;
 
+use crate::campaign;
+
 use wheelrail::case::{Run, SILENT};
 use wheelrail::scene::{self, Scene};
 
@@ -300,6 +302,47 @@ fn a_kill_at_any_moment_leaves_the_old_or_the_new_folder_whole() {
     let left: Vec<_> =
         std::fs::read_dir(&folder).expect("the folder").flatten().map(|e| e.file_name()).collect();
     assert_eq!(left.len(), 2, "{left:?}");
+}
+
+/// Ctrl-C and SIGTERM at random moments: the exit code of shells, the folder as it was or new, and nothing beside it.
+#[test]
+#[cfg(unix)]
+fn signals_leave_the_old_or_the_new_folder_and_nothing_else() {
+    let folder = scratch("signals");
+    let out = folder.join("out");
+    let run = |approach: f64| {
+        let mut command = program();
+        command.arg("run").arg(scene_file(&folder, approach)).arg("--out").arg(&out);
+        command
+    };
+    let start = Instant::now();
+    assert!(run(0.01).status().is_ok_and(|s| s.success()));
+    let duration = start.elapsed();
+    let (mut dice, mut before, mut ended) = (Random::new(SEED), 0.01, 0);
+    for k in 0..campaign::scenes() as u32 {
+        let approach = 0.02 + 1e-5 * f64::from(k);
+        let (name, code) = *dice.pick(&[("INT", 130), ("TERM", 143)]);
+        let mut child = run(approach).spawn().expect("the program");
+        std::thread::sleep(duration.mul_f64(dice.uniform()));
+        let kill = Command::new("kill")
+            .arg(format!("-{name}"))
+            .arg(child.id().to_string())
+            .stderr(Stdio::null())
+            .status();
+        kill.expect("the program kill");
+        let status = child.wait().expect("a status");
+        let now = whole(&out);
+        assert!(now == before || now == approach, "neither {before} nor {approach} but {now}");
+        // A signal before the program listens ends it at once, and before it has made anything.
+        let at_once = status.code().is_none() && now == before;
+        assert!(status.success() || status.code() == Some(code) || at_once, "SIG{name}: {status}");
+        ended += u32::from(status.code() == Some(code));
+        before = now;
+        let left: Vec<_> =
+            std::fs::read_dir(&folder).expect("the folder").flatten().map(|e| e.file_name()).collect();
+        assert_eq!(left.len(), 2, "SIG{name}, {status}: {left:?}");
+    }
+    assert!(ended > 3, "only {ended} runs were caught at work");
 }
 
 #[test]

@@ -16,8 +16,6 @@ const DOCS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../src/docs/loads.md
 /// The data of the report, which has the solved approaches.
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../report/data/loads.csv");
 
-const STEEL: Elastic = Elastic { youngs_modulus: 2.1e5, poissons_ratio: 0.28 };
-
 /// Largest relative error of δ.
 const BOUND: f64 = 5e-3;
 
@@ -46,7 +44,7 @@ fn solve(dir: &Path, regions: &[Carried]) -> Option<BTreeMap<String, f64>> {
     for (number, region) in regions.iter().enumerate() {
         write_grid(&dir.join(format!("{number:03}")), region);
     }
-    let modulus = effective_modulus(&STEEL, &STEEL);
+    let modulus = effective_modulus(&Elastic::STEEL, &Elastic::STEEL);
     let lines = output_of("load_table.py", dir, &[&format!("{modulus:?}")])?;
     let pair = |line: &str| {
         let (name, approach) = line.split_once(' ').unwrap();
@@ -65,7 +63,7 @@ fn texts(regions: &[Carried], solved: &BTreeMap<String, f64>) -> [String; 2] {
         let _ = writeln!(data, "{},{normal:.1},{approach:.7}", loaded.key(region.contact()));
         let error = 100.0 * (site.approach() / approach - 1.0);
         let method = if region.estimate() == Some(Estimate::Hertz) { "Hertz" } else { "half-space" };
-        let places = 1 + site.found.as_ref().map_or(0, |found| found.merged.len());
+        let places = 1 + site.contact.found.as_ref().map_or(0, |found| found.merged.len());
         let _ = writeln!(
             table,
             "| {} | {} | {} | {:.0} | {} | {:.1}° | {:.1} | {approach:.4} | {:.4} ({:+.1} %) | {method} | {places} |",

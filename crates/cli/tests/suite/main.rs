@@ -8,10 +8,14 @@
     reason = "tests stop at the first surprise and say what they saw"
 )]
 
+mod absurd;
 mod answers;
+#[path = "../../../../tests/suite/campaign.rs"]
+mod campaign;
 mod clients;
 mod clients_runs;
 mod conformal_table;
+mod doubts_cli;
 mod hostile;
 mod load_table;
 mod pages;

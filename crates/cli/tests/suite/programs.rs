@@ -75,6 +75,14 @@ pub fn check_gmsh(dir: &Path) {
     }
 }
 
+/// Runs the script that needs CalculiX, of the Debian package `calculix-ccx`.
+pub fn check_calculix(dir: &Path) {
+    match Command::new("ccx").arg("-v").output() {
+        Ok(_) => check("check_calculix.py", dir, &["ccx"]),
+        Err(_) => not_run("ccx is missing, the program of the package calculix-ccx"),
+    }
+}
+
 /// Runs one script that needs the Fortran reader.
 fn check_decks(script: &str, dir: &Path) {
     match clients().map(|clients| &clients.reader) {
@@ -87,6 +95,7 @@ fn check_decks(script: &str, dir: &Path) {
 /// Runs every reader on a folder of `wheelrail run` with all formats.
 pub fn check_run(dir: &Path) {
     check_all(dir);
+    check("check_ply.py", dir, &[]);
     check_decks("check_run.py", dir);
 }
 

@@ -16,32 +16,6 @@ if TYPE_CHECKING:
 
 _SIDES = ("left", "right")
 
-# The order of the columns: those of the command line's CSV, after the number of the position.
-_COLUMNS = (
-    "position",
-    "lateral_mm",
-    "yaw_rad",
-    "roll_rad",
-    "side",
-    "contact",
-    "z_mm",
-    "rail_x_mm",
-    "wheel_x_mm",
-    "y_mm",
-    "contact_angle_rad",
-    "rolling_radius_mm",
-    "delta_r_mm",
-    "conicity",
-    "conicity_error",
-    "gap_mm",
-    "skew_rad",
-    "rail_curvature_per_mm",
-    "wheel_curvature_per_mm",
-    "kink",
-    "hertz_xi_mm",
-    "hertz_eta_mm",
-)
-
 
 class Table(Mapping[str, "NDArray[Any]"]):
     """Contacts of a wheelset at many positions: a mapping of column names to NumPy arrays (n,), a row for each position,
@@ -55,24 +29,25 @@ class Table(Mapping[str, "NDArray[Any]"]):
     """
 
     def __init__(self, columns: Mapping[str, NDArray[Any]]) -> None:
-        """Take the columns of a sweep: those of this table, `right` instead of `side`."""
+        """Take the columns of a sweep: those of this table in their order, `right` instead of `side`."""
         self._columns = dict(columns)
+        self._names = tuple("side" if name == "right" else name for name in self._columns)
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         """Return a column: float64, but for `position` (uint64), `contact` (uint32), `kink` (bool) and `side` (str)."""
         if name == "side":
             return np.asarray(_SIDES)[self._columns["right"].astype(np.intp)]
-        if name not in _COLUMNS:
+        if name not in self._names:
             raise KeyError(name)
         return self._columns[name]
 
     def __iter__(self) -> Iterator[str]:
         """Iterate over the names of the columns."""
-        return iter(_COLUMNS)
+        return iter(self._names)
 
     def __len__(self) -> int:
         """Return the number of columns; `rows` is that of the rows."""
-        return len(_COLUMNS)
+        return len(self._names)
 
     @property
     def rows(self) -> int:

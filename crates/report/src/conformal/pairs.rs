@@ -111,7 +111,7 @@ impl ConformingPair {
 
     /// Returns the name of the pair, its position and its contact, as in the data.
     pub fn key(&self) -> String {
-        self.loaded.key(self.site.found.as_ref().map_or(1, |found| found.contact))
+        self.loaded.key(self.site.contact.found.as_ref().map_or(1, |found| found.contact))
     }
 
     /// Returns the normal force along ζ \[N\].

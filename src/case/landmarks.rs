@@ -1,0 +1,175 @@
+//! The landmarks of a pair that doubts about contacts are judged by: top of rail, tip and tread of the wheel.
+
+use nalgebra::{Point2, UnitComplex};
+
+use super::doubts::ContactDoubts;
+use crate::placement::{Pair, Placement};
+use crate::profile::{Mark, last_groove, trace};
+use crate::search::{Contact, SweepRow, TrackSide};
+
+/// Distance of the marks \[mm\] along a profile: over a flange's face of 70° the lift is off by less than 0.15 mm.
+const STEP: f64 = 0.1;
+
+/// Depth of the lowest point below the tread from which on it is a flange's tip \[mm\]; trams have 15.
+const FLANGE: f64 = 10.0;
+
+/// Height above the lowest point up to which a contact is on the tip \[mm\].
+const TIP: f64 = 2.0;
+
+/// Largest height of an axle's middle \[mm\] that is no doubt, by the heights of both treads over their rails: a wheel that
+/// climbs its flange by two millimetres beyond the clearance lifts it by less.
+const LIFTED: f64 = 8.0;
+
+/// Largest distance of a contact from the flange's tip that is no doubt \[mm\]: 35 mm beyond the taping line, where treads end
+/// in their outer slope, and where only gauges of other wheels lead.
+const RUNNING: f64 = 90.0;
+
+/// Contact angles below this \[rad\] are those of treads: 20°.
+const TREAD: f64 = 0.35;
+
+/// Largest difference of a tread's rolling radius from the nominal one that is no doubt \[mm\].
+const RADIUS_OFF: f64 = 15.0;
+
+/// Where a wheel touches its rail, each in its own axes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Touching {
+    rail: Point2<f64>,
+    pub(super) wheel: Point2<f64>,
+    /// Angle of the common tangent in the rail's and the wheel's axes \[rad\].
+    angles: [f64; 2],
+}
+
+impl From<&Contact> for Touching {
+    fn from(c: &Contact) -> Self {
+        Self {
+            rail: Point2::new(c.rail_x, c.rail_z),
+            wheel: Point2::new(c.wheel_x, c.wheel_z),
+            angles: [c.contact_angle, c.wheel_angle],
+        }
+    }
+}
+
+impl From<&Placement> for Touching {
+    fn from(placement: &Placement) -> Self {
+        let bodies = [placement.rail(), placement.wheel()];
+        let [rail, wheel] = bodies.map(|body| {
+            let at = &body.point().station;
+            Point2::new(at.x, at.z)
+        });
+        Self { rail, wheel, angles: bodies.map(|body| body.contact_angle()) }
+    }
+}
+
+/// Width \[mm\] over which the end of a wheel's profile is its back, which is not quite upright.
+const BACK_WIDTH: f64 = 1.0;
+
+/// The landmarks of a pair.
+#[derive(Debug, Clone)]
+pub struct Landmarks {
+    pair: Pair,
+    /// Top of the running head, in the rail's axes.
+    top: Point2<f64>,
+    /// Tip of the flange, in the wheel's axes; `None` for a wheel without one.
+    pub(crate) tip: Option<Point2<f64>>,
+    /// Least and largest abscissa of the wheel's profile \[mm\].
+    pub(crate) ends: [f64; 2],
+    /// Height of the profile at its least abscissa over the tip \[mm\].
+    pub(crate) back: f64,
+}
+
+impl Landmarks {
+    /// Finds the landmarks of a pair, to 0.05 mm along its profiles.
+    pub fn new(pair: &Pair) -> Self {
+        let rail = trace(pair.rail(), STEP);
+        let heights: Vec<f64> = rail.iter().map(|mark| mark.station.z).collect();
+        let head = &rail[last_groove(&heights).unwrap_or(0)..];
+        let wheel = trace(pair.wheel(), STEP);
+        let point = |mark: &Mark| Point2::new(mark.station.x, mark.station.z);
+        let top = head.iter().map(point).max_by(|a, b| a.y.total_cmp(&b.y)).unwrap_or_default();
+        let low = wheel.iter().map(point).min_by(|a, b| a.y.total_cmp(&b.y)).unwrap_or_default();
+        let all = wheel.iter().map(|mark| mark.station.x);
+        let ends = [all.clone().fold(f64::INFINITY, f64::min), all.fold(f64::NEG_INFINITY, f64::max)];
+        let back =
+            wheel.iter().filter(|mark| mark.station.x < ends[0] + BACK_WIDTH).map(|mark| mark.station.z);
+        let back = back.fold(f64::NEG_INFINITY, f64::max) - low.y;
+        let tip = (median_height(&wheel) - low.y >= FLANGE).then_some(low);
+        Self { pair: pair.clone(), top, tip, ends, back }
+    }
+
+    /// Returns the height \[mm\] of the wheel's surface over the top of the rail, 0 where nothing of the wheel is over it: how far
+    /// the tread is lifted.
+    pub(super) fn lift(&self, at: &Touching) -> f64 {
+        let [rail, wheel] = at.angles;
+        let up = at.wheel + UnitComplex::new(wheel - rail) * (self.top - at.rail);
+        let [_, profile] = self.pair.sections();
+        let height = profile.height(up.x) - up.y;
+        if height.is_nan() { 0.0 } else { height }
+    }
+
+    /// Finds what is doubtful about a contact; `lift` is that of its wheel, `other` that of the other one.
+    pub(super) fn doubts(&self, at: &Touching, [lift, other]: [f64; 2]) -> ContactDoubts {
+        let [x, z] = [at.wheel.x, at.wheel.y];
+        let on_tip = self.tip.is_some_and(|tip| z < tip.y + TIP);
+        let on_back = self.tip.is_some_and(|tip| x < tip.x) && !on_tip;
+        let lifted = lift > LIFTED && lift + other > 2.0 * LIFTED;
+        let from_tip = self.tip.map(|tip| (x - tip.x).abs()).filter(|distance| *distance > RUNNING);
+        // R − z is the rolling radius.
+        let off = !on_tip && !on_back && at.angles[0].abs() < TREAD && z.abs() > RADIUS_OFF;
+        let lift = lifted.then_some(lift);
+        ContactDoubts([on_tip.then_some(x), on_back.then_some(x), lift, from_tip, off.then_some(-z)])
+    }
+}
+
+/// Returns the median height over x \[mm\]: that of the tread.
+fn median_height(marks: &[Mark]) -> f64 {
+    let runs = marks.windows(2).map(|pair| {
+        let [a, b] = [&pair[0].station, &pair[1].station];
+        (0.5 * (a.z + b.z), (b.x - a.x).abs())
+    });
+    let mut runs: Vec<(f64, f64)> = runs.collect();
+    runs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let half = 0.5 * runs.iter().map(|(_, run)| run).sum::<f64>();
+    let mut sum = 0.0;
+    let median = runs.iter().find(|(_, run)| {
+        sum += run;
+        sum >= half
+    });
+    median.map_or(f64::NAN, |(height, _)| *height)
+}
+
+/// The doubts about the contacts of a sweep.
+#[derive(Debug, Clone)]
+pub struct SweepDoubts {
+    right: Landmarks,
+    left: Option<Landmarks>,
+}
+
+impl SweepDoubts {
+    /// Prepares the doubts of both sides' pairs; without a left one, both sides have one.
+    pub fn new(right: &Pair, left: Option<&Pair>) -> Self {
+        Self { right: Landmarks::new(right), left: left.map(Landmarks::new) }
+    }
+
+    /// Finds the doubts about each row of a position; rows of further contacts have none.
+    pub fn of_rows<'a>(
+        &'a self,
+        rows: &'a [SweepRow],
+    ) -> impl Iterator<Item = (&'a SweepRow, ContactDoubts)> + 'a {
+        let lift = |side| {
+            let first = rows.iter().find(|row| row.side == side && row.number == 0);
+            first.map_or(0.0, |row| self.on(side).lift(&Touching::from(&row.contact)))
+        };
+        let [right, left] = [TrackSide::Right, TrackSide::Left].map(lift);
+        rows.iter().map(move |row| {
+            if row.number > 0 {
+                return (row, ContactDoubts::default());
+            }
+            let lifts = if row.side == TrackSide::Right { [right, left] } else { [left, right] };
+            (row, self.on(row.side).doubts(&Touching::from(&row.contact), lifts))
+        })
+    }
+
+    fn on(&self, side: TrackSide) -> &Landmarks {
+        self.left.as_ref().filter(|_| side == TrackSide::Left).unwrap_or(&self.right)
+    }
+}
