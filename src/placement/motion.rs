@@ -287,7 +287,7 @@ mod tests {
             near(across, 0.0);
             // Ahead of C the surface of the wheel comes down, and up the slope of the tangent that is a slip to the side.
             let rise = rolling.pitch * 4.0 * cos;
-            near(rolling.slip_at([xi, 4.0, zeta], [0.0, 1.0])[1] * v, rolling.pitch * 4.0 * -sin);
+            near(rolling.slip_at([xi, 4.0, zeta], [0.0, 1.0])[1], rolling.pitch * 4.0 * -sin / v);
             let expected =
                 rolling.slip_at([xi, 4.0, zeta], [0.0, 1.0])[1] * alpha.cos() - rise * alpha.sin() / v;
             near(rolling.slip_at([xi, 4.0, zeta], normal)[1], expected);

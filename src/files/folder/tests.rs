@@ -162,6 +162,7 @@ fn what_comes_during_the_exchange_is_taken_over_after_it() {
     exchange(&folder.temporary, &dir).unwrap();
     assert_eq!(listing(&dir), ["summary.json"]);
     folder.leave().unwrap();
+    drop(folder);
     assert_eq!(listing(&dir), ["contact.out", "summary.json"]);
     assert_eq!(listing(root.path()), ["out"]);
     // What cannot be taken over keeps its folder.
