@@ -319,7 +319,8 @@ fn row(outline: &mut Outline<'_>, band: &Band, xi: f64) -> BandRow {
 
 /// Adds the rows at which a branch turns and is farthest out in η.
 fn add_farthest(outline: &mut Outline<'_>, band: &Band, rows: &mut Vec<BandRow>) {
-    let symmetric = outline.slicer.skewed.is_none() && outline.window.eta[0] == -outline.window.eta[1];
+    let symmetric =
+        outline.slicer.placement().skew() == 0.0 && outline.window.eta[0] == -outline.window.eta[1];
     let branches: &[usize] = if symmetric { &[1] } else { &[0, 1] };
     let mut more = Vec::new();
     for &branch in branches {

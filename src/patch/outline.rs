@@ -78,7 +78,7 @@ impl<'a> Outline<'a> {
 
     /// Returns η \[mm\] of the least s at ξ within the window. It is the place of the valley (η = 0 without skew), or the
     /// window's edge next to it, because s rises away from the valley.
-    pub(super) fn floor(&self, valley: Option<usize>, xi: f64) -> f64 {
+    pub(super) fn floor(&mut self, valley: Option<usize>, xi: f64) -> f64 {
         let ([from, to], lowest) = (self.window.eta, self.slicer.valley(valley, xi));
         // NaN stays NaN: there is no surface.
         if lowest < from {
@@ -122,6 +122,11 @@ impl<'a> Outline<'a> {
     /// Returns s(ξ, η) \[mm\].
     pub fn separation(&mut self, xi: f64, eta: f64) -> f64 {
         self.slicer.separation(xi, eta)
+    }
+
+    /// Returns ζ \[mm\] of the lower body's surface.
+    pub(crate) fn lower_height(&mut self, xi: f64, eta: f64) -> f64 {
+        self.slicer.evaluator.lower_height(xi, eta)
     }
 
     /// Writes s(ξ, η) at all η of one column to `out` \[mm\].

@@ -184,7 +184,7 @@ impl<'a> Skewed<'a> {
         let mut eta = from + (far - from) / 2.0;
         let mut settled = false;
         for _ in 0..NEWTON_STEPS {
-            let (s, [_, slope]) = self.evaluator.separation_and_slopes(xi, eta);
+            let (s, [_, slope]) = self.evaluator.separation_and_gradient(xi, eta);
             let step = (s - approach) / slope;
             eta -= step;
             settled = step.abs() <= QUADRATIC * (eta - from).abs();
