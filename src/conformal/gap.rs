@@ -44,8 +44,10 @@ pub struct NormalGap<'a> {
 pub struct GapPoint {
     /// The rail's point and normal.
     pub rail: RailPoint,
-    /// t \[mm\]; NaN where the ray misses the wheel.
+    /// t \[mm\]; NaN where the ray misses a body.
     pub gap: f64,
+    /// The part of t \[mm\] by which a roller lies below its crown along the normal; 0 on a rail.
+    pub below: f64,
     /// Whether the point lies over both contact segments, where t has its relative accuracy.
     pub over_contact: bool,
     /// Outward unit normal (ξ, η, ζ) of the rail, or of a roller's crown at this σ.
@@ -100,8 +102,9 @@ impl<'a> NormalGap<'a> {
         let wheel_normal = met.map(|point| self.wheel_normal(&point));
         let over_contact = met.is_some_and(|met| met.over_contact);
         let above = met.map_or(f64::NAN, |met| met.t);
-        let gap = self.under.as_ref().map_or(above, |under| above + under.gap(sigma, eta));
-        Some(GapPoint { rail, gap, over_contact, rail_normal, wheel_normal })
+        let below = self.under.as_ref().map_or(0.0, |under| under.gap(sigma, eta));
+        let gap = above + below;
+        Some(GapPoint { rail, gap, below, over_contact, rail_normal, wheel_normal })
     }
 
     fn meeting(&self, sigma: f64, eta: f64) -> Option<(RailPoint, RayPoint)> {
