@@ -15,8 +15,8 @@ use super::view::view;
 use crate::error::{Error, Result};
 use crate::export::{
     ConformalPicture, ContactSettings, CurvedDeck, CurvedFields, Deck, Frame, GridFields, Header, InPlace,
-    Interval, Loop, NetCdf, PatchMesh, PatchPicture, Prescribed, QuadMesh, RollerFields, SurfaceMesh, boundary_csv,
-    interpen_csv, interpen_sigma_csv,
+    Interval, Loop, NetCdf, PatchMesh, PatchPicture, Prescribed, QuadMesh, RollerFields, SurfaceMesh,
+    boundary_csv, interpen_csv, interpen_sigma_csv,
 };
 use crate::files::Folder;
 use crate::mesh::Surface;
