@@ -105,13 +105,14 @@ pub fn patch_picture(
 
 /// Gives the boundary of a patch on the rail's surface.
 pub(super) fn loops_of(placement: &Placement, patch: &Patch) -> Vec<Loop> {
-    let section = &placement.rail().section;
+    let mut bodies = Evaluator::new(placement);
     let loops = patch.components.iter().enumerate().flat_map(|(index, component)| {
         [&component.boundary].into_iter().chain(&component.holes).map(move |points| (index, points))
     });
     loops
         .map(|(component, points)| {
-            let points = points.iter().map(|&[xi, eta]| Point3::new(xi, eta, section.height(xi))).collect();
+            let lifted = |&[xi, eta]: &[f64; 2]| Point3::new(xi, eta, bodies.lower_height(xi, eta));
+            let points = points.iter().map(lifted).collect();
             Loop { component, points }
         })
         .collect()

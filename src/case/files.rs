@@ -15,8 +15,8 @@ use super::view::view;
 use crate::error::{Error, Result};
 use crate::export::{
     ConformalPicture, ContactSettings, CurvedDeck, CurvedFields, Deck, Frame, GridFields, Header, InPlace,
-    Interval, Loop, NetCdf, PatchMesh, PatchPicture, Prescribed, QuadMesh, SurfaceMesh, boundary_csv,
-    interpen_csv, interpen_sigma_csv,
+    Interval, Loop, NetCdf, PatchMesh, PatchPicture, Prescribed, QuadMesh, RollerFields, SurfaceMesh,
+    boundary_csv, interpen_csv, interpen_sigma_csv,
 };
 use crate::files::Folder;
 use crate::mesh::Surface;
@@ -24,7 +24,7 @@ use crate::patch::Slice;
 use crate::placement::Creepages;
 use crate::profile::Station;
 use crate::search::TrackSide;
-use crate::separation::midplane_table;
+use crate::separation::{Evaluator, midplane_table};
 
 /// Turns a picture's SVG into PNG. The library draws no pixels: a caller who wants them brings this.
 pub type Rasterise = fn(&str) -> Result<Vec<u8>>;
@@ -76,6 +76,7 @@ fn write_part(
     let (outputs, axes, mut skipped) = (&run.case.outputs, &part.site.grid, Vec::new());
     let (header, rail, creepages) = (header(run, part), RailColumns::new(part), run.creepages(part)?);
     let grid = GridFields::new(&axes.xi, &axes.eta, &part.analysis.separation, &rail.height, &rail.normal)?;
+    let grid = rail.roller.as_ref().map_or(Ok(grid), |roller| grid.over_roller(roller))?;
     let on_rail = part.analysis.conformal.as_ref().map(|conformal| OnRail::new(&part.site, conformal));
     let curved = on_rail.as_ref().map(OnRail::fields).transpose()?;
     let gridded = Gridded::new(outputs, &header, &grid, curved.as_ref(), &mut skipped)?;
@@ -280,6 +281,7 @@ fn rasterise(outputs: &Outputs, png: Option<Rasterise>) -> Result<Option<Rasteri
 struct RailColumns {
     height: Vec<f64>,
     normal: Vec<[f64; 2]>,
+    roller: Option<RollerFields>,
 }
 
 impl RailColumns {
@@ -290,7 +292,23 @@ impl RailColumns {
         let columns =
             part.site.grid.xi.iter().map(|xi| station(xi).map_or((f64::NAN, [f64::NAN; 2]), column));
         let (height, normal) = columns.unzip();
-        Self { height, normal }
+        Self { height, normal, roller: Self::roller(part) }
+    }
+
+    /// Computes the surface of a roller over the grid; `None` for a rail.
+    fn roller(part: &Part) -> Option<RollerFields> {
+        let placement = &part.site.contact.placement;
+        let under = placement.under()?;
+        let (mut bodies, mut evaluator) = (Evaluator::new(placement), Evaluator::new(under));
+        let mut fields = RollerFields::default();
+        for &xi in &part.site.grid.xi {
+            for &eta in &part.site.grid.eta {
+                let normal = bodies.normals(xi, eta).rail;
+                fields.fall.push(evaluator.separation(xi, eta));
+                fields.normal.push(normal.map_or([f64::NAN; 3], |normal| [normal.x, normal.y, normal.z]));
+            }
+        }
+        Some(fields)
     }
 }
 

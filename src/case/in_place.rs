@@ -3,7 +3,7 @@
 //! The axes of a wheelset's track: x to the right, y forward, z up, the origin in the middle of the track at the top of rail,
 //! with the middle of the axle at y = 0. For a single wheel they are the rail profile's axes, with the wheel's centre at y = 0.
 
-use nalgebra::{Matrix4, Point3, Vector4};
+use nalgebra::{Matrix4, Point3, Vector3, Vector4};
 
 use super::drawn::{loops_of, quads};
 use super::input::Place;
@@ -37,12 +37,23 @@ pub(super) fn to_track(run: &Run, part: &Part) -> Matrix4<f64> {
     };
     let c = placement.rail().point.station;
     let mirrored = if left { -1.0 } else { 1.0 };
-    Matrix4::from_columns(&[
-        Vector4::new(mirrored * c.cos, 0.0, c.sin, 0.0),
+    let in_meridian = Matrix4::from_columns(&[
+        Vector4::new(c.cos, 0.0, c.sin, 0.0),
         Vector4::new(0.0, 1.0, 0.0, 0.0),
-        Vector4::new(-mirrored * c.sin, 0.0, c.cos, 0.0),
-        Vector4::new(mirrored * (rail[0] + c.x), -axle_point(placement, -half).y, rail[1] + c.z, 1.0),
-    ])
+        Vector4::new(-c.sin, 0.0, c.cos, 0.0),
+        Vector4::new(c.x, 0.0, c.z, 1.0),
+    ]);
+    let (radius, turn) = (placement.rail().generator().radius(), placement.turn());
+    let upright = if radius.is_finite() {
+        // The roller's meridian plane through C is turned forward by ν about its axle.
+        let [to_axle, from_axle] =
+            [radius, -radius].map(|up| Matrix4::new_translation(&Vector3::new(0.0, 0.0, up)));
+        from_axle * Matrix4::from_axis_angle(&Vector3::x_axis(), -turn) * to_axle
+    } else {
+        Matrix4::new_translation(&Vector3::new(0.0, -axle_point(placement, -half).y, 0.0))
+    };
+    let to_track = Matrix4::new_translation(&Vector3::new(rail[0], 0.0, rail[1]));
+    Matrix4::new_nonuniform_scaling(&Vector3::new(mirrored, 1.0, 1.0)) * to_track * upright * in_meridian
 }
 
 /// Gives what shows all of a run in the axes of the track: both rails, both wheels at first touch, patches, boundaries and contact

@@ -82,7 +82,7 @@ impl Site {
 
     /// Gives the vertical part of the normal force \[N\]; `None` unless a load was asked for.
     pub fn vertical_load(&self) -> Option<f64> {
-        self.normal_load.map(|load| load * self.contact.placement.rail().point.station.cos)
+        self.normal_load.map(|load| load * self.contact.placement.upright())
     }
 
     /// Gives the largest pressure of Hertz's ellipse \[N/mm²\]; `None` without an ellipse, and where the half-space found that the

@@ -49,9 +49,11 @@ struct Reached {
     along: [[f64; 2]; 2],
     /// χ \[rad\].
     skew: f64,
+    /// ν \[rad\] ahead of a roller's crown.
+    turn: f64,
     /// Vertical gap at first touch \[mm\].
     gap: f64,
-    /// cosθ of its normal.
+    /// Cosine of the angle between its normal and the vertical.
     cos: f64,
     /// The pair placed there, once it was asked for.
     placement: Option<Arc<Placement>>,
@@ -104,7 +106,7 @@ impl Region {
         };
         let placement = self.placement.reframed(frame[0], frame[1]).map_err(key)?;
         let contact = placement.rail().contact_frame().inverse_transform_point(&self.contact_point()).x;
-        let approach = self.sunk() * placement.rail().point.station.cos;
+        let approach = self.sunk() * placement.upright();
         let mut region = Self::new(self.place, Arc::new(placement), approach, rules);
         if !rules.alone {
             // The group of parts that C lies in is the contact's own; others stand before it where they hold the origin.
@@ -134,12 +136,12 @@ impl Region {
 
     /// Gives what the wheel sinks by \[mm\], of the region that touches first.
     pub(super) fn sunk(&self) -> f64 {
-        self.approach / self.placement.rail().point.station.cos
+        self.approach / self.placement.upright()
     }
 
     /// Gives the vertical force \[N\].
     fn vertical(&self) -> f64 {
-        self.loads.iter().sum::<f64>() * self.placement.rail().point.station.cos
+        self.loads.iter().sum::<f64>() * self.placement.upright()
     }
 }
 
@@ -150,8 +152,9 @@ impl<'a> Wheel<'a> {
             rail: Point2::new(place.rail_x, place.rail_z),
             along: [[place.rail_x, place.contact_angle], [place.wheel_x, place.wheel_angle]],
             skew: place.skew,
+            turn: place.turn,
             gap: place.gap,
-            cos: place.contact_angle.cos(),
+            cos: place.contact_angle.cos() * place.turn.cos(),
             placement: None,
             cells: Vec::new(),
         };
@@ -160,14 +163,15 @@ impl<'a> Wheel<'a> {
 
     /// Makes a wheel that touches at chosen points.
     pub(super) fn at_points(pair: &'a Pair, placement: Placement, rules: RegionRules) -> Self {
-        let Station { x, z, cos, .. } = placement.rail().point.station;
+        let Station { x, z, .. } = placement.rail().point.station;
         let place = Reached {
             rail: Point2::new(x, z),
             along: [placement.rail(), placement.wheel()]
                 .map(|body| [body.point.station.x, body.contact_angle()]),
             skew: placement.skew(),
+            turn: placement.turn(),
             gap: 0.0,
-            cos,
+            cos: placement.upright(),
             placement: Some(Arc::new(placement)),
             cells: Vec::new(),
         };
@@ -204,7 +208,10 @@ impl<'a> Wheel<'a> {
         let place = &mut self.places[index];
         let placement = match place.placement.take() {
             Some(placement) => placement,
-            None => Arc::new(self.pair.placed_along(place.along[0], place.along[1], place.skew)?),
+            None => {
+                let placed = self.pair.placed_along(place.along[0], place.along[1], place.skew)?;
+                Arc::new(placed.turned(place.turn))
+            }
         };
         Ok(Arc::clone(place.placement.insert(placement)))
     }

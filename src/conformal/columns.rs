@@ -47,6 +47,25 @@ pub fn fill_normal_gap(
     if length == 0 {
         return 0.0;
     }
+    if let Some(under) = &gap.under {
+        let mut falls = vec![f64::NAN; out.len()];
+        let error = fill_normal_gap(under, sigma, axis, tolerance, &mut falls);
+        let above = fill_over_profile(gap, sigma, axis, tolerance, out);
+        out.iter_mut().zip(falls).for_each(|(t, fall)| *t += fall);
+        return above + error;
+    }
+    fill_over_profile(gap, sigma, axis, tolerance, out)
+}
+
+/// Writes the gap \[mm\] of the wheel over the lower body's profile; returns the largest truncation error \[mm\].
+fn fill_over_profile(
+    gap: &NormalGap<'_>,
+    sigma: &[f64],
+    axis: &EtaAxis,
+    tolerance: f64,
+    out: &mut [f64],
+) -> f64 {
+    let length = axis.eta().len();
     let demand = Demand::for_tolerance(tolerance).on_truncation();
     let block = |(out, sigma): (&mut [f64], &[f64])| {
         let mut columns = Columns::new(gap, axis, demand);

@@ -8,7 +8,8 @@ use super::sight;
 use super::span::RayPoint;
 use crate::placement::Placement;
 
-/// Evaluates the normal gap over a placed pair.
+/// Evaluates the normal gap over a placed pair. On a roller t is measured along the normals of its crown, the profile at η = 0: from
+/// the roller to the wheel.
 ///
 /// # Examples
 /// ```
@@ -34,6 +35,8 @@ pub struct NormalGap<'a> {
     pub(super) bodies: RayBodies<'a>,
     pub(super) rail: RailArcLength<'a>,
     pub(super) placement: &'a Placement,
+    /// The gap of a roller under its own profile, upside down; `None` on a rail.
+    pub(super) under: Option<Box<NormalGap<'a>>>,
 }
 
 /// What is known at one point of the rail's surface.
@@ -41,11 +44,13 @@ pub struct NormalGap<'a> {
 pub struct GapPoint {
     /// The rail's point and normal.
     pub rail: RailPoint,
-    /// t \[mm\]; NaN where the ray misses the wheel.
+    /// t \[mm\]; NaN where the ray misses a body.
     pub gap: f64,
+    /// The part of t \[mm\] by which a roller lies below its crown along the normal; 0 on a rail.
+    pub below: f64,
     /// Whether the point lies over both contact segments, where t has its relative accuracy.
     pub over_contact: bool,
-    /// Outward unit normal of the rail (ξ, η, ζ).
+    /// Outward unit normal (ξ, η, ζ) of the rail, or of a roller's crown at this σ.
     pub rail_normal: Unit<Vector3<f64>>,
     /// Outward unit normal of the wheel where the ray meets it; `None` where it misses.
     pub wheel_normal: Option<Unit<Vector3<f64>>>,
@@ -54,7 +59,8 @@ pub struct GapPoint {
 impl<'a> NormalGap<'a> {
     /// Prepares a placed pair: follows the rail's surface from C.
     pub fn new(placement: &'a Placement) -> Self {
-        Self { bodies: RayBodies::new(placement), rail: RailArcLength::new(placement), placement }
+        let under = placement.under().map(|under| Box::new(Self::new(under)));
+        Self { bodies: RayBodies::new(placement), rail: RailArcLength::new(placement), placement, under }
     }
 
     /// Returns the rail by its arc length.
@@ -69,7 +75,17 @@ impl<'a> NormalGap<'a> {
     /// is below 1e-13 times the sum of the magnitudes of the terms of t; elsewhere below 2e-12 mm × max(1, R_max/300 mm).
     /// Both are checked against 60-digit values. Cost: about half a microsecond.
     pub fn gap(&self, sigma: f64, eta: f64) -> f64 {
-        self.meeting(sigma, eta).map_or(f64::NAN, |(_, point)| point.t)
+        let above = self.meeting(sigma, eta).map_or(f64::NAN, |(_, point)| point.t);
+        self.under.as_ref().map_or(above, |under| above + under.gap(sigma, eta))
+    }
+
+    /// Computes ∂t/∂η at one point; NaN where t is.
+    pub fn slope(&self, sigma: f64, eta: f64) -> f64 {
+        let above = self.meeting(sigma, eta).map_or(f64::NAN, |(rail, point)| {
+            let normal = self.wheel_normal(&point);
+            normal.y / (rail.sin * normal.x - rail.cos * normal.z)
+        });
+        self.under.as_ref().map_or(above, |under| above + under.slope(sigma, eta))
     }
 
     /// Returns α(σ) \[rad\], the angle of the rail's outward normal from ζ, positive counter-clockwise; NaN beyond the range of
@@ -85,8 +101,10 @@ impl<'a> NormalGap<'a> {
         let rail_normal = Unit::new_unchecked(Vector3::new(-rail.sin, 0.0, rail.cos));
         let wheel_normal = met.map(|point| self.wheel_normal(&point));
         let over_contact = met.is_some_and(|met| met.over_contact);
-        let gap = met.map_or(f64::NAN, |met| met.t);
-        Some(GapPoint { rail, gap, over_contact, rail_normal, wheel_normal })
+        let above = met.map_or(f64::NAN, |met| met.t);
+        let below = self.under.as_ref().map_or(0.0, |under| under.gap(sigma, eta));
+        let gap = above + below;
+        Some(GapPoint { rail, gap, below, over_contact, rail_normal, wheel_normal })
     }
 
     fn meeting(&self, sigma: f64, eta: f64) -> Option<(RailPoint, RayPoint)> {

@@ -250,11 +250,7 @@ fn lowest_of_steps(gap: &NormalGap<'_>, [from, to]: [f64; 2], sigma: f64) -> Opt
         let end = step(k);
         if t(end).is_nan() { last_where(|eta| !t(eta).is_nan(), step(least), end) } else { end }
     });
-    let across = |eta: f64| {
-        let normal = gap.point(sigma, eta).and_then(|point| point.wheel_normal);
-        normal.map_or(f64::NAN, |normal| normal.y)
-    };
-    let turn = bracketed(across, ends[0], ends[1]);
+    let turn = bracketed(|eta| gap.slope(sigma, eta), ends[0], ends[1]);
     // Without a turn the surface rises over the whole interval from one of its ends.
     turn.or_else(|| ends.into_iter().min_by(|a, b| t(*a).total_cmp(&t(*b))))
 }

@@ -36,7 +36,7 @@ pub use html::{
 };
 pub use in_place::{ContactInPlace, InPlace};
 pub use legacy::separation_vtk;
-pub use model::{Frame, GridFields, Header, Interval, Loop, PatchMesh, QuadMesh, SurfaceMesh};
+pub use model::{Frame, GridFields, Header, Interval, Loop, PatchMesh, QuadMesh, RollerFields, SurfaceMesh};
 pub use netcdf::NetCdf;
 pub use npy::array_npy;
 pub use picture::{

@@ -59,10 +59,7 @@ pub fn separation_vts(sink: &mut dyn Write, header: &Header, grid: &GridFields) 
         separation_array(grid),
         Array::scalar("interpenetration", move |i| grid.column(i).iter().map(move |&s| depth(s))),
         Array::vector("gap_vector", |i| grid.column(i).iter().map(|&s| [0.0, 0.0, known(s)])),
-        Array::vector("rail_normal", |i| {
-            let [n_xi, n_zeta] = grid.rail_normal()[i];
-            grid.eta().iter().map(move |_| [n_xi, 0.0, n_zeta])
-        }),
+        Array::vector("rail_normal", |i| grid.lower_normals(i)),
         Array::byte("mask", |i| grid.mask(i)),
     ];
     structured_grid(sink, header, grid, "separation", rail_points(grid), arrays)
@@ -115,8 +112,10 @@ pub fn rail_vts(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io:
 /// The errors of the sink.
 pub fn wheel_vts(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io::Result<()> {
     let points = Array::vector("Points", |i| {
-        let (xi, rail) = (grid.xi()[i], grid.rail_height()[i]);
-        grid.eta().iter().zip(grid.column(i)).map(move |(&eta, s)| [xi, eta, known(rail + s)])
+        let above = move |([xi, eta, lower], s): ([f64; 3], &f64)| {
+            [xi, eta, if s.is_nan() { 0.0 } else { lower + s }]
+        };
+        grid.rail_points(i).zip(grid.column(i)).map(above)
     });
     structured_grid(sink, header, grid, "separation", points, vec![separation_array(grid)])
 }

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::patch::skewed::monotone::monotone;
 use crate::patch::skewed::valleys::Valleys;
-use crate::patch::turning_points;
+use crate::patch::{least_on_roller, turning_points};
 use crate::placement::Placement;
 use crate::separation::{Evaluator, midplane_gap};
 
@@ -58,8 +58,11 @@ pub struct Feasibility {
 /// # Ok::<(), wheelrail::Error>(())
 /// ```
 pub fn feasibility(placement: &Placement) -> Option<Feasibility> {
-    let along_zeta =
-        if placement.skew() == 0.0 { least_in_midplane(placement)? } else { least_under_skew(placement)? };
+    let along_zeta = match (placement.skew() == 0.0, placement.under()) {
+        (true, _) => least_in_midplane(placement)?,
+        (false, None) => least_under_skew(placement)?,
+        (false, Some(_)) => least_on_roller(placement)?.into(),
+    };
     let extent = placement.rail().profile().extent().max(placement.wheel().profile().extent());
     let apart = |gap: f64| gap >= -ROUNDING * extent;
     // What a steep surface is off by along its normal is more along the vertical.

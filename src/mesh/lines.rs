@@ -4,6 +4,7 @@ use nalgebra::Point3;
 
 use crate::patch::Band;
 use crate::placement::Placement;
+use crate::separation::Evaluator;
 
 /// Distance of two lines, as a share of a band's width, below which they are one. It is far above the rounding of one line
 /// on both sides of a meeting, and far below a cell.
@@ -100,7 +101,7 @@ impl BandMeeting {
         shares: &[f64],
     ) -> Vec<usize> {
         let side = band.sides[usize::from(self.xi == band.xi[1])];
-        let zeta = placement.rail().section.height(self.xi);
+        let mut evaluator = Evaluator::new(placement);
         let place = |share: &f64| {
             let eta = between(side, *share);
             let k = self.eta.partition_point(|&other| other < eta);
@@ -109,7 +110,8 @@ impl BandMeeting {
             let nearest =
                 if (self.eta[before] - eta).abs() <= (self.eta[k] - eta).abs() { before } else { k };
             *self.points[nearest].get_or_insert_with(|| {
-                points.push(Point3::new(self.xi, self.eta[nearest], zeta));
+                let [xi, eta] = [self.xi, self.eta[nearest]];
+                points.push(Point3::new(xi, eta, evaluator.lower_height(xi, eta)));
                 points.len() - 1
             })
         };

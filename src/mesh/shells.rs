@@ -1,4 +1,6 @@
-//! Closed shells of both bodies, for pictures of the whole: a piece of rail and an arc of the wheel's rim.
+//! Closed shells of both bodies, for pictures of the whole: a piece of rail, and arcs of the rims of wheels and rollers.
+
+use std::f64::consts::PI;
 
 use nalgebra::{Point2, Point3};
 
@@ -29,7 +31,12 @@ pub struct BodyShell {
 impl BodyShell {
     /// Makes a piece of the rail from −`half_length` to `half_length` \[mm\] along η. The outline departs from the profile by at most
     /// `tolerance` \[mm\], or by a hundred-thousandth of its extent, and is closed below it.
+    /// The rim of a roller is as long, up to the whole circumference.
     pub fn rail(placement: &Placement, half_length: f64, tolerance: f64) -> Self {
+        if let Some(under) = placement.under() {
+            let half_angle = (half_length / under.rolling_radius()).min(PI);
+            return Self::wheel(under, half_angle, tolerance).upside_down();
+        }
         let stations = outline(placement.rail().profile(), tolerance);
         let low = stations.iter().map(|station| station.z).fold(f64::INFINITY, f64::min) - BACK;
         let frame = placement.rail().contact_frame();
@@ -58,6 +65,13 @@ impl BodyShell {
             ring.iter().map(|station| wheel_point(placement, station, psi)).collect()
         };
         Self::swept((0..=count as usize).map(turned).collect())
+    }
+
+    /// Returns the shell mirrored under ζ → −ζ.
+    fn upside_down(mut self) -> Self {
+        self.points.iter_mut().for_each(|point| point.z = -point.z);
+        self.faces.iter_mut().for_each(|face| face.reverse());
+        self
     }
 
     /// Joins equal outlines, one after the other, by quadrilaterals, and closes both ends.

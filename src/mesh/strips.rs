@@ -220,14 +220,19 @@ impl StripBuilder<'_> {
     /// Returns the indices of the points of one strip edge, ascending in η. They are equal if the edge has no width.
     fn row(&mut self, band: &Band, shares: &[f64], xi: f64) -> Vec<usize> {
         let eta = band.slice(xi).eta;
-        let zeta = self.placement.rail().section.height(xi);
+        let profile = self.placement.rail().section.height(xi);
+        let on_roller = self.placement.under().is_some();
+        let mut lifted = |eta: f64| {
+            let zeta = if on_roller { self.evaluator.lower_height(xi, eta) } else { profile };
+            Point3::new(xi, eta, zeta)
+        };
         let points = &mut self.mesh.points;
         let first = points.len();
         if eta[0] >= eta[1] {
-            points.push(Point3::new(xi, eta[0], zeta));
+            points.push(lifted(eta[0]));
             return vec![first; shares.len()];
         }
-        points.extend(shares.iter().map(|&share| Point3::new(xi, between(eta, share), zeta)));
+        points.extend(shares.iter().map(|&share| lifted(between(eta, share))));
         (first..first + shares.len()).collect()
     }
 

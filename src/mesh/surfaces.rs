@@ -69,7 +69,7 @@ impl Surface {
     /// # Errors
     /// A window that is not finite or wider than the wheel; a surface of too many points.
     pub fn around(placement: &Placement, window: &Window, approach: Option<f64>) -> Result<[Self; 2]> {
-        let reach = WIDEST * placement.rolling_radius();
+        let reach = WIDEST * placement.rolling_radius().min(placement.rail().axle_distance());
         let window = Window { eta: window.eta.map(|eta| eta.clamp(-reach, reach)), ..*window };
         let side = (window.xi[1] - window.xi[0]).max(window.eta[1] - window.eta[0]);
         let [finest, coarsest] = FACET_LIMITS.map(|share| share * side);
@@ -79,8 +79,8 @@ impl Surface {
         Ok([Self::rail(placement, &window, tolerance)?, Self::wheel(placement, &window, tolerance)?])
     }
 
-    /// Makes the rail's surface over a window of the contact frame, as far as its profile goes. The window is widened to
-    /// hold C, which is one of the points. Along η the rail is straight and is divided like the wheel.
+    /// Makes the surface of a rail or roller over a window of the contact frame, as far as its profile goes. The window is
+    /// widened to hold C, which is one of the points. Along η a rail is straight and is divided like the wheel.
     ///
     /// `tolerance` \[mm\]: largest distance of the surface from the facets between its points.
     ///
@@ -88,6 +88,9 @@ impl Surface {
     /// A window that is not finite or wider than the wheel; a tolerance that is not positive, or takes too many points.
     pub fn rail(placement: &Placement, window: &Window, tolerance: f64) -> Result<Self> {
         check(placement, window, tolerance)?;
+        if let Some(under) = placement.under() {
+            return Self::wheel(under, window, tolerance).map(Self::upside_down);
+        }
         let stations = trace(placement.rail(), window.xi, tolerance)?;
         let radius = placement.rolling_radius();
         let along: Vec<f64> = angles(window.eta, radius, radius, tolerance / 2.0)?
@@ -135,6 +138,13 @@ impl Surface {
         Ok(Self { side, n, points, normals })
     }
 
+    /// Returns a wheel's surface as that of the roller that it is upside down.
+    fn upside_down(self) -> Self {
+        let points = self.points.iter().map(|p| Point3::new(p.x, p.y, -p.z)).collect();
+        let normals = self.normals.iter().map(|n| Vector3::new(n.x, n.y, -n.z)).collect();
+        Self { side: Side::Rail, points, normals, ..self }
+    }
+
     /// Returns this surface with its points in the rail profile's axes (x, y, z), y = η.
     #[must_use]
     pub fn in_rail_axes(&self, placement: &Placement) -> Self {
@@ -159,8 +169,8 @@ impl Surface {
         let near = SEEN * body.profile().extent();
         let separation = |point: &Point3<f64>| {
             let s = evaluator.separation(point.x, point.y);
-            let rail = evaluator.rail_height(point.x);
-            let seen = if self.side == Side::Rail { rail } else { rail + s };
+            let lower = evaluator.lower_height(point.x, point.y);
+            let seen = if self.side == Side::Rail { lower } else { lower + s };
             if (seen - point.z).abs() <= near { s } else { f64::NAN }
         };
         self.points.iter().map(separation).collect()

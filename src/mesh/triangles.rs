@@ -16,6 +16,7 @@ use super::spacing::{self, BoundaryNode, EdgeLimits};
 use crate::error::{Error, ErrorKind, Result, finite};
 use crate::patch::{Component, Patch};
 use crate::placement::Placement;
+use crate::separation::Evaluator;
 
 /// Edges along the side of a square with the area of a component, if no size is given.
 const EDGES_PER_SIDE: f64 = 16.0;
@@ -171,9 +172,9 @@ impl TriangleMesh {
         rings.sort_by(|a, b| b.enclosed().total_cmp(&a.enclosed()));
         let (region, chains) = best(&mut tracer, &rings, component.area, size)?;
         let (first, index) = (self.points.len(), self.size.len());
-        let rail = &placement.rail().section;
-        self.points
-            .extend(region.points.iter().map(|point| Point3::new(point.x, point.y, rail.height(point.x))));
+        let mut bodies = Evaluator::new(placement);
+        let on_lower = region.points.iter().map(|p| Point3::new(p.x, p.y, bodies.lower_height(p.x, p.y)));
+        self.points.extend(on_lower);
         self.component.extend(region.triangles.iter().map(|_| index));
         self.triangles.extend(region.triangles.iter().map(|triangle| triangle.map(|node| first + node)));
         let mut node = first;

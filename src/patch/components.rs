@@ -243,6 +243,7 @@ impl Region {
     fn rows(&mut self, outline: &mut Outline<'_>) -> Vec<Rows> {
         let [a, b] = self.xi();
         let skewed = outline.slicer.skewed.is_some();
+        let plain = outline.slicer.placement().skew() == 0.0;
         let rail = &outline.slicer.placement().rail().section;
         let deepest = if skewed { f64::NAN } else { self.deepest(outline, &[])[0] };
         let mut all = Vec::with_capacity(self.bands.len());
@@ -266,7 +267,7 @@ impl Region {
             band.corners.append(&mut more);
             sort(&mut band.corners);
             rows.sort_by(|p, q| p[0].total_cmp(&q[0]));
-            add_farthest(band, !skewed, &mut rows);
+            add_farthest(band, plain, &mut rows);
             rows.dedup_by_key(|row| row[0]);
             all.push(rows);
         }

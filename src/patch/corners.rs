@@ -23,6 +23,10 @@ const DOUBLINGS: usize = 40;
 pub(super) fn plain(outline: &Outline<'_>, band: &Band, deepest: f64, corners: &mut Vec<f64>) {
     let placement = outline.slicer.placement();
     let (approach, rail) = (outline.slicer.approach(), &placement.rail().section);
+    if placement.under().is_some() {
+        // The quadrature finds the corners of a roller's patches by itself.
+        return;
+    }
     let frame = placement.wheel().section.frame;
     let far = FAR_JOINTS * (approach - deepest).abs() * frame.sin.abs();
     let [a, b] = band.xi;

@@ -94,7 +94,7 @@ impl<'a> Outline<'a> {
 
     /// Returns η \[mm\] of the least s at ξ within the window. It is the place of the valley (η = 0 without skew), or the
     /// window's edge next to it, because s rises away from the valley.
-    pub(super) fn floor(&self, valley: Option<usize>, xi: f64) -> f64 {
+    pub(super) fn floor(&mut self, valley: Option<usize>, xi: f64) -> f64 {
         let ([from, to], lowest) = (self.window.eta, self.slicer.valley(valley, xi));
         // NaN stays NaN: there is no surface.
         if lowest < from {

@@ -1,9 +1,14 @@
 //! Finds the bands of a patch without skew. A line of constant ξ then meets the patch in at most one interval.
 
 use super::band::{Band, steps};
-use super::outline::{End, Outline};
+use super::outline::{End, Outline, Window};
 use crate::numerics::roots::{bracketed, last_where};
 use crate::patch::turning_points;
+use crate::placement::Placement;
+
+/// Number of intervals in which turns of the depth over a roller are sought if the lowest places along η are not in its midplane. A
+/// part is missed only if it begins and ends within one of them.
+const WINDOW_INTERVALS: usize = 512;
 
 /// Returns the bands by ascending ξ, and the ξ at which s may be least \[mm\].
 ///
@@ -11,7 +16,9 @@ use crate::patch::turning_points;
 /// its own two ends.
 pub(super) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<f64>) {
     let placement = outline.slicer.placement();
-    let Some([first, last]) = placement.overlap() else { return (Vec::new(), Vec::new()) };
+    // A skewed wheel lies over another part of a roller.
+    let over = if placement.skew() == 0.0 { placement.overlap() } else { placement.rail().section.reach() };
+    let Some([first, last]) = over else { return (Vec::new(), Vec::new()) };
     let [a, b] = [first.max(outline.window.xi[0]), last.min(outline.window.xi[1])];
     if a.is_nan() || b.is_nan() || a >= b {
         return (Vec::new(), Vec::new());
@@ -57,6 +64,17 @@ pub(super) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<f64>) {
     (bands, turns)
 }
 
+/// Finds \[s, ξ, η\] \[mm\] of the least s of a wheel on a roller; `None` where the bodies nowhere lie over each other.
+pub(crate) fn least_on_roller(placement: &Placement) -> Option<[f64; 3]> {
+    let [a, b] = placement.rail().section.reach()?;
+    let mut outline = Outline::new(placement, 0.0, &Window::UNBOUNDED);
+    // C comes first: rounding may put a turn next to it.
+    let places = std::iter::once(0.0).chain(turns_of_depth(&mut outline, a, b));
+    let found: Vec<_> =
+        places.map(|xi| outline.lowest(None, xi)).filter(|least| !least[0].is_nan()).collect();
+    found.into_iter().min_by(|p, q| p[0].total_cmp(&q[0]))
+}
+
 fn closed(
     outline: &mut Outline<'_>,
     (from, begin): (f64, Option<End>),
@@ -77,11 +95,27 @@ fn closed(
 /// between neighbours.
 fn turns_of_depth(outline: &mut Outline<'_>, a: f64, b: f64) -> Vec<f64> {
     let mut points = turning_points(outline.slicer.placement(), a, b);
-    let floor = outline.floor(None, a);
-    if floor == 0.0 {
+    let placement = outline.slicer.placement();
+    let (skewed, on_roller) = (placement.skew() != 0.0, placement.under().is_some());
+    if !skewed && outline.floor(None, a) == 0.0 {
         return points;
     }
-    points.extend(outline.turns_along(floor, [a, b]));
+    if !on_roller {
+        let floor = outline.floor(None, a);
+        points.extend(outline.turns_along(floor, [a, b]));
+    } else {
+        let step = (b - a) / WINDOW_INTERVALS as f64;
+        points.extend((1..WINDOW_INTERVALS).map(|k| a + step * k as f64));
+        points.sort_by(f64::total_cmp);
+        // At the lowest place along η, that of s has no part along η.
+        let mut slope = |xi: f64| {
+            let floor = outline.floor(None, xi);
+            outline.slicer.gradient(xi, floor)[0]
+        };
+        let turns: Vec<f64> =
+            points.windows(2).filter_map(|pair| bracketed(&mut slope, pair[0].next_up(), pair[1])).collect();
+        points.extend(turns);
+    }
     points.sort_by(f64::total_cmp);
     points.dedup();
     points
@@ -90,7 +124,8 @@ fn turns_of_depth(outline: &mut Outline<'_>, a: f64, b: f64) -> Vec<f64> {
 /// Returns the end of the patch between p and q, one of which is inside the patch, and what bounds it there.
 fn part_end(outline: &mut Outline<'_>, [p, q]: [f64; 2], first_inside: bool) -> (f64, End) {
     if let Some(tip) = bracketed(|xi| outline.depth(None, xi), p, q) {
-        return (tip, if outline.floor(None, tip) == 0.0 { End::Tip } else { End::Window });
+        let is_tip = outline.floor(None, tip) == outline.slicer.lowest(tip);
+        return (tip, if is_tip { End::Tip } else { End::Window });
     }
     // If one side has no surface, the end is the last ξ with a surface.
     let (on, off) = if first_inside { (p, q) } else { (q, p) };

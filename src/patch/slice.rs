@@ -3,9 +3,10 @@
 //! Without skew the wheel must rise by δ − g(ξ). This gives the sagitta e, and η = ±√(e(2w + e)) takes the place of
 //! (7.2)–(7.3). It is exact at the tips, where (7.3) cancels.
 
+use super::on_roller::OnRoller;
 use super::skewed::slicer::{Edge, STEP_ROUNDINGS, Skewed};
 use crate::placement::Placement;
-use crate::separation::wheel_surface::{SagittaPoint, Span, WheelSurface};
+use crate::separation::wheel_surface::{SagittaPoint, Span, Surface};
 use crate::separation::{Evaluator, midplane_gap};
 
 /// Most contractions of the sagitta step; each gains at least three digits away from vertical tangents.
@@ -36,10 +37,12 @@ pub struct Slice {
 #[derive(Debug)]
 pub struct Slicer<'a> {
     pub(super) placement: &'a Placement,
-    wheel: WheelSurface<'a>,
+    wheel: Surface<'a>,
     pub(super) evaluator: Evaluator<'a>,
     spans: Vec<Span>,
-    /// The slices under a skewed wheel; `None` without skew.
+    /// The slices of a wheel on a roller; `None` on a rail.
+    on_roller: Option<OnRoller<'a>>,
+    /// The slices under a skewed wheel on a rail; `None` without skew.
     pub(super) skewed: Option<Skewed<'a>>,
     approach: f64,
 }
@@ -49,10 +52,12 @@ impl<'a> Slicer<'a> {
     pub fn new(placement: &'a Placement, approach: f64) -> Self {
         Self {
             placement,
-            wheel: WheelSurface::new(placement),
+            wheel: Surface::new(placement),
             evaluator: Evaluator::new(placement),
             spans: Vec::new(),
-            skewed: (placement.skew() != 0.0).then(|| Skewed::new(placement, approach)),
+            on_roller: OnRoller::new(placement, approach),
+            skewed: (placement.skew() != 0.0 && placement.under().is_none())
+                .then(|| Skewed::new(placement, approach)),
             approach,
         }
     }
@@ -65,6 +70,9 @@ impl<'a> Slicer<'a> {
     /// Returns the minimum over η of s(ξ, η) − δ \[mm\]. It is negative inside the patch, zero at its tips, and NaN off the
     /// bodies.
     pub fn depth(&mut self, xi: f64) -> f64 {
+        if let Some(on_roller) = &mut self.on_roller {
+            return on_roller.depth(xi);
+        }
         match &mut self.skewed {
             Some(skewed) => skewed.lowest_valley(xi).map_or(f64::NAN, |valley| skewed.depth(valley, xi)),
             None => midplane_gap(self.placement, xi) - self.approach,
@@ -96,12 +104,15 @@ impl<'a> Slicer<'a> {
         if let (Some(skewed), Some(valley)) = (&mut self.skewed, valley) {
             return skewed.edges(xi, valley);
         }
+        if let Some(on_roller) = &mut self.on_roller {
+            return on_roller.edges(xi);
+        }
         let edge = self.half(xi)?;
         Some([Edge { eta: -edge.eta, ..edge }, edge])
     }
 
-    /// Returns both ends of the slice at ξ \[mm\] next to a guess, under a skewed wheel. Returns `None` without skew, and if they are
-    /// not surely those of the slice that was guessed.
+    /// Returns both ends of the slice at ξ \[mm\] next to a guess, under a skewed wheel on a rail. Returns `None` without skew, and if
+    /// they are not surely those of the slice that was guessed.
     pub(super) fn edges_near(&mut self, xi: f64, guess: [f64; 2]) -> Option<[f64; 2]> {
         self.skewed.as_mut()?.edges_near(xi, guess)
     }
@@ -139,12 +150,18 @@ impl<'a> Slicer<'a> {
     /// Returns η \[mm\] of the least s at ξ. It is 0 without skew, else the place where the wheel is parallel to η or its
     /// surface ends; NaN where the wheel has no surface.
     pub fn lowest(&mut self, xi: f64) -> f64 {
+        if let Some(on_roller) = &mut self.on_roller {
+            return on_roller.lowest(xi);
+        }
         let Some(skewed) = &mut self.skewed else { return 0.0 };
         skewed.lowest_valley(xi).map_or(f64::NAN, |valley| skewed.valleys.spot(valley, xi).eta)
     }
 
     /// Returns η of a valley at ξ \[mm\]; 0 without skew.
-    pub(super) fn valley(&self, valley: Option<usize>, xi: f64) -> f64 {
+    pub(super) fn valley(&mut self, valley: Option<usize>, xi: f64) -> f64 {
+        if let Some(on_roller) = &mut self.on_roller {
+            return on_roller.lowest(xi);
+        }
         let places = self.skewed.as_ref().zip(valley);
         places.map_or(0.0, |(skewed, valley)| skewed.valleys.spot(valley, xi).eta)
     }
@@ -162,9 +179,7 @@ impl<'a> Slicer<'a> {
 
     /// Returns \[∂s/∂ξ, ∂s/∂η\].
     pub(super) fn gradient(&mut self, xi: f64, eta: f64) -> [f64; 2] {
-        let rail = self.evaluator.rail_slope(xi);
-        let [along, across] = self.evaluator.wheel_slopes(xi, eta);
-        [along - rail, across]
+        self.evaluator.separation_and_gradient(xi, eta).1
     }
 
     /// Returns s(ξ, η) \[mm\].

@@ -105,8 +105,11 @@ impl Motion {
     /// assumed. The part of the velocity along ζ does not enter: it opens or closes the contact.
     ///
     /// # Errors
-    /// A wheel that neither moves nor turns along η at C.
+    /// A wheel that neither moves nor turns along η at C; a roller, whose own turning is not known.
     pub fn creepages(&self, placement: &Placement, half: f64, radius: f64) -> Result<Creepages> {
+        if placement.under().is_some() {
+            return Err(on_roller());
+        }
         let Rates { lateral, vertical, yaw, roll, pitch } = self.rates;
         let pitch = match pitch {
             Pitch::Rolling => -self.speed / radius,
@@ -153,6 +156,12 @@ impl Creepages {
         let along_zeta = w_eta * xi - w_xi * eta;
         [self.longitudinal - self.spin * xi + w_xi * zeta, along_xi * n_zeta - along_zeta * n_xi]
     }
+}
+
+/// Returns the error of a motion over a roller.
+pub(crate) fn on_roller() -> Error {
+    let expected = "a rail at rest; creepages are not available for rollers yet";
+    Error::new("motion", "a motion over a roller", expected, "leave the motion out")
 }
 
 /// Directions in the contact frame (ξ, η, ζ), all of length 1.

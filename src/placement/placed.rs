@@ -1,23 +1,49 @@
 //! A placed pair: contact frame ξηζ and both profiles in it (Report Sec. 4).
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use nalgebra::{Isometry2, Point2, Translation2, UnitComplex};
 
 use crate::error::{Error, Result, finite};
 use crate::profile::{Profile, ProfilePoint, Section, Side, Station};
 
-/// A profile with its outer surface in its own axes.
+/// How a body is swept from its profile.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Generator {
+    /// The body is extruded along y: a rail.
+    Extruded,
+    /// The body is revolved about an axle parallel to x, which lies above a wheel and below a roller.
+    Revolved {
+        /// Distance from the axle to the profile's origin \[mm\], positive, typically 460.
+        radius: f64,
+    },
+}
+
+impl Generator {
+    /// Returns the distance from the axle to the profile's origin \[mm\]; infinite for an extruded body.
+    pub fn radius(self) -> f64 {
+        match self {
+            Self::Extruded => f64::INFINITY,
+            Self::Revolved { radius } => radius,
+        }
+    }
+}
+
+/// A body in its own axes: a profile with its outer surface, and how it is swept.
 #[derive(Debug)]
-struct Prepared {
+struct Swept {
     profile: Profile,
     own_axes: Section,
+    side: Side,
+    generator: Generator,
+    /// A roller as a wheel, and its profile as a rail, both upside down; made once.
+    upside_down: OnceLock<[Arc<Swept>; 2]>,
 }
 
 /// One body of a placed pair.
 #[derive(Debug, Clone)]
 pub struct Body {
-    prepared: Arc<Prepared>,
+    swept: Arc<Swept>,
     /// The contact point C on it; its tangent gives θ_C.
     pub(crate) point: ProfilePoint,
     /// The profile in the contact frame.
@@ -47,51 +73,70 @@ pub struct Body {
 pub struct Placement {
     rail: Body,
     wheel: Body,
-    /// R \[mm\].
-    wheel_radius: f64,
     /// χ \[rad\], finite.
     skew: f64,
     /// Whether the frame's origin is C.
     at_contact: bool,
+    /// Angle ν \[rad\] about a roller's axle from its crown to C, + forward; 0 on a rail.
+    turn: f64,
+    /// The pair of [`Self::under`], made once.
+    under: OnceLock<Option<Box<Placement>>>,
 }
 
-/// What is placed: two right-hand profiles, prepared once, and the wheel's radius. A clone shares the profiles.
+/// What is placed: a rail or a roller, and a wheel, with right-hand profiles prepared once. A clone shares them.
 #[derive(Debug, Clone)]
 pub struct Pair {
-    rail: Arc<Prepared>,
-    wheel: Arc<Prepared>,
-    wheel_radius: f64,
+    rail: Arc<Swept>,
+    wheel: Arc<Swept>,
 }
 
 impl Pair {
-    /// Two profiles and the nominal rolling radius.
+    /// Makes the pair of an extruded rail and a wheel with its nominal rolling radius \[mm\].
     ///
     /// # Errors
     /// A radius that is not positive and finite; a wheel profile that reaches its own axle.
     pub fn new(rail: Profile, wheel: Profile, wheel_radius: f64) -> Result<Self> {
-        if finite("wheel: radius", wheel_radius)? <= 0.0 {
-            let found = wheel_radius.to_string();
-            return Err(Error::new(
-                "wheel: radius",
-                found,
-                "a positive length in mm",
-                "give the rolling radius",
-            ));
-        }
-        let highest = wheel.segments().iter().flat_map(|s| [s.start().z, s.end().z]).fold(f64::MIN, f64::max);
-        if highest >= wheel_radius {
-            let found = format!("a profile up to z = {highest} mm");
-            let expected = format!("all of it below the axle at z = R = {wheel_radius} mm");
-            return Err(Error::new("wheel: profile", found, expected, "check unit, sign of z and radius"));
-        }
-        let [rail, wheel] = [(rail, Side::Rail), (wheel, Side::Wheel)].map(|(profile, side)| {
-            let own_axes = Section::own_axes(&profile, side);
-            Arc::new(Prepared { profile, own_axes })
-        });
-        Ok(Self { rail, wheel, wheel_radius })
+        let wheel = Swept::revolved(wheel, Side::Wheel, wheel_radius)?;
+        Ok(Self { rail: Arc::new(Swept::extruded(rail, Side::Rail)), wheel: Arc::new(wheel) })
     }
 
-    /// The rail profile.
+    /// Returns the pair with the rail's profile revolved about an axle below it: a wheel on a roller. `radius` \[mm\] is the
+    /// distance from that axle to the origin of the rail's profile, typically 350.
+    ///
+    /// # Errors
+    /// A radius that is not positive and finite; a profile that reaches the roller's axle.
+    ///
+    /// # Examples
+    /// ```
+    /// # use wheelrail::{Arc, Evaluator, Half, Pair, Profile, Segment};
+    /// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
+    /// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
+    /// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
+    /// let pair = Pair::new(rail, wheel, 460.0)?.on_roller(350.0)?; // a crown of 300 mm below a cylinder of 460 mm
+    /// let placement = pair.placed(0.0, 0.0, 0.0)?;
+    /// let below = |radius: f64| radius - f64::sqrt(radius * radius - 5.0 * 5.0);
+    /// let s = Evaluator::new(&placement).separation(0.0, 5.0);
+    /// assert!((s - (below(460.0) + below(350.0))).abs() < 1e-13);
+    /// # Ok::<(), wheelrail::Error>(())
+    /// ```
+    pub fn on_roller(&self, radius: f64) -> Result<Self> {
+        let roller = Swept::revolved(self.rail().clone(), Side::Rail, radius)?;
+        Ok(Self { rail: Arc::new(roller), wheel: Arc::clone(&self.wheel) })
+    }
+
+    /// Returns the pair with another profile of its rail or roller.
+    ///
+    /// # Errors
+    /// A profile that reaches the roller's axle.
+    pub fn with_rail(&self, profile: Profile) -> Result<Self> {
+        let rail = match self.rail.generator {
+            Generator::Extruded => Swept::extruded(profile, Side::Rail),
+            Generator::Revolved { radius } => Swept::revolved(profile, Side::Rail, radius)?,
+        };
+        Ok(Self { rail: Arc::new(rail), wheel: Arc::clone(&self.wheel) })
+    }
+
+    /// The profile of the rail or roller.
     pub fn rail(&self) -> &Profile {
         &self.rail.profile
     }
@@ -108,7 +153,12 @@ impl Pair {
 
     /// R \[mm\].
     pub fn wheel_radius(&self) -> f64 {
-        self.wheel_radius
+        self.wheel.generator.radius()
+    }
+
+    /// The distance \[mm\] from a roller's axle to the origin of its profile; `None` for a rail.
+    pub fn roller_radius(&self) -> Option<f64> {
+        Some(self.rail.generator.radius()).filter(|radius| radius.is_finite())
     }
 
     /// Places the pair in contact at chosen abscissae \[mm\] of the two profiles, the Report's way: (4.9)–(4.12). Each body
@@ -117,9 +167,9 @@ impl Pair {
     /// # Errors
     /// An abscissa off its profile, or where the profile is vertical; a skew that is not finite.
     pub fn placed(&self, rail_x: f64, wheel_x: f64, skew: f64) -> Result<Placement> {
-        let rail = Body::at(&self.rail, rail_x, Side::Rail).map_err(|e| e.within("contact: rail_x"))?;
-        let wheel = Body::at(&self.wheel, wheel_x, Side::Wheel).map_err(|e| e.within("contact: wheel_x"))?;
-        self.touching(rail, wheel, skew)
+        let rail = Body::at(&self.rail, rail_x).map_err(|e| e.within("contact: rail_x"))?;
+        let wheel = Body::at(&self.wheel, wheel_x).map_err(|e| e.within("contact: wheel_x"))?;
+        Placement::touching(rail, wheel, skew)
     }
 
     /// Places the pair in contact along a given common tangent: abscissa \[mm\] and angle of ξ \[rad\] in the own axes of each
@@ -129,31 +179,17 @@ impl Pair {
     /// # Errors
     /// An abscissa off its profile, or a skew that is not finite.
     pub fn placed_along(&self, rail: [f64; 2], wheel: [f64; 2], skew: f64) -> Result<Placement> {
-        let rail = Body::along(&self.rail, rail, Side::Rail).map_err(|e| e.within("contact: rail"))?;
-        let wheel = Body::along(&self.wheel, wheel, Side::Wheel).map_err(|e| e.within("contact: wheel"))?;
-        self.touching(rail, wheel, skew)
-    }
-
-    fn touching(&self, rail: Body, wheel: Body, skew: f64) -> Result<Placement> {
-        let skew = finite("contact: skew", skew)?;
-        Ok(Placement { rail, wheel, wheel_radius: self.wheel_radius, skew, at_contact: true })
+        let rail = Body::along(&self.rail, rail).map_err(|e| e.within("contact: rail"))?;
+        let wheel = Body::along(&self.wheel, wheel).map_err(|e| e.within("contact: wheel"))?;
+        Placement::touching(rail, wheel, skew)
     }
 
     /// This pair in the contact frames of another placed pair, so that s of both can be compared point by point.
     #[must_use]
     pub fn placed_like(&self, other: &Placement) -> Placement {
-        let body = |prepared: &Arc<Prepared>, like: &Body, side| Body {
-            section: Section::in_frame(&prepared.profile, like.point.station, side),
-            prepared: Arc::clone(prepared),
-            point: like.point,
-        };
-        Placement {
-            rail: body(&self.rail, &other.rail, Side::Rail),
-            wheel: body(&self.wheel, &other.wheel, Side::Wheel),
-            wheel_radius: self.wheel_radius,
-            skew: other.skew,
-            at_contact: other.at_contact,
-        }
+        let [rail, wheel] = [(&self.rail, &other.rail), (&self.wheel, &other.wheel)]
+            .map(|(swept, like)| Body::in_frame(swept, like.point));
+        Placement { rail, wheel, under: OnceLock::new(), ..other.clone() }
     }
 }
 
@@ -162,30 +198,57 @@ impl Pair {
 const SAME_TANGENT: f64 = 1e-9;
 
 impl Body {
-    fn at(prepared: &Arc<Prepared>, x: f64, side: Side) -> Result<Self> {
-        let point = prepared.point(x)?;
-        if point.station.cos > 0.0 { Ok(Self::smooth(prepared, point, side)) } else { Err(prepared.off(x)) }
+    fn at(swept: &Arc<Swept>, x: f64) -> Result<Self> {
+        let point = swept.point(x)?;
+        if point.station.cos > 0.0 { Ok(Self::smooth(swept, point)) } else { Err(swept.off(x)) }
     }
 
-    fn along(prepared: &Arc<Prepared>, [x, angle]: [f64; 2], side: Side) -> Result<Self> {
-        let mut point = prepared.point(x)?;
+    fn along(swept: &Arc<Swept>, [x, angle]: [f64; 2]) -> Result<Self> {
+        let mut point = swept.point(x)?;
         if (point.station.angle() - angle).abs() <= SAME_TANGENT {
-            return Ok(Self::smooth(prepared, point, side));
+            return Ok(Self::smooth(swept, point));
         }
         let (sin, cos) = angle.sin_cos();
         (point.station.cos, point.station.sin) = (cos, sin);
-        let section = Section::in_frame(&prepared.profile, point.station, side);
-        Ok(Self { prepared: Arc::clone(prepared), point, section })
+        Ok(Self::in_frame(swept, point))
     }
 
-    fn smooth(prepared: &Arc<Prepared>, point: ProfilePoint, side: Side) -> Self {
-        let section = Section::at_contact(&prepared.profile, &point, side);
-        Self { prepared: Arc::clone(prepared), point, section }
+    fn smooth(swept: &Arc<Swept>, point: ProfilePoint) -> Self {
+        let section = Section::at_contact(&swept.profile, &point, swept.side);
+        Self { swept: Arc::clone(swept), point, section }
+    }
+
+    fn in_frame(swept: &Arc<Swept>, point: ProfilePoint) -> Self {
+        let section = Section::in_frame(&swept.profile, point.station, swept.side);
+        Self { swept: Arc::clone(swept), point, section }
+    }
+
+    /// Returns a roller as a wheel, and its profile as a rail, both upside down; `None` for a rail.
+    fn upside_down(&self) -> Option<[Self; 2]> {
+        let Generator::Revolved { .. } = self.generator() else { return None };
+        let point = self.point.upside_down();
+        let made = self.swept.upside_down().each_ref().map(|swept| {
+            if self.is_smooth() { Self::smooth(swept, point) } else { Self::in_frame(swept, point) }
+        });
+        Some(made)
+    }
+
+    /// How the body is swept from its profile.
+    pub fn generator(&self) -> Generator {
+        self.swept.generator
+    }
+
+    /// Distance \[mm\] from the body's axle to C along its own z: R − z_C of a wheel, R + z_C of a roller; infinite for a rail.
+    pub fn axle_distance(&self) -> f64 {
+        match self.swept.side {
+            Side::Rail => self.generator().radius() + self.point.station.z,
+            Side::Wheel => self.generator().radius() - self.point.station.z,
+        }
     }
 
     /// The profile in its own axes.
     pub fn profile(&self) -> &Profile {
-        &self.prepared.profile
+        &self.swept.profile
     }
 
     /// The contact point C on it; its tangent gives θ_C.
@@ -220,7 +283,45 @@ impl Body {
     }
 }
 
-impl Prepared {
+impl Swept {
+    fn extruded(profile: Profile, side: Side) -> Self {
+        let own_axes = Section::own_axes(&profile, side);
+        Self { profile, own_axes, side, generator: Generator::Extruded, upside_down: OnceLock::new() }
+    }
+
+    /// Returns the wheel and the rail of [`Body::upside_down`]. Both have the outer surface of the roller's profile, which is that of
+    /// a wheel when it is upside down.
+    fn upside_down(&self) -> &[Arc<Self>; 2] {
+        self.upside_down.get_or_init(|| {
+            let rail = Self::extruded(self.profile.upside_down(), Side::Wheel);
+            let wheel =
+                Self { generator: self.generator, ..Self::extruded(rail.profile.clone(), Side::Wheel) };
+            [rail, wheel].map(Arc::new)
+        })
+    }
+
+    fn revolved(profile: Profile, side: Side, radius: f64) -> Result<Self> {
+        let [name, advice, reach, axle] = match side {
+            Side::Rail => ["roller", "give the distance from its axle", "down", "above its axle at z = −"],
+            Side::Wheel => ["wheel", "give the rolling radius", "up", "below the axle at z = R = "],
+        };
+        let place = format!("{name}: radius");
+        if finite(&place, radius)? <= 0.0 {
+            return Err(Error::new(place, radius.to_string(), "a positive length in mm", advice));
+        }
+        let towards = |z: f64| if side == Side::Rail { -z } else { z };
+        let ends = profile.segments().iter().flat_map(|s| [s.start().z, s.end().z]);
+        let nearest = ends.map(towards).fold(f64::MIN, f64::max);
+        if nearest >= radius {
+            let found = format!("a profile {reach} to z = {} mm", towards(nearest));
+            let expected = format!("all of it {axle}{radius} mm");
+            let place = format!("{name}: profile");
+            return Err(Error::new(place, found, expected, "check unit, sign of z and radius"));
+        }
+        let generator = Generator::Revolved { radius };
+        Ok(Self { generator, ..Self::extruded(profile, side) })
+    }
+
     fn point(&self, x: f64) -> Result<ProfilePoint> {
         self.own_axes.point(&self.profile, finite("", x)?).ok_or_else(|| self.off(x))
     }
@@ -234,25 +335,58 @@ impl Prepared {
 }
 
 impl Placement {
-    /// The extruded body, below.
+    fn touching(rail: Body, wheel: Body, skew: f64) -> Result<Self> {
+        let skew = finite("contact: skew", skew)?;
+        Ok(Self { rail, wheel, skew, at_contact: true, turn: 0.0, under: OnceLock::new() })
+    }
+
+    /// Returns the same contact at the angle ν \[rad\] ahead of a roller's crown.
+    pub(crate) fn turned(self, turn: f64) -> Self {
+        Self { turn, ..self }
+    }
+
+    /// Angle ν \[rad\] about a roller's axle from its crown to C, + forward: the contact frame's ζ leans forward by it. 0 on a
+    /// rail.
+    pub fn turn(&self) -> f64 {
+        self.turn
+    }
+
+    /// Cosine of the angle between the common normal and the vertical: cosθ, on a roller cosθ cosν.
+    pub(crate) fn upright(&self) -> f64 {
+        self.rail.point.station.cos * self.turn.cos()
+    }
+
+    /// A roller seen upside down: a wheel on a rail with the roller's own profile, touching at C without skew. Its separation is
+    /// how far the roller lies below its profile, so that s of a wheel on a roller is s on a rail plus s of this pair. The
+    /// frame's ξ and η are those of the contact, and its ζ is the other way. `None` for a rail.
+    pub fn under(&self) -> Option<&Self> {
+        let made = || {
+            let [rail, wheel] = self.rail.upside_down()?;
+            let at_contact = self.at_contact;
+            Some(Box::new(Self { rail, wheel, skew: 0.0, at_contact, turn: 0.0, under: OnceLock::new() }))
+        };
+        self.under.get_or_init(made).as_deref()
+    }
+
+    /// The lower body: a rail or a roller.
     pub fn rail(&self) -> &Body {
         &self.rail
     }
 
-    /// The revolved body, above.
+    /// The upper body: a wheel.
     pub fn wheel(&self) -> &Body {
         &self.wheel
     }
 
     /// The pair that is placed; it shares the profiles.
     pub fn pair(&self) -> Pair {
-        let [rail, wheel] = [&self.rail, &self.wheel].map(|body| Arc::clone(&body.prepared));
-        Pair { rail, wheel, wheel_radius: self.wheel_radius }
+        let [rail, wheel] = [&self.rail, &self.wheel].map(|body| Arc::clone(&body.swept));
+        Pair { rail, wheel }
     }
 
     /// R \[mm\], the nominal rolling radius: distance from the axle to the wheel profile's origin.
     pub fn wheel_radius(&self) -> f64 {
-        self.wheel_radius
+        self.wheel.generator().radius()
     }
 
     /// χ \[rad\], the skew: 0 without yaw, + turns the wheel from ξ to η.
@@ -290,18 +424,17 @@ impl Placement {
             let (found, expected) = (format!("a skew of {} rad", self.skew), "a wheel without yaw");
             return Err(Error::new("contact", found, expected, "keep the frame of the contact point"));
         }
-        let point = self.rail.prepared.point(rail_x).map_err(|e| e.within("contact: rail_x"))?;
+        let point = self.rail.swept.point(rail_x).map_err(|e| e.within("contact: rail_x"))?;
         let here = self.rail.contact_frame();
         let origin = here.inverse_transform_point(&Point2::new(point.station.x, point.station.z));
         let turn = UnitComplex::new(angle) * here.rotation.inverse();
-        let body = |body: &Body, mut point: ProfilePoint, side| {
+        let body = |body: &Body, mut point: ProfilePoint| {
             let (origin, along) = (body.contact_frame() * origin, body.contact_frame().rotation * turn);
             point.station = Station { x: origin.x, z: origin.y, cos: along.re, sin: along.im };
-            let section = Section::in_frame(&body.prepared.profile, point.station, side);
-            Body { prepared: Arc::clone(&body.prepared), point, section }
+            Body::in_frame(&body.swept, point)
         };
-        let wheel = body(&self.wheel, self.wheel.point, Side::Wheel);
-        Ok(Self { rail: body(&self.rail, point, Side::Rail), wheel, at_contact: false, ..self.clone() })
+        let (rail, wheel) = (body(&self.rail, point), body(&self.wheel, self.wheel.point));
+        Ok(Self { rail, wheel, at_contact: false, under: OnceLock::new(), ..self.clone() })
     }
 
     /// Whether the frame's origin is the contact point C: not so in a frame by [`Self::reframed`].
@@ -311,7 +444,7 @@ impl Placement {
 
     /// R − z_C \[mm\]: distance from the axle to C.
     pub fn rolling_radius(&self) -> f64 {
-        self.wheel_radius - self.wheel.point.station.z
+        self.wheel.axle_distance()
     }
 
     /// The ξ where both bodies have a surface in the midplane, outermost ends.

@@ -172,6 +172,11 @@ impl Arc {
         Self { start: self.end.mirrored(), end: self.start.mirrored(), radius: self.radius }
     }
 
+    pub(super) fn upside_down(&self) -> Self {
+        let radius = if self.radius.is_finite() { -self.radius } else { self.radius };
+        Self { start: self.start.upside_down(), end: self.end.upside_down(), radius }
+    }
+
     pub(super) fn placed_by(&self, frame: &Station) -> Self {
         Self { start: self.start.placed_by(frame), end: self.end.placed_by(frame), radius: self.radius }
     }

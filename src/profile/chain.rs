@@ -167,6 +167,11 @@ impl Profile {
         mirrored
     }
 
+    /// Returns the mirror image under z → −z: a profile of the other body.
+    pub(crate) fn upside_down(&self) -> Self {
+        self.mapped(|s| s.map(Arc::upside_down, Polynomial::upside_down))
+    }
+
     pub(super) fn placed(&self, frame: &Station) -> Self {
         self.mapped(|s| s.map(|a| a.placed_by(frame), |p| p.placed_by(frame)))
     }

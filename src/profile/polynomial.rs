@@ -144,6 +144,10 @@ impl Polynomial {
         Self { t: [-self.t[1], -self.t[0]], x: flip(&self.x, -1.0), z: flip(&self.z, 1.0) }
     }
 
+    pub(super) fn upside_down(&self) -> Self {
+        Self { z: self.z.iter().map(|&c| -c).collect(), ..self.clone() }
+    }
+
     pub(super) fn placed_by(&self, frame: &Station) -> Self {
         let [mut x, mut z] = turned([&self.x, &self.z], frame.cos, -frame.sin);
         x[0] += frame.x;

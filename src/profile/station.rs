@@ -58,6 +58,12 @@ impl Station {
         }
     }
 
+    /// Returns the mirror image under z → −z.
+    #[must_use]
+    pub(crate) fn upside_down(&self) -> Self {
+        Self { z: -self.z, sin: -self.sin, ..*self }
+    }
+
     /// Returns the mirror image under x → −x. Its tangent still points towards larger x.
     #[must_use]
     pub fn mirrored(&self) -> Self {

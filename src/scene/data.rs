@@ -25,6 +25,9 @@ pub struct Scene {
     /// The wheel profile and its rolling radius; of both sides likewise.
     #[serde(default, skip_serializing_if = "ProfileData::is_empty")]
     pub wheel: ProfileData,
+    /// The roller that stands in place of each rail: the rail's profile is revolved, not extruded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub roller: Option<RollerData>,
     /// What is different on the left side of a wheelset.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub left: Option<SideData>,
@@ -91,6 +94,15 @@ impl Scene {
         let moved = |wheelset: &WheelsetData| WheelsetData { lateral, yaw, roll, ..wheelset.clone() };
         Self { wheelset: self.wheelset.as_ref().map(moved), ..self.clone() }
     }
+}
+
+/// A roller below the wheel, with the rail's profile.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RollerData {
+    /// Distance from the roller's axle, which is below, to the origin of the rail's profile, mm.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub radius: f64,
 }
 
 /// A chosen pair of points, or a placed single wheel that is lowered until it touches.

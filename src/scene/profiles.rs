@@ -53,7 +53,7 @@ fn in_unit(
 /// # Errors
 /// Anything that is wrong with a profile; the error names the key.
 pub(super) fn profiles(scene: &Scene, folder: &Path) -> Result<Profiles> {
-    let both = || of_side([&scene.rail, &scene.wheel], ["rail", "wheel"], scene.wheel.radius, folder);
+    let both = || of_side(scene, [&scene.rail, &scene.wheel], ["rail", "wheel"], folder);
     let own = |name: &str, side: &Option<SideData>| {
         let Some(SideData { rail, wheel, .. }) = side else { return Ok(None) };
         if rail.is_none() && wheel.is_none() {
@@ -63,7 +63,7 @@ pub(super) fn profiles(scene: &Scene, folder: &Path) -> Result<Profiles> {
             .map(|(body, own)| if own { format!("{name}: {body}") } else { body.into() });
         let data = [rail.as_ref().unwrap_or(&scene.rail), wheel.as_ref().unwrap_or(&scene.wheel)];
         let places = places.each_ref().map(String::as_str);
-        of_side(data, places, scene.wheel.radius, folder).map(Some)
+        of_side(scene, data, places, folder).map(Some)
     };
     let (right, left) = (own("right", &scene.right)?, own("left", &scene.left)?);
     match (right, left) {
@@ -73,13 +73,8 @@ pub(super) fn profiles(scene: &Scene, folder: &Path) -> Result<Profiles> {
     }
 }
 
-/// Gives rail and wheel of one side; `places` are their keys, `radius` is that of a wheel that has none of its own.
-fn of_side(
-    data: [&ProfileData; 2],
-    places: [&str; 2],
-    radius: Option<f64>,
-    folder: &Path,
-) -> Result<SideProfiles> {
+/// Gives rail and wheel of one side of a scene; `places` are their keys.
+fn of_side(scene: &Scene, data: [&ProfileData; 2], places: [&str; 2], folder: &Path) -> Result<SideProfiles> {
     let rail = profile(data[0], folder, Side::Rail).map_err(|e| e.within(places[0]))?;
     if let Some(radius) = data[0].radius {
         let expected = "a radius only for the wheel";
@@ -88,15 +83,23 @@ fn of_side(
     let wheel = profile(data[1], folder, Side::Wheel).map_err(|e| e.within(places[1]))?;
     let radius = data[1]
         .radius
-        .or(radius)
+        .or(scene.wheel.radius)
         .ok_or_else(|| Error::new(places[1], "no `radius`", "the nominal rolling radius in mm", "add it"))?;
-    if radius > FARTHEST {
-        let expected = format!("at most {FARTHEST:e} mm");
-        let found = format!("{radius:e}");
-        return Err(Error::new(format!("{}: radius", places[1]), found, expected, "take a plane for a rail"));
-    }
-    let pair = Pair::new(rail.profile, wheel.profile, radius)?;
+    let on_rail = Pair::new(rail.profile, wheel.profile, near(places[1], radius)?)?;
+    let pair = match &scene.roller {
+        Some(roller) => on_rail.on_roller(near("roller", roller.radius)?)?,
+        None => on_rail,
+    };
     Ok(SideProfiles { pair, measured: Bodies { rail: rail.measured, wheel: wheel.measured } })
+}
+
+/// Returns a radius \[mm\] if its square is far from overflowing.
+fn near(place: &str, radius: f64) -> Result<f64> {
+    if radius > FARTHEST {
+        let (found, expected) = (format!("{radius:e}"), format!("at most {FARTHEST:e} mm"));
+        return Err(Error::new(format!("{place}: radius"), found, expected, "take a plane for a rail"));
+    }
+    Ok(radius)
 }
 
 /// Returns a profile as the scene places it, and the record of a measured one.

@@ -16,6 +16,7 @@ use crate::error::{Error, Result, finite};
 use crate::load::{Elastic, effective_modulus};
 use crate::mesh::checked_size;
 use crate::numerics::bodies::Bodies;
+use crate::placement::on_roller;
 
 /// Smallest approach other than 0 \[mm\], and smallest load \[N\]. They are far below any real ones, and their powers do
 /// not underflow.
@@ -42,6 +43,9 @@ pub fn with_profiles(scene: &Scene, profiles: Profiles, name: &str) -> Result<Ca
 
 fn case(scene: &Scene, name: &str, profiles: impl FnOnce() -> Result<Profiles>) -> Result<Case> {
     let question = question(scene)?;
+    if scene.roller.is_some() && question.motion.is_some() {
+        return Err(on_roller());
+    }
     let axes = asked_axes(&scene.grid)?;
     let (standing, profiles) = standing(scene, profiles()?)?;
     let (outputs, echo, doubts) = (outputs(scene)?, echo(scene, name), doubts(scene, &profiles));

@@ -105,7 +105,7 @@ fn side(
     if roll != 0.0 {
         // Profiles turn counter-clockwise, and the right-hand side's roll is clockwise.
         let rail = pair.rail().clone().rotated(UnitComplex::new(-sign * roll));
-        *pair = Pair::new(rail, pair.wheel().clone(), pair.wheel_radius())?;
+        *pair = pair.with_rail(rail)?;
     }
     SideOnTrack::new(pair, track, Wheelset::new(wheels, pair.wheel_radius())?)
 }

@@ -41,6 +41,8 @@ pub(super) struct Meeting {
     pub elements: [u32; 2],
     /// Parameter on the wheel's and on the rail's element.
     pub parameters: [f64; 2],
+    /// Angle ν \[rad\] of the roller's meridian plane in which they meet, + ahead of its crown; 0 on a rail.
+    pub turn: f64,
 }
 
 /// A point of the wheel's or the rail's profile, with its signed radius and its parameter.
@@ -127,7 +129,7 @@ impl<'a> Search<'a> {
         if !seen || over - under < -EQUAL_CURVATURES * (over.abs() + under.abs()) {
             return None;
         }
-        let meeting = Meeting { elements, parameters: [wheel.parameter, rail.parameter] };
+        let meeting = Meeting { elements, parameters: [wheel.parameter, rail.parameter], turn: 0.0 };
         Some(Candidate {
             gap,
             rail: *below,

@@ -31,6 +31,8 @@ use crate::profile::Station;
 pub(super) struct Attitude {
     /// Abscissa of the wheel's profile origin in the rail's axes \[mm\].
     pub offset: f64,
+    /// Ordinate y of the wheel's profile origin \[mm\]. It counts on a roller, whose crown is at y = 0.
+    pub along: f64,
     /// Nominal rolling radius R \[mm\].
     pub radius: f64,
     /// sinψ, ψ the yaw.
@@ -52,10 +54,20 @@ pub(super) struct Attitude {
 impl Attitude {
     /// Calculates the attitude of a pose.
     pub fn new(offset: f64, yaw: f64, roll: f64, radius: f64) -> Self {
-        let ((sin_yaw, cos_yaw), (sin_roll, cos_roll)) = (yaw.sin_cos(), roll.sin_cos());
+        Self::of_directions(offset, yaw.sin_cos().into(), roll.sin_cos().into(), radius)
+    }
+
+    /// Calculates the attitude from sine and cosine of yaw and roll.
+    pub fn of_directions(
+        offset: f64,
+        [sin_yaw, cos_yaw]: [f64; 2],
+        [sin_roll, cos_roll]: [f64; 2],
+        radius: f64,
+    ) -> Self {
         let tan_yaw = sin_yaw / cos_yaw;
         let (steepest_tangent, shift) = (tan_yaw.abs().recip(), tan_yaw * sin_yaw);
-        Self { offset, radius, sin_yaw, cos_yaw, sin_roll, cos_roll, tan_yaw, steepest_tangent, shift }
+        let along = 0.0;
+        Self { offset, along, radius, sin_yaw, cos_yaw, sin_roll, cos_roll, tan_yaw, steepest_tangent, shift }
     }
 
     /// Returns sin²ψ.

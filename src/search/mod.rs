@@ -21,7 +21,8 @@
 //! tree over the elements of each profile (`body`) bounds the gap of whole stretches at once (`placed`), so
 //! that only pairs of elements that may be lowest are solved (`walk`). Arcs and lines have closed forms
 //! (`arcs`); polynomials and yawed arcs are solved by bounds of their curvatures and Newton's method
-//! (`stretches`). So the lowest contact cannot be missed.
+//! (`stretches`). So the lowest contact cannot be missed. Over a roller a search in one of its meridian planes bounds all gaps,
+//! and each place of contact is followed to a plane of its own (`roller`).
 //!
 //! Only the part of each profile that faces the other body in its own axes counts
 //! ([`Section`](crate::profile::Section)): a part of a wheel that faces down only because of the roll (a
@@ -35,6 +36,7 @@ mod element;
 mod locus;
 mod parallel;
 mod placed;
+mod roller;
 mod stretches;
 mod sweep;
 mod touch;

@@ -5,6 +5,7 @@ use nalgebra::{Rotation3, Vector3};
 use super::body::SearchBody;
 use super::candidates::{Candidate, Meeting, Search};
 use super::locus::Attitude;
+use super::roller::Meridian;
 use super::walk::Walk;
 use crate::error::{Error, Result, finite};
 use crate::placement::{Pair, Placement};
@@ -25,6 +26,8 @@ pub struct ProfilePair {
     rail: SearchBody,
     wheel: SearchBody,
     radius: f64,
+    /// Distance \[mm\] from a roller's axle to the origin of its profile; `None` for a rail.
+    roller: Option<f64>,
     /// Size against which rounding is judged: the sum of both extents \[mm\].
     extent: f64,
 }
@@ -64,10 +67,13 @@ pub struct Contact {
     /// Height of the wheel profile's point over the wheel profile's origin \[mm\].
     pub wheel_z: f64,
     /// Position along the rail, + forward \[mm\], from the vertical plane across the track through the
-    /// wheel's centre: sinψ (x_W − ϱ tanθ_W). Behind the centre at a flange when yaw > 0.
+    /// wheel's centre: sinψ (x_W − ϱ tanθ_W) on a rail. Behind the centre at a flange when yaw > 0.
     pub y: f64,
+    /// Angle ν \[rad\] about a roller's axle from its crown to the contact, + forward; 0 on a rail. The contact then lies at
+    /// (R + z) sin ν ahead of the crown, with R the roller's radius and z = `rail_z`.
+    pub turn: f64,
     /// Contact angle θ_R \[rad\]: tangent angle of the common tangent in the rail's axes, + counter-clockwise
-    /// from x to z. A flange contact has 1.2.
+    /// from x to z; on a roller, in its meridian plane through the contact. A flange contact has 1.2.
     pub contact_angle: f64,
     /// Tangent angle θ_W \[rad\] of the wheel profile at the contact, in the wheel profile's axes. Without
     /// yaw it is the contact angle plus the roll.
@@ -106,7 +112,7 @@ pub struct Touch<'a> {
 pub struct ContactSearch<'a> {
     pair: &'a ProfilePair,
     walk: Walk,
-    candidates: Vec<Candidate>,
+    pub(super) candidates: Vec<Candidate>,
     contacts: Vec<Contact>,
     /// The contact of the last search.
     last: Option<Meeting>,
@@ -141,6 +147,7 @@ impl ProfilePair {
             rail: body(rail, below, Side::Rail)?,
             wheel: body(wheel, above, Side::Wheel)?,
             radius: pair.wheel_radius(),
+            roller: pair.roller_radius(),
             extent: rail.extent() + wheel.extent(),
         })
     }
@@ -148,6 +155,11 @@ impl ProfilePair {
     /// Returns the nominal rolling radius R \[mm\].
     pub fn radius(&self) -> f64 {
         self.radius
+    }
+
+    /// Returns the distance \[mm\] from a roller's axle to the origin of its profile; `None` for a rail.
+    pub fn roller(&self) -> Option<f64> {
+        self.roller
     }
 
     /// Makes a search over this pair.
@@ -225,7 +237,10 @@ impl ContactSearch<'_> {
         let rounding = 16.0 * f64::EPSILON * self.pair.extent;
         self.contacts.clear();
         for candidate in &self.candidates {
-            let contact = contact(attitude, candidate, height);
+            let contact = match self.pair.roller_under(attitude) {
+                Some(roller) => contact_on_roller(attitude, roller, candidate, height),
+                None => contact(attitude, candidate, height),
+            };
             let near = |c: &&mut Contact| {
                 (c.rail_x - contact.rail_x).abs() <= apart && (c.wheel_x - contact.wheel_x).abs() <= apart
             };
@@ -242,6 +257,14 @@ impl ContactSearch<'_> {
 
     /// Returns the lowest candidate, and leaves all others up to `within` above it in the buffer.
     pub(super) fn lower(&mut self, attitude: &Attitude, within: f64) -> Option<Candidate> {
+        match self.pair.roller_under(attitude) {
+            Some(roller) => self.lower_on_roller(attitude, roller, within),
+            None => self.lower_at(attitude, within),
+        }
+    }
+
+    /// Returns the lowest candidate over a rail, and leaves all others up to `within` above it in the buffer.
+    pub(super) fn lower_at(&mut self, attitude: &Attitude, within: f64) -> Option<Candidate> {
         self.candidates.clear();
         let mut search = self.pair.at(attitude, within, &mut self.candidates);
         search.lowest = self.pair.highest(attitude);
@@ -256,8 +279,25 @@ impl ContactSearch<'_> {
 
     /// Returns the place of least gap near a former one at another attitude; `None` if it has left its two
     /// elements.
-    pub(super) fn follow(&self, attitude: &Attitude, meeting: &Meeting) -> Option<Candidate> {
+    pub(super) fn follow(&mut self, attitude: &Attitude, meeting: &Meeting) -> Option<Candidate> {
+        match self.pair.roller_under(attitude) {
+            Some(roller) => self.at_own_turn(attitude, roller, meeting, None),
+            None => self.follow_over_rail(attitude, meeting),
+        }
+    }
+
+    /// Returns the place of least gap over a rail near a former one; `None` if it has left its two elements.
+    pub(super) fn follow_over_rail(&self, attitude: &Attitude, meeting: &Meeting) -> Option<Candidate> {
         super::walk::follow(&self.pair.at(attitude, 0.0, &mut Vec::new()), meeting)
+    }
+
+    /// Returns the abscissae \[mm\] of a place on both profiles: of the wheel and of the rail.
+    pub(super) fn places_of(&self, meeting: &Meeting) -> [f64; 2] {
+        let place = |body: &SearchBody, k: usize| {
+            let element = &body.elements[meeting.elements[k] as usize];
+            element.place(&body.coefficients, meeting.parameters[k]).station.x
+        };
+        [place(&self.pair.wheel, 0), place(&self.pair.rail, 1)]
     }
 
     /// Returns what this search has done so far.
@@ -267,6 +307,12 @@ impl ContactSearch<'_> {
 }
 
 impl ProfilePair {
+    /// Returns the radius \[mm\] of a roller on which a wheel of this attitude may touch off the crown; `None` where the search
+    /// over a rail finds the contact.
+    fn roller_under(&self, attitude: &Attitude) -> Option<f64> {
+        self.roller.filter(|_| attitude.sin_yaw != 0.0 || attitude.along != 0.0)
+    }
+
     /// Makes a search at one attitude.
     fn at<'a>(
         &'a self,
@@ -323,7 +369,12 @@ impl Contact {
     /// # Ok::<(), wheelrail::Error>(())
     /// ```
     pub fn placed(&self, pair: &Pair) -> Result<Placement> {
-        pair.placed_along([self.rail_x, self.contact_angle], [self.wheel_x, self.wheel_angle], self.skew)
+        let placed = pair.placed_along(
+            [self.rail_x, self.contact_angle],
+            [self.wheel_x, self.wheel_angle],
+            self.skew,
+        )?;
+        Ok(placed.turned(self.turn))
     }
 }
 
@@ -338,6 +389,7 @@ fn contact(attitude: &Attitude, c: &Candidate, height: f64) -> Contact {
         wheel_z: c.wheel.z,
         // Without yaw y is 0, not −0.
         y: attitude.sin_yaw * (c.wheel.x - rolling_radius * c.wheel.sin / c.wheel.cos) + 0.0,
+        turn: 0.0,
         contact_angle: c.rail.angle(),
         wheel_angle: c.wheel.angle(),
         skew: attitude.sin_yaw.atan2(attitude.cos_yaw * unrolled_cos) + 0.0,
@@ -348,4 +400,11 @@ fn contact(attitude: &Attitude, c: &Candidate, height: f64) -> Contact {
         rail_kink: c.rail_radius == 0.0,
         wheel_kink: c.wheel_radius == 0.0,
     }
+}
+
+/// Makes the contact with a roller of this radius \[mm\], whose own meridian plane holds the common normal.
+fn contact_on_roller(attitude: &Attitude, roller: f64, c: &Candidate, height: f64) -> Contact {
+    let turn = c.meeting.turn;
+    let seen = contact(&Meridian::new(attitude, roller, turn).attitude, c, height);
+    Contact { y: (roller + c.rail.z) * turn.sin() - attitude.along, turn, ..seen }
 }

@@ -220,12 +220,13 @@ impl WheelsetOnTrack {
         let SideOnTrack { track, wheelset, .. } = &self.sides[side];
         let (sign, radius, half) = (SIGNS[side], wheelset.radius, wheelset.wheel_x);
         let mut attitude = Attitude::new(0.0, sign * position.yaw, sign * roll, radius);
-        let along = half * attitude.cos_yaw;
+        let across = half * attitude.cos_yaw;
+        attitude.along = half * attitude.sin_yaw;
         attitude.offset =
-            sign * position.lateral - track.rail_x + along * attitude.cos_roll - radius * attitude.sin_roll;
+            sign * position.lateral - track.rail_x + across * attitude.cos_roll - radius * attitude.sin_roll;
         // c_z − R with R(1 − cos) free of cancellation.
         let half_sine = (sign * roll / 2.0).sin();
-        let level = track.rail_z + along * attitude.sin_roll - 2.0 * radius * half_sine * half_sine;
+        let level = track.rail_z + across * attitude.sin_roll - 2.0 * radius * half_sine * half_sine;
         (attitude, level + (radius - self.reference_radius()))
     }
 }
@@ -302,7 +303,7 @@ impl WheelsetSearch<'_> {
     /// Returns the next roll to try before any change of sign: Newton's, or a far one once Newton's has
     /// failed.
     fn outward(
-        &self,
+        &mut self,
         position: &Position,
         level: &Lowered,
         far: &mut Option<Far>,
@@ -320,7 +321,13 @@ impl WheelsetSearch<'_> {
     /// Returns the next roll to try between two rolls with different signs of the height difference: the root
     /// with the places of contact kept from the end that is nearer to touching, or else from the other end,
     /// or else the middle. Every fourth roll is the middle.
-    fn between(&self, position: &Position, ends: [Lowered; 2], last: &Lowered, count: u32) -> Option<f64> {
+    fn between(
+        &mut self,
+        position: &Position,
+        ends: [Lowered; 2],
+        last: &Lowered,
+        count: u32,
+    ) -> Option<f64> {
         let [a, b] = ends.map(|end| end.roll);
         let middle = a + (b - a) / 2.0;
         if middle == a || middle == b {
@@ -340,7 +347,7 @@ impl WheelsetSearch<'_> {
 
     /// Returns the roll at which both wheels touch with the places of contact of a level, or the roll at
     /// which these leave their elements on the way; NaN if there is none.
-    fn follow(&self, position: &Position, level: &Lowered) -> f64 {
+    fn follow(&mut self, position: &Position, level: &Lowered) -> f64 {
         let (mut roll, mut difference, mut slope) = (level.roll, level.difference(), level.slope);
         for _ in 0..FOLLOWED {
             let next = roll - difference / slope;
@@ -392,13 +399,20 @@ impl WheelsetSearch<'_> {
     ///
     /// Turning by dα about c moves the point of contact, at (p_x, p_z) from c, by (p_z, −p_x) dα; the wheel
     /// then has to rise by (p_x + p_z tanθ) dα. The roll in the left side's axes is the negative, so the two
-    /// parts add.
+    /// parts add. At ν ahead of a roller's crown the common normal is turned by ν about x.
     fn lever(&self, position: &Position, side: usize, z: f64, candidate: &Candidate) -> f64 {
         let rail = &candidate.rail;
         let track = &self.system.sides[side].track;
         let x = rail.x + track.rail_x - SIGNS[side] * position.lateral;
-        let down = rail.z + track.rail_z - z - self.system.reference_radius();
-        x + down * rail.sin / rail.cos
+        let above = track.rail_z - z - self.system.reference_radius();
+        match self.system.sides[side].pair.roller().filter(|_| candidate.meeting.turn != 0.0) {
+            Some(roller) => {
+                let (sin, cos) = candidate.meeting.turn.sin_cos();
+                let height = rail.z * cos - roller * sin * sin / (1.0 + cos);
+                x + (height + above) * rail.sin / (rail.cos * cos)
+            }
+            None => x + (rail.z + above) * rail.sin / rail.cos,
+        }
     }
 
     /// Returns what the searches of both sides have done so far.

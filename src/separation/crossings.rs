@@ -1,18 +1,18 @@
 //! Finds the columns of a grid next to the places where a step of the wheel crosses it.
 
 use super::axis::EtaAxis;
+use super::relief::Relief;
 use super::samples::places;
-use super::wheel_surface::{WheelSurface, sagitta};
-use crate::placement::Placement;
+use super::wheel_surface::sagitta;
 
 /// Number of η at which a step is followed over a grid: the ends, the middle and between.
 const FOLLOWED: usize = 5;
 
 /// Returns ξ \[mm\] of columns on both sides of every place where a step of the wheel's surface crosses the grid, ascending. The
 /// circles of both ends of a step are followed. It is empty if no step crosses the grid.
-pub fn beside_steps(placement: &Placement, xi: &[f64], axis: &EtaAxis) -> Vec<f64> {
+pub fn beside_steps(relief: &Relief<'_>, xi: &[f64], axis: &EtaAxis) -> Vec<f64> {
     let (Some(&first), Some(&last)) = (xi.first(), xi.last()) else { return Vec::new() };
-    let (wheel, skew) = (WheelSurface::new(placement), placement.skew_rotation());
+    let (wheel, skew) = (&relief.wheel, relief.skew);
     let pieces = &wheel.section.pieces;
     let ends = wheel.section.steps.iter().flat_map(|&step| [(step - 1, 1), (step, 0)]);
     let mut columns = Vec::new();

@@ -9,7 +9,11 @@ use crate::profile::{ArcBranch, Branch, BranchShape, Section};
 /// Accuracy: where ξ lies over both contact segments, a few roundings of g, even for arcs whose radii agree to ten digits;
 /// elsewhere a few roundings of the profile's extent.
 pub fn midplane_gap(placement: &Placement, xi: f64) -> f64 {
-    let (rail, wheel) = (&placement.rail().section, &placement.wheel().section);
+    midplane_gap_of(&placement.rail().section, &placement.wheel().section, xi)
+}
+
+/// Computes the gap \[mm\] between two profiles in one contact frame; NaN where one has no surface.
+pub(super) fn midplane_gap_of(rail: &Section, wheel: &Section, xi: f64) -> f64 {
     match (rail.piece_at(xi), wheel.piece_at(xi)) {
         (Some(r), Some(w)) => {
             let contact = rail.contact == Some(r.branch) && wheel.contact == Some(w.branch);

@@ -15,6 +15,7 @@ use super::methods::pointwise::Pointwise;
 use super::methods::quadratic::Quadratic;
 use super::methods::report_newton::ReportNewton;
 use super::methods::spectral::Spectral;
+use super::relief::Relief;
 use super::values::Residence;
 use crate::numerics::lanes::MANY;
 use crate::numerics::nan_max;
@@ -94,10 +95,14 @@ impl Choice {
         }
         let bare: &(dyn Fn() -> Box<dyn Kernel> + Sync) = match self.method {
             Method::Quadratic => &|| Box::new(Quadratic::new(placement, axis)),
-            Method::ConstantRadius => &|| Box::new(Parabolic::constant_radius(placement, axis)),
-            Method::Parabolic => &|| Box::new(Parabolic::local(placement, axis)),
+            Method::ConstantRadius => &|| {
+                let radii = [placement.wheel(), placement.rail()].map(|body| body.generator().radius());
+                summed(placement, |k, relief| Box::new(Parabolic::constant_radius(relief, radii[k], axis)))
+            },
+            Method::Parabolic => &|| summed(placement, |_, relief| Box::new(Parabolic::local(relief, axis))),
             Method::Spectral => {
-                let strips = strips(&mut self.fitter(placement), placement, xi, axis.reach * axis.reach);
+                let strips = |relief| strips(&mut self.fitter(relief), xi, axis.reach * axis.reach);
+                let strips: Vec<_> = Relief::all(placement).map(strips).collect();
                 return self.fill_by_strips(placement, xi, axis, &strips, out);
             }
             Method::Pointwise => &|| Box::new(Pointwise::new(placement, axis)),
@@ -112,29 +117,71 @@ impl Choice {
         fill_in_blocks(kernel, xi, out)
     }
 
-    /// Fills the grid by spectral columns, with given strips of this pair and grid.
+    /// Fills the grid by spectral columns, with given strips of every relief of this pair and grid.
     pub(super) fn fill_by_strips(
         &self,
         placement: &Placement,
         xi: &[f64],
         axis: &EtaAxis,
-        strips: &[Strip],
+        strips: &[Vec<Strip>],
         out: &mut [f64],
     ) -> f64 {
         if axis.eta.is_empty() {
             return 0.0;
         }
-        let of_strips = strips.iter().map(|strip| strip.truncation).fold(0.0, f64::max);
+        let largest = |strips: &Vec<Strip>| strips.iter().map(|strip| strip.truncation).fold(0.0, f64::max);
+        let of_strips: f64 = strips.iter().map(largest).sum();
         let residence = Residence::of(out.len());
-        let kernel = || Spectral::new(self.fitter(placement), axis, strips, residence);
+        let kernel = || {
+            summed(placement, |k, relief| {
+                Box::new(Spectral::new(self.fitter(relief), axis, &strips[k], residence))
+            })
+        };
         if out.len() <= FEW_POINTS[0] {
-            return fill_with(&mut kernel(), xi, out).max(of_strips);
+            return fill_with(&mut *kernel(), xi, out).max(of_strips);
         }
-        fill_in_blocks(|| Box::new(kernel()), xi, out).max(of_strips)
+        fill_in_blocks(kernel, xi, out).max(of_strips)
     }
 
-    fn fitter<'a>(&self, placement: &'a Placement) -> Fitter<'a> {
-        Fitter::new(placement, self.demand, self.coefficients)
+    fn fitter<'a>(&self, relief: Relief<'a>) -> Fitter<'a> {
+        Fitter::new(relief, self.demand, self.coefficients)
+    }
+}
+
+/// Makes the kernel of a pair from those of its reliefs; `make` gets the number of the relief.
+fn summed<'a>(
+    placement: &'a Placement,
+    make: impl Fn(usize, Relief<'a>) -> Box<dyn Kernel + 'a>,
+) -> Box<dyn Kernel + 'a> {
+    let wheel = make(0, Relief::new(placement));
+    match placement.under() {
+        Some(under) => Box::new(Sum { wheel, roller: make(1, Relief::new(under)), falls: Vec::new() }),
+        None => wheel,
+    }
+}
+
+/// The sum of the reliefs of a wheel and of a roller.
+struct Sum<'a> {
+    wheel: Box<dyn Kernel + 'a>,
+    roller: Box<dyn Kernel + 'a>,
+    /// Values of the roller \[mm\].
+    falls: Vec<f64>,
+}
+
+impl Kernel for Sum<'_> {
+    fn column(&mut self, xi: f64, out: &mut [f64]) {
+        self.columns(&[xi], out);
+    }
+
+    fn columns(&mut self, xi: &[f64], out: &mut [f64]) {
+        self.falls.resize(out.len(), f64::NAN);
+        self.wheel.columns(xi, out);
+        self.roller.columns(xi, &mut self.falls);
+        out.iter_mut().zip(&self.falls).for_each(|(s, fall)| *s += fall);
+    }
+
+    fn truncation(&self) -> f64 {
+        self.wheel.truncation() + self.roller.truncation()
     }
 }
 

@@ -3,7 +3,8 @@
 use super::axis::EtaAxis;
 use super::evaluator::Evaluator;
 use super::kernel::Kernel;
-use super::wheel_surface::{WheelSurface, sagitta};
+use super::relief::Relief;
+use super::wheel_surface::sagitta;
 use crate::numerics::nan_max;
 use crate::placement::Placement;
 use crate::profile::Section;
@@ -17,12 +18,17 @@ const NEAREST_TO_AXLE: f64 = 0.5;
 /// It is decided from the extents of the profiles and the largest sagitta of the grid, so that a grid that ends close to the
 /// end of a profile may count as not covered.
 pub fn covered(placement: &Placement, xi: &[f64], axis: &EtaAxis) -> bool {
+    Relief::all(placement).all(|relief| covers(&relief, xi, axis))
+}
+
+/// Returns whether a relief has a value over the whole grid, without a step of its wheel.
+fn covers(relief: &Relief<'_>, xi: &[f64], axis: &EtaAxis) -> bool {
     let (Some(&first), Some(&last)) = (xi.first(), xi.last()) else { return true };
     let (Some(&low), Some(&high)) = (axis.eta.first(), axis.eta.last()) else { return true };
-    let (evaluator, wheel) = (Evaluator::new(placement), WheelSurface::new(placement));
+    let wheel = &relief.wheel;
     let (mut from, mut to, mut u) = (f64::INFINITY, f64::NEG_INFINITY, 0f64);
     for [xi, eta] in [[first, low], [first, high], [last, low], [last, high]] {
-        let [shift, eta_w] = evaluator.wheel_coordinates(xi, eta);
+        let [shift, eta_w] = relief.wheel_coordinates(xi, eta);
         (from, to, u) = (from.min(xi + shift), to.max(xi + shift), u.max(eta_w * eta_w));
     }
     let ends =
@@ -32,7 +38,7 @@ pub fn covered(placement: &Placement, xi: &[f64], axis: &EtaAxis) -> bool {
     // e = ρ − √(ρ² − u); it is NaN where the circle does not reach that far.
     let farthest = sagitta((radius * radius - u).sqrt(), u);
     let along = farthest * wheel.sin;
-    is_whole(&placement.rail().section, [first, last])
+    is_whole(relief.below, [first, last])
         && is_whole(wheel.section, [from - along.max(0.0), to - along.min(0.0)])
         && farthest.is_finite()
 }

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | the wheel in sagitta form, u = e (2w + e) | `wheel_surface` |
 //! | g(ξ), the midplane gap | `gap` |
+//! | the height of a wheel over the profile below it | `relief` |
 //! | s and the normals at one point | [`Evaluator`] |
 //! | s over columns: the accuracy ladder | `kernel`, `methods` |
 //! | where the bodies have a surface | `mask` |
@@ -23,6 +24,7 @@ mod mask;
 pub(crate) mod methods;
 mod midplane;
 mod plan;
+mod relief;
 mod rounding;
 mod samples;
 mod values;
@@ -40,4 +42,4 @@ pub use grid::{Choice, Method};
 pub use midplane::{MidplaneRow, Transformed, midplane_rows, midplane_table, transformed_parameters};
 pub use plan::{Plan, plan};
 pub use values::Values;
-pub(crate) use wheel_surface::{WheelSurface, sagitta};
+pub(crate) use wheel_surface::{Surface, sagitta};

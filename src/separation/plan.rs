@@ -11,6 +11,7 @@ use super::evaluator::Evaluator;
 use super::grid::{Choice, Method};
 use super::mask::covered;
 use super::methods::quadratic::quadratic_form;
+use super::relief::Relief;
 use super::rounding::rounding;
 use super::samples::{Samples, difference, places, thinned};
 use crate::numerics::nan_max;
@@ -45,8 +46,8 @@ pub struct Plan {
     pub tolerance: f64,
     /// Reason for the choice: one sentence for the summary.
     pub reason: String,
-    /// The strips of spectral columns.
-    strips: Vec<Strip>,
+    /// The strips of spectral columns: of the wheel, and of a roller.
+    strips: Vec<Vec<Strip>>,
 }
 
 impl Plan {
@@ -149,12 +150,19 @@ impl Planned<'_> {
 
     fn spectral(&self, probe: &Probe, reason: String) -> Plan {
         let demand = Demand::for_tolerance(self.tolerance);
-        let mut fitter = Fitter::new(self.placement, demand, 1);
-        let (strips, coefficients, truncation) = if self.placement.skew() == 0.0 {
-            self.measured(&mut fitter)
-        } else {
-            (Vec::new(), 1, self.skewed(&mut fitter))
-        };
+        let (mut strips, mut coefficients, mut truncation) = (Vec::new(), 1, 0.0);
+        for relief in Relief::all(self.placement) {
+            let mut fitter = Fitter::new(relief, demand, 1);
+            if fitter.relief.is_skewed() {
+                strips.push(Vec::new());
+                truncation += self.skewed(&mut fitter);
+                continue;
+            }
+            let (own, count, error) = self.measured(&mut fitter);
+            strips.push(own);
+            coefficients = count.max(coefficients);
+            truncation += error;
+        }
         let choice = Choice { method: Method::Spectral, demand, coefficients };
         let rounding = probe.rounding;
         let truncation = nan_max(truncation, self.beside_steps(&choice, &strips));
@@ -163,8 +171,11 @@ impl Planned<'_> {
     }
 
     /// Measures the largest difference \[mm\] of spectral columns from single points beside the steps of the wheel.
-    fn beside_steps(&self, choice: &Choice, strips: &[Strip]) -> f64 {
-        let columns = beside_steps(self.placement, self.xi, self.axis);
+    fn beside_steps(&self, choice: &Choice, strips: &[Vec<Strip>]) -> f64 {
+        let beside = |relief| beside_steps(&relief, self.xi, self.axis);
+        let mut columns: Vec<f64> = Relief::all(self.placement).flat_map(beside).collect();
+        columns.sort_by(f64::total_cmp);
+        columns.dedup();
         if columns.is_empty() {
             return 0.0;
         }
@@ -181,7 +192,7 @@ impl Planned<'_> {
     /// thirds of them), and the largest measured truncation error \[mm\].
     fn measured(&self, fitter: &mut Fitter<'_>) -> (Vec<Strip>, usize, f64) {
         let u_max = self.axis.reach * self.axis.reach;
-        let strips = strips(fitter, self.placement, self.xi, u_max);
+        let strips = strips(fitter, self.xi, u_max);
         let mut most = strips.iter().map(|strip| strip.truncation).fold(0.0, f64::max);
         let mut needed: Vec<usize> = strips.iter().map(|strip| strip.coefficients).collect();
         for strip in &strips {
@@ -196,13 +207,13 @@ impl Planned<'_> {
     /// Measures the largest error \[mm\] in some columns of a skewed wheel.
     fn skewed(&self, fitter: &mut Fitter<'_>) -> f64 {
         let eta = &self.axis.eta;
-        let Fitter { evaluator, arch, demand, .. } = fitter;
+        let Fitter { relief, arch, demand, .. } = fitter;
         let mut out = vec![f64::NAN; eta.len()];
         let mut error = 0f64;
         for xi in thinned(self.xi, SKEWED_COLUMNS) {
-            error = error.max(skewed::fill(evaluator, (*arch, *demand), xi, eta, &mut out));
+            error = error.max(skewed::fill(relief, (*arch, *demand), xi, eta, &mut out));
             for at in places(eta.len(), SKEWED_ETA) {
-                let exact = evaluator.separation(xi, eta[at]);
+                let exact = relief.height(xi, eta[at]);
                 error = nan_max(error, difference(&out[at..=at], &[exact]));
             }
         }
@@ -245,6 +256,7 @@ impl Probe {
                 quadratic = nan_max(quadratic, difference(&[form], &[exact]));
             }
         }
-        Self { quadratic, rounding: rounding(placement, xi, axis, most) }
+        let of_reliefs = Relief::all(placement).map(|relief| rounding(&relief, xi, axis, most));
+        Self { quadratic, rounding: of_reliefs.sum() }
     }
 }

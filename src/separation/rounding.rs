@@ -1,9 +1,8 @@
 //! Estimates the rounding error of s over a grid, from the sizes of the terms from which s is computed.
 
 use super::axis::EtaAxis;
-use super::evaluator::Evaluator;
-use super::wheel_surface::{WheelSurface, sagitta};
-use crate::placement::Placement;
+use super::relief::Relief;
+use super::wheel_surface::sagitta;
 use crate::profile::{Branch, BranchShape, Piece, Section};
 
 /// Number of roundings of the terms of s (gap, rise, and their interpolation over ξ): without yaw, and under yaw, where s
@@ -18,16 +17,16 @@ const PLACE_ROUNDINGS: f64 = 4.0;
 /// counts.
 const STEEP: f64 = 1.0;
 
-/// Estimates the largest rounding error of s \[mm\] over a grid. `largest` \[mm\] bounds the sum of the magnitudes of the
+/// Estimates the largest rounding error of a relief \[mm\] over a grid. `largest` \[mm\] bounds the sum of the magnitudes of the
 /// terms of s.
 ///
 /// The estimate is a few units of the last place of that sum. Beyond the contact segments three terms are added. The first
 /// is the rounding of the heights by which joints are placed in the frame, ζ = Δz cosθ − Δx sinθ, with z_C rounded in Δz.
 /// The second is the error of the angle θ_C (the rounding of its sine over its cosine) times the distance from C. The third
 /// is the rounding of ξ and of the run to an arc's centre, times the slope.
-pub fn rounding(placement: &Placement, xi: &[f64], axis: &EtaAxis, largest: f64) -> f64 {
-    let bodies = [Reached::of_rail(placement, xi), Reached::of_wheel(placement, xi, axis)];
-    let of_sum = OWN_ROUNDINGS[usize::from(placement.skew() != 0.0)] * f64::EPSILON * largest;
+pub fn rounding(relief: &Relief<'_>, xi: &[f64], axis: &EtaAxis, largest: f64) -> f64 {
+    let bodies = [Reached::below(relief, xi), Reached::above(relief, xi, axis)];
+    let of_sum = OWN_ROUNDINGS[usize::from(relief.is_skewed())] * f64::EPSILON * largest;
     if bodies.iter().all(|body| body.contact) {
         return of_sum;
     }
@@ -43,21 +42,20 @@ struct Reached {
 }
 
 impl Reached {
-    fn of_rail(placement: &Placement, xi: &[f64]) -> Self {
-        Self::new(&placement.rail().section, xi, &[0.0], |xi, _| xi)
+    fn below(relief: &Relief<'_>, xi: &[f64]) -> Self {
+        Self::new(relief.below, xi, &[0.0], |xi, _| xi)
     }
 
-    /// Finds the part of the wheel. Away from the midplane, columns lie over other places of its profile.
-    fn of_wheel(placement: &Placement, xi: &[f64], axis: &EtaAxis) -> Self {
-        let evaluator = Evaluator::new(placement);
-        let wheel = WheelSurface::new(placement);
+    /// Finds the part of the surface. Away from the midplane, columns lie over other places of its profile.
+    fn above(relief: &Relief<'_>, xi: &[f64], axis: &EtaAxis) -> Self {
+        let wheel = &relief.wheel;
         let below = |xi: f64, eta: f64| {
-            let [shift, eta_w] = evaluator.wheel_coordinates(xi, eta);
+            let [shift, eta_w] = relief.wheel_coordinates(xi, eta);
             // The axle distance at C is accurate enough, because e varies by thousandths of itself.
             wheel.abscissa(xi + shift, sagitta(wheel.axle, eta_w * eta_w))
         };
         let ends = [axis.eta.first(), axis.eta.last()].map(|eta| eta.copied().unwrap_or(0.0));
-        Self::new(&placement.wheel().section, xi, &[0.0, ends[0], ends[1]], below)
+        Self::new(wheel.section, xi, &[0.0, ends[0], ends[1]], below)
     }
 
     /// Finds the part of a section over the abscissae that the columns reach at some η.

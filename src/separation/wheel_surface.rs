@@ -1,4 +1,4 @@
-//! The wheel as a surface over the contact frame, along columns of constant ξ, in sagitta form.
+//! A body of revolution above as a surface over the contact frame, along columns of constant ξ, in sagitta form.
 //!
 //! A point at axle distance w = R − z and lateral offset η has the sagitta e = √(w² + η²) − w. It is on the wheel exactly when
 //! (x, z − e) is on the profile. In the contact frame, with h(ξ) the midplane height,
@@ -35,7 +35,7 @@ const FAR_END: f64 = 4.0;
 
 /// The wheel as a surface over the contact frame of its own meridian plane.
 #[derive(Debug, Clone, Copy)]
-pub struct WheelSurface<'a> {
+pub struct Surface<'a> {
     /// The wheel profile in the contact frame.
     pub section: &'a Section,
     /// Axle distance of C: R − z_C \[mm\].
@@ -114,7 +114,7 @@ impl From<SagittaPoints<1>> for SagittaPoint {
     }
 }
 
-impl<'a> WheelSurface<'a> {
+impl<'a> Surface<'a> {
     /// Makes the surface of the wheel of a placed pair.
     pub fn new(placement: &'a Placement) -> Self {
         let station = placement.wheel().section.frame;

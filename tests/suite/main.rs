@@ -36,6 +36,7 @@ mod promises;
 mod reference_values;
 mod reference_yawed;
 mod report;
+mod rollers;
 mod slices;
 mod steps;
 mod strips;

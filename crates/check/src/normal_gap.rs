@@ -33,7 +33,7 @@ const SAMPLES: usize = 9;
 pub struct NormalGapSample {
     /// (σ, η) \[mm\].
     pub at: [f64; 2],
-    /// The point (ξ, η, ζ) \[mm\].
+    /// The point (ξ, η, ζ) of the rail or roller \[mm\].
     pub point: [f64; 3],
     /// t \[mm\], finite.
     pub gap: f64,
@@ -47,11 +47,12 @@ impl NormalGapSample {
     /// Evaluates the point at (σ, η) \[mm\]; `None` beyond the rail's range of σ and where the ray misses the wheel.
     pub fn at(gap: &NormalGap<'_>, sigma: f64, eta: f64) -> Option<Self> {
         let point = gap.point(sigma, eta)?;
+        let normal = point.rail_normal;
         Some(Self {
             at: [sigma, eta],
-            point: [point.rail.xi, eta, point.rail.zeta],
+            point: [point.rail.xi - point.below * normal.x, eta, point.rail.zeta - point.below * normal.z],
             gap: point.gap,
-            rail_normal: point.rail_normal,
+            rail_normal: normal,
             wheel_normal: point.wheel_normal?,
         })
     }

@@ -1,12 +1,12 @@
 //! Samples points of both bodies from the profiles' own parametrisation. Nothing here uses the separation code.
 //!
 //! Points of a curve come from turning its start station (arcs, lines) or from its parameter (polynomials).
-//! The rail is the curve moved along y, the wheel the curve turned about the axle. All coordinates are
+//! The rail is the curve moved along y; wheel and roller are the curve turned about their axle. All coordinates are
 //! measured from the contact point, so that the axle's distance costs no digits.
 
 use super::meshes::Vector;
 use wheelrail::internal::{Twice, recentred};
-use wheelrail::placement::{Body, Placement};
+use wheelrail::placement::{Body, Generator, Placement};
 use wheelrail::profile::{Polynomial, Segment, Shape, Station};
 
 /// One segment as a curve (x − x_C, z − z_C)(t), 0 ≤ t ≤ length.
@@ -160,40 +160,50 @@ pub(super) struct SampledSurface {
     pub curves: Vec<SampledCurve>,
     cos: f64,
     sin: f64,
-    /// Distance of C from the axle, with sin χ and cos χ; `None` for the rail.
-    wheel: Option<Wheel>,
+    /// Whether this is the upper body.
+    is_wheel: bool,
+    /// How the curve is turned; `None` for a rail.
+    turned: Option<Turned>,
     /// Lift along ζ \[mm\].
     lift: f64,
     /// Largest coordinate that was rounded on the way \[mm\].
     pub size: f64,
 }
 
+/// A turn about an axle.
 #[derive(Debug, Clone, Copy)]
-struct Wheel {
+struct Turned {
+    /// Height of the axle over C \[mm\], negative for a roller's.
     axle: f64,
+    /// sin χ and cos χ.
     skew: (f64, f64),
 }
 
 impl SampledSurface {
-    /// Makes the extruded rail of a placed pair.
+    /// Makes the rail of a placed pair: extruded, or turned about a roller's axle.
     pub fn rail(placement: &Placement) -> Self {
-        Self::new(placement.rail(), None)
+        let z = placement.rail().point().station.z;
+        let turned = match placement.rail().generator() {
+            Generator::Extruded => None,
+            Generator::Revolved { radius } => Some(Turned { axle: -(radius + z), skew: (0.0, 1.0) }),
+        };
+        Self::new(placement.rail(), false, turned)
     }
 
     /// Makes the revolved wheel of a placed pair, turned about ζ by the skew.
     pub fn wheel(placement: &Placement) -> Self {
         let axle = placement.wheel_radius() - placement.wheel().point().station.z;
-        Self::new(placement.wheel(), Some(Wheel { axle, skew: placement.skew().sin_cos() }))
+        Self::new(placement.wheel(), true, Some(Turned { axle, skew: placement.skew().sin_cos() }))
     }
 
-    fn new(body: &Body, wheel: Option<Wheel>) -> Self {
+    fn new(body: &Body, is_wheel: bool, turned: Option<Turned>) -> Self {
         let c = body.point().station;
         let origin = [c.x, c.z];
         let extent = body.profile().extent();
         let segments = body.profile().segments().iter();
         let curves = segments.map(|segment| SampledCurve::of_segment(segment, origin, extent)).collect();
         let size = extent + c.x.abs() + c.z.abs();
-        Self { curves, cos: c.cos, sin: c.sin, wheel, lift: 0.0, size }
+        Self { curves, cos: c.cos, sin: c.sin, is_wheel, turned, lift: 0.0, size }
     }
 
     /// Returns the surface raised along ζ by `lift` \[mm\].
@@ -203,16 +213,16 @@ impl SampledSurface {
 
     /// Returns whether this is the wheel.
     pub fn is_wheel(&self) -> bool {
-        self.wheel.is_some()
+        self.is_wheel
     }
 
     /// Returns the point (ξ, η, ζ) \[mm\].
     pub fn point(&self, curve: usize, t: f64, v: f64) -> Vector {
         let [x, z] = self.curves[curve].point(t);
-        let Some(Wheel { axle, skew }) = self.wheel else {
+        let Some(Turned { axle, skew }) = self.turned else {
             return Vector::new(x * self.cos + z * self.sin, v, z * self.cos - x * self.sin + self.lift);
         };
-        // Turned about the axle by φ: z rises by w(1 − cos φ) = 2w sin²(φ/2).
+        // Turned about the axle by φ: z rises by w(1 − cos φ) = 2w sin²(φ/2), w negative over a roller's axle.
         let (w, half) = (axle - z, v / axle / 2.0);
         let (sin, cos) = half.sin_cos();
         let (y, z) = (2.0 * w * sin * cos, z + 2.0 * w * sin * sin);
@@ -232,7 +242,7 @@ impl SampledSurface {
 
     /// Returns the length over which v turns the surface: the axle distance; for the rail, which does not turn, any length.
     pub fn round_scale(&self) -> f64 {
-        self.wheel.map_or(self.size, |wheel| wheel.axle)
+        self.turned.map_or(self.size, |turned| turned.axle.abs())
     }
 
     /// Returns the largest v needed for points up to `reach` from the origin in the ξ–η plane.
@@ -246,9 +256,10 @@ impl SampledSurface {
     ///
     /// Method: n = cosψ cosφ cosθ + sinψ sinθ at the tangent's angle ψ, turned about the axle by φ.
     pub fn normals_between(&self, tilts: [f64; 2], v: f64, z: f64, reach: f64) -> [f64; 2] {
-        let turned = self.wheel.map_or([0.0; 2], |Wheel { axle, .. }| {
+        let turned = self.turned.map_or([0.0; 2], |Turned { axle, .. }| {
             // The chord of an angle is at least 2/π of its arc.
-            let (turn, away) = ((v / axle).abs(), reach * std::f64::consts::FRAC_PI_2 / (axle - z - reach));
+            let least = (axle - z).abs() - reach;
+            let (turn, away) = ((v / axle).abs(), reach * std::f64::consts::FRAC_PI_2 / least);
             [(turn - away).max(0.0), turn + away]
         });
         let mut out = [f64::INFINITY, f64::NEG_INFINITY];
@@ -280,11 +291,11 @@ impl SampledSurface {
         let least_speed = (speed - bend * reach).max(0.0);
         let turn = bend * h / least_speed;
         let along = h * h * bend;
-        let Some(Wheel { axle, .. }) = self.wheel else { return [along / 4.0, turn] };
+        let Some(Turned { axle, .. }) = self.turned else { return [along / 4.0, turn] };
         let [_, z] = self.curves[curve].point(t);
         let greatest_speed = speed + bend * reach;
-        let mixed = h * k * greatest_speed / axle;
+        let mixed = h * k * greatest_speed / axle.abs();
         let around = k * k * ((axle - z).abs() + reach * greatest_speed) / (axle * axle);
-        [(along * along + 2.0 * mixed * mixed + around * around).sqrt() / 4.0, turn + k / axle]
+        [(along * along + 2.0 * mixed * mixed + around * around).sqrt() / 4.0, turn + k / axle.abs()]
     }
 }

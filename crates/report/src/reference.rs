@@ -35,6 +35,9 @@ pub struct ReferenceScene {
     pub wheel: Vec<ReferenceSegment>,
     /// Nominal rolling radius R \[mm\].
     pub wheel_radius: f64,
+    /// Distance from a roller's axle to the origin of its profile \[mm\]; `None` on a rail.
+    #[serde(default)]
+    pub roller_radius: Option<f64>,
     /// Abscissa of C on the rail \[mm\].
     pub contact_rail_x: f64,
     /// Abscissa of C on the wheel \[mm\].
@@ -134,7 +137,9 @@ impl ReferenceScene {
     /// Wrong profiles or contact points.
     pub fn placement(&self) -> Result<Placement> {
         let (rail, wheel) = (chain("rail", &self.rail)?, chain("wheel", &self.wheel)?);
-        Pair::new(rail, wheel, self.wheel_radius)?.placed(self.contact_rail_x, self.contact_wheel_x, self.chi)
+        let on_rail = Pair::new(rail, wheel, self.wheel_radius)?;
+        let pair = self.roller_radius.map_or(Ok(on_rail.clone()), |radius| on_rail.on_roller(radius))?;
+        pair.placed(self.contact_rail_x, self.contact_wheel_x, self.chi)
     }
 
     /// Returns the distinct ξ and η of the values, ascending \[mm\].

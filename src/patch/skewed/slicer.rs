@@ -134,7 +134,7 @@ impl<'a> Skewed<'a> {
     fn edge_near(&mut self, xi: f64, guess: f64, outward: f64, near: f64) -> Option<f64> {
         let mut eta = guess;
         for _ in 0..NEWTON_STEPS {
-            let (s, [_, slope]) = self.evaluator.separation_and_slopes(xi, eta);
+            let (s, [_, slope]) = self.evaluator.separation_and_gradient(xi, eta);
             let step = (s - self.approach) / slope;
             eta -= step;
             // NaN ends the steps, too.
@@ -212,7 +212,7 @@ impl<'a> Skewed<'a> {
         let mut eta = from + (far - from) / 2.0;
         let mut settled = false;
         for _ in 0..NEWTON_STEPS {
-            let (s, [_, slope]) = self.evaluator.separation_and_slopes(xi, eta);
+            let (s, [_, slope]) = self.evaluator.separation_and_gradient(xi, eta);
             let step = (s - approach) / slope;
             eta -= step;
             settled = step.abs() <= QUADRATIC * (eta - from).abs();

@@ -33,6 +33,13 @@ pub struct ProfilePoint {
     parameter: Twice,
 }
 
+impl ProfilePoint {
+    /// Returns the same point of the profile's mirror image under z → −z.
+    pub(crate) fn upside_down(&self) -> Self {
+        Self { station: self.station.upside_down(), ..*self }
+    }
+}
+
 /// The part of a profile that faces the other body, as a function ζ(ξ) in a frame.
 ///
 /// All quantities are in the axes of the frame: ξ along its tangent, ζ along its normal \[mm\]. The profile may overhang in

@@ -1,7 +1,7 @@
 //! Tests the search against dense sampling in three dimensions, which uses neither outlines nor normals.
 
 use super::*;
-use nalgebra::UnitComplex;
+use nalgebra::{Point3, UnitComplex, Vector3};
 use wheelrail_report::random::Random;
 
 /// A surface sampled in space: the wheel's points in track axes with their gap over the rail.
@@ -9,6 +9,10 @@ struct RandomScene {
     rail: Profile,
     wheel: Profile,
     radius: f64,
+    /// Radius \[mm\] of a roller in place of the rail.
+    roller: Option<f64>,
+    /// y \[mm\] of the wheel's profile origin over the roller's crown.
+    along: f64,
     pose: [f64; 3],
 }
 
@@ -27,9 +31,14 @@ impl RandomScene {
             [body[0] * yaw.cos() - body[1] * yaw.sin(), body[0] * yaw.sin() + body[1] * yaw.cos(), body[2]];
         [
             offset + yawed[0] * roll.cos() + yawed[2] * roll.sin(),
-            yawed[1],
+            self.along + yawed[1],
             yawed[2] * roll.cos() - yawed[0] * roll.sin(),
         ]
+    }
+
+    /// Returns the lower body's height at (x, y), from the height of its profile at x.
+    fn lower(&self, profile: f64, y: f64) -> f64 {
+        self.roller.map_or(profile, |radius| ((radius + profile).powi(2) - y * y).sqrt() - radius)
     }
 
     /// Returns the lowest gap \[mm\] and its place, by a grid and eight zooms into its best cells.
@@ -38,8 +47,8 @@ impl RandomScene {
         let wheel = Section::own_axes(&self.wheel, Side::Wheel);
         let reach = wheel.reach().unwrap_or_default();
         let gap = |x: f64, omega: f64| {
-            let [px, _, pz] = self.point(&wheel, x, omega);
-            let height = rail.height(px);
+            let [px, py, pz] = self.point(&wheel, x, omega);
+            let height = self.lower(rail.height(px), py);
             if height.is_nan() { f64::INFINITY } else { pz - height }
         };
         let widest = 0.3;
@@ -138,16 +147,25 @@ fn compare(seed: u64, polynomials: bool, yaw: f64, roll: f64) -> Result<()> {
     let rail = random_chain(&mut random, 4, polynomials)?;
     let wheel = random_chain(&mut random, 5, polynomials)?;
     let pose = [random.between(-8.0, 8.0), random.between(-yaw, yaw), random.between(-roll, roll)];
-    compare_scene(&format!("seed {seed}"), RandomScene { rail, wheel, radius: 300.0, pose })
+    compare_scene(
+        &format!("seed {seed}"),
+        RandomScene { rail, wheel, radius: 300.0, roller: None, along: 0.0, pose },
+    )
 }
 
 fn compare_scene(name: &str, scene: RandomScene) -> Result<()> {
     let pose = scene.pose;
-    let pair = ProfilePair::new(&Pair::new(scene.rail.clone(), scene.wheel.clone(), scene.radius)?)?;
+    let mut pair = Pair::new(scene.rail.clone(), scene.wheel.clone(), scene.radius)?;
+    if let Some(roller) = scene.roller {
+        pair = pair.on_roller(roller)?;
+    }
+    let pair = ProfilePair::new(&pair)?;
     let [sampled, x, omega] = scene.lowest_gap();
     let mut search = pair.search();
-    let touch = search.touch(&Pose::new(pose[0], pose[1], pose[2])?, &ALL);
-    let Some(touch) = touch else { panic!("{name}: no touch, sampled {sampled}") };
+    let attitude = Attitude { along: scene.along, ..Attitude::new(pose[0], pose[1], pose[2], scene.radius) };
+    let lowest = search.lower(&attitude, ALL.within);
+    let Some(lowest) = lowest else { panic!("{name}: no touch, sampled {sampled}") };
+    let touch = search.collect(&attitude, -lowest.gap, &ALL);
     let first = touch.contacts[0];
     let difference = touch.height + sampled;
     // First touch is no later than any sample finds it, and no earlier than possible, since the place of
@@ -159,6 +177,17 @@ fn compare_scene(name: &str, scene: RandomScene) -> Result<()> {
         -sampled
     );
     // The place of contact in space, without the outline. At a step both heights are the surface's.
+    if let Some(roller) = scene.roller {
+        let up = roller + first.rail_z;
+        let place = Point3::new(first.rail_x, up * first.turn.sin(), up * first.turn.cos() - roller);
+        assert!((place.y - (scene.along + first.y)).abs() < 1e-9, "{name}: {place:?} {first:?}");
+        let origin = Vector3::new(pose[0], scene.along, touch.height);
+        let own = wheel_rotation(pose[1], pose[2]).inverse_transform_point(&(place - origin));
+        assert!((own.x - first.wheel_x).abs() < 1e-9, "{name}: {own:?} {first:?}");
+        let from_axle = own.y.hypot(scene.radius - own.z);
+        assert!((from_axle - first.rolling_radius).abs() < 1e-9, "{name}: {own:?} {first:?}");
+        return Ok(());
+    }
     let tilt = -(first.wheel_angle.tan() * pose[1].tan()).asin();
     let section = Section::own_axes(&scene.wheel, Side::Wheel);
     assert!((section.height(first.wheel_x) - first.wheel_z).abs() < 2e-3, "{name}: {first:?}");
@@ -179,6 +208,36 @@ fn first_touch_agrees_with_dense_samples_of_random_scenes() -> Result<()> {
     Ok(())
 }
 
+/// Checks wheels that stand off the crown of a roller, as those of a yawed wheelset do.
+#[test]
+fn first_touch_on_rollers_agrees_with_dense_samples() -> Result<()> {
+    let mut random = Random::new(11);
+    let (rails, wheels) = (["60E1", "UIC60", "54E1"], ["S1002", "EN15302-A", "cone-1:20"]);
+    for k in 0..60 {
+        let roller = Some(random.between(250.0, 900.0));
+        let pose = [random.between(-9.0, 8.0), random.between(-0.04, 0.04), random.between(-0.02, 0.02)];
+        let along = 750.0 * pose[1].sin();
+        let scene = if k % 2 == 0 {
+            let (rail, wheel) =
+                (random_chain(&mut random, 4, k % 4 == 0)?, random_chain(&mut random, 5, k % 4 == 0)?);
+            RandomScene { rail, wheel, radius: 300.0, roller, along, pose }
+        } else {
+            let turn = UnitComplex::new(random.between(0.0, 0.06));
+            let rail = standards::rail(rails[k / 2 % 3])?.rotated(turn);
+            RandomScene {
+                rail,
+                wheel: standards::wheel(wheels[k / 6 % 3])?,
+                radius: 460.0,
+                roller,
+                along,
+                pose,
+            }
+        };
+        compare_scene(&format!("scene {k} at {pose:?} on {roller:?}"), scene)?;
+    }
+    Ok(())
+}
+
 #[test]
 fn first_touch_agrees_with_dense_samples_of_standard_profiles() -> Result<()> {
     let mut random = Random::new(7);
@@ -189,7 +248,8 @@ fn first_touch_agrees_with_dense_samples_of_standard_profiles() -> Result<()> {
             let turn = UnitComplex::new(random.between(0.0, 0.06));
             let pose = [random.between(-14.0, 8.0), random.between(-0.04, 0.04), random.between(-0.02, 0.02)];
             let (rail_profile, wheel) = (standards::rail(rail)?.rotated(turn), standards::wheel(name)?);
-            let scene = RandomScene { rail: rail_profile, wheel, radius: 460.0, pose };
+            let scene =
+                RandomScene { rail: rail_profile, wheel, radius: 460.0, roller: None, along: 0.0, pose };
             compare_scene(&format!("{name} on {rail} at {pose:?}"), scene)?;
         }
     }

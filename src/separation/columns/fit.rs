@@ -10,15 +10,14 @@ use super::neighbours::{MOST_SPANS, Neighbours};
 use crate::numerics::chebyshev::{extrema, powers, unit_nodes};
 use crate::numerics::lanes::{Lanes, MANY, every, lanes, largest};
 use crate::numerics::nan_max;
-use crate::placement::Placement;
 use crate::separation::demand::{Demand, first_count};
-use crate::separation::evaluator::Evaluator;
-use crate::separation::wheel_surface::{SagittaPoints, Span, SpanLanes, WheelSurface};
+use crate::separation::relief::Relief;
+use crate::separation::wheel_surface::{SagittaPoints, Span, SpanLanes, Surface};
 
-/// Fits polynomials to columns of a placed pair: for strips, for columns in no strip, and for the measurement of errors.
+/// Fits polynomials to columns of a relief: for strips, for columns in no strip, and for the measurement of errors.
 #[derive(Debug)]
 pub struct Fitter<'a> {
-    pub evaluator: Evaluator<'a>,
+    pub relief: Relief<'a>,
     pub neighbours: Neighbours<'a>,
     /// The accuracy that truncation must keep.
     pub demand: Demand,
@@ -35,11 +34,10 @@ pub struct Fitter<'a> {
 
 impl<'a> Fitter<'a> {
     /// Makes a fitter for a demand on s. Every column starts with `least` coefficients and takes more if it needs them.
-    pub fn new(placement: &'a Placement, demand: Demand, least: usize) -> Self {
-        let evaluator = Evaluator::new(placement);
+    pub fn new(relief: Relief<'a>, demand: Demand, least: usize) -> Self {
         Self {
-            neighbours: Neighbours::new(evaluator.wheel),
-            evaluator,
+            neighbours: Neighbours::new(relief.wheel),
+            relief,
             demand: demand.on_truncation(),
             least,
             rows: Vec::with_capacity(MOST_SPANS * (MOST_COEFFICIENTS + 2)),
@@ -52,14 +50,14 @@ impl<'a> Fitter<'a> {
     /// Fits the column at ξ \[mm\] over one span up to `u_max` \[mm²\], without skew. Returns `None` if no degree reaches
     /// the demand.
     pub fn column(&mut self, xi: f64, span: &Span, u_max: f64) -> Option<ColumnPolynomial> {
-        let wheel = &self.evaluator.wheel;
+        let wheel = &self.relief.wheel;
         let mut lane = wheel.lane(span);
         lane.u[1] = [span.u[1].min(u_max)];
         self.single.clear();
         let (n, error) = polynomials(wheel, &lane, u_max, (self.demand, self.least), &mut self.single)?;
         let mut c = [0.0; MOST_COEFFICIENTS];
         c[..n].copy_from_slice(self.single.as_flattened());
-        Some(ColumnPolynomial { base: self.evaluator.base(xi, 0.0, span), u0: span.u[0], c, n, error })
+        Some(ColumnPolynomial { base: self.relief.base(xi, 0.0, span), u0: span.u[0], c, n, error })
     }
 
     /// Fits several columns in no strip at once, up to `u_max` \[mm²\]: at most [`MANY`], each over one span. Their
@@ -69,9 +67,9 @@ impl<'a> Fitter<'a> {
     /// `None` if no column was fitted.
     #[inline(always)]
     pub fn columns(&mut self, u_max: f64, xi: &[f64]) -> Option<([bool; MANY], usize, f64)> {
-        let Self { evaluator, neighbours, demand, least, rows, .. } = self;
+        let Self { relief, neighbours, demand, least, rows, .. } = self;
         rows.clear();
-        let taken = neighbours.take_each(evaluator, u_max, xi)?;
+        let taken = neighbours.take_each(relief, u_max, xi)?;
         let span = &neighbours.spans[0].wheel;
         let (n, error) = polynomials(&neighbours.wheel, span, u_max, (*demand, *least), rows)?;
         taken.contains(&true).then_some((taken, n, error))
@@ -85,7 +83,7 @@ impl<'a> Fitter<'a> {
 /// if no degree reaches the demand; the span is then close to a vertical tangent.
 #[inline(always)]
 pub fn polynomials<const N: usize>(
-    wheel: &WheelSurface<'_>,
+    wheel: &Surface<'_>,
     span: &SpanLanes<'_, N>,
     u_max: f64,
     (demand, least): (Demand, usize),

@@ -2,9 +2,9 @@
 
 use crate::numerics::lanes::{Lanes, MANY, every, lanes};
 use crate::profile::{Branches, Piece, Section};
-use crate::separation::evaluator::Evaluator;
 use crate::separation::gap::{contact_gap, contact_gaps};
-use crate::separation::wheel_surface::{SpanLanes, WheelSurface};
+use crate::separation::relief::Relief;
+use crate::separation::wheel_surface::{SpanLanes, Surface};
 
 /// Most spans of a column that are computed for several columns at once.
 pub const MOST_SPANS: usize = 3;
@@ -14,7 +14,7 @@ pub const MOST_SPANS: usize = 3;
 #[derive(Debug)]
 pub struct Neighbours<'a> {
     /// The wheel below the columns.
-    pub wheel: WheelSurface<'a>,
+    pub wheel: Surface<'a>,
     /// ξ of the columns \[mm\].
     pub xi: Lanes,
     /// Whether the columns begin over both contact segments.
@@ -36,7 +36,7 @@ pub struct SpanColumns<'a> {
 
 impl<'a> Neighbours<'a> {
     /// Makes an empty set of columns.
-    pub fn new(wheel: WheelSurface<'a>) -> Self {
+    pub fn new(wheel: Surface<'a>) -> Self {
         Self {
             wheel,
             xi: [f64::NAN; MANY],
@@ -49,8 +49,8 @@ impl<'a> Neighbours<'a> {
     /// Takes over the columns at ξ, up to u = `u_max` \[mm²\]. Returns `None` if they do not pass the same branches, pass
     /// more than [`MOST_SPANS`] or a step of the envelope, or have parts without a surface.
     #[inline(always)]
-    pub fn take(&mut self, evaluator: &Evaluator<'a>, u_max: f64, xi: Lanes) -> Option<()> {
-        let (wheel, section) = (&self.wheel, &evaluator.placement.rail().section);
+    pub fn take(&mut self, relief: &Relief<'a>, u_max: f64, xi: Lanes) -> Option<()> {
+        let (wheel, section) = (&self.wheel, relief.below);
         let mut index = wheel.first_piece(xi[MANY / 2])?;
         let rail_piece = section.piece_at(xi[MANY / 2])?;
         for piece in [rail_piece, &wheel.section.pieces[index]] {
@@ -109,8 +109,8 @@ impl<'a> Neighbours<'a> {
     /// Returns for each column whether it was taken, which means that it lies over one branch of each body. The lane of a
     /// column that was not taken holds a copy of one that was. Returns `None` if none was taken.
     #[inline(always)]
-    pub fn take_each(&mut self, evaluator: &Evaluator<'a>, u_max: f64, xi: &[f64]) -> Option<[bool; MANY]> {
-        let (rail, wheel) = (&evaluator.placement.rail().section, &self.wheel);
+    pub fn take_each(&mut self, relief: &Relief<'a>, u_max: f64, xi: &[f64]) -> Option<[bool; MANY]> {
+        let (rail, wheel) = (relief.below, &self.wheel);
         let pairs = pieces_under(wheel, rail, u_max, xi);
         let (first, stand_in) = pairs.iter().enumerate().find_map(|(k, pair)| Some((k, (*pair)?)))?;
         let [mut rails, mut wheels] = [stand_in.0, stand_in.1].map(|piece| [piece; MANY]);
@@ -155,7 +155,7 @@ fn piece_inside<'a>(rest: &mut &'a [Piece], xi: f64) -> Option<&'a Piece> {
 
 /// Finds the pieces of rail and wheel for each ξ whose column lies over one piece of each body.
 fn pieces_under<'r, 'w>(
-    wheel: &WheelSurface<'w>,
+    wheel: &Surface<'w>,
     rail: &'r Section,
     u_max: f64,
     xi: &[f64],
@@ -172,12 +172,7 @@ fn pieces_under<'r, 'w>(
 /// Makes one span of all columns to the end of its piece. If `first`, it begins in the midplane. Returns `None` if a point
 /// is not found.
 #[inline(always)]
-fn span_over<'a>(
-    wheel: &WheelSurface<'a>,
-    xi: &Lanes,
-    piece: &Piece,
-    first: bool,
-) -> Option<SpanLanes<'a, MANY>> {
+fn span_over<'a>(wheel: &Surface<'a>, xi: &Lanes, piece: &Piece, first: bool) -> Option<SpanLanes<'a, MANY>> {
     let branch = &wheel.section.branches[piece.branch];
     let mut span = if first {
         wheel.span_from(xi, branch, [0.0; MANY], branch.points(xi)?)

@@ -10,9 +10,9 @@ use crate::numerics::chebyshev::{self, PROOF};
 use crate::numerics::lanes::{Lanes, MANY, every, lanes};
 use crate::profile::{BranchPoints, Piece};
 use crate::separation::demand::{Demand, ROUNDING_LEVEL};
-use crate::separation::evaluator::Evaluator;
 use crate::separation::gap::contact_gap;
-use crate::separation::wheel_surface::{SpanLanes, WheelSurface};
+use crate::separation::relief::Relief;
+use crate::separation::wheel_surface::{SpanLanes, Surface};
 
 /// Share of an interval's largest |s| below which an interpolated s would not have the promised thirteen digits.
 pub const SMALL_SHARE: f64 = 1.0 / 64.0;
@@ -20,20 +20,20 @@ pub const SMALL_SHARE: f64 = 1.0 / 64.0;
 /// Writes s \[mm\] of the column at ξ over ascending η to a demanded accuracy; NaN where a body has no surface. Returns the
 /// largest truncation error \[mm\].
 pub fn fill(
-    evaluator: &mut Evaluator<'_>,
+    relief: &mut Relief<'_>,
     (arch, demand): (pulp::Arch, Demand),
     xi: f64,
     eta: &[f64],
     out: &mut [f64],
 ) -> f64 {
-    let mut column = SkewedColumn::new(evaluator, arch, demand, xi);
+    let mut column = SkewedColumn::new(relief, arch, demand, xi);
     column.fill(eta, out);
     column.error
 }
 
 /// One column of a skewed wheel.
 struct SkewedColumn<'s, 'a> {
-    evaluator: &'s mut Evaluator<'a>,
+    relief: &'s mut Relief<'a>,
     arch: pulp::Arch,
     demand: Demand,
     xi: f64,
@@ -54,8 +54,8 @@ struct ContactBeginning {
 }
 
 impl<'s, 'a> SkewedColumn<'s, 'a> {
-    fn new(evaluator: &'s mut Evaluator<'a>, arch: pulp::Arch, demand: Demand, xi: f64) -> Self {
-        let (rail, wheel) = (&evaluator.placement.rail().section, &evaluator.placement.wheel().section);
+    fn new(relief: &'s mut Relief<'a>, arch: pulp::Arch, demand: Demand, xi: f64) -> Self {
+        let (rail, wheel) = (relief.below, relief.wheel.section);
         let piece = rail.piece_at(xi);
         let rail_height = piece.map_or(f64::NAN, |piece| rail.branches[piece.branch].height(xi));
         let branches =
@@ -69,7 +69,7 @@ impl<'s, 'a> SkewedColumn<'s, 'a> {
                 from: from.repeated(),
             })
         });
-        Self { evaluator, arch, demand, xi, rail_height, contact, error: 0.0 }
+        Self { relief, arch, demand, xi, rail_height, contact, error: 0.0 }
     }
 
     /// Writes s \[mm\] at ascending η.
@@ -82,7 +82,7 @@ impl<'s, 'a> SkewedColumn<'s, 'a> {
         let arch = self.arch;
         let Some(size) = arch.dispatch(EtaInterval { column: self, ends: [first, last], eta, out }) else {
             if few {
-                return self.evaluator.column(self.xi, eta, out);
+                return self.relief.column(self.xi, eta, out);
             }
             let (eta, out) = (eta.split_at(eta.len() / 2), out.split_at_mut(eta.len() / 2));
             self.fill(eta.0, out.0);
@@ -100,7 +100,7 @@ impl<'s, 'a> SkewedColumn<'s, 'a> {
         if small.len() <= eta.len() / 2 {
             self.fill(&eta[small.clone()], &mut out[small]);
         } else {
-            self.evaluator.column(self.xi, &eta[small.clone()], &mut out[small]);
+            self.relief.column(self.xi, &eta[small.clone()], &mut out[small]);
         }
     }
 }
@@ -197,16 +197,16 @@ impl SkewedColumn<'_, '_> {
     /// one branch. If `between`, this also covers all places between neighbouring η.
     #[inline(always)]
     fn separations(&mut self, eta: &Lanes, between: bool) -> Option<(Lanes, f64)> {
-        let (xi, evaluator) = (self.xi, &mut *self.evaluator);
+        let (xi, relief) = (self.xi, &mut *self.relief);
         let (mut shift, mut u) = ([0.0; MANY], [0.0; MANY]);
         for k in 0..MANY {
-            let [along, across] = evaluator.wheel_coordinates(xi, eta[k]);
+            let [along, across] = relief.wheel_coordinates(xi, eta[k]);
             (shift[k], u[k]) = (along, across * across);
         }
         let xi_w = lanes(|k| xi + shift[k]);
-        evaluator.wheel.spans(xi_w[MANY / 2], u[MANY / 2], &mut evaluator.spans);
-        let span = evaluator.spans[WheelSurface::span_at(&evaluator.spans, u[MANY / 2])?];
-        let wheel = &evaluator.wheel;
+        relief.wheel.spans(xi_w[MANY / 2], u[MANY / 2], &mut relief.spans);
+        let span = relief.spans[Surface::span_at(&relief.spans, u[MANY / 2])?];
+        let wheel = &relief.wheel;
         let piece = &wheel.section.pieces[span.piece];
         let here = spans_over(wheel, &xi_w, piece)?;
         let points = wheel.points_at(&xi_w, &here, &u)?;
@@ -221,7 +221,7 @@ impl SkewedColumn<'_, '_> {
         let contact = self.contact.filter(|_| wheel.section.contact == Some(piece.branch) && begun > 0);
         let Some(contact) = contact else {
             let s = lanes(|k| here.height[k] - self.rail_height + points.rise[k]);
-            let size = here.height.iter().fold(0.0, |most, &height| evaluator.size(xi, height).max(most));
+            let size = here.height.iter().fold(0.0, |most, &height| relief.size(xi, height).max(most));
             return Some((s, f64::EPSILON * size));
         };
         if begun < MANY {
@@ -237,7 +237,7 @@ impl SkewedColumn<'_, '_> {
 /// Makes the spans of columns at ξ over one piece. Each begins where its column enters the piece; the ends are not known.
 /// Returns `None` if a point is not found.
 #[inline(always)]
-fn spans_over<'a>(wheel: &WheelSurface<'a>, xi: &Lanes, piece: &Piece) -> Option<SpanLanes<'a, MANY>> {
+fn spans_over<'a>(wheel: &Surface<'a>, xi: &Lanes, piece: &Piece) -> Option<SpanLanes<'a, MANY>> {
     let branch = &wheel.section.branches[piece.branch];
     let [low, high] = piece.xi;
     let begin = lanes(|k| xi[k].max(low).min(high));
@@ -248,7 +248,7 @@ fn spans_over<'a>(wheel: &WheelSurface<'a>, xi: &Lanes, piece: &Piece) -> Option
 /// Returns whether columns that pass a step of the envelope on their way to a piece have left the piece in front of it; where
 /// both have a point, the one in front is the outer one. If `between`, this also covers all columns between neighbouring ones.
 #[inline(always)]
-fn beyond_steps(wheel: &WheelSurface<'_>, index: usize, [xi, u]: [&Lanes; 2], between: bool) -> bool {
+fn beyond_steps(wheel: &Surface<'_>, index: usize, [xi, u]: [&Lanes; 2], between: bool) -> bool {
     let pieces = &wheel.section.pieces;
     wheel.section.steps.iter().all(|&step| {
         let before = match wheel.sides() {

@@ -4,9 +4,8 @@
 use super::horner::{MOST_COEFFICIENTS, PerDegree, horner, per_degree, whole_vectors};
 use super::neighbours::MOST_SPANS;
 use crate::numerics::lanes::{Lanes, MANY, lanes};
-use crate::placement::Placement;
 use crate::separation::axis::{EtaAxis, mirror};
-use crate::separation::gap::midplane_gap;
+use crate::separation::relief::Relief;
 
 /// Columns over an interval of ξ in which the same quantities determine s. For every span these are the coefficients of q,
 /// s at the beginning, and u_0. All are polynomials in ξ.
@@ -89,7 +88,7 @@ impl ColumnPolynomials {
 /// This is a struct and not a closure: the compiler may not inline a closure, which would then lack the machine's widest
 /// vectors.
 pub struct StripColumns<'a, const PAST: bool> {
-    pub placement: &'a Placement,
+    pub relief: &'a Relief<'a>,
     pub strip: &'a Strip,
     /// ξ of the columns \[mm\], at most [`MANY`].
     pub xi: &'a [f64],
@@ -107,9 +106,9 @@ impl<const PAST: bool> pulp::WithSimd for StripColumns<'_, PAST> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) {
-        let Self { placement, strip, xi, axis, mirrored, scratch: polynomials, out } = self;
+        let Self { relief, strip, xi, axis, mirrored, scratch: polynomials, out } = self;
         polynomials.resize(strip.spans, ColumnPolynomials::ZERO);
-        strip.polynomials(placement, xi, axis.reach * axis.reach, polynomials);
+        strip.polynomials(relief, xi, axis.reach * axis.reach, polynomials);
         let n = strip.coefficients;
         if strip.spans == 1 {
             per_degree(n, Evaluation::<S, true, PAST> { simd, polynomials, axis, mirrored, out });
@@ -132,13 +131,7 @@ fn at(powers: &[f64], t: &Lanes) -> Lanes {
 impl Strip {
     /// Computes the polynomials over every span at each ξ \[mm\], at most [`MANY`]. The columns end at `u_max` \[mm²\].
     #[inline(always)]
-    pub fn polynomials(
-        &self,
-        placement: &Placement,
-        xi: &[f64],
-        u_max: f64,
-        spans: &mut [ColumnPolynomials],
-    ) {
+    pub fn polynomials(&self, relief: &Relief<'_>, xi: &[f64], u_max: f64, spans: &mut [ColumnPolynomials]) {
         let ([a, b], mut all) = (self.xi, [xi[0]; MANY]);
         all[..xi.len()].copy_from_slice(xi);
         let t = lanes(|k| ((all[k] - a) - (b - all[k])) / (b - a));
@@ -159,7 +152,7 @@ impl Strip {
         match self.gap {
             Gap::Plain => {}
             Gap::Relative => *base = lanes(|k| base[k] * (all[k] * all[k])),
-            Gap::Computed => *base = all.map(|xi| midplane_gap(placement, xi)),
+            Gap::Computed => *base = all.map(|xi| relief.midplane(xi)),
         }
         // With several spans, q was interpolated in powers of τ and is converted to powers of v.
         let mut end = [u_max; MANY];

@@ -11,10 +11,8 @@ use super::neighbours::{MOST_SPANS, Neighbours};
 use super::strip::{Gap, Strip};
 use crate::numerics::chebyshev::{self, PROOF};
 use crate::numerics::lanes::{Lanes, MANY, lanes, largest, smallest};
-use crate::placement::Placement;
 use crate::separation::demand::ROUNDING_LEVEL;
-use crate::separation::evaluator::Evaluator;
-use crate::separation::wheel_surface::WheelSurface;
+use crate::separation::relief::Relief;
 
 /// Least number of columns of a strip. Making a strip takes as long as about so many single columns.
 const LEAST_COLUMNS: usize = 8;
@@ -26,17 +24,18 @@ const MOST_ROUNDING: f64 = 16.0 * f64::EPSILON;
 const JUDGED: [f64; 4] = [0.0, 0.3, 0.7, 1.0];
 
 /// Makes the strips of a grid up to u = `u_max` \[mm²\], in order of ξ. A skewed wheel or a grid of few columns has none.
-pub fn strips(fitter: &mut Fitter<'_>, placement: &Placement, xi: &[f64], u_max: f64) -> Vec<Strip> {
+pub fn strips(fitter: &mut Fitter<'_>, xi: &[f64], u_max: f64) -> Vec<Strip> {
     let (Some(&first), Some(&last)) = (xi.first(), xi.last()) else { return Vec::new() };
-    if placement.skew() != 0.0 || u_max == 0.0 {
+    if fitter.relief.is_skewed() || u_max == 0.0 {
         return Vec::new();
     }
     // The ends of the window are widened by one number, so that the first and last columns lie inside.
     let window = [first.next_down(), last.next_up()];
     let least = fitter.least;
+    let breaks = breaks(&fitter.relief, u_max, window);
     let mut maker = Maker { fitter, u_max, least, strips: Vec::new() };
     let mut rest = xi;
-    for pair in breaks(placement, u_max, window).windows(2) {
+    for pair in breaks.windows(2) {
         rest = &rest[leading(rest, |xi| xi <= pair[0])..];
         let (inside, beyond) = rest.split_at(leading(rest, |xi| xi < pair[1]));
         maker.divide([pair[0], pair[1]], inside);
@@ -54,8 +53,8 @@ fn leading(xi: &[f64], holds: impl Fn(f64) -> bool) -> usize {
 }
 
 /// Finds the ξ \[mm\] at which a joint of either body enters or leaves the columns, in order, with the window's two ends.
-fn breaks(placement: &Placement, u_max: f64, window: [f64; 2]) -> Vec<f64> {
-    let (rail, wheel) = (&placement.rail().section, WheelSurface::new(placement));
+fn breaks(relief: &Relief<'_>, u_max: f64, window: [f64; 2]) -> Vec<f64> {
+    let (rail, wheel) = (relief.below, &relief.wheel);
     let leaving = |(joint, height): (f64, f64)| {
         let w = wheel.axle_distance(joint, height);
         // From u = e (2w − e): the joint's circle meets the edge of the window here. The result is NaN if the circle does
@@ -134,8 +133,8 @@ impl pulp::WithSimd for Attempt<'_, '_> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) -> Option<Strip> {
         let points = inside(self.xi, &chebyshev::NODES);
-        let Fitter { evaluator, neighbours, .. } = &mut *self.fitter;
-        neighbours.take(evaluator, self.u_max, points)?;
+        let Fitter { relief, neighbours, .. } = &mut *self.fitter;
+        neighbours.take(relief, self.u_max, points)?;
         self.strip()
     }
 }
@@ -147,8 +146,8 @@ impl Attempt<'_, '_> {
     #[inline(always)]
     fn strip(self) -> Option<Strip> {
         let Self { fitter, u_max, xi, least, short } = self;
-        let Fitter { evaluator, neighbours: columns, demand, rows, .. } = fitter;
-        let beginnings = Beginnings::new(evaluator, columns, short)?;
+        let Fitter { relief, neighbours: columns, demand, rows, .. } = fitter;
+        let beginnings = Beginnings::new(relief, columns, short)?;
         let single = columns.spans.len() == 1;
         let (mut counts, mut kept, mut truncation) = ([0; MOST_SPANS], [0; MOST_SPANS], 0f64);
         rows.clear();
@@ -228,7 +227,7 @@ impl Beginnings {
     /// Judges the beginnings of the columns taken last. Returns `None` if too few coefficients of u_0 or s are as small as
     /// rounding. The first span of a `short` strip is exempt for s, which is then computed for every column.
     #[inline(always)]
-    fn new(evaluator: &Evaluator<'_>, columns: &Neighbours<'_>, short: bool) -> Option<Self> {
+    fn new(relief: &Relief<'_>, columns: &Neighbours<'_>, short: bool) -> Option<Self> {
         let mut gap = if columns.contact { Gap::Relative } else { Gap::Plain };
         let mut judged = Judged::default();
         let mut begins = [[[0.0; MANY]; 2]; MOST_SPANS];
@@ -243,8 +242,7 @@ impl Beginnings {
                 let rounding = (0.5 * f64::EPSILON * largest(&s)).min(MOST_ROUNDING * least);
                 rounding.max(ROUNDING_LEVEL * least)
             } else {
-                f64::EPSILON
-                    * largest::<MANY>(&lanes(|k| evaluator.size(columns.xi[k], span.wheel.height[k])))
+                f64::EPSILON * largest::<MANY>(&lanes(|k| relief.size(columns.xi[k], span.wheel.height[k])))
             };
             begins[k] = [chebyshev::coefficients(&span.wheel.u[0]), chebyshev::coefficients(&s)];
             judged.with(&begins[k][0], ROUNDING_LEVEL * largest(&span.wheel.u[1]));

@@ -9,7 +9,7 @@ use super::strips::inside;
 use crate::numerics::chebyshev;
 use crate::numerics::lanes::{Lanes, MANY, lanes};
 use crate::numerics::nan_max;
-use crate::separation::wheel_surface::{SagittaPoints, WheelSurface};
+use crate::separation::wheel_surface::{SagittaPoints, Surface};
 
 /// Places in a span, as shares of its u, at which the truncation error of a single column is measured. The end of the span
 /// is measured, too.
@@ -44,7 +44,7 @@ pub fn of_columns(fitter: &mut Fitter<'_>, xi: &[f64], u_max: f64, needed: &mut 
 /// to `needed`.
 fn of_column(fitter: &mut Fitter<'_>, xi: f64, u_max: f64, needed: &mut Vec<usize>) -> f64 {
     let mut spans = std::mem::take(&mut fitter.spans);
-    fitter.evaluator.wheel.spans(xi, u_max, &mut spans);
+    fitter.relief.wheel.spans(xi, u_max, &mut spans);
     let mut truncation = 0f64;
     for span in &spans {
         // A span without a polynomial is evaluated point by point and has no truncation error.
@@ -53,7 +53,7 @@ fn of_column(fitter: &mut Fitter<'_>, xi: f64, u_max: f64, needed: &mut Vec<usiz
         let run = span.u[1].min(u_max) - span.u[0];
         let error = |u: f64| {
             // A place without a point on the wheel has no error.
-            let point = fitter.evaluator.wheel.point_at(xi, span, u);
+            let point = fitter.relief.wheel.point_at(xi, span, u);
             point.map_or(0.0, |point| (fit.rise(u) - point.rise).abs())
         };
         let inside = MEASURED.map(|share| error(span.u[0] + share * run));
@@ -65,7 +65,7 @@ fn of_column(fitter: &mut Fitter<'_>, xi: f64, u_max: f64, needed: &mut Vec<usiz
 
 /// Finds points of columns near these shares of one span's sagittae. Returns `None` near a vertical tangent.
 #[inline(always)]
-fn points(wheel: &WheelSurface<'_>, span: &SpanColumns<'_>, shares: &Lanes) -> Option<SagittaPoints<MANY>> {
+fn points(wheel: &Surface<'_>, span: &SpanColumns<'_>, shares: &Lanes) -> Option<SagittaPoints<MANY>> {
     let (_, run) = wheel.points_near(&span.wheel, &span.wheel.u[1])?;
     Some(wheel.points_by(&span.wheel, &lanes(|k| run[k] * shares[k])))
 }
@@ -82,11 +82,11 @@ impl pulp::WithSimd for StripDifference<'_, '_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) -> f64 {
-        let Self { fitter: Fitter { evaluator, neighbours: columns, .. }, strip, u_max } = self;
+        let Self { fitter: Fitter { relief, neighbours: columns, .. }, strip, u_max } = self;
         let at = inside(strip.xi, &BETWEEN.0);
         let mut polynomials = [ColumnPolynomials::ZERO; MOST_SPANS];
         let polynomials = &mut polynomials[..strip.spans];
-        strip.polynomials(evaluator.placement, &at, u_max, polynomials);
+        strip.polynomials(relief, &at, u_max, polynomials);
         let mut most = 0.0;
         let mut compare = |polynomial: &ColumnPolynomials, [u, s]: [&Lanes; 2]| {
             let found = polynomial.values(strip.coefficients, &lanes(|k| u[k] - polynomial.u0[k]));
@@ -95,7 +95,7 @@ impl pulp::WithSimd for StripDifference<'_, '_> {
             let differences: Lanes = lanes(|k| if over(k) { (found[k] - s[k]).abs() } else { 0.0 });
             most = differences.into_iter().fold(most, nan_max);
         };
-        let taken = columns.take(evaluator, u_max, at).filter(|()| columns.spans.len() == strip.spans);
+        let taken = columns.take(relief, u_max, at).filter(|()| columns.spans.len() == strip.spans);
         for (index, polynomial) in polynomials.iter().enumerate() {
             let span = taken.map(|()| &columns.spans[index]);
             let found = span.and_then(|span| Some((span.base, points(&columns.wheel, span, &BETWEEN.1)?)));
@@ -110,7 +110,7 @@ impl pulp::WithSimd for StripDifference<'_, '_> {
                     let u = lanes(|k| begin[k] + BETWEEN.1[k] * (next[k] - begin[k]));
                     let mut s = u;
                     for (s, &xi) in s.iter_mut().zip(&at) {
-                        *s = evaluator.separation(xi, s.sqrt());
+                        *s = relief.height(xi, s.sqrt());
                     }
                     compare(polynomial, [&u, &s]);
                 }

@@ -1,12 +1,13 @@
 //! The second-order expansion of s at C, which Hertz's theory uses.
 
-use crate::placement::Placement;
+use crate::placement::{Body, Placement};
 use crate::profile::Section;
 use crate::separation::axis::EtaAxis;
 use crate::separation::gap;
 use crate::separation::kernel::Kernel;
 
-/// The quadratic form s ≈ ½ κ_W ξ′² + ½ κ_η η′² − ½ κ_R ξ², with κ_η = cosθ/(R − z_C).
+/// The quadratic form s ≈ ½ κ_W ξ′² + ½ κ_η η′² − ½ κ_R ξ² + ½ κ_ρ η², with κ_η = cosθ/(R − z_C), and κ_ρ likewise of a roller;
+/// κ_ρ = 0 of a rail.
 #[derive(Debug)]
 pub struct Quadratic<'a> {
     arch: pulp::Arch,
@@ -31,8 +32,9 @@ pub fn quadratic_form(placement: &Placement) -> [f64; 3] {
     }
     let curvature = |section: &Section| section.branch_at(0.0).map_or(f64::NAN, |b| b.curvature(0.0));
     let curvatures = [curvature(&placement.rail().section), curvature(&placement.wheel().section)];
-    let around = placement.wheel().section.frame.cos / placement.rolling_radius();
-    let [along, mixed, across] = form(curvatures, around, placement.skew());
+    let around = |body: &Body| body.section.frame.cos / body.axle_distance();
+    let [along, mixed, across] = form(curvatures, around(placement.wheel()), placement.skew());
+    let across = across + around(placement.rail()) / 2.0;
     match gap::relative_curvature(placement) {
         Some(relative) if placement.skew() == 0.0 => [relative / 2.0, mixed, across],
         _ => [along, mixed, across],

@@ -32,6 +32,9 @@ pub fn missing(placement: &Placement) -> Option<&'static str> {
     if placement.skew() != 0.0 {
         return Some("yaw");
     }
+    if placement.under().is_some() {
+        return Some("a roller");
+    }
     let segments = placement.wheel().profile().segments().iter();
     let unknown = |shape| Printed::of(shape, &Station::AXES).is_none();
     segments.map(|segment| &segment.shape).any(unknown).then_some("a wheel of parametric curves")
@@ -40,6 +43,7 @@ pub fn missing(placement: &Placement) -> Option<&'static str> {
 /// Newton's iteration on (6.13) at every point.
 #[derive(Debug)]
 pub struct ReportNewton<'a> {
+    placement: &'a Placement,
     evaluator: Evaluator<'a>,
     axis: &'a EtaAxis,
     /// The rail's segments; `None` for polynomials, which (6.2) does not cover.
@@ -94,6 +98,7 @@ impl<'a> ReportNewton<'a> {
             wheel.filter_map(|s| Some(([s.start().x, s.end().x], Printed::of(&s.shape, &Station::AXES)?)));
         let (rail, frame) = (placement.rail().profile().segments(), placement.rail().section.frame);
         Self {
+            placement,
             evaluator: Evaluator::new(placement),
             axis,
             rail: rail.iter().map(|segment| Printed::of(&segment.shape, &frame)).collect(),
@@ -113,8 +118,8 @@ impl<'a> ReportNewton<'a> {
 
     /// Computes ζ^W \[mm\] by steps a to h of Sec. 6.2; `None` if they do not converge.
     fn wheel_height(&mut self, xi: f64, eta: f64, guess: f64) -> Option<f64> {
-        let Station { x: x_c, z: z_c, cos, sin } = self.evaluator.placement.wheel().section.frame;
-        let radius = self.evaluator.placement.wheel_radius();
+        let Station { x: x_c, z: z_c, cos, sin } = self.placement.wheel().section.frame;
+        let radius = self.placement.wheel_radius();
         let mut zeta = guess;
         for _ in 0..MOST_ITERATIONS {
             let x = x_c + xi * cos - zeta * sin;
@@ -138,7 +143,7 @@ impl<'a> ReportNewton<'a> {
 
     /// Computes ζ^R \[mm\]; NaN off the rail.
     fn rail_height(&self, xi: f64) -> f64 {
-        let rail = &self.evaluator.placement.rail().section;
+        let rail = &self.placement.rail().section;
         let Some(branch) = rail.branch_at(xi) else { return f64::NAN };
         let printed = self.rail[branch.segment].as_ref().map(|printed| printed.profile(xi).0);
         // The printed root is NaN where rounding takes ξ past an arc's side.
@@ -149,7 +154,10 @@ impl<'a> ReportNewton<'a> {
 impl Kernel for ReportNewton<'_> {
     fn column(&mut self, xi: f64, out: &mut [f64]) {
         let rail = self.rail_height(xi);
-        let guess = self.evaluator.placement.wheel().section.height(xi);
+        if self.placement.under().is_some() {
+            return out.fill(f64::NAN);
+        }
+        let guess = self.placement.wheel().section.height(xi);
         for (s, &eta) in out.iter_mut().zip(&self.axis.eta) {
             let height = self.wheel_height(xi, eta, guess).unwrap_or_else(|| {
                 let start = self.evaluator.separation(xi, eta) + rail;

@@ -53,9 +53,9 @@ fn outer(span: &Span, reached: f64) -> [f64; 2] {
 
 impl Kernel for Spectral<'_> {
     fn column(&mut self, xi: f64, out: &mut [f64]) {
-        if self.fitter.evaluator.placement.skew() != 0.0 {
-            let Fitter { evaluator, arch, demand, .. } = &mut self.fitter;
-            let error = skewed::fill(evaluator, (*arch, *demand), xi, &self.axis.eta, out);
+        if self.fitter.relief.is_skewed() {
+            let Fitter { relief, arch, demand, .. } = &mut self.fitter;
+            let error = skewed::fill(relief, (*arch, *demand), xi, &self.axis.eta, out);
             self.truncation = self.truncation.max(error);
             return;
         }
@@ -133,16 +133,16 @@ impl Spectral<'_> {
 
     /// Writes at most [`MANY`] neighbouring columns, all of one strip or all of none.
     fn neighbours(&mut self, strip: Option<&Strip>, xi: &[f64], out: &mut [f64]) {
-        let (arch, placement, axis) = (self.fitter.arch, self.fitter.evaluator.placement, self.axis);
-        let (mirrored, scratch) = (self.mirrored(out), &mut self.polynomials);
+        let (arch, axis, mirrored) = (self.fitter.arch, self.axis, self.mirrored(out));
+        let (relief, scratch) = (&self.fitter.relief, &mut self.polynomials);
         match strip {
             Some(strip) if self.residence == Residence::Memory => {
-                arch.dispatch(StripColumns::<true> { placement, strip, xi, axis, mirrored, scratch, out });
+                arch.dispatch(StripColumns::<true> { relief, strip, xi, axis, mirrored, scratch, out });
             }
             Some(strip) => {
-                arch.dispatch(StripColumns::<false> { placement, strip, xi, axis, mirrored, scratch, out });
+                arch.dispatch(StripColumns::<false> { relief, strip, xi, axis, mirrored, scratch, out });
             }
-            None if xi.len() > 1 && placement.skew() == 0.0 => {
+            None if xi.len() > 1 && !relief.is_skewed() => {
                 arch.dispatch(EachColumn { spectral: self, xi, out });
             }
             None => {
@@ -156,7 +156,7 @@ impl Spectral<'_> {
     /// Writes a column that is in no strip. On a symmetric axis it writes the half η ≥ 0.
     fn single_column(&mut self, xi: f64, u_max: f64, out: &mut [f64]) {
         let mut spans = std::mem::take(&mut self.fitter.spans);
-        self.fitter.evaluator.wheel.spans(xi, u_max, &mut spans);
+        self.fitter.relief.wheel.spans(xi, u_max, &mut spans);
         if !is_whole(&spans, u_max) {
             out.fill(f64::NAN);
         }
@@ -173,7 +173,7 @@ impl Spectral<'_> {
                 let (u, out) = (&self.axis.u[range.clone()], &mut out[range]);
                 match &fit {
                     Some(fit) => self.fitter.arch.dispatch(SpanRun { fit, u, out }),
-                    None => self.fitter.evaluator.over_span(xi, span, u, out),
+                    None => self.fitter.relief.over_span(xi, span, u, out),
                 }
             }
         }
@@ -189,6 +189,7 @@ mod tests {
     use crate::placement::{Pair, Placement};
     use crate::profile::{Profile, Side, standards};
     use crate::separation::columns::strips::strips;
+    use crate::separation::relief::Relief;
     use crate::separation::values::Residence::{LastCache, Memory, SecondCache};
     use crate::separation::values::Values;
     use crate::separation::{Demand, FULL_PRECISION};
@@ -216,8 +217,11 @@ mod tests {
         }
         xi.sort_by(f64::total_cmp);
         let axis = EtaAxis::new(&steps(15.0, count).collect::<Vec<_>>());
-        let fitter = || Fitter { arch, ..Fitter::new(placement, Demand::for_tolerance(FULL_PRECISION), 4) };
-        let strips = strips(&mut fitter(), placement, &xi, axis.reach * axis.reach);
+        let fitter = || Fitter {
+            arch,
+            ..Fitter::new(Relief::new(placement), Demand::for_tolerance(FULL_PRECISION), 4)
+        };
+        let strips = strips(&mut fitter(), &xi, axis.reach * axis.reach);
         let mut out = Values::new(behind + xi.len() * axis.eta.len());
         Spectral::new(fitter(), &axis, &strips, residence).columns(&xi, &mut out[behind..]);
         (out[behind..].to_vec(), strips.iter().map(|strip| strip.spans).max().unwrap_or(0))

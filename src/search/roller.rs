@@ -1,0 +1,173 @@
+//! First touch of a wheel on a roller: a body of revolution below, whose axle lies at y = 0, parallel to x.
+//!
+//! At a contact the common normal lies in the roller's meridian plane, which stands at an angle ν ahead of the crown. An
+//! observer who turns by ν about the roller's axle sees a rail there: the roller's profile, extruded along the tangent. To him
+//! the wheel, a body of revolution, has another yaw, roll and place ([`Meridian`]), and the search over a rail finds where the two
+//! outlines meet. The place is a contact of the roller if it lies in the observer's own plane: y′ = 0. So ν is a root, one for every
+//! place of contact.
+//!
+//! The roller lies within every such rail. A place's gap over the rail of any ν is therefore no larger than its gap over the roller, and
+//! a search at one ν bounds the gaps of all places. Without yaw, ν is 0 for a wheel above the crown, and a roller is a rail.
+
+use super::candidates::{Candidate, Meeting};
+use super::locus::Attitude;
+use super::touch::ContactSearch;
+
+/// Most steps to the ν of a place. Each gains a digit or more; halving alone takes some 60.
+const STEPS: usize = 80;
+
+/// Passes after which ν is kept. The next pass then reaches as far as the bounds ask for.
+const FREE_PASSES: usize = 2;
+
+/// Most passes over all pairs: the free ones, one that finds how far the places reach, one that covers them.
+const PASSES: usize = FREE_PASSES + 2;
+
+/// A wheel as an observer sees it who has turned by ν about the roller's axle, + forward.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Meridian {
+    /// Attitude of the wheel over the rail that the observer sees.
+    pub attitude: Attitude,
+    /// Height of the wheel's profile origin over that of the rail if both are level without the turn \[mm\].
+    level: f64,
+    /// Distance \[mm\] from the roller's axle up to the middle of the wheel, then.
+    up: f64,
+    /// sin ν.
+    sin: f64,
+    /// cos ν.
+    cos: f64,
+}
+
+impl Meridian {
+    /// Turns the observer of an attitude over a roller of this radius \[mm\] by ν \[rad\].
+    pub fn new(attitude: &Attitude, roller: f64, turn: f64) -> Self {
+        let (sin, cos) = turn.sin_cos();
+        let Attitude { sin_yaw, cos_yaw, sin_roll, cos_roll, radius, .. } = *attitude;
+        // The axle's direction, turned.
+        let forward = sin_yaw * cos + cos_yaw * sin_roll * sin;
+        let down = cos_yaw * sin_roll * cos - sin_yaw * sin;
+        let right = cos_yaw * cos_roll;
+        let level_part = right.hypot(down);
+        let rolled = [down / level_part, right / level_part];
+        // R (cos φ − cos φ′) without a difference of nearly equal numbers.
+        let lowered = (rolled[0] - sin_roll) * (rolled[0] + sin_roll) / (cos_roll + rolled[1]);
+        let half = (turn / 2.0).sin();
+        let up = radius * cos_roll + roller;
+        let offset = attitude.offset + radius * (sin_roll - rolled[0]);
+        Self {
+            attitude: Attitude::of_directions(offset, [forward, level_part], rolled, radius),
+            level: attitude.along * sin - 2.0 * up * half * half + radius * lowered,
+            up,
+            sin,
+            cos,
+        }
+    }
+
+    /// Returns a candidate of the observer with its vertical gap over the roller's rail \[mm\], and y′ of its place \[mm\] when it
+    /// touches.
+    fn seen(&self, candidate: Candidate, along: f64) -> (Candidate, f64) {
+        let gap = (candidate.gap + self.level) / self.cos;
+        let Candidate { wheel, .. } = candidate;
+        let ahead = wheel.x - (self.attitude.radius - wheel.z) * wheel.sin / wheel.cos;
+        let beside = along * self.cos - (self.up - gap) * self.sin + self.attitude.sin_yaw * ahead;
+        (Candidate { gap, ..candidate }, beside)
+    }
+}
+
+impl ContactSearch<'_> {
+    /// Returns the lowest candidate over a roller of this radius \[mm\], and leaves all others up to `within` above it in the
+    /// buffer. Gaps are vertical.
+    ///
+    /// Method: a search at one ν collects candidates, and each is followed to its own ν. A further search then reaches as far as
+    /// any place may be whose gap over the roller counts.
+    pub(super) fn lower_on_roller(
+        &mut self,
+        attitude: &Attitude,
+        roller: f64,
+        within: f64,
+    ) -> Option<Candidate> {
+        let mut turn = attitude.along / (attitude.radius + roller);
+        let (mut reach, mut found) = (within, Vec::new());
+        for pass in 0..PASSES {
+            let meridian = Meridian::new(attitude, roller, turn);
+            let lowest = self.lower_at(&meridian.attitude, reach)?.gap;
+            let seen = std::mem::take(&mut self.candidates);
+            found.clear();
+            found.extend(seen.iter().filter_map(|candidate| {
+                let meeting = Meeting { turn, ..candidate.meeting };
+                self.at_own_turn(attitude, roller, &meeting, Some(candidate))
+            }));
+            self.candidates = seen;
+            let best = *found.iter().min_by(|a, b| a.gap.total_cmp(&b.gap))?;
+            // Any other place up to there has no larger gap over the rail of this ν.
+            let needed = (best.gap + within) * meridian.cos - meridian.level - lowest;
+            if needed <= reach {
+                break;
+            }
+            reach = needed;
+            if pass < FREE_PASSES {
+                turn = best.meeting.turn;
+            }
+        }
+        std::mem::swap(&mut self.candidates, &mut found);
+        self.candidates.iter().min_by(|a, b| a.gap.total_cmp(&b.gap)).copied()
+    }
+
+    /// Follows a place of contact to the ν at which it lies in the observer's own plane; `None` if it vanishes on the way.
+    ///
+    /// Method: secants of y′(ν), which falls by nearly the sum of both radii \[mm/rad\]; halving once the root is enclosed and a
+    /// secant leaves the interval. `first` is the candidate at the first ν, if it is known.
+    pub(super) fn at_own_turn(
+        &mut self,
+        attitude: &Attitude,
+        roller: f64,
+        meeting: &Meeting,
+        first: Option<&Candidate>,
+    ) -> Option<Candidate> {
+        let mut slope = -(attitude.radius + roller);
+        let rounding = f64::EPSILON * -slope;
+        let (mut ends, mut meeting, mut last) = ([f64::NEG_INFINITY, f64::INFINITY], *meeting, None);
+        let mut first = first.copied();
+        for _ in 0..STEPS {
+            let turn = meeting.turn;
+            let meridian = Meridian::new(attitude, roller, turn);
+            let here = first.take().or_else(|| self.follow_at(&meridian.attitude, &meeting))?;
+            let (mut seen, beside) = meridian.seen(here, attitude.along);
+            seen.meeting.turn = turn;
+            if beside.abs() <= rounding {
+                return Some(seen);
+            }
+            ends[usize::from(beside < 0.0)] = turn;
+            if let Some((before, value)) = last
+                && before != turn
+            {
+                let secant = (beside - value) / (turn - before);
+                slope = if secant < 0.0 { secant } else { slope };
+            }
+            last = Some((turn, beside));
+            let next = turn - beside / slope;
+            let inside = ends[0] < next && next < ends[1];
+            let next = if inside { next } else { ends[0] + (ends[1] - ends[0]) / 2.0 };
+            if next == turn || next == ends[0] || next == ends[1] {
+                return Some(seen);
+            }
+            meeting = Meeting { turn: next, ..seen.meeting };
+        }
+        None
+    }
+
+    /// Returns the place of least gap near a former one over the rail of one ν; `None` if there is none.
+    fn follow_at(&mut self, attitude: &Attitude, meeting: &Meeting) -> Option<Candidate> {
+        if let Some(found) = self.follow_over_rail(attitude, meeting) {
+            return Some(found);
+        }
+        // It has left its elements: the candidate that is nearest to it has taken its place.
+        let [wheel, rail] = self.places_of(meeting);
+        self.lower_at(attitude, FOLLOWED_REACH)?;
+        let distance = |c: &Candidate| (c.wheel.x - wheel).abs() + (c.rail.x - rail).abs();
+        self.candidates.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).copied()
+    }
+}
+
+/// Height \[mm\] above the lowest place in which a place is looked for that has left its elements: near misses beyond it are of
+/// no interest.
+const FOLLOWED_REACH: f64 = 2.0;

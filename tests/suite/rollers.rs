@@ -1,0 +1,145 @@
+//! Wheels on rollers: closed forms of bodies of revolution, and CONTACT's results for a wheelset on a roller rig.
+
+use std::path::Path;
+
+use serde_json::Value;
+use wheelrail::case::Place;
+use wheelrail::scene::{self, Scene};
+use wheelrail::search::{ONE_CONTACT, Position, Roll, Selection};
+use wheelrail::separation::{EtaAxis, FULL_PRECISION, Values, plan};
+use wheelrail::{Arc, Evaluator, Half, Pair, Placement, Profile, Segment};
+use wheelrail_report::reference::ReferenceScene;
+
+fn folder() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reference_rollers"))
+}
+
+/// Returns a profile of one arc through the origin, level there; 0 mm is a line.
+fn arc(radius: f64, half: Half) -> Profile {
+    let up = if half == Half::Upper { -1.0 } else { 1.0 };
+    let arc = if radius == 0.0 {
+        Arc::line([-40.0, 0.0], [40.0, 0.0])
+    } else {
+        let reach = 0.9 * radius;
+        Arc::about([0.0, up * radius], radius, half, [-reach, reach])
+    };
+    Profile::new("arc", "", vec![Segment::arc(arc.unwrap())]).unwrap()
+}
+
+fn placed(rail: Profile, wheel: Profile, [roller, radius]: [f64; 2], skew: f64) -> Placement {
+    Pair::new(rail, wheel, radius).unwrap().on_roller(roller).unwrap().placed(0.0, 0.0, skew).unwrap()
+}
+
+/// Distance \[mm\] by which a circle lies off its tangent at an offset.
+fn off(radius: f64, offset: f64) -> f64 {
+    offset * offset / (radius + (radius * radius - offset * offset).sqrt())
+}
+
+fn close(found: f64, expected: f64) {
+    assert!((found - expected).abs() <= 1e-13 * expected.abs(), "{found:e} instead of {expected:e}");
+}
+
+#[test]
+fn crossed_cylinders_and_spheres_have_closed_forms() {
+    let cylinders = placed(arc(0.0, Half::Upper), arc(0.0, Half::Lower), [350.0, 460.0], 0.0);
+    let spheres = placed(arc(300.0, Half::Upper), arc(300.0, Half::Lower), [300.0, 300.0], 0.0);
+    let crossed = cylinders.with_skew(std::f64::consts::FRAC_PI_2).unwrap();
+    let turned = spheres.with_skew(0.7).unwrap();
+    for (xi, eta) in [(1e-3, 2e-3), (0.5, -0.25), (3.0, 8.0), (-7.0, 11.0), (0.0, 5.0), (4.0, 0.0)] {
+        let s = |placement: &Placement| Evaluator::new(placement).separation(xi, eta);
+        close(s(&cylinders), off(350.0, eta) + off(460.0, eta));
+        close(s(&crossed), off(350.0, eta) + off(460.0, xi));
+        close(s(&spheres), 2.0 * off(300.0, f64::hypot(xi, eta)));
+        close(s(&turned), 2.0 * off(300.0, f64::hypot(xi, eta)));
+        let normals = Evaluator::new(&spheres).normals(xi, eta);
+        let [rail, wheel] = [normals.rail.unwrap(), normals.wheel.unwrap()];
+        close(rail.y, eta / 300.0);
+        close(wheel.y, eta / 300.0);
+        close(rail.z, -wheel.z);
+    }
+}
+
+#[test]
+fn every_method_fills_the_separation_over_a_roller() {
+    let rail = wheelrail::standards::rail("60E1").unwrap();
+    let wheel = wheelrail::standards::wheel("S1002").unwrap();
+    let pair = Pair::new(rail, wheel, 460.0).unwrap().on_roller(350.0).unwrap();
+    for (rail_x, wheel_x, skew) in [(10.0, 11.0, 0.0), (-30.0, -36.0, 0.0), (-11.0, -14.0, 0.02)] {
+        let placement = pair.placed(rail_x, wheel_x, skew).unwrap();
+        let xi: Vec<f64> = (0..61).map(|k| f64::from(k - 30) * 0.2).collect();
+        let axis = EtaAxis::new(&xi);
+        let mut plan = plan(&placement, &xi, &axis, FULL_PRECISION, None);
+        let mut s = Values::new(xi.len() * xi.len());
+        plan.fill(&placement, &xi, &axis, &mut s);
+        let mut evaluator = Evaluator::new(&placement);
+        for (i, &x) in xi.iter().enumerate() {
+            for (j, &y) in xi.iter().enumerate() {
+                let (found, exact) = (s[i * xi.len() + j], evaluator.separation(x, y));
+                assert!((found - exact).abs() <= plan.error, "{x} {y}: {found} {exact} {:e}", plan.error);
+            }
+        }
+        assert!(plan.error < 1e-11, "{:e}", plan.error);
+    }
+}
+
+/// Checks every digit against `roller_reference.py`.
+#[test]
+fn the_separation_over_rollers_agrees_with_30_digit_values() {
+    let (mut relative, mut absolute) = (0f64, 0f64);
+    for name in ["60E1_S1002_tread", "crown_on_cone", "throat", "steep_flange", "joint_in_column"] {
+        let text = std::fs::read_to_string(folder().join(format!("roller_{name}.json"))).unwrap();
+        let file: Value = serde_json::from_str(&text).unwrap();
+        let scene: ReferenceScene = serde_json::from_value(file["scene"].clone()).unwrap();
+        let placement = scene.placement().unwrap();
+        let mut evaluator = Evaluator::new(&placement);
+        for row in file["separation"].as_array().unwrap() {
+            let [xi, eta] = [0, 1].map(|k| row[k].as_f64().unwrap());
+            let expected: f64 = row[2].as_str().unwrap().parse().unwrap();
+            let error = (evaluator.separation(xi, eta) - expected).abs();
+            let contact = [placement.rail(), placement.wheel()].map(|body| body.section());
+            if contact.iter().all(|section| section.on_contact_segment(xi, 1.0)) {
+                relative = relative.max(if expected == 0.0 { error } else { error / expected });
+            } else {
+                absolute = absolute.max(error);
+            }
+        }
+        println!("{name}: relative {relative:e}, absolute {absolute:e}");
+    }
+    assert!(relative < 3e-15 && absolute < 1e-13, "{relative:e} {absolute:e}");
+}
+
+fn number(value: &Value, key: &str) -> f64 {
+    value[key].as_f64().unwrap()
+}
+
+fn rig(radius: f64, rest: &str) -> Scene {
+    let text = format!(
+        "[rail]\nfile = \"MBench_UIC60_v3.prr\"\ncurve = \"interpolation\"\n[wheel]\nfile = \"MBench_S1002_v3.prw\"\n\
+         curve = \"interpolation\"\nradius = 460.0\n[roller]\nradius = {radius}\n[track]\ngauge = 1435.0\n\
+         gauge_height = 14.0\n[wheelset]\nback_to_back = 1360.0\nflange_back_x = -70.0\nroll = 0.0\n{rest}"
+    );
+    scene::parse(&text, false).unwrap()
+}
+
+#[test]
+fn first_touch_on_a_roller_rig_agrees_with_contact() {
+    let text = std::fs::read_to_string(folder().join("positions.json")).unwrap();
+    let file: Value = serde_json::from_str(&text).unwrap();
+    let cases = file["cases"].as_array().unwrap();
+    assert_eq!(cases.len(), 30);
+    for radius in [350.0, 800.0] {
+        let case = scene::resolve(&rig(radius, ""), folder(), "").unwrap();
+        let Place::Wheelset { system, .. } = &case.standing().place else { panic!("a wheelset") };
+        let mut search = system.search();
+        for given in cases.iter().filter(|given| given["roller_radius"] == radius as u64) {
+            let position =
+                Position { lateral: number(given, "y"), yaw: -number(given, "yaw"), roll: Roll::Fixed(0.0) };
+            let selection = Selection { within: 0.0, apart: ONE_CONTACT };
+            let touch = search.touch(&position, &selection).unwrap().unwrap();
+            let right = touch.sides[1];
+            let expected = -number(given, "z_first_touch");
+            println!("{radius} {position:?}: {:.5} {expected:.4} {:?}", right.z, right.touch.contacts[0]);
+            assert!((right.z - expected).abs() < 1.2e-4, "{given}: {} instead of {expected}", right.z);
+        }
+    }
+}
