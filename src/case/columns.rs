@@ -20,7 +20,6 @@ pub struct Column {
 enum Stands {
     Both,
     Arrays,
-    Text,
 }
 
 /// The values of a column.
@@ -62,7 +61,7 @@ pub const COLUMNS: [Column; 23] = [
     Column { name: "kink", stands: Stands::Both, values: Values::Kink },
     perhaps("hertz_xi_mm", |_, [xi, _]| xi),
     perhaps("hertz_eta_mm", |_, [_, eta]| eta),
-    Column { name: "doubt", stands: Stands::Text, values: Values::Doubt },
+    Column { name: "doubt", stands: Stands::Both, values: Values::Doubt },
 ];
 
 const fn number(name: &'static str, of: fn(&SweepRow, [f64; 2]) -> f64) -> Column {
@@ -110,6 +109,8 @@ pub enum ColumnArray {
     Flags(Vec<bool>),
     /// Numbers of contacts.
     Counts(Vec<u32>),
+    /// Sets of doubts.
+    Doubts(Vec<DoubtSet>),
     /// Lengths, angles and the like.
     Numbers(Vec<f64>),
 }
@@ -224,7 +225,7 @@ impl Columns {
                 Values::Contact => (column.name, ColumnArray::Counts(std::mem::take(&mut self.contact))),
                 Values::Kink => (column.name, ColumnArray::Flags(std::mem::take(&mut self.kink))),
                 Values::Number(..) => (column.name, ColumnArray::Numbers(numbers)),
-                Values::Doubt => continue,
+                Values::Doubt => (column.name, ColumnArray::Doubts(std::mem::take(&mut self.doubt))),
             });
         }
         out

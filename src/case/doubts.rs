@@ -177,6 +177,18 @@ impl ContactDoubts {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct DoubtSet(u8);
 
+impl DoubtSet {
+    /// Lists every set by ascending code.
+    pub fn all() -> impl Iterator<Item = Self> {
+        (0..1 << DoubtKind::OF_CONTACT.len()).map(Self)
+    }
+
+    /// Gives the number of the set, below 2⁵.
+    pub fn code(self) -> u8 {
+        self.0
+    }
+}
+
 impl fmt::Display for DoubtSet {
     /// Writes the words of the kinds, a space between two; nothing for the empty set.
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {

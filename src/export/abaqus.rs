@@ -23,7 +23,7 @@ const PER_LINE: usize = 16;
 pub fn patch_inp(header: &Header, patch: &PatchMesh) -> Result<Vec<u8>> {
     patch.validate()?;
     let mesh = &patch.mesh;
-    let mut text = String::from("*HEADING\npatch of wheel and rail\n");
+    let mut text = String::from("*HEADING\nwheel/rail patch\n");
     for line in header.statements() {
         let _ = writeln!(text, "** {line}");
     }

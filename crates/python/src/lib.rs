@@ -30,7 +30,7 @@ mod _wheelrail {
     #[pymodule_export]
     use super::profile::{Profile, profile_from_bytes, rail, rail_names, read_profile, wheel, wheel_names};
     #[pymodule_export]
-    use super::sweep::sweep_picture;
+    use super::sweep::{doubt_words, sweep_picture};
     #[pymodule_export]
     use super::wheelset::{Touch, Wheelset};
     use pyo3::prelude::*;

@@ -3,7 +3,7 @@
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use wheelrail::case::{ApproachBy, COLUMNS, ColumnArray, Columns, DoubtSet, MOST_DRAWN, curves};
+use wheelrail::case::{ApproachBy, COLUMNS, ColumnArray, Columns, DoubtSet, MOST_DRAWN, SweepDoubts, curves};
 use wheelrail::search::{ONE_CONTACT, Selection};
 use wheelrail::search::{ParallelSweep, Position, WheelsetOnTrack, conicity_over};
 
@@ -24,7 +24,7 @@ pub(crate) struct Asked {
 /// Sweeps, and makes `wheelrail.Table` of the columns.
 pub(crate) fn sweep<'py>(
     py: Python<'py>,
-    system: &WheelsetOnTrack,
+    (system, doubts): (&WheelsetOnTrack, &SweepDoubts),
     positions: Positions,
     asked: Asked,
     progress: Option<&Py<PyAny>>,
@@ -40,7 +40,8 @@ pub(crate) fn sweep<'py>(
         all.reserve(2 * positions.len());
         sweep.blocks(
             |chunk: &mut Columns, number, rows| {
-                rows.iter().for_each(|row| chunk.push(number, row, ellipses, DoubtSet::default()));
+                let all = doubts.of_rows(rows);
+                all.for_each(|(row, doubts)| chunk.push(number, row, ellipses, doubts.kinds()));
                 watch.go_on()
             },
             |done, chunks| {
@@ -76,10 +77,20 @@ fn arrays_of(py: Python<'_>, columns: Columns) -> PyResult<Bound<'_, PyDict>> {
             ColumnArray::Positions(numbers) => arrays.set_item(name, PyArray1::from_vec(py, numbers))?,
             ColumnArray::Flags(flags) => arrays.set_item(name, PyArray1::from_vec(py, flags))?,
             ColumnArray::Counts(numbers) => arrays.set_item(name, PyArray1::from_vec(py, numbers))?,
+            ColumnArray::Doubts(sets) => {
+                let codes = sets.into_iter().map(DoubtSet::code).collect();
+                arrays.set_item(name, PyArray1::from_vec(py, codes))?;
+            }
             ColumnArray::Numbers(numbers) => arrays.set_item(name, PyArray1::from_vec(py, numbers))?,
         }
     }
     Ok(arrays)
+}
+
+/// Return the words of every set of doubts, by its code in the column `doubt`: a space between two, none for the empty set.
+#[pyfunction]
+pub(crate) fn doubt_words() -> Vec<String> {
+    DoubtSet::all().map(|set| set.to_string()).collect()
 }
 
 /// Draw the usual curves of a table's columns over the lateral displacements of its positions, as SVG.

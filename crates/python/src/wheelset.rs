@@ -5,6 +5,7 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use wheelrail::Error;
+use wheelrail::case::SweepDoubts;
 use wheelrail::measured::GAUGE_HEIGHT;
 use wheelrail::search::{ONE_CONTACT, Selection};
 use wheelrail::search::{Position, WheelsetOnTrack};
@@ -165,7 +166,8 @@ impl Wheelset {
         };
         let positions = positions(lateral, yaw, roll)?;
         let asked = Asked { within, conicity, ellipses };
-        sweep(py, &self.system, positions, asked, progress.as_ref())
+        let doubts = SweepDoubts::new(&self.pair.pair, None);
+        sweep(py, (&self.system, &doubts), positions, asked, progress.as_ref())
     }
 
     fn __repr__(&self) -> String {

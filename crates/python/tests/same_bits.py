@@ -47,7 +47,7 @@ def sweep(case: wr.Case, file: Path) -> int:
     )
     assert table.rows == len(rows) > 300
     for name in rows[0]:
-        if name in ("side", "contact", "kink"):
+        if name in ("side", "contact", "kink", "doubt"):
             assert [str(value) for value in table[name].astype(int if name == "kink" else table[name].dtype)] == [
                 row[name] for row in rows
             ], name

@@ -13,11 +13,12 @@ from folder import Checks, Folder
 # The pressure on the surface, N/mm².
 PRESSURE = 2.0
 
+# The thickness lies below the surface of the mesh.
 JOB = f"""*INCLUDE, INPUT=patch.inp
 *MATERIAL, NAME=STEEL
 *ELASTIC
 210000., 0.28
-*SHELL SECTION, ELSET=PATCH, MATERIAL=STEEL
+*SHELL SECTION, ELSET=PATCH, MATERIAL=STEEL, OFFSET=0.5
 0.5
 *BOUNDARY
 BOUNDARY, 1, 3

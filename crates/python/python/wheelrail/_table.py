@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _SIDES = ("left", "right")
+_DOUBTS = _wheelrail.doubt_words()
 
 
 class Table(Mapping[str, "NDArray[Any]"]):
@@ -34,9 +35,11 @@ class Table(Mapping[str, "NDArray[Any]"]):
         self._names = tuple("side" if name == "right" else name for name in self._columns)
 
     def __getitem__(self, name: str) -> NDArray[Any]:
-        """Return a column: float64, but for `position` (uint64), `contact` (uint32), `kink` (bool) and `side` (str)."""
+        """Return a column: float64, but for `position` (uint64), `contact` (uint32), `kink` (bool), `side` and `doubt` (str)."""
         if name == "side":
             return np.asarray(_SIDES)[self._columns["right"].astype(np.intp)]
+        if name == "doubt":
+            return np.asarray(_DOUBTS)[self._columns["doubt"]]
         if name not in self._names:
             raise KeyError(name)
         return self._columns[name]
@@ -61,20 +64,26 @@ class Table(Mapping[str, "NDArray[Any]"]):
         chosen = (self._columns["right"] == (side == "right")) & (self._columns["contact"] == 1)
         return {name: self[name][chosen] for name in self}
 
+    def _coded(self) -> Iterator[tuple[str, tuple[NDArray[np.int8], list[str]]]]:
+        """Iterate over the columns of words: their names, with codes and words."""
+        yield "side", (self._columns["right"].astype(np.int8), list(_SIDES))
+        yield "doubt", (self._columns["doubt"].astype(np.int8), _DOUBTS)
+
     def to_pandas(self) -> pandas.DataFrame:
-        """Return a data frame; `side` is categorical. Needs pandas."""
+        """Return a data frame; `side` and `doubt` are categorical. Needs pandas."""
         import pandas as pd
 
-        sides = pd.Categorical.from_codes(self._columns["right"].astype(np.int8), categories=list(_SIDES))
-        return pd.DataFrame({name: sides if name == "side" else self[name] for name in self}, copy=False)
+        columns = {name: pd.Categorical.from_codes(codes, categories=words) for name, (codes, words) in self._coded()}
+        return pd.DataFrame({name: columns[name] if name in columns else self[name] for name in self}, copy=False)
 
     def to_arrow(self) -> pyarrow.Table:
-        """Return an Arrow table; `side` is a dictionary of strings. Needs pyarrow."""
+        """Return an Arrow table; `side` and `doubt` are dictionaries of strings. Needs pyarrow."""
         import pyarrow as pa
 
-        codes = pa.array(self._columns["right"].astype(np.int8))
-        sides = pa.DictionaryArray.from_arrays(codes, pa.array(_SIDES))
-        return pa.table({name: sides if name == "side" else pa.array(self[name]) for name in self})
+        columns = {
+            name: pa.DictionaryArray.from_arrays(pa.array(codes), pa.array(words)) for name, (codes, words) in self._coded()
+        }
+        return pa.table({name: columns[name] if name in columns else pa.array(self[name]) for name in self})
 
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
         """Return the table as an Arrow stream (PyCapsule interface), by way of pyarrow, or of polars where that is there."""
