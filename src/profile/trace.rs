@@ -49,7 +49,7 @@ pub fn trace(profile: &Profile, step: f64) -> Vec<Mark> {
     let step = step.max(length / MOST_STEPS);
     let mut marks: Vec<Mark> = Vec::new();
     for (index, segment) in profile.segments().iter().enumerate() {
-        let shares = (segment_length(segment) / step).ceil().max(1.0) as usize;
+        let shares = shares(segment, step);
         for k in 0..=shares {
             let (station, curvature) = at_share(segment, k as f64 / shares as f64);
             let walked = marks.last().map_or(0.0, |last| last.s + chord(&last.station, &station, curvature));
@@ -115,20 +115,39 @@ fn at_share(segment: &Segment, share: f64) -> (Station, f64) {
 /// Returns the length of a segment \[mm\]. A polynomial is measured by chords, which are at most a few per cent too short.
 fn segment_length(segment: &Segment) -> f64 {
     const CHORDS: usize = 8;
+    let at = |k: usize| at_share(segment, k as f64 / CHORDS as f64).0;
     match &segment.shape {
         Shape::Arc(arc) => arc.length(),
-        Shape::Polynomial(_) => (0..CHORDS)
-            .map(|k| {
-                let [a, b] = [k, k + 1].map(|k| at_share(segment, k as f64 / CHORDS as f64).0);
-                (b.x - a.x).hypot(b.z - a.z)
-            })
-            .sum(),
+        Shape::Polynomial(_) => (0..CHORDS).map(|k| distance(&at(k), &at(k + 1))).sum(),
     }
+}
+
+/// Returns into how many shares a segment is divided so that none is longer than `step` \[mm\].
+fn shares(segment: &Segment, step: f64) -> usize {
+    let shares = |length: f64| (length / step).ceil().max(1.0) as usize;
+    if let Shape::Arc(arc) = &segment.shape {
+        return shares(arc.length());
+    }
+    let mut count = 1;
+    loop {
+        // Equal shares of a polynomial's parameter differ in length.
+        let at = |k: usize| at_share(segment, k as f64 / count as f64).0;
+        let longest = (0..count).map(|k| distance(&at(k), &at(k + 1))).fold(0.0, f64::max);
+        if longest <= step {
+            return count;
+        }
+        count = shares(count as f64 * longest).max(count + 1);
+    }
+}
+
+/// Returns the distance of two stations \[mm\].
+fn distance(a: &Station, b: &Station) -> f64 {
+    (b.x - a.x).hypot(b.z - a.z)
 }
 
 /// Returns the length \[mm\] of the circular arc over a chord, to the second order of chord × curvature.
 fn chord(a: &Station, b: &Station, curvature: f64) -> f64 {
-    let chord = (b.x - a.x).hypot(b.z - a.z);
+    let chord = distance(a, b);
     chord * (1.0 + (chord * curvature).powi(2) / 24.0)
 }
 
@@ -136,7 +155,7 @@ fn chord(a: &Station, b: &Station, curvature: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::error::Result;
-    use crate::profile::{Arc, Half};
+    use crate::profile::{Arc, Half, standards};
 
     fn half_circle() -> Result<Profile> {
         let arc = |x| Arc::about([0.0, 0.0], 50.0, Half::Upper, x).map(Segment::arc);
@@ -163,6 +182,18 @@ mod tests {
             hint = found.mark;
             assert!((found.across - (radius - 50.0)).abs() < 1e-12, "{k}: {found:?}");
             assert!((found.s - 50.0 * angle - 0.5 * whole).abs() < 1e-4, "{k}: {found:?}");
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn no_step_is_longer_than_asked_for() -> Result<()> {
+        for name in standards::wheel_names() {
+            let marks = trace(&standards::wheel(name)?, 0.2);
+            let longest = marks.windows(2).filter(|pair| pair[0].segment == pair[1].segment);
+            let longest =
+                longest.map(|pair| distance(&pair[0].station, &pair[1].station)).fold(0.0, f64::max);
+            assert!(longest <= 0.2, "{name}: {longest}");
         }
         Ok(())
     }

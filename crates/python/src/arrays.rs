@@ -2,24 +2,39 @@
 
 use numpy::{AllowTypeChange, PyArray1, PyArray2, PyArrayLike1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use wheelrail::{Error, ErrorKind};
+
+use crate::errors::exception;
 
 /// A one-dimensional array of numbers, or what NumPy makes one of: a list, other types, strides.
-pub(crate) type Numbers<'py> = PyArrayLike1<'py, f64, AllowTypeChange>;
+type Numbers<'py> = PyArrayLike1<'py, f64, AllowTypeChange>;
 
-/// Gives the numbers of an array.
+/// Gives the numbers of the argument with this name.
 ///
 /// # Errors
-/// Those of NumPy, where it has to copy.
-pub(crate) fn values(numbers: &Numbers<'_>) -> PyResult<Vec<f64>> {
+/// InputError for another shape than (n,) and what is no number; those of NumPy, where it has to copy.
+pub(crate) fn values(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    let numbers = argument.extract::<Numbers<'_>>().map_err(|_| no_axis(name, argument))?;
     if !numbers.data().is_aligned() {
         // What comes out of a message or a file may begin at any byte; no number of Rust does.
-        return values(&numbers.call_method0("copy")?.extract()?);
+        return values(name, &numbers.call_method0("copy")?);
     }
     Ok(match numbers.as_slice() {
         Ok(slice) => slice.to_vec(),
         // Strided.
         Err(_) => numbers.as_array().iter().copied().collect(),
     })
+}
+
+/// Makes the error of an argument that is no list of numbers.
+fn no_axis(name: &str, argument: &Bound<'_, PyAny>) -> PyErr {
+    let shape = argument.py().import("numpy").and_then(|numpy| numpy.call_method1("shape", (argument,)));
+    let shape: Vec<usize> = shape.and_then(|shape| shape.extract()).unwrap_or_default();
+    let (found, advice) = match shape.len() {
+        0 | 1 => (argument.get_type().to_string(), "pass an array, a list or a range of numbers"),
+        _ => (format!("an array of shape {shape:?}"), "pass the axes themselves and not a meshgrid of them"),
+    };
+    exception(Error::new(name, found, "numbers, of shape (n,)", advice))
 }
 
 /// Makes an array (n,) of numbers, whose memory it takes over.
@@ -29,6 +44,31 @@ pub(crate) fn array(py: Python<'_>, numbers: Vec<f64>) -> Bound<'_, PyArray1<f64
 
 /// Makes an array (n, 2) of points.
 pub(crate) fn points<'py>(py: Python<'py>, points: &[[f64; 2]]) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let flat = PyArray1::from_slice(py, points.as_flattened());
+    let flat = array(py, points.as_flattened().to_vec());
     flat.reshape([flat.len() / 2, 2])
+}
+
+/// Makes an array of zeros over two axes with their names.
+///
+/// # Errors
+/// LimitError for more than 10⁹ points; MemoryError where NumPy does not get the memory.
+pub(crate) fn grid<'py>(
+    py: Python<'py>,
+    [(first, rows), (second, columns)]: [(&str, &[f64]); 2],
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    /// Points of a grid, 8 GB of numbers: more is two arguments in the wrong unit, or a study that should take blocks.
+    const MOST: usize = 1_000_000_000;
+    let (n, m) = (rows.len(), columns.len());
+    match n.checked_mul(m) {
+        Some(points) if points <= MOST => {}
+        _ => {
+            let found = format!("{n} x {m} points, which take {:.3e} bytes", 8.0 * n as f64 * m as f64);
+            let expected = format!("at most {MOST} points");
+            let error =
+                Error::new(format!("{first}, {second}"), found, expected, "take the grid in several blocks");
+            return Err(exception(error.of_kind(ErrorKind::Limit)));
+        }
+    }
+    // NumPy's own function raises where an allocation fails; its C interface gives a null pointer.
+    Ok(py.import("numpy")?.getattr("zeros")?.call1(((n, m),))?.cast_into()?)
 }

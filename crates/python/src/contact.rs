@@ -13,8 +13,9 @@ use wheelrail::search;
 use wheelrail::separation::{EtaAxis, Method, Plan, plan};
 use wheelrail::{Error, Placement};
 
-use crate::arrays::{Numbers, array, values};
+use crate::arrays::{array, grid, values};
 use crate::errors::{OrRaise, exception};
+use crate::long::detached;
 use crate::patch::Patch;
 use crate::profile::Profile;
 
@@ -34,6 +35,9 @@ pub(crate) struct Contact {
     /// Made when it is first asked for.
     placement: OnceLock<Placement>,
 }
+
+/// An array (n,).
+type Axis<'py> = Bound<'py, PyArray1<f64>>;
 
 /// Where a contact was found.
 #[derive(Debug, Clone, Copy)]
@@ -166,25 +170,26 @@ impl Contact {
     /// The array is filled in place, on all threads and without the GIL; any number of threads gives the same bits.
     /// 200 x 200 points take some 50 microseconds.
     ///
-    /// Raises InputError for axes that do not ascend, a tolerance that is not positive, and an unknown method.
+    /// Raises InputError for axes that do not ascend, a tolerance that is not positive, and an unknown method; LimitError for
+    /// more than 10**9 points; MemoryError where there is less memory.
     #[pyo3(signature = (xi, eta, *, tolerance = 1e-12, method = "auto"))]
     fn separation<'py>(
         &self,
         py: Python<'py>,
-        xi: Numbers<'py>,
-        eta: Numbers<'py>,
+        xi: &Bound<'py, PyAny>,
+        eta: &Bound<'py, PyAny>,
         tolerance: f64,
         method: &str,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let method = named_method(method)?;
-        let [xi, eta] = checked_axes(("xi", &xi), &eta, tolerance)?;
+        let [xi, eta] = checked_axes(("xi", xi), eta, tolerance)?;
         let placement = self.placement()?;
         check_method(placement, method).or_raise()?;
-        let array = PyArray2::<f64>::zeros(py, [xi.len(), eta.len()], false);
+        let array = grid(py, [("xi", &xi), ("eta", &eta)])?;
         let mut values = array.try_readwrite()?;
         let out = values.as_slice_mut()?;
         let axis = EtaAxis::new(&eta);
-        let mut plan = py.detach(|| plan(placement, &xi, &axis, tolerance, method));
+        let mut plan = detached(py, || plan(placement, &xi, &axis, tolerance, method))?;
         fill(py, &mut plan, placement, (&xi, &axis), out)?;
         drop(values);
         Ok(array)
@@ -197,23 +202,24 @@ impl Contact {
     /// `sigma`, the arc length along the rail from C, + towards +xi, and `eta` are ascending arrays in mm; `tolerance` in mm is
     /// as of `separation`. The array is filled without the GIL.
     ///
-    /// Raises InputError for axes that do not ascend and a tolerance that is not positive.
+    /// Raises InputError for axes that do not ascend and a tolerance that is not positive; LimitError for more than 10**9
+    /// points; MemoryError where there is less memory.
     #[pyo3(signature = (sigma, eta, *, tolerance = 1e-12))]
     fn normal_gap<'py>(
         &self,
         py: Python<'py>,
-        sigma: Numbers<'py>,
-        eta: Numbers<'py>,
+        sigma: &Bound<'py, PyAny>,
+        eta: &Bound<'py, PyAny>,
         tolerance: f64,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let axes = checked_axes(("sigma", &sigma), &eta, tolerance)?;
-        let array = PyArray2::<f64>::zeros(py, [axes[0].len(), axes[1].len()], false);
+        let [sigma, eta] = checked_axes(("sigma", sigma), eta, tolerance)?;
+        let placement = self.placement()?;
+        let array = grid(py, [("sigma", &sigma), ("eta", &eta)])?;
         let mut values = array.try_readwrite()?;
         let out = values.as_slice_mut()?;
-        let placement = self.placement()?;
-        py.detach(|| {
-            fill_normal_gap(&NormalGap::new(placement), &axes[0], &EtaAxis::new(&axes[1]), tolerance, out)
-        });
+        detached(py, || {
+            fill_normal_gap(&NormalGap::new(placement), &sigma, &EtaAxis::new(&eta), tolerance, out)
+        })?;
         drop(values);
         Ok(array)
     }
@@ -223,14 +229,14 @@ impl Contact {
     fn rail_surface<'py>(
         &self,
         py: Python<'py>,
-        sigma: Numbers<'py>,
-    ) -> PyResult<[Bound<'py, PyArray1<f64>>; 3]> {
+        sigma: &Bound<'py, PyAny>,
+    ) -> PyResult<(Axis<'py>, Axis<'py>, Axis<'py>)> {
         let rail = RailArcLength::new(self.placement()?);
         let nowhere = [f64::NAN; 3];
         let point =
             |&sigma: &f64| rail.point(sigma).map_or(nowhere, |at| [at.xi, at.zeta, at.sin.atan2(at.cos)]);
-        let points: Vec<[f64; 3]> = values(&sigma)?.iter().map(point).collect();
-        Ok([0, 1, 2].map(|k| array(py, points.iter().map(|point| point[k]).collect())))
+        let points: Vec<[f64; 3]> = values("sigma", sigma)?.iter().map(point).collect();
+        Ok([0, 1, 2].map(|k| array(py, points.iter().map(|point| point[k]).collect())).into())
     }
 
     /// Compute Hertz's elliptic contact under a vertical load in N, which this contact carries alone, or an approach in mm; `modulus` is E* in N/mm2, steel on steel if
@@ -273,7 +279,7 @@ impl Contact {
     ) -> PyResult<Patch> {
         let (by, modulus) = asked(load, approach, modulus)?;
         let placement = self.placement()?;
-        py.detach(|| Patch::new(&self.name, placement, by, modulus)).or_raise()
+        detached(py, || Patch::new(&self.name, placement, by, modulus))?.or_raise()
     }
 
     /// Tell whether the bodies nowhere overlap when they touch at this contact: (4.1) of the Report, with the least
@@ -282,7 +288,7 @@ impl Contact {
     /// Raises GeometryError for bodies that nowhere lie over each other.
     fn feasibility(&self, py: Python<'_>) -> PyResult<Feasibility> {
         let placement = self.placement()?;
-        let found = py.detach(|| feasibility(placement)).ok_or_else(|| {
+        let found = detached(py, || feasibility(placement))?.ok_or_else(|| {
             let expected = "two profiles that lie over each other";
             let error = Error::new("contact", "no common xi", expected, "choose other contact points");
             exception(error.of_kind(wheelrail::ErrorKind::Geometry))
@@ -313,11 +319,11 @@ impl Contact {
 
 /// Reads the axes of a grid \[mm\], and checks them and the tolerance.
 fn checked_axes(
-    (name, first): (&str, &Numbers<'_>),
-    eta: &Numbers<'_>,
+    (name, first): (&str, &Bound<'_, PyAny>),
+    eta: &Bound<'_, PyAny>,
     tolerance: f64,
 ) -> PyResult<[Vec<f64>; 2]> {
-    let (first, eta) = (values(first)?, values(eta)?);
+    let (first, eta) = (values(name, first)?, values("eta", eta)?);
     scene::check_axis(name, &first).or_raise()?;
     scene::check_axis("eta", &eta).or_raise()?;
     if tolerance > 0.0 && tolerance.is_finite() {
@@ -339,12 +345,11 @@ fn fill(
     const PART: usize = 1 << 20;
     let strips = plan.choice.method < Method::Pointwise && placement.skew() == 0.0;
     if strips || out.len() <= PART {
-        py.detach(|| plan.fill(placement, xi, axis, out));
-        return Ok(());
+        return detached(py, || plan.fill(placement, xi, axis, out));
     }
     let columns = (PART / axis.eta().len()).next_multiple_of(MANY);
     for (xi, out) in xi.chunks(columns).zip(out.chunks_mut(columns * axis.eta().len())) {
-        py.detach(|| plan.fill(placement, xi, axis, out));
+        detached(py, || plan.fill(placement, xi, axis, out))?;
         py.check_signals()?;
     }
     Ok(())

@@ -1,5 +1,7 @@
 //! Work that takes long: without the GIL, stopped by Ctrl-C, and with its progress told.
 
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
@@ -57,9 +59,7 @@ impl Watch {
             match receiver.recv_timeout(PATIENCE) {
                 Ok(value) => return Ok(value),
                 Err(RecvTimeoutError::Disconnected) => {
-                    return Err(PyRuntimeError::new_err(
-                        "the work ended without a result: please report this",
-                    ));
+                    return Err(fault(&"the work ended without a result"));
                 }
                 Err(RecvTimeoutError::Timeout) => {
                     self.tell(progress).inspect_err(|_| self.unwanted.store(true, Ordering::Relaxed))?;
@@ -67,6 +67,21 @@ impl Watch {
             }
         }
     }
+}
+
+/// Does work without the GIL.
+///
+/// # Errors
+/// A RuntimeError for a fault of the library, which ends the work and not the process.
+pub(crate) fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    py.detach(|| catch_unwind(AssertUnwindSafe(work))).map_err(|panic| fault(panic.as_ref()))
+}
+
+/// Makes the exception of a panic.
+fn fault(panic: &(dyn Any + Send)) -> PyErr {
+    let text = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
+    let text = text.unwrap_or("the work ended without a result");
+    PyRuntimeError::new_err(format!("a fault of wheelrail, please report it: {text}"))
 }
 
 /// Does work that looks at its watch often. Ctrl-C ends it within 0.2 s.

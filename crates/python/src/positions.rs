@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 use wheelrail::Error;
 use wheelrail::search::{Position, Roll};
 
-use crate::arrays::{Numbers, values};
+use crate::arrays::values;
 use crate::errors::exception;
 
 /// A roll in rad, or a word.
@@ -37,13 +37,13 @@ pub(crate) fn positions(
 ) -> PyResult<Positions> {
     /// Most positions of one sweep: some GiB with all that is kept of them.
     const MOST: usize = 10_000_000;
-    let lateral = Each::of(lateral)?;
-    let yaw = yaw.map_or(Ok(Each::One(0.0)), Each::of)?;
+    let lateral = Each::of("lateral", lateral)?;
+    let yaw = yaw.map_or(Ok(Each::One(0.0)), |yaw| Each::of("yaw", yaw))?;
     let (word, angles) = match roll {
         None => (Some(Roll::Solve), Each::One(0.0)),
         Some(roll) => match roll.extract::<RollArgument>() {
             Ok(one) => (Some(one.roll()?), Each::One(0.0)),
-            Err(_) => (None, Each::of(roll)?),
+            Err(_) => (None, Each::of("roll", roll)?),
         },
     };
     let lengths = [("lateral", &lateral), ("yaw", &yaw), ("roll", &angles)];
@@ -89,11 +89,11 @@ enum Each {
 }
 
 impl Each {
-    fn of(argument: &Bound<'_, PyAny>) -> PyResult<Self> {
+    fn of(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Self> {
         if let Ok(number) = argument.extract::<f64>() {
             return Ok(Self::One(number));
         }
-        Ok(Self::Many(values(&argument.extract::<Numbers<'_>>()?)?))
+        Ok(Self::Many(values(name, argument)?))
     }
 
     fn len(&self) -> Option<usize> {

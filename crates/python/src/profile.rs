@@ -33,6 +33,9 @@ impl Profile {
     }
 }
 
+/// Distance of the two sides of a joint, in roundings of the profile's extent, up to which they are one point.
+const JOINT_ROUNDINGS: f64 = 64.0;
+
 /// An angle in rad, or a ratio such as "1:40".
 #[derive(FromPyObject)]
 pub(crate) enum Turn {
@@ -95,8 +98,8 @@ impl Profile {
         self.moved(self.profile.mirrored())
     }
 
-    /// Return points of the profile from left to right, at most `step` mm apart along it, both sides of every joint among
-    /// them: float64 (n, 2), columns x and z in mm.
+    /// Return points of the profile from left to right, at most `step` mm apart along it, every joint among them, no point
+    /// twice: float64 (n, 2), columns x and z in mm. A step of a drawing has both of its ends.
     ///
     /// Raises InputError for a step that is not positive, and one that makes more than 10**7 points.
     #[pyo3(signature = (step = 0.5))]
@@ -109,7 +112,10 @@ impl Profile {
             return Err(exception(Error::new("points: step", step.to_string(), expected, "correct it")));
         }
         let marks = trace(&self.profile, step);
-        let points: Vec<[f64; 2]> = marks.iter().map(|mark| [mark.station.x, mark.station.z]).collect();
+        let mut points: Vec<[f64; 2]> = marks.iter().map(|mark| [mark.station.x, mark.station.z]).collect();
+        // Both sides of a smooth joint are one point, in spite of rounding.
+        let joint = JOINT_ROUNDINGS * f64::EPSILON * self.profile.extent();
+        points.dedup_by(|next, last| (next[0] - last[0]).hypot(next[1] - last[1]) <= joint);
         arrays::points(py, &points)
     }
 
@@ -159,7 +165,7 @@ fn damaged(error: postcard::Error) -> PyErr {
 /// Raises InputError for an unknown name, with the nearest known one.
 #[pyfunction]
 pub(crate) fn rail(name: &str) -> PyResult<Profile> {
-    Ok(Profile { profile: standards::rail(name).or_raise()?, record: None })
+    built_in(standards::rail(name), "rail_names")
 }
 
 /// Return a built-in wheel: right-hand, flange at negative x, origin where its standard has it.
@@ -167,7 +173,16 @@ pub(crate) fn rail(name: &str) -> PyResult<Profile> {
 /// Raises InputError for an unknown name, with the nearest known one.
 #[pyfunction]
 pub(crate) fn wheel(name: &str) -> PyResult<Profile> {
-    Ok(Profile { profile: standards::wheel(name).or_raise()?, record: None })
+    built_in(standards::wheel(name), "wheel_names")
+}
+
+/// Gives a built-in profile; the error of an unknown name speaks of the function that has all names.
+fn built_in(profile: wheelrail::Result<wheelrail::Profile>, names: &str) -> PyResult<Profile> {
+    let with_names = |mut error: Error| {
+        error.advice = format!("see `wheelrail.{names}()`, or read a file by `wheelrail.read_profile`");
+        error
+    };
+    profile.map(|profile| Profile { profile, record: None }).map_err(with_names).or_raise()
 }
 
 /// Return the names of the built-in rails.

@@ -7,7 +7,7 @@ use wheelrail::case::{ApproachBy, COLUMNS, ColumnArray, Columns, DoubtSet, MOST_
 use wheelrail::search::{ONE_CONTACT, Selection};
 use wheelrail::search::{ParallelSweep, Position, WheelsetOnTrack, conicity_over};
 
-use crate::arrays::{Numbers, values};
+use crate::arrays::values;
 use crate::errors::OrRaise;
 use crate::long::{Watch, watched};
 use crate::positions::Positions;
@@ -101,7 +101,7 @@ pub(crate) fn sweep_picture(columns: &Bound<'_, PyDict>, title: &str) -> PyResul
     let column = |name: &str| -> PyResult<Vec<f64>> {
         let column =
             columns.get_item(name)?.ok_or_else(|| pyo3::exceptions::PyKeyError::new_err(name.to_owned()))?;
-        values(&column.extract::<Numbers<'_>>()?)
+        values(name, &column)
     };
     let (position, right, contact) = (column("position")?, column("right")?, column("contact")?);
     let lateral = column("lateral_mm")?;

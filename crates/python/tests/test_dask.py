@@ -1,9 +1,12 @@
-"""Studies: the same rows whatever the partitioning, and with a worker killed in the middle."""
+"""Studies: the same rows whatever the partitioning, with workers killed at random, and with another scheduler."""
 
 import os
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
+from random import Random
+from threading import Event, Thread
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -72,20 +75,90 @@ def test_rows_are_the_same_whatever_the_partitioning(client: "Client", track: wr
         sweep(wheelsets, LATERAL, tmp_path / "a", client=client)
 
 
-def test_a_killed_worker_loses_nothing_and_doubles_nothing(client: "Client", track: wr.Wheelset, tmp_path: Path) -> None:
+# Kills of a run of the tests; any number by WHEELRAIL_KILLS.
+KILLS = int(os.environ.get("WHEELRAIL_KILLS", "5"))
+
+
+@pytest.fixture(scope="module")
+def many(track: wr.Wheelset) -> dict[str, wr.Wheelset]:
+    """Wheelsets of several shapes."""
+    wheels = ["S1002", "cone-1:20", "EN15302-A", "EN15302-B"]
+    pairs = {name: wr.Pair(track.pair.rail, wr.wheel(name), 460.0) for name in wheels}
+    return {name.replace(":", "-"): wr.Wheelset(pair, gauge=1435.0, wheel_spacing=1500.0) for name, pair in pairs.items()}
+
+
+def times(folder: Path) -> dict[Path, int]:
+    return {file: file.stat().st_mtime_ns for file in folder.glob("*/*.parquet")}
+
+
+def test_workers_killed_at_random_lose_nothing_and_double_nothing(many: dict[str, wr.Wheelset], tmp_path: Path) -> None:
+    need("distributed", "pyarrow")
+    from distributed import Client, LocalCluster
+
     from wheelrail.dask import sweep
 
-    lateral = np.linspace(-7, 7, 200_001)
-    killed: list[int] = []
+    lateral = np.linspace(-7, 7, 60_001)
+    random = Random(1979)
+    cluster = LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None)
+    with cluster, Client(cluster) as client:
+        killed: list[int] = []
+        over = Event()
 
-    def kill_one(done: int, all: int) -> None:
-        if done >= 3 and not killed:
-            workers = client.run(os.getpid)
-            killed.append(next(iter(workers.values())))
-            os.kill(killed[0], signal.SIGKILL)
+        def kill() -> None:
+            while len(killed) < KILLS and not over.wait(random.uniform(0.05, 1.0)):
+                pids = [process.pid for worker in cluster.workers.values() if (process := worker.process) and process.pid]
+                if pids:
+                    killed.append(random.choice(pids))
+                    with suppress(ProcessLookupError):
+                        os.kill(killed[-1], signal.SIGKILL)
 
-    sweep([track], lateral, tmp_path / "killed", client=client, batch=10_000, progress=kill_one)
-    assert killed
-    sweep([track], lateral, tmp_path / "calm", client=client, batch=50_000)
-    assert rows(tmp_path / "killed") == rows(tmp_path / "calm")
-    assert not list((tmp_path / "calm").glob("*/*.tmp"))
+        killer = Thread(target=kill)
+        killer.start()
+        folder, seen = tmp_path / "killed", dict[Path, int]()
+        number = 0
+        try:
+            # A study is over in seconds: further ones follow until all kills were made.
+            while number == 0 or len(killed) < KILLS:
+                folder = tmp_path / f"killed-{number}"
+                sweep(
+                    many, lateral, folder, client=client, batch=5_000, retries=KILLS,
+                    progress=lambda *_: [seen.setdefault(*item) for item in times(folder).items()],
+                )
+                assert all(seen.get(file, time) == time for file, time in times(folder).items())
+                assert not list(folder.glob("*/*.tmp")) or killed
+                number += 1
+        finally:
+            over.set()
+            killer.join()
+        sweep(many, lateral, tmp_path / "calm", client=client, batch=20_000)
+        expected = rows(tmp_path / "calm")
+        assert all(rows(tmp_path / f"killed-{k}") == expected for k in range(number))
+
+
+def test_a_study_goes_on_with_another_scheduler(many: dict[str, wr.Wheelset], tmp_path: Path) -> None:
+    need("distributed", "pyarrow")
+    from distributed import Client, LocalCluster
+
+    from wheelrail.dask import sweep
+
+    class Stopped(Exception):
+        pass
+
+    def stop(done: int, all: int) -> None:
+        if done >= 5:
+            raise Stopped
+
+    def study(progress: Callable[[int, int], None]) -> None:
+        cluster = LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None)
+        with cluster, Client(cluster) as client:
+            sweep(many, LATERAL, tmp_path / "study", client=client, batch=500, progress=progress)
+
+    with pytest.raises(Stopped):
+        study(stop)
+    before = times(tmp_path / "study")
+    assert 5 <= len(before) < 20
+    told: list[tuple[int, int]] = []
+    study(lambda *at: told.append(at))
+    after = times(tmp_path / "study")
+    assert len(after) == 20 and told[0] == (len(before), 20)
+    assert all(after[file] == time for file, time in before.items())

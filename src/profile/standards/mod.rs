@@ -80,18 +80,20 @@ pub fn wheel_names() -> impl Iterator<Item = &'static str> {
 /// inclined.
 ///
 /// # Errors
-/// An unknown name; the error offers the nearest known one.
+/// An unknown name; the error offers the nearest known one, or says that the name is that of the other body.
 pub fn rail(name: &str) -> Result<Profile> {
-    let data = RAILS.get(name).ok_or_else(|| unknown(name, "rail", rail_names()))?;
+    let data =
+        RAILS.get(name).ok_or_else(|| unknown(name, ["rail", "wheel"], rail_names(), wheel_names()))?;
     head(name, data)
 }
 
 /// Returns a built-in wheel: right-hand, flange at negative x, origin as its source says.
 ///
 /// # Errors
-/// An unknown name; the error offers the nearest known one.
+/// An unknown name; the error offers the nearest known one, or says that the name is that of the other body.
 pub fn wheel(name: &str) -> Result<Profile> {
-    let data = WHEELS.get(name).ok_or_else(|| unknown(name, "wheel", wheel_names()))?;
+    let data =
+        WHEELS.get(name).ok_or_else(|| unknown(name, ["wheel", "rail"], wheel_names(), rail_names()))?;
     drawing::drawn_profile(name, &format!("{}; origin: {}", data.source, data.origin), None, &data.segments)
 }
 
@@ -134,7 +136,13 @@ fn flank_run(data: &RailData, x: f64, z: f64) -> f64 {
     inclination * (drop - taken)
 }
 
-fn unknown(name: &str, body: &str, known: impl Iterator<Item = &'static str>) -> Error {
+/// Makes the error of a name that is not among the `known` profiles of a body; `others` are those of the other body.
+fn unknown(
+    name: &str,
+    [body, other]: [&str; 2],
+    known: impl Iterator<Item = &'static str>,
+    mut others: impl Iterator<Item = &'static str>,
+) -> Error {
     // Names of one family differ in their last letters.
     let alike = |known: &str| {
         let same = |(a, b): &(char, char)| a.eq_ignore_ascii_case(b);
@@ -143,6 +151,10 @@ fn unknown(name: &str, body: &str, known: impl Iterator<Item = &'static str>) ->
     };
     let nearest = known.max_by(|a, b| alike(a).total_cmp(&alike(b)));
     let expected = nearest.map_or_else(String::new, |n| format!("a built-in {body} profile such as \"{n}\""));
+    if others.any(|known| known == name) {
+        let found = format!("\"{name}\", which is a built-in {other}");
+        return Error::new("profile", found, expected, format!("give it as the {other}"));
+    }
     let advice = "see `wheelrail profile list`, or give `file` or `segments`";
     Error::new("profile", format!("\"{name}\""), expected, advice)
 }
@@ -194,5 +206,8 @@ mod tests {
     fn an_unknown_name_is_answered_with_the_nearest() {
         let error = rail("60e1").err().map(|e| e.expected);
         assert_eq!(error.as_deref(), Some("a built-in rail profile such as \"60E1\""));
+        let error = rail("S1002").err().map(|e| (e.found, e.advice));
+        let expected = ("\"S1002\", which is a built-in wheel".into(), "give it as the wheel".into());
+        assert_eq!(error, Some(expected));
     }
 }

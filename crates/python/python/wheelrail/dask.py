@@ -1,19 +1,21 @@
 """Studies on many machines: sweeps of many wheelsets, as partitioned Parquet (pip install wheelrail[dask]).
 
-Dask distributed runs the tasks, repeats those of workers that died, and shows its progress; Arrow writes the files. A part
-is written under a temporary name and renamed when it is whole: a part that is there is never computed again, so that a
-study that was stopped goes on where it was.
+Dask distributed runs the tasks and shows its progress; Arrow writes the files. Every task carries all that it needs, so that
+nothing is lost with a worker, and few tasks are handed out at a time, so that a study of any size fits in memory. A part is
+written under a temporary name and renamed when it is whole: a part that is there is never computed again, so that a study
+that was stopped goes on where it was.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import CancelledError
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 from pickle import dumps
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,12 +23,17 @@ from numpy.typing import ArrayLike, NDArray
 from ._wheelrail import Wheelset
 
 if TYPE_CHECKING:
-    from distributed import Client
+    from distributed import Client, Future
 
 __all__ = ["Positions", "sweep"]
 
+_T = TypeVar("_T")
+
 # Positions of a task: about a second of one core.
 _BATCH = 50_000
+
+# Tasks handed out for every thread of the workers: none waits for the scheduler, and few wait in its memory.
+_TASKS_A_THREAD = 4
 
 
 @dataclass(frozen=True)
@@ -67,48 +74,71 @@ def sweep(
     Files that are there are kept: the same call goes on with a study that was stopped. A folder with files of another
     question raises ValueError.
 
-    `client` is a `distributed.Client`, of a cluster of any size. `batch` positions are a task. Tasks of workers that die are
-    computed again, at most `retries` times. `progress(done, all)` is called with the tasks that are done. `options` are
-    keywords of `Wheelset.sweep`: within, load, approach, modulus. The equivalent conicity belongs to a wheelset and not to
-    its positions, and is left out.
+    `client` is a `distributed.Client`, of a cluster of any size. `batch` positions are a task. A task that was lost with its
+    workers or its scheduler is handed out again, at most `retries` times. `progress(done, all)` is called with the parts that
+    are there. `options` are keywords of `Wheelset.sweep`: within, load, approach, modulus. The equivalent conicity belongs to
+    a wheelset and not to its positions, and is left out.
 
-    Raises the errors of `Wheelset.sweep`.
+    Raises the errors of `Wheelset.sweep`; that of Dask for a task whose workers died more often.
     """
-    from distributed import as_completed
-
     if not isinstance(positions, Positions):
         positions = Positions(positions)
     named = wheelsets if isinstance(wheelsets, Mapping) else _numbered(wheelsets)
     lateral, yaw, roll = _arrays(positions)
     root = Path(folder).resolve()
     _mark(root, [*named.items(), lateral, yaw, roll, batch, *sorted(options.items())])
-    files, futures = [], []
+    files, tasks = [], []
     for name, wheelset in named.items():
         home = root / f"pair={name}"
         home.mkdir(parents=True, exist_ok=True)
-        # Sent once, not with every task.
-        remote = None
         for start in range(0, len(lateral), batch):
-            end = min(start + batch, len(lateral))
-            file = home / f"part-{start:010}-{end:010}.parquet"
+            part = slice(start, min(start + batch, len(lateral)))
+            file = home / f"part-{part.start:010}-{part.stop:010}.parquet"
             files.append(file)
-            if file.exists():
-                continue
-            remote = remote or client.scatter(wheelset, broadcast=False, hash=False)
-            part = slice(start, end)
-            arguments = (lateral[part], yaw[part], roll if isinstance(roll, str) else roll[part])
-            futures.append(client.submit(_part, remote, start, arguments, file, options, retries=retries, pure=False))
-    done = len(files) - len(futures)
+            if not file.exists():
+                tasks.append((wheelset, part, file))
+
+    def submit(task: tuple[Wheelset, slice, Path]) -> Future:
+        wheelset, part, file = task
+        arguments = (lateral[part], yaw[part], roll if isinstance(roll, str) else roll[part])
+        return client.submit(_part, wheelset, part.start, arguments, file, options, pure=False)
+
+    done = len(files) - len(tasks)
     if progress:
         progress(done, len(files))
-    for future in as_completed(futures):
-        future.result()
-        # The scheduler forgets what is done: a study of 10**6 tasks is not kept in its memory.
-        future.release()
+    for _ in _finished(client, tasks, submit, retries):
         done += 1
         if progress:
             progress(done, len(files))
     return files
+
+
+def _finished(client: Client, tasks: Sequence[_T], submit: Callable[[_T], Future], retries: int) -> Iterator[_T]:
+    """Yield the tasks as they are finished. A task that was lost is submitted again, at most `retries` times."""
+    from distributed import KilledWorker, as_completed
+
+    waiting = [(task, retries) for task in reversed(tasks)]
+    under_way: dict[Future, tuple[_T, int]] = {}
+    completed = as_completed()
+    while waiting or under_way:
+        most = _TASKS_A_THREAD * max(sum(client.nthreads().values()), 1)
+        while waiting and len(under_way) < most:
+            task, left = waiting.pop()
+            future = submit(task)
+            under_way[future] = (task, left)
+            completed.add(future)
+        for future in completed.next_batch():
+            task, left = under_way.pop(future)
+            try:
+                future.result()
+            except (KilledWorker, CancelledError):
+                if left == 0:
+                    raise
+                waiting.append((task, left - 1))
+            else:
+                yield task
+            # The scheduler forgets what is done.
+            future.release()
 
 
 def one_thread() -> None:
