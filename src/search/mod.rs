@@ -34,6 +34,7 @@ mod bounds;
 mod candidates;
 mod element;
 mod locus;
+mod over_rail;
 mod parallel;
 mod placed;
 mod roller;
@@ -43,13 +44,12 @@ mod touch;
 mod walk;
 mod wheelset;
 
+pub use over_rail::Work;
 pub use parallel::{ParallelSweep, conicity_over, free};
 pub use sweep::{ACCURACY, Conicity, Equivalent, NoConicity, Sweep, SweepRow, TrackSide};
 #[cfg(feature = "files")]
 pub(crate) use touch::small_angle;
-pub use touch::{
-    Contact, ContactSearch, ONE_CONTACT, Pose, ProfilePair, Selection, Touch, Work, wheel_rotation,
-};
+pub use touch::{Contact, ContactSearch, ONE_CONTACT, Pose, ProfilePair, Selection, Touch, wheel_rotation};
 pub use wheelset::{Position, Roll, SideOnTrack, SideTouch, WheelsetOnTrack, WheelsetSearch, WheelsetTouch};
 
 #[cfg(test)]

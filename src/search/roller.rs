@@ -11,7 +11,7 @@
 
 use super::candidates::{Candidate, Meeting};
 use super::locus::Attitude;
-use super::touch::ContactSearch;
+use super::over_rail::RailSearch;
 
 /// Most steps to the ν of a place. Each gains a digit or more; halving alone takes some 60.
 const STEPS: usize = 80;
@@ -21,6 +21,10 @@ const FREE_PASSES: usize = 2;
 
 /// Most passes over all pairs: the free ones, one that finds how far the places reach, one that covers them.
 const PASSES: usize = FREE_PASSES + 2;
+
+/// Height \[mm\] above the lowest place in which a place is looked for that has left its elements: near misses beyond it are of
+/// no interest.
+const FOLLOWED_REACH: f64 = 2.0;
 
 /// A wheel as an observer sees it who has turned by ν about the roller's axle, + forward.
 #[derive(Debug, Clone, Copy)]
@@ -73,101 +77,95 @@ impl Meridian {
     }
 }
 
-impl ContactSearch<'_> {
-    /// Returns the lowest candidate over a roller of this radius \[mm\], and leaves all others up to `within` above it in the
-    /// buffer. Gaps are vertical.
-    ///
-    /// Method: a search at one ν collects candidates, and each is followed to its own ν. A further search then reaches as far as
-    /// any place may be whose gap over the roller counts.
-    pub(super) fn lower_on_roller(
-        &mut self,
-        attitude: &Attitude,
-        roller: f64,
-        within: f64,
-    ) -> Option<Candidate> {
-        let mut turn = attitude.along / (attitude.radius + roller);
-        let (mut reach, mut found) = (within, Vec::new());
-        for pass in 0..PASSES {
-            let meridian = Meridian::new(attitude, roller, turn);
-            let lowest = self.lower_at(&meridian.attitude, reach)?.gap;
-            let seen = std::mem::take(&mut self.candidates);
-            found.clear();
-            found.extend(seen.iter().filter_map(|candidate| {
-                let meeting = Meeting { turn, ..candidate.meeting };
-                self.at_own_turn(attitude, roller, &meeting, Some(candidate))
-            }));
-            self.candidates = seen;
-            let best = *found.iter().min_by(|a, b| a.gap.total_cmp(&b.gap))?;
-            // Any other place up to there has no larger gap over the rail of this ν.
-            let needed = (best.gap + within) * meridian.cos - meridian.level - lowest;
-            if needed <= reach {
-                break;
-            }
-            reach = needed;
-            if pass < FREE_PASSES {
-                turn = best.meeting.turn;
-            }
+/// Returns the lowest candidate over a roller of this radius \[mm\], and leaves all others up to `within` above it in the
+/// buffer. Gaps are vertical.
+///
+/// Method: a search at one ν collects candidates, and each is followed to its own ν. A further search then reaches as far as
+/// any place may be whose gap over the roller counts.
+pub(super) fn lower_on_roller(
+    search: &mut RailSearch<'_>,
+    attitude: &Attitude,
+    roller: f64,
+    within: f64,
+) -> Option<Candidate> {
+    let mut turn = attitude.along / (attitude.radius + roller);
+    let (mut reach, mut found) = (within, Vec::new());
+    for pass in 0..PASSES {
+        let meridian = Meridian::new(attitude, roller, turn);
+        let lowest = search.lower(&meridian.attitude, reach)?.gap;
+        let seen = std::mem::take(&mut search.candidates);
+        found.clear();
+        found.extend(seen.iter().filter_map(|candidate| {
+            let meeting = Meeting { turn, ..candidate.meeting };
+            at_own_turn(search, attitude, roller, &meeting, Some(candidate))
+        }));
+        search.candidates = seen;
+        let best = *found.iter().min_by(|a, b| a.gap.total_cmp(&b.gap))?;
+        // Any other place up to there has no larger gap over the rail of this ν.
+        let needed = (best.gap + within) * meridian.cos - meridian.level - lowest;
+        if needed <= reach {
+            break;
         }
-        std::mem::swap(&mut self.candidates, &mut found);
-        self.candidates.iter().min_by(|a, b| a.gap.total_cmp(&b.gap)).copied()
-    }
-
-    /// Follows a place of contact to the ν at which it lies in the observer's own plane; `None` if it vanishes on the way.
-    ///
-    /// Method: secants of y′(ν), which falls by nearly the sum of both radii \[mm/rad\]; halving once the root is enclosed and a
-    /// secant leaves the interval. `first` is the candidate at the first ν, if it is known.
-    pub(super) fn at_own_turn(
-        &mut self,
-        attitude: &Attitude,
-        roller: f64,
-        meeting: &Meeting,
-        first: Option<&Candidate>,
-    ) -> Option<Candidate> {
-        let mut slope = -(attitude.radius + roller);
-        let rounding = f64::EPSILON * -slope;
-        let (mut ends, mut meeting, mut last) = ([f64::NEG_INFINITY, f64::INFINITY], *meeting, None);
-        let mut first = first.copied();
-        for _ in 0..STEPS {
-            let turn = meeting.turn;
-            let meridian = Meridian::new(attitude, roller, turn);
-            let here = first.take().or_else(|| self.follow_at(&meridian.attitude, &meeting))?;
-            let (mut seen, beside) = meridian.seen(here, attitude.along);
-            seen.meeting.turn = turn;
-            if beside.abs() <= rounding {
-                return Some(seen);
-            }
-            ends[usize::from(beside < 0.0)] = turn;
-            if let Some((before, value)) = last
-                && before != turn
-            {
-                let secant = (beside - value) / (turn - before);
-                slope = if secant < 0.0 { secant } else { slope };
-            }
-            last = Some((turn, beside));
-            let next = turn - beside / slope;
-            let inside = ends[0] < next && next < ends[1];
-            let next = if inside { next } else { ends[0] + (ends[1] - ends[0]) / 2.0 };
-            if next == turn || next == ends[0] || next == ends[1] {
-                return Some(seen);
-            }
-            meeting = Meeting { turn: next, ..seen.meeting };
+        reach = needed;
+        if pass < FREE_PASSES {
+            turn = best.meeting.turn;
         }
-        None
     }
-
-    /// Returns the place of least gap near a former one over the rail of one ν; `None` if there is none.
-    fn follow_at(&mut self, attitude: &Attitude, meeting: &Meeting) -> Option<Candidate> {
-        if let Some(found) = self.follow_over_rail(attitude, meeting) {
-            return Some(found);
-        }
-        // It has left its elements: the candidate that is nearest to it has taken its place.
-        let [wheel, rail] = self.places_of(meeting);
-        self.lower_at(attitude, FOLLOWED_REACH)?;
-        let distance = |c: &Candidate| (c.wheel.x - wheel).abs() + (c.rail.x - rail).abs();
-        self.candidates.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).copied()
-    }
+    std::mem::swap(&mut search.candidates, &mut found);
+    search.candidates.iter().min_by(|a, b| a.gap.total_cmp(&b.gap)).copied()
 }
 
-/// Height \[mm\] above the lowest place in which a place is looked for that has left its elements: near misses beyond it are of
-/// no interest.
-const FOLLOWED_REACH: f64 = 2.0;
+/// Follows a place of contact to the ν at which it lies in the observer's own plane; `None` if it vanishes on the way.
+///
+/// Method: secants of y′(ν), which falls by nearly the sum of both radii \[mm/rad\]; halving once the root is enclosed and a
+/// secant leaves the interval. `first` is the candidate at the first ν, if it is known.
+pub(super) fn at_own_turn(
+    search: &mut RailSearch<'_>,
+    attitude: &Attitude,
+    roller: f64,
+    meeting: &Meeting,
+    first: Option<&Candidate>,
+) -> Option<Candidate> {
+    let mut slope = -(attitude.radius + roller);
+    let rounding = f64::EPSILON * -slope;
+    let (mut ends, mut meeting, mut last) = ([f64::NEG_INFINITY, f64::INFINITY], *meeting, None);
+    let mut first = first.copied();
+    for _ in 0..STEPS {
+        let turn = meeting.turn;
+        let meridian = Meridian::new(attitude, roller, turn);
+        let here = first.take().or_else(|| follow_at(search, &meridian.attitude, &meeting))?;
+        let (mut seen, beside) = meridian.seen(here, attitude.along);
+        seen.meeting.turn = turn;
+        if beside.abs() <= rounding {
+            return Some(seen);
+        }
+        ends[usize::from(beside < 0.0)] = turn;
+        if let Some((before, value)) = last
+            && before != turn
+        {
+            let secant = (beside - value) / (turn - before);
+            slope = if secant < 0.0 { secant } else { slope };
+        }
+        last = Some((turn, beside));
+        let next = turn - beside / slope;
+        let inside = ends[0] < next && next < ends[1];
+        let next = if inside { next } else { ends[0] + (ends[1] - ends[0]) / 2.0 };
+        if next == turn || next == ends[0] || next == ends[1] {
+            return Some(seen);
+        }
+        meeting = Meeting { turn: next, ..seen.meeting };
+    }
+    None
+}
+
+/// Returns the place of least gap near a former one over the rail of one ν; `None` if there is none.
+fn follow_at(search: &mut RailSearch<'_>, attitude: &Attitude, meeting: &Meeting) -> Option<Candidate> {
+    if let Some(found) = search.follow(attitude, meeting) {
+        return Some(found);
+    }
+    // It has left its elements: the candidate that is nearest to it has taken its place.
+    let [wheel, rail] = search.places_of(meeting);
+    search.lower(attitude, FOLLOWED_REACH)?;
+    let distance = |c: &Candidate| (c.wheel.x - wheel).abs() + (c.rail.x - rail).abs();
+    search.candidates.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).copied()
+}

@@ -3,10 +3,10 @@
 use nalgebra::{Rotation3, Vector3};
 
 use super::body::SearchBody;
-use super::candidates::{Candidate, Meeting, Search};
+use super::candidates::{Candidate, Meeting};
 use super::locus::Attitude;
-use super::roller::Meridian;
-use super::walk::Walk;
+use super::over_rail::{RailSearch, SearchPair, Work};
+use super::roller::{Meridian, at_own_turn, lower_on_roller};
 use crate::error::{Error, Result, finite};
 use crate::placement::{Pair, Placement};
 use crate::profile::{Profile, Section, Side};
@@ -23,13 +23,9 @@ const LARGEST_ANGLE: f64 = 0.5;
 /// A rail and a wheel profile, prepared for searches.
 #[derive(Debug, Clone)]
 pub struct ProfilePair {
-    rail: SearchBody,
-    wheel: SearchBody,
-    radius: f64,
+    pub(super) bodies: SearchPair,
     /// Distance \[mm\] from a roller's axle to the origin of its profile; `None` for a rail.
     roller: Option<f64>,
-    /// Size against which rounding is judged: the sum of both extents \[mm\].
-    extent: f64,
 }
 
 /// The place and attitude of a single wheel over its rail, without the height.
@@ -110,24 +106,10 @@ pub struct Touch<'a> {
 /// Searches over one pair; keeps its buffers, so that a search allocates nothing.
 #[derive(Debug, Clone)]
 pub struct ContactSearch<'a> {
-    pair: &'a ProfilePair,
-    walk: Walk,
-    pub(super) candidates: Vec<Candidate>,
+    /// Distance \[mm\] from a roller's axle to the origin of its profile; `None` for a rail.
+    roller: Option<f64>,
+    over_rail: RailSearch<'a>,
     contacts: Vec<Contact>,
-    /// The contact of the last search.
-    last: Option<Meeting>,
-    work: Work,
-}
-
-/// Counts what the searches have done so far.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Work {
-    /// Number of searches: each lowers a wheel onto its rail once.
-    pub searches: u64,
-    /// Number of pairs of tree nodes looked at.
-    pub pairs: u64,
-    /// Number of pairs of elements, or of parts of them, looked at for common tangents.
-    pub solves: u64,
 }
 
 impl ProfilePair {
@@ -144,17 +126,19 @@ impl ProfilePair {
         };
         let ([rail, wheel], [below, above]) = ([pair.rail(), pair.wheel()], pair.sections());
         Ok(Self {
-            rail: body(rail, below, Side::Rail)?,
-            wheel: body(wheel, above, Side::Wheel)?,
-            radius: pair.wheel_radius(),
+            bodies: SearchPair {
+                rail: body(rail, below, Side::Rail)?,
+                wheel: body(wheel, above, Side::Wheel)?,
+                radius: pair.wheel_radius(),
+                extent: rail.extent() + wheel.extent(),
+            },
             roller: pair.roller_radius(),
-            extent: rail.extent() + wheel.extent(),
         })
     }
 
     /// Returns the nominal rolling radius R \[mm\].
     pub fn radius(&self) -> f64 {
-        self.radius
+        self.bodies.radius
     }
 
     /// Returns the distance \[mm\] from a roller's axle to the origin of its profile; `None` for a rail.
@@ -164,14 +148,7 @@ impl ProfilePair {
 
     /// Makes a search over this pair.
     pub fn search(&self) -> ContactSearch<'_> {
-        ContactSearch {
-            pair: self,
-            walk: Walk::new(&self.wheel.nodes, &self.rail.nodes),
-            candidates: Vec::new(),
-            contacts: Vec::new(),
-            last: None,
-            work: Work::default(),
-        }
+        ContactSearch { roller: self.roller, over_rail: RailSearch::new(&self.bodies), contacts: Vec::new() }
     }
 }
 
@@ -222,7 +199,7 @@ impl ContactSearch<'_> {
     /// first search has no place to start from and costs some times more.
     /// Degenerate: bodies that touch along a stretch (parallel lines, equal arcs) give its middle.
     pub fn touch(&mut self, pose: &Pose, selection: &Selection) -> Option<Touch<'_>> {
-        let attitude = Attitude::new(pose.offset, pose.yaw, pose.roll, self.pair.radius);
+        let attitude = Attitude::new(pose.offset, pose.yaw, pose.roll, self.over_rail.pair.radius);
         let height = -self.lower(&attitude, selection.within)?.gap;
         Some(self.collect(&attitude, height, selection))
     }
@@ -230,14 +207,14 @@ impl ContactSearch<'_> {
     /// Collects the contacts of `selection` among the candidates that [`Self::lower`] left, at the height
     /// that it gave.
     pub(super) fn collect(&mut self, attitude: &Attitude, height: f64, selection: &Selection) -> Touch<'_> {
-        self.candidates.retain(|c| c.gap + height <= selection.within);
-        self.candidates.sort_unstable_by(|a, b| a.gap.total_cmp(&b.gap));
-        let apart = selection.apart.max(SAME_POINT * self.pair.extent);
+        self.over_rail.candidates.retain(|c| c.gap + height <= selection.within);
+        self.over_rail.candidates.sort_unstable_by(|a, b| a.gap.total_cmp(&b.gap));
+        let apart = selection.apart.max(SAME_POINT * self.over_rail.pair.extent);
         // A smooth contact on a joint is also one of the joint's fan, a rounding away.
-        let rounding = 16.0 * f64::EPSILON * self.pair.extent;
+        let rounding = 16.0 * f64::EPSILON * self.over_rail.pair.extent;
         self.contacts.clear();
-        for candidate in &self.candidates {
-            let contact = match self.pair.roller_under(attitude) {
+        for candidate in &self.over_rail.candidates {
+            let contact = match self.roller_under(attitude) {
                 Some(roller) => contact_on_roller(attitude, roller, candidate, height),
                 None => contact(attitude, candidate, height),
             };
@@ -257,84 +234,30 @@ impl ContactSearch<'_> {
 
     /// Returns the lowest candidate, and leaves all others up to `within` above it in the buffer.
     pub(super) fn lower(&mut self, attitude: &Attitude, within: f64) -> Option<Candidate> {
-        match self.pair.roller_under(attitude) {
-            Some(roller) => self.lower_on_roller(attitude, roller, within),
-            None => self.lower_at(attitude, within),
+        match self.roller_under(attitude) {
+            Some(roller) => lower_on_roller(&mut self.over_rail, attitude, roller, within),
+            None => self.over_rail.lower(attitude, within),
         }
-    }
-
-    /// Returns the lowest candidate over a rail, and leaves all others up to `within` above it in the buffer.
-    pub(super) fn lower_at(&mut self, attitude: &Attitude, within: f64) -> Option<Candidate> {
-        self.candidates.clear();
-        let mut search = self.pair.at(attitude, within, &mut self.candidates);
-        search.lowest = self.pair.highest(attitude);
-        self.walk.all(&mut search, self.last);
-        self.work.searches += 1;
-        self.work.solves += search.solves;
-        self.work.pairs = self.walk.pairs;
-        let lowest = *self.candidates.iter().min_by(|a, b| a.gap.total_cmp(&b.gap))?;
-        self.last = Some(lowest.meeting);
-        Some(lowest)
     }
 
     /// Returns the place of least gap near a former one at another attitude; `None` if it has left its two
     /// elements.
     pub(super) fn follow(&mut self, attitude: &Attitude, meeting: &Meeting) -> Option<Candidate> {
-        match self.pair.roller_under(attitude) {
-            Some(roller) => self.at_own_turn(attitude, roller, meeting, None),
-            None => self.follow_over_rail(attitude, meeting),
+        match self.roller_under(attitude) {
+            Some(roller) => at_own_turn(&mut self.over_rail, attitude, roller, meeting, None),
+            None => self.over_rail.follow(attitude, meeting),
         }
     }
 
-    /// Returns the place of least gap over a rail near a former one; `None` if it has left its two elements.
-    pub(super) fn follow_over_rail(&self, attitude: &Attitude, meeting: &Meeting) -> Option<Candidate> {
-        super::walk::follow(&self.pair.at(attitude, 0.0, &mut Vec::new()), meeting)
-    }
-
-    /// Returns the abscissae \[mm\] of a place on both profiles: of the wheel and of the rail.
-    pub(super) fn places_of(&self, meeting: &Meeting) -> [f64; 2] {
-        let place = |body: &SearchBody, k: usize| {
-            let element = &body.elements[meeting.elements[k] as usize];
-            element.place(&body.coefficients, meeting.parameters[k]).station.x
-        };
-        [place(&self.pair.wheel, 0), place(&self.pair.rail, 1)]
-    }
-
-    /// Returns what this search has done so far.
-    pub fn work(&self) -> Work {
-        self.work
-    }
-}
-
-impl ProfilePair {
     /// Returns the radius \[mm\] of a roller on which a wheel of this attitude may touch off the crown; `None` where the search
     /// over a rail finds the contact.
     fn roller_under(&self, attitude: &Attitude) -> Option<f64> {
         self.roller.filter(|_| attitude.sin_yaw != 0.0 || attitude.along != 0.0)
     }
 
-    /// Makes a search at one attitude.
-    fn at<'a>(
-        &'a self,
-        attitude: &'a Attitude,
-        within: f64,
-        candidates: &'a mut Vec<Candidate>,
-    ) -> Search<'a> {
-        let extent = self.extent + attitude.offset.abs();
-        let bodies = [&self.wheel, &self.rail];
-        let slack = 16.0 * f64::EPSILON * extent;
-        Search { bodies, attitude, extent, within, lowest: f64::INFINITY, candidates, solves: 0, slack }
-    }
-
-    /// Returns the gap of the highest point of the wheel's profile over the lowest of the rail \[mm\]. A
-    /// larger gap is no touch of the two profiles, but of a yawed wheel's rings towards the axle. Slopes
-    /// below 45° may rise above their profile by their own ring.
-    pub(super) fn highest(&self, attitude: &Attitude) -> f64 {
-        let [x, z] = self.wheel.extent;
-        let tilted = (-x[0] * attitude.sin_roll).max(-x[1] * attitude.sin_roll);
-        let steepest = attitude.tan_yaw;
-        let rise = self.radius * steepest * steepest / (1.0 + crate::numerics::cosine(steepest));
-        z[1] * attitude.cos_roll + tilted + rise - self.rail.extent[1][0]
+    /// Returns what this search has done so far.
+    pub fn work(&self) -> Work {
+        self.over_rail.work
     }
 }
 

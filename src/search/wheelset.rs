@@ -10,7 +10,8 @@ use super::candidates::{Candidate, Meeting};
 use super::locus::Attitude;
 use nalgebra::{Isometry2, Rotation3, Vector2};
 
-use super::touch::{ContactSearch, ProfilePair, Selection, Touch, Work, small_angle, wheel_rotation};
+use super::over_rail::Work;
+use super::touch::{ContactSearch, ProfilePair, Selection, Touch, small_angle, wheel_rotation};
 use crate::error::{Result, finite};
 use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
 

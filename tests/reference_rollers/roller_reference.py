@@ -35,5 +35,7 @@ for xi in map(M, [-8.0, -2.5, -0.5, -1e-3, 0.0, 1e-3, 0.5, 2.5, 8.0]):
         above = wheel_zeta(wheel, frame, M(scene["wheel_radius"]), *own)
         lower = wheel_zeta(below, frame_below, roller, xi, eta)
         if above is not None and lower is not None:
-            out["separation"].append([float(xi), float(eta), mp.nstr(above + lower, 30)])
+            # At C the two cancel: what is left is a rounding.
+            value = "0.0" if xi == 0 == eta else mp.nstr(above + lower, 30)
+            out["separation"].append([float(xi), float(eta), value])
 json.dump(out, sys.stdout, indent=0)

@@ -39,7 +39,7 @@ class Table(Mapping[str, "NDArray[Any]"]):
         if name == "side":
             return np.asarray(_SIDES)[self._columns["right"].astype(np.intp)]
         if name == "doubt":
-            return np.asarray(_DOUBTS)[self._columns["doubt"]]
+            return np.asarray(_DOUBTS)[self._columns["doubt"].astype(np.intp)]
         if name not in self._names:
             raise KeyError(name)
         return self._columns[name]

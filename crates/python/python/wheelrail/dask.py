@@ -98,7 +98,7 @@ def sweep(
             if not file.exists():
                 tasks.append((wheelset, part, file))
 
-    def submit(task: tuple[Wheelset, slice, Path]) -> Future:
+    def submit(task: tuple[Wheelset, slice, Path]) -> Future[Any]:
         wheelset, part, file = task
         arguments = (lateral[part], yaw[part], roll if isinstance(roll, str) else roll[part])
         return client.submit(_part, wheelset, part.start, arguments, file, options, pure=False)
@@ -113,12 +113,12 @@ def sweep(
     return files
 
 
-def _finished(client: Client, tasks: Sequence[_T], submit: Callable[[_T], Future], retries: int) -> Iterator[_T]:
+def _finished(client: Client, tasks: Sequence[_T], submit: Callable[[_T], Future[Any]], retries: int) -> Iterator[_T]:
     """Yield the tasks as they are finished. A task that was lost is submitted again, at most `retries` times."""
     from distributed import KilledWorker, as_completed
 
     waiting = [(task, retries) for task in reversed(tasks)]
-    under_way: dict[Future, tuple[_T, int]] = {}
+    under_way: dict[Future[Any], tuple[_T, int]] = {}
     completed = as_completed()
     while waiting or under_way:
         most = _TASKS_A_THREAD * max(sum(client.nthreads().values()), 1)
