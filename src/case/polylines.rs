@@ -14,7 +14,7 @@ const MOST_POINTS: usize = 1200;
 pub(super) fn pairs(profiles: &Profiles) -> Vec<PagePair> {
     let pair = |side: &SideProfiles| {
         let [rail, wheel] = [side.pair.rail(), side.pair.wheel()].map(polyline);
-        PagePair { rail, wheel, radius: side.pair.wheel_radius() }
+        PagePair { rail, wheel, radius: side.pair.wheel_radius(), roller: side.pair.roller_radius() }
     };
     profiles.sides().map(|(_, side)| pair(side)).collect()
 }

@@ -31,6 +31,8 @@ pub struct PagePair {
     pub wheel: PageProfile,
     /// Distance \[mm\] of the axle from the wheel profile's origin.
     pub radius: f64,
+    /// Distance \[mm\] of a roller's axle from the origin of the rail's profile; `None` for a rail.
+    pub roller: Option<f64>,
 }
 
 /// The contact frame in the own axes of a profile.

@@ -9,8 +9,11 @@ const EDGE = Math.cos(0.35);
 /** Height of the bodies above and below their profiles, as a share of the profile's width. */
 const DEPTH = 0.16;
 
-/** Steps of the wheel about its axle. */
+/** Steps of a body about its axle. */
 const AROUND = 64;
+
+/** Largest share of its radius that a body is drawn ahead of and behind its middle. */
+const MOST_AROUND = 0.9;
 
 /** The closed cross-section of a body in its own axes: its profile, and straight sides up or down to a level. */
 function crossSection(profile, up) {
@@ -91,27 +94,38 @@ export class Space {
         return this.point([c * own - s * along, s * own + c * along, zeta]);
     }
 
-    /** (x, y, z) of a point of the rail's profile. */
+    /** (x, y, z) of a point of the rail's profile, extruded by y. */
     ofRail([x, z], y) {
         const [x0, z0] = this.contact.railFrame.origin;
         return [x - x0, y, z - z0];
     }
 
-    /** The extruded rail over y = ± reach. */
+    /** (x, y, z) of a point of the roller's profile, turned about its axle by psi. */
+    ofRoller([x, z], psi) {
+        const w = this.contact.pair.roller + z;
+        return this.ofRail([x, z - 2 * w * Math.sin(psi / 2) ** 2], w * Math.sin(psi));
+    }
+
+    /** The extruded rail, or the turned roller, over y = ± reach. */
     rail(reach) {
-        return swept(crossSection(this.contact.pair.rail, false), [-reach, reach], (at, y) => this.ofRail(at, y));
+        const { rail, roller } = this.contact.pair;
+        const section = crossSection(rail, false);
+        if (!roller) return swept(section, [-reach, reach], (at, y) => this.ofRail(at, y));
+        return swept(section, anglesOver([-reach, reach], roller), (at, psi) => this.ofRoller(at, psi));
+    }
+
+    /** (x, y, z) of the rail's surface at ξ and η, `height` being ζ of its profile at ξ and what it is lifted by. */
+    onSurface(xi, eta, height) {
+        const { pair, railFrame } = this.contact;
+        if (!pair.roller) return this.point([xi, eta, height]);
+        const [x, z] = railFrame.out([xi, height]);
+        return this.ofRoller([x, z], Math.asin(eta / (pair.roller + z)));
     }
 
     /** The turned wheel between two y at its nominal radius. */
     wheel(ends) {
-        const angles = this.angles(ends);
-        return swept(crossSection(this.contact.pair.wheel, true), angles, (at, psi) => this.ofWheel(at, psi));
-    }
-
-    angles(ends) {
-        const { radius } = this.contact.pair;
-        const [from, to] = ends.map((y) => Math.asin(Math.min(Math.max(y / radius, -0.9), 0.9)));
-        return Array.from({ length: AROUND + 1 }, (_, k) => from + ((to - from) * k) / AROUND);
+        const { wheel, radius } = this.contact.pair;
+        return swept(crossSection(wheel, true), anglesOver(ends, radius), (at, psi) => this.ofWheel(at, psi));
     }
 
     /** The coloured surface of the rail under the grid: opaque up to the end of the scale. */
@@ -124,7 +138,7 @@ export class Space {
         for (let i = 0; i < n; i++) {
             for (let j = 0; j < m; j++) {
                 const k = i * m + j;
-                positions.set(this.point([xi[i], eta[j], railHeight[i] || 0]), 3 * k);
+                positions.set(this.onSurface(xi[i], eta[j], railHeight[i] || 0), 3 * k);
                 const [r, g, b, a] = colourOf(values[k] / scale);
                 colours.set([linear(r), linear(g), linear(b), a / 255], 4 * k);
             }
@@ -150,7 +164,7 @@ export class Space {
         for (const line of lines) {
             for (let k = 1; k < line.length; k++) {
                 for (const [xi, eta] of [line[k - 1], line[k]]) {
-                    pairs.push(...this.point([xi, eta, this.height(xi) + lift]));
+                    pairs.push(...this.onSurface(xi, eta, this.height(xi) + lift));
                 }
             }
         }
@@ -167,8 +181,8 @@ export class Space {
 
     /** Pairs of points along the edges of the wheel's end faces. */
     wheelEdges(ends) {
-        const angles = this.angles(ends);
-        const section = this.contact.pair.wheel;
+        const { wheel: section, radius } = this.contact.pair;
+        const angles = anglesOver(ends, radius);
         const pairs = [];
         for (const psi of [angles[0], angles[angles.length - 1]]) {
             for (let k = 1; k < section.length; k++) {
@@ -177,6 +191,12 @@ export class Space {
         }
         return pairs;
     }
+}
+
+/** Angles of a body's points about its axle, in equal steps between two y at a radius. */
+function anglesOver(ends, radius) {
+    const [from, to] = ends.map((y) => Math.asin(Math.min(Math.max(y / radius, -MOST_AROUND), MOST_AROUND)));
+    return Array.from({ length: AROUND + 1 }, (_, k) => from + ((to - from) * k) / AROUND);
 }
 
 /** A share of full brightness, 0 to 1, of a colour value of a screen. */

@@ -120,10 +120,11 @@ export class Contact {
 
 /** Decodes the profiles of a page. */
 export function pairsOf(data) {
-    return data.pairs.map(({ rail, wheel, radius }) => ({
+    return data.pairs.map(({ rail, wheel, radius, roller }) => ({
         rail: profilePoints(rail),
         wheel: profilePoints(wheel),
         names: [rail.name, wheel.name],
         radius,
+        roller,
     }));
 }
