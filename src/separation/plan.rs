@@ -30,6 +30,9 @@ const SKEWED_ETA: usize = 5;
 /// Number of values along each axis at which the quadratic form is tried first: the ends and the middle.
 const PROBED: usize = 3;
 
+/// Number of values along each axis at which sizes are probed where a body has no surface at some of those.
+const PROBED_BESIDE_ENDS: usize = 24;
+
 /// Factor on the largest sampled error, for the places between the samples.
 const BETWEEN_SAMPLES: f64 = 1.5;
 
@@ -248,12 +251,18 @@ impl Probe {
         let [along, mixed, across] = quadratic_form(placement);
         let mut evaluator = Evaluator::new(placement);
         let (mut most, mut quadratic) = (0f64, 0f64);
-        for xi in places(xi.len(), PROBED).map(|k| xi[k]) {
-            for eta in places(axis.eta.len(), PROBED).map(|k| axis.eta[k]) {
-                let [exact, size] = evaluator.separation_and_size(xi, eta);
-                let form = along * xi * xi + eta * (mixed * xi + across * eta);
-                most = most.max(size);
-                quadratic = nan_max(quadratic, difference(&[form], &[exact]));
+        for count in [PROBED, PROBED_BESIDE_ENDS] {
+            for xi in places(xi.len(), count).map(|k| xi[k]) {
+                for eta in places(axis.eta.len(), count).map(|k| axis.eta[k]) {
+                    let [exact, size] = evaluator.separation_and_size(xi, eta);
+                    let form = along * xi * xi + eta * (mixed * xi + across * eta);
+                    most = most.max(size);
+                    quadratic = nan_max(quadratic, difference(&[form], &[exact]));
+                }
+            }
+            // The form has a value everywhere.
+            if !quadratic.is_nan() {
+                break;
             }
         }
         let of_reliefs = Relief::all(placement).map(|relief| rounding(&relief, xi, axis, most));

@@ -14,8 +14,9 @@ const SAMPLED_COLUMNS: usize = 65;
 /// Least number of η that are compared in these columns.
 const SAMPLED_ETA: usize = 9;
 
-/// Number of points up to which more η are compared: all points of a small grid.
-const SAMPLED_POINTS: usize = 1024;
+/// Number of points up to which all points of a grid are compared. Between the columns of a larger one a step or kink may cross a
+/// single point.
+const SAMPLED_POINTS: usize = 4096;
 
 /// Values at single points of a few columns.
 pub(super) struct Samples<'a> {
@@ -28,7 +29,8 @@ pub(super) struct Samples<'a> {
 impl<'a> Samples<'a> {
     /// Takes the samples of a grid.
     pub fn new(placement: &'a Placement, xi: &[f64], whole: &EtaAxis) -> Self {
-        let columns = sampled_columns(placement, xi);
+        let all = xi.len() * whole.eta.len() <= SAMPLED_POINTS;
+        let columns = if all { xi.to_vec() } else { sampled_columns(placement, xi) };
         let axis = EtaAxis::new(&thinned(&whole.eta, SAMPLED_ETA.max(SAMPLED_POINTS / columns.len().max(1))));
         let mut evaluator = Evaluator::new(placement);
         let mut exact = vec![f64::NAN; columns.len() * axis.eta.len()];

@@ -25,8 +25,8 @@ const STEPS: usize = 8;
 /// the difference of chord and tangent.
 const LAST_STEP: f64 = 16.0 * f64::EPSILON;
 
-/// Share of the window's u that the nodes must cover. Beyond them a polynomial is continued, and its error grows by some
-/// per cent.
+/// Share of a span's u, up to the end of the window, that the nodes must cover. Beyond them a polynomial is continued, and its error
+/// grows by some per cent.
 const NEARLY_COVERED: f64 = 0.9999;
 
 /// Multiple of the sagitta that the window needs, up to which a branch must continue to count as covering the window.
@@ -330,7 +330,8 @@ impl<'a> Surface<'a> {
             let runs: Lanes<N> = lanes(|k| sagitta(w[k], u[k]).max(low[k]).min(high[k]) - low[k]);
             let runs = lanes(|k| runs[k] * shrink[k]);
             let points = self.points_by(span, &runs);
-            let near = |k: usize| (points.u[k] - u[k]).abs() <= (1.0 - NEARLY_COVERED) * u[k];
+            let near =
+                |k: usize| (points.u[k] - u[k]).abs() <= (1.0 - NEARLY_COVERED) * (u[k] - span.u[0][k]);
             if every::<N>(|k| near(k) & (points.w[k] > 0.0)) {
                 return Some((points, runs));
             }

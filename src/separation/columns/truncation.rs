@@ -18,12 +18,15 @@ const MEASURED: [f64; 4] = [0.1, 0.3, 0.55, 0.8];
 /// The golden ratio (√5 − 1)/2. The fractional parts of its multiples are spread evenly, however many are taken.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
-/// Places half way between the nodes of an interval, the last one half way to its middle; and shares of spans by the golden
-/// ratio.
+/// Share of a span at its end, less what rounding may put beyond it.
+const SPAN_END: f64 = 1.0 - 1e-9;
+
+/// Places half way between the nodes of an interval, the last one half way to its middle; and shares of spans, every second one
+/// by the golden ratio. The others are the end of the span, where the truncation error is largest beside a steep surface.
 static BETWEEN: LazyLock<(Lanes, Lanes)> = LazyLock::new(|| {
     let nodes = &*chebyshev::NODES;
     let places = lanes(|k| 0.5 * (nodes[k] + if k + 1 < MANY { nodes[k + 1] } else { -1.0 }));
-    (places, lanes(|k| (GOLDEN * (k + 1) as f64).fract()))
+    (places, lanes(|k| if k % 2 == 0 { (GOLDEN * (k + 1) as f64).fract() } else { SPAN_END }))
 });
 
 /// Measures the largest difference \[mm\] of a strip's columns from the same columns fitted directly, up to u = `u_max`
