@@ -65,6 +65,11 @@ pub fn coefficients(values: &Lanes) -> Lanes {
     interleaved(&even, &odd)
 }
 
+/// Computes [`coefficients`] by the vector code of this machine, for callers that are compiled for the plainest one.
+pub fn coefficients_by_vectors(values: &Lanes) -> Lanes {
+    pulp::Arch::new().dispatch(|| coefficients(values))
+}
+
 /// Computes the coefficients of t^k from those of T_k. Only the first `kept` count; the others are taken for 0.
 ///
 /// Accuracy: digits are lost where the coefficients fall by a factor weaker than about 0.4 a step.
