@@ -1,6 +1,6 @@
 //! All places at which a smooth function changes its sign, proved by its Chebyshev coefficients.
 
-use super::chebyshev::{NODES, PROOF, coefficients, derivative, value};
+use super::chebyshev::{NODES, PROOF, coefficients_by_vectors, derivative, value};
 use super::lanes::{Lanes, lanes, largest};
 use super::roots::bracketed;
 
@@ -48,7 +48,7 @@ pub fn sign_changes(
             }
             continue;
         }
-        let c = coefficients(&values);
+        let c = coefficients_by_vectors(&values);
         let error = noise + RESOLVED * largest(&values);
         let others = c[1..].iter().map(|c| c.abs()).sum::<f64>();
         let resolved = c[c.len() - PROOF..].iter().all(|c| c.abs() <= error);

@@ -1,6 +1,6 @@
 //! The boundary of a patch between two corners, as interpolants.
 
-use crate::numerics::chebyshev::{NODES, POINTS, PROOF, coefficients, value, value_and_slope};
+use crate::numerics::chebyshev::{NODES, POINTS, PROOF, coefficients_by_vectors, value, value_and_slope};
 use crate::numerics::lanes::{Lanes, largest};
 
 /// Share of the first stretch at which a part is not halved again. What is left beside an unknown corner is below the accuracy of
@@ -190,7 +190,7 @@ fn distances([a, b]: [f64; 2], zero: [bool; 2], xi: f64) -> [f64; 2] {
 impl Series {
     /// Interpolates values at the 16 points. Returns the series, and whether its last coefficients are no larger than `rounding`.
     fn new(values: &Lanes, rounding: f64) -> (Self, bool) {
-        let coefficients = coefficients(values);
+        let coefficients = coefficients_by_vectors(values);
         // What is left out is in sum less than the rounding of one value.
         let counts = |c: &f64| c.abs() > LEFT_OUT * rounding;
         let count = coefficients.iter().rposition(counts).map_or(1, |last| last + 1);

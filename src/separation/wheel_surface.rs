@@ -398,17 +398,25 @@ impl<'a> Surface<'a> {
     /// Method: at most `contractions` steps e ← e_0 + rise/(cosθ − sinθ × chord slope), which contract by e × curvature;
     /// then a bracketed root. Degenerate case: if there is no root, the result is that of the last step.
     pub fn point_with_rise(&self, xi: f64, span: &Span, rise: f64, contractions: usize) -> SagittaPoint {
-        let mut point = self.point(xi, span, span.e[0]);
+        let [begin, end] = span.e;
+        let slope = self.branch(span).chord_from(&span.begin, self.abscissa(xi, begin));
+        let mut point = self.point(xi, span, (begin + rise / (self.cos - self.sin * slope)).min(end));
+        let mut last = f64::INFINITY;
         for _ in 0..contractions {
-            let slope = self.branch(span).chord_from(&span.begin, self.abscissa(xi, point.e));
-            let e = (span.e[0] + rise / (self.cos - self.sin * slope)).min(span.e[1]);
-            let change = (e - point.e).abs();
-            point = self.point(xi, span, e);
-            if change <= f64::EPSILON * e {
+            if point.e == begin {
                 return point;
             }
+            // The rise per sagitta is cosθ − sinθ × chord slope.
+            let e = (begin + rise * ((point.e - begin) / point.rise)).min(end);
+            let change = (e - point.e).abs();
+            point = self.point(xi, span, e);
+            // The steps fall in geometric progression: the next one would be below rounding.
+            if change * change <= f64::EPSILON * e * last.min(e) {
+                return point;
+            }
+            last = change;
         }
-        let root = bracketed(|e| self.point(xi, span, e).rise - rise, span.e[0], self.end(span));
+        let root = bracketed(|e| self.point(xi, span, e).rise - rise, begin, self.end(span));
         root.map_or(point, |e| self.point(xi, span, e))
     }
 

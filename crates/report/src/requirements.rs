@@ -27,6 +27,15 @@ const CONICITY_TABLE: f64 = 0.2;
 const RUN: f64 = 0.1;
 /// Largest time of a whole case, by pair \[s\].
 const WHOLE_CASES: [(&str, f64); 2] = [("drawn", 1e-4), ("measured", 3e-4)];
+/// Largest time of parts of a whole case, by pair \[s\].
+const CASE_PARTS: [(&str, &str, f64); 6] = [
+    ("drawn", "patch", 2e-5),
+    ("drawn", "mesh", 2.5e-5),
+    ("measured", "patch", 6e-5),
+    ("measured", "mesh", 3.5e-5),
+    ("drawn, yawed", "patch", 3e-4),
+    ("measured, yawed", "patch", 1e-3),
+];
 /// Largest time of a plan over that of the fill.
 const PLAN_OVER_FILL: f64 = 2.0;
 /// Largest time of a grid of the normal gap over that of s.
@@ -130,11 +139,15 @@ fn whole_cases(m: &Measurements) -> Vec<Requirement> {
     let mut out = Vec::new();
     for case in &m.whole_cases {
         let (pair, side) = (case.pair, case.side);
-        let bound = WHOLE_CASES.iter().find(|(name, _)| *name == pair).map_or(f64::NAN, |(_, bound)| *bound);
-        let what = format!("touch to mesh, {pair}, {side} × {side}, s");
-        out.push(at_most(what, bound, case.total(), String::new()));
-        let what = format!("plan over fill, {pair}, {side} × {side}");
-        out.push(at_most(what, PLAN_OVER_FILL, case.part("plan") / case.part("fill"), String::new()));
+        for (_, bound) in WHOLE_CASES.iter().filter(|(name, _)| *name == pair) {
+            let what = format!("touch to mesh, {pair}, {side} × {side}, s");
+            out.push(at_most(what, *bound, case.total(), String::new()));
+            let what = format!("plan over fill, {pair}, {side} × {side}");
+            out.push(at_most(what, PLAN_OVER_FILL, case.part("plan") / case.part("fill"), String::new()));
+        }
+        for (_, part, bound) in CASE_PARTS.iter().filter(|(name, ..)| *name == pair) {
+            out.push(at_most(format!("{part}, {pair}, s"), *bound, case.part(part), String::new()));
+        }
     }
     out
 }

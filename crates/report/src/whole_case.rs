@@ -29,13 +29,16 @@ const NOISE: f64 = 3.0;
 /// Seed of the measured pair.
 const SEED: u64 = 1979;
 
+/// Yaw of the wheel in the yawed cases \[rad\].
+const YAW: f64 = 0.01;
+
 /// Names of the parts of a case, in order.
 pub const PARTS: [&str; 6] = ["touch", "place", "plan", "fill", "patch", "mesh"];
 
 /// Times of the parts of one case.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WholeCase {
-    /// Kind of the pair: "drawn" or "measured".
+    /// Kind of the pair: "drawn" or "measured", with or without ", yawed".
     pub pair: &'static str,
     /// Number n of the n × n grid.
     pub side: usize,
@@ -55,7 +58,7 @@ impl WholeCase {
     }
 }
 
-/// Times cases of a centred wheel on its rail: lowered, placed, with a grid of n × n points at full
+/// Times cases of a centred wheel on its rail, with and without yaw: lowered, placed, with a grid of n × n points at full
 /// precision, the patch in its window and the patch's mesh. Each part runs for at least `seconds`. Call it on
 /// one thread.
 ///
@@ -63,10 +66,16 @@ impl WholeCase {
 /// Pairs that cannot be fitted or placed, which is a fault of this program.
 pub fn whole_cases(side: usize, seconds: f64) -> Result<Vec<WholeCase>> {
     let drawn = pair([standards::rail("60E1")?, standards::wheel("EN15302-A")?])?;
-    [("drawn", drawn), ("measured", pair(measured()?)?)]
-        .into_iter()
-        .map(|(pair, profiles)| Ok(WholeCase { pair, side, seconds: parts(&profiles, side, seconds)? }))
-        .collect()
+    let measured = pair(measured()?)?;
+    [
+        ("drawn", &drawn, 0.0),
+        ("measured", &measured, 0.0),
+        ("drawn, yawed", &drawn, YAW),
+        ("measured, yawed", &measured, YAW),
+    ]
+    .into_iter()
+    .map(|(pair, profiles, yaw)| Ok(WholeCase { pair, side, seconds: parts(profiles, yaw, side, seconds)? }))
+    .collect()
 }
 
 fn pair([rail, wheel]: [Profile; 2]) -> Result<Pair> {
@@ -123,10 +132,10 @@ pub fn run_cost(seconds: f64) -> Result<RunCost> {
     Ok(RunCost { profiles, rest })
 }
 
-fn parts(pair: &Pair, side: usize, seconds: f64) -> Result<[f64; PARTS.len()]> {
+fn parts(pair: &Pair, yaw: f64, side: usize, seconds: f64) -> Result<[f64; PARTS.len()]> {
     let profiles = ProfilePair::new(pair)?;
     let mut search = profiles.search();
-    let (pose, selection) = (Pose::new(0.0, 0.0, 0.0)?, Selection { within: 0.0, apart: ONE_CONTACT });
+    let (pose, selection) = (Pose::new(0.0, yaw, 0.0)?, Selection { within: 0.0, apart: ONE_CONTACT });
     let found = search.touch(&pose, &selection).and_then(|touch| touch.contacts.first().copied());
     let lost = || Error::new("whole case", "no contact", "a tread contact", "report this");
     let contact = found.ok_or_else(lost)?;

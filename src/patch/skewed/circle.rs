@@ -4,7 +4,7 @@
 use nalgebra::{UnitComplex, Vector2};
 
 use crate::placement::Placement;
-use crate::profile::Section;
+use crate::profile::{Branch, Section};
 
 /// Farthest place from the midplane that is examined, as tan(v/2): |η′| = 0.65 ρ. A tilted wheel is treated as if it ended
 /// at 0.7 ρ.
@@ -121,13 +121,13 @@ impl<'a> Turned<'a> {
         -constant / (half + root.copysign(half))
     }
 
-    /// Returns dξ/dl of the place of a profile point that is parallel to η, where l is the length of the profile.
+    /// Returns dξ/dl of the place of a profile point that is parallel to η, where l is the length of the profile. The point is given by
+    /// the own parameter of its branch.
     ///
     /// With φ = ψ + θ, the place is where F = sinχ (sinφ cosθ − cosφ sinθ cos v) + cosχ cosφ sin v is 0, so that dv/dl =
     /// −(∂F/∂ψ)/(∂F/∂v) dψ/dl.
-    pub(super) fn run(&self, piece: usize, p: f64) -> f64 {
-        let branch = &self.section.branches[self.section.pieces[piece].branch];
-        let tangent = branch.station(p);
+    pub(super) fn run(&self, branch: &Branch, parameter: f64) -> f64 {
+        let (tangent, curvature) = branch.station_and_curvature(parameter);
         let own = self.tilt * Vector2::new(tangent.cos, tangent.sin);
         let t = self.nearest(Vector2::new(tangent.cos, tangent.sin), own);
         let share = 1.0 / (1.0 + t * t);
@@ -136,8 +136,8 @@ impl<'a> Turned<'a> {
             self.skew.im * (own.x * self.tilt.re + own.y * self.tilt.im * cos) - self.skew.re * own.y * sin,
             own.x * (self.skew.im * self.tilt.im * sin + self.skew.re * cos),
         ];
-        let turn = -by_psi / by_v * branch.curvature(p);
-        let radius = self.circle_with(p, tangent.z).radius;
+        let turn = -by_psi / by_v * curvature;
+        let radius = self.circle_with(tangent.x, tangent.z).radius;
         let along = tangent.cos + self.tilt.im * (radius * sin * turn - own.y * versine);
         self.skew.re * along - self.skew.im * (radius * cos * turn - own.y * sin)
     }

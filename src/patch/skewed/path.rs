@@ -106,12 +106,16 @@ impl ValleyPath {
         };
         let mut cuts = vec![a];
         if turned.may_turn(index) {
-            // Beside a vertical end the run is a function of the square root of the distance from it, which the sine resolves.
-            let (middle, half) = (a + (b - a) / 2.0, (b - a) / 2.0);
-            let abscissa = |angle: f64| (middle + half * angle.sin()).clamp(a, b);
-            let run = |angle: &Lanes| angle.map(|angle| turned.run(index, abscissa(angle)));
+            // Beside a vertical end of an arc the run is a function of the square root of the distance from it, which the sine
+            // resolves.
+            let branch = &turned.section.branches[turned.section.pieces[index].branch];
+            let [from, to] = [a, b].map(|p| branch.parameter(p));
+            let (middle, half) = (from + (to - from) / 2.0, (to - from) / 2.0);
+            let parameter = |angle: f64| (middle + half * angle.sin()).clamp(from, to);
+            let run = |angle: &Lanes| angle.map(|angle| turned.run(branch, parameter(angle)));
             let mut turns = Vec::new();
             sign_changes(run, [-FRAC_PI_2, FRAC_PI_2], RUN_NOISE, &mut turns);
+            let abscissa = |angle: f64| branch.station_and_curvature(parameter(angle)).0.x;
             cuts.extend(turns.into_iter().map(abscissa).filter(|p| a < *p && *p < b));
             cuts.dedup();
         }

@@ -24,7 +24,7 @@ pub fn stationary_points(rail: &Branch, wheel: &Branch, a: f64, b: f64) -> Vec<f
         return parallel(rail, wheel).filter(|&xi| xi > a && xi < b).into_iter().collect();
     }
     let mut found = Vec::new();
-    let [[slope_r, _], [slope_w, _]] = [rail, wheel].map(|branch| branch.derivative_bounds(a, b));
+    let [slope_r, slope_w] = [rail, wheel].map(|branch| branch.slope_bounds(a, b));
     if a < b && slope_w[0] <= slope_r[1] && slope_w[1] >= slope_r[0] {
         let slope = |xi: f64| wheel.chord_slope(xi, xi) - rail.chord_slope(xi, xi);
         sign_changes(|xi: &Lanes| xi.map(slope), [a, b], SLOPE_NOISE, &mut found);

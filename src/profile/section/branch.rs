@@ -164,19 +164,22 @@ impl PolynomialBranch {
         exact
     }
 
-    fn derivative_bounds(&self, a: f64, b: f64) -> [[f64; 2]; 2] {
+    /// Returns bounds of ξ′(t) and ζ′(t) over \[a, b\] \[mm\], and of their quotient, which are infinite where ξ′ may be 0.
+    fn rates(&self, a: f64, b: f64) -> ([[f64; 2]; 2], [f64; 2]) {
         let (a, b) = (self.parameter(a), self.parameter(b));
-        let (dx, dz) = (derivative(&self.xi), derivative(&self.zeta));
-        let run = range(&dx, a, b);
+        let rates @ [run, rise] = [&self.xi, &self.zeta].map(|c| range(&derivative(c), a, b));
+        let vertical = [f64::NEG_INFINITY, f64::INFINITY];
+        (rates, if run[0] <= 0.0 { vertical } else { quotient(rise, run) })
+    }
+
+    fn derivative_bounds(&self, a: f64, b: f64) -> [[f64; 2]; 2] {
+        let ([run, rise], slope) = self.rates(a, b);
         if run[0] <= 0.0 {
-            return [[f64::NEG_INFINITY, f64::INFINITY]; 2];
+            return [slope; 2];
         }
-        let rise = range(&dz, a, b);
-        let slope = quotient(rise, run);
-        let turn = add(
-            product(range(&derivative(&dz), a, b), run),
-            product(range(&derivative(&dx), a, b), rise).map(|v| -v),
-        );
+        let (a, b) = (self.parameter(a), self.parameter(b));
+        let [bend, sag] = [&self.xi, &self.zeta].map(|c| range(&derivative(&derivative(c)), a, b));
+        let turn = add(product(sag, run), product(bend, rise).map(|v| -v));
         [slope, quotient(turn, [run[0].powi(3), run[1].powi(3)])]
     }
 }
@@ -413,31 +416,47 @@ impl Branch {
         }
     }
 
-    /// Finds the point at ξ \[mm\] with its unit tangent, in the frame.
-    pub fn station(&self, xi: f64) -> Station {
+    /// Returns the branch's own parameter at ξ \[mm\]: t of a polynomial, for which a root is sought, and ξ on an arc.
+    pub fn parameter(&self, xi: f64) -> f64 {
+        match &self.shape {
+            BranchShape::Arc(_) => xi,
+            BranchShape::Polynomial(p) => p.parameter(xi),
+        }
+    }
+
+    /// Computes the point with its unit tangent, in the frame, and the curvature \[1/mm\], positive where the hollow side is up, at
+    /// an own parameter.
+    pub fn station_and_curvature(&self, parameter: f64) -> (Station, f64) {
         match &self.shape {
             BranchShape::Arc(arc) => {
-                let (sin, cos) = arc.sine_cosine(xi);
-                Station { x: xi, z: arc.height(xi), cos, sin }
+                let (sin, cos) = arc.sine_cosine(parameter);
+                (Station { x: parameter, z: arc.height(parameter), cos, sin }, arc.curvature)
             }
             BranchShape::Polynomial(p) => {
-                let t = p.parameter(xi);
-                let ([_, dx, _], [z, dz, _]) = (derivatives(&p.xi, t), derivatives(&p.zeta, t));
+                let [x, dx, hx] = derivatives(&p.xi, parameter);
+                let [z, dz, hz] = derivatives(&p.zeta, parameter);
                 let norm = dx.hypot(dz);
-                Station { x: xi, z, cos: dx / norm, sin: dz / norm }
+                let station = Station { x, z, cos: dx / norm, sin: dz / norm };
+                (station, (dx * hz - dz * hx) / norm.powi(3))
             }
         }
     }
 
+    /// Finds the point at ξ \[mm\] with its unit tangent, in the frame.
+    pub fn station(&self, xi: f64) -> Station {
+        Station { x: xi, ..self.station_and_curvature(self.parameter(xi)).0 }
+    }
+
     /// Computes the curvature \[1/mm\] at ξ \[mm\], positive where the hollow side is up.
     pub fn curvature(&self, xi: f64) -> f64 {
+        self.station_and_curvature(self.parameter(xi)).1
+    }
+
+    /// Computes bounds of ζ′ over \[a, b\] that enclose every value. They are infinite where the branch is vertical.
+    pub fn slope_bounds(&self, a: f64, b: f64) -> [f64; 2] {
         match &self.shape {
-            BranchShape::Arc(arc) => arc.curvature,
-            BranchShape::Polynomial(p) => {
-                let t = p.parameter(xi);
-                let ([_, dx, hx], [_, dz, hz]) = (derivatives(&p.xi, t), derivatives(&p.zeta, t));
-                (dx * hz - dz * hx) / dx.hypot(dz).powi(3)
-            }
+            BranchShape::Arc(_) => self.derivative_bounds(a, b)[0],
+            BranchShape::Polynomial(p) => p.rates(a, b).1,
         }
     }
 

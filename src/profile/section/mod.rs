@@ -132,10 +132,7 @@ impl Section {
 
     /// Returns bounds of ζ′ over every piece of the envelope; infinite where a piece is vertical. They are found once.
     pub(crate) fn slopes(&self) -> &[[f64; 2]] {
-        let bounds = |piece: &Piece| {
-            let [slopes, _] = self.branches[piece.branch].derivative_bounds(piece.xi[0], piece.xi[1]);
-            slopes
-        };
+        let bounds = |piece: &Piece| self.branches[piece.branch].slope_bounds(piece.xi[0], piece.xi[1]);
         self.slopes.get_or_init(|| self.pieces.iter().map(bounds).collect())
     }
 
