@@ -213,8 +213,8 @@ mod tests {
 
     #[test]
     fn an_interpolant_takes_the_values() {
-        // With the pole at 6 the first coefficient that is left out, and 16² times it in the derivative, are below the bounds.
-        let f = |t: f64| (0.5 * t).exp() / (6.0 - t);
+        // In the derivative the first coefficient that is left out counts 16² times.
+        let f = |t: f64| (0.5 * t).exp() / (5.0 - t);
         let powers = to_powers(&coefficients(&NODES.map(f)), POINTS);
         let c = coefficients(&NODES.map(f));
         let slope = derivative(&c);
@@ -222,10 +222,10 @@ mod tests {
             let t = f64::from(k) / 10.0;
             let horner = powers.iter().rev().fold(0.0, |sum, c| sum * t + c);
             assert!((horner - f(t)).abs() < 1e-15 && (value(&c, t) - f(t)).abs() < 1e-15, "{t}");
-            let exact = f(t) * (0.5 + 1.0 / (6.0 - t));
-            assert!((value(&slope, t) - exact).abs() < 1e-13, "{t}");
+            let exact = f(t) * (0.5 + 1.0 / (5.0 - t));
+            assert!((value(&slope, t) - exact).abs() < 3e-13, "{t}");
             let [both, rate] = value_and_slope(&c, t);
-            assert!(both == value(&c, t) && (rate - exact).abs() < 1e-13, "{t}");
+            assert!(both == value(&c, t) && (rate - exact).abs() < 3e-13, "{t}");
         }
     }
 
