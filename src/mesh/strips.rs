@@ -161,6 +161,8 @@ impl StripBuilder<'_> {
         let mut meetings: Vec<BandMeeting> = BandMeeting::all(bands, &shares);
         let whole = component.xi[1] - component.xi[0];
         let mut first_strip = 0;
+        self.mesh.points.reserve((strips + 1) * self.shares.len());
+        self.mesh.cells.reserve(strips * self.shares.len());
         for (band, shares) in bands.iter().zip(&shares) {
             let edges = strip_edges(band, strips as f64 / whole);
             let mut before: Vec<usize> = Vec::new();

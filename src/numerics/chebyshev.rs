@@ -67,7 +67,19 @@ pub fn coefficients(values: &Lanes) -> Lanes {
 
 /// Computes [`coefficients`] by the vector code of this machine, for callers that are compiled for the plainest one.
 pub fn coefficients_by_vectors(values: &Lanes) -> Lanes {
-    pulp::Arch::new().dispatch(|| coefficients(values))
+    pulp::Arch::new().dispatch(Fit(values))
+}
+
+/// Values of which the coefficients are sought.
+struct Fit<'a>(&'a Lanes);
+
+impl pulp::WithSimd for Fit<'_> {
+    type Output = Lanes;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> Lanes {
+        coefficients(self.0)
+    }
 }
 
 /// Computes the coefficients of t^k from those of T_k. Only the first `kept` count; the others are taken for 0.

@@ -13,6 +13,10 @@ const MOST_STRETCHES: usize = 64;
 /// Share of the rounding up to which a coefficient is left out: a sixteenth of it, and a margin.
 const LEFT_OUT: f64 = 1.0 / 64.0;
 
+/// Largest rounding, as a share of the values, with which coefficients are left out. Where a band is narrow, what counts as the
+/// rounding of its middle may be as large as the middle.
+const MOST_ROUNDING: f64 = 16.0 * f64::EPSILON;
+
 /// Rounding of an edge, in roundings of its size.
 const EDGE_ROUNDINGS: f64 = 8.0;
 
@@ -102,9 +106,10 @@ impl<F: FnMut(f64) -> [f64; 2]> Fit<F> {
         (Stretch { xi, curve }, resolved)
     }
 
-    /// Returns the rounding \[mm\] of edges of this size, half the narrowest width of which is given.
+    /// Returns the rounding \[mm\] of edges of this size, half the narrowest width of which is given. Where nothing but rounding is
+    /// left of the width, it is as large as its own rounding.
     fn rounding(&self, size: f64, narrowest: f64) -> f64 {
-        EDGE_ROUNDINGS * f64::EPSILON * size + self.noise / (2.0 * narrowest)
+        EDGE_ROUNDINGS * f64::EPSILON * size + self.noise / (2.0 * narrowest.max(self.noise.sqrt()))
     }
 
     fn over_root(&mut self, xi: [f64; 2], from: usize) -> (Stretch, bool) {
@@ -192,7 +197,8 @@ impl Series {
     fn new(values: &Lanes, rounding: f64) -> (Self, bool) {
         let coefficients = coefficients_by_vectors(values);
         // What is left out is in sum less than the rounding of one value.
-        let counts = |c: &f64| c.abs() > LEFT_OUT * rounding;
+        let least = LEFT_OUT * rounding.min(MOST_ROUNDING * largest(values));
+        let counts = |c: &f64| c.abs() > least;
         let count = coefficients.iter().rposition(counts).map_or(1, |last| last + 1);
         let resolved = coefficients[POINTS - PROOF..].iter().all(|c| c.abs() <= rounding);
         (Self { coefficients, count }, resolved)

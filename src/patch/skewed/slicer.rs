@@ -124,9 +124,12 @@ impl<'a> Skewed<'a> {
         }
     }
 
-    /// Returns both ends of a slice by Newton's steps from a guess. Returns `None` unless both settle next to the guess, and s rises
-    /// outwards there.
+    /// Returns both ends of a slice by Newton's steps from a guess. Returns `None` unless both settle next to the guess, s rises
+    /// outwards there, and no second valley or ridge is at ξ: s rises on either side of a single valley, and there is no other slice.
     pub(in crate::patch) fn edges_near(&mut self, xi: f64, [low, high]: [f64; 2]) -> Option<[f64; 2]> {
+        if self.valleys.over(xi).nth(1).is_some() {
+            return None;
+        }
         let near = NEAR_GUESS * (high - low);
         Some([self.edge_near(xi, low, -1.0, near)?, self.edge_near(xi, high, 1.0, near)?])
     }
