@@ -1,5 +1,7 @@
 //! The boundary of a patch between two corners, as interpolants.
 
+use std::ops::Range;
+
 use crate::numerics::chebyshev::{NODES, POINTS, PROOF, coefficients_by_vectors, value, value_and_slope};
 use crate::numerics::lanes::{Lanes, largest};
 
@@ -7,8 +9,9 @@ use crate::numerics::lanes::{Lanes, largest};
 /// areas.
 const SHORTEST: f64 = 1e-7;
 
-/// Most stretches between two corners. Only noise that is larger than it is said to be asks for more.
-const MOST_STRETCHES: usize = 64;
+/// Most stretches between two corners. An unknown corner takes some 25, and only noise that is larger than it is said to be asks for
+/// more than some hundred.
+const MOST_STRETCHES: usize = 1024;
 
 /// Share of the rounding up to which a coefficient is left out: a sixteenth of it, and a margin.
 const LEFT_OUT: f64 = 1.0 / 64.0;
@@ -16,6 +19,16 @@ const LEFT_OUT: f64 = 1.0 / 64.0;
 /// Largest rounding, as a share of the values, with which coefficients are left out. Where a band is narrow, what counts as the
 /// rounding of its middle may be as large as the middle.
 const MOST_ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// Number of the last coefficients that are compared with as many before them.
+const TAIL: usize = 4;
+
+/// Factor by which the last coefficients may be smaller than those before them where they count as noise: halving would not make
+/// them smaller. A kink leaves more than this at any length, but more than [`LEVEL_SHARE`] of the values, too.
+const LEVEL: f64 = 4.0;
+
+/// Largest share of the values that noise has. Where the wheel ends, edges have more noise than where s = δ.
+const LEVEL_SHARE: f64 = 1e-12;
 
 /// Rounding of an edge, in roundings of its size.
 const EDGE_ROUNDINGS: f64 = 8.0;
@@ -193,14 +206,19 @@ fn distances([a, b]: [f64; 2], zero: [bool; 2], xi: f64) -> [f64; 2] {
 }
 
 impl Series {
-    /// Interpolates values at the 16 points. Returns the series, and whether its last coefficients are no larger than `rounding`.
+    /// Interpolates values at the 16 points. Returns the series, and whether its last coefficients are noise, or no larger
+    /// than `rounding`.
     fn new(values: &Lanes, rounding: f64) -> (Self, bool) {
         let coefficients = coefficients_by_vectors(values);
         // What is left out is in sum less than the rounding of one value.
         let least = LEFT_OUT * rounding.min(MOST_ROUNDING * largest(values));
         let counts = |c: &f64| c.abs() > least;
         let count = coefficients.iter().rposition(counts).map_or(1, |last| last + 1);
-        let resolved = coefficients[POINTS - PROOF..].iter().all(|c| c.abs() <= rounding);
+        let sizes = coefficients.map(f64::abs);
+        let most = |range: Range<usize>| sizes[range].iter().copied().fold(0.0, f64::max);
+        let [before, last] = [most(POINTS - 2 * TAIL..POINTS - TAIL), most(POINTS - TAIL..POINTS)];
+        let level = before <= LEVEL * last && last <= LEVEL_SHARE * largest(values);
+        let resolved = level || sizes[POINTS - PROOF..].iter().all(|c| *c <= rounding);
         (Self { coefficients, count }, resolved)
     }
 
