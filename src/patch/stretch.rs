@@ -23,8 +23,8 @@ const MOST_ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Number of the last coefficients that are compared with as many before them.
 const TAIL: usize = 4;
 
-/// Factor by which the last coefficients may be smaller than those before them where they count as noise: halving would not make
-/// them smaller. A kink leaves more than this at any length, but more than [`LEVEL_SHARE`] of the values, too.
+/// Factor by which the last coefficients may be smaller than those before them to count as noise, if they are also below
+/// [`LEVEL_SHARE`]. Halving would not make them smaller. Those of a kink fall as slowly, but are larger.
 const LEVEL: f64 = 4.0;
 
 /// Largest share of the values that noise has. Where the wheel ends, edges have more noise than where s = δ.
