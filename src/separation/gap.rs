@@ -31,34 +31,7 @@ const UNCANCELLED: f64 = 0.125;
 
 /// Computes the gap \[mm\] between two branches through C that share their tangent there; `zeta_w` is ζ^W(ξ).
 pub(crate) fn contact_gap(rail: &Branch, wheel: &Branch, xi: f64, zeta_w: f64) -> f64 {
-    let arcs = [rail, wheel].map(|branch| matches!(branch.shape, BranchShape::Arc(_)));
-    let gap = ContactGap { rail, wheel, xi, zeta_w };
-    // With polynomials, twice the working precision takes fused products, which the plainest machine has not.
-    if arcs == [true; 2] { gap.value() } else { pulp::Arch::new().dispatch(gap) }
-}
-
-/// The arguments of [`contact_gap`].
-struct ContactGap<'a> {
-    rail: &'a Branch,
-    wheel: &'a Branch,
-    xi: f64,
-    zeta_w: f64,
-}
-
-impl ContactGap<'_> {
-    #[inline(always)]
-    fn value(self) -> f64 {
-        contact_gaps(self.rail, self.wheel, &[self.xi], &[self.zeta_w]).map_or(f64::NAN, |[gap]| gap)
-    }
-}
-
-impl pulp::WithSimd for ContactGap<'_> {
-    type Output = f64;
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) -> f64 {
-        self.value()
-    }
+    contact_gaps(rail, wheel, &[xi], &[zeta_w]).map_or(f64::NAN, |[gap]| gap)
 }
 
 /// Computes the gaps \[mm\] between two branches through C at N abscissae; `zeta_w` is ζ^W there. If one gap needs 32
