@@ -32,7 +32,7 @@ impl Conformal {
         let truncation = fill_normal_gap(&gap, sigma, &EtaAxis::new(&site.grid.eta), tolerance, &mut values);
         let window = Window { xi: ends(sigma), eta: ends(&site.grid.eta) };
         let approach = site.contact.approach.filter(|_| site.has_extent());
-        let patch = approach.map(|(approach, _)| ConformalPatch::new(&gap, approach, &window));
+        let patch = approach.map(|approach| ConformalPatch::new(&gap, approach, &window));
         let rail = sigma.iter().filter_map(|&sigma| gap.rail().point(sigma)).collect();
         Some(Self { rail, gap: values, truncation, patch })
     }

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::found::Found;
 use super::wheel::Region;
 use crate::error::{Error, Result};
-use crate::load::{Curvatures, Ellipse, Estimate, Feasibility, curvatures, feasibility};
+use crate::load::{Curvatures, Ellipse, Feasibility, Pressures, curvatures, feasibility};
 use crate::patch::{Patch, Window};
 use crate::placement::Placement;
 
@@ -15,7 +15,7 @@ use crate::placement::Placement;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum EllipseUnder {
-    /// The load: the ellipse's δ differs from an estimate by virtual interpenetration.
+    /// The load: the ellipse's δ differs from the half-space's.
     Load,
     /// The approach.
     Approach,
@@ -32,10 +32,12 @@ pub struct PlacedContact {
     pub feasibility: Feasibility,
     /// Principal curvatures of s at C.
     pub curvatures: Curvatures,
-    /// δ \[mm\], with the method of its estimate where it was estimated.
-    pub approach: Option<(f64, Option<Estimate>)>,
+    /// δ \[mm\], as given or estimated from a load.
+    pub approach: Option<f64>,
     /// Normal force \[N\] of every group of parts of the patch, in their order; empty unless a load was asked for.
     pub normal_loads: Vec<f64>,
+    /// Pressures of every group of parts, from which the normal forces are; empty unless a load was asked for.
+    pub pressures: Vec<Pressures>,
     /// Hertz's ellipse under the normal force or the approach; `None` without either, and where s is not convex at C.
     pub ellipse: Option<Ellipse>,
     /// Which of the two the ellipse belongs to.
@@ -64,8 +66,9 @@ impl PlacedContact {
             placement,
             feasibility,
             curvatures,
-            approach: approach.map(|approach| (approach, None)),
+            approach,
             normal_loads: Vec::new(),
+            pressures: Vec::new(),
             ellipse,
             ellipse_under: ellipse.map(|_| EllipseUnder::Approach),
             load_s: 0.0,
@@ -78,14 +81,13 @@ impl PlacedContact {
     /// # Errors
     /// The errors of [`PlacedContact::new`].
     pub(super) fn of(region: Region, modulus: f64, load_s: f64) -> Result<Self> {
-        let Region { placement, approach, patch, loads, estimate, .. } = region;
+        let Region { placement, approach, patch, loads, pressures, .. } = region;
         let mut contact = Self::new(Arc::unwrap_or_clone(placement), Some(approach), modulus)?;
-        if estimate.is_some() {
+        if !loads.is_empty() {
             let ellipse = contact.curvatures.under_load(loads.iter().sum(), modulus);
             (contact.ellipse, contact.ellipse_under) = (ellipse, ellipse.map(|_| EllipseUnder::Load));
         }
-        contact.approach = Some((approach, estimate));
-        (contact.normal_loads, contact.load_s) = (loads, load_s);
+        (contact.normal_loads, contact.pressures, contact.load_s) = (loads, pressures, load_s);
         contact.whole_patch = OnceLock::from(patch);
         Ok(contact)
     }
@@ -100,16 +102,21 @@ impl PlacedContact {
         self.found.as_ref().map_or_else(|| "contact".into(), Found::name)
     }
 
+    /// Tells whether a load was asked for, from which half-spaces found δ.
+    pub fn is_loaded(&self) -> bool {
+        !self.normal_loads.is_empty()
+    }
+
     /// Gives the patch over the whole plane, found once; `None` without an approach.
     pub fn whole_patch(&self) -> Option<&Patch> {
-        let (approach, _) = self.approach?;
+        let approach = self.approach?;
         Some(self.whole_patch.get_or_init(|| Patch::new(&self.placement, approach, &Window::UNBOUNDED)))
     }
 
     /// Gives the patch in a window: the whole one's components where they are known and the window cuts none. `None`
     /// without an approach.
     pub fn patch_in(&self, window: &Window) -> Option<Patch> {
-        let (approach, _) = self.approach?;
+        let approach = self.approach?;
         let known = self.whole_patch.get().and_then(|patch| patch.within(window));
         Some(known.unwrap_or_else(|| Patch::new(&self.placement, approach, window)))
     }

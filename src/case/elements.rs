@@ -24,8 +24,7 @@ pub(super) fn surfaces_around(
         return Ok(None);
     }
     let contact = &part.site.contact;
-    let approach = contact.approach.map(|(approach, _)| approach);
-    let surfaces = || Surface::around(&contact.placement, &part.site.window(), approach);
+    let surfaces = || Surface::around(&contact.placement, &part.site.window(), contact.approach);
     let of_bodies = |writer: &Writer| matches!(writer, Writer::Surface(Of::Rail | Of::Wheel, _));
     possible(outputs, names, of_bodies, surfaces, skipped)
 }

@@ -3,7 +3,7 @@
 use super::contact::EllipseUnder;
 use super::run::Part;
 use crate::conformal::ConformalPatch;
-use crate::load::{Ellipse, Estimate};
+use crate::load::Ellipse;
 use crate::patch::Patch;
 
 /// One fact of a contact.
@@ -53,16 +53,10 @@ pub const FACTS: [Fact; 22] = [
         Some(part.site.contact.placement.rolling_radius())
     }),
     unless_0("skew", "mrad", &["skew_rad"], (MILLI, 3), |part| Some(part.site.contact.placement.skew())),
-    number("approach", "mm", &["approach_mm"], (1.0, 5), |part| {
-        part.site.contact.approach.map(|(approach, _)| approach)
-    }),
+    number("approach", "mm", &["approach_mm"], (1.0, 5), |part| part.site.contact.approach),
     text("approach is", |part| {
-        let (_, estimate) = part.site.contact.approach?;
-        Some(match estimate {
-            None => "given".into(),
-            Some(Estimate::Hertz) => "estimated by Hertz".into(),
-            Some(Estimate::HalfSpace) => "est. by half-space".into(),
-        })
+        part.site.contact.approach?;
+        Some(if part.site.contact.is_loaded() { "est. by half-space" } else { "given" }.into())
     }),
     number("normal force", "kN", &["normal_load_n"], (KILO, 3), |part| part.site.normal_load),
     number("its vertical part", "kN", &["vertical_load_n"], (KILO, 3), |part| part.site.vertical_load()),
@@ -178,7 +172,7 @@ fn conformal_patch(part: &Part) -> Option<&ConformalPatch> {
     part.analysis.conformal.as_ref()?.patch.as_ref()
 }
 
-/// Gives Hertz's ellipse; `None` where the half-space found that the patch is none.
+/// Gives Hertz's ellipse; `None` where a half-space found δ: nothing has its pressure there.
 fn hertz(part: &Part) -> Option<Ellipse> {
     part.site.contact.ellipse.filter(|_| part.site.hertz_pressure().is_some())
 }

@@ -365,7 +365,7 @@ fn intervals(part: &Part) -> Vec<Interval> {
 /// Gives CONTACT's control numbers: the contact's own normal force, or the approach where no load was asked for; `None` without
 /// either.
 fn contact_settings(run: &Run, part: &Part, creepages: Option<Creepages>) -> Option<ContactSettings> {
-    let (approach, _) = part.site.contact.approach.filter(|(approach, _)| *approach > 0.0)?;
+    let approach = part.site.contact.approach.filter(|approach| *approach > 0.0)?;
     let load = part.site.normal_load.filter(|load| *load > 0.0);
     let question = &run.case.question;
     Some(ContactSettings {

@@ -50,7 +50,7 @@ pub(super) fn grids(asked: &AskedAxes, contact: &PlacedContact) -> Result<Vec<Gr
     let patch = contact.whole_patch();
     let plane = patch.map_or_else(Vec::new, |patch| groups(patch, *merge, *spacing));
     let mut groups = match (reference, contact.approach) {
-        (Reference::Rail, Some((approach, _))) => {
+        (Reference::Rail, Some(approach)) => {
             let patch = whole_conformal(contact, approach, &plane);
             conformal_groups(&patch, *merge, *spacing)
         }

@@ -115,7 +115,7 @@ fn statements(run: &Run) -> Vec<String> {
 fn contact(run: &Run, part: &Part, number: usize) -> ContactInPlace {
     let placement = &part.site.contact.placement;
     let place = to_track(run, part);
-    let approach = part.site.contact.approach.map_or(f64::NAN, |(approach, _)| approach);
+    let approach = part.site.contact.approach.unwrap_or(f64::NAN);
     let patch = part.analysis.strips.as_ref().map(quads).unwrap_or_default();
     let mut evaluator = Evaluator::new(placement);
     let overlap =

@@ -7,7 +7,6 @@ use super::found::{Found, PlaceOfContact};
 use super::input::{ApproachBy, Case, FrameOrigin, Place};
 use super::wheel::{Region, RegionRules, Wheel, carry};
 use crate::error::{Error, ErrorKind, Result};
-use crate::load::Estimate;
 use crate::placement::Placement;
 use crate::search;
 use crate::search::{ONE_CONTACT, Position, Roll, Selection, TrackSide};
@@ -44,23 +43,19 @@ pub fn contacts(case: &Case) -> Result<Vec<(String, Placement)>> {
     Ok(placed.into_iter().map(|contact| (contact.name(), contact.placement)).collect())
 }
 
-/// Returns the approach \[mm\] along the normal of a contact that carries a vertical load \[N\] alone, with all parts of its patch,
-/// and how it was estimated; `modulus` is E* \[N/mm²\].
+/// Returns the approach \[mm\] along the normal of a contact that carries a vertical load \[N\] alone, with all parts of its patch;
+/// `modulus` is E* \[N/mm²\].
 ///
 /// # Errors
 /// A load that no approach carries.
-pub fn approach_under_load(
-    placement: &Placement,
-    load: f64,
-    modulus: f64,
-) -> Result<(f64, Option<Estimate>)> {
+pub fn approach_under_load(placement: &Placement, load: f64, modulus: f64) -> Result<f64> {
     let pair = placement.pair();
     let rules = RegionRules { merge: 0.0, spacing: None, alone: true, frame: FrameOrigin::Contact };
     let wheel = Wheel::at_points(&pair, placement.clone(), rules);
     let [.., most] = SEARCHED_GAPS;
     let carried = carry(&mut [wheel], load, modulus, most)?;
     let first = carried.and_then(|mut wheels| wheels.pop()?.pop());
-    first.map(|region| (region.approach, region.estimate)).ok_or_else(|| unborne("load", load, None))
+    first.map(|region| region.approach).ok_or_else(|| unborne("load", load, None))
 }
 
 /// Finds all contacts of a case under an approach, the first one first.

@@ -5,7 +5,6 @@ use super::grids::{Grid, grids};
 use super::input::Case;
 use super::places::find;
 use crate::error::Result;
-use crate::load::Estimate;
 use crate::patch::{Patch, Window};
 use crate::search::TrackSide;
 
@@ -77,7 +76,7 @@ impl Site {
 
     /// Gives δ \[mm\], 0 for a case without an approach.
     pub fn approach(&self) -> f64 {
-        self.contact.approach.map_or(0.0, |(approach, _)| approach)
+        self.contact.approach.unwrap_or(0.0)
     }
 
     /// Gives the vertical part of the normal force \[N\]; `None` unless a load was asked for.
@@ -85,11 +84,10 @@ impl Site {
         self.normal_load.map(|load| load * self.contact.placement.upright())
     }
 
-    /// Gives the largest pressure of Hertz's ellipse \[N/mm²\]; `None` without an ellipse, and where the half-space found that the
-    /// patch is none.
+    /// Gives the largest pressure of Hertz's ellipse \[N/mm²\]; `None` without an ellipse, and where a half-space found δ: the
+    /// pressures are its own then.
     pub fn hertz_pressure(&self) -> Option<f64> {
-        let half_space = self.contact.approach.is_some_and(|(_, by)| by == Some(Estimate::HalfSpace));
-        self.contact.ellipse.filter(|_| !half_space).map(|ellipse| ellipse.pressure_n_per_mm2)
+        self.contact.ellipse.filter(|_| !self.contact.is_loaded()).map(|ellipse| ellipse.pressure_n_per_mm2)
     }
 
     /// Gives the rectangle between the outermost points of the grid.

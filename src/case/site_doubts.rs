@@ -59,9 +59,9 @@ pub(super) fn doubts_of_placing(case: &Case, site: &Site) -> Vec<Doubt> {
 }
 
 fn approach(site: &Site) -> Option<Doubt> {
-    let (approach, estimate) = site.contact.approach?;
+    let approach = site.contact.approach?;
     // Estimates are as small as their loads, which have doubts of their own; 0 asks for the geometry.
-    let small = estimate.is_none() && approach > 0.0 && approach < *APPROACHES.start();
+    let small = !site.contact.is_loaded() && approach > 0.0 && approach < *APPROACHES.start();
     if !small && approach <= *APPROACHES.end() {
         return None;
     }

@@ -82,7 +82,7 @@ pub(super) fn summary(
         "creepages": creepages.map(relative_motion),
         "feasibility": contact.feasibility,
         "curvatures": contact.curvatures,
-        "approach_estimated_by": contact.approach.and_then(|(_, estimate)| estimate),
+        "approach_estimated_by": contact.is_loaded().then_some("half-space"),
         "effective_modulus_n_per_mm2": run.case.question.modulus(),
         "contact_to_track": rows,
         "wheelset_files": in_place::beside(run, part),
@@ -163,7 +163,7 @@ fn relative_motion(creepages: Creepages) -> Value {
     })
 }
 
-/// Gives Hertz's ellipse, whose pressure is null where the half-space decided: nothing has that pressure there.
+/// Gives Hertz's ellipse, whose pressure is null where a half-space found δ: nothing has that pressure there.
 fn hertz(site: &Site) -> Option<Value> {
     let mut ellipse = json!(site.contact.ellipse?);
     ellipse["pressure_n_per_mm2"] = json!(site.hertz_pressure());

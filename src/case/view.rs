@@ -85,7 +85,7 @@ fn contact(run: &Run, part: &Part, n: usize) -> ViewContact {
         pair: usize::from(both),
         frames: [placement.rail(), placement.wheel()].map(|body| PageFrame::from(&body.contact_frame())),
         skew: placement.skew(),
-        approach: part.site.contact.approach.map(|(approach, _)| approach).filter(|approach| *approach > 0.0),
+        approach: part.site.contact.approach.filter(|approach| *approach > 0.0),
         area: patch.map(Patch::area),
         rail_height: xi
             .iter()

@@ -6,8 +6,8 @@ mod half_space;
 mod hertz;
 mod weighted;
 
-pub use approach::{Estimate, hertz_holds, under_total};
+pub use approach::under_total;
 pub use feasibility::{Feasibility, feasibility};
-pub use half_space::HalfSpace;
+pub use half_space::{Cells, HalfSpace, Largest, Located, Pressures, on_wider_cells, press, press_alone};
 pub use hertz::{Curvatures, Elastic, Ellipse, curvatures, curvatures_at, effective_modulus};
 pub use weighted::weighted_frame;

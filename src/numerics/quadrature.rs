@@ -71,22 +71,15 @@ struct GaussPanel<const N: usize> {
     errors: [f64; N],
 }
 
-/// Computes ∫ f over \[a, b\] to a relative demand, or to the rounding of `f` where that is larger; `f` may have kinks.
-///
-/// Method: Gauss–Kronrod panels. The worst one is halved until their errors sum up to less than the demand, or halving no longer helps,
-/// or there are 128 panels (as QUADPACK's QAG): no fixed floor knows how much noise an integrand has.
-/// Cost: 15 evaluations a panel, and one panel for most smooth pieces.
-/// Degenerate: NaN where `f` is NaN.
-pub fn integral(f: &mut impl FnMut(f64) -> f64, a: f64, b: f64, relative: f64) -> f64 {
-    let [sum] = halved(&mut |x| [f(x)], [a, b], [relative], false);
-    sum
-}
-
 /// Computes ∫ f over an interval for several smooth functions that are known at the same places. Each is computed to its relative
 /// demand, or to the rounding of `f` where that is larger.
 ///
-/// Method and cost are those of [`integral`], with the error that a Kronrod rule has over smooth functions. `short` intervals of a
-/// smooth piece are tried with 7 evaluations first. Nothing is allocated for one panel.
+/// Method: Gauss–Kronrod panels, with the error that a Kronrod rule has over smooth functions. The worst one is halved until their
+/// errors sum up to less than the demand, or halving no longer helps, or there are 128 panels (as QUADPACK's QAG): no fixed floor
+/// knows how much noise an integrand has.
+/// Cost: 15 evaluations a panel, and one panel for most smooth pieces. `short` intervals of a smooth piece are tried with 7
+/// evaluations first. Nothing is allocated for one panel.
+/// Degenerate: NaN where `f` is NaN.
 pub fn smooth_integrals<const N: usize>(
     f: &mut impl FnMut(f64) -> [f64; N],
     ends: [f64; 2],
@@ -102,7 +95,7 @@ pub fn smooth_integrals<const N: usize>(
     halved(f, ends, relative, true)
 }
 
-/// Computes integrals by panels that are halved.
+/// Computes integrals by panels that are halved; functions that are not `smooth` may have kinks.
 fn halved<const N: usize>(
     f: &mut impl FnMut(f64) -> [f64; N],
     ends: [f64; 2],
@@ -183,6 +176,11 @@ fn add<const N: usize>(mut a: [f64; N], b: [f64; N], c: f64) -> [f64; N] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn integral(f: &mut impl FnMut(f64) -> f64, a: f64, b: f64, relative: f64) -> f64 {
+        let [sum] = halved(&mut |x| [f(x)], [a, b], [relative], false);
+        sum
+    }
 
     #[test]
     fn smooth_and_kinked_integrands() {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use wheelrail::case::{Run, SILENT, Site, sites};
-use wheelrail::load::Estimate;
+use wheelrail::load::{Cells, Elastic, HalfSpace, Pressures, effective_modulus, on_wider_cells, press_alone};
 use wheelrail::nalgebra::Point2;
 use wheelrail::profile::standards;
 use wheelrail::search::TrackSide;
@@ -25,7 +25,9 @@ fn found(text: &str) -> Result<Vec<Site>> {
 
 /// The vertical force of a site \[N\].
 fn vertical(site: &Site) -> f64 {
-    site.normal_load.unwrap() * site.contact.placement.rail().point().station.cos
+    let placement = &site.contact.placement;
+    // On a roller the normal also leans along the track.
+    site.normal_load.unwrap() * placement.rail().point().station.cos * placement.turn().cos()
 }
 
 fn sum(sites: &[Site], side: Option<TrackSide>) -> f64 {
@@ -109,8 +111,7 @@ fn places_with_one_patch_are_one_region_that_names_them() -> Result<()> {
     let [site] = sites.as_slice() else { panic!("{} regions", sites.len()) };
     let merged = &site.contact.found.as_ref().unwrap().merged;
     assert_eq!(merged.len(), 1, "{merged:?}");
-    let estimate = site.contact.approach.and_then(|(_, estimate)| estimate);
-    assert_eq!(estimate, Some(Estimate::HalfSpace));
+    assert!(site.contact.is_loaded());
     Ok(())
 }
 
@@ -243,4 +244,78 @@ fn the_page_on_loads_names_wheels_and_rails_that_are_built_in() {
         read += 1;
     }
     assert!(read > 40, "{read}");
+}
+
+/// Number of places that the first region has swallowed, and vertical displacement \[mm\], of a wheel at an offset \[mm\].
+fn sunk(rail: &str, wheel: &str, radius: f64, offset: f64, load: f64) -> Result<(usize, f64)> {
+    let sites = found(&format!(
+        "[rail]\nprofile = \"{rail}\"\nrotate = \"1:40\"\n[wheel]\nprofile = \"{wheel}\"\nradius = {radius:?}\n[contact]\n\
+         offset = {offset:?}\n[patch]\nload = {load:?}\n"
+    ))?;
+    let merged = sites[0].contact.found.as_ref().map_or(0, |found| found.merged.len());
+    Ok((merged, sites[0].approach() / sites[0].contact.placement.rail().point().station.cos))
+}
+
+/// Where curvature becomes nearly constant over the patch, and another formula would do, nothing jumps.
+#[test]
+fn displacements_are_continuous_over_nearly_constant_curvature() -> Result<()> {
+    let of = |offset| sunk("60E2", "EN13715-1:40-h28-e32.5", 420.0, offset, 60e3);
+    for from in [-0.099_92, 0.506_58] {
+        let mut before = of(from)?.1;
+        for step in 1..=30 {
+            let (merged, here) = of(from + 1e-6 * f64::from(step))?;
+            assert!(merged == 0 && (here - before).abs() < 1e-4, "{from} {step}: {before} {here}");
+            before = here;
+        }
+    }
+    Ok(())
+}
+
+/// Where two regions become one, the wheel does not move, since they pressed upon each other before.
+#[test]
+fn displacements_are_continuous_where_regions_join() -> Result<()> {
+    let of = |offset| sunk("60E1", "S1002", 460.0, offset, 60e3);
+    let [mut apart, mut joined] = [1.70, 1.80];
+    assert_eq!([of(apart)?.0, of(joined)?.0], [0, 1]);
+    while joined - apart > 1e-6 {
+        let middle = apart + (joined - apart) / 2.0;
+        *(if of(middle)?.0 == 0 { &mut apart } else { &mut joined }) = middle;
+    }
+    let jump = of(joined)?.1 - of(apart)?.1;
+    assert!(jump.abs() < 2e-4, "{apart}: {jump}");
+    Ok(())
+}
+
+/// The pressures that decide an approach are those of fine cells under the same approach.
+#[test]
+fn contacts_have_the_pressures_of_their_loads() -> Result<()> {
+    let mut alone = 0;
+    for lateral in [0.0, 3.0, 5.5] {
+        let sites = found(&wheelset(lateral, "[patch]\nload = 60000.0\n"))?;
+        for site in &sites {
+            let [pressures] = site.contact.pressures.as_slice() else { panic!("one group of parts") };
+            assert!((pressures.load() / site.normal_load.unwrap() - 1.0).abs() < 1e-3);
+            if sites.iter().filter(|other| other.side() == site.side()).count() > 1 {
+                continue;
+            }
+            alone += 1;
+            let cells = Cells::over(&site.window(), [96, 64])?;
+            let separations = cells.separations(&site.contact.placement);
+            let region = HalfSpace::new(cells, &separations, site.approach())?;
+            let [fine, wider] =
+                press_alone(region, 1e-4, effective_modulus(&Elastic::STEEL, &Elastic::STEEL))?;
+            let error =
+                fine.largest_error(&wider) + pressures.largest_error(&on_wider_cells(pressures, 3e-4)?);
+            let [found, expected] = [pressures, &fine].map(Pressures::largest);
+            let miss = (found.pressure_n_per_mm2 - expected.pressure_n_per_mm2).abs();
+            assert!(
+                miss < error && error < 0.1 * expected.pressure_n_per_mm2,
+                "{lateral}: {found:?} {expected:?}"
+            );
+            let miss = [pressures.load() / fine.load(), pressures.contact_area() / fine.contact_area()];
+            assert!((miss[0] - 1.0).abs() < 3e-3 && (miss[1] - 1.0).abs() < 0.05, "{lateral}: {miss:?}");
+        }
+    }
+    assert!(alone >= 3, "{alone}");
+    Ok(())
 }

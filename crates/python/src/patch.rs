@@ -4,7 +4,6 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use wheelrail::case::approach_under_load;
 use wheelrail::case::{ApproachBy, patch_picture};
-use wheelrail::load::Estimate;
 use wheelrail::mesh::{Axes, GridGroup, groups};
 use wheelrail::{Error, Placement, Window};
 
@@ -22,7 +21,6 @@ pub(crate) struct Patch {
     /// The contact's name.
     contact: String,
     load: Option<f64>,
-    estimate: Option<Estimate>,
 }
 
 impl Patch {
@@ -33,17 +31,14 @@ impl Patch {
         by: ApproachBy,
         modulus: f64,
     ) -> wheelrail::Result<Self> {
-        let (approach, load, estimate) = match by {
-            ApproachBy::Given(approach) => (approach, None, None),
+        let (approach, load) = match by {
+            ApproachBy::Given(approach) => (approach, None),
             ApproachBy::WheelLoad(load)
             | ApproachBy::WheelLoads { right: load, .. }
-            | ApproachBy::AxleLoad(load) => {
-                let (approach, estimate) = approach_under_load(placement, load, modulus)?;
-                (approach, Some(load), estimate)
-            }
+            | ApproachBy::AxleLoad(load) => (approach_under_load(placement, load, modulus)?, Some(load)),
         };
         let patch = wheelrail::Patch::new(placement, approach, &Window::UNBOUNDED);
-        Ok(Self { patch, placement: placement.clone(), contact: contact.into(), load, estimate })
+        Ok(Self { patch, placement: placement.clone(), contact: contact.into(), load })
     }
 
     /// Gives the axes of the solver's grid over the part of the patch around C.
@@ -73,13 +68,10 @@ impl Patch {
         self.load
     }
 
-    /// How the approach was estimated from the load: "hertz" or "half-space"; None for a given one.
+    /// How the approach was estimated from the load: "half-space"; None for a given one.
     #[getter]
     fn estimate(&self) -> Option<&'static str> {
-        self.estimate.map(|estimate| match estimate {
-            Estimate::Hertz => "hertz",
-            Estimate::HalfSpace => "half-space",
-        })
+        self.load.map(|_| "half-space")
     }
 
     /// Area of all components, mm2.

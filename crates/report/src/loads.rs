@@ -4,10 +4,10 @@
 //! The solved approaches are the data of `data/loads.csv`. The tests of the program's clients compute them anew with
 //! Tamaas, and fail if they differ from the data.
 
+use super::speed::{LEAST_RUNS, Timing, race, timed};
 use super::whole_case;
 use wheelrail::case::{Case, Profiles, Site, sites};
 use wheelrail::error::{Error, Result};
-use wheelrail::load::Estimate;
 use wheelrail::placement::Pair;
 use wheelrail::profile::{Profile, inclination, standards};
 use wheelrail::scene::{parse, with_profiles};
@@ -53,7 +53,7 @@ pub struct Loaded {
     pub load: f64,
 }
 
-/// One region of contact that carries a share of a load, with its approach estimated and solved.
+/// One region of contact that carries a share of a load, with its approach estimated, and solved as if it were alone.
 #[derive(Debug, Clone)]
 pub struct Carried {
     /// The wheel.
@@ -69,12 +69,48 @@ pub struct Carried {
 pub struct ApproachError {
     /// Name of the region, as in the data.
     pub region: String,
-    /// Method of the estimate.
-    pub estimate: Option<Estimate>,
     /// Whether the patch has several parts or several places of contact.
     pub joined: bool,
     /// Error of δ relative to the solved one.
     pub error: f64,
+}
+
+/// Time that the contacts of a wheel take.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LoadCost {
+    /// The wheel.
+    pub loaded: Loaded,
+    /// Number of regions that carry the load.
+    pub regions: usize,
+    /// Shortest time under the load \[s\].
+    pub load: f64,
+    /// Shortest time under the approach that the load causes \[s\].
+    pub approach: f64,
+}
+
+/// Pair and offset \[mm\] of the wheels that are timed: one place, two in one region, one place of noisy profiles, two regions.
+const TIMED: [(usize, f64); 4] = [(0, 0.0), (0, -3.0), (4, -1.5), (4, -3.0)];
+
+/// Times contacts of wheels under 60 kN, each for at least `seconds`. Call it on one thread.
+///
+/// # Errors
+/// A position without contact, which is a fault of this program.
+pub fn costs(seconds: f64) -> Result<Vec<LoadCost>> {
+    let pairs = pairs()?;
+    let cost = |(index, offset): (usize, f64)| {
+        let loaded = Loaded { pair: PAIRS[index], offset, yaw: 0.0, load: 60e3 };
+        let under_load = loaded.case(&pairs[index])?;
+        let found = sites(&under_load)?;
+        let approach = found.first().map_or(0.0, Site::approach);
+        let under_approach = loaded.under(&pairs[index], &format!("approach = {approach:?}"))?;
+        let mut timings = [Timing::NONE; 2];
+        race(&mut timings, seconds, LEAST_RUNS, |k| {
+            timed(|| drop(sites(if k == 0 { &under_load } else { &under_approach })))
+        });
+        let [load, approach] = timings.map(|timing| timing.best);
+        Ok(LoadCost { loaded, regions: found.len(), load, approach })
+    };
+    TIMED.into_iter().map(cost).collect()
 }
 
 /// The normal force \[N\] and the solved δ \[mm\] of a row of the data.
@@ -83,11 +119,16 @@ type Row = [f64; 2];
 impl Loaded {
     /// Resolves the case of this position over a pair.
     pub(super) fn case(&self, pair: &Pair) -> Result<Case> {
-        let Self { offset, yaw, load, .. } = self;
+        self.under(pair, &format!("load = {:?}", self.load))
+    }
+
+    /// Resolves the case of this position with a patch as the scene's key says.
+    fn under(&self, pair: &Pair, patch: &str) -> Result<Case> {
+        let Self { offset, yaw, .. } = self;
         // The profiles named here are not read, because the pair is given.
         let scene = format!(
             "[rail]\nprofile = \"60E1\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n[contact]\noffset = {offset:?}\n\
-             yaw = {yaw:?}\n[patch]\nload = {load:?}\n"
+             yaw = {yaw:?}\n[patch]\n{patch}\n"
         );
         with_profiles(&parse(&scene, false)?, Profiles::drawn(pair.clone()), self.pair)
     }
@@ -105,21 +146,25 @@ impl Carried {
         self.site.contact.found.as_ref().map_or(1, |found| found.contact)
     }
 
+    /// Gives what the other regions of the wheel lower the surface by \[mm\], which Tamaas does not know.
+    pub fn lowered(&self) -> f64 {
+        self.site.contact.pressures.first().map_or(0.0, |pressures| pressures.lowered)
+    }
+
+    /// Gives the part of δ \[mm\] that the region would have alone.
+    pub fn own_approach(&self) -> f64 {
+        self.site.approach() - self.lowered()
+    }
+
     /// Compares the estimated δ with the solved one.
     pub fn compared(&self) -> ApproachError {
         let merged = self.site.contact.found.as_ref().is_some_and(|found| !found.merged.is_empty());
         let parts = self.site.contact.whole_patch().map_or(0, |patch| patch.components.len());
         ApproachError {
             region: self.loaded.key(self.contact()),
-            estimate: self.estimate(),
             joined: merged || parts > 1,
-            error: self.site.approach() / self.solved - 1.0,
+            error: self.own_approach() / self.solved - 1.0,
         }
-    }
-
-    /// Returns the method of the estimate.
-    pub fn estimate(&self) -> Option<Estimate> {
-        self.site.contact.approach.and_then(|(_, estimate)| estimate)
     }
 }
 

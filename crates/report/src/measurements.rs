@@ -9,7 +9,7 @@ use super::conformal::{NormalGapFigures, normal_gap_figures};
 use super::errors::{Errors, compare};
 use super::hard_case::hard_cases;
 use super::hard_run::{self, HardOutcome};
-use super::loads::{self, ApproachError, Carried};
+use super::loads::{self, ApproachError, Carried, LoadCost};
 use super::measured;
 use super::practice::{self, PracticeRow};
 use super::rates::{Extent, Rate, rates};
@@ -155,6 +155,8 @@ pub struct Measurements {
     pub normal_gap: NormalGapFigures,
     /// Errors of approaches under loads.
     pub loads: Vec<ApproachError>,
+    /// Times of contacts under loads.
+    pub load_costs: Vec<LoadCost>,
     /// Results of the check by parry3d's meshes: of the reference scenes, with and without skew, and of the
     /// built-in pairs.
     pub verified: [Vec<Verified>; 2],
@@ -193,6 +195,7 @@ pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measur
     let normal_gap = one.install(|| normal_gap_figures(&effort.sides, effort.seconds))?;
     progress("loads");
     let loads = loads::carried()?.iter().map(Carried::compared).collect();
+    let load_costs = one.install(|| loads::costs(effort.seconds))?;
     progress("the check by parry3d's meshes");
     let verified = verified(&references, effort.every_pair)?;
     progress("measured profiles");
@@ -210,6 +213,7 @@ pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measur
         practice,
         normal_gap,
         loads,
+        load_costs,
         verified,
         evidence,
     })

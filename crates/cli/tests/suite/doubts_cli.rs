@@ -69,17 +69,19 @@ fn a_sweep_warns_of_its_scene() {
 }
 
 #[test]
-fn hertz_s_pressure_is_left_out_where_the_half_space_decided() {
-    let cases = [("offset = 0.0", false), ("offset = -3.0", false), ("offset = 4.5", true)];
-    for (offset, by_hertz) in cases {
+fn hertz_s_pressure_is_left_out_where_a_half_space_decided() {
+    let by_offset = ["offset = 0.0", "offset = -3.0", "offset = 4.5"];
+    let cases = by_offset.map(|offset| (offset, "load = 60000.0", false));
+    for (offset, patch, by_hertz) in cases.into_iter().chain([("offset = 4.5", "approach = 0.05", true)]) {
         let formats = "[output]\nformats = [\"html\"]\n";
-        let folder = scene(&format!("{BODIES}[contact]\n{offset}\n[patch]\nload = 60000.0\n{formats}"));
+        let folder = scene(&format!("{BODIES}[contact]\n{offset}\n[patch]\n{patch}\n{formats}"));
         let (table, _) = said(folder.path(), &["run", "scene.toml", "--out", "out"], 0);
-        assert_eq!(table.contains("estimated by Hertz"), by_hertz, "{table}");
-        assert_eq!(table.contains("Hertz's pressure"), by_hertz, "{table}");
+        assert_eq!(table.contains("est. by half-space"), !by_hertz, "{table}");
+        assert_eq!(table.contains("Hertz's"), by_hertz, "{table}");
         let read = |name: &str| std::fs::read_to_string(folder.path().join("out").join(name)).unwrap();
         assert_eq!(read("view.html").contains("Hertz's pressure"), by_hertz, "{offset}");
         let summary: serde_json::Value = serde_json::from_str(&read("summary.json")).unwrap();
+        assert_eq!(summary["approach_estimated_by"] == "half-space", !by_hertz, "{offset}");
         let ellipse = &summary["hertz_ellipse"];
         assert!(
             ellipse["a_mm"].is_number() && ellipse["pressure_n_per_mm2"].is_number() == by_hertz,

@@ -1,13 +1,12 @@
 //! Builds the sections on what users wait for: positions of a wheelset, and whole cases.
 
 use super::section::PageSection;
-use crate::loads::ApproachError;
+use crate::loads::{ApproachError, LoadCost};
 use crate::measurements::Measurements;
 use crate::practice::PracticeRow;
 use crate::rates::{Motion, Rate};
 use crate::table::{cases_csv, markdown, positions_csv, practice_csv};
 use crate::whole_case::{PARTS, WholeCase};
-use wheelrail::load::Estimate;
 
 /// Returns the section on positions of wheelsets a second.
 pub(super) fn positions(m: &Measurements) -> PageSection {
@@ -50,10 +49,29 @@ pub(super) fn loads(m: &Measurements) -> PageSection {
         worst.map_or_else(String::new, |one| format!(" The largest error is that of {}.", one.region));
     let body = format!(
         "Errors of δ from a load, against Tamaas under the same normal force on cells three times as fine as the automatic \
-         grid's: treads, flange roots, flanges, yaw, several places, drawn and worn.{worst}\n\n{}",
-        distribution(&m.loads)
+         grid's: treads, flange roots, flanges, yaw, several places, drawn and worn.{worst}\n\n{}\nTime of all contacts of a \
+         wheel under 60 kN, and under the approach that this load causes.\n\n{}",
+        distribution(&m.loads),
+        cost_table(&m.load_costs)
     );
     PageSection { title: "Approaches under load", body, files: Vec::new() }
+}
+
+/// Returns the table of what loads cost.
+fn cost_table(costs: &[LoadCost]) -> String {
+    let row = |cost: &LoadCost| {
+        let milliseconds = |seconds: f64| format!("{:.2}", 1e3 * seconds);
+        vec![
+            cost.loaded.pair.to_string(),
+            cost.loaded.offset.to_string(),
+            cost.regions.to_string(),
+            milliseconds(cost.load),
+            milliseconds(cost.approach),
+            milliseconds(cost.load - cost.approach),
+        ]
+    };
+    let head = ["pair", "offset, mm", "regions", "load, ms", "approach, ms", "more, ms"];
+    markdown(&head, 3, &costs.iter().map(row).collect::<Vec<_>>())
 }
 
 /// Returns the table of rates, one row per pair: rates, and their ratio to that of drawn arcs.
@@ -128,15 +146,11 @@ pub(super) fn case_note(m: &Measurements) -> String {
     note
 }
 
-/// Returns a table of the errors of δ: median, 90 % and largest, by how it was estimated.
+/// Returns a table of the errors of δ: median, 90 % and largest.
 fn distribution(errors: &[ApproachError]) -> String {
-    let classes = [
-        ("Hertz", Estimate::Hertz, false),
-        ("half-space, one place", Estimate::HalfSpace, false),
-        ("half-space, places or parts joined", Estimate::HalfSpace, true),
-    ];
-    let rows = classes.map(|(name, estimate, joined)| {
-        let of_class = |one: &&ApproachError| one.estimate == Some(estimate) && one.joined == joined;
+    let classes = [("one place", false), ("places or parts joined", true)];
+    let rows = classes.map(|(name, joined)| {
+        let of_class = |one: &&ApproachError| one.joined == joined;
         let mut errors: Vec<f64> =
             errors.iter().filter(of_class).map(|one| 100.0 * one.error.abs()).collect();
         errors.sort_by(f64::total_cmp);
@@ -146,5 +160,5 @@ fn distribution(errors: &[ApproachError]) -> String {
         };
         vec![name.into(), errors.len().to_string(), at(0.5), at(0.9), at(1.0)]
     });
-    markdown(&["δ estimated by", "regions", "median error", "90 % below", "largest"], 5, &rows)
+    markdown(&["δ of", "regions", "median error", "90 % below", "largest"], 5, &rows)
 }
