@@ -107,13 +107,46 @@ impl Case {
         s
     }
 
-    /// Area and its change from grids half as fine, over the box around the points inside, and whether that is fine enough.
-    fn closer_area(&self, filled: &Filled) -> ([f64; 2], bool) {
-        let window = filled.inside(&self.window);
-        let [coarse, fine] = [1, 2].map(|n| self.filled(&window, n * POINTS[1] / 2).area());
-        let change = (fine - coarse).abs();
-        ([fine, change], change <= 0.5 * AREA * fine)
+    /// The finest fills of a box around every component of the patch, and of one around the points inside that are in none of these;
+    /// with the change of their area from grids half as fine.
+    fn closer(&self, filled: &Filled, patch: &Patch) -> (Vec<Filled>, f64) {
+        let wider = |[a, b]: [f64; 2], [from, to]: [f64; 2]| {
+            let more = 0.25 * (b - a);
+            [(a - more).max(from), (b + more).min(to)]
+        };
+        let around =
+            |c: &Component| Window { xi: wider(c.xi, self.window.xi), eta: wider(c.eta, self.window.eta) };
+        let mut boxes: Vec<Window> = patch.components.iter().map(around).collect();
+        let own = boxes.clone();
+        let outside = |xi: f64, eta: f64| !own.iter().any(|window| holds(window, xi, eta));
+        boxes.extend(filled.inside(&self.window, outside));
+        while let Some((p, q)) = overlapping(&boxes) {
+            let other = boxes.swap_remove(q);
+            let join = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a.min(c), b.max(d)];
+            boxes[p] = Window { xi: join(boxes[p].xi, other.xi), eta: join(boxes[p].eta, other.eta) };
+        }
+        let [coarse, fine] = [1, 2].map(|n| -> Vec<Filled> {
+            boxes.iter().map(|box_of| self.filled(box_of, n * POINTS[1] / 2)).collect()
+        });
+        let change = (area_of(&fine) - area_of(&coarse)).abs();
+        (fine, change)
     }
+}
+
+fn area_of(fills: &[Filled]) -> f64 {
+    fills.iter().map(Filled::area).sum()
+}
+
+fn holds(window: &Window, xi: f64, eta: f64) -> bool {
+    let inside = |[a, b]: [f64; 2], x: f64| a <= x && x <= b;
+    inside(window.xi, xi) && inside(window.eta, eta)
+}
+
+/// Two boxes with points in common; the second has the larger index.
+fn overlapping(boxes: &[Window]) -> Option<(usize, usize)> {
+    let meet = |[a, b]: [f64; 2], [c, d]: [f64; 2]| a <= d && c <= b;
+    let pairs = (1..boxes.len()).flat_map(|q| (0..q).map(move |p| (p, q)));
+    pairs.into_iter().find(|&(p, q)| meet(boxes[p].xi, boxes[q].xi) && meet(boxes[p].eta, boxes[q].eta))
 }
 
 /// s − δ over a grid.
@@ -145,19 +178,22 @@ impl Filled {
         (0..n).map(|i| column(i) * dx * if i == 0 || i + 1 == n { 0.5 } else { 1.0 }).sum()
     }
 
-    /// The box around the points inside, and two points and a quarter of it more: the tips between its lines.
-    fn inside(&self, window: &Window) -> Window {
+    /// The box around the points inside of a region, and two points and a quarter of it more: the tips between its lines. `None`
+    /// without such points.
+    fn inside(&self, window: &Window, region: impl Fn(f64, f64) -> bool) -> Option<Window> {
         let m = self.eta.len();
+        let inside = |k: &usize| self.depth[*k] < 0.0 && region(self.xi[k / m], self.eta[k % m]);
+        let points: Vec<usize> = (0..self.depth.len()).filter(inside).collect();
         let around = |axis: &[f64], index: &dyn Fn(usize) -> usize, [a, b]: [f64; 2]| {
-            let inside = (0..self.depth.len()).filter(|k| self.depth[*k] < 0.0).map(index);
-            let [first, last] = inside.fold([usize::MAX, 0], |[p, q], k| [p.min(k), q.max(k)]);
-            if first > last {
-                return [a, b];
-            }
+            let at = points.iter().map(|k| index(*k));
+            let [first, last] = at.fold([usize::MAX, 0], |[p, q], k| [p.min(k), q.max(k)]);
             let more = 2.0 * (axis[1] - axis[0]) + 0.25 * (axis[last] - axis[first]);
             [(axis[first] - more).max(a), (axis[last] + more).min(b)]
         };
-        Window { xi: around(&self.xi, &|k| k / m, window.xi), eta: around(&self.eta, &|k| k % m, window.eta) }
+        (!points.is_empty()).then(|| Window {
+            xi: around(&self.xi, &|k| k / m, window.xi),
+            eta: around(&self.eta, &|k| k % m, window.eta),
+        })
     }
 
     /// Number of parts of the points inside, where neighbours are four, and where they are eight.
@@ -261,8 +297,18 @@ pub fn check(case: &Case) -> Open {
             let cell = filled.xi[1] - filled.xi[0];
             let cells = cell * (filled.eta[1] - filled.eta[0]);
             // Two coarse grids may agree by chance.
-            let ([area, change], fine) =
-                if near && fine { ([area, change], true) } else { case.closer_area(&filled) };
+            let ([area, change], fine, closer) = if near && fine {
+                ([area, change], true, parts)
+            } else {
+                let (fills, change) = case.closer(&filled, &patch);
+                let area = area_of(&fills);
+                let sum = |[a, b]: [usize; 2], [c, d]: [usize; 2]| [a + c, b + d];
+                let parts = fills.iter().map(Filled::parts).fold([0; 2], sum);
+                ([area, change], change <= 0.5 * AREA * area, parts)
+            };
+            // A part that is thinner than a cell is one by its corners only.
+            let count = patch.components.len();
+            let connected = connected || (closer[1] <= count && count <= closer[0]);
             let near = (patch.area() - area).abs() <= AREA * area + 2.0 * change + beside_ends(&patch, cell);
             assert!(near, "{}: area {}, by the fill {area} ± {change}", case.name, patch.area());
             // What is smaller than some cells the fill may not see.
@@ -312,9 +358,11 @@ fn check_rings(case: &Case) {
     }
 }
 
-/// Checks the cases of all numbers below `count` that there are; fails with the names of those that fail.
+/// Checks the cases of all numbers below `count` that there are; fails with the names of those that fail, and of those in `known`
+/// that do not: these are defects that are not mended yet.
 pub fn check_all(
     count: u64,
+    known: &[&str],
     case: impl Fn(u64) -> Option<Case> + Sync,
     check: impl Fn(&Case) -> Open + Sync + std::panic::RefUnwindSafe,
 ) {
@@ -329,23 +377,29 @@ pub fn check_all(
     let one = |number: u64| {
         let Some(case) = case(number) else { return Open::default() };
         let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| check(&case)));
-        outcome.unwrap_or_else(|_| {
+        if outcome.is_err() != known.contains(&case.name.as_str()) {
             failed.lock().expect("a list").push(case.name.clone());
-            Open { cases: 1, ..Open::default() }
-        })
+        }
+        outcome.unwrap_or(Open { cases: 1, ..Open::default() })
     };
     let open = (0..count).into_par_iter().map(one).reduce(Open::default, sum);
     println!("left open: {open:?}");
     let failed = failed.into_inner().expect("a list");
-    assert!(failed.is_empty(), "{} of {} failed:\n{}", failed.len(), open.cases, failed.join("\n"));
+    assert!(
+        failed.is_empty(),
+        "{} of {} failed, or no longer do:\n{}",
+        failed.len(),
+        open.cases,
+        failed.join("\n")
+    );
     assert!(open.cases as f64 > 0.7 * count as f64, "only {} pairs meet", open.cases);
-    assert!((open.connection as f64) < UNDECIDED * count as f64, "{open:?}");
+    assert!((open.connection as f64) <= UNDECIDED * count as f64, "{open:?}");
 }
 
 #[test]
 fn patches_are_what_a_flood_fill_finds() {
     let count = std::env::var("WHEELRAIL_PATCHES").ok().and_then(|count| count.parse().ok()).unwrap_or(PAIRS);
-    check_all(count, Case::new, |case| {
+    check_all(count, &[], Case::new, |case| {
         check_rings(case);
         check(case)
     });
