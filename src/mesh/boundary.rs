@@ -2,6 +2,7 @@
 
 use nalgebra::{Point2, Vector2};
 
+use crate::numerics::roots::bracketed;
 use crate::patch::{Band, BandSide, Component, rings};
 
 /// Samples of a component's boundary before curvature asks for more, on each of its two sides.
@@ -23,6 +24,9 @@ const LEAST_STEP: f64 = 1e-6;
 /// Distance, as a share of a component's extents, below which two points are one. It is far above rounding and far below
 /// [`LEAST_STEP`].
 const ONE_POINT: f64 = 1e-10;
+
+/// Steps of the false position to a point's parameter. It is close to linear between samples: each step gains a digit or more.
+const PROJECTIONS: usize = 4;
 
 /// A part of a ring with a formula of its own.
 #[derive(Debug, Clone, Copy)]
@@ -76,14 +80,32 @@ impl<'a> BoundaryTracer<'a> {
         rings(self.bands).into_iter().map(|sides| self.ring(&sides)).collect()
     }
 
-    /// Returns the point of a ring at this length of its polygon. It lies on the exact curve.
+    /// Returns the point of a ring at this length of its polygon. It lies on the exact curve, where the projection on the chord
+    /// beside it has about this length: equal steps in length are equal steps along the curve, whatever its parameter does.
     pub(super) fn point(&mut self, ring: &Ring, at: f64) -> Point2<f64> {
-        let (sample, share) = ring.place(at);
+        let (k, share) = ring.place(at);
+        let sample = &ring.samples[k];
+        let ([from, to], chord) = (sample.range, ring.next(k) - sample.point);
+        let (mut point, mut low, mut high) = (sample.point, [0.0; 2], [1.0; 2]);
         if share == 0.0 {
-            return sample.point;
+            return point;
         }
-        let [from, to] = sample.range;
-        self.on_part(&ring.parts[sample.part], from + (to - from) * share)
+        for _ in 0..PROJECTIONS {
+            let parameter = low[0] + (high[0] - low[0]) * (share - low[1]) / (high[1] - low[1]);
+            point = self.on_part(&ring.parts[sample.part], from + (to - from) * parameter);
+            let along = (point - sample.point).dot(&chord) / chord.norm_squared();
+            *(if along < share { &mut low } else { &mut high }) = [parameter, along];
+        }
+        point
+    }
+
+    /// Returns the place on a ring at a distance \[mm\] from the place `at` of its point, before it (−1) or after it (1).
+    pub(super) fn away(&mut self, ring: &Ring, at: f64, sense: f64, distance: f64) -> f64 {
+        let corner = self.point(ring, at);
+        let place = |way: f64| (at + sense * way).rem_euclid(ring.length);
+        let off = |way: f64| (self.point(ring, place(way)) - corner).norm() - distance;
+        // No curve is shorter than its chord; one twice as long has turned.
+        at + sense * bracketed(off, 0.0, 2.0 * distance).unwrap_or(distance)
     }
 
     fn ring(&mut self, sides: &[BandSide]) -> Ring {
@@ -121,7 +143,9 @@ impl<'a> BoundaryTracer<'a> {
 
     /// Returns ascending parameters from 0 to 1 of the first samples of a part: every joint is one of them.
     fn first_parameters(&self, part: &BoundaryPart) -> Vec<f64> {
-        let BoundaryPart::Side(side) = part else { return vec![0.0, 1.0] };
+        let BoundaryPart::Side(side) = part else {
+            return (0..=SAMPLES_PER_SIDE as u32).map(|k| f64::from(k) / SAMPLES_PER_SIDE).collect();
+        };
         let band = &self.bands[side.band];
         let mut parameters = vec![0.0];
         for [from, to] in band.pieces() {
@@ -153,18 +177,14 @@ impl<'a> BoundaryTracer<'a> {
         }
     }
 
-    /// Halves the steps beside every turn that is too large. Returns whether there was one.
+    /// Halves the steps beside every turn that is too large, also those along straight walls: edges toward a corner follow its
+    /// width sample by sample. Returns whether there was one.
     fn refine(&mut self, ring: &mut Ring) -> bool {
         let n = ring.samples.len();
         let least = LEAST_STEP * self.extent;
-        // A wall is straight: halving it shows nothing.
-        let step = |ring: &Ring, k: usize| match ring.parts[ring.samples[k].part] {
-            BoundaryPart::Side(_) => ring.step(k),
-            BoundaryPart::Wall(_) => 0.0,
-        };
         let mut halved = vec![false; n];
         for k in (0..n).filter(|&k| ring.samples[k].turn.abs() > LARGEST_TURN) {
-            let beside = [(k + n - 1) % n, k].map(|j| (j, step(ring, j)));
+            let beside = [(k + n - 1) % n, k].map(|j| (j, ring.step(j)));
             let longest = beside[0].1.max(beside[1].1);
             for (j, length) in beside {
                 halved[j] |= length > least && length > longest / 2.0;
@@ -236,6 +256,22 @@ impl Ring {
         Vector2::new(-along.y, along.x).normalize()
     }
 
+    /// Returns the largest radius \[mm\] of a circle that touches the line at `here`, with its centre toward `inward`, before the
+    /// chord from sample `k` to the next faces it; infinite if it passes the chord.
+    pub(super) fn facing(&self, k: usize, here: Point2<f64>, inward: &Vector2<f64>) -> f64 {
+        let (from, to) = (self.samples[k].point, self.next(k));
+        let (chord, length) = (to - from, (to - from).norm());
+        let normal = Vector2::new(-chord.y, chord.x) / length;
+        let (away, along) = ((here - from).dot(&normal), inward.dot(&normal));
+        // Chords that do not face the circle belong to its own part of the curve, which they cut short.
+        if along >= 0.0 || away <= 0.0 {
+            return f64::INFINITY;
+        }
+        let radius = away / (1.0 - along);
+        let touched = (here + (inward - normal) * radius - from).dot(&chord);
+        if (0.0..=length * length).contains(&touched) { radius } else { f64::INFINITY }
+    }
+
     /// Returns the radius of the circle through sample `k` and its neighbours \[mm\].
     pub(super) fn radius(&self, k: usize) -> f64 {
         let n = self.samples.len();
@@ -248,13 +284,17 @@ impl Ring {
         self.samples.partition_point(|sample| sample.at <= at).saturating_sub(1)
     }
 
-    /// Returns the last sample up to a length of the polygon, which may exceed the whole, and the share of the way to the
-    /// next one.
-    fn place(&self, at: f64) -> (&RingSample, f64) {
+    /// Returns the index of the last sample up to a length of the polygon, which may exceed the whole, and the share of the way
+    /// to the next one.
+    fn place(&self, at: f64) -> (usize, f64) {
         let at = if at >= self.length { at - self.length } else { at };
         let k = self.index(at);
-        let sample = &self.samples[k];
-        (sample, ((at - sample.at) / self.step(k)).clamp(0.0, 1.0))
+        (k, ((at - self.samples[k].at) / self.step(k)).clamp(0.0, 1.0))
+    }
+
+    /// Returns the point of the sample after sample `k`.
+    fn next(&self, k: usize) -> Point2<f64> {
+        self.samples[(k + 1) % self.samples.len()].point
     }
 
     /// Returns the largest distance of the samples between two lengths of the polygon from the chord between two points

@@ -90,7 +90,7 @@ pub(super) fn nodes(
     let mut wanted: Vec<Vec<Wanted>> =
         (0..rings.len()).map(|k| own_lengths(&rings[k], &corners[k], &circles[k], limits)).collect();
     let protected: Vec<Vec<[f64; 2]>> =
-        (0..rings.len()).map(|k| protected(&rings[k], &corners[k], &wanted)).collect();
+        (0..rings.len()).map(|k| protected(tracer, &rings[k], &corners[k], &wanted)).collect();
     for (k, ring) in rings.iter().enumerate() {
         narrow(ring, &corners[k], &protected[k], &circles[k], &mut wanted[k]);
     }
@@ -123,7 +123,7 @@ fn corners_of(ring: &Ring) -> Vec<RingCorner> {
 }
 
 /// Returns for each ring the radius \[mm\] of the largest circle that touches the boundary from inside at every sample and holds
-/// no sample of any ring; infinite at corners.
+/// no sample of any ring and crosses no chord that faces it; infinite at corners.
 fn circles(rings: &[Ring]) -> Vec<Vec<f64>> {
     let points: Vec<Point2<f64>> =
         rings.iter().flat_map(|ring| &ring.samples).map(|sample| sample.point).collect();
@@ -137,7 +137,10 @@ fn circles(rings: &[Ring]) -> Vec<Vec<f64>> {
             let depth = to.dot(&inward);
             if depth > 0.0 { to.norm_squared() / (2.0 * depth) } else { f64::INFINITY }
         };
-        points.iter().map(radius).fold(f64::INFINITY, f64::min)
+        let facing = rings
+            .iter()
+            .flat_map(|other| (0..other.samples.len()).map(move |j| other.facing(j, here, &inward)));
+        points.iter().map(radius).chain(facing).fold(f64::INFINITY, f64::min)
     };
     rings.iter().map(|ring| (0..ring.samples.len()).map(|k| circle(ring, k)).collect()).collect()
 }
@@ -183,13 +186,18 @@ fn corner_gap(ring: &Ring, corners: &[RingCorner], sample: usize) -> f64 {
 }
 
 /// Returns the lengths of the polygon from before to after each sharp corner at which its two edges end.
-fn protected(ring: &Ring, corners: &[RingCorner], wanted: &[Vec<Wanted>]) -> Vec<[f64; 2]> {
+fn protected(
+    tracer: &mut BoundaryTracer<'_>,
+    ring: &Ring,
+    corners: &[RingCorner],
+    wanted: &[Vec<Wanted>],
+) -> Vec<[f64; 2]> {
     let all: Vec<Wanted> = wanted.iter().flatten().copied().collect();
     let sharp = corners.iter().filter(|corner| corner.angle < SHARP);
     let around = |corner: &RingCorner| {
         let here = ring.samples[corner.sample];
         let length = graded(&here.point, &all).min(CORNER_SHARE * corner_gap(ring, corners, corner.sample));
-        [here.at - length, here.at + length]
+        [-1.0, 1.0].map(|sense| tracer.away(ring, here.at, sense, length))
     };
     sharp.map(around).collect()
 }
@@ -351,8 +359,12 @@ fn halved(
 
 /// Halves both edges at a tip, which is not the first node, so that they keep one length. The tip is then one node later.
 fn halve_tip(tracer: &mut BoundaryTracer<'_>, ring: &Ring, nodes: &mut Vec<BoundaryNode>, tip: usize) {
-    let [back, on] =
-        [tip - 1, tip].map(|k| between(tracer, ring, [nodes[k].at, following(ring, nodes, k).at], 0.5));
+    let BoundaryNode { point, at, .. } = nodes[tip];
+    let half = (nodes[tip - 1].point - point).norm() / 2.0;
+    let [back, on] = [-1.0, 1.0].map(|sense| {
+        let at = tracer.away(ring, at, sense, half).rem_euclid(ring.length);
+        BoundaryNode { point: tracer.point(ring, at), at, tip: None }
+    });
     nodes.insert(tip + 1, on);
     nodes.insert(tip, back);
 }

@@ -229,6 +229,63 @@ fn random_chains_keep_their_angles() {
     assert!(meshes >= 8 && refused * 3 < meshes, "{meshes} meshes, {refused} refused");
 }
 
+#[test]
+fn a_cusp_at_a_profile_s_end_has_few_triangles() {
+    let text = std::fs::read_to_string(folder("defects/mesh-angle-cusp.json")).expect("a scene");
+    let scene = scene::parse(&text, true).expect("a scene");
+    let case = scene::resolve(&scene, Path::new("."), "cusp").expect("a case");
+    let (_, placement) = contacts(&case).expect("contacts").swap_remove(0);
+    let patch = whole(&placement, 3.713_119_220_922_863);
+    let mesh = TriangleMesh::new(&placement, &patch, None).expect("a mesh");
+    check_angles("cusp", &mesh);
+    let sharpest = mesh.sharp_corners(0).into_iter().min_by(|a, b| a.1.total_cmp(&b.1)).expect("a cusp");
+    assert!(sharpest.1 < 0.02, "{sharpest:?}");
+    let at_cusp = mesh.triangles.iter().filter(|triangle| triangle.contains(&sharpest.0)).count();
+    assert!(at_cusp <= 8, "{at_cusp} triangles at the cusp");
+}
+
+/// Long patches of crowns in hollow wheels, cut by the window almost along their boundary, and next to their tips: corners of
+/// minutes of arc between a straight edge and the curve.
+#[test]
+fn windows_that_cut_at_sharp_corners_keep_the_angles() {
+    let mut random = Random::new(31);
+    let (mut sharp, mut sharpest) = (0, f64::INFINITY);
+    for number in 0..campaign::scenes() {
+        let crown = |radius: f64, reach: f64| {
+            profile(Arc::about([0.0, -radius], radius, Half::Upper, [-reach, reach]).expect("an arc"))
+                .expect("a profile")
+        };
+        let (radius, hollow) = (random.between(60.0, 300.0), 10f64.powf(random.between(-4.0, -0.5)));
+        let wheel = crown(radius * (1.0 + hollow), 50.0);
+        let yaw = *random.pick(&[0.0, 0.0, 0.01]);
+        let pair = Pair::new(crown(radius, 45.0), wheel, random.between(200.0, 600.0)).expect("a pair");
+        let placement = pair.placed(0.0, 0.0, yaw).expect("a placement");
+        let delta = 10f64.powf(random.between(-4.0, -0.5));
+        let patch = whole(&placement, delta);
+        let ([_, b], [_, h]) = (patch.components[0].xi, patch.components[0].eta);
+        let mut near_end = || 1.0 - 10f64.powf(random.between(-4.0, 0.3));
+        let (along, across) = ([near_end() * b, 2.0 * b], [near_end() * h, 2.0 * h]);
+        let wide = [-2.0 * b, 2.0 * b];
+        let window = *random.pick(&[
+            Window { xi: wide, eta: across },
+            Window { xi: wide, eta: across },
+            Window { xi: along, eta: [-2.0 * h, 2.0 * h] },
+            Window { xi: along, eta: across },
+        ]);
+        let cut = Patch::new(&placement, delta, &window);
+        let name = format!("scene {number}: {radius} in 1 + {hollow}, yaw {yaw}, δ {delta}, {window:?}");
+        let mesh =
+            TriangleMesh::new(&placement, &cut, None).unwrap_or_else(|error| panic!("{name}: {error}"));
+        check_angles(&name, &mesh);
+        for (_, angle) in (0..mesh.size.len()).flat_map(|k| mesh.sharp_corners(k)) {
+            sharp += 1;
+            sharpest = sharpest.min(angle);
+        }
+    }
+    println!("{sharp} sharp corners, the sharpest of {:.4} degrees", sharpest.to_degrees());
+    assert!(sharp >= 8 && sharpest < 0.02, "{sharp} sharp corners, the sharpest of {sharpest} rad");
+}
+
 /// A part that the window cuts a nanometre beyond C takes a billion edges: it is refused before they are made.
 #[test]
 fn a_part_too_narrow_for_a_mesh_is_refused() {
