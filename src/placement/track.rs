@@ -7,7 +7,8 @@
 //! `docs::conventions`.
 
 use crate::error::{Error, Result, finite};
-use crate::profile::{Branch, Profile, Section, Segment, Side, Station, last_groove, trace};
+use crate::numerics::roots::bracketed;
+use crate::profile::{Branch, Profile, Section, Segment, Side, Station, last_groove, parallel_to, trace};
 
 /// Where the rails are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -143,9 +144,6 @@ fn positive(place: &str, value: f64) -> Result<f64> {
     Err(Error::new(place, value.to_string(), "a positive number", "give it in mm"))
 }
 
-/// Halvings after which an undecided stretch is taken as it is: 2⁻⁵⁰ of it is below rounding.
-const DEEPEST: u32 = 50;
-
 /// Distance \[mm\] of the marks that tell a groove, some 40 mm wide, from a head.
 const GROOVE_MARKS: f64 = 1.0;
 
@@ -172,27 +170,25 @@ impl RunningHead {
 
     /// Greatest height.
     fn highest(&self) -> f64 {
-        self.stretches().map(|(branch, xi)| summit(branch, xi, DEEPEST)).fold(f64::NEG_INFINITY, f64::max)
+        self.stretches().map(|(branch, xi)| summit(branch, xi)).fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// Least abscissa where the head is at least `level` high.
     fn innermost(&self, level: f64) -> Option<f64> {
-        self.stretches().find_map(|(branch, xi)| first_at_level(branch, xi, level, DEEPEST))
+        self.stretches().find_map(|(branch, xi)| first_at_level(branch, xi, level))
     }
 }
 
-/// Greatest height of a branch over \[a, b\].
-fn summit(branch: &Branch, [a, b]: [f64; 2], depth: u32) -> f64 {
-    let ends = branch.height(a).max(branch.height(b));
-    let [slope, second] = branch.derivative_bounds(a, b);
-    if slope[0] >= 0.0 || slope[1] <= 0.0 || second[0] >= 0.0 {
-        return ends;
-    }
-    let middle = a + (b - a) / 2.0;
-    if depth == 0 || middle <= a || middle >= b {
-        return ends;
-    }
-    summit(branch, [a, middle], depth - 1).max(summit(branch, [middle, b], depth - 1))
+/// Returns the ends of \[a, b\] and the places between them where a branch is level, ascending: it is monotone from each to the
+/// next.
+fn turns(branch: &Branch, [a, b]: [f64; 2]) -> Vec<f64> {
+    let level = parallel_to(branch, [1.0, 0.0], [a, b]);
+    [a].into_iter().chain(level).chain([b]).collect()
+}
+
+/// Greatest height of a branch over an interval.
+fn summit(branch: &Branch, xi: [f64; 2]) -> f64 {
+    turns(branch, xi).into_iter().map(|x| branch.height(x)).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// Cosine below which a tangent is vertical: rounding leaves 2e-8 of a vertical one, and a face of 100 mm that leans by
@@ -222,24 +218,15 @@ fn gauge_face(rail: &Profile, head: &RunningHead, top: f64, height: f64) -> Resu
     ))
 }
 
-/// Least abscissa of \[a, b\] where a branch is at least `level` high.
-fn first_at_level(branch: &Branch, [a, b]: [f64; 2], level: f64, depth: u32) -> Option<f64> {
-    if branch.height(a) >= level {
-        return Some(a);
+/// Least abscissa of an interval where a branch is at least `level` high.
+fn first_at_level(branch: &Branch, xi: [f64; 2], level: f64) -> Option<f64> {
+    let turns = turns(branch, xi);
+    let above = |x: f64| branch.height(x) - level;
+    let first = turns.iter().position(|&x| above(x) >= 0.0)?;
+    if first == 0 {
+        return Some(turns[0]);
     }
-    let [slope, _] = branch.derivative_bounds(a, b);
-    let middle = a + (b - a) / 2.0;
-    if depth == 0 || middle <= a || middle >= b {
-        return (branch.height(b) >= level).then_some(b);
-    }
-    if slope[1] <= 0.0 || branch.height(a) + slope[1] * (b - a) < level {
-        return None;
-    }
-    if slope[0] >= 0.0 && branch.height(b) < level {
-        return None;
-    }
-    first_at_level(branch, [a, middle], level, depth - 1)
-        .or_else(|| first_at_level(branch, [middle, b], level, depth - 1))
+    bracketed(above, turns[first - 1], turns[first])
 }
 
 #[cfg(test)]
@@ -324,6 +311,26 @@ mod tests {
         let track = Track::new(&rail, RailDistance::Gauge { gauge: 1435.0, height: 14.0 })?;
         assert!((track.rail_x - 717.5 - 140f64.sqrt()).abs() < 1e-12, "{}", track.rail_x);
         assert!(track.rail_z.abs() < 1e-13, "{}", track.rail_z);
+        Ok(())
+    }
+
+    #[test]
+    fn a_level_and_a_wavy_polynomial_take_no_search_without_end() -> Result<()> {
+        let gauged = |c: &[f64], x| {
+            let shape = crate::profile::Shape::Polynomial(crate::profile::Polynomial::graph(c, x)?);
+            let rail =
+                Profile::new("top", "", vec![crate::profile::Segment { label: String::new(), shape }])?;
+            let head = RunningHead::of(&rail);
+            Ok::<_, Error>((head.highest(), head.innermost(0.5)))
+        };
+        let (top, first) = gauged(&[1.0, 0.0, 1e-30], [-20.0, 20.0])?;
+        assert!((top - 1.0).abs() < 1e-12 && first == Some(-20.0), "{top} {first:?}");
+        // T₅(x / 20) rises from −1 to its first crest.
+        let (top, first) = gauged(&[0.0, 5.0 / 20.0, 0.0, -20.0 / 8e3, 0.0, 16.0 / 3.2e6], [-20.0, 20.0])?;
+        assert!((top - 1.0).abs() < 1e-12, "{top}");
+        // cos 5t = ½ at t = π − 2π/15 from the left.
+        let expected = 20.0 * (std::f64::consts::PI * 13.0 / 15.0).cos();
+        assert!(first.is_some_and(|x| (x - expected).abs() < 1e-11), "{first:?} {expected}");
         Ok(())
     }
 

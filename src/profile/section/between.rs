@@ -3,12 +3,8 @@
 
 use super::branch::{ArcBranch, Branch, BranchShape};
 use crate::numerics::lanes::Lanes;
-use crate::numerics::polynomial::{derivative, range, value};
-use crate::numerics::roots::bracketed;
+use crate::numerics::polynomial::{derivative, value};
 use crate::numerics::sign_changes::sign_changes;
-
-/// Most bisections of an interval in which the bounds decide nothing. 2⁻⁴⁸ of the interval is below rounding.
-const DEEPEST: u32 = 48;
 
 /// Difference of slopes whose sign does not count. Points that are missed change the gap by less than 1e-13 of their distance.
 const SLOPE_NOISE: f64 = 1e-13;
@@ -35,8 +31,8 @@ pub fn stationary_points(rail: &Branch, wheel: &Branch, a: f64, b: f64) -> Vec<f
 
 /// Returns all ξ inside (a, b) \[mm\] where a branch has the direction of a line \[n_ξ, n_ζ\], ascending.
 ///
-/// Method: on an arc the sine of the tangent angle is linear in ξ. On a polynomial bounds of the component across the line and
-/// of its derivative prove that there is no such place or exactly one; where they prove neither, the interval is bisected.
+/// Method: on an arc the sine of the tangent angle is linear in ξ. On a polynomial it is where the component across the line
+/// changes its sign. Degenerate case: a branch that has the direction everywhere gives the middle of the interval.
 pub fn parallel_to(branch: &Branch, n: [f64; 2], [a, b]: [f64; 2]) -> Vec<f64> {
     let mut found = Vec::new();
     match &branch.shape {
@@ -49,28 +45,18 @@ pub fn parallel_to(branch: &Branch, n: [f64; 2], [a, b]: [f64; 2]) -> Vec<f64> {
             let term = |c: &[f64], k: usize| c.get(k).copied().unwrap_or(0.0);
             let across: Vec<f64> =
                 (0..dx.len().max(dz.len())).map(|k| term(&dx, k) * n[1] - term(&dz, k) * n[0]).collect();
-            roots(&across, [p.parameter(a), p.parameter(b)], DEEPEST, &mut found);
+            let ends = [p.parameter(a), p.parameter(b)];
+            let farthest = ends[0].abs().max(ends[1].abs());
+            let size = value(&across.iter().map(|c| c.abs()).collect::<Vec<_>>(), farthest);
+            if ends[0] < ends[1] {
+                let many = |t: &Lanes| t.map(|t| value(&across, t));
+                sign_changes(many, ends, f64::EPSILON * size, &mut found);
+            }
             found.iter_mut().for_each(|t| *t = value(&p.xi, *t));
         }
     }
     found.retain(|&xi| a < xi && xi < b);
     found
-}
-
-/// Adds the roots of a polynomial in an interval at which its sign changes, ascending.
-fn roots(c: &[f64], [a, b]: [f64; 2], depth: u32, found: &mut Vec<f64>) {
-    let [low, high] = range(c, a, b);
-    if low > 0.0 || high < 0.0 {
-        return;
-    }
-    let [falls, climbs] = range(&derivative(c), a, b);
-    let middle = a + (b - a) / 2.0;
-    if falls > 0.0 || climbs < 0.0 || depth == 0 || middle <= a || middle >= b {
-        found.extend(bracketed(|t| value(c, t), a, b));
-        return;
-    }
-    roots(c, [a, middle], depth - 1, found);
-    roots(c, [middle, b], depth - 1, found);
 }
 
 /// Solves S_R + κ_R (ξ − ξ_R) = S_W + κ_W (ξ − ξ_W) for ξ.
