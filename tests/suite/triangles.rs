@@ -249,7 +249,7 @@ fn a_cusp_at_a_profile_s_end_has_few_triangles() {
 #[test]
 fn windows_that_cut_at_sharp_corners_keep_the_angles() {
     let mut random = Random::new(31);
-    let (mut sharp, mut sharpest) = (0, f64::INFINITY);
+    let (mut sharp, mut sharpest, mut refused) = (0, f64::INFINITY, 0);
     for number in 0..campaign::scenes() {
         let crown = |radius: f64, reach: f64| {
             profile(Arc::about([0.0, -radius], radius, Half::Upper, [-reach, reach]).expect("an arc"))
@@ -274,15 +274,26 @@ fn windows_that_cut_at_sharp_corners_keep_the_angles() {
         ]);
         let cut = Patch::new(&placement, delta, &window);
         let name = format!("scene {number}: {radius} in 1 + {hollow}, yaw {yaw}, δ {delta}, {window:?}");
-        let mesh =
-            TriangleMesh::new(&placement, &cut, None).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let mesh = match TriangleMesh::new(&placement, &cut, None) {
+            Ok(mesh) => mesh,
+            // A strip of a micrometre along the whole patch.
+            Err(error) => {
+                assert!(error.to_string().contains("so narrow"), "{name}: {error}");
+                refused += 1;
+                continue;
+            }
+        };
         check_angles(&name, &mesh);
         for (_, angle) in (0..mesh.size.len()).flat_map(|k| mesh.sharp_corners(k)) {
             sharp += 1;
             sharpest = sharpest.min(angle);
         }
     }
-    println!("{sharp} sharp corners, the sharpest of {:.4} degrees", sharpest.to_degrees());
+    println!(
+        "{sharp} sharp corners, the sharpest of {:.4} degrees, {refused} refused",
+        sharpest.to_degrees()
+    );
+    assert!(20 * refused <= campaign::scenes(), "{refused} refused");
     assert!(sharp >= 8 && sharpest < 0.02, "{sharp} sharp corners, the sharpest of {sharpest} rad");
 }
 
