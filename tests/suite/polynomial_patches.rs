@@ -18,9 +18,6 @@ use wheelrail_report::random::Random;
 /// Points on an axis of the grid whose least s is compared with that of [`feasibility`].
 const POINTS: usize = 160;
 
-/// Cases that are known to fail: a kink at C under a skew of 1e-4, beside which the part over the next piece is missed.
-const KNOWN: [&str; 1] = ["polynomials 68"];
-
 /// Largest difference of s \[mm\] that counts as rounding.
 const ROUNDING: f64 = 1e-10;
 
@@ -145,7 +142,7 @@ fn both(case: &Case) -> Open {
 
 #[test]
 fn patches_over_polynomials_are_what_a_flood_fill_finds() {
-    check_all(5 * campaign::scenes(), &KNOWN, case, both);
+    check_all(5 * campaign::scenes(), &[], case, both);
 }
 
 /// The first contacts of a scene of `tests/defects`, as cases of its own approach and grid.

@@ -137,15 +137,22 @@ impl<'a> Valleys<'a> {
                 _ => [f64::NEG_INFINITY, flat],
             };
         };
-        let ends = turned.section.slopes()[piece].map(|tangent| turned.parallel_to_tangent(tangent).1);
-        [ends[0].min(ends[1]), ends[0].max(ends[1])]
+        let [first, last] =
+            turned.section.slopes()[piece].map(|tangent| turned.parallel_to_tangent(tangent).1);
+        if first <= last {
+            return [first, last];
+        }
+        // Somewhere along the piece the surface stands upright. There ξ turns back, so that the leg ends.
+        let (_, _, middle) = self.place(leg, leg.range[0] + (leg.range[1] - leg.range[0]) / 2.0);
+        if middle >= first { [first, f64::INFINITY] } else { [f64::NEG_INFINITY, last] }
     }
 
     /// Returns s(ξ, η) of a placed pair at the place of a valley or ridge \[mm\].
     pub(crate) fn separation(&self, evaluator: &mut Evaluator<'_>, xi: f64, spot: &Spot) -> f64 {
+        let own = spot.height - evaluator.rail_height(xi);
         let s = if spot.on_circle { f64::NAN } else { evaluator.separation(xi, spot.eta) };
-        // Rounding may end the surface a little before this place.
-        if s.is_nan() { spot.height - evaluator.rail_height(xi) } else { s }
+        // Rounding may end the surface a little before this place, or find the upper side of a step.
+        if s <= own + self.turned.rounding() { s } else { own }
     }
 
     /// Returns the profile abscissa \[mm\] of a piece whose place is at ξ. If there is none, it returns the end of `[from,
