@@ -17,6 +17,9 @@ const PAIRS: u64 = 3000;
 /// Points of the first and of the finest grid on an axis.
 const POINTS: [usize; 2] = [64, 512];
 
+/// Factor by which a grid is finer that decides where the finest one does not: parts thinner than its cells.
+const FINER: usize = 8;
+
 /// Tolerance of the grid's values \[mm\], and of the judgement of a point.
 const TOLERANCE: f64 = 1e-9;
 const DOUBTFUL: f64 = 1e-8;
@@ -107,9 +110,9 @@ impl Case {
         s
     }
 
-    /// The finest fills of a box around every component of the patch, and of one around the points inside that are in none of these;
-    /// with the change of their area from grids half as fine.
-    fn closer(&self, filled: &Filled, patch: &Patch) -> (Vec<Filled>, f64) {
+    /// Fills of a box around every component of the patch, and of one around the points inside that are in none of these, `finer` times
+    /// as fine as the finest of the window; with the change of their area from grids half as fine.
+    fn closer(&self, filled: &Filled, patch: &Patch, finer: usize) -> (Vec<Filled>, f64) {
         let wider = |[a, b]: [f64; 2], [from, to]: [f64; 2]| {
             let more = 0.25 * (b - a);
             [(a - more).max(from), (b + more).min(to)]
@@ -126,7 +129,7 @@ impl Case {
             boxes[p] = Window { xi: join(boxes[p].xi, other.xi), eta: join(boxes[p].eta, other.eta) };
         }
         let [coarse, fine] = [1, 2].map(|n| -> Vec<Filled> {
-            boxes.iter().map(|box_of| self.filled(box_of, n * POINTS[1] / 2)).collect()
+            boxes.iter().map(|box_of| self.filled(box_of, n * finer * POINTS[1] / 2)).collect()
         });
         let change = (area_of(&fine) - area_of(&coarse)).abs();
         (fine, change)
@@ -176,6 +179,14 @@ impl Filled {
         };
         let column = |i: usize| (1..m).map(|j| share(self.at(i, j - 1), self.at(i, j))).sum::<f64>() * dy;
         (0..n).map(|i| column(i) * dx * if i == 0 || i + 1 == n { 0.5 } else { 1.0 }).sum()
+    }
+
+    /// What the area may miss beside the ends of a surface, where s does not pass δ between two points of a column \[mm²\].
+    fn beside_ends(&self) -> f64 {
+        let (m, cell) = (self.eta.len(), (self.xi[1] - self.xi[0]) * (self.eta[1] - self.eta[0]));
+        let at_end = |pair: &[f64]| pair[0].min(pair[1]) < 0.0 && pair[0].max(pair[1]).is_infinite();
+        let ends = self.depth.chunks(m).flat_map(|column| column.windows(2)).filter(|pair| at_end(pair));
+        0.5 * cell * ends.count() as f64
     }
 
     /// The box around the points inside of a region, and two points and a quarter of it more: the tips between its lines. `None`
@@ -268,8 +279,8 @@ pub struct Open {
     area: usize,
 }
 
-/// What a fill of such cells \[mm\] may miss of the area beside the ends of a surface, where s does not pass δ \[mm²\].
-fn beside_ends(patch: &Patch, cell: f64) -> f64 {
+/// What a fill of such cells \[mm\] may miss of the area beside the ends of a component along ξ that are ends of a surface \[mm²\].
+fn beside_profile_ends(patch: &Patch, cell: f64) -> f64 {
     let ends = |c: &Component| c.ends.iter().filter(|end| **end == End::ProfileEnd).count();
     patch.components.iter().map(|c| 0.5 * cell * (c.eta[1] - c.eta[0]) * ends(c) as f64).sum()
 }
@@ -296,21 +307,30 @@ pub fn check(case: &Case) -> Open {
         if n >= POINTS[1] {
             let cell = filled.xi[1] - filled.xi[0];
             let cells = cell * (filled.eta[1] - filled.eta[0]);
-            // Two coarse grids may agree by chance.
-            let ([area, change], fine, closer) = if near && fine {
-                ([area, change], true, parts)
-            } else {
-                let (fills, change) = case.closer(&filled, &patch);
+            let closer = |finer: usize| {
+                let (fills, mut change) = case.closer(&filled, &patch, finer);
                 let area = area_of(&fills);
                 let sum = |[a, b]: [usize; 2], [c, d]: [usize; 2]| [a + c, b + d];
                 let parts = fills.iter().map(Filled::parts).fold([0; 2], sum);
-                ([area, change], change <= 0.5 * AREA * area, parts)
+                let fine = change <= 0.5 * AREA * area;
+                change += fills.iter().map(Filled::beside_ends).sum::<f64>();
+                ([area, change], fine, parts)
             };
+            let agrees = |&([area, change], ..): &([f64; 2], bool, [usize; 2])| {
+                let unsure = 2.0 * change + beside_profile_ends(&patch, cell);
+                (patch.area() - area).abs() <= AREA * area + unsure
+            };
+            // Two coarse grids may agree by chance.
+            let known = near && fine;
+            let mut found = if known { ([area, change], true, parts) } else { closer(1) };
+            if !agrees(&found) {
+                found = closer(FINER);
+            }
+            let ([area, change], fine, closer) = found;
+            assert!(agrees(&found), "{}: area {}, by the fill {area} ± {change}", case.name, patch.area());
             // A part that is thinner than a cell is one by its corners only.
             let count = patch.components.len();
             let connected = connected || (closer[1] <= count && count <= closer[0]);
-            let near = (patch.area() - area).abs() <= AREA * area + 2.0 * change + beside_ends(&patch, cell);
-            assert!(near, "{}: area {}, by the fill {area} ± {change}", case.name, patch.area());
             // What is smaller than some cells the fill may not see.
             let seen = patch.components.iter().filter(|c| c.area > 100.0 * cells).count();
             assert!(

@@ -18,7 +18,7 @@ const MARGIN: f64 = 0.05;
 pub(in crate::patch) struct Turned<'a> {
     pub(super) section: &'a Section,
     /// R, the axle distance of C \[mm\].
-    axle: f64,
+    pub(super) axle: f64,
     /// The rotation by θ, from the wheel's contact frame to its profile's axes.
     tilt: UnitComplex<f64>,
     /// The rotation by χ, from the wheel's directions in the tangent plane to ξ and η.
@@ -48,8 +48,8 @@ pub(super) struct Parallel {
     pub(super) circle: Circle,
     /// tan(v/2) of the place on the circle.
     pub(super) t: f64,
-    /// dζ/dξ of the surface at the place.
-    pub(super) slope: f64,
+    /// Direction \[dξ, dζ\] of the surface at the place. dξ is not positive where the surface stands upright or has turned over.
+    pub(super) direction: Vector2<f64>,
 }
 
 impl<'a> Turned<'a> {
@@ -76,26 +76,26 @@ impl<'a> Turned<'a> {
     /// Returns the circle of a profile point, and the t at which it is parallel to η. If that place is farther away, t is
     /// ±[`FARTHEST`].
     pub(super) fn parallel(&self, piece: usize, p: f64) -> (Circle, f64) {
-        let Parallel { circle, t, .. } = self.parallel_with_slope(piece, p);
+        let Parallel { circle, t, .. } = self.parallel_with_direction(piece, p);
         (circle, t)
     }
 
-    /// Returns the place of a profile point that is parallel to η, with the slope of the surface there.
-    pub(super) fn parallel_with_slope(&self, piece: usize, p: f64) -> Parallel {
+    /// Returns the place of a profile point that is parallel to η, with the direction of the surface there.
+    pub(super) fn parallel_with_direction(&self, piece: usize, p: f64) -> Parallel {
         let tangent = self.section.branches[self.section.pieces[piece].branch].station(p);
-        let (t, slope) = self.parallel_of(Vector2::new(tangent.cos, tangent.sin));
-        Parallel { circle: self.circle_with(p, tangent.z), t, slope }
+        let (t, direction) = self.parallel_of(Vector2::new(tangent.cos, tangent.sin));
+        Parallel { circle: self.circle_with(p, tangent.z), t, direction }
     }
 
-    /// Returns t and dζ/dξ of the place that is parallel to η on the circle of a point whose profile has a slope, which may be
-    /// infinite. Both are monotone functions of the profile's angle.
-    pub(super) fn parallel_to_tangent(&self, slope: f64) -> (f64, f64) {
+    /// Returns t of the place that is parallel to η on the circle of a point whose profile has a slope, which may be infinite, and the
+    /// direction of the surface there. t and the angle of the direction are monotone functions of the profile's angle.
+    pub(super) fn parallel_to_tangent(&self, slope: f64) -> (f64, Vector2<f64>) {
         let cos = 1.0 / 1f64.hypot(slope);
         self.parallel_of(Vector2::new(cos, if cos == 0.0 { slope.signum() } else { slope * cos }))
     }
 
-    /// Returns t and dζ/dξ of the place that is parallel to η, from the unit tangent of the profile.
-    fn parallel_of(&self, tangent: Vector2<f64>) -> (f64, f64) {
+    /// Returns t of the place that is parallel to η and the direction of the surface there, from the unit tangent of the profile.
+    fn parallel_of(&self, tangent: Vector2<f64>) -> (f64, Vector2<f64>) {
         // The tangent is (cos φ, sin φ) in the profile's own axes.
         let own = self.tilt * tangent;
         let (constant, half) = (self.skew.im * tangent.y, own.x * self.skew.re);
@@ -108,7 +108,7 @@ impl<'a> Turned<'a> {
         let along = tangent.y + lifted * self.tilt.im;
         let across = own.x * share * t;
         let up = lifted * self.tilt.re - tangent.x;
-        (t, -(self.skew * Vector2::new(along, across)).x / up)
+        (t, Vector2::new(-up, (self.skew * Vector2::new(along, across)).x))
     }
 
     /// Returns t of the place that is parallel to η, however far away, from the unit tangent and that in the profile's own axes; NaN
@@ -187,10 +187,10 @@ impl<'a> Turned<'a> {
         circle.height + circle.radius * 2.0 * t * t / (1.0 + t * t) * self.tilt.re
     }
 
-    /// Returns dζ/dξ along any circle at t.
-    pub(super) fn slope(&self, t: f64) -> f64 {
+    /// Returns the unit vector \[dξ, dζ\] along any circle at t, towards larger t.
+    pub(super) fn direction(&self, t: f64) -> Vector2<f64> {
         let (sin, cos) = (2.0 * t, 1.0 - t * t);
-        sin * self.tilt.re / (self.tilt.im * self.skew.re * sin - self.skew.im * cos)
+        Vector2::new(self.tilt.im * self.skew.re * sin - self.skew.im * cos, sin * self.tilt.re).normalize()
     }
 
     /// Returns the rounding of ξ and ζ \[mm\].

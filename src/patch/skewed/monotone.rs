@@ -6,8 +6,9 @@ use crate::numerics::lanes::Lanes;
 use crate::numerics::sign_changes::sign_changes;
 use crate::profile::{Branch, Section};
 
-/// Size of a slope of s below which its sign does not count. Turns that are missed change s by less than 1e-13 of their distance.
-const SLOPE_NOISE: f64 = 1e-13;
+/// Angle between the surfaces below which its sign does not count. Turns that are missed change s by less than 1e-13 of their
+/// distance along the surfaces.
+const ANGLE_NOISE: f64 = 1e-13;
 
 /// One leg over one piece of the rail.
 struct RailStretch<'v> {
@@ -24,7 +25,7 @@ struct RailStretch<'v> {
 ///
 /// Method: the slope of the surface where it is parallel to η is a monotone function of the profile's angle. Bounds of that angle
 /// and of the rail's slope prove that s does not turn over a stretch, or that the stretch does not matter; elsewhere all sign
-/// changes of the difference of the slopes are found, for polynomials of any degree. Cost: two places for most stretches, 16 and
+/// changes of the angle between the surfaces are found, for polynomials of any degree. Cost: two places for most stretches, 16 and
 /// more for those over which the bodies may be parallel.
 pub(crate) fn monotone(
     valleys: &Valleys<'_>,
@@ -75,8 +76,8 @@ impl RailStretch<'_> {
         }
         if self.slopes[0] <= 0.0 && self.slopes[1] >= 0.0 {
             let mut places = Vec::new();
-            let slopes = |at: &Lanes| at.map(|at| self.slope(at));
-            sign_changes(slopes, [ends[0].min(ends[1]), ends[0].max(ends[1])], SLOPE_NOISE, &mut places);
+            let angles = |at: &Lanes| at.map(|at| self.angle(at));
+            sign_changes(angles, [ends[0].min(ends[1]), ends[0].max(ends[1])], ANGLE_NOISE, &mut places);
             turns.extend(places.into_iter().map(|at| self.valleys.place(self.leg, at).0));
         }
         true
@@ -88,9 +89,11 @@ impl RailStretch<'_> {
         height - self.rail.height(xi)
     }
 
-    /// Returns ds/dξ along the valley or ridge.
-    fn slope(&self, at: f64) -> f64 {
-        let (xi, _, slope) = self.valleys.place(self.leg, at);
-        slope - self.rail.chord_slope(xi, xi)
+    /// Returns the sine of the angle between both surfaces along the valley or ridge. Unlike the slope of s it is finite where a
+    /// surface stands upright.
+    fn angle(&self, at: f64) -> f64 {
+        let (xi, _, direction) = self.valleys.place(self.leg, at);
+        let rail = self.rail.station(xi);
+        direction.y * rail.cos - direction.x * rail.sin
     }
 }

@@ -16,8 +16,11 @@
 
 use std::ops::Range;
 
+use nalgebra::Vector2;
+
 use super::circle::{Circle, FARTHEST, Parallel, PlanePoint, Turned};
 use super::path::{Leg, ValleyPath, circle_legs};
+use super::slicer::BESIDE;
 use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
 use crate::separation::Evaluator;
@@ -110,26 +113,24 @@ impl<'a> Valleys<'a> {
         }
     }
 
-    /// Returns ξ and ζ \[mm\] at a parameter of a leg, and dζ/dξ along the leg.
-    pub(super) fn place(&self, leg: &Leg, at: f64) -> (f64, f64, f64) {
-        let (circle, t, slope) = match leg.piece {
-            Some(piece) => {
-                let Parallel { circle, t, slope } = self.turned.parallel_with_slope(piece, at);
-                (circle, t, slope)
-            }
-            None => (leg.circle, at, self.turned.slope(at)),
+    /// Returns ξ and ζ \[mm\] at a parameter of a leg, and the direction \[dξ, dζ\] along the leg or against it.
+    pub(super) fn place(&self, leg: &Leg, at: f64) -> (f64, f64, Vector2<f64>) {
+        let Parallel { circle, t, direction } = match leg.piece {
+            Some(piece) => self.turned.parallel_with_direction(piece, at),
+            None => Parallel { circle: leg.circle, t: at, direction: self.turned.direction(at) },
         };
-        (self.turned.place(&circle, t).xi, self.turned.height(&circle, t), slope)
+        (self.turned.place(&circle, t).xi, self.turned.height(&circle, t), direction)
     }
 
     /// Returns bounds of dζ/dξ along a leg.
     pub(super) fn slopes(&self, leg: &Leg) -> [f64; 2] {
         let turned = &self.turned;
+        let slope = |direction: Vector2<f64>| direction.y / direction.x;
         let Some(piece) = leg.piece else {
             // Along a circle the slope is monotone up to where the circle is parallel to η; there it is infinite.
             let [a, b] = leg.range;
-            let (ends, middle) = ([a, b].map(|t| turned.slope(t)), turned.slope(a + (b - a) / 2.0));
-            let [low, high] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+            let [first, middle, last] = [a, a + (b - a) / 2.0, b].map(|t| slope(turned.direction(t)));
+            let [low, high] = [first.min(last), first.max(last)];
             let flat = if low.abs() < high.abs() { low } else { high };
             return match middle {
                 middle if low <= middle && middle <= high => [low, high],
@@ -137,22 +138,23 @@ impl<'a> Valleys<'a> {
                 _ => [f64::NEG_INFINITY, flat],
             };
         };
-        let [first, last] =
-            turned.section.slopes()[piece].map(|tangent| turned.parallel_to_tangent(tangent).1);
-        if first <= last {
-            return [first, last];
-        }
-        // Somewhere along the piece the surface stands upright. There ξ turns back, so that the leg ends.
-        let (_, _, middle) = self.place(leg, leg.range[0] + (leg.range[1] - leg.range[0]) / 2.0);
-        if middle >= first { [first, f64::INFINITY] } else { [f64::NEG_INFINITY, last] }
+        let ends = turned.section.slopes()[piece].map(|tangent| turned.parallel_to_tangent(tangent).1);
+        // Where the surface may stand upright between the ends of the piece, ξ turns back and the leg ends.
+        if ends.iter().all(|end| end.x > 0.0) { ends.map(slope) } else { [f64::NEG_INFINITY, f64::INFINITY] }
     }
 
     /// Returns s(ξ, η) of a placed pair at the place of a valley or ridge \[mm\].
     pub(crate) fn separation(&self, evaluator: &mut Evaluator<'_>, xi: f64, spot: &Spot) -> f64 {
         let own = spot.height - evaluator.rail_height(xi);
         let s = if spot.on_circle { f64::NAN } else { evaluator.separation(xi, spot.eta) };
-        // Rounding may end the surface a little before this place, or find the upper side of a step.
-        if s <= own + self.turned.rounding() { s } else { own }
+        if s.is_nan() || s <= own + self.turned.rounding() {
+            // Rounding may end the surface a little before this place.
+            return if s.is_nan() { own } else { s };
+        }
+        // Rounding may find the upper side of a step. Then the lower side is next to it.
+        let beside = BESIDE * self.turned.axle;
+        let sides = [xi - beside, xi + beside].map(|xi| evaluator.separation(xi, spot.eta));
+        if sides.iter().any(|side| *side < own + (s - own) / 2.0) { own } else { s }
     }
 
     /// Returns the profile abscissa \[mm\] of a piece whose place is at ξ. If there is none, it returns the end of `[from,
