@@ -27,21 +27,21 @@ enum Form {
         start: Station,
         curvature: f64,
     },
-    /// With the coefficients of (x − x_C, z − z_C) about the beginning of the range.
+    /// With the coefficients of (x − x_C, z − z_C) about the beginning of the range, whose terms may be much larger than their sum.
     Polynomial {
         polynomial: Polynomial,
-        local: [Vec<f64>; 2],
+        local: [Vec<Twice>; 2],
     },
 }
 
 /// Returns coefficients of a polynomial, given to twice the working precision, about another beginning, less a value: no digit
 /// is lost to the size of that value.
-fn about(c: &[[f64; 2]], begin: f64, less: f64) -> Vec<f64> {
+fn about(c: &[[f64; 2]], begin: f64, less: f64) -> Vec<Twice> {
     let mut local = recentred(&exact(c), begin.into());
     if let Some(first) = local.first_mut() {
         *first -= less;
     }
-    local.into_iter().map(f64::from).collect()
+    local
 }
 
 fn exact(c: &[[f64; 2]]) -> Vec<Twice> {
@@ -102,7 +102,7 @@ impl SampledCurve {
                 ]
             }
             Form::Polynomial { local: [x, z], .. } => {
-                [x, z].map(|c| c.iter().rev().fold(0.0, |sum, c| sum * t + c))
+                [x, z].map(|c| c.iter().rev().fold(Twice::from(0.0), |sum, c| sum * t + *c).into())
             }
         }
     }
