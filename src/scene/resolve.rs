@@ -22,6 +22,9 @@ use crate::placement::on_roller;
 /// not underflow.
 const SMALLEST: f64 = 1e-60;
 
+/// Largest approach \[mm\] and load \[N\]. They are far above any real ones, and their powers do not overflow.
+const LARGEST: f64 = 1e60;
+
 /// Resolves a scene: reads its profiles, prepares the search and checks every value. Paths in the scene are relative to
 /// `folder`. `name` is the title of a scene without a title.
 ///
@@ -129,7 +132,7 @@ fn approach_of(scene: &Scene) -> Result<Option<ApproachBy>> {
 /// Returns the approach of `[patch]`, or the load from which it is estimated.
 ///
 /// # Errors
-/// None or both of them; values that are not finite, negative, or too small to be meant.
+/// None or both of them; values that are not finite, negative, or too small or large to be meant.
 pub fn approach(patch: &PatchData) -> Result<ApproachBy> {
     let expected = "exactly one of `approach` and `load`";
     match (patch.approach, patch.load) {
@@ -151,8 +154,8 @@ fn checked(key: &str, value: f64, by: ApproachBy) -> Result<ApproachBy> {
         let advice = "leave the load out to get the geometry alone, or give one";
         return Err(Error::new(key, "0", "a positive load in N", advice));
     }
-    if value > 0.0 && value < SMALLEST {
-        let expected = format!("0, or at least {SMALLEST:e}");
+    if value > 0.0 && !(SMALLEST..=LARGEST).contains(&value) {
+        let expected = format!("0, or {SMALLEST:e} to {LARGEST:e}");
         return Err(Error::new(key, format!("{value:e}"), expected, "check the unit"));
     }
     Ok(by)

@@ -209,8 +209,12 @@ pub(super) fn power_for(largest: f64) -> i32 {
 /// Numbers in words from here on are written without a power of ten.
 const PLAIN: f64 = 1e-4;
 
-/// Returns a positive number with so many significant digits, without zeros at its end; small ones with a power of ten.
+/// Returns a positive number with so many significant digits, without zeros at its end; small ones with a power of ten. What has
+/// underflowed to 0 stays "0".
 pub(super) fn significant(x: f64, digits: i32) -> String {
+    if x == 0.0 {
+        return number(x, 1.0);
+    }
     let power = if x < PLAIN { power_for(x) } else { 0 };
     if power != 0 {
         return format!("{}·{}", significant(x / 10f64.powi(power), digits), power_of_ten(power));
