@@ -84,10 +84,9 @@ impl Patch {
     /// Finds all components inside the window. Without skew a line of constant ξ meets a component in one interval of η.
     /// With skew it may meet it in several, and a component may have holes.
     ///
-    /// Degenerate cases: the patch is empty if s < δ nowhere, at a mere touch with δ = 0, and for δ = NaN. With skew two
-    /// kinds of parts can be missed (see the docs on numerics). One lies between two turns of s along a valley that are
-    /// closer than a quarter of the distance between two joints. The other is shorter than 1/64 of that distance, with its
-    /// valley outside the window.
+    /// Degenerate cases: the patch is empty if s < δ nowhere, at a mere touch with δ = 0, and for δ = NaN. With skew on a rail a part
+    /// is missed only between two turns of s along a valley between which the surfaces are parallel to 1e-13; on a roller, one
+    /// that begins and ends within 1/512 of the range of ξ (see the docs on numerics).
     pub fn new(placement: &Placement, approach: f64, window: &Window) -> Self {
         let mut outline = Outline::new(placement, approach, window);
         let components =

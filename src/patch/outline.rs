@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::skewed::circle::Turned;
-use super::skewed::slicer::{BESIDE, Edge};
+use super::skewed::circle::{BESIDE, Turned};
+use super::skewed::slicer::Edge;
 use super::slice::Slicer;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::sign_changes::sign_changes;

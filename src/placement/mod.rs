@@ -5,6 +5,7 @@ mod motion;
 mod placed;
 mod track;
 
+#[cfg(feature = "files")]
 pub(crate) use motion::on_roller;
 pub use motion::{Creepages, Motion, Pitch, Rates};
 pub use placed::{Body, Generator, Pair, Placement};

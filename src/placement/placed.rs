@@ -352,7 +352,7 @@ impl Placement {
     }
 
     /// Cosine of the angle between the common normal and the vertical: cosθ, on a roller cosθ cosν.
-    pub(crate) fn upright(&self) -> f64 {
+    pub fn upright(&self) -> f64 {
         self.rail.point.station.cos * self.turn.cos()
     }
 

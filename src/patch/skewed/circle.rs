@@ -10,6 +10,9 @@ use crate::profile::{Branch, Section};
 /// at 0.7 ρ.
 pub(super) const FARTHEST: f64 = 0.369;
 
+/// Distance of a point beside an end or step, as a share of R. It is a million roundings, and less than any segment.
+pub(in crate::patch) const BESIDE: f64 = 1e-9;
+
 /// Share of a range of η by which that range is widened on either side.
 const MARGIN: f64 = 0.05;
 

@@ -4,6 +4,7 @@
 //! wheel, and the ends and steps of its surface. All these places are known, and the search moves outwards from one to the
 //! next.
 
+use super::circle::BESIDE;
 use super::valleys::{Spot, Valleys};
 use crate::numerics::roots::{bracketed, last_where};
 use crate::placement::Placement;
@@ -25,9 +26,6 @@ const NEAR_GUESS: f64 = 0.1;
 
 /// Half the interval, in roundings of η, in which Newton's result is confirmed by a change of sign.
 const NEWTON_ROUNDINGS: f64 = 64.0;
-
-/// Distance of a point beside an end or step, as a share of R. It is a million roundings, and less than any segment.
-pub(in crate::patch) const BESIDE: f64 = 1e-9;
 
 /// Number of fourfold steps in which a point on the surface is sought next to its end. They reach the square root of
 /// rounding, which is the error where lines of constant ξ only touch the end.

@@ -18,9 +18,8 @@ use std::ops::Range;
 
 use nalgebra::Vector2;
 
-use super::circle::{Circle, FARTHEST, Parallel, PlanePoint, Turned};
+use super::circle::{BESIDE, Circle, FARTHEST, Parallel, PlanePoint, Turned};
 use super::path::{Leg, ValleyPath, circle_legs};
-use super::slicer::BESIDE;
 use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
 use crate::separation::Evaluator;
