@@ -3,8 +3,8 @@
 use serde_json::{Value, json};
 
 use super::site::{Site, ends};
-use crate::conformal::{ConformalPatch, NormalGap, RailPoint, fill_normal_gap};
-use crate::patch::{Patch, Window};
+use crate::conformal::{NormalGap, RailPoint, fill_normal_gap};
+use crate::patch::{Component, End, Patch, Window};
 use crate::separation::{EtaAxis, Evaluator, Values};
 
 /// Turn of the rail's normal within the patch \[rad\] above which the plane's gap is too long by more than 3 %: 15°.
@@ -20,7 +20,9 @@ pub struct Conformal {
     /// Largest measured truncation error of t \[mm\].
     pub truncation: f64,
     /// The patch in the window of the grid; `None` without an approach.
-    pub patch: Option<ConformalPatch>,
+    pub patch: Option<Patch>,
+    /// Least and largest α \[rad\] within each component of the patch.
+    pub angles: Vec<[f64; 2]>,
 }
 
 impl Conformal {
@@ -32,22 +34,24 @@ impl Conformal {
         let truncation = fill_normal_gap(&gap, sigma, &EtaAxis::new(&site.grid.eta), tolerance, &mut values);
         let window = Window { xi: ends(sigma), eta: ends(&site.grid.eta) };
         let approach = site.contact.approach.filter(|_| site.has_extent());
-        let patch = approach.map(|approach| ConformalPatch::new(&gap, approach, &window));
+        let patch = approach.map(|approach| Patch::over_rail(&site.contact.placement, approach, &window));
+        let components = patch.iter().flat_map(|patch| &patch.components);
+        let angles = components.map(|component| gap.angles(component.xi)).collect();
         let rail = sigma.iter().filter_map(|&sigma| gap.rail().point(sigma)).collect();
-        Some(Self { rail, gap: values, truncation, patch })
+        Some(Self { rail, gap: values, truncation, patch, angles })
     }
 
     /// Gives what the summary says.
     pub(super) fn summary(&self) -> Value {
-        let patch = |patch: &ConformalPatch| {
-            let parts = patch.components.iter().map(|part| {
+        let patch = |patch: &Patch| {
+            let parts = patch.components.iter().zip(&self.angles).map(|(part, angle)| {
                 json!({
-                    "sigma_extent_mm": part.sigma,
+                    "sigma_extent_mm": part.xi,
                     "eta_extent_mm": part.eta,
-                    "cut": part.cut,
+                    "cut": is_cut(part),
                     "area_mm2": part.area,
-                    "angle_extent_rad": part.angle,
-                    "turn_rad": part.angle[1] - part.angle[0],
+                    "angle_extent_rad": angle,
+                    "turn_rad": angle[1] - angle[0],
                 })
             });
             json!({ "area_mm2": patch.area(), "components": parts.collect::<Vec<_>>() })
@@ -62,6 +66,11 @@ impl Conformal {
     }
 }
 
+/// Returns whether the window or an end of a surface cuts a part.
+fn is_cut(part: &Component) -> bool {
+    part.cut_by_window || part.ends.contains(&End::ProfileEnd)
+}
+
 /// Says by how much the plane's gap is too long, if the rail's normal turns by more than 15° within the patch of a grid over
 /// the plane; and that the window cuts a conformal patch.
 pub(super) fn turning_warning(
@@ -70,7 +79,7 @@ pub(super) fn turning_warning(
     conformal: Option<&Conformal>,
 ) -> Option<String> {
     if let Some(conformal) = conformal {
-        let cut = conformal.patch.as_ref()?.components.iter().any(|component| component.cut);
+        let cut = conformal.patch.as_ref()?.components.iter().any(is_cut);
         return cut.then(|| "the window of the grid cuts the conformal patch t < delta cos(alpha)".into());
     }
     let placement = &site.contact.placement;

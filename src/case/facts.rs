@@ -2,7 +2,6 @@
 
 use super::contact::EllipseUnder;
 use super::run::Part;
-use crate::conformal::ConformalPatch;
 use crate::load::Ellipse;
 use crate::patch::Patch;
 
@@ -97,7 +96,7 @@ pub const FACTS: [Fact; 22] = [
     Fact {
         unit: "degrees",
         ..text("its normal turns", |part| {
-            let turns = conformal_patch(part)?.components.iter().map(|part| part.angle[1] - part.angle[0]);
+            let turns = part.analysis.conformal.as_ref()?.angles.iter().map(|angle| angle[1] - angle[0]);
             Some(format!("{:.2}", turns.reduce(f64::max)?.to_degrees()))
         })
     },
@@ -168,7 +167,7 @@ fn patch(part: &Part) -> Option<&Patch> {
 }
 
 /// Gives the patch over the rail's surface; `None` for a grid over the plane and without an approach.
-fn conformal_patch(part: &Part) -> Option<&ConformalPatch> {
+fn conformal_patch(part: &Part) -> Option<&Patch> {
     part.analysis.conformal.as_ref()?.patch.as_ref()
 }
 

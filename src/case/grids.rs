@@ -4,12 +4,10 @@ use super::contact::PlacedContact;
 use super::formats::Writer;
 use super::input::{AskedAxes, Outputs};
 use super::places::MOST_PARTS;
-use crate::conformal::{ConformalPatch, NormalGap, RailArcLength, Reference};
+use crate::conformal::{RailArcLength, Reference};
 use crate::error::{Error, Result};
-use crate::mesh::{Axes, GridGroup, MOST_POINTS, conformal_groups, groups};
-
-/// Half widths \[mm\] of the window in which a conformal patch is first looked for where the plane has none.
-const LEAST_WINDOW: f64 = 1.0;
+use crate::mesh::{Axes, GridGroup, MOST_POINTS, groups};
+use crate::patch::{Patch, Window};
 
 /// The axes of one grid.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,8 +49,7 @@ pub(super) fn grids(asked: &AskedAxes, contact: &PlacedContact) -> Result<Vec<Gr
     let plane = patch.map_or_else(Vec::new, |patch| groups(patch, *merge, *spacing));
     let mut groups = match (reference, contact.approach) {
         (Reference::Rail, Some(approach)) => {
-            let patch = whole_conformal(contact, approach, &plane);
-            conformal_groups(&patch, *merge, *spacing)
+            groups(&Patch::over_rail(&contact.placement, approach, &Window::UNBOUNDED), *merge, *spacing)
         }
         _ => plane.clone(),
     };
@@ -89,16 +86,6 @@ pub(super) fn grids(asked: &AskedAxes, contact: &PlacedContact) -> Result<Vec<Gr
         on_rail(Grid { xi, eta, warning, sigma: None, groups: covered }, &rail)
     };
     groups.iter().enumerate().map(grid).collect()
-}
-
-/// Finds the whole conformal patch of a contact, from a window twice as large as the plane's.
-fn whole_conformal(contact: &PlacedContact, approach: f64, plane: &[GridGroup]) -> ConformalPatch {
-    let widest = |side: fn(&GridGroup) -> [f64; 2]| {
-        plane.iter().flat_map(side).fold(0.0, |most: f64, end| most.max(end.abs()))
-    };
-    let sides = [widest(|group| group.extent.xi), widest(|group| group.extent.eta)];
-    let around = sides.map(|side| if side > 0.0 { 2.0 * side } else { LEAST_WINDOW });
-    ConformalPatch::whole(&NormalGap::new(&contact.placement), approach, around)
 }
 
 /// Lists the groups of the plane's patch that a group over the rail's surface covers.

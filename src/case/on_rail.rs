@@ -4,7 +4,7 @@ use super::conformal::Conformal;
 use super::formats::OutputFormat;
 use super::input::Outputs;
 use super::site::{Site, cut_by, ends};
-use crate::conformal::{NormalGap, conformal_slice};
+use crate::conformal::NormalGap;
 use crate::error::{Error, Result};
 use crate::export::{CurvedFields, GridFields};
 
@@ -54,13 +54,12 @@ impl<'a> OnRail<'a> {
     /// Gives the rows \[σ, ξ, η_min, η_max\], with their ends that are the window's, of INTERPEN's table over the rail's surface.
     pub fn intervals(&self) -> Vec<([f64; 4], [bool; 2])> {
         let Some(patch) = &self.conformal.patch else { return Vec::new() };
-        let gap = NormalGap::new(&self.site.contact.placement);
         let window = ends(&self.site.grid.eta);
-        let row = |(&sigma, &xi): (&f64, &f64)| {
-            let slice = conformal_slice(&gap, patch.approach, window, sigma)?;
-            Some(([sigma, xi, slice.eta[0], slice.eta[1]], cut_by(window, slice.eta)))
-        };
-        self.sigma.iter().zip(&self.site.grid.xi).filter_map(row).collect()
+        let rows = self.sigma.iter().zip(&self.site.grid.xi).flat_map(|(&sigma, &xi)| {
+            let slices = patch.slices(sigma).into_iter();
+            slices.map(move |(_, slice)| ([sigma, xi, slice.eta[0], slice.eta[1]], cut_by(window, slice.eta)))
+        });
+        rows.collect()
     }
 
     /// Refuses formats that have no form over the rail's surface: an error where they are required, and a remark elsewhere.

@@ -8,6 +8,9 @@ use super::sight;
 use super::span::RayPoint;
 use crate::placement::Placement;
 
+/// Number of equal steps in which the largest and least angle of a range are sought.
+const ANGLE_STEPS: usize = 128;
+
 /// Evaluates the normal gap over a placed pair. On a roller t is measured along the normals of its crown, the profile at η = 0: from
 /// the roller to the wheel.
 ///
@@ -92,6 +95,14 @@ impl<'a> NormalGap<'a> {
     /// σ.
     pub fn angle(&self, sigma: f64) -> f64 {
         self.rail.point(sigma).map_or(f64::NAN, |at| at.sin.atan2(at.cos))
+    }
+
+    /// Returns the least and largest α \[rad\] over a range of σ \[mm\], at its ends, joints and equal steps between.
+    pub fn angles(&self, [a, b]: [f64; 2]) -> [f64; 2] {
+        let steps = (0..=ANGLE_STEPS).map(|k| a + (b - a) * k as f64 / ANGLE_STEPS as f64);
+        let joints = self.rail.joints().into_iter().filter(|sigma| a < *sigma && *sigma < b);
+        let all = steps.chain(joints).map(|sigma| self.angle(sigma)).filter(|angle| !angle.is_nan());
+        all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], angle| [low.min(angle), high.max(angle)])
     }
 
     /// Computes everything at one point; `None` beyond the rail's range of σ.

@@ -11,14 +11,13 @@
 //! | the wheel's point on a line that enters it more than once | `sight` |
 //! | t, α and both normals at single points | `gap`: [`NormalGap`] |
 //! | t(σ, ·) as polynomials, grids | `columns`: [`fill_normal_gap`] |
-//! | the patch t < δ cos α | `patch`: [`ConformalPatch`] |
+//! | the patch t < δ cos α | [`crate::Patch::over_rail`] |
 //! | the two surfaces over which gaps are given | `reference`: [`Reference`] |
 
 mod arc_length;
 mod columns;
 mod gap;
 mod meeting;
-mod patch;
 mod ray;
 mod rays;
 mod reference;
@@ -28,5 +27,4 @@ mod span;
 pub use arc_length::{RailArcLength, RailPoint};
 pub use columns::fill_normal_gap;
 pub use gap::{GapPoint, NormalGap};
-pub use patch::{ConformalComponent, ConformalPatch, ConformalSlice, conformal_slice};
 pub use reference::Reference;

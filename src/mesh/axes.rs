@@ -4,7 +4,6 @@
 //! Centres lie on the lattice (i Δξ, j Δη) about C. C itself is therefore a centre, the η axis is symmetric to the last bit
 //! over a symmetric patch, and grids of one spacing for several parts or approaches share their centres.
 
-use crate::conformal::{ConformalComponent, ConformalPatch};
 use crate::error::{Error, ErrorKind, Result, finite};
 use crate::patch::{Component, Patch, Window};
 
@@ -94,21 +93,12 @@ pub fn groups(patch: &Patch, merge: f64, spacing: Option<[f64; 2]>) -> Vec<GridG
     grouped(&patch.components.iter().map(part).collect::<Vec<_>>(), merge, spacing)
 }
 
-/// Divides the components of a conformal patch into groups by the rules of [`groups`]. The patch must be the whole one.
-pub fn conformal_groups(patch: &ConformalPatch, merge: f64, spacing: Option<[f64; 2]>) -> Vec<GridGroup> {
-    let part = |component: &ConformalComponent| GridPart {
-        extent: Window { xi: component.sigma, eta: component.eta },
-        least: component.least,
-    };
-    grouped(&patch.components.iter().map(part).collect::<Vec<_>>(), merge, spacing)
-}
-
 /// What groups are made by of a component.
 #[derive(Debug, Clone, Copy)]
 struct GridPart {
     /// The box around the component \[mm\].
     extent: Window,
-    /// Its smallest s, or t − δ cos α \[mm\].
+    /// Its smallest s \[mm\].
     least: f64,
 }
 

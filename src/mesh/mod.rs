@@ -13,7 +13,7 @@ mod surfaces;
 mod trace;
 mod triangles;
 
-pub use axes::{Axes, GridGroup, MOST_ON_AXIS, MOST_POINTS, conformal_groups, equal_steps, groups};
+pub use axes::{Axes, GridGroup, MOST_ON_AXIS, MOST_POINTS, equal_steps, groups};
 pub use quality::{Quality, Spread};
 pub use shells::{BodyShell, axle_point};
 pub use strips::{Cell, StripCounts, StripMesh};

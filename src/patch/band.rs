@@ -96,7 +96,9 @@ impl Band {
     /// band.
     fn noise(&self, outline: &mut Outline<'_>) -> f64 {
         let rail = &outline.slicer.placement().rail().section;
-        let size = self.xi.map(|xi| rail.height(xi).abs() + xi.abs());
+        // The arc length is as large as both coordinates.
+        let height = |xi: f64| if outline.slicer.is_over_rail() { xi.abs() } else { rail.height(xi).abs() };
+        let size = self.xi.map(|xi| height(xi) + xi.abs());
         let middle = self.xi[0] + (self.xi[1] - self.xi[0]) / 2.0;
         let valley = self.valley(middle);
         let depth = outline.slicer.depth_over(valley, middle).abs();

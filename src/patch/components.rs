@@ -88,10 +88,22 @@ impl Patch {
     /// is missed only between two turns of s along a valley between which the surfaces are parallel to 1e-13; on a roller, one
     /// that begins and ends within 1/512 of the range of ξ (see the docs on numerics).
     pub fn new(placement: &Placement, approach: f64, window: &Window) -> Self {
-        let mut outline = Outline::new(placement, approach, window);
+        Self::of(Outline::new(placement, approach, window))
+    }
+
+    /// Finds all components of the conformal patch {t < δ cos α} over the rail's surface, inside a window of σ and η: wherever this type
+    /// says ξ it is σ, and s is t + δ (1 − cos α). Area and perimeter are those on the rail's surface.
+    ///
+    /// Degenerate cases: as above; the patch is empty, too, if the rail has no surface at C. Missed is a part between two turns of the
+    /// least gap along σ within 1/512 of the window.
+    pub fn over_rail(placement: &Placement, approach: f64, window: &Window) -> Self {
+        Self::of(Outline::over_rail(placement, approach, window))
+    }
+
+    fn of(mut outline: Outline<'_>) -> Self {
         let components =
             regions(&mut outline).into_iter().map(|region| region.component(&mut outline)).collect();
-        Self { approach, window: *window, components }
+        Self { approach: outline.slicer.approach(), window: outline.window, components }
     }
 
     /// Returns the components inside another window, or `None` if that window cuts a component.
@@ -243,13 +255,11 @@ impl Region {
         let [a, b] = self.xi();
         let skewed = outline.slicer.skewed.is_some();
         let plain = outline.slicer.placement().skew() == 0.0;
-        let rail = &outline.slicer.placement().rail().section;
         let deepest = if skewed { f64::NAN } else { self.deepest(outline, &[])[0] };
         let mut all = Vec::with_capacity(self.bands.len());
         for band in &mut self.bands {
             let [from, to] = band.xi;
-            let joints = rail.joints(band.xi).map(|(xi, _)| xi);
-            band.corners = [from, to].into_iter().chain(joints.filter(|xi| from < *xi && *xi < to)).collect();
+            band.corners = [from, to].into_iter().chain(outline.slicer.joints(band.xi)).collect();
             let mut more = Vec::new();
             if skewed {
                 let eta = reach(outline, band);

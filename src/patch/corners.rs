@@ -23,8 +23,8 @@ const DOUBLINGS: usize = 40;
 pub(super) fn plain(outline: &Outline<'_>, band: &Band, deepest: f64, corners: &mut Vec<f64>) {
     let placement = outline.slicer.placement();
     let (approach, rail) = (outline.slicer.approach(), &placement.rail().section);
-    if placement.under().is_some() {
-        // The quadrature finds the corners of a roller's patches by itself.
+    if outline.slicer.by_roots.is_some() {
+        // The boundary's interpolants find these corners by themselves.
         return;
     }
     let frame = placement.wheel().section.frame;

@@ -1,12 +1,12 @@
 //! INTERPEN (Report Sec. 7): finds the curve s(ξ, η) = δ and the patch inside it.
 
 mod band;
+mod by_roots;
 mod components;
 mod corners;
 mod grading;
 mod loops;
 mod measure;
-mod on_roller;
 mod outline;
 mod plain;
 pub(crate) mod skewed;
@@ -16,7 +16,6 @@ pub(crate) mod turning_points;
 
 pub(crate) use band::Band;
 pub use components::{Component, Patch};
-pub(crate) use grading::Grading;
 pub(crate) use loops::{BandSide, rings};
 pub use outline::{End, Outline, Window};
 pub(crate) use plain::least_on_roller;

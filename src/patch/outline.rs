@@ -52,6 +52,11 @@ impl<'a> Outline<'a> {
         Self { slicer: Slicer::new(placement, approach), window: *window }
     }
 
+    /// Makes the outline of a placed pair's patch over the rail's surface, inside a window of σ and η.
+    pub(super) fn over_rail(placement: &'a Placement, approach: f64, window: &Window) -> Self {
+        Self { slicer: Slicer::over_rail(placement, approach), window: *window }
+    }
+
     /// Returns both ends of the slice at ξ; with skew, of the slice that holds `valley`. Returns `None` outside the patch
     /// or the window.
     pub(crate) fn edges(&mut self, valley: Option<usize>, xi: f64) -> Option<[Edge; 2]> {

@@ -6,8 +6,8 @@ use crate::numerics::roots::{bracketed, last_where};
 use crate::patch::turning_points;
 use crate::placement::Placement;
 
-/// Number of intervals in which turns of the depth over a roller are sought if the lowest places along η are not in its midplane. A
-/// part is missed only if it begins and ends within one of them.
+/// Number of intervals in which turns of the depth are sought over the rail's surface, and over a roller if the lowest places along η
+/// are not in its midplane. A part is missed only between two turns within one of them.
 const WINDOW_INTERVALS: usize = 512;
 
 /// Returns the bands by ascending ξ, and the ξ at which s may be least \[mm\].
@@ -16,17 +16,18 @@ const WINDOW_INTERVALS: usize = 512;
 /// its own two ends.
 pub(super) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<f64>) {
     let placement = outline.slicer.placement();
-    // A skewed wheel lies over another part of a roller.
-    let over = if placement.skew() == 0.0 { placement.overlap() } else { placement.rail().section.reach() };
-    let Some([first, last]) = over else { return (Vec::new(), Vec::new()) };
+    let Some([first, last]) = outline.slicer.reach() else { return (Vec::new(), Vec::new()) };
     let [a, b] = [first.max(outline.window.xi[0]), last.min(outline.window.xi[1])];
     if a.is_nan() || b.is_nan() || a >= b {
         return (Vec::new(), Vec::new());
     }
     let turns = turns_of_depth(outline, a, b);
     let extent = placement.rail().profile().extent().max(placement.wheel().profile().extent());
-    let mut torn: Vec<f64> = steps(&placement.rail().section, [a, b], extent).collect();
-    torn.extend(steps(&placement.wheel().section, [a, b], extent));
+    let mut torn: Vec<f64> = Vec::new();
+    if !outline.slicer.is_over_rail() {
+        torn.extend(steps(&placement.rail().section, [a, b], extent));
+        torn.extend(steps(&placement.wheel().section, [a, b], extent));
+    }
     let mut bands = Vec::new();
     let mut begun: Option<(f64, Option<End>)> = None;
     for pair in turns.windows(2) {
@@ -94,31 +95,44 @@ fn closed(
 /// Returns a, b, and all ξ between them where the depth may turn: joints and stationary points. The depth is monotone
 /// between neighbours.
 fn turns_of_depth(outline: &mut Outline<'_>, a: f64, b: f64) -> Vec<f64> {
-    let mut points = turning_points(outline.slicer.placement(), a, b);
+    let over_rail = outline.slicer.is_over_rail();
+    let mut points = if over_rail {
+        let c = Some(0.0).filter(|c| a < *c && *c < b);
+        [a, b].into_iter().chain(c).chain(outline.slicer.joints([a, b])).collect()
+    } else {
+        turning_points(outline.slicer.placement(), a, b)
+    };
     let placement = outline.slicer.placement();
     let (skewed, on_roller) = (placement.skew() != 0.0, placement.under().is_some());
-    if !skewed && outline.floor(None, a) == 0.0 {
-        return points;
-    }
-    if !on_roller {
-        let floor = outline.floor(None, a);
-        points.extend(outline.turns_along(floor, [a, b]));
+    if over_rail || (on_roller && (skewed || outline.floor(None, a) != 0.0)) {
+        points.extend(sampled_turns(outline, &points, [a, b]));
     } else {
-        let step = (b - a) / WINDOW_INTERVALS as f64;
-        points.extend((1..WINDOW_INTERVALS).map(|k| a + step * k as f64));
-        points.sort_by(f64::total_cmp);
-        // At the lowest place along η, that of s has no part along η.
-        let mut slope = |xi: f64| {
-            let floor = outline.floor(None, xi);
-            outline.slicer.gradient(xi, floor)[0]
-        };
-        let turns: Vec<f64> =
-            points.windows(2).filter_map(|pair| bracketed(&mut slope, pair[0].next_up(), pair[1])).collect();
-        points.extend(turns);
+        let floor = outline.floor(None, a);
+        if floor == 0.0 {
+            return points;
+        }
+        points.extend(outline.turns_along(floor, [a, b]));
     }
     points.sort_by(f64::total_cmp);
     points.dedup();
     points
+}
+
+/// Returns equal steps of ξ and the turns of the depth between these and known places.
+fn sampled_turns(outline: &mut Outline<'_>, known: &[f64], [a, b]: [f64; 2]) -> Vec<f64> {
+    let step = (b - a) / WINDOW_INTERVALS as f64;
+    let mut places: Vec<f64> = (1..WINDOW_INTERVALS).map(|k| a + step * k as f64).collect();
+    let samples = places.clone();
+    places.extend(known);
+    places.sort_by(f64::total_cmp);
+    // At the lowest place along η, the slope of the gap has no part along η.
+    let mut slope = |xi: f64| {
+        let floor = outline.floor(None, xi);
+        outline.slicer.gradient(xi, floor)[0]
+    };
+    let between = places.windows(2);
+    let turns = between.filter_map(|pair| bracketed(&mut slope, pair[0].next_up(), pair[1]));
+    turns.collect::<Vec<_>>().into_iter().chain(samples).collect()
 }
 
 /// Returns the end of the patch between p and q, one of which is inside the patch, and what bounds it there.

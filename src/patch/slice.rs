@@ -3,7 +3,7 @@
 //! Without skew the wheel must rise by δ − g(ξ). This gives the sagitta e, and η = ±√(e(2w + e)) takes the place of
 //! (7.2)–(7.3). It is exact at the tips, where (7.3) cancels.
 
-use super::on_roller::OnRoller;
+use super::by_roots::ByRoots;
 use super::skewed::slicer::{Edge, STEP_ROUNDINGS, Skewed};
 use crate::placement::Placement;
 use crate::separation::wheel_surface::{SagittaPoint, Span, Surface};
@@ -40,8 +40,8 @@ pub struct Slicer<'a> {
     wheel: Surface<'a>,
     pub(super) evaluator: Evaluator<'a>,
     spans: Vec<Span>,
-    /// The slices of a wheel on a roller; `None` on a rail.
-    on_roller: Option<OnRoller<'a>>,
+    /// The slices of a wheel on a roller, or over the rail's surface; `None` over the tangent plane of a rail.
+    pub(super) by_roots: Option<ByRoots<'a>>,
     /// The slices under a skewed wheel on a rail; `None` without skew.
     pub(super) skewed: Option<Skewed<'a>>,
     approach: f64,
@@ -55,11 +55,43 @@ impl<'a> Slicer<'a> {
             wheel: Surface::new(placement),
             evaluator: Evaluator::new(placement),
             spans: Vec::new(),
-            on_roller: OnRoller::new(placement, approach),
+            by_roots: ByRoots::on_roller(placement, approach),
             skewed: (placement.skew() != 0.0 && placement.under().is_none())
                 .then(|| Skewed::new(placement, approach)),
             approach,
         }
+    }
+
+    /// Makes a slicer of the patch over the rail's surface: ξ is σ, and the gap is t(σ, η) + δ (1 − cos α).
+    pub(super) fn over_rail(placement: &'a Placement, approach: f64) -> Self {
+        let by_roots = Some(ByRoots::over_rail(placement, approach));
+        Self { by_roots, skewed: None, ..Self::new(placement, approach) }
+    }
+
+    /// Returns the range of ξ \[mm\] in which both bodies may lie over each other.
+    pub(super) fn reach(&self) -> Option<[f64; 2]> {
+        let over_rail = self.by_roots.as_ref().and_then(ByRoots::normal_gap);
+        match over_rail {
+            Some(gap) => gap.rail().reach(),
+            None if self.placement.skew() == 0.0 => self.placement.overlap(),
+            // A skewed wheel lies over another part of a roller.
+            None => self.placement.rail().section.reach(),
+        }
+    }
+
+    /// Returns the ξ inside an interval \[mm\] at which the rail has joints.
+    pub(super) fn joints(&self, [a, b]: [f64; 2]) -> Vec<f64> {
+        let over_rail = self.by_roots.as_ref().and_then(ByRoots::normal_gap);
+        let joints = match over_rail {
+            Some(gap) => gap.rail().joints(),
+            None => self.placement.rail().section.joints([a, b]).map(|(xi, _)| xi).collect(),
+        };
+        joints.into_iter().filter(|xi| a < *xi && *xi < b).collect()
+    }
+
+    /// Returns whether ξ is the arc length of the rail's surface.
+    pub(super) fn is_over_rail(&self) -> bool {
+        self.by_roots.as_ref().is_some_and(|by_roots| by_roots.normal_gap().is_some())
     }
 
     /// Returns the approach δ \[mm\].
@@ -70,8 +102,8 @@ impl<'a> Slicer<'a> {
     /// Returns the minimum over η of s(ξ, η) − δ \[mm\]. It is negative inside the patch, zero at its tips, and NaN off the
     /// bodies.
     pub fn depth(&mut self, xi: f64) -> f64 {
-        if let Some(on_roller) = &mut self.on_roller {
-            return on_roller.depth(xi);
+        if let Some(by_roots) = &mut self.by_roots {
+            return by_roots.depth(xi);
         }
         match &mut self.skewed {
             Some(skewed) => skewed.lowest_valley(xi).map_or(f64::NAN, |valley| skewed.depth(valley, xi)),
@@ -104,8 +136,8 @@ impl<'a> Slicer<'a> {
         if let (Some(skewed), Some(valley)) = (&mut self.skewed, valley) {
             return skewed.edges(xi, valley);
         }
-        if let Some(on_roller) = &mut self.on_roller {
-            return on_roller.edges(xi);
+        if let Some(by_roots) = &mut self.by_roots {
+            return by_roots.edges(xi);
         }
         let edge = self.half(xi)?;
         Some([Edge { eta: -edge.eta, ..edge }, edge])
@@ -150,8 +182,8 @@ impl<'a> Slicer<'a> {
     /// Returns η \[mm\] of the least s at ξ. It is 0 without skew, else the place where the wheel is parallel to η or its
     /// surface ends; NaN where the wheel has no surface.
     pub fn lowest(&mut self, xi: f64) -> f64 {
-        if let Some(on_roller) = &mut self.on_roller {
-            return on_roller.lowest(xi);
+        if let Some(by_roots) = &mut self.by_roots {
+            return by_roots.lowest(xi);
         }
         let Some(skewed) = &mut self.skewed else { return 0.0 };
         skewed.lowest_valley(xi).map_or(f64::NAN, |valley| skewed.valleys.spot(valley, xi).eta)
@@ -159,8 +191,8 @@ impl<'a> Slicer<'a> {
 
     /// Returns η of a valley at ξ \[mm\]; 0 without skew.
     pub(super) fn valley(&mut self, valley: Option<usize>, xi: f64) -> f64 {
-        if let Some(on_roller) = &mut self.on_roller {
-            return on_roller.lowest(xi);
+        if let Some(by_roots) = &mut self.by_roots {
+            return by_roots.lowest(xi);
         }
         let places = self.skewed.as_ref().zip(valley);
         places.map_or(0.0, |(skewed, valley)| skewed.valleys.spot(valley, xi).eta)
@@ -179,11 +211,17 @@ impl<'a> Slicer<'a> {
 
     /// Returns \[∂s/∂ξ, ∂s/∂η\].
     pub(super) fn gradient(&mut self, xi: f64, eta: f64) -> [f64; 2] {
+        if let Some(by_roots) = &mut self.by_roots {
+            return by_roots.gradient(xi, eta);
+        }
         self.evaluator.separation_and_gradient(xi, eta).1
     }
 
     /// Returns s(ξ, η) \[mm\].
     pub fn separation(&mut self, xi: f64, eta: f64) -> f64 {
+        if let Some(by_roots) = &mut self.by_roots {
+            return by_roots.gap(xi, eta);
+        }
         self.evaluator.separation(xi, eta)
     }
 

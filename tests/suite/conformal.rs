@@ -3,7 +3,7 @@
 use crate::common::{folder, profile};
 use wheelrail::Evaluator;
 use wheelrail::case::{Case, Profiles, Run, SILENT};
-use wheelrail::conformal::{ConformalPatch, GapPoint, NormalGap, fill_normal_gap};
+use wheelrail::conformal::{GapPoint, NormalGap, fill_normal_gap};
 use wheelrail::scene::{self, Scene};
 use wheelrail::search::TrackSide;
 use wheelrail::separation::EtaAxis;
@@ -231,17 +231,17 @@ fn on_a_flat_rail_the_conformal_patch_is_the_patch() {
     for skew in [0.0, 0.03] {
         let placement = pair.placed(0.0, 0.0, skew).expect("a placement");
         let window = Window { xi: [-12.0, 12.0], eta: [-14.0, 14.0] };
-        let found = ConformalPatch::new(&NormalGap::new(&placement), 0.05, &window);
+        let found = Patch::over_rail(&placement, 0.05, &window);
         let patch = Patch::new(&placement, 0.05, &Window::UNBOUNDED);
         let ([found], [part]) = (&found.components[..], &patch.components[..]) else { panic!("{found:?}") };
-        assert!((found.area / part.area - 1.0).abs() < 1e-8, "{} {}", found.area, part.area);
+        assert!((found.area / part.area - 1.0).abs() < 1e-12, "{} {}", found.area, part.area);
+        assert!((found.perimeter / part.perimeter - 1.0).abs() < 1e-10, "{found:?}");
         for end in [0, 1] {
             assert!(
-                (found.sigma[end] - part.xi[end]).abs() < 1e-7
-                    && (found.eta[end] - part.eta[end]).abs() < 2e-3
+                (found.xi[end] - part.xi[end]).abs() < 1e-7 && (found.eta[end] - part.eta[end]).abs() < 2e-3
             );
         }
-        assert!(!found.cut && found.angle == [0.0; 2]);
+        assert!(!found.cut_by_window && NormalGap::new(&placement).angles(found.xi) == [0.0; 2]);
     }
 }
 
@@ -250,14 +250,13 @@ fn a_conformal_patch_has_its_tips_where_the_gap_is_closed() {
     let placement = arcs(13.0, 13.5, 460.0, 0.0);
     let (gap, delta) = (NormalGap::new(&placement), 0.08);
     let window = Window { xi: [-11.0, 11.0], eta: [-14.0, 14.0] };
-    let patch = ConformalPatch::new(&gap, delta, &window);
+    let patch = Patch::over_rail(&placement, delta, &window);
     let [part] = &patch.components[..] else { panic!("{patch:?}") };
-    for tip in part.sigma {
+    for tip in part.xi {
         assert!((gap.gap(tip, 0.0) - delta * gap.angle(tip).cos()).abs() < 1e-14);
     }
-    assert!(
-        (part.sigma[0] + part.sigma[1]).abs() < 1e-9 && (part.angle[1] - part.sigma[1] / 13.0).abs() < 1e-12
-    );
+    let angle = gap.angles(part.xi);
+    assert!((part.xi[0] + part.xi[1]).abs() < 1e-9 && (angle[1] - part.xi[1] / 13.0).abs() < 1e-12);
     // Cells of a fine grid.
     let step = 0.02;
     let axis =
@@ -271,11 +270,11 @@ fn a_conformal_patch_has_its_tips_where_the_gap_is_closed() {
     });
     let cells = inside.sum::<usize>() as f64 * step * step;
     assert!((cells / patch.area() - 1.0).abs() < 1e-3, "{cells} {}", patch.area());
-    let wider = ConformalPatch::new(&gap, 0.1, &window);
-    assert!(wider.area() > patch.area() && wider.components[0].sigma[1] > part.sigma[1]);
+    let wider = Patch::over_rail(&placement, 0.1, &window);
+    assert!(wider.area() > patch.area() && wider.components[0].xi[1] > part.xi[1]);
     // A window that is too small cuts the patch.
     let small = Window { xi: [-11.0, 2.0], eta: [-14.0, 14.0] };
-    assert!(ConformalPatch::new(&gap, delta, &small).components[0].cut);
+    assert!(Patch::over_rail(&placement, delta, &small).components[0].cut_by_window);
 }
 
 /// A gauge corner of 13 mm in a root of 14.5 mm.
@@ -314,7 +313,7 @@ fn a_run_over_the_rail_has_both_gaps_at_the_same_points() {
         }
     }
     let patch = conformal.patch.as_ref().expect("a patch");
-    assert!(patch.components.iter().all(|part| !part.cut), "{patch:?}");
+    assert!(patch.components.iter().all(|part| !part.cut_by_window), "{patch:?}");
 }
 
 /// The text of a scene with automatic grids over the rail.
@@ -332,8 +331,8 @@ fn uncut(case: wheelrail::Result<Case>) -> Run {
         assert!(!patch.components.is_empty(), "{name}");
         let sigma: Vec<f64> = conformal.rail.iter().map(|at| at.sigma).collect();
         for component in &patch.components {
-            assert!(!component.cut, "{name}: {component:?}");
-            for (axis, ends) in [(&sigma, component.sigma), (&part.site.grid.eta, component.eta)] {
+            assert!(!component.cut_by_window, "{name}: {component:?}");
+            for (axis, ends) in [(&sigma, component.xi), (&part.site.grid.eta, component.eta)] {
                 let inner = [axis[1], axis[axis.len() - 2]];
                 assert!(inner[0] < ends[0] && ends[1] < inner[1], "{name}: {ends:?} in {inner:?}");
             }

@@ -11,9 +11,9 @@ use fill::Filled;
 use oracle::{Line, Revolved};
 use placements::{KINDS, Placed, Stock};
 use rayon::prelude::*;
-use wheelrail::Window;
-use wheelrail::conformal::{ConformalPatch, NormalGap, fill_normal_gap};
+use wheelrail::conformal::{NormalGap, fill_normal_gap};
 use wheelrail::separation::{EtaAxis, FULL_PRECISION};
+use wheelrail::{Patch, Window};
 use wheelrail_report::random::Random;
 
 /// Seeds of every kind of pair in one ordinary test run.
@@ -142,11 +142,11 @@ impl Compared {
         let approach = 10f64.powf(dice.between(-2.0, -0.7));
         let [low, high] = gap.rail().reach().expect("a rail's surface at C");
         let window = Window { xi: [low.max(-15.0), high.min(15.0)], eta: [-14.0, 14.0] };
-        let patch = ConformalPatch::new(&gap, approach, &window);
+        let patch = Patch::over_rail(&placed.placement, approach, &window);
         let coarse = Filled::new(&gap, approach, &window, CELLS);
         // The fine grid is laid around what either finds.
         let found: Vec<Window> =
-            patch.components.iter().map(|part| Window { xi: part.sigma, eta: part.eta }).collect();
+            patch.components.iter().map(|part| Window { xi: part.xi, eta: part.eta }).collect();
         let around = coarse.parts().into_iter().chain(found.iter().copied()).reduce(joined).unwrap_or(window);
         let fine = Filled::new(&gap, approach, &wider(&around, &window), CELLS);
         let name = format!("{}, δ = {approach}", placed.name);

@@ -6,10 +6,10 @@
 use crate::loads::Loaded;
 use crate::whole_case;
 use wheelrail::case::{Site, sites};
-use wheelrail::conformal::{ConformalPatch, NormalGap, fill_normal_gap};
+use wheelrail::conformal::{NormalGap, fill_normal_gap};
 use wheelrail::error::{Error, Result};
 use wheelrail::mesh::equal_steps;
-use wheelrail::patch::Window;
+use wheelrail::patch::{Patch, Window};
 use wheelrail::placement::Pair;
 use wheelrail::profile::{inclination, standards};
 use wheelrail::separation::{EtaAxis, Evaluator, FULL_PRECISION};
@@ -61,7 +61,7 @@ pub struct ConformingPair {
     /// Placement, estimated approach and normal force.
     pub site: Site,
     /// The patch t < δ cos α of the estimated approach.
-    pub patch: ConformalPatch,
+    pub patch: Patch,
     /// The grid of the three gaps.
     pub grid: GapGrid,
     /// What Tamaas finds; `None` if the data have no row.
@@ -97,11 +97,12 @@ impl ConformingPair {
     fn new(loaded: Loaded, pair: &Pair) -> Result<Self> {
         let sites = sites(&loaded.case(pair)?)?;
         let conforming = sites.into_iter().filter_map(|site| Some((patch(&site)?, site)));
-        let turn = |patch: &ConformalPatch| {
-            patch.components.iter().map(|part| part.angle[1] - part.angle[0]).fold(0.0, f64::max)
+        let turn = |(patch, site): &(Patch, Site)| {
+            let turns = angles(patch, site).map(|[low, high]| high - low);
+            turns.fold(0.0, f64::max)
         };
         let (patch, site) = conforming
-            .max_by(|(a, _), (b, _)| turn(a).total_cmp(&turn(b)))
+            .max_by(|a, b| turn(a).total_cmp(&turn(b)))
             .ok_or_else(|| Error::new(loaded.pair, "no patch", "a patch over the rail", "report this"))?;
         let grid = GapGrid::new(&site, &patch);
         let mut found = Self { loaded, site, patch, grid, solved: None };
@@ -121,8 +122,7 @@ impl ConformingPair {
 
     /// Returns the turn of the rail's normal over the patch \[rad\].
     pub fn turn(&self) -> f64 {
-        let angles = self.patch.components.iter().map(|part| part.angle);
-        let [low, high] = angles
+        let [low, high] = angles(&self.patch, &self.site)
             .fold([f64::INFINITY, f64::NEG_INFINITY], |all, part| [all[0].min(part[0]), all[1].max(part[1])]);
         high - low
     }
@@ -139,14 +139,14 @@ impl ConformingPair {
 
 impl GapGrid {
     /// Lays a grid over the patches of all three gaps.
-    fn new(site: &Site, patch: &ConformalPatch) -> Self {
+    fn new(site: &Site, patch: &Patch) -> Self {
         let placement = &site.contact.placement;
         let (gap, mut plane) = (NormalGap::new(placement), Evaluator::new(placement));
         let own = plane_extents(site, &gap);
         let extents = patch
             .components
             .iter()
-            .fold(own, |[sigma, eta], part| [joined(sigma, part.sigma), joined(eta, part.eta)]);
+            .fold(own, |[sigma, eta], part| [joined(sigma, part.xi), joined(eta, part.eta)]);
         let [sigma, eta] = extents.map(|extent| {
             let [low, high] = widened(extent, MARGIN);
             equal_steps(low, high, SIDE)
@@ -166,11 +166,18 @@ impl GapGrid {
 }
 
 /// Finds the patch over the rail of a site under its estimated approach; `None` without one.
-fn patch(site: &Site) -> Option<ConformalPatch> {
+fn patch(site: &Site) -> Option<Patch> {
     let gap = NormalGap::new(&site.contact.placement);
     let [sigma, eta] = plane_extents(site, &gap).map(|extent| widened(extent, SEARCHED));
-    let patch = ConformalPatch::new(&gap, site.approach(), &Window { xi: sigma, eta });
+    let window = Window { xi: sigma, eta };
+    let patch = Patch::over_rail(&site.contact.placement, site.approach(), &window);
     Some(patch).filter(|patch| !patch.components.is_empty())
+}
+
+/// Returns the least and largest α \[rad\] within each part of a patch over the rail's surface.
+fn angles(patch: &Patch, site: &Site) -> impl Iterator<Item = [f64; 2]> {
+    let gap = NormalGap::new(&site.contact.placement);
+    patch.components.iter().map(move |part| gap.angles(part.xi))
 }
 
 /// Returns the ranges of σ and η of the plane's patch over the grid of a site \[mm\].
