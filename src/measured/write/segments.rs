@@ -10,29 +10,43 @@ use crate::profile::{
 };
 
 /// A profile as the segments of a scene.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Segments {
-    /// The `[[segments]]` tables in TOML.
-    pub toml: String,
+    /// The segments in order of x.
+    pub segments: Vec<SegmentData>,
     /// Texts on what was cut off at the two ends: side faces beyond the vertical, which a graph z(x) cannot hold.
     pub cut: Vec<String>,
 }
 
-/// Writes the profile as `[[segments]]` of a scene. Side faces are cut off where they are vertical.
+/// Writes a profile file: TOML with name, source and segments. Also returns what was cut off.
+///
+/// # Errors
+/// The errors of [`segments`].
+pub fn chain(profile: &Profile) -> Result<(String, Vec<String>)> {
+    #[derive(Serialize)]
+    struct File<'a> {
+        name: &'a str,
+        source: &'a str,
+        segments: Vec<SegmentData>,
+    }
+    let Segments { segments, cut } = segments(profile)?;
+    let file = File { name: &profile.name, source: &profile.source, segments };
+    let text = toml::to_string(&file).map_err(|error| {
+        Error::new("segments", error.to_string(), "segments that TOML can hold", "report this")
+    })?;
+    Ok((text, cut))
+}
+
+/// Gives the profile as segments of a scene. Side faces are cut off where they are vertical.
 ///
 /// # Errors
 /// Segments between the ends that are no graph z(x), with their place: undercuts, and the parametric spans of a spline. A
 /// profile made with `curve = "arcs"` can be written.
 pub fn segments(profile: &Profile) -> Result<Segments> {
-    #[derive(Serialize)]
-    struct Scene {
-        segments: Vec<SegmentData>,
-    }
     let all = profile.drawn();
     let first = all.iter().position(|segment| segment.end().cos >= 0.0).unwrap_or(all.len());
     let last = all.iter().rposition(|segment| segment.start().cos >= 0.0).map_or(0, |k| k + 1);
-    let mut scene = Scene { segments: Vec::with_capacity(all.len()) };
-    let mut cut = Vec::new();
+    let (mut segments, mut cut) = (Vec::with_capacity(all.len()), Vec::new());
     for (k, segment) in all.iter().enumerate() {
         let ends = [k == first, k + 1 == last];
         let clipped = [segment.start(), segment.end()].map(|station| station.cos < 0.0);
@@ -47,12 +61,9 @@ pub fn segments(profile: &Profile) -> Result<Segments> {
             Shape::Arc(arc) => arc_data(arc, ends),
             Shape::Polynomial(polynomial) => polynomial_data(polynomial),
         };
-        scene.segments.push(labelled(segment, data.map_err(|error| error.within(segment.place(k)))?));
+        segments.push(labelled(segment, data.map_err(|error| error.within(segment.place(k)))?));
     }
-    let toml = toml::to_string(&scene).map_err(|error| {
-        Error::new("segments", error.to_string(), "segments that TOML can hold", "report this")
-    })?;
-    Ok(Segments { toml, cut })
+    Ok(Segments { segments, cut })
 }
 
 fn labelled(segment: &Segment, data: SegmentData) -> SegmentData {
