@@ -178,7 +178,8 @@ impl SweepDoubts {
         })
     }
 
-    fn on(&self, side: TrackSide) -> &Landmarks {
+    /// Gives the landmarks of a side's pair.
+    pub fn on(&self, side: TrackSide) -> &Landmarks {
         self.left.as_ref().filter(|_| side == TrackSide::Left).unwrap_or(&self.right)
     }
 }

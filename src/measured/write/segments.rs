@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::error::{Error, Result};
 use crate::numerics::polynomial::recentred;
+use crate::numerics::twice::Twice;
 use crate::profile::{
     Arc, ArcData, HalfData, LineData, Polynomial, PolynomialData, Profile, Segment, SegmentData, Shape,
     Station,
@@ -104,7 +105,9 @@ fn arc_data(arc: &Arc, clip: [bool; 2]) -> Result<SegmentData> {
 /// Returns z(x) in powers of x about 0, as standards print it. A polynomial that was read in that form comes back bit for
 /// bit.
 fn polynomial_data(polynomial: &Polynomial) -> Result<SegmentData> {
-    let graph = polynomial.x.len() == 2 && f64::from(polynomial.x[1]) == 1.0;
+    // A moved polynomial has as many coefficients of x as of z.
+    let linear = |x: &[Twice]| x.iter().skip(2).all(|higher| f64::from(*higher) == 0.0);
+    let graph = polynomial.x.get(1).is_some_and(|slope| f64::from(*slope) == 1.0) && linear(&polynomial.x);
     if !graph {
         let advice = "use curve = \"arcs\", or name the file in the scene";
         return Err(Error::new("", "a span of a parametric spline", "a graph z(x)", advice));
