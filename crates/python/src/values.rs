@@ -1,4 +1,4 @@
-//! Plain values, which Python has as dataclasses.
+//! Plain values, which have classes of Python.
 
 use numpy::PyArray2;
 use pyo3::call::PyCallArgs;

@@ -1,8 +1,7 @@
-"""Plain values: what is found, as frozen dataclasses that can be pickled and compared. Lengths are in mm, angles in rad."""
+"""Plain values: what is found, with fields that can be read, compared and pickled. Lengths are in mm, angles in rad."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from math import nan, pi
 from typing import TYPE_CHECKING, Any
 
@@ -34,16 +33,28 @@ def _same(one: object, other: object) -> bool:
 
 
 class _Value:
-    """Comparison by all fields."""
+    """Fields that cannot be changed; `dataclasses` would take longer to import than all the rest."""
 
     __hash__ = None  # type: ignore[assignment]
+
+    def __init__(self, *values: Any) -> None:
+        """Take the fields in their order."""
+        vars(self).update(zip(type(self).__annotations__, values))
+
+    def __setattr__(self, name: str, value: object) -> None:
+        """Refuse."""
+        raise AttributeError(f"{type(self).__name__}.{name} cannot be changed")
 
     def __eq__(self, other: object) -> bool:
         """Tell whether all fields are the same."""
         return type(other) is type(self) and all(_same(value, vars(other)[name]) for name, value in vars(self).items())
 
+    def __repr__(self) -> str:
+        """Return the fields that are no arrays and lists."""
+        short = {name: value for name, value in vars(self).items() if not isinstance(value, list | np.ndarray)}
+        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in short.items())})"
 
-@dataclass(frozen=True, eq=False)
+
 class WheelTouch(_Value):
     """First touch of a single wheel.
 
@@ -53,11 +64,10 @@ class WheelTouch(_Value):
 
     height: float
     """Height of the wheel profile's origin over the rail's, mm, + up."""
-    contacts: list[Contact] = field(repr=False)
+    contacts: list[Contact]
     """The contacts, the lowest gap first."""
 
 
-@dataclass(frozen=True, eq=False)
 class Touch(_Value):
     """First touch of both wheels.
 
@@ -97,7 +107,6 @@ class Touch(_Value):
         return touch(self.roll, self.left, self.right)
 
 
-@dataclass(frozen=True, eq=False)
 class Feasibility(_Value):
     """Whether the bodies nowhere overlap at first touch.
 
@@ -117,7 +126,6 @@ class Feasibility(_Value):
         return self.feasible
 
 
-@dataclass(frozen=True, eq=False)
 class Hertz(_Value):
     """Hertz's ellipse at a contact: half-axes in mm, approach in mm, load in N, pressures in N/mm2.
 
@@ -152,7 +160,6 @@ class Hertz(_Value):
         return f"Hertz({pressed}, semi_axes=({xi:.4f}, {eta:.4f}), approach={self.approach:.6f})"
 
 
-@dataclass(frozen=True, eq=False)
 class Run(_Value):
     """What a run left.
 
@@ -176,7 +183,6 @@ class Run(_Value):
         return [loads((part / "summary.json").read_text("utf-8")) for part in self.parts]
 
 
-@dataclass(frozen=True, eq=False)
 class Component(_Value):
     """One connected component of a patch. Lengths in mm.
 
@@ -192,13 +198,12 @@ class Component(_Value):
     """The box around it ((xi_min, xi_max), (eta_min, eta_max)), mm."""
     deepest: tuple[float, float, float]
     """The least separation on it and its place: (s, xi, eta), mm."""
-    boundary: NDArray[np.float64] = field(repr=False)
+    boundary: NDArray[np.float64]
     """The outer boundary: a closed loop, float64 (n, 2), columns xi and eta in mm, counter-clockwise."""
-    holes: list[NDArray[np.float64]] = field(repr=False)
+    holes: list[NDArray[np.float64]]
     """The boundaries of its holes: closed loops like `boundary`, clockwise. Only a skewed wheel makes holes."""
 
 
-@dataclass(frozen=True, eq=False)
 class Mesh(_Value):
     """A mesh of triangles or quadrangles in the contact frame (xi, eta, zeta), mm, with fields.
 
