@@ -48,8 +48,8 @@ fn in_unit(
     drawn_profile(names[0], names[1], start.map(|start| start.map(|value| unit * value)), &segments)
 }
 
-/// Profiles by the names under which a scene has them, besides the built-in ones.
-pub type Given = BTreeMap<String, Profile>;
+/// Profiles by the names under which a scene has them, besides the built-in ones, with their bodies where these are known.
+pub type Given = BTreeMap<String, (Option<Side>, Profile)>;
 
 /// Where the profiles of a scene come from: its folder, and those that are given.
 pub(super) type Sources<'a> = (&'a Path, &'a Given);
@@ -120,9 +120,7 @@ pub fn near(place: &str, radius: f64) -> Result<f64> {
 /// Returns a profile as the scene places it, and the record of a measured one.
 fn profile(data: &ProfileData, (folder, given_ones): Sources<'_>, side: Side) -> Result<Resolved> {
     let Resolved { mut profile, measured } = match (&data.profile, &data.file, &data.segments) {
-        (Some(name), None, None) => {
-            Resolved::drawn(given_ones.get(name).map_or_else(|| built_in(name, side), |own| Ok(own.clone()))?)
-        }
+        (Some(name), None, None) => Resolved::drawn(named(name, given_ones, side)?),
         (None, Some(file), None) => in_file(data, &folder.join(file), side)?,
         (None, None, Some(segments)) => {
             Resolved::drawn(in_unit(["inline", "scene"], data.unit, data.start, segments)?)
@@ -272,15 +270,19 @@ impl Resolved {
     }
 }
 
-/// Returns the built-in profile with this name, which must be of the right body.
-fn built_in(name: &str, side: Side) -> Result<Profile> {
-    let (of_other, own, other) = match side {
+/// Returns the given or built-in profile with this name, which must be of the right body.
+fn named(name: &str, given: &Given, side: Side) -> Result<Profile> {
+    let own = given.get(name);
+    let (of_other, body, other) = match side {
         Side::Rail => (standards::wheel_names().any(|known| known == name), "rail", "wheel"),
         Side::Wheel => (standards::rail_names().any(|known| known == name), "wheel", "rail"),
     };
-    if of_other {
-        let (found, expected) = (format!("\"{name}\", a {other}"), format!("a {own} profile"));
+    if own.map_or(of_other, |(own, _)| own.is_some_and(|own| own != side)) {
+        let (found, expected) = (format!("\"{name}\", a {other}"), format!("a {body} profile"));
         return Err(Error::new("profile", found, expected, "see `wheelrail profile list`"));
+    }
+    if let Some((_, profile)) = own {
+        return Ok(profile.clone());
     }
     let (found, known) = match side {
         Side::Rail => (standards::rail(name), standards::rail_names().collect::<Vec<_>>()),

@@ -88,7 +88,8 @@ impl Case {
         title: &str,
     ) -> PyResult<Self> {
         let scene = scene::parse(text, false).map_err(|error| error.within("scene")).or_raise()?;
-        Self::resolved(py, scene, folder, title, profiles.unwrap_or_else(|| PyDict::new(py)))
+        let profiles = profiles.map_or_else(|| Ok(PyDict::new(py)), |profiles| profiles.copy())?;
+        Self::resolved(py, scene, folder, title, profiles)
     }
 
     /// Write the scene as TOML. Profiles that were given are written by their segments.
@@ -277,7 +278,8 @@ impl Case {
     ) -> PyResult<Self> {
         let mut given = Given::new();
         for (name, profile) in &profiles {
-            given.insert(name.extract()?, profile.cast::<Profile>()?.get().profile.clone());
+            let Profile { profile, side, .. } = profile.cast::<Profile>()?.get();
+            given.insert(name.extract()?, (*side, profile.clone()));
         }
         let (title, path) = (title.to_owned(), folder.clone());
         let case = waited(py, move |_| {

@@ -7,7 +7,7 @@ use wheelrail::measured::Finding;
 use wheelrail::{Error, ErrorKind};
 
 /// What scenes and the command line call a thing, and what Python calls it.
-const WORDS: [(&str, &str); 10] = [
+const WORDS: [(&str, &str); 13] = [
     ("see `wheelrail schema` and the README", "see `help(wheelrail)`"),
     (
         "see `wheelrail profile list`, or give `file` or `segments`",
@@ -15,7 +15,10 @@ const WORDS: [(&str, &str); 10] = [
     ),
     ("needs shift = [-70.0, 0.0]", "needs `shifted(-70.0)`"),
     ("[contact] offset finds", "`Pair.touch` finds"),
-    ("mirror = true", "`mirrored()`"),
+    ("needs mirror = true", "needs `mirrored()`"),
+    ("mirror = true for a profile", "`mirrored()` for a profile"),
+    (" = true`", "=True`"),
+    (" = false`", "=False`"),
     (
         "give the radius there, or move the profile by shift or origin",
         "give the radius there, or move the profile by `shifted`",

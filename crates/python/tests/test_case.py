@@ -112,7 +112,7 @@ def test_what_is_wrong_with_a_scene_is_said_by_its_key() -> None:
         "scene: wheel: radius": {"wheel": {"profile": "S1002", "radius": "460"}},
         "scene: grid: xi: values": {"grid": {"xi": {"values": [0.0, np.nan]}}},
         "scene: track: gauge": {"track": {"gauge": 1.435}},
-        "wheel: found the profile '60E1' of a rail": {"wheel": {"profile": wr.rail("60E1"), "radius": 460.0}},
+        "scene: wheel: profile: found \"60E1 #": {"wheel": {"profile": wr.rail("60E1"), "radius": 460.0}},
     }
     for key, change in wrong.items():
         with pytest.raises(wr.InputError) as caught:

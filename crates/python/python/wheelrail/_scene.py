@@ -15,8 +15,6 @@ import numpy as np
 from ._errors import InputError
 from ._wheelrail import Case, Contact, Profile
 
-_BODIES = ("rail", "wheel")
-
 
 def to_json(value: object, profiles: MutableMapping[str, Profile] | None) -> str:
     """Write values as JSON, a key a line. Profiles get names and go into `profiles`, or without it their segments are written."""
@@ -56,7 +54,6 @@ def _table(table: Mapping[Any, Any], place: tuple[str, ...], profiles: MutableMa
     out: dict[str, Any] = {}
     for key, value in table.items():
         if key == "profile" and isinstance(value, Profile):
-            _refuse_other_body(value, place)
             if profiles is None:
                 out["segments"] = value.segments()
             else:
@@ -65,13 +62,6 @@ def _table(table: Mapping[Any, Any], place: tuple[str, ...], profiles: MutableMa
         elif value is not None:
             out[str(key)] = _plain(value, (*place, str(key)), profiles)
     return out
-
-
-def _refuse_other_body(profile: Profile, place: tuple[str, ...]) -> None:
-    body = place[-1] if place else None
-    if body in _BODIES and profile.side not in (None, body):
-        found, expected = f"the profile {profile.name!r} of a {profile.side}", f"a profile of a {body}"
-        raise InputError(": ".join(place), found, expected, "exchange the two")
 
 
 def contact_of(case: Case, number: int) -> Contact:
