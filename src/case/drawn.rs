@@ -119,7 +119,7 @@ pub(super) fn loops_of(placement: &Placement, patch: &Patch) -> Vec<Loop> {
 }
 
 /// Gives the boundary-fitted mesh as writers take it.
-pub(super) fn quads(strips: &StripMesh) -> QuadMesh {
+pub fn quads(strips: &StripMesh) -> QuadMesh {
     QuadMesh {
         points: strips.points.clone(),
         quads: strips.cells.iter().map(|cell| cell.corners).collect(),

@@ -5,10 +5,11 @@ use nalgebra::{Unit, Vector3};
 use super::formats::{Of, Writer};
 use super::input::Outputs;
 use super::jobs::possible;
-use super::run::{Part, Run};
+use super::run::Part;
 use crate::error::Result;
 use crate::export::{PatchMesh, SurfaceMesh};
 use crate::mesh::{Surface, TriangleMesh};
+use crate::patch::Patch;
 use crate::placement::Placement;
 use crate::separation::{Evaluator, Normals};
 
@@ -42,24 +43,31 @@ pub(super) fn surface_mesh(name: &'static str, part: &Part, body: &Surface) -> S
 
 /// Gives the triangle mesh of the patch with its fields, if files with it are asked for; `None` without an approach, and for an
 /// infeasible contact, whose overlap is no patch.
-pub(super) fn triangles(run: &Run, part: &Part, skipped: &mut Vec<String>) -> Result<Option<PatchMesh>> {
+pub(super) fn triangles(
+    outputs: &Outputs,
+    part: &Part,
+    skipped: &mut Vec<String>,
+) -> Result<Option<PatchMesh>> {
     let Some(patch) = &part.analysis.patch else { return Ok(None) };
-    let (outputs, placement) = (&run.case.outputs, &part.site.contact.placement);
+    let placement = &part.site.contact.placement;
     let names = "triangle mesh of the patch";
     if part.site.is_infeasible() {
         skipped.push(format!("{names}: the contact is infeasible"));
         return Ok(None);
     }
-    let mesh = || {
-        let mesh = TriangleMesh::new(placement, patch, outputs.mesh_size)?;
-        let areas = patch.components.iter().map(|component| component.area).collect();
-        Ok(with_fields(placement, mesh, areas))
-    };
+    let mesh = || patch_mesh(placement, patch, outputs.mesh_size);
     let of_patch = |writer: &Writer| matches!(writer, Writer::Triangles(_) | Writer::Surface(Of::Patch, _));
     possible(outputs, names, of_patch, mesh, skipped)
 }
 
-fn with_fields(placement: &Placement, mesh: TriangleMesh, areas: Vec<f64>) -> PatchMesh {
+/// Makes the triangle mesh of a patch with what its nodes and components carry; `size` \[mm\] is the length of its edges, which the
+/// patch decides if none is given.
+///
+/// # Errors
+/// The errors of [`TriangleMesh::new`].
+pub fn patch_mesh(placement: &Placement, patch: &Patch, size: Option<f64>) -> Result<PatchMesh> {
+    let mesh = TriangleMesh::new(placement, patch, size)?;
+    let areas = patch.components.iter().map(|component| component.area).collect();
     let mut evaluator = Evaluator::new(placement);
     let zero = |normal: Option<Unit<Vector3<f64>>>| normal.map_or_else(Vector3::zeros, Unit::into_inner);
     let (mut separation, mut rail_normals, mut wheel_normals) = (Vec::new(), Vec::new(), Vec::new());
@@ -69,5 +77,5 @@ fn with_fields(placement: &Placement, mesh: TriangleMesh, areas: Vec<f64>) -> Pa
         rail_normals.push(zero(rail));
         wheel_normals.push(zero(wheel));
     }
-    PatchMesh { mesh, separation, rail_normals, wheel_normals, areas }
+    Ok(PatchMesh { mesh, separation, rail_normals, wheel_normals, areas })
 }

@@ -2,10 +2,10 @@
 
 use super::drawn::{Drawn, loops_of, quads};
 use super::elements::{surface_mesh, surfaces_around, triangles};
-use super::formats::{Of, Writer};
+use super::formats::{Of, OutputFormat, Writer};
 use super::in_place::in_place;
 use super::input::Outputs;
-use super::jobs::{Job, bytes, possible, stream, write_jobs};
+use super::jobs::{Job, bytes, contents, possible, stream, write_jobs};
 use super::on_rail::OnRail;
 use super::run::{COMPUTING, Part, Run, Tell};
 use super::site::cut_by;
@@ -73,7 +73,69 @@ fn write_part(
     tell: Tell<'_>,
 ) -> Result<WrittenPart> {
     tell(format!("{}: files", part.site.name()), 0.0);
-    let (outputs, axes, mut skipped) = (&run.case.outputs, &part.site.grid, Vec::new());
+    with_jobs(run, part, (&run.case.outputs, png), |[always, asked], meshes, skipped| {
+        let jobs: Vec<Job<'_>> = always.into_iter().chain(asked).collect();
+        let folder = folder.part(&part.site.folder)?;
+        let names = write_jobs(&jobs, &folder, |done| {
+            let step = format!("{}: {done} of {} files written", part.site.name(), jobs.len());
+            tell(step, done as f64 / jobs.len() as f64);
+        })?;
+        let summary = summary(run, part, Some(&folder), meshes, (&names, skipped))?;
+        let mut text = serde_json::to_vec_pretty(&summary).unwrap_or_default();
+        text.push(b'\n');
+        folder.write("summary.json", &text)?;
+        let names = names.into_iter().chain(["summary.json".into()]);
+        let files =
+            names.map(|name| Ok(WrittenFile { size: folder.size(&name)?, name })).collect::<Result<_>>()?;
+        Ok(WrittenPart { folder: part.site.folder.clone(), files, summary })
+    })
+}
+
+/// Makes the files of one format in memory, or without a format the tables and pictures of every run; gives them by their paths
+/// in the run's folder.
+///
+/// # Errors
+/// A format that cannot hold the grid, or has nothing to show; PNG, which the library does not draw.
+pub fn files(run: &Run, format: Option<OutputFormat>) -> Result<Vec<(String, Vec<u8>)>> {
+    let formats = Vec::from_iter(format);
+    let outputs = Outputs { formats, required: true, mesh_size: run.case.outputs.mesh_size };
+    let (mut all, mut missing) = (Vec::new(), Vec::new());
+    for part in &run.parts {
+        with_jobs(run, part, (&outputs, None), |[always, asked], _, skipped| {
+            let jobs = if format.is_some() { asked } else { always };
+            let folder = &part.site.folder;
+            let path = |name| if folder.is_empty() { String::from(name) } else { format!("{folder}/{name}") };
+            all.extend(contents(&jobs)?.into_iter().map(|(name, bytes)| (path(name), bytes)));
+            missing.extend_from_slice(skipped);
+            Ok(())
+        })?;
+    }
+    if all.is_empty() {
+        let found = format!("nothing to write {}", missing.join("; "));
+        let expected = "a feasible contact with an approach or a load";
+        return Err(Error::new("format", found.trim_end(), expected, "give one of them"));
+    }
+    Ok(all)
+}
+
+/// Gives what `summary.json` says of every part, without the lists and measures of files.
+///
+/// # Errors
+/// A wheel at rest where it touches, whose creepages are asked for.
+pub fn summaries(run: &Run) -> Result<Vec<serde_json::Value>> {
+    let none = Meshes { bodies: None, patch: None };
+    run.parts.iter().map(|part| summary(run, part, None, none, (&[], &[]))).collect()
+}
+
+/// Calls `then` with the files that every run has and those of the asked formats, with the meshes in them, and with what could not be
+/// made.
+fn with_jobs<T>(
+    run: &Run,
+    part: &Part,
+    (outputs, png): (&Outputs, Option<Rasterise>),
+    then: impl FnOnce([Vec<Job<'_>>; 2], Meshes<'_>, &[String]) -> Result<T>,
+) -> Result<T> {
+    let (axes, mut skipped) = (&part.site.grid, Vec::new());
     let (header, rail, creepages) = (header(run, part), RailColumns::new(part), run.creepages(part)?);
     let grid = GridFields::new(&axes.xi, &axes.eta, &part.analysis.separation, &rail.height, &rail.normal)?;
     let grid = rail.roller.as_ref().map_or(Ok(grid), |roller| grid.over_roller(roller))?;
@@ -81,7 +143,7 @@ fn write_part(
     let curved = on_rail.as_ref().map(OnRail::fields).transpose()?;
     let gridded = Gridded::new(outputs, &header, &grid, curved.as_ref(), &mut skipped)?;
     let bodies = surfaces_around(outputs, part, &mut skipped)?;
-    let triangles = triangles(run, part, &mut skipped)?;
+    let triangles = triangles(outputs, part, &mut skipped)?;
     let (drawn, unrolled, loops) = (Drawn::new(part), Unrolled::new(part), loops(part));
     // What shows all parts of the run lies with the first.
     let first = run.parts.first().is_some_and(|first| std::ptr::eq(first, part));
@@ -101,22 +163,9 @@ fn write_part(
         png: rasterise(outputs, png)?,
         loops: &loops,
     };
-    let mut jobs = always(part, &sources, on_rail.as_ref());
-    jobs.extend(outputs.files().filter_map(|(name, writer)| job(name, writer, &sources)));
-    let folder = folder.part(&part.site.folder)?;
-    let names = write_jobs(&jobs, &folder, |done| {
-        let step = format!("{}: {done} of {} files written", part.site.name(), jobs.len());
-        tell(step, done as f64 / jobs.len() as f64);
-    })?;
+    let asked = outputs.files().filter_map(|(name, writer)| job(name, writer, &sources)).collect();
     let meshes = Meshes { bodies: bodies.as_ref(), patch: triangles.as_ref().map(|patch| &patch.mesh) };
-    let summary = summary(run, part, &folder, creepages, meshes, &names, &skipped);
-    let mut text = serde_json::to_vec_pretty(&summary).unwrap_or_default();
-    text.push(b'\n');
-    folder.write("summary.json", &text)?;
-    let names = names.into_iter().chain(["summary.json".into()]);
-    let files =
-        names.map(|name| Ok(WrittenFile { size: folder.size(&name)?, name })).collect::<Result<_>>()?;
-    Ok(WrittenPart { folder: part.site.folder.clone(), files, summary })
+    then([always(part, &sources, on_rail.as_ref()), asked], meshes, &skipped)
 }
 
 /// What the files of a part are written from.

@@ -155,21 +155,31 @@ impl SweepDoubts {
         &'a self,
         rows: &'a [SweepRow],
     ) -> impl Iterator<Item = (&'a SweepRow, ContactDoubts)> + 'a {
-        let lift = |side| {
+        let first = [TrackSide::Left, TrackSide::Right].map(|side| {
             let first = rows.iter().find(|row| row.side == side && row.number == 0);
-            first.map_or(0.0, |row| self.on(side).lift(&Touching::from(&row.contact)))
-        };
-        let [right, left] = [TrackSide::Right, TrackSide::Left].map(lift);
-        rows.iter().map(move |row| {
-            if row.number > 0 {
-                return (row, ContactDoubts::default());
-            }
-            let lifts = if row.side == TrackSide::Right { [right, left] } else { [left, right] };
-            (row, self.on(row.side).doubts(&Touching::from(&row.contact), lifts))
+            first.map(|row| &row.contact)
+        });
+        let [left, right] = self.of_first(first);
+        rows.iter().map(move |row| match row.number {
+            0 => (row, if row.side == TrackSide::Right { right } else { left }),
+            _ => (row, ContactDoubts::default()),
         })
     }
 
-    fn on(&self, side: TrackSide) -> &Landmarks {
+    /// Finds the doubts about the first contacts of the left and the right side, or of a single wheel, which is a right one.
+    pub fn of_first(&self, first: [Option<&Contact>; 2]) -> [ContactDoubts; 2] {
+        let marks = [self.on(TrackSide::Left), self.on(TrackSide::Right)];
+        let touching = first.map(|contact| contact.map(Touching::from));
+        let lift = |k: usize| touching[k].as_ref().map_or(0.0, |at| marks[k].lift(at));
+        let lifts = [lift(0), lift(1)];
+        [0, 1].map(|k| {
+            let doubts = touching[k].as_ref().map(|at| marks[k].doubts(at, [lifts[k], lifts[1 - k]]));
+            doubts.unwrap_or_default()
+        })
+    }
+
+    /// Gives the landmarks of a side's pair.
+    pub fn on(&self, side: TrackSide) -> &Landmarks {
         self.left.as_ref().filter(|_| side == TrackSide::Left).unwrap_or(&self.right)
     }
 }

@@ -58,11 +58,11 @@ pub fn approach_under_load(placement: &Placement, load: f64, modulus: f64) -> Re
     first.map(|region| region.approach).ok_or_else(|| unborne("load", load, None))
 }
 
-/// Finds all contacts of a case under an approach, the first one first.
+/// Finds all contacts of a case under an approach or load, the first one first, with what each carries.
 ///
 /// # Errors
 /// No contact, or more than anybody looks through; a load that no approach carries.
-pub(super) fn find(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<PlacedContact>> {
+pub fn find(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<PlacedContact>> {
     let modulus = case.question.modulus();
     let Place::Points { rail_x, wheel_x } = &case.standing.place else { return search(case, approach) };
     let placement = case.profiles.right.pair.placed(*rail_x, *wheel_x, 0.0)?;

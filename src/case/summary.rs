@@ -9,6 +9,7 @@ use super::in_place;
 use super::input::Case;
 use super::run::{Part, Run};
 use super::site::Site;
+use crate::error::Result;
 use crate::files::FolderPart;
 use crate::mesh::{Quality, Surface, TriangleMesh};
 use crate::patch::{Component, Patch};
@@ -53,16 +54,17 @@ pub(super) struct Meshes<'a> {
     pub(super) patch: Option<&'a TriangleMesh>,
 }
 
-/// Gives the summary of one part.
+/// Gives the summary of one part; without a `folder` paths are absolute.
+///
+/// # Errors
+/// Those of its creepages.
 pub(super) fn summary(
     run: &Run,
     part: &Part,
-    folder: &FolderPart<'_>,
-    creepages: Option<Creepages>,
+    folder: Option<&FolderPart<'_>>,
     meshes: Meshes<'_>,
-    files: &[String],
-    skipped: &[String],
-) -> Value {
+    (files, skipped): (&[String], &[String]),
+) -> Result<Value> {
     let (Part { site, analysis, .. }, Case { profiles, .. }) = (part, &run.case);
     let (contact, own) = (&site.contact, profiles.on(site.side()));
     let placement = &contact.placement;
@@ -79,7 +81,7 @@ pub(super) fn summary(
         "measured_wheel": own.measured.wheel,
         "wheel_radius_mm": placement.wheel_radius(),
         "found": contact.found,
-        "creepages": creepages.map(relative_motion),
+        "creepages": run.creepages(part)?.map(relative_motion),
         "feasibility": contact.feasibility,
         "curvatures": contact.curvatures,
         "approach_estimated_by": contact.is_loaded().then_some("half-space"),
@@ -115,17 +117,17 @@ pub(super) fn summary(
     if let (Value::Object(all), Value::Object(rest)) = (&mut summary, rest) {
         all.extend(flat.chain(rest));
     }
-    summary
+    Ok(summary)
 }
 
 /// Gives what the summary says of the program and of the scene.
-fn head(Case { echo, file, .. }: &Case, folder: &FolderPart<'_>) -> Value {
+fn head(Case { echo, file, .. }: &Case, folder: Option<&FolderPart<'_>>) -> Value {
     json!({
         "program": "wheelrail",
         "version": env!("CARGO_PKG_VERSION"),
         "title": echo.title,
         "scene": echo.scene,
-        "scene_file": file.as_ref().map(|file| folder.relative(file)),
+        "scene_file": file.as_ref().map(|file| folder.map_or_else(|| file.clone(), |folder| folder.relative(file))),
         "scene_sha256": echo.hash,
         "conventions": "mm, rad; s > 0 apart; contact frame: origin C, xi along the common tangent, eta along the rail, zeta from rail to wheel; grids [i_xi][i_eta]",
     })

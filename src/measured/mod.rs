@@ -42,7 +42,7 @@ pub use unit::Unit;
 
 use serde::Serialize;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result, finite};
 use crate::profile::{Profile, Side};
 
 /// The decisions, repairs and fit that made a profile from a file. A run writes them to summary.json.
@@ -125,6 +125,31 @@ pub fn profile(file: &str, bytes: &[u8], side: Side, options: &Options) -> Resul
     let points =
         read::reader::read(bytes, format, options.columns.as_ref()).map_err(|error| error.within(file))?;
     build(file, points, side, options).map_err(|error| error.within(file))
+}
+
+/// Makes the profile of points \[x, z\] that no file holds, in an order, a unit and axes that the options or the shape tell. `name`
+/// appears in messages.
+///
+/// # Errors
+/// Anything wrong with the options or the points, as of [`profile`]; options that choose among the contents of a file.
+pub fn of_points(name: &str, at: &[[f64; 2]], side: Side, options: &Options) -> Result<Measured> {
+    options.validate()?;
+    options.validate_without_file()?;
+    if at.len() < 2 {
+        return Err(Error::new(name, format!("{} points", at.len()), "2 points or more", "give all points"));
+    }
+    if at.len() > MOST_POINTS {
+        let (found, expected) = (format!("{} points", at.len()), format!("{MOST_POINTS} points at most"));
+        return Err(Error::new(name, found, expected, "thin them out").of_kind(ErrorKind::Limit));
+    }
+    let mut points = Points::new(Format::Text, None);
+    for (k, &[x, z]) in at.iter().enumerate() {
+        let place = format!("{name}: point {}", k + 1);
+        let point = [finite(&place, x)?, finite(&place, z)?];
+        points.push(read::scan::Line { number: 0, text: "" }, point, 1.0)?;
+    }
+    let placed = placed(points, side, options)?;
+    drawn(name, "points".into(), placed, side, options, None).map_err(|error| error.within(name))
 }
 
 /// Returns the body that a file describes, by its extension or its header. Returns `None` if neither tells.

@@ -243,6 +243,18 @@ impl Options {
         ])
     }
 
+    /// Rejects options that choose among the contents of a file.
+    ///
+    /// # Errors
+    /// An option without effect; the error names it.
+    pub(super) fn validate_without_file(&self) -> Result<()> {
+        reject_idle(&[
+            ("format", self.format.is_some(), "a file"),
+            ("columns", self.columns.is_some(), "a file"),
+            ("section", self.section.is_some(), "a file"),
+        ])
+    }
+
     /// Rejects options that have no effect for a file of this body and format. `drawn` is true for a file that has only
     /// design elements.
     ///

@@ -12,7 +12,7 @@ use crate::profile::{Arc, Polynomial, Profile, Shape, Side};
 mod segments;
 
 #[cfg(feature = "files")]
-pub use segments::{Segments, segments};
+pub use segments::{Segments, chain, segments};
 
 /// Returns the text of a file with these points \[mm\]: x to the field side, z up, from left to right. `name` goes into its
 /// header.
@@ -31,6 +31,33 @@ pub fn points(points: &[[f64; 2]], format: Format, side: Side, name: &str) -> St
         }
         Format::Csv => format!("x_mm,z_mm\n{}", rows(points.iter().copied(), ",")),
     }
+}
+
+/// Default distance \[mm\] of points along a drawn profile: that of hand-held instruments.
+pub const STEP: f64 = 0.2;
+
+/// Writes a profile as the text of a file of points: those that were `measured` \[mm\], unless there are none or a `step` \[mm\] is
+/// given. Also returns how many points were left out because SIMPACK's readers cannot tell them from others.
+///
+/// # Errors
+/// No `side` for a format whose axes depend on it; the errors of [`sample`].
+pub fn profile(
+    profile: &Profile,
+    (measured, step): (Option<&[[f64; 2]]>, Option<f64>),
+    (format, side): (Format, Option<Side>),
+) -> Result<(String, usize)> {
+    let own_axes = matches!(format, Format::MiniProf | Format::Simpack);
+    if side.is_none() && own_axes {
+        let expected = format!("the body, which sets the axes of {}", format.title());
+        return Err(Error::new("side", "none", expected, "give rail or wheel"));
+    }
+    let all = match (measured, step) {
+        (Some(points), None) => points.to_vec(),
+        _ => sample(profile, step.unwrap_or(STEP))?,
+    };
+    let kept = if format == Format::Simpack { spaced(&all) } else { all.clone() };
+    let text = points(&kept, format, side.unwrap_or(Side::Rail), &profile.name);
+    Ok((text, all.len() - kept.len()))
 }
 
 fn rows(points: impl Iterator<Item = [f64; 2]>, separator: &str) -> String {

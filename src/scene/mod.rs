@@ -22,8 +22,12 @@ pub use data::{
 };
 pub use motion_data::{FrictionData, MotionData, PitchData, PitchWord};
 pub use profile_data::{ProfileData, Rotation};
-pub use profiles::{ProfileSource, is_chain_file, profile_from_file, read_profile, section_from_files};
+pub use profiles::{
+    Given, ProfileSource, is_chain_file, near, profile_from_file, profile_from_text, read_profile,
+    section_from_files,
+};
 pub use read::{load, parse};
-pub use resolve::{approach, echo, modulus, resolve, with_profiles};
+pub use resolve::{approach, echo, modulus, resolve, resolve_given, to_toml, with_profiles};
 pub use side_data::{DeviationData, SideData};
+pub use standing::{distance, within};
 pub use words::perhaps;

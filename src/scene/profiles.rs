@@ -1,5 +1,6 @@
 //! Makes the profiles of `[rail]` and `[wheel]`: built in, inline or from files.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::data::Scene;
@@ -47,13 +48,19 @@ fn in_unit(
     drawn_profile(names[0], names[1], start.map(|start| start.map(|value| unit * value)), &segments)
 }
 
-/// Returns the rail and the wheel of a scene, turned and shifted as the scene says. Files are relative to `folder`; each
+/// Profiles by the names under which a scene has them, besides the built-in ones, with their bodies where these are known.
+pub type Given = BTreeMap<String, (Option<Side>, Profile)>;
+
+/// Where the profiles of a scene come from: its folder, and those that are given.
+pub(super) type Sources<'a> = (&'a Path, &'a Given);
+
+/// Returns the rail and the wheel of a scene, turned and shifted as the scene says. Files are relative to the folder; each
 /// one is opened once.
 ///
 /// # Errors
 /// Anything that is wrong with a profile; the error names the key.
-pub(super) fn profiles(scene: &Scene, folder: &Path) -> Result<Profiles> {
-    let both = || of_side(scene, [&scene.rail, &scene.wheel], ["rail", "wheel"], folder);
+pub(super) fn profiles(scene: &Scene, sources: Sources<'_>) -> Result<Profiles> {
+    let both = || of_side(scene, [&scene.rail, &scene.wheel], ["rail", "wheel"], sources);
     let own = |name: &str, side: &Option<SideData>| {
         let Some(SideData { rail, wheel, .. }) = side else { return Ok(None) };
         if rail.is_none() && wheel.is_none() {
@@ -63,7 +70,7 @@ pub(super) fn profiles(scene: &Scene, folder: &Path) -> Result<Profiles> {
             .map(|(body, own)| if own { format!("{name}: {body}") } else { body.into() });
         let data = [rail.as_ref().unwrap_or(&scene.rail), wheel.as_ref().unwrap_or(&scene.wheel)];
         let places = places.each_ref().map(String::as_str);
-        of_side(scene, data, places, folder).map(Some)
+        of_side(scene, data, places, sources).map(Some)
     };
     let (right, left) = (own("right", &scene.right)?, own("left", &scene.left)?);
     match (right, left) {
@@ -74,13 +81,18 @@ pub(super) fn profiles(scene: &Scene, folder: &Path) -> Result<Profiles> {
 }
 
 /// Gives rail and wheel of one side of a scene; `places` are their keys.
-fn of_side(scene: &Scene, data: [&ProfileData; 2], places: [&str; 2], folder: &Path) -> Result<SideProfiles> {
-    let rail = profile(data[0], folder, Side::Rail).map_err(|e| e.within(places[0]))?;
+fn of_side(
+    scene: &Scene,
+    data: [&ProfileData; 2],
+    places: [&str; 2],
+    sources: Sources<'_>,
+) -> Result<SideProfiles> {
+    let rail = profile(data[0], sources, Side::Rail).map_err(|e| e.within(places[0]))?;
     if let Some(radius) = data[0].radius {
         let expected = "a radius only for the wheel";
         return Err(Error::new(format!("{}: radius", places[0]), radius.to_string(), expected, "remove it"));
     }
-    let wheel = profile(data[1], folder, Side::Wheel).map_err(|e| e.within(places[1]))?;
+    let wheel = profile(data[1], sources, Side::Wheel).map_err(|e| e.within(places[1]))?;
     let radius = data[1]
         .radius
         .or(scene.wheel.radius)
@@ -93,8 +105,11 @@ fn of_side(scene: &Scene, data: [&ProfileData; 2], places: [&str; 2], folder: &P
     Ok(SideProfiles { pair, measured: Bodies { rail: rail.measured, wheel: wheel.measured } })
 }
 
-/// Returns a radius \[mm\] if its square is far from overflowing.
-fn near(place: &str, radius: f64) -> Result<f64> {
+/// Returns the radius of a body \[mm\] if its square is far from overflowing.
+///
+/// # Errors
+/// A radius beyond a thousand kilometres; the error names the key `radius` of `place`.
+pub fn near(place: &str, radius: f64) -> Result<f64> {
     if radius > FARTHEST {
         let (found, expected) = (format!("{radius:e}"), format!("at most {FARTHEST:e} mm"));
         return Err(Error::new(format!("{place}: radius"), found, expected, "take a plane for a rail"));
@@ -103,9 +118,9 @@ fn near(place: &str, radius: f64) -> Result<f64> {
 }
 
 /// Returns a profile as the scene places it, and the record of a measured one.
-fn profile(data: &ProfileData, folder: &Path, side: Side) -> Result<Resolved> {
+fn profile(data: &ProfileData, (folder, given_ones): Sources<'_>, side: Side) -> Result<Resolved> {
     let Resolved { mut profile, measured } = match (&data.profile, &data.file, &data.segments) {
-        (Some(name), None, None) => Resolved::drawn(built_in(name, side)?),
+        (Some(name), None, None) => Resolved::drawn(named(name, given_ones, side)?),
         (None, Some(file), None) => in_file(data, &folder.join(file), side)?,
         (None, None, Some(segments)) => {
             Resolved::drawn(in_unit(["inline", "scene"], data.unit, data.start, segments)?)
@@ -202,12 +217,7 @@ fn measured_file(path: &Path, side: Option<Side>, options: &Options) -> Result<M
     let Some(known) = side.map_or_else(|| measured::body(&place, &bytes, options), |side| Ok(Some(side)))?
     else {
         let expected = "the body that a measured file is of, where it does not say so";
-        return Err(Error::new(
-            place,
-            "no side",
-            expected,
-            "say rail or wheel (on the command line by --side)",
-        ));
+        return Err(Error::new(place, "no side", expected, "name the body by `side`, rail or wheel"));
     };
     measured::profile(&place, &bytes, known, options)
 }
@@ -260,15 +270,19 @@ impl Resolved {
     }
 }
 
-/// Returns the built-in profile with this name, which must be of the right body.
-fn built_in(name: &str, side: Side) -> Result<Profile> {
-    let (of_other, own, other) = match side {
+/// Returns the given or built-in profile with this name, which must be of the right body.
+fn named(name: &str, given: &Given, side: Side) -> Result<Profile> {
+    let own = given.get(name);
+    let (of_other, body, other) = match side {
         Side::Rail => (standards::wheel_names().any(|known| known == name), "rail", "wheel"),
         Side::Wheel => (standards::rail_names().any(|known| known == name), "wheel", "rail"),
     };
-    if of_other {
-        let (found, expected) = (format!("\"{name}\", a {other}"), format!("a {own} profile"));
+    if own.map_or(of_other, |(own, _)| own.is_some_and(|own| own != side)) {
+        let (found, expected) = (format!("\"{name}\", a {other}"), format!("a {body} profile"));
         return Err(Error::new("profile", found, expected, "see `wheelrail profile list`"));
+    }
+    if let Some((_, profile)) = own {
+        return Ok(profile.clone());
     }
     let (found, known) = match side {
         Side::Rail => (standards::rail(name), standards::rail_names().collect::<Vec<_>>()),
@@ -290,11 +304,20 @@ pub fn is_chain_file(path: &Path) -> bool {
 /// # Errors
 /// An unreadable file; anything that is wrong with its segments.
 pub fn profile_from_file(path: &Path) -> Result<Profile> {
-    let place = path.display().to_string();
     let text = read_text(path, measured::LARGEST_FILE)?;
     let json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
-    let file: ProfileFile = parse(&text, json).map_err(|e| e.within(&place))?;
-    let name = file.name.unwrap_or_else(|| place.clone());
-    let source = file.source.unwrap_or_else(|| place.clone());
-    in_unit([&name, &source], file.unit, file.start, &file.segments).map_err(|e| e.within(&place))
+    profile_from_text(&path.display().to_string(), &text, json)
+}
+
+/// Makes a profile of the text of such a file, TOML or JSON, which messages call `place`.
+///
+/// # Errors
+/// Anything that is wrong with the text or its segments.
+pub fn profile_from_text(place: &str, text: &str, json: bool) -> Result<Profile> {
+    let made = parse(text, json).and_then(|file: ProfileFile| {
+        let (name, source) = (file.name.as_deref(), file.source.as_deref());
+        let names = [name.unwrap_or(place), source.unwrap_or(place)];
+        in_unit(names, file.unit, file.start, &file.segments)
+    });
+    made.map_err(|error| error.within(place))
 }

@@ -8,7 +8,7 @@ use super::axes::asked_axes;
 use super::data::{MaterialData, PatchData, Scene};
 use super::doubts::doubts;
 use super::motion::{friction, motion};
-use super::profiles::profiles;
+use super::profiles::{Given, profiles};
 use super::side_data::SideData;
 use super::standing::standing;
 use crate::case::{ApproachBy, Case, Echo, FrameOrigin, Friction, OutputFormat, Outputs, Profiles, Question};
@@ -33,7 +33,15 @@ const LARGEST: f64 = 1e60;
 /// # Errors
 /// Anything that is wrong; the error names the key. Values are checked before profiles, and profiles before placement.
 pub fn resolve(scene: &Scene, folder: &Path, name: &str) -> Result<Case> {
-    case(scene, name, || profiles(scene, folder))
+    resolve_given(scene, folder, name, &Given::new())
+}
+
+/// Resolves a scene like [`resolve`], where `profile` may also name one of the `given` profiles.
+///
+/// # Errors
+/// The errors of [`resolve`].
+pub fn resolve_given(scene: &Scene, folder: &Path, name: &str, given: &Given) -> Result<Case> {
+    case(scene, name, || profiles(scene, (folder, given)))
 }
 
 /// Resolves a scene over given profiles, which replace those of the scene. No file is opened.
@@ -53,6 +61,15 @@ fn case(scene: &Scene, name: &str, profiles: impl FnOnce() -> Result<Profiles>) 
     let (standing, profiles) = standing(scene, profiles()?)?;
     let (outputs, echo, doubts) = (outputs(scene)?, echo(scene, name), doubts(scene, &profiles));
     Ok(Case { profiles, standing, question, axes, outputs, echo, file: None, doubts })
+}
+
+/// Writes a scene as TOML, with the values of the keys that it leaves to the program.
+///
+/// # Errors
+/// Numbers that TOML cannot hold.
+pub fn to_toml(scene: &Scene) -> Result<String> {
+    toml::to_string(scene)
+        .map_err(|error| Error::new("scene", error.to_string(), "values that TOML can hold", "correct them"))
 }
 
 /// Returns what output files say about a scene: its title or else `name`, and the scene itself with its SHA-256. Scenes

@@ -139,7 +139,11 @@ fn single(contact: &ContactData, pair: &Pair) -> Result<Standing> {
     Ok(Standing { place, within, roll_by_load: false })
 }
 
-fn within(within: Option<f64>) -> Result<f64> {
+/// Returns the largest gap of a near miss \[mm\], 0 if none is given.
+///
+/// # Errors
+/// A gap that is negative or not finite.
+pub fn within(within: Option<f64>) -> Result<f64> {
     match within {
         Some(gap) if finite("within", gap)? < 0.0 => {
             Err(Error::new("within", gap.to_string(), "a gap of 0 mm or more", "correct the sign"))
@@ -154,8 +158,11 @@ const LEAST_DISTANCE: f64 = 150.0;
 /// Gauges of railways \[mm\], for guesses at a unit.
 const GAUGES: std::ops::RangeInclusive<f64> = 300.0..=2500.0;
 
-/// Returns a distance of rails or wheels \[mm\], unless it is in another unit.
-fn distance(key: &str, value: f64) -> Result<f64> {
+/// Returns a distance of rails or wheels \[mm\]; what is not positive is left to those who use it.
+///
+/// # Errors
+/// A distance in another unit, with the unit that it seems to be in.
+pub fn distance(key: &str, value: f64) -> Result<f64> {
     if !(value > 0.0 && value < LEAST_DISTANCE) {
         return Ok(value);
     }

@@ -1,6 +1,7 @@
 //! Single wheels: finds where a wheel touches its rail, and how far it can be lowered.
 
 use nalgebra::{Rotation3, Vector3};
+use serde::{Deserialize, Serialize};
 
 use super::body::SearchBody;
 use super::candidates::{Candidate, Meeting};
@@ -52,7 +53,7 @@ pub struct Selection {
 }
 
 /// A place of contact or a near miss; x and angles are in the profile axes of its side.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
     /// Abscissa x_R on the rail profile \[mm\], from its origin, + to the field side.
     pub rail_x: f64,

@@ -1,12 +1,9 @@
 # %% [markdown]
 # # Worn against new
 # A worn wheel beside the drawn one: contact positions over the lateral displacement, and equivalent conicity. The worn one
-# is made here, hollow by 1 mm at the middle of its tread, and read like the file of an instrument.
+# is made here of points, hollow by 1 mm at the middle of its tread; `wr.read_profile` takes an instrument's file likewise.
 
 # %%
-import tempfile
-from pathlib import Path
-
 import numpy as np
 
 import wheelrail as wr
@@ -14,12 +11,7 @@ import wheelrail as wr
 rail = wr.rail("60E1").rotated("1:40")
 x, z = wr.wheel("S1002").points(step=0.2).T
 hollow = np.exp(-((x / 20.0) ** 2))                        # mm: the surface of a worn wheel lies higher
-with tempfile.TemporaryDirectory() as folder:
-    file = Path(folder) / "worn.txt"
-    np.savetxt(file, np.column_stack([x, z + hollow]))
-    worn = wr.read_profile(
-        file, "wheel", cutoff_wavelength=5.0, mirror=False, flip_z=False, origin="as-is", repair=["drop-duplicates"]
-    )
+worn = wr.Profile.from_points(x, z + hollow, side="wheel", name="worn", cutoff_wavelength=5.0)
 worn
 
 # %%

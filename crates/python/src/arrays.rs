@@ -1,6 +1,6 @@
 //! NumPy arrays in and out.
 
-use numpy::{AllowTypeChange, PyArray1, PyArray2, PyArrayLike1, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{AllowTypeChange, Element, PyArray1, PyArray2, PyArrayLike1, PyArrayMethods};
 use pyo3::prelude::*;
 use wheelrail::{Error, ErrorKind};
 
@@ -31,8 +31,18 @@ fn no_axis(name: &str, argument: &Bound<'_, PyAny>) -> PyErr {
     let shape = argument.py().import("numpy").and_then(|numpy| numpy.call_method1("shape", (argument,)));
     let shape: Vec<usize> = shape.and_then(|shape| shape.extract()).unwrap_or_default();
     let (found, advice) = match shape.len() {
-        0 | 1 => (argument.get_type().to_string(), "pass an array, a list or a range of numbers"),
-        _ => (format!("an array of shape {shape:?}"), "pass the axes themselves and not a meshgrid of them"),
+        0 | 1 => {
+            let kind =
+                argument.get_type().name().map_or_else(|_| "no numbers".into(), |name| name.to_string());
+            (format!("a {kind} that holds no row of numbers"), "pass an array, a list or a range of numbers")
+        }
+        _ => {
+            let shape = format!("an array of shape {shape:?}");
+            (
+                shape,
+                "pass the axis itself, of shape (n,), and not a meshgrid or a column: `ravel` or `unique` gives it",
+            )
+        }
     };
     exception(Error::new(name, found, "numbers, of shape (n,)", advice))
 }
@@ -42,10 +52,13 @@ pub(crate) fn array(py: Python<'_>, numbers: Vec<f64>) -> Bound<'_, PyArray1<f64
     PyArray1::from_vec(py, numbers)
 }
 
-/// Makes an array (n, 2) of points.
-pub(crate) fn points<'py>(py: Python<'py>, points: &[[f64; 2]]) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let flat = array(py, points.as_flattened().to_vec());
-    flat.reshape([flat.len() / 2, 2])
+/// Makes an array (n, N) of points.
+pub(crate) fn points<'py, T: Element + Copy, const N: usize>(
+    py: Python<'py>,
+    points: &[[T; N]],
+) -> PyResult<Bound<'py, PyArray2<T>>> {
+    let flat = PyArray1::from_vec(py, points.as_flattened().to_vec());
+    flat.reshape([points.len(), N])
 }
 
 /// Makes an array of zeros over two axes with their names.

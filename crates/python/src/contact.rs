@@ -1,75 +1,72 @@
 //! One place of contact, and what follows from it.
 
-use std::sync::OnceLock;
-
-use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
-use wheelrail::case::{ApproachBy, check_method};
+use pyo3::types::{PyBytes, PyDict, PyTuple};
+use wheelrail::case::{ApproachBy, approach_under_load, check_method, usual};
 use wheelrail::conformal::{NormalGap, RailArcLength, fill_normal_gap};
-use wheelrail::internal::MANY;
 use wheelrail::load::{Curvatures, Ellipse, curvatures, feasibility};
-use wheelrail::scene::{self, MaterialData, PatchData};
-use wheelrail::search;
-use wheelrail::separation::{EtaAxis, Method, Plan, plan};
-use wheelrail::{Error, Placement};
+use wheelrail::mesh::{Surface, equal_steps};
+use wheelrail::profile::Side;
+use wheelrail::scene;
+use wheelrail::separation::{EtaAxis, Evaluator, midplane_table, plan};
+use wheelrail::{Error, Placement, Window};
 
 use crate::arrays::{array, grid, values};
-use crate::errors::{OrRaise, exception};
+use crate::asked::{asked, checked_modulus};
+use crate::errors::{OrRaise, exception, warn};
+use crate::filling::{checked_axes, fill, named_method};
 use crate::long::detached;
 use crate::patch::Patch;
+use crate::place::{Origin, Place, Spot, joined};
 use crate::profile::Profile;
+use crate::values::{made, mesh, vectors};
 
 /// A place of contact of a rail and a wheel, in the axes of its own side: x towards the field side, y forward, z up; the
 /// left side is the mirror image of a right one.
 ///
 /// The contact frame has its origin at the contact point C, xi along the common tangent, eta along the rail, zeta along the
-/// common normal from rail to wheel. Lengths in mm, angles in rad.
+/// common normal from rail to wheel. Lengths in mm, angles in rad. A contact can be pickled and compared.
+///
+///     >>> contact = track.touch(lateral=3.0).right[0]
+///     >>> contact
+///     Contact("right 1", rail_point=(-12.6702, -0.6127), contact_angle=0.08980)
+///     >>> contact.separation(np.linspace(-5, 5, 11), np.linspace(-8, 8, 17)).shape
+///     (11, 17)
 #[pyclass(frozen, module = "wheelrail")]
-#[derive(Clone)]
 pub(crate) struct Contact {
-    name: String,
-    /// Side and number of a contact that was found.
-    place: Option<Place>,
-    found: Option<search::Contact>,
-    pair: wheelrail::Pair,
-    /// Made when it is first asked for.
-    placement: OnceLock<Placement>,
+    spot: Spot,
 }
 
 /// An array (n,).
 type Axis<'py> = Bound<'py, PyArray1<f64>>;
 
-/// Where a contact was found.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Place {
-    pub(crate) side: &'static str,
-    /// From 1.
-    pub(crate) number: usize,
-}
+/// Two arrays (n, m, 3).
+type Normals<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray3<f64>>);
 
 impl Contact {
-    pub(crate) fn found(pair: &wheelrail::Pair, found: search::Contact, place: Place) -> Self {
-        let name = format!("{} {}", place.side, place.number);
-        Self { name, place: Some(place), found: Some(found), pair: pair.clone(), placement: OnceLock::new() }
+    pub(crate) fn of(spot: Spot) -> Self {
+        Self { spot }
     }
 
-    pub(crate) fn placed(placement: Placement, name: String) -> Self {
-        Self { name, place: None, found: None, pair: placement.pair(), placement: placement.into() }
+    fn placement(&self) -> PyResult<&Placement> {
+        self.spot.placement()
     }
 
-    pub(crate) fn placement(&self) -> PyResult<&Placement> {
-        if let (None, Some(found)) = (self.placement.get(), &self.found) {
-            let placement = found.placed(&self.pair).or_raise()?;
-            return Ok(self.placement.get_or_init(|| placement));
+    /// Checks a load \[N\] or an approach \[mm\], or takes the approach of the case, and E* \[N/mm²\]; warns of what is doubtful.
+    fn asked(
+        &self,
+        py: Python<'_>,
+        (load, approach, modulus): (Option<f64>, Option<f64>, Option<f64>),
+    ) -> PyResult<(ApproachBy, f64)> {
+        if let (None, None, Some(own)) = (load, approach, self.spot.approach) {
+            return Ok((ApproachBy::Given(own), checked_modulus(py, modulus)?));
         }
-        self.placement.get().ok_or_else(|| {
-            exception(Error::new(
-                "contact",
-                "no placement",
-                "a contact that was found or placed",
-                "report this",
-            ))
-        })
+        let asked = asked(py, load, approach, modulus)?;
+        if let ApproachBy::Given(approach) = asked.0 {
+            warn(py, usual::approach(self.spot.pair.rail(), approach, false))?;
+        }
+        Ok(asked)
     }
 }
 
@@ -78,25 +75,25 @@ impl Contact {
     /// What messages call it: side and number, or "chosen".
     #[getter]
     fn name(&self) -> &str {
-        &self.name
+        &self.spot.name
     }
 
     /// "left" or "right" of a wheelset, "single" of a single wheel; None for a contact at chosen points.
     #[getter]
     fn side(&self) -> Option<&'static str> {
-        self.place.map(|place| place.side)
+        self.spot.place.map(|place| place.side)
     }
 
     /// Number of the contact on its side, from 1, by ascending gap; None for a contact at chosen points.
     #[getter]
     fn number(&self) -> Option<usize> {
-        self.place.map(|place| place.number)
+        self.spot.place.map(|place| place.number)
     }
 
     /// Angle of the common tangent in the rail's axes, rad, + counter-clockwise from x to z: about 1.2 at a flange.
     #[getter]
     fn contact_angle(&self) -> PyResult<f64> {
-        match &self.found {
+        match self.spot.search() {
             Some(found) => Ok(found.contact_angle),
             None => Ok(self.placement()?.rail().contact_angle()),
         }
@@ -105,7 +102,7 @@ impl Contact {
     /// The contact point (x, z) on the rail profile, mm.
     #[getter]
     fn rail_point(&self) -> PyResult<(f64, f64)> {
-        let station = match &self.found {
+        let station = match self.spot.search() {
             Some(found) => return Ok((found.rail_x, found.rail_z)),
             None => self.placement()?.rail().point().station,
         };
@@ -115,7 +112,7 @@ impl Contact {
     /// The contact point (x, z) on the wheel profile, mm.
     #[getter]
     fn wheel_point(&self) -> PyResult<(f64, f64)> {
-        let station = match &self.found {
+        let station = match self.spot.search() {
             Some(found) => return Ok((found.wheel_x, found.wheel_z)),
             None => self.placement()?.wheel().point().station,
         };
@@ -126,38 +123,52 @@ impl Contact {
     /// contact at chosen points.
     #[getter]
     fn y(&self) -> f64 {
-        self.found.map_or(0.0, |found| found.y)
+        self.spot.y
     }
 
     /// Vertical gap left at first touch, mm: 0, or that of a near miss.
     #[getter]
     fn gap(&self) -> f64 {
-        self.found.map_or(0.0, |found| found.gap)
+        self.spot.gap
+    }
+
+    /// Approach of a case's contact, mm, as given or as estimated from the load; None for other contacts.
+    #[getter]
+    fn approach(&self) -> Option<f64> {
+        self.spot.approach
+    }
+
+    /// Normal force, N, of a case's contact: its share of the load of its wheel or axle; None without a load.
+    #[getter]
+    fn normal_load(&self) -> Option<f64> {
+        self.spot.normal_load
     }
 
     /// Angle about the common normal from the rail's contact frame to the wheel's, rad: 0 without yaw.
     #[getter]
     fn skew(&self) -> PyResult<f64> {
-        self.found.map_or_else(|| Ok(self.placement()?.skew()), |found| Ok(found.skew))
+        self.spot.search().map_or_else(|| Ok(self.placement()?.skew()), |found| Ok(found.skew))
     }
 
     /// Distance from the axle to the contact point, mm.
     #[getter]
-    pub(crate) fn rolling_radius(&self) -> PyResult<f64> {
-        self.found.map_or_else(|| Ok(self.placement()?.rolling_radius()), |found| Ok(found.rolling_radius))
+    fn rolling_radius(&self) -> PyResult<f64> {
+        self.spot
+            .search()
+            .map_or_else(|| Ok(self.placement()?.rolling_radius()), |found| Ok(found.rolling_radius))
     }
 
     /// Whether a body touches with a kink, a step or an end: s has no curvatures there.
     #[getter]
     fn kink(&self) -> PyResult<bool> {
         let smooth = |placement: &Placement| placement.rail().is_smooth() && placement.wheel().is_smooth();
-        self.found.map_or_else(|| Ok(!smooth(self.placement()?)), |found| Ok(found.kink()))
+        self.spot.search().map_or_else(|| Ok(!smooth(self.placement()?)), |found| Ok(found.kink()))
     }
 
     /// The profiles of the rail and of the wheel.
     #[getter]
     fn profiles(&self) -> (Profile, Profile) {
-        (Profile::of(self.pair.rail()), Profile::of(self.pair.wheel()))
+        (Profile::of(self.spot.pair.rail(), Side::Rail), Profile::of(self.spot.pair.wheel(), Side::Wheel))
     }
 
     /// Compute the separation s(xi, eta) of the undeformed bodies over a grid, in mm, + apart: float64 (n_xi, n_eta), C
@@ -239,13 +250,49 @@ impl Contact {
         Ok([0, 1, 2].map(|k| array(py, points.iter().map(|point| point[k]).collect())).into())
     }
 
-    /// Compute Hertz's elliptic contact under a vertical load in N, which this contact carries alone, or an approach in mm; `modulus` is E* in N/mm2, steel on steel if
-    /// None.
+    /// Compute the outward unit normals of rail and wheel over a grid, in the contact frame: (rail, wheel), each float64 (n_xi,
+    /// n_eta, 3), NaN where a body has no surface. `xi` and `eta` are as of `separation`.
     ///
-    /// Raises InputError for neither or both of load and approach; GeometryError where s is not convex at C, at kinks.
+    /// Raises InputError for axes that do not ascend; LimitError for more than 10**9 points.
+    fn normals<'py>(
+        &self,
+        py: Python<'py>,
+        xi: &Bound<'py, PyAny>,
+        eta: &Bound<'py, PyAny>,
+    ) -> PyResult<Normals<'py>> {
+        let [xi, eta] = checked_axes(("xi", xi), eta, 1.0)?;
+        // The grid of the numbers of both bodies, so that its size is checked.
+        let placement = self.placement()?;
+        grid(py, [("xi", &xi), ("eta", &eta)])?;
+        let [rail, wheel] = detached(py, || {
+            let mut evaluator = Evaluator::new(placement);
+            let mut all = [const { Vec::new() }; 2];
+            for (&xi, &eta) in xi.iter().flat_map(|xi| eta.iter().map(move |eta| (xi, eta))) {
+                let normals = evaluator.normals(xi, eta);
+                for (out, normal) in all.iter_mut().zip([normals.rail, normals.wheel]) {
+                    out.extend(normal.map_or([f64::NAN; 3], |normal| [normal.x, normal.y, normal.z]));
+                }
+            }
+            all
+        })?;
+        let shape = [xi.len(), eta.len(), 3];
+        Ok((array(py, rail).reshape(shape)?, array(py, wheel).reshape(shape)?))
+    }
+
+    /// Compute Hertz's elliptic contact under a vertical load in N, which this contact carries alone, or an approach in mm;
+    /// `modulus` is E* in N/mm2, steel on steel if None. A case's contact has its own approach.
+    ///
+    /// Raises InputError for neither or both of load and approach; GeometryError where s is not convex at C, at kinks; warns of
+    /// values in another unit.
     #[pyo3(signature = (*, load = None, approach = None, modulus = None))]
-    fn hertz(&self, load: Option<f64>, approach: Option<f64>, modulus: Option<f64>) -> PyResult<Hertz> {
-        let (by, modulus) = asked(load, approach, modulus)?;
+    fn hertz<'py>(
+        &self,
+        py: Python<'py>,
+        load: Option<f64>,
+        approach: Option<f64>,
+        modulus: Option<f64>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (by, modulus) = self.asked(py, (load, approach, modulus))?;
         let placement = self.placement()?;
         let (curvatures, cos) = (curvatures(placement), placement.rail().point().station.cos);
         let ellipse = match by {
@@ -259,45 +306,89 @@ impl Contact {
             let error = Error::new("hertz", "no ellipse", expected, "use `patch` and `separation`");
             exception(error.of_kind(wheelrail::ErrorKind::Geometry))
         };
-        ellipse.map(|ellipse| Hertz { ellipse, curvatures }).ok_or_else(no_ellipse)
+        hertz(py, &curvatures, &ellipse.ok_or_else(no_ellipse)?)
     }
 
     /// Find the patch s < approach under an approach in mm, or under the approach that a vertical load in N, which this
-    /// contact carries alone, is estimated to cause:
-    /// its boundary, area and perimeter. `modulus` is E* in N/mm2, steel on steel if None.
+    /// contact carries alone, is estimated to cause: its boundary, area and perimeter. `modulus` is E* in N/mm2, steel on
+    /// steel if None. A case's contact has its own approach.
     ///
     /// The patch is where rigid bodies would overlap: about twice the true contact area.
     ///
-    /// Raises InputError for neither or both of load and approach, and a load that no approach carries.
+    /// Raises InputError for neither or both of load and approach, and a load that no approach carries; warns of values in
+    /// another unit.
     #[pyo3(signature = (*, load = None, approach = None, modulus = None))]
     fn patch(
-        &self,
-        py: Python<'_>,
+        slf: &Bound<'_, Self>,
         load: Option<f64>,
         approach: Option<f64>,
         modulus: Option<f64>,
     ) -> PyResult<Patch> {
-        let (by, modulus) = asked(load, approach, modulus)?;
+        let (py, own) = (slf.py(), slf.get());
+        let (by, modulus) = own.asked(py, (load, approach, modulus))?;
+        let (approach, load) = match by {
+            ApproachBy::Given(approach) => (approach, None),
+            ApproachBy::WheelLoad(load)
+            | ApproachBy::WheelLoads { right: load, .. }
+            | ApproachBy::AxleLoad(load) => {
+                let placement = own.placement()?;
+                let approach = detached(py, || approach_under_load(placement, load, modulus))?.or_raise()?;
+                warn(py, usual::approach(own.spot.pair.rail(), approach, true))?;
+                (approach, Some(load))
+            }
+        };
+        patch_from_parts(slf, approach, load, modulus)
+    }
+
+    /// Make meshes of both bodies around the contact over intervals of `xi` and `eta` in mm: (rail, wheel), with the fields
+    /// separation and normal. `approach` in mm, if given, decides how fine they are.
+    ///
+    /// Raises InputError for intervals that do not ascend or are wider than the wheel.
+    #[pyo3(signature = (xi, eta, *, approach = None))]
+    fn surfaces<'py>(
+        &self,
+        py: Python<'py>,
+        xi: [f64; 2],
+        eta: [f64; 2],
+        approach: Option<f64>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        scene::check_axis("xi", &xi).and_then(|()| scene::check_axis("eta", &eta)).or_raise()?;
         let placement = self.placement()?;
-        detached(py, || Patch::new(&self.name, placement, by, modulus))?.or_raise()
+        let [rail, wheel] =
+            detached(py, || Surface::around(placement, &Window { xi, eta }, approach))?.or_raise()?;
+        let surface = |surface: &Surface| {
+            let fields = PyDict::new(py);
+            fields.set_item("separation", array(py, surface.separations(placement)))?;
+            fields.set_item("normal", vectors(py, &surface.normals)?)?;
+            mesh(py, &surface.points, ("triangle", &surface.triangles()), (fields, PyDict::new(py)))
+        };
+        Ok((surface(&rail)?, surface(&wheel)?))
+    }
+
+    /// Return the Report's midplane table as text: the transformed parameters, and both heights and the gap at every `xi` in mm,
+    /// 101 steps over both bodies if None.
+    #[pyo3(signature = (xi = None))]
+    fn midsep(&self, xi: Option<&Bound<'_, PyAny>>) -> PyResult<String> {
+        let placement = self.placement()?;
+        let over = || placement.overlap().map_or_else(Vec::new, |[a, b]| equal_steps(a, b, 101));
+        let xi = xi.map_or_else(|| Ok(over()), |xi| values("xi", xi))?;
+        scene::check_axis("xi", &xi).or_raise()?;
+        Ok(midplane_table(placement, &xi))
     }
 
     /// Tell whether the bodies nowhere overlap when they touch at this contact: (4.1) of the Report, with the least
     /// separation and where it is.
     ///
     /// Raises GeometryError for bodies that nowhere lie over each other.
-    fn feasibility(&self, py: Python<'_>) -> PyResult<Feasibility> {
+    fn feasibility<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let placement = self.placement()?;
         let found = detached(py, || feasibility(placement))?.ok_or_else(|| {
             let expected = "two profiles that lie over each other";
             let error = Error::new("contact", "no common xi", expected, "choose other contact points");
             exception(error.of_kind(wheelrail::ErrorKind::Geometry))
         })?;
-        Ok(Feasibility {
-            feasible: found.feasible,
-            least_separation: found.least_separation_mm,
-            at: (found.at_xi_mm, found.at_eta_mm),
-        })
+        let at = (found.at_xi_mm, found.at_eta_mm);
+        made(py, "Feasibility", (found.feasible, found.least_separation_mm, at))
     }
 
     /// Make a Tamaas model of this contact under a load in N: see `wheelrail.tamaas.problem`, whose arguments it takes.
@@ -305,7 +396,7 @@ impl Contact {
     fn to_tamaas<'py>(
         slf: &Bound<'py, Self>,
         load: f64,
-        options: Option<&Bound<'py, pyo3::types::PyDict>>,
+        options: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let problem = slf.py().import("wheelrail.tamaas")?.getattr("problem")?;
         problem.call((slf, load), options)
@@ -313,186 +404,82 @@ impl Contact {
 
     fn __repr__(&self) -> PyResult<String> {
         let ((x, z), angle) = (self.rail_point()?, self.contact_angle()?);
-        Ok(format!("Contact({:?}, rail_point=({x:.4}, {z:.4}), contact_angle={angle:.5})", self.name))
+        Ok(format!("Contact({:?}, rail_point=({x:.4}, {z:.4}), contact_angle={angle:.5})", self.spot.name))
+    }
+
+    fn __eq__(&self, py: Python<'_>, other: &Self) -> PyResult<bool> {
+        self.spot.same(py, &other.spot)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let (found, chosen) = match &self.spot.origin {
+            Origin::OfCase(case, number) => {
+                let make = py.import("wheelrail._scene")?.getattr("contact_of")?;
+                return Ok((make, (case.bind(py), *number).into_pyobject(py)?));
+            }
+            Origin::Found(found) => (Some(postcard::to_allocvec(found).map_err(lost)?), None),
+            Origin::Chosen(points) => (None, Some(*points)),
+        };
+        let make = py.import("wheelrail._wheelrail")?.getattr("contact_from_parts")?;
+        let pair = &self.spot.pair;
+        let bodies = (self.profiles(), (pair.wheel_radius(), pair.roller_radius()));
+        let place = self.spot.place.map(|place| (place.side, place.number));
+        let found = found.map(|bytes| PyBytes::new(py, &bytes));
+        Ok((make, (bodies, place, found, chosen).into_pyobject(py)?))
     }
 }
 
-/// Reads the axes of a grid \[mm\], and checks them and the tolerance.
-fn checked_axes(
-    (name, first): (&str, &Bound<'_, PyAny>),
-    eta: &Bound<'_, PyAny>,
-    tolerance: f64,
-) -> PyResult<[Vec<f64>; 2]> {
-    let (first, eta) = (values(name, first)?, values("eta", eta)?);
-    scene::check_axis(name, &first).or_raise()?;
-    scene::check_axis("eta", &eta).or_raise()?;
-    if tolerance > 0.0 && tolerance.is_finite() {
-        return Ok([first, eta]);
-    }
-    let (found, expected) = (tolerance.to_string(), "a positive length in mm");
-    Err(exception(Error::new("tolerance", found, expected, "1e-12 gives all digits")))
-}
+/// Rail and wheel, and the radii of wheel and roller.
+type Bodies = ((Profile, Profile), (f64, Option<f64>));
 
-/// Fills a grid. Methods and wheels that take microseconds a point are filled in parts, between which Ctrl-C is looked for.
-fn fill(
-    py: Python<'_>,
-    plan: &mut Plan,
-    placement: &Placement,
-    (xi, axis): (&[f64], &EtaAxis),
-    out: &mut [f64],
-) -> PyResult<()> {
-    /// Points of a part: below 0.1 s by the slowest method on one thread.
-    const PART: usize = 1 << 20;
-    let strips = plan.choice.method < Method::Pointwise && placement.skew() == 0.0;
-    if strips || out.len() <= PART {
-        return detached(py, || plan.fill(placement, xi, axis, out));
-    }
-    let columns = (PART / axis.eta().len()).next_multiple_of(MANY);
-    for (xi, out) in xi.chunks(columns).zip(out.chunks_mut(columns * axis.eta().len())) {
-        detached(py, || plan.fill(placement, xi, axis, out))?;
-        py.check_signals()?;
-    }
-    Ok(())
-}
-
-fn named_method(name: &str) -> PyResult<Option<Method>> {
-    if name == "auto" {
-        return Ok(None);
-    }
-    Method::ALL.into_iter().find(|method| method.name() == name).map(Some).ok_or_else(|| {
-        let names: Vec<&str> = ["auto"].into_iter().chain(Method::ALL.map(Method::name)).collect();
-        let advice = scene::perhaps(name, &names);
-        exception(Error::new("method", format!("\"{name}\""), format!("one of {}", names.join(", ")), advice))
-    })
-}
-
-/// Checks a load \[N\] or approach \[mm\] and E* \[N/mm²\].
-pub(crate) fn asked(
-    load: Option<f64>,
-    approach: Option<f64>,
-    modulus: Option<f64>,
-) -> PyResult<(ApproachBy, f64)> {
-    scene::approach(&PatchData { load, approach, ..PatchData::default() })
-        .or_raise()
-        .and_then(|by| Ok((by, checked_modulus(modulus)?)))
-}
-
-/// Checks E* \[N/mm²\]; that of steel on steel if it is not given.
-pub(crate) fn checked_modulus(modulus: Option<f64>) -> PyResult<f64> {
-    let Some(modulus) = modulus else { return scene::modulus(&MaterialData::default()).or_raise() };
-    if modulus > 0.0 && modulus.is_finite() {
-        return Ok(modulus);
-    }
-    let expected = "a positive modulus in N/mm²";
-    Err(exception(Error::new("modulus", modulus.to_string(), expected, "steel on steel has 113932")))
-}
-
-/// Return E* in N/mm2 of two bodies from Young's moduli in N/mm2 and Poisson's ratios; by default of steel.
-///
-/// Raises InputError for a modulus that is not positive and a ratio beyond (-1, 0.5].
+/// Make a contact of its bodies, with its side and number and what a search found, or with the points that were chosen.
 #[pyfunction]
-#[pyo3(signature = (*, rail = (2.1e5, 0.28), wheel = (2.1e5, 0.28)))]
-pub(crate) fn effective_modulus(rail: (f64, f64), wheel: (f64, f64)) -> PyResult<f64> {
-    let material = MaterialData {
-        rail_youngs_modulus: rail.0,
-        rail_poissons_ratio: rail.1,
-        wheel_youngs_modulus: wheel.0,
-        wheel_poissons_ratio: wheel.1,
+#[pyo3(signature = (bodies, place, found, chosen))]
+pub(crate) fn contact_from_parts(
+    bodies: Bodies,
+    place: Option<(String, usize)>,
+    found: Option<&[u8]>,
+    chosen: Option<[f64; 3]>,
+) -> PyResult<Contact> {
+    let ((rail, wheel), (radius, roller)) = bodies;
+    let pair = joined(rail.profile, wheel.profile, radius, roller).or_raise()?;
+    if let Some([rail_x, wheel_x, skew]) = chosen {
+        let placement = pair.placed(rail_x, wheel_x, skew).or_raise()?;
+        return Ok(Contact::of(Spot::chosen(placement, [rail_x, wheel_x, skew])));
+    }
+    let known = |name: &str| ["left", "right", "single"].into_iter().find(|known| *known == name);
+    let parts = place.and_then(|(side, number)| Some(Place { side: known(&side)?, number })).zip(found);
+    let Some((place, found)) = parts else {
+        let expected = "the parts of a pickled contact of this version";
+        return Err(exception(Error::new("contact", "other parts", expected, "pickle it anew")));
     };
-    scene::modulus(&material).or_raise()
+    Ok(Contact::of(Spot::found(&pair, postcard::from_bytes(found).map_err(lost)?, place)))
 }
 
-/// Hertz's ellipse at a contact: half-axes in mm, approach in mm, load in N, pressures in N/mm2.
-#[pyclass(frozen, module = "wheelrail")]
-pub(crate) struct Hertz {
-    ellipse: Ellipse,
-    curvatures: Curvatures,
+fn lost(error: postcard::Error) -> PyErr {
+    let expected = "the parts of a pickled contact of this version";
+    exception(Error::new("contact", error.to_string(), expected, "pickle it anew"))
 }
 
-#[pymethods]
-impl Hertz {
-    /// Long semi-axis, mm.
-    #[getter]
-    fn long_semi_axis(&self) -> f64 {
-        self.ellipse.a_mm
-    }
-
-    /// Short semi-axis, mm.
-    #[getter]
-    fn short_semi_axis(&self) -> f64 {
-        self.ellipse.b_mm
-    }
-
-    /// Angle of the long axis from xi towards eta, rad, in (-pi/2, pi/2].
-    #[getter]
-    fn long_axis_angle(&self) -> f64 {
-        self.curvatures.long_axis_rad
-    }
-
-    /// The semi-axes nearest to xi (across the rail) and to eta (along it), mm.
-    #[getter]
-    fn semi_axes(&self) -> (f64, f64) {
-        self.curvatures.along(&self.ellipse).into()
-    }
-
-    /// Approach of the bodies, mm.
-    #[getter]
-    fn approach(&self) -> f64 {
-        self.ellipse.approach_mm
-    }
-
-    /// Normal load, N.
-    #[getter]
-    fn load(&self) -> f64 {
-        self.ellipse.load_n
-    }
-
-    /// Largest pressure, N/mm2.
-    #[getter]
-    fn max_pressure(&self) -> f64 {
-        self.ellipse.pressure_n_per_mm2
-    }
-
-    /// Area of the ellipse, mm2.
-    #[getter]
-    fn area(&self) -> f64 {
-        std::f64::consts::PI * self.ellipse.a_mm * self.ellipse.b_mm
-    }
-
-    fn __repr__(&self) -> String {
-        let Ellipse { load_n, pressure_n_per_mm2, .. } = self.ellipse;
-        let (xi, eta) = self.semi_axes();
-        format!(
-            "Hertz(load={load_n:.1}, max_pressure={pressure_n_per_mm2:.3}, semi_axes=({xi:.4}, {eta:.4}), \
-             approach={:.6})",
-            self.ellipse.approach_mm
-        )
-    }
+/// Make the patch of a contact under an approach in mm, which was estimated from a load in N; `modulus` is E* in N/mm2.
+#[pyfunction]
+#[pyo3(signature = (contact, approach, load, modulus))]
+pub(crate) fn patch_from_parts(
+    contact: &Bound<'_, Contact>,
+    approach: f64,
+    load: Option<f64>,
+    modulus: f64,
+) -> PyResult<Patch> {
+    let (py, spot) = (contact.py(), &contact.get().spot);
+    let (placement, name) = (spot.placement()?, spot.name.clone());
+    let patch = detached(py, || wheelrail::Patch::new(placement, approach, &Window::UNBOUNDED))?;
+    let contact = contact.clone().into_any().unbind();
+    Ok(Patch { patch, placement: placement.clone(), contact, name, load, modulus })
 }
 
-/// Whether the bodies nowhere overlap at first touch.
-#[pyclass(frozen, get_all, module = "wheelrail")]
-pub(crate) struct Feasibility {
-    /// Whether the least separation is 0, to rounding.
-    feasible: bool,
-    /// The least separation, mm, negative where the bodies overlap.
-    least_separation: f64,
-    /// (xi, eta) of it, mm.
-    at: (f64, f64),
-}
-
-#[pymethods]
-impl Feasibility {
-    fn __bool__(&self) -> bool {
-        self.feasible
-    }
-
-    fn __repr__(&self) -> String {
-        let (xi, eta) = self.at;
-        let feasible = if self.feasible { "True" } else { "False" };
-        format!(
-            "Feasibility(feasible={feasible}, least_separation={:e}, at=({xi:.4}, {eta:.4}))",
-            self.least_separation
-        )
-    }
+/// Makes `wheelrail.Hertz` of an ellipse.
+fn hertz<'py>(py: Python<'py>, curvatures: &Curvatures, ellipse: &Ellipse) -> PyResult<Bound<'py, PyAny>> {
+    let Ellipse { a_mm, b_mm, approach_mm, load_n, pressure_n_per_mm2, .. } = *ellipse;
+    let axes: (f64, f64) = curvatures.along(ellipse).into();
+    made(py, "Hertz", (a_mm, b_mm, curvatures.long_axis_rad, axes, approach_mm, load_n, pressure_n_per_mm2))
 }

@@ -1,8 +1,37 @@
-//! The library's errors as Python's exceptions.
+//! The library's errors as Python's exceptions, and its doubts as Python's warnings.
 
 use pyo3::prelude::*;
 use pyo3::types::PyType;
+use wheelrail::case::Doubt;
+use wheelrail::measured::Finding;
 use wheelrail::{Error, ErrorKind};
+
+/// What scenes and the command line call a thing, and what Python calls it.
+const WORDS: [(&str, &str); 13] = [
+    ("see `wheelrail schema` and the README", "see `help(wheelrail)`"),
+    (
+        "see `wheelrail profile list`, or give `file` or `segments`",
+        "see `rail_names()` and `wheel_names()`, or `read_profile`, `Profile.from_points`, `Profile.from_segments`",
+    ),
+    ("needs shift = [-70.0, 0.0]", "needs `shifted(-70.0)`"),
+    ("[contact] offset finds", "`Pair.touch` finds"),
+    ("needs mirror = true", "needs `mirrored()`"),
+    ("mirror = true for a profile", "`mirrored()` for a profile"),
+    (" = true`", "=True`"),
+    (" = false`", "=False`"),
+    (
+        "give the radius there, or move the profile by shift or origin",
+        "give the radius there, or move the profile by `shifted`",
+    ),
+    ("wheel.radius", "radius"),
+    ("repair = [\"", "repair=[\""),
+    ("give it as the wheel", "make it by `wheelrail.wheel`"),
+    ("give it as the rail", "make it by `wheelrail.rail`"),
+];
+
+/// Tables of a scene that arguments have no need of.
+const TABLES: [&str; 8] =
+    ["wheelset: ", "track: ", "contact: ", "patch: ", "grid: ", "material: ", "wheel: ", "conicity: "];
 
 /// A result with an exception where the library has an error.
 pub(crate) trait OrRaise<T> {
@@ -16,6 +45,21 @@ impl<T> OrRaise<T> for wheelrail::Result<T> {
     }
 }
 
+/// Says a text of the library in Python's words.
+fn spoken(text: &str) -> String {
+    WORDS.iter().fold(text.to_owned(), |text, (theirs, ours)| text.replace(theirs, ours))
+}
+
+/// Names the argument that a key of a scene stands for. A place in a scene begins with the scene, and stays.
+fn argument(place: &str) -> String {
+    let (position, key) = match place.split_once(": ") {
+        Some((position, key)) if position.starts_with("position ") => (format!("{position}: "), key),
+        _ => (String::new(), place),
+    };
+    let short = TABLES.iter().find_map(|table| key.strip_prefix(table)).unwrap_or(key);
+    position + short
+}
+
 /// Makes the exception of an error: the class of its kind, with its four parts.
 pub(crate) fn exception(error: Error) -> PyErr {
     Python::attach(|py| {
@@ -26,8 +70,9 @@ pub(crate) fn exception(error: Error) -> PyErr {
             _ => "InputError",
         };
         let class = py.import("wheelrail._errors").and_then(|module| module.getattr(name));
+        let parts = (argument(&error.place), error.found, spoken(&error.expected), spoken(&error.advice));
         match class.and_then(|class| Ok(class.cast_into::<PyType>()?)) {
-            Ok(class) => PyErr::from_type(class, (error.place, error.found, error.expected, error.advice)),
+            Ok(class) => PyErr::from_type(class, parts),
             Err(missing) => missing,
         }
     })
@@ -37,4 +82,32 @@ pub(crate) fn exception(error: Error) -> PyErr {
 pub(crate) fn no_contact(place: &str, expected: &str) -> PyErr {
     let error = Error::new(place, "no contact", expected, "check the displacement, the gauge and the signs");
     exception(error.of_kind(ErrorKind::NoContact))
+}
+
+/// Warns the caller of doubts.
+///
+/// # Errors
+/// The doubt itself, where a filter of Python's warnings makes errors of doubts.
+pub(crate) fn warn(py: Python<'_>, doubts: impl IntoIterator<Item = Doubt>) -> PyResult<()> {
+    doubts.into_iter().try_for_each(|doubt| say(py, doubt.kind.word(), &doubt.found, doubt.kind.cause()))
+}
+
+/// Warns the caller of what was found in measured points.
+///
+/// # Errors
+/// Those of [`warn`].
+pub(crate) fn warn_of_points(py: Python<'_>, findings: &[Finding]) -> PyResult<()> {
+    let say = |finding: &Finding| {
+        let found = format!("{}: {}", finding.place, finding.found);
+        say(py, "measured", &found, "see `Profile.record`, and give an option where it is not meant")
+    };
+    findings.iter().try_for_each(say)
+}
+
+/// Warns the caller: what is doubted, what was found, and its likely cause.
+pub(crate) fn say(py: Python<'_>, kind: &str, found: &str, advice: &str) -> PyResult<()> {
+    let class = py.import("wheelrail._errors")?.getattr("Doubt")?;
+    let doubt = class.call1((kind, spoken(found), spoken(advice)))?;
+    // A compiled function has no frame of its own: the first one is its caller's.
+    py.import("warnings")?.call_method1("warn", (doubt, py.None(), 1)).map(drop)
 }

@@ -2,16 +2,21 @@
 //! call of it.
 
 mod arrays;
+mod asked;
 mod case;
 mod contact;
 mod errors;
+mod files;
+mod filling;
 mod long;
 mod pair;
 mod patch;
-mod pictures;
+mod place;
 mod positions;
 mod profile;
 mod sweep;
+mod text;
+mod values;
 mod wheelset;
 
 use pyo3::prelude::*;
@@ -20,19 +25,21 @@ use pyo3::prelude::*;
 #[pymodule(gil_used = false)]
 mod _wheelrail {
     #[pymodule_export]
-    use super::case::{Case, Run, run};
+    use super::asked::effective_modulus;
     #[pymodule_export]
-    use super::contact::{Contact, Feasibility, Hertz, effective_modulus};
+    use super::case::{Case, run, schema};
     #[pymodule_export]
-    use super::pair::{Pair, WheelTouch};
+    use super::contact::{Contact, contact_from_parts, patch_from_parts};
     #[pymodule_export]
-    use super::patch::{Component, Patch};
+    use super::pair::{Pair, pair_from_parts};
+    #[pymodule_export]
+    use super::patch::Patch;
     #[pymodule_export]
     use super::profile::{Profile, profile_from_bytes, rail, rail_names, read_profile, wheel, wheel_names};
     #[pymodule_export]
     use super::sweep::{doubt_words, sweep_picture};
     #[pymodule_export]
-    use super::wheelset::{Touch, Wheelset};
+    use super::wheelset::Wheelset;
     use pyo3::prelude::*;
 
     #[pymodule_init]

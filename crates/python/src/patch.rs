@@ -2,45 +2,43 @@
 
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use wheelrail::case::approach_under_load;
-use wheelrail::case::{ApproachBy, patch_picture};
-use wheelrail::mesh::{Axes, GridGroup, groups};
-use wheelrail::{Error, Placement, Window};
+use pyo3::types::PyDict;
+use wheelrail::case::{
+    self, Analysis, Grid, Part, PlacedContact, Profiles, Run, Site, patch_mesh, patch_picture, quads,
+};
+use wheelrail::mesh::{Axes, GridGroup, StripCounts, StripMesh, groups};
+use wheelrail::scene::{self, Scene};
+use wheelrail::{Error, Placement};
 
 use crate::arrays;
 use crate::errors::{OrRaise, exception};
+use crate::files::files;
+use crate::long::detached;
+use crate::values::{made, mesh, vectors};
 
 /// Two axes of a grid.
 type TwoAxes<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
 
 /// The patch s < approach of a contact: where rigid bodies would overlap. Lengths in mm.
+///
+///     >>> patch = contact.patch(load=60e3)
+///     >>> patch
+///     Patch(approach=0.082004, area=159.0855, 1 components)
+///     >>> sorted(patch.files("ply"))
+///     ['patch.ply', 'rail.ply', 'wheel.ply']
 #[pyclass(frozen, module = "wheelrail")]
 pub(crate) struct Patch {
-    patch: wheelrail::Patch,
-    placement: Placement,
-    /// The contact's name.
-    contact: String,
-    load: Option<f64>,
+    pub(crate) patch: wheelrail::Patch,
+    pub(crate) placement: Placement,
+    /// The contact, and what messages call it.
+    pub(crate) contact: Py<PyAny>,
+    pub(crate) name: String,
+    pub(crate) load: Option<f64>,
+    /// E* \[N/mm²\].
+    pub(crate) modulus: f64,
 }
 
 impl Patch {
-    /// Finds the patch of a contact; `modulus` is E* \[N/mm²\].
-    pub(crate) fn new(
-        contact: &str,
-        placement: &Placement,
-        by: ApproachBy,
-        modulus: f64,
-    ) -> wheelrail::Result<Self> {
-        let (approach, load) = match by {
-            ApproachBy::Given(approach) => (approach, None),
-            ApproachBy::WheelLoad(load)
-            | ApproachBy::WheelLoads { right: load, .. }
-            | ApproachBy::AxleLoad(load) => (approach_under_load(placement, load, modulus)?, Some(load)),
-        };
-        let patch = wheelrail::Patch::new(placement, approach, &Window::UNBOUNDED);
-        Ok(Self { patch, placement: placement.clone(), contact: contact.into(), load })
-    }
-
     /// Gives the axes of the solver's grid over the part of the patch around C.
     fn grid(&self, spacing: Option<[f64; 2]>) -> wheelrail::Result<Axes> {
         let groups = groups(&self.patch, 0.0, spacing);
@@ -51,6 +49,26 @@ impl Patch {
             return Err(Error::new("patch", found, expected, "give a larger approach, or axes of your own"));
         };
         group.axes(spacing)
+    }
+
+    fn title(&self) -> String {
+        let [rail, wheel] = [self.placement.rail(), self.placement.wheel()].map(|body| &body.profile().name);
+        format!("{wheel} on {rail}")
+    }
+
+    /// Computes a run of the contact alone, from which files are written.
+    fn run(&self, axes: Axes) -> wheelrail::Result<Run> {
+        let (pair, placement) = (self.placement.pair(), self.placement.clone());
+        let [rail_x, wheel_x] = [placement.rail(), placement.wheel()].map(|body| body.point().station.x);
+        let scene: Scene =
+            scene::parse(&format!("contact = {{ rail_x = {rail_x:?}, wheel_x = {wheel_x:?} }}"), false)?;
+        let case = scene::with_profiles(&scene, Profiles::drawn(pair), &self.title())?;
+        let contact = PlacedContact::new(placement, Some(self.patch.approach), self.modulus)?;
+        let Axes { xi, eta, .. } = axes;
+        let grid = Grid { xi, eta, warning: None, sigma: None, groups: Vec::new() };
+        let site = Site { folder: String::new(), contact, grid, normal_load: None };
+        let analysis = Analysis::new(&site, case.question())?;
+        Ok(Run { case, parts: vec![Part { site, analysis, warnings: Vec::new() }] })
     }
 }
 
@@ -92,10 +110,24 @@ impl Patch {
         self.patch.extent().map(|window| (window.xi.into(), window.eta.into()))
     }
 
+    /// The contact that it is the patch of.
+    #[getter]
+    fn contact(&self, py: Python<'_>) -> Py<PyAny> {
+        self.contact.clone_ref(py)
+    }
+
     /// The connected components, by ascending xi.
     #[getter]
-    fn components(&self) -> Vec<Component> {
-        self.patch.components.iter().cloned().map(|component| Component { component }).collect()
+    fn components<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        let component = |c: &wheelrail::Component| {
+            let extent: ((f64, f64), (f64, f64)) = (c.xi.into(), c.eta.into());
+            let deepest: (f64, f64, f64) = c.deepest.into();
+            let holes =
+                c.holes.iter().map(|points| arrays::points(py, points)).collect::<PyResult<Vec<_>>>()?;
+            let boundary = arrays::points(py, &c.boundary)?;
+            made(py, "Component", (c.area, c.perimeter, extent, deepest, boundary, holes))
+        };
+        self.patch.components.iter().map(component).collect()
     }
 
     /// The boundaries of all components: closed loops, float64 (n, 2), columns xi and eta in mm, the first point not
@@ -118,6 +150,53 @@ impl Patch {
         Ok((arrays::array(py, axes.xi), arrays::array(py, axes.eta)))
     }
 
+    /// Make the triangle mesh of the patch on the rail's surface, with the fields separation, overlap, rail_normal and wheel_normal,
+    /// and of its cells component. `size` in mm is the length of its edges; the patch decides if it is None.
+    ///
+    /// Raises InputError for a size that is not positive; LimitError for too many triangles.
+    #[pyo3(signature = (size = None))]
+    fn mesh<'py>(&self, py: Python<'py>, size: Option<f64>) -> PyResult<Bound<'py, PyAny>> {
+        let size = size.map(wheelrail::mesh::checked_size).transpose().or_raise()?;
+        let found = detached(py, || patch_mesh(&self.placement, &self.patch, size))?.or_raise()?;
+        let (points, cells) = (PyDict::new(py), PyDict::new(py));
+        let overlap = found.separation.iter().map(|s| self.patch.approach - s).collect();
+        points.set_item("overlap", arrays::array(py, overlap))?;
+        points.set_item("separation", arrays::array(py, found.separation))?;
+        points.set_item("rail_normal", vectors(py, &found.rail_normals)?)?;
+        points.set_item("wheel_normal", vectors(py, &found.wheel_normals)?)?;
+        let component = found.mesh.component.iter().map(|component| *component as i64).collect();
+        cells.set_item("component", PyArray1::<i64>::from_vec(py, component))?;
+        mesh(py, &found.mesh.points, ("triangle", &found.mesh.triangles), (points, cells))
+    }
+
+    /// Make the boundary-fitted mesh of quadrangles in strips across the patch, with the fields area and component of its cells; a
+    /// cell at a tip repeats a node.
+    fn strips<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let counts = StripCounts::default();
+        let strips = detached(py, || StripMesh::new(&self.placement, &self.patch, counts))?.or_raise()?;
+        let found = quads(&strips);
+        let cells = PyDict::new(py);
+        cells.set_item("area", arrays::array(py, found.area))?;
+        let component = found.component.iter().map(|component| *component as i64).collect();
+        cells.set_item("component", PyArray1::<i64>::from_vec(py, component))?;
+        mesh(py, &found.points, ("quad", &found.quads), (PyDict::new(py), cells))
+    }
+
+    /// Return the files of one format as bytes by their names, as `Case.files` does, on the grid of `axes(spacing)`.
+    ///
+    /// Raises InputError for an unknown format, one that cannot hold the grid, and an empty patch.
+    #[pyo3(signature = (format = None, *, spacing = None))]
+    fn files<'py>(
+        &self,
+        py: Python<'py>,
+        format: Option<&str>,
+        spacing: Option<Spacing>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let axes = self.grid(spacing.map(Spacing::steps)).or_raise()?;
+        let run = detached(py, || self.run(axes))?.or_raise()?;
+        files(py, format, move |format| case::files(&run, format))
+    }
+
     fn __repr__(&self) -> String {
         format!(
             "Patch(approach={:.6}, area={:.4}, {} components)",
@@ -127,11 +206,21 @@ impl Patch {
         )
     }
 
-    fn _repr_html_(&self) -> Option<String> {
+    fn __eq__(&self, py: Python<'_>, other: &Self) -> PyResult<bool> {
+        let same = self.patch.approach == other.patch.approach && self.load == other.load;
+        Ok(same && self.contact.bind(py).eq(other.contact.bind(py))?)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, PatchParts)> {
+        let make = py.import("wheelrail._wheelrail")?.getattr("patch_from_parts")?;
+        Ok((make, (self.contact.clone_ref(py), self.patch.approach, self.load, self.modulus)))
+    }
+
+    fn _repr_svg_(&self) -> Option<String> {
         let axes = self.grid(None).ok()?;
-        let [rail, wheel] = [self.placement.rail(), self.placement.wheel()].map(|body| &body.profile().name);
-        let title = format!("{wheel} on {rail}");
-        Some(patch_picture([&title, &self.contact], &self.placement, &self.patch, [&axes.xi, &axes.eta]))
+        let title = [self.title(), self.name.clone()];
+        let title = title.each_ref().map(String::as_str);
+        Some(patch_picture(title, &self.placement, &self.patch, [&axes.xi, &axes.eta]))
     }
 
     /// Return the picture of the patch as SVG: both profiles, the gap, and the lines of equal separation with the boundary.
@@ -143,9 +232,12 @@ impl Patch {
                 Error::new("patch", "an empty patch", "a patch that can be drawn", "give a larger approach");
             exception(error)
         };
-        self._repr_html_().ok_or_else(empty)
+        self._repr_svg_().ok_or_else(empty)
     }
 }
+
+/// Contact, approach, load and E*.
+type PatchParts = (Py<PyAny>, f64, Option<f64>, f64);
 
 /// Step of a grid in mm.
 #[derive(FromPyObject)]
@@ -160,55 +252,5 @@ impl Spacing {
             Self::Both(step) => [step; 2],
             Self::Each(steps) => steps,
         }
-    }
-}
-
-/// One connected component of a patch. Lengths in mm.
-#[pyclass(frozen, module = "wheelrail")]
-pub(crate) struct Component {
-    component: wheelrail::Component,
-}
-
-#[pymethods]
-impl Component {
-    /// Area, mm2.
-    #[getter]
-    fn area(&self) -> f64 {
-        self.component.area
-    }
-
-    /// Length of all its boundaries, mm.
-    #[getter]
-    fn perimeter(&self) -> f64 {
-        self.component.perimeter
-    }
-
-    /// The box around it ((xi_min, xi_max), (eta_min, eta_max)), mm.
-    #[getter]
-    fn extent(&self) -> ((f64, f64), (f64, f64)) {
-        (self.component.xi.into(), self.component.eta.into())
-    }
-
-    /// The least separation on it and its place: (s, xi, eta), mm.
-    #[getter]
-    fn deepest(&self) -> (f64, f64, f64) {
-        self.component.deepest.into()
-    }
-
-    /// The outer boundary: a closed loop, float64 (n, 2), columns xi and eta in mm, counter-clockwise.
-    #[getter]
-    fn boundary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        arrays::points(py, &self.component.boundary)
-    }
-
-    /// The boundaries of its holes: closed loops like `boundary`, clockwise. Only a skewed wheel makes holes.
-    #[getter]
-    fn holes<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
-        self.component.holes.iter().map(|points| arrays::points(py, points)).collect()
-    }
-
-    fn __repr__(&self) -> String {
-        let [a, b] = self.component.xi;
-        format!("Component(area={:.4}, xi=({a:.4}, {b:.4}))", self.component.area)
     }
 }

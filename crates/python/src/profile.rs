@@ -1,40 +1,79 @@
 //! Profiles.
 
+use std::hash::{Hash, Hasher};
 use std::path::PathBuf;
+use std::sync::Arc;
 
-use numpy::PyArray2;
+use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
-use wheelrail::Error;
-use wheelrail::measured::Options;
-use wheelrail::profile::{Side, standards, trace};
+use pyo3::types::{PyBytes, PyDict, PyString};
+use serde::{Deserialize, Serialize};
+use wheelrail::case::{about_profile, profile_picture, usual};
+use wheelrail::error::finite;
+use wheelrail::measured::{self, Format, Measured, Options, write};
+use wheelrail::nalgebra::{Point2, UnitComplex};
+use wheelrail::profile::{Mark, Side, standards, trace};
 use wheelrail::scene::{self, ProfileSource, Rotation};
+use wheelrail::{Error, files};
 
 use crate::arrays;
-use crate::errors::{OrRaise, exception};
+use crate::errors::{OrRaise, exception, say, warn, warn_of_points};
 use crate::long::waited;
-use crate::pictures;
+use crate::text::{parsed, to_json, to_python};
 
 /// A rail or wheel profile: a chain of lines, arcs and polynomials, x lateral towards the field side, z up, in mm.
 ///
-/// Profiles are made by `rail`, `wheel` and `read_profile`. They cannot be changed; `rotated`, `shifted` and `mirrored`
-/// make others. They can be pickled and compared: a copy gives the same bits.
-#[pyclass(frozen, eq, module = "wheelrail")]
-#[derive(Clone, PartialEq)]
+/// Profiles are made by `rail`, `wheel`, `read_profile`, `Profile.from_points` and `Profile.from_segments`. They cannot be
+/// changed; `rotated`, `shifted` and `mirrored` make others. They can be pickled, compared and hashed: a copy gives the same
+/// bits.
+///
+///     >>> rail = wr.rail("60E1").rotated("1:40")
+///     >>> rail
+///     Profile("60E1", 7 segments)
+///     >>> rail.points(step=0.5).shape[1]
+///     2
+#[pyclass(frozen, eq, hash, from_py_object, module = "wheelrail")]
+#[derive(Clone)]
 pub(crate) struct Profile {
     pub(crate) profile: wheelrail::Profile,
-    /// What was done to a measured one, as JSON.
-    record: Option<String>,
+    /// The body, where it is known.
+    pub(crate) side: Option<Side>,
+    fitted: Option<Arc<Fitted>>,
 }
 
-impl Profile {
-    pub(crate) fn of(profile: &wheelrail::Profile) -> Self {
-        Self { profile: profile.clone(), record: None }
+/// What is known of a measured profile.
+#[derive(Clone, Serialize, Deserialize)]
+struct Fitted {
+    /// What was done, as JSON.
+    record: String,
+    /// The same in a line.
+    about: String,
+    /// The points \[mm\] in the profile's axes.
+    points: Vec<[f64; 2]>,
+}
+
+impl PartialEq for Profile {
+    fn eq(&self, other: &Self) -> bool {
+        self.profile == other.profile
+    }
+}
+
+impl Hash for Profile {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.profile.name.hash(state);
+        for segment in self.profile.segments() {
+            let end = segment.end();
+            // 0 and −0 are equal.
+            [end.x, end.z].map(|value| (value + 0.0).to_bits()).hash(state);
+        }
     }
 }
 
 /// Distance of the two sides of a joint, in roundings of the profile's extent, up to which they are one point.
 const JOINT_ROUNDINGS: f64 = 64.0;
+
+/// Two arrays (n,).
+type TwoColumns<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
 
 /// An angle in rad, or a ratio such as "1:40".
 #[derive(FromPyObject)]
@@ -47,6 +86,76 @@ pub(crate) enum Turn {
 
 #[pymethods]
 impl Profile {
+    /// Make a profile of measured points: `x` and `z`, arrays (n,) in the order along the profile.
+    ///
+    /// `side` is "rail" or "wheel", `name` what messages call it. The other options are those of `read_profile` for a text
+    /// file, under the same names: unit, mirror, flip_z, origin, gauge_height, tape_distance, already_inclined, repair, curve,
+    /// cutoff_wavelength, kink_angle, arc_tolerance. Axes that the shape does not prove have to be given.
+    ///
+    ///     >>> x, z = wr.wheel("S1002").points(0.2).T
+    ///     >>> worn = wr.Profile.from_points(x, z + 0.3 * np.exp(-(x / 20) ** 2), side="wheel", cutoff_wavelength=5.0)
+    ///
+    /// Raises InputError for what is wrong with the points or the options; warns of what it doubts in the points.
+    #[staticmethod]
+    #[pyo3(signature = (x, z, *, side, name = "points", **options))]
+    fn from_points(
+        py: Python<'_>,
+        x: &Bound<'_, PyAny>,
+        z: &Bound<'_, PyAny>,
+        side: &str,
+        name: &str,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        let (x, z) = (arrays::values("x", x)?, arrays::values("z", z)?);
+        if x.len() != z.len() {
+            let found = format!("{} values beside {} of x", z.len(), x.len());
+            return Err(exception(Error::new("z", found, "arrays of one length", "correct it")));
+        }
+        let (side, options) = (named_side(side)?, measured_options(py, "from_points", options)?);
+        let points: Vec<[f64; 2]> = x.into_iter().zip(z).map(|(x, z)| [x, z]).collect();
+        let name = name.to_owned();
+        let measured = waited(py, move |_| measured::of_points(&name, &points, side, &options))?;
+        Self::measured(py, measured, Some(side))
+    }
+
+    /// Make a profile of segments in order of x: dicts with one of `line`, `arc` and `polynomial`, as scenes and profile files
+    /// write them.
+    ///
+    /// `start`, the first point (x, z), and `unit` are as in a scene. `side` is "rail" or "wheel".
+    ///
+    ///     >>> crown = wr.Profile.from_segments(
+    ///     ...     [{"arc": {"center": [0.0, -300.0], "radius": 300.0, "half": "upper", "x": [-30.0, 30.0]}}], side="rail")
+    ///     >>> len(crown)
+    ///     1
+    ///
+    /// Raises InputError for what is wrong with the segments; warns of kinks.
+    #[staticmethod]
+    #[pyo3(signature = (segments, *, start = None, unit = None, side = None, name = "segments"))]
+    fn from_segments(
+        py: Python<'_>,
+        segments: &Bound<'_, PyAny>,
+        start: Option<&Bound<'_, PyAny>>,
+        unit: Option<&str>,
+        side: Option<&str>,
+        name: &str,
+    ) -> PyResult<Self> {
+        let side = side.map(named_side).transpose()?;
+        let file = PyDict::new(py);
+        file.set_item("segments", segments)?;
+        file.set_item("name", name)?;
+        if let Some(start) = start {
+            file.set_item("start", start)?;
+        }
+        if let Some(unit) = unit {
+            file.set_item("unit", unit)?;
+        }
+        let text = to_json(file.as_any(), None)?;
+        let made = scene::profile_from_text("", &text, true);
+        let profile = made.map_err(|error| crate::text::keyed(&text, error)).or_raise()?;
+        warn(py, usual::kinks(name, &profile))?;
+        Ok(Self { profile, side, fitted: None })
+    }
+
     /// Name of the standard, or of the file.
     #[getter]
     fn name(&self) -> &str {
@@ -59,6 +168,12 @@ impl Profile {
         &self.profile.source
     }
 
+    /// "rail" or "wheel"; None where nothing said so.
+    #[getter]
+    fn side(&self) -> Option<&'static str> {
+        self.side.map(|side| if side == Side::Rail { "rail" } else { "wheel" })
+    }
+
     /// The larger side of the box around the profile, mm.
     #[getter]
     fn extent(&self) -> f64 {
@@ -68,20 +183,30 @@ impl Profile {
     /// What was read, decided, repaired and fitted, as a dict; None for a profile that was not measured.
     #[getter]
     fn record<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        self.record.as_ref().map(|text| py.import("json")?.getattr("loads")?.call1((text,))).transpose()
+        let record = self.fitted.as_ref().map(|fitted| &fitted.record);
+        record.map(|text| py.import("json")?.getattr("loads")?.call1((text,))).transpose()
+    }
+
+    /// Joints of the segments from left to right, as dicts: `left` (number of the segment, from 0), `x` and `gap` in mm, `kink` in
+    /// rad and `curvature_jump` in 1/mm.
+    #[getter]
+    fn joints<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        to_python(py, &self.profile.continuity())
     }
 
     /// Return the profile turned about its origin, counter-clockwise seen with x to the right and z up: by an angle in
     /// rad, or by a ratio such as "1:40", which leans a right-hand rail towards the track's centre.
     ///
-    /// Raises InputError for an angle that is not finite and a text that is no ratio.
-    fn rotated(&self, angle: Turn) -> PyResult<Self> {
+    /// Raises InputError for an angle that is not finite and a text that is no ratio; warns of turns that are no inclination.
+    fn rotated(&self, py: Python<'_>, angle: Turn) -> PyResult<Self> {
         let rotation = match angle {
             Turn::Radians(angle) => Rotation::Radians(angle),
             Turn::Ratio(text) => Rotation::Ratio(text),
         };
         let turn = rotation.turn().map_err(|error| error.within("rotated")).or_raise()?;
-        Ok(self.moved(self.profile.rotated(turn)))
+        let written = if let Rotation::Radians(angle) = rotation { angle } else { turn.angle() };
+        warn(py, usual::turn("rotated", written, self.side == Some(Side::Rail)))?;
+        Ok(self.moved(self.profile.rotated(turn), |[x, z]| turned(turn, [x, z])))
     }
 
     /// Return the profile moved by x and z, mm.
@@ -89,13 +214,13 @@ impl Profile {
     /// Raises InputError for a number that is not finite.
     #[pyo3(signature = (x = 0.0, z = 0.0))]
     fn shifted(&self, x: f64, z: f64) -> PyResult<Self> {
-        let finite = |value| wheelrail::error::finite("shifted", value).or_raise();
-        Ok(self.moved(self.profile.shifted(finite(x)?, finite(z)?)))
+        let (x, z) = (finite("x", x).or_raise()?, finite("z", z).or_raise()?);
+        Ok(self.moved(self.profile.shifted(x, z), |[a, b]| [a + x, b + z]))
     }
 
     /// Return the mirror image under x -> -x.
     fn mirrored(&self) -> Self {
-        self.moved(self.profile.mirrored())
+        self.moved(self.profile.mirrored(), |[x, z]| [-x, z])
     }
 
     /// Return points of the profile from left to right, at most `step` mm apart along it, every joint among them, no point
@@ -104,19 +229,88 @@ impl Profile {
     /// Raises InputError for a step that is not positive, and one that makes more than 10**7 points.
     #[pyo3(signature = (step = 0.5))]
     fn points<'py>(&self, py: Python<'py>, step: f64) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        /// Points of a profile that anybody looks at.
-        const MOST: f64 = 1e7;
-        let least = 4.0 * self.profile.extent() / MOST;
-        if step.is_nan() || step < least {
-            let expected = format!("a step of {least:e} mm or more");
-            return Err(exception(Error::new("points: step", step.to_string(), expected, "correct it")));
-        }
-        let marks = trace(&self.profile, step);
+        let marks = self.marks(step)?;
         let mut points: Vec<[f64; 2]> = marks.iter().map(|mark| [mark.station.x, mark.station.z]).collect();
         // Both sides of a smooth joint are one point, in spite of rounding.
         let joint = JOINT_ROUNDINGS * f64::EPSILON * self.profile.extent();
         points.dedup_by(|next, last| (next[0] - last[0]).hypot(next[1] - last[1]) <= joint);
         arrays::points(py, &points)
+    }
+
+    /// Return the curvature along the profile: (s, curvature), each (n,), s the arc length from the left end in mm, at most `step`
+    /// mm apart, curvature in 1/mm, positive with the hollow side up. Joints are there twice, with the curvature of each side.
+    ///
+    /// Raises InputError as `points` does.
+    #[pyo3(signature = (step = 0.5))]
+    fn curvature<'py>(&self, py: Python<'py>, step: f64) -> PyResult<TwoColumns<'py>> {
+        let marks = self.marks(step)?;
+        let column = |value: fn(&Mark) -> f64| arrays::array(py, marks.iter().map(value).collect());
+        Ok((column(|mark| mark.s), column(|mark| mark.curvature)))
+    }
+
+    /// Return the segments as dicts, which `from_segments` takes; side faces are cut off where they are vertical, with a warning.
+    ///
+    /// Raises InputError for what is no graph z(x): undercuts, and measured profiles but those read with `curve="arcs"`.
+    fn segments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let write::Segments { segments, cut } = write::segments(&self.profile).or_raise()?;
+        left_out(py, &cut)?;
+        to_python(py, &segments)
+    }
+
+    /// Write the profile into a file that `read_profile` reads: points in the `format` "miniprof", "simpack", "gensys", "text" or
+    /// "csv", or segments as "toml"; without it the extension tells.
+    ///
+    /// The points are the measured ones, or `step` mm apart along the curve (0.2 for a drawn profile). `side` is needed for the
+    /// axes of MiniProf and SIMPACK where the profile has none.
+    ///
+    /// Raises InputError for an unknown format or extension and for segments that no file can hold; FileError where the disk
+    /// refuses.
+    #[pyo3(signature = (path, *, format = None, step = None, side = None))]
+    fn to_file(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        format: Option<&str>,
+        step: Option<f64>,
+        side: Option<&str>,
+    ) -> PyResult<()> {
+        let toml = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
+        let text = if format == Some("toml") || format.is_none() && toml {
+            let (text, cut) = write::chain(&self.profile).or_raise()?;
+            left_out(py, &cut)?;
+            text
+        } else {
+            let of_file = || Format::of_file(&path.to_string_lossy());
+            let format = format.map_or_else(
+                || of_file().or_raise(),
+                |format| parsed("format", PyString::new(py, format).as_any()),
+            )?;
+            let side = side.map(named_side).transpose()?.or(self.side);
+            let measured = self.fitted.as_ref().map(|fitted| fitted.points.as_slice());
+            let (text, near) = write::profile(&self.profile, (measured, step), (format, side)).or_raise()?;
+            if near > 0 {
+                left_out(
+                    py,
+                    &[format!("{near} points nearer than {} mm to another", write::LEAST_DISTANCE)],
+                )?;
+            }
+            text
+        };
+        files::write_file(&path, text.as_bytes()).or_raise()
+    }
+
+    /// Return the picture of the profile as SVG: points, curve and curvature, and how far measured points are off the curve.
+    fn svg(&self) -> String {
+        let drawn = || about_profile(&self.profile, None);
+        let (about, points) = self.fitted.as_ref().map_or_else(
+            || (drawn(), [].as_slice()),
+            |fitted| (fitted.about.clone(), fitted.points.as_slice()),
+        );
+        profile_picture(&self.profile, &about, points)
+    }
+
+    fn _repr_svg_(&self) -> String {
+        self.svg()
     }
 
     /// The number of segments of the chain.
@@ -128,22 +322,63 @@ impl Profile {
         format!("Profile({:?}, {} segments)", self.profile.name, self.profile.segments().len())
     }
 
-    fn _repr_html_(&self) -> String {
-        pictures::profile(&self.profile)
-    }
-
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
-        let bytes = postcard::to_allocvec(&(&self.profile, &self.record)).map_err(damaged)?;
+        let wheel = self.side.map(|side| side == Side::Wheel);
+        let bytes =
+            postcard::to_allocvec(&(&self.profile, wheel, self.fitted.as_deref())).map_err(damaged)?;
         let make = py.import("wheelrail._wheelrail")?.getattr("profile_from_bytes")?;
         Ok((make, (PyBytes::new(py, &bytes),)))
     }
 }
 
 impl Profile {
-    /// Another place of the same profile.
-    fn moved(&self, profile: wheelrail::Profile) -> Self {
-        Self { profile, record: self.record.clone() }
+    /// Makes a profile that nothing is known of but its body.
+    pub(crate) fn of(profile: &wheelrail::Profile, side: Side) -> Self {
+        Self { profile: profile.clone(), side: Some(side), fitted: None }
     }
+
+    /// Takes over a measured profile, and warns of what was found in its points.
+    fn measured(py: Python<'_>, measured: Measured, side: Option<Side>) -> PyResult<Self> {
+        let Measured { profile, points, record } = measured;
+        warn_of_points(py, &record.warnings)?;
+        let fitted = Fitted {
+            about: about_profile(&profile, Some(&record)),
+            record: serde_json::to_string(&record).unwrap_or_default(),
+            points: points.iter().map(measured::Point::xz).collect(),
+        };
+        Ok(Self { profile, side, fitted: Some(Arc::new(fitted)) })
+    }
+
+    /// Another place of the same profile; `point` moves its points there.
+    fn moved(&self, profile: wheelrail::Profile, point: impl Fn([f64; 2]) -> [f64; 2]) -> Self {
+        let moved = |fitted: &Arc<Fitted>| {
+            let points = fitted.points.iter().copied().map(&point).collect();
+            Arc::new(Fitted { points, ..Fitted::clone(fitted) })
+        };
+        Self { profile, side: self.side, fitted: self.fitted.as_ref().map(moved) }
+    }
+
+    /// Gives marks along the profile, at most `step` \[mm\] apart.
+    fn marks(&self, step: f64) -> PyResult<Vec<Mark>> {
+        /// Points of a profile that anybody looks at.
+        const MOST: f64 = 1e7;
+        let least = 4.0 * self.profile.extent() / MOST;
+        if step.is_nan() || step < least {
+            let expected = format!("a step of {least:e} mm or more");
+            return Err(exception(Error::new("step", step.to_string(), expected, "correct it")));
+        }
+        Ok(trace(&self.profile, step))
+    }
+}
+
+fn turned(turn: UnitComplex<f64>, [x, z]: [f64; 2]) -> [f64; 2] {
+    (turn * Point2::new(x, z)).into()
+}
+
+/// Warns of parts of a profile that a file or a list of segments does not have.
+fn left_out(py: Python<'_>, parts: &[String]) -> PyResult<()> {
+    let advice = "they are in the profile, and not in what was written";
+    parts.iter().try_for_each(|part| say(py, "left-out", &format!("left out, {part}"), advice))
 }
 
 /// Make a profile from the bytes of a pickled one.
@@ -151,8 +386,10 @@ impl Profile {
 /// Raises InputError for bytes that are none.
 #[pyfunction]
 pub(crate) fn profile_from_bytes(bytes: &[u8]) -> PyResult<Profile> {
-    let (profile, record) = postcard::from_bytes(bytes).map_err(damaged)?;
-    Ok(Profile { profile, record })
+    let (profile, wheel, fitted): (_, Option<bool>, Option<Fitted>) =
+        postcard::from_bytes(bytes).map_err(damaged)?;
+    let side = wheel.map(|wheel| if wheel { Side::Wheel } else { Side::Rail });
+    Ok(Profile { profile, side, fitted: fitted.map(Arc::new) })
 }
 
 fn damaged(error: postcard::Error) -> PyErr {
@@ -162,49 +399,55 @@ fn damaged(error: postcard::Error) -> PyErr {
 
 /// Return a built-in rail: upright, origin at the top of its crown.
 ///
+///     >>> wr.rail("60E1").name
+///     '60E1'
+///
 /// Raises InputError for an unknown name, with the nearest known one.
 #[pyfunction]
 pub(crate) fn rail(name: &str) -> PyResult<Profile> {
-    built_in(standards::rail(name), "rail_names")
+    standards::rail(name).map(|profile| Profile::of(&profile, Side::Rail)).or_raise()
 }
 
 /// Return a built-in wheel: right-hand, flange at negative x, origin where its standard has it.
 ///
+///     >>> wr.wheel("S1002").side
+///     'wheel'
+///
 /// Raises InputError for an unknown name, with the nearest known one.
 #[pyfunction]
 pub(crate) fn wheel(name: &str) -> PyResult<Profile> {
-    built_in(standards::wheel(name), "wheel_names")
-}
-
-/// Gives a built-in profile; the error of an unknown name speaks of the function that has all names.
-fn built_in(profile: wheelrail::Result<wheelrail::Profile>, names: &str) -> PyResult<Profile> {
-    let with_names = |mut error: Error| {
-        error.advice = format!("see `wheelrail.{names}()`, or read a file by `wheelrail.read_profile`");
-        error
-    };
-    profile.map(|profile| Profile { profile, record: None }).map_err(with_names).or_raise()
+    standards::wheel(name).map(|profile| Profile::of(&profile, Side::Wheel)).or_raise()
 }
 
 /// Return the names of the built-in rails.
+///
+///     >>> "60E1" in wr.rail_names()
+///     True
 #[pyfunction]
 pub(crate) fn rail_names() -> Vec<&'static str> {
     standards::rail_names().collect()
 }
 
 /// Return the names of the built-in wheels.
+///
+///     >>> "S1002" in wr.wheel_names()
+///     True
 #[pyfunction]
 pub(crate) fn wheel_names() -> Vec<&'static str> {
     standards::wheel_names().collect()
 }
 
-/// Read a profile from a file: measured points (MiniProf .ban .whl .mpt, SIMPACK .prr .prw, GENSYS .rail .wheel, text,
-/// CSV), or segments (.toml, .json).
+/// Read a profile from a file: measured points (MiniProf .ban .whl .mpt, SIMPACK .prr .prw, GENSYS .rail .wheel, slices .slcs
+/// .slcw, text, CSV), or segments (.toml, .json).
 ///
 /// `side` is "rail" or "wheel", where the file does not say so. The other options are the keys of a measured file in a
-/// scene, with the same words and defaults: format, columns, section, mirror, flip_z, unit, origin, gauge_height,
-/// tape_distance, already_inclined, repair, curve, cutoff_wavelength, kink_angle, arc_tolerance.
+/// scene, with the same words and defaults: format, columns, section, along, angle, mirror, flip_z, unit, origin,
+/// gauge_height, tape_distance, already_inclined, repair, curve, cutoff_wavelength, kink_angle, arc_tolerance.
 ///
-/// Raises InputError for what is wrong with the file, its points or the options; FileError for a file that cannot be read.
+///     >>> worn = wr.read_profile("worn.whl", cutoff_wavelength=5.0)  # doctest: +SKIP
+///
+/// Raises InputError for what is wrong with the file, its points or the options; FileError for a file that cannot be read;
+/// warns of what it doubts in the points.
 #[pyfunction]
 #[pyo3(signature = (path, side = None, **options))]
 pub(crate) fn read_profile(
@@ -214,16 +457,12 @@ pub(crate) fn read_profile(
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Profile> {
     let side = side.map(named_side).transpose()?;
-    let options = measured_options(py, options)?;
-    waited(py, move |_| {
-        Ok(match scene::read_profile(&path, side, &options)? {
-            ProfileSource::Drawn(profile) => Profile { profile, record: None },
-            ProfileSource::Measured(measured) => {
-                let record = serde_json::to_string(&measured.record).ok();
-                Profile { profile: measured.profile, record }
-            }
-        })
-    })
+    let options = measured_options(py, "read_profile", options)?;
+    let named = side.or_else(|| Format::body_of_file(&path.to_string_lossy()));
+    match waited(py, move |_| scene::read_profile(&path, side, &options))? {
+        ProfileSource::Drawn(profile) => Ok(Profile { profile, side: named, fitted: None }),
+        ProfileSource::Measured(measured) => Profile::measured(py, *measured, named),
+    }
 }
 
 fn named_side(name: &str) -> PyResult<Side> {
@@ -234,15 +473,17 @@ fn named_side(name: &str) -> PyResult<Side> {
     }
 }
 
-/// Takes keywords for the keys of a scene: by way of JSON, which knows their words.
-fn measured_options(py: Python<'_>, options: Option<&Bound<'_, PyDict>>) -> PyResult<Options> {
+/// Takes keywords for the keys of a scene.
+fn measured_options(
+    py: Python<'_>,
+    function: &str,
+    options: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Options> {
     let Some(options) = options else { return Ok(Options::default()) };
-    let text: String = py.import("json")?.getattr("dumps")?.call1((options,))?.extract()?;
-    scene::parse(&text, true).map_err(|error| error.at("read_profile")).or_raise()
-}
-
-/// Makes Python's dicts and lists of a value, by way of JSON.
-pub(crate) fn to_python<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyResult<Bound<'py, PyAny>> {
-    let text = serde_json::to_string(value).unwrap_or_default();
-    py.import("json")?.getattr("loads")?.call1((text,))
+    // None is what a keyword has that is not given.
+    let given = PyDict::new(py);
+    for (key, value) in options.iter().filter(|(_, value)| !value.is_none()) {
+        given.set_item(key, value)?;
+    }
+    parsed(function, given.as_any())
 }

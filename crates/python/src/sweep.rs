@@ -3,12 +3,16 @@
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use wheelrail::case::{ApproachBy, COLUMNS, ColumnArray, Columns, DoubtSet, MOST_DRAWN, SweepDoubts, curves};
-use wheelrail::search::{ONE_CONTACT, Selection};
-use wheelrail::search::{ParallelSweep, Position, WheelsetOnTrack, conicity_over};
+use wheelrail::case::{
+    ApproachBy, COLUMNS, ColumnArray, Columns, ContactDoubts, DoubtSet, MOST_DRAWN, SweepDoubts, Tally,
+    curves,
+};
+use wheelrail::search::{
+    ONE_CONTACT, ParallelSweep, Position, Selection, TrackSide, WheelsetOnTrack, conicity_over,
+};
 
 use crate::arrays::values;
-use crate::errors::OrRaise;
+use crate::errors::{OrRaise, say};
 use crate::long::{Watch, watched};
 use crate::positions::Positions;
 
@@ -24,34 +28,43 @@ pub(crate) struct Asked {
 /// Sweeps, and makes `wheelrail.Table` of the columns.
 pub(crate) fn sweep<'py>(
     py: Python<'py>,
-    (system, doubts): (&WheelsetOnTrack, &SweepDoubts),
+    (system, doubts, radii): (&WheelsetOnTrack, &SweepDoubts, [f64; 2]),
     positions: Positions,
     asked: Asked,
     progress: Option<&Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let Asked { within, conicity, ellipses } = asked;
-    let columns = watched(py, progress, |watch| {
+    let count = positions.count;
+    let (columns, tally) = watched(py, progress, |watch| {
         watch.at(0, positions.count);
         let positions = listed(&positions, watch)?;
         let conicity = if conicity { conicity_over(system, &positions, &mut |_, _| {})? } else { None };
         let selection = Selection { within, apart: ONE_CONTACT };
         let sweep = ParallelSweep { system, selection, conicity: conicity.as_ref(), positions: &positions };
-        let mut all = Columns::default();
-        all.reserve(2 * positions.len());
+        let mut all = (Columns::default(), Tally::default());
+        all.0.reserve(2 * positions.len());
         sweep.blocks(
-            |chunk: &mut Columns, number, rows| {
-                let all = doubts.of_rows(rows);
-                all.for_each(|(row, doubts)| chunk.push(number, row, ellipses, doubts.kinds()));
+            |(columns, tally): &mut (Columns, Tally), number, rows| {
+                let push =
+                    |(row, doubts): &(&_, ContactDoubts)| columns.push(number, row, ellipses, doubts.kinds());
+                tally.add(doubts.of_rows(rows).inspect(push));
                 watch.go_on()
             },
-            |done, chunks| {
-                chunks.iter().for_each(|chunk| all.extend(chunk));
+            |done, chunks: Vec<(Columns, Tally)>| {
+                for (columns, tally) in &chunks {
+                    all.0.extend(columns);
+                    all.1.join(tally);
+                }
                 watch.at(done, positions.len());
                 Ok(true)
             },
         )?;
         Ok(all)
     })?;
+    let radius = |side| radii[usize::from(side == TrackSide::Right)];
+    if let Some(line) = tally.line(count, radius) {
+        say(py, "contacts", &line, "the column `doubt` says where")?;
+    }
     let table = py.import("wheelrail._table")?.getattr("Table")?;
     table.call1((arrays_of(py, columns)?,))
 }

@@ -4,33 +4,46 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use wheelrail::Error;
-use wheelrail::case::SweepDoubts;
+use wheelrail::case::{ContactDoubts, Doubt, SweepDoubts, usual};
 use wheelrail::measured::GAUGE_HEIGHT;
-use wheelrail::search::{ONE_CONTACT, Selection};
-use wheelrail::search::{Position, WheelsetOnTrack};
-use wheelrail::{RailDistance, WheelDistance};
+use wheelrail::placement::{self, Track};
+use wheelrail::scene;
+use wheelrail::search::{
+    self, Conicity, NoConicity, ONE_CONTACT, Position, Roll, Selection, SideOnTrack, TrackSide,
+    WheelsetOnTrack,
+};
+use wheelrail::{Error, ErrorKind, RailDistance, WheelDistance};
 
-use crate::contact::{Contact, Place, asked, checked_modulus};
-use crate::errors::{OrRaise, exception, no_contact};
+use crate::asked::{asked, checked_modulus};
+use crate::errors::{OrRaise, exception, no_contact, warn};
+use crate::long::detached;
 use crate::pair::Pair;
 use crate::positions::{RollArgument, positions};
 use crate::sweep::{Asked, sweep};
+use crate::values::made;
 
-/// A wheelset on its track: a pair of profiles on the right, its mirror image on the left. Lengths in mm.
+/// A wheelset on its track: a pair of profiles on the right, and its mirror image, or that of the pair `left`, on the left.
+/// Lengths in mm.
 ///
 /// The track is given by its `gauge`, measured down to `gauge_height` below the top of rail (14 if None), or by
 /// `rail_spacing`, the distance between the rail profiles' origins. The wheelset is given by the distance `back_to_back`
 /// between the flange backs, which lie at `flange_back_x` on the wheel profile, or by `wheel_spacing`, the distance between
 /// the wheel profiles' origins. A wheelset can be pickled, and used by several threads at once.
 ///
-/// Raises InputError for a track or wheelset given twice or not at all, distances that are not positive, and a rail without
-/// a gauge face.
+///     >>> track = wr.Wheelset(pair, gauge=1435.0, back_to_back=1360.0, flange_back_x=-70.0)
+///     >>> round(track.conicity(3.0), 4)
+///     0.1771
+///
+/// Raises InputError for a track or wheelset given twice or not at all, distances that are not positive or in another unit, and a
+/// rail without a gauge face; warns of distances that belong to no railway.
 #[pyclass(frozen, module = "wheelrail")]
 #[derive(Clone)]
 pub(crate) struct Wheelset {
     pair: Pair,
+    /// The left-hand side's, where it is another.
+    left: Option<Pair>,
     system: Arc<WheelsetOnTrack>,
+    doubts: Arc<SweepDoubts>,
     distances: Distances,
 }
 
@@ -40,10 +53,13 @@ type Distances = [(&'static str, Option<f64>); 6];
 #[pymethods]
 impl Wheelset {
     #[new]
-    #[pyo3(signature = (pair, *, gauge = None, gauge_height = None, rail_spacing = None, back_to_back = None,
+    #[pyo3(signature = (pair, *, left = None, gauge = None, gauge_height = None, rail_spacing = None, back_to_back = None,
                         flange_back_x = None, wheel_spacing = None))]
+    #[expect(clippy::too_many_arguments, reason = "these are keywords")]
     fn new(
+        py: Python<'_>,
         pair: &Pair,
+        left: Option<&Pair>,
         gauge: Option<f64>,
         gauge_height: Option<f64>,
         rail_spacing: Option<f64>,
@@ -65,9 +81,12 @@ impl Wheelset {
         ];
         let rails = match (gauge, gauge_height, rail_spacing) {
             (Some(gauge), height, None) => {
+                let gauge = scene::distance("gauge", gauge).or_raise()?;
                 RailDistance::Gauge { gauge, height: height.unwrap_or(GAUGE_HEIGHT) }
             }
-            (None, None, Some(spacing)) => RailDistance::Spacing(spacing),
+            (None, None, Some(spacing)) => {
+                RailDistance::Spacing(scene::distance("rail_spacing", spacing).or_raise()?)
+            }
             _ => {
                 let expected = "either `gauge` with perhaps `gauge_height`, or `rail_spacing`";
                 let error =
@@ -77,9 +96,12 @@ impl Wheelset {
         };
         let wheels = match (back_to_back, flange_back_x, wheel_spacing) {
             (Some(distance), Some(flange_back_x), None) => {
+                let distance = scene::distance("back_to_back", distance).or_raise()?;
                 WheelDistance::BackToBack { distance, flange_back_x }
             }
-            (None, None, Some(spacing)) => WheelDistance::Spacing(spacing),
+            (None, None, Some(spacing)) => {
+                WheelDistance::Spacing(scene::distance("wheel_spacing", spacing).or_raise()?)
+            }
             _ => {
                 let expected = "either `back_to_back` and `flange_back_x`, or `wheel_spacing`";
                 let error =
@@ -87,14 +109,25 @@ impl Wheelset {
                 return Err(exception(error));
             }
         };
-        let system = Arc::new(WheelsetOnTrack::new(&pair.pair, rails, wheels).or_raise()?);
-        Ok(Self { pair: pair.clone(), system, distances })
+        let system = system_of(pair, left, rails, wheels).or_raise()?;
+        let both = |left: &Pair| Arc::new(SweepDoubts::new(&pair.pair, Some(&left.pair)));
+        let doubts = left.map_or_else(|| Arc::clone(&pair.doubts), both);
+        let made =
+            Self { pair: pair.clone(), left: left.cloned(), system: Arc::new(system), doubts, distances };
+        warn(py, made.doubts_of_distances())?;
+        Ok(made)
     }
 
     /// The profiles of the right-hand side.
     #[getter]
     fn pair(&self) -> Pair {
         self.pair.clone()
+    }
+
+    /// The profiles of the left-hand side, described as a right-hand one; those of `pair` where no others are given.
+    #[getter]
+    fn left(&self) -> Pair {
+        self.left_pair().clone()
     }
 
     /// Lower the wheelset until both wheels touch: `lateral` mm to the right, turned by `yaw` in rad, which moves the
@@ -107,26 +140,56 @@ impl Wheelset {
     /// Raises GeometryError for a wheelset beside its track; InputError for values that are not finite and angles beyond
     /// 0.5 rad.
     #[pyo3(signature = (lateral = 0.0, *, yaw = 0.0, roll = RollArgument::Word("solve".into()), within = 0.0))]
-    fn touch(&self, lateral: f64, yaw: f64, roll: RollArgument, within: f64) -> PyResult<Touch> {
+    fn touch<'py>(
+        &self,
+        py: Python<'py>,
+        lateral: f64,
+        yaw: f64,
+        roll: RollArgument,
+        within: f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let position = Position { lateral, yaw, roll: roll.roll()? };
+        let within = scene::within(Some(within)).or_raise()?;
         let mut search = self.system.search();
         let selection = Selection { within, apart: ONE_CONTACT };
-        let Some(touch) = search.touch(&position, &selection).or_raise()? else {
+        let found = search.touch(&position, &selection).or_raise()?;
+        let fixed = if let Roll::Fixed(roll) = position.roll { roll } else { 0.0 };
+        warn(
+            py,
+            [("yaw", yaw), ("roll", fixed)].into_iter().filter_map(|(name, angle)| usual::angle(name, angle)),
+        )?;
+        let Some(touch) = found else {
             let expected = "wheels over their rails, and a roll within ±0.1 rad at which both sides touch";
             return Err(no_contact("lateral", expected));
         };
-        let contacts = |side, at: usize| {
-            let contact = |(k, found)| Contact::found(&self.pair.pair, found, Place { side, number: k + 1 });
-            touch.sides[at].touch.contacts.iter().copied().enumerate().map(contact).collect()
-        };
-        Ok(Touch {
-            lateral,
-            yaw,
-            roll: touch.roll,
-            z: (touch.sides[0].z, touch.sides[1].z),
-            left: contacts("left", 0),
-            right: contacts("right", 1),
-        })
+        let contacts = touch.sides.each_ref().map(|side| side.touch.contacts);
+        warn(py, self.doubts_of_contacts(contacts.map(<[_]>::first)))?;
+        let z = (touch.sides[0].z, touch.sides[1].z);
+        let left = self.left_pair().contacts("left", contacts[0]);
+        let right = self.pair.contacts("right", contacts[1]);
+        made(py, "Touch", (lateral, yaw, touch.roll, z, left, right))
+    }
+
+    /// Compute the equivalent conicity at an amplitude in mm: the tangent of the cone that a wheelset of the same wavelength has.
+    ///
+    /// `roll` is "solve" or "neglect", the convention of EN 15302.
+    ///
+    /// Raises InputError for an amplitude that is not positive; GeometryError where the wheelset leaves its track, or the
+    /// movement does not come back.
+    #[pyo3(signature = (amplitude, *, roll = RollArgument::Word("solve".into())))]
+    fn conicity(&self, py: Python<'_>, amplitude: f64, roll: RollArgument) -> PyResult<f64> {
+        let roll = roll.roll()?;
+        let table = detached(py, || Conicity::new(&self.system, amplitude, roll))?.or_raise()?;
+        let found = table.at(amplitude).map_err(|why| {
+            let found = match why {
+                NoConicity::OffTrack => "a wheelset off its track",
+                _ => "a movement that does not come back",
+            };
+            let expected = "a rolling radius that grows towards the flange";
+            let error = Error::new("amplitude", found, expected, "take a smaller amplitude");
+            exception(error.of_kind(ErrorKind::Geometry))
+        })?;
+        Ok(found.conicity)
     }
 
     /// Find the contacts at many positions: a table with a row for each position, side and contact.
@@ -140,7 +203,7 @@ impl Wheelset {
     /// about twenty times a second, with positions; an exception in it ends the sweep, and so does Ctrl-C within 0.2 s.
     ///
     /// Raises InputError for lengths that differ, values that are not finite, and angles beyond 0.5 rad; LimitError for more
-    /// than 10**7 positions.
+    /// than 10**7 positions; warns in one line of the places that no wheel stands at, which the column `doubt` has.
     #[pyo3(signature = (lateral, yaw = None, roll = None, *, within = 0.0, conicity = true, load = None, approach = None,
                         modulus = None, progress = None))]
     #[expect(clippy::too_many_arguments, reason = "these are keywords")]
@@ -159,28 +222,37 @@ impl Wheelset {
     ) -> PyResult<Bound<'py, PyAny>> {
         let ellipses = match (load, approach) {
             (None, None) => {
-                checked_modulus(modulus)?;
+                checked_modulus(py, modulus)?;
                 None
             }
-            _ => Some(asked(load, approach, modulus)?),
+            _ => Some(asked(py, load, approach, modulus)?),
         };
+        let within = scene::within(Some(within)).or_raise()?;
+        warn(py, approach.and_then(|approach| usual::approach(self.pair.pair.rail(), approach, false)))?;
         let positions = positions(lateral, yaw, roll)?;
         let asked = Asked { within, conicity, ellipses };
-        let doubts = SweepDoubts::new(&self.pair.pair, None);
-        sweep(py, (&self.system, &doubts), positions, asked, progress.as_ref())
+        let radii = [self.left_pair(), &self.pair].map(|pair| pair.pair.wheel_radius());
+        sweep(py, (&self.system, &self.doubts, radii), positions, asked, progress.as_ref())
     }
 
     fn __repr__(&self) -> String {
+        let left = self.left.as_ref().map(|left| format!("left={}", left.__repr__()));
         let given = self.distances.iter().filter_map(|(key, value)| Some(format!("{key}={:?}", (*value)?)));
-        format!("Wheelset({}, {})", self.pair.__repr__(), given.collect::<Vec<_>>().join(", "))
+        let given: Vec<String> = left.into_iter().chain(given).collect();
+        format!("Wheelset({}, {})", self.pair.__repr__(), given.join(", "))
     }
 
     fn __eq__(&self, other: &Self) -> bool {
-        self.distances == other.distances && self.pair.__eq__(&other.pair)
+        let same = |(one, other): (&Pair, &Pair)| one.__eq__(other);
+        let pairs = [(&self.pair, &other.pair), (self.left_pair(), other.left_pair())];
+        self.distances == other.distances
+            && self.left.is_some() == other.left.is_some()
+            && pairs.into_iter().all(same)
     }
 
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<((Pair,), Bound<'py, PyDict>)> {
         let keywords = PyDict::new(py);
+        keywords.set_item("left", self.left.clone())?;
         for (key, value) in self.distances {
             keywords.set_item(key, value)?;
         }
@@ -188,46 +260,49 @@ impl Wheelset {
     }
 }
 
-/// First touch of both wheels. Lengths in mm, angles in rad.
-#[pyclass(frozen, get_all, module = "wheelrail")]
-pub(crate) struct Touch {
-    /// Lateral displacement, mm, + to the right.
-    lateral: f64,
-    /// Yaw, rad, + moves the right-hand wheel forward.
-    yaw: f64,
-    /// Roll, rad, solved or given, + lowers the right-hand wheel.
-    roll: f64,
-    /// Height of the axle's middle above the rolling radius over the top of rail when the left and the right side touch,
-    /// mm, + up: equal where the roll is solved.
-    z: (f64, f64),
-    /// Contacts of the left side, the lowest gap first, in mirrored axes.
-    left: Vec<Contact>,
-    /// Contacts of the right side, the lowest gap first.
-    right: Vec<Contact>,
+impl Wheelset {
+    fn left_pair(&self) -> &Pair {
+        self.left.as_ref().unwrap_or(&self.pair)
+    }
+
+    /// Lists what is doubtful about the distances.
+    fn doubts_of_distances(&self) -> Vec<Doubt> {
+        let [gauge, height, _, back, back_x, _] = self.distances.map(|(_, value)| value);
+        let mut out = Vec::from_iter(height.and_then(|height| usual::gauge_height("gauge_height", height)));
+        let places = ["gauge", "back_to_back"];
+        out.extend(gauge.zip(back).and_then(|(gauge, back)| usual::gauge(places, gauge, back)));
+        let sides = [Some(TrackSide::Right), self.left.as_ref().map(|_| TrackSide::Left)];
+        for marks in sides.into_iter().flatten().map(|side| self.doubts.on(side)) {
+            out.extend(back_x.and_then(|x| usual::flange_back_x(["flange_back_x", "wheel"], x, marks)));
+        }
+        out
+    }
+
+    /// Lists what is doubtful about the first contacts of the left and the right side.
+    fn doubts_of_contacts(&self, first: [Option<&search::Contact>; 2]) -> Vec<Doubt> {
+        let sides = [("left", self.left_pair()), ("right", &self.pair)].into_iter();
+        let of_side = |((side, pair), doubts): ((&str, &Pair), ContactDoubts)| {
+            let doubt = |(kind, value)| {
+                let doubt = Doubt::of_contact(kind, value, pair.pair.wheel_radius());
+                Doubt { found: format!("{side} side: {}", doubt.found), ..doubt }
+            };
+            doubts.list().map(doubt).collect::<Vec<_>>()
+        };
+        sides.zip(self.doubts.of_first(first)).flat_map(of_side).collect()
+    }
 }
 
-#[pymethods]
-impl Touch {
-    /// Right less left rolling radius of the lowest contacts, mm.
-    #[getter]
-    fn delta_r(&self) -> PyResult<f64> {
-        let radius = |side: &[Contact]| side.first().map_or(Ok(f64::NAN), Contact::rolling_radius);
-        Ok(radius(&self.right)? - radius(&self.left)?)
-    }
-
-    fn __repr__(&self) -> String {
-        format!(
-            "Touch(lateral={:?}, yaw={:?}, roll={:.6e}, {} left, {} right)",
-            self.lateral,
-            self.yaw,
-            self.roll,
-            self.left.len(),
-            self.right.len()
-        )
-    }
-
-    fn _repr_html_(&self, py: Python<'_>) -> PyResult<String> {
-        let html = py.import("wheelrail._html")?.getattr("touch")?;
-        html.call1((self.roll, self.left.clone(), self.right.clone()))?.extract()
-    }
+/// Prepares both sides.
+fn system_of(
+    right: &Pair,
+    left: Option<&Pair>,
+    rails: RailDistance,
+    wheels: WheelDistance,
+) -> wheelrail::Result<WheelsetOnTrack> {
+    let Some(left) = left else { return WheelsetOnTrack::new(&right.pair, rails, wheels) };
+    let side = |pair: &Pair| {
+        let track = Track::new(pair.pair.rail(), rails)?;
+        SideOnTrack::new(&pair.pair, track, placement::Wheelset::new(wheels, pair.pair.wheel_radius())?)
+    };
+    Ok(WheelsetOnTrack::of_sides(side(left)?, side(right)?))
 }

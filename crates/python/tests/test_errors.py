@@ -44,8 +44,9 @@ def test_what_is_wrong_is_named(pair: wr.Pair, track: wr.Wheelset, tmp_path: Pat
         (wr.InputError, "modulus", lambda: contact.hertz(load=1.0, modulus=-1.0)),
         (wr.InputError, "empty patch", lambda: contact.patch(approach=0.0).axes()),
         (wr.InputError, "yaw: found 3 values beside 2", lambda: track.sweep([0.0, 1.0], [0.0, 0.0, 0.0])),
-        (wr.InputError, "position 2: wheelset: lateral", lambda: track.sweep([0.0, np.nan], conicity=False)),
+        (wr.InputError, "position 2: lateral", lambda: track.sweep([0.0, np.nan], conicity=False)),
         (wr.InputError, "rotated", lambda: pair.rail.rotated("1:0")),
+        (wr.InputError, "`flip_z=True`", lambda: wr.Profile.from_points(*pair.wheel.points(0.5).T, side="rail")),
         (wr.InputError, "no side", lambda: wr.read_profile(tmp_path / "wheel.csv")),
         (wr.InputError, "cutof_wavelength", lambda: wr.read_profile(tmp_path / "wheel.csv", cutof_wavelength=1)),  # type: ignore[call-arg]
         (wr.FileError, "no such file", lambda: wr.read_profile(tmp_path / "none.whl")),

@@ -13,7 +13,7 @@ NEEDS = {"pressure_with_tamaas": ["tamaas"], "conicity_of_a_fleet": ["distribute
 
 
 def test_the_gallery_is_there() -> None:
-    assert len(NOTEBOOKS) == 5
+    assert len(NOTEBOOKS) == 8
 
 
 @pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)

@@ -118,7 +118,7 @@ def test_pickles_give_the_same_bits(track: wr.Wheelset, measured: wr.Profile, pr
         assert pickle.loads(pickle.dumps(profile, protocol)) == profile
         assert np.array_equal(copy.deepcopy(profile).points(), profile.points())
     pair = wr.Pair(wr.rail("60E1"), measured, 460.0)
-    assert pickle.loads(pickle.dumps(pair, protocol)) == pair != track.pair
+    assert pickle.loads(pickle.dumps(pair, protocol)) == pair != track.pair and pair.wheel.record == measured.record
     with pytest.raises(wr.InputError, match="pickled profile"):
         wr._wheelrail.profile_from_bytes(b"\x03abc")
 
@@ -133,7 +133,7 @@ def test_everything_prints_itself(track: wr.Wheelset) -> None:
         "Wheelset(Pair(\"60E1\", \"S1002\", radius=460.0), gauge=1435.0, back_to_back=1360.0, flange_back_x=-70.0)"
     )
     for value in (track.pair.rail, patch):
-        svg = value._repr_html_()
+        svg = value._repr_svg_()
         assert svg is not None and svg.lstrip().startswith("<svg")
     assert touch._repr_html_().count("<tr>") == 1 + len(touch.left) + len(touch.right)
 

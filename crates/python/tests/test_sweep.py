@@ -54,9 +54,9 @@ def test_tables_go_to_pandas_polars_and_arrow(track: wr.Wheelset) -> None:
 
 def test_tables_draw_themselves(track: wr.Wheelset) -> None:
     table = track.sweep(np.arange(-8, 8.001, 0.1))
-    svg = table._repr_html_()
+    svg = table._repr_svg_()
     assert svg is not None and svg.lstrip().startswith("<svg") and "161 positions" in svg
-    assert track.sweep([1.0, 0.0], conicity=False)._repr_html_() is None
+    assert track.sweep([1.0, 0.0], conicity=False)._repr_svg_() is None
 
 
 def test_progress_is_told_and_may_end_the_sweep(track: wr.Wheelset) -> None:

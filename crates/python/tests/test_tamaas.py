@@ -7,6 +7,7 @@ from conftest import need
 import wheelrail as wr
 
 
+@pytest.mark.filterwarnings("ignore::wheelrail.Doubt")
 def test_tamaas_finds_hertz(track: wr.Wheelset) -> None:
     need("tamaas")
     contact = track.touch().right[0]

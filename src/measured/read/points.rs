@@ -23,7 +23,7 @@ pub struct Point {
     pub weight: f64,
     /// Number of the point in the file, from 1.
     pub number: usize,
-    /// Line of the point in the file, from 1.
+    /// Line of the point in the file, from 1; 0 for points that no file holds.
     pub line: usize,
 }
 
@@ -35,6 +35,9 @@ impl Point {
 
     /// Returns the place of the point in the file: "point 12 (line 40)".
     pub fn place(&self) -> String {
+        if self.line == 0 {
+            return format!("point {}", self.number);
+        }
         format!("point {} (line {})", self.number, self.line)
     }
 }

@@ -4,35 +4,50 @@ use serde::Serialize;
 
 use crate::error::{Error, Result};
 use crate::numerics::polynomial::recentred;
+use crate::numerics::twice::Twice;
 use crate::profile::{
     Arc, ArcData, HalfData, LineData, Polynomial, PolynomialData, Profile, Segment, SegmentData, Shape,
     Station,
 };
 
 /// A profile as the segments of a scene.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Segments {
-    /// The `[[segments]]` tables in TOML.
-    pub toml: String,
+    /// The segments in order of x.
+    pub segments: Vec<SegmentData>,
     /// Texts on what was cut off at the two ends: side faces beyond the vertical, which a graph z(x) cannot hold.
     pub cut: Vec<String>,
 }
 
-/// Writes the profile as `[[segments]]` of a scene. Side faces are cut off where they are vertical.
+/// Writes a profile file: TOML with name, source and segments. Also returns what was cut off.
+///
+/// # Errors
+/// The errors of [`segments`].
+pub fn chain(profile: &Profile) -> Result<(String, Vec<String>)> {
+    #[derive(Serialize)]
+    struct File<'a> {
+        name: &'a str,
+        source: &'a str,
+        segments: Vec<SegmentData>,
+    }
+    let Segments { segments, cut } = segments(profile)?;
+    let file = File { name: &profile.name, source: &profile.source, segments };
+    let text = toml::to_string(&file).map_err(|error| {
+        Error::new("segments", error.to_string(), "segments that TOML can hold", "report this")
+    })?;
+    Ok((text, cut))
+}
+
+/// Gives the profile as segments of a scene. Side faces are cut off where they are vertical.
 ///
 /// # Errors
 /// Segments between the ends that are no graph z(x), with their place: undercuts, and the parametric spans of a spline. A
 /// profile made with `curve = "arcs"` can be written.
 pub fn segments(profile: &Profile) -> Result<Segments> {
-    #[derive(Serialize)]
-    struct Scene {
-        segments: Vec<SegmentData>,
-    }
     let all = profile.drawn();
     let first = all.iter().position(|segment| segment.end().cos >= 0.0).unwrap_or(all.len());
     let last = all.iter().rposition(|segment| segment.start().cos >= 0.0).map_or(0, |k| k + 1);
-    let mut scene = Scene { segments: Vec::with_capacity(all.len()) };
-    let mut cut = Vec::new();
+    let (mut segments, mut cut) = (Vec::with_capacity(all.len()), Vec::new());
     for (k, segment) in all.iter().enumerate() {
         let ends = [k == first, k + 1 == last];
         let clipped = [segment.start(), segment.end()].map(|station| station.cos < 0.0);
@@ -47,12 +62,9 @@ pub fn segments(profile: &Profile) -> Result<Segments> {
             Shape::Arc(arc) => arc_data(arc, ends),
             Shape::Polynomial(polynomial) => polynomial_data(polynomial),
         };
-        scene.segments.push(labelled(segment, data.map_err(|error| error.within(segment.place(k)))?));
+        segments.push(labelled(segment, data.map_err(|error| error.within(segment.place(k)))?));
     }
-    let toml = toml::to_string(&scene).map_err(|error| {
-        Error::new("segments", error.to_string(), "segments that TOML can hold", "report this")
-    })?;
-    Ok(Segments { toml, cut })
+    Ok(Segments { segments, cut })
 }
 
 fn labelled(segment: &Segment, data: SegmentData) -> SegmentData {
@@ -93,7 +105,9 @@ fn arc_data(arc: &Arc, clip: [bool; 2]) -> Result<SegmentData> {
 /// Returns z(x) in powers of x about 0, as standards print it. A polynomial that was read in that form comes back bit for
 /// bit.
 fn polynomial_data(polynomial: &Polynomial) -> Result<SegmentData> {
-    let graph = polynomial.x.len() == 2 && f64::from(polynomial.x[1]) == 1.0;
+    // A moved polynomial has as many coefficients of x as of z.
+    let linear = |x: &[Twice]| x.iter().skip(2).all(|higher| f64::from(*higher) == 0.0);
+    let graph = polynomial.x.get(1).is_some_and(|slope| f64::from(*slope) == 1.0) && linear(&polynomial.x);
     if !graph {
         let advice = "use curve = \"arcs\", or name the file in the scene";
         return Err(Error::new("", "a span of a parametric spline", "a graph z(x)", advice));

@@ -8,11 +8,6 @@ use super::source::{Source, SourceArguments};
 use crate::answer::{Outcome, complain, counted, put};
 use wheelrail::error::{Error, Result};
 use wheelrail::measured::{CurveKind, Format, write};
-use wheelrail::profile::{Profile, Side};
-use wheelrail::scene::ProfileSource;
-
-/// Default distance \[mm\] of points along a drawn profile: that of hand-held instruments.
-const STEP: f64 = 0.2;
 
 /// The profile to convert, and the format.
 #[derive(Debug, Args)]
@@ -47,34 +42,19 @@ fn points(arguments: &ConvertArguments) -> Result<String> {
         error
     })?;
     let source = arguments.source.read()?;
-    let points = match (&source.content, arguments.step) {
-        (ProfileSource::Measured(measured), None) => measured.points.iter().map(|point| point.xz()).collect(),
-        (_, step) => {
-            write::sample(source.profile(), step.unwrap_or(STEP)).map_err(|error| error.at("--step"))?
-        }
-    };
-    let side = match (source.side, format) {
-        (Some(side), _) => side,
-        // These formats do not name the body, and their axes do not depend on it.
-        (None, Format::Gensys | Format::Text | Format::Csv) => Side::Rail,
-        (None, _) => {
-            let expected = format!("the body, which sets the axes of {}", format.title());
-            let advice = "give --side rail or --side wheel";
-            return Err(Error::new(&source.profile().name, "no --side", expected, advice));
-        }
-    };
-    let points = if format == Format::Simpack { spaced(points) } else { points };
-    Ok(write::points(&points, format, side, &source.profile().name))
-}
-
-/// Returns the points that other programs can tell apart. The number of the others goes to stderr.
-fn spaced(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
-    let kept = write::spaced(&points);
-    if kept.len() < points.len() {
-        let (left_out, least) = (counted(points.len() - kept.len(), "point"), write::LEAST_DISTANCE);
+    let measured: Option<Vec<_>> =
+        source.measured().map(|measured| measured.points.iter().map(|point| point.xz()).collect());
+    let of_points = (measured.as_deref(), arguments.step);
+    let written = write::profile(source.profile(), of_points, (format, source.side));
+    let (text, left_out) = written.map_err(|error| {
+        let option = format!("--{}", error.place);
+        error.at(option)
+    })?;
+    if left_out > 0 {
+        let (left_out, least) = (counted(left_out, "point"), write::LEAST_DISTANCE);
         complain(&format!("note: left out, {left_out} nearer than {least} mm to another"));
     }
-    kept
+    Ok(text)
 }
 
 /// Returns a chain file. It cannot hold a spline: a measured file without --curve becomes a chain of arcs.
@@ -86,11 +66,11 @@ fn toml(arguments: &ConvertArguments) -> Result<String> {
     let source = arguments.source.read_as(Some(CurveKind::Arcs))?;
     chosen(&source);
     let profile = source.profile();
-    let segments = write::segments(profile).map_err(|error| error.within(&profile.name))?;
-    for cut in &segments.cut {
+    let (text, cut) = write::chain(profile).map_err(|error| error.within(&profile.name))?;
+    for cut in cut {
         complain(&format!("note: left out, {cut}"));
     }
-    Ok(head(profile) + &segments.toml)
+    Ok(text)
 }
 
 fn chosen(source: &Source) {
@@ -102,10 +82,4 @@ fn chosen(source: &Source) {
             "note: {n} arcs within {tolerance} mm of the points, at most {largest:.2e} mm off"
         ));
     }
-}
-
-/// Returns the lines `name` and `source`, quoted for TOML.
-fn head(profile: &Profile) -> String {
-    let quoted = |text: &str| toml::Value::from(text).to_string();
-    format!("name = {}\nsource = {}\n\n", quoted(&profile.name), quoted(&profile.source))
 }

@@ -3,7 +3,6 @@
 
 mod conicity;
 mod curves;
-mod doubts;
 mod patches;
 mod positions;
 mod table;

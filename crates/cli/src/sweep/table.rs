@@ -4,8 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::super::progress::Progress;
-use super::doubts::Tally;
-use wheelrail::case::{ApproachBy, Columns, ContactDoubts, DoubtSet, MOST_DRAWN, SweepDoubts};
+use wheelrail::case::{ApproachBy, Columns, ContactDoubts, DoubtSet, MOST_DRAWN, SweepDoubts, Tally};
 use wheelrail::error::Result;
 use wheelrail::search::{Conicity, ParallelSweep, Position, Selection, WheelsetOnTrack};
 

@@ -12,31 +12,38 @@ contact point, xi along the common tangent, eta along the rail, zeta along the c
     >>> round(contact.contact_angle, 4)
     0.5125
 
+What there is:
+
+    rail, wheel, read_profile, Profile.from_points, Profile.from_segments   profiles
+    Pair, Wheelset            bodies placed: touch, placed, sweep, conicity
+    Contact                   a place of contact: separation, normals, normal_gap, hertz, surfaces
+    Patch, Component, Mesh    the patch: loops, areas, meshes, files of every format
+    Case                      a scene with all it can say, from a file, a dict or TOML: contacts, files, view, sweep, run
+    Table                     the rows of a sweep, for pandas, polars and Arrow
+    wheelrail.dask            studies past one machine
+    wheelrail.tamaas          pressures
+
 Errors in the input are `InputError`, bodies that do not lie as the input supposes `GeometryError`, the disk `FileError`,
-too much of something `LimitError`; all are `Error`.
+too much of something `LimitError`; all are `Error`. What is allowed but seldom meant is warned of as `Doubt`.
 """
 
-from ._errors import Error, FileError, GeometryError, InputError, LimitError
+from ._errors import Doubt, Error, FileError, GeometryError, InputError, LimitError
 from ._table import Table
+from ._values import Component, Feasibility, Hertz, Mesh, Run, Touch, WheelTouch
 from ._wheelrail import (
     Case,
-    Component,
     Contact,
-    Feasibility,
-    Hertz,
     Pair,
     Patch,
     Profile,
-    Run,
-    Touch,
     Wheelset,
-    WheelTouch,
     __version__,
     effective_modulus,
     rail,
     rail_names,
     read_profile,
     run,
+    schema,
     wheel,
     wheel_names,
 )
@@ -45,6 +52,7 @@ __all__ = [
     "Case",
     "Component",
     "Contact",
+    "Doubt",
     "Error",
     "Feasibility",
     "FileError",
@@ -52,6 +60,7 @@ __all__ = [
     "Hertz",
     "InputError",
     "LimitError",
+    "Mesh",
     "Pair",
     "Patch",
     "Profile",
@@ -66,6 +75,7 @@ __all__ = [
     "rail_names",
     "read_profile",
     "run",
+    "schema",
     "wheel",
     "wheel_names",
 ]

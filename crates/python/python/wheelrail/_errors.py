@@ -36,3 +36,24 @@ class GeometryError(Error):
 
 class FileError(Error, OSError):
     """The disk does not do what it is asked."""
+
+
+class Doubt(UserWarning):
+    """What is allowed but seldom meant: a unit, a sign, a place where no wheel stands.
+
+    `warnings.simplefilter("error", wheelrail.Doubt)` makes exceptions of doubts.
+    """
+
+    kind: str
+    """What it is about, one word: "load", "gauge", "flange-tip", …"""
+    found: str
+    """What was found, with its number."""
+    advice: str
+    """The likely cause, and what to look at."""
+
+    def __init__(self, kind: str, found: str, advice: str) -> None:
+        super().__init__(kind, found, advice)
+        self.kind, self.found, self.advice = kind, found, advice
+
+    def __str__(self) -> str:
+        return f"{self.found}: {self.advice}"

@@ -32,3 +32,8 @@ def _row(contact: Contact) -> str:
         f"{contact.gap:.3g}",
     )
     return "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>"
+
+
+def framed(page: str) -> str:
+    """Return a whole page in a frame of its own."""
+    return f'<iframe srcdoc="{escape(page)}" style="width:100%;height:760px;border:0"></iframe>'

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _wheelrail
+from ._values import _same
 
 if TYPE_CHECKING:
     import pandas
@@ -27,6 +28,10 @@ class Table(Mapping[str, "NDArray[Any]"]):
 
     `to_pandas`, `to_arrow`, `polars.DataFrame(table)`, `pyarrow.table(table)` and `pandas.DataFrame(table)` take it; number
     columns are shared, not copied, where the other side can share them.
+
+    >>> table = track.sweep(np.arange(-6, 7), conicity=False)
+    >>> table.rows, table["side"][0].item()
+    (26, 'left')
     """
 
     def __init__(self, columns: Mapping[str, NDArray[Any]]) -> None:
@@ -106,7 +111,13 @@ class Table(Mapping[str, "NDArray[Any]"]):
         """Return rows and columns in short."""
         return f"Table({self.rows} rows: {', '.join(self)})"
 
-    def _repr_html_(self) -> str | None:
+    __hash__ = None  # type: ignore[assignment]
+
+    def __eq__(self, other: object) -> bool:
+        """Tell whether all columns are the same, NaN where NaN is."""
+        return isinstance(other, Table) and self._names == other._names and all(map(_same, self.values(), other.values()))
+
+    def _repr_svg_(self) -> str | None:
         try:
             return self.svg()
         except ValueError:

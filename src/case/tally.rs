@@ -1,12 +1,11 @@
 //! Counts the doubts of a sweep's positions, and says them in one line.
 
-use crate::answer::counted;
-use wheelrail::case::{ContactDoubts, Doubt, DoubtKind};
-use wheelrail::search::{SweepRow, TrackSide};
+use super::doubts::{ContactDoubts, Doubt, DoubtKind};
+use crate::search::{SweepRow, TrackSide};
 
 /// The doubts of some positions.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Tally {
+pub struct Tally {
     /// Number of positions with a doubt.
     positions: usize,
     /// Each kind of [`DoubtKind::OF_CONTACT`].
@@ -33,7 +32,7 @@ impl Kind {
 
 impl Tally {
     /// Adds the doubts of one position.
-    pub(super) fn add<'a>(&mut self, rows: impl Iterator<Item = (&'a SweepRow, ContactDoubts)>) {
+    pub fn add<'a>(&mut self, rows: impl Iterator<Item = (&'a SweepRow, ContactDoubts)>) {
         let mut here = [Kind::default(); DoubtKind::OF_CONTACT.len()];
         for (row, doubts) in rows {
             for (kind, value) in doubts.list() {
@@ -49,14 +48,14 @@ impl Tally {
     }
 
     /// Adds the doubts of other positions.
-    pub(super) fn join(&mut self, other: &Self) {
+    pub fn join(&mut self, other: &Self) {
         self.positions += other.positions;
         self.kinds.iter_mut().zip(other.kinds).for_each(|(own, other)| own.add(other));
     }
 
     /// Says the doubts in one line, each with its largest number and its likely cause; `None` without doubts. `all` is the
     /// number of positions, `radius` the nominal radius of a side \[mm\].
-    pub(super) fn line(&self, all: usize, radius: impl Fn(TrackSide) -> f64) -> Option<String> {
+    pub fn line(&self, all: usize, radius: impl Fn(TrackSide) -> f64) -> Option<String> {
         let kinds = DoubtKind::OF_CONTACT.into_iter().zip(&self.kinds);
         let said: String = kinds
             .filter_map(|(kind, found)| {
@@ -66,8 +65,8 @@ impl Tally {
                 Some(format!("; {word} at {count}, most at {lateral} mm, {side} side: {doubt}"))
             })
             .collect();
-        let positions = counted(all, "position");
+        let positions = if all == 1 { "position" } else { "positions" };
         (self.positions > 0)
-            .then(|| format!("doubts at {} of {positions}, in the column doubt{said}", self.positions))
+            .then(|| format!("doubts at {} of {all} {positions}, in the column doubt{said}", self.positions))
     }
 }

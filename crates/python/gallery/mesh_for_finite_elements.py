@@ -1,0 +1,28 @@
+# %% [markdown]
+# # A mesh for finite elements
+# The patch as graded triangles with the overlap on its nodes, the bodies around it, and the file that Gmsh opens.
+
+# %%
+import numpy as np
+
+import wheelrail as wr
+
+pair = wr.Pair(wr.rail("60E1").rotated("1:40"), wr.wheel("S1002"), radius=460.0)
+track = wr.Wheelset(pair, gauge=1435.0, back_to_back=1360.0, flange_back_x=-70.0)
+contact = track.touch(lateral=3.0, yaw=0.002).right[0]
+patch = contact.patch(load=60e3)
+mesh = patch.mesh(size=0.5)
+corners = mesh.points[mesh.cells]
+areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+print(f"{mesh}, {areas.sum():.2f} mm² of {patch.area:.2f}")
+assert abs(areas.sum() / patch.area - 1.0) < 0.01
+
+# %% [markdown]
+# The overlap is largest inside and 0 along the boundary. `mesh.to_meshio().write("patch.vtu")` and `mesh.to_pyvista().plot()` take it on.
+
+# %%
+overlap = mesh.point_data["overlap"]
+print(f"overlap up to {overlap.max() * 1e3:.1f} µm")
+rail, wheel = contact.surfaces((-10.0, 10.0), (-15.0, 15.0), approach=patch.approach)
+print(f"rail {rail}, wheel {wheel}; patch.msh has {len(patch.files('gmsh')['patch.msh'])} bytes")
+assert overlap.min() > -1e-9 and np.isclose(overlap.max(), patch.approach, rtol=0.2)

@@ -1,0 +1,75 @@
+"""Profiles from arrays, segments and files, and back."""
+
+import copy
+import pickle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import wheelrail as wr
+
+
+def test_points_become_what_a_file_of_them_becomes(tmp_path: Path) -> None:
+    x, z = wr.wheel("S1002").points(0.2).T
+    z = z + 0.4 * np.exp(-((x / 20.0) ** 2))
+    np.savetxt(tmp_path / "worn.txt", np.column_stack([x, z]), fmt="%.17g")
+    several: list[dict[str, Any]] = [{"cutoff_wavelength": 5.0}, {"curve": "interpolation"}, {"curve": "arcs", "mirror": False}]
+    for options in several:
+        made = wr.Profile.from_points(x, z, side="wheel", name="worn", **options)
+        read = wr.read_profile(tmp_path / "worn.txt", "wheel", **options)
+        assert np.array_equal(made.points(), read.points()) and (made.name, made.side) == ("worn", "wheel")
+        assert made.record is not None and made.record["points_used"] == len(x)
+    inches = wr.Profile.from_points(x / 25.4, z / 25.4, side="wheel", unit="in", cutoff_wavelength=5.0)
+    assert np.allclose(inches.points(), wr.Profile.from_points(x, z, side="wheel", cutoff_wavelength=5.0).points(), atol=1e-9)
+
+
+def test_segments_go_both_ways() -> None:
+    for profile in (wr.rail("60E1"), wr.wheel("S1002")):
+        segments = profile.segments()
+        again = wr.Profile.from_segments(segments, side=profile.side, name=profile.name)
+        assert len(again) == len(profile) and again.side == profile.side
+        assert np.allclose(again.points(), profile.points(), atol=1e-12)
+    with pytest.raises(wr.InputError, match="radius"):
+        wr.Profile.from_segments([{"arc": {"center": [0, 0], "radius": "big", "half": "upper", "x": [0, 1]}}])
+    with pytest.raises(wr.InputError, match="perhaps `line` is meant"):
+        wr.Profile.from_segments([{"lin": {}}])
+
+
+@pytest.mark.parametrize("name", ["w.whl", "w.prw", "w.wheel", "w.txt", "w.csv", "w.toml"])
+def test_files_are_read_back(name: str, tmp_path: Path, measured: wr.Profile) -> None:
+    wheel = wr.wheel("S1002")
+    wheel.to_file(tmp_path / name, step=0.1)
+    options: dict[str, Any] = {} if name.endswith("toml") else {"curve": "interpolation"}
+    again = wr.read_profile(tmp_path / name, "wheel", **options)
+    assert np.abs(np.interp(again.points(0.5)[5:-5, 0], *wheel.points(0.01).T) - again.points(0.5)[5:-5, 1]).max() < 0.02
+    if not name.endswith("toml"):
+        measured.to_file(tmp_path / name)
+        (tmp_path / name).unlink()
+    unknown = wr.Profile.from_segments(wheel.segments())
+    if name.endswith(("prw", "whl")):
+        with pytest.raises(wr.InputError, match="side: found none"):
+            unknown.to_file(tmp_path / name)
+        unknown.to_file(tmp_path / name, side="wheel")
+
+
+def test_curvature_is_that_of_the_drawing() -> None:
+    s, kappa = wr.rail("60E1").curvature(0.1)
+    assert s[0] == 0.0 and np.all(np.diff(s) >= 0.0)
+    # The crown is in the middle of the rail.
+    assert kappa[np.argmin(np.abs(s - s[-1] / 2))] == pytest.approx(-1 / 300, rel=1e-9)
+    assert max(abs(joint["gap"]) for joint in wr.rail("60E1").joints) < 1e-9
+
+
+def test_pictures_show_measured_points(measured: wr.Profile) -> None:
+    assert measured.svg().count("residual") > 0 and "residual" not in wr.wheel("S1002").svg()
+    moved = measured.shifted(3.0, 1.0).rotated(0.01)
+    assert moved.svg().count("residual") > 0 and pickle.loads(pickle.dumps(moved)).svg() == moved.svg()
+
+
+def test_profiles_hash_as_they_compare(measured: wr.Profile) -> None:
+    profiles = [wr.rail("60E1"), wr.wheel("S1002"), measured, wr.wheel("S1002").mirrored()]
+    assert len(set(profiles)) == 4
+    assert {profile: k for k, profile in enumerate(profiles)}[copy.deepcopy(measured)] == 2
+    assert hash(pickle.loads(pickle.dumps(measured))) == hash(measured)
