@@ -4,10 +4,11 @@ use std::path::Path;
 
 use serde_json::Value;
 use wheelrail::case::Place;
+use wheelrail::load::{Elastic, HalfSpace, effective_modulus, press_alone, weighted_frame};
 use wheelrail::scene::{self, Scene};
 use wheelrail::search::{ONE_CONTACT, Position, Roll, Selection};
 use wheelrail::separation::{EtaAxis, FULL_PRECISION, Values, plan};
-use wheelrail::{Arc, Evaluator, Half, Pair, Placement, Profile, Segment};
+use wheelrail::{Arc, Evaluator, Half, Pair, Patch, Placement, Profile, Segment, Window};
 use wheelrail_report::reference::ReferenceScene;
 
 fn folder() -> &'static Path {
@@ -142,4 +143,54 @@ fn first_touch_on_a_roller_rig_agrees_with_contact() {
             assert!((right.z - expected).abs() < 1.2e-4, "{given}: {} instead of {expected}", right.z);
         }
     }
+}
+
+/// Forces under CONTACT's sinking, and references of its patches. Its `fn` is that of a problem with friction; both heights have 4
+/// decimals, a fifth of a percent of the sinking. Where the surfaces turn (5.3 and 6.3 mm) a half-space is not what CONTACT solves,
+/// and its reference weighs the vertical overlap; under yaw, where no frame is weighted, forces there are up to 5 % off.
+#[test]
+fn forces_on_a_roller_rig_agree_with_contact() {
+    let text = std::fs::read_to_string(folder().join("positions.json")).unwrap();
+    let file: Value = serde_json::from_str(&text).unwrap();
+    let modulus = effective_modulus(&Elastic::STEEL, &Elastic::STEEL);
+    let [mut forces, mut references] = [[0.0f64; 2]; 2];
+    for radius in [350.0, 800.0] {
+        let case = scene::resolve(&rig(radius, ""), folder(), "").unwrap();
+        let Place::Wheelset { system, .. } = &case.standing().place else { panic!("a wheelset") };
+        let (mut search, pair) = (system.search(), &case.profiles().right.pair);
+        let cases = file["cases"].as_array().unwrap().iter();
+        for given in cases.filter(|given| given["roller_radius"] == radius as u64) {
+            let (lateral, yaw) = (number(given, "y"), -number(given, "yaw"));
+            // The others under yaw take seconds, and treads agree as these do.
+            if yaw != 0.0 && (yaw > -0.02 || lateral > 0.0) {
+                continue;
+            }
+            let position = Position { lateral, yaw, roll: Roll::Fixed(0.0) };
+            let selection = Selection { within: 0.0, apart: ONE_CONTACT };
+            let touch = search.touch(&position, &selection).unwrap().unwrap();
+            let mut placement = touch.sides[1].touch.contacts[0].placed(pair).unwrap();
+            let sinking = number(given, "z") - number(given, "z_first_touch");
+            let whole = |placement: &Placement| {
+                let approach = sinking * placement.upright();
+                (Patch::new(placement, approach, &Window::UNBOUNDED).extent().unwrap(), approach)
+            };
+            let (mut extent, mut approach) = whole(&placement);
+            let (patch, turns) = (&given["patches"][0], usize::from(lateral > 5.0));
+            if yaw == 0.0 {
+                let [x, angle] = weighted_frame(&placement, &extent, approach).unwrap();
+                let off = (x - number(patch, "ycp_r")).abs();
+                references[turns] = references[turns].max(off);
+                placement = placement.reframed(x, angle).unwrap();
+                (extent, approach) = whole(&placement);
+            }
+            let region = HalfSpace::over(&placement, &extent, approach);
+            let [pressures, _] = press_alone(region, 1e-3, modulus).unwrap();
+            let off = pressures.load() / number(patch, "fn") - 1.0;
+            println!("{radius} {lateral} {yaw}: {:.0} N, off by {:.2} %", pressures.load(), 100.0 * off);
+            forces[turns] = forces[turns].max(off.abs());
+        }
+    }
+    println!("forces {forces:?}, references {references:?}");
+    assert!(forces[0] < 0.01 && forces[1] < 0.02, "{forces:?}");
+    assert!(references[0] < 0.1 && references[1] < 0.5, "{references:?}");
 }
