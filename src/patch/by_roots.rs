@@ -58,7 +58,7 @@ impl<'a> ByRoots<'a> {
         Self { gap, skewed: placement.skew() != 0.0, approach, opening: 0.5 * around, step }
     }
 
-    /// Returns the rail by its arc length over the rail's surface; `None` over the tangent plane.
+    /// Returns the normal gap of slices over the rail's surface; `None` for those over the tangent plane.
     pub(super) fn normal_gap(&self) -> Option<&NormalGap<'a>> {
         match &self.gap {
             Gap::Plane(_) => None,
@@ -78,7 +78,8 @@ impl<'a> ByRoots<'a> {
         }
     }
 
-    /// Returns both derivatives of the gap; over the rail's surface that along σ is a difference, with nine digits.
+    /// Returns \[∂/∂ξ, ∂/∂η\] of the gap. Over the rail's surface ∂/∂σ is a difference over 2e-5 mm, which is right where the gap turns but
+    /// not to all digits.
     pub(super) fn gradient(&mut self, xi: f64, eta: f64) -> [f64; 2] {
         match &mut self.gap {
             Gap::Plane(evaluator) => evaluator.separation_and_gradient(xi, eta).1,

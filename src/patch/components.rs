@@ -85,17 +85,19 @@ impl Patch {
     /// With skew it may meet it in several, and a component may have holes.
     ///
     /// Degenerate cases: the patch is empty if s < δ nowhere, at a mere touch with δ = 0, and for δ = NaN. With skew on a rail a part
-    /// is missed only between two turns of s along a valley between which the surfaces are parallel to 1e-13; on a roller, one
-    /// that begins and ends within 1/512 of the range of ξ (see the docs on numerics).
+    /// is missed only between two turns of s along a valley between which the surfaces are parallel to 1e-13; on a roller, only
+    /// between two turns within 1/512 of the range of ξ (see the docs on numerics).
     pub fn new(placement: &Placement, approach: f64, window: &Window) -> Self {
         Self::of(Outline::new(placement, approach, window))
     }
 
     /// Finds all components of the conformal patch {t < δ cos α} over the rail's surface, inside a window of σ and η: wherever this type
-    /// says ξ it is σ, and s is t + δ (1 − cos α). Area and perimeter are those on the rail's surface.
+    /// says ξ it is σ, and s is t + δ (1 − cos α). Area \[mm²\] and perimeter \[mm\] are those on the rail's surface.
     ///
-    /// Degenerate cases: as above; the patch is empty, too, if the rail has no surface at C. Missed is a part between two turns of the
-    /// least gap along σ within 1/512 of the window.
+    /// Degenerate cases: the patch is empty if t < δ cos α nowhere, for δ = NaN, and if the rail has no surface at C. A part may be missed
+    /// between two turns of the least gap along σ that lie within 1/512 of the searched σ, which is the window's range or the
+    /// rail's surface where that is shorter; under skew so may a second interval of η at one σ. Approaches of the size of the bodies
+    /// take seconds.
     pub fn over_rail(placement: &Placement, approach: f64, window: &Window) -> Self {
         Self::of(Outline::over_rail(placement, approach, window))
     }
