@@ -36,9 +36,9 @@ const CORNER_SHARE: f64 = 0.25;
 /// Least number of edges of a ring without corners.
 const LEAST_EDGES: f64 = 3.0;
 
-/// Most edges of the boundary of a component. Edges are as long as it is wide, so that one with more is fifty thousand times as
+/// Most edges of the boundary of a component. Edges are as long as it is wide, so that one with more is twenty thousand times as
 /// long as it is wide, and nothing is computed over such a mesh.
-const MOST_EDGES: f64 = 1e5;
+const MOST_EDGES: f64 = 4e4;
 
 /// A node of the boundary.
 #[derive(Debug, Clone, Copy)]

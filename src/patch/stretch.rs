@@ -9,9 +9,18 @@ use crate::numerics::lanes::{Lanes, largest};
 /// areas.
 const SHORTEST: f64 = 1e-7;
 
-/// Most stretches between two corners. An unknown corner takes some 25, and only noise that is larger than it is said to be asks for
-/// more than some hundred.
+/// Most stretches between two corners.
 const MOST_STRETCHES: usize = 1024;
+
+/// Number of stretches between two corners from which on the noise of edges is measured, which takes nine slices beside sixteen: it
+/// may be larger than it is said to be.
+const NOISY: usize = 4;
+
+/// Noise that counts as such, as a multiple of what is measured at three places.
+const NOISE_LEVEL: f64 = 4.0;
+
+/// Distance of the places between which noise is measured, as a share of a stretch. What is smooth bends by its square.
+const CLOSE: f64 = 1e-8;
 
 /// Share of the rounding up to which a coefficient is left out: a sixteenth of it, and a margin.
 const LEFT_OUT: f64 = 1.0 / 64.0;
@@ -69,7 +78,7 @@ pub(super) struct Fit<F> {
     pub(super) zero: [bool; 2],
     /// Whether the edges may be square roots of the distance from either end of the band.
     pub(super) root: [bool; 2],
-    /// Rounding of the square of half the width \[mm²\].
+    /// Rounding of the square of half the width \[mm²\], where no larger one is measured.
     pub(super) noise: f64,
 }
 
@@ -81,24 +90,40 @@ impl<F: FnMut(f64) -> [f64; 2]> Fit<F> {
     pub(super) fn add(&mut self, corners: [f64; 2], stretches: &mut Vec<Stretch>) {
         let shortest = SHORTEST * (corners[1] - corners[0]);
         let first = stretches.len();
-        let mut waiting = vec![corners];
-        while let Some(xi @ [a, b]) = waiting.pop() {
-            let (plain, resolved) = self.over_width(xi);
+        let mut waiting = vec![(corners, self.noise)];
+        while let Some((xi @ [a, b], noise)) = waiting.pop() {
+            let (plain, resolved) = self.over_width(xi, noise);
             let root = (0..2).find(|&end| !resolved && self.root[end] && xi[end] == self.band[end]);
-            let rooted = root.map(|end| self.over_root(xi, end)).filter(|(_, resolved)| *resolved);
-            let many = stretches.len() + waiting.len() > first + MOST_STRETCHES;
+            let rooted = root.map(|end| self.over_root(xi, end, noise)).filter(|(_, resolved)| *resolved);
+            let count = stretches.len() + waiting.len() - first;
             let middle = a + (b - a) / 2.0;
             if let Some((stretch, _)) = rooted {
                 stretches.push(stretch);
-            } else if resolved || b - a <= shortest || many || middle <= a || middle >= b {
+            } else if resolved || b - a <= shortest || count > MOST_STRETCHES || middle <= a || middle >= b {
                 stretches.push(plain);
             } else {
-                waiting.extend([[middle, b], [a, middle]]);
+                let measured = if count > NOISY { self.measured_noise(xi) } else { 0.0 };
+                waiting
+                    .extend([[middle, b], [a, middle]].map(|half| (half, noise.max(NOISE_LEVEL * measured))));
             }
         }
     }
 
-    fn over_width(&mut self, xi: [f64; 2]) -> (Stretch, bool) {
+    /// Measures the rounding of the square of half the width \[mm²\] at three places of a range, by how far it is off the chord of its
+    /// neighbours. It is 0 for a range that is too short.
+    fn measured_noise(&mut self, [a, b]: [f64; 2]) -> f64 {
+        let off_chord = |middle: f64| {
+            let [left, xi, right] = [-CLOSE, 0.0, CLOSE].map(|share| a + (b - a) * (middle + share));
+            let [before, square, after] = [left, xi, right].map(|xi| {
+                let [low, high] = (self.edges)(xi);
+                ((high - low) / 2.0).powi(2)
+            });
+            (square - before - (after - before) * ((xi - left) / (right - left))).abs()
+        };
+        [0.25, 0.5, 0.75].map(off_chord).into_iter().fold(0.0, f64::max)
+    }
+
+    fn over_width(&mut self, xi: [f64; 2], noise: f64) -> (Stretch, bool) {
         let [a, b] = xi;
         let zero = [0, 1].map(|end| self.zero[end] && xi[end] == self.band[end]);
         let (centre, half) = (a + (b - a) / 2.0, (b - a) / 2.0);
@@ -111,21 +136,15 @@ impl<F: FnMut(f64) -> [f64; 2]> Fit<F> {
             (narrowest, nearest) = (narrowest.min(width), nearest.min(far));
             (middle[k], square[k]) = (low + width, width * width / far);
         }
-        let rounding = self.rounding(largest(&middle), narrowest);
-        let (square, first) = Series::new(&square, self.noise / nearest);
+        let rounding = rounding(largest(&middle), narrowest, noise);
+        let (square, first) = Series::new(&square, noise / nearest);
         let (middle, second) = Series::new(&middle, rounding);
         let resolved = first && second;
         let curve = Curve::Width { zero, square, middle };
         (Stretch { xi, curve }, resolved)
     }
 
-    /// Returns the rounding \[mm\] of edges of this size, half the narrowest width of which is given. Where nothing but rounding is
-    /// left of the width, it is as large as its own rounding.
-    fn rounding(&self, size: f64, narrowest: f64) -> f64 {
-        EDGE_ROUNDINGS * f64::EPSILON * size + self.noise / (2.0 * narrowest.max(self.noise.sqrt()))
-    }
-
-    fn over_root(&mut self, xi: [f64; 2], from: usize) -> (Stretch, bool) {
+    fn over_root(&mut self, xi: [f64; 2], from: usize, noise: f64) -> (Stretch, bool) {
         let length = xi[1] - xi[0];
         let (mut low, mut high) = ([0.0; POINTS], [0.0; POINTS]);
         for k in 0..POINTS {
@@ -134,7 +153,7 @@ impl<F: FnMut(f64) -> [f64; 2]> Fit<F> {
             [low[k], high[k]] = (self.edges)(if from == 0 { xi[0] + away } else { xi[1] - away });
         }
         let narrowest = (0..POINTS).map(|k| (high[k] - low[k]) / 2.0).fold(f64::INFINITY, f64::min);
-        let rounding = self.rounding(largest(&low).max(largest(&high)), narrowest);
+        let rounding = rounding(largest(&low).max(largest(&high)), narrowest, noise);
         let [(low, first), (high, second)] = [low, high].map(|values| Series::new(&values, rounding));
         (Stretch { xi, curve: Curve::Root { from, edges: [low, high] } }, first && second)
     }
@@ -193,6 +212,12 @@ impl Stretch {
     fn root(&self, from: usize, xi: f64) -> f64 {
         ((xi - self.xi[from]) / (self.xi[1 - from] - self.xi[from])).clamp(0.0, 1.0).sqrt()
     }
+}
+
+/// Returns the rounding \[mm\] of edges of this size, half the narrowest width of which is given, by that of the square of the latter.
+/// Where nothing but rounding is left of the width, it is as large as its own rounding.
+fn rounding(size: f64, narrowest: f64, noise: f64) -> f64 {
+    EDGE_ROUNDINGS * f64::EPSILON * size + noise / (2.0 * narrowest.max(noise.sqrt()))
 }
 
 /// Returns the product of the distances from the ends with a zero width, and its derivative.

@@ -22,8 +22,11 @@ use crate::placement::on_roller;
 /// not underflow.
 const SMALLEST: f64 = 1e-60;
 
-/// Largest approach \[mm\] and load \[N\]. They are far above any real ones, and their powers do not overflow.
-const LARGEST: f64 = 1e60;
+/// Largest approach \[mm\]. No rail is so high: bodies that sink so deep pass through each other.
+const DEEPEST: f64 = 200.0;
+
+/// Largest load \[N\]. It is far above any real one, and its powers do not overflow.
+const HEAVIEST: f64 = 1e60;
 
 /// Resolves a scene: reads its profiles, prepares the search and checks every value. Paths in the scene are relative to
 /// `folder`. `name` is the title of a scene without a title.
@@ -171,8 +174,13 @@ fn checked(key: &str, value: f64, by: ApproachBy) -> Result<ApproachBy> {
         let advice = "leave the load out to get the geometry alone, or give one";
         return Err(Error::new(key, "0", "a positive load in N", advice));
     }
-    if value > 0.0 && !(SMALLEST..=LARGEST).contains(&value) {
-        let expected = format!("0, or {SMALLEST:e} to {LARGEST:e}");
+    let largest = if load { HEAVIEST } else { DEEPEST };
+    if value > 0.0 && !(SMALLEST..=largest).contains(&value) {
+        let expected = if load {
+            format!("{SMALLEST:e} to {largest:e} N")
+        } else {
+            format!("0, or {SMALLEST:e} to {largest} mm")
+        };
         return Err(Error::new(key, format!("{value:e}"), expected, "check the unit"));
     }
     Ok(by)

@@ -203,16 +203,22 @@ impl<'a> Surface<'a> {
     fn span(&self, xi: f64, index: usize, e: [f64; 2], u_max: f64) -> Span {
         let (piece, near) = (&self.section.pieces[index], self.sides()[0]);
         let branch = &self.section.branches[piece.branch];
-        let (begin, on_profile) = if e[0] > 0.0 { piece.ends[near] } else { branch.point(xi) };
+        let fold = if e[0] > 0.0 { self.fold(xi, branch, e) } else { None };
+        let e = [fold.unwrap_or(e[0]), e[1]];
+        let (begin, on_profile) = match fold {
+            Some(e) => branch.point(self.abscissa(xi, e)),
+            None if e[0] > 0.0 => piece.ends[near],
+            None => branch.point(xi),
+        };
         let SpanLanes { height: [height], w: [w], u: [[u0], _], .. } =
             self.span_from(&[xi], branch, [e[0]], (begin, [on_profile]));
         let span = Span { e, u: [u0, f64::INFINITY], branch: piece.branch, piece: index, height, w, begin };
         if e[1] > FAR_END * u_max / (2.0 * w) && w > 0.0 {
             return span;
         }
-        let [_, u1] = self.leaves(xi, piece);
+        let [e1, u1] = self.folds(xi, piece, e[0]);
         // If the column leaves the wheel before the profile ends, that end is never met.
-        let e1 = if u1.is_finite() { e[1] } else { f64::INFINITY };
+        let e1 = if u1.is_finite() { e1 } else { f64::INFINITY };
         Span { e: [e[0], e1], u: [u0, u1], ..span }
     }
 
@@ -252,6 +258,28 @@ impl<'a> Surface<'a> {
         let e = if self.sin == 0.0 { f64::INFINITY } else { (xi - piece.xi[far]) / self.sin };
         let w = self.axle_distance(xi, piece.ends[far].1 + e * self.cos);
         [e, if w > 0.0 { e * (2.0 * w + e) } else { f64::INFINITY }]
+    }
+
+    /// Returns e \[mm\] and u \[mm²\] at which a column that entered a piece at `e0` \[mm\] leaves it, or folds back before.
+    pub(super) fn folds(&self, xi: f64, piece: &Piece, e0: f64) -> [f64; 2] {
+        let [e1, u1] = self.leaves(xi, piece);
+        let branch = &self.section.branches[piece.branch];
+        let fold = if u1.is_finite() { self.fold(xi, branch, [e1, e0]) } else { None };
+        let Some(e) = fold else { return [e1, u1] };
+        [e, e * (2.0 * self.axle_distance(xi, branch.height(self.abscissa(xi, e)) + e * self.cos) + e)]
+    }
+
+    /// Returns the sagitta \[mm\] at which a column over a branch folds, if u falls where the sagitta is `from` and grows at
+    /// `to`. Next to a wall of the profile the surface passes the line of constant (ξ, η) thrice: what lies between the wall and the fold
+    /// faces away.
+    fn fold(&self, xi: f64, branch: &Branch, [from, to]: [f64; 2]) -> Option<f64> {
+        // du/de halved: w + e (1 + dw/de), where dw/de = −cosθ dζ/de.
+        let growth = |e: f64| {
+            let at = self.abscissa(xi, e);
+            let rise = self.cos - self.sin * branch.chord_slope(at, at);
+            self.axle_distance(xi, branch.height(at) + e * self.cos) + e * (1.0 - self.cos * rise)
+        };
+        if growth(from) < 0.0 { bracketed(growth, from, to) } else { None }
     }
 
     /// Returns w \[mm\] of the point with height ζ = `height` \[mm\] of the column at ξ.

@@ -41,8 +41,8 @@ const CONTACT_STEPS: usize = 12;
 /// Lift of the wheel for closest distances, as a share of R, on top of the approach.
 const LIFT: f64 = 1e-4;
 
-/// Most cells of the coarse mesh of a body: some 200 MB.
-const MOST_CELLS: f64 = 1e6;
+/// Most cells of the coarse mesh of a body: some 700 MB for three.
+const MOST_CELLS: f64 = 1e5;
 
 /// Checks the answers of `answer` for s and normals at (ξ, η) of a placed pair.
 ///
@@ -50,7 +50,7 @@ const MOST_CELLS: f64 = 1e6;
 ///
 /// # Errors
 /// A placed pair whose profiles have points that are not finite, or a window that is not finite; bodies so large that their
-/// meshes take more than 10⁶ cells.
+/// meshes take more than 10⁵ cells.
 pub fn check(
     placement: &Placement,
     request: &Request,

@@ -259,11 +259,12 @@ fn beyond_steps(wheel: &Surface<'_>, index: usize, [xi, u]: [&Lanes; 2], between
         // Columns that begin beyond the piece in front do not pass the step; a level wheel's columns pass nothing.
         let far = before.xi[wheel.sides()[1]];
         let passing = |k: usize| (xi[k] - far) * wheel.sin > 0.0;
+        let near = |k: usize| ((xi[k] - before.xi[wheel.sides()[0]]) / wheel.sin).max(0.0);
         if !(0..MANY).any(passing) {
             return true;
         }
         let beyond: Lanes =
-            lanes(|k| if passing(k) { u[k] - wheel.leaves(xi[k], before)[1] } else { f64::INFINITY });
+            lanes(|k| if passing(k) { u[k] - wheel.folds(xi[k], before, near(k))[1] } else { f64::INFINITY });
         let margin = if between { widest_step(&beyond) } else { 0.0 };
         beyond.iter().all(|&beyond| beyond > margin)
     })

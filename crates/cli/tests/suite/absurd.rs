@@ -1,5 +1,5 @@
 //! Absurd numbers: random scenes in which some numbers are a thousand times to 10³⁰⁰ times what they were, negative or zero. Each
-//! ends in a result or an error, without a panic and within a gigabyte.
+//! ends in a result or an error, without a panic, within ten seconds and a gigabyte.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -13,11 +13,11 @@ use wheelrail_report::random::Random;
 /// Seed of the scenes, printed with every failure.
 const SEED: u64 = 0x000A_B50B_D001;
 
-/// Address space that a run gets \[kB\], far below what a machine has: an allocation beyond it aborts.
-const MEMORY: u64 = 4_000_000;
+/// Address space that a run gets \[kB\]: an allocation beyond it aborts.
+const MEMORY: u64 = 1_000_000;
 
-/// After this many seconds a run that will never end is ended, so that the suite does.
-const STUCK: u64 = 100;
+/// After this many seconds a run is ended.
+const STUCK: u64 = 10;
 
 /// Scenes with every way to place bodies, and most tables.
 fn bases() -> [Value; 6] {
