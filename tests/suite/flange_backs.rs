@@ -1,5 +1,6 @@
 //! Flange backs that rest on wing rails and guard rails: random rails of two heads against brute force in space.
 
+use crate::in_time::InTime;
 use wheelrail::patch::{Patch, Window};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Profile, Segment};
@@ -255,6 +256,7 @@ fn resting(state: &mut u64, yawed: bool) -> (Scene, Placement, Contact) {
 fn flange_backs_on_wings_and_guards_are_feasible_with_the_patch_of_their_own_flank() {
     let (mut state, mut compared, mut reaching) = (20, 0, 0);
     for number in 0..campaign::scenes() {
+        let _in_time = InTime::begin();
         let (scene, placement, _) = resting(&mut state, number % 2 == 1);
         let space = Space::new(&scene, &placement);
         let at = format!("scene {number}, {:?}, χ = {}", space.at, placement.skew());

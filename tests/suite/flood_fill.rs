@@ -1,6 +1,7 @@
 //! Patches of random pairs against a flood fill of a fine grid: points, components, area, cut by the window; and automatic
 //! grids, which never cut what they are for.
 
+use crate::in_time::InTime;
 use rayon::prelude::*;
 use wheelrail::case::contacts;
 use wheelrail::mesh;
@@ -396,7 +397,11 @@ pub fn check_all(
     };
     let one = |number: u64| {
         let Some(case) = case(number) else { return Open::default() };
-        let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| check(&case)));
+        let in_time = || {
+            let _in_time = InTime::begin();
+            check(&case)
+        };
+        let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(in_time));
         if outcome.is_err() != known.contains(&case.name.as_str()) {
             failed.lock().expect("a list").push(case.name.clone());
         }

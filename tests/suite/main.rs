@@ -21,6 +21,7 @@ mod flood_fill;
 mod hard_cases;
 mod hard_scenes;
 mod in_place;
+mod in_time;
 mod independent_check;
 mod interpenetration;
 mod invariances;

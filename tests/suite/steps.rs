@@ -15,6 +15,7 @@ use wheelrail_report::random::Random;
 use crate::campaign;
 use crate::conformal_brute::oracle::{Line, Revolved};
 use crate::conformal_brute::placements::{KINDS, Placed, Stock};
+use crate::in_time::InTime;
 
 /// Largest difference of s at single points from brute force \[mm\].
 const DIFFERENCE: f64 = 1e-6;
@@ -205,6 +206,7 @@ fn every_method_knows_steps_and_ends_of_random_scenes() {
         let grids = (0..campaign::scenes()).into_par_iter().flat_map_iter(|seed| {
             let mut dice = Random::new(seed);
             stock.placed(kind, seed).into_iter().map(move |placed| {
+                let _in_time = InTime::begin();
                 let grid = Grid::random(placed, &mut dice);
                 Tally::of(&grid, &mut dice)
             })

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use crate::campaign;
 use crate::common::{approached_references, folder, profile, two_crowns};
+use crate::in_time::InTime;
 use wheelrail::case::{Run, SILENT, contacts};
 use wheelrail::mesh::TriangleMesh;
 use wheelrail::patch::{Patch, Window};
@@ -190,6 +191,7 @@ fn random_chains_keep_their_angles() {
     let mut random = Random::new(9);
     let (mut meshes, mut sharp, mut refused) = (0, 0, 0);
     for number in 0..campaign::scenes() {
+        let _in_time = InTime::begin();
         let steepest = 10f64.powf(random.between(-2.0, 0.2));
         let text = format!(
             "[rail]\nsegments = [{}]\n[wheel]\nsegments = [{}]\nradius = {:?}\n[contact]\noffset = {:?}\nyaw = {:?}\n",
@@ -251,6 +253,7 @@ fn windows_that_cut_at_sharp_corners_keep_the_angles() {
     let mut random = Random::new(31);
     let (mut sharp, mut sharpest, mut refused) = (0, f64::INFINITY, 0);
     for number in 0..campaign::scenes() {
+        let _in_time = InTime::begin();
         let crown = |radius: f64, reach: f64| {
             profile(Arc::about([0.0, -radius], radius, Half::Upper, [-reach, reach]).expect("an arc"))
                 .expect("a profile")
