@@ -288,7 +288,9 @@ fn beside_profile_ends(patch: &Patch, cell: f64) -> f64 {
 
 /// Every point, the components, the area and the cuts of a patch against fills.
 pub fn check(case: &Case) -> Open {
+    let in_time = InTime::begin();
     let patch = Patch::new(&case.placement, case.approach, &case.window);
+    drop(in_time);
     let mut n = POINTS[0];
     let mut before = case.filled(&case.window, n);
     check_points(case, &patch, &before);
@@ -397,11 +399,7 @@ pub fn check_all(
     };
     let one = |number: u64| {
         let Some(case) = case(number) else { return Open::default() };
-        let in_time = || {
-            let _in_time = InTime::begin();
-            check(&case)
-        };
-        let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(in_time));
+        let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| check(&case)));
         if outcome.is_err() != known.contains(&case.name.as_str()) {
             failed.lock().expect("a list").push(case.name.clone());
         }

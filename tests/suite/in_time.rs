@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-/// Time that a scene may take, brute force included.
+/// Time that a scene may take.
 const LIMIT: Duration = Duration::from_secs(10);
 
 /// Fails where it is dropped if its scene took too long.

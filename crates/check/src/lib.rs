@@ -20,6 +20,7 @@ mod relation;
 mod report;
 mod request;
 mod sampler;
+mod site;
 
 pub use compare::check;
 pub use floor::Floor;
@@ -27,3 +28,4 @@ pub use normal_gap::{NormalGapReport, NormalGapSample, check_normal_gap};
 pub use relation::RELATION;
 pub use report::{Counts, Differences, Distances, Orders, Report};
 pub use request::{Answer, Request};
+pub use site::{SiteReport, check_site};

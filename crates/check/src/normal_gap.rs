@@ -3,6 +3,7 @@
 
 use std::fmt;
 
+use serde::Serialize;
 use wheelrail::conformal::NormalGap;
 use wheelrail::error::{Error, Result};
 use wheelrail::nalgebra::{Unit, Vector3};
@@ -59,7 +60,7 @@ impl NormalGapSample {
 }
 
 /// What the comparison found.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct NormalGapReport {
     /// Number of points that were compared.
     pub points: usize,

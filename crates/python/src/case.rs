@@ -3,13 +3,15 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
-use wheelrail::case::{self, ApproachBy, Doubt, OutputFormat, RUN_FOLDER, SweepDoubts, write};
+use wheelrail::case::{self, ApproachBy, Doubt, OutputFormat, RUN_FOLDER, SweepDoubts, sweep_page, write};
 use wheelrail::files::Folder;
 use wheelrail::scene::{self, Given};
-use wheelrail::search::{Position, Roll};
+use wheelrail::search::{Position, Roll, WheelsetOnTrack};
 use wheelrail::{Error, Result, Scene};
+use wheelrail_check::check_site;
 
 use crate::contact::Contact;
 use crate::errors::{OrRaise, exception, say, warn};
@@ -18,7 +20,7 @@ use crate::long::{waited, watched};
 use crate::place::Spot;
 use crate::positions::positions;
 use crate::profile::Profile;
-use crate::sweep::{Asked, sweep};
+use crate::sweep::{Asked, Drawn, sweep};
 use crate::text::{keyed, parsed, to_json, to_python};
 use crate::values::made;
 
@@ -190,12 +192,7 @@ impl Case {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let case = &self.inner.case;
-        let case::Place::Wheelset { system, position } = &case.standing().place else {
-            let expected = "[track] and [wheelset]";
-            let error =
-                Error::new("sweep", "a single wheel", expected, "a sweep moves a wheelset over its track");
-            return Err(exception(error));
-        };
+        let (system, position) = self.wheelset()?;
         let own = own_angles(py, position)?;
         let positions = positions(lateral, yaw.or(Some(&own[0])), roll.or(Some(&own[1])))?;
         let question = case.question();
@@ -210,6 +207,41 @@ impl Case {
         let radii = [left.unwrap_or(right), right].map(wheelrail::Pair::wheel_radius);
         let doubts = SweepDoubts::new(right, left);
         sweep(py, (system, &doubts, radii), positions, asked, progress.as_ref())
+    }
+
+    /// Compare every contact with triangle meshes that parry3d measures, as `wheelrail check` does.
+    ///
+    ///     >>> [check.agrees for check in case.check()]
+    ///     [True, True]
+    ///
+    /// Raises InputError for a case without contacts, and for bodies whose meshes are too large.
+    fn check<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        let case = self.inner.case.clone();
+        let reports = waited(py, move |watch| {
+            let checked = |site: &case::Site| {
+                watch.go_on()?;
+                check_site(site).map(|report| (site.name(), report))
+            };
+            case::sites(&case)?.iter().map(checked).collect::<Result<Vec<_>>>()
+        })?;
+        let value = |(name, report): (String, wheelrail_check::SiteReport)| {
+            let values = serde_json::to_value(&report).unwrap_or_default();
+            made(py, "Check", (name, report.agrees(), to_python(py, &values)?, report.to_string()))
+        };
+        reports.into_iter().map(value).collect()
+    }
+
+    /// Draw the page of a table of `sweep`: the usual curves, and the profiles at the position under the pointer. Returns its
+    /// text; the lateral displacements have to ascend.
+    ///
+    /// Raises InputError for a case without a wheelset, and for displacements that do not ascend.
+    fn sweep_page(&self, table: &Bound<'_, PyAny>) -> PyResult<String> {
+        let (system, _) = self.wheelset()?;
+        let columns = table.getattr("_columns");
+        let columns = columns.map_err(|_| PyTypeError::new_err("table: expected the table of a sweep"))?;
+        let Drawn { columns, lateral, about } = Drawn::of(columns.cast()?)?;
+        let page = sweep_page(&self.inner.case, system, &columns, &lateral, &about).or_raise()?;
+        Ok(String::from_utf8_lossy(&page.html()).into_owned())
     }
 
     /// Compute the case and write its files into the folder `out`, which appears whole or not at all.
@@ -297,6 +329,17 @@ impl Case {
             say(py, "measured", warning, "see `Case.warnings`")?;
         }
         Ok(case)
+    }
+
+    /// Gives the wheelset of a case and its position.
+    fn wheelset(&self) -> PyResult<(&WheelsetOnTrack, &Position)> {
+        let case::Place::Wheelset { system, position } = &self.inner.case.standing().place else {
+            let expected = "[track] and [wheelset]";
+            let error =
+                Error::new("sweep", "a single wheel", expected, "a sweep moves a wheelset over its track");
+            return Err(exception(error));
+        };
+        Ok((system, position))
     }
 
     /// Gives everything computed from the case, once.

@@ -1,6 +1,7 @@
 //! Sweeps over many positions.
 
 use numpy::PyArray1;
+use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use wheelrail::case::{
@@ -111,43 +112,61 @@ pub(crate) fn doubt_words() -> Vec<String> {
 /// Raises InputError for displacements that do not ascend.
 #[pyfunction]
 pub(crate) fn sweep_picture(columns: &Bound<'_, PyDict>, title: &str) -> PyResult<String> {
-    let column = |name: &str| -> PyResult<Vec<f64>> {
-        let column =
-            columns.get_item(name)?.ok_or_else(|| pyo3::exceptions::PyKeyError::new_err(name.to_owned()))?;
-        values(name, &column)
-    };
-    let (position, right, contact) = (column("position")?, column("right")?, column("contact")?);
-    let lateral = column("lateral_mm")?;
-    let mut numbers = Vec::new();
-    for known in &COLUMNS {
-        numbers.push(if known.is_number() { column(known.name)? } else { Vec::new() });
+    let Drawn { columns, lateral, about } = Drawn::of(columns)?;
+    Ok(curves(&columns, &lateral, title, &about).or_raise()?.svg())
+}
+
+/// The positions of a table that a picture shows.
+pub(crate) struct Drawn {
+    pub(crate) columns: Columns,
+    /// Their lateral displacements \[mm\].
+    pub(crate) lateral: Vec<f64>,
+    /// What stands below the title.
+    pub(crate) about: String,
+}
+
+impl Drawn {
+    /// Chooses positions from the columns of a table, arrays by their names.
+    pub(crate) fn of(columns: &Bound<'_, PyDict>) -> PyResult<Self> {
+        let column = |name: &str| -> PyResult<Vec<f64>> {
+            let column = columns.get_item(name)?.ok_or_else(|| PyKeyError::new_err(name.to_owned()))?;
+            values(name, &column)
+        };
+        let [position, right, contact, kink] = ["position", "right", "contact", "kink"].map(column);
+        let (position, right, contact, kink) = (position?, right?, contact?, kink?);
+        let lateral = column("lateral_mm")?;
+        let mut numbers = Vec::new();
+        for known in &COLUMNS {
+            numbers.push(if known.is_number() { column(known.name)? } else { Vec::new() });
+        }
+        // Positions without contact are not in the table; the others are numbered anew, and evenly chosen.
+        let mut touching = position.clone();
+        touching.dedup();
+        let stride = touching.len().div_ceil(MOST_DRAWN).max(1);
+        let drawn: Vec<f64> = touching.iter().step_by(stride).copied().collect();
+        let mut chosen = Columns::default();
+        let mut laterals = Vec::new();
+        let mut next = 0;
+        for row in 0..position.len() {
+            while next < drawn.len() && drawn[next] < position[row] {
+                next += 1;
+            }
+            if drawn.get(next) != Some(&position[row]) {
+                continue;
+            }
+            if laterals.len() <= next {
+                laterals.push(lateral[row]);
+            }
+            chosen.position.push(next as u64);
+            chosen.right.push(right[row] != 0.0);
+            chosen.contact.push(contact[row] as u32);
+            chosen.kink.push(kink[row] != 0.0);
+            for (to, from) in chosen.numbers.iter_mut().zip(&numbers) {
+                to.extend(from.get(row));
+            }
+        }
+        let about =
+            format!("{} positions; lowest contact of each side, in its own profile axes", touching.len());
+        Ok(Self { columns: chosen, lateral: laterals, about })
     }
-    // Positions without contact are not in the table; the others are numbered anew, and evenly chosen.
-    let mut touching = position.clone();
-    touching.dedup();
-    let stride = touching.len().div_ceil(MOST_DRAWN).max(1);
-    let drawn: Vec<f64> = touching.iter().step_by(stride).copied().collect();
-    let mut chosen = Columns::default();
-    let mut laterals = Vec::new();
-    let mut next = 0;
-    for row in 0..position.len() {
-        while next < drawn.len() && drawn[next] < position[row] {
-            next += 1;
-        }
-        if drawn.get(next) != Some(&position[row]) {
-            continue;
-        }
-        if laterals.len() <= next {
-            laterals.push(lateral[row]);
-        }
-        chosen.position.push(next as u64);
-        chosen.right.push(right[row] != 0.0);
-        chosen.contact.push(contact[row] as u32);
-        chosen.kink.push(false);
-        for (to, from) in chosen.numbers.iter_mut().zip(&numbers) {
-            to.extend(from.get(row));
-        }
-    }
-    let about = format!("{} positions; lowest contact of each side, in its own profile axes", touching.len());
-    Ok(curves(&chosen, &laterals, title, &about).or_raise()?.svg())
 }

@@ -134,3 +134,21 @@ def test_cases_are_pickled_with_their_profiles() -> None:
 def test_the_schema_is_that_of_the_command_line() -> None:
     assert {"rail", "wheel", "grid"} <= wr.schema()["properties"].keys()
     assert json.dumps(wr.schema())
+
+
+def test_contacts_are_checked_and_sweeps_have_pages() -> None:
+    case = wr.Case.from_dict(TWO_SIDES)
+    checks = case.check()
+    assert [check.name for check in checks] == [contact.name for contact in case.contacts]
+    assert all(check.agrees for check in checks)
+    assert str(checks[0]) == checks[0].text and "parry3d" in checks[0].text
+    assert checks[0].values["plane"]["counts"] and checks[0].values["rail"] is None
+    assert pickle.loads(pickle.dumps(checks[0])) == checks[0]
+    table = case.sweep(np.linspace(-4.0, 4.0, 9))
+    page = case.sweep_page(table)
+    assert page.startswith("<!") and case.scene["track"] and "</html>" in page
+    with pytest.raises(wr.InputError):
+        case.sweep_page(case.sweep([1.0, 0.0]))
+    single = wr.Case.from_dict({**{key: TWO_SIDES[key] for key in ("rail", "wheel")}, "contact": {"offset": 2.0}})
+    with pytest.raises(wr.InputError, match="track"):
+        single.sweep_page(table)

@@ -18,7 +18,7 @@ What there is:
     Pair, Wheelset            bodies placed: touch, placed, sweep, conicity
     Contact                   a place of contact: separation, normals, normal_gap, hertz, surfaces
     Patch, Component, Mesh    the patch: loops, areas, meshes, files of every format
-    Case                      a scene with all it can say, from a file, a dict or TOML: contacts, files, view, sweep, run
+    Case                      a scene with all it can say, from a file, a dict or TOML: contacts, files, view, sweep, check, run
     Table                     the rows of a sweep, for pandas, polars and Arrow
     wheelrail.dask            studies past one machine
     wheelrail.tamaas          pressures
@@ -29,7 +29,7 @@ too much of something `LimitError`; all are `Error`. What is allowed but seldom 
 
 from ._errors import Doubt, Error, FileError, GeometryError, InputError, LimitError
 from ._table import Table
-from ._values import Component, Feasibility, Hertz, Mesh, Run, Touch, WheelTouch
+from ._values import Check, Component, Feasibility, Hertz, Mesh, Run, Touch, WheelTouch
 from ._wheelrail import (
     Case,
     Contact,
@@ -50,6 +50,7 @@ from ._wheelrail import (
 
 __all__ = [
     "Case",
+    "Check",
     "Component",
     "Contact",
     "Doubt",

@@ -183,6 +183,33 @@ class Run(_Value):
         return [loads((part / "summary.json").read_text("utf-8")) for part in self.parts]
 
 
+class Check(_Value):
+    """What triangle meshes, measured by parry3d, say of a contact.
+
+    >>> case = wr.Case.from_dict({
+    ...     "rail": {"profile": wr.rail("60E1"), "rotate": "1:40"},
+    ...     "wheel": {"profile": wr.wheel("S1002"), "radius": 460.0},
+    ...     "contact": {"offset": 2.0},
+    ...     "patch": {"load": 60e3},
+    ... })
+    >>> [check.agrees for check in case.check()]
+    [True]
+    """
+
+    name: str
+    """The contact."""
+    agrees: bool
+    """Whether separations, normals and distances agree within the errors of the meshes."""
+    values: dict[str, Any]
+    """All figures of the comparison."""
+    text: str
+    """The same in lines."""
+
+    def __str__(self) -> str:
+        """Return the lines that `wheelrail check` prints."""
+        return self.text
+
+
 class Component(_Value):
     """One connected component of a patch. Lengths in mm.
 
