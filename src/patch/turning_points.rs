@@ -13,9 +13,12 @@ pub fn turning_points(placement: &Placement, a: f64, b: f64) -> Vec<f64> {
     let mut all = vec![a];
     for pair in ends.windows(2) {
         let middle = pair[0] + (pair[1] - pair[0]) / 2.0;
-        let (rail, wheel) = (&placement.rail().section, &placement.wheel().section);
-        if let (Some(rail), Some(wheel)) = (rail.branch_at(middle), wheel.branch_at(middle)) {
-            all.extend(stationary_points(rail, wheel, pair[0], pair[1]));
+        let bodies = [placement.rail(), placement.wheel()].map(|body| body.section.branch_and_slopes(middle));
+        if let [Some((rail, slope_r)), Some((wheel, slope_w))] = bodies {
+            // Bounds over whole pieces are found once for a placement, and settle most stretches.
+            if slope_w[0] <= slope_r[1] && slope_r[0] <= slope_w[1] {
+                all.extend(stationary_points(rail, wheel, pair[0], pair[1]));
+            }
         }
         all.push(pair[1]);
     }

@@ -17,6 +17,8 @@ struct RailStretch<'v> {
     rail: &'v Branch,
     /// Bounds of ds/dξ along the leg.
     slopes: [f64; 2],
+    /// Whether the rail may stand upright.
+    upright: bool,
 }
 
 /// Appends the intervals of ξ \[mm\], in order, over which s along a valley or ridge is monotone inside a given range. They
@@ -47,7 +49,8 @@ pub(crate) fn monotone(
                 continue;
             }
             let slopes = [wheel[0] - bounds[1], wheel[1] - bounds[0]];
-            let stretch = RailStretch { valleys, leg, rail: &rail.branches[piece.branch], slopes };
+            let upright = bounds.iter().any(|slope| slope.is_infinite());
+            let stretch = RailStretch { valleys, leg, rail: &rail.branches[piece.branch], slopes, upright };
             turns.clear();
             if stretch.turns([left, right], &matters, &mut turns) {
                 turns.retain(|turn| left < *turn && *turn < right);
@@ -74,8 +77,16 @@ impl RailStretch<'_> {
         if !(least.is_nan() || most.is_nan() || matters([least, most])) {
             return false;
         }
-        if self.slopes[0] <= 0.0 && self.slopes[1] >= 0.0 {
-            let mut places = Vec::new();
+        if self.slopes[0] > 0.0 || self.slopes[1] < 0.0 {
+            return true;
+        }
+        let mut places = Vec::new();
+        if self.upright {
+            let ends = xi.map(|xi| self.rail.parameter(xi));
+            let angles = |parameters: &Lanes| parameters.map(|parameter| self.angle_over_rail(xi, parameter));
+            sign_changes(angles, ends, ANGLE_NOISE, &mut places);
+            turns.extend(places.into_iter().map(|parameter| self.rail.station_and_curvature(parameter).0.x));
+        } else {
             let angles = |at: &Lanes| at.map(|at| self.angle(at));
             sign_changes(angles, [ends[0].min(ends[1]), ends[0].max(ends[1])], ANGLE_NOISE, &mut places);
             turns.extend(places.into_iter().map(|at| self.valleys.place(self.leg, at).0));
@@ -94,6 +105,14 @@ impl RailStretch<'_> {
     fn angle(&self, at: f64) -> f64 {
         let (xi, _, direction) = self.valleys.place(self.leg, at);
         let rail = self.rail.station(xi);
+        direction.y * rail.cos - direction.x * rail.sin
+    }
+
+    /// Returns the same over the rail's own parameter, of which it is a smooth function where the rail stands upright.
+    fn angle_over_rail(&self, [left, right]: [f64; 2], parameter: f64) -> f64 {
+        let rail = self.rail.station_and_curvature(parameter).0;
+        let at = self.valleys.parameter(self.leg, rail.x.clamp(left, right));
+        let (_, _, direction) = self.valleys.place(self.leg, at);
         direction.y * rail.cos - direction.x * rail.sin
     }
 }

@@ -6,14 +6,15 @@ use crate::numerics::lanes::Lanes;
 use crate::numerics::polynomial::{derivative, value};
 use crate::numerics::sign_changes::sign_changes;
 
-/// Difference of slopes whose sign does not count. Points that are missed change the gap by less than 1e-13 of their distance.
+/// Difference of slopes or sine of an angle whose sign does not count. Points that are missed change the gap by less than 1e-13 of their distance.
 const SLOPE_NOISE: f64 = 1e-13;
 
 /// Returns all ξ inside (a, b) where ζ^W(ξ) − ζ^R(ξ) is stationary, ascending. `a` and `b` \[mm\] must be within both
 /// branches.
 ///
 /// Method: for lines and arcs the sines of the two tangent angles are linear in ξ, so that there is at most one such point,
-/// in closed form. Otherwise bounds of both slopes prove that there is no point, or all sign changes of their difference are found.
+/// in closed form. Otherwise bounds of both slopes prove that there is no point, or all sign changes of their difference are found, or
+/// beside an upright end those of the sine of the angle between the tangents.
 /// Degenerate case: if the gap changes by less than its rounding, the result is the middle of the interval.
 pub fn stationary_points(rail: &Branch, wheel: &Branch, a: f64, b: f64) -> Vec<f64> {
     if let (BranchShape::Arc(rail), BranchShape::Arc(wheel)) = (&rail.shape, &wheel.shape) {
@@ -21,11 +22,27 @@ pub fn stationary_points(rail: &Branch, wheel: &Branch, a: f64, b: f64) -> Vec<f
     }
     let mut found = Vec::new();
     let [slope_r, slope_w] = [rail, wheel].map(|branch| branch.slope_bounds(a, b));
-    if a < b && slope_w[0] <= slope_r[1] && slope_w[1] >= slope_r[0] {
+    let upright = |slopes: [f64; 2]| slopes.iter().any(|slope| slope.is_infinite());
+    if a >= b || slope_w[0] > slope_r[1] || slope_w[1] < slope_r[0] {
+        return found;
+    }
+    if upright(slope_r) || upright(slope_w) {
+        // Where a branch stands upright its slope has a pole. The sine of the angle has none over that branch's own parameter.
+        let (own, other) = if upright(slope_r) { (rail, wheel) } else { (wheel, rail) };
+        let at = |parameter: f64| own.station_and_curvature(parameter).0;
+        let sine = |parameter: f64| {
+            let here = at(parameter);
+            let there = other.station(here.x.clamp(a, b));
+            here.sin * there.cos - here.cos * there.sin
+        };
+        let ends = [a, b].map(|xi| own.parameter(xi));
+        sign_changes(|parameters: &Lanes| parameters.map(sine), ends, SLOPE_NOISE, &mut found);
+        found.iter_mut().for_each(|parameter| *parameter = at(*parameter).x);
+    } else {
         let slope = |xi: f64| wheel.chord_slope(xi, xi) - rail.chord_slope(xi, xi);
         sign_changes(|xi: &Lanes| xi.map(slope), [a, b], SLOPE_NOISE, &mut found);
-        found.retain(|xi| a < *xi && *xi < b);
     }
+    found.retain(|xi| a < *xi && *xi < b);
     found
 }
 

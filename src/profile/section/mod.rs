@@ -125,6 +125,13 @@ impl Section {
         self.pieces_from(xi).first().filter(|piece| piece.xi[0] <= xi)
     }
 
+    /// Returns the branch of the envelope at ξ, with bounds of ζ′ over its whole piece.
+    pub(crate) fn branch_and_slopes(&self, xi: f64) -> Option<(&Branch, [f64; 2])> {
+        let piece = self.pieces.len() - self.pieces_from(xi).len();
+        let branch = self.pieces.get(piece).filter(|piece| piece.xi[0] <= xi)?.branch;
+        Some((&self.branches[branch], self.slopes()[piece]))
+    }
+
     /// Returns the pieces of the envelope that do not end before ξ.
     pub(crate) fn pieces_from(&self, xi: f64) -> &[Piece] {
         &self.pieces[self.pieces.partition_point(|piece| piece.xi[1] < xi)..]
