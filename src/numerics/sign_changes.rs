@@ -8,23 +8,36 @@ use super::roots::bracketed;
 /// functions; noise of some hundred roundings does not look unresolved.
 const RESOLVED: f64 = 1e-13;
 
+/// Multiple of the last coefficients that the sum of all that are left out may reach. Those of a function with a kink fall so slowly
+/// that it reaches some 16.
+const LEFT_OUT: f64 = 256.0;
+
 /// Share of the first interval at which a part is not halved again: there the function jumps, ends or touches zero.
 const SHORTEST: f64 = 1e-10;
 
 /// Size of a function, in units of its error, up to which it is zero: the sum of 15 coefficients that are rounding is smaller.
 const ZERO: f64 = 16.0;
 
-/// Number of batches after which nothing is halved any more. A touched zero takes 80; only a function whose noise is larger than it
-/// is said to be takes more than some hundred.
+/// Number of batches after which nothing is halved any more. A touched zero takes 80.
 const MOST_BATCHES: usize = 1024;
+
+/// Number of batches from which on the noise is measured, by one more batch for every interval that is halved: it may be larger than it
+/// is said to be.
+const NOISY: usize = 16;
+
+/// Length of the interval in which noise is measured, as a share of the one that is halved. What is smooth bends by its square.
+const CLOSE: f64 = 1e-8;
+
+/// Noise that counts as such, as a multiple of the largest that is measured at 16 places.
+const NOISE_LEVEL: f64 = 4.0;
 
 /// Finds every place inside an interval at which a function changes its sign, ascending, and perhaps some at which it only touches
 /// zero. `f` gives the values at 16 places; `noise` is the size of their rounding. `f` must be smooth but at some places.
 ///
-/// Method: the function is interpolated at 16 Chebyshev points, and the interval halved, until the last coefficients are rounding.
-/// The sum of |c_k|, k ≥ 1, then proves that there is no zero, or that of the derivative that there is at most one; where they prove
+/// Method: the function is interpolated at 16 Chebyshev points. The sum of |c_k|, k ≥ 1, and a multiple of the last of them, prove that
+/// there is no zero; where the last coefficients are rounding, the derivative's prove that there is at most one. Where they prove
 /// neither, the interval is halved. Accuracy: noise over slope. Two changes may be missed only if |f| stays below its noise
-/// between them.
+/// between them. Noise that is larger than it is said to be is measured where halving does not help.
 /// Cost: 16 values for most intervals. Degenerate: no place where `f` is NaN.
 pub fn sign_changes(
     mut f: impl FnMut(&Lanes) -> Lanes,
@@ -34,9 +47,9 @@ pub fn sign_changes(
 ) {
     let first = found.len();
     let shortest = SHORTEST * (interval[1] - interval[0]);
-    let mut waiting = vec![interval];
+    let mut waiting = vec![(interval, noise)];
     let mut batches = 0;
-    while let Some([a, b]) = waiting.pop() {
+    while let Some(([a, b], noise)) = waiting.pop() {
         let (middle, half) = (a + (b - a) / 2.0, (b - a) / 2.0);
         let place = |t: f64| (middle + half * t).clamp(a, b);
         let values = f(&lanes(|k| place(NODES[k])));
@@ -44,15 +57,16 @@ pub fn sign_changes(
         let short = half <= shortest || middle <= a || middle >= b || batches > MOST_BATCHES;
         if values.iter().any(|value| value.is_nan()) {
             if !short && values.iter().any(|value| !value.is_nan()) {
-                waiting.extend([[middle, b], [a, middle]]);
+                waiting.extend([[middle, b], [a, middle]].map(|half| (half, noise)));
             }
             continue;
         }
         let c = coefficients_by_vectors(&values);
         let error = noise + RESOLVED * largest(&values);
         let others = c[1..].iter().map(|c| c.abs()).sum::<f64>();
-        let resolved = c[c.len() - PROOF..].iter().all(|c| c.abs() <= error);
-        if resolved && c[0].abs() > others + error {
+        let last = c[c.len() - PROOF..].iter().fold(0.0, |last: f64, c| last.max(c.abs()));
+        let resolved = last <= error;
+        if c[0].abs() > others + if resolved { error } else { LEFT_OUT * last } {
             continue;
         }
         let slope = derivative(&c);
@@ -65,10 +79,22 @@ pub fn sign_changes(
         } else if short || largest(&values) <= ZERO * error {
             found.push(middle);
         } else {
-            waiting.extend([[middle, b], [a, middle]]);
+            let close = lanes(|k| middle + CLOSE * half * NODES[k]);
+            let measured = if batches > NOISY { off_line(&close, &f(&close)) } else { 0.0 };
+            let noise = noise.max(NOISE_LEVEL * measured);
+            waiting.extend([[middle, b], [a, middle]].map(|half| (half, noise)));
         }
     }
     found[first..].sort_by(f64::total_cmp);
+}
+
+/// Returns the largest distance of values from the line through the first and the last one; 0 where these are at one place.
+fn off_line(x: &Lanes, values: &Lanes) -> f64 {
+    let last = x.len() - 1;
+    let rate = (values[last] - values[0]) / (x[last] - x[0]);
+    let off = |k: usize| (values[k] - values[0] - rate * (x[k] - x[0])).abs();
+    // A distance that is no number is none.
+    (1..last).map(off).fold(0.0, f64::max)
 }
 
 #[cfg(test)]
