@@ -3,6 +3,9 @@
 Prints the scheduler's share of a task, and positions a second with one and two workers of one thread, files written.
 """
 
+# distributed has no whole types.
+# pyright: reportUnknownMemberType=false, reportArgumentType=false
+
 import os
 import tempfile
 import time
