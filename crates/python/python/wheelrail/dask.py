@@ -17,7 +17,7 @@ from concurrent.futures import CancelledError
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
-from pickle import dumps
+from pickle import dumps, loads
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -105,8 +105,10 @@ def sweep(
 
     def submit(task: tuple[Wheelset, slice, Path]) -> Future[Any]:
         wheelset, part, file = task
+        # The scheduler reads its tasks: it would build every wheelset of objects, and keep their memory.
+        pickled = dumps(wheelset, protocol=5)
         arguments = (lateral[part], yaw[part], roll if isinstance(roll, str) else roll[part])
-        return client.submit(_part, wheelset, part.start, arguments, file, options, pure=False)
+        return client.submit(_part, pickled, part.start, arguments, file, options, pure=False)
 
     with shown(progress, "parts") as tell:
         if tell:
@@ -184,7 +186,7 @@ def _write(file: Path, content: Callable[[Path], object]) -> None:
 
 
 def _part(
-    wheelset: Wheelset,
+    pickled: bytes,
     start: int,
     arguments: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64] | str],
     file: Path,
@@ -198,6 +200,7 @@ def _part(
         return
     one_thread()
     lateral, yaw, roll = arguments
+    wheelset: Wheelset = loads(pickled)
     table = wheelset.sweep(lateral, yaw, roll, conicity=False, **options).to_arrow()
     numbers = pc.add(table["position"], start).cast("uint64")
     table = table.drop_columns(["conicity", "conicity_error"]).set_column(0, "position", numbers)
