@@ -34,7 +34,7 @@ def grid(pair: wr.Pair) -> float:
     """Return the microseconds of a grid of 200 x 200 points."""
     contact = pair.placed(0.0, 0.0)
     xi, eta = (half * (np.arange(200) / 99.5 - 1.0) for half in (12.0, 10.0))
-    times = []
+    times: list[float] = []
     for _ in range(501):
         start = time.perf_counter()
         contact.separation(xi, eta)
@@ -45,7 +45,7 @@ def grid(pair: wr.Pair) -> float:
 def sweep(pair: wr.Pair) -> float:
     """Return the seconds of a sweep over 10**6 positions."""
     track = wr.Wheelset(pair, gauge=1435.0, back_to_back=1360.0, flange_back_x=-70.0)
-    times = []
+    times: list[float] = []
     for _ in range(3):
         start = time.perf_counter()
         track.sweep(np.linspace(-8.0, 8.0, 1_000_000), conicity=False)

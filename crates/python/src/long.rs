@@ -84,11 +84,27 @@ fn fault(panic: &(dyn Any + Send)) -> PyErr {
     PyRuntimeError::new_err(format!("a fault of wheelrail, please report it: {text}"))
 }
 
-/// Does work that looks at its watch often. Ctrl-C ends it within 0.2 s.
+/// Does work that looks at its watch often. Ctrl-C ends it within 0.2 s. `progress` is as `wheelrail._progress.shown` takes it,
+/// and counts positions.
 ///
 /// # Errors
 /// Those of the work and of `progress`; KeyboardInterrupt.
 pub(crate) fn watched<T: Send>(
+    py: Python<'_>,
+    progress: Option<&Py<PyAny>>,
+    work: impl FnOnce(&Watch) -> Result<T> + Send,
+) -> PyResult<T> {
+    let Some(progress) = progress else { return told(py, None, work) };
+    let shown = py.import("wheelrail._progress")?.call_method1("shown", (progress, "positions"))?;
+    let call: Option<Py<PyAny>> = shown.call_method0("__enter__")?.extract()?;
+    let result = told(py, call.as_ref(), work);
+    // Its own exceptions are those of `progress`, which the result has.
+    let closed = shown.call_method1("__exit__", (py.None(), py.None(), py.None()));
+    result.and_then(|value| closed.map(|_| value))
+}
+
+/// Does work that looks at its watch often, and calls `progress(done, all)`.
+fn told<T: Send>(
     py: Python<'_>,
     progress: Option<&Py<PyAny>>,
     work: impl FnOnce(&Watch) -> Result<T> + Send,

@@ -201,6 +201,7 @@ impl Wheelset {
     ///
     /// It runs on all threads without the GIL and gives the same bits on any number of them. `progress(done, all)` is called
     /// about twenty times a second, with positions; an exception in it ends the sweep, and so does Ctrl-C within 0.2 s.
+    /// `progress=True` shows a bar of tqdm.
     ///
     /// Raises InputError for lengths that differ, values that are not finite, and angles beyond 0.5 rad; LimitError for more
     /// than 10**7 positions; warns in one line of the places that no wheel stands at, which the column `doubt` has.

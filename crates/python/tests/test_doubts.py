@@ -25,7 +25,9 @@ def doubts(call: Callable[[], object]) -> dict[str, str]:
 def test_what_is_usual_is_not_doubted(track: wr.Wheelset) -> None:
     def usual() -> None:
         contact = track.touch(3.0, yaw=0.01).right[0]
-        contact.patch(load=60e3), contact.patch(approach=0.05), contact.hertz(load=60e3, modulus=1.15e5)
+        contact.patch(load=60e3)
+        contact.patch(approach=0.05)
+        contact.hertz(load=60e3, modulus=1.15e5)
         track.sweep(np.arange(-5, 6))
         wr.rail("60E1").rotated("1:20")
 
@@ -36,6 +38,11 @@ def test_slips_are_doubted_by_their_kind_with_their_number(pair: wr.Pair, track:
     rail, wheel = pair.rail, pair.wheel
     contact = track.touch().right[0]
     distances: dict[str, Any] = {"gauge": 1435.0, "back_to_back": 1360.0, "flange_back_x": -70.0}
+
+    def wheelset(**other: float) -> wr.Wheelset:
+        keywords: dict[str, Any] = {**distances, **other}
+        return wr.Wheelset(pair, **keywords)
+
     cases: list[tuple[str, str, Callable[[], object]]] = [
         ("load", "load: 60 N is the weight of 6.1 kg", lambda: contact.patch(load=60)),
         ("load", "load: 60 N", lambda: contact.hertz(load=60)),
@@ -52,10 +59,10 @@ def test_slips_are_doubted_by_their_kind_with_their_number(pair: wr.Pair, track:
         ("radius", "radius: 46 mm is no railway wheel's, 584.2 mm as a diameter in inches, 460.0 mm in cm", lambda: wr.Pair(rail, wheel, 46)),
         ("radius", "radius: 920 mm is no railway wheel's, 460.0 mm as a diameter", lambda: wr.Pair(rail, wheel, 920)),
         ("flange-side", "wheel: the tip of its flange is at x = 5", lambda: wr.Pair(rail, wheel.mirrored(), 460)),
-        ("gauge", "gauge: 1524 mm is 164 mm more than back_to_back", lambda: wr.Wheelset(pair, **{**distances, "gauge": 1524.0})),
-        ("gauge", "is -65 mm more", lambda: wr.Wheelset(pair, **{**distances, "back_to_back": 1500.0})),
-        ("gauge-height", "gauge_height: 0.014 mm", lambda: wr.Wheelset(pair, gauge_height=0.014, **distances)),
-        ("flange-back-x", "the back of wheel is at x = -70.0 mm", lambda: wr.Wheelset(pair, **{**distances, "flange_back_x": 0.0})),
+        ("gauge", "gauge: 1524 mm is 164 mm more than back_to_back", lambda: wheelset(gauge=1524.0)),
+        ("gauge", "is -65 mm more", lambda: wheelset(back_to_back=1500.0)),
+        ("gauge-height", "gauge_height: 0.014 mm", lambda: wheelset(gauge_height=0.014)),
+        ("flange-back-x", "the back of wheel is at x = -70.0 mm", lambda: wheelset(flange_back_x=0.0)),
         ("angle", "yaw: 0.2 rad is 11.5 degrees", lambda: track.touch(yaw=0.2)),
         ("angle", "yaw: 0.2 rad", lambda: pair.touch(yaw=0.2)),
         ("angle", "skew: 0.3 rad", lambda: pair.placed(0.0, 0.0, skew=0.3)),

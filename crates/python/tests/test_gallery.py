@@ -1,5 +1,8 @@
 """The gallery: every notebook runs, as the program that it is."""
 
+# jupytext has no types.
+# pyright: reportUnknownMemberType=false
+
 import subprocess
 import sys
 from pathlib import Path

@@ -1,5 +1,8 @@
 """Sweeps, their tables, and who takes them."""
 
+# pandas and pyarrow have no whole types.
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownArgumentType=false, reportUnknownLambdaType=false
+
 import os
 import signal
 import subprocess
@@ -13,6 +16,21 @@ import pytest
 from conftest import need
 
 import wheelrail as wr
+
+
+SCENE = """
+[rail]
+profile = "60E1"
+rotate = "1:40"
+[wheel]
+profile = "S1002"
+radius = 460.0
+[track]
+gauge = 1435.0
+[wheelset]
+back_to_back = 1360.0
+flange_back_x = -70.0
+"""
 
 
 def test_a_table_has_the_contacts_that_touch_finds(track: wr.Wheelset) -> None:
@@ -71,6 +89,43 @@ def test_progress_is_told_and_may_end_the_sweep(track: wr.Wheelset) -> None:
         track.sweep(np.linspace(-8, 8, 1_000_000), conicity=False, progress=stop)
 
 
+def test_progress_is_shown_by_a_bar_that_closes(track: wr.Wheelset, monkeypatch: pytest.MonkeyPatch) -> None:
+    need("tqdm")
+    import tqdm.auto
+
+    bars: list[tqdm.auto.tqdm[object]] = []
+    closed: list[object] = []
+
+    class Bar(tqdm.auto.tqdm):  # type: ignore[type-arg]
+        def __init__(self, **options: object) -> None:
+            super().__init__(file=open(os.devnull, "w"), **options)  # type: ignore[call-overload]
+            bars.append(self)
+
+        def close(self) -> None:
+            closed.append(self)
+            super().close()
+
+    def interrupted(self: object, n: float | None = 1) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(tqdm.auto, "tqdm", Bar)
+    lateral = np.linspace(-8, 8, 30_000)
+    case = wr.Case.from_toml(SCENE)
+    for sweep in (track.sweep, case.sweep):
+        with_bar = sweep(lateral, conicity=False, progress=True)
+        assert with_bar == sweep(lateral, conicity=False, progress=False) == sweep(lateral, conicity=False, progress=None)
+    assert [(bar.n, bar.total) for bar in bars] == [(30_000, 30_000)] * 2 and closed == bars
+    monkeypatch.setattr(Bar, "update", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        track.sweep(lateral, conicity=False, progress=True)
+    assert len(bars) == 3 and closed == bars
+    monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+    with pytest.raises(ImportError, match="pip install tqdm"):
+        track.sweep(lateral, conicity=False, progress=True)
+    with pytest.raises(TypeError, match="progress: found a int"):
+        track.sweep(lateral, conicity=False, progress=3)  # type: ignore[arg-type]
+
+
 def test_several_threads_share_a_wheelset_and_the_gil_is_free(track: wr.Wheelset) -> None:
     lateral = np.linspace(-8, 8, 20_000)
     expected = track.sweep(lateral, conicity=False)
@@ -96,6 +151,7 @@ def test_several_threads_share_a_wheelset_and_the_gil_is_free(track: wr.Wheelset
 # What takes long, each for seconds, as a program that says when it begins.
 LONG = {
     "sweep": "track.sweep(np.linspace(-8, 8, 9_000_000), conicity=False)",
+    "bar": "track.sweep(np.linspace(-8, 8, 9_000_000), conicity=False, progress=True)",
     "worn": "rough.sweep(np.linspace(-5, 5, 5_000_000), conicity=False)",
     "grid": "track.touch().right[0].separation(np.linspace(-9, 9, 9000), np.linspace(-9, 9, 9000), method='pointwise')",
     "profile": "wr.read_profile(sys.argv[1], side='wheel', mirror=False, flip_z=False, origin='as-is')",

@@ -1,5 +1,8 @@
 """Meshes, normals, files of a patch; what is pickled, copied and compared; and the examples of all docstrings."""
 
+# meshio has no types.
+# pyright: reportUnknownMemberType=false
+
 import copy
 import doctest
 import pickle
@@ -30,13 +33,14 @@ def test_meshes_lie_on_the_rail_and_cover_the_patch(track: wr.Wheelset, yaw: flo
 
 
 def test_meshes_go_to_meshio_and_pyvista(track: wr.Wheelset) -> None:
-    need("meshio")
+    need("meshio", "pyvista")
     patch = track.touch().right[0].patch(approach=0.05)
     for mesh in (patch.mesh(), patch.strips(), *patch.contact.surfaces((-5.0, 5.0), (-8.0, 8.0), approach=0.05)):
         theirs = mesh.to_meshio()
         assert theirs.cells[0].type == mesh.kind and np.array_equal(theirs.points, mesh.points)
         assert set(theirs.point_data) == set(mesh.point_data)
-    pyvista = pytest.importorskip("pyvista")
+    import pyvista
+
     shown = patch.mesh().to_pyvista()
     assert isinstance(shown, pyvista.PolyData) and shown.area == pytest.approx(patch.area, rel=2e-2)
     assert shown.n_points == len(patch.mesh().points) and "overlap" in shown.point_data
@@ -100,7 +104,7 @@ def test_all_values_are_pickled_copied_and_compared(pair: wr.Pair, track: wr.Whe
     chosen = pair.placed(1.0, 1.0)
     values = [
         pair, track, touch, flange, contact, chosen, chosen.patch(approach=0.05), patch, patch.components[0], patch.mesh(), patch.strips(),
-        contact.hertz(load=60e3), contact.feasibility(), pair.touch(), track.sweep([0.0, 1.0, 2.0]), wr.rail("60E1"),
+        contact.hertz(load=60e3), contact.feasibility(), contact.grid([0.0, 1.0], [0.0, 1.0]), contact.normal_grid([0.0, 1.0], [0.0, 1.0]), pair.touch(), track.sweep([0.0, 1.0, 2.0]), wr.rail("60E1"),
     ]
     for value in values:
         for again in (pickle.loads(pickle.dumps(value)), copy.deepcopy(value)):

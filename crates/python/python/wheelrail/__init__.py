@@ -19,6 +19,7 @@ What there is:
     Contact                   a place of contact: separation, normals, normal_gap, hertz, surfaces
     Patch, Component, Mesh    the patch: loops, areas, meshes, files of every format
     Case                      a scene with all it can say, from a file, a dict or TOML: contacts, files, view, sweep, check, run
+    Grid                      the separation or the normal gap with its coordinates, for xarray
     Table                     the rows of a sweep, for pandas, polars and Arrow
     wheelrail.dask            studies past one machine
     wheelrail.tamaas          pressures
@@ -29,7 +30,7 @@ too much of something `LimitError`; all are `Error`. What is allowed but seldom 
 
 from ._errors import Doubt, Error, FileError, GeometryError, InputError, LimitError
 from ._table import Table
-from ._values import Check, Component, Feasibility, Hertz, Mesh, Run, Touch, WheelTouch
+from ._values import Check, Component, Feasibility, Grid, Hertz, Mesh, Run, Touch, WheelTouch
 from ._wheelrail import (
     Case,
     Contact,
@@ -58,6 +59,7 @@ __all__ = [
     "Feasibility",
     "FileError",
     "GeometryError",
+    "Grid",
     "Hertz",
     "InputError",
     "LimitError",

@@ -8,7 +8,7 @@ from collections.abc import Mapping, MutableMapping, Sequence
 from hashlib import sha256
 from os import PathLike, fspath
 from pickle import dumps
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -24,9 +24,12 @@ def to_json(value: object, profiles: MutableMapping[str, Profile] | None) -> str
 def with_profiles(scene: Any, profiles: Mapping[str, Profile]) -> Any:
     """Return a scene with profiles in place of their names."""
     if isinstance(scene, dict):
-        named = {key: profiles.get(value, value) for key, value in scene.items() if key == "profile"}
-        return {key: named[key] if key in named else with_profiles(value, profiles) for key, value in scene.items()}
-    return [with_profiles(value, profiles) for value in scene] if isinstance(scene, list) else scene
+        table = cast("dict[str, Any]", scene)
+        named = {key: profiles.get(value, value) for key, value in table.items() if key == "profile"}
+        return {key: named[key] if key in named else with_profiles(value, profiles) for key, value in table.items()}
+    if isinstance(scene, list):
+        return [with_profiles(value, profiles) for value in cast("list[object]", scene)]
+    return scene
 
 
 def _plain(value: Any, place: tuple[str, ...], profiles: MutableMapping[str, Profile] | None) -> Any:
@@ -34,13 +37,13 @@ def _plain(value: Any, place: tuple[str, ...], profiles: MutableMapping[str, Pro
     if isinstance(value, Profile):
         return _plain({"profile": value}, place, profiles)
     if isinstance(value, Mapping):
-        return _table(value, place, profiles)
+        return _table(cast("Mapping[object, Any]", value), place, profiles)
     if isinstance(value, np.ndarray | np.generic):
         return _plain(value.tolist(), place, profiles)
     if isinstance(value, PathLike):
-        return fspath(value)
+        return fspath(cast("PathLike[str]", value))
     if isinstance(value, Sequence) and not isinstance(value, str | bytes):
-        return [_plain(each, place, profiles) for each in value]
+        return [_plain(each, place, profiles) for each in cast("Sequence[object]", value)]
     if isinstance(value, float) and not math.isfinite(value):
         raise InputError(": ".join(place), str(value), "a finite number", "correct it")
     if value is None or isinstance(value, str | int | float):
@@ -49,7 +52,7 @@ def _plain(value: Any, place: tuple[str, ...], profiles: MutableMapping[str, Pro
     raise InputError(": ".join(place), found, expected, "convert it")
 
 
-def _table(table: Mapping[Any, Any], place: tuple[str, ...], profiles: MutableMapping[str, Profile] | None) -> dict[str, Any]:
+def _table(table: Mapping[object, Any], place: tuple[str, ...], profiles: MutableMapping[str, Profile] | None) -> dict[str, Any]:
     """Return a dict with names or segments in place of a profile; keys that are None are left out."""
     out: dict[str, Any] = {}
     for key, value in table.items():

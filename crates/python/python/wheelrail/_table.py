@@ -1,5 +1,8 @@
 """The table of a sweep."""
 
+# pyarrow and polars have no whole types.
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownParameterType=false
+
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
@@ -7,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _wheelrail
-from ._values import _same
+from ._values import same
+from ._wheelrail import doubt_words, sweep_picture
 
 if TYPE_CHECKING:
     import pandas
@@ -16,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _SIDES = ("left", "right")
-_DOUBTS = _wheelrail.doubt_words()
+_DOUBTS = doubt_words()
 
 
 class Table(Mapping[str, "NDArray[Any]"]):
@@ -105,7 +108,7 @@ class Table(Mapping[str, "NDArray[Any]"]):
 
         Raises InputError for displacements that do not ascend.
         """
-        return _wheelrail.sweep_picture(self._columns, title)
+        return sweep_picture(self._columns, title)
 
     def __repr__(self) -> str:
         """Return rows and columns in short."""
@@ -115,7 +118,7 @@ class Table(Mapping[str, "NDArray[Any]"]):
 
     def __eq__(self, other: object) -> bool:
         """Tell whether all columns are the same, NaN where NaN is."""
-        return isinstance(other, Table) and self._names == other._names and all(map(_same, self.values(), other.values()))
+        return isinstance(other, Table) and self._names == other._names and all(map(same, self.values(), other.values()))
 
     def _repr_svg_(self) -> str | None:
         try:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import nan, pi
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -13,23 +13,26 @@ if TYPE_CHECKING:
 
     import meshio
     import pyvista
-    from numpy.typing import NDArray
+    import xarray
+    from numpy.typing import ArrayLike, NDArray
 
     from ._wheelrail import Contact
 
 _Box = tuple[tuple[float, float], tuple[float, float]]
 
 
-def _same(one: object, other: object) -> bool:
+def same(one: object, other: object) -> bool:
     """Tell whether two values are the same; arrays are by their numbers, where NaN is NaN."""
     if isinstance(one, np.ndarray):
-        floats = one.dtype.kind == "f"
-        return isinstance(other, np.ndarray) and np.array_equal(one, other, equal_nan=floats)
+        array = cast("NDArray[Any]", one)
+        return isinstance(other, np.ndarray) and np.array_equal(array, cast("NDArray[Any]", other), equal_nan=array.dtype.kind == "f")
     if isinstance(one, list) and isinstance(other, list):
-        return len(one) == len(other) and all(map(_same, one, other))
+        items, others = cast("list[object]", one), cast("list[object]", other)
+        return len(items) == len(others) and all(map(same, items, others))
     if isinstance(one, dict) and isinstance(other, dict):
-        return one.keys() == other.keys() and all(_same(value, other[key]) for key, value in one.items())
-    return one == other
+        fields, of_other = cast("dict[object, object]", one), cast("dict[object, object]", other)
+        return fields.keys() == of_other.keys() and all(same(value, of_other[key]) for key, value in fields.items())
+    return bool(one == other)
 
 
 class _Value:
@@ -47,7 +50,7 @@ class _Value:
 
     def __eq__(self, other: object) -> bool:
         """Tell whether all fields are the same."""
-        return type(other) is type(self) and all(_same(value, vars(other)[name]) for name, value in vars(self).items())
+        return type(other) is type(self) and all(same(value, vars(other)[name]) for name, value in vars(self).items())
 
     def __repr__(self) -> str:
         """Return the fields that are no arrays and lists."""
@@ -258,7 +261,7 @@ class Mesh(_Value):
         """Return it as meshio's, which writes some forty formats. Needs meshio."""
         import meshio
 
-        cell_data = {name: [values] for name, values in self.cell_data.items()}
+        cell_data: dict[str, list[ArrayLike]] = {name: [values] for name, values in self.cell_data.items()}
         return meshio.Mesh(self.points, [(self.kind, self.cells)], dict(self.point_data), cell_data)
 
     def to_pyvista(self) -> pyvista.PolyData:
@@ -267,6 +270,77 @@ class Mesh(_Value):
 
         counts = np.full((len(self.cells), 1), self.cells.shape[1])
         mesh = pyvista.PolyData(self.points, faces=np.hstack([counts, self.cells]).ravel())
-        mesh.point_data.update(dict(self.point_data))
-        mesh.cell_data.update(dict(self.cell_data))
+        # PyVista's arrays have no types of numbers.
+        mesh.point_data.update(dict(self.point_data))  # pyright: ignore[reportUnknownMemberType]
+        mesh.cell_data.update(dict(self.cell_data))  # pyright: ignore[reportUnknownMemberType]
         return mesh
+
+
+# What the names of a grid mean, and their units.
+_MEANINGS = {
+    "xi": ("place along the common tangent, + towards the field side", "mm"),
+    "eta": ("place along the rail, + forward", "mm"),
+    "sigma": ("arc length along the rail from C, + towards +xi", "mm"),
+    "zeta": ("height along the common normal at C, + from rail to wheel", "mm"),
+    "alpha": ("angle of the rail's outward normal from zeta", "rad"),
+    "separation": ("separation of the undeformed bodies, + apart", "mm"),
+    "normal_gap": ("gap along the rail's own normal, + apart", "mm"),
+}
+
+
+class Grid(_Value):
+    """Values over a grid, with the coordinates of its points: what `Contact.grid` and `Contact.normal_grid` make.
+
+    >>> grid = contact.grid(np.linspace(-5, 5, 11), np.linspace(-8, 8, 17))
+    >>> grid
+    Grid(separation over 11 xi x 17 eta)
+    """
+
+    name: str
+    """"separation", mm, over xi and eta; or "normal_gap", mm, over sigma and eta."""
+    values: NDArray[np.float64]
+    """The values, float64 (n, m); NaN where a body has no surface."""
+    axes: Mapping[str, NDArray[np.float64]]
+    """The two axes by name, in the order of the values, mm: (n,) and (m,)."""
+    along: Mapping[str, NDArray[np.float64]]
+    """What else is known of the points of the first axis, (n,): xi and zeta in mm and alpha in rad along sigma, as of
+    `Contact.rail_surface`; nothing along xi."""
+
+    def __repr__(self) -> str:
+        """Return the name, and the axes with their numbers of points."""
+        return f"Grid({self.name} over {' x '.join(f'{len(axis)} {name}' for name, axis in self.axes.items())})"
+
+    def to_xarray(self) -> xarray.DataArray:
+        """Return it as xarray's, with its coordinates; each has `units` and `long_name`. The values are shared. Needs xarray."""
+        try:
+            import xarray
+        except ModuleNotFoundError as missing:
+            raise ModuleNotFoundError("Grid.to_xarray needs xarray: pip install xarray") from missing
+        first = next(iter(self.axes))
+        coordinates = {name: ((name,), axis, _meaning(name)) for name, axis in self.axes.items()}
+        coordinates |= {name: ((first,), values, _meaning(name)) for name, values in self.along.items()}
+        return xarray.DataArray(self.values, coordinates, tuple(self.axes), self.name, _meaning(self.name))
+
+
+def _meaning(name: str) -> dict[str, str]:
+    """Return the attributes of a variable."""
+    long_name, units = _MEANINGS[name]
+    return {"long_name": long_name, "units": units}
+
+
+def _axis(axis: ArrayLike) -> NDArray[np.float64]:
+    # A copy: the caller may change its own.
+    return np.array(axis, dtype=np.float64)
+
+
+def separation_grid(contact: Contact, xi: ArrayLike, eta: ArrayLike, **options: Any) -> Grid:
+    """Compute the separation of a contact with its coordinates."""
+    values = contact.separation(xi, eta, **options)
+    return Grid("separation", values, {"xi": _axis(xi), "eta": _axis(eta)}, {})
+
+
+def normal_grid(contact: Contact, sigma: ArrayLike, eta: ArrayLike, **options: Any) -> Grid:
+    """Compute the normal gap of a contact with its coordinates."""
+    values = contact.normal_gap(sigma, eta, **options)
+    along = dict(zip(("xi", "zeta", "alpha"), contact.rail_surface(sigma)))
+    return Grid("normal_gap", values, {"sigma": _axis(sigma), "eta": _axis(eta)}, along)

@@ -6,6 +6,9 @@ written under a temporary name and renamed when it is whole: a part that is ther
 that was stopped goes on where it was.
 """
 
+# distributed and pyarrow have no whole types.
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownArgumentType=false, reportArgumentType=false, reportAttributeAccessIssue=false
+
 from __future__ import annotations
 
 import os
@@ -14,12 +17,13 @@ from concurrent.futures import CancelledError
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
-from pickle import dumps
+from pickle import dumps, loads
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ._progress import shown
 from ._wheelrail import Wheelset
 
 if TYPE_CHECKING:
@@ -62,7 +66,7 @@ def sweep(
     client: Client,
     batch: int = _BATCH,
     retries: int = 3,
-    progress: Callable[[int, int], object] | None = None,
+    progress: bool | Callable[[int, int], object] | None = None,
     **options: Any,
 ) -> list[Path]:
     """Sweep every wheelset over all positions, and return the Parquet files in order.
@@ -75,8 +79,8 @@ def sweep(
     question raises ValueError.
 
     `client` is a `distributed.Client`, of a cluster of any size. `batch` positions are a task. A task that was lost with its
-    workers or its scheduler is handed out again, at most `retries` times. `progress(done, all)` is called with the parts that
-    are there. `options` are keywords of `Wheelset.sweep`: within, load, approach, modulus. The equivalent conicity belongs to
+    workers or its scheduler is handed out again, at most `retries` times; where all workers are gone, others are waited for.
+    `progress(done, all)` is called with the parts that are there; `progress=True` shows a bar of tqdm. `options` are keywords of `Wheelset.sweep`: within, load, approach, modulus. The equivalent conicity belongs to
     a wheelset and not to its positions, and is left out.
 
     Raises the errors of `Wheelset.sweep`; that of Dask for a task whose workers died more often.
@@ -87,7 +91,8 @@ def sweep(
     lateral, yaw, roll = _arrays(positions)
     root = Path(folder).resolve()
     _mark(root, [*named.items(), lateral, yaw, roll, batch, *sorted(options.items())])
-    files, tasks = [], []
+    files: list[Path] = []
+    tasks: list[tuple[Wheelset, slice, Path]] = []
     for name, wheelset in named.items():
         home = root / f"pair={name}"
         home.mkdir(parents=True, exist_ok=True)
@@ -100,16 +105,17 @@ def sweep(
 
     def submit(task: tuple[Wheelset, slice, Path]) -> Future[Any]:
         wheelset, part, file = task
+        # The scheduler reads its tasks: it would build every wheelset of objects, and keep their memory.
+        pickled = dumps(wheelset, protocol=5)
         arguments = (lateral[part], yaw[part], roll if isinstance(roll, str) else roll[part])
-        return client.submit(_part, wheelset, part.start, arguments, file, options, pure=False)
+        return client.submit(_part, pickled, part.start, arguments, file, options, pure=False)
 
-    done = len(files) - len(tasks)
-    if progress:
-        progress(done, len(files))
-    for _ in _finished(client, tasks, submit, retries):
-        done += 1
-        if progress:
-            progress(done, len(files))
+    with shown(progress, "parts") as tell:
+        if tell:
+            tell(len(files) - len(tasks), len(files))
+        for number, _ in enumerate(_finished(client, tasks, submit, retries), start=len(files) - len(tasks) + 1):
+            if tell:
+                tell(number, len(files))
     return files
 
 
@@ -180,7 +186,7 @@ def _write(file: Path, content: Callable[[Path], object]) -> None:
 
 
 def _part(
-    wheelset: Wheelset,
+    pickled: bytes,
     start: int,
     arguments: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64] | str],
     file: Path,
@@ -194,6 +200,7 @@ def _part(
         return
     one_thread()
     lateral, yaw, roll = arguments
+    wheelset: Wheelset = loads(pickled)
     table = wheelset.sweep(lateral, yaw, roll, conicity=False, **options).to_arrow()
     numbers = pc.add(table["position"], start).cast("uint64")
     table = table.drop_columns(["conicity", "conicity_error"]).set_column(0, "position", numbers)

@@ -3,6 +3,9 @@
 Tamaas solves the normal contact of elastic half-spaces on the grid of the separation: heights are -s, the modulus is E*.
 """
 
+# tamaas has no types.
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportAttributeAccessIssue=false
+
 from __future__ import annotations
 
 from dataclasses import dataclass
