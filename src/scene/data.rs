@@ -215,8 +215,8 @@ pub enum RollWord {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PatchData {
-    /// Approach δ, mm.
-    #[schemars(extend("minimum" = 0))]
+    /// Approach δ, mm, at most 200.
+    #[schemars(extend("minimum" = 0, "maximum" = 200))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub approach: Option<f64>,
     /// Vertical load of each wheel, N; all its contacts share it. δ is then an estimate.
