@@ -257,11 +257,25 @@ impl Profile {
         to_python(py, &segments)
     }
 
-    /// Write the profile into a file that `read_profile` reads: points in the `format` "miniprof", "simpack", "gensys", "text" or
-    /// "csv", or segments as "toml"; without it the extension tells.
+    /// Write the profile as the text of a file: points in the `format` "miniprof", "simpack", "gensys", "text" or "csv", or segments
+    /// as "toml".
     ///
     /// The points are the measured ones, or `step` mm apart along the curve (0.2 for a drawn profile). `side` is needed for the
     /// axes of MiniProf and SIMPACK where the profile has none.
+    ///
+    /// Raises InputError for an unknown format and for segments that no file can hold.
+    #[pyo3(signature = (format, *, step = None, side = None))]
+    fn to_text(
+        &self,
+        py: Python<'_>,
+        format: &str,
+        step: Option<f64>,
+        side: Option<&str>,
+    ) -> PyResult<String> {
+        self.text(py, file_format(py, format)?, step, side)
+    }
+
+    /// Write the profile into a file that `read_profile` reads, as `to_text` does; without a `format` the extension tells.
     ///
     /// Raises InputError for an unknown format or extension and for segments that no file can hold; FileError where the disk
     /// refuses.
@@ -275,28 +289,12 @@ impl Profile {
         side: Option<&str>,
     ) -> PyResult<()> {
         let toml = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
-        let text = if format == Some("toml") || format.is_none() && toml {
-            let (text, cut) = write::chain(&self.profile).or_raise()?;
-            left_out(py, &cut)?;
-            text
-        } else {
-            let of_file = || Format::of_file(&path.to_string_lossy());
-            let format = format.map_or_else(
-                || of_file().or_raise(),
-                |format| parsed("format", PyString::new(py, format).as_any()),
-            )?;
-            let side = side.map(named_side).transpose()?.or(self.side);
-            let measured = self.fitted.as_ref().map(|fitted| fitted.points.as_slice());
-            let (text, near) = write::profile(&self.profile, (measured, step), (format, side)).or_raise()?;
-            if near > 0 {
-                left_out(
-                    py,
-                    &[format!("{near} points nearer than {} mm to another", write::LEAST_DISTANCE)],
-                )?;
-            }
-            text
+        let format = match format {
+            Some(format) => file_format(py, format)?,
+            None if toml => None,
+            None => Some(Format::of_file(&path.to_string_lossy()).or_raise()?),
         };
-        files::write_file(&path, text.as_bytes()).or_raise()
+        files::write_file(&path, self.text(py, format, step, side)?.as_bytes()).or_raise()
     }
 
     /// Return the picture of the profile as SVG: points, curve and curvature, and how far measured points are off the curve.
@@ -335,6 +333,28 @@ impl Profile {
     /// Makes a profile that nothing is known of but its body.
     pub(crate) fn of(profile: &wheelrail::Profile, side: Side) -> Self {
         Self { profile: profile.clone(), side: Some(side), fitted: None }
+    }
+
+    /// Writes the profile in a format of points, or as TOML of its segments for `None`.
+    fn text(
+        &self,
+        py: Python<'_>,
+        format: Option<Format>,
+        step: Option<f64>,
+        side: Option<&str>,
+    ) -> PyResult<String> {
+        let Some(format) = format else {
+            let (text, cut) = write::chain(&self.profile).or_raise()?;
+            left_out(py, &cut)?;
+            return Ok(text);
+        };
+        let side = side.map(named_side).transpose()?.or(self.side);
+        let measured = self.fitted.as_ref().map(|fitted| fitted.points.as_slice());
+        let (text, near) = write::profile(&self.profile, (measured, step), (format, side)).or_raise()?;
+        if near > 0 {
+            left_out(py, &[format!("{near} points nearer than {} mm to another", write::LEAST_DISTANCE)])?;
+        }
+        Ok(text)
     }
 
     /// Takes over a measured profile, and warns of what was found in its points.
@@ -463,6 +483,11 @@ pub(crate) fn read_profile(
         ProfileSource::Drawn(profile) => Ok(Profile { profile, side: named, fitted: None }),
         ProfileSource::Measured(measured) => Profile::measured(py, *measured, named),
     }
+}
+
+/// Reads the name of a format of files; `None` stands for TOML.
+fn file_format(py: Python<'_>, name: &str) -> PyResult<Option<Format>> {
+    if name == "toml" { Ok(None) } else { parsed("format", PyString::new(py, name).as_any()).map(Some) }
 }
 
 fn named_side(name: &str) -> PyResult<Side> {

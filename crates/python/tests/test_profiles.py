@@ -56,6 +56,13 @@ def test_files_are_read_back(name: str, tmp_path: Path, measured: wr.Profile) ->
         unknown.to_file(tmp_path / name, side="wheel")
 
 
+@pytest.mark.parametrize("format", ["miniprof", "simpack", "gensys", "text", "csv", "toml"])
+def test_texts_are_those_of_files(format: Any, tmp_path: Path, measured: wr.Profile) -> None:
+    for profile in (wr.wheel("S1002"), measured) if format != "toml" else (wr.wheel("S1002"),):
+        profile.to_file(tmp_path / "any", format=format, step=0.3)
+        assert profile.to_text(format, step=0.3) == (tmp_path / "any").read_text("utf-8")
+
+
 def test_curvature_is_that_of_the_drawing() -> None:
     s, kappa = wr.rail("60E1").curvature(0.1)
     assert s[0] == 0.0 and np.all(np.diff(s) >= 0.0)

@@ -60,6 +60,7 @@ CALLS = [
                    [{"arc": {**ARC, "x": [30.0, -30.0]}}], [{"arc": {**ARC, "half": "lower"}}, {"arc": ARC}], [{"arc": {**ARC, "x": [-400.0, 30.0]}}], [{"arc": ARC, "line": {}}],
                    [{"arc": ARC}, {"arc": ARC}], [{"line": {"from": [0, 0]}}], [{"arc": {**ARC, "center": [0.0]}}], [{"arc": {**ARC, "radius": object()}}]),
     *calls_of_each("to_file", any_.wheel("S1002").to_file, "", "w.xyz", "no/such/folder/w.csv", ".", None),
+    *calls_of_each("to_text", any_.wheel("S1002").to_text, "", "xyz", None, 1, "CSV"),
     *calls_of_each("Pair radius", lambda radius: any_.Pair(RAIL, WHEEL, radius), 0.0, -460.0, NAN, INF, 1e300, 0.46, 46.0, 920.0, 18.0, "460", None),
     *calls_of_each("Pair roller", lambda roller: any_.Pair(RAIL, WHEEL, 460.0, roller=roller), 0.0, -350.0, NAN, 10.0, 1e300, "350"),
     *calls_of_each("Pair bodies", lambda bodies: any_.Pair(*bodies, 460.0), (WHEEL, RAIL), (WHEEL, WHEEL), (RAIL, RAIL), (RAIL, WHEEL.mirrored()), (RAIL, None), ("60E1", "S1002"), (RAIL,)),

@@ -24,6 +24,7 @@ _Method: TypeAlias = Literal[
 ]
 
 _Side: TypeAlias = Literal["rail", "wheel"]
+_FileFormat: TypeAlias = Literal["miniprof", "simpack", "gensys", "text", "csv", "toml"]
 _Format: TypeAlias = Literal[
     "vtk", "npy", "netcdf", "text", "conform", "countact", "contact", "html", "gmsh", "abaqus", "stl", "ply", "vtp"
 ]
@@ -82,11 +83,12 @@ class Profile:
     def points(self, step: float = 0.5) -> _Floats: ...
     def curvature(self, step: float = 0.5) -> tuple[_Floats, _Floats]: ...
     def segments(self) -> list[dict[str, Any]]: ...
+    def to_text(self, format: _FileFormat, *, step: float | None = None, side: _Side | None = None) -> str: ...
     def to_file(
         self,
         path: _Path,
         *,
-        format: Literal["miniprof", "simpack", "gensys", "text", "csv", "toml"] | None = None,
+        format: _FileFormat | None = None,
         step: float | None = None,
         side: _Side | None = None,
     ) -> None: ...
