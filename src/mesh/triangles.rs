@@ -42,9 +42,9 @@ const ROUNDS: usize = 12;
 /// Nodes made in all attempts and rounds at a component from which on no better mesh is looked for: a few seconds.
 const MOST_MADE: usize = 2_000_000;
 
-/// Number of edges of the boundary whose triangulation takes as long as that of as many other points: the time of the library grows with
-/// the square of the points along a thin part.
-const LONG: usize = 5_000;
+/// Number of edges around a thin part from which on they take the triangulation longer than as many points elsewhere: its time grows with
+/// their square.
+const LONG_BOUNDARY: usize = 5_000;
 
 /// Attempts at a component, each with shorter edges of the boundary than the one before.
 const ATTEMPTS: i32 = 6;
@@ -280,7 +280,7 @@ fn meshed(
         let Polygon { points, edges, from, tips } = Polygon::new(chains);
         let last = round == ROUNDS || *made > MOST_MADE;
         let region = delaunay::refined(&points, &edges, largest, most as usize, last)?;
-        *made += region.points.len() + edges.len() * edges.len() / LONG;
+        *made += region.points.len() + edges.len() * edges.len() / LONG_BOUNDARY;
         if region.divided.is_empty() {
             let mut region = smoothed(region, points.len(), &edges)?;
             region.triangles.extend(tips);

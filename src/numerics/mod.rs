@@ -3,7 +3,9 @@
 pub mod bodies;
 pub mod chebyshev;
 pub mod elliptic;
+pub mod interval;
 pub mod lanes;
+pub mod noise;
 pub mod polynomial;
 pub mod quadrature;
 pub mod roots;

@@ -2,6 +2,7 @@
 
 use super::chebyshev::{NODES, PROOF, coefficients_by_vectors, derivative, value};
 use super::lanes::{Lanes, lanes, largest};
+use super::noise::measured;
 use super::roots::bracketed;
 
 /// Share of a function's size up to which its last coefficients count as rounding. Interpolants are 1e-15 of it apart from their
@@ -24,12 +25,6 @@ const MOST_BATCHES: usize = 1024;
 /// Number of batches from which on the noise is measured, by one more batch for every interval that is halved: it may be larger than it
 /// is said to be.
 const NOISY: usize = 16;
-
-/// Length of the interval in which noise is measured, as a share of the one that is halved. What is smooth bends by its square.
-const CLOSE: f64 = 1e-8;
-
-/// Noise that counts as such, as a multiple of the largest that is measured at 16 places.
-const NOISE_LEVEL: f64 = 4.0;
 
 /// Finds every place inside an interval at which a function changes its sign, ascending, and perhaps some at which it only touches
 /// zero. `f` gives the values at 16 places; `noise` is the size of their rounding. `f` must be smooth but at some places.
@@ -79,22 +74,11 @@ pub fn sign_changes(
         } else if short || largest(&values) <= ZERO * error {
             found.push(middle);
         } else {
-            let close = lanes(|k| middle + CLOSE * half * NODES[k]);
-            let measured = if batches > NOISY { off_line(&close, &f(&close)) } else { 0.0 };
-            let noise = noise.max(NOISE_LEVEL * measured);
+            let noise = if batches > NOISY { noise.max(measured(&mut f, [a, b])) } else { noise };
             waiting.extend([[middle, b], [a, middle]].map(|half| (half, noise)));
         }
     }
     found[first..].sort_by(f64::total_cmp);
-}
-
-/// Returns the largest distance of values from the line through the first and the last one; 0 where these are at one place.
-fn off_line(x: &Lanes, values: &Lanes) -> f64 {
-    let last = x.len() - 1;
-    let rate = (values[last] - values[0]) / (x[last] - x[0]);
-    let off = |k: usize| (values[k] - values[0] - rate * (x[k] - x[0])).abs();
-    // A distance that is no number is none.
-    (1..last).map(off).fold(0.0, f64::max)
 }
 
 #[cfg(test)]

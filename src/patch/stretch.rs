@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use crate::numerics::chebyshev::{NODES, POINTS, PROOF, coefficients_by_vectors, value, value_and_slope};
 use crate::numerics::lanes::{Lanes, largest};
+use crate::numerics::noise::measured;
 
 /// Share of the first stretch at which a part is not halved again. What is left beside an unknown corner is below the accuracy of
 /// areas.
@@ -12,15 +13,9 @@ const SHORTEST: f64 = 1e-7;
 /// Most stretches between two corners.
 const MOST_STRETCHES: usize = 1024;
 
-/// Number of stretches between two corners from which on the noise of edges is measured, which takes nine slices beside sixteen: it
-/// may be larger than it is said to be.
+/// Number of stretches between two corners from which on the noise of edges is measured, by as many slices as a stretch takes: it may
+/// be larger than it is said to be.
 const NOISY: usize = 4;
-
-/// Noise that counts as such, as a multiple of what is measured at three places.
-const NOISE_LEVEL: f64 = 4.0;
-
-/// Distance of the places between which noise is measured, as a share of a stretch. What is smooth bends by its square.
-const CLOSE: f64 = 1e-8;
 
 /// Share of the rounding up to which a coefficient is left out: a sixteenth of it, and a margin.
 const LEFT_OUT: f64 = 1.0 / 64.0;
@@ -102,25 +97,19 @@ impl<F: FnMut(f64) -> [f64; 2]> Fit<F> {
             } else if resolved || b - a <= shortest || count > MOST_STRETCHES || middle <= a || middle >= b {
                 stretches.push(plain);
             } else {
-                let measured = if count > NOISY { self.measured_noise(xi) } else { 0.0 };
-                waiting
-                    .extend([[middle, b], [a, middle]].map(|half| (half, noise.max(NOISE_LEVEL * measured))));
+                let noise =
+                    if count > NOISY { noise.max(measured(|at| self.squares(at), xi)) } else { noise };
+                waiting.extend([[middle, b], [a, middle]].map(|half| (half, noise)));
             }
         }
     }
 
-    /// Measures the rounding of the square of half the width \[mm²\] at three places of a range, by how far it is off the chord of its
-    /// neighbours. It is 0 for a range that is too short.
-    fn measured_noise(&mut self, [a, b]: [f64; 2]) -> f64 {
-        let off_chord = |middle: f64| {
-            let [left, xi, right] = [-CLOSE, 0.0, CLOSE].map(|share| a + (b - a) * (middle + share));
-            let [before, square, after] = [left, xi, right].map(|xi| {
-                let [low, high] = (self.edges)(xi);
-                ((high - low) / 2.0).powi(2)
-            });
-            (square - before - (after - before) * ((xi - left) / (right - left))).abs()
-        };
-        [0.25, 0.5, 0.75].map(off_chord).into_iter().fold(0.0, f64::max)
+    /// Returns the square of half the width \[mm²\] at every ξ.
+    fn squares(&mut self, xi: &Lanes) -> Lanes {
+        xi.map(|xi| {
+            let [low, high] = (self.edges)(xi);
+            ((high - low) / 2.0).powi(2)
+        })
     }
 
     fn over_width(&mut self, xi: [f64; 2], noise: f64) -> (Stretch, bool) {

@@ -216,7 +216,7 @@ impl<'a> Surface<'a> {
         if e[1] > FAR_END * u_max / (2.0 * w) && w > 0.0 {
             return span;
         }
-        let [e1, u1] = self.folds(xi, piece, e[0]);
+        let [e1, u1] = self.leaves_or_folds(xi, piece, e[0]);
         // If the column leaves the wheel before the profile ends, that end is never met.
         let e1 = if u1.is_finite() { e1 } else { f64::INFINITY };
         Span { e: [e[0], e1], u: [u0, u1], ..span }
@@ -260,18 +260,19 @@ impl<'a> Surface<'a> {
         [e, if w > 0.0 { e * (2.0 * w + e) } else { f64::INFINITY }]
     }
 
-    /// Returns e \[mm\] and u \[mm²\] at which a column that entered a piece at `e0` \[mm\] leaves it, or folds back before.
-    pub(super) fn folds(&self, xi: f64, piece: &Piece, e0: f64) -> [f64; 2] {
+    /// Returns e \[mm\] and u \[mm²\] at which a column that entered a piece at `e0` \[mm\] leaves it, or folds before. u is infinite
+    /// beyond the axle's height.
+    pub(super) fn leaves_or_folds(&self, xi: f64, piece: &Piece, e0: f64) -> [f64; 2] {
         let [e1, u1] = self.leaves(xi, piece);
         let branch = &self.section.branches[piece.branch];
         let fold = if u1.is_finite() { self.fold(xi, branch, [e1, e0]) } else { None };
         let Some(e) = fold else { return [e1, u1] };
-        [e, e * (2.0 * self.axle_distance(xi, branch.height(self.abscissa(xi, e)) + e * self.cos) + e)]
+        let w = self.axle_distance(xi, branch.height(self.abscissa(xi, e)) + e * self.cos);
+        [e, e * (2.0 * w + e)]
     }
 
-    /// Returns the sagitta \[mm\] at which a column over a branch folds, if u falls where the sagitta is `from` and grows at
-    /// `to`. Next to a wall of the profile the surface passes the line of constant (ξ, η) thrice: what lies between the wall and the fold
-    /// faces away.
+    /// Returns the sagitta \[mm\] between `from`, which is next to a wall of the profile, and `to` at which a column over a branch
+    /// folds: on the side of the wall u falls as the sagitta grows, and the surface faces away. Returns `None` if u grows at `from`.
     fn fold(&self, xi: f64, branch: &Branch, [from, to]: [f64; 2]) -> Option<f64> {
         // du/de halved: w + e (1 + dw/de), where dw/de = −cosθ dζ/de.
         let growth = |e: f64| {

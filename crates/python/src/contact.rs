@@ -20,7 +20,7 @@ use crate::long::detached;
 use crate::patch::Patch;
 use crate::place::{Origin, Place, Spot, joined};
 use crate::profile::Profile;
-use crate::values::{made, maker, mesh, vectors};
+use crate::values::{made, mesh, vectors};
 
 /// A place of contact of a rail and a wheel, in the axes of its own side: x towards the field side, y forward, z up; the
 /// left side is the mirror image of a right one.
@@ -233,30 +233,6 @@ impl Contact {
         })?;
         drop(values);
         Ok(array)
-    }
-
-    /// Compute the separation as `separation` does, whose arguments it takes, and return it with its coordinates: a `Grid`, for
-    /// xarray.
-    #[pyo3(signature = (xi, eta, **options))]
-    fn grid<'py>(
-        slf: &Bound<'py, Self>,
-        xi: &Bound<'py, PyAny>,
-        eta: &Bound<'py, PyAny>,
-        options: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        maker(slf.py(), "separation_grid")?.call((slf, xi, eta), options)
-    }
-
-    /// Compute the normal gap as `normal_gap` does, whose arguments it takes, and return it with its coordinates, and xi, zeta
-    /// and alpha of the rail's points: a `Grid`, for xarray.
-    #[pyo3(signature = (sigma, eta, **options))]
-    fn normal_grid<'py>(
-        slf: &Bound<'py, Self>,
-        sigma: &Bound<'py, PyAny>,
-        eta: &Bound<'py, PyAny>,
-        options: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        maker(slf.py(), "normal_grid")?.call((slf, sigma, eta), options)
     }
 
     /// Find the rail's points by their arc length `sigma` from C, mm: xi and zeta in mm and alpha in rad, the angle of the

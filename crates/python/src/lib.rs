@@ -14,6 +14,7 @@ mod patch;
 mod place;
 mod positions;
 mod profile;
+mod standards;
 mod sweep;
 mod text;
 mod values;
@@ -35,7 +36,9 @@ mod _wheelrail {
     #[pymodule_export]
     use super::patch::Patch;
     #[pymodule_export]
-    use super::profile::{Profile, profile_from_bytes, rail, rail_names, read_profile, wheel, wheel_names};
+    use super::profile::{Profile, profile_from_bytes, read_profile};
+    #[pymodule_export]
+    use super::standards::{rail, rail_names, wheel, wheel_names};
     #[pymodule_export]
     use super::sweep::{doubt_words, sweep_picture};
     #[pymodule_export]

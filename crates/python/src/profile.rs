@@ -12,7 +12,7 @@ use wheelrail::case::{about_profile, profile_picture, usual};
 use wheelrail::error::finite;
 use wheelrail::measured::{self, Format, Measured, Options, write};
 use wheelrail::nalgebra::{Point2, UnitComplex};
-use wheelrail::profile::{Mark, Side, standards, trace};
+use wheelrail::profile::{Mark, Side, trace};
 use wheelrail::scene::{self, ProfileSource, Rotation};
 use wheelrail::{Error, files};
 
@@ -415,46 +415,6 @@ pub(crate) fn profile_from_bytes(bytes: &[u8]) -> PyResult<Profile> {
 fn damaged(error: postcard::Error) -> PyErr {
     let expected = "the bytes of a pickled profile of this version";
     exception(Error::new("profile", error.to_string(), expected, "pickle it anew"))
-}
-
-/// Return a built-in rail: upright, origin at the top of its crown.
-///
-///     >>> wr.rail("60E1").name
-///     '60E1'
-///
-/// Raises InputError for an unknown name, with the nearest known one.
-#[pyfunction]
-pub(crate) fn rail(name: &str) -> PyResult<Profile> {
-    standards::rail(name).map(|profile| Profile::of(&profile, Side::Rail)).or_raise()
-}
-
-/// Return a built-in wheel: right-hand, flange at negative x, origin where its standard has it.
-///
-///     >>> wr.wheel("S1002").side
-///     'wheel'
-///
-/// Raises InputError for an unknown name, with the nearest known one.
-#[pyfunction]
-pub(crate) fn wheel(name: &str) -> PyResult<Profile> {
-    standards::wheel(name).map(|profile| Profile::of(&profile, Side::Wheel)).or_raise()
-}
-
-/// Return the names of the built-in rails.
-///
-///     >>> "60E1" in wr.rail_names()
-///     True
-#[pyfunction]
-pub(crate) fn rail_names() -> Vec<&'static str> {
-    standards::rail_names().collect()
-}
-
-/// Return the names of the built-in wheels.
-///
-///     >>> "S1002" in wr.wheel_names()
-///     True
-#[pyfunction]
-pub(crate) fn wheel_names() -> Vec<&'static str> {
-    standards::wheel_names().collect()
 }
 
 /// Read a profile from a file: measured points (MiniProf .ban .whl .mpt, SIMPACK .prr .prw, GENSYS .rail .wheel, slices .slcs

@@ -8,18 +8,13 @@ use wheelrail::nalgebra::{Point3, Vector3};
 
 use crate::arrays;
 
-/// Gives a class or a function of `wheelrail._values`.
-pub(crate) fn maker<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-    py.import("wheelrail._values")?.getattr(name)
-}
-
 /// Makes a value of a class of `wheelrail._values` from its fields.
 pub(crate) fn made<'py>(
     py: Python<'py>,
     class: &str,
     fields: impl PyCallArgs<'py>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    maker(py, class)?.call1(fields)
+    py.import("wheelrail._values")?.getattr(class)?.call1(fields)
 }
 
 /// Makes an array (n, 3) of points.

@@ -78,14 +78,14 @@ def test_grids_go_to_xarray_with_their_coordinates(track: wr.Wheelset, yaw: floa
     need("xarray")
     contact = track.touch(lateral=5.5, yaw=yaw).right[0]
     xi, eta = np.linspace(-80, 80, 33), np.linspace(-6, 6, 41)
-    grid = contact.grid(xi, eta, tolerance=1e-9, method="pointwise")
+    grid = wr.Grid.of_separation(contact, xi, eta, tolerance=1e-9, method="pointwise")
     flat: Any = grid.to_xarray()
     expected = contact.separation(xi, eta, tolerance=1e-9, method="pointwise")
     assert flat.values.tobytes() == grid.values.tobytes() == expected.tobytes() and np.shares_memory(flat.values, grid.values)
     assert flat.dims == ("xi", "eta") and np.isnan(flat.values).any() and float(flat.sel(xi=0.0, eta=0.0)) == 0.0
     assert np.array_equal(flat["xi"], xi) and np.array_equal(flat["eta"], eta)
     assert {name: flat[name].attrs["units"] for name in flat.coords} == {"xi": "mm", "eta": "mm"} and flat.attrs["units"] == "mm"
-    bent: Any = contact.normal_grid(xi, eta).to_xarray()
+    bent: Any = wr.Grid.of_normal_gap(contact, xi, eta).to_xarray()
     assert bent.name == "normal_gap" and bent.dims == ("sigma", "eta") and bent["xi"].dims == ("sigma",)
     assert np.array_equal(bent, contact.normal_gap(xi, eta), equal_nan=True)
     for name, values in zip(("xi", "zeta", "alpha"), contact.rail_surface(xi)):
@@ -95,12 +95,12 @@ def test_grids_go_to_xarray_with_their_coordinates(track: wr.Wheelset, yaw: floa
     xi[:] = 0.0
     assert grid.axes["xi"][0] == -80.0 and repr(grid) == "Grid(separation over 33 xi x 41 eta)"
     with pytest.raises(wr.InputError, match="sigma"):
-        contact.normal_grid([1.0, 0.0], eta)
+        wr.Grid.of_normal_gap(contact, [1.0, 0.0], eta)
 
 
 def test_what_xarray_needs_is_said(track: wr.Wheelset, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "xarray", None)
-    grid = track.touch().right[0].grid([-1.0, 0.0, 1.0], range(3))
+    grid = wr.Grid.of_separation(track.touch().right[0], [-1.0, 0.0, 1.0], range(3))
     with pytest.raises(ImportError, match="pip install xarray"):
         grid.to_xarray()
 

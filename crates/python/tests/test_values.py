@@ -104,7 +104,7 @@ def test_all_values_are_pickled_copied_and_compared(pair: wr.Pair, track: wr.Whe
     chosen = pair.placed(1.0, 1.0)
     values = [
         pair, track, touch, flange, contact, chosen, chosen.patch(approach=0.05), patch, patch.components[0], patch.mesh(), patch.strips(),
-        contact.hertz(load=60e3), contact.feasibility(), contact.grid([0.0, 1.0], [0.0, 1.0]), contact.normal_grid([0.0, 1.0], [0.0, 1.0]), pair.touch(), track.sweep([0.0, 1.0, 2.0]), wr.rail("60E1"),
+        contact.hertz(load=60e3), contact.feasibility(), wr.Grid.of_separation(contact, [0.0, 1.0], [0.0, 1.0]), wr.Grid.of_normal_gap(contact, [0.0, 1.0], [0.0, 1.0]), pair.touch(), track.sweep([0.0, 1.0, 2.0]), wr.rail("60E1"),
     ]
     for value in values:
         for again in (pickle.loads(pickle.dumps(value)), copy.deepcopy(value)):

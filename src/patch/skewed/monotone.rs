@@ -1,10 +1,12 @@
 //! Finds the intervals of ξ over which s along a valley or ridge only rises or only falls.
 
+use nalgebra::Vector2;
+
 use super::path::Leg;
 use super::valleys::Valleys;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::sign_changes::sign_changes;
-use crate::profile::{Branch, Section};
+use crate::profile::{Branch, Section, Station};
 
 /// Angle between the surfaces below which its sign does not count. Turns that are missed change s by less than 1e-13 of their
 /// distance along the surfaces.
@@ -27,7 +29,8 @@ struct RailStretch<'v> {
 ///
 /// Method: the slope of the surface where it is parallel to η is a monotone function of the profile's angle. Bounds of that angle
 /// and of the rail's slope prove that s does not turn over a stretch, or that the stretch does not matter; elsewhere all sign
-/// changes of the angle between the surfaces are found, for polynomials of any degree. Cost: two places for most stretches, 16 and
+/// changes of the angle between the surfaces are found, for polynomials of any degree, over the rail's own parameter where the rail
+/// may stand upright. Cost: two places for most stretches, 16 and
 /// more for those over which the bodies may be parallel.
 pub(crate) fn monotone(
     valleys: &Valleys<'_>,
@@ -104,8 +107,7 @@ impl RailStretch<'_> {
     /// surface stands upright.
     fn angle(&self, at: f64) -> f64 {
         let (xi, _, direction) = self.valleys.place(self.leg, at);
-        let rail = self.rail.station(xi);
-        direction.y * rail.cos - direction.x * rail.sin
+        sine_between(direction, &self.rail.station(xi))
     }
 
     /// Returns the same over the rail's own parameter, of which it is a smooth function where the rail stands upright.
@@ -113,6 +115,11 @@ impl RailStretch<'_> {
         let rail = self.rail.station_and_curvature(parameter).0;
         let at = self.valleys.parameter(self.leg, rail.x.clamp(left, right));
         let (_, _, direction) = self.valleys.place(self.leg, at);
-        direction.y * rail.cos - direction.x * rail.sin
+        sine_between(direction, &rail)
     }
+}
+
+/// Returns the sine of the angle between a direction \[dξ, dζ\] of the wheel's surface, times its length, and the rail's tangent.
+fn sine_between(direction: Vector2<f64>, rail: &Station) -> f64 {
+    direction.y * rail.cos - direction.x * rail.sin
 }

@@ -6,7 +6,8 @@ use crate::numerics::lanes::Lanes;
 use crate::numerics::polynomial::{derivative, value};
 use crate::numerics::sign_changes::sign_changes;
 
-/// Difference of slopes or sine of an angle whose sign does not count. Points that are missed change the gap by less than 1e-13 of their distance.
+/// Difference of slopes, or sine of an angle, whose sign does not count. Points that are missed change the gap by less than 1e-13 of
+/// their distance.
 const SLOPE_NOISE: f64 = 1e-13;
 
 /// Returns all ξ inside (a, b) where ζ^W(ξ) − ζ^R(ξ) is stationary, ascending. `a` and `b` \[mm\] must be within both

@@ -4,6 +4,7 @@
 use super::points::{self, BranchPoint, BranchPoints, repeated};
 use super::turned::{rising_parts, seen_from, seen_from_own_point};
 use crate::numerics::cosine;
+use crate::numerics::interval::{add, ordered, product, quotient};
 use crate::numerics::lanes::Lanes;
 use crate::numerics::polynomial::{
     derivative, derivatives, exact_values, range, value, value_and_slope, values_and_slopes,
@@ -475,26 +476,6 @@ impl Branch {
             BranchShape::Polynomial(p) => p.derivative_bounds(a, b),
         }
     }
-}
-
-fn ordered(a: f64, b: f64) -> [f64; 2] {
-    if a <= b { [a, b] } else { [b, a] }
-}
-
-fn product(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    let all = [a[0] * b[0], a[0] * b[1], a[1] * b[0], a[1] * b[1]];
-    [all.into_iter().fold(f64::INFINITY, f64::min), all.into_iter().fold(f64::NEG_INFINITY, f64::max)]
-}
-
-/// Divides an interval by a positive one.
-fn quotient(a: [f64; 2], positive: [f64; 2]) -> [f64; 2] {
-    product(a, [positive[1].recip(), positive[0].recip()])
-}
-
-/// Adds two intervals. The ends of b may be swapped, as a change of sign swaps them.
-fn add(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    let b = ordered(b[0], b[1]);
-    [a[0] + b[0], a[1] + b[1]]
 }
 
 /// Returns the sine of smallest size between two sines.

@@ -263,8 +263,9 @@ fn beyond_steps(wheel: &Surface<'_>, index: usize, [xi, u]: [&Lanes; 2], between
         if !(0..MANY).any(passing) {
             return true;
         }
-        let beyond: Lanes =
-            lanes(|k| if passing(k) { u[k] - wheel.folds(xi[k], before, near(k))[1] } else { f64::INFINITY });
+        let beyond: Lanes = lanes(|k| {
+            if passing(k) { u[k] - wheel.leaves_or_folds(xi[k], before, near(k))[1] } else { f64::INFINITY }
+        });
         let margin = if between { widest_step(&beyond) } else { 0.0 };
         beyond.iter().all(|&beyond| beyond > margin)
     })

@@ -289,10 +289,9 @@ _MEANINGS = {
 
 
 class Grid(_Value):
-    """Values over a grid, with the coordinates of its points: what `Contact.grid` and `Contact.normal_grid` make.
+    """Values over a grid, with the coordinates of its points.
 
-    >>> grid = contact.grid(np.linspace(-5, 5, 11), np.linspace(-8, 8, 17))
-    >>> grid
+    >>> wr.Grid.of_separation(contact, np.linspace(-5, 5, 11), np.linspace(-8, 8, 17))
     Grid(separation over 11 xi x 17 eta)
     """
 
@@ -305,6 +304,19 @@ class Grid(_Value):
     along: Mapping[str, NDArray[np.float64]]
     """What else is known of the points of the first axis, (n,): xi and zeta in mm and alpha in rad along sigma, as of
     `Contact.rail_surface`; nothing along xi."""
+
+    @classmethod
+    def of_separation(cls, contact: Contact, xi: ArrayLike, eta: ArrayLike, **options: Any) -> Grid:
+        """Compute the separation as `Contact.separation` does, whose options it takes."""
+        values = contact.separation(xi, eta, **options)
+        return cls("separation", values, {"xi": _axis(xi), "eta": _axis(eta)}, {})
+
+    @classmethod
+    def of_normal_gap(cls, contact: Contact, sigma: ArrayLike, eta: ArrayLike, **options: Any) -> Grid:
+        """Compute the gap of conformal contact as `Contact.normal_gap` does, whose options it takes."""
+        values = contact.normal_gap(sigma, eta, **options)
+        along = dict(zip(("xi", "zeta", "alpha"), contact.rail_surface(sigma)))
+        return cls("normal_gap", values, {"sigma": _axis(sigma), "eta": _axis(eta)}, along)
 
     def __repr__(self) -> str:
         """Return the name, and the axes with their numbers of points."""
@@ -331,16 +343,3 @@ def _meaning(name: str) -> dict[str, str]:
 def _axis(axis: ArrayLike) -> NDArray[np.float64]:
     # A copy: the caller may change its own.
     return np.array(axis, dtype=np.float64)
-
-
-def separation_grid(contact: Contact, xi: ArrayLike, eta: ArrayLike, **options: Any) -> Grid:
-    """Compute the separation of a contact with its coordinates."""
-    values = contact.separation(xi, eta, **options)
-    return Grid("separation", values, {"xi": _axis(xi), "eta": _axis(eta)}, {})
-
-
-def normal_grid(contact: Contact, sigma: ArrayLike, eta: ArrayLike, **options: Any) -> Grid:
-    """Compute the normal gap of a contact with its coordinates."""
-    values = contact.normal_gap(sigma, eta, **options)
-    along = dict(zip(("xi", "zeta", "alpha"), contact.rail_surface(sigma)))
-    return Grid("normal_gap", values, {"sigma": _axis(sigma), "eta": _axis(eta)}, along)

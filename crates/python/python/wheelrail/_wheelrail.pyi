@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Unpack
 
 from ._table import Table
-from ._values import Check, Component, Feasibility, Grid, Hertz, Mesh, Run, Touch, WheelTouch
+from ._values import Check, Component, Feasibility, Hertz, Mesh, Run, Touch, WheelTouch
 from .tamaas import Problem
 
 __version__: str
@@ -202,10 +202,6 @@ class Contact:
         self, xi: ArrayLike, eta: ArrayLike, *, tolerance: float = 1e-12, method: _Method = "auto"
     ) -> _Floats: ...
     def normal_gap(self, sigma: ArrayLike, eta: ArrayLike, *, tolerance: float = 1e-12) -> _Floats: ...
-    def grid(
-        self, xi: ArrayLike, eta: ArrayLike, *, tolerance: float = 1e-12, method: _Method = "auto"
-    ) -> Grid: ...
-    def normal_grid(self, sigma: ArrayLike, eta: ArrayLike, *, tolerance: float = 1e-12) -> Grid: ...
     def rail_surface(self, sigma: ArrayLike) -> tuple[_Floats, _Floats, _Floats]: ...
     def normals(self, xi: ArrayLike, eta: ArrayLike) -> tuple[_Floats, _Floats]: ...
     def surfaces(

@@ -80,8 +80,9 @@ def sweep(
 
     `client` is a `distributed.Client`, of a cluster of any size. `batch` positions are a task. A task that was lost with its
     workers or its scheduler is handed out again, at most `retries` times; where all workers are gone, others are waited for.
-    `progress(done, all)` is called with the parts that are there; `progress=True` shows a bar of tqdm. `options` are keywords of `Wheelset.sweep`: within, load, approach, modulus. The equivalent conicity belongs to
-    a wheelset and not to its positions, and is left out.
+    `progress(done, all)` is called with the parts that are there; `progress=True` shows a bar of tqdm. `options` are
+    keywords of `Wheelset.sweep`: within, load, approach, modulus. The equivalent conicity belongs to a wheelset and not to
+    its positions, and is left out.
 
     Raises the errors of `Wheelset.sweep`; that of Dask for a task whose workers died more often.
     """
