@@ -145,9 +145,9 @@ pub struct SweepDoubts {
 }
 
 impl SweepDoubts {
-    /// Prepares the doubts of both sides' pairs; without a left one, both sides have one.
-    pub fn new(right: &Pair, left: Option<&Pair>) -> Self {
-        Self { right: Landmarks::new(right), left: left.map(Landmarks::new) }
+    /// Joins the landmarks of both sides' pairs; without left ones, both sides have one pair.
+    pub fn new(right: Landmarks, left: Option<Landmarks>) -> Self {
+        Self { right, left }
     }
 
     /// Finds the doubts about each row of a position; rows of further contacts have none.

@@ -1,6 +1,6 @@
 //! Follows a profile by arc length, to plot it and to compare two curves.
 
-use super::{Profile, Segment, Shape, Station};
+use super::{Polynomial, Profile, Segment, Shape, Station};
 
 /// A station with its distance along the profile.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,7 +51,8 @@ pub fn trace(profile: &Profile, step: f64) -> Vec<Mark> {
     for (index, segment) in profile.segments().iter().enumerate() {
         let shares = shares(segment, step);
         for k in 0..=shares {
-            let (station, curvature) = at_share(segment, k as f64 / shares as f64);
+            let share = k as f64 / shares as f64;
+            let (station, curvature) = (at_share(segment, share), curvature(segment, share));
             let walked = marks.last().map_or(0.0, |last| last.s + chord(&last.station, &station, curvature));
             marks.push(Mark { s: walked, station, curvature, segment: index });
         }
@@ -99,23 +100,33 @@ pub fn beside(marks: &[Mark], [x, z]: [f64; 2], hint: usize) -> Option<Beside> {
 /// Most marks that are looked at beyond the nearest one so far.
 const LOOKED_ON: usize = 16;
 
-/// Returns station and curvature at a share (0 to 1) of an arc's length or of a polynomial's range of the parameter.
-fn at_share(segment: &Segment, share: f64) -> (Station, f64) {
+/// Returns the station at a share (0 to 1) of an arc's length or of a polynomial's range of the parameter.
+fn at_share(segment: &Segment, share: f64) -> Station {
     match &segment.shape {
-        Shape::Arc(arc) if share == 1.0 => (arc.end, arc.curvature()),
-        Shape::Arc(arc) => (arc.station_at(share), arc.curvature()),
-        Shape::Polynomial(polynomial) => {
-            let [t0, t1] = polynomial.t;
-            let t = t0 + share * (t1 - t0);
-            (polynomial.station(t), polynomial.curvature(t))
-        }
+        Shape::Arc(arc) if share == 1.0 => arc.end,
+        Shape::Arc(arc) => arc.station_at(share),
+        Shape::Polynomial(polynomial) => polynomial.station(parameter(polynomial, share)),
     }
+}
+
+/// Returns the curvature there \[1/mm\].
+fn curvature(segment: &Segment, share: f64) -> f64 {
+    match &segment.shape {
+        Shape::Arc(arc) => arc.curvature(),
+        Shape::Polynomial(polynomial) => polynomial.curvature(parameter(polynomial, share)),
+    }
+}
+
+/// Returns the parameter at a share of its range.
+fn parameter(polynomial: &Polynomial, share: f64) -> f64 {
+    let [t0, t1] = polynomial.t;
+    t0 + share * (t1 - t0)
 }
 
 /// Returns the length of a segment \[mm\]. A polynomial is measured by chords, which are at most a few per cent too short.
 fn segment_length(segment: &Segment) -> f64 {
     const CHORDS: usize = 8;
-    let at = |k: usize| at_share(segment, k as f64 / CHORDS as f64).0;
+    let at = |k: usize| at_share(segment, k as f64 / CHORDS as f64);
     match &segment.shape {
         Shape::Arc(arc) => arc.length(),
         Shape::Polynomial(_) => (0..CHORDS).map(|k| distance(&at(k), &at(k + 1))).sum(),
@@ -131,7 +142,7 @@ fn shares(segment: &Segment, step: f64) -> usize {
     let mut count = 1;
     loop {
         // Equal shares of a polynomial's parameter differ in length.
-        let at = |k: usize| at_share(segment, k as f64 / count as f64).0;
+        let at = |k: usize| at_share(segment, k as f64 / count as f64);
         let longest = (0..count).map(|k| distance(&at(k), &at(k + 1))).fold(0.0, f64::max);
         if longest <= step {
             return count;

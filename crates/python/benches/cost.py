@@ -17,7 +17,7 @@ import numpy as np
 import wheelrail as wr
 
 # A grid may take so many microseconds more, a sweep this share; import in ms, wheel in MB.
-LIMITS = {"grid": 20.0, "sweep": 0.05, "import": 50.0, "wheel": 4.0}
+LIMITS = {"grid": 10.0, "sweep": 0.05, "import": 5.0, "wheel": 5.5}
 
 
 def in_rust() -> tuple[float, float]:

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use wheelrail::Error;
-use wheelrail::case::{Doubt, SweepDoubts, usual};
+use wheelrail::case::{Doubt, Landmarks, SweepDoubts, usual};
 use wheelrail::profile::Side;
 use wheelrail::scene;
 use wheelrail::search::{self, ONE_CONTACT, Pose, ProfilePair, Selection, TrackSide};
@@ -167,7 +167,7 @@ impl Pair {
     /// Prepares a pair of the library.
     pub(crate) fn of(pair: wheelrail::Pair, (rail, wheel): (Profile, Profile)) -> PyResult<Self> {
         let search = Arc::new(ProfilePair::new(&pair).or_raise()?);
-        let doubts = Arc::new(SweepDoubts::new(&pair, None));
+        let doubts = Arc::new(SweepDoubts::new(Landmarks::new(&pair), None));
         Ok(Self { pair, rail, wheel, search, doubts })
     }
 

@@ -110,7 +110,8 @@ impl Wheelset {
             }
         };
         let system = system_of(pair, left, rails, wheels).or_raise()?;
-        let both = |left: &Pair| Arc::new(SweepDoubts::new(&pair.pair, Some(&left.pair)));
+        let marks = |pair: &Pair| pair.doubts.on(TrackSide::Right).clone();
+        let both = |left| Arc::new(SweepDoubts::new(marks(pair), Some(marks(left))));
         let doubts = left.map_or_else(|| Arc::clone(&pair.doubts), both);
         let made =
             Self { pair: pair.clone(), left: left.cloned(), system: Arc::new(system), doubts, distances };
