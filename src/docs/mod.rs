@@ -28,5 +28,8 @@ pub mod clients {}
 #[doc = include_str!("python.md")]
 pub mod python {}
 
+#[doc = include_str!("gallery.md")]
+pub mod gallery {}
+
 #[doc = include_str!("references.md")]
 pub mod references {}

@@ -3,6 +3,7 @@
 # Where the patch bends around the gauge corner, the gap along a fixed normal and the one along the rail's own normal differ.
 
 # %%
+import matplotlib.pyplot as plt
 import numpy as np
 
 import wheelrail as wr
@@ -23,3 +24,11 @@ approach = 0.05
 fixed, turning = s < approach, t < approach * np.cos(alpha)[:, None]
 print(f"{fixed.sum()} points overlap along the fixed normal, {turning.sum()} along the turning one")
 assert turning[30, 40] and fixed[30, 40] and abs(int(fixed.sum()) - int(turning.sum())) < fixed.sum()
+
+# %%
+picture, axes = plt.subplots(figsize=(6, 7), layout="constrained")
+drawn = axes.pcolormesh(sigma, eta, 1e3 * (t / np.cos(alpha)[:, None] - s).T)
+axes.contour(sigma, eta, s.T, levels=[approach], colors="black")
+axes.set(xlabel="σ along the rail's profile, mm", ylabel="η along the rail, mm", title="Around the patch s < δ")
+picture.colorbar(drawn, label="t / cos α − s, µm")
+picture

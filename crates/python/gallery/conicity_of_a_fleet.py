@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import tempfile
 
+import matplotlib.pyplot as plt
 import numpy as np
 
 import wheelrail as wr
@@ -45,3 +46,6 @@ if __name__ == "__main__":
             files = wheelrail.dask.sweep(wheelsets, np.arange(-70, 71) / 10, folder, client=client)
             print(f"{len(files)} Parquet files")
         assert len(files) == len(wheelsets) and all(0.0 < value < 1.0 for value in found)
+    picture, axes = plt.subplots(figsize=(7, 4), layout="constrained")
+    axes.plot([float(shift) for shift in wheelsets], found, "o-")
+    axes.set(xlabel="shift of the wheels' profiles, mm", ylabel="equivalent conicity at 3 mm")

@@ -27,4 +27,5 @@ assert abs(grid[100, 100]) < 1e-14 and np.nanmin(grid) > -1e-9
 # %%
 patch = contact.patch(load=60e3)
 print(f"{patch.area:.1f} mm² of overlap, {contact.hertz(load=60e3).max_pressure:.0f} N/mm² by Hertz")
-patch
+picture = patch
+picture

@@ -3,7 +3,9 @@
 # The patch as graded triangles with the overlap on its nodes, the bodies around it, and the file that Gmsh opens.
 
 # %%
+import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.tri import Triangulation
 
 import wheelrail as wr
 
@@ -26,3 +28,11 @@ print(f"overlap up to {overlap.max() * 1e3:.1f} µm")
 rail, wheel = contact.surfaces((-10.0, 10.0), (-15.0, 15.0), approach=patch.approach)
 print(f"rail {rail}, wheel {wheel}; patch.msh has {len(patch.files('gmsh')['patch.msh'])} bytes")
 assert overlap.min() > -1e-9 and np.isclose(overlap.max(), patch.approach, rtol=0.2)
+
+# %%
+picture, axes = plt.subplots(figsize=(6, 6), layout="constrained")
+triangles = Triangulation(mesh.points[:, 0], mesh.points[:, 1], mesh.cells)
+drawn = axes.tripcolor(triangles, 1e3 * overlap, edgecolors="white", linewidth=0.3)
+axes.set(xlabel="ξ across the rail, mm", ylabel="η along the rail, mm", aspect="equal")
+picture.colorbar(drawn, label="overlap δ − s, µm")
+picture

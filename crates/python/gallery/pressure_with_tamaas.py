@@ -3,6 +3,7 @@
 # From a contact to its pressure distribution in three lines.
 
 # %%
+import matplotlib.pyplot as plt
 import numpy as np
 
 import wheelrail as wr
@@ -20,4 +21,15 @@ assert abs(carried - 60e3) < 1.0
 # Hertz takes the curvatures at the contact point for those of the whole contact.
 
 # %%
-contact.hertz(load=60e3)
+hertz = contact.hertz(load=60e3)
+hertz
+
+# %%
+picture, axes = plt.subplots(figsize=(6, 6), layout="constrained")
+drawn = axes.pcolormesh(problem.xi, problem.eta, pressure.T, shading="nearest")
+angle = np.linspace(0.0, 2.0 * np.pi, 200)
+axes.plot(hertz.semi_axes[0] * np.cos(angle), hertz.semi_axes[1] * np.sin(angle), "w--", label="Hertz's ellipse")
+axes.set(xlabel="ξ across the rail, mm", ylabel="η along the rail, mm", aspect="equal")
+axes.legend()
+picture.colorbar(drawn, label="pressure, N/mm²")
+picture

@@ -1,6 +1,6 @@
 # %% [markdown]
 # # Two-point contact
-# A yawed wheelset at its flange: a second place comes near while the first one still carries.
+# A wheelset at its flange: a second place comes near while the first one still carries.
 
 # %%
 import numpy as np
@@ -26,4 +26,5 @@ for contact in contacts:
 assert len(contacts) >= 2
 
 # %%
-contacts[0].patch(approach=0.05)
+picture = contacts[0].patch(approach=0.05)
+picture

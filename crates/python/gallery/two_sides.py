@@ -4,6 +4,7 @@
 # axle's load is shared.
 
 # %%
+import matplotlib.pyplot as plt
 import numpy as np
 
 import wheelrail as wr
@@ -32,3 +33,12 @@ assert {contact.side for contact in case.contacts} == {"left", "right"}
 
 # %%
 case
+
+# %%
+picture, axes = plt.subplots(figsize=(7, 5), layout="constrained")
+for contact in case.contacts:
+    for number, loop in enumerate(contact.patch().loops):
+        axes.fill(*loop.T, alpha=0.4, label=contact.name if number == 0 else None)
+axes.set(xlabel="ξ across the rail, mm", ylabel="η along the rail, mm", aspect="equal")
+axes.legend()
+picture

@@ -4,6 +4,7 @@
 # is made here of points, hollow by 1 mm at the middle of its tread; `wr.read_profile` takes an instrument's file likewise.
 
 # %%
+import matplotlib.pyplot as plt
 import numpy as np
 
 import wheelrail as wr
@@ -30,4 +31,10 @@ for name, table in tables.items():
 
 # %%
 assert tables["worn"].rows == tables["new"].rows
-tables["worn"]
+picture, axes = plt.subplots(figsize=(8, 4), layout="constrained")
+for name, table in tables.items():
+    right = table.lowest("right")
+    axes.plot(right["lateral_mm"], right["wheel_x_mm"], ".", label=name)
+axes.set(xlabel="lateral displacement y, mm", ylabel="contact on the right wheel x, mm")
+axes.legend()
+picture

@@ -11,7 +11,7 @@ PACKAGE = ROOT / "crates/python"
 
 
 def test_pyright_finds_no_fault_in_strict_mode() -> None:
-    need("basedpyright", "dask", "jupytext", "meshio", "pandas", "polars", "pyarrow", "pyvista", "tamaas", "tqdm", "xarray")
+    need("basedpyright", "dask", "jupytext", "matplotlib", "meshio", "pandas", "polars", "pyarrow", "pyvista", "tamaas", "tqdm", "xarray")
     command = [sys.executable, "-m", "basedpyright", "--project", "pyproject.toml", "--pythonpath", sys.executable, "--outputjson"]
     run = subprocess.run(command, cwd=PACKAGE, capture_output=True, text=True)
     found = json.loads(run.stdout)
