@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::conformal::Conformal;
 use super::input::Question;
+use super::pressure::PartPressure;
 use super::site::Site;
 use crate::error::{Error, Result};
 use crate::mesh::{StripCounts, StripMesh};
@@ -31,6 +32,8 @@ pub struct Timings {
     pub mesh_s: f64,
     /// The normal gap and its patch; next to 0 where it is not asked for.
     pub conformal_s: f64,
+    /// The pressures.
+    pub pressure_s: f64,
 }
 
 /// The separation over a grid and the patch in its window.
@@ -46,6 +49,8 @@ pub struct Analysis {
     pub strips: Option<StripMesh>,
     /// The normal gap over the rail's surface, where it is asked for.
     pub conformal: Option<Conformal>,
+    /// The pressures: over the grid if they are asked for, else those of the load; `None` where nothing is pressed.
+    pub pressure: Option<PartPressure>,
     /// Where the time went.
     pub timings: Timings,
 }
@@ -71,15 +76,18 @@ impl Analysis {
         let strips = patch.as_ref().map(mesh).transpose()?;
         let meshed = Instant::now();
         let conformal = Conformal::new(site, question.tolerance);
+        let unrolled = Instant::now();
+        let pressure = PartPressure::new(site, question)?;
         let timings = Timings {
             load_s: site.contact.load_s,
             plan_s: (planned - start).as_secs_f64(),
             grid_s: (filled - planned).as_secs_f64(),
             patch_s: (cut - filled).as_secs_f64(),
             mesh_s: (meshed - cut).as_secs_f64(),
-            conformal_s: meshed.elapsed().as_secs_f64(),
+            conformal_s: (unrolled - meshed).as_secs_f64(),
+            pressure_s: unrolled.elapsed().as_secs_f64(),
         };
-        Ok(Self { separation, plan, patch, strips, conformal, timings })
+        Ok(Self { separation, plan, patch, strips, conformal, pressure, timings })
     }
 }
 

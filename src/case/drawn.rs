@@ -3,9 +3,12 @@
 use nalgebra::Point3;
 
 use super::found::Found;
+use super::pressure::PartPressure;
 use super::run::Part;
 use super::site::ends;
-use crate::export::{Frame, Header, Loop, Nodes, PatchPicture, PicturedContact, QuadMesh, SEPARATOR};
+use crate::export::{
+    Frame, Header, Loop, Nodes, PatchPicture, PicturedContact, Pressed, QuadMesh, SEPARATOR,
+};
 use crate::mesh::{StripMesh, equal_steps};
 use crate::patch::{Patch, Window};
 use crate::placement::Placement;
@@ -27,6 +30,7 @@ const OUTLINE_POINTS: usize = 32;
 pub(super) struct Drawn {
     contact: String,
     refusals: Vec<String>,
+    pressure: Option<PartPressure>,
     xi: Vec<f64>,
     eta: EtaAxis,
     separation: Values,
@@ -41,7 +45,7 @@ impl Drawn {
     pub(super) fn new(part: &Part) -> Self {
         let (site, choice) = (&part.site, &part.analysis.plan.choice);
         let drawn = Self::of(&site.contact.placement, &site.window(), choice, contact_name(part));
-        Self { refusals: part.refusals(), ..drawn }
+        Self { refusals: part.refusals(), pressure: part.analysis.pressure.clone(), ..drawn }
     }
 
     /// Computes what is drawn of a placed pair over a window.
@@ -53,7 +57,7 @@ impl Drawn {
         let mut evaluator = Evaluator::new(placement);
         let midplane = xi.iter().map(|&xi| [xi, evaluator.separation(xi, 0.0)]).collect();
         let outlines = [&placement.rail().section, &placement.wheel().section].map(outline);
-        Self { contact, refusals: Vec::new(), xi, eta, separation, midplane, outlines }
+        Self { contact, refusals: Vec::new(), pressure: None, xi, eta, separation, midplane, outlines }
     }
 
     /// Gives the picture, with the solver's cells and the boundary.
@@ -69,6 +73,10 @@ impl Drawn {
             separation: Nodes { xi: &self.xi, eta: &self.eta.eta, values: &self.separation },
             midplane: &self.midplane,
             loops,
+            pressed: self
+                .pressure
+                .as_ref()
+                .map(|found| Pressed { edges: &found.outline, largest: found.largest.pressure_n_per_mm2 }),
         }
     }
 

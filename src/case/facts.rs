@@ -38,7 +38,7 @@ const KILO: f64 = 1e-3;
 const MILLI: f64 = 1e3;
 
 /// The facts of a contact, in the order in which they are shown.
-pub const FACTS: [Fact; 22] = [
+pub const FACTS: [Fact; 26] = [
     number("C on the rail, x", "mm", &["rail", "contact_x_mm"], (1.0, 3), |part| {
         Some(part.site.contact.placement.rail().point().station.x)
     }),
@@ -59,8 +59,26 @@ pub const FACTS: [Fact; 22] = [
     }),
     number("normal force", "kN", &["normal_load_n"], (KILO, 3), |part| part.site.normal_load),
     number("its vertical part", "kN", &["vertical_load_n"], (KILO, 3), |part| part.site.vertical_load()),
+    number("largest pressure", "N/mm²", &["pressure", "largest_n_per_mm2"], (1.0, 0), |part| {
+        Some(part.analysis.pressure.as_ref()?.largest.pressure_n_per_mm2)
+    }),
+    number("its error, estimated", "N/mm²", &["pressure", "largest_error_n_per_mm2"], (1.0, 0), |part| {
+        Some(part.analysis.pressure.as_ref()?.largest_error)
+    }),
+    Fact {
+        unit: "mm",
+        ..text("its place, ξ, η", |part| {
+            let [xi, eta] = part.analysis.pressure.as_ref()?.largest.at_mm;
+            // −0.00 is 0.00.
+            let [xi, eta] = [xi, eta].map(|at| (100.0 * at).round() / 100.0 + 0.0);
+            Some(format!("{xi:.2}, {eta:.2}"))
+        })
+    },
+    number("true contact area", "mm²", &["pressure", "contact_area_mm2"], (1.0, 1), |part| {
+        Some(part.analysis.pressure.as_ref()?.contact_area)
+    }),
     number("Hertz's pressure", "N/mm²", &["hertz_ellipse", "pressure_n_per_mm2"], (1.0, 0), |part| {
-        part.site.hertz_pressure()
+        part.hertz_pressure()
     }),
     Fact {
         unit: "mm",
@@ -173,7 +191,7 @@ fn conformal_patch(part: &Part) -> Option<&Patch> {
 
 /// Gives Hertz's ellipse; `None` where a half-space found δ: nothing has its pressure there.
 fn hertz(part: &Part) -> Option<Ellipse> {
-    part.site.contact.ellipse.filter(|_| part.site.hertz_pressure().is_some())
+    part.site.contact.ellipse.filter(|_| part.hertz_pressure().is_some())
 }
 
 fn points(part: &Part) -> String {

@@ -139,6 +139,8 @@ fn with_jobs<T>(
     let (header, rail, creepages) = (header(run, part), RailColumns::new(part), run.creepages(part)?);
     let grid = GridFields::new(&axes.xi, &axes.eta, &part.analysis.separation, &rail.height, &rail.normal)?;
     let grid = rail.roller.as_ref().map_or(Ok(grid), |roller| grid.over_roller(roller))?;
+    let pressure = part.analysis.pressure.as_ref().and_then(|found| found.field.as_deref());
+    let grid = pressure.map_or(Ok(grid), |pressure| grid.with_pressure(pressure))?;
     let on_rail = part.analysis.conformal.as_ref().map(|conformal| OnRail::new(&part.site, conformal));
     let curved = on_rail.as_ref().map(OnRail::fields).transpose()?;
     let gridded = Gridded::new(outputs, &header, &grid, curved.as_ref(), &mut skipped)?;
@@ -234,6 +236,10 @@ fn job<'a>(name: &'static str, writer: Writer, s: &'a Sources<'a>) -> Option<Job
     let (deck, curved_deck) = (deck.as_ref(), curved_deck.as_ref());
     Some(match writer {
         Writer::Grid(write) => stream(name, move |file| write(file, header, grid)),
+        Writer::Pressure(write) => {
+            let pressure = grid.pressure()?;
+            stream(name, move |file| write(file, grid, pressure))
+        }
         Writer::Curved(write) => {
             let curved = s.curved?;
             stream(name, move |file| write(file, header, curved))

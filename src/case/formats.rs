@@ -24,6 +24,8 @@ use crate::files::Names;
 pub(super) enum Writer {
     /// s over the grid, and the rail below it.
     Grid(fn(&mut dyn Write, &Header, &GridFields<'_>) -> io::Result<()>),
+    /// The pressures over the grid, where they are asked for.
+    Pressure(fn(&mut dyn Write, &GridFields<'_>, &[f64]) -> io::Result<()>),
     /// t over the rail's surface.
     Curved(fn(&mut dyn Write, &Header, &CurvedFields<'_>) -> io::Result<()>),
     /// s over equal steps in the plane, as NetCDF.
@@ -166,14 +168,15 @@ formats! {
             ("wheelset.vtm", Writer::InPlace(InPlace::wheelset_vtm)),
             ("view.py", Writer::Text(VIEW_SCRIPT)),
         ]),
-        /// xi.npy, eta.npy, separation.npy.
+        /// xi.npy, eta.npy, separation.npy, pressure.npy.
         Npy = unasked(8.0, &[
             ("xi.npy", Writer::Grid(|file, _, grid| axis(file, grid.xi()))),
             ("eta.npy", Writer::Grid(|file, _, grid| axis(file, grid.eta()))),
-            ("separation.npy", Writer::Grid(|file, _, grid| values(file, grid))),
+            ("separation.npy", Writer::Grid(|file, _, grid| over_grid(file, grid, grid.separation()))),
+            ("pressure.npy", Writer::Pressure(over_grid)),
             ("sigma.npy", Writer::Curved(|file, _, curved| axis(file, curved.sigma()))),
             ("angle.npy", Writer::Curved(|file, _, curved| axis(file, &curved.angles()))),
-            ("normal_gap.npy", Writer::Curved(|file, _, curved| values(file, &curved.grid()))),
+            ("normal_gap.npy", Writer::Curved(|file, _, curved| over_grid(file, &curved.grid(), curved.grid().separation()))),
         ]),
         /// separation.nc.
         Netcdf = unasked(8.0, &[("separation.nc", Writer::NetCdf)]),
@@ -224,8 +227,8 @@ fn axis(file: &mut dyn Write, values: &[f64]) -> io::Result<()> {
     array_npy(file, &[values.len() as u64], values)
 }
 
-fn values(file: &mut dyn Write, grid: &GridFields<'_>) -> io::Result<()> {
-    array_npy(file, &[grid.xi().len() as u64, grid.eta().len() as u64], grid.separation())
+fn over_grid(file: &mut dyn Write, grid: &GridFields<'_>, values: &[f64]) -> io::Result<()> {
+    array_npy(file, &[grid.xi().len() as u64, grid.eta().len() as u64], values)
 }
 
 impl OutputFormat {

@@ -170,8 +170,17 @@ pub struct Question {
     pub friction: Friction,
     /// Absolute tolerance on s \[mm\]; 1e-12 asks for all digits.
     pub tolerance: f64,
+    /// The pressures over the grid; `None` asks for those only that a load was found with.
+    pub pressure: Option<AskedPressure>,
     /// A method of the accuracy ladder; `None` takes the cheapest within the tolerance.
     pub method: Option<Method>,
+}
+
+/// What is asked of the pressures over a grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AskedPressure {
+    /// Longest side of the cells \[mm\], > 0; `None` takes thirds of the grid's steps, or ninths where those are too long.
+    pub cell: Option<f64>,
 }
 
 /// Coulomb's friction.

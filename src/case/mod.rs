@@ -23,6 +23,7 @@ mod landmarks;
 mod on_rail;
 mod places;
 mod polylines;
+mod pressure;
 mod profile_view;
 mod run;
 mod site;
@@ -49,12 +50,13 @@ pub use formats::{OutputFormat, PATCHES_FOLDER, RUN_FOLDER, run_files};
 pub use found::{Found, PlaceOfContact};
 pub use grids::Grid;
 pub use input::{
-    ApproachBy, AskedAxes, Case, Echo, FrameOrigin, Friction, Outputs, Place, Profiles, Question,
-    SideProfiles, Standing,
+    ApproachBy, AskedAxes, AskedPressure, Case, Echo, FrameOrigin, Friction, Outputs, Place, Profiles,
+    Question, SideProfiles, Standing,
 };
 pub use joined::joined_pair;
 pub use landmarks::{Landmarks, SweepDoubts};
 pub use places::{approach_under_load, contacts, find};
+pub use pressure::PartPressure;
 pub use profile_view::{about_profile, profile_picture};
 pub use run::{Part, Run, SILENT, Tell};
 pub use site::{Site, sites};

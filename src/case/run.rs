@@ -6,6 +6,7 @@ use super::doubts::Doubt;
 use super::found::Found;
 use super::grids::check_memory;
 use super::input::{Case, Place};
+use super::pressure::PartPressure;
 use super::site::{Site, sites};
 use super::site_doubts::{doubted, doubts_of, doubts_of_placing, other_lift};
 use crate::error::Result;
@@ -162,6 +163,12 @@ impl Run {
 }
 
 impl Part {
+    /// Gives the largest pressure of Hertz's ellipse \[N/mm²\]; `None` without an ellipse, and where pressures were solved.
+    pub fn hertz_pressure(&self) -> Option<f64> {
+        let unsolved = !self.site.contact.is_loaded() && self.analysis.pressure.is_none();
+        self.site.contact.ellipse.filter(|_| unsolved).map(|ellipse| ellipse.pressure_n_per_mm2)
+    }
+
     /// Lists the geometric "no"s of the part.
     pub fn refusals(&self) -> Vec<String> {
         self.site.refusals(self.analysis.patch.as_ref())
@@ -187,6 +194,7 @@ fn warnings_of(site: &Site, analysis: &Analysis, other: f64) -> Vec<String> {
             "the separation's estimated error, {error:.1e} mm, is above grid.tolerance, {tolerance:e} mm"
         ));
     }
+    out.extend(analysis.pressure.as_ref().and_then(PartPressure::warning));
     out.extend(doubts_of(site, other).iter().map(Doubt::to_string));
     out
 }

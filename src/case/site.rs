@@ -84,12 +84,6 @@ impl Site {
         self.normal_load.map(|load| load * self.contact.placement.upright())
     }
 
-    /// Gives the largest pressure of Hertz's ellipse \[N/mm²\]; `None` without an ellipse, and where a half-space found δ: the
-    /// pressures are its own then.
-    pub fn hertz_pressure(&self) -> Option<f64> {
-        self.contact.ellipse.filter(|_| !self.contact.is_loaded()).map(|ellipse| ellipse.pressure_n_per_mm2)
-    }
-
     /// Gives the rectangle between the outermost points of the grid.
     pub fn window(&self) -> Window {
         Window { xi: ends(&self.grid.xi), eta: ends(&self.grid.eta) }

@@ -7,8 +7,8 @@ use super::conformal::Conformal;
 use super::facts::FACTS;
 use super::in_place;
 use super::input::Case;
+use super::pressure::PartPressure;
 use super::run::{Part, Run};
-use super::site::Site;
 use crate::error::Result;
 use crate::files::FolderPart;
 use crate::mesh::{Quality, Surface, TriangleMesh};
@@ -88,8 +88,9 @@ pub(super) fn summary(
         "effective_modulus_n_per_mm2": run.case.question.modulus(),
         "contact_to_track": rows,
         "wheelset_files": in_place::beside(run, part),
-        "hertz_ellipse": hertz(site),
+        "hertz_ellipse": hertz(part),
         "hertz_ellipse_under": contact.ellipse_under,
+        "pressure": analysis.pressure.as_ref().map(pressure),
         "patch": analysis.patch.as_ref().map(patch),
         "mesh_quality": analysis.strips.as_ref().and_then(Quality::of_strips),
         "triangle_mesh": meshes.patch.map(triangle_mesh),
@@ -165,11 +166,24 @@ fn relative_motion(creepages: Creepages) -> Value {
     })
 }
 
-/// Gives Hertz's ellipse, whose pressure is null where a half-space found δ: nothing has that pressure there.
-fn hertz(site: &Site) -> Option<Value> {
-    let mut ellipse = json!(site.contact.ellipse?);
-    ellipse["pressure_n_per_mm2"] = json!(site.hertz_pressure());
+/// Gives Hertz's ellipse, whose pressure is null where pressures were solved: nothing has that one there.
+fn hertz(part: &Part) -> Option<Value> {
+    let mut ellipse = json!(part.site.contact.ellipse?);
+    ellipse["pressure_n_per_mm2"] = json!(part.hertz_pressure());
     Some(ellipse)
+}
+
+/// Gives the pressures that were solved.
+fn pressure(found: &PartPressure) -> Value {
+    json!({
+        "largest_n_per_mm2": found.largest.pressure_n_per_mm2,
+        "largest_error_n_per_mm2": found.largest_error,
+        "largest_at_mm": found.largest.at_mm,
+        "contact_area_mm2": found.contact_area,
+        "normal_load_n": found.load,
+        "cell_mm": found.cell,
+        "over_grid": found.field.is_some(),
+    })
 }
 
 fn patch(patch: &Patch) -> Value {

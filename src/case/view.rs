@@ -4,7 +4,7 @@ use super::drawn::contact_name;
 use super::facts::{FACTS, Fact};
 use super::polylines::{pairs, thinned};
 use super::run::{Part, Run};
-use crate::export::{PageFrame, PageLoop, ViewContact, ViewPage};
+use crate::export::{PageFrame, PageLoop, PagePressure, ViewContact, ViewPage};
 use crate::mesh::equal_steps;
 use crate::patch::{Patch, Window};
 use crate::search::TrackSide;
@@ -93,6 +93,8 @@ fn contact(run: &Run, part: &Part, n: usize) -> ViewContact {
             .collect(),
         separation: separation.to_vec(),
         boundary: patch.map_or_else(Vec::new, boundary),
+        pressed: pressed(part),
+        pressure: pressure(part),
         facts: facts(part),
         warnings,
         xi,
@@ -150,6 +152,26 @@ fn boundary(patch: &Patch) -> Vec<PageLoop> {
         PageLoop(thinned(points, most).into_iter().flatten().collect())
     };
     loops().map(kept).collect()
+}
+
+/// Gives the edges of the true contact.
+fn pressed(part: &Part) -> Vec<PageLoop> {
+    let outline = part.analysis.pressure.as_ref().map_or(&[][..], |found| &found.outline);
+    outline.iter().map(|line| PageLoop(line.iter().flatten().copied().collect())).collect()
+}
+
+/// Gives the pressures over the grid, on the page's few points where it has more.
+fn pressure(part: &Part) -> Option<PagePressure> {
+    let (grid, field) = (&part.site.grid, part.analysis.pressure.as_ref()?.field.as_ref()?);
+    let every = |count: usize| count.div_ceil(POINTS);
+    let [along, across] = [every(grid.xi.len()), every(grid.eta.len())];
+    let thin = |axis: &[f64], every: usize| axis.iter().step_by(every).copied().collect();
+    let columns = field.chunks_exact(grid.eta.len()).step_by(along);
+    Some(PagePressure {
+        xi: thin(&grid.xi, along),
+        eta: thin(&grid.eta, across),
+        values: columns.flat_map(|column| column.iter().step_by(across).copied()).collect(),
+    })
 }
 
 /// Gives the rows of the table.

@@ -21,7 +21,7 @@ use crate::search;
 const USUAL_APPROACH: f64 = 0.05;
 
 /// Largest violation of contact's conditions that pressures may leave, relative to δ: the load errs by less than 0.05 %.
-const SETTLED: f64 = 3e-4;
+pub(super) const SETTLED: f64 = 3e-4;
 
 /// Demand on the load that wheels carry, relative: below the error of the cells.
 const CARRIED: f64 = 2e-4;

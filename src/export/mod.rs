@@ -31,17 +31,19 @@ pub use deck::{
 };
 pub use gmsh::patch_msh;
 pub use html::{
-    PageFrame, PageLoop, PagePair, PageProfile, SweepCurve, SweepPage, SweepPanel, SweepSide, ViewContact,
-    ViewPage,
+    PageFrame, PageLoop, PagePair, PagePressure, PageProfile, SweepCurve, SweepPage, SweepPanel, SweepSide,
+    ViewContact, ViewPage,
 };
 pub use in_place::{ContactInPlace, InPlace};
 pub use legacy::separation_vtk;
-pub use model::{Frame, GridFields, Header, Interval, Loop, PatchMesh, QuadMesh, RollerFields, SurfaceMesh};
+pub use model::{
+    Frame, GridFields, Header, Interval, Loop, PatchMesh, QuadMesh, RollerFields, SurfaceMesh, even_step,
+};
 pub use netcdf::NetCdf;
 pub use npy::array_npy;
 pub use picture::{
     Chart, ConformalPicture, CurvesPanel, CurvesPicture, JoinedPair, Nodes, PatchPicture, PicturedContact,
-    PlottedCurve, ProfilePicture, RailNormal, SEPARATOR, Series, jumps,
+    PlottedCurve, Pressed, ProfilePicture, RailNormal, SEPARATOR, Series, jumps,
 };
 pub use ply::surface_ply;
 pub use stl::surface_stl;

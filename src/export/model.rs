@@ -111,6 +111,7 @@ pub struct GridFields<'a> {
     rail_height: &'a [f64],
     rail_normal: &'a [[f64; 2]],
     roller: Option<&'a RollerFields>,
+    pressure: Option<&'a [f64]>,
 }
 
 /// The surface of a roller over a grid, at `i_xi * n_eta + i_eta`.
@@ -149,7 +150,7 @@ impl<'a> GridFields<'a> {
         if separation.is_empty() {
             return Err(Error::new("grid", "no points", "at least one", "give xi and eta values"));
         }
-        Ok(Self { xi, eta, separation, rail_height, rail_normal, roller: None })
+        Ok(Self { xi, eta, separation, rail_height, rail_normal, roller: None, pressure: None })
     }
 
     /// Returns the fields over a roller with this profile.
@@ -160,6 +161,20 @@ impl<'a> GridFields<'a> {
         same_length("falls of the roller", roller.fall.len(), self.separation.len())?;
         same_length("normals of the roller", roller.normal.len(), self.separation.len())?;
         Ok(Self { roller: Some(roller), ..self })
+    }
+
+    /// Returns the fields with the pressures \[N/mm²\] at their points, at `i_xi * n_eta + i_eta`.
+    ///
+    /// # Errors
+    /// Lengths that do not agree.
+    pub fn with_pressure(self, pressure: &'a [f64]) -> Result<Self> {
+        same_length("pressures", pressure.len(), self.separation.len())?;
+        Ok(Self { pressure: Some(pressure), ..self })
+    }
+
+    /// Returns the pressures \[N/mm²\] where they were solved.
+    pub fn pressure(&self) -> Option<&'a [f64]> {
+        self.pressure
     }
 
     /// Returns the grid coordinates ξ \[mm\], ascending.
@@ -235,7 +250,11 @@ pub(super) fn known(value: f64) -> f64 {
     if value.is_nan() { 0.0 } else { value }
 }
 
-pub(super) fn even_step(format: &str, axis: &str, values: &[f64]) -> Result<f64> {
+/// Gives the step \[mm\] of one of a grid's axes, which `format` needs to be equal.
+///
+/// # Errors
+/// Fewer than two values; unequal steps.
+pub fn even_step(format: &str, axis: &str, values: &[f64]) -> Result<f64> {
     let advice = format!("give grid.{axis} as from, to, n, or leave {format} out of output.formats");
     let (&[first, ..], &[.., last]) = (values, values) else {
         return Err(Error::new(format!("grid.{axis}"), "no points", "at least two", advice));

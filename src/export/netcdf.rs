@@ -2,8 +2,9 @@
 //! and ContactMechanics.
 //!
 //! Dimensions x (= ξ) and y (= η); variables `x`, `y` \[mm\] (cell centres), `heights(x, y)` = −s \[mm\] and, if a body has
-//! no surface somewhere, `mask(x, y)` (1 = undefined). The sign of −s is right because those programs press a rigid flat
-//! down onto `heights`. The writer is our own: the format is small, and the crates for it write only to paths.
+//! no surface somewhere, `mask(x, y)` (1 = undefined); `pressure(x, y)` \[N/mm²\] where it was solved. The sign of −s is
+//! right because those programs press a rigid flat down onto `heights`. The writer is our own: the format is small, and
+//! the crates for it write only to paths.
 
 use super::block::{Block, put_f64_be};
 use super::model::{GridFields, Header};
@@ -67,6 +68,11 @@ impl<'a> NetCdf<'a> {
         }
         for i in 0..xi.len() {
             put_f64_be(block.room(8 * eta.len())?, self.grid.column(i).iter().map(|s| -s));
+        }
+        if let Some(pressure) = self.grid.pressure() {
+            for column in pressure.chunks_exact(eta.len()) {
+                put_f64_be(block.room(8 * eta.len())?, column.iter().copied());
+            }
         }
         if self.masked {
             for i in 0..xi.len() {
@@ -144,8 +150,11 @@ fn variables(grid: &GridFields, steps: [f64; 2], masked: bool) -> Vec<Variable> 
         Variable { name, dimensions, attributes, attribute_count: 3, kind: DOUBLE, size }
     };
     let points = grid.separation().len() as u64;
-    let mut unit = Vec::new();
-    put_text(&mut unit, "unit", "mm");
+    let unit = |name| {
+        let mut unit = Vec::new();
+        put_text(&mut unit, "unit", name);
+        unit
+    };
     let plane = |name, attributes, attribute_count, kind, size| Variable {
         name,
         dimensions: &[0, 1],
@@ -157,8 +166,11 @@ fn variables(grid: &GridFields, steps: [f64; 2], masked: bool) -> Vec<Variable> 
     let mut variables = vec![
         axis("x", &[0], grid.xi(), steps[0]),
         axis("y", &[1], grid.eta(), steps[1]),
-        plane("heights", unit, 1, DOUBLE, 8 * points),
+        plane("heights", unit("mm"), 1, DOUBLE, 8 * points),
     ];
+    if grid.pressure().is_some() {
+        variables.push(plane("pressure", unit("N/mm2"), 1, DOUBLE, 8 * points));
+    }
     if masked {
         variables.push(plane("mask", Vec::new(), 0, BYTE, points));
     }

@@ -47,21 +47,26 @@ impl<'a> Array<'a> {
 }
 
 /// Writes `separation.vts`: the grid on the rail's surface with separation \[mm\], interpenetration max(δ − s, 0) \[mm\],
-/// gap_vector s·e_ζ \[mm\] (Warp By Vector moves the rail onto the wheel by it), rail_normal and mask (1 where s is
-/// defined). Undefined values are NaN; in gap_vector they are 0, because a NaN would destroy the picture.
+/// gap_vector s·e_ζ \[mm\] (Warp By Vector moves the rail onto the wheel by it), rail_normal, mask (1 where s is
+/// defined), and pressure \[N/mm²\] where it was solved. Undefined values are NaN; in gap_vector they are 0, because a NaN
+/// would destroy the picture.
 ///
 /// # Errors
 /// The errors of the sink.
 pub fn separation_vts(sink: &mut dyn Write, header: &Header, grid: &GridFields) -> io::Result<()> {
     let delta = header.approach;
     let depth = move |s: f64| if s > delta { 0.0 } else { delta - s };
-    let arrays = vec![
+    let mut arrays = vec![
         separation_array(grid),
         Array::scalar("interpenetration", move |i| grid.column(i).iter().map(move |&s| depth(s))),
         Array::vector("gap_vector", |i| grid.column(i).iter().map(|&s| [0.0, 0.0, known(s)])),
         Array::vector("rail_normal", |i| grid.lower_normals(i)),
         Array::byte("mask", |i| grid.mask(i)),
     ];
+    if let Some(pressure) = grid.pressure() {
+        let n = grid.eta().len();
+        arrays.push(Array::scalar("pressure", move |i| pressure[i * n..(i + 1) * n].iter().copied()));
+    }
     structured_grid(sink, header, grid, "separation", rail_points(grid), arrays)
 }
 

@@ -223,6 +223,14 @@ pub struct PatchData {
     #[schemars(extend("exclusiveMinimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load: Option<f64>,
+    /// Whether the pressures over the grid are solved and written, of an elastic half-space without friction.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub pressure: bool,
+    /// Longest side of the half-space's cells, mm: the grid's steps are divided by odd numbers. If not given, by three, or by nine
+    /// where the largest pressure may then err by more than 2 %.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pressure_cell: Option<f64>,
     /// Origin and angle of the contact frame: "contact", the contact point and its tangent, or "weighted", the centre of
     /// the overlap and the mean angle of the rail there, as in CONTACT; without yaw only.
     #[serde(default, skip_serializing_if = "is_contact")]

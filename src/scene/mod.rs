@@ -27,7 +27,7 @@ pub use profiles::{
     section_from_files,
 };
 pub use read::{load, parse};
-pub use resolve::{approach, echo, modulus, resolve, resolve_given, to_toml, with_profiles};
+pub use resolve::{approach, echo, modulus, pressure_cell, resolve, resolve_given, to_toml, with_profiles};
 pub use side_data::{DeviationData, SideData};
 pub use standing::{distance, within};
 pub use words::perhaps;

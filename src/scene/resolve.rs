@@ -11,7 +11,10 @@ use super::motion::{friction, motion};
 use super::profiles::{Given, profiles};
 use super::side_data::SideData;
 use super::standing::standing;
-use crate::case::{ApproachBy, Case, Echo, FrameOrigin, Friction, OutputFormat, Outputs, Profiles, Question};
+use crate::case::{
+    ApproachBy, AskedPressure, Case, Echo, FrameOrigin, Friction, OutputFormat, Outputs, Profiles, Question,
+};
+use crate::conformal::Reference;
 use crate::error::{Error, Result, finite};
 use crate::load::{Elastic, effective_modulus};
 use crate::mesh::checked_size;
@@ -108,7 +111,56 @@ fn question(scene: &Scene) -> Result<Question> {
         return Err(Error::new("grid: tolerance", found, expected, "1e-12 gives all digits"));
     }
     let frame = scene.patch.as_ref().map_or_else(FrameOrigin::default, |patch| patch.frame);
-    Ok(Question { approach, frame, motion, material, friction, tolerance, method: scene.grid.method })
+    let pressure = scene.patch.as_ref().map_or(Ok(None), |patch| pressure(patch, scene.grid.reference))?;
+    Ok(Question {
+        approach,
+        frame,
+        motion,
+        material,
+        friction,
+        tolerance,
+        pressure,
+        method: scene.grid.method,
+    })
+}
+
+/// Returns what is asked of the pressures.
+///
+/// # Errors
+/// Cells without pressures; sides that are not positive; a grid over the rail's surface.
+fn pressure(patch: &PatchData, reference: Reference) -> Result<Option<AskedPressure>> {
+    let cell = patch.pressure_cell;
+    if !patch.pressure {
+        return match cell {
+            None => Ok(None),
+            Some(cell) => {
+                let (found, expected) = (format!("{cell} without pressures"), "pressure = true beside it");
+                Err(Error::new("patch: pressure_cell", found, expected, "give it, or remove pressure_cell"))
+            }
+        };
+    }
+    if reference == Reference::Rail {
+        let expected = "grid.reference = \"plane\": a half-space has one normal";
+        return Err(Error::new(
+            "patch: pressure",
+            "grid.reference = \"rail\"",
+            expected,
+            "remove one of them",
+        ));
+    }
+    Ok(Some(AskedPressure { cell: cell.map(pressure_cell).transpose()? }))
+}
+
+/// Returns the longest side of the cells of pressures \[mm\] as it is.
+///
+/// # Errors
+/// One that is not positive.
+pub fn pressure_cell(cell: f64) -> Result<f64> {
+    if cell > 0.0 && cell.is_finite() {
+        return Ok(cell);
+    }
+    let advice = "give the longest side of a cell, or leave it out";
+    Err(Error::new("patch: pressure_cell", cell.to_string(), "a positive length in mm", advice))
 }
 
 /// Returns the approach, or the load from which it is estimated, of `[patch]`, `[wheelset]` or both sides.

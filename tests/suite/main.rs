@@ -33,6 +33,7 @@ mod motion;
 mod parts;
 mod polynomial_patches;
 mod practice;
+mod pressures;
 mod promises;
 mod reference_values;
 mod reference_yawed;

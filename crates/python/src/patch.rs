@@ -1,11 +1,13 @@
 //! Contact patches.
 
-use numpy::{PyArray1, PyArray2};
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use wheelrail::case::{
-    self, Analysis, Grid, Part, PlacedContact, Profiles, Run, Site, patch_mesh, patch_picture, quads,
+    self, Analysis, AskedPressure, Grid, Part, PartPressure, PlacedContact, Profiles, Run, Site, patch_mesh,
+    patch_picture, quads,
 };
+use wheelrail::load::Largest;
 use wheelrail::mesh::{Axes, GridGroup, StripCounts, StripMesh, groups};
 use wheelrail::scene::{self, Scene};
 use wheelrail::{Error, Placement};
@@ -56,17 +58,21 @@ impl Patch {
         format!("{wheel} on {rail}")
     }
 
+    /// Gives the contact alone over a grid.
+    fn site(&self, Axes { xi, eta, .. }: Axes) -> wheelrail::Result<Site> {
+        let contact = PlacedContact::new(self.placement.clone(), Some(self.patch.approach), self.modulus)?;
+        let grid = Grid { xi, eta, warning: None, sigma: None, groups: Vec::new() };
+        Ok(Site { folder: String::new(), contact, grid, normal_load: None })
+    }
+
     /// Computes a run of the contact alone, from which files are written.
     fn run(&self, axes: Axes) -> wheelrail::Result<Run> {
-        let (pair, placement) = (self.placement.pair(), self.placement.clone());
+        let (pair, placement) = (self.placement.pair(), &self.placement);
         let [rail_x, wheel_x] = [placement.rail(), placement.wheel()].map(|body| body.point().station.x);
         let scene: Scene =
             scene::parse(&format!("contact = {{ rail_x = {rail_x:?}, wheel_x = {wheel_x:?} }}"), false)?;
         let case = scene::with_profiles(&scene, Profiles::drawn(pair), &self.title())?;
-        let contact = PlacedContact::new(placement, Some(self.patch.approach), self.modulus)?;
-        let Axes { xi, eta, .. } = axes;
-        let grid = Grid { xi, eta, warning: None, sigma: None, groups: Vec::new() };
-        let site = Site { folder: String::new(), contact, grid, normal_load: None };
+        let site = self.site(axes)?;
         let analysis = Analysis::new(&site, case.question())?;
         Ok(Run { case, parts: vec![Part { site, analysis, warnings: Vec::new() }] })
     }
@@ -180,6 +186,39 @@ impl Patch {
         let component = found.component.iter().map(|component| *component as i64).collect();
         cells.set_item("component", PyArray1::<i64>::from_vec(py, component))?;
         mesh(py, &found.points, ("quad", &found.quads), (PyDict::new(py), cells))
+    }
+
+    /// Solve the pressures over the grid of `axes(spacing)`, as of an elastic half-space without friction that this contact alone presses.
+    ///
+    /// `cell` in mm is the longest side of its cells: the grid's steps are divided by odd numbers. Without it they are divided by three,
+    /// or by nine where the largest pressure may then err by more than 2 %; `largest_error` says what is left of that.
+    ///
+    /// Raises InputError for an empty patch and a side that is not positive; LimitError for more than a million cells.
+    #[pyo3(signature = (cell = None, *, spacing = None))]
+    fn pressure<'py>(
+        &self,
+        py: Python<'py>,
+        cell: Option<f64>,
+        spacing: Option<Spacing>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let cell = cell.map(scene::pressure_cell).transpose().or_raise()?;
+        let site = self.grid(spacing.map(Spacing::steps)).and_then(|axes| self.site(axes)).or_raise()?;
+        let asked = AskedPressure { cell };
+        let found = detached(py, || PartPressure::over_grid(&site, asked, self.modulus))?.or_raise()?;
+        let [xi, eta] = [site.grid.xi, site.grid.eta];
+        let count = [xi.len(), eta.len()];
+        let values = PyArray1::from_vec(py, found.field.unwrap_or_default()).reshape(count)?;
+        let outline =
+            found.outline.iter().map(|line| arrays::points(py, line)).collect::<PyResult<Vec<_>>>()?;
+        let Largest { pressure_n_per_mm2, at_mm } = found.largest;
+        let largest = (pressure_n_per_mm2, found.largest_error, (at_mm[0], at_mm[1]));
+        let fields = (arrays::array(py, xi), arrays::array(py, eta), values);
+        let rest = (found.contact_area, found.load, (found.cell[0], found.cell[1]), outline);
+        made(
+            py,
+            "Pressure",
+            (fields.0, fields.1, fields.2, largest.0, largest.1, largest.2, rest.0, rest.1, rest.2, rest.3),
+        )
     }
 
     /// Return the files of one format as bytes by their names, as `Case.files` does, on the grid of `axes(spacing)`.

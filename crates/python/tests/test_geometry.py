@@ -1,6 +1,7 @@
 """Profiles, contacts, separation and patches."""
 
 import copy
+import io
 import pickle
 import sys
 from typing import Any
@@ -103,6 +104,37 @@ def test_what_xarray_needs_is_said(track: wr.Wheelset, monkeypatch: pytest.Monke
     grid = wr.Grid.of_separation(track.touch().right[0], [-1.0, 0.0, 1.0], range(3))
     with pytest.raises(ImportError, match="pip install xarray"):
         grid.to_xarray()
+
+
+def test_pressures_carry_the_load(track: wr.Wheelset) -> None:
+    contact = track.touch(lateral=3.0).right[0]
+    patch = contact.patch(load=60e3)
+    pressure = patch.pressure()
+    force = 60e3 / np.cos(contact.contact_angle)
+    assert pressure.load == pytest.approx(force, rel=3e-3)
+    assert pressure.values.shape == (len(pressure.xi), len(pressure.eta)) and pressure.values.min() == 0.0
+    assert pressure.values.max() == pytest.approx(pressure.largest, rel=0.02)
+    assert 0.3 * patch.area < pressure.contact_area < 0.7 * patch.area
+    fine = patch.pressure(0.1)
+    assert max(fine.cell) <= 0.1 and abs(fine.largest - pressure.largest) < pressure.largest_error
+    (edge,) = fine.outline
+    x, y = edge.T
+    assert 0.5 * abs(np.dot(x, np.roll(y, 1)) - np.dot(y, np.roll(x, 1))) == pytest.approx(fine.contact_area, rel=0.01)
+    assert pressure == patch.pressure() and pressure != fine
+
+
+def test_pressures_are_files_of_a_case() -> None:
+    scene = {
+        "rail": {"profile": "60E1", "rotate": "1:40"},
+        "wheel": {"profile": "S1002", "radius": 460.0},
+        "contact": {"offset": 3.0},
+        "patch": {"load": 60e3, "pressure": True},
+    }
+    case = wr.Case.from_dict(scene)
+    values = np.load(io.BytesIO(case.files("npy")["pressure.npy"]))
+    (summary,) = case.summaries()
+    assert values.max() == pytest.approx(summary["pressure"]["largest_n_per_mm2"], rel=0.02)
+    assert "pressure" not in wr.Case.from_dict({**scene, "patch": {"approach": 0.05}}).files("npy")
 
 
 def test_patches(track: wr.Wheelset) -> None:

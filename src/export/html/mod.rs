@@ -9,4 +9,4 @@ mod sweep;
 mod view;
 
 pub use sweep::{SweepCurve, SweepPage, SweepPanel, SweepSide};
-pub use view::{PageFrame, PageLoop, PagePair, PageProfile, ViewContact, ViewPage};
+pub use view::{PageFrame, PageLoop, PagePair, PagePressure, PageProfile, ViewContact, ViewPage};

@@ -80,10 +80,28 @@ pub struct ViewContact {
     pub rail_height: Vec<f64>,
     /// The exact boundary under δ: closed loops of ξ, η \[mm\] in turn.
     pub boundary: Vec<PageLoop>,
+    /// The edges of the true contact: lines of ξ, η \[mm\] in turn, closed by their first points; none where no pressures were solved.
+    pub pressed: Vec<PageLoop>,
+    /// The pressures over the grid of the run; `None` unless they were asked for.
+    pub pressure: Option<PagePressure>,
     /// Label and value of what the table beside the pictures says.
     pub facts: Vec<[String; 2]>,
     /// What a user should know before using the numbers.
     pub warnings: Vec<String>,
+}
+
+/// The pressures over the grid of a run, which has equal steps.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PagePressure {
+    /// ξ \[mm\], ascending.
+    #[serde(serialize_with = "floats")]
+    pub xi: Vec<f64>,
+    /// η \[mm\], ascending.
+    #[serde(serialize_with = "floats")]
+    pub eta: Vec<f64>,
+    /// p \[N/mm²\] at `i_xi * n_eta + i_eta`.
+    #[serde(serialize_with = "floats")]
+    pub values: Vec<f64>,
 }
 
 /// One closed loop of a boundary.

@@ -219,6 +219,7 @@ impl ConformalPicture<'_> {
             cells: self.cells,
             values: self.gap,
             loops: self.loops.to_vec(),
+            pressed: None,
             approach: self.approach(),
         };
         let panel = map.draw(page, room);

@@ -19,7 +19,7 @@ pub struct Nodes<'a> {
 impl Nodes<'_> {
     /// Returns the lines on which the function equals `level`, as polylines in (ξ, η). A closed line ends where it begins.
     /// Cells with an undefined corner have no lines. Cost: linear in the number of nodes.
-    pub(super) fn lines(&self, level: f64) -> Vec<Vec<[f64; 2]>> {
+    pub fn lines(&self, level: f64) -> Vec<Vec<[f64; 2]>> {
         let mut links: HashMap<CellEdge, Vec<CellEdge>> = HashMap::new();
         for i in 1..self.xi.len() {
             for j in 1..self.eta.len() {

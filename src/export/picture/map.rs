@@ -3,9 +3,11 @@
 use super::contour::Nodes;
 use super::levels::{self, Level};
 use super::page::{BODY, INSIDE, Page, Pen, RED, SMALL};
-use super::panel::{Panel, extremes, in_power, range, significant};
+use super::panel::{Panel, extremes, in_power, number, range, significant};
 
 const BOUNDARY: Pen = Pen::new(RED, 2.2);
+/// The edge of the true contact, which lies inside the boundary.
+const PRESSED: Pen = Pen::new([40, 40, 40], 1.8).dashed([7.0, 3.0]);
 const CELL: Pen = Pen::new([226, 220, 218], 0.6);
 
 /// Shortest side \[page units\] of cells that are drawn. The borders of smaller cells would look like a grey area.
@@ -13,6 +15,15 @@ const SMALLEST_CELL: f64 = 5.0;
 
 /// Distance from the edge of the window, as a share of its width, up to which a line lies along it: far below a line's width.
 const ON_EDGE: f64 = 1e-6;
+
+/// The true contact inside a patch.
+#[derive(Debug, Clone, Copy)]
+pub struct Pressed<'a> {
+    /// Its edges, lines in \[ξ, η\] \[mm\].
+    pub edges: &'a [Vec<[f64; 2]>],
+    /// The largest pressure \[N/mm²\].
+    pub largest: f64,
+}
 
 /// A gap over a surface with the coordinates (u, η) \[mm\].
 #[derive(Debug)]
@@ -29,6 +40,8 @@ pub(super) struct Map<'a> {
     pub(super) values: Nodes<'a>,
     /// The boundary of the patch: closed loops of \[u, η\] \[mm\], whose first points are not repeated.
     pub(super) loops: Vec<Vec<[f64; 2]>>,
+    /// The true contact, over ξ; `None` where no pressures were solved.
+    pub(super) pressed: Option<Pressed<'a>>,
     /// Approach δ \[mm\].
     pub(super) approach: f64,
 }
@@ -51,6 +64,8 @@ impl Map<'_> {
         levels::label(page, &levels, &rings, &panel);
         let boundary: Vec<_> = self.loops.iter().flat_map(|ring| self.boundary(&panel, ring)).collect();
         page.lines(&boundary, BOUNDARY);
+        let edges = self.pressed.map_or(&[][..], |pressed| pressed.edges);
+        page.lines(&edges.iter().flat_map(|line| panel.curve(line)).collect::<Vec<_>>(), PRESSED);
         panel.axes(page, [&format!("{} [mm]", self.along), "η [mm] (rolling direction)"]);
         let side = room[0] + room[2] + 40.0;
         self.key(page, [side, room[1] + 20.0], &levels);
@@ -98,6 +113,11 @@ impl Map<'_> {
         if !self.loops.is_empty() {
             page.legend([side, row], BOUNDARY, &format!("boundary {}", self.boundary));
             row += 32.0;
+        }
+        if let Some(Pressed { largest, .. }) = self.pressed {
+            page.legend([side, row - 10.0], PRESSED, "true contact");
+            page.text([side, row + 8.0], format!("p ≤ {} N/mm²", number(largest, 1.0)), SMALL);
+            row += 40.0;
         }
         let [along, eta] = self.cells;
         page.text([side, row], format!("grid {} × {} cells", along.len(), eta.len()), SMALL);

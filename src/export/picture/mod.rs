@@ -18,6 +18,7 @@ pub use conformal::{ConformalPicture, RailNormal};
 pub use contact::PicturedContact;
 pub use contour::Nodes;
 pub use curves::{CurvesPanel, CurvesPicture, JoinedPair, PlottedCurve, jumps};
+pub use map::Pressed;
 pub use page::SEPARATOR;
 pub use patch::PatchPicture;
 pub use profile::ProfilePicture;

@@ -4,7 +4,7 @@
 use super::super::model::Loop;
 use super::contact::{APPROACH, Closing, PicturedContact, RAIL, SHOWN_GAP, WHEEL, WINDOW, overlaps};
 use super::contour::Nodes;
-use super::map::Map;
+use super::map::{Map, Pressed};
 use super::page::{INSIDE, Page};
 use super::panel::{Panel, airy, range, significant};
 
@@ -24,6 +24,8 @@ pub struct PatchPicture<'a> {
     pub midplane: &'a [[f64; 2]],
     /// The boundary of the patch.
     pub loops: &'a [Loop],
+    /// The true contact; `None` where no pressures were solved.
+    pub pressed: Option<Pressed<'a>>,
 }
 
 impl PatchPicture<'_> {
@@ -81,6 +83,7 @@ impl PatchPicture<'_> {
             cells: self.cells,
             values: self.separation,
             loops: self.loops.iter().map(flat).collect(),
+            pressed: self.pressed,
             approach: self.contact.header.approach,
         };
         map.draw(page, room);

@@ -47,6 +47,14 @@ impl Cells {
         self.from[axis] + (cells + 0.5) * self.step[axis]
     }
 
+    /// Tells whether a point lies over the cells.
+    pub fn hold(&self, point: [f64; 2]) -> bool {
+        [0, 1].iter().all(|&k| {
+            let along = point[k] - self.from[k];
+            (0.0..=self.count[k] as f64 * self.step[k]).contains(&along)
+        })
+    }
+
     /// Gives the area of a cell \[mm²\].
     pub fn area(&self) -> f64 {
         self.step[0] * self.step[1]

@@ -73,6 +73,36 @@ impl Pressures {
         columns.map(pressed_length).sum::<f64>() * self.cells.area()
     }
 
+    /// Gives p² \[1\] at the middles of the cells and of one more around them all, with ξ and η \[mm\] there, at i_ξ · n_η + i_η. It falls to
+    /// the edge of the contact nearly as a line, and beyond goes on as one from the two last cells: the contact ends where it is 0.
+    pub fn squares_to_edges(&self) -> ([Vec<f64>; 2], Vec<f64>) {
+        let [columns, rows] = self.cells.count.map(|count| count as isize);
+        let most = self.relative.iter().fold(0.0, |most: f64, p| most.max(p * p));
+        let square = |i: isize, j: isize| {
+            let inside = (0..columns).contains(&i) && (0..rows).contains(&j);
+            if inside { self.relative[(i * rows + j) as usize].powi(2) } else { 0.0 }
+        };
+        let beyond = |i: isize, j: isize, [di, dj]: [isize; 2]| {
+            match [square(i + di, j + dj), square(i + 2 * di, j + 2 * dj)] {
+                [0.0, _] => -most,
+                // A single cell ends at its border.
+                [last, 0.0] => -last,
+                [last, before] => (2.0 * last - before).clamp(-most, 0.0),
+            }
+        };
+        let value = |i: isize, j: isize| match square(i, j) {
+            0.0 => [[1, 0], [-1, 0], [0, 1], [0, -1]]
+                .map(|to| beyond(i, j, to))
+                .into_iter()
+                .fold(-most, f64::max),
+            here => here,
+        };
+        let axes = [columns, rows].map(|count| -1..=count);
+        let places = [0, 1].map(|k| axes[k].clone().map(|i| self.cells.middle(k, i as f64)).collect());
+        let [along, across] = axes;
+        (places, along.flat_map(|i| across.clone().map(move |j| [i, j])).map(|[i, j]| value(i, j)).collect())
+    }
+
     /// Estimates the error of the largest pressure \[N/mm²\] from that on cells twice as wide, and from what the search left.
     ///
     /// It is some three times the error where pressures are smooth, and about the error where s has a jump of curvature. At a kink of

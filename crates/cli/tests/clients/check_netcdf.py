@@ -25,6 +25,9 @@ with netCDF4.Dataset(path) as file:
     checks("approach", info["approach_mm"] == folder.approach)
     if undefined.any():
         checks.same("mask", file["mask"][:].astype(bool), undefined)
+    checks("pressure where it was asked for", ("pressure" in file.variables) == (folder.pressure is not None))
+    if folder.pressure is not None:
+        checks.same("pressure", file["pressure"][:].astype("f8"), folder.pressure)
 
 checks.client = "SciPy"
 with scipy.io.netcdf_file(path, mmap=False) as file:

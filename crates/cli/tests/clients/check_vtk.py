@@ -33,6 +33,9 @@ checks.same("wheel.vts is rail.vts plus separation", wheel[~undefined], (rail + 
 grid = meshes["separation"]
 checks.same("interpenetration", on_grid(grid["interpenetration"]), depth(folder.s, folder.approach))
 checks.same("mask", on_grid(grid["mask"]), (~undefined).astype("u1"))
+checks("pressure where it was asked for", ("pressure" in grid.array_names) == (folder.pressure is not None))
+if folder.pressure is not None:
+    checks.same("pressure", on_grid(grid["pressure"]), folder.pressure)
 gap = np.zeros(folder.s.shape + (3,))
 gap[:, :, 2] = np.where(undefined, 0, folder.s)
 checks.same("gap_vector", on_grid(grid["gap_vector"]), gap)

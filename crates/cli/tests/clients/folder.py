@@ -20,6 +20,11 @@ class Folder:
     def __truediv__(self, name):
         return self.path / name
 
+    @property
+    def pressure(self):
+        """p over the cells, as a run that is asked for it writes it; else None."""
+        return np.load(self / "pressure.npy") if self.has("pressure.npy") else None
+
     def has(self, name):
         return (self.path / name).exists()
 

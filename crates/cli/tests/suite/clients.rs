@@ -136,7 +136,7 @@ fn picture(header: &Header, grid: &GridFields, loops: &[Loop]) -> String {
     let separation = Nodes { xi: grid.xi(), eta: grid.eta(), values: grid.separation() };
     let cells = [grid.xi(), grid.eta()];
     let contact = PicturedContact { header, name: "", refusals: &[], rail: &rail, wheel: &wheel };
-    PatchPicture { contact, cells, separation, midplane: &midplane, loops }.svg()
+    PatchPicture { contact, cells, separation, midplane: &midplane, loops, pressed: None }.svg()
 }
 
 fn rail_height(xi: f64) -> f64 {

@@ -19,6 +19,9 @@ fn formats(but: &[&str]) -> String {
 /// What a solver of rolling contact needs besides.
 const ROLLING: &str = "[motion]\nspeed = 30.0\n[friction]\nstatic = 0.35\nkinetic = 0.25\n";
 
+/// What only a run writes that is asked for pressures.
+const PRESSURE: &str = "pressure.npy";
+
 /// What only a run over the rail's surface writes.
 const ON_RAIL: [&str; 7] = [
     "sigma.npy",
@@ -31,7 +34,7 @@ const ON_RAIL: [&str; 7] = [
 ];
 
 /// What has no form over the rail's surface.
-const ON_PLANE: [&str; 3] = ["separation.nc", "separation.wrp", "countact.wrp"];
+const ON_PLANE: [&str; 4] = ["separation.nc", "separation.wrp", "countact.wrp", PRESSURE];
 
 /// The page that holds the table of estimates, and programs in Python.
 const DOCS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../src/docs/clients.md");
@@ -60,7 +63,8 @@ fn run(name: &str, scene: &str) -> PathBuf {
     let (path, dir) = (folder(&format!("{name}.toml")), folder(name));
     std::fs::write(&path, format!("{scene}{}", formats(&[]))).unwrap();
     run_file(&path, &dir);
-    assert_complete(&dir, &ON_RAIL);
+    let pressed = scene.contains("pressure = true");
+    assert_complete(&dir, &[&ON_RAIL[..], if pressed { &[] } else { &[PRESSURE] }].concat());
     dir
 }
 
@@ -107,9 +111,9 @@ fn the_page_about_the_folder_is_complete() {
 #[test]
 fn every_reader_reads_what_runs_write() {
     check_run(&run("tread", include_str!("../../../../examples/scenes/60e1_s1002.toml")));
-    check_run(&run("flange", &standard("60E1", "S1002", 6.0, "[patch]\nload = 60000.0\n")));
+    check_run(&run("flange", &standard("60E1", "S1002", 6.0, "[patch]\nload = 60000.0\npressure = true\n")));
     // Beyond the ends of both profiles, where cells are undefined.
-    let wide = "[patch]\napproach = 0.08\n[grid]\nxi = { from = -60.0, to = 90.0, n = 76 }\n\
+    let wide = "[patch]\napproach = 0.08\npressure = true\n[grid]\nxi = { from = -60.0, to = 90.0, n = 76 }\n\
                 eta = { from = -9.0, to = 9.0, n = 19 }\n";
     let wide = run("wide", &standard("60E1", "S1002", 0.0, wide));
     check_run(&wide);
@@ -150,7 +154,7 @@ fn every_reader_reads_each_contact_of_a_wheelset() {
     let parts: Vec<_> = parts.filter(|path| path.is_dir()).collect();
     assert!(parts.iter().any(|part| part.ends_with("left")), "{parts:?}");
     for part in parts {
-        assert_complete(&part, &[&ON_RAIL[..], &OF_ALL_CONTACTS].concat());
+        assert_complete(&part, &[&ON_RAIL[..], &OF_ALL_CONTACTS, &[PRESSURE]].concat());
         check_run(&part);
     }
 }

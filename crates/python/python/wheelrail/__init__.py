@@ -17,7 +17,7 @@ What there is:
     rail, wheel, read_profile, Profile.from_points, Profile.from_segments   profiles
     Pair, Wheelset            bodies placed: touch, placed, sweep, conicity
     Contact                   a place of contact: separation, normals, normal_gap, hertz, surfaces
-    Patch, Component, Mesh    the patch: loops, areas, meshes, files of every format
+    Patch, Component, Mesh    the patch: loops, areas, meshes, pressures, files of every format
     Case                      a scene with all it can say, from a file, a dict or TOML: contacts, files, view, sweep, check, run
     Grid                      the separation or the normal gap with its coordinates, for xarray
     Table                     the rows of a sweep, for pandas, polars and Arrow
@@ -30,7 +30,7 @@ too much of something `LimitError`; all are `Error`. What is allowed but seldom 
 
 from ._errors import Doubt, Error, FileError, GeometryError, InputError, LimitError
 from ._table import Table
-from ._values import Check, Component, Feasibility, Grid, Hertz, Mesh, Run, Touch, WheelTouch
+from ._values import Check, Component, Feasibility, Grid, Hertz, Mesh, Pressure, Run, Touch, WheelTouch
 from ._wheelrail import (
     Case,
     Contact,
@@ -66,6 +66,7 @@ __all__ = [
     "Mesh",
     "Pair",
     "Patch",
+    "Pressure",
     "Profile",
     "Run",
     "Table",

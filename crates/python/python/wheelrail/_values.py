@@ -129,6 +129,42 @@ class Feasibility(_Value):
         return self.feasible
 
 
+class Pressure(_Value):
+    """Pressures over a patch, of an elastic half-space: lengths in mm, pressures in N/mm2.
+
+    >>> contact.patch(load=60e3).pressure()
+    Pressure(largest=1315, largest_error=2, contact_area=71.2, load=60179)
+    """
+
+    xi: NDArray[np.float64]
+    """Points in xi, (n_xi,)."""
+    eta: NDArray[np.float64]
+    """Points in eta, (n_eta,)."""
+    values: NDArray[np.float64]
+    """The pressures at the points, >= 0, (n_xi, n_eta)."""
+    largest: float
+    """The largest pressure."""
+    largest_error: float
+    """Its estimated error."""
+    largest_at: tuple[float, float]
+    """(xi, eta) of it."""
+    contact_area: float
+    """True contact area, mm2, where pressures are positive."""
+    load: float
+    """Their normal force, N."""
+    cell: tuple[float, float]
+    """Sides of the half-space's cells."""
+    outline: list[NDArray[np.float64]]
+    """The edges of the true contact: lines (n, 2) of xi and eta."""
+
+    def __repr__(self) -> str:
+        """Return what the pressures add up to."""
+        return (
+            f"Pressure(largest={self.largest:.0f}, largest_error={self.largest_error:.0f}, "
+            f"contact_area={self.contact_area:.1f}, load={self.load:.0f})"
+        )
+
+
 class Hertz(_Value):
     """Hertz's ellipse at a contact: half-axes in mm, approach in mm, load in N, pressures in N/mm2.
 

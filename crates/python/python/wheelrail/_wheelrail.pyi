@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Unpack
 
 from ._table import Table
-from ._values import Check, Component, Feasibility, Hertz, Mesh, Run, Touch, WheelTouch
+from ._values import Check, Component, Feasibility, Hertz, Mesh, Pressure, Run, Touch, WheelTouch
 from .tamaas import Problem
 
 __version__: str
@@ -257,6 +257,7 @@ class Patch:
     def axes(self, spacing: float | tuple[float, float] | None = None) -> tuple[_Floats, _Floats]: ...
     def mesh(self, size: float | None = None) -> Mesh: ...
     def strips(self) -> Mesh: ...
+    def pressure(self, cell: float | None = None, *, spacing: float | tuple[float, float] | None = None) -> Pressure: ...
     def files(
         self, format: _Format | None = None, *, spacing: float | tuple[float, float] | None = None
     ) -> dict[str, bytes]: ...

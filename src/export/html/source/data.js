@@ -102,11 +102,10 @@ export class Contact {
         this.grid = new Grid(floats(raw.xi), floats(raw.eta), floats(raw.separation));
         this.railHeight = floats(raw.rail_height);
         // The exact boundary under δ of the run, closed.
-        this.boundary = raw.boundary.map((loop) => {
-            const values = floats(loop);
-            const points = Array.from({ length: values.length / 2 }, (_, k) => [values[2 * k], values[2 * k + 1]]);
-            return [...points, points[0]];
-        });
+        this.boundary = raw.boundary.map(pointsOf).map((points) => [...points, points[0]]);
+        // The edges of the true contact, and the pressures over the grid of the run: null where they were not solved.
+        this.pressed = raw.pressed.map(pointsOf);
+        this.pressure = raw.pressure && new Grid(...["xi", "eta", "values"].map((key) => floats(raw.pressure[key])));
         [this.railFrame, this.wheelFrame] = raw.frames.map((frame) => new Frame(frame));
         this.pair = pairs[raw.pair];
         // Colours are made for s from 0 to 3 δ; without δ, for all that the contours can show.
@@ -116,6 +115,12 @@ export class Contact {
         this.scale = approach ? 3 * approach : fallback;
         this.delta = approach ?? fallback / 3;
     }
+}
+
+/** Decodes the points [ξ, η] of a line, mm. */
+function pointsOf(line) {
+    const values = floats(line);
+    return Array.from({ length: values.length / 2 }, (_, k) => [values[2 * k], values[2 * k + 1]]);
 }
 
 /** Decodes the profiles of a page. */

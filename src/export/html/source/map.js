@@ -5,11 +5,17 @@ import { contours } from "./contours.js";
 import { Sheet, fixed, followed, length } from "./dom.js";
 import { Plot } from "./plot.js";
 
+/** What a contact's plan shows in colour: a grid, and the value at the end of the scale. */
+function layerOf({ contact, layer }) {
+    const { grid, scale, pressure } = contact;
+    return layer === "pressure" ? [pressure, pressure.range()[1]] : [grid, scale];
+}
+
 /** Axes thinner than this get a scale each. */
 const THINNEST = 4;
 
 export class PlanView {
-    /** `state` is shared by all views of a contact: { contact, delta, lines, others, cut }; `moved` is told when the cut moves. */
+    /** `state` is shared by all views of a contact: { contact, delta, lines, others, cut, layer }; `moved` is told when the cut moves. */
     constructor(state, moved) {
         Object.assign(this, { state, moved });
         const label = "Separation s over ξ and η. Arrow keys move the cut, plus and minus change δ.";
@@ -27,28 +33,34 @@ export class PlanView {
         canvas.addEventListener("pointerleave", () => this.say(this.state.cut));
     }
 
-    /** Writes ξ, η and s of a point below the plan. */
+    /** Writes ξ, η, s and the pressure of a point below the plan. */
     say([xi, eta]) {
-        const s = this.state.contact.grid.at(xi, eta);
-        this.readout.value = `ξ ${fixed(xi, 3)} mm   η ${fixed(eta, 3)} mm   s ${length(s)}`;
+        const { grid, pressure } = this.state.contact;
+        const pressed = pressure ? `   p ${fixed(pressure.at(xi, eta) || 0, 0)} N/mm²` : "";
+        this.readout.value = `ξ ${fixed(xi, 3)} mm   η ${fixed(eta, 3)} mm   s ${length(grid.at(xi, eta))}${pressed}`;
     }
 
     draw(context, width, height, ratio) {
-        const { contact, delta, lines, others, cut } = this.state;
+        const { contact, delta, lines, others, cut, layer } = this.state;
         const { grid } = contact;
         const room = [58, 10, width - 72, height - 54];
         const plot = Plot.trueScale(context, room, grid.ends(0), grid.ends(1), THINNEST);
         this.plot = plot;
         const colours = theme();
+        context.save();
+        if (layer === "pressure") context.clip(inside(plot, contact.pressed));
         context.drawImage(this.field(plot, ratio), ...plot.place);
+        context.restore();
         plot.clipped(() => {
-            plot.lines(this.isolines, "rgb(255 255 255 / 35%)", 1);
+            if (layer === "separation") plot.lines(this.isolines, "rgb(255 255 255 / 35%)", 1);
             if (contact.approach && delta !== contact.approach) {
                 plot.lines(contact.boundary, colours.given, 1.5, [4, 3]);
             }
             plot.lines(others, colours.boundary, 1.25, [4, 3]);
             plot.lines(lines, colours.halo, 4.5);
             plot.lines(lines, colours.boundary, 2.25);
+            plot.lines(contact.pressed, colours.halo, 3.5);
+            plot.lines(contact.pressed, colours.pressed, 1.5, [7, 3]);
             plot.line([[cut[0], plot.v[0]], [cut[0], plot.v[1]]], colours.cutEta, 1.25, [6, 3]);
             plot.line([[plot.u[0], cut[1]], [plot.u[1], cut[1]]], colours.cutXi, 1.25, [6, 3]);
             dot(plot, [0, 0], colours);
@@ -57,11 +69,13 @@ export class PlanView {
         this.say(cut);
     }
 
-    /** s in colour, drawn once for every size. */
+    /** s or the pressure in colour, drawn once for every size. */
     field(plot, ratio) {
-        const { grid, scale } = this.state.contact;
+        const [grid, scale] = layerOf(this.state);
         const [width, height] = [plot.place[2], plot.place[3]].map((side) => Math.max(2, Math.round(side * ratio)));
-        if (this.image?.width === width && this.image.height === height) return this.image;
+        const same = this.shown === grid && this.image?.width === width && this.image.height === height;
+        if (same) return this.image;
+        this.shown = grid;
         const image = new ImageData(width, height);
         for (let y = 0; y < height; y++) {
             const v = plot.v[1] - ((y + 0.5) / height) * (plot.v[1] - plot.v[0]);
@@ -72,9 +86,19 @@ export class PlanView {
         }
         this.image = Object.assign(document.createElement("canvas"), { width, height });
         this.image.getContext("2d").putImageData(image, 0, 0);
-        this.isolines ??= [1, 2, 4, 5].flatMap((k) => contours(grid, (k / 6) * scale));
+        this.isolines ??= [1, 2, 4, 5].flatMap((k) => contours(this.state.contact.grid, (k / 6) * this.state.contact.scale));
         return this.image;
     }
+}
+
+/** The region inside closed lines, on the page. */
+function inside(plot, lines) {
+    const path = new Path2D();
+    for (const line of lines) {
+        line.forEach(([u, v], k) => (k === 0 ? path.moveTo(plot.x(u), plot.y(v)) : path.lineTo(plot.x(u), plot.y(v))));
+        path.closePath();
+    }
+    return path;
 }
 
 /** Marks C. */

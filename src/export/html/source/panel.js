@@ -13,7 +13,7 @@ const STEPS = 600;
 
 export class Panel {
     constructor(contact, number) {
-        const state = { contact, delta: contact.delta, cut: [0, 0], lines: [], others: [] };
+        const state = { contact, delta: contact.delta, cut: [0, 0], lines: [], others: [], layer: "separation" };
         state.cut = [0, 1].map((axis) => kept(0, contact.grid.ends(axis)));
         Object.assign(this, { contact, state });
         const moved = (cut) => this.moveCut(cut);
@@ -21,6 +21,7 @@ export class Panel {
         this.plan = new PlanView(state, moved);
         this.cuts = [0, 1].map((axis) => new Cut(axis, state, moved));
         this.profiles = new Profiles(state);
+        this.legend = element("div", {}, this.separations());
         this.node = this.build(number);
         this.node.addEventListener("keydown", (event) => this.key(event));
         this.setDelta(contact.delta);
@@ -38,7 +39,7 @@ export class Panel {
                 "div",
                 { class: "views" },
                 figure("space", "Separation on the rail", this.space.sheet.canvas, this.viewButtons(number)),
-                figure("plan", "Separation on the contact plane", this.plan.sheet.canvas, this.legend(), this.plan.readout),
+                figure("plan", contact.pressure ? "On the contact plane" : "Separation on the contact plane", this.plan.sheet.canvas, this.legend, this.plan.readout, this.layers(number)),
                 this.facts(),
                 figure("cut", "Cut along ξ", this.cuts[0].sheet.canvas),
                 figure("cut", "Cut along η", this.cuts[1].sheet.canvas),
@@ -78,18 +79,44 @@ export class Panel {
         );
     }
 
-    /** The scale of colours, which reaches from 0 to 3 δ of the run. */
-    legend() {
+    /** What the plan shows in colour, where there is a choice. */
+    layers(number) {
+        const edge = this.contact.pressed.length ? element("span", { class: "edge" }, "edge of the true contact") : "";
+        if (!this.contact.pressure) return edge;
+        const option = (value, text) => element("option", { value }, text);
+        const layer = element("select", { id: `layer-${number}` }, option("separation", "separation s"), option("pressure", "pressure p"));
+        layer.addEventListener("change", () => this.showLayer(layer.value));
+        return element("div", { class: "layers" }, element("label", { for: layer.id }, "colour "), layer, edge);
+    }
+
+    showLayer(layer) {
+        this.state.layer = layer;
+        this.legend.replaceChildren(layer === "pressure" ? this.pressures() : this.separations());
+        this.plan.sheet.refresh();
+    }
+
+    /** The scale of colours of the pressure. */
+    pressures() {
+        const [, largest] = this.contact.pressure.range();
+        return this.scaleOf("Scale of p, linear from 0", [[0, "0"], [0.5, fixed(largest / 2, 0)], [1, `${fixed(largest, 0)} N/mm²`]]);
+    }
+
+    /** The scale of colours of s, which reaches from 0 to 3 δ of the run. */
+    separations() {
         const { scale, approach } = this.contact;
         const [unit, factor] = scale < 1 ? ["µm", 1e3] : ["mm", 1];
-        const label = (share, text) => element("span", { style: `left: ${100 * share}%; transform: translateX(-${100 * share}%)` }, text);
         const value = (share) => fixed(share * scale * factor, scale * factor < 10 ? 2 : 0);
         const names = approach
-            ? [label(0, "0"), label(1 / 3, "δ"), label(1, `3 δ = ${value(1)} ${unit}`)]
-            : [label(0, "0"), label(0.5, value(0.5)), label(1, `${value(1)} ${unit}`)];
+            ? [[0, "0"], [1 / 3, "δ"], [1, `3 δ = ${value(1)} ${unit}`]]
+            : [[0, "0"], [0.5, value(0.5)], [1, `${value(1)} ${unit}`]];
+        return this.scaleOf(approach ? "Scale of s, linear from 0 to 3 δ of the run" : "Scale of s, linear from 0", names);
+    }
+
+    /** A bar of all colours with names at shares of its length. */
+    scaleOf(about, names) {
+        const label = ([share, text]) => element("span", { style: `left: ${100 * share}%; transform: translateX(-${100 * share}%)` }, text);
         const bar = element("div", { class: "bar", style: `background: ${gradient()}` });
-        const about = approach ? "Scale of s, linear from 0 to 3 δ of the run" : "Scale of s, linear from 0";
-        return element("div", { class: "legend", role: "img", "aria-label": about }, bar, element("div", { class: "marks" }, ...names));
+        return element("div", { class: "legend", role: "img", "aria-label": about }, bar, element("div", { class: "marks" }, ...names.map(label)));
     }
 
     names() {

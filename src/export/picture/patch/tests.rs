@@ -33,6 +33,7 @@ fn picture<'a>(
         separation: Nodes { xi: &sample.xi, eta: &sample.eta, values: &sample.separation },
         midplane,
         loops,
+        pressed: None,
     }
 }
 
