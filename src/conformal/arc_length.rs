@@ -75,8 +75,8 @@ impl<'a> RailArcLength<'a> {
             let (Some(a), Some(b)) = (section.pieces.get(left), section.pieces.get(left + 1)) else {
                 return false;
             };
-            let ([xi_a, xi_b], [(p, zeta_a), (_, zeta_b)]) = ([a.xi[1], b.xi[0]], [&a.ends[1], &b.ends[0]]);
-            let slope = section.branches[a.branch].slope_from(p).abs();
+            let ([xi_a, xi_b], [zeta_a, zeta_b]) = ([a.xi[1], b.xi[0]], [a.heights[1], b.heights[0]]);
+            let slope = section.branches[a.branch].slope_from(&section.end(a, 1).0).abs();
             // A rounding of ξ moves the point of a steep end along its slope.
             let steep = if slope.is_finite() { 1.0 + slope } else { 1.0 / f64::EPSILON };
             xi_a == xi_b && (zeta_a - zeta_b).abs() <= ONE_JOINT * size * steep

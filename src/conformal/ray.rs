@@ -173,12 +173,12 @@ impl<'a> Ray<'a> {
     /// Computes how far the ends of a piece lie beside the ray \[mm\].
     pub fn ends_beside(&self, index: usize) -> [f64; 2] {
         let piece = &self.pieces()[index];
-        [0, 1].map(|end| self.beside([piece.xi[end], piece.ends[end].1]))
+        [0, 1].map(|end| self.beside([piece.xi[end], piece.heights[end]]))
     }
 
     /// Tells whether a piece leads from one side of the ray to the other everywhere, so that the ray crosses it once at most.
     pub fn passes_once(&self, index: usize) -> bool {
-        let slopes = self.bodies.wheel.section.slopes()[index];
+        let slopes = self.bodies.wheel.section.slopes(index);
         // A vertical surface has an infinite slope, and rays along ζ cross it once, too.
         self.n[0] == 0.0 || slopes.iter().all(|slope| slope * self.n[0] < self.n[1])
     }

@@ -103,7 +103,7 @@ impl Sight<'_, '_> {
     /// Computes how far the end of a piece lies beside the ray; 0 is the end at smaller ξ.
     fn end_beside(&self, index: usize, end: usize) -> Option<Beside> {
         let piece = self.ray.pieces().get(index)?;
-        Some(self.beside([piece.xi[end], piece.ends[end].1]))
+        Some(self.beside([piece.xi[end], piece.heights[end]]))
     }
 
     /// Finds where the profile, followed from the abscissa of the rail's point, first crosses the ray: its piece and abscissa

@@ -187,7 +187,7 @@ impl<'a> RaySpan<'a> {
     fn t_at_end(&self) -> f64 {
         let (ray, piece) = (&self.ray, &self.ray.pieces()[self.piece]);
         let [_, far] = ray.sides();
-        ray.t_through([piece.xi[far], piece.ends[far].1], self.end)
+        ray.t_through([piece.xi[far], piece.heights[far]], self.end)
     }
 
     /// Finds how far the span reaches. `before` is the u \[mm²\] at which the previous span ended, and `eta` \[mm\] the

@@ -178,7 +178,7 @@ pub(super) fn steps(section: &Section, [a, b]: [f64; 2], extent: f64) -> impl It
     let rounding = STEP_ROUNDINGS * f64::EPSILON * extent;
     let torn = move |k: usize| {
         let [left, right] = [&section.pieces[k - 1], &section.pieces[k]];
-        left.xi[1] != right.xi[0] || (left.ends[1].1 - right.ends[0].1).abs() > rounding
+        left.xi[1] != right.xi[0] || (left.heights[1] - right.heights[0]).abs() > rounding
     };
     let torn = (1..section.pieces.len()).filter(move |&k| torn(k));
     let ends = torn.flat_map(|k| [section.pieces[k - 1].xi[1], section.pieces[k].xi[0]]);

@@ -214,12 +214,12 @@ impl Body {
     }
 
     fn smooth(swept: &Arc<Swept>, point: ProfilePoint) -> Self {
-        let section = Section::at_contact(&swept.profile, &point, swept.side);
+        let section = swept.own_axes.at_contact(&swept.profile, &point, swept.side);
         Self { swept: Arc::clone(swept), point, section }
     }
 
     fn in_frame(swept: &Arc<Swept>, point: ProfilePoint) -> Self {
-        let section = Section::in_frame(&swept.profile, point.station, swept.side);
+        let section = swept.own_axes.in_frame(&swept.profile, point.station, swept.side);
         Self { swept: Arc::clone(swept), point, section }
     }
 

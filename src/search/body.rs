@@ -169,7 +169,7 @@ impl TreeBuilder {
 
     fn smooth(&mut self, branch: &Branch, piece: &Piece, mut ends: [Station; 2]) {
         let outer = ends.map(|end| [end.x, end.z]);
-        match (&branch.shape, piece.ends.map(|end| end.0)) {
+        match (&branch.shape, piece.xi.map(|xi| branch.point(xi).0)) {
             (BranchShape::Arc(arc), _) if arc.curvature == 0.0 => {
                 let sines = ends.map(|end| end.sin);
                 self.push(ElementCurve::Line, piece.xi, ends, &outer, outer, [sines, [0.0; 2]]);

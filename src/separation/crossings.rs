@@ -17,7 +17,7 @@ pub fn beside_steps(relief: &Relief<'_>, xi: &[f64], axis: &EtaAxis) -> Vec<f64>
     let ends = wheel.section.steps.iter().flat_map(|&step| [(step - 1, 1), (step, 0)]);
     let mut columns = Vec::new();
     for (piece, end) in ends {
-        let (joint, height) = (pieces[piece].xi[end], pieces[piece].ends[end].1);
+        let (joint, height) = (pieces[piece].xi[end], pieces[piece].heights[end]);
         let radius = wheel.axle_distance(joint, height);
         // η is near η′. The circle does not reach every η; e = ρ − √(ρ² − u) is then NaN.
         let crossings: Vec<f64> = places(axis.eta.len(), FOLLOWED)

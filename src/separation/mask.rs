@@ -32,7 +32,7 @@ fn covers(relief: &Relief<'_>, xi: &[f64], axis: &EtaAxis) -> bool {
         (from, to, u) = (from.min(xi + shift), to.max(xi + shift), u.max(eta_w * eta_w));
     }
     let ends =
-        wheel.section.pieces.iter().flat_map(|piece| [0, 1].map(|end| (piece.xi[end], piece.ends[end].1)));
+        wheel.section.pieces.iter().flat_map(|piece| [0, 1].map(|end| (piece.xi[end], piece.heights[end])));
     let radii = ends.map(|(xi, height)| wheel.axle_distance(xi, height));
     let radius = NEAREST_TO_AXLE * radii.fold(f64::INFINITY, f64::min);
     // e = ρ − √(ρ² − u); it is NaN where the circle does not reach that far.

@@ -74,13 +74,13 @@ impl Reached {
             reached.contact &= section.contact == Some(piece.branch);
             let branch = &section.branches[piece.branch];
             for end in [0, 1] {
-                let (point, zeta) = &piece.ends[end];
+                let (point, zeta) = section.end(piece, end);
                 let outside = if end == 0 { piece.xi[0] < from } else { piece.xi[1] > to };
                 let (at, zeta) = if outside {
                     let at = if end == 0 { from } else { to };
                     (branch.chord_slope(at, at), branch.height(at))
                 } else {
-                    (branch.slope_from(point), *zeta)
+                    (branch.slope_from(&point), zeta)
                 };
                 height = height.max(zeta.abs());
                 let slope = if at.abs() <= STEEP {

@@ -207,7 +207,7 @@ impl<'a> Surface<'a> {
         let e = [fold.unwrap_or(e[0]), e[1]];
         let (begin, on_profile) = match fold {
             Some(e) => branch.point(self.abscissa(xi, e)),
-            None if e[0] > 0.0 => piece.ends[near],
+            None if e[0] > 0.0 => self.section.end(piece, near),
             None => branch.point(xi),
         };
         let SpanLanes { height: [height], w: [w], u: [[u0], _], .. } =
@@ -256,7 +256,7 @@ impl<'a> Surface<'a> {
     pub(super) fn leaves(&self, xi: f64, piece: &Piece) -> [f64; 2] {
         let far = self.sides()[1];
         let e = if self.sin == 0.0 { f64::INFINITY } else { (xi - piece.xi[far]) / self.sin };
-        let w = self.axle_distance(xi, piece.ends[far].1 + e * self.cos);
+        let w = self.axle_distance(xi, piece.heights[far] + e * self.cos);
         [e, if w > 0.0 { e * (2.0 * w + e) } else { f64::INFINITY }]
     }
 

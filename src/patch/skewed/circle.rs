@@ -147,7 +147,7 @@ impl<'a> Turned<'a> {
 
     /// Returns whether bounds of angle and curvature leave it open that ξ of the places turns along a piece.
     pub(super) fn may_turn(&self, piece: usize) -> bool {
-        let (ends, slopes) = (self.section.pieces[piece].xi, self.section.slopes()[piece]);
+        let (ends, slopes) = (self.section.pieces[piece].xi, self.section.slopes(piece));
         let [_, seconds] =
             self.section.branches[self.section.pieces[piece].branch].derivative_bounds(ends[0], ends[1]);
         let steepest = slopes[0].abs().max(slopes[1].abs());

@@ -45,8 +45,9 @@ pub(crate) fn monotone(
         let wheel = valleys.slopes(leg);
         let [a, b] = [leg.xi[0].max(from), leg.xi[1].min(to)];
         let before = rail.pieces.partition_point(|piece| piece.xi[1] <= a);
-        let pieces = rail.pieces.iter().zip(rail.slopes()).skip(before);
-        for (piece, bounds) in pieces.take_while(|(piece, _)| piece.xi[0] < b) {
+        let pieces = rail.pieces.iter().enumerate().skip(before);
+        for (index, piece) in pieces.take_while(|(_, piece)| piece.xi[0] < b) {
+            let bounds = rail.slopes(index);
             let [mut left, right] = [a.max(piece.xi[0]), b.min(piece.xi[1])];
             if left >= right {
                 continue;

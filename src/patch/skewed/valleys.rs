@@ -137,7 +137,7 @@ impl<'a> Valleys<'a> {
                 _ => [f64::NEG_INFINITY, flat],
             };
         };
-        let ends = turned.section.slopes()[piece].map(|tangent| turned.parallel_to_tangent(tangent).1);
+        let ends = turned.section.slopes(piece).map(|tangent| turned.parallel_to_tangent(tangent).1);
         // Where the surface may stand upright between the ends of the piece, ξ turns back and the leg ends.
         if ends.iter().all(|end| end.x > 0.0) { ends.map(slope) } else { [f64::NEG_INFINITY, f64::INFINITY] }
     }
@@ -242,7 +242,7 @@ fn runs(turned: &Turned<'_>) -> Vec<Range<usize>> {
     for k in 1..=pieces.len() {
         let joined = k < pieces.len()
             && pieces[k - 1].xi[1] == pieces[k].xi[0]
-            && (pieces[k - 1].ends[1].1 - pieces[k].ends[0].1).abs() <= turned.rounding();
+            && (pieces[k - 1].heights[1] - pieces[k].heights[0]).abs() <= turned.rounding();
         if !joined {
             runs.push(begin..k);
             begin = k;

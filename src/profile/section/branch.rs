@@ -1,14 +1,16 @@
 //! One segment, or the part of it that faces the other body, as a function ζ(ξ). Computes points and chords at N abscissae
 //! at once.
 
+use std::sync;
+
+use super::curve::PolynomialBranch;
 use super::points::{self, BranchPoint, BranchPoints, repeated};
+use super::span::{TurnedPolynomial, View};
 use super::turned::{rising_parts, seen_from, seen_from_own_point};
 use crate::numerics::cosine;
-use crate::numerics::interval::{add, ordered, product, quotient};
+use crate::numerics::interval::ordered;
 use crate::numerics::lanes::Lanes;
-use crate::numerics::polynomial::{
-    derivative, derivatives, exact_values, range, value, value_and_slope, values_and_slopes,
-};
+use crate::numerics::polynomial::{derivatives, exact_values, value, value_and_slope, values_and_slopes};
 use crate::numerics::twice::Twice;
 use crate::profile::arc::Arc;
 use crate::profile::polynomial::Polynomial;
@@ -30,6 +32,8 @@ pub struct Branch {
     pub shape: BranchShape,
     pub(super) begins_segment: bool,
     pub(super) ends_segment: bool,
+    /// ζ \[mm\] at both ends, where it is known without the curve.
+    pub(super) heights: Option<[f64; 2]>,
     kind: BranchKind,
 }
 
@@ -45,7 +49,7 @@ pub enum BranchShape {
     /// A line or an arc.
     Arc(ArcBranch),
     /// A polynomial curve.
-    Polynomial(Box<PolynomialBranch>),
+    Polynomial(TurnedPolynomial),
 }
 
 /// A line or arc: ζ = ζ_a + Δξ (S_a + S)/(C_a + C) with S = S_a + κΔξ and C = √(1 − S²). The slope of a chord is the
@@ -62,20 +66,6 @@ pub struct ArcBranch {
     pub radius: f64,
     /// κ = 1/radius \[1/mm\], 0 for a line.
     pub curvature: f64,
-}
-
-/// A curve (ξ(t), ζ(t)). If the contact point is at t = 0, ζ has neither a constant nor a linear term; it then keeps its
-/// digits down to C.
-#[derive(Debug, Clone)]
-pub struct PolynomialBranch {
-    /// Coefficients of ξ(t).
-    pub xi: Vec<f64>,
-    /// Coefficients of ζ(t).
-    pub zeta: Vec<f64>,
-    /// Parameter range, ξ ascending with t.
-    pub t: [f64; 2],
-    pub(super) ends: [f64; 2],
-    pub(super) exact: [Vec<Twice>; 2],
 }
 
 impl ArcBranch {
@@ -135,56 +125,6 @@ impl ArcBranch {
     }
 }
 
-impl PolynomialBranch {
-    /// Returns the coefficients of ξ(t) and of ζ(t).
-    #[inline(always)]
-    fn coefficients(&self) -> [&[f64]; 2] {
-        [&self.xi, &self.zeta]
-    }
-
-    /// Finds t with ξ(t) = ξ. If ξ is beyond the branch, t is that of the nearer end.
-    pub fn parameter(&self, xi: f64) -> f64 {
-        let (range, ends) = (repeated(self.t), repeated(self.ends));
-        let guess = points::guess(range, ends, &[xi]);
-        points::parameters(self.xi.as_slice(), range, &[xi], guess).map_or(f64::NAN, |[t]| t)
-    }
-
-    /// Refines t with ξ(t) = ξ from working precision to twice the working precision.
-    #[inline(always)]
-    pub(super) fn exact_parameters<const N: usize>(&self, xi: &Lanes<N>, t: &Lanes<N>) -> [Twice; N] {
-        let mut exact = [Twice::ZERO; N];
-        for k in 0..N {
-            exact[k] = t[k].into();
-        }
-        let (abscissa, slope) = exact_values(&self.exact[0], &exact);
-        for k in 0..N {
-            // One more Newton step doubles the digits, whatever the rounding of its slope.
-            let miss = abscissa[k] - xi[k];
-            exact[k] = Twice::sum(t[k], -(miss.high / slope[k]));
-        }
-        exact
-    }
-
-    /// Returns bounds of ξ′(t) and ζ′(t) over \[a, b\] \[mm\], and of their quotient, which are infinite where ξ′ may be 0.
-    fn rates(&self, a: f64, b: f64) -> ([[f64; 2]; 2], [f64; 2]) {
-        let (a, b) = (self.parameter(a), self.parameter(b));
-        let rates @ [run, rise] = [&self.xi, &self.zeta].map(|c| range(&derivative(c), a, b));
-        let vertical = [f64::NEG_INFINITY, f64::INFINITY];
-        (rates, if run[0] <= 0.0 { vertical } else { quotient(rise, run) })
-    }
-
-    fn derivative_bounds(&self, a: f64, b: f64) -> [[f64; 2]; 2] {
-        let ([run, rise], slope) = self.rates(a, b);
-        if run[0] <= 0.0 {
-            return [slope; 2];
-        }
-        let (a, b) = (self.parameter(a), self.parameter(b));
-        let [bend, sag] = [&self.xi, &self.zeta].map(|c| range(&derivative(&derivative(c)), a, b));
-        let turn = add(product(sag, run), product(bend, rise).map(|v| -v));
-        [slope, quotient(turn, [run[0].powi(3), run[1].powi(3)])]
-    }
-}
-
 impl Branch {
     /// Makes the branch from the part of an arc that faces the other body. Returns `None` if the tangent nowhere points to
     /// larger ξ.
@@ -227,7 +167,8 @@ impl Branch {
         };
         let kind = if contact { BranchKind::Contact } else { BranchKind::Plain };
         let shape = BranchShape::Arc(shape);
-        let mut branch = Self { xi, segment, shape, begins_segment: begins, ends_segment: ends, kind };
+        let mut branch =
+            Self { xi, segment, shape, begins_segment: begins, ends_segment: ends, heights: None, kind };
         branch.keep_ends([start.z, end.z]);
         Some(branch)
     }
@@ -256,28 +197,47 @@ impl Branch {
         }
     }
 
+    /// Makes the branch of a span that faces the other body everywhere. It begins at `joint`, where its left neighbour ends, as by
+    /// [`Self::begin_at`].
+    pub(super) fn of_span(
+        segment: usize,
+        (view, span): (&sync::Arc<View>, usize),
+        joint: Option<f64>,
+    ) -> Self {
+        let [from, to] = [0, 1].map(|end| view.spans[span].end(end, &view.frame));
+        Self {
+            xi: [joint.filter(|joint| *joint < to[0]).unwrap_or(from[0]), to[0]],
+            segment,
+            shape: BranchShape::Polynomial(TurnedPolynomial::of_span(view, span)),
+            begins_segment: true,
+            ends_segment: true,
+            heights: Some([from[1], to[1]]),
+            kind: BranchKind::Plain,
+        }
+    }
+
     /// Makes the branches of a polynomial segment: the parts that face the other body. `contact` is the parameter of the
     /// contact point, if that point is on the segment; only the part through it is then returned.
     pub(super) fn of_polynomial(
         segment: usize,
         polynomial: &Polynomial,
-        frame: &Station,
+        (view, span): (&sync::Arc<View>, usize),
         contact: Option<Twice>,
     ) -> Vec<Self> {
         let (exact, range) = match contact {
             Some(origin) => seen_from_own_point(polynomial, origin),
-            None => seen_from(polynomial, frame),
+            None => seen_from(polynomial, &view.frame),
         };
-        let [xi, zeta] = [&exact[0], &exact[1]].map(|c| c.iter().map(|c| c.high).collect::<Vec<_>>());
+        let whole = PolynomialBranch::new(exact, range);
         let kind = if contact.is_some() { BranchKind::Contact } else { BranchKind::Plain };
-        let mut parts = rising_parts([&xi, &zeta], range);
+        let mut parts = rising_parts([&whole.xi, &whole.zeta], range);
         parts.retain(|[a, b]| kind == BranchKind::Plain || (*a <= 0.0 && *b >= 0.0));
-        let whole = PolynomialBranch { xi, zeta, t: range, ends: [f64::NAN; 2], exact };
         let branch = |t: [f64; 2], whole: PolynomialBranch| {
-            let ends = t.map(|t| value(&whole.xi, t));
-            let shape = BranchShape::Polynomial(Box::new(PolynomialBranch { t, ends, ..whole }));
+            let xi = t.map(|t| value(&whole.xi, t));
+            let part = PolynomialBranch { t, ends: xi, ..whole };
+            let shape = BranchShape::Polynomial(TurnedPolynomial::of_part(view, span, part));
             let (begins_segment, ends_segment) = (t[0] == range[0], t[1] == range[1]);
-            Self { xi: ends, segment, shape, begins_segment, ends_segment, kind }
+            Self { xi, segment, shape, begins_segment, ends_segment, heights: None, kind }
         };
         // The last part takes over the coefficients, because nearly always there is only one part.
         let Some(last) = parts.pop() else { return Vec::new() };
@@ -453,11 +413,12 @@ impl Branch {
         self.station_and_curvature(self.parameter(xi)).1
     }
 
-    /// Computes bounds of ζ′ over \[a, b\] that enclose every value. They are infinite where the branch is vertical.
+    /// Computes bounds of ζ′ over \[a, b\] that enclose every value; of a polynomial over all of it, where they are known. They are
+    /// infinite where the branch is vertical.
     pub fn slope_bounds(&self, a: f64, b: f64) -> [f64; 2] {
         match &self.shape {
             BranchShape::Arc(_) => self.derivative_bounds(a, b)[0],
-            BranchShape::Polynomial(p) => p.rates(a, b).1,
+            BranchShape::Polynomial(p) => p.slopes().unwrap_or_else(|| p.rates(a, b).1),
         }
     }
 

@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use super::branch::Branch;
-use super::points::BranchPoint;
 use crate::numerics::roots::bracketed;
 use crate::profile::side::Side;
 
@@ -18,20 +17,26 @@ pub struct Piece {
     pub xi: [f64; 2],
     /// Index of the branch.
     pub branch: usize,
-    /// The two ends of the interval as points of the branch, with their ζ \[mm\].
-    pub ends: [(BranchPoint, f64); 2],
+    /// ζ \[mm\] at the two ends, to a rounding of the profile's extent.
+    pub heights: [f64; 2],
 }
 
 /// Returns the outer envelope of all branches, in order of ξ. With `at_contact` the frame is that of a contact: other heads
 /// then count only where the sheet through C has ended.
 pub(super) fn pieces(branches: &[Branch], side: Side, at_contact: bool) -> Vec<Piece> {
-    let with_ends =
-        |(xi, branch): ([f64; 2], usize)| Piece { xi, branch, ends: xi.map(|xi| branches[branch].point(xi)) };
+    let with_heights = |(xi, branch): ([f64; 2], usize)| {
+        let whole = &branches[branch];
+        let height = |end: usize| {
+            let known = whole.heights.filter(|_| xi[end] == whole.xi[end]);
+            known.map_or_else(|| whole.height(xi[end]), |heights| heights[end])
+        };
+        Piece { xi, branch, heights: [height(0), height(1)] }
+    };
     let mut outer = intervals(branches, side);
     if at_contact {
         outer = without_other_heads(branches, outer);
     }
-    outer.into_iter().map(with_ends).collect()
+    outer.into_iter().map(with_heights).collect()
 }
 
 /// Replaces the sheets of other heads by the sheet through C, as far as that goes.
@@ -85,12 +90,17 @@ fn step(branch: &Branch, sheet: &[Branch], xi: f64) -> f64 {
 
 /// Returns the range of the branches that go on from the one nearest to the origin without a break; `None` without branches.
 fn sheet_at_origin(branches: &[Branch]) -> Option<Range<usize>> {
-    let distance = |branch: &Branch| {
-        let xi = 0f64.clamp(branch.xi[0], branch.xi[1]);
-        xi.hypot(branch.height(xi))
-    };
-    let nearest =
-        (0..branches.len()).min_by(|&i, &j| distance(&branches[i]).total_cmp(&distance(&branches[j])))?;
+    let beside = |k: usize| 0f64.clamp(branches[k].xi[0], branches[k].xi[1]);
+    let distance = |k: usize| beside(k).hypot(branches[k].height(beside(k)));
+    let first = (0..branches.len()).min_by(|&i, &j| beside(i).abs().total_cmp(&beside(j).abs()))?;
+    let mut nearest = (first, distance(first));
+    for k in 0..branches.len() {
+        // No point of a branch is nearer than its ξ.
+        if beside(k).abs() < nearest.1 && distance(k) < nearest.1 {
+            nearest = (k, distance(k));
+        }
+    }
+    let (nearest, _) = nearest;
     let joined = |k: usize| branches[k].xi[1] == branches[k + 1].xi[0];
     let first = (0..nearest).rev().take_while(|&k| joined(k)).last().unwrap_or(nearest);
     let last = (nearest..branches.len() - 1).take_while(|&k| joined(k)).last().map_or(nearest, |k| k + 1);
@@ -100,13 +110,18 @@ fn sheet_at_origin(branches: &[Branch]) -> Option<Range<usize>> {
 /// Returns the indices of the pieces that do not begin where the piece before ends, with heights equal to `rounding` \[mm\].
 pub(super) fn steps(pieces: &[Piece], rounding: f64) -> Vec<usize> {
     let joins = |[before, piece]: [&Piece; 2]| {
-        before.xi[1] == piece.xi[0] && (piece.ends[0].1 - before.ends[1].1).abs() <= rounding
+        before.xi[1] == piece.xi[0] && (piece.heights[0] - before.heights[1]).abs() <= rounding
     };
     (1..pieces.len()).filter(|&k| !joins([&pieces[k - 1], &pieces[k]])).collect()
 }
 
 /// Returns the intervals in order of ξ, each with the index of the outer branch over it.
 fn intervals(branches: &[Branch], side: Side) -> Vec<([f64; 2], usize)> {
+    if branches.is_sorted_by(|before, branch| before.xi[1] <= branch.xi[0]) {
+        let mut out = Vec::with_capacity(branches.len());
+        branches.iter().enumerate().for_each(|(k, branch)| push(&mut out, branch.xi, k));
+        return out;
+    }
     let mut ends: Vec<f64> = branches.iter().flat_map(|b| b.xi).collect();
     ends.sort_by(f64::total_cmp);
     ends.dedup();

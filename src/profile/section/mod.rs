@@ -3,17 +3,21 @@
 mod between;
 mod branch;
 mod branches;
+mod curve;
 mod envelope;
 mod points;
+mod span;
 mod turned;
 
 pub use between::{parallel_to, stationary_points};
-pub use branch::{ArcBranch, Branch, BranchShape, PolynomialBranch};
+pub use branch::{ArcBranch, Branch, BranchShape};
 pub use branches::Branches;
+pub use curve::PolynomialBranch;
 pub use envelope::Piece;
 pub use points::{BranchPoint, BranchPoints};
+use span::{Span, View};
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use super::chain::Profile;
 use super::closing::ONE_JOINT;
@@ -57,7 +61,9 @@ pub struct Section {
     /// Indices of the pieces before which the envelope has a hole, or changes its height at once by more than rounding.
     pub(crate) steps: Vec<usize>,
     /// Bounds of ζ′ over every piece, once they were asked for.
-    slopes: OnceLock<Vec<[f64; 2]>>,
+    slopes: Box<[OnceLock<[f64; 2]>]>,
+    /// What is seen from the frame, and the frame.
+    view: Arc<View>,
     /// Index of the branch through the frame's origin, if the frame is that of a contact point.
     pub(crate) contact: Option<usize>,
 }
@@ -65,54 +71,36 @@ pub struct Section {
 impl Section {
     /// Makes the section of a profile in its own axes.
     pub fn own_axes(profile: &Profile, side: Side) -> Self {
-        Self::build(profile, Station::AXES, None, side, false)
+        Self::build(profile, Span::all(profile), Station::AXES, None, side, false)
     }
 
-    /// Makes the section in the contact frame of a point of the profile: its origin is the point, ξ is along the tangent.
-    pub(crate) fn at_contact(profile: &Profile, point: &ProfilePoint, side: Side) -> Self {
-        Self::build(profile, point.station, Some(point), side, true)
+    /// Makes the section of the same profile in the contact frame of a point of it: its origin is the point, ξ is along the tangent.
+    pub(crate) fn at_contact(&self, profile: &Profile, point: &ProfilePoint, side: Side) -> Self {
+        Self::build(profile, Arc::clone(&self.view.spans), point.station, Some(point), side, true)
     }
 
-    /// Makes the section in the frame of any contact. A contact at a kink needs this, because the common normal there is not the normal of
-    /// a tangent.
-    pub(crate) fn in_frame(profile: &Profile, frame: Station, side: Side) -> Self {
-        Self::build(profile, frame, None, side, true)
+    /// Makes the section of the same profile in the frame of any contact. A contact at a kink needs this, because the common normal
+    /// there is not the normal of a tangent.
+    pub(crate) fn in_frame(&self, profile: &Profile, frame: Station, side: Side) -> Self {
+        Self::build(profile, Arc::clone(&self.view.spans), frame, None, side, true)
     }
 
     fn build(
         profile: &Profile,
+        spans: Arc<[Span]>,
         frame: Station,
         contact: Option<&ProfilePoint>,
         side: Side,
         at_contact: bool,
     ) -> Self {
-        let mut branches: Vec<Branch> = Vec::with_capacity(profile.segments().len());
+        let view = Arc::new(View { spans, frame });
         let rounding = ONE_JOINT * (profile.extent() + frame.x.abs() + frame.z.abs());
-        let mut goes_on = false;
-        for (index, segment) in profile.segments().iter().enumerate() {
-            let here = contact.filter(|point| point.segment == index);
-            let seen = match &segment.shape {
-                Shape::Arc(arc) => Branch::of_arc(index, arc, &frame, here.is_some()).into_iter().collect(),
-                Shape::Polynomial(p) => Branch::of_polynomial(index, p, &frame, here.map(|c| c.parameter)),
-            };
-            for mut branch in seen {
-                if let Some(before) = branches.last().filter(|_| goes_on && branch.begins_segment) {
-                    branch.begin_at(before.xi[1]);
-                }
-                goes_on = false;
-                branches.push(branch);
-            }
-            goes_on = match branches.last().filter(|branch| branch.segment == index) {
-                Some(branch) => branch.ends_segment,
-                // The segment is vertical to rounding. The surface continues beyond it, whether it has a narrow branch or
-                // none.
-                None => goes_on && run(segment, &frame).abs() <= rounding,
-            };
-        }
+        let branches = branches(profile, &view, contact, rounding);
         let contact = contact.and_then(|point| branches.iter().position(|b| b.is_contact(point.segment)));
         let pieces = envelope::pieces(&branches, side, at_contact);
         let steps = envelope::steps(&pieces, rounding);
-        Self { frame, branches, pieces, steps, slopes: OnceLock::new(), contact }
+        let slopes = pieces.iter().map(|_| OnceLock::new()).collect();
+        Self { frame, branches, pieces, steps, slopes, view, contact }
     }
 
     /// Returns the branch that counts at ξ, or `None` where the body has no surface. At a joint it is the left branch.
@@ -129,7 +117,7 @@ impl Section {
     pub(crate) fn branch_and_slopes(&self, xi: f64) -> Option<(&Branch, [f64; 2])> {
         let piece = self.pieces.len() - self.pieces_from(xi).len();
         let branch = self.pieces.get(piece).filter(|piece| piece.xi[0] <= xi)?.branch;
-        Some((&self.branches[branch], self.slopes()[piece]))
+        Some((&self.branches[branch], self.slopes(piece)))
     }
 
     /// Returns the pieces of the envelope that do not end before ξ.
@@ -137,10 +125,15 @@ impl Section {
         &self.pieces[self.pieces.partition_point(|piece| piece.xi[1] < xi)..]
     }
 
-    /// Returns bounds of ζ′ over every piece of the envelope; infinite where a piece is vertical. They are found once.
-    pub(crate) fn slopes(&self) -> &[[f64; 2]] {
-        let bounds = |piece: &Piece| self.branches[piece.branch].slope_bounds(piece.xi[0], piece.xi[1]);
-        self.slopes.get_or_init(|| self.pieces.iter().map(bounds).collect())
+    /// Returns bounds of ζ′ over a piece of the envelope; infinite where the piece is vertical. They are found once.
+    pub(crate) fn slopes(&self, piece: usize) -> [f64; 2] {
+        let Piece { xi, branch, .. } = self.pieces[piece];
+        *self.slopes[piece].get_or_init(|| self.branches[branch].slope_bounds(xi[0], xi[1]))
+    }
+
+    /// Finds an end of a piece, 0 the one at smaller ξ, as a point of its branch, and its ζ \[mm\].
+    pub(crate) fn end(&self, piece: &Piece, end: usize) -> (BranchPoint, f64) {
+        self.branches[piece.branch].point(piece.xi[end])
     }
 
     /// Returns the intervals of ξ \[mm\] over which the envelope has a hole or changes its height at once; ascending, without its
@@ -160,7 +153,7 @@ impl Section {
     /// joint of two pieces comes twice.
     pub fn joints(&self, [from, to]: [f64; 2]) -> impl Iterator<Item = (f64, f64)> {
         let pieces = self.pieces_from(from).iter().take_while(move |piece| piece.xi[0] <= to);
-        pieces.flat_map(|piece| [0, 1].map(|end| (piece.xi[end], piece.ends[end].1)))
+        pieces.flat_map(|piece| [0, 1].map(|end| (piece.xi[end], piece.heights[end])))
     }
 
     /// Returns ζ(ξ) of (4.5) \[mm\], or NaN where the body has no surface.
@@ -191,6 +184,50 @@ impl Section {
         };
         ProfilePoint { station: Station { x, ..station }, segment: branch.segment, parameter }
     }
+}
+
+/// Makes the branches of a profile from left to right. Neighbours that are one surface share the ξ of their joint, unless they are
+/// apart by more than `rounding` \[mm\].
+fn branches(
+    profile: &Profile,
+    view: &Arc<View>,
+    contact: Option<&ProfilePoint>,
+    rounding: f64,
+) -> Vec<Branch> {
+    let frame = &view.frame;
+    let mut branches: Vec<Branch> = Vec::with_capacity(profile.segments().len());
+    let mut goes_on = false;
+    let mut spans = 0..view.spans.len();
+    for (index, segment) in profile.segments().iter().enumerate() {
+        let here = contact.filter(|point| point.segment == index);
+        let seen = match &segment.shape {
+            Shape::Arc(arc) => Branch::of_arc(index, arc, frame, here.is_some()).into_iter().collect(),
+            Shape::Polynomial(polynomial) => {
+                let Some(span) = spans.next() else { break };
+                if here.is_none() && view.spans[span].slopes(frame).is_some() {
+                    let joint = branches.last().filter(|_| goes_on).map(|before| before.xi[1]);
+                    branches.push(Branch::of_span(index, (view, span), joint));
+                    goes_on = true;
+                    continue;
+                }
+                Branch::of_polynomial(index, polynomial, (view, span), here.map(|point| point.parameter))
+            }
+        };
+        for mut branch in seen {
+            if let Some(before) = branches.last().filter(|_| goes_on && branch.begins_segment) {
+                branch.begin_at(before.xi[1]);
+            }
+            goes_on = false;
+            branches.push(branch);
+        }
+        goes_on = match branches.last().filter(|branch| branch.segment == index) {
+            Some(branch) => branch.ends_segment,
+            // The segment is vertical to rounding. The surface continues beyond it, whether it has a narrow branch or
+            // none.
+            None => goes_on && run(segment, frame).abs() <= rounding,
+        };
+    }
+    branches
 }
 
 /// Returns the distance \[mm\] in ξ from a segment's start to its end.

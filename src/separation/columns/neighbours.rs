@@ -178,9 +178,9 @@ fn span_over<'a>(wheel: &Surface<'a>, xi: &Lanes, piece: &Piece, first: bool) ->
         wheel.span_from(xi, branch, [0.0; MANY], branch.points(xi)?)
     } else {
         let near = wheel.sides()[0];
-        let (point, height) = &piece.ends[near];
+        let (point, height) = wheel.section.end(piece, near);
         let e0 = lanes(|k| (xi[k] - piece.xi[near]) / wheel.sin);
-        wheel.span_from(xi, branch, e0, (point.repeated(), [*height; MANY]))
+        wheel.span_from(xi, branch, e0, (point.repeated(), [height; MANY]))
     };
     for (k, &xi) in xi.iter().enumerate() {
         [span.e[1][k], span.u[1][k]] = wheel.leaves(xi, piece);

@@ -256,7 +256,7 @@ fn samples(section: &Section, step: f64) -> Vec<[f64; 2]> {
     for piece in &section.pieces {
         let branch = &section.branches[piece.branch];
         let [a, b] = piece.xi;
-        let length = (b - a).hypot(piece.ends[1].1 - piece.ends[0].1);
+        let length = (b - a).hypot(piece.heights[1] - piece.heights[0]);
         let n = (length / step).ceil().clamp(4.0, 64.0);
         out.extend((0..=n as u32).map(|k| {
             let x = (a + (b - a) * f64::from(k) / n).min(b);

@@ -1,0 +1,78 @@
+//! The curve of a polynomial segment in a frame.
+
+use super::points::{self, repeated};
+use crate::numerics::interval::{add, product, quotient};
+use crate::numerics::lanes::Lanes;
+use crate::numerics::polynomial::{derivative, exact_values, range, value};
+use crate::numerics::twice::Twice;
+
+/// A curve (ξ(t), ζ(t)). If the contact point is at t = 0, ζ has neither a constant nor a linear term; it then keeps its
+/// digits down to C.
+#[derive(Debug, Clone)]
+pub struct PolynomialBranch {
+    /// Coefficients of ξ(t).
+    pub xi: Vec<f64>,
+    /// Coefficients of ζ(t).
+    pub zeta: Vec<f64>,
+    /// Parameter range, ξ ascending with t.
+    pub t: [f64; 2],
+    pub(super) ends: [f64; 2],
+    pub(super) exact: [Vec<Twice>; 2],
+}
+
+impl PolynomialBranch {
+    /// Makes the branch of a whole segment from its coefficients in the frame.
+    pub(super) fn new(exact: [Vec<Twice>; 2], t: [f64; 2]) -> Self {
+        let [xi, zeta] = [&exact[0], &exact[1]].map(|c| c.iter().map(|c| c.high).collect::<Vec<_>>());
+        let ends = t.map(|t| value(&xi, t));
+        Self { xi, zeta, t, ends, exact }
+    }
+
+    /// Returns the coefficients of ξ(t) and of ζ(t).
+    #[inline(always)]
+    pub(super) fn coefficients(&self) -> [&[f64]; 2] {
+        [&self.xi, &self.zeta]
+    }
+
+    /// Finds t with ξ(t) = ξ. If ξ is beyond the branch, t is that of the nearer end.
+    pub fn parameter(&self, xi: f64) -> f64 {
+        let (range, ends) = (repeated(self.t), repeated(self.ends));
+        let guess = points::guess(range, ends, &[xi]);
+        points::parameters(self.xi.as_slice(), range, &[xi], guess).map_or(f64::NAN, |[t]| t)
+    }
+
+    /// Refines t with ξ(t) = ξ from working precision to twice the working precision.
+    #[inline(always)]
+    pub(super) fn exact_parameters<const N: usize>(&self, xi: &Lanes<N>, t: &Lanes<N>) -> [Twice; N] {
+        let mut exact = [Twice::ZERO; N];
+        for k in 0..N {
+            exact[k] = t[k].into();
+        }
+        let (abscissa, slope) = exact_values(&self.exact[0], &exact);
+        for k in 0..N {
+            // One more Newton step doubles the digits, whatever the rounding of its slope.
+            let miss = abscissa[k] - xi[k];
+            exact[k] = Twice::sum(t[k], -(miss.high / slope[k]));
+        }
+        exact
+    }
+
+    /// Returns bounds of ξ′(t) and ζ′(t) over \[a, b\] \[mm\], and of their quotient, which are infinite where ξ′ may be 0.
+    pub(super) fn rates(&self, a: f64, b: f64) -> ([[f64; 2]; 2], [f64; 2]) {
+        let (a, b) = (self.parameter(a), self.parameter(b));
+        let rates @ [run, rise] = [&self.xi, &self.zeta].map(|c| range(&derivative(c), a, b));
+        let vertical = [f64::NEG_INFINITY, f64::INFINITY];
+        (rates, if run[0] <= 0.0 { vertical } else { quotient(rise, run) })
+    }
+
+    pub(super) fn derivative_bounds(&self, a: f64, b: f64) -> [[f64; 2]; 2] {
+        let ([run, rise], slope) = self.rates(a, b);
+        if run[0] <= 0.0 {
+            return [slope; 2];
+        }
+        let (a, b) = (self.parameter(a), self.parameter(b));
+        let [bend, sag] = [&self.xi, &self.zeta].map(|c| range(&derivative(&derivative(c)), a, b));
+        let turn = add(product(sag, run), product(bend, rise).map(|v| -v));
+        [slope, quotient(turn, [run[0].powi(3), run[1].powi(3)])]
+    }
+}

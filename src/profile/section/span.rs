@@ -1,0 +1,170 @@
+//! Polynomial segments as their sections need them in every frame: their ends and directions are found once, and a segment is
+//! turned into a frame when its curve is first asked for. A measured profile has a thousand segments, a patch lies over fifty.
+
+use std::ops::Deref;
+use std::sync::{Arc, OnceLock};
+
+use super::curve::PolynomialBranch;
+use super::turned::seen_from;
+use crate::numerics::interval::quotient;
+use crate::numerics::polynomial::{derivative, exact_value, range};
+use crate::numerics::twice::Twice;
+use crate::profile::chain::Profile;
+use crate::profile::polynomial::Polynomial;
+use crate::profile::segment::Shape;
+use crate::profile::station::Station;
+
+/// Steepest slope of a segment whose ends and directions alone tell which part of it faces the other body: a rounding of ξ there
+/// is no more than a few of ζ.
+const STEEPEST: f64 = 4.0;
+
+/// Roundings by which bounds of slopes are widened, relative to 1 + slope²: a few of each direction and of their quotient.
+const WIDENING: f64 = 16.0 * f64::EPSILON;
+
+/// A polynomial segment with what does not depend on the frame.
+#[derive(Debug)]
+pub(super) struct Span {
+    polynomial: Polynomial,
+    /// x and z \[mm\] at both ends.
+    ends: [[Twice; 2]; 2],
+    /// Direction in the middle, as cosine and sine.
+    middle: [f64; 2],
+    /// Bounds of the tangents of all directions against the middle's; `None` beyond ±45°.
+    spread: Option<[f64; 2]>,
+}
+
+impl Span {
+    /// Returns the spans of a profile's polynomial segments, in their order.
+    pub(super) fn all(profile: &Profile) -> Arc<[Self]> {
+        let of = |shape: &Shape| match shape {
+            Shape::Polynomial(polynomial) => Some(Self::new(polynomial)),
+            Shape::Arc(_) => None,
+        };
+        profile.segments().iter().filter_map(|segment| of(&segment.shape)).collect()
+    }
+
+    fn new(polynomial: &Polynomial) -> Self {
+        let [t0, t1] = polynomial.range();
+        let rates =
+            [&polynomial.x, &polynomial.z].map(|c| derivative(&c.iter().map(|c| c.high).collect::<Vec<_>>()));
+        let Station { cos, sin, .. } = polynomial.station(t0 + (t1 - t0) / 2.0);
+        let get = |c: &[f64], k: usize| c.get(k).copied().unwrap_or(0.0);
+        let both = (0..rates[0].len().max(rates[1].len())).map(|k| [get(&rates[0], k), get(&rates[1], k)]);
+        let (along, across): (Vec<_>, Vec<_>) =
+            both.map(|[dx, dz]| (dx * cos + dz * sin, dz * cos - dx * sin)).unzip();
+        let (run, rise) = (range(&along, t0, t1), range(&across, t0, t1));
+        let spread = (run[0] > 0.0).then(|| quotient(rise, run));
+        Self {
+            ends: [t0, t1].map(|t| [&polynomial.x, &polynomial.z].map(|c| exact_value(c, t.into()))),
+            middle: [cos, sin],
+            spread: spread.filter(|spread| spread.iter().all(|slope| slope.abs() <= 1.0)),
+            polynomial: polynomial.clone(),
+        }
+    }
+
+    /// Returns ξ and ζ \[mm\] of the start (0) or the end (1), to a rounding of their distance from the frame's origin.
+    pub(super) fn end(&self, end: usize, frame: &Station) -> [f64; 2] {
+        let [x, z] = self.ends[end];
+        let (x, z) = ((x.high - frame.x) + x.low, (z.high - frame.z) + z.low);
+        [x * frame.cos + z * frame.sin, z * frame.cos - x * frame.sin]
+    }
+
+    /// Returns bounds of ζ′ in a frame; `None` where it may be steeper than [`STEEPEST`], or face away.
+    pub(super) fn slopes(&self, frame: &Station) -> Option<[f64; 2]> {
+        let [cos, sin] = self.middle;
+        let (cos, sin) = (cos * frame.cos + sin * frame.sin, sin * frame.cos - cos * frame.sin);
+        let [low, high] = self.spread?.map(|tangent| [cos - tangent * sin, sin + tangent * cos]);
+        let gentle = |[run, rise]: [f64; 2]| run > 0.0 && rise.abs() <= STEEPEST * run;
+        if !gentle(low) || !gentle(high) {
+            return None;
+        }
+        let [low, high] = [low, high].map(|[run, rise]| rise / run);
+        Some([low - WIDENING * (1.0 + low * low), high + WIDENING * (1.0 + high * high)])
+    }
+}
+
+/// The spans of a profile and the frame from which a section sees them.
+#[derive(Debug)]
+pub(super) struct View {
+    pub(super) spans: Arc<[Span]>,
+    pub(super) frame: Station,
+}
+
+/// The curve of a polynomial branch in the section's frame, turned when it is first asked for.
+#[derive(Debug, Clone)]
+pub struct TurnedPolynomial {
+    curve: OnceLock<Box<PolynomialBranch>>,
+    view: Arc<View>,
+    span: usize,
+}
+
+impl TurnedPolynomial {
+    /// Makes the curve of a whole span.
+    pub(super) fn of_span(view: &Arc<View>, span: usize) -> Self {
+        Self { curve: OnceLock::new(), view: Arc::clone(view), span }
+    }
+
+    /// Makes a part of a span that was turned already.
+    pub(super) fn of_part(view: &Arc<View>, span: usize, part: PolynomialBranch) -> Self {
+        Self { curve: Box::new(part).into(), ..Self::of_span(view, span) }
+    }
+
+    /// Returns bounds of ζ′ over the span; `None` where they are not known without its curve.
+    pub(super) fn slopes(&self) -> Option<[f64; 2]> {
+        self.view.spans[self.span].slopes(&self.view.frame)
+    }
+}
+
+impl Deref for TurnedPolynomial {
+    type Target = PolynomialBranch;
+
+    fn deref(&self) -> &PolynomialBranch {
+        let turn = || {
+            let polynomial = &self.view.spans[self.span].polynomial;
+            let (exact, t) = seen_from(polynomial, &self.view.frame);
+            Box::new(PolynomialBranch::new(exact, t))
+        };
+        self.curve.get_or_init(turn)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{BranchShape, Section};
+    use crate::profile::{Side, standards};
+
+    /// In frames at points all over a wheel of polynomials: what is known of a span without its curve is that of its curve.
+    #[test]
+    fn ends_and_slopes_of_spans_are_those_of_their_curves() -> crate::error::Result<()> {
+        let wheel = standards::wheel("S1002")?;
+        let own = Section::own_axes(&wheel, Side::Wheel);
+        let mut compared = 0;
+        for x in [-60.0, -40.0, -38.0, -30.0, -10.0, 0.0, 30.0, 50.0] {
+            let Some(point) = own.point(&wheel, x) else { continue };
+            let section = own.at_contact(&wheel, &point, Side::Wheel);
+            for branch in &section.branches {
+                let (BranchShape::Polynomial(p), Some(heights)) = (&branch.shape, branch.heights) else {
+                    continue;
+                };
+                let Some([low, high]) = p.slopes() else { continue };
+                assert_eq!([branch.begins_segment, branch.ends_segment], [true; 2]);
+                for end in 0..2 {
+                    let rounding = 8.0 * f64::EPSILON * (1.0 + branch.xi[end].abs() + heights[end].abs());
+                    assert!((branch.xi[end] - p.ends[end]).abs() <= rounding, "{x}: {branch:?}");
+                    assert!(
+                        (heights[end] - branch.height(branch.xi[end])).abs() <= 5.0 * rounding,
+                        "{x}: {branch:?}"
+                    );
+                }
+                for k in 0..=64 {
+                    let xi = branch.xi[0] + (branch.xi[1] - branch.xi[0]) * f64::from(k) / 64.0;
+                    let slope = branch.slope_from(&branch.point(xi).0);
+                    assert!(low <= slope && slope <= high, "{x}: {slope} beyond [{low}, {high}]");
+                }
+                compared += 1;
+            }
+        }
+        assert!(compared >= 8, "only {compared} spans");
+        Ok(())
+    }
+}
