@@ -148,13 +148,10 @@ mod tests {
                 };
                 let Some([low, high]) = p.slopes() else { continue };
                 assert_eq!([branch.begins_segment, branch.ends_segment], [true; 2]);
-                for end in 0..2 {
-                    let rounding = 8.0 * f64::EPSILON * (1.0 + branch.xi[end].abs() + heights[end].abs());
-                    assert!((branch.xi[end] - p.ends[end]).abs() <= rounding, "{x}: {branch:?}");
-                    assert!(
-                        (heights[end] - branch.height(branch.xi[end])).abs() <= 5.0 * rounding,
-                        "{x}: {branch:?}"
-                    );
+                for ((xi, height), end) in branch.xi.into_iter().zip(heights).zip(p.ends) {
+                    let rounding = 8.0 * f64::EPSILON * (1.0 + xi.abs() + height.abs());
+                    assert!((xi - end).abs() <= rounding, "{x}: {branch:?}");
+                    assert!((height - branch.height(xi)).abs() <= 5.0 * rounding, "{x}: {branch:?}");
                 }
                 for k in 0..=64 {
                     let xi = branch.xi[0] + (branch.xi[1] - branch.xi[0]) * f64::from(k) / 64.0;
