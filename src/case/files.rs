@@ -1,5 +1,7 @@
 //! Which files a run writes, and from what.
 
+use rayon::prelude::*;
+
 use super::drawn::{Drawn, loops_of, quads};
 use super::elements::{surface_mesh, surfaces_around, triangles};
 use super::formats::{Of, OutputFormat, Writer};
@@ -41,7 +43,8 @@ pub fn write(run: &Run, folder: &Folder, png: Option<Rasterise>, tell: Tell<'_>)
         };
         write_part(run, part, folder, png, &tell)
     };
-    run.parts.iter().enumerate().map(one).collect()
+    let parts: Vec<Result<WrittenPart>> = run.parts.par_iter().enumerate().map(one).collect();
+    parts.into_iter().collect()
 }
 
 /// What was written of one part.

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::doubts::Doubt;
 use super::formats::{File, OutputFormat, Writer};
+use super::landmarks::SideLandmarks;
 use crate::conformal::Reference;
 use crate::load::{Elastic, effective_modulus};
 use crate::measured::Record;
@@ -29,6 +30,8 @@ pub struct Case {
     pub(crate) outputs: Outputs,
     pub(crate) echo: Echo,
     pub(crate) file: Option<PathBuf>,
+    /// By what its contacts are doubted.
+    pub(crate) landmarks: SideLandmarks,
     /// What in the scene looks like a slip: warnings.
     pub(crate) doubts: Vec<Doubt>,
 }
@@ -285,6 +288,11 @@ impl Case {
     /// Gives the profiles of both sides.
     pub fn profiles(&self) -> &Profiles {
         &self.profiles
+    }
+
+    /// Gives the landmarks of its pairs, by which contacts are doubted.
+    pub fn landmarks(&self) -> &SideLandmarks {
+        &self.landmarks
     }
 
     /// Gives where the bodies stand.

@@ -137,14 +137,14 @@ fn median_height(marks: &[Mark]) -> f64 {
     median.map_or(f64::NAN, |(height, _)| *height)
 }
 
-/// The doubts about the contacts of a sweep.
+/// The landmarks of both sides' pairs, by which the contacts of runs and sweeps are doubted.
 #[derive(Debug, Clone)]
-pub struct SweepDoubts {
+pub struct SideLandmarks {
     right: Landmarks,
     left: Option<Landmarks>,
 }
 
-impl SweepDoubts {
+impl SideLandmarks {
     /// Joins the landmarks of both sides' pairs; without left ones, both sides have one pair.
     pub fn new(right: Landmarks, left: Option<Landmarks>) -> Self {
         Self { right, left }

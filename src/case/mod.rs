@@ -54,7 +54,7 @@ pub use input::{
     Question, SideProfiles, Standing,
 };
 pub use joined::joined_pair;
-pub use landmarks::{Landmarks, SweepDoubts};
+pub use landmarks::{Landmarks, SideLandmarks};
 pub use places::{approach_under_load, contacts, find};
 pub use pressure::PartPressure;
 pub use profile_view::{about_profile, profile_picture};

@@ -1,11 +1,14 @@
 //! A case and everything computed from it.
 
+use rayon::prelude::*;
+
 use super::analysis::Analysis;
 use super::conformal::turning_warning;
 use super::doubts::Doubt;
 use super::found::Found;
 use super::grids::check_memory;
 use super::input::{Case, Place};
+use super::landmarks::SideLandmarks;
 use super::pressure::PartPressure;
 use super::site::{Site, sites};
 use super::site_doubts::{doubted, doubts_of, doubts_of_placing, other_lift};
@@ -70,7 +73,7 @@ impl Run {
     pub fn new(case: Case, tell: Tell<'_>) -> Result<Self> {
         tell("contacts".into(), 0.0);
         let sites = sites(&case).map_err(|error| doubted(error, &case.doubts))?;
-        let others: Vec<f64> = sites.iter().map(|site| other_lift(site, &sites)).collect();
+        let others: Vec<f64> = sites.iter().map(|site| other_lift(site, &sites, &case.landmarks)).collect();
         check_memory(&case.outputs, sites.iter().map(|site| &site.grid))?;
         let all = sites.len() as f64;
         let part = |(k, site): (usize, Site)| {
@@ -78,10 +81,12 @@ impl Run {
             let step = format!("{}: grid of {} x {} points", site.name(), grid.xi.len(), grid.eta.len());
             tell(step, COMPUTING * done);
             let analysis = Analysis::new(&site, &case.question)?;
-            let warnings = warnings_of(&site, &analysis, others[k]);
+            let warnings = warnings_of(&site, &analysis, (&case.landmarks, others[k]));
             Ok(Part { site, analysis, warnings })
         };
-        let parts = sites.into_iter().enumerate().map(part).collect::<Result<_>>()?;
+        // All before any error, so that it is the first part's, whichever thread is faster.
+        let parts: Vec<Result<Part>> = sites.into_par_iter().enumerate().map(part).collect();
+        let parts = parts.into_iter().collect::<Result<_>>()?;
         Ok(Self { case, parts })
     }
 
@@ -176,7 +181,7 @@ impl Part {
 }
 
 /// Lists what a user should know before using the files of a part; `other` is the lift of the other wheel \[mm\].
-fn warnings_of(site: &Site, analysis: &Analysis, other: f64) -> Vec<String> {
+fn warnings_of(site: &Site, analysis: &Analysis, (landmarks, other): (&SideLandmarks, f64)) -> Vec<String> {
     let mut out = Vec::from_iter(site.grid.warning.clone());
     if analysis.patch.as_ref().is_some_and(Patch::cut_by_window) {
         out.push("the window of the grid cuts the patch: solvers would overestimate the pressure".into());
@@ -195,6 +200,6 @@ fn warnings_of(site: &Site, analysis: &Analysis, other: f64) -> Vec<String> {
         ));
     }
     out.extend(analysis.pressure.as_ref().and_then(PartPressure::warning));
-    out.extend(doubts_of(site, other).iter().map(Doubt::to_string));
+    out.extend(doubts_of(site, landmarks, other).iter().map(Doubt::to_string));
     out
 }

@@ -2,10 +2,11 @@
 
 use super::doubts::Doubt;
 use super::input::{Case, Place};
-use super::landmarks::{Landmarks, Touching};
+use super::landmarks::{Landmarks, SideLandmarks, Touching};
 use super::site::Site;
 use super::usual;
 use crate::error::Error;
+use crate::search::TrackSide;
 
 /// Puts the doubts about a scene before the advice of the error that it leads to: they are its likeliest cause.
 pub(super) fn doubted(mut error: Error, doubts: &[Doubt]) -> Error {
@@ -15,22 +16,24 @@ pub(super) fn doubted(mut error: Error, doubts: &[Doubt]) -> Error {
 }
 
 /// Returns how far the other wheel of a site's axle is lifted \[mm\]; 0 for a single wheel.
-pub(super) fn other_lift(site: &Site, all: &[Site]) -> f64 {
+pub(super) fn other_lift(site: &Site, all: &[Site], landmarks: &SideLandmarks) -> f64 {
     let first = |other: &&Site| other.contact.found.as_ref().is_some_and(|found| found.contact == 1);
     let other = all.iter().filter(first).find(|other| other.side() != site.side());
-    other.map_or(0.0, |other| {
-        let placement = &other.contact.placement;
-        Landmarks::new(&placement.pair()).lift(&Touching::from(placement))
-    })
+    other.map_or(0.0, |other| marks_of(other, landmarks).lift(&Touching::from(&other.contact.placement)))
+}
+
+fn marks_of<'a>(site: &Site, landmarks: &'a SideLandmarks) -> &'a Landmarks {
+    landmarks.on(site.side().unwrap_or(TrackSide::Right))
 }
 
 /// Lists what is doubtful about a contact and its approach. `other` is the height \[mm\] of the other wheel's tread over its
 /// rail, 0 for a single wheel.
-pub(super) fn doubts_of(site: &Site, other: f64) -> Vec<Doubt> {
+pub(super) fn doubts_of(site: &Site, landmarks: &SideLandmarks, other: f64) -> Vec<Doubt> {
     let contact = &site.contact;
     // Further contacts of a wheel follow from the first one, which bears the doubts.
     let first = contact.found.as_ref().is_none_or(|found| found.contact == 1);
-    let mut out = if first { usual::standing(&contact.placement, other) } else { Vec::new() };
+    let standing = || usual::standing(marks_of(site, landmarks), &contact.placement, other);
+    let mut out = if first { standing() } else { Vec::new() };
     let rail = contact.placement.rail().profile();
     out.extend(contact.approach.and_then(|approach| usual::approach(rail, approach, contact.is_loaded())));
     out

@@ -3,18 +3,19 @@
 use super::data::{RollData, Scene};
 use super::profile_data::{ProfileData, Rotation};
 use super::side_data::SideData;
-use crate::case::{Doubt, Landmarks, Profiles, SideProfiles, usual};
+use crate::case::{Doubt, Landmarks, Profiles, SideLandmarks, SideProfiles, usual};
 use crate::search::TrackSide;
 
 /// Lists what is doubtful in a scene, by key, with number and likely cause.
-pub(super) fn doubts(scene: &Scene, profiles: &Profiles) -> Vec<Doubt> {
+pub(super) fn doubts(scene: &Scene, profiles: &Profiles, landmarks: &SideLandmarks) -> Vec<Doubt> {
     let mut out = Vec::new();
     rotations(scene, &mut out);
     angles(scene, &mut out);
     units(scene, &mut out);
     distances(scene, &mut out);
     for (side, own) in profiles.sides() {
-        wheel(scene, side, own, &mut out);
+        let marks = landmarks.on(side.unwrap_or(TrackSide::Right));
+        wheel(scene, side, (own, marks), &mut out);
         kinks(scene, side, own, &mut out);
     }
     out
@@ -88,12 +89,17 @@ fn distances(scene: &Scene, out: &mut Vec<Doubt>) {
 }
 
 /// Of a wheel's radius and flange.
-fn wheel(scene: &Scene, side: Option<TrackSide>, own: &SideProfiles, out: &mut Vec<Doubt>) {
-    let (place, marks) = (own_place(side, "wheel"), Landmarks::new(&own.pair));
+fn wheel(
+    scene: &Scene,
+    side: Option<TrackSide>,
+    (own, marks): (&SideProfiles, &Landmarks),
+    out: &mut Vec<Doubt>,
+) {
+    let place = own_place(side, "wheel");
     out.extend(usual::radius(&format!("{place}: radius"), own.pair.wheel_radius()));
-    out.extend(usual::flange_side(&place, &marks));
+    out.extend(usual::flange_side(&place, marks));
     let given = scene.wheelset.as_ref().and_then(|wheelset| wheelset.flange_back_x);
-    out.extend(given.and_then(|x| usual::flange_back_x(["wheelset: flange_back_x", &place], x, &marks)));
+    out.extend(given.and_then(|x| usual::flange_back_x(["wheelset: flange_back_x", &place], x, marks)));
 }
 
 /// Names a body of a side.

@@ -12,7 +12,8 @@ use super::profiles::{Given, profiles};
 use super::side_data::SideData;
 use super::standing::standing;
 use crate::case::{
-    ApproachBy, AskedPressure, Case, Echo, FrameOrigin, Friction, OutputFormat, Outputs, Profiles, Question,
+    ApproachBy, AskedPressure, Case, Echo, FrameOrigin, Friction, Landmarks, OutputFormat, Outputs, Profiles,
+    Question, SideLandmarks, SideProfiles,
 };
 use crate::conformal::Reference;
 use crate::error::{Error, Result, finite};
@@ -65,8 +66,10 @@ fn case(scene: &Scene, name: &str, profiles: impl FnOnce() -> Result<Profiles>) 
     }
     let axes = asked_axes(&scene.grid)?;
     let (standing, profiles) = standing(scene, profiles()?)?;
-    let (outputs, echo, doubts) = (outputs(scene)?, echo(scene, name), doubts(scene, &profiles));
-    Ok(Case { profiles, standing, question, axes, outputs, echo, file: None, doubts })
+    let of = |own: &SideProfiles| Landmarks::new(&own.pair);
+    let landmarks = SideLandmarks::new(of(&profiles.right), profiles.left.as_ref().map(of));
+    let (outputs, echo, doubts) = (outputs(scene)?, echo(scene, name), doubts(scene, &profiles, &landmarks));
+    Ok(Case { profiles, standing, question, axes, outputs, echo, file: None, landmarks, doubts })
 }
 
 /// Writes a scene as TOML, with the values of the keys that it leaves to the program.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use wheelrail::case::{DoubtKind, Landmarks, Run, SILENT, SweepDoubts};
+use wheelrail::case::{DoubtKind, Landmarks, Run, SILENT, SideLandmarks};
 use wheelrail::placement::{Pair, RailDistance, WheelDistance};
 use wheelrail::profile::{Profile, inclination, standards, trace};
 use wheelrail::search::{ONE_CONTACT, Position, Roll, Selection, Sweep, SweepRow, WheelsetOnTrack};
@@ -166,7 +166,7 @@ fn standard_pairs_in_ordinary_positions_leave_no_doubt() -> Result<()> {
     let pairs = standard_pairs()?;
     assert!(pairs.len() > 300, "{}", pairs.len());
     for own in &pairs {
-        let (system, doubts) = (on_track(own)?, SweepDoubts::new(Landmarks::new(&own.0), None));
+        let (system, doubts) = (on_track(own)?, SideLandmarks::new(Landmarks::new(&own.0), None));
         for lateral in [-7.0, -6.0, -4.5, -2.0, 0.0, 3.0, 5.0, 6.5] {
             for (row, found) in doubts.of_rows(&rows(&system, lateral, Roll::Solve)?) {
                 let names = [own.0.rail(), own.0.wheel()].map(|profile| profile.name.as_str());
@@ -214,7 +214,7 @@ fn doubts_of_sweeps_are_those_of_brute_force() -> Result<()> {
         if own.0.wheel().name.starts_with("cone") {
             continue;
         }
-        let (system, doubts) = (on_track(own)?, SweepDoubts::new(Landmarks::new(&own.0), None));
+        let (system, doubts) = (on_track(own)?, SideLandmarks::new(Landmarks::new(&own.0), None));
         let rows = rows(&system, random.between(-60.0, 60.0), Roll::Neglect)?;
         let lifts: Vec<f64> = rows.iter().map(|row| brute(&own.0, row).0).collect();
         for (k, (row, found)) in doubts.of_rows(&rows).enumerate().filter(|(_, (row, _))| row.number == 0) {
@@ -264,7 +264,7 @@ fn real_scenes_that_went_wrong_in_silence_leave_a_doubt() -> Result<()> {
     let wheelrail::case::Place::Wheelset { system, .. } = &case.standing().place else {
         panic!("a wheelset")
     };
-    let doubts = SweepDoubts::new(Landmarks::new(&case.profiles().right.pair), None);
+    let doubts = SideLandmarks::new(Landmarks::new(&case.profiles().right.pair), None);
     for lateral in [-8.0, -4.0, 4.0, 8.0] {
         let rows = rows(system, lateral, Roll::Solve)?;
         let words: Vec<String> = doubts.of_rows(&rows).map(|(_, found)| found.kinds().to_string()).collect();

@@ -6,9 +6,7 @@ use std::sync::{Arc, OnceLock};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
-use wheelrail::case::{
-    self, ApproachBy, Doubt, Landmarks, OutputFormat, RUN_FOLDER, SweepDoubts, sweep_page, write,
-};
+use wheelrail::case::{self, ApproachBy, Doubt, OutputFormat, RUN_FOLDER, sweep_page, write};
 use wheelrail::files::Folder;
 use wheelrail::scene::{self, Given};
 use wheelrail::search::{Position, Roll, WheelsetOnTrack};
@@ -207,8 +205,7 @@ impl Case {
         let left = profiles.left.as_ref().map(|left| &left.pair);
         let right = &profiles.right.pair;
         let radii = [left.unwrap_or(right), right].map(wheelrail::Pair::wheel_radius);
-        let doubts = SweepDoubts::new(Landmarks::new(right), left.map(Landmarks::new));
-        sweep(py, (system, &doubts, radii), positions, asked, progress.as_ref())
+        sweep(py, (system, case.landmarks(), radii), positions, asked, progress.as_ref())
     }
 
     /// Compare every contact with triangle meshes that parry3d measures, as `wheelrail check` does.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use wheelrail::Error;
-use wheelrail::case::{Doubt, Landmarks, SweepDoubts, usual};
+use wheelrail::case::{Doubt, Landmarks, SideLandmarks, usual};
 use wheelrail::profile::Side;
 use wheelrail::scene;
 use wheelrail::search::{self, ONE_CONTACT, Pose, ProfilePair, Selection, TrackSide};
@@ -33,7 +33,7 @@ pub(crate) struct Pair {
     rail: Profile,
     wheel: Profile,
     search: Arc<ProfilePair>,
-    pub(crate) doubts: Arc<SweepDoubts>,
+    pub(crate) doubts: Arc<SideLandmarks>,
 }
 
 #[pymethods]
@@ -125,7 +125,7 @@ impl Pair {
     fn placed(&self, py: Python<'_>, rail_x: f64, wheel_x: f64, skew: f64) -> PyResult<Contact> {
         let placement = self.pair.placed(rail_x, wheel_x, skew).or_raise()?;
         let of_points = usual::tilt("placed", &placement).into_iter().chain(usual::angle("skew", skew));
-        warn(py, of_points.chain(usual::standing(&placement, 0.0)))?;
+        warn(py, of_points.chain(usual::standing(self.doubts.on(TrackSide::Right), &placement, 0.0)))?;
         Ok(Contact::of(Spot::chosen(placement, [rail_x, wheel_x, skew])))
     }
 
@@ -167,7 +167,7 @@ impl Pair {
     /// Prepares a pair of the library.
     pub(crate) fn of(pair: wheelrail::Pair, (rail, wheel): (Profile, Profile)) -> PyResult<Self> {
         let search = Arc::new(ProfilePair::new(&pair).or_raise()?);
-        let doubts = Arc::new(SweepDoubts::new(Landmarks::new(&pair), None));
+        let doubts = Arc::new(SideLandmarks::new(Landmarks::new(&pair), None));
         Ok(Self { pair, rail, wheel, search, doubts })
     }
 

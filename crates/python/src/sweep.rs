@@ -5,7 +5,7 @@ use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use wheelrail::case::{
-    ApproachBy, COLUMNS, ColumnArray, Columns, ContactDoubts, DoubtSet, MOST_DRAWN, SweepDoubts, Tally,
+    ApproachBy, COLUMNS, ColumnArray, Columns, ContactDoubts, DoubtSet, MOST_DRAWN, SideLandmarks, Tally,
     curves,
 };
 use wheelrail::search::{
@@ -29,7 +29,7 @@ pub(crate) struct Asked {
 /// Sweeps, and makes `wheelrail.Table` of the columns.
 pub(crate) fn sweep<'py>(
     py: Python<'py>,
-    (system, doubts, radii): (&WheelsetOnTrack, &SweepDoubts, [f64; 2]),
+    (system, doubts, radii): (&WheelsetOnTrack, &SideLandmarks, [f64; 2]),
     positions: Positions,
     asked: Asked,
     progress: Option<&Py<PyAny>>,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use wheelrail::case::{ContactDoubts, Doubt, SweepDoubts, usual};
+use wheelrail::case::{ContactDoubts, Doubt, SideLandmarks, usual};
 use wheelrail::measured::GAUGE_HEIGHT;
 use wheelrail::placement::{self, Track};
 use wheelrail::scene;
@@ -43,7 +43,7 @@ pub(crate) struct Wheelset {
     /// The left-hand side's, where it is another.
     left: Option<Pair>,
     system: Arc<WheelsetOnTrack>,
-    doubts: Arc<SweepDoubts>,
+    doubts: Arc<SideLandmarks>,
     distances: Distances,
 }
 
@@ -111,7 +111,7 @@ impl Wheelset {
         };
         let system = system_of(pair, left, rails, wheels).or_raise()?;
         let marks = |pair: &Pair| pair.doubts.on(TrackSide::Right).clone();
-        let both = |left| Arc::new(SweepDoubts::new(marks(pair), Some(marks(left))));
+        let both = |left| Arc::new(SideLandmarks::new(marks(pair), Some(marks(left))));
         let doubts = left.map_or_else(|| Arc::clone(&pair.doubts), both);
         let made =
             Self { pair: pair.clone(), left: left.cloned(), system: Arc::new(system), doubts, distances };

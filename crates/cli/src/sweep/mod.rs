@@ -15,7 +15,7 @@ use super::progress::Progress;
 use crate::answer::{Outcome, complain, folder_of, print_to_reader};
 use positions::{lateral_range, read_positions};
 use table::SweepTable;
-use wheelrail::case::{Case, Landmarks, PATCHES_FOLDER, Place, SideProfiles, SweepDoubts, ascending};
+use wheelrail::case::{Case, PATCHES_FOLDER, Place, ascending};
 use wheelrail::error::{Error, Result};
 use wheelrail::files::{Folder, NewFile};
 use wheelrail::scene::{self, Scene};
@@ -139,8 +139,6 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     let ellipses = asked.approach.map(|approach| (approach, asked.modulus()));
     let selection = Selection { within: case.standing().within, apart: ONE_CONTACT };
     let profiles = case.profiles();
-    let marks = |own: &SideProfiles| Landmarks::new(&own.pair);
-    let doubts = SweepDoubts::new(marks(&profiles.right), profiles.left.as_ref().map(marks));
     let drawn = [("--picture", outputs.picture.is_some()), ("--html", outputs.html.is_some())];
     let drawn = drawn.into_iter().find_map(|(option, given)| given.then_some(option));
     if let Some(option) = drawn {
@@ -148,7 +146,8 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
         ascending(&lateral).map_err(|error| error.at(option))?;
     }
     let drawn = drawn.is_some();
-    let table = SweepTable { system, conicity, selection, positions, ellipses, doubts, drawn };
+    let table =
+        SweepTable { system, conicity, selection, positions, ellipses, doubts: case.landmarks(), drawn };
     if let Some(folder) = &outputs.patches {
         patches::write(folder, &scene, &case, &table, &progress)?;
     }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::super::progress::Progress;
-use wheelrail::case::{ApproachBy, Columns, ContactDoubts, DoubtSet, MOST_DRAWN, SweepDoubts, Tally};
+use wheelrail::case::{ApproachBy, Columns, ContactDoubts, DoubtSet, MOST_DRAWN, SideLandmarks, Tally};
 use wheelrail::error::Result;
 use wheelrail::search::{Conicity, ParallelSweep, Position, Selection, WheelsetOnTrack};
 
@@ -16,7 +16,7 @@ pub(super) struct SweepTable<'a> {
     pub positions: Vec<Position>,
     /// Approach or load, and E*, for the contact ellipses; `None` without them.
     pub ellipses: Option<(ApproachBy, f64)>,
-    pub doubts: SweepDoubts,
+    pub doubts: &'a SideLandmarks,
     /// Whether positions are drawn.
     pub drawn: bool,
 }
