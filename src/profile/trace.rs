@@ -126,29 +126,42 @@ fn parameter(polynomial: &Polynomial, share: f64) -> f64 {
 /// Returns the length of a segment \[mm\]. A polynomial is measured by chords, which are at most a few per cent too short.
 fn segment_length(segment: &Segment) -> f64 {
     const CHORDS: usize = 8;
-    let at = |k: usize| at_share(segment, k as f64 / CHORDS as f64);
     match &segment.shape {
         Shape::Arc(arc) => arc.length(),
-        Shape::Polynomial(_) => (0..CHORDS).map(|k| distance(&at(k), &at(k + 1))).sum(),
+        Shape::Polynomial(polynomial) => chords(polynomial, CHORDS).sum(),
     }
 }
 
 /// Returns into how many shares a segment is divided so that none is longer than `step` \[mm\].
 fn shares(segment: &Segment, step: f64) -> usize {
     let shares = |length: f64| (length / step).ceil().max(1.0) as usize;
-    if let Shape::Arc(arc) = &segment.shape {
-        return shares(arc.length());
-    }
+    let polynomial = match &segment.shape {
+        Shape::Arc(arc) => return shares(arc.length()),
+        Shape::Polynomial(polynomial) => polynomial,
+    };
     let mut count = 1;
     loop {
         // Equal shares of a polynomial's parameter differ in length.
-        let at = |k: usize| at_share(segment, k as f64 / count as f64);
-        let longest = (0..count).map(|k| distance(&at(k), &at(k + 1))).fold(0.0, f64::max);
+        let longest = chords(polynomial, count).fold(0.0, f64::max);
         if longest <= step {
             return count;
         }
         count = shares(count as f64 * longest).max(count + 1);
     }
+}
+
+/// Returns the lengths \[mm\] of the chords over equal shares of a polynomial's range; the working precision is enough for them.
+fn chords(polynomial: &Polynomial, count: usize) -> impl Iterator<Item = f64> {
+    let at = move |k: usize| {
+        let t = parameter(polynomial, k as f64 / count as f64);
+        [&polynomial.x, &polynomial.z].map(|c| c.iter().rev().fold(0.0, |sum, c| sum * t + c.high))
+    };
+    let mut last = at(0);
+    (1..=count).map(move |k| {
+        let to = at(k);
+        let from = std::mem::replace(&mut last, to);
+        (to[0] - from[0]).hypot(to[1] - from[1])
+    })
 }
 
 /// Returns the distance of two stations \[mm\].
