@@ -2,6 +2,8 @@
 
 use std::time::Instant;
 
+use rayon::prelude::*;
+
 use super::contact::PlacedContact;
 use super::found::{Found, PlaceOfContact};
 use super::input::{ApproachBy, Case, FrameOrigin, Place};
@@ -244,11 +246,13 @@ fn regions(case: &Case, sides: &[Side], approach: Option<ApproachBy>, most: f64)
             return regions(case, sides, Some(by), most);
         }
         Some(ApproachBy::WheelLoads { right, left }) => {
-            for side in sides {
+            let carried = |side: &Side| {
                 let load = if side.side == Some(TrackSide::Left) { left } else { right };
-                let Some(carried) = carry(&mut [wheel(side)], load, modulus, most)? else {
-                    return Ok(Err(side.side));
-                };
+                carry(&mut [wheel(side)], load, modulus, most)
+            };
+            let both: Vec<_> = sides.par_iter().map(carried).collect();
+            for (side, carried) in sides.iter().zip(both) {
+                let Some(carried) = carried? else { return Ok(Err(side.side)) };
                 all.extend(carried);
             }
         }
