@@ -26,11 +26,11 @@ fn bases() -> [Value; 6] {
     let wheel = json!({"profile": "S1002", "radius": 460.0});
     let output = json!({"formats": ["vtk", "contact", "gmsh", "html"]});
     [
-        json!({"rail": rail, "wheel": wheel, "contact": {"rail_x": 10.0, "wheel_x": 11.0}, "patch": {"approach": 0.05},
+        json!({"rail": rail, "wheel": wheel, "contact": {"rail_x": 10.0, "wheel_x": 11.0}, "patch": {"approach": 0.05, "pressure": true, "pressure_cell": 0.3},
             "grid": {"xi": {"from": -6.0, "to": 6.0, "n": 21}, "eta": {"from": -5.0, "to": 5.0, "n": 17}, "tolerance": 1e-9},
             "mesh": {"size": 1.0}, "output": output}),
         json!({"rail": rail, "wheel": wheel, "contact": {"offset": 3.0, "yaw": 0.01, "roll": 0.001, "within": 0.1},
-            "patch": {"load": 60000.0}, "grid": {"spacing": 0.5, "merge": 0.2}, "material": {"youngs_modulus": 210000.0},
+            "patch": {"load": 60000.0, "pressure": true}, "grid": {"spacing": 0.5, "merge": 0.2}, "material": {"youngs_modulus": 210000.0},
             "output": output}),
         json!({"rail": rail, "wheel": wheel, "track": {"gauge": 1435.0, "gauge_height": 14.0},
             "wheelset": {"back_to_back": 1360.0, "flange_back_x": -70.0, "lateral": 2.0, "yaw": 0.002},
