@@ -162,12 +162,17 @@ impl<'a> Ray<'a> {
 
     /// Returns the pieces of the wheel's profile.
     pub fn pieces(&self) -> &'a [Piece] {
-        &self.bodies.wheel.section.pieces
+        &self.section().pieces
+    }
+
+    /// Returns the wheel's section.
+    pub fn section(&self) -> &'a Section {
+        self.bodies.wheel.section
     }
 
     /// Returns the branch of a piece.
     pub fn branch(&self, piece: &Piece) -> &'a Branch {
-        &self.bodies.wheel.section.branches[piece.branch]
+        &self.section().branches[piece.branch]
     }
 
     /// Computes how far the ends of a piece lie beside the ray \[mm\].

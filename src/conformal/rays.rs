@@ -101,7 +101,7 @@ fn directions<const N: usize>(rays: &[Ray<'_>; N]) -> [Lanes<N>; 2] {
 pub fn at_joint<const N: usize>(rays: &[Ray<'_>; N], index: usize) -> Option<Beginning<N>> {
     let [near, _] = rays[0].sides();
     let piece = &rays[0].pieces()[index];
-    let (begin, zeta) = rays[0].branch(piece).point(piece.xi[near]);
+    let (begin, zeta) = rays[0].section().end(piece, near);
     let e: Lanes<N> = lanes(|k| rays[k].passes(index, near));
     if !every::<N>(|k| e[k].is_finite()) {
         return None;

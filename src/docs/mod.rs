@@ -1,5 +1,5 @@
 //! Background: conventions, measured files, the numerics with their derivation, conformal contact, the Report's errata, sweeps,
-//! loads, clients, references.
+//! loads, clients, where time goes, references.
 
 #[doc = include_str!("conventions.md")]
 pub mod conventions {}
@@ -30,6 +30,9 @@ pub mod python {}
 
 #[doc = include_str!("gallery.md")]
 pub mod gallery {}
+
+#[doc = include_str!("time.md")]
+pub mod time {}
 
 #[doc = include_str!("references.md")]
 pub mod references {}

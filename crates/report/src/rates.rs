@@ -167,6 +167,24 @@ fn swept(system: &WheelsetOnTrack, motion: Motion, extent: &Extent, row: &mut Ra
     Ok(())
 }
 
+/// Sweeps a drawn or a worn, smoothed pair of 548 points through as many positions, one after the other.
+///
+/// # Errors
+/// As [`rates`].
+pub fn sweep(measured: bool, motion: Motion, positions: usize) -> Result<()> {
+    let [spacing, noise] = INSTRUMENTS[0];
+    let pair = if measured { worn(spacing, noise, CurveKind::Smoothing)?.1 } else { drawn()? };
+    let system = system(pair)?;
+    let mut sweep = Sweep::new(&system, Selection { within: 0.0, apart: 0.0 }, None);
+    let mut found = Vec::new();
+    for k in 0..positions {
+        found.clear();
+        let share = k as f64 / positions as f64;
+        sweep.position(&motion.at(AMPLITUDE * (2.0 * share - 1.0)), &mut found)?;
+    }
+    Ok(())
+}
+
 /// Makes the pair of 60E1 and wheel A of EN 15302: arcs and lines.
 fn drawn() -> Result<Pair> {
     inclined_pair(&standards::rail("60E1")?, standards::wheel("EN15302-A")?)

@@ -11,7 +11,7 @@ use wheelrail::error::{Error, Result};
 use wheelrail::measured::Format;
 use wheelrail::mesh::{StripCounts, StripMesh, equal_steps};
 use wheelrail::patch::{Patch, Window};
-use wheelrail::placement::{Pair, Placement};
+use wheelrail::placement::Placement;
 use wheelrail::profile::{Profile, standards};
 use wheelrail::scene::{parse, with_profiles};
 use wheelrail::search::{ONE_CONTACT, Pose, ProfilePair, Selection};
@@ -58,6 +58,9 @@ impl WholeCase {
     }
 }
 
+/// Names of the cases.
+pub const CASES: [&str; 4] = ["drawn", "measured", "drawn, yawed", "measured, yawed"];
+
 /// Times cases of a centred wheel on its rail, with and without yaw: lowered, placed, with a grid of n × n points at full
 /// precision, the patch in its window and the patch's mesh. Each part runs for at least `seconds`. Call it on
 /// one thread.
@@ -65,21 +68,15 @@ impl WholeCase {
 /// # Errors
 /// Pairs that cannot be fitted or placed, which is a fault of this program.
 pub fn whole_cases(side: usize, seconds: f64) -> Result<Vec<WholeCase>> {
-    let drawn = pair([standards::rail("60E1")?, standards::wheel("EN15302-A")?])?;
-    let measured = pair(measured()?)?;
-    [
-        ("drawn", &drawn, 0.0),
-        ("measured", &measured, 0.0),
-        ("drawn, yawed", &drawn, YAW),
-        ("measured, yawed", &measured, YAW),
-    ]
-    .into_iter()
-    .map(|(pair, profiles, yaw)| Ok(WholeCase { pair, side, seconds: parts(profiles, yaw, side, seconds)? }))
-    .collect()
-}
-
-fn pair([rail, wheel]: [Profile; 2]) -> Result<Pair> {
-    inclined_pair(&rail, wheel)
+    let timed_case = |pair: &'static str| {
+        let seconds = with_parts(pair, side, |run| {
+            let mut timings = [Timing::NONE; PARTS.len()];
+            race(&mut timings, seconds, LEAST_RUNS, |part| timed(|| run(PARTS[part])));
+            timings.map(|timing| timing.best)
+        })?;
+        Ok(WholeCase { pair, side, seconds })
+    };
+    CASES.into_iter().map(timed_case).collect()
 }
 
 /// Writes a worn rail and a worn wheel as files, reads and smooths them.
@@ -118,7 +115,8 @@ const WHEELSET: &str = "[rail]\nprofile = \"60E1\"\n[wheel]\nprofile = \"S1002\"
 /// A scene that cannot be computed, which is a fault of this program.
 pub fn run_cost(seconds: f64) -> Result<RunCost> {
     let scene = parse(WHEELSET, false)?;
-    let profiles = Profiles::drawn(pair(measured()?)?);
+    let [rail, wheel] = measured()?;
+    let profiles = Profiles::drawn(inclined_pair(&rail, wheel)?);
     let run = || Run::new(with_profiles(&scene, profiles.clone(), "measured")?, SILENT);
     run()?;
     let mut timings = [Timing::NONE; 2];
@@ -132,14 +130,25 @@ pub fn run_cost(seconds: f64) -> Result<RunCost> {
     Ok(RunCost { profiles, rest })
 }
 
-fn parts(pair: &Pair, yaw: f64, side: usize, seconds: f64) -> Result<[f64; PARTS.len()]> {
-    let profiles = ProfilePair::new(pair)?;
+/// Prepares a case of [`CASES`] with a grid of n × n points, and passes what runs one part of [`PARTS`] to `then`.
+///
+/// # Errors
+/// A pair that cannot be fitted or placed, which is a fault of this program.
+pub fn with_parts<T>(case: &str, side: usize, then: impl FnOnce(&mut dyn FnMut(&str)) -> T) -> Result<T> {
+    let profiles = if case.starts_with("measured") {
+        measured()?
+    } else {
+        [standards::rail("60E1")?, standards::wheel("EN15302-A")?]
+    };
+    let [rail, wheel] = profiles;
+    let (pair, yaw) = (inclined_pair(&rail, wheel)?, if case.ends_with("yawed") { YAW } else { 0.0 });
+    let profiles = ProfilePair::new(&pair)?;
     let mut search = profiles.search();
     let (pose, selection) = (Pose::new(0.0, yaw, 0.0)?, Selection { within: 0.0, apart: ONE_CONTACT });
     let found = search.touch(&pose, &selection).and_then(|touch| touch.contacts.first().copied());
     let lost = || Error::new("whole case", "no contact", "a tread contact", "report this");
     let contact = found.ok_or_else(lost)?;
-    let place = || contact.placed(pair);
+    let place = || contact.placed(&pair);
     let placement: Placement = place()?;
     let [xi, eta] = HALF_WIDTHS.map(|half| equal_steps(-half, half, side));
     let [xi_window, eta_window] = HALF_WIDTHS.map(|half| [-half, half]);
@@ -150,18 +159,14 @@ fn parts(pair: &Pair, yaw: f64, side: usize, seconds: f64) -> Result<[f64; PARTS
     values.fill(0.0);
     let mut patch = Patch::new(&placement, APPROACH, &window);
     StripMesh::new(&placement, &patch, StripCounts::default())?;
-    let mut timings = [Timing::NONE; PARTS.len()];
-    race(&mut timings, seconds, LEAST_RUNS, |part| {
-        timed(|| match PARTS[part] {
-            "touch" => {
-                black_box(search.touch(&pose, &selection));
-            }
-            "place" => drop(place()),
-            "plan" => planned = plan(&placement, &xi, &axis, FULL_PRECISION, None),
-            "fill" => planned.fill(&placement, &xi, &axis, &mut values),
-            "patch" => patch = Patch::new(&placement, APPROACH, &window),
-            _ => drop(StripMesh::new(&placement, &patch, StripCounts::default())),
-        })
-    });
-    Ok(timings.map(|timing| timing.best))
+    Ok(then(&mut |part| match part {
+        "touch" => {
+            black_box(search.touch(&pose, &selection));
+        }
+        "place" => drop(black_box(place())),
+        "plan" => planned = plan(&placement, &xi, &axis, FULL_PRECISION, None),
+        "fill" => planned.fill(&placement, &xi, &axis, &mut values),
+        "patch" => patch = Patch::new(&placement, APPROACH, &window),
+        _ => drop(black_box(StripMesh::new(&placement, &patch, StripCounts::default()))),
+    }))
 }

@@ -255,7 +255,10 @@ impl Branch {
     pub fn height(&self, xi: f64) -> f64 {
         match &self.shape {
             BranchShape::Arc(arc) => arc.height(xi),
-            BranchShape::Polynomial(p) => value(&p.zeta, p.parameter(xi)),
+            BranchShape::Polynomial(p) => {
+                let p = p.curve();
+                value(&p.zeta, p.parameter(xi))
+            }
         }
     }
 
@@ -266,6 +269,7 @@ impl Branch {
         match (&self.shape, points) {
             (BranchShape::Arc(arc), BranchPoints::Arc { .. }) => arc.exact_heights(xi),
             (BranchShape::Polynomial(p), BranchPoints::Polynomial { t, .. }) => {
+                let p = p.curve();
                 exact_values(&p.exact[1], &p.exact_parameters(xi, t)).0
             }
             _ => [Twice { high: f64::NAN, low: f64::NAN }; N],
@@ -287,6 +291,7 @@ impl Branch {
                 Some((BranchPoints::Arc { sin, cos, secant }, zeta))
             }
             BranchShape::Polynomial(p) => {
+                let p = p.curve();
                 points::points(p.coefficients(), repeated(p.t), repeated(p.ends), xi)
             }
         }
@@ -327,6 +332,7 @@ impl Branch {
                 Some(slope)
             }
             (BranchShape::Polynomial(p), BranchPoints::Polynomial { xi, t, rate }) => {
+                let p = p.curve();
                 points::chords(p.coefficients(), repeated(p.t), [xi, t, rate], to)
             }
             _ => None,
@@ -371,6 +377,7 @@ impl Branch {
         match (&self.shape, point) {
             (BranchShape::Arc(_), BranchPoint::Arc { sin: [sin], cos: [cos], .. }) => sin / cos,
             (BranchShape::Polynomial(p), BranchPoint::Polynomial { t: [t], .. }) => {
+                let p = p.curve();
                 value_and_slope(&p.zeta, *t)[1] / value_and_slope(&p.xi, *t)[1]
             }
             _ => f64::NAN,
@@ -394,6 +401,7 @@ impl Branch {
                 (Station { x: parameter, z: arc.height(parameter), cos, sin }, arc.curvature)
             }
             BranchShape::Polynomial(p) => {
+                let p = p.curve();
                 let [x, dx, hx] = derivatives(&p.xi, parameter);
                 let [z, dz, hz] = derivatives(&p.zeta, parameter);
                 let norm = dx.hypot(dz);

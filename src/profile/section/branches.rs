@@ -45,6 +45,7 @@ impl<'a, const N: usize> Branches<'a, N> {
         };
         for (k, branch) in branches.into_iter().enumerate() {
             let BranchShape::Polynomial(p) = &branch.shape else { return None };
+            let p = p.curve();
             if p.xi.len().max(p.zeta.len()) > CUBIC {
                 return None;
             }

@@ -1,8 +1,10 @@
 //! Finds which branch counts at each ξ: the outer one, unless it belongs to another head.
 
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use super::branch::Branch;
+use super::points::BranchPoint;
 use crate::numerics::roots::bracketed;
 use crate::profile::side::Side;
 
@@ -11,7 +13,7 @@ use crate::profile::side::Side;
 const LEAST_FLANGEWAY: f64 = 10.0;
 
 /// A closed interval of ξ over which one branch counts.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Piece {
     /// Interval of ξ \[mm\].
     pub xi: [f64; 2],
@@ -19,6 +21,10 @@ pub struct Piece {
     pub branch: usize,
     /// ζ \[mm\] at the two ends, to a rounding of the profile's extent.
     pub heights: [f64; 2],
+    /// The two ends as points of the branch, with their ζ \[mm\], once they were asked for.
+    pub(super) ends: OnceLock<Box<[(BranchPoint, f64); 2]>>,
+    /// Bounds of ζ′, once they were asked for.
+    pub(super) slopes: OnceLock<[f64; 2]>,
 }
 
 /// Returns the outer envelope of all branches, in order of ξ. With `at_contact` the frame is that of a contact: other heads
@@ -30,7 +36,8 @@ pub(super) fn pieces(branches: &[Branch], side: Side, at_contact: bool) -> Vec<P
             let known = whole.heights.filter(|_| xi[end] == whole.xi[end]);
             known.map_or_else(|| whole.height(xi[end]), |heights| heights[end])
         };
-        Piece { xi, branch, heights: [height(0), height(1)] }
+        let heights = [height(0), height(1)];
+        Piece { xi, branch, heights, ends: OnceLock::new(), slopes: OnceLock::new() }
     };
     let mut outer = intervals(branches, side);
     if at_contact {

@@ -17,7 +17,7 @@ pub use envelope::Piece;
 pub use points::{BranchPoint, BranchPoints};
 use span::{Span, View};
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use super::chain::Profile;
 use super::closing::ONE_JOINT;
@@ -60,8 +60,6 @@ pub struct Section {
     pub(crate) pieces: Vec<Piece>,
     /// Indices of the pieces before which the envelope has a hole, or changes its height at once by more than rounding.
     pub(crate) steps: Vec<usize>,
-    /// Bounds of ζ′ over every piece, once they were asked for.
-    slopes: Box<[OnceLock<[f64; 2]>]>,
     /// What is seen from the frame, and the frame.
     view: Arc<View>,
     /// Index of the branch through the frame's origin, if the frame is that of a contact point.
@@ -99,8 +97,7 @@ impl Section {
         let contact = contact.and_then(|point| branches.iter().position(|b| b.is_contact(point.segment)));
         let pieces = envelope::pieces(&branches, side, at_contact);
         let steps = envelope::steps(&pieces, rounding);
-        let slopes = pieces.iter().map(|_| OnceLock::new()).collect();
-        Self { frame, branches, pieces, steps, slopes, view, contact }
+        Self { frame, branches, pieces, steps, view, contact }
     }
 
     /// Returns the branch that counts at ξ, or `None` where the body has no surface. At a joint it is the left branch.
@@ -127,13 +124,14 @@ impl Section {
 
     /// Returns bounds of ζ′ over a piece of the envelope; infinite where the piece is vertical. They are found once.
     pub(crate) fn slopes(&self, piece: usize) -> [f64; 2] {
-        let Piece { xi, branch, .. } = self.pieces[piece];
-        *self.slopes[piece].get_or_init(|| self.branches[branch].slope_bounds(xi[0], xi[1]))
+        let Piece { xi: [a, b], branch, slopes, .. } = &self.pieces[piece];
+        *slopes.get_or_init(|| self.branches[*branch].slope_bounds(*a, *b))
     }
 
-    /// Finds an end of a piece, 0 the one at smaller ξ, as a point of its branch, and its ζ \[mm\].
+    /// Returns an end of a piece, 0 the one at smaller ξ, as a point of its branch, and its ζ \[mm\]. The ends are found once.
     pub(crate) fn end(&self, piece: &Piece, end: usize) -> (BranchPoint, f64) {
-        self.branches[piece.branch].point(piece.xi[end])
+        let point = |xi| self.branches[piece.branch].point(xi);
+        piece.ends.get_or_init(|| Box::new(piece.xi.map(point)))[end]
     }
 
     /// Returns the intervals of ξ \[mm\] over which the envelope has a hole or changes its height at once; ascending, without its

@@ -109,6 +109,18 @@ impl TurnedPolynomial {
         Self { curve: Box::new(part).into(), ..Self::of_span(view, span) }
     }
 
+    /// Returns the curve, turned if it was not yet. Where a formula reads several of its parts, call it once.
+    #[inline(always)]
+    pub(super) fn curve(&self) -> &PolynomialBranch {
+        self.curve.get_or_init(|| self.turn())
+    }
+
+    #[cold]
+    fn turn(&self) -> Box<PolynomialBranch> {
+        let (exact, t) = seen_from(&self.view.spans[self.span].polynomial, &self.view.frame);
+        Box::new(PolynomialBranch::new(exact, t))
+    }
+
     /// Returns bounds of ζ′ over the span; `None` where they are not known without its curve.
     pub(super) fn slopes(&self) -> Option<[f64; 2]> {
         self.view.spans[self.span].slopes(&self.view.frame)
@@ -118,13 +130,9 @@ impl TurnedPolynomial {
 impl Deref for TurnedPolynomial {
     type Target = PolynomialBranch;
 
+    #[inline(always)]
     fn deref(&self) -> &PolynomialBranch {
-        let turn = || {
-            let polynomial = &self.view.spans[self.span].polynomial;
-            let (exact, t) = seen_from(polynomial, &self.view.frame);
-            Box::new(PolynomialBranch::new(exact, t))
-        };
-        self.curve.get_or_init(turn)
+        self.curve()
     }
 }
 
