@@ -168,8 +168,8 @@ pub fn tilt(place: &str, placement: &Placement) -> Option<Doubt> {
     (tilt.abs() > TILT).then(|| Doubt::new(DoubtKind::Tilt, found()))
 }
 
-/// Doubts the way that a wheel stands on its rail, by the landmarks of the pair. `other` is the height \[mm\] of the other wheel's tread over its rail, 0 for a
-/// single wheel.
+/// Doubts the way that a wheel stands on its rail, by the landmarks of the pair. `other` is the height \[mm\] of the other
+/// wheel's tread over its rail, 0 for a single wheel.
 pub fn standing(marks: &Landmarks, placement: &Placement, other: f64) -> Vec<Doubt> {
     let touching = Touching::from(placement);
     let doubts = marks.doubts(&touching, [marks.lift(&touching), other]);

@@ -33,7 +33,7 @@ pub(crate) struct Pair {
     rail: Profile,
     wheel: Profile,
     search: Arc<ProfilePair>,
-    pub(crate) doubts: Arc<SideLandmarks>,
+    pub(crate) landmarks: Arc<SideLandmarks>,
 }
 
 #[pymethods]
@@ -59,7 +59,7 @@ impl Pair {
         let bodies = (rail.profile.clone(), wheel.profile.clone());
         let pair = roller.and_then(|roller| joined(bodies.0, bodies.1, radius, roller)).or_raise()?;
         let made = Self::of(pair, (rail.clone(), wheel.clone()))?;
-        let flange = usual::flange_side("wheel", made.doubts.on(TrackSide::Right));
+        let flange = usual::flange_side("wheel", made.landmarks.on(TrackSide::Right));
         warn(py, usual::radius("radius", radius).into_iter().chain(flange))?;
         Ok(made)
     }
@@ -125,7 +125,7 @@ impl Pair {
     fn placed(&self, py: Python<'_>, rail_x: f64, wheel_x: f64, skew: f64) -> PyResult<Contact> {
         let placement = self.pair.placed(rail_x, wheel_x, skew).or_raise()?;
         let of_points = usual::tilt("placed", &placement).into_iter().chain(usual::angle("skew", skew));
-        warn(py, of_points.chain(usual::standing(self.doubts.on(TrackSide::Right), &placement, 0.0)))?;
+        warn(py, of_points.chain(usual::standing(self.landmarks.on(TrackSide::Right), &placement, 0.0)))?;
         Ok(Contact::of(Spot::chosen(placement, [rail_x, wheel_x, skew])))
     }
 
@@ -167,8 +167,8 @@ impl Pair {
     /// Prepares a pair of the library.
     pub(crate) fn of(pair: wheelrail::Pair, (rail, wheel): (Profile, Profile)) -> PyResult<Self> {
         let search = Arc::new(ProfilePair::new(&pair).or_raise()?);
-        let doubts = Arc::new(SideLandmarks::new(Landmarks::new(&pair), None));
-        Ok(Self { pair, rail, wheel, search, doubts })
+        let landmarks = Arc::new(SideLandmarks::new(Landmarks::new(&pair), None));
+        Ok(Self { pair, rail, wheel, search, landmarks })
     }
 
     /// Numbers the contacts of a side.
@@ -180,7 +180,7 @@ impl Pair {
     /// Lists the doubts about the first contacts of the left and the right side, or of a single wheel.
     fn doubts_of(&self, first: [Option<&search::Contact>; 2]) -> Vec<Doubt> {
         let radius = self.radius();
-        let all = self.doubts.of_first(first).into_iter();
+        let all = self.landmarks.of_first(first).into_iter();
         all.flat_map(|doubts| {
             doubts.list().map(|(kind, value)| Doubt::of_contact(kind, value, radius)).collect::<Vec<_>>()
         })

@@ -29,7 +29,7 @@ pub(crate) struct Asked {
 /// Sweeps, and makes `wheelrail.Table` of the columns.
 pub(crate) fn sweep<'py>(
     py: Python<'py>,
-    (system, doubts, radii): (&WheelsetOnTrack, &SideLandmarks, [f64; 2]),
+    (system, landmarks, radii): (&WheelsetOnTrack, &SideLandmarks, [f64; 2]),
     positions: Positions,
     asked: Asked,
     progress: Option<&Py<PyAny>>,
@@ -48,7 +48,7 @@ pub(crate) fn sweep<'py>(
             |(columns, tally): &mut (Columns, Tally), number, rows| {
                 let push =
                     |(row, doubts): &(&_, ContactDoubts)| columns.push(number, row, ellipses, doubts.kinds());
-                tally.add(doubts.of_rows(rows).inspect(push));
+                tally.add(landmarks.of_rows(rows).inspect(push));
                 watch.go_on()
             },
             |done, chunks: Vec<(Columns, Tally)>| {

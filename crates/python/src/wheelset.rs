@@ -43,7 +43,7 @@ pub(crate) struct Wheelset {
     /// The left-hand side's, where it is another.
     left: Option<Pair>,
     system: Arc<WheelsetOnTrack>,
-    doubts: Arc<SideLandmarks>,
+    landmarks: Arc<SideLandmarks>,
     distances: Distances,
 }
 
@@ -110,11 +110,11 @@ impl Wheelset {
             }
         };
         let system = system_of(pair, left, rails, wheels).or_raise()?;
-        let marks = |pair: &Pair| pair.doubts.on(TrackSide::Right).clone();
+        let marks = |pair: &Pair| pair.landmarks.on(TrackSide::Right).clone();
         let both = |left| Arc::new(SideLandmarks::new(marks(pair), Some(marks(left))));
-        let doubts = left.map_or_else(|| Arc::clone(&pair.doubts), both);
+        let landmarks = left.map_or_else(|| Arc::clone(&pair.landmarks), both);
         let made =
-            Self { pair: pair.clone(), left: left.cloned(), system: Arc::new(system), doubts, distances };
+            Self { pair: pair.clone(), left: left.cloned(), system: Arc::new(system), landmarks, distances };
         warn(py, made.doubts_of_distances())?;
         Ok(made)
     }
@@ -234,7 +234,7 @@ impl Wheelset {
         let positions = positions(lateral, yaw, roll)?;
         let asked = Asked { within, conicity, ellipses };
         let radii = [self.left_pair(), &self.pair].map(|pair| pair.pair.wheel_radius());
-        sweep(py, (&self.system, &self.doubts, radii), positions, asked, progress.as_ref())
+        sweep(py, (&self.system, &self.landmarks, radii), positions, asked, progress.as_ref())
     }
 
     fn __repr__(&self) -> String {
@@ -274,7 +274,7 @@ impl Wheelset {
         let places = ["gauge", "back_to_back"];
         out.extend(gauge.zip(back).and_then(|(gauge, back)| usual::gauge(places, gauge, back)));
         let sides = [Some(TrackSide::Right), self.left.as_ref().map(|_| TrackSide::Left)];
-        for marks in sides.into_iter().flatten().map(|side| self.doubts.on(side)) {
+        for marks in sides.into_iter().flatten().map(|side| self.landmarks.on(side)) {
             out.extend(back_x.and_then(|x| usual::flange_back_x(["flange_back_x", "wheel"], x, marks)));
         }
         out
@@ -290,7 +290,7 @@ impl Wheelset {
             };
             doubts.list().map(doubt).collect::<Vec<_>>()
         };
-        sides.zip(self.doubts.of_first(first)).flat_map(of_side).collect()
+        sides.zip(self.landmarks.of_first(first)).flat_map(of_side).collect()
     }
 }
 

@@ -147,7 +147,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     }
     let drawn = drawn.is_some();
     let table =
-        SweepTable { system, conicity, selection, positions, ellipses, doubts: case.landmarks(), drawn };
+        SweepTable { system, conicity, selection, positions, ellipses, landmarks: case.landmarks(), drawn };
     if let Some(folder) = &outputs.patches {
         patches::write(folder, &scene, &case, &table, &progress)?;
     }

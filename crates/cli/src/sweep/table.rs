@@ -16,7 +16,7 @@ pub(super) struct SweepTable<'a> {
     pub positions: Vec<Position>,
     /// Approach or load, and E*, for the contact ellipses; `None` without them.
     pub ellipses: Option<(ApproachBy, f64)>,
-    pub doubts: &'a SideLandmarks,
+    pub landmarks: &'a SideLandmarks,
     /// Whether positions are drawn.
     pub drawn: bool,
 }
@@ -63,7 +63,7 @@ impl SweepTable<'_> {
                     drawn.push(position / stride, row, None, DoubtSet::default());
                 }
             };
-            doubts.add(self.doubts.of_rows(rows).inspect(push));
+            doubts.add(self.landmarks.of_rows(rows).inspect(push));
             columns.append_csv(text);
             Ok(())
         };
