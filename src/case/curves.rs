@@ -86,6 +86,41 @@ pub fn curves(columns: &Columns, lateral: &[f64], title: &str, about: &str) -> R
     })
 }
 
+/// Draws quantities of both sides' lowest contacts (heading, axis with unit, column, factor) over an abscissa with its name.
+///
+/// # Errors
+/// Values of the abscissa that do not ascend.
+pub(super) fn over(
+    columns: &Columns,
+    (name, abscissa): (&str, &[f64]),
+    quantities: &[(&str, &str, &str, f64)],
+    (title, about): (&str, &str),
+) -> Result<CurvesPicture> {
+    ascending(abscissa)?;
+    let lowest = Lowest::new(columns, abscissa.len());
+    let sides = [("left", false), ("right", true)];
+    let jumps = sides.map(|(_, right)| {
+        let places = ["rail_x_mm", "wheel_x_mm"].map(|name| lowest.values(right, name));
+        jumps(&places.each_ref().map(Vec::as_slice))
+    });
+    let panel = |&(title, axis, column, factor): &(&str, &str, &str, f64)| {
+        let curve = |((name, right), jumps): ((&str, bool), &Vec<usize>)| {
+            let values = lowest.values(right, column);
+            let points = abscissa.iter().zip(values).map(|(&at, value)| [at, factor * value]).collect();
+            PlottedCurve { name: name.into(), points, jumps: jumps.clone() }
+        };
+        let curves = sides.into_iter().zip(&jumps).map(curve).collect();
+        CurvesPanel { title: title.into(), axis: axis.into(), curves, shown: None }
+    };
+    Ok(CurvesPicture {
+        title: title.into(),
+        about: about.into(),
+        abscissa: name.into(),
+        quantities: quantities.iter().map(panel).collect(),
+        pair: None,
+    })
+}
+
 /// Amplitude at which the equivalent conicity is usually named \[mm\].
 const USUAL_AMPLITUDE: f64 = 3.0;
 

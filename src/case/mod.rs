@@ -20,6 +20,7 @@ mod input;
 mod jobs;
 mod joined;
 mod landmarks;
+mod march;
 mod on_rail;
 mod places;
 mod polylines;
@@ -55,6 +56,7 @@ pub use input::{
 };
 pub use joined::joined_pair;
 pub use landmarks::{Landmarks, SideLandmarks};
+pub use march::{EVENTS_HEAD, append_event, append_stop, march_curves, march_head};
 pub use places::{approach_under_load, contacts, find};
 pub use pressure::PartPressure;
 pub use profile_view::{about_profile, profile_picture};

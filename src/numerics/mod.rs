@@ -10,6 +10,7 @@ pub mod polynomial;
 pub mod quadrature;
 pub mod roots;
 pub mod sign_changes;
+pub mod slopes;
 pub mod twice;
 
 /// Gives the larger of two numbers, and NaN if either is NaN.

@@ -85,6 +85,15 @@ impl Track {
         Ok(Self { rail_x, rail_z: -top })
     }
 
+    /// A track whose rails have their profile origins this far apart \[mm\], and on the level from which heights count. A rail that
+    /// varies along the track has no top of its own.
+    ///
+    /// # Errors
+    /// A distance that is not positive.
+    pub fn between_origins(spacing: f64) -> Result<Self> {
+        Ok(Self { rail_x: positive("track: spacing", spacing)? / 2.0, rail_z: 0.0 })
+    }
+
     /// Moves the rail of this side outwards and up \[mm\].
     ///
     /// # Errors

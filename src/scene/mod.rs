@@ -4,6 +4,7 @@
 mod axes;
 mod data;
 mod doubts;
+mod march;
 mod method_or_auto;
 mod motion;
 mod motion_data;
@@ -20,6 +21,7 @@ pub use data::{
     AxisData, ContactData, GridData, MaterialData, OutputData, PatchData, RollData, RollWord, Scene, Spacing,
     TrackData, WheelsetData, schema,
 };
+pub use march::march;
 pub use motion_data::{FrictionData, MotionData, PitchData, PitchWord};
 pub use profile_data::{ProfileData, Rotation};
 pub use profiles::{

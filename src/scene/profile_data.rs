@@ -8,6 +8,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, finite};
+use crate::lofted::Joining;
 use crate::measured::measured_options;
 use crate::profile::{SegmentData, inclination};
 
@@ -39,6 +40,9 @@ measured_options! {
         /// Shift [x, z], mm, after the turn.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub shift: Option<[f64; 2]>,
+        /// Of an `.slcs` file without `along`: how its slices are joined along the track, "monotone" (without overshoot) or "cubic".
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub surface: Option<Joining>,
     }
 }
 

@@ -87,22 +87,38 @@ fn of_side(
     places: [&str; 2],
     sources: Sources<'_>,
 ) -> Result<SideProfiles> {
-    let rail = profile(data[0], sources, Side::Rail).map_err(|e| e.within(places[0]))?;
-    if let Some(radius) = data[0].radius {
-        let expected = "a radius only for the wheel";
-        return Err(Error::new(format!("{}: radius", places[0]), radius.to_string(), expected, "remove it"));
-    }
-    let wheel = profile(data[1], sources, Side::Wheel).map_err(|e| e.within(places[1]))?;
-    let radius = data[1]
-        .radius
-        .or(scene.wheel.radius)
-        .ok_or_else(|| Error::new(places[1], "no `radius`", "the nominal rolling radius in mm", "add it"))?;
-    let on_rail = Pair::new(rail.profile, wheel.profile, near(places[1], radius)?)?;
+    let rail = rail_of(data[0], places[0], sources)?;
+    let (wheel, radius) = wheel_of(scene, data[1], places[1], sources)?;
+    let on_rail = Pair::new(rail.profile, wheel.profile, radius)?;
     let pair = match &scene.roller {
         Some(roller) => on_rail.on_roller(near("roller", roller.radius)?)?,
         None => on_rail,
     };
     Ok(SideProfiles { pair, measured: Bodies { rail: rail.measured, wheel: wheel.measured } })
+}
+
+/// Gives the profile of a rail; `place` is its key.
+pub(super) fn rail_of(data: &ProfileData, place: &str, sources: Sources<'_>) -> Result<Resolved> {
+    let rail = profile(data, sources, Side::Rail).map_err(|e| e.within(place))?;
+    if let Some(radius) = data.radius {
+        let expected = "a radius only for the wheel";
+        return Err(Error::new(format!("{place}: radius"), radius.to_string(), expected, "remove it"));
+    }
+    Ok(rail)
+}
+
+/// Gives the profile of a wheel and its nominal rolling radius \[mm\]; `place` is its key.
+pub(super) fn wheel_of(
+    scene: &Scene,
+    data: &ProfileData,
+    place: &str,
+    sources: Sources<'_>,
+) -> Result<(Resolved, f64)> {
+    let wheel = profile(data, sources, Side::Wheel).map_err(|e| e.within(place))?;
+    let radius = data.radius.or(scene.wheel.radius);
+    let radius = radius
+        .ok_or_else(|| Error::new(place, "no `radius`", "the nominal rolling radius in mm", "add it"))?;
+    Ok((wheel, near(place, radius)?))
 }
 
 /// Returns the radius of a body \[mm\] if its square is far from overflowing.
@@ -135,6 +151,10 @@ fn profile(data: &ProfileData, (folder, given_ones): Sources<'_>, side: Side) ->
             return Err(Error::new("", found, expected, "give one source"));
         }
     };
+    if data.surface.is_some() {
+        let expected = "`surface` for a list .slcs without `along`, which `wheelrail march` goes along";
+        return Err(Error::new("surface", "an option without effect", expected, "remove it"));
+    }
     if let (Some([x, z]), None) = (data.start, &data.segments) {
         let expected = "`start` only with `segments`";
         return Err(Error::new("start", format!("[{x}, {z}]"), expected, "remove it"));
@@ -145,6 +165,11 @@ fn profile(data: &ProfileData, (folder, given_ones): Sources<'_>, side: Side) ->
             profile = profile.mirrored();
         }
     }
+    Ok(Resolved { profile: turned_and_shifted(data, profile)?, measured })
+}
+
+/// Turns a profile by `rotate`, then shifts it by `shift`.
+pub(super) fn turned_and_shifted(data: &ProfileData, mut profile: Profile) -> Result<Profile> {
     if let Some(rotation) = &data.rotate {
         if data.already_inclined {
             let expected = "no `rotate` for a profile that is `already_inclined`";
@@ -155,7 +180,7 @@ fn profile(data: &ProfileData, (folder, given_ones): Sources<'_>, side: Side) ->
     if let Some([x, z]) = data.shift {
         profile = profile.shifted(finite("shift", x)?, finite("shift", z)?);
     }
-    Ok(Resolved { profile, measured })
+    Ok(profile)
 }
 
 fn in_file(data: &ProfileData, path: &Path, side: Side) -> Result<Resolved> {
@@ -247,7 +272,7 @@ pub fn section_from_files(path: &Path, side: Side, options: &Options) -> Result<
 }
 
 /// Refuses keys that mean nothing for a drawn profile.
-fn reject_measured_keys(data: &ProfileData) -> Result<()> {
+pub(super) fn reject_measured_keys(data: &ProfileData) -> Result<()> {
     let unit = data.unit.filter(|_| data.segments.is_none());
     let keys = Options { mirror: None, unit, ..data.measured() }.given();
     if keys.is_empty() {
@@ -259,8 +284,8 @@ fn reject_measured_keys(data: &ProfileData) -> Result<()> {
 }
 
 /// A profile, and the record of a measured one.
-struct Resolved {
-    profile: Profile,
+pub(super) struct Resolved {
+    pub profile: Profile,
     measured: Option<Record>,
 }
 

@@ -54,11 +54,7 @@ fn on_track(
     wheelset: &WheelsetData,
     profiles: &mut Profiles,
 ) -> Result<Standing> {
-    let position = Position {
-        lateral: finite("wheelset: lateral", wheelset.lateral)?,
-        yaw: finite("wheelset: yaw", wheelset.yaw)?,
-        roll: roll(wheelset.roll)?,
-    };
+    let position = position(wheelset)?;
     let (rails, wheels, within) = (rails(track)?, wheels(wheelset)?, within(wheelset.within)?);
     let deviation = |side: &Option<SideData>| side.as_ref().and_then(|side| side.deviation);
     let deviations = [&scene.left, &scene.right].map(deviation);
@@ -89,6 +85,15 @@ fn on_track(
         ));
     }
     Ok(Standing { place: Place::Wheelset { system: Arc::new(system), position }, within, roll_by_load })
+}
+
+/// Reads the position of a wheelset.
+pub(super) fn position(wheelset: &WheelsetData) -> Result<Position> {
+    Ok(Position {
+        lateral: finite("wheelset: lateral", wheelset.lateral)?,
+        yaw: finite("wheelset: yaw", wheelset.yaw)?,
+        roll: roll(wheelset.roll)?,
+    })
 }
 
 /// Places one side, whose x is the track's times `sign`: by its nominal rail, which then deviates.
@@ -177,7 +182,7 @@ pub fn distance(key: &str, value: f64) -> Result<f64> {
     Err(Error::new(key, value.to_string(), "a distance in mm", advice))
 }
 
-fn rails(track: &TrackData) -> Result<RailDistance> {
+pub(super) fn rails(track: &TrackData) -> Result<RailDistance> {
     match (track.gauge, track.spacing) {
         (Some(gauge), None) => {
             let gauge = distance("track: gauge", gauge)?;
@@ -198,7 +203,7 @@ fn rails(track: &TrackData) -> Result<RailDistance> {
     }
 }
 
-fn wheels(wheelset: &WheelsetData) -> Result<WheelDistance> {
+pub(super) fn wheels(wheelset: &WheelsetData) -> Result<WheelDistance> {
     match (wheelset.back_to_back, wheelset.flange_back_x, wheelset.spacing) {
         (Some(back_to_back), Some(flange_back_x), None) => {
             let distance = distance("wheelset: back_to_back", back_to_back)?;

@@ -7,7 +7,7 @@ use super::bounds::{Bounds, Reach};
 use super::element::{ArcElement, Element, ElementCurve, Stretch};
 use crate::numerics::polynomial::bernstein;
 use crate::profile::{
-    Branch, BranchPoint, BranchShape, ONE_JOINT, Piece, PolynomialBranch, Section, Side, Station,
+    Branch, BranchPoint, BranchShape, ONE_JOINT, PolynomialBranch, Section, Side, Station,
 };
 
 /// Most halvings of a stretch of a polynomial: 2⁻¹⁰ of a zone of 60 mm is 0.06 mm.
@@ -62,10 +62,16 @@ impl SearchBody {
     ///
     /// Cost: n log n for n elements; some microseconds each.
     pub fn new(section: &Section, extent: f64, side: Side) -> Option<Self> {
+        Self::with_arcs_up_to(f64::INFINITY, section, extent, side)
+    }
+
+    /// Prepares the same with arcs and stretches cut to `longest` \[mm\] or less in x, so that the bounds of each are narrow.
+    pub fn with_arcs_up_to(longest: f64, section: &Section, extent: f64, side: Side) -> Option<Self> {
         let rounding = BOUND_ROUNDINGS * f64::EPSILON * extent;
         let mut builder = TreeBuilder {
             side,
             rounding,
+            longest,
             elements: Vec::new(),
             coefficients: Vec::new(),
             hull: Vec::new(),
@@ -94,6 +100,8 @@ impl SearchBody {
 struct TreeBuilder {
     side: Side,
     rounding: f64,
+    /// Largest run of an element in x \[mm\].
+    longest: f64,
     elements: Vec<Element>,
     coefficients: Vec<[f64; 2]>,
     /// Points whose hull holds the elements, in the order of the elements.
@@ -117,7 +125,13 @@ impl TreeBuilder {
                 None => self.fan(&start, material_left, start.angle()),
                 Some(before) => self.corner(&before, &start, joint),
             }
-            self.smooth(branch, piece, [start, end]);
+            let [from, to] = piece.xi;
+            let parts = ((to - from) / self.longest).ceil().max(1.0);
+            let cut = |k: f64| if k < parts { from + (to - from) * (k / parts) } else { to };
+            for k in 0..parts as u32 {
+                let xi = [cut(f64::from(k)), cut(f64::from(k) + 1.0)];
+                self.smooth(branch, xi, xi.map(|x| branch.station(x)));
+            }
             last = Some(end);
         }
         if let Some(end) = last {
@@ -167,12 +181,12 @@ impl TreeBuilder {
         self.push(shape, sines, ends, &[at], [at; 2], [sines, [curvature; 2]]);
     }
 
-    fn smooth(&mut self, branch: &Branch, piece: &Piece, mut ends: [Station; 2]) {
+    fn smooth(&mut self, branch: &Branch, xi: [f64; 2], mut ends: [Station; 2]) {
         let outer = ends.map(|end| [end.x, end.z]);
-        match (&branch.shape, piece.xi.map(|xi| branch.point(xi).0)) {
+        match (&branch.shape, xi.map(|xi| branch.point(xi).0)) {
             (BranchShape::Arc(arc), _) if arc.curvature == 0.0 => {
                 let sines = ends.map(|end| end.sin);
-                self.push(ElementCurve::Line, piece.xi, ends, &outer, outer, [sines, [0.0; 2]]);
+                self.push(ElementCurve::Line, xi, ends, &outer, outer, [sines, [0.0; 2]]);
             }
             (BranchShape::Arc(arc), _) => {
                 let hull = tangents(&ends, arc.radius);

@@ -10,8 +10,10 @@ use super::candidates::{Candidate, Meeting};
 use super::locus::Attitude;
 use nalgebra::{Isometry2, Rotation3, Vector2};
 
+use super::lofted::LoftedPair;
 use super::over_rail::Work;
-use super::touch::{ContactSearch, ProfilePair, Selection, Touch, small_angle, wheel_rotation};
+use super::side::{SidePair, SideSearch};
+use super::touch::{ProfilePair, Selection, Touch, small_angle, wheel_rotation};
 use crate::error::{Result, finite};
 use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
 
@@ -65,8 +67,8 @@ pub struct WheelsetOnTrack {
 /// One side of a wheelset on its track, in the side's own axes: those of a right-hand side.
 #[derive(Debug, Clone)]
 pub struct SideOnTrack {
-    /// The prepared profiles.
-    pub(super) pair: Arc<ProfilePair>,
+    /// The prepared wheel and rail.
+    pub(super) pair: SidePair,
     /// The position of the rail.
     pub(super) track: Track,
     /// The position of the wheel.
@@ -79,7 +81,12 @@ impl SideOnTrack {
     /// # Errors
     /// The errors of [`ProfilePair::new`].
     pub fn new(pair: &Pair, track: Track, wheelset: Wheelset) -> Result<Self> {
-        Ok(Self { pair: Arc::new(ProfilePair::new(pair)?), track, wheelset })
+        Ok(Self { pair: SidePair::Swept(Arc::new(ProfilePair::new(pair)?)), track, wheelset })
+    }
+
+    /// Takes a rail that varies along the track, with its wheel.
+    pub fn lofted(pair: Arc<LoftedPair>, track: Track, wheelset: Wheelset) -> Self {
+        Self { pair: SidePair::Lofted(pair), track, wheelset }
     }
 
     /// Returns the position of the rail.
@@ -108,8 +115,12 @@ impl WheelsetOnTrack {
     /// The errors of [`ProfilePair::new`], [`Track::new`] and [`Wheelset::new`].
     pub fn new(pair: &Pair, rails: RailDistance, wheels: WheelDistance) -> Result<Self> {
         let track = Track::new(pair.rail(), rails)?;
-        let right = SideOnTrack::new(pair, track, Wheelset::new(wheels, pair.wheel_radius())?)?;
-        Ok(Self { sides: [right.clone(), right], symmetric: true })
+        SideOnTrack::new(pair, track, Wheelset::new(wheels, pair.wheel_radius())?).map(Self::symmetrical)
+    }
+
+    /// Takes the same side on both sides of the track, the left one as its mirror image.
+    pub fn symmetrical(side: SideOnTrack) -> Self {
+        Self { sides: [side.clone(), side], symmetric: true }
     }
 
     /// Joins two different sides, each in its own axes.
@@ -142,7 +153,7 @@ impl WheelsetOnTrack {
 #[derive(Debug, Clone)]
 pub struct WheelsetSearch<'a> {
     system: &'a WheelsetOnTrack,
-    sides: [ContactSearch<'a>; 2],
+    sides: [SideSearch<'a>; 2],
 }
 
 /// First touch of both wheels.
@@ -233,6 +244,12 @@ impl WheelsetOnTrack {
 }
 
 impl WheelsetSearch<'_> {
+    /// Moves the middle of the axle to a place along the track \[mm\], in the coordinate of the lists of slices; of no meaning for rails
+    /// of one profile.
+    pub fn stand_at(&mut self, along: f64) {
+        self.sides.iter_mut().for_each(|side| side.stand_at(along));
+    }
+
     /// Lowers the wheelset until it touches; `None` if a side has no wheel over its rail, or if the roll is
     /// to be solved and within ±0.1 rad there is none at which both wheels touch.
     ///

@@ -8,6 +8,7 @@
     reason = "tests stop at the first surprise and say what they saw"
 )]
 
+mod along_track;
 mod any_grid;
 mod campaign;
 mod closed_forms;

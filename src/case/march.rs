@@ -1,0 +1,66 @@
+//! The tables and the picture of a march.
+
+use std::fmt::Write;
+
+use super::columns::Columns;
+use super::curves::over;
+use super::doubts::DoubtSet;
+use crate::error::Result;
+use crate::export::CurvesPicture;
+use crate::search::{Contact, Event, Stop};
+
+/// First line of the table of stops: the columns of a sweep between the place and the pitch of the common tangent plane.
+pub fn march_head() -> String {
+    format!("along_mm,{},contact_pitch_rad\n", Columns::csv_head().trim_end())
+}
+
+/// Appends the rows of a stop to the text of the table. `columns` is a buffer.
+pub fn append_stop(out: &mut String, stop: &Stop, columns: &mut Columns) {
+    columns.clear();
+    stop.rows.iter().for_each(|row| columns.push(0, row, None, DoubtSet::default()));
+    let mut text = String::new();
+    columns.append_csv(&mut text);
+    for (line, row) in text.lines().zip(&stop.rows) {
+        // Writing to a String cannot fail. 0 without a sign.
+        let _ = writeln!(out, "{},{line},{}", stop.along, 0.0 - row.contact.turn);
+    }
+}
+
+/// First line of the table of events.
+pub const EVENTS_HEAD: &str = "along_mm,side,event,rail_x_before_mm,rail_x_after_mm,wheel_x_before_mm,wheel_x_after_mm,\
+     y_before_mm,y_after_mm,radius_jump_mm,slope_before,slope_after,impact_angle_rad,gap_mm\n";
+
+/// Appends the row of an event to the text of the table.
+pub fn append_event(out: &mut String, event: &Event) {
+    let of: [fn(&Contact) -> f64; 4] =
+        [|c| c.rail_x, |c| c.wheel_x, |c| c.y, Contact::slope_along];
+    let pairs = of.map(|of| [event.before, event.after].map(|contact| contact.as_ref().map_or(f64::NAN, of)));
+    let [rail, wheel, y, slope] = pairs;
+    let numbers = [rail, wheel, y].into_iter().flatten();
+    let numbers = numbers.chain([event.radius_jump()]).chain(slope);
+    let numbers = numbers.chain([event.impact_angle(), event.gap.unwrap_or(f64::NAN)]);
+    // Writing to a String cannot fail.
+    let _ = write!(out, "{},{},{}", event.along, event.side, event.kind.name());
+    for number in numbers {
+        let _ = if number.is_nan() { write!(out, ",") } else { write!(out, ",{number}") };
+    }
+    out.push('\n');
+}
+
+/// Quantities of each side's lowest contact that the picture shows: heading, axis with unit, column, factor.
+const SHOWN: [(&str, &str, &str, f64); 6] = [
+    ("Height of the wheelset's centre", "z [mm]", "z_mm", 1.0),
+    ("Rolling radius", "r [mm]", "rolling_radius_mm", 1.0),
+    ("Contact on the rail", "x on the rail [mm]", "rail_x_mm", 1.0),
+    ("Contact on the wheel", "x on the wheel [mm]", "wheel_x_mm", 1.0),
+    ("Contact ahead of the axle", "y [mm]", "y_mm", 1.0),
+    ("Contact angle", "θ [°]", "contact_angle_rad", 180.0 / std::f64::consts::PI),
+];
+
+/// Makes the picture of a march from its columns over the ascending places \[mm\] of all its stops.
+///
+/// # Errors
+/// Places that do not ascend.
+pub fn march_curves(columns: &Columns, along: &[f64], title: &str, about: &str) -> Result<CurvesPicture> {
+    over(columns, ("along the track [mm]", along), &SHOWN, (title, about))
+}

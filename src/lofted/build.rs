@@ -1,0 +1,276 @@
+//! Makes the surface of a list of slices.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::strip::{Interval, Strip};
+use crate::error::{Error, ErrorKind, Result};
+use crate::numerics::slopes;
+use crate::profile::{Mark, Profile, trace};
+
+/// Largest distance of the points across a slice \[mm\]: a spline through points of a 13 mm radius is then off by 20 nm.
+pub const SPACING: f64 = 0.25;
+
+/// Distance \[mm\] of the marks by which a slice is divided: cubics between them are off by 0.02 nm on a 13 mm radius.
+const MARKS: f64 = 0.05;
+
+/// Most points of a surface; each takes 130 bytes.
+const MOST_POINTS: usize = 4_000_000;
+
+/// Jump of a slice's length, as a share of it, across which a list without features defines no surface: the slices do not show the
+/// same parts.
+const JUMP_OF_LENGTH: f64 = 0.06;
+
+/// Jump of a slice's end, likewise.
+const JUMP_OF_ENDS: f64 = 0.1;
+
+/// How the points of successive slices are joined along the track.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "files", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+pub enum Joining {
+    /// The monotone cubic (pchip): local, and without overshoot where slices do not correspond.
+    #[default]
+    Monotone,
+    /// The cubic spline without end conditions ("not a knot"), which CONTACT takes.
+    Cubic,
+}
+
+impl Joining {
+    pub(super) fn slopes(self, at: &[f64], values: &[f64]) -> Vec<f64> {
+        match self {
+            Self::Monotone => slopes::monotone(at, values),
+            Self::Cubic => slopes::spline(at, values),
+        }
+    }
+}
+
+/// One slice of a list.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Slice {
+    /// Position along the track \[mm\].
+    pub at: f64,
+    /// Its name in messages.
+    pub name: String,
+    /// Its curve, in the axes that all slices share.
+    pub profile: Profile,
+    /// Arc lengths of the features from the left end of the curve \[mm\], negative for one that the slice does not have; a last one
+    /// beyond the curve means its end. None for a list without features.
+    pub features: Vec<f64>,
+    /// Length \[mm\] of the polygon along which the features are given; `None` where that is the curve itself.
+    pub measured_along: Option<f64>,
+}
+
+/// A rail that varies along the track.
+#[derive(Debug, Clone)]
+pub struct Loft {
+    /// The parts of its surface.
+    pub strips: Vec<Strip>,
+    /// Where the slices leave the surface undefined, and why.
+    pub warnings: Vec<String>,
+    reach: [f64; 2],
+    extent: f64,
+}
+
+/// A slice with its marks, and the arc lengths at the ends of its parts; `None` for parts that it does not have.
+struct Divided {
+    marks: Vec<Mark>,
+    parts: Vec<Option<[f64; 2]>>,
+}
+
+impl Loft {
+    /// Makes the surface through slices at ascending positions.
+    ///
+    /// Cost: some 2 µs a point, on all threads.
+    ///
+    /// # Errors
+    /// Fewer than two slices; positions that do not ascend; different numbers of features, or features that do not ascend; no part
+    /// that two successive slices have; a monotone surface that folds over between two slices; more points than memory should hold.
+    pub fn new(slices: &[Slice], joining: Joining) -> Result<Self> {
+        check(slices)?;
+        let divided = slices.par_iter().map(divide).collect::<Result<Vec<_>>>()?;
+        let (runs, mut warnings) = runs(slices, &divided);
+        let Some(extent) = slices.iter().map(|slice| slice.profile.extent()).reduce(f64::max) else {
+            return Err(Error::new("slices", "none", "two or more", "list them"));
+        };
+        let (mut strips, mut total) = (Vec::new(), 0);
+        for (part, run) in runs {
+            let points = spread_all(&divided[run.clone()], part, &mut total)?;
+            let at = slices[run.clone()].iter().map(|slice| slice.at).collect();
+            let strip = Strip::new(part, at, &points, joining);
+            match fold(&strip, &slices[run]) {
+                Some(found) if joining == Joining::Monotone => {
+                    let advice = "give features, or slices that show the same parts";
+                    return Err(Error::new("slices", found, "slices that correspond", advice));
+                }
+                found => warnings.extend(found),
+            }
+            strips.push(strip);
+        }
+        if strips.is_empty() {
+            let expected = "a part that two successive slices have";
+            return Err(Error::new("slices", "no such part", expected, "correct the features"));
+        }
+        Ok(Self { strips, warnings, reach: [slices[0].at, slices[slices.len() - 1].at], extent })
+    }
+
+    /// Positions of the first and of the last slice \[mm\].
+    pub fn reach(&self) -> [f64; 2] {
+        self.reach
+    }
+
+    /// Largest extent of a slice \[mm\].
+    pub fn extent(&self) -> f64 {
+        self.extent
+    }
+}
+
+fn check(slices: &[Slice]) -> Result<()> {
+    if slices.len() < 2 {
+        let found = format!("{} slice", slices.len());
+        let advice = "list more, or give `along` for a section of it";
+        return Err(Error::new("slices", found, "two slices or more", advice));
+    }
+    for pair in slices.windows(2) {
+        if pair[1].at <= pair[0].at || (pair[1].at - pair[0].at).is_nan() {
+            let found = format!("a slice at {} mm after one at {} mm", pair[1].at, pair[0].at);
+            return Err(Error::new(&pair[1].name, found, "ascending positions", "sort the slices"));
+        }
+        let [own, other] = [&pair[1], &pair[0]].map(|slice| slice.features.len());
+        if own != other {
+            let (found, expected) = (format!("{own} features"), format!("{other}, as the slice before has"));
+            return Err(Error::new(&pair[1].name, found, expected, "write −1 for what a slice does not have"));
+        }
+    }
+    Ok(())
+}
+
+/// Finds the parts of a slice on its curve.
+fn divide(slice: &Slice) -> Result<Divided> {
+    let marks = trace(&slice.profile, MARKS);
+    let length = marks.last().map_or(0.0, |mark| mark.s);
+    if slice.features.len() < 2 {
+        return Ok(Divided { marks, parts: vec![Some([0.0, length])] });
+    }
+    let last = slice.features.iter().rposition(|s| *s >= 0.0);
+    let scale = slice.measured_along.map_or(1.0, |polygon| length / polygon);
+    let feature = |k: usize| {
+        let s = scale * slice.features[k];
+        (s >= 0.0).then(|| if Some(k) == last { s.min(length) } else { s })
+    };
+    let parts = (1..slice.features.len()).map(|k| {
+        let Some((from, to)) = feature(k - 1).zip(feature(k)) else { return Ok(None) };
+        if from < to && to <= length {
+            return Ok(Some([from, to]));
+        }
+        let found = format!("feature {} at {to} mm after one at {from} mm", k + 1);
+        let expected = format!("ascending arc lengths within the {length:.3} mm of the slice");
+        Err(Error::new(&slice.name, found, expected, "correct the list, or check the unit"))
+    });
+    let parts = parts.collect::<Result<_>>()?;
+    Ok(Divided { marks, parts })
+}
+
+/// Finds the runs of successive slices that have a part, two at least, with its number. Where a list without features leaves the
+/// surface undefined a run ends, and a warning says why.
+fn runs(slices: &[Slice], divided: &[Divided]) -> (Vec<(usize, Range<usize>)>, Vec<String>) {
+    let (mut runs, mut warnings) = (Vec::new(), Vec::new());
+    let parts = divided.first().map_or(0, |slice| slice.parts.len());
+    for part in 0..parts {
+        let mut from = 0;
+        for k in 0..divided.len() {
+            let goes_on = divided[k].parts[part].is_some()
+                && divided.get(k + 1).is_some_and(|next| next.parts[part].is_some());
+            let jump = (goes_on && slices[k].features.len() < 2)
+                .then(|| jump([&slices[k], &slices[k + 1]], [&divided[k], &divided[k + 1]]))
+                .flatten();
+            if goes_on && jump.is_none() {
+                continue;
+            }
+            if k > from && divided[k].parts[part].is_some() {
+                runs.push((part, from..k + 1));
+            }
+            warnings.extend(jump);
+            from = k + 1;
+        }
+    }
+    (runs, warnings)
+}
+
+/// Says how two slices without features differ too much to be joined; `None` for slices that may be.
+fn jump(slices: [&Slice; 2], divided: [&Divided; 2]) -> Option<String> {
+    let [a, b] = divided.map(|slice| slice.marks.as_slice());
+    let ends = [a.first()?, a.last()?].into_iter().zip([b.first()?, b.last()?]);
+    let moved = ends.map(|(a, b)| (b.station.x - a.station.x).hypot(b.station.z - a.station.z)).fold(0.0, f64::max);
+    let [own, other] = [a.last()?.s, b.last()?.s];
+    let shorter = own.min(other);
+    let how = if (own - other).abs() > JUMP_OF_LENGTH * shorter {
+        format!("their lengths are {own:.1} and {other:.1} mm")
+    } else if moved > JUMP_OF_ENDS * shorter {
+        format!("an end moves by {moved:.1} mm")
+    } else {
+        return None;
+    };
+    let [from, to] = slices.map(|slice| format!("{} at {} mm", slice.name, slice.at));
+    Some(format!("no surface between {from} and {to}: {how}, and the list gives no features"))
+}
+
+/// Points \[x, z\] of a part on all slices of a run, at equal shares of its arc length; `total` counts those of all parts.
+fn spread_all(run: &[Divided], part: usize, total: &mut usize) -> Result<Vec<Vec<[f64; 2]>>> {
+    let spans = || run.iter().filter_map(|slice| Some((slice.marks.as_slice(), slice.parts[part]?)));
+    let longest = spans().map(|(_, [from, to])| to - from).fold(0.0, f64::max);
+    let cells = (longest / SPACING).ceil().max(1.0) as usize;
+    *total += (cells + 1) * run.len();
+    if *total > MOST_POINTS {
+        let expected = format!("{MOST_POINTS} points at most, {SPACING} mm apart on all slices");
+        let advice = "list the slices near the place that you look at";
+        return Err(Error::new("slices", "more points", expected, advice).of_kind(ErrorKind::Limit));
+    }
+    Ok(spans().map(|(marks, span)| spread(marks, span, cells)).collect())
+}
+
+/// Points \[x, z\] at equal shares of an arc length along a curve.
+fn spread(marks: &[Mark], [from, to]: [f64; 2], cells: usize) -> Vec<[f64; 2]> {
+    let mut k = 1;
+    let at = |share: usize| {
+        let s = from + (to - from) * (share as f64 / cells as f64);
+        while k + 1 < marks.len() && marks[k].s < s {
+            k += 1;
+        }
+        between(&marks[k - 1], &marks[k], s)
+    };
+    (0..=cells).map(at).collect()
+}
+
+/// The point at an arc length between two marks, by the cubic through both with their tangents.
+fn between(a: &Mark, b: &Mark, s: f64) -> [f64; 2] {
+    let length = b.s - a.s;
+    if length <= 0.0 {
+        return [b.station.x, b.station.z];
+    }
+    let t = ((s - a.s) / length).clamp(0.0, 1.0);
+    let r = 1.0 - t;
+    let (rise, fall) = (t * r * r * length, -t * t * r * length);
+    let mix = |p: f64, dp: f64, q: f64, dq: f64| {
+        p * (1.0 + 2.0 * t) * r * r + dp * rise + q * t * t * (3.0 - 2.0 * t) + dq * fall
+    };
+    let (p, q) = (&a.station, &b.station);
+    [mix(p.x, p.cos, q.x, q.cos), mix(p.z, p.sin, q.z, q.sin)]
+}
+
+/// Says where a section runs backward halfway between two slices that run alike; `None` if none does.
+fn fold(strip: &Strip, slices: &[Slice]) -> Option<String> {
+    let folds = |interval: Interval<'_>, cell: usize| {
+        let [from, to] = interval.y();
+        let middle = 0.5 * (from + to);
+        let across = [from, middle, to].map(|y| interval.cell(cell).point(0.5, y).across);
+        let dot = |a: usize, b: usize| across[a][0] * across[b][0] + across[a][1] * across[b][1];
+        let [x, z] = interval.cell(cell).point(0.5, middle).at;
+        let names = [0, 1].map(|k| &slices[interval.index() + k].name);
+        (dot(0, 2) > 0.0 && dot(0, 1) < 0.0 && dot(1, 2) < 0.0).then(|| {
+            format!("a surface that folds over between {} and {}, at [{x:.1}, {z:.1}]", names[0], names[1])
+        })
+    };
+    strip.intervals().find_map(|interval| (0..strip.cells()).find_map(|cell| folds(interval, cell)))
+}

@@ -1,0 +1,20 @@
+//! Surfaces that vary along the track: switches, crossings, check rails. A list of slices gives them, each a section at its own
+//! place.
+//!
+//! # The surface between slices
+//!
+//! Features divide every slice into parts. Points at equal shares of a part's arc length belong together on all slices, at most
+//! [`SPACING`] apart. Along the track a cubic goes through the points of equal share, by default the monotone one (pchip): it does not
+//! overshoot where slices do not correspond. Across, a cubic spline goes through all points of a part. So the surface is a bicubic
+//! over each cell, continuous with its slopes along the track and with its curvature across, and bounded by its control points.
+//!
+//! A part that a slice does not have begins or ends at its neighbour. Without features a slice is one part; where its length or its
+//! ends jump from one slice to the next, the list defines no surface between the two ([`Loft::warnings`]).
+
+mod bicubic;
+mod build;
+mod strip;
+
+pub use bicubic::{Bicubic, SurfacePoint};
+pub use build::{Joining, Loft, SPACING, Slice};
+pub use strip::{Interval, Strip};

@@ -1,0 +1,162 @@
+//! Makes the march of a scene: a wheelset on rails that vary along the track.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::data::Scene;
+use super::profile_data::ProfileData;
+use super::profiles::{
+    Given, is_chain_file, profile_from_file, rail_of, reject_measured_keys, turned_and_shifted, wheel_of,
+};
+use super::standing::{position, rails, wheels, within};
+use crate::error::{Error, Result};
+use crate::files::read_bytes;
+use crate::lofted::{Loft, Slice};
+use crate::measured::{self, Measured, SliceList, listed_body};
+use crate::placement::{Pair, RailDistance, Track, Wheelset};
+use crate::profile::{Profile, Side};
+use crate::search::{LoftedPair, March, ONE_CONTACT, Selection, SideOnTrack, WheelsetOnTrack};
+
+/// Resolves a scene into a march over its rails, at least one of which is a list of slices without `along`. Paths in the scene are
+/// relative to `folder`. Also returns what the lists leave undefined.
+///
+/// # Errors
+/// Anything that is wrong; the error names the key.
+pub fn march(scene: &Scene, folder: &Path) -> Result<(March, Vec<String>)> {
+    let (Some(track), Some(wheelset)) = (&scene.track, &scene.wheelset) else {
+        let expected = "[track] and [wheelset]";
+        return Err(Error::new("", "a single wheel", expected, "a march moves a wheelset along its track"));
+    };
+    if scene.roller.is_some() {
+        return Err(Error::new("roller", "rollers", "rails that vary along the track", "remove [roller]"));
+    }
+    let (rails, wheels) = (rails(track)?, wheels(wheelset)?);
+    let (position, within) = (position(wheelset)?, within(wheelset.within)?);
+    let mut about = About { reach: [f64::NEG_INFINITY, f64::INFINITY], warnings: Vec::new() };
+    let mut side = |right: bool| {
+        let (name, own) = if right { ("right", &scene.right) } else { ("left", &scene.left) };
+        let own = own.as_ref();
+        let of = |body: &'static str, own: Option<&'_ ProfileData>| {
+            if own.is_some() { format!("{name}: {body}") } else { body.to_owned() }
+        };
+        let [rail, wheel] = [own.and_then(|side| side.rail.as_ref()), own.and_then(|side| side.wheel.as_ref())];
+        let places = [of("rail", rail), of("wheel", wheel)];
+        let data = [rail.unwrap_or(&scene.rail), wheel.unwrap_or(&scene.wheel)];
+        let given = Given::new();
+        let (wheel, radius) = wheel_of(scene, data[1], &places[1], (folder, &given))?;
+        let deviation = own.and_then(|side| side.deviation).unwrap_or_default();
+        let sign = if right { 1.0 } else { -1.0 };
+        let moved = |track: Track| track.moved(sign * deviation.lateral, deviation.vertical);
+        if deviation.roll != 0.0 {
+            let expected = "lateral and vertical deviations of rails that are marched along";
+            return Err(Error::new(format!("{name}: deviation: roll"), "a roll", expected, "turn the profile by `rotate`"));
+        }
+        let axle = Wheelset::new(wheels, radius)?;
+        let Some(list) = list_of(data[0]) else {
+            let rail = rail_of(data[0], &places[0], (folder, &given))?.profile;
+            let track = moved(Track::new(&rail, rails)?)?;
+            return SideOnTrack::new(&Pair::new(rail, wheel.profile, radius)?, track, axle);
+        };
+        let RailDistance::Spacing(spacing) = rails else {
+            let expected = "`spacing` of the profile origins: rails that vary have no one gauge point";
+            return Err(Error::new("track", "a gauge", expected, "give spacing instead of gauge"));
+        };
+        let loft = loft(data[0], &folder.join(list)).map_err(|e| e.within(&places[0]))?;
+        about.take(&loft, &places[0]);
+        let pair = LoftedPair::new(Arc::new(loft), &wheel.profile, radius)?;
+        Ok(SideOnTrack::lofted(Arc::new(pair), moved(Track::between_origins(spacing)?)?, axle))
+    };
+    let right = side(true)?;
+    let system = if scene.left.is_none() && scene.right.is_none() {
+        WheelsetOnTrack::symmetrical(right)
+    } else {
+        WheelsetOnTrack::of_sides(side(false)?, right)
+    };
+    let [from, to] = about.reach;
+    if from == f64::NEG_INFINITY {
+        let expected = "a rail that varies: a list .slcs of slices without `along`";
+        return Err(Error::new("rail", "rails of one profile each", expected, "or take `wheelrail sweep`"));
+    }
+    if from >= to {
+        let found = "rails whose lists have no place in common";
+        return Err(Error::new("rail", found, "lists that overlap along the track", "correct the offsets"));
+    }
+    let selection = Selection { within, apart: ONE_CONTACT };
+    Ok((March { system, position, selection, reach: about.reach }, about.warnings))
+}
+
+/// What the lists of both sides say.
+struct About {
+    reach: [f64; 2],
+    warnings: Vec<String>,
+}
+
+impl About {
+    fn take(&mut self, loft: &Loft, place: &str) {
+        let [from, to] = loft.reach();
+        self.reach = [self.reach[0].max(from), self.reach[1].min(to)];
+        self.warnings.extend(loft.warnings.iter().map(|warning| format!("{place}: {warning}")));
+    }
+}
+
+/// Returns the list of slices of a rail that varies; `None` for one profile, or a section of a list.
+fn list_of(data: &ProfileData) -> Option<&PathBuf> {
+    let listed = |file: &&PathBuf| listed_body(&file.display().to_string()) == Some(Side::Rail);
+    data.file.as_ref().filter(listed).filter(|_| data.along.is_none())
+}
+
+/// Reads the slices of a list and joins them.
+fn loft(data: &ProfileData, path: &Path) -> Result<Loft> {
+    let place = path.display().to_string();
+    let bytes = read_bytes(path, measured::LARGEST_FILE)?;
+    let list = SliceList::read(&bytes, Side::Rail).map_err(|error| error.within(&place))?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let curves = list.slices.par_iter().map(|slice| {
+        let curve = Curve::read(data, &folder.join(&slice.file))?;
+        Ok(Curve { profile: turned_and_shifted(data, curve.profile)?, ..curve })
+    });
+    let curves = curves.collect::<Result<Vec<_>>>().map_err(|error| error.within(&place))?;
+    if let Some(k) = (1..curves.len()).find(|&k| curves[k].scale != curves[0].scale) {
+        let names = [0, k].map(|k| list.slices[k].file.as_str());
+        let found = format!("scales {:?} of {} and {:?} of {}", curves[0].scale, names[0], curves[k].scale, names[1]);
+        let error = Error::new("mirror", found, "slices turned alike", "give `mirror`, `flip_z` and `unit`");
+        return Err(error.within(&place));
+    }
+    let slices: Vec<Slice> = list.slices.into_iter().zip(curves).map(|(slice, curve)| Slice {
+        at: slice.at,
+        name: slice.file,
+        profile: curve.profile,
+        features: slice.features,
+        measured_along: curve.polygon,
+    }).collect();
+    Loft::new(&slices, data.surface.unwrap_or_default()).map_err(|error| error.within(&place))
+}
+
+/// The curve of a slice.
+struct Curve {
+    profile: Profile,
+    /// Length of the polygon of measured points \[mm\].
+    polygon: Option<f64>,
+    /// By what the file's axes were multiplied.
+    scale: [f64; 2],
+}
+
+impl Curve {
+    fn read(data: &ProfileData, path: &Path) -> Result<Self> {
+        if data.format.is_none() && is_chain_file(path) {
+            reject_measured_keys(data)?;
+            let drawn = profile_from_file(path)?;
+            let mirrored = data.mirror == Some(true);
+            let (profile, sign) = if mirrored { (drawn.mirrored(), -1.0) } else { (drawn, 1.0) };
+            return Ok(Self { profile, polygon: None, scale: [sign, 1.0] });
+        }
+        let bytes = read_bytes(path, measured::LARGEST_FILE)?;
+        let options = data.measured();
+        let Measured { profile, points, record } =
+            measured::profile(&path.display().to_string(), &bytes, Side::Rail, &options)?;
+        let steps = points.windows(2).map(|pair| (pair[1].x - pair[0].x).hypot(pair[1].z - pair[0].z));
+        Ok(Self { profile, polygon: Some(steps.sum()), scale: record.transform.scale })
+    }
+}

@@ -1,0 +1,196 @@
+//! Parts of a lofted rail with their control points, and lower bounds of the gap over them.
+
+use super::wheel::WheelAbove;
+use crate::lofted::{Interval, Loft};
+use crate::search::bounds::Bounds;
+
+/// Change \[mm\] of x and z across and along of a part of the rail from which Newton's method starts.
+const SMALL_ACROSS: f64 = 0.1;
+
+/// Its length along the track \[mm\]: a wheel rises by 0.3 µm over it.
+const SMALL_ALONG: f64 = 1.0;
+
+/// Length of several cells over their size above which they are halved along the track.
+const LONG: f64 = 8.0;
+
+/// Length \[mm\] along the track above which a part is bounded from the nearest point to the wheel's lowest meridian, not from its
+/// middle: where the rise over the part counts for more than its slope.
+const FAR: f64 = 10.0;
+
+/// Least cosine between a plane's normal and the vertical at which the plane bounds a vertical gap.
+const STEEPEST: f64 = 0.03;
+
+/// Part of a rail: over some cells between two slices, and over an interval of y.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Part {
+    /// Index of the strip.
+    pub strip: usize,
+    /// Index of the interval between two slices.
+    pub interval: usize,
+    /// Node of the interval's tree.
+    pub node: usize,
+    /// Shares of the cell across; \[0, 1\] of a node with several cells.
+    pub shares: [f64; 2],
+    /// Interval of y in the list's coordinate \[mm\].
+    pub y: [f64; 2],
+}
+
+/// A part with what bounds it, in the wheel's axes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct BoundPart {
+    pub part: Part,
+    /// Points whose hull holds the part: control points, or corners of a box.
+    points: [[f64; 3]; 16],
+    /// How many there are.
+    count: usize,
+    /// Reach of the abscissa at which vertical lines through the part meet the level of the wheel's profile \[mm\].
+    abscissa: [f64; 2],
+    /// Reach of y \[mm\].
+    along: [f64; 2],
+    /// Larger extent of x or z \[mm\].
+    pub size: f64,
+    /// Change of x or z across and along, as multiples of those of a small part.
+    changes: [f64; 2],
+    /// Whether Newton's method has started from it.
+    pub settled: bool,
+}
+
+impl Part {
+    pub fn interval<'a>(&self, loft: &'a Loft) -> Interval<'a> {
+        loft.strips[self.strip].interval(self.interval)
+    }
+
+    /// The cell, of a part of one.
+    pub fn cell(&self, loft: &Loft) -> Option<usize> {
+        self.interval(loft).only_cell(self.node)
+    }
+
+    /// Parameters (u, y) of its middle.
+    pub fn middle(&self, loft: &Loft) -> [f64; 2] {
+        let y = 0.5 * (self.y[0] + self.y[1]);
+        let u = match self.cell(loft) {
+            Some(cell) => cell as f64 + 0.5 * (self.shares[0] + self.shares[1]),
+            None => {
+                let cells = self.interval(loft).cells(self.node);
+                0.5 * (cells.start + cells.end) as f64
+            }
+        };
+        [u, y]
+    }
+
+    /// Makes its bounds for a wheel whose middle is at `along` \[mm\] of the list.
+    pub fn bound(self, loft: &Loft, wheel: &WheelAbove<'_>, along: f64) -> BoundPart {
+        let interval = self.interval(loft);
+        let (mut points, mut count) = ([[0.0; 3]; 16], 8);
+        if let Some(cell) = self.cell(loft) {
+            let control = interval.cell(cell).control(self.shares, self.y);
+            points.iter_mut().zip(control.iter().flatten()).for_each(|(own, at)| *own = *at);
+            count = 16;
+        } else {
+            let [x, z] = interval.bounds(self.node);
+            for (k, point) in points.iter_mut().take(count).enumerate() {
+                *point = [x[k & 1], self.y[k >> 1 & 1], z[k >> 2]];
+            }
+        }
+        let mut low = [f64::INFINITY; 4];
+        let mut high = [f64::NEG_INFINITY; 4];
+        for point in points.iter_mut().take(count) {
+            *point = wheel.seen([point[0], point[1] - along, point[2]]);
+            let [x, y, z] = *point;
+            let reached = [x, y, z, x - wheel.up[0] / wheel.up[2] * z];
+            for k in 0..4 {
+                (low[k], high[k]) = (low[k].min(reached[k]), high[k].max(reached[k]));
+            }
+        }
+        let size = (high[0] - low[0]).max(high[2] - low[2]);
+        let length = self.y[1] - self.y[0];
+        let change = |step: usize, other: usize| {
+            let lines = (0..4).flat_map(|line| (1..4).map(move |k| (other * line, other * line + k * step)));
+            let far = |(a, b): (usize, usize)| {
+                (points[b][0] - points[a][0]).abs().max((points[b][2] - points[a][2]).abs())
+            };
+            lines.map(far).fold(0.0, f64::max) / SMALL_ACROSS
+        };
+        let changes = if count == 16 {
+            [change(4, 1), change(1, 4).max(length / SMALL_ALONG)]
+        } else {
+            [size, length / LONG]
+        };
+        BoundPart {
+            part: self,
+            points,
+            count,
+            abscissa: [low[3], high[3]],
+            along: [low[1], high[1]],
+            size,
+            changes,
+            settled: false,
+        }
+    }
+}
+
+impl BoundPart {
+    /// Tells whether Newton's method may start from it: it is of one cell, and small in both directions.
+    pub fn is_small(&self) -> bool {
+        self.count == 16 && self.changes.iter().all(|change| *change <= 1.0)
+    }
+
+    /// Halves the part where it changes most.
+    pub fn halves(&self, loft: &Loft) -> [Part; 2] {
+        let Part { y: [from, to], shares: [first, last], node, .. } = self.part;
+        let with = |y: [f64; 2], shares: [f64; 2], node: usize| Part { y, shares, node, ..self.part };
+        if self.changes[1] > self.changes[0] {
+            let middle = 0.5 * (from + to);
+            return [[from, middle], [middle, to]].map(|y| with(y, [first, last], node));
+        }
+        if self.part.cell(loft).is_none() {
+            return [0, 1].map(|k| with([from, to], [first, last], 2 * node + k));
+        }
+        let middle = 0.5 * (first + last);
+        [[first, middle], [middle, last]].map(|shares| with([from, to], shares, node))
+    }
+
+    /// Returns a lower bound of the vertical gap between the part and what is revolved of a part of the wheel's profile \[mm\]; infinite
+    /// where no vertical line meets both.
+    ///
+    /// Method: a plane that touches the wheel's part from below, along its chord and at the angle of the rail's part about the axle. The
+    /// rail's part is below the highest plane parallel to it through its control points.
+    pub fn gap_below(&self, wheel: &WheelAbove<'_>, of: &Bounds) -> f64 {
+        let radius = wheel.attitude.radius;
+        let tilt = wheel.up[0] / wheel.up[2];
+        let farthest = self.along[0].abs().max(self.along[1].abs());
+        // The profile's part is carried up where the ring rises.
+        let least = radius - of.z[1];
+        let rise = if tilt == 0.0 {
+            0.0
+        } else if farthest < least {
+            farthest * farthest / (least + (least * least - farthest * farthest).sqrt())
+        } else {
+            least.max(0.0)
+        };
+        let shifts = [tilt * of.z[0], tilt * (of.z[1] + rise)];
+        let reach = [of.x[0] - shifts[0].max(shifts[1]), of.x[1] - shifts[0].min(shifts[1])];
+        if reach[0] > self.abscissa[1] || reach[1] < self.abscissa[0] {
+            return f64::INFINITY;
+        }
+        let [from, to] = self.along;
+        let y = if to - from > FAR { 0f64.clamp(from, to) } else { 0.5 * (from + to) };
+        let sine = (y / (radius - of.z[0])).clamp(-1.0, 1.0);
+        let cosine = ((1.0 - sine) * (1.0 + sine)).sqrt();
+        let [cos, sin] = of.chord;
+        let steep = cos * cosine * wheel.up[2] - sin * wheel.up[0] < STEEPEST;
+        let (cos, sin, level) = if steep { (1.0, 0.0, of.z[0]) } else { (cos, sin, of.level) };
+        let normal = [-sin, -cos * sine, cos * cosine];
+        let rate: f64 = (0..3).map(|k| normal[k] * wheel.up[k]).sum();
+        if rate < STEEPEST {
+            return f64::NEG_INFINITY;
+        }
+        // Free of the radius where the plane is level: R (cos cosine − cos).
+        let lift = radius * cos * sine * sine / (1.0 + cosine);
+        let highest = self.points[..self.count]
+            .iter()
+            .map(|p| normal[0] * p[0] + normal[1] * p[1] + normal[2] * p[2])
+            .fold(f64::NEG_INFINITY, f64::max);
+        (level - lift - highest) / rate
+    }
+}

@@ -1,0 +1,143 @@
+//! Newton's method to the least gap near a place of a lofted rail, within the strip that it is on.
+
+use super::wheel::{Above, WheelAbove};
+use crate::lofted::{SPACING, Strip, SurfacePoint};
+
+/// Most steps. Newton's method takes four to six from a place within a tenth of a millimetre.
+const STEPS: usize = 40;
+
+/// Longest step: in cells across, and in mm along the track.
+const LONGEST: [f64; 2] = [2.0, 10.0];
+
+/// Step at which a place is found, in the same units: the gap then errs by its square.
+const FOUND: [f64; 2] = [1e-9, 1e-8];
+
+/// Halvings of a step that does not lower the gap.
+const HALVINGS: usize = 30;
+
+/// A place of the rail with the wheel above it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Settled {
+    /// Parameters u and y \[mm\] of the strip.
+    pub place: [f64; 2],
+    /// The rail's point.
+    pub rail: SurfacePoint,
+    /// The wheel's.
+    pub wheel: Above,
+    /// Whether it lies at an end of the strip: across, along.
+    pub at_end: [bool; 2],
+    /// Whether no derivative vanishes there although it lies inside: at a kink of the wheel.
+    pub kink: bool,
+}
+
+/// The gap of a wheel over a strip.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Gap<'a> {
+    pub strip: &'a Strip,
+    pub wheel: &'a WheelAbove<'a>,
+    /// Coordinate of the axle's middle in the list \[mm\].
+    pub along: f64,
+}
+
+impl Gap<'_> {
+    /// The rail's point at a place, and the wheel's above it; `None` where the wheel does not reach.
+    pub fn at(&self, [u, y]: [f64; 2]) -> Option<(SurfacePoint, Above)> {
+        let rail = self.strip.point(u, y);
+        let above = self.wheel.above(self.wheel.seen([rail.at[0], y - self.along, rail.at[1]]))?;
+        Some((rail, above))
+    }
+
+    /// Gradient and second derivatives (uu, uy, yy) of the gap with respect to a place; the second ones hold where the gradient is 0.
+    pub fn derivatives(&self, rail: &SurfacePoint, above: &Above) -> ([f64; 2], [f64; 3]) {
+        let ([a, b], [aa, ab, bb]) = (above.slopes, above.bends);
+        // The height of the wheel less z, along a direction of the wheel's axes.
+        let rise = |v: [f64; 3]| a * v[0] + b * v[1] - v[2];
+        let rate = -rise(self.wheel.up);
+        let across = self.wheel.turned([rail.across[0], 0.0, rail.across[1]]);
+        let along = self.wheel.turned([rail.along[0], 1.0, rail.along[1]]);
+        let second = |v: [f64; 2], p: [f64; 3], q: [f64; 3]| {
+            let bend = aa * p[0] * q[0] + ab * (p[0] * q[1] + p[1] * q[0]) + bb * p[1] * q[1];
+            (rise(self.wheel.turned([v[0], 0.0, v[1]])) + bend) / rate
+        };
+        let gradient = [rise(across) / rate, rise(along) / rate];
+        let bends = [
+            second(rail.across2, across, across),
+            second(rail.mixed, across, along),
+            second(rail.along2, along, along),
+        ];
+        (gradient, bends)
+    }
+
+    /// Follows the gap down to its least value near a place; `None` where the wheel does not reach. Steps that do not settle end at
+    /// the lowest place that they reached, as at a kink.
+    pub fn settle(&self, from: [f64; 2]) -> Option<Settled> {
+        let ends = [[0.0, self.strip.cells() as f64], self.strip.reach()];
+        let mut place = from;
+        let (mut rail, mut wheel) = self.at(place)?;
+        let rounding = 16.0 * f64::EPSILON * self.wheel.attitude.radius;
+        for _ in 0..STEPS {
+            let (gradient, bends) = self.derivatives(&rail, &wheel);
+            let held = [0, 1].map(|k| {
+                (place[k] <= ends[k][0] && gradient[k] >= 0.0) || (place[k] >= ends[k][1] && gradient[k] <= 0.0)
+            });
+            let step = descent(gradient, bends, held);
+            let found = |at_kink| Settled { place, rail, wheel, at_end: held, kink: at_kink };
+            if (0..2).all(|k| step[k].abs() <= FOUND[k]) {
+                return Some(found(false));
+            }
+            let lower = |step: [f64; 2]| {
+                let mut share = (0..2).map(|k| LONGEST[k] / step[k].abs()).fold(1.0, f64::min);
+                for _ in 0..HALVINGS {
+                    let next = [0, 1].map(|k| (place[k] + share * step[k]).clamp(ends[k][0], ends[k][1]));
+                    let reached = self.at(next).filter(|(_, above)| above.gap < wheel.gap + rounding);
+                    if let Some((to, above)) = reached {
+                        return Some((next, to, above));
+                    }
+                    share *= 0.5;
+                }
+                None
+            };
+            let slid = || lower(self.slide(&rail, gradient, bends)).filter(|(next, ..)| apart(*next, place) > FOUND[1]);
+            match lower(step).or_else(slid) {
+                Some(next) => (place, rail, wheel) = next,
+                None => return Some(found(true)),
+            }
+        }
+        Some(Settled { place, rail, wheel, at_end: [false; 2], kink: true })
+    }
+
+    /// Newton's step along a kink of the wheel: at one abscissa of its profile.
+    fn slide(&self, rail: &SurfacePoint, [f, g]: [f64; 2], [a, b, c]: [f64; 3]) -> [f64; 2] {
+        let run = |v: [f64; 3]| self.wheel.turned(v)[0];
+        let aside = -run([rail.along[0], 1.0, rail.along[1]]) / run([rail.across[0], 0.0, rail.across[1]]);
+        let (slope, bend) = (f * aside + g, (a * aside + 2.0 * b) * aside + c);
+        if bend > 0.0 && aside.is_finite() { [-slope / bend * aside, -slope / bend] } else { [0.0; 2] }
+    }
+}
+
+/// Newton's step down, over the coordinates that are not held; along the gradient where the second derivatives do not tell.
+fn descent([f, g]: [f64; 2], [a, b, c]: [f64; 3], held: [bool; 2]) -> [f64; 2] {
+    let alone = |slope: f64, bend: f64, longest: f64| match slope {
+        0.0 => 0.0,
+        _ if bend > 0.0 => -slope / bend,
+        _ => longest.copysign(-slope),
+    };
+    match held {
+        [true, true] => [0.0; 2],
+        [true, false] => [0.0, alone(g, c, LONGEST[1])],
+        [false, true] => [alone(f, a, LONGEST[0]), 0.0],
+        [false, false] => {
+            let determinant = a * c - b * b;
+            if a > 0.0 && determinant > 0.0 {
+                [(b * g - c * f) / determinant, (b * f - a * g) / determinant]
+            } else {
+                [alone(f, a, LONGEST[0]), alone(g, c, LONGEST[1])]
+            }
+        }
+    }
+}
+
+/// Distance \[mm\] of two places, the larger one of both directions.
+pub(super) fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (SPACING * (a[0] - b[0]).abs()).max((a[1] - b[1]).abs())
+}

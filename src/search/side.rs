@@ -1,0 +1,79 @@
+//! One side of a wheelset: what its wheel runs on, and the search over it.
+
+use std::sync::Arc;
+
+use super::candidates::{Candidate, Meeting};
+use super::locus::Attitude;
+use super::lofted::{LoftedPair, LoftedSearch};
+use super::over_rail::Work;
+use super::touch::{ContactSearch, ProfilePair, Selection, Touch};
+
+/// A wheel and what it runs on, prepared for searches.
+#[derive(Debug, Clone)]
+pub(super) enum SidePair {
+    /// A rail or a roller of one profile.
+    Swept(Arc<ProfilePair>),
+    /// A rail that varies along the track.
+    Lofted(Arc<LoftedPair>),
+}
+
+/// The search over one of them.
+#[derive(Debug, Clone)]
+pub(super) enum SideSearch<'a> {
+    Swept(ContactSearch<'a>),
+    Lofted(LoftedSearch<'a>),
+}
+
+impl SidePair {
+    pub fn search(&self) -> SideSearch<'_> {
+        match self {
+            Self::Swept(pair) => SideSearch::Swept(pair.search()),
+            Self::Lofted(pair) => SideSearch::Lofted(pair.search()),
+        }
+    }
+
+    /// Radius of a roller \[mm\].
+    pub fn roller(&self) -> Option<f64> {
+        match self {
+            Self::Swept(pair) => pair.roller(),
+            Self::Lofted(_) => None,
+        }
+    }
+}
+
+impl SideSearch<'_> {
+    /// Moves the axle's middle to a place along the track \[mm\]; of no meaning for a rail of one profile.
+    pub fn stand_at(&mut self, along: f64) {
+        if let Self::Lofted(search) = self {
+            search.along = along;
+        }
+    }
+
+    pub fn lower(&mut self, attitude: &Attitude, within: f64) -> Option<Candidate> {
+        match self {
+            Self::Swept(search) => search.lower(attitude, within),
+            Self::Lofted(search) => search.lower(attitude, within),
+        }
+    }
+
+    pub fn follow(&mut self, attitude: &Attitude, meeting: &Meeting) -> Option<Candidate> {
+        match self {
+            Self::Swept(search) => search.follow(attitude, meeting),
+            Self::Lofted(search) => search.follow(attitude, meeting),
+        }
+    }
+
+    pub fn collect(&mut self, attitude: &Attitude, height: f64, selection: &Selection) -> Touch<'_> {
+        match self {
+            Self::Swept(search) => search.collect(attitude, height, selection),
+            Self::Lofted(search) => search.collect(attitude, height, selection),
+        }
+    }
+
+    pub fn work(&self) -> Work {
+        match self {
+            Self::Swept(search) => search.work(),
+            Self::Lofted(search) => search.work,
+        }
+    }
+}
