@@ -8,11 +8,13 @@
 mod answer;
 mod check;
 mod init;
+mod march;
 mod midsep;
 mod output;
 mod png;
 mod profile;
 mod progress;
+mod range;
 mod report;
 mod run;
 mod signals;
@@ -53,6 +55,8 @@ enum Command {
     },
     /// Sweep a wheelset over its track and print a row for each position, side and contact.
     Sweep(sweep::SweepArguments),
+    /// March a wheelset along rails that vary and print a row for each place, side and contact.
+    March(march::MarchArguments),
     /// Measure speed against error and run the hard cases; takes about three minutes.
     Report {
         /// Folder to write; by default output/report.
@@ -120,6 +124,7 @@ fn on_threads(arguments: Arguments) -> Result<Outcome> {
         Command::Midsep { scene } => midsep::midsep(&scene),
         Command::Check { scene } => check::check(&scene),
         Command::Sweep(arguments) => sweep::sweep(&arguments),
+        Command::March(arguments) => march::march(&arguments),
         Command::Report { out, splice } => report::report(out.as_deref(), splice.as_deref()),
         Command::Profile(command) => profile::profile(&command),
         Command::Init { file } => init::init(&file),

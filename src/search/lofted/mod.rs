@@ -211,8 +211,9 @@ impl LoftedSearch<'_> {
 
     fn push(&mut self, wheel: &WheelAbove<'_>, part: usize, node: usize, ceiling: f64) {
         self.work.pairs += 1;
-        let bound = self.parts[part].gap_below(wheel, &self.pair.wheel.nodes[node].bounds);
-        if bound <= ceiling {
+        let (own, of) = (&self.parts[part], &self.pair.wheel.nodes[node].bounds);
+        let bound = own.gap_below(wheel, of);
+        if bound <= ceiling && own.may_be_level(&self.pair.loft, wheel, of) {
             self.queue.push(Open { bound, part, node });
         }
     }

@@ -2,6 +2,7 @@
 
 use super::wheel::WheelAbove;
 use crate::lofted::{Interval, Loft};
+use crate::numerics::interval::product;
 use crate::search::bounds::Bounds;
 
 /// Change \[mm\] of x and z across and along of a part of the rail from which Newton's method starts.
@@ -19,6 +20,9 @@ const FAR: f64 = 10.0;
 
 /// Least cosine between a plane's normal and the vertical at which the plane bounds a vertical gap.
 const STEEPEST: f64 = 0.03;
+
+/// Rounding of the rise of a part \[mm\].
+const LEVEL: f64 = 1e-12;
 
 /// Part of a rail: over some cells between two slices, and over an interval of y.
 #[derive(Debug, Clone, Copy)]
@@ -148,6 +152,36 @@ impl BoundPart {
         }
         let middle = 0.5 * (first + last);
         [[first, middle], [middle, last]].map(|shares| with([from, to], shares, node))
+    }
+
+    /// Tells whether the gap over the part may be least there or level: whether the surfaces of both bodies may be parallel across and
+    /// along the track. Where they cannot, the gap is least at the part's edge, which counts at an end of the strip only.
+    pub fn may_be_level(&self, loft: &Loft, wheel: &WheelAbove<'_>, of: &Bounds) -> bool {
+        let Some(cell) = self.part.cell(loft) else { return true };
+        let (least, most) = (wheel.attitude.radius - of.z[1], wheel.attitude.radius - of.z[0]);
+        let farthest = self.along[0].abs().max(self.along[1].abs());
+        if farthest >= least {
+            return true;
+        }
+        let down = ((least - farthest) * (least + farthest)).sqrt();
+        let across = product(of.tangent, [1.0, least / down]);
+        let along = product(self.along, [most.recip(), down.recip()]);
+        let strip = &loft.strips[self.part.strip];
+        let ([first, last], [from, to], reach) = (self.part.shares, self.part.y, strip.reach());
+        let ends = [
+            [cell == 0 && first == 0.0, cell + 1 == strip.cells() && last == 1.0],
+            [from == reach[0], to == reach[1]],
+        ];
+        [(4, 1), (1, 4)].into_iter().zip(ends).all(|((step, other), [at_first, at_last])| {
+            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+            for (line, k) in (0..4).flat_map(|line| (0..3).map(move |k| (line, k))) {
+                let at = other * line + step * k;
+                let v = [0, 1, 2].map(|axis| self.points[at + step][axis] - self.points[at][axis]);
+                let [a, b] = [product(across, [v[0]; 2]), product(along, [v[1]; 2])];
+                (low, high) = (low.min(a[0] + b[0] - v[2]), high.max(a[1] + b[1] - v[2]));
+            }
+            !(low > LEVEL && !at_first || high < -LEVEL && !at_last)
+        })
     }
 
     /// Returns a lower bound of the vertical gap between the part and what is revolved of a part of the wheel's profile \[mm\]; infinite

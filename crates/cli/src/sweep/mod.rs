@@ -13,7 +13,8 @@ use std::sync::Arc;
 use super::output::{PictureFormat, refuse_taken};
 use super::progress::Progress;
 use crate::answer::{Outcome, complain, folder_of, print_to_reader};
-use positions::{lateral_range, read_positions};
+use crate::range::range;
+use positions::read_positions;
 use table::SweepTable;
 use wheelrail::case::{Case, PATCHES_FOLDER, Place, ascending};
 use wheelrail::error::{Error, Result};
@@ -50,8 +51,8 @@ impl SweepArguments {
     /// Returns the positions of the range or the file. Positions of a range have the yaw and roll of `template`.
     fn positions(&self, template: Position) -> Result<Vec<Position>> {
         match (&self.lateral, &self.positions) {
-            (Some(range), None) => {
-                let lateral = lateral_range(range)?.into_iter();
+            (Some(text), None) => {
+                let lateral = range("--lateral", text)?.into_iter();
                 Ok(lateral.map(|lateral| Position { lateral, ..template }).collect())
             }
             (None, Some(file)) => read_positions(file),

@@ -1,71 +1,18 @@
-//! Reads the positions of a sweep, from a range or a table.
+//! Reads the positions of a sweep from a table.
 
 use std::path::Path;
 
+use crate::range::{FARTHEST, MOST_POSITIONS, check_count};
 use wheelrail::error::{Error, Result, finite};
 use wheelrail::files::read_text;
 use wheelrail::scene::perhaps;
 use wheelrail::search::{Position, Roll};
 
-/// Most positions of one sweep. They and their results take a GiB.
-const MOST_POSITIONS: usize = 10_000_000;
-
 /// Largest table of positions \[bytes\]: a hundred bytes for each position.
 const LARGEST_TABLE: usize = 100 * MOST_POSITIONS;
 
-/// Largest displacement \[mm\]. It is far beyond any track, and its sums do not overflow.
-const FARTHEST: f64 = 1e9;
-
 /// Columns of a table of positions. The first is required.
 const COLUMNS: [&str; 3] = ["lateral_mm", "yaw_rad", "roll_rad"];
-
-/// Most decimals with which a number is treated as a decimal one. Doubles of a millimetre and more have no more digits.
-const MOST_DECIMALS: i32 = 15;
-
-/// Reads FROM:TO:STEP, both ends included. Each position is the double nearest to its decimal number, so that it is printed
-/// as that number.
-pub(super) fn lateral_range(text: &str) -> Result<Vec<f64>> {
-    let bad = || {
-        let expected = format!("FROM:TO:STEP in mm with FROM <= TO within ±{FARTHEST:e} and STEP > 0");
-        Error::new("--lateral", text, expected, "for example --lateral -8:8:0.1")
-    };
-    let parts = text.split(':').map(|part| part.trim().parse().ok()).collect::<Option<Vec<f64>>>();
-    let Some([from, to, step]) = parts.and_then(|parts| <[f64; 3]>::try_from(parts).ok()) else {
-        return Err(bad());
-    };
-    if !(-FARTHEST <= from && from <= to && to <= FARTHEST && step.is_finite() && step > 0.0) {
-        return Err(bad());
-    }
-    // A last step that ends within a millionth of TO ends at TO.
-    let steps = ((to - from) / step + 1e-6).floor();
-    check_count("--lateral", steps + 1.0)?;
-    let at = positions_of(from, step, to);
-    Ok((0..=steps as usize).map(|k| at(k as f64).min(to)).collect())
-}
-
-/// Returns the function k ↦ from + k·step. If both are decimal numbers, it is one division of whole numbers, so that no
-/// rounding shows. If they have too many digits, it is the rounded sum.
-fn positions_of(from: f64, step: f64, to: f64) -> impl Fn(f64) -> f64 {
-    /// Whole numbers below this are exact doubles.
-    const EXACT: f64 = 9_007_199_254_740_992.0;
-    let decimal = |scale: f64| {
-        let small = [from, step, to].iter().all(|v| (v * scale).abs() < EXACT);
-        small && [from, step].iter().all(|v| (v * scale).round() / scale == *v)
-    };
-    let scale = (0..=MOST_DECIMALS).map(|decimals| 10f64.powi(decimals)).find(|&scale| decimal(scale));
-    move |k| match scale {
-        Some(scale) => ((from * scale).round() + k * (step * scale).round()) / scale,
-        None => from + step * k,
-    }
-}
-
-fn check_count(place: &str, count: f64) -> Result<()> {
-    if count <= MOST_POSITIONS as f64 {
-        return Ok(());
-    }
-    let expected = format!("at most {MOST_POSITIONS} positions");
-    Err(Error::new(place, format!("{count:e} positions"), expected, "take a larger step, or several sweeps"))
-}
 
 /// Reads a table with the column `lateral_mm` and optionally `yaw_rad` and `roll_rad`. A missing yaw is 0; a missing roll
 /// is solved. Columns are separated as in files of measured points: by semicolons or tabs if the first line has any, and
@@ -154,47 +101,6 @@ fn columns(place: &str, headers: &csv::StringRecord) -> Result<[Option<usize>; 3
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn positions_are_printed_as_they_were_asked_for() -> Result<()> {
-        let printed = |range: &str| -> Result<Vec<String>> {
-            Ok(lateral_range(range)?.iter().map(f64::to_string).collect())
-        };
-        assert_eq!(printed("0:1:0.3")?, ["0", "0.3", "0.6", "0.9"]);
-        assert_eq!(printed("1e-3:0.004:1e-3")?, ["0.001", "0.002", "0.003", "0.004"]);
-        assert_eq!(printed("-0.1:0.2:0.1")?, ["-0.1", "0", "0.1", "0.2"]);
-        assert_eq!(printed("0.25:0.25:7")?, ["0.25"]);
-        for range in ["-6:6:0.01", "-8:8:0.1", "-0.7:0.7:0.007"] {
-            let all = lateral_range(range)?;
-            assert!(all.iter().zip(all.iter().rev()).all(|(a, b)| *a == -b), "{range}");
-            assert!(all.iter().all(|v| v.to_string().len() <= 6), "{range}: {all:?}");
-        }
-        // A third has too many decimals. The range ends at TO all the same.
-        let third = lateral_range("0:1:0.33333333333333333")?;
-        assert!(third.len() == 4 && third[3] == 1.0 && (third[2] - 2.0 / 3.0).abs() < 1e-15, "{third:?}");
-        Ok(())
-    }
-
-    #[test]
-    fn too_many_positions_and_bad_ranges_are_errors() {
-        for bad in ["0:1:1e-9", "0:1:1e-300"] {
-            assert!(lateral_range(bad).is_err_and(|e| e.expected == "at most 10000000 positions"), "{bad}");
-        }
-        for bad in [
-            "",
-            "0:1",
-            "0:1e10:1e9",
-            "0:1:0",
-            "1:0:1",
-            "0:1:x:0.5",
-            "nan:1:1",
-            "0:inf:1",
-            "0:1:inf",
-            "0:1:0.5:2",
-        ] {
-            assert!(lateral_range(bad).is_err_and(|e| e.expected.starts_with("FROM:TO:STEP")), "{bad}");
-        }
-    }
 
     #[test]
     fn tables_are_read_as_their_columns_say() -> Result<()> {
