@@ -26,22 +26,42 @@ pub fn append_stop(out: &mut String, stop: &Stop, columns: &mut Columns) {
     }
 }
 
-/// First line of the table of events.
-pub const EVENTS_HEAD: &str = "along_mm,side,event,rail_x_before_mm,rail_x_after_mm,wheel_x_before_mm,wheel_x_after_mm,\
-     y_before_mm,y_after_mm,radius_jump_mm,slope_before,slope_after,impact_angle_rad,gap_mm\n";
+/// Names of an event's numbers, in the order of [`event_numbers`].
+pub const EVENT_NUMBERS: [&str; 11] = [
+    "rail_x_before_mm",
+    "rail_x_after_mm",
+    "wheel_x_before_mm",
+    "wheel_x_after_mm",
+    "y_before_mm",
+    "y_after_mm",
+    "radius_jump_mm",
+    "slope_before",
+    "slope_after",
+    "impact_angle_rad",
+    "gap_mm",
+];
 
-/// Appends the row of an event to the text of the table.
+/// Gives the numbers of an event; NaN where there is no contact, or no second place.
+pub fn event_numbers(event: &Event) -> [f64; EVENT_NUMBERS.len()] {
+    let both = |of: fn(&Contact) -> f64| {
+        [event.before, event.after].map(|contact| contact.as_ref().map_or(f64::NAN, of))
+    };
+    let [rail, wheel, y] = [both(|c| c.rail_x), both(|c| c.wheel_x), both(|c| c.y)];
+    let slope = both(Contact::slope_along);
+    let (jump, impact, gap) = (event.radius_jump(), event.impact_angle(), event.gap.unwrap_or(f64::NAN));
+    [rail[0], rail[1], wheel[0], wheel[1], y[0], y[1], jump, slope[0], slope[1], impact, gap]
+}
+
+/// First line of the table of events.
+pub fn events_head() -> String {
+    format!("along_mm,side,event,{}\n", EVENT_NUMBERS.join(","))
+}
+
+/// Appends the row of an event to the text of the table; cells without a number are empty.
 pub fn append_event(out: &mut String, event: &Event) {
-    let of: [fn(&Contact) -> f64; 4] =
-        [|c| c.rail_x, |c| c.wheel_x, |c| c.y, Contact::slope_along];
-    let pairs = of.map(|of| [event.before, event.after].map(|contact| contact.as_ref().map_or(f64::NAN, of)));
-    let [rail, wheel, y, slope] = pairs;
-    let numbers = [rail, wheel, y].into_iter().flatten();
-    let numbers = numbers.chain([event.radius_jump()]).chain(slope);
-    let numbers = numbers.chain([event.impact_angle(), event.gap.unwrap_or(f64::NAN)]);
     // Writing to a String cannot fail.
     let _ = write!(out, "{},{},{}", event.along, event.side, event.kind.name());
-    for number in numbers {
+    for number in event_numbers(event) {
         let _ = if number.is_nan() { write!(out, ",") } else { write!(out, ",{number}") };
     }
     out.push('\n');
@@ -49,7 +69,7 @@ pub fn append_event(out: &mut String, event: &Event) {
 
 /// Quantities of each side's lowest contact that the picture shows: heading, axis with unit, column, factor.
 const SHOWN: [(&str, &str, &str, f64); 6] = [
-    ("Height of the wheelset's centre", "z [mm]", "z_mm", 1.0),
+    ("Height of the centre", "z [mm]", "z_mm", 1.0),
     ("Rolling radius", "r [mm]", "rolling_radius_mm", 1.0),
     ("Contact on the rail", "x on the rail [mm]", "rail_x_mm", 1.0),
     ("Contact on the wheel", "x on the wheel [mm]", "wheel_x_mm", 1.0),

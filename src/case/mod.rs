@@ -56,7 +56,9 @@ pub use input::{
 };
 pub use joined::joined_pair;
 pub use landmarks::{Landmarks, SideLandmarks};
-pub use march::{EVENTS_HEAD, append_event, append_stop, march_curves, march_head};
+pub use march::{
+    EVENT_NUMBERS, append_event, append_stop, event_numbers, events_head, march_curves, march_head,
+};
 pub use places::{approach_under_load, contacts, find};
 pub use pressure::PartPressure;
 pub use profile_view::{about_profile, profile_picture};

@@ -56,7 +56,10 @@ impl Bicubic<'_> {
             [0, 1].map(|axis| {
                 let corner = |a: usize, b: usize, k: usize| self.corners[a][b][k][axis];
                 let column = |b: usize, k: usize| {
-                    u[0] * corner(0, b, k) + u[1] * corner(0, b, k + 1) + u[2] * corner(1, b, k) + u[3] * corner(1, b, k + 1)
+                    u[0] * corner(0, b, k)
+                        + u[1] * corner(0, b, k + 1)
+                        + u[2] * corner(1, b, k)
+                        + u[3] * corner(1, b, k + 1)
                 };
                 v[0] * column(0, 0) + v[1] * column(0, 2) + v[2] * column(1, 0) + v[3] * column(1, 2)
             })

@@ -140,7 +140,12 @@ fn check(slices: &[Slice]) -> Result<()> {
         let [own, other] = [&pair[1], &pair[0]].map(|slice| slice.features.len());
         if own != other {
             let (found, expected) = (format!("{own} features"), format!("{other}, as the slice before has"));
-            return Err(Error::new(&pair[1].name, found, expected, "write −1 for what a slice does not have"));
+            return Err(Error::new(
+                &pair[1].name,
+                found,
+                expected,
+                "write −1 for what a slice does not have",
+            ));
         }
     }
     Ok(())
@@ -202,7 +207,8 @@ fn runs(slices: &[Slice], divided: &[Divided]) -> (Vec<(usize, Range<usize>)>, V
 fn jump(slices: [&Slice; 2], divided: [&Divided; 2]) -> Option<String> {
     let [a, b] = divided.map(|slice| slice.marks.as_slice());
     let ends = [a.first()?, a.last()?].into_iter().zip([b.first()?, b.last()?]);
-    let moved = ends.map(|(a, b)| (b.station.x - a.station.x).hypot(b.station.z - a.station.z)).fold(0.0, f64::max);
+    let moved =
+        ends.map(|(a, b)| (b.station.x - a.station.x).hypot(b.station.z - a.station.z)).fold(0.0, f64::max);
     let [own, other] = [a.last()?.s, b.last()?.s];
     let shorter = own.min(other);
     let how = if (own - other).abs() > JUMP_OF_LENGTH * shorter {
@@ -212,7 +218,7 @@ fn jump(slices: [&Slice; 2], divided: [&Divided; 2]) -> Option<String> {
     } else {
         return None;
     };
-    let [from, to] = slices.map(|slice| format!("{} at {} mm", slice.name, slice.at));
+    let [from, to] = slices.map(|slice| format!("{} at {:.2} mm", slice.name, slice.at));
     Some(format!("no surface between {from} and {to}: {how}, and the list gives no features"))
 }
 

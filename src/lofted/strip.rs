@@ -38,7 +38,8 @@ impl Strip {
     /// Joins the points \[x, z\] of two slices or more, the same number at ascending places `at` \[mm\].
     pub(super) fn new(part: usize, at: Vec<f64>, points: &[Vec<[f64; 2]>], joining: Joining) -> Self {
         let nodes = points[0].len();
-        let mut corners: Vec<Corner> = points.iter().flatten().map(|at| [*at, [0.0; 2], [0.0; 2], [0.0; 2]]).collect();
+        let mut corners: Vec<Corner> =
+            points.iter().flatten().map(|at| [*at, [0.0; 2], [0.0; 2], [0.0; 2]]).collect();
         for node in 0..nodes {
             for axis in 0..2 {
                 let values: Vec<f64> = points.iter().map(|slice| slice[node][axis]).collect();

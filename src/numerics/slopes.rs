@@ -13,8 +13,10 @@ pub fn monotone(at: &[f64], values: &[f64]) -> Vec<f64> {
         if a * b <= 0.0 { 0.0 } else { 3.0 * (h + g) / ((2.0 * g + h) / a + (g + 2.0 * h) / b) }
     });
     let n = rises.len();
-    let ends =
-        [end([steps[0], steps[1]], [first, rises[1]]), end([steps[n - 1], steps[n - 2]], [last, rises[n - 2]])];
+    let ends = [
+        end([steps[0], steps[1]], [first, rises[1]]),
+        end([steps[n - 1], steps[n - 2]], [last, rises[n - 2]]),
+    ];
     [ends[0]].into_iter().chain(inner).chain([ends[1]]).collect()
 }
 

@@ -41,7 +41,8 @@ pub fn march(scene: &Scene, folder: &Path) -> Result<(March, Vec<String>)> {
         let of = |body: &'static str, own: Option<&'_ ProfileData>| {
             if own.is_some() { format!("{name}: {body}") } else { body.to_owned() }
         };
-        let [rail, wheel] = [own.and_then(|side| side.rail.as_ref()), own.and_then(|side| side.wheel.as_ref())];
+        let [rail, wheel] =
+            [own.and_then(|side| side.rail.as_ref()), own.and_then(|side| side.wheel.as_ref())];
         let places = [of("rail", rail), of("wheel", wheel)];
         let data = [rail.unwrap_or(&scene.rail), wheel.unwrap_or(&scene.wheel)];
         let given = Given::new();
@@ -51,7 +52,12 @@ pub fn march(scene: &Scene, folder: &Path) -> Result<(March, Vec<String>)> {
         let moved = |track: Track| track.moved(sign * deviation.lateral, deviation.vertical);
         if deviation.roll != 0.0 {
             let expected = "lateral and vertical deviations of rails that are marched along";
-            return Err(Error::new(format!("{name}: deviation: roll"), "a roll", expected, "turn the profile by `rotate`"));
+            return Err(Error::new(
+                format!("{name}: deviation: roll"),
+                "a roll",
+                expected,
+                "turn the profile by `rotate`",
+            ));
         }
         let axle = Wheelset::new(wheels, radius)?;
         let Some(list) = list_of(data[0]) else {
@@ -107,8 +113,11 @@ fn list_of(data: &ProfileData) -> Option<&PathBuf> {
     data.file.as_ref().filter(listed).filter(|_| data.along.is_none())
 }
 
-/// Reads the slices of a list and joins them.
-fn loft(data: &ProfileData, path: &Path) -> Result<Loft> {
+/// Reads the slices of a list, which are relative to it, and joins them as a rail's keys say.
+///
+/// # Errors
+/// An unreadable file; whatever is wrong with the list, a slice, or the surface.
+pub fn loft(data: &ProfileData, path: &Path) -> Result<Loft> {
     let place = path.display().to_string();
     let bytes = read_bytes(path, measured::LARGEST_FILE)?;
     let list = SliceList::read(&bytes, Side::Rail).map_err(|error| error.within(&place))?;
@@ -120,17 +129,23 @@ fn loft(data: &ProfileData, path: &Path) -> Result<Loft> {
     let curves = curves.collect::<Result<Vec<_>>>().map_err(|error| error.within(&place))?;
     if let Some(k) = (1..curves.len()).find(|&k| curves[k].scale != curves[0].scale) {
         let names = [0, k].map(|k| list.slices[k].file.as_str());
-        let found = format!("scales {:?} of {} and {:?} of {}", curves[0].scale, names[0], curves[k].scale, names[1]);
+        let found =
+            format!("scales {:?} of {} and {:?} of {}", curves[0].scale, names[0], curves[k].scale, names[1]);
         let error = Error::new("mirror", found, "slices turned alike", "give `mirror`, `flip_z` and `unit`");
         return Err(error.within(&place));
     }
-    let slices: Vec<Slice> = list.slices.into_iter().zip(curves).map(|(slice, curve)| Slice {
-        at: slice.at,
-        name: slice.file,
-        profile: curve.profile,
-        features: slice.features,
-        measured_along: curve.polygon,
-    }).collect();
+    let slices: Vec<Slice> = list
+        .slices
+        .into_iter()
+        .zip(curves)
+        .map(|(slice, curve)| Slice {
+            at: slice.at,
+            name: slice.file,
+            profile: curve.profile,
+            features: slice.features,
+            measured_along: curve.polygon,
+        })
+        .collect();
     Loft::new(&slices, data.surface.unwrap_or_default()).map_err(|error| error.within(&place))
 }
 

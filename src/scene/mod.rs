@@ -21,7 +21,7 @@ pub use data::{
     AxisData, ContactData, GridData, MaterialData, OutputData, PatchData, RollData, RollWord, Scene, Spacing,
     TrackData, WheelsetData, schema,
 };
-pub use march::march;
+pub use march::{loft, march};
 pub use motion_data::{FrictionData, MotionData, PitchData, PitchWord};
 pub use profile_data::{ProfileData, Rotation};
 pub use profiles::{

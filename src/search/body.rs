@@ -6,9 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use super::bounds::{Bounds, Reach};
 use super::element::{ArcElement, Element, ElementCurve, Stretch};
 use crate::numerics::polynomial::bernstein;
-use crate::profile::{
-    Branch, BranchPoint, BranchShape, ONE_JOINT, PolynomialBranch, Section, Side, Station,
-};
+use crate::profile::{Branch, BranchPoint, BranchShape, ONE_JOINT, PolynomialBranch, Section, Side, Station};
 
 /// Most halvings of a stretch of a polynomial: 2⁻¹⁰ of a zone of 60 mm is 0.06 mm.
 const DEEPEST_CUT: u32 = 10;

@@ -162,7 +162,8 @@ impl March {
             let stops = block.par_iter().map_init(|| self.begin(), |sweep, &at| self.stop(sweep, at));
             let stops = stops.collect::<Result<Vec<_>>>()?;
             let before = last.iter().chain(&stops);
-            let pairs: Vec<(&Stop, &Stop)> = before.zip(stops.iter().skip(usize::from(last.is_none()))).collect();
+            let pairs: Vec<(&Stop, &Stop)> =
+                before.zip(stops.iter().skip(usize::from(last.is_none()))).collect();
             let between = pairs.into_par_iter().map_init(
                 || self.begin(),
                 |sweep, (a, b)| {

@@ -49,6 +49,11 @@ impl SideSearch<'_> {
         }
     }
 
+    /// Tells whether the last search ended without an answer.
+    pub fn gave_up(&self) -> bool {
+        matches!(self, Self::Lofted(search) if search.gave_up)
+    }
+
     pub fn lower(&mut self, attitude: &Attitude, within: f64) -> Option<Candidate> {
         match self {
             Self::Swept(search) => search.lower(attitude, within),

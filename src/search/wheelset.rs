@@ -14,7 +14,7 @@ use super::lofted::LoftedPair;
 use super::over_rail::Work;
 use super::side::{SidePair, SideSearch};
 use super::touch::{ProfilePair, Selection, Touch, small_angle, wheel_rotation};
-use crate::error::{Result, finite};
+use crate::error::{Error, Result, finite};
 use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
 
 /// How the roll of a wheelset is found.
@@ -262,7 +262,7 @@ impl WheelsetSearch<'_> {
     /// steeper than 73°; never more than 64 times.
     ///
     /// # Errors
-    /// Values that are not finite; angles beyond ±0.5 rad.
+    /// Values that are not finite; angles beyond ±0.5 rad; a rail that varies and follows the wheel's shape all over.
     pub fn touch(&mut self, position: &Position, selection: &Selection) -> Result<Option<WheelsetTouch<'_>>> {
         finite("wheelset: lateral", position.lateral)?;
         small_angle("wheelset: yaw", position.yaw)?;
@@ -276,6 +276,11 @@ impl WheelsetSearch<'_> {
                 level => level,
             },
         };
+        if self.sides.iter().any(SideSearch::gave_up) {
+            let expected = "slices over which a wheel touches at places, not all over";
+            let advice = "look at the slices nearby, or lower `within`";
+            return Err(Error::new("rail", "a surface too close to the wheel's", expected, advice));
+        }
         let Some(Lowered { roll, z, heights, attitudes, .. }) = level else { return Ok(None) };
         let [left, right] = &mut self.sides;
         let sides = [

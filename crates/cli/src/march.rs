@@ -7,7 +7,7 @@ use super::progress::Progress;
 use super::range::range;
 use crate::answer::{Outcome, complain, counted, folder_of, print_to_reader};
 use wheelrail::case::{
-    Columns, DoubtSet, EVENTS_HEAD, MOST_DRAWN, append_event, append_stop, march_curves, march_head,
+    Columns, DoubtSet, MOST_DRAWN, append_event, append_stop, events_head, march_curves, march_head,
 };
 use wheelrail::error::Result;
 use wheelrail::files::NewFile;
@@ -47,7 +47,9 @@ impl MarchOutputs {
         let format = picture.map(|file| PictureFormat::of_file("--picture", file)).transpose()?;
         let folder = folder_of(&arguments.scene);
         let mut taken = vec![arguments.scene.clone()];
-        taken.extend(scene.profiles().filter_map(|profile| profile.file.as_ref()).map(|file| folder.join(file)));
+        taken.extend(
+            scene.profiles().filter_map(|profile| profile.file.as_ref()).map(|file| folder.join(file)),
+        );
         let files =
             [("--out", &arguments.out), ("--events", &arguments.events), ("--picture", &arguments.picture)];
         for (option, file) in files {
@@ -84,7 +86,8 @@ pub(super) fn march(arguments: &MarchArguments) -> Result<Outcome> {
     let scene = scene::load(path)?;
     let along = range("--along", &arguments.along)?;
     let mut outputs = MarchOutputs::create(arguments, &scene)?;
-    let (march, warnings) = scene::march(&scene, folder_of(path)).map_err(|error| error.within(path.display()))?;
+    let (march, warnings) =
+        scene::march(&scene, folder_of(path)).map_err(|error| error.within(path.display()))?;
     for warning in warnings.into_iter().chain(unused(&scene)) {
         complain(&format!("warning: {warning}"));
     }
@@ -93,7 +96,7 @@ pub(super) fn march(arguments: &MarchArguments) -> Result<Outcome> {
         (Columns::default(), Columns::default(), 0_usize, 0);
     outputs.put(&march_head())?;
     if let Some(file) = &mut outputs.events {
-        file.put(EVENTS_HEAD.as_bytes())?;
+        file.put(events_head().as_bytes())?;
     }
     progress.at(format!("0 of {} places", along.len()));
     march.blocks(&along, |stops: &[Stop], events: &[Event]| {
@@ -117,7 +120,10 @@ pub(super) fn march(arguments: &MarchArguments) -> Result<Outcome> {
         progress.at("picture");
         let places: Vec<f64> = along.iter().copied().step_by(stride).collect();
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        let about = format!("{}; lowest contact of each side, in its own profile axes", counted(along.len(), "place"));
+        let about = format!(
+            "{}; lowest contact of each side, in its own profile axes",
+            counted(along.len(), "place")
+        );
         let picture = march_curves(&drawn, &places, scene.title.as_deref().unwrap_or(&name), &about)?;
         file.put(&format.bytes(picture.svg())?)?;
     }

@@ -83,7 +83,10 @@ mod tests {
     #[test]
     fn too_many_positions_and_bad_ranges_are_errors() {
         for bad in ["0:1:1e-9", "0:1:1e-300"] {
-            assert!(range("--lateral", bad).is_err_and(|e| e.expected == "at most 10000000 positions"), "{bad}");
+            assert!(
+                range("--lateral", bad).is_err_and(|e| e.expected == "at most 10000000 positions"),
+                "{bad}"
+            );
         }
         for bad in [
             "",

@@ -84,7 +84,7 @@ fn listed(positions: &Positions, watch: &Watch) -> wheelrail::Result<Vec<Positio
 }
 
 /// Gives the columns as NumPy arrays, which take over their memory.
-fn arrays_of(py: Python<'_>, columns: Columns) -> PyResult<Bound<'_, PyDict>> {
+pub(crate) fn arrays_of(py: Python<'_>, columns: Columns) -> PyResult<Bound<'_, PyDict>> {
     let arrays = PyDict::new(py);
     for (name, array) in columns.into_arrays() {
         match array {

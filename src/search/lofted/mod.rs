@@ -56,6 +56,8 @@ pub(super) struct LoftedSearch<'a> {
     queue: BinaryHeap<Open>,
     found: Vec<Found>,
     contacts: Vec<Contact>,
+    /// Whether the last search had too many parts to look at.
+    pub gave_up: bool,
     pub work: Work,
 }
 
@@ -126,6 +128,7 @@ impl LoftedPair {
             queue: BinaryHeap::new(),
             found: Vec::new(),
             contacts: Vec::new(),
+            gave_up: false,
             work: Work::default(),
         }
     }
@@ -140,13 +143,18 @@ impl LoftedSearch<'_> {
         self.parts.clear();
         self.queue.clear();
         self.found.clear();
+        self.gave_up = false;
         self.work.searches += 1;
         let mut lowest = f64::INFINITY;
         self.open(&wheel, &mut lowest, within);
         let start = self.work.pairs;
         while let Some(Open { bound, part, node }) = self.queue.pop() {
-            if bound > lowest + within || self.work.pairs - start > MOST_LOOKED_AT {
+            if bound > lowest + within {
                 break;
+            }
+            if self.work.pairs - start > MOST_LOOKED_AT {
+                self.gave_up = true;
+                return None;
             }
             let own = self.parts[part];
             let of = &pair.wheel.nodes[node];
@@ -234,8 +242,9 @@ impl LoftedSearch<'_> {
             return;
         }
         *lowest = lowest.min(settled.wheel.gap);
-        let known =
-            |found: &Found| found.strip == part.strip && apart(found.settled.place, settled.place) <= ONE_PLACE;
+        let known = |found: &Found| {
+            found.strip == part.strip && apart(found.settled.place, settled.place) <= ONE_PLACE
+        };
         if !self.found.iter().any(known) {
             self.found.push(Found { strip: part.strip, settled });
         }

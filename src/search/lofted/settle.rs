@@ -78,7 +78,8 @@ impl Gap<'_> {
         for _ in 0..STEPS {
             let (gradient, bends) = self.derivatives(&rail, &wheel);
             let held = [0, 1].map(|k| {
-                (place[k] <= ends[k][0] && gradient[k] >= 0.0) || (place[k] >= ends[k][1] && gradient[k] <= 0.0)
+                (place[k] <= ends[k][0] && gradient[k] >= 0.0)
+                    || (place[k] >= ends[k][1] && gradient[k] <= 0.0)
             });
             let step = descent(gradient, bends, held);
             let found = |at_kink| Settled { place, rail, wheel, at_end: held, kink: at_kink };
@@ -97,7 +98,9 @@ impl Gap<'_> {
                 }
                 None
             };
-            let slid = || lower(self.slide(&rail, gradient, bends)).filter(|(next, ..)| apart(*next, place) > FOUND[1]);
+            let slid = || {
+                lower(self.slide(&rail, gradient, bends)).filter(|(next, ..)| apart(*next, place) > FOUND[1])
+            };
             match lower(step).or_else(slid) {
                 Some(next) => (place, rail, wheel) = next,
                 None => return Some(found(true)),

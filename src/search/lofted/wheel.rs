@@ -56,7 +56,11 @@ impl<'a> WheelAbove<'a> {
     pub fn turned_back(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let a = self.attitude;
         let across = x * a.cos_yaw - y * a.sin_yaw;
-        [across * a.cos_roll + z * a.sin_roll, x * a.sin_yaw + y * a.cos_yaw, z * a.cos_roll - across * a.sin_roll]
+        [
+            across * a.cos_roll + z * a.sin_roll,
+            x * a.sin_yaw + y * a.cos_yaw,
+            z * a.cos_roll - across * a.sin_roll,
+        ]
     }
 
     /// Takes a point of the rail's axes, y from the middle of the axle, into the wheel's \[mm\].

@@ -18,6 +18,7 @@ mod conformal_table;
 mod doubts_cli;
 mod hostile;
 mod load_table;
+mod march_cli;
 mod pages;
 mod profile_cli;
 mod programs;

@@ -1,0 +1,141 @@
+//! `wheelrail march` through the binary: its tables, its picture, and what bad calls get.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use tempfile::TempDir;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn march(folder: &Path, arguments: &[&str]) -> Output {
+    let scene = root().join("examples/crossing/crossing.toml");
+    let binary = env!("CARGO_BIN_EXE_wheelrail");
+    Command::new(binary).current_dir(folder).arg("march").arg(scene).args(arguments).output().unwrap()
+}
+
+fn complaint(folder: &Path, text: &str, arguments: &[&str]) -> String {
+    std::fs::write(folder.join("scene.toml"), text).unwrap();
+    let binary = env!("CARGO_BIN_EXE_wheelrail");
+    let output = Command::new(binary)
+        .current_dir(folder)
+        .args(["march", "scene.toml"])
+        .args(arguments)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2), "{text}: {output:?}");
+    assert!(output.stdout.is_empty(), "{text}: {output:?}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+#[test]
+fn a_march_has_a_row_for_each_place_and_its_events() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    let output = march(here, &["--along", "-100:300:10", "--events", "events.csv", "--threads", "1"]);
+    assert!(output.status.success(), "{output:?}");
+    let table = String::from_utf8(output.stdout).unwrap();
+    let head = table.lines().next().unwrap();
+    assert!(head.starts_with("along_mm,lateral_mm,yaw_rad,roll_rad,side,contact,z_mm,rail_x_mm,"), "{head}");
+    assert!(head.ends_with(",doubt,contact_pitch_rad"), "{head}");
+    let rows: Vec<Vec<&str>> = table.lines().skip(1).map(|row| row.split(',').collect()).collect();
+    assert!(rows.iter().all(|row| row.len() == head.split(',').count()), "{table}");
+    let lowest = |side: &str| rows.iter().filter(|row| row[4] == side && row[5] == "1").count();
+    assert_eq!([lowest("left"), lowest("right")], [41, 41]);
+    let events = std::fs::read_to_string(here.join("events.csv")).unwrap();
+    let over: Vec<Vec<&str>> = events
+        .lines()
+        .map(|row| row.split(',').collect::<Vec<_>>())
+        .filter(|row| row[2] == "transfer" && row[9].parse::<f64>().unwrap() > 1.0)
+        .collect();
+    let [over] = over.as_slice() else { panic!("{events}") };
+    let [before, after, impact] = [3, 4, 12].map(|k| over[k].parse::<f64>().unwrap());
+    assert!(over[1] == "right" && before > 40.0 && after < -20.0 && impact > 0.05, "{over:?}");
+    // Any number of threads gives the same bits.
+    let other = march(here, &["--along", "-100:300:10", "--threads", "2"]);
+    assert_eq!(String::from_utf8(other.stdout).unwrap(), table);
+}
+
+#[test]
+fn the_picture_of_the_manual_is_what_the_command_draws() {
+    let folder = TempDir::new().unwrap();
+    let output =
+        march(folder.path(), &["--along", "-100:300:2", "--out", "march.csv", "--picture", "march.svg"]);
+    assert!(output.status.success() && output.stdout.is_empty(), "{output:?}");
+    let [drawn, kept] = [folder.path().join("march.svg"), root().join("src/docs/along_track.svg")]
+        .map(|path| std::fs::read_to_string(path).unwrap());
+    // Digits of machines may differ; headings, axes and the number of curves do not.
+    let words = |text: &str| -> Vec<String> {
+        text.split('<').filter(|part| part.starts_with("text")).map(Into::into).collect()
+    };
+    assert_eq!(words(&drawn), words(&kept));
+    assert_eq!(drawn.matches("<p").count(), kept.matches("<p").count());
+}
+
+#[test]
+fn bad_calls_name_the_key_and_leave_nothing() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    let list = root().join("examples/crossing/crossing.slcs").display().to_string();
+    let rest = "[wheel]\nprofile = \"S1002\"\nradius = 460.0\n[wheelset]\nspacing = 1500.0\n";
+    let lofted = format!("[rail]\nfile = {list:?}\n");
+    let spaced = "[track]\nspacing = 1500.0\n";
+    let range = &["--along", "0:10:5"][..];
+    for (text, arguments, message) in [
+        (
+            format!("{lofted}{rest}[track]\ngauge = 1435.0\n"),
+            range,
+            "track: found a gauge; expected `spacing`",
+        ),
+        (
+            format!("[rail]\nprofile = \"60E1\"\n{rest}{spaced}"),
+            range,
+            "rail: found rails of one profile each",
+        ),
+        (
+            format!("[rail]\nprofile = \"60E1\"\nsurface = \"cubic\"\n{rest}{spaced}"),
+            range,
+            "surface: found an option",
+        ),
+        (
+            format!("{lofted}surface = \"linear\"\n{rest}{spaced}"),
+            range,
+            "found `linear`; expected one of monotone, cubic",
+        ),
+        (format!("{lofted}unit = \"m\"\n{rest}{spaced}"), range, "found `unit`"),
+        (
+            format!("{lofted}{rest}{spaced}"),
+            &["--along", "0:400:10"][..],
+            "along: found 360 mm; expected a place from -150 to 350 mm",
+        ),
+        (
+            format!("{lofted}{rest}{spaced}"),
+            &["--along", "0:x:10"][..],
+            "--along: found 0:x:10; expected FROM:TO:STEP",
+        ),
+        (format!("{lofted}{rest}{spaced}[roller]\nradius = 350.0\n"), range, "roller: found rollers"),
+        (
+            format!("{lofted}{rest}{spaced}[right.deviation]\nroll = 0.01\n"),
+            range,
+            "right: deviation: roll: found a roll",
+        ),
+        (
+            format!("{lofted}[wheel]\nprofile = \"S1002\"\nradius = 460.0\n[contact]\noffset = 0.0\n"),
+            range,
+            "found a single wheel",
+        ),
+    ] {
+        let arguments = [arguments, &["--out", "march.csv"]].concat();
+        let error = complaint(here, &text, &arguments);
+        assert!(error.contains(message), "{error}");
+        assert!(!here.join("march.csv").exists(), "{error}");
+    }
+    // `run` and `sweep` take one section of a list.
+    std::fs::write(here.join("scene.toml"), format!("{lofted}{rest}{spaced}[patch]\napproach = 0.05\n"))
+        .unwrap();
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_wheelrail")).current_dir(here).args(["run", "scene.toml"]).output();
+    let error = String::from_utf8(output.unwrap().stderr).unwrap();
+    assert!(error.contains("along: found no `along` for 14 slices"), "{error}");
+}

@@ -1,0 +1,68 @@
+//! Marches along rails that vary.
+
+use std::path::PathBuf;
+
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use wheelrail::case::{Columns, DoubtSet, EVENT_NUMBERS, event_numbers};
+use wheelrail::scene;
+use wheelrail::search::{Event, Stop};
+
+use crate::arrays::values;
+use crate::errors::say;
+use crate::long::watched;
+use crate::sweep::arrays_of;
+
+/// March a wheelset along rails that vary, with the middle of its axle at ascending places along the track in mm.
+///
+/// `path` is a scene file whose rail is a list of slices, `.slcs`, without `along`. Returns two dicts of arrays: the contacts, with the
+/// columns of a sweep and `along_mm` and `contact_pitch_rad`, and the events, with those of `wheelrail march --events`. `progress` is
+/// called with the places done and all of them.
+///
+/// Raises InputError for anything wrong with the scene, the slices, or places that they do not reach.
+#[pyfunction]
+#[pyo3(signature = (path, along, *, progress = None))]
+pub(crate) fn march<'py>(
+    py: Python<'py>,
+    path: PathBuf,
+    along: &Bound<'py, PyAny>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
+    let along = values("along", along)?;
+    let (places, pitches, columns, events, warnings) = watched(py, progress.as_ref(), |watch| {
+        let scene = scene::load(&path)?;
+        let folder = path.parent().unwrap_or(std::path::Path::new("."));
+        let (march, warnings) = scene::march(&scene, folder)?;
+        let (mut places, mut pitches) = (Vec::new(), Vec::new());
+        let (mut columns, mut events, mut done) = (Columns::default(), Vec::new(), 0);
+        march.blocks(&along, |stops: &[Stop], found: &[Event]| {
+            for stop in stops {
+                for row in &stop.rows {
+                    columns.push(done, row, None, DoubtSet::default());
+                    places.push(stop.along);
+                    pitches.push(0.0 - row.contact.turn);
+                }
+                done += 1;
+            }
+            events.extend_from_slice(found);
+            watch.at(done, along.len());
+            watch.go_on().map(|()| true)
+        })?;
+        Ok((places, pitches, columns, events, warnings))
+    })?;
+    for warning in &warnings {
+        say(py, "rail", warning, "see the list of slices")?;
+    }
+    let rows = arrays_of(py, columns)?;
+    rows.set_item("along_mm", PyArray1::from_vec(py, places))?;
+    rows.set_item("contact_pitch_rad", PyArray1::from_vec(py, pitches))?;
+    let told = PyDict::new(py);
+    told.set_item("along_mm", PyArray1::from_iter(py, events.iter().map(|event| event.along)))?;
+    told.set_item("side", PyList::new(py, events.iter().map(|event| event.side.name()))?)?;
+    told.set_item("event", PyList::new(py, events.iter().map(|event| event.kind.name()))?)?;
+    for (k, name) in EVENT_NUMBERS.into_iter().enumerate() {
+        told.set_item(name, PyArray1::from_iter(py, events.iter().map(|event| event_numbers(event)[k])))?;
+    }
+    Ok((rows, told))
+}
