@@ -20,14 +20,14 @@ pub(super) enum SidePair {
 /// The search over one of them.
 #[derive(Debug, Clone)]
 pub(super) enum SideSearch<'a> {
-    Swept(ContactSearch<'a>),
+    Swept(Box<ContactSearch<'a>>),
     Lofted(LoftedSearch<'a>),
 }
 
 impl SidePair {
     pub fn search(&self) -> SideSearch<'_> {
         match self {
-            Self::Swept(pair) => SideSearch::Swept(pair.search()),
+            Self::Swept(pair) => SideSearch::Swept(Box::new(pair.search())),
             Self::Lofted(pair) => SideSearch::Lofted(pair.search()),
         }
     }

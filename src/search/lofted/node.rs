@@ -180,7 +180,7 @@ impl BoundPart {
                 let [a, b] = [product(across, [v[0]; 2]), product(along, [v[1]; 2])];
                 (low, high) = (low.min(a[0] + b[0] - v[2]), high.max(a[1] + b[1] - v[2]));
             }
-            !(low > LEVEL && !at_first || high < -LEVEL && !at_last)
+            (low <= LEVEL || at_first) && (high >= -LEVEL || at_last)
         })
     }
 
