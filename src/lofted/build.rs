@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::joining::Joining;
 use super::strip::{Interval, Strip};
 use crate::error::{Error, ErrorKind, Result};
-use crate::numerics::slopes;
 use crate::profile::{Mark, Profile, trace};
 
 /// Largest distance of the points across a slice \[mm\]: a spline through points of a 13 mm radius is then off by 20 nm.
@@ -24,27 +24,6 @@ const JUMP_OF_LENGTH: f64 = 0.06;
 
 /// Jump of a slice's end, likewise.
 const JUMP_OF_ENDS: f64 = 0.1;
-
-/// How the points of successive slices are joined along the track.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[cfg_attr(feature = "files", derive(schemars::JsonSchema))]
-#[serde(rename_all = "lowercase")]
-pub enum Joining {
-    /// The monotone cubic (pchip): local, and without overshoot where slices do not correspond.
-    #[default]
-    Monotone,
-    /// The cubic spline without end conditions ("not a knot"), which CONTACT takes.
-    Cubic,
-}
-
-impl Joining {
-    pub(super) fn slopes(self, at: &[f64], values: &[f64]) -> Vec<f64> {
-        match self {
-            Self::Monotone => slopes::monotone(at, values),
-            Self::Cubic => slopes::spline(at, values),
-        }
-    }
-}
 
 /// One slice of a list.
 #[derive(Debug, Clone, PartialEq)]

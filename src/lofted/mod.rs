@@ -13,8 +13,10 @@
 
 mod bicubic;
 mod build;
+mod joining;
 mod strip;
 
 pub use bicubic::{Bicubic, SurfacePoint};
-pub use build::{Joining, Loft, SPACING, Slice};
+pub use build::{Loft, SPACING, Slice};
+pub use joining::Joining;
 pub use strip::{Interval, Strip};

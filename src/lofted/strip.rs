@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::bicubic::{Bicubic, Corner, SurfacePoint};
-use super::build::Joining;
+use super::joining::Joining;
 
 /// A part of the surface without interruption: over u from 0 to [`Strip::cells`], and over y from its first slice to its last.
 #[derive(Debug, Clone)]

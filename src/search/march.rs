@@ -83,14 +83,6 @@ impl EventKind {
     }
 }
 
-impl Contact {
-    /// Slope of the wheel's path along the track where it rolls over this contact: that of the common tangent plane, + up ahead.
-    pub fn slope_along(&self) -> f64 {
-        // 0 without a sign.
-        0.0 - self.turn.tan() / self.contact_angle.cos()
-    }
-}
-
 impl Event {
     /// Change of the rolling radius \[mm\]; NaN without a contact before and after.
     pub fn radius_jump(&self) -> f64 {

@@ -66,8 +66,9 @@ pub struct Contact {
     /// Position along the rail, + forward \[mm\], from the vertical plane across the track through the
     /// wheel's centre: sinψ (x_W − ϱ tanθ_W) on a rail. Behind the centre at a flange when yaw > 0.
     pub y: f64,
-    /// Angle ν \[rad\] about a roller's axle from its crown to the contact, + forward; 0 on a rail. The contact then lies at
-    /// (R + z) sin ν ahead of the crown, with R the roller's radius and z = `rail_z`.
+    /// Angle ν \[rad\] by which the common normal leans forward out of the rail's section; 0 on a rail of one profile. On a roller it is
+    /// the angle about its axle from the crown to the contact, which lies at (R + z) sin ν ahead of the crown, with R the roller's
+    /// radius and z = `rail_z`.
     pub turn: f64,
     /// Contact angle θ_R \[rad\]: tangent angle of the common tangent in the rail's axes, + counter-clockwise
     /// from x to z; on a roller, in its meridian plane through the contact. A flange contact has 1.2.
@@ -266,6 +267,12 @@ impl Contact {
     /// Returns whether one of the bodies touches with a kink, a step or an end.
     pub fn kink(&self) -> bool {
         self.rail_kink || self.wheel_kink
+    }
+
+    /// Slope of the wheel's path along the track where it rolls over this contact: that of the common tangent plane, + up ahead.
+    pub fn slope_along(&self) -> f64 {
+        // 0 without a sign.
+        0.0 - self.turn.tan() / self.contact_angle.cos()
     }
 
     /// Places the searched pair in contact here: contact frame along the common tangent, skew, and all that follows.
