@@ -68,6 +68,7 @@ pub mod export;
 #[cfg(feature = "files")]
 pub mod files;
 pub mod load;
+pub mod measure;
 pub mod measured;
 pub mod mesh;
 mod numerics;

@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 use syn::visit::Visit;
 
 /// Rooms of the library from the bottom up; each may use those before it and itself.
-const ORDER: [&str; 16] = [
+const ORDER: [&str; 17] = [
     "error",
     "numerics",
     "files",
     "profile",
     "measured",
+    "measure",
     "placement",
     "separation",
     "search",

@@ -1,0 +1,278 @@
+//! Puts a measured profile on its nominal one, or finds what its axes are without one.
+
+use serde::Serialize;
+
+use super::curve::Curve;
+use super::fit::{Fit, Fitted};
+use super::options::{Align, Options};
+use crate::profile::{Profile, Side, Station, last_groove, trace};
+
+/// Distance of marks \[mm\] of curves that are fitted.
+const STEP: f64 = 0.25;
+/// Places \[mm\] of a flange's tip right of x = 0 that show that x = 0 is at the flange back: flanges are 20 to 40 mm thick.
+const TIP_FROM_BACK: [f64; 2] = [5.0, 40.0];
+/// Height \[mm\] of the flange back over which its line is fitted, and the least one.
+const BACK_LENGTH: f64 = 10.0;
+const LEAST_BACK: f64 = 5.0;
+/// Sine of the inclination of a back through which a line is fitted, 85°; and of the end of a drawn profile that is its back, 75°.
+const STRAIGHT: f64 = 0.996_194_698_091_745_5;
+const STEEP: f64 = 0.965_925_826_289_068_3;
+/// Sine of 60°.
+const SIXTY: f64 = 0.866_025_403_784_438_6;
+/// Ends \[mm\] of the outer tread, from where the nominal tread ends at its chamfer: 10 mm, as the MiniProf's own alignment has it.
+const OUTER: [f64; 2] = [15.0, 5.0];
+/// Sine of the inclination at which a tread ends, 30°.
+const TREAD_END: f64 = 0.5;
+/// Vertical wear \[mm\] from which the fit of a rail starts, the best start counts.
+const STARTS: [f64; 5] = [0.0, 4.0, 8.0, 12.0, 16.0];
+/// Root mean square \[mm\] above which what was fitted is no unworn part.
+const LARGEST_RESIDUAL: f64 = 0.1;
+
+/// Turn \[deg\] above which an alignment is doubted: rails lie inclined by up to 1:20 and are canted a little, instruments are
+/// put on by less.
+const MOST_TURNED: f64 = 5.0;
+
+/// How a profile was aligned.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Alignment {
+    /// The alignment that was used.
+    pub align: Align,
+    /// The same in words, with what was fitted and moved.
+    pub text: String,
+    /// Root mean square of the distances \[mm\] of what was fitted; `None` if nothing was.
+    pub residual: Option<f64>,
+    /// A doubt about it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub doubt: Option<String>,
+}
+
+/// A measured curve in the axes in which it is measured.
+pub(super) struct Aligned {
+    pub curve: Curve,
+    /// x of the flange back, from which X counts \[mm\]; 0 for rails.
+    pub back: f64,
+    pub alignment: Alignment,
+}
+
+/// A nominal profile with its axes.
+pub(super) struct Nominal<'a> {
+    pub profile: &'a Profile,
+    pub curve: Curve,
+    /// x of its flange back \[mm\]; 0 for rails.
+    pub back: f64,
+}
+
+impl<'a> Nominal<'a> {
+    /// # Errors
+    /// A wheel without a flange back.
+    pub fn new(profile: &'a Profile, side: Side) -> Result<Self, String> {
+        let curve = Curve::new(profile);
+        let back = if side == Side::Wheel { own_back(&curve)?.0 } else { 0.0 };
+        Ok(Self { profile, curve, back })
+    }
+}
+
+/// Aligns a measured profile.
+///
+/// # Errors
+/// What the alignment needs and the profile has not, as text.
+pub(super) fn align(
+    profile: &Profile,
+    side: Side,
+    nominal: Option<&Nominal>,
+    options: &Options,
+) -> Result<Aligned, String> {
+    let curve = Curve::new(profile);
+    let chosen = options.align.or(nominal.map(|_| Align::BestFit));
+    match (side, nominal) {
+        (Side::Rail, None) => Ok(moved(&curve, [0.0; 2], 0.0, Align::None, "the file's axes")),
+        (Side::Wheel, None) => {
+            let (back, how) = match options.align {
+                Some(Align::None) => (0.0, "the file's x = 0".to_owned()),
+                Some(_) => back_of(&curve)?,
+                None => own_back(&curve)?,
+            };
+            let align =
+                if back == 0.0 && options.align != Some(Align::Back) { Align::None } else { Align::Back };
+            Ok(moved(&curve, [0.0; 2], back, align, &format!("X = 0 is {how}")))
+        }
+        (_, Some(nominal)) => {
+            with_nominal(profile, &curve, side, nominal, chosen.unwrap_or(Align::None), options)
+        }
+    }
+}
+
+fn with_nominal(
+    profile: &Profile,
+    curve: &Curve,
+    side: Side,
+    nominal: &Nominal,
+    align: Align,
+    options: &Options,
+) -> Result<Aligned, String> {
+    match (align, side) {
+        (Align::None, Side::Rail) => Ok(moved(curve, [0.0; 2], 0.0, align, "the file's axes")),
+        (Align::None, Side::Wheel) => {
+            let text = "the file's x = 0 is the flange back, its height that of the nominal";
+            Ok(moved(curve, [nominal.back, 0.0], nominal.back, align, text))
+        }
+        (Align::Back, _) => {
+            let (back, how) = back_of(curve)?;
+            let text = format!("X = 0 is {how}; heights are the file's");
+            Ok(moved(curve, [nominal.back - back, 0.0], nominal.back, align, &text))
+        }
+        (Align::TreadPoint, _) => {
+            let (back, how) = back_of(curve)?;
+            let x = nominal.back - back;
+            let tread = super::wheel::tread(curve, back, options)?;
+            let to = super::wheel::tread(&nominal.curve, nominal.back, options)?;
+            let text = format!("X = 0 is {how}; the tread at X = {} is the nominal's", options.tread_at);
+            Ok(moved(curve, [x, to - tread], nominal.back, align, &text))
+        }
+        _ => fitted(profile, curve, side, nominal, align, options),
+    }
+}
+
+/// Moves a curve without turning it.
+fn moved(curve: &Curve, [x, z]: [f64; 2], back: f64, align: Align, text: &str) -> Aligned {
+    let curve = curve.placed(&Station { x, z, ..Station::AXES });
+    Aligned { curve, back, alignment: Alignment { align, text: text.into(), residual: None, doubt: None } }
+}
+
+fn fitted(
+    profile: &Profile,
+    curve: &Curve,
+    side: Side,
+    nominal: &Nominal,
+    align: Align,
+    options: &Options,
+) -> Result<Aligned, String> {
+    let coarse = |profile: &Profile| Curve { marks: trace(profile, STEP) };
+    let (measured, onto) = (coarse(profile), coarse(nominal.profile));
+    let (parts, what) = parts(&onto, side, align, options);
+    let fit = Fit { measured: &measured, nominal: &onto, parts: &parts };
+    let all: Vec<Result<Fitted, String>> =
+        starts(&measured, &onto, side).into_iter().map(|start| fit.of_parts(start)).collect();
+    let best = all.iter().flatten().min_by(|a, b| a.rms.total_cmp(&b.rms)).copied();
+    let none = || all.iter().find_map(|found| found.as_ref().err().cloned()).unwrap_or_default();
+    let of_parts = best.ok_or_else(|| format!("no alignment by {what}: {}", none()))?;
+    let (found, by) = if align == Align::BestFit {
+        let found = fit.of_all(of_parts).map_err(|why| format!("no alignment by all that fits: {why}"))?;
+        (found, format!("all that fits, from {what}"))
+    } else {
+        (of_parts, what)
+    };
+    let Fitted { motion, rms, length } = found;
+    let turn = motion.angle().to_degrees();
+    let off = (of_parts.rms > LARGEST_RESIDUAL).then(|| {
+        format!("alignment by parts that are off the nominal by {:.3} mm, more than {LARGEST_RESIDUAL}: worn, or another nominal", of_parts.rms)
+    });
+    let turned = (turn.abs() > MOST_TURNED).then(|| {
+        format!(
+            "alignment by a turn of {turn:.3} deg, more than {MOST_TURNED}: another nominal, or worn parts"
+        )
+    });
+    let doubt = off.or(turned);
+    let text = format!(
+        "{by}, over {length:.0} mm; moved by ({:.3}, {:.3}) mm, turned by {turn:.3} deg",
+        motion.x, motion.z
+    );
+    let alignment = Alignment { align, text, residual: Some(rms), doubt };
+    Ok(Aligned { curve: curve.placed(&motion), back: nominal.back, alignment })
+}
+
+/// Returns first guesses of the motion: back and tip of a flange, field side and top of a rail are brought to each other.
+fn starts(measured: &Curve, nominal: &Curve, side: Side) -> Vec<Station> {
+    let sign = if side == Side::Rail { 1.0 } else { -1.0 };
+    let ends = |curve: &Curve| {
+        let outer = if side == Side::Rail { curve.width()[1] } else { curve.width()[0] };
+        let best = curve.highest(sign);
+        let back = side == Side::Rail || back_of(curve).is_ok();
+        (best.filter(|_| !back).map_or(outer, |tip| tip.x), best.map_or(0.0, |best| best.z), back)
+    };
+    let ((mut x, z, back), (to_x, to_z, _)) = (ends(measured), ends(nominal));
+    if !back {
+        // Without its back a flange is brought to the other by their tips.
+        x += to_x - nominal.highest(sign).map_or(to_x, |tip| tip.x);
+    }
+    let wear = if side == Side::Rail { STARTS.as_slice() } else { &STARTS[..1] };
+    wear.iter().map(|wear| Station { x: to_x - x, z: to_z - z - wear, ..Station::AXES }).collect()
+}
+
+/// Returns which marks of the nominal are fitted, and their name.
+fn parts(nominal: &Curve, side: Side, align: Align, options: &Options) -> (Vec<bool>, String) {
+    let marks = &nominal.marks;
+    let stations = || marks.iter().map(|mark| mark.station);
+    let [first, last] = nominal.width();
+    match (align, side) {
+        (Align::Unworn, _) => {
+            let inside = |x: f64| options.unworn.iter().any(|[low, high]| (*low..=*high).contains(&x));
+            (stations().map(|at| inside(at.x)).collect(), "the given ranges".into())
+        }
+        (Align::Web, _) => {
+            let before = marks.iter().position(|mark| mark.station.x == first).unwrap_or(0);
+            let after = marks.iter().rposition(|mark| mark.station.x == last).unwrap_or(marks.len());
+            ((0..marks.len()).map(|k| k < before || k > after).collect(), "web and underside".into())
+        }
+        (_, Side::Rail) => {
+            let top = nominal.highest(1.0).map_or(0, |top| top.mark);
+            let steep = stations().enumerate().map(|(k, at)| k > top && at.sin <= -SIXTY && at.cos >= 0.0);
+            (steep.collect(), "the field side from 60°".into())
+        }
+        (_, Side::Wheel) => {
+            let tip = nominal.highest(-1.0).map_or(0, |tip| tip.mark);
+            let flat = |k: usize| k > tip && marks[k].station.sin.abs() <= TREAD_END;
+            let end = (0..marks.len()).rev().find(|&k| flat(k)).map_or(last, |k| marks[k].station.x);
+            let outer = end - OUTER[0]..=end - OUTER[1];
+            let part = |(k, at): (usize, Station)| {
+                if k <= tip { at.sin <= -SIXTY } else { outer.contains(&at.x) && flat(k) }
+            };
+            (stations().enumerate().map(part).collect(), "flange back and outer tread".into())
+        }
+    }
+}
+
+/// Returns x of the flange back in the axes of a file or a drawing: 0 if the flange's tip shows that it is there, otherwise the back
+/// itself; and how it was found.
+fn own_back(curve: &Curve) -> Result<(f64, String), String> {
+    let tip = curve.highest(-1.0).map_or(f64::NAN, |tip| tip.x);
+    if tip > TIP_FROM_BACK[0] && tip < TIP_FROM_BACK[1] {
+        return Ok((0.0, "the file's x = 0".into()));
+    }
+    back_of(curve)
+}
+
+/// Returns x of the flange back: of a line through the lowest 10 mm where it is upright, at their middle; otherwise of the leftmost
+/// point, if the profile is upright there.
+fn back_of(curve: &Curve) -> Result<(f64, String), String> {
+    let none = |why: String| format!("no flange back: {why}");
+    let tip = curve.highest(-1.0).ok_or_else(|| none("no points".into()))?;
+    let back = curve.up_to(tip.mark);
+    let upright: Vec<Station> =
+        back.marks.iter().map(|mark| mark.station).filter(|at| at.sin <= -STRAIGHT).collect();
+    let low = upright.iter().map(|at| at.z).fold(f64::INFINITY, f64::min);
+    let line: Vec<&Station> = upright.iter().filter(|at| at.z <= low + BACK_LENGTH).collect();
+    let height = line.iter().map(|at| at.z - low).fold(0.0, f64::max);
+    if height >= LEAST_BACK {
+        // Marks are at equal distances nearly, so that the mean is the line at its middle.
+        let x = line.iter().map(|at| at.x).sum::<f64>() / line.len() as f64;
+        return Ok((x, format!("the flange back at x = {x:.3}, a line over {height:.1} mm")));
+    }
+    let leftmost = back.marks.iter().map(|mark| mark.station).min_by(|a, b| a.x.total_cmp(&b.x));
+    match leftmost {
+        Some(at) if at.sin <= -STEEP => Ok((at.x, format!("the leftmost point, x = {:.3}", at.x))),
+        Some(at) => Err(none(format!(
+            "the profile begins at x = {:.3} mm, inclined by {:.0}°, less than 75°",
+            at.x,
+            at.angle().to_degrees().abs()
+        ))),
+        None => Err(none("no points".into())),
+    }
+}
+
+/// Returns the running head of a rail: what is right of its last groove.
+pub(super) fn running_head(curve: &Curve) -> (Curve, Option<usize>) {
+    let heights: Vec<f64> = curve.marks.iter().map(|mark| mark.station.z).collect();
+    let groove = last_groove(&heights);
+    (curve.from(groove.unwrap_or(0)), groove)
+}
