@@ -18,6 +18,7 @@ mod conformal_table;
 mod doubts_cli;
 mod hostile;
 mod load_table;
+mod measure_cli;
 mod pages;
 mod profile_cli;
 mod programs;
