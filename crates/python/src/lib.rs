@@ -9,6 +9,7 @@ mod errors;
 mod files;
 mod filling;
 mod long;
+mod measure;
 mod pair;
 mod patch;
 mod place;
@@ -31,6 +32,8 @@ mod _wheelrail {
     use super::case::{Case, run, schema};
     #[pymodule_export]
     use super::contact::{Contact, contact_from_parts, patch_from_parts};
+    #[pymodule_export]
+    use super::measure::measure_profile;
     #[pymodule_export]
     use super::pair::{Pair, pair_from_parts};
     #[pymodule_export]
