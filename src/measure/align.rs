@@ -4,19 +4,12 @@ use serde::Serialize;
 
 use super::curve::Curve;
 use super::fit::{Fit, Fitted};
+use super::nominal::{Nominal, back_of, own_back, sized};
 use super::options::{Align, Options};
-use crate::profile::{Profile, Side, Station, last_groove, trace};
+use crate::profile::{Profile, Side, Station, trace};
 
 /// Distance of marks \[mm\] of curves that are fitted.
 const STEP: f64 = 0.25;
-/// Places \[mm\] of a flange's tip right of x = 0 that show that x = 0 is at the flange back: flanges are 20 to 40 mm thick.
-const TIP_FROM_BACK: [f64; 2] = [5.0, 40.0];
-/// Height \[mm\] of the flange back over which its line is fitted, and the least one.
-const BACK_LENGTH: f64 = 10.0;
-const LEAST_BACK: f64 = 5.0;
-/// Sine of the inclination of a back through which a line is fitted, 85°; and of the end of a drawn profile that is its back, 75°.
-const STRAIGHT: f64 = 0.996_194_698_091_745_5;
-const STEEP: f64 = 0.965_925_826_289_068_3;
 /// Sine of 60°.
 const SIXTY: f64 = 0.866_025_403_784_438_6;
 /// Ends \[mm\] of the outer tread, from where the nominal tread ends at its chamfer: 10 mm, as the MiniProf's own alignment has it.
@@ -25,6 +18,8 @@ const OUTER: [f64; 2] = [15.0, 5.0];
 const TREAD_END: f64 = 0.5;
 /// Vertical wear \[mm\] from which the fit of a rail starts, the best start counts.
 const STARTS: [f64; 5] = [0.0, 4.0, 8.0, 12.0, 16.0];
+/// Most pairs of marks that are compared, a second's work; two profiles of 1000 points have two millions.
+const MOST_WORK: usize = 200_000_000;
 /// Root mean square \[mm\] above which what was fitted is no unworn part.
 const LARGEST_RESIDUAL: f64 = 0.1;
 
@@ -54,24 +49,6 @@ pub(super) struct Aligned {
     pub alignment: Alignment,
 }
 
-/// A nominal profile with its axes.
-pub(super) struct Nominal<'a> {
-    pub profile: &'a Profile,
-    pub curve: Curve,
-    /// x of its flange back \[mm\]; 0 for rails.
-    pub back: f64,
-}
-
-impl<'a> Nominal<'a> {
-    /// # Errors
-    /// A wheel without a flange back.
-    pub fn new(profile: &'a Profile, side: Side) -> Result<Self, String> {
-        let curve = Curve::new(profile);
-        let back = if side == Side::Wheel { own_back(&curve)?.0 } else { 0.0 };
-        Ok(Self { profile, curve, back })
-    }
-}
-
 /// Aligns a measured profile.
 ///
 /// # Errors
@@ -82,7 +59,7 @@ pub(super) fn align(
     nominal: Option<&Nominal>,
     options: &Options,
 ) -> Result<Aligned, String> {
-    let curve = Curve::new(profile);
+    let curve = sized(profile)?;
     let chosen = options.align.or(nominal.map(|_| Align::BestFit));
     match (side, nominal) {
         (Side::Rail, None) => Ok(moved(&curve, [0.0; 2], 0.0, Align::None, "the file's axes")),
@@ -149,6 +126,12 @@ fn fitted(
 ) -> Result<Aligned, String> {
     let coarse = |profile: &Profile| Curve { marks: trace(profile, STEP) };
     let (measured, onto) = (coarse(profile), coarse(nominal.profile));
+    let work = measured.marks.len().saturating_mul(onto.marks.len());
+    if work > MOST_WORK {
+        return Err(format!(
+            "no alignment: {work} pairs of marks, more than {MOST_WORK}: thin the points out"
+        ));
+    }
     let (parts, what) = parts(&onto, side, align, options);
     let fit = Fit { measured: &measured, nominal: &onto, parts: &parts };
     let all: Vec<Result<Fitted, String>> =
@@ -230,49 +213,4 @@ fn parts(nominal: &Curve, side: Side, align: Align, options: &Options) -> (Vec<b
             (stations().enumerate().map(part).collect(), "flange back and outer tread".into())
         }
     }
-}
-
-/// Returns x of the flange back in the axes of a file or a drawing: 0 if the flange's tip shows that it is there, otherwise the back
-/// itself; and how it was found.
-fn own_back(curve: &Curve) -> Result<(f64, String), String> {
-    let tip = curve.highest(-1.0).map_or(f64::NAN, |tip| tip.x);
-    if tip > TIP_FROM_BACK[0] && tip < TIP_FROM_BACK[1] {
-        return Ok((0.0, "the file's x = 0".into()));
-    }
-    back_of(curve)
-}
-
-/// Returns x of the flange back: of a line through the lowest 10 mm where it is upright, at their middle; otherwise of the leftmost
-/// point, if the profile is upright there.
-fn back_of(curve: &Curve) -> Result<(f64, String), String> {
-    let none = |why: String| format!("no flange back: {why}");
-    let tip = curve.highest(-1.0).ok_or_else(|| none("no points".into()))?;
-    let back = curve.up_to(tip.mark);
-    let upright: Vec<Station> =
-        back.marks.iter().map(|mark| mark.station).filter(|at| at.sin <= -STRAIGHT).collect();
-    let low = upright.iter().map(|at| at.z).fold(f64::INFINITY, f64::min);
-    let line: Vec<&Station> = upright.iter().filter(|at| at.z <= low + BACK_LENGTH).collect();
-    let height = line.iter().map(|at| at.z - low).fold(0.0, f64::max);
-    if height >= LEAST_BACK {
-        // Marks are at equal distances nearly, so that the mean is the line at its middle.
-        let x = line.iter().map(|at| at.x).sum::<f64>() / line.len() as f64;
-        return Ok((x, format!("the flange back at x = {x:.3}, a line over {height:.1} mm")));
-    }
-    let leftmost = back.marks.iter().map(|mark| mark.station).min_by(|a, b| a.x.total_cmp(&b.x));
-    match leftmost {
-        Some(at) if at.sin <= -STEEP => Ok((at.x, format!("the leftmost point, x = {:.3}", at.x))),
-        Some(at) => Err(none(format!(
-            "the profile begins at x = {:.3} mm, inclined by {:.0}°, less than 75°",
-            at.x,
-            at.angle().to_degrees().abs()
-        ))),
-        None => Err(none("no points".into())),
-    }
-}
-
-/// Returns the running head of a rail: what is right of its last groove.
-pub(super) fn running_head(curve: &Curve) -> (Curve, Option<usize>) {
-    let heights: Vec<f64> = curve.marks.iter().map(|mark| mark.station.z).collect();
-    let groove = last_groove(&heights);
-    (curve.from(groove.unwrap_or(0)), groove)
 }

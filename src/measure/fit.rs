@@ -156,9 +156,12 @@ fn step(pairs: &[Pair]) -> Option<Station> {
         normal += *weight * row * row.transpose();
         right -= *weight * *across * row;
     }
-    let held = (normal / length).symmetric_eigenvalues().min();
-    // Without pairs the comparison is with NaN.
-    if held.is_nan() || held < LEAST_HOLD * LEAST_HOLD {
+    let each = normal / length;
+    // Without pairs it is NaN, of which there are no eigenvalues.
+    if each.iter().any(|value| !value.is_finite()) {
+        return None;
+    }
+    if each.symmetric_eigenvalues().min() < LEAST_HOLD * LEAST_HOLD {
         return None;
     }
     let motion = normal.cholesky()?.solve(&right);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::Measures;
+use super::measures::Measures;
 use super::quantity::Quantity;
 use crate::error::{Error, Result};
 

@@ -8,6 +8,8 @@ mod curve;
 mod fit;
 mod found;
 mod limits;
+mod measures;
+mod nominal;
 mod options;
 mod overlay;
 mod quantity;
@@ -19,13 +21,15 @@ mod wheel;
 
 pub use align::Alignment;
 pub use limits::{Limit, Limits};
+pub use measures::Measures;
 pub use options::{Align, GaugeFrom, Options};
 pub use overlay::{Overlay, overlay};
 pub use quantity::Quantity;
 pub use rows::{Row, csv, json, table};
 
-use align::{Aligned, Nominal};
+use align::Aligned;
 use found::Found;
+use nominal::Nominal;
 
 use crate::error::Result;
 use crate::profile::{Profile, Side, Station};
@@ -36,31 +40,6 @@ const TURNED_OFF: f64 = OFF * std::f64::consts::PI / 180.0;
 
 /// Gain of metal \[mm\] on a tread or crown above which the alignment is doubted: more than tolerances of new profiles.
 const MOST_GAINED: f64 = 0.5;
-
-/// What was measured of a profile.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Measures {
-    /// The body.
-    pub side: Side,
-    values: [Option<f64>; Quantity::ALL.len()],
-    if_off: [Option<f64>; Quantity::ALL.len()],
-    /// How it was aligned; `None` if it could not be.
-    pub alignment: Option<Alignment>,
-    /// What cannot be had and why, and what is doubtful.
-    pub findings: Vec<String>,
-}
-
-impl Measures {
-    /// Returns a value in its unit; `None` where it cannot be had.
-    pub fn value(&self, quantity: Quantity) -> Option<f64> {
-        self.values[quantity as usize]
-    }
-
-    /// Returns the largest change of a value if the profile lay 0.1 mm or 0.1° otherwise, about X = 0 at the tread or the top of rail.
-    pub fn if_off(&self, quantity: Quantity) -> Option<f64> {
-        self.if_off[quantity as usize]
-    }
-}
 
 /// Measures a profile, right-hand and upright: its flange or gauge side is at smaller x.
 ///

@@ -1,8 +1,9 @@
 //! A measured profile over its nominal one, with their differences.
 
-use super::align::{self, Nominal};
+use super::align::{self, Alignment};
 use super::curve::Curve;
-use super::{Alignment, Options};
+use super::nominal::Nominal;
+use super::options::Options;
 use crate::error::{Error, Result};
 use crate::profile::{Profile, Side, Station};
 

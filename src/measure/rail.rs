@@ -4,9 +4,9 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::align::{Nominal, running_head};
 use super::curve::{Curve, Place};
 use super::found::Found;
+use super::nominal::{Nominal, running_head};
 use super::options::{GaugeFrom, Options};
 use super::quantity::Quantity;
 

@@ -5,9 +5,10 @@ use std::fmt::Write;
 use serde_json::{Map, Value};
 
 use super::limits::Limits;
+use super::measures::Measures;
 use super::options::name;
 use super::quantity::Quantity;
-use super::{Measures, Result};
+use crate::error::Result;
 use crate::profile::Side;
 
 /// What was measured of a file, or why nothing was.

@@ -217,6 +217,96 @@ fn rails_have_the_measures_of_their_drawing() -> Result<()> {
     Ok(())
 }
 
+/// 60E1 with a plain underside and web at both sides.
+fn with_web() -> Result<Profile> {
+    let head = standards::rail("60E1")?;
+    let line = |from, to| Arc::line(from, to).map(Segment::arc);
+    let ends = head.segments().first().zip(head.segments().last());
+    let (left, right) = ends.map(|(first, last)| (first.start(), last.end())).expect("segments");
+    let (under, foot) = ([-12.0, -48.0], [-8.5, -90.0]);
+    let mirrored = |[x, z]: [f64; 2]| [-x, z];
+    let mut all = vec![line(foot, under)?, line(under, [left.x, left.z])?];
+    all.extend(head.segments().iter().cloned());
+    all.push(line([right.x, right.z], mirrored(under))?);
+    all.push(line(mirrored(under), mirrored(foot))?);
+    Profile::new("60E1 with web", "test", all)
+}
+
+#[test]
+fn known_wear_of_a_head_worn_at_both_sides_is_recovered_by_its_web_and_by_given_ranges() -> Result<()> {
+    let nominal = with_web()?;
+    // The whole head above its flanks sinks, and both faces move in.
+    let by = |at: Station| {
+        let upper = 1.0 / (1.0 + ((-25.0 - at.z) / 1.0).exp());
+        [-1.2 * upper * (at.x / 5.0).tanh(), -2.0 * upper]
+    };
+    let none = Options { align: Some(Align::None), ..Options::default() };
+    let straight = worn(&nominal, Side::Rail, by, Station::AXES, |_| true);
+    let exact = measure(&straight, Side::Rail, Some(&nominal), &none)?;
+    assert!((value(&exact, Quantity::W1) - 2.0).abs() < 1e-3, "{exact:?}");
+    let rail = worn(&nominal, Side::Rail, by, frame(4.0, -3.0, 1.0), |_| true);
+    let web = Options { align: Some(Align::Web), ..Options::default() };
+    let measures = measure(&rail, Side::Rail, Some(&nominal), &web)?;
+    for quantity in [Quantity::W1, Quantity::W2, Quantity::W3] {
+        let [own, to] = [&measures, &exact].map(|measures| value(measures, quantity));
+        assert!((own - to).abs() < RECOVERED, "{quantity:?}: {own} {to} {:?}", measures.alignment);
+    }
+    assert!(measures.findings.is_empty(), "{:?}", measures.findings);
+    // Ranges of a head that is worn at its gauge side only.
+    let by = |at: Station| [2.0 / (1.0 + ((at.x + 15.0) / 1.5).exp()), 0.0];
+    let head = standards::rail("60E1")?;
+    let exact =
+        measure(&worn(&head, Side::Rail, by, Station::AXES, |_| true), Side::Rail, Some(&head), &none)?;
+    let rail = worn(&head, Side::Rail, by, frame(-6.0, 2.0, -0.8), |_| true);
+    let ranges = Options { align: Some(Align::Unworn), unworn: vec![[5.0, 40.0]], ..Options::default() };
+    let measures = measure(&rail, Side::Rail, Some(&head), &ranges)?;
+    for quantity in [Quantity::W1, Quantity::W2, Quantity::W3] {
+        let [own, to] = [&measures, &exact].map(|measures| value(measures, quantity));
+        assert!((own - to).abs() < RECOVERED, "{quantity:?}: {own} {to} {:?}", measures.alignment);
+    }
+    Ok(())
+}
+
+#[test]
+fn a_wheel_that_is_moved_but_not_turned_is_put_on_its_back() -> Result<()> {
+    // An upright back above the drawn flange, over which a line is fitted.
+    let drawn = standards::wheel("S1002")?;
+    let start = drawn.segments()[0].start();
+    let mut all = vec![Segment::arc(Arc::line([start.x, 15.0], [start.x, start.z])?)];
+    all.extend(drawn.segments().iter().cloned());
+    let nominal = Profile::new("S1002 with back", "test", all)?;
+    // The flange's face moves in by 1.5 mm; the tread at X = 70 does not.
+    let by = |at: Station| [-bump(at.z, [-24.0, -3.0], 1.5) * f64::from(u8::from(at.x > -50.0)), 0.0];
+    let exact = measure(
+        &worn(&nominal, Side::Wheel, by, Station::AXES, |_| true),
+        Side::Wheel,
+        Some(&nominal),
+        &Options { align: Some(Align::Back), ..Options::default() },
+    )?;
+    let thickness = value(&exact, Quantity::FlangeThickness);
+    assert!((32.5 - thickness - bump(-10.0, [-24.0, -3.0], 1.5)).abs() < 0.2, "{exact:?}");
+    let wheel = worn(&nominal, Side::Wheel, by, frame(70.4, -2.0, 0.0), |_| true);
+    for align in [Align::Back, Align::TreadPoint] {
+        let measures = measure(
+            &wheel,
+            Side::Wheel,
+            Some(&nominal),
+            &Options { align: Some(align), ..Options::default() },
+        )?;
+        for quantity in [Quantity::FlangeThickness, Quantity::FlangeHeight, Quantity::Qr] {
+            let [own, to] = [&measures, &exact].map(|measures| value(measures, quantity));
+            assert!((own - to).abs() < RECOVERED, "{align:?} {quantity:?}: {own} {to}");
+        }
+        // Heights are the file's by `back`, and those of the nominal's tread by `tread-point`.
+        let lowered = if align == Align::Back { -2.0 } else { 0.0 };
+        assert!(
+            (value(&measures, Quantity::TreadWear) - lowered).abs() < RECOVERED,
+            "{align:?}: {measures:?}"
+        );
+    }
+    Ok(())
+}
+
 #[test]
 fn a_grooved_rail_has_its_groove_and_its_lip() -> Result<()> {
     let line = |from, to| Arc::line(from, to).map(Segment::arc);
@@ -308,6 +398,15 @@ fn a_worn_field_side_leaves_a_finding() -> Result<()> {
     let wheel = worn(&nominal, Side::Wheel, by, Station::AXES, |_| true);
     let measures = measure(&wheel, Side::Wheel, Some(&nominal), &Options::default())?;
     assert!(measures.findings[0].starts_with("tread_wear_mm is negative"), "{measures:?}");
+    Ok(())
+}
+
+#[test]
+fn a_profile_in_another_unit_is_a_finding() -> Result<()> {
+    let crown = Arc::line([-4e3, 0.0], [4e3, 10.0]).map(Segment::arc)?;
+    let rail = Profile::new("metres", "test", vec![crown])?;
+    let measures = measure(&rail, Side::Rail, Some(&standards::rail("60E1")?), &Options::default())?;
+    assert!(measures.findings[0].starts_with("the profile is 8000 mm large"), "{measures:?}");
     Ok(())
 }
 

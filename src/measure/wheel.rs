@@ -1,8 +1,8 @@
 //! The quantities of wheels. X counts from the flange back to the field side, Y = −z.
 
-use super::align::Nominal;
 use super::curve::{Curve, Place};
 use super::found::Found;
+use super::nominal::Nominal;
 use super::options::Options;
 use super::quantity::Quantity;
 
