@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::curve::Curve;
 use super::fit::{Fit, Fitted};
-use super::nominal::{Nominal, back_of, own_back, sized};
+use super::nominal::{Back, Nominal, back_of, own_back, sized};
 use super::options::{Align, Options};
 use crate::profile::{Profile, Side, Station, trace};
 
@@ -49,6 +49,13 @@ pub(super) struct Aligned {
     pub alignment: Alignment,
 }
 
+impl Aligned {
+    fn doubted(mut self, doubt: Option<String>) -> Self {
+        self.alignment.doubt = doubt;
+        self
+    }
+}
+
 /// Aligns a measured profile.
 ///
 /// # Errors
@@ -64,14 +71,14 @@ pub(super) fn align(
     match (side, nominal) {
         (Side::Rail, None) => Ok(moved(&curve, [0.0; 2], 0.0, Align::None, "the file's axes")),
         (Side::Wheel, None) => {
-            let (back, how) = match options.align {
-                Some(Align::None) => (0.0, "the file's x = 0".to_owned()),
+            let Back { x: back, how, doubt } = match options.align {
+                Some(Align::None) => Back { x: 0.0, how: "the file's x = 0".into(), doubt: None },
                 Some(_) => back_of(&curve)?,
                 None => own_back(&curve)?,
             };
             let align =
                 if back == 0.0 && options.align != Some(Align::Back) { Align::None } else { Align::Back };
-            Ok(moved(&curve, [0.0; 2], back, align, &format!("X = 0 is {how}")))
+            Ok(moved(&curve, [0.0; 2], back, align, &format!("X = 0 is {how}")).doubted(doubt))
         }
         (_, Some(nominal)) => {
             with_nominal(profile, &curve, side, nominal, chosen.unwrap_or(Align::None), options)
@@ -94,17 +101,17 @@ fn with_nominal(
             Ok(moved(curve, [nominal.back, 0.0], nominal.back, align, text))
         }
         (Align::Back, _) => {
-            let (back, how) = back_of(curve)?;
+            let Back { x: back, how, doubt } = back_of(curve)?;
             let text = format!("X = 0 is {how}; heights are the file's");
-            Ok(moved(curve, [nominal.back - back, 0.0], nominal.back, align, &text))
+            Ok(moved(curve, [nominal.back - back, 0.0], nominal.back, align, &text).doubted(doubt))
         }
         (Align::TreadPoint, _) => {
-            let (back, how) = back_of(curve)?;
+            let Back { x: back, how, doubt } = back_of(curve)?;
             let x = nominal.back - back;
             let tread = super::wheel::tread(curve, back, options)?;
             let to = super::wheel::tread(&nominal.curve, nominal.back, options)?;
             let text = format!("X = 0 is {how}; the tread at X = {} is the nominal's", options.tread_at);
-            Ok(moved(curve, [x, to - tread], nominal.back, align, &text))
+            Ok(moved(curve, [x, to - tread], nominal.back, align, &text).doubted(doubt))
         }
         _ => fitted(profile, curve, side, nominal, align, options),
     }

@@ -40,6 +40,8 @@ const TURNED_OFF: f64 = OFF * std::f64::consts::PI / 180.0;
 
 /// Gain of metal \[mm\] on a tread or crown above which the alignment is doubted: more than tolerances of new profiles.
 const MOST_GAINED: f64 = 0.5;
+/// The same of a gauge face, to which metal flows from the crown.
+const MOST_FLOWN: f64 = 3.0;
 
 /// Measures a profile, right-hand and upright: its flange or gauge side is at smaller x.
 ///
@@ -91,9 +93,13 @@ pub fn measure(
 /// Says which wear is a gain of metal that no wheel or rail has.
 fn gains(values: [Option<f64>; Quantity::ALL.len()]) -> impl Iterator<Item = String> {
     let doubted =
-        [Quantity::TreadWear, Quantity::W1].map(|quantity| (quantity.key(), values[quantity as usize]));
-    let gained = doubted.into_iter().filter(|(_, wear)| wear.is_some_and(|wear| wear < -MOST_GAINED));
-    gained.map(|(key, _)| format!("{key} is negative: another nominal, or worn parts were aligned"))
+        [(Quantity::TreadWear, MOST_GAINED), (Quantity::W1, MOST_GAINED), (Quantity::W2, MOST_FLOWN)];
+    let gained = doubted
+        .into_iter()
+        .filter(move |(quantity, most)| values[*quantity as usize].is_some_and(|wear| wear < -most));
+    gained
+        .map(|(quantity, _)| quantity.key())
+        .map(|key| format!("{key} is negative: another nominal, or worn parts were aligned"))
 }
 
 /// Measures an aligned profile after a further motion.

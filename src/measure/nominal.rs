@@ -14,6 +14,20 @@ const STEEP: f64 = 0.965_925_826_289_068_3;
 /// Largest extent of a profile \[mm\]: a whole rail is 230 mm high, and a crossing with its wing rails 400 mm wide.
 const LARGEST: f64 = 1000.0;
 
+/// Sine of the inclination of an end that is the back without a doubt, 88°: a back that turns upright with 20 mm radius lies
+/// 0.01 mm farther left.
+const UPRIGHT: f64 = 0.999_390_827_019_095_7;
+
+/// The flange back of a wheel.
+pub(super) struct Back {
+    /// x of the back \[mm\].
+    pub x: f64,
+    /// How it was found.
+    pub how: String,
+    /// Why it may lie elsewhere.
+    pub doubt: Option<String>,
+}
+
 /// A nominal profile with its axes.
 pub(super) struct Nominal<'a> {
     pub profile: &'a Profile,
@@ -27,7 +41,7 @@ impl<'a> Nominal<'a> {
     /// A wheel without a flange back.
     pub fn new(profile: &'a Profile, side: Side) -> Result<Self, String> {
         let curve = sized(profile)?;
-        let back = if side == Side::Wheel { own_back(&curve)?.0 } else { 0.0 };
+        let back = if side == Side::Wheel { own_back(&curve)?.x } else { 0.0 };
         Ok(Self { profile, curve, back })
     }
 }
@@ -45,17 +59,17 @@ pub(super) fn sized(profile: &Profile) -> Result<Curve, String> {
 
 /// Returns x of the flange back in the axes of a file or a drawing: 0 if the flange's tip shows that it is there, otherwise the back
 /// itself; and how it was found.
-pub(super) fn own_back(curve: &Curve) -> Result<(f64, String), String> {
+pub(super) fn own_back(curve: &Curve) -> Result<Back, String> {
     let tip = curve.highest(-1.0).map_or(f64::NAN, |tip| tip.x);
     if tip > TIP_FROM_BACK[0] && tip < TIP_FROM_BACK[1] {
-        return Ok((0.0, "the file's x = 0".into()));
+        return Ok(Back { x: 0.0, how: "the file's x = 0".into(), doubt: None });
     }
     back_of(curve)
 }
 
 /// Returns x of the flange back: of a line through the lowest 10 mm where it is upright, at their middle; otherwise of the leftmost
 /// point, if the profile is upright there.
-pub(super) fn back_of(curve: &Curve) -> Result<(f64, String), String> {
+pub(super) fn back_of(curve: &Curve) -> Result<Back, String> {
     let none = |why: String| format!("no flange back: {why}");
     let tip = curve.highest(-1.0).ok_or_else(|| none("no points".into()))?;
     let back = curve.up_to(tip.mark);
@@ -67,11 +81,18 @@ pub(super) fn back_of(curve: &Curve) -> Result<(f64, String), String> {
     if height >= LEAST_BACK {
         // Marks are at equal distances nearly, so that the mean is the line at its middle.
         let x = line.iter().map(|at| at.x).sum::<f64>() / line.len() as f64;
-        return Ok((x, format!("the flange back at x = {x:.3}, a line over {height:.1} mm")));
+        let how = format!("the flange back at x = {x:.3}, a line over {height:.1} mm");
+        return Ok(Back { x, how, doubt: None });
     }
     let leftmost = back.marks.iter().map(|mark| mark.station).min_by(|a, b| a.x.total_cmp(&b.x));
     match leftmost {
-        Some(at) if at.sin <= -STEEP => Ok((at.x, format!("the leftmost point, x = {:.3}", at.x))),
+        Some(at) if at.sin <= -STEEP => {
+            let angle = at.angle().to_degrees().abs();
+            let doubt = (at.sin > -UPRIGHT).then(|| {
+                format!("X = 0 is the leftmost point, inclined by {angle:.0}°: the flange back may lie farther left")
+            });
+            Ok(Back { x: at.x, how: format!("the leftmost point, x = {:.3}", at.x), doubt })
+        }
         Some(at) => Err(none(format!(
             "the profile begins at x = {:.3} mm, inclined by {:.0}°, less than 75°",
             at.x,

@@ -357,6 +357,10 @@ fn what_is_not_measured_is_missing_and_says_so() -> Result<()> {
     assert!(measures.findings[0].contains("no tread at X = 70 mm"), "{measures:?}");
     let measures = measure(&cut(-70.0, 30.0), Side::Wheel, Some(&nominal), &Options::default())?;
     assert!(measures.findings[0].starts_with("no alignment by flange back and outer tread"), "{measures:?}");
+    // Where the back turns upright 0.4 mm farther left, its place is doubted.
+    let measures = measure(&cut(-69.6, 60.0), Side::Wheel, None, &Options::default())?;
+    assert!(measures.value(Quantity::FlangeThickness).is_some(), "{measures:?}");
+    assert!(measures.findings[0].contains("the flange back may lie farther left"), "{measures:?}");
     // A rail with neither field side nor gauge face.
     let rail = standards::rail("60E1")?;
     let crown = worn(&rail, Side::Rail, |_| [0.0; 2], Station::AXES, |at| at.x.abs() < 25.0);
