@@ -69,6 +69,7 @@ pub mod export;
 pub mod files;
 pub mod load;
 pub mod lofted;
+pub mod measure;
 pub mod measured;
 pub mod mesh;
 mod numerics;

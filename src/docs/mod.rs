@@ -7,6 +7,9 @@ pub mod conventions {}
 #[doc = include_str!("measured-files.md")]
 pub mod measured_files {}
 
+#[doc = include_str!("measures.md")]
+pub mod measures {}
+
 #[doc = include_str!("numerics.md")]
 pub mod numerics {}
 

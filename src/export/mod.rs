@@ -42,8 +42,8 @@ pub use model::{
 pub use netcdf::NetCdf;
 pub use npy::array_npy;
 pub use picture::{
-    Chart, ConformalPicture, CurvesPanel, CurvesPicture, JoinedPair, Nodes, PatchPicture, PicturedContact,
-    PlottedCurve, Pressed, ProfilePicture, RailNormal, SEPARATOR, Series, jumps,
+    Chart, ConformalPicture, CurvesPanel, CurvesPicture, JoinedPair, Nodes, OverlayPicture, PatchPicture,
+    PicturedContact, PlottedCurve, Pressed, ProfilePicture, RailNormal, SEPARATOR, Series, jumps,
 };
 pub use ply::surface_ply;
 pub use stl::surface_stl;

@@ -6,13 +6,14 @@ use std::path::{Path, PathBuf};
 use syn::visit::Visit;
 
 /// Rooms of the library from the bottom up; each may use those before it and itself.
-const ORDER: [&str; 17] = [
+const ORDER: [&str; 18] = [
     "error",
     "numerics",
     "files",
     "profile",
     "lofted",
     "measured",
+    "measure",
     "placement",
     "separation",
     "search",

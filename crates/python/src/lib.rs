@@ -10,6 +10,7 @@ mod files;
 mod filling;
 mod long;
 mod march;
+mod measure;
 mod pair;
 mod patch;
 mod place;
@@ -34,6 +35,8 @@ mod _wheelrail {
     use super::contact::{Contact, contact_from_parts, patch_from_parts};
     #[pymodule_export]
     use super::march::march;
+    #[pymodule_export]
+    use super::measure::measure_profile;
     #[pymodule_export]
     use super::pair::{Pair, pair_from_parts};
     #[pymodule_export]

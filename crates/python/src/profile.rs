@@ -7,6 +7,7 @@ use std::sync::Arc;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyString};
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use wheelrail::case::{about_profile, profile_picture, usual};
 use wheelrail::error::finite;
@@ -111,7 +112,7 @@ impl Profile {
             let found = format!("{} values beside {} of x", z.len(), x.len());
             return Err(exception(Error::new("z", found, "arrays of one length", "correct it")));
         }
-        let (side, options) = (named_side(side)?, measured_options(py, "from_points", options)?);
+        let (side, options): (_, Options) = (named_side(side)?, keywords(py, "from_points", options)?);
         let points: Vec<[f64; 2]> = x.into_iter().zip(z).map(|(x, z)| [x, z]).collect();
         let name = name.to_owned();
         let measured = waited(py, move |_| measured::of_points(&name, &points, side, &options))?;
@@ -437,7 +438,7 @@ pub(crate) fn read_profile(
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Profile> {
     let side = side.map(named_side).transpose()?;
-    let options = measured_options(py, "read_profile", options)?;
+    let options: Options = keywords(py, "read_profile", options)?;
     let named = side.or_else(|| Format::body_of_file(&path.to_string_lossy()));
     match waited(py, move |_| scene::read_profile(&path, side, &options))? {
         ProfileSource::Drawn(profile) => Ok(Profile { profile, side: named, fitted: None }),
@@ -450,7 +451,7 @@ fn file_format(py: Python<'_>, name: &str) -> PyResult<Option<Format>> {
     if name == "toml" { Ok(None) } else { parsed("format", PyString::new(py, name).as_any()).map(Some) }
 }
 
-fn named_side(name: &str) -> PyResult<Side> {
+pub(crate) fn named_side(name: &str) -> PyResult<Side> {
     match name {
         "rail" => Ok(Side::Rail),
         "wheel" => Ok(Side::Wheel),
@@ -458,13 +459,13 @@ fn named_side(name: &str) -> PyResult<Side> {
     }
 }
 
-/// Takes keywords for the keys of a scene.
-fn measured_options(
+/// Takes keywords for options.
+pub(crate) fn keywords<T: Default + DeserializeOwned + Serialize>(
     py: Python<'_>,
     function: &str,
     options: Option<&Bound<'_, PyDict>>,
-) -> PyResult<Options> {
-    let Some(options) = options else { return Ok(Options::default()) };
+) -> PyResult<T> {
+    let Some(options) = options else { return Ok(T::default()) };
     // None is what a keyword has that is not given.
     let given = PyDict::new(py);
     for (key, value) in options.iter().filter(|(_, value)| !value.is_none()) {

@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, cast
 
@@ -82,3 +83,29 @@ def test_profiles_hash_as_they_compare(measured: wr.Profile) -> None:
     assert len(set(profiles)) == 4
     assert {profile: k for k, profile in enumerate(profiles)}[copy.deepcopy(measured)] == 2
     assert hash(pickle.loads(pickle.dumps(measured))) == hash(measured)
+
+
+def test_measures_are_those_of_the_command_line_and_say_what_is_missing() -> None:
+    nominal = wr.wheel("S1002")
+    x, z = nominal.points(0.1).T
+    worn = z + 1.5 * np.exp(-((x / 15.0) ** 4))
+    wheel = wr.Profile.from_points(x, worn, side="wheel", curve="interpolation")
+    found = wr.measure_profile(wheel, nominal, align="back-and-tread")
+    assert list(found)[:5] == ["file", "kind", "flange_height_mm", "flange_thickness_mm", "qr_mm"]
+    assert list(found)[-1] == "finding" and found["finding"] is None
+    assert abs(found["tread_wear_mm"] - 1.5) < 0.01 and found["alignment_residual_mm"] < 0.01
+    assert found["w1_mm"] is None and 0.0 < found["flange_height_mm_if_off"] < 0.2
+    flange = x < -20.0
+    cut = wr.Profile.from_points(x[flange], z[flange], side="wheel", curve="interpolation", flip_z=False, mirror=False)
+    found = wr.measure_profile(cut)
+    assert found["flange_height_mm"] is None and "no tread at X = 70 mm" in found["finding"]
+    wrong: list[tuple[str, Callable[[], object]]] = [
+        ("side", lambda: wr.measure_profile(wr.Profile.from_segments(nominal.segments()))),
+        ("nominal", lambda: wr.measure_profile(wheel, wr.rail("60E1"))),
+        ("align", lambda: wr.measure_profile(wheel, align="web", side="wheel")),
+        ("tread_at", lambda: wr.measure_profile(wheel, tread_at=-70.0)),
+        ("treadat", lambda: cast(Any, wr.measure_profile)(wheel, treadat=70.0)),
+    ]
+    for match, call in wrong:
+        with pytest.raises(wr.InputError, match=match):
+            call()

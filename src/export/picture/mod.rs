@@ -1,4 +1,4 @@
-//! Draws pictures as SVG: of a patch, of the gap over the rail's surface, of a sweep, of a profile, and the charts of the
+//! Draws pictures as SVG: of a patch, of the gap over the rail's surface, of a sweep, of a profile, of one over another, and the charts of the
 //! report. All use one kind of page and one kind of panel.
 
 mod chart;
@@ -8,6 +8,7 @@ mod contour;
 mod curves;
 mod levels;
 mod map;
+mod overlay;
 mod page;
 mod panel;
 mod patch;
@@ -19,6 +20,7 @@ pub use contact::PicturedContact;
 pub use contour::Nodes;
 pub use curves::{CurvesPanel, CurvesPicture, JoinedPair, PlottedCurve, jumps};
 pub use map::Pressed;
+pub use overlay::OverlayPicture;
 pub use page::SEPARATOR;
 pub use patch::PatchPicture;
 pub use profile::ProfilePicture;

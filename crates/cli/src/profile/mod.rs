@@ -1,6 +1,7 @@
 //! `wheelrail profile`: list, show, plot and convert profiles.
 
 mod convert;
+mod measure;
 mod options;
 mod plot;
 mod show;
@@ -38,6 +39,9 @@ pub(super) enum ProfileCommand {
     },
     /// Write a profile in another format.
     Convert(convert::ConvertArguments),
+    /// Measure wheels and rails: flange height and thickness, wear, groove; a row a file.
+    // Boxed, because it has many options.
+    Measure(Box<measure::MeasureArguments>),
 }
 
 /// Runs `wheelrail profile …`.
@@ -48,6 +52,7 @@ pub(super) fn profile(command: &ProfileCommand) -> Result<Outcome> {
         ProfileCommand::Show { source } => print(&show::show(&source.read()?)),
         ProfileCommand::Plot { source, out } => plot::plot(source, out.as_deref()),
         ProfileCommand::Convert(arguments) => convert::convert(arguments),
+        ProfileCommand::Measure(arguments) => measure::run(arguments),
     }
 }
 

@@ -28,7 +28,7 @@ impl From<BodyOption> for Side {
 }
 
 /// How a measured file is read. Words and defaults are those of a scene.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Measured files")]
 pub(super) struct MeasuredArguments {
     /// Format: miniprof, simpack, gensys, text or csv; if not given, the extension tells.

@@ -15,12 +15,12 @@ use wheelrail::scene::{self, ProfileSource};
 #[derive(Debug, Args)]
 pub(crate) struct SourceArguments {
     /// Name of a built-in profile, or a file: segments in TOML or JSON, or measured points.
-    profile: String,
+    pub(super) profile: String,
     /// Body of the profile. Built-in names tell it, and so do files such as .ban, .whl, .prr, .prw.
     #[arg(long, ignore_case = true)]
-    side: Option<BodyOption>,
+    pub(super) side: Option<BodyOption>,
     #[command(flatten)]
-    measured: MeasuredArguments,
+    pub(super) measured: MeasuredArguments,
 }
 
 /// A profile, with what is known about it.

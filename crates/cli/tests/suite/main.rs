@@ -19,6 +19,7 @@ mod doubts_cli;
 mod hostile;
 mod load_table;
 mod march_cli;
+mod measure_cli;
 mod pages;
 mod profile_cli;
 mod programs;

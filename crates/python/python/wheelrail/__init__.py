@@ -15,6 +15,7 @@ contact point, xi along the common tangent, eta along the rail, zeta along the c
 What there is:
 
     rail, wheel, read_profile, Profile.from_points, Profile.from_segments   profiles
+    measure_profile           flange height and thickness, wear against a nominal profile
     Pair, Wheelset            bodies placed: touch, placed, sweep, conicity
     Contact                   a place of contact: separation, normals, normal_gap, hertz, surfaces
     Patch, Component, Mesh    the patch: loops, areas, meshes, pressures, files of every format
@@ -41,6 +42,7 @@ from ._wheelrail import (
     __version__,
     effective_modulus,
     march,
+    measure_profile,
     rail,
     rail_names,
     read_profile,
@@ -77,6 +79,7 @@ __all__ = [
     "__version__",
     "effective_modulus",
     "march",
+    "measure_profile",
     "rail",
     "rail_names",
     "read_profile",

@@ -50,6 +50,18 @@ class _FileOptions(_PointOptions, total=False):
     along: float
     angle: float
 
+class _MeasureOptions(TypedDict, total=False):
+    """Keywords of `measure_profile`."""
+
+    tread_at: float
+    flange_level: float
+    tip_depth: float
+    width_level: float
+    gauge_level: float
+    gauge_from: Literal["measured", "nominal"]
+    align: Literal["none", "back", "tread-point", "back-and-tread", "field-side", "web", "unworn", "best-fit"]
+    unworn: Sequence[Sequence[float]]
+
 @final
 class Profile:
     @staticmethod
@@ -105,6 +117,9 @@ def wheel(name: str) -> Profile: ...
 def rail_names() -> list[str]: ...
 def wheel_names() -> list[str]: ...
 def read_profile(path: _Path, side: _Side | None = None, **options: Unpack[_FileOptions]) -> Profile: ...
+def measure_profile(
+    profile: Profile, nominal: Profile | None = None, *, side: _Side | None = None, **options: Unpack[_MeasureOptions]
+) -> dict[str, Any]: ...
 
 @final
 class Pair:

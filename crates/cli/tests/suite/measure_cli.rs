@@ -1,0 +1,135 @@
+//! `wheelrail profile measure` through the binary: columns, rows of bad files, limits.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+fn measure(folder: &Path, arguments: &[&str]) -> Output {
+    let binary = env!("CARGO_BIN_EXE_wheelrail");
+    Command::new(binary).current_dir(folder).args(["profile", "measure"]).args(arguments).output().unwrap()
+}
+
+/// stdout of a call that must end with this exit code.
+fn text(folder: &Path, arguments: &[&str], code: i32) -> String {
+    let output = measure(folder, arguments);
+    assert_eq!(
+        output.status.code(),
+        Some(code),
+        "{arguments:?}: {}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn csv_and_json_have_the_same_columns_and_bad_files_are_rows() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    fs::write(here.join("bad.whl"), "no numbers").unwrap();
+    let files = ["S1002", "60E1", "bad.whl", "nowhere"];
+    let csv = text(here, &[&files[..], &["--csv"]].concat(), 1);
+    let header: Vec<&str> = csv.lines().next().unwrap().split(',').collect();
+    let first =
+        ["file", "kind", "flange_height_mm", "flange_thickness_mm", "qr_mm", "w1_mm", "w2_mm", "w3_mm"];
+    assert_eq!((&header[..8], header[header.len() - 1]), (&first[..], "finding"));
+    let json: Vec<Value> = serde_json::from_str(&text(here, &[&files[..], &["--json"]].concat(), 1)).unwrap();
+    let mut read = csv::Reader::from_reader(csv.as_bytes());
+    for (row, (object, file)) in read.records().zip(json.iter().zip(files)) {
+        let object = object.as_object().unwrap();
+        assert!(object.keys().map(String::as_str).eq(header.iter().copied()));
+        for (cell, value) in row.unwrap().iter().zip(object.values()) {
+            assert_eq!(
+                cell,
+                value.as_str().map_or_else(|| value.to_string().replace("null", ""), String::from)
+            );
+        }
+        assert_eq!(object["file"], *file);
+    }
+    assert!((json[0]["flange_height_mm"].as_f64().unwrap() - 28.0).abs() < 1e-6);
+    assert!(json[0]["w1_mm"].is_null() && json[0]["finding"].is_null(), "{}", json[0]);
+    assert_eq!((&json[1]["kind"], json[2]["qr_mm"].is_null()), (&Value::from("rail"), true));
+    assert!(json[2]["finding"].as_str().unwrap().starts_with("bad.whl"), "{}", json[2]);
+    assert!(json[3]["finding"].as_str().unwrap().contains("no file and no built-in profile"), "{}", json[3]);
+}
+
+#[test]
+fn limits_mark_rows_and_fail_where_they_are_asked_to() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    fs::write(here.join("l.toml"), "flange_height_mm = { min = 27.5, max = 27.9 }\nw1_mm = { max = 1.0 }\n")
+        .unwrap();
+    let with = |more: &[&str], code| text(here, &[&["S1002", "--limits", "l.toml"], more].concat(), code);
+    assert!(with(&[], 0).contains("S1002: limit: flange_height_mm 28.000 above 27.9\n"));
+    assert!(with(&["--fail", "--csv"], 1).contains(",flange_height_mm 28.000 above 27.9,"));
+    // W1 cannot be had without a nominal.
+    assert!(text(here, &["60E1", "--limits", "l.toml", "--fail"], 1).contains("limit: w1_mm not measured"));
+    text(here, &["60E1", "--nominal", "60E1", "--limits", "l.toml", "--fail"], 0);
+    for (limits, expected) in [
+        (
+            "flange_hight_mm = { min = 1.0 }",
+            "l.toml: flange_hight_mm: found no quantity; expected one of flange_height_mm",
+        ),
+        ("w1_mm = { }", "l.toml: w1_mm: found no limit"),
+        ("w1_mm = { min = 2.0, max = 1.0 }", "l.toml: w1_mm: found min 2 above max 1"),
+        ("w1_mm = { least = 2.0 }", "least"),
+    ] {
+        fs::write(here.join("l.toml"), limits).unwrap();
+        let output = measure(here, &["S1002", "--limits", "l.toml"]);
+        let complaint = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && complaint.contains(expected), "{limits}: {complaint}");
+    }
+}
+
+#[test]
+fn a_picture_shows_both_profiles_and_their_differences() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    text(here, &["54E1", "--nominal", "60E1", "--align", "field-side", "--picture", "o.svg"], 0);
+    let svg = fs::read_to_string(here.join("o.svg")).unwrap();
+    assert!(svg.contains("nominal 60E1") && svg.contains("× 5; the largest is 1.997 mm"), "{svg}");
+    assert_eq!(svg, include_str!("../../../../src/docs/overlay.svg"), "draw the picture of the page anew");
+    for arguments in [
+        &["54E1", "60E1", "--nominal", "60E1", "--picture", "o.svg"][..],
+        &["54E1", "--picture", "o.svg"],
+        &["54E1", "--nominal", "60E1", "--picture", "o.jpg"],
+        &["54E1", "--nominal", "60E1", "--out", "o.svg", "--picture", "o.svg"],
+    ] {
+        assert_eq!(measure(here, arguments).status.code(), Some(2), "{arguments:?}");
+    }
+}
+
+#[test]
+fn wheels_given_as_rails_and_wrong_options_say_what_is_wrong() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    let made = Command::new(env!("CARGO_BIN_EXE_wheelrail"))
+        .current_dir(here)
+        .args(["profile", "convert", "S1002", "--to", "text", "--out", "w.txt"])
+        .status();
+    assert!(made.unwrap().success());
+    let found = |arguments: &[&str], code| text(here, arguments, code);
+    assert!(found(&["w.txt", "--side", "wheel"], 0).contains("flange_height_mm"));
+    // By its shape the file is a wheel; told otherwise, there is no rail in it.
+    assert!(found(&["w.txt", "--side", "rail"], 1).contains("finding: w.txt"));
+    let forced = found(&["w.txt", "--side", "rail", "--mirror", "false", "--flip-z", "false", "--json"], 0);
+    let forced: Vec<Value> = serde_json::from_str(&forced).unwrap();
+    assert!(forced[0]["finding"].as_str().unwrap().contains("no crown_radius_mm"), "{forced:?}");
+    assert!(found(&["w.txt", "--side", "wheel", "--nominal", "60E1"], 2).is_empty());
+    assert!(
+        found(&["S1002", "--nominal", "60E1"], 1).contains("S1002: found a wheel beside a rail as nominal")
+    );
+    assert!(found(&["S1002", "--align", "web"], 1).contains("\"web\" for a wheel"));
+    let wrong: [&[&str]; 5] = [
+        &["S1002", "--align", "wep"],
+        &["S1002", "--unworn", "3"],
+        &["S1002", "--fail"],
+        &["S1002", "--csv", "--json"],
+        &["S1002", "--nominal", "nowhere"],
+    ];
+    for arguments in wrong {
+        assert!(found(arguments, 2).is_empty());
+    }
+}

@@ -1,0 +1,184 @@
+//! Fits a measured curve to parts of a nominal one: the rigid motion with the least squares of distances.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::curve::Curve;
+use crate::profile::{Mark, Station, beside};
+
+/// Farthest distance \[mm\] of a place that belongs to a part of the nominal. It is more than a start is off, and less than the
+/// distance of another part of the profile.
+const FARTHEST: f64 = 6.0;
+/// Least cosine between the tangents of a place and its foot: the other face of a flange or head does not count.
+const ALONG: f64 = 0.7;
+/// Part of the nominal's own length over which places have to be found.
+const LEAST_PART: f64 = 0.5;
+/// Length \[mm\] by which a turn counts as a motion, and root mean square of the distances \[mm\] that the worst motion by 1 mm
+/// has to make. A straight face alone makes none along itself.
+const ARM: f64 = 10.0;
+const LEAST_HOLD: f64 = 0.03;
+/// Passes until a motion is settled: each one leaves the square of the last one's error, or a tenth where the feet slide.
+const MOST_PASSES: usize = 200;
+/// Motion \[mm\] at which a fit is settled, a thousandth of the instrument's resolution.
+const SETTLED: f64 = 1e-6;
+/// Largest and smallest distance \[mm\] up to which a place fits, between which it is three times the root mean square.
+const FITS: [f64; 2] = [0.005, 0.1];
+/// Rounds in which the places that fit are chosen anew, and the motion \[mm\] at which they are settled.
+const MOST_ROUNDS: usize = 50;
+const ROUND_SETTLED: f64 = 1e-4;
+
+/// A fit of a measured curve to a nominal one.
+pub(super) struct Fit<'a> {
+    pub measured: &'a Curve,
+    pub nominal: &'a Curve,
+    /// Whether each mark of the nominal belongs to a part that is fitted.
+    pub parts: &'a [bool],
+}
+
+/// A motion and how well it fits.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fitted {
+    pub motion: Station,
+    /// Root mean square of the distances \[mm\].
+    pub rms: f64,
+    /// Length of the measured curve that is fitted \[mm\].
+    pub length: f64,
+}
+
+/// A place of the measured curve beside its foot on the nominal one.
+struct Pair {
+    measured: usize,
+    at: [f64; 2],
+    normal: [f64; 2],
+    across: f64,
+    weight: f64,
+}
+
+impl Fit<'_> {
+    /// Finds the motion that fits the parts, from a first guess.
+    ///
+    /// # Errors
+    /// Parts that are not measured, that leave a motion free, or at which the fit does not settle; the text says which.
+    pub fn of_parts(&self, start: Station) -> Result<Fitted, String> {
+        let own: f64 =
+            self.nominal.lengths().zip(self.parts).filter(|(_, part)| **part).map(|(l, _)| l).sum();
+        let fitted = self.settled(start, |_, foot, across| self.parts[foot] && across.abs() <= FARTHEST)?;
+        if fitted.length < LEAST_PART * own || own == 0.0 {
+            return Err(format!("{:.1} mm of its {own:.1} mm are measured", fitted.length.min(own)));
+        }
+        Ok(fitted)
+    }
+
+    /// Finds the motion that fits all places that fit, from the motion that fits the parts.
+    ///
+    /// # Errors
+    /// The errors of [`Fit::of_parts`].
+    pub fn of_all(&self, of_parts: Fitted) -> Result<Fitted, String> {
+        let fits = (3.0 * of_parts.rms).clamp(FITS[0], FITS[1]);
+        let mut fitted = of_parts;
+        for _ in 0..MOST_ROUNDS {
+            let mut chosen = vec![false; self.measured.marks.len()];
+            let near = self.pairs(&fitted.motion, &mut Vec::new(), |_, _, across| across.abs() <= fits);
+            near.iter().for_each(|pair| chosen[pair.measured] = true);
+            let next = self.settled(fitted.motion, |k, _, across| chosen[k] && across.abs() <= FARTHEST)?;
+            let moved = apart(&fitted.motion, &next.motion);
+            fitted = next;
+            if moved <= ROUND_SETTLED {
+                return Ok(fitted);
+            }
+        }
+        Err(format!("the places that fit are not settled after {MOST_ROUNDS} rounds"))
+    }
+
+    fn settled(&self, start: Station, belongs: impl Fn(usize, usize, f64) -> bool) -> Result<Fitted, String> {
+        let (mut motion, mut feet) = (start, Vec::new());
+        for _ in 0..MOST_PASSES {
+            let pairs = self.pairs(&motion, &mut feet, &belongs);
+            let Some(step) = step(&pairs) else {
+                return Err("what is measured of it leaves the profile free to move".into());
+            };
+            let next = motion.placed_by(&step);
+            let moved = apart(&motion, &next);
+            motion = next;
+            if moved <= SETTLED {
+                let pairs = self.pairs(&motion, &mut feet, &belongs);
+                let length: f64 = pairs.iter().map(|pair| pair.weight).sum();
+                let squares: f64 = pairs.iter().map(|pair| pair.weight * pair.across.powi(2)).sum();
+                return Ok(Fitted { motion, rms: (squares / length).sqrt(), length });
+            }
+        }
+        Err(format!("the fit is not settled after {MOST_PASSES} passes"))
+    }
+
+    /// Returns the places that belong, under a motion. `feet` are those of the last motion; the first search is over all marks.
+    fn pairs(
+        &self,
+        motion: &Station,
+        feet: &mut Vec<usize>,
+        belongs: impl Fn(usize, usize, f64) -> bool,
+    ) -> Vec<Pair> {
+        let nominal = &self.nominal.marks;
+        let moved = self.measured.placed(motion);
+        if feet.is_empty() {
+            feet.extend(moved.marks.iter().map(|mark| nearest(nominal, &mark.station)));
+        }
+        let mut pairs = Vec::new();
+        for (k, (mark, weight)) in moved.marks.iter().zip(self.measured.lengths()).enumerate() {
+            let station = mark.station;
+            let Some(foot) = beside(nominal, [station.x, station.z], feet[k]) else { continue };
+            feet[k] = foot.mark;
+            let own = nominal[foot.mark].station;
+            let along = station.cos * own.cos + station.sin * own.sin;
+            let inside = foot.mark > 0 && foot.mark + 1 < nominal.len();
+            if inside && along >= ALONG && belongs(k, foot.mark, foot.across) {
+                let at = [station.x, station.z];
+                pairs.push(Pair {
+                    measured: k,
+                    at,
+                    normal: [-own.sin, own.cos],
+                    across: foot.across,
+                    weight,
+                });
+            }
+        }
+        pairs
+    }
+}
+
+/// Returns the motion that makes the distances least to first order; `None` if some motion changes none of them.
+fn step(pairs: &[Pair]) -> Option<Station> {
+    let length: f64 = pairs.iter().map(|pair| pair.weight).sum();
+    let mean = |k: usize| pairs.iter().map(|pair| pair.weight * pair.at[k]).sum::<f64>() / length;
+    let centre = [mean(0), mean(1)];
+    let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
+    for Pair { at, normal: [a, b], across, weight, .. } in pairs {
+        let turn = b * (at[0] - centre[0]) - a * (at[1] - centre[1]);
+        let row = Vector3::new(*a, *b, turn / ARM);
+        normal += *weight * row * row.transpose();
+        right -= *weight * *across * row;
+    }
+    let each = normal / length;
+    // Without pairs it is NaN, of which there are no eigenvalues.
+    if each.iter().any(|value| !value.is_finite()) {
+        return None;
+    }
+    if each.symmetric_eigenvalues().min() < LEAST_HOLD * LEAST_HOLD {
+        return None;
+    }
+    let motion = normal.cholesky()?.solve(&right);
+    let (sin, cos) = (motion[2] / ARM).sin_cos();
+    let [x, z] = centre;
+    Some(Station { x: x + motion[0] - (x * cos - z * sin), z: z + motion[1] - (x * sin + z * cos), cos, sin })
+}
+
+/// Returns how far two motions are apart \[mm\], a turn counted at 100 mm, about the extent of a profile.
+fn apart(a: &Station, b: &Station) -> f64 {
+    let turn = 100.0 * (a.sin * b.cos - a.cos * b.sin);
+    (a.x - b.x).abs().max((a.z - b.z).abs()).max(turn.abs())
+}
+
+/// Returns the index of the nearest mark.
+fn nearest(marks: &[Mark], to: &Station) -> usize {
+    let square = |mark: &Mark| (mark.station.x - to.x).powi(2) + (mark.station.z - to.z).powi(2);
+    let best = marks.iter().enumerate().min_by(|(_, a), (_, b)| square(a).total_cmp(&square(b)));
+    best.map_or(0, |(k, _)| k)
+}

@@ -1,0 +1,241 @@
+//! The quantities of rails, with the gauge side at smaller x.
+
+use std::f64::consts::FRAC_1_SQRT_2;
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::curve::{Curve, Place};
+use super::found::Found;
+use super::nominal::{Nominal, running_head};
+use super::options::{GaugeFrom, Options};
+use super::quantity::Quantity;
+
+/// Half width \[mm\] of the crown whose radius is fitted, that of the MiniProf's own calculation.
+const CROWN: f64 = 10.0;
+/// Height \[mm\] of the gauge face through which a line is fitted, and the least one.
+const FACE: f64 = 10.0;
+const LEAST_FACE: f64 = 3.0;
+/// Depth \[mm\] below the top to which flow is sought: deeper, the fillet to the underside of a head begins.
+const LIP_DEPTH: f64 = 25.0;
+/// Height \[mm\] above the end of a face from which the head's area counts, so that rounding does not take the end away.
+const ABOVE_END: f64 = 0.01;
+/// Farthest distance \[mm\] of a worn gauge corner from the nominal one.
+const FARTHEST: f64 = 25.0;
+
+/// A running head with its top and what is left of it.
+struct Head<'a> {
+    whole: &'a Curve,
+    /// From the bottom of the groove, if there is one, to the field side.
+    curve: Curve,
+    top: Place,
+    /// Index of the groove's bottom in `whole`.
+    groove: Option<usize>,
+}
+
+impl<'a> Head<'a> {
+    fn new(whole: &'a Curve) -> Result<Self, String> {
+        let (curve, groove) = running_head(whole);
+        let top = curve.highest(1.0).ok_or("no points")?;
+        if top.mark == 0 || top.mark + 1 >= curve.marks.len() {
+            return Err(format!(
+                "no top of rail: the points are highest where they end, at x = {:.3} mm",
+                top.x
+            ));
+        }
+        Ok(Self { whole, curve, top, groove })
+    }
+
+    /// Returns x of the gauge face at a height \[mm\]: the nearest to the top.
+    fn face(&self, z: f64) -> Result<f64, String> {
+        let all = self.curve.at_z(z);
+        let face = all.iter().rfind(|place| place.mark <= self.top.mark && place.x <= self.top.x);
+        face.map(|place| place.x)
+            .ok_or_else(|| format!("no gauge face {:.3} mm below the top of rail", self.top.z - z))
+    }
+
+    /// Returns x of the keeper's face at a height \[mm\]; `None` without a groove.
+    fn keeper(&self, z: f64) -> Option<Result<f64, String>> {
+        let groove = self.groove?;
+        let all = self.whole.at_z(z);
+        let face = all.iter().rfind(|place| place.mark < groove).map(|place| place.x);
+        Some(face.ok_or_else(|| format!("no keeper {:.3} mm below the top of rail", self.top.z - z)))
+    }
+
+    /// Returns the lowest height \[mm\] that the gauge and the field side both reach.
+    fn reach(&self) -> f64 {
+        let sides = [self.curve.up_to(self.top.mark), self.curve.from(self.top.mark)];
+        sides
+            .iter()
+            .filter_map(|side| side.highest(-1.0))
+            .map(|place| place.z)
+            .fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Returns the area \[mm²\] of the head above a height that both sides reach.
+    fn area(&self, z: f64) -> Result<f64, String> {
+        let all = self.curve.at_z(z);
+        let left = all.iter().rfind(|place| place.mark <= self.top.mark);
+        let right = all.iter().find(|place| place.mark >= self.top.mark);
+        let (Some(a), Some(b)) = (left, right) else {
+            return Err("no faces at both sides of the head".into());
+        };
+        let inner = self.curve.marks[a.mark + 1..=b.mark].iter().map(|mark| [mark.station.x, mark.station.z]);
+        let ring: Vec<[f64; 2]> = [[a.x, a.z]].into_iter().chain(inner).chain([[b.x, b.z]]).collect();
+        Ok(ring
+            .windows(2)
+            .map(|pair| 0.5 * (pair[1][0] - pair[0][0]) * (pair[0][1] + pair[1][1] - 2.0 * z))
+            .sum())
+    }
+}
+
+/// Measures a rail.
+pub(super) fn measure(curve: &Curve, nominal: Option<&Nominal>, options: &Options) -> Found {
+    let mut found = Found::default();
+    let head = match Head::new(curve) {
+        Ok(head) => head,
+        Err(why) => {
+            for quantity in [Quantity::CrownRadius, Quantity::SideFaceAngle, Quantity::Lip] {
+                found.put(quantity, Err(why.clone()));
+            }
+            return found;
+        }
+    };
+    let level = head.top.z - options.gauge_level;
+    found.put(Quantity::SideFaceAngle, side_face_angle(&head, level));
+    found.put(Quantity::Lip, head.face(level).map(|_| lip(&head)));
+    if let Some(keeper) = head.keeper(level) {
+        found.put(Quantity::GrooveWidth, keeper.and_then(|keeper| Ok(head.face(level)? - keeper)));
+        let bottom = head.curve.marks.first().map_or(f64::NAN, |mark| mark.station.z);
+        found.put(Quantity::GrooveDepth, Ok(head.top.z - bottom));
+    }
+    let drawn =
+        nominal.map(|nominal| Head::new(&nominal.curve).map_err(|why| format!("in the nominal: {why}")));
+    let about = drawn.as_ref().and_then(|drawn| drawn.as_ref().ok()).map_or(head.top.x, |drawn| drawn.top.x);
+    found.put(Quantity::CrownRadius, crown_radius(&head, about));
+    match drawn {
+        None => {}
+        Some(Ok(drawn)) => wear(&mut found, &head, &drawn, options),
+        Some(Err(why)) => {
+            for quantity in [Quantity::W1, Quantity::W2, Quantity::W3, Quantity::HeadAreaLost] {
+                found.put(quantity, Err(why.clone()));
+            }
+        }
+    }
+    found
+}
+
+/// Measures what a head has lost of the nominal one.
+fn wear(found: &mut Found, head: &Head, drawn: &Head, options: &Options) {
+    let crown = head.curve.at_x(drawn.top.x).iter().map(|place| place.z).fold(f64::NEG_INFINITY, f64::max);
+    let none = || format!("no points over the nominal's top, x = {:.3} mm", drawn.top.x);
+    found.put(Quantity::W1, if crown.is_finite() { Ok(drawn.top.z - crown) } else { Err(none()) });
+    let top = if options.gauge_from == GaugeFrom::Measured { head.top.z } else { drawn.top.z };
+    let level = top - options.gauge_level;
+    let in_nominal = |why: String| format!("in the nominal: {why}");
+    let w2 = head.face(level).and_then(|x| Ok(x - drawn.face(level).map_err(in_nominal)?));
+    found.put(Quantity::W2, w2);
+    found.put(Quantity::W3, w3(head, drawn));
+    let deepest = head.reach().max(drawn.reach()) + ABOVE_END;
+    let area = if drawn.top.z - deepest < options.gauge_level {
+        let depth = drawn.top.z - deepest;
+        Err(format!(
+            "both faces reach {depth:.3} mm below the nominal top, less than {}",
+            options.gauge_level
+        ))
+    } else {
+        head.area(deepest).and_then(|area| Ok(100.0 * (1.0 - area / drawn.area(deepest)?)))
+    };
+    found.put(Quantity::HeadAreaLost, area);
+    if let Some(nominal) = drawn.keeper(level) {
+        let keeper = head.keeper(level).unwrap_or_else(|| Err("no groove beside the head".into()));
+        found.put(Quantity::KeeperWear, keeper.and_then(|x| Ok(nominal.map_err(in_nominal)? - x)));
+    }
+}
+
+/// Returns the wear \[mm\] along the normal of the nominal where its gauge corner rises at 45°. If that is an arc, the line goes
+/// through its centre.
+fn w3(head: &Head, drawn: &Head) -> Result<f64, String> {
+    let marks = &drawn.curve.marks[..=drawn.top.mark];
+    let over = |k: usize| marks[k].station.sin - marks[k].station.cos;
+    let at = (1..marks.len()).rfind(|&k| over(k - 1) >= 0.0 && over(k) < 0.0);
+    let k = at.ok_or("in the nominal: no gauge corner that rises at 45°")?;
+    let share = over(k - 1) / (over(k - 1) - over(k));
+    let [a, b] = [marks[k - 1].station, marks[k].station];
+    let along = |x: f64, z: f64| FRAC_1_SQRT_2 * (x + z);
+    // Positive into the head.
+    let inside = |x: f64, z: f64| FRAC_1_SQRT_2 * (x - z);
+    let (x, z) = (a.x + share * (b.x - a.x), a.z + share * (b.z - a.z));
+    let depth = |head: &Head| {
+        let all = head.curve.crossings([FRAC_1_SQRT_2; 2], along(x, z)).into_iter();
+        let depths = all.map(|place| inside(place.x, place.z) - inside(x, z));
+        depths.filter(|depth| depth.abs() <= FARTHEST).min_by(|a, b| a.abs().total_cmp(&b.abs()))
+    };
+    let depths = depth(head).zip(depth(drawn)).map(|(own, nominal)| own - nominal);
+    depths.ok_or_else(|| {
+        format!("no points on the 45° line through the nominal's gauge corner at ({x:.3}, {z:.3}) mm")
+    })
+}
+
+/// Returns the radius \[mm\] of the circle that fits the crown about `x`, + for a crown that bulges up.
+///
+/// Method: κ(x² + z²)/2 + bx + a = z by least squares, which is the distance of a nearly level arc but for κz, and exact on a circle.
+fn crown_radius(head: &Head, about: f64) -> Result<f64, String> {
+    let curve = &head.curve;
+    let inside = || {
+        let all = curve.marks.iter().zip(curve.lengths());
+        all.map(|(mark, weight)| (mark.station.x - about, mark.station.z - head.top.z, weight))
+            .filter(|(x, ..)| x.abs() <= CROWN)
+    };
+    let [from, to] = inside().fold([0.0f64; 2], |[low, high], (x, ..)| [low.min(x), high.max(x)]);
+    if from > -0.9 * CROWN || to < 0.9 * CROWN {
+        return Err(format!(
+            "the crown is measured from {from:.3} to {to:.3} mm about its top, not over {CROWN}"
+        ));
+    }
+    let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
+    for (x, z, weight) in inside() {
+        // Of one size, so that nothing cancels.
+        let row = Vector3::new((x * x + z * z) / (2.0 * CROWN * CROWN), x / CROWN, 1.0);
+        normal += weight * row * row.transpose();
+        right += weight * z * row;
+    }
+    let found = normal.cholesky().ok_or("the crown has no circle")?.solve(&right);
+    let (curvature, slope, height) = (found[0] / (CROWN * CROWN), found[1] / CROWN, found[2]);
+    if curvature >= 0.0 {
+        return Err("the crown is hollow or flat".into());
+    }
+    Ok((1.0 + slope * slope - 2.0 * height * curvature).sqrt() / -curvature)
+}
+
+/// Returns the angle \[deg\] of a line through the gauge face, from `level` down.
+fn side_face_angle(head: &Head, level: f64) -> Result<f64, String> {
+    head.face(level)?;
+    let all = head.curve.marks.iter().zip(head.curve.lengths()).take(head.top.mark);
+    let own: Vec<(f64, f64, f64)> = all
+        .map(|(mark, weight)| (mark.station.x, mark.station.z - level, weight))
+        .filter(|(_, z, _)| *z <= 0.0 && *z >= -FACE)
+        .collect();
+    let depth = own.iter().map(|(_, z, _)| -z).fold(0.0, f64::max);
+    if depth < LEAST_FACE {
+        return Err(format!("the gauge face is measured {depth:.3} mm further down, less than {LEAST_FACE}"));
+    }
+    let weight: f64 = own.iter().map(|(.., weight)| weight).sum();
+    let mean =
+        |of: fn(&(f64, f64, f64)) -> f64| own.iter().map(|place| place.2 * of(place)).sum::<f64>() / weight;
+    let [x, z] = [mean(|place| place.0), mean(|place| place.1)];
+    let moment =
+        |of: &dyn Fn(&(f64, f64, f64)) -> f64| own.iter().map(|place| place.2 * of(place)).sum::<f64>();
+    let slope = moment(&|place| (place.0 - x) * (place.1 - z)) / moment(&|place| (place.1 - z).powi(2));
+    Ok(slope.atan().to_degrees())
+}
+
+/// Returns how far the gauge face recedes below what stands out farthest \[mm\].
+fn lip(head: &Head) -> f64 {
+    let (mut outermost, mut lip) = (f64::INFINITY, 0.0f64);
+    let face = head.curve.marks.iter().take(head.top.mark).rev();
+    for mark in face.take_while(|mark| head.top.z - mark.station.z <= LIP_DEPTH) {
+        outermost = outermost.min(mark.station.x);
+        lip = lip.max(mark.station.x - outermost);
+    }
+    lip
+}

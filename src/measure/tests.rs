@@ -1,0 +1,488 @@
+//! Closed forms of drawings, and known wear under a known displacement.
+
+use super::curve::Curve;
+use super::*;
+use crate::measured::{self, CurveKind};
+use crate::profile::{Arc, Segment, standards, trace};
+
+/// Accuracy \[mm\] to which known wear has to be recovered.
+const RECOVERED: f64 = 0.01;
+
+fn value(measures: &Measures, quantity: Quantity) -> f64 {
+    measures.value(quantity).unwrap_or_else(|| panic!("{quantity:?}: {:?}", measures.findings))
+}
+
+/// Moves each point of a nominal by `wear(x, z, nx, nz)`, then turns it and moves it.
+fn worn(
+    nominal: &Profile,
+    side: Side,
+    by: impl Fn(Station) -> [f64; 2],
+    frame: Station,
+    keep: impl Fn(Station) -> bool,
+) -> Profile {
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    for mark in trace(nominal, 0.1).into_iter().filter(|mark| keep(mark.station)) {
+        let [dx, dz] = by(mark.station);
+        let own = mark.station;
+        let at = Station { x: own.x + dx, z: own.z + dz, ..own }.placed_by(&frame);
+        if points.last().is_none_or(|last| (last[0] - at.x).hypot(last[1] - at.z) > 0.02) {
+            points.push([at.x, at.z]);
+        }
+    }
+    let options = measured::Options {
+        curve: Some(CurveKind::Interpolation),
+        mirror: Some(false),
+        flip_z: Some(false),
+        ..measured::Options::default()
+    };
+    measured::of_points("worn", &points, side, &options).expect("points of a profile").profile
+}
+
+fn frame(x: f64, z: f64, degrees: f64) -> Station {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    Station { x, z, cos, sin }
+}
+
+/// A wear of `most` that fades out smoothly between two ends.
+fn bump(x: f64, [low, high]: [f64; 2], most: f64) -> f64 {
+    if x <= low || x >= high {
+        return 0.0;
+    }
+    most * (std::f64::consts::PI * (x - low) / (high - low)).sin().powi(4)
+}
+
+#[test]
+fn drawings_have_the_flange_of_their_name() -> Result<()> {
+    // EN 13715: S1002 has e = 32.5 and h = 28; EN 15302's drawings have the same flange, but for C.
+    let measures = measure(&standards::wheel("S1002")?, Side::Wheel, None, &Options::default())?;
+    assert!((value(&measures, Quantity::FlangeHeight) - 28.0).abs() < 1e-6);
+    assert!((value(&measures, Quantity::FlangeThickness) - 32.5).abs() < 1e-3, "{measures:?}");
+    assert!(value(&measures, Quantity::Hollow) < 1e-9);
+    assert!(measures.findings.is_empty(), "{measures:?}");
+    let named = standards::wheel_names().filter(|name| name.starts_with("EN13715"));
+    for name in named {
+        let [h, e] = ["-h", "-e"].map(|key| {
+            let rest = name.split(key).nth(1).expect("a flange in the name");
+            rest.split('-').next().and_then(|text| text.parse::<f64>().ok()).expect("a number")
+        });
+        let measures = measure(&standards::wheel(name)?, Side::Wheel, None, &Options::default())?;
+        assert!((value(&measures, Quantity::FlangeHeight) - h).abs() < 1e-3, "{name}: {measures:?}");
+        assert!((value(&measures, Quantity::FlangeThickness) - e).abs() < 2e-3, "{name}: {measures:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn a_flange_of_lines_has_its_closed_form() -> Result<()> {
+    // Back, a tip of 10 mm, a face at 1:2 and a cone of 1:20, in a file's axes with X = 0 at the back.
+    let line = |from, to| Arc::line(from, to).map(Segment::arc);
+    let wheel = Profile::new(
+        "lines",
+        "test",
+        vec![
+            line([0.0, 20.0], [0.5, -25.0])?,
+            line([0.5, -25.0], [10.0, -28.0])?,
+            line([10.0, -28.0], [20.0, -24.0])?,
+            line([20.0, -24.0], [32.0, 0.0])?,
+            line([32.0, 0.0], [132.0, 5.0])?,
+        ],
+    )?;
+    let measures = measure(&wheel, Side::Wheel, None, &Options::default())?;
+    // z(70) = 1.9.
+    assert!((value(&measures, Quantity::FlangeHeight) - 29.9).abs() < 1e-9);
+    let at = |z: f64| 20.0 + (z + 24.0) / 2.0;
+    assert!((value(&measures, Quantity::FlangeThickness) - at(1.9 - 10.0)).abs() < 1e-9);
+    assert!((value(&measures, Quantity::Qr) - (at(-8.1) - 15.0)).abs() < 1e-9);
+    let back = 0.5 * (20.0 - (1.9 - 14.0)) / 45.0;
+    assert!((value(&measures, Quantity::FlangeWidth) - (at(-12.1) - back)).abs() < 1e-9);
+    // A turn by 0.1° moves Sh by 60 mm × 0.1°; a shift along x moves it by a twentieth.
+    let off = measures.if_off(Quantity::FlangeHeight).expect("a bound");
+    assert!((off - 60.0 * 0.1f64.to_radians()).abs() < 1e-3, "{off}");
+    Ok(())
+}
+
+#[test]
+fn known_wear_of_a_wheel_is_recovered() -> Result<()> {
+    let nominal = standards::wheel("S1002")?;
+    let by = |at: Station| [0.0, bump(at.x, [-32.0, 40.0], 2.5)];
+    let exact = bump(0.0, [-32.0, 40.0], 2.5);
+    for (x, z, degrees) in [(0.0, 0.0, 0.0), (70.3, -1.2, 0.4), (-20.0, 3.0, -0.9)] {
+        let wheel = worn(&nominal, Side::Wheel, by, frame(x, z, degrees), |_| true);
+        for align in [Align::BackAndTread, Align::BestFit] {
+            let options = Options { align: Some(align), ..Options::default() };
+            let measures = measure(&wheel, Side::Wheel, Some(&nominal), &options)?;
+            let [tread, most] = [Quantity::TreadWear, Quantity::TreadWearMax].map(|q| value(&measures, q));
+            assert!((tread - exact).abs() < RECOVERED, "{align:?} {degrees}: {tread} {exact} {measures:?}");
+            assert!((most - 2.5).abs() < RECOVERED, "{align:?} {degrees}: {most}");
+            let flange = value(&measures, Quantity::FlangeThickness);
+            let own = measure(
+                &worn(&nominal, Side::Wheel, by, Station::AXES, |_| true),
+                Side::Wheel,
+                None,
+                &Options::default(),
+            )?;
+            assert!(
+                (flange - value(&own, Quantity::FlangeThickness)).abs() < RECOVERED,
+                "{align:?}: {flange} {own:?}"
+            );
+            assert!(measures.findings.is_empty(), "{:?}", measures.findings);
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn hollow_wear_is_the_depth_below_the_field_side() -> Result<()> {
+    let nominal = standards::wheel("S1002")?;
+    let by = |at: Station| [0.0, bump(at.x, [-25.0, 40.0], 3.0)];
+    let measures = measure(
+        &worn(&nominal, Side::Wheel, by, Station::AXES, |_| true),
+        Side::Wheel,
+        None,
+        &Options::default(),
+    )?;
+    // The highest and the lowest place of the same heights, over points every 0.01 mm.
+    let height = |x: f64| {
+        let lowest = Curve::new(&nominal).at_x(x).iter().map(|at| at.z).fold(f64::INFINITY, f64::min);
+        lowest + bump(x, [-25.0, 40.0], 3.0)
+    };
+    let (mut top, mut rise) = (f64::NEG_INFINITY, 0.0f64);
+    for k in -250..590 {
+        let z = height(f64::from(k) * 0.1);
+        top = top.max(z);
+        rise = rise.max(top - z);
+    }
+    assert!(rise > 1.0 && (value(&measures, Quantity::Hollow) - rise).abs() < 2e-3, "{rise} {measures:?}");
+    Ok(())
+}
+
+#[test]
+fn known_wear_of_a_rail_is_recovered() -> Result<()> {
+    let nominal = standards::rail("60E1")?;
+    // The crown sinks, and the gauge side moves in; both fade out before the field side.
+    let by = |at: Station| {
+        let side = 2.0 / (1.0 + ((at.x + 20.0) / 2.0).exp());
+        let crown = 1.5 / (1.0 + ((at.x - 18.0) / 1.5).exp());
+        let upper = 1.0 / (1.0 + ((-20.0 - at.z) / 1.0).exp());
+        [side, -crown * upper]
+    };
+    let straight = worn(&nominal, Side::Rail, by, Station::AXES, |_| true);
+    let options = |align| Options { align: Some(align), ..Options::default() };
+    let exact = measure(&straight, Side::Rail, Some(&nominal), &options(Align::None))?;
+    assert!((value(&exact, Quantity::W1) - by(Station::AXES)[1].abs()).abs() < 1e-4, "{exact:?}");
+    assert!((value(&exact, Quantity::W2) - 2.0).abs() < 0.1);
+    for (x, z, degrees) in [(0.0, 0.0, 0.0), (3.0, -2.0, 1.2), (-50.0, 20.0, -1.5)] {
+        let rail = worn(&nominal, Side::Rail, by, frame(x, z, degrees), |_| true);
+        for align in [Align::FieldSide, Align::BestFit] {
+            let measures = measure(&rail, Side::Rail, Some(&nominal), &options(align))?;
+            for quantity in [Quantity::W1, Quantity::W2, Quantity::W3] {
+                let [own, to] = [&measures, &exact].map(|measures| value(measures, quantity));
+                assert!(
+                    (own - to).abs() < RECOVERED,
+                    "{align:?} {degrees} {quantity:?}: {own} {to} {:?}",
+                    measures.alignment
+                );
+            }
+            let area = value(&measures, Quantity::HeadAreaLost);
+            assert!((area - value(&exact, Quantity::HeadAreaLost)).abs() < 0.03, "{area} {exact:?}");
+            assert!(measures.findings.is_empty(), "{:?}", measures.findings);
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn rails_have_the_measures_of_their_drawing() -> Result<()> {
+    for name in standards::rail_names() {
+        let rail = standards::rail(name)?;
+        let measures = measure(
+            &rail,
+            Side::Rail,
+            Some(&rail),
+            &Options { align: Some(Align::None), ..Options::default() },
+        )?;
+        for quantity in [Quantity::W1, Quantity::W2, Quantity::W3, Quantity::HeadAreaLost, Quantity::Lip] {
+            if let Some(value) = measures.value(quantity) {
+                assert!(value.abs() < 1e-9, "{name}: {quantity:?} {value}");
+            }
+        }
+    }
+    let measures = measure(&standards::rail("60E1")?, Side::Rail, None, &Options::default())?;
+    assert!((value(&measures, Quantity::CrownRadius) - 300.0).abs() < 1e-6, "{measures:?}");
+    // The flank is 1:20; the corner's end at its top changes the line a little.
+    assert!(
+        (value(&measures, Quantity::SideFaceAngle) - 0.05f64.atan().to_degrees()).abs() < 0.05,
+        "{measures:?}"
+    );
+    Ok(())
+}
+
+/// 60E1 with a plain underside and web at both sides.
+fn with_web() -> Result<Profile> {
+    let head = standards::rail("60E1")?;
+    let line = |from, to| Arc::line(from, to).map(Segment::arc);
+    let ends = head.segments().first().zip(head.segments().last());
+    let (left, right) = ends.map(|(first, last)| (first.start(), last.end())).expect("segments");
+    let (under, foot) = ([-12.0, -48.0], [-8.5, -90.0]);
+    let mirrored = |[x, z]: [f64; 2]| [-x, z];
+    let mut all = vec![line(foot, under)?, line(under, [left.x, left.z])?];
+    all.extend(head.segments().iter().cloned());
+    all.push(line([right.x, right.z], mirrored(under))?);
+    all.push(line(mirrored(under), mirrored(foot))?);
+    Profile::new("60E1 with web", "test", all)
+}
+
+#[test]
+fn known_wear_of_a_head_worn_at_both_sides_is_recovered_by_its_web_and_by_given_ranges() -> Result<()> {
+    let nominal = with_web()?;
+    // The whole head above its flanks sinks, and both faces move in.
+    let by = |at: Station| {
+        let upper = 1.0 / (1.0 + ((-25.0 - at.z) / 1.0).exp());
+        [-1.2 * upper * (at.x / 5.0).tanh(), -2.0 * upper]
+    };
+    let none = Options { align: Some(Align::None), ..Options::default() };
+    let straight = worn(&nominal, Side::Rail, by, Station::AXES, |_| true);
+    let exact = measure(&straight, Side::Rail, Some(&nominal), &none)?;
+    assert!((value(&exact, Quantity::W1) - 2.0).abs() < 1e-3, "{exact:?}");
+    let rail = worn(&nominal, Side::Rail, by, frame(4.0, -3.0, 1.0), |_| true);
+    let web = Options { align: Some(Align::Web), ..Options::default() };
+    let measures = measure(&rail, Side::Rail, Some(&nominal), &web)?;
+    for quantity in [Quantity::W1, Quantity::W2, Quantity::W3] {
+        let [own, to] = [&measures, &exact].map(|measures| value(measures, quantity));
+        assert!((own - to).abs() < RECOVERED, "{quantity:?}: {own} {to} {:?}", measures.alignment);
+    }
+    assert!(measures.findings.is_empty(), "{:?}", measures.findings);
+    // Ranges of a head that is worn at its gauge side only.
+    let by = |at: Station| [2.0 / (1.0 + ((at.x + 15.0) / 1.5).exp()), 0.0];
+    let head = standards::rail("60E1")?;
+    let exact =
+        measure(&worn(&head, Side::Rail, by, Station::AXES, |_| true), Side::Rail, Some(&head), &none)?;
+    let rail = worn(&head, Side::Rail, by, frame(-6.0, 2.0, -0.8), |_| true);
+    let ranges = Options { align: Some(Align::Unworn), unworn: vec![[5.0, 40.0]], ..Options::default() };
+    let measures = measure(&rail, Side::Rail, Some(&head), &ranges)?;
+    for quantity in [Quantity::W1, Quantity::W2, Quantity::W3] {
+        let [own, to] = [&measures, &exact].map(|measures| value(measures, quantity));
+        assert!((own - to).abs() < RECOVERED, "{quantity:?}: {own} {to} {:?}", measures.alignment);
+    }
+    Ok(())
+}
+
+#[test]
+fn a_wheel_that_is_moved_but_not_turned_is_put_on_its_back() -> Result<()> {
+    // An upright back above the drawn flange, over which a line is fitted.
+    let drawn = standards::wheel("S1002")?;
+    let start = drawn.segments()[0].start();
+    let mut all = vec![Segment::arc(Arc::line([start.x, 15.0], [start.x, start.z])?)];
+    all.extend(drawn.segments().iter().cloned());
+    let nominal = Profile::new("S1002 with back", "test", all)?;
+    // The flange's face moves in by 1.5 mm; the tread at X = 70 does not.
+    let by = |at: Station| [-bump(at.z, [-24.0, -3.0], 1.5) * f64::from(u8::from(at.x > -50.0)), 0.0];
+    let exact = measure(
+        &worn(&nominal, Side::Wheel, by, Station::AXES, |_| true),
+        Side::Wheel,
+        Some(&nominal),
+        &Options { align: Some(Align::Back), ..Options::default() },
+    )?;
+    let thickness = value(&exact, Quantity::FlangeThickness);
+    assert!((32.5 - thickness - bump(-10.0, [-24.0, -3.0], 1.5)).abs() < 0.2, "{exact:?}");
+    let wheel = worn(&nominal, Side::Wheel, by, frame(70.4, -2.0, 0.0), |_| true);
+    for align in [Align::Back, Align::TreadPoint] {
+        let measures = measure(
+            &wheel,
+            Side::Wheel,
+            Some(&nominal),
+            &Options { align: Some(align), ..Options::default() },
+        )?;
+        for quantity in [Quantity::FlangeThickness, Quantity::FlangeHeight, Quantity::Qr] {
+            let [own, to] = [&measures, &exact].map(|measures| value(measures, quantity));
+            assert!((own - to).abs() < RECOVERED, "{align:?} {quantity:?}: {own} {to}");
+        }
+        // Heights are the file's by `back`, and those of the nominal's tread by `tread-point`.
+        let lowered = if align == Align::Back { -2.0 } else { 0.0 };
+        assert!(
+            (value(&measures, Quantity::TreadWear) - lowered).abs() < RECOVERED,
+            "{align:?}: {measures:?}"
+        );
+    }
+    Ok(())
+}
+
+#[test]
+fn a_grooved_rail_has_its_groove_and_its_lip() -> Result<()> {
+    let line = |from, to| Arc::line(from, to).map(Segment::arc);
+    // A keeper 5 mm below the top, a groove of 40 mm, a face with 1 mm of flow over it, a flat crown.
+    let grooved = |keeper: f64| -> Result<Profile> {
+        Profile::new(
+            "grooved",
+            "test",
+            vec![
+                line([-100.0, -30.0], [-99.0, -5.0])?,
+                line([-99.0, -5.0], [keeper - 1.0, -5.0])?,
+                line([keeper - 1.0, -5.0], [keeper + 1.0, -47.0])?,
+                line([keeper + 1.0, -47.0], [-36.0, -46.0])?,
+                line([-36.0, -46.0], [-36.0, -12.0])?,
+                line([-36.0, -12.0], [-37.0, -10.0])?,
+                line([-37.0, -10.0], [-20.0, -0.5])?,
+                line([-20.0, -0.5], [0.0, 0.0])?,
+                line([0.0, 0.0], [36.0, -2.0])?,
+                line([36.0, -2.0], [36.5, -30.0])?,
+            ],
+        )
+    };
+    let keeper = |x: f64| x - 1.0 + 2.0 * 9.0 / 42.0;
+    let measures = measure(
+        &grooved(-77.0)?,
+        Side::Rail,
+        Some(&grooved(-76.0)?),
+        &Options { align: Some(Align::None), ..Options::default() },
+    )?;
+    assert!((value(&measures, Quantity::GrooveWidth) - (-36.0 - keeper(-77.0))).abs() < 1e-9, "{measures:?}");
+    assert!((value(&measures, Quantity::GrooveDepth) - 47.0).abs() < 1e-9);
+    assert!((value(&measures, Quantity::KeeperWear) - 1.0).abs() < 1e-9);
+    assert!((value(&measures, Quantity::Lip) - 1.0).abs() < 1e-9);
+    Ok(())
+}
+
+#[test]
+fn what_is_not_measured_is_missing_and_says_so() -> Result<()> {
+    let nominal = standards::wheel("S1002")?;
+    let cut = |low: f64, high: f64| {
+        worn(&nominal, Side::Wheel, |_| [0.0; 2], Station::AXES, move |at| at.x >= low && at.x <= high)
+    };
+    // Without its back there is no X; without the tread no Sh; with neither the field side no fit.
+    let measures = measure(&cut(-62.0, 60.0), Side::Wheel, None, &Options::default())?;
+    assert!(measures.alignment.is_none() && measures.findings[0].contains("no flange back"), "{measures:?}");
+    let measures = measure(&cut(-70.0, -20.0), Side::Wheel, None, &Options::default())?;
+    assert!(measures.value(Quantity::FlangeHeight).is_none(), "{measures:?}");
+    assert!(measures.findings[0].contains("no tread at X = 70 mm"), "{measures:?}");
+    let measures = measure(&cut(-70.0, 30.0), Side::Wheel, Some(&nominal), &Options::default())?;
+    assert!(measures.findings[0].starts_with("no alignment by flange back and outer tread"), "{measures:?}");
+    // Where the back turns upright 0.4 mm farther left, its place is doubted.
+    let measures = measure(&cut(-69.6, 60.0), Side::Wheel, None, &Options::default())?;
+    assert!(measures.value(Quantity::FlangeThickness).is_some(), "{measures:?}");
+    assert!(measures.findings[0].contains("the flange back may lie farther left"), "{measures:?}");
+    // A rail with neither field side nor gauge face.
+    let rail = standards::rail("60E1")?;
+    let crown = worn(&rail, Side::Rail, |_| [0.0; 2], Station::AXES, |at| at.x.abs() < 25.0);
+    let measures = measure(&crown, Side::Rail, Some(&rail), &Options::default())?;
+    assert!(measures.alignment.is_none() && measures.findings[0].contains("field side"), "{measures:?}");
+    let measures = measure(&crown, Side::Rail, None, &Options::default())?;
+    assert!(
+        measures.value(Quantity::CrownRadius).is_some() && measures.value(Quantity::SideFaceAngle).is_none()
+    );
+    assert!(measures.findings[0].starts_with("no gauge face 14.000 mm below"), "{measures:?}");
+    // The other body.
+    for (profile, side) in [(&nominal, Side::Rail), (&rail, Side::Wheel)] {
+        let measures = measure(profile, side, None, &Options::default())?;
+        assert!(!measures.findings.is_empty(), "{measures:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn a_worn_field_side_leaves_a_finding() -> Result<()> {
+    let nominal = standards::wheel("S1002")?;
+    let by = |at: Station| [0.0, if at.x > 44.0 { 0.6 * ((at.x - 50.0) / 2.0).sin() } else { 0.0 }];
+    let measures = measure(
+        &worn(&nominal, Side::Wheel, by, Station::AXES, |_| true),
+        Side::Wheel,
+        Some(&nominal),
+        &Options::default(),
+    )?;
+    assert!(
+        measures.findings.iter().any(|finding| finding.contains("worn, or another nominal")),
+        "{measures:?}"
+    );
+    // Another nominal, with its flange and tread elsewhere.
+    let other = standards::wheel("APTA-120")?;
+    let measures = measure(&other, Side::Wheel, Some(&nominal), &Options::default())?;
+    assert!(!measures.findings.is_empty(), "{measures:?}");
+    // As if metal had been put on the tread.
+    let by = |at: Station| [0.0, -bump(at.x, [-30.0, 40.0], 2.0)];
+    let wheel = worn(&nominal, Side::Wheel, by, Station::AXES, |_| true);
+    let measures = measure(&wheel, Side::Wheel, Some(&nominal), &Options::default())?;
+    assert!(measures.findings[0].starts_with("tread_wear_mm is negative"), "{measures:?}");
+    Ok(())
+}
+
+#[test]
+fn a_profile_in_another_unit_is_a_finding() -> Result<()> {
+    let crown = Arc::line([-4e3, 0.0], [4e3, 10.0]).map(Segment::arc)?;
+    let rail = Profile::new("metres", "test", vec![crown])?;
+    let measures = measure(&rail, Side::Rail, Some(&standards::rail("60E1")?), &Options::default())?;
+    assert!(measures.findings[0].starts_with("the profile is 8000 mm large"), "{measures:?}");
+    Ok(())
+}
+
+#[test]
+fn options_without_meaning_are_refused() -> Result<()> {
+    let wheel = standards::wheel("S1002")?;
+    let complaint = |options: Options, nominal| {
+        measure(&wheel, Side::Wheel, nominal, &options).err().map(|error| error.place).unwrap_or_default()
+    };
+    assert_eq!(complaint(Options { tread_at: -70.0, ..Options::default() }, None), "tread_at");
+    assert_eq!(complaint(Options { align: Some(Align::Web), ..Options::default() }, Some(&wheel)), "align");
+    assert_eq!(complaint(Options { align: Some(Align::BestFit), ..Options::default() }, None), "align");
+    assert_eq!(complaint(Options { unworn: vec![[0.0, 1.0]], ..Options::default() }, Some(&wheel)), "unworn");
+    assert_eq!(complaint(Options::default(), Some(&wheel)), "");
+    Ok(())
+}
+
+/// Sd, Sh and qR that instruments wrote beside their points, in files of the repository that `WHEELRAIL_CONTACT` names.
+const INSTRUMENTS: [(&str, [f64; 3]); 4] = [
+    ("left-wheel-v1-pre-dry.whl", [36.1416, 27.8749, 9.0991]),
+    ("right-wheel-v1-pre-dry.whl", [36.3244, 27.9698, 9.1947]),
+    ("whl_left_iter288.whl", [36.4023, 28.3512, 5.4454]),
+    ("whl_left_iter795.whl", [34.3347, 34.9985, 10.0658]),
+];
+
+/// Turn \[rad\] after which the right wheel has the instrument's values, 0.18°: the instrument turns a profile to its reference
+/// before it calculates, and writes the points as they were.
+const RIGHT_TURNED_BY: f64 = 0.0032;
+
+#[cfg(feature = "files")]
+#[test]
+fn instruments_have_the_same_values() -> Result<()> {
+    let Some(contact) = std::env::var_os("WHEELRAIL_CONTACT") else { return Ok(()) };
+    let profiles = std::path::Path::new(&contact).join("testbank/profiles");
+    for (file, expected) in INSTRUMENTS {
+        let bytes = crate::files::read_bytes(&profiles.join(file), measured::LARGEST_FILE)?;
+        let curve =
+            measured::Options { curve: Some(CurveKind::Interpolation), ..measured::Options::default() };
+        let read = measured::profile(file, &bytes, Side::Wheel, &curve)?.profile;
+        let turn = if file.starts_with("right") { RIGHT_TURNED_BY } else { 0.0 };
+        let read = read.rotated(nalgebra::UnitComplex::new(turn));
+        let measures = measure(&read, Side::Wheel, None, &Options::default())?;
+        let found =
+            [Quantity::FlangeThickness, Quantity::FlangeHeight, Quantity::Qr].map(|q| value(&measures, q));
+        println!("{file}: {found:.4?}, the instrument has {expected:?}");
+        assert!(
+            found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 0.05),
+            "{file}: {found:?}"
+        );
+    }
+    Ok(())
+}
+
+#[test]
+fn the_page_lists_every_column_and_alignment() {
+    let page = include_str!("../docs/measures.md");
+    for quantity in Quantity::ALL {
+        assert!(page.contains(&format!("`{}`", quantity.key())), "{quantity:?}");
+        assert!(quantity.key().ends_with(&quantity.unit().replace('%', "percent")), "{quantity:?}");
+    }
+    let all = [
+        Align::None,
+        Align::Back,
+        Align::TreadPoint,
+        Align::BackAndTread,
+        Align::FieldSide,
+        Align::Web,
+        Align::Unworn,
+        Align::BestFit,
+    ];
+    for align in all {
+        assert!(page.contains(&format!("| `{}` |", align.word())), "{align:?}");
+        assert_eq!(serde_json::to_value(align).ok(), Some(align.word().into()));
+    }
+}

@@ -1,0 +1,130 @@
+//! The quantities of wheels. X counts from the flange back to the field side, Y = −z.
+
+use super::curve::{Curve, Place};
+use super::found::Found;
+use super::nominal::Nominal;
+use super::options::Options;
+use super::quantity::Quantity;
+
+/// Least length \[mm\] of tread beyond X = 70 over which hollow wear has a meaning.
+const LEAST_TREAD: f64 = 20.0;
+/// Sine of the inclination up to which a surface is tread, 30°.
+const TREAD: f64 = 0.5;
+
+/// Measures a wheel whose X = 0 is at x = `back`.
+pub(super) fn measure(curve: &Curve, back: f64, nominal: Option<&Nominal>, options: &Options) -> Found {
+    let mut found = Found::default();
+    let tread = tread(curve, back, options);
+    let tip = tip(curve, back, options);
+    let face = |over: f64| face(curve, tip.clone()?, tread.clone()? - over, back + options.tread_at);
+    let thickness = face(options.flange_level).map(|x| x - back);
+    found.put(Quantity::FlangeHeight, tread.clone().and_then(|z| Ok(z - tip.clone()?.z)));
+    found.put(Quantity::FlangeThickness, thickness.clone());
+    found
+        .put(Quantity::Qr, thickness.and_then(|thickness| qr(curve, tip.clone()?, thickness, back, options)));
+    found.put(
+        Quantity::FlangeWidth,
+        face(options.width_level)
+            .and_then(|x| Ok(x - behind(curve, tip.clone()?, tread.clone()? - options.width_level)?)),
+    );
+    found.put(Quantity::Hollow, tip.clone().and_then(|tip| hollow(curve, tip, back, options)));
+    if let Some(nominal) = nominal {
+        let at = self::tread(&nominal.curve, nominal.back, options);
+        found.put(Quantity::TreadWear, tread.clone().and_then(|z| Ok(z - at?)));
+        found.put(Quantity::TreadWearMax, most_worn(curve, nominal, options));
+    }
+    found
+}
+
+/// Returns z of the tread at the taping line \[mm\]: the lowest surface there.
+///
+/// # Errors
+/// No points there.
+pub(super) fn tread(curve: &Curve, back: f64, options: &Options) -> Result<f64, String> {
+    let lowest =
+        curve.at_x(back + options.tread_at).iter().map(|place| place.z).fold(f64::INFINITY, f64::min);
+    if lowest.is_finite() {
+        return Ok(lowest);
+    }
+    let [from, to] = curve.width().map(|x| x - back);
+    Err(format!("no tread at X = {} mm: the points go from X = {from:.3} to {to:.3}", options.tread_at))
+}
+
+/// Returns the tip of the flange.
+fn tip(curve: &Curve, back: f64, options: &Options) -> Result<Place, String> {
+    let tip = curve.highest(-1.0).ok_or("no points")?;
+    let x = tip.x - back;
+    if tip.mark == 0 || tip.mark + 1 >= curve.marks.len() {
+        return Err(format!("no flange tip: the points are lowest where they end, at X = {x:.3} mm"));
+    }
+    if x > options.tread_at {
+        let at = options.tread_at;
+        return Err(format!("no flange tip: the points are lowest at X = {x:.3} mm, beyond X = {at}"));
+    }
+    Ok(tip)
+}
+
+/// Returns x of the flange's face at a height \[mm\]: the nearest to the tread.
+fn face(curve: &Curve, tip: Place, z: f64, tread_x: f64) -> Result<f64, String> {
+    let all = curve.at_z(z);
+    let beyond = |place: &&Place| place.mark >= tip.mark && place.x > tip.x && place.x < tread_x;
+    all.iter()
+        .rfind(beyond)
+        .map(|place| place.x)
+        .ok_or_else(|| format!("no flange face {:.3} mm over the flange's tip", z - tip.z))
+}
+
+/// Returns x of the flange back at a height \[mm\].
+fn behind(curve: &Curve, tip: Place, z: f64) -> Result<f64, String> {
+    let all = curve.at_z(z);
+    all.iter()
+        .rfind(|place| place.mark <= tip.mark && place.x < tip.x)
+        .map(|place| place.x)
+        .ok_or_else(|| format!("no flange back {:.3} mm over the flange's tip", z - tip.z))
+}
+
+fn qr(curve: &Curve, tip: Place, thickness: f64, back: f64, options: &Options) -> Result<f64, String> {
+    let upper = face(curve, tip, tip.z + options.tip_depth, back + options.tread_at)?;
+    Ok(thickness - (upper - back))
+}
+
+/// Returns the largest rise of Y towards the field side \[mm\] on the way from the tip.
+fn hollow(curve: &Curve, tip: Place, back: f64, options: &Options) -> Result<f64, String> {
+    let end = curve.width()[1] - back;
+    if end < options.tread_at + LEAST_TREAD {
+        let least = options.tread_at + LEAST_TREAD;
+        return Err(format!("the tread is measured to X = {end:.3} mm only, and hollow wear needs {least}"));
+    }
+    let (mut top, mut rise) = (tip.z, 0.0f64);
+    for mark in curve.marks.iter().skip(tip.mark + 1) {
+        top = top.max(mark.station.z);
+        rise = rise.max(top - mark.station.z);
+    }
+    Ok(rise)
+}
+
+/// Returns the largest vertical distance \[mm\] of the tread above that of the nominal, over the nominal tread from the flange's face.
+fn most_worn(curve: &Curve, nominal: &Nominal, options: &Options) -> Result<f64, String> {
+    let own = &nominal.curve;
+    let tip = tip(own, nominal.back, options)?;
+    let level = tread(own, nominal.back, options)? - options.flange_level;
+    let from = face(own, tip, level, nominal.back + options.tread_at)?;
+    let measured = self::tip(curve, nominal.back, options).map_or(0, |tip| tip.mark);
+    let surface = curve.from(measured);
+    let mut pairs = surface.marks.windows(2).peekable();
+    let mut most = f64::NEG_INFINITY;
+    for mark in own.marks.iter().skip(tip.mark) {
+        let at = mark.station;
+        if at.x < from || at.sin.abs() > TREAD {
+            continue;
+        }
+        while pairs.peek().is_some_and(|pair| pair[1].station.x < at.x) {
+            pairs.next();
+        }
+        let Some([a, b]) = pairs.peek().map(|pair| [pair[0].station, pair[1].station]) else { break };
+        if a.x <= at.x && a.x < b.x {
+            most = most.max(a.z + (b.z - a.z) * ((at.x - a.x) / (b.x - a.x)) - at.z);
+        }
+    }
+    if most.is_finite() { Ok(most) } else { Err("no tread over that of the nominal".into()) }
+}
