@@ -223,25 +223,11 @@ fn spread(marks: &[Mark], [from, to]: [f64; 2], cells: usize) -> Vec<[f64; 2]> {
         while k + 1 < marks.len() && marks[k].s < s {
             k += 1;
         }
-        between(&marks[k - 1], &marks[k], s)
+        let (a, b) = (&marks[k - 1], &marks[k]);
+        let length = b.s - a.s;
+        a.between(b, if length > 0.0 { ((s - a.s) / length).clamp(0.0, 1.0) } else { 1.0 })
     };
     (0..=cells).map(at).collect()
-}
-
-/// The point at an arc length between two marks, by the cubic through both with their tangents.
-fn between(a: &Mark, b: &Mark, s: f64) -> [f64; 2] {
-    let length = b.s - a.s;
-    if length <= 0.0 {
-        return [b.station.x, b.station.z];
-    }
-    let t = ((s - a.s) / length).clamp(0.0, 1.0);
-    let r = 1.0 - t;
-    let (rise, fall) = (t * r * r * length, -t * t * r * length);
-    let mix = |p: f64, dp: f64, q: f64, dq: f64| {
-        p * (1.0 + 2.0 * t) * r * r + dp * rise + q * t * t * (3.0 - 2.0 * t) + dq * fall
-    };
-    let (p, q) = (&a.station, &b.station);
-    [mix(p.x, p.cos, q.x, q.cos), mix(p.z, p.sin, q.z, q.sin)]
 }
 
 /// Says where a section runs backward halfway between two slices that run alike; `None` if none does.

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::curve::Curve;
 use super::fit::{Fit, Fitted};
 use super::nominal::{Back, Nominal, back_of, own_back, sized};
-use super::options::{Align, Options};
+use super::options::{Align, MeasureOptions};
 use crate::profile::{Profile, Side, Station, trace};
 
 /// Distance of marks \[mm\] of curves that are fitted.
@@ -64,7 +64,7 @@ pub(super) fn align(
     profile: &Profile,
     side: Side,
     nominal: Option<&Nominal>,
-    options: &Options,
+    options: &MeasureOptions,
 ) -> Result<Aligned, String> {
     let curve = sized(profile)?;
     let chosen = options.align.or(nominal.map(|_| Align::BestFit));
@@ -92,7 +92,7 @@ fn with_nominal(
     side: Side,
     nominal: &Nominal,
     align: Align,
-    options: &Options,
+    options: &MeasureOptions,
 ) -> Result<Aligned, String> {
     match (align, side) {
         (Align::None, Side::Rail) => Ok(moved(curve, [0.0; 2], 0.0, align, "the file's axes")),
@@ -129,7 +129,7 @@ fn fitted(
     side: Side,
     nominal: &Nominal,
     align: Align,
-    options: &Options,
+    options: &MeasureOptions,
 ) -> Result<Aligned, String> {
     let coarse = |profile: &Profile| Curve { marks: trace(profile, STEP) };
     let (measured, onto) = (coarse(profile), coarse(nominal.profile));
@@ -190,7 +190,7 @@ fn starts(measured: &Curve, nominal: &Curve, side: Side) -> Vec<Station> {
 }
 
 /// Returns which marks of the nominal are fitted, and their name.
-fn parts(nominal: &Curve, side: Side, align: Align, options: &Options) -> (Vec<bool>, String) {
+fn parts(nominal: &Curve, side: Side, align: Align, options: &MeasureOptions) -> (Vec<bool>, String) {
     let marks = &nominal.marks;
     let stations = || marks.iter().map(|mark| mark.station);
     let [first, last] = nominal.width();

@@ -64,8 +64,8 @@ impl Curve {
             if (ends[0] >= 0.0) == (ends[1] >= 0.0) {
                 continue;
             }
-            if let Some(share) = bracketed(|share| over(between(pair, share)), 0.0, 1.0) {
-                let [x, z] = between(pair, share);
+            if let Some(share) = bracketed(|share| over(pair[0].between(&pair[1], share)), 0.0, 1.0) {
+                let [x, z] = pair[0].between(&pair[1], share);
                 found.push(Place { x, z, mark });
             }
         }
@@ -94,10 +94,10 @@ impl Curve {
             let level = |share: f64| {
                 // The step balances truncation and rounding of a central difference on a cubic.
                 let h = 1e-4;
-                between(pair, share + h)[1] - between(pair, share - h)[1]
+                pair[0].between(&pair[1], share + h)[1] - pair[0].between(&pair[1], share - h)[1]
             };
             if let Some(share) = bracketed(level, 0.0, 1.0) {
-                let place = at(k, between(pair, share));
+                let place = at(k, pair[0].between(&pair[1], share));
                 if sign * place.z > sign * found.z {
                     found = place;
                 }
@@ -105,18 +105,4 @@ impl Curve {
         }
         Some(found)
     }
-}
-
-/// Returns the point at a share of the way between two marks: the cubic that has their points and tangents.
-fn between(pair: &[Mark], u: f64) -> [f64; 2] {
-    let [a, b] = [pair[0].station, pair[1].station];
-    let length = pair[1].s - pair[0].s;
-    // The two sides of a joint are one point, and a step of a drawing is straight.
-    let pull = if pair[0].segment == pair[1].segment { length } else { 0.0 };
-    let blend = if pull == 0.0 { u } else { u * u * (3.0 - 2.0 * u) };
-    let [from, to] = [pull * u * (1.0 - u).powi(2), -pull * u * u * (1.0 - u)];
-    [
-        a.x + blend * (b.x - a.x) + from * a.cos + to * b.cos,
-        a.z + blend * (b.z - a.z) + from * a.sin + to * b.sin,
-    ]
 }

@@ -22,7 +22,7 @@ mod wheel;
 pub use align::Alignment;
 pub use limits::{Limit, Limits};
 pub use measures::Measures;
-pub use options::{Align, GaugeFrom, Options};
+pub use options::{Align, GaugeFrom, MeasureOptions};
 pub use overlay::{Overlay, overlay};
 pub use quantity::Quantity;
 pub use rows::{Row, csv, json, table};
@@ -53,10 +53,10 @@ const MOST_FLOWN: f64 = 3.0;
 ///
 /// # Examples
 /// ```
-/// use wheelrail::measure::{Options, Quantity, measure};
+/// use wheelrail::measure::{MeasureOptions, Quantity, measure};
 /// use wheelrail::{Side, standards};
 ///
-/// let measures = measure(&standards::wheel("S1002")?, Side::Wheel, None, &Options::default())?;
+/// let measures = measure(&standards::wheel("S1002")?, Side::Wheel, None, &MeasureOptions::default())?;
 /// let height = measures.value(Quantity::FlangeHeight).expect("a flange");
 /// assert!((height - 28.0).abs() < 1e-6);
 /// # Ok::<(), wheelrail::Error>(())
@@ -65,7 +65,7 @@ pub fn measure(
     profile: &Profile,
     side: Side,
     nominal: Option<&Profile>,
-    options: &Options,
+    options: &MeasureOptions,
 ) -> Result<Measures> {
     options.validate(side, nominal.is_some())?;
     let none = |why: String| Measures {
@@ -107,7 +107,7 @@ fn at(
     aligned: &Aligned,
     side: Side,
     nominal: Option<&Nominal>,
-    options: &Options,
+    options: &MeasureOptions,
     motion: &Station,
 ) -> Found {
     let curve = aligned.curve.placed(motion);
@@ -121,7 +121,7 @@ fn if_off(
     aligned: &Aligned,
     side: Side,
     nominal: Option<&Nominal>,
-    options: &Options,
+    options: &MeasureOptions,
     found: &Found,
 ) -> [Option<f64>; Quantity::ALL.len()] {
     let values = found.values();

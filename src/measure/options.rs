@@ -8,7 +8,7 @@ use crate::profile::Side;
 /// Where quantities are measured; lengths in mm. Every option may be left out.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Options {
+pub struct MeasureOptions {
     /// Distance X of the taping line from the flange back; 70.
     pub tread_at: f64,
     /// Height over the tread at which flange thickness is measured; 10.
@@ -64,7 +64,7 @@ pub enum Align {
     Unworn,
 }
 
-impl Default for Options {
+impl Default for MeasureOptions {
     fn default() -> Self {
         Self {
             tread_at: 70.0,
@@ -104,7 +104,7 @@ impl Align {
     }
 }
 
-impl Options {
+impl MeasureOptions {
     /// Rejects numbers without meaning, and an alignment that this body or a missing nominal does not allow.
     ///
     /// # Errors

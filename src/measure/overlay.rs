@@ -3,7 +3,7 @@
 use super::align::{self, Alignment};
 use super::curve::Curve;
 use super::nominal::Nominal;
-use super::options::Options;
+use super::options::MeasureOptions;
 use crate::error::{Error, Result};
 use crate::profile::{Profile, Side, Station};
 
@@ -31,7 +31,12 @@ pub struct Overlay {
 ///
 /// # Errors
 /// Options without meaning; an alignment that cannot be had.
-pub fn overlay(profile: &Profile, side: Side, nominal: &Profile, options: &Options) -> Result<Overlay> {
+pub fn overlay(
+    profile: &Profile,
+    side: Side,
+    nominal: &Profile,
+    options: &MeasureOptions,
+) -> Result<Overlay> {
     options.validate(side, true)?;
     let advice = "choose another alignment, or give the whole profile";
     let error = |why: String| Error::new(&profile.name, why, "a profile that can be aligned", advice);

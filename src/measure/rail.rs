@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::curve::{Curve, Place};
 use super::found::Found;
 use super::nominal::{Nominal, running_head};
-use super::options::{GaugeFrom, Options};
+use super::options::{GaugeFrom, MeasureOptions};
 use super::quantity::Quantity;
 
 /// Half width \[mm\] of the crown whose radius is fitted, that of the MiniProf's own calculation.
@@ -89,7 +89,7 @@ impl<'a> Head<'a> {
 }
 
 /// Measures a rail.
-pub(super) fn measure(curve: &Curve, nominal: Option<&Nominal>, options: &Options) -> Found {
+pub(super) fn measure(curve: &Curve, nominal: Option<&Nominal>, options: &MeasureOptions) -> Found {
     let mut found = Found::default();
     let head = match Head::new(curve) {
         Ok(head) => head,
@@ -125,7 +125,7 @@ pub(super) fn measure(curve: &Curve, nominal: Option<&Nominal>, options: &Option
 }
 
 /// Measures what a head has lost of the nominal one.
-fn wear(found: &mut Found, head: &Head, drawn: &Head, options: &Options) {
+fn wear(found: &mut Found, head: &Head, drawn: &Head, options: &MeasureOptions) {
     let crown = head.curve.at_x(drawn.top.x).iter().map(|place| place.z).fold(f64::NEG_INFINITY, f64::max);
     let none = || format!("no points over the nominal's top, x = {:.3} mm", drawn.top.x);
     found.put(Quantity::W1, if crown.is_finite() { Ok(drawn.top.z - crown) } else { Err(none()) });

@@ -54,7 +54,7 @@ fn bump(x: f64, [low, high]: [f64; 2], most: f64) -> f64 {
 #[test]
 fn drawings_have_the_flange_of_their_name() -> Result<()> {
     // EN 13715: S1002 has e = 32.5 and h = 28; EN 15302's drawings have the same flange, but for C.
-    let measures = measure(&standards::wheel("S1002")?, Side::Wheel, None, &Options::default())?;
+    let measures = measure(&standards::wheel("S1002")?, Side::Wheel, None, &MeasureOptions::default())?;
     assert!((value(&measures, Quantity::FlangeHeight) - 28.0).abs() < 1e-6);
     assert!((value(&measures, Quantity::FlangeThickness) - 32.5).abs() < 1e-3, "{measures:?}");
     assert!(value(&measures, Quantity::Hollow) < 1e-9);
@@ -65,7 +65,7 @@ fn drawings_have_the_flange_of_their_name() -> Result<()> {
             let rest = name.split(key).nth(1).expect("a flange in the name");
             rest.split('-').next().and_then(|text| text.parse::<f64>().ok()).expect("a number")
         });
-        let measures = measure(&standards::wheel(name)?, Side::Wheel, None, &Options::default())?;
+        let measures = measure(&standards::wheel(name)?, Side::Wheel, None, &MeasureOptions::default())?;
         assert!((value(&measures, Quantity::FlangeHeight) - h).abs() < 1e-3, "{name}: {measures:?}");
         assert!((value(&measures, Quantity::FlangeThickness) - e).abs() < 2e-3, "{name}: {measures:?}");
     }
@@ -87,7 +87,7 @@ fn a_flange_of_lines_has_its_closed_form() -> Result<()> {
             line([32.0, 0.0], [132.0, 5.0])?,
         ],
     )?;
-    let measures = measure(&wheel, Side::Wheel, None, &Options::default())?;
+    let measures = measure(&wheel, Side::Wheel, None, &MeasureOptions::default())?;
     // z(70) = 1.9.
     assert!((value(&measures, Quantity::FlangeHeight) - 29.9).abs() < 1e-9);
     let at = |z: f64| 20.0 + (z + 24.0) / 2.0;
@@ -109,7 +109,7 @@ fn known_wear_of_a_wheel_is_recovered() -> Result<()> {
     for (x, z, degrees) in [(0.0, 0.0, 0.0), (70.3, -1.2, 0.4), (-20.0, 3.0, -0.9)] {
         let wheel = worn(&nominal, Side::Wheel, by, frame(x, z, degrees), |_| true);
         for align in [Align::BackAndTread, Align::BestFit] {
-            let options = Options { align: Some(align), ..Options::default() };
+            let options = MeasureOptions { align: Some(align), ..MeasureOptions::default() };
             let measures = measure(&wheel, Side::Wheel, Some(&nominal), &options)?;
             let [tread, most] = [Quantity::TreadWear, Quantity::TreadWearMax].map(|q| value(&measures, q));
             assert!((tread - exact).abs() < RECOVERED, "{align:?} {degrees}: {tread} {exact} {measures:?}");
@@ -119,7 +119,7 @@ fn known_wear_of_a_wheel_is_recovered() -> Result<()> {
                 &worn(&nominal, Side::Wheel, by, Station::AXES, |_| true),
                 Side::Wheel,
                 None,
-                &Options::default(),
+                &MeasureOptions::default(),
             )?;
             assert!(
                 (flange - value(&own, Quantity::FlangeThickness)).abs() < RECOVERED,
@@ -139,7 +139,7 @@ fn hollow_wear_is_the_depth_below_the_field_side() -> Result<()> {
         &worn(&nominal, Side::Wheel, by, Station::AXES, |_| true),
         Side::Wheel,
         None,
-        &Options::default(),
+        &MeasureOptions::default(),
     )?;
     // The highest and the lowest place of the same heights, over points every 0.01 mm.
     let height = |x: f64| {
@@ -167,7 +167,7 @@ fn known_wear_of_a_rail_is_recovered() -> Result<()> {
         [side, -crown * upper]
     };
     let straight = worn(&nominal, Side::Rail, by, Station::AXES, |_| true);
-    let options = |align| Options { align: Some(align), ..Options::default() };
+    let options = |align| MeasureOptions { align: Some(align), ..MeasureOptions::default() };
     let exact = measure(&straight, Side::Rail, Some(&nominal), &options(Align::None))?;
     assert!((value(&exact, Quantity::W1) - by(Station::AXES)[1].abs()).abs() < 1e-4, "{exact:?}");
     assert!((value(&exact, Quantity::W2) - 2.0).abs() < 0.1);
@@ -199,7 +199,7 @@ fn rails_have_the_measures_of_their_drawing() -> Result<()> {
             &rail,
             Side::Rail,
             Some(&rail),
-            &Options { align: Some(Align::None), ..Options::default() },
+            &MeasureOptions { align: Some(Align::None), ..MeasureOptions::default() },
         )?;
         for quantity in [Quantity::W1, Quantity::W2, Quantity::W3, Quantity::HeadAreaLost, Quantity::Lip] {
             if let Some(value) = measures.value(quantity) {
@@ -207,7 +207,7 @@ fn rails_have_the_measures_of_their_drawing() -> Result<()> {
             }
         }
     }
-    let measures = measure(&standards::rail("60E1")?, Side::Rail, None, &Options::default())?;
+    let measures = measure(&standards::rail("60E1")?, Side::Rail, None, &MeasureOptions::default())?;
     assert!((value(&measures, Quantity::CrownRadius) - 300.0).abs() < 1e-6, "{measures:?}");
     // The flank is 1:20; the corner's end at its top changes the line a little.
     assert!(
@@ -240,12 +240,12 @@ fn known_wear_of_a_head_worn_at_both_sides_is_recovered_by_its_web_and_by_given_
         let upper = 1.0 / (1.0 + ((-25.0 - at.z) / 1.0).exp());
         [-1.2 * upper * (at.x / 5.0).tanh(), -2.0 * upper]
     };
-    let none = Options { align: Some(Align::None), ..Options::default() };
+    let none = MeasureOptions { align: Some(Align::None), ..MeasureOptions::default() };
     let straight = worn(&nominal, Side::Rail, by, Station::AXES, |_| true);
     let exact = measure(&straight, Side::Rail, Some(&nominal), &none)?;
     assert!((value(&exact, Quantity::W1) - 2.0).abs() < 1e-3, "{exact:?}");
     let rail = worn(&nominal, Side::Rail, by, frame(4.0, -3.0, 1.0), |_| true);
-    let web = Options { align: Some(Align::Web), ..Options::default() };
+    let web = MeasureOptions { align: Some(Align::Web), ..MeasureOptions::default() };
     let measures = measure(&rail, Side::Rail, Some(&nominal), &web)?;
     for quantity in [Quantity::W1, Quantity::W2, Quantity::W3] {
         let [own, to] = [&measures, &exact].map(|measures| value(measures, quantity));
@@ -258,7 +258,8 @@ fn known_wear_of_a_head_worn_at_both_sides_is_recovered_by_its_web_and_by_given_
     let exact =
         measure(&worn(&head, Side::Rail, by, Station::AXES, |_| true), Side::Rail, Some(&head), &none)?;
     let rail = worn(&head, Side::Rail, by, frame(-6.0, 2.0, -0.8), |_| true);
-    let ranges = Options { align: Some(Align::Unworn), unworn: vec![[5.0, 40.0]], ..Options::default() };
+    let ranges =
+        MeasureOptions { align: Some(Align::Unworn), unworn: vec![[5.0, 40.0]], ..MeasureOptions::default() };
     let measures = measure(&rail, Side::Rail, Some(&head), &ranges)?;
     for quantity in [Quantity::W1, Quantity::W2, Quantity::W3] {
         let [own, to] = [&measures, &exact].map(|measures| value(measures, quantity));
@@ -281,7 +282,7 @@ fn a_wheel_that_is_moved_but_not_turned_is_put_on_its_back() -> Result<()> {
         &worn(&nominal, Side::Wheel, by, Station::AXES, |_| true),
         Side::Wheel,
         Some(&nominal),
-        &Options { align: Some(Align::Back), ..Options::default() },
+        &MeasureOptions { align: Some(Align::Back), ..MeasureOptions::default() },
     )?;
     let thickness = value(&exact, Quantity::FlangeThickness);
     assert!((32.5 - thickness - bump(-10.0, [-24.0, -3.0], 1.5)).abs() < 0.2, "{exact:?}");
@@ -291,7 +292,7 @@ fn a_wheel_that_is_moved_but_not_turned_is_put_on_its_back() -> Result<()> {
             &wheel,
             Side::Wheel,
             Some(&nominal),
-            &Options { align: Some(align), ..Options::default() },
+            &MeasureOptions { align: Some(align), ..MeasureOptions::default() },
         )?;
         for quantity in [Quantity::FlangeThickness, Quantity::FlangeHeight, Quantity::Qr] {
             let [own, to] = [&measures, &exact].map(|measures| value(measures, quantity));
@@ -334,7 +335,7 @@ fn a_grooved_rail_has_its_groove_and_its_lip() -> Result<()> {
         &grooved(-77.0)?,
         Side::Rail,
         Some(&grooved(-76.0)?),
-        &Options { align: Some(Align::None), ..Options::default() },
+        &MeasureOptions { align: Some(Align::None), ..MeasureOptions::default() },
     )?;
     assert!((value(&measures, Quantity::GrooveWidth) - (-36.0 - keeper(-77.0))).abs() < 1e-9, "{measures:?}");
     assert!((value(&measures, Quantity::GrooveDepth) - 47.0).abs() < 1e-9);
@@ -350,30 +351,30 @@ fn what_is_not_measured_is_missing_and_says_so() -> Result<()> {
         worn(&nominal, Side::Wheel, |_| [0.0; 2], Station::AXES, move |at| at.x >= low && at.x <= high)
     };
     // Without its back there is no X; without the tread no Sh; with neither the field side no fit.
-    let measures = measure(&cut(-62.0, 60.0), Side::Wheel, None, &Options::default())?;
+    let measures = measure(&cut(-62.0, 60.0), Side::Wheel, None, &MeasureOptions::default())?;
     assert!(measures.alignment.is_none() && measures.findings[0].contains("no flange back"), "{measures:?}");
-    let measures = measure(&cut(-70.0, -20.0), Side::Wheel, None, &Options::default())?;
+    let measures = measure(&cut(-70.0, -20.0), Side::Wheel, None, &MeasureOptions::default())?;
     assert!(measures.value(Quantity::FlangeHeight).is_none(), "{measures:?}");
     assert!(measures.findings[0].contains("no tread at X = 70 mm"), "{measures:?}");
-    let measures = measure(&cut(-70.0, 30.0), Side::Wheel, Some(&nominal), &Options::default())?;
+    let measures = measure(&cut(-70.0, 30.0), Side::Wheel, Some(&nominal), &MeasureOptions::default())?;
     assert!(measures.findings[0].starts_with("no alignment by flange back and outer tread"), "{measures:?}");
     // Where the back turns upright 0.4 mm farther left, its place is doubted.
-    let measures = measure(&cut(-69.6, 60.0), Side::Wheel, None, &Options::default())?;
+    let measures = measure(&cut(-69.6, 60.0), Side::Wheel, None, &MeasureOptions::default())?;
     assert!(measures.value(Quantity::FlangeThickness).is_some(), "{measures:?}");
     assert!(measures.findings[0].contains("the flange back may lie farther left"), "{measures:?}");
     // A rail with neither field side nor gauge face.
     let rail = standards::rail("60E1")?;
     let crown = worn(&rail, Side::Rail, |_| [0.0; 2], Station::AXES, |at| at.x.abs() < 25.0);
-    let measures = measure(&crown, Side::Rail, Some(&rail), &Options::default())?;
+    let measures = measure(&crown, Side::Rail, Some(&rail), &MeasureOptions::default())?;
     assert!(measures.alignment.is_none() && measures.findings[0].contains("field side"), "{measures:?}");
-    let measures = measure(&crown, Side::Rail, None, &Options::default())?;
+    let measures = measure(&crown, Side::Rail, None, &MeasureOptions::default())?;
     assert!(
         measures.value(Quantity::CrownRadius).is_some() && measures.value(Quantity::SideFaceAngle).is_none()
     );
     assert!(measures.findings[0].starts_with("no gauge face 14.000 mm below"), "{measures:?}");
     // The other body.
     for (profile, side) in [(&nominal, Side::Rail), (&rail, Side::Wheel)] {
-        let measures = measure(profile, side, None, &Options::default())?;
+        let measures = measure(profile, side, None, &MeasureOptions::default())?;
         assert!(!measures.findings.is_empty(), "{measures:?}");
     }
     Ok(())
@@ -387,7 +388,7 @@ fn a_worn_field_side_leaves_a_finding() -> Result<()> {
         &worn(&nominal, Side::Wheel, by, Station::AXES, |_| true),
         Side::Wheel,
         Some(&nominal),
-        &Options::default(),
+        &MeasureOptions::default(),
     )?;
     assert!(
         measures.findings.iter().any(|finding| finding.contains("worn, or another nominal")),
@@ -395,12 +396,12 @@ fn a_worn_field_side_leaves_a_finding() -> Result<()> {
     );
     // Another nominal, with its flange and tread elsewhere.
     let other = standards::wheel("APTA-120")?;
-    let measures = measure(&other, Side::Wheel, Some(&nominal), &Options::default())?;
+    let measures = measure(&other, Side::Wheel, Some(&nominal), &MeasureOptions::default())?;
     assert!(!measures.findings.is_empty(), "{measures:?}");
     // As if metal had been put on the tread.
     let by = |at: Station| [0.0, -bump(at.x, [-30.0, 40.0], 2.0)];
     let wheel = worn(&nominal, Side::Wheel, by, Station::AXES, |_| true);
-    let measures = measure(&wheel, Side::Wheel, Some(&nominal), &Options::default())?;
+    let measures = measure(&wheel, Side::Wheel, Some(&nominal), &MeasureOptions::default())?;
     assert!(measures.findings[0].starts_with("tread_wear_mm is negative"), "{measures:?}");
     Ok(())
 }
@@ -409,7 +410,7 @@ fn a_worn_field_side_leaves_a_finding() -> Result<()> {
 fn a_profile_in_another_unit_is_a_finding() -> Result<()> {
     let crown = Arc::line([-4e3, 0.0], [4e3, 10.0]).map(Segment::arc)?;
     let rail = Profile::new("metres", "test", vec![crown])?;
-    let measures = measure(&rail, Side::Rail, Some(&standards::rail("60E1")?), &Options::default())?;
+    let measures = measure(&rail, Side::Rail, Some(&standards::rail("60E1")?), &MeasureOptions::default())?;
     assert!(measures.findings[0].starts_with("the profile is 8000 mm large"), "{measures:?}");
     Ok(())
 }
@@ -417,14 +418,23 @@ fn a_profile_in_another_unit_is_a_finding() -> Result<()> {
 #[test]
 fn options_without_meaning_are_refused() -> Result<()> {
     let wheel = standards::wheel("S1002")?;
-    let complaint = |options: Options, nominal| {
+    let complaint = |options: MeasureOptions, nominal| {
         measure(&wheel, Side::Wheel, nominal, &options).err().map(|error| error.place).unwrap_or_default()
     };
-    assert_eq!(complaint(Options { tread_at: -70.0, ..Options::default() }, None), "tread_at");
-    assert_eq!(complaint(Options { align: Some(Align::Web), ..Options::default() }, Some(&wheel)), "align");
-    assert_eq!(complaint(Options { align: Some(Align::BestFit), ..Options::default() }, None), "align");
-    assert_eq!(complaint(Options { unworn: vec![[0.0, 1.0]], ..Options::default() }, Some(&wheel)), "unworn");
-    assert_eq!(complaint(Options::default(), Some(&wheel)), "");
+    assert_eq!(complaint(MeasureOptions { tread_at: -70.0, ..MeasureOptions::default() }, None), "tread_at");
+    assert_eq!(
+        complaint(MeasureOptions { align: Some(Align::Web), ..MeasureOptions::default() }, Some(&wheel)),
+        "align"
+    );
+    assert_eq!(
+        complaint(MeasureOptions { align: Some(Align::BestFit), ..MeasureOptions::default() }, None),
+        "align"
+    );
+    assert_eq!(
+        complaint(MeasureOptions { unworn: vec![[0.0, 1.0]], ..MeasureOptions::default() }, Some(&wheel)),
+        "unworn"
+    );
+    assert_eq!(complaint(MeasureOptions::default(), Some(&wheel)), "");
     Ok(())
 }
 
@@ -452,7 +462,7 @@ fn instruments_have_the_same_values() -> Result<()> {
         let read = measured::profile(file, &bytes, Side::Wheel, &curve)?.profile;
         let turn = if file.starts_with("right") { RIGHT_TURNED_BY } else { 0.0 };
         let read = read.rotated(nalgebra::UnitComplex::new(turn));
-        let measures = measure(&read, Side::Wheel, None, &Options::default())?;
+        let measures = measure(&read, Side::Wheel, None, &MeasureOptions::default())?;
         let found =
             [Quantity::FlangeThickness, Quantity::FlangeHeight, Quantity::Qr].map(|q| value(&measures, q));
         println!("{file}: {found:.4?}, the instrument has {expected:?}");

@@ -3,7 +3,7 @@
 use super::curve::{Curve, Place};
 use super::found::Found;
 use super::nominal::Nominal;
-use super::options::Options;
+use super::options::MeasureOptions;
 use super::quantity::Quantity;
 
 /// Least length \[mm\] of tread beyond X = 70 over which hollow wear has a meaning.
@@ -12,7 +12,12 @@ const LEAST_TREAD: f64 = 20.0;
 const TREAD: f64 = 0.5;
 
 /// Measures a wheel whose X = 0 is at x = `back`.
-pub(super) fn measure(curve: &Curve, back: f64, nominal: Option<&Nominal>, options: &Options) -> Found {
+pub(super) fn measure(
+    curve: &Curve,
+    back: f64,
+    nominal: Option<&Nominal>,
+    options: &MeasureOptions,
+) -> Found {
     let mut found = Found::default();
     let tread = tread(curve, back, options);
     let tip = tip(curve, back, options);
@@ -40,7 +45,7 @@ pub(super) fn measure(curve: &Curve, back: f64, nominal: Option<&Nominal>, optio
 ///
 /// # Errors
 /// No points there.
-pub(super) fn tread(curve: &Curve, back: f64, options: &Options) -> Result<f64, String> {
+pub(super) fn tread(curve: &Curve, back: f64, options: &MeasureOptions) -> Result<f64, String> {
     let lowest =
         curve.at_x(back + options.tread_at).iter().map(|place| place.z).fold(f64::INFINITY, f64::min);
     if lowest.is_finite() {
@@ -51,7 +56,7 @@ pub(super) fn tread(curve: &Curve, back: f64, options: &Options) -> Result<f64, 
 }
 
 /// Returns the tip of the flange.
-fn tip(curve: &Curve, back: f64, options: &Options) -> Result<Place, String> {
+fn tip(curve: &Curve, back: f64, options: &MeasureOptions) -> Result<Place, String> {
     let tip = curve.highest(-1.0).ok_or("no points")?;
     let x = tip.x - back;
     if tip.mark == 0 || tip.mark + 1 >= curve.marks.len() {
@@ -83,13 +88,13 @@ fn behind(curve: &Curve, tip: Place, z: f64) -> Result<f64, String> {
         .ok_or_else(|| format!("no flange back {:.3} mm over the flange's tip", z - tip.z))
 }
 
-fn qr(curve: &Curve, tip: Place, thickness: f64, back: f64, options: &Options) -> Result<f64, String> {
+fn qr(curve: &Curve, tip: Place, thickness: f64, back: f64, options: &MeasureOptions) -> Result<f64, String> {
     let upper = face(curve, tip, tip.z + options.tip_depth, back + options.tread_at)?;
     Ok(thickness - (upper - back))
 }
 
 /// Returns the largest rise of Y towards the field side \[mm\] on the way from the tip.
-fn hollow(curve: &Curve, tip: Place, back: f64, options: &Options) -> Result<f64, String> {
+fn hollow(curve: &Curve, tip: Place, back: f64, options: &MeasureOptions) -> Result<f64, String> {
     let end = curve.width()[1] - back;
     if end < options.tread_at + LEAST_TREAD {
         let least = options.tread_at + LEAST_TREAD;
@@ -104,7 +109,7 @@ fn hollow(curve: &Curve, tip: Place, back: f64, options: &Options) -> Result<f64
 }
 
 /// Returns the largest vertical distance \[mm\] of the tread above that of the nominal, over the nominal tread from the flange's face.
-fn most_worn(curve: &Curve, nominal: &Nominal, options: &Options) -> Result<f64, String> {
+fn most_worn(curve: &Curve, nominal: &Nominal, options: &MeasureOptions) -> Result<f64, String> {
     let own = &nominal.curve;
     let tip = tip(own, nominal.back, options)?;
     let level = tread(own, nominal.back, options)? - options.flange_level;

@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use wheelrail::Error;
-use wheelrail::measure::{Options, Row, measure};
+use wheelrail::measure::{MeasureOptions, Row, measure};
 
 use crate::errors::exception;
 use crate::long::waited;
@@ -31,7 +31,7 @@ pub(crate) fn measure_profile<'py>(
     side: Option<&str>,
     options: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let options: Options = keywords(py, "measure_profile", options)?;
+    let options: MeasureOptions = keywords(py, "measure_profile", options)?;
     let Some(side) = side.map(named_side).transpose()?.or(profile.side) else {
         let advice = "give `side`, rail or wheel";
         return Err(exception(Error::new("side", "none", "the body of the profile", advice)));

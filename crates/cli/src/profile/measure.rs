@@ -14,7 +14,7 @@ use wheelrail::error::{Error, Result};
 use wheelrail::export::{OverlayPicture, SEPARATOR};
 use wheelrail::files::{read_text, write_file};
 use wheelrail::measure::{
-    GaugeFrom, Limit, Limits, Measures, Options, Overlay, Row, csv, json, measure, overlay, table,
+    GaugeFrom, Limit, Limits, MeasureOptions, Measures, Overlay, Row, csv, json, measure, overlay, table,
 };
 use wheelrail::measured::CurveKind;
 use wheelrail::profile::Side;
@@ -45,19 +45,19 @@ pub(crate) struct MeasureArguments {
     #[arg(long, value_name = "FROM:TO", value_delimiter = ',', allow_hyphen_values = true)]
     unworn: Vec<String>,
     /// Distance of the taping line from the flange back, mm.
-    #[arg(long, value_name = "MM", default_value_t = Options::default().tread_at, allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM", default_value_t = MeasureOptions::default().tread_at, allow_negative_numbers = true)]
     tread_at: f64,
     /// Height over the tread at which flange thickness is measured, mm.
-    #[arg(long, value_name = "MM", default_value_t = Options::default().flange_level, allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM", default_value_t = MeasureOptions::default().flange_level, allow_negative_numbers = true)]
     flange_level: f64,
     /// Depth below the flange's tip at which qR is measured, mm.
-    #[arg(long, value_name = "MM", default_value_t = Options::default().tip_depth, allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM", default_value_t = MeasureOptions::default().tip_depth, allow_negative_numbers = true)]
     tip_depth: f64,
     /// Height over the tread at which flange width is measured, mm.
-    #[arg(long, value_name = "MM", default_value_t = Options::default().width_level, allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM", default_value_t = MeasureOptions::default().width_level, allow_negative_numbers = true)]
     width_level: f64,
     /// Depth below the top of rail at which W2, groove width and keeper wear are measured, mm.
-    #[arg(long, value_name = "MM", default_value_t = Options::default().gauge_level, allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM", default_value_t = MeasureOptions::default().gauge_level, allow_negative_numbers = true)]
     gauge_level: f64,
     /// The rail from whose top that depth counts: measured or nominal.
     #[arg(long, value_name = "RAIL")]
@@ -137,7 +137,7 @@ impl MeasureArguments {
     }
 
     /// Draws the picture of a single profile over its nominal one.
-    fn draw(&self, picture: &Path, nominal: Option<&Source>, options: &Options) -> Result<()> {
+    fn draw(&self, picture: &Path, nominal: Option<&Source>, options: &MeasureOptions) -> Result<()> {
         let [file] = self.files.as_slice() else {
             let found = format!("{} profiles", self.files.len());
             return Err(Error::new("--picture", found, "a single profile", "give one profile a picture"));
@@ -159,9 +159,9 @@ impl MeasureArguments {
         write_file(picture, &PictureFormat::of_file("--picture", picture)?.bytes(svg)?)
     }
 
-    fn options(&self) -> Result<Options> {
+    fn options(&self) -> Result<MeasureOptions> {
         let from = self.gauge_from.as_deref().map(|text| one_of("--gauge-from", text)).transpose()?;
-        Ok(Options {
+        Ok(MeasureOptions {
             tread_at: self.tread_at,
             flange_level: self.flange_level,
             tip_depth: self.tip_depth,
@@ -173,7 +173,7 @@ impl MeasureArguments {
         })
     }
 
-    fn row(&self, file: &str, nominal: Option<&Source>, options: &Options) -> Row {
+    fn row(&self, file: &str, nominal: Option<&Source>, options: &MeasureOptions) -> Row {
         let read = source(file, self.side, self.measured.clone()).read_as(CURVE);
         let side = read.as_ref().ok().and_then(|read| read.side).or(self.side.map(Side::from));
         let measured = read.and_then(|read| measured(file, &read, side, nominal, options));
@@ -186,7 +186,7 @@ fn measured(
     source: &Source,
     side: Option<Side>,
     nominal: Option<&Source>,
-    options: &Options,
+    options: &MeasureOptions,
 ) -> Result<Measures> {
     let Some(side) = side else {
         let expected = "the body that it is of";
