@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 use crate::files::read_bytes;
 use crate::lofted::{Loft, Slice};
 use crate::measured::{self, Measured, SliceList, listed_body};
-use crate::placement::{Pair, RailDistance, Track, Wheelset};
+use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
 use crate::profile::{Profile, Side};
 use crate::search::{LoftedPair, March, ONE_CONTACT, Selection, SideOnTrack, WheelsetOnTrack};
 
@@ -32,55 +32,16 @@ pub fn march(scene: &Scene, folder: &Path) -> Result<(March, Vec<String>)> {
     if scene.roller.is_some() {
         return Err(Error::new("roller", "rollers", "rails that vary along the track", "remove [roller]"));
     }
-    let (rails, wheels) = (rails(track)?, wheels(wheelset)?);
     let (position, within) = (position(wheelset)?, within(wheelset.within)?);
-    let mut about = About { reach: [f64::NEG_INFINITY, f64::INFINITY], warnings: Vec::new() };
-    let mut side = |right: bool| {
-        let (name, own) = if right { ("right", &scene.right) } else { ("left", &scene.left) };
-        let own = own.as_ref();
-        let of = |body: &'static str, own: Option<&'_ ProfileData>| {
-            if own.is_some() { format!("{name}: {body}") } else { body.to_owned() }
-        };
-        let [rail, wheel] =
-            [own.and_then(|side| side.rail.as_ref()), own.and_then(|side| side.wheel.as_ref())];
-        let places = [of("rail", rail), of("wheel", wheel)];
-        let data = [rail.unwrap_or(&scene.rail), wheel.unwrap_or(&scene.wheel)];
-        let given = Given::new();
-        let (wheel, radius) = wheel_of(scene, data[1], &places[1], (folder, &given))?;
-        let deviation = own.and_then(|side| side.deviation).unwrap_or_default();
-        let sign = if right { 1.0 } else { -1.0 };
-        let moved = |track: Track| track.moved(sign * deviation.lateral, deviation.vertical);
-        if deviation.roll != 0.0 {
-            let expected = "lateral and vertical deviations of rails that are marched along";
-            return Err(Error::new(
-                format!("{name}: deviation: roll"),
-                "a roll",
-                expected,
-                "turn the profile by `rotate`",
-            ));
-        }
-        let axle = Wheelset::new(wheels, radius)?;
-        let Some(list) = list_of(data[0]) else {
-            let rail = rail_of(data[0], &places[0], (folder, &given))?.profile;
-            let track = moved(Track::new(&rail, rails)?)?;
-            return SideOnTrack::new(&Pair::new(rail, wheel.profile, radius)?, track, axle);
-        };
-        let RailDistance::Spacing(spacing) = rails else {
-            let expected = "`spacing` of the profile origins: rails that vary have no one gauge point";
-            return Err(Error::new("track", "a gauge", expected, "give spacing instead of gauge"));
-        };
-        let loft = loft(data[0], &folder.join(list)).map_err(|e| e.within(&places[0]))?;
-        about.take(&loft, &places[0]);
-        let pair = LoftedPair::new(Arc::new(loft), &wheel.profile, radius)?;
-        Ok(SideOnTrack::lofted(Arc::new(pair), moved(Track::between_origins(spacing)?)?, axle))
-    };
-    let right = side(true)?;
+    let sides = Sides { scene, folder, rails: rails(track)?, wheels: wheels(wheelset)? };
+    let mut lists = Lists { reach: [f64::NEG_INFINITY, f64::INFINITY], warnings: Vec::new() };
+    let right = sides.side(true, &mut lists)?;
     let system = if scene.left.is_none() && scene.right.is_none() {
         WheelsetOnTrack::symmetrical(right)
     } else {
-        WheelsetOnTrack::of_sides(side(false)?, right)
+        WheelsetOnTrack::of_sides(sides.side(false, &mut lists)?, right)
     };
-    let [from, to] = about.reach;
+    let [from, to] = lists.reach;
     if from == f64::NEG_INFINITY {
         let expected = "a rail that varies: a list .slcs of slices without `along`";
         return Err(Error::new("rail", "rails of one profile each", expected, "or take `wheelrail sweep`"));
@@ -90,16 +51,62 @@ pub fn march(scene: &Scene, folder: &Path) -> Result<(March, Vec<String>)> {
         return Err(Error::new("rail", found, "lists that overlap along the track", "correct the offsets"));
     }
     let selection = Selection { within, apart: ONE_CONTACT };
-    Ok((March { system, position, selection, reach: about.reach }, about.warnings))
+    Ok((March { system, position, selection, reach: lists.reach }, lists.warnings))
+}
+
+/// What both sides are made of.
+struct Sides<'a> {
+    scene: &'a Scene,
+    folder: &'a Path,
+    rails: RailDistance,
+    wheels: WheelDistance,
+}
+
+impl Sides<'_> {
+    /// Makes one side, whose rail is a list of slices or one profile.
+    fn side(&self, right: bool, lists: &mut Lists) -> Result<SideOnTrack> {
+        let Self { scene, folder, rails, wheels } = *self;
+        let (name, own) = if right { ("right", &scene.right) } else { ("left", &scene.left) };
+        let own = own.as_ref();
+        let [rail, wheel] =
+            [own.and_then(|side| side.rail.as_ref()), own.and_then(|side| side.wheel.as_ref())];
+        let [rail_key, wheel_key] = [("rail", rail), ("wheel", wheel)]
+            .map(|(body, own)| if own.is_some() { format!("{name}: {body}") } else { body.to_owned() });
+        let (rail, given) = (rail.unwrap_or(&scene.rail), Given::new());
+        let wheel = wheel.unwrap_or(&scene.wheel);
+        let (wheel, radius) = wheel_of(scene, wheel, &wheel_key, (folder, &given))?;
+        let axle = Wheelset::new(wheels, radius)?;
+        let deviation = own.and_then(|side| side.deviation).unwrap_or_default();
+        if deviation.roll != 0.0 {
+            let place = format!("{name}: deviation: roll");
+            let expected = "lateral and vertical deviations of rails that are marched along";
+            return Err(Error::new(place, "a roll", expected, "turn the profile by `rotate`"));
+        }
+        let sign = if right { 1.0 } else { -1.0 };
+        let moved = |track: Track| track.moved(sign * deviation.lateral, deviation.vertical);
+        let Some(list) = list_of(rail) else {
+            let rail = rail_of(rail, &rail_key, (folder, &given))?.profile;
+            let track = moved(Track::new(&rail, rails)?)?;
+            return SideOnTrack::new(&Pair::new(rail, wheel.profile, radius)?, track, axle);
+        };
+        let RailDistance::Spacing(spacing) = rails else {
+            let expected = "`spacing` of the profile origins: rails that vary have no one gauge point";
+            return Err(Error::new("track", "a gauge", expected, "give spacing instead of gauge"));
+        };
+        let loft = loft(rail, &folder.join(list)).map_err(|error| error.within(&rail_key))?;
+        lists.take(&loft, &rail_key);
+        let pair = LoftedPair::new(Arc::new(loft), &wheel.profile, radius)?;
+        Ok(SideOnTrack::lofted(Arc::new(pair), moved(Track::between_origins(spacing)?)?, axle))
+    }
 }
 
 /// What the lists of both sides say.
-struct About {
+struct Lists {
     reach: [f64; 2],
     warnings: Vec<String>,
 }
 
-impl About {
+impl Lists {
     fn take(&mut self, loft: &Loft, place: &str) {
         let [from, to] = loft.reach();
         self.reach = [self.reach[0].max(from), self.reach[1].min(to)];

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::output::{PictureFormat, refuse_taken};
+use super::output::{PictureFormat, refuse_files};
 use super::progress::Progress;
 use super::range::range;
 use crate::answer::{Outcome, complain, counted, folder_of, print_to_reader};
@@ -45,18 +45,9 @@ impl MarchOutputs {
     fn create(arguments: &MarchArguments, scene: &Scene) -> Result<Self> {
         let picture = arguments.picture.as_deref();
         let format = picture.map(|file| PictureFormat::of_file("--picture", file)).transpose()?;
-        let folder = folder_of(&arguments.scene);
-        let mut taken = vec![arguments.scene.clone()];
-        taken.extend(
-            scene.profiles().filter_map(|profile| profile.file.as_ref()).map(|file| folder.join(file)),
-        );
         let files =
             [("--out", &arguments.out), ("--events", &arguments.events), ("--picture", &arguments.picture)];
-        for (option, file) in files {
-            let Some(file) = file else { continue };
-            refuse_taken(option, file, &taken)?;
-            taken.push(file.clone());
-        }
+        refuse_files(&arguments.scene, scene, None, &files)?;
         Ok(Self {
             table: arguments.out.as_deref().map(NewFile::create).transpose()?,
             events: arguments.events.as_deref().map(NewFile::create).transpose()?,

@@ -4,8 +4,10 @@
 use std::path::{Path, PathBuf};
 
 use super::png::png;
+use crate::answer::folder_of;
 use wheelrail::error::{Error, Result};
 use wheelrail::files::read_bytes;
+use wheelrail::scene::Scene;
 
 /// Largest summary that is read \[bytes\]: many times that of a run with a hundred contacts.
 const LARGEST_SUMMARY: usize = 1 << 28;
@@ -23,6 +25,28 @@ pub(super) fn refuse_taken(option: &str, out: &Path, taken: &[PathBuf]) -> Resul
             Err(Error::new(option, found, "a file of its own", "give another name"))
         }
     }
+}
+
+/// Rejects output files of options that are the scene, one of its profiles, one of `read`, or each other.
+///
+/// # Errors
+/// The first that is, with its option.
+pub(super) fn refuse_files(
+    scene_file: &Path,
+    scene: &Scene,
+    read: Option<&PathBuf>,
+    outputs: &[(&str, &Option<PathBuf>)],
+) -> Result<()> {
+    let folder = folder_of(scene_file);
+    let profiles = scene.profiles().filter_map(|profile| profile.file.as_ref());
+    let mut taken: Vec<PathBuf> = profiles.map(|file| folder.join(file)).collect();
+    taken.extend(read.cloned().into_iter().chain([scene_file.to_owned()]));
+    for (option, file) in outputs {
+        let Some(file) = file else { continue };
+        refuse_taken(option, file, &taken)?;
+        taken.push(file.clone());
+    }
+    Ok(())
 }
 
 /// Rejects a default folder that holds the results of another scene file, if that file still exists: two scene files can

@@ -33,9 +33,9 @@ const MOST_PARTS: f64 = 4096.0;
 /// Distance \[mm\] below which two places of Newton's method are one.
 const ONE_PLACE: f64 = 1e-6;
 
-/// Most parts that one search looks at. A search looks at some hundreds, and at some tens of thousands where the bodies touch along a
-/// line.
-const MOST_LOOKED_AT: u64 = 2_000_000;
+/// Most pairs of parts that one search looks at: of some hundred bytes each. A search looks at some hundreds, and at some ten thousand
+/// with near misses of a millimetre.
+const MOST_LOOKED_AT: u64 = 1_000_000;
 
 /// A lofted rail and a wheel, prepared for searches.
 #[derive(Debug, Clone)]
@@ -158,25 +158,16 @@ impl LoftedSearch<'_> {
             }
             let own = self.parts[part];
             let of = &pair.wheel.nodes[node];
-            let leaf = of.right == 0;
-            if !leaf && of.size > own.size {
+            if of.right != 0 && (of.size > own.size || own.is_small()) {
                 for child in [node + 1, of.right as usize] {
                     self.push(&wheel, part, child, lowest + within);
                 }
-                continue;
-            }
-            if own.is_small() {
-                if leaf {
-                    self.settle(&wheel, part, &mut lowest, within);
-                } else {
-                    for child in [node + 1, of.right as usize] {
-                        self.push(&wheel, part, child, lowest + within);
-                    }
+            } else if own.is_small() {
+                self.settle(&wheel, part, &mut lowest, within);
+            } else {
+                for half in own.halves(&pair.loft) {
+                    self.add(&wheel, half, node, &mut lowest, within);
                 }
-                continue;
-            }
-            for half in own.halves(&pair.loft) {
-                self.add(&wheel, half, node, &mut lowest, within);
             }
         }
         let gap = |found: &Found| found.settled.wheel.gap;
@@ -214,16 +205,21 @@ impl LoftedSearch<'_> {
             }
         }
         self.parts.push(part.bound(loft, wheel, self.along));
-        self.push(wheel, self.parts.len() - 1, node, *lowest + within);
+        if !self.push(wheel, self.parts.len() - 1, node, *lowest + within) {
+            self.parts.pop();
+        }
     }
 
-    fn push(&mut self, wheel: &WheelAbove<'_>, part: usize, node: usize, ceiling: f64) {
+    /// Queues a part against a node of the wheel; returns whether the gap between them may be least.
+    fn push(&mut self, wheel: &WheelAbove<'_>, part: usize, node: usize, ceiling: f64) -> bool {
         self.work.pairs += 1;
         let (own, of) = (&self.parts[part], &self.pair.wheel.nodes[node].bounds);
         let bound = own.gap_below(wheel, of);
-        if bound <= ceiling && own.may_be_level(&self.pair.loft, wheel, of) {
+        let may = bound <= ceiling && own.may_be_level(&self.pair.loft, wheel, of);
+        if may {
             self.queue.push(Open { bound, part, node });
         }
+        may
     }
 
     /// Follows the gap down from the middle of a small part, and keeps the place if it is a new one.

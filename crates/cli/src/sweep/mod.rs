@@ -10,7 +10,7 @@ mod table;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::output::{PictureFormat, refuse_taken};
+use super::output::{PictureFormat, refuse_files};
 use super::progress::Progress;
 use crate::answer::{Outcome, complain, folder_of, print_to_reader};
 use crate::range::range;
@@ -80,20 +80,9 @@ impl SweepOutputs {
     fn create(arguments: &SweepArguments, scene: &Scene) -> Result<Self> {
         let picture = arguments.picture.as_deref();
         let format = picture.map(|file| PictureFormat::of_file("--picture", file)).transpose()?;
-        let folder = folder_of(&arguments.scene);
-        let mut taken: Vec<PathBuf> = scene
-            .profiles()
-            .filter_map(|profile| profile.file.as_ref())
-            .map(|file| folder.join(file))
-            .collect();
-        taken.extend(arguments.positions.clone().into_iter().chain([arguments.scene.clone()]));
         let files =
             [("--out", &arguments.out), ("--picture", &arguments.picture), ("--html", &arguments.html)];
-        for (option, file) in files {
-            let Some(file) = file else { continue };
-            refuse_taken(option, file, &taken)?;
-            taken.push(file.clone());
-        }
+        refuse_files(&arguments.scene, scene, arguments.positions.as_ref(), &files)?;
         Ok(Self {
             table: arguments.out.as_deref().map(NewFile::create).transpose()?,
             picture: format.zip(picture.map(NewFile::create).transpose()?),
