@@ -94,7 +94,7 @@ mod tests {
                 let exact = match count {
                     2 => values[1] - values[0],
                     // The parabola through the first three values.
-                    3 => -0.5 + (t - 0.5) * 1.0,
+                    3 => -0.5 + t,
                     _ => 2.0 + t * (-6.0 + 3.0 * t),
                 };
                 assert!((slope - exact).abs() < 1e-12, "{count} values, {t}: {slope} {exact}");

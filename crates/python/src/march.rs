@@ -20,6 +20,22 @@ use crate::sweep::arrays_of;
 /// columns of a sweep and `along_mm` and `contact_pitch_rad`, and the events, with those of `wheelrail march --events`. `progress` is
 /// called with the places done and all of them.
 ///
+///     >>> from pathlib import Path
+///     >>> from tempfile import mkdtemp
+///     >>> folder = Path(mkdtemp())
+///     >>> for at in (0, 1000):                                      # a rail that rises by 1:1000
+///     ...     wr.rail("60E1").shifted(0.0, at / 1000).to_file(folder / f"{at}.toml")
+///     >>> _ = (folder / "rail.slcs").write_text("0 1\n2\n0\n1\n0 '0.toml'\n1000 '1000.toml'\n")
+///     >>> _ = (folder / "scene.toml").write_text("""
+///     ... rail = { file = "rail.slcs" }
+///     ... wheel = { profile = "S1002", radius = 460.0 }
+///     ... track = { spacing = 1500.0 }
+///     ... wheelset = { spacing = 1500.0 }
+///     ... """)
+///     >>> rows, events = wr.march(folder / "scene.toml", [400.0, 600.0])
+///     >>> [round(float(z), 3) for z in rows["z_mm"] - rows["z_mm"][0]]
+///     [0.0, 0.0, 0.2, 0.2]
+///
 /// Raises InputError for anything wrong with the scene, the slices, or places that they do not reach.
 #[pyfunction]
 #[pyo3(signature = (path, along, *, progress = None))]
