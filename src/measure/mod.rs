@@ -79,15 +79,25 @@ pub fn measure(
         Ok(nominal) => nominal,
         Err(why) => return Ok(none(format!("in the nominal: {why}"))),
     };
-    let aligned = match align::align(profile, side, nominal.as_ref(), options) {
-        Ok(aligned) => aligned,
-        Err(why) => return Ok(none(why)),
+    let (aligned, nominal, lost) = match align::align(profile, side, nominal.as_ref(), options) {
+        Ok(aligned) => (aligned, nominal, None),
+        // What needs no nominal is measured in the profile's own axes.
+        Err(why) => match nominal.and_then(|_| alone(profile, side, options)) {
+            Some(aligned) => (aligned, None, Some(format!("{why}: no wear, the rest in its own axes"))),
+            None => return Ok(none(why)),
+        },
     };
     let found = at(&aligned, side, nominal.as_ref(), options, &Station::AXES);
     let if_off = if_off(&aligned, side, nominal.as_ref(), options, &found);
     let doubts = aligned.alignment.doubt.iter().cloned().chain(gains(found.values()));
-    let findings = doubts.chain(found.findings()).collect();
+    let findings = lost.into_iter().chain(doubts).chain(found.findings()).collect();
     Ok(Measures { side, values: found.values(), if_off, alignment: Some(aligned.alignment), findings })
+}
+
+/// Aligns a profile as if there were no nominal; `None` if that fails, too.
+fn alone(profile: &Profile, side: Side, options: &MeasureOptions) -> Option<Aligned> {
+    let options = MeasureOptions { align: None, unworn: Vec::new(), ..options.clone() };
+    align::align(profile, side, None, &options).ok()
 }
 
 /// Says which wear is a gain of metal that no wheel or rail has.

@@ -358,6 +358,12 @@ fn what_is_not_measured_is_missing_and_says_so() -> Result<()> {
     assert!(measures.findings[0].contains("no tread at X = 70 mm"), "{measures:?}");
     let measures = measure(&cut(-70.0, 30.0), Side::Wheel, Some(&nominal), &MeasureOptions::default())?;
     assert!(measures.findings[0].starts_with("no alignment by flange back and outer tread"), "{measures:?}");
+    // What needs no nominal is measured all the same.
+    let own = measure(&cut(-70.0, 30.0), Side::Wheel, None, &MeasureOptions::default())?;
+    assert!(own.value(Quantity::FlangeThickness).is_some(), "{own:?}");
+    for quantity in Quantity::ALL {
+        assert_eq!(measures.value(quantity), own.value(quantity), "{quantity:?}");
+    }
     // Where the back turns upright 0.4 mm farther left, its place is doubted.
     let measures = measure(&cut(-69.6, 60.0), Side::Wheel, None, &MeasureOptions::default())?;
     assert!(measures.value(Quantity::FlangeThickness).is_some(), "{measures:?}");
@@ -366,7 +372,11 @@ fn what_is_not_measured_is_missing_and_says_so() -> Result<()> {
     let rail = standards::rail("60E1")?;
     let crown = worn(&rail, Side::Rail, |_| [0.0; 2], Station::AXES, |at| at.x.abs() < 25.0);
     let measures = measure(&crown, Side::Rail, Some(&rail), &MeasureOptions::default())?;
-    assert!(measures.alignment.is_none() && measures.findings[0].contains("field side"), "{measures:?}");
+    assert!(
+        measures.value(Quantity::W1).is_none() && measures.findings[0].contains("field side"),
+        "{measures:?}"
+    );
+    assert!(measures.value(Quantity::CrownRadius).is_some(), "{measures:?}");
     let measures = measure(&crown, Side::Rail, None, &MeasureOptions::default())?;
     assert!(
         measures.value(Quantity::CrownRadius).is_some() && measures.value(Quantity::SideFaceAngle).is_none()
