@@ -49,7 +49,6 @@ pub struct Loft {
     /// Where the slices leave the surface undefined, and why.
     pub warnings: Vec<String>,
     reach: [f64; 2],
-    extent: f64,
 }
 
 /// A slice with its marks, and the arc lengths at the ends of its parts; `None` for parts that it does not have.
@@ -70,9 +69,6 @@ impl Loft {
         check(slices)?;
         let divided = slices.par_iter().map(divide).collect::<Result<Vec<_>>>()?;
         let (runs, mut warnings) = runs(slices, &divided);
-        let Some(extent) = slices.iter().map(|slice| slice.profile.extent()).reduce(f64::max) else {
-            return Err(Error::new("slices", "none", "two or more", "list them"));
-        };
         let (mut strips, mut total) = (Vec::new(), 0);
         for (part, run) in runs {
             let points = spread_all(&divided[run.clone()], part, &mut total)?;
@@ -91,17 +87,12 @@ impl Loft {
             let expected = "a part that two successive slices have";
             return Err(Error::new("slices", "no such part", expected, "correct the features"));
         }
-        Ok(Self { strips, warnings, reach: [slices[0].at, slices[slices.len() - 1].at], extent })
+        Ok(Self { strips, warnings, reach: [slices[0].at, slices[slices.len() - 1].at] })
     }
 
     /// Positions of the first and of the last slice \[mm\].
     pub fn reach(&self) -> [f64; 2] {
         self.reach
-    }
-
-    /// Largest extent of a slice \[mm\].
-    pub fn extent(&self) -> f64 {
-        self.extent
     }
 }
 

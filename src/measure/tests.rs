@@ -1,5 +1,7 @@
 //! Closed forms of drawings, and known wear under a known displacement.
 
+mod page;
+
 use super::curve::Curve;
 use super::*;
 use crate::measured::{self, CurveKind};
@@ -482,27 +484,4 @@ fn instruments_have_the_same_values() -> Result<()> {
         );
     }
     Ok(())
-}
-
-#[test]
-fn the_page_lists_every_column_and_alignment() {
-    let page = include_str!("../docs/measures.md");
-    for quantity in Quantity::ALL {
-        assert!(page.contains(&format!("`{}`", quantity.key())), "{quantity:?}");
-        assert!(quantity.key().ends_with(&quantity.unit().replace('%', "percent")), "{quantity:?}");
-    }
-    let all = [
-        Align::None,
-        Align::Back,
-        Align::TreadPoint,
-        Align::BackAndTread,
-        Align::FieldSide,
-        Align::Web,
-        Align::Unworn,
-        Align::BestFit,
-    ];
-    for align in all {
-        assert!(page.contains(&format!("| `{}` |", align.word())), "{align:?}");
-        assert_eq!(serde_json::to_value(align).ok(), Some(align.word().into()));
-    }
 }

@@ -6,11 +6,13 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::data::Scene;
+use super::doubts::of_keys;
 use super::profile_data::ProfileData;
 use super::profiles::{
     Given, is_chain_file, profile_from_file, rail_of, reject_measured_keys, turned_and_shifted, wheel_of,
 };
 use super::standing::{position, rails, wheels, within};
+use crate::case::usual;
 use crate::error::{Error, Result};
 use crate::files::read_bytes;
 use crate::lofted::{Loft, Slice};
@@ -34,7 +36,8 @@ pub fn march(scene: &Scene, folder: &Path) -> Result<(March, Vec<String>)> {
     }
     let (position, within) = (position(wheelset)?, within(wheelset.within)?);
     let sides = Sides { scene, folder, rails: rails(track)?, wheels: wheels(wheelset)? };
-    let mut lists = Lists { reach: [f64::NEG_INFINITY, f64::INFINITY], warnings: Vec::new() };
+    let warnings = of_keys(scene).iter().map(ToString::to_string).collect();
+    let mut lists = Lists { reach: [f64::NEG_INFINITY, f64::INFINITY], warnings };
     let right = sides.side(true, &mut lists)?;
     let system = if scene.left.is_none() && scene.right.is_none() {
         WheelsetOnTrack::symmetrical(right)
@@ -76,6 +79,13 @@ impl Sides<'_> {
         let wheel = wheel.unwrap_or(&scene.wheel);
         let (wheel, radius) = wheel_of(scene, wheel, &wheel_key, (folder, &given))?;
         let axle = Wheelset::new(wheels, radius)?;
+        let findings = wheel.measured.iter().flat_map(|record| &record.warnings);
+        lists
+            .warnings
+            .extend(findings.map(|finding| format!("{wheel_key}: {}: {}", finding.place, finding.found)));
+        lists
+            .warnings
+            .extend(usual::radius(&format!("{wheel_key}: radius"), radius).map(|doubt| doubt.to_string()));
         let deviation = own.and_then(|side| side.deviation).unwrap_or_default();
         if deviation.roll != 0.0 {
             let place = format!("{name}: deviation: roll");
@@ -141,6 +151,7 @@ pub fn loft(data: &ProfileData, path: &Path) -> Result<Loft> {
         let error = Error::new("mirror", found, "slices turned alike", "give `mirror`, `flip_z` and `unit`");
         return Err(error.within(&place));
     }
+    let doubts: Vec<Option<String>> = curves.iter().map(|curve| curve.doubt.clone()).collect();
     let slices: Vec<Slice> = list
         .slices
         .into_iter()
@@ -153,7 +164,25 @@ pub fn loft(data: &ProfileData, path: &Path) -> Result<Loft> {
             measured_along: curve.polygon,
         })
         .collect();
-    Loft::new(&slices, data.surface.unwrap_or_default()).map_err(|error| error.within(&place))
+    let mut loft =
+        Loft::new(&slices, data.surface.unwrap_or_default()).map_err(|error| error.within(&place))?;
+    let doubtful: Vec<String> = slices
+        .iter()
+        .zip(doubts)
+        .filter_map(|(slice, doubt)| Some(format!("{}: {}", slice.name, doubt?)))
+        .collect();
+    if let Some(first) = doubtful.first() {
+        loft.warnings.push(format!(
+            "{} of {} slices have doubtful points, the first {first}",
+            doubtful.len(),
+            slices.len()
+        ));
+    }
+    if list.approximated {
+        loft.warnings
+            .push("the list asks for an approximating spline; the surface goes through its slices".into());
+    }
+    Ok(loft)
 }
 
 /// The curve of a slice.
@@ -163,6 +192,8 @@ struct Curve {
     polygon: Option<f64>,
     /// By what the file's axes were multiplied.
     scale: [f64; 2],
+    /// The first finding about its points.
+    doubt: Option<String>,
 }
 
 impl Curve {
@@ -172,13 +203,14 @@ impl Curve {
             let drawn = profile_from_file(path)?;
             let mirrored = data.mirror == Some(true);
             let (profile, sign) = if mirrored { (drawn.mirrored(), -1.0) } else { (drawn, 1.0) };
-            return Ok(Self { profile, polygon: None, scale: [sign, 1.0] });
+            return Ok(Self { profile, polygon: None, scale: [sign, 1.0], doubt: None });
         }
         let bytes = read_bytes(path, measured::LARGEST_FILE)?;
         let options = data.measured();
         let Measured { profile, points, record } =
             measured::profile(&path.display().to_string(), &bytes, Side::Rail, &options)?;
         let steps = points.windows(2).map(|pair| (pair[1].x - pair[0].x).hypot(pair[1].z - pair[0].z));
-        Ok(Self { profile, polygon: Some(steps.sum()), scale: record.transform.scale })
+        let doubt = record.warnings.first().map(|finding| format!("{}: {}", finding.place, finding.found));
+        Ok(Self { profile, polygon: Some(steps.sum()), scale: record.transform.scale, doubt })
     }
 }

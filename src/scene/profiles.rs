@@ -286,7 +286,7 @@ pub(super) fn reject_measured_keys(data: &ProfileData) -> Result<()> {
 /// A profile, and the record of a measured one.
 pub(super) struct Resolved {
     pub profile: Profile,
-    measured: Option<Record>,
+    pub measured: Option<Record>,
 }
 
 impl Resolved {

@@ -49,9 +49,12 @@ impl SideSearch<'_> {
         }
     }
 
-    /// Tells whether the last search ended without an answer.
-    pub fn gave_up(&self) -> bool {
-        matches!(self, Self::Lofted(search) if search.gave_up)
+    /// Tells whether a search ended without an answer since this was asked last.
+    pub fn gave_up(&mut self) -> bool {
+        match self {
+            Self::Swept(_) => false,
+            Self::Lofted(search) => std::mem::take(&mut search.gave_up),
+        }
     }
 
     pub fn lower(&mut self, attitude: &Attitude, within: f64) -> Option<Candidate> {

@@ -212,7 +212,7 @@ struct Lowered {
 }
 
 impl WheelsetOnTrack {
-    /// Makes a search over this system.
+    /// Makes a search over this system. On rails that vary the middle of the axle is at 0 of their lists.
     pub fn search(&self) -> WheelsetSearch<'_> {
         WheelsetSearch { system: self, sides: self.sides.each_ref().map(|side| side.pair.search()) }
     }
@@ -276,7 +276,7 @@ impl WheelsetSearch<'_> {
                 level => level,
             },
         };
-        if self.sides.iter().any(SideSearch::gave_up) {
+        if self.sides.each_mut().map(SideSearch::gave_up).contains(&true) {
             let expected = "slices over which a wheel touches at places, not all over";
             let advice = "look at the slices nearby, or lower `within`";
             return Err(Error::new("rail", "a surface too close to the wheel's", expected, advice));

@@ -48,6 +48,8 @@ pub struct SliceList {
     pub side: Side,
     /// The slices by ascending position.
     pub slices: Vec<Slice>,
+    /// Whether the file asks for a spline near its slices, not through them (method 2).
+    pub approximated: bool,
     /// What the file says and this program does not use.
     pub notes: Vec<Note>,
 }
@@ -79,7 +81,7 @@ impl SliceList {
         let head = groups.next("the numbers of features, kinks and jumps", 1)?;
         let features = head.count(0, "a number of features", 0..=MOST_FEATURES)?;
         let [kinks, jumps] = [1, 2].map(|k| head.optional(k).filter(|_| features > 1).unwrap_or(0));
-        let mut notes = method(&groups.next("the method of interpolation", 1)?)?;
+        let (approximated, mut notes) = method(&groups.next("the method of interpolation", 1)?)?;
         let mut slices = Vec::with_capacity(count);
         for number in 1..=count {
             slices.push(slice(&groups.next(&format!("slice {number} of {count}"), 2)?, position)?);
@@ -104,12 +106,12 @@ impl SliceList {
                     (1..=features).map(|k| row.number(k, "an arc length")).collect::<Result<_>>()?;
             }
         }
-        Ok(Self { side, slices, notes })
+        Ok(Self { side, slices, approximated, notes })
     }
 }
 
-/// Reads the method of interpolation, which this program does not use; surfaces with perturbations are refused.
-fn method(row: &Group<'_>) -> Result<Vec<Note>> {
+/// Reads the method of interpolation, which sections do not use: whether it approximates. Surfaces with perturbations are refused.
+fn method(row: &Group<'_>) -> Result<(bool, Vec<Note>)> {
     let method = row.count(0, "a method of interpolation", 1..=2)?;
     if let Some(kind) = row.optional(1).filter(|kind| *kind != 0) {
         let found = format!("perturbations of kind {kind}");
@@ -118,7 +120,7 @@ fn method(row: &Group<'_>) -> Result<Vec<Note>> {
     }
     let name = if method == 1 { "a spline" } else { "an approximating spline" };
     let text = format!("{name} between slices is asked for; sections are interpolated in straight lines");
-    Ok(vec![Note { line: row.line.number, text }])
+    Ok((method == 2, vec![Note { line: row.line.number, text }]))
 }
 
 fn slice(row: &Group<'_>, position: impl Fn(f64) -> f64) -> Result<Slice> {

@@ -56,7 +56,7 @@ pub(super) struct LoftedSearch<'a> {
     queue: BinaryHeap<Open>,
     found: Vec<Found>,
     contacts: Vec<Contact>,
-    /// Whether the last search had too many parts to look at.
+    /// Whether a search had too many parts to look at; none is made until this is taken back.
     pub gave_up: bool,
     pub work: Work,
 }
@@ -114,11 +114,6 @@ impl LoftedPair {
         Ok(Self { loft, wheel: body, section, radius })
     }
 
-    /// The rail.
-    pub fn loft(&self) -> &Loft {
-        &self.loft
-    }
-
     /// Makes a search; the axle's middle is at 0 of the list.
     pub(super) fn search(&self) -> LoftedSearch<'_> {
         LoftedSearch {
@@ -138,12 +133,14 @@ impl LoftedSearch<'_> {
     /// Returns the lowest place of contact, and keeps all others up to `within` \[mm\] above it; `None` if no part of the wheel is over
     /// the rail.
     pub fn lower(&mut self, attitude: &Attitude, within: f64) -> Option<Candidate> {
+        if self.gave_up {
+            return None;
+        }
         let pair = self.pair;
         let wheel = WheelAbove::new(&pair.section, attitude);
         self.parts.clear();
         self.queue.clear();
         self.found.clear();
-        self.gave_up = false;
         self.work.searches += 1;
         let mut lowest = f64::INFINITY;
         self.open(&wheel, &mut lowest, within);
