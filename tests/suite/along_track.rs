@@ -373,3 +373,22 @@ fn heights_of_first_touch_are_contact_s_and_a_brute_force_s() -> Result<()> {
     assert_eq!(compared, [87, 87, 49]);
     Ok(())
 }
+
+#[test]
+fn what_is_doubtful_is_warned_of() {
+    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/crossing");
+    let folder = tempfile::tempdir().unwrap();
+    let list = std::fs::read_to_string(own.join("crossing.slcs")).unwrap();
+    let list = list.replace("   1              method", "   2              method");
+    let list = list.replace("'slice_", &format!("'{}/slice_", own.display()));
+    std::fs::write(folder.path().join("crossing.slcs"), list).unwrap();
+    let text = std::fs::read_to_string(own.join("crossing.toml")).unwrap();
+    let text =
+        text.replace("radius = 460.0", "radius = 46.0").replace("lateral = 0.0", "lateral = 0.0\nyaw = 0.3");
+    let (_, warnings) = scene::march(&scene::parse(&text, false).unwrap(), folder.path()).unwrap();
+    for part in ["wheelset: yaw", "wheel: radius", "an approximating spline"] {
+        assert!(warnings.iter().any(|warning| warning.contains(part)), "{part}: {warnings:?}");
+    }
+    let (_, warnings) = scene::march(&scene::load(&own.join("crossing.toml")).unwrap(), &own).unwrap();
+    assert!(warnings.is_empty(), "{warnings:?}");
+}
