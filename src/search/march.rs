@@ -148,6 +148,8 @@ impl March {
             let found = format!("{} mm after {} mm", pair[1], pair[0]);
             return Err(Error::new("along", found, "ascending places", "sort them"));
         }
+        // The first place in order, whatever thread would come upon one first.
+        along.iter().try_for_each(|&at| self.reaches(at))?;
         let mut last: Option<Stop> = None;
         let mut clearance = [None; 2];
         for block in along.chunks(BLOCK) {
@@ -190,15 +192,21 @@ impl March {
     }
 
     fn stop(&self, sweep: &mut Sweep<'_>, along: f64) -> Result<Stop> {
-        let [from, to] = self.reach;
-        if !(from..=to).contains(&along) {
-            let expected = format!("a place from {from} to {to} mm, where all slices are");
-            return Err(Error::new("along", format!("{along} mm"), expected, "march where the lists reach"));
-        }
+        self.reaches(along)?;
         let mut rows = Vec::new();
         sweep.stand_at(along);
         sweep.position(&self.position, &mut rows)?;
         Ok(Stop { along, rows })
+    }
+
+    /// Rejects a place \[mm\] where a rail has no slices.
+    fn reaches(&self, along: f64) -> Result<()> {
+        let [from, to] = self.reach;
+        if (from..=to).contains(&along) {
+            return Ok(());
+        }
+        let expected = format!("a place from {from} to {to} mm, where all slices are");
+        Err(Error::new("along", format!("{along} mm"), expected, "march where the lists reach"))
     }
 
     /// Appends the events between two stops, each refined by halving.
