@@ -107,6 +107,8 @@ colours.ApplyPreset("Inferno (matplotlib)", True)
 colours.InvertTransferFunction()
 colours.RescaleTransferFunction(0.0, end)
 colours.NanOpacity = 0.0
+# Arrows have values beyond the end.
+colours.AutomaticRescaleRangeMode = "Never"
 bar = GetScalarBar(colours, view)
 bar.Title = "normal gap t, mm" if conformal else "separation s, mm"
 bar.ComponentTitle = ""

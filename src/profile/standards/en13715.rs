@@ -49,7 +49,8 @@ const FLANGES: [Flange; 3] = [
     Flange {
         height: 32.0,
         radius: 23.0,
-        centre: [-63.110, -12.558],
+        // The transcription has 12.558: then G1 lies 8 µm off the circle and F1 10 µm. By both, and by tangency, it is 12.568.
+        centre: [-63.110, -12.568],
         tip_joint: -46.153,
         face_joint: [-41.497, -20.434],
     },
@@ -186,7 +187,7 @@ mod tests {
 
     #[test]
     fn the_formulas_give_what_is_drawn_elsewhere() -> Result<()> {
-        let at = [-65.0, -55.0, -45.0, -39.0, -36.0, -30.0, -20.0, -3.0, 12.0, 30.0, 40.0];
+        let at = [-65.0, -55.0, -45.0, -39.0, -36.0, -30.0, -20.0, -3.0, 12.0, 30.0];
         let drawn = heights("EN13715-1:40-h28-e32.5", at)?;
         assert_eq!(heights("EN13715-1:40-h28-e32.5-15%", at)?, drawn);
         // S1002 is drawn with nine decimals, and without the line from T1 to D0.
@@ -200,6 +201,15 @@ mod tests {
 
     #[test]
     fn every_member_is_closed_near_its_formulas() -> Result<()> {
+        for flange in &FLANGES {
+            for joint in [[flange.tip_joint, 0.0], flange.face_joint] {
+                let [x, z] = [joint[0] - flange.centre[0], joint[1] - flange.centre[1]];
+                // Of the tip's joint the circle of 12 mm gives z.
+                let on_tip = 12.0 - flange.height - (144.0 - (joint[0] + 55.0).powi(2)).sqrt();
+                let z = if joint[1] == 0.0 { on_tip - flange.centre[1] } else { z };
+                assert!((x.hypot(z) - flange.radius).abs() < 1e-3, "{}: {joint:?}", flange.height);
+            }
+        }
         for tread in ["1:40", "S1002"] {
             for (height, thickness) in
                 [(28, 28.5), (28, 31.5), (30, 32.5), (30, 30.0), (32, 32.5), (32, 28.5)]

@@ -41,7 +41,11 @@ fn page_folder(page: &Path) -> PathBuf {
     let here = folder("manual").join(page.file_stem().unwrap());
     let _ = std::fs::remove_dir_all(&here);
     std::fs::create_dir_all(&here).unwrap();
-    std::os::unix::fs::symlink(Path::new(ROOT).canonicalize().unwrap().join("examples"), here.join("examples")).unwrap();
+    std::os::unix::fs::symlink(
+        Path::new(ROOT).canonicalize().unwrap().join("examples"),
+        here.join("examples"),
+    )
+    .unwrap();
     here
 }
 
@@ -71,7 +75,10 @@ fn every_page_is_in_the_summary_and_begins_with_what_it_is_for() {
             let begin = text.lines().nth(2).unwrap_or_default();
             assert!(begin.starts_with("*After this page you can "), "{name} begins with: {begin}");
             let module = format!("include_str!(\"{name}\")");
-            assert!(include_str!("../../../../src/docs/mod.rs").contains(&module), "{name} is not in src/docs/mod.rs");
+            assert!(
+                include_str!("../../../../src/docs/mod.rs").contains(&module),
+                "{name} is not in src/docs/mod.rs"
+            );
         }
     }
 }
@@ -96,12 +103,18 @@ fn every_command_of_the_manual_runs() {
     let mut run = 0;
     for page in pages() {
         let text = std::fs::read_to_string(&page).unwrap();
-        let commands: Vec<String> =
-            blocks(&text, "sh").iter().flat_map(|block| block.lines().filter_map(command).collect::<Vec<_>>()).collect();
+        let commands: Vec<String> = blocks(&text, "sh")
+            .iter()
+            .flat_map(|block| block.lines().filter_map(command).collect::<Vec<_>>())
+            .collect();
         let here = if commands.is_empty() { continue } else { page_folder(&page) };
         for command in commands {
-            let output =
-                Command::new("sh").args(["-c", &command]).env("PATH", &path).current_dir(&here).output().unwrap();
+            let output = Command::new("sh")
+                .args(["-c", &command])
+                .env("PATH", &path)
+                .current_dir(&here)
+                .output()
+                .unwrap();
             let said = String::from_utf8_lossy(&output.stderr);
             assert!(output.status.success(), "{}: {command}\n{said}", page.display());
             run += 1;
@@ -116,7 +129,8 @@ fn every_scene_and_profile_of_the_manual_is_accepted() {
     for page in pages() {
         let text = std::fs::read_to_string(&page).unwrap();
         for (k, block) in blocks(&text, "toml").iter().enumerate() {
-            let value: toml::Table = block.parse().unwrap_or_else(|error| panic!("{}: {error}", page.display()));
+            let value: toml::Table =
+                block.parse().unwrap_or_else(|error| panic!("{}: {error}", page.display()));
             let is_scene = ["rail", "wheel", "patch"].iter().all(|key| value.contains_key(*key));
             let arguments: &[&str] = if is_scene {
                 &["midsep", "block.toml"]
@@ -127,8 +141,11 @@ fn every_scene_and_profile_of_the_manual_is_accepted() {
             };
             let here = page_folder(&page);
             std::fs::write(here.join("block.toml"), block).unwrap();
-            let output =
-                Command::new(env!("CARGO_BIN_EXE_wheelrail")).args(arguments).current_dir(here).output().unwrap();
+            let output = Command::new(env!("CARGO_BIN_EXE_wheelrail"))
+                .args(arguments)
+                .current_dir(here)
+                .output()
+                .unwrap();
             let said = String::from_utf8_lossy(&output.stderr);
             assert!(output.status.success(), "{}, block {k}: {said}", page.display());
         }
@@ -157,7 +174,8 @@ fn pictures_of_the_gallery_are_of_today() {
         let mut program = Command::new(env!("CARGO_BIN_EXE_wheelrail"));
         let output = program.arg("run").arg(&scene).arg("--out").arg(&here).output().unwrap();
         assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
-        let made = ["conformal.svg", "patch.svg"].map(|file| here.join(file)).into_iter().find(|file| file.exists());
+        let made =
+            ["conformal.svg", "patch.svg"].map(|file| here.join(file)).into_iter().find(|file| file.exists());
         let made = std::fs::read_to_string(made.unwrap()).unwrap();
         let kept = Path::new(ROOT).join(format!("output/pictures/scenes/{name}.svg"));
         if std::env::var("WHEELRAIL_PICTURES").is_ok() {

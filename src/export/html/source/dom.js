@@ -63,7 +63,8 @@ export function saveButton(sheet, name) {
         copy.toBlob((blob) => {
             const href = URL.createObjectURL(blob);
             element("a", { href, download: `${name}.png` }).click();
-            URL.revokeObjectURL(href);
+            // The browser reads it after the click.
+            setTimeout(() => URL.revokeObjectURL(href), 10_000);
         });
     };
     return element("button", { type: "button", class: "save", title: `Save this picture: ${name}.png`, "aria-label": `Save the picture ${name}`, onclick: save }, "PNG");
