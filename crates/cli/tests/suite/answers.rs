@@ -110,7 +110,11 @@ fn shells_and_the_manual_know_every_command() {
     assert!(help.starts_with("Finds where a railway wheel touches its rail"), "{help}");
     assert!(said(here, &["--version"]).starts_with("wheelrail "));
     let listed = help.split("Commands:").nth(1).unwrap().split("\n\n").next().unwrap();
-    let commands: Vec<&str> = listed.lines().filter_map(|line| line.split_whitespace().next()).collect();
+    let commands: Vec<&str> = listed
+        .lines()
+        .filter_map(|line| line.strip_prefix("  ").filter(|rest| !rest.starts_with(' ')))
+        .filter_map(|line| line.split_whitespace().next())
+        .collect();
     assert!(commands.contains(&"run") && commands.contains(&"profile"), "{commands:?}");
     for shell in ["bash", "zsh", "fish"] {
         let text = said(here, &["completions", shell]);
