@@ -12,7 +12,7 @@ mod read;
 mod system;
 mod temporary;
 
-pub use file::{NewFile, write_file};
+pub use file::{NewFile, make_folder, write_file};
 pub use folder::{Folder, FolderPart};
 pub use names::Names;
 pub use read::{read_bytes, read_text};

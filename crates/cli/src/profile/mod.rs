@@ -64,5 +64,6 @@ fn list() -> Result<String> {
     for name in standards::wheel_names() {
         let _ = writeln!(out, "wheel  {name:<24} {}", standards::wheel(name)?.source);
     }
+    let _ = writeln!(out, "wheel  {}\n{:31} {}", standards::EN_13715_NAMES, "", standards::EN_13715_SOURCE);
     Ok(out)
 }

@@ -18,6 +18,7 @@ mod conformal_table;
 mod doubts_cli;
 mod hostile;
 mod load_table;
+mod manual;
 mod march_cli;
 mod measure_cli;
 mod pages;

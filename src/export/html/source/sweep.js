@@ -2,7 +2,7 @@
 
 import { Curves } from "./curves.js";
 import { floats, pageData, pairsOf } from "./data.js";
-import { element, fixed } from "./dom.js";
+import { element, fixed, saveButton } from "./dom.js";
 import { PairView } from "./pair.js";
 import { themeButton } from "./themes.js";
 
@@ -54,7 +54,7 @@ page.addEventListener("keydown", (event) => {
 move(state.at);
 
 function figure(title, view, output) {
-    return element("figure", {}, element("figcaption", {}, title), view.sheet.canvas, output);
+    return element("figure", {}, element("figcaption", {}, title, saveButton(view.sheet, `${data.title}, ${title}`)), view.sheet.canvas, output);
 }
 
 /** Goes to a position by its number. */
