@@ -5,6 +5,7 @@
 
 use super::by_roots::ByRoots;
 use super::skewed::slicer::{Edge, STEP_ROUNDINGS, Skewed};
+use crate::numerics::lanes::{Lanes, MANY};
 use crate::placement::Placement;
 use crate::separation::wheel_surface::{SagittaPoint, Span, Surface};
 use crate::separation::{Evaluator, midplane_gap};
@@ -143,10 +144,12 @@ impl<'a> Slicer<'a> {
         Some([Edge { eta: -edge.eta, ..edge }, edge])
     }
 
-    /// Returns both ends of the slice at ξ \[mm\] next to a guess, under a skewed wheel on a rail. Returns `None` without skew, and if
-    /// they are not surely those of the slice that was guessed.
-    pub(super) fn edges_near(&mut self, xi: f64, guess: [f64; 2]) -> Option<[f64; 2]> {
-        self.skewed.as_mut()?.edges_near(xi, guess)
+    /// Returns whether s over the tangent plane of a rail rises from one lowest place of every ξ to both sides.
+    pub(super) fn has_one_valley(&self, xi: &Lanes) -> bool {
+        let one = |skewed: &Skewed<'_>| {
+            skewed.valleys.is_one_between([xi[0].min(xi[MANY - 1]), xi[0].max(xi[MANY - 1])])
+        };
+        self.by_roots.is_none() && self.skewed.as_ref().is_none_or(one)
     }
 
     /// Returns the upper end of the slice at ξ without skew, or `None` outside the patch.
@@ -198,9 +201,12 @@ impl<'a> Slicer<'a> {
         places.map_or(0.0, |(skewed, valley)| skewed.valleys.spot(valley, xi).eta)
     }
 
-    /// Returns η. If rounding ends the surface too early, it returns a place on the surface next to η.
-    pub(super) fn on_surface(&mut self, xi: f64, eta: f64) -> f64 {
-        self.skewed.as_mut().map_or(eta, |skewed| skewed.on_surface(xi, eta))
+    /// Returns \[s, η\] \[mm\]. If rounding ends the surface too early, it returns a place on the surface next to η.
+    pub(super) fn on_surface(&mut self, xi: f64, eta: f64) -> [f64; 2] {
+        match &mut self.skewed {
+            Some(skewed) => skewed.on_surface(xi, eta),
+            None => [self.separation(xi, eta), eta],
+        }
     }
 
     /// Returns dη/dξ at a point of the boundary: −s_ξ/s_η, which is infinite at a tip.

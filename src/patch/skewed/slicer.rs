@@ -20,10 +20,6 @@ const NEWTON_STEPS: usize = 6;
 /// Newton step, as a share of η's distance from the start, after which iteration ends: the error is its square.
 const QUADRATIC: f64 = 1e-8;
 
-/// Distance from a guessed edge, as a share of the slice, up to which a root is the edge that was guessed: another interval is farther
-/// away.
-const NEAR_GUESS: f64 = 0.1;
-
 /// Half the interval, in roundings of η, in which Newton's result is confirmed by a change of sign.
 const NEWTON_ROUNDINGS: f64 = 64.0;
 
@@ -87,12 +83,12 @@ impl<'a> Skewed<'a> {
         lowest.map(|(_, k)| k)
     }
 
-    /// Returns η, or a place next to it if rounding ends the surface too early.
-    pub(in crate::patch) fn on_surface(&mut self, xi: f64, eta: f64) -> f64 {
+    /// Returns \[s, η\] \[mm\], at a place next to η if rounding ends the surface too early.
+    pub(in crate::patch) fn on_surface(&mut self, xi: f64, eta: f64) -> [f64; 2] {
         let rounding = f64::EPSILON * self.placement.rolling_radius();
         let steps = std::iter::once(0.0).chain((0..NUDGES).flat_map(|k| [4f64.powi(k), -4f64.powi(k)]));
-        let mut near = steps.map(|n| eta + n * rounding);
-        near.find(|&eta| !self.evaluator.separation(xi, eta).is_nan()).unwrap_or(eta)
+        let mut near = steps.map(|n| eta + n * rounding).map(|eta| [self.evaluator.separation(xi, eta), eta]);
+        near.find(|[s, _]| !s.is_nan()).unwrap_or([f64::NAN, eta])
     }
 
     /// Returns both ends of the slice that holds a valley; `None` outside the patch.
@@ -122,38 +118,10 @@ impl<'a> Skewed<'a> {
         }
     }
 
-    /// Returns both ends of a slice by Newton's steps from a guess. Returns `None` unless both settle next to the guess, s rises
-    /// outwards there, and no second valley or ridge is at ξ: s rises on either side of a single valley, and there is no other slice.
-    pub(in crate::patch) fn edges_near(&mut self, xi: f64, [low, high]: [f64; 2]) -> Option<[f64; 2]> {
-        if self.valleys.over(xi).nth(1).is_some() {
-            return None;
-        }
-        let near = NEAR_GUESS * (high - low);
-        Some([self.edge_near(xi, low, -1.0, near)?, self.edge_near(xi, high, 1.0, near)?])
-    }
-
-    fn edge_near(&mut self, xi: f64, guess: f64, outward: f64, near: f64) -> Option<f64> {
-        let mut eta = guess;
-        for _ in 0..NEWTON_STEPS {
-            let (s, [_, slope]) = self.evaluator.separation_and_gradient(xi, eta);
-            let step = (s - self.approach) / slope;
-            eta -= step;
-            // NaN ends the steps, too.
-            if !(slope * outward > 0.0 && (eta - guess).abs() <= near) {
-                return None;
-            }
-            if step.abs() <= QUADRATIC * near {
-                return Some(eta);
-            }
-        }
-        None
-    }
-
     /// Returns the end of the slice on one side of its lowest point.
     fn outward(&mut self, xi: f64, lowest: f64, reach: f64, stops: &mut [f64]) -> Edge {
         let beside = (BESIDE * self.placement.rolling_radius()).copysign(reach);
-        let mut from = self.on_surface(xi, lowest);
-        let s = self.evaluator.separation(xi, from);
+        let [s, mut from] = self.on_surface(xi, lowest);
         let beyond = self.evaluator.separation(xi, from + beside);
         if s.is_nan() || (from != lowest && (beyond.is_nan() || beyond >= self.approach)) {
             return Edge { eta: from, ledge: true };
