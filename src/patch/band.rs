@@ -87,16 +87,20 @@ impl Band {
         let noise = self.noise(outline);
         let mut stretches = Vec::new();
         let mut finder = EdgeFinder::new(outline.slicer.placement(), outline.slicer.approach());
+        // ξ, the square of half the width and the middle of the last two slices that were found one by one.
+        let mut known = [[f64::NAN; 3]; 2];
         let edges = |xi: &Lanes| {
             let many = if outline.slicer.has_one_valley(xi) { finder.edges(xi) } else { None };
             many.unwrap_or_else(|| {
                 let one = |xi: f64| {
                     let valley = self.valley(xi);
-                    let edges = outline.slicer.edges(xi, valley);
-                    edges.map_or_else(
-                        || [outline.slicer.valley(valley, xi); 2],
-                        |both| both.map(|edge| edge.eta),
-                    )
+                    let near = outline.slicer.edges_near(xi, extrapolated(&known, xi));
+                    let edges = near
+                        .or_else(|| outline.slicer.edges(xi, valley).map(|both| both.map(|edge| edge.eta)));
+                    let [low, high] = edges.unwrap_or_else(|| [outline.slicer.valley(valley, xi); 2]);
+                    let half = (high - low) / 2.0;
+                    known = [known[1], [xi, half * half, low + half]];
+                    [low, high]
                 };
                 let both = xi.map(one);
                 [both.map(|edges| edges[0]), both.map(|edges| edges[1])]
@@ -298,6 +302,15 @@ impl pulp::WithSimd for EdgesAt<'_> {
     fn with_simd<S: pulp::Simd>(self, _: S) -> [Lanes; 2] {
         self.stretch.edges(self.xi)
     }
+}
+
+/// Returns the edges \[mm\] at ξ that follow from two slices, each given by ξ, the square of half the width and the middle; NaN
+/// if there are none.
+fn extrapolated(&[[x, square, middle], [y, other, last]]: &[[f64; 3]; 2], xi: f64) -> [f64; 2] {
+    let share = (xi - y) / (y - x);
+    let half = (other + (other - square) * share).sqrt();
+    let middle = last + (last - middle) * share;
+    [middle - half, middle + half]
 }
 
 /// Returns whether two intervals have more than a point in common.

@@ -144,6 +144,12 @@ impl<'a> Slicer<'a> {
         Some([Edge { eta: -edge.eta, ..edge }, edge])
     }
 
+    /// Returns both ends of the slice at ξ \[mm\] next to a guess, under a skewed wheel on a rail. Returns `None` without skew, and if
+    /// they are not surely those of the slice that was guessed.
+    pub(super) fn edges_near(&mut self, xi: f64, guess: [f64; 2]) -> Option<[f64; 2]> {
+        self.skewed.as_mut()?.edges_near(xi, guess)
+    }
+
     /// Returns whether s over the tangent plane of a rail rises from one lowest place of every ξ to both sides.
     pub(super) fn has_one_valley(&self, xi: &Lanes) -> bool {
         let one = |skewed: &Skewed<'_>| {

@@ -20,6 +20,10 @@ const NEWTON_STEPS: usize = 6;
 /// Newton step, as a share of η's distance from the start, after which iteration ends: the error is its square.
 const QUADRATIC: f64 = 1e-8;
 
+/// Distance from a guessed edge, as a share of the slice, up to which a root is the edge that was guessed: another interval is farther
+/// away.
+const NEAR_GUESS: f64 = 0.1;
+
 /// Half the interval, in roundings of η, in which Newton's result is confirmed by a change of sign.
 const NEWTON_ROUNDINGS: f64 = 64.0;
 
@@ -116,6 +120,33 @@ impl<'a> Skewed<'a> {
             let ridges = valleys.over(xi).filter(|&k| !valleys.creases[k].is_valley);
             stops.extend(ridges.map(|k| valleys.spot(k, xi).eta).chain(valleys.rims(xi)));
         }
+    }
+
+    /// Returns both ends of a slice by Newton's steps from a guess. Returns `None` unless both settle next to the guess, s rises
+    /// outwards there, and no second valley or ridge is at ξ: s rises on either side of a single valley, and there is no other slice.
+    pub(in crate::patch) fn edges_near(&mut self, xi: f64, [low, high]: [f64; 2]) -> Option<[f64; 2]> {
+        if self.valleys.over(xi).nth(1).is_some() {
+            return None;
+        }
+        let near = NEAR_GUESS * (high - low);
+        Some([self.edge_near(xi, low, -1.0, near)?, self.edge_near(xi, high, 1.0, near)?])
+    }
+
+    fn edge_near(&mut self, xi: f64, guess: f64, outward: f64, near: f64) -> Option<f64> {
+        let mut eta = guess;
+        for _ in 0..NEWTON_STEPS {
+            let (s, [_, slope]) = self.evaluator.separation_and_gradient(xi, eta);
+            let step = (s - self.approach) / slope;
+            eta -= step;
+            // NaN ends the steps, too.
+            if !(slope * outward > 0.0 && (eta - guess).abs() <= near) {
+                return None;
+            }
+            if step.abs() <= QUADRATIC * near {
+                return Some(eta);
+            }
+        }
+        None
     }
 
     /// Returns the end of the slice on one side of its lowest point.
