@@ -4,6 +4,7 @@ mod band;
 mod by_roots;
 mod components;
 mod corners;
+mod edges;
 mod grading;
 mod loops;
 mod measure;
@@ -14,7 +15,7 @@ mod slice;
 mod stretch;
 pub(crate) mod turning_points;
 
-pub(crate) use band::Band;
+pub(crate) use band::{Band, Places};
 pub use components::{Component, Patch};
 pub(crate) use loops::{BandSide, rings};
 pub use outline::{End, Outline, Window};
