@@ -177,10 +177,13 @@ fn forces_on_a_roller_rig_agree_with_contact() {
             let (mut extent, mut approach) = whole(&placement);
             let (patch, turns) = (&given["patches"][0], usize::from(lateral > 5.0));
             if yaw == 0.0 {
-                let [x, angle] = weighted_frame(&placement, &extent, approach).unwrap();
-                let off = (x - number(patch, "ycp_r")).abs();
+                let upright = placement.reframed(placement.rail().point().station.x, 0.0).unwrap();
+                let whole = Patch::new(&upright, sinking, &Window::UNBOUNDED).extent().unwrap();
+                let frame = weighted_frame(&upright, &whole, sinking).unwrap();
+                let off = (frame.rail_x - number(patch, "ycp_r")).abs();
+                println!("{radius} {lateral}: off by {off:.4} mm");
                 references[turns] = references[turns].max(off);
-                placement = placement.reframed(x, angle).unwrap();
+                placement = placement.reframed(frame.rail_x, frame.angle).unwrap();
                 (extent, approach) = whole(&placement);
             }
             let region = HalfSpace::over(&placement, &extent, approach);
