@@ -13,14 +13,14 @@ const STEPS: [f64; 2] = [0.5, 1e-6];
 
 /// Rail, wheel, yaw \[rad\], and the offsets of a scan \[mm\]: places change, flanges begin to carry, and regions join and part.
 const SCANS: [(&str, &str, f64, [f64; 2]); 8] = [
-    ("profile = \"60E1\", rotate = \"1:40\"", "profile = \"S1002\"", 0.0, [0.9, 4.9]),
-    ("profile = \"UIC60\", rotate = \"1:20\"", "profile = \"S1002\"", 0.0, [2.2, 5.2]),
+    ("profile = \"60E1\", rotate = \"1:40\"", "profile = \"S1002\"", 0.0, [1.5, 2.5]),
+    ("profile = \"UIC60\", rotate = \"1:20\"", "profile = \"S1002\"", 0.0, [2.8, 4.3]),
     ("profile = \"50E6\", rotate = \"1:20\"", "profile = \"EN15302-H\"", 0.0, [6.1, 7.6]),
-    ("profile = \"60E2\", rotate = \"1:40\"", "profile = \"EN13715-1:40-h28-e32.5\"", 0.0, [2.6, 4.6]),
-    ("profile = \"54E3\", rotate = \"1:20\"", "profile = \"EN15302-C\"", 0.0, [-3.2, -1.2]),
-    ("profile = \"49E1\", rotate = \"1:40\"", "profile = \"EN15302-A\"", 0.0, [2.2, 4.2]),
-    ("file = \"60E1.ban\", rotate = \"1:40\"", "file = \"S1002.prw\"", 0.0, [1.2, 3.2]),
-    ("profile = \"60E1\", rotate = \"1:40\"", "profile = \"S1002\"", 0.01, [1.2, 3.2]),
+    ("profile = \"60E2\", rotate = \"1:40\"", "profile = \"EN13715-1:40-h28-e32.5\"", 0.0, [2.9, 3.9]),
+    ("profile = \"54E3\", rotate = \"1:20\"", "profile = \"EN15302-C\"", 0.0, [-3.2, -2.2]),
+    ("profile = \"49E1\", rotate = \"1:40\"", "profile = \"EN15302-A\"", 0.0, [2.45, 3.45]),
+    ("file = \"60E1.ban\", mirror = true, rotate = \"1:40\"", "file = \"S1002.prw\"", 0.0, [1.3, 2.3]),
+    ("profile = \"60E1\", rotate = \"1:40\"", "profile = \"S1002\"", 0.01, [1.5, 2.5]),
 ];
 
 /// What the wheel sinks by \[mm\], and the sum of its normal forces \[N\].
