@@ -22,6 +22,7 @@ mod joined;
 mod landmarks;
 mod march;
 mod on_rail;
+mod overlaps;
 mod places;
 mod polylines;
 mod pressure;
