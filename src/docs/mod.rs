@@ -1,5 +1,5 @@
 //! Background: conventions, measured files, the numerics with their derivation, conformal contact, the Report's errata, sweeps,
-//! rails that vary along the track, loads, clients, where time goes, references.
+//! rails that vary along the track, contact tables, loads, clients, where time goes, references.
 
 #[doc = include_str!("conventions.md")]
 pub mod conventions {}
@@ -24,6 +24,9 @@ pub mod sweeps {}
 
 #[doc = include_str!("along-the-track.md")]
 pub mod along_the_track {}
+
+#[doc = include_str!("tables.md")]
+pub mod tables {}
 
 #[doc = include_str!("loads.md")]
 pub mod loads {}
