@@ -214,11 +214,10 @@ const NAME: usize = 24;
 /// `quantity_side(quantity, name)`, `needs(quantity)`, `tolerance(quantity)` and `error(quantity)` in each quantity's unit;
 /// `coefficients(cell, quantity, power)` of 1, t, … t⁸, not numbers where a quantity does not exist.
 pub fn table_nc(table: &ContactTable, title: &str) -> Vec<u8> {
-    let (cells, quantities) = (table.cells(), table.quantities());
+    let sizes = [table.cells().len(), table.quantities().len(), COEFFICIENTS, 2, 2, NAME];
     let mut bytes = b"CDF\x01".to_vec();
     put(&mut bytes, 0);
     put(&mut bytes, DIMENSION);
-    let sizes = [cells.len(), quantities.len(), COEFFICIENTS, 2, 2, NAME];
     put(&mut bytes, sizes.len() as u32);
     for (name, size) in ["cell", "quantity", "power", "side", "end", "name"].into_iter().zip(sizes) {
         put_name(&mut bytes, name);
@@ -250,33 +249,39 @@ pub fn table_nc(table: &ContactTable, title: &str) -> Vec<u8> {
     ];
     let begin = (bytes.len() + entries(&variables, false, 0).len()) as u64;
     bytes.extend(entries(&variables, false, begin));
-    let numbers = |bytes: &mut Vec<u8>, numbers: &mut dyn Iterator<Item = f64>| {
-        numbers.for_each(|number| bytes.extend(number.to_be_bytes()));
-    };
-    let codes = |bytes: &mut Vec<u8>, codes: &mut dyn Iterator<Item = u8>| {
-        bytes.extend(codes);
-        bytes.resize(bytes.len().next_multiple_of(4), 0);
-    };
+    put_table(&mut bytes, table);
+    bytes
+}
+
+/// Appends the data of a table, in the order of its variables.
+fn put_table(bytes: &mut Vec<u8>, table: &ContactTable) {
+    let (cells, quantities) = (table.cells(), table.quantities());
     let text = |text: &str| {
         let mut name = [0; NAME];
         name.iter_mut().zip(text.bytes()).for_each(|(place, byte)| *place = byte);
         name
     };
-    numbers(&mut bytes, &mut cells.iter().flat_map(|cell| cell.lateral));
-    codes(&mut bytes, &mut cells.iter().map(|cell| cell.begins.code()));
-    codes(&mut bytes, &mut cells.iter().map(|cell| u8::from(cell.touches)));
-    codes(&mut bytes, &mut cells.iter().flat_map(|cell| cell.lacks.map(Lacks::code)));
-    codes(&mut bytes, &mut quantities.iter().flat_map(|quantity| text(quantity.name)));
-    codes(&mut bytes, &mut quantities.iter().flat_map(|quantity| text(quantity.side())));
-    codes(&mut bytes, &mut quantities.iter().map(|quantity| quantity.needs.code()));
-    numbers(&mut bytes, &mut quantities.iter().map(|quantity| quantity.tolerance));
-    numbers(&mut bytes, &mut quantities.iter().map(|quantity| quantity.error));
-    for cell in 0..cells.len() {
-        for quantity in 0..quantities.len() {
-            numbers(&mut bytes, &mut table.coefficients(cell, quantity).into_iter());
-        }
-    }
-    bytes
+    put_doubles(bytes, cells.iter().flat_map(|cell| cell.lateral));
+    put_codes(bytes, cells.iter().map(|cell| cell.begins.code()));
+    put_codes(bytes, cells.iter().map(|cell| u8::from(cell.touches)));
+    put_codes(bytes, cells.iter().flat_map(|cell| cell.lacks.map(Lacks::code)));
+    put_codes(bytes, quantities.iter().flat_map(|quantity| text(quantity.name)));
+    put_codes(bytes, quantities.iter().flat_map(|quantity| text(quantity.side())));
+    put_codes(bytes, quantities.iter().map(|quantity| quantity.needs.code()));
+    put_doubles(bytes, quantities.iter().map(|quantity| quantity.tolerance));
+    put_doubles(bytes, quantities.iter().map(|quantity| quantity.error));
+    let of = |cell| (0..quantities.len()).flat_map(move |quantity| table.coefficients(cell, quantity));
+    put_doubles(bytes, (0..cells.len()).flat_map(of));
+}
+
+fn put_doubles(bytes: &mut Vec<u8>, numbers: impl Iterator<Item = f64>) {
+    numbers.for_each(|number| bytes.extend(number.to_be_bytes()));
+}
+
+/// Appends bytes, filled up to four.
+fn put_codes(bytes: &mut Vec<u8>, codes: impl Iterator<Item = u8>) {
+    bytes.extend(codes);
+    bytes.resize(bytes.len().next_multiple_of(4), 0);
 }
 
 fn put(bytes: &mut Vec<u8>, value: u32) {

@@ -110,9 +110,10 @@ fn rows_of(folder: &Path, compiler: &str, sources: &[&str], count: usize) -> Opt
     let include = root().join("examples/tables");
     let compiled = Command::new(compiler)
         .current_dir(folder)
-        .args(["-O2", "-Wall", "-Wextra", "-Werror", "-Wno-compare-reals", "-I"])
+        .args(["-O2", "-Wall", "-Wextra", "-Werror", "-I"])
         .arg(include)
         .args(["-o", &program])
+        .args((compiler == "gfortran").then_some("-Wno-compare-reals"))
         .args(sources)
         .arg("-lm")
         .output();
