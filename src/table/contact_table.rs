@@ -2,6 +2,7 @@
 
 use super::cell::{Beginning, COEFFICIENTS, Cell, share};
 use super::quantity::Quantity;
+use super::read::{Parsed, parse};
 use crate::error::{Error, Result};
 
 /// A contact table.
@@ -70,6 +71,15 @@ impl ContactTable {
             Self { lateral, yaw, radius, tolerance, quantities, cells, coefficients, hints: Vec::new() };
         table.hints = table.found_hints();
         Ok(table)
+    }
+
+    /// Reads a table from the text of `table.wrp`; [`crate::docs::tables`] has the grammar.
+    ///
+    /// # Errors
+    /// Another grammar, version or order, with the line; a file that was cut off; more than a million cells.
+    pub fn read(text: &str) -> Result<Self> {
+        let Parsed { about, quantities, cells, coefficients } = parse(text)?;
+        Self::of(about, quantities, cells, coefficients)
     }
 
     fn found_hints(&self) -> Vec<u32> {

@@ -3,7 +3,6 @@
 use std::str::Lines;
 
 use super::cell::{Beginning, COEFFICIENTS, Cell, Lacks};
-use super::contact_table::ContactTable;
 use super::fit::exists;
 use super::quantity::Quantity;
 use crate::error::{Error, ErrorKind, Result};
@@ -20,42 +19,48 @@ struct Deck<'a> {
     number: usize,
 }
 
-impl ContactTable {
-    /// Reads a table from the text of `table.wrp`.
-    ///
-    /// # Errors
-    /// Another grammar, version or order, with the line; a file that was cut off; more than a million cells.
-    pub fn read(text: &str) -> Result<Self> {
-        let mut deck = Deck { lines: text.lines(), number: 0 };
-        let head = deck.line()?;
-        if head.trim_end() != "WRTABLE    1 mm" {
-            return Err(deck.wrong(head, "WRTABLE    1 mm"));
-        }
-        let [comments] = deck.whole::<1>(8)?;
-        for _ in 0..comments {
-            deck.line()?;
-        }
-        let [cell_count, quantity_count, coefficients] = deck.whole::<3>(8)?;
-        if coefficients != COEFFICIENTS || cell_count > MOST_CELLS || quantity_count > super::quantity::MOST {
-            let found = format!("{cell_count} {quantity_count} {coefficients}");
-            let expected =
-                format!("at most {MOST_CELLS} cells, known quantities, {COEFFICIENTS} coefficients");
-            return Err(deck.wrong(&found, &expected).of_kind(ErrorKind::Limit));
-        }
-        let lateral = deck.numbers::<2>(0)?;
-        let [yaw, radius, tolerance] = deck.numbers::<3>(0)?;
-        let quantities = (0..quantity_count).map(|_| deck.quantity()).collect::<Result<Vec<_>>>()?;
-        let (mut cells, mut all) = (Vec::new(), Vec::new());
-        for _ in 0..cell_count {
-            let cell = deck.cell()?;
-            cells.push(cell);
-            deck.coefficients(&cell, &quantities, &mut all)?;
-        }
-        if deck.line()?.trim_end() != "END" {
-            return Err(deck.wrong("another line", "END"));
-        }
-        Self::of((lateral, yaw, radius, tolerance), quantities, cells, all)
+/// What a table is made of.
+pub(super) struct Parsed {
+    /// Range \[mm\], yaw \[rad\], nominal rolling radius and tolerance of lengths \[mm\].
+    pub about: ([f64; 2], f64, f64, f64),
+    pub quantities: Vec<Quantity>,
+    pub cells: Vec<Cell>,
+    pub coefficients: Vec<f64>,
+}
+
+/// Reads the text of `table.wrp`.
+///
+/// # Errors
+/// Another grammar or version, with the line; a file that was cut off; more than a million cells.
+pub(super) fn parse(text: &str) -> Result<Parsed> {
+    let mut deck = Deck { lines: text.lines(), number: 0 };
+    let head = deck.line()?;
+    if head.trim_end() != "WRTABLE    1 mm" {
+        return Err(deck.wrong(head, "WRTABLE    1 mm"));
     }
+    let [comments] = deck.whole::<1>(8)?;
+    for _ in 0..comments {
+        deck.line()?;
+    }
+    let [cell_count, quantity_count, coefficients] = deck.whole::<3>(8)?;
+    if coefficients != COEFFICIENTS || cell_count > MOST_CELLS || quantity_count > super::quantity::MOST {
+        let found = format!("{cell_count} {quantity_count} {coefficients}");
+        let expected = format!("at most {MOST_CELLS} cells, known quantities, {COEFFICIENTS} coefficients");
+        return Err(deck.wrong(&found, &expected).of_kind(ErrorKind::Limit));
+    }
+    let lateral = deck.numbers::<2>(0)?;
+    let [yaw, radius, tolerance] = deck.numbers::<3>(0)?;
+    let quantities = (0..quantity_count).map(|_| deck.quantity()).collect::<Result<Vec<_>>>()?;
+    let (mut cells, mut all) = (Vec::new(), Vec::new());
+    for _ in 0..cell_count {
+        let cell = deck.cell()?;
+        cells.push(cell);
+        deck.coefficients(&cell, &quantities, &mut all)?;
+    }
+    if deck.line()?.trim_end() != "END" {
+        return Err(deck.wrong("another line", "END"));
+    }
+    Ok(Parsed { about: (lateral, yaw, radius, tolerance), quantities, cells, coefficients: all })
 }
 
 impl<'a> Deck<'a> {
