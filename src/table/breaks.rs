@@ -96,10 +96,10 @@ pub(super) struct Stretch {
     pub begins: Beginning,
 }
 
-/// Cuts the range at its breaks.
-pub(super) fn stretches([begin, end]: Break, breaks: Vec<Break>) -> Vec<Stretch> {
+/// Cuts a range, which begins in this way, at its breaks.
+pub(super) fn stretches([begin, end]: Break, begins: Beginning, breaks: Vec<Break>) -> Vec<Stretch> {
     let mut stretches = Vec::with_capacity(breaks.len() + 1);
-    let (mut from, mut begins) = (begin, Beginning::Edge);
+    let (mut from, mut begins) = (begin, begins);
     for at in breaks {
         let kind = kind_of(&at);
         let [to, next] = at;
@@ -111,7 +111,7 @@ pub(super) fn stretches([begin, end]: Break, breaks: Vec<Break>) -> Vec<Stretch>
 }
 
 /// Tells what happens at a break.
-pub(super) fn kind_of([before, after]: &Break) -> Beginning {
+fn kind_of([before, after]: &Break) -> Beginning {
     if before.topology.is_none() || after.topology.is_none() {
         return Beginning::Edge;
     }

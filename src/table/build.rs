@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::asked::Asked;
 use super::breaks::{breaks, stretches};
-use super::cell::COEFFICIENTS;
+use super::cell::{Beginning, COEFFICIENTS};
 use super::contact_table::ContactTable;
 use super::fit::{Fitted, MARGIN, fit};
 use super::quantity::Quantity;
@@ -35,7 +35,7 @@ pub fn build(system: &WheelsetOnTrack, asked: &Asked) -> Result<ContactTable> {
     let pressed = asked.pressed.is_some();
     let mut quantities = Quantity::all(asked.tolerance, radius, pressed);
     let (ends, breaks) = breaks(system, asked)?;
-    let stretches = stretches(ends, breaks);
+    let stretches = stretches(ends, Beginning::Edge, breaks);
     let fitted = stretches.par_iter().map(|stretch| {
         let mut sampler = Sampler::new(system, asked);
         fit(&mut sampler, &quantities, stretch)

@@ -4,7 +4,7 @@ use std::array::from_fn;
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
-use super::breaks::{Break, HOP, Stretch, divide, kind_of};
+use super::breaks::{Break, HOP, Stretch, divide, stretches};
 use super::cell::{BREAK, Beginning, COEFFICIENTS, Cell, Lacks, share};
 use super::quantity::{MOST, Needs, Quantity, Values};
 use super::state::{Sampler, State};
@@ -94,7 +94,7 @@ pub(super) fn fit(
         }
         let unseen = breaks_between(sampler, &samples)?;
         if !unseen.is_empty() {
-            open.extend(parts(ends, begins, unseen).into_iter().rev());
+            open.extend(stretches(ends, begins, unseen).into_iter().rev());
             continue;
         }
         let fitted = Fitted::new(cell, quantities, &samples);
@@ -104,7 +104,7 @@ pub(super) fn fit(
         }
         let jump = if width <= MAY_JUMP { jump(sampler, &samples)? } else { None };
         let parts = match jump {
-            Some(jump) => parts(ends, begins, vec![jump]),
+            Some(jump) => stretches(ends, begins, vec![jump]),
             None => {
                 let middle = samples[SAMPLES / 2].clone();
                 let [from, to] = ends;
@@ -140,19 +140,6 @@ fn breaks_between(sampler: &mut Sampler<'_>, samples: &[State]) -> Result<Vec<Br
         divide(sampler, &pair[0], &pair[1], &mut breaks)?;
     }
     Ok(breaks)
-}
-
-/// Cuts a stretch at breaks.
-fn parts([first, last]: Break, begins: Beginning, breaks: Vec<Break>) -> Vec<Stretch> {
-    let (mut from, mut begins, mut parts) = (first, begins, Vec::new());
-    for at in breaks {
-        let kind = kind_of(&at);
-        let [to, next] = at;
-        parts.push(Stretch { ends: [from, to], begins });
-        (from, begins) = (next, kind);
-    }
-    parts.push(Stretch { ends: [from, last], begins });
-    parts
 }
 
 /// Finds a jump of a place of contact between the samples: the largest change, halved to the width of a break.
