@@ -80,6 +80,7 @@ pub mod profile;
 pub mod scene;
 pub mod search;
 pub mod separation;
+pub mod table;
 
 #[cfg(feature = "files")]
 pub use case::{Case, Run};

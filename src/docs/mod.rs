@@ -24,6 +24,9 @@ pub mod measures {}
 #[doc = include_str!("along-the-track.md")]
 pub mod along_the_track {}
 
+#[doc = include_str!("tables.md")]
+pub mod tables {}
+
 #[doc = include_str!("conformal.md")]
 pub mod conformal {}
 

@@ -143,6 +143,11 @@ impl WheelsetOnTrack {
         &self.sides[0]
     }
 
+    /// Returns whether both rails have one profile along the whole track and are no rollers.
+    pub(crate) fn on_plain_rails(&self) -> bool {
+        self.sides.iter().all(|side| matches!(side.pair, SidePair::Swept(_)) && side.pair.roller().is_none())
+    }
+
     /// Returns the nominal rolling radius \[mm\] from which heights of the axle's middle count: the right-hand wheel's.
     pub(super) fn reference_radius(&self) -> f64 {
         self.sides[1].wheelset.radius
@@ -163,6 +168,9 @@ pub struct WheelsetTouch<'a> {
     pub roll: f64,
     /// Left and right side.
     pub sides: [SideTouch<'a>; 2],
+    /// Elements of wheel and rail that meet at the lowest place of each side; what is found there is analytic in the position as
+    /// long as they stay the same.
+    pub(crate) elements: [[u32; 2]; 2],
 }
 
 /// First touch of one side.
@@ -281,13 +289,13 @@ impl WheelsetSearch<'_> {
             let advice = "look at the slices nearby, or lower `within`";
             return Err(Error::new("rail", "a surface too close to the wheel's", expected, advice));
         }
-        let Some(Lowered { roll, z, heights, attitudes, .. }) = level else { return Ok(None) };
+        let Some(Lowered { roll, z, heights, attitudes, meetings, .. }) = level else { return Ok(None) };
         let [left, right] = &mut self.sides;
         let sides = [
             SideTouch { z: z[0], touch: left.collect(&attitudes[0], heights[0], selection) },
             SideTouch { z: z[1], touch: right.collect(&attitudes[1], heights[1], selection) },
         ];
-        Ok(Some(WheelsetTouch { roll, sides }))
+        Ok(Some(WheelsetTouch { roll, sides, elements: meetings.map(|meeting| meeting.elements) }))
     }
 
     /// Lowers both sides at the roll at which both wheels touch; `None` if there is no such roll.

@@ -20,6 +20,7 @@ mod report;
 mod run;
 mod signals;
 mod sweep;
+mod table;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -62,6 +63,8 @@ enum Command {
     Sweep(sweep::SweepArguments),
     /// March a wheelset along rails that vary and print a row for each place, side and contact.
     March(march::MarchArguments),
+    /// Tabulate contact over the lateral displacement for vehicle dynamics, as polynomials with a stated error.
+    Table(table::TableArguments),
     /// Measure speed against error and run the hard cases; takes about three minutes.
     Report {
         /// Folder to write; by default output/report.
@@ -134,6 +137,7 @@ fn on_threads(arguments: Arguments) -> Result<Outcome> {
         Command::Check { scene } => check::check(&scene),
         Command::Sweep(arguments) => sweep::sweep(&arguments),
         Command::March(arguments) => march::march(&arguments),
+        Command::Table(arguments) => table::table(&arguments),
         Command::Report { out, splice } => report::report(out.as_deref(), splice.as_deref()),
         Command::Profile(command) => profile::profile(&command),
         Command::Init { file } => init::init(&file),

@@ -27,3 +27,4 @@ mod programs;
 mod python_package;
 mod run_cli;
 mod sweep_cli;
+mod table_cli;
