@@ -2,7 +2,7 @@
 
 mod conicity;
 
-pub use conicity::{ACCURACY, Conicity, Equivalent, NoConicity};
+pub use conicity::{ACCURACY, Conicity, Equivalent, NoConicity, TwoStep};
 
 use std::fmt;
 

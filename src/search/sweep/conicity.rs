@@ -27,8 +27,11 @@
 mod branches;
 mod movement;
 mod refine;
+mod two_step;
 #[cfg(test)]
 mod tests;
+
+pub use two_step::TwoStep;
 
 use branches::Searched;
 use movement::{Movement, Quarter};
