@@ -176,16 +176,18 @@ pub fn nonlinearity(table: &Conicity) -> std::result::Result<f64, NoConicity> {
     Ok((table.at(high)?.conicity - table.at(low)?.conicity) / (high - low))
 }
 
-/// Returns the clearance TG − SR \[mm\] between track and wheelset, centred: TG the gauge within 14 mm below the top of rail, SR the
-/// distance of the wheels' active faces 10 mm outside of the running circles. `pairs` are those of the left and the right side.
-/// `None` if a rail or wheel profile ends before that.
-pub fn clearance(system: &WheelsetOnTrack, pairs: [&Pair; 2]) -> Option<f64> {
-    let of_side = |(side, pair): (&super::wheelset::SideOnTrack, &Pair)| {
-        let half_gauge = side.track().half_gauge(pair.rail(), GAUGE_DEPTH).ok()?;
-        Some(half_gauge - (side.wheelset().wheel_x() + active_face(pair)?))
-    };
-    let [left, right] = [(system.left(), pairs[0]), (system.right(), pairs[1])].map(of_side);
-    Some(left? + right?)
+/// Returns the gauge TG \[mm\] within 14 mm below the top of rail; `pairs` are those of the left and the right side. `None` if a rail's
+/// profile ends before that.
+pub fn gauge(system: &WheelsetOnTrack, pairs: [&Pair; 2]) -> Option<f64> {
+    let sides = [system.left(), system.right()].into_iter().zip(pairs);
+    sides.map(|(side, pair)| side.track().half_gauge(pair.rail(), GAUGE_DEPTH).ok()).sum()
+}
+
+/// Returns the distance SR \[mm\] of the wheels' active faces, 10 mm outside of the running circles; `pairs` are those of the left
+/// and the right side. `None` if a wheel's profile ends before that. The clearance of a centred wheelset is TG − SR.
+pub fn active_faces(system: &WheelsetOnTrack, pairs: [&Pair; 2]) -> Option<f64> {
+    let sides = [system.left(), system.right()].into_iter().zip(pairs);
+    sides.map(|(side, pair)| Some(side.wheelset().wheel_x() + active_face(pair)?)).sum()
 }
 
 /// Returns x of the flange's face on the wheel profile \[mm\], 10 mm outside of the running circle: the place nearest to the tread.
@@ -223,10 +225,12 @@ mod tests {
     fn the_clearance_is_that_of_the_drawings() -> Result<()> {
         // Flanges of 32.5 mm, 70 mm from the back: 1360 + 65.
         let (pair, system) = s1002(1435.0)?;
-        let found = clearance(&system, [&pair, &pair]);
-        assert!(found.is_some_and(|found| (found - 10.0).abs() < 1e-3), "{found:?}");
-        let wider = clearance(&system.widened(1.5)?, [&pair, &pair]);
-        assert!(wider.is_some_and(|wider| (wider - 11.5).abs() < 1e-3), "{wider:?}");
+        let faces = active_faces(&system, [&pair, &pair]);
+        assert!(faces.is_some_and(|faces| (faces - 1425.0).abs() < 1e-3), "{faces:?}");
+        for by in [0.0, 1.5] {
+            let wider = gauge(&system.widened(by)?, [&pair, &pair]);
+            assert!(wider.is_some_and(|wider| (wider - 1435.0 - by).abs() < 1e-9), "{wider:?}");
+        }
         let amplitudes = [4.0, 5.0, 6.0, 7.0, 10.0].map(amplitude_of_clearance);
         assert_eq!(amplitudes, [2.0, 2.0, 2.5, 3.0, 3.0]);
         Ok(())

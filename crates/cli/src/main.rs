@@ -7,6 +7,7 @@
 
 mod answer;
 mod check;
+mod conicity;
 mod init;
 mod march;
 mod midsep;
@@ -55,6 +56,8 @@ enum Command {
     },
     /// Sweep a wheelset over its track and print a row for each position, side and contact.
     Sweep(sweep::SweepArguments),
+    /// Contact geometry of a wheelset on its track by EN 15302: equivalent conicity, nonlinearity, contact bands.
+    Conicity(Box<conicity::ConicityArguments>),
     /// March a wheelset along rails that vary and print a row for each place, side and contact.
     March(march::MarchArguments),
     /// Measure speed against error and run the hard cases; takes about three minutes.
@@ -124,6 +127,7 @@ fn on_threads(arguments: Arguments) -> Result<Outcome> {
         Command::Midsep { scene } => midsep::midsep(&scene),
         Command::Check { scene } => check::check(&scene),
         Command::Sweep(arguments) => sweep::sweep(&arguments),
+        Command::Conicity(arguments) => conicity::run(&arguments),
         Command::March(arguments) => march::march(&arguments),
         Command::Report { out, splice } => report::report(out.as_deref(), splice.as_deref()),
         Command::Profile(command) => profile::profile(&command),
