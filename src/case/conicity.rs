@@ -17,14 +17,26 @@ use crate::search::{
 /// Columns of the functions over the lateral displacement, with their definitions. Names that a sweep has mean the same there.
 pub const FUNCTIONS: [(&str, &str); 17] = [
     ("lateral_mm", "lateral displacement y of the middle of the axle, + to the right"),
-    ("roll_rad", "roll, + lowers the right-hand wheel: solved, or from the heights at which the two sides touch"),
+    (
+        "roll_rad",
+        "roll, + lowers the right-hand wheel: solved, or from the heights at which the two sides touch",
+    ),
     ("delta_r_mm", "rolling radius difference: right less left"),
-    ("conicity", "equivalent conicity tan gamma_e at the amplitude |y|, by the energy integral, adaptive in y"),
+    (
+        "conicity",
+        "equivalent conicity tan gamma_e at the amplitude |y|, by the energy integral, adaptive in y",
+    ),
     ("conicity_error", "estimated relative error of conicity"),
-    ("conicity_two_step", "the same by two-step integration of y'' = -delta_r/(e r0) over the steps of this table"),
+    (
+        "conicity_two_step",
+        "the same by two-step integration of y'' = -delta_r/(e r0) over the steps of this table",
+    ),
     ("conicity_difference", "conicity_two_step less conicity"),
     ("delta_tan_gamma", "contact angle difference: tan gamma right less left"),
-    ("curve_radius_m", "radius of the curve in which this delta_r rolls without slip: e r0/|delta_r|, e the distance of the contacts"),
+    (
+        "curve_radius_m",
+        "radius of the curve in which this delta_r rolls without slip: e r0/|delta_r|, e the distance of the contacts",
+    ),
     ("left_rail_x_mm", "left contact on the rail's profile, + to the field side"),
     ("left_wheel_x_mm", "left contact on the wheel's profile, + to the field side"),
     ("left_contact_angle_rad", "left contact angle, + at a flange"),
@@ -45,7 +57,10 @@ pub const KEY_FIGURES: [(&str, &str); 19] = [
     ("gauge_mm", "track gauge TG within 14 mm below the top of rail"),
     ("active_faces_mm", "distance SR of the flanges' faces 10 mm outside of the running circles"),
     ("clearance_mm", "TG - SR"),
-    ("amplitude_mm", "amplitude by the clearance: 3 from TG - SR = 7 on, (TG - SR - 1)/2 between 5 and 7, 2 below"),
+    (
+        "amplitude_mm",
+        "amplitude by the clearance: 3 from TG - SR = 7 on, (TG - SR - 1)/2 between 5 and 7, 2 below",
+    ),
     ("conicity_amplitude", "equivalent conicity at amplitude_mm"),
     ("centre_mm", "displacement at which delta_r vanishes, about which the wheelset swings"),
     ("left_rail_from_mm", "contact band on the left rail over 3 mm to both sides of the centre: least x"),
@@ -183,7 +198,12 @@ impl ConicityReport {
 pub fn conicity(case: &Case, options: &ConicityOptions, told: &dyn Fn(&str)) -> Result<ConicityReport> {
     let Place::Wheelset { system, position } = &case.standing().place else {
         let expected = "[track] and [wheelset]";
-        return Err(Error::new("", "a single wheel", expected, "conicity is that of a wheelset on its track"));
+        return Err(Error::new(
+            "",
+            "a single wheel",
+            expected,
+            "conicity is that of a wheelset on its track",
+        ));
     };
     let pairs = [TrackSide::Left, TrackSide::Right].map(|side| &case.profiles().on(Some(side)).pair);
     let mut report = contact_geometry(system, pairs, position.roll, options, told)?;
@@ -244,7 +264,12 @@ impl ConicityOptions {
         }
         if steps < 1.0 {
             let found = self.step.to_string();
-            return Err(Error::new("conicity: step", found, "a step within the amplitude", "take a smaller step"));
+            return Err(Error::new(
+                "conicity: step",
+                found,
+                "a step within the amplitude",
+                "take a smaller step",
+            ));
         }
         let steps = steps as i64;
         Ok((-steps..=steps).map(|k| self.amplitude * k as f64 / steps as f64).collect())
@@ -257,7 +282,12 @@ impl Noise {
         for (key, sigma) in sigmas {
             if finite(&format!("noise: {key}"), sigma)? < 0.0 {
                 let expected = "a standard deviation of 0 mm or more";
-                return Err(Error::new(format!("noise: {key}"), sigma.to_string(), expected, "correct the sign"));
+                return Err(Error::new(
+                    format!("noise: {key}"),
+                    sigma.to_string(),
+                    expected,
+                    "correct the sign",
+                ));
             }
         }
         if sigmas.iter().all(|(_, sigma)| *sigma == 0.0) {
@@ -265,7 +295,8 @@ impl Noise {
             return Err(Error::new("noise", "no noise", expected, "give one, for example points=0.02"));
         }
         if !(LEAST_SAMPLES..=MOST).contains(&self.samples) {
-            let expected = format!("{LEAST_SAMPLES} to {MOST}: each end of the interval needs samples beyond it");
+            let expected =
+                format!("{LEAST_SAMPLES} to {MOST}: each end of the interval needs samples beyond it");
             return Err(Error::new("noise: samples", self.samples.to_string(), expected, "correct it"));
         }
         Ok(())
@@ -273,12 +304,7 @@ impl Noise {
 }
 
 /// Integrates Δr over the displacements and one step beyond each end, so that the largest amplitude has its turning points.
-fn two_step_of(
-    system: &WheelsetOnTrack,
-    lateral: &[f64],
-    step: f64,
-    roll: Roll,
-) -> Result<Option<TwoStep>> {
+fn two_step_of(system: &WheelsetOnTrack, lateral: &[f64], step: f64, roll: Roll) -> Result<Option<TwoStep>> {
     let [Some(first), Some(last)] = [lateral.first(), lateral.last()] else { return Ok(None) };
     // Where the sides differ the movement is not about 0: a turning point lies further out.
     let reach = if system.symmetric() { 1 } else { (last / (2.0 * step)).ceil() as i32 };
@@ -340,7 +366,8 @@ fn functions(
 /// Gives the radius of the curve \[m\] in which a wheelset rolls without slip; NaN where Δr is 0: straight on.
 fn curve_radius(system: &WheelsetOnTrack, at: &GeometryAt) -> f64 {
     let [left, right] = at.contacts;
-    let distance = system.left().track().rail_x() + system.right().track().rail_x() + left.rail_x + right.rail_x;
+    let distance =
+        system.left().track().rail_x() + system.right().track().rail_x() + left.rail_x + right.rail_x;
     let radius = f64::midpoint(left.rolling_radius, right.rolling_radius);
     if at.delta_r == 0.0 { f64::NAN } else { distance * radius / at.delta_r.abs() / 1e3 }
 }
@@ -382,9 +409,25 @@ fn key_figures(
     }
     let error = figures.conicity.map_or(nan, |found| found.error);
     let figures = [
-        conicity, error, other, other - conicity, nonlinear, gauge, faces, clearance, amplitude, at_amplitude,
-        figures.centre.unwrap_or(nan), left.rail_x[0], left.rail_x[1], left.wheel_x[0], left.wheel_x[1],
-        right.rail_x[0], right.rail_x[1], right.wheel_x[0], right.wheel_x[1],
+        conicity,
+        error,
+        other,
+        other - conicity,
+        nonlinear,
+        gauge,
+        faces,
+        clearance,
+        amplitude,
+        at_amplitude,
+        figures.centre.unwrap_or(nan),
+        left.rail_x[0],
+        left.rail_x[1],
+        left.wheel_x[0],
+        left.wheel_x[1],
+        right.rail_x[0],
+        right.rail_x[1],
+        right.wheel_x[0],
+        right.wheel_x[1],
     ];
     Ok((figures, findings))
 }

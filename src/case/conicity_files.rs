@@ -11,7 +11,9 @@ use super::doubts::DoubtSet;
 use super::input::{Case, Place};
 use super::sweep_view::page_of;
 use crate::error::{Error, Result};
-use crate::export::{CurvesMap, CurvesPanel, CurvesPicture, PageFigure, PageMap, PlottedCurve, SEPARATOR, SweepPage};
+use crate::export::{
+    CurvesMap, CurvesPanel, CurvesPicture, PageFigure, PageMap, PlottedCurve, SEPARATOR, SweepPage,
+};
 use crate::search::{ONE_CONTACT, ParallelSweep, Position, Roll, Selection, WheelsetOnTrack};
 
 /// Writes the functions over the displacement as CSV: a row a displacement, empty cells where there is no value.
@@ -36,8 +38,11 @@ pub fn conicity_csv(report: &ConicityReport) -> String {
 pub fn conicity_values(report: &ConicityReport) -> Value {
     let definitions: Map<String, Value> =
         KEY_FIGURES.iter().chain(&FUNCTIONS).map(|&(name, text)| (name.into(), text.into())).collect();
-    let figures: Map<String, Value> =
-        KEY_FIGURES.iter().zip(report.key_figures).map(|(&(name, _), value)| (name.into(), value.into())).collect();
+    let figures: Map<String, Value> = KEY_FIGURES
+        .iter()
+        .zip(report.key_figures)
+        .map(|(&(name, _), value)| (name.into(), value.into()))
+        .collect();
     let functions: Map<String, Value> = FUNCTIONS
         .iter()
         .zip(&report.functions)
@@ -58,8 +63,11 @@ pub fn conicity_values(report: &ConicityReport) -> Value {
 
 /// Gives the uncertainty as a JSON object: the noise, the number of failed samples, and the spread of each quantity.
 pub fn uncertainty_values(uncertainty: &Uncertainty) -> Value {
-    let spreads: Map<String, Value> =
-        UNCERTAIN.iter().zip(&uncertainty.spreads).map(|(&name, spread)| (name.into(), json!(spread))).collect();
+    let spreads: Map<String, Value> = UNCERTAIN
+        .iter()
+        .zip(&uncertainty.spreads)
+        .map(|(&name, spread)| (name.into(), json!(spread)))
+        .collect();
     json!({ "noise": uncertainty.noise, "failed": uncertainty.failed, "spreads": spreads })
 }
 
@@ -76,8 +84,16 @@ pub fn conicity_text(report: &ConicityReport) -> String {
             text,
             "\nnoise: points {} mm every {} mm, radius {} mm, gauge {} mm; {} samples of seed {}, {} failed\n\
              {:<24} {:>12} {:>12}  95 % of the samples, each number with its sampling error",
-            noise.points, noise.step, noise.radius, noise.gauge, noise.samples, noise.seed, uncertainty.failed,
-            "quantity", "mean", "deviation"
+            noise.points,
+            noise.step,
+            noise.radius,
+            noise.gauge,
+            noise.samples,
+            noise.seed,
+            uncertainty.failed,
+            "quantity",
+            "mean",
+            "deviation"
         );
         for (name, spread) in UNCERTAIN.iter().zip(&uncertainty.spreads) {
             let _ = match spread {
@@ -85,7 +101,13 @@ pub fn conicity_text(report: &ConicityReport) -> String {
                 Some(of) => writeln!(
                     text,
                     "{name:<24} {:>12.5} {:>12.5}  {:.5} ± {:.5} to {:.5} ± {:.5} (mean ± {:.5}, deviation ± {:.5})",
-                    of.mean, of.deviation, of.low, of.low_error, of.high, of.high_error, of.mean_error,
+                    of.mean,
+                    of.deviation,
+                    of.low,
+                    of.low_error,
+                    of.high,
+                    of.high_error,
+                    of.mean_error,
                     of.deviation_error
                 ),
             };
@@ -181,7 +203,8 @@ fn drawn(case: &Case, report: &ConicityReport) -> Result<(CurvesPicture, Columns
         jumps: jumps.to_vec(),
     };
     let both = [("energy", "conicity"), ("two-step", "conicity_two_step")];
-    picture.quantities[1].curves = both.map(|(name, column)| curve(name, report.function(column), &[])).into();
+    picture.quantities[1].curves =
+        both.map(|(name, column)| curve(name, report.function(column), &[])).into();
     let panel = CurvesPanel {
         title: "Contact angle difference, right less left".into(),
         axis: "Δ tan γ [1]".into(),
@@ -197,7 +220,8 @@ fn drawn(case: &Case, report: &ConicityReport) -> Result<(CurvesPicture, Columns
 fn map(report: &ConicityReport) -> Option<CurvesMap> {
     let of = &report.map;
     let known = of.gauge_mm.iter().all(|gauge| gauge.is_finite());
-    let (across, u) = if known { ("gauge [mm]", &of.gauge_mm) } else { ("change of gauge [mm]", &of.gauge_change_mm) };
+    let (across, u) =
+        if known { ("gauge [mm]", &of.gauge_mm) } else { ("change of gauge [mm]", &of.gauge_change_mm) };
     (u.len() > 1 && of.amplitude_mm.len() > 1).then(|| CurvesMap {
         title: "Equivalent conicity over gauge and amplitude".into(),
         across: across.into(),

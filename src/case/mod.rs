@@ -42,12 +42,14 @@ mod wheel;
 pub use analysis::{Analysis, Timings, check_method};
 pub use columns::{COLUMNS, Column, ColumnArray, Columns};
 pub use conformal::Conformal;
-pub use contact::{EllipseUnder, PlacedContact};
 pub use conicity::{
-    ConicityMap, ConicityOptions, ConicityReport, FUNCTIONS, KEY_FIGURES, Noise, UNCERTAIN, Uncertainty, conicity,
-    contact_geometry,
+    ConicityMap, ConicityOptions, ConicityReport, FUNCTIONS, KEY_FIGURES, Noise, UNCERTAIN, Uncertainty,
+    conicity, contact_geometry,
 };
-pub use conicity_files::{conicity_csv, conicity_page, conicity_picture, conicity_text, conicity_values, uncertainty_values};
+pub use conicity_files::{
+    conicity_csv, conicity_page, conicity_picture, conicity_text, conicity_values, uncertainty_values,
+};
+pub use contact::{EllipseUnder, PlacedContact};
 pub use curves::{MOST_DRAWN, ascending, curves};
 pub use doubts::{ContactDoubts, Doubt, DoubtKind, DoubtSet};
 pub use drawn::{patch_picture, quads};

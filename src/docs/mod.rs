@@ -1,5 +1,5 @@
 //! Background: conventions, measured files, the numerics with their derivation, conformal contact, the Report's errata, sweeps,
-//! rails that vary along the track, loads, clients, where time goes, references.
+//! contact geometry by EN 15302, rails that vary along the track, loads, clients, where time goes, references.
 
 #[doc = include_str!("conventions.md")]
 pub mod conventions {}
@@ -21,6 +21,9 @@ pub mod errata {}
 
 #[doc = include_str!("sweeps.md")]
 pub mod sweeps {}
+
+#[doc = include_str!("conicity.md")]
+pub mod conicity {}
 
 #[doc = include_str!("along-the-track.md")]
 pub mod along_the_track {}

@@ -192,7 +192,7 @@ fn quantile(values: &[f64], share: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::profile::{beside, standards};
+    use crate::profile::{Section, standards};
 
     #[test]
     fn deviates_are_normal_and_streams_differ() {
@@ -222,17 +222,17 @@ mod tests {
     /// Smoothing leaves a part of the noise: far less than σ, and without it the profile itself.
     #[test]
     fn a_profile_measured_once_more_is_near_itself() -> Result<()> {
-        for (profile, side) in [(standards::rail("60E1")?, Side::Rail), (standards::wheel("S1002")?, Side::Wheel)] {
+        for (profile, side) in
+            [(standards::rail("60E1")?, Side::Rail), (standards::wheel("S1002")?, Side::Wheel)]
+        {
             let remeasured = Remeasured::new(&profile, side, POINT_STEP)?;
-            let marks = trace(&profile, 0.1);
+            let own = Section::own_axes(&profile, side);
             let off = |sigma: f64| -> Result<f64> {
                 let sample = remeasured.sample(sigma, &mut Deviates::new(1, 1))?;
-                let squares = (-20..=20).map(|k| f64::from(k) * 0.5).map(|x| {
-                    let z = trace(&sample, 0.1).iter().min_by(|a, b| {
-                        (a.station.x - x).abs().total_cmp(&(b.station.x - x).abs())
-                    }).map(|mark| [mark.station.x, mark.station.z]);
-                    z.and_then(|z| beside(&marks, z, 0)).map_or(f64::NAN, |beside| beside.across.powi(2))
-                });
+                let sample = Section::own_axes(&sample, side);
+                let squares = (-20..=20)
+                    .map(|k| 0.5 * f64::from(k))
+                    .map(|x| (sample.height(x) - own.height(x)).powi(2));
                 Ok((squares.sum::<f64>() / 41.0).sqrt())
             };
             assert!(off(0.0)? < 1e-3, "{}", off(0.0)?);

@@ -78,7 +78,11 @@ impl GeometryAt {
 ///
 /// # Errors
 /// Values that are not finite; a given roll beyond ±0.5 rad.
-pub fn geometry_over(system: &WheelsetOnTrack, lateral: &[f64], roll: Roll) -> Result<Vec<Option<GeometryAt>>> {
+pub fn geometry_over(
+    system: &WheelsetOnTrack,
+    lateral: &[f64],
+    roll: Roll,
+) -> Result<Vec<Option<GeometryAt>>> {
     let mut search = system.search();
     let at = |&lateral: &f64| {
         let position = Position { lateral, yaw: 0.0, roll };
@@ -241,7 +245,8 @@ mod tests {
         let ((_, narrow), (_, wide)) = (s1002(1435.0)?, s1002(1438.0)?);
         let [a, b] = [narrow.widened(3.0)?, wide].map(|system| key_figures(&system, Roll::Neglect));
         let (a, b) = (a?, b?);
-        let off = a.conicity.map_or(0.0, |found| found.conicity) - b.conicity.map_or(1.0, |found| found.conicity);
+        let off =
+            a.conicity.map_or(0.0, |found| found.conicity) - b.conicity.map_or(1.0, |found| found.conicity);
         assert!(off.abs() < 1e-9, "{a:?} {b:?}");
         Ok(())
     }
@@ -260,7 +265,10 @@ mod tests {
                 assert!(ends(a).iter().zip(ends(b)).all(|(a, b)| (a - b).abs() < 1e-6), "{a:?} {b:?}");
             }
             let close = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-3;
-            assert!(close(one.nonlinearity.unwrap_or(0.0), two.nonlinearity.unwrap_or(1.0)), "{one:?} {two:?}");
+            assert!(
+                close(one.nonlinearity.unwrap_or(0.0), two.nonlinearity.unwrap_or(1.0)),
+                "{one:?} {two:?}"
+            );
         }
         Ok(())
     }

@@ -1,8 +1,8 @@
 //! Equivalent conicities of random wheelsets against dense tables of Δr.
 
-use wheelrail::profile::{Profile, inclination, standards};
 use wheelrail::nalgebra::UnitComplex;
 use wheelrail::placement::{Track, Wheelset};
+use wheelrail::profile::{Profile, inclination, standards};
 use wheelrail::search::{SideOnTrack, TwoStep, geometry_over};
 use wheelrail::{
     Conicity, Pair, Position, RailDistance, Roll, Selection, Sweep, WheelDistance, WheelsetOnTrack,
@@ -173,9 +173,15 @@ fn annex_e(right: &str, left: &str, diameter: f64) -> wheelrail::Result<Wheelset
     Ok(WheelsetOnTrack::of_sides(side(left, diameter)?, right_side))
 }
 
+/// Tolerance of Annex F.
+fn tolerance(conicity: f64) -> f64 {
+    f64::min(0.05, (0.5 * conicity).max(0.01))
+}
+
 #[test]
 fn the_tables_of_annex_e_are_met_by_both_integrations() {
     let mut worst = [0f64; 2];
+    let mut off = Vec::new();
     for (right, left, diameter, table) in ANNEX_E {
         let system = annex_e(right, left, diameter).expect("a wheelset");
         let conicity = Conicity::new(&system, 8.0, Roll::Neglect).expect("a table");
@@ -190,10 +196,18 @@ fn the_tables_of_annex_e_are_met_by_both_integrations() {
                 conicity.at(amplitude).map_or(f64::NAN, |found| found.conicity),
                 two_step.at(amplitude).unwrap_or(f64::NAN),
             ];
-            println!("{right}/{left}/{diameter} {amplitude}: {both:.4?} {expected} centre {:?}", conicity.centre());
+            println!("{right}/{left}/{diameter} at {amplitude} mm: {both:.4?}, the table has {expected}");
+            for (worst, found) in worst.iter_mut().zip(both) {
+                let share = (found - expected).abs() / tolerance(expected);
+                *worst = worst.max(share);
+                if share.is_nan() || share > 1.0 {
+                    off.push(format!(
+                        "{right}/{left}/{diameter} at {amplitude} mm: {both:.4?}, not {expected}"
+                    ));
+                }
+            }
         }
     }
-    assert!(worst.iter().all(|worst| *worst < 0.01), "{worst:?}");
-    worst[0] = 1.0;
-    panic!("to see");
+    println!("at most {worst:.3?} of the tolerances");
+    assert!(off.is_empty(), "{off:#?}");
 }

@@ -99,7 +99,8 @@ impl ConicityArguments {
     fn noise(&self) -> Result<Noise> {
         let mut noise = Noise { samples: self.samples, seed: self.seed, ..Noise::default() };
         for part in &self.noise {
-            let parsed = part.split_once('=').and_then(|(key, value)| Some((key.trim(), value.trim().parse().ok()?)));
+            let parsed =
+                part.split_once('=').and_then(|(key, value)| Some((key.trim(), value.trim().parse().ok()?)));
             let key = match parsed {
                 Some(("points", value)) => (&mut noise.points, value),
                 Some(("radius", value)) => (&mut noise.radius, value),

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::{Deserialize, Serialize};
 use wheelrail::case::{
-    ConicityOptions, ConicityReport, FUNCTIONS, KEY_FIGURES, Noise, contact_geometry, conicity as of_case,
+    ConicityOptions, ConicityReport, FUNCTIONS, KEY_FIGURES, Noise, conicity as of_case, contact_geometry,
 };
 
 use crate::arrays::values;

@@ -207,7 +207,9 @@ fn shade(share: f64) -> Colour {
     let at = 2.0 * share.clamp(0.0, 1.0);
     let [from, to] = if at < 1.0 { [SHADES[0], SHADES[1]] } else { [SHADES[1], SHADES[2]] };
     let rest = if at < 1.0 { at } else { at - 1.0 };
-    std::array::from_fn(|k| (f64::from(from[k]) + rest * (f64::from(to[k]) - f64::from(from[k]))).round() as u8)
+    std::array::from_fn(|k| {
+        (f64::from(from[k]) + rest * (f64::from(to[k]) - f64::from(from[k]))).round() as u8
+    })
 }
 
 impl JoinedPair {

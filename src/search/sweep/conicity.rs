@@ -27,9 +27,9 @@
 mod branches;
 mod movement;
 mod refine;
-mod two_step;
 #[cfg(test)]
 mod tests;
+mod two_step;
 
 pub use two_step::TwoStep;
 

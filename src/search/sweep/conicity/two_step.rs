@@ -46,7 +46,12 @@ impl TwoStep {
     pub fn new(lateral: &[f64], delta_r: &[f64]) -> Result<Self> {
         if lateral.len() != delta_r.len() {
             let found = format!("{} displacements and {} values of Δr", lateral.len(), delta_r.len());
-            return Err(Error::new("conicity", found, "a value for each displacement", "give as many of both"));
+            return Err(Error::new(
+                "conicity",
+                found,
+                "a value for each displacement",
+                "give as many of both",
+            ));
         }
         for &value in lateral.iter().chain(delta_r) {
             finite("conicity", value)?;
@@ -131,7 +136,8 @@ fn centre(lateral: &[f64], delta_r: &[f64]) -> Option<f64> {
         let share = if to > from { -from / (to - from) } else { 0.0 };
         lateral[k] + share * (lateral[k + 1] - lateral[k])
     };
-    let grows = |k: &usize| delta_r[*k] <= 0.0 && delta_r[k + 1] > 0.0 || delta_r[*k] < 0.0 && delta_r[k + 1] >= 0.0;
+    let grows =
+        |k: &usize| delta_r[*k] <= 0.0 && delta_r[k + 1] > 0.0 || delta_r[*k] < 0.0 && delta_r[k + 1] >= 0.0;
     let all = (0..lateral.len().saturating_sub(1)).filter(grows).map(crossing);
     all.min_by(|a, b| a.abs().total_cmp(&b.abs()))
 }
