@@ -5,7 +5,8 @@ use std::fmt::Write;
 use serde_json::{Map, Value, json};
 
 use super::columns::Columns;
-use super::conicity::{ConicityReport, FUNCTIONS, KEY_FIGURES, UNCERTAIN, Uncertainty};
+use super::conicity::{ConicityReport, FUNCTIONS, KEY_FIGURES};
+use super::conicity_noise::{UNCERTAIN, Uncertainty};
 use super::curves::curves;
 use super::doubts::DoubtSet;
 use super::input::{Case, Place};

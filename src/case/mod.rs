@@ -7,6 +7,7 @@ mod columns;
 mod conformal;
 mod conicity;
 mod conicity_files;
+mod conicity_noise;
 mod contact;
 mod curves;
 mod doubts;
@@ -43,12 +44,12 @@ pub use analysis::{Analysis, Timings, check_method};
 pub use columns::{COLUMNS, Column, ColumnArray, Columns};
 pub use conformal::Conformal;
 pub use conicity::{
-    ConicityMap, ConicityOptions, ConicityReport, FUNCTIONS, KEY_FIGURES, Noise, UNCERTAIN, Uncertainty,
-    conicity, contact_geometry,
+    ConicityMap, ConicityOptions, ConicityReport, FUNCTIONS, KEY_FIGURES, conicity, contact_geometry,
 };
 pub use conicity_files::{
     conicity_csv, conicity_page, conicity_picture, conicity_text, conicity_values, uncertainty_values,
 };
+pub use conicity_noise::{Noise, UNCERTAIN, Uncertainty};
 pub use contact::{EllipseUnder, PlacedContact};
 pub use curves::{MOST_DRAWN, ascending, curves};
 pub use doubts::{ContactDoubts, Doubt, DoubtKind, DoubtSet};

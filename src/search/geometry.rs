@@ -153,22 +153,32 @@ pub struct KeyFigures {
 /// # Ok::<(), wheelrail::Error>(())
 /// ```
 pub fn key_figures(system: &WheelsetOnTrack, roll: Roll) -> Result<KeyFigures> {
-    let table = Conicity::new(system, NONLINEARITY[1], roll)?;
-    let centre = table.centre();
-    let (about, symmetric) = (centre.unwrap_or(0.0), system.symmetric());
-    let steps = (AMPLITUDE / STEP).round() as i32;
-    let first = if symmetric { 0 } else { -steps };
-    let lateral: Vec<f64> = (first..=steps).map(|k| about + STEP * f64::from(k)).collect();
-    let mut found: Vec<GeometryAt> = geometry_over(system, &lateral, roll)?.into_iter().flatten().collect();
-    if symmetric {
-        found.extend(found.clone().iter().map(GeometryAt::mirrored));
+    KeyFigures::new(system, &Conicity::new(system, NONLINEARITY[1], roll)?, roll)
+}
+
+impl KeyFigures {
+    /// Takes the figures from a table of the same system and roll that reaches 4 mm; a shorter one gives no nonlinearity parameter.
+    ///
+    /// # Errors
+    /// A given roll beyond ±0.5 rad.
+    pub fn new(system: &WheelsetOnTrack, table: &Conicity, roll: Roll) -> Result<Self> {
+        let centre = table.centre();
+        let (about, symmetric) = (centre.unwrap_or(0.0), system.symmetric());
+        let steps = (AMPLITUDE / STEP).round() as i32;
+        let first = if symmetric { 0 } else { -steps };
+        let lateral: Vec<f64> = (first..=steps).map(|k| about + STEP * f64::from(k)).collect();
+        let mut found: Vec<GeometryAt> =
+            geometry_over(system, &lateral, roll)?.into_iter().flatten().collect();
+        if symmetric {
+            found.extend(found.clone().iter().map(GeometryAt::mirrored));
+        }
+        Ok(Self {
+            centre,
+            conicity: table.at(AMPLITUDE),
+            nonlinearity: nonlinearity(table),
+            bands: ContactBand::of(&found),
+        })
     }
-    Ok(KeyFigures {
-        centre,
-        conicity: table.at(AMPLITUDE),
-        nonlinearity: nonlinearity(&table),
-        bands: ContactBand::of(&found),
-    })
 }
 
 /// Returns the nonlinearity parameter \[1/mm\] of a table that reaches 4 mm: (tan γ_e(4 mm) − tan γ_e(2 mm))/(2 mm).
