@@ -73,8 +73,11 @@ pub const KEY_FIGURES: [(&str, &str); 19] = [
     ("right_wheel_to_mm", "largest x"),
 ];
 
-/// Largest number of displacements or gauges.
-const MOST: usize = 1_000_000;
+/// Largest number of displacements to one side, and of gauges: the two-step integration takes the square of it.
+const MOST: usize = 10_000;
+
+/// Largest amplitude \[mm\]: no wheel moves so far over its rail.
+const FARTHEST: f64 = 1000.0;
 
 /// Step of the amplitudes of the map \[mm\].
 const MAP_STEP: f64 = 0.5;
@@ -209,10 +212,14 @@ impl ConicityOptions {
                 return Err(Error::new(name, value.to_string(), "a positive number", "give it in mm"));
             }
         }
+        if self.amplitude > FARTHEST {
+            let (found, expected) = (self.amplitude.to_string(), format!("at most {FARTHEST} mm"));
+            return Err(Error::new("conicity: amplitude", found, expected, "take a smaller one"));
+        }
         let steps = (self.amplitude / self.step).round();
         if steps > MOST as f64 || self.gauges.len() > MOST {
             let found = format!("{} displacements and {} gauges", 2.0 * steps + 1.0, self.gauges.len());
-            let expected = format!("at most {MOST} of each");
+            let expected = format!("at most {} displacements and {MOST} gauges", 2 * MOST + 1);
             let error = Error::new("conicity", found, expected, "take larger steps");
             return Err(error.of_kind(ErrorKind::Limit));
         }

@@ -89,13 +89,13 @@ pub(crate) fn conicity<'py>(
 fn dict_of(py: Python<'_>, report: ConicityReport) -> PyResult<Bound<'_, PyDict>> {
     let [figures, functions, map, definitions, out] = [(); 5].map(|()| PyDict::new(py));
     for ((name, _), value) in KEY_FIGURES.iter().zip(report.key_figures) {
-        figures.set_item(name, (!value.is_nan()).then_some(value))?;
+        figures.set_item(*name, (!value.is_nan()).then_some(value))?;
     }
     for (name, meaning) in KEY_FIGURES.iter().chain(&FUNCTIONS) {
-        definitions.set_item(name, meaning)?;
+        definitions.set_item(*name, *meaning)?;
     }
     for ((name, _), values) in FUNCTIONS.iter().zip(report.functions) {
-        functions.set_item(name, PyArray1::from_vec(py, values))?;
+        functions.set_item(*name, PyArray1::from_vec(py, values))?;
     }
     map.set_item("gauge_change_mm", PyArray1::from_vec(py, report.map.gauge_change_mm))?;
     map.set_item("gauge_mm", PyArray1::from_vec(py, report.map.gauge_mm))?;

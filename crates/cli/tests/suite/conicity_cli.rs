@@ -139,7 +139,7 @@ fn what_cannot_be_is_refused() {
         assert!(said.contains(words), "{arguments:?}: {said}");
     };
     refused(&[&scene, "--amplitude", "-1"], "a positive number");
-    refused(&[&scene, "--step", "1e-9"], "at most 1000000");
+    refused(&[&scene, "--step", "1e-9"], "take larger steps");
     refused(&[&scene, "--noise", "point=1"], "points, radius, gauge or step");
     refused(&[&scene, "--noise", "points=0"], "above 0");
     refused(&[&scene, "--noise", "gauge=1", "--samples", "10"], "40 to");
