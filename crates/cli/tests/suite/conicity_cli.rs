@@ -96,7 +96,7 @@ fn pictures_and_pages_are_written_and_findings_are_said() {
         ["c.svg", "c.html", "c.csv"].map(|name| here.join(name).to_str().unwrap().to_owned());
     let arguments = [&scene, "--csv", "--out", &out, "--picture", &picture, "--html", &page];
     let output =
-        conicity(&[&arguments[..], &["--amplitude", "20", "--step", "1", "--gauges", "-2:2:1"]].concat());
+        conicity(&[&arguments[..], &["--amplitude", "100", "--step", "5", "--gauges", "-1:1:1"]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(said.contains("no contact on both sides from"), "{said}");
