@@ -192,9 +192,9 @@ fn drawn(case: &Case, report: &ConicityReport) -> Result<(CurvesPicture, Columns
         Ok(true)
     })?;
     let about = if report.roll == Roll::Solve { "roll solved" } else { "roll neglected" };
-    let mut about = format!("contact geometry by EN 15302, {about}, without yaw");
+    let mut about = format!("EN 15302, {about}");
     if let Some(value) = report.key_figure("nonlinearity_per_mm") {
-        let _ = write!(about, "{SEPARATOR}nonlinearity parameter {value:.3} 1/mm");
+        let _ = write!(about, "{SEPARATOR}nonlinearity parameter {value:.3}/mm");
     }
     let mut picture = curves(&columns, lateral, &case.profiles().right.names(), &about)?;
     let jumps = picture.quantities[0].curves[0].jumps.clone();
@@ -204,6 +204,7 @@ fn drawn(case: &Case, report: &ConicityReport) -> Result<(CurvesPicture, Columns
         jumps: jumps.to_vec(),
     };
     let both = [("energy", "conicity"), ("two-step", "conicity_two_step")];
+    picture.quantities[1].title = "Equivalent conicity".into();
     picture.quantities[1].curves =
         both.map(|(name, column)| curve(name, report.function(column), &[])).into();
     let panel = CurvesPanel {

@@ -44,7 +44,7 @@ impl Default for Deviations {
 ///
 ///     >>> found = wr.conicity(track, roll="neglect")
 ///     >>> round(found["key_figures"]["conicity_3mm"], 3)
-///     0.177
+///     0.174
 ///     >>> found["functions"]["delta_r_mm"].shape
 ///     (161,)
 ///

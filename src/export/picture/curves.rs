@@ -175,7 +175,7 @@ impl CurvesMap {
         let right = place[0] + place[2];
         for k in 0..KEY {
             let share = f64::from(k) / f64::from(KEY - 1);
-            let x = right - KEY_WIDTH + KEY_WIDTH * share;
+            let x = right - KEY_WIDTH + (KEY_WIDTH - 14.0) * share;
             let top = place[1] + place[3] + 46.0;
             let cell = [[x, top], [x + 14.0, top], [x + 14.0, top + 8.0], [x, top + 8.0]];
             page.area(&[cell.to_vec()], shade(share));
