@@ -29,9 +29,6 @@ mod movement;
 mod refine;
 #[cfg(test)]
 mod tests;
-mod two_step;
-
-pub use two_step::TwoStep;
 
 use branches::Searched;
 use movement::{Movement, Quarter};

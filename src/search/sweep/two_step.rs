@@ -1,7 +1,7 @@
 //! Equivalent conicity by integrating the wheelset's equation of motion in two steps over a table of Δr with equal steps, as
 //! EN 15302 describes it. The adaptive integration of [`Conicity`](super::Conicity) is checked against it.
 
-use super::NoConicity;
+use super::conicity::NoConicity;
 use crate::error::{Error, Result, finite};
 use crate::numerics::roots::last_where;
 
