@@ -5,6 +5,9 @@
 mod analysis;
 mod columns;
 mod conformal;
+mod conicity;
+mod conicity_files;
+mod conicity_noise;
 mod contact;
 mod curves;
 mod doubts;
@@ -42,6 +45,13 @@ mod wheel;
 pub use analysis::{Analysis, Timings, check_method};
 pub use columns::{COLUMNS, Column, ColumnArray, Columns};
 pub use conformal::Conformal;
+pub use conicity::{
+    ConicityMap, ConicityOptions, ConicityReport, FUNCTIONS, KEY_FIGURES, conicity, contact_geometry,
+};
+pub use conicity_files::{
+    conicity_csv, conicity_page, conicity_picture, conicity_text, conicity_values, uncertainty_values,
+};
+pub use conicity_noise::{Noise, UNCERTAIN, Uncertainty};
 pub use contact::{EllipseUnder, PlacedContact};
 pub use curves::{MOST_DRAWN, ascending, curves};
 pub use doubts::{ContactDoubts, Doubt, DoubtKind, DoubtSet};

@@ -18,6 +18,9 @@ pub mod loads {}
 #[doc = include_str!("sweeps.md")]
 pub mod sweeps {}
 
+#[doc = include_str!("conicity.md")]
+pub mod conicity {}
+
 #[doc = include_str!("measures.md")]
 pub mod measures {}
 

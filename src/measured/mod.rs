@@ -12,6 +12,7 @@
 mod clean;
 mod column;
 mod fit;
+pub mod noise;
 mod options;
 mod place;
 mod read;

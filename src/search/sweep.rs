@@ -1,8 +1,10 @@
 //! Sweeps: gives the contact geometry of a wheelset at many positions, one row per side and contact.
 
 mod conicity;
+mod two_step;
 
 pub use conicity::{ACCURACY, Conicity, Equivalent, NoConicity};
+pub use two_step::TwoStep;
 
 use std::fmt;
 

@@ -148,6 +148,18 @@ impl WheelsetOnTrack {
         self.sides.iter().all(|side| matches!(side.pair, SidePair::Swept(_)) && side.pair.roller().is_none())
     }
 
+    /// Returns the wheelset on a track whose gauge is wider by so much \[mm\]: each rail half of it further out.
+    ///
+    /// # Errors
+    /// Rails that would meet; a value that is not finite.
+    pub fn widened(&self, by: f64) -> Result<Self> {
+        let mut wider = self.clone();
+        for side in &mut wider.sides {
+            side.track = side.track.moved(by / 2.0, 0.0)?;
+        }
+        Ok(wider)
+    }
+
     /// Returns the nominal rolling radius \[mm\] from which heights of the axle's middle count: the right-hand wheel's.
     pub(super) fn reference_radius(&self) -> f64 {
         self.sides[1].wheelset.radius

@@ -7,6 +7,7 @@
 
 mod answer;
 mod check;
+mod conicity;
 mod init;
 mod man;
 mod march;
@@ -61,6 +62,8 @@ enum Command {
     },
     /// Sweep a wheelset over its track and print a row for each position, side and contact.
     Sweep(sweep::SweepArguments),
+    /// Contact geometry of a wheelset on its track by EN 15302: equivalent conicity, nonlinearity, contact bands.
+    Conicity(Box<conicity::ConicityArguments>),
     /// March a wheelset along rails that vary and print a row for each place, side and contact.
     March(march::MarchArguments),
     /// Tabulate contact over the lateral displacement for vehicle dynamics, as polynomials with a stated error.
@@ -136,6 +139,7 @@ fn on_threads(arguments: Arguments) -> Result<Outcome> {
         Command::Midsep { scene } => midsep::midsep(&scene),
         Command::Check { scene } => check::check(&scene),
         Command::Sweep(arguments) => sweep::sweep(&arguments),
+        Command::Conicity(arguments) => conicity::run(&arguments),
         Command::March(arguments) => march::march(&arguments),
         Command::Table(arguments) => table::table(&arguments),
         Command::Report { out, splice } => report::report(out.as_deref(), splice.as_deref()),

@@ -4,6 +4,7 @@
 mod arrays;
 mod asked;
 mod case;
+mod conicity;
 mod contact;
 mod errors;
 mod files;
@@ -31,6 +32,8 @@ mod _wheelrail {
     use super::asked::effective_modulus;
     #[pymodule_export]
     use super::case::{Case, run, schema};
+    #[pymodule_export]
+    use super::conicity::conicity;
     #[pymodule_export]
     use super::contact::{Contact, contact_from_parts, patch_from_parts};
     #[pymodule_export]

@@ -8,5 +8,5 @@ mod numbers;
 mod sweep;
 mod view;
 
-pub use sweep::{SweepCurve, SweepPage, SweepPanel, SweepSide};
+pub use sweep::{PageFigure, PageMap, SweepCurve, SweepPage, SweepPanel, SweepSide};
 pub use view::{PageFrame, PageLoop, PagePair, PagePressure, PageProfile, ViewContact, ViewPage};

@@ -18,7 +18,7 @@ pub use chart::{Chart, Series};
 pub use conformal::{ConformalPicture, RailNormal};
 pub use contact::PicturedContact;
 pub use contour::Nodes;
-pub use curves::{CurvesPanel, CurvesPicture, JoinedPair, PlottedCurve, jumps};
+pub use curves::{CurvesMap, CurvesPanel, CurvesPicture, JoinedPair, PlottedCurve, jumps};
 pub use map::Pressed;
 pub use overlay::OverlayPicture;
 pub use page::SEPARATOR;

@@ -15,6 +15,7 @@ mod campaign;
 mod clients;
 mod clients_runs;
 mod conformal_table;
+mod conicity_cli;
 mod doubts_cli;
 mod hostile;
 mod load_table;

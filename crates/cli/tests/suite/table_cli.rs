@@ -65,7 +65,9 @@ fn searched(folder: &Path, scene: &str, lateral: &[f64]) -> Vec<BTreeMap<(String
             "hertz_xi_mm",
             "hertz_eta_mm",
         ];
-        same.iter().for_each(|name| drop(found.insert(((*name).into(), side.into()), number(name))));
+        same.iter().for_each(|name| {
+            found.insert(((*name).into(), side.into()), number(name));
+        });
         let (skew, roll) = (number("skew_rad"), if side == "left" { -1.0 } else { 1.0 } * number("roll_rad"));
         let [rail, wheel] = ["rail_curvature_per_mm", "wheel_curvature_per_mm"].map(number);
         let around = (number("contact_angle_rad") + roll).cos() / number("rolling_radius_mm");
@@ -76,8 +78,9 @@ fn searched(folder: &Path, scene: &str, lateral: &[f64]) -> Vec<BTreeMap<(String
             ("b_eta_per_mm", (wheel * sin * sin + around * cos * cos) / 2.0),
             ("c_xi_eta_per_mm", (wheel - around) * sin * cos),
         ];
-        form.iter()
-            .for_each(|(name, value)| drop(found.insert(((*name).into(), side.into()), smooth * value)));
+        form.iter().for_each(|(name, value)| {
+            found.insert(((*name).into(), side.into()), smooth * value);
+        });
     }
     assert_eq!(out.len(), lateral.len());
     out

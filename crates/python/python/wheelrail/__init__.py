@@ -17,6 +17,7 @@ What there is:
     rail, wheel, read_profile, Profile.from_points, Profile.from_segments   profiles
     measure_profile           flange height and thickness, wear against a nominal profile
     Pair, Wheelset            bodies placed: touch, placed, sweep, conicity
+    conicity                  contact geometry by EN 15302: key figures, functions, map, uncertainty
     Contact                   a place of contact: separation, normals, normal_gap, hertz, surfaces
     Patch, Component, Mesh    the patch: loops, areas, meshes, pressures, files of every format
     Case                      a scene with all it can say, from a file, a dict or TOML: contacts, files, view, sweep, check, run
@@ -40,6 +41,7 @@ from ._wheelrail import (
     Profile,
     Wheelset,
     __version__,
+    conicity,
     effective_modulus,
     march,
     measure_profile,
@@ -77,6 +79,7 @@ __all__ = [
     "WheelTouch",
     "Wheelset",
     "__version__",
+    "conicity",
     "effective_modulus",
     "march",
     "measure_profile",

@@ -328,4 +328,15 @@ def run(path: _Path, out: _Path) -> Run: ...
 def march(
     path: _Path, along: ArrayLike, *, progress: bool | Callable[[int, int], object] | None = None
 ) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]: ...
+def conicity(
+    wheelset: Wheelset | Case,
+    *,
+    roll: Literal["solve", "neglect"] | None = None,
+    amplitude: float = 8.0,
+    step: float = 0.1,
+    gauges: ArrayLike | None = None,
+    noise: Mapping[str, float] | None = None,
+    samples: int = 400,
+    seed: int = 1,
+) -> dict[str, Any]: ...
 def schema() -> dict[str, Any]: ...
