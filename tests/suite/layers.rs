@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use syn::visit::Visit;
 
 /// Rooms of the library from the bottom up; each may use those before it and itself.
-const ORDER: [&str; 18] = [
+const ORDER: [&str; 19] = [
     "error",
     "numerics",
     "files",
@@ -24,6 +24,7 @@ const ORDER: [&str; 18] = [
     "export",
     "case",
     "scene",
+    "fleet",
     "docs",
 ];
 

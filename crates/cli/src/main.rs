@@ -7,6 +7,7 @@
 
 mod answer;
 mod check;
+mod fleet;
 mod init;
 mod march;
 mod midsep;
@@ -57,6 +58,8 @@ enum Command {
     Sweep(sweep::SweepArguments),
     /// March a wheelset along rails that vary and print a row for each place, side and contact.
     March(march::MarchArguments),
+    /// Compute every wheelset of a fleet on every rail section: conicity, measures, contact bands; a table and pages.
+    Fleet(fleet::FleetArguments),
     /// Measure speed against error and run the hard cases; takes about three minutes.
     Report {
         /// Folder to write; by default output/report.
@@ -125,6 +128,7 @@ fn on_threads(arguments: Arguments) -> Result<Outcome> {
         Command::Check { scene } => check::check(&scene),
         Command::Sweep(arguments) => sweep::sweep(&arguments),
         Command::March(arguments) => march::march(&arguments),
+        Command::Fleet(arguments) => fleet::fleet(&arguments),
         Command::Report { out, splice } => report::report(out.as_deref(), splice.as_deref()),
         Command::Profile(command) => profile::profile(&command),
         Command::Init { file } => init::init(&file),
