@@ -1,5 +1,5 @@
 //! Background: conventions, measured files, the numerics with their derivation, conformal contact, the Report's errata, sweeps,
-//! rails that vary along the track, loads, clients, where time goes, references.
+//! rails that vary along the track, fleets, loads, clients, where time goes, references.
 
 #[doc = include_str!("conventions.md")]
 pub mod conventions {}
@@ -24,6 +24,10 @@ pub mod sweeps {}
 
 #[doc = include_str!("along-the-track.md")]
 pub mod along_the_track {}
+
+#[cfg(feature = "files")]
+#[doc = include_str!("fleet.md")]
+pub mod fleet {}
 
 #[doc = include_str!("loads.md")]
 pub mod loads {}

@@ -42,7 +42,7 @@ pub use model::{
 pub use netcdf::NetCdf;
 pub use npy::array_npy;
 pub use picture::{
-    Chart, ConformalPicture, CurvesPanel, CurvesPicture, JoinedPair, Nodes, OverlayPicture, PatchPicture,
+    BandPicture, BandPoint, Chart, ConformalPicture, CurvesPanel, CurvesPicture, JoinedPair, Nodes, OverlayPicture, PatchPicture,
     PicturedContact, PlottedCurve, Pressed, ProfilePicture, RailNormal, SEPARATOR, Series, jumps,
 };
 pub use ply::surface_ply;

@@ -8,6 +8,7 @@ mod contact;
 mod errors;
 mod files;
 mod filling;
+mod fleet;
 mod long;
 mod march;
 mod measure;
@@ -34,9 +35,11 @@ mod _wheelrail {
     #[pymodule_export]
     use super::contact::{Contact, contact_from_parts, patch_from_parts};
     #[pymodule_export]
+    use super::fleet::{fleet, fleet_part, fleet_parts};
+    #[pymodule_export]
     use super::march::march;
     #[pymodule_export]
-    use super::measure::measure_profile;
+    use super::measure::{average_profiles, measure_profile};
     #[pymodule_export]
     use super::pair::{Pair, pair_from_parts};
     #[pymodule_export]

@@ -359,7 +359,7 @@ impl Profile {
     }
 
     /// Takes over a measured profile, and warns of what was found in its points.
-    fn measured(py: Python<'_>, measured: Measured, side: Option<Side>) -> PyResult<Self> {
+    pub(crate) fn measured(py: Python<'_>, measured: Measured, side: Option<Side>) -> PyResult<Self> {
         let Measured { profile, points, record } = measured;
         warn_of_points(py, &record.warnings)?;
         let fitted = Fitted {

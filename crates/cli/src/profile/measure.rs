@@ -24,7 +24,7 @@ use wheelrail::scene;
 const LARGEST_LIMITS: usize = 1 << 20;
 
 /// The curve through measured points, if no option names one: smoothing rounds the tip of a flange, by which qR is up to 0.07 mm off.
-const CURVE: Option<CurveKind> = Some(CurveKind::Interpolation);
+pub(super) const CURVE: Option<CurveKind> = Some(CurveKind::Interpolation);
 
 /// The profiles to measure, and how.
 #[derive(Debug, Args)]
@@ -119,7 +119,7 @@ pub(super) fn run(arguments: &MeasureArguments) -> Result<Outcome> {
     Ok(if none || arguments.fail && broken { Outcome::No } else { Outcome::Done })
 }
 
-fn source(name: &str, side: Option<BodyOption>, measured: MeasuredArguments) -> SourceArguments {
+pub(super) fn source(name: &str, side: Option<BodyOption>, measured: MeasuredArguments) -> SourceArguments {
     SourceArguments { profile: name.to_owned(), side, measured }
 }
 
@@ -204,7 +204,7 @@ fn measured(
 }
 
 /// Reads a range "from:to".
-fn range(text: &str) -> Result<[f64; 2]> {
+pub(super) fn range(text: &str) -> Result<[f64; 2]> {
     let numbers: Option<Vec<f64>> = text.split(':').map(|part| part.trim().parse().ok()).collect();
     match numbers.as_deref() {
         Some([from, to]) => Ok([*from, *to]),

@@ -16,6 +16,7 @@ mod clients;
 mod clients_runs;
 mod conformal_table;
 mod doubts_cli;
+mod fleet_cli;
 mod hostile;
 mod load_table;
 mod march_cli;
