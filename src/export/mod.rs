@@ -31,7 +31,7 @@ pub use deck::{
 };
 pub use gmsh::patch_msh;
 pub use html::{
-    FleetDistribution, FleetHeat, FleetPage, FleetWorst, PageFrame, PageLoop, PagePair, PagePressure, PageProfile, SweepCurve, SweepPage, SweepPanel, SweepSide,
+    FleetDistribution, FleetHeat, FleetPage, FleetWorst, MeasuredPage, MeasuresPage, PageFrame, PageLoop, PagePair, PagePressure, PageProfile, SweepCurve, SweepPage, SweepPanel, SweepSide,
     ViewContact, ViewPage,
 };
 pub use in_place::{ContactInPlace, InPlace};

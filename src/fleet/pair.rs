@@ -25,12 +25,13 @@ pub(super) const STEP: f64 = 0.25;
 pub(super) const CELL: f64 = 0.5;
 
 /// Measures of a wheel that are in the table.
-const MEASURES: [Quantity; 5] = [
+const MEASURES: [Quantity; 6] = [
     Quantity::FlangeHeight,
     Quantity::FlangeThickness,
     Quantity::Qr,
     Quantity::FlangeWidth,
     Quantity::Hollow,
+    Quantity::Diameter,
 ];
 
 /// Names of the sides, in their order.
@@ -92,7 +93,7 @@ pub(super) fn row(fleet: &Fleet, shelf: &Shelf, number: Number) -> Row {
             name(&rails[0]),
             name(&rails[1]),
         ],
-        radii: [0, 1].map(|k| radius(fleet, number, &wheels[k], k)),
+        radii: [0, 1].map(|k| radius(fleet, shelf, number, k)),
         values: values.map(|value| value.filter(|value| value.is_finite())).collect(),
         finding: own.join("; "),
         touched: found.touched,
@@ -111,8 +112,12 @@ fn measured(shelf: &Shelf, key: &Key, side: &str, findings: &mut Vec<String>) ->
     MEASURES.map(|quantity| measures.value(quantity))
 }
 
-fn radius(fleet: &Fleet, number: Number, key: &Key, side: usize) -> Option<f64> {
-    fleet.wheelsets[number.wheelset].radii[side].or(fleet.data(key).radius).or(fleet.scene.wheel.radius)
+/// Returns the nominal rolling radius of a wheel \[mm\]: of the table, of the scene, or half the diameter that its file states.
+fn radius(fleet: &Fleet, shelf: &Shelf, number: Number, side: usize) -> Option<f64> {
+    let key = &fleet.keys(number)[1][side];
+    let given = fleet.wheelsets[number.wheelset].radii[side];
+    let stated = || shelf.get(key).ok()?.record.as_ref()?.diameter.map(|diameter| 0.5 * diameter);
+    given.or(fleet.data(key).radius).or(fleet.scene.wheel.radius).or_else(stated)
 }
 
 /// Makes the case of a pair.
@@ -126,14 +131,14 @@ pub(super) fn case(fleet: &Fleet, shelf: &Shelf, number: Number) -> Result<Case>
             shelf.get(key).cloned().map_err(|why| Error::new("profile", why, "a profile", "see the file"))
         };
         let (rail, wheel) = (read(&rails[k])?, read(&wheels[k])?);
-        let radius = radius(fleet, number, &wheels[k], k).ok_or_else(|| {
+        let radius = radius(fleet, shelf, number, k).ok_or_else(|| {
             let expected = "the nominal rolling radius in mm";
             Error::new(SIDES[k], "no radius", expected, "give `radius` in [wheel], or columns of the table")
         })?;
         let pair = scene::pair_of(&fleet.scene, rail.profile, wheel.profile, radius)?;
         Ok(SideProfiles { pair, measured: Bodies { rail: rail.record, wheel: wheel.record } })
     };
-    let radii = [0, 1].map(|k| radius(fleet, number, &wheels[k], k));
+    let radii = [0, 1].map(|k| radius(fleet, shelf, number, k));
     let alike = rails[0] == rails[1] && wheels[0] == wheels[1] && radii[0] == radii[1];
     let left = if alike { None } else { Some(side(0)?) };
     let profiles = Profiles { right: side(1)?, left };

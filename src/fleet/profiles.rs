@@ -128,6 +128,7 @@ fn read(fleet: &Fleet, key: &Key) -> std::result::Result<Read, String> {
     let exact = if again { Some(scene::profile_of(&own, folder, side)) } else { None };
     let (exact, _) = exact.transpose().map_err(|error| error.to_string())?.unwrap_or((profile.clone(), None));
     let measures = measure(&exact, side, None, &MeasureOptions::default()).map_err(|error| error.to_string())?;
+    let measures = measures.with_diameter(record.as_ref().and_then(|record| record.diameter));
     Ok(Read { profile, record, measures: Some(measures) })
 }
 

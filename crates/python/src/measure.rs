@@ -41,6 +41,7 @@ pub(crate) fn measure_profile<'py>(
     }
     let (own, nominal) = (profile.profile.clone(), nominal.map(|nominal| nominal.profile.clone()));
     let measures = waited(py, move |_| measure(&own, side, nominal.as_ref(), &options))?;
+    let measures = measures.with_diameter(profile.diameter());
     let row = Row { file: profile.profile.name.clone(), side: Some(side), measured: Ok(measures) };
     to_python(py, &row.values(None))
 }

@@ -40,7 +40,7 @@ mod tests {
     #[test]
     fn scripts_cannot_end_their_element() {
         for script in
-            [include_str!("view.js"), include_str!("sweep.js"), include_str!("fleet.js")].map(str::to_ascii_lowercase) {
+            [include_str!("view.js"), include_str!("sweep.js"), include_str!("fleet.js"), include_str!("measure.js")].map(str::to_ascii_lowercase) {
             assert!(!script.contains("</script") && !script.contains("<!--") && !script.contains("<script"));
         }
     }

@@ -5,10 +5,12 @@
 
 mod document;
 mod fleet;
+mod measure;
 mod numbers;
 mod sweep;
 mod view;
 
 pub use fleet::{FleetDistribution, FleetHeat, FleetPage, FleetWorst};
+pub use measure::{MeasuredPage, MeasuresPage};
 pub use sweep::{SweepCurve, SweepPage, SweepPanel, SweepSide};
 pub use view::{PageFrame, PageLoop, PagePair, PagePressure, PageProfile, ViewContact, ViewPage};

@@ -102,6 +102,24 @@ fn a_picture_shows_both_profiles_and_their_differences() {
 }
 
 #[test]
+fn a_page_walks_through_all_files_the_bad_ones_too() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    fs::write(here.join("bad.ban"), "no numbers").unwrap();
+    text(here, &["54E1", "bad.ban", "60E1", "--nominal", "60E1", "--html", "m.html"], 1);
+    let page = fs::read_to_string(here.join("m.html")).unwrap();
+    let data = page.split_once("application/json\">").unwrap().1.split_once("</script>").unwrap().0;
+    let data: Value = serde_json::from_str(data).unwrap();
+    let files = data["files"].as_array().unwrap();
+    let names: Vec<&str> = files.iter().map(|file| file["name"].as_str().unwrap()).collect();
+    assert_eq!((names, data["about"].as_str()), (vec!["54E1", "bad.ban", "60E1"], Some("nominal 60E1")));
+    let drawn = |k: usize| !files[k]["differences"].as_str().unwrap().is_empty();
+    assert_eq!([0, 1, 2].map(drawn), [true, false, true]);
+    assert!(files[1]["findings"][0].as_str().unwrap().starts_with("bad.ban") && files[0]["measures"].as_array().unwrap().len() > 3);
+    assert_eq!(measure(here, &["54E1", "--out", "m.html", "--html", "m.html"]).status.code(), Some(2));
+}
+
+#[test]
 fn wheels_given_as_rails_and_wrong_options_say_what_is_wrong() {
     let folder = TempDir::new().unwrap();
     let here = folder.path();
