@@ -14,7 +14,8 @@ pub fn measures_page(
     options: &MeasureOptions,
     limits: Option<&Limits>,
 ) -> MeasuresPage {
-    let about = nominal.map_or_else(|| "without a nominal".to_owned(), |nominal| format!("nominal {}", nominal.name));
+    let about =
+        nominal.map_or_else(|| "without a nominal".to_owned(), |nominal| format!("nominal {}", nominal.name));
     let title = match rows {
         [(row, _)] => row.file.clone(),
         _ => format!("{} profiles", rows.len()),

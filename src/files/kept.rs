@@ -93,7 +93,8 @@ pub fn files_in(folder: &Path) -> Result<Vec<PathBuf>> {
 mod tests {
     use super::*;
 
-    const NAMES: Names = Names { marker: "study.json", is_file: |name| name == "study.json", is_part: |_| false };
+    const NAMES: Names =
+        Names { marker: "study.json", is_file: |name| name == "study.json", is_part: |_| false };
 
     #[test]
     fn a_folder_of_others_is_left_alone_and_ours_is_added_to() {

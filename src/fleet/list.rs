@@ -144,7 +144,8 @@ fn wheelset<'a>(
     let radius = |k: usize| {
         let Some(text) = cell(k) else { return Ok(None) };
         let point = if decimal_commas { text.replace(',', ".") } else { text.to_owned() };
-        let value: Option<f64> = point.parse().ok().filter(|radius: &f64| *radius > 0.0 && radius.is_finite());
+        let value: Option<f64> =
+            point.parse().ok().filter(|radius: &f64| *radius > 0.0 && radius.is_finite());
         let found = || Error::new(COLUMNS[k], format!("\"{text}\""), "a radius in mm", "correct it");
         value.map(Some).ok_or_else(found)
     };
@@ -197,15 +198,24 @@ mod tests {
         let file = |name: &str| Source::File(Path::new("/nowhere").join(name));
         let built_in = |name: &str| Source::BuiltIn(name.into());
         assert_eq!(read[0].wheels, [built_in("S1002"), file("a.whl")]);
-        assert_eq!((&read[0].radii, &read[0].rails), (&[None, Some(455.5)], &Some([built_in("60E1"), file("b.ban")])));
+        assert_eq!(
+            (&read[0].radii, &read[0].rails),
+            (&[None, Some(455.5)], &Some([built_in("60E1"), file("b.ban")]))
+        );
         assert_eq!((&*read[1].name, &read[1].rails), ("B", &None));
         for (text, message) in [
-            ("wheelset,left\nA,x\n", "line 1: found columns \"wheelset,left\"; expected columns wheelset, left and right"),
+            (
+                "wheelset,left\nA,x\n",
+                "line 1: found columns \"wheelset,left\"; expected columns wheelset, left and right",
+            ),
             ("wheelset,left,right,rail\n", "line 1: found a column \"rail\"; expected columns wheelset, "),
             ("wheelset,left,right\n", ": found no wheelsets;"),
             ("wheelset,left,right\nA,,x\n", "line 2: left: found an empty cell;"),
             ("wheelset,left,right,radius_left_mm\nA,x,x,-1\n", "line 2: radius_left_mm: found \"-1\";"),
-            ("wheelset,left,right,rail_left,rail_right\nA,x,x,y,\n", "line 2: rail_left, rail_right: found one of them"),
+            (
+                "wheelset,left,right,rail_left,rail_right\nA,x,x,y,\n",
+                "line 2: rail_left, rail_right: found one of them",
+            ),
             ("wheelset,left,right\nA,x\n", "table: found CSV error"),
         ] {
             let error = table(text, Path::new("")).unwrap_err().to_string();

@@ -269,7 +269,12 @@ fn checked(scene: &Scene) -> Result<()> {
     };
     if let Roll::Fixed(angle) = position.roll {
         let expected = "roll = \"solve\" or \"neglect\"";
-        return Err(Error::new("wheelset: roll", angle.to_string(), expected, "a held wheelset has no conicity"));
+        return Err(Error::new(
+            "wheelset: roll",
+            angle.to_string(),
+            expected,
+            "a held wheelset has no conicity",
+        ));
     }
     Ok(())
 }

@@ -102,14 +102,36 @@ fn page(fleet: &Fleet, title: &str, tally: &Tally, rail: Option<PageProfile>) ->
         let value = names.iter().position(|own| own == name).and_then(|k| row.values[k]);
         value.map_or_else(|| "–".to_owned(), |value| format!("{value:.3}"))
     };
-    let shown = ["conicity", "nonlinearity_per_mm", "right_flange_height_mm", "right_flange_thickness_mm", "right_hollow_mm"];
+    let shown = [
+        "conicity",
+        "nonlinearity_per_mm",
+        "right_flange_height_mm",
+        "right_flange_thickness_mm",
+        "right_hollow_mm",
+    ];
     let worst = tally.worst.iter().enumerate().map(|(k, WorstPair { row, .. })| FleetWorst {
-        cells: [row.names[0].clone(), rails(row)].into_iter().chain(shown.map(|name| value(row, name))).collect(),
+        cells: [row.names[0].clone(), rails(row)]
+            .into_iter()
+            .chain(shown.map(|name| value(row, name)))
+            .collect(),
         page: page_name(k),
     });
-    let columns = ["wheelset", "rails", "conicity", "nonlinearity [1/mm]", "right Sh [mm]", "right Sd [mm]", "right hollow [mm]"];
+    let columns = [
+        "wheelset",
+        "rails",
+        "conicity",
+        "nonlinearity [1/mm]",
+        "right Sh [mm]",
+        "right Sd [mm]",
+        "right hollow [mm]",
+    ];
     let about = [
-        format!("{} wheelsets on {} sections: {} pairs", fleet.wheelsets.len(), fleet.sections.len(), tally.pairs),
+        format!(
+            "{} wheelsets on {} sections: {} pairs",
+            fleet.wheelsets.len(),
+            fleet.sections.len(),
+            tally.pairs
+        ),
         format!("{} with a conicity", tally.with_conicity),
         format!("{} with a finding", tally.with_finding),
     ];

@@ -86,13 +86,7 @@ pub(super) fn row(fleet: &Fleet, shelf: &Shelf, number: Number) -> Row {
     }
     let values = found.values.into_iter().chain(measures.into_iter().flatten());
     Row {
-        names: [
-            wheelset.name.clone(),
-            name(&wheels[0]),
-            name(&wheels[1]),
-            name(&rails[0]),
-            name(&rails[1]),
-        ],
+        names: [wheelset.name.clone(), name(&wheels[0]), name(&wheels[1]), name(&rails[0]), name(&rails[1])],
         radii: [0, 1].map(|k| radius(fleet, shelf, number, k)),
         values: values.map(|value| value.filter(|value| value.is_finite())).collect(),
         finding: own.join("; "),
@@ -101,7 +95,12 @@ pub(super) fn row(fleet: &Fleet, shelf: &Shelf, number: Number) -> Row {
 }
 
 /// Returns the measures of a wheel, and adds what is wrong with them to the findings.
-fn measured(shelf: &Shelf, key: &Key, side: &str, findings: &mut Vec<String>) -> [Option<f64>; MEASURES.len()] {
+fn measured(
+    shelf: &Shelf,
+    key: &Key,
+    side: &str,
+    findings: &mut Vec<String>,
+) -> [Option<f64>; MEASURES.len()] {
     let Some(measures) = shelf.get(key).ok().and_then(|read| read.measures.as_ref()) else {
         return [None; MEASURES.len()];
     };
@@ -155,7 +154,11 @@ struct Found {
 
 impl Default for Found {
     fn default() -> Self {
-        Self { values: vec![None; numbers().len() - 2 * MEASURES.len()], findings: Vec::new(), touched: Vec::new() }
+        Self {
+            values: vec![None; numbers().len() - 2 * MEASURES.len()],
+            findings: Vec::new(),
+            touched: Vec::new(),
+        }
     }
 }
 

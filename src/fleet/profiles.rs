@@ -83,7 +83,9 @@ impl Fleet {
         let rail = |k: usize| section.or(rails.as_ref().map(|own| &own[k])).unwrap_or(&Source::Scene);
         let key = |k: usize, wheel: bool| {
             let side = if k == 0 { &self.scene.left } else { &self.scene.right };
-            let own = side.as_ref().is_some_and(|side| if wheel { side.wheel.is_some() } else { side.rail.is_some() });
+            let own = side
+                .as_ref()
+                .is_some_and(|side| if wheel { side.wheel.is_some() } else { side.rail.is_some() });
             let of = match (own, k) {
                 (false, _) => Of::Both,
                 (true, 0) => Of::Left,
@@ -127,7 +129,8 @@ fn read(fleet: &Fleet, key: &Key) -> std::result::Result<Read, String> {
     let again = own != data;
     let exact = if again { Some(scene::profile_of(&own, folder, side)) } else { None };
     let (exact, _) = exact.transpose().map_err(|error| error.to_string())?.unwrap_or((profile.clone(), None));
-    let measures = measure(&exact, side, None, &MeasureOptions::default()).map_err(|error| error.to_string())?;
+    let measures =
+        measure(&exact, side, None, &MeasureOptions::default()).map_err(|error| error.to_string())?;
     let measures = measures.with_diameter(record.as_ref().and_then(|record| record.diameter));
     Ok(Read { profile, record, measures: Some(measures) })
 }

@@ -121,13 +121,16 @@ impl Tally {
     pub fn add(&mut self, part: &Part, pairs: impl Iterator<Item = Number>) {
         let names = numbers();
         let column = |name: &str| names.iter().position(|own| own == name);
-        let columns = COUNTED.map(|counted| counted.columns.iter().filter_map(|name| column(name)).collect::<Vec<_>>());
+        let columns =
+            COUNTED.map(|counted| counted.columns.iter().filter_map(|name| column(name)).collect::<Vec<_>>());
         let band = column("right_rail_from_mm");
         for (row, number) in part.rows.iter().zip(pairs) {
             let value = |k: usize| row.values.get(k).copied().flatten();
             self.pairs += 1;
             self.touching += usize::from(band.and_then(value).is_some());
-            for ((distribution, counted), columns) in self.distributions.iter_mut().zip(&COUNTED).zip(&columns) {
+            for ((distribution, counted), columns) in
+                self.distributions.iter_mut().zip(&COUNTED).zip(&columns)
+            {
                 columns.iter().filter_map(|&k| value(k)).for_each(|value| distribution.add(counted, value));
             }
             if let Some(conicity) = value(0) {
@@ -224,7 +227,8 @@ impl Distribution {
         })?;
         let value = counted.from + counted.width * (cell + 1) as f64;
         // No digits beyond those of the cells.
-        Some(((value / counted.width).round() * counted.width * 1e9).round() / 1e9).map(|value| value.clamp(least, largest))
+        Some(((value / counted.width).round() * counted.width * 1e9).round() / 1e9)
+            .map(|value| value.clamp(least, largest))
     }
 
     fn drawn(&self, counted: &Counted) -> Option<FleetDistribution> {

@@ -104,7 +104,12 @@ pub fn average(
     }
     if curves.len() < 2 {
         let found = format!("{} that can be aligned; {}", curves.len(), findings.join("; "));
-        return Err(Error::new("profiles", found, "two profiles or more", "give others, or another alignment"));
+        return Err(Error::new(
+            "profiles",
+            found,
+            "two profiles or more",
+            "give others, or another alignment",
+        ));
     }
     let length = |curve: &Curve| curve.marks.last().map_or(0.0, |mark| mark.s);
     let longest = curves.iter().max_by(|a, b| length(a).total_cmp(&length(b)));

@@ -54,7 +54,11 @@ pub(super) fn fleet(arguments: &FleetArguments) -> Result<Outcome> {
         complain(&format!("fleet: {parts} computed again: scene, list or files have changed"));
     }
     if outcome.with_finding > 0 {
-        complain(&format!("fleet: findings at {} of {}", outcome.with_finding, counted(outcome.pairs, "pair")));
+        complain(&format!(
+            "fleet: findings at {} of {}",
+            outcome.with_finding,
+            counted(outcome.pairs, "pair")
+        ));
     }
     Ok(if outcome.with_conicity > 0 { Outcome::Done } else { Outcome::No })
 }

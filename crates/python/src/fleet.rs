@@ -61,7 +61,12 @@ pub(crate) fn fleet<'py>(
 
 /// Return the number of parts of a fleet.
 #[pyfunction]
-pub(crate) fn fleet_parts(py: Python<'_>, path: PathBuf, wheels: PathBuf, rails: Option<PathBuf>) -> PyResult<usize> {
+pub(crate) fn fleet_parts(
+    py: Python<'_>,
+    path: PathBuf,
+    wheels: PathBuf,
+    rails: Option<PathBuf>,
+) -> PyResult<usize> {
     waited(py, move |_| Ok(listed(&path, &wheels, rails.as_deref())?.parts()))
 }
 

@@ -75,7 +75,8 @@ pub(crate) fn average_profiles<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let options: MeasureOptions = keywords(py, "average_profiles", options)?;
     let given = side.map(named_side).transpose()?;
-    let own = || profiles.iter().map(|profile| profile.side).chain([nominal.and_then(|of| of.side)]).flatten();
+    let own =
+        || profiles.iter().map(|profile| profile.side).chain([nominal.and_then(|of| of.side)]).flatten();
     let side = known(given.or_else(|| own().next()))?;
     if own().any(|other| other != side) {
         let advice = "average wheels or rails, on a nominal of theirs";

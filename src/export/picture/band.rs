@@ -68,7 +68,11 @@ impl BandPicture<'_> {
         page.lines(&panel.curve(&mean), MEAN);
         panel.axes(&mut page, ["x [mm]", "z [mm]"]);
         let row = top + height + 62.0;
-        let pens = [(MEAN, "average"), (Pen::new(SPREAD, 6.0), "standard deviation"), (Pen::new(ALL, 6.0), "all profiles")];
+        let pens = [
+            (MEAN, "average"),
+            (Pen::new(SPREAD, 6.0), "standard deviation"),
+            (Pen::new(ALL, 6.0), "all profiles"),
+        ];
         for (k, (pen, name)) in pens.into_iter().enumerate() {
             page.legend([LEFT + 170.0 * k as f64, row], pen, name);
         }

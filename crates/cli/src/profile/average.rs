@@ -91,7 +91,12 @@ fn drawn(title: &str, average: &Average) -> String {
     let points: Vec<BandPoint> = average
         .points
         .iter()
-        .map(|point| BandPoint { at: point.at, normal: point.normal, spread: point.spread, range: point.range })
+        .map(|point| BandPoint {
+            at: point.at,
+            normal: point.normal,
+            spread: point.spread,
+            range: point.range,
+        })
         .collect();
     let (points_of, spread) = (counted(average.points.len(), "point"), average.spread());
     let about = format!("{points_of}{SEPARATOR}root mean square of the standard deviations {spread:.4} mm");

@@ -157,8 +157,11 @@ impl MeasureArguments {
     ) -> Result<()> {
         let read = |file: &String| source(file, self.side, self.measured.clone()).read_as(CURVE).ok();
         let sources: Vec<Option<Source>> = self.files.par_iter().map(read).collect();
-        let rows: Vec<(Row, Option<&Profile>)> =
-            rows.iter().cloned().zip(sources.iter().map(|source| source.as_ref().map(Source::profile))).collect();
+        let rows: Vec<(Row, Option<&Profile>)> = rows
+            .iter()
+            .cloned()
+            .zip(sources.iter().map(|source| source.as_ref().map(Source::profile)))
+            .collect();
         let page = measures_page(&rows, nominal.map(Source::profile), options, limits);
         write_file(html, &page.html())
     }

@@ -41,12 +41,17 @@ fn made(folder: &Path, count: usize) {
     let points = write::sample(&standards::wheel("S1002").unwrap(), 0.4).unwrap();
     let mut numbers = Numbers(35);
     for k in 0..count {
-        let [depth, width, flange] = [3.0 * numbers.next(), 12.0 + 15.0 * numbers.next(), 2.0 * numbers.next()];
+        let [depth, width, flange] =
+            [3.0 * numbers.next(), 12.0 + 15.0 * numbers.next(), 2.0 * numbers.next()];
         let worn: Vec<[f64; 2]> = points
             .iter()
             .map(|&[x, z]| {
                 let tread = if x > -30.0 { depth * (-((x - 2.0) / width).powi(2)).exp() } else { 0.0 };
-                let face = if z < -3.0 && x > -55.0 { flange * (1.0 - ((z + 14.0) / 14.0).powi(2)).max(0.0) } else { 0.0 };
+                let face = if z < -3.0 && x > -55.0 {
+                    flange * (1.0 - ((z + 14.0) / 14.0).powi(2)).max(0.0)
+                } else {
+                    0.0
+                };
                 [x - face, z + tread + 0.005 * (2.0 * numbers.next() - 1.0)]
             })
             .collect();
@@ -81,7 +86,10 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
             if entry.path().is_dir() {
                 open.push(entry.path());
             } else {
-                all.insert(entry.path().strip_prefix(folder).unwrap().into(), fs::read(entry.path()).unwrap());
+                all.insert(
+                    entry.path().strip_prefix(folder).unwrap().into(),
+                    fs::read(entry.path()).unwrap(),
+                );
             }
         }
     }
@@ -91,7 +99,8 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 fn rows(out: &Path) -> Vec<BTreeMap<String, String>> {
     let mut reader = csv::Reader::from_path(out.join("fleet.csv")).unwrap();
     let names = reader.headers().unwrap().clone();
-    let row = |row: csv::StringRecord| names.iter().zip(row.iter()).map(|(a, b)| (a.into(), b.into())).collect();
+    let row =
+        |row: csv::StringRecord| names.iter().zip(row.iter()).map(|(a, b)| (a.into(), b.into())).collect();
     reader.records().map(|record| row(record.unwrap())).collect()
 }
 
@@ -111,18 +120,24 @@ fn a_killed_fleet_goes_on_and_ends_with_the_same_bytes() {
     killed.wait().unwrap();
     assert!(!here.join("stopped/summary.json").exists(), "it was not stopped half way");
     let resumed = run(here, &[&arguments("stopped")[..], &["--threads", "1"]].concat(), 0);
-    assert!(said(&resumed).contains("fleet: 1 part were there") || said(&resumed).contains(" parts were there"));
+    assert!(
+        said(&resumed).contains("fleet: 1 part were there") || said(&resumed).contains(" parts were there")
+    );
     let [whole, stopped] = ["whole", "stopped"].map(|out| files(&here.join(out)));
     assert!(whole == stopped, "{:?} {:?}", whole.keys(), stopped.keys());
 
     let summary: Value = serde_json::from_slice(&whole[Path::new("summary.json")]).unwrap();
-    assert_eq!((summary["pairs"].as_u64(), summary["worst"].as_array().unwrap().len()), (Some(count() as u64), 10));
+    assert_eq!(
+        (summary["pairs"].as_u64(), summary["worst"].as_array().unwrap().len()),
+        (Some(count() as u64), 10)
+    );
     let page = String::from_utf8(whole[Path::new("fleet.html")].clone()).unwrap();
     for worst in summary["worst"].as_array().unwrap() {
         let file = worst["page"].as_str().unwrap();
         assert!(page.contains(file) && whole[Path::new(file)].starts_with(b"<!DOCTYPE html>"), "{worst}");
     }
-    let values: Vec<f64> = rows(&here.join("whole")).iter().map(|row| row["conicity"].parse().unwrap()).collect();
+    let values: Vec<f64> =
+        rows(&here.join("whole")).iter().map(|row| row["conicity"].parse().unwrap()).collect();
     let largest = values.iter().copied().fold(0.0, f64::max);
     assert_eq!(summary["worst"][0]["conicity"].as_f64(), Some(largest));
 
@@ -163,10 +178,18 @@ swapped,S1002,S1002,,,S1002,60E1
     assert!(said(&output).contains("of 7 pairs"), "{}", said(&output));
     let rows = rows(&here.join("out"));
     let number = |row: usize, name: &str| rows[row][name].parse::<f64>().ok();
-    assert!(number(0, "conicity").is_some() && number(0, "left_qr_mm").is_some() && rows[0]["finding"].is_empty(), "{:?}", rows[0]);
+    assert!(
+        number(0, "conicity").is_some() && number(0, "left_qr_mm").is_some() && rows[0]["finding"].is_empty(),
+        "{:?}",
+        rows[0]
+    );
     assert_eq!((number(1, "radius_left_mm"), &*rows[1]["rail_right"]), (Some(455.0), "54E1"));
     // Without a flange: the tread still rolls.
-    assert!(number(2, "left_flange_height_mm").is_none() && rows[2]["finding"].contains("flange"), "{:?}", rows[2]);
+    assert!(
+        number(2, "left_flange_height_mm").is_none() && rows[2]["finding"].contains("flange"),
+        "{:?}",
+        rows[2]
+    );
     let [four, five] = [rows[3]["finding"].contains("empty.whl"), rows[4]["finding"].contains("rail.ban")];
     assert!(four && five && rows[5]["finding"].contains("no such file"), "{rows:?}");
     // What can be had is there: the right-hand wheel's measures.
@@ -184,16 +207,40 @@ fn what_no_pair_can_be_made_of_ends_the_run_before_it_begins() {
     fs::create_dir(here.join("taken")).unwrap();
     fs::write(here.join("taken/thesis.doc"), "x").unwrap();
     fs::create_dir(here.join("none")).unwrap();
-    fs::write(here.join("single.toml"), SCENE.replace("track", "#").replace("wheelset = ", "contact = { offset = 0.0 }\n# ")).unwrap();
+    fs::write(
+        here.join("single.toml"),
+        SCENE.replace("track", "#").replace("wheelset = ", "contact = { offset = 0.0 }\n# "),
+    )
+    .unwrap();
     for (scene, arguments, expected) in [
-        ("fleet.toml", ["--wheels", "wheels", "--rails", "60e1", "--out", "o"], "60e1: found nothing of this name;"),
+        (
+            "fleet.toml",
+            ["--wheels", "wheels", "--rails", "60e1", "--out", "o"],
+            "60e1: found nothing of this name;",
+        ),
         ("fleet.toml", ["--wheels", "none", "--rails", "60E1", "--out", "o"], "none: found no files;"),
-        ("fleet.toml", ["--wheels", "nowhere", "--rails", "60E1", "--out", "o"], "nowhere: found no such file;"),
-        ("fleet.toml", ["--wheels", "wheels", "--rails", "60E1", "--out", "taken"], "taken: found a folder with other files;"),
-        ("single.toml", ["--wheels", "wheels", "--rails", "60E1", "--out", "o"], "single.toml: found a single wheel;"),
+        (
+            "fleet.toml",
+            ["--wheels", "nowhere", "--rails", "60E1", "--out", "o"],
+            "nowhere: found no such file;",
+        ),
+        (
+            "fleet.toml",
+            ["--wheels", "wheels", "--rails", "60E1", "--out", "taken"],
+            "taken: found a folder with other files;",
+        ),
+        (
+            "single.toml",
+            ["--wheels", "wheels", "--rails", "60E1", "--out", "o"],
+            "single.toml: found a single wheel;",
+        ),
     ] {
         let mut command = Command::new(env!("CARGO_BIN_EXE_wheelrail"));
         let output = command.current_dir(here).args(["fleet", scene]).args(arguments).output().unwrap();
-        assert!(output.status.code() == Some(2) && said(&output).contains(expected), "{arguments:?}: {}", said(&output));
+        assert!(
+            output.status.code() == Some(2) && said(&output).contains(expected),
+            "{arguments:?}: {}",
+            said(&output)
+        );
     }
 }
