@@ -15,6 +15,7 @@ mod part;
 mod profiles;
 mod tally;
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -126,7 +127,7 @@ impl Fleet {
     /// # Errors
     /// A scene without wheelset or with a given roll, or with anything else wrong but its profiles; lists that cannot be read.
     pub fn new(scene: Scene, folder: &Path, wheels: &Path, rails: Option<&str>) -> Result<Self> {
-        checked(&scene)?;
+        checked(&scene).map_err(|error| error.within("scene"))?;
         let wheelsets = list::wheelsets(wheels)?;
         let sections = match rails {
             None => vec![None],
@@ -169,7 +170,7 @@ impl Fleet {
         let folder = self.opened(out)?;
         let parts = folder.part(PARTS)?;
         let split = self.split();
-        let own = |name: &str| (0..split.len()).any(|number| part::name(number) == name);
+        let own: BTreeSet<String> = (0..split.len()).map(part::name).collect();
         let (mut shelf, mut kept, mut changed, mut done) = (Shelf::default(), 0, 0, 0);
         for (number, pairs) in split.iter().enumerate() {
             match self.write_part(&parts, number, pairs, &mut shelf, (done, tell))? {
@@ -180,7 +181,7 @@ impl Fleet {
             done += pairs.all().count();
             tell(done, self.pairs())?;
         }
-        parts.remove(|name| part::is_part(name) && !own(name))?;
+        parts.remove(|name| part::is_part(name) && !own.contains(name))?;
         let (pairs, with_conicity, with_finding) = page::write(self, &folder, &parts, &split)?;
         Ok(Outcome { pairs, with_conicity, with_finding, kept, changed })
     }
@@ -228,7 +229,7 @@ impl Fleet {
         shelf: &mut Shelf,
         (before, tell): (usize, &(dyn Fn(usize, usize) -> Result<()> + Sync)),
     ) -> Result<Written> {
-        let (hash, name) = (profiles::hash(self, pairs)?, part::name(number));
+        let (hash, name) = (profiles::hash(self, pairs), part::name(number));
         let there = Part::hash_of(&parts.file(&name));
         if there.as_ref() == Some(&hash) {
             return Ok(Written::Kept);

@@ -127,7 +127,7 @@ fn page(fleet: &Fleet, title: &str, tally: &Tally, rail: Option<PageProfile>) ->
     ];
     let about = [
         format!(
-            "{} wheelsets on {} sections: {} pairs",
+            "{} wheelsets, {} rail sections, {} pairs",
             fleet.wheelsets.len(),
             fleet.sections.len(),
             tally.pairs

@@ -8,7 +8,6 @@ use sha2::{Digest, Sha256};
 
 use super::list::{Source, Wheelset};
 use super::{Fleet, Number, Pairs};
-use crate::error::Result;
 use crate::files::read_bytes;
 use crate::measure::{MeasureOptions, Measures, measure};
 use crate::measured::{self, CurveKind, LARGEST_FILE, Record, SliceList};
@@ -136,10 +135,8 @@ fn read(fleet: &Fleet, key: &Key) -> std::result::Result<Read, String> {
 }
 
 /// Returns the SHA-256, in hexadecimal, of all that the rows of a part depend on: program, scene, list, content of the files.
-///
-/// # Errors
-/// None at present; files that cannot be read are part of the hash by their errors.
-pub(super) fn hash(fleet: &Fleet, pairs: &Pairs) -> Result<String> {
+/// Files that cannot be read count by their errors.
+pub(super) fn hash(fleet: &Fleet, pairs: &Pairs) -> String {
     let mut sha = Sha256::new();
     let mut add = |text: &[u8]| {
         sha.update((text.len() as u64).to_le_bytes());
@@ -164,7 +161,7 @@ pub(super) fn hash(fleet: &Fleet, pairs: &Pairs) -> Result<String> {
             }
         }
     }
-    Ok(sha.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
+    sha.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Returns the hash of a file, of a list with that of its slices; of one that cannot be read its error.

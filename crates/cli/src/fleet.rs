@@ -33,11 +33,9 @@ pub(super) struct FleetArguments {
 pub(super) fn fleet(arguments: &FleetArguments) -> Result<Outcome> {
     let progress = Progress::of("fleet", "list");
     let path = arguments.scene.as_path();
-    let in_scene = |error: wheelrail::Error| error.within(path.display());
     let scene = scene::load(path)?;
     scene::doubts_of_keys(&scene).iter().for_each(|doubt| complain(&format!("warning: {doubt}")));
-    let fleet = Fleet::new(scene, folder_of(path), &arguments.wheels, arguments.rails.as_deref());
-    let fleet = fleet.map_err(|error| if error.place.is_empty() { in_scene(error) } else { error })?;
+    let fleet = Fleet::new(scene, folder_of(path), &arguments.wheels, arguments.rails.as_deref())?;
     let start = Instant::now();
     let tell = |done: usize, all: usize| {
         let rate = done as f64 / start.elapsed().as_secs_f64();

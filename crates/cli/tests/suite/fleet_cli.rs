@@ -232,7 +232,7 @@ fn what_no_pair_can_be_made_of_ends_the_run_before_it_begins() {
         (
             "single.toml",
             ["--wheels", "wheels", "--rails", "60E1", "--out", "o"],
-            "single.toml: found a single wheel;",
+            "scene: found a single wheel;",
         ),
     ] {
         let mut command = Command::new(env!("CARGO_BIN_EXE_wheelrail"));
