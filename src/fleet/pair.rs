@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::list::Source;
-use super::profiles::{Key, Read, Shelf};
+use super::profiles::{Key, Shelf};
 use super::{Fleet, Number};
 use crate::case::{Case, Place, Profiles, SideProfiles};
 use crate::error::{Error, Result};
@@ -126,10 +126,7 @@ fn radius(fleet: &Fleet, shelf: &Shelf, number: Number, side: usize) -> Option<f
 pub(super) fn case(fleet: &Fleet, shelf: &Shelf, number: Number) -> Result<Case> {
     let [rails, wheels] = fleet.keys(number);
     let side = |k: usize| -> Result<SideProfiles> {
-        let read = |key: &Key| -> Result<Read> {
-            shelf.get(key).cloned().map_err(|why| Error::new("profile", why, "a profile", "see the file"))
-        };
-        let (rail, wheel) = (read(&rails[k])?, read(&wheels[k])?);
+        let [rail, wheel] = [shelf.get(&rails[k])?, shelf.get(&wheels[k])?].map(Clone::clone);
         let radius = radius(fleet, shelf, number, k).ok_or_else(|| {
             let expected = "the nominal rolling radius in mm";
             Error::new(SIDES[k], "no radius", expected, "give `radius` in [wheel], or columns of the table")

@@ -8,6 +8,7 @@ use sha2::{Digest, Sha256};
 
 use super::list::{Source, Wheelset};
 use super::{Fleet, Number, Pairs};
+use crate::error::{Error, Result};
 use crate::files::read_bytes;
 use crate::measure::{MeasureOptions, Measures, measure};
 use crate::measured::{self, CurveKind, LARGEST_FILE, Record, SliceList};
@@ -43,7 +44,7 @@ pub(super) struct Read {
 /// The profiles that are in memory, or why they cannot be had.
 #[derive(Debug, Default)]
 pub(super) struct Shelf {
-    read: HashMap<Key, std::result::Result<Read, String>>,
+    read: HashMap<Key, Result<Read>>,
 }
 
 impl Shelf {
@@ -69,8 +70,13 @@ impl Shelf {
     }
 
     /// Gives a profile, or why there is none.
-    pub fn get(&self, key: &Key) -> std::result::Result<&Read, &str> {
-        self.read.get(key).map_or(Err("not read"), |read| read.as_ref().map_err(String::as_str))
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn get(&self, key: &Key) -> Result<&Read> {
+        let none =
+            || Error::new("profile", "none", "one that was read", "report this as a fault of wheelrail");
+        self.read.get(key).ok_or_else(none)?.as_ref().map_err(Clone::clone)
     }
 }
 
@@ -107,7 +113,7 @@ impl Fleet {
     }
 }
 
-fn read(fleet: &Fleet, key: &Key) -> std::result::Result<Read, String> {
+fn read(fleet: &Fleet, key: &Key) -> Result<Read> {
     let side = if key.wheel { Side::Wheel } else { Side::Rail };
     let shared = fleet.data(key).clone();
     let bare = ProfileData { profile: None, file: None, segments: None, start: None, ..shared.clone() };
@@ -116,7 +122,7 @@ fn read(fleet: &Fleet, key: &Key) -> std::result::Result<Read, String> {
         Source::File(path) => (ProfileData { file: Some(path.clone()), ..bare }, Path::new("")),
         Source::BuiltIn(name) => (ProfileData { profile: Some(name.clone()), ..bare }, Path::new("")),
     };
-    let (profile, record) = scene::profile_of(&data, folder, side).map_err(|error| error.to_string())?;
+    let (profile, record) = scene::profile_of(&data, folder, side)?;
     if !key.wheel {
         return Ok(Read { profile, record, measures: None });
     }
@@ -127,9 +133,8 @@ fn read(fleet: &Fleet, key: &Key) -> std::result::Result<Read, String> {
     let own = ProfileData { rotate: None, shift: None, curve, cutoff_wavelength, ..data.clone() };
     let again = own != data;
     let exact = if again { Some(scene::profile_of(&own, folder, side)) } else { None };
-    let (exact, _) = exact.transpose().map_err(|error| error.to_string())?.unwrap_or((profile.clone(), None));
-    let measures =
-        measure(&exact, side, None, &MeasureOptions::default()).map_err(|error| error.to_string())?;
+    let (exact, _) = exact.transpose()?.unwrap_or((profile.clone(), None));
+    let measures = measure(&exact, side, None, &MeasureOptions::default())?;
     let measures = measures.with_diameter(record.as_ref().and_then(|record| record.diameter));
     Ok(Read { profile, record, measures: Some(measures) })
 }

@@ -11,7 +11,8 @@ fn fleet(wheelsets: usize, sections: usize) -> Fleet {
         rails: None,
     };
     Fleet {
-        scene: scene::parse("wheel = { radius = 460.0 }\nleft = { wheel = { mirror = true } }", false).unwrap(),
+        scene: scene::parse("wheel = { radius = 460.0 }\nleft = { wheel = { mirror = true } }", false)
+            .unwrap(),
         folder: "scenes".into(),
         wheelsets: (0..wheelsets).map(wheelset).collect(),
         sections: (0..sections).map(|k| Some(source(k))).collect(),
