@@ -162,7 +162,7 @@ impl Fleet {
     /// Computes the parts that are not in the folder `out`, then writes `fleet.csv`, `summary.json`, `fleet.html` and `worst/`. `tell` gets
     /// the number of pairs done and of all, from any thread, and may end the work by an error; what is done by then stays.
     ///
-    /// It runs on the threads of the current rayon pool. Cost: about 10 ms a pair, and 30 ms a wheel.
+    /// It runs on the threads of the current rayon pool. Cost: about 12 ms for a measured wheelset on a section, reading it included.
     ///
     /// # Errors
     /// A folder with other files; any error of the disk or of `tell`. What is wrong with a profile is in its row.
