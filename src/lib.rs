@@ -67,6 +67,8 @@ pub mod error;
 pub mod export;
 #[cfg(feature = "files")]
 pub mod files;
+#[cfg(feature = "files")]
+pub mod fleet;
 pub mod load;
 pub mod lofted;
 pub mod measure;

@@ -24,6 +24,7 @@ mod jobs;
 mod joined;
 mod landmarks;
 mod march;
+mod measure_view;
 mod on_rail;
 mod overlaps;
 mod places;
@@ -71,6 +72,7 @@ pub use landmarks::{Landmarks, SideLandmarks};
 pub use march::{
     EVENT_NUMBERS, append_event, append_stop, event_numbers, events_head, march_curves, march_head,
 };
+pub use measure_view::measures_page;
 pub use places::{approach_under_load, contacts, find};
 pub use pressure::PartPressure;
 pub use profile_view::{about_profile, profile_picture};

@@ -21,6 +21,9 @@ pub mod sweeps {}
 #[doc = include_str!("conicity.md")]
 pub mod conicity {}
 
+#[doc = include_str!("fleet.md")]
+pub mod fleet {}
+
 #[doc = include_str!("measures.md")]
 pub mod measures {}
 

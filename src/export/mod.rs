@@ -31,8 +31,9 @@ pub use deck::{
 };
 pub use gmsh::patch_msh;
 pub use html::{
-    PageFigure, PageFrame, PageLoop, PageMap, PagePair, PagePressure, PageProfile, SweepCurve, SweepPage,
-    SweepPanel, SweepSide, ViewContact, ViewPage,
+    FleetDistribution, FleetHeat, FleetPage, FleetWorst, MeasuredPage, MeasuresPage, PageFigure, PageFrame,
+    PageLoop, PageMap, PagePair, PagePressure, PageProfile, SweepCurve, SweepPage, SweepPanel, SweepSide,
+    ViewContact, ViewPage,
 };
 pub use in_place::{ContactInPlace, InPlace};
 pub use legacy::separation_vtk;
@@ -42,9 +43,9 @@ pub use model::{
 pub use netcdf::{NetCdf, table_nc};
 pub use npy::array_npy;
 pub use picture::{
-    Chart, ConformalPicture, CurvesMap, CurvesPanel, CurvesPicture, JoinedPair, Nodes, OverlayPicture,
-    PatchPicture, PicturedContact, PlottedCurve, Pressed, ProfilePicture, RailNormal, SEPARATOR, Series,
-    jumps,
+    BandPicture, BandPoint, Chart, ConformalPicture, CurvesMap, CurvesPanel, CurvesPicture, JoinedPair,
+    Nodes, OverlayPicture, PatchPicture, PicturedContact, PlottedCurve, Pressed, ProfilePicture, RailNormal,
+    SEPARATOR, Series, jumps,
 };
 pub use ply::surface_ply;
 pub use stl::surface_stl;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::data::Scene;
-use super::doubts::of_keys;
+use super::doubts::doubts_of_keys;
 use super::profile_data::ProfileData;
 use super::profiles::{
     Given, is_chain_file, profile_from_file, rail_of, reject_measured_keys, turned_and_shifted, wheel_of,
@@ -36,7 +36,7 @@ pub fn march(scene: &Scene, folder: &Path) -> Result<(March, Vec<String>)> {
     }
     let (position, within) = (position(wheelset)?, within(wheelset.within)?);
     let sides = Sides { scene, folder, rails: rails(track)?, wheels: wheels(wheelset)? };
-    let warnings = of_keys(scene).iter().map(ToString::to_string).collect();
+    let warnings = doubts_of_keys(scene).iter().map(ToString::to_string).collect();
     let mut lists = Lists { reach: [f64::NEG_INFINITY, f64::INFINITY], warnings };
     let right = sides.side(true, &mut lists)?;
     let system = if scene.left.is_none() && scene.right.is_none() {

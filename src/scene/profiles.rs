@@ -89,12 +89,29 @@ fn of_side(
 ) -> Result<SideProfiles> {
     let rail = rail_of(data[0], places[0], sources)?;
     let (wheel, radius) = wheel_of(scene, data[1], places[1], sources)?;
-    let on_rail = Pair::new(rail.profile, wheel.profile, radius)?;
-    let pair = match &scene.roller {
-        Some(roller) => on_rail.on_roller(near("roller", roller.radius)?)?,
-        None => on_rail,
-    };
+    let pair = pair_of(scene, rail.profile, wheel.profile, radius)?;
     Ok(SideProfiles { pair, measured: Bodies { rail: rail.measured, wheel: wheel.measured } })
+}
+
+/// Joins a rail, or the roller of a scene that has one, and a wheel with its nominal rolling radius \[mm\].
+///
+/// # Errors
+/// A radius without meaning; profiles that cannot be joined.
+pub fn pair_of(scene: &Scene, rail: Profile, wheel: Profile, radius: f64) -> Result<Pair> {
+    let on_rail = Pair::new(rail, wheel, near("wheel", radius)?)?;
+    match &scene.roller {
+        Some(roller) => on_rail.on_roller(near("roller", roller.radius)?),
+        None => Ok(on_rail),
+    }
+}
+
+/// Makes a profile as the scene of `data` places it, and gives the record of a measured one. Files are relative to `folder`.
+///
+/// # Errors
+/// Anything that is wrong with the profile, or with its keys.
+pub fn profile_of(data: &ProfileData, folder: &Path, side: Side) -> Result<(Profile, Option<Record>)> {
+    let Resolved { profile, measured } = profile(data, (folder, &Given::new()), side)?;
+    Ok((profile, measured))
 }
 
 /// Gives the profile of a rail; `place` is its key.

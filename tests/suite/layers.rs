@@ -25,6 +25,7 @@ const ORDER: [&str; 19] = [
     "export",
     "case",
     "scene",
+    "fleet",
     "docs",
 ];
 

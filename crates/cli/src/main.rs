@@ -8,6 +8,7 @@
 mod answer;
 mod check;
 mod conicity;
+mod fleet;
 mod init;
 mod man;
 mod march;
@@ -68,6 +69,8 @@ enum Command {
     March(march::MarchArguments),
     /// Tabulate contact over the lateral displacement for vehicle dynamics, as polynomials with a stated error.
     Table(table::TableArguments),
+    /// Compute every wheelset of a fleet on every rail section: conicity, measures, contact bands; a table and pages.
+    Fleet(fleet::FleetArguments),
     /// Measure speed against error and run the hard cases; takes about three minutes.
     Report {
         /// Folder to write; by default output/report.
@@ -142,6 +145,7 @@ fn on_threads(arguments: Arguments) -> Result<Outcome> {
         Command::Conicity(arguments) => conicity::run(&arguments),
         Command::March(arguments) => march::march(&arguments),
         Command::Table(arguments) => table::table(&arguments),
+        Command::Fleet(arguments) => fleet::fleet(&arguments),
         Command::Report { out, splice } => report::report(out.as_deref(), splice.as_deref()),
         Command::Profile(command) => profile::profile(&command),
         Command::Init { file } => init::init(&file),

@@ -9,6 +9,7 @@ mod contact;
 mod errors;
 mod files;
 mod filling;
+mod fleet;
 mod long;
 mod march;
 mod measure;
@@ -37,9 +38,11 @@ mod _wheelrail {
     #[pymodule_export]
     use super::contact::{Contact, contact_from_parts, patch_from_parts};
     #[pymodule_export]
+    use super::fleet::{fleet, fleet_part, fleet_parts};
+    #[pymodule_export]
     use super::march::march;
     #[pymodule_export]
-    use super::measure::measure_profile;
+    use super::measure::{average_profiles, measure_profile};
     #[pymodule_export]
     use super::pair::{Pair, pair_from_parts};
     #[pymodule_export]

@@ -1,6 +1,7 @@
-//! Draws pictures as SVG: of a patch, of the gap over the rail's surface, of a sweep, of a profile, of one over another, and the charts of the
+//! Draws pictures as SVG: of a patch, of the gap over the rail's surface, of a sweep, of a profile, of one over another, of an average, and the charts of the
 //! report. All use one kind of page and one kind of panel.
 
+mod band;
 mod chart;
 mod conformal;
 mod contact;
@@ -14,6 +15,7 @@ mod panel;
 mod patch;
 mod profile;
 
+pub use band::{BandPicture, BandPoint};
 pub use chart::{Chart, Series};
 pub use conformal::{ConformalPicture, RailNormal};
 pub use contact::PicturedContact;

@@ -17,6 +17,7 @@ mod clients_runs;
 mod conformal_table;
 mod conicity_cli;
 mod doubts_cli;
+mod fleet_cli;
 mod hostile;
 mod load_table;
 mod manual;
