@@ -20,11 +20,11 @@ const MARGIN: usize = 3;
 /// Least angle \[rad\] between two sections of a wheel; sections closer to a whole turn apart are one. CONTACT has it, too.
 const LEAST_APART: f64 = 1e-3;
 
-/// Distance \[rad\] of the sections of a flat: cubics between them are off by some 1e-10 mm on a radius of 500 mm.
-const OF_FLAT: f64 = 2e-3;
+/// Distance \[rad\] of the sections of a flat: cubics between them are off by less than 1e-6 mm on a radius of 500 mm.
+const OF_FLAT: f64 = 1e-2;
 
-/// Number of cubics along a rounded edge of a flat: they are off by some 1e-10 mm on 1 mm of 500 mm.
-const OF_EDGE: usize = 24;
+/// Number of cubics along a rounded edge of a flat: they are off by less than 1e-7 mm on edges up to 50 mm.
+const OF_EDGE: usize = 6;
 
 /// Least kink of a profile \[rad\] at which its surface has an edge; a smaller one is rounded, by 30 nm at most.
 const LEAST_KINK: f64 = 1e-3;

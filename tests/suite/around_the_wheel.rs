@@ -13,7 +13,9 @@ use wheelrail::search::{
     EventKind, LoftedPair, March, ONE_CONTACT, Position, Roll, Selection, SideOnTrack, Stop, TrackSide,
     WheelsetOnTrack,
 };
-use wheelrail::{Arc as Segments, Half, Pair, Profile, RailDistance, Segment, Side, WheelDistance, standards};
+use wheelrail::{
+    Arc as Segments, Half, Pair, Profile, RailDistance, Segment, Side, WheelDistance, standards,
+};
 use wheelrail_report::random::Random;
 
 use super::campaign::scenes;
@@ -60,7 +62,8 @@ fn a_radius_that_does_not_vary_is_a_wheel_under_any_yaw_roll_and_pitch() -> Resu
     ["S1002", "EN15302-A"].into_iter().try_for_each(|name| {
         let (wheel, rail) = (standards::wheel(name)?, standards::rail("60E1")?);
         // A deviation of all radii is another radius.
-        let lofted = LoftedWheel::out_of_round(&wheel, RADIUS, &[[-2.0, 0.0], [1.0, 0.0]], Joining::Monotone)?;
+        let lofted =
+            LoftedWheel::out_of_round(&wheel, RADIUS, &[[-2.0, 0.0], [1.0, 0.0]], Joining::Monotone)?;
         let mut march = turning(&lofted, &rail, position(0.0, 0.0, 0.0), 0.0)?;
         let pair = Pair::new(rail, wheel, RADIUS)?;
         let (rails, wheels) = (RailDistance::Spacing(SPACING), WheelDistance::Spacing(SPACING));
@@ -97,19 +100,22 @@ fn lowered(length: f64, edge: f64, angle: f64) -> f64 {
     if away.abs() >= end { 0.0 } else { (RADIUS - edge) * ((end - away.abs()).cos() - 1.0) }
 }
 
+/// Cubics between the sections of a chord are off by less than that \[mm\].
+const CHORD: f64 = 1e-6;
+
 #[test]
 fn a_chord_with_edges_lowers_a_cylinder_by_its_support_function() -> Result<()> {
     let cylinder = line(60.0)?;
-    for (length, angle, edge) in [(60.0, 0.0, 0.0), (60.0, 3.0, 40.0), (20.0, -1.0, 1.0), (300.0, 9.0, 0.0)] {
+    for (length, angle, edge) in [(60.0, 0.0, 0.0), (60.0, 3.0, 40.0), (20.0, -1.0, 1.0), (200.0, 9.0, 0.0)] {
         let wheel = LoftedWheel::with_flat(&cylinder, RADIUS, &Flat { length, angle, edge_radius: edge })?;
         // On a plane they touch along a line, and on the flat all over.
-        for rail in [crown()?, line(10.0)?] {
+        for rail in [crown()?, line(2.0)?] {
             let march = turning(&wheel, &rail, position(0.0, 0.0, 0.0), 0.0)?;
             let half = length / 2.0 / RADIUS;
             for at in [0.0, 0.3, -0.7, 0.99, 1.05, 1.3, -3.0, 20.0].map(|share| share * half) {
                 let stop = march.turned(at - angle)?;
                 let (z, expected) = (of_right(&stop)?.z, lowered(length, edge, at));
-                assert!((z - expected).abs() < 1e-9, "{length} {edge} at {at}: {z} {expected}");
+                assert!((z - expected).abs() < CHORD, "{length} {edge} at {at}: {z} {expected}");
             }
         }
     }
@@ -119,7 +125,8 @@ fn a_chord_with_edges_lowers_a_cylinder_by_its_support_function() -> Result<()> 
 #[test]
 fn a_polygon_of_waves_has_the_height_of_its_radii() -> Result<()> {
     // On a crown the lowest point of cos(nφ) waves lies at a crest, and in a trough beside it.
-    let rows: Vec<[f64; 2]> = (0..360).map(|k| f64::from(k).to_radians()).map(|a| [a, 0.3 * (6.0 * a).cos()]).collect();
+    let rows: Vec<[f64; 2]> =
+        (0..360).map(|k| f64::from(k).to_radians()).map(|a| [a, 0.3 * (6.0 * a).cos()]).collect();
     let wheel = LoftedWheel::out_of_round(&line(60.0)?, RADIUS, &rows, Joining::Cubic)?;
     let march = turning(&wheel, &crown()?, position(0.0, 0.0, 0.0), 0.0)?;
     for pitch in [0.0, 0.1, -0.27, 1.9, 4.0] {
@@ -137,7 +144,7 @@ fn a_wheel_on_a_flat_goes_over_from_edge_to_edge() -> Result<()> {
     let flat = Flat { length: 60.0, angle: 0.5, edge_radius: 0.0 };
     let wheel = LoftedWheel::with_flat(&standards::wheel("S1002")?, RADIUS, &flat)?;
     let march = turning(&wheel, &standards::rail("60E1")?, position(0.0, 0.0, 0.0), 0.0)?;
-    let pitches: Vec<f64> = (-60..=-40).map(|k| 0.01 * f64::from(k) + 0.0003).collect();
+    let pitches: Vec<f64> = (-6..=-4).map(|k| 0.1 * f64::from(k) + 0.003).collect();
     let (mut stops, mut events) = (0, Vec::new());
     march.turns(&pitches, |own, found| {
         stops += own.len();
@@ -146,7 +153,7 @@ fn a_wheel_on_a_flat_goes_over_from_edge_to_edge() -> Result<()> {
     })?;
     let over: Vec<_> = events.iter().filter(|event| event.side == TrackSide::Right).collect();
     let [over] = over.as_slice() else { panic!("{events:?}") };
-    assert_eq!((stops, over.kind), (21, EventKind::Transfer));
+    assert_eq!((stops, over.kind), (3, EventKind::Transfer));
     assert!((over.along + 0.5).abs() < 0.01 / RADIUS, "{over:?}");
     let [before, after] = [over.before, over.after].map(|contact| contact.expect("a contact"));
     // The rolling radius at the edges is R − z; the wheel falls on the flat by the angle of its chord.
@@ -157,7 +164,13 @@ fn a_wheel_on_a_flat_goes_over_from_edge_to_edge() -> Result<()> {
 }
 
 /// Least vertical gap of points of a wheel's surface over a rail: every fifth of a millimetre around it, and every tenth across.
-fn brute(wheel: &[[f64; 2]], rail: &Section, radius: impl Fn(f64) -> f64, origin: [f64; 2], at: &Position) -> f64 {
+fn brute(
+    wheel: &[[f64; 2]],
+    rail: &Section,
+    radius: impl Fn(f64) -> f64,
+    origin: [f64; 2],
+    at: &Position,
+) -> f64 {
     let Roll::Fixed(roll) = at.roll else { panic!("a roll") };
     let rotation = at.rotation(roll);
     let mut least = f64::INFINITY;
@@ -200,7 +213,7 @@ fn no_place_of_a_wheel_is_lower_than_first_touch() -> Result<()> {
         let found = of_right(&march.turned(away - turned)?)?;
         // The axle's middle at the height R over the top of rail: the wheel's centre SPACING/2 out along the axle.
         let centre = march.position.rotation(roll) * nalgebra::Vector3::new(SPACING / 2.0, 0.0, 0.0);
-        let origin = [centre.x + lateral - top.rail_x, centre.z + RADIUS - top.rail_z];
+        let origin = [centre.x + lateral - top.rail_x(), centre.z + RADIUS - top.rail_z()];
         let expected = -brute(&polygon, &below, |angle| radius(angle - away), origin, &march.position);
         let place = format!("{:?} at {away}: {} and {expected} {found:?}", march.position, found.z);
         // An edge may be missed by a tenth of a millimetre, of a slope of 35/460.
@@ -214,8 +227,7 @@ fn scene_of(text: &str, folder: &Path) -> Result<(March, Vec<String>)> {
     scene::march(&scene::parse(text, false)?, folder)
 }
 
-const REST: &str =
-    "[rail]\nprofile = \"60E1\"\n[track]\nspacing = 1500.0\n[wheelset]\nspacing = 1500.0\nroll = \"neglect\"\n";
+const REST: &str = "[rail]\nprofile = \"60E1\"\n[track]\nspacing = 1500.0\n[wheelset]\nspacing = 1500.0\nroll = \"neglect\"\n";
 
 #[test]
 fn a_list_of_slices_around_a_wheel_is_the_wheel_of_its_radii() -> Result<()> {
@@ -225,7 +237,10 @@ fn a_list_of_slices_around_a_wheel_is_the_wheel_of_its_radii() -> Result<()> {
         let text = format!(
             "segments = [{{ line = {{ from = [-60.0, {}], to = [-10.0, {}] }} }}, \
              {{ line = {{ from = [-10.0, {}], to = [60.0, {}] }} }}]\n",
-            z + 5.0, z, z, z - 3.5
+            z + 5.0,
+            z,
+            z,
+            z - 3.5
         );
         std::fs::write(here.join(name), text).unwrap();
     };
@@ -260,19 +275,34 @@ fn a_list_of_slices_around_a_wheel_is_the_wheel_of_its_radii() -> Result<()> {
 fn wheels_that_make_no_surface_are_refused_by_the_key() {
     let here = tempfile::tempdir().unwrap();
     std::fs::write(here.path().join("one.slcw"), "0 1\n1\n0\n1\n0 'a.toml'\n").unwrap();
-    std::fs::write(here.path().join("a.toml"), "segments = [{ line = { from = [-60.0, 0.0], to = [60.0, 0.0] } }]\n")
-        .unwrap();
+    std::fs::write(
+        here.path().join("a.toml"),
+        "segments = [{ line = { from = [-60.0, 0.0], to = [60.0, 0.0] } }]\n",
+    )
+    .unwrap();
     let wheel = "[wheel]\nprofile = \"S1002\"\nradius = 460.0\n";
     for (keys, part) in [
-        ("flat = { length = 920.0 }", "wheel: flat: length: found 920 mm; expected from 0.01 mm to less than the diameter of 920"),
+        (
+            "flat = { length = 920.0 }",
+            "wheel: flat: length: found 920 mm; expected from 0.01 mm to less than the diameter of 920",
+        ),
         ("flat = { length = -1.0 }", "wheel: flat: length: found -1 mm"),
         ("flat = { length = 60.0, edge_radius = 460.0 }", "wheel: flat: edge_radius: found 460 mm"),
         ("flat = { length = 60.0, angle = nan }", "wheel: flat: angle"),
         ("radii = [[0.0, 0.1]]", "wheel: radii: found 1 rows"),
-        ("radii = [[0.0, 0.1], [1.0, 0.0], [0.5, 0.0]]", "wheel: radii: row 3: found 0.5 rad after 1 rad; expected ascending"),
-        ("radii = [[0.0, 0.1], [180.0, 0.0]]", "wheel: radii: found angles from 0 to 180 rad; expected less than a turn"),
+        (
+            "radii = [[0.0, 0.1], [1.0, 0.0], [0.5, 0.0]]",
+            "wheel: radii: row 3: found 0.5 rad after 1 rad; expected ascending",
+        ),
+        (
+            "radii = [[0.0, 0.1], [180.0, 0.0]]",
+            "wheel: radii: found angles from 0 to 180 rad; expected less than a turn",
+        ),
         ("radii = [[0.0, 0.1], [1.0, 460.1]]", "wheel: radii: row 2: found 460.1 mm; expected a deviation"),
-        ("radii = [[0.0, 0.1], [1.0, 0.1]]\nflat = { length = 60.0 }", "wheel: found `flat` and `radii`; expected one of the two"),
+        (
+            "radii = [[0.0, 0.1], [1.0, 0.1]]\nflat = { length = 60.0 }",
+            "wheel: found `flat` and `radii`; expected one of the two",
+        ),
         ("flat = { length = 60.0 }\nsurface = \"cubic\"", "wheel: surface: found an option without effect"),
     ] {
         let error = scene_of(&format!("{wheel}{keys}\n{REST}"), here.path()).unwrap_err().to_string();
@@ -325,7 +355,6 @@ fn heights_on_flats_are_contact_s() -> Result<()> {
             let [pitch, expected] = ["pitch", "z_first_touch"].map(|key| case[key].as_f64().unwrap());
             let stop = march.turned(pitch)?;
             let found = of_right(&stop)?;
-            eprintln!("{group} {pitch}: {:.4} {expected} y {:.3} {}", -found.z, found.contact.y, case["patches"][0]["xcp_tr"]);
             // z is up here and down in CONTACT.
             assert!((-found.z - expected).abs() <= most, "{group} at {pitch}: {} {expected}", -found.z);
         }
