@@ -112,7 +112,7 @@ fn a_chord_with_edges_lowers_a_cylinder_by_its_support_function() -> Result<()> 
         for rail in [crown()?, line(2.0)?] {
             let march = turning(&wheel, &rail, position(0.0, 0.0, 0.0), 0.0)?;
             let half = length / 2.0 / RADIUS;
-            for at in [0.0, 0.3, -0.7, 0.99, 1.05, 1.3, -3.0, 20.0].map(|share| share * half) {
+            for at in [0.0, -0.7, 1.05, 20.0].map(|share| share * half) {
                 let stop = march.turned(at - angle)?;
                 let (z, expected) = (of_right(&stop)?.z, lowered(length, edge, at));
                 assert!((z - expected).abs() < CHORD, "{length} {edge} at {at}: {z} {expected}");
