@@ -61,13 +61,13 @@ const FOLDER: Names = Names {
 ///     rail = { rotate = '1:40' }
 ///     track = { gauge = 1435.0 }
 ///     wheelset = { back_to_back = 1360.0, flange_back_x = -70.0 }", false)?;
-/// # let folder = std::env::temp_dir().join(format!("wheelrail-fleet-{}", std::process::id()));
-/// # let wheels = wheelrail::files::KeptFolder::open(&folder, wheelrail::case::RUN_FOLDER)?;
+/// # let temporary = tempfile::tempdir().expect("a folder");
+/// # let folder = temporary.path();
+/// # let wheels = wheelrail::files::KeptFolder::open(folder, wheelrail::case::RUN_FOLDER)?;
 /// wheels.write("wheels.csv", b"wheelset,left,right\nnew,S1002,S1002\n")?;
-/// let fleet = Fleet::new(scene, &folder, &wheels.file("wheels.csv"), Some("60E1"))?;
+/// let fleet = Fleet::new(scene, folder, &wheels.file("wheels.csv"), Some("60E1"))?;
 /// let summary = fleet.run(&folder.join("out"), &|_, _| Ok(()))?;
 /// assert_eq!(summary.pairs, 1);
-/// # std::fs::remove_dir_all(folder).ok();
 /// # Ok::<(), wheelrail::Error>(())
 /// ```
 #[derive(Debug, Clone)]

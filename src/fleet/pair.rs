@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::list::Source;
-use super::profiles::{Key, Shelf};
+use super::profiles::{Key, Shelf, data, keys};
 use super::{Fleet, Number};
 use crate::case::{Case, Place, Profiles, SideProfiles};
 use crate::error::{Error, Result};
@@ -66,7 +66,7 @@ pub(super) fn numbers() -> Vec<String> {
 
 /// Computes the row of a pair. Whatever is wrong is its finding.
 pub(super) fn row(fleet: &Fleet, shelf: &Shelf, number: Number) -> Row {
-    let [rails, wheels] = fleet.keys(number);
+    let [rails, wheels] = keys(fleet, number);
     let wheelset = &fleet.wheelsets[number.wheelset];
     let name = |key: &Key| key.source.to_string();
     let mut findings = Vec::new();
@@ -113,10 +113,10 @@ fn measured(
 
 /// Returns the nominal rolling radius of a wheel \[mm\]: of the table, of the scene, or half the diameter that its file states.
 fn radius(fleet: &Fleet, shelf: &Shelf, number: Number, side: usize) -> Option<f64> {
-    let key = &fleet.keys(number)[1][side];
+    let key = &keys(fleet, number)[1][side];
     let given = fleet.wheelsets[number.wheelset].radii[side];
     let stated = || shelf.get(key).ok()?.record.as_ref()?.diameter.map(|diameter| 0.5 * diameter);
-    given.or(fleet.data(key).radius).or(fleet.scene.wheel.radius).or_else(stated)
+    given.or(data(fleet, key).radius).or(fleet.scene.wheel.radius).or_else(stated)
 }
 
 /// Makes the case of a pair.
@@ -124,7 +124,7 @@ fn radius(fleet: &Fleet, shelf: &Shelf, number: Number, side: usize) -> Option<f
 /// # Errors
 /// What is wrong with its profiles, or with their place on the track.
 pub(super) fn case(fleet: &Fleet, shelf: &Shelf, number: Number) -> Result<Case> {
-    let [rails, wheels] = fleet.keys(number);
+    let [rails, wheels] = keys(fleet, number);
     let side = |k: usize| -> Result<SideProfiles> {
         let [rail, wheel] = [shelf.get(&rails[k])?, shelf.get(&wheels[k])?].map(Clone::clone);
         let radius = radius(fleet, shelf, number, k).ok_or_else(|| {

@@ -52,7 +52,7 @@ impl Shelf {
     pub fn fill(&mut self, fleet: &Fleet, pairs: &Pairs) {
         let mut needed: Vec<Key> = Vec::new();
         let mut kept = HashMap::new();
-        for key in pairs.all().flat_map(|number| fleet.keys(number)).flatten() {
+        for key in pairs.all().flat_map(|number| keys(fleet, number)).flatten() {
             if kept.contains_key(&key) {
                 continue;
             }
@@ -80,42 +80,39 @@ impl Shelf {
     }
 }
 
-impl Fleet {
-    /// Returns the keys of the rails and the wheels of a pair, \[left, right\].
-    pub(super) fn keys(&self, Number { wheelset, section }: Number) -> [[Key; 2]; 2] {
-        let Wheelset { wheels, rails, .. } = &self.wheelsets[wheelset];
-        let section = self.sections[section].as_ref();
-        let rail = |k: usize| section.or(rails.as_ref().map(|own| &own[k])).unwrap_or(&Source::Scene);
-        let key = |k: usize, wheel: bool| {
-            let side = if k == 0 { &self.scene.left } else { &self.scene.right };
-            let own = side
-                .as_ref()
-                .is_some_and(|side| if wheel { side.wheel.is_some() } else { side.rail.is_some() });
-            let of = match (own, k) {
-                (false, _) => Of::Both,
-                (true, 0) => Of::Left,
-                (true, _) => Of::Right,
-            };
-            Key { source: if wheel { wheels[k].clone() } else { rail(k).clone() }, wheel, of }
+/// Returns the keys of the rails and the wheels of a pair, \[left, right\].
+pub(super) fn keys(fleet: &Fleet, Number { wheelset, section }: Number) -> [[Key; 2]; 2] {
+    let Wheelset { wheels, rails, .. } = &fleet.wheelsets[wheelset];
+    let section = fleet.sections[section].as_ref();
+    let rail = |k: usize| section.or(rails.as_ref().map(|own| &own[k])).unwrap_or(&Source::Scene);
+    let key = |k: usize, wheel: bool| {
+        let side = if k == 0 { &fleet.scene.left } else { &fleet.scene.right };
+        let own =
+            side.as_ref().is_some_and(|side| if wheel { side.wheel.is_some() } else { side.rail.is_some() });
+        let of = match (own, k) {
+            (false, _) => Of::Both,
+            (true, 0) => Of::Left,
+            (true, _) => Of::Right,
         };
-        [[key(0, false), key(1, false)], [key(0, true), key(1, true)]]
-    }
+        Key { source: if wheel { wheels[k].clone() } else { rail(k).clone() }, wheel, of }
+    };
+    [[key(0, false), key(1, false)], [key(0, true), key(1, true)]]
+}
 
-    /// Returns what the scene says of a profile.
-    pub(super) fn data(&self, key: &Key) -> &ProfileData {
-        let side = match key.of {
-            Of::Both => None,
-            Of::Left => self.scene.left.as_ref(),
-            Of::Right => self.scene.right.as_ref(),
-        };
-        let own = side.and_then(|side| if key.wheel { side.wheel.as_ref() } else { side.rail.as_ref() });
-        own.unwrap_or(if key.wheel { &self.scene.wheel } else { &self.scene.rail })
-    }
+/// Returns what the scene says of a profile.
+pub(super) fn data<'a>(fleet: &'a Fleet, key: &Key) -> &'a ProfileData {
+    let side = match key.of {
+        Of::Both => None,
+        Of::Left => fleet.scene.left.as_ref(),
+        Of::Right => fleet.scene.right.as_ref(),
+    };
+    let own = side.and_then(|side| if key.wheel { side.wheel.as_ref() } else { side.rail.as_ref() });
+    own.unwrap_or(if key.wheel { &fleet.scene.wheel } else { &fleet.scene.rail })
 }
 
 fn read(fleet: &Fleet, key: &Key) -> Result<Read> {
     let side = if key.wheel { Side::Wheel } else { Side::Rail };
-    let shared = fleet.data(key).clone();
+    let shared = data(fleet, key).clone();
     let bare = ProfileData { profile: None, file: None, segments: None, start: None, ..shared.clone() };
     let (data, folder) = match &key.source {
         Source::Scene => (shared, fleet.folder.as_path()),
@@ -154,11 +151,11 @@ pub(super) fn hash(fleet: &Fleet, pairs: &Pairs) -> String {
         let Wheelset { name, radii, .. } = &fleet.wheelsets[number.wheelset];
         add(name.as_bytes());
         radii.iter().for_each(|radius| add(&radius.unwrap_or(f64::NAN).to_le_bytes()));
-        for key in fleet.keys(number).iter().flatten() {
+        for key in keys(fleet, number).iter().flatten() {
             add(key.source.to_string().as_bytes());
             let path = match &key.source {
                 Source::File(path) => Some(path.clone()),
-                Source::Scene => fleet.data(key).file.as_ref().map(|file| fleet.folder.join(file)),
+                Source::Scene => data(fleet, key).file.as_ref().map(|file| fleet.folder.join(file)),
                 Source::BuiltIn(_) => None,
             };
             if let Some(path) = path {

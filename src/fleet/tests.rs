@@ -1,5 +1,6 @@
 //! How fleets are divided, and where what is read comes from.
 
+use super::profiles::{data, keys};
 use super::*;
 
 fn fleet(wheelsets: usize, sections: usize) -> Fleet {
@@ -39,7 +40,7 @@ fn parts_hold_every_pair_once_and_are_of_bounded_size() {
 #[test]
 fn a_side_with_options_of_its_own_has_profiles_of_its_own() {
     let fleet = fleet(1, 1);
-    let [rails, wheels] = fleet.keys(Number { wheelset: 0, section: 0 });
+    let [rails, wheels] = keys(&fleet, Number { wheelset: 0, section: 0 });
     assert!(rails[0] == rails[1] && wheels[0] != wheels[1] && wheels[0].source == wheels[1].source);
-    assert_eq!([0, 1].map(|k| fleet.data(&wheels[k]).mirror), [Some(true), None]);
+    assert_eq!([0, 1].map(|k| data(&fleet, &wheels[k]).mirror), [Some(true), None]);
 }
