@@ -98,11 +98,6 @@ impl<'a> Sweep<'a> {
         self.search.stand_at(along);
     }
 
-    /// Turns the wheelset about its axle \[rad\]: see [`WheelsetSearch::turn_to`].
-    pub fn turn_to(&mut self, pitch: f64) {
-        self.search.turn_to(pitch);
-    }
-
     /// Appends the rows of one position to `rows`, left side first; none if the position has no contact.
     ///
     /// # Errors

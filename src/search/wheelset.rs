@@ -62,8 +62,6 @@ pub struct WheelsetOnTrack {
     pub(super) sides: [SideOnTrack; 2],
     /// Whether the left side is the mirror image of the right one.
     symmetric: bool,
-    /// Pitch \[rad\] at which searches begin.
-    pitch: f64,
 }
 
 /// One side of a wheelset on its track, in the side's own axes: those of a right-hand side.
@@ -86,7 +84,7 @@ impl SideOnTrack {
         Ok(Self { pair: SidePair::Swept(Arc::new(ProfilePair::new(pair)?)), track, wheelset })
     }
 
-    /// Takes a rail that varies along the track, or a wheel that varies around its axle, with the other body.
+    /// Takes a rail that varies along the track, with its wheel.
     pub fn lofted(pair: Arc<LoftedPair>, track: Track, wheelset: Wheelset) -> Self {
         Self { pair: SidePair::Lofted(pair), track, wheelset }
     }
@@ -122,23 +120,12 @@ impl WheelsetOnTrack {
 
     /// Takes the same side on both sides of the track, the left one as its mirror image.
     pub fn symmetrical(side: SideOnTrack) -> Self {
-        Self { sides: [side.clone(), side], symmetric: true, pitch: 0.0 }
+        Self { sides: [side.clone(), side], symmetric: true }
     }
 
     /// Joins two different sides, each in its own axes.
     pub fn of_sides(left: SideOnTrack, right: SideOnTrack) -> Self {
-        Self { sides: [left, right], symmetric: false, pitch: 0.0 }
-    }
-
-    /// Turns the wheelset about its axle: see [`WheelsetSearch::turn_to`], from which searches begin.
-    #[must_use]
-    pub fn at_pitch(self, pitch: f64) -> Self {
-        Self { pitch, ..self }
-    }
-
-    /// Returns whether a wheel varies around its axle.
-    pub fn turning(&self) -> bool {
-        self.sides.iter().any(|side| side.pair.turning())
+        Self { sides: [left, right], symmetric: false }
     }
 
     /// Returns whether the left side is the mirror image of the right one, so that Δr is odd.
@@ -247,10 +234,7 @@ struct Lowered {
 impl WheelsetOnTrack {
     /// Makes a search over this system. On rails that vary the middle of the axle is at 0 of their lists.
     pub fn search(&self) -> WheelsetSearch<'_> {
-        let sides = self.sides.each_ref().map(|side| side.pair.search());
-        let mut search = WheelsetSearch { system: self, sides };
-        search.turn_to(self.pitch);
-        search
+        WheelsetSearch { system: self, sides: self.sides.each_ref().map(|side| side.pair.search()) }
     }
 
     /// Returns where a wheel's profile is in the axes of its rail's profile, in the section through the axle: the isometry takes
@@ -284,12 +268,6 @@ impl WheelsetSearch<'_> {
     /// of one profile.
     pub fn stand_at(&mut self, along: f64) {
         self.sides.iter_mut().for_each(|side| side.stand_at(along));
-    }
-
-    /// Turns the wheelset about its axle by a pitch \[rad\], + forward at the bottom: what lies at −pitch on a wheel that varies is then
-    /// lowest; of no meaning for wheels of one profile.
-    pub fn turn_to(&mut self, pitch: f64) {
-        self.sides.iter_mut().for_each(|side| side.turn_to(pitch));
     }
 
     /// Lowers the wheelset until it touches; `None` if a side has no wheel over its rail, or if the roll is

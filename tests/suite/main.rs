@@ -10,7 +10,6 @@
 
 mod along_track;
 mod any_grid;
-mod around_the_wheel;
 mod campaign;
 mod closed_forms;
 mod common;
