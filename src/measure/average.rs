@@ -75,7 +75,9 @@ impl Average {
 /// let wheel = standards::wheel("S1002")?;
 /// let raised = wheel.clone().shifted(0.0, 0.2);
 /// let average = average(&[&wheel, &raised], Side::Wheel, None, &MeasureOptions::default())?;
-/// let tread = average.points.iter().min_by(|a, b| a.at[0].abs().total_cmp(&b.at[0].abs())).expect("points");
+/// let from_circle = |x: f64| (x - 70.0).abs(); // X = 0 is the flange back
+/// let closer = |a: f64, b: f64| from_circle(a).total_cmp(&from_circle(b));
+/// let tread = average.points.iter().min_by(|a, b| closer(a.at[0], b.at[0])).expect("points");
 /// assert!((tread.at[1] - 0.1).abs() < 0.01 && (tread.range[1] - 0.1).abs() < 1e-3);
 /// # Ok::<(), wheelrail::Error>(())
 /// ```

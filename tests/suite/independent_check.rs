@@ -62,7 +62,7 @@ fn every_reference_scene_agrees_with_and_without_skew() {
 #[test]
 fn every_built_in_pair_agrees() {
     let pairs = built_in_pairs().expect("profiles with a point at x = 0");
-    assert_eq!(pairs.len(), 25 * 14);
+    assert_eq!(pairs.len(), 40 * 14);
     verify(&pairs).expect("finite profiles").iter().for_each(assert_agrees);
 }
 

@@ -114,7 +114,8 @@ def test_measures_are_those_of_the_command_line_and_say_what_is_missing() -> Non
 def test_an_average_has_the_spread_of_its_profiles() -> None:
     wheel = wr.wheel("S1002")
     average = wr.average_profiles([wheel.shifted(0.0, z) for z in (-0.1, 0.0, 0.1)])
-    at = int(np.argmin(np.abs(average["x_mm"])))
+    # X = 0 is the flange back: the running circle is at 70.
+    at = int(np.argmin(np.abs(average["x_mm"] - 70.0)))
     assert abs(average["z_mm"][at]) < 1e-2
     assert abs(average["spread_mm"][at] - 0.1) < 1e-3 and abs(average["largest_mm"][at] - 0.1) < 1e-3
     assert average["profiles"][at] == 3 and average["finding"] == []
