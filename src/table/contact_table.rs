@@ -1,7 +1,9 @@
 //! The table: cells with their polynomials, and how they are looked up.
 
+use rayon::prelude::*;
+
 use super::cell::{Beginning, COEFFICIENTS, Cell, share};
-use super::quantity::Quantity;
+use super::quantity::{MOST, Quantity};
 use super::read::{Parsed, parse};
 use crate::error::{Error, Result};
 
@@ -38,6 +40,9 @@ pub struct ContactTable {
     /// For equal parts of the range: the cell in which each begins.
     hints: Vec<u32>,
 }
+
+/// Displacements that one thread takes at a time.
+const TOGETHER: usize = 4096;
 
 /// Parts of the range for each cell, with whose help a cell is found: one or two steps from the hint are enough.
 const HINTS: usize = 4;
@@ -173,6 +178,23 @@ impl ContactTable {
         for row in rows {
             out.iter_mut().zip(row).for_each(|(value, c)| *value = *value * t + c);
         }
+    }
+
+    /// Gives the quantities with these numbers at many lateral displacements \[mm\]: `out` has a row of them for each displacement. It runs
+    /// on the threads of the current rayon pool.
+    pub fn fill_many(&self, lateral: &[f64], numbers: &[usize], out: &mut [f64]) {
+        if numbers.is_empty() {
+            return;
+        }
+        let rows = out.par_chunks_mut(TOGETHER * numbers.len()).zip(lateral.par_chunks(TOGETHER));
+        rows.for_each(|(out, lateral)| {
+            let mut values = [0.0; MOST];
+            let values = &mut values[..self.quantities.len()];
+            for (row, y) in out.chunks_exact_mut(numbers.len()).zip(lateral) {
+                self.fill(*y, values);
+                row.iter_mut().zip(numbers).for_each(|(place, number)| *place = values[*number]);
+            }
+        });
     }
 
     /// Returns the displacements \[mm\] of hops, joints or edges between cells, in ascending order.

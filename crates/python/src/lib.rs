@@ -20,6 +20,7 @@ mod positions;
 mod profile;
 mod standards;
 mod sweep;
+mod table;
 mod text;
 mod values;
 mod wheelset;
@@ -53,6 +54,8 @@ mod _wheelrail {
     use super::standards::{rail, rail_names, wheel, wheel_names};
     #[pymodule_export]
     use super::sweep::{doubt_words, sweep_picture};
+    #[pymodule_export]
+    use super::table::{ContactTable, table};
     #[pymodule_export]
     use super::wheelset::Wheelset;
     use pyo3::prelude::*;

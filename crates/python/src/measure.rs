@@ -46,6 +46,9 @@ pub(crate) fn measure_profile<'py>(
     to_python(py, &row.values(None))
 }
 
+/// A column of an average: its name, and its value at a point.
+type Column = (&'static str, fn(&AveragePoint) -> f64);
+
 fn known(side: Option<Side>) -> PyResult<Side> {
     let advice = "give `side`, rail or wheel";
     side.ok_or_else(|| exception(Error::new("side", "none", "the body of the profile", advice)))
@@ -97,7 +100,7 @@ pub(crate) fn average_profiles<'py>(
     })?;
     let out = PyDict::new(py);
     out.set_item("profile", Profile::measured(py, measured, Some(side))?)?;
-    let columns: [(&str, fn(&AveragePoint) -> f64); 5] = [
+    let columns: [Column; 5] = [
         ("x_mm", |point| point.at[0]),
         ("z_mm", |point| point.at[1]),
         ("spread_mm", |point| point.spread),

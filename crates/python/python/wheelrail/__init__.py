@@ -24,6 +24,7 @@ What there is:
     Case                      a scene with all it can say, from a file, a dict or TOML: contacts, files, view, sweep, check, run
     Grid                      the separation or the normal gap with its coordinates, for xarray
     Table                     the rows of a sweep, for pandas, polars and Arrow
+    table, ContactTable       contact over the lateral displacement as polynomials with a stated error
     fleet                     every wheelset of a fleet on every rail section: a table and pages
     wheelrail.dask            studies past one machine
     wheelrail.tamaas          pressures
@@ -38,6 +39,7 @@ from ._values import Check, Component, Feasibility, Grid, Hertz, Mesh, Pressure,
 from ._wheelrail import (
     Case,
     Contact,
+    ContactTable,
     Pair,
     Patch,
     Profile,
@@ -54,6 +56,7 @@ from ._wheelrail import (
     read_profile,
     run,
     schema,
+    table,
     wheel,
     wheel_names,
 )
@@ -63,6 +66,7 @@ __all__ = [
     "Check",
     "Component",
     "Contact",
+    "ContactTable",
     "Doubt",
     "Error",
     "Feasibility",
@@ -94,6 +98,7 @@ __all__ = [
     "read_profile",
     "run",
     "schema",
+    "table",
     "wheel",
     "wheel_names",
 ]

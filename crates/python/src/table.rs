@@ -1,0 +1,188 @@
+//! Contact tables: made, read and looked up.
+
+use std::path::{Path, PathBuf};
+
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use wheelrail::case::{self, TABLE_FOLDER, write_table};
+use wheelrail::files::{Folder, read_text};
+use wheelrail::table::Beginning;
+use wheelrail::{Error, scene};
+
+use crate::arrays::values;
+use crate::errors::{OrRaise, exception};
+use crate::long::{detached, waited};
+
+/// Largest table that is read [bytes].
+const LARGEST: usize = 1 << 30;
+
+/// Tabulate the contact of a scene's wheelset over a range of lateral displacements in mm, as polynomials with a stated error.
+///
+/// `lateral` is the range, `tolerance` that of lengths in mm; yaw and roll are those of the scene. `hertz` adds Hertz's ellipse, approach
+/// and largest pressure under the scene's load or approach. `out` is a folder that gets the table as `table.wrp`, `table.nc` and
+/// `table.csv`.
+///
+///     >>> from pathlib import Path
+///     >>> from tempfile import mkdtemp
+///     >>> scene = Path(mkdtemp()) / "scene.toml"
+///     >>> _ = scene.write_text("""
+///     ... rail = { profile = "60E1", rotate = "1:40" }
+///     ... wheel = { profile = "S1002", radius = 460.0 }
+///     ... track = { spacing = 1500.0 }
+///     ... wheelset = { spacing = 1500.0 }
+///     ... """)
+///     >>> table = wr.table(scene, (-2.0, 2.0), tolerance=1e-3)
+///     >>> radius = table([0.0, 1.5])["right"]["rolling_radius_mm"]
+///     >>> bool(radius[1] > radius[0]) and table.errors["right"]["rolling_radius_mm"] < 1e-3
+///     True
+///
+/// Raises InputError for a scene without a wheelset, ellipses without a load or approach, a range or tolerance out of bounds.
+#[pyfunction]
+#[pyo3(signature = (path, lateral, *, tolerance = 1e-3, hertz = false, out = None))]
+pub(crate) fn table(
+    py: Python<'_>,
+    path: PathBuf,
+    lateral: [f64; 2],
+    tolerance: f64,
+    hertz: bool,
+    out: Option<PathBuf>,
+) -> PyResult<ContactTable> {
+    let made = waited(py, move |watch| {
+        let scene = scene::load(&path)?;
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        let case = scene::resolve(&scene, path.parent().unwrap_or(Path::new(".")), &name)?;
+        let made = case::table(&case, lateral, tolerance, hertz)?;
+        watch.go_on()?;
+        if let Some(out) = out {
+            let folder = Folder::create(&out, TABLE_FOLDER)?;
+            write_table(&made, scene.title.as_deref().unwrap_or(&name), &folder)?;
+            folder.commit()?;
+        }
+        Ok(made)
+    })?;
+    Ok(ContactTable { table: made })
+}
+
+/// A contact table: places, angles, radii and curvatures of both wheels over the lateral displacement.
+///
+/// `ContactTable(path)` reads a `table.wrp`. Calling it looks up: `table(lateral)` gives the quantities of the wheelset by their names, and
+/// under "left" and "right" those of each side, an array each; what does not exist is NaN.
+#[pyclass(module = "wheelrail", frozen)]
+pub(crate) struct ContactTable {
+    table: wheelrail::table::ContactTable,
+}
+
+#[pymethods]
+impl ContactTable {
+    #[new]
+    fn new(path: PathBuf) -> PyResult<Self> {
+        let text = read_text(&path, LARGEST).or_raise()?;
+        let table = wheelrail::table::ContactTable::read(&text).map_err(|error| error.within(path.display()));
+        Ok(Self { table: table.or_raise()? })
+    }
+
+    /// Look the quantities up at lateral displacements in mm; `yaw` in rad may be given, as a number, and has to be that of the table.
+    ///
+    /// `quantities` are the names that are wanted, all unless given. It runs on all threads without the GIL.
+    ///
+    /// Raises InputError for another yaw, and unknown names.
+    #[pyo3(signature = (lateral, yaw = None, *, quantities = None))]
+    fn __call__<'py>(
+        &self,
+        py: Python<'py>,
+        lateral: &Bound<'py, PyAny>,
+        yaw: Option<f64>,
+        quantities: Option<Vec<String>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        if let Some(yaw) = yaw.filter(|yaw| *yaw != self.table.yaw()) {
+            let expected = format!("{} rad, the yaw of the table", self.table.yaw());
+            return Err(exception(Error::new(
+                "yaw",
+                yaw.to_string(),
+                expected,
+                "make a table with this yaw",
+            )));
+        }
+        let known = self.table.quantities();
+        let wanted = |name: &str| quantities.as_ref().is_none_or(|names| names.iter().any(|own| own == name));
+        for name in quantities.iter().flatten().filter(|name| known.iter().all(|own| own.name != **name)) {
+            let found = format!("\"{name}\"");
+            return Err(exception(Error::new("quantities", found, "names of `errors`", "correct it")));
+        }
+        let numbers: Vec<usize> = (0..known.len()).filter(|q| wanted(known[*q].name)).collect();
+        let lateral = values("lateral", lateral)?;
+        let mut rows = vec![0.0; lateral.len() * numbers.len()];
+        detached(py, || self.table.fill_many(&lateral, &numbers, &mut rows))?;
+        let rows = PyArray1::from_vec(py, rows).reshape([lateral.len(), numbers.len()])?;
+        let columns = rows.call_method0("transpose")?;
+        self.by_name(py, numbers.iter().enumerate().map(|(k, q)| Ok((*q, columns.get_item(k)?))))
+    }
+
+    /// The largest error of each quantity, by its name as the values have them.
+    #[getter]
+    fn errors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let all = self.table.quantities().iter().enumerate();
+        self.by_name(py, all.map(|(q, quantity)| Ok((q, quantity.error.into_pyobject(py)?.into_any()))))
+    }
+
+    /// The tolerance of each quantity, by its name as the values have them.
+    #[getter]
+    fn tolerances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let all = self.table.quantities().iter().enumerate();
+        self.by_name(py, all.map(|(q, quantity)| Ok((q, quantity.tolerance.into_pyobject(py)?.into_any()))))
+    }
+
+    /// The range of the lateral displacement in mm.
+    #[getter]
+    fn lateral(&self) -> (f64, f64) {
+        self.table.lateral().into()
+    }
+
+    /// The yaw in rad that all displacements have.
+    #[getter]
+    fn yaw(&self) -> f64 {
+        self.table.yaw()
+    }
+
+    /// The lateral displacements in mm at which contact hops to another place.
+    #[getter]
+    fn hops(&self) -> Vec<f64> {
+        self.table.places(Beginning::Hop).collect()
+    }
+
+    /// The lateral displacements in mm at which contact crosses a joint of a profile.
+    #[getter]
+    fn joints(&self) -> Vec<f64> {
+        self.table.places(Beginning::Joint).collect()
+    }
+
+    fn __repr__(&self) -> String {
+        let [from, to] = self.table.lateral();
+        format!("ContactTable of {} cells from {from} to {to} mm", self.table.cells().len())
+    }
+}
+
+impl ContactTable {
+    /// Puts what belongs to quantities under their names, sides in dicts of their own.
+    fn by_name<'py>(
+        &self,
+        py: Python<'py>,
+        items: impl Iterator<Item = PyResult<(usize, Bound<'py, PyAny>)>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (out, left, right) = (PyDict::new(py), PyDict::new(py), PyDict::new(py));
+        for item in items {
+            let (q, value) = item?;
+            let quantity = &self.table.quantities()[q];
+            let home = match quantity.right {
+                None => &out,
+                Some(false) => &left,
+                Some(true) => &right,
+            };
+            home.set_item(quantity.name, value)?;
+        }
+        out.set_item("left", left)?;
+        out.set_item("right", right)?;
+        Ok(out)
+    }
+}

@@ -1,0 +1,44 @@
+"""Contact tables."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT
+
+import wheelrail as wr
+
+SCENE = ROOT / "examples/scenes/wheelset.toml"
+NAMES = ("z_mm", "rail_x_mm", "wheel_x_mm", "y_mm", "contact_angle_rad", "rolling_radius_mm", "skew_rad", "hertz_xi_mm", "hertz_eta_mm")
+
+
+def test_no_look_up_errs_by_more_than_the_table_states(tmp_path: Path) -> None:
+    made = wr.table(SCENE, (-9.0, 9.0), hertz=True, out=tmp_path / "t")
+    table = wr.ContactTable(tmp_path / "t/table.wrp")
+    assert table.errors == made.errors and table.hops == made.hops and len(table.joints) > 0
+    lateral = np.random.default_rng(3).uniform(-9.0, 9.0, 2000)
+    found = table(lateral, 0.002)
+    rows = wr.Case(SCENE).sweep(lateral, np.full(lateral.size, 0.002), conicity=False)
+    lowest = np.asarray(rows["contact"]) == 1
+    for side in ("left", "right"):
+        chosen = lowest & (np.asarray(rows["side"]) == side)
+        for name in NAMES:
+            error = np.abs(found[side][name] - np.asarray(rows[name])[chosen])
+            assert np.nanmax(error) <= table.errors[side][name] <= table.tolerances[side][name], (side, name)
+    both = found["right"]["rolling_radius_mm"]
+    assert np.array_equal(made(lateral, quantities=["rolling_radius_mm"])["right"]["rolling_radius_mm"], both)
+    assert np.isnan(table([10.0])["roll_rad"]).all()
+
+
+def test_wrong_calls_are_named(tmp_path: Path) -> None:
+    table = wr.table(SCENE, (0.0, 1.0), tolerance=1e-2)
+    assert (table.lateral, table.yaw) == ((0.0, 1.0), 0.002)
+    with pytest.raises(wr.InputError, match="yaw: found 0; expected 0.002 rad"):
+        table([0.5], 0.0)
+    with pytest.raises(wr.InputError, match='quantities: found "radius"'):
+        table([0.5], quantities=["radius"])
+    (tmp_path / "cut.wrp").write_text("WRTABLE    1 mm\n")
+    with pytest.raises(wr.InputError, match="line 2: found the end of the file"):
+        wr.ContactTable(tmp_path / "cut.wrp")
+    with pytest.raises(wr.InputError, match="FROM < TO"):
+        wr.table(SCENE, (1.0, 0.0))
