@@ -145,9 +145,7 @@ const MAIN_LINES: u32 = 46;
 /// Standard wheels on rails of main lines; those of APTA have their origin at the gauge point.
 fn standard_pairs() -> Result<Vec<(Pair, f64)>> {
     let mut out = Vec::new();
-    for (rail, wheel) in
-        main_line_rails().flat_map(|rail| standards::wheel_names().map(move |w| (rail, w)))
-    {
+    for (rail, wheel) in main_line_rails().flat_map(|rail| standards::wheel_names().map(move |w| (rail, w))) {
         let apta = wheel.starts_with("APTA");
         let profile = standards::wheel(wheel)?.shifted(0.0, if apta { -15.875 } else { 0.0 });
         let n = if out.len().is_multiple_of(2) { 20.0 } else { 40.0 };
