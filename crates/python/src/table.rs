@@ -106,7 +106,8 @@ impl ContactTable {
         }
         let known = self.table.quantities();
         let wanted = |name: &str| quantities.as_ref().is_none_or(|names| names.iter().any(|own| own == name));
-        for name in quantities.iter().flatten().filter(|name| known.iter().all(|own| own.name != **name)) {
+        let is_unknown = |name: &&String| known.iter().all(|own| own.name != **name);
+        if let Some(name) = quantities.iter().flatten().find(is_unknown) {
             let found = format!("\"{name}\"");
             return Err(exception(Error::new("quantities", found, "names of `errors`", "correct it")));
         }
