@@ -9,6 +9,7 @@
 //! number of threads and stops.
 
 mod list;
+mod listed;
 mod page;
 mod pair;
 mod part;
@@ -17,7 +18,7 @@ mod tally;
 
 use std::collections::BTreeSet;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
@@ -29,7 +30,7 @@ use crate::placement::Pair;
 use crate::profile::standards;
 use crate::scene::{self, Scene};
 use crate::search::Roll;
-use list::{Source, Wheelset};
+use listed::{Listed, Number, Pairs};
 use part::Part;
 use profiles::Shelf;
 
@@ -43,10 +44,9 @@ const WHEELSETS: [usize; 2] = [4, 64];
 /// Names in the output folder.
 const MARKER: &str = "fleet.json";
 const PARTS: &str = "parts";
-const WORST: &str = "worst";
 const FOLDER: Names = Names {
     marker: MARKER,
-    is_file: |name| [MARKER, "fleet.csv", "summary.json", "fleet.html", PARTS, WORST].contains(&name),
+    is_file: |name| [MARKER, "fleet.csv", "summary.json", "fleet.html", PARTS, page::WORST].contains(&name),
     is_part: |_| false,
 };
 
@@ -72,11 +72,7 @@ const FOLDER: Names = Names {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Fleet {
-    scene: Scene,
-    folder: PathBuf,
-    wheelsets: Vec<Wheelset>,
-    /// The sections; `None` stands for each wheelset's own rails, or the scene's.
-    sections: Vec<Option<Source>>,
+    listed: Listed,
 }
 
 /// What became of a fleet.
@@ -92,29 +88,6 @@ pub struct Outcome {
     pub kept: usize,
     /// Parts that were there and were computed again, because what they are made of has changed.
     pub changed: usize,
-}
-
-/// Where a pair stands in a fleet.
-#[derive(Debug, Clone, Copy)]
-struct Number {
-    wheelset: usize,
-    section: usize,
-}
-
-/// The pairs of a part.
-#[derive(Debug, Clone)]
-struct Pairs {
-    wheelsets: Range<usize>,
-    sections: Range<usize>,
-}
-
-impl Pairs {
-    fn all(&self) -> impl Iterator<Item = Number> {
-        let sections = self.sections.clone();
-        self.wheelsets
-            .clone()
-            .flat_map(move |wheelset| sections.clone().map(move |section| Number { wheelset, section }))
-    }
 }
 
 impl Fleet {
@@ -141,17 +114,17 @@ impl Fleet {
                 return Err(Error::new(place, found, expected, "remove one of them"));
             }
         };
-        Ok(Self { scene, folder: folder.into(), wheelsets, sections })
+        Ok(Self { listed: Listed { scene, folder: folder.into(), wheelsets, sections } })
     }
 
     /// Returns the number of pairs.
     pub fn pairs(&self) -> usize {
-        self.wheelsets.len() * self.sections.len()
+        self.listed.wheelsets.len() * self.listed.sections.len()
     }
 
     /// Lists what in the keys of the scene looks like a slip; what looks so in a profile is in its rows.
     pub fn warnings(&self) -> Vec<String> {
-        scene::doubts_of_keys(&self.scene).iter().map(ToString::to_string).collect()
+        self.listed.warnings()
     }
 
     /// Returns the number of parts.
@@ -182,7 +155,7 @@ impl Fleet {
             tell(done, self.pairs())?;
         }
         parts.remove(|name| part::is_part(name) && !own.contains(name))?;
-        let (pairs, with_conicity, with_finding) = page::write(self, &folder, &parts, &split)?;
+        let (pairs, with_conicity, with_finding) = page::write(&self.listed, &folder, &parts, &split)?;
         Ok(Outcome { pairs, with_conicity, with_finding, kept, changed })
     }
 
@@ -202,9 +175,9 @@ impl Fleet {
 
     fn opened(&self, out: &Path) -> Result<KeptFolder> {
         let folder = KeptFolder::open(out, FOLDER)?;
-        let echo = scene::echo(&self.scene, "fleet");
-        let marker = serde_json::json!({ "program": "wheelrail", "scene": echo.scene, "wheelsets": self.wheelsets.len(),
-            "sections": self.sections.len(), "parts": self.parts() });
+        let echo = scene::echo(&self.listed.scene, "fleet");
+        let marker = serde_json::json!({ "program": "wheelrail", "scene": echo.scene, "wheelsets": self.listed.wheelsets.len(),
+            "sections": self.listed.sections.len(), "parts": self.parts() });
         folder.write(MARKER, format!("{marker:#}\n").as_bytes())?;
         Ok(folder)
     }
@@ -212,10 +185,10 @@ impl Fleet {
     /// Divides the pairs into parts, whatever the machine.
     fn split(&self) -> Vec<Pairs> {
         let mut parts = Vec::new();
-        for sections in ranges(self.sections.len(), MOST_SECTIONS) {
+        for sections in ranges(self.listed.sections.len(), MOST_SECTIONS) {
             let [least, most] = WHEELSETS;
             let wheelsets = (PAIRS / sections.len()).clamp(least, most);
-            let own = ranges(self.wheelsets.len(), wheelsets);
+            let own = ranges(self.listed.wheelsets.len(), wheelsets);
             parts.extend(own.map(|wheelsets| Pairs { wheelsets, sections: sections.clone() }));
         }
         parts
@@ -229,15 +202,15 @@ impl Fleet {
         shelf: &mut Shelf,
         (before, tell): (usize, &(dyn Fn(usize, usize) -> Result<()> + Sync)),
     ) -> Result<Written> {
-        let (hash, name) = (profiles::hash(self, pairs), part::name(number));
+        let (hash, name) = (profiles::hash(&self.listed, pairs), part::name(number));
         let there = Part::hash_of(&parts.file(&name));
         if there.as_ref() == Some(&hash) {
             return Ok(Written::Kept);
         }
-        shelf.fill(self, pairs);
+        shelf.fill(&self.listed, pairs);
         let done = AtomicUsize::new(before);
         let row = |number| {
-            let row = pair::row(self, shelf, number);
+            let row = pair::row(&self.listed, shelf, number);
             tell(done.fetch_add(1, Ordering::Relaxed) + 1, self.pairs()).map(|()| row)
         };
         let all: Vec<Number> = pairs.all().collect();

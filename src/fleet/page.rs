@@ -2,17 +2,20 @@
 
 use serde_json::json;
 
+use super::listed::{Listed, Pairs};
 use super::pair::{self, Row, numbers, wheelset};
 use super::part::{self, Part};
 use super::profiles::Shelf;
 use super::tally::{Tally, WorstPair, rails};
-use super::{Fleet, Pairs, WORST};
 use crate::case::{Case, Columns, DoubtSet, sweep_page};
 use crate::error::{Error, Result};
 use crate::export::{FleetPage, FleetWorst, PageProfile, SEPARATOR};
 use crate::files::{KeptFolder, NewFile};
 use crate::profile::{Profile, Station, trace};
 use crate::search::{Conicity, ONE_CONTACT, ParallelSweep, Position, Selection};
+
+/// Folder of the pages of the worst pairs.
+pub(super) const WORST: &str = "worst";
 
 /// Columns of a row before its numbers.
 const NAMES: [&str; 7] =
@@ -29,7 +32,7 @@ const OUTLINE: f64 = 0.5;
 /// # Errors
 /// A part that cannot be read; any error of the disk.
 pub(super) fn write(
-    fleet: &Fleet,
+    fleet: &Listed,
     folder: &KeptFolder,
     parts: &KeptFolder,
     split: &[Pairs],
@@ -70,7 +73,7 @@ fn cells(row: &Row) -> Vec<String> {
     row.names.iter().cloned().chain(numbers).chain([row.finding.clone()]).collect()
 }
 
-fn summary(fleet: &Fleet, title: &str, tally: &Tally) -> serde_json::Value {
+fn summary(fleet: &Listed, title: &str, tally: &Tally) -> serde_json::Value {
     let worst = tally.worst.iter().enumerate().map(|(k, pair)| {
         json!({ "wheelset": pair.row.names[0], "rails": rails(&pair.row), "conicity": pair.conicity, "page": page_name(k) })
     });
@@ -96,7 +99,7 @@ fn worst_name(k: usize) -> String {
     format!("worst-{:02}.html", k + 1)
 }
 
-fn page(fleet: &Fleet, title: &str, tally: &Tally, rail: Option<PageProfile>) -> FleetPage {
+fn page(fleet: &Listed, title: &str, tally: &Tally, rail: Option<PageProfile>) -> FleetPage {
     let names = numbers();
     let value = |row: &Row, name: &str| {
         let value = names.iter().position(|own| own == name).and_then(|k| row.values[k]);
@@ -149,7 +152,7 @@ fn page(fleet: &Fleet, title: &str, tally: &Tally, rail: Option<PageProfile>) ->
 }
 
 /// Writes the pages of the worst pairs, and returns the outline of the first one's right-hand rail.
-fn worst_pages(fleet: &Fleet, folder: &KeptFolder, worst: &[WorstPair]) -> Result<Option<PageProfile>> {
+fn worst_pages(fleet: &Listed, folder: &KeptFolder, worst: &[WorstPair]) -> Result<Option<PageProfile>> {
     let (mut shelf, mut rail) = (Shelf::default(), None);
     for (k, pair) in worst.iter().enumerate() {
         let (wheelset, section) = (pair.number.wheelset, pair.number.section);

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::list::Source;
+use super::listed::{Listed, Number};
 use super::profiles::{Key, Shelf, data, keys};
-use super::{Fleet, Number};
 use crate::case::{Case, Place, Profiles, SideProfiles};
 use crate::error::{Error, Result};
 use crate::measure::{Measures, Quantity};
@@ -65,7 +65,7 @@ pub(super) fn numbers() -> Vec<String> {
 }
 
 /// Computes the row of a pair. Whatever is wrong is its finding.
-pub(super) fn row(fleet: &Fleet, shelf: &Shelf, number: Number) -> Row {
+pub(super) fn row(fleet: &Listed, shelf: &Shelf, number: Number) -> Row {
     let [rails, wheels] = keys(fleet, number);
     let wheelset = &fleet.wheelsets[number.wheelset];
     let name = |key: &Key| key.source.to_string();
@@ -112,7 +112,7 @@ fn measured(
 }
 
 /// Returns the nominal rolling radius of a wheel \[mm\]: of the table, of the scene, or half the diameter that its file states.
-fn radius(fleet: &Fleet, shelf: &Shelf, number: Number, side: usize) -> Option<f64> {
+fn radius(fleet: &Listed, shelf: &Shelf, number: Number, side: usize) -> Option<f64> {
     let key = &keys(fleet, number)[1][side];
     let given = fleet.wheelsets[number.wheelset].radii[side];
     let stated = || shelf.get(key).ok()?.record.as_ref()?.diameter.map(|diameter| 0.5 * diameter);
@@ -123,7 +123,7 @@ fn radius(fleet: &Fleet, shelf: &Shelf, number: Number, side: usize) -> Option<f
 ///
 /// # Errors
 /// What is wrong with its profiles, or with their place on the track.
-pub(super) fn case(fleet: &Fleet, shelf: &Shelf, number: Number) -> Result<Case> {
+pub(super) fn case(fleet: &Listed, shelf: &Shelf, number: Number) -> Result<Case> {
     let [rails, wheels] = keys(fleet, number);
     let side = |k: usize| -> Result<SideProfiles> {
         let [rail, wheel] = [shelf.get(&rails[k])?, shelf.get(&wheels[k])?].map(Clone::clone);
@@ -160,7 +160,7 @@ impl Default for Found {
 }
 
 impl Found {
-    fn of(fleet: &Fleet, case: &Case) -> Result<Self> {
+    fn of(fleet: &Listed, case: &Case) -> Result<Self> {
         let (system, template) = wheelset(case)?;
         let mut findings = own_warnings(fleet, case);
         let conicity = Conicity::new(system, SLOPE[1], template.roll)?;
@@ -193,7 +193,7 @@ pub(super) fn wheelset(case: &Case) -> Result<(&WheelsetOnTrack, Position)> {
 }
 
 /// Lists the warnings of a pair that the keys of its scene alone do not have: those are said once.
-fn own_warnings(fleet: &Fleet, case: &Case) -> Vec<String> {
+fn own_warnings(fleet: &Listed, case: &Case) -> Vec<String> {
     let shared = fleet.warnings();
     case.warnings().into_iter().filter(|warning| !shared.contains(warning)).collect()
 }

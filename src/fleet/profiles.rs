@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
 use super::list::{Source, Wheelset};
-use super::{Fleet, Number, Pairs};
+use super::listed::{Listed, Number, Pairs};
 use crate::error::{Error, Result};
 use crate::files::read_bytes;
 use crate::measure::{MeasureOptions, Measures, measure};
@@ -49,7 +49,7 @@ pub(super) struct Shelf {
 
 impl Shelf {
     /// Reads what the pairs of a part need and is not there yet, and forgets the rest.
-    pub fn fill(&mut self, fleet: &Fleet, pairs: &Pairs) {
+    pub fn fill(&mut self, fleet: &Listed, pairs: &Pairs) {
         let mut needed: Vec<Key> = Vec::new();
         let mut kept = HashMap::new();
         for key in pairs.all().flat_map(|number| keys(fleet, number)).flatten() {
@@ -81,7 +81,7 @@ impl Shelf {
 }
 
 /// Returns the keys of the rails and the wheels of a pair, \[left, right\].
-pub(super) fn keys(fleet: &Fleet, Number { wheelset, section }: Number) -> [[Key; 2]; 2] {
+pub(super) fn keys(fleet: &Listed, Number { wheelset, section }: Number) -> [[Key; 2]; 2] {
     let Wheelset { wheels, rails, .. } = &fleet.wheelsets[wheelset];
     let section = fleet.sections[section].as_ref();
     let rail = |k: usize| section.or(rails.as_ref().map(|own| &own[k])).unwrap_or(&Source::Scene);
@@ -100,7 +100,7 @@ pub(super) fn keys(fleet: &Fleet, Number { wheelset, section }: Number) -> [[Key
 }
 
 /// Returns what the scene says of a profile.
-pub(super) fn data<'a>(fleet: &'a Fleet, key: &Key) -> &'a ProfileData {
+pub(super) fn data<'a>(fleet: &'a Listed, key: &Key) -> &'a ProfileData {
     let side = match key.of {
         Of::Both => None,
         Of::Left => fleet.scene.left.as_ref(),
@@ -110,7 +110,7 @@ pub(super) fn data<'a>(fleet: &'a Fleet, key: &Key) -> &'a ProfileData {
     own.unwrap_or(if key.wheel { &fleet.scene.wheel } else { &fleet.scene.rail })
 }
 
-fn read(fleet: &Fleet, key: &Key) -> Result<Read> {
+fn read(fleet: &Listed, key: &Key) -> Result<Read> {
     let side = if key.wheel { Side::Wheel } else { Side::Rail };
     let shared = data(fleet, key).clone();
     let bare = ProfileData { profile: None, file: None, segments: None, start: None, ..shared.clone() };
@@ -138,7 +138,7 @@ fn read(fleet: &Fleet, key: &Key) -> Result<Read> {
 
 /// Returns the SHA-256, in hexadecimal, of all that the rows of a part depend on: program, scene, list, content of the files.
 /// Files that cannot be read count by their errors.
-pub(super) fn hash(fleet: &Fleet, pairs: &Pairs) -> String {
+pub(super) fn hash(fleet: &Listed, pairs: &Pairs) -> String {
     let mut sha = Sha256::new();
     let mut add = |text: &[u8]| {
         sha.update((text.len() as u64).to_le_bytes());

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use super::Number;
+use super::listed::Number;
 use super::pair::{CELL, POSITIONS, Row, STEP, numbers};
 use super::part::Part;
 use crate::export::{FleetDistribution, FleetHeat};

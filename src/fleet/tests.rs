@@ -1,5 +1,6 @@
 //! How fleets are divided, and where what is read comes from.
 
+use super::list::{Source, Wheelset};
 use super::profiles::{data, keys};
 use super::*;
 
@@ -12,11 +13,13 @@ fn fleet(wheelsets: usize, sections: usize) -> Fleet {
         rails: None,
     };
     Fleet {
-        scene: scene::parse("wheel = { radius = 460.0 }\nleft = { wheel = { mirror = true } }", false)
-            .unwrap(),
-        folder: "scenes".into(),
-        wheelsets: (0..wheelsets).map(wheelset).collect(),
-        sections: (0..sections).map(|k| Some(source(k))).collect(),
+        listed: Listed {
+            scene: scene::parse("wheel = { radius = 460.0 }\nleft = { wheel = { mirror = true } }", false)
+                .unwrap(),
+            folder: "scenes".into(),
+            wheelsets: (0..wheelsets).map(wheelset).collect(),
+            sections: (0..sections).map(|k| Some(source(k))).collect(),
+        },
     }
 }
 
@@ -40,7 +43,7 @@ fn parts_hold_every_pair_once_and_are_of_bounded_size() {
 #[test]
 fn a_side_with_options_of_its_own_has_profiles_of_its_own() {
     let fleet = fleet(1, 1);
-    let [rails, wheels] = keys(&fleet, Number { wheelset: 0, section: 0 });
+    let [rails, wheels] = keys(&fleet.listed, Number { wheelset: 0, section: 0 });
     assert!(rails[0] == rails[1] && wheels[0] != wheels[1] && wheels[0].source == wheels[1].source);
-    assert_eq!([0, 1].map(|k| data(&fleet, &wheels[k]).mirror), [Some(true), None]);
+    assert_eq!([0, 1].map(|k| data(&fleet.listed, &wheels[k]).mirror), [Some(true), None]);
 }
