@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::drawn::{Drawn, loops_of, quads};
+use super::drawn::{Drawn, frame_of, loops_of, quads};
 use super::elements::{surface_mesh, surfaces_around, triangles};
 use super::formats::{Of, OutputFormat, Writer};
 use super::in_place::in_place;
@@ -16,7 +16,7 @@ use super::unrolled::Unrolled;
 use super::view::view;
 use crate::error::{Error, Result};
 use crate::export::{
-    ConformalPicture, ContactSettings, CurvedDeck, CurvedFields, Deck, Frame, GridFields, Header, InPlace,
+    ConformalPicture, ContactSettings, CurvedDeck, CurvedFields, Deck, GridFields, Header, InPlace,
     Interval, Loop, NetCdf, PatchMesh, PatchPicture, Prescribed, QuadMesh, RollerFields, SurfaceMesh,
     boundary_csv, interpen_csv, interpen_sigma_csv,
 };
@@ -310,9 +310,12 @@ fn always<'a>(part: &'a Part, s: &'a Sources<'a>, on_rail: Option<&'a OnRail<'a>
     let mut jobs = vec![
         bytes("boundary.csv", || Ok(boundary_csv(s.loops).into_bytes())),
         bytes("interpen.csv", move || Ok(interpen_csv(&intervals(part)).into_bytes())),
-        bytes("midsep.txt", move || Ok(midplane_table(placement, &part.site.grid.xi).into_bytes())),
         bytes("patch.svg", || Ok(s.picture.svg().into_bytes())),
     ];
+    // A rail that varies has no midplane of its own.
+    if placement.lofted().is_none() {
+        jobs.push(bytes("midsep.txt", move || Ok(midplane_table(placement, &part.site.grid.xi).into_bytes())));
+    }
     if let Some(on_rail) = on_rail {
         jobs.push(bytes("interpen_sigma.csv", || Ok(interpen_sigma_csv(&on_rail.intervals()).into_bytes())));
     }
@@ -344,7 +347,13 @@ struct RailColumns {
 
 impl RailColumns {
     fn new(part: &Part) -> Self {
-        let section = &part.site.contact.placement.rail().section;
+        let placement = &part.site.contact.placement;
+        if placement.lofted().is_some() {
+            // Over the tangent plane.
+            let (height, normal) = part.site.grid.xi.iter().map(|_| (0.0, [0.0, 1.0])).unzip();
+            return Self { height, normal, roller: Self::roller(part) };
+        }
+        let section = &placement.rail().section;
         let station = |&xi: &f64| section.branch_at(xi).map(|branch| branch.station(xi));
         let column = |s: Station| (s.z, [-s.sin, s.cos]);
         let columns =
@@ -353,16 +362,20 @@ impl RailColumns {
         Self { height, normal, roller: Self::roller(part) }
     }
 
-    /// Computes the surface of a roller over the grid; `None` for a rail.
+    /// Computes the surface of a roller, or of a rail that varies along the track, over the grid; `None` for an extruded rail.
     fn roller(part: &Part) -> Option<RollerFields> {
         let placement = &part.site.contact.placement;
-        let under = placement.under()?;
-        let (mut bodies, mut evaluator) = (Evaluator::new(placement), Evaluator::new(under));
+        if placement.under().is_none() && placement.lofted().is_none() {
+            return None;
+        }
+        let mut bodies = Evaluator::new(placement);
+        let mut evaluator = placement.under().map(Evaluator::new);
         let mut fields = RollerFields::default();
         for &xi in &part.site.grid.xi {
             for &eta in &part.site.grid.eta {
                 let normal = bodies.normals(xi, eta).rail;
-                fields.fall.push(evaluator.separation(xi, eta));
+                let fall = evaluator.as_mut().map(|under| under.separation(xi, eta));
+                fields.fall.push(fall.unwrap_or_else(|| -bodies.lower_height(xi, eta)));
                 fields.normal.push(normal.map_or([f64::NAN; 3], |normal| [normal.x, normal.y, normal.z]));
             }
         }
@@ -376,7 +389,7 @@ fn header(run: &Run, part: &Part) -> Header {
         version: env!("CARGO_PKG_VERSION").into(),
         scene_hash: run.case.echo.hash.clone(),
         approach: part.site.approach(),
-        frame: Frame::from(&part.site.contact.placement.rail().contact_frame()),
+        frame: frame_of(&part.site.contact.placement),
         remarks: remarks(run, part),
     }
 }

@@ -8,7 +8,7 @@ use crate::export::{PageFrame, PageLoop, PagePressure, ViewContact, ViewPage};
 use crate::mesh::equal_steps;
 use crate::patch::{Patch, Window};
 use crate::search::TrackSide;
-use crate::separation::{EtaAxis, Values, plan};
+use crate::separation::{EtaAxis, Evaluator, Values, plan};
 
 /// Contacts that a page shows: more would take more than the 1.5 MB that a mail or a browser takes at once.
 const MOST_SHOWN: usize = 16;
@@ -76,7 +76,7 @@ fn contact(run: &Run, part: &Part, n: usize) -> ViewContact {
     let mut plan = plan(placement, &xi, &axis, question.tolerance, question.method);
     let mut separation = Values::new(n * n);
     plan.fill(placement, &xi, &axis, &mut separation);
-    let rail = &placement.rail().section;
+    let mut below = Evaluator::new(placement);
     let both = run.case.profiles.left.is_some() && part.site.side() == Some(TrackSide::Left);
     let mut warnings = part.refusals();
     warnings.extend_from_slice(&part.warnings);
@@ -87,10 +87,7 @@ fn contact(run: &Run, part: &Part, n: usize) -> ViewContact {
         skew: placement.skew(),
         approach: part.site.contact.approach.filter(|approach| *approach > 0.0),
         area: patch.map(Patch::area),
-        rail_height: xi
-            .iter()
-            .map(|&xi| rail.branch_at(xi).map_or(f64::NAN, |branch| branch.height(xi)))
-            .collect(),
+        rail_height: xi.iter().map(|&xi| below.lower_height(xi, 0.0)).collect(),
         separation: separation.to_vec(),
         boundary: patch.map_or_else(Vec::new, boundary),
         pressed: pressed(part),

@@ -11,6 +11,7 @@ use nalgebra::{Point2, Point3, Vector2, Vector3};
 use super::input::FrameOrigin;
 use crate::error::{Error, Result};
 use crate::load::{HalfSpace, Located, Pressures, curvatures, press, under_total, weighted_frame};
+use crate::lofted::Loft;
 use crate::mesh::groups;
 use crate::patch::{Patch, Window};
 use crate::placement::{Pair, Placement};
@@ -26,9 +27,26 @@ pub(super) const SETTLED: f64 = 3e-4;
 /// Demand on the load that wheels carry, relative: below the error of the cells.
 const CARRIED: f64 = 2e-4;
 
+/// A rail that varies along the track, and where a wheel stands over it.
+#[derive(Clone, Copy)]
+pub(super) struct OnLoft<'a> {
+    pub loft: &'a Arc<Loft>,
+    /// Coordinate \[mm\] in the list of slices from which places count.
+    pub from: f64,
+}
+
+/// Places a pair at a place that a search found.
+///
+/// # Errors
+/// A place of another pair.
+pub(super) fn placed_at(place: &search::Contact, pair: &Pair, on: Option<OnLoft<'_>>) -> Result<Placement> {
+    on.map_or_else(|| place.placed(pair), |on| place.placed_on(pair, on.loft, on.from))
+}
+
 /// A wheel over its rail, with the places where it may touch.
 pub(super) struct Wheel<'a> {
     pair: &'a Pair,
+    on: Option<OnLoft<'a>>,
     /// The first one touches first.
     places: Vec<Reached>,
     rules: RegionRules,
@@ -51,19 +69,15 @@ pub(super) struct RegionRules {
 struct Reached {
     /// (x, z) on the rail \[mm\].
     rail: Point2<f64>,
-    /// Abscissa \[mm\] on rail and wheel, each with the angle of ξ in its own axes \[rad\].
-    along: [[f64; 2]; 2],
-    /// χ \[rad\].
-    skew: f64,
-    /// ν \[rad\] ahead of a roller's crown.
-    turn: f64,
+    /// As the search found it; `None` for chosen points.
+    found: Option<search::Contact>,
     /// Vertical gap at first touch \[mm\].
     gap: f64,
     /// Cosine of the angle between its normal and the vertical.
     cos: f64,
     /// The pair placed there, once it was asked for.
     placement: Option<Arc<Placement>>,
-    /// Where C lies along the rail \[mm\].
+    /// Where C lies along the rail \[mm\], in the list's coordinate on one that varies.
     y: f64,
     /// The pressures of its groups of parts under the last approach.
     known: Vec<Pressures>,
@@ -139,8 +153,14 @@ impl Region {
 
     /// Tells whether the group of parts around C holds a place of contact.
     fn holds(&self, place: &Reached) -> bool {
+        let within = |at: f64, [from, to]: [f64; 2]| from <= at && at <= to;
+        if let Some(lofted) = self.placement.lofted() {
+            let [xi, eta, _] = lofted.seen([place.rail.x, place.y, place.rail.y]);
+            let holds = |extent: &Window| within(xi, extent.xi) && within(eta, extent.eta);
+            return self.extents.first().is_some_and(holds);
+        }
         let xi = self.placement.rail().contact_frame().inverse_transform_point(&place.rail).x;
-        self.extents.first().is_some_and(|extent| extent.xi[0] <= xi && xi <= extent.xi[1])
+        self.extents.first().is_some_and(|extent| within(xi, extent.xi))
     }
 
     /// Gives what the wheel sinks by \[mm\], of the region that touches first.
@@ -156,19 +176,22 @@ impl Region {
 
 impl<'a> Wheel<'a> {
     /// Makes a wheel of the places that a search found, the lowest gap first.
-    pub(super) fn over(pair: &'a Pair, places: &[search::Contact], rules: RegionRules) -> Self {
+    pub(super) fn over(
+        pair: &'a Pair,
+        on: Option<OnLoft<'a>>,
+        places: &[search::Contact],
+        rules: RegionRules,
+    ) -> Self {
         let reached = |place: &search::Contact| Reached {
             rail: Point2::new(place.rail_x, place.rail_z),
-            along: [[place.rail_x, place.contact_angle], [place.wheel_x, place.wheel_angle]],
-            skew: place.skew,
-            turn: place.turn,
+            found: Some(*place),
             gap: place.gap,
             cos: place.contact_angle.cos() * place.turn.cos(),
             placement: None,
-            y: place.y,
+            y: place.y + on.map_or(0.0, |on| on.from),
             known: Vec::new(),
         };
-        Self { pair, places: places.iter().map(reached).collect(), rules }
+        Self { pair, on, places: places.iter().map(reached).collect(), rules }
     }
 
     /// Makes a wheel that touches at chosen points.
@@ -176,17 +199,14 @@ impl<'a> Wheel<'a> {
         let Station { x, z, .. } = placement.rail().point.station;
         let place = Reached {
             rail: Point2::new(x, z),
-            along: [placement.rail(), placement.wheel()]
-                .map(|body| [body.point.station.x, body.contact_angle()]),
-            skew: placement.skew(),
-            turn: placement.turn(),
+            found: None,
             gap: 0.0,
             cos: placement.upright(),
             placement: Some(Arc::new(placement)),
             y: 0.0,
             known: Vec::new(),
         };
-        Self { pair, places: vec![place], rules }
+        Self { pair, on: None, places: vec![place], rules }
     }
 
     /// Finds the regions under an approach δ \[mm\] of the first place; the first region is that place's.
@@ -217,11 +237,12 @@ impl<'a> Wheel<'a> {
 
     fn placement(&mut self, index: usize) -> Result<Arc<Placement>> {
         let place = &mut self.places[index];
-        let placement = match place.placement.take() {
-            Some(placement) => placement,
-            None => {
-                let placed = self.pair.placed_along(place.along[0], place.along[1], place.skew)?;
-                Arc::new(placed.turned(place.turn))
+        let placement = match (place.placement.take(), &place.found) {
+            (Some(placement), _) => placement,
+            (None, Some(found)) => Arc::new(placed_at(found, self.pair, self.on)?),
+            (None, None) => {
+                let expected = "a placed pair";
+                return Err(Error::new("contact", "chosen points without one", expected, "place it"));
             }
         };
         Ok(Arc::clone(place.placement.insert(placement)))
@@ -236,16 +257,12 @@ impl<'a> Wheel<'a> {
             for (k, extent) in region.extents.iter().enumerate() {
                 let space = HalfSpace::over(&region.placement, extent, region.approach);
                 let [xi, eta] = space.middle();
-                let frame = region.placement.rail().contact_frame();
-                let (at, normal) = (frame * Point2::new(xi, 0.0), frame * Vector2::y());
-                spaces.push(Located {
-                    region: match place.known.get(k) {
-                        Some(known) => space.beginning_at(known),
-                        None => space,
-                    },
-                    middle: Point3::new(at.x, place.y + eta, at.y),
-                    normal: Vector3::new(normal.x, 0.0, normal.y),
-                });
+                let (middle, normal) = in_space(&region.placement, place.y, [xi, eta]);
+                let region = match place.known.get(k) {
+                    Some(known) => space.beginning_at(known),
+                    None => space,
+                };
+                spaces.push(Located { region, middle, normal });
             }
         }
         let mut pressed = press(&spaces, SETTLED, modulus)?.into_iter();
@@ -262,6 +279,17 @@ impl<'a> Wheel<'a> {
         let ellipse = curvatures(&*self.placement(0)?).under_load(load, modulus);
         Ok(ellipse.map_or(USUAL_APPROACH, |ellipse| ellipse.approach_mm) / self.places[0].cos)
     }
+}
+
+/// Gives a point (ξ, η) \[mm\] of the tangent plane and its normal in axes that all regions of a wheel share; `y` is where C lies.
+fn in_space(placement: &Placement, y: f64, [xi, eta]: [f64; 2]) -> (Point3<f64>, Vector3<f64>) {
+    if let Some(lofted) = placement.lofted() {
+        let [along_xi, along_eta, normal] = lofted.axes().map(Vector3::from);
+        return (Point3::from(lofted.origin()) + xi * along_xi + eta * along_eta, normal);
+    }
+    let frame = placement.rail().contact_frame();
+    let (at, normal) = (frame * Point2::new(xi, 0.0), frame * Vector2::y());
+    (Point3::new(at.x, y + eta, at.y), Vector3::new(normal.x, 0.0, normal.y))
 }
 
 /// Sinks wheels together until they carry a vertical load \[N\]; gives the regions of each, with forces that add up to the load.

@@ -13,10 +13,13 @@
 
 mod bicubic;
 mod build;
+mod framed;
 mod joining;
+mod section;
 mod strip;
 
 pub use bicubic::{Bicubic, SurfacePoint};
 pub use build::{Loft, SPACING, Slice};
+pub use framed::{FramedLoft, LoftFoot};
 pub use joining::Joining;
 pub use strip::{Interval, Strip};

@@ -223,7 +223,7 @@ impl StripBuilder<'_> {
     fn row(&mut self, band: &Band, shares: &[f64], xi: f64) -> Vec<usize> {
         let eta = band.slice(xi).eta;
         let profile = self.placement.rail().section.height(xi);
-        let on_roller = self.placement.under().is_some();
+        let on_roller = self.placement.under().is_some() || self.placement.lofted().is_some();
         let mut lifted = |eta: f64| {
             let zeta = if on_roller { self.evaluator.lower_height(xi, eta) } else { profile };
             Point3::new(xi, eta, zeta)

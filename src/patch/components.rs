@@ -167,7 +167,11 @@ struct Region {
 
 /// Collects the bands of the patch into components, by ascending ξ.
 fn regions(outline: &mut Outline<'_>) -> Vec<Region> {
-    let (mut bands, turns) = if outline.slicer.skewed.is_some() {
+    let placement = outline.slicer.placement();
+    let (mut bands, turns) = if let Some(varying) = &mut outline.slicer.varying {
+        let (bands, turns) = varying.bands(placement, &outline.window);
+        (bands, turns.into_iter().map(|(lane, xi)| (Some(lane), xi)).collect())
+    } else if outline.slicer.skewed.is_some() {
         let (bands, turns) = lanes::bands(outline);
         (bands, turns.into_iter().map(|(valley, xi)| (Some(valley), xi)).collect())
     } else {
@@ -256,8 +260,9 @@ impl Region {
     fn rows(&mut self, outline: &mut Outline<'_>) -> Vec<Rows> {
         let [a, b] = self.xi();
         let skewed = outline.slicer.skewed.is_some();
-        let plain = outline.slicer.placement().skew() == 0.0;
-        let deepest = if skewed { f64::NAN } else { self.deepest(outline, &[])[0] };
+        let varying = outline.slicer.varying.is_some();
+        let plain = outline.slicer.placement().skew() == 0.0 && !varying;
+        let deepest = if skewed || varying { f64::NAN } else { self.deepest(outline, &[])[0] };
         let mut all = Vec::with_capacity(self.bands.len());
         for band in &mut self.bands {
             let [from, to] = band.xi;
@@ -266,12 +271,17 @@ impl Region {
             if skewed {
                 let eta = reach(outline, band);
                 corners::skewed(outline, band, eta, &mut more);
-            } else {
+            } else if !varying {
                 corners::plain(outline, band, deepest, &mut more);
             }
             band.corners.append(&mut more);
             sort(&mut band.corners);
             band.fit(outline);
+            if varying {
+                // Its interpolants are smooth between their own ends only.
+                band.corners.extend(band.stretches.iter().map(|stretch| stretch.xi[1]));
+                sort(&mut band.corners);
+            }
             let mut rows: Rows = graded(band, b - a).into_iter().map(|xi| row(band, xi)).collect();
             corners::at_window(band, &rows, &mut more);
             rows.extend(more.iter().map(|&xi| row(band, xi)));

@@ -6,7 +6,7 @@ mod placed;
 mod track;
 
 #[cfg(feature = "files")]
-pub(crate) use motion::on_roller;
+pub(crate) use motion::{on_roller, on_varying_rail};
 pub use motion::{Creepages, Motion, Pitch, Rates};
 pub use placed::{Body, Generator, Pair, Placement};
 pub use track::{RailDistance, Track, WheelDistance, Wheelset};

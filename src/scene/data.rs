@@ -181,6 +181,10 @@ pub struct WheelsetData {
     #[schemars(extend("minimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub within: Option<f64>,
+    /// Where the middle of the axle is along rails that vary, mm, as their lists of slices count; `wheelrail march` goes along all of
+    /// them and does not take it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub along: Option<f64>,
 }
 
 /// How the roll of a wheelset is found.

@@ -125,7 +125,7 @@ impl Lists {
 }
 
 /// Returns the list of slices of a rail that varies; `None` for one profile, or a section of a list.
-fn list_of(data: &ProfileData) -> Option<&PathBuf> {
+pub(super) fn list_of(data: &ProfileData) -> Option<&PathBuf> {
     let listed = |file: &&PathBuf| listed_body(&file.display().to_string()) == Some(Side::Rail);
     data.file.as_ref().filter(listed).filter(|_| data.along.is_none())
 }

@@ -6,11 +6,12 @@ use nalgebra::UnitComplex;
 
 use super::data::{ContactData, RollData, RollWord, Scene, TrackData, WheelsetData};
 use super::side_data::{DeviationData, SideData};
-use crate::case::{Place, Profiles, Standing};
+use super::sides::along;
+use crate::case::{Place, Profiles, SideProfiles, Standing};
 use crate::error::{Error, Result, finite, given};
 use crate::measured::Unit;
 use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
-use crate::search::{Pose, Position, ProfilePair, Roll, SideOnTrack, WheelsetOnTrack, small_angle};
+use crate::search::{LoftedPair, Pose, Position, ProfilePair, Roll, SideOnTrack, WheelsetOnTrack, small_angle};
 
 /// Depth \[mm\] below the top of rail at which the gauge is measured, if the scene gives no other.
 const GAUGE_HEIGHT: f64 = 14.0;
@@ -58,17 +59,22 @@ fn on_track(
     let (rails, wheels, within) = (rails(track)?, wheels(wheelset)?, within(wheelset.within)?);
     let deviation = |side: &Option<SideData>| side.as_ref().and_then(|side| side.deviation);
     let deviations = [&scene.left, &scene.right].map(deviation);
+    let along = along(scene)?;
+    if along.is_some() && !profiles.varies() {
+        let expected = "a place along rails that vary: a list .slcs of slices without its own `along`";
+        return Err(Error::new("wheelset: along", "a place without effect", expected, "remove it"));
+    }
     let system = if profiles.left.is_none() && deviations == [None, None] {
-        WheelsetOnTrack::new(&profiles.right.pair, rails, wheels)?
+        WheelsetOnTrack::symmetrical(side(&mut profiles.right, (rails, wheels), DeviationData::default(), 1.0)?)
     } else {
         let left = profiles.left.get_or_insert_with(|| profiles.right.clone());
-        let own = |pair: &mut Pair, deviation: Option<DeviationData>, name: &str, sign: f64| {
-            let side = side(pair, (rails, wheels), deviation.unwrap_or_default(), sign);
+        let own = |own: &mut SideProfiles, deviation: Option<DeviationData>, name: &str, sign: f64| {
+            let side = side(own, (rails, wheels), deviation.unwrap_or_default(), sign);
             side.map_err(|error| error.within(name))
         };
         let [off_left, off_right] = deviations;
-        let left = own(&mut left.pair, off_left, "left", -1.0)?;
-        WheelsetOnTrack::of_sides(left, own(&mut profiles.right.pair, off_right, "right", 1.0)?)
+        let left = own(left, off_left, "left", -1.0)?;
+        WheelsetOnTrack::of_sides(left, own(&mut profiles.right, off_right, "right", 1.0)?)
     };
     let roll_by_load = wheelset.roll == RollData::Word(RollWord::Load);
     let of_side = |side: &Option<SideData>| side.as_ref().is_some_and(|side| side.load.is_some());
@@ -84,7 +90,8 @@ fn on_track(
             "give one, or another roll",
         ));
     }
-    Ok(Standing { place: Place::Wheelset { system: Arc::new(system), position }, within, roll_by_load })
+    let along = along.unwrap_or(0.0);
+    Ok(Standing { place: Place::Wheelset { system: Arc::new(system), position }, within, roll_by_load, along })
 }
 
 /// Reads the position of a wheelset.
@@ -98,21 +105,37 @@ pub(super) fn position(wheelset: &WheelsetData) -> Result<Position> {
 
 /// Places one side, whose x is the track's times `sign`: by its nominal rail, which then deviates.
 fn side(
-    pair: &mut Pair,
+    SideProfiles { pair, loft, .. }: &mut SideProfiles,
     (rails, wheels): (RailDistance, WheelDistance),
     deviation: DeviationData,
     sign: f64,
 ) -> Result<SideOnTrack> {
     let within = |error: Error| error.within("deviation");
-    let nominal = Track::new(pair.rail(), rails)?;
+    let axle = Wheelset::new(wheels, pair.wheel_radius())?;
+    let nominal = match (&loft, rails) {
+        (None, _) => Track::new(pair.rail(), rails)?,
+        (Some(_), RailDistance::Spacing(spacing)) => Track::between_origins(spacing)?,
+        (Some(_), RailDistance::Gauge { .. }) => {
+            let expected = "`spacing` of the profile origins: rails that vary have no one gauge point";
+            return Err(Error::new("track", "a gauge", expected, "give spacing instead of gauge"));
+        }
+    };
     let track = nominal.moved(sign * deviation.lateral, deviation.vertical).map_err(within)?;
     let roll = small_angle("roll", deviation.roll).map_err(within)?;
+    if let Some(loft) = loft {
+        if roll != 0.0 {
+            let expected = "lateral and vertical deviations of rails that vary along the track";
+            return Err(Error::new("deviation: roll", "a roll", expected, "turn the slices by `rotate`"));
+        }
+        let pair = LoftedPair::new(Arc::clone(loft), pair.wheel(), pair.wheel_radius())?;
+        return Ok(SideOnTrack::lofted(Arc::new(pair), track, axle));
+    }
     if roll != 0.0 {
         // Profiles turn counter-clockwise, and the right-hand side's roll is clockwise.
         let rail = pair.rail().clone().rotated(UnitComplex::new(-sign * roll));
         *pair = pair.with_rail(rail)?;
     }
-    SideOnTrack::new(pair, track, Wheelset::new(wheels, pair.wheel_radius())?)
+    SideOnTrack::new(pair, track, axle)
 }
 
 fn single(contact: &ContactData, pair: &Pair) -> Result<Standing> {
@@ -141,7 +164,7 @@ fn single(contact: &ContactData, pair: &Pair) -> Result<Standing> {
             return Err(Error::new("contact", found, expected, "keep one of the two forms"));
         }
     };
-    Ok(Standing { place, within, roll_by_load: false })
+    Ok(Standing { place, within, roll_by_load: false, along: 0.0 })
 }
 
 /// Returns the largest gap of a near miss \[mm\], 0 if none is given.

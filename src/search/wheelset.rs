@@ -143,6 +143,13 @@ impl WheelsetOnTrack {
         &self.sides[0]
     }
 
+    /// Returns the coordinate \[mm\] along the track that [`Contact::y`](super::Contact::y) of a side counts from, when the middle of the
+    /// axle is at `along`: that of the wheel profile's origin.
+    pub fn along(&self, right: bool, position: &Position, along: f64) -> f64 {
+        let side = usize::from(right);
+        along + SIGNS[side] * position.yaw.sin() * self.sides[side].wheelset.wheel_x
+    }
+
     /// Returns the nominal rolling radius \[mm\] from which heights of the axle's middle count: the right-hand wheel's.
     pub(super) fn reference_radius(&self) -> f64 {
         self.sides[1].wheelset.radius

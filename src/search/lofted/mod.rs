@@ -114,6 +114,11 @@ impl LoftedPair {
         Ok(Self { loft, wheel: body, section, radius })
     }
 
+    /// The rail's surface.
+    pub fn loft(&self) -> &Arc<Loft> {
+        &self.loft
+    }
+
     /// Makes a search; the axle's middle is at 0 of the list.
     pub(super) fn search(&self) -> LoftedSearch<'_> {
         LoftedSearch {

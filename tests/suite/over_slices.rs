@@ -1,0 +1,216 @@
+//! Contacts with rails that vary along the track: separation, normals, patches and runs.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use wheelrail::case::{Run, SILENT};
+use wheelrail::error::Result;
+use wheelrail::lofted::{Joining, Loft};
+use wheelrail::scene;
+use wheelrail::search::TrackSide;
+use wheelrail::{
+    Evaluator, Half, ONE_CONTACT, Pair, Patch, Placement, Pose, Profile, ProfilePair, Segment, Selection,
+    Window, feasibility, standards,
+};
+use wheelrail_report::random::Random;
+
+use super::along_track::{RADIUS, march_over, position, right, slices};
+use super::campaign::scenes;
+
+/// Half the width of a head that is one crown, and its radius \[mm\].
+const CROWN: [f64; 2] = [30.0, 300.0];
+
+/// A crown of one radius with its top at `z`.
+fn crown(z: f64) -> Profile {
+    let [half, radius] = CROWN;
+    let arc = wheelrail::Arc::about([0.0, -radius], radius, Half::Upper, [-half, half]).unwrap();
+    Profile::new("crown", "", vec![Segment::arc(arc)]).unwrap().shifted(0.0, z)
+}
+
+fn cylinder() -> Profile {
+    let line = wheelrail::Arc::line([-60.0, 0.0], [60.0, 0.0]).unwrap();
+    Profile::new("tread", "", vec![Segment::arc(line)]).unwrap()
+}
+
+/// A place of contact of a cylinder on a crown whose height along the track a function gives.
+fn on_crown(height: impl Fn(f64) -> f64, at: &[f64], yaw: f64, along: f64) -> Result<Placement> {
+    let rail = slices(at, |y| crown(height(y)));
+    let march = march_over(&rail, cylinder(), position(0.0, yaw, 0.0), 0.0)?;
+    let loft = Arc::new(Loft::new(&rail, Joining::Monotone)?);
+    let pair = Pair::new(crown(0.0), cylinder(), RADIUS)?;
+    right(&march, along).placed_on(&pair, &loft, march.system.along(true, &march.position, along))
+}
+
+/// ζ of a crown that rises at a rate, at (ξ, η) of a frame: by bisection along the line, in the axes of the slices.
+fn risen(placement: &Placement, rate: f64, [xi, eta]: [f64; 2]) -> f64 {
+    let frame = placement.lofted().unwrap();
+    let (origin, axes) = (frame.origin(), frame.axes());
+    let below = |zeta: f64| {
+        let at = [0, 1, 2].map(|k| origin[k] + xi * axes[0][k] + eta * axes[1][k] + zeta * axes[2][k]);
+        let radius = CROWN[1];
+        // z + x²/(R + √(R² − x²)) − rate y, without a large difference.
+        let fall = at[0] * at[0] / (radius + ((radius - at[0]) * (radius + at[0])).sqrt());
+        at[2] + fall - rate * at[1] < 0.0
+    };
+    let (mut low, mut high) = (-20.0, 20.0);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if below(middle) { low = middle } else { high = middle }
+    }
+    low
+}
+
+#[test]
+fn separation_and_normals_over_a_nose_that_rises_are_those_of_an_inclined_rail() -> Result<()> {
+    let mut random = Random::new(343);
+    for (rate, yaw) in [(0.1, 0.0), (-0.1, 0.0), (0.1, 0.02), (0.02, -0.03)] {
+        let at = [-200.0, -35.0, 10.0, 60.0, 200.0];
+        let placement = on_crown(|y| rate * y, &at, yaw, 12.0)?;
+        assert!((placement.turn() + f64::atan(rate)).abs() < 1e-7, "{}", placement.turn());
+        let mut evaluator = Evaluator::new(&placement);
+        let (sin, cos) = placement.skew().sin_cos();
+        for _ in 0..500 {
+            let at = [random.between(-25.0, 25.0), random.between(-40.0, 40.0)];
+            // The cylinder about its axle, which lies R along the normal of C and is turned by the skew.
+            let across = at[1] * cos - at[0] * sin;
+            let wheel = across * across / (RADIUS + ((RADIUS - across) * (RADIUS + across)).sqrt());
+            let expected = wheel - risen(&placement, rate, at);
+            let found = evaluator.separation(at[0], at[1]);
+            assert!((found - expected).abs() < 1e-10, "{rate} {yaw} {at:?}: {found} instead of {expected}");
+            // Normals by differences of the closed form.
+            let h = 1e-3;
+            let slope = |step: [f64; 2]| {
+                let beside = |sign: f64| risen(&placement, rate, [0, 1].map(|k| at[k] + sign * h * step[k]));
+                (beside(1.0) - beside(-1.0)) / (2.0 * h)
+            };
+            let normal = evaluator.normals(at[0], at[1]).rail.unwrap();
+            let off = [slope([1.0, 0.0]) + normal.x / normal.z, slope([0.0, 1.0]) + normal.y / normal.z];
+            assert!(off[0].abs() < 1e-9 && off[1].abs() < 1e-9, "{at:?}: {off:?}");
+        }
+        assert!(evaluator.separation(CROWN[0] + 0.1, 0.0).is_nan());
+        assert!(feasibility(&placement).unwrap().feasible);
+    }
+    Ok(())
+}
+
+#[test]
+fn equal_slices_have_separations_and_patches_of_the_extruded_rail() -> Result<()> {
+    let pair = Pair::new(crown(0.0), standards::wheel("S1002")?, RADIUS)?;
+    let loft = Arc::new(Loft::new(&slices(&[-300.0, -40.0, 5.0, 45.0, 300.0], |_| crown(0.0)), Joining::Monotone)?);
+    let profiles = ProfilePair::new(&pair)?;
+    let mut search = profiles.search();
+    let mut random = Random::new(344);
+    for _ in 0..scenes().div_ceil(8) {
+        let pose = Pose::new(random.between(-5.0, 5.0), random.between(-0.03, 0.03), random.between(-0.005, 0.005))?;
+        let touch = search.touch(&pose, &Selection { within: 0.0, apart: ONE_CONTACT });
+        let contact = touch.expect("a wheel on a rail").contacts[0];
+        let (swept, lofted) = (contact.placed(&pair)?, contact.placed_on(&pair, &loft, random.between(-9.0, 9.0))?);
+        let (mut own, mut other) = (Evaluator::new(&lofted), Evaluator::new(&swept));
+        for _ in 0..100 {
+            let at = [random.between(-15.0, 15.0), random.between(-15.0, 15.0)];
+            let (found, expected) = (own.separation(at[0], at[1]), other.separation(at[0], at[1]));
+            let same = found.is_nan() && expected.is_nan() || (found - expected).abs() < 1e-10;
+            assert!(same, "{pose:?} {at:?}: {found} instead of {expected}");
+        }
+        let approach = random.between(0.01, 0.1);
+        let [found, expected] = [&lofted, &swept].map(|p| Patch::new(p, approach, &Window::UNBOUNDED));
+        assert_eq!(found.components.len(), expected.components.len(), "{pose:?}");
+        assert!((found.area() / expected.area() - 1.0).abs() < 1e-7, "{} {}", found.area(), expected.area());
+        for (found, expected) in found.components.iter().zip(&expected.components) {
+            let off = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
+            assert!(off(found.xi, expected.xi) < 1e-6 && off(found.eta, expected.eta) < 1e-3, "{pose:?}");
+            assert!((found.perimeter / expected.perimeter - 1.0).abs() < 1e-6, "{pose:?}");
+            assert!((found.deepest[0] - expected.deepest[0]).abs() < 1e-9, "{pose:?}");
+            for at in &found.boundary {
+                assert!((own.separation(at[0], at[1]) - approach).abs() < 1e-8, "{pose:?} {at:?}");
+            }
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn a_wheel_over_a_hollow_has_a_patch_on_either_side_of_it() -> Result<()> {
+    let at: Vec<f64> = (-20..=20).map(|k| 10.0 * f64::from(k)).collect();
+    let placement = on_crown(|y| 5.0 * (1.0 - (-y * y / 1600.0).exp()) - 5.0, &at, 0.0, 3.0)?;
+    let patch = Patch::new(&placement, 0.4, &Window::UNBOUNDED);
+    let mut evaluator = Evaluator::new(&placement);
+    // Squares whose middles overlap, of a tenth of a millimetre.
+    let (mut area, mut ends) = (0.0, [0.0f64; 2]);
+    for i in -400..400 {
+        for j in -1200..1200 {
+            let [xi, eta] = [i, j].map(|k| 0.1 * (f64::from(k) + 0.5));
+            if evaluator.separation(xi, eta) < patch.approach {
+                area += 0.01;
+                ends = [ends[0].min(eta), ends[1].max(eta)];
+            }
+        }
+    }
+    assert!((patch.area() / area - 1.0).abs() < 0.01, "{} instead of {area}", patch.area());
+    let extent = patch.extent().unwrap();
+    assert!((extent.eta[0] - ends[0]).abs() < 0.2 && (extent.eta[1] - ends[1]).abs() < 0.2, "{extent:?} {ends:?}");
+    // One of them holds C.
+    let own = patch.components.iter().filter(|c| c.eta[0] < 0.0 && 0.0 < c.eta[1]).count();
+    assert!(patch.components.len() == 2 && own == 1, "{:?}", patch.components.len());
+    Ok(())
+}
+
+/// A run of the example at a place along the track.
+fn run(along: f64, more: &str) -> Result<Run> {
+    run_text(&along.to_string(), more)
+}
+
+#[test]
+fn a_wheel_on_the_nose_of_a_crossing_is_run_like_any_other() -> Result<()> {
+    let run = run(160.0, "[patch]\napproach = 0.05")?;
+    let right = &run.parts[0];
+    assert_eq!(right.site.side(), Some(TrackSide::Right));
+    let placement = &right.site.contact.placement;
+    assert!((placement.turn() + f64::atan(0.05)).abs() < 2e-3, "{}", placement.turn());
+    assert!(run.refusals().is_empty(), "{:?}", run.refusals());
+    let patch = right.analysis.patch.as_ref().unwrap();
+    assert!(patch.components.len() == 1 && !patch.cut_by_window() && patch.area() > 10.0, "{patch:?}");
+    // The mesh covers the patch, and the grid has numbers.
+    let cells: f64 = right.analysis.strips.as_ref().unwrap().cells.iter().map(|cell| cell.area).sum();
+    assert!((cells / patch.area() - 1.0).abs() < 1e-9, "{cells}");
+    assert!(right.analysis.separation.iter().all(|s| s.is_finite()));
+    assert!(right.analysis.plan.error < 1e-11, "{}", right.analysis.plan.error);
+    // The other side is extruded.
+    assert!(run.parts.last().unwrap().site.contact.placement.lofted().is_none());
+    Ok(())
+}
+
+#[test]
+fn a_load_is_carried_by_wing_and_nose_together_where_the_wheel_goes_over() -> Result<()> {
+    let run = run(122.5, "[patch]\nload = 1e5")?;
+    let right = run.parts.iter().filter(|part| part.site.side() == Some(TrackSide::Right));
+    let loads: Vec<f64> = right.clone().map(|part| part.site.vertical_load().unwrap()).collect();
+    assert!(loads.len() == 2 && loads.iter().all(|load| *load > 2e4), "{loads:?}");
+    assert!((loads.iter().sum::<f64>() / 1e5 - 1.0).abs() < 1e-9, "{loads:?}");
+    let x: Vec<f64> = right.map(|part| part.site.contact.placement.rail().point().station.x).collect();
+    assert!(x.iter().any(|x| *x < -10.0) && x.iter().any(|x| *x > 40.0), "{x:?}");
+    Ok(())
+}
+
+#[test]
+fn what_rails_that_vary_do_not_have_is_refused_by_name() {
+    for (along, more, message) in [
+        ("160.0", "[grid]\nreference = \"rail\"", "grid: reference: found \"rail\" on a rail that varies"),
+        ("160.0", "[motion]\nspeed = 1e4", "motion: found a motion over a rail that varies"),
+        ("160.0", "[patch]\napproach = 0.05\nframe = \"weighted\"", "patch: frame: found a rail that varies"),
+        ("160.0", "[roller]\nradius = 350.0", "roller: found one"),
+        ("999.0", "", "wheelset: along: found 999 mm; expected a place from -150 to 350 mm"),
+        ("nan", "", "wheelset: along"),
+        ("160.0", "[grid]\nmethod = \"report-newton\"\n[patch]\napproach = 0.05", "a rail that varies along the track"),
+    ] {
+        let error = run_text(along, more).map(drop).unwrap_err().to_string();
+        assert!(error.contains(message), "{more}: {error}");
+    }
+}
+
+fn run_text(along: &str, more: &str) -> Result<Run> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/crossing");
+    let text = std::fs::read_to_string(folder.join("crossing.toml")).unwrap();
+    let text = text.replace("lateral = 0.0", &format!("lateral = 0.0\nalong = {along}"));
+    Run::new(scene::resolve(&scene::parse(&format!("{text}\n{more}"), false)?, &folder, "")?, SILENT)
+}
