@@ -349,21 +349,27 @@ impl RailColumns {
     fn new(part: &Part) -> Self {
         let placement = &part.site.contact.placement;
         if placement.lofted().is_some() {
-            // Over the tangent plane.
-            let (height, normal) = part.site.grid.xi.iter().map(|_| (0.0, [0.0, 1.0])).unzip();
-            return Self { height, normal, roller: Self::roller(part) };
+            // Along η = 0, and where it has no surface there from the tangent plane.
+            let mut bodies = Evaluator::new(placement);
+            let column = |&xi: &f64| {
+                let normal = bodies.normals(xi, 0.0).rail.map_or([0.0, 1.0], |normal| [normal.x, normal.z]);
+                (Some(bodies.lower_height(xi, 0.0)).filter(|zeta| !zeta.is_nan()).unwrap_or(0.0), normal)
+            };
+            let (height, normal): (Vec<f64>, Vec<[f64; 2]>) =
+                part.site.grid.xi.iter().map(column).unzip();
+            return Self { roller: Self::roller(part, &height), height, normal };
         }
         let section = &placement.rail().section;
         let station = |&xi: &f64| section.branch_at(xi).map(|branch| branch.station(xi));
         let column = |s: Station| (s.z, [-s.sin, s.cos]);
         let columns =
             part.site.grid.xi.iter().map(|xi| station(xi).map_or((f64::NAN, [f64::NAN; 2]), column));
-        let (height, normal) = columns.unzip();
-        Self { height, normal, roller: Self::roller(part) }
+        let (height, normal): (Vec<f64>, Vec<[f64; 2]>) = columns.unzip();
+        Self { roller: Self::roller(part, &height), height, normal }
     }
 
     /// Computes the surface of a roller, or of a rail that varies along the track, over the grid; `None` for an extruded rail.
-    fn roller(part: &Part) -> Option<RollerFields> {
+    fn roller(part: &Part, height: &[f64]) -> Option<RollerFields> {
         let placement = &part.site.contact.placement;
         if placement.under().is_none() && placement.lofted().is_none() {
             return None;
@@ -371,11 +377,11 @@ impl RailColumns {
         let mut bodies = Evaluator::new(placement);
         let mut evaluator = placement.under().map(Evaluator::new);
         let mut fields = RollerFields::default();
-        for &xi in &part.site.grid.xi {
+        for (&xi, height) in part.site.grid.xi.iter().zip(height) {
             for &eta in &part.site.grid.eta {
                 let normal = bodies.normals(xi, eta).rail;
                 let fall = evaluator.as_mut().map(|under| under.separation(xi, eta));
-                fields.fall.push(fall.unwrap_or_else(|| -bodies.lower_height(xi, eta)));
+                fields.fall.push(fall.unwrap_or_else(|| height - bodies.lower_height(xi, eta)));
                 fields.normal.push(normal.map_or([f64::NAN; 3], |normal| [normal.x, normal.y, normal.z]));
             }
         }

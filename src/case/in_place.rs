@@ -33,7 +33,7 @@ pub(super) fn to_track(run: &Run, part: &Part) -> Matrix4<f64> {
             let side = if left { system.left() } else { system.right() };
             ([side.track().rail_x(), side.track().rail_z()], side.wheelset().wheel_x())
         }
-        Place::Points { .. } | Place::Wheel { .. } => ([0.0; 2], 0.0),
+        Place::Points { .. } | Place::Wheel { .. } | Place::OnSlices { .. } => ([0.0; 2], 0.0),
     };
     if let Some(lofted) = placement.lofted() {
         let [x, y, z] = lofted.origin();
@@ -111,7 +111,7 @@ fn statements(run: &Run) -> Vec<String> {
         Place::Wheelset { .. } => {
             "track axes: x to the right, y forward, z up; origin in the middle, top of rail"
         }
-        Place::Points { .. } | Place::Wheel { .. } => {
+        Place::Points { .. } | Place::Wheel { .. } | Place::OnSlices { .. } => {
             "axes of the rail profile: x to the field side, y along, z up"
         }
     };

@@ -17,7 +17,7 @@ use crate::measured::Record;
 use crate::numerics::bodies::Bodies;
 use crate::placement::Motion;
 use crate::placement::Pair;
-use crate::search::{Pose, Position, ProfilePair, TrackSide, WheelsetOnTrack};
+use crate::search::{LoftedPair, Pose, Position, ProfilePair, TrackSide, WheelsetOnTrack};
 use crate::separation::Method;
 
 /// Two prepared profiles, where they stand, what is asked of them, and what is to be written.
@@ -114,7 +114,7 @@ pub struct Standing {
     pub along: f64,
 }
 
-/// The three ways to place bodies.
+/// The ways to place bodies.
 #[derive(Debug, Clone)]
 pub enum Place {
     /// Both profiles touch at chosen points of them, the Report's way.
@@ -129,6 +129,13 @@ pub enum Place {
         /// The profiles, prepared for searches.
         profiles: Arc<ProfilePair>,
         /// Where the wheel stands.
+        pose: Pose,
+    },
+    /// A single wheel is lowered onto a rail that varies along the track.
+    OnSlices {
+        /// Rail and wheel, prepared for searches.
+        pair: Arc<LoftedPair>,
+        /// Where the wheel stands across.
         pose: Pose,
     },
     /// A wheelset is lowered onto its track.

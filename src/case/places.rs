@@ -207,6 +207,12 @@ fn sides(case: &Case, within: f64, roll: Option<f64>) -> Result<Vec<Side>> {
             let places = touch.contacts.to_vec();
             Ok(vec![Side { side: None, height: touch.height, roll: pose.roll(), places }])
         }
+        Place::OnSlices { pair, pose } => {
+            let Some((height, places)) = pair.touch(pose, case.standing.along, &selection)? else {
+                return Err(no_touch("contact: offset", "a wheel over its rail", "check offset and signs"));
+            };
+            Ok(vec![Side { side: None, height, roll: pose.roll(), places }])
+        }
         Place::Wheelset { system, position } => {
             let mut search = system.search();
             search.stand_at(case.standing.along);
@@ -276,7 +282,7 @@ fn on_loft(case: &Case, side: Option<TrackSide>) -> Option<OnLoft<'_>> {
         Place::Wheelset { system, position } => {
             system.along(side != Some(TrackSide::Left), position, along)
         }
-        Place::Points { .. } | Place::Wheel { .. } => along,
+        Place::Points { .. } | Place::Wheel { .. } | Place::OnSlices { .. } => along,
     };
     Some(OnLoft { loft, from })
 }

@@ -59,6 +59,11 @@ fn notes(run: &Run, n: usize) -> Vec<String> {
     if run.parts.len() > MOST_SHOWN {
         notes.push(format!("The page shows the first {MOST_SHOWN} of {} contacts.", run.parts.len()));
     }
+    if run.case.profiles.varies() {
+        notes.push(
+            "Rails that vary along the track are drawn in space as if one section went on; separations are those of their surface.".into(),
+        );
+    }
     if run.parts.len() > 1 {
         notes.push("Dashed regions in the colour of the boundary belong to a neighbouring contact.".into());
     }

@@ -82,15 +82,16 @@ pub fn feasibility(placement: &Placement) -> Option<Feasibility> {
     Some(Feasibility { feasible, least_separation_mm, at_xi_mm, at_eta_mm })
 }
 
-/// The least s on a rail that varies along the track, where its patch under no approach is deepest.
+/// The least s on a rail that varies along the track: at C, or where the bodies overlap most.
 fn on_varying_rail(placement: &Placement) -> Option<Feasibility> {
     let at_contact = Evaluator::new(placement).separation(0.0, 0.0);
-    let overlap = Patch::new(placement, 0.0, &Window::UNBOUNDED);
+    let extent = placement.rail().profile().extent().max(placement.wheel().profile().extent());
+    // Below 0 by what counts as rounding, which would otherwise make patches of its own around C.
+    let overlap = Patch::new(placement, -ROUNDING_OF_PLACES * extent, &Window::UNBOUNDED);
     let places = overlap.components.iter().map(|component| component.deepest);
     let own = std::iter::once([at_contact, 0.0, 0.0]).filter(|[s, ..]| !s.is_nan());
     let [least, xi, eta] = own.chain(places).min_by(|a, b| a[0].total_cmp(&b[0]))?;
-    let extent = placement.rail().profile().extent().max(placement.wheel().profile().extent());
-    let feasible = least >= -ROUNDING_OF_PLACES * extent;
+    let feasible = overlap.components.is_empty();
     Some(Feasibility { feasible, least_separation_mm: least, at_xi_mm: xi, at_eta_mm: eta })
 }
 

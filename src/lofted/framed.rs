@@ -5,7 +5,9 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::{Loft, Strip, SurfacePoint};
+use super::bicubic::SurfacePoint;
+use super::build::Loft;
+use super::strip::Strip;
 use crate::profile::{Profile, Section, Segment, Side};
 
 /// Distance along the track of the sections from which feet are sought \[mm\].

@@ -1,45 +1,29 @@
 //! The section of a lofted surface across the track.
 
-use super::Loft;
 use super::strip::Strip;
 use crate::error::{Error, Result};
 use crate::profile::{Polynomial, Profile, Segment, Shape};
 
-impl Loft {
-    /// Returns the section at y \[mm\] through the part of a strip, as far as its neighbours join it: exactly the cut of the surface,
-    /// one cubic a cell.
-    ///
-    /// # Errors
-    /// A place where the strip has no surface.
-    pub fn section(&self, strip: usize, y: f64) -> Result<Profile> {
-        let here = |k: usize| {
-            let [from, to] = self.strips[k].reach();
-            (from..=to).contains(&y)
-        };
-        if !here(strip) {
-            let [from, to] = self.strips[strip].reach();
-            let expected = format!("a place from {from} to {to} mm, where this part of the rail is");
-            return Err(Error::new("along", format!("{y} mm"), expected, "choose another place"));
-        }
-        let beside = |part: Option<usize>| {
-            part.and_then(|part| (0..self.strips.len()).find(|&k| self.strips[k].part == part && here(k)))
-        };
-        let before = std::iter::successors(Some(strip), |&k| beside(self.strips[k].part.checked_sub(1)));
-        let mut run: Vec<usize> = before.collect();
-        run.reverse();
-        run.extend(
-            std::iter::successors(Some(strip), |&k| beside(self.strips[k].part.checked_add(1))).skip(1),
-        );
-        let segments = run.into_iter().flat_map(|k| spans(&self.strips[k], y)).collect::<Result<Vec<_>>>()?;
-        Profile::new(format!("section at {y:.3} mm"), "a cut of a list of slices", segments)
+/// Makes the section at y \[mm\] through one of the strips, as far as its neighbours join it.
+///
+/// # Errors
+/// A place where the strip has no surface.
+pub(super) fn section(strips: &[Strip], strip: usize, y: f64) -> Result<Profile> {
+    let here = |k: usize| (strips[k].reach()[0]..=strips[k].reach()[1]).contains(&y);
+    if !here(strip) {
+        let [from, to] = strips[strip].reach();
+        let expected = format!("a place from {from} to {to} mm, where this part of the rail is");
+        return Err(Error::new("along", format!("{y} mm"), expected, "choose another place"));
     }
-
-    /// Returns the index of the longest strip across at y \[mm\], the running rail's in most cases; `None` where there is none.
-    pub fn widest(&self, y: f64) -> Option<usize> {
-        let here = |strip: &Strip| (strip.reach()[0]..=strip.reach()[1]).contains(&y);
-        let strips = self.strips.iter().enumerate().filter(|(_, strip)| here(strip));
-        strips.max_by_key(|(_, strip)| strip.cells()).map(|(k, _)| k)
-    }
+    let beside = |part: Option<usize>| {
+        part.and_then(|part| (0..strips.len()).find(|&k| strips[k].part == part && here(k)))
+    };
+    let before = std::iter::successors(Some(strip), |&k| beside(strips[k].part.checked_sub(1)));
+    let mut run: Vec<usize> = before.collect();
+    run.reverse();
+    run.extend(std::iter::successors(Some(strip), |&k| beside(strips[k].part.checked_add(1))).skip(1));
+    let segments = run.into_iter().flat_map(|k| spans(&strips[k], y)).collect::<Result<Vec<_>>>()?;
+    Profile::new(format!("section at {y:.3} mm"), "a cut of a list of slices", segments)
 }
 
 /// Makes the segments of a strip's cells at y \[mm\]; cells without length are left out.

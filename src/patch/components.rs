@@ -8,6 +8,7 @@ use super::measure::area_and_length;
 use super::outline::{End, Outline, Window};
 use super::plain;
 use super::skewed::lanes;
+use super::varying;
 use super::slice::Slice;
 use crate::placement::Placement;
 
@@ -169,7 +170,7 @@ struct Region {
 fn regions(outline: &mut Outline<'_>) -> Vec<Region> {
     let placement = outline.slicer.placement();
     let (mut bands, turns) = if let Some(varying) = &mut outline.slicer.varying {
-        let (bands, turns) = varying.bands(placement, &outline.window);
+        let (bands, turns) = varying::bands(varying, placement, &outline.window);
         (bands, turns.into_iter().map(|(lane, xi)| (Some(lane), xi)).collect())
     } else if outline.slicer.skewed.is_some() {
         let (bands, turns) = lanes::bands(outline);

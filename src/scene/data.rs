@@ -128,6 +128,9 @@ pub struct ContactData {
     #[schemars(extend("minimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub within: Option<f64>,
+    /// Where the wheel's centre is along a rail that varies, mm, as its list of slices counts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub along: Option<f64>,
 }
 
 /// A track of two rails: the right one is as described, the left one is its mirror image.

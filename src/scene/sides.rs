@@ -67,13 +67,18 @@ fn of_side(
     Ok(SideProfiles { pair, measured, loft: loft.map(|(_, loft)| loft) })
 }
 
-/// Gives the place along the track at which a wheelset stands on rails that vary \[mm\]; `None` of a scene without one.
+/// Gives the place along the track at which a wheelset or a wheel stands on rails that vary \[mm\]; `None` of a scene without one.
 ///
 /// # Errors
 /// A place that is not finite.
 pub(super) fn along(scene: &Scene) -> Result<Option<f64>> {
-    let asked = scene.wheelset.as_ref().and_then(|wheelset| wheelset.along);
-    asked.map(|along| finite("wheelset: along", along)).transpose()
+    let of_wheelset = scene.wheelset.as_ref().and_then(|wheelset| wheelset.along);
+    let of_wheel = scene.contact.as_ref().and_then(|contact| contact.along);
+    match (of_wheelset, of_wheel) {
+        (Some(along), _) => finite("wheelset: along", along).map(Some),
+        (None, Some(along)) => finite("contact: along", along).map(Some),
+        (None, None) => Ok(None),
+    }
 }
 
 /// Makes the surface of a rail that is a list of slices without a place of its own, with its section where the wheelset stands; `None` of
@@ -89,7 +94,8 @@ fn varying(
     let Some(strip) = loft.widest(along) else {
         let [from, to] = loft.reach();
         let expected = format!("a place from {from} to {to} mm, where the slices are");
-        return Err(Error::new("wheelset: along", format!("{along} mm"), expected, "choose another place"));
+        let place = if scene.wheelset.is_some() { "wheelset: along" } else { "contact: along" };
+        return Err(Error::new(place, format!("{along} mm"), expected, "choose another place"));
     };
     let name = list.file_name().unwrap_or(list.as_os_str()).to_string_lossy();
     let mut section = loft.section(strip, along)?;

@@ -10,7 +10,7 @@ use super::sides::along;
 use crate::case::{Place, Profiles, SideProfiles, Standing};
 use crate::error::{Error, Result, finite, given};
 use crate::measured::Unit;
-use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
+use crate::placement::{RailDistance, Track, WheelDistance, Wheelset};
 use crate::search::{LoftedPair, Pose, Position, ProfilePair, Roll, SideOnTrack, WheelsetOnTrack, small_angle};
 
 /// Depth \[mm\] below the top of rail at which the gauge is measured, if the scene gives no other.
@@ -29,7 +29,7 @@ pub(super) fn standing(scene: &Scene, mut profiles: Profiles) -> Result<(Standin
                     return Err(Error::new(side, "a side beside [contact]", expected, "remove it"));
                 }
             }
-            single(contact, &profiles.right.pair)
+            single(contact, &profiles.right, along(scene)?)
         }
         (None, Some(track), Some(wheelset)) => on_track(scene, track, wheelset, &mut profiles),
         (None, None, None) => {
@@ -60,10 +60,7 @@ fn on_track(
     let deviation = |side: &Option<SideData>| side.as_ref().and_then(|side| side.deviation);
     let deviations = [&scene.left, &scene.right].map(deviation);
     let along = along(scene)?;
-    if along.is_some() && !profiles.varies() {
-        let expected = "a place along rails that vary: a list .slcs of slices without its own `along`";
-        return Err(Error::new("wheelset: along", "a place without effect", expected, "remove it"));
-    }
+    without_effect("wheelset: along", along, profiles.varies())?;
     let system = if profiles.left.is_none() && deviations == [None, None] {
         WheelsetOnTrack::symmetrical(side(&mut profiles.right, (rails, wheels), DeviationData::default(), 1.0)?)
     } else {
@@ -138,10 +135,16 @@ fn side(
     SideOnTrack::new(pair, track, axle)
 }
 
-fn single(contact: &ContactData, pair: &Pair) -> Result<Standing> {
+fn single(contact: &ContactData, profiles: &SideProfiles, along: Option<f64>) -> Result<Standing> {
     let in_table = |error: Error| error.within("contact");
+    let SideProfiles { pair, loft, .. } = profiles;
+    without_effect("contact: along", along, loft.is_some())?;
     let within = within(contact.within).map_err(in_table)?;
     let place = match (contact.rail_x, contact.wheel_x, contact.offset) {
+        (Some(_), ..) if loft.is_some() => {
+            let expected = "`offset` with perhaps `roll` and `yaw`, on a rail that varies along the track";
+            return Err(Error::new("contact: rail_x", "a chosen point", expected, "let the wheel be lowered"));
+        }
         (Some(rail_x), Some(wheel_x), None) if contact.roll.is_none() && contact.yaw.is_none() => {
             Place::Points {
                 rail_x: finite("rail_x", rail_x).map_err(in_table)?,
@@ -150,7 +153,14 @@ fn single(contact: &ContactData, pair: &Pair) -> Result<Standing> {
         }
         (None, None, Some(offset)) => {
             let pose = Pose::new(offset, contact.yaw.unwrap_or(0.0), contact.roll.unwrap_or(0.0));
-            Place::Wheel { pose: pose.map_err(in_table)?, profiles: Arc::new(ProfilePair::new(pair)?) }
+            let pose = pose.map_err(in_table)?;
+            match loft {
+                Some(loft) => {
+                    let pair = LoftedPair::new(Arc::clone(loft), pair.wheel(), pair.wheel_radius())?;
+                    Place::OnSlices { pose, pair: Arc::new(pair) }
+                }
+                None => Place::Wheel { pose, profiles: Arc::new(ProfilePair::new(pair)?) },
+            }
         }
         _ => {
             let expected = "either `rail_x` and `wheel_x`, or `offset` with perhaps `roll` and `yaw`";
@@ -164,7 +174,16 @@ fn single(contact: &ContactData, pair: &Pair) -> Result<Standing> {
             return Err(Error::new("contact", found, expected, "keep one of the two forms"));
         }
     };
-    Ok(Standing { place, within, roll_by_load: false, along: 0.0 })
+    Ok(Standing { place, within, roll_by_load: false, along: along.unwrap_or(0.0) })
+}
+
+/// Refuses a place along rails of one profile each.
+fn without_effect(key: &str, along: Option<f64>, varies: bool) -> Result<()> {
+    if along.is_none() || varies {
+        return Ok(());
+    }
+    let expected = "a place along a rail that varies: a list .slcs of slices without its own `along`";
+    Err(Error::new(key, "a place without effect", expected, "remove it"))
 }
 
 /// Returns the largest gap of a near miss \[mm\], 0 if none is given.

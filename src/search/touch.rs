@@ -169,6 +169,11 @@ impl Pose {
         Ok(Self { offset, yaw: small_angle("yaw", yaw)?, roll: small_angle("roll", roll)? })
     }
 
+    /// The attitude of a wheel of this nominal rolling radius \[mm\].
+    pub(super) fn attitude(&self, radius: f64) -> Attitude {
+        Attitude::new(self.offset, self.yaw, self.roll, radius)
+    }
+
     /// Returns the roll \[rad\].
     pub fn roll(&self) -> f64 {
         self.roll
@@ -204,7 +209,7 @@ impl ContactSearch<'_> {
     /// first search has no place to start from and costs some times more.
     /// Degenerate: bodies that touch along a stretch (parallel lines, equal arcs) give its middle.
     pub fn touch(&mut self, pose: &Pose, selection: &Selection) -> Option<Touch<'_>> {
-        let attitude = Attitude::new(pose.offset, pose.yaw, pose.roll, self.over_rail.pair.radius);
+        let attitude = pose.attitude(self.over_rail.pair.radius);
         let height = -self.lower(&attitude, selection.within)?.gap;
         Some(self.collect(&attitude, height, selection))
     }

@@ -214,3 +214,18 @@ fn run_text(along: &str, more: &str) -> Result<Run> {
     let text = text.replace("lateral = 0.0", &format!("lateral = 0.0\nalong = {along}"));
     Run::new(scene::resolve(&scene::parse(&format!("{text}\n{more}"), false)?, &folder, "")?, SILENT)
 }
+
+#[test]
+fn a_single_wheel_on_slices_stands_as_one_of_a_wheelset_does() -> Result<()> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/crossing");
+    let text = "rail.file = \"crossing.slcs\"\nwheel = { profile = \"S1002\", radius = 460.0 }\n\
+                contact = { offset = 0.0, along = 160.0 }\npatch = { approach = 0.05 }";
+    let single = Run::new(scene::resolve(&scene::parse(text, false)?, &folder, "")?, SILENT)?;
+    let pair = run(160.0, "[patch]\napproach = 0.05")?;
+    let roll = pair.parts[0].site.contact.found.as_ref().unwrap().roll_rad;
+    assert!(single.parts.len() == 1 && roll.abs() < 0.01, "{roll}");
+    let [own, other] = [&single, &pair].map(|run| run.parts[0].site.contact.placement.clone());
+    assert!((own.rail().point().station.x - other.rail().point().station.x).abs() < 1.0);
+    assert!((own.turn() - other.turn()).abs() < 1e-3);
+    Ok(())
+}

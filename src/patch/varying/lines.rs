@@ -1,12 +1,13 @@
-//! The patch on a rail that varies along the track, where a line of constant ξ may meet it in several intervals of η.
+//! Lines of constant ξ over a rail that varies along the track, and the intervals of the patch on them.
+//!
+//! A line may meet the patch in several intervals of η, as on either side of a dip.
 //!
 //! Lines of constant ξ, half a millimetre apart and nearer to each other around C, are searched for intervals with s < δ. Between two
 //! lines whose intervals do not answer each other one to one, more lines are laid until the place is known to rounding: there intervals
 //! begin, end, divide or join. So a part is missed only if it is narrower than the steps in both directions and does not hold C.
 
-use super::band::{Band, overlap};
-use super::outline::{End, Window};
-use super::skewed::slicer::Edge;
+
+use crate::patch::skewed::slicer::Edge;
 use crate::numerics::roots::{bracketed, last_where};
 use crate::placement::Placement;
 use crate::separation::Evaluator;
@@ -26,44 +27,44 @@ const HALVINGS: i32 = 24;
 const POINTS: usize = 12;
 const BEYOND: f64 = 0.25;
 
-/// Distance of two lines, in roundings of the size of ξ, at which no line lies between them.
+/// Distance of two lines, in roundings of ξ or of 1 mm, at which none is laid between them.
 const NEAREST: f64 = 8.0;
 
-/// Depth \[mm\] of an interval that ends at a tip, not where a body ends: that of two lines a rounding apart.
-const SHALLOW: f64 = 1e-9;
+/// Most lines: where s is noise of the size of δ, intervals come and go on every line.
+const MOST_LINES: usize = 20_000;
 
 /// Relative accuracy of the interpolated boundary: a spline across the rail bends anew in every cell.
-pub(super) const SMOOTH: f64 = 1e-9;
+pub(in crate::patch) const SMOOTH: f64 = 1e-9;
 
 /// An interval of η of the patch.
 #[derive(Debug, Clone, Copy)]
-struct Interval {
-    eta: [f64; 2],
+pub(super) struct Interval {
+    pub eta: [f64; 2],
     /// Where s is least in it, and that s \[mm\].
-    lowest: [f64; 2],
+    pub lowest: [f64; 2],
 }
 
 /// A line of constant ξ with its intervals, by ascending η.
 #[derive(Debug, Clone)]
-struct Line {
-    xi: f64,
-    intervals: Vec<Interval>,
+pub(super) struct Line {
+    pub xi: f64,
+    pub intervals: Vec<Interval>,
 }
 
 /// The slices of a placed pair on a rail that varies at one approach.
 #[derive(Debug)]
-pub(super) struct Varying<'a> {
-    evaluator: Evaluator<'a>,
-    approach: f64,
+pub(in crate::patch) struct Varying<'a> {
+    pub(super) evaluator: Evaluator<'a>,
+    pub(super) approach: f64,
     /// Step along lines of constant ξ \[mm\].
     step: f64,
     /// The lines of every band.
-    lanes: Vec<Vec<(f64, Interval)>>,
+    pub(super) lanes: Vec<Vec<(f64, Interval)>>,
 }
 
 impl<'a> Varying<'a> {
     /// Makes the slices; `None` on a swept rail.
-    pub(super) fn new(placement: &'a Placement, approach: f64) -> Option<Self> {
+    pub(in crate::patch) fn new(placement: &'a Placement, approach: f64) -> Option<Self> {
         placement.lofted()?;
         let half = (2.0 * placement.rolling_radius() * approach).sqrt();
         // Also for δ = NaN, where nothing is found.
@@ -71,30 +72,29 @@ impl<'a> Varying<'a> {
         Some(Self { evaluator: Evaluator::new(placement), approach, step, lanes: Vec::new() })
     }
 
-    /// Finds the bands in a window, and pairs (lane, ξ) at which s may be least \[mm\].
-    pub(super) fn bands(&mut self, placement: &Placement, window: &Window) -> (Vec<Band>, Vec<(usize, f64)>) {
-        let eta = [window.eta[0].max(-FARTHEST), window.eta[1].min(FARTHEST)];
+    /// Lays the lines over a window; both ends of the range of ξ over which the rail lies in it are the first and the last. None where it
+    /// does not.
+    pub(super) fn lines(&mut self, placement: &Placement, window: [[f64; 2]; 2]) -> Vec<Line> {
+        let eta = [window[1][0].max(-FARTHEST), window[1][1].min(FARTHEST)];
         let reach = placement.lofted().and_then(|rail| rail.reach(eta));
-        let Some([from, to]) = reach.filter(|_| eta[0] < eta[1]) else { return (Vec::new(), Vec::new()) };
-        let xi = [window.xi[0].max(from), window.xi[1].min(to)];
+        let Some([from, to]) = reach.filter(|_| eta[0] < eta[1]) else { return Vec::new() };
+        let xi = [window[0][0].max(from), window[0][1].min(to)];
         if xi[0] >= xi[1] {
-            return (Vec::new(), Vec::new());
+            return Vec::new();
         }
         let samples = places(eta, self.step);
         let lines: Vec<Line> = places(xi, STEP).into_iter().map(|xi| self.line(xi, &samples)).collect();
-        let lines = self.refined(lines);
-        let (bands, turns) = self.joined(&lines, window, xi);
-        (bands.into_iter().filter(|band| band.xi[0] < band.xi[1]).collect(), turns)
+        self.refined(lines)
     }
 
     /// Returns both ends of the slice of a lane at ξ; `None` outside the patch.
-    pub(super) fn edges(&mut self, xi: f64, lane: Option<usize>) -> Option<[Edge; 2]> {
+    pub(in crate::patch) fn edges(&mut self, xi: f64, lane: Option<usize>) -> Option<[Edge; 2]> {
         let edge = |eta: f64| Edge { eta, ledge: false };
         self.interval(xi, lane).map(|found| found.eta.map(edge))
     }
 
     /// Returns η of the least s of a lane at ξ \[mm\], or of C's surroundings without one; between its lines where nothing overlaps.
-    pub(super) fn lowest(&mut self, xi: f64, lane: Option<usize>) -> f64 {
+    pub(in crate::patch) fn lowest(&mut self, xi: f64, lane: Option<usize>) -> f64 {
         if let Some(found) = self.interval(xi, lane) {
             return found.lowest[0];
         }
@@ -104,7 +104,7 @@ impl<'a> Varying<'a> {
     }
 
     /// Returns s \[mm\].
-    pub(super) fn separation(&mut self, xi: f64, eta: f64) -> f64 {
+    pub(in crate::patch) fn separation(&mut self, xi: f64, eta: f64) -> f64 {
         self.evaluator.separation(xi, eta)
     }
 
@@ -188,9 +188,8 @@ impl<'a> Varying<'a> {
                 out.push(next);
                 continue;
             };
-            let nearest = NEAREST * f64::EPSILON * last.xi.abs().max(next.xi.abs());
-            let middle = last.xi + 0.5 * (next.xi - last.xi);
-            if next.xi - last.xi <= nearest || middle <= last.xi || middle >= next.xi {
+            let nearest = NEAREST * f64::EPSILON * last.xi.abs().max(next.xi.abs()).max(1.0);
+            if next.xi - last.xi <= nearest || out.len() > MOST_LINES {
                 out.push(next);
                 continue;
             }
@@ -198,107 +197,17 @@ impl<'a> Varying<'a> {
             last.intervals.iter().chain(&next.intervals).for_each(|found| spread(found.eta, &mut samples));
             samples.sort_by(f64::total_cmp);
             samples.dedup();
-            let between = self.line(middle, &samples);
+            let between = self.line(last.xi + 0.5 * (next.xi - last.xi), &samples);
             waiting.extend([next, between]);
         }
         out
     }
-
-    /// Joins the intervals of successive lines to bands.
-    fn joined(&mut self, lines: &[Line], window: &Window, ends: [f64; 2]) -> (Vec<Band>, Vec<(usize, f64)>) {
-        let (mut bands, mut lanes): (Vec<Band>, Vec<Vec<(f64, Interval)>>) = (Vec::new(), Vec::new());
-        // The band of every interval of the line before.
-        let mut current: Vec<usize> = Vec::new();
-        let nothing = Line { xi: ends[0], intervals: Vec::new() };
-        let pairs = std::iter::once(&nothing).chain(lines).zip(lines);
-        for (before, line) in pairs {
-            let links = links(before, line);
-            let alone = |side: usize, k: usize| links.iter().filter(|link| link[side] == k).count() == 1;
-            let mut next = Vec::with_capacity(line.intervals.len());
-            for (j, found) in line.intervals.iter().enumerate() {
-                let from = links.iter().find(|[i, other]| *other == j && alone(0, *i) && alone(1, j));
-                let band = from.map_or_else(
-                    || {
-                        let joins = links.iter().any(|link| link[1] == j);
-                        let end = (!joins).then(|| bound(found, line.xi, [window.xi[0], ends[0]], self.approach));
-                        let side = side(found, end);
-                        bands.push(Band::new([line.xi; 2], [end, None], [side; 2], window.eta));
-                        lanes.push(Vec::new());
-                        bands.len() - 1
-                    },
-                    |[i, _]| current[*i],
-                );
-                lanes[band].push((line.xi, *found));
-                next.push(band);
-            }
-            for (i, &band) in current.iter().enumerate() {
-                if next.contains(&band) {
-                    continue;
-                }
-                let found = &before.intervals[i];
-                let joins = links.iter().any(|link| link[0] == i);
-                let end = (!joins).then(|| bound(found, before.xi, [f64::NAN; 2], self.approach));
-                // Bands that join or divide meet at one ξ.
-                close(&mut bands[band], if joins { line.xi } else { before.xi }, end, side(found, end));
-            }
-            current = next;
-        }
-        if let Some(last) = lines.last() {
-            for (found, &band) in last.intervals.iter().zip(&current) {
-                let end = Some(bound(found, last.xi, [window.xi[1], ends[1]], self.approach));
-                close(&mut bands[band], last.xi, end, side(found, end));
-            }
-        }
-        let deepest = |rows: &Vec<(f64, Interval)>| {
-            let least = |p: &&(f64, Interval), q: &&(f64, Interval)| p.1.lowest[1].total_cmp(&q.1.lowest[1]);
-            rows.iter().min_by(least).map_or(f64::NAN, |row| row.0)
-        };
-        let mut turns: Vec<(usize, f64)> = lanes.iter().map(deepest).enumerate().collect();
-        self.lanes = lanes;
-        for (lane, xi) in &mut turns {
-            *xi = self.turn(*lane, *xi);
-            bands[*lane].valleys = vec![(bands[*lane].xi[1], vec![*lane])];
-        }
-        (bands, turns)
-    }
-
-    /// Finds where s turns along a lane, near the deepest of its lines.
-    fn turn(&mut self, lane: usize, xi: f64) -> f64 {
-        let rows = &self.lanes[lane];
-        let at = rows.partition_point(|row| row.0 < xi);
-        let (Some(from), Some(to)) = (at.checked_sub(1).map(|k| rows[k].0), rows.get(at + 1).map(|row| row.0))
-        else {
-            return xi;
-        };
-        let slope = |xi: f64| {
-            let eta = self.lowest(xi, Some(lane));
-            self.evaluator.separation_and_gradient(xi, eta).1[0]
-        };
-        bracketed(slope, from, to).unwrap_or(xi)
-    }
-}
-
-fn close(band: &mut Band, xi: f64, end: Option<End>, side: [f64; 2]) {
-    (band.xi[1], band.ends[1], band.sides[1]) = (xi, end, side);
-}
-
-/// Returns what bounds an interval at its ξ: the window if ξ is its end, the end of the rail, or a tip.
-fn bound(found: &Interval, xi: f64, [window, reach]: [f64; 2], approach: f64) -> End {
-    match () {
-        () if xi == window => End::Window,
-        () if xi == reach || approach - found.lowest[1] > SHALLOW => End::ProfileEnd,
-        () => End::Tip,
-    }
-}
-
-/// Returns the side of a band: without width at a tip.
-fn side(found: &Interval, end: Option<End>) -> [f64; 2] {
-    if end == Some(End::Tip) { [found.lowest[0]; 2] } else { found.eta }
 }
 
 /// Lists the pairs of overlapping intervals of two lines.
-fn links(a: &Line, b: &Line) -> Vec<[usize; 2]> {
+pub(super) fn links(a: &Line, b: &Line) -> Vec<[usize; 2]> {
     let all = (0..a.intervals.len()).flat_map(|i| (0..b.intervals.len()).map(move |j| [i, j]));
+    let overlap = |[a, b]: [f64; 2], [c, d]: [f64; 2]| a.max(c) < b.min(d);
     all.filter(|&[i, j]| overlap(a.intervals[i].eta, b.intervals[j].eta)).collect()
 }
 
