@@ -16,9 +16,9 @@ use super::unrolled::Unrolled;
 use super::view::view;
 use crate::error::{Error, Result};
 use crate::export::{
-    ConformalPicture, ContactSettings, CurvedDeck, CurvedFields, Deck, GridFields, Header, InPlace,
-    Interval, Loop, NetCdf, PatchMesh, PatchPicture, Prescribed, QuadMesh, RollerFields, SurfaceMesh,
-    boundary_csv, interpen_csv, interpen_sigma_csv,
+    ConformalPicture, ContactSettings, CurvedDeck, CurvedFields, Deck, GridFields, Header, InPlace, Interval,
+    Loop, NetCdf, PatchMesh, PatchPicture, Prescribed, QuadMesh, RollerFields, SurfaceMesh, boundary_csv,
+    interpen_csv, interpen_sigma_csv,
 };
 use crate::files::Folder;
 use crate::mesh::Surface;
@@ -314,7 +314,10 @@ fn always<'a>(part: &'a Part, s: &'a Sources<'a>, on_rail: Option<&'a OnRail<'a>
     ];
     // A rail that varies has no midplane of its own.
     if placement.lofted().is_none() {
-        jobs.push(bytes("midsep.txt", move || Ok(midplane_table(placement, &part.site.grid.xi).into_bytes())));
+        jobs.push(bytes(
+            "midsep.txt",
+            move || Ok(midplane_table(placement, &part.site.grid.xi).into_bytes()),
+        ));
     }
     if let Some(on_rail) = on_rail {
         jobs.push(bytes("interpen_sigma.csv", || Ok(interpen_sigma_csv(&on_rail.intervals()).into_bytes())));
@@ -355,8 +358,7 @@ impl RailColumns {
                 let normal = bodies.normals(xi, 0.0).rail.map_or([0.0, 1.0], |normal| [normal.x, normal.z]);
                 (Some(bodies.lower_height(xi, 0.0)).filter(|zeta| !zeta.is_nan()).unwrap_or(0.0), normal)
             };
-            let (height, normal): (Vec<f64>, Vec<[f64; 2]>) =
-                part.site.grid.xi.iter().map(column).unzip();
+            let (height, normal): (Vec<f64>, Vec<[f64; 2]>) = part.site.grid.xi.iter().map(column).unzip();
             return Self { roller: Self::roller(part, &height), height, normal };
         }
         let section = &placement.rail().section;

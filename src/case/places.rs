@@ -279,9 +279,7 @@ fn on_loft(case: &Case, side: Option<TrackSide>) -> Option<OnLoft<'_>> {
     let loft = case.profiles.on(side).loft.as_ref()?;
     let along = case.standing.along;
     let from = match &case.standing.place {
-        Place::Wheelset { system, position } => {
-            system.along(side != Some(TrackSide::Left), position, along)
-        }
+        Place::Wheelset { system, position } => system.along(side != Some(TrackSide::Left), position, along),
         Place::Points { .. } | Place::Wheel { .. } | Place::OnSlices { .. } => along,
     };
     Some(OnLoft { loft, from })

@@ -159,7 +159,8 @@ impl FramedLoft {
         let mut feet: Vec<LoftFoot> = found.into_iter().flatten().collect();
         feet.sort_by(|a, b| a.zeta.total_cmp(&b.zeta));
         let own = (0..feet.len()).min_by(|&a, &b| feet[a].zeta.abs().total_cmp(&feet[b].zeta.abs()))?;
-        let front = (own + 1..feet.len()).take_while(|&k| feet[k].zeta - feet[k - 1].zeta <= FLANGEWAY).last();
+        let front =
+            (own + 1..feet.len()).take_while(|&k| feet[k].zeta - feet[k - 1].zeta <= FLANGEWAY).last();
         Some(feet[front.unwrap_or(own)])
     }
 
@@ -185,7 +186,8 @@ impl FramedLoft {
         let up = |v: [f64; 2]| dot(self.axes[2], [v[0], 0.0, v[1]]);
         let (l, m, n) = (up(p.across2), up(p.mixed), up(p.along2));
         let [per_xi, per_eta] = foot.steps;
-        let form = |p: [f64; 2], q: [f64; 2]| l * p[0] * q[0] + m * (p[0] * q[1] + p[1] * q[0]) + n * p[1] * q[1];
+        let form =
+            |p: [f64; 2], q: [f64; 2]| l * p[0] * q[0] + m * (p[0] * q[1] + p[1] * q[0]) + n * p[1] * q[1];
         Some([form(per_xi, per_xi), form(per_xi, per_eta), form(per_eta, per_eta)])
     }
 
@@ -234,7 +236,8 @@ impl FramedLoft {
 
     /// The range of ξ \[mm\] over which the surface faces the wheel between two η \[mm\]; `None` if it does so nowhere.
     pub fn reach(&self, eta: [f64; 2]) -> Option<[f64; 2]> {
-        let [from, to] = eta.map(|eta| (self.axes[1][1] * eta.clamp(-FARTHEST, FARTHEST) / LEVEL).round() as i64);
+        let [from, to] =
+            eta.map(|eta| (self.axes[1][1] * eta.clamp(-FARTHEST, FARTHEST) / LEVEL).round() as i64);
         let runs = (from..=to).flat_map(|level| self.level(level));
         let reach = runs.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], run| {
             [low.min(run.xi[0]), high.max(run.xi[run.xi.len() - 1])]

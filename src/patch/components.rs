@@ -8,8 +8,8 @@ use super::measure::area_and_length;
 use super::outline::{End, Outline, Window};
 use super::plain;
 use super::skewed::lanes;
-use super::varying;
 use super::slice::Slice;
+use super::varying;
 use crate::placement::Placement;
 
 /// Number of points on each of the two sides of a loop. The polygon then lies within 1e-4 of the patch's width of the

@@ -5,8 +5,8 @@ mod motion;
 mod placed;
 mod track;
 
+pub use motion::{Creepages, Motion, Pitch, Rates};
 #[cfg(feature = "files")]
 pub(crate) use motion::{on_roller, on_varying_rail};
-pub use motion::{Creepages, Motion, Pitch, Rates};
 pub use placed::{Body, Generator, Pair, Placement};
 pub use track::{RailDistance, Track, WheelDistance, Wheelset};

@@ -11,7 +11,9 @@ use crate::case::{Place, Profiles, SideProfiles, Standing};
 use crate::error::{Error, Result, finite, given};
 use crate::measured::Unit;
 use crate::placement::{RailDistance, Track, WheelDistance, Wheelset};
-use crate::search::{LoftedPair, Pose, Position, ProfilePair, Roll, SideOnTrack, WheelsetOnTrack, small_angle};
+use crate::search::{
+    LoftedPair, Pose, Position, ProfilePair, Roll, SideOnTrack, WheelsetOnTrack, small_angle,
+};
 
 /// Depth \[mm\] below the top of rail at which the gauge is measured, if the scene gives no other.
 const GAUGE_HEIGHT: f64 = 14.0;
@@ -62,7 +64,12 @@ fn on_track(
     let along = along(scene)?;
     without_effect("wheelset: along", along, profiles.varies())?;
     let system = if profiles.left.is_none() && deviations == [None, None] {
-        WheelsetOnTrack::symmetrical(side(&mut profiles.right, (rails, wheels), DeviationData::default(), 1.0)?)
+        WheelsetOnTrack::symmetrical(side(
+            &mut profiles.right,
+            (rails, wheels),
+            DeviationData::default(),
+            1.0,
+        )?)
     } else {
         let left = profiles.left.get_or_insert_with(|| profiles.right.clone());
         let own = |own: &mut SideProfiles, deviation: Option<DeviationData>, name: &str, sign: f64| {
@@ -88,7 +95,12 @@ fn on_track(
         ));
     }
     let along = along.unwrap_or(0.0);
-    Ok(Standing { place: Place::Wheelset { system: Arc::new(system), position }, within, roll_by_load, along })
+    Ok(Standing {
+        place: Place::Wheelset { system: Arc::new(system), position },
+        within,
+        roll_by_load,
+        along,
+    })
 }
 
 /// Reads the position of a wheelset.
@@ -143,7 +155,12 @@ fn single(contact: &ContactData, profiles: &SideProfiles, along: Option<f64>) ->
     let place = match (contact.rail_x, contact.wheel_x, contact.offset) {
         (Some(_), ..) if loft.is_some() => {
             let expected = "`offset` with perhaps `roll` and `yaw`, on a rail that varies along the track";
-            return Err(Error::new("contact: rail_x", "a chosen point", expected, "let the wheel be lowered"));
+            return Err(Error::new(
+                "contact: rail_x",
+                "a chosen point",
+                expected,
+                "let the wheel be lowered",
+            ));
         }
         (Some(rail_x), Some(wheel_x), None) if contact.roll.is_none() && contact.yaw.is_none() => {
             Place::Points {

@@ -102,7 +102,9 @@ impl Choice {
                     Box::new(Parabolic::constant_radius(relief, radii[k], axis))
                 })
             },
-            Method::Parabolic => &|| summed(placement, axis, |_, relief| Box::new(Parabolic::local(relief, axis))),
+            Method::Parabolic => {
+                &|| summed(placement, axis, |_, relief| Box::new(Parabolic::local(relief, axis)))
+            }
             Method::Spectral => {
                 let strips = |relief| strips(&mut self.fitter(relief), xi, axis.reach * axis.reach);
                 let strips: Vec<_> = Relief::all(placement).map(strips).collect();

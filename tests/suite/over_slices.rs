@@ -64,9 +64,10 @@ fn risen(placement: &Placement, rate: f64, [xi, eta]: [f64; 2]) -> f64 {
 fn separation_and_normals_over_a_nose_that_rises_are_those_of_an_inclined_rail() -> Result<()> {
     let mut random = Random::new(343);
     for (rate, yaw) in [(0.1, 0.0), (-0.1, 0.0), (0.1, 0.02), (0.02, -0.03)] {
-        let at = [-200.0, -35.0, 10.0, 60.0, 200.0];
+        let at = [-150.0, -110.0, -70.0, -35.0, 10.0, 45.0, 80.0, 120.0];
         let placement = on_crown(|y| rate * y, &at, yaw, 12.0)?;
-        assert!((placement.turn() + f64::atan(rate)).abs() < 1e-7, "{}", placement.turn());
+        // A yawed wheel touches beside the top.
+        assert!(yaw != 0.0 || (placement.turn() + f64::atan(rate)).abs() < 1e-7, "{}", placement.turn());
         let mut evaluator = Evaluator::new(&placement);
         let (sin, cos) = placement.skew().sin_cos();
         for _ in 0..500 {
@@ -87,7 +88,7 @@ fn separation_and_normals_over_a_nose_that_rises_are_those_of_an_inclined_rail()
             let off = [slope([1.0, 0.0]) + normal.x / normal.z, slope([0.0, 1.0]) + normal.y / normal.z];
             assert!(off[0].abs() < 1e-9 && off[1].abs() < 1e-9, "{at:?}: {off:?}");
         }
-        assert!(evaluator.separation(CROWN[0] + 0.1, 0.0).is_nan());
+        assert!(evaluator.separation(2.0 * CROWN[0], 0.0).is_nan());
         assert!(feasibility(&placement).unwrap().feasible);
     }
     Ok(())
@@ -96,15 +97,18 @@ fn separation_and_normals_over_a_nose_that_rises_are_those_of_an_inclined_rail()
 #[test]
 fn equal_slices_have_separations_and_patches_of_the_extruded_rail() -> Result<()> {
     let pair = Pair::new(crown(0.0), standards::wheel("S1002")?, RADIUS)?;
-    let loft = Arc::new(Loft::new(&slices(&[-300.0, -40.0, 5.0, 45.0, 300.0], |_| crown(0.0)), Joining::Monotone)?);
+    let loft =
+        Arc::new(Loft::new(&slices(&[-300.0, -40.0, 5.0, 45.0, 300.0], |_| crown(0.0)), Joining::Monotone)?);
     let profiles = ProfilePair::new(&pair)?;
     let mut search = profiles.search();
     let mut random = Random::new(344);
     for _ in 0..scenes().div_ceil(8) {
-        let pose = Pose::new(random.between(-5.0, 5.0), random.between(-0.03, 0.03), random.between(-0.005, 0.005))?;
+        let pose =
+            Pose::new(random.between(-5.0, 5.0), random.between(-0.03, 0.03), random.between(-0.005, 0.005))?;
         let touch = search.touch(&pose, &Selection { within: 0.0, apart: ONE_CONTACT });
         let contact = touch.expect("a wheel on a rail").contacts[0];
-        let (swept, lofted) = (contact.placed(&pair)?, contact.placed_on(&pair, &loft, random.between(-9.0, 9.0))?);
+        let (swept, lofted) =
+            (contact.placed(&pair)?, contact.placed_on(&pair, &loft, random.between(-9.0, 9.0))?);
         let (mut own, mut other) = (Evaluator::new(&lofted), Evaluator::new(&swept));
         for _ in 0..100 {
             let at = [random.between(-15.0, 15.0), random.between(-15.0, 15.0)];
@@ -148,7 +152,10 @@ fn a_wheel_over_a_hollow_has_a_patch_on_either_side_of_it() -> Result<()> {
     }
     assert!((patch.area() / area - 1.0).abs() < 0.01, "{} instead of {area}", patch.area());
     let extent = patch.extent().unwrap();
-    assert!((extent.eta[0] - ends[0]).abs() < 0.2 && (extent.eta[1] - ends[1]).abs() < 0.2, "{extent:?} {ends:?}");
+    assert!(
+        (extent.eta[0] - ends[0]).abs() < 0.2 && (extent.eta[1] - ends[1]).abs() < 0.2,
+        "{extent:?} {ends:?}"
+    );
     // One of them holds C.
     let own = patch.components.iter().filter(|c| c.eta[0] < 0.0 && 0.0 < c.eta[1]).count();
     assert!(patch.components.len() == 2 && own == 1, "{:?}", patch.components.len());
@@ -196,12 +203,16 @@ fn a_load_is_carried_by_wing_and_nose_together_where_the_wheel_goes_over() -> Re
 fn what_rails_that_vary_do_not_have_is_refused_by_name() {
     for (along, more, message) in [
         ("160.0", "[grid]\nreference = \"rail\"", "grid: reference: found \"rail\" on a rail that varies"),
-        ("160.0", "[motion]\nspeed = 1e4", "motion: found a motion over a rail that varies"),
+        ("160.0", "[motion]\nspeed = 10.0", "motion: found a motion over a rail that varies"),
         ("160.0", "[patch]\napproach = 0.05\nframe = \"weighted\"", "patch: frame: found a rail that varies"),
         ("160.0", "[roller]\nradius = 350.0", "roller: found one"),
         ("999.0", "", "wheelset: along: found 999 mm; expected a place from -150 to 350 mm"),
         ("nan", "", "wheelset: along"),
-        ("160.0", "[grid]\nmethod = \"report-newton\"\n[patch]\napproach = 0.05", "a rail that varies along the track"),
+        (
+            "160.0",
+            "[grid]\nmethod = \"report-newton\"\n[patch]\napproach = 0.05",
+            "a rail that varies along the track",
+        ),
     ] {
         let error = run_text(along, more).map(drop).unwrap_err().to_string();
         assert!(error.contains(message), "{more}: {error}");

@@ -128,7 +128,8 @@ pub(super) fn check_lofted(
                 let error = heights.iter().map(|h| h.error).fold(0.0, f64::max);
                 let allowed = SAFETY * error + ROUNDINGS * rail.size / normal.z.min(heights[0].normal.z);
                 separation.push(((found.separation - (heights[0].zeta - zeta)).abs(), allowed, at));
-                let own = found.normals.rail.map_or(Vector::NAN, |n| Vector::from_array(n.into_inner().into()));
+                let own =
+                    found.normals.rail.map_or(Vector::NAN, |n| Vector::from_array(n.into_inner().into()));
                 let rounding = ROUNDINGS * rail.size / NORMAL_CELL;
                 normals.push((own.distance(normal), SAFETY * normal_error + rounding, at));
             }
@@ -193,12 +194,18 @@ impl<'a> MeshedRail<'a> {
             let u: Vec<f64> = (0..=own.cells()).map(|k| k as f64).collect();
             if u.len() * y.len() > MOST_POINTS {
                 let (found, expected) = (u.len() * y.len(), format!("at most {MOST_POINTS} points"));
-                return Err(Error::new("check", format!("{found} points"), expected, "take a smaller window"));
+                return Err(Error::new(
+                    "check",
+                    format!("{found} points"),
+                    expected,
+                    "take a smaller window",
+                ));
             }
             let points = u.iter().flat_map(|&u| y.iter().map(move |&y| (u, y)));
             let points: Vec<Vector> = points.map(|(u, y)| rail.point(own, u, y)).collect();
             let faces = cells(u.len(), y.len());
-            let not_finite = || Error::new("check", "points that are not finite", "finite points", "check the list");
+            let not_finite =
+                || Error::new("check", "points that are not finite", "finite points", "check the list");
             let mesh = Mesh::new(points, faces).ok_or_else(not_finite)?;
             rail.meshes.push(MeshedStrip { strip, mesh, u, y });
         }

@@ -25,11 +25,7 @@ pub(in crate::patch) fn bands(
 }
 
 /// Joins the intervals of successive lines to bands.
-fn joined(
-    varying: &mut Varying<'_>,
-    lines: &[Line],
-    window: &Window,
-) -> (Vec<Band>, Vec<(usize, f64)>) {
+fn joined(varying: &mut Varying<'_>, lines: &[Line], window: &Window) -> (Vec<Band>, Vec<(usize, f64)>) {
     let ends = [lines.first(), lines.last()].map(|line| line.map_or(f64::NAN, |line| line.xi));
     let (mut bands, mut lanes): (Vec<Band>, Vec<Vec<(f64, Interval)>>) = (Vec::new(), Vec::new());
     // The band of every interval of the line before.
@@ -45,7 +41,8 @@ fn joined(
             let band = from.map_or_else(
                 || {
                     let joins = links.iter().any(|link| link[1] == j);
-                    let end = (!joins).then(|| bound(found, line.xi, [window.xi[0], ends[0]], varying.approach));
+                    let end =
+                        (!joins).then(|| bound(found, line.xi, [window.xi[0], ends[0]], varying.approach));
                     let side = side(found, end);
                     bands.push(Band::new([line.xi; 2], [end, None], [side; 2], window.eta));
                     lanes.push(Vec::new());

@@ -6,9 +6,8 @@
 //! lines whose intervals do not answer each other one to one, more lines are laid until the place is known to rounding: there intervals
 //! begin, end, divide or join. So a part is missed only if it is narrower than the steps in both directions and does not hold C.
 
-
-use crate::patch::skewed::slicer::Edge;
 use crate::numerics::roots::{bracketed, last_where};
+use crate::patch::skewed::slicer::Edge;
 use crate::placement::Placement;
 use crate::separation::Evaluator;
 

@@ -124,7 +124,12 @@ impl LoftedPair {
     ///
     /// # Errors
     /// A rail that follows the wheel's shape all over.
-    pub fn touch(&self, pose: &Pose, along: f64, selection: &Selection) -> Result<Option<(f64, Vec<Contact>)>> {
+    pub fn touch(
+        &self,
+        pose: &Pose,
+        along: f64,
+        selection: &Selection,
+    ) -> Result<Option<(f64, Vec<Contact>)>> {
         let mut search = self.search();
         search.along = along;
         let attitude = pose.attitude(self.radius);
