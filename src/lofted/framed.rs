@@ -217,13 +217,16 @@ impl FramedLoft {
                 return on(own, place).then_some(foot);
             }
             let share = (0..2).map(|k| LONGEST[k] / step[k].abs()).fold(1.0, f64::min);
-            if !(share > 0.0) {
+            if share.is_nan() || share <= 0.0 {
                 return None;
             }
-            place = [place[0] + share * step[0], place[1] + share * step[1]];
             let ends = [[0.0, own.cells() as f64], own.reach()];
             // A cell or a millimetre beyond is near enough to come back from.
-            place = [0, 1].map(|k| place[k].clamp(ends[k][0] - 1.0, ends[k][1] + 1.0));
+            let next = [0, 1].map(|k| (place[k] + share * step[k]).clamp(ends[k][0] - 1.0, ends[k][1] + 1.0));
+            if next == place {
+                return None;
+            }
+            place = next;
         }
         None
     }

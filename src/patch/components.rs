@@ -88,6 +88,8 @@ impl Patch {
     /// Degenerate cases: the patch is empty if s < δ nowhere, at a mere touch with δ = 0, and for δ = NaN. With skew on a rail a part
     /// is missed only between two turns of s along a valley between which the surfaces are parallel to 1e-13; on a roller, only
     /// between two turns within 1/512 of the range of ξ (see the docs on numerics).
+    /// On a rail that varies along the track a part is missed if it does not hold C and is narrower than 0.5 mm along ξ, or than 0.25 to
+    /// 1 mm along η; what lies more than 120 mm ahead of C or behind is left out, and the boundary is interpolated to 1e-9 of its width.
     pub fn new(placement: &Placement, approach: f64, window: &Window) -> Self {
         Self::of(Outline::new(placement, approach, window))
     }

@@ -65,9 +65,9 @@ impl<'a> Varying<'a> {
     /// Makes the slices; `None` on a swept rail.
     pub(in crate::patch) fn new(placement: &'a Placement, approach: f64) -> Option<Self> {
         placement.lofted()?;
-        let half = (2.0 * placement.rolling_radius() * approach).sqrt();
-        // Also for δ = NaN, where nothing is found.
-        let step = (SHARE * half).max(STEPS[0]).min(STEPS[1]);
+        // Of δ = NaN, where nothing is found, and below 0 the least.
+        let half = (2.0 * placement.rolling_radius() * approach.max(0.0)).sqrt();
+        let step = (SHARE * half).clamp(STEPS[0], STEPS[1]);
         Some(Self { evaluator: Evaluator::new(placement), approach, step, lanes: Vec::new() })
     }
 
