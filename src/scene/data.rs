@@ -9,6 +9,7 @@ use super::profile_data::ProfileData;
 use super::side_data::SideData;
 use crate::case::{FrameOrigin, OutputFormat};
 use crate::conformal::Reference;
+use crate::error::{Result, finite};
 use crate::search::{Position, Roll};
 use crate::separation::Method;
 
@@ -72,6 +73,20 @@ pub fn schema() -> schemars::Schema {
 }
 
 impl Scene {
+    /// Gives the place along the track at which a wheelset or a wheel stands on rails that vary \[mm\]; `None` of a scene without one.
+    ///
+    /// # Errors
+    /// A place that is not finite.
+    pub(super) fn along(&self) -> Result<Option<f64>> {
+        let of_wheelset = self.wheelset.as_ref().and_then(|wheelset| wheelset.along);
+        let of_wheel = self.contact.as_ref().and_then(|contact| contact.along);
+        match (of_wheelset, of_wheel) {
+            (Some(along), _) => finite("wheelset: along", along).map(Some),
+            (None, Some(along)) => finite("contact: along", along).map(Some),
+            (None, None) => Ok(None),
+        }
+    }
+
     /// Lists the profiles that it describes, those of both sides and those of one.
     pub fn profiles(&self) -> impl Iterator<Item = &ProfileData> {
         let sides = [&self.left, &self.right].into_iter().flatten();

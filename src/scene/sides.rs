@@ -9,7 +9,7 @@ use super::profile_data::ProfileData;
 use super::profiles::{Resolved, Sources, near, rail_of, wheel_of};
 use super::side_data::SideData;
 use crate::case::{Profiles, SideProfiles};
-use crate::error::{Error, Result, finite};
+use crate::error::{Error, Result};
 use crate::lofted::Loft;
 use crate::numerics::bodies::Bodies;
 use crate::placement::Pair;
@@ -67,20 +67,6 @@ fn of_side(
     Ok(SideProfiles { pair, measured, loft: loft.map(|(_, loft)| loft) })
 }
 
-/// Gives the place along the track at which a wheelset or a wheel stands on rails that vary \[mm\]; `None` of a scene without one.
-///
-/// # Errors
-/// A place that is not finite.
-pub(super) fn along(scene: &Scene) -> Result<Option<f64>> {
-    let of_wheelset = scene.wheelset.as_ref().and_then(|wheelset| wheelset.along);
-    let of_wheel = scene.contact.as_ref().and_then(|contact| contact.along);
-    match (of_wheelset, of_wheel) {
-        (Some(along), _) => finite("wheelset: along", along).map(Some),
-        (None, Some(along)) => finite("contact: along", along).map(Some),
-        (None, None) => Ok(None),
-    }
-}
-
 /// Makes the surface of a rail that is a list of slices without a place of its own, with its section where the wheelset stands; `None` of
 /// any other rail, and of a wheelset that stands nowhere along the track.
 fn varying(
@@ -89,7 +75,7 @@ fn varying(
     place: &str,
     folder: &Path,
 ) -> Result<Option<(Profile, Arc<Loft>)>> {
-    let Some((list, along)) = list_of(data).zip(along(scene)?) else { return Ok(None) };
+    let Some((list, along)) = list_of(data).zip(scene.along()?) else { return Ok(None) };
     let loft = loft(data, &folder.join(list)).map_err(|error| error.within(place))?;
     let Some(strip) = loft.widest(along) else {
         let [from, to] = loft.reach();

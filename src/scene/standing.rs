@@ -6,7 +6,6 @@ use nalgebra::UnitComplex;
 
 use super::data::{ContactData, RollData, RollWord, Scene, TrackData, WheelsetData};
 use super::side_data::{DeviationData, SideData};
-use super::sides::along;
 use crate::case::{Place, Profiles, SideProfiles, Standing};
 use crate::error::{Error, Result, finite, given};
 use crate::measured::Unit;
@@ -31,7 +30,7 @@ pub(super) fn standing(scene: &Scene, mut profiles: Profiles) -> Result<(Standin
                     return Err(Error::new(side, "a side beside [contact]", expected, "remove it"));
                 }
             }
-            single(contact, &profiles.right, along(scene)?)
+            single(contact, &profiles.right, scene.along()?)
         }
         (None, Some(track), Some(wheelset)) => on_track(scene, track, wheelset, &mut profiles),
         (None, None, None) => {
@@ -61,7 +60,7 @@ fn on_track(
     let (rails, wheels, within) = (rails(track)?, wheels(wheelset)?, within(wheelset.within)?);
     let deviation = |side: &Option<SideData>| side.as_ref().and_then(|side| side.deviation);
     let deviations = [&scene.left, &scene.right].map(deviation);
-    let along = along(scene)?;
+    let along = scene.along()?;
     without_effect("wheelset: along", along, profiles.varies())?;
     let system = if profiles.left.is_none() && deviations == [None, None] {
         WheelsetOnTrack::symmetrical(side(
