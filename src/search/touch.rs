@@ -334,7 +334,11 @@ impl Contact {
         let foot = framed.foot(0.0, 0.0, None).ok_or_else(nowhere)?;
         let [first, last] = loft.strips[foot.strip].reach();
         let section = loft.section(foot.strip, origin[1].clamp(first, last))?;
-        Ok(self.placed(&pair.with_rail(section)?)?.over_loft(Arc::new(framed)))
+        let pair = pair.with_rail(section)?;
+        // At the end of a part the section may end a rounding before.
+        let [low, high] = pair.sections()[0].reach().ok_or_else(nowhere)?;
+        let here = Self { rail_x: self.rail_x.clamp(low, high), ..*self };
+        Ok(here.placed(&pair)?.over_loft(Arc::new(framed)))
     }
 }
 
