@@ -137,7 +137,7 @@ fn equal_slices_have_separations_and_patches_of_the_extruded_rail() -> Result<()
 }
 
 #[test]
-fn a_wheel_over_a_hollow_has_a_patch_on_either_side_of_it() -> Result<()> {
+fn the_patch_of_a_wheel_over_a_hollow_is_that_of_a_brute_force() -> Result<()> {
     let at: Vec<f64> = (-20..=20).map(|k| 10.0 * f64::from(k)).collect();
     let placement = on_crown(|y| 5.0 * (1.0 - (-y * y / 1600.0).exp()) - 5.0, &at, 0.0, 3.0)?;
     let patch = Patch::new(&placement, 0.4, &Window::UNBOUNDED);
@@ -159,9 +159,6 @@ fn a_wheel_over_a_hollow_has_a_patch_on_either_side_of_it() -> Result<()> {
         (extent.eta[0] - ends[0]).abs() < 0.2 && (extent.eta[1] - ends[1]).abs() < 0.2,
         "{extent:?} {ends:?}"
     );
-    // One of them holds C.
-    let own = patch.components.iter().filter(|c| c.eta[0] < 0.0 && 0.0 < c.eta[1]).count();
-    assert!(patch.components.len() == 2 && own == 1, "{:?}", patch.components.len());
     Ok(())
 }
 
