@@ -67,6 +67,8 @@ pub mod error;
 pub mod export;
 #[cfg(feature = "files")]
 pub mod files;
+#[cfg(feature = "files")]
+pub mod fleet;
 pub mod load;
 pub mod lofted;
 pub mod measure;
@@ -80,6 +82,7 @@ pub mod profile;
 pub mod scene;
 pub mod search;
 pub mod separation;
+pub mod table;
 
 #[cfg(feature = "files")]
 pub use case::{Case, Run};

@@ -83,6 +83,7 @@ pub fn curves(columns: &Columns, lateral: &[f64], title: &str, about: &str) -> R
         abscissa: "lateral displacement [mm]".into(),
         quantities: of_position.into_iter().chain(of_side).collect(),
         pair: None,
+        map: None,
     })
 }
 
@@ -118,6 +119,7 @@ pub(super) fn over(
         abscissa: name.into(),
         quantities: quantities.iter().map(panel).collect(),
         pair: None,
+        map: None,
     })
 }
 

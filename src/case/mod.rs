@@ -5,6 +5,9 @@
 mod analysis;
 mod columns;
 mod conformal;
+mod conicity;
+mod conicity_files;
+mod conicity_noise;
 mod contact;
 mod curves;
 mod doubts;
@@ -21,7 +24,9 @@ mod jobs;
 mod joined;
 mod landmarks;
 mod march;
+mod measure_view;
 mod on_rail;
+mod overlaps;
 mod places;
 mod polylines;
 mod pressure;
@@ -31,6 +36,7 @@ mod site;
 mod site_doubts;
 mod summary;
 mod sweep_view;
+mod table;
 mod tally;
 mod unrolled;
 pub mod usual;
@@ -40,6 +46,13 @@ mod wheel;
 pub use analysis::{Analysis, Timings, check_method};
 pub use columns::{COLUMNS, Column, ColumnArray, Columns};
 pub use conformal::Conformal;
+pub use conicity::{
+    ConicityMap, ConicityOptions, ConicityReport, FUNCTIONS, KEY_FIGURES, conicity, contact_geometry,
+};
+pub use conicity_files::{
+    conicity_csv, conicity_page, conicity_picture, conicity_text, conicity_values, uncertainty_values,
+};
+pub use conicity_noise::{Noise, UNCERTAIN, Uncertainty};
 pub use contact::{EllipseUnder, PlacedContact};
 pub use curves::{MOST_DRAWN, ascending, curves};
 pub use doubts::{ContactDoubts, Doubt, DoubtKind, DoubtSet};
@@ -57,12 +70,15 @@ pub use input::{
 pub use joined::joined_pair;
 pub use landmarks::{Landmarks, SideLandmarks};
 pub use march::{
-    EVENT_NUMBERS, append_event, append_stop, event_numbers, events_head, march_curves, march_head,
+    ALONG, AROUND, EVENT_NUMBERS, MarchCourse, append_event, append_stop, event_numbers, events_head,
+    march_curves, march_head,
 };
+pub use measure_view::measures_page;
 pub use places::{approach_under_load, contacts, find};
 pub use pressure::PartPressure;
 pub use profile_view::{about_profile, profile_picture};
 pub use run::{Part, Run, SILENT, Tell};
 pub use site::{Site, sites};
 pub use sweep_view::sweep_page;
+pub use table::{TABLE_FOLDER, table, write_table};
 pub use tally::Tally;

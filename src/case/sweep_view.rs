@@ -5,7 +5,7 @@ use super::curves::curves;
 use super::input::Case;
 use super::polylines::pairs;
 use crate::error::Result;
-use crate::export::{CurvesPanel, PlottedCurve, SweepCurve, SweepPage, SweepPanel, SweepSide};
+use crate::export::{CurvesPanel, CurvesPicture, PlottedCurve, SweepCurve, SweepPage, SweepPanel, SweepSide};
 use crate::search::{Position, Roll, WheelsetOnTrack};
 
 /// Makes the page of a sweep from its columns, over the lateral displacements \[mm\] of all its positions; these have to ascend,
@@ -22,7 +22,18 @@ pub fn sweep_page(
 ) -> Result<SweepPage> {
     // The title of the scene may name its one position.
     let picture = curves(columns, lateral, &case.profiles.right.names(), about)?;
-    Ok(SweepPage {
+    Ok(page_of(case, system, columns, lateral, picture))
+}
+
+/// Makes the page of the panels of a picture.
+pub(super) fn page_of(
+    case: &Case,
+    system: &WheelsetOnTrack,
+    columns: &Columns,
+    lateral: &[f64],
+    picture: CurvesPicture,
+) -> SweepPage {
+    SweepPage {
         title: picture.title,
         about: picture.about,
         version: env!("CARGO_PKG_VERSION").into(),
@@ -31,7 +42,10 @@ pub fn sweep_page(
         panels: picture.quantities.into_iter().map(panel).collect(),
         pairs: pairs(&case.profiles),
         sides: [false, true].map(|right| side(case, system, columns, lateral, right)).into(),
-    })
+        figures: Vec::new(),
+        map: None,
+        findings: Vec::new(),
+    }
 }
 
 fn panel(panel: CurvesPanel) -> SweepPanel {

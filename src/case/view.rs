@@ -42,12 +42,37 @@ pub(super) fn view(run: &Run) -> ViewPage {
     let n = ((ALL_POINTS / shown.len() as f64).sqrt() as usize).min(POINTS);
     ViewPage {
         title: run.case.echo.title.clone(),
+        about: about(&run.case.echo.scene),
         version: env!("CARGO_PKG_VERSION").into(),
         scene_hash: run.case.echo.hash.clone(),
         pairs: pairs(&run.case.profiles),
         contacts: shown.iter().map(|part| contact(run, part, n)).collect(),
         notes: notes(run, n),
     }
+}
+
+/// Names profiles, inclination, radius, gauge and position of a scene, as far as it gives them.
+fn about(scene: &serde_json::Value) -> String {
+    let parts = [
+        ("rail ", "/rail/profile", ""),
+        ("rail ", "/rail/file", ""),
+        ("rotated ", "/rail/rotate", ""),
+        ("on a roller of ", "/roller/radius", " mm"),
+        ("wheel ", "/wheel/profile", ""),
+        ("wheel ", "/wheel/file", ""),
+        ("R ", "/wheel/radius", " mm"),
+        ("gauge ", "/track/gauge", " mm"),
+        ("lateral ", "/wheelset/lateral", " mm"),
+        ("offset ", "/contact/offset", " mm"),
+        ("yaw ", "/wheelset/yaw", " rad"),
+        ("yaw ", "/contact/yaw", " rad"),
+    ];
+    let said = |(word, key, unit): &(&str, &str, &str)| {
+        let value = scene.pointer(key).filter(|value| !value.is_null())?;
+        let value = value.as_str().map_or_else(|| value.to_string(), String::from);
+        Some(format!("{word}{}{unit}", with_minus(&value)))
+    };
+    parts.iter().filter_map(said).collect::<Vec<_>>().join(", ")
 }
 
 /// Says what the page's numbers are, and what it leaves out.
@@ -62,6 +87,13 @@ fn notes(run: &Run, n: usize) -> Vec<String> {
     if run.case.profiles.varies() {
         notes.push(
             "Rails that vary along the track are drawn in space as if one section went on; separations are those of their surface.".into(),
+        );
+    }
+    if run.parts.iter().any(|part| part.analysis.conformal.is_some()) {
+        notes.push(
+            "The page shows s over the tangent plane. The gap t along the rail's turning normal, and its patch, are in conformal.svg \
+             and conformal.vts beside it."
+                .into(),
         );
     }
     if run.parts.len() > 1 {

@@ -1,5 +1,6 @@
 //! The rail's surface by its arc length σ from the contact point.
 
+use crate::numerics::lanes::padded;
 use crate::numerics::polynomial::value_and_slope;
 use crate::numerics::quadrature::smooth_integrals;
 use crate::numerics::roots::bracketed;
@@ -178,9 +179,10 @@ fn arc_length(arc: &ArcBranch, from: &Station, far: f64) -> f64 {
 /// Computes the length \[mm\] of a polynomial between two parameters; negative if they descend.
 fn run_length(branch: &PolynomialBranch, [a, b]: [f64; 2]) -> f64 {
     let [low, high] = if a <= b { [a, b] } else { [b, a] };
-    let mut speed = |t: f64| [value_and_slope(&branch.xi, t)[1].hypot(value_and_slope(&branch.zeta, t)[1])];
+    let speed = |t: &f64| value_and_slope(&branch.xi, *t)[1].hypot(value_and_slope(&branch.zeta, *t)[1]);
     let short = high - low <= SHORT * (branch.t[1] - branch.t[0]);
-    let [length] = smooth_integrals(&mut speed, [low, high], [LENGTH_DEMAND], short);
+    let [length] =
+        smooth_integrals(&mut |t| [padded(t.iter().map(speed))], [low, high], [LENGTH_DEMAND], short);
     if a <= b { length } else { -length }
 }
 

@@ -2,6 +2,7 @@
 //! same number.
 
 use super::model::{Interval, Loop};
+use crate::table::{COEFFICIENTS, ContactTable};
 use std::fmt::Write;
 
 /// Writes `boundary.csv` with the columns component, xi and eta. The loops follow each other; each is counter-clockwise
@@ -35,6 +36,33 @@ pub fn interpen_sigma_csv(rows: &[([f64; 4], [bool; 2])]) -> String {
     let mut text = String::from("sigma,xi,eta_min,eta_max,cut\n");
     for ([sigma, xi, low, high], cut) in rows {
         let _ = writeln!(text, "{sigma:?},{xi:?},{low:?},{high:?},{}", code(*cut));
+    }
+    text
+}
+
+/// Writes `table.csv`: a row for each cell and each quantity that exists there, with the cell's number from 1, its ends, the codes of
+/// how it begins, the quantity, its stated error over the whole table, and the coefficients of 1, t, … t⁸. A cell in which a wheel is
+/// off its rail has one row without a quantity.
+pub fn table_csv(table: &ContactTable) -> String {
+    let powers: Vec<String> = (0..COEFFICIENTS).map(|k| format!("c{k}")).collect();
+    let mut text = format!("cell,from_mm,to_mm,begins,side,quantity,error,{}\n", powers.join(","));
+    for (c, cell) in table.cells().iter().enumerate() {
+        let [from, to] = cell.lateral;
+        let place = format!("{},{from:?},{to:?},{}", c + 1, cell.begins.code());
+        if !cell.touches {
+            let _ = writeln!(text, "{place},,,{}", ",".repeat(COEFFICIENTS));
+        }
+        for (q, quantity) in table.quantities().iter().enumerate() {
+            let coefficients = table.coefficients(c, q);
+            if coefficients[0].is_nan() {
+                continue;
+            }
+            let _ = write!(text, "{place},{},{},{:?}", quantity.side(), quantity.name, quantity.error);
+            for c in coefficients {
+                let _ = write!(text, ",{c:?}");
+            }
+            text.push('\n');
+        }
     }
     text
 }

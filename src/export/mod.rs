@@ -23,15 +23,16 @@ mod vtk;
 mod vts;
 
 pub use abaqus::patch_inp;
-pub use csv::{boundary_csv, interpen_csv, interpen_sigma_csv};
+pub use csv::{boundary_csv, interpen_csv, interpen_sigma_csv, table_csv};
 pub use curved::CurvedFields;
 pub use deck::{
     ContactSettings, CurvedDeck, Deck, Prescribed, conform_curved_wrp, conform_wrp, contact_curved_inp,
-    contact_inp, countact_wrp, separation_wrp,
+    contact_inp, countact_wrp, separation_wrp, table_wrp,
 };
 pub use gmsh::patch_msh;
 pub use html::{
-    PageFrame, PageLoop, PagePair, PagePressure, PageProfile, SweepCurve, SweepPage, SweepPanel, SweepSide,
+    FleetDistribution, FleetHeat, FleetPage, FleetWorst, MeasuredPage, MeasuresPage, PageFigure, PageFrame,
+    PageLoop, PageMap, PagePair, PagePressure, PageProfile, SweepCurve, SweepPage, SweepPanel, SweepSide,
     ViewContact, ViewPage,
 };
 pub use in_place::{ContactInPlace, InPlace};
@@ -39,11 +40,12 @@ pub use legacy::separation_vtk;
 pub use model::{
     Frame, GridFields, Header, Interval, Loop, PatchMesh, QuadMesh, RollerFields, SurfaceMesh, even_step,
 };
-pub use netcdf::NetCdf;
+pub use netcdf::{NetCdf, table_nc};
 pub use npy::array_npy;
 pub use picture::{
-    Chart, ConformalPicture, CurvesPanel, CurvesPicture, JoinedPair, Nodes, OverlayPicture, PatchPicture,
-    PicturedContact, PlottedCurve, Pressed, ProfilePicture, RailNormal, SEPARATOR, Series, jumps,
+    BandPicture, BandPoint, Chart, ConformalPicture, CurvesMap, CurvesPanel, CurvesPicture, JoinedPair,
+    Nodes, OverlayPicture, PatchPicture, PicturedContact, PlottedCurve, Pressed, ProfilePicture, RailNormal,
+    SEPARATOR, Series, jumps,
 };
 pub use ply::surface_ply;
 pub use stl::surface_stl;

@@ -3,12 +3,13 @@
 //!
 //! Dimensions x (= ξ) and y (= η); variables `x`, `y` \[mm\] (cell centres), `heights(x, y)` = −s \[mm\] and, if a body has
 //! no surface somewhere, `mask(x, y)` (1 = undefined); `pressure(x, y)` \[N/mm²\] where it was solved. The sign of −s is
-//! right because those programs press a rigid flat down onto `heights`. The writer is our own: the format is small, and
+//! right because those programs press a rigid flat down onto `heights`. Contact tables are written in the same format. The writer is our own: the format is small, and
 //! the crates for it write only to paths.
 
 use super::block::{Block, put_f64_be};
 use super::model::{GridFields, Header};
 use crate::error::Result;
+use crate::table::{COEFFICIENTS, ContactTable, Lacks};
 use serde_json::json;
 use std::io::{self, Write};
 
@@ -201,6 +202,86 @@ fn entries(variables: &[Variable], wide: bool, mut begin: u64) -> Vec<u8> {
         begin += padded;
     }
     bytes
+}
+
+/// Length of the texts of a table: names and sides.
+const NAME: usize = 24;
+
+/// Writes `table.nc`, a contact table.
+///
+/// Dimensions cell, quantity, power, side (left, right), end and name. Variables `lateral(cell, end)` \[mm\], `begins(cell)`,
+/// `touches(cell)` and `lacks(cell, side)` with the codes of the text table; `quantity_name(quantity, name)`,
+/// `quantity_side(quantity, name)`, `needs(quantity)`, `tolerance(quantity)` and `error(quantity)` in each quantity's unit;
+/// `coefficients(cell, quantity, power)` of 1, t, … t⁸, not numbers where a quantity does not exist.
+pub fn table_nc(table: &ContactTable, title: &str) -> Vec<u8> {
+    let sizes = [table.cells().len(), table.quantities().len(), COEFFICIENTS, 2, 2, NAME];
+    let mut bytes = b"CDF\x01".to_vec();
+    put(&mut bytes, 0);
+    put(&mut bytes, DIMENSION);
+    put(&mut bytes, sizes.len() as u32);
+    for (name, size) in ["cell", "quantity", "power", "side", "end", "name"].into_iter().zip(sizes) {
+        put_name(&mut bytes, name);
+        put(&mut bytes, size as u32);
+    }
+    put(&mut bytes, ATTRIBUTE);
+    put(&mut bytes, 5);
+    put_text(&mut bytes, "title", title);
+    put_text(&mut bytes, "program", concat!("wheelrail ", env!("CARGO_PKG_VERSION")));
+    put_double(&mut bytes, "yaw_rad", table.yaw());
+    put_double(&mut bytes, "nominal_radius_mm", table.radius());
+    put_double(&mut bytes, "tolerance_mm", table.tolerance());
+    let variable = |name, dimensions: &'static [u32], kind| {
+        let count: usize = dimensions.iter().map(|&dimension| sizes[dimension as usize]).product();
+        let size = (count * if kind == DOUBLE { 8 } else { 1 }) as u64;
+        Variable { name, dimensions, attributes: Vec::new(), attribute_count: 0, kind, size }
+    };
+    let variables = [
+        variable("lateral", &[0, 4], DOUBLE),
+        variable("begins", &[0], BYTE),
+        variable("touches", &[0], BYTE),
+        variable("lacks", &[0, 3], BYTE),
+        variable("quantity_name", &[1, 5], CHAR),
+        variable("quantity_side", &[1, 5], CHAR),
+        variable("needs", &[1], BYTE),
+        variable("tolerance", &[1], DOUBLE),
+        variable("error", &[1], DOUBLE),
+        variable("coefficients", &[0, 1, 2], DOUBLE),
+    ];
+    let begin = (bytes.len() + entries(&variables, false, 0).len()) as u64;
+    bytes.extend(entries(&variables, false, begin));
+    put_table(&mut bytes, table);
+    bytes
+}
+
+/// Appends the data of a table, in the order of its variables.
+fn put_table(bytes: &mut Vec<u8>, table: &ContactTable) {
+    let (cells, quantities) = (table.cells(), table.quantities());
+    let text = |text: &str| {
+        let mut name = [0; NAME];
+        name.iter_mut().zip(text.bytes()).for_each(|(place, byte)| *place = byte);
+        name
+    };
+    put_doubles(bytes, cells.iter().flat_map(|cell| cell.lateral));
+    put_codes(bytes, cells.iter().map(|cell| cell.begins.code()));
+    put_codes(bytes, cells.iter().map(|cell| u8::from(cell.touches)));
+    put_codes(bytes, cells.iter().flat_map(|cell| cell.lacks.map(Lacks::code)));
+    put_codes(bytes, quantities.iter().flat_map(|quantity| text(quantity.name)));
+    put_codes(bytes, quantities.iter().flat_map(|quantity| text(quantity.side())));
+    put_codes(bytes, quantities.iter().map(|quantity| quantity.needs.code()));
+    put_doubles(bytes, quantities.iter().map(|quantity| quantity.tolerance));
+    put_doubles(bytes, quantities.iter().map(|quantity| quantity.error));
+    let of = |cell| (0..quantities.len()).flat_map(move |quantity| table.coefficients(cell, quantity));
+    put_doubles(bytes, (0..cells.len()).flat_map(of));
+}
+
+fn put_doubles(bytes: &mut Vec<u8>, numbers: impl Iterator<Item = f64>) {
+    numbers.for_each(|number| bytes.extend(number.to_be_bytes()));
+}
+
+/// Appends bytes, filled up to four.
+fn put_codes(bytes: &mut Vec<u8>, codes: impl Iterator<Item = u8>) {
+    bytes.extend(codes);
+    bytes.resize(bytes.len().next_multiple_of(4), 0);
 }
 
 fn put(bytes: &mut Vec<u8>, value: u32) {

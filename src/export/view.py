@@ -1,12 +1,12 @@
-"""Shows the folder it lies in with ParaView: rail, wheel seen through, separation, patch and its boundary.
+"""Shows the folder it lies in with ParaView: the rail, the wheel cut open behind the patch, and the gap between them in colours.
 
     paraview --script=view.py
     pvbatch view.py picture.png            (without a display: xvfb-run -a pvbatch view.py picture.png)
     pvbatch view.py picture.png arrows     (with arrows from the rail to the wheel)
 
 Contact frame in mm: x = xi (along the common tangent), y = eta (along the rail), z = zeta (from rail to wheel).
-Separation s > 0 apart, s < 0 overlapping, before any approach; colours show s from 0 to 3 delta, clipped. Of a run over the
-rail's surface they show the normal gap t instead, with the conformal patch t < delta cos(alpha).
+Separation s > 0 apart, s < 0 overlapping, before any approach; colours show s from 0 to 3 delta, and nothing beyond. Of a run
+over the rail's surface they show the normal gap t instead, with the conformal patch t < delta cos(alpha).
 """
 
 import json
@@ -61,54 +61,88 @@ def conformal_patch(grid):
     return [source if delta > 0 and points(source) else None for source in (area, line)]
 
 
+def cut(kind, source, origin, normal, **options):
+    """Clips or slices a source by a plane."""
+    made = kind(Input=source, **options)
+    cutter = made.ClipType if kind is Clip else made.SliceType
+    cutter.Origin, cutter.Normal = origin, normal
+    return made
+
+
+def body(source, begin, end_at, level):
+    """The skin of a body between two eta, and its section at the first, up or down to a level over C along the track's z."""
+    across = [[columns[3][k] + eta * columns[1][k] for k in range(3)] for eta in (begin, end_at)]
+    behind = cut(Clip, source, across[0], columns[1], ClipType="Plane", Invert=0)
+    skin = cut(Clip, behind, across[1], columns[1], ClipType="Plane", Invert=1)
+    line = cut(Slice, source, across[0], columns[1], SliceType="Plane")
+    upwards = math.copysign(1.0, level)
+    thick = LinearExtrusion(Input=line, ScaleFactor=150.0, Vector=[0, 0, upwards])
+    end = [across[0][0], across[0][1], columns[3][2] + level]
+    section = cut(Clip, thick, end, [0, 0, upwards], ClipType="Plane", Invert=1)
+    return [(part, part is skin) for part in (skin, section) if points(part)]
+
+
 view = GetActiveViewOrCreate("RenderView")
 if hasattr(view, "UseColorPaletteForBackground"):
     view.UseColorPaletteForBackground = 0
 view.Background = [1, 1, 1]
-view.OrientationAxesLabelColor = INK
-
-# Bodies, brought from the axes of the track into the contact frame: the transform's rotation is orthogonal.
-place = summary["contact_to_track"]
-columns = [[row[k] for row in place[:3]] for k in range(4)]
-back = [[*columns[k], -sum(a * b for a, b in zip(columns[k], columns[3]))] for k in range(3)] + [[0, 0, 0, 1]]
-for name, colour, opacity in [("rails.vtp", [0.70, 0.73, 0.76], 1.0), ("wheels.vtp", [0.35, 0.50, 0.70], 0.15)]:
-    display = shown(loaded(os.path.join(summary["wheelset_files"], name)), colour, opacity)
-    if display:
-        display.UserTransform = [number for row in back for number in row]
+# Its axes would be called X, Y, Z.
+view.OrientationAxesVisibility = 0
 
 # The gap on the rail, from 0 to 3 delta; without a delta over its whole range.
 delta = summary["approach_mm"] or 0.0
 conformal = os.path.exists(os.path.join(here, "conformal.vts"))
 name = "conformal.vts" if conformal else "separation.vts"
 grid, gap = loaded(name), GAPS[name]
-surface = shown(grid)
 low, high = grid.PointData[gap].GetRange()
 end = 3 * delta if delta > 0 else high
+end = end if end > 0 else 1.0
+# What is farther apart than the colours say is left as the bare rail.
+near = Clip(Input=grid, ClipType="Scalar", Scalars=["POINTS", gap], Value=end, Invert=1)
+surface = shown(near)
 ColorBy(surface, ("POINTS", gap))
+surface.Ambient, surface.Diffuse, surface.Specular = 0.65, 0.45, 0.0
 colours = GetColorTransferFunction(gap)
-colours.ApplyPreset("Viridis (matplotlib)", True)
-colours.RescaleTransferFunction(0.0, end if end > 0 else 1.0)
+colours.ApplyPreset("Inferno (matplotlib)", True)
+colours.InvertTransferFunction()
+colours.RescaleTransferFunction(0.0, end)
 colours.NanOpacity = 0.0
+# Arrows have values beyond the end.
+colours.AutomaticRescaleRangeMode = "Never"
 bar = GetScalarBar(colours, view)
-letter = "t" if conformal else "s"
-bar.Title = f"{letter}, mm, 0 to 3 delta, clipped" if delta > 0 else f"{letter}, mm"
+bar.Title = "normal gap t, mm" if conformal else "separation s, mm"
 bar.ComponentTitle = ""
 bar.TitleColor = bar.LabelColor = INK
-bar.TitleFontSize, bar.LabelFontSize = 14, 12
-bar.WindowLocation = "Lower Right Corner"
+bar.TitleFontSize, bar.LabelFontSize = 18, 16
+bar.WindowLocation, bar.ScalarBarLength = "Lower Right Corner", 0.4
+bar.AutomaticLabelFormat, bar.LabelFormat, bar.RangeLabelFormat = 0, "%.3g", "%.3g"
 surface.SetScalarBarVisibility(view, True)
 
-# The patch, filled and outlined. What lies on the rail is lifted so that it is seen, by less than a line is wide.
+# The boundary of the patch. What lies on the rail is lifted so that it is seen, by less than a line is wide.
 area, line = conformal_patch(grid) if conformal else (loaded("patch.vtu"), loaded("boundary.vtp"))
-patch = shown(area, [0.93, 0.45, 0.13], 0.5)
-line = shown(line, [0.75, 0.05, 0.05])
-if line:
-    line.LineWidth = 3
+outline = shown(line, [1.0, 1.0, 1.0])
+if outline:
+    outline.LineWidth = 4
 bounds = grid.GetDataInformation().GetBounds()
 size = max(bounds[1] - bounds[0], bounds[3] - bounds[2])
-for step, display in enumerate((surface, patch, line), start=1):
+for step, display in enumerate((surface, outline), start=1):
     if display:
         display.Position = [0, 0, 0.003 * step * size]
+
+# Bodies, brought from the axes of the track into the contact frame: the transform's rotation is orthogonal. The rail ends in front
+# of the grid, and the wheel is cut open behind the patch, so that both their sections and the whole patch are seen.
+place = summary["contact_to_track"]
+columns = [[row[k] for row in place[:3]] for k in range(4)]
+back = [[*columns[k], -sum(a * b for a, b in zip(columns[k], columns[3]))] for k in range(3)] + [[0, 0, 0, 1]]
+behind = (area or grid).GetDataInformation().GetBounds()[3] + 0.1 * size
+SKINS = {"rails.vtp": [0.70, 0.73, 0.76], "wheels.vtp": [0.45, 0.60, 0.80]}
+SECTIONS = {"rails.vtp": [0.56, 0.59, 0.62], "wheels.vtp": [0.30, 0.44, 0.63]}
+for name, begin, level in [("rails.vtp", bounds[2] - 0.3 * size, -70.0), ("wheels.vtp", behind, 32.0)]:
+    source = loaded(os.path.join(summary["wheelset_files"], name))
+    for part, is_skin in body(source, begin, behind + 60.0, level) if source else []:
+        display = shown(part, (SKINS if is_skin else SECTIONS)[name])
+        display.UserTransform = [number for row in back for number in row]
+        display.Ambient = 0.25 if is_skin else 0.5
 
 found = summary["found"]
 words = [summary["title"]]
@@ -124,7 +158,7 @@ overlap, kind = summary["patch"], "patch"
 if conformal:
     overlap, kind = summary["conformal"]["patch"], "conformal patch t < delta cos(alpha)"
 if overlap and overlap["components"]:
-    words.append(f"{kind} {overlap['area_mm2']:.4g} mm2")
+    words.append(f"white line: the {kind}, {overlap['area_mm2']:.4g} mm2" + ("" if conformal else ", s < delta"))
 elif delta > 0:
     words.append(f"the {kind} is empty")
 
@@ -143,23 +177,17 @@ if "arrows" in sys.argv[1:]:
     words.append(f"arrows: gap x {stretch:g}")
 
 note = Show(Text(Text="\n".join(words)), view)
-note.Color, note.FontSize = INK, 14
-note.WindowLocation, note.Justification = "Upper Left Corner", "Left"
+note.Color, note.FontSize = INK, 18
+note.WindowLocation, note.Justification = "Lower Left Corner", "Left"
 
-axes = surface.DataAxesGrid
-axes.GridAxesVisibility = 1
-axes.XTitle, axes.YTitle, axes.ZTitle = "xi, mm", "eta, mm", "zeta, mm"
-for name in ("XTitleColor", "YTitleColor", "ZTitleColor", "XLabelColor", "YLabelColor", "ZLabelColor", "GridColor"):
-    setattr(axes, name, INK)
-
-# Obliquely from the gauge side, at what the grid covers.
+# From before the cut and above the rail, a little from the gauge side; as wide as a wheel.
 if picture:
-    view.ViewSize = [1600, 1000]
+    view.ViewSize = [1600, 900]
 # The first rendering would move the camera.
 Render(view)
-direction = [-0.55, -0.85, 1.1]
-view.CameraFocalPoint = [(bounds[2 * k] + bounds[2 * k + 1]) / 2 for k in range(3)]
-view.CameraPosition = [c + 2.0 * size * d for c, d in zip(view.CameraFocalPoint, direction)]
+direction = [-0.35, -0.80, 0.46]
+view.CameraFocalPoint = [(bounds[0] + bounds[1]) / 2, bounds[2], (bounds[4] + bounds[5]) / 2]
+view.CameraPosition = [c + max(6.0 * size, 155.0) * d for c, d in zip(view.CameraFocalPoint, direction)]
 view.CameraViewUp = [0, 0, 1]
 view.CenterOfRotation = view.CameraFocalPoint
 Render(view)

@@ -75,6 +75,14 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
     file.commit()
 }
 
+/// Makes a folder, with those above it, unless it is there.
+///
+/// # Errors
+/// Any error of the disk.
+pub fn make_folder(path: &Path) -> Result<()> {
+    fs::create_dir_all(path).map_err(|error| unwritable(path, error))
+}
+
 fn beside(target: &Path) -> io::Result<(PathBuf, File)> {
     // The folder of a bare name is the empty path.
     let target = std::path::absolute(target)?;

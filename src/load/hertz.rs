@@ -85,8 +85,14 @@ pub fn curvatures(placement: &Placement) -> Curvatures {
 
 /// The principal curvatures of s at a place that a search found; not numbers at a kink.
 pub fn curvatures_at(contact: &Contact) -> Curvatures {
+    principal(quadratic_form_at(contact))
+}
+
+/// The coefficients \[1/mm\] of ξ², ξη and η² in the second-order expansion of s at a place that a search found on a rail; not numbers at
+/// a kink.
+pub fn quadratic_form_at(contact: &Contact) -> [f64; 3] {
     let around = contact.wheel_angle.cos() / contact.rolling_radius;
-    principal(form([contact.rail_curvature, contact.wheel_curvature], around, contact.skew))
+    form([contact.rail_curvature, contact.wheel_curvature], around, contact.skew)
 }
 
 /// Of s = xx ξ² + xy ξη + yy η².

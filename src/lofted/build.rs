@@ -14,7 +14,7 @@ use crate::profile::{Mark, Profile, trace};
 pub const SPACING: f64 = 0.25;
 
 /// Distance \[mm\] of the marks by which a slice is divided: cubics between them are off by 0.02 nm on a 13 mm radius.
-const MARKS: f64 = 0.05;
+pub(super) const MARKS: f64 = 0.05;
 
 /// Most points of a surface; each takes 130 bytes.
 const MOST_POINTS: usize = 4_000_000;
@@ -89,6 +89,13 @@ impl Loft {
             return Err(Error::new("slices", "no such part", expected, "correct the features"));
         }
         Ok(Self { strips, warnings, reach: [slices[0].at, slices[slices.len() - 1].at] })
+    }
+
+    /// Takes another surface beside this one, which begins where this one ends.
+    pub(super) fn followed_by(mut self, other: Self) -> Self {
+        self.strips.extend(other.strips);
+        self.warnings.extend(other.warnings);
+        Self { reach: [self.reach[0], other.reach[1]], ..self }
     }
 
     /// Positions of the first and of the last slice \[mm\].

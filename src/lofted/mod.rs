@@ -1,5 +1,5 @@
-//! Surfaces that vary along the track: switches, crossings, check rails. A list of slices gives them, each a section at its own
-//! place.
+//! Surfaces that vary along the track: switches, crossings, check rails; and around an axle: wheels with flats, out of round. A list of
+//! slices gives them, each a section at its own place.
 //!
 //! # The surface between slices
 //!
@@ -11,6 +11,7 @@
 //! A part that a slice does not have begins or ends at its neighbour. Without features a slice is one part; where its length or its
 //! ends jump from one slice to the next, the list defines no surface between the two ([`Loft::warnings`]).
 
+mod around;
 mod bicubic;
 mod build;
 mod framed;
@@ -18,6 +19,8 @@ mod joining;
 mod section;
 mod strip;
 
+pub(crate) use around::turned;
+pub use around::{Flat, LoftedWheel};
 pub use bicubic::{Bicubic, SurfacePoint};
 pub use build::{Loft, SPACING, Slice};
 pub use framed::{FramedLoft, LoftFoot};

@@ -18,6 +18,13 @@ pub struct Measures {
 }
 
 impl Measures {
+    /// Takes the diameter of a wheel \[mm\] that its file states: no profile tells it.
+    #[must_use]
+    pub fn with_diameter(mut self, diameter: Option<f64>) -> Self {
+        self.values[Quantity::Diameter as usize] = diameter.filter(|_| self.side == Side::Wheel);
+        self
+    }
+
     /// Returns a value in its unit; `None` where it cannot be had.
     pub fn value(&self, quantity: Quantity) -> Option<f64> {
         self.values[quantity as usize]

@@ -4,6 +4,7 @@
 //! file is the one that was fitted to its points.
 
 mod align;
+mod average;
 mod curve;
 mod fit;
 mod found;
@@ -20,6 +21,7 @@ mod tests;
 mod wheel;
 
 pub use align::Alignment;
+pub use average::{Average, AveragePoint, average};
 pub use limits::{Limit, Limits};
 pub use measures::Measures;
 pub use options::{Align, GaugeFrom, MeasureOptions};

@@ -66,7 +66,7 @@ pub fn overlay(
 }
 
 /// Returns the point of a curve that is the nearest on the normal of a station.
-fn across(curve: &Curve, at: &Station) -> Option<[f64; 2]> {
+pub(super) fn across(curve: &Curve, at: &Station) -> Option<[f64; 2]> {
     let all = curve.crossings([at.cos, at.sin], at.cos * at.x + at.sin * at.z).into_iter();
     let distance = |point: &[f64; 2]| (point[0] - at.x).hypot(point[1] - at.z);
     let near = all.map(|place| [place.x, place.z]).filter(|point| distance(point) <= FARTHEST);

@@ -56,6 +56,7 @@ quantities! {
     GrooveWidth: "groove_width_mm", "mm", Rail, "width of the groove 14 below the top";
     GrooveDepth: "groove_depth_mm", "mm", Rail, "depth of the groove below the top";
     KeeperWear: "keeper_wear_mm", "mm", Rail, "horizontal wear of the keeper's face 14 below the top";
+    Diameter: "diameter_mm", "mm", Wheel, "diameter at the taping line, as the file states it";
 }
 
 impl Quantity {

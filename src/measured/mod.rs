@@ -12,6 +12,7 @@
 mod clean;
 mod column;
 mod fit;
+pub mod noise;
 mod options;
 mod place;
 mod read;
@@ -60,6 +61,9 @@ pub struct Record {
     pub transform: Transform,
     /// Whether the points already contain the rail's inclination.
     pub already_inclined: bool,
+    /// Diameter of the wheel at its taping line \[mm\], as the file states it; `None` if it does not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub diameter: Option<f64>,
     /// The repairs that were made.
     pub repairs: Vec<Repaired>,
     /// Findings that were neither fatal nor repaired.
@@ -205,6 +209,7 @@ pub fn section(
         let placed = Placed {
             points,
             elements: Vec::new(),
+            diameter: None,
             elements_alone: false,
             notes: all(|own| &own.notes),
             repairs: slices.iter().flat_map(|(_, own)| own.repairs.clone()).collect(),
@@ -245,6 +250,7 @@ struct Placed {
     points_read: usize,
     points: Vec<Point>,
     elements: Vec<DesignElement>,
+    diameter: Option<f64>,
     /// Whether the file has design elements only.
     elements_alone: bool,
     notes: Vec<Note>,
@@ -275,7 +281,19 @@ fn placed(read: Points, side: Side, options: &Options) -> Result<Placed> {
     let repairs = clean::repairs::repair(&mut points, &options.repair);
     let elements = read.elements.iter().map(|element| transform.element(element)).collect();
     let (format, points_read, notes) = (read.format, read.at.len(), read.notes);
-    Ok(Placed { format, points_read, points, elements, elements_alone, notes, transform, turned, repairs })
+    let diameter = read.diameter.filter(|_| side == Side::Wheel);
+    Ok(Placed {
+        format,
+        points_read,
+        points,
+        elements,
+        diameter,
+        elements_alone,
+        notes,
+        transform,
+        turned,
+        repairs,
+    })
 }
 
 /// Checks placed points and draws the curve through them.
@@ -300,6 +318,7 @@ fn drawn(
         notes: placed.notes,
         transform: placed.transform,
         already_inclined: options.already_inclined,
+        diameter: placed.diameter,
         repairs: placed.repairs,
         warnings,
         curve,

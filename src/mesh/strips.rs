@@ -16,7 +16,8 @@ use nalgebra::Point3;
 
 use super::lines::{BandMeeting, between, lines};
 use crate::error::{Error, ErrorKind, Result};
-use crate::patch::{Band, Component, Patch};
+use crate::numerics::lanes::{Lanes, lanes};
+use crate::patch::{Band, Component, Patch, Places};
 use crate::placement::Placement;
 use crate::separation::Evaluator;
 
@@ -165,13 +166,14 @@ impl StripBuilder<'_> {
         self.mesh.cells.reserve(strips * self.shares.len());
         for (band, shares) in bands.iter().zip(&shares) {
             let edges = strip_edges(band, strips as f64 / whole);
+            let slices = band.rows(&edges);
             let mut before: Vec<usize> = Vec::new();
-            for (i, &xi) in edges.iter().enumerate() {
+            for (i, &[xi, low, high]) in slices.iter().enumerate() {
                 let row = match meetings.iter_mut().find(|meeting| meeting.xi == xi) {
                     Some(meeting) if xi == band.xi[0] || xi == band.xi[1] => {
                         meeting.row(&mut self.mesh.points, self.placement, band, shares)
                     }
-                    _ => self.row(band, shares, xi),
+                    _ => self.row(shares, xi, [low, high]),
                 };
                 if i > 0 {
                     self.strip(
@@ -202,7 +204,7 @@ impl StripBuilder<'_> {
         self.eta.clear();
         self.eta.extend((1..shares.len()).map(|j| middle(j - 1)));
         self.separation.resize(self.eta.len(), f64::NAN);
-        self.evaluator.column(moments.xi, &self.eta, &mut self.separation);
+        self.evaluator.column_in_lanes(moments.xi, &self.eta, &mut self.separation);
         for j in 0..self.eta.len() {
             let quad = [rows[0][j], rows[1][j], rows[1][j + 1], rows[0][j + 1]];
             if let Some(corners) = tip_first(quad) {
@@ -219,9 +221,8 @@ impl StripBuilder<'_> {
         }
     }
 
-    /// Returns the indices of the points of one strip edge, ascending in η. They are equal if the edge has no width.
-    fn row(&mut self, band: &Band, shares: &[f64], xi: f64) -> Vec<usize> {
-        let eta = band.slice(xi).eta;
+    /// Returns the indices of the points of one strip edge between two η \[mm\], ascending in η. They are equal if the edge has no width.
+    fn row(&mut self, shares: &[f64], xi: f64, eta: [f64; 2]) -> Vec<usize> {
         let profile = self.placement.rail().section.height(xi);
         let on_roller = self.placement.under().is_some() || self.placement.lofted().is_some();
         let mut lifted = |eta: f64| {
@@ -244,28 +245,18 @@ impl StripBuilder<'_> {
         // A mean of values that change sign is computed from an offset. The demanded accuracy then refers to the size of
         // the offset.
         let offset = band.sides.into_iter().flatten().fold(xi[1] - xi[0], |most, eta| eta.abs().max(most));
-        let grading = band.grading();
-        let inside = band.corners.iter().copied().filter(|&corner| corner > xi[0] && corner < xi[1]);
-        // The ends of the parameter are exactly 0 and 1, in spite of rounding.
-        let parameter = |x: f64| match x {
-            x if x == band.xi[0] => 0.0,
-            x if x == band.xi[1] => 1.0,
-            x => grading.parameter(x),
+        let weighted = |at: &Places| {
+            let [low, high] = &at.edges;
+            let width: Lanes = lanes(|k| high[k] - low[k]);
+            [
+                width,
+                lanes(|k| (at.xi[k] - xi[0]) * width[k]),
+                lanes(|k| (offset + (low[k] + width[k] / 2.0)) * width[k]),
+                lanes(|k| width[k] * width[k] / 2.0),
+            ]
         };
-        let (mut sums, mut from) = ([0.0; 4], parameter(xi[0]));
-        for to in inside.chain([xi[1]]).map(parameter) {
-            let weighted = |x: f64| {
-                let [low, high] = band.slice(x).eta;
-                let width = high - low;
-                let middle = low + width / 2.0;
-                [width, (x - xi[0]) * width, (offset + middle) * width, width * width / 2.0]
-            };
-            let demand = [AREA_DEMAND, CENTROID_DEMAND, CENTROID_DEMAND, CENTROID_DEMAND];
-            let piece = grading.integrals([from, to], weighted, demand);
-            sums = [0, 1, 2, 3].map(|k| sums[k] + piece[k]);
-            from = to;
-        }
-        let [area, along, across, half] = sums;
+        let demand = [AREA_DEMAND, CENTROID_DEMAND, CENTROID_DEMAND, CENTROID_DEMAND];
+        let [area, along, across, half] = band.integrals(xi, false, weighted, demand);
         Moments { area, xi: xi[0] + along / area, middle: across / area - offset, half: half / area }
     }
 }

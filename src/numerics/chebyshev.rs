@@ -8,7 +8,7 @@ use std::array::from_fn;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use std::sync::LazyLock;
 
-use super::lanes::{Lanes, MANY};
+use super::lanes::{Lanes, MANY, lanes, multiply_add};
 
 /// How many points an interpolant has.
 pub const POINTS: usize = MANY;
@@ -98,25 +98,41 @@ pub fn to_powers(c: &Lanes, kept: usize) -> Lanes {
     interleaved(&even, &odd)
 }
 
-/// Computes Σ c_k T_k(t) by Clenshaw's rule; `c` has at least one coefficient.
-#[inline]
-pub fn value(c: &[f64], t: f64) -> f64 {
-    let (mut here, mut before) = (0.0, 0.0);
+/// Computes Σ c_k T_k at N places by Clenshaw's rule; `c` has at least one coefficient.
+#[inline(always)]
+pub fn values<const N: usize>(c: &[f64], t: &Lanes<N>) -> Lanes<N> {
+    let (mut here, mut before) = ([0.0; N], [0.0; N]);
     for &c in c[1..].iter().rev() {
-        (here, before) = (c + 2.0 * t * here - before, here);
+        for k in 0..N {
+            let next = multiply_add::<N>(2.0 * t[k], here[k], c - before[k]);
+            (here[k], before[k]) = (next, here[k]);
+        }
     }
-    c[0] + t * here - before
+    lanes(|k| multiply_add::<N>(t[k], here[k], c[0] - before[k]))
 }
 
-/// Computes Σ c_k T_k(t) and its derivative by Clenshaw's rule; `c` has at least one coefficient.
-#[inline]
-pub fn value_and_slope(c: &[f64], t: f64) -> [f64; 2] {
-    let (mut here, mut before, mut slope, mut last) = (0.0, 0.0, 0.0, 0.0);
+/// Computes Σ c_k T_k and its derivative at N places by Clenshaw's rule; `c` has at least one coefficient.
+#[inline(always)]
+pub fn values_and_slopes<const N: usize>(c: &[f64], t: &Lanes<N>) -> [Lanes<N>; 2] {
+    let [mut here, mut before, mut slope, mut last] = [[0.0; N]; 4];
     for &c in c[1..].iter().rev() {
-        (slope, last) = (2.0 * (here + t * slope) - last, slope);
-        (here, before) = (c + 2.0 * t * here - before, here);
+        for k in 0..N {
+            let turn = multiply_add::<N>(2.0 * t[k], slope[k], 2.0 * here[k] - last[k]);
+            let next = multiply_add::<N>(2.0 * t[k], here[k], c - before[k]);
+            (slope[k], last[k]) = (turn, slope[k]);
+            (here[k], before[k]) = (next, here[k]);
+        }
     }
-    [c[0] + t * here - before, here + t * slope - last]
+    [
+        lanes(|k| multiply_add::<N>(t[k], here[k], c[0] - before[k])),
+        lanes(|k| multiply_add::<N>(t[k], slope[k], here[k] - last[k])),
+    ]
+}
+
+/// Computes Σ c_k T_k(t) by Clenshaw's rule; `c` has at least one coefficient.
+pub fn value(c: &[f64], t: f64) -> f64 {
+    let [value] = values(c, &[t]);
+    value
 }
 
 /// Computes the coefficients of the derivative by t.
@@ -236,7 +252,7 @@ mod tests {
             assert!((horner - f(t)).abs() < 1e-15 && (value(&c, t) - f(t)).abs() < 1e-15, "{t}");
             let exact = f(t) * (0.5 + 1.0 / (5.0 - t));
             assert!((value(&slope, t) - exact).abs() < 3e-13, "{t}");
-            let [both, rate] = value_and_slope(&c, t);
+            let [[both], [rate]] = values_and_slopes(&c, &[t]);
             assert!(both == value(&c, t) && (rate - exact).abs() < 3e-13, "{t}");
         }
     }

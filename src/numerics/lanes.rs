@@ -19,6 +19,13 @@ pub fn lanes<const N: usize>(value: impl Fn(usize) -> f64) -> Lanes<N> {
     lanes
 }
 
+/// Collects at most 16 values; the other lanes hold 0.
+pub fn padded(values: impl Iterator<Item = f64>) -> Lanes {
+    let mut lanes = [0.0; MANY];
+    lanes.iter_mut().zip(values).for_each(|(lane, value)| *lane = value);
+    lanes
+}
+
 /// Tells whether a property holds for each of the N indices. There is no early end, because vector code has none.
 #[inline(always)]
 pub fn every<const N: usize>(holds: impl Fn(usize) -> bool) -> bool {
@@ -59,9 +66,49 @@ pub fn multiply_add<const N: usize>(a: f64, b: f64, c: f64) -> f64 {
     if N == 1 { a * b + c } else { a.mul_add(b, c) }
 }
 
+/// Number of terms of the series of sine and cosine. The first one that is left out is below 1e-16 up to π/4.
+const TERMS: usize = 9;
+
+/// ±1/n!, with n = 2k + 1 (first row) and n = 2k (second row).
+const SERIES: [[f64; TERMS]; 2] = {
+    let mut rows = [[1.0; TERMS]; 2];
+    let mut k = 1;
+    while k < TERMS {
+        let n = 2.0 * k as f64;
+        rows[0][k] = -rows[0][k - 1] / (n * (n + 1.0));
+        rows[1][k] = -rows[1][k - 1] / (n * (n - 1.0));
+        k += 1;
+    }
+    rows
+};
+
+/// Computes sines and cosines of angles between −π/4 and π/4, to two roundings.
+#[inline(always)]
+pub fn sines_cosines<const N: usize>(angle: &Lanes<N>) -> [Lanes<N>; 2] {
+    let [mut sine, mut cosine] = [[0.0; N]; 2];
+    for term in (0..TERMS).rev() {
+        for k in 0..N {
+            let square = angle[k] * angle[k];
+            sine[k] = multiply_add::<N>(sine[k], square, SERIES[0][term]);
+            cosine[k] = multiply_add::<N>(cosine[k], square, SERIES[1][term]);
+        }
+    }
+    [lanes(|k| sine[k] * angle[k]), cosine]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sines_and_cosines_are_those_of_the_standard_library() {
+        for k in 0..=100 {
+            let angle = std::f64::consts::FRAC_PI_4 * (f64::from(k) / 50.0 - 1.0);
+            let [[sine], [cosine]] = sines_cosines(&[angle]);
+            let apart = [(sine - angle.sin()).abs() / angle.abs().max(1e-300), (cosine - angle.cos()).abs()];
+            assert!(apart.iter().all(|apart| *apart <= 2.0 * f64::EPSILON), "{angle} {apart:?}");
+        }
+    }
 
     #[test]
     fn extremes_pass_over_what_is_no_number() {

@@ -1,5 +1,7 @@
 //! Adaptive Gauss–Kronrod quadrature.
 
+use super::lanes::{Lanes, MANY};
+
 /// A Gauss–Kronrod pair on \[−1, 1\]: the nodes of one half, the outermost first and the centre last; their weights; and the weights
 /// of the Gauss rule, which has every second node.
 struct Rule<const K: usize, const G: usize> {
@@ -72,16 +74,17 @@ struct GaussPanel<const N: usize> {
 }
 
 /// Computes ∫ f over an interval for several smooth functions that are known at the same places. Each is computed to its relative
-/// demand, or to the rounding of `f` where that is larger.
+/// demand, or to the rounding of `f` where that is larger. `f` takes at most 16 places and gives the values of each function in lanes,
+/// of which those beyond the places do not count.
 ///
 /// Method: Gauss–Kronrod panels, with the error that a Kronrod rule has over smooth functions. The worst one is halved until their
 /// errors sum up to less than the demand, or halving no longer helps, or there are 128 panels (as QUADPACK's QAG): no fixed floor
 /// knows how much noise an integrand has.
-/// Cost: 15 evaluations a panel, and one panel for most smooth pieces. `short` intervals of a smooth piece are tried with 7
-/// evaluations first. Nothing is allocated for one panel.
+/// Cost: 15 places a panel, and one panel for most smooth pieces. `short` intervals of a smooth piece are tried with 7 places first.
+/// Nothing is allocated for one panel.
 /// Degenerate: NaN where `f` is NaN.
 pub fn smooth_integrals<const N: usize>(
-    f: &mut impl FnMut(f64) -> [f64; N],
+    f: &mut impl FnMut(&[f64]) -> [Lanes; N],
     ends: [f64; 2],
     relative: [f64; N],
     short: bool,
@@ -97,7 +100,7 @@ pub fn smooth_integrals<const N: usize>(
 
 /// Computes integrals by panels that are halved; functions that are not `smooth` may have kinks.
 fn halved<const N: usize>(
-    f: &mut impl FnMut(f64) -> [f64; N],
+    f: &mut impl FnMut(&[f64]) -> [Lanes; N],
     ends: [f64; 2],
     relative: [f64; N],
     smooth: bool,
@@ -136,21 +139,26 @@ fn excess<const N: usize>(sums: &[f64; N], errors: &[f64; N], relative: &[f64; N
 impl<const N: usize> GaussPanel<N> {
     /// Evaluates the Kronrod sums over an interval. Their errors are |Kronrod − Gauss|, and less for smooth functions.
     fn new<const K: usize, const G: usize>(
-        f: &mut impl FnMut(f64) -> [f64; N],
+        f: &mut impl FnMut(&[f64]) -> [Lanes; N],
         ends @ [a, b]: [f64; 2],
         rule: &Rule<K, G>,
         smooth: bool,
     ) -> Self {
         let (centre, half) = (a + (b - a) / 2.0, (b - a) / 2.0);
+        // Both nodes of a pair side by side, the centre last.
+        let mut places = [centre; MANY];
+        for (k, &node) in rule.nodes[..K - 1].iter().enumerate() {
+            [places[2 * k], places[2 * k + 1]] = [centre - half * node, centre + half * node];
+        }
+        let values = f(&places[..2 * K - 1]);
         let (mut kronrod, mut gauss) = ([0.0; N], [0.0; N]);
-        for (k, &node) in rule.nodes.iter().enumerate() {
-            let mut both = f(centre - half * node);
-            if node != 0.0 {
-                both = add(both, f(centre + half * node), 1.0);
-            }
-            kronrod = add(kronrod, both, rule.kronrod[k]);
-            if k % 2 == 1 {
-                gauss = add(gauss, both, rule.gauss[k / 2]);
+        for (index, values) in values.iter().enumerate() {
+            for k in 0..K {
+                let both = if k + 1 < K { values[2 * k] + values[2 * k + 1] } else { values[2 * k] };
+                kronrod[index] += rule.kronrod[k] * both;
+                if k % 2 == 1 {
+                    gauss[index] += rule.gauss[k / 2] * both;
+                }
             }
         }
         let sums = kronrod.map(|sum| sum * half);
@@ -176,9 +184,11 @@ fn add<const N: usize>(mut a: [f64; N], b: [f64; N], c: f64) -> [f64; N] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::lanes::padded;
 
     fn integral(f: &mut impl FnMut(f64) -> f64, a: f64, b: f64, relative: f64) -> f64 {
-        let [sum] = halved(&mut |x| [f(x)], [a, b], [relative], false);
+        let mut many = |x: &[f64]| [padded(x.iter().map(|x| f(*x)))];
+        let [sum] = halved(&mut many, [a, b], [relative], false);
         sum
     }
 

@@ -1,11 +1,14 @@
 //! Bands: parts of a component in which each ξ has one interval of η.
 
+use super::edges::EdgeFinder;
 use super::grading::Grading;
 use super::outline::{End, Outline};
 use super::slice::Slice;
 use super::stretch::{Fit, Stretch};
 use super::varying::SMOOTH;
+use crate::numerics::lanes::{Lanes, MANY, lanes};
 use crate::numerics::nan_max;
+use crate::numerics::quadrature::smooth_integrals;
 use crate::profile::Section;
 
 /// Least step of a surface, in roundings of the profile's extent. A smaller one counts as a smooth joint.
@@ -16,6 +19,17 @@ const ONE_CORNER: f64 = 1e-11;
 
 /// Rounding of s in units of the rounding of the coordinates.
 const ROUNDINGS: f64 = 4.0;
+
+/// A place at which s may be least.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Turn {
+    /// The valley that turns; `None` without skew.
+    pub(super) valley: Option<usize>,
+    /// ξ \[mm\].
+    pub(super) xi: f64,
+    /// s − δ over the valley \[mm\], which is not larger elsewhere at ξ; NaN where it is not known.
+    pub(super) depth: f64,
+}
 
 /// A range of ξ over which a component has one interval of η, whose ends vary without a jump.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,18 +87,25 @@ impl Band {
         let root = self.ends.map(|end| matches!(end, None | Some(End::ProfileEnd)));
         let noise = self.noise(outline);
         let mut stretches = Vec::new();
-        // ξ, the square of half the width and the middle of the last two slices.
+        let mut finder = EdgeFinder::new(outline.slicer.placement(), outline.slicer.approach());
+        // ξ, the square of half the width and the middle of the last two slices that were found one by one.
         let mut known = [[f64::NAN; 3]; 2];
-        let edges = |xi: f64| {
-            let valley = self.valley(xi);
-            let edges = outline
-                .slicer
-                .edges_near(xi, extrapolated(&known, xi))
-                .or_else(|| outline.slicer.edges(xi, valley).map(|edges| edges.map(|edge| edge.eta)));
-            let [low, high] = edges.unwrap_or_else(|| [outline.slicer.valley(valley, xi); 2]);
-            let half = (high - low) / 2.0;
-            known = [known[1], [xi, half * half, low + half]];
-            [low, high]
+        let edges = |xi: &Lanes| {
+            let many = if outline.slicer.has_one_valley(xi) { finder.edges(xi) } else { None };
+            many.unwrap_or_else(|| {
+                let one = |xi: f64| {
+                    let valley = self.valley(xi);
+                    let near = outline.slicer.edges_near(xi, extrapolated(&known, xi));
+                    let edges = near
+                        .or_else(|| outline.slicer.edges(xi, valley).map(|both| both.map(|edge| edge.eta)));
+                    let [low, high] = edges.unwrap_or_else(|| [outline.slicer.valley(valley, xi); 2]);
+                    let half = (high - low) / 2.0;
+                    known = [known[1], [xi, half * half, low + half]];
+                    [low, high]
+                };
+                let both = xi.map(one);
+                [both.map(|edges| edges[0]), both.map(|edges| edges[1])]
+            })
         };
         let mut fit = Fit { edges, band: self.xi, zero, root, noise };
         for pair in corners.windows(2) {
@@ -123,18 +144,80 @@ impl Band {
         if let Some(end) = (0..2).find(|&end| xi == self.xi[end]) {
             return Slice { eta: self.sides[end] };
         }
-        let [low, high] = self.stretch(xi).map_or([f64::NAN; 2], |stretch| stretch.edges(xi));
-        let [from, to] = self.window;
-        Slice { eta: [low.max(from).min(to), high.min(to).max(from)] }
+        let [[low], [high]] = self.stretch(xi).map_or([[f64::NAN]; 2], |stretch| stretch.edges(&[xi]));
+        Slice { eta: self.clipped([low, high]) }
     }
 
-    /// Returns the slice at ξ \[mm\], and dη/dξ of both its ends, which is infinite at a tip and 0 along the window.
-    pub(super) fn edges_and_slopes(&self, xi: f64) -> ([f64; 2], [f64; 2]) {
-        let Some(stretch) = self.stretch(xi) else { return ([f64::NAN; 2], [f64::NAN; 2]) };
-        let (edges, slopes) = stretch.edges_and_slopes(xi);
+    /// Returns \[ξ, lower η, upper η\] \[mm\] at ascending ξ within `xi`.
+    pub(crate) fn rows(&self, xi: &[f64]) -> Vec<[f64; 3]> {
+        let mut rows = Vec::with_capacity(xi.len());
+        while let Some(&first) = xi.get(rows.len()) {
+            let rest = &xi[rows.len()..];
+            let last = self.stretch(first).map_or(first, |stretch| stretch.xi[1]);
+            let count = rest.iter().take(MANY).take_while(|xi| **xi <= last).count().max(1);
+            let own: Lanes = lanes(|k| rest[k.min(count - 1)]);
+            let found =
+                self.stretch(first).map(|stretch| pulp::Arch::new().dispatch(EdgesAt { stretch, xi: &own }));
+            let [low, high] = found.unwrap_or([[f64::NAN; MANY]; 2]);
+            rows.extend((0..count).map(|k| {
+                let end = (0..2).find(|&end| own[k] == self.xi[end]);
+                let [low, high] = end.map_or_else(|| self.clipped([low[k], high[k]]), |end| self.sides[end]);
+                [own[k], low, high]
+            }));
+        }
+        rows
+    }
+
+    /// Cuts a slice off at the window.
+    fn clipped(&self, [low, high]: [f64; 2]) -> [f64; 2] {
         let [from, to] = self.window;
-        let clipped = [edges[0].max(from).min(to), edges[1].min(to).max(from)];
-        (clipped, [0, 1].map(|k| if clipped[k] == edges[k] { slopes[k] } else { 0.0 }))
+        [low.max(from).min(to), high.min(to).max(from)]
+    }
+
+    /// Returns dη/dξ of one side at ξ, which is infinite at a tip and 0 along the window.
+    pub(super) fn slope(&self, branch: usize, xi: f64) -> f64 {
+        let Some(stretch) = self.stretch(xi) else { return f64::NAN };
+        let [[[low], [high]], slopes] = stretch.edges_and_slopes(&[xi]);
+        if self.clipped([low, high])[branch] == [low, high][branch] { slopes[branch][0] } else { 0.0 }
+    }
+
+    /// Returns ∫ f dξ over a range within `xi` for several functions of ξ and the edges, which are given at 16 places at once, together
+    /// with their slopes if `with_slopes`. Each integral has its own relative accuracy.
+    pub(crate) fn integrals<const N: usize>(
+        &self,
+        [from, to]: [f64; 2],
+        with_slopes: bool,
+        f: impl Fn(&Places) -> [Lanes; N],
+        relative: [f64; N],
+    ) -> [f64; N] {
+        let grading = self.grading();
+        let ends = self.stretches.iter().map(|stretch| stretch.xi[1]).chain(self.corners.iter().copied());
+        let mut cuts: Vec<f64> = ends.filter(|xi| from < *xi && *xi < to).chain([to]).collect();
+        cuts.sort_by(f64::total_cmp);
+        // The ends of the parameter are exactly 0 and 1, in spite of rounding.
+        let parameter = |xi: f64| match self.xi.iter().position(|end| *end == xi) {
+            Some(end) => end as f64,
+            None => grading.parameter(xi),
+        };
+        let (mut sums, mut begin) = ([0.0; N], (from, parameter(from)));
+        for cut in cuts {
+            let end = (cut, parameter(cut));
+            let Some(stretch) = self.stretch(cut).filter(|_| begin.0 < cut) else { continue };
+            let mut weighted = |t: &[f64]| {
+                let at = PlacesAt {
+                    stretch,
+                    grading: &grading,
+                    with_slopes,
+                    t: &lanes(|k| t[k.min(t.len() - 1)]),
+                };
+                let places = pulp::Arch::new().dispatch(at).clipped(self.window);
+                f(&places).map(|values| lanes(|k| values[k] * places.rate[k]))
+            };
+            let part = smooth_integrals(&mut weighted, [begin.1, end.1], relative, false);
+            sums.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
+            begin = end;
+        }
+        sums
     }
 
     /// Returns ξ as a function of t in \[0, 1\] in which the width of the band is smooth except at corners. An end at a
@@ -159,6 +242,69 @@ impl Band {
     /// there.
     pub(crate) fn meets(&self, next: &Self) -> bool {
         self.xi[1] == next.xi[0] && overlap(self.sides[1], next.sides[0])
+    }
+}
+
+/// 16 places of a band.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Places {
+    /// ξ \[mm\].
+    pub(crate) xi: Lanes,
+    /// dξ/dt of the grading \[mm\].
+    rate: Lanes,
+    /// Lower and upper η \[mm\].
+    pub(crate) edges: [Lanes; 2],
+    /// dη/dξ of both, if asked for.
+    pub(super) slopes: [Lanes; 2],
+}
+
+impl Places {
+    /// Cuts the edges off at the window, along which their slopes are 0.
+    fn clipped(mut self, [from, to]: [f64; 2]) -> Self {
+        for branch in 0..2 {
+            for (eta, slope) in self.edges[branch].iter_mut().zip(&mut self.slopes[branch]) {
+                if !(from <= *eta && *eta <= to) {
+                    (*eta, *slope) = (eta.max(from).min(to), 0.0);
+                }
+            }
+        }
+        self
+    }
+}
+
+/// The places of a stretch at 16 values of t.
+struct PlacesAt<'b> {
+    stretch: &'b Stretch,
+    grading: &'b Grading,
+    with_slopes: bool,
+    t: &'b Lanes,
+}
+
+impl pulp::WithSimd for PlacesAt<'_> {
+    type Output = Places;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> Places {
+        let Self { stretch, grading, with_slopes, t } = self;
+        let [xi, rate] = grading.xi_and_rate(t);
+        let [edges, slopes] =
+            if with_slopes { stretch.edges_and_slopes(&xi) } else { [stretch.edges(&xi), [[0.0; MANY]; 2]] };
+        Places { xi, rate, edges, slopes }
+    }
+}
+
+/// The edges of a stretch at 16 values of ξ.
+struct EdgesAt<'b> {
+    stretch: &'b Stretch,
+    xi: &'b Lanes,
+}
+
+impl pulp::WithSimd for EdgesAt<'_> {
+    type Output = [Lanes; 2];
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> [Lanes; 2] {
+        self.stretch.edges(self.xi)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Finds the connected components of the patch {s < δ} inside a window, and the closed loops around each.
 
-use super::band::Band;
+use super::band::{Band, Turn};
 use super::corners;
 use super::loops;
 use super::loops::Rows;
@@ -164,22 +164,19 @@ impl Patch {
 /// The bands of one component, before it is measured.
 struct Region {
     bands: Vec<Band>,
-    /// Pairs \[valley, ξ\] at which s may be least. The valley is `None` without skew.
-    turns: Vec<(Option<usize>, f64)>,
+    /// Places at which s may be least.
+    turns: Vec<Turn>,
 }
 
 /// Collects the bands of the patch into components, by ascending ξ.
 fn regions(outline: &mut Outline<'_>) -> Vec<Region> {
     let placement = outline.slicer.placement();
     let (mut bands, turns) = if let Some(varying) = &mut outline.slicer.varying {
-        let (bands, turns) = varying::bands(varying, placement, &outline.window);
-        (bands, turns.into_iter().map(|(lane, xi)| (Some(lane), xi)).collect())
+        varying::bands(varying, placement, &outline.window)
     } else if outline.slicer.skewed.is_some() {
-        let (bands, turns) = lanes::bands(outline);
-        (bands, turns.into_iter().map(|(valley, xi)| (Some(valley), xi)).collect())
+        lanes::bands(outline)
     } else {
-        let (bands, turns) = plain::bands(outline);
-        (bands, turns.into_iter().map(|xi| (None, xi)).collect::<Vec<_>>())
+        plain::bands(outline)
     };
     bands.sort_by(|a, b| a.xi[0].total_cmp(&b.xi[0]));
     let meeting: Vec<[usize; 2]> = (0..bands.len())
@@ -224,7 +221,10 @@ impl Region {
     }
 
     fn component(mut self, outline: &mut Outline<'_>) -> Component {
-        let rows = self.rows(outline);
+        // Without skew the slices do not say more about the least s.
+        let known = (outline.slicer.skewed.is_none() && outline.slicer.varying.is_none())
+            .then(|| self.deepest(outline, &[]));
+        let rows = self.rows(outline, known.map(|known| known[0]));
         let (xi, eta, ends) = (self.xi(), across(&rows), self.ends());
         let window = outline.window.eta;
         let at_window = |row: &[f64; 3]| row[1] == window[0] || row[2] == window[1];
@@ -242,7 +242,7 @@ impl Region {
         }
         let mut corners: Vec<f64> = self.bands.iter().flat_map(|band| &band.corners).copied().collect();
         sort(&mut corners);
-        let deepest = self.deepest(outline, &rows);
+        let deepest = known.unwrap_or_else(|| self.deepest(outline, &rows));
         Component {
             xi,
             ends,
@@ -259,23 +259,22 @@ impl Region {
     }
 
     /// Finds the corners of every band, and its slices at the points of the loops. These are every corner, the ξ between
-    /// two corners (they crowd towards round ends), and the ξ where each branch is farthest out in η.
-    fn rows(&mut self, outline: &mut Outline<'_>) -> Vec<Rows> {
+    /// two corners (they crowd towards round ends), and the ξ where each branch is farthest out in η. `least` is the least s \[mm\], known
+    /// without skew.
+    fn rows(&mut self, outline: &mut Outline<'_>, least: Option<f64>) -> Vec<Rows> {
         let [a, b] = self.xi();
-        let skewed = outline.slicer.skewed.is_some();
         let varying = outline.slicer.varying.is_some();
         let plain = outline.slicer.placement().skew() == 0.0 && !varying;
-        let deepest = if skewed || varying { f64::NAN } else { self.deepest(outline, &[])[0] };
         let mut all = Vec::with_capacity(self.bands.len());
         for band in &mut self.bands {
             let [from, to] = band.xi;
             band.corners = [from, to].into_iter().chain(outline.slicer.joints(band.xi)).collect();
             let mut more = Vec::new();
-            if skewed {
+            if let Some(least) = least {
+                corners::plain(outline, band, least, &mut more);
+            } else if !varying {
                 let eta = reach(outline, band);
                 corners::skewed(outline, band, eta, &mut more);
-            } else if !varying {
-                corners::plain(outline, band, deepest, &mut more);
             }
             band.corners.append(&mut more);
             sort(&mut band.corners);
@@ -285,12 +284,14 @@ impl Region {
                 band.corners.extend(band.stretches.iter().map(|stretch| stretch.xi[1]));
                 sort(&mut band.corners);
             }
-            let mut rows: Rows = graded(band, b - a).into_iter().map(|xi| row(band, xi)).collect();
+            let mut rows: Rows = band.rows(&graded(band, b - a));
             corners::at_window(band, &rows, &mut more);
-            rows.extend(more.iter().map(|&xi| row(band, xi)));
-            band.corners.append(&mut more);
-            sort(&mut band.corners);
-            rows.sort_by(|p, q| p[0].total_cmp(&q[0]));
+            if !more.is_empty() {
+                rows.extend(more.iter().map(|&xi| row(band, xi)));
+                band.corners.append(&mut more);
+                sort(&mut band.corners);
+                rows.sort_by(|p, q| p[0].total_cmp(&q[0]));
+            }
             add_farthest(band, plain, &mut rows);
             rows.dedup_by_key(|row| row[0]);
             all.push(rows);
@@ -298,13 +299,13 @@ impl Region {
         all
     }
 
-    /// Returns \[s, ξ, η\] of the smallest s. The candidates are the places where s turns along the valleys of the
-    /// component, C, and the component's ends; if the window cuts a valley off, also the points of the loops.
+    /// Returns \[s, ξ, η\] of the smallest s. The candidates are C, the component's ends, and the places where s turns along the valleys
+    /// of the component and is not known to be larger; if the window cuts a valley off, also the points of the loops.
     fn deepest(&self, outline: &mut Outline<'_>, rows: &[Rows]) -> [f64; 3] {
         let mut least = [f64::NAN, self.xi()[0], 0.0];
-        let mut take = |found: [f64; 3]| {
+        let take = |least: &mut [f64; 3], found: [f64; 3]| {
             if found[0] < least[0] || least[0].is_nan() {
-                least = found;
+                *least = found;
             }
         };
         for (k, band) in self.bands.iter().enumerate() {
@@ -317,15 +318,18 @@ impl Region {
             places.extend(rows.get(k).into_iter().flatten().filter(|_| cut).map(|row| row[0]));
             for xi in places {
                 for &valley in band.valleys_at(xi) {
-                    take(outline.lowest(Some(valley), xi));
+                    take(&mut least, outline.lowest(Some(valley), xi));
                 }
                 if band.valleys.is_empty() {
-                    take(outline.lowest(None, xi));
+                    take(&mut least, outline.lowest(None, xi));
                 }
             }
-            for &(valley, xi) in self.turns.iter().filter(|(_, xi)| holds(*xi)) {
-                if valley.is_none_or(|valley| band.valleys_at(xi).contains(&valley)) {
-                    take(outline.lowest(valley, xi));
+            for &Turn { valley, xi, depth } in self.turns.iter().filter(|turn| holds(turn.xi)) {
+                let in_band = valley.is_none_or(|valley| band.valleys_at(xi).contains(&valley));
+                // NaN is not larger.
+                let larger = depth + outline.slicer.approach() > least[0];
+                if in_band && !larger {
+                    take(&mut least, outline.lowest(valley, xi));
                 }
             }
         }
@@ -365,8 +369,9 @@ fn add_farthest(band: &Band, plain: bool, rows: &mut Rows) {
         let between = farthest.map(|k| [rows[k - 1][0], rows[k + 1][0]]);
         more.extend(between.and_then(|between| corners::turn_of_branch(band, branch, between)));
     }
-    rows.extend(more.into_iter().map(|xi| row(band, xi)));
-    rows.sort_by(|p, q| p[0].total_cmp(&q[0]));
+    for xi in more {
+        rows.insert(rows.partition_point(|row| row[0] < xi), row(band, xi));
+    }
 }
 
 /// Sorts numbers into ascending order and removes repeated ones.

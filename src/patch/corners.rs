@@ -90,5 +90,5 @@ pub(super) fn at_window(band: &Band, rows: &Rows, corners: &mut Vec<f64>) {
 
 /// Returns the ξ between two rows at which a branch turns and is farthest out in η. Returns `None` if it does not turn.
 pub(super) fn turn_of_branch(band: &Band, branch: usize, [from, to]: [f64; 2]) -> Option<f64> {
-    bracketed(|xi| band.edges_and_slopes(xi).1[branch], from, to)
+    bracketed(|xi| band.slope(branch, xi), from, to)
 }

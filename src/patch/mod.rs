@@ -4,6 +4,7 @@ mod band;
 mod by_roots;
 mod components;
 mod corners;
+mod edges;
 mod grading;
 mod loops;
 mod measure;
@@ -15,7 +16,7 @@ mod stretch;
 pub(crate) mod turning_points;
 mod varying;
 
-pub(crate) use band::Band;
+pub(crate) use band::{Band, Places};
 pub use components::{Component, Patch};
 pub(crate) use loops::{BandSide, rings};
 pub use outline::{End, Outline, Window};

@@ -136,8 +136,8 @@ impl<'a> Outline<'a> {
     /// Returns \[s, ξ, η\] of the least s at ξ within the window; with skew, over `valley`.
     pub(super) fn lowest(&mut self, valley: Option<usize>, xi: f64) -> [f64; 3] {
         let floor = self.floor(valley, xi);
-        let eta = self.slicer.on_surface(xi, floor);
-        [self.slicer.separation(xi, eta), xi, eta]
+        let [s, eta] = self.slicer.on_surface(xi, floor);
+        [s, xi, eta]
     }
 
     /// Returns s(ξ, η) \[mm\].

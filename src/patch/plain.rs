@@ -1,6 +1,6 @@
 //! Finds the bands of a patch without skew. A line of constant ξ then meets the patch in at most one interval.
 
-use super::band::{Band, steps};
+use super::band::{Band, Turn, steps};
 use super::outline::{End, Outline, Window};
 use crate::numerics::roots::{bracketed, last_where};
 use crate::patch::turning_points;
@@ -10,11 +10,10 @@ use crate::placement::Placement;
 /// are not in its midplane. A part is missed only between two turns within one of them.
 const WINDOW_INTERVALS: usize = 512;
 
-/// Returns the bands by ascending ξ, and the ξ at which s may be least \[mm\].
+/// Returns the bands by ascending ξ, and the places at which s may be least.
 ///
-/// At a joint the gap may step (an overhang). Every interval between turning points is therefore judged by the values at
-/// its own two ends.
-pub(super) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<f64>) {
+/// At a joint the gap may step (an overhang). An interval between turning points that begins there is judged by a value of its own.
+pub(super) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<Turn>) {
     let placement = outline.slicer.placement();
     let Some([first, last]) = outline.slicer.reach() else { return (Vec::new(), Vec::new()) };
     let [a, b] = [first.max(outline.window.xi[0]), last.min(outline.window.xi[1])];
@@ -30,16 +29,24 @@ pub(super) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<f64>) {
     }
     let mut bands = Vec::new();
     let mut begun: Option<(f64, Option<End>)> = None;
+    let at = |outline: &mut Outline<'_>, xi: f64| Turn { valley: None, xi, depth: outline.depth(None, xi) };
+    let mut places = vec![at(outline, a)];
     for pair in turns.windows(2) {
-        let (p, q) = (pair[0].next_up(), pair[1]);
-        let inside = [p, q].map(|xi| outline.depth(None, xi) < 0.0);
+        let before = places[places.len() - 1];
+        let here = at(outline, pair[1]);
+        places.push(here);
+        let torn_here = torn.contains(&pair[0]);
+        let judged_beside = torn_here || before.depth.is_nan() || outline.slicer.is_over_rail();
+        let from = if judged_beside { at(outline, pair[0].next_up()) } else { before };
+        let (p, q) = (from.xi, pair[1]);
+        let inside = [from, here].map(|place| place.depth < 0.0);
         let step = if pair[0] == a && a != first { End::Window } else { End::ProfileEnd };
         begun = match begun {
             Some(begin) if !inside[0] => {
                 bands.push(closed(outline, begin, (pair[0], Some(step))));
                 None
             }
-            Some(begin) if torn.contains(&pair[0]) => {
+            Some(begin) if torn_here => {
                 bands.push(closed(outline, begin, (pair[0], None)));
                 Some((pair[0], None))
             }
@@ -62,7 +69,7 @@ pub(super) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<f64>) {
         bands.push(closed(outline, begin, (b, Some(end))));
     }
     bands.retain(|band| band.xi[0] < band.xi[1]);
-    (bands, turns)
+    (bands, places)
 }
 
 /// Finds \[s, ξ, η\] \[mm\] of the least s of a wheel on a roller; `None` where the bodies nowhere lie over each other.

@@ -6,6 +6,7 @@
 use super::by_roots::ByRoots;
 use super::skewed::slicer::{Edge, STEP_ROUNDINGS, Skewed};
 use super::varying::Varying;
+use crate::numerics::lanes::{Lanes, MANY};
 use crate::placement::Placement;
 use crate::separation::wheel_surface::{SagittaPoint, Span, Surface};
 use crate::separation::{Evaluator, midplane_gap};
@@ -164,6 +165,14 @@ impl<'a> Slicer<'a> {
         self.skewed.as_mut()?.edges_near(xi, guess)
     }
 
+    /// Returns whether s over the tangent plane of a rail rises from one lowest place of every ξ to both sides.
+    pub(super) fn has_one_valley(&self, xi: &Lanes) -> bool {
+        let one = |skewed: &Skewed<'_>| {
+            skewed.valleys.is_one_between([xi[0].min(xi[MANY - 1]), xi[0].max(xi[MANY - 1])])
+        };
+        self.varying.is_none() && self.by_roots.is_none() && self.skewed.as_ref().is_none_or(one)
+    }
+
     /// Returns the upper end of the slice at ξ without skew, or `None` outside the patch.
     fn half(&mut self, xi: f64) -> Option<Edge> {
         let depth = self.approach - midplane_gap(self.placement, xi);
@@ -219,9 +228,12 @@ impl<'a> Slicer<'a> {
         places.map_or(0.0, |(skewed, valley)| skewed.valleys.spot(valley, xi).eta)
     }
 
-    /// Returns η. If rounding ends the surface too early, it returns a place on the surface next to η.
-    pub(super) fn on_surface(&mut self, xi: f64, eta: f64) -> f64 {
-        self.skewed.as_mut().map_or(eta, |skewed| skewed.on_surface(xi, eta))
+    /// Returns \[s, η\] \[mm\]. If rounding ends the surface too early, it returns a place on the surface next to η.
+    pub(super) fn on_surface(&mut self, xi: f64, eta: f64) -> [f64; 2] {
+        match &mut self.skewed {
+            Some(skewed) => skewed.on_surface(xi, eta),
+            None => [self.separation(xi, eta), eta],
+        }
     }
 
     /// Returns dη/dξ at a point of the boundary: −s_ξ/s_η, which is infinite at a tip.

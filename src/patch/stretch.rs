@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use crate::numerics::chebyshev::{NODES, POINTS, PROOF, coefficients_by_vectors, value, value_and_slope};
-use crate::numerics::lanes::{Lanes, largest};
+use crate::numerics::chebyshev::{NODES, POINTS, PROOF, coefficients_by_vectors, values, values_and_slopes};
+use crate::numerics::lanes::{Lanes, lanes, largest};
 use crate::numerics::noise::measured;
 
 /// Share of the first stretch at which a part is not halved again. What is left beside an unknown corner is below the accuracy of
@@ -65,7 +65,7 @@ enum Curve {
 
 /// Fits stretches to the edges of a band.
 pub(super) struct Fit<F> {
-    /// Gives both edges \[mm\] at ξ.
+    /// Gives both edges \[mm\] at 16 values of ξ.
     pub(super) edges: F,
     /// Range of ξ of the band \[mm\].
     pub(super) band: [f64; 2],
@@ -77,7 +77,7 @@ pub(super) struct Fit<F> {
     pub(super) noise: f64,
 }
 
-impl<F: FnMut(f64) -> [f64; 2]> Fit<F> {
+impl<F: FnMut(&Lanes) -> [Lanes; 2]> Fit<F> {
     /// Appends the stretches between two neighbouring corners.
     ///
     /// Method: the interpolant at 16 Chebyshev points of ξ; if its last coefficients are no rounding, of the square root of the
@@ -106,24 +106,23 @@ impl<F: FnMut(f64) -> [f64; 2]> Fit<F> {
 
     /// Returns the square of half the width \[mm²\] at every ξ.
     fn squares(&mut self, xi: &Lanes) -> Lanes {
-        xi.map(|xi| {
-            let [low, high] = (self.edges)(xi);
-            ((high - low) / 2.0).powi(2)
-        })
+        let [low, high] = (self.edges)(xi);
+        lanes(|k| ((high[k] - low[k]) / 2.0).powi(2))
     }
 
     fn over_width(&mut self, xi: [f64; 2], noise: f64) -> (Stretch, bool) {
         let [a, b] = xi;
         let zero = [0, 1].map(|end| self.zero[end] && xi[end] == self.band[end]);
         let (centre, half) = (a + (b - a) / 2.0, (b - a) / 2.0);
+        let nodes = &*NODES;
+        let x: Lanes = lanes(|k| centre + half * nodes[k]);
+        let [low, high] = (self.edges)(&x);
         let (mut square, mut middle) = ([0.0; POINTS], [0.0; POINTS]);
         let (mut narrowest, mut nearest) = (f64::INFINITY, f64::INFINITY);
         for k in 0..POINTS {
-            let x = centre + half * NODES[k];
-            let [low, high] = (self.edges)(x);
-            let (width, [far, _]) = ((high - low) / 2.0, distances(xi, zero, x));
+            let (width, [far, _]) = ((high[k] - low[k]) / 2.0, distances(xi, zero, x[k]));
             (narrowest, nearest) = (narrowest.min(width), nearest.min(far));
-            (middle[k], square[k]) = (low + width, width * width / far);
+            (middle[k], square[k]) = (low[k] + width, width * width / far);
         }
         let rounding = rounding(largest(&middle), narrowest, noise);
         let (square, first) = Series::new(&square, noise / nearest);
@@ -135,12 +134,9 @@ impl<F: FnMut(f64) -> [f64; 2]> Fit<F> {
 
     fn over_root(&mut self, xi: [f64; 2], from: usize, noise: f64) -> (Stretch, bool) {
         let length = xi[1] - xi[0];
-        let (mut low, mut high) = ([0.0; POINTS], [0.0; POINTS]);
-        for k in 0..POINTS {
-            let root = (1.0 + NODES[k]) / 2.0;
-            let away = length * root * root;
-            [low[k], high[k]] = (self.edges)(if from == 0 { xi[0] + away } else { xi[1] - away });
-        }
+        let nodes = &*NODES;
+        let away = |k: usize| length * ((1.0 + nodes[k]) / 2.0).powi(2);
+        let [low, high] = (self.edges)(&lanes(|k| if from == 0 { xi[0] + away(k) } else { xi[1] - away(k) }));
         let narrowest = (0..POINTS).map(|k| (high[k] - low[k]) / 2.0).fold(f64::INFINITY, f64::min);
         let rounding = rounding(largest(&low).max(largest(&high)), narrowest, noise);
         let [(low, first), (high, second)] = [low, high].map(|values| Series::new(&values, rounding));
@@ -149,55 +145,64 @@ impl<F: FnMut(f64) -> [f64; 2]> Fit<F> {
 }
 
 impl Stretch {
-    /// Returns both edges \[mm\] at ξ within the range.
-    pub(crate) fn edges(&self, xi: f64) -> [f64; 2] {
+    /// Returns both edges \[mm\] at N values of ξ within the range.
+    #[inline(always)]
+    pub(crate) fn edges<const N: usize>(&self, xi: &Lanes<N>) -> [Lanes<N>; 2] {
         match &self.curve {
             Curve::Width { zero, square, middle } => {
-                let t = self.parameter(xi);
-                let [far, _] = distances(self.xi, *zero, xi);
+                let t: Lanes<N> = lanes(|k| self.parameter(xi[k]));
+                let (square, middle) = (square.values(&t), middle.values(&t));
                 // Rounding may make the square negative beside a neck.
-                let (half, middle) = ((square.value(t) * far).max(0.0).sqrt(), middle.value(t));
-                [middle - half, middle + half]
+                let half: Lanes<N> =
+                    lanes(|k| (square[k] * distances(self.xi, *zero, xi[k])[0]).max(0.0).sqrt());
+                [lanes(|k| middle[k] - half[k]), lanes(|k| middle[k] + half[k])]
             }
-            Curve::Root { from, edges } => {
-                let t = 2.0 * self.root(*from, xi) - 1.0;
-                edges.each_ref().map(|edge| edge.value(t))
+            Curve::Root { from, edges: [low, high] } => {
+                let t: Lanes<N> = lanes(|k| 2.0 * self.root(*from, xi[k]) - 1.0);
+                [low.values(&t), high.values(&t)]
             }
         }
     }
 
-    /// Returns both edges \[mm\] at ξ within the range, and dη/dξ of both, which is infinite where the width is zero.
-    pub(crate) fn edges_and_slopes(&self, xi: f64) -> ([f64; 2], [f64; 2]) {
+    /// Returns both edges \[mm\] at N values of ξ within the range, and dη/dξ of both, which is infinite where the width is zero.
+    #[inline(always)]
+    pub(crate) fn edges_and_slopes<const N: usize>(&self, xi: &Lanes<N>) -> [[Lanes<N>; 2]; 2] {
         let length = self.xi[1] - self.xi[0];
         match &self.curve {
             Curve::Width { zero, square, middle } => {
-                let t = self.parameter(xi);
-                let [far, change] = distances(self.xi, *zero, xi);
-                let [[square, growth], [middle, along]] =
-                    [square, middle].map(|series| series.value_and_slope(t));
-                let half = (square * far).max(0.0).sqrt();
+                let t: Lanes<N> = lanes(|k| self.parameter(xi[k]));
+                let [square, growth] = square.values_and_slopes(&t);
+                let [middle, along] = middle.values_and_slopes(&t);
                 let rate = 2.0 / length;
-                let widens = (growth * rate * far + square * change) / (2.0 * half);
-                let along = along * rate;
-                ([middle - half, middle + half], [along - widens, along + widens])
+                let [mut half, mut widens] = [[0.0; N]; 2];
+                for k in 0..N {
+                    let [far, change] = distances(self.xi, *zero, xi[k]);
+                    half[k] = (square[k] * far).max(0.0).sqrt();
+                    widens[k] = (growth[k] * rate * far + square[k] * change) / (2.0 * half[k]);
+                }
+                let edges = [lanes(|k| middle[k] - half[k]), lanes(|k| middle[k] + half[k])];
+                [edges, [lanes(|k| along[k] * rate - widens[k]), lanes(|k| along[k] * rate + widens[k])]]
             }
-            Curve::Root { from, edges } => {
-                let root = self.root(*from, xi);
+            Curve::Root { from, edges: [low, high] } => {
+                let root: Lanes<N> = lanes(|k| self.root(*from, xi[k]));
                 let toward = if *from == 0 { 1.0 } else { -1.0 };
+                let t: Lanes<N> = lanes(|k| 2.0 * root[k] - 1.0);
+                let ([low, fall], [high, rise]) = (low.values_and_slopes(&t), high.values_and_slopes(&t));
                 // dt/dξ of t = 2 √(distance/length) − 1.
-                let rate = toward / (length * root);
-                let both = edges.each_ref().map(|edge| edge.value_and_slope(2.0 * root - 1.0));
-                (both.map(|edge| edge[0]), both.map(|edge| edge[1] * rate))
+                let rate: Lanes<N> = lanes(|k| toward / (length * root[k]));
+                [[low, high], [lanes(|k| fall[k] * rate[k]), lanes(|k| rise[k] * rate[k])]]
             }
         }
     }
 
+    #[inline(always)]
     fn parameter(&self, xi: f64) -> f64 {
         let [a, b] = self.xi;
         (((xi - a) - (b - xi)) / (b - a)).clamp(-1.0, 1.0)
     }
 
     /// Returns the root of the distance from an end, as a share of that of the range.
+    #[inline(always)]
     fn root(&self, from: usize, xi: f64) -> f64 {
         ((xi - self.xi[from]) / (self.xi[1 - from] - self.xi[from])).clamp(0.0, 1.0).sqrt()
     }
@@ -210,6 +215,7 @@ fn rounding(size: f64, narrowest: f64, noise: f64) -> f64 {
 }
 
 /// Returns the product of the distances from the ends with a zero width, and its derivative.
+#[inline(always)]
 fn distances([a, b]: [f64; 2], zero: [bool; 2], xi: f64) -> [f64; 2] {
     match zero {
         [false, false] => [1.0, 0.0],
@@ -236,15 +242,17 @@ impl Series {
         (Self { coefficients, count }, resolved)
     }
 
-    fn value(&self, t: f64) -> f64 {
-        if self.count == 1 { self.coefficients[0] } else { value(&self.coefficients[..self.count], t) }
+    #[inline(always)]
+    fn values<const N: usize>(&self, t: &Lanes<N>) -> Lanes<N> {
+        if self.count == 1 { [self.coefficients[0]; N] } else { values(&self.coefficients[..self.count], t) }
     }
 
-    fn value_and_slope(&self, t: f64) -> [f64; 2] {
+    #[inline(always)]
+    fn values_and_slopes<const N: usize>(&self, t: &Lanes<N>) -> [Lanes<N>; 2] {
         if self.count == 1 {
-            [self.coefficients[0], 0.0]
+            [[self.coefficients[0]; N], [0.0; N]]
         } else {
-            value_and_slope(&self.coefficients[..self.count], t)
+            values_and_slopes(&self.coefficients[..self.count], t)
         }
     }
 }
@@ -254,12 +262,16 @@ mod tests {
     use super::*;
 
     fn fitted(
-        edges: impl FnMut(f64) -> [f64; 2],
+        mut edges: impl FnMut(f64) -> [f64; 2],
         band: [f64; 2],
         zero: [bool; 2],
         root: [bool; 2],
     ) -> Vec<Stretch> {
         let mut stretches = Vec::new();
+        let edges = |xi: &Lanes| {
+            let both = xi.map(&mut edges);
+            [both.map(|edges| edges[0]), both.map(|edges| edges[1])]
+        };
         Fit { edges, band, zero, root, noise: 8.0 * f64::EPSILON }.add(band, &mut stretches);
         stretches
     }
@@ -270,14 +282,14 @@ mod tests {
         let found = fitted(|x| [0.1 * x - half(x), 0.1 * x + half(x)], [-1.0, 2.0], [true; 2], [false; 2]);
         let [stretch] = found.as_slice() else { panic!("{}", found.len()) };
         for x in [-1.0, -0.999_999, 0.3, 2.0] {
-            let ([low, high], slopes) = stretch.edges_and_slopes(x);
-            assert_eq!([low, high], stretch.edges(x));
+            let [[[low], [high]], slopes] = stretch.edges_and_slopes(&[x]);
+            assert_eq!([[low], [high]], stretch.edges(&[x]));
             assert!(
                 (low - 0.1 * x + half(x)).abs() < 1e-14 && (high - 0.1 * x - half(x)).abs() < 1e-14,
                 "{x}"
             );
             let slope = 0.1 + (1.0 - 2.0 * x) / (2.0 * half(x));
-            assert!(half(x) == 0.0 || (slopes[1] / slope - 1.0).abs() < 1e-12, "{x}");
+            assert!(half(x) == 0.0 || (slopes[1][0] / slope - 1.0).abs() < 1e-12, "{x}");
         }
     }
 
@@ -289,7 +301,7 @@ mod tests {
             let found = fitted(edges, [0.0, 1.0], [false; 2], [from == 0, from == 1]);
             assert_eq!(found.len(), 1);
             for x in [0.0, 1e-9, 0.2, 1.0] {
-                let ([low, high], _) = found[0].edges_and_slopes(x);
+                let [[[low], [high]], _] = found[0].edges_and_slopes(&[x]);
                 assert!((low - edges(x)[0]).abs() < 1e-14 && (high - edges(x)[1]).abs() < 1e-14, "{x}");
             }
         }
@@ -302,7 +314,7 @@ mod tests {
             .map(|k| (f64::from(k) + 0.5) / 10_000.0)
             .map(|x| {
                 let at = found.partition_point(|stretch| stretch.xi[1] < x);
-                let [low, high] = found[at].edges(x);
+                let [[low], [high]] = found[at].edges(&[x]);
                 (high - low) / 10_000.0
             })
             .sum();

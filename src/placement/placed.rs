@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use nalgebra::{Isometry2, Point2, Translation2, UnitComplex};
+use nalgebra::{Isometry2, Point2, Translation2, UnitComplex, Vector3};
 
 use crate::error::{Error, Result, finite};
 use crate::lofted::FramedLoft;
@@ -82,6 +82,8 @@ pub struct Placement {
     turn: f64,
     /// The rail's surface where it varies along the track; the rail's profile is then its section through C.
     lofted: Option<Arc<FramedLoft>>,
+    /// How far the frame's origin lies ahead of C along η \[mm\].
+    ahead: f64,
     /// The pair of [`Self::under`], made once.
     under: OnceLock<Option<Box<Placement>>>,
 }
@@ -341,7 +343,7 @@ impl Placement {
     fn touching(rail: Body, wheel: Body, skew: f64) -> Result<Self> {
         let skew = finite("contact: skew", skew)?;
         let (lofted, under) = (None, OnceLock::new());
-        Ok(Self { rail, wheel, skew, at_contact: true, turn: 0.0, lofted, under })
+        Ok(Self { rail, wheel, skew, at_contact: true, turn: 0.0, lofted, ahead: 0.0, under })
     }
 
     /// Returns the same contact at the angle ν \[rad\] ahead of a roller's crown.
@@ -378,7 +380,7 @@ impl Placement {
             let [rail, wheel] = self.rail.upside_down()?;
             let at_contact = self.at_contact;
             let (lofted, under) = (None, OnceLock::new());
-            Some(Box::new(Self { rail, wheel, skew: 0.0, at_contact, turn: 0.0, lofted, under }))
+            Some(Box::new(Self { rail, wheel, skew: 0.0, at_contact, turn: 0.0, lofted, ahead: 0.0, under }))
         };
         self.under.get_or_init(made).as_deref()
     }
@@ -428,33 +430,81 @@ impl Placement {
         Self { skew: 0.0, ..self.clone() }
     }
 
-    /// The same bodies in another frame of the plane η = 0: its origin lies on the rail at `rail_x` \[mm\], its ξ at `angle` \[rad\]
-    /// in the rail profile's axes. The wheel does not move, so that s at the new origin is what it was there, along the new
-    /// ζ; neither body is smooth in the sense of [`Body::is_smooth`].
+    /// The same bodies in another frame: its origin lies on the rail at `rail_x` \[mm\], its ξ at `angle` \[rad\] in the rail profile's
+    /// axes. The wheel does not move, so that s at the new origin is what it was there, along the new ζ; neither body is
+    /// smooth in the sense of [`Body::is_smooth`].
+    ///
+    /// Under a skewed wheel the new ζ lies in a plane through the axle, as it has to, once the origin moves along the rail by
+    /// what [`Self::ahead`] tells; the skew changes as well.
     ///
     /// # Errors
-    /// An abscissa off the rail; a skewed wheel, whose meridians do not hold the new ζ; a rail that varies along the track.
+    /// An abscissa off the rail; a skewed wheel over a roller, on which nothing moves along a straight line; a rail that varies along the
+    /// track.
     pub fn reframed(&self, rail_x: f64, angle: f64) -> Result<Self> {
-        if self.skew != 0.0 {
-            let (found, expected) = (format!("a skew of {} rad", self.skew), "a wheel without yaw");
-            return Err(Error::new("contact", found, expected, "keep the frame of the contact point"));
+        if self.skew != 0.0 && self.rail.generator() != Generator::Extruded {
+            let found = format!("a skew of {} rad over a roller", self.skew);
+            let advice = "keep the frame of the contact point";
+            return Err(Error::new("contact", found, "a wheel without yaw, or a rail", advice));
         }
         if self.lofted.is_some() {
             let expected = "a rail of one profile, whose sections are all alike";
             let advice = "keep the frame of the contact point";
             return Err(Error::new("contact", "a rail that varies along the track", expected, advice));
         }
-        let point = self.rail.swept.point(rail_x).map_err(|e| e.within("contact: rail_x"))?;
+        let mut point = self.rail.swept.point(rail_x).map_err(|e| e.within("contact: rail_x"))?;
         let here = self.rail.contact_frame();
         let origin = here.inverse_transform_point(&Point2::new(point.station.x, point.station.z));
         let turn = UnitComplex::new(angle) * here.rotation.inverse();
-        let body = |body: &Body, mut point: ProfilePoint| {
-            let (origin, along) = (body.contact_frame() * origin, body.contact_frame().rotation * turn);
-            point.station = Station { x: origin.x, z: origin.y, cos: along.re, sin: along.im };
-            Body::in_frame(&body.swept, point)
-        };
-        let (rail, wheel) = (body(&self.rail, point), body(&self.wheel, self.wheel.point));
-        Ok(Self { rail, wheel, at_contact: false, under: OnceLock::new(), ..self.clone() })
+        let along = here.rotation * turn;
+        (point.station.cos, point.station.sin) = (along.re, along.im);
+        let rail = Body::in_frame(&self.rail.swept, point);
+        let mut on_wheel = self.wheel.point;
+        let ([ahead, skew], station) = self.wheel_along(origin, turn);
+        on_wheel.station = station;
+        let wheel = Body::in_frame(&self.wheel.swept, on_wheel);
+        let ahead = self.ahead + ahead;
+        Ok(Self { rail, wheel, skew, ahead, at_contact: false, under: OnceLock::new(), ..self.clone() })
+    }
+
+    /// Gives how far a frame of the rail moves along η \[mm\], its skew χ, and its origin and direction in the wheel profile's axes; `origin`
+    /// and `turn` are those of the new frame in the present one.
+    fn wheel_along(&self, origin: Point2<f64>, turn: UnitComplex<f64>) -> ([f64; 2], Station) {
+        let frame = self.wheel.contact_frame();
+        if self.skew == 0.0 {
+            let (origin, along) = (frame * origin, frame.rotation * turn);
+            return ([0.0; 2], Station { x: origin.x, z: origin.y, cos: along.re, sin: along.im });
+        }
+        // In (ξ, η, ζ): the axle, and from C towards it; the new ζ; and in the plane of both the wheel's new ξ′.
+        let ((sin, cos), wheel) = (self.skew.sin_cos(), frame.rotation);
+        let axle = Vector3::new(wheel.re * cos, wheel.re * sin, -wheel.im);
+        let inwards = Vector3::new(wheel.im * cos, wheel.im * sin, wheel.re);
+        let (xi, zeta) = (Vector3::new(turn.re, 0.0, turn.im), Vector3::new(-turn.im, 0.0, turn.re));
+        let sine = -axle.dot(&zeta);
+        let across = axle + zeta * sine;
+        let cosine = across.norm();
+        let across = across / cosine;
+        let new_inwards = across * sine + zeta * cosine;
+        let (normal, from) = (across.cross(&zeta), Vector3::new(origin.x, 0.0, origin.y));
+        let radius = self.rolling_radius();
+        let ahead = (inwards * radius - from).dot(&normal) / normal.y;
+        let from = from + Vector3::y() * ahead;
+        // The difference of the unit vectors, squared, does not cancel as their product would.
+        let lifted = 0.5 * radius * (inwards - new_inwards).norm_squared();
+        let x = frame.translation.x + from.dot(&axle);
+        let z = frame.translation.y + lifted + from.dot(&new_inwards);
+        let station = Station { x, z, cos: cosine, sin: sine };
+        ([ahead, across.y.atan2(across.dot(&xi))], station)
+    }
+
+    /// Returns the same frame of the same bodies, seen from a contact point that lies as far \[mm\] behind.
+    pub(crate) fn seen_from_behind(self, by: f64) -> Self {
+        Self { ahead: self.ahead + by, ..self }
+    }
+
+    /// How far \[mm\] the frame's origin lies ahead of the contact point C along η: 0 but in a frame by [`Self::reframed`] under a
+    /// skewed wheel.
+    pub fn ahead(&self) -> f64 {
+        self.ahead
     }
 
     /// Whether the frame's origin is the contact point C: not so in a frame by [`Self::reframed`].

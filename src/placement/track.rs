@@ -107,6 +107,16 @@ impl Track {
         Ok(Self { rail_x, rail_z: self.rail_z + finite("vertical", up)? })
     }
 
+    /// Returns the distance \[mm\] of a rail's inner face from the middle of the track: half a gauge that is measured at most `height`
+    /// \[mm\] below the top of rail.
+    ///
+    /// # Errors
+    /// A depth within which the head has no inner face.
+    pub fn half_gauge(&self, rail: &Profile, height: f64) -> Result<f64> {
+        let head = RunningHead::of(rail);
+        Ok(self.rail_x + gauge_face(rail, &head, head.highest(), height)?)
+    }
+
     /// Returns the abscissa \[mm\] of the right-hand profile origin, positive; the left-hand one has the negative.
     pub fn rail_x(&self) -> f64 {
         self.rail_x

@@ -191,6 +191,9 @@ pub struct WheelsetData {
     /// a positive roll lowers the right-hand wheel.
     #[serde(default)]
     pub roll: RollData,
+    /// Pitch about the axle, rad: how far wheels that vary have turned, + forward at the bottom, so that what lies at −pitch is lowest.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub pitch: f64,
     /// Vertical load of the axle, N, instead of `[patch]`: both wheels sink by the same distance, and δ is an estimate.
     #[schemars(extend("exclusiveMinimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -203,6 +206,11 @@ pub struct WheelsetData {
     /// them and does not take it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub along: Option<f64>,
+}
+
+// serde prescribes the reference to the value.
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// How the roll of a wheelset is found.
@@ -254,7 +262,7 @@ pub struct PatchData {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure_cell: Option<f64>,
     /// Origin and angle of the contact frame: "contact", the contact point and its tangent, or "weighted", the centre of
-    /// the overlap and the mean angle of the rail there, as in CONTACT; without yaw only.
+    /// the overlap and the mean angle of the rail there, as in CONTACT; forces under a load are then continuous.
     #[serde(default, skip_serializing_if = "is_contact")]
     pub frame: FrameOrigin,
 }

@@ -8,7 +8,7 @@ use crate::search::TrackSide;
 
 /// Lists what is doubtful in a scene, by key, with number and likely cause.
 pub(super) fn doubts(scene: &Scene, profiles: &Profiles, landmarks: &SideLandmarks) -> Vec<Doubt> {
-    let mut out = of_keys(scene);
+    let mut out = doubts_of_keys(scene);
     for (side, own) in profiles.sides() {
         let marks = landmarks.on(side.unwrap_or(TrackSide::Right));
         wheel(scene, side, (own, marks), &mut out);
@@ -18,7 +18,7 @@ pub(super) fn doubts(scene: &Scene, profiles: &Profiles, landmarks: &SideLandmar
 }
 
 /// Lists what is doubtful in the keys alone, whatever the profiles.
-pub(super) fn of_keys(scene: &Scene) -> Vec<Doubt> {
+pub fn doubts_of_keys(scene: &Scene) -> Vec<Doubt> {
     let mut out = Vec::new();
     rotations(scene, &mut out);
     angles(scene, &mut out);

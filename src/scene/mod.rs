@@ -22,12 +22,13 @@ pub use data::{
     AxisData, ContactData, GridData, MaterialData, OutputData, PatchData, RollData, RollWord, Scene, Spacing,
     TrackData, WheelsetData, schema,
 };
+pub use doubts::doubts_of_keys;
 pub use march::{loft, march};
 pub use motion_data::{FrictionData, MotionData, PitchData, PitchWord};
-pub use profile_data::{ProfileData, Rotation};
+pub use profile_data::{FlatData, ProfileData, Rotation};
 pub use profiles::{
-    Given, ProfileSource, is_chain_file, near, profile_from_file, profile_from_text, read_profile,
-    section_from_files,
+    Given, ProfileSource, is_chain_file, near, pair_of, profile_from_file, profile_from_text, profile_of,
+    read_profile, section_from_files,
 };
 pub use read::{load, parse};
 pub use resolve::{approach, echo, modulus, pressure_cell, resolve, resolve_given, to_toml, with_profiles};

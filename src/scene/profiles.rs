@@ -10,6 +10,7 @@ use super::words::nearest;
 use crate::error::{Error, Result, finite, given};
 use crate::files::{read_bytes, read_text};
 use crate::measured::{self, Cut, Measured, Options, Record, SliceList, Unit};
+use crate::placement::Pair;
 use crate::profile::{Profile, SegmentData, Side, drawn_profile, standards};
 
 /// Largest rolling radius \[mm\]: a thousand kilometres. Its square is far from overflowing.
@@ -50,6 +51,27 @@ pub type Given = BTreeMap<String, (Option<Side>, Profile)>;
 /// Where the profiles of a scene come from: its folder, and those that are given.
 pub(super) type Sources<'a> = (&'a Path, &'a Given);
 
+/// Joins a rail, or the roller of a scene that has one, and a wheel with its nominal rolling radius \[mm\].
+///
+/// # Errors
+/// A radius without meaning; profiles that cannot be joined.
+pub fn pair_of(scene: &Scene, rail: Profile, wheel: Profile, radius: f64) -> Result<Pair> {
+    let on_rail = Pair::new(rail, wheel, near("wheel", radius)?)?;
+    match &scene.roller {
+        Some(roller) => on_rail.on_roller(near("roller", roller.radius)?),
+        None => Ok(on_rail),
+    }
+}
+
+/// Makes a profile as the scene of `data` places it, and gives the record of a measured one. Files are relative to `folder`.
+///
+/// # Errors
+/// Anything that is wrong with the profile, or with its keys.
+pub fn profile_of(data: &ProfileData, folder: &Path, side: Side) -> Result<(Profile, Option<Record>)> {
+    let Resolved { profile, measured } = profile(data, (folder, &Given::new()), side)?;
+    Ok((profile, measured))
+}
+
 /// Gives the profile of a rail; `place` is its key.
 pub(super) fn rail_of(data: &ProfileData, place: &str, sources: Sources<'_>) -> Result<Resolved> {
     let rail = profile(data, sources, Side::Rail).map_err(|e| e.within(place))?;
@@ -68,10 +90,15 @@ pub(super) fn wheel_of(
     sources: Sources<'_>,
 ) -> Result<(Resolved, f64)> {
     let wheel = profile(data, sources, Side::Wheel).map_err(|e| e.within(place))?;
+    Ok((wheel, wheel_radius(scene, data, place)?))
+}
+
+/// Gives the nominal rolling radius of a wheel \[mm\].
+pub(super) fn wheel_radius(scene: &Scene, data: &ProfileData, place: &str) -> Result<f64> {
     let radius = data.radius.or(scene.wheel.radius);
     let radius = radius
         .ok_or_else(|| Error::new(place, "no `radius`", "the nominal rolling radius in mm", "add it"))?;
-    Ok((wheel, near(place, radius)?))
+    near(place, radius)
 }
 
 /// Returns the radius of a body \[mm\] if its square is far from overflowing.
@@ -104,10 +131,7 @@ fn profile(data: &ProfileData, (folder, given_ones): Sources<'_>, side: Side) ->
             return Err(Error::new("", found, expected, "give one source"));
         }
     };
-    if data.surface.is_some() {
-        let expected = "`surface` for a list .slcs without `along`, which `wheelrail march` goes along";
-        return Err(Error::new("surface", "an option without effect", expected, "remove it"));
-    }
+    reject_varying_keys(data)?;
     if let (Some([x, z]), None) = (data.start, &data.segments) {
         let expected = "`start` only with `segments`";
         return Err(Error::new("start", format!("[{x}, {z}]"), expected, "remove it"));
@@ -119,6 +143,21 @@ fn profile(data: &ProfileData, (folder, given_ones): Sources<'_>, side: Side) ->
         }
     }
     Ok(Resolved { profile: turned_and_shifted(data, profile)?, measured })
+}
+
+/// Refuses keys of bodies that vary for one that does not.
+fn reject_varying_keys(data: &ProfileData) -> Result<()> {
+    let lists = "`surface` for a list .slcs without `along`, or one .slcw without `angle`, which `wheelrail march` takes";
+    let wheels = "a wheel that varies around its axle for `wheelrail march` only";
+    let keys = [
+        ("surface", data.surface.is_some(), lists),
+        ("flat", data.flat.is_some(), wheels),
+        ("radii", data.radii.is_some(), wheels),
+    ];
+    match keys.into_iter().find(|(_, given, _)| *given) {
+        Some((key, _, expected)) => Err(Error::new(key, "an option without effect", expected, "remove it")),
+        None => Ok(()),
+    }
 }
 
 /// Turns a profile by `rotate`, then shifts it by `shift`.

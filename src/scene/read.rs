@@ -141,7 +141,7 @@ fn wrong_list(given: &Value, read: &Value, key: &str) -> Option<(String, String,
 }
 
 /// Advice for errors that have no better one.
-const SEE_ALSO: &str = "see `wheelrail schema` and the README";
+const SEE_ALSO: &str = "see `wheelrail schema` and the manual, src/docs/scene.md";
 
 fn without_position(message: &str) -> String {
     message.split(" at line ").next().unwrap_or(message).to_string()

@@ -6,14 +6,13 @@ use std::sync::Arc;
 use super::data::Scene;
 use super::march::{list_of, loft};
 use super::profile_data::ProfileData;
-use super::profiles::{Resolved, Sources, near, rail_of, wheel_of};
+use super::profiles::{Resolved, Sources, pair_of, rail_of, wheel_of};
 use super::side_data::SideData;
 use crate::case::{Profiles, SideProfiles};
 use crate::error::{Error, Result};
 use crate::lofted::Loft;
 use crate::numerics::bodies::Bodies;
-use crate::placement::Pair;
-use crate::profile::Profile;
+use crate::profile::{Profile, Side};
 
 /// Returns the rail and the wheel of a scene, turned and shifted as the scene says. Files are relative to the folder; each
 /// one is opened once.
@@ -54,15 +53,11 @@ fn of_side(
         None => rail_of(data[0], places[0], sources)?,
     };
     let (wheel, radius) = wheel_of(scene, data[1], places[1], sources)?;
-    let on_rail = Pair::new(rail.profile, wheel.profile, radius)?;
-    let pair = match &scene.roller {
-        Some(_) if loft.is_some() => {
-            let expected = "no roller under a rail that varies along the track";
-            return Err(Error::new("roller", "one", expected, "remove it"));
-        }
-        Some(roller) => on_rail.on_roller(near("roller", roller.radius)?)?,
-        None => on_rail,
-    };
+    if loft.is_some() && scene.roller.is_some() {
+        let expected = "no roller under a rail that varies along the track";
+        return Err(Error::new("roller", "one", expected, "remove it"));
+    }
+    let pair = pair_of(scene, rail.profile, wheel.profile, radius)?;
     let measured = Bodies { rail: rail.measured, wheel: wheel.measured };
     Ok(SideProfiles { pair, measured, loft: loft.map(|(_, loft)| loft) })
 }
@@ -75,7 +70,7 @@ fn varying(
     place: &str,
     folder: &Path,
 ) -> Result<Option<(Profile, Arc<Loft>)>> {
-    let Some((list, along)) = list_of(data).zip(scene.along()?) else { return Ok(None) };
+    let Some((list, along)) = list_of(data, Side::Rail).zip(scene.along()?) else { return Ok(None) };
     let loft = loft(data, &folder.join(list)).map_err(|error| error.within(place))?;
     let Some(strip) = loft.widest(along) else {
         let [from, to] = loft.reach();

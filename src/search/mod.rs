@@ -33,6 +33,7 @@ mod body;
 mod bounds;
 mod candidates;
 mod element;
+mod geometry;
 mod locus;
 mod lofted;
 mod march;
@@ -47,11 +48,15 @@ mod touch;
 mod walk;
 mod wheelset;
 
+pub use geometry::{
+    AMPLITUDE, ContactBand, GeometryAt, KeyFigures, active_faces, amplitude_of_clearance, gauge,
+    geometry_over, key_figures, nonlinearity,
+};
 pub use lofted::LoftedPair;
 pub use march::{Event, EventKind, March, Stop};
 pub use over_rail::Work;
 pub use parallel::{ParallelSweep, conicity_over, free};
-pub use sweep::{ACCURACY, Conicity, Equivalent, NoConicity, Sweep, SweepRow, TrackSide};
+pub use sweep::{ACCURACY, Conicity, Equivalent, NoConicity, Sweep, SweepRow, TrackSide, TwoStep};
 #[cfg(feature = "files")]
 pub(crate) use touch::small_angle;
 pub use touch::{Contact, ContactSearch, ONE_CONTACT, Pose, ProfilePair, Selection, Touch, wheel_rotation};

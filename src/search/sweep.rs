@@ -1,8 +1,10 @@
 //! Sweeps: gives the contact geometry of a wheelset at many positions, one row per side and contact.
 
 mod conicity;
+mod two_step;
 
 pub use conicity::{ACCURACY, Conicity, Equivalent, NoConicity};
+pub use two_step::TwoStep;
 
 use std::fmt;
 
@@ -94,6 +96,11 @@ impl<'a> Sweep<'a> {
     /// Moves the wheelset to a place along the track \[mm\]: see [`WheelsetSearch::stand_at`].
     pub fn stand_at(&mut self, along: f64) {
         self.search.stand_at(along);
+    }
+
+    /// Turns the wheelset about its axle \[rad\]: see [`WheelsetSearch::turn_to`].
+    pub fn turn_to(&mut self, pitch: f64) {
+        self.search.turn_to(pitch);
     }
 
     /// Appends the rows of one position to `rows`, left side first; none if the position has no contact.

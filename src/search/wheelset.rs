@@ -62,6 +62,8 @@ pub struct WheelsetOnTrack {
     pub(super) sides: [SideOnTrack; 2],
     /// Whether the left side is the mirror image of the right one.
     symmetric: bool,
+    /// Pitch \[rad\] at which searches begin.
+    pitch: f64,
 }
 
 /// One side of a wheelset on its track, in the side's own axes: those of a right-hand side.
@@ -84,7 +86,7 @@ impl SideOnTrack {
         Ok(Self { pair: SidePair::Swept(Arc::new(ProfilePair::new(pair)?)), track, wheelset })
     }
 
-    /// Takes a rail that varies along the track, with its wheel.
+    /// Takes a rail that varies along the track, or a wheel that varies around its axle, with the other body.
     pub fn lofted(pair: Arc<LoftedPair>, track: Track, wheelset: Wheelset) -> Self {
         Self { pair: SidePair::Lofted(pair), track, wheelset }
     }
@@ -120,12 +122,23 @@ impl WheelsetOnTrack {
 
     /// Takes the same side on both sides of the track, the left one as its mirror image.
     pub fn symmetrical(side: SideOnTrack) -> Self {
-        Self { sides: [side.clone(), side], symmetric: true }
+        Self { sides: [side.clone(), side], symmetric: true, pitch: 0.0 }
     }
 
     /// Joins two different sides, each in its own axes.
     pub fn of_sides(left: SideOnTrack, right: SideOnTrack) -> Self {
-        Self { sides: [left, right], symmetric: false }
+        Self { sides: [left, right], symmetric: false, pitch: 0.0 }
+    }
+
+    /// Turns the wheelset about its axle: see [`WheelsetSearch::turn_to`], from which searches begin.
+    #[must_use]
+    pub fn at_pitch(self, pitch: f64) -> Self {
+        Self { pitch, ..self }
+    }
+
+    /// Returns whether a wheel varies around its axle.
+    pub fn turning(&self) -> bool {
+        self.sides.iter().any(|side| side.pair.turning())
     }
 
     /// Returns whether the left side is the mirror image of the right one, so that Δr is odd.
@@ -150,6 +163,23 @@ impl WheelsetOnTrack {
         along + SIGNS[side] * position.yaw.sin() * self.sides[side].wheelset.wheel_x
     }
 
+    /// Returns whether both rails have one profile along the whole track and are no rollers.
+    pub(crate) fn on_plain_rails(&self) -> bool {
+        self.sides.iter().all(|side| matches!(side.pair, SidePair::Swept(_)) && side.pair.roller().is_none())
+    }
+
+    /// Returns the wheelset on a track whose gauge is wider by so much \[mm\]: each rail half of it further out.
+    ///
+    /// # Errors
+    /// Rails that would meet; a value that is not finite.
+    pub fn widened(&self, by: f64) -> Result<Self> {
+        let mut wider = self.clone();
+        for side in &mut wider.sides {
+            side.track = side.track.moved(by / 2.0, 0.0)?;
+        }
+        Ok(wider)
+    }
+
     /// Returns the nominal rolling radius \[mm\] from which heights of the axle's middle count: the right-hand wheel's.
     pub(super) fn reference_radius(&self) -> f64 {
         self.sides[1].wheelset.radius
@@ -170,6 +200,9 @@ pub struct WheelsetTouch<'a> {
     pub roll: f64,
     /// Left and right side.
     pub sides: [SideTouch<'a>; 2],
+    /// Elements of wheel and rail that meet at the lowest place of each side; what is found there is analytic in the position as
+    /// long as they stay the same.
+    pub(crate) elements: [[u32; 2]; 2],
 }
 
 /// First touch of one side.
@@ -221,7 +254,10 @@ struct Lowered {
 impl WheelsetOnTrack {
     /// Makes a search over this system. On rails that vary the middle of the axle is at 0 of their lists.
     pub fn search(&self) -> WheelsetSearch<'_> {
-        WheelsetSearch { system: self, sides: self.sides.each_ref().map(|side| side.pair.search()) }
+        let sides = self.sides.each_ref().map(|side| side.pair.search());
+        let mut search = WheelsetSearch { system: self, sides };
+        search.turn_to(self.pitch);
+        search
     }
 
     /// Returns where a wheel's profile is in the axes of its rail's profile, in the section through the axle: the isometry takes
@@ -257,6 +293,12 @@ impl WheelsetSearch<'_> {
         self.sides.iter_mut().for_each(|side| side.stand_at(along));
     }
 
+    /// Turns the wheelset about its axle by a pitch \[rad\], + forward at the bottom: what lies at −pitch on a wheel that varies is then
+    /// lowest; of no meaning for wheels of one profile.
+    pub fn turn_to(&mut self, pitch: f64) {
+        self.sides.iter_mut().for_each(|side| side.turn_to(pitch));
+    }
+
     /// Lowers the wheelset until it touches; `None` if a side has no wheel over its rail, or if the roll is
     /// to be solved and within ±0.1 rad there is none at which both wheels touch.
     ///
@@ -288,13 +330,13 @@ impl WheelsetSearch<'_> {
             let advice = "look at the slices nearby, or lower `within`";
             return Err(Error::new("rail", "a surface too close to the wheel's", expected, advice));
         }
-        let Some(Lowered { roll, z, heights, attitudes, .. }) = level else { return Ok(None) };
+        let Some(Lowered { roll, z, heights, attitudes, meetings, .. }) = level else { return Ok(None) };
         let [left, right] = &mut self.sides;
         let sides = [
             SideTouch { z: z[0], touch: left.collect(&attitudes[0], heights[0], selection) },
             SideTouch { z: z[1], touch: right.collect(&attitudes[1], heights[1], selection) },
         ];
-        Ok(Some(WheelsetTouch { roll, sides }))
+        Ok(Some(WheelsetTouch { roll, sides, elements: meetings.map(|meeting| meeting.elements) }))
     }
 
     /// Lowers both sides at the roll at which both wheels touch; `None` if there is no such roll.

@@ -285,7 +285,7 @@ impl<'a> Surface<'a> {
 
     /// Returns w \[mm\] of the point with height ζ = `height` \[mm\] of the column at ξ.
     #[inline(always)]
-    pub(super) fn axle_distance(&self, xi: f64, height: f64) -> f64 {
+    pub(crate) fn axle_distance(&self, xi: f64, height: f64) -> f64 {
         self.axle - xi * self.sin - height * self.cos
     }
 

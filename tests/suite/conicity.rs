@@ -1,6 +1,9 @@
 //! Equivalent conicities of random wheelsets against dense tables of Δr.
 
+use wheelrail::nalgebra::UnitComplex;
+use wheelrail::placement::{Track, Wheelset};
 use wheelrail::profile::{Profile, inclination, standards};
+use wheelrail::search::{SideOnTrack, TwoStep, geometry_over};
 use wheelrail::{
     Conicity, Pair, Position, RailDistance, Roll, Selection, Sweep, WheelDistance, WheelsetOnTrack,
 };
@@ -137,4 +140,82 @@ fn conicities_are_as_accurate_as_promised_or_announced() {
     println!("{compared} conicities of {scenes} wheelsets, off by at most {worst:e}");
     assert!(wrong.is_empty(), "{} of {compared}: {wrong:#?}", wrong.len());
     assert!(compared as u64 > 10 * scenes, "{compared}");
+}
+
+/// Case of Annex E of EN 15302:2008+A1:2010 over rail A: right and left wheel, diameter of the left one \[mm\] beside one of 920, and
+/// tan γ_e at 1, 2 … 7 mm, as a public benchmark program reproduces them to three digits.
+type Case = (&'static str, &'static str, f64, [f64; 7]);
+
+const ANNEX_E: [Case; 9] = [
+    ("A", "A", 920.0, [0.125, 0.155, 0.188, 0.216, 0.254, 0.303, 0.505]),
+    ("B", "B", 920.0, [0.025, 0.025, 0.058, 0.241, 0.283, 0.302, 0.485]),
+    ("H", "H", 920.0, [0.025, 0.025, 0.245, 0.319, 0.306, 0.284, 0.437]),
+    ("I", "I", 920.0, [0.0, 0.293, 0.489, 0.485, 0.475, 0.447, 0.486]),
+    ("A", "A", 918.0, [0.280, 0.272, 0.261, 0.269, 0.307, 0.395, 0.492]),
+    ("B", "B", 918.0, [0.660, 0.376, 0.278, 0.227, 0.295, 0.409, 0.478]),
+    ("H", "H", 918.0, [0.712, 0.381, 0.270, 0.217, 0.275, 0.421, 0.443]),
+    ("I", "I", 918.0, [0.780, 0.418, 0.449, 0.479, 0.458, 0.497, 0.564]),
+    ("A", "B", 920.0, [0.137, 0.104, 0.132, 0.225, 0.271, 0.307, 0.493]),
+];
+
+/// Rail A: UIC 60 inclined by 1:20, 1500 mm apart as the wheels.
+fn annex_e(right: &str, left: &str, diameter: f64) -> wheelrail::Result<WheelsetOnTrack> {
+    let rail = standards::rail("UIC60")?.rotated(UnitComplex::new(0.05)).shifted(2.60264, 0.14155);
+    let side = |wheel: &str, diameter: f64| {
+        let pair = Pair::new(rail.clone(), standards::wheel(&format!("EN15302-{wheel}"))?, diameter / 2.0)?;
+        let track = Track::new(&rail, RailDistance::Spacing(1500.0))?;
+        SideOnTrack::new(&pair, track, Wheelset::new(WheelDistance::Spacing(1500.0), diameter / 2.0)?)
+    };
+    let right_side = side(right, 920.0)?;
+    if right == left && diameter == 920.0 {
+        return Ok(WheelsetOnTrack::symmetrical(right_side));
+    }
+    Ok(WheelsetOnTrack::of_sides(side(left, diameter)?, right_side))
+}
+
+/// Tolerance of Annex F.
+fn tolerance(conicity: f64) -> f64 {
+    f64::min(0.05, (0.5 * conicity).max(0.01))
+}
+
+#[test]
+fn the_tables_of_annex_e_are_met_by_both_integrations() {
+    let mut worst = [0f64; 2];
+    let mut off = Vec::new();
+    for (right, left, diameter, table) in ANNEX_E {
+        let system = annex_e(right, left, diameter).expect("a wheelset");
+        let conicity = Conicity::new(&system, 8.0, Roll::Neglect).expect("a table");
+        let lateral: Vec<f64> = (-140..=140).map(|k| 0.1 * f64::from(k)).collect();
+        let found = geometry_over(&system, &lateral, Roll::Neglect).expect("positions");
+        let on_track: Vec<_> = found.into_iter().flatten().collect();
+        let (lateral, delta_r): (Vec<f64>, Vec<f64>) =
+            on_track.iter().map(|at| (at.lateral, at.delta_r)).unzip();
+        let two_step = TwoStep::new(&lateral, &delta_r).expect("a table");
+        for (amplitude, expected) in (1..=7).map(f64::from).zip(table) {
+            // A cylinder does not come back: the table has 0 where wheel I is one.
+            let both = [
+                conicity.at(amplitude).map_or(0.0, |found| found.conicity),
+                two_step.at(amplitude).unwrap_or(0.0),
+            ];
+            // The table's steps of 0.1 mm smear a jump of Δr, which the energy integral has where it is.
+            let beside =
+                [-0.1, 0.0, 0.1].map(|off| conicity.at(amplitude + off).map_or(0.0, |found| found.conicity));
+            let [low, high] = [
+                beside.iter().copied().fold(f64::INFINITY, f64::min),
+                beside.into_iter().fold(0.0, f64::max),
+            ];
+            let misses = [(low - expected).max(expected - high).max(0.0), (both[1] - expected).abs()];
+            for (worst, miss) in worst.iter_mut().zip(misses) {
+                let share = miss / tolerance(expected);
+                *worst = worst.max(share);
+                if share > 1.0 {
+                    off.push(format!(
+                        "{right}/{left}/{diameter} at {amplitude} mm: {both:.4?}, not {expected}"
+                    ));
+                }
+            }
+        }
+    }
+    println!("at most {worst:.3?} of the tolerances");
+    assert!(off.is_empty(), "{off:#?}");
 }

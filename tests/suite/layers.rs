@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use syn::visit::Visit;
 
 /// Rooms of the library from the bottom up; each may use those before it and itself.
-const ORDER: [&str; 18] = [
+const ORDER: [&str; 20] = [
     "error",
     "numerics",
     "files",
@@ -20,10 +20,12 @@ const ORDER: [&str; 18] = [
     "conformal",
     "patch",
     "load",
+    "table",
     "mesh",
     "export",
     "case",
     "scene",
+    "fleet",
     "docs",
 ];
 

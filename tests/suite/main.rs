@@ -10,12 +10,14 @@
 
 mod along_track;
 mod any_grid;
+mod around_the_wheel;
 mod campaign;
 mod closed_forms;
 mod common;
 mod conformal;
 mod conformal_brute;
 mod conicity;
+mod continuity;
 mod doubts;
 mod flange_backs;
 mod flood_fill;

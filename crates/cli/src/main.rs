@@ -7,7 +7,10 @@
 
 mod answer;
 mod check;
+mod conicity;
+mod fleet;
 mod init;
+mod man;
 mod march;
 mod midsep;
 mod output;
@@ -19,6 +22,7 @@ mod report;
 mod run;
 mod signals;
 mod sweep;
+mod table;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -28,9 +32,13 @@ use clap::{CommandFactory, Parser, Subcommand};
 use answer::{Outcome, complain, print};
 use wheelrail::{Error, Result};
 
-/// Wheel/rail contact-patch preprocessor.
+/// Finds where a railway wheel touches its rail, and how far apart the two are around that point.
+///
+/// From two profiles, drawn or measured, it gives contact points, the contact patch, conicity, wear measures, and the input
+/// files of contact solvers. Begin with `wheelrail init scene.toml` and `wheelrail run scene.toml`. Exit codes: 0 done, 1 a
+/// geometric "no" (infeasible contact, empty patch, failed check), 2 bad input.
 #[derive(Debug, Parser)]
-#[command(version, about)]
+#[command(name = "wheelrail", version)]
 struct Arguments {
     /// Number of threads; 0 takes all cores.
     #[arg(long, global = true, default_value_t = 0, allow_negative_numbers = true)]
@@ -55,8 +63,14 @@ enum Command {
     },
     /// Sweep a wheelset over its track and print a row for each position, side and contact.
     Sweep(sweep::SweepArguments),
+    /// Contact geometry of a wheelset on its track by EN 15302: equivalent conicity, nonlinearity, contact bands.
+    Conicity(Box<conicity::ConicityArguments>),
     /// March a wheelset along rails that vary and print a row for each place, side and contact.
     March(march::MarchArguments),
+    /// Tabulate contact over the lateral displacement for vehicle dynamics, as polynomials with a stated error.
+    Table(table::TableArguments),
+    /// Compute every wheelset of a fleet on every rail section: conicity, measures, contact bands; a table and pages.
+    Fleet(fleet::FleetArguments),
     /// Measure speed against error and run the hard cases; takes about three minutes.
     Report {
         /// Folder to write; by default output/report.
@@ -82,8 +96,12 @@ enum Command {
         /// The shell.
         shell: clap_complete::Shell,
     },
-    /// Print the manual page, e.g. `wheelrail man | man -l -`.
-    Man,
+    /// Print the manual pages, e.g. `wheelrail man | man -l -`, or write one file for each command.
+    Man {
+        /// Folder for the files wheelrail.1, wheelrail-run.1, …; made if it is not there.
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
 }
 
 /// Runs the command and returns its exit code.
@@ -124,37 +142,22 @@ fn on_threads(arguments: Arguments) -> Result<Outcome> {
         Command::Midsep { scene } => midsep::midsep(&scene),
         Command::Check { scene } => check::check(&scene),
         Command::Sweep(arguments) => sweep::sweep(&arguments),
+        Command::Conicity(arguments) => conicity::run(&arguments),
         Command::March(arguments) => march::march(&arguments),
+        Command::Table(arguments) => table::table(&arguments),
+        Command::Fleet(arguments) => fleet::fleet(&arguments),
         Command::Report { out, splice } => report::report(out.as_deref(), splice.as_deref()),
         Command::Profile(command) => profile::profile(&command),
         Command::Init { file } => init::init(&file),
         Command::Schema => schema(),
         Command::Completions { shell } => completions(shell),
-        Command::Man => manual(),
+        Command::Man { out } => man::man(Arguments::command(), out.as_deref()),
     })
 }
 
 fn completions(shell: clap_complete::Shell) -> Result<Outcome> {
     let mut text = Vec::new();
     clap_complete::generate(shell, &mut Arguments::command(), "wheelrail", &mut text);
-    print(&String::from_utf8_lossy(&text))
-}
-
-/// Prints the manual page of the program, then those of its commands, each with its options.
-fn manual() -> Result<Outcome> {
-    let mut command = Arguments::command();
-    command.build();
-    let (mut text, commands) = (Vec::new(), command.get_subcommands().cloned().collect::<Vec<_>>());
-    let page = |command: clap::Command, text: &mut Vec<u8>| {
-        let written = clap_mangen::Man::new(command).render(text);
-        written.map_err(|error| {
-            Error::new("man", error.to_string(), "a page", "report this as a fault of wheelrail")
-        })
-    };
-    page(command, &mut text)?;
-    for command in commands.into_iter().filter(|command| command.get_name() != "help") {
-        page(command, &mut text)?;
-    }
     print(&String::from_utf8_lossy(&text))
 }
 

@@ -288,6 +288,11 @@ impl Case {
 }
 
 impl Case {
+    /// Gives the case of the library; a clone shares the profiles.
+    pub(crate) fn shared(&self) -> wheelrail::Case {
+        self.inner.case.clone()
+    }
+
     fn of(
         py: Python<'_>,
         case: wheelrail::Case,

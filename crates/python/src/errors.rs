@@ -8,7 +8,7 @@ use wheelrail::{Error, ErrorKind};
 
 /// What scenes and the command line call a thing, and what Python calls it.
 const WORDS: [(&str, &str); 13] = [
-    ("see `wheelrail schema` and the README", "see `help(wheelrail)`"),
+    ("see `wheelrail schema` and the manual, src/docs/scene.md", "see `help(wheelrail)`"),
     (
         "see `wheelrail profile list`, or give `file` or `segments`",
         "see `rail_names()` and `wheel_names()`, or `read_profile`, `Profile.from_points`, `Profile.from_segments`",

@@ -1,10 +1,14 @@
 //! Files of a run, in memory.
 
+use std::path::Path;
+
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyString};
 use wheelrail::Result;
 use wheelrail::case::OutputFormat;
+use wheelrail::files::read_text;
 
+use crate::errors::OrRaise;
 use crate::long::waited;
 use crate::text::parsed;
 
@@ -20,4 +24,16 @@ pub(crate) fn files<'py>(
         out.set_item(name, PyBytes::new(py, &bytes))?;
     }
     Ok(out)
+}
+
+/// Largest file of values \[bytes\] that is read back.
+const LARGEST: usize = 1 << 28;
+
+/// Gives the values of a JSON file.
+///
+/// # Errors
+/// A FileError for one that cannot be read.
+pub(crate) fn read_json<'py>(py: Python<'py>, path: &Path) -> PyResult<Bound<'py, PyAny>> {
+    let text = read_text(path, LARGEST).or_raise()?;
+    py.import("json")?.getattr("loads")?.call1((text,))
 }

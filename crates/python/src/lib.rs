@@ -4,10 +4,12 @@
 mod arrays;
 mod asked;
 mod case;
+mod conicity;
 mod contact;
 mod errors;
 mod files;
 mod filling;
+mod fleet;
 mod long;
 mod march;
 mod measure;
@@ -32,11 +34,15 @@ mod _wheelrail {
     #[pymodule_export]
     use super::case::{Case, run, schema};
     #[pymodule_export]
+    use super::conicity::conicity;
+    #[pymodule_export]
     use super::contact::{Contact, contact_from_parts, patch_from_parts};
+    #[pymodule_export]
+    use super::fleet::{fleet, fleet_part, fleet_parts};
     #[pymodule_export]
     use super::march::march;
     #[pymodule_export]
-    use super::measure::measure_profile;
+    use super::measure::{average_profiles, measure_profile};
     #[pymodule_export]
     use super::pair::{Pair, pair_from_parts};
     #[pymodule_export]

@@ -84,7 +84,7 @@ impl Spot {
         Self {
             name: contact.name(),
             place,
-            y: found.map_or(0.0, |found| found.place.y_mm),
+            y: found.map_or(0.0, |found| found.place.y_mm + contact.placement.ahead()),
             gap: found.map_or(0.0, |found| found.place.gap_mm),
             origin: Origin::OfCase(Arc::new(case), number),
             approach: contact.approach,

@@ -358,8 +358,14 @@ impl Profile {
         Ok(text)
     }
 
+    /// Returns the diameter of a wheel that its file states \[mm\].
+    pub(crate) fn diameter(&self) -> Option<f64> {
+        let record: serde_json::Value = serde_json::from_str(&self.fitted.as_ref()?.record).ok()?;
+        record["diameter"].as_f64()
+    }
+
     /// Takes over a measured profile, and warns of what was found in its points.
-    fn measured(py: Python<'_>, measured: Measured, side: Option<Side>) -> PyResult<Self> {
+    pub(crate) fn measured(py: Python<'_>, measured: Measured, side: Option<Side>) -> PyResult<Self> {
         let Measured { profile, points, record } = measured;
         warn_of_points(py, &record.warnings)?;
         let fitted = Fitted {

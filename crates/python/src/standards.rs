@@ -17,7 +17,8 @@ pub(crate) fn rail(name: &str) -> PyResult<Profile> {
     standards::rail(name).map(|profile| Profile::of(&profile, Side::Rail)).or_raise()
 }
 
-/// Return a built-in wheel: right-hand, flange at negative x, origin where its standard has it.
+/// Return a built-in wheel: right-hand, flange at negative x, origin where its standard has it. Besides `wheel_names()` there are
+/// those of EN 13715 with any of its flanges and slopes: "EN13715-S1002-h30-e30.5-6.7%".
 ///
 ///     >>> wr.wheel("S1002").side
 ///     'wheel'

@@ -263,6 +263,11 @@ impl Wheelset {
 }
 
 impl Wheelset {
+    /// Gives the system, and the pairs of the left and the right side.
+    pub(crate) fn parts(&self) -> (Arc<WheelsetOnTrack>, [wheelrail::Pair; 2]) {
+        (Arc::clone(&self.system), [self.left_pair().pair.clone(), self.pair.pair.clone()])
+    }
+
     fn left_pair(&self) -> &Pair {
         self.left.as_ref().unwrap_or(&self.pair)
     }

@@ -24,6 +24,8 @@ ORDER = (
 NOTEBOOKS = [PACKAGE / "gallery" / f"{name}.py" for name in ORDER]
 HEAD = """# Gallery of studies
 
+*After this page you can begin a study of your own from one of eight that run.*
+
 Eight studies from Python, each a notebook as a program, which Jupyter opens by jupytext. `python crates/python/tests/gallery_page.py`
 makes this page; the tests run the studies and compare what they print.
 """

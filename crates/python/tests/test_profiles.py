@@ -109,3 +109,16 @@ def test_measures_are_those_of_the_command_line_and_say_what_is_missing() -> Non
     for match, call in wrong:
         with pytest.raises(wr.InputError, match=match):
             call()
+
+
+def test_an_average_has_the_spread_of_its_profiles() -> None:
+    wheel = wr.wheel("S1002")
+    average = wr.average_profiles([wheel.shifted(0.0, z) for z in (-0.1, 0.0, 0.1)])
+    at = int(np.argmin(np.abs(average["x_mm"])))
+    assert abs(average["z_mm"][at]) < 1e-2
+    assert abs(average["spread_mm"][at] - 0.1) < 1e-3 and abs(average["largest_mm"][at] - 0.1) < 1e-3
+    assert average["profiles"][at] == 3 and average["finding"] == []
+    assert average["profile"].side == "wheel"
+    for profiles in ([wheel], [wheel, wr.rail("60E1")]):
+        with pytest.raises(wr.InputError, match="profiles"):
+            wr.average_profiles(profiles)

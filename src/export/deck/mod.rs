@@ -8,10 +8,12 @@
 mod contact;
 mod curved;
 mod number;
+mod table;
 mod text;
 mod wrp;
 
 pub use contact::{ContactSettings, Prescribed, contact_inp};
 pub use curved::{CurvedDeck, conform_curved_wrp, contact_curved_inp};
+pub use table::table_wrp;
 pub use text::Deck;
 pub use wrp::{conform_wrp, countact_wrp, separation_wrp};

@@ -1,4 +1,4 @@
-// Bundles the scripts of the pages: `npm ci && npm run build` writes view.js and sweep.js beside this file, or into the
+// Bundles the scripts of the pages: `npm ci && npm run build` writes view.js, sweep.js, fleet.js and measure.js beside this file, or into the
 // folder that is given. The page of a run holds a copy of three.js, so that its licence stands in the bundle.
 import { build } from "esbuild";
 import { readFileSync, writeFileSync } from "node:fs";
@@ -12,6 +12,8 @@ const licence = readFileSync(join(here, "node_modules/three/LICENSE"), "utf8").t
 for (const [name, banner] of [
     ["view", `/*!\nThis script contains three.js.\n\n${licence}\n*/`],
     ["sweep", ""],
+    ["fleet", ""],
+    ["measure", ""],
 ]) {
     await build({
         entryPoints: [join(here, "source", `${name}.js`)],

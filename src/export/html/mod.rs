@@ -4,9 +4,13 @@
 //! `npm ci && npm run build` there makes them, and a test compares the result with what is committed. Cargo needs no node.
 
 mod document;
+mod fleet;
+mod measure;
 mod numbers;
 mod sweep;
 mod view;
 
-pub use sweep::{SweepCurve, SweepPage, SweepPanel, SweepSide};
+pub use fleet::{FleetDistribution, FleetHeat, FleetPage, FleetWorst};
+pub use measure::{MeasuredPage, MeasuresPage};
+pub use sweep::{PageFigure, PageMap, SweepCurve, SweepPage, SweepPanel, SweepSide};
 pub use view::{PageFrame, PageLoop, PagePair, PagePressure, PageProfile, ViewContact, ViewPage};

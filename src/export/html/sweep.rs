@@ -57,6 +57,37 @@ pub struct SweepSide {
     pub wheel_x: Vec<f64>,
 }
 
+/// A number with its meaning.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PageFigure {
+    /// Its name, as tables have it.
+    pub name: String,
+    /// The number in words.
+    pub value: String,
+    /// What it is.
+    pub meaning: String,
+}
+
+/// A quantity over gauges and amplitudes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PageMap {
+    /// Heading.
+    pub title: String,
+    /// Name of the axis across, with its unit.
+    pub across: String,
+    /// Name of the axis up, with its unit.
+    pub up: String,
+    /// Values across, ascending.
+    #[serde(serialize_with = "floats")]
+    pub gauges: Vec<f64>,
+    /// Values up, ascending.
+    #[serde(serialize_with = "floats")]
+    pub amplitudes: Vec<f64>,
+    /// The quantity at `i_gauge * n_amplitudes + i_amplitude`; NaN where there is none.
+    #[serde(serialize_with = "floats")]
+    pub values: Vec<f64>,
+}
+
 /// The page of a sweep.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SweepPage {
@@ -77,6 +108,12 @@ pub struct SweepPage {
     pub pairs: Vec<PagePair>,
     /// Left and right side.
     pub sides: Vec<SweepSide>,
+    /// Key figures; none of a plain sweep.
+    pub figures: Vec<PageFigure>,
+    /// The conicity over gauge and amplitude; `None` of a plain sweep.
+    pub map: Option<PageMap>,
+    /// What a reader should know before using the numbers.
+    pub findings: Vec<String>,
 }
 
 impl SweepPage {

@@ -117,6 +117,8 @@ pub struct PageLoop(
 pub struct ViewPage {
     /// Title of the scene.
     pub title: String,
+    /// What stands under it: profiles, inclination, radius, gauge and position.
+    pub about: String,
     /// Version of this program.
     pub version: String,
     /// Hash of the scene that was run.

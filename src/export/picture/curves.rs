@@ -1,6 +1,6 @@
 //! Draws the picture of a sweep: several quantities over one abscissa, each in its own panel.
 
-use super::page::{BLUE, Colour, Page, Pen, RED, polygon};
+use super::page::{BLUE, Colour, Page, Pen, RED, SMALL, polygon};
 use super::panel::{Panel, airy, range};
 
 /// Colours of the curves of a panel, in order.
@@ -79,6 +79,25 @@ pub struct CurvesPicture {
     pub quantities: Vec<CurvesPanel>,
     /// The pair below them; `None` for none.
     pub pair: Option<JoinedPair>,
+    /// A map in the place after the last panel; `None` for none.
+    pub map: Option<CurvesMap>,
+}
+
+/// A quantity over two others, as cells in colour.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CurvesMap {
+    /// Heading of the map.
+    pub title: String,
+    /// Name of the axis across, with its unit.
+    pub across: String,
+    /// Name of the axis up, with its unit.
+    pub up: String,
+    /// Values across, ascending.
+    pub u: Vec<f64>,
+    /// Values up, ascending.
+    pub v: Vec<f64>,
+    /// The quantity, a list over `v` for each of `u`; NaN where there is none.
+    pub values: Vec<Vec<f64>>,
 }
 
 /// A rail and a wheel raised above it, with the points joined at which they touch; all in the rail profile's axes \[x, z\] \[mm\].
@@ -97,13 +116,17 @@ pub struct JoinedPair {
 impl CurvesPicture {
     /// Returns the picture as SVG.
     pub fn svg(&self) -> String {
-        let height = TOP + ROW * self.quantities.len().div_ceil(LEFT.len()) as f64;
+        let places = self.quantities.len() + usize::from(self.map.is_some());
+        let height = TOP + ROW * places.div_ceil(LEFT.len()) as f64;
+        let place = |k: usize| [LEFT[k % LEFT.len()], TOP + ROW * (k / LEFT.len()) as f64, SIZE[0], SIZE[1]];
         let mut page = Page::new(&self.title, &self.about);
         let all = self.quantities.iter().flat_map(|q| &q.curves).flat_map(|curve| &curve.points);
         let u = range(all.map(|p| p[0]));
         for (k, quantity) in self.quantities.iter().enumerate() {
-            let place = [LEFT[k % LEFT.len()], TOP + ROW * (k / LEFT.len()) as f64, SIZE[0], SIZE[1]];
-            self.panel(&mut page, place, u, quantity);
+            self.panel(&mut page, place(k), u, quantity);
+        }
+        if let Some(map) = &self.map {
+            map.draw(&mut page, place(self.quantities.len()));
         }
         let height = match &self.pair {
             Some(pair) => pair.draw(&mut page, height),
@@ -131,6 +154,62 @@ impl CurvesPicture {
         }
         panel.axes(page, [&self.abscissa, &quantity.axis]);
     }
+}
+
+impl CurvesMap {
+    /// Draws the cells with their borders half-way between the values, and a key of the colours above them.
+    fn draw(&self, page: &mut Page, place: [f64; 4]) {
+        page.heading(place, &self.title);
+        let (across, up) = (borders(&self.u), borders(&self.v));
+        let ends = |borders: &[f64]| range(borders.iter().copied());
+        let panel = Panel { place, u: ends(&across), v: ends(&up) };
+        let [low, high] = range(self.values.iter().flatten().copied());
+        for (i, column) in self.values.iter().enumerate() {
+            for (k, value) in column.iter().enumerate().filter(|(_, value)| value.is_finite()) {
+                let corners =
+                    [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[a, b]| panel.point([across[i + a], up[k + b]]));
+                page.area(&[corners.to_vec()], shade((value - low) / (high - low)));
+            }
+        }
+        panel.axes(page, [&self.across, &self.up]);
+        let right = place[0] + place[2];
+        for k in 0..KEY {
+            let share = f64::from(k) / f64::from(KEY - 1);
+            let x = right - KEY_WIDTH + (KEY_WIDTH - 14.0) * share;
+            let top = place[1] + place[3] + 46.0;
+            let cell = [[x, top], [x + 14.0, top], [x + 14.0, top + 8.0], [x, top + 8.0]];
+            page.area(&[cell.to_vec()], shade(share));
+            page.text([x + 7.0, top + 20.0], format!("{:.2}", low + share * (high - low)), SMALL.middle());
+        }
+    }
+}
+
+/// Number of colours of the key, and its width \[page units\].
+const KEY: u32 = 6;
+const KEY_WIDTH: f64 = 200.0;
+
+/// Returns the borders of cells around ascending values.
+fn borders(values: &[f64]) -> Vec<f64> {
+    let [Some(first), Some(last)] = [values.first(), values.last()] else { return Vec::new() };
+    let between = values.windows(2).map(|pair| f64::midpoint(pair[0], pair[1]));
+    let inner: Vec<f64> = between.collect();
+    let [from, to] = [inner.first(), inner.last()].map(|border| border.copied());
+    let low = from.map_or(first - 0.5, |border| 2.0 * first - border);
+    let high = to.map_or(last + 0.5, |border| 2.0 * last - border);
+    [low].into_iter().chain(inner).chain([high]).collect()
+}
+
+/// Colours of low, middle and high values: light to dark, which is told apart in grey, too.
+const SHADES: [Colour; 3] = [[255, 244, 204], [227, 119, 61], [94, 15, 80]];
+
+/// Returns the colour of a share of the range.
+fn shade(share: f64) -> Colour {
+    let at = 2.0 * share.clamp(0.0, 1.0);
+    let [from, to] = if at < 1.0 { [SHADES[0], SHADES[1]] } else { [SHADES[1], SHADES[2]] };
+    let rest = if at < 1.0 { at } else { at - 1.0 };
+    std::array::from_fn(|k| {
+        (f64::from(from[k]) + rest * (f64::from(to[k]) - f64::from(from[k]))).round() as u8
+    })
 }
 
 impl JoinedPair {
@@ -214,6 +293,7 @@ mod tests {
             abscissa: "y [mm]".into(),
             quantities: vec![quantity],
             pair: None,
+            map: None,
         }
     }
 

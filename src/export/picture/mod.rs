@@ -1,6 +1,7 @@
-//! Draws pictures as SVG: of a patch, of the gap over the rail's surface, of a sweep, of a profile, of one over another, and the charts of the
+//! Draws pictures as SVG: of a patch, of the gap over the rail's surface, of a sweep, of a profile, of one over another, of an average, and the charts of the
 //! report. All use one kind of page and one kind of panel.
 
+mod band;
 mod chart;
 mod conformal;
 mod contact;
@@ -14,11 +15,12 @@ mod panel;
 mod patch;
 mod profile;
 
+pub use band::{BandPicture, BandPoint};
 pub use chart::{Chart, Series};
 pub use conformal::{ConformalPicture, RailNormal};
 pub use contact::PicturedContact;
 pub use contour::Nodes;
-pub use curves::{CurvesPanel, CurvesPicture, JoinedPair, PlottedCurve, jumps};
+pub use curves::{CurvesMap, CurvesPanel, CurvesPicture, JoinedPair, PlottedCurve, jumps};
 pub use map::Pressed;
 pub use overlay::OverlayPicture;
 pub use page::SEPARATOR;

@@ -41,6 +41,8 @@ struct MiniProfHeader {
     elements: Vec<(usize, usize, ElementShape)>,
     /// Value of `MPDC`, and its line.
     element_count: Option<(usize, usize)>,
+    /// Value of `DiameterTaperline` \[mm\]; instruments without a gauge for it write 0 or nothing.
+    diameter: Option<f64>,
 }
 
 #[derive(Debug)]
@@ -162,6 +164,7 @@ impl Reader {
             point.x += header.offset[0];
             point.z += header.offset[1];
         }
+        self.points.diameter = self.points.diameter.or(header.diameter);
         let points = self.points.at.len() - self.from;
         let elements = header.elements.len();
         let counts = [("XYPoints", header.count, points), ("MPDC", header.element_count, elements)];
@@ -193,7 +196,8 @@ fn moved(shape: ElementShape, dx: f64, dz: f64) -> ElementShape {
 impl Default for MiniProfHeader {
     fn default() -> Self {
         let (elements, element_count) = (Vec::new(), None);
-        Self { columns: [0, 1], width: 2, offset: [0.0; 2], count: None, elements, element_count }
+        let (columns, offset) = ([0, 1], [0.0; 2]);
+        Self { columns, width: 2, offset, count: None, elements, element_count, diameter: None }
     }
 }
 
@@ -206,6 +210,7 @@ impl MiniProfHeader {
             "xoffset" => self.offset[0] = optional(line, value)?,
             "yoffset" => self.offset[1] = optional(line, value)?,
             "xypoints" => self.count = count(line, value)?,
+            "diametertaperline" => self.diameter = Some(optional(line, value)?).filter(|value| *value > 0.0),
             "mpdc" => self.element_count = count(line, value)?,
             _ => {
                 if let Some(k) = key.strip_prefix("mpd").and_then(|k| k.parse().ok()) {

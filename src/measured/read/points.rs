@@ -96,6 +96,8 @@ pub struct Points {
     pub sections: Vec<usize>,
     /// Design elements, in the numbering of the file.
     pub elements: Vec<DesignElement>,
+    /// Diameter of the wheel at its taping line \[mm\], if the file holds it.
+    pub diameter: Option<f64>,
     /// Notes on oddities.
     pub notes: Vec<Note>,
 }
@@ -109,6 +111,7 @@ impl Points {
             at: Vec::new(),
             sections: vec![0],
             elements: Vec::new(),
+            diameter: None,
             notes: Vec::new(),
         }
     }

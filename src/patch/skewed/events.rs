@@ -2,6 +2,7 @@
 
 use super::monotone::monotone;
 use crate::numerics::roots::{bracketed, last_where};
+use crate::patch::band::Turn;
 use crate::patch::outline::Outline;
 
 /// Values of ξ at which the intervals of η may change \[mm\], in no order.
@@ -14,8 +15,8 @@ pub(in crate::patch) struct Events {
     /// Events at which s over a valley or ridge outside the window makes the patch reach the window's edge,
     /// or leave it.
     pub(in crate::patch) cuts: Vec<f64>,
-    /// Pairs (valley, ξ) at which s over the valley may be least.
-    pub(in crate::patch) turns: Vec<(usize, f64)>,
+    /// Places at which s over a valley may be least.
+    pub(in crate::patch) turns: Vec<Turn>,
 }
 
 /// Finds the events inside a range of ξ, which must not be empty.
@@ -37,9 +38,12 @@ pub(in crate::patch) fn events(outline: &mut Outline<'_>, range: [f64; 2]) -> Ev
         let matters = |[low, high]: [f64; 2]| low < approach && (is_valley || high > approach);
         monotone(&skewed.valleys, rail, crease, range, matters, &mut intervals);
         for &[from, to] in &intervals {
-            passes(outline, crease, [from.next_up(), to], &mut events);
+            let ends = [from.next_up(), to];
+            let depths = ends.map(|xi| crease_depth(outline, crease, xi));
+            passes(outline, crease, (ends, depths), &mut events);
             if is_valley {
-                events.turns.extend([(crease, from.next_up()), (crease, to)]);
+                let turn = |end: usize| Turn { valley: Some(crease), xi: ends[end], depth: depths[end] };
+                events.turns.extend([turn(0), turn(1)]);
             }
         }
     }
@@ -47,11 +51,19 @@ pub(in crate::patch) fn events(outline: &mut Outline<'_>, range: [f64; 2]) -> Ev
 }
 
 /// Adds the event at which s over a valley or ridge passes δ in a stretch over which it is monotone.
-fn passes(outline: &mut Outline<'_>, crease: usize, ends: [f64; 2], events: &mut Events) {
+fn passes(
+    outline: &mut Outline<'_>,
+    crease: usize,
+    (ends, depths): ([f64; 2], [f64; 2]),
+    events: &mut Events,
+) {
     if ends[0] > ends[1] {
         return;
     }
-    let inside = ends.map(|xi| crease_depth(outline, crease, xi) < 0.0);
+    let inside = depths.map(|depth| depth < 0.0);
+    if inside == [false; 2] {
+        return;
+    }
     let [low, high] = outline.window.eta;
     let seen = ends.map(|xi| {
         let eta = outline.slicer.valley(Some(crease), xi);

@@ -5,7 +5,7 @@
 //! at which the rail steps. Between two events the intervals persist; at an event they continue, divide or join.
 
 use super::events::{Events, events};
-use crate::patch::band::{Band, overlap, steps};
+use crate::patch::band::{Band, Turn, overlap, steps};
 use crate::patch::outline::{End, Outline};
 
 /// Distance, as a share of R, within which a valley at the edge of an interval belongs to the interval, and within which
@@ -51,8 +51,8 @@ struct LaneWalk<'w, 'a> {
     done: Vec<Band>,
 }
 
-/// Returns the bands, and pairs (valley, ξ) at which s may be least \[mm\].
-pub(in crate::patch) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<(usize, f64)>) {
+/// Returns the bands, and the places at which s may be least.
+pub(in crate::patch) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<Turn>) {
     let Some([a, b]) = searched(outline) else { return (Vec::new(), Vec::new()) };
     let mut events = events(outline, [a, b]);
     let turns = std::mem::take(&mut events.turns);

@@ -87,12 +87,12 @@ impl<'a> Skewed<'a> {
         lowest.map(|(_, k)| k)
     }
 
-    /// Returns η, or a place next to it if rounding ends the surface too early.
-    pub(in crate::patch) fn on_surface(&mut self, xi: f64, eta: f64) -> f64 {
+    /// Returns \[s, η\] \[mm\], at a place next to η if rounding ends the surface too early.
+    pub(in crate::patch) fn on_surface(&mut self, xi: f64, eta: f64) -> [f64; 2] {
         let rounding = f64::EPSILON * self.placement.rolling_radius();
         let steps = std::iter::once(0.0).chain((0..NUDGES).flat_map(|k| [4f64.powi(k), -4f64.powi(k)]));
-        let mut near = steps.map(|n| eta + n * rounding);
-        near.find(|&eta| !self.evaluator.separation(xi, eta).is_nan()).unwrap_or(eta)
+        let mut near = steps.map(|n| eta + n * rounding).map(|eta| [self.evaluator.separation(xi, eta), eta]);
+        near.find(|[s, _]| !s.is_nan()).unwrap_or([f64::NAN, eta])
     }
 
     /// Returns both ends of the slice that holds a valley; `None` outside the patch.
@@ -152,8 +152,7 @@ impl<'a> Skewed<'a> {
     /// Returns the end of the slice on one side of its lowest point.
     fn outward(&mut self, xi: f64, lowest: f64, reach: f64, stops: &mut [f64]) -> Edge {
         let beside = (BESIDE * self.placement.rolling_radius()).copysign(reach);
-        let mut from = self.on_surface(xi, lowest);
-        let s = self.evaluator.separation(xi, from);
+        let [s, mut from] = self.on_surface(xi, lowest);
         let beyond = self.evaluator.separation(xi, from + beside);
         if s.is_nan() || (from != lowest && (beyond.is_nan() || beyond >= self.approach)) {
             return Edge { eta: from, ledge: true };

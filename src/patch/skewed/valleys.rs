@@ -189,6 +189,14 @@ impl<'a> Valleys<'a> {
         (0..self.creases.len()).filter(move |&k| self.creases[k].xi[0] <= xi && xi <= self.creases[k].xi[1])
     }
 
+    /// Returns whether one valley and no ridge is over a range of ξ \[mm\], throughout.
+    pub(crate) fn is_one_between(&self, [from, to]: [f64; 2]) -> bool {
+        let mut met = self.creases.iter().filter(|crease| crease.xi[0] <= to && from <= crease.xi[1]);
+        let only =
+            met.next().is_some_and(|crease| crease.is_valley && crease.xi[0] <= from && to <= crease.xi[1]);
+        only && met.next().is_none()
+    }
+
     /// Returns the η at which the line of constant ξ meets ends and steps of the wheel's surface \[mm\].
     pub(crate) fn rims(&self, xi: f64) -> impl Iterator<Item = f64> {
         self.crossings(xi).map(|(place, _)| place.eta)

@@ -2,26 +2,27 @@
 
 use super::lines::{Interval, Line, Varying, links};
 use crate::numerics::roots::bracketed;
-use crate::patch::band::Band;
+use crate::patch::band::{Band, Turn};
 use crate::patch::outline::{End, Window};
 use crate::placement::Placement;
 
 /// Depth \[mm\] of an interval that ends at a tip, not where a body ends: that of two lines a rounding apart.
 const SHALLOW: f64 = 1e-9;
 
-/// Returns the bands in a window, and pairs (lane, ξ) at which s may be least \[mm\].
+/// Returns the bands in a window, and places at which s may be least.
 pub(in crate::patch) fn bands(
     varying: &mut Varying<'_>,
     placement: &Placement,
     window: &Window,
-) -> (Vec<Band>, Vec<(usize, f64)>) {
+) -> (Vec<Band>, Vec<Turn>) {
     let lines = varying.lines(placement, [window.xi, window.eta]);
     let (mut bands, mut turns) = joined(varying, &lines, window);
     for (lane, xi) in &mut turns {
         *xi = turn(varying, *lane, *xi);
         bands[*lane].valleys = vec![(bands[*lane].xi[1], vec![*lane])];
     }
-    (bands.into_iter().filter(|band| band.xi[0] < band.xi[1]).collect(), turns)
+    let turns = turns.into_iter().map(|(lane, xi)| Turn { valley: Some(lane), xi, depth: f64::NAN });
+    (bands.into_iter().filter(|band| band.xi[0] < band.xi[1]).collect(), turns.collect())
 }
 
 /// Joins the intervals of successive lines to bands.

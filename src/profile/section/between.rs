@@ -2,7 +2,7 @@
 //! parallel to a line.
 
 use super::branch::{ArcBranch, Branch, BranchShape};
-use crate::numerics::lanes::Lanes;
+use crate::numerics::lanes::{Lanes, lanes};
 use crate::numerics::polynomial::{derivative, value};
 use crate::numerics::sign_changes::sign_changes;
 
@@ -41,10 +41,31 @@ pub fn stationary_points(rail: &Branch, wheel: &Branch, a: f64, b: f64) -> Vec<f
         found.iter_mut().for_each(|parameter| *parameter = at(*parameter).x);
     } else {
         let slope = |xi: f64| wheel.chord_slope(xi, xi) - rail.chord_slope(xi, xi);
-        sign_changes(|xi: &Lanes| xi.map(slope), [a, b], SLOPE_NOISE, &mut found);
+        let slopes = |xi: &Lanes| {
+            let many = pulp::Arch::new().dispatch(SlopeDifferences { rail, wheel, xi });
+            many.unwrap_or_else(|| xi.map(slope))
+        };
+        sign_changes(slopes, [a, b], SLOPE_NOISE, &mut found);
     }
     found.retain(|xi| a < *xi && *xi < b);
     found
+}
+
+/// The difference of the slopes of two branches at 16 ξ, computed by vector code; `None` where a point is not found.
+struct SlopeDifferences<'b> {
+    rail: &'b Branch,
+    wheel: &'b Branch,
+    xi: &'b Lanes,
+}
+
+impl pulp::WithSimd for SlopeDifferences<'_> {
+    type Output = Option<Lanes>;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> Option<Lanes> {
+        let (rail, wheel) = (self.rail.slopes(self.xi)?, self.wheel.slopes(self.xi)?);
+        Some(lanes(|k| wheel[k] - rail[k]))
+    }
 }
 
 /// Returns all ξ inside (a, b) \[mm\] where a branch has the direction of a line \[n_ξ, n_ζ\], ascending.

@@ -346,6 +346,12 @@ impl Branch {
         self.chords_from(from, &[to]).map_or(f64::NAN, |[slope]| slope)
     }
 
+    /// Computes ζ′ at N abscissae. Returns `None` if N > 1 and Newton's steps on a polynomial do not settle.
+    #[inline(always)]
+    pub fn slopes<const N: usize>(&self, xi: &Lanes<N>) -> Option<Lanes<N>> {
+        self.chords_from(&self.points(xi)?.0, xi)
+    }
+
     /// Computes the slope of the chord from ξ = a to ξ = b \[mm\]; it is ζ′(a) for a = b. Nothing cancels.
     pub fn chord_slope(&self, a: f64, b: f64) -> f64 {
         self.chord_from(&self.point(a).0, b)

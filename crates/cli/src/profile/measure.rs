@@ -10,6 +10,7 @@ use super::options::{BodyOption, MeasuredArguments, one_of};
 use super::source::{Source, SourceArguments};
 use crate::answer::{Outcome, put};
 use crate::output::{PictureFormat, refuse_taken};
+use wheelrail::case::measures_page;
 use wheelrail::error::{Error, Result};
 use wheelrail::export::{OverlayPicture, SEPARATOR};
 use wheelrail::files::{read_text, write_file};
@@ -17,14 +18,14 @@ use wheelrail::measure::{
     GaugeFrom, Limit, Limits, MeasureOptions, Measures, Overlay, Row, csv, json, measure, overlay, table,
 };
 use wheelrail::measured::CurveKind;
-use wheelrail::profile::Side;
+use wheelrail::profile::{Profile, Side};
 use wheelrail::scene;
 
 /// Largest file of limits \[bytes\]: many times that of all quantities.
 const LARGEST_LIMITS: usize = 1 << 20;
 
 /// The curve through measured points, if no option names one: smoothing rounds the tip of a flange, by which qR is up to 0.07 mm off.
-const CURVE: Option<CurveKind> = Some(CurveKind::Interpolation);
+pub(super) const CURVE: Option<CurveKind> = Some(CurveKind::Interpolation);
 
 /// The profiles to measure, and how.
 #[derive(Debug, Args)]
@@ -71,6 +72,9 @@ pub(crate) struct MeasureArguments {
     /// Picture of a single profile over its nominal one, .svg or .png.
     #[arg(long, value_name = "FILE", requires = "nominal")]
     picture: Option<PathBuf>,
+    /// Page for a browser, in addition: it walks through the files, each over the nominal one, with its measures and findings.
+    #[arg(long, value_name = "FILE.html")]
+    html: Option<PathBuf>,
     /// File of limits, TOML: `flange_height_mm = { min = 27.5, max = 36.0 }`.
     #[arg(long, value_name = "FILE")]
     limits: Option<PathBuf>,
@@ -114,12 +118,15 @@ pub(super) fn run(arguments: &MeasureArguments) -> Result<Outcome> {
     if let Some(picture) = &arguments.picture {
         arguments.draw(picture, nominal.as_ref(), &options)?;
     }
+    if let Some(html) = &arguments.html {
+        arguments.write_page(html, &rows, nominal.as_ref(), &options, limits.as_ref())?;
+    }
     let broken = limits.is_some_and(|limits| rows.iter().any(|row| !row.broken(&limits).is_empty()));
     let none = rows.iter().any(|row| row.measured.is_err());
     Ok(if none || arguments.fail && broken { Outcome::No } else { Outcome::Done })
 }
 
-fn source(name: &str, side: Option<BodyOption>, measured: MeasuredArguments) -> SourceArguments {
+pub(super) fn source(name: &str, side: Option<BodyOption>, measured: MeasuredArguments) -> SourceArguments {
     SourceArguments { profile: name.to_owned(), side, measured }
 }
 
@@ -130,10 +137,33 @@ impl MeasureArguments {
         if let Some(out) = &self.out {
             refuse_taken("--out", out, &read)?;
         }
-        let Some(picture) = &self.picture else { return Ok(()) };
-        PictureFormat::of_file("--picture", picture)?;
-        let taken: Vec<PathBuf> = read.into_iter().chain(self.out.clone()).collect();
-        refuse_taken("--picture", picture, &taken)
+        let mut taken: Vec<PathBuf> = read.into_iter().chain(self.out.clone()).collect();
+        if let Some(picture) = &self.picture {
+            PictureFormat::of_file("--picture", picture)?;
+            refuse_taken("--picture", picture, &taken)?;
+            taken.push(picture.clone());
+        }
+        self.html.as_ref().map_or(Ok(()), |html| refuse_taken("--html", html, &taken))
+    }
+
+    /// Writes the page of all rows.
+    fn write_page(
+        &self,
+        html: &Path,
+        rows: &[Row],
+        nominal: Option<&Source>,
+        options: &MeasureOptions,
+        limits: Option<&Limits>,
+    ) -> Result<()> {
+        let read = |file: &String| source(file, self.side, self.measured.clone()).read_as(CURVE).ok();
+        let sources: Vec<Option<Source>> = self.files.par_iter().map(read).collect();
+        let rows: Vec<(Row, Option<&Profile>)> = rows
+            .iter()
+            .cloned()
+            .zip(sources.iter().map(|source| source.as_ref().map(Source::profile)))
+            .collect();
+        let page = measures_page(&rows, nominal.map(Source::profile), options, limits);
+        write_file(html, &page.html())
     }
 
     /// Draws the picture of a single profile over its nominal one.
@@ -197,14 +227,15 @@ fn measured(
         let found = format!("a {} beside a {} as nominal", word(side), word(other));
         return Err(Error::new(file, found, "one body", "give the nominal of this body"));
     }
-    let mut measures = measure(source.profile(), side, nominal.map(Source::profile), options)?;
+    let measures = measure(source.profile(), side, nominal.map(Source::profile), options)?;
+    let mut measures = measures.with_diameter(source.measured().and_then(|of| of.record.diameter));
     let doubts = source.measured().map_or_else(Vec::new, |of| of.record.warnings.clone());
     measures.findings.extend(doubts.iter().map(|doubt| format!("{}: {}", doubt.place, doubt.found)));
     Ok(measures)
 }
 
 /// Reads a range "from:to".
-fn range(text: &str) -> Result<[f64; 2]> {
+pub(super) fn range(text: &str) -> Result<[f64; 2]> {
     let numbers: Option<Vec<f64>> = text.split(':').map(|part| part.trim().parse().ok()).collect();
     match numbers.as_deref() {
         Some([from, to]) => Ok([*from, *to]),

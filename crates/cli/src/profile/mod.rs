@@ -1,5 +1,6 @@
 //! `wheelrail profile`: list, show, plot and convert profiles.
 
+mod average;
 mod convert;
 mod measure;
 mod options;
@@ -42,6 +43,8 @@ pub(super) enum ProfileCommand {
     /// Measure wheels and rails: flange height and thickness, wear, groove; a row a file.
     // Boxed, because it has many options.
     Measure(Box<measure::MeasureArguments>),
+    /// Average profiles into a representative one, with their spread.
+    Average(Box<average::AverageArguments>),
 }
 
 /// Runs `wheelrail profile …`.
@@ -53,6 +56,7 @@ pub(super) fn profile(command: &ProfileCommand) -> Result<Outcome> {
         ProfileCommand::Plot { source, out } => plot::plot(source, out.as_deref()),
         ProfileCommand::Convert(arguments) => convert::convert(arguments),
         ProfileCommand::Measure(arguments) => measure::run(arguments),
+        ProfileCommand::Average(arguments) => average::run(arguments),
     }
 }
 
@@ -64,5 +68,6 @@ fn list() -> Result<String> {
     for name in standards::wheel_names() {
         let _ = writeln!(out, "wheel  {name:<24} {}", standards::wheel(name)?.source);
     }
+    let _ = writeln!(out, "wheel  {}\n{:31} {}", standards::EN_13715_NAMES, "", standards::EN_13715_SOURCE);
     Ok(out)
 }

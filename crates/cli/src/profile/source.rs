@@ -87,7 +87,8 @@ impl SourceArguments {
 
     fn built_in(&self) -> Result<Source> {
         let rail = standards::rail_names().any(|name| name == self.profile);
-        if !rail && !standards::wheel_names().any(|name| name == self.profile) {
+        let named = standards::wheel(&self.profile);
+        if !rail && named.is_err() && !self.profile.starts_with("EN13715-") {
             let expected = "a file, or a name of `wheelrail profile list`";
             let names: Vec<&str> = standards::rail_names().chain(standards::wheel_names()).collect();
             let advice = scene::perhaps(&self.profile, &names);
@@ -105,7 +106,7 @@ impl SourceArguments {
                 "correct one of the two",
             ));
         }
-        let profile = if rail { standards::rail(&self.profile)? } else { standards::wheel(&self.profile)? };
+        let profile = if rail { standards::rail(&self.profile)? } else { named? };
         Ok(Source { side: Some(side), content: ProfileSource::Drawn(profile) })
     }
 }

@@ -223,13 +223,36 @@ async function sweep(page, table) {
     return `${displacements.length} positions, points of contact at most ${apart.toExponential(1)} mm apart`;
 }
 
-/** On a telephone the page of a sweep is not wider than the screen. */
-async function narrow(browser, file) {
-    const context = await browser.newContext({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
-    const page = await open(context, file);
-    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "no sideways scrolling");
-    assert.deepEqual(page.faults, []);
-    await context.close();
+/** A telephone, a tablet and a desk, light and dark: nothing is wider than the screen, and no text is a narrow column. */
+async function widths(browser, file) {
+    for (const width of [390, 800, 1280]) {
+        for (const colorScheme of ["light", "dark"]) {
+            const context = await browser.newContext({ viewport: { width, height: 844 }, colorScheme, offline: true });
+            const page = await open(context, file);
+            assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), colorScheme);
+            assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `no sideways scrolling at ${width}`);
+            const lines = await page.locator(".from").evaluate((text) => text.offsetHeight / parseFloat(getComputedStyle(text).lineHeight));
+            assert.ok(lines < 5.5, `the line below the title has ${lines} lines at ${width}`);
+            assert.deepEqual(page.faults, []);
+            await context.close();
+        }
+    }
+}
+
+/** The button of a picture saves it. */
+async function saved(page) {
+    const [download] = await Promise.all([page.waitForEvent("download"), page.locator("figure.plan .save, figure .save").first().click()]);
+    assert.match(download.suggestedFilename(), /\.png$/);
+    const bytes = readFileSync(await download.path());
+    assert.ok(bytes.length > 2000 && bytes.subarray(1, 4).toString() === "PNG", `${bytes.length} bytes`);
+}
+
+/** Side by side, the rows of contacts are at one height. */
+async function aligned(page) {
+    const tops = await page.evaluate(() =>
+        ["figure.space", "figure.plan", "figure.profiles"].map((row) => [...document.querySelectorAll(row)].map((part) => part.getBoundingClientRect().top)),
+    );
+    for (const row of tops) assert.ok(Math.max(...row) - Math.min(...row) < 1.5, `rows at ${row}`);
 }
 
 const profile = mkdtempSync(join(tmpdir(), "wheelrail-pages-"));
@@ -246,15 +269,17 @@ try {
             await themes(page);
             assert.deepEqual(page.faults, [], name);
             await context.close();
-            await narrow(browser, file);
+            await widths(browser, file);
             continue;
         }
         const found = await slider(page, others);
         const tried = number === 0 || (await page.evaluate(() => window.wheelrail.contacts.length)) > 2;
-        for (const attempt of tried ? [keys, pointer, themes] : []) await attempt(page);
+        for (const attempt of tried ? [saved, keys, pointer, themes] : []) await attempt(page);
+        if (name === "wheelset") await aligned(page);
         assert.deepEqual(page.faults, [], name);
         await context.close();
         if (tried) await telephone(browser, file);
+        if (number === 0) await widths(browser, file);
         console.log(`page ${name}: ${drawn.length} pictures; ${found.join("; ") || "no patch"}`);
     }
 } finally {

@@ -106,13 +106,36 @@ fn uncommented(line: &str) -> &str {
 fn shells_and_the_manual_know_every_command() {
     let folder = TempDir::new().unwrap();
     let here = folder.path();
-    let commands = ["run", "midsep", "check", "sweep", "report", "profile", "init", "schema"];
+    let help = said(here, &["--help"]);
+    assert!(help.starts_with("Finds where a railway wheel touches its rail"), "{help}");
+    assert!(said(here, &["--version"]).starts_with("wheelrail "));
+    let listed = help.split("Commands:").nth(1).unwrap().split("\n\n").next().unwrap();
+    let commands: Vec<&str> = listed
+        .lines()
+        .filter_map(|line| line.strip_prefix("  ").filter(|rest| !rest.starts_with(' ')))
+        .filter_map(|line| line.split_whitespace().next())
+        .collect();
+    assert!(commands.contains(&"run") && commands.contains(&"profile"), "{commands:?}");
     for shell in ["bash", "zsh", "fish"] {
         let text = said(here, &["completions", shell]);
         assert!(commands.iter().all(|command| text.contains(command)), "{shell}");
+        assert!(text.contains("wheelrail") && !text.contains("wheelrail-cli"), "{shell}");
     }
-    let manual = said(here, &["man"]);
-    assert!(manual.starts_with(".ie") || manual.contains(".TH"), "{}", &manual[..200]);
-    assert!(commands.iter().all(|command| manual.contains(command)));
-    assert!(manual.contains("lateral"), "options of commands are in the manual");
+    said(here, &["man", "--out", "pages/man1"]);
+    let page = |name: &str| std::fs::read_to_string(here.join("pages/man1").join(name)).unwrap();
+    for command in commands.into_iter().filter(|command| *command != "help") {
+        assert!(page(&format!("wheelrail-{command}.1")).contains(".TH"), "{command}");
+    }
+    assert!(page("wheelrail-sweep.1").contains("lateral"), "options of commands are in the manual");
+    let every: String = std::fs::read_dir(here.join("pages/man1"))
+        .unwrap()
+        .map(|entry| page(entry.unwrap().file_name().to_str().unwrap()))
+        .collect();
+    assert_eq!(said(here, &["man"]).len(), every.len(), "on stdout are the pages of the files");
+    for named in every.replace("\\-", "-").split("(1)").filter_map(|before| before.split_whitespace().last())
+    {
+        if named.starts_with("wheelrail") {
+            page(&format!("{named}.1"));
+        }
+    }
 }

@@ -102,6 +102,27 @@ fn a_picture_shows_both_profiles_and_their_differences() {
 }
 
 #[test]
+fn a_page_walks_through_all_files_the_bad_ones_too() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    fs::write(here.join("bad.ban"), "no numbers").unwrap();
+    text(here, &["54E1", "bad.ban", "60E1", "--nominal", "60E1", "--html", "m.html"], 1);
+    let page = fs::read_to_string(here.join("m.html")).unwrap();
+    let data = page.split_once("application/json\">").unwrap().1.split_once("</script>").unwrap().0;
+    let data: Value = serde_json::from_str(data).unwrap();
+    let files = data["files"].as_array().unwrap();
+    let names: Vec<&str> = files.iter().map(|file| file["name"].as_str().unwrap()).collect();
+    assert_eq!((names, data["about"].as_str()), (vec!["54E1", "bad.ban", "60E1"], Some("nominal 60E1")));
+    let drawn = |k: usize| !files[k]["differences"].as_str().unwrap().is_empty();
+    assert_eq!([0, 1, 2].map(drawn), [true, false, true]);
+    assert!(
+        files[1]["findings"][0].as_str().unwrap().starts_with("bad.ban")
+            && files[0]["measures"].as_array().unwrap().len() > 3
+    );
+    assert_eq!(measure(here, &["54E1", "--out", "m.html", "--html", "m.html"]).status.code(), Some(2));
+}
+
+#[test]
 fn wheels_given_as_rails_and_wrong_options_say_what_is_wrong() {
     let folder = TempDir::new().unwrap();
     let here = folder.path();
@@ -131,5 +152,56 @@ fn wheels_given_as_rails_and_wrong_options_say_what_is_wrong() {
     ];
     for arguments in wrong {
         assert!(found(arguments, 2).is_empty());
+    }
+}
+
+#[test]
+fn an_average_is_a_profile_with_its_spread() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    let average = |arguments: &[&str]| {
+        let binary = env!("CARGO_BIN_EXE_wheelrail");
+        Command::new(binary).current_dir(here).args(["profile", "average"]).args(arguments).output().unwrap()
+    };
+    // Worn by 0, 0.1 and 0.5 mm over 20 mm of the tread, and displaced.
+    let whole =
+        wheelrail::measured::write::sample(&wheelrail::standards::wheel("S1002").unwrap(), 0.2).unwrap();
+    for (k, depth) in [0.0, 0.1, 0.5].into_iter().enumerate() {
+        let bump = |x: f64| {
+            if x.abs() < 10.0 {
+                depth * (0.1 * std::f64::consts::PI * x).cos().mul_add(0.5, 0.5)
+            } else {
+                0.0
+            }
+        };
+        let shift = 3.0 * k as f64;
+        let rows: Vec<String> =
+            whole.iter().map(|[x, z]| format!("{} {}\n", x + shift, z + bump(*x) - shift)).collect();
+        fs::write(here.join(format!("w{k}.txt")), rows.concat()).unwrap();
+    }
+    let files = ["w0.txt", "w1.txt", "w2.txt", "--side", "wheel"];
+    let arguments =
+        ["--nominal", "S1002", "--out", "mean.txt", "--band", "band.csv", "--picture", "band.svg"];
+    let output = average(&[&files[..], &arguments].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let mut band = csv::Reader::from_path(here.join("band.csv")).unwrap();
+    let rows: Vec<Vec<f64>> =
+        band.records().map(|row| row.unwrap().iter().map(|cell| cell.parse().unwrap()).collect()).collect();
+    let at = |x: f64| rows.iter().min_by(|a, b| (a[0] - x).abs().total_cmp(&(b[0] - x).abs())).unwrap();
+    // On the tread the mean of 0, 0.1 and 0.5; beyond it nothing.
+    let (worn, unworn) = (at(0.0), at(30.0));
+    assert!((worn[1] - 0.2).abs() < 0.01 && (worn[2] - 0.2646).abs() < 0.01, "{worn:?}");
+    assert!((worn[3] + 0.2).abs() < 0.01 && (worn[4] - 0.3).abs() < 0.01 && worn[5] == 3.0, "{worn:?}");
+    assert!(unworn[2] < 0.01, "{unworn:?}");
+    assert!(fs::read_to_string(here.join("band.svg")).unwrap().contains("average of 3 profiles"));
+    // The file is a wheel like any other.
+    assert!(text(here, &["mean.txt", "--side", "wheel"], 0).contains("flange_height_mm"));
+    for arguments in [
+        &["S1002"][..],
+        &["S1002", "60E1"],
+        &["w0.txt", "w1.txt"],
+        &["S1002", "S1002", "--out", "o.xyz", "--to", "xyz"],
+    ] {
+        assert_eq!(average(arguments).status.code(), Some(2), "{arguments:?}");
     }
 }

@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 const LARGEST: u64 = 1_500_000;
 
 /// Files that the build writes beside its sources.
-const BUILT: [&str; 3] = ["view.js", "sweep.js", "three-LICENSE.txt"];
+const BUILT: [&str; 5] = ["view.js", "sweep.js", "fleet.js", "measure.js", "three-LICENSE.txt"];
 
 /// A folder with node's packages and the pages' sources, and the browser.
 struct Tools {

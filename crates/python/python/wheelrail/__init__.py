@@ -16,12 +16,15 @@ What there is:
 
     rail, wheel, read_profile, Profile.from_points, Profile.from_segments   profiles
     measure_profile           flange height and thickness, wear against a nominal profile
+    average_profiles          a representative profile of many, with its spread
     Pair, Wheelset            bodies placed: touch, placed, sweep, conicity
+    conicity                  contact geometry by EN 15302: key figures, functions, map, uncertainty
     Contact                   a place of contact: separation, normals, normal_gap, hertz, surfaces
     Patch, Component, Mesh    the patch: loops, areas, meshes, pressures, files of every format
     Case                      a scene with all it can say, from a file, a dict or TOML: contacts, files, view, sweep, check, run
     Grid                      the separation or the normal gap with its coordinates, for xarray
     Table                     the rows of a sweep, for pandas, polars and Arrow
+    fleet                     every wheelset of a fleet on every rail section: a table and pages
     wheelrail.dask            studies past one machine
     wheelrail.tamaas          pressures
 
@@ -40,7 +43,10 @@ from ._wheelrail import (
     Profile,
     Wheelset,
     __version__,
+    conicity,
+    average_profiles,
     effective_modulus,
+    fleet,
     march,
     measure_profile,
     rail,
@@ -77,7 +83,10 @@ __all__ = [
     "WheelTouch",
     "Wheelset",
     "__version__",
+    "conicity",
+    "average_profiles",
     "effective_modulus",
+    "fleet",
     "march",
     "measure_profile",
     "rail",

@@ -51,7 +51,7 @@ class _FileOptions(_PointOptions, total=False):
     angle: float
 
 class _MeasureOptions(TypedDict, total=False):
-    """Keywords of `measure_profile`."""
+    """Keywords of `measure_profile` and `average_profiles`."""
 
     tread_at: float
     flange_level: float
@@ -119,6 +119,13 @@ def wheel_names() -> list[str]: ...
 def read_profile(path: _Path, side: _Side | None = None, **options: Unpack[_FileOptions]) -> Profile: ...
 def measure_profile(
     profile: Profile, nominal: Profile | None = None, *, side: _Side | None = None, **options: Unpack[_MeasureOptions]
+) -> dict[str, Any]: ...
+def average_profiles(
+    profiles: Sequence[Profile],
+    nominal: Profile | None = None,
+    *,
+    side: _Side | None = None,
+    **options: Unpack[_MeasureOptions],
 ) -> dict[str, Any]: ...
 
 @final
@@ -326,6 +333,31 @@ class Case:
 
 def run(path: _Path, out: _Path) -> Run: ...
 def march(
-    path: _Path, along: ArrayLike, *, progress: bool | Callable[[int, int], object] | None = None
+    path: _Path,
+    along: ArrayLike | None = None,
+    *,
+    angle: ArrayLike | None = None,
+    progress: bool | Callable[[int, int], object] | None = None,
 ) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]: ...
+def conicity(
+    wheelset: Wheelset | Case,
+    *,
+    roll: Literal["solve", "neglect"] | None = None,
+    amplitude: float = 8.0,
+    step: float = 0.1,
+    gauges: ArrayLike | None = None,
+    noise: Mapping[str, float] | None = None,
+    samples: int = 400,
+    seed: int = 1,
+) -> dict[str, Any]: ...
+def fleet(
+    path: _Path,
+    wheels: _Path,
+    rails: _Path | None = None,
+    *,
+    out: _Path,
+    progress: bool | Callable[[int, int], object] | None = None,
+) -> dict[str, Any]: ...
+def fleet_parts(path: _Path, wheels: _Path, rails: _Path | None) -> int: ...
+def fleet_part(path: _Path, wheels: _Path, rails: _Path | None, out: _Path, number: int) -> None: ...
 def schema() -> dict[str, Any]: ...

@@ -24,12 +24,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._progress import shown
-from ._wheelrail import Wheelset
+from ._wheelrail import Wheelset, fleet_part, fleet_parts
+from ._wheelrail import fleet as _assembled
 
 if TYPE_CHECKING:
     from distributed import Client, Future
 
-__all__ = ["Positions", "sweep"]
+__all__ = ["Positions", "fleet", "sweep"]
 
 _T = TypeVar("_T")
 
@@ -118,6 +119,45 @@ def sweep(
             if tell:
                 tell(number, len(files))
     return files
+
+
+def fleet(
+    path: str | os.PathLike[str],
+    wheels: str | os.PathLike[str],
+    rails: str | os.PathLike[str] | None = None,
+    *,
+    out: str | os.PathLike[str],
+    client: Client,
+    retries: int = 3,
+    progress: bool | Callable[[int, int], object] | None = None,
+) -> dict[str, Any]:
+    """Compute a fleet as `wheelrail.fleet` does, part by part on the workers, and return its summary.
+
+    All files and the folder `out` must be seen by all workers. Parts that are there are kept: the same call goes on with a
+    fleet that was stopped, and the files are the same bits as those of `wheelrail.fleet` with the same absolute paths.
+    `retries` and `progress` are as of `sweep`; progress counts parts.
+
+    Raises the errors of `wheelrail.fleet`; that of Dask for a task whose workers died more often.
+    """
+    scene, list, folder = (Path(name).resolve() for name in (path, wheels, out))
+    # A built-in rail has no path.
+    sections = Path(rails).resolve() if rails is not None and Path(rails).exists() else rails
+    count = fleet_parts(scene, list, sections)
+
+    def submit(number: int) -> Future[Any]:
+        return client.submit(_fleet_part, scene, list, sections, folder, number, pure=False)
+
+    with shown(progress, "parts") as tell:
+        for done, _ in enumerate(_finished(client, range(count), submit, retries), start=1):
+            if tell:
+                tell(done, count)
+    return _assembled(scene, list, sections, out=folder)
+
+
+def _fleet_part(path: Path, wheels: Path, rails: str | os.PathLike[str] | None, out: Path, number: int) -> None:
+    """Compute one part of a fleet on a worker."""
+    one_thread()
+    fleet_part(path, wheels, rails, out, number)
 
 
 def _finished(client: Client, tasks: Sequence[_T], submit: Callable[[_T], Future[Any]], retries: int) -> Iterator[_T]:

@@ -51,6 +51,25 @@ export function ticks([from, to], about) {
     });
 }
 
+/** A button that saves what a sheet shows as a PNG of this name, on the ground of the page. */
+export function saveButton(sheet, name) {
+    const save = () => {
+        const { canvas } = sheet;
+        const copy = element("canvas", { width: canvas.width, height: canvas.height });
+        const context = copy.getContext("2d");
+        context.fillStyle = getComputedStyle(document.documentElement).getPropertyValue("--sheet");
+        context.fillRect(0, 0, copy.width, copy.height);
+        context.drawImage(canvas, 0, 0);
+        copy.toBlob((blob) => {
+            const href = URL.createObjectURL(blob);
+            element("a", { href, download: `${name}.png` }).click();
+            // The browser reads it after the click.
+            setTimeout(() => URL.revokeObjectURL(href), 10_000);
+        });
+    };
+    return element("button", { type: "button", class: "save", title: `Save this picture: ${name}.png`, "aria-label": `Save the picture ${name}`, onclick: save }, "PNG");
+}
+
 /**
  * A canvas that is as sharp as the screen. It is drawn in the next frame after its size or its content has changed. `draw`
  * gets its context, in CSS pixels, its width and height, and the number of pixels of the screen in one of CSS.

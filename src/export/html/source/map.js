@@ -44,7 +44,8 @@ export class PlanView {
         const { contact, delta, lines, others, cut, layer } = this.state;
         const { grid } = contact;
         const room = [58, 10, width - 72, height - 54];
-        const plot = Plot.trueScale(context, room, grid.ends(0), grid.ends(1), THINNEST);
+        const [u, v] = [0, 1].map((axis) => widened(grid.ends(axis), this.state.sides?.[axis]));
+        const plot = Plot.trueScale(context, room, u, v, THINNEST);
         this.plot = plot;
         const colours = theme();
         context.save();
@@ -73,9 +74,9 @@ export class PlanView {
     field(plot, ratio) {
         const [grid, scale] = layerOf(this.state);
         const [width, height] = [plot.place[2], plot.place[3]].map((side) => Math.max(2, Math.round(side * ratio)));
-        const same = this.shown === grid && this.image?.width === width && this.image.height === height;
-        if (same) return this.image;
-        this.shown = grid;
+        const shown = [...plot.u, ...plot.v, width, height];
+        if (this.shown === grid && shown.every((value, k) => value === this.within?.[k])) return this.image;
+        Object.assign(this, { shown: grid, within: shown });
         const image = new ImageData(width, height);
         for (let y = 0; y < height; y++) {
             const v = plot.v[1] - ((y + 0.5) / height) * (plot.v[1] - plot.v[0]);
@@ -89,6 +90,12 @@ export class PlanView {
         this.isolines ??= [1, 2, 4, 5].flatMap((k) => contours(this.state.contact.grid, (k / 6) * this.state.contact.scale));
         return this.image;
     }
+}
+
+/** An interval of at least this length about the same middle. */
+function widened([from, to], side = 0) {
+    const more = Math.max(0, side - (to - from)) / 2;
+    return [from - more, to + more];
 }
 
 /** The region inside closed lines, on the page. */

@@ -3,7 +3,7 @@
 import { gradient } from "./colours.js";
 import { areaInside, closed, contours, near } from "./contours.js";
 import { Cut } from "./cuts.js";
-import { element, fixed } from "./dom.js";
+import { element, fixed, saveButton } from "./dom.js";
 import { PlanView } from "./map.js";
 import { Profiles } from "./profiles.js";
 import { SpaceView } from "./scene.js";
@@ -38,19 +38,20 @@ export class Panel {
             element(
                 "div",
                 { class: "views" },
-                figure("space", "Separation on the rail", this.space.sheet.canvas, this.viewButtons(number)),
-                figure("plan", contact.pressure ? "On the contact plane" : "Separation on the contact plane", this.plan.sheet.canvas, this.legend, this.plan.readout, this.layers(number)),
+                figure("space", "Separation on the rail", this.space.sheet, this.viewButtons(number)),
+                figure("plan", contact.pressure ? "On the contact plane" : "Separation on the contact plane", this.plan.sheet, this.legend, this.lines(), this.plan.readout, this.layers(number)),
                 this.facts(),
-                figure("cut", "Cut along ξ", this.cuts[0].sheet.canvas),
-                figure("cut", "Cut along η", this.cuts[1].sheet.canvas),
-                figure("profiles", "Profiles in the midplane", this.profiles.sheet.canvas, this.names()),
+                figure("cut", "Cut along ξ", this.cuts[0].sheet),
+                figure("cut", "Cut along η", this.cuts[1].sheet),
+                figure("profiles", "Profiles in the midplane", this.profiles.sheet, this.names()),
             ),
         );
     }
 
     warnings() {
         const { warnings } = this.contact;
-        if (warnings.length === 0) return "";
+        // Empty, it holds the place of a neighbour's.
+        if (warnings.length === 0) return element("div", { class: "warnings none" });
         return element("ul", { class: "warnings", "aria-label": "Warnings" }, ...warnings.map((text) => element("li", {}, text)));
     }
 
@@ -98,7 +99,7 @@ export class Panel {
     /** The scale of colours of the pressure. */
     pressures() {
         const [, largest] = this.contact.pressure.range();
-        return this.scaleOf("Scale of p, linear from 0", [[0, "0"], [0.5, fixed(largest / 2, 0)], [1, `${fixed(largest, 0)} N/mm²`]]);
+        return this.scaleOf("pressure p", "linear from 0", [[0, "0"], [0.5, fixed(largest / 2, 0)], [1, `${fixed(largest, 0)} N/mm²`]]);
     }
 
     /** The scale of colours of s, which reaches from 0 to 3 δ of the run. */
@@ -109,14 +110,21 @@ export class Panel {
         const names = approach
             ? [[0, "0"], [1 / 3, "δ"], [1, `3 δ = ${value(1)} ${unit}`]]
             : [[0, "0"], [0.5, value(0.5)], [1, `${value(1)} ${unit}`]];
-        return this.scaleOf(approach ? "Scale of s, linear from 0 to 3 δ of the run" : "Scale of s, linear from 0", names);
+        return this.scaleOf("separation s", approach ? "linear from 0 to 3 δ of the run" : "linear from 0", names);
     }
 
     /** A bar of all colours with names at shares of its length. */
-    scaleOf(about, names) {
+    scaleOf(title, about, names) {
         const label = ([share, text]) => element("span", { style: `left: ${100 * share}%; transform: translateX(-${100 * share}%)` }, text);
         const bar = element("div", { class: "bar", style: `background: ${gradient()}` });
-        return element("div", { class: "legend", role: "img", "aria-label": about }, bar, element("div", { class: "marks" }, ...names.map(label)));
+        return element("div", { class: "legend", role: "img", "aria-label": `Scale of ${title}, ${about}` }, element("div", {}, `${title}, ${about}`), bar, element("div", { class: "marks" }, ...names.map(label)));
+    }
+
+    /** What the lines of the plan are. */
+    lines() {
+        const edge = element("span", { class: "boundary" }, "boundary of the patch, s = δ");
+        const cuts = element("span", { class: "cuts" }, "cuts");
+        return element("p", { class: "names" }, edge, cuts);
     }
 
     names() {
@@ -184,8 +192,9 @@ export class Panel {
     }
 }
 
-function figure(kind, title, ...content) {
-    return element("figure", { class: kind }, element("figcaption", {}, title), ...content);
+function figure(kind, title, sheet, ...content) {
+    const caption = element("figcaption", {}, title, saveButton(sheet, `${document.title}, ${title}`));
+    return element("figure", { class: kind }, caption, sheet.canvas, ...content);
 }
 
 function kept(value, [low, high]) {

@@ -1,8 +1,8 @@
 // The picture in space: rail and wheel as bodies, the separation on the rail, the boundary.
 
 import {
-    AmbientLight, Color, DirectionalLight, DoubleSide, Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial,
-    MeshLambertMaterial, PerspectiveCamera, Scene, Vector3, WebGLRenderer, BufferGeometry, Float32BufferAttribute,
+    AmbientLight, Box3, Color, DirectionalLight, DoubleSide, Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial,
+    MeshLambertMaterial, PerspectiveCamera, Scene, Sphere, Vector3, WebGLRenderer, BufferGeometry, Float32BufferAttribute,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
@@ -48,6 +48,7 @@ export class SpaceView {
         this.camera.up.set(0, 0, 1);
         this.controls = new OrbitControls(this.camera, this.sheet.canvas);
         this.controls.addEventListener("change", () => this.sheet.refresh());
+        this.controls.addEventListener("start", () => this.camera.up.set(0, 0, 1));
         // The page scrolls until the picture is clicked or reached by keys.
         this.controls.enableZoom = false;
         this.sheet.canvas.addEventListener("focus", () => (this.controls.enableZoom = true));
@@ -73,7 +74,7 @@ export class SpaceView {
         const surface = new MeshBasicMaterial({
             vertexColors: true, transparent: true, side: DoubleSide, forceSinglePass: true,
         });
-        const rail = new Mesh(space.rail(REACH.rail * wide), this.materials.rail);
+        this.rail = new Mesh(space.rail(REACH.rail * wide), this.materials.rail);
         this.wheels = { half: this.wheelFrom(0), whole: this.wheelFrom(-REACH.wheel * wide) };
         const separation = new Mesh(space.separation(), surface);
         separation.renderOrder = 1;
@@ -89,7 +90,7 @@ export class SpaceView {
         light.position.set(-0.5, -0.7, 1);
         const other = new DirectionalLight(0xffffff, 0.9);
         other.position.set(0.8, 0.6, 0.4);
-        this.scene.add(rail, separation, ...Object.values(this.wheels), light, other, new AmbientLight(0xffffff, 1.1));
+        this.scene.add(this.rail, separation, ...Object.values(this.wheels), light, other, new AmbientLight(0xffffff, 1.1));
     }
 
     /** The wheel from a section to the end of its arc, with the edges of both end faces. */
@@ -113,14 +114,30 @@ export class SpaceView {
         const directions = {
             contact: normal.clone().multiplyScalar(0.75).add(new Vector3(0, -1, 0)).add(aside),
             whole: new Vector3(0, -1, 0.32).add(aside),
-            above: normal.clone().add(new Vector3(0, -1e-3, 0)),
+            above: normal.clone(),
         };
-        const distance = { contact: Math.max(3.4 * this.near, 2 * this.wide), whole: 4 * this.wide, above: 2.6 * this.near }[view];
-        this.controls.target.set(0, 0, 0);
-        if (view === "whole") this.controls.target.addScaledVector(normal, 0.1 * this.wide);
+        const bodies = this.bodies();
+        const distance = { contact: Math.max(3.4 * this.near, 2 * this.wide), whole: this.fitting(bodies.radius), above: 2.6 * this.near }[view];
+        this.controls.target.copy(view === "whole" ? bodies.center : new Vector3());
+        // Along ζ the picture is turned as the plan beside it, η upwards, until the reader turns it.
+        this.camera.up.set(...(view === "above" ? [0, 1, 0] : [0, 0, 1]));
         this.camera.position.copy(directions[view].normalize().multiplyScalar(distance)).add(this.controls.target);
         this.controls.update();
         this.sheet.refresh();
+    }
+
+    /** The sphere around the rail and the wheel that is shown. */
+    bodies() {
+        const box = new Box3().setFromObject(this.rail);
+        Object.values(this.wheels).filter((wheel) => wheel.visible).forEach((wheel) => box.expandByObject(wheel));
+        return box.getBoundingSphere(new Sphere());
+    }
+
+    /** The distance from which a sphere fills the picture, in its narrower direction. */
+    fitting(radius) {
+        const { clientWidth: width, clientHeight: height } = this.sheet.canvas;
+        const upright = Math.tan(((this.camera.fov / 2) * Math.PI) / 180);
+        return radius / Math.sin(Math.atan(upright * Math.min(1, width / Math.max(height, 1) || 1)));
     }
 
     /** Shows the wheel "half", behind the section through C, "whole" or "none". */
@@ -137,6 +154,7 @@ export class SpaceView {
         if (!this.controls || !(name in turns || name in steps)) return false;
         const { position } = this.camera;
         const { target } = this.controls;
+        this.camera.up.set(0, 0, 1);
         const arm = position.clone().sub(target);
         if (name in steps) arm.multiplyScalar(steps[name]);
         else {

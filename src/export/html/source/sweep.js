@@ -2,7 +2,8 @@
 
 import { Curves } from "./curves.js";
 import { floats, pageData, pairsOf } from "./data.js";
-import { element, fixed } from "./dom.js";
+import { element, fixed, saveButton } from "./dom.js";
+import { Heat } from "./heat.js";
 import { PairView } from "./pair.js";
 import { themeButton } from "./themes.js";
 
@@ -15,6 +16,8 @@ const panels = data.panels.map((panel) => {
     const curves = panel.curves.map((curve) => ({ ...curve, values: floats(curve.values) }));
     return new Curves({ ...panel, curves }, data.abscissa, state, move);
 });
+const of = data.map;
+const heat = of ? new Heat({ ...of, gauges: floats(of.gauges), amplitudes: floats(of.amplitudes), values: floats(of.values) }) : null;
 const said = [...sides, ...panels].map(() => element("output", {}));
 const position = element("output", { for: "position", class: "said" });
 const slider = element("input", {
@@ -31,13 +34,20 @@ const lifted = element("input", {
 const page = document.getElementById("page");
 page.replaceChildren(
     element("header", {}, element("h1", {}, data.title), element("p", { class: "from" }, `${data.about}; wheelrail ${data.version}`), themeButton(refresh)),
+    ...(data.findings.length > 0 ? [element("ul", { class: "warnings" }, ...data.findings.map((text) => element("li", {}, text)))] : []),
     element(
         "div",
         { class: "head" },
         element("div", { class: "slider" }, element("label", { for: "position" }, "Lateral displacement"), slider, position, element("label", { for: "lifted", class: "choice" }, lifted, " wheels lifted")),
     ),
     element("div", { class: "pairs" }, ...sides.map((side, k) => figure(side.side.right ? "Right side" : "Left side", side, said[k]))),
-    element("div", { class: "curves" }, ...panels.map((panel, k) => figure(panel.panel.title, panel, said[sides.length + k]))),
+    element(
+        "div",
+        { class: "curves" },
+        ...panels.map((panel, k) => figure(panel.panel.title, panel, said[sides.length + k])),
+        ...(heat ? [figure(heat.map.title, heat, heat.readout)] : []),
+    ),
+    ...(data.figures.length > 0 ? [keyFigures()] : []),
     element(
         "footer",
         {},
@@ -54,7 +64,15 @@ page.addEventListener("keydown", (event) => {
 move(state.at);
 
 function figure(title, view, output) {
-    return element("figure", {}, element("figcaption", {}, title), view.sheet.canvas, output);
+    return element("figure", {}, element("figcaption", {}, title, saveButton(view.sheet, `${data.title}, ${title}`)), view.sheet.canvas, output);
+}
+
+/** The key figures with their meaning. */
+function keyFigures() {
+    const row = ({ name, value, meaning }) =>
+        element("tr", {}, element("th", {}, name), element("td", { class: "number" }, value), element("td", {}, meaning));
+    const table = element("table", { class: "figures" }, element("caption", {}, "Key figures"), ...data.figures.map(row));
+    return element("div", { class: "facts wide" }, table);
 }
 
 /** Goes to a position by its number. */
@@ -72,7 +90,7 @@ function move(at) {
 }
 
 function refresh() {
-    [...sides, ...panels].forEach((view) => view.sheet.refresh());
+    [...sides, ...panels, ...(heat ? [heat] : [])].forEach((view) => view.sheet.refresh());
 }
 
 // What tests and scripts ask of the page: lengths in mm.

@@ -23,7 +23,7 @@ page.replaceChildren(
         "header",
         {},
         element("h1", {}, data.title),
-        element("p", { class: "from" }, `wheelrail ${data.version}, scene ${data.scene_hash.slice(0, 12)}`),
+        element("p", { class: "from" }, `${data.about}; wheelrail ${data.version}, scene ${data.scene_hash.slice(0, 12)}`),
         themeButton(refresh),
     ),
     ...(panels.length > 1 ? [tabs()] : []),
@@ -35,7 +35,9 @@ page.replaceChildren(
         ...data.notes.map((note) => element("p", {}, note)),
     ),
 );
+align();
 refresh();
+addEventListener("resize", align);
 
 /** Buttons that show one contact, or all side by side. */
 function tabs() {
@@ -44,12 +46,28 @@ function tabs() {
         buttons.forEach((button, k) => button.setAttribute("aria-pressed", String(k === chosen)));
         panels.forEach((panel, k) => (panel.node.hidden = chosen < panels.length && k !== chosen));
         all.classList.toggle("beside", chosen === panels.length);
+        align();
         refresh();
     };
     const names = [...panels.map((panel) => panel.contact.name), "Side by side"];
     buttons.push(...names.map((name, k) => element("button", { type: "button", onclick: () => show(k) }, name)));
     show(panels.length <= BESIDE && innerWidth >= COLUMN * panels.length ? panels.length : 0);
     return element("nav", { class: "tabs", "aria-label": "Contacts" }, ...buttons);
+}
+
+/** Side by side: one scale for all plans, and rows at one height. */
+function align() {
+    const beside = all.classList.contains("beside");
+    const sides = [0, 1].map((axis) => Math.max(...panels.map(({ contact }) => contact.grid.ends(axis)[1] - contact.grid.ends(axis)[0])));
+    panels.forEach((panel) => (panel.state.sides = beside ? sides : undefined));
+    for (const row of [".head", ".warnings", "figure.plan"]) {
+        const parts = panels.map((panel) => panel.node.querySelector(row));
+        parts.forEach((part) => (part.style.minHeight = ""));
+        const highest = Math.max(...parts.map((part) => part.offsetHeight));
+        // Columns below each other, on a narrow page, have no rows in common.
+        const apart = parts.some((part) => part.offsetLeft !== parts[0].offsetLeft);
+        if (beside && apart) parts.forEach((part) => (part.style.minHeight = `${highest}px`));
+    }
 }
 
 // What tests and scripts ask of the page: lengths in mm.

@@ -1,0 +1,187 @@
+//! The manual: its pages are in order, their links lead somewhere, and every command, scene and picture of them is of today.
+
+use crate::programs::folder;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The repository.
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+
+/// The pages: those of SUMMARY.md, in its order, and the README.
+fn pages() -> Vec<PathBuf> {
+    let docs = Path::new(ROOT).join("src/docs");
+    let summary = std::fs::read_to_string(docs.join("SUMMARY.md")).unwrap();
+    let named = summary.lines().filter_map(|line| line.split("](").nth(1)?.strip_suffix(')'));
+    named.map(|name| docs.join(name)).chain([Path::new(ROOT).join("README.md")]).collect()
+}
+
+/// The fenced blocks of a page in one language.
+fn blocks(text: &str, language: &str) -> Vec<String> {
+    let mut found: Vec<String> = Vec::new();
+    let mut fence: Option<bool> = None;
+    for line in text.lines() {
+        match (line.strip_prefix("```"), fence) {
+            (Some(_), Some(_)) => fence = None,
+            (Some(begins), None) => {
+                fence = Some(begins == language);
+                if begins == language {
+                    found.push(String::new());
+                }
+            }
+            (None, Some(true)) => found.iter_mut().last().unwrap().extend([line, "\n"]),
+            _ => {}
+        }
+    }
+    found
+}
+
+/// A folder of a page's own, with the examples in it.
+#[cfg(unix)]
+fn page_folder(page: &Path) -> PathBuf {
+    let here = folder("manual").join(page.file_stem().unwrap());
+    let _ = std::fs::remove_dir_all(&here);
+    std::fs::create_dir_all(&here).unwrap();
+    std::os::unix::fs::symlink(
+        Path::new(ROOT).canonicalize().unwrap().join("examples"),
+        here.join("examples"),
+    )
+    .unwrap();
+    here
+}
+
+/// Whether a word of a command stands for another: `SCENE.toml`, `DIR`, `WHEELS…`.
+#[cfg(unix)]
+fn stands_for_another(word: &str) -> bool {
+    let stem = word.trim_end_matches('…').split('.').next().unwrap_or_default();
+    stem.len() >= 3 && stem.chars().all(|c| c.is_ascii_uppercase())
+}
+
+/// The command line that a line of a page gives; `None` for one of other programs, and for one with words that stand for others.
+#[cfg(unix)]
+fn command(line: &str) -> Option<String> {
+    let line = line.replace("cargo run --release -- ", "wheelrail ");
+    let own = line.starts_with("wheelrail ") && !line.split_whitespace().any(stands_for_another);
+    own.then_some(line)
+}
+
+#[test]
+fn every_page_is_in_the_summary_and_begins_with_what_it_is_for() {
+    let pages = pages();
+    for file in std::fs::read_dir(Path::new(ROOT).join("src/docs")).unwrap().flatten() {
+        let name = file.file_name().into_string().unwrap();
+        if name.ends_with(".md") && name != "SUMMARY.md" {
+            assert!(pages.iter().any(|page| page.ends_with(&name)), "{name} is not in src/docs/SUMMARY.md");
+            let text = std::fs::read_to_string(file.path()).unwrap();
+            let begin = text.lines().nth(2).unwrap_or_default();
+            assert!(begin.starts_with("*After this page you can "), "{name} begins with: {begin}");
+            let module = format!("include_str!(\"{name}\")");
+            assert!(
+                include_str!("../../../../src/docs/mod.rs").contains(&module),
+                "{name} is not in src/docs/mod.rs"
+            );
+        }
+    }
+}
+
+#[test]
+fn every_link_of_the_manual_leads_to_a_file() {
+    for page in pages() {
+        let text = std::fs::read_to_string(&page).unwrap();
+        for target in text.split("](").skip(1).filter_map(|rest| rest.split([')', '#']).next()) {
+            let is_path = target.contains('.') && !target.contains("://") && !target.contains(' ');
+            let there = page.parent().unwrap().join(target).exists();
+            assert!(!is_path || there, "{}: {target} does not exist", page.display());
+        }
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn every_command_of_the_manual_runs() {
+    let program = Path::new(env!("CARGO_BIN_EXE_wheelrail")).parent().unwrap().display().to_string();
+    let path = format!("{program}:{}", std::env::var("PATH").unwrap());
+    let mut run = 0;
+    for page in pages() {
+        let text = std::fs::read_to_string(&page).unwrap();
+        let commands: Vec<String> = blocks(&text, "sh")
+            .iter()
+            .flat_map(|block| block.lines().filter_map(command).collect::<Vec<_>>())
+            .collect();
+        let here = if commands.is_empty() { continue } else { page_folder(&page) };
+        for command in commands {
+            let output = Command::new("sh")
+                .args(["-c", &command])
+                .env("PATH", &path)
+                .current_dir(&here)
+                .output()
+                .unwrap();
+            let said = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{}: {command}\n{said}", page.display());
+            run += 1;
+        }
+    }
+    assert!(run > 15, "only {run} commands were found");
+}
+
+#[cfg(unix)]
+#[test]
+fn every_scene_and_profile_of_the_manual_is_accepted() {
+    for page in pages() {
+        let text = std::fs::read_to_string(&page).unwrap();
+        for (k, block) in blocks(&text, "toml").iter().enumerate() {
+            let value: toml::Table =
+                block.parse().unwrap_or_else(|error| panic!("{}: {error}", page.display()));
+            let is_scene = ["rail", "wheel", "patch"].iter().all(|key| value.contains_key(*key));
+            let arguments: &[&str] = if is_scene {
+                &["midsep", "block.toml"]
+            } else if value.contains_key("segments") {
+                &["profile", "show", "block.toml", "--side", "rail"]
+            } else {
+                continue;
+            };
+            let here = page_folder(&page);
+            std::fs::write(here.join("block.toml"), block).unwrap();
+            let output = Command::new(env!("CARGO_BIN_EXE_wheelrail"))
+                .args(arguments)
+                .current_dir(here)
+                .output()
+                .unwrap();
+            let said = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{}, block {k}: {said}", page.display());
+        }
+    }
+}
+
+/// What a picture says, line by line.
+fn words(svg: &str) -> Vec<&str> {
+    let texts = svg.split("<text ").skip(1);
+    texts.filter_map(|text| text.split('>').nth(1)?.split('<').next()).collect()
+}
+
+#[test]
+fn pictures_of_the_gallery_are_of_today() {
+    let page = std::fs::read_to_string(Path::new(ROOT).join("src/docs/gallery-of-scenes.md")).unwrap();
+    let scenes: Vec<&str> = page
+        .lines()
+        .filter(|line| line.starts_with("| ["))
+        .filter_map(|line| line.rsplit("](../../").next()?.split(')').next())
+        .collect();
+    assert!(scenes.len() >= 7, "{scenes:?}");
+    for scene in scenes {
+        let scene = Path::new(ROOT).join(scene);
+        let name = scene.file_stem().unwrap().to_str().unwrap();
+        let here = folder("gallery").join(name);
+        let mut program = Command::new(env!("CARGO_BIN_EXE_wheelrail"));
+        let output = program.arg("run").arg(&scene).arg("--out").arg(&here).output().unwrap();
+        assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+        let made =
+            ["conformal.svg", "patch.svg"].map(|file| here.join(file)).into_iter().find(|file| file.exists());
+        let made = std::fs::read_to_string(made.unwrap()).unwrap();
+        let kept = Path::new(ROOT).join(format!("output/pictures/scenes/{name}.svg"));
+        if std::env::var("WHEELRAIL_PICTURES").is_ok() {
+            std::fs::write(&kept, &made).unwrap();
+        }
+        let kept = std::fs::read_to_string(kept).unwrap();
+        assert_eq!(words(&kept), words(&made), "{name}: see the page for how to make it anew");
+    }
+}

@@ -1,0 +1,182 @@
+//! How far noise of the measurement moves the contact geometry of a wheelset: seeded samples of the whole computation.
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::error::{Error, Result, finite};
+use crate::measured::noise::{Deviates, LEAST_SAMPLES, POINT_STEP, Remeasured, Spread};
+use crate::placement::{Pair, WheelDistance, Wheelset};
+use crate::profile::{Profile, Side};
+use crate::search::{
+    AMPLITUDE, Conicity, GeometryAt, Roll, SideOnTrack, WheelsetOnTrack, active_faces,
+    amplitude_of_clearance, gauge, geometry_over, nonlinearity,
+};
+
+/// Largest number of samples.
+const MOST: usize = 1_000_000;
+
+/// Amplitude up to which the samples' conicity is tabulated \[mm\]: that of the nonlinearity parameter.
+const REACH: f64 = 4.0;
+
+/// Quantities whose spread under noise is found; those that are key figures have their names.
+pub const UNCERTAIN: [&str; 8] = [
+    "conicity_3mm",
+    "conicity_amplitude",
+    "nonlinearity_per_mm",
+    "centre_mm",
+    "left_rail_x_mm",
+    "left_wheel_x_mm",
+    "right_rail_x_mm",
+    "right_wheel_x_mm",
+];
+
+/// Noise of a measurement, and how it is sampled.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Noise {
+    /// Standard deviation of the points of all profiles across the profile \[mm\].
+    pub points: f64,
+    /// Standard deviation of each wheel's radius \[mm\].
+    pub radius: f64,
+    /// Standard deviation of the gauge \[mm\].
+    pub gauge: f64,
+    /// Distance of the points of all profiles \[mm\].
+    pub step: f64,
+    /// Number of samples.
+    pub samples: usize,
+    /// Seed of the samples.
+    pub seed: u64,
+}
+
+impl Default for Noise {
+    fn default() -> Self {
+        Self { points: 0.0, radius: 0.0, gauge: 0.0, step: POINT_STEP, samples: 400, seed: 1 }
+    }
+}
+
+/// Spread of the quantities under noise.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Uncertainty {
+    /// The noise, and how it was sampled.
+    pub noise: Noise,
+    /// Number of samples of which nothing could be computed.
+    pub failed: usize,
+    /// The spread of each of [`UNCERTAIN`]; `None` of a quantity that fewer than 40 samples have.
+    pub spreads: [Option<Spread>; UNCERTAIN.len()],
+}
+
+impl Noise {
+    /// Rejects noise without meaning.
+    ///
+    /// # Errors
+    /// Deviations that are negative or all 0; a number of samples that gives no interval.
+    pub(super) fn validate(&self) -> Result<()> {
+        let sigmas = [("points", self.points), ("radius", self.radius), ("gauge", self.gauge)];
+        for (key, sigma) in sigmas {
+            if finite(&format!("noise: {key}"), sigma)? < 0.0 {
+                let expected = "a standard deviation of 0 mm or more";
+                return Err(Error::new(
+                    format!("noise: {key}"),
+                    sigma.to_string(),
+                    expected,
+                    "correct the sign",
+                ));
+            }
+        }
+        if sigmas.iter().all(|(_, sigma)| *sigma == 0.0) {
+            let expected = "a standard deviation above 0 of points, radius or gauge";
+            return Err(Error::new("noise", "no noise", expected, "give one, for example points=0.02"));
+        }
+        if !(LEAST_SAMPLES..=MOST).contains(&self.samples) {
+            let expected =
+                format!("{LEAST_SAMPLES} to {MOST}: each end of the interval needs samples beyond it");
+            return Err(Error::new("noise: samples", self.samples.to_string(), expected, "correct it"));
+        }
+        Ok(())
+    }
+}
+
+/// Both profiles of a side, to be measured again and again.
+struct NoisySide {
+    side: SideOnTrack,
+    pair: Pair,
+    rail: Remeasured,
+    wheel: Remeasured,
+}
+
+impl NoisySide {
+    fn new(side: &SideOnTrack, pair: &Pair, step: f64) -> Result<Self> {
+        Ok(Self {
+            side: side.clone(),
+            pair: pair.clone(),
+            rail: Remeasured::new(pair.rail(), Side::Rail, step)?,
+            wheel: Remeasured::new(pair.wheel(), Side::Wheel, step)?,
+        })
+    }
+
+    /// Draws a sample of the side; the rail and the wheel stay where they are.
+    fn sample(&self, noise: &Noise, widened: f64, deviates: &mut Deviates) -> Result<SideOnTrack> {
+        let of = |body: &Remeasured, own: &Profile, deviates: &mut Deviates| {
+            if noise.points > 0.0 { body.sample(noise.points, deviates) } else { Ok(own.clone()) }
+        };
+        let rail = of(&self.rail, self.pair.rail(), deviates)?;
+        let wheel = of(&self.wheel, self.pair.wheel(), deviates)?;
+        let radius = self.side.wheelset().radius() + noise.radius * deviates.draw();
+        let pair = Pair::new(rail.clone(), wheel, radius)?;
+        let pair = match self.pair.roller_radius() {
+            None => pair,
+            Some(roller) => pair.on_roller(roller)?,
+        };
+        let spacing = WheelDistance::Spacing(2.0 * self.side.wheelset().wheel_x());
+        SideOnTrack::new(&pair, self.side.track().moved(widened / 2.0, 0.0)?, Wheelset::new(spacing, radius)?)
+    }
+}
+
+/// Finds the spread of the quantities under noise. Every sample has a stream of deviates of its own: any number of threads gives the same
+/// bits. `pairs` are those of the left and the right side; the amplitude by the clearance is that
+/// without noise.
+///
+/// # Errors
+/// Profiles shorter than the step of the points; noise of which no sample can be computed.
+pub(super) fn uncertainty(
+    system: &WheelsetOnTrack,
+    pairs: [&Pair; 2],
+    roll: Roll,
+    noise: &Noise,
+) -> Result<Uncertainty> {
+    let clearance = gauge(system, pairs).zip(active_faces(system, pairs)).map(|(gauge, faces)| gauge - faces);
+    let amplitude = clearance.map_or(f64::NAN, amplitude_of_clearance);
+    let side = |side, pair| NoisySide::new(side, pair, noise.step).map_err(|error| error.within("noise"));
+    let sides = [side(system.left(), pairs[0])?, side(system.right(), pairs[1])?];
+    let sample = |number: usize| -> Result<[f64; UNCERTAIN.len()]> {
+        let mut deviates = Deviates::new(noise.seed, number as u64);
+        let widened = noise.gauge * deviates.draw();
+        let left = sides[0].sample(noise, widened, &mut deviates)?;
+        let right = sides[1].sample(noise, widened, &mut deviates)?;
+        quantities(&WheelsetOnTrack::of_sides(left, right), roll, amplitude)
+    };
+    let samples: Vec<_> = (0..noise.samples).into_par_iter().map(sample).collect();
+    let failed = samples.iter().filter(|sample| sample.is_err()).count();
+    if let (true, Some(Err(error))) = (failed == samples.len(), samples.first()) {
+        return Err(error.clone().within("noise: every sample"));
+    }
+    let spread = |k: usize| Spread::of(samples.iter().flatten().map(|sample| sample[k]));
+    Ok(Uncertainty { noise: *noise, failed, spreads: std::array::from_fn(spread) })
+}
+
+/// Gives the quantities of [`UNCERTAIN`]; NaN where there is none.
+fn quantities(system: &WheelsetOnTrack, roll: Roll, amplitude: f64) -> Result<[f64; UNCERTAIN.len()]> {
+    let table = Conicity::new(system, REACH, roll)?;
+    let at = |amplitude: f64| table.at(amplitude).map_or(f64::NAN, |found| found.conicity);
+    let centred = geometry_over(system, &[0.0], roll)?[0];
+    let of = |value: fn(&GeometryAt) -> f64| centred.as_ref().map_or(f64::NAN, value);
+    Ok([
+        at(AMPLITUDE),
+        at(amplitude),
+        nonlinearity(&table).unwrap_or(f64::NAN),
+        table.centre().unwrap_or(f64::NAN),
+        of(|at| at.contacts[0].rail_x),
+        of(|at| at.contacts[0].wheel_x),
+        of(|at| at.contacts[1].rail_x),
+        of(|at| at.contacts[1].wheel_x),
+    ])
+}

@@ -1,0 +1,71 @@
+//! What the page of measured profiles shows.
+
+use crate::export::{MeasuredPage, MeasuresPage};
+use crate::measure::{Limits, MeasureOptions, Overlay, Quantity, Row, overlay};
+use crate::profile::{Profile, trace};
+
+/// Distance of the points of a profile without a nominal \[mm\].
+const STEP: f64 = 0.25;
+
+/// Makes the page of rows, each with its profile, if it could be read, over the nominal one.
+pub fn measures_page(
+    rows: &[(Row, Option<&Profile>)],
+    nominal: Option<&Profile>,
+    options: &MeasureOptions,
+    limits: Option<&Limits>,
+) -> MeasuresPage {
+    let about =
+        nominal.map_or_else(|| "without a nominal".to_owned(), |nominal| format!("nominal {}", nominal.name));
+    let title = match rows {
+        [(row, _)] => row.file.clone(),
+        _ => format!("{} profiles", rows.len()),
+    };
+    MeasuresPage {
+        title,
+        about,
+        version: env!("CARGO_PKG_VERSION").into(),
+        files: rows.iter().map(|(row, profile)| file(row, *profile, nominal, options, limits)).collect(),
+    }
+}
+
+fn file(
+    row: &Row,
+    profile: Option<&Profile>,
+    nominal: Option<&Profile>,
+    options: &MeasureOptions,
+    limits: Option<&Limits>,
+) -> MeasuredPage {
+    let measures = row.measured.as_ref().ok();
+    let over = profile.zip(nominal).zip(row.side);
+    // Why there is none is a finding of the row.
+    let over = over.and_then(|((profile, nominal), side)| overlay(profile, side, nominal, options).ok());
+    let alone = || {
+        let marks = profile.map_or_else(Vec::new, |profile| trace(profile, STEP));
+        marks.iter().map(|mark| [mark.station.x, mark.station.z]).collect()
+    };
+    let (drawn, measured, differences) = match over {
+        Some(Overlay { nominal, measured, differences, .. }) => (nominal, measured, differences),
+        None => (Vec::new(), alone(), Vec::new()),
+    };
+    let alignment = measures.and_then(|measures| measures.alignment.as_ref());
+    let alignment = alignment.map_or_else(String::new, |of| {
+        let rms = of.residual.map_or_else(String::new, |rms| format!("; residual {rms:.4} mm"));
+        format!("{}: {}{rms}", of.align.word(), of.text)
+    });
+    let number = |value: f64| format!("{value:.3}");
+    let values = Quantity::ALL.into_iter().filter_map(|quantity| {
+        let value = measures?.value(quantity)?;
+        let off = measures?.if_off(quantity).map_or_else(String::new, number);
+        Some([quantity.text().into(), number(value), off, quantity.unit().into()])
+    });
+    MeasuredPage {
+        name: row.file.clone(),
+        nominal: drawn.into_iter().flatten().collect(),
+        measured: measured.into_iter().flatten().collect(),
+        differences: differences.into_iter().flatten().flatten().collect(),
+        alignment,
+        measures: values.collect(),
+        broken: limits.map_or_else(Vec::new, |limits| row.broken(limits)),
+        findings: row.findings(),
+    }
+}

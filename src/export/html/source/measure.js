@@ -1,0 +1,100 @@
+// The page of measured profiles.
+
+import { theme } from "./colours.js";
+import { floats, pageData } from "./data.js";
+import { Sheet, element, fixed } from "./dom.js";
+import { Plot } from "./plot.js";
+import { themeButton } from "./themes.js";
+
+/** Magnifications, and the length that the longest arrow has at most, mm. */
+const MAGNIFIED = [1000, 500, 200, 100, 50, 20, 10, 5, 2, 1];
+const LONGEST = 12;
+
+const data = pageData();
+const files = data.files.map((file) => ({
+    ...file,
+    nominal: points(file.nominal, 2),
+    measured: points(file.measured, 2),
+    differences: points(file.differences, 4),
+}));
+let at = 0;
+
+/** Decodes tuples of so many numbers. */
+function points(text, size) {
+    const values = floats(text);
+    return Array.from({ length: values.length / size }, (_, k) => [...values.subarray(size * k, size * (k + 1))]);
+}
+
+function length([x, z, u, v]) {
+    return Math.hypot(u - x, v - z);
+}
+
+/** The largest difference of a file, and by how much its arrows are magnified. */
+function scale({ differences }) {
+    const largest = Math.max(0, ...differences.map(length));
+    return [largest, MAGNIFIED.find((times) => times * largest <= LONGEST) ?? 1];
+}
+
+const sheet = new Sheet("The profile over its nominal, with magnified differences", (context, width, height) => {
+    const file = files[at];
+    const colours = theme();
+    const [, times] = scale(file);
+    const arrows = file.differences.map(([x, z, u, v]) => [[x, z], [x + times * (u - x), z + times * (v - z)]]);
+    const all = [...file.nominal, ...file.measured, ...arrows.flat()];
+    if (all.length === 0) return;
+    const range = (k) => {
+        const values = all.map((point) => point[k]);
+        return [Math.min(...values) - 2, Math.max(...values) + 2];
+    };
+    const plot = Plot.trueScale(context, [60, 8, width - 70, height - 50], range(0), range(1));
+    plot.line(file.nominal, colours.rail, 1.2);
+    plot.line(file.measured, colours.wheel, 1.8);
+    plot.lines(arrows, colours.boundary, 1);
+    plot.axes(["x [mm]", "z [mm]"]);
+}, { class: "overlay", tabindex: 0 });
+
+const chosen = element("select", { id: "file", onchange: () => go(chosen.selectedIndex) }, ...files.map(({ name }, k) => element("option", { value: k }, name)));
+const [before, after] = [[-1, "Previous"], [1, "Next"]].map(([step, text]) => element("button", { type: "button", onclick: () => go(at + step) }, text));
+const number = element("output", { for: "file", class: "said" });
+const heading = element("figcaption", {});
+const alignment = element("output", {});
+const names = element("p", { class: "names" }, element("span", { class: "rail" }, "nominal"), element("span", { class: "wheel" }, "measured"), element("span", { class: "difference" }, "difference"));
+const values = element("div", { class: "facts wide" });
+const lists = element("div", {});
+
+/** Goes to a file by its number. */
+function go(to) {
+    at = Math.min(Math.max(to, 0), files.length - 1);
+    const file = files[at];
+    chosen.selectedIndex = at;
+    [before.disabled, after.disabled] = [at === 0, at === files.length - 1];
+    number.value = `${at + 1} of ${files.length}`;
+    const [largest, times] = scale(file);
+    heading.textContent = file.differences.length ? `Differences along the normal × ${times}; the largest is ${fixed(largest, 3)} mm` : file.measured.length ? "The profile" : "No profile";
+    alignment.value = file.alignment;
+    names.hidden = file.differences.length === 0;
+    const rows = file.measures.map(([text, value, off, unit]) => element("tr", {}, element("th", { scope: "row" }, text), ...[value, off && `± ${off}`, unit].map((cell) => element("td", {}, cell))));
+    values.replaceChildren(element("table", {}, element("caption", {}, "Measures"), element("tbody", {}, ...rows)));
+    const list = (label, items) => (items.length ? [element("ul", { class: "warnings", "aria-label": label }, ...items.map((text) => element("li", {}, text)))] : []);
+    lists.replaceChildren(...list("Broken limits", file.broken), ...list("Findings", file.findings));
+    sheet.refresh();
+}
+
+const page = document.getElementById("page");
+page.replaceChildren(
+    element("header", {}, element("h1", {}, data.title), element("p", { class: "from" }, `${data.about}; wheelrail ${data.version}`), themeButton(() => sheet.refresh())),
+    element("div", { class: "head" }, element("div", { class: "slider" }, element("label", { for: "file" }, "File"), chosen, before, after, number)),
+    lists,
+    element("div", { class: "fleet" }, element("figure", {}, heading, sheet.canvas, names, alignment), values),
+    element("footer", {}, element("p", {}, "± is the largest change of a value if the profile lay 0.1 mm or 0.1° otherwise: what its alignment is worth. The left and right arrows go through the files.")),
+);
+page.addEventListener("keydown", (event) => {
+    const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+    if (!step || event.target === chosen || event.ctrlKey || event.metaKey || event.altKey) return;
+    go(at + step);
+    event.preventDefault();
+});
+go(0);
+
+// What tests and scripts ask of the page.
+window.wheelrail = { files: files.length, at: () => at, go, differences: (k) => files[k].differences.length };

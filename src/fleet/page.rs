@@ -1,0 +1,192 @@
+//! Writes what a fleet is read for: the table, the summary, the page, and pages of the worst pairs.
+
+use serde_json::json;
+
+use super::pair::{self, Row, numbers, wheelset};
+use super::part::{self, Part};
+use super::profiles::Shelf;
+use super::tally::{Tally, WorstPair, rails};
+use super::{Fleet, Pairs, WORST};
+use crate::case::{Case, Columns, DoubtSet, sweep_page};
+use crate::error::{Error, Result};
+use crate::export::{FleetPage, FleetWorst, PageProfile, SEPARATOR};
+use crate::files::{KeptFolder, NewFile};
+use crate::profile::{Profile, Station, trace};
+use crate::search::{Conicity, ONE_CONTACT, ParallelSweep, Position, Selection};
+
+/// Columns of a row before its numbers.
+const NAMES: [&str; 7] =
+    ["wheelset", "left", "right", "rail_left", "rail_right", "radius_left_mm", "radius_right_mm"];
+
+/// Positions of a worst pair's page to either side, and their distance \[mm\].
+const DRAWN: i32 = 80;
+const STEP: f64 = 0.1;
+/// Distance of the points of the rail's outline \[mm\].
+const OUTLINE: f64 = 0.5;
+
+/// Writes everything of the parts. Returns the number of pairs, of those with a conicity and of those with a finding.
+///
+/// # Errors
+/// A part that cannot be read; any error of the disk.
+pub(super) fn write(
+    fleet: &Fleet,
+    folder: &KeptFolder,
+    parts: &KeptFolder,
+    split: &[Pairs],
+) -> Result<(usize, usize, usize)> {
+    let mut table = NewFile::create(&folder.file("fleet.csv"))?;
+    let mut tally = Tally::default();
+    let names = numbers();
+    let head = NAMES.into_iter().chain(names.iter().map(String::as_str)).chain(["finding"]);
+    table.put(&csv(std::iter::once(head.map(String::from).collect()))?)?;
+    for (number, pairs) in split.iter().enumerate() {
+        let part = Part::read(&parts.file(&part::name(number)))?;
+        table.put(&csv(part.rows.iter().map(cells))?)?;
+        tally.add(&part, pairs.all());
+    }
+    table.commit()?;
+    let rail = worst_pages(fleet, &folder.part(WORST)?, &tally.worst)?;
+    let title = fleet.scene.title.as_deref().unwrap_or("Fleet");
+    folder.write("fleet.html", &page(fleet, title, &tally, rail).html())?;
+    folder.write("summary.json", format!("{:#}\n", summary(fleet, title, &tally)).as_bytes())?;
+    Ok((tally.pairs, tally.with_conicity, tally.with_finding))
+}
+
+/// Writes rows as CSV.
+fn csv(rows: impl Iterator<Item = Vec<String>>) -> Result<Vec<u8>> {
+    let failed = |error: &dyn std::fmt::Display| {
+        Error::new("fleet.csv", error.to_string(), "rows", "report this as a fault of wheelrail")
+    };
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        writer.write_record(&row).map_err(|error| failed(&error))?;
+    }
+    writer.into_inner().map_err(|error| failed(&error))
+}
+
+fn cells(row: &Row) -> Vec<String> {
+    let number = |value: &Option<f64>| value.map_or_else(String::new, |value| value.to_string());
+    let numbers = row.radii.iter().chain(&row.values).map(number);
+    row.names.iter().cloned().chain(numbers).chain([row.finding.clone()]).collect()
+}
+
+fn summary(fleet: &Fleet, title: &str, tally: &Tally) -> serde_json::Value {
+    let worst = tally.worst.iter().enumerate().map(|(k, pair)| {
+        json!({ "wheelset": pair.row.names[0], "rails": rails(&pair.row), "conicity": pair.conicity, "page": page_name(k) })
+    });
+    json!({
+        "program": "wheelrail",
+        "version": env!("CARGO_PKG_VERSION"),
+        "title": title,
+        "wheelsets": fleet.wheelsets.len(),
+        "sections": fleet.sections.len(),
+        "pairs": tally.pairs,
+        "pairs_with_conicity": tally.with_conicity,
+        "pairs_with_finding": tally.with_finding,
+        "distributions": tally.summary(),
+        "worst": worst.collect::<Vec<_>>(),
+    })
+}
+
+fn page_name(k: usize) -> String {
+    format!("{WORST}/{}", worst_name(k))
+}
+
+fn worst_name(k: usize) -> String {
+    format!("worst-{:02}.html", k + 1)
+}
+
+fn page(fleet: &Fleet, title: &str, tally: &Tally, rail: Option<PageProfile>) -> FleetPage {
+    let names = numbers();
+    let value = |row: &Row, name: &str| {
+        let value = names.iter().position(|own| own == name).and_then(|k| row.values[k]);
+        value.map_or_else(|| "–".to_owned(), |value| format!("{value:.3}"))
+    };
+    let shown = [
+        "conicity",
+        "nonlinearity_per_mm",
+        "right_flange_height_mm",
+        "right_flange_thickness_mm",
+        "right_hollow_mm",
+    ];
+    let worst = tally.worst.iter().enumerate().map(|(k, WorstPair { row, .. })| FleetWorst {
+        cells: [row.names[0].clone(), rails(row)]
+            .into_iter()
+            .chain(shown.map(|name| value(row, name)))
+            .collect(),
+        page: page_name(k),
+    });
+    let columns = [
+        "wheelset",
+        "rails",
+        "conicity",
+        "nonlinearity [1/mm]",
+        "right Sh [mm]",
+        "right Sd [mm]",
+        "right hollow [mm]",
+    ];
+    let about = [
+        format!(
+            "{} wheelsets, {} rail sections, {} pairs",
+            fleet.wheelsets.len(),
+            fleet.sections.len(),
+            tally.pairs
+        ),
+        format!("{} with a conicity", tally.with_conicity),
+        format!("{} with a finding", tally.with_finding),
+    ];
+    FleetPage {
+        title: title.into(),
+        about: about.join(SEPARATOR),
+        version: env!("CARGO_PKG_VERSION").into(),
+        distributions: tally.distributions(),
+        heat: tally.heat().map(|heat| crate::export::FleetHeat { rail, ..heat }),
+        columns: columns.map(String::from).into(),
+        worst: worst.collect(),
+        findings: tally.findings.clone(),
+        with_finding: tally.with_finding,
+    }
+}
+
+/// Writes the pages of the worst pairs, and returns the outline of the first one's right-hand rail.
+fn worst_pages(fleet: &Fleet, folder: &KeptFolder, worst: &[WorstPair]) -> Result<Option<PageProfile>> {
+    let (mut shelf, mut rail) = (Shelf::default(), None);
+    for (k, pair) in worst.iter().enumerate() {
+        let (wheelset, section) = (pair.number.wheelset, pair.number.section);
+        shelf.fill(fleet, &Pairs { wheelsets: wheelset..wheelset + 1, sections: section..section + 1 });
+        let case = pair::case(fleet, &shelf, pair.number)?;
+        folder.write(&worst_name(k), &swept(&case, pair)?)?;
+        rail.get_or_insert_with(|| outline(case.profiles().right.pair.rail()));
+    }
+    folder.remove(|name| !(0..worst.len()).any(|k| worst_name(k) == name))?;
+    Ok(rail)
+}
+
+fn outline(rail: &Profile) -> PageProfile {
+    let marks = trace(rail, OUTLINE);
+    let coordinate = |of: fn(&Station) -> f64| marks.iter().map(|mark| of(&mark.station)).collect();
+    PageProfile { name: rail.name.clone(), x: coordinate(|at| at.x), z: coordinate(|at| at.z) }
+}
+
+/// Returns the page of a pair's sweep.
+fn swept(case: &Case, pair: &WorstPair) -> Result<Vec<u8>> {
+    let (system, template) = wheelset(case)?;
+    let lateral: Vec<f64> = (-DRAWN..=DRAWN).map(|k| STEP * f64::from(k)).collect();
+    let positions: Vec<Position> = lateral.iter().map(|&lateral| Position { lateral, ..template }).collect();
+    let conicity = Conicity::new(system, STEP * f64::from(DRAWN), template.roll)?;
+    let selection = Selection { within: 0.0, apart: ONE_CONTACT };
+    let sweep = ParallelSweep { system, selection, conicity: Some(&conicity), positions: &positions };
+    let mut columns = Columns::default();
+    sweep.blocks(
+        |chunk: &mut Columns, number, rows| {
+            rows.iter().for_each(|row| chunk.push(number, row, None, DoubtSet::default()));
+            Ok(())
+        },
+        |_, chunks: Vec<Columns>| {
+            chunks.iter().for_each(|chunk| columns.extend(chunk));
+            Ok(true)
+        },
+    )?;
+    let about = format!("wheelset {}", pair.row.names[0]);
+    Ok(sweep_page(case, system, &columns, &lateral, &about)?.html())
+}

@@ -1,0 +1,242 @@
+//! A pair: a wheelset on a rail section, and what is computed of it.
+
+use serde::{Deserialize, Serialize};
+
+use super::list::Source;
+use super::profiles::{Key, Shelf};
+use super::{Fleet, Number};
+use crate::case::{Case, Place, Profiles, SideProfiles};
+use crate::error::{Error, Result};
+use crate::measure::{Measures, Quantity};
+use crate::numerics::bodies::Bodies;
+use crate::scene;
+use crate::search::{
+    Conicity, NoConicity, ONE_CONTACT, Position, Selection, Sweep, TrackSide, WheelsetOnTrack,
+};
+
+/// Amplitudes \[mm\] of the conicity, and of those whose slope is the nonlinearity.
+const AMPLITUDE: f64 = 3.0;
+const SLOPE: [f64; 2] = [2.0, 4.0];
+
+/// Positions to either side of the centre, and their distance \[mm\]: to 8 mm, where flanges touch.
+pub(super) const POSITIONS: i32 = 32;
+pub(super) const STEP: f64 = 0.25;
+/// Width \[mm\] of the cells on the rail.
+pub(super) const CELL: f64 = 0.5;
+
+/// Measures of a wheel that are in the table.
+const MEASURES: [Quantity; 6] = [
+    Quantity::FlangeHeight,
+    Quantity::FlangeThickness,
+    Quantity::Qr,
+    Quantity::FlangeWidth,
+    Quantity::Hollow,
+    Quantity::Diameter,
+];
+
+/// Names of the sides, in their order.
+const SIDES: [&str; 2] = ["left", "right"];
+
+/// A row of the table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Row {
+    /// Wheelset, left and right wheel, left and right rail.
+    pub names: [String; 5],
+    /// Radii \[mm\], where they are known.
+    pub radii: [Option<f64>; 2],
+    /// The values of [`numbers`], in their order.
+    pub values: Vec<Option<f64>>,
+    /// What cannot be had and why, and what is doubtful; empty for nothing.
+    pub finding: String,
+    #[serde(skip)]
+    /// Where its wheels touch: the number of the displacement towards the own rail, and of the cell on the rail.
+    pub touched: Vec<[i32; 2]>,
+}
+
+/// Names the columns of numbers.
+pub(super) fn numbers() -> Vec<String> {
+    let of_pair = ["conicity", "conicity_error", "conicity_2mm", "conicity_4mm", "nonlinearity_per_mm"];
+    let bands = ["rail_from_mm", "rail_to_mm", "wheel_from_mm", "wheel_to_mm"];
+    let of_sides = |of: &[&str]| -> Vec<String> {
+        SIDES.iter().flat_map(|side| of.iter().map(move |name| format!("{side}_{name}"))).collect()
+    };
+    let measures = MEASURES.map(Quantity::key);
+    of_pair.map(String::from).into_iter().chain(of_sides(&bands)).chain(of_sides(&measures)).collect()
+}
+
+/// Computes the row of a pair. Whatever is wrong is its finding.
+pub(super) fn row(fleet: &Fleet, shelf: &Shelf, number: Number) -> Row {
+    let [rails, wheels] = fleet.keys(number);
+    let wheelset = &fleet.wheelsets[number.wheelset];
+    let name = |key: &Key| key.source.to_string();
+    let mut findings = Vec::new();
+    let measures = [0, 1].map(|k| measured(shelf, &wheels[k], SIDES[k], &mut findings));
+    let found = case(fleet, shelf, number).and_then(|case| Found::of(fleet, &case));
+    let found = found.unwrap_or_else(|error| {
+        findings.push(error.to_string());
+        Found::default()
+    });
+    findings.extend(found.findings);
+    let mut own: Vec<String> = Vec::new();
+    for finding in findings {
+        // Both wheels of a file say the same.
+        if !own.contains(&finding) {
+            own.push(finding);
+        }
+    }
+    let values = found.values.into_iter().chain(measures.into_iter().flatten());
+    Row {
+        names: [wheelset.name.clone(), name(&wheels[0]), name(&wheels[1]), name(&rails[0]), name(&rails[1])],
+        radii: [0, 1].map(|k| radius(fleet, shelf, number, k)),
+        values: values.map(|value| value.filter(|value| value.is_finite())).collect(),
+        finding: own.join("; "),
+        touched: found.touched,
+    }
+}
+
+/// Returns the measures of a wheel, and adds what is wrong with them to the findings.
+fn measured(
+    shelf: &Shelf,
+    key: &Key,
+    side: &str,
+    findings: &mut Vec<String>,
+) -> [Option<f64>; MEASURES.len()] {
+    let Some(measures) = shelf.get(key).ok().and_then(|read| read.measures.as_ref()) else {
+        return [None; MEASURES.len()];
+    };
+    let Measures { findings: own, .. } = measures;
+    // Those of a file stand once, where it is both wheels.
+    let place = if matches!(&key.source, Source::File(_)) { key.source.to_string() } else { side.to_owned() };
+    findings.extend(own.iter().map(|finding| format!("{place}: {finding}")));
+    MEASURES.map(|quantity| measures.value(quantity))
+}
+
+/// Returns the nominal rolling radius of a wheel \[mm\]: of the table, of the scene, or half the diameter that its file states.
+fn radius(fleet: &Fleet, shelf: &Shelf, number: Number, side: usize) -> Option<f64> {
+    let key = &fleet.keys(number)[1][side];
+    let given = fleet.wheelsets[number.wheelset].radii[side];
+    let stated = || shelf.get(key).ok()?.record.as_ref()?.diameter.map(|diameter| 0.5 * diameter);
+    given.or(fleet.data(key).radius).or(fleet.scene.wheel.radius).or_else(stated)
+}
+
+/// Makes the case of a pair.
+///
+/// # Errors
+/// What is wrong with its profiles, or with their place on the track.
+pub(super) fn case(fleet: &Fleet, shelf: &Shelf, number: Number) -> Result<Case> {
+    let [rails, wheels] = fleet.keys(number);
+    let side = |k: usize| -> Result<SideProfiles> {
+        let [rail, wheel] = [shelf.get(&rails[k])?, shelf.get(&wheels[k])?].map(Clone::clone);
+        let radius = radius(fleet, shelf, number, k).ok_or_else(|| {
+            let expected = "the nominal rolling radius in mm";
+            Error::new(SIDES[k], "no radius", expected, "give `radius` in [wheel], or columns of the table")
+        })?;
+        let pair = scene::pair_of(&fleet.scene, rail.profile, wheel.profile, radius)?;
+        Ok(SideProfiles { pair, measured: Bodies { rail: rail.record, wheel: wheel.record }, loft: None })
+    };
+    let radii = [0, 1].map(|k| radius(fleet, shelf, number, k));
+    let alike = rails[0] == rails[1] && wheels[0] == wheels[1] && radii[0] == radii[1];
+    let left = if alike { None } else { Some(side(0)?) };
+    let profiles = Profiles { right: side(1)?, left };
+    scene::with_profiles(&fleet.scene, profiles, &fleet.wheelsets[number.wheelset].name)
+}
+
+/// What was found of the contact of a pair.
+struct Found {
+    /// Conicities and bands.
+    values: Vec<Option<f64>>,
+    findings: Vec<String>,
+    touched: Vec<[i32; 2]>,
+}
+
+impl Default for Found {
+    fn default() -> Self {
+        Self {
+            values: vec![None; numbers().len() - 2 * MEASURES.len()],
+            findings: Vec::new(),
+            touched: Vec::new(),
+        }
+    }
+}
+
+impl Found {
+    fn of(fleet: &Fleet, case: &Case) -> Result<Self> {
+        let (system, template) = wheelset(case)?;
+        let mut findings = own_warnings(fleet, case);
+        let conicity = Conicity::new(system, SLOPE[1], template.roll)?;
+        let at = |amplitude: f64| conicity.at(amplitude);
+        let [usual, low, high] = [AMPLITUDE, SLOPE[0], SLOPE[1]].map(at);
+        for (found, amplitude) in [(usual, AMPLITUDE), (low, SLOPE[0]), (high, SLOPE[1])] {
+            findings.extend(found.err().map(|why| format!("no conicity at {amplitude} mm: {}", reason(why))));
+        }
+        let value = |found: std::result::Result<crate::search::Equivalent, NoConicity>| {
+            found.ok().map(|found| found.conicity)
+        };
+        let slope = value(low).zip(value(high)).map(|(low, high)| (high - low) / (SLOPE[1] - SLOPE[0]));
+        let bands = Bands::of(system, &template)?;
+        let mut values =
+            vec![value(usual), usual.ok().map(|found| found.error), value(low), value(high), slope];
+        values.extend(bands.ends.into_iter().flatten().flatten());
+        Ok(Self { values, findings, touched: bands.touched })
+    }
+}
+
+/// Returns the wheelset of a case and its position.
+///
+/// # Errors
+/// A case without a wheelset.
+pub(super) fn wheelset(case: &Case) -> Result<(&WheelsetOnTrack, Position)> {
+    match &case.standing().place {
+        Place::Wheelset { system, position } => Ok((system, *position)),
+        _ => Err(Error::new("", "a single wheel", "[track] and [wheelset]", "a fleet is of wheelsets")),
+    }
+}
+
+/// Lists the warnings of a pair that the keys of its scene alone do not have: those are said once.
+fn own_warnings(fleet: &Fleet, case: &Case) -> Vec<String> {
+    let shared = fleet.warnings();
+    case.warnings().into_iter().filter(|warning| !shared.contains(warning)).collect()
+}
+
+/// Says why there is no conicity.
+fn reason(why: NoConicity) -> &'static str {
+    match why {
+        NoConicity::NotAsked => "not asked for",
+        NoConicity::GivenRoll => "the roll is given",
+        NoConicity::NoAmplitude => "no amplitude",
+        NoConicity::OffTrack => "the wheelset leaves the track before",
+        NoConicity::NotRestoring => "the movement does not come back",
+    }
+}
+
+/// Where the wheels of a pair touch.
+struct Bands {
+    /// Of each side, on rail and wheel, least and largest abscissa \[mm\] within the amplitude.
+    ends: [[[Option<f64>; 2]; 2]; 2],
+    touched: Vec<[i32; 2]>,
+}
+
+impl Bands {
+    fn of(system: &WheelsetOnTrack, template: &Position) -> Result<Self> {
+        let mut sweep = Sweep::new(system, Selection { within: 0.0, apart: ONE_CONTACT }, None);
+        let mut bands = Self { ends: [[[None; 2]; 2]; 2], touched: Vec::new() };
+        let mut rows = Vec::new();
+        for number in -POSITIONS..=POSITIONS {
+            rows.clear();
+            let lateral = STEP * f64::from(number);
+            sweep.position(&Position { lateral, ..*template }, &mut rows)?;
+            for row in rows.iter().filter(|row| row.number == 0) {
+                let (k, towards) = if row.side == TrackSide::Left { (0, -number) } else { (1, number) };
+                // Rails are some 70 mm wide.
+                bands.touched.push([towards, (row.contact.rail_x / CELL).floor() as i32]);
+                if lateral.abs() <= AMPLITUDE {
+                    for (ends, x) in bands.ends[k].iter_mut().zip([row.contact.rail_x, row.contact.wheel_x]) {
+                        ends[0] = Some(ends[0].map_or(x, |low| low.min(x)));
+                        ends[1] = Some(ends[1].map_or(x, |high| high.max(x)));
+                    }
+                }
+            }
+        }
+        Ok(bands)
+    }
+}

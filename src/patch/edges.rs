@@ -1,0 +1,202 @@
+//! Finds both edges of 16 slices at once, where each edge lies over one piece of the wheel.
+//!
+//! At an edge the wheel stands at ζ = ζ^R(ξ) + δ. This gives the axle distance w of the edge, and with y = η′ in the wheel's own
+//! directions its sagitta e = y²/(w + ϱ), ϱ = √(w² + y²). The foot ξ′ − e sinθ of the edge lies on the profile at the height ζ − e cosθ.
+//! With m the slope of the chord from a profile point ξ_0 near the midplane to the foot, and g_0 = h(ξ_0) − ζ^R(ξ),
+//!
+//! ```text
+//! (cosθ − m sinθ)/(w + ϱ) y² + m tanχ y + g_0 − δ + m (ξ/cosχ − ξ_0) = 0,   η = (y + ξ sinχ)/cosχ.
+//! ```
+//!
+//! m, w and ϱ hardly change with y, so that the quadratic equation is solved anew with those of its last solution. It contracts by about e
+//! × curvature and tanχ × the turn of the profile, and it is exact at the tips, where y² follows without a difference of large numbers.
+
+use crate::numerics::lanes::{Lanes, MANY, every, lanes};
+use crate::placement::Placement;
+use crate::profile::{Branch, Piece, Section};
+use crate::separation::contact_gaps;
+use crate::separation::wheel_surface::Surface;
+
+/// Most solutions of the quadratic equation; each gains at least three digits away from vertical tangents.
+const CONTRACTIONS: usize = 12;
+
+/// Most pieces on which the foot of an edge is sought.
+const PIECES: usize = 4;
+
+/// Steepest slope of a piece over which edges are found. The surface folds back where the profile stands up to e/w, some 1e-3.
+const STEEPEST: f64 = 64.0;
+
+/// Finds the edges of the slices of a wheel on a rail.
+#[derive(Debug)]
+pub(super) struct EdgeFinder<'a> {
+    rail: &'a Section,
+    wheel: Surface<'a>,
+    /// Approach δ \[mm\].
+    approach: f64,
+    /// cos χ.
+    cos: f64,
+    /// sin χ.
+    sin: f64,
+    /// 1/cos χ − 1, to all digits.
+    stretch: f64,
+    /// Indices of the pieces over which the lower and the upper edge were found last.
+    pieces: [Option<usize>; 2],
+    arch: pulp::Arch,
+}
+
+impl<'a> EdgeFinder<'a> {
+    /// Makes the finder of a placed pair on a rail for approach δ \[mm\].
+    pub(super) fn new(placement: &'a Placement, approach: f64) -> Self {
+        let skew = placement.skew_rotation();
+        Self {
+            rail: &placement.rail().section,
+            wheel: Surface::new(placement),
+            approach,
+            cos: skew.re,
+            sin: skew.im,
+            stretch: 2.0 * (placement.skew() / 2.0).sin().powi(2) / skew.re,
+            pieces: [None; 2],
+            arch: pulp::Arch::new(),
+        }
+    }
+
+    /// Finds the lower and the upper edges \[mm\] at 16 values of ξ in the patch, at which s may only rise from one lowest place to either
+    /// side. Returns `None` unless the rail has one piece there, each edge lies over one piece of the wheel, which is no wall, and the wheel
+    /// has no step on the way.
+    pub(super) fn edges(&mut self, xi: &Lanes) -> Option<[Lanes; 2]> {
+        let (rail, [first, last]) = (self.rail.piece_at(xi[0])?, self.wheel.section.reach()?);
+        let [low, high] = [rail.xi[0].max(first), rail.xi[1].min(last)];
+        if !every::<MANY>(|k| (low <= xi[k]) & (xi[k] <= high)) {
+            return None;
+        }
+        let upper = self.side(xi, rail, 1)?;
+        let lower: Lanes = if self.sin == 0.0 { lanes(|k| -upper[k]) } else { self.side(xi, rail, 0)? };
+        every::<MANY>(|k| lower[k] <= upper[k]).then_some([lower, upper])
+    }
+
+    /// Finds the lower (0) or the upper (1) edges.
+    fn side(&mut self, xi: &Lanes, rail: &Piece, side: usize) -> Option<Lanes> {
+        let section = self.wheel.section;
+        let middle = xi[MANY / 2];
+        let mut index = self.pieces[side].map_or_else(|| index_at(section, middle), Some)?;
+        let inside = |index: usize, foot: f64| {
+            let [low, high] = section.pieces[index].xi;
+            (low <= foot) & (foot <= high)
+        };
+        for _ in 0..PIECES {
+            let [_, [foot]] = self.solved(&[middle], rail, index, side)?;
+            if inside(index, foot) {
+                break;
+            }
+            index = index_at(section, foot)?;
+        }
+        self.pieces[side] = Some(index);
+        let [low, high] = section.slopes(index);
+        if !(-STEEPEST < low && high < STEEPEST) {
+            return None;
+        }
+        let [eta, foot] = self.arch.dispatch(Solve { finder: self, xi, rail, index, side })?;
+        let passed = |step: &usize| {
+            let joint = section.pieces[*step].xi[0];
+            let end = section.pieces[*step - 1].xi[1];
+            (0..MANY).any(|k| xi[k].min(foot[k]) <= joint && end <= xi[k].max(foot[k]))
+        };
+        (every::<MANY>(|k| inside(index, foot[k])) && !section.steps.iter().any(passed)).then_some(eta)
+    }
+
+    /// Finds the lower or the upper edges over one piece of the wheel, which is continued beyond its ends if it is an arc: their η, and
+    /// the abscissae of their feet \[mm\]. Returns `None` if the solutions do not settle.
+    #[inline(always)]
+    fn solved<const N: usize>(
+        &self,
+        xi: &Lanes<N>,
+        rail: &Piece,
+        index: usize,
+        side: usize,
+    ) -> Option<[Lanes<N>; 2]> {
+        let (wheel, outwards) = (&self.wheel, if side == 0 { -1.0 } else { 1.0 });
+        let piece = &wheel.section.pieces[index];
+        let branch = &wheel.section.branches[piece.branch];
+        let [low, high] = piece.xi;
+        let begin: Lanes<N> = lanes(|k| xi[k].max(low).min(high));
+        let (points, height) = branch.points(&begin)?;
+        let (_, rail_height) = self.rail.branches[rail.branch].points(xi)?;
+        let gap = self.gaps(xi, &begin, rail.branch, (piece.branch, &height), &rail_height)?;
+        // ξ′ − ξ_0 for y = 0.
+        let shift: Lanes<N> = lanes(|k| (xi[k] - begin[k]) + xi[k] * self.stretch);
+        let tangent = self.sin / self.cos;
+        let [mut y, mut change, mut settled] = [[0.0; N]; 3];
+        let mut slope = branch.chords_from(&points, &begin)?;
+        for contraction in 0..CONTRACTIONS {
+            let mut foot = [0.0; N];
+            for k in 0..N {
+                let reached = begin[k] + shift[k] + y[k] * tangent;
+                let w = wheel.axle_distance(reached, rail_height[k] + self.approach);
+                let sum = w + (w * w + y[k] * y[k]).sqrt();
+                let rise = (wheel.cos - wheel.sin * slope[k]) / sum;
+                let half = 0.5 * slope[k] * tangent;
+                let rest = gap[k] - self.approach + slope[k] * shift[k];
+                let root = outwards * (half * half - rise * rest).sqrt();
+                let next = (root - half) / rise;
+                let step = (next - y[k]).abs();
+                let size = next.abs() + (root / rise).abs();
+                // The steps fall in geometric progression: the next one would be below rounding.
+                let small = (contraction > 0)
+                    & (w > 0.0)
+                    & (step * step <= f64::EPSILON * size * change[k].min(size));
+                settled[k] = if small { 1.0 } else { settled[k] };
+                (y[k], change[k]) = (next, step);
+                foot[k] = begin[k] + shift[k] + next * tangent - next * next / sum * wheel.sin;
+            }
+            if every::<N>(|k| settled[k] == 1.0) {
+                return Some([lanes(|k| (y[k] + xi[k] * self.sin) / self.cos), foot]);
+            }
+            slope = branch.chords_from(&points, &foot)?;
+        }
+        None
+    }
+
+    /// Computes h(ξ_0) − ζ^R(ξ) \[mm\] from both heights, and to full relative accuracy where ξ_0 = ξ is over both contact segments.
+    #[inline(always)]
+    fn gaps<const N: usize>(
+        &self,
+        xi: &Lanes<N>,
+        begin: &Lanes<N>,
+        rail: usize,
+        (wheel, height): (usize, &Lanes<N>),
+        rail_height: &Lanes<N>,
+    ) -> Option<Lanes<N>> {
+        let plain: Lanes<N> = lanes(|k| height[k] - rail_height[k]);
+        let section = self.wheel.section;
+        if self.rail.contact != Some(rail) || section.contact != Some(wheel) {
+            return Some(plain);
+        }
+        let [rail, wheel]: [&Branch; 2] = [&self.rail.branches[rail], &section.branches[wheel]];
+        let exact = contact_gaps(rail, wheel, begin, height)?;
+        Some(lanes(|k| if begin[k] == xi[k] { exact[k] } else { plain[k] }))
+    }
+}
+
+/// Returns the index of the piece that holds ξ, or else of the nearest one.
+fn index_at(section: &Section, xi: f64) -> Option<usize> {
+    let index = section.pieces.len() - section.pieces_from(xi).len();
+    section.pieces.len().checked_sub(1).map(|last| index.min(last)).filter(|_| !xi.is_nan())
+}
+
+/// Edges to be found by vector code.
+struct Solve<'f, 'a> {
+    finder: &'f EdgeFinder<'a>,
+    xi: &'f Lanes,
+    rail: &'f Piece,
+    index: usize,
+    side: usize,
+}
+
+impl pulp::WithSimd for Solve<'_, '_> {
+    type Output = Option<[Lanes; 2]>;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> Option<[Lanes; 2]> {
+        self.finder.solved(self.xi, self.rail, self.index, self.side)
+    }
+}

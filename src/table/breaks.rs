@@ -1,0 +1,119 @@
+//! Finds the displacements at which other elements touch: hops, joints, edges.
+
+use rayon::prelude::*;
+
+use super::asked::Asked;
+use super::cell::{BREAK, Beginning};
+use super::state::{Sampler, State};
+use crate::error::{Error, ErrorKind, Result};
+use crate::search::WheelsetOnTrack;
+
+/// Distance of the displacements \[mm\] between which breaks are looked for.
+const STEP: f64 = 0.02;
+
+/// Gap \[mm\] of near misses for each mm of a step, beside that of the slope of the contact: rails are not steeper than flanges are.
+const STEEPEST: f64 = 3.0;
+
+/// Width \[mm\] below which near misses count as such, although slopes do not exclude that they touch.
+const GRAZING: f64 = 1e-5;
+
+/// Jump \[mm\] of a place of contact across a break above which it is a hop. A place that crosses a joint moves less over the width of
+/// the break.
+pub(super) const HOP: f64 = 1e-5;
+
+/// Steps that are looked at with one search: any number of threads gives the same bits.
+const CHUNK: usize = 32;
+
+/// Most breaks between two displacements that are looked at together: where there are more, bodies touch all over, and rounding decides
+/// which elements do.
+const MOST: usize = 10_000;
+
+/// A break: the states on both sides of it.
+pub(super) type Break = [State; 2];
+
+/// Finds the states at both ends of the range, and all breaks in it.
+pub(super) fn breaks(system: &WheelsetOnTrack, asked: &Asked) -> Result<(Break, Vec<Break>)> {
+    let [from, to] = asked.lateral;
+    let steps = ((to - from) / STEP).ceil().max(1.0) as usize;
+    let at = |k: usize| if k == steps { to } else { from + (to - from) * (k as f64 / steps as f64) };
+    let chunk = |first: usize| -> Result<(Option<State>, State, Vec<Break>)> {
+        let mut sampler = Sampler::new(system, asked);
+        let mut found = Vec::new();
+        let begin = sampler.at(at(first), STEEPEST * STEP)?;
+        let mut last = begin.clone();
+        for k in first..(first + CHUNK).min(steps) {
+            let next = sampler.at(at(k + 1), STEEPEST * STEP)?;
+            divide(&mut sampler, &last, &next, &mut found)?;
+            last = next;
+        }
+        Ok(((first == 0).then_some(begin), last, found))
+    };
+    let firsts: Vec<usize> = (0..steps).step_by(CHUNK).collect();
+    let chunks = firsts.into_par_iter().map(chunk).collect::<Result<Vec<_>>>()?;
+    let (mut begin, mut end, mut breaks) = (None, None, Vec::new());
+    for (first, last, found) in chunks {
+        begin = begin.or(first);
+        end = Some(last);
+        breaks.extend(found);
+    }
+    let ends = begin.zip(end).map(|(begin, end)| [begin, end]);
+    let ends = ends.ok_or_else(|| Error::new("table: lateral", "no range", "FROM < TO", "correct it"))?;
+    Ok((ends, breaks))
+}
+
+/// Appends the breaks between two states, in ascending order.
+pub(super) fn divide(
+    sampler: &mut Sampler<'_>,
+    from: &State,
+    to: &State,
+    breaks: &mut Vec<Break>,
+) -> Result<()> {
+    let width = to.lateral - from.lateral;
+    let same = from.topology == to.topology;
+    if same && (width <= GRAZING || from.topology.is_none() || from.alone_until(to)) {
+        return Ok(());
+    }
+    let middle = from.lateral + width / 2.0;
+    if breaks.len() > MOST {
+        let found = format!("more than {MOST} hops and joints near {} mm", from.lateral);
+        let advice = "smooth the profiles, or take another range";
+        let error = Error::new("table: lateral", found, "places of contact that can be told apart", advice);
+        return Err(error.of_kind(ErrorKind::Limit));
+    }
+    if width <= BREAK || middle <= from.lateral || middle >= to.lateral {
+        breaks.push([from.clone(), to.clone()]);
+        return Ok(());
+    }
+    let steepest = from.steepest().max(to.steepest()).max(STEEPEST);
+    let middle = sampler.at(middle, (steepest + STEEPEST) * width)?;
+    divide(sampler, from, &middle, breaks)?;
+    divide(sampler, &middle, to, breaks)
+}
+
+/// A stretch between two breaks, over which the same elements touch.
+pub(super) struct Stretch {
+    pub ends: Break,
+    pub begins: Beginning,
+}
+
+/// Cuts a range, which begins in this way, at its breaks.
+pub(super) fn stretches([begin, end]: Break, begins: Beginning, breaks: Vec<Break>) -> Vec<Stretch> {
+    let mut stretches = Vec::with_capacity(breaks.len() + 1);
+    let (mut from, mut begins) = (begin, begins);
+    for at in breaks {
+        let kind = kind_of(&at);
+        let [to, next] = at;
+        stretches.push(Stretch { ends: [from, to], begins });
+        (from, begins) = (next, kind);
+    }
+    stretches.push(Stretch { ends: [from, end], begins });
+    stretches
+}
+
+/// Tells what happens at a break.
+fn kind_of([before, after]: &Break) -> Beginning {
+    if before.topology.is_none() || after.topology.is_none() {
+        return Beginning::Edge;
+    }
+    if before.moved(after) > HOP { Beginning::Hop } else { Beginning::Joint }
+}

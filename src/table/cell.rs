@@ -1,0 +1,70 @@
+//! Cells: intervals of the lateral displacement over which nothing jumps.
+
+/// Coefficients of a polynomial: its degree is 8.
+pub const COEFFICIENTS: usize = 9;
+
+/// Width \[mm\] to which a place is found where contact hops or crosses a joint.
+pub const BREAK: f64 = 1e-9;
+
+/// How a cell begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Beginning {
+    /// In the middle of a branch: the cell before goes on smoothly.
+    Smooth,
+    /// Where contact crosses a joint of a profile: places are continuous, curvatures jump.
+    Joint,
+    /// Where contact hops to another place.
+    Hop,
+    /// Where the table begins, a wheel leaves its rail or comes back onto it.
+    Edge,
+}
+
+impl Beginning {
+    /// All, in the order of their codes.
+    pub const ALL: [Self; 4] = [Self::Smooth, Self::Joint, Self::Hop, Self::Edge];
+
+    /// The number that stands for it in files: 0 smooth, 1 joint, 2 hop, 3 edge.
+    pub fn code(self) -> u8 {
+        self as u8
+    }
+}
+
+/// What does not exist over a cell on one side.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Lacks {
+    /// Everything exists.
+    #[default]
+    Nothing,
+    /// s is not convex at C, so that Hertz has no ellipse.
+    Ellipse,
+    /// A body touches with a kink, step or end: there are no curvatures either.
+    Curvatures,
+}
+
+impl Lacks {
+    /// All, in the order of their codes.
+    pub const ALL: [Self; 3] = [Self::Nothing, Self::Ellipse, Self::Curvatures];
+
+    /// The number that stands for it in files: 0 nothing, 1 ellipse, 2 curvatures and ellipse.
+    pub fn code(self) -> u8 {
+        self as u8
+    }
+}
+
+/// A cell: an interval of the lateral displacement over which every quantity is one polynomial.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cell {
+    /// Ends \[mm\]. The next cell begins where this one ends, or within [`BREAK`] of it at a hop, joint or edge.
+    pub lateral: [f64; 2],
+    /// How it begins.
+    pub begins: Beginning,
+    /// Whether both wheels touch; where they do not, the cell has no polynomials.
+    pub touches: bool,
+    /// What does not exist on the left and on the right side.
+    pub lacks: [Lacks; 2],
+}
+
+/// Returns where a displacement is in a cell: −1 at its beginning, 1 at its end; 0 in a cell without width.
+pub(super) fn share([from, to]: [f64; 2], lateral: f64) -> f64 {
+    if to > from { ((lateral - from) - (to - lateral)) / (to - from) } else { 0.0 }
+}

@@ -1,0 +1,22 @@
+//! Contact tables: the places of contact of a wheelset over its lateral displacement as piecewise polynomials with a stated error.
+//!
+//! Vehicle dynamics looks contact up, thousands of times a second. A table divides the range of displacements into cells. Over a cell
+//! the same elements of the profiles touch on both sides, so that every quantity is analytic there, and each is one polynomial. Cells
+//! end where contact hops to another place, where it crosses a joint, where a wheel leaves its rail, and where a polynomial would err
+//! by more than the tolerance: see [`crate::docs::tables`].
+
+mod asked;
+mod breaks;
+mod build;
+mod cell;
+mod contact_table;
+mod fit;
+mod quantity;
+mod read;
+mod state;
+
+pub use asked::{Asked, Pressed};
+pub use build::build;
+pub use cell::{BREAK, Beginning, COEFFICIENTS, Cell, Lacks};
+pub use contact_table::ContactTable;
+pub use quantity::{Needs, Quantity, TOLERANCE_LENGTH};

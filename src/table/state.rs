@@ -1,0 +1,149 @@
+//! What touches at one displacement, and what could touch beside it.
+
+use std::f64::consts::FRAC_PI_4;
+
+use super::asked::{Asked, Pressed};
+use super::cell::Lacks;
+use super::quantity::{MOST, SideValues, Values, values};
+use crate::error::Result;
+use crate::load::{curvatures_at, quadratic_form_at};
+use crate::search::{Contact, Position, Selection, WheelsetOnTrack, WheelsetSearch};
+
+/// Distance \[mm\] below which two places are one.
+const APART: f64 = 1e-3;
+
+/// Signs of the left and the right side's own x axis along the track's.
+const SIGNS: [f64; 2] = [-1.0, 1.0];
+
+/// What decides whether quantities are analytic from one displacement to the next: what touches on both sides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Topology {
+    elements: [[u32; 2]; 2],
+    pub lacks: [Lacks; 2],
+    /// Whether the long axis of each ellipse is the one nearest to ξ.
+    along: [bool; 2],
+}
+
+/// A place that does not touch.
+#[derive(Debug, Clone, Copy)]
+struct NearMiss {
+    /// Vertical gap \[mm\].
+    gap: f64,
+    /// Rate at which the gap grows with the displacement, but for the roll.
+    rate: f64,
+}
+
+/// What a search finds at one displacement.
+#[derive(Debug, Clone)]
+pub(super) struct State {
+    pub lateral: f64,
+    /// `None` where a wheel is off its rail.
+    pub topology: Option<Topology>,
+    pub values: Values,
+    /// Abscissae \[mm\] of the places of contact on both rails and wheels.
+    places: [f64; 4],
+    near: Vec<NearMiss>,
+    /// Slopes of both places of contact in track axes.
+    slopes: [f64; 2],
+}
+
+/// Searches at one displacement after another.
+pub(super) struct Sampler<'a> {
+    search: WheelsetSearch<'a>,
+    asked: &'a Asked,
+}
+
+impl<'a> Sampler<'a> {
+    pub fn new(system: &'a WheelsetOnTrack, asked: &'a Asked) -> Self {
+        Self { search: system.search(), asked }
+    }
+
+    /// Searches at one displacement \[mm\], with near misses up to a gap `within` \[mm\].
+    ///
+    /// # Errors
+    /// The errors of the search.
+    pub fn at(&mut self, lateral: f64, within: f64) -> Result<State> {
+        let Asked { yaw, roll, pressed, .. } = *self.asked;
+        let selection = Selection { within, apart: APART };
+        let Some(touch) = self.search.touch(&Position { lateral, yaw, roll }, &selection)? else {
+            let values = [f64::NAN; MOST];
+            return Ok(State {
+                lateral,
+                topology: None,
+                values,
+                places: [f64::NAN; 4],
+                near: Vec::new(),
+                slopes: [0.0; 2],
+            });
+        };
+        let (mut near, mut slopes) = (Vec::new(), [0.0; 2]);
+        let (mut lacks, mut along) = ([Lacks::Nothing; 2], [false; 2]);
+        let sides = [0, 1].map(|k| {
+            let side = &touch.sides[k];
+            let (first, others) = (&side.touch.contacts[0], &side.touch.contacts[1..]);
+            slopes[k] = SIGNS[k] * first.contact_angle.tan();
+            let miss = |contact: &Contact| NearMiss {
+                gap: contact.gap,
+                rate: slopes[k] - SIGNS[k] * contact.contact_angle.tan(),
+            };
+            near.extend(others.iter().map(miss));
+            let (values, lack, long) = side_values(side.z, first, pressed.map(|(by, e)| (by[k], e)));
+            (lacks[k], along[k]) = (lack, long);
+            values
+        });
+        let [left, right] = sides.each_ref().map(|side| side.contact);
+        let places = [left.rail_x, left.wheel_x, right.rail_x, right.wheel_x];
+        let values = values(touch.roll, &sides, pressed.is_some());
+        let topology = Some(Topology { elements: touch.elements, lacks, along });
+        Ok(State { lateral, topology, values, places, near, slopes })
+    }
+}
+
+/// Returns the values of one side, what does not exist, and whether its ellipse is longer along ξ.
+fn side_values(z: f64, contact: &Contact, pressed: Option<(Pressed, f64)>) -> (SideValues, Lacks, bool) {
+    let form = quadratic_form_at(contact);
+    let mut side = SideValues { z, contact: *contact, form, ellipse: [f64::NAN; 4] };
+    if contact.kink() || !form.iter().all(|c| c.is_finite()) {
+        side.form = [f64::NAN; 3];
+        return (side, Lacks::Curvatures, false);
+    }
+    let Some((by, modulus)) = pressed else { return (side, Lacks::Nothing, false) };
+    let curvatures = curvatures_at(contact);
+    let ellipse = match by {
+        Pressed::Approach(approach) => curvatures.under_approach(approach, modulus),
+        Pressed::Load(load) => curvatures.under_load(load / contact.contact_angle.cos(), modulus),
+    };
+    let Some(ellipse) = ellipse else { return (side, Lacks::Ellipse, false) };
+    let [xi, eta] = curvatures.along(&ellipse);
+    side.ellipse = [xi, eta, ellipse.approach_mm, ellipse.pressure_n_per_mm2];
+    (side, Lacks::Nothing, curvatures.long_axis_rad.abs() < FRAC_PI_4)
+}
+
+/// Rate \[mm/mm\] by which a gap may change beside what the slopes at one end say: by the roll, and by the turning of the tangents, which is
+/// further counted by how much that of the contact turns.
+const UNSEEN: f64 = 0.05;
+
+impl State {
+    /// Tells whether no other place can have touched between this displacement and another one at which the same places touch: no near
+    /// miss of either end closes on the way, by the slopes there and what they may change by.
+    pub fn alone_until(&self, other: &Self) -> bool {
+        let width = (other.lateral - self.lateral).abs();
+        let turned = [0, 1].map(|k| (self.slopes[k] - other.slopes[k]).abs());
+        let unseen = UNSEEN + 2.0 * turned[0].max(turned[1]);
+        let safe = |state: &Self, inward: f64| {
+            state.near.iter().all(|near| near.gap + (inward * near.rate - unseen).min(0.0) * width > 0.0)
+        };
+        let inward = (other.lateral - self.lateral).signum();
+        safe(self, inward) && safe(other, -inward)
+    }
+
+    /// Returns how far the places of contact are from those of another state \[mm\].
+    pub fn moved(&self, other: &Self) -> f64 {
+        self.places.iter().zip(&other.places).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    }
+
+    /// Returns the largest slope of a place of contact.
+    pub fn steepest(&self) -> f64 {
+        self.slopes[0].abs().max(self.slopes[1].abs())
+    }
+}
