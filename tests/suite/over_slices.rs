@@ -139,26 +139,33 @@ fn equal_slices_have_separations_and_patches_of_the_extruded_rail() -> Result<()
 #[test]
 fn the_patch_of_a_wheel_over_a_hollow_is_that_of_a_brute_force() -> Result<()> {
     let at: Vec<f64> = (-20..=20).map(|k| 10.0 * f64::from(k)).collect();
-    let placement = on_crown(|y| 5.0 * (1.0 - (-y * y / 1600.0).exp()) - 5.0, &at, 0.0, 3.0)?;
-    let patch = Patch::new(&placement, 0.4, &Window::UNBOUNDED);
-    let mut evaluator = Evaluator::new(&placement);
-    // Squares whose middles overlap, of a tenth of a millimetre.
-    let (mut area, mut ends) = (0.0, [0.0f64; 2]);
-    for i in -400..400 {
-        for j in -1200..1200 {
-            let [xi, eta] = [i, j].map(|k| 0.1 * (f64::from(k) + 0.5));
-            if evaluator.separation(xi, eta) < patch.approach {
-                area += 0.01;
-                ends = [ends[0].min(eta), ends[1].max(eta)];
+    let hollow = |y: f64| 5.0 * (1.0 - (-y * y / 1600.0).exp()) - 5.0;
+    // One part beside the middle, two with the wheel nearly over it.
+    for (along, approach, parts) in [(3.0, 0.4, None), (0.3, 0.2, Some(2))] {
+        let placement = on_crown(hollow, &at, 0.0, along)?;
+        let patch = Patch::new(&placement, approach, &Window::UNBOUNDED);
+        assert!(parts.is_none_or(|parts| patch.components.len() == parts), "{}", patch.components.len());
+        let mut evaluator = Evaluator::new(&placement);
+        // Squares whose middles overlap, of a tenth of a millimetre.
+        let (mut area, mut ends) = (0.0, [0.0f64; 2]);
+        for i in -400..400 {
+            for j in -1200..1200 {
+                let [xi, eta] = [i, j].map(|k| 0.1 * (f64::from(k) + 0.5));
+                if evaluator.separation(xi, eta) < approach {
+                    area += 0.01;
+                    ends = [ends[0].min(eta), ends[1].max(eta)];
+                }
             }
         }
+        assert!((patch.area() / area - 1.0).abs() < 0.01, "{along}: {} instead of {area}", patch.area());
+        let extent = patch.extent().unwrap();
+        let off = [0, 1].map(|end| (extent.eta[end] - ends[end]).abs());
+        assert!(off[0] < 0.2 && off[1] < 0.2, "{along}: {extent:?} {ends:?}");
+        for at in patch.components.iter().flat_map(|component| &component.boundary) {
+            let s = evaluator.separation(at[0], at[1]);
+            assert!((s - approach).abs() < 1e-8, "{along} {at:?}: {s}");
+        }
     }
-    assert!((patch.area() / area - 1.0).abs() < 0.01, "{} instead of {area}", patch.area());
-    let extent = patch.extent().unwrap();
-    assert!(
-        (extent.eta[0] - ends[0]).abs() < 0.2 && (extent.eta[1] - ends[1]).abs() < 0.2,
-        "{extent:?} {ends:?}"
-    );
     Ok(())
 }
 
@@ -184,6 +191,30 @@ fn a_wheel_on_the_nose_of_a_crossing_is_run_like_any_other() -> Result<()> {
     assert!(right.analysis.plan.error < 1e-11, "{}", right.analysis.plan.error);
     // The other side is extruded.
     assert!(run.parts.last().unwrap().site.contact.placement.lofted().is_none());
+    Ok(())
+}
+
+#[test]
+fn a_single_wheel_stands_on_a_crossing_as_that_of_a_wheelset_does() -> Result<()> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/crossing");
+    let text = std::fs::read_to_string(folder.join("crossing.toml")).unwrap();
+    let rail = text.split("[right.rail]").nth(1).unwrap().split("\n\n").next().unwrap();
+    let text = format!(
+        "[rail]{rail}\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n[contact]\noffset = 0.0\nalong = 160.0\n[patch]\napproach = 0.05"
+    );
+    let run = Run::new(scene::resolve(&scene::parse(&text, false)?, &folder, "")?, SILENT)?;
+    let patch = run.parts[0].analysis.patch.as_ref().unwrap();
+    assert!(patch.area() > 10.0 && patch.area() < 400.0, "{}", patch.area());
+    assert!(run.parts[0].analysis.separation.iter().all(|s| s.is_finite()));
+    Ok(())
+}
+
+#[test]
+fn wing_and_nose_share_a_load() -> Result<()> {
+    let run = run(122.5, "[patch]\nload = 1.0e5")?;
+    let right = run.parts.iter().filter(|part| part.site.side() == Some(TrackSide::Right));
+    let areas: Vec<f64> = right.map(|part| part.analysis.patch.as_ref().unwrap().area()).collect();
+    assert!(!areas.is_empty() && areas.iter().all(|area| *area > 1.0 && *area < 1000.0), "{areas:?}");
     Ok(())
 }
 
