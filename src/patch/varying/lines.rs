@@ -26,8 +26,9 @@ const HALVINGS: i32 = 24;
 const POINTS: usize = 12;
 const BEYOND: f64 = 0.25;
 
-/// Distance of two lines, in roundings of ξ or of 1 mm, at which none is laid between them.
-const NEAREST: f64 = 8.0;
+/// Distance of two lines, in mm or as a share of ξ, at which none is laid between them: nearer to a tip the rounding of s, 1e-11 mm at
+/// most, makes intervals come and go, and bands of no length.
+const NEAREST: f64 = 1e-10;
 
 /// Most lines: where s is noise of the size of δ, intervals come and go on every line.
 const MOST_LINES: usize = 20_000;
@@ -187,7 +188,7 @@ impl<'a> Varying<'a> {
                 out.push(next);
                 continue;
             };
-            let nearest = NEAREST * f64::EPSILON * last.xi.abs().max(next.xi.abs()).max(1.0);
+            let nearest = NEAREST * last.xi.abs().max(next.xi.abs()).max(1.0);
             if next.xi - last.xi <= nearest || out.len() > MOST_LINES {
                 out.push(next);
                 continue;
