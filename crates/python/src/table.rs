@@ -68,6 +68,21 @@ pub(crate) fn table(
 ///
 /// `ContactTable(path)` reads a `table.wrp`. Calling it looks up: `table(lateral)` gives the quantities of the wheelset by their names, and
 /// under "left" and "right" those of each side, an array each; what does not exist is NaN.
+///
+///     >>> from pathlib import Path
+///     >>> from tempfile import mkdtemp
+///     >>> folder = Path(mkdtemp())
+///     >>> scene = folder / "scene.toml"
+///     >>> _ = scene.write_text("""
+///     ... rail = { profile = "60E1", rotate = "1:40" }
+///     ... wheel = { profile = "S1002", radius = 460.0 }
+///     ... track = { spacing = 1500.0 }
+///     ... wheelset = { spacing = 1500.0 }
+///     ... """)
+///     >>> made = wr.table(scene, (-2.0, 2.0), tolerance=1e-3, out=folder / "table")
+///     >>> read = wr.ContactTable(folder / "table" / "table.wrp")
+///     >>> bool(read([1.5])["right"]["rolling_radius_mm"][0] == made([1.5])["right"]["rolling_radius_mm"][0])
+///     True
 #[pyclass(module = "wheelrail", frozen)]
 pub(crate) struct ContactTable {
     table: wheelrail::table::ContactTable,
