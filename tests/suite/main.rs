@@ -16,6 +16,7 @@ mod common;
 mod conformal;
 mod conformal_brute;
 mod conicity;
+mod continuity;
 mod doubts;
 mod flange_backs;
 mod flood_fill;
