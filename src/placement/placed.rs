@@ -7,7 +7,7 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::{Isometry2, Translation2, UnitComplex};
 
 use crate::error::{Error, Result, finite};
-use crate::profile::{Profile, ProfilePoint, Section, Side, Station};
+use crate::profile::{Profile, ProfilePoint, Section, Side};
 
 /// How a body is swept from its profile.
 #[derive(Debug, Clone, Copy, PartialEq)]
