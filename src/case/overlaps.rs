@@ -2,7 +2,7 @@
 
 use nalgebra::Point2;
 
-use super::wheel::RegionRules;
+use super::input::FrameOrigin;
 use crate::load::{WeightedFrame, weighted_frame};
 use crate::mesh::{CELLS_REACHED, GridGroup, groups};
 use crate::patch::{Patch, Window};
@@ -11,6 +11,19 @@ use crate::placement::Placement;
 /// Distance \[mm\] of two parts, beyond that at which they are joined, over which their angles turn from the one that they have together
 /// to their own. CONTACT turns angles over 4 mm unless told otherwise.
 const TURNED_OVER: f64 = 4.0;
+
+/// What makes parts of a patch one region, and where its frame is.
+#[derive(Clone, Copy)]
+pub(super) struct RegionRules {
+    /// Parts closer than this \[mm\] are joined.
+    pub merge: f64,
+    /// Steps of the grids \[mm\]: parts that the grid of another one would cut are joined.
+    pub spacing: Option<[f64; 2]>,
+    /// Whether all parts of the patch of a place are its own: no other place stands for them.
+    pub alone: bool,
+    /// Origin and angle of a region's frame.
+    pub frame: FrameOrigin,
+}
 
 /// A part of the overlap that is one region, in the upright frame in which it was found.
 #[derive(Debug, Clone)]

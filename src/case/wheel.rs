@@ -9,7 +9,7 @@ use std::sync::Arc;
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 
 use super::input::FrameOrigin;
-use super::overlaps::{Overlap, overlaps};
+use super::overlaps::{Overlap, RegionRules, overlaps};
 use crate::error::Result;
 use crate::load::{HalfSpace, Located, Pressures, WeightedFrame, curvatures, press, under_total};
 use crate::mesh::groups;
@@ -35,19 +35,6 @@ pub(super) struct Wheel<'a> {
     rules: RegionRules,
     /// The pair in a frame whose ζ is vertical, once it was asked for.
     upright: Option<Placement>,
-}
-
-/// What makes parts of a patch one region, and where its frame is.
-#[derive(Clone, Copy)]
-pub(super) struct RegionRules {
-    /// Parts closer than this \[mm\] are joined.
-    pub merge: f64,
-    /// Steps of the grids \[mm\]: parts that the grid of another one would cut are joined.
-    pub spacing: Option<[f64; 2]>,
-    /// Whether all parts of the patch of a place are its own: no other place stands for them.
-    pub alone: bool,
-    /// Origin and angle of a region's frame.
-    pub frame: FrameOrigin,
 }
 
 /// A place of contact that the wheel closes as it sinks.

@@ -1,11 +1,10 @@
 //! A placed pair: contact frame ξηζ and both profiles in it (Report Sec. 4).
 
-mod reframed;
-
 use std::sync::{Arc, OnceLock};
 
-use nalgebra::{Isometry2, Translation2, UnitComplex};
+use nalgebra::{Isometry2, Point2, Translation2, UnitComplex};
 
+use super::along::wheel_along;
 use crate::error::{Error, Result, finite};
 use crate::profile::{Profile, ProfilePoint, Section, Side};
 
@@ -415,6 +414,37 @@ impl Placement {
     #[must_use]
     pub fn without_skew(&self) -> Self {
         Self { skew: 0.0, ..self.clone() }
+    }
+
+    /// The same bodies in another frame: its origin lies on the rail at `rail_x` \[mm\], its ξ at `angle` \[rad\] in the rail profile's
+    /// axes. The wheel does not move, so that s at the new origin is what it was there, along the new ζ; neither body is
+    /// smooth in the sense of [`Body::is_smooth`].
+    ///
+    /// Under a skewed wheel the new ζ lies in a plane through the axle, as it has to, once the origin moves along the rail by
+    /// what [`Self::ahead`] tells; the skew changes as well.
+    ///
+    /// # Errors
+    /// An abscissa off the rail; a skewed wheel over a roller, on which nothing moves along a straight line.
+    pub fn reframed(&self, rail_x: f64, angle: f64) -> Result<Self> {
+        if self.skew != 0.0 && self.rail.generator() != Generator::Extruded {
+            let found = format!("a skew of {} rad over a roller", self.skew);
+            let advice = "keep the frame of the contact point";
+            return Err(Error::new("contact", found, "a wheel without yaw, or a rail", advice));
+        }
+        let mut point = self.rail.swept.point(rail_x).map_err(|e| e.within("contact: rail_x"))?;
+        let here = self.rail.contact_frame();
+        let origin = here.inverse_transform_point(&Point2::new(point.station.x, point.station.z));
+        let turn = UnitComplex::new(angle) * here.rotation.inverse();
+        let along = here.rotation * turn;
+        (point.station.cos, point.station.sin) = (along.re, along.im);
+        let rail = Body::in_frame(&self.rail.swept, point);
+        let mut on_wheel = self.wheel.point;
+        let ([ahead, skew], station) =
+            wheel_along((&self.wheel.contact_frame(), self.skew, self.rolling_radius()), origin, turn);
+        on_wheel.station = station;
+        let wheel = Body::in_frame(&self.wheel.swept, on_wheel);
+        let ahead = self.ahead + ahead;
+        Ok(Self { rail, wheel, skew, ahead, at_contact: false, under: OnceLock::new(), ..self.clone() })
     }
 
     /// How far \[mm\] the frame's origin lies ahead of the contact point C along η: 0 but in a frame by [`Self::reframed`] under a
