@@ -20,7 +20,7 @@ const APPROACH: f64 = 0.05;
 
 /// Distance of the window from the ends of a rail \[mm\]: light rails end within the half width, and meshes do not resolve
 /// points on the edge of a head.
-const EDGE: f64 = 2.0;
+const EDGE: f64 = 4.0;
 
 /// A placed pair to be checked, with the place of the check.
 #[derive(Debug, Clone)]
