@@ -134,6 +134,8 @@ struct Compared {
     name: String,
     areas: [f64; 2],
     parts: [Vec<Window>; 2],
+    /// Sides of a cell of the fill \[mm\]: its boxes err by one.
+    cell: [f64; 2],
 }
 
 impl Compared {
@@ -148,9 +150,11 @@ impl Compared {
         let found: Vec<Window> =
             patch.components.iter().map(|part| Window { xi: part.xi, eta: part.eta }).collect();
         let around = coarse.parts().into_iter().chain(found.iter().copied()).reduce(joined).unwrap_or(window);
-        let fine = Filled::new(&gap, approach, &wider(&around, &window), CELLS);
+        let box_of_fill = wider(&around, &window);
+        let fine = Filled::new(&gap, approach, &box_of_fill, CELLS);
+        let cell = [box_of_fill.xi, box_of_fill.eta].map(|[low, high]| (high - low) / CELLS as f64);
         let name = format!("{}, δ = {approach}", placed.name);
-        Self { name, areas: [patch.area(), fine.area()], parts: [found, fine.parts()] }
+        Self { name, areas: [patch.area(), fine.area()], parts: [found, fine.parts()], cell }
     }
 
     /// Says what differs.
@@ -158,9 +162,9 @@ impl Compared {
         let [found, filled] = &self.parts;
         let area = (self.areas[0] / self.areas[1] - 1.0).abs();
         let near = |a: &Window, b: &Window| {
-            [(a.xi, b.xi), (a.eta, b.eta)].iter().all(|(a, b)| {
+            [(a.xi, b.xi), (a.eta, b.eta)].iter().zip(self.cell).all(|((a, b), cell)| {
                 let size = (a[1] - a[0]).max(b[1] - b[0]);
-                (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) <= EXTENT * size
+                (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) <= (EXTENT * size).max(cell)
             })
         };
         let agree = found.len() == filled.len() && found.iter().all(|a| filled.iter().any(|b| near(a, b)));

@@ -521,8 +521,10 @@ fn a_last_digit_of_an_inclination_moves_s_by_as_much() {
                     for eta in [0.0, -7.0, 15.0] {
                         let [a, b] = evaluators.each_mut().map(|e| e.separation(xi, eta));
                         let allowed = 2.0 * PROMISED + lever * change.abs();
+                        // Light rails end before 30 mm.
+                        let nowhere = a.is_nan() && b.is_nan();
                         assert!(
-                            (a - b).abs() <= allowed,
+                            nowhere || (a - b).abs() <= allowed,
                             "{name} {angle} {change:e}: s({xi}, {eta}) = {a}, {b}"
                         );
                     }
