@@ -36,10 +36,10 @@ pub(crate) struct AverageArguments {
     #[arg(long, value_name = "FROM:TO", value_delimiter = ',', allow_hyphen_values = true)]
     unworn: Vec<String>,
     /// Format of the average: miniprof, simpack, gensys, text or csv.
-    #[arg(long, default_value = "text")]
+    #[arg(long, value_name = "FORMAT", default_value = "text")]
     to: String,
     /// File of the average; stdout if not given.
-    #[arg(long)]
+    #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Table of the average with its spread, in addition.
     #[arg(long, value_name = "FILE.csv")]

@@ -82,7 +82,7 @@ pub(crate) struct MeasureArguments {
     #[arg(long, requires = "limits")]
     fail: bool,
     /// File to write; stdout if not given.
-    #[arg(long)]
+    #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     #[command(flatten)]
     measured: MeasuredArguments,

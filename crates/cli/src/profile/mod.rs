@@ -35,7 +35,7 @@ pub(super) enum ProfileCommand {
         #[command(flatten)]
         source: SourceArguments,
         /// File to write, .svg or .png; SVG to stdout if not given.
-        #[arg(long)]
+        #[arg(long, value_name = "FILE")]
         out: Option<PathBuf>,
     },
     /// Write a profile in another format.
