@@ -1,19 +1,15 @@
 //! How far noise of the measurement moves the contact geometry of a wheelset: seeded samples of the whole computation.
 
-use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::error::{Error, Result, finite};
-use crate::measured::noise::{Deviates, LEAST_SAMPLES, POINT_STEP, Remeasured, Spread};
+use crate::measured::noise::{Deviates, POINT_STEP, Remeasured, Sampled, Spread, check_samples, sampled};
 use crate::placement::{Pair, WheelDistance, Wheelset};
 use crate::profile::{Profile, Side};
 use crate::search::{
     AMPLITUDE, Conicity, GeometryAt, Roll, SideOnTrack, WheelsetOnTrack, active_faces,
     amplitude_of_clearance, gauge, geometry_over, nonlinearity,
 };
-
-/// Largest number of samples.
-const MOST: usize = 1_000_000;
 
 /// Amplitude up to which the samples' conicity is tabulated \[mm\]: that of the nonlinearity parameter.
 const REACH: f64 = 4.0;
@@ -86,12 +82,7 @@ impl Noise {
             let expected = "a standard deviation above 0 of points, radius or gauge";
             return Err(Error::new("noise", "no noise", expected, "give one, for example points=0.02"));
         }
-        if !(LEAST_SAMPLES..=MOST).contains(&self.samples) {
-            let expected =
-                format!("{LEAST_SAMPLES} to {MOST}: each end of the interval needs samples beyond it");
-            return Err(Error::new("noise: samples", self.samples.to_string(), expected, "correct it"));
-        }
-        Ok(())
+        check_samples(self.samples)
     }
 }
 
@@ -147,20 +138,13 @@ pub(super) fn uncertainty(
     let amplitude = clearance.map_or(f64::NAN, amplitude_of_clearance);
     let side = |side, pair| NoisySide::new(side, pair, noise.step).map_err(|error| error.within("noise"));
     let sides = [side(system.left(), pairs[0])?, side(system.right(), pairs[1])?];
-    let sample = |number: usize| -> Result<[f64; UNCERTAIN.len()]> {
-        let mut deviates = Deviates::new(noise.seed, number as u64);
+    let Sampled { failed, spreads } = sampled(noise.samples, noise.seed, |deviates| {
         let widened = noise.gauge * deviates.draw();
-        let left = sides[0].sample(noise, widened, &mut deviates)?;
-        let right = sides[1].sample(noise, widened, &mut deviates)?;
+        let left = sides[0].sample(noise, widened, deviates)?;
+        let right = sides[1].sample(noise, widened, deviates)?;
         quantities(&WheelsetOnTrack::of_sides(left, right), roll, amplitude)
-    };
-    let samples: Vec<_> = (0..noise.samples).into_par_iter().map(sample).collect();
-    let failed = samples.iter().filter(|sample| sample.is_err()).count();
-    if let (true, Some(Err(error))) = (failed == samples.len(), samples.first()) {
-        return Err(error.clone().within("noise: every sample"));
-    }
-    let spread = |k: usize| Spread::of(samples.iter().flatten().map(|sample| sample[k]));
-    Ok(Uncertainty { noise: *noise, failed, spreads: std::array::from_fn(spread) })
+    })?;
+    Ok(Uncertainty { noise: *noise, failed, spreads })
 }
 
 /// Gives the quantities of [`UNCERTAIN`]; NaN where there is none.

@@ -10,11 +10,13 @@ mod fit;
 mod found;
 mod limits;
 mod measures;
+mod noise;
 mod nominal;
 mod options;
 mod overlay;
 mod quantity;
 mod rail;
+mod repeats;
 mod rows;
 #[cfg(test)]
 mod tests;
@@ -24,10 +26,12 @@ pub use align::Alignment;
 pub use average::{Average, AveragePoint, average};
 pub use limits::{Limit, Limits};
 pub use measures::Measures;
+pub use noise::{PointNoise, measure_noisy};
 pub use options::{Align, GaugeFrom, MeasureOptions};
 pub use overlay::{Overlay, overlay};
 pub use quantity::Quantity;
-pub use rows::{Row, csv, json, table};
+pub use repeats::repeated;
+pub use rows::{Row, RowColumns, csv, json, table};
 
 use align::Aligned;
 use found::Found;
@@ -70,30 +74,53 @@ pub fn measure(
     options: &MeasureOptions,
 ) -> Result<Measures> {
     options.validate(side, nominal.is_some())?;
-    let none = |why: String| Measures {
-        side,
-        values: Default::default(),
-        if_off: Default::default(),
-        alignment: None,
-        findings: vec![why],
-    };
     let nominal = match nominal.map(|nominal| Nominal::new(nominal, side)).transpose() {
         Ok(nominal) => nominal,
-        Err(why) => return Ok(none(format!("in the nominal: {why}"))),
+        Err(why) => return Ok(Measures::none(side, format!("in the nominal: {why}"))),
     };
-    let (aligned, nominal, lost) = match align::align(profile, side, nominal.as_ref(), options) {
-        Ok(aligned) => (aligned, nominal, None),
-        // What needs no nominal is measured in the profile's own axes.
+    Ok(match laid(profile, side, nominal.as_ref(), options) {
+        Ok(laid) => laid.measures(side, options),
+        Err(why) => Measures::none(side, why),
+    })
+}
+
+/// An aligned profile with the nominal that it is aligned on, if there is one.
+struct Laid<'a> {
+    aligned: Aligned,
+    nominal: Option<&'a Nominal<'a>>,
+    /// Why it lies in its own axes though there is a nominal.
+    lost: Option<String>,
+}
+
+/// Aligns a profile; where its nominal does not help, in its own axes, in which what needs no nominal is measured.
+fn laid<'a>(
+    profile: &Profile,
+    side: Side,
+    nominal: Option<&'a Nominal<'a>>,
+    options: &MeasureOptions,
+) -> std::result::Result<Laid<'a>, String> {
+    match align::align(profile, side, nominal, options) {
+        Ok(aligned) => Ok(Laid { aligned, nominal, lost: None }),
         Err(why) => match nominal.and_then(|_| alone(profile, side, options)) {
-            Some(aligned) => (aligned, None, Some(format!("{why}: no wear, the rest in its own axes"))),
-            None => return Ok(none(why)),
+            Some(aligned) => {
+                let lost = Some(format!("{why}: no wear, the rest in its own axes"));
+                Ok(Laid { aligned, nominal: None, lost })
+            }
+            None => Err(why),
         },
-    };
-    let found = at(&aligned, side, nominal.as_ref(), options, &Station::AXES);
-    let if_off = if_off(&aligned, side, nominal.as_ref(), options, &found);
-    let doubts = aligned.alignment.doubt.iter().cloned().chain(gains(found.values()));
-    let findings = lost.into_iter().chain(doubts).chain(found.findings()).collect();
-    Ok(Measures { side, values: found.values(), if_off, alignment: Some(aligned.alignment), findings })
+    }
+}
+
+impl Laid<'_> {
+    fn measures(self, side: Side, options: &MeasureOptions) -> Measures {
+        let Self { aligned, nominal, lost } = self;
+        let found = at(&aligned, side, nominal, options, &Station::AXES);
+        let if_off = if_off(&aligned, side, nominal, options, &found);
+        let doubts = aligned.alignment.doubt.iter().cloned().chain(gains(found.values()));
+        let findings = lost.into_iter().chain(doubts).chain(found.findings()).collect();
+        let alignment = Some(aligned.alignment);
+        Measures { values: found.values(), if_off, alignment, findings, ..Measures::empty(side) }
+    }
 }
 
 /// Aligns a profile as if there were no nominal; `None` if that fails, too.

@@ -1,6 +1,7 @@
 //! What profiles are put on: the flange back from which X counts, the running head, and the nominal profile with both.
 
 use super::curve::Curve;
+use crate::error::{self, Error};
 use crate::profile::{Profile, Side, Station, last_groove};
 
 /// Places \[mm\] of a flange's tip right of x = 0 that show that x = 0 is at the flange back: flanges are 20 to 40 mm thick.
@@ -43,6 +44,12 @@ impl<'a> Nominal<'a> {
         let curve = sized(profile)?;
         let back = if side == Side::Wheel { own_back(&curve)?.x } else { 0.0 };
         Ok(Self { profile, curve, back })
+    }
+
+    /// The same, with an error that names the profile.
+    pub fn named(profile: &'a Profile, side: Side) -> error::Result<Self> {
+        let advice = "give the whole profile";
+        Self::new(profile, side).map_err(|why| Error::new(&profile.name, why, "a whole nominal", advice))
     }
 }
 

@@ -1,6 +1,7 @@
 //! Closed forms of drawings, and known wear under a known displacement.
 
 mod page;
+mod spread;
 
 use super::curve::Curve;
 use super::*;

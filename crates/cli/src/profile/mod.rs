@@ -5,6 +5,7 @@ mod convert;
 mod measure;
 mod options;
 mod plot;
+mod several;
 mod show;
 mod source;
 

@@ -70,11 +70,13 @@ function go(to) {
     [before.disabled, after.disabled] = [at === 0, at === files.length - 1];
     number.value = `${at + 1} of ${files.length}`;
     const [largest, times] = scale(file);
-    heading.textContent = file.differences.length ? `Differences along the normal × ${times}; the largest is ${fixed(largest, 3)} mm` : file.measured.length ? "The profile" : "No profile";
+    heading.textContent = file.differences.length ? `Differences along the normal × ${times}; the largest is ${fixed(largest, 3)} mm` : file.measured.length ? "The profile" : "No profile of its own";
+    sheet.canvas.hidden = file.measured.length === 0;
     alignment.value = file.alignment;
     names.hidden = file.differences.length === 0;
-    const rows = file.measures.map(([text, value, off, unit]) => element("tr", {}, element("th", { scope: "row" }, text), ...[value, off && `± ${off}`, unit].map((cell) => element("td", {}, cell))));
-    values.replaceChildren(element("table", {}, element("caption", {}, "Measures"), element("tbody", {}, ...rows)));
+    const interval = file.measures.some((row) => row[4]);
+    const rows = file.measures.map(([text, ...cells]) => element("tr", {}, element("th", { scope: "row" }, text), ...cells.slice(0, interval ? 4 : 3).map((cell) => element("td", {}, cell))));
+    values.replaceChildren(element("table", {}, element("caption", {}, interval ? "Measures, what their alignment is worth, and their intervals" : "Measures, and what their alignment is worth"), element("tbody", {}, ...rows)));
     const list = (label, items) => (items.length ? [element("ul", { class: "warnings", "aria-label": label }, ...items.map((text) => element("li", {}, text)))] : []);
     lists.replaceChildren(...list("Broken limits", file.broken), ...list("Findings", file.findings));
     sheet.refresh();
@@ -86,7 +88,7 @@ page.replaceChildren(
     element("div", { class: "head" }, element("div", { class: "slider" }, element("label", { for: "file" }, "File"), chosen, before, after, number)),
     lists,
     element("div", { class: "fleet" }, element("figure", {}, heading, sheet.canvas, names, alignment), values),
-    element("footer", {}, element("p", {}, "± is the largest change of a value if the profile lay 0.1 mm or 0.1° otherwise: what its alignment is worth. The left and right arrows go through the files.")),
+    element("footer", {}, element("p", {}, "± is the largest change of a value if the profile lay 0.1 mm or 0.1° otherwise: what its alignment is worth. An interval holds 95 % of the samples of noise, or of further measurements; the ± behind it is the sampling error of its ends. The left and right arrows go through the files.")),
 );
 page.addEventListener("keydown", (event) => {
     const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
