@@ -151,7 +151,10 @@ fn at(
 ) -> Found {
     let curve = aligned.curve.placed(motion);
     match side {
-        Side::Wheel => wheel::measure(&curve, aligned.back, nominal, options),
+        Side::Wheel => {
+            let back = (aligned.back, aligned.no_back.as_deref());
+            wheel::measure(&curve, back, nominal, options)
+        }
         Side::Rail => rail::measure(&curve, nominal, options),
     }
 }
