@@ -54,14 +54,16 @@ fn file(
         let rms = of.residual.map_or_else(String::new, |rms| format!("; residual {rms:.4} mm"));
         format!("{}: {}{rms}", of.align.word(), of.text)
     });
-    let number = |value: f64| format!("{value:.3}");
+    // No line breaks within a number and its sign or unit.
     let values = Quantity::ALL.into_iter().filter_map(|quantity| {
         let value = measures?.value(quantity)?;
-        let off = measures?.if_off(quantity).map_or_else(String::new, |off| format!("± {off:.3}"));
+        let off = measures?.if_off(quantity).map_or_else(String::new, |off| format!("±\u{a0}{off:.3}"));
         let interval = measures?.spread(quantity).map_or_else(String::new, |of| {
-            format!("{:.3} to {:.3} (± {:.3})", of.low, of.high, of.low_error.max(of.high_error))
+            let error = of.low_error.max(of.high_error);
+            format!("{:.3} to\u{a0}{:.3} (±\u{a0}{error:.3})", of.low, of.high)
         });
-        Some([quantity.text().into(), number(value), quantity.unit().into(), off, interval])
+        let value = format!("{value:.3}\u{a0}{}", quantity.unit());
+        Some([quantity.text().into(), value, off, interval])
     });
     MeasuredPage {
         name: row.file.clone(),

@@ -1,10 +1,10 @@
 //! How far noise of the points spreads the quantities of a profile: seeded samples of the whole measurement.
 
 use super::measures::Measures;
+use super::measuring::{at, laid, measure};
 use super::nominal::Nominal;
 use super::options::MeasureOptions;
 use super::quantity::Quantity;
-use super::{at, laid, measure};
 use crate::error::{Error, Result, finite};
 use crate::measured::noise::{Deviates, POINT_STEP, Remeasured, Sampled, check_samples, sampled};
 use crate::measured::{CurveKind, Options};

@@ -68,10 +68,15 @@ pub(super) fn sized(profile: &Profile) -> Result<Curve, String> {
 /// itself; and how it was found.
 pub(super) fn own_back(curve: &Curve) -> Result<Back, String> {
     let tip = curve.highest(-1.0).map_or(f64::NAN, |tip| tip.x);
-    if tip > TIP_FROM_BACK[0] && tip < TIP_FROM_BACK[1] {
+    if is_from_back(tip) {
         return Ok(Back { x: 0.0, how: "the file's x = 0".into(), doubt: None });
     }
     back_of(curve)
+}
+
+/// Whether the tip of a flange may be so far from its back \[mm\].
+pub(super) fn is_from_back(tip: f64) -> bool {
+    tip > TIP_FROM_BACK[0] && tip < TIP_FROM_BACK[1]
 }
 
 /// Returns x of the flange back: of a line through the lowest 10 mm where it is upright, at their middle; otherwise of the leftmost

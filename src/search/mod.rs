@@ -49,8 +49,8 @@ mod walk;
 mod wheelset;
 
 pub use geometry::{
-    AMPLITUDE, ContactBand, GeometryAt, KeyFigures, active_faces, amplitude_of_clearance, gauge,
-    geometry_over, key_figures, nonlinearity,
+    AMPLITUDE, ContactBand, GeometryAt, KeyFigures, active_faces, gauge, geometry_over, key_figures,
+    nonlinearity,
 };
 pub use lofted::LoftedPair;
 pub use march::{Event, EventKind, March, Stop};

@@ -24,8 +24,8 @@ pub struct MeasuredPage {
     pub differences: Vec<f64>,
     /// How it was aligned.
     pub alignment: String,
-    /// Quantity in words, value, unit, how far it moves if the alignment is off, the interval of its spread; empty where there is none.
-    pub measures: Vec<[String; 5]>,
+    /// Quantity in words, value with unit, how far it moves if the alignment is off, the interval of its spread; empty where there is none.
+    pub measures: Vec<[String; 4]>,
     /// The limits that it breaks.
     pub broken: Vec<String>,
     /// What cannot be had and why, and what is doubtful.

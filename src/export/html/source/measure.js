@@ -35,18 +35,32 @@ function scale({ differences }) {
     return [largest, MAGNIFIED.find((times) => times * largest <= LONGEST) ?? 1];
 }
 
+/** The differences of a file as arrows, so many times as long. */
+function magnified({ differences }, times) {
+    return differences.map(([x, z, u, v]) => [[x, z], [x + times * (u - x), z + times * (v - z)]]);
+}
+
+/** The extent of points along one axis, with a margin. */
+function range(all, k) {
+    const values = all.map((point) => point[k]);
+    return [Math.min(...values) - 2, Math.max(...values) + 2];
+}
+
+/** The shape of a sheet that a drawing of a file in true scale fills; a sixth of the width is for the names of the axis. */
+function shape(file, times) {
+    const all = [...file.nominal, ...file.measured, ...magnified(file, times).flat()];
+    const [wide, high] = [0, 1].map((k) => range(all, k)).map(([from, to]) => to - from);
+    return `${wide} / ${high + wide / 6}`;
+}
+
 const sheet = new Sheet("The profile over its nominal, with magnified differences", (context, width, height) => {
     const file = files[at];
     const colours = theme();
     const [, times] = scale(file);
-    const arrows = file.differences.map(([x, z, u, v]) => [[x, z], [x + times * (u - x), z + times * (v - z)]]);
+    const arrows = magnified(file, times);
     const all = [...file.nominal, ...file.measured, ...arrows.flat()];
     if (all.length === 0) return;
-    const range = (k) => {
-        const values = all.map((point) => point[k]);
-        return [Math.min(...values) - 2, Math.max(...values) + 2];
-    };
-    const plot = Plot.trueScale(context, [60, 8, width - 70, height - 50], range(0), range(1));
+    const plot = Plot.trueScale(context, [60, 8, width - 70, height - 50], range(all, 0), range(all, 1));
     plot.line(file.nominal, colours.rail, 1.2);
     plot.line(file.measured, colours.wheel, 1.8);
     plot.lines(arrows, colours.boundary, 1);
@@ -72,10 +86,11 @@ function go(to) {
     const [largest, times] = scale(file);
     heading.textContent = file.differences.length ? `Differences along the normal × ${times}; the largest is ${fixed(largest, 3)} mm` : file.measured.length ? "The profile" : "No profile of its own";
     sheet.canvas.hidden = file.measured.length === 0;
+    if (file.measured.length) sheet.canvas.style.aspectRatio = shape(file, times);
     alignment.value = file.alignment;
     names.hidden = file.differences.length === 0;
-    const interval = file.measures.some((row) => row[4]);
-    const rows = file.measures.map(([text, ...cells]) => element("tr", {}, element("th", { scope: "row" }, text), ...cells.slice(0, interval ? 4 : 3).map((cell) => element("td", {}, cell))));
+    const interval = file.measures.some((row) => row[3]);
+    const rows = file.measures.map(([text, ...cells]) => element("tr", {}, element("th", { scope: "row" }, text), ...cells.slice(0, interval ? 3 : 2).map((cell) => element("td", {}, cell))));
     values.replaceChildren(element("table", {}, element("caption", {}, interval ? "Measures, what their alignment is worth, and their intervals" : "Measures, and what their alignment is worth"), element("tbody", {}, ...rows)));
     const list = (label, items) => (items.length ? [element("ul", { class: "warnings", "aria-label": label }, ...items.map((text) => element("li", {}, text)))] : []);
     lists.replaceChildren(...list("Broken limits", file.broken), ...list("Findings", file.findings));
