@@ -45,7 +45,7 @@ impl WheelsetOnTrack {
     /// Prepares a pair of profiles on both sides of a track, the left side being the mirror image.
     ///
     /// # Errors
-    /// The errors of [`ProfilePair::new`], [`Track::new`] and [`Wheelset::new`].
+    /// The errors of [`SideOnTrack::new`], [`Track::new`] and [`Wheelset::new`].
     pub fn new(pair: &Pair, rails: RailDistance, wheels: WheelDistance) -> Result<Self> {
         let track = Track::new(pair.rail(), rails)?;
         SideOnTrack::new(pair, track, Wheelset::new(wheels, pair.wheel_radius())?).map(Self::symmetrical)
