@@ -1,9 +1,10 @@
 //! Contact geometry of a wheelset over its lateral displacement, in the terms of EN 15302: Δr, Δ tan γ, places of contact, roll,
 //! and the figures that are taken from them.
 
+use super::position::{Position, Roll};
 use super::sweep::{Conicity, Equivalent, NoConicity};
 use super::touch::{Contact, Selection};
-use super::wheelset::{Position, Roll, WheelsetOnTrack, WheelsetTouch};
+use super::wheelset::{WheelsetOnTrack, WheelsetTouch};
 use crate::error::Result;
 use crate::placement::Pair;
 use crate::profile::trace;

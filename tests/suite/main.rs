@@ -44,6 +44,7 @@ mod rollers;
 mod slices;
 mod steps;
 mod strips;
+mod tables;
 mod triangles;
 mod two_sides;
 mod yawed_patches;
