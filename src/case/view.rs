@@ -15,7 +15,7 @@ use crate::separation::{EtaAxis, Values, plan};
 const MOST_SHOWN: usize = 16;
 
 /// Points of a page's grid along ξ and along η, for up to four contacts. Boundaries by linear interpolation are then within
-/// some 0.01 of a step of the exact ones.
+/// some 0.01 of a step of the exact ones, and within 0.1 where a joint of the profiles bends them.
 const POINTS: usize = 161;
 
 /// Points of all grids of a page together.
@@ -163,8 +163,8 @@ fn window(part: &Part) -> Window {
 /// Gives the box of ξ and η around the patch on the rail's surface; `None` where there is none.
 fn conformal_box(part: &Part) -> Option<Window> {
     let Window { xi: sigma, eta } = part.analysis.conformal.as_ref()?.patch.as_ref()?.extent()?;
-    let gap = NormalGap::new(&part.site.contact.placement);
-    let [from, to] = sigma.map(|sigma| on_plane(gap.rail(), [sigma, 0.0])[0]);
+    let rail = RailArcLength::new(&part.site.contact.placement);
+    let [from, to] = sigma.map(|sigma| on_plane(&rail, [sigma, 0.0])[0]);
     (from < to).then_some(Window { xi: [from, to], eta })
 }
 

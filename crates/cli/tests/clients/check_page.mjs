@@ -2,10 +2,11 @@
 //
 //     node check_page.mjs BROWSER < JSON
 //
-// The JSON is a list of pages: { name, page, others: [{ contact, delta, loops, area }] }, where `others` are runs of the same
-// scene with another approach, mm: the exact loops of their boundaries and their area (of the gap that the page shows first). A page with `table`, the CSV of a sweep,
-// is that of the sweep. One with `plane`, the boundary over the plane, is of a run over the rail's surface. Keys, pointer, themes and telephone are
-// tried on the first page and on those of more than two contacts. A failed check ends with exit code 1.
+// The JSON is a list of pages: { name, page, others: [{ contact, delta, loops, area, plane }] }, where `others` are runs of the
+// same scene with other approaches, mm: the exact loops of their boundaries and their area, of the gap that the page shows first.
+// Runs over the rail's surface have the loops of s, too, as `plane`. A page with `table`, the CSV of a sweep, is that of the
+// sweep. Keys, pointer, themes and telephone are tried on the first page and on those of more than two contacts. A failed check
+// ends with exit code 1.
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -87,7 +88,7 @@ function around(loops, lines) {
 /** The slider moves the contour to the boundary that a run gives for that δ. */
 async function slider(page, others) {
     const found = [];
-    for (const { contact, delta, loops, area } of others) {
+    for (const { contact, delta, loops, area, plane } of others) {
         await page.locator(`#delta-${contact}`).evaluate((input, share) => {
             input.value = share * input.max;
             input.dispatchEvent(new Event("input"));
@@ -103,11 +104,22 @@ async function slider(page, others) {
         assert.equal(lines.length, loops.length, "as many loops as the run has");
         const distance = farthest(loops, lines, steps);
         const relative = Math.abs(shown / area - 1);
-        assert.ok(distance < WITHIN_STEPS, `contact ${contact}, δ ${delta}: ${distance} steps from the run's boundary`);
+        const within = plane ? await withinOfPlane(page, contact, plane, steps) : WITHIN_STEPS;
+        assert.ok(distance < within, `contact ${contact}, δ ${delta}: ${distance} steps from the run's boundary`);
         assert.ok(relative < WITHIN_AREA, `contact ${contact}, δ ${delta}: area differs by ${relative}`);
         found.push(`δ ${delta}: ${distance.toFixed(4)} steps, area ${relative.toExponential(1)}`);
     }
     return found;
+}
+
+/** Where a joint of the profiles bends the boundaries within a cell, that of t lies no farther off than that of s. */
+async function withinOfPlane(page, contact, plane, steps) {
+    const layer = page.locator(`#layer-${contact}`);
+    await layer.selectOption("separation s");
+    const distance = farthest(plane, await page.evaluate((k) => window.wheelrail.contour(k), contact), steps);
+    await layer.selectOption({ index: 0 });
+    assert.ok(distance < 2 * WITHIN_STEPS, `s = δ is ${distance} steps from the run's boundary`);
+    return Math.max(WITHIN_STEPS, distance);
 }
 
 /** Keys move the cut and δ, every picture is reached by Tab and shows that it is. */
@@ -277,7 +289,7 @@ const profile = mkdtempSync(join(tmpdir(), "wheelrail-pages-"));
 const [executablePath] = process.argv.slice(2);
 const browser = await chromium.launch({ executablePath, args: [...FLAGS, `--disk-cache-dir=${profile}`] });
 try {
-    for (const [number, { name, page: file, others, table, plane }] of JSON.parse(readFileSync(0, "utf8")).entries()) {
+    for (const [number, { name, page: file, others, table }] of JSON.parse(readFileSync(0, "utf8")).entries()) {
         const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, offline: true });
         const page = await open(context, file);
         const drawn = await colours(page);
@@ -294,6 +306,7 @@ try {
         const tried = number === 0 || (await page.evaluate(() => window.wheelrail.contacts.length)) > 2;
         for (const attempt of tried ? [saved, keys, pointer, themes] : []) await attempt(page);
         if (name === "wheelset") await aligned(page);
+        const plane = others[0]?.plane;
         if (plane) await conformal(page, plane);
         assert.deepEqual(page.faults, [], name);
         await context.close();

@@ -113,7 +113,7 @@ fn loop_on_rail(dir: &Path) -> Vec<[f64; 2]> {
     end(2).chain(end(3).rev()).collect()
 }
 
-/// Runs the example over the rail's surface under several approaches, as [`compared`]; the first is to show s, too.
+/// Runs the example over the rail's surface under several approaches, as [`compared`]: its page is to show s, too.
 fn over_the_rail(deltas: &[f64]) -> Value {
     let runs: Vec<PathBuf> = deltas
         .iter()
@@ -129,11 +129,9 @@ fn over_the_rail(deltas: &[f64]) -> Value {
         .collect();
     let other = |(dir, delta): (&PathBuf, &f64)| {
         let area = &summary(dir)["conformal"]["patch"]["area_mm2"];
-        json!({ "contact": 0, "delta": delta, "loops": [loop_on_rail(dir)], "area": area })
+        json!({ "contact": 0, "delta": delta, "loops": [loop_on_rail(dir)], "area": area, "plane": loops(dir) })
     };
-    let mut page = page("flange-root", &runs[0], runs.iter().zip(deltas).map(other).collect());
-    page["plane"] = json!(loops(&runs[0]));
-    page
+    page("flange-root", &runs[0], runs.iter().zip(deltas).map(other).collect())
 }
 
 fn page(name: &str, dir: &Path, others: Vec<Value>) -> Value {
