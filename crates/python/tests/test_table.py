@@ -46,7 +46,7 @@ def test_a_table_says_where_a_wheel_is_off_its_rail(tmp_path: Path) -> None:
         assert np.isnan(values).tolist() == [False, True]
     assert wr.table(SCENE, (0.0, 1.0)).off_rail == []
     scene.write_text(SCENE.read_text().replace('"solve"', '"load"'))
-    with pytest.raises(wr.InputError, match='wheelset: roll: found "load"; expected "solve"'):
+    with pytest.raises(wr.InputError, match='roll: found "load"; expected "solve"'):
         wr.table(scene, (0.0, 1.0))
 
 
