@@ -188,7 +188,7 @@ fn noise_gives_every_quantity_an_interval_in_columns_at_the_end() {
     assert_eq!(table, text(here, &noise, 1));
     text(here, &[&noise[..], &["--html", "m.html"]].concat(), 1);
     let page = fs::read_to_string(here.join("m.html")).unwrap();
-    assert!(page.contains("intervals: noise of 0.02 mm") && page.contains(" to 28."));
+    assert!(page.contains("intervals: noise of 0.02 mm") && page.contains(" to\u{a0}28."));
     for wrong in [
         &["S1002", "--noise", "-0.02"][..],
         &["S1002", "--noise", "0.02", "--samples", "39"],
