@@ -114,6 +114,9 @@ def test_measures_are_those_of_the_command_line_and_say_what_is_missing() -> Non
 def test_noise_and_repeats_give_intervals_that_agree() -> None:
     noise = np.random.default_rng(1)
     x, z = wr.wheel("S1002").points(0.2).T
+    # Not the points beside joints, which noise would put out of order.
+    apart = np.hypot(np.diff(x), np.diff(z)) > 0.15
+    x, z = x[np.append(apart, True)], z[np.append(apart, True)]
     dx, dz = np.gradient(x), np.gradient(z)
 
     def once() -> wr.Profile:
