@@ -11,7 +11,7 @@ use crate::placement::Pair;
 use crate::profile::trace;
 use crate::search::{
     AMPLITUDE, Conicity, ContactBand, GeometryAt, KeyFigures, NoConicity, Roll, TrackSide, TwoStep,
-    WheelsetOnTrack, active_faces, amplitude_of_clearance, gauge, geometry_over,
+    WheelsetOnTrack, active_faces, gauge, geometry_over,
 };
 
 /// Columns of the functions over the lateral displacement, with their definitions. Names that a sweep has mean the same there.
@@ -48,7 +48,7 @@ pub const FUNCTIONS: [(&str, &str); 17] = [
 ];
 
 /// Key figures with their definitions.
-pub const KEY_FIGURES: [(&str, &str); 19] = [
+pub const KEY_FIGURES: [(&str, &str); 17] = [
     ("conicity_3mm", "equivalent conicity tan gamma_e at 3 mm, by the energy integral"),
     ("conicity_3mm_error", "its estimated relative error"),
     ("conicity_3mm_two_step", "the same by two-step integration"),
@@ -57,11 +57,6 @@ pub const KEY_FIGURES: [(&str, &str); 19] = [
     ("gauge_mm", "track gauge TG within 14 mm below the top of rail"),
     ("active_faces_mm", "distance SR of the flanges' faces 10 mm outside of the running circles"),
     ("clearance_mm", "TG - SR"),
-    (
-        "amplitude_mm",
-        "amplitude by the clearance: 3 from TG - SR = 7 on, (TG - SR - 1)/2 between 5 and 7, 2 below",
-    ),
-    ("conicity_amplitude", "equivalent conicity at amplitude_mm"),
     ("centre_mm", "displacement at which delta_r vanishes, about which the wheelset swings"),
     ("left_rail_from_mm", "contact band on the left rail over 3 mm to both sides of the centre: least x"),
     ("left_rail_to_mm", "largest x"),
@@ -326,16 +321,11 @@ fn key_figures(
     let nonlinear = known("nonlinearity parameter", figures.nonlinearity);
     let (gauge, faces) = (gauge(system, pairs), active_faces(system, pairs));
     let clearance = gauge.zip(faces).map(|(gauge, faces)| gauge - faces);
-    let amplitude = clearance.map(amplitude_of_clearance);
-    let at_amplitude = amplitude.map_or(f64::NAN, |amplitude| {
-        known("conicity at the amplitude by the clearance", table.at(amplitude).map(|found| found.conicity))
-    });
     let other = two_step.and_then(|table| table.at(AMPLITUDE).ok()).unwrap_or(f64::NAN);
     let nan = f64::NAN;
     let missing = ContactBand { rail_x: [nan; 2], wheel_x: [nan; 2] };
     let [left, right] = figures.bands.unwrap_or([missing; 2]);
-    let [gauge, faces, clearance, amplitude] =
-        [gauge, faces, clearance, amplitude].map(|value| value.unwrap_or(nan));
+    let [gauge, faces, clearance] = [gauge, faces, clearance].map(|value| value.unwrap_or(nan));
     if clearance.is_nan() {
         findings.push("no clearance: a profile ends above the gauge face or the flange's face".into());
     } else if !USUAL_CLEARANCE.contains(&clearance) {
@@ -351,8 +341,6 @@ fn key_figures(
         gauge,
         faces,
         clearance,
-        amplitude,
-        at_amplitude,
         figures.centre.unwrap_or(nan),
         left.rail_x[0],
         left.rail_x[1],

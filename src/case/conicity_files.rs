@@ -15,6 +15,7 @@ use crate::error::{Error, Result};
 use crate::export::{
     CurvesMap, CurvesPanel, CurvesPicture, PageFigure, PageMap, PlottedCurve, SEPARATOR, SweepPage,
 };
+use crate::measured::noise::spread_text;
 use crate::search::{ONE_CONTACT, ParallelSweep, Position, Roll, Selection, WheelsetOnTrack};
 
 /// Writes the functions over the displacement as CSV: a row a displacement, empty cells where there is no value.
@@ -83,36 +84,16 @@ pub fn conicity_text(report: &ConicityReport) -> String {
         let noise = uncertainty.noise;
         let _ = writeln!(
             text,
-            "\nnoise: points {} mm every {} mm, radius {} mm, gauge {} mm; {} samples of seed {}, {} failed\n\
-             {:<24} {:>12} {:>12}  95 % of the samples, each number with its sampling error",
+            "\nnoise: points {} mm every {} mm, radius {} mm, gauge {} mm; {} samples of seed {}, {} failed",
             noise.points,
             noise.step,
             noise.radius,
             noise.gauge,
             noise.samples,
             noise.seed,
-            uncertainty.failed,
-            "quantity",
-            "mean",
-            "deviation"
+            uncertainty.failed
         );
-        for (name, spread) in UNCERTAIN.iter().zip(&uncertainty.spreads) {
-            let _ = match spread {
-                None => writeln!(text, "{name:<24} too few samples have it"),
-                Some(of) => writeln!(
-                    text,
-                    "{name:<24} {:>12.5} {:>12.5}  {:.5} ± {:.5} to {:.5} ± {:.5} (mean ± {:.5}, deviation ± {:.5})",
-                    of.mean,
-                    of.deviation,
-                    of.low,
-                    of.low_error,
-                    of.high,
-                    of.high_error,
-                    of.mean_error,
-                    of.deviation_error
-                ),
-            };
-        }
+        text += &spread_text(UNCERTAIN.into_iter().zip(uncertainty.spreads.iter().map(Option::as_ref)));
     }
     for finding in &report.findings {
         let _ = writeln!(text, "finding: {finding}");

@@ -1,27 +1,21 @@
 //! How far noise of the measurement moves the contact geometry of a wheelset: seeded samples of the whole computation.
 
-use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::error::{Error, Result, finite};
-use crate::measured::noise::{Deviates, LEAST_SAMPLES, POINT_STEP, Remeasured, Spread};
+use crate::measured::noise::{Deviates, POINT_STEP, Remeasured, Sampled, Spread, check_samples, sampled};
 use crate::placement::{Pair, WheelDistance, Wheelset};
 use crate::profile::{Profile, Side};
 use crate::search::{
-    AMPLITUDE, Conicity, GeometryAt, Roll, SideOnTrack, WheelsetOnTrack, active_faces,
-    amplitude_of_clearance, gauge, geometry_over, nonlinearity,
+    AMPLITUDE, Conicity, GeometryAt, Roll, SideOnTrack, WheelsetOnTrack, geometry_over, nonlinearity,
 };
-
-/// Largest number of samples.
-const MOST: usize = 1_000_000;
 
 /// Amplitude up to which the samples' conicity is tabulated \[mm\]: that of the nonlinearity parameter.
 const REACH: f64 = 4.0;
 
 /// Quantities whose spread under noise is found; those that are key figures have their names.
-pub const UNCERTAIN: [&str; 8] = [
+pub const UNCERTAIN: [&str; 7] = [
     "conicity_3mm",
-    "conicity_amplitude",
     "nonlinearity_per_mm",
     "centre_mm",
     "left_rail_x_mm",
@@ -86,12 +80,7 @@ impl Noise {
             let expected = "a standard deviation above 0 of points, radius or gauge";
             return Err(Error::new("noise", "no noise", expected, "give one, for example points=0.02"));
         }
-        if !(LEAST_SAMPLES..=MOST).contains(&self.samples) {
-            let expected =
-                format!("{LEAST_SAMPLES} to {MOST}: each end of the interval needs samples beyond it");
-            return Err(Error::new("noise: samples", self.samples.to_string(), expected, "correct it"));
-        }
-        Ok(())
+        check_samples(self.samples)
     }
 }
 
@@ -131,9 +120,8 @@ impl NoisySide {
     }
 }
 
-/// Finds the spread of the quantities under noise. Every sample has a stream of deviates of its own: any number of threads gives the same
-/// bits. `pairs` are those of the left and the right side; the amplitude by the clearance is that
-/// without noise.
+/// Finds the spread of the quantities under noise; any number of threads gives the same bits. `pairs` are those of the left and the
+/// right side.
 ///
 /// # Errors
 /// Profiles shorter than the step of the points; noise of which no sample can be computed.
@@ -143,35 +131,24 @@ pub(super) fn uncertainty(
     roll: Roll,
     noise: &Noise,
 ) -> Result<Uncertainty> {
-    let clearance = gauge(system, pairs).zip(active_faces(system, pairs)).map(|(gauge, faces)| gauge - faces);
-    let amplitude = clearance.map_or(f64::NAN, amplitude_of_clearance);
     let side = |side, pair| NoisySide::new(side, pair, noise.step).map_err(|error| error.within("noise"));
     let sides = [side(system.left(), pairs[0])?, side(system.right(), pairs[1])?];
-    let sample = |number: usize| -> Result<[f64; UNCERTAIN.len()]> {
-        let mut deviates = Deviates::new(noise.seed, number as u64);
+    let Sampled { failed, spreads } = sampled(noise.samples, noise.seed, |deviates| {
         let widened = noise.gauge * deviates.draw();
-        let left = sides[0].sample(noise, widened, &mut deviates)?;
-        let right = sides[1].sample(noise, widened, &mut deviates)?;
-        quantities(&WheelsetOnTrack::of_sides(left, right), roll, amplitude)
-    };
-    let samples: Vec<_> = (0..noise.samples).into_par_iter().map(sample).collect();
-    let failed = samples.iter().filter(|sample| sample.is_err()).count();
-    if let (true, Some(Err(error))) = (failed == samples.len(), samples.first()) {
-        return Err(error.clone().within("noise: every sample"));
-    }
-    let spread = |k: usize| Spread::of(samples.iter().flatten().map(|sample| sample[k]));
-    Ok(Uncertainty { noise: *noise, failed, spreads: std::array::from_fn(spread) })
+        let left = sides[0].sample(noise, widened, deviates)?;
+        let right = sides[1].sample(noise, widened, deviates)?;
+        quantities(&WheelsetOnTrack::of_sides(left, right), roll)
+    })?;
+    Ok(Uncertainty { noise: *noise, failed, spreads })
 }
 
 /// Gives the quantities of [`UNCERTAIN`]; NaN where there is none.
-fn quantities(system: &WheelsetOnTrack, roll: Roll, amplitude: f64) -> Result<[f64; UNCERTAIN.len()]> {
+fn quantities(system: &WheelsetOnTrack, roll: Roll) -> Result<[f64; UNCERTAIN.len()]> {
     let table = Conicity::new(system, REACH, roll)?;
-    let at = |amplitude: f64| table.at(amplitude).map_or(f64::NAN, |found| found.conicity);
     let centred = geometry_over(system, &[0.0], roll)?[0];
     let of = |value: fn(&GeometryAt) -> f64| centred.as_ref().map_or(f64::NAN, value);
     Ok([
-        at(AMPLITUDE),
-        at(amplitude),
+        table.at(AMPLITUDE).map_or(f64::NAN, |found| found.conicity),
         nonlinearity(&table).unwrap_or(f64::NAN),
         table.centre().unwrap_or(f64::NAN),
         of(|at| at.contacts[0].rail_x),

@@ -62,7 +62,7 @@ pub const FACTS: [Fact; 26] = [
     number("largest pressure", "N/mm²", &["pressure", "largest_n_per_mm2"], (1.0, 0), |part| {
         Some(part.analysis.pressure.as_ref()?.largest.pressure_n_per_mm2)
     }),
-    number("its error, estimated", "N/mm²", &["pressure", "largest_error_n_per_mm2"], (1.0, 0), |part| {
+    number("its estimated error", "N/mm²", &["pressure", "largest_error_n_per_mm2"], (1.0, 0), |part| {
         Some(part.analysis.pressure.as_ref()?.largest_error)
     }),
     Fact {

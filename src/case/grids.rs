@@ -46,10 +46,13 @@ pub(super) fn grids(asked: &AskedAxes, contact: &PlacedContact) -> Result<Vec<Gr
         return Ok(vec![if *reference == Reference::Rail { on_rail(grid, &rail())? } else { grid }]);
     }
     let patch = contact.whole_patch();
-    let plane = patch.map_or_else(Vec::new, |patch| groups(patch, *merge, *spacing));
+    // In another frame a found contact's patch has its own parts only.
+    let whole = contact.found.is_some() && !contact.placement.is_at_contact();
+    let merge = if whole { f64::INFINITY } else { *merge };
+    let plane = patch.map_or_else(Vec::new, |patch| groups(patch, merge, *spacing));
     let mut groups = match (reference, contact.approach) {
         (Reference::Rail, Some(approach)) => {
-            groups(&Patch::over_rail(&contact.placement, approach, &Window::UNBOUNDED), *merge, *spacing)
+            groups(&Patch::over_rail(&contact.placement, approach, &Window::UNBOUNDED), asked.merge, *spacing)
         }
         _ => plane.clone(),
     };

@@ -154,7 +154,7 @@ pub enum FrameOrigin {
     /// The contact point C and the common tangent there.
     #[default]
     Contact,
-    /// The centre of the overlap and the mean angle of the rail's surface under it; the weight is the squared overlap.
+    /// The centre of the overlap and the mean angle of the rail's surface under it; the weight is the squared vertical overlap.
     Weighted,
 }
 

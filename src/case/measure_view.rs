@@ -1,7 +1,7 @@
 //! What the page of measured profiles shows.
 
 use crate::export::{MeasuredPage, MeasuresPage};
-use crate::measure::{Limits, MeasureOptions, Overlay, Quantity, Row, overlay};
+use crate::measure::{MeasureOptions, Overlay, Quantity, Row, RowColumns, overlay};
 use crate::profile::{Profile, trace};
 
 /// Distance of the points of a profile without a nominal \[mm\].
@@ -12,10 +12,12 @@ pub fn measures_page(
     rows: &[(Row, Option<&Profile>)],
     nominal: Option<&Profile>,
     options: &MeasureOptions,
-    limits: Option<&Limits>,
+    columns: RowColumns,
 ) -> MeasuresPage {
     let about =
         nominal.map_or_else(|| "without a nominal".to_owned(), |nominal| format!("nominal {}", nominal.name));
+    let about =
+        columns.spread.map_or_else(|| about.clone(), |spread| format!("{about}; intervals: {spread}"));
     let title = match rows {
         [(row, _)] => row.file.clone(),
         _ => format!("{} profiles", rows.len()),
@@ -24,7 +26,7 @@ pub fn measures_page(
         title,
         about,
         version: env!("CARGO_PKG_VERSION").into(),
-        files: rows.iter().map(|(row, profile)| file(row, *profile, nominal, options, limits)).collect(),
+        files: rows.iter().map(|(row, profile)| file(row, *profile, nominal, options, columns)).collect(),
     }
 }
 
@@ -33,7 +35,7 @@ fn file(
     profile: Option<&Profile>,
     nominal: Option<&Profile>,
     options: &MeasureOptions,
-    limits: Option<&Limits>,
+    columns: RowColumns,
 ) -> MeasuredPage {
     let measures = row.measured.as_ref().ok();
     let over = profile.zip(nominal).zip(row.side);
@@ -52,11 +54,16 @@ fn file(
         let rms = of.residual.map_or_else(String::new, |rms| format!("; residual {rms:.4} mm"));
         format!("{}: {}{rms}", of.align.word(), of.text)
     });
-    let number = |value: f64| format!("{value:.3}");
+    // No line breaks within a number and its sign or unit.
     let values = Quantity::ALL.into_iter().filter_map(|quantity| {
         let value = measures?.value(quantity)?;
-        let off = measures?.if_off(quantity).map_or_else(String::new, number);
-        Some([quantity.text().into(), number(value), off, quantity.unit().into()])
+        let off = measures?.if_off(quantity).map_or_else(String::new, |off| format!("±\u{a0}{off:.3}"));
+        let interval = measures?.spread(quantity).map_or_else(String::new, |of| {
+            let error = of.low_error.max(of.high_error);
+            format!("{:.3} to\u{a0}{:.3} (±\u{a0}{error:.3})", of.low, of.high)
+        });
+        let value = format!("{value:.3}\u{a0}{}", quantity.unit());
+        Some([quantity.text().into(), value, off, interval])
     });
     MeasuredPage {
         name: row.file.clone(),
@@ -65,7 +72,7 @@ fn file(
         differences: differences.into_iter().flatten().flatten().collect(),
         alignment,
         measures: values.collect(),
-        broken: limits.map_or_else(Vec::new, |limits| row.broken(limits)),
+        broken: columns.limits.map_or_else(Vec::new, |limits| row.broken(limits)),
         findings: row.findings(),
     }
 }

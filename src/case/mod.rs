@@ -26,6 +26,7 @@ mod landmarks;
 mod march;
 mod measure_view;
 mod on_rail;
+mod overlaps;
 mod places;
 mod polylines;
 mod pressure;

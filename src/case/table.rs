@@ -17,12 +17,17 @@ pub const TABLE_FOLDER: Names =
 /// lengths \[mm\]. `hertz` adds Hertz's ellipses under the case's approach or load, as if the lowest place carried its wheel alone.
 ///
 /// # Errors
-/// A single wheel; ellipses without an approach or load; the errors of [`build`].
+/// A single wheel; a roll by the wheels' loads; ellipses without an approach or load; the errors of [`build`].
 pub fn table(case: &Case, lateral: [f64; 2], tolerance: f64, hertz: bool) -> Result<ContactTable> {
     let Place::Wheelset { system, position } = &case.standing.place else {
         let expected = "[track] and [wheelset]";
         return Err(Error::new("table", "a single wheel", expected, "a table is of a wheelset on its track"));
     };
+    if case.standing.roll_by_load {
+        let expected = "\"solve\", \"neglect\" or an angle in rad";
+        let advice = "a table is of wheels at first touch: change it";
+        return Err(Error::new("wheelset: roll", "\"load\"", expected, advice));
+    }
     let modulus = case.question.modulus();
     let pressed = match case.question.approach.filter(|_| hertz) {
         None if hertz => {

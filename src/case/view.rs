@@ -4,7 +4,8 @@ use super::drawn::contact_name;
 use super::facts::{FACTS, Fact};
 use super::polylines::{pairs, thinned};
 use super::run::{Part, Run};
-use crate::export::{PageFrame, PageLoop, PagePressure, ViewContact, ViewPage};
+use crate::conformal::{NormalGap, RailArcLength, fill_normal_gap};
+use crate::export::{PageConformal, PageFrame, PageLoop, PagePressure, ViewContact, ViewPage};
 use crate::mesh::equal_steps;
 use crate::patch::{Patch, Window};
 use crate::search::TrackSide;
@@ -14,7 +15,7 @@ use crate::separation::{EtaAxis, Values, plan};
 const MOST_SHOWN: usize = 16;
 
 /// Points of a page's grid along ξ and along η, for up to four contacts. Boundaries by linear interpolation are then within
-/// some 0.01 of a step of the exact ones.
+/// some 0.01 of a step of the exact ones, and within 0.1 where a joint of the profiles bends them.
 const POINTS: usize = 161;
 
 /// Points of all grids of a page together.
@@ -39,7 +40,8 @@ const BOUNDARY_POINTS: usize = 2000;
 /// Makes the page of a run.
 pub(super) fn view(run: &Run) -> ViewPage {
     let shown = &run.parts[..run.parts.len().min(MOST_SHOWN)];
-    let n = ((ALL_POINTS / shown.len() as f64).sqrt() as usize).min(POINTS);
+    let gaps: usize = shown.iter().map(|part| 1 + usize::from(part.analysis.conformal.is_some())).sum();
+    let n = ((ALL_POINTS / gaps as f64).sqrt() as usize).min(POINTS);
     ViewPage {
         title: run.case.echo.title.clone(),
         about: about(&run.case.echo.scene),
@@ -78,7 +80,7 @@ fn about(scene: &serde_json::Value) -> String {
 /// Says what the page's numbers are, and what it leaves out.
 fn notes(run: &Run, n: usize) -> Vec<String> {
     let mut notes = vec![format!(
-        "Numbers of this page are in single precision, on a grid of {n} × {n} points of its own; s and boundaries of other δ are \
+        "Numbers of this page are in single precision, on a grid of {n} × {n} points of its own; gaps and boundaries of other δ are \
          interpolated linearly. The exact ones are in the files beside it."
     )];
     if run.parts.len() > MOST_SHOWN {
@@ -86,8 +88,8 @@ fn notes(run: &Run, n: usize) -> Vec<String> {
     }
     if run.parts.iter().any(|part| part.analysis.conformal.is_some()) {
         notes.push(
-            "The page shows s over the tangent plane. The gap t along the rail's turning normal, and its patch, are in conformal.svg \
-             and conformal.vts beside it."
+            "The gap t is that along the rail's turning normal, over the same ξ and η as s: δ closes t by δ cos α. Areas of its \
+             patch are those on the rail's surface. The δ of a load, and pressures, are those of s."
                 .into(),
         );
     }
@@ -124,7 +126,8 @@ fn contact(run: &Run, part: &Part, n: usize) -> ViewContact {
             .map(|&xi| rail.branch_at(xi).map_or(f64::NAN, |branch| branch.height(xi)))
             .collect(),
         separation: separation.to_vec(),
-        boundary: patch.map_or_else(Vec::new, boundary),
+        boundary: patch.map_or_else(Vec::new, |patch| boundary(patch, |point| point)),
+        conformal: conformal(part, &xi, &axis, question.tolerance),
         pressed: pressed(part),
         pressure: pressure(part),
         facts: facts(part),
@@ -142,14 +145,12 @@ fn window(part: &Part) -> Window {
         let Window { xi, eta } = part.site.window();
         return Window { xi: with_extent(xi), eta: with_extent(eta) };
     };
+    let inner = conformal_box(part).map_or(inner, |Window { xi, eta }| inner.with(xi, eta));
     let largest = (SHOWN * patch.approach).min(f64::MAX);
     let wide = Patch::new(placement, largest, &Window::UNBOUNDED);
     let apart = |[a, b]: [f64; 2], [c, d]: [f64; 2]| b < c || d < a;
     let around = wide.components.iter().filter(|c| !apart(c.xi, inner.xi) && !apart(c.eta, inner.eta));
-    let outer = around.fold(inner, |box_of, c| Window {
-        xi: [box_of.xi[0].min(c.xi[0]), box_of.xi[1].max(c.xi[1])],
-        eta: [box_of.eta[0].min(c.eta[0]), box_of.eta[1].max(c.eta[1])],
-    });
+    let outer = around.fold(inner, |outer, c| outer.with(c.xi, c.eta));
     let shown = |[a, b]: [f64; 2], [c, d]: [f64; 2]| {
         let reach = WIDEST * (b - a);
         let (from, to) = (c.max(a - reach), d.min(b + reach));
@@ -157,6 +158,14 @@ fn window(part: &Part) -> Window {
         with_extent([from - margin, to + margin])
     };
     Window { xi: shown(inner.xi, outer.xi), eta: shown(inner.eta, outer.eta) }
+}
+
+/// Gives the box of ξ and η around the patch on the rail's surface; `None` where there is none.
+fn conformal_box(part: &Part) -> Option<Window> {
+    let Window { xi: sigma, eta } = part.analysis.conformal.as_ref()?.patch.as_ref()?.extent()?;
+    let rail = RailArcLength::new(&part.site.contact.placement);
+    let [from, to] = sigma.map(|sigma| on_plane(&rail, [sigma, 0.0])[0]);
+    (from < to).then_some(Window { xi: [from, to], eta })
 }
 
 /// Widens an interval that has no length.
@@ -175,13 +184,36 @@ fn through_zero([from, to]: [f64; 2], n: usize) -> Vec<f64> {
     (0..n).map(|k| (k as f64 - before) * step).collect()
 }
 
-fn boundary(patch: &Patch) -> Vec<PageLoop> {
+/// Gives the gap along the rail's turning normal at the points of a page's grid; `None` for a run over the tangent plane.
+fn conformal(part: &Part, xi: &[f64], axis: &EtaAxis, tolerance: f64) -> Option<PageConformal> {
+    let patch = part.analysis.conformal.as_ref()?.patch.as_ref();
+    let normal_gap = NormalGap::new(&part.site.contact.placement);
+    let rail = normal_gap.rail();
+    let sigma: Vec<f64> = xi.iter().map(|&xi| rail.sigma(xi)).collect();
+    let mut gap = Values::new(xi.len() * axis.eta.len());
+    fill_normal_gap(&normal_gap, &sigma, axis, tolerance, &mut gap);
+    Some(PageConformal {
+        gap: gap.to_vec(),
+        cosine: sigma.iter().map(|&sigma| rail.point(sigma).map_or(f64::NAN, |at| at.cos)).collect(),
+        sigma,
+        boundary: patch.map_or_else(Vec::new, |patch| boundary(patch, |point| on_plane(rail, point))),
+        area: patch.map(Patch::area),
+    })
+}
+
+/// Gives ξ, η of σ, η on the rail's surface.
+fn on_plane(rail: &RailArcLength<'_>, [sigma, eta]: [f64; 2]) -> [f64; 2] {
+    [rail.point(sigma).map_or(f64::NAN, |at| at.xi), eta]
+}
+
+/// Gives the loops around a patch, with `placed` points.
+fn boundary(patch: &Patch, placed: impl Fn([f64; 2]) -> [f64; 2]) -> Vec<PageLoop> {
     let loops = || patch.components.iter().flat_map(|c| [&c.boundary].into_iter().chain(&c.holes));
     let all: usize = loops().map(Vec::len).sum();
     let kept = |points: &Vec<[f64; 2]>| {
         // At least a triangle of every loop is left.
         let most = (points.len() * BOUNDARY_POINTS / all.max(1)).clamp(3, points.len().max(3));
-        PageLoop(thinned(points, most).into_iter().flatten().collect())
+        PageLoop(thinned(points, most).into_iter().flat_map(&placed).collect())
     };
     loops().map(kept).collect()
 }

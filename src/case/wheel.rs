@@ -9,8 +9,9 @@ use std::sync::Arc;
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 
 use super::input::FrameOrigin;
-use crate::error::{Error, Result};
-use crate::load::{HalfSpace, Located, Pressures, curvatures, press, under_total, weighted_frame};
+use super::overlaps::{Overlap, RegionRules, overlaps};
+use crate::error::Result;
+use crate::load::{HalfSpace, Located, Pressures, WeightedFrame, curvatures, press, under_total};
 use crate::mesh::groups;
 use crate::patch::{Patch, Window};
 use crate::placement::{Pair, Placement};
@@ -32,19 +33,8 @@ pub(super) struct Wheel<'a> {
     /// The first one touches first.
     places: Vec<Reached>,
     rules: RegionRules,
-}
-
-/// What makes parts of a patch one region, and where its frame is.
-#[derive(Clone, Copy)]
-pub(super) struct RegionRules {
-    /// Parts closer than this \[mm\] are joined.
-    pub merge: f64,
-    /// Steps of the grids \[mm\]: parts that the grid of another one would cut are joined.
-    pub spacing: Option<[f64; 2]>,
-    /// Whether all parts of the patch of a place are its own: no other place stands for them.
-    pub alone: bool,
-    /// Origin and angle of a region's frame.
-    pub frame: FrameOrigin,
+    /// The pair in a frame whose ζ is vertical, once it was asked for.
+    upright: Option<Placement>,
 }
 
 /// A place of contact that the wheel closes as it sinks.
@@ -92,6 +82,10 @@ impl Region {
     /// Finds the region of a place under its approach δ \[mm\].
     fn new(place: usize, placement: Arc<Placement>, approach: f64, rules: &RegionRules) -> Self {
         let patch = Patch::new(&placement, approach, &Window::UNBOUNDED);
+        Self::of(place, placement, approach, patch, rules)
+    }
+
+    fn of(place: usize, placement: Arc<Placement>, approach: f64, patch: Patch, rules: &RegionRules) -> Self {
         let mut parts = groups(&patch, rules.merge, rules.spacing);
         parts.truncate(if rules.alone { parts.len() } else { 1 });
         let extents = parts.into_iter().map(|group| group.extent).collect();
@@ -99,42 +93,24 @@ impl Region {
         Self { place, merged, placement, approach, patch, extents, loads, pressures }
     }
 
-    /// Gives the same region in the frame at the centre of its overlap; without any overlap as it is. The wheel sinks as far.
+    /// Finds the region of a part of the overlap in the part's frame, where its place has closed by `closed` \[mm\] along the vertical;
+    /// `touching` is the pair placed there.
     ///
     /// # Errors
-    /// A skewed wheel.
-    fn weighted(self, rules: &RegionRules) -> Result<Self> {
-        let Some(frame) =
-            self.extents.first().and_then(|e| weighted_frame(&self.placement, e, self.approach))
-        else {
-            return Ok(self);
-        };
-        let key = |mut error: Error| {
-            error.place = "patch: frame".into();
-            error
-        };
-        let placement = self.placement.reframed(frame[0], frame[1]).map_err(key)?;
-        let contact = placement.rail().contact_frame().inverse_transform_point(&self.contact_point()).x;
-        let approach = self.sunk() * placement.upright();
-        let mut region = Self::new(self.place, Arc::new(placement), approach, rules);
-        if !rules.alone {
-            // The group of parts that C lies in is the contact's own; others stand before it where they hold the origin.
-            let mut parts = groups(&region.patch, rules.merge, rules.spacing);
-            parts.retain(|group| group.extent.xi[0] <= contact && contact <= group.extent.xi[1]);
-            parts.truncate(1);
-            let own = |k: &usize| parts.iter().any(|group| group.components.contains(k));
-            let components = std::mem::take(&mut region.patch.components);
-            let kept = components.into_iter().enumerate().filter(|(k, _)| own(k));
-            region.patch.components = kept.map(|(_, component)| component).collect();
-            region.extents = parts.into_iter().map(|group| group.extent).collect();
-        }
-        Ok(region)
-    }
-
-    /// Gives C on the rail, in its own axes \[mm\].
-    fn contact_point(&self) -> Point2<f64> {
-        let Station { x, z, .. } = self.placement.rail().point.station;
-        Point2::new(x, z)
+    /// A wheel with yaw over a roller.
+    fn over(
+        (place, touching): (usize, &Placement),
+        (upright, overlap): (&Placement, &Overlap),
+        closed: f64,
+        rules: &RegionRules,
+    ) -> Result<Self> {
+        let WeightedFrame { rail_x, angle, .. } = overlap.frame;
+        let placement = Arc::new(touching.reframed(rail_x, angle)?);
+        let approach = closed * placement.upright();
+        let patch = overlap.patch(upright, &placement, approach, rules.alone);
+        // What is one part of the overlap stays one.
+        let merge = if rules.alone { rules.merge } else { f64::INFINITY };
+        Ok(Self::of(place, placement, approach, patch, &RegionRules { merge, ..*rules }))
     }
 
     /// Tells whether the group of parts around C holds a place of contact.
@@ -168,7 +144,7 @@ impl<'a> Wheel<'a> {
             y: place.y,
             known: Vec::new(),
         };
-        Self { pair, places: places.iter().map(reached).collect(), rules }
+        Self { pair, places: places.iter().map(reached).collect(), rules, upright: None }
     }
 
     /// Makes a wheel that touches at chosen points.
@@ -186,7 +162,7 @@ impl<'a> Wheel<'a> {
             y: 0.0,
             known: Vec::new(),
         };
-        Self { pair, places: vec![place], rules }
+        Self { pair, places: vec![place], rules, upright: None }
     }
 
     /// Finds the regions under an approach δ \[mm\] of the first place; the first region is that place's.
@@ -194,8 +170,14 @@ impl<'a> Wheel<'a> {
     /// # Errors
     /// A place at which the pair cannot be placed.
     pub(super) fn regions(&mut self, first_approach: f64) -> Result<Vec<Region>> {
-        let mut regions: Vec<Region> = Vec::new();
         let sunk = self.places.first().map_or(0.0, |first| first_approach / first.cos);
+        if self.rules.frame == FrameOrigin::Weighted {
+            let regions = self.weighted(sunk)?;
+            if regions.first().is_some_and(|first| first.place == 0) {
+                return Ok(regions);
+            }
+        }
+        let mut regions: Vec<Region> = Vec::new();
         for index in 0..self.places.len() {
             let place = &self.places[index];
             let approach = if index == 0 { first_approach } else { (sunk - place.gap) * place.cos };
@@ -206,12 +188,38 @@ impl<'a> Wheel<'a> {
                 region.merged.push(index);
                 continue;
             }
-            let region = Region::new(index, self.placement(index)?, approach, &self.rules);
-            regions.push(match self.rules.frame {
-                FrameOrigin::Contact => region,
-                FrameOrigin::Weighted => region.weighted(&self.rules)?,
-            });
+            regions.push(Region::new(index, self.placement(index)?, approach, &self.rules));
         }
+        Ok(regions)
+    }
+
+    /// Finds the regions under a sinking \[mm\], each in the frame at the centre of its overlap; none where the bodies
+    /// do not overlap by more than rounding.
+    ///
+    /// # Errors
+    /// A place at which the pair cannot be placed; a wheel with yaw over a roller.
+    fn weighted(&mut self, sunk: f64) -> Result<Vec<Region>> {
+        let upright = match self.upright.take() {
+            Some(upright) => upright,
+            None => upright(&*self.placement(0)?)?,
+        };
+        let parts = overlaps(&upright, sunk, &self.rules);
+        let mut taken: Vec<Option<usize>> = vec![None; parts.len()];
+        let mut regions: Vec<Region> = Vec::new();
+        for index in 0..self.places.len() {
+            let closed = sunk - self.places[index].gap;
+            let xi = upright.rail().contact_frame().inverse_transform_point(&self.places[index].rail).x;
+            let held = |part: &Overlap| part.holds(xi) || self.rules.alone;
+            let Some(k) = parts.iter().position(held).filter(|_| closed > 0.0) else { continue };
+            if let Some(region) = taken[k] {
+                regions[region].merged.push(index);
+                continue;
+            }
+            taken[k] = Some(regions.len());
+            let touching = self.placement(index)?;
+            regions.push(Region::over((index, &touching), (&upright, &parts[k]), closed, &self.rules)?);
+        }
+        self.upright = Some(upright);
         Ok(regions)
     }
 
@@ -233,6 +241,7 @@ impl<'a> Wheel<'a> {
         let mut spaces = Vec::new();
         for region in &regions {
             let place = &self.places[region.place];
+            let y = place.y + region.placement.ahead();
             for (k, extent) in region.extents.iter().enumerate() {
                 let space = HalfSpace::over(&region.placement, extent, region.approach);
                 let [xi, eta] = space.middle();
@@ -243,7 +252,7 @@ impl<'a> Wheel<'a> {
                         Some(known) => space.beginning_at(known),
                         None => space,
                     },
-                    middle: Point3::new(at.x, place.y + eta, at.y),
+                    middle: Point3::new(at.x, y + eta, at.y),
                     normal: Vector3::new(normal.x, 0.0, normal.y),
                 });
             }
@@ -262,6 +271,17 @@ impl<'a> Wheel<'a> {
         let ellipse = curvatures(&*self.placement(0)?).under_load(load, modulus);
         Ok(ellipse.map_or(USUAL_APPROACH, |ellipse| ellipse.approach_mm) / self.places[0].cos)
     }
+}
+
+/// Gives a placed pair in the frame of the same place whose ζ is vertical.
+///
+/// # Errors
+/// A wheel with yaw over a roller.
+fn upright(placement: &Placement) -> Result<Placement> {
+    placement.reframed(placement.rail().point.station.x, 0.0).map_err(|mut error| {
+        error.place = "patch: frame".into();
+        error
+    })
 }
 
 /// Sinks wheels together until they carry a vertical load \[N\]; gives the regions of each, with forces that add up to the load.

@@ -45,6 +45,9 @@ pub mod gallery_of_scenes {}
 #[doc = include_str!("gallery.md")]
 pub mod gallery {}
 
+#[doc = include_str!("commands.md")]
+pub mod commands {}
+
 #[doc = include_str!("conventions.md")]
 pub mod conventions {}
 

@@ -51,7 +51,7 @@ impl Source {
     /// Returns the file of this name in a folder; a built-in profile where there is none and the name is known.
     fn of(name: &str, folder: &Path) -> Self {
         let path = folder.join(name);
-        let known = || standards::rail_names().chain(standards::wheel_names()).any(|known| known == name);
+        let known = || standards::rail(name).is_ok() || standards::wheel(name).is_ok();
         if !path.exists() && known() { Self::BuiltIn(name.into()) } else { Self::File(path) }
     }
 }
@@ -193,7 +193,7 @@ mod tests {
 
     #[test]
     fn tables_are_read_by_the_names_of_their_columns() {
-        let text = "wheelset;left;right;radius_right_mm;rail_left;rail_right\nA;S1002;a.whl;455,5;60E1;b.ban\nB;x;x;;;\n";
+        let text = "wheelset;left;right;radius_right_mm;rail_left;rail_right\nA;S1002;a.whl;455,5;60E1;b.ban\nB;EN13715-S1002-h28-e31;x;;;\n";
         let read = table(text, Path::new("/nowhere")).unwrap();
         let file = |name: &str| Source::File(Path::new("/nowhere").join(name));
         let built_in = |name: &str| Source::BuiltIn(name.into());
@@ -203,6 +203,7 @@ mod tests {
             (&[None, Some(455.5)], &Some([built_in("60E1"), file("b.ban")]))
         );
         assert_eq!((&*read[1].name, &read[1].rails), ("B", &None));
+        assert_eq!(read[1].wheels, [built_in("EN13715-S1002-h28-e31"), file("x")]);
         for (text, message) in [
             (
                 "wheelset,left\nA,x\n",

@@ -128,13 +128,14 @@ fn page(fleet: &Listed, title: &str, tally: &Tally, rail: Option<PageProfile>) -
         "right Sd [mm]",
         "right hollow [mm]",
     ];
+    let counted = |n: usize, thing: &str| format!("{n} {thing}{}", if n == 1 { "" } else { "s" });
     let about = [
-        format!(
-            "{} wheelsets, {} rail sections, {} pairs",
-            fleet.wheelsets.len(),
-            fleet.sections.len(),
-            tally.pairs
-        ),
+        [
+            counted(fleet.wheelsets.len(), "wheelset"),
+            counted(fleet.sections.len(), "rail section"),
+            counted(tally.pairs, "pair"),
+        ]
+        .join(", "),
         format!("{} with a conicity", tally.with_conicity),
         format!("{} with a finding", tally.with_finding),
     ];

@@ -76,6 +76,9 @@ pub fn feasibility(placement: &Placement) -> Option<Feasibility> {
 
 /// (gap, ξ, η) \[mm\] of the least vertical gap in the midplane, the place on the rail; `None` under skew.
 fn least_vertical_gap(placement: &Placement) -> Option<(f64, f64, f64)> {
+    if placement.skew() != 0.0 {
+        return None;
+    }
     let upright = placement.reframed(placement.rail().point().station.x, 0.0).ok()?;
     let (gap, along, _) = least_in_midplane(&upright)?;
     let place = upright.rail().contact_frame() * Point2::new(along, upright.rail().section().height(along));

@@ -12,4 +12,4 @@ pub use half_space::{Cells, HalfSpace, Largest, Located, Pressures, on_wider_cel
 pub use hertz::{
     Curvatures, Elastic, Ellipse, curvatures, curvatures_at, effective_modulus, quadratic_form_at,
 };
-pub use weighted::weighted_frame;
+pub use weighted::{WeightedFrame, weighted_frame};

@@ -9,15 +9,26 @@ use crate::separation::Evaluator;
 /// Columns and rows of the midpoint rule: the centre of an ellipse is right to 1e-4 of its size.
 const CELLS: [usize; 2] = [64, 32];
 
-/// Finds the weighted frame of the region inside `extent`, the box around it, under an approach δ \[mm\]: the abscissa \[mm\] and
-/// the angle \[rad\] in the rail profile's axes.
+/// The centre of an overlap, on the rail.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WeightedFrame {
+    /// Mean abscissa in the rail profile's axes \[mm\].
+    pub rail_x: f64,
+    /// Mean angle of the rail's surface in its profile's axes \[rad\], + counter-clockwise.
+    pub angle: f64,
+    /// The overlap's weight, ∬ (δ − s)² dξ dη \[mm⁴\], > 0.
+    pub weight: f64,
+}
+
+/// Finds the weighted frame of the region inside `extent`, the box around it, under an approach δ \[mm\].
 ///
-/// Both are means over the region, with the squared overlap (δ − s)² as weight: x of the rail's surface, and the angle of its
-/// tangent. The origin is the rail's point at that x. A region of two lobes may have its origin between them, where the
-/// bodies do not overlap. `None` where s < δ at no point of the rule.
-pub fn weighted_frame(placement: &Placement, extent: &Window, approach: f64) -> Option<[f64; 2]> {
-    let centres = |[from, to]: [f64; 2], count: usize| -> Vec<f64> {
-        (0..count).map(|k| from + (k as f64 + 0.5) * ((to - from) / count as f64)).collect()
+/// Abscissa and angle are means over the region, with the squared overlap (δ − s)² as weight: of the rail's surface and of its
+/// tangent. In a frame whose ζ is vertical they are those of CONTACT, which weighs the vertical overlap over the track's plane. A
+/// region of two lobes may have its origin between them, where the bodies do not overlap. `None` where s < δ at no point of the rule.
+pub fn weighted_frame(placement: &Placement, extent: &Window, approach: f64) -> Option<WeightedFrame> {
+    let step = |[from, to]: [f64; 2], count: usize| (to - from) / count as f64;
+    let centres = |range: [f64; 2], count: usize| -> Vec<f64> {
+        (0..count).map(|k| range[0] + (k as f64 + 0.5) * step(range, count)).collect()
     };
     let eta = centres(extent.eta, CELLS[1]);
     let (frame, mut evaluator) = (placement.rail().contact_frame(), Evaluator::new(placement));
@@ -28,10 +39,11 @@ pub fn weighted_frame(placement: &Placement, extent: &Window, approach: f64) -> 
         let weight: f64 = overlaps.map(|s| (approach - s) * (approach - s)).sum();
         if weight > 0.0 {
             let x = (frame * Point2::new(xi, evaluator.rail_height(xi))).x;
-            let angle = placement.rail().contact_angle() + evaluator.rail_slope(xi).atan();
+            let angle = frame.rotation.angle() + evaluator.rail_slope(xi).atan();
             sums = [sums[0] + weight, sums[1] + weight * x, sums[2] + weight * angle];
         }
     }
-    let [weight, x, angle] = sums;
-    (weight > 0.0).then(|| [x / weight, angle / weight])
+    let ([weight, x, angle], cell) = (sums, step(extent.xi, CELLS[0]) * step(extent.eta, CELLS[1]));
+    let found = WeightedFrame { rail_x: x / weight, angle: angle / weight, weight: weight * cell };
+    (weight > 0.0).then_some(found)
 }

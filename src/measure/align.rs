@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::curve::Curve;
 use super::fit::{Fit, Fitted};
-use super::nominal::{Back, Nominal, back_of, own_back, sized};
+use super::nominal::{Back, Nominal, back_of, is_from_back, own_back, sized};
 use super::options::{Align, MeasureOptions};
 use crate::profile::{Profile, Side, Station, trace};
 
@@ -46,6 +46,8 @@ pub(super) struct Aligned {
     pub curve: Curve,
     /// x of the flange back, from which X counts \[mm\]; 0 for rails.
     pub back: f64,
+    /// Why the back lies there only if the file's x = 0 is the taping line.
+    pub no_back: Option<String>,
     pub alignment: Alignment,
 }
 
@@ -71,10 +73,15 @@ pub(super) fn align(
     match (side, nominal) {
         (Side::Rail, None) => Ok(moved(&curve, [0.0; 2], 0.0, Align::None, "the file's axes")),
         (Side::Wheel, None) => {
-            let Back { x: back, how, doubt } = match options.align {
-                Some(Align::None) => Back { x: 0.0, how: "the file's x = 0".into(), doubt: None },
-                Some(_) => back_of(&curve)?,
-                None => own_back(&curve)?,
+            let own = match options.align {
+                Some(Align::None) => Ok(Back { x: 0.0, how: "the file's x = 0".into(), doubt: None }),
+                Some(_) => back_of(&curve),
+                None => own_back(&curve),
+            };
+            let Back { x: back, how, doubt } = match own {
+                Ok(own) => own,
+                Err(why) if options.align.is_none() => return from_taping_line(&curve, why, options),
+                Err(why) => return Err(why),
             };
             let align =
                 if back == 0.0 && options.align != Some(Align::Back) { Align::None } else { Align::Back };
@@ -84,6 +91,16 @@ pub(super) fn align(
             with_nominal(profile, &curve, side, nominal, chosen.unwrap_or(Align::None), options)
         }
     }
+}
+
+/// Aligns a wheel without its back whose flange's tip shows that x = 0 is the taping line.
+fn from_taping_line(curve: &Curve, why: String, options: &MeasureOptions) -> Result<Aligned, String> {
+    let back = -options.tread_at;
+    if !curve.highest(-1.0).is_some_and(|tip| is_from_back(tip.x - back)) {
+        return Err(why);
+    }
+    let text = format!("the file's x = 0 is X = {}", options.tread_at);
+    Ok(Aligned { no_back: Some(why), ..moved(curve, [0.0; 2], back, Align::None, &text) })
 }
 
 fn with_nominal(
@@ -120,7 +137,8 @@ fn with_nominal(
 /// Moves a curve without turning it.
 fn moved(curve: &Curve, [x, z]: [f64; 2], back: f64, align: Align, text: &str) -> Aligned {
     let curve = curve.placed(&Station { x, z, ..Station::AXES });
-    Aligned { curve, back, alignment: Alignment { align, text: text.into(), residual: None, doubt: None } }
+    let alignment = Alignment { align, text: text.into(), residual: None, doubt: None };
+    Aligned { curve, back, no_back: None, alignment }
 }
 
 fn fitted(
@@ -168,7 +186,7 @@ fn fitted(
         motion.x, motion.z
     );
     let alignment = Alignment { align, text, residual: Some(rms), doubt };
-    Ok(Aligned { curve: curve.placed(&motion), back: nominal.back, alignment })
+    Ok(Aligned { curve: curve.placed(&motion), back: nominal.back, no_back: None, alignment })
 }
 
 /// Returns first guesses of the motion: back and tip of a flange, field side and top of a rail are brought to each other.

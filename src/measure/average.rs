@@ -88,11 +88,7 @@ pub fn average(
     options: &MeasureOptions,
 ) -> Result<Average> {
     options.validate(side, nominal.is_some())?;
-    let nominal = nominal.map(|nominal| {
-        let advice = "give the whole profile";
-        Nominal::new(nominal, side).map_err(|why| Error::new(&nominal.name, why, "a whole nominal", advice))
-    });
-    let nominal = nominal.transpose()?;
+    let nominal = nominal.map(|nominal| Nominal::named(nominal, side)).transpose()?;
     let (mut curves, mut findings) = (Vec::new(), Vec::new());
     for profile in profiles {
         match align::align(profile, side, nominal.as_ref(), options) {

@@ -10,11 +10,14 @@ mod fit;
 mod found;
 mod limits;
 mod measures;
+mod measuring;
+mod noise;
 mod nominal;
 mod options;
 mod overlay;
 mod quantity;
 mod rail;
+mod repeats;
 mod rows;
 #[cfg(test)]
 mod tests;
@@ -24,140 +27,10 @@ pub use align::Alignment;
 pub use average::{Average, AveragePoint, average};
 pub use limits::{Limit, Limits};
 pub use measures::Measures;
+pub use measuring::measure;
+pub use noise::{PointNoise, measure_noisy};
 pub use options::{Align, GaugeFrom, MeasureOptions};
 pub use overlay::{Overlay, overlay};
 pub use quantity::Quantity;
-pub use rows::{Row, csv, json, table};
-
-use align::Aligned;
-use found::Found;
-use nominal::Nominal;
-
-use crate::error::Result;
-use crate::profile::{Profile, Side, Station};
-
-/// Moves \[mm\] and turn \[rad\], 0.1°, by which an alignment may be off.
-const OFF: f64 = 0.1;
-const TURNED_OFF: f64 = OFF * std::f64::consts::PI / 180.0;
-
-/// Gain of metal \[mm\] on a tread or crown above which the alignment is doubted: more than tolerances of new profiles.
-const MOST_GAINED: f64 = 0.5;
-/// The same of a gauge face, to which metal flows from the crown.
-const MOST_FLOWN: f64 = 3.0;
-
-/// Measures a profile, right-hand and upright: its flange or gauge side is at smaller x.
-///
-/// What cannot be had is `None`, and the findings say why; what needs a nominal profile or a groove is `None` without one.
-/// Accuracy: 1e-7 mm on the curve. Cost: about 20 ms, with a fit about 100 ms.
-///
-/// # Errors
-/// Options without meaning.
-///
-/// # Examples
-/// ```
-/// use wheelrail::measure::{MeasureOptions, Quantity, measure};
-/// use wheelrail::{Side, standards};
-///
-/// let measures = measure(&standards::wheel("S1002")?, Side::Wheel, None, &MeasureOptions::default())?;
-/// let height = measures.value(Quantity::FlangeHeight).expect("a flange");
-/// assert!((height - 28.0).abs() < 1e-6);
-/// # Ok::<(), wheelrail::Error>(())
-/// ```
-pub fn measure(
-    profile: &Profile,
-    side: Side,
-    nominal: Option<&Profile>,
-    options: &MeasureOptions,
-) -> Result<Measures> {
-    options.validate(side, nominal.is_some())?;
-    let none = |why: String| Measures {
-        side,
-        values: Default::default(),
-        if_off: Default::default(),
-        alignment: None,
-        findings: vec![why],
-    };
-    let nominal = match nominal.map(|nominal| Nominal::new(nominal, side)).transpose() {
-        Ok(nominal) => nominal,
-        Err(why) => return Ok(none(format!("in the nominal: {why}"))),
-    };
-    let (aligned, nominal, lost) = match align::align(profile, side, nominal.as_ref(), options) {
-        Ok(aligned) => (aligned, nominal, None),
-        // What needs no nominal is measured in the profile's own axes.
-        Err(why) => match nominal.and_then(|_| alone(profile, side, options)) {
-            Some(aligned) => (aligned, None, Some(format!("{why}: no wear, the rest in its own axes"))),
-            None => return Ok(none(why)),
-        },
-    };
-    let found = at(&aligned, side, nominal.as_ref(), options, &Station::AXES);
-    let if_off = if_off(&aligned, side, nominal.as_ref(), options, &found);
-    let doubts = aligned.alignment.doubt.iter().cloned().chain(gains(found.values()));
-    let findings = lost.into_iter().chain(doubts).chain(found.findings()).collect();
-    Ok(Measures { side, values: found.values(), if_off, alignment: Some(aligned.alignment), findings })
-}
-
-/// Aligns a profile as if there were no nominal; `None` if that fails, too.
-fn alone(profile: &Profile, side: Side, options: &MeasureOptions) -> Option<Aligned> {
-    let options = MeasureOptions { align: None, unworn: Vec::new(), ..options.clone() };
-    align::align(profile, side, None, &options).ok()
-}
-
-/// Says which wear is a gain of metal that no wheel or rail has.
-fn gains(values: [Option<f64>; Quantity::ALL.len()]) -> impl Iterator<Item = String> {
-    let doubted =
-        [(Quantity::TreadWear, MOST_GAINED), (Quantity::W1, MOST_GAINED), (Quantity::W2, MOST_FLOWN)];
-    let gained = doubted
-        .into_iter()
-        .filter(move |(quantity, most)| values[*quantity as usize].is_some_and(|wear| wear < -most));
-    gained
-        .map(|(quantity, _)| quantity.key())
-        .map(|key| format!("{key} is negative: another nominal, or worn parts were aligned"))
-}
-
-/// Measures an aligned profile after a further motion.
-fn at(
-    aligned: &Aligned,
-    side: Side,
-    nominal: Option<&Nominal>,
-    options: &MeasureOptions,
-    motion: &Station,
-) -> Found {
-    let curve = aligned.curve.placed(motion);
-    match side {
-        Side::Wheel => wheel::measure(&curve, aligned.back, nominal, options),
-        Side::Rail => rail::measure(&curve, nominal, options),
-    }
-}
-
-fn if_off(
-    aligned: &Aligned,
-    side: Side,
-    nominal: Option<&Nominal>,
-    options: &MeasureOptions,
-    found: &Found,
-) -> [Option<f64>; Quantity::ALL.len()] {
-    let values = found.values();
-    let mut most = values.map(|value| value.map(|_| 0.0f64));
-    let pivot = match side {
-        Side::Wheel => [aligned.back, wheel::tread(&aligned.curve, aligned.back, options).unwrap_or(0.0)],
-        Side::Rail => aligned.curve.highest(1.0).map_or([0.0; 2], |top| [top.x, top.z]),
-    };
-    for sign in [-1.0, 1.0] {
-        let along = |x: f64, z: f64| Station { x: sign * x, z: sign * z, ..Station::AXES };
-        for motion in [along(OFF, 0.0), along(0.0, OFF), turned(pivot, sign * TURNED_OFF)] {
-            let moved = at(aligned, side, nominal, options, &motion).values();
-            for ((most, value), moved) in most.iter_mut().zip(values).zip(moved) {
-                let change = moved.zip(value).map(|(moved, value)| (moved - value).abs());
-                // A quantity that is gone after the motion has no bound.
-                *most = most.zip(change).map(|(most, change)| most.max(change));
-            }
-        }
-    }
-    most
-}
-
-/// Returns the turn about a point.
-fn turned([x, z]: [f64; 2], angle: f64) -> Station {
-    let (sin, cos) = angle.sin_cos();
-    Station { x: x - (x * cos - z * sin), z: z - (x * sin + z * cos), cos, sin }
-}
+pub use repeats::repeated;
+pub use rows::{Row, RowColumns, csv, json, table};

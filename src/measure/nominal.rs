@@ -1,6 +1,7 @@
 //! What profiles are put on: the flange back from which X counts, the running head, and the nominal profile with both.
 
 use super::curve::Curve;
+use crate::error::{self, Error};
 use crate::profile::{Profile, Side, Station, last_groove};
 
 /// Places \[mm\] of a flange's tip right of x = 0 that show that x = 0 is at the flange back: flanges are 20 to 40 mm thick.
@@ -44,6 +45,12 @@ impl<'a> Nominal<'a> {
         let back = if side == Side::Wheel { own_back(&curve)?.x } else { 0.0 };
         Ok(Self { profile, curve, back })
     }
+
+    /// The same, with an error that names the profile.
+    pub fn named(profile: &'a Profile, side: Side) -> error::Result<Self> {
+        let advice = "give the whole profile";
+        Self::new(profile, side).map_err(|why| Error::new(&profile.name, why, "a whole nominal", advice))
+    }
 }
 
 /// Returns the curve of a profile that is as large as wheels and rails are.
@@ -61,10 +68,15 @@ pub(super) fn sized(profile: &Profile) -> Result<Curve, String> {
 /// itself; and how it was found.
 pub(super) fn own_back(curve: &Curve) -> Result<Back, String> {
     let tip = curve.highest(-1.0).map_or(f64::NAN, |tip| tip.x);
-    if tip > TIP_FROM_BACK[0] && tip < TIP_FROM_BACK[1] {
+    if is_from_back(tip) {
         return Ok(Back { x: 0.0, how: "the file's x = 0".into(), doubt: None });
     }
     back_of(curve)
+}
+
+/// Whether the tip of a flange may be so far from its back \[mm\].
+pub(super) fn is_from_back(tip: f64) -> bool {
+    tip > TIP_FROM_BACK[0] && tip < TIP_FROM_BACK[1]
 }
 
 /// Returns x of the flange back: of a line through the lowest 10 mm where it is upright, at their middle; otherwise of the leftmost

@@ -40,8 +40,7 @@ pub fn overlay(
     options.validate(side, true)?;
     let advice = "choose another alignment, or give the whole profile";
     let error = |why: String| Error::new(&profile.name, why, "a profile that can be aligned", advice);
-    let nominal = Nominal::new(nominal, side)
-        .map_err(|why| Error::new(&nominal.name, why, "a whole nominal", advice))?;
+    let nominal = Nominal::named(nominal, side)?;
     let aligned = align::align(profile, side, Some(&nominal), options).map_err(error)?;
     let points = |curve: &Curve| {
         let last = curve.marks.len().saturating_sub(1);

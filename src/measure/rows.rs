@@ -9,7 +9,32 @@ use super::measures::Measures;
 use super::options::name;
 use super::quantity::Quantity;
 use crate::error::Result;
+use crate::measured::noise::{Spread, spread_text};
 use crate::profile::Side;
+
+/// What rows show besides values, alignments and findings.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct RowColumns<'a> {
+    /// Limits, with a column of those that a row breaks.
+    pub limits: Option<&'a Limits>,
+    /// What values spread over, in words, with columns of the spread of each quantity.
+    pub spread: Option<&'a str>,
+}
+
+/// A column of the spread of a quantity: what follows the key, and its value.
+type SpreadColumn = (&'static str, fn(&Spread) -> Value);
+
+const SPREAD: [SpreadColumn; 9] = [
+    ("samples", |of| of.samples.into()),
+    ("mean", |of| of.mean.into()),
+    ("mean_error", |of| of.mean_error.into()),
+    ("deviation", |of| of.deviation.into()),
+    ("deviation_error", |of| of.deviation_error.into()),
+    ("low", |of| of.low.into()),
+    ("low_error", |of| of.low_error.into()),
+    ("high", |of| of.high.into()),
+    ("high_error", |of| of.high_error.into()),
+];
 
 /// What was measured of a file, or why nothing was.
 #[derive(Debug, Clone)]
@@ -40,8 +65,9 @@ impl Row {
     }
 
     /// Returns the columns with their values, null where there is none: `file`, `kind`, the quantities, `alignment`, `alignment_text`,
-    /// `alignment_residual_mm`, how far the quantities move, `limits` if there are any, `finding`.
-    pub fn values(&self, limits: Option<&Limits>) -> Map<String, Value> {
+    /// `alignment_residual_mm`, how far the quantities move, `limits` if there are any, `finding`; the
+    /// spread of each quantity, if it is asked for.
+    pub fn values(&self, columns: RowColumns) -> Map<String, Value> {
         let measures = self.measured.as_ref().ok();
         let alignment = measures.and_then(|measures| measures.alignment.as_ref());
         let mut row = Map::new();
@@ -57,19 +83,25 @@ impl Row {
             row.insert(quantity.key_if_off(), measures.and_then(|of| of.if_off(quantity)).into());
         }
         let text = |parts: Vec<String>| Some(parts.join("; ")).filter(|text| !text.is_empty());
-        if let Some(limits) = limits {
+        if let Some(limits) = columns.limits {
             row.insert("limits".into(), text(self.broken(limits)).into());
         }
         row.insert("finding".into(), text(self.findings()).into());
+        for quantity in Quantity::ALL.into_iter().filter(|_| columns.spread.is_some()) {
+            let spread = measures.and_then(|of| of.spread(quantity));
+            for (name, of) in SPREAD {
+                row.insert(format!("{}_{name}", quantity.key()), spread.map(of).into());
+            }
+        }
         row
     }
 }
 
 /// Writes rows as CSV, with a header; empty where there is no value.
-pub fn csv(rows: &[Row], limits: Option<&Limits>) -> String {
+pub fn csv(rows: &[Row], columns: RowColumns) -> String {
     let mut text = String::new();
     for (k, row) in rows.iter().enumerate() {
-        let values = row.values(limits);
+        let values = row.values(columns);
         if k == 0 {
             let keys: Vec<&str> = values.keys().map(String::as_str).collect();
             text += &format!("{}\n", keys.join(","));
@@ -93,14 +125,14 @@ fn cell(value: &Value) -> String {
 }
 
 /// Writes rows as a JSON list of objects, with null where there is no value.
-pub fn json(rows: &[Row], limits: Option<&Limits>) -> String {
-    let list: Vec<Value> = rows.iter().map(|row| row.values(limits).into()).collect();
+pub fn json(rows: &[Row], columns: RowColumns) -> String {
+    let list: Vec<Value> = rows.iter().map(|row| row.values(columns).into()).collect();
     // Values without infinities cannot fail to be written.
     serde_json::to_string_pretty(&list).unwrap_or_default() + "\n"
 }
 
 /// Writes rows as a table of the quantities that any of them has, with alignments, broken limits and findings below it.
-pub fn table(rows: &[Row], limits: Option<&Limits>) -> String {
+pub fn table(rows: &[Row], columns: RowColumns) -> String {
     let of = |row: &Row, quantity| {
         row.measured.as_ref().ok().and_then(|of| Some((of.value(quantity)?, of.if_off(quantity))))
     };
@@ -119,30 +151,47 @@ pub fn table(rows: &[Row], limits: Option<&Limits>) -> String {
         let texts = [row.file.clone(), row.side.map_or("-", name).to_owned()];
         lines.push(texts.into_iter().chain(shown.iter().map(number)).collect());
     }
-    let mut text = columns(&lines);
+    let mut text = below_each_other(&lines);
     if !shown.is_empty() {
         text += "± is the largest change if the profile lay 0.1 mm or 0.1° otherwise\n";
     }
     for row in rows {
-        let mut say = |what: &str, found: &str| {
-            // Writing to a string cannot fail.
-            let _ = writeln!(text, "{}: {what}: {found}", row.file);
-        };
-        if let Some(alignment) = row.measured.as_ref().ok().and_then(|of| of.alignment.as_ref()) {
-            let rms = alignment.residual.map_or_else(String::new, |rms| format!("; residual {rms:.4} mm"));
-            say("alignment", &format!("{}, {}{rms}", alignment.align.word(), alignment.text));
-        }
-        limits
-            .map_or_else(Vec::new, |limits| row.broken(limits))
-            .iter()
-            .for_each(|broken| say("limit", broken));
-        row.findings().iter().for_each(|finding| say("finding", finding));
+        text += &notes(row, columns);
     }
     text
 }
 
+/// Writes alignment, broken limits, findings and spreads of a row.
+fn notes(row: &Row, columns: RowColumns) -> String {
+    let mut text = String::new();
+    let mut say = |what: &str, found: &str| {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{}: {what}: {found}", row.file);
+    };
+    if let Some(alignment) = row.measured.as_ref().ok().and_then(|of| of.alignment.as_ref()) {
+        let rms = alignment.residual.map_or_else(String::new, |rms| format!("; residual {rms:.4} mm"));
+        say("alignment", &format!("{}, {}{rms}", alignment.align.word(), alignment.text));
+    }
+    let broken = columns.limits.map_or_else(Vec::new, |limits| row.broken(limits));
+    broken.iter().for_each(|broken| say("limit", broken));
+    row.findings().iter().for_each(|finding| say("finding", finding));
+    text + &spreads(row, columns)
+}
+
+/// Writes the spread of each quantity that a row has.
+fn spreads(row: &Row, columns: RowColumns) -> String {
+    let (Some(over), Ok(measures)) = (columns.spread, &row.measured) else { return String::new() };
+    let known =
+        Quantity::ALL.into_iter().filter_map(|quantity| Some((quantity.key(), measures.spread(quantity)?)));
+    let known: Vec<_> = known.map(|(key, spread)| (key, Some(spread))).collect();
+    if known.is_empty() {
+        return String::new();
+    }
+    format!("{}: spread: {over}\n{}", row.file, spread_text(known))
+}
+
 /// Sets cells below each other, the first two columns to the left and numbers to the right.
-fn columns(lines: &[Vec<String>]) -> String {
+fn below_each_other(lines: &[Vec<String>]) -> String {
     let count = lines.first().map_or(0, Vec::len);
     let wide = |k: usize| lines.iter().map(|line| line[k].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..count).map(wide).collect();

@@ -1,11 +1,14 @@
 //! Closed forms of drawings, and known wear under a known displacement.
 
 mod page;
+mod spread;
 
 use super::curve::Curve;
 use super::*;
+use crate::error::Result;
 use crate::measured::{self, CurveKind};
 use crate::profile::{Arc, Segment, standards, trace};
+use crate::profile::{Profile, Side, Station};
 
 /// Accuracy \[mm\] to which known wear has to be recovered.
 const RECOVERED: f64 = 0.01;
@@ -352,9 +355,17 @@ fn what_is_not_measured_is_missing_and_says_so() -> Result<()> {
     let cut = |low: f64, high: f64| {
         worn(&nominal, Side::Wheel, |_| [0.0; 2], Station::AXES, move |at| at.x >= low && at.x <= high)
     };
-    // Without its back there is no X; without the tread no Sh; with neither the field side no fit.
+    // Without its back there is no Sd, and no X unless x = 0 is at the taping line.
     let measures = measure(&cut(-62.0, 60.0), Side::Wheel, None, &MeasureOptions::default())?;
+    assert!((value(&measures, Quantity::FlangeHeight) - 28.0).abs() < 1e-3, "{measures:?}");
+    assert!(measures.value(Quantity::FlangeThickness).is_none() && measures.value(Quantity::Qr).is_some());
+    let [why, width] = measures.findings.as_slice() else { panic!("{measures:?}") };
+    assert!(why.starts_with("no flange back: ") && why.ends_with(": no flange_thickness_mm"), "{why}");
+    assert!(width.ends_with(": no flange_width_mm"), "{width}");
+    let elsewhere = cut(-62.0, 60.0).shifted(30.0, 0.0);
+    let measures = measure(&elsewhere, Side::Wheel, None, &MeasureOptions::default())?;
     assert!(measures.alignment.is_none() && measures.findings[0].contains("no flange back"), "{measures:?}");
+    // Without the tread there is no Sh; without the field side no fit.
     let measures = measure(&cut(-70.0, -20.0), Side::Wheel, None, &MeasureOptions::default())?;
     assert!(measures.value(Quantity::FlangeHeight).is_none(), "{measures:?}");
     assert!(measures.findings[0].contains("no tread at X = 70 mm"), "{measures:?}");

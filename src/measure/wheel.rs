@@ -11,10 +11,10 @@ const LEAST_TREAD: f64 = 20.0;
 /// Sine of the inclination up to which a surface is tread, 30°.
 const TREAD: f64 = 0.5;
 
-/// Measures a wheel whose X = 0 is at x = `back`.
+/// Measures a wheel whose X = 0 is at x = `back`; `no_back` says why it has no flange back there.
 pub(super) fn measure(
     curve: &Curve,
-    back: f64,
+    (back, no_back): (f64, Option<&str>),
     nominal: Option<&Nominal>,
     options: &MeasureOptions,
 ) -> Found {
@@ -24,7 +24,8 @@ pub(super) fn measure(
     let face = |over: f64| face(curve, tip.clone()?, tread.clone()? - over, back + options.tread_at);
     let thickness = face(options.flange_level).map(|x| x - back);
     found.put(Quantity::FlangeHeight, tread.clone().and_then(|z| Ok(z - tip.clone()?.z)));
-    found.put(Quantity::FlangeThickness, thickness.clone());
+    found
+        .put(Quantity::FlangeThickness, no_back.map_or_else(|| thickness.clone(), |why| Err(why.to_owned())));
     found
         .put(Quantity::Qr, thickness.and_then(|thickness| qr(curve, tip.clone()?, thickness, back, options)));
     found.put(

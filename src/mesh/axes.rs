@@ -13,6 +13,9 @@ const CELLS_ACROSS: f64 = 16.0;
 /// Empty rows and columns on each side of the box. Boundary-element solvers need them.
 const MARGIN_CELLS: f64 = 2.0;
 
+/// Steps up to which the cells of a grid reach beyond the box around its patch: its margin, half a cell, and what the lattice adds.
+pub(crate) const CELLS_REACHED: f64 = MARGIN_CELLS + 1.5;
+
 /// Most cells of a grid without a given spacing: five times what CONTACT takes, 50 MB of files. With square cells the patch
 /// would be some 300 times as long as wide.
 const MOST_UNASKED: f64 = 1e5;
@@ -134,6 +137,11 @@ impl GridGroup {
             Some(spacing) => lattice(&self.extent, spacing),
             None => unasked(&self.extent, self.short_side / CELLS_ACROSS),
         }
+    }
+
+    /// Gives the longest step of the group's grid \[mm\], unless its cells are stretched.
+    pub(crate) fn step(&self, spacing: Option<[f64; 2]>) -> f64 {
+        spacing.map_or(self.short_side / CELLS_ACROSS, |[xi, eta]| xi.max(eta))
     }
 
     /// Returns whether the automatic grid over this group reaches into another group. Part of its margin would lie in that

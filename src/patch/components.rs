@@ -150,11 +150,7 @@ impl Patch {
     pub fn extent(&self) -> Option<Window> {
         let mut components = self.components.iter();
         let first = components.next()?;
-        let join = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
-        Some(components.fold(Window { xi: first.xi, eta: first.eta }, |w, c| Window {
-            xi: join(w.xi, c.xi),
-            eta: join(w.eta, c.eta),
-        }))
+        Some(components.fold(Window { xi: first.xi, eta: first.eta }, |window, c| window.with(c.xi, c.eta)))
     }
 }
 

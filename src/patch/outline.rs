@@ -25,6 +25,12 @@ impl Window {
     /// The whole plane: only the ends of the bodies bound the patch.
     pub const UNBOUNDED: Self =
         Self { xi: [f64::NEG_INFINITY, f64::INFINITY], eta: [f64::NEG_INFINITY, f64::INFINITY] };
+
+    /// Returns the smallest window that holds this one and two ranges.
+    pub(crate) fn with(self, xi: [f64; 2], eta: [f64; 2]) -> Self {
+        let join = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+        Self { xi: join(self.xi, xi), eta: join(self.eta, eta) }
+    }
 }
 
 /// What bounds a component at one of its ends in ξ.

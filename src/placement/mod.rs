@@ -1,6 +1,7 @@
 //! Puts rail and wheel in contact: the contact frame ξηζ and both profiles in it (Report Sec. 4); where rails and wheels are on a
 //! track, and how fast they move.
 
+mod along;
 mod motion;
 mod placed;
 mod track;

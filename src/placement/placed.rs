@@ -4,8 +4,9 @@ use std::sync::{Arc, OnceLock};
 
 use nalgebra::{Isometry2, Point2, Translation2, UnitComplex};
 
+use super::along::wheel_along;
 use crate::error::{Error, Result, finite};
-use crate::profile::{Profile, ProfilePoint, Section, Side, Station};
+use crate::profile::{Profile, ProfilePoint, Section, Side};
 
 /// How a body is swept from its profile.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,6 +80,8 @@ pub struct Placement {
     at_contact: bool,
     /// Angle ν \[rad\] about a roller's axle from its crown to C, + forward; 0 on a rail.
     turn: f64,
+    /// How far the frame's origin lies ahead of C along η \[mm\].
+    ahead: f64,
     /// The pair of [`Self::under`], made once.
     under: OnceLock<Option<Box<Placement>>>,
 }
@@ -337,7 +340,7 @@ impl Swept {
 impl Placement {
     fn touching(rail: Body, wheel: Body, skew: f64) -> Result<Self> {
         let skew = finite("contact: skew", skew)?;
-        Ok(Self { rail, wheel, skew, at_contact: true, turn: 0.0, under: OnceLock::new() })
+        Ok(Self { rail, wheel, skew, at_contact: true, turn: 0.0, ahead: 0.0, under: OnceLock::new() })
     }
 
     /// Returns the same contact at the angle ν \[rad\] ahead of a roller's crown.
@@ -362,8 +365,8 @@ impl Placement {
     pub fn under(&self) -> Option<&Self> {
         let made = || {
             let [rail, wheel] = self.rail.upside_down()?;
-            let at_contact = self.at_contact;
-            Some(Box::new(Self { rail, wheel, skew: 0.0, at_contact, turn: 0.0, under: OnceLock::new() }))
+            let (at_contact, under) = (self.at_contact, OnceLock::new());
+            Some(Box::new(Self { rail, wheel, skew: 0.0, at_contact, turn: 0.0, ahead: 0.0, under }))
         };
         self.under.get_or_init(made).as_deref()
     }
@@ -413,28 +416,41 @@ impl Placement {
         Self { skew: 0.0, ..self.clone() }
     }
 
-    /// The same bodies in another frame of the plane η = 0: its origin lies on the rail at `rail_x` \[mm\], its ξ at `angle` \[rad\]
-    /// in the rail profile's axes. The wheel does not move, so that s at the new origin is what it was there, along the new
-    /// ζ; neither body is smooth in the sense of [`Body::is_smooth`].
+    /// The same bodies in another frame: its origin lies on the rail at `rail_x` \[mm\], its ξ at `angle` \[rad\] in the rail profile's
+    /// axes. The wheel does not move, so that s at the new origin is what it was there, along the new ζ; neither body is
+    /// smooth in the sense of [`Body::is_smooth`].
+    ///
+    /// Under a skewed wheel the new ζ lies in a plane through the axle, as it has to, once the origin moves along the rail by
+    /// what [`Self::ahead`] tells; the skew changes as well.
     ///
     /// # Errors
-    /// An abscissa off the rail; a skewed wheel, whose meridians do not hold the new ζ.
+    /// An abscissa off the rail; a skewed wheel over a roller, on which nothing moves along a straight line.
     pub fn reframed(&self, rail_x: f64, angle: f64) -> Result<Self> {
-        if self.skew != 0.0 {
-            let (found, expected) = (format!("a skew of {} rad", self.skew), "a wheel without yaw");
-            return Err(Error::new("contact", found, expected, "keep the frame of the contact point"));
+        if self.skew != 0.0 && self.rail.generator() != Generator::Extruded {
+            let found = format!("a skew of {} rad over a roller", self.skew);
+            let advice = "keep the frame of the contact point";
+            return Err(Error::new("contact", found, "a wheel without yaw, or a rail", advice));
         }
-        let point = self.rail.swept.point(rail_x).map_err(|e| e.within("contact: rail_x"))?;
+        let mut point = self.rail.swept.point(rail_x).map_err(|e| e.within("contact: rail_x"))?;
         let here = self.rail.contact_frame();
         let origin = here.inverse_transform_point(&Point2::new(point.station.x, point.station.z));
         let turn = UnitComplex::new(angle) * here.rotation.inverse();
-        let body = |body: &Body, mut point: ProfilePoint| {
-            let (origin, along) = (body.contact_frame() * origin, body.contact_frame().rotation * turn);
-            point.station = Station { x: origin.x, z: origin.y, cos: along.re, sin: along.im };
-            Body::in_frame(&body.swept, point)
-        };
-        let (rail, wheel) = (body(&self.rail, point), body(&self.wheel, self.wheel.point));
-        Ok(Self { rail, wheel, at_contact: false, under: OnceLock::new(), ..self.clone() })
+        let along = here.rotation * turn;
+        (point.station.cos, point.station.sin) = (along.re, along.im);
+        let rail = Body::in_frame(&self.rail.swept, point);
+        let mut on_wheel = self.wheel.point;
+        let ([ahead, skew], station) =
+            wheel_along((&self.wheel.contact_frame(), self.skew, self.rolling_radius()), origin, turn);
+        on_wheel.station = station;
+        let wheel = Body::in_frame(&self.wheel.swept, on_wheel);
+        let ahead = self.ahead + ahead;
+        Ok(Self { rail, wheel, skew, ahead, at_contact: false, under: OnceLock::new(), ..self.clone() })
+    }
+
+    /// How far \[mm\] the frame's origin lies ahead of the contact point C along η: 0 but in a frame by [`Self::reframed`] under a
+    /// skewed wheel.
+    pub fn ahead(&self) -> f64 {
+        self.ahead
     }
 
     /// Whether the frame's origin is the contact point C: not so in a frame by [`Self::reframed`].

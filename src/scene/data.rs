@@ -240,7 +240,7 @@ pub struct PatchData {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure_cell: Option<f64>,
     /// Origin and angle of the contact frame: "contact", the contact point and its tangent, or "weighted", the centre of
-    /// the overlap and the mean angle of the rail there, as in CONTACT; without yaw only.
+    /// the overlap and the mean angle of the rail there, as in CONTACT; forces under a load are then continuous.
     #[serde(default, skip_serializing_if = "is_contact")]
     pub frame: FrameOrigin,
 }

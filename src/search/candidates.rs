@@ -35,7 +35,7 @@ pub(super) struct Candidate {
 }
 
 /// An element of the wheel and one of the rail, with a parameter on each.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Meeting {
     /// Indices of the wheel's and the rail's element.
     pub elements: [u32; 2],

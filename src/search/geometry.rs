@@ -1,9 +1,10 @@
 //! Contact geometry of a wheelset over its lateral displacement, in the terms of EN 15302: Δr, Δ tan γ, places of contact, roll,
 //! and the figures that are taken from them.
 
+use super::position::{Position, Roll};
 use super::sweep::{Conicity, Equivalent, NoConicity};
 use super::touch::{Contact, Selection};
-use super::wheelset::{Position, Roll, WheelsetOnTrack, WheelsetTouch};
+use super::wheelset::{WheelsetOnTrack, WheelsetTouch};
 use crate::error::Result;
 use crate::placement::Pair;
 use crate::profile::trace;
@@ -215,12 +216,6 @@ fn active_face(pair: &Pair) -> Option<f64> {
     marks.windows(2).filter_map(crossing).filter(|x| *x < 0.0).max_by(f64::total_cmp)
 }
 
-/// Returns the amplitude \[mm\] at which EN 14363 takes the equivalent conicity of a clearance TG − SR \[mm\]: 3 mm from 7 mm on,
-/// (TG − SR − 1 mm)/2 between 5 mm and 7 mm, 2 mm below.
-pub fn amplitude_of_clearance(clearance: f64) -> f64 {
-    ((clearance - 1.0) / 2.0).clamp(2.0, 3.0)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -245,8 +240,6 @@ mod tests {
             let wider = gauge(&system.widened(by)?, [&pair, &pair]);
             assert!(wider.is_some_and(|wider| (wider - 1435.0 - by).abs() < 1e-9), "{wider:?}");
         }
-        let amplitudes = [4.0, 5.0, 6.0, 7.0, 10.0].map(amplitude_of_clearance);
-        assert_eq!(amplitudes, [2.0, 2.0, 2.5, 3.0, 3.0]);
         Ok(())
     }
 

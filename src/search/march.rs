@@ -2,9 +2,10 @@
 
 use rayon::prelude::*;
 
+use super::position::Position;
 use super::sweep::{Sweep, SweepRow, TrackSide};
 use super::touch::{Contact, ONE_CONTACT, Selection};
-use super::wheelset::{Position, WheelsetOnTrack};
+use super::wheelset::WheelsetOnTrack;
 use crate::error::{Error, Result};
 
 /// Places of one block: enough work for all threads, and little memory.

@@ -33,6 +33,7 @@ mod body;
 mod bounds;
 mod candidates;
 mod element;
+mod far;
 mod geometry;
 mod locus;
 mod lofted;
@@ -40,6 +41,7 @@ mod march;
 mod over_rail;
 mod parallel;
 mod placed;
+mod position;
 mod roller;
 mod side;
 mod stretches;
@@ -49,18 +51,21 @@ mod walk;
 mod wheelset;
 
 pub use geometry::{
-    AMPLITUDE, ContactBand, GeometryAt, KeyFigures, active_faces, amplitude_of_clearance, gauge,
-    geometry_over, key_figures, nonlinearity,
+    AMPLITUDE, ContactBand, GeometryAt, KeyFigures, active_faces, gauge, geometry_over, key_figures,
+    nonlinearity,
 };
 pub use lofted::LoftedPair;
 pub use march::{Event, EventKind, March, Stop};
 pub use over_rail::Work;
 pub use parallel::{ParallelSweep, conicity_over, free};
+pub use position::{Position, Roll};
+pub use side::SideOnTrack;
 pub use sweep::{ACCURACY, Conicity, Equivalent, NoConicity, Sweep, SweepRow, TrackSide, TwoStep};
 #[cfg(feature = "files")]
 pub(crate) use touch::small_angle;
 pub use touch::{Contact, ContactSearch, ONE_CONTACT, Pose, ProfilePair, Selection, Touch, wheel_rotation};
-pub use wheelset::{Position, Roll, SideOnTrack, SideTouch, WheelsetOnTrack, WheelsetSearch, WheelsetTouch};
+pub(crate) use wheelset::Places;
+pub use wheelset::{SideTouch, WheelsetOnTrack, WheelsetSearch, WheelsetTouch};
 
 #[cfg(test)]
 mod tests;

@@ -2,9 +2,10 @@
 
 use rayon::prelude::*;
 
+use super::position::{Position, Roll};
 use super::sweep::{Conicity, Sweep, SweepRow};
 use super::touch::Selection;
-use super::wheelset::{Position, Roll, WheelsetOnTrack};
+use super::wheelset::WheelsetOnTrack;
 use crate::error::Result;
 
 /// Positions of one block: enough work for all threads, and little memory.

@@ -1,4 +1,4 @@
-//! One side of a wheelset: what its wheel runs on, and the search over it.
+//! One side of a wheelset on its track: what its wheel runs on, where both are, and the search over them.
 
 use std::sync::Arc;
 
@@ -7,6 +7,44 @@ use super::locus::Attitude;
 use super::lofted::{LoftedPair, LoftedSearch};
 use super::over_rail::Work;
 use super::touch::{ContactSearch, ProfilePair, Selection, Touch};
+use crate::error::Result;
+use crate::placement::{Pair, Track, Wheelset};
+
+/// One side of a wheelset on its track, in the side's own axes: those of a right-hand side.
+#[derive(Debug, Clone)]
+pub struct SideOnTrack {
+    /// The prepared wheel and rail.
+    pub(super) pair: SidePair,
+    /// The position of the rail.
+    pub(super) track: Track,
+    /// The position of the wheel.
+    pub(super) wheelset: Wheelset,
+}
+
+impl SideOnTrack {
+    /// Prepares the profiles of one side; `track` and `wheelset` say where they are.
+    ///
+    /// # Errors
+    /// The errors of [`ProfilePair::new`].
+    pub fn new(pair: &Pair, track: Track, wheelset: Wheelset) -> Result<Self> {
+        Ok(Self { pair: SidePair::Swept(Arc::new(ProfilePair::new(pair)?)), track, wheelset })
+    }
+
+    /// Takes a rail that varies along the track, or a wheel that varies around its axle, with the other body.
+    pub fn lofted(pair: Arc<LoftedPair>, track: Track, wheelset: Wheelset) -> Self {
+        Self { pair: SidePair::Lofted(pair), track, wheelset }
+    }
+
+    /// Returns the position of the rail.
+    pub fn track(&self) -> &Track {
+        &self.track
+    }
+
+    /// Returns the position of the wheel on its axle.
+    pub fn wheelset(&self) -> &Wheelset {
+        &self.wheelset
+    }
+}
 
 /// A wheel and what it runs on, prepared for searches.
 #[derive(Debug, Clone)]

@@ -8,8 +8,9 @@ pub use two_step::TwoStep;
 
 use std::fmt;
 
+use super::position::{Position, Roll};
 use super::touch::{Contact, Selection};
-use super::wheelset::{Position, Roll, WheelsetOnTrack, WheelsetSearch};
+use super::wheelset::{WheelsetOnTrack, WheelsetSearch};
 use crate::error::Result;
 
 /// A side of the track.

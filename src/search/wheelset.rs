@@ -1,43 +1,20 @@
 //! A wheelset on its track: both sides lowered, with the roll solved, neglected or given.
 //!
 //! The wheelset is turned about the middle of its axle, c: a point p of it, relative to c, goes to
-//! c + A p, with A of [`wheel_rotation`]. So the right-hand profile origin, S out along the axle and R below it, is at
+//! c + A p, with A of [`wheel_rotation`](super::wheel_rotation). So the right-hand profile origin, S out along the axle and R below it, is at
 //! c + (S cosψ cosφ − R sinφ, S sinψ, −S cosψ sinφ − R cosφ).
 
-use std::sync::Arc;
+use nalgebra::{Isometry2, Vector2};
 
 use super::candidates::{Candidate, Meeting};
+use super::far::{Far, LARGEST_ROLL};
 use super::locus::Attitude;
-use nalgebra::{Isometry2, Rotation3, Vector2};
-
-use super::lofted::LoftedPair;
 use super::over_rail::Work;
-use super::side::{SidePair, SideSearch};
-use super::touch::{ProfilePair, Selection, Touch, small_angle, wheel_rotation};
+use super::position::{Position, Roll};
+use super::side::{SideOnTrack, SidePair, SideSearch};
+use super::touch::{Selection, Touch, small_angle};
 use crate::error::{Error, Result, finite};
 use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
-
-/// How the roll of a wheelset is found.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Roll {
-    /// Finds the roll at which both wheels touch.
-    Solve,
-    /// Takes a roll of 0 (the convention of EN 15302): each side is lowered on its own.
-    Neglect,
-    /// Takes this roll \[rad\], + lowers the right-hand wheel: each side is lowered on its own.
-    Fixed(f64),
-}
-
-/// The position of a wheelset over its track.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Position {
-    /// Lateral displacement of the axle's middle \[mm\], + to the right.
-    pub lateral: f64,
-    /// Yaw ψ \[rad\], + moves the right-hand wheel forward.
-    pub yaw: f64,
-    /// How the roll is found.
-    pub roll: Roll,
-}
 
 /// A wheelset on its track: a profile pair on both sides, each in its own axes.
 ///
@@ -64,55 +41,11 @@ pub struct WheelsetOnTrack {
     symmetric: bool,
 }
 
-/// One side of a wheelset on its track, in the side's own axes: those of a right-hand side.
-#[derive(Debug, Clone)]
-pub struct SideOnTrack {
-    /// The prepared wheel and rail.
-    pub(super) pair: SidePair,
-    /// The position of the rail.
-    pub(super) track: Track,
-    /// The position of the wheel.
-    pub(super) wheelset: Wheelset,
-}
-
-impl SideOnTrack {
-    /// Prepares the profiles of one side; `track` and `wheelset` say where they are.
-    ///
-    /// # Errors
-    /// The errors of [`ProfilePair::new`].
-    pub fn new(pair: &Pair, track: Track, wheelset: Wheelset) -> Result<Self> {
-        Ok(Self { pair: SidePair::Swept(Arc::new(ProfilePair::new(pair)?)), track, wheelset })
-    }
-
-    /// Takes a rail that varies along the track, or a wheel that varies around its axle, with the other body.
-    pub fn lofted(pair: Arc<LoftedPair>, track: Track, wheelset: Wheelset) -> Self {
-        Self { pair: SidePair::Lofted(pair), track, wheelset }
-    }
-
-    /// Returns the position of the rail.
-    pub fn track(&self) -> &Track {
-        &self.track
-    }
-
-    /// Returns the position of the wheel on its axle.
-    pub fn wheelset(&self) -> &Wheelset {
-        &self.wheelset
-    }
-}
-
-impl Position {
-    /// The rotation of the wheelset about the middle of its axle in track axes at a roll \[rad\], which may be the one that a
-    /// search solved for: see [`wheel_rotation`].
-    pub fn rotation(&self, roll: f64) -> Rotation3<f64> {
-        wheel_rotation(self.yaw, roll)
-    }
-}
-
 impl WheelsetOnTrack {
     /// Prepares a pair of profiles on both sides of a track, the left side being the mirror image.
     ///
     /// # Errors
-    /// The errors of [`ProfilePair::new`], [`Track::new`] and [`Wheelset::new`].
+    /// The errors of [`SideOnTrack::new`], [`Track::new`] and [`Wheelset::new`].
     pub fn new(pair: &Pair, rails: RailDistance, wheels: WheelDistance) -> Result<Self> {
         let track = Track::new(pair.rail(), rails)?;
         SideOnTrack::new(pair, track, Wheelset::new(wheels, pair.wheel_radius())?).map(Self::symmetrical)
@@ -185,9 +118,22 @@ pub struct WheelsetTouch<'a> {
     pub roll: f64,
     /// Left and right side.
     pub sides: [SideTouch<'a>; 2],
-    /// Elements of wheel and rail that meet at the lowest place of each side; what is found there is analytic in the position as
-    /// long as they stay the same.
-    pub(crate) elements: [[u32; 2]; 2],
+    /// Where the lowest places are, for searches nearby.
+    pub(crate) places: Places,
+}
+
+/// The lowest places of a first touch, from which searches nearby begin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Places {
+    roll: f64,
+    meetings: [Meeting; 2],
+}
+
+impl Places {
+    /// Elements of wheel and rail that meet on each side; what is found there is analytic in the position as long as they stay the same.
+    pub fn elements(&self) -> [[u32; 2]; 2] {
+        self.meetings.map(|meeting| meeting.elements)
+    }
 }
 
 /// First touch of one side.
@@ -203,13 +149,6 @@ pub struct SideTouch<'a> {
 /// Signs of x of the left and the right side, in the order of every pair of sides.
 const SIGNS: [f64; 2] = [-1.0, 1.0];
 
-/// Largest roll that is tried \[rad\]: at this roll one flange is on top of its rail.
-const LARGEST_ROLL: f64 = 0.1;
-
-/// Rolls \[rad\] at which a change of sign is looked for if Newton's method finds no roll: with a lift of 28
-/// mm over 1.5 m a flange is on top of its rail; wider gauges and higher flanges need more.
-const FAR: [f64; 3] = [0.025, 0.05, LARGEST_ROLL];
-
 /// Most times that both sides are lowered for one roll. Newton's method takes two to six; a contact beyond
 /// 73° makes it leave the root, and from the far side of the flange it takes as many again. Halving alone
 /// would take half of these, except where a wheel leaves its rail: there is no roll then.
@@ -221,17 +160,23 @@ const NEWTON_LEVELS: u32 = 5;
 /// Newton steps with the places of contact kept: quadratic, from 1e-3 rad.
 const FOLLOWED: u32 = 6;
 
-/// Both sides lowered at one roll; arrays are \[left, right\].
+/// Both sides on given places of contact at one roll; arrays are \[left, right\].
 #[derive(Debug, Clone, Copy)]
-struct Lowered {
+struct Kept {
     roll: f64,
-    attitudes: [Attitude; 2],
-    /// Heights of the wheel's profile origin over the rail's \[mm\].
-    heights: [f64; 2],
     /// Heights of the axle's middle above R over the top of rail \[mm\].
     z: [f64; 2],
     /// Derivative of the difference of `z` with respect to the roll \[mm/rad\].
     slope: f64,
+}
+
+/// Both sides lowered at one roll; arrays are \[left, right\].
+#[derive(Debug, Clone, Copy)]
+struct Lowered {
+    kept: Kept,
+    attitudes: [Attitude; 2],
+    /// Heights of the wheel's profile origin over the rail's \[mm\].
+    heights: [f64; 2],
     /// The lowest place of contact of each side.
     meetings: [Meeting; 2],
 }
@@ -288,15 +233,33 @@ impl WheelsetSearch<'_> {
     /// # Errors
     /// Values that are not finite; angles beyond ±0.5 rad; a rail that varies and follows the wheel's shape all over.
     pub fn touch(&mut self, position: &Position, selection: &Selection) -> Result<Option<WheelsetTouch<'_>>> {
+        self.touch_near(position, selection, None)
+    }
+
+    /// Does what [`WheelsetSearch::touch`] does, beginning from the places of a touch nearby. They spare the search for a roll where
+    /// they are still the lowest; elsewhere they are forgotten. Where contacts are steeper than 73°, several rolls may have contact
+    /// on both sides, and the nearby one is found.
+    ///
+    /// # Errors
+    /// Those of [`WheelsetSearch::touch`].
+    pub(crate) fn touch_near(
+        &mut self,
+        position: &Position,
+        selection: &Selection,
+        near: Option<&Places>,
+    ) -> Result<Option<WheelsetTouch<'_>>> {
         finite("wheelset: lateral", position.lateral)?;
         small_angle("wheelset: yaw", position.yaw)?;
         let reach = selection.within;
         let level = match position.roll {
             Roll::Neglect => self.level(position, 0.0, reach),
             Roll::Fixed(roll) => self.level(position, small_angle("wheelset: roll", roll)?, reach),
-            Roll::Solve => match self.solve_roll(position) {
-                // Near misses are looked for once, at the end.
-                Some(level) if reach > 0.0 => self.level(position, level.roll, reach),
+            Roll::Solve => match near.and_then(|near| self.confirmed(position, near, reach)) {
+                None => match self.solve_roll(position) {
+                    // Near misses are looked for once, at the end.
+                    Some(level) if reach > 0.0 => self.level(position, level.kept.roll, reach),
+                    level => level,
+                },
                 level => level,
             },
         };
@@ -305,13 +268,39 @@ impl WheelsetSearch<'_> {
             let advice = "look at the slices nearby, or lower `within`";
             return Err(Error::new("rail", "a surface too close to the wheel's", expected, advice));
         }
-        let Some(Lowered { roll, z, heights, attitudes, meetings, .. }) = level else { return Ok(None) };
+        let Some(Lowered { kept, heights, attitudes, meetings }) = level else { return Ok(None) };
+        let Kept { roll, z, .. } = kept;
         let [left, right] = &mut self.sides;
         let sides = [
             SideTouch { z: z[0], touch: left.collect(&attitudes[0], heights[0], selection) },
             SideTouch { z: z[1], touch: right.collect(&attitudes[1], heights[1], selection) },
         ];
-        Ok(Some(WheelsetTouch { roll, sides, elements: meetings.map(|meeting| meeting.elements) }))
+        Ok(Some(WheelsetTouch { roll, sides, places: Places { roll, meetings } }))
+    }
+
+    /// Returns the heights of the axle's middle \[mm\], of the left and the right side, at which the wheels touch at the places of a
+    /// touch nearby, whether or not others are lower; `None` where these have left their elements.
+    pub(crate) fn heights(&mut self, position: &Position, near: &Places) -> Option<[f64; 2]> {
+        let roll = match position.roll {
+            Roll::Solve => near.roll,
+            Roll::Neglect => 0.0,
+            Roll::Fixed(roll) => roll,
+        };
+        let kept = self.kept(position, roll, &near.meetings)?;
+        match position.roll {
+            Roll::Solve => self.follow(position, kept, &near.meetings).ok().map(|kept| kept.z),
+            Roll::Neglect | Roll::Fixed(_) => Some(kept.z),
+        }
+    }
+
+    /// Lowers both sides at the roll at which both wheels touch at the places of a touch nearby; `None` where these are not the lowest
+    /// any more.
+    fn confirmed(&mut self, position: &Position, near: &Places, within: f64) -> Option<Lowered> {
+        let kept = self.kept(position, near.roll, &near.meetings)?;
+        let kept = self.follow(position, kept, &near.meetings).ok()?;
+        let level = self.level(position, kept.roll, within)?;
+        let same = level.meetings.map(|meeting| meeting.elements) == near.elements();
+        (same && level.kept.difference().abs() <= self.rounding()).then_some(level)
     }
 
     /// Lowers both sides at the roll at which both wheels touch; `None` if there is no such roll.
@@ -323,7 +312,7 @@ impl WheelsetSearch<'_> {
         let mut level = self.level(position, 0.0, 0.0)?;
         let mut far = None;
         for count in 1..MOST_LEVELS {
-            let difference = level.difference();
+            let difference = level.kept.difference();
             if difference.abs() <= self.rounding() {
                 return Some(level);
             }
@@ -355,12 +344,12 @@ impl WheelsetSearch<'_> {
         count: u32,
     ) -> Option<f64> {
         if far.is_none() {
-            let next = self.follow(position, level);
-            if count < NEWTON_LEVELS && next.abs() <= LARGEST_ROLL && next != level.roll {
+            let next = self.followed(position, level);
+            if count < NEWTON_LEVELS && next.abs() <= LARGEST_ROLL && next != level.kept.roll {
                 return Some(next);
             }
         }
-        far.get_or_insert_with(|| Far::new(level.difference())).next()
+        far.get_or_insert_with(|| Far::new(level.kept.difference())).next()
     }
 
     /// Returns the next roll to try between two rolls with different signs of the height difference: the root with the places of contact kept
@@ -372,7 +361,7 @@ impl WheelsetSearch<'_> {
         last: &Lowered,
         count: u32,
     ) -> Option<f64> {
-        let [a, b] = ends.map(|end| end.roll);
+        let [a, b] = ends.map(|end| end.kept.roll);
         let middle = a + (b - a) / 2.0;
         if middle == a || middle == b {
             // No number is between: the height jumps where a wheel leaves its rail.
@@ -382,36 +371,55 @@ impl WheelsetSearch<'_> {
         if count.is_multiple_of(HALVED) {
             return Some(middle);
         }
-        let other = if last.roll == a { ends[1] } else { ends[0] };
-        let nearer =
-            if other.difference().abs() < last.difference().abs() { [&other, last] } else { [last, &other] };
-        let followed = nearer.into_iter().map(|level| self.follow(position, level)).find(inside);
+        let other = if last.kept.roll == a { ends[1] } else { ends[0] };
+        let [off, off_last] = [&other, last].map(|level| level.kept.difference().abs());
+        let nearer = if off < off_last { [&other, last] } else { [last, &other] };
+        let followed = nearer.into_iter().map(|level| self.followed(position, level)).find(inside);
         Some(followed.unwrap_or(middle))
     }
 
     /// Returns the roll at which both wheels touch with the places of contact of a level, or the roll at
     /// which these leave their elements on the way; NaN if there is none.
-    fn follow(&mut self, position: &Position, level: &Lowered) -> f64 {
-        let (mut roll, mut difference, mut slope) = (level.roll, level.difference(), level.slope);
+    fn followed(&mut self, position: &Position, level: &Lowered) -> f64 {
+        self.follow(position, level.kept, &level.meetings).map_or_else(|roll| roll, |kept| kept.roll)
+    }
+
+    /// Turns the wheelset until both wheels touch at given places of contact.
+    ///
+    /// # Errors
+    /// The roll at which these leave their elements on the way, or which is not settled; NaN if there is none.
+    fn follow(
+        &mut self,
+        position: &Position,
+        mut kept: Kept,
+        meetings: &[Meeting; 2],
+    ) -> std::result::Result<Kept, f64> {
         for _ in 0..FOLLOWED {
-            let next = roll - difference / slope;
-            if next == roll || next.is_nan() || next.abs() > LARGEST_ROLL {
-                return next;
+            let next = kept.roll - kept.difference() / kept.slope;
+            if next == kept.roll {
+                return Ok(kept);
             }
-            roll = next;
-            let attitudes = [0, 1].map(|side| self.system.attitude(position, roll, side));
-            let (mut z, mut sum) = ([0.0; 2], 0.0);
-            for (k, (attitude, datum)) in attitudes.iter().enumerate() {
-                let Some(candidate) = self.sides[k].follow(attitude, &level.meetings[k]) else { return roll };
-                z[k] = datum - candidate.gap;
-                sum += self.lever(position, k, z[k], &candidate);
+            if next.is_nan() || next.abs() > LARGEST_ROLL {
+                return Err(next);
             }
-            (difference, slope) = (z[1] - z[0], sum);
-            if difference.abs() <= 0.5 * self.rounding() {
-                break;
+            kept = self.kept(position, next, meetings).ok_or(next)?;
+            if kept.difference().abs() <= 0.5 * self.rounding() {
+                return Ok(kept);
             }
         }
-        roll
+        Err(kept.roll)
+    }
+
+    /// Puts both sides on given places of contact at a roll; `None` where these have left their elements.
+    fn kept(&mut self, position: &Position, roll: f64, meetings: &[Meeting; 2]) -> Option<Kept> {
+        let (mut z, mut slope) = ([0.0; 2], 0.0);
+        for (k, meeting) in meetings.iter().enumerate() {
+            let (attitude, datum) = self.system.attitude(position, roll, k);
+            let candidate = self.sides[k].follow(&attitude, meeting)?;
+            z[k] = datum - candidate.gap;
+            slope += self.lever(position, k, z[k], &candidate);
+        }
+        Some(Kept { roll, z, slope })
     }
 
     /// Returns the rounding of a difference of heights \[mm\].
@@ -435,7 +443,7 @@ impl WheelsetSearch<'_> {
             lowest[k] = Some(candidate.meeting);
         }
         let [left, right] = lowest;
-        Some(Lowered { roll, attitudes, heights, z, slope, meetings: [left?, right?] })
+        Some(Lowered { kept: Kept { roll, z, slope }, attitudes, heights, meetings: [left?, right?] })
     }
 
     /// Returns the part of one side in the derivative of the difference of heights with respect to the roll
@@ -465,7 +473,7 @@ impl WheelsetSearch<'_> {
     }
 }
 
-impl Lowered {
+impl Kept {
     /// Returns the height of the right side less that of the left \[mm\].
     fn difference(&self) -> f64 {
         self.z[1] - self.z[0]
@@ -474,27 +482,3 @@ impl Lowered {
 
 /// Interval, in rolls tried between two ends, at which the middle is taken.
 const HALVED: u32 = 4;
-
-/// Far rolls on both sides. The first are on the side to which the wheelset must turn by its levers: a wheel
-/// that is too high is raised.
-struct Far {
-    first: f64,
-    tried: usize,
-}
-
-impl Far {
-    fn new(difference: f64) -> Self {
-        Self { first: -difference.signum(), tried: 0 }
-    }
-}
-
-impl Iterator for Far {
-    type Item = f64;
-
-    fn next(&mut self) -> Option<f64> {
-        let sign = if self.tried < FAR.len() { self.first } else { -self.first };
-        let roll = (self.tried < 2 * FAR.len()).then(|| sign * FAR[self.tried % FAR.len()]);
-        self.tried += 1;
-        roll
-    }
-}

@@ -38,15 +38,16 @@ pub(super) fn breaks(system: &WheelsetOnTrack, asked: &Asked) -> Result<(Break, 
     let at = |k: usize| if k == steps { to } else { from + (to - from) * (k as f64 / steps as f64) };
     let chunk = |first: usize| -> Result<(Option<State>, State, Vec<Break>)> {
         let mut sampler = Sampler::new(system, asked);
+        let all: Vec<f64> = (first..=(first + CHUNK).min(steps)).map(at).collect();
+        let states = states(&mut sampler, &all)?;
         let mut found = Vec::new();
-        let begin = sampler.at(at(first), STEEPEST * STEP)?;
-        let mut last = begin.clone();
-        for k in first..(first + CHUNK).min(steps) {
-            let next = sampler.at(at(k + 1), STEEPEST * STEP)?;
-            divide(&mut sampler, &last, &next, &mut found)?;
-            last = next;
+        for pair in states.windows(2) {
+            divide(&mut sampler, &pair[0], &pair[1], &mut found)?;
         }
-        Ok(((first == 0).then_some(begin), last, found))
+        let mut states = states.into_iter();
+        let begin = states.next().filter(|_| first == 0);
+        let end = states.next_back().ok_or_else(no_range)?;
+        Ok((begin, end, found))
     };
     let firsts: Vec<usize> = (0..steps).step_by(CHUNK).collect();
     let chunks = firsts.into_par_iter().map(chunk).collect::<Result<Vec<_>>>()?;
@@ -57,8 +58,32 @@ pub(super) fn breaks(system: &WheelsetOnTrack, asked: &Asked) -> Result<(Break, 
         breaks.extend(found);
     }
     let ends = begin.zip(end).map(|(begin, end)| [begin, end]);
-    let ends = ends.ok_or_else(|| Error::new("table: lateral", "no range", "FROM < TO", "correct it"))?;
-    Ok((ends, breaks))
+    Ok((ends.ok_or_else(no_range)?, breaks))
+}
+
+fn no_range() -> Error {
+    Error::new("table: lateral", "no range", "FROM < TO", "correct it")
+}
+
+/// Finds the states at ascending displacements, each from the one before. Unless they lead to what the last one has without them, each is
+/// searched for on its own.
+fn states(sampler: &mut Sampler<'_>, all: &[f64]) -> Result<Vec<State>> {
+    let within = STEEPEST * STEP;
+    let mut states: Vec<State> = Vec::with_capacity(all.len());
+    for lateral in all {
+        let state = match states.last() {
+            None => sampler.at(*lateral, within)?,
+            Some(before) => sampler.near(*lateral, within, before)?,
+        };
+        states.push(state);
+    }
+    if let Some(led) = states.last() {
+        let last = sampler.at(led.lateral, 0.0)?;
+        if led.topology != last.topology || led.moved(&last) > BREAK {
+            return all.iter().map(|lateral| sampler.at(*lateral, within)).collect();
+        }
+    }
+    Ok(states)
 }
 
 /// Appends the breaks between two states, in ascending order.
@@ -85,7 +110,16 @@ pub(super) fn divide(
         return Ok(());
     }
     let steepest = from.steepest().max(to.steepest()).max(STEEPEST);
-    let middle = sampler.at(middle, (steepest + STEEPEST) * width)?;
+    let within = (steepest + STEEPEST) * width;
+    if let Some([a, b]) = sampler.handover(from, to) {
+        let (before, after) = (sampler.near(a, within, from)?, sampler.near(b, within, to)?);
+        if before.topology == from.topology && after.topology == to.topology {
+            divide(sampler, from, &before, breaks)?;
+            breaks.push([before.clone(), after.clone()]);
+            return divide(sampler, &after, to, breaks);
+        }
+    }
+    let middle = sampler.near(middle, within, from)?;
     divide(sampler, from, &middle, breaks)?;
     divide(sampler, &middle, to, breaks)
 }

@@ -23,8 +23,8 @@ const WIDEST: f64 = 200.0;
 /// Method: searches every 0.02 mm. Where the elements that touch differ, or a near miss may close in between, the step is halved until
 /// its parts are clear or narrower than [`BREAK`](super::BREAK). Between breaks every quantity is interpolated at nine Chebyshev points, on cells
 /// that are halved until eight other points agree to a quarter of the tolerance.
-/// Accuracy: [`Quantity::error`]. Cost: five to twenty thousand searches, on the threads of the current rayon pool; any number of
-/// threads gives the same bits.
+/// Accuracy: [`Quantity::error`]. Cost: some 2500 searches for a drawn pair over 18 mm, 5000 for a measured one, most of which begin from
+/// one nearby; on the threads of the current rayon pool, and any number of threads gives the same bits.
 ///
 /// # Errors
 /// A range that is empty or wider than 200 mm; a tolerance outside 1e-6 to 1 mm; an angle beyond ±0.5 rad; a rail that varies along the track, and a

@@ -47,6 +47,9 @@ pub struct ContactTable {
 /// Displacements that one thread takes at a time.
 const TOGETHER: usize = 4096;
 
+/// Displacements whose values are found before they are put into columns: 7 kB.
+const ROWS: usize = 32;
+
 /// Parts of the range for each cell, with whose help a cell is found: one or two steps from the hint are enough.
 const HINTS: usize = 4;
 
@@ -183,21 +186,35 @@ impl ContactTable {
         }
     }
 
-    /// Gives the quantities with these numbers at many lateral displacements \[mm\]: `out` has a row of them for each displacement. It runs
-    /// on the threads of the current rayon pool.
+    /// Gives the quantities with these numbers at many lateral displacements \[mm\]: `out` has the values of the first at all
+    /// displacements, then those of the second, and so on. It runs on the threads of the current rayon pool; any number of threads gives
+    /// the bits of [`ContactTable::fill`].
     pub fn fill_many(&self, lateral: &[f64], numbers: &[usize], out: &mut [f64]) {
-        if numbers.is_empty() {
-            return;
+        let mut parts: Vec<Vec<&mut [f64]>> = Vec::new();
+        parts.resize_with(lateral.len().div_ceil(TOGETHER), Vec::new);
+        for column in out.chunks_exact_mut(lateral.len().max(1)) {
+            parts.iter_mut().zip(column.chunks_mut(TOGETHER)).for_each(|(part, piece)| part.push(piece));
         }
-        let rows = out.par_chunks_mut(TOGETHER * numbers.len()).zip(lateral.par_chunks(TOGETHER));
-        rows.for_each(|(out, lateral)| {
-            let mut values = [0.0; MOST];
-            let values = &mut values[..self.quantities.len()];
-            for (row, y) in out.chunks_exact_mut(numbers.len()).zip(lateral) {
-                self.fill(*y, values);
-                row.iter_mut().zip(numbers).for_each(|(place, number)| *place = values[*number]);
+        let parts = parts.into_par_iter().zip(lateral.par_chunks(TOGETHER));
+        parts.for_each(|(mut columns, lateral)| self.fill_columns(lateral, numbers, &mut columns));
+    }
+
+    /// Fills a part of each column, by rows that stay in the nearest cache.
+    fn fill_columns(&self, lateral: &[f64], numbers: &[usize], columns: &mut [&mut [f64]]) {
+        let mut rows = [[0.0; MOST]; ROWS];
+        let count = self.quantities.len();
+        for (k, lateral) in lateral.chunks(ROWS).enumerate() {
+            rows.iter_mut().zip(lateral).for_each(|(row, y)| self.fill(*y, &mut row[..count]));
+            for (column, &number) in columns.iter_mut().zip(numbers) {
+                let places = &mut column[k * ROWS..][..lateral.len()];
+                places.iter_mut().zip(&rows).for_each(|(place, row)| *place = row[number]);
             }
-        });
+        }
+    }
+
+    /// Returns the intervals of displacements \[mm\] in which a wheel is off its rail, in ascending order: the table has nothing there.
+    pub fn off_rail(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.cells.iter().filter(|cell| !cell.touches).map(|cell| cell.lateral)
     }
 
     /// Returns the displacements \[mm\] of hops, joints or edges between cells, in ascending order.

@@ -127,7 +127,8 @@ fn samples(sampler: &mut Sampler<'_>, ends: &Break) -> Result<Vec<State>> {
     for k in 1..SAMPLES - 1 {
         let t = -(PI * k as f64 / (SAMPLES - 1) as f64).cos();
         let y = from + (to - from) * (0.5 * (1.0 + t));
-        samples.push(sampler.at(y.clamp(from, to), 0.0)?);
+        let sample = sampler.near(y.clamp(from, to), 0.0, &samples[k - 1])?;
+        samples.push(sample);
     }
     samples.push(ends[1].clone());
     Ok(samples)

@@ -3,11 +3,11 @@
 use std::f64::consts::FRAC_PI_4;
 
 use super::asked::{Asked, Pressed};
-use super::cell::Lacks;
+use super::cell::{BREAK, Lacks};
 use super::quantity::{MOST, SideValues, Values, values};
 use crate::error::Result;
 use crate::load::{curvatures_at, quadratic_form_at};
-use crate::search::{Contact, Position, Selection, WheelsetOnTrack, WheelsetSearch};
+use crate::search::{Contact, Places, Position, Selection, WheelsetOnTrack, WheelsetSearch};
 
 /// Distance \[mm\] below which two places are one.
 const APART: f64 = 1e-3;
@@ -42,10 +42,16 @@ pub(super) struct State {
     pub values: Values,
     /// Abscissae \[mm\] of the places of contact on both rails and wheels.
     places: [f64; 4],
+    /// The lowest places, from which searches nearby begin.
+    lowest: Option<Places>,
     near: Vec<NearMiss>,
     /// Slopes of both places of contact in track axes.
     slopes: [f64; 2],
 }
+
+/// Slope of a place of contact from which on several rolls may have contact on both sides: searches nearby then begin anew. It is
+/// below the 73° of [`WheelsetSearch::touch`].
+const STEEP: f64 = 3.0;
 
 /// Searches at one displacement after another.
 pub(super) struct Sampler<'a> {
@@ -63,18 +69,51 @@ impl<'a> Sampler<'a> {
     /// # Errors
     /// The errors of the search.
     pub fn at(&mut self, lateral: f64, within: f64) -> Result<State> {
-        let Asked { yaw, roll, pressed, .. } = *self.asked;
-        let selection = Selection { within, apart: APART };
-        let Some(touch) = self.search.touch(&Position { lateral, yaw, roll }, &selection)? else {
-            let values = [f64::NAN; MOST];
-            return Ok(State {
-                lateral,
-                topology: None,
-                values,
-                places: [f64::NAN; 4],
-                near: Vec::new(),
-                slopes: [0.0; 2],
-            });
+        self.touch(lateral, within, None)
+    }
+
+    /// Does what [`Sampler::at`] does, with less work where the places of a state nearby still touch.
+    ///
+    /// # Errors
+    /// The errors of the search.
+    pub fn near(&mut self, lateral: f64, within: f64, state: &State) -> Result<State> {
+        self.touch(lateral, within, state.lowest.as_ref().filter(|_| state.steepest() < STEEP))
+    }
+
+    /// Finds where the places of contact of one state give way to those of a later one, by following both, which takes no search.
+    /// Returns the ends of an interval of at most [`BREAK`]; `None` where the same elements touch, or nothing does.
+    pub fn handover(&mut self, from: &State, to: &State) -> Option<[f64; 2]> {
+        let (before, after) = (from.lowest?, to.lowest?);
+        let differ = [0, 1].map(|k| before.elements()[k] != after.elements()[k]);
+        if !differ.contains(&true) {
+            return None;
+        }
+        let asked = self.asked;
+        let mut holds = |lateral: f64| {
+            let position = position(asked, lateral);
+            let Some(before) = self.search.heights(&position, &before) else { return false };
+            let after = self.search.heights(&position, &after);
+            // The wheel that comes down touches first where it has to stay highest.
+            after.is_none_or(|after| (0..2).all(|k| !differ[k] || before[k] >= after[k]))
+        };
+        let [mut low, mut high] = [from.lateral, to.lateral];
+        while high - low > BREAK / 2.0 {
+            let middle = low + (high - low) / 2.0;
+            if middle <= low || middle >= high {
+                break;
+            }
+            if holds(middle) { low = middle } else { high = middle }
+        }
+        // On a joint itself rounding decides which elements touch.
+        Some([(low - BREAK / 4.0).max(from.lateral), (high + BREAK / 4.0).min(to.lateral)])
+    }
+
+    fn touch(&mut self, lateral: f64, within: f64, near: Option<&Places>) -> Result<State> {
+        let pressed = self.asked.pressed;
+        let position = position(self.asked, lateral);
+        let Some(touch) = self.search.touch_near(&position, &Selection { within, apart: APART }, near)?
+        else {
+            return Ok(State::off_rail(lateral));
         };
         let (mut near, mut slopes) = (Vec::new(), [0.0; 2]);
         let (mut lacks, mut along) = ([Lacks::Nothing; 2], [false; 2]);
@@ -94,9 +133,13 @@ impl<'a> Sampler<'a> {
         let [left, right] = sides.each_ref().map(|side| side.contact);
         let places = [left.rail_x, left.wheel_x, right.rail_x, right.wheel_x];
         let values = values(touch.roll, &sides, pressed.is_some());
-        let topology = Some(Topology { elements: touch.elements, lacks, along });
-        Ok(State { lateral, topology, values, places, near, slopes })
+        let topology = Some(Topology { elements: touch.places.elements(), lacks, along });
+        Ok(State { lateral, topology, values, places, lowest: Some(touch.places), near, slopes })
     }
+}
+
+fn position(asked: &Asked, lateral: f64) -> Position {
+    Position { lateral, yaw: asked.yaw, roll: asked.roll }
 }
 
 /// Returns the values of one side, what does not exist, and whether its ellipse is longer along ξ.
@@ -124,6 +167,18 @@ fn side_values(z: f64, contact: &Contact, pressed: Option<(Pressed, f64)>) -> (S
 const UNSEEN: f64 = 0.05;
 
 impl State {
+    fn off_rail(lateral: f64) -> Self {
+        Self {
+            lateral,
+            topology: None,
+            values: [f64::NAN; MOST],
+            places: [f64::NAN; 4],
+            lowest: None,
+            near: Vec::new(),
+            slopes: [0.0; 2],
+        }
+    }
+
     /// Tells whether no other place can have touched between this displacement and another one at which the same places touch: no near
     /// miss of either end closes on the way, by the slopes there and what they may change by.
     pub fn alone_until(&self, other: &Self) -> bool {

@@ -178,44 +178,61 @@ fn tolerance(conicity: f64) -> f64 {
     f64::min(0.05, (0.5 * conicity).max(0.01))
 }
 
+/// Largest share of the tolerance by which the energy integral and the two-step integration may be off the table.
+const HELD: [f64; 2] = [0.43, 0.09];
+
+/// The one entry that the energy integral does not have: at 3 mm wheel B is just beyond a jump of Δr, which steps of 0.1 mm smear.
+const SMEARED: (&str, &str, f64, f64) = ("B", "B", 920.0, 3.0);
+
+/// Both integrations at 1, 2 … 7 mm; 0 where the movement does not come back, as the table has it for the cylinder of wheel I.
+fn both_integrations(system: &WheelsetOnTrack) -> [[f64; 2]; 7] {
+    let conicity = Conicity::new(system, 8.0, Roll::Neglect).expect("a table");
+    let lateral: Vec<f64> = (-140..=140).map(|k| 0.1 * f64::from(k)).collect();
+    let found = geometry_over(system, &lateral, Roll::Neglect).expect("positions");
+    let on_track: Vec<_> = found.into_iter().flatten().collect();
+    let (lateral, delta_r): (Vec<f64>, Vec<f64>) = on_track.iter().map(|at| (at.lateral, at.delta_r)).unzip();
+    let two_step = TwoStep::new(&lateral, &delta_r).expect("a table");
+    std::array::from_fn(|k| {
+        let amplitude = 1.0 + k as f64;
+        let energy = conicity.at(amplitude).map_or(0.0, |found| found.conicity);
+        [energy, two_step.at(amplitude).unwrap_or(0.0)]
+    })
+}
+
 #[test]
 fn the_tables_of_annex_e_are_met_by_both_integrations() {
     let mut worst = [0f64; 2];
     let mut off = Vec::new();
     for (right, left, diameter, table) in ANNEX_E {
         let system = annex_e(right, left, diameter).expect("a wheelset");
-        let conicity = Conicity::new(&system, 8.0, Roll::Neglect).expect("a table");
-        let lateral: Vec<f64> = (-140..=140).map(|k| 0.1 * f64::from(k)).collect();
-        let found = geometry_over(&system, &lateral, Roll::Neglect).expect("positions");
-        let on_track: Vec<_> = found.into_iter().flatten().collect();
-        let (lateral, delta_r): (Vec<f64>, Vec<f64>) =
-            on_track.iter().map(|at| (at.lateral, at.delta_r)).unzip();
-        let two_step = TwoStep::new(&lateral, &delta_r).expect("a table");
-        for (amplitude, expected) in (1..=7).map(f64::from).zip(table) {
-            // A cylinder does not come back: the table has 0 where wheel I is one.
-            let both = [
-                conicity.at(amplitude).map_or(0.0, |found| found.conicity),
-                two_step.at(amplitude).unwrap_or(0.0),
-            ];
-            // The table's steps of 0.1 mm smear a jump of Δr, which the energy integral has where it is.
-            let beside =
-                [-0.1, 0.0, 0.1].map(|off| conicity.at(amplitude + off).map_or(0.0, |found| found.conicity));
-            let [low, high] = [
-                beside.iter().copied().fold(f64::INFINITY, f64::min),
-                beside.into_iter().fold(0.0, f64::max),
-            ];
-            let misses = [(low - expected).max(expected - high).max(0.0), (both[1] - expected).abs()];
-            for (worst, miss) in worst.iter_mut().zip(misses) {
-                let share = miss / tolerance(expected);
-                *worst = worst.max(share);
-                if share > 1.0 {
+        for ((amplitude, expected), found) in
+            (1..=7).map(f64::from).zip(table).zip(both_integrations(&system))
+        {
+            let smeared = (right, left, diameter, amplitude) == SMEARED;
+            for (which, (worst, held)) in worst.iter_mut().zip(HELD).enumerate() {
+                let share = (found[which] - expected).abs() / tolerance(expected);
+                let exception = smeared && which == 0;
+                // An exception that is none any more has to go.
+                if exception == (share <= held) {
                     off.push(format!(
-                        "{right}/{left}/{diameter} at {amplitude} mm: {both:.4?}, not {expected}"
+                        "{right}/{left}/{diameter} at {amplitude} mm: {found:.4?}, not {expected}"
                     ));
                 }
+                *worst = if exception { *worst } else { worst.max(share) };
             }
         }
     }
-    println!("at most {worst:.3?} of the tolerances");
+    println!("off by at most {worst:.3?} of the tolerances");
     assert!(off.is_empty(), "{off:#?}");
+}
+
+/// Beside the jump the energy integral has the entry of the table: the jump lies within a step of it.
+#[test]
+fn the_smeared_entry_lies_between_the_conicities_beside_its_jump() {
+    let (right, left, diameter, amplitude) = SMEARED;
+    let system = annex_e(right, left, diameter).expect("a wheelset");
+    let conicity = Conicity::new(&system, 8.0, Roll::Neglect).expect("a table");
+    let [low, high] =
+        [amplitude, amplitude + 0.1].map(|amplitude| conicity.at(amplitude).expect("a movement").conicity);
+    assert!(low < 0.058 && 0.058 < high, "{low} {high}");
 }

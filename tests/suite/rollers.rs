@@ -147,7 +147,7 @@ fn first_touch_on_a_roller_rig_agrees_with_contact() {
 
 /// Forces under CONTACT's sinking, and references of its patches. Its `fn` is that of a problem with friction; both heights have 4
 /// decimals, a fifth of a percent of the sinking. Where the surfaces turn (5.3 and 6.3 mm) a half-space is not what CONTACT solves,
-/// and its reference weighs the vertical overlap; under yaw, where no frame is weighted, forces there are up to 5 % off.
+/// and under yaw, where no frame is weighted over a roller, forces there are up to 5 % off.
 #[test]
 fn forces_on_a_roller_rig_agree_with_contact() {
     let text = std::fs::read_to_string(folder().join("positions.json")).unwrap();
@@ -177,10 +177,13 @@ fn forces_on_a_roller_rig_agree_with_contact() {
             let (mut extent, mut approach) = whole(&placement);
             let (patch, turns) = (&given["patches"][0], usize::from(lateral > 5.0));
             if yaw == 0.0 {
-                let [x, angle] = weighted_frame(&placement, &extent, approach).unwrap();
-                let off = (x - number(patch, "ycp_r")).abs();
+                let upright = placement.reframed(placement.rail().point().station.x, 0.0).unwrap();
+                let overlap = Patch::new(&upright, sinking, &Window::UNBOUNDED).extent().unwrap();
+                let frame = weighted_frame(&upright, &overlap, sinking).unwrap();
+                let off = (frame.rail_x - number(patch, "ycp_r")).abs();
+                println!("{radius} {lateral}: off by {off:.4} mm");
                 references[turns] = references[turns].max(off);
-                placement = placement.reframed(x, angle).unwrap();
+                placement = placement.reframed(frame.rail_x, frame.angle).unwrap();
                 (extent, approach) = whole(&placement);
             }
             let region = HalfSpace::over(&placement, &extent, approach);
@@ -192,5 +195,5 @@ fn forces_on_a_roller_rig_agree_with_contact() {
     }
     println!("forces {forces:?}, references {references:?}");
     assert!(forces[0] < 0.01 && forces[1] < 0.02, "{forces:?}");
-    assert!(references[0] < 0.1 && references[1] < 0.5, "{references:?}");
+    assert!(references[0] < 0.01 && references[1] < 0.05, "{references:?}");
 }

@@ -21,7 +21,7 @@ pub(super) struct FleetArguments {
     /// Folder of rail sections, a file, or a built-in name; if not given, the rails of the CSV file, or the scene's.
     #[arg(long, value_name = "DIR|NAME")]
     rails: Option<String>,
-    /// Folder to write. What a stopped run has left in it is gone on with.
+    /// Folder to write. A run that was stopped is taken up again there.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
 }

@@ -34,9 +34,9 @@ use wheelrail::{Error, Result};
 
 /// Finds where a railway wheel touches its rail, and how far apart the two are around that point.
 ///
-/// From two profiles, drawn or measured, it gives contact points, the contact patch, conicity, wear measures, and the input
-/// files of contact solvers. Begin with `wheelrail init scene.toml` and `wheelrail run scene.toml`. Exit codes: 0 done, 1 a
-/// geometric "no" (infeasible contact, empty patch, failed check), 2 bad input.
+/// From two profiles, drawn or measured, it gives contact points, the contact patch, conicity, wear measures, tables for
+/// vehicle dynamics, and the input files of contact solvers. Begin with `wheelrail init scene.toml` and `wheelrail run
+/// scene.toml`. Exit codes: 0 done, 1 a geometric "no" (infeasible contact, empty patch, failed check), 2 bad input.
 #[derive(Debug, Parser)]
 #[command(name = "wheelrail", version)]
 struct Arguments {
@@ -63,7 +63,7 @@ enum Command {
     },
     /// Sweep a wheelset over its track and print a row for each position, side and contact.
     Sweep(sweep::SweepArguments),
-    /// Contact geometry of a wheelset on its track by EN 15302: equivalent conicity, nonlinearity, contact bands.
+    /// Compute the contact geometry of a wheelset on its track by EN 15302: equivalent conicity, nonlinearity, contact bands.
     Conicity(Box<conicity::ConicityArguments>),
     /// March a wheelset along rails that vary and print a row for each place, side and contact.
     March(march::MarchArguments),
@@ -74,13 +74,13 @@ enum Command {
     /// Measure speed against error and run the hard cases; takes about three minutes.
     Report {
         /// Folder to write; by default output/report.
-        #[arg(long)]
+        #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
         /// Markdown file whose text between `<!-- report:begin -->` and `<!-- report:end -->` becomes the table.
-        #[arg(long)]
+        #[arg(long, value_name = "FILE.md")]
         splice: Option<PathBuf>,
     },
-    /// List, show, plot and convert profiles.
+    /// List, show, plot, convert, measure and average profiles.
     #[command(subcommand)]
     Profile(Box<profile::ProfileCommand>),
     /// Write a commented scene to begin with.

@@ -50,7 +50,7 @@ pub(super) fn table(arguments: &TableArguments) -> Result<Outcome> {
     write_table(&made, scene.title.as_deref().unwrap_or(&name), &folder)?;
     folder.commit()?;
     drop(progress);
-    remarks(&made).iter().for_each(|remark| complain(&format!("table: {remark}")));
+    remarks(&made).iter().for_each(|remark| complain(&format!("warning: table: {remark}")));
     print(&format!("{}{}\n", about(&made), target.display()))
 }
 
@@ -80,8 +80,7 @@ fn about(table: &ContactTable) -> String {
 
 /// Says what a user should know before using the table.
 fn remarks(table: &ContactTable) -> Vec<String> {
-    let missing = table.cells().iter().filter(|cell| !cell.touches).map(|cell| {
-        let [from, to] = cell.lateral;
+    let missing = table.off_rail().map(|[from, to]| {
         format!("no contact from {from} to {to} mm: a wheel is off its rail, and the table has nothing there")
     });
     let over =

@@ -43,7 +43,7 @@ mod _wheelrail {
     #[pymodule_export]
     use super::march::march;
     #[pymodule_export]
-    use super::measure::{average_profiles, measure_profile};
+    use super::measure::{average_profiles, measure_profile, measure_repeats};
     #[pymodule_export]
     use super::pair::{Pair, pair_from_parts};
     #[pymodule_export]

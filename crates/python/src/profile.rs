@@ -358,10 +358,11 @@ impl Profile {
         Ok(text)
     }
 
-    /// Returns the diameter of a wheel that its file states \[mm\].
-    pub(crate) fn diameter(&self) -> Option<f64> {
-        let record: serde_json::Value = serde_json::from_str(&self.fitted.as_ref()?.record).ok()?;
-        record["diameter"].as_f64()
+    /// Returns a value of the record of measured points; null without one.
+    pub(crate) fn recorded(&self, key: &str) -> serde_json::Value {
+        let fitted = self.fitted.as_ref();
+        let record = fitted.and_then(|fitted| serde_json::from_str(&fitted.record).ok());
+        record.map_or(serde_json::Value::Null, |mut record: serde_json::Value| record[key].take())
     }
 
     /// Takes over a measured profile, and warns of what was found in its points.

@@ -37,7 +37,7 @@ const LARGEST: usize = 1 << 30;
 ///     >>> bool(radius[1] > radius[0]) and table.errors["right"]["rolling_radius_mm"] < 1e-3
 ///     True
 ///
-/// Raises InputError for a scene without a wheelset, ellipses without a load or approach, a range or tolerance out of bounds.
+/// Raises InputError for a scene without a wheelset, a roll by loads, ellipses without a load or approach, a range or tolerance out of bounds.
 #[pyfunction]
 #[pyo3(signature = (path, lateral, *, tolerance = 1e-3, hertz = false, out = None))]
 pub(crate) fn table(
@@ -128,10 +128,9 @@ impl ContactTable {
         }
         let numbers: Vec<usize> = (0..known.len()).filter(|q| wanted(known[*q].name)).collect();
         let lateral = values("lateral", lateral)?;
-        let mut rows = vec![0.0; lateral.len() * numbers.len()];
-        detached(py, || self.table.fill_many(&lateral, &numbers, &mut rows))?;
-        let rows = PyArray1::from_vec(py, rows).reshape([lateral.len(), numbers.len()])?;
-        let columns = rows.call_method0("transpose")?;
+        let mut columns = vec![0.0; lateral.len() * numbers.len()];
+        detached(py, || self.table.fill_many(&lateral, &numbers, &mut columns))?;
+        let columns = PyArray1::from_vec(py, columns).reshape([numbers.len(), lateral.len()])?;
         self.by_name(py, numbers.iter().enumerate().map(|(k, q)| Ok((*q, columns.get_item(k)?))))
     }
 
@@ -159,6 +158,12 @@ impl ContactTable {
     #[getter]
     fn yaw(&self) -> f64 {
         self.table.yaw()
+    }
+
+    /// The intervals (from, to) of lateral displacements in mm in which a wheel is off its rail, so that the table has nothing there.
+    #[getter]
+    fn off_rail(&self) -> Vec<(f64, f64)> {
+        self.table.off_rail().map(Into::into).collect()
     }
 
     /// The lateral displacements in mm at which contact hops to another place.

@@ -111,6 +111,42 @@ def test_measures_are_those_of_the_command_line_and_say_what_is_missing() -> Non
             call()
 
 
+def test_noise_and_repeats_give_intervals_that_agree() -> None:
+    noise = np.random.default_rng(1)
+    x, z = wr.wheel("S1002").points(0.2).T
+    # Not the points beside joints, which noise would put out of order.
+    apart = np.hypot(np.diff(x), np.diff(z)) > 0.15
+    x, z = x[np.append(apart, True)], z[np.append(apart, True)]
+    dx, dz = np.gradient(x), np.gradient(z)
+
+    def once() -> wr.Profile:
+        off = 0.02 * noise.standard_normal(len(z)) / np.hypot(dx, dz)
+        return wr.Profile.from_points(
+            x - off * dz, z + off * dx, side="wheel", curve="smoothing", flip_z=False, mirror=False
+        )
+
+    repeats = wr.measure_repeats([once() for _ in range(20)])
+    found = wr.measure_profile(once(), noise=0.02, samples=100, seed=3)
+    assert repeats["finding"] is None and repeats["flange_height_mm_samples"] == 20
+    for key in ("flange_height_mm", "flange_thickness_mm", "qr_mm"):
+        ratio = found[f"{key}_deviation"] / repeats[f"{key}_deviation"]
+        # Four standard errors of the deviation of twenty.
+        assert abs(ratio - 1.0) < 0.65, (key, ratio)
+        assert repeats[f"{key}_low"] < found[key] < repeats[f"{key}_high"]
+        assert 0.0 < found[f"{key}_low_error"] < found[f"{key}_high"] - found[f"{key}_low"] < 0.1
+    assert found["w1_mm_low"] is None
+    assert "qr_mm_low" not in wr.measure_profile(once())
+    wrong: list[tuple[str, Callable[[], object]]] = [
+        ("noise", lambda: wr.measure_profile(once(), noise=-0.02)),
+        ("samples", lambda: wr.measure_profile(once(), noise=0.02, samples=3)),
+        ("repeats", lambda: wr.measure_repeats([once()])),
+        ("profiles", lambda: wr.measure_repeats([once(), wr.rail("60E1")])),
+    ]
+    for match, call in wrong:
+        with pytest.raises(wr.InputError, match=match):
+            call()
+
+
 def test_an_average_has_the_spread_of_its_profiles() -> None:
     wheel = wr.wheel("S1002")
     average = wr.average_profiles([wheel.shifted(0.0, z) for z in (-0.1, 0.0, 0.1)])

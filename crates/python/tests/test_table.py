@@ -1,5 +1,6 @@
 """Contact tables."""
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +17,8 @@ def test_no_look_up_errs_by_more_than_the_table_states(tmp_path: Path) -> None:
     made = wr.table(SCENE, (-9.0, 9.0), hertz=True, out=tmp_path / "t")
     table = wr.ContactTable(tmp_path / "t/table.wrp")
     assert table.errors == made.errors and table.hops == made.hops and len(table.joints) > 0
-    lateral = np.random.default_rng(3).uniform(-9.0, 9.0, 2000)
+    points = int(os.environ.get("WHEELRAIL_TABLE_POINTS", "2000"))
+    lateral = np.random.default_rng(3).uniform(-9.0, 9.0, points)
     found = table(lateral, 0.002)
     rows = wr.Case(SCENE).sweep(lateral, np.full(lateral.size, 0.002), conicity=False)
     lowest = np.asarray(rows["contact"]) == 1
@@ -28,6 +30,24 @@ def test_no_look_up_errs_by_more_than_the_table_states(tmp_path: Path) -> None:
     both = found["right"]["rolling_radius_mm"]
     assert np.array_equal(made(lateral, quantities=["rolling_radius_mm"])["right"]["rolling_radius_mm"], both)
     assert np.isnan(table([10.0])["roll_rad"]).all()
+
+
+def test_a_table_says_where_a_wheel_is_off_its_rail(tmp_path: Path) -> None:
+    scene = tmp_path / "scene.toml"
+    scene.write_text(
+        'rail = { profile = "60E1" }\nwheel = { profile = "cone-1:20", radius = 460.0 }\n'
+        "track = { spacing = 1500.0 }\nwheelset = { spacing = 1500.0 }\n"
+    )
+    table = wr.table(scene, (50.0, 140.0))
+    [(start, end)] = table.off_rail
+    assert 50.0 < start < 139.0 and end == 140.0
+    found = table([0.5 * (50.0 + start), 0.5 * (start + end)])
+    for values in (found["roll_rad"], found["left"]["rail_x_mm"], found["right"]["rolling_radius_mm"]):
+        assert np.isnan(values).tolist() == [False, True]
+    assert wr.table(SCENE, (0.0, 1.0)).off_rail == []
+    scene.write_text(SCENE.read_text().replace('"solve"', '"load"'))
+    with pytest.raises(wr.InputError, match='roll: found "load"; expected "solve"'):
+        wr.table(scene, (0.0, 1.0))
 
 
 def test_wrong_calls_are_named(tmp_path: Path) -> None:

@@ -6,7 +6,8 @@
 //! runs the cases of `tests/hard_cases`; [`verification`] checks placed pairs by parry3d's meshes. [`measured`] compares
 //! curves through points with the drawing from which the points come; [`specimen`] makes worn profiles as instruments
 //! measure them. [`rates`] counts positions of a wheelset a second over them, [`loads`] compares approaches under load with
-//! solved ones, [`whole_case`] times a case from first touch to its mesh, [`conformal`] measures the normal gap.
+//! solved ones, [`whole_case`] times a case from first touch to its mesh, [`conformal`] measures the normal gap,
+//! [`processes`] names the runs of the program that are timed as a whole.
 //! [`measurements`] does all of this with a given effort; [`requirements`] judges the ratios; [`practice`] compares whole cases of engineers with brute force. [`page`]
 //! and [`table`] turn the numbers into Markdown, CSV and charts. Nothing here touches the disk.
 
@@ -23,6 +24,7 @@ pub mod measured;
 pub mod measurements;
 pub mod page;
 pub mod practice;
+pub mod processes;
 pub mod random;
 pub mod rates;
 pub mod reference;

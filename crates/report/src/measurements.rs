@@ -12,6 +12,7 @@ use super::hard_run::{self, HardOutcome};
 use super::loads::{self, ApproachError, Carried, LoadCost};
 use super::measured;
 use super::practice::{self, PracticeRow};
+use super::processes::ProcessCost;
 use super::rates::{Extent, Rate, rates};
 use super::reference::{Reference, references};
 use super::speed::{LEAST_RUNS, RaceTrack, TimedWork, Timing, race};
@@ -147,6 +148,8 @@ pub struct Measurements {
     /// Time of what `run` computes for a measured wheelset, on one thread; `None` without measured pairs in
     /// [`Effort::sweeps`].
     pub run: Option<RunCost>,
+    /// Times of whole processes, which the program adds: here they are empty.
+    pub processes: Vec<ProcessCost>,
     /// Results of the hard cases.
     pub hard_cases: Vec<HardOutcome>,
     /// Results of the practice cases against brute force.
@@ -209,6 +212,7 @@ pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measur
         rates,
         whole_cases,
         run,
+        processes: Vec::new(),
         hard_cases,
         practice,
         normal_gap,

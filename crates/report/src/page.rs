@@ -77,12 +77,16 @@ pub fn excerpt(m: &Measurements, origin: &PageOrigin) -> String {
     let value = |name: &str| origin.iter().find(|(n, _)| *n == name).map_or("unknown", |(_, v)| v.as_str());
     format!(
         "{}\nErrors over all reference scenes against 60-digit values, relative ones over all points but C itself: beyond the \
-         contact segments only absolute digits are promised.\n\n{}\n{}\n{}\n{}\nMade by `{}` on {}; {}. One thread.\n",
+         contact segments only absolute digits are promised.\n\n{}\n{}\n{}\n{}\n{}\n{}\nWhat is asked for, and what was \
+         found:\n\n{}\nMade by `{}` on {}; {}. One thread, but for whole processes.\n",
         summary(m),
         in_use::rate_table(m),
         in_use::rate_note(m),
         in_use::case_table(m),
         in_use::case_note(m),
+        in_use::cost_table(&m.load_costs),
+        in_use::COST_NOTE,
+        requirements_table(m),
         value("command"),
         value("processor"),
         value("compiler"),
@@ -93,16 +97,17 @@ fn plain(title: &'static str, body: String) -> PageSection {
     PageSection { title, body, files: Vec::new() }
 }
 
-fn requirements_section(m: &Measurements) -> PageSection {
+fn requirements_table(m: &Measurements) -> String {
     let rows: Vec<Vec<String>> = requirements::all(m)
         .into_iter()
         .map(|r| vec![r.what, r.least, r.found, r.remark, if r.met { "pass" } else { "**miss**" }.into()])
         .collect();
-    let table = markdown(&["requirement", "asked for", "found", "where", "verdict"], 5, &rows);
-    plain(
-        "Ratios asked for",
-        format!("Ratios of best times within one run, spectral at 1e-12 mm.\n\n{table}"),
-    )
+    markdown(&["requirement", "asked for", "found", "where", "verdict"], 5, &rows)
+}
+
+fn requirements_section(m: &Measurements) -> PageSection {
+    let table = requirements_table(m);
+    plain("What is asked for", format!("Best times within one run, spectral at 1e-12 mm.\n\n{table}"))
 }
 
 /// Returns (method, tolerance) in the order of the rows.

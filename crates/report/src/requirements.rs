@@ -1,6 +1,7 @@
 //! The ratios that the project requires of itself, and whether a run met them.
 
 use super::conformal::cost::GapCost;
+use super::loads::LoadCost;
 use super::measurements::{AccuracyRow, Growth, Measurements, median};
 use super::rates::{Motion, Rate};
 use super::spline_cost::SplineCost;
@@ -26,7 +27,10 @@ const CONICITY_TABLE: f64 = 0.2;
 /// Largest time of `run` for a measured wheelset \[s\].
 const RUN: f64 = 0.1;
 /// Largest time of a whole case, by pair \[s\].
-const WHOLE_CASES: [(&str, f64); 2] = [("drawn", 1e-4), ("measured", 3e-4)];
+const WHOLE_CASES: [(&str, f64); 4] =
+    [("drawn", 6e-5), ("measured", 1.5e-4), ("drawn, yawed", 5e-4), ("measured, yawed", 1.5e-3)];
+/// Largest time that a load takes more than an approach \[s\], by number of regions.
+const LOADS: [(usize, f64); 2] = [(1, 1e-3), (2, 3e-3)];
 /// Largest time of parts of a whole case, by pair \[s\].
 const CASE_PARTS: [(&str, &str, f64); 6] = [
     ("drawn", "patch", 2e-5),
@@ -67,11 +71,11 @@ pub fn all(m: &Measurements) -> Vec<Requirement> {
     sides.sort_unstable();
     sides.dedup();
     let mut out = Vec::new();
-    for side in sides {
-        for (other, least) in [("report-newton", OVER_REPORT), ("store", OVER_STORE)] {
-            out.extend(ratio(m, side, other, least));
-        }
+    for &side in &sides {
+        out.extend(ratio(m, side, "report-newton", OVER_REPORT));
     }
+    // A smaller grid stays in the caches, where a store is faster than memory.
+    out.extend(sides.last().and_then(|&side| ratio(m, side, "store", OVER_STORE)));
     out.extend(linear(m));
     out.extend(m.threads.iter().filter(|row| row.method == Method::Spectral).map(|row| {
         let ratio = row.seconds[0] / row.seconds[1];
@@ -88,6 +92,10 @@ pub fn all(m: &Measurements) -> Vec<Requirement> {
     out.extend(RATES.iter().flat_map(|&(motion, drawn, measured)| rates(m, motion, [drawn, measured])));
     out.extend(conicity_table(m));
     out.extend(whole_cases(m));
+    out.extend(m.load_costs.iter().filter_map(load));
+    out.extend(m.processes.iter().map(|cost| {
+        at_most(format!("{}, s", cost.process.name), cost.process.bound, cost.seconds, "on the wall".into())
+    }));
     out.extend(normal_gap(m));
     out.extend(m.run.map(|run| {
         at_most("`run` of a measured wheelset, files not written, s", RUN, run.total(), String::new())
@@ -150,6 +158,14 @@ fn whole_cases(m: &Measurements) -> Vec<Requirement> {
         }
     }
     out
+}
+
+/// Judges what a load takes more than the approach that it causes.
+fn load(cost: &LoadCost) -> Option<Requirement> {
+    let (regions, bound) = LOADS.into_iter().find(|(regions, _)| *regions == cost.regions)?;
+    let what = format!("load over approach, {regions} region{}, s", if regions == 1 { "" } else { "s" });
+    let remark = format!("{}, {} mm", cost.loaded.pair, cost.loaded.offset);
+    Some(at_most(what, bound, cost.load - cost.approach, remark))
 }
 
 /// Judges a point of a splined grid; the slowest grid decides.

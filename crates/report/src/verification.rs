@@ -18,6 +18,10 @@ const SKEWS: [f64; 2] = [SKEW, -0.06];
 const HALF_WIDTHS: [f64; 2] = [30.0, 15.0];
 const APPROACH: f64 = 0.05;
 
+/// Distance of the window from the ends of a rail \[mm\]: light rails end within the half width, and meshes do not resolve
+/// points on the edge of a head.
+const EDGE: f64 = 4.0;
+
 /// A placed pair to be checked, with the place of the check.
 #[derive(Debug, Clone)]
 pub struct Subject {
@@ -88,10 +92,12 @@ pub fn built_in_pairs() -> Result<Vec<Subject>> {
         .map(|(k, (rail, wheel))| {
             let skew = if k % 3 == 2 { SKEW } else { 0.0 };
             let pair = Pair::new(standards::rail(rail)?, standards::wheel(wheel)?, RADIUS)?;
-            let [xi, eta] = HALF_WIDTHS.map(|half| [-half, half]);
-            let request = Request { window: Window { xi, eta }, approach: APPROACH };
-            let name = format!("{rail} and {wheel}, skew {skew}");
-            Ok(Subject { name, placement: pair.placed(0.0, 0.0, skew)?, request })
+            let placement = pair.placed(0.0, 0.0, skew)?;
+            let [half, reach] = HALF_WIDTHS;
+            let [from, to] = placement.rail().section().reach().unwrap_or([-half, half]);
+            let xi = [(from + EDGE).max(-half), (to - EDGE).min(half)];
+            let request = Request { window: Window { xi, eta: [-reach, reach] }, approach: APPROACH };
+            Ok(Subject { name: format!("{rail} and {wheel}, skew {skew}"), placement, request })
         })
         .collect()
 }

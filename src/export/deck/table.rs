@@ -47,6 +47,7 @@ pub fn table_wrp(table: &ContactTable, title: &str) -> String {
 
 /// Explains the file.
 fn comments(table: &ContactTable, title: &str) -> Vec<String> {
+    let off = table.off_rail().map(|[from, to]| format!("off the rail, without values: {from} to {to}"));
     let lines = [
         format!("title: {title}"),
         format!("written by wheelrail {}: contact of a wheelset over y", env!("CARGO_PKG_VERSION")),
@@ -70,5 +71,5 @@ fn comments(table: &ContactTable, title: &str) -> Vec<String> {
         format!("approach x {TOLERANCE_LENGTH} mm / radius, pressures x 1000 N/mm2 / {TOLERANCE_LENGTH} mm"),
     ];
     debug_assert!(table.quantities().iter().all(|quantity| quantity.name.len() <= 18));
-    lines.iter().map(|line| plain(line)).collect()
+    lines.into_iter().chain(off).map(|line| plain(&line)).collect()
 }

@@ -24,7 +24,7 @@ pub struct MeasuredPage {
     pub differences: Vec<f64>,
     /// How it was aligned.
     pub alignment: String,
-    /// Quantity in words, value, how far it moves if the alignment is off, unit.
+    /// Quantity in words, value with unit, how far it moves if the alignment is off, the interval of its spread; empty where there is none.
     pub measures: Vec<[String; 4]>,
     /// The limits that it breaks.
     pub broken: Vec<String>,

@@ -13,4 +13,6 @@ mod view;
 pub use fleet::{FleetDistribution, FleetHeat, FleetPage, FleetWorst};
 pub use measure::{MeasuredPage, MeasuresPage};
 pub use sweep::{PageFigure, PageMap, SweepCurve, SweepPage, SweepPanel, SweepSide};
-pub use view::{PageFrame, PageLoop, PagePair, PagePressure, PageProfile, ViewContact, ViewPage};
+pub use view::{
+    PageConformal, PageFrame, PageLoop, PagePair, PagePressure, PageProfile, ViewContact, ViewPage,
+};

@@ -86,8 +86,28 @@ pub struct ViewContact {
     pub pressure: Option<PagePressure>,
     /// Label and value of what the table beside the pictures says.
     pub facts: Vec<[String; 2]>,
+    /// The gap along the rail's turning normal; `None` for a run over the tangent plane.
+    pub conformal: Option<PageConformal>,
     /// What a user should know before using the numbers.
     pub warnings: Vec<String>,
+}
+
+/// The gap t along the rail's turning normal, over the ξ and η of a contact's grid.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PageConformal {
+    /// t \[mm\] at `i_xi * n_eta + i_eta`, NaN where undefined.
+    #[serde(serialize_with = "floats")]
+    pub gap: Vec<f64>,
+    /// Arc length σ \[mm\] of the rail's point at each ξ, NaN beyond its surface.
+    #[serde(serialize_with = "floats")]
+    pub sigma: Vec<f64>,
+    /// cos α there, α the angle of the rail's normal from ζ.
+    #[serde(serialize_with = "floats")]
+    pub cosine: Vec<f64>,
+    /// The exact boundary t = δ cos α: closed loops of ξ, η \[mm\] in turn.
+    pub boundary: Vec<PageLoop>,
+    /// Exact area \[mm²\] of that patch on the rail's surface; `None` without an approach.
+    pub area: Option<f64>,
 }
 
 /// The pressures over the grid of a run, which has equal steps.

@@ -36,7 +36,8 @@ use refine::{LEAST_AMPLITUDE, Table, most_searches};
 
 use crate::error::{Error, Result, finite};
 use crate::numerics::roots::last_where;
-use crate::search::wheelset::{Roll, WheelsetOnTrack};
+use crate::search::position::Roll;
+use crate::search::wheelset::WheelsetOnTrack;
 
 /// Relative accuracy demanded of a conicity.
 pub const ACCURACY: f64 = 1e-4;

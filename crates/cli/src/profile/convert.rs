@@ -15,14 +15,14 @@ pub(crate) struct ConvertArguments {
     #[command(flatten)]
     source: SourceArguments,
     /// Format: miniprof, simpack, gensys, text or csv for points; toml for the segments of a chain.
-    #[arg(long)]
+    #[arg(long, value_name = "FORMAT")]
     to: String,
     /// Distance of points along the curve, mm. If not given: 0.2 for a drawn profile; the measured points themselves for a
     /// measured one.
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     step: Option<f64>,
     /// File to write; stdout if not given.
-    #[arg(long)]
+    #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
 

@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use rayon::prelude::*;
 
-use super::options::{BodyOption, MeasuredArguments, one_of};
-use super::source::{Source, SourceArguments};
+use super::options::one_of;
+use super::several::SeveralArguments;
+use super::source::Source;
 use crate::answer::{Outcome, put};
 use crate::output::{PictureFormat, refuse_taken};
 use wheelrail::case::measures_page;
@@ -15,36 +16,18 @@ use wheelrail::error::{Error, Result};
 use wheelrail::export::{OverlayPicture, SEPARATOR};
 use wheelrail::files::{read_text, write_file};
 use wheelrail::measure::{
-    GaugeFrom, Limit, Limits, MeasureOptions, Measures, Overlay, Row, csv, json, measure, overlay, table,
+    GaugeFrom, Limit, Limits, MeasureOptions, Measures, Overlay, PointNoise, Row, RowColumns, csv, json,
+    measure, measure_noisy, overlay, repeated, table,
 };
-use wheelrail::measured::CurveKind;
-use wheelrail::profile::{Profile, Side};
+use wheelrail::profile::Side;
 use wheelrail::scene;
 
 /// Largest file of limits \[bytes\]: many times that of all quantities.
 const LARGEST_LIMITS: usize = 1 << 20;
 
-/// The curve through measured points, if no option names one: smoothing rounds the tip of a flange, by which qR is up to 0.07 mm off.
-pub(super) const CURVE: Option<CurveKind> = Some(CurveKind::Interpolation);
-
 /// The profiles to measure, and how.
 #[derive(Debug, Args)]
 pub(crate) struct MeasureArguments {
-    /// Files or names of built-in profiles.
-    #[arg(required = true)]
-    files: Vec<String>,
-    /// Body of the profiles. Built-in names tell it, and so do files such as .ban, .whl, .prr, .prw.
-    #[arg(long, ignore_case = true)]
-    side: Option<BodyOption>,
-    /// Name or file of the nominal profile, against which wear counts.
-    #[arg(long, value_name = "NAME|FILE")]
-    nominal: Option<String>,
-    /// Alignment: none, back, tread-point, back-and-tread, field-side, web, unworn or best-fit; best-fit with a nominal.
-    #[arg(long)]
-    align: Option<String>,
-    /// Ranges of the nominal's x that are not worn, for --align unworn, mm.
-    #[arg(long, value_name = "FROM:TO", value_delimiter = ',', allow_hyphen_values = true)]
-    unworn: Vec<String>,
     /// Distance of the taping line from the flange back, mm.
     #[arg(long, value_name = "MM", default_value_t = MeasureOptions::default().tread_at, allow_negative_numbers = true)]
     tread_at: f64,
@@ -81,32 +64,47 @@ pub(crate) struct MeasureArguments {
     /// Exit code 1 if a limit is broken.
     #[arg(long, requires = "limits")]
     fail: bool,
+    /// Standard deviation of the points across the profile, mm: samples of it give each quantity an interval.
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    noise: Option<f64>,
+    /// Distance of the points that are noisy, mm.
+    #[arg(long, value_name = "MM", default_value_t = PointNoise::default().step, requires = "noise", allow_negative_numbers = true)]
+    step: f64,
+    /// Number of samples of the noise.
+    #[arg(long, default_value_t = PointNoise::default().samples, requires = "noise")]
+    samples: usize,
+    /// Seed of the samples.
+    #[arg(long, default_value_t = PointNoise::default().seed, requires = "noise")]
+    seed: u64,
+    /// The files are repeated measurements of one profile: a last row has the mean of each quantity, with its interval.
+    #[arg(long, conflicts_with = "noise")]
+    repeats: bool,
     /// File to write; stdout if not given.
-    #[arg(long)]
+    #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     #[command(flatten)]
-    measured: MeasuredArguments,
+    several: SeveralArguments,
+}
+
+/// What is asked of every profile.
+struct Question {
+    nominal: Option<Source>,
+    options: MeasureOptions,
+    noise: Option<PointNoise>,
 }
 
 /// Measures profiles. A file that cannot be measured is a row that says why.
 ///
 /// # Errors
-/// Wrong options, limits or a wrong nominal; an output that is one of the files.
+/// Wrong options, limits or a wrong nominal; repeats of two bodies, or fewer than two; an output that is one of the files.
 pub(super) fn run(arguments: &MeasureArguments) -> Result<Outcome> {
     arguments.refuse_output()?;
-    let options = arguments.options()?;
     let limits = arguments.limits.as_deref().map(limits).transpose()?;
-    let nominal = arguments
-        .nominal
-        .as_ref()
-        .map(|name| source(name, arguments.side, MeasuredArguments::default()).read_as(CURVE));
-    let nominal = nominal.transpose().map_err(|error| error.within("--nominal"))?;
-    // Options without meaning are not the fault of each file.
-    if let Some(side) = arguments.side.map(Side::from) {
-        options.validate(side, nominal.is_some())?;
-    }
-    let row = |file: &String| arguments.row(file, nominal.as_ref(), &options);
-    let rows: Vec<Row> = arguments.files.par_iter().map(row).collect();
+    let question = arguments.question()?;
+    let sources = arguments.several.sources();
+    let rows = arguments.rows(&sources, &question)?;
+    let spread = arguments.spread(&question);
+    let columns = RowColumns { limits: limits.as_ref(), spread: spread.as_deref() };
     let write = if arguments.csv {
         csv
     } else if arguments.json {
@@ -114,70 +112,92 @@ pub(super) fn run(arguments: &MeasureArguments) -> Result<Outcome> {
     } else {
         table
     };
-    put(&write(&rows, limits.as_ref()), arguments.out.as_deref())?;
+    put(&write(&rows, columns), arguments.out.as_deref())?;
     if let Some(picture) = &arguments.picture {
-        arguments.draw(picture, nominal.as_ref(), &options)?;
+        arguments.draw(picture, &sources, &question)?;
     }
     if let Some(html) = &arguments.html {
-        arguments.write_page(html, &rows, nominal.as_ref(), &options, limits.as_ref())?;
+        let profiles = sources.iter().map(|source| source.as_ref().ok().map(Source::profile));
+        // The row of repeats is of no profile.
+        let rows: Vec<_> = rows.iter().cloned().zip(profiles.chain([None])).collect();
+        let nominal = question.nominal.as_ref().map(Source::profile);
+        write_file(html, &measures_page(&rows, nominal, &question.options, columns).html())?;
     }
     let broken = limits.is_some_and(|limits| rows.iter().any(|row| !row.broken(&limits).is_empty()));
     let none = rows.iter().any(|row| row.measured.is_err());
     Ok(if none || arguments.fail && broken { Outcome::No } else { Outcome::Done })
 }
 
-pub(super) fn source(name: &str, side: Option<BodyOption>, measured: MeasuredArguments) -> SourceArguments {
-    SourceArguments { profile: name.to_owned(), side, measured }
-}
-
 impl MeasureArguments {
     fn refuse_output(&self) -> Result<()> {
-        let read = self.files.iter().chain(&self.nominal).map(PathBuf::from).chain(self.limits.clone());
-        let read: Vec<PathBuf> = read.filter(|path| path.exists()).collect();
-        if let Some(out) = &self.out {
-            refuse_taken("--out", out, &read)?;
-        }
-        let mut taken: Vec<PathBuf> = read.into_iter().chain(self.out.clone()).collect();
+        let mut taken = self.several.read_from();
+        taken.extend(self.limits.clone().filter(|path| path.exists()));
         if let Some(picture) = &self.picture {
             PictureFormat::of_file("--picture", picture)?;
-            refuse_taken("--picture", picture, &taken)?;
-            taken.push(picture.clone());
         }
-        self.html.as_ref().map_or(Ok(()), |html| refuse_taken("--html", html, &taken))
+        for (option, file) in [("--out", &self.out), ("--picture", &self.picture), ("--html", &self.html)] {
+            let Some(file) = file else { continue };
+            refuse_taken(option, file, &taken)?;
+            taken.push(file.clone());
+        }
+        Ok(())
     }
 
-    /// Writes the page of all rows.
-    fn write_page(
-        &self,
-        html: &Path,
-        rows: &[Row],
-        nominal: Option<&Source>,
-        options: &MeasureOptions,
-        limits: Option<&Limits>,
-    ) -> Result<()> {
-        let read = |file: &String| source(file, self.side, self.measured.clone()).read_as(CURVE).ok();
-        let sources: Vec<Option<Source>> = self.files.par_iter().map(read).collect();
-        let rows: Vec<(Row, Option<&Profile>)> = rows
-            .iter()
-            .cloned()
-            .zip(sources.iter().map(|source| source.as_ref().map(Source::profile)))
-            .collect();
-        let page = measures_page(&rows, nominal.map(Source::profile), options, limits);
-        write_file(html, &page.html())
+    fn question(&self) -> Result<Question> {
+        let (nominal, options) = (self.several.nominal()?, self.options()?);
+        // Options without meaning are not the fault of each file.
+        if let Some(side) = self.several.side() {
+            options.validate(side, nominal.is_some())?;
+        }
+        let noise = self.noise.map(|sigma| {
+            let (step, samples, seed) = (self.step, self.samples, self.seed);
+            let noise = PointNoise { sigma, step, samples, seed, curve: self.several.curve()? };
+            noise.validate().map(|()| noise)
+        });
+        Ok(Question { nominal, options, noise: noise.transpose()? })
+    }
+
+    /// Says what values spread over, if that is asked for.
+    fn spread(&self, question: &Question) -> Option<String> {
+        if self.repeats {
+            return Some("over the repeats; 95 % of further measurements".into());
+        }
+        question.noise.as_ref().map(|PointNoise { sigma, step, samples, seed, .. }| {
+            format!("noise of {sigma} mm of points every {step} mm; {samples} samples of seed {seed}")
+        })
+    }
+
+    /// Measures all profiles.
+    fn rows(&self, sources: &[Result<Source>], question: &Question) -> Result<Vec<Row>> {
+        let row = |(file, source): (&String, &Result<Source>)| {
+            let side = source.as_ref().ok().and_then(|read| read.side).or(self.several.side());
+            let measured =
+                source.as_ref().map_err(Clone::clone).and_then(|read| measured(file, read, side, question));
+            Row { file: file.clone(), side, measured }
+        };
+        let mut rows: Vec<Row> = self.several.files.par_iter().zip(sources).map(row).collect();
+        if self.repeats {
+            self.several.body(sources.iter().flatten())?;
+            let own: Vec<&Measures> = rows.iter().flat_map(|row| &row.measured).collect();
+            let mean = repeated(&own)?;
+            let file = format!("mean of {} repeats", own.len());
+            rows.push(Row { file, side: Some(mean.side), measured: Ok(mean) });
+        }
+        Ok(rows)
     }
 
     /// Draws the picture of a single profile over its nominal one.
-    fn draw(&self, picture: &Path, nominal: Option<&Source>, options: &MeasureOptions) -> Result<()> {
-        let [file] = self.files.as_slice() else {
-            let found = format!("{} profiles", self.files.len());
+    fn draw(&self, picture: &Path, sources: &[Result<Source>], question: &Question) -> Result<()> {
+        let [own] = sources else {
+            let found = format!("{} profiles", sources.len());
             return Err(Error::new("--picture", found, "a single profile", "give one profile a picture"));
         };
-        let own = source(file, self.side, self.measured.clone()).read_as(CURVE)?;
-        let Some((nominal, side)) = nominal.zip(own.side.or(self.side.map(Side::from))) else {
+        let own = own.as_ref().map_err(Clone::clone)?;
+        let Some((nominal, side)) = question.nominal.as_ref().zip(own.side.or(self.several.side())) else {
             return Ok(());
         };
         let Overlay { nominal: drawn, measured, differences, alignment } =
-            overlay(own.profile(), side, nominal.profile(), options)?;
+            overlay(own.profile(), side, nominal.profile(), &question.options)?;
         let svg = OverlayPicture {
             title: &own.profile().name,
             about: &format!("nominal {}{SEPARATOR}{}", nominal.profile().name, alignment.text),
@@ -191,33 +211,21 @@ impl MeasureArguments {
 
     fn options(&self) -> Result<MeasureOptions> {
         let from = self.gauge_from.as_deref().map(|text| one_of("--gauge-from", text)).transpose()?;
-        Ok(MeasureOptions {
+        self.several.aligned(MeasureOptions {
             tread_at: self.tread_at,
             flange_level: self.flange_level,
             tip_depth: self.tip_depth,
             width_level: self.width_level,
             gauge_level: self.gauge_level,
             gauge_from: from.unwrap_or(GaugeFrom::Measured),
-            align: self.align.as_deref().map(|text| one_of("--align", text)).transpose()?,
-            unworn: self.unworn.iter().map(|text| range(text)).collect::<Result<_>>()?,
+            ..MeasureOptions::default()
         })
-    }
-
-    fn row(&self, file: &str, nominal: Option<&Source>, options: &MeasureOptions) -> Row {
-        let read = source(file, self.side, self.measured.clone()).read_as(CURVE);
-        let side = read.as_ref().ok().and_then(|read| read.side).or(self.side.map(Side::from));
-        let measured = read.and_then(|read| measured(file, &read, side, nominal, options));
-        Row { file: file.to_owned(), side, measured }
     }
 }
 
-fn measured(
-    file: &str,
-    source: &Source,
-    side: Option<Side>,
-    nominal: Option<&Source>,
-    options: &MeasureOptions,
-) -> Result<Measures> {
+fn measured(file: &str, source: &Source, side: Option<Side>, question: &Question) -> Result<Measures> {
+    let Question { nominal, options, noise } = question;
+    let nominal = nominal.as_ref();
     let Some(side) = side else {
         let expected = "the body that it is of";
         return Err(Error::new(file, "segments without a body", expected, "give --side rail or wheel"));
@@ -227,20 +235,15 @@ fn measured(
         let found = format!("a {} beside a {} as nominal", word(side), word(other));
         return Err(Error::new(file, found, "one body", "give the nominal of this body"));
     }
-    let measures = measure(source.profile(), side, nominal.map(Source::profile), options)?;
+    let (profile, nominal) = (source.profile(), nominal.map(Source::profile));
+    let measures = match noise {
+        None => measure(profile, side, nominal, options)?,
+        Some(noise) => measure_noisy(profile, side, nominal, options, noise)?,
+    };
     let mut measures = measures.with_diameter(source.measured().and_then(|of| of.record.diameter));
     let doubts = source.measured().map_or_else(Vec::new, |of| of.record.warnings.clone());
     measures.findings.extend(doubts.iter().map(|doubt| format!("{}: {}", doubt.place, doubt.found)));
     Ok(measures)
-}
-
-/// Reads a range "from:to".
-pub(super) fn range(text: &str) -> Result<[f64; 2]> {
-    let numbers: Option<Vec<f64>> = text.split(':').map(|part| part.trim().parse().ok()).collect();
-    match numbers.as_deref() {
-        Some([from, to]) => Ok([*from, *to]),
-        _ => Err(Error::new("--unworn", format!("\"{text}\""), "a range FROM:TO in mm", "give -36:-30")),
-    }
 }
 
 fn limits(path: &Path) -> Result<Limits> {

@@ -5,6 +5,7 @@ mod convert;
 mod measure;
 mod options;
 mod plot;
+mod several;
 mod show;
 mod source;
 
@@ -35,7 +36,7 @@ pub(super) enum ProfileCommand {
         #[command(flatten)]
         source: SourceArguments,
         /// File to write, .svg or .png; SVG to stdout if not given.
-        #[arg(long)]
+        #[arg(long, value_name = "FILE")]
         out: Option<PathBuf>,
     },
     /// Write a profile in another format.

@@ -1,6 +1,7 @@
 //! `wheelrail report`: speed against error, and the hard cases, as Markdown, CSV and SVG.
 
 mod origin;
+mod processes;
 mod splice;
 
 use std::path::Path;
@@ -26,7 +27,9 @@ pub(super) fn report(out: Option<&Path>, splice: Option<&Path>) -> Result<Outcom
     let splice = splice.map(splice::SplicedFile::open).transpose()?;
     let origin = origin::origin();
     let progress = Progress::of("report", "measurements");
-    let measurements = measure(&Effort::full(), &mut |step| progress.at(step))?;
+    let mut measurements = measure(&Effort::full(), &mut |step| progress.at(step))?;
+    progress.at("whole processes");
+    measurements.processes = processes::costs()?;
     drop(progress);
     let sections = sections(&measurements);
     for (name, content) in sections.iter().flat_map(|section| &section.files) {

@@ -36,7 +36,8 @@ pub(super) struct SweepArguments {
     /// File to write; if not given, stdout.
     #[arg(long, value_name = "FILE.csv")]
     out: Option<PathBuf>,
-    /// Folder that also gets the files of `run` for every position, in subfolders, and `surface.pvd` over all of them.
+    /// Folder that also gets the files of `run` for every position, in subfolders; `surface.pvd` and
+    /// `wheelset.pvd` play them.
     #[arg(long, value_name = "DIR")]
     patches: Option<PathBuf>,
     /// Picture of the usual curves over the lateral displacement, in addition: .svg or .png.

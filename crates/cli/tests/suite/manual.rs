@@ -95,6 +95,21 @@ fn every_link_of_the_manual_leads_to_a_file() {
     }
 }
 
+#[test]
+fn every_command_is_on_the_page_of_commands() {
+    let pages = folder("man");
+    wheelrail(Path::new(ROOT), &["man", "--out", pages.to_str().unwrap()]);
+    let page = include_str!("../../../../src/docs/commands.md");
+    let rows: String =
+        page.lines().filter_map(|line| line.strip_prefix("| `")?.split(" | ").next()).collect();
+    for file in std::fs::read_dir(pages).unwrap().flatten() {
+        let name = file.file_name().into_string().unwrap();
+        let name = name.strip_suffix(".1").unwrap().trim_start_matches("wheelrail").replace('-', " ");
+        let last = name.rsplit(' ').next().unwrap();
+        assert!(rows.contains(&format!("wheelrail{name}")) || rows.contains(&format!("`{last}")), "{name}");
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn every_command_of_the_manual_runs() {
@@ -158,30 +173,92 @@ fn words(svg: &str) -> Vec<&str> {
     texts.filter_map(|text| text.split('>').nth(1)?.split('<').next()).collect()
 }
 
+/// Runs the program in a folder, which has to be content.
+fn wheelrail(here: &Path, arguments: &[&str]) {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_wheelrail"));
+    let output = program.args(arguments).current_dir(here).output().unwrap();
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// Makes the picture of a scene in a folder; gives what was made, and what the repository has of it.
+fn pictured(scene: &str, name: &str, here: &Path) -> [PathBuf; 2] {
+    let kept = Path::new(ROOT).join(format!("output/pictures/scenes/{name}.svg"));
+    if name == "crossing" {
+        let range = ["--along", "-100:300:2", "--out", "march.csv", "--picture", "march.svg"];
+        wheelrail(here, &[&["march", scene][..], &range].concat());
+        return [here.join("march.svg"), Path::new(ROOT).join("src/docs/along_track.svg")];
+    }
+    wheelrail(here, &["run", scene, "--out", "run"]);
+    let made = ["conformal.svg", "patch.svg"].map(|file| here.join("run").join(file));
+    [made.into_iter().find(|file| file.exists()).unwrap(), kept]
+}
+
+/// The scenes of the gallery's table with their names.
+fn gallery() -> Vec<(String, String)> {
+    let page = std::fs::read_to_string(Path::new(ROOT).join("src/docs/gallery-of-scenes.md")).unwrap();
+    let rows = page.lines().filter(|line| line.starts_with("| ["));
+    let paths = rows.filter_map(|line| line.rsplit("](../../").next()?.split(')').next());
+    let root = Path::new(ROOT).canonicalize().unwrap();
+    let scene = |path: &str| {
+        let name = Path::new(path).file_stem().unwrap().to_str().unwrap();
+        (root.join(path).display().to_string(), name.to_owned())
+    };
+    paths.map(scene).collect()
+}
+
+/// A folder of a scene's own.
+fn gallery_folder(name: &str) -> PathBuf {
+    let here = folder("gallery").join(name);
+    let _ = std::fs::remove_dir_all(&here);
+    std::fs::create_dir_all(&here).unwrap();
+    here
+}
+
+/// Whether the pictures of the manual are to be made anew.
+fn anew() -> bool {
+    std::env::var_os("WHEELRAIL_PICTURES").is_some()
+}
+
 #[test]
 fn pictures_of_the_gallery_are_of_today() {
-    let page = std::fs::read_to_string(Path::new(ROOT).join("src/docs/gallery-of-scenes.md")).unwrap();
-    let scenes: Vec<&str> = page
-        .lines()
-        .filter(|line| line.starts_with("| ["))
-        .filter_map(|line| line.rsplit("](../../").next()?.split(')').next())
-        .collect();
-    assert!(scenes.len() >= 7, "{scenes:?}");
-    for scene in scenes {
-        let scene = Path::new(ROOT).join(scene);
-        let name = scene.file_stem().unwrap().to_str().unwrap();
-        let here = folder("gallery").join(name);
-        let mut program = Command::new(env!("CARGO_BIN_EXE_wheelrail"));
-        let output = program.arg("run").arg(&scene).arg("--out").arg(&here).output().unwrap();
-        assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
-        let made =
-            ["conformal.svg", "patch.svg"].map(|file| here.join(file)).into_iter().find(|file| file.exists());
-        let made = std::fs::read_to_string(made.unwrap()).unwrap();
-        let kept = Path::new(ROOT).join(format!("output/pictures/scenes/{name}.svg"));
-        if std::env::var("WHEELRAIL_PICTURES").is_ok() {
+    let scenes = gallery();
+    assert!(scenes.len() >= 9, "{scenes:?}");
+    for (scene, name) in scenes.iter().filter(|(_, name)| name != "fleet") {
+        let [made, kept] = pictured(scene, name, &gallery_folder(name));
+        let made = std::fs::read_to_string(made).unwrap();
+        if anew() {
             std::fs::write(&kept, &made).unwrap();
         }
         let kept = std::fs::read_to_string(kept).unwrap();
         assert_eq!(words(&kept), words(&made), "{name}: see the page for how to make it anew");
     }
+}
+
+/// The picture is a photograph of the page that the fleet has; the numbers below it are those of its table.
+#[test]
+fn the_fleet_of_the_gallery_is_of_today() {
+    let (scene, name) = gallery().into_iter().find(|(_, name)| name == "fleet").unwrap();
+    let here = gallery_folder(&name);
+    let wheels = scene.replace("fleet.toml", "wheelsets.csv");
+    wheelrail(&here, &["fleet", &scene, "--wheels", &wheels, "--rails", "60E1", "--out", "fleet"]);
+    let table = std::fs::read_to_string(here.join("fleet/fleet.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
+    let shown = ["conicity", "nonlinearity_per_mm", "right_flange_thickness_mm", "right_hollow_mm"]
+        .map(|column| rows[0].iter().position(|name| *name == column).unwrap());
+    let mut text = String::new();
+    for row in &rows[1..] {
+        let numbers = shown.map(|k| row[k].parse::<f64>().unwrap());
+        let cells = [3, 3, 2, 2].iter().zip(numbers).map(|(&digits, number)| format!("{number:>10.digits$}"));
+        text += &format!("{:<16}{}\n", row[0], cells.collect::<String>());
+    }
+    if anew() {
+        let picture = Path::new(ROOT).canonicalize().unwrap().join("output/pictures/scenes/fleet.png");
+        let mut browser = Command::new("chromium");
+        browser.args(["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"]);
+        browser.arg("--window-size=1280,866").arg(format!("--screenshot={}", picture.display()));
+        let output = browser.arg(here.join("fleet/fleet.html")).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+    let page = std::fs::read_to_string(Path::new(ROOT).join("src/docs/gallery-of-scenes.md")).unwrap();
+    assert!(page.contains(&text), "the page and its picture are to have\n{text}");
 }

@@ -156,6 +156,84 @@ fn wheels_given_as_rails_and_wrong_options_say_what_is_wrong() {
 }
 
 #[test]
+fn noise_gives_every_quantity_an_interval_in_columns_at_the_end() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    let noise = ["S1002", "nowhere", "--noise", "0.02", "--samples", "40", "--seed", "7"];
+    let plain = text(here, &["S1002", "nowhere", "--csv"], 1);
+    let csv = text(here, &[&noise[..], &["--csv"]].concat(), 1);
+    let [before, after] = [&plain, &csv].map(|text| text.lines().next().unwrap().to_owned());
+    assert!(
+        after.starts_with(&format!("{before},flange_height_mm_samples,flange_height_mm_mean,")),
+        "{after}"
+    );
+    let rows: Vec<Value> = serde_json::from_str(&text(here, &[&noise[..], &["--json"]].concat(), 1)).unwrap();
+    let [wheel, nowhere] = [&rows[0], &rows[1]].map(|row| row.as_object().unwrap());
+    assert!(wheel.keys().map(String::as_str).eq(after.split(',')) && nowhere.len() == wheel.len());
+    // Under this noise Sd is the least sharp: X = 0 is the leftmost of noisy points.
+    for (key, most) in
+        [("flange_height_mm", 0.15), ("flange_thickness_mm", 1.0), ("qr_mm", 0.3), ("flange_width_mm", 0.2)]
+    {
+        let number = |end: &str| wheel[&format!("{key}{end}")].as_f64().unwrap();
+        assert!(number("_low") < number("_mean") && number("_mean") < number("_high"), "{key}");
+        assert!(number("_low_error") > 0.0 && number("_high") - number("_low") < most, "{key}");
+        assert!(nowhere[&format!("{key}_low")].is_null());
+    }
+    assert_eq!(wheel["flange_height_mm_samples"], 40);
+    let table = text(here, &noise, 1);
+    assert!(
+        table.contains("S1002: spread: noise of 0.02 mm of points every 0.2 mm; 40 samples of seed 7\n"),
+        "{table}"
+    );
+    assert_eq!(table, text(here, &noise, 1));
+    text(here, &[&noise[..], &["--html", "m.html"]].concat(), 1);
+    let page = fs::read_to_string(here.join("m.html")).unwrap();
+    assert!(page.contains("intervals: noise of 0.02 mm") && page.contains(" to\u{a0}28."));
+    for wrong in [
+        &["S1002", "--noise", "-0.02"][..],
+        &["S1002", "--noise", "0.02", "--samples", "39"],
+        &["S1002", "--samples", "100"],
+        &["S1002", "S1002", "--noise", "0.02", "--repeats"],
+    ] {
+        assert_eq!(measure(here, wrong).status.code(), Some(2), "{wrong:?}");
+    }
+}
+
+#[test]
+fn repeats_have_a_last_row_with_their_mean_and_interval() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    let points =
+        wheelrail::measured::write::sample(&wheelrail::standards::wheel("S1002").unwrap(), 0.2).unwrap();
+    for (name, high) in [("a", -0.1), ("b", 0.0), ("c", 0.1)] {
+        // The flange grows, the tread stays.
+        let grown = |x: f64, z: f64| if x < -20.0 { z - high } else { z };
+        let rows: Vec<String> = points.iter().map(|&[x, z]| format!("{x} {}\n", grown(x, z))).collect();
+        fs::write(here.join(format!("{name}.txt")), rows.concat()).unwrap();
+    }
+    let files = ["a.txt", "b.txt", "c.txt", "--side", "wheel", "--repeats"];
+    let rows: Vec<Value> = serde_json::from_str(&text(here, &[&files[..], &["--json"]].concat(), 0)).unwrap();
+    assert_eq!((rows.len(), rows[3]["file"].as_str()), (4, Some("mean of 3 repeats")));
+    let number = |key: &str| rows[3][key].as_f64().unwrap();
+    assert!((number("flange_height_mm") - 28.0).abs() < 0.01, "{}", rows[3]);
+    assert!((number("flange_height_mm_deviation") - 0.1).abs() < 1e-3, "{}", rows[3]);
+    // Student's t of two degrees of freedom, and one further measurement.
+    let reach = 4.302_653 * 0.1 * (4.0f64 / 3.0).sqrt();
+    assert!((number("flange_height_mm_high") - 28.0 - reach).abs() < 0.02, "{}", rows[3]);
+    assert!(rows[0]["flange_height_mm_low"].is_null());
+    let table = text(here, &files, 0);
+    assert!(table.contains("mean of 3 repeats: spread: over the repeats"), "{table}");
+    text(here, &[&files[..], &["--html", "m.html"]].concat(), 0);
+    // A file that cannot be measured is a row, and the others are the repeats.
+    fs::write(here.join("bad.txt"), "no numbers").unwrap();
+    let bad = ["a.txt", "bad.txt", "c.txt", "--side", "wheel", "--repeats"];
+    assert!(text(here, &bad, 1).contains("mean of 2 repeats"));
+    for wrong in [&["S1002", "--repeats"][..], &["S1002", "60E1", "--repeats"]] {
+        assert_eq!(measure(here, wrong).status.code(), Some(2), "{wrong:?}");
+    }
+}
+
+#[test]
 fn an_average_is_a_profile_with_its_spread() {
     let folder = TempDir::new().unwrap();
     let here = folder.path();

@@ -101,6 +101,39 @@ fn compared(name: &str, scene: impl Fn(&str) -> String, deltas: &[f64]) -> Value
     page(name, &dir, others)
 }
 
+/// The boundary on the rail's surface that an interpen_sigma.csv gives, in ξ and η.
+fn loop_on_rail(dir: &Path) -> Vec<[f64; 2]> {
+    let text = std::fs::read_to_string(dir.join("interpen_sigma.csv")).unwrap();
+    let rows: Vec<Vec<f64>> = text
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
+        .collect();
+    let end = |k: usize| rows.iter().map(move |row| [row[1], row[k]]);
+    end(2).chain(end(3).rev()).collect()
+}
+
+/// Runs the example over the rail's surface under several approaches, as [`compared`]: its page is to show s, too.
+fn over_the_rail(deltas: &[f64]) -> Value {
+    let runs: Vec<PathBuf> = deltas
+        .iter()
+        .enumerate()
+        .map(|(number, delta)| {
+            let text = include_str!("../../../../examples/scenes/flange_root.toml");
+            run(
+                &format!("page_rail_{number}"),
+                &text.replace("load = 60000.0", &format!("approach = {delta:?}")),
+                0,
+            )
+        })
+        .collect();
+    let other = |(dir, delta): (&PathBuf, &f64)| {
+        let area = &summary(dir)["conformal"]["patch"]["area_mm2"];
+        json!({ "contact": 0, "delta": delta, "loops": [loop_on_rail(dir)], "area": area, "plane": loops(dir) })
+    };
+    page("flange-root", &runs[0], runs.iter().zip(deltas).map(other).collect())
+}
+
 fn page(name: &str, dir: &Path, others: Vec<Value>) -> Value {
     let file = dir.join("view.html");
     let size = std::fs::metadata(&file).unwrap().len();
@@ -132,6 +165,7 @@ fn pages_open_in_a_browser_and_their_slider_gives_the_boundary_of_a_run() {
             |approach| single("offset = 6.0\nyaw = 0.01", &patch(approach)),
             &[0.1, 0.05, 0.15]
         ),
+        over_the_rail(&[0.09, 0.05, 0.15]),
         compared("two-point", |approach| wheelset("4.84", approach), &[0.02, 0.012, 0.03]),
         compared("wheelset", |approach| wheelset("2.0", approach), &[0.08, 0.04]),
         page("no-patch", &run("page_no_patch", &single("offset = 0.0", empty), 1), Vec::new()),

@@ -191,9 +191,15 @@ fn cells_off_the_rail_say_so_and_cut_files_are_refused() {
         (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
     };
     let (code, said) = table(&["--lateral", "50:140", "--out", "t"]);
-    assert!(code == Some(0) && said.contains("a wheel is off its rail"), "{said}");
+    assert!(code == Some(0) && said.contains("warning: table: no contact from "), "{said}");
     let text = std::fs::read_to_string(folder.join("t/table.wrp")).unwrap();
     let read = ContactTable::read(&text).unwrap();
+    let off: Vec<_> = read.off_rail().collect();
+    let [[from, to]] = off[..] else { panic!("{off:?}") };
+    assert!(from > 50.0 && from < 139.0 && to == 140.0, "{off:?}");
+    assert!(said.contains(&format!("{from} to 140 mm: a wheel is off its rail")), "{said}");
+    assert!(text.contains(&format!("# off the rail, without values: {from} to 140\n")), "{text}");
+    assert!(text.lines().all(|line| line.len() < 80));
     let mut values = vec![0.0; read.quantities().len()];
     read.fill(139.0, &mut values);
     assert!(values.iter().all(|value| value.is_nan()));
@@ -201,6 +207,14 @@ fn cells_off_the_rail_say_so_and_cut_files_are_refused() {
     assert!(values[0].is_finite());
     let cut = ContactTable::read(&text[..text.len() / 2]).unwrap_err().to_string();
     assert!(cut.contains("table.wrp: line "), "{cut}");
+
+    let by_load = scene.replace("wheelset = { ", "patch = { load = 6e4 }\nwheelset = { roll = \"load\", ");
+    std::fs::write(folder.join("by-load.toml"), by_load).unwrap();
+    let output = wheelrail(folder, &["table", "by-load.toml", "--lateral", "-1:1", "--out", "bad"]);
+    let complaint =
+        "by-load.toml: wheelset: roll: found \"load\"; expected \"solve\", \"neglect\" or an angle";
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(2) && said.contains(complaint), "{said}");
 
     let bad: [(&[&str], &str); 6] = [
         (&["--lateral", "-9:9", "--hertz"], "table: hertz: found neither a load nor an approach"),

@@ -15,7 +15,8 @@ contact point, xi along the common tangent, eta along the rail, zeta along the c
 What there is:
 
     rail, wheel, read_profile, Profile.from_points, Profile.from_segments   profiles
-    measure_profile           flange height and thickness, wear against a nominal profile
+    measure_profile           flange height and thickness, wear against a nominal profile, with intervals
+    measure_repeats           what repeated measurements of one profile tell
     average_profiles          a representative profile of many, with its spread
     Pair, Wheelset            bodies placed: touch, placed, sweep, conicity
     conicity                  contact geometry by EN 15302: key figures, functions, map, uncertainty
@@ -51,6 +52,7 @@ from ._wheelrail import (
     fleet,
     march,
     measure_profile,
+    measure_repeats,
     rail,
     rail_names,
     read_profile,
@@ -93,6 +95,7 @@ __all__ = [
     "fleet",
     "march",
     "measure_profile",
+    "measure_repeats",
     "rail",
     "rail_names",
     "read_profile",

@@ -51,7 +51,7 @@ class _FileOptions(_PointOptions, total=False):
     angle: float
 
 class _MeasureOptions(TypedDict, total=False):
-    """Keywords of `measure_profile` and `average_profiles`."""
+    """Keywords of `measure_profile`, `measure_repeats` and `average_profiles`."""
 
     tread_at: float
     flange_level: float
@@ -118,7 +118,22 @@ def rail_names() -> list[str]: ...
 def wheel_names() -> list[str]: ...
 def read_profile(path: _Path, side: _Side | None = None, **options: Unpack[_FileOptions]) -> Profile: ...
 def measure_profile(
-    profile: Profile, nominal: Profile | None = None, *, side: _Side | None = None, **options: Unpack[_MeasureOptions]
+    profile: Profile,
+    nominal: Profile | None = None,
+    *,
+    side: _Side | None = None,
+    noise: float | None = None,
+    step: float = 0.2,
+    samples: int = 400,
+    seed: int = 1,
+    **options: Unpack[_MeasureOptions],
+) -> dict[str, Any]: ...
+def measure_repeats(
+    profiles: Sequence[Profile],
+    nominal: Profile | None = None,
+    *,
+    side: _Side | None = None,
+    **options: Unpack[_MeasureOptions],
 ) -> dict[str, Any]: ...
 def average_profiles(
     profiles: Sequence[Profile],
@@ -376,6 +391,8 @@ class ContactTable:
     def lateral(self) -> tuple[float, float]: ...
     @property
     def yaw(self) -> float: ...
+    @property
+    def off_rail(self) -> list[tuple[float, float]]: ...
     @property
     def hops(self) -> list[float]: ...
     @property

@@ -49,16 +49,19 @@ pub(super) fn loads(m: &Measurements) -> PageSection {
         worst.map_or_else(String::new, |one| format!(" The largest error is that of {}.", one.region));
     let body = format!(
         "Errors of δ from a load, against Tamaas under the same normal force on cells three times as fine as the automatic \
-         grid's: treads, flange roots, flanges, yaw, several places, drawn and worn.{worst}\n\n{}\nTime of all contacts of a \
-         wheel under 60 kN, and under the approach that this load causes.\n\n{}",
+         grid's: treads, flange roots, flanges, yaw, several places, drawn and worn.{worst}\n\n{}\n{}\n{COST_NOTE}",
         distribution(&m.loads),
         cost_table(&m.load_costs)
     );
     PageSection { title: "Approaches under load", body, files: Vec::new() }
 }
 
+/// Explains the table of what loads cost.
+pub(super) const COST_NOTE: &str =
+    "Time of all contacts of a wheel under 60 kN, and under the approach that this load causes.\n";
+
 /// Returns the table of what loads cost.
-fn cost_table(costs: &[LoadCost]) -> String {
+pub(super) fn cost_table(costs: &[LoadCost]) -> String {
     let row = |cost: &LoadCost| {
         let milliseconds = |seconds: f64| format!("{:.2}", 1e3 * seconds);
         vec![

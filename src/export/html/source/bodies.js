@@ -128,9 +128,9 @@ export class Space {
         return swept(crossSection(wheel, true), anglesOver(ends, radius), (at, psi) => this.ofWheel(at, psi));
     }
 
-    /** The coloured surface of the rail under the grid: opaque up to the end of the scale. */
-    separation() {
-        const { grid, railHeight, scale } = this.contact;
+    /** The surface of the rail under the grid in the colours of a gap: opaque up to the end of the scale. */
+    separation({ grid }) {
+        const { railHeight, scale } = this.contact;
         const { xi, eta, values } = grid;
         const [n, m] = [xi.length, eta.length];
         const positions = new Float32Array(3 * n * m);
@@ -173,10 +173,7 @@ export class Space {
 
     /** ζ of the rail at ξ, linear between the columns of the grid. */
     height(xi) {
-        const { grid, railHeight } = this.contact;
-        const at = (xi - grid.xi[0]) / grid.steps[0];
-        const i = Math.min(Math.max(Math.floor(at), 0), railHeight.length - 2);
-        return railHeight[i] + (at - i) * (railHeight[i + 1] - railHeight[i]);
+        return this.contact.grid.column(this.contact.railHeight, xi);
     }
 
     /** Pairs of points along the edges of the wheel's end faces. */

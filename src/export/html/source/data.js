@@ -1,4 +1,4 @@
-// The data of a page: arrays, and a contact with its grid.
+// The data of a page: arrays, grids and profiles.
 
 /** Decodes base64 of little-endian single precision; browsers run on little-endian machines only. */
 export function floats(base64) {
@@ -16,7 +16,7 @@ export function profilePoints(profile) {
     return Array.from(x, (value, k) => [value, z[k]]);
 }
 
-/** s on a rectangular grid of equal steps, at i * eta.length + j; NaN where a body has no surface. Lengths in mm. */
+/** A quantity on a rectangular grid of equal steps, at i * eta.length + j; NaN where a body has no surface. Lengths in mm. */
 export class Grid {
     constructor(xi, eta, values) {
         Object.assign(this, { xi, eta, values });
@@ -29,7 +29,7 @@ export class Grid {
         return [values[0], values[values.length - 1]];
     }
 
-    /** s at a point, interpolated linearly along both axes; NaN outside. */
+    /** The value at a point, interpolated linearly along both axes; NaN outside. */
     at(xi, eta) {
         const [i, u] = place(xi, this.xi, this.steps[0]);
         const [j, v] = place(eta, this.eta, this.steps[1]);
@@ -43,7 +43,14 @@ export class Grid {
         return (1 - u) * near + u * far;
     }
 
-    /** Least and largest defined s. */
+    /** What is known at every ξ, linear between them and beyond. */
+    column(values, xi) {
+        const at = (xi - this.xi[0]) / this.steps[0];
+        const i = Math.min(Math.max(Math.floor(at), 0), values.length - 2);
+        return at === i ? values[i] : values[i] + (at - i) * (values[i + 1] - values[i]);
+    }
+
+    /** Least and largest defined value. */
     range() {
         let [low, high] = [Infinity, -Infinity];
         for (const s of this.values) {
@@ -92,35 +99,6 @@ export class Frame {
         const [dx, dz] = [x - this.origin[0], z - this.origin[1]];
         return [c * dx + s * dz, c * dz - s * dx];
     }
-}
-
-/** One contact of a run, decoded. */
-export class Contact {
-    constructor(raw, pairs) {
-        const { name, approach, area, skew, facts, warnings } = raw;
-        Object.assign(this, { name: name || "contact", approach, area, skew, facts, warnings });
-        this.grid = new Grid(floats(raw.xi), floats(raw.eta), floats(raw.separation));
-        this.railHeight = floats(raw.rail_height);
-        // The exact boundary under δ of the run, closed.
-        this.boundary = raw.boundary.map(pointsOf).map((points) => [...points, points[0]]);
-        // The edges of the true contact, and the pressures over the grid of the run: null where they were not solved.
-        this.pressed = raw.pressed.map(pointsOf);
-        this.pressure = raw.pressure && new Grid(...["xi", "eta", "values"].map((key) => floats(raw.pressure[key])));
-        [this.railFrame, this.wheelFrame] = raw.frames.map((frame) => new Frame(frame));
-        this.pair = pairs[raw.pair];
-        // Colours are made for s from 0 to 3 δ; without δ, for all that the contours can show.
-        const edge = this.grid.leastOnEdge();
-        const [, high] = this.grid.range();
-        const fallback = [edge, high, 0.1].find((s) => s > 0 && Number.isFinite(s));
-        this.scale = approach ? 3 * approach : fallback;
-        this.delta = approach ?? fallback / 3;
-    }
-}
-
-/** Decodes the points [ξ, η] of a line, mm. */
-function pointsOf(line) {
-    const values = floats(line);
-    return Array.from({ length: values.length / 2 }, (_, k) => [values[2 * k], values[2 * k + 1]]);
 }
 
 /** Decodes the profiles of a page. */

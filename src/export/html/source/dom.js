@@ -37,13 +37,16 @@ export function followed(node, moved) {
     node.addEventListener("pointermove", told);
 }
 
-/** Round values inside of a range, about so many. */
+/** Round values inside of a range, about so many; two at least. */
 export function ticks([from, to], about) {
     const raw = (to - from) / Math.max(about, 1);
     const power = 10 ** Math.floor(Math.log10(raw));
-    const step = power * [1, 2, 5, 10].find((m) => m * power >= raw * 0.999);
-    const first = Math.ceil(from / step - 1e-6);
-    const last = Math.floor(to / step + 1e-6);
+    const ends = (size) => [Math.ceil(from / size - 1e-6), Math.floor(to / size + 1e-6)];
+    const alone = (size) => ends(size)[0] >= ends(size)[1];
+    const sizes = [0.5, 1, 2, 5, 10].map((m) => m * power);
+    const fits = sizes.findIndex((size) => size >= raw * 0.999);
+    const step = alone(sizes[fits]) ? sizes[fits - 1] : sizes[fits];
+    const [first, last] = ends(step);
     const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
     return Array.from({ length: last - first + 1 }, (_, k) => {
         const value = (first + k) * step;

@@ -1,24 +1,18 @@
-// The plan of the contact: s in colour over ξ and η, the boundary, and the two lines of the cut.
+// The plan of the contact: a gap or the pressure in colour over ξ and η, the boundary, and the two lines of the cut.
 
 import { colourOf, theme } from "./colours.js";
 import { contours } from "./contours.js";
 import { Sheet, fixed, followed, length } from "./dom.js";
 import { Plot } from "./plot.js";
 
-/** What a contact's plan shows in colour: a grid, and the value at the end of the scale. */
-function layerOf({ contact, layer }) {
-    const { grid, scale, pressure } = contact;
-    return layer === "pressure" ? [pressure, pressure.range()[1]] : [grid, scale];
-}
-
 /** Axes thinner than this get a scale each. */
 const THINNEST = 4;
 
 export class PlanView {
-    /** `state` is shared by all views of a contact: { contact, delta, lines, others, cut, layer }; `moved` is told when the cut moves. */
+    /** `state` is shared by all views of a contact: { contact, layer, gap, delta, lines, others, cut }; `moved` is told when the cut moves. */
     constructor(state, moved) {
         Object.assign(this, { state, moved });
-        const label = "Separation s over ξ and η. Arrow keys move the cut, plus and minus change δ.";
+        const label = "The gap over ξ and η. Arrow keys move the cut, plus and minus change δ.";
         this.sheet = new Sheet(label, (...to) => this.draw(...to), { tabindex: 0, class: "plan" });
         this.readout = document.createElement("output");
         this.listen(this.sheet.canvas);
@@ -33,15 +27,19 @@ export class PlanView {
         canvas.addEventListener("pointerleave", () => this.say(this.state.cut));
     }
 
-    /** Writes ξ, η, s and the pressure of a point below the plan. */
+    /** Writes ξ, η, the gaps and the pressure of a point below the plan. */
     say([xi, eta]) {
-        const { grid, pressure } = this.state.contact;
-        const pressed = pressure ? `   p ${fixed(pressure.at(xi, eta) || 0, 0)} N/mm²` : "";
-        this.readout.value = `ξ ${fixed(xi, 3)} mm   η ${fixed(eta, 3)} mm   s ${length(grid.at(xi, eta))}${pressed}`;
+        const { layers, pressure } = this.state.contact;
+        const gaps = layers.filter(({ gap, grid }) => gap.grid === grid);
+        const said = [["ξ", `${fixed(xi, 3)} mm`], ["η", `${fixed(eta, 3)} mm`], ...gaps.map(({ gap, grid }) => [gap.symbol, length(grid.at(xi, eta))])];
+        if (pressure) said.push(["p", `${fixed(pressure.at(xi, eta) || 0, 0)} N/mm²`]);
+        // A line ends between two quantities, never within one.
+        this.readout.value = said.map((words) => words.join(" ").replaceAll(" ", "\u00a0")).join("   ");
     }
 
     draw(context, width, height, ratio) {
-        const { contact, delta, lines, others, cut, layer } = this.state;
+        const { contact, delta, lines, others, cut, layer, gap } = this.state;
+        const isGap = layer.grid === gap.grid;
         const { grid } = contact;
         const room = [58, 10, width - 72, height - 54];
         const [u, v] = [0, 1].map((axis) => widened(grid.ends(axis), this.state.sides?.[axis]));
@@ -49,19 +47,19 @@ export class PlanView {
         this.plot = plot;
         const colours = theme();
         context.save();
-        if (layer === "pressure") context.clip(inside(plot, contact.pressed));
+        if (!isGap) context.clip(inside(plot, gap.pressed));
         context.drawImage(this.field(plot, ratio), ...plot.place);
         context.restore();
         plot.clipped(() => {
-            if (layer === "separation") plot.lines(this.isolines, "rgb(255 255 255 / 35%)", 1);
+            if (isGap) plot.lines(this.isolines, "rgb(255 255 255 / 35%)", 1);
             if (contact.approach && delta !== contact.approach) {
-                plot.lines(contact.boundary, colours.given, 1.5, [4, 3]);
+                plot.lines(gap.boundary, colours.given, 1.5, [4, 3]);
             }
             plot.lines(others, colours.boundary, 1.25, [4, 3]);
             plot.lines(lines, colours.halo, 4.5);
             plot.lines(lines, colours.boundary, 2.25);
-            plot.lines(contact.pressed, colours.halo, 3.5);
-            plot.lines(contact.pressed, colours.pressed, 1.5, [7, 3]);
+            plot.lines(gap.pressed, colours.halo, 3.5);
+            plot.lines(gap.pressed, colours.pressed, 1.5, [7, 3]);
             plot.line([[cut[0], plot.v[0]], [cut[0], plot.v[1]]], colours.cutEta, 1.25, [6, 3]);
             plot.line([[plot.u[0], cut[1]], [plot.u[1], cut[1]]], colours.cutXi, 1.25, [6, 3]);
             dot(plot, [0, 0], colours);
@@ -70,9 +68,9 @@ export class PlanView {
         this.say(cut);
     }
 
-    /** s or the pressure in colour, drawn once for every size. */
+    /** A layer in colour, drawn once for every size. */
     field(plot, ratio) {
-        const [grid, scale] = layerOf(this.state);
+        const { grid, scale } = this.state.layer;
         const [width, height] = [plot.place[2], plot.place[3]].map((side) => Math.max(2, Math.round(side * ratio)));
         const shown = [...plot.u, ...plot.v, width, height];
         if (this.shown === grid && shown.every((value, k) => value === this.within?.[k])) return this.image;
@@ -87,7 +85,7 @@ export class PlanView {
         }
         this.image = Object.assign(document.createElement("canvas"), { width, height });
         this.image.getContext("2d").putImageData(image, 0, 0);
-        this.isolines ??= [1, 2, 4, 5].flatMap((k) => contours(this.state.contact.grid, (k / 6) * this.state.contact.scale));
+        this.isolines = [1, 2, 4, 5].flatMap((k) => contours(grid, (k / 6) * scale));
         return this.image;
     }
 }

@@ -35,18 +35,32 @@ function scale({ differences }) {
     return [largest, MAGNIFIED.find((times) => times * largest <= LONGEST) ?? 1];
 }
 
+/** The differences of a file as arrows, so many times as long. */
+function magnified({ differences }, times) {
+    return differences.map(([x, z, u, v]) => [[x, z], [x + times * (u - x), z + times * (v - z)]]);
+}
+
+/** The extent of points along one axis, with a margin. */
+function range(all, k) {
+    const values = all.map((point) => point[k]);
+    return [Math.min(...values) - 2, Math.max(...values) + 2];
+}
+
+/** The shape of a sheet that a drawing of a file in true scale fills; a sixth of the width is for the names of the axis. */
+function shape(file, times) {
+    const all = [...file.nominal, ...file.measured, ...magnified(file, times).flat()];
+    const [wide, high] = [0, 1].map((k) => range(all, k)).map(([from, to]) => to - from);
+    return `${wide} / ${high + wide / 6}`;
+}
+
 const sheet = new Sheet("The profile over its nominal, with magnified differences", (context, width, height) => {
     const file = files[at];
     const colours = theme();
     const [, times] = scale(file);
-    const arrows = file.differences.map(([x, z, u, v]) => [[x, z], [x + times * (u - x), z + times * (v - z)]]);
+    const arrows = magnified(file, times);
     const all = [...file.nominal, ...file.measured, ...arrows.flat()];
     if (all.length === 0) return;
-    const range = (k) => {
-        const values = all.map((point) => point[k]);
-        return [Math.min(...values) - 2, Math.max(...values) + 2];
-    };
-    const plot = Plot.trueScale(context, [60, 8, width - 70, height - 50], range(0), range(1));
+    const plot = Plot.trueScale(context, [60, 8, width - 70, height - 50], range(all, 0), range(all, 1));
     plot.line(file.nominal, colours.rail, 1.2);
     plot.line(file.measured, colours.wheel, 1.8);
     plot.lines(arrows, colours.boundary, 1);
@@ -70,11 +84,14 @@ function go(to) {
     [before.disabled, after.disabled] = [at === 0, at === files.length - 1];
     number.value = `${at + 1} of ${files.length}`;
     const [largest, times] = scale(file);
-    heading.textContent = file.differences.length ? `Differences along the normal × ${times}; the largest is ${fixed(largest, 3)} mm` : file.measured.length ? "The profile" : "No profile";
+    heading.textContent = file.differences.length ? `Differences along the normal × ${times}; the largest is ${fixed(largest, 3)} mm` : file.measured.length ? "The profile" : "No profile of its own";
+    sheet.canvas.hidden = file.measured.length === 0;
+    if (file.measured.length) sheet.canvas.style.aspectRatio = shape(file, times);
     alignment.value = file.alignment;
     names.hidden = file.differences.length === 0;
-    const rows = file.measures.map(([text, value, off, unit]) => element("tr", {}, element("th", { scope: "row" }, text), ...[value, off && `± ${off}`, unit].map((cell) => element("td", {}, cell))));
-    values.replaceChildren(element("table", {}, element("caption", {}, "Measures"), element("tbody", {}, ...rows)));
+    const interval = file.measures.some((row) => row[3]);
+    const rows = file.measures.map(([text, ...cells]) => element("tr", {}, element("th", { scope: "row" }, text), ...cells.slice(0, interval ? 3 : 2).map((cell) => element("td", {}, cell))));
+    values.replaceChildren(element("table", {}, element("caption", {}, interval ? "Measures, what their alignment is worth, and their intervals" : "Measures, and what their alignment is worth"), element("tbody", {}, ...rows)));
     const list = (label, items) => (items.length ? [element("ul", { class: "warnings", "aria-label": label }, ...items.map((text) => element("li", {}, text)))] : []);
     lists.replaceChildren(...list("Broken limits", file.broken), ...list("Findings", file.findings));
     sheet.refresh();
@@ -86,7 +103,7 @@ page.replaceChildren(
     element("div", { class: "head" }, element("div", { class: "slider" }, element("label", { for: "file" }, "File"), chosen, before, after, number)),
     lists,
     element("div", { class: "fleet" }, element("figure", {}, heading, sheet.canvas, names, alignment), values),
-    element("footer", {}, element("p", {}, "± is the largest change of a value if the profile lay 0.1 mm or 0.1° otherwise: what its alignment is worth. The left and right arrows go through the files.")),
+    element("footer", {}, element("p", {}, "± is the largest change of a value if the profile lay 0.1 mm or 0.1° otherwise: what its alignment is worth. An interval holds 95 % of the samples of noise, or of further measurements; the ± behind it is the sampling error of its ends. The left and right arrows go through the files.")),
 );
 page.addEventListener("keydown", (event) => {
     const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];

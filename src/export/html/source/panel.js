@@ -1,7 +1,7 @@
 // All views of one contact, with the slider, the table and the keys.
 
 import { gradient } from "./colours.js";
-import { areaInside, closed, contours, near } from "./contours.js";
+import { closed, contours, near } from "./contours.js";
 import { Cut } from "./cuts.js";
 import { element, fixed, saveButton } from "./dom.js";
 import { PlanView } from "./map.js";
@@ -13,7 +13,8 @@ const STEPS = 600;
 
 export class Panel {
     constructor(contact, number) {
-        const state = { contact, delta: contact.delta, cut: [0, 0], lines: [], others: [], layer: "separation" };
+        const [layer] = contact.layers;
+        const state = { contact, layer, gap: layer.gap, delta: contact.delta, cut: [0, 0], lines: [], others: [] };
         state.cut = [0, 1].map((axis) => kept(0, contact.grid.ends(axis)));
         Object.assign(this, { contact, state });
         const moved = (cut) => this.moveCut(cut);
@@ -21,15 +22,19 @@ export class Panel {
         this.plan = new PlanView(state, moved);
         this.cuts = [0, 1].map((axis) => new Cut(axis, state, moved));
         this.profiles = new Profiles(state);
-        this.legend = element("div", {}, this.separations());
+        this.legend = element("div");
+        this.boundary = element("span", { class: "boundary" });
+        this.edge = element("span", { class: "edge" }, "edge of the true contact");
         this.node = this.build(number);
         this.node.addEventListener("keydown", (event) => this.key(event));
-        this.setDelta(contact.delta);
+        this.showLayer(0);
     }
 
     build(number) {
         const { contact } = this;
         const heading = `contact-${number}`;
+        const [first, ...others] = contact.layers;
+        const gap = first.gap.symbol === "s" ? "Separation" : "Gap";
         return element(
             "section",
             { class: "contact", "aria-labelledby": heading, id: `panel-${number}` },
@@ -38,8 +43,8 @@ export class Panel {
             element(
                 "div",
                 { class: "views" },
-                figure("space", "Separation on the rail", this.space.sheet, this.viewButtons(number)),
-                figure("plan", contact.pressure ? "On the contact plane" : "Separation on the contact plane", this.plan.sheet, this.legend, this.lines(), this.plan.readout, this.layers(number)),
+                figure("space", `${gap} on the rail`, this.space.sheet, this.viewButtons(number)),
+                figure("plan", others.length ? "On the contact plane" : "Separation on the contact plane", this.plan.sheet, this.legend, this.lines(), this.plan.readout, this.layers(number)),
                 this.facts(),
                 figure("cut", "Cut along ξ", this.cuts[0].sheet),
                 figure("cut", "Cut along η", this.cuts[1].sheet),
@@ -82,35 +87,39 @@ export class Panel {
 
     /** What the plan shows in colour, where there is a choice. */
     layers(number) {
-        const edge = this.contact.pressed.length ? element("span", { class: "edge" }, "edge of the true contact") : "";
-        if (!this.contact.pressure) return edge;
-        const option = (value, text) => element("option", { value }, text);
-        const layer = element("select", { id: `layer-${number}` }, option("separation", "separation s"), option("pressure", "pressure p"));
-        layer.addEventListener("change", () => this.showLayer(layer.value));
-        return element("div", { class: "layers" }, element("label", { for: layer.id }, "colour "), layer, edge);
+        const { layers } = this.contact;
+        if (layers.length === 1) return this.edge;
+        const choice = element("select", { id: `layer-${number}` }, ...layers.map(({ name }, k) => element("option", { value: k }, name)));
+        choice.addEventListener("change", () => this.showLayer(choice.value));
+        return element("div", { class: "layers" }, element("label", { for: choice.id }, "colour "), choice, this.edge);
     }
 
-    showLayer(layer) {
-        this.state.layer = layer;
-        this.legend.replaceChildren(layer === "pressure" ? this.pressures() : this.separations());
-        this.plan.sheet.refresh();
+    showLayer(number) {
+        const { state } = this;
+        state.layer = this.contact.layers[number];
+        state.gap = state.layer.gap;
+        const { gap, grid } = state.layer;
+        this.legend.replaceChildren(grid === gap.grid ? this.gaps(gap) : this.pressures());
+        this.boundary.textContent = `boundary of the patch, ${gap.symbol} = ${gap.edge}`;
+        this.edge.hidden = gap.pressed.length === 0;
+        this.setDelta(state.delta);
     }
 
     /** The scale of colours of the pressure. */
     pressures() {
-        const [, largest] = this.contact.pressure.range();
-        return this.scaleOf("pressure p", "linear from 0", [[0, "0"], [0.5, fixed(largest / 2, 0)], [1, `${fixed(largest, 0)} N/mm²`]]);
+        const { name, scale: largest } = this.state.layer;
+        return this.scaleOf(name, "linear from 0", [[0, "0"], [0.5, fixed(largest / 2, 0)], [1, `${fixed(largest, 0)} N/mm²`]]);
     }
 
-    /** The scale of colours of s, which reaches from 0 to 3 δ of the run. */
-    separations() {
+    /** The scale of colours of a gap, which reaches from 0 to 3 δ of the run. */
+    gaps({ name }) {
         const { scale, approach } = this.contact;
         const [unit, factor] = scale < 1 ? ["µm", 1e3] : ["mm", 1];
         const value = (share) => fixed(share * scale * factor, scale * factor < 10 ? 2 : 0);
         const names = approach
             ? [[0, "0"], [1 / 3, "δ"], [1, `3 δ = ${value(1)} ${unit}`]]
             : [[0, "0"], [0.5, value(0.5)], [1, `${value(1)} ${unit}`]];
-        return this.scaleOf("separation s", approach ? "linear from 0 to 3 δ of the run" : "linear from 0", names);
+        return this.scaleOf(name, approach ? "linear from 0 to 3 δ of the run" : "linear from 0", names);
     }
 
     /** A bar of all colours with names at shares of its length. */
@@ -122,9 +131,8 @@ export class Panel {
 
     /** What the lines of the plan are. */
     lines() {
-        const edge = element("span", { class: "boundary" }, "boundary of the patch, s = δ");
         const cuts = element("span", { class: "cuts" }, "cuts");
-        return element("p", { class: "names" }, edge, cuts);
+        return element("p", { class: "names" }, this.boundary, cuts);
     }
 
     names() {
@@ -140,12 +148,13 @@ export class Panel {
     /** Moves the boundary to another δ, mm. */
     setDelta(delta, bySlider = false) {
         const { contact, state } = this;
+        const { gap } = state;
         state.delta = kept(delta, [0, contact.scale]);
         // The slider's steps do not hit the δ of the run, which its button gives.
         if (!bySlider) this.input.value = Math.round((state.delta / contact.scale) * STEPS);
         const own = contact.approach && state.delta === contact.approach;
-        const [lines, others] = near(contact.boundary, contours(contact.grid, state.delta));
-        state.lines = own ? contact.boundary : lines;
+        const [lines, others] = near(gap.boundary, contours(gap.closedBy, state.delta));
+        state.lines = own ? gap.boundary : lines;
         state.others = others;
         this.say();
         this.refresh();
@@ -155,11 +164,17 @@ export class Panel {
         const { contact, state } = this;
         const own = contact.approach && state.delta === contact.approach;
         const cut = !own && state.lines.some((line) => !closed(line));
-        const area = own ? contact.area : areaInside(state.lines);
+        const area = this.area();
         const size = cut ? "cut by the edge of the page's grid" : `area ${fixed(area, own ? 3 : 2)} mm²`;
         this.said.value = `${fixed(state.delta, 5)} mm, ${size}`;
         this.input.setAttribute("aria-valuetext", `δ ${this.said.value}`);
         this.reset.disabled = state.delta === contact.delta;
+    }
+
+    /** Area of the patch that is shown, mm². */
+    area() {
+        const { state: { gap, delta, lines }, contact } = this;
+        return contact.approach && delta === contact.approach ? gap.area : gap.areaInside(lines);
     }
 
     moveCut([xi, eta]) {

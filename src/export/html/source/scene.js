@@ -1,4 +1,4 @@
-// The picture in space: rail and wheel as bodies, the separation on the rail, the boundary.
+// The picture in space: rail and wheel as bodies, the gap on the rail, the boundary.
 
 import {
     AmbientLight, Box3, Color, DirectionalLight, DoubleSide, Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial,
@@ -36,7 +36,7 @@ export class SpaceView {
     constructor(state) {
         this.state = state;
         this.space = new Space(state.contact);
-        const label = "Rail, wheel and separation in space. Arrow keys turn the view, page up and down come closer and go away.";
+        const label = "Rail, wheel and the gap between them in space. Arrow keys turn the view, page up and down come closer and go away.";
         this.sheet = new Sheet(label, (...to) => this.draw(...to), { tabindex: 0, class: "space" });
         if (!renderer()) return;
         const { grid, pair } = state.contact;
@@ -76,8 +76,8 @@ export class SpaceView {
         });
         this.rail = new Mesh(space.rail(REACH.rail * wide), this.materials.rail);
         this.wheels = { half: this.wheelFrom(0), whole: this.wheelFrom(-REACH.wheel * wide) };
-        const separation = new Mesh(space.separation(), surface);
-        separation.renderOrder = 1;
+        this.separation = new Mesh(undefined, surface);
+        this.separation.renderOrder = 1;
         this.lines = { boundary: 3.2, cutXi: 1.8, cutEta: 1.8 };
         for (const [name, width] of Object.entries(this.lines)) {
             const material = new LineMaterial({ linewidth: width, transparent: true });
@@ -90,7 +90,7 @@ export class SpaceView {
         light.position.set(-0.5, -0.7, 1);
         const other = new DirectionalLight(0xffffff, 0.9);
         other.position.set(0.8, 0.6, 0.4);
-        this.scene.add(this.rail, separation, ...Object.values(this.wheels), light, other, new AmbientLight(0xffffff, 1.1));
+        this.scene.add(this.rail, this.separation, ...Object.values(this.wheels), light, other, new AmbientLight(0xffffff, 1.1));
     }
 
     /** The wheel from a section to the end of its arc, with the edges of both end faces. */
@@ -180,8 +180,9 @@ export class SpaceView {
             context.fillText("This browser shows no WebGL; the other views do without.", width / 2, height / 2);
             return;
         }
-        const { contact, lines, cut } = this.state;
+        const { contact, gap, lines, cut } = this.state;
         const { grid } = contact;
+        this.colour(gap);
         this.materials.rail.color = new Color(colours.railBody);
         this.materials.wheel.color = new Color(colours.wheelBody);
         this.materials.edges.color = new Color(colours.wheel);
@@ -198,6 +199,14 @@ export class SpaceView {
         webgl.render(this.scene, this.camera);
         context.drawImage(webgl.domElement, 0, 0, width, height);
         this.frame(context, width, height, colours);
+    }
+
+    /** Shows a gap in colour. */
+    colour(gap) {
+        if (this.coloured === gap) return;
+        this.coloured = gap;
+        this.separation.geometry.dispose();
+        this.separation.geometry = this.space.separation(gap);
     }
 
     /** Puts lines on the rail. */

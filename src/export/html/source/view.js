@@ -1,6 +1,7 @@
 // The page of a run.
 
-import { Contact, pageData, pairsOf } from "./data.js";
+import { Contact } from "./contact.js";
+import { pageData, pairsOf } from "./data.js";
 import { element } from "./dom.js";
 import { Panel } from "./panel.js";
 import { themeButton } from "./themes.js";
@@ -79,5 +80,6 @@ window.wheelrail = {
     delta: (k = 0) => panels[k].state.delta,
     setDelta: (value, k = 0) => panels[k].setDelta(value),
     cut: (k = 0) => panels[k].state.cut,
-    separation: (xi, eta, k = 0) => panels[k].contact.grid.at(xi, eta),
+    area: (k = 0) => panels[k].area(),
+    gap: (xi, eta, k = 0) => panels[k].state.gap.grid.at(xi, eta),
 };

@@ -2,7 +2,8 @@
 
 use crate::error::Result;
 use crate::numerics::roots::bracketed;
-use crate::search::wheelset::{Position, Roll, SideTouch, WheelsetOnTrack, WheelsetSearch};
+use crate::search::position::{Position, Roll};
+use crate::search::wheelset::{SideTouch, WheelsetOnTrack, WheelsetSearch};
 use crate::search::{Contact, Selection};
 
 /// The near misses that are looked at: gaps up to 1 µm close within a displacement of 0.01 to 0.1 mm. With a

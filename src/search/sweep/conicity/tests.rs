@@ -6,7 +6,8 @@ use super::movement::Knot;
 use super::*;
 use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
 use crate::profile::{Arc, Profile, Segment, standards};
-use crate::search::wheelset::{Position, WheelsetSearch};
+use crate::search::position::Position;
+use crate::search::wheelset::WheelsetSearch;
 use crate::search::{Selection, SideOnTrack};
 
 fn system(rail: &Profile, wheel: &Profile) -> Result<WheelsetOnTrack> {

@@ -1,19 +1,20 @@
 //! Random errors of measurement: seeded normal deviates, profiles measured once more, and the spread of what is computed of them.
 
-use serde::Serialize;
+mod spread;
 
-use super::options::Options;
+use rayon::prelude::*;
+
+pub use spread::{LEAST_SAMPLES, Spread, spread_text};
+
+use super::options::{CurveKind, Options};
 use crate::error::{Error, Result};
 use crate::profile::{Profile, Side, trace};
 
 /// Default distance \[mm\] of the points of a profile that is measured once more: that of hand-held instruments.
 pub const POINT_STEP: f64 = 0.2;
 
-/// Shares of the samples below the ends of an interval: 95 % lie between them.
-const ENDS: [f64; 2] = [0.025, 0.975];
-
-/// Least number of samples: of fewer not even one lies beyond each end of the interval.
-pub const LEAST_SAMPLES: usize = 40;
+/// Largest number of samples.
+const MOST_SAMPLES: usize = 1_000_000;
 
 /// A stream of standard normal deviates. Streams of other numbers under one seed are independent of each other, so that each sample
 /// has its own, whichever thread draws it.
@@ -112,8 +113,21 @@ impl Remeasured {
         Ok(Self { name: profile.name.clone(), side, points, normals, options })
     }
 
-    /// Measures the profile once more: each point is off across the profile by a normal deviate times `sigma` \[mm\], and the points
-    /// are smoothed like those of a file, with the default cut-off wavelength.
+    /// Has the curve of each sample drawn as these options say: kind of curve, cut-off wavelength, kink angle, tolerance. Elements are
+    /// drawn through their points.
+    #[must_use]
+    pub fn drawn_by(mut self, options: &Options) -> Self {
+        let curve = match options.curve {
+            Some(CurveKind::Elements) => Some(CurveKind::Interpolation),
+            curve => curve,
+        };
+        let Options { cutoff_wavelength, kink_angle, arc_tolerance, .. } = *options;
+        self.options = Options { curve, cutoff_wavelength, kink_angle, arc_tolerance, ..self.options };
+        self
+    }
+
+    /// Measures the profile once more: each point is off across the profile by a normal deviate times `sigma` \[mm\], and the curve
+    /// is drawn as [`Remeasured::drawn_by`] says, or else smoothed with the default cut-off wavelength.
     ///
     /// # Errors
     /// Points that no curve can be drawn through, if `sigma` is as large as their distance.
@@ -127,66 +141,47 @@ impl Remeasured {
     }
 }
 
-/// How far the samples of a quantity spread, each number with its standard error from the number of samples.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Spread {
-    /// Number of samples in which the quantity exists.
-    pub samples: usize,
-    /// Mean.
-    pub mean: f64,
-    /// Standard error of the mean.
-    pub mean_error: f64,
-    /// Standard deviation.
-    pub deviation: f64,
-    /// Standard error of the standard deviation, as of a normal distribution.
-    pub deviation_error: f64,
-    /// Lower end of the interval that holds 95 % of the samples.
-    pub low: f64,
-    /// Standard error of the lower end, from the order statistics beside it.
-    pub low_error: f64,
-    /// Upper end of the interval.
-    pub high: f64,
-    /// Standard error of the upper end.
-    pub high_error: f64,
+/// The spreads of quantities over samples of noise.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sampled<const N: usize> {
+    /// Number of samples of which nothing could be computed.
+    pub failed: usize,
+    /// The spread of each quantity; `None` of one that fewer than [`LEAST_SAMPLES`] samples have.
+    pub spreads: [Option<Spread>; N],
 }
 
-impl Spread {
-    /// Finds the spread of samples; those that are not finite are left out. `None` of fewer than [`LEAST_SAMPLES`].
-    pub fn of(samples: impl IntoIterator<Item = f64>) -> Option<Self> {
-        let mut values: Vec<f64> = samples.into_iter().filter(|value| value.is_finite()).collect();
-        if values.len() < LEAST_SAMPLES {
-            return None;
-        }
-        values.sort_by(f64::total_cmp);
-        let count = values.len() as f64;
-        let mean = values.iter().sum::<f64>() / count;
-        let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-        let deviation = (squares / (count - 1.0)).sqrt();
-        let [low, high] = ENDS.map(|share| quantile(&values, share));
-        let [low_error, high_error] = ENDS.map(|share| {
-            let off = (share * (1.0 - share) / count).sqrt();
-            (quantile(&values, share + off) - quantile(&values, share - off)) / 2.0
-        });
-        Some(Self {
-            samples: values.len(),
-            mean,
-            mean_error: deviation / count.sqrt(),
-            deviation,
-            deviation_error: deviation / (2.0 * (count - 1.0)).sqrt(),
-            low,
-            low_error,
-            high,
-            high_error,
-        })
+/// Draws samples of quantities; `sample` gives them, NaN where there is none. Each sample has a stream of deviates of its own under the
+/// seed: any number of threads gives the same bits.
+///
+/// # Errors
+/// A number of samples that gives no interval; the error of a sample where none can be computed.
+pub fn sampled<const N: usize>(
+    samples: usize,
+    seed: u64,
+    sample: impl Fn(&mut Deviates) -> Result<[f64; N]> + Sync,
+) -> Result<Sampled<N>> {
+    check_samples(samples)?;
+    let drawn = |number: usize| sample(&mut Deviates::new(seed, number as u64));
+    let all: Vec<_> = (0..samples).into_par_iter().map(drawn).collect();
+    let failed = all.iter().filter(|sample| sample.is_err()).count();
+    if let (true, Some(Err(error))) = (failed == all.len(), all.first()) {
+        return Err(error.clone().within("noise: every sample"));
     }
+    let spread = |k: usize| Spread::of(all.iter().flatten().map(|sample| sample[k]));
+    Ok(Sampled { failed, spreads: std::array::from_fn(spread) })
 }
 
-/// Returns the value below which a share of ascending values lies, straight between neighbours.
-fn quantile(values: &[f64], share: f64) -> f64 {
-    let at = share.clamp(0.0, 1.0) * (values.len() - 1) as f64;
-    let below = at.floor() as usize;
-    let above = (below + 1).min(values.len() - 1);
-    values[below] + (at - below as f64) * (values[above] - values[below])
+/// Rejects a number of samples that gives no interval, or more than a million.
+///
+/// # Errors
+/// Such a number.
+pub fn check_samples(samples: usize) -> Result<()> {
+    if (LEAST_SAMPLES..=MOST_SAMPLES).contains(&samples) {
+        return Ok(());
+    }
+    let expected =
+        format!("{LEAST_SAMPLES} to {MOST_SAMPLES}: each end of the interval needs samples beyond it");
+    Err(Error::new("noise: samples", samples.to_string(), expected, "correct it"))
 }
 
 #[cfg(test)]
@@ -204,19 +199,6 @@ mod tests {
         assert!((moment(4) - 3.0).abs() < 0.2, "{}", moment(4));
         let first = |seed, number| Deviates::new(seed, number).draw();
         assert!(first(1, 0) != first(1, 1) && first(1, 0) != first(2, 0) && first(1, 1) != first(2, 0));
-    }
-
-    #[test]
-    fn the_spread_of_normal_samples_is_theirs_within_its_own_errors() {
-        let mut deviates = Deviates::new(1, 0);
-        let Some(spread) = Spread::of((0..4000).map(|_| 5.0 + 2.0 * deviates.draw())) else { panic!() };
-        let within = |value: f64, error: f64, exact: f64| (value - exact).abs() < 4.0 * error;
-        assert!(within(spread.mean, spread.mean_error, 5.0), "{spread:?}");
-        assert!(within(spread.deviation, spread.deviation_error, 2.0), "{spread:?}");
-        assert!(within(spread.low, spread.low_error, 5.0 - 2.0 * 1.959_964), "{spread:?}");
-        assert!(within(spread.high, spread.high_error, 5.0 + 2.0 * 1.959_964), "{spread:?}");
-        assert!(spread.low_error > 0.02 && spread.low_error < 0.2, "{spread:?}");
-        assert_eq!(Spread::of((0..39).map(f64::from)), None);
     }
 
     /// Smoothing leaves a part of the noise: far less than σ, and without it the profile itself.

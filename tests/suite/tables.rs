@@ -1,0 +1,168 @@
+//! Contact tables against direct searches: no error above the stated one, and the same bits on any number of threads.
+
+use std::path::Path;
+
+use rayon::ThreadPoolBuilder;
+use wheelrail::case::{Case, Place, table};
+use wheelrail::export::table_wrp;
+use wheelrail::load::{curvatures_at, quadratic_form_at};
+use wheelrail::scene;
+use wheelrail::search::SideTouch;
+use wheelrail::table::{ContactTable, Quantity};
+use wheelrail::{Position, Result, Selection};
+
+/// Vertical load on each wheel \[N\].
+const LOAD: f64 = 60e3;
+
+/// Range of the displacements \[mm\]: from flange to flange.
+const RANGE: [f64; 2] = [-9.0, 9.0];
+
+const DRAWN: &str =
+    "rail = { profile = \"60E1\", rotate = \"1:40\" }\nwheel = { profile = \"S1002\", radius = 460.0 }\n";
+
+const MEASURED: &str = "rail = { file = \"../profiles/60E1.ban\", mirror = true, rotate = \"1:40\" }\n\
+                        wheel = { file = \"../profiles/S1002.prw\", radius = 460.0 }\n";
+
+/// One side measured, its wheel smaller, and the other rail off its place.
+const SIDES: &str = "[left.rail]\nfile = \"../profiles/60E1.ban\"\nmirror = true\nrotate = \"1:40\"\n\
+                     [left.wheel]\nfile = \"../profiles/S1002.prw\"\nradius = 459.0\n\
+                     [right.deviation]\nlateral = 1.5\nvertical = -0.5\nroll = 0.01\n";
+
+/// Random displacements of each table. The environment variable `WHEELRAIL_TABLE_POINTS` takes another number.
+fn points() -> usize {
+    std::env::var("WHEELRAIL_TABLE_POINTS").ok().and_then(|n| n.parse().ok()).unwrap_or(2000)
+}
+
+/// Random displacements over the range, by Knuth's generator.
+fn random() -> Vec<f64> {
+    let mut state = 36_u64;
+    let mut next = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    (0..points()).map(|_| RANGE[0] + (RANGE[1] - RANGE[0]) * next()).collect()
+}
+
+fn case(profiles: &str, more: &str, sides: &str) -> Result<Case> {
+    let text = format!(
+        "{profiles}track = {{ gauge = 1435.0 }}\npatch = {{ load = {LOAD:?} }}\n\
+         wheelset = {{ back_to_back = 1360.0, flange_back_x = -70.0{more} }}\n{sides}"
+    );
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/scenes"));
+    scene::resolve(&scene::parse(&text, false)?, folder, "table")
+}
+
+/// What a search has found of one quantity.
+fn found(quantity: &Quantity, roll: f64, sides: &[SideTouch<'_>; 2], modulus: f64) -> f64 {
+    let Some(right) = quantity.right else { return roll };
+    let side = &sides[usize::from(right)];
+    let contact = &side.touch.contacts[0];
+    let curvatures = curvatures_at(contact);
+    let form = quadratic_form_at(contact).map(|c| if contact.kink() { f64::NAN } else { c });
+    let ellipse = curvatures.under_load(LOAD / contact.contact_angle.cos(), modulus);
+    let of_ellipse = |value: fn([f64; 2], [f64; 2]) -> f64| {
+        ellipse.filter(|_| !contact.kink()).map_or(f64::NAN, |ellipse| {
+            value(curvatures.along(&ellipse), [ellipse.approach_mm, ellipse.pressure_n_per_mm2])
+        })
+    };
+    match quantity.name {
+        "z_mm" => side.z,
+        "rail_x_mm" => contact.rail_x,
+        "wheel_x_mm" => contact.wheel_x,
+        "y_mm" => contact.y,
+        "contact_angle_rad" => contact.contact_angle,
+        "rolling_radius_mm" => contact.rolling_radius,
+        "skew_rad" => contact.skew,
+        "a_xi_per_mm" => form[0],
+        "c_xi_eta_per_mm" => form[1],
+        "b_eta_per_mm" => form[2],
+        "hertz_xi_mm" => of_ellipse(|axes, _| axes[0]),
+        "hertz_eta_mm" => of_ellipse(|axes, _| axes[1]),
+        "hertz_approach_mm" => of_ellipse(|_, pressed| pressed[0]),
+        "hertz_p_n_per_mm2" => of_ellipse(|_, pressed| pressed[1]),
+        other => panic!("an unknown quantity {other}"),
+    }
+}
+
+/// Compares a table with direct searches, each from an upright wheelset.
+fn compare(name: &str, case: &Case, table: &ContactTable) -> Result<()> {
+    let Place::Wheelset { system, position } = &case.standing().place else { panic!("{name}: no wheelset") };
+    let (mut search, quantities) = (system.search(), table.quantities());
+    let mut values = vec![0.0; quantities.len()];
+    let mut shares = vec![0.0_f64; quantities.len()];
+    let mut exist = 0;
+    for lateral in random() {
+        table.fill(lateral, &mut values);
+        let at = Position { lateral, ..*position };
+        let touch = search.touch(&at, &Selection { within: 0.0, apart: 0.0 })?;
+        let touch = touch.unwrap_or_else(|| panic!("{name}: no contact at {lateral} mm"));
+        for (q, quantity) in quantities.iter().enumerate() {
+            let direct = found(quantity, touch.roll, &touch.sides, case.question().modulus());
+            assert_eq!(values[q].is_nan(), direct.is_nan(), "{name}: {quantity:?} at {lateral} mm: {direct}");
+            if direct.is_nan() {
+                continue;
+            }
+            exist += 1;
+            let share = (values[q] - direct).abs() / quantity.error;
+            assert!(share <= 1.0, "{name}: {quantity:?} at {lateral} mm: {} for {direct}", values[q]);
+            shares[q] = shares[q].max(share);
+        }
+    }
+    let worst = shares.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).unwrap_or((0, &0.0));
+    println!(
+        "{name}: {} cells, {} points; at worst {:.2} of the stated error, of {} {}",
+        table.cells().len(),
+        points(),
+        worst.1,
+        quantities[worst.0].name,
+        quantities[worst.0].side()
+    );
+    assert!(2 * exist > points() * quantities.len(), "{name}: {exist} values");
+    Ok(())
+}
+
+#[test]
+fn tables_err_by_no_more_than_they_state() -> Result<()> {
+    let cases = [
+        ("drawn", case(DRAWN, "", "")?),
+        ("drawn, yawed", case(DRAWN, ", yaw = 0.01", "")?),
+        ("drawn, without roll", case(DRAWN, ", roll = \"neglect\"", "")?),
+        ("measured", case(MEASURED, "", "")?),
+        ("measured, yawed", case(MEASURED, ", yaw = -0.004", "")?),
+        ("unlike sides", case(DRAWN, "", SIDES)?),
+    ];
+    for (name, case) in &cases {
+        let made = table(case, RANGE, 1e-3, true)?;
+        let over = made.quantities().iter().find(|quantity| quantity.error > quantity.tolerance);
+        assert!(over.is_none(), "{name}: {over:?}");
+        compare(name, case, &made)?;
+    }
+    Ok(())
+}
+
+#[test]
+fn any_number_of_threads_makes_and_reads_the_same_table() -> Result<()> {
+    let case = case(DRAWN, ", yaw = 0.002", "")?;
+    let lateral = random();
+    let on = |threads: usize| -> Result<(String, Vec<u64>)> {
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let made = table(&case, RANGE, 1e-3, true)?;
+            let numbers: Vec<usize> = (0..made.quantities().len()).rev().collect();
+            let mut all = vec![0.0; numbers.len() * lateral.len()];
+            made.fill_many(&lateral, &numbers, &mut all);
+            let mut row = vec![0.0; numbers.len()];
+            for (k, y) in lateral.iter().enumerate() {
+                made.fill(*y, &mut row);
+                let column = |(place, &number): (usize, &usize)| {
+                    all[place * lateral.len() + k].to_bits() == row[number].to_bits()
+                };
+                assert!(numbers.iter().enumerate().all(column), "{y}");
+            }
+            Ok((table_wrp(&made, "threads"), all.iter().map(|value| value.to_bits()).collect()))
+        })
+    };
+    let one = on(1)?;
+    assert!(on(2)? == one && on(5)? == one);
+    Ok(())
+}
