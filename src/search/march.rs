@@ -298,7 +298,7 @@ impl<'a> Way<'a> {
     /// Says what happens to a side from one stop to the next; `None` if it rolls on.
     fn change(&self, before: &Stop, after: &Stop, side: TrackSide) -> Option<Event> {
         let [was, is] = [before, after].map(|stop| stop.of(side).next().copied());
-        let [had, has] = [before, after].map(|stop| stop.of(side).nth(1).map(|contact| contact.gap));
+        let [had, has] = [before, after].map(|stop| self.second(stop, side).map(|contact| contact.gap));
         let kind = match (was, is) {
             (Some(was), Some(is)) if far(&was, &is) => EventKind::Transfer,
             (Some(_), None) => EventKind::Ends,
@@ -310,12 +310,18 @@ impl<'a> Way<'a> {
         Some(self.event(kind, side, after.along, [was, is], has.or(had)))
     }
 
+    /// Gives the place second to the lowest. Without a reach of near misses there is none: where two places touch at once the wheel goes
+    /// over from one to the other.
+    fn second(&self, stop: &Stop, side: TrackSide) -> Option<Contact> {
+        let reach = self.march.selection.within > 0.0;
+        stop.of(side).nth(1).filter(|_| reach).copied()
+    }
+
     /// Finds the least clearances of second places that end in a block; `open` is the one that has not ended yet.
     fn clearances(&self, stops: &[Stop], side: TrackSide, open: &mut Option<Event>) -> Vec<Event> {
         let mut ended = Vec::new();
         for stop in stops {
-            let mut contacts = stop.of(side);
-            let (lowest, second) = (contacts.next().copied(), contacts.next().copied());
+            let (lowest, second) = (stop.of(side).next().copied(), self.second(stop, side));
             let gap = second.map(|second| second.gap);
             match gap {
                 None => ended.extend(open.take()),

@@ -84,7 +84,9 @@ fn a_march_around_has_a_row_for_each_pitch_and_its_picture() {
         output.unwrap()
     };
     let output = run(&["--angle", "-0.1:0.1:0.001", "--events", "events.csv", "--picture", "march.svg"]);
-    assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
+    // A slow machine sees progress.
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success() && said.lines().all(|line| line.starts_with("march: ")), "{said}");
     let table = String::from_utf8(output.stdout).unwrap();
     assert!(table.starts_with("angle_rad,lateral_mm,yaw_rad,roll_rad,side,contact,z_mm,"), "{table}");
     let rows: Vec<Vec<&str>> = table.lines().skip(1).map(|row| row.split(',').collect()).collect();
