@@ -9,9 +9,24 @@ use crate::error::Result;
 use crate::export::CurvesPicture;
 use crate::search::{Contact, Event, Stop};
 
+/// What a march goes along: the column of its places, and the axis of its picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MarchCourse {
+    /// Name of the column.
+    pub column: &'static str,
+    /// Name and unit of the axis.
+    pub axis: &'static str,
+}
+
+/// Along the track.
+pub const ALONG: MarchCourse = MarchCourse { column: "along_mm", axis: "along the track [mm]" };
+
+/// Around the axle.
+pub const AROUND: MarchCourse = MarchCourse { column: "angle_rad", axis: "pitch of the wheelset [rad]" };
+
 /// First line of the table of stops: the columns of a sweep between the place and the pitch of the common tangent plane.
-pub fn march_head() -> String {
-    format!("along_mm,{},contact_pitch_rad\n", Columns::csv_head().trim_end())
+pub fn march_head(course: MarchCourse) -> String {
+    format!("{},{},contact_pitch_rad\n", course.column, Columns::csv_head().trim_end())
 }
 
 /// Appends the rows of a stop to the text of the table. `columns` is a buffer.
@@ -47,14 +62,14 @@ pub fn event_numbers(event: &Event) -> [f64; EVENT_NUMBERS.len()] {
         [event.before, event.after].map(|contact| contact.as_ref().map_or(f64::NAN, of))
     };
     let [rail, wheel, y] = [both(|c| c.rail_x), both(|c| c.wheel_x), both(|c| c.y)];
-    let slope = both(Contact::slope_along);
+    let slope = event.slopes;
     let (jump, impact, gap) = (event.radius_jump(), event.impact_angle(), event.gap.unwrap_or(f64::NAN));
     [rail[0], rail[1], wheel[0], wheel[1], y[0], y[1], jump, slope[0], slope[1], impact, gap]
 }
 
 /// First line of the table of events.
-pub fn events_head() -> String {
-    format!("along_mm,side,event,{}\n", EVENT_NUMBERS.join(","))
+pub fn events_head(course: MarchCourse) -> String {
+    format!("{},side,event,{}\n", course.column, EVENT_NUMBERS.join(","))
 }
 
 /// Appends the row of an event to the text of the table; cells without a number are empty.
@@ -77,10 +92,14 @@ const SHOWN: [(&str, &str, &str, f64); 6] = [
     ("Contact angle", "θ [°]", "contact_angle_rad", 180.0 / std::f64::consts::PI),
 ];
 
-/// Makes the picture of a march from its columns over the ascending places \[mm\] of all its stops.
+/// Makes the picture of a march from its columns over the ascending places of all its stops; `title` and `about` stand above it.
 ///
 /// # Errors
 /// Places that do not ascend.
-pub fn march_curves(columns: &Columns, along: &[f64], title: &str, about: &str) -> Result<CurvesPicture> {
-    over(columns, ("along the track [mm]", along), &SHOWN, (title, about))
+pub fn march_curves(
+    columns: &Columns,
+    (course, places): (MarchCourse, &[f64]),
+    [title, about]: [&str; 2],
+) -> Result<CurvesPicture> {
+    over(columns, (course.axis, places), &SHOWN, (title, about))
 }

@@ -70,7 +70,8 @@ pub use input::{
 pub use joined::joined_pair;
 pub use landmarks::{Landmarks, SideLandmarks};
 pub use march::{
-    EVENT_NUMBERS, append_event, append_stop, event_numbers, events_head, march_curves, march_head,
+    ALONG, AROUND, EVENT_NUMBERS, MarchCourse, append_event, append_stop, event_numbers, events_head,
+    march_curves, march_head,
 };
 pub use measure_view::measures_page;
 pub use places::{approach_under_load, contacts, find};

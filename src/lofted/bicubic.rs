@@ -25,15 +25,15 @@ pub(super) type Corner = [[f64; 2]; 4];
 
 /// The bicubic of one cell: its four corners, and the interval of y that it covers \[mm\].
 #[derive(Debug, Clone, Copy)]
-pub struct Bicubic<'a> {
+pub struct Bicubic {
     /// Corners by u, then by y.
-    pub(super) corners: [[&'a Corner; 2]; 2],
+    pub(super) corners: [[Corner; 2]; 2],
     /// Ends of the cell \[mm\].
     pub(super) y: [f64; 2],
 }
 
 /// Hermite's four cubics on \[0, 1\] and their first two derivatives: value and slope at 0, value and slope at 1.
-fn hermite(t: f64) -> [[f64; 4]; 3] {
+pub(super) fn hermite(t: f64) -> [[f64; 4]; 3] {
     let (t2, s) = (t * t, 1.0 - t);
     [
         [(1.0 + 2.0 * t) * s * s, t * s * s, t2 * (3.0 - 2.0 * t), -t2 * s],
@@ -42,7 +42,7 @@ fn hermite(t: f64) -> [[f64; 4]; 3] {
     ]
 }
 
-impl Bicubic<'_> {
+impl Bicubic {
     /// Returns the point at the share f of the cell across and at y \[mm\].
     pub fn point(&self, f: f64, y: f64) -> SurfacePoint {
         let step = self.y[1] - self.y[0];

@@ -90,6 +90,11 @@ impl Loft {
         Ok(Self { strips, warnings, reach: [slices[0].at, slices[slices.len() - 1].at] })
     }
 
+    /// Makes the surface of strips that cover a range of y \[mm\].
+    pub(super) fn of_strips(strips: Vec<Strip>, reach: [f64; 2]) -> Self {
+        Self { strips, warnings: Vec::new(), reach }
+    }
+
     /// Positions of the first and of the last slice \[mm\].
     pub fn reach(&self) -> [f64; 2] {
         self.reach

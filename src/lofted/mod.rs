@@ -1,5 +1,5 @@
-//! Surfaces that vary along the track: switches, crossings, check rails. A list of slices gives them, each a section at its own
-//! place.
+//! Surfaces that vary along the track: switches, crossings, check rails; and around an axle: wheels with flats, out of round. A list of
+//! slices gives them, each a section at its own place.
 //!
 //! # The surface between slices
 //!
@@ -10,12 +10,22 @@
 //!
 //! A part that a slice does not have begins or ends at its neighbour. Without features a slice is one part; where its length or its
 //! ends jump from one slice to the next, the list defines no surface between the two ([`Loft::warnings`]).
+//!
+//! # A profile that keeps its shape
+//!
+//! A wheel with a flat or a radius that varies has a closed form: its points are those of the profile's own segments, their heights those
+//! of a chord, a circle or a periodic spline. Bicubics beside it bound it, with what they are off.
 
+mod around;
 mod bicubic;
 mod build;
 mod joining;
+mod kept;
 mod strip;
+mod tree;
 
+pub(crate) use around::turned;
+pub use around::{Flat, LoftedWheel};
 pub use bicubic::{Bicubic, SurfacePoint};
 pub use build::{Loft, SPACING, Slice};
 pub use joining::Joining;

@@ -1,9 +1,12 @@
 //! Strips: one part of the slices, as far as it goes without interruption.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::bicubic::{Bicubic, Corner, SurfacePoint};
 use super::joining::Joining;
+use super::kept::{Curve, Kept, Stretch};
+use super::tree::{NONE, around, tree};
 
 /// A part of the surface without interruption: over u from 0 to [`Strip::cells`], and over y from its first slice to its last.
 #[derive(Debug, Clone)]
@@ -12,11 +15,16 @@ pub struct Strip {
     pub part: usize,
     at: Vec<f64>,
     cells: usize,
-    /// Corners of all cells, slice by slice.
-    corners: Vec<Corner>,
-    /// Bounds of x and z over the cells between two slices, as binary trees with the root at 1: the children of k are 2k and 2k + 1,
-    /// and the last half are the cells.
-    trees: Vec<Vec<[[f64; 2]; 2]>>,
+    surface: Surface,
+}
+
+/// What a strip's surface is made of.
+#[derive(Debug, Clone)]
+enum Surface {
+    /// Slices: the corners of all cells, slice by slice, and bounds of x and z over the cells between two slices: see [`tree`].
+    Joined { corners: Vec<Corner>, trees: Vec<Vec<[[f64; 2]; 2]>> },
+    /// A profile that keeps its shape.
+    Kept(Kept),
 }
 
 /// The cells of a strip between two neighbouring slices.
@@ -24,14 +32,6 @@ pub struct Strip {
 pub struct Interval<'a> {
     strip: &'a Strip,
     index: usize,
-}
-
-/// Bounds of nothing.
-const NONE: [[f64; 2]; 2] = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
-
-/// Smallest bounds around two.
-fn around(a: [[f64; 2]; 2], b: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
-    [0, 1].map(|axis| [a[axis][0].min(b[axis][0]), a[axis][1].max(b[axis][1])])
 }
 
 impl Strip {
@@ -58,9 +58,29 @@ impl Strip {
                 }
             }
         }
-        let mut strip = Self { part, at, cells: nodes - 1, corners, trees: Vec::new() };
-        strip.trees = strip.intervals().map(|interval| interval.tree()).collect();
-        strip
+        let cells = nodes - 1;
+        let of_interval = |k: usize| {
+            tree((0..cells).map(|cell| {
+                let control = joined(&corners, cells, &at, [k, cell]).control([0.0, 1.0], [at[k], at[k + 1]]);
+                control.iter().flatten().map(|[x, _, z]| [[*x; 2], [*z; 2]]).fold(NONE, around)
+            }))
+        };
+        let trees = (0..at.len() - 1).map(of_interval).collect();
+        Self { part, at, cells, surface: Surface::Joined { corners, trees } }
+    }
+
+    /// Takes a profile's part that keeps its shape over a stretch.
+    pub(super) fn kept(part: usize, curve: &Arc<Curve>, stretch: &Stretch) -> Self {
+        let kept = Kept { curve: Arc::clone(curve), stretch: stretch.clone() };
+        Self { part, at: stretch.at.clone(), cells: curve.cells(), surface: Surface::Kept(kept) }
+    }
+
+    /// How far its surface may be off the cells' bicubics \[mm\].
+    pub fn off(&self) -> f64 {
+        match &self.surface {
+            Surface::Joined { .. } => 0.0,
+            Surface::Kept(kept) => kept.off(),
+        }
     }
 
     /// Number of cells across.
@@ -92,7 +112,11 @@ impl Strip {
     /// Returns the point at (u, y \[mm\]); parameters beyond the strip continue its last cubics.
     pub fn point(&self, u: f64, y: f64) -> SurfacePoint {
         let cell = (u.max(0.0) as usize).min(self.cells - 1);
-        self.interval_at(y).cell(cell).point(u - cell as f64, y)
+        let (interval, f) = (self.interval_at(y), u - cell as f64);
+        match &self.surface {
+            Surface::Joined { .. } => interval.cell(cell).point(f, y),
+            Surface::Kept(kept) => kept.point(interval.index, cell, f, y),
+        }
     }
 }
 
@@ -107,42 +131,44 @@ impl<'a> Interval<'a> {
         [self.strip.at[self.index], self.strip.at[self.index + 1]]
     }
 
-    /// One of its cells.
-    pub fn cell(&self, cell: usize) -> Bicubic<'a> {
-        let nodes = self.strip.cells + 1;
-        let corner = |a: usize, b: usize| &self.strip.corners[(self.index + b) * nodes + cell + a];
-        Bicubic { corners: [[corner(0, 0), corner(0, 1)], [corner(1, 0), corner(1, 1)]], y: self.y() }
+    /// The bicubic of one of its cells, or beside it: see [`Strip::off`].
+    pub fn cell(&self, cell: usize) -> Bicubic {
+        let Strip { at, cells, surface, .. } = self.strip;
+        match surface {
+            Surface::Joined { corners, .. } => joined(corners, *cells, at, [self.index, cell]),
+            Surface::Kept(kept) => kept.cell(self.index, cell),
+        }
     }
 
-    /// Bounds of x and z \[mm\] over a node of its tree, whose root is 1.
+    /// Bounds of x and z \[mm\] over a node of its tree, whose root is 1: of the bicubics.
     pub fn bounds(&self, node: usize) -> [[f64; 2]; 2] {
-        self.strip.trees[self.index][node]
+        match &self.strip.surface {
+            Surface::Joined { trees, .. } => trees[self.index][node],
+            Surface::Kept(kept) => kept.bounds(self.index, node),
+        }
     }
 
     /// The one cell of a node of its tree; `None` of a node with two children.
     pub fn only_cell(&self, node: usize) -> Option<usize> {
-        node.checked_sub(self.strip.trees[self.index].len() / 2)
+        node.checked_sub(self.leaves())
     }
 
     /// The cells of a node of its tree.
     pub fn cells(&self, node: usize) -> Range<usize> {
-        let leaves = self.strip.trees[self.index].len() / 2;
+        let leaves = self.leaves();
         let below = leaves.ilog2() - node.ilog2();
         let first = (node << below) - leaves;
         first.min(self.strip.cells)..(first + (1 << below)).min(self.strip.cells)
     }
 
-    fn tree(&self) -> Vec<[[f64; 2]; 2]> {
-        let leaves = self.strip.cells.next_power_of_two();
-        let mut tree = vec![NONE; 2 * leaves];
-        for cell in 0..self.strip.cells {
-            let control = self.cell(cell).control([0.0, 1.0], self.y());
-            let points = control.iter().flatten().map(|[x, _, z]| [[*x; 2], [*z; 2]]);
-            tree[leaves + cell] = points.fold(NONE, around);
-        }
-        for node in (1..leaves).rev() {
-            tree[node] = around(tree[2 * node], tree[2 * node + 1]);
-        }
-        tree
+    fn leaves(&self) -> usize {
+        self.strip.cells.next_power_of_two()
     }
+}
+
+/// The bicubic of a cell of an interval between slices.
+fn joined(corners: &[Corner], cells: usize, at: &[f64], [interval, cell]: [usize; 2]) -> Bicubic {
+    let corner = |a: usize, b: usize| corners[(interval + b) * (cells + 1) + cell + a];
+    let corners = [0, 1].map(|a| [0, 1].map(|b| corner(a, b)));
+    Bicubic { corners, y: [at[interval], at[interval + 1]] }
 }

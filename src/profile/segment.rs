@@ -5,6 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::arc::Arc;
 use super::polynomial::Polynomial;
 use super::station::Station;
+use crate::numerics::polynomial::recentred;
+use crate::numerics::twice::Twice;
 
 /// The curve of one segment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -61,6 +63,27 @@ impl Segment {
         match &self.shape {
             Shape::Arc(arc) => [arc.curvature(); 2],
             Shape::Polynomial(polynomial) => polynomial.t.map(|t| polynomial.curvature(t)),
+        }
+    }
+
+    /// Returns the point at a share (0 to 1) of an arc's length or of a polynomial's range, and its first two derivatives by that share
+    /// \[mm\].
+    pub(crate) fn at_share(&self, share: f64) -> [[f64; 2]; 3] {
+        match &self.shape {
+            Shape::Arc(arc) => {
+                let (at, length) = (arc.station_at(share), arc.length());
+                let bend = length * length * arc.curvature();
+                [[at.x, at.z], [length * at.cos, length * at.sin], [-bend * at.sin, bend * at.cos]]
+            }
+            Shape::Polynomial(polynomial) => {
+                let [from, to] = polynomial.t;
+                let about = [&polynomial.x, &polynomial.z]
+                    .map(|c| recentred(c, Twice::from(from + share * (to - from))));
+                let term = |k: usize, scale: f64| {
+                    [0, 1].map(|axis: usize| about[axis].get(k).map_or(0.0, |&c| scale * f64::from(c)))
+                };
+                [term(0, 1.0), term(1, to - from), term(2, 2.0 * (to - from).powi(2))]
+            }
         }
     }
 

@@ -173,6 +173,9 @@ pub struct WheelsetData {
     /// a positive roll lowers the right-hand wheel.
     #[serde(default)]
     pub roll: RollData,
+    /// Pitch about the axle, rad: how far wheels that vary have turned, + forward at the bottom, so that what lies at −pitch is lowest.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub pitch: f64,
     /// Vertical load of the axle, N, instead of `[patch]`: both wheels sink by the same distance, and δ is an estimate.
     #[schemars(extend("exclusiveMinimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -181,6 +184,11 @@ pub struct WheelsetData {
     #[schemars(extend("minimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub within: Option<f64>,
+}
+
+// serde prescribes the reference to the value.
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// How the roll of a wheelset is found.

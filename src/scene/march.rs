@@ -1,4 +1,4 @@
-//! Makes the march of a scene: a wheelset on rails that vary along the track.
+//! Makes the march of a scene: a wheelset on rails that vary along the track, or with wheels that vary around their axle.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -9,20 +9,22 @@ use super::data::Scene;
 use super::doubts::doubts_of_keys;
 use super::profile_data::ProfileData;
 use super::profiles::{
-    Given, is_chain_file, profile_from_file, rail_of, reject_measured_keys, turned_and_shifted, wheel_of,
+    Given, Resolved, is_chain_file, profile_from_file, rail_of, reject_measured_keys, turned_and_shifted,
+    wheel_of, wheel_radius,
 };
 use super::standing::{position, rails, wheels, within};
 use crate::case::usual;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, finite};
 use crate::files::read_bytes;
-use crate::lofted::{Loft, Slice};
+use crate::lofted::{Flat, Loft, LoftedWheel, Slice};
 use crate::measured::{self, Measured, SliceList, listed_body};
 use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
-use crate::profile::{Profile, Side};
+use crate::profile::{Profile, Side, trace};
 use crate::search::{LoftedPair, March, ONE_CONTACT, Selection, SideOnTrack, WheelsetOnTrack};
 
-/// Resolves a scene into a march over its rails, at least one of which is a list of slices without `along`. Paths in the scene are
-/// relative to `folder`. Also returns what the lists leave undefined.
+/// Resolves a scene into a march along its rails, at least one of which is a list of slices without `along`, or around its wheels, at
+/// least one of which has a flat, is out of round or is a list of slices without `angle`. Paths in the scene are relative to `folder`.
+/// Also returns what the lists leave undefined.
 ///
 /// # Errors
 /// Anything that is wrong; the error names the key.
@@ -45,16 +47,21 @@ pub fn march(scene: &Scene, folder: &Path) -> Result<(March, Vec<String>)> {
         WheelsetOnTrack::of_sides(sides.side(false, &mut lists)?, right)
     };
     let [from, to] = lists.reach;
-    if from == f64::NEG_INFINITY {
-        let expected = "a rail that varies: a list .slcs of slices without `along`";
+    if from == f64::NEG_INFINITY && !system.turning() {
+        let expected = "a rail that varies: a list .slcs of slices without `along`; or such a wheel";
         return Err(Error::new("rail", "rails of one profile each", expected, "or take `wheelrail sweep`"));
+    }
+    let pitch = finite("wheelset: pitch", wheelset.pitch)?;
+    if pitch != 0.0 && !system.turning() {
+        let expected = "no pitch of wheels of one profile each";
+        return Err(Error::new("wheelset: pitch", format!("{pitch} rad"), expected, "remove it"));
     }
     if from >= to {
         let found = "rails whose lists have no place in common";
         return Err(Error::new("rail", found, "lists that overlap along the track", "correct the offsets"));
     }
     let selection = Selection { within, apart: ONE_CONTACT };
-    Ok((March { system, position, selection, reach: lists.reach }, lists.warnings))
+    Ok((March { system, position, selection, reach: lists.reach, pitch }, lists.warnings))
 }
 
 /// What both sides are made of.
@@ -66,7 +73,7 @@ struct Sides<'a> {
 }
 
 impl Sides<'_> {
-    /// Makes one side, whose rail is a list of slices or one profile.
+    /// Makes one side, whose rail or wheel varies, or neither.
     fn side(&self, right: bool, lists: &mut Lists) -> Result<SideOnTrack> {
         let Self { scene, folder, rails, wheels } = *self;
         let (name, own) = if right { ("right", &scene.right) } else { ("left", &scene.left) };
@@ -77,15 +84,8 @@ impl Sides<'_> {
             .map(|(body, own)| if own.is_some() { format!("{name}: {body}") } else { body.to_owned() });
         let (rail, given) = (rail.unwrap_or(&scene.rail), Given::new());
         let wheel = wheel.unwrap_or(&scene.wheel);
-        let (wheel, radius) = wheel_of(scene, wheel, &wheel_key, (folder, &given))?;
+        let (wheel, radius) = self.wheel(wheel, &wheel_key, lists)?;
         let axle = Wheelset::new(wheels, radius)?;
-        let findings = wheel.measured.iter().flat_map(|record| &record.warnings);
-        lists
-            .warnings
-            .extend(findings.map(|finding| format!("{wheel_key}: {}: {}", finding.place, finding.found)));
-        lists
-            .warnings
-            .extend(usual::radius(&format!("{wheel_key}: radius"), radius).map(|doubt| doubt.to_string()));
         let deviation = own.and_then(|side| side.deviation).unwrap_or_default();
         if deviation.roll != 0.0 {
             let place = format!("{name}: deviation: roll");
@@ -94,20 +94,99 @@ impl Sides<'_> {
         }
         let sign = if right { 1.0 } else { -1.0 };
         let moved = |track: Track| track.moved(sign * deviation.lateral, deviation.vertical);
-        let Some(list) = list_of(rail) else {
+        let Some(list) = list_of(rail, Side::Rail) else {
             let rail = rail_of(rail, &rail_key, (folder, &given))?.profile;
             let track = moved(Track::new(&rail, rails)?)?;
-            return SideOnTrack::new(&Pair::new(rail, wheel.profile, radius)?, track, axle);
+            return match wheel {
+                Wheel::Round(wheel) => {
+                    SideOnTrack::new(&Pair::new(rail, wheel.profile, radius)?, track, axle)
+                }
+                Wheel::Varying(wheel) => {
+                    Ok(SideOnTrack::lofted(Arc::new(LoftedPair::turning(&wheel, &rail)?), track, axle))
+                }
+            };
         };
         let RailDistance::Spacing(spacing) = rails else {
             let expected = "`spacing` of the profile origins: rails that vary have no one gauge point";
             return Err(Error::new("track", "a gauge", expected, "give spacing instead of gauge"));
+        };
+        let Wheel::Round(wheel) = wheel else {
+            let found = "a wheel that varies on a rail that varies";
+            let advice = "give the wheel one profile, or the rail a section by `along`";
+            return Err(Error::new(wheel_key, found, "one of the two", advice));
         };
         let loft = loft(rail, &folder.join(list)).map_err(|error| error.within(&rail_key))?;
         lists.take(&loft, &rail_key);
         let pair = LoftedPair::new(Arc::new(loft), &wheel.profile, radius)?;
         Ok(SideOnTrack::lofted(Arc::new(pair), moved(Track::between_origins(spacing)?)?, axle))
     }
+
+    /// Makes the wheel of one side, with its nominal rolling radius \[mm\].
+    fn wheel(&self, data: &ProfileData, key: &str, lists: &mut Lists) -> Result<(Wheel, f64)> {
+        let made = if let Some(list) = list_of(data, Side::Wheel) {
+            let radius = wheel_radius(self.scene, data, key)?;
+            let wheel = wheel_of_slices(data, &self.folder.join(list), radius);
+            (Wheel::Varying(wheel.map_err(|error| error.within(key))?), radius)
+        } else {
+            let plain = ProfileData { flat: None, radii: None, ..data.clone() };
+            let (wheel, radius) = wheel_of(self.scene, &plain, key, (self.folder, &Given::new()))?;
+            let findings = wheel.measured.iter().flat_map(|record| &record.warnings);
+            lists
+                .warnings
+                .extend(findings.map(|finding| format!("{key}: {}: {}", finding.place, finding.found)));
+            let turning = varying(data, &wheel.profile, radius).map_err(|error| error.within(key))?;
+            (turning.map_or_else(|| Wheel::Round(Box::new(wheel)), Wheel::Varying), radius)
+        };
+        if let Wheel::Varying(wheel) = &made.0 {
+            lists.warnings.extend(wheel.warnings().iter().map(|warning| format!("{key}: {warning}")));
+        }
+        lists
+            .warnings
+            .extend(usual::radius(&format!("{key}: radius"), made.1).map(|doubt| doubt.to_string()));
+        Ok(made)
+    }
+}
+
+/// A wheel: of one profile, or one that varies around its axle.
+enum Wheel {
+    Round(Box<Resolved>),
+    Varying(LoftedWheel),
+}
+
+/// Makes the wheel with the flat or the radii of these keys; `None` without either.
+fn varying(data: &ProfileData, profile: &Profile, radius: f64) -> Result<Option<LoftedWheel>> {
+    match (&data.flat, &data.radii) {
+        (None, None) => Ok(None),
+        (Some(flat), None) => {
+            let flat = Flat { length: flat.length, angle: flat.angle, edge_radius: flat.edge_radius };
+            LoftedWheel::with_flat(profile, radius, &flat).map(Some)
+        }
+        (None, Some(radii)) => LoftedWheel::out_of_round(profile, radius, radii).map(Some),
+        (Some(_), Some(_)) => {
+            let advice = "keep one, or give the flat as `radii`";
+            Err(Error::new("", "`flat` and `radii`", "one of the two", advice))
+        }
+    }
+}
+
+/// Reads the slices of a list around a wheel, and joins them.
+fn wheel_of_slices(data: &ProfileData, path: &Path, radius: f64) -> Result<LoftedWheel> {
+    if data.flat.is_some() || data.radii.is_some() {
+        let expected = "neither beside a list .slcw without `angle`, which has them in its slices";
+        return Err(Error::new("", "`flat` or `radii`", expected, "remove them, or give `angle`"));
+    }
+    let (mut slices, doubts) = slices(data, path, Side::Wheel)?;
+    for slice in &mut slices {
+        // They count from the field side.
+        let curve = || trace(&slice.profile, 0.05).last().map_or(0.0, |mark| mark.s);
+        let length = slice.measured_along.unwrap_or_else(curve);
+        let from_left = |s: &f64| if *s < 0.0 { *s } else { (length - s).max(0.0) };
+        slice.features = slice.features.iter().rev().map(from_left).collect();
+    }
+    let place = path.display().to_string();
+    LoftedWheel::new(&slices, radius, data.surface.unwrap_or_default())
+        .map(|wheel| wheel.with_warnings(doubts))
+        .map_err(|error| error.within(place))
 }
 
 /// What the lists of both sides say.
@@ -124,10 +203,10 @@ impl Lists {
     }
 }
 
-/// Returns the list of slices of a rail that varies; `None` for one profile, or a section of a list.
-fn list_of(data: &ProfileData) -> Option<&PathBuf> {
-    let listed = |file: &&PathBuf| listed_body(&file.display().to_string()) == Some(Side::Rail);
-    data.file.as_ref().filter(listed).filter(|_| data.along.is_none())
+/// Returns the list of slices of a body that varies; `None` for one profile, or a section of a list.
+fn list_of(data: &ProfileData, side: Side) -> Option<&PathBuf> {
+    let listed = |file: &&PathBuf| listed_body(&file.display().to_string()) == Some(side);
+    data.file.as_ref().filter(listed).filter(|_| data.along.is_none() && data.angle.is_none())
 }
 
 /// Reads the slices of a list, which are relative to it, and joins them as a rail's keys say.
@@ -135,12 +214,21 @@ fn list_of(data: &ProfileData) -> Option<&PathBuf> {
 /// # Errors
 /// An unreadable file; whatever is wrong with the list, a slice, or the surface.
 pub fn loft(data: &ProfileData, path: &Path) -> Result<Loft> {
+    let (slices, doubts) = slices(data, path, Side::Rail)?;
+    let mut loft =
+        Loft::new(&slices, data.surface.unwrap_or_default()).map_err(|error| error.within(path.display()))?;
+    loft.warnings.extend(doubts);
+    Ok(loft)
+}
+
+/// Reads the slices of a list of this body, and what is doubtful in it.
+fn slices(data: &ProfileData, path: &Path, side: Side) -> Result<(Vec<Slice>, Vec<String>)> {
     let place = path.display().to_string();
     let bytes = read_bytes(path, measured::LARGEST_FILE)?;
-    let list = SliceList::read(&bytes, Side::Rail).map_err(|error| error.within(&place))?;
+    let list = SliceList::read(&bytes, side).map_err(|error| error.within(&place))?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let curves = list.slices.par_iter().map(|slice| {
-        let curve = Curve::read(data, &folder.join(&slice.file))?;
+        let curve = Curve::read(data, &folder.join(&slice.file), side)?;
         Ok(Curve { profile: turned_and_shifted(data, curve.profile)?, ..curve })
     });
     let curves = curves.collect::<Result<Vec<_>>>().map_err(|error| error.within(&place))?;
@@ -151,38 +239,28 @@ pub fn loft(data: &ProfileData, path: &Path) -> Result<Loft> {
         let error = Error::new("mirror", found, "slices turned alike", "give `mirror`, `flip_z` and `unit`");
         return Err(error.within(&place));
     }
-    let doubts: Vec<Option<String>> = curves.iter().map(|curve| curve.doubt.clone()).collect();
-    let slices: Vec<Slice> = list
+    let doubtful: Vec<String> = list
         .slices
-        .into_iter()
-        .zip(curves)
-        .map(|(slice, curve)| Slice {
-            at: slice.at,
-            name: slice.file,
-            profile: curve.profile,
-            features: slice.features,
-            measured_along: curve.polygon,
-        })
-        .collect();
-    let mut loft =
-        Loft::new(&slices, data.surface.unwrap_or_default()).map_err(|error| error.within(&place))?;
-    let doubtful: Vec<String> = slices
         .iter()
-        .zip(doubts)
-        .filter_map(|(slice, doubt)| Some(format!("{}: {}", slice.name, doubt?)))
+        .zip(&curves)
+        .filter_map(|(slice, curve)| Some(format!("{}: {}", slice.file, curve.doubt.as_ref()?)))
         .collect();
+    let mut doubts = Vec::new();
     if let Some(first) = doubtful.first() {
-        loft.warnings.push(format!(
-            "{} of {} slices have doubtful points, the first {first}",
-            doubtful.len(),
-            slices.len()
-        ));
+        let (some, all) = (doubtful.len(), list.slices.len());
+        doubts.push(format!("{some} of {all} slices have doubtful points, the first {first}"));
     }
     if list.approximated {
-        loft.warnings
-            .push("the list asks for an approximating spline; the surface goes through its slices".into());
+        doubts.push("the list asks for an approximating spline; the surface goes through its slices".into());
     }
-    Ok(loft)
+    let joined = list.slices.into_iter().zip(curves).map(|(slice, curve)| Slice {
+        at: slice.at,
+        name: slice.file,
+        profile: curve.profile,
+        features: slice.features,
+        measured_along: curve.polygon,
+    });
+    Ok((joined.collect(), doubts))
 }
 
 /// The curve of a slice.
@@ -197,7 +275,7 @@ struct Curve {
 }
 
 impl Curve {
-    fn read(data: &ProfileData, path: &Path) -> Result<Self> {
+    fn read(data: &ProfileData, path: &Path, side: Side) -> Result<Self> {
         if data.format.is_none() && is_chain_file(path) {
             reject_measured_keys(data)?;
             let drawn = profile_from_file(path)?;
@@ -208,7 +286,7 @@ impl Curve {
         let bytes = read_bytes(path, measured::LARGEST_FILE)?;
         let options = data.measured();
         let Measured { profile, points, record } =
-            measured::profile(&path.display().to_string(), &bytes, Side::Rail, &options)?;
+            measured::profile(&path.display().to_string(), &bytes, side, &options)?;
         let steps = points.windows(2).map(|pair| (pair[1].x - pair[0].x).hypot(pair[1].z - pair[0].z));
         let doubt = record.warnings.first().map(|finding| format!("{}: {}", finding.place, finding.found));
         Ok(Self { profile, polygon: Some(steps.sum()), scale: record.transform.scale, doubt })

@@ -24,7 +24,7 @@ pub use data::{
 pub use doubts::doubts_of_keys;
 pub use march::{loft, march};
 pub use motion_data::{FrictionData, MotionData, PitchData, PitchWord};
-pub use profile_data::{ProfileData, Rotation};
+pub use profile_data::{FlatData, ProfileData, Rotation};
 pub use profiles::{
     Given, ProfileSource, is_chain_file, near, pair_of, profile_from_file, profile_from_text, profile_of,
     read_profile, section_from_files,

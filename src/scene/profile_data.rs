@@ -40,9 +40,17 @@ measured_options! {
         /// Shift [x, z], mm, after the turn.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub shift: Option<[f64; 2]>,
-        /// Of an `.slcs` file without `along`: how its slices are joined along the track, "monotone" (without overshoot) or "cubic".
+        /// Of an `.slcs` file without `along` or an `.slcw` file without `angle`: how slices are joined along the track or around the
+        /// wheel, "monotone" (without overshoot) or "cubic".
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub surface: Option<Joining>,
+        /// A flat on a wheel of one profile, for `wheelrail march`.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub flat: Option<FlatData>,
+        /// Rows [angle around the wheel in rad, deviation from its radius in mm] of a wheel of one profile that is out of round, for
+        /// `wheelrail march`: ascending angles, less than a turn, joined by a periodic cubic spline.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub radii: Option<Vec<[f64; 2]>>,
     }
 }
 
@@ -53,6 +61,22 @@ impl ProfileData {
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
+}
+
+/// A flat: a chord of the wheel's circumference. The profile keeps its shape across it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FlatData {
+    /// Length L of the chord, mm; the flat is R − √(R² − L²/4) deep.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub length: f64,
+    /// Where its middle lies around the wheel, rad.
+    #[serde(default)]
+    pub angle: f64,
+    /// Radius of its edges, mm; 0 for a fresh flat.
+    #[schemars(extend("minimum" = 0))]
+    #[serde(default)]
+    pub edge_radius: f64,
 }
 
 /// An angle, in radians or as an inclination.

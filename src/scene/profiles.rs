@@ -132,10 +132,15 @@ pub(super) fn wheel_of(
     sources: Sources<'_>,
 ) -> Result<(Resolved, f64)> {
     let wheel = profile(data, sources, Side::Wheel).map_err(|e| e.within(place))?;
+    Ok((wheel, wheel_radius(scene, data, place)?))
+}
+
+/// Gives the nominal rolling radius of a wheel \[mm\].
+pub(super) fn wheel_radius(scene: &Scene, data: &ProfileData, place: &str) -> Result<f64> {
     let radius = data.radius.or(scene.wheel.radius);
     let radius = radius
         .ok_or_else(|| Error::new(place, "no `radius`", "the nominal rolling radius in mm", "add it"))?;
-    Ok((wheel, near(place, radius)?))
+    near(place, radius)
 }
 
 /// Returns the radius of a body \[mm\] if its square is far from overflowing.
@@ -168,10 +173,7 @@ fn profile(data: &ProfileData, (folder, given_ones): Sources<'_>, side: Side) ->
             return Err(Error::new("", found, expected, "give one source"));
         }
     };
-    if data.surface.is_some() {
-        let expected = "`surface` for a list .slcs without `along`, which `wheelrail march` goes along";
-        return Err(Error::new("surface", "an option without effect", expected, "remove it"));
-    }
+    reject_varying_keys(data)?;
     if let (Some([x, z]), None) = (data.start, &data.segments) {
         let expected = "`start` only with `segments`";
         return Err(Error::new("start", format!("[{x}, {z}]"), expected, "remove it"));
@@ -183,6 +185,21 @@ fn profile(data: &ProfileData, (folder, given_ones): Sources<'_>, side: Side) ->
         }
     }
     Ok(Resolved { profile: turned_and_shifted(data, profile)?, measured })
+}
+
+/// Refuses keys of bodies that vary for one that does not.
+fn reject_varying_keys(data: &ProfileData) -> Result<()> {
+    let lists = "`surface` for a list .slcs without `along`, or one .slcw without `angle`, which `wheelrail march` takes";
+    let wheels = "a wheel that varies around its axle for `wheelrail march` only";
+    let keys = [
+        ("surface", data.surface.is_some(), lists),
+        ("flat", data.flat.is_some(), wheels),
+        ("radii", data.radii.is_some(), wheels),
+    ];
+    match keys.into_iter().find(|(_, given, _)| *given) {
+        Some((key, _, expected)) => Err(Error::new(key, "an option without effect", expected, "remove it")),
+        None => Ok(()),
+    }
 }
 
 /// Turns a profile by `rotate`, then shifts it by `shift`.

@@ -54,6 +54,11 @@ fn on_track(
     wheelset: &WheelsetData,
     profiles: &mut Profiles,
 ) -> Result<Standing> {
+    if wheelset.pitch != 0.0 {
+        let found = format!("{} rad", wheelset.pitch);
+        let expected = "a pitch of wheels that vary, for `wheelrail march` only";
+        return Err(Error::new("wheelset: pitch", found, expected, "remove it"));
+    }
     let position = position(wheelset)?;
     let (rails, wheels, within) = (rails(track)?, wheels(wheelset)?, within(wheelset.within)?);
     let deviation = |side: &Option<SideData>| side.as_ref().and_then(|side| side.deviation);

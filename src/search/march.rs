@@ -1,4 +1,4 @@
-//! Marches: a wheelset goes along rails that vary, and touches at every place.
+//! Marches: a wheelset goes along rails that vary, or turns with wheels that vary, and touches at every place.
 
 use rayon::prelude::*;
 
@@ -14,23 +14,34 @@ const BLOCK: usize = 1024;
 /// Distance along the track \[mm\] to which the place of an event is refined.
 const REFINED: f64 = 0.01;
 
-/// A wheelset that goes along its track at one lateral position and yaw.
+/// A wheelset that goes along its track, or turns about its axle, at one lateral position and yaw.
 #[derive(Debug, Clone)]
 pub struct March {
-    /// The wheelset on its track; at least one of its rails varies.
+    /// The wheelset on its track; at least one of its rails or wheels varies.
     pub system: WheelsetOnTrack,
     /// Its position across the track.
     pub position: Position,
     /// Which places of contact are reported.
     pub selection: Selection,
-    /// Where all rails that vary have slices \[mm\].
+    /// Where all rails that vary have slices \[mm\]; without end where none varies.
     pub reach: [f64; 2],
+    /// Pitch at which it goes along the track \[rad\]: see [`super::WheelsetSearch::stand_at`].
+    pub pitch: f64,
 }
 
-/// First touch with the middle of the axle at one place.
+/// What a march goes along.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Course {
+    /// The track \[mm\].
+    Track,
+    /// The pitch of the wheelset \[rad\].
+    Pitch,
+}
+
+/// First touch with the middle of the axle at one place, or at one pitch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stop {
-    /// The place along the track \[mm\].
+    /// The place along the track \[mm\], or the pitch \[rad\].
     pub along: f64,
     /// Contacts of both sides, the left one first; none where a wheel has no rail.
     pub rows: Vec<SweepRow>,
@@ -60,7 +71,8 @@ pub struct Event {
     pub kind: EventKind,
     /// To which wheel.
     pub side: TrackSide,
-    /// Where \[mm\], refined to 0.01 mm; least clearances to the step of the march.
+    /// Where \[mm\], or at which pitch \[rad\], refined to 0.01 mm on the track or around the wheel; least clearances to the step of the
+    /// march.
     pub along: f64,
     /// The lowest contact before; `None` where there is none.
     pub before: Option<Contact>,
@@ -68,6 +80,9 @@ pub struct Event {
     pub after: Option<Contact>,
     /// Vertical gap of the second place \[mm\], where one is within reach.
     pub gap: Option<f64>,
+    /// Slope of the axle's path before and after: mm up per mm along the track, or per mm that the wheel turns on its circumference; NaN
+    /// without a contact.
+    pub slopes: [f64; 2],
 }
 
 impl EventKind {
@@ -90,10 +105,10 @@ impl Event {
         self.both(|contact| contact.rolling_radius)
     }
 
-    /// Change of the angle of the wheel's path \[rad\], − where it turns down and the wheel strikes; NaN without a contact before and
+    /// Change of the angle of the wheel's path \[rad\], + where it turns up and the wheel strikes; NaN without a contact before and
     /// after.
     pub fn impact_angle(&self) -> f64 {
-        self.both(|contact| contact.slope_along().atan())
+        self.slopes[1].atan() - self.slopes[0].atan()
     }
 
     fn both(&self, of: fn(&Contact) -> f64) -> f64 {
@@ -115,19 +130,11 @@ fn far(a: &Contact, b: &Contact) -> bool {
     [a.rail_x - b.rail_x, a.wheel_x - b.wheel_x, a.y - b.y].iter().any(|apart| apart.abs() > ONE_CONTACT)
 }
 
-/// Says what happens to a side from one stop to the next; `None` if it rolls on.
-fn change(before: &Stop, after: &Stop, side: TrackSide) -> Option<Event> {
-    let [was, is] = [before, after].map(|stop| stop.of(side).next().copied());
-    let [had, has] = [before, after].map(|stop| stop.of(side).nth(1).map(|contact| contact.gap));
-    let kind = match (was, is) {
-        (Some(was), Some(is)) if far(&was, &is) => EventKind::Transfer,
-        (Some(_), None) => EventKind::Ends,
-        (None, Some(_)) => EventKind::Begins,
-        _ if had.is_none() && has.is_some() => EventKind::SecondBegins,
-        _ if had.is_some() && has.is_none() => EventKind::SecondEnds,
-        _ => return None,
-    };
-    Some(Event { kind, side, along: after.along, before: was, after: is, gap: has.or(had) })
+/// A march along one course.
+#[derive(Clone, Copy)]
+struct Way<'a> {
+    march: &'a March,
+    course: Course,
 }
 
 impl March {
@@ -138,22 +145,55 @@ impl March {
     /// ten more stops for an event.
     ///
     /// # Errors
-    /// Places that do not ascend, or where a rail has no slices; a position with values that are not finite, or angles beyond ±0.5 rad;
-    /// the errors of `sink`.
-    pub fn blocks(
-        &self,
-        along: &[f64],
-        mut sink: impl FnMut(&[Stop], &[Event]) -> Result<bool>,
-    ) -> Result<()> {
-        if let Some(pair) = along.windows(2).find(|pair| pair[0] >= pair[1]) {
-            let found = format!("{} mm after {} mm", pair[1], pair[0]);
-            return Err(Error::new("along", found, "ascending places", "sort them"));
+    /// Rails of one profile each; places that do not ascend, or where a rail has no slices; a position with values that are not finite,
+    /// or angles beyond ±0.5 rad; the errors of `sink`.
+    pub fn blocks(&self, along: &[f64], sink: impl FnMut(&[Stop], &[Event]) -> Result<bool>) -> Result<()> {
+        Way { march: self, course: Course::Track }.blocks(along, sink)
+    }
+
+    /// Hands the stops at ascending pitches \[rad\] to `sink` likewise: the wheelset turns about its axle, and the part of a wheel that
+    /// lies at −pitch is lowest. A whole turn later all is the same.
+    ///
+    /// # Errors
+    /// Wheels of one profile each, rails that vary; pitches that do not ascend; the other errors of [`Self::blocks`].
+    pub fn turns(&self, pitches: &[f64], sink: impl FnMut(&[Stop], &[Event]) -> Result<bool>) -> Result<()> {
+        Way { march: self, course: Course::Pitch }.blocks(pitches, sink)
+    }
+
+    /// Finds first touch at one place along the track \[mm\].
+    ///
+    /// # Errors
+    /// The errors of [`Self::blocks`].
+    pub fn at(&self, along: f64) -> Result<Stop> {
+        let way = Way { march: self, course: Course::Track };
+        way.goes()?;
+        way.stop(&mut way.begin(), along)
+    }
+
+    /// Finds first touch at one pitch \[rad\].
+    ///
+    /// # Errors
+    /// The errors of [`Self::turns`].
+    pub fn turned(&self, pitch: f64) -> Result<Stop> {
+        let way = Way { march: self, course: Course::Pitch };
+        way.goes()?;
+        way.stop(&mut way.begin(), pitch)
+    }
+}
+
+impl<'a> Way<'a> {
+    fn blocks(&self, places: &[f64], mut sink: impl FnMut(&[Stop], &[Event]) -> Result<bool>) -> Result<()> {
+        self.goes()?;
+        if let Some(pair) = places.windows(2).find(|pair| pair[0] >= pair[1]) {
+            let (name, unit) = self.course.name();
+            let found = format!("{} {unit} after {} {unit}", pair[1], pair[0]);
+            return Err(Error::new(name, found, "ascending places", "sort them"));
         }
         // The first place in order, whatever thread would come upon one first.
-        along.iter().try_for_each(|&at| self.reaches(at))?;
+        places.iter().try_for_each(|&at| self.reaches(at))?;
         let mut last: Option<Stop> = None;
         let mut clearance = [None; 2];
-        for block in along.chunks(BLOCK) {
+        for block in places.chunks(BLOCK) {
             let stops = block.par_iter().map_init(|| self.begin(), |sweep, &at| self.stop(sweep, at));
             let stops = stops.collect::<Result<Vec<_>>>()?;
             let before = last.iter().chain(&stops);
@@ -168,7 +208,7 @@ impl March {
             );
             let mut found: Vec<Event> = between.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect();
             for (k, side) in SIDES.into_iter().enumerate() {
-                found.extend(clearances(&stops, side, &mut clearance[k]));
+                found.extend(self.clearances(&stops, side, &mut clearance[k]));
             }
             found.sort_by(|a, b| a.along.total_cmp(&b.along));
             last = stops.last().cloned();
@@ -180,72 +220,154 @@ impl March {
         if open.is_empty() { Ok(()) } else { sink(&[], &open).map(drop) }
     }
 
-    fn begin(&self) -> Sweep<'_> {
-        Sweep::new(&self.system, self.selection, None)
-    }
-
-    /// Finds first touch at one place along the track \[mm\].
-    ///
-    /// # Errors
-    /// The errors of [`Self::blocks`].
-    pub fn at(&self, along: f64) -> Result<Stop> {
-        self.stop(&mut self.begin(), along)
+    fn begin(&self) -> Sweep<'a> {
+        Sweep::new(&self.march.system, self.march.selection, None)
     }
 
     fn stop(&self, sweep: &mut Sweep<'_>, along: f64) -> Result<Stop> {
         self.reaches(along)?;
         let mut rows = Vec::new();
-        sweep.stand_at(along);
-        sweep.position(&self.position, &mut rows)?;
+        match self.course {
+            Course::Track => sweep.stand_at(along, self.march.pitch),
+            Course::Pitch => sweep.stand_at(0.0, along),
+        }
+        sweep.position(&self.march.position, &mut rows)?;
         Ok(Stop { along, rows })
     }
 
-    /// Rejects a place \[mm\] where a rail has no slices.
-    fn reaches(&self, along: f64) -> Result<()> {
-        let [from, to] = self.reach;
-        if (from..=to).contains(&along) {
+    /// Rejects bodies that do not vary along the course.
+    fn goes(&self) -> Result<()> {
+        let along_rails = self.march.reach[0].is_finite();
+        match self.course {
+            Course::Track if !along_rails => {
+                let expected = "a rail that varies: a list .slcs of slices without `along`";
+                Err(Error::new("rail", "rails of one profile each", expected, "or march over angles"))
+            }
+            Course::Pitch if along_rails => {
+                let expected = "rails of one profile each, on which a wheelset turns";
+                Err(Error::new("rail", "rails that vary along the track", expected, "or march along them"))
+            }
+            Course::Pitch if !self.march.system.turning() => {
+                let expected =
+                    "a wheel that varies: `flat`, `radii`, or a list .slcw of slices without `angle`";
+                Err(Error::new("wheel", "wheels of one profile each", expected, "or march along the track"))
+            }
+            Course::Pitch if self.march.pitch != 0.0 => {
+                let found = format!("{} rad", self.march.pitch);
+                let expected = "no pitch of a march around the axle, which has its own";
+                Err(Error::new("wheelset: pitch", found, expected, "remove it"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Rejects a place \[mm\] where a rail has no slices, and a pitch that is no number.
+    fn reaches(&self, at: f64) -> Result<()> {
+        let [from, to] = self.march.reach;
+        if (from..=to).contains(&at) && at.is_finite() {
             return Ok(());
         }
-        let expected = format!("a place from {from} to {to} mm, where all slices are");
-        Err(Error::new("along", format!("{along} mm"), expected, "march where the lists reach"))
+        let (name, unit) = self.course.name();
+        let expected = match self.course {
+            Course::Track => format!("a place from {from} to {to} mm, where all slices are"),
+            Course::Pitch => "an angle".into(),
+        };
+        Err(Error::new(name, format!("{at} {unit}"), expected, "march where the lists reach"))
     }
 
     /// Appends the events between two stops, each refined by halving.
     fn between(&self, sweep: &mut Sweep<'_>, a: &Stop, b: &Stop, events: &mut Vec<Event>) -> Result<()> {
-        let changes = SIDES.map(|side| change(a, b, side));
+        let changes = SIDES.map(|side| self.change(a, b, side));
         if changes == [None; 2] {
             return Ok(());
         }
-        if b.along - a.along <= REFINED {
+        let refined = match self.course {
+            Course::Track => REFINED,
+            Course::Pitch => REFINED / self.march.system.reference_radius(),
+        };
+        let middle = 0.5 * (a.along + b.along);
+        if b.along - a.along <= refined || middle <= a.along || middle >= b.along {
             events.extend(changes.into_iter().flatten());
             return Ok(());
         }
-        let middle = self.stop(sweep, 0.5 * (a.along + b.along))?;
+        let middle = self.stop(sweep, middle)?;
         self.between(sweep, a, &middle, events)?;
         self.between(sweep, &middle, b, events)
     }
+
+    /// Says what happens to a side from one stop to the next; `None` if it rolls on.
+    fn change(&self, before: &Stop, after: &Stop, side: TrackSide) -> Option<Event> {
+        let [was, is] = [before, after].map(|stop| stop.of(side).next().copied());
+        let [had, has] = [before, after].map(|stop| self.second(stop, side).map(|contact| contact.gap));
+        let kind = match (was, is) {
+            (Some(was), Some(is)) if far(&was, &is) => EventKind::Transfer,
+            (Some(_), None) => EventKind::Ends,
+            (None, Some(_)) => EventKind::Begins,
+            _ if had.is_none() && has.is_some() => EventKind::SecondBegins,
+            _ if had.is_some() && has.is_none() => EventKind::SecondEnds,
+            _ => return None,
+        };
+        Some(self.event(kind, side, after.along, [was, is], has.or(had)))
+    }
+
+    /// Gives the place second to the lowest. Without a reach of near misses there is none: where two places touch at once the wheel goes
+    /// over from one to the other.
+    fn second(&self, stop: &Stop, side: TrackSide) -> Option<Contact> {
+        let reach = self.march.selection.within > 0.0;
+        stop.of(side).nth(1).filter(|_| reach).copied()
+    }
+
+    /// Finds the least clearances of second places that end in a block; `open` is the one that has not ended yet.
+    fn clearances(&self, stops: &[Stop], side: TrackSide, open: &mut Option<Event>) -> Vec<Event> {
+        let mut ended = Vec::new();
+        for stop in stops {
+            let (lowest, second) = (stop.of(side).next().copied(), self.second(stop, side));
+            let gap = second.map(|second| second.gap);
+            match gap {
+                None => ended.extend(open.take()),
+                Some(own) if open.is_none_or(|least| least.gap.is_none_or(|gap| own < gap)) => {
+                    let kind = EventKind::LeastClearance;
+                    *open = Some(self.event(kind, side, stop.along, [lowest, second], gap));
+                }
+                Some(_) => {}
+            }
+        }
+        ended
+    }
+
+    fn event(
+        &self,
+        kind: EventKind,
+        side: TrackSide,
+        along: f64,
+        [before, after]: [Option<Contact>; 2],
+        gap: Option<f64>,
+    ) -> Event {
+        let slope = |contact: Contact| match self.course {
+            Course::Track => contact.slope_along(),
+            Course::Pitch => {
+                let yaw = if side == TrackSide::Right { 1.0 } else { -1.0 } * self.march.position.yaw;
+                slope_of_turning(&contact, yaw)
+            }
+        };
+        let slopes = [before, after].map(|contact| contact.map_or(f64::NAN, slope));
+        Event { kind, side, along, before, after, gap, slopes }
+    }
 }
 
-/// Finds the least clearances of second places that end in a block; `open` is the one that has not ended yet.
-fn clearances(stops: &[Stop], side: TrackSide, open: &mut Option<Event>) -> Vec<Event> {
-    let mut ended = Vec::new();
-    for stop in stops {
-        let mut contacts = stop.of(side);
-        let (lowest, second) = (contacts.next().copied(), contacts.next());
-        match second {
-            None => ended.extend(open.take()),
-            Some(second) if open.is_none_or(|least| least.gap.is_none_or(|gap| second.gap < gap)) => {
-                *open = Some(Event {
-                    kind: EventKind::LeastClearance,
-                    side,
-                    along: stop.along,
-                    before: lowest,
-                    after: Some(*second),
-                    gap: Some(second.gap),
-                });
-            }
-            Some(_) => {}
+/// Slope of the axle's path as a wheel turns forward at the bottom by its circumference: what lies ahead of the place where a round wheel
+/// would touch comes up, and lets the axle down.
+fn slope_of_turning(contact: &Contact, yaw: f64) -> f64 {
+    let round = yaw.sin() * (contact.wheel_x - contact.rolling_radius * contact.wheel_angle.tan());
+    0.0 - (contact.y - round) / contact.rolling_radius
+}
+
+impl Course {
+    /// Name and unit of its places.
+    fn name(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Track => ("along", "mm"),
+            Self::Pitch => ("angle", "rad"),
         }
     }
-    ended
 }

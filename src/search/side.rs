@@ -30,7 +30,7 @@ impl SideOnTrack {
         Ok(Self { pair: SidePair::Swept(Arc::new(ProfilePair::new(pair)?)), track, wheelset })
     }
 
-    /// Takes a rail that varies along the track, with its wheel.
+    /// Takes a rail that varies along the track, or a wheel that varies around its axle, with the other body.
     pub fn lofted(pair: Arc<LoftedPair>, track: Track, wheelset: Wheelset) -> Self {
         Self { pair: SidePair::Lofted(pair), track, wheelset }
     }
@@ -51,7 +51,7 @@ impl SideOnTrack {
 pub(super) enum SidePair {
     /// A rail or a roller of one profile.
     Swept(Arc<ProfilePair>),
-    /// A rail that varies along the track.
+    /// A rail that varies along the track, or a wheel that varies around its axle.
     Lofted(Arc<LoftedPair>),
 }
 
@@ -70,6 +70,14 @@ impl SidePair {
         }
     }
 
+    /// Whether the wheel varies around its axle.
+    pub fn turning(&self) -> bool {
+        match self {
+            Self::Swept(_) => false,
+            Self::Lofted(pair) => pair.turning_wheel(),
+        }
+    }
+
     /// Radius of a roller \[mm\].
     pub fn roller(&self) -> Option<f64> {
         match self {
@@ -80,10 +88,11 @@ impl SidePair {
 }
 
 impl SideSearch<'_> {
-    /// Moves the axle's middle to a place along the track \[mm\]; of no meaning for a rail of one profile.
-    pub fn stand_at(&mut self, along: f64) {
+    /// Moves the axle's middle to a place along the track \[mm\] and turns the wheel about it \[rad\], + forward at the bottom; of no
+    /// meaning for bodies of one profile.
+    pub fn stand_at(&mut self, along: f64, pitch: f64) {
         if let Self::Lofted(search) = self {
-            search.along = along;
+            search.stand_at(along, pitch);
         }
     }
 

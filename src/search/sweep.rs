@@ -94,9 +94,9 @@ impl<'a> Sweep<'a> {
         Self { search: system.search(), selection, conicity }
     }
 
-    /// Moves the wheelset to a place along the track \[mm\]: see [`WheelsetSearch::stand_at`].
-    pub fn stand_at(&mut self, along: f64) {
-        self.search.stand_at(along);
+    /// Moves the wheelset to a place along the track \[mm\] and a pitch \[rad\]: see [`WheelsetSearch::stand_at`].
+    pub fn stand_at(&mut self, along: f64, pitch: f64) {
+        self.search.stand_at(along, pitch);
     }
 
     /// Appends the rows of one position to `rows`, left side first; none if the position has no contact.

@@ -61,6 +61,11 @@ impl WheelsetOnTrack {
         Self { sides: [left, right], symmetric: false }
     }
 
+    /// Returns whether a wheel varies around its axle.
+    pub fn turning(&self) -> bool {
+        self.sides.iter().any(|side| side.pair.turning())
+    }
+
     /// Returns whether the left side is the mirror image of the right one, so that Δr is odd.
     pub fn symmetric(&self) -> bool {
         self.symmetric
@@ -209,22 +214,21 @@ impl WheelsetOnTrack {
 }
 
 impl WheelsetSearch<'_> {
-    /// Moves the middle of the axle to a place along the track \[mm\], in the coordinate of the lists of slices; of no meaning for rails
-    /// of one profile.
-    pub fn stand_at(&mut self, along: f64) {
-        self.sides.iter_mut().for_each(|side| side.stand_at(along));
+    /// Moves the middle of the axle to a place along the track \[mm\], in the coordinate of the lists of slices, and turns the wheelset
+    /// about it by a pitch \[rad\], + forward at the bottom: −pitch of a wheel is lowest. Of no meaning for bodies of one profile.
+    pub fn stand_at(&mut self, along: f64, pitch: f64) {
+        self.sides.iter_mut().for_each(|side| side.stand_at(along, pitch));
     }
 
-    /// Lowers the wheelset until it touches; `None` if a side has no wheel over its rail, or if the roll is
-    /// to be solved and within ±0.1 rad there is none at which both wheels touch.
+    /// Lowers the wheelset until it touches; `None` if a side has no wheel over its rail, or if the roll is to be solved and within ±0.1 rad
+    /// there is none at which both wheels touch.
     ///
     /// The difference of the two sides' heights grows with the roll as long as contact is on treads and
     /// flanks flatter than about atan(D/R) ≈ 73°, D the distance of the contacts. Beyond that angle, turning
     /// about the axle moves a flange sideways faster than down. The result is the root that Newton's method
     /// reaches from zero roll, else the one between zero and a flange on top of its rail.
     /// Accuracy: heights and roll to rounding at the size of the wheelset, about 1e-13 mm and 1e-16 rad.
-    /// Cost: the two sides are lowered two to four times on treads, about ten times at most where a flange is
-    /// steeper than 73°; never more than 64 times.
+    /// Cost: the two sides are lowered two to four times on treads, ten times at most where a flange is steeper than 73°; 64 at most.
     ///
     /// # Errors
     /// Values that are not finite; angles beyond ±0.5 rad; a rail that varies and follows the wheel's shape all over.
@@ -301,9 +305,8 @@ impl WheelsetSearch<'_> {
 
     /// Lowers both sides at the roll at which both wheels touch; `None` if there is no such roll.
     ///
-    /// Method: Newton's, with the places of contact kept until their heights agree. Then both sides are
-    /// lowered, which confirms the places or shows the next ones. Once the sign has changed, the root is
-    /// bracketed.
+    /// Method: Newton's, with the places of contact kept until their heights agree. Then both sides are lowered, which confirms the places
+    /// or shows the next ones. Once the sign has changed, the root is bracketed.
     fn solve_roll(&mut self, position: &Position) -> Option<Lowered> {
         let mut ends = [None, None];
         let mut level = self.level(position, 0.0, 0.0)?;
@@ -332,8 +335,7 @@ impl WheelsetSearch<'_> {
         None
     }
 
-    /// Returns the next roll to try before any change of sign: Newton's, or a far one once Newton's has
-    /// failed.
+    /// Returns the next roll to try before any change of sign: Newton's, or a far one once Newton's has failed.
     fn outward(
         &mut self,
         position: &Position,
@@ -350,9 +352,8 @@ impl WheelsetSearch<'_> {
         far.get_or_insert_with(|| Far::new(level.kept.difference())).next()
     }
 
-    /// Returns the next roll to try between two rolls with different signs of the height difference: the root
-    /// with the places of contact kept from the end that is nearer to touching, or else from the other end,
-    /// or else the middle. Every fourth roll is the middle.
+    /// Returns the next roll to try between two rolls with different signs of the height difference: the root with the places of contact kept
+    /// from the end that is nearer to touching, or else from the other end, or else the middle. Every fourth roll is the middle.
     fn between(
         &mut self,
         position: &Position,

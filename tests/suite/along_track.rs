@@ -40,7 +40,7 @@ fn march_over(slices: &[Slice], wheel: Profile, position: Position, within: f64)
     let axle = Wheelset::new(WheelDistance::Spacing(SPACING), RADIUS)?;
     let side = SideOnTrack::lofted(pair, Track::between_origins(SPACING)?, axle);
     let selection = Selection { within, apart: ONE_CONTACT };
-    Ok(March { system: WheelsetOnTrack::symmetrical(side), position, selection, reach })
+    Ok(March { system: WheelsetOnTrack::symmetrical(side), position, selection, reach, pitch: 0.0 })
 }
 
 fn position(lateral: f64, yaw: f64, roll: f64) -> Position {

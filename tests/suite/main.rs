@@ -10,6 +10,7 @@
 
 mod along_track;
 mod any_grid;
+mod around_the_wheel;
 mod campaign;
 mod closed_forms;
 mod common;

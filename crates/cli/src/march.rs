@@ -1,13 +1,15 @@
-//! `wheelrail march`: writes the contact geometry of a wheelset at many places along rails that vary, and what happens between them.
+//! `wheelrail march`: writes the contact geometry of a wheelset at many places along rails that vary, or as wheels that vary turn, and
+//! what happens in between.
 
 use std::path::PathBuf;
 
 use super::output::{PictureFormat, refuse_files};
 use super::progress::Progress;
-use super::range::range;
+use super::range::{range, range_in};
 use crate::answer::{Outcome, complain, counted, folder_of, print_to_reader};
 use wheelrail::case::{
-    Columns, DoubtSet, MOST_DRAWN, append_event, append_stop, events_head, march_curves, march_head,
+    ALONG, AROUND, Columns, DoubtSet, MOST_DRAWN, MarchCourse, append_event, append_stop, events_head,
+    march_curves, march_head,
 };
 use wheelrail::error::Result;
 use wheelrail::files::NewFile;
@@ -17,20 +19,42 @@ use wheelrail::search::{Event, Stop};
 /// The scene, the places, and the outputs.
 #[derive(Debug, clap::Args)]
 pub(super) struct MarchArguments {
-    /// Scene file with [track] and [wheelset], and a rail whose `file` is a list of slices, `.slcs`, without `along`.
+    /// Scene file with [track] and [wheelset], and a rail whose `file` is a list of slices, `.slcs`, without `along`, or a wheel with
+    /// `flat`, `radii`, or a list `.slcw` without `angle`.
     scene: PathBuf,
-    /// Places of the axle's middle along the track FROM:TO:STEP, mm, as the lists count.
-    #[arg(long, value_name = "FROM:TO:STEP", allow_hyphen_values = true)]
-    along: String,
+    #[command(flatten)]
+    places: Places,
     /// File to write; if not given, stdout.
     #[arg(long, value_name = "FILE.csv")]
     out: Option<PathBuf>,
     /// Table of events in addition: transfers, second places, least clearances.
     #[arg(long, value_name = "FILE.csv")]
     events: Option<PathBuf>,
-    /// Picture of the usual curves along the track, in addition: .svg or .png.
+    /// Picture of the usual curves along the march, in addition: .svg or .png.
     #[arg(long, value_name = "FILE.svg")]
     picture: Option<PathBuf>,
+}
+
+/// Where a march goes.
+#[derive(Debug, clap::Args)]
+#[group(required = true, multiple = false)]
+struct Places {
+    /// Places of the axle's middle along the track FROM:TO:STEP, mm, as the lists count.
+    #[arg(long, value_name = "FROM:TO:STEP", allow_hyphen_values = true)]
+    along: Option<String>,
+    /// Pitches of the wheelset FROM:TO:STEP, rad: what lies at −pitch around a wheel is lowest.
+    #[arg(long, value_name = "FROM:TO:STEP", allow_hyphen_values = true)]
+    angle: Option<String>,
+}
+
+impl Places {
+    /// Reads the places, with the course on which they lie.
+    fn read(&self) -> Result<(MarchCourse, Vec<f64>)> {
+        match (&self.along, &self.angle) {
+            (_, Some(text)) => Ok((AROUND, range_in(("rad", "-0.1:0.1:0.001"), "--angle", text)?)),
+            (along, None) => Ok((ALONG, range("--along", along.as_deref().unwrap_or_default())?)),
+        }
+    }
 }
 
 /// The outputs of a march. All have temporary names until it has ended.
@@ -75,22 +99,22 @@ pub(super) fn march(arguments: &MarchArguments) -> Result<Outcome> {
     let progress = Progress::of("march", "surfaces");
     let path = arguments.scene.as_path();
     let scene = scene::load(path)?;
-    let along = range("--along", &arguments.along)?;
+    let (course, places) = arguments.places.read()?;
     let mut outputs = MarchOutputs::create(arguments, &scene)?;
     let (march, warnings) =
         scene::march(&scene, folder_of(path)).map_err(|error| error.within(path.display()))?;
     for warning in warnings.into_iter().chain(unused(&scene)) {
         complain(&format!("warning: {warning}"));
     }
-    let stride = along.len().div_ceil(MOST_DRAWN).max(1);
+    let stride = places.len().div_ceil(MOST_DRAWN).max(1);
     let (mut drawn, mut columns, mut done, mut without) =
         (Columns::default(), Columns::default(), 0_usize, 0);
-    outputs.put(&march_head())?;
+    outputs.put(&march_head(course))?;
     if let Some(file) = &mut outputs.events {
-        file.put(events_head().as_bytes())?;
+        file.put(events_head(course).as_bytes())?;
     }
-    progress.at(format!("0 of {} places", along.len()));
-    march.blocks(&along, |stops: &[Stop], events: &[Event]| {
+    progress.at(format!("0 of {} places", places.len()));
+    let sink = |stops: &[Stop], events: &[Event]| {
         let (mut table, mut told) = (String::new(), String::new());
         for stop in stops {
             append_stop(&mut table, stop, &mut columns);
@@ -104,18 +128,20 @@ pub(super) fn march(arguments: &MarchArguments) -> Result<Outcome> {
         if let Some(file) = &mut outputs.events {
             file.put(told.as_bytes())?;
         }
-        progress.share(format!("{done} of {} places", along.len()), done as f64 / along.len() as f64);
+        progress.share(format!("{done} of {} places", places.len()), done as f64 / places.len() as f64);
         outputs.put(&table)
-    })?;
+    };
+    if course == AROUND { march.turns(&places, sink) } else { march.blocks(&places, sink) }?;
     if let Some((format, file)) = &mut outputs.picture {
         progress.at("picture");
-        let places: Vec<f64> = along.iter().copied().step_by(stride).collect();
+        let shown: Vec<f64> = places.iter().copied().step_by(stride).collect();
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         let about = format!(
             "{}; lowest contact of each side, in its own profile axes",
-            counted(along.len(), "place")
+            counted(places.len(), "place")
         );
-        let picture = march_curves(&drawn, &places, scene.title.as_deref().unwrap_or(&name), &about)?;
+        let picture =
+            march_curves(&drawn, (course, &shown), [scene.title.as_deref().unwrap_or(&name), &about])?;
         file.put(&format.bytes(picture.svg())?)?;
     }
     outputs.commit()?;

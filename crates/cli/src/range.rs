@@ -14,9 +14,14 @@ const MOST_DECIMALS: i32 = 15;
 /// Reads FROM:TO:STEP, both ends included. Each position is the double nearest to its decimal number, so that it is printed
 /// as that number.
 pub(super) fn range(option: &str, text: &str) -> Result<Vec<f64>> {
+    range_in(("mm", "-8:8:0.1"), option, text)
+}
+
+/// Reads the same in another unit; `example` is what an error advises.
+pub(super) fn range_in((unit, example): (&str, &str), option: &str, text: &str) -> Result<Vec<f64>> {
     let bad = || {
-        let expected = format!("FROM:TO:STEP in mm with FROM <= TO within ±{FARTHEST:e} and STEP > 0");
-        Error::new(option, text, expected, format!("for example {option} -8:8:0.1"))
+        let expected = format!("FROM:TO:STEP in {unit} with FROM <= TO within ±{FARTHEST:e} and STEP > 0");
+        Error::new(option, text, expected, format!("for example {option} {example}"))
     };
     let parts = text.split(':').map(|part| part.trim().parse().ok()).collect::<Option<Vec<f64>>>();
     let Some([from, to, step]) = parts.and_then(|parts| <[f64; 3]>::try_from(parts).ok()) else {

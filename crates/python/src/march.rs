@@ -1,24 +1,27 @@
-//! Marches along rails that vary.
+//! Marches along rails that vary, and around wheels that do.
 
 use std::path::PathBuf;
 
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use wheelrail::case::{Columns, DoubtSet, EVENT_NUMBERS, event_numbers};
+use wheelrail::Error;
+use wheelrail::case::{ALONG, AROUND, Columns, DoubtSet, EVENT_NUMBERS, event_numbers};
 use wheelrail::scene;
 use wheelrail::search::{Event, Stop};
 
 use crate::arrays::values;
-use crate::errors::say;
+use crate::errors::{exception, say};
 use crate::long::watched;
 use crate::sweep::arrays_of;
 
-/// March a wheelset along rails that vary, with the middle of its axle at ascending places along the track in mm.
+/// March a wheelset along rails that vary, with the middle of its axle at ascending places `along` the track in mm, or turn it by
+/// ascending pitches `angle` in rad, with wheels that vary around their axle.
 ///
-/// `path` is a scene file whose rail is a list of slices, `.slcs`, without `along`. Returns two dicts of arrays: the contacts, with the
-/// columns of a sweep and `along_mm` and `contact_pitch_rad`, and the events, with those of `wheelrail march --events`. `progress` is
-/// called with the places done and all of them.
+/// `path` is a scene file whose rail is a list of slices, `.slcs`, without `along`, or whose wheel has `flat`, `radii`, or is a list
+/// `.slcw` without `angle`. Returns two dicts of arrays: the contacts, with the columns of a sweep, `along_mm` or `angle_rad`, and
+/// `contact_pitch_rad`; and the events, with those of `wheelrail march --events`. `progress` is called with the places done and all of
+/// them.
 ///
 ///     >>> from pathlib import Path
 ///     >>> from tempfile import mkdtemp
@@ -36,23 +39,43 @@ use crate::sweep::arrays_of;
 ///     >>> [round(float(z), 3) for z in rows["z_mm"] - rows["z_mm"][0]]
 ///     [0.0, 0.0, 0.2, 0.2]
 ///
+/// A flat of 60 mm is R − √(R² − 30²) deep:
+///
+///     >>> _ = (folder / "flat.toml").write_text("""
+///     ... rail = { profile = "60E1" }
+///     ... wheel = { profile = "S1002", radius = 460.0, flat = { length = 60.0 } }
+///     ... track = { spacing = 1500.0 }
+///     ... wheelset = { spacing = 1500.0 }
+///     ... """)
+///     >>> rows, events = wr.march(folder / "flat.toml", angle=[-0.2, 0.0])
+///     >>> round(float(rows["z_mm"][-1] - rows["z_mm"][0]), 2)
+///     -0.98
+///
 /// Raises InputError for anything wrong with the scene, the slices, or places that they do not reach.
 #[pyfunction]
-#[pyo3(signature = (path, along, *, progress = None))]
+#[pyo3(signature = (path, along = None, *, angle = None, progress = None))]
 pub(crate) fn march<'py>(
     py: Python<'py>,
     path: PathBuf,
-    along: &Bound<'py, PyAny>,
+    along: Option<&Bound<'py, PyAny>>,
+    angle: Option<&Bound<'py, PyAny>>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
-    let along = values("along", along)?;
+    let (course, along) = match (along, angle) {
+        (Some(along), None) => (ALONG, values("along", along)?),
+        (None, Some(angle)) => (AROUND, values("angle", angle)?),
+        (along, _) => {
+            let found = if along.is_some() { "`along` and `angle`" } else { "neither `along` nor `angle`" };
+            return Err(exception(Error::new("march", found, "one of the two", "give places or pitches")));
+        }
+    };
     let (places, pitches, columns, events, warnings) = watched(py, progress.as_ref(), |watch| {
         let scene = scene::load(&path)?;
         let folder = path.parent().unwrap_or(std::path::Path::new("."));
         let (march, warnings) = scene::march(&scene, folder)?;
         let (mut places, mut pitches) = (Vec::new(), Vec::new());
         let (mut columns, mut events, mut done) = (Columns::default(), Vec::new(), 0);
-        march.blocks(&along, |stops: &[Stop], found: &[Event]| {
+        let sink = |stops: &[Stop], found: &[Event]| {
             for stop in stops {
                 for row in &stop.rows {
                     columns.push(done, row, None, DoubtSet::default());
@@ -64,17 +87,18 @@ pub(crate) fn march<'py>(
             events.extend_from_slice(found);
             watch.at(done, along.len());
             watch.go_on().map(|()| true)
-        })?;
+        };
+        if course == AROUND { march.turns(&along, sink) } else { march.blocks(&along, sink) }?;
         Ok((places, pitches, columns, events, warnings))
     })?;
     for warning in &warnings {
-        say(py, "rail", warning, "see the list of slices")?;
+        say(py, "march", warning, "see the scene and its lists of slices")?;
     }
     let rows = arrays_of(py, columns)?;
-    rows.set_item("along_mm", PyArray1::from_vec(py, places))?;
+    rows.set_item(course.column, PyArray1::from_vec(py, places))?;
     rows.set_item("contact_pitch_rad", PyArray1::from_vec(py, pitches))?;
     let told = PyDict::new(py);
-    told.set_item("along_mm", PyArray1::from_iter(py, events.iter().map(|event| event.along)))?;
+    told.set_item(course.column, PyArray1::from_iter(py, events.iter().map(|event| event.along)))?;
     told.set_item("side", PyList::new(py, events.iter().map(|event| event.side.name()))?)?;
     told.set_item("event", PyList::new(py, events.iter().map(|event| event.kind.name()))?)?;
     for (k, name) in EVENT_NUMBERS.into_iter().enumerate() {

@@ -7,7 +7,9 @@ import pytest
 
 import wheelrail as wr
 
-CROSSING = Path(__file__).parents[3] / "examples" / "crossing" / "crossing.toml"
+EXAMPLES = Path(__file__).parents[3] / "examples"
+CROSSING = EXAMPLES / "crossing" / "crossing.toml"
+FLAT = EXAMPLES / "wheel_flat" / "wheel_flat.toml"
 
 
 def test_a_march_gives_rows_and_events() -> None:
@@ -54,3 +56,28 @@ def test_a_scene_without_slices_is_refused(tmp_path: Path) -> None:
     )
     with pytest.raises(wr.InputError, match="rails of one profile each"):
         wr.march(tmp_path / "scene.toml", [0.0])
+
+
+def test_a_wheel_with_a_flat_comes_down_on_it_and_goes_over() -> None:
+    angle = np.linspace(-0.1, 0.1, 21)
+    rows, events = wr.march(FLAT, angle=angle)
+    lowest = (rows["contact"] == 1) & rows["right"]
+    assert np.array_equal(rows["angle_rad"][lowest], angle)
+    z = rows["z_mm"][lowest]
+    depth = 460.0 - np.sqrt(460.0**2 - 30.0**2)
+    assert z[10] - z[0] == pytest.approx(-depth, abs=0.02) and np.allclose(z, z[::-1], atol=1e-9)
+    (over,) = [k for k, side in enumerate(events["side"]) if side == "right" and events["event"][k] == "transfer"]
+    assert events["angle_rad"][over] == pytest.approx(0.0, abs=0.01 / 460.0)
+    assert events["y_before_mm"][over] > 25.0 and events["y_after_mm"][over] < -25.0
+    assert events["impact_angle_rad"][over] > 0.1
+
+
+def test_a_march_goes_along_or_around() -> None:
+    with pytest.raises(wr.InputError, match="neither `along` nor `angle`"):
+        wr.march(FLAT)
+    with pytest.raises(wr.InputError, match="`along` and `angle`"):
+        wr.march(FLAT, [0.0], angle=[0.0])
+    with pytest.raises(wr.InputError, match="rails of one profile each"):
+        wr.march(FLAT, [0.0])
+    with pytest.raises(wr.InputError, match="rails that vary along the track"):
+        wr.march(CROSSING, angle=[0.0])

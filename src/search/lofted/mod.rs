@@ -1,12 +1,15 @@
-//! First touch of a wheel on a rail that varies along the track.
+//! First touch of two bodies, one of which varies: a rail along the track, or a wheel around its axle.
 //!
-//! The vertical gap is a function over the rail's surface. Its least value is found by branch and bound: parts of the rail, down to
-//! pieces of one cell, stand against parts of the wheel's profile. A plane that touches a part of the wheel from below bounds the gap over a
-//! part of the rail from below, to second order of their sizes. What is left is followed down by Newton's method.
+//! The vertical gap is a function over the varying body's surface. Its least value is found by branch and bound: parts of that surface,
+//! down to pieces of one cell, stand against parts of the other body's profile, which is swept. A plane that touches a part of the
+//! swept body from below bounds the gap over a part of the surface from below, to second order of their sizes. What is left is followed
+//! down by Newton's method. A wheel that varies is a surface that is wrapped around its axle (`wrap`), and upside down the rail is the
+//! swept body above it (`above`).
 
+mod above;
 mod node;
 mod settle;
-mod wheel;
+mod wrap;
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -18,16 +21,16 @@ use super::locus::Attitude;
 use super::over_rail::Work;
 use super::touch::{Contact, Selection, Touch};
 use crate::error::{Error, Result};
-use crate::lofted::Loft;
+use crate::lofted::{Loft, LoftedWheel, Strip, SurfacePoint, turned};
 use crate::profile::{Profile, Section, Side, Station};
+use above::{SweptAbove, Varying, into_wheel, out_of_wheel};
 use node::{BoundPart, Part};
 use settle::{Gap, Settled, apart};
-use wheel::WheelAbove;
 
-/// Largest run of a part of the wheel's profile \[mm\]: its chord is off by 2.4 µm on a 13 mm radius.
-const WHEEL_PARTS: f64 = 0.5;
+/// Largest run of a part of the swept profile \[mm\]: its chord is off by 2.4 µm on a 13 mm radius.
+const SWEPT_PARTS: f64 = 0.5;
 
-/// Most such parts of a wheel of an unusual size.
+/// Most such parts of a profile of an unusual size.
 const MOST_PARTS: f64 = 4096.0;
 
 /// Distance \[mm\] below which two places of Newton's method are one.
@@ -37,21 +40,29 @@ const ONE_PLACE: f64 = 1e-6;
 /// with near misses of a millimetre.
 const MOST_LOOKED_AT: u64 = 1_000_000;
 
-/// A lofted rail and a wheel, prepared for searches.
+/// Largest angle \[rad\] from a wheel's lowest meridian at which it is looked at. A flange of 70° under a yaw of 0.3 rad touches at 1.0.
+const WINDOW: f64 = 1.3;
+
+/// A rail and a wheel, one of which varies, prepared for searches.
 #[derive(Debug, Clone)]
 pub struct LoftedPair {
     loft: Arc<Loft>,
-    wheel: SearchBody,
+    varying: Varying,
+    /// The other body, upside down where that is the rail.
+    swept: SearchBody,
     section: Section,
+    /// Nominal rolling radius \[mm\].
     radius: f64,
+    /// Angle \[rad\] around which the surface of a wheel goes once about the axle.
+    middle: f64,
 }
 
 /// Searches over such a pair; keeps its buffers.
 #[derive(Debug, Clone)]
 pub(super) struct LoftedSearch<'a> {
     pair: &'a LoftedPair,
-    /// Coordinate of the axle's middle in the list \[mm\].
-    pub along: f64,
+    /// Coordinate of the axle's middle in the list of a rail, or of the lowest meridian in that of a wheel \[mm\].
+    along: f64,
     parts: Vec<BoundPart>,
     queue: BinaryHeap<Open>,
     found: Vec<Found>,
@@ -68,7 +79,7 @@ struct Found {
     settled: Settled,
 }
 
-/// A part of the rail and a node of the wheel's tree between which the gap may be least.
+/// A part of the varying body and a node of the other's tree between which the gap may be least.
 #[derive(Debug, Clone, Copy)]
 struct Open {
     bound: f64,
@@ -104,19 +115,31 @@ impl LoftedPair {
     /// # Errors
     /// A wheel profile with no part that faces the rail.
     pub fn new(loft: Arc<Loft>, wheel: &Profile, radius: f64) -> Result<Self> {
-        let section = Section::own_axes(wheel, Side::Wheel);
-        let longest = WHEEL_PARTS.max(wheel.extent() / MOST_PARTS);
-        let body = SearchBody::with_arcs_up_to(longest, &section, wheel.extent(), Side::Wheel);
-        let body = body.ok_or_else(|| {
-            let expected = "a profile travelled from left to right";
-            Error::new(&wheel.name, "no surface", expected, "reverse or mirror it")
-        })?;
-        Ok(Self { loft, wheel: body, section, radius })
+        Self::of(loft, Varying::Rail, wheel, [radius, 0.0])
     }
 
-    /// Makes a search; the axle's middle is at 0 of the list.
+    /// Prepares a wheel that varies and a rail of one profile.
+    ///
+    /// # Errors
+    /// A rail profile with no part that faces the wheel.
+    pub fn turning(wheel: &LoftedWheel, rail: &Profile) -> Result<Self> {
+        Self::of(Arc::clone(&wheel.loft), Varying::Wheel, &rail.upside_down(), [wheel.radius, wheel.middle])
+    }
+
+    fn of(loft: Arc<Loft>, varying: Varying, swept: &Profile, [radius, middle]: [f64; 2]) -> Result<Self> {
+        let section = Section::own_axes(swept, Side::Wheel);
+        let longest = SWEPT_PARTS.max(swept.extent() / MOST_PARTS);
+        let body = SearchBody::with_arcs_up_to(longest, &section, swept.extent(), Side::Wheel);
+        let body = body.ok_or_else(|| {
+            let expected = "a profile travelled from left to right";
+            Error::new(&swept.name, "no surface", expected, "reverse or mirror it")
+        })?;
+        Ok(Self { loft, varying, swept: body, section, radius, middle })
+    }
+
+    /// Makes a search; the axle's middle is at 0 of a rail's list, and a wheel's 0 lies lowest.
     pub(super) fn search(&self) -> LoftedSearch<'_> {
-        LoftedSearch {
+        let mut search = LoftedSearch {
             pair: self,
             along: 0.0,
             parts: Vec::new(),
@@ -125,11 +148,32 @@ impl LoftedPair {
             contacts: Vec::new(),
             gave_up: false,
             work: Work::default(),
-        }
+        };
+        search.stand_at(0.0, 0.0);
+        search
+    }
+
+    /// Whether it is the wheel that varies.
+    pub(super) fn turning_wheel(&self) -> bool {
+        self.varying == Varying::Wheel
+    }
+
+    /// The other body at an attitude.
+    fn over<'a>(&'a self, attitude: &'a Attitude) -> SweptAbove<'a> {
+        SweptAbove::new(&self.section, attitude, self.varying)
     }
 }
 
 impl LoftedSearch<'_> {
+    /// Moves the axle's middle to a place \[mm\] of the list of a rail that varies, or turns a wheel that varies by a pitch \[rad\], +
+    /// forward at the bottom: −pitch of it lies lowest.
+    pub fn stand_at(&mut self, along: f64, pitch: f64) {
+        self.along = match self.pair.varying {
+            Varying::Rail => along,
+            Varying::Wheel => self.pair.radius * turned(-pitch, self.pair.middle),
+        };
+    }
+
     /// Returns the lowest place of contact, and keeps all others up to `within` \[mm\] above it; `None` if no part of the wheel is over
     /// the rail.
     pub fn lower(&mut self, attitude: &Attitude, within: f64) -> Option<Candidate> {
@@ -137,13 +181,13 @@ impl LoftedSearch<'_> {
             return None;
         }
         let pair = self.pair;
-        let wheel = WheelAbove::new(&pair.section, attitude);
+        let over = pair.over(attitude);
         self.parts.clear();
         self.queue.clear();
         self.found.clear();
         self.work.searches += 1;
         let mut lowest = f64::INFINITY;
-        self.open(&wheel, &mut lowest, within);
+        self.open(&over, &mut lowest, within);
         let start = self.work.pairs;
         while let Some(Open { bound, part, node }) = self.queue.pop() {
             if bound > lowest + within {
@@ -154,65 +198,69 @@ impl LoftedSearch<'_> {
                 return None;
             }
             let own = self.parts[part];
-            let of = &pair.wheel.nodes[node];
+            let of = &pair.swept.nodes[node];
             if of.right != 0 && (of.size > own.size || own.is_small()) {
                 for child in [node + 1, of.right as usize] {
-                    self.push(&wheel, part, child, lowest + within);
+                    self.push(&over, part, child, lowest + within);
                 }
             } else if own.is_small() {
-                self.settle(&wheel, part, &mut lowest, within);
+                self.settle(&over, part, &mut lowest, within);
             } else {
                 for half in own.halves(&pair.loft) {
-                    self.add(&wheel, half, node, &mut lowest, within);
+                    self.add(&over, half, node, &mut lowest, within);
                 }
             }
         }
-        let gap = |found: &Found| found.settled.wheel.gap;
+        let gap = |found: &Found| found.settled.above.gap;
         let lowest = *self.found.iter().min_by(|a, b| gap(a).total_cmp(&gap(b)))?;
         self.found.retain(|found| gap(found) <= gap(&lowest) + within);
-        Some(candidate(&wheel, &lowest))
+        Some(candidate(&over, &lowest))
     }
 
-    /// Opens all intervals of the rail that lie below the wheel.
-    fn open(&mut self, wheel: &WheelAbove<'_>, lowest: &mut f64, within: f64) {
+    /// Opens all intervals of the varying body that lie below the other one.
+    fn open(&mut self, over: &SweptAbove<'_>, lowest: &mut f64, within: f64) {
         let pair = self.pair;
-        let reach = [self.along - pair.radius, self.along + pair.radius].map(|y| y + wheel.attitude.along);
+        let (ahead, far) = match pair.varying {
+            Varying::Rail => (over.attitude.along, pair.radius),
+            Varying::Wheel => (0.0, WINDOW * pair.radius),
+        };
+        let reach = [self.along - far, self.along + far].map(|y| y + ahead);
         for (strip, own) in pair.loft.strips.iter().enumerate() {
             for interval in own.intervals() {
                 let [from, to] = interval.y();
                 let y = [from.max(reach[0]), to.min(reach[1])];
                 if y[0] < y[1] {
                     let part = Part { strip, interval: interval.index(), node: 1, shares: [0.0, 1.0], y };
-                    self.add(wheel, part, 0, lowest, within);
+                    self.add(over, part, 0, lowest, within);
                 }
             }
         }
     }
 
-    /// Adds a part of the rail against a node of the wheel.
-    fn add(&mut self, wheel: &WheelAbove<'_>, part: Part, node: usize, lowest: &mut f64, within: f64) {
+    /// Adds a part of the varying body against a node of the other.
+    fn add(&mut self, over: &SweptAbove<'_>, part: Part, node: usize, lowest: &mut f64, within: f64) {
         let loft = &self.pair.loft;
         if part.interval(loft).cells(part.node).is_empty() {
             return;
         }
         if part.cell(loft).is_some() {
-            let gap = Gap { strip: &loft.strips[part.strip], wheel, along: self.along };
+            let gap = Gap { strip: &loft.strips[part.strip], over, along: self.along };
             if let Some((_, above)) = gap.at(part.middle(loft)) {
                 *lowest = lowest.min(above.gap);
             }
         }
-        self.parts.push(part.bound(loft, wheel, self.along));
-        if !self.push(wheel, self.parts.len() - 1, node, *lowest + within) {
+        self.parts.push(part.bound(loft, over, self.along));
+        if !self.push(over, self.parts.len() - 1, node, *lowest + within) {
             self.parts.pop();
         }
     }
 
-    /// Queues a part against a node of the wheel; returns whether the gap between them may be least.
-    fn push(&mut self, wheel: &WheelAbove<'_>, part: usize, node: usize, ceiling: f64) -> bool {
+    /// Queues a part against a node of the swept body; returns whether the gap between them may be least.
+    fn push(&mut self, over: &SweptAbove<'_>, part: usize, node: usize, ceiling: f64) -> bool {
         self.work.pairs += 1;
-        let (own, of) = (&self.parts[part], &self.pair.wheel.nodes[node].bounds);
-        let bound = own.gap_below(wheel, of);
-        let may = bound <= ceiling && own.may_be_level(&self.pair.loft, wheel, of);
+        let (own, of) = (&self.parts[part], &self.pair.swept.nodes[node].bounds);
+        let bound = own.gap_below(over, of);
+        let may = bound <= ceiling && own.may_be_level(&self.pair.loft, over, of);
         if may {
             self.queue.push(Open { bound, part, node });
         }
@@ -220,23 +268,26 @@ impl LoftedSearch<'_> {
     }
 
     /// Follows the gap down from the middle of a small part, and keeps the place if it is a new one.
-    fn settle(&mut self, wheel: &WheelAbove<'_>, part: usize, lowest: &mut f64, within: f64) {
+    fn settle(&mut self, over: &SweptAbove<'_>, part: usize, lowest: &mut f64, within: f64) {
         let loft = &self.pair.loft;
         let own = &mut self.parts[part];
         if std::mem::replace(&mut own.settled, true) {
             return;
         }
         let part = own.part;
-        let gap = Gap { strip: &loft.strips[part.strip], wheel, along: self.along };
+        let gap = Gap { strip: &loft.strips[part.strip], over, along: self.along };
         self.work.solves += 1;
         let Some(settled) = gap.settle(part.middle(loft)) else { return };
-        let rounding = 16.0 * f64::EPSILON * self.pair.radius;
-        if settled.wheel.gap > *lowest + within + rounding || self.goes_on(wheel, part.strip, &settled) {
+        let rounding = over.rounding();
+        if settled.above.gap > *lowest + within + rounding || self.goes_on(over, part.strip, &settled) {
             return;
         }
-        *lowest = lowest.min(settled.wheel.gap);
+        *lowest = lowest.min(settled.above.gap);
+        // Of a stretch with one gap, as under a cylinder, the first place counts.
         let known = |found: &Found| {
-            found.strip == part.strip && apart(found.settled.place, settled.place) <= ONE_PLACE
+            let level = (found.settled.above.gap - settled.above.gap).abs() <= rounding;
+            let stretch = found.settled.stretch && settled.stretch && level;
+            found.strip == part.strip && (stretch || apart(found.settled.place, settled.place) <= ONE_PLACE)
         };
         if !self.found.iter().any(known) {
             self.found.push(Found { strip: part.strip, settled });
@@ -244,46 +295,48 @@ impl LoftedSearch<'_> {
     }
 
     /// Tells whether the surface goes on beyond the end of the strip at which a place lies, to a smaller gap.
-    fn goes_on(&self, wheel: &WheelAbove<'_>, strip: usize, settled: &Settled) -> bool {
-        if !settled.at_end[0] {
-            return false;
-        }
+    fn goes_on(&self, over: &SweptAbove<'_>, strip: usize, settled: &Settled) -> bool {
         let strips = &self.pair.loft.strips;
-        let (own, y) = (&strips[strip], settled.place[1]);
-        let left = settled.place[0] <= 0.0;
-        let beside = |other: &crate::lofted::Strip| {
-            let reach = other.reach();
-            let next = if left { other.part + 1 == own.part } else { other.part == own.part + 1 };
-            if !next || y < reach[0] || y > reach[1] {
-                return false;
-            }
-            let place = [if left { other.cells() as f64 } else { 0.0 }, y];
-            let gap = Gap { strip: other, wheel, along: self.along };
-            gap.at(place).is_some_and(|(rail, above)| {
-                let same = (0..2).all(|k| (rail.at[k] - settled.rail.at[k]).abs() <= ONE_PLACE);
-                let [across, _] = gap.derivatives(&rail, &above).0;
-                same && if left { across > 0.0 } else { across < 0.0 }
+        let (own, [u, y]) = (&strips[strip], settled.place);
+        let (left, first) = (u <= 0.0, y <= own.reach()[0]);
+        let smaller = |other: &Strip, place: [f64; 2], axis: usize, back: bool| {
+            let gap = Gap { strip: other, over, along: self.along };
+            gap.at(place).is_some_and(|(below, above)| {
+                let same = (0..2).all(|k| (below.own.at[k] - settled.below.own.at[k]).abs() <= ONE_PLACE);
+                let gradient = gap.derivatives(&below, &above).0[axis];
+                same && if back { gradient > 0.0 } else { gradient < 0.0 }
             })
         };
-        strips.iter().any(beside)
+        strips.iter().any(|other| {
+            let [from, to] = other.reach();
+            let beside = if left { other.part + 1 == own.part } else { other.part == own.part + 1 };
+            let cells = other.cells() as f64;
+            let across = settled.at_end[0]
+                && beside
+                && (from..=to).contains(&y)
+                && smaller(other, [if left { cells } else { 0.0 }, y], 0, left);
+            let next = other.part == own.part && y == if first { to } else { from };
+            let ahead = [u * (cells / own.cells() as f64), y];
+            across || (settled.at_end[1] && next && smaller(other, ahead, 1, first))
+        })
     }
 
     /// Returns the place of least gap near a former one at another attitude; `None` if it is lost.
     pub fn follow(&mut self, attitude: &Attitude, meeting: &Meeting) -> Option<Candidate> {
-        let wheel = WheelAbove::new(&self.pair.section, attitude);
+        let over = self.pair.over(attitude);
         let strip = meeting.elements[1] as usize;
-        let gap = Gap { strip: &self.pair.loft.strips[strip], wheel: &wheel, along: self.along };
+        let gap = Gap { strip: &self.pair.loft.strips[strip], over: &over, along: self.along };
         let settled = gap.settle(meeting.parameters)?;
-        Some(candidate(&wheel, &Found { strip, settled }))
+        Some(candidate(&over, &Found { strip, settled }))
     }
 
     /// Collects the contacts of `selection` among the places that [`Self::lower`] left, at the height that it gave.
     pub fn collect(&mut self, attitude: &Attitude, height: f64, selection: &Selection) -> Touch<'_> {
-        let wheel = WheelAbove::new(&self.pair.section, attitude);
-        self.found.sort_by(|a, b| a.settled.wheel.gap.total_cmp(&b.settled.wheel.gap));
+        let over = self.pair.over(attitude);
+        self.found.sort_by(|a, b| a.settled.above.gap.total_cmp(&b.settled.above.gap));
         self.contacts.clear();
-        for found in self.found.iter().filter(|found| found.settled.wheel.gap + height <= selection.within) {
-            let contact = contact(&wheel, found, self.along, height);
+        for found in self.found.iter().filter(|found| found.settled.above.gap + height <= selection.within) {
+            let contact = contact(&over, found, self.along, height);
             let near = |c: &Contact| {
                 (c.rail_x - contact.rail_x).abs() <= selection.apart
                     && (c.wheel_x - contact.wheel_x).abs() <= selection.apart
@@ -297,80 +350,129 @@ impl LoftedSearch<'_> {
     }
 }
 
-/// Upward unit normal of the rail's surface at a place, in the rail's axes; at an end or kink of the rail that of the wheel.
-fn normal(wheel: &WheelAbove<'_>, settled: &Settled) -> [f64; 3] {
-    let Settled { rail, wheel: above, at_end, .. } = settled;
-    let [x, y, z] = if at_end.contains(&true) {
-        wheel.turned_back([-above.slopes[0], -above.slopes[1], 1.0])
+/// A place as rail and wheel have it.
+struct Place {
+    /// Upward unit normal of the rail, in its axes; at a kink of the rail that of the wheel.
+    normal: [f64; 3],
+    /// x and z on the rail \[mm\].
+    rail: [f64; 2],
+    /// x and z on the wheel's profile \[mm\].
+    wheel: [f64; 2],
+    /// Sine and cosine of the wheel profile's tangent.
+    tangent: [f64; 2],
+    /// Sine and cosine of the angle about the wheel's axle, from the lowest meridian.
+    around: [f64; 2],
+    /// Distance from the axle \[mm\].
+    rolling_radius: f64,
+    /// Curvatures of the rail's section across the track and of the wheel's profile \[1/mm\], + with the hollow side up.
+    curvatures: [f64; 2],
+    /// Whether rail and wheel touch with a kink or an end.
+    kinks: [bool; 2],
+    /// How far ahead of the wheel's centre it lies \[mm\].
+    y: f64,
+}
+
+impl Place {
+    fn new(over: &SweptAbove<'_>, found: &Found, along: f64) -> Self {
+        let Settled { below, above, at_end, kink, .. } = &found.settled;
+        let ([x, h], radius) = (below.own.at, over.attitude.radius);
+        let normal = over.upward(normal(over, &found.settled));
+        let ends = at_end.contains(&true);
+        let section = if at_end[0] { f64::NEG_INFINITY } else { section_curvature(&below.own) };
+        if over.varying == Varying::Rail {
+            let [_, y, z] = above.at;
+            let rolling_radius = (radius - z).hypot(y);
+            return Self {
+                normal,
+                rail: [x, h],
+                wheel: [above.at[0], radius - rolling_radius],
+                tangent: above.tangent,
+                around: [y / rolling_radius, (radius - z) / rolling_radius],
+                rolling_radius,
+                curvatures: [section, if *kink { f64::INFINITY } else { above.curvature }],
+                kinks: [ends, *kink],
+                y: below.own.y - along - over.attitude.along,
+            };
+        }
+        let (sin, cos) = ((below.own.y - along) / radius).sin_cos();
+        // The meridian's tangent is across the common normal, whatever the wheel does around the axle.
+        let [nx, ny, nz] = into_wheel(over.attitude, normal);
+        let inward = nz * cos - ny * sin;
+        let length = nx.hypot(inward);
+        Self {
+            normal,
+            rail: [above.at[0], -above.at[2]],
+            wheel: [x, -h],
+            tangent: [-nx / length, inward / length],
+            around: [sin, cos],
+            rolling_radius: radius + h,
+            curvatures: [if *kink { f64::NEG_INFINITY } else { -above.curvature }, -section],
+            kinks: [*kink, ends],
+            y: over.seen(below.at)[1] - over.attitude.along,
+        }
+    }
+}
+
+/// Common unit normal at a place, out of the varying body, in the swept body's axes: that of the body which is smooth there. A rail that is
+/// extruded has none along the track.
+fn normal(over: &SweptAbove<'_>, settled: &Settled) -> [f64; 3] {
+    let Settled { below, above, at_end, kink, .. } = settled;
+    let n = if at_end.contains(&true) || (over.varying == Varying::Wheel && !kink) {
+        [-above.slopes[0], -above.slopes[1], 1.0]
     } else {
-        let ([xu, zu], [xy, zy]) = (rail.across, rail.along);
-        [-zu, zu * xy - xu * zy, xu]
+        let ([xu, yu, zu], [xy, yy, zy]) = (below.across, below.along);
+        over.turned([yu * zy - zu * yy, zu * xy - xu * zy, xu * yy - yu * xy])
     };
-    let length = x.hypot(y).hypot(z);
-    [x / length, y / length, z / length]
+    let length = n[0].hypot(n[1]).hypot(n[2]);
+    n.map(|component| component / length)
 }
 
-fn candidate(wheel: &WheelAbove<'_>, found: &Found) -> Candidate {
-    let Settled { place, rail, wheel: above, .. } = &found.settled;
-    let [x, _, z] = normal(wheel, &found.settled);
+fn candidate(over: &SweptAbove<'_>, found: &Found) -> Candidate {
+    let place = Place::new(over, found, 0.0);
+    let [x, _, z] = place.normal;
     let length = x.hypot(z);
+    let [sin, cos] = place.tangent;
     Candidate {
-        gap: above.gap,
-        rail: Station { x: rail.at[0], z: rail.at[1], cos: z / length, sin: -x / length },
-        wheel: Station {
-            x: above.at[0],
-            z: wheel.attitude.radius - rolling_radius(wheel, found),
-            cos: above.tangent[1],
-            sin: above.tangent[0],
-        },
-        wheel_radius: above.curvature.recip(),
-        rail_radius: section_curvature(found).recip(),
-        meeting: Meeting { elements: [0, found.strip as u32], parameters: *place, turn: 0.0 },
+        gap: found.settled.above.gap,
+        rail: Station { x: place.rail[0], z: place.rail[1], cos: z / length, sin: -x / length },
+        wheel: Station { x: place.wheel[0], z: place.wheel[1], cos, sin },
+        wheel_radius: place.curvatures[1].recip(),
+        rail_radius: place.curvatures[0].recip(),
+        meeting: Meeting { elements: [0, found.strip as u32], parameters: found.settled.place, turn: 0.0 },
     }
 }
 
-/// Distance of the wheel's point from the axle \[mm\].
-fn rolling_radius(wheel: &WheelAbove<'_>, found: &Found) -> f64 {
-    let [_, y, z] = found.settled.wheel.at;
-    (wheel.attitude.radius - z).hypot(y)
-}
-
-/// Curvature of the rail's section across the track \[1/mm\], + with the hollow side up.
-fn section_curvature(found: &Found) -> f64 {
-    if found.settled.at_end[0] {
-        return f64::NEG_INFINITY;
-    }
-    let ([x, z], [xx, zz]) = (found.settled.rail.across, found.settled.rail.across2);
+/// Curvature of the surface's section across \[1/mm\], + with the hollow side up.
+fn section_curvature(own: &SurfacePoint) -> f64 {
+    let ([x, z], [xx, zz]) = (own.across, own.across2);
     (x * zz - z * xx) / x.hypot(z).powi(3)
 }
 
-fn contact(wheel: &WheelAbove<'_>, found: &Found, along: f64, height: f64) -> Contact {
-    let Settled { rail, wheel: above, at_end, kink, .. } = &found.settled;
-    let normal = normal(wheel, &found.settled);
+fn contact(over: &SweptAbove<'_>, found: &Found, along: f64, height: f64) -> Contact {
+    let place = Place::new(over, found, along);
+    let normal = place.normal;
     let (theta, ahead) = ((-normal[0]).atan2(normal[2]), normal[1].asin());
     let (cos, sin) = (theta.cos(), theta.sin());
     // ξ lies in the section across the track, η completes ξ, η, ζ.
     let eta = [normal[1] * sin, normal[2] * cos - normal[0] * sin, -normal[1] * cos];
-    let radius = rolling_radius(wheel, found);
-    let [s, c] = above.tangent;
-    let around = [above.at[1] / radius, (wheel.attitude.radius - above.at[2]) / radius];
-    let meridian = wheel.turned_back([c, -s * around[0], s * around[1]]);
+    let ([s, c], [behind, down]) = (place.tangent, place.around);
+    let meridian = out_of_wheel(over.attitude, [c, -s * behind, s * down]);
     let on = |axis: [f64; 3]| (0..3).map(|k| meridian[k] * axis[k]).sum::<f64>();
     Contact {
-        rail_x: rail.at[0],
-        wheel_x: above.at[0],
-        rail_z: rail.at[1],
-        wheel_z: wheel.attitude.radius - radius,
-        y: rail.y - along - wheel.attitude.along,
+        rail_x: place.rail[0],
+        wheel_x: place.wheel[0],
+        rail_z: place.rail[1],
+        wheel_z: place.wheel[1],
+        y: place.y,
         turn: ahead,
         contact_angle: theta,
         wheel_angle: s.atan2(c),
         skew: on(eta).atan2(on([cos, 0.0, sin])),
-        gap: above.gap + height,
-        rolling_radius: radius,
-        rail_curvature: section_curvature(found),
-        wheel_curvature: if *kink { f64::INFINITY } else { above.curvature },
-        rail_kink: at_end.contains(&true),
-        wheel_kink: *kink,
+        gap: found.settled.above.gap + height,
+        rolling_radius: place.rolling_radius,
+        rail_curvature: place.curvatures[0],
+        wheel_curvature: place.curvatures[1],
+        rail_kink: place.kinks[0],
+        wheel_kink: place.kinks[1],
     }
 }

@@ -1,14 +1,15 @@
-//! Parts of a lofted rail with their control points, and lower bounds of the gap over them.
+//! Parts of a lofted body with their control points, and lower bounds of the gap over them.
 
-use super::wheel::WheelAbove;
+use super::above::{SweptAbove, Varying};
+use super::wrap::{directions, on_wheel};
 use crate::lofted::{Interval, Loft};
 use crate::numerics::interval::product;
 use crate::search::bounds::Bounds;
 
-/// Change \[mm\] of x and z across and along of a part of the rail from which Newton's method starts.
+/// Change \[mm\] of x and z across and along of a part from which Newton's method starts.
 const SMALL_ACROSS: f64 = 0.1;
 
-/// Its length along the track \[mm\]: a wheel rises by 0.3 µm over it.
+/// Its length along the track or around the wheel \[mm\]: a wheel rises by 0.3 µm over it.
 const SMALL_ALONG: f64 = 1.0;
 
 /// Length of several cells over their size above which they are halved along the track.
@@ -24,7 +25,7 @@ const STEEPEST: f64 = 0.03;
 /// Rounding of the rise of a part \[mm\].
 const LEVEL: f64 = 1e-12;
 
-/// Part of a rail: over some cells between two slices, and over an interval of y.
+/// Part of the varying body: over some cells between two slices, and over an interval of y.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Part {
     /// Index of the strip.
@@ -39,7 +40,7 @@ pub(super) struct Part {
     pub y: [f64; 2],
 }
 
-/// A part with what bounds it, in the wheel's axes.
+/// A part with what bounds it, in the swept body's axes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BoundPart {
     pub part: Part,
@@ -47,7 +48,7 @@ pub(super) struct BoundPart {
     points: [[f64; 3]; 16],
     /// How many there are.
     count: usize,
-    /// Reach of the abscissa at which vertical lines through the part meet the level of the wheel's profile \[mm\].
+    /// Reach of the abscissa at which vertical lines through the part meet the level of the swept profile \[mm\].
     abscissa: [f64; 2],
     /// Reach of y \[mm\].
     along: [f64; 2],
@@ -55,8 +56,25 @@ pub(super) struct BoundPart {
     pub size: f64,
     /// Change of x or z across and along, as multiples of those of a small part.
     changes: [f64; 2],
+    /// Of a wheel's part: how it is wrapped around the axle.
+    wrap: Option<Wrap>,
     /// Whether Newton's method has started from it.
     pub settled: bool,
+}
+
+/// A part of a wheel on the tangent plane at its middle, and how far it may be off that.
+#[derive(Debug, Clone, Copy)]
+struct Wrap {
+    /// Direction out from the axle, in the swept body's axes.
+    out: [f64; 3],
+    /// Larger extent of x or of the distance from the axle \[mm\].
+    size: f64,
+    /// Along the plane around the axle \[mm\].
+    around: f64,
+    /// Within it, towards the axle \[mm\].
+    inward: f64,
+    /// Of the differences of its control points \[mm\]: across, along.
+    turns: [f64; 2],
 }
 
 impl Part {
@@ -82,8 +100,8 @@ impl Part {
         [u, y]
     }
 
-    /// Makes its bounds for a wheel whose middle is at `along` \[mm\] of the list.
-    pub fn bound(self, loft: &Loft, wheel: &WheelAbove<'_>, along: f64) -> BoundPart {
+    /// Makes its bounds under a swept body; the middle of the axle is over `along` \[mm\] of the surface.
+    pub fn bound(self, loft: &Loft, over: &SweptAbove<'_>, along: f64) -> BoundPart {
         let interval = self.interval(loft);
         let (mut points, mut count) = ([[0.0; 3]; 16], 8);
         if let Some(cell) = self.cell(loft) {
@@ -96,17 +114,32 @@ impl Part {
                 *point = [x[k & 1], self.y[k >> 1 & 1], z[k >> 2]];
             }
         }
+        let wrap = match over.varying {
+            Varying::Rail => {
+                points.iter_mut().for_each(|point| point[1] -= along);
+                None
+            }
+            Varying::Wheel => {
+                let off = loft.strips[self.strip].off();
+                Some(self.wrap(&mut points[..count], over, along).wider(off))
+            }
+        };
         let mut low = [f64::INFINITY; 4];
         let mut high = [f64::NEG_INFINITY; 4];
         for point in points.iter_mut().take(count) {
-            *point = wheel.seen([point[0], point[1] - along, point[2]]);
+            *point = over.seen(*point);
             let [x, y, z] = *point;
-            let reached = [x, y, z, x - wheel.up[0] / wheel.up[2] * z];
+            let reached = [x, y, z, x - over.up[0] / over.up[2] * z];
             for k in 0..4 {
                 (low[k], high[k]) = (low[k].min(reached[k]), high[k].max(reached[k]));
             }
         }
-        let size = (high[0] - low[0]).max(high[2] - low[2]);
+        let size = match wrap {
+            // A long part of a wheel is high for its length.
+            Some(wrap) if count == 8 => wrap.size,
+            _ => (high[0] - low[0]).max(high[2] - low[2]),
+        };
+        let inward = wrap.map_or(0.0, |wrap| wrap.inward + wrap.around);
         let length = self.y[1] - self.y[0];
         let change = |step: usize, other: usize| {
             let lines = (0..4).flat_map(|line| (1..4).map(move |k| (other * line, other * line + k * step)));
@@ -124,12 +157,72 @@ impl Part {
             part: self,
             points,
             count,
-            abscissa: [low[3], high[3]],
+            abscissa: [low[3] - inward, high[3] + inward],
             along: [low[1], high[1]],
             size,
             changes,
+            wrap,
             settled: false,
         }
+    }
+
+    /// Wraps the points of a part around a wheel, onto the tangent plane at the middle of the part.
+    ///
+    /// Method: at the angle d from there a point of the distance ϱ from the axle is ϱ (1 − cos d) within the plane through it, and off
+    /// by |ϱ sin d − ϱ_m d| along it. Corners of a box stand around the whole sector.
+    fn wrap(&self, points: &mut [[f64; 3]], over: &SweptAbove<'_>, along: f64) -> Wrap {
+        let radius = over.attitude.radius;
+        let [from, to] = self.y;
+        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from) / radius);
+        let angle = (middle - along) / radius;
+        let (mut x, mut h) = ([f64::INFINITY, f64::NEG_INFINITY], [f64::INFINITY, f64::NEG_INFINITY]);
+        for point in points.iter() {
+            x = [x[0].min(point[0]), x[1].max(point[0])];
+            h = [h[0].min(point[2]), h[1].max(point[2])];
+        }
+        let (farthest, between) = (radius + h[1], 0.5 * (h[1] - h[0]));
+        let [out, _] = directions(angle);
+        let mut wrap = Wrap {
+            out: over.turned(out),
+            size: (x[1] - x[0]).max(h[1] - h[0]),
+            around: 0.0,
+            inward: 0.0,
+            turns: [0.0; 2],
+        };
+        if points.len() == 16 {
+            let largest = |step: usize, other: usize| {
+                let pairs = (0..4).flat_map(|line| (0..3).map(move |k| other * line + step * k));
+                pairs.map(|at| (points[at + step][2] - points[at][2]).abs()).fold(0.0, f64::max)
+            };
+            let third = (to - from) / 3.0;
+            wrap.around = half * (between + farthest * half * half / 6.0);
+            wrap.inward = 0.5 * farthest * half * half;
+            wrap.turns = [
+                half * largest(4, 1),
+                half * (largest(1, 4) + third * farthest / radius) + third * between / radius,
+            ];
+            let mean = radius + h[0] + between;
+            for point in points.iter_mut() {
+                *point = on_wheel(radius, angle, [point[0], point[2], mean * (point[1] - middle) / radius]);
+            }
+        } else {
+            let (sin, cos) = half.sin_cos();
+            for point in points.iter_mut() {
+                let inner = (radius + h[0]) * cos - radius;
+                let height = if point[2] == h[1] { h[1] } else { inner };
+                *point =
+                    on_wheel(radius, angle, [point[0], height, (farthest * sin).copysign(point[1] - middle)]);
+            }
+        }
+        wrap
+    }
+}
+
+impl Wrap {
+    /// Takes a surface that may be off the part's bicubic by so much \[mm\]: the slopes over a cell are off by 3.1 times that at most,
+    /// and control points differ by a third of the slopes.
+    fn wider(self, off: f64) -> Self {
+        Self { around: self.around + off, turns: self.turns.map(|by| by + 2.0 * off), ..self }
     }
 }
 
@@ -156,15 +249,15 @@ impl BoundPart {
 
     /// Tells whether the gap over the part may be least there or level: whether the surfaces of both bodies may be parallel across and
     /// along the track. Where they cannot, the gap is least at the part's edge, which counts at an end of the strip only.
-    pub fn may_be_level(&self, loft: &Loft, wheel: &WheelAbove<'_>, of: &Bounds) -> bool {
+    pub fn may_be_level(&self, loft: &Loft, over: &SweptAbove<'_>, of: &Bounds) -> bool {
         let Some(cell) = self.part.cell(loft) else { return true };
-        let (least, most) = (wheel.attitude.radius - of.z[1], wheel.attitude.radius - of.z[0]);
+        let (least, most) = (over.radius - of.z[1], over.radius - of.z[0]);
         let farthest = self.along[0].abs().max(self.along[1].abs());
         if farthest >= least {
             return true;
         }
         let down = ((least - farthest) * (least + farthest)).sqrt();
-        let across = product(of.tangent, [1.0, least / down]);
+        let across = product(of.tangent, [1.0, if least == f64::INFINITY { 1.0 } else { least / down }]);
         let along = product(self.along, [most.recip(), down.recip()]);
         let strip = &loft.strips[self.part.strip];
         let ([first, last], [from, to], reach) = (self.part.shares, self.part.y, strip.reach());
@@ -172,7 +265,10 @@ impl BoundPart {
             [cell == 0 && first == 0.0, cell + 1 == strip.cells() && last == 1.0],
             [from == reach[0], to == reach[1]],
         ];
-        [(4, 1), (1, 4)].into_iter().zip(ends).all(|((step, other), [at_first, at_last])| {
+        let steepest = [across, along].map(|slopes| slopes[0].abs().max(slopes[1].abs()));
+        let off =
+            self.wrap.map_or([0.0; 2], |wrap| wrap.turns.map(|by| by * (1.0 + steepest[0] + steepest[1])));
+        [(4, 1), (1, 4)].into_iter().zip(ends).zip(off).all(|(((step, other), [at_first, at_last]), off)| {
             let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
             for (line, k) in (0..4).flat_map(|line| (0..3).map(move |k| (line, k))) {
                 let at = other * line + step * k;
@@ -180,18 +276,18 @@ impl BoundPart {
                 let [a, b] = [product(across, [v[0]; 2]), product(along, [v[1]; 2])];
                 (low, high) = (low.min(a[0] + b[0] - v[2]), high.max(a[1] + b[1] - v[2]));
             }
-            (low <= LEVEL || at_first) && (high >= -LEVEL || at_last)
+            (low <= LEVEL + off || at_first) && (high >= -LEVEL - off || at_last)
         })
     }
 
-    /// Returns a lower bound of the vertical gap between the part and what is revolved of a part of the wheel's profile \[mm\]; infinite
+    /// Returns a lower bound of the vertical gap between the part and what is swept of a part of the other profile \[mm\]; infinite
     /// where no vertical line meets both.
     ///
-    /// Method: a plane that touches the wheel's part from below, along its chord and at the angle of the rail's part about the axle. The
-    /// rail's part is below the highest plane parallel to it through its control points.
-    pub fn gap_below(&self, wheel: &WheelAbove<'_>, of: &Bounds) -> f64 {
-        let radius = wheel.attitude.radius;
-        let tilt = wheel.up[0] / wheel.up[2];
+    /// Method: a plane that touches the swept part from below, along its chord and, of a wheel, at the angle of the rail's part about the
+    /// axle. The varying body's part is below the highest plane parallel to it through its control points.
+    pub fn gap_below(&self, over: &SweptAbove<'_>, of: &Bounds) -> f64 {
+        let radius = over.radius;
+        let tilt = over.up[0] / over.up[2];
         let farthest = self.along[0].abs().max(self.along[1].abs());
         // The profile's part is carried up where the ring rises.
         let least = radius - of.z[1];
@@ -212,19 +308,24 @@ impl BoundPart {
         let sine = (y / (radius - of.z[0])).clamp(-1.0, 1.0);
         let cosine = ((1.0 - sine) * (1.0 + sine)).sqrt();
         let [cos, sin] = of.chord;
-        let steep = cos * cosine * wheel.up[2] - sin * wheel.up[0] < STEEPEST;
+        // The part of a wheel has to face the plane.
+        let outward = |normal: [f64; 3]| {
+            self.wrap.map_or(1.0, |wrap| (0..3).map(|k| normal[k] * wrap.out[k]).sum::<f64>())
+        };
+        let steep =
+            cos * cosine * over.up[2] - sin * over.up[0] < STEEPEST || outward([-sin, 0.0, cos]) < 0.0;
         let (cos, sin, level) = if steep { (1.0, 0.0, of.z[0]) } else { (cos, sin, of.level) };
         let normal = [-sin, -cos * sine, cos * cosine];
-        let rate: f64 = (0..3).map(|k| normal[k] * wheel.up[k]).sum();
-        if rate < STEEPEST {
+        let rate: f64 = (0..3).map(|k| normal[k] * over.up[k]).sum();
+        if rate < STEEPEST || outward(normal) < 0.0 {
             return f64::NEG_INFINITY;
         }
         // Free of the radius where the plane is level: R (cos cosine − cos).
-        let lift = radius * cos * sine * sine / (1.0 + cosine);
+        let lift = if sine == 0.0 { 0.0 } else { radius * cos * sine * sine / (1.0 + cosine) };
         let highest = self.points[..self.count]
             .iter()
             .map(|p| normal[0] * p[0] + normal[1] * p[1] + normal[2] * p[2])
             .fold(f64::NEG_INFINITY, f64::max);
-        (level - lift - highest) / rate
+        (level - lift - highest - self.wrap.map_or(0.0, |wrap| wrap.around)) / rate
     }
 }

@@ -1,7 +1,8 @@
-//! Newton's method to the least gap near a place of a lofted rail, within the strip that it is on.
+//! Newton's method to the least gap near a place of a lofted body, within the strip that it is on.
 
-use super::wheel::{Above, WheelAbove};
-use crate::lofted::{SPACING, Strip, SurfacePoint};
+use super::above::{Above, SweptAbove};
+use super::wrap::SpacePoint;
+use crate::lofted::{SPACING, Strip};
 
 /// Most steps. Newton's method takes four to six from a place within a tenth of a millimetre.
 const STEPS: usize = 40;
@@ -15,104 +16,130 @@ const FOUND: [f64; 2] = [1e-9, 1e-8];
 /// Halvings of a step that does not lower the gap.
 const HALVINGS: usize = 30;
 
-/// A place of the rail with the wheel above it.
+/// A place of the varying body with the swept one above it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Settled {
     /// Parameters u and y \[mm\] of the strip.
     pub place: [f64; 2],
-    /// The rail's point.
-    pub rail: SurfacePoint,
-    /// The wheel's.
-    pub wheel: Above,
+    /// The varying body's point.
+    pub below: SpacePoint,
+    /// The swept one's.
+    pub above: Above,
     /// Whether it lies at an end of the strip: across, along.
     pub at_end: [bool; 2],
-    /// Whether no derivative vanishes there although it lies inside: at a kink of the wheel.
+    /// Whether no derivative vanishes there although it lies inside: at a kink of the swept body.
     pub kink: bool,
+    /// Whether it is one of a stretch of places with the same gap.
+    pub stretch: bool,
 }
 
-/// The gap of a wheel over a strip.
+/// The gap of a swept body over a strip.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Gap<'a> {
     pub strip: &'a Strip,
-    pub wheel: &'a WheelAbove<'a>,
-    /// Coordinate of the axle's middle in the list \[mm\].
+    pub over: &'a SweptAbove<'a>,
+    /// Coordinate of the axle's middle in the list, or of the wheel's lowest meridian \[mm\].
     pub along: f64,
 }
 
 impl Gap<'_> {
-    /// The rail's point at a place, and the wheel's above it; `None` where the wheel does not reach.
-    pub fn at(&self, [u, y]: [f64; 2]) -> Option<(SurfacePoint, Above)> {
-        let rail = self.strip.point(u, y);
-        let above = self.wheel.above(self.wheel.seen([rail.at[0], y - self.along, rail.at[1]]))?;
-        Some((rail, above))
+    /// The varying body's point at a place, and the other one's above it; `None` where that does not reach.
+    pub fn at(&self, [u, y]: [f64; 2]) -> Option<(SpacePoint, Above)> {
+        let below = SpacePoint::new(self.strip.point(u, y), self.over, self.along);
+        let above = self.over.above(self.over.seen(below.at))?;
+        Some((below, above))
     }
 
     /// Gradient and second derivatives (uu, uy, yy) of the gap with respect to a place; the second ones hold where the gradient is 0.
-    pub fn derivatives(&self, rail: &SurfacePoint, above: &Above) -> ([f64; 2], [f64; 3]) {
+    pub fn derivatives(&self, below: &SpacePoint, above: &Above) -> ([f64; 2], [f64; 3]) {
         let ([a, b], [aa, ab, bb]) = (above.slopes, above.bends);
-        // The height of the wheel less z, along a direction of the wheel's axes.
+        // The height of the swept body less z, along a direction of its axes.
         let rise = |v: [f64; 3]| a * v[0] + b * v[1] - v[2];
-        let rate = -rise(self.wheel.up);
-        let across = self.wheel.turned([rail.across[0], 0.0, rail.across[1]]);
-        let along = self.wheel.turned([rail.along[0], 1.0, rail.along[1]]);
-        let second = |v: [f64; 2], p: [f64; 3], q: [f64; 3]| {
+        let rate = -rise(self.over.up);
+        let [across, along] = [below.across, below.along].map(|v| self.over.turned(v));
+        let second = |v: [f64; 3], p: [f64; 3], q: [f64; 3]| {
             let bend = aa * p[0] * q[0] + ab * (p[0] * q[1] + p[1] * q[0]) + bb * p[1] * q[1];
-            (rise(self.wheel.turned([v[0], 0.0, v[1]])) + bend) / rate
+            (rise(self.over.turned(v)) + bend) / rate
         };
         let gradient = [rise(across) / rate, rise(along) / rate];
         let bends = [
-            second(rail.across2, across, across),
-            second(rail.mixed, across, along),
-            second(rail.along2, along, along),
+            second(below.across2, across, across),
+            second(below.mixed, across, along),
+            second(below.along2, along, along),
         ];
         (gradient, bends)
     }
 
-    /// Follows the gap down to its least value near a place; `None` where the wheel does not reach. Steps that do not settle end at
+    /// Follows the gap down to its least value near a place; `None` where the swept body does not reach. Steps that do not settle end at
     /// the lowest place that they reached, as at a kink.
     pub fn settle(&self, from: [f64; 2]) -> Option<Settled> {
         let ends = [[0.0, self.strip.cells() as f64], self.strip.reach()];
         let mut place = from;
-        let (mut rail, mut wheel) = self.at(place)?;
-        let rounding = 16.0 * f64::EPSILON * self.wheel.attitude.radius;
+        let (mut below, mut above) = self.at(place)?;
+        let rounding = self.over.rounding();
         for _ in 0..STEPS {
-            let (gradient, bends) = self.derivatives(&rail, &wheel);
+            let (gradient, bends) = self.derivatives(&below, &above);
             let held = [0, 1].map(|k| {
                 (place[k] <= ends[k][0] && gradient[k] >= 0.0)
                     || (place[k] >= ends[k][1] && gradient[k] <= 0.0)
             });
-            let step = descent(gradient, bends, held);
-            let found = |at_kink| Settled { place, rail, wheel, at_end: held, kink: at_kink };
+            let level = self.level(gradient, bends);
+            let step = descent(gradient, bends, [0, 1].map(|k| held[k] || level[k]));
+            let stretch = (0..2).any(|k| level[k] && !held[k]);
+            let found = |at_kink| Settled { place, below, above, at_end: held, kink: at_kink, stretch };
             if (0..2).all(|k| step[k].abs() <= FOUND[k]) {
-                return Some(found(false));
+                return Some(self.at_beginning(found(false), [0, 1].map(|k| level[k] && !held[k])));
             }
             let lower = |step: [f64; 2]| {
                 let mut share = (0..2).map(|k| LONGEST[k] / step[k].abs()).fold(1.0, f64::min);
                 for _ in 0..HALVINGS {
                     let next = [0, 1].map(|k| (place[k] + share * step[k]).clamp(ends[k][0], ends[k][1]));
-                    let reached = self.at(next).filter(|(_, above)| above.gap < wheel.gap + rounding);
-                    if let Some((to, above)) = reached {
-                        return Some((next, to, above));
+                    let reached = self.at(next).filter(|(_, to)| to.gap < above.gap + rounding);
+                    if let Some((from, to)) = reached {
+                        return Some((next, from, to));
                     }
                     share *= 0.5;
                 }
                 None
             };
             let slid = || {
-                lower(self.slide(&rail, gradient, bends)).filter(|(next, ..)| apart(*next, place) > FOUND[1])
+                lower(self.slide(&below, gradient, bends)).filter(|(next, ..)| apart(*next, place) > FOUND[1])
             };
             match lower(step).or_else(slid) {
-                Some(next) => (place, rail, wheel) = next,
+                Some(next) => (place, below, above) = next,
                 None => return Some(found(true)),
             }
         }
-        Some(Settled { place, rail, wheel, at_end: [false; 2], kink: true })
+        Some(Settled { place, below, above, at_end: [false; 2], kink: true, stretch: false })
     }
 
-    /// Newton's step along a kink of the wheel: at one abscissa of its profile.
-    fn slide(&self, rail: &SurfacePoint, [f, g]: [f64; 2], [a, b, c]: [f64; 3]) -> [f64; 2] {
-        let run = |v: [f64; 3]| self.wheel.turned(v)[0];
-        let aside = -run([rail.along[0], 1.0, rail.along[1]]) / run([rail.across[0], 0.0, rail.across[1]]);
+    /// Moves a place on a stretch with one gap to the strip's beginning, if that has the same gap: whatever part of a flat Newton's method
+    /// started from, it ends at one place.
+    fn at_beginning(&self, mut settled: Settled, level: [bool; 2]) -> Settled {
+        let begin = [0.0, self.strip.reach()[0]];
+        for k in (0..2).filter(|&k| level[k]) {
+            let mut place = settled.place;
+            place[k] = begin[k];
+            let same = |above: &Above| (above.gap - settled.above.gap).abs() <= self.over.rounding();
+            if let Some((below, above)) = self.at(place).filter(|(_, above)| same(above)) {
+                settled = Settled { place, below, above, ..settled };
+            }
+        }
+        settled
+    }
+
+    /// Tells across and along whether the longest step changes the gap by its rounding only.
+    fn level(&self, gradient: [f64; 2], bends: [f64; 3]) -> [bool; 2] {
+        let rounding = self.over.rounding();
+        let least =
+            |slope: f64, bend: f64, longest: f64| (slope.abs() + bend.abs() * longest) * longest <= rounding;
+        [least(gradient[0], bends[0], LONGEST[0]), least(gradient[1], bends[2], LONGEST[1])]
+    }
+
+    /// Newton's step along a kink of the swept body: at one abscissa of its profile.
+    fn slide(&self, below: &SpacePoint, [f, g]: [f64; 2], [a, b, c]: [f64; 3]) -> [f64; 2] {
+        let run = |v: [f64; 3]| self.over.turned(v)[0];
+        let aside = -run(below.along) / run(below.across);
         let (slope, bend) = (f * aside + g, (a * aside + 2.0 * b) * aside + c);
         if bend > 0.0 && aside.is_finite() { [-slope / bend * aside, -slope / bend] } else { [0.0; 2] }
     }

@@ -183,10 +183,14 @@ fn wheelrail(here: &Path, arguments: &[&str]) {
 /// Makes the picture of a scene in a folder; gives what was made, and what the repository has of it.
 fn pictured(scene: &str, name: &str, here: &Path) -> [PathBuf; 2] {
     let kept = Path::new(ROOT).join(format!("output/pictures/scenes/{name}.svg"));
-    if name == "crossing" {
-        let range = ["--along", "-100:300:2", "--out", "march.csv", "--picture", "march.svg"];
-        wheelrail(here, &[&["march", scene][..], &range].concat());
-        return [here.join("march.svg"), Path::new(ROOT).join("src/docs/along_track.svg")];
+    let marches = [
+        ("crossing", ["--along", "-100:300:2"], "along_track.svg"),
+        ("wheel_flat", ["--angle", "-0.1:0.1:0.001"], "around_the_wheel.svg"),
+    ];
+    if let Some((_, range, kept)) = marches.into_iter().find(|(march, ..)| *march == name) {
+        let files = ["--out", "march.csv", "--picture", "march.svg"];
+        wheelrail(here, &[&["march", scene][..], &range, &files].concat());
+        return [here.join("march.svg"), Path::new(ROOT).join("src/docs").join(kept)];
     }
     wheelrail(here, &["run", scene, "--out", "run"]);
     let made = ["conformal.svg", "patch.svg"].map(|file| here.join("run").join(file));
@@ -222,7 +226,7 @@ fn anew() -> bool {
 #[test]
 fn pictures_of_the_gallery_are_of_today() {
     let scenes = gallery();
-    assert!(scenes.len() >= 9, "{scenes:?}");
+    assert!(scenes.len() >= 10, "{scenes:?}");
     for (scene, name) in scenes.iter().filter(|(_, name)| name != "fleet") {
         let [made, kept] = pictured(scene, name, &gallery_folder(name));
         let made = std::fs::read_to_string(made).unwrap();

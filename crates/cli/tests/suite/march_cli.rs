@@ -74,6 +74,49 @@ fn the_picture_of_the_manual_is_what_the_command_draws() {
 }
 
 #[test]
+fn a_march_around_has_a_row_for_each_pitch_and_its_picture() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    let run = |arguments: &[&str]| {
+        let scene = root().join("examples/wheel_flat/wheel_flat.toml");
+        let binary = env!("CARGO_BIN_EXE_wheelrail");
+        let output = Command::new(binary).current_dir(here).arg("march").arg(scene).args(arguments).output();
+        output.unwrap()
+    };
+    let output = run(&["--angle", "-0.1:0.1:0.001", "--events", "events.csv", "--picture", "march.svg"]);
+    // A slow machine sees progress.
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success() && said.lines().all(|line| line.starts_with("march: ")), "{said}");
+    let table = String::from_utf8(output.stdout).unwrap();
+    assert!(table.starts_with("angle_rad,lateral_mm,yaw_rad,roll_rad,side,contact,z_mm,"), "{table}");
+    let rows: Vec<Vec<&str>> = table.lines().skip(1).map(|row| row.split(',').collect()).collect();
+    assert_eq!(rows.iter().filter(|row| row[4] == "right" && row[5] == "1").count(), 201);
+    let events = std::fs::read_to_string(here.join("events.csv")).unwrap();
+    assert!(events.starts_with("angle_rad,side,event,rail_x_before_mm"), "{events}");
+    assert_eq!(events.lines().filter(|row| row.contains(",right,transfer,")).count(), 1, "{events}");
+    // The picture of the manual is what the command draws, but for digits of machines.
+    let [drawn, kept] = [here.join("march.svg"), root().join("src/docs/around_the_wheel.svg")]
+        .map(|path| std::fs::read_to_string(path).unwrap());
+    let words = |text: &str| -> Vec<String> {
+        text.split('<').filter(|part| part.starts_with("text")).map(Into::into).collect()
+    };
+    assert_eq!(words(&drawn), words(&kept));
+    for (arguments, message) in [
+        (&["--angle", "0:x:1"][..], "--angle: found 0:x:1; expected FROM:TO:STEP in rad"),
+        (&["--along", "0:1:1"], "rail: found rails of one profile each"),
+        (&["--along", "0:1:1", "--angle", "0:1:1"], "cannot be used with"),
+        (&[], "required"),
+    ] {
+        let output = run(arguments);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.code() == Some(2) && error.contains(message), "{error}");
+    }
+    let output = march(here, &["--angle", "0:1:1"]);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(error.contains("rail: found rails that vary along the track"), "{error}");
+}
+
+#[test]
 fn bad_calls_name_the_key_and_leave_nothing() {
     let folder = TempDir::new().unwrap();
     let here = folder.path();
@@ -124,6 +167,16 @@ fn bad_calls_name_the_key_and_leave_nothing() {
             format!("{lofted}[wheel]\nprofile = \"S1002\"\nradius = 460.0\n[contact]\noffset = 0.0\n"),
             range,
             "found a single wheel",
+        ),
+        (
+            format!("{lofted}{}{spaced}", rest.replace("460.0", "460.0\nflat = { length = 60.0 }")),
+            range,
+            "wheel: found a wheel that varies on a rail that varies",
+        ),
+        (
+            format!("{lofted}{rest}pitch = 0.1\n{spaced}"),
+            range,
+            "wheelset: pitch: found 0.1 rad; expected no pitch of wheels of one profile each",
         ),
     ] {
         let arguments = [arguments, &["--out", "march.csv"]].concat();

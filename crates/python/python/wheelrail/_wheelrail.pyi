@@ -348,7 +348,11 @@ class Case:
 
 def run(path: _Path, out: _Path) -> Run: ...
 def march(
-    path: _Path, along: ArrayLike, *, progress: bool | Callable[[int, int], object] | None = None
+    path: _Path,
+    along: ArrayLike | None = None,
+    *,
+    angle: ArrayLike | None = None,
+    progress: bool | Callable[[int, int], object] | None = None,
 ) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]: ...
 def conicity(
     wheelset: Wheelset | Case,

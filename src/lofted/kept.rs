@@ -1,0 +1,291 @@
+//! A profile that keeps its shape while its height varies along y: closed forms, and cubics beside them that bound them.
+//!
+//! The height of a point z of the profile is z + d(y), or where its circle about the axle varies in proportion z + (1 + z/R) d(y).
+
+use std::sync::Arc;
+
+use super::bicubic::{Bicubic, SurfacePoint, hermite};
+use super::tree::tree;
+use crate::numerics::interval::product;
+use crate::profile::{Mark, Profile, trace};
+
+/// Largest cell across \[mm\]: its cubic is off by 0.1 nm on a 13 mm radius.
+const CELL: f64 = 0.5;
+
+/// Least kink of a profile \[rad\] at which its surface has an edge: where it cannot settle, Newton's method halves its steps to 1 nm.
+const LEAST_KINK: f64 = 1e-6;
+
+/// Least step \[mm\] of a profile at which its surface is interrupted.
+const LEAST_STEP: f64 = 1e-6;
+
+/// A cubic errs most within a cell of it. Twice what it errs at three places of each bounds that.
+const SURE: f64 = 2.0;
+
+/// A part of a profile without kinks, divided into cells.
+#[derive(Debug, Clone)]
+pub(super) struct Curve {
+    profile: Arc<Profile>,
+    cells: Vec<Cell>,
+    /// Bounds of x and z over the cells: see [`tree`].
+    pub tree: Vec<[[f64; 2]; 2]>,
+    /// How far the cells' cubics may be off \[mm\].
+    off: f64,
+}
+
+/// A cell: a range of one segment's shares, with point and derivative at its ends.
+#[derive(Debug, Clone, Copy)]
+struct Cell {
+    segment: usize,
+    shares: [f64; 2],
+    ends: [[[f64; 2]; 2]; 2],
+}
+
+/// How the height varies over a stretch of y.
+#[derive(Debug, Clone)]
+pub(super) struct Stretch {
+    form: Form,
+    /// By how much more of it a point of the profile is moved, per mm of its own height \[1/mm\].
+    growth: f64,
+    /// Ends of its cells \[mm\].
+    pub at: Vec<f64>,
+    /// Height and slope there.
+    rows: Vec<[f64; 2]>,
+    /// How far the cubics between them may be off \[mm\].
+    off: f64,
+}
+
+/// The closed form of a height; angles are places along y over the radius.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Form {
+    /// Cubics between the rows.
+    Cubics,
+    /// A chord of a circle of this radius, at a distance from its centre \[mm\], and the angle of its middle.
+    Chord { radius: f64, distance: f64, middle: f64 },
+    /// A circle about a point at a distance and an angle from the centre, in one of this radius.
+    Edge { radius: f64, edge_radius: f64, distance: f64, middle: f64 },
+}
+
+impl Curve {
+    /// Divides a profile at its kinks and steps.
+    pub fn parts(profile: &Profile) -> Vec<Arc<Self>> {
+        let (marks, profile) = (trace(profile, CELL), Arc::new(profile.clone()));
+        let ends = |pair: &[Mark]| {
+            let (a, b) = (&pair[0].station, &pair[1].station);
+            let kink = b.seen_from(a).angle().abs();
+            pair[0].segment != pair[1].segment
+                && (kink > LEAST_KINK || (b.x - a.x).hypot(b.z - a.z) > LEAST_STEP)
+        };
+        let breaks = (1..marks.len()).filter(|&k| ends(&marks[k - 1..=k]));
+        let breaks: Vec<usize> = [0].into_iter().chain(breaks).chain([marks.len()]).collect();
+        breaks.windows(2).map(|pair| Arc::new(Self::new(&profile, &marks[pair[0]..pair[1]]))).collect()
+    }
+
+    fn new(profile: &Arc<Profile>, marks: &[Mark]) -> Self {
+        let (mut cells, mut off) = (Vec::new(), 0.0_f64);
+        for run in marks.chunk_by(|a, b| a.segment == b.segment) {
+            let segment = run[0].segment;
+            let count = (run.len() - 1) as f64;
+            for k in 1..run.len() {
+                let shares = [(k - 1) as f64 / count, k as f64 / count];
+                let ends = shares.map(|share| {
+                    let [at, rate, _] = profile.segments()[segment].at_share(share);
+                    [at, rate.map(|rate| rate / count)]
+                });
+                let cell = Cell { segment, shares, ends };
+                for f in INSIDE {
+                    let ([exact, ..], [near, ..]) = (cell.point(profile, f), cell.near(f));
+                    off = off.max((exact[0] - near[0]).abs()).max((exact[1] - near[1]).abs());
+                }
+                cells.push(cell);
+            }
+        }
+        let bounds =
+            cells.iter().map(|cell| [0, 1].map(|axis| hull(cell.ends.map(|end| end.map(|v| v[axis])))));
+        Self { profile: Arc::clone(profile), tree: tree(bounds), cells, off: SURE * off }
+    }
+
+    /// Number of cells.
+    pub fn cells(&self) -> usize {
+        self.cells.len()
+    }
+}
+
+/// Shares of a cell at which its cubic is compared.
+const INSIDE: [f64; 3] = [0.25, 0.5, 0.75];
+
+/// Bounds of a cubic over one unit, given its values and slopes \[value, slope\] at both ends.
+fn hull([[a, from], [b, to]]: [[f64; 2]; 2]) -> [f64; 2] {
+    [a + from / 3.0, b, b - to / 3.0].into_iter().fold([a; 2], |[low, high], v| [low.min(v), high.max(v)])
+}
+
+/// The cubic over a step with values and slopes at its ends: value and first two derivatives at a share of it.
+fn cubic(share: f64, step: f64, [[a, from], [b, to]]: [[f64; 2]; 2]) -> [f64; 3] {
+    let h = hermite(share);
+    [0, 1, 2].map(|k| {
+        (h[k][0] * a + h[k][1] * step * from + h[k][2] * b + h[k][3] * step * to) / step.powi(k as i32)
+    })
+}
+
+impl Cell {
+    /// Point and first two derivatives at a share.
+    fn point(&self, profile: &Profile, f: f64) -> [[f64; 2]; 3] {
+        let width = self.shares[1] - self.shares[0];
+        let [at, rate, bend] = profile.segments()[self.segment].at_share(self.shares[0] + f * width);
+        [at, rate.map(|v| v * width), bend.map(|v| v * width * width)]
+    }
+
+    /// The same of its cubic.
+    fn near(&self, f: f64) -> [[f64; 2]; 3] {
+        let axes = [0, 1].map(|axis| cubic(f, 1.0, self.ends.map(|end| end.map(|v| v[axis]))));
+        [0, 1, 2].map(|k| axes.map(|values| values[k]))
+    }
+}
+
+impl Stretch {
+    /// Makes a stretch of a closed form of a circle's radius over cells that end at these places \[mm\]; all circles of the profile vary in
+    /// proportion.
+    pub fn of_form(form: Form, at: Vec<f64>) -> Self {
+        let rows = at.iter().map(|y| form.height(*y)).map(|[value, slope, _]| [value, slope]).collect();
+        let mut stretch = Self { form, growth: form.growth(), at, rows, off: 0.0 };
+        let errors = (1..stretch.at.len()).flat_map(|k| {
+            let (stretch, [from, to]) = (&stretch, [stretch.at[k - 1], stretch.at[k]]);
+            INSIDE.map(|f| {
+                let y = from + f * (to - from);
+                (stretch.near(k - 1, y)[0] - form.height(y)[0]).abs()
+            })
+        });
+        stretch.off = SURE * errors.fold(0.0, f64::max);
+        stretch
+    }
+
+    /// Makes a stretch of cubics through heights \[mm\] with slopes, at ascending places \[mm\]; the whole profile moves alike.
+    pub fn of_cubics(at: Vec<f64>, rows: Vec<[f64; 2]>) -> Self {
+        Self { form: Form::Cubics, growth: 0.0, at, rows, off: 0.0 }
+    }
+
+    /// Height, slope and second derivative in a cell at y \[mm\].
+    fn height(&self, cell: usize, y: f64) -> [f64; 3] {
+        match self.form {
+            Form::Cubics => self.near(cell, y),
+            form => form.height(y),
+        }
+    }
+
+    /// The same of the cell's cubic.
+    fn near(&self, cell: usize, y: f64) -> [f64; 3] {
+        let step = self.at[cell + 1] - self.at[cell];
+        cubic((y - self.at[cell]) / step, step, [self.rows[cell], self.rows[cell + 1]])
+    }
+
+    /// Bounds of the height over a cell, of its cubic \[mm\].
+    pub fn bounds(&self, cell: usize) -> [f64; 2] {
+        let step = self.at[cell + 1] - self.at[cell];
+        hull([0, 1].map(|k| [self.rows[cell + k][0], step * self.rows[cell + k][1]]))
+    }
+}
+
+impl Form {
+    fn growth(&self) -> f64 {
+        match self {
+            Self::Cubics => 0.0,
+            Self::Chord { radius, .. } | Self::Edge { radius, .. } => radius.recip(),
+        }
+    }
+
+    /// Height, slope and second derivative at y \[mm\].
+    fn height(&self, y: f64) -> [f64; 3] {
+        match *self {
+            Self::Cubics => [0.0; 3],
+            Self::Chord { radius, distance, middle } => {
+                let (sin, cos) = (y / radius - middle).sin_cos();
+                let far = distance / cos;
+                let slope = far * sin / cos / radius;
+                [far - radius, slope, far * (1.0 + sin * sin) / (cos * cos * radius * radius)]
+            }
+            Self::Edge { radius, edge_radius, distance, middle } => {
+                let (sin, cos) = (y / radius - middle).sin_cos();
+                let (across, ahead) = (distance * sin, distance * cos);
+                let leg = ((edge_radius - across) * (edge_radius + across)).sqrt();
+                let far = ahead + leg;
+                let tilt = across / leg;
+                let bend = far * (tilt * tilt - (1.0 + tilt * tilt) * ahead / leg);
+                [far - radius, -far * tilt / radius, bend / (radius * radius)]
+            }
+        }
+    }
+}
+
+/// The surface of a curve over a stretch.
+#[derive(Debug, Clone)]
+pub(super) struct Kept {
+    pub curve: Arc<Curve>,
+    pub stretch: Stretch,
+}
+
+impl Kept {
+    /// The point in a cell at a share of it across, and at y \[mm\] in an interval.
+    pub fn point(&self, interval: usize, cell: usize, f: f64, y: f64) -> SurfacePoint {
+        let [at, across, across2] = self.curve.cells[cell].point(&self.curve.profile, f);
+        let [height, slope, bend] = self.stretch.height(interval, y);
+        let growth = self.stretch.growth;
+        let (share, whole) = (1.0 + growth * height, 1.0 + growth * at[1]);
+        SurfacePoint {
+            y,
+            at: [at[0], at[1] + whole * height],
+            across: [across[0], share * across[1]],
+            along: [0.0, whole * slope],
+            across2: [across2[0], share * across2[1]],
+            mixed: [0.0, growth * slope * across[1]],
+            along2: [0.0, whole * bend],
+        }
+    }
+
+    /// The bicubic beside a cell.
+    pub fn cell(&self, interval: usize, cell: usize) -> Bicubic {
+        let Stretch { at, rows, growth, .. } = &self.stretch;
+        let ends = &self.curve.cells[cell].ends;
+        let corner = |a: usize, b: usize| {
+            let ([[x, z], [xu, zu]], [height, slope]) = (ends[a], rows[interval + b]);
+            let (share, whole) = (1.0 + growth * height, 1.0 + growth * z);
+            [[x, z + whole * height], [xu, share * zu], [0.0, whole * slope], [0.0, growth * slope * zu]]
+        };
+        let corners = [0, 1].map(|a| [0, 1].map(|b| corner(a, b)));
+        Bicubic { corners, y: [at[interval], at[interval + 1]] }
+    }
+
+    /// Bounds of x and z over a node of the curve's tree, of its bicubics \[mm\].
+    pub fn bounds(&self, interval: usize, node: usize) -> [[f64; 2]; 2] {
+        let ([x, z], height) = (self.curve.tree[node], self.stretch.bounds(interval));
+        let grown = product(z, height.map(|height| 1.0 + self.stretch.growth * height));
+        [x, [grown[0] + height[0], grown[1] + height[1]]]
+    }
+
+    /// How far the bicubics may be off \[mm\].
+    pub fn off(&self) -> f64 {
+        let [_, [low, high]] = self.curve.tree[1];
+        self.curve.off + self.stretch.off * (1.0 + self.stretch.growth * low.abs().max(high.abs()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn closed_forms_have_the_derivatives_of_their_differences() {
+        let (radius, middle) = (460.0, 0.3);
+        for form in [
+            Form::Chord { radius, distance: 459.0, middle },
+            Form::Edge { radius, edge_radius: 40.0, distance: 420.0, middle },
+        ] {
+            for y in [130.0, 138.0, 144.0] {
+                let step = 1e-2;
+                let [before, at, after] = [y - step, y, y + step].map(|y| form.height(y));
+                for k in 0..2 {
+                    let slope = (after[k] - before[k]) / (2.0 * step);
+                    assert!((slope - at[k + 1]).abs() < 1e-8, "{form:?} {y}: {slope} {at:?}");
+                }
+            }
+        }
+    }
+}
