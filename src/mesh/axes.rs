@@ -14,6 +14,7 @@ const CELLS_ACROSS: f64 = 16.0;
 const MARGIN_CELLS: f64 = 2.0;
 
 /// Steps up to which the cells of a grid reach beyond the box around its patch: its margin, half a cell, and what the lattice adds.
+#[cfg(feature = "files")]
 pub(crate) const CELLS_REACHED: f64 = MARGIN_CELLS + 1.5;
 
 /// Most cells of a grid without a given spacing: five times what CONTACT takes, 50 MB of files. With square cells the patch
@@ -140,6 +141,7 @@ impl GridGroup {
     }
 
     /// Gives the longest step of the group's grid \[mm\], unless its cells are stretched.
+    #[cfg(feature = "files")]
     pub(crate) fn step(&self, spacing: Option<[f64; 2]>) -> f64 {
         spacing.map_or(self.short_side / CELLS_ACROSS, |[xi, eta]| xi.max(eta))
     }

@@ -13,6 +13,7 @@ mod surfaces;
 mod trace;
 mod triangles;
 
+#[cfg(feature = "files")]
 pub(crate) use axes::CELLS_REACHED;
 pub use axes::{Axes, GridGroup, MOST_ON_AXIS, MOST_POINTS, equal_steps, groups};
 pub use quality::{Quality, Spread};
