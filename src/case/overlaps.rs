@@ -8,8 +8,8 @@ use crate::mesh::{CELLS_REACHED, GridGroup, groups};
 use crate::patch::{Patch, Window};
 use crate::placement::Placement;
 
-/// Distance \[mm\] of two parts, beyond that at which they are joined, over which their angles turn from the one that they have together
-/// to their own. CONTACT turns angles over 4 mm unless told otherwise.
+/// Range \[mm\] beyond the distance at which two parts join, over which their angles turn from a common one to their own. It is
+/// CONTACT's default.
 const TURNED_OVER: f64 = 4.0;
 
 /// What makes parts of a patch one region, and where its frame is.
@@ -36,10 +36,10 @@ pub(super) struct Overlap {
     pub frame: WeightedFrame,
 }
 
-/// Finds the parts of the overlap of a wheel that has sunk by `sunk` \[mm\], along ξ. `upright` has a vertical ζ; s in it is the
-/// vertical gap at first touch.
+/// Finds the parts of the overlap of a wheel that has sunk by `sunk` \[mm\], in order of ξ. `upright` has a vertical ζ, so that its s is
+/// the vertical gap at first touch.
 ///
-/// The frames move continuously as parts grow, join and part: parts that join have one angle before.
+/// The frames move continuously as parts grow, join and separate: two parts have turned to one angle before they join.
 pub(super) fn overlaps(upright: &Placement, sunk: f64, rules: &RegionRules) -> Vec<Overlap> {
     let patch = Patch::new(upright, sunk, &Window::UNBOUNDED);
     let mut parts = groups(&patch, rules.merge, rules.spacing);
@@ -70,8 +70,8 @@ pub(super) fn overlaps(upright: &Placement, sunk: f64, rules: &RegionRules) -> V
     (0..found.len()).map(overlap).collect()
 }
 
-/// Gives 1 for parts so close that they are nearly joined, 0 for parts that have nothing to do with each other, and between them a value
-/// whose slope is continuous.
+/// Weight of one part in the angle of the other: 1 at the distance at which they join, 0 from [`TURNED_OVER`] beyond it, and a cubic with
+/// level ends between.
 fn nearness(upright: &Placement, [left, right]: [&GridGroup; 2], rules: &RegionRules) -> f64 {
     let on_rail = |xi: f64| Point2::new(xi, upright.rail().section().height(xi));
     let [a, b] = [left.extent.eta, right.extent.eta];

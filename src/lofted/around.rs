@@ -24,8 +24,8 @@ const MARGIN: usize = 3;
 /// Least angle \[rad\] between two sections of a wheel; sections closer to a whole turn apart are one. CONTACT has it, too.
 const LEAST_APART: f64 = 1e-3;
 
-/// Sections or rows beyond that of which a periodic spline is made: what its end does to it falls to a quarter from row to row, and to a
-/// half where rows are far from equally spaced.
+/// Rows by which a spline is continued beyond the surface to stand for a periodic one. The effect of its ends falls to a quarter
+/// from row to row, or to a half where rows are far from equally spaced: to 2⁻⁵⁴ over these.
 const SPLINE_MARGIN: usize = 54;
 
 /// Largest cell \[rad\] of a flat: cubics beside its closed form are off by 1e-6 mm on a radius of 500 mm.
@@ -62,9 +62,8 @@ impl LoftedWheel {
     /// section is joined to the first.
     ///
     /// # Errors
-    /// The errors of [`Loft::new`]; angles that do not ascend; a radius that is not positive, or a section that reaches the axle; sections
-    /// that are more than once around, but for a last one at the place of the first, which is not
-    /// used.
+    /// The errors of [`Loft::new`]; angles that do not ascend; a radius that is not positive; a section that reaches the axle; sections
+    /// that go more than once around. A last section at the place of the first one is left out, with a warning.
     pub fn new(sections: &[Slice], radius: f64, joining: Joining) -> Result<Self> {
         check_radius(radius)?;
         if let Some(pair) = sections.windows(2).find(|pair| pair[0].at.partial_cmp(&pair[1].at) != Some(Less))
@@ -112,12 +111,12 @@ impl LoftedWheel {
         Self::kept(profile, radius, middle, &[periodic_spline(deviations, radius, middle)])
     }
 
-    /// Makes a wheel with a flat: every circle of the profile has a chord over the same angle, so that the flat is straight along the rail
-    /// on which the wheel slid. Exact: chord and edges are closed forms.
+    /// Makes a wheel with a flat. Every circle of the profile is cut by a chord over the same angle: the flat is straight along the rail
+    /// on which the wheel slid. Accuracy: rounding, because chord and edges are closed forms.
     ///
     /// # Errors
-    /// A length that is not positive, or the diameter and more; an angle beyond a turn; an edge radius that is negative, or no smaller than what the flat leaves
-    /// of the radius.
+    /// A length below 0.01 mm, or the diameter and more; an angle beyond a turn; an edge radius that is negative, or as large as the
+    /// distance of the chord from the axle; a profile that reaches the axle.
     pub fn with_flat(profile: &Profile, radius: f64, flat: &Flat) -> Result<Self> {
         check_radius(radius)?;
         let middle = turned(flat.angle, 0.0);

@@ -21,8 +21,8 @@ pub struct PointNoise {
     pub samples: usize,
     /// Seed of the samples; 1.
     pub seed: u64,
-    /// How the curve of each sample is drawn: as that of the profile itself, of which these are the options. Of them kind of curve,
-    /// cut-off wavelength, kink angle and tolerance count; interpolation by default.
+    /// How the curve of each sample is drawn: kind of curve, cut-off wavelength \[mm\], kink angle and tolerance of these options count.
+    /// Give those of the profile itself, so that the interval is of the same curve as the value. Interpolation by default.
     pub curve: Options,
 }
 

@@ -1,7 +1,9 @@
 //! The report, measured small: every section, every file, every column.
 
+use wheelrail::scene::{Scene, parse};
 use wheelrail_report::measurements::{Effort, Measurements, measure};
 use wheelrail_report::page::{FILES, PAGE, excerpt, page, sections};
+use wheelrail_report::processes::PROCESSES;
 use wheelrail_report::rates::Extent;
 use wheelrail_report::reference::{FILES as SCENES, references};
 
@@ -67,6 +69,20 @@ fn accuracy_csv_has_its_columns_and_every_row() {
         }
     }
     assert!(measurements.threads.iter().all(|row| row.same_bits));
+}
+
+/// The scenes that are timed as whole processes stand alone, and say what the examples say.
+#[test]
+fn timed_processes_are_those_of_the_examples() {
+    for (process, example) in PROCESSES.iter().zip(["wheelset", "60e1_s1002"]) {
+        let path = format!("{}/examples/scenes/{example}.toml", env!("CARGO_MANIFEST_DIR"));
+        let text = std::fs::read_to_string(path).expect("an example");
+        let [mut timed, mut example]: [Scene; 2] =
+            [process.scene, &text].map(|text| parse(text, false).expect("a scene"));
+        (timed.output, example.output) = Default::default();
+        example.title = None;
+        assert_eq!(timed, example, "{}", process.name);
+    }
 }
 
 #[test]
